@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// How every function of this program reports failure: a Result and, with it, one line of text.
+#pragma once
+
+#include <stdarg.h>
+
+// What went wrong, by kind. The values are the programs' exit statuses, so that `main` returns them.
+typedef enum Result {
+    RESULT_OK = 0,
+    RESULT_FAILED = 1,        // at run time: disk full, out of memory, ffmpeg died, ...
+    RESULT_USAGE = 2,         // the command line or a parameter is wrong
+    RESULT_BAD_INPUT = 3,     // a file's content is wrong
+    RESULT_NO_GL = 4,         // no usable OpenGL
+    RESULT_INTERRUPTED = 130, // SIGINT or SIGTERM
+} Result;
+
+// One line for the user: what, where, what was expected. No newline, no trailing full stop.
+typedef struct Error {
+    char text[1024];
+} Error;
+
+// Writes the line (printf style, cut at the buffer's end) and returns `result`, so that failing reads
+// `return error_set(error, RESULT_BAD_INPUT, "%s: byte %zu: ...", path, at);`. `error` may be NULL.
+Result error_set(Error *error, Result result, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+// Puts a prefix (printf style) before the text that is already there; returns `result`.
+Result error_prefix(Error *error, Result result, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
