@@ -8,30 +8,35 @@
 #include <stdint.h>
 #include <stdio.h>
 
-// The bytes of a file. `data` has one more byte, zero, behind `size`, so that text may be read as a string.
+// The bytes of a file. `data` has one more byte, zero, behind `size`, so that text may be read as a
+// string.
 typedef struct Bytes {
     uint8_t *data;
     size_t size;
 } Bytes;
 
-// Reads all of `path` ("-" is not special). Fails with RESULT_BAD_INPUT naming the path and the reason
-// (missing, a folder, unreadable). Free with bytes_destroy, which takes a zeroed struct too.
+// Reads all of `path` ("-" is not special; pipes and devices are read until they end). Fails with
+// RESULT_BAD_INPUT naming the path and the reason (missing, a folder, unreadable), or RESULT_FAILED
+// when memory is short. Free with bytes_destroy, which takes a zeroed struct too.
 Result bytes_read_file(Bytes *bytes, const char *path, Error *error);
 void bytes_destroy(Bytes *bytes);
 
-// A file that is being written under a temporary name in the folder of `path`.
+// A file that is being written under a temporary name (".tractrix-...tmp") in the folder of `path`.
 typedef struct OutFile {
     FILE *stream;    // write here; write errors are sticky and found by outfile_commit
-    char *path;      // the final name
-    char *temporary; // the present name
+    char *path;      // the final name, links followed
+    char *temporary; // the present name; NULL for a device or pipe, which is written directly
 } OutFile;
 
-// Creates the temporary file (permissions as for any new file, by the umask). RESULT_FAILED with path and reason.
+// Creates the temporary file (permissions as for any new file, by the umask). RESULT_FAILED with
+// path and reason: no such folder, a folder of that name, an existing file that is read-only, ...
 Result outfile_open(OutFile *file, const char *path, Error *error);
 
-// Flushes, syncs to disk, closes and renames to the final name; on any failure the temporary file is removed, an older
-// file of the final name is left as it was, and the reason is given (disk full, ...). `file` is zeroed.
+// Flushes, syncs to disk, closes and renames to the final name; on any failure the temporary file
+// is removed, an older file of the final name is left as it was, and the reason is given (disk
+// full, ...). `file` is zeroed.
 Result outfile_commit(OutFile *file, Error *error);
 
-// Closes and removes the temporary file. Legal for a zeroed struct, so `outfile_discard` may follow any outcome.
+// Closes and removes the temporary file. Legal for a zeroed struct, so `outfile_discard` may follow
+// any outcome.
 void outfile_discard(OutFile *file);
