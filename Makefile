@@ -1,47 +1,170 @@
 # SPDX-License-Identifier: MIT
 # Tractrix: headless hair simulator and renderer. `make help` lists the targets.
+#
+#   CONFIG  release (default), debug or sanitize        OUT     where everything goes, out/$(CONFIG)
+#   WERROR  not empty: warnings are errors              ONLY    `make test`: only tests with this in their name
+#   CC, CPPFLAGS, CFLAGS, LDFLAGS, LDLIBS, PREFIX and DESTDIR as usual; the flags are added to the project's own.
 
-CONFIG ?= release
-OUT    := out/$(CONFIG)
-CC     ?= gcc
+VERSION := 0.1.0
+CONFIG  ?= release
+OUT     ?= out/$(CONFIG)
+PREFIX  ?= /usr/local
+ifeq ($(origin CC),default)
+CC := gcc
+endif
 
-PACKAGES := epoxy egl cglm libdeflate jansson stb
-CPPFLAGS += -D_GNU_SOURCE -Isrc -Iglsl $(shell pkg-config --cflags $(PACKAGES) 2>/dev/null)
-CFLAGS_release  := -O2 -DNDEBUG
-CFLAGS_debug    := -O0 -g3 -DTRACTRIX_DEBUG
-CFLAGS_sanitize := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=undefined
-LDFLAGS_sanitize := -fsanitize=address,undefined
-CFLAGS  += -std=c11 -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wvla -ffp-contract=off -pthread $(CFLAGS_$(CONFIG))
-LDFLAGS += $(LDFLAGS_$(CONFIG)) -pthread
-LDLIBS  += $(shell pkg-config --libs epoxy egl libdeflate jansson 2>/dev/null) -ldl -lm
+ifeq ($(filter $(CONFIG),release debug sanitize),)
+$(error CONFIG=$(CONFIG): expected release, debug or sanitize)
+endif
 
-PROGRAMS := tractrix-render tractrix-gen tractrix-bench
-MAINS    := $(wildcard src/main_*.c)
-SOURCES  := $(filter-out $(MAINS),$(wildcard src/*.c))
-OBJECTS  := $(SOURCES:src/%.c=$(OUT)/%.o) $(OUT)/glsl_sources.o
-SHADERS  := $(wildcard glsl/*)
-BINARIES := $(MAINS:src/main_%.c=$(OUT)/tractrix-%)
-TESTS    := $(patsubst tests/%.c,$(OUT)/tests/%,$(wildcard tests/test_*.c))
+# --- Flags. stb is used by its headers alone; its pkg-config file would link a library that nothing here needs.
+LIBRARIES := epoxy egl libdeflate jansson
+HEADERS   := cglm stb
+MISSING   := $(shell for p in $(LIBRARIES) $(HEADERS); do pkg-config --exists $$p || echo $$p; done 2>/dev/null)
 
-all: $(BINARIES)
+OPTIMISE_release  := -O2 -DNDEBUG
+OPTIMISE_debug    := -O0 -g3 -DTRACTRIX_DEBUG
+OPTIMISE_sanitize := -O1 -g -fno-omit-frame-pointer
+SANITIZE_sanitize := -fsanitize=address,undefined -fno-sanitize-recover=undefined
 
-$(OUT)/%.o: src/%.c | $(OUT)
-	$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
-$(OUT)/glsl_sources.c: scripts/embed-glsl $(SHADERS) | $(OUT)
+WARNINGS  := -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wvla $(if $(WERROR),-Werror)
+# Library headers are not ours to mend: -isystem keeps their warnings out.
+INCLUDES  := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(LIBRARIES) $(HEADERS) 2>/dev/null))
+# -ffp-contract=off: the same bits whether or not the compiler may use fused multiply-adds.
+C_FLAGS   := -std=c11 -D_GNU_SOURCE -Isrc -Iglsl -I$(OUT) $(INCLUDES) $(WARNINGS) -ffp-contract=off -pthread \
+             $(OPTIMISE_$(CONFIG)) $(SANITIZE_$(CONFIG)) $(CPPFLAGS) $(CFLAGS)
+LD_FLAGS  := -pthread -Wl,--as-needed $(SANITIZE_$(CONFIG)) $(LDFLAGS)
+LD_LIBS   := $(shell pkg-config --libs $(LIBRARIES) 2>/dev/null) -ldl -lm $(LDLIBS)
+
+# --- Files. Every src/main_<x>.c is the program tractrix-<x>, every tests/test_<x>.c a program of its own; the other
+# files of tests/ are shared by the tests.
+MAINS     := $(wildcard src/main_*.c)
+SOURCES   := $(filter-out $(MAINS),$(wildcard src/*.c src/*/*.c))
+SHADERS   := $(wildcard glsl/*)
+TESTS     := $(wildcard tests/test_*.c)
+SUPPORT   := $(filter-out $(TESTS),$(wildcard tests/*.c))
+OBJECTS   := $(SOURCES:src/%.c=$(OUT)/%.o) $(if $(SHADERS),$(OUT)/glsl_sources.o)
+PROGRAMS  := $(MAINS:src/main_%.c=$(OUT)/tractrix-%)
+TEST_PROGRAMS := $(TESTS:%.c=$(OUT)/%)
+SUPPORT_OBJECTS := $(SUPPORT:%.c=$(OUT)/%.o)
+MANUALS   := $(patsubst %,%.1,$(filter %/tractrix-render,$(PROGRAMS)))
+FOLDERS   := $(sort $(OUT)/tests/ $(dir $(OBJECTS)))
+
+# --- Build. Recipes that recurse use all processors unless -j says otherwise.
+JOBS = $(if $(filter -j% --jobserver%,$(MAKEFLAGS)),,-j$(shell nproc))
+AGAIN = @$(MAKE) --no-print-directory
+
+all: $(OUT)/libtractrix.a $(PROGRAMS) ## the programs (default)
+tests: $(TEST_PROGRAMS)
+
+$(OUT)/%.o: src/%.c $(OUT)/flags | $(OUT)/version.h
+	$(CC) $(C_FLAGS) -MMD -MP -c -o $@ $<
+$(OUT)/glsl_sources.c: scripts/embed-glsl $(SHADERS) $(OUT)/files
 	scripts/embed-glsl $(SHADERS) >$@.tmp && mv $@.tmp $@
-$(OUT)/glsl_sources.o: $(OUT)/glsl_sources.c
-	$(CC) $(CPPFLAGS) $(CFLAGS) -c -o $@ $<
-$(OUT)/libtractrix.a: $(OBJECTS)
+$(OUT)/glsl_sources.o: $(OUT)/glsl_sources.c $(OUT)/flags # C promises only 4095 characters a string; every compiler takes more
+	$(CC) $(C_FLAGS) -Wno-overlength-strings -MMD -MP -c -o $@ $<
+$(OUT)/libtractrix.a: $(OBJECTS) $(OUT)/files
 	rm -f $@ && $(AR) rcs $@ $(OBJECTS)
 $(OUT)/tractrix-%: $(OUT)/main_%.o $(OUT)/libtractrix.a
-	$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
-$(OUT)/tests/%: tests/%.c $(OUT)/libtractrix.a | $(OUT)
-	$(CC) $(CPPFLAGS) -Itests $(CFLAGS) -MMD -MP $(LDFLAGS) -o $@ $(filter %.c %.a,$^) $(LDLIBS) -lcmocka
-$(OUT):
-	mkdir -p $@/tests
+	$(CC) $(LD_FLAGS) -o $@ $^ $(LD_LIBS)
+$(OUT)/tractrix-%.1: $(OUT)/tractrix-%
+	$< --help=man >$@.tmp && mv $@.tmp $@
 
-clean:
+$(OUT)/tests/%.o: tests/%.c $(OUT)/flags | $(OUT)/version.h
+	$(CC) $(C_FLAGS) -Itests -MMD -MP -c -o $@ $<
+$(OUT)/tests/libsupport.a: $(SUPPORT_OBJECTS) $(OUT)/files
+	rm -f $@ && $(AR) rcs $@ $(SUPPORT_OBJECTS)
+$(OUT)/tests/%: $(OUT)/tests/%.o $(OUT)/tests/libsupport.a $(OUT)/libtractrix.a
+	$(CC) $(LD_FLAGS) -o $@ $^ $(LD_LIBS) -lcmocka
+
+# Stamps, rewritten only when what they hold changes, so that what depends on them is rebuilt just then: the flags,
+# the list of files (one may have been removed) and the version.
+write_if_changed = printf '%s\n' $(1) | cmp -s - $@ || printf '%s\n' $(1) >$@
+$(OUT)/flags: FORCE | $(FOLDERS)
+	$(if $(MISSING),$(error missing: $(MISSING). Run scripts/setup, which installs what is needed on Debian and Ubuntu and lists it elsewhere))
+	@$(call write_if_changed,'$(CC) $(C_FLAGS) $(LD_FLAGS) $(LD_LIBS)')
+$(OUT)/files: FORCE | $(FOLDERS)
+	@$(call write_if_changed,'$(SOURCES) $(SHADERS) $(SUPPORT)')
+$(OUT)/version.h: FORCE | $(FOLDERS)
+	@scripts/write-version $(VERSION) $@
+$(FOLDERS):
+	mkdir -p $@
+
+# --- For people. Set-up comes first and make starts again after it, because the flags above ask pkg-config.
+demo: ## set-up, build, and render the bundled scene to out/demo/
+	@scripts/setup build run
+	$(AGAIN) $(JOBS) all
+	@scripts/demo $(OUT) out/demo
+
+test: ## set-up, build, and run all tests (ONLY=name: some of them)
+	@scripts/setup build run test
+	$(AGAIN) $(JOBS) all tests
+	@tests/run $(OUT) $(ONLY)
+
+bench: all ## print the table of benchmarks
+	$(OUT)/tractrix-bench all
+
+# --- Static checks and the sanitizers; all of them run, then the failures are named. One alone: make check-format.
+CHECKS := format scripts warnings clang cppcheck shaders sanitize
+C_FILES = $(wildcard src/*.[ch] src/*/*.[ch] tests/*.[ch] glsl/*.h)
+SIDE   := $(if $(filter command line,$(origin OUT)),$(OUT)/,out/)
+QUIET   = $(AGAIN) $(JOBS) --silent
+
+check: ## static checks, warnings as errors with gcc and clang, tests under sanitizers
+	@scripts/setup build run test check
+	@failed=; for step in $(CHECKS); do echo "check: $$step"; \
+	    $(MAKE) --no-print-directory check-$$step || failed="$$failed $$step"; done; \
+	if [ "$$failed" ]; then echo "check: failed:$$failed"; exit 1; fi; echo "check: all well"
+
+check-format:
+	@clang-format --dry-run -Werror $(C_FILES)
+check-scripts:
+	@shellcheck $$(scripts/list-shell)
+check-warnings: # where warnings are errors anyway (CI), the usual build is the check
+	$(QUIET) WERROR=1 OUT=$(if $(WERROR),$(OUT),$(SIDE)check-gcc) all tests
+check-clang:
+	@command -v clang >/dev/null || { echo "no clang here: skipped"; exit 0; }; \
+	$(MAKE) --no-print-directory $(JOBS) --silent WERROR=1 CC=clang OUT=$(SIDE)check-clang all tests
+check-cppcheck:
+	@mkdir -p $(SIDE)check-cppcheck
+	@cppcheck --quiet --std=c11 --language=c --library=posix --enable=warning,performance,portability --inline-suppr \
+	    --error-exitcode=1 --cppcheck-build-dir=$(SIDE)check-cppcheck -D_GNU_SOURCE -Isrc -Iglsl -Itests src tests
+check-shaders:
+	$(QUIET) all
+	@scripts/check-shaders $(OUT)
+check-sanitize:
+	$(QUIET) CONFIG=sanitize OUT=$(SIDE)sanitize all tests
+	@tests/run $(SIDE)sanitize test_
+
+format: ## clang-format all C files
+	clang-format -i $(C_FILES)
+
+# --- Installation.
+BIN_DIR = $(DESTDIR)$(PREFIX)/bin
+MAN_DIR = $(DESTDIR)$(PREFIX)/share/man/man1
+DATA_DIR = $(DESTDIR)$(PREFIX)/share/tractrix
+DOC_DIR = $(DESTDIR)$(PREFIX)/share/doc/tractrix
+
+install: all $(MANUALS) ## programs, manual, assets and licence under $(DESTDIR)$(PREFIX)
+	install -d $(BIN_DIR) $(MAN_DIR) $(DATA_DIR) $(DOC_DIR)
+	install $(PROGRAMS) $(BIN_DIR)
+	$(if $(MANUALS),install -m 644 $(MANUALS) $(MAN_DIR))
+	install -m 644 $(wildcard assets/*) $(DATA_DIR)
+	install -m 644 LICENSE $(wildcard README.md) $(DOC_DIR)
+
+uninstall: ## remove what install put there
+	rm -f $(PROGRAMS:$(OUT)/%=$(BIN_DIR)/%) $(MANUALS:$(OUT)/%=$(MAN_DIR)/%)
+	rm -rf $(DATA_DIR) $(DOC_DIR)
+
+clean: ## remove out/
 	rm -rf out
 
-.PHONY: all clean
--include $(wildcard $(OUT)/*.d $(OUT)/tests/*.d)
+help: ## this list
+	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 18
+	@echo; sed -n '4,6s/^#//p' $(firstword $(MAKEFILE_LIST))
+
+FORCE:
+.PHONY: all tests demo test bench check $(CHECKS:%=check-%) format install uninstall clean help FORCE
+.SECONDARY:
+.DELETE_ON_ERROR:
+-include $(patsubst %.o,%.d,$(OBJECTS) $(MAINS:src/%.c=$(OUT)/%.o) $(TEST_PROGRAMS:%=%.o) $(SUPPORT_OBJECTS))
