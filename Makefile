@@ -56,6 +56,7 @@ AGAIN = @$(MAKE) --no-print-directory
 
 all: $(OUT)/libtractrix.a $(PROGRAMS) ## the programs (default)
 tests: $(TEST_PROGRAMS)
+	@:
 
 $(OUT)/%.o: src/%.c $(OUT)/flags | $(OUT)/version.h
 	$(CC) $(C_FLAGS) -MMD -MP -c -o $@ $<
@@ -79,12 +80,13 @@ $(OUT)/tests/%: $(OUT)/tests/%.o $(OUT)/tests/libsupport.a $(OUT)/libtractrix.a
 
 # Stamps, rewritten only when what they hold changes, so that what depends on them is rebuilt just then: the flags,
 # the list of files (one may have been removed) and the version.
-write_if_changed = printf '%s\n' $(1) | cmp -s - $@ || printf '%s\n' $(1) >$@
+quote = '$(subst ','\'',$(1))'
+write_if_changed = printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || printf '%s\n' $(call quote,$(1)) >$@
 $(OUT)/flags: FORCE | $(FOLDERS)
 	$(if $(MISSING),$(error missing: $(MISSING). Run scripts/setup, which installs what is needed on Debian and Ubuntu and lists it elsewhere))
-	@$(call write_if_changed,'$(CC) $(C_FLAGS) $(LD_FLAGS) $(LD_LIBS)')
+	@$(call write_if_changed,$(CC) $(C_FLAGS) $(LD_FLAGS) $(LD_LIBS))
 $(OUT)/files: FORCE | $(FOLDERS)
-	@$(call write_if_changed,'$(SOURCES) $(SHADERS) $(SUPPORT)')
+	@$(call write_if_changed,$(SOURCES) $(SHADERS) $(SUPPORT))
 $(OUT)/version.h: FORCE | $(FOLDERS)
 	@scripts/write-version $(VERSION) $@
 $(FOLDERS):
@@ -149,7 +151,7 @@ install: all $(MANUALS) ## programs, manual, assets and licence under $(DESTDIR)
 	install -d $(BIN_DIR) $(MAN_DIR) $(DATA_DIR) $(DOC_DIR)
 	install $(PROGRAMS) $(BIN_DIR)
 	$(if $(MANUALS),install -m 644 $(MANUALS) $(MAN_DIR))
-	install -m 644 $(wildcard assets/*) $(DATA_DIR)
+	$(if $(wildcard assets/*),install -m 644 $(wildcard assets/*) $(DATA_DIR))
 	install -m 644 LICENSE $(wildcard README.md) $(DOC_DIR)
 
 uninstall: ## remove what install put there
