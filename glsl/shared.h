@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// Read by C and by GLSL: what both sides must agree on. Blocks use only float, int, uint, vec4, uvec4 and mat4, which both
+// lay out alike without padding by hand (tests/test_shader.c compares every offset with the driver's).
+#ifdef __STDC__
+#pragma once
+#include <cglm/cglm.h>
+#include <stdint.h>
+typedef uint32_t uint;
+#define UNIFORM_BLOCK(type, instance, at) typedef struct type
+#define END_BLOCK(type, instance)         type
+#else
+#define UNIFORM_BLOCK(type, instance, at) layout(std140, binding = at) uniform type
+#define END_BLOCK(type, instance)         instance
+#endif
+
+// Uniform blocks.
+#define BIND_STEP 0
+#define BIND_DRAW 1
+#define BIND_MATERIAL 2
+
+// Shader storage.
+#define BIND_POSITION_OUT 0 // vec4 a particle: where a solver puts the strand that is drawn
+#define BIND_STATE_OUT 1    // a solver's own state
+#define BIND_TIPS 2         // split: two vec4 a strand
+
+// Buffer textures.
+#define BIND_POSITION 0  // vec4 a particle
+#define BIND_REST 1      // vec4 a particle: the style, see hair.h
+#define BIND_STRAND_ID 2 // uint a strand
+#define BIND_STATE 3     // a solver's own state

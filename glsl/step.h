@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+// What a step of any solver is given, for one batch of strands. SI units.
+#include "shared.h"
+
+UNIFORM_BLOCK(StepParams, step_params, BIND_STEP)
+{
+    vec4 head_rotation_old;    // quaternion x y z w: the head's frame -> world, at the step's start
+    vec4 head_translation_old; // xyz
+    vec4 head_rotation;        // at the step's end
+    vec4 head_translation;
+    vec4 gravity; // xyz, m/s^2
+    vec4 wind[4]; // xyz, m/s: four directions around the main one, mixed for each strand
+    float dt;     // s
+    float decay;  // e^{-c h}: what drag leaves of a velocity
+    float gain;   // h f: seconds that an acceleration acts
+    float drag;   // c, 1/s
+    float style;  // 0: the physical strand is drawn, 1: the style
+    uint strand_count;
+    uint vertex_count;
+    uint passes; // split: pulls along the strand
+}
+END_BLOCK(StepParams, step_params);

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include "hair.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Strand numbers in the order of their vertex counts; equal counts keep the file's order.
+typedef struct Order {
+    uint32_t *strand;
+    uint32_t count;
+} Order;
+
+static Result order_by_size(Order *order, const Strands *strands, Error *error)
+{
+    uint32_t most = 0;
+    for (uint32_t s = 0; s < strands->strand_count; ++s)
+        if (strands_size(strands, s) > most) most = strands_size(strands, s);
+    order->count = strands->strand_count;
+    order->strand = malloc(((size_t)order->count + 1) * sizeof *order->strand);
+    uint32_t *start = calloc((size_t)most + 2, sizeof *start);
+    if (order->strand && start) {
+        for (uint32_t s = 0; s < order->count; ++s) ++start[strands_size(strands, s) + 1];
+        for (uint32_t n = 0; n <= most; ++n) start[n + 1] += start[n];
+        for (uint32_t s = 0; s < order->count; ++s)
+            order->strand[start[strands_size(strands, s)]++] = s;
+    }
+    bool good = order->strand && start;
+    free(start);
+    return good ? RESULT_OK
+                : error_set(error, RESULT_FAILED, "no memory for %u strands", order->count);
+}
+
+// Where the batch that begins at `begin` ends: at another vertex count, or where a buffer is full.
+static uint32_t batch_end(const Order *order, const Strands *strands, uint32_t begin,
+                          const GpuLimits *limits)
+{
+    uint32_t n = strands_size(strands, order->strand[begin]), end = begin;
+    int64_t texels = limits->storage_block / 16;
+    if (limits->texture_texels < texels) texels = limits->texture_texels;
+    while (end < order->count && strands_size(strands, order->strand[end]) == n &&
+           (int64_t)(end - begin + 1) * n <= texels)
+        ++end;
+    return end;
+}
+
+typedef float Float4[4];
+
+// The rest shape of strand `s` into column `column` of a batch of `width` strands.
+static void fill_strand(Float4 *rest, Float4 *position, const Strands *strands, uint32_t s,
+                        uint32_t column, uint32_t width)
+{
+    const float(*q)[3] = (const float(*)[3]) & strands->position[strands->first[s]];
+    uint32_t n = strands_size(strands, s);
+    double total = 0;
+    for (uint32_t j = 0; j < n; ++j) {
+        size_t at = (size_t)j * width + column;
+        memcpy(position[at], q[j], sizeof q[j]);
+        position[at][3] = 1;
+        if (j == 0) continue;
+        double r[3], length = 0;
+        for (int k = 0; k < 3; ++k)
+            r[k] = (double)q[j][k] - (double)q[j - 1][k], length += r[k] * r[k];
+        length = sqrt(length);
+        for (int k = 0; k < 3; ++k) rest[at][k] = (float)(r[k] / length);
+        rest[at][3] = (float)length;
+        total += (double)rest[at][3];
+    }
+    memcpy(rest[column], q[0], sizeof q[0]);
+    rest[column][3] = (float)total;
+}
+
+static Result upload(HairBatch *batch, const GpuLimits *limits, const Float4 *rest,
+                     const Float4 *position, const uint32_t *ids, Error *error)
+{
+    int64_t size = (int64_t)batch->vertex_count * batch->strand_count * (int64_t)sizeof(Float4);
+    Result result = gpu_buffer_create(&batch->position, limits, "hair positions", size, position,
+                                      GL_RGBA32F, error);
+    if (result == RESULT_OK)
+        result =
+            gpu_buffer_create(&batch->rest, limits, "hair style", size, rest, GL_RGBA32F, error);
+    if (result == RESULT_OK)
+        result = gpu_buffer_create(&batch->strand_id, limits, "strand numbers",
+                                   (int64_t)batch->strand_count * 4, ids, GL_R32UI, error);
+    return result;
+}
+
+static Result create_batch(HairBatch *batch, const Strands *strands, const uint32_t *order,
+                           uint32_t first_id, const GpuLimits *limits, Error *error)
+{
+    size_t particles = (size_t)batch->vertex_count * batch->strand_count;
+    Float4 *rest = malloc(particles * sizeof *rest),
+           *position = malloc(particles * sizeof *position);
+    uint32_t *ids = malloc(batch->strand_count * sizeof *ids);
+    Result result = RESULT_FAILED;
+    if (rest && position && ids) {
+        for (uint32_t i = 0; i < batch->strand_count; ++i) {
+            fill_strand(rest, position, strands, order[i], i, batch->strand_count);
+            ids[i] = first_id + order[i];
+        }
+        result = upload(batch, limits, rest, position, ids, error);
+    } else {
+        error_set(error, RESULT_FAILED, "no memory for %zu particles", particles);
+    }
+    free(rest);
+    free(position);
+    free(ids);
+    return result;
+}
+
+static Result create_batches(Hair *hair, const Strands *strands, const Order *order,
+                             uint32_t first_id, const GpuLimits *limits, Error *error)
+{
+    for (uint32_t begin = 0; begin < order->count;) {
+        uint32_t end = batch_end(order, strands, begin, limits),
+                 n = strands_size(strands, order->strand[begin]);
+        if (end == begin)
+            return error_set(error, RESULT_FAILED,
+                             "a strand of %u vertices exceeds this driver's buffers", n);
+        HairBatch *more = realloc(hair->batches, (hair->batch_count + 1) * sizeof *more);
+        if (!more) return error_set(error, RESULT_FAILED, "no memory for a batch of strands");
+        hair->batches = more;
+        HairBatch *batch = &hair->batches[hair->batch_count++];
+        *batch = (HairBatch){.vertex_count = n, .strand_count = end - begin};
+        Result result =
+            create_batch(batch, strands, &order->strand[begin], first_id, limits, error);
+        if (result != RESULT_OK) return result;
+        begin = end;
+    }
+    return RESULT_OK;
+}
+
+Result hair_create(Hair *hair, const Strands *strands, uint32_t first_id, const GpuLimits *limits,
+                   Error *error)
+{
+    *hair = (Hair){.strand_count = strands->strand_count,
+                   .particle_count = strands->vertex_count,
+                   .segment_count = strands->vertex_count - strands->strand_count};
+    strands_bounds(strands, hair->low, hair->high);
+    for (uint32_t s = 0; s < strands->strand_count; ++s)
+        hair->longest = fmaxf(hair->longest, (float)strands_length(strands, s));
+    Order order = {0};
+    Result result = order_by_size(&order, strands, error);
+    if (result == RESULT_OK)
+        result = create_batches(hair, strands, &order, first_id, limits, error);
+    free(order.strand);
+    if (result != RESULT_OK) hair_destroy(hair);
+    return result;
+}
+
+void hair_destroy(Hair *hair)
+{
+    for (uint32_t i = 0; i < hair->batch_count; ++i) {
+        gpu_buffer_destroy(&hair->batches[i].position);
+        gpu_buffer_destroy(&hair->batches[i].rest);
+        gpu_buffer_destroy(&hair->batches[i].strand_id);
+    }
+    free(hair->batches);
+    *hair = (Hair){0};
+}
