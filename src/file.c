@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -69,7 +70,9 @@ static Result fail_to_write(const char *path, int reason, Error *error)
 // replace the link.
 static char *resolve_name(const char *path)
 {
-    char *target = realpath(path, NULL);
+    struct stat status;
+    bool is_link = lstat(path, &status) == 0 && S_ISLNK(status.st_mode);
+    char *target = is_link ? realpath(path, NULL) : NULL;
     return target ? target : strdup(path);
 }
 
@@ -162,4 +165,13 @@ void outfile_discard(OutFile *file)
     free(file->temporary);
     free(file->path);
     *file = (OutFile){0};
+}
+
+Result bytes_write_file(const Bytes *bytes, const char *path, Error *error)
+{
+    OutFile file;
+    Result result = outfile_open(&file, path, error);
+    if (result != RESULT_OK) return result;
+    fwrite(bytes->data, 1, bytes->size, file.stream);
+    return outfile_commit(&file, error);
 }

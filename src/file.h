@@ -40,3 +40,7 @@ Result outfile_commit(OutFile *file, Error *error);
 // Closes and removes the temporary file. Legal for a zeroed struct, so `outfile_discard` may follow
 // any outcome.
 void outfile_discard(OutFile *file);
+
+// Writes the bytes as a whole file through the three above: complete or not at all, RESULT_FAILED
+// with path and reason.
+Result bytes_write_file(const Bytes *bytes, const char *path, Error *error);

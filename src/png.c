@@ -89,12 +89,7 @@ Result png_write(const char *path, const Image *image, Error *error)
     Bytes png;
     Result result = png_encode(image, &png, error);
     if (result != RESULT_OK) return error_prefix(error, result, "%s: ", path);
-    OutFile file;
-    result = outfile_open(&file, path, error);
-    if (result == RESULT_OK) {
-        fwrite(png.data, 1, png.size, file.stream);
-        result = outfile_commit(&file, error);
-    }
+    result = bytes_write_file(&png, path, error);
     bytes_destroy(&png);
     return result;
 }
