@@ -26,6 +26,7 @@ OPTIMISE_release  := -O2 -DNDEBUG
 OPTIMISE_debug    := -O0 -g3 -DTRACTRIX_DEBUG
 OPTIMISE_sanitize := -O1 -g -fno-omit-frame-pointer
 SANITIZE_sanitize := -fsanitize=address,undefined -fno-sanitize-recover=undefined
+LINKER_sanitize   := -Wl,--export-dynamic-symbol=dlclose
 
 WARNINGS  := -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wvla $(if $(WERROR),-Werror)
 # Library headers are not ours to mend: -isystem keeps their warnings out.
@@ -33,7 +34,7 @@ INCLUDES  := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(LIBRARIES) 
 # -ffp-contract=off: the same bits whether or not the compiler may use fused multiply-adds.
 C_FLAGS   := -std=c11 -D_GNU_SOURCE -Isrc -Iglsl -I$(OUT) $(INCLUDES) $(WARNINGS) -ffp-contract=off -pthread \
              $(OPTIMISE_$(CONFIG)) $(SANITIZE_$(CONFIG)) $(CPPFLAGS) $(CFLAGS)
-LD_FLAGS  := -pthread -Wl,--as-needed $(SANITIZE_$(CONFIG)) $(LDFLAGS)
+LD_FLAGS  := -pthread -Wl,--as-needed $(SANITIZE_$(CONFIG)) $(LINKER_$(CONFIG)) $(LDFLAGS)
 LD_LIBS   := $(shell pkg-config --libs $(LIBRARIES) 2>/dev/null) -ldl -lm $(LDLIBS)
 
 # --- Files. Every src/main_<x>.c is the program tractrix-<x>, every tests/test_<x>.c a program of its own; the other
@@ -42,11 +43,13 @@ MAINS     := $(wildcard src/main_*.c)
 SOURCES   := $(filter-out $(MAINS),$(wildcard src/*.c src/*/*.c))
 SHADERS   := $(wildcard glsl/*)
 TESTS     := $(wildcard tests/test_*.c)
-SUPPORT   := $(filter-out $(TESTS),$(wildcard tests/*.c))
+KEEP      := tests/keep_drivers.c
+SUPPORT   := $(filter-out $(TESTS) $(KEEP),$(wildcard tests/*.c))
 OBJECTS   := $(SOURCES:src/%.c=$(OUT)/%.o) $(if $(SHADERS),$(OUT)/glsl_sources.o)
 PROGRAMS  := $(MAINS:src/main_%.c=$(OUT)/tractrix-%)
 TEST_PROGRAMS := $(TESTS:%.c=$(OUT)/%)
 SUPPORT_OBJECTS := $(SUPPORT:%.c=$(OUT)/%.o)
+KEEP_sanitize := $(KEEP:%.c=$(OUT)/%.o)
 MANUALS   := $(patsubst %,%.1,$(filter %/tractrix-render,$(PROGRAMS)))
 FOLDERS   := $(sort $(OUT)/tests/ $(dir $(OBJECTS)))
 
@@ -66,7 +69,7 @@ $(OUT)/glsl_sources.o: $(OUT)/glsl_sources.c $(OUT)/flags # C promises only 4095
 	$(CC) $(C_FLAGS) -Wno-overlength-strings -MMD -MP -c -o $@ $<
 $(OUT)/libtractrix.a: $(OBJECTS) $(OUT)/files
 	rm -f $@ && $(AR) rcs $@ $(OBJECTS)
-$(OUT)/tractrix-%: $(OUT)/main_%.o $(OUT)/libtractrix.a
+$(OUT)/tractrix-%: $(OUT)/main_%.o $(KEEP_$(CONFIG)) $(OUT)/libtractrix.a
 	$(CC) $(LD_FLAGS) -o $@ $^ $(LD_LIBS)
 $(OUT)/tractrix-%.1: $(OUT)/tractrix-%
 	$< --help=man >$@.tmp && mv $@.tmp $@
@@ -75,7 +78,7 @@ $(OUT)/tests/%.o: tests/%.c $(OUT)/flags | $(OUT)/version.h
 	$(CC) $(C_FLAGS) -Itests -MMD -MP -c -o $@ $<
 $(OUT)/tests/libsupport.a: $(SUPPORT_OBJECTS) $(OUT)/files
 	rm -f $@ && $(AR) rcs $@ $(SUPPORT_OBJECTS)
-$(OUT)/tests/%: $(OUT)/tests/%.o $(OUT)/tests/libsupport.a $(OUT)/libtractrix.a
+$(OUT)/tests/%: $(OUT)/tests/%.o $(KEEP_$(CONFIG)) $(OUT)/tests/libsupport.a $(OUT)/libtractrix.a
 	$(CC) $(LD_FLAGS) -o $@ $^ $(LD_LIBS) -lcmocka
 
 # Stamps, rewritten only when what they hold changes, so that what depends on them is rebuilt just then: the flags,
