@@ -3,6 +3,7 @@
 #
 #   CONFIG  release (default), debug or sanitize        OUT     where everything goes, out/$(CONFIG)
 #   WERROR  not empty: warnings are errors              ONLY    `make test`: only tests with this in their name
+#   V       not empty: show whole commands
 #   CC, CPPFLAGS, CFLAGS, LDFLAGS, LDLIBS, PREFIX and DESTDIR as usual; the flags are added to the project's own.
 
 VERSION := 0.1.0
@@ -57,29 +58,33 @@ FOLDERS   := $(sort $(OUT)/tests/ $(dir $(OBJECTS)))
 JOBS = $(if $(filter -j% --jobserver%,$(MAKEFLAGS)),,-j$(shell nproc))
 AGAIN = @$(MAKE) --no-print-directory
 
+# $(call run,WORD,COMMAND): a short line for the command unless V=1; nothing with make --silent.
+SILENT := $(findstring s,$(firstword -$(MAKEFLAGS)))
+run = $(if $(V),$(2),@$(if $(SILENT),,printf '  %-6s %s\n' $(1) $@; )$(2))
+
 all: $(OUT)/libtractrix.a $(PROGRAMS) ## the programs (default)
 tests: $(TEST_PROGRAMS)
 	@:
 
 $(OUT)/%.o: src/%.c $(OUT)/flags | $(OUT)/version.h
-	$(CC) $(C_FLAGS) -MMD -MP -c -o $@ $<
+	$(call run,CC,$(CC) $(C_FLAGS) -MMD -MP -c -o $@ $<)
 $(OUT)/glsl_sources.c: scripts/embed-glsl $(SHADERS) $(OUT)/files
-	scripts/embed-glsl $(SHADERS) >$@.tmp && mv $@.tmp $@
+	$(call run,EMBED,scripts/embed-glsl $(SHADERS) >$@.tmp && mv $@.tmp $@)
 $(OUT)/glsl_sources.o: $(OUT)/glsl_sources.c $(OUT)/flags # C promises only 4095 characters a string; every compiler takes more
-	$(CC) $(C_FLAGS) -Wno-overlength-strings -MMD -MP -c -o $@ $<
+	$(call run,CC,$(CC) $(C_FLAGS) -Wno-overlength-strings -MMD -MP -c -o $@ $<)
 $(OUT)/libtractrix.a: $(OBJECTS) $(OUT)/files
-	rm -f $@ && $(AR) rcs $@ $(OBJECTS)
+	$(call run,AR,rm -f $@ && $(AR) rcs $@ $(OBJECTS))
 $(OUT)/tractrix-%: $(OUT)/main_%.o $(KEEP_$(CONFIG)) $(OUT)/libtractrix.a
-	$(CC) $(LD_FLAGS) -o $@ $^ $(LD_LIBS)
+	$(call run,LINK,$(CC) $(LD_FLAGS) -o $@ $^ $(LD_LIBS))
 $(OUT)/tractrix-%.1: $(OUT)/tractrix-%
-	$< --help=man >$@.tmp && mv $@.tmp $@
+	$(call run,MAN,$< --help=man >$@.tmp && mv $@.tmp $@)
 
 $(OUT)/tests/%.o: tests/%.c $(OUT)/flags | $(OUT)/version.h
-	$(CC) $(C_FLAGS) -Itests -MMD -MP -c -o $@ $<
+	$(call run,CC,$(CC) $(C_FLAGS) -Itests -MMD -MP -c -o $@ $<)
 $(OUT)/tests/libsupport.a: $(SUPPORT_OBJECTS) $(OUT)/files
-	rm -f $@ && $(AR) rcs $@ $(SUPPORT_OBJECTS)
+	$(call run,AR,rm -f $@ && $(AR) rcs $@ $(SUPPORT_OBJECTS))
 $(OUT)/tests/%: $(OUT)/tests/%.o $(KEEP_$(CONFIG)) $(OUT)/tests/libsupport.a $(OUT)/libtractrix.a
-	$(CC) $(LD_FLAGS) -o $@ $^ $(LD_LIBS) -lcmocka
+	$(call run,LINK,$(CC) $(LD_FLAGS) -o $@ $^ $(LD_LIBS) -lcmocka)
 
 # Stamps, rewritten only when what they hold changes, so that what depends on them is rebuilt just then: the flags,
 # the list of files (one may have been removed) and the version.
@@ -93,7 +98,7 @@ $(OUT)/files: FORCE | $(FOLDERS)
 $(OUT)/version.h: FORCE | $(FOLDERS)
 	@scripts/write-version $(VERSION) $@
 $(FOLDERS):
-	mkdir -p $@
+	@mkdir -p $@
 
 # --- For people. Set-up comes first and make starts again after it, because the flags above ask pkg-config.
 demo: ## set-up, build, and render the bundled scene to out/demo/
@@ -166,7 +171,7 @@ clean: ## remove out/
 
 help: ## this list
 	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 18
-	@echo; sed -n '4,6s/^#//p' $(firstword $(MAKEFILE_LIST))
+	@echo; sed -n '4,7s/^#//p' $(firstword $(MAKEFILE_LIST))
 
 FORCE:
 .PHONY: all tests demo test bench check $(CHECKS:%=check-%) format install uninstall clean help FORCE
