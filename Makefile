@@ -8,7 +8,7 @@
 
 VERSION := 0.1.0
 CONFIG  ?= release
-OUT     ?= out/$(CONFIG)
+OUT     := out/$(CONFIG)
 PREFIX  ?= /usr/local
 ifeq ($(origin CC),default)
 CC := gcc
