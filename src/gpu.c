@@ -15,9 +15,11 @@ typedef struct Attempts {
 
 static void note_failure(Attempts *attempts, const char *path, const Error *why)
 {
-    size_t used = strlen(attempts->reasons.text);
-    snprintf(attempts->reasons.text + used, sizeof attempts->reasons.text - used, "%s%s: %s",
-             used ? "; " : "", path, why->text);
+    size_t used = strlen(attempts->reasons.text), room = sizeof attempts->reasons.text - used;
+    int length = snprintf(attempts->reasons.text + used, room, "%s%s: %s", used ? "; " : "", path,
+                          why->text);
+    if (length < 0 || (size_t)length >= room)
+        attempts->reasons.text[used] = 0; // no room for this one
 }
 
 static void copy_string(char *to, size_t size, GLenum name)

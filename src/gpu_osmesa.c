@@ -5,6 +5,7 @@
 
 #include <dlfcn.h>
 #include <stdlib.h>
+#include <string.h>
 
 // The few names of <GL/osmesa.h> that are needed, so that building does not need its package.
 enum {
@@ -29,10 +30,12 @@ typedef struct OsMesa {
     AnyFunction (*get_function)(const char *name);
 } OsMesa;
 
-// POSIX promises that dlsym's pointer may be called as a function; ISO C has no cast that says so.
+// POSIX promises that dlsym gives functions, too; ISO C has no cast that says so, a copy of the
+// bytes does.
 static void load(void *library, const char *name, void *function)
 {
-    *(void **)function = dlsym(library, name);
+    void *address = dlsym(library, name);
+    memcpy(function, &address, sizeof address);
 }
 
 // libepoxy resolves a name when it is first called and insists on EGL or GLX for that; its names
@@ -40,9 +43,11 @@ static void load(void *library, const char *name, void *function)
 static bool fill_functions(const OsMesa *mesa)
 {
     bool complete = true;
+    AnyFunction function;
 #define GL_FUNCTION(name)                                                                          \
-    *(AnyFunction *)&epoxy_##name = mesa->get_function(#name);                                     \
-    complete = complete && epoxy_##name;
+    function = mesa->get_function(#name);                                                          \
+    memcpy(&epoxy_##name, &function, sizeof function);                                             \
+    complete = complete && function;
 #include "gl_functions.def"
 #undef GL_FUNCTION
     return complete;

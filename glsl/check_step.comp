@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// Runs tractrix_step on test vectors: three vec4 a case in (head, tail, the head's target), the new tail out.
+#include "shared.h"
+#include "tractrix.glsl"
+
+layout(local_size_x = 8) in;
+layout(std430, binding = BIND_STATE_OUT) readonly buffer Cases { vec4 cases[]; };
+layout(std430, binding = BIND_POSITION_OUT) writeonly buffer Tails { vec4 tails[]; };
+
+void main()
+{
+    int i = int(gl_GlobalInvocationID.x);
+    if (i >= tails.length()) return;
+    tails[i] = vec4(tractrix_step(cases[3 * i].xyz, cases[3 * i + 1].xyz, cases[3 * i + 2].xyz), 0.0);
+}

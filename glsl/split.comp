@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+// A step of `split`: the tip is simulated, the strand follows as a chain of tractrices.
+//
+// State: unit directions of the segments with their rest lengths (j > 0 from particle j - 1 to j), and the tip particle.
+//   1. kick the tip; where it flies to is the target                       (ball or thesis, below)
+//   2. pull the strand's end to the target: every tail is the next head    (tip -> root)
+//   3. pull the root back to where the head carries it                     (root -> tip)
+//   `ball` repeats 2 and 3.
+//
+// After a pull the far end has moved by what is left in `move`; the next pull begins there and undoes it, so each pull is the
+// same loop over the strand turned round: order reversed, directions negated. With IN_REGISTERS the strand stays in
+// registers for the whole step (VERTICES is known, loops unroll); without, any length goes through memory. A lane takes
+// STRANDS strands: their chains of dependent arithmetic overlap in the pipeline of a CPU.
+#include "step.h"
+#include "rigid.glsl"
+#include "forces.glsl"
+#include "tractrix.glsl"
+
+layout(local_size_x = GROUP_SIZE) in;
+layout(binding = BIND_REST) uniform samplerBuffer rest;
+layout(binding = BIND_STRAND_ID) uniform usamplerBuffer strand_id;
+layout(binding = BIND_STATE) uniform samplerBuffer segments_before; // the same buffer, fetched before anything is written
+layout(std430, binding = BIND_STATE_OUT) buffer Segments { vec4 segments[]; };
+layout(std430, binding = BIND_TIPS) buffer Tips { vec4 tips[]; }; // a strand: position, times limited; velocity
+
+// A tip flung further than this in one step, in strand lengths, would fold segments in float32: its velocity is cut.
+const float MOVE_LIMIT = 100.0;
+const float SAFE_MOVE = 1e15; // metres: keeps squares finite whatever the head does
+
+#if IN_REGISTERS
+const int LINKS = VERTICES - 1;
+#else
+#define LINKS int(step_params.vertex_count - 1u)
+#endif
+
+int address(int j, int s) { return j * int(step_params.strand_count) + s; }
+
+vec3 root_at(vec4 rotation, vec4 translation, vec4 root) { return rotate(rotation, root.xyz) + translation.xyz; }
+
+struct Tip {
+    vec3 position, velocity;
+    float limited; // how often its velocity was cut
+};
+
+#if THESIS
+// The published rule: the tip flies straight; its velocity follows from where the pulls have left it.
+vec3 tip_target(inout Tip tip, vec3 root_old, vec3 root, float R)
+{
+    return tip.position + tip.velocity * step_params.dt;
+}
+#else
+// The tip is a mass on an inextensible string of length R from the root: it flies freely inside the ball, and on leaving it
+// lands on the sphere, displaced along the old string (the direction of the constraint's force, which makes it second order) if
+// the string was taut then and the step is not too long for that, else radially.
+vec3 tip_target(inout Tip tip, vec3 root_old, vec3 root, float R)
+{
+    vec3 target = tip.position + tip.velocity * step_params.dt;
+    vec3 s = target - root, r = tip.position - root_old;
+    float ss = dot(s, s), rr = dot(r, r), sr = dot(s, r), excess = ss - R * R;
+    if (excess > 0.0) {
+        float disc = sr * sr - rr * excess;
+        if (rr > 0.99 * R * R && sr > 0.0 && disc > 0.1 * sr * sr) s -= r * (excess / (sr + sqrt(disc)));
+        target = root + s * (R * inversesqrt(dot(s, s)));
+    }
+    tip.velocity = (target - tip.position) / step_params.dt;
+    return target;
+}
+#endif
+
+void limit_speed(inout Tip tip, float R)
+{
+    float most = MOVE_LIMIT * R / step_params.dt;
+    float fastest = max(abs(tip.velocity.x), max(abs(tip.velocity.y), abs(tip.velocity.z)));
+    if (fastest > most) {
+        vec3 v = tip.velocity / fastest;
+        tip.velocity = v * (most * inversesqrt(dot(v, v)));
+        tip.limited += 1.0;
+    }
+}
+
+void main()
+{
+    // Strands of a lane are GROUP_SIZE apart. Past the end a lane computes the last strand once more and writes nothing.
+    int first = int(gl_WorkGroupID.x) * GROUP_SIZE * STRANDS + int(gl_LocalInvocationID.x);
+    int s[STRANDS];
+    bool live[STRANDS];
+    vec3 move[STRANDS], home[STRANDS], target[STRANDS];
+    Tip tip[STRANDS];
+#if IN_REGISTERS
+    vec4 link[STRANDS][LINKS]; // link 0 is pulled first: direction head -> tail, length
+#endif
+
+    for (int k = 0; k < STRANDS; ++k) {
+        live[k] = first + k * GROUP_SIZE < int(step_params.strand_count);
+        s[k] = min(first + k * GROUP_SIZE, int(step_params.strand_count) - 1);
+        vec4 root_rest = texelFetch(rest, s[k]);
+        float R = root_rest.w;
+        vec3 root_old = root_at(step_params.head_rotation_old, step_params.head_translation_old, root_rest);
+        vec3 root = root_at(step_params.head_rotation, step_params.head_translation, root_rest);
+
+        vec3 span = vec3(0.0); // root -> strand's end
+        for (int i = 0; i < LINKS; ++i) {
+            vec4 segment = texelFetch(segments_before, address(LINKS - i, s[k]));
+            span += segment.w * segment.xyz;
+#if IN_REGISTERS
+            link[k][i] = vec4(-segment.xyz, segment.w);
+#endif
+        }
+        vec4 at = tips[2 * s[k]], v = tips[2 * s[k] + 1];
+        tip[k] = Tip(at.xyz, kick(v.xyz, strand_wind(texelFetch(strand_id, s[k]).x)), at.w);
+        limit_speed(tip[k], R);
+        target[k] = tip_target(tip[k], root_old, root, R);
+        move[k] = target[k] - (root_old + span);
+        home[k] = root - root_old;
+    }
+
+    for (int pass = 0; pass < int(step_params.passes); ++pass) {
+        for (int k = 0; k < STRANDS; ++k) move[k] = clamp(move[k], -SAFE_MOVE, SAFE_MOVE);
+#if IN_REGISTERS
+        vec4 turned[STRANDS][LINKS];
+        for (int i = 0; i < LINKS; ++i)
+            for (int k = 0; k < STRANDS; ++k)
+                turned[k][LINKS - 1 - i] = vec4(-tractrix_turn(link[k][i].xyz, link[k][i].w, move[k]), link[k][i].w);
+        link = turned;
+#else
+        bool from_tip = (pass & 1) == 0;
+        for (int i = 0; i < LINKS; ++i)
+            for (int k = 0; k < STRANDS; ++k) {
+                int a = address(from_tip ? LINKS - i : 1 + i, s[k]);
+                vec4 segment = segments[a];
+                vec3 d = tractrix_turn(from_tip ? -segment.xyz : segment.xyz, segment.w, move[k]);
+                if (live[k]) segments[a] = vec4(from_tip ? -d : d, segment.w);
+            }
+#endif
+        for (int k = 0; k < STRANDS; ++k) {
+            target[k] = pass == int(step_params.passes) - 1 ? target[k] + move[k] : target[k]; // where the last pull left the end
+            move[k] = home[k] - move[k];
+            home[k] = vec3(0.0);
+        }
+    }
+
+    for (int k = 0; k < STRANDS; ++k) {
+        if (!live[k]) continue;
+        for (int i = 0; i < LINKS; ++i) {
+#if IN_REGISTERS
+            vec4 segment = link[k][i];
+            segments[address(LINKS - i, s[k])] = vec4(tractrix_renormalise(-segment.xyz), segment.w);
+#else
+            int a = address(1 + i, s[k]);
+            vec4 segment = segments[a];
+            segments[a] = vec4(tractrix_renormalise(segment.xyz), segment.w);
+#endif
+        }
+#if THESIS
+        tip[k].velocity = (target[k] - tip[k].position) / step_params.dt;
+        tip[k].position = target[k];
+#else
+        tip[k].position += tip[k].velocity * step_params.dt;
+#endif
+        tips[2 * s[k]] = vec4(tip[k].position, tip[k].limited);
+        tips[2 * s[k] + 1] = vec4(tip[k].velocity, 0.0);
+    }
+}

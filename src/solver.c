@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include "solver.h"
+#include "solver_none.h"
+#include "solver_split.h"
+#include "suggest.h"
+
+#include <string.h>
+
+const SolverType *const SOLVER_TYPES[] = {&SOLVER_SPLIT, &SOLVER_NONE, NULL};
+
+enum { MAX_WORDS = 32 };
+
+static const SolverType *find_type(const char *name)
+{
+    for (const SolverType *const *type = SOLVER_TYPES; *type; ++type)
+        if (strcmp((*type)->name, name) == 0) return *type;
+    return NULL;
+}
+
+static Result refuse_type(const char *name, Error *error)
+{
+    const char *names[MAX_WORDS];
+    size_t count = 0;
+    for (; count < MAX_WORDS && SOLVER_TYPES[count]; ++count)
+        names[count] = SOLVER_TYPES[count]->name;
+    return error_set(error, RESULT_USAGE,
+                     "algo: no solver '%s'; did you mean '%s'? (--algo list shows all)", name,
+                     suggest_nearest(name, names, count));
+}
+
+static Result check_variant(const SolverType *type, const char *variant, Error *error)
+{
+    if (!*variant) return RESULT_OK;
+    size_t count = 0;
+    for (; type->variants[count]; ++count)
+        if (strcmp(type->variants[count], variant) == 0) return RESULT_OK;
+    if (count == 0)
+        return error_set(error, RESULT_USAGE, "variant: '%s' has none, got '%s'", type->name,
+                         variant);
+    return error_set(error, RESULT_USAGE, "variant: '%s' has no '%s'; did you mean '%s'?",
+                     type->name, variant, suggest_nearest(variant, type->variants, count));
+}
+
+Result solver_create(Solver *solver, const SolverSetup *setup, Error *error)
+{
+    *solver = (Solver){.type = find_type(setup->params->algo)};
+    if (!solver->type) return refuse_type(setup->params->algo, error);
+    Result result = check_variant(solver->type, setup->params->variant, error);
+    if (result == RESULT_OK) result = solver->type->create(&solver->state, setup, error);
+    if (result != RESULT_OK) *solver = (Solver){0};
+    return result;
+}
+
+void solver_destroy(Solver *solver)
+{
+    if (solver->type) solver->type->destroy(solver->state);
+    *solver = (Solver){0};
+}
+
+bool solver_is_static(const Solver *solver)
+{
+    return !solver->type->step;
+}
+
+void solver_print_list(FILE *stream)
+{
+    for (const SolverType *const *type = SOLVER_TYPES; *type; ++type) {
+        fprintf(stream, "%-8s %s\n", (*type)->name, (*type)->summary);
+        for (int i = 0; (*type)->variants[i]; ++i)
+            fprintf(stream, "         --variant %s%s\n", (*type)->variants[i],
+                    i ? "" : " (default)");
+    }
+}

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#include "solver_none.h"
+#include "pose.h"
+
+#include <stdlib.h>
+
+typedef struct NoneState {
+    const Hair *hair;
+    GpuTimer *timer;
+    Pose pose;
+} NoneState;
+
+static void destroy(void *pointer)
+{
+    NoneState *state = pointer;
+    if (!state) return;
+    pose_destroy(&state->pose);
+    free(state);
+}
+
+static Result create(void **pointer, const SolverSetup *setup, Error *error)
+{
+    NoneState *state = calloc(1, sizeof *state);
+    if (!state) return error_set(error, RESULT_FAILED, "no memory for a solver");
+    state->hair = setup->hair;
+    state->timer = setup->timer;
+    Result result = pose_create(&state->pose, POSE_STYLE, error);
+    if (result != RESULT_OK) {
+        destroy(state);
+        state = NULL;
+    }
+    *pointer = state;
+    return result;
+}
+
+static void write_pose(void *pointer, const HeadPose *head)
+{
+    NoneState *state = pointer;
+    gpu_timer_begin(state->timer, "pose");
+    for (uint32_t i = 0; i < state->hair->batch_count; ++i)
+        pose_write(&state->pose, &state->hair->batches[i], NULL, head, 1);
+    gpu_timer_end(state->timer);
+}
+
+const SolverType SOLVER_NONE = {
+    .name = "none",
+    .summary = "hair stiff in its style, carried by the head",
+    .create = create,
+    .pose = write_pose,
+    .destroy = destroy,
+};

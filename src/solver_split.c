@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: MIT
+#include "solver_split.h"
+#include "pose.h"
+#include "step_uniforms.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// A strand of at most this many vertices stays in registers for a whole step; its shader is
+// compiled for that count.
+enum { MOST_IN_REGISTERS = 40 };
+
+// Each vertex count in registers costs a compilation (0.2 to 0.4 s on a CPU driver), so only hair
+// of few counts gets it.
+enum { MOST_REGISTER_VARIANTS = 2 };
+
+// Simultaneous strands of a lane: two hide each other's latency on a CPU, a GPU has other lanes for
+// that.
+enum { STRANDS_ON_CPU = 2, STRANDS_ON_GPU = 1 };
+
+typedef struct SplitBatch {
+    GLuint program;
+    uint32_t strands_per_lane;
+    GpuBuffer segments; // vec4 a particle: unit direction in the world, rest length (j = 0: unused)
+    GpuBuffer tips;     // two vec4 a strand: position (m), times limited; velocity (m/s)
+} SplitBatch;
+
+typedef struct SplitState {
+    const Hair *hair;
+    const SectionParams *params;
+    GpuTimer *timer;
+    GpuBuffer uniforms;
+    SplitBatch *batches; // one for each of the hair
+    Pose pose;
+    bool thesis;
+} SplitState;
+
+static void destroy(void *pointer)
+{
+    SplitState *state = pointer;
+    if (!state) return;
+    for (uint32_t i = 0; state->batches && i < state->hair->batch_count; ++i) {
+        SplitBatch *batch = &state->batches[i];
+        bool shared = i > 0 && batch->program == state->batches[i - 1].program;
+        if (batch->program && !shared) glDeleteProgram(batch->program);
+        gpu_buffer_destroy(&batch->segments);
+        gpu_buffer_destroy(&batch->tips);
+    }
+    free(state->batches);
+    gpu_buffer_destroy(&state->uniforms);
+    pose_destroy(&state->pose);
+    free(state);
+}
+
+// Vertex counts that are short enough for registers, up to the limit of variants.
+static bool fits_registers(const Hair *hair)
+{
+    uint32_t counts = 0, last = 0;
+    for (uint32_t i = 0; i < hair->batch_count; ++i) {
+        if (hair->batches[i].vertex_count > MOST_IN_REGISTERS) return false;
+        counts += hair->batches[i].vertex_count != last;
+        last = hair->batches[i].vertex_count;
+    }
+    return counts <= MOST_REGISTER_VARIANTS;
+}
+
+// Batches of equal vertex count, and all of them if strands go through memory, share a program.
+static Result build_programs(SplitState *state, bool software, Error *error)
+{
+    bool in_registers = fits_registers(state->hair);
+    uint32_t strands = in_registers && software ? STRANDS_ON_CPU : STRANDS_ON_GPU;
+    for (uint32_t i = 0; i < state->hair->batch_count; ++i) {
+        SplitBatch *batch = &state->batches[i];
+        uint32_t n = state->hair->batches[i].vertex_count;
+        batch->strands_per_lane = strands;
+        if (i > 0 && (!in_registers || n == state->hair->batches[i - 1].vertex_count)) {
+            batch->program = state->batches[i - 1].program;
+            continue;
+        }
+        const ShaderDefine defines[] = {
+            {"GROUP_SIZE", STEP_GROUP_SIZE}, {"STRANDS", (int)strands},
+            {"IN_REGISTERS", in_registers},  {"VERTICES", (int)n},
+            {"THESIS", state->thesis},       {0},
+        };
+        Result result = shader_build_compute(&batch->program, "split.comp", defines, error);
+        if (result != RESULT_OK) return result;
+    }
+    return RESULT_OK;
+}
+
+typedef float Float4[4];
+
+// At rest in the style, the tip at the strand's end.
+static Result create_state(SplitBatch *batch, const HairBatch *hair, const GpuLimits *limits,
+                           Error *error)
+{
+    size_t particles = (size_t)hair->vertex_count * hair->strand_count;
+    Float4 *rest = malloc(particles * sizeof *rest),
+           *tips = calloc(2 * (size_t)hair->strand_count, sizeof *tips);
+    Result result = RESULT_FAILED;
+    if (rest && tips) {
+        glBindBuffer(GL_SHADER_STORAGE_BUFFER, hair->rest.buffer);
+        glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(particles * sizeof *rest),
+                           rest);
+        for (size_t a = 0; a < particles; ++a)
+            for (int k = 0; k < 3; ++k)
+                tips[2 * (a % hair->strand_count)][k] +=
+                    a < hair->strand_count ? rest[a][k] : rest[a][3] * rest[a][k];
+        result = gpu_buffer_create(&batch->segments, limits, "split's segments",
+                                   (int64_t)(particles * sizeof *rest), rest, GL_RGBA32F, error);
+        if (result == RESULT_OK)
+            result = gpu_buffer_create(&batch->tips, limits, "split's tips",
+                                       32 * (int64_t)hair->strand_count, tips, 0, error);
+    } else {
+        error_set(error, RESULT_FAILED, "no memory for %zu particles", particles);
+    }
+    free(rest);
+    free(tips);
+    return result;
+}
+
+static Result build(SplitState *state, const SolverSetup *setup, Error *error)
+{
+    state->batches =
+        calloc(state->hair->batch_count ? state->hair->batch_count : 1, sizeof *state->batches);
+    if (!state->batches) return error_set(error, RESULT_FAILED, "no memory for a solver");
+    Result result = build_programs(state, setup->gpu->software, error);
+    if (result == RESULT_OK)
+        result = pose_create(&state->pose, pose_mix_of_style(setup->params->style), error);
+    for (uint32_t i = 0; i < state->hair->batch_count && result == RESULT_OK; ++i)
+        result =
+            create_state(&state->batches[i], &state->hair->batches[i], &setup->gpu->limits, error);
+    return result;
+}
+
+static Result create(void **pointer, const SolverSetup *setup, Error *error)
+{
+    SplitState *state = calloc(1, sizeof *state);
+    *pointer = NULL;
+    if (!state) return error_set(error, RESULT_FAILED, "no memory for a solver");
+    state->hair = setup->hair;
+    state->params = setup->params;
+    state->timer = setup->timer;
+    state->thesis = strcmp(setup->params->variant, "thesis") == 0;
+    Result result = build(state, setup, error);
+    if (result == RESULT_OK)
+        *pointer = state;
+    else
+        destroy(state);
+    return result;
+}
+
+static void step(void *pointer, const SolverStep *solver_step)
+{
+    SplitState *state = pointer;
+    StepParams uniforms = step_uniforms(solver_step, state->params);
+    uniforms.passes = state->thesis ? 2 : 4;
+    gpu_timer_begin(state->timer, "sim_split");
+    for (uint32_t i = 0; i < state->hair->batch_count; ++i) {
+        const HairBatch *hair = &state->hair->batches[i];
+        const SplitBatch *batch = &state->batches[i];
+        uniforms.strand_count = hair->strand_count;
+        uniforms.vertex_count = hair->vertex_count;
+        gpu_uniforms_set(&state->uniforms, BIND_STEP, &uniforms, sizeof uniforms);
+        gpu_buffer_bind_texture(&hair->rest, BIND_REST);
+        gpu_buffer_bind_texture(&hair->strand_id, BIND_STRAND_ID);
+        gpu_buffer_bind_texture(&batch->segments, BIND_STATE);
+        gpu_buffer_bind_storage(&batch->segments, BIND_STATE_OUT);
+        gpu_buffer_bind_storage(&batch->tips, BIND_TIPS);
+        glUseProgram(batch->program);
+        glDispatchCompute(step_group_count(hair->strand_count, batch->strands_per_lane), 1, 1);
+    }
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+    gpu_timer_end(state->timer);
+}
+
+static void write_pose(void *pointer, const HeadPose *head)
+{
+    SplitState *state = pointer;
+    gpu_timer_begin(state->timer, "pose");
+    for (uint32_t i = 0; i < state->hair->batch_count; ++i)
+        pose_write(&state->pose, &state->hair->batches[i], &state->batches[i].segments, head,
+                   state->params->style);
+    gpu_timer_end(state->timer);
+}
+
+static void report(void *pointer, SolverReport *solver_report)
+{
+    const SplitState *state = pointer;
+    for (uint32_t i = 0; i < state->hair->batch_count; ++i) {
+        uint32_t count = state->hair->batches[i].strand_count;
+        Float4 *tips = malloc(2 * (size_t)count * sizeof *tips);
+        if (!tips) return;
+        glBindBuffer(GL_SHADER_STORAGE_BUFFER, state->batches[i].tips.buffer);
+        glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0,
+                           (GLsizeiptr)(2 * (size_t)count * sizeof *tips), tips);
+        for (uint32_t s = 0; s < count; ++s)
+            solver_report->moves_limited += (uint64_t)tips[2 * s][3];
+        free(tips);
+    }
+}
+
+const SolverType SOLVER_SPLIT = {
+    .name = "split",
+    .summary =
+        "the tip is simulated, the strand follows it as tractrices, the style is mixed back in",
+    .variants = {"ball", "thesis"},
+    .create = create,
+    .step = step,
+    .pose = write_pose,
+    .report = report,
+    .destroy = destroy,
+};

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#include "step_uniforms.h"
+
+#include <math.h>
+#include <string.h>
+
+void step_drag_factors(double c, double h, float *decay, float *gain)
+{
+    *decay = (float)exp(-c * h);
+    *gain = c > 0 ? (float)(-expm1(-c * h) / c) : (float)h;
+}
+
+static void set_pose(vec4 rotation, vec4 translation, const HeadPose *pose)
+{
+    memcpy(rotation, pose->rotation, sizeof pose->rotation);
+    memcpy(translation, pose->translation, sizeof pose->translation);
+}
+
+StepParams step_uniforms(const SolverStep *step, const SectionParams *params)
+{
+    StepParams uniforms = {
+        .dt = (float)step->dt,
+        .drag = params->drag,
+        .style = params->style,
+    };
+    set_pose(uniforms.head_rotation_old, uniforms.head_translation_old, &step->head_old);
+    set_pose(uniforms.head_rotation, uniforms.head_translation, &step->head);
+    memcpy(uniforms.gravity, step->gravity, sizeof step->gravity);
+    for (int i = 0; i < 4; ++i) memcpy(uniforms.wind[i], step->wind[i], sizeof step->wind[i]);
+    step_drag_factors((double)params->drag, step->first ? step->dt / 2 : step->dt, &uniforms.decay,
+                      &uniforms.gain);
+    return uniforms;
+}
+
+uint32_t step_group_count(uint32_t count, uint32_t strands_per_lane)
+{
+    uint32_t strands = STEP_GROUP_SIZE * strands_per_lane;
+    return (count + strands - 1) / strands;
+}
