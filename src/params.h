@@ -141,3 +141,9 @@ Result param_parse(const ParamInfo *info, void *params, const char *text, Error 
 // The field's value as text that param_parse reads back to the same bits, in its shortest form.
 // The caller frees it; NULL when memory is short.
 char *param_format(const ParamInfo *info, const void *params);
+
+// What param_parse takes, in words: "a number from 1 to 10000 (1/s)". Cut at `size`.
+void param_describe(const ParamInfo *info, char *text, size_t size);
+
+// The shortest decimal number that reads back as `value` (finite), cut at `size`; 16 suffice.
+void param_format_float(float value, char *text, size_t size);

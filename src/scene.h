@@ -75,4 +75,11 @@ Result scene_check(const Scene *scene, Error *error);
 // JSON_REAL_PRECISION(9). The caller owns the reference; NULL when memory is short.
 json_t *scene_to_json(const Scene *scene);
 
+// A run with defaults, the default lights and no section. RESULT_FAILED when memory is short; the
+// scene may be destroyed in either case.
+Result scene_create(Scene *scene, Error *error);
 void scene_destroy(Scene *scene);
+
+// Appends a section with copies of `file` and `params`. RESULT_USAGE beyond SCENE_MAX_SECTIONS,
+// RESULT_FAILED when memory is short.
+Result scene_add_section(Scene *scene, const char *file, const SectionParams *params, Error *error);

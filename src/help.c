@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: MIT
+#include "help.h"
+#include "params.h"
+
+#include <ctype.h>
+#include <string.h>
+
+enum { WIDTH = 96, COLUMN = 30, TEXT_SIZE = 600 };
+
+static const char SUMMARY[] = "simulate hair and render it, without a window";
+
+static const char DESCRIPTION[] =
+    "Reads hair strands (.tfx, .hair; the kind is found by content), steps them by the solver of "
+    "--algo and draws them to pictures or a video. Each hair file is a section of its own; a scene "
+    "file in JSON can give sections their own values, keyframes and lights. Flags override the "
+    "scene file: those marked * its value for every section, the others its value for the run.";
+
+static const char FLAG_RULES[] =
+    "--flag VALUE and --flag=VALUE are the same; --no-flag takes a flag without value back; the "
+    "last of equal flags counts; -- ends the flags.";
+
+static const struct {
+    const char *flags, *help;
+} REQUESTS[] = {
+    {"-h, --help", "print this and stop; --help=man: the manual page in roff; --help=markdown: "
+                   "the tables of flags"},
+    {"--version", "print the version and stop"},
+};
+enum { REQUEST_COUNT = sizeof REQUESTS / sizeof REQUESTS[0] };
+
+static const struct {
+    const char *status, *meaning;
+} STATUSES[] = {
+    {"0", "done"},
+    {"1", "failed while running (disk full, out of memory, ...), or --check found defects"},
+    {"2", "a flag or a combination of values is wrong"},
+    {"3", "a hair, mesh or scene file is wrong"},
+    {"4", "no usable OpenGL (4.3 core or better)"},
+    {"130", "interrupted"},
+};
+enum { STATUS_COUNT = sizeof STATUSES / sizeof STATUSES[0] };
+
+static const char *const EXAMPLES[] = {
+    "tractrix-render hair.tfx --frames 120 -o frames/",
+    "tractrix-render hair.tfx --turntable 360 --wind 2,0,0 -o hair.mp4",
+    "tractrix-render scene.json --size 1920x1080 -o frames/hair_%04d.png",
+};
+enum { EXAMPLE_COUNT = sizeof EXAMPLES / sizeof EXAMPLES[0] };
+
+// What stands for the value behind a flag; "" for a BOOL.
+static void write_placeholder(const ParamInfo *info, char *text, size_t size)
+{
+    static const char *const WORDS[] = {[PARAM_BOOL] = "",
+                                        [PARAM_INT] = "N",
+                                        [PARAM_UINT] = "N",
+                                        [PARAM_FLOAT] = "X",
+                                        [PARAM_VEC3] = "X,Y,Z",
+                                        [PARAM_COLOR] = "COLOR",
+                                        [PARAM_BACKGROUND] = "COLOR",
+                                        [PARAM_AUTO_FLOAT] = "X|auto",
+                                        [PARAM_AUTO_VEC3] = "X,Y,Z|auto",
+                                        [PARAM_UNIT] = "UNIT",
+                                        [PARAM_SIZE] = "WxH",
+                                        [PARAM_CHOICE] = "",
+                                        [PARAM_TEXT] = "NAME",
+                                        [PARAM_PATH] = "PATH"};
+    size_t length = (size_t)snprintf(text, size, "%s", WORDS[info->kind]);
+    for (int i = 0; info->choices[i] && length < size; i++)
+        length +=
+            (size_t)snprintf(text + length, size - length, "%s%s", i ? "|" : "", info->choices[i]);
+}
+
+// "-o, --output PATH"
+static void write_flag(const ParamInfo *info, char *text, size_t size)
+{
+    char name[64], placeholder[64], letter[8] = "";
+    snprintf(name, sizeof name, "%s", info->name);
+    for (char *at = name; *at; at++) {
+        if (*at == '_') *at = '-';
+    }
+    if (info->letter) snprintf(letter, sizeof letter, "-%c, ", info->letter);
+    write_placeholder(info, placeholder, sizeof placeholder);
+    snprintf(text, size, "%s--%s%s%s", letter, name, placeholder[0] ? " " : "", placeholder);
+}
+
+// The values' range and unit, "" where there is nothing to say: "0 to 90 deg".
+static void write_range(const ParamInfo *info, char *text, size_t size)
+{
+    static const char *const FORMS[] = {[PARAM_COLOR] = "#rrggbb or r,g,b from 0 to 1",
+                                        [PARAM_BACKGROUND] =
+                                            "#rrggbb, r,g,b from 0 to 1, or transparent",
+                                        [PARAM_UNIT] = "m, cm, mm, in, auto, or a number of metres",
+                                        [PARAM_PATH] = ""};
+    if (FORMS[info->kind]) {
+        snprintf(text, size, "%s", FORMS[info->kind]);
+        return;
+    }
+    const char *between = info->unit[0] ? " " : "";
+    if (info->minimum == info->maximum)
+        snprintf(text, size, "%s", info->unit);
+    else
+        snprintf(text, size, "%.10g to %.10g%s%s", info->minimum, info->maximum, between,
+                 info->unit);
+}
+
+// "[0 to 90 deg; default 15]", without what there is not; "" for a BOOL that is off by default.
+static void write_brackets(const ParamInfo *info, char *text, size_t size)
+{
+    char range[100];
+    write_range(info, range, sizeof range);
+    bool shown = info->default_text[0] && info->kind != PARAM_BOOL;
+    const char *between = range[0] && shown ? "; " : "";
+    text[0] = 0;
+    if (!range[0] && !shown) return;
+    snprintf(text, size, " [%s%s%s%s]", range, between, shown ? "default " : "",
+             shown ? info->default_text : "");
+}
+
+// Writes `text` from `column` on, wrapped at WIDTH; every line but the first is indented to
+// `indent`.
+static void write_wrapped(FILE *stream, const char *text, size_t column, size_t indent)
+{
+    bool first = true;
+    while (*text) {
+        size_t length = *text == '[' ? strcspn(text, "]") + 1 : strcspn(text, " ");
+        if (!first && column + 1 + length > WIDTH) {
+            fprintf(stream, "\n%*s", (int)indent, "");
+            column = indent;
+            first = true;
+        }
+        fprintf(stream, "%s%.*s", first ? "" : " ", (int)length, text);
+        column += length + (first ? 0 : 1);
+        first = false;
+        text += length;
+        text += strspn(text, " ");
+    }
+    fputc('\n', stream);
+}
+
+// A flag in the left column and its text in the right one.
+static void write_entry(FILE *stream, const char *flag, const char *text)
+{
+    int used = fprintf(stream, "  %s", flag);
+    if (used > COLUMN - 2) {
+        fputc('\n', stream);
+        used = 0;
+    }
+    fprintf(stream, "%*s", COLUMN - used, "");
+    write_wrapped(stream, text, COLUMN, COLUMN);
+}
+
+static void write_param_entry(FILE *stream, const ParamInfo *info)
+{
+    char flag[100], brackets[160], text[TEXT_SIZE];
+    write_flag(info, flag, sizeof flag);
+    write_brackets(info, brackets, sizeof brackets);
+    snprintf(text, sizeof text, "%s%s%s", info->scope == SCOPE_SECTION ? "* " : "", info->help,
+             brackets);
+    write_entry(stream, flag, text);
+}
+
+void help_write_text(FILE *stream)
+{
+    fprintf(stream, "Usage: tractrix-render [FLAGS] HAIR_FILE...\n"
+                    "       tractrix-render [FLAGS] SCENE.json\n\n");
+    write_wrapped(stream, DESCRIPTION, 0, 0);
+    for (int group = 0; group < GROUP_COUNT; group++) {
+        fprintf(stream, "\n%s:\n", GROUP_TITLES[group]);
+        for (size_t i = 0; i < PARAM_COUNT; i++) {
+            if ((int)PARAM_TABLE[i].group == group) write_param_entry(stream, &PARAM_TABLE[i]);
+        }
+    }
+    fprintf(stream, "\nOther:\n");
+    for (int i = 0; i < REQUEST_COUNT; i++)
+        write_entry(stream, REQUESTS[i].flags, REQUESTS[i].help);
+    fprintf(stream, "\n");
+    write_wrapped(stream, FLAG_RULES, 0, 0);
+    fprintf(stream, "\nExit status:\n");
+    for (int i = 0; i < STATUS_COUNT; i++)
+        fprintf(stream, "  %3s  %s\n", STATUSES[i].status, STATUSES[i].meaning);
+    fprintf(stream, "\nExamples:\n");
+    for (int i = 0; i < EXAMPLE_COUNT; i++) fprintf(stream, "  %s\n", EXAMPLES[i]);
+}
+
+// Text with what roff would take for its own escaped: backslashes, hyphens of flags, and a control
+// character at a line's start.
+static void write_roff(FILE *stream, const char *text)
+{
+    if (*text == '.' || *text == '\'') fputs("\\&", stream);
+    for (; *text; text++) {
+        if (*text == '\\')
+            fputs("\\e", stream);
+        else if (*text == '-')
+            fputs("\\-", stream);
+        else
+            fputc(*text, stream);
+    }
+    fputc('\n', stream);
+}
+
+static void write_roff_entry(FILE *stream, const char *tag, const char *text)
+{
+    fprintf(stream, ".TP\n.B ");
+    write_roff(stream, tag);
+    write_roff(stream, text);
+}
+
+static void write_roff_title(FILE *stream, const char *macro, const char *title)
+{
+    fprintf(stream, ".%s \"", macro);
+    for (; *title; title++) fputc(toupper((unsigned char)*title), stream);
+    fprintf(stream, "\"\n");
+}
+
+static void write_roff_param(FILE *stream, const ParamInfo *info)
+{
+    char flag[100], brackets[160], text[TEXT_SIZE];
+    write_flag(info, flag, sizeof flag);
+    write_brackets(info, brackets, sizeof brackets);
+    snprintf(text, sizeof text, "%s%s%s", info->scope == SCOPE_SECTION ? "* " : "", info->help,
+             brackets);
+    write_roff_entry(stream, flag, text);
+}
+
+void help_write_man(FILE *stream, const char *version)
+{
+    fprintf(stream, ".TH TRACTRIX-RENDER 1 \"\" \"Tractrix %s\"\n.SH NAME\n", version);
+    fprintf(stream, "tractrix\\-render \\- %s\n.SH SYNOPSIS\n", SUMMARY);
+    fprintf(stream, ".B tractrix\\-render\n[\\fIflags\\fR] \\fIhair_file\\fR...\n.br\n"
+                    ".B tractrix\\-render\n[\\fIflags\\fR] \\fIscene.json\\fR\n");
+    write_roff_title(stream, "SH", "Description");
+    write_roff(stream, DESCRIPTION);
+    write_roff_title(stream, "SH", "Options");
+    write_roff(stream, FLAG_RULES);
+    for (int group = 0; group < GROUP_COUNT; group++) {
+        fprintf(stream, ".SS %s\n", GROUP_TITLES[group]);
+        for (size_t i = 0; i < PARAM_COUNT; i++) {
+            if ((int)PARAM_TABLE[i].group == group) write_roff_param(stream, &PARAM_TABLE[i]);
+        }
+    }
+    fprintf(stream, ".SS Other\n");
+    for (int i = 0; i < REQUEST_COUNT; i++)
+        write_roff_entry(stream, REQUESTS[i].flags, REQUESTS[i].help);
+    write_roff_title(stream, "SH", "Exit status");
+    for (int i = 0; i < STATUS_COUNT; i++)
+        write_roff_entry(stream, STATUSES[i].status, STATUSES[i].meaning);
+    write_roff_title(stream, "SH", "Examples");
+    fprintf(stream, ".nf\n");
+    for (int i = 0; i < EXAMPLE_COUNT; i++) write_roff(stream, EXAMPLES[i]);
+    fprintf(stream, ".fi\n");
+}
+
+// A cell's text; '|' would end the cell.
+static void write_cell(FILE *stream, const char *text)
+{
+    for (; *text; text++) fprintf(stream, *text == '|' ? "\\%c" : "%c", *text);
+}
+
+static void write_markdown_row(FILE *stream, const ParamInfo *info)
+{
+    char flag[100], range[100];
+    write_flag(info, flag, sizeof flag);
+    write_range(info, range, sizeof range);
+    fprintf(stream, "| `");
+    write_cell(stream, flag);
+    fprintf(stream, "` | %s", info->default_text[0] ? "`" : "");
+    write_cell(stream, info->default_text);
+    fprintf(stream, "%s | ", info->default_text[0] ? "`" : "");
+    write_cell(stream, range);
+    fprintf(stream, " | %s%s |\n", info->scope == SCOPE_SECTION ? "\\* " : "", info->help);
+}
+
+void help_write_markdown(FILE *stream)
+{
+    for (int group = 0; group < GROUP_COUNT; group++) {
+        fprintf(stream, "%s**%s**\n\n", group ? "\n" : "", GROUP_TITLES[group]);
+        fprintf(stream, "| flag | default | values | what |\n| --- | --- | --- | --- |\n");
+        for (size_t i = 0; i < PARAM_COUNT; i++) {
+            if ((int)PARAM_TABLE[i].group == group) write_markdown_row(stream, &PARAM_TABLE[i]);
+        }
+    }
+}
