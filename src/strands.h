@@ -8,26 +8,27 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// Strand s has the vertices first[s] .. first[s + 1] - 1, root first. Optional arrays are NULL where the source has none.
-// Everything is owned by the struct; a zeroed struct is a valid empty set.
+// Strand s has the vertices first[s] .. first[s + 1] - 1, root first. Optional arrays are NULL
+// where the source has none. Everything is owned by the struct; a zeroed struct is a valid empty
+// set.
 typedef struct Strands {
     uint32_t strand_count;
-    uint32_t vertex_count;      // of all strands together
-    uint32_t *first;            // [strand_count + 1]
-    float (*position)[3];       // [vertex_count], metres, y up
-    float *mobility;            // [vertex_count], TressFX 4's w: > 0 may move; NULL: all but the root may
-    float (*strand_uv)[2];      // [strand_count], texture coordinate at the root, 0..1
-    float (*vertex_uv)[2];      // [vertex_count]
-    float *strand_thickness;    // [strand_count], factor or width as the file says (TressFX)
-    float *vertex_thickness;    // [vertex_count] (HAIR files)
-    float (*color)[4];          // [vertex_count], linear RGB and opacity, 0..1
-    uint32_t followers;         // followers that the file asks for, per guide
-    float follower_radius;      // metres: how far from their guide
-    bool both_ends_fixed;       // the tips do not move either
+    uint32_t vertex_count; // of all strands together
+    uint32_t *first;       // [strand_count + 1]
+    float (*position)[3];  // [vertex_count], metres, y up
+    float *mobility; // [vertex_count], TressFX 4's w: > 0 may move; NULL: all but the root may
+    float (*strand_uv)[2];   // [strand_count], texture coordinate at the root, 0..1
+    float (*vertex_uv)[2];   // [vertex_count]
+    float *strand_thickness; // [strand_count], factor or width as the file says (TressFX)
+    float *vertex_thickness; // [vertex_count], metres (HAIR files)
+    float (*color)[4];       // [vertex_count], linear RGB and opacity, 0..1
+    uint32_t followers;      // followers that the file asks for, per guide
+    float follower_radius;   // metres: how far from their guide
+    bool both_ends_fixed;    // the tips do not move either
 } Strands;
 
-// Makes room: `first` (all zero), `position` (all zero), no optional array. RESULT_FAILED when memory is short or a
-// count is beyond what 32-bit indices hold.
+// Makes room: `first` (all zero), `position` (all zero), no optional array. RESULT_FAILED when
+// memory is short or a count is beyond what 32-bit indices hold.
 Result strands_create(Strands *strands, uint32_t strand_count, uint32_t vertex_count, Error *error);
 void strands_destroy(Strands *strands);
 

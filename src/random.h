@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// Seeded pseudo-random numbers: SplitMix64 (Steele, Lea, Flood 2014, "Fast splittable pseudorandom
+// number generators"). Integers, one division and square roots only, so every machine gets the same
+// numbers. Not for secrets.
+#pragma once
+
+#include <stdint.h>
+
+// Copy it to fork the sequence; any state is valid.
+typedef struct Random {
+    uint64_t state;
+} Random;
+
+// A sequence of its own for each pair: `stream` tells apart what is drawn with one seed.
+Random random_create(uint64_t seed, uint64_t stream);
+
+uint64_t random_next(Random *random);
+
+// Uniform in [0, 1), a multiple of 2^-53.
+double random_real(Random *random);
+
+// Uniform in 0 .. count - 1, without bias; count >= 1.
+uint32_t random_below(Random *random, uint32_t count);
+
+// Uniform on the unit sphere (Marsaglia 1972, "Choosing a point from the surface of a sphere").
+void random_direction(Random *random, double direction[3]);
+
+// A random permutation of 0 .. count - 1 (Fisher and Yates).
+void random_permutation(Random *random, uint32_t *order, uint32_t count);

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// Writes hair. Files appear complete or not at all; coordinates are metres, y up.
+#pragma once
+
+#include "strands_report.h"
+
+// Reading the file with unit 1 gives the same float32 values back, bit for bit, for all that the
+// kind can hold:
+//   STRANDS_TFX2_TEXT  positions and strand UVs as the shortest decimals that read back; followers,
+//                      their radius and fixed ends in a block of parameters if there are any
+//   STRANDS_TFX3       all but mobility and thickness per vertex
+//   STRANDS_TFX4       all but followers and thickness per vertex; where mobility is NULL, 0 is
+//                      written for the root (and the tip if both ends are fixed) and 1 for the rest
+//   STRANDS_HAIR       positions, thickness per vertex, colour (opacity below 0.5 within 2^-25)
+// RESULT_FAILED for TressFX 3 and 4 if strands differ in their number of vertices, for HAIR if a
+// strand has more than 65536, for the other kinds, and with the reason if writing fails.
+Result strands_write(const char *path, StrandsKind kind, const Strands *strands, Error *error);
