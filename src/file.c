@@ -82,7 +82,6 @@ static int open_temporary(OutFile *file)
 {
     const char *slash = strrchr(file->path, '/');
     int folder_length = slash ? (int)(slash - file->path) + 1 : 0;
-    int descriptor = -1;
     for (unsigned attempt = 0; attempt < 10000; attempt++) {
         if (asprintf(&file->temporary, "%.*s.tractrix-%ld-%u.tmp", folder_length, file->path,
                      (long)getpid(), attempt) < 0) {
@@ -90,7 +89,7 @@ static int open_temporary(OutFile *file)
             errno = ENOMEM;
             return -1;
         }
-        descriptor = open(file->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        int descriptor = open(file->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (descriptor >= 0) return descriptor;
         int reason = errno;
         free(file->temporary);

@@ -4,6 +4,7 @@
 #include "png.h"
 #include "temporary.h"
 
+#include <libdeflate.h>
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -96,6 +97,34 @@ static void the_file_is_made_of_valid_chunks(void **state)
     image_destroy(&image);
 }
 
+// A decoder for this one kind of file, which shares no code with the encoder or with png_read.
+static void every_row_is_the_difference_from_the_row_above(void **state)
+{
+    (void)state;
+    enum { W = 33, H = 17, ROW = 3 * W };
+    Image image = make_image(W, H, 3);
+    Bytes png;
+    uint8_t rows[H][1 + ROW], above[ROW] = {0};
+    size_t size;
+    assert_int_equal(png_encode(&image, &png, NULL), RESULT_OK);
+    struct libdeflate_decompressor *decompressor = libdeflate_alloc_decompressor();
+    assert_int_equal(libdeflate_zlib_decompress(decompressor, png.data + 41,
+                                                read_big_endian(png.data + 33), rows, sizeof rows,
+                                                &size),
+                     LIBDEFLATE_SUCCESS);
+    assert_int_equal(size, sizeof rows);
+    for (int y = 0; y < H; y++) {
+        assert_int_equal(rows[y][0], 2);
+        for (int i = 0; i < ROW; i++) {
+            above[i] = (uint8_t)(above[i] + rows[y][1 + i]);
+            assert_int_equal(above[i], image.pixels[y * ROW + i]);
+        }
+    }
+    libdeflate_free_decompressor(decompressor);
+    bytes_destroy(&png);
+    image_destroy(&image);
+}
+
 static void the_same_image_gives_the_same_bytes(void **state)
 {
     (void)state;
@@ -180,6 +209,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(every_size_and_kind_survives_a_round_trip),
         TEST(the_file_is_made_of_valid_chunks),
+        TEST(every_row_is_the_difference_from_the_row_above),
         TEST(the_same_image_gives_the_same_bytes),
         TEST(an_image_too_large_is_refused),
         TEST(a_full_disk_leaves_no_file),
