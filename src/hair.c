@@ -70,8 +70,8 @@ static void fill_strand(Float4 *rest, Float4 *position, const Strands *strands, 
     rest[column][3] = (float)total;
 }
 
-static Result upload(HairBatch *batch, const GpuLimits *limits, const Float4 *rest,
-                     const Float4 *position, const uint32_t *ids, Error *error)
+static Result upload(HairBatch *batch, const GpuLimits *limits, const void *rest,
+                     const void *position, const uint32_t *ids, Error *error)
 {
     int64_t size = (int64_t)batch->vertex_count * batch->strand_count * (int64_t)sizeof(Float4);
     Result result = gpu_buffer_create(&batch->position, limits, "hair positions", size, position,

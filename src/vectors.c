@@ -155,7 +155,7 @@ Result vectors_check_steps(VectorsReport *report, const Gpu *gpu, const char *pa
                            buffers[0].size, error);
     }
     if (result == RESULT_OK)
-        result = judge_steps(report, &csv, columns, (const void *)tails, error);
+        result = judge_steps(report, &csv, columns, (const Float4 *)tails, error);
     free(cases);
     free(tails);
     csv_destroy(&csv);

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include "hair_fixture.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+const Gpu *fixture_gpu(void)
+{
+    static Gpu gpu;
+    Error error;
+    if (!gpu.renderer[0] && gpu_create(&gpu, &(GpuOptions){.device = -1}, &error) != RESULT_OK)
+        fail_msg("%s", error.text);
+    return &gpu;
+}
+
+void fixture_create_strands(HairFixture *fixture, const Strands *strands, const char *algo,
+                            const char *variant, float style, float drag)
+{
+    Error error = {{0}};
+    *fixture = (HairFixture){
+        .step = {.dt = 1.0 / 60, .first = true, .gravity = {0, -9.81f, 0}},
+    };
+    fixture->step.head.rotation[3] = fixture->step.head_old.rotation[3] = 1;
+    assert_int_equal(section_params_create(&fixture->params, &error), RESULT_OK);
+    free(fixture->params.algo);
+    free(fixture->params.variant);
+    fixture->params.algo = strdup(algo);
+    fixture->params.variant = strdup(variant);
+    fixture->params.style = style;
+    fixture->params.drag = drag;
+    gpu_timer_create(&fixture->timer, false);
+    if (hair_create(&fixture->hair, strands, 0, &fixture_gpu()->limits, &error) != RESULT_OK)
+        fail_msg("%s", error.text);
+    const SolverSetup setup = {fixture_gpu(), &fixture->timer, &fixture->hair, &fixture->params};
+    if (solver_create(&fixture->solver, &setup, &error) != RESULT_OK) fail_msg("%s", error.text);
+}
+
+void fixture_create(HairFixture *fixture, const double (*positions)[3], int count, int n,
+                    const char *algo, const char *variant, float style, float drag)
+{
+    Strands strands;
+    assert_int_equal(strands_create(&strands, (uint32_t)count, (uint32_t)(count * n), NULL),
+                     RESULT_OK);
+    for (int s = 0; s <= count; ++s) strands.first[s] = (uint32_t)(s * n);
+    for (int i = 0; i < count * n; ++i)
+        for (int k = 0; k < 3; ++k) strands.position[i][k] = (float)positions[i][k];
+    fixture_create_strands(fixture, &strands, algo, variant, style, drag);
+    strands_destroy(&strands);
+}
+
+void fixture_destroy(HairFixture *fixture)
+{
+    solver_destroy(&fixture->solver);
+    hair_destroy(&fixture->hair);
+    gpu_timer_destroy(&fixture->timer);
+    section_params_destroy(&fixture->params);
+}
+
+void fixture_step(HairFixture *fixture)
+{
+    fixture->solver.type->step(fixture->solver.state, &fixture->step);
+    fixture->step.head_old = fixture->step.head;
+    fixture->step.first = false;
+}
+
+float (*fixture_positions(HairFixture *fixture, uint32_t batch))[4]
+{
+    const HairBatch *hair = &fixture->hair.batches[batch];
+    size_t size = (size_t)hair->vertex_count * hair->strand_count * sizeof(float[4]);
+    float(*positions)[4] = malloc(size);
+    assert_non_null(positions);
+    fixture->solver.type->pose(fixture->solver.state, &fixture->step.head);
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, hair->position.buffer);
+    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, positions);
+    return positions;
+}

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// Strands on the GPU with a solver, for tests that step hair.
+#pragma once
+
+#include "solver.h"
+
+typedef struct HairFixture {
+    Hair hair;
+    Solver solver;
+    SectionParams params;
+    GpuTimer timer;
+    SolverStep step; // gravity, dt, head at rest; tests change it between steps
+} HairFixture;
+
+// The context of a test program, made at the first call; the test fails if there is none.
+const Gpu *fixture_gpu(void);
+
+// `count` strands of n particles each: positions[(s * n + j)]. Gravity (0, -9.81, 0), 1/60 s, no
+// wind, head at the origin, first step from rest. `style` as the parameter; drag in 1/s. The
+// fixture may be destroyed when zeroed.
+void fixture_create(HairFixture *fixture, const double (*positions)[3], int count, int n,
+                    const char *algo, const char *variant, float style, float drag);
+void fixture_create_strands(HairFixture *fixture, const Strands *strands, const char *algo,
+                            const char *variant, float style, float drag);
+void fixture_destroy(HairFixture *fixture);
+
+// One step, then the head of this step becomes the old one.
+void fixture_step(HairFixture *fixture);
+
+// The drawn positions of batch `batch` (after writing the pose): [n][count][4], malloc'ed.
+float (*fixture_positions(HairFixture *fixture, uint32_t batch))[4];
