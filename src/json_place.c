@@ -3,6 +3,7 @@
 #include "suggest.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -52,10 +53,11 @@ static int append_to_excerpt(const char *bytes, size_t size, void *data)
 {
     Excerpt *excerpt = data;
     size_t room = sizeof excerpt->text - 1 - excerpt->length;
-    size_t taken = size < room ? size : room;
-    memcpy(excerpt->text + excerpt->length, bytes, taken);
-    excerpt->length += taken;
-    return taken == size ? 0 : -1;
+    bool fits = size <= room;
+    if (!fits) size = room;
+    memcpy(excerpt->text + excerpt->length, bytes, size);
+    excerpt->length += size;
+    return fits ? 0 : -1;
 }
 
 // The value as JSON on one line, cut between characters.

@@ -122,7 +122,7 @@ static void quaternion_from_vector(const float vector[3], double quaternion[4])
 static void rotate(const double q[4], const float v[3], double rotated[3])
 {
     double x = (double)v[0], y = (double)v[1], z = (double)v[2];
-    double cross[3] = {q[1] * z - q[2] * y, q[2] * x - q[0] * z, q[0] * y - q[1] * x};
+    const double cross[3] = {q[1] * z - q[2] * y, q[2] * x - q[0] * z, q[0] * y - q[1] * x};
     rotated[0] = x + 2 * (q[3] * cross[0] + q[1] * cross[2] - q[2] * cross[1]);
     rotated[1] = y + 2 * (q[3] * cross[1] + q[2] * cross[0] - q[0] * cross[2]);
     rotated[2] = z + 2 * (q[3] * cross[2] + q[0] * cross[1] - q[1] * cross[0]);

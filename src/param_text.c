@@ -222,6 +222,11 @@ Result param_parse(const ParamInfo *info, void *params, const char *text, Error 
 
 void param_format_float(float value, char *text, size_t size)
 {
+    // %g would write 60 as 6e+01.
+    if (fabsf(value) < 1e7f && truncf(value) == value) {
+        snprintf(text, size, "%.0f", (double)value);
+        return;
+    }
     for (int digits = 1; digits <= 9; digits++) {
         snprintf(text, size, "%.*g", digits, (double)value);
         if (strtof(text, NULL) == value) return;

@@ -102,7 +102,7 @@ Result scene_read_param(const ParamInfo *info, void *params, const char *folder,
         path = scene_join_path(folder, text);
         if (!path) return error_set(error, RESULT_FAILED, "out of memory");
     }
-    Error why;
+    Error why = {{0}};
     Result result = param_parse(info, params, path ? path : text, &why);
     free(path);
     if (result == RESULT_USAGE) return place_fail(place, error, "%s", why.text);

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: MIT
+#include "keyframes.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static const float PI = 3.14159265f;
+
+typedef struct Sample {
+    double time;
+    float value;
+} Sample;
+
+static Keyframes make_track(const Sample *samples, uint32_t count, Interpolation interpolation)
+{
+    Keyframes keys = {.interpolation = interpolation};
+    Error error;
+    for (uint32_t i = 0; i < count; i++)
+        assert_int_equal(keyframes_append(&keys, samples[i].time, &samples[i].value, 1, &error),
+                         RESULT_OK);
+    return keys;
+}
+
+static double at(const Keyframes *keys, double time)
+{
+    float value;
+    keyframes_evaluate(keys, time, &value);
+    return (double)value;
+}
+
+// Uneven times; a rise, a held value, a fall and a turn.
+static const Sample SAMPLES[] = {{-1, 2}, {0, 3}, {0.1, 7}, {2, 7}, {3, -1}, {3.5, -0.5f}, {9, 4}};
+enum { SAMPLE_COUNT = sizeof SAMPLES / sizeof SAMPLES[0] };
+
+static void both_kinds_pass_through_every_key_and_are_constant_outside(void **state)
+{
+    (void)state;
+    for (int kind = INTERPOLATION_SMOOTH; kind <= INTERPOLATION_LINEAR; kind++) {
+        Keyframes keys = make_track(SAMPLES, SAMPLE_COUNT, (Interpolation)kind);
+        for (int i = 0; i < SAMPLE_COUNT; i++)
+            assert_true(at(&keys, SAMPLES[i].time) == (double)SAMPLES[i].value);
+        assert_true(at(&keys, -1e9) == 2 && at(&keys, 1e9) == 4);
+        keyframes_destroy(&keys);
+        keyframes_destroy(&keys);
+    }
+}
+
+static void linear_is_halfway_in_the_middle(void **state)
+{
+    (void)state;
+    Keyframes keys = make_track(SAMPLES, SAMPLE_COUNT, INTERPOLATION_LINEAR);
+    for (int i = 0; i + 1 < SAMPLE_COUNT; i++) {
+        double middle = (SAMPLES[i].time + SAMPLES[i + 1].time) / 2;
+        double expected = ((double)SAMPLES[i].value + (double)SAMPLES[i + 1].value) / 2;
+        assert_true(fabs(at(&keys, middle) - expected) < 1e-6);
+    }
+    keyframes_destroy(&keys);
+}
+
+static void smooth_never_leaves_the_range_of_its_two_keys(void **state)
+{
+    (void)state;
+    Keyframes keys = make_track(SAMPLES, SAMPLE_COUNT, INTERPOLATION_SMOOTH);
+    for (int i = 0; i + 1 < SAMPLE_COUNT; i++) {
+        double from = (double)SAMPLES[i].value, to = (double)SAMPLES[i + 1].value, before = from;
+        for (int step = 1; step <= 100; step++) {
+            double u = step / 100.0;
+            double value = at(&keys, SAMPLES[i].time * (1 - u) + SAMPLES[i + 1].time * u);
+            assert_true((value - before) * (to >= from ? 1 : -1) >= -1e-6);
+            before = value;
+        }
+        assert_true(fabs(before - to) < 1e-6);
+    }
+    keyframes_destroy(&keys);
+}
+
+// Across a key the one-sided slopes agree; linear interpolation, whose slopes jump there, proves
+// that the comparison can fail. With h = 1e-3 s and values below 8, rounding to float moves a slope
+// by 8 * 2^-24 / 1e-3 < 1e-3, curvature (at most 6 * 4 / 0.1^2 per s2) by 2.4.
+static double slope_jump(Interpolation interpolation)
+{
+    Keyframes keys = make_track(SAMPLES, SAMPLE_COUNT, interpolation);
+    double worst = 0, h = 1e-3;
+    for (int i = 0; i < SAMPLE_COUNT; i++) {
+        double t = SAMPLES[i].time;
+        double left = (at(&keys, t) - at(&keys, t - h)) / h;
+        double right = (at(&keys, t + h) - at(&keys, t)) / h;
+        worst = fmax(worst, fabs(right - left));
+    }
+    keyframes_destroy(&keys);
+    return worst;
+}
+
+static void smooth_has_no_jump_in_velocity_even_at_its_ends(void **state)
+{
+    (void)state;
+    assert_true(slope_jump(INTERPOLATION_SMOOTH) < 2.5);
+    assert_true(slope_jump(INTERPOLATION_LINEAR) > 30);
+}
+
+static void one_key_is_a_constant(void **state)
+{
+    (void)state;
+    const Sample one = {5, 3};
+    Keyframes keys = make_track(&one, 1, INTERPOLATION_SMOOTH);
+    assert_true(at(&keys, 0) == 3 && at(&keys, 5) == 3 && at(&keys, 6) == 3);
+    keyframes_destroy(&keys);
+}
+
+static void times_must_be_finite_and_increase(void **state)
+{
+    (void)state;
+    Keyframes keys = {0};
+    Error error;
+    float value[2] = {1, 2};
+    assert_int_equal(keyframes_append(&keys, NAN, value, 2, &error), RESULT_BAD_INPUT);
+    assert_int_equal(keyframes_append(&keys, 1, value, 2, &error), RESULT_OK);
+    assert_int_equal(keyframes_append(&keys, 1, value, 2, &error), RESULT_BAD_INPUT);
+    assert_non_null(strstr(error.text, "1 s is not later"));
+    assert_int_equal(keyframes_append(&keys, 0.5, value, 2, &error), RESULT_BAD_INPUT);
+    assert_int_equal(keyframes_append(&keys, INFINITY, value, 2, &error), RESULT_BAD_INPUT);
+    assert_int_equal(keys.count, 1);
+    keyframes_destroy(&keys);
+}
+
+static void many_keys_are_all_found(void **state)
+{
+    (void)state;
+    Keyframes keys = {.interpolation = INTERPOLATION_LINEAR};
+    Error error;
+    for (int i = 0; i < 1000; i++) {
+        float value[4] = {(float)i, (float)-i, 0, 1};
+        assert_int_equal(keyframes_append(&keys, i, value, 4, &error), RESULT_OK);
+    }
+    for (int i = 0; i < 999; i++) {
+        float value[4];
+        keyframes_evaluate(&keys, i + 0.5, value);
+        assert_true(value[0] == (float)i + 0.5f && value[1] == -value[0] && value[3] == 1);
+    }
+    keyframes_destroy(&keys);
+}
+
+// The point where the track takes `point`, by the quaternion's matrix.
+static void move(const RigidTrack *track, double time, const float point[3], float moved[3])
+{
+    float q[4], t[3];
+    rigid_track_evaluate(track, time, q, t);
+    assert_true(fabsf(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1) < 1e-6f);
+    float x = q[0], y = q[1], z = q[2], w = q[3];
+    const float matrix[3][3] = {
+        {1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
+        {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
+        {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)},
+    };
+    for (int i = 0; i < 3; i++)
+        moved[i] =
+            matrix[i][0] * point[0] + matrix[i][1] * point[1] + matrix[i][2] * point[2] + t[i];
+}
+
+static void assert_at(const float moved[3], float x, float y, float z)
+{
+    assert_true(fabsf(moved[0] - x) < 1e-5f && fabsf(moved[1] - y) < 1e-5f &&
+                fabsf(moved[2] - z) < 1e-5f);
+}
+
+static void turn_to(RigidTrack *track, double time, float x, float y, float z)
+{
+    Error error;
+    const float vector[3] = {x, y, z};
+    assert_int_equal(keyframes_append(&track->rotation, time, vector, 3, &error), RESULT_OK);
+}
+
+static void a_track_without_keys_moves_nothing(void **state)
+{
+    (void)state;
+    RigidTrack track = {.pivot = {1, 2, 3}};
+    float q[4], t[3];
+    rigid_track_evaluate(&track, 7, q, t);
+    const float identity[4] = {0, 0, 0, 1}, zero[3] = {0, 0, 0};
+    assert_memory_equal(q, identity, sizeof q);
+    assert_memory_equal(t, zero, sizeof t);
+    rigid_track_destroy(&track);
+}
+
+static void a_turn_is_right_handed_and_leaves_its_pivot_in_place(void **state)
+{
+    (void)state;
+    RigidTrack track = {.pivot = {0, 1, 0}, .rotation.interpolation = INTERPOLATION_LINEAR};
+    turn_to(&track, 0, 0, 0, 0);
+    turn_to(&track, 1, 0, 0, PI / 2);
+    float moved[3];
+    move(&track, 1, (const float[3]){0, 1, 0}, moved);
+    assert_at(moved, 0, 1, 0);
+    move(&track, 1, (const float[3]){2, 1, 0}, moved);
+    assert_at(moved, 0, 3, 0);
+    move(&track, 0.5, (const float[3]){1, 1, 5}, moved);
+    assert_at(moved, sqrtf(0.5f), 1 + sqrtf(0.5f), 5);
+    rigid_track_destroy(&track);
+}
+
+static void translation_comes_after_the_turn(void **state)
+{
+    (void)state;
+    RigidTrack track = {0};
+    Error error;
+    const float shift[3] = {10, 0, 0};
+    turn_to(&track, 0, 0, PI, 0);
+    assert_int_equal(keyframes_append(&track.translation, 0, shift, 3, &error), RESULT_OK);
+    float moved[3];
+    move(&track, 0, (const float[3]){1, 2, 3}, moved);
+    assert_at(moved, 9, 2, -3);
+    rigid_track_destroy(&track);
+}
+
+static void turns_of_more_than_half_a_circle_are_made_as_written(void **state)
+{
+    (void)state;
+    RigidTrack track = {.rotation.interpolation = INTERPOLATION_LINEAR};
+    turn_to(&track, 0, 0, 0, 0);
+    turn_to(&track, 2, 0, 0, 4 * PI);
+    float moved[3];
+    move(&track, 0.25, (const float[3]){1, 0, 0}, moved);
+    assert_at(moved, 0, 1, 0);
+    move(&track, 0.75, (const float[3]){1, 0, 0}, moved);
+    assert_at(moved, 0, -1, 0);
+    move(&track, 2, (const float[3]){1, 0, 0}, moved);
+    assert_at(moved, 1, 0, 0);
+    rigid_track_destroy(&track);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(both_kinds_pass_through_every_key_and_are_constant_outside),
+        cmocka_unit_test(linear_is_halfway_in_the_middle),
+        cmocka_unit_test(smooth_never_leaves_the_range_of_its_two_keys),
+        cmocka_unit_test(smooth_has_no_jump_in_velocity_even_at_its_ends),
+        cmocka_unit_test(one_key_is_a_constant),
+        cmocka_unit_test(times_must_be_finite_and_increase),
+        cmocka_unit_test(many_keys_are_all_found),
+        cmocka_unit_test(a_track_without_keys_moves_nothing),
+        cmocka_unit_test(a_turn_is_right_handed_and_leaves_its_pivot_in_place),
+        cmocka_unit_test(translation_comes_after_the_turn),
+        cmocka_unit_test(turns_of_more_than_half_a_circle_are_made_as_written),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
