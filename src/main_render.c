@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: MIT
+// tractrix-render: from hair files and a scene to pictures.
+#include "fibre.h"
+#include "framing.h"
+#include "help.h"
+#include "interrupt.h"
+#include "load.h"
+#include "output.h"
+#include "renderer.h"
+#include "sequence.h"
+#include "simulation.h"
+#include "stats.h"
+
+#include "version.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// All that a run makes, so that one function can destroy it in whatever state it is.
+typedef struct Run {
+    Scene scene;
+    Assets assets;
+    Gpu gpu;
+    bool has_gpu;
+    GpuTimer timer;
+    Simulation simulation;
+    Renderer renderer;
+    RenderItem *items;
+    Framing framing;
+    Output *output;
+    Stats stats;
+    double begin_ms, loaded_ms, ready_ms;
+} Run;
+
+static void run_destroy(Run *run)
+{
+    output_destroy(run->output);
+    if (run->has_gpu) {
+        renderer_destroy(&run->renderer);
+        simulation_destroy(&run->simulation);
+        gpu_timer_destroy(&run->timer);
+        gpu_destroy(&run->gpu);
+    }
+    stats_destroy(&run->stats);
+    free(run->items);
+    assets_destroy(&run->assets);
+    scene_destroy(&run->scene);
+}
+
+static GpuOptions gpu_options(const RunParams *params)
+{
+    GpuOptions options = {
+        .backend = params->backend == BACKEND_EGL      ? GPU_BACKEND_EGL
+                   : params->backend == BACKEND_OSMESA ? GPU_BACKEND_OSMESA
+                                                       : GPU_BACKEND_AUTO,
+        .device = params->device,
+        .software = params->software,
+        .require_hardware = params->require_hardware,
+    };
+#ifdef TRACTRIX_DEBUG
+    options.debug = true;
+#endif
+    return options;
+}
+
+static Result open_gpu(Run *run, Error *error)
+{
+    const RunParams *params = &run->scene.run;
+    const GpuOptions options = gpu_options(params);
+    Result result = gpu_create(&run->gpu, &options, error);
+    if (result != RESULT_OK) return result;
+    run->has_gpu = true;
+    gpu_timer_create(&run->timer, *params->stats != 0);
+    if (!params->quiet)
+        fprintf(stderr, "%s, OpenGL %s (%s)\n", run->gpu.renderer, run->gpu.version, run->gpu.path);
+    return RESULT_OK;
+}
+
+static Result create_items(Run *run, Error *error)
+{
+    run->items = calloc((size_t)run->scene.section_count + 1, sizeof *run->items);
+    if (!run->items)
+        return error_set(error, RESULT_FAILED, "no memory for %u sections",
+                         run->scene.section_count);
+    for (uint32_t i = 0; i < run->scene.section_count; ++i) {
+        const SectionParams *params = &run->scene.sections[i].params;
+        run->items[i] = (RenderItem){
+            .hair = &run->simulation.sections[i].hair,
+            .material = params,
+            .radius = params->radius.automatic ? fibre_auto_radius(&run->assets.strands[i])
+                                               : params->radius.value,
+        };
+    }
+    return RESULT_OK;
+}
+
+static Result open_renderer(Run *run, Error *error)
+{
+    const RunParams *params = &run->scene.run;
+    RendererOptions options = {
+        .width = params->size[0], .height = params->size[1], .seed = params->seed};
+    memcpy(options.background, params->background, sizeof options.background);
+    Result result = renderer_create(&run->renderer, &run->gpu, &run->timer, &options, error);
+    if (result == RESULT_OK && run->assets.has_mesh)
+        result = renderer_set_mesh(&run->renderer, &run->assets.mesh, params->mesh_color, error);
+    if (result == RESULT_OK) result = create_items(run, error);
+    framing_compute(&run->framing, &run->scene, run->assets.strands,
+                    run->assets.has_mesh ? &run->assets.mesh : NULL);
+    return result;
+}
+
+static Result open_output(Run *run, Error *error)
+{
+    const RunParams *params = &run->scene.run;
+    const OutputOptions options = {
+        .target = params->output,
+        .width = params->size[0],
+        .height = params->size[1],
+        .channels = params->background[3] < 1 ? 4 : 3,
+        .fps = (double)params->fps / params->every,
+        .frame_count = sequence_count_drawn(params),
+    };
+    return output_create(&run->output, &options, error);
+}
+
+// Files first: what is wrong with them is told before a driver is started. The output's folder is
+// made last but before any work.
+static Result prepare(Run *run, Error *error)
+{
+    const RunParams *params = &run->scene.run;
+    bool draws = *params->output != 0;
+    Result result = assets_load(&run->assets, &run->scene, params->quiet ? NULL : stderr,
+                                params->verbose, error);
+    run->loaded_ms = stats_clock_ms();
+    if (result == RESULT_OK) result = open_gpu(run, error);
+    if (result == RESULT_OK)
+        result = simulation_create(&run->simulation, &run->gpu, &run->timer, &run->scene,
+                                   run->assets.strands, error);
+    if (result == RESULT_OK && draws) result = open_renderer(run, error);
+    if (result == RESULT_OK && draws) result = open_output(run, error);
+    if (result == RESULT_OK && *params->stats) {
+        result = stats_create(&run->stats, error);
+        stats_describe(&run->stats, &run->gpu, &run->scene, &run->assets, &run->simulation);
+    }
+    run->ready_ms = stats_clock_ms();
+    return result;
+}
+
+static void tell_result(const Run *run, const Sequence *sequence, double ms)
+{
+    int frames = sequence->output ? sequence->frames_drawn + sequence->frames_repeated
+                                  : run->simulation.frame + 1;
+    SolverReport report = simulation_report(&run->simulation);
+    if (report.moves_limited)
+        fprintf(stderr, "%llu moves of more than 100 strand lengths a step were cut\n",
+                (unsigned long long)report.moves_limited);
+    fprintf(stderr, "%d frames in %.1f s, %.1f a second", frames, ms / 1e3, frames * 1e3 / ms);
+    fprintf(stderr, run->output ? ": %s\n" : "%s\n",
+            run->output ? output_describe(run->output) : "");
+}
+
+static Result write_stats(Run *run, const Sequence *sequence, Error *error)
+{
+    const RunParams *params = &run->scene.run;
+    if (!*params->stats) return RESULT_OK;
+    OutputCounters counters = {0};
+    if (run->output) counters = output_count(run->output);
+    stats_add_wall(&run->stats, "load_ms", run->loaded_ms - run->begin_ms);
+    stats_add_wall(&run->stats, "set_up_ms", run->ready_ms - run->loaded_ms);
+    stats_add_wall(&run->stats, "frames_ms", stats_clock_ms() - run->ready_ms);
+    stats_add_wall(&run->stats, "total_ms", stats_clock_ms() - run->begin_ms);
+    stats_finish(&run->stats, &run->timer, &run->simulation, sequence->frames_drawn,
+                 sequence->frames_repeated, run->output ? &counters : NULL);
+    return stats_write(&run->stats, params->stats, error);
+}
+
+static Result render(Run *run, Error *error)
+{
+    Result result = prepare(run, error);
+    if (result != RESULT_OK) return result;
+    Sequence sequence = {
+        .scene = &run->scene,
+        .simulation = &run->simulation,
+        .renderer = run->output ? &run->renderer : NULL,
+        .output = run->output,
+        .framing = &run->framing,
+        .items = run->items,
+        .timer = &run->timer,
+        .stats = &run->stats,
+    };
+    result = sequence_run(&sequence, error);
+    if (result == RESULT_OK && run->output) result = output_finish(run->output, error);
+    if (result == RESULT_OK) result = write_stats(run, &sequence, error);
+    if (result == RESULT_OK && !run->scene.run.quiet)
+        tell_result(run, &sequence, stats_clock_ms() - run->begin_ms);
+    return result;
+}
+
+static Result answer(Run *run, Error *error)
+{
+    const RunParams *params = &run->scene.run;
+    switch (run->scene.request) {
+    case REQUEST_HELP:
+        help_write_text(stdout);
+        return RESULT_OK;
+    case REQUEST_MAN:
+        help_write_man(stdout, TRACTRIX_VERSION);
+        return RESULT_OK;
+    case REQUEST_MARKDOWN:
+        help_write_markdown(stdout);
+        return RESULT_OK;
+    case REQUEST_VERSION:
+        printf("tractrix-render %s (%s)\n", TRACTRIX_VERSION, TRACTRIX_COMMIT);
+        return RESULT_OK;
+    case REQUEST_RUN:
+        break;
+    }
+    if (params->list_devices) return gpu_list_devices(stdout, error);
+    if (params->check) {
+        error->text[0] = 0; // the report says it all
+        return assets_check(&run->scene, stdout);
+    }
+    return render(run, error);
+}
+
+// `--algo list` needs no hair file, so it is looked for before anything else.
+static bool wants_solver_list(int argc, char **argv)
+{
+    for (int i = 1; i < argc; ++i)
+        if (strcmp(argv[i], "--algo=list") == 0 ||
+            (strcmp(argv[i], "--algo") == 0 && i + 1 < argc && strcmp(argv[i + 1], "list") == 0))
+            return true;
+    return false;
+}
+
+int main(int argc, char **argv)
+{
+    interrupt_install();
+    if (wants_solver_list(argc, argv)) {
+        solver_print_list(stdout);
+        return RESULT_OK;
+    }
+    Run run = {.begin_ms = stats_clock_ms()};
+    Error error = {{0}};
+    Result result = scene_from_arguments(&run.scene, argc, argv, &error);
+    if (result == RESULT_OK) result = answer(&run, &error);
+    run_destroy(&run);
+    // A file's fault begins with the file; everything else with the program's name.
+    if (result != RESULT_OK && error.text[0])
+        fprintf(stderr, "%s%s\n",
+                result == RESULT_BAD_INPUT ? "" : "tractrix-render: ", error.text);
+    if (fflush(stdout) != 0 && result == RESULT_OK) result = RESULT_FAILED;
+    return result;
+}

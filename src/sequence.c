@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+#include "sequence.h"
+#include "interrupt.h"
+#include "progress.h"
+
+#include <string.h>
+
+int sequence_last_frame(const RunParams *run)
+{
+    return run->last < 0 ? run->frames - 1 : run->last;
+}
+
+bool sequence_draws_frame(const RunParams *run, int frame)
+{
+    return frame >= run->first && frame <= sequence_last_frame(run) &&
+           (frame - run->first) % run->every == 0;
+}
+
+int sequence_count_drawn(const RunParams *run)
+{
+    int last = sequence_last_frame(run);
+    return last < run->first ? 0 : (last - run->first) / run->every + 1;
+}
+
+// What the loop keeps from one drawn frame to the next. If nothing moves but perhaps the camera,
+// and that neither, the picture before is the picture.
+typedef struct Previous {
+    bool any;
+    View view;
+    Image image;
+} Previous;
+
+static bool same_view(const View *a, const View *b)
+{
+    return memcmp(a->view, b->view, sizeof a->view) == 0 &&
+           memcmp(a->projection, b->projection, sizeof a->projection) == 0;
+}
+
+static size_t image_size(const Image *image)
+{
+    return (size_t)image->width * (size_t)image->height * (size_t)image->channels;
+}
+
+static Result remember(Previous *previous, const View *view, const Image *image, Error *error)
+{
+    if (!previous->image.pixels) {
+        Result result =
+            image_create(&previous->image, image->width, image->height, image->channels, error);
+        if (result != RESULT_OK) return result;
+    }
+    memcpy(previous->image.pixels, image->pixels, image_size(image));
+    previous->view = *view;
+    previous->any = true;
+    return RESULT_OK;
+}
+
+static Result draw(Sequence *sequence, Previous *previous, const View *view, Image *image,
+                   Error *error)
+{
+    const Scene *scene = sequence->scene;
+    bool still = simulation_is_still(sequence->simulation);
+    if (still && previous->any && same_view(view, &previous->view)) {
+        memcpy(image->pixels, previous->image.pixels, image_size(image));
+        ++sequence->frames_repeated;
+        return RESULT_OK;
+    }
+    RenderFrame frame = {.view = view, .lights = scene->lights, .light_count = scene->light_count};
+    memcpy(frame.head_rotation, sequence->simulation->head.rotation, sizeof frame.head_rotation);
+    memcpy(frame.head_translation, sequence->simulation->head.translation,
+           sizeof frame.head_translation);
+    simulation_pose(sequence->simulation);
+    Result result = renderer_draw(sequence->renderer, &frame, sequence->items, scene->section_count,
+                                  image, error);
+    if (result == RESULT_OK && still) result = remember(previous, view, image, error);
+    sequence->frames_drawn += result == RESULT_OK;
+    return result;
+}
+
+static Result output_frame(Sequence *sequence, Previous *previous, int frame, FrameTimes *times,
+                           Error *error)
+{
+    View view;
+    Image *image;
+    double begin = stats_clock_ms();
+    Result result = output_acquire(sequence->output, &image, error);
+    double acquired = stats_clock_ms();
+    times->wait_ms = acquired - begin;
+    if (result != RESULT_OK) return result;
+    camera_view(&view, sequence->scene, sequence->framing, frame);
+    result = draw(sequence, previous, &view, image, error);
+    times->draw_ms = stats_clock_ms() - acquired;
+    Result submitted = output_submit(sequence->output, frame, image, error);
+    return result == RESULT_OK ? submitted : result;
+}
+
+static Result run_frame(Sequence *sequence, Previous *previous, int frame, Error *error)
+{
+    FrameTimes times = {.frame = frame};
+    double begin = stats_clock_ms();
+    if (frame > 0) simulation_advance(sequence->simulation);
+    times.simulate_ms = stats_clock_ms() - begin;
+    Result result = RESULT_OK;
+    if (sequence->output && sequence_draws_frame(&sequence->scene->run, frame))
+        result = output_frame(sequence, previous, frame, &times, error);
+    const RendererCounts none = {0};
+    stats_add_frame(sequence->stats, sequence->timer, &times,
+                    sequence->renderer ? &sequence->renderer->counts : &none);
+    return result;
+}
+
+Result sequence_run(Sequence *sequence, Error *error)
+{
+    const RunParams *run = &sequence->scene->run;
+    int last = sequence_last_frame(run);
+    Previous previous = {0};
+    Progress progress;
+    Result result = RESULT_OK;
+    progress_start(&progress, stderr, last + 1, run->quiet);
+    for (int frame = 0; frame <= last && result == RESULT_OK; ++frame) {
+        result = interrupt_requested()
+                     ? error_set(error, RESULT_INTERRUPTED, "interrupted after %d of %d frames",
+                                 frame, last + 1)
+                     : run_frame(sequence, &previous, frame, error);
+        progress_update(&progress, frame + 1);
+    }
+    progress_clear(&progress);
+    image_destroy(&previous.image);
+    return result;
+}

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// The main loop: simulates a scene's frames, draws those that are asked for, and hands them to the
+// output.
+#pragma once
+
+#include "framing.h"
+#include "load.h"
+#include "output.h"
+#include "renderer.h"
+#include "simulation.h"
+#include "stats.h"
+
+typedef struct Sequence {
+    const Scene *scene;
+    Simulation *simulation;
+    Renderer *renderer; // NULL: nothing is drawn
+    Output *output;     // NULL as well
+    const Framing *framing;
+    const RenderItem *items; // one a section
+    GpuTimer *timer;
+    Stats *stats; // may be off
+    int frames_drawn;
+    int frames_repeated; // equal to the frame before: written again, not drawn again
+} Sequence;
+
+// The last frame that is needed, and whether a frame is drawn (--first, --last, --every).
+int sequence_last_frame(const RunParams *run);
+bool sequence_draws_frame(const RunParams *run, int frame);
+
+// How many frames will be drawn.
+int sequence_count_drawn(const RunParams *run);
+
+// Runs all frames. RESULT_INTERRUPTED between two frames once SIGINT or SIGTERM has come.
+Result sequence_run(Sequence *sequence, Error *error);
