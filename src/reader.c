@@ -196,6 +196,16 @@ bool reader_take(Reader *reader, const char *word)
     return true;
 }
 
+bool reader_read_word(Reader *reader, char *word, size_t size)
+{
+    size_t length = measure_word(reader);
+    if (length == 0 || length >= size) return false;
+    memcpy(word, reader->data + reader->at, length);
+    word[length] = 0;
+    reader->at += length;
+    return true;
+}
+
 void reader_expect(Reader *reader, const char *word)
 {
     if (reader_ok(reader) && !reader_take(reader, word)) reader_fail_expected(reader, word);

@@ -69,6 +69,10 @@ bool reader_take(Reader *reader,
                  const char *word); // steps over the next word of this line if it is `word`
 void reader_expect(Reader *reader, const char *word); // ... and fails if it is not
 
+// Copies the next word of this line and steps over it; false, and nothing happens, if there is none
+// or it does not fit into `size` bytes with its zero.
+bool reader_read_word(Reader *reader, char *word, size_t size);
+
 // A whole number 0 .. 2^32 - 1 on this line.
 uint32_t reader_read_count(Reader *reader, const char *what);
 

@@ -1,28 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "strands_write.h"
 
+#include "decimal.h"
 #include "file.h"
 #include "hair_file.h"
 #include "tfx_binary.h"
 
 #include <endian.h>
-#include <locale.h>
-#include <stdlib.h>
 #include <string.h>
 
 // --- Text.
-
-// Appends " " or "" and the shortest of %.6g .. %.9g that reads back as `value`.
-static void put_decimal(FILE *stream, const char *before, float value)
-{
-    char text[32];
-    for (int digits = 6; digits <= 9; digits++) {
-        snprintf(text, sizeof text, "%.*g", digits, (double)value);
-        if (strtof(text, NULL) == value) break;
-    }
-    fputs(before, stream);
-    fputs(text, stream);
-}
 
 static void put_parameters(FILE *stream, const Strands *strands)
 {
@@ -33,38 +20,27 @@ static void put_parameters(FILE *stream, const Strands *strands)
     fprintf(stream, "bothEndsImmovable %d\nmaxNumVerticesInStrand %u\n", strands->both_ends_fixed,
             longest);
     fprintf(stream, "numFollowHairsPerGuideHair %u\n", strands->followers);
-    put_decimal(stream, "maxRadiusAroundGuideHair ", strands->follower_radius);
+    decimal_put(stream, "maxRadiusAroundGuideHair ", strands->follower_radius);
     fputc('\n', stream);
 }
 
-static void put_text(FILE *stream, const Strands *strands)
+static void write_text(FILE *stream, const Strands *strands)
 {
     if (strands->followers || strands->follower_radius != 0.0f || strands->both_ends_fixed)
         put_parameters(stream, strands);
     fprintf(stream, "numStrands %u\nis sorted 1\n", strands->strand_count);
     for (uint32_t s = 0; s < strands->strand_count; s++) {
         fprintf(stream, "strand %u numVerts %u texcoord", s, strands_size(strands, s));
-        put_decimal(stream, " ", strands->strand_uv ? strands->strand_uv[s][0] : 0.0f);
-        put_decimal(stream, " ", strands->strand_uv ? strands->strand_uv[s][1] : 0.0f);
+        decimal_put(stream, " ", strands->strand_uv ? strands->strand_uv[s][0] : 0.0f);
+        decimal_put(stream, " ", strands->strand_uv ? strands->strand_uv[s][1] : 0.0f);
         fputc('\n', stream);
         for (uint32_t v = strands->first[s]; v < strands->first[s + 1]; v++) {
-            put_decimal(stream, "", strands->position[v][0]);
-            put_decimal(stream, " ", strands->position[v][1]);
-            put_decimal(stream, " ", strands->position[v][2]);
+            decimal_put(stream, "", strands->position[v][0]);
+            decimal_put(stream, " ", strands->position[v][1]);
+            decimal_put(stream, " ", strands->position[v][2]);
             fputc('\n', stream);
         }
     }
-}
-
-static Result write_text(FILE *stream, const Strands *strands, Error *error)
-{
-    locale_t plain = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    if (!plain) return error_set(error, RESULT_FAILED, "no memory for a locale");
-    locale_t before = uselocale(plain);
-    put_text(stream, strands);
-    uselocale(before);
-    freelocale(plain);
-    return RESULT_OK;
 }
 
 // --- Binary.
@@ -256,7 +232,8 @@ static Result write_kind(FILE *stream, StrandsKind kind, const Strands *strands,
 {
     switch (kind) {
     case STRANDS_TFX2_TEXT:
-        return write_text(stream, strands, error);
+        write_text(stream, strands);
+        return RESULT_OK;
     case STRANDS_TFX3:
         return write_tfx3(stream, strands, path, error);
     case STRANDS_TFX4:

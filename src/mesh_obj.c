@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: MIT
+// Wavefront OBJ in and out.
+#include "decimal.h"
+#include "file.h"
+#include "mesh.h"
+#include "reader.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// An array that grows by doubling.
+typedef struct Pile {
+    void *data;
+    size_t count, capacity;
+} Pile;
+
+// The file's content while it is read.
+typedef struct Obj {
+    Reader reader;
+    Pile position, normal;          // float[3]
+    Pile triangle, triangle_normal; // uint32_t[3]; normals 1-based, 0: none
+    uint32_t largest[2];            // index used by a face so far: vertex, normal (1-based)
+    uint32_t largest_line[2];       // and where
+} Obj;
+
+// Room for one more record of `size` bytes; NULL after failing.
+static void *pile_add(Reader *reader, Pile *pile, size_t size)
+{
+    if (!reader_ok(reader)) return NULL;
+    if (pile->count == UINT32_MAX - 1) {
+        reader_fail(reader, "more than 32-bit indices hold");
+        return NULL;
+    }
+    if (pile->count == pile->capacity) {
+        size_t capacity = pile->capacity ? 2 * pile->capacity : 1024;
+        void *data = realloc(pile->data, capacity * size);
+        if (!data) {
+            reader_fail_memory(reader);
+            return NULL;
+        }
+        pile->data = data;
+        pile->capacity = capacity;
+    }
+    return (char *)pile->data + size * pile->count++;
+}
+
+static void read_vector(Reader *reader, Pile *pile, const char *what)
+{
+    float vector[3];
+    for (int i = 0; i < 3; i++) {
+        Reader before = *reader;
+        vector[i] = reader_read_number(reader, what);
+        if (!reader_ok(reader) || fabsf(vector[i]) <= 1e18f) continue;
+        before.locale = reader->locale;
+        *reader = before;
+        reader_fail_expected(reader, what);
+    }
+    float *record = pile_add(reader, pile, sizeof vector);
+    if (record) memcpy(record, vector, sizeof vector);
+    reader_skip_line(reader); // w, or colours that some programs put there
+}
+
+// A whole number other than 0 at *text, which is moved behind it; 0 if there is none.
+static int64_t scan_index(const char **text)
+{
+    char *end;
+    if (**text != '-' && !(**text >= '0' && **text <= '9')) return 0;
+    long long value = strtoll(*text, &end, 10);
+    *text = end;
+    return llabs(value) <= UINT32_MAX ? value : 0;
+}
+
+// The 1-based index that `index` means, 0 for a mistake. An index beyond what has been read so far
+// may still become valid: the largest is kept and checked at the end.
+static uint32_t resolve_index(Obj *obj, int64_t index, size_t count, int which)
+{
+    if (index < 0) index += (int64_t)count + 1;
+    if (index <= 0) return 0;
+    if (index > obj->largest[which]) {
+        obj->largest[which] = (uint32_t)index;
+        obj->largest_line[which] = obj->reader.line;
+    }
+    return (uint32_t)index;
+}
+
+// Parses "v", "v/t", "v//n" or "v/t/n"; a missing normal is 0. False for anything else.
+static bool parse_corner(Obj *obj, const char *text, uint32_t corner[2])
+{
+    corner[0] = resolve_index(obj, scan_index(&text), obj->position.count, 0);
+    corner[1] = 0;
+    if (corner[0] == 0) return false;
+    if (*text == '/') {
+        text++;
+        bool textured = *text != '/' && *text != 0;
+        if (textured && scan_index(&text) == 0) return false;
+        if (*text == '/') {
+            text++;
+            corner[1] = resolve_index(obj, scan_index(&text), obj->normal.count, 1);
+            if (corner[1] == 0) return false;
+        }
+    }
+    return *text == 0;
+}
+
+static void read_corner(Obj *obj, uint32_t corner[2])
+{
+    Reader *reader = &obj->reader;
+    Reader before = *reader;
+    char text[64];
+    if (!reader_read_word(reader, text, sizeof text) || !parse_corner(obj, text, corner)) {
+        *reader = before;
+        reader_fail_expected(reader, "a corner v, v/t, v//n or v/t/n with an index in range");
+    }
+}
+
+static void add_triangle(Obj *obj, uint32_t corner[3][2])
+{
+    uint32_t *triangle = pile_add(&obj->reader, &obj->triangle, 3 * sizeof *triangle);
+    uint32_t *normal = pile_add(&obj->reader, &obj->triangle_normal, 3 * sizeof *normal);
+    for (int i = 0; i < 3 && triangle && normal; i++) {
+        triangle[i] = corner[i][0] - 1;
+        normal[i] = corner[i][1];
+    }
+}
+
+static void read_face(Obj *obj)
+{
+    Reader *reader = &obj->reader;
+    uint32_t corner[3][2] = {{0}}; // the first, the one before, this one
+    size_t corners = 0;
+    while (!reader_line_ended(reader) && reader->data[reader->at] != '#') {
+        memcpy(corner[1], corner[2], sizeof corner[1]);
+        read_corner(obj, corner[2]);
+        if (corners == 0) memcpy(corner[0], corner[2], sizeof corner[0]);
+        if (++corners >= 3) add_triangle(obj, corner);
+    }
+    if (corners < 3) reader_fail(reader, "a face of %zu corners: expected at least 3", corners);
+    reader_skip_line(reader);
+}
+
+static void read_statements(Obj *obj)
+{
+    Reader *reader = &obj->reader;
+    while (!reader_ended(reader)) {
+        if (reader_take(reader, "v"))
+            read_vector(reader, &obj->position, "a vertex's coordinate");
+        else if (reader_take(reader, "vn"))
+            read_vector(reader, &obj->normal, "a normal's coordinate");
+        else if (reader_take(reader, "f"))
+            read_face(obj);
+        else
+            reader_skip_line(reader);
+    }
+    if (reader_ok(reader) && obj->triangle.count == 0) reader_fail(reader, "no faces");
+    for (int which = 0; which < 2 && reader_ok(reader); which++) {
+        size_t count = which ? obj->normal.count : obj->position.count;
+        if (obj->largest[which] <= count) continue;
+        reader->line = obj->largest_line[which];
+        reader_fail(reader, "a face uses %s %u, the file has %zu", which ? "normal" : "vertex",
+                    obj->largest[which], count);
+    }
+}
+
+// A direction or position in the file's axes, y up.
+static void turn(float to[3], const float from[3], float unit, bool up_z)
+{
+    to[0] = from[0] * unit;
+    to[1] = (up_z ? from[2] : from[1]) * unit;
+    to[2] = (up_z ? -from[1] : from[2]) * unit;
+}
+
+// Replaces computed normals where the file gives some.
+static bool apply_normals(Mesh *mesh, const Obj *obj, bool up_z)
+{
+    float(*sum)[3] = calloc((size_t)mesh->vertex_count + 1, sizeof *sum);
+    if (!sum) return false;
+    const uint32_t *vertex = obj->triangle.data, *normal = obj->triangle_normal.data;
+    for (size_t i = 0; i < 3 * obj->triangle.count; i++) {
+        if (normal[i] == 0) continue;
+        float turned[3];
+        turn(turned, (const float *)obj->normal.data + 3 * ((size_t)normal[i] - 1), 1.0f, up_z);
+        for (int axis = 0; axis < 3; axis++) sum[vertex[i]][axis] += turned[axis];
+    }
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        const float *n = sum[v];
+        double length = sqrt((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2]);
+        if (!(length > 1e-6) || !isfinite(length)) continue;
+        for (int axis = 0; axis < 3; axis++) mesh->normal[v][axis] = (float)(n[axis] / length);
+    }
+    free(sum);
+    return true;
+}
+
+static Result make_mesh(Mesh *mesh, Obj *obj, float unit, bool up_z)
+{
+    if (!reader_ok(&obj->reader)) return obj->reader.result;
+    uint32_t vertices = (uint32_t)obj->position.count, triangles = (uint32_t)obj->triangle.count;
+    if (mesh_create(mesh, vertices, triangles, NULL) != RESULT_OK)
+        return reader_fail_memory(&obj->reader);
+    const float *position = obj->position.data;
+    for (size_t v = 0; v < vertices; v++) turn(mesh->position[v], position + 3 * v, unit, up_z);
+    memcpy(mesh->triangle, obj->triangle.data, triangles * sizeof *mesh->triangle);
+    mesh_compute_normals(mesh);
+    if (obj->normal.count == 0 || apply_normals(mesh, obj, up_z)) return RESULT_OK;
+    mesh_destroy(mesh);
+    return reader_fail_memory(&obj->reader);
+}
+
+Result mesh_read_obj(Mesh *mesh, const char *path, float unit, bool up_z, Error *error)
+{
+    *mesh = (Mesh){0};
+    Bytes bytes;
+    Result result = bytes_read_file(&bytes, path, error);
+    if (result != RESULT_OK) return result;
+    Obj obj = {.reader = reader_begin_text(path, &bytes, error)};
+    obj.reader.continuation = true;
+    read_statements(&obj);
+    result = make_mesh(mesh, &obj, unit, up_z);
+    reader_end(&obj.reader);
+    free(obj.position.data);
+    free(obj.normal.data);
+    free(obj.triangle.data);
+    free(obj.triangle_normal.data);
+    bytes_destroy(&bytes);
+    return result;
+}
+
+Result mesh_write_obj(const char *path, const Mesh *mesh, Error *error)
+{
+    OutFile file;
+    Result result = outfile_open(&file, path, error);
+    if (result != RESULT_OK) return result;
+    fprintf(file.stream, "# %u vertices, %u triangles; metres, y up\n", mesh->vertex_count,
+            mesh->triangle_count);
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        decimal_put(file.stream, "v ", mesh->position[v][0]);
+        decimal_put(file.stream, " ", mesh->position[v][1]);
+        decimal_put(file.stream, " ", mesh->position[v][2]);
+        fputc('\n', file.stream);
+    }
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        const uint32_t *corner = mesh->triangle[t];
+        fprintf(file.stream, "f %u %u %u\n", corner[0] + 1, corner[1] + 1, corner[2] + 1);
+    }
+    return outfile_commit(&file, error);
+}
