@@ -28,6 +28,39 @@ static const struct {
 };
 enum { REQUEST_COUNT = sizeof REQUESTS / sizeof REQUESTS[0] };
 
+static const char SCENE_RULES[] =
+    "A scene file is a JSON object. Its keys are the flags with '_' for '-': numbers, true and "
+    "false as such, X,Y,Z and WxH as arrays, the rest as strings. Those marked * stand in a "
+    "section "
+    "or, for all sections, beside it. Paths are relative to the file's folder. Values between the "
+    "keys of a track run smoothly (monotone cubic) or, with \"interpolation\": \"linear\", "
+    "straight; "
+    "before the first and after the last key they are constant, and a value that a key leaves out "
+    "runs on between the keys that have it.";
+
+static const struct {
+    const char *key, *example, *help;
+} SCENE_KEYS[] = {
+    {"sections", "[{\"file\": \"hair.tfx\", \"style\": 0.8}, ...]",
+     "the hair files, each with its own values"},
+    {"head",
+     "{\"pivot\": [0, 1.5, 0], \"keys\": [{\"time\": 1, \"translate\": [0, 0, 0.1], "
+     "\"rotate\": [0, 90, 0]}, ...]}",
+     "rigid motion of the roots and the mesh: s, m, and axis times angle in deg about the pivot"},
+    {"gravity, wind", "{\"keys\": [{\"time\": 0, \"value\": [0, 0, 2]}, ...]}",
+     "instead of one array: a force that changes"},
+    {"camera",
+     "{\"keys\": [{\"time\": 0, \"eye\": [0, 1.6, 2], \"target\": [0, 1.5, 0], "
+     "\"fov\": 30}, ...]}",
+     "path of the camera; what no key has is as the flag says"},
+    {"lights",
+     "[{\"type\": \"directional\", \"direction\": [0, -1, 0], \"color\": \"#ffffff\", "
+     "\"intensity\": 1}, ...]",
+     "up to 8 lights; direction is the way the light travels; without this key there are two, with "
+     "an empty list only ambient light"},
+};
+enum { SCENE_KEY_COUNT = sizeof SCENE_KEYS / sizeof SCENE_KEYS[0] };
+
 static const struct {
     const char *status, *meaning;
 } STATUSES[] = {
@@ -151,7 +184,7 @@ static void write_entry(FILE *stream, const char *flag, const char *text)
 
 static void write_param_entry(FILE *stream, const ParamInfo *info)
 {
-    char flag[100], brackets[160], text[TEXT_SIZE];
+    char flag[160], brackets[160], text[TEXT_SIZE];
     write_flag(info, flag, sizeof flag);
     write_brackets(info, brackets, sizeof brackets);
     snprintf(text, sizeof text, "%s%s%s", info->scope == SCOPE_SECTION ? "* " : "", info->help,
@@ -214,7 +247,7 @@ static void write_roff_title(FILE *stream, const char *macro, const char *title)
 
 static void write_roff_param(FILE *stream, const ParamInfo *info)
 {
-    char flag[100], brackets[160], text[TEXT_SIZE];
+    char flag[160], brackets[160], text[TEXT_SIZE];
     write_flag(info, flag, sizeof flag);
     write_brackets(info, brackets, sizeof brackets);
     snprintf(text, sizeof text, "%s%s%s", info->scope == SCOPE_SECTION ? "* " : "", info->help,
@@ -241,6 +274,13 @@ void help_write_man(FILE *stream, const char *version)
     fprintf(stream, ".SS Other\n");
     for (int i = 0; i < REQUEST_COUNT; i++)
         write_roff_entry(stream, REQUESTS[i].flags, REQUESTS[i].help);
+    write_roff_title(stream, "SH", "Scene files");
+    write_roff(stream, SCENE_RULES);
+    for (int i = 0; i < SCENE_KEY_COUNT; i++) {
+        write_roff_entry(stream, SCENE_KEYS[i].key, SCENE_KEYS[i].help);
+        fprintf(stream, ".br\n");
+        write_roff(stream, SCENE_KEYS[i].example);
+    }
     write_roff_title(stream, "SH", "Exit status");
     for (int i = 0; i < STATUS_COUNT; i++)
         write_roff_entry(stream, STATUSES[i].status, STATUSES[i].meaning);
@@ -248,6 +288,15 @@ void help_write_man(FILE *stream, const char *version)
     fprintf(stream, ".nf\n");
     for (int i = 0; i < EXAMPLE_COUNT; i++) write_roff(stream, EXAMPLES[i]);
     fprintf(stream, ".fi\n");
+}
+
+static void write_markdown_scene(FILE *stream)
+{
+    fprintf(stream, "\n**Scene files**\n\n%s\n\n| key | value | what |\n| --- | --- | --- |\n",
+            SCENE_RULES);
+    for (int i = 0; i < SCENE_KEY_COUNT; i++)
+        fprintf(stream, "| `%s` | `%s` | %s |\n", SCENE_KEYS[i].key, SCENE_KEYS[i].example,
+                SCENE_KEYS[i].help);
 }
 
 // A cell's text; '|' would end the cell.
@@ -258,7 +307,7 @@ static void write_cell(FILE *stream, const char *text)
 
 static void write_markdown_row(FILE *stream, const ParamInfo *info)
 {
-    char flag[100], range[100];
+    char flag[160], range[100];
     write_flag(info, flag, sizeof flag);
     write_range(info, range, sizeof range);
     fprintf(stream, "| `");
@@ -279,4 +328,5 @@ void help_write_markdown(FILE *stream)
             if ((int)PARAM_TABLE[i].group == group) write_markdown_row(stream, &PARAM_TABLE[i]);
         }
     }
+    write_markdown_scene(stream);
 }

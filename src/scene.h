@@ -35,7 +35,7 @@ typedef enum SceneRequest {
     REQUEST_VERSION,  // --version
     REQUEST_HELP,     // -h, --help
     REQUEST_MAN,      // --help=man: the man page in roff
-    REQUEST_MARKDOWN, // --help=markdown: README.md's tables of flags
+    REQUEST_MARKDOWN, // --help=markdown: the tables of README.md
 } SceneRequest;
 
 // A zeroed scene is empty and may be destroyed.

@@ -25,17 +25,19 @@ typedef struct Document {
     const json_t *json;
 } Document;
 
-// Reads the bytes as JSON; NULL with a message that has file, line and column.
-static json_t *parse_document(const char *path, const Bytes *bytes, Error *error)
+// Reads the bytes as JSON; the caller owns the reference. Errors have file, line and column.
+static Result parse_document(json_t **json, const char *path, const Bytes *bytes, Error *error)
 {
     json_error_t why;
-    json_t *json = json_loadb((const char *)bytes->data, bytes->size, JSON_REJECT_DUPLICATES, &why);
-    if (json) return json;
+    *json = json_loadb((const char *)bytes->data, bytes->size, JSON_REJECT_DUPLICATES, &why);
+    if (*json) return RESULT_OK;
+    // jansson has no place for what is not the text's fault.
+    if (why.line < 0) return error_set(error, RESULT_FAILED, "%.300s: out of memory", path);
     for (char *at = why.text; *at; at++) {
         if ((unsigned char)*at < ' ') *at = '?';
     }
-    error_set(error, RESULT_BAD_INPUT, "%.300s:%d:%d: %s", path, why.line, why.column, why.text);
-    return NULL;
+    return error_set(error, RESULT_BAD_INPUT, "%.300s:%d:%d: %s", path, why.line, why.column,
+                     why.text);
 }
 
 // The names of all keys that an object of the file may have, ended by NULL; the caller frees the
@@ -177,9 +179,10 @@ Result scene_read_unchecked(Scene *scene, const char *path, Error *error)
     Bytes bytes;
     result = bytes_read_file(&bytes, path, error);
     if (result != RESULT_OK) return result;
-    json_t *json = parse_document(path, &bytes, error);
+    json_t *json;
+    result = parse_document(&json, path, &bytes, error);
     bytes_destroy(&bytes);
-    if (!json) return RESULT_BAD_INPUT;
+    if (result != RESULT_OK) return result;
 
     const char *slash = strrchr(path, '/');
     Document document = {.root = {.key = path}, .json = json};

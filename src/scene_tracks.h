@@ -5,8 +5,8 @@
 #include "json_place.h"
 #include "scene.h"
 
-// Each reads the value of the key that its name has in the scene file; docs in README.md, 'Scene
-// files'. RESULT_BAD_INPUT with the place, RESULT_FAILED when memory is short.
+// Each reads the value of the key that its name has in the scene file; help.c explains them to
+// users. RESULT_BAD_INPUT with the place, RESULT_FAILED when memory is short.
 Result scene_read_head(Scene *scene, const Place *place, const json_t *value, Error *error);
 Result scene_read_camera(Scene *scene, const Place *place, const json_t *value, Error *error);
 Result scene_read_lights(Scene *scene, const Place *place, const json_t *value, Error *error);
