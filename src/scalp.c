@@ -8,6 +8,7 @@
 
 static const double PI = 3.14159265358979323846;
 static const double SPHERE_RADIUS = 0.1;
+static const double NECK_DEPTH = 0.19;
 
 static double dot(const double a[3], const double b[3])
 {
@@ -60,7 +61,7 @@ static double head_radius(const double direction[3])
     static const Ellipsoid parts[] = {
         {{0.0, 0.018, -0.008}, {0.074, 0.090, 0.096}},
         {{0.0, -0.045, 0.030}, {0.056, 0.078, 0.062}},
-        {{0.0, -0.100, -0.022}, {0.050, 0.125, 0.052}},
+        {{0.0, -0.150, -0.022}, {0.054, 0.210, 0.056}},
     };
     static const Bump bumps[] = {
         {{0.0, -0.259, 0.966}, 0.016, 0.13},                                             // nose
@@ -75,7 +76,9 @@ static double head_radius(const double direction[3])
         sum += pow(ellipsoid_radius(&parts[i], direction), 14.0);
     for (size_t i = 0; i < sizeof bumps / sizeof *bumps; i++)
         bump += bump_height(&bumps[i], direction);
-    return pow(sum, 1.0 / 14.0) + bump;
+    double radius = pow(sum, 1.0 / 14.0) + bump;
+    // The neck ends in a plane.
+    return direction[1] < 0.0 ? fmin(radius, NECK_DEPTH / -direction[1]) : radius;
 }
 
 double scalp_radius(ScalpShape shape, const double direction[3])

@@ -10,7 +10,7 @@
 
 typedef enum ScalpShape {
     SCALP_SPHERE, // radius 0.1
-    SCALP_HEAD,   // 0.26 high, 0.15 wide, 0.2 deep, neck included
+    SCALP_HEAD,   // 0.3 high, 0.16 wide, 0.2 deep, the neck included
 } ScalpShape;
 
 // Distance of the surface from the origin in a direction of unit length.

@@ -82,12 +82,14 @@ static void grow_random(Seedling *seedling, Vector *points)
 
 // --- Long hair.
 
-// Where the comb pulls at a place: back and to the sides on the head, then down, a little outwards.
+// Where the comb pulls at a place: back and, from the parting in front, to the sides; then down,
+// spreading a little.
 static void comb(const Seedling *seedling, const Vector at, double share, Vector pull)
 {
-    double fallen = ramp(0.0, 0.45, share);
-    Vector down = {1.2 * at[0], -1.0, 1.2 * at[2] - 0.05};
-    Vector back = {0.9 * tanh(seedling->direction[0] / 0.15), -0.15, -0.75};
+    const double *root = seedling->direction;
+    double fallen = ramp(0.0, 0.3, share), front = ramp(-0.7, 0.5, root[2]);
+    Vector down = {0.6 * at[0], -1.0, 0.6 * at[2] - 0.5 * ramp(0.0, 0.08, at[2])};
+    Vector back = {0.75 * front * tanh(root[0] / 0.12), -0.25, -0.8};
     for (int i = 0; i < 3; i++) pull[i] = (1.0 - fallen) * back[i] + fallen * down[i];
     normalize(pull);
 }
@@ -246,6 +248,7 @@ StrandsRecipe strands_recipe_default(StrandsStyle style)
                             .curl_disorder = 0.2f,
                             .seed = 1};
     if (style == STRANDS_STYLE_CURLS) {
+        recipe.vertices = 32;
         recipe.curl_radius = 0.012f;
         recipe.curl_turns = 3.0f;
     }
