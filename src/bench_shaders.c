@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include "bench_shaders.h"
+#include "pose.h"
+#include "renderer.h"
+#include "simulation.h"
+#include "strands_make.h"
+
+#include <string.h>
+
+static void tell(const char *what, Result result, const Error *why, Result *worst, FILE *stream,
+                 Error *error)
+{
+    fprintf(stream, "%-40s %s\n", what, result == RESULT_OK ? "ok" : why->text);
+    if (result == RESULT_OK || *worst != RESULT_OK) return;
+    *worst = result;
+    *error = *why;
+}
+
+static Result try_program(const char *file, Error *error)
+{
+    GLuint program;
+    Result result = shader_build_compute(&program, file, NULL, error);
+    if (result == RESULT_OK) glDeleteProgram(program);
+    return result;
+}
+
+static Result try_solver(const Gpu *gpu, const SolverType *type, const char *variant,
+                         uint32_t vertices, float style, Error *error)
+{
+    Strands strands = {0};
+    Hair hair = {0};
+    Solver solver = {0};
+    StrandsRecipe recipe = strands_recipe_default(STRANDS_STYLE_RANDOM);
+    recipe.count = 4, recipe.vertices = vertices;
+    const SectionParams params = {
+        .algo = (char *)type->name, .variant = (char *)variant, .style = style};
+    Result result = strands_make(&strands, &recipe, error);
+    if (result == RESULT_OK) result = hair_create(&hair, &strands, 0, &gpu->limits, error);
+    const SolverSetup setup = {gpu, NULL, &hair, &params};
+    if (result == RESULT_OK) result = solver_create(&solver, &setup, error);
+    solver_destroy(&solver);
+    hair_destroy(&hair);
+    strands_destroy(&strands);
+    return result;
+}
+
+static void try_solvers(const Gpu *gpu, Result *worst, FILE *stream, Error *error)
+{
+    static const struct {
+        uint32_t vertices;
+        float style;
+    } shapes[] = {
+        {8, 0.5f}, {8, 0}, {8, 1}, {64, 0.5f}}; // in registers and not, each mix of the style
+    for (const SolverType *const *type = SOLVER_TYPES; *type; ++type)
+        for (int v = 0; v == 0 || (*type)->variants[v]; ++v)
+            for (size_t i = 0; i < sizeof shapes / sizeof *shapes; ++i) {
+                const char *variant = (*type)->variants[v] ? (*type)->variants[v] : "";
+                char what[64];
+                Error why = {{0}};
+                snprintf(what, sizeof what, "%s %s, %u vertices, style %g", (*type)->name, variant,
+                         shapes[i].vertices, (double)shapes[i].style);
+                tell(what,
+                     try_solver(gpu, *type, variant, shapes[i].vertices, shapes[i].style, &why),
+                     &why, worst, stream, error);
+            }
+}
+
+static Result try_renderer(const Gpu *gpu, float opacity, Error *error)
+{
+    Renderer renderer;
+    GpuTimer timer;
+    float corners[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+          normals[3][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+    uint32_t triangle[1][3] = {{0, 1, 2}};
+    const Mesh mesh = {.vertex_count = 3,
+                       .triangle_count = 1,
+                       .position = corners,
+                       .normal = normals,
+                       .triangle = triangle};
+    const RendererOptions options = {.width = 16, .height = 16, .background = {0, 0, 0, opacity}};
+    gpu_timer_create(&timer, false);
+    Result result = renderer_create(&renderer, gpu, &timer, &options, error);
+    if (result != RESULT_OK) return result;
+    result = renderer_set_mesh(&renderer, &mesh, (const float[3]){1, 1, 1}, error);
+    renderer_destroy(&renderer);
+    return result;
+}
+
+Result bench_shaders(const Gpu *gpu, FILE *stream, Error *error)
+{
+    static const char *const checks[] = {"check_step.comp", "check_chain.comp"};
+    Result worst = RESULT_OK;
+    Error why = {{0}};
+    shader_treat_warnings_as_errors(true);
+    for (size_t i = 0; i < sizeof checks / sizeof *checks; ++i)
+        tell(checks[i], try_program(checks[i], &why), &why, &worst, stream, error);
+    try_solvers(gpu, &worst, stream, error);
+    tell("renderer, opaque", try_renderer(gpu, 1, &why), &why, &worst, stream, error);
+    tell("renderer, transparent", try_renderer(gpu, 0, &why), &why, &worst, stream, error);
+    shader_treat_warnings_as_errors(false);
+    return worst;
+}
