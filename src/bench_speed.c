@@ -58,7 +58,7 @@ static Result describe_section(SectionParams *params, const SpeedOptions *option
     if (result == RESULT_OK) result = param_parse(param_find("algo"), params, options->algo, error);
     if (result == RESULT_OK)
         result = param_parse(param_find("variant"), params, options->variant, error);
-    if (options->style >= 0) params->style = options->style;
+    if (options->style >= 0) params->style = (float)options->style;
     return result;
 }
 

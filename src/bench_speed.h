@@ -10,10 +10,10 @@ typedef struct SpeedOptions {
     const char *set;  // a name that strands_make_set knows, or NULL
     const char *file; // a hair file, or NULL; one of both
     const char *algo, *variant;
-    float style; // share of the style in the drawn strand; < 0: the default
-    int steps;   // measured
-    int warm_up; // steps before that, not measured
-    int size[2]; // picture to draw in px; 0: no drawing
+    double style; // share of the style in the drawn strand; < 0: the default
+    int steps;    // measured
+    int warm_up;  // steps before that, not measured
+    int size[2];  // picture to draw in px; 0: no drawing
 } SpeedOptions;
 
 // Of some samples, ms.

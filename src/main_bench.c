@@ -3,8 +3,10 @@
 // all shaders.
 #include "bench_shaders.h"
 #include "bench_speed.h"
+#include "compare.h"
 #include "file.h"
 #include "interrupt.h"
+#include "png.h"
 #include "suggest.h"
 #include "vectors.h"
 
@@ -17,6 +19,7 @@
 typedef struct Arguments {
     SpeedOptions speed;
     GpuOptions gpu;
+    CompareLimits limits;
     const char *vectors, *json;
     char **files; // what is no option
     int file_count;
@@ -114,17 +117,43 @@ static Result run_shaders(const Arguments *arguments, const Gpu *gpu, Error *err
     return bench_shaders(gpu, stdout, error);
 }
 
+static Result run_compare(const Arguments *arguments, const Gpu *gpu, Error *error)
+{
+    (void)gpu;
+    if (arguments->file_count != 2)
+        return error_set(error, RESULT_USAGE, "compare: two PNG files are needed");
+    Image a = {0}, b = {0};
+    CompareResult comparison;
+    Result result = png_read(&a, arguments->files[0], error);
+    if (result == RESULT_OK) result = png_read(&b, arguments->files[1], error);
+    if (result == RESULT_OK)
+        result = compare_images(&comparison, &a, &b, &arguments->limits, error);
+    if (result == RESULT_OK) {
+        compare_print(&comparison, &arguments->limits, stdout);
+        if (!comparison.match)
+            result = error_set(error, RESULT_FAILED, "%s and %s differ", arguments->files[0],
+                               arguments->files[1]);
+    }
+    image_destroy(&a);
+    image_destroy(&b);
+    return result;
+}
+
 static const struct {
     const char *name;
     Command run;
+    bool needs_gpu;
     const char *help;
 } COMMANDS[] = {
-    {"step", run_step, "tractrix steps of --vectors FILE.csv against their exact results"},
-    {"chain", run_chain,
+    {"step", run_step, true, "tractrix steps of --vectors FILE.csv against their exact results"},
+    {"chain", run_chain, true,
      "chain pulls of --vectors FILE.csv (FILE_cases.csv beside it) against theirs"},
-    {"speed", run_speed, "a solver's step on --set NAME or --tfx FILE, and drawing with --size"},
-    {"all", run_all, "a table: all sets, and the hair files named, with every solver"},
-    {"shaders", run_shaders, "compiles every shader variant with warnings as errors"},
+    {"speed", run_speed, true,
+     "a solver's step on --set NAME or --tfx FILE, and drawing with --size"},
+    {"all", run_all, true, "a table: all sets, and the hair files named, with every solver"},
+    {"compare", run_compare, false,
+     "two PNG files by --level and --share; status 1 if they differ"},
+    {"shaders", run_shaders, true, "compiles every shader variant with warnings as errors"},
 };
 enum { COMMAND_COUNT = sizeof COMMANDS / sizeof *COMMANDS };
 
@@ -141,6 +170,8 @@ enum {
     OPT_JSON,
     OPT_DEVICE,
     OPT_SOFTWARE,
+    OPT_LEVEL,
+    OPT_SHARE,
     OPT_OSMESA
 };
 
@@ -163,6 +194,10 @@ static const struct {
      "N  steps before that, 0 to 1000000 (default 20)"},
     {{"size", required_argument, NULL, OPT_SIZE}, "WxH  draw pictures of this size as well (px)"},
     {{"json", required_argument, NULL, OPT_JSON}, "FILE  write the result as JSON"},
+    {{"level", required_argument, NULL, OPT_LEVEL},
+     "N  compare: a pixel may be off by this much, 0 to 255 (default 0)"},
+    {{"share", required_argument, NULL, OPT_SHARE},
+     "F  compare: this share of the pixels may be off by more, 0 to 1 (default 0)"},
     {{"device", required_argument, NULL, OPT_DEVICE}, "N  EGL device (default: the best one)"},
     {{"software", no_argument, NULL, OPT_SOFTWARE}, " use a CPU driver even where there is a GPU"},
     {{"osmesa", no_argument, NULL, OPT_OSMESA}, " use OSMesa instead of EGL"},
@@ -196,6 +231,14 @@ static Result read_int(const char *name, const char *text, long least, long most
     return RESULT_OK;
 }
 
+static Result read_share(const char *name, const char *text, double *value, Error *error)
+{
+    char *end;
+    *value = strtod(text, &end);
+    if (end != text && !*end && *value >= 0 && *value <= 1) return RESULT_OK;
+    return error_set(error, RESULT_USAGE, "--%s: expected 0 to 1, got '%s'", name, text);
+}
+
 static Result read_size(const char *text, int size[2], Error *error)
 {
     int end = 0;
@@ -208,7 +251,6 @@ static Result read_size(const char *text, int size[2], Error *error)
 static Result take_option(Arguments *arguments, int option, const char *text, Error *error)
 {
     SpeedOptions *speed = &arguments->speed;
-    char *end;
     switch (option) {
     case OPT_VECTORS:
         arguments->vectors = text;
@@ -242,10 +284,12 @@ static Result take_option(Arguments *arguments, int option, const char *text, Er
         return read_int("device", text, 0, 1000, &arguments->gpu.device, error);
     case OPT_SIZE:
         return read_size(text, speed->size, error);
+    case OPT_LEVEL:
+        return read_int("level", text, 0, 255, &arguments->limits.level, error);
     case OPT_STYLE:
-        speed->style = strtof(text, &end);
-        if (end != text && !*end && speed->style >= 0 && speed->style <= 1) return RESULT_OK;
-        return error_set(error, RESULT_USAGE, "--style: expected 0 to 1, got '%s'", text);
+        return read_share("style", text, &speed->style, error);
+    case OPT_SHARE:
+        return read_share("share", text, &arguments->limits.share, error);
     default:
         return error_set(error, RESULT_USAGE, "option %d", option);
     }
@@ -284,12 +328,12 @@ static Result read_arguments(Arguments *arguments, int argc, char **argv, bool *
     return RESULT_OK;
 }
 
-static Result find_command(const char *word, Command *command, Error *error)
+static Result find_command(const char *word, size_t *command, Error *error)
 {
     const char *names[COMMAND_COUNT];
     for (size_t i = 0; i < COMMAND_COUNT; ++i) {
         names[i] = COMMANDS[i].name;
-        *command = COMMANDS[i].run;
+        *command = i;
         if (strcmp(names[i], word) == 0) return RESULT_OK;
     }
     return error_set(error, RESULT_USAGE, "no command '%s'; did you mean '%s'?", word,
@@ -299,7 +343,7 @@ static Result find_command(const char *word, Command *command, Error *error)
 static Result run(int argc, char **argv, Error *error)
 {
     Arguments arguments;
-    Command command;
+    size_t command = 0;
     Gpu gpu;
     bool stop = false;
     Result result = read_arguments(&arguments, argc, argv, &stop, error);
@@ -307,10 +351,12 @@ static Result run(int argc, char **argv, Error *error)
     if (arguments.file_count == 0) return error_set(error, RESULT_USAGE, "no command; see --help");
     result = find_command(*arguments.files++, &command, error);
     --arguments.file_count;
-    if (result == RESULT_OK) result = gpu_create(&gpu, &arguments.gpu, error);
+    if (result != RESULT_OK) return result;
+    if (!COMMANDS[command].needs_gpu) return COMMANDS[command].run(&arguments, NULL, error);
+    result = gpu_create(&gpu, &arguments.gpu, error);
     if (result != RESULT_OK) return result;
     fprintf(stderr, "%s, OpenGL %s (%s)\n", gpu.renderer, gpu.version, gpu.path);
-    result = command(&arguments, &gpu, error);
+    result = COMMANDS[command].run(&arguments, &gpu, error);
     gpu_destroy(&gpu);
     return result;
 }
