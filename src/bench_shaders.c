@@ -78,7 +78,7 @@ static Result try_renderer(const Gpu *gpu, float opacity, Error *error)
                        .normal = normals,
                        .triangle = triangle};
     const RendererOptions options = {.width = 16, .height = 16, .background = {0, 0, 0, opacity}};
-    gpu_timer_create(&timer, false);
+    gpu_timer_create(&timer, false, true);
     Result result = renderer_create(&renderer, gpu, &timer, &options, error);
     if (result != RESULT_OK) return result;
     result = renderer_set_mesh(&renderer, &mesh, (const float[3]){1, 1, 1}, error);

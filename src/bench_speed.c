@@ -66,7 +66,7 @@ static Result bench_create(Bench *bench, const Gpu *gpu, const SpeedOptions *opt
 {
     SectionParams params;
     *bench = (Bench){0};
-    gpu_timer_create(&bench->timer, false);
+    gpu_timer_create(&bench->timer, false, true);
     Result result = scene_create(&bench->scene, error);
     if (result == RESULT_OK) result = describe_section(&params, options, error);
     if (result != RESULT_OK) return result;

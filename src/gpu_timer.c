@@ -3,10 +3,11 @@
 
 #include <assert.h>
 #include <string.h>
+#include <time.h>
 
-void gpu_timer_create(GpuTimer *timer, bool enabled)
+void gpu_timer_create(GpuTimer *timer, bool enabled, bool software)
 {
-    *timer = (GpuTimer){.enabled = enabled, .current = -1};
+    *timer = (GpuTimer){.enabled = enabled, .by_clock = software, .current = -1};
 }
 
 void gpu_timer_destroy(GpuTimer *timer)
@@ -29,8 +30,14 @@ static void read_oldest(TimerLabel *label)
 {
     GLuint64 ns = 0;
     glGetQueryObjectui64v(label->query[label->read++ % TIMER_RING], GL_QUERY_RESULT, &ns);
-    label->last_ms = (double)ns * 1e-6;
-    label->total_ms += label->last_ms;
+    label->total_ms += (double)ns * 1e-6;
+}
+
+static double clock_ms(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
 }
 
 void gpu_timer_begin(GpuTimer *timer, const char *name)
@@ -39,14 +46,27 @@ void gpu_timer_begin(GpuTimer *timer, const char *name)
     assert(timer->current < 0);
     timer->current = find_label(timer, name);
     TimerLabel *label = &timer->labels[timer->current];
-    if (label->begun - label->read == TIMER_RING) read_oldest(label);
-    glBeginQuery(GL_TIME_ELAPSED, label->query[label->begun++ % TIMER_RING]);
+    if (timer->by_clock) {
+        glFinish();
+        timer->begun_ms = clock_ms();
+    } else {
+        if (label->begun - label->read == TIMER_RING) read_oldest(label);
+        glBeginQuery(GL_TIME_ELAPSED, label->query[label->begun % TIMER_RING]);
+    }
+    ++label->begun;
 }
 
 void gpu_timer_end(GpuTimer *timer)
 {
     if (!timer->enabled) return;
-    glEndQuery(GL_TIME_ELAPSED);
+    TimerLabel *label = &timer->labels[timer->current];
+    if (timer->by_clock) {
+        glFinish();
+        label->total_ms += clock_ms() - timer->begun_ms;
+        ++label->read;
+    } else {
+        glEndQuery(GL_TIME_ELAPSED);
+    }
     timer->current = -1;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Times of GPU work by label, from GL timer queries.
+// Times of GPU work by label: from GL timer queries; on a CPU driver, whose queries do not see
+// compute shaders (llvmpipe 22.3), from the clock with the driver idle before and after.
 #pragma once
 
 #include "error.h"
@@ -15,18 +16,20 @@ typedef struct TimerLabel {
     const char *name; // not owned: a string constant, the same word as in statistics and benchmarks
     GLuint query[TIMER_RING];
     unsigned begun, read; // spans begun and spans whose result was read
-    double total_ms, last_ms;
+    double total_ms;
 } TimerLabel;
 
 typedef struct GpuTimer {
-    bool enabled; // off: begin and end cost nothing
+    bool enabled;  // off: begin and end cost nothing
+    bool by_clock; // a CPU driver
+    double begun_ms;
     TimerLabel labels[TIMER_MAX_LABELS];
     int count;
     int current; // label that is being measured, -1: none
 } GpuTimer;
 
-// `enabled` is false where nobody asks for times.
-void gpu_timer_create(GpuTimer *timer, bool enabled);
+// `enabled` is false where nobody asks for times; `software` as Gpu has it.
+void gpu_timer_create(GpuTimer *timer, bool enabled, bool software);
 void gpu_timer_destroy(GpuTimer *timer);
 
 // Measures the GL commands between begin and end under `name`. Spans do not nest.

@@ -70,7 +70,7 @@ static Result open_gpu(Run *run, Error *error)
     Result result = gpu_create(&run->gpu, &options, error);
     if (result != RESULT_OK) return result;
     run->has_gpu = true;
-    gpu_timer_create(&run->timer, *params->stats != 0);
+    gpu_timer_create(&run->timer, *params->stats != 0, run->gpu.software);
     if (!params->quiet)
         fprintf(stderr, "%s, OpenGL %s (%s)\n", run->gpu.renderer, run->gpu.version, run->gpu.path);
     return RESULT_OK;

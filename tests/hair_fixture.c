@@ -32,7 +32,7 @@ void fixture_create_strands(HairFixture *fixture, const Strands *strands, const 
     fixture->params.variant = strdup(variant);
     fixture->params.style = style;
     fixture->params.drag = drag;
-    gpu_timer_create(&fixture->timer, false);
+    gpu_timer_create(&fixture->timer, false, true);
     if (hair_create(&fixture->hair, strands, 0, &fixture_gpu()->limits, &error) != RESULT_OK)
         fail_msg("%s", error.text);
     const SolverSetup setup = {fixture_gpu(), &fixture->timer, &fixture->hair, &fixture->params};
