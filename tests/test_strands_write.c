@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+#include "random.h"
+#include "strands_make.h"
+#include "strands_read.h"
+#include "strands_write.h"
+#include "temporary.h"
+
+#include <locale.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static const StrandsReadOptions METRES = {.unit = 1.0f};
+
+// Awkward numbers: any bits that are a float of ordinary size.
+static Strands make_awkward(void)
+{
+    StrandsRecipe recipe = strands_recipe_default(STRANDS_STYLE_CURLS);
+    recipe.count = 40;
+    recipe.vertices = 9;
+    Strands strands;
+    assert_int_equal(strands_make(&strands, &recipe, NULL), RESULT_OK);
+    Random random = random_create(1, 2);
+    for (uint32_t v = 0; v < strands.vertex_count; v++)
+        for (int i = 0; i < 3; i++)
+            strands.position[v][i] *= (float)(1.0 + 1e-3 * random_real(&random));
+    strands.position[0][0] = -0.0f;
+    return strands;
+}
+
+static Strands read_back(void **state, StrandsKind kind, const Strands *strands,
+                         const StrandsReadOptions *options)
+{
+    Error error = {""};
+    Strands back;
+    const char *path = temporary_path(state, "hair");
+    if (strands_write(path, kind, strands, &error) != RESULT_OK) fail_msg("%s", error.text);
+    if (strands_read(&back, path, options, NULL, &error) != RESULT_OK) fail_msg("%s", error.text);
+    assert_int_equal(back.strand_count, strands->strand_count);
+    assert_memory_equal(back.first, strands->first, 4 * (size_t)(strands->strand_count + 1));
+    return back;
+}
+
+static void reading_back_gives_the_same_bits(void **state)
+{
+    static const StrandsKind kinds[] = {STRANDS_TFX2_TEXT, STRANDS_TFX3, STRANDS_TFX4,
+                                        STRANDS_HAIR};
+    Strands strands = make_awkward();
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        Strands back = read_back(state, kinds[i], &strands, &METRES);
+        assert_memory_equal(back.position, strands.position, 12 * (size_t)strands.vertex_count);
+        if (kinds[i] != STRANDS_HAIR)
+            assert_memory_equal(back.strand_uv, strands.strand_uv,
+                                8 * (size_t)strands.strand_count);
+        strands_destroy(&back);
+    }
+    strands_destroy(&strands);
+}
+
+static void what_was_written_in_metres_is_guessed_to_be_metres(void **state)
+{
+    static const StrandsKind kinds[] = {STRANDS_TFX2_TEXT, STRANDS_TFX3, STRANDS_TFX4,
+                                        STRANDS_HAIR};
+    Strands strands = make_awkward();
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        Strands back = read_back(state, kinds[i], &strands, NULL);
+        assert_memory_equal(back.position, strands.position, 12 * (size_t)strands.vertex_count);
+        strands_destroy(&back);
+    }
+    strands_destroy(&strands);
+}
+
+static void followers_and_fixed_ends_survive_where_the_kind_holds_them(void **state)
+{
+    Strands strands = make_awkward();
+    strands.followers = 3;
+    strands.both_ends_fixed = true;
+    strands.follower_radius = 0.0123f;
+    Strands text = read_back(state, STRANDS_TFX2_TEXT, &strands, &METRES);
+    assert_int_equal(text.followers, 3);
+    assert_true(text.both_ends_fixed);
+    assert_true(text.follower_radius == 0.0123f);
+    Strands tfx3 = read_back(state, STRANDS_TFX3, &strands, &METRES);
+    assert_int_equal(tfx3.followers, 3);
+    assert_true(tfx3.both_ends_fixed);
+    Strands tfx4 = read_back(state, STRANDS_TFX4, &strands, &METRES);
+    assert_true(tfx4.mobility[0] == 0.0f && tfx4.mobility[1] == 1.0f && tfx4.mobility[8] == 0.0f);
+    strands_destroy(&text);
+    strands_destroy(&tfx3);
+    strands_destroy(&tfx4);
+    strands_destroy(&strands);
+}
+
+// Strand 0 of 2 vertices, strand 1 of 3.
+static Strands make_uneven(void)
+{
+    Strands strands;
+    assert_int_equal(strands_create(&strands, 2, 5, NULL), RESULT_OK);
+    strands.first[1] = 2;
+    strands.first[2] = 5;
+    for (uint32_t v = 0; v < 5; v++) strands.position[v][1] = 0.1f * (float)v;
+    return strands;
+}
+
+static void uneven_strands_go_into_text_and_hair_only(void **state)
+{
+    Strands strands = make_uneven();
+    Error error;
+    for (StrandsKind kind = STRANDS_TFX3; kind <= STRANDS_TFX4; kind++) {
+        assert_int_equal(strands_write(temporary_path(state, "x"), kind, &strands, &error),
+                         RESULT_FAILED);
+        assert_non_null(strstr(error.text, "strand 1 has 3 vertices, strand 0 has 2"));
+        assert_false(temporary_has(state, "x"));
+    }
+    Strands text = read_back(state, STRANDS_TFX2_TEXT, &strands, &METRES);
+    Strands hair = read_back(state, STRANDS_HAIR, &strands, &METRES);
+    assert_memory_equal(hair.position, strands.position, 12 * 5);
+    strands_destroy(&text);
+    strands_destroy(&hair);
+    strands_destroy(&strands);
+}
+
+static void other_kinds_can_only_be_read(void **state)
+{
+    Strands strands = make_uneven();
+    Error error;
+    const char *path = temporary_path(state, "x");
+    assert_int_equal(strands_write(path, STRANDS_SALON_BIN, &strands, &error), RESULT_FAILED);
+    assert_non_null(strstr(error.text, "can only be read"));
+    assert_int_equal(temporary_count_files(((Temporary *)*state)->folder), 0);
+    strands_destroy(&strands);
+}
+
+static void text_does_not_depend_on_the_locale(void **state)
+{
+    static const char *const names[] = {"de_DE.UTF-8", "fr_FR.UTF-8", "ru_RU.UTF-8"};
+    const char *found = NULL;
+    for (int i = 0; i < 3 && !found; i++) found = setlocale(LC_NUMERIC, names[i]);
+    if (!found) {
+        print_message("no locale with a decimal comma is installed: skipped\n");
+        skip();
+    }
+    Strands strands = make_awkward();
+    Strands back = read_back(state, STRANDS_TFX2_TEXT, &strands, &METRES);
+    setlocale(LC_NUMERIC, "C");
+    assert_memory_equal(back.position, strands.position, 12 * (size_t)strands.vertex_count);
+    strands_destroy(&back);
+    strands_destroy(&strands);
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, temporary_create, temporary_destroy)
+    const struct CMUnitTest tests[] = {
+        TEST(reading_back_gives_the_same_bits),
+        TEST(what_was_written_in_metres_is_guessed_to_be_metres),
+        TEST(followers_and_fixed_ends_survive_where_the_kind_holds_them),
+        TEST(uneven_strands_go_into_text_and_hair_only),
+        TEST(other_kinds_can_only_be_read),
+        TEST(text_does_not_depend_on_the_locale),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
