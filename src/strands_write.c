@@ -218,8 +218,10 @@ static Result write_hair(FILE *stream, const Strands *strands, const char *path,
     }
     put_floats(stream, strands->position[0], 3 * (size_t)strands->vertex_count);
     put_array(stream, strands->vertex_thickness, strands->vertex_count);
-    for (uint32_t v = 0; transparent && v < strands->vertex_count; v++)
-        put_floats(stream, &(float){1.0f - strands->color[v][3]}, 1);
+    for (uint32_t v = 0; transparent && v < strands->vertex_count; v++) {
+        float transparency = 1.0f - strands->color[v][3];
+        put_floats(stream, &transparency, 1);
+    }
     for (uint32_t v = 0; strands->color && v < strands->vertex_count; v++)
         put_floats(stream, strands->color[v], 3);
     return RESULT_OK;
