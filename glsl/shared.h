@@ -6,6 +6,7 @@
 #include <cglm/cglm.h>
 #include <stdint.h>
 typedef uint32_t uint;
+typedef uint uvec4[4] __attribute__((aligned(16)));
 #define UNIFORM_BLOCK(type, instance, at) typedef struct type
 #define END_BLOCK(type, instance)         type
 #else

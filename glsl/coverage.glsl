@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// The exact share of a square pixel that a straight ribbon covers.
+
+// Share of the pixel on the positive side of a line at the signed distance t from its middle. `a`
+// >= `b` > 0 are the sides of the pixel as the distance sees them, that is the absolute components
+// of its gradient: the pixel's profile across the line is a box of width a spread by a box of width
+// b, a trapezoid. `scale` is 1 / (2 a b).
+float share_above(float t, float a, float b, float scale)
+{
+    float x = abs(t);
+    float ramp = clamp(0.5 * (a + b) - x, 0.0, b);
+    float share = scale * (ramp * ramp + 2.0 * b * max(0.5 * (a - b) - x, 0.0));
+    return t < 0.0 ? 1.0 - share : share;
+}
+
+// Coverage of the pixel by |across| < half_width, with the gradient of `across` by pixel.
+float ribbon_coverage(float across, float half_width, vec2 gradient)
+{
+    gradient = abs(gradient);
+    float a = max(max(gradient.x, gradient.y), 1e-3), b = clamp(min(gradient.x, gradient.y), 1e-3 * a, a);
+    float scale = 0.5 / (a * b);
+    return share_above(across - half_width, a, b, scale) - share_above(across + half_width, a, b, scale);
+}

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// What drawing one picture is given: camera, lights, the band of rows that is being drawn.
+// Pixels count from the picture's top left corner; targets keep its top row first.
+#include "shared.h"
+#ifdef __STDC__
+#pragma once
+#endif
+
+#define MAX_LIGHTS 8
+
+// Uniform blocks: BIND_DRAW, and BIND_MATERIAL (material.h).
+// Shader storage. Those of shared.h are other passes'; there are no more than eight.
+#define BIND_COUNTERS_OUT 0 // uint a shard, 16 apart
+#define BIND_INDICES_OUT  1 // uint, triangles
+#define BIND_COMMAND_OUT  2 // COMMAND_WORDS uint
+#define BIND_EDGES_OUT    3 // vec4 a particle, see hair.vert
+#define BIND_SHADES_OUT   4 // uvec4 a particle
+#define BIND_EXTENT_OUT   5 // 4 int: screen box of the hair, px
+#define BIND_NODES_OUT    6 // uvec4 a fragment, see abuffer.glsl
+#define BIND_HEADS_OUT    7 // uint a pixel
+
+// Textures, after those of shared.h.
+#define BIND_EDGES  4
+#define BIND_SHADES 5
+#define BIND_EXTENT 6
+#define BIND_NODES  7
+#define BIND_HEADS  8
+#define BIND_BASE   9 // what stands behind the hair: linear, premultiplied
+
+// The A-buffer's pool is dealt out in shards, each with a counter of its own: pixels of different
+// 8x8 blocks then rarely wait for each other's atomics.
+#define SHARD_COUNT 64
+#define SHARD_RUN   16 // consecutive nodes of one shard
+
+// Words of the command buffer: what glDrawElementsIndirect reads, and what was left out.
+#define COMMAND_INDEX_COUNT    0
+#define COMMAND_INSTANCE_COUNT 1
+#define COMMAND_CULLED         5 // strands
+#define COMMAND_WORDS          6
+
+UNIFORM_BLOCK(DrawParams, draw_params, BIND_DRAW)
+{
+    mat4 clip_from_world;             // y down
+    vec4 eye;                         // xyz, m
+    vec4 light_direction[MAX_LIGHTS]; // xyz: unit, towards the light
+    vec4 light_color[MAX_LIGHTS];     // linear RGB times intensity
+    vec4 background;                  // linear RGB, premultiplied; opacity
+    vec4 head_rotation;               // quaternion x y z w
+    vec4 head_translation;
+    vec4 mesh_color;     // linear RGB; w: ambient share
+    float width, height; // of the picture, px
+    float focal;         // px: size on the screen of one metre at a distance of one
+    float near_distance; // m
+    vec4 depth;          // clip z = x * w + y
+    uvec4 band;          // picture's width, first row, end row, pool's nodes in a shard
+    int light_count;
+    uint seed;
+}
+END_BLOCK(DrawParams, draw_params);

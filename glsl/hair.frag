@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// A ribbon's fragment: its coverage, and a node in the A-buffer. Behind the mesh nothing is stored.
+#include "draw.h"
+#include "coverage.glsl"
+#include "abuffer.glsl"
+
+layout(early_fragment_tests) in;
+layout(std430, binding = BIND_NODES_OUT) writeonly buffer Nodes { uvec4 nodes[]; };
+layout(std430, binding = BIND_HEADS_OUT) buffer Heads { uint heads[]; };
+layout(std430, binding = BIND_COUNTERS_OUT) buffer Counters { uint counters[]; };
+
+noperspective in float across;
+noperspective in float half_width;
+noperspective in vec4 color;
+
+const float LEAST_ALPHA = 1.0 / 4096.0;
+
+void main()
+{
+    float alpha = color.a * ribbon_coverage(across, half_width, vec2(dFdx(across), dFdy(across)));
+    if (alpha < LEAST_ALPHA) return;
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    uvec4 band = draw_params.band; // read once: a uniform costs a load wherever it is named
+    uint shard = uint((pixel.x >> 3 & 7) | (pixel.y & 56));
+    uint slot = atomicAdd(counters[shard * SHARD_RUN], 1u); // counts on past the end: so the pool learns its size
+    if (slot >= band.w) return;
+    uint index = (slot / SHARD_RUN * SHARD_COUNT + shard) * SHARD_RUN + slot % SHARD_RUN;
+    int at = (pixel.y - int(band.y)) * int(band.x) + pixel.x;
+    uint next = atomicExchange(heads[at], index + 1u);
+    nodes[index] = uvec4(next, abuffer_pack(gl_FragCoord.w, color.rgb, alpha));
+}

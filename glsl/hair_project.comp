@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+// Projects and shades every particle once, a strand a lane, and leaves out what cannot be seen:
+// strands off the screen, and particles where the ribbon is straight. Vertices are worked on one by
+// one and, by CPU drivers, on one thread: fewer of them is what makes drawing fast.
+//
+// On the screen a ribbon's edges run at the half-width h beside its middle line; here both are
+// pushed out to h + PAD, so that every pixel that the ribbon touches gets a fragment. At a joint
+// the edges of both segments meet on the mitre, at m (h + PAD) with m = (n0 + n1) / (1 + n0.n1), n
+// the segments' unit normals: no gap, no double coverage, and the distance to either middle line
+// is h + PAD exactly, so that interpolating it is exact, too. Where a strand folds back, m is kept
+// from growing.
+#include "draw.h"
+#include "material.h"
+#include "hash.glsl"
+#include "shade_kajiya.glsl"
+
+layout(local_size_x = GROUP_SIZE) in;
+layout(binding = BIND_POSITION) uniform samplerBuffer position;
+layout(binding = BIND_STRAND_ID) uniform usamplerBuffer strand_id;
+layout(std430, binding = BIND_EDGES_OUT) writeonly buffer Edges { vec4 edges[]; };
+layout(std430, binding = BIND_SHADES_OUT) writeonly buffer Shades { uvec4 shades[]; };
+layout(std430, binding = BIND_INDICES_OUT) writeonly buffer Indices { uint indices[]; };
+layout(std430, binding = BIND_COMMAND_OUT) buffer Command { uint command[]; };
+layout(std430, binding = BIND_EXTENT_OUT) buffer Extent { int extent[4]; }; // x, y lowest, highest
+
+const float PAD = 0.71;        // px; the corner of a pixel is sqrt(1/2) from its middle
+const float LEAST_COSINE = 0.25; // of the joints' 1 + n0.n1
+const float MITRE_MAX = 2.9;   // bound of |m|: sqrt(2 x) / max(x, LEAST_COSINE) over all x
+
+// Where the strand is drawn instead when `x` lies behind the near plane: on that plane, towards the
+// neighbour that is in sight. `w` is the distance before the eye.
+vec4 clip_near(vec4 x, vec4 before, vec4 after)
+{
+    float least = draw_params.near_distance;
+    vec4 other = after.w >= least ? after : before;
+    float share = (least - x.w) / max(other.w - x.w, 1e-20);
+    return x.w >= least || other.w < least ? x : vec4(mix(x.xyz, other.xyz, share), least);
+}
+
+float distance_before_eye(vec3 x)
+{
+    mat4 m = draw_params.clip_from_world;
+    return m[0].w * x.x + m[1].w * x.y + m[2].w * x.z + m[3].w;
+}
+
+vec4 fetch_particle(int at)
+{
+    vec3 x = texelFetch(position, at).xyz;
+    return vec4(x, distance_before_eye(x));
+}
+
+vec4 project(vec4 x, float radius)
+{
+    vec4 clip = draw_params.clip_from_world * vec4(x.xyz, 1.0);
+    float inverse = 1.0 / max(x.w, 1e-20);
+    vec2 size = 0.5 * vec2(draw_params.width, draw_params.height);
+    vec2 px = clamp(clip.xy * inverse, -1e4, 1e4) * size + size;
+    return vec4(px, x.w >= 0.999 * draw_params.near_distance ? inverse : 0.0, draw_params.focal * radius * inverse);
+}
+
+vec3 unit(vec3 v)
+{
+    float square = dot(v, v);
+    return square > 0.0 ? v * inversesqrt(max(square, 1e-36)) : vec3(0.0, 1.0, 0.0);
+}
+
+// A particle on the screen.
+struct Particle {
+    vec4 at; // x, y (px), 1/w (0: not in sight), half-width (px)
+    vec3 color;
+};
+
+// Unit direction from a to b on the screen, 0 where there is none.
+vec2 direction(Particle a, Particle b)
+{
+    vec2 way = b.at.xy - a.at.xy;
+    float square = dot(way, way);
+    return square > 1e-12 && a.at.z > 0.0 && b.at.z > 0.0 ? way * inversesqrt(square) : vec2(0.0);
+}
+
+// Stores the particle for the vertex shader, d0 and d1 the directions of the ribbon before and after it.
+void store(int index, Particle p, vec2 d0, vec2 d1)
+{
+    if (d0 == vec2(0.0)) d0 = d1;
+    if (d1 == vec2(0.0)) d1 = d0;
+    vec2 normal = vec2(-d0.y - d1.y, d0.x + d1.x);
+    // A cylinder's outline seen off the optical axis is wider: where its tangent planes through the
+    // eye cut the screen at the distance q from the axis, by sqrt(1 + (q/focal)^2).
+    vec2 size = vec2(draw_params.width, draw_params.height);
+    float q = dot(normal, p.at.xy - 0.5 * size) * inversesqrt(max(dot(normal, normal), 1e-12)) / draw_params.focal;
+    float half_width = p.at.w * sqrt(1.0 + q * q);
+    vec2 edge = normal * ((half_width + PAD) / max(1.0 + dot(d0, d1), LEAST_COSINE));
+    edges[index] = vec4(p.at.xy * (2.0 / size) - 1.0, edge * (2.0 / size));
+    shades[index] = uvec4(floatBitsToUint(p.at.z), floatBitsToUint(half_width), packHalf2x16(p.color.rg),
+                          packHalf2x16(vec2(p.color.b, material.opacity)));
+}
+
+// How far `p` is from what stands in its place if the ribbon runs straight from a to b: 1 is as
+// much as may be. Positions within STRAIGHT px, depth and half-width by share, colours so that it
+// cannot be seen.
+const float STRAIGHT = 0.05;
+
+float bend(Particle a, Particle p, Particle b)
+{
+    vec2 chord = b.at.xy - a.at.xy, arm = p.at.xy - a.at.xy;
+    float t = clamp(dot(arm, chord) / max(dot(chord, chord), 1e-12), 0.0, 1.0);
+    vec4 off = abs(p.at - mix(a.at, b.at, t)) / vec4(STRAIGHT, STRAIGHT, 0.001 * p.at.z + 1e-20, 0.05 * p.at.w);
+    vec3 shift = abs(p.color - mix(a.color, b.color, t)) / (0.02 * p.color + 0.002);
+    return max(max(max(off.x, off.y), max(off.z, off.w)), max(max(shift.r, shift.g), shift.b));
+}
+
+// Two triangles for each of the `count` - 1 segments from the particle `first` on.
+void emit_segments(int first, int count)
+{
+    int at = int(atomicAdd(command[COMMAND_INDEX_COUNT], uint(6 * (count - 1))));
+    for (int k = 0; k < count - 1; ++k, at += 6) {
+        uint v = uint(2 * (first + k));
+        indices[at] = v;
+        indices[at + 1] = v + 1u;
+        indices[at + 2] = v + 2u;
+        indices[at + 3] = v + 2u;
+        indices[at + 4] = v + 1u;
+        indices[at + 5] = v + 3u;
+    }
+}
+
+void main()
+{
+    int width = int(material.strand_count), n = int(material.vertex_count);
+    int row = int(gl_GlobalInvocationID.x), s = int(material.first_strand) + row;
+    if (row >= int(material.drawn_strands)) return;
+    int first = row * n; // place of the root
+    vec3 base = material.color.rgb *
+                (1.0 + material.color_variation * hash_signed(texelFetch(strand_id, s).x ^ draw_params.seed));
+    float thinning = (1.0 - material.tip_ratio) / float(n - 1);
+    vec4 here = fetch_particle(s), before = here;
+    vec4 box = vec4(1e6);
+    Particle kept, last; // the last one that was not left out; the one before this one
+    vec2 way = vec2(0.0); // the ribbon's direction before `kept`
+    float bent = 0.0;     // of all that was left out since `kept`
+    int count = 0;
+    for (int j = 0; j < n; ++j) {
+        vec4 after = fetch_particle(min(j + 1, n - 1) * width + s);
+        vec4 x = clip_near(here, before, after);
+        Particle p;
+        p.at = project(x, max(material.radius * (1.0 - thinning * float(j)), 1e-9));
+        p.color = shade_kajiya(base, unit(after.xyz - before.xyz), unit(draw_params.eye.xyz - x.xyz));
+        float reach = MITRE_MAX * (p.at.w + 1.0);
+        if (p.at.z > 0.0) box = min(box, vec4(p.at.xy, -p.at.xy) - reach);
+        if (j > 1) bent += bend(kept, last, p);
+        if (j == 1 || bent > 1.0) {
+            vec2 next = direction(kept, last);
+            if (j > 1) store(first + count++, kept, way, next);
+            way = next;
+            kept = last;
+            bent = 0.0;
+        }
+        last = p;
+        before = here;
+        here = after;
+    }
+    vec2 next = direction(kept, last);
+    store(first + count++, kept, way, next);
+    store(first + count++, last, next, next);
+
+    ivec4 whole = ivec4(floor(clamp(box, -1e6, 1e6)));
+    bool seen = whole.x < int(draw_params.width) && -whole.z > 0 && whole.y < int(draw_params.band.z) &&
+                -whole.w > int(draw_params.band.y);
+    if (!seen) {
+        atomicAdd(command[COMMAND_CULLED], 1u);
+        return;
+    }
+    emit_segments(first, count);
+    atomicMin(extent[0], whole.x);
+    atomicMin(extent[1], whole.y);
+    atomicMax(extent[2], -whole.z);
+    atomicMax(extent[3], -whole.w);
+}

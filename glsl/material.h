@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// How the hair of one section looks, and the size of the batch that is being drawn.
+#include "shared.h"
+#ifdef __STDC__
+#pragma once
+#endif
+
+UNIFORM_BLOCK(MaterialParams, material, BIND_MATERIAL)
+{
+    vec4 color;            // linear RGB
+    float color_variation; // brightness of strands varies by this share either way
+    float radius;          // m, at the root
+    float tip_ratio;       // radius at the tip over that at the root
+    float opacity;
+    float ambient, diffuse;       // Ka, Kd
+    float specular1, exponent1;   // first highlight, white
+    float specular2, exponent2;   // second highlight, tinted
+    float shift1_cos, shift1_sin; // of the highlights' turn about the fibre: towards the root
+    float shift2_cos, shift2_sin; // towards the tip
+    uint strand_count;            // of the batch
+    uint vertex_count;
+    uint first_strand, drawn_strands; // of the part of the batch that is being drawn
+}
+END_BLOCK(MaterialParams, material);

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// Lambert's plain matt surface, in linear light. Surfaces seen from behind are lit as from in front.
+#include "draw.h"
+
+in vec3 world_position;
+in vec3 world_normal;
+layout(location = 0) out vec4 color; // linear
+
+void main()
+{
+    vec3 n = world_normal * inversesqrt(max(dot(world_normal, world_normal), 1e-20));
+    if (dot(n, draw_params.eye.xyz - world_position) < 0.0) n = -n;
+    vec3 light = vec3(draw_params.mesh_color.a);
+    for (int i = 0; i < draw_params.light_count; ++i)
+        light += draw_params.light_color[i].rgb * max(dot(n, draw_params.light_direction[i].xyz), 0.0);
+    color = vec4(draw_params.mesh_color.rgb * light, 1.0);
+}

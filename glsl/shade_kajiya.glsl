@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// Kajiya and Kay's fibre (SIGGRAPH 1989) with the two highlights of Scheuermann (2004), as TressFX
+// has them (needs draw.h, material.h).
+//
+// Light that comes in at the angle t to the fibre leaves on a cone about it. Scales on the fibre
+// tilt the first reflection's cone towards the root; light that has gone through the fibre and
+// been reflected inside leaves on a cone tilted towards the tip, coloured on its way.
+
+float sine_of(float cosine)
+{
+    return sqrt(max(1.0 - cosine * cosine, 0.0));
+}
+
+// How near the eye is to the cone that lies mirrored to the light and turned by a small angle:
+// max(0, cos of the angle between).
+float cone_highlight(float light, float light_sine, float eye, float eye_sine, float turn_cos, float turn_sin)
+{
+    float cone = -light * turn_cos - light_sine * turn_sin;
+    float cone_sine = light_sine * turn_cos - light * turn_sin;
+    return max(cone * eye + cone_sine * eye_sine, 0.0);
+}
+
+// Linear RGB of a fibre of colour `base` along the unit tangent (root to tip), seen along the unit
+// vector to the eye.
+vec3 shade_kajiya(vec3 base, vec3 tangent, vec3 to_eye)
+{
+    float eye = clamp(dot(tangent, to_eye), -1.0, 1.0), eye_sine = sine_of(eye);
+    vec3 color = material.ambient * base;
+    for (int i = 0; i < draw_params.light_count; ++i) {
+        float light = clamp(dot(tangent, draw_params.light_direction[i].xyz), -1.0, 1.0);
+        float light_sine = sine_of(light);
+        float first = cone_highlight(light, light_sine, eye, eye_sine, material.shift1_cos, material.shift1_sin);
+        float second = cone_highlight(light, light_sine, eye, eye_sine, material.shift2_cos, material.shift2_sin);
+        float white = material.specular1 * pow(first, material.exponent1);
+        float tinted = material.diffuse * light_sine + material.specular2 * pow(second, material.exponent2);
+        color += draw_params.light_color[i].rgb * (white + tinted * base);
+    }
+    return color;
+}

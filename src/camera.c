@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "camera.h"
+
+#include <cglm/cglm.h>
+
+#include <math.h>
+#include <string.h>
+
+static void auto_or_keyed(const Keyframes *keys, const AutoVec3 *param, const float automatic[3],
+                          double time, float *value)
+{
+    if (keys->count)
+        keyframes_evaluate(keys, time, value);
+    else
+        memcpy(value, param->automatic ? automatic : param->value, sizeof(vec3));
+}
+
+// Unit vector that is not parallel to `direction` (unit): `wanted` if that will do.
+static void choose_up(const float wanted[3], vec3 direction, vec3 up)
+{
+    vec3 across;
+    memcpy(up, wanted, sizeof(vec3));
+    glm_vec3_normalize(up);
+    glm_vec3_cross(up, direction, across);
+    if (glm_vec3_norm(across) > 1e-4f) return;
+    glm_vec3_copy((vec3){0, 0, -1}, up);
+    if (fabsf(direction[2]) > 0.9f) glm_vec3_copy((vec3){0, 1, 0}, up);
+}
+
+static void turn_eye(View *view, vec3 target, const Scene *scene, int frame)
+{
+    double degrees = fmod((double)scene->run.turntable * frame / scene->run.frames, 360);
+    vec3 arm, axis;
+    memcpy(axis, scene->run.camera_up, sizeof axis);
+    if (degrees == 0 || !(glm_vec3_norm(axis) > 0)) return;
+    glm_vec3_sub(view->eye, target, arm);
+    glm_vec3_rotate(arm, glm_rad((float)degrees), axis);
+    glm_vec3_add(target, arm, view->eye);
+}
+
+static void look_at(View *view, vec3 target, const float camera_up[3])
+{
+    vec3 direction, up;
+    glm_vec3_sub(target, view->eye, direction);
+    float distance = glm_vec3_norm(direction);
+    if (distance > 0)
+        glm_vec3_scale(direction, 1 / distance, direction);
+    else
+        glm_vec3_copy((vec3){0, 0, -1}, direction);
+    choose_up(camera_up, direction, up);
+    glm_look(view->eye, direction, up, view->view);
+}
+
+// The near plane stands well before the expected hair, since real hair may swing beyond that, and
+// the far plane well behind it: depths of the hair itself do not depend on either.
+static void find_depths(View *view, const Outline *all)
+{
+    float nearest = 1e30f, farthest = 0;
+    for (int i = 0; i < FRAMING_DIRECTIONS && all->any; ++i) {
+        vec3 p, seen;
+        memcpy(p, all->point[i], sizeof p);
+        glm_mat4_mulv3(view->view, p, 1, seen);
+        nearest = fminf(nearest, -seen[2]);
+        farthest = fmaxf(farthest, -seen[2]);
+    }
+    if (!(farthest > 0)) farthest = 1;
+    view->far_distance = 4 * farthest;
+    view->near_distance = fmaxf(0.1f * fminf(nearest, farthest), 1e-3f * farthest);
+}
+
+void camera_view(View *view, const Scene *scene, const Framing *framing, int frame)
+{
+    double time = frame / (double)scene->run.fps;
+    vec3 target;
+    float fov_deg = scene->run.fov;
+    auto_or_keyed(&scene->target, &scene->run.target, framing->target, time, target);
+    auto_or_keyed(&scene->eye, &scene->run.eye, framing->eye, time, view->eye);
+    if (scene->fov.count) keyframes_evaluate(&scene->fov, time, &fov_deg);
+    turn_eye(view, target, scene, frame);
+    look_at(view, target, scene->run.camera_up);
+    find_depths(view, &framing->all);
+    view->fov = glm_rad(fov_deg);
+    glm_perspective(view->fov, (float)scene->run.size[0] / (float)scene->run.size[1],
+                    view->near_distance, view->far_distance, view->projection);
+}

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: MIT
+#include "framing.h"
+
+#include <cglm/cglm.h>
+
+#include <math.h>
+#include <string.h>
+
+static const float MARGIN = 1.06f;
+static const float SIDE_DEG = 25, ABOVE_DEG = 10;
+// Times, angles and vertices that are looked at; the margin covers what lies between.
+enum { TIMES = 16, ANGLES = 64, VERTICES = 100000 };
+
+void outline_add(Outline *outline, const float point[3])
+{
+    if (!outline->any)
+        for (int i = 0; i < FRAMING_DIRECTIONS; ++i) memcpy(outline->point[i], point, sizeof(vec3));
+    outline->any = true;
+    // The 27 vectors of -1, 0, 1 in order; the zero vector is the 14th, and left out.
+    for (int i = 0, code = 0; i < FRAMING_DIRECTIONS; ++i, ++code) {
+        if (code == 13) ++code;
+        float x = (float)(code % 3 - 1), y = (float)(code / 3 % 3 - 1), z = (float)(code / 9 - 1);
+        float *far = outline->point[i];
+        float gain = x * (point[0] - far[0]) + y * (point[1] - far[1]) + z * (point[2] - far[2]);
+        if (gain > 0) memcpy(far, point, sizeof(vec3));
+    }
+}
+
+static void add_outline(Outline *outline, const Outline *more)
+{
+    for (int i = 0; i < FRAMING_DIRECTIONS && more->any; ++i) outline_add(outline, more->point[i]);
+}
+
+// State of everything that moves, at one time.
+typedef struct Moment {
+    versor rotation;
+    vec3 translation, gravity, wind;
+} Moment;
+
+static void keyed_or_constant(const Keyframes *keys, double time, const float constant[3],
+                              float *value)
+{
+    if (keys->count)
+        keyframes_evaluate(keys, time, value);
+    else
+        memcpy(value, constant, sizeof(vec3));
+}
+
+static void moment_at(Moment *moment, const Scene *scene, double time)
+{
+    rigid_track_evaluate(&scene->head, time, moment->rotation, moment->translation);
+    keyed_or_constant(&scene->gravity, time, scene->run.gravity, moment->gravity);
+    keyed_or_constant(&scene->wind, time, scene->run.wind, moment->wind);
+}
+
+static void carry(const Moment *moment, const float point[3], float carried[3])
+{
+    versor rotation;
+    vec3 p;
+    memcpy(rotation, moment->rotation, sizeof rotation);
+    memcpy(p, point, sizeof p);
+    glm_quat_rotatev(rotation, p, carried);
+    for (int k = 0; k < 3; ++k) carried[k] += moment->translation[k];
+}
+
+// Every how manieth strand is looked at.
+static uint32_t strand_stride(const Strands *strands)
+{
+    return 1 + strands->vertex_count / VERTICES;
+}
+
+static void add_style(Outline *outline, const Strands *strands)
+{
+    for (uint32_t s = 0; s < strands->strand_count; s += strand_stride(strands))
+        for (uint32_t v = strands->first[s]; v < strands->first[s + 1]; ++v)
+            outline_add(outline, strands->position[v]);
+}
+
+// The strand at rest: from its root on, directions between that of `pull` (unit) and the style's.
+static void add_rest_strand(Outline *outline, const Strands *strands, uint32_t s,
+                            const Moment *moment, const float pull[3], float style)
+{
+    vec3 x, carried, next;
+    carry(moment, strands->position[strands->first[s]], carried);
+    glm_vec3_copy(carried, x);
+    for (uint32_t v = strands->first[s] + 1; v < strands->first[s + 1]; ++v) {
+        vec3 segment, mixed;
+        carry(moment, strands->position[v], next);
+        glm_vec3_sub(next, carried, segment);
+        glm_vec3_copy(next, carried);
+        float length = glm_vec3_norm(segment);
+        for (int k = 0; k < 3; ++k) mixed[k] = style * segment[k] + (1 - style) * length * pull[k];
+        float norm = glm_vec3_norm(mixed);
+        for (int k = 0; k < 3 && norm > 0; ++k) x[k] += mixed[k] * (length / norm);
+        outline_add(outline, x);
+    }
+}
+
+static void add_rest(Outline *outline, const Strands *strands, const SectionParams *params,
+                     const Moment *moment)
+{
+    vec3 pull;
+    for (int k = 0; k < 3; ++k) pull[k] = moment->gravity[k] + params->drag * moment->wind[k];
+    float strength = glm_vec3_norm(pull);
+    if (!(strength > 0) || params->style >= 1 || strcmp(params->algo, "none") == 0) return;
+    glm_vec3_scale(pull, 1 / strength, pull);
+    for (uint32_t s = 0; s < strands->strand_count; s += strand_stride(strands))
+        add_rest_strand(outline, strands, s, moment, pull, params->style);
+}
+
+static void add_carried(Outline *outline, const Outline *still, const Moment *moment)
+{
+    for (int i = 0; i < FRAMING_DIRECTIONS && still->any; ++i) {
+        vec3 carried;
+        carry(moment, still->point[i], carried);
+        outline_add(outline, carried);
+    }
+}
+
+static void find_outlines(Framing *framing, const Scene *scene, const Strands *strands,
+                          const Mesh *mesh)
+{
+    Outline style = {0}, body = {0};
+    for (uint32_t i = 0; i < scene->section_count; ++i) add_style(&style, &strands[i]);
+    for (uint32_t v = 0; mesh && v < mesh->vertex_count; ++v) outline_add(&body, mesh->position[v]);
+    bool moves = scene->head.translation.count || scene->head.rotation.count ||
+                 scene->gravity.count || scene->wind.count;
+    double duration = scene->run.frames / (double)scene->run.fps;
+    for (int t = 0; t < (moves ? TIMES : 1); ++t) {
+        Moment moment;
+        moment_at(&moment, scene, duration * t / (TIMES - 1));
+        add_carried(&framing->hair, &style, &moment);
+        add_carried(&framing->all, &body, &moment);
+        for (uint32_t i = 0; i < scene->section_count; ++i)
+            add_rest(&framing->hair, &strands[i], &scene->sections[i].params, &moment);
+    }
+    add_outline(&framing->all, &framing->hair);
+}
+
+static void find_middle(const Outline *outline, float middle[3])
+{
+    for (int k = 0; k < 3; ++k) {
+        float low = outline->point[0][k], high = low;
+        for (int i = 1; i < FRAMING_DIRECTIONS; ++i) {
+            low = fminf(low, outline->point[i][k]);
+            high = fmaxf(high, outline->point[i][k]);
+        }
+        middle[k] = 0.5f * (low + high);
+    }
+}
+
+// Axes of the automatic camera: `right`, `top` and, from the target to the eye, `back`.
+typedef struct Axes {
+    vec3 right, top, back, up;
+} Axes;
+
+static void find_axes(Axes *axes, const float camera_up[3])
+{
+    memcpy(axes->up, camera_up, sizeof(vec3));
+    glm_vec3_normalize(axes->up);
+    if (glm_vec3_norm(axes->up) < 0.5f) glm_vec3_copy((vec3){0, 1, 0}, axes->up);
+    vec3 front = {0, 0, 1};
+    if (fabsf(axes->up[2]) > 0.99f) glm_vec3_copy((vec3){0, -1, 0}, front);
+    glm_vec3_crossn(axes->up, front, axes->right);
+    glm_vec3_cross(axes->right, axes->up, axes->back);
+    glm_vec3_rotate(axes->right, glm_rad(SIDE_DEG), axes->up);
+    glm_vec3_rotate(axes->back, glm_rad(SIDE_DEG), axes->up);
+    glm_vec3_rotate(axes->back, -glm_rad(ABOVE_DEG), axes->right);
+    glm_vec3_cross(axes->back, axes->right, axes->top);
+}
+
+// How far from the target the eye must be to see all of `outline`, tangents of the half angles
+// given.
+static float distance_to_see(const Outline *outline, const Axes *axes, const float target[3],
+                             float tan_x, float tan_y)
+{
+    float distance = 0;
+    for (int i = 0; i < FRAMING_DIRECTIONS; ++i) {
+        vec3 p, right, top, back;
+        for (int k = 0; k < 3; ++k) p[k] = outline->point[i][k] - target[k];
+        glm_vec3_copy((float *)axes->right, right);
+        glm_vec3_copy((float *)axes->top, top);
+        glm_vec3_copy((float *)axes->back, back);
+        float x = fabsf(glm_vec3_dot(p, right)) / tan_x, y = fabsf(glm_vec3_dot(p, top)) / tan_y;
+        distance = fmaxf(distance, glm_vec3_dot(p, back) + MARGIN * fmaxf(x, y));
+    }
+    return distance;
+}
+
+static float narrowest_fov(const Scene *scene)
+{
+    float fov = scene->fov.count ? scene->fov.value[0] : scene->run.fov;
+    for (uint32_t i = 1; i < scene->fov.count; ++i) fov = fminf(fov, scene->fov.value[i]);
+    return glm_rad(fov);
+}
+
+static void place_eye(Framing *framing, const Scene *scene)
+{
+    Axes axes;
+    find_axes(&axes, scene->run.camera_up);
+    float tan_y = tanf(narrowest_fov(scene) / 2), distance = 0;
+    float tan_x = tan_y * (float)scene->run.size[0] / (float)scene->run.size[1];
+    float turn = fminf(fabsf(scene->run.turntable), 360) * (scene->run.turntable < 0 ? -1 : 1);
+    for (int a = 0; a < ANGLES; ++a) {
+        Axes turned = axes;
+        float angle = glm_rad(turn) * (float)a / (ANGLES - 1);
+        glm_vec3_rotate(turned.right, angle, axes.up);
+        glm_vec3_rotate(turned.top, angle, axes.up);
+        glm_vec3_rotate(turned.back, angle, axes.up);
+        float needed = distance_to_see(&framing->hair, &turned, framing->target, tan_x, tan_y);
+        distance = fmaxf(distance, needed);
+        if (turn == 0) break;
+    }
+    if (!(distance > 0)) distance = 1;
+    for (int k = 0; k < 3; ++k) framing->eye[k] = framing->target[k] + distance * axes.back[k];
+}
+
+void framing_compute(Framing *framing, const Scene *scene, const Strands *strands, const Mesh *mesh)
+{
+    memset(framing, 0, sizeof *framing);
+    find_outlines(framing, scene, strands, mesh);
+    find_middle(framing->hair.any ? &framing->hair : &framing->all, framing->target);
+    if (scene->target.count)
+        keyframes_evaluate(&scene->target, 0, framing->target);
+    else if (!scene->run.target.automatic)
+        memcpy(framing->target, scene->run.target.value, sizeof framing->target);
+    place_eye(framing, scene);
+}

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+#include "render_abuffer.h"
+
+#include "draw.h"
+
+enum { NODE_BYTES = 16, SHARD_STEP = SHARD_COUNT * SHARD_RUN, FIRST_NODES = 1 << 19 };
+
+static int64_t smaller(int64_t a, int64_t b)
+{
+    return a < b ? a : b;
+}
+
+// To whole runs in every shard.
+static int64_t round_up_nodes(int64_t nodes)
+{
+    return (nodes + SHARD_STEP - 1) / SHARD_STEP * SHARD_STEP;
+}
+
+static Result create_pool(RenderABuffer *abuffer, int64_t nodes, Error *error)
+{
+    gpu_buffer_destroy(&abuffer->nodes);
+    return gpu_buffer_create(&abuffer->nodes, abuffer->limits, "A-buffer", nodes * NODE_BYTES, NULL,
+                             GL_RGBA32UI, error);
+}
+
+Result render_abuffer_create(RenderABuffer *abuffer, const GpuLimits *limits, int width, int layers,
+                             int64_t pool_bytes, Error *error)
+{
+    *abuffer = (RenderABuffer){.limits = limits, .width = width, .layers = layers};
+    int64_t bytes = pool_bytes ? smaller(pool_bytes, limits->storage_block) : limits->storage_block;
+    int64_t most = smaller(smaller(bytes / NODE_BYTES, limits->texture_texels), INT32_MAX);
+    abuffer->most_nodes = most < SHARD_STEP ? SHARD_STEP : most / SHARD_STEP * SHARD_STEP;
+    glGenVertexArrays(1, &abuffer->vertex_array);
+    Result result = create_pool(abuffer, smaller(FIRST_NODES, abuffer->most_nodes), error);
+    if (result == RESULT_OK)
+        result = gpu_buffer_create(&abuffer->counters, limits, "A-buffer counters", SHARD_STEP * 4,
+                                   NULL, 0, error);
+    if (result == RESULT_OK)
+        result = gpu_buffer_create(&abuffer->extent, limits, "hair's screen box", 16, NULL, GL_R32I,
+                                   error);
+    if (result != RESULT_OK) render_abuffer_destroy(abuffer);
+    return result;
+}
+
+void render_abuffer_destroy(RenderABuffer *abuffer)
+{
+    for (int i = 0; i < 2; ++i)
+        if (abuffer->resolve[i]) glDeleteProgram(abuffer->resolve[i]);
+    if (abuffer->vertex_array) glDeleteVertexArrays(1, &abuffer->vertex_array);
+    gpu_buffer_destroy(&abuffer->nodes);
+    gpu_buffer_destroy(&abuffer->heads);
+    gpu_buffer_destroy(&abuffer->counters);
+    gpu_buffer_destroy(&abuffer->extent);
+    *abuffer = (RenderABuffer){0};
+}
+
+int render_abuffer_most_rows(const RenderABuffer *abuffer, int height)
+{
+    int64_t pixels = smaller(abuffer->limits->storage_block / 4, abuffer->limits->texture_texels);
+    return (int)smaller(height, pixels / abuffer->width);
+}
+
+int render_abuffer_shard_nodes(const RenderABuffer *abuffer)
+{
+    return (int)(abuffer->nodes.size / NODE_BYTES / SHARD_COUNT);
+}
+
+static void clear(const GpuBuffer *buffer, int64_t size)
+{
+    const GLuint zero = 0;
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
+    glClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, 0, (GLsizeiptr)size, GL_RED_INTEGER,
+                         GL_UNSIGNED_INT, &zero);
+}
+
+Result render_abuffer_begin(RenderABuffer *abuffer, int rows, const int box[4], Error *error)
+{
+    int64_t size = (int64_t)rows * abuffer->width * 4;
+    if (abuffer->heads.size < size) {
+        gpu_buffer_destroy(&abuffer->heads);
+        Result result = gpu_buffer_create(&abuffer->heads, abuffer->limits, "A-buffer heads", size,
+                                          NULL, GL_R32UI, error);
+        if (result != RESULT_OK) return result;
+    }
+    clear(&abuffer->heads, size);
+    clear(&abuffer->counters, abuffer->counters.size);
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, abuffer->extent.buffer);
+    glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, 16, box);
+    gpu_buffer_bind_storage(&abuffer->nodes, BIND_NODES_OUT);
+    gpu_buffer_bind_storage(&abuffer->heads, BIND_HEADS_OUT);
+    gpu_buffer_bind_storage(&abuffer->counters, BIND_COUNTERS_OUT);
+    gpu_buffer_bind_storage(&abuffer->extent, BIND_EXTENT_OUT);
+    return RESULT_OK;
+}
+
+void render_abuffer_measure(const RenderABuffer *abuffer, ABufferUse *use)
+{
+    GLuint counters[SHARD_STEP];
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, abuffer->counters.buffer);
+    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof counters, counters);
+    *use = (ABufferUse){0};
+    for (int i = 0; i < SHARD_COUNT; ++i) {
+        GLuint count = counters[i * SHARD_RUN];
+        use->fragments += count;
+        if (count > use->fullest) use->fullest = count;
+    }
+}
+
+bool render_abuffer_holds(const RenderABuffer *abuffer, const ABufferUse *use)
+{
+    return use->fullest <= (uint32_t)render_abuffer_shard_nodes(abuffer);
+}
+
+Result render_abuffer_grow(RenderABuffer *abuffer, const ABufferUse *use, bool *grown, Error *error)
+{
+    int64_t needed = round_up_nodes((int64_t)use->fullest * SHARD_COUNT);
+    *grown = needed <= abuffer->most_nodes;
+    if (!*grown) return RESULT_OK;
+    int64_t ample = round_up_nodes(needed + needed / 4);
+    return create_pool(abuffer, smaller(ample, abuffer->most_nodes), error);
+}
+
+Result render_abuffer_resolve(RenderABuffer *abuffer, const RenderTarget *target, bool over_mesh,
+                              Error *error)
+{
+    GLuint *program = &abuffer->resolve[over_mesh];
+    if (!*program) {
+        const ShaderDefine defines[] = {
+            {"LAYERS", abuffer->layers}, {"BASE", over_mesh}, {NULL, 0}};
+        Result result = shader_build_draw(program, "resolve.vert", "resolve.frag", defines, error);
+        if (result != RESULT_OK) return result;
+    }
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+    gpu_buffer_bind_texture(&abuffer->nodes, BIND_NODES);
+    gpu_buffer_bind_texture(&abuffer->heads, BIND_HEADS);
+    gpu_buffer_bind_texture(&abuffer->extent, BIND_EXTENT);
+    glActiveTexture(GL_TEXTURE0 + BIND_BASE);
+    glBindTexture(GL_TEXTURE_2D, target->base);
+    glBindFramebuffer(GL_FRAMEBUFFER, target->picture_frame);
+    glUseProgram(*program);
+    glBindVertexArray(abuffer->vertex_array);
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    return RESULT_OK;
+}

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// The A-buffer: the pool of all fragments of a band of the picture, and its resolution to colours.
+#pragma once
+
+#include "render_target.h"
+#include "shader.h"
+
+#include <stdbool.h>
+
+typedef struct RenderABuffer {
+    GLuint resolve[2];   // programs: over the background alone, over a mesh; built when needed
+    GLuint vertex_array; // without attributes
+    GpuBuffer nodes;     // uvec4, see abuffer.glsl
+    GpuBuffer heads;     // uint a pixel of the band
+    GpuBuffer counters;  // uint a shard, SHARD_RUN apart
+    GpuBuffer extent;    // int[4]: screen box of what has to be resolved: x, y lowest, highest, px
+    const GpuLimits *limits;
+    int64_t most_nodes; // that the pool can grow to
+    int layers, width;
+} RenderABuffer;
+
+// What drawing a band has stored.
+typedef struct ABufferUse {
+    uint64_t fragments;
+    uint32_t fullest; // fragments of the fullest shard
+} ABufferUse;
+
+// `layers` fragments of a pixel are blended in order. `pool_bytes`: the pool's largest size, 0 for
+// the driver's limit.
+Result render_abuffer_create(RenderABuffer *abuffer, const GpuLimits *limits, int width, int layers,
+                             int64_t pool_bytes, Error *error);
+void render_abuffer_destroy(RenderABuffer *abuffer);
+
+// Rows that one band can have at most; >= 1 for every picture that can be drawn.
+int render_abuffer_most_rows(const RenderABuffer *abuffer, int height);
+
+int render_abuffer_shard_nodes(const RenderABuffer *abuffer);
+
+// Empties the lists for a band of `rows` rows, sets the extent to box[4], and binds all to the
+// storage points of draw.h.
+Result render_abuffer_begin(RenderABuffer *abuffer, int rows, const int box[4], Error *error);
+
+// Waits for what has been drawn since. All is stored if render_abuffer_holds says so.
+void render_abuffer_measure(const RenderABuffer *abuffer, ABufferUse *use);
+bool render_abuffer_holds(const RenderABuffer *abuffer, const ABufferUse *use);
+
+// Makes the pool large enough for `use` and some more. *grown is false, and the pool as it was,
+// where that would be more than most_nodes.
+Result render_abuffer_grow(RenderABuffer *abuffer, const ABufferUse *use, bool *grown,
+                           Error *error);
+
+// Writes the pixels within the extent and the scissor to the target's picture, over its base if
+// `over_mesh`. Needs the DrawParams block.
+Result render_abuffer_resolve(RenderABuffer *abuffer, const RenderTarget *target, bool over_mesh,
+                              Error *error);

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#include "render_hair.h"
+
+#include "draw.h"
+
+// Particles that are projected at a time, so that what is kept of them stays small.
+enum { GROUP_SIZE = 8, PART_PARTICLES = 1 << 19 };
+
+Result render_hair_create(RenderHair *hair, Error *error)
+{
+    *hair = (RenderHair){0};
+    const ShaderDefine defines[] = {{"GROUP_SIZE", GROUP_SIZE}, {NULL, 0}};
+    glGenVertexArrays(1, &hair->vertex_array);
+    Result result = shader_build_compute(&hair->project, "hair_project.comp", defines, error);
+    if (result == RESULT_OK)
+        result = shader_build_draw(&hair->draw, "hair.vert", "hair.frag", NULL, error);
+    if (result != RESULT_OK) render_hair_destroy(hair);
+    return result;
+}
+
+void render_hair_destroy(RenderHair *hair)
+{
+    if (hair->project) glDeleteProgram(hair->project);
+    if (hair->draw) glDeleteProgram(hair->draw);
+    if (hair->vertex_array) glDeleteVertexArrays(1, &hair->vertex_array);
+    gpu_buffer_destroy(&hair->edges);
+    gpu_buffer_destroy(&hair->shades);
+    gpu_buffer_destroy(&hair->indices);
+    gpu_buffer_destroy(&hair->command);
+    gpu_buffer_destroy(&hair->material);
+    *hair = (RenderHair){0};
+}
+
+static Result make_room(GpuBuffer *buffer, const GpuLimits *limits, const char *what, int64_t size,
+                        GLenum format, Error *error)
+{
+    if (buffer->size >= size) return RESULT_OK;
+    gpu_buffer_destroy(buffer);
+    return gpu_buffer_create(buffer, limits, what, size, NULL, format, error);
+}
+
+static Result make_scratch(RenderHair *hair, uint32_t strands, uint32_t vertex_count,
+                           const GpuLimits *limits, Error *error)
+{
+    int64_t particles = (int64_t)strands * vertex_count, segments = particles - strands;
+    Result result =
+        make_room(&hair->edges, limits, "hair edges", particles * 16, GL_RGBA32F, error);
+    if (result == RESULT_OK)
+        result =
+            make_room(&hair->shades, limits, "hair shades", particles * 16, GL_RGBA32UI, error);
+    if (result == RESULT_OK)
+        result = make_room(&hair->indices, limits, "hair triangles", segments * 24, 0, error);
+    if (result == RESULT_OK)
+        result = make_room(&hair->command, limits, "draw command", COMMAND_WORDS * 4, 0, error);
+    return result;
+}
+
+static void write(const GpuBuffer *buffer, int64_t at, const void *data, size_t size)
+{
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
+    glBufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)at, (GLsizeiptr)size, data);
+}
+
+static void project(RenderHair *hair, const HairBatch *batch, const MaterialParams *material)
+{
+    const GLuint command[COMMAND_WORDS] = {[COMMAND_INSTANCE_COUNT] = 1};
+    uint32_t strands = material->drawn_strands;
+    write(&hair->command, 0, command, sizeof command);
+    gpu_uniforms_set(&hair->material, BIND_MATERIAL, material, sizeof *material);
+    gpu_buffer_bind_texture(&batch->position, BIND_POSITION);
+    gpu_buffer_bind_texture(&batch->strand_id, BIND_STRAND_ID);
+    gpu_buffer_bind_storage(&hair->edges, BIND_EDGES_OUT);
+    gpu_buffer_bind_storage(&hair->shades, BIND_SHADES_OUT);
+    gpu_buffer_bind_storage(&hair->indices, BIND_INDICES_OUT);
+    gpu_buffer_bind_storage(&hair->command, BIND_COMMAND_OUT);
+    glUseProgram(hair->project);
+    glDispatchCompute((strands + GROUP_SIZE - 1) / GROUP_SIZE, 1, 1);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT |
+                    GL_COMMAND_BARRIER_BIT);
+}
+
+static void draw_ribbons(RenderHair *hair)
+{
+    glUseProgram(hair->draw);
+    glBindVertexArray(hair->vertex_array);
+    gpu_buffer_bind_texture(&hair->edges, BIND_EDGES);
+    gpu_buffer_bind_texture(&hair->shades, BIND_SHADES);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, hair->indices.buffer);
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, hair->command.buffer);
+    glDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, NULL);
+    // The next part overwrites what this one's vertices read.
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
+                    GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+Result render_hair_draw(RenderHair *hair, const HairBatch *batch, const MaterialParams *material,
+                        const GpuLimits *limits, GpuTimer *timer, Error *error)
+{
+    uint32_t n = batch->vertex_count, most = n < PART_PARTICLES ? PART_PARTICLES / n : 1;
+    MaterialParams part = *material;
+    part.strand_count = batch->strand_count;
+    part.vertex_count = n;
+    for (uint32_t first = 0; first < batch->strand_count; first += most) {
+        uint32_t left = batch->strand_count - first;
+        part.first_strand = first;
+        part.drawn_strands = left < most ? left : most;
+        Result result = make_scratch(hair, part.drawn_strands, n, limits, error);
+        if (result != RESULT_OK) return result;
+        gpu_timer_begin(timer, "draw_project");
+        project(hair, batch, &part);
+        gpu_timer_end(timer);
+        gpu_timer_begin(timer, "draw_hair");
+        draw_ribbons(hair);
+        gpu_timer_end(timer);
+    }
+    return RESULT_OK;
+}

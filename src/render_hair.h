@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// The hair as camera-facing ribbons: projects and shades particles, then sends the ribbons'
+// fragments to the A-buffer.
+#pragma once
+
+#include "gpu_timer.h"
+#include "hair.h"
+#include "material.h"
+#include "shader.h"
+
+typedef struct RenderHair {
+    GLuint project, draw;       // programs
+    GLuint vertex_array;        // without attributes
+    GpuBuffer edges, shades;    // vec4, uvec4 a particle, see hair.vert
+    GpuBuffer indices, command; // triangles, and how many of them: glDrawElementsIndirect
+    GpuBuffer material;
+} RenderHair;
+
+Result render_hair_create(RenderHair *hair, Error *error);
+void render_hair_destroy(RenderHair *hair);
+
+// Draws one batch into the current framebuffer and A-buffer, through the scissor. `material` is
+// complete but for the batch's size. RESULT_FAILED if memory is short.
+Result render_hair_draw(RenderHair *hair, const HairBatch *batch, const MaterialParams *material,
+                        const GpuLimits *limits, GpuTimer *timer, Error *error);

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// The opaque mesh behind and among the hair.
+#pragma once
+
+#include "mesh.h"
+#include "render_target.h"
+#include "shader.h"
+
+typedef struct RenderMesh {
+    GLuint program, vertex_array;
+    GpuBuffer position, normal, triangle; // float[3], float[3], uint[3]
+    uint32_t triangle_count;              // 0: no mesh, nothing is done
+    float low[3], high[3];                // bounds in the head's frame, m
+    float color[3];                       // linear
+} RenderMesh;
+
+// Uploads. `color`: linear RGB. RESULT_FAILED if memory is short.
+Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const float color[3],
+                          const GpuLimits *limits, Error *error);
+void render_mesh_destroy(RenderMesh *mesh);
+
+// Fills the target's depth and its `base`: the mesh over `background` (linear, premultiplied).
+// Needs the DrawParams block; leaves the scissor off.
+void render_mesh_draw(const RenderMesh *mesh, const RenderTarget *target,
+                      const float background[4]);

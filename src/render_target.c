@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include "render_target.h"
+
+#include <stdlib.h>
+
+enum { SAMPLES = 4 }; // of the mesh's edges; CPU drivers have no more
+
+static GLuint create_texture(GLenum format, int width, int height)
+{
+    GLuint texture;
+    glGenTextures(1, &texture);
+    glBindTexture(GL_TEXTURE_2D, texture);
+    glTexStorage2D(GL_TEXTURE_2D, 1, format, width, height);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    return texture;
+}
+
+static GLuint create_samples(GLenum format, int width, int height)
+{
+    GLuint buffer;
+    glGenRenderbuffers(1, &buffer);
+    glBindRenderbuffer(GL_RENDERBUFFER, buffer);
+    glRenderbufferStorageMultisample(GL_RENDERBUFFER, SAMPLES, format, width, height);
+    return buffer;
+}
+
+static GLuint create_frame(void)
+{
+    GLuint frame;
+    glGenFramebuffers(1, &frame);
+    glBindFramebuffer(GL_FRAMEBUFFER, frame);
+    return frame;
+}
+
+static GLuint create_color_frame(GLuint texture)
+{
+    GLuint frame = create_frame();
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
+    return frame;
+}
+
+static Result check_frame(GLuint frame, const char *what, Error *error)
+{
+    glBindFramebuffer(GL_FRAMEBUFFER, frame);
+    GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
+    if (status == GL_FRAMEBUFFER_COMPLETE) return gpu_check(what, error);
+    return error_set(error, RESULT_FAILED, "%s: framebuffer status 0x%04x", what, status);
+}
+
+Result render_target_create(RenderTarget *target, const GpuLimits *limits, int width, int height,
+                            Error *error)
+{
+    *target = (RenderTarget){.width = width, .height = height};
+    int side = limits->framebuffer_side_px;
+    if (width > side || height > side)
+        return error_set(error, RESULT_FAILED,
+                         "a picture of %d x %d px: this driver draws at most %d x %d", width,
+                         height, side, side);
+    target->rgba = malloc((size_t)width * (size_t)height * 4);
+    if (!target->rgba)
+        return error_set(error, RESULT_FAILED, "no memory for a picture of %d x %d px", width,
+                         height);
+    target->picture = create_texture(GL_RGBA8, width, height);
+    target->picture_frame = create_color_frame(target->picture);
+    target->hair_frame = create_frame();
+    glFramebufferParameteri(GL_FRAMEBUFFER, GL_FRAMEBUFFER_DEFAULT_WIDTH, width);
+    glFramebufferParameteri(GL_FRAMEBUFFER, GL_FRAMEBUFFER_DEFAULT_HEIGHT, height);
+    glDrawBuffer(GL_NONE);
+    Result result = check_frame(target->hair_frame, "hair target", error);
+    if (result == RESULT_OK) result = check_frame(target->picture_frame, "picture", error);
+    if (result != RESULT_OK) render_target_destroy(target);
+    return result;
+}
+
+Result render_target_add_mesh(RenderTarget *target, Error *error)
+{
+    if (target->depth) return RESULT_OK;
+    int width = target->width, height = target->height;
+    target->depth = create_texture(GL_DEPTH_COMPONENT32F, width, height);
+    glBindFramebuffer(GL_FRAMEBUFFER, target->hair_frame);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, target->depth, 0);
+    target->base = create_texture(GL_RGBA16F, width, height);
+    target->base_frame = create_color_frame(target->base);
+    target->smooth_color = create_samples(GL_RGBA16F, width, height);
+    target->smooth_depth = create_samples(GL_DEPTH_COMPONENT32F, width, height);
+    target->smooth_frame = create_frame();
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
+                              target->smooth_color);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER,
+                              target->smooth_depth);
+    Result result = check_frame(target->hair_frame, "hair target", error);
+    if (result == RESULT_OK) result = check_frame(target->base_frame, "mesh target", error);
+    if (result == RESULT_OK) result = check_frame(target->smooth_frame, "mesh samples", error);
+    return result;
+}
+
+void render_target_destroy(RenderTarget *target)
+{
+    const GLuint frames[] = {target->picture_frame, target->hair_frame, target->base_frame,
+                             target->smooth_frame};
+    const GLuint textures[] = {target->picture, target->depth, target->base};
+    const GLuint buffers[] = {target->smooth_color, target->smooth_depth};
+    if (target->picture) { // names of 0 are ignored, but without a context nothing may be called
+        glDeleteFramebuffers(4, frames);
+        glDeleteTextures(3, textures);
+        glDeleteRenderbuffers(2, buffers);
+    }
+    free(target->rgba);
+    *target = (RenderTarget){0};
+}
+
+void render_target_read(RenderTarget *target, Image *image)
+{
+    size_t count = (size_t)target->width * (size_t)target->height;
+    uint8_t *rgba = image->channels == 4 ? image->pixels : target->rgba;
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, target->picture_frame);
+    glReadPixels(0, 0, target->width, target->height, GL_RGBA, GL_UNSIGNED_BYTE, rgba);
+    if (image->channels == 4) return;
+    for (size_t i = 0; i < count; ++i) {
+        image->pixels[3 * i] = rgba[4 * i];
+        image->pixels[3 * i + 1] = rgba[4 * i + 1];
+        image->pixels[3 * i + 2] = rgba[4 * i + 2];
+    }
+}

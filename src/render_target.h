@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// The textures that a picture is drawn to, and its way back to memory. Row 0 is the picture's top.
+#pragma once
+
+#include "gpu_buffer.h"
+#include "image.h"
+
+typedef struct RenderTarget {
+    int width, height;
+    GLuint picture, picture_frame; // RGBA8, sRGB, straight alpha
+    GLuint hair_frame;             // no colour; `depth` if there is a mesh
+    GLuint depth;                  // one sample, for the hair
+    GLuint base, base_frame;       // RGBA16F: mesh over background, linear, premultiplied
+    GLuint smooth_color, smooth_depth, smooth_frame; // the same before its samples are averaged
+    uint8_t *rgba; // [height][width][4], for pictures without alpha
+} RenderTarget;
+
+// RESULT_FAILED if the size is more than the driver allows or memory is short.
+Result render_target_create(RenderTarget *target, const GpuLimits *limits, int width, int height,
+                            Error *error);
+void render_target_destroy(RenderTarget *target);
+
+// Adds what a mesh needs; nothing if it is there.
+Result render_target_add_mesh(RenderTarget *target, Error *error);
+
+// Copies the picture into `image` of 3 or 4 channels; waits for it.
+void render_target_read(RenderTarget *target, Image *image);

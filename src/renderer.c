@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+#include "renderer.h"
+
+#include "render_uniforms.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+enum { SORTED_LAYERS = 8 };
+
+// Light on the mesh that comes from everywhere.
+static const float MESH_AMBIENT = 0.15f;
+
+Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
+                       const RendererOptions *options, Error *error)
+{
+    *renderer = (Renderer){.options = *options, .gpu = gpu, .timer = timer};
+    int layers = options->sorted_layers ? options->sorted_layers : SORTED_LAYERS;
+    Result result = render_target_create(&renderer->target, &gpu->limits, options->width,
+                                         options->height, error);
+    if (result == RESULT_OK) result = render_hair_create(&renderer->hair, error);
+    if (result == RESULT_OK)
+        result = render_abuffer_create(&renderer->abuffer, &gpu->limits, options->width, layers,
+                                       options->pool_bytes, error);
+    if (result != RESULT_OK)
+        renderer_destroy(renderer);
+    else
+        renderer->band_rows = render_abuffer_most_rows(&renderer->abuffer, options->height);
+    return result;
+}
+
+void renderer_destroy(Renderer *renderer)
+{
+    render_target_destroy(&renderer->target);
+    render_hair_destroy(&renderer->hair);
+    render_abuffer_destroy(&renderer->abuffer);
+    render_mesh_destroy(&renderer->mesh);
+    gpu_buffer_destroy(&renderer->draw_uniforms);
+    *renderer = (Renderer){0};
+}
+
+Result renderer_set_mesh(Renderer *renderer, const Mesh *mesh, const float color[3], Error *error)
+{
+    float linear[3];
+    linear_from_srgb_color(color, linear);
+    render_mesh_destroy(&renderer->mesh);
+    Result result =
+        render_mesh_create(&renderer->mesh, mesh, linear, &renderer->gpu->limits, error);
+    if (result == RESULT_OK && renderer->mesh.triangle_count)
+        result = render_target_add_mesh(&renderer->target, error);
+    return result;
+}
+
+int renderer_channels(const Renderer *renderer)
+{
+    return renderer->options.background[3] < 1 ? 4 : 3;
+}
+
+// The picture without the band's values.
+static void fill_draw_params(const Renderer *renderer, const RenderFrame *frame, DrawParams *draw)
+{
+    const RendererOptions *options = &renderer->options;
+    memset(draw, 0, sizeof *draw);
+    draw_params_set_view(draw, frame->view, options->width, options->height);
+    draw_params_set_lights(draw, frame->lights, frame->light_count);
+    linear_from_srgb_color(options->background, draw->background);
+    for (int k = 0; k < 3; ++k) draw->background[k] *= options->background[3];
+    draw->background[3] = options->background[3];
+    memcpy(draw->head_rotation, frame->head_rotation, sizeof draw->head_rotation);
+    memcpy(draw->head_translation, frame->head_translation, sizeof frame->head_translation);
+    memcpy(draw->mesh_color, renderer->mesh.color, sizeof renderer->mesh.color);
+    draw->mesh_color[3] = MESH_AMBIENT;
+    draw->seed = options->seed;
+}
+
+// Screen box of the mesh (px; empty without one): what must be resolved where there is no hair.
+static void find_mesh_box(const Renderer *renderer, DrawParams *draw, int box[4])
+{
+    const RenderMesh *mesh = &renderer->mesh;
+    const int far = 1 << 20;
+    box[0] = box[1] = far, box[2] = box[3] = -far;
+    for (int corner = 0; corner < 8 && mesh->triangle_count; ++corner) {
+        vec4 clip;
+        vec3 x;
+        for (int k = 0; k < 3; ++k) x[k] = (corner >> k & 1 ? mesh->high : mesh->low)[k];
+        glm_quat_rotatev(draw->head_rotation, x, x);
+        glm_vec3_add(x, draw->head_translation, x);
+        glm_mat4_mulv(draw->clip_from_world, (vec4){x[0], x[1], x[2], 1}, clip);
+        if (clip[3] < draw->near_distance) { // crosses the eye's plane: anywhere
+            box[0] = box[1] = 0, box[2] = box[3] = far;
+            return;
+        }
+        for (int k = 0; k < 2; ++k) {
+            float size = k ? draw->height : draw->width, px = (clip[k] / clip[3] + 1) * size / 2;
+            px = fmaxf(fminf(px, (float)far - 2), 2 - (float)far);
+            box[k] = (int)fminf((float)box[k], floorf(px) - 1);
+            box[k + 2] = (int)fmaxf((float)box[k + 2], ceilf(px) + 1);
+        }
+    }
+}
+
+// The band's lists; measured, but not resolved yet.
+static Result draw_band(Renderer *renderer, DrawParams *draw, const RenderItem *items,
+                        uint32_t item_count, const int box[4], int rows, Error *error)
+{
+    Result result = render_abuffer_begin(&renderer->abuffer, rows, box, error);
+    draw->band[3] = (uint32_t)render_abuffer_shard_nodes(&renderer->abuffer);
+    gpu_uniforms_set(&renderer->draw_uniforms, BIND_DRAW, draw, sizeof *draw);
+    glBindFramebuffer(GL_FRAMEBUFFER, renderer->target.hair_frame);
+    glScissor(0, (GLint)draw->band[1], renderer->options.width, rows);
+    for (uint32_t i = 0; i < item_count; ++i) {
+        MaterialParams material = material_params(items[i].material, items[i].radius);
+        const Hair *hair = items[i].hair;
+        for (uint32_t b = 0; b < hair->batch_count && result == RESULT_OK; ++b)
+            result = render_hair_draw(&renderer->hair, &hair->batches[b], &material,
+                                      &renderer->gpu->limits, renderer->timer, error);
+    }
+    return result;
+}
+
+// After a band that did not fit: a larger pool or, where there can be none, fewer rows.
+static Result make_it_fit(Renderer *renderer, const ABufferUse *use, int *rows, Error *error)
+{
+    bool grown;
+    Result result = render_abuffer_grow(&renderer->abuffer, use, &grown, error);
+    if (result != RESULT_OK || grown) return result;
+    if (*rows == 1)
+        return error_set(error, RESULT_FAILED,
+                         "one row of the picture has %llu hair fragments, more than an A-buffer of "
+                         "%lld bytes holds",
+                         (unsigned long long)use->fragments,
+                         (long long)renderer->abuffer.nodes.size);
+    *rows = renderer->band_rows = *rows / 2;
+    return RESULT_OK;
+}
+
+static Result draw_bands(Renderer *renderer, DrawParams *draw, const RenderItem *items,
+                         uint32_t item_count, const int box[4], Error *error)
+{
+    RendererCounts *counts = &renderer->counts;
+    int height = renderer->options.height;
+    for (int row = 0; row < height;) {
+        ABufferUse use;
+        int rows = row + renderer->band_rows < height ? renderer->band_rows : height - row;
+        draw->band[1] = (uint32_t)row;
+        draw->band[2] = (uint32_t)(row + rows);
+        Result result = draw_band(renderer, draw, items, item_count, box, rows, error);
+        if (result != RESULT_OK) return result;
+        render_abuffer_measure(&renderer->abuffer, &use);
+        if (!render_abuffer_holds(&renderer->abuffer, &use)) {
+            ++counts->redraws;
+            result = make_it_fit(renderer, &use, &rows, error);
+            if (result != RESULT_OK) return result;
+            continue;
+        }
+        gpu_timer_begin(renderer->timer, "draw_resolve");
+        result = render_abuffer_resolve(&renderer->abuffer, &renderer->target,
+                                        renderer->mesh.triangle_count > 0, error);
+        gpu_timer_end(renderer->timer);
+        if (result != RESULT_OK) return result;
+        counts->fragments += use.fragments;
+        ++counts->bands;
+        row += rows;
+    }
+    return RESULT_OK;
+}
+
+static void set_state(const Renderer *renderer)
+{
+    const RendererOptions *options = &renderer->options;
+    glViewport(0, 0, options->width, options->height);
+    glDisable(GL_BLEND);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_SCISSOR_TEST);
+    glDepthFunc(GL_LESS);
+    glBindFramebuffer(GL_FRAMEBUFFER, renderer->target.picture_frame);
+    glClearBufferfv(GL_COLOR, 0, options->background);
+}
+
+static void draw_mesh(Renderer *renderer, const DrawParams *draw)
+{
+    if (!renderer->mesh.triangle_count) return;
+    gpu_timer_begin(renderer->timer, "draw_mesh");
+    render_mesh_draw(&renderer->mesh, &renderer->target, draw->background);
+    gpu_timer_end(renderer->timer);
+}
+
+Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderItem *items,
+                     uint32_t item_count, Image *image, Error *error)
+{
+    assert(image->width == renderer->options.width && image->height == renderer->options.height);
+    assert(image->channels == renderer_channels(renderer));
+    DrawParams draw;
+    int box[4];
+    fill_draw_params(renderer, frame, &draw);
+    find_mesh_box(renderer, &draw, box);
+    renderer->counts = (RendererCounts){0};
+    for (uint32_t i = 0; i < item_count; ++i)
+        renderer->counts.segments += items[i].hair->segment_count;
+    set_state(renderer);
+    gpu_uniforms_set(&renderer->draw_uniforms, BIND_DRAW, &draw, sizeof draw);
+    draw_mesh(renderer, &draw);
+    glEnable(GL_SCISSOR_TEST);
+    Result result = draw_bands(renderer, &draw, items, item_count, box, error);
+    glDisable(GL_SCISSOR_TEST);
+    if (result != RESULT_OK) return result;
+    gpu_timer_begin(renderer->timer, "draw_read");
+    render_target_read(&renderer->target, image);
+    gpu_timer_end(renderer->timer);
+    renderer->counts.pool_bytes = (uint64_t)renderer->abuffer.nodes.size;
+    return gpu_check("drawing", error);
+}

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// From hair on the GPU to a picture: mesh, hair ribbons into an A-buffer, and its resolution.
+#pragma once
+
+#include "camera.h"
+#include "gpu_timer.h"
+#include "hair.h"
+#include "image.h"
+#include "render_abuffer.h"
+#include "render_hair.h"
+#include "render_mesh.h"
+#include "render_target.h"
+
+typedef struct RendererOptions {
+    int width, height;   // px, each 1 .. the driver's limits.framebuffer_side_px
+    float background[4]; // sRGB and opacity 0..1; below 1 the pictures have an alpha channel
+    uint32_t seed;       // of what varies by strand
+    int sorted_layers;   // fragments of a pixel that are blended in order, >= 1; 0: 8
+    int64_t pool_bytes;  // no larger A-buffer; 0: what the driver allows
+} RendererOptions;
+
+// Hair to be drawn. The material is that of its section; `radius` is the fibre radius at the root
+// in metres (fibre_auto_radius where the section has none).
+typedef struct RenderItem {
+    const Hair *hair;
+    const SectionParams *material;
+    float radius;
+} RenderItem;
+
+// What all items of a picture have in common.
+typedef struct RenderFrame {
+    const View *view; // made for the renderer's width and height
+    const Light *lights;
+    uint32_t light_count;      // 0 .. SCENE_MAX_LIGHTS
+    float head_rotation[4];    // quaternion x y z w: the mesh's frame -> world
+    float head_translation[3]; // m
+} RenderFrame;
+
+// Of the last picture, for the statistics.
+typedef struct RendererCounts {
+    uint64_t segments;   // sent to the rasteriser, redraws not counted
+    uint64_t fragments;  // stored and blended
+    uint64_t pool_bytes; // of the A-buffer now
+    uint32_t redraws;    // bands that were drawn again because the pool was too small
+    uint32_t bands;      // horizontal bands that the picture was drawn in
+} RendererCounts;
+
+typedef struct Renderer {
+    RendererOptions options;
+    const Gpu *gpu;
+    GpuTimer *timer;
+    RenderTarget target;
+    RenderHair hair;
+    RenderABuffer abuffer;
+    RenderMesh mesh;
+    GpuBuffer draw_uniforms;
+    int band_rows; // that the next picture starts with
+    RendererCounts counts;
+} Renderer;
+
+// Makes targets and shaders. `gpu` and `timer` outlive the renderer; spans "draw_mesh",
+// "draw_project", "draw_hair", "draw_resolve", "draw_read". RESULT_FAILED if the size exceeds the
+// driver's or memory is short.
+Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
+                       const RendererOptions *options, Error *error);
+void renderer_destroy(Renderer *renderer);
+
+// The mesh that hides hair, in the head's frame, and its colour (sRGB 0..1). Copied to the GPU.
+Result renderer_set_mesh(Renderer *renderer, const Mesh *mesh, const float color[3], Error *error);
+
+// 3, or 4 where the background is not opaque: what image_create must be given.
+int renderer_channels(const Renderer *renderer);
+
+// Draws one picture into `image`, which has the renderer's size and channels, and waits for it. The
+// order of items and of strands does not matter, and every run gives the same bytes. No fragment is
+// lost: if the pool is too small it grows and the band is drawn again; at its largest, the picture
+// is drawn in more bands. RESULT_FAILED if memory is short or a single row needs a larger pool than
+// there can be.
+Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderItem *items,
+                     uint32_t item_count, Image *image, Error *error);
