@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-static const double FIBRE_LAYERS = 2;
-static const double THINNEST = 1.0 / 5000, THICKEST = 1.0 / 300;
+static const double FIBRE_LAYERS = 3;
+static const double THINNEST = 1.0 / 5000, THICKEST = 1.0 / 400;
 
 float fibre_auto_radius(const Strands *strands)
 {

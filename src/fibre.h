@@ -10,5 +10,5 @@
 // many. So the strands share out the picture instead: laid side by side they would cover the mean
 // silhouette of the hair's box (a quarter of its surface, Cauchy) FIBRE_LAYERS times. Twice as many
 // strands are drawn half as thick; the same hair in another unit looks the same. Kept between
-// 1/5000 and 1/300 of the longest strand, for single strands and very dense fur.
+// 1/5000 and 1/400 of the longest strand, for single strands and very dense fur.
 float fibre_auto_radius(const Strands *strands);
