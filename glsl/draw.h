@@ -32,11 +32,15 @@
 #define SHARD_COUNT 64
 #define SHARD_RUN   16 // consecutive nodes of one shard
 
-// Words of the command buffer: what glDrawElementsIndirect reads, and what was left out.
+// Words of the counters' buffer: a counter for each shard, SHARD_RUN apart, then these.
+#define COUNTER_SEGMENTS (SHARD_COUNT * SHARD_RUN) // sent to the rasteriser
+#define COUNTER_CULLED   (COUNTER_SEGMENTS + 1)    // strands outside the picture
+#define COUNTER_WORDS    (COUNTER_SEGMENTS + 2)
+
+// Words of the command buffer, as glDrawElementsIndirect reads it.
 #define COMMAND_INDEX_COUNT    0
 #define COMMAND_INSTANCE_COUNT 1
-#define COMMAND_CULLED         5 // strands
-#define COMMAND_WORDS          6
+#define COMMAND_WORDS          5
 
 UNIFORM_BLOCK(DrawParams, draw_params, BIND_DRAW)
 {

@@ -21,7 +21,7 @@ void main()
     if (alpha < LEAST_ALPHA) return;
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     uvec4 band = draw_params.band; // read once: a uniform costs a load wherever it is named
-    uint shard = uint((pixel.x >> 3 & 7) | (pixel.y & 56));
+    uint shard = uint((pixel.x >> 3) + (pixel.y & 56)) % SHARD_COUNT;
     uint slot = atomicAdd(counters[shard * SHARD_RUN], 1u); // counts on past the end: so the pool learns its size
     if (slot >= band.w) return;
     uint index = (slot / SHARD_RUN * SHARD_COUNT + shard) * SHARD_RUN + slot % SHARD_RUN;

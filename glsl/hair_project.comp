@@ -11,6 +11,7 @@
 // from growing.
 #include "draw.h"
 #include "material.h"
+#include "hair_address.glsl"
 #include "hash.glsl"
 #include "shade_kajiya.glsl"
 
@@ -21,6 +22,7 @@ layout(std430, binding = BIND_EDGES_OUT) writeonly buffer Edges { vec4 edges[]; 
 layout(std430, binding = BIND_SHADES_OUT) writeonly buffer Shades { uvec4 shades[]; };
 layout(std430, binding = BIND_INDICES_OUT) writeonly buffer Indices { uint indices[]; };
 layout(std430, binding = BIND_COMMAND_OUT) buffer Command { uint command[]; };
+layout(std430, binding = BIND_COUNTERS_OUT) buffer Counters { uint counters[]; };
 layout(std430, binding = BIND_EXTENT_OUT) buffer Extent { int extent[4]; }; // x, y lowest, highest
 
 const float PAD = 0.71;        // px; the corner of a pixel is sqrt(1/2) from its middle
@@ -113,6 +115,7 @@ float bend(Particle a, Particle p, Particle b)
 void emit_segments(int first, int count)
 {
     int at = int(atomicAdd(command[COMMAND_INDEX_COUNT], uint(6 * (count - 1))));
+    atomicAdd(counters[COUNTER_SEGMENTS], uint(count - 1));
     for (int k = 0; k < count - 1; ++k, at += 6) {
         uint v = uint(2 * (first + k));
         indices[at] = v;
@@ -126,21 +129,21 @@ void emit_segments(int first, int count)
 
 void main()
 {
-    int width = int(material.strand_count), n = int(material.vertex_count);
+    int n = int(material.vertex_count);
     int row = int(gl_GlobalInvocationID.x), s = int(material.first_strand) + row;
     if (row >= int(material.drawn_strands)) return;
     int first = row * n; // place of the root
     vec3 base = material.color.rgb *
                 (1.0 + material.color_variation * hash_signed(texelFetch(strand_id, s).x ^ draw_params.seed));
     float thinning = (1.0 - material.tip_ratio) / float(n - 1);
-    vec4 here = fetch_particle(s), before = here;
+    vec4 here = fetch_particle(particle_address(s, 0, n)), before = here;
     vec4 box = vec4(1e6);
     Particle kept, last; // the last one that was not left out; the one before this one
     vec2 way = vec2(0.0); // the ribbon's direction before `kept`
     float bent = 0.0;     // of all that was left out since `kept`
     int count = 0;
     for (int j = 0; j < n; ++j) {
-        vec4 after = fetch_particle(min(j + 1, n - 1) * width + s);
+        vec4 after = fetch_particle(particle_address(s, min(j + 1, n - 1), n));
         vec4 x = clip_near(here, before, after);
         Particle p;
         p.at = project(x, max(material.radius * (1.0 - thinning * float(j)), 1e-9));
@@ -164,12 +167,10 @@ void main()
     store(first + count++, last, next, next);
 
     ivec4 whole = ivec4(floor(clamp(box, -1e6, 1e6)));
-    bool seen = whole.x < int(draw_params.width) && -whole.z > 0 && whole.y < int(draw_params.band.z) &&
-                -whole.w > int(draw_params.band.y);
-    if (!seen) {
-        atomicAdd(command[COMMAND_CULLED], 1u);
-        return;
-    }
+    bool in_picture = whole.x < int(draw_params.band.x) && -whole.z > 0 && whole.y < int(draw_params.height) && -whole.w > 0;
+    bool in_band = whole.y < int(draw_params.band.z) && -whole.w > int(draw_params.band.y);
+    if (!in_picture && draw_params.band.y == 0u) atomicAdd(counters[COUNTER_CULLED], 1u);
+    if (!in_picture || !in_band) return;
     emit_segments(first, count);
     atomicMin(extent[0], whole.x);
     atomicMin(extent[1], whole.y);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The strand that is drawn: rebuilt from the root, every direction turned from the physical one towards the style's.
-//   MIX 0: the style alone (no solver, or style = 1)   1: the physical strand alone (style = 0)   2: both
-#include "step.h"
+// The strand that is drawn: rebuilt from the root, every direction turned by a share of the angle from the physical one to the style's.
+//   MIX 0: the style alone   1: the physical strand alone   2: nearer to the physical strand   3: nearer to the style
+#include "pose_params.h"
+#include "hair_address.glsl"
 #include "rigid.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
@@ -9,36 +10,52 @@ layout(binding = BIND_REST) uniform samplerBuffer rest;
 layout(binding = BIND_STATE) uniform samplerBuffer segments; // unit direction, rest length
 layout(std430, binding = BIND_POSITION_OUT) writeonly buffer Positions { vec4 positions[]; };
 
-// Turns the unit vector a towards b by the share w of their angle. Antiparallel vectors have no plane: a stays.
-vec3 slerp(vec3 a, vec3 b, float w)
+// Uniforms cost a load wherever they are named: these are read once.
+vec4 cos_low, cos_high, sin_low, sin_high;
+
+float polynomial(vec4 low, vec4 high, float x)
 {
-    float c = clamp(dot(a, b), -1.0, 1.0);
-    vec3 r = b - c * a;
-    float sine = sqrt(dot(r, r));
-    float angle = w * atan(sine, c);
-    vec3 across = r * (1.0 / max(sine, 1e-12));
-    return sine < 1e-7 ? (c < 0.0 ? a : b) : cos(angle) * a + sin(angle) * across;
+    float a = low.x + x * low.y, b = low.z + x * low.w, c = high.x + x * high.y, d = high.z + x * high.w, xx = x * x;
+    return a + xx * b + xx * xx * (c + xx * d);
+}
+
+// Slerp from the unit vector a towards the unit vector b by a share w <= 1/2 of their angle. With the bisector h this is a turn towards
+// h by v = 2w of the half angle p <= 90 deg: cos(v p) a + sin(v p)/sin(p) (h - cos(p) a). Both factors are smooth functions of
+// x = sin^2(p/2) <= 1/2, given as polynomials, so that no angle is needed. Antiparallel vectors have no bisector: a stays.
+vec3 turn(vec3 a, vec3 b)
+{
+    vec3 sum = a + b;
+    float ss = dot(sum, sum);
+    float inverse = inversesqrt(max(ss, 1e-12));
+    float cos_p = 0.5 * ss * inverse;
+    float x = 0.5 - 0.5 * cos_p;
+    vec3 turned = polynomial(cos_low, cos_high, x) * a + polynomial(sin_low, sin_high, x) * (sum * inverse - cos_p * a);
+    return ss > 1e-12 ? turned : a;
 }
 
 void main()
 {
-    int width = int(step_params.strand_count), s = min(int(gl_GlobalInvocationID.x), width - 1);
-    vec4 root = texelFetch(rest, s);
-    vec4 turn = step_params.head_rotation; // read once: a uniform costs a load wherever it is named
-    float style = step_params.style;
-    int vertex_count = int(step_params.vertex_count);
-    vec3 x = rotate(turn, root.xyz) + step_params.head_translation.xyz;
-    positions[s] = vec4(x, 1.0);
-    for (int j = 1; j < vertex_count; ++j) {
-        int a = j * width + s;
+    int s = int(gl_GlobalInvocationID.x), n = int(pose_params.vertex_count);
+    if (s >= int(pose_params.strand_count)) return;
+    int first = particle_address(s, 0, n);
+    vec4 root = texelFetch(rest, first), rotation = pose_params.head_rotation;
+    cos_low = pose_params.turn_cos[0], cos_high = pose_params.turn_cos[1];
+    sin_low = pose_params.turn_sin[0], sin_high = pose_params.turn_sin[1];
+
+    vec3 x = rotate(rotation, root.xyz) + pose_params.head_translation.xyz;
+    positions[first] = vec4(x, 1.0);
+    for (int j = 1; j < n; ++j) {
+        int a = first + j * STRAND_TILE;
 #if MIX == 1
         vec4 segment = texelFetch(segments, a);
         vec3 d = segment.xyz;
 #else
         vec4 segment = texelFetch(rest, a);
-        vec3 d = rotate(turn, segment.xyz);
+        vec3 d = rotate(rotation, segment.xyz);
 #if MIX == 2
-        d = slerp(texelFetch(segments, a).xyz, d, style);
+        d = turn(texelFetch(segments, a).xyz, d);
+#elif MIX == 3
+        d = turn(d, texelFetch(segments, a).xyz);
 #endif
 #endif
         x += segment.w * d;

@@ -14,6 +14,9 @@ typedef uint uvec4[4] __attribute__((aligned(16)));
 #define END_BLOCK(type, instance)         instance
 #endif
 
+// Strands lie in tiles of this many (hair.h): what neighbouring lanes touch is one piece of memory, and so is what a lane touches next.
+#define STRAND_TILE 16
+
 // Uniform blocks.
 #define BIND_STEP 0
 #define BIND_DRAW 1

@@ -12,6 +12,7 @@
 // registers for the whole step (VERTICES is known, loops unroll); without, any length goes through memory. A lane takes
 // STRANDS strands: their chains of dependent arithmetic overlap in the pipeline of a CPU.
 #include "step.h"
+#include "hair_address.glsl"
 #include "rigid.glsl"
 #include "forces.glsl"
 #include "tractrix.glsl"
@@ -32,8 +33,6 @@ const int LINKS = VERTICES - 1;
 #else
 #define LINKS int(step_params.vertex_count - 1u)
 #endif
-
-int address(int j, int s) { return j * int(step_params.strand_count) + s; }
 
 vec3 root_at(vec4 rotation, vec4 translation, vec4 root) { return rotate(rotation, root.xyz) + translation.xyz; }
 
@@ -80,10 +79,10 @@ void limit_speed(inout Tip tip, float R)
 
 void main()
 {
-    // Strands of a lane are GROUP_SIZE apart. Past the end a lane computes the last strand once more and writes nothing.
+    // Strands of a lane are GROUP_SIZE apart; those past the end, if any, are the copies that fill the last tile.
     int first = int(gl_WorkGroupID.x) * GROUP_SIZE * STRANDS + int(gl_LocalInvocationID.x);
-    int s[STRANDS];
-    bool live[STRANDS];
+    if (first >= int(step_params.strand_count)) return;
+    int s[STRANDS], base[STRANDS]; // strand, address of its root
     vec3 move[STRANDS], home[STRANDS], target[STRANDS];
     Tip tip[STRANDS];
 #if IN_REGISTERS
@@ -91,16 +90,16 @@ void main()
 #endif
 
     for (int k = 0; k < STRANDS; ++k) {
-        live[k] = first + k * GROUP_SIZE < int(step_params.strand_count);
-        s[k] = min(first + k * GROUP_SIZE, int(step_params.strand_count) - 1);
-        vec4 root_rest = texelFetch(rest, s[k]);
+        s[k] = first + k * GROUP_SIZE;
+        base[k] = particle_address(s[k], 0, LINKS + 1);
+        vec4 root_rest = texelFetch(rest, base[k]);
         float R = root_rest.w;
         vec3 root_old = root_at(step_params.head_rotation_old, step_params.head_translation_old, root_rest);
         vec3 root = root_at(step_params.head_rotation, step_params.head_translation, root_rest);
 
         vec3 span = vec3(0.0); // root -> strand's end
         for (int i = 0; i < LINKS; ++i) {
-            vec4 segment = texelFetch(segments_before, address(LINKS - i, s[k]));
+            vec4 segment = texelFetch(segments_before, base[k] + (LINKS - i) * STRAND_TILE);
             span += segment.w * segment.xyz;
 #if IN_REGISTERS
             link[k][i] = vec4(-segment.xyz, segment.w);
@@ -126,10 +125,10 @@ void main()
         bool from_tip = (pass & 1) == 0;
         for (int i = 0; i < LINKS; ++i)
             for (int k = 0; k < STRANDS; ++k) {
-                int a = address(from_tip ? LINKS - i : 1 + i, s[k]);
+                int a = base[k] + (from_tip ? LINKS - i : 1 + i) * STRAND_TILE;
                 vec4 segment = segments[a];
                 vec3 d = tractrix_turn(from_tip ? -segment.xyz : segment.xyz, segment.w, move[k]);
-                if (live[k]) segments[a] = vec4(from_tip ? -d : d, segment.w);
+                segments[a] = vec4(from_tip ? -d : d, segment.w);
             }
 #endif
         for (int k = 0; k < STRANDS; ++k) {
@@ -140,13 +139,12 @@ void main()
     }
 
     for (int k = 0; k < STRANDS; ++k) {
-        if (!live[k]) continue;
         for (int i = 0; i < LINKS; ++i) {
 #if IN_REGISTERS
             vec4 segment = link[k][i];
-            segments[address(LINKS - i, s[k])] = vec4(tractrix_renormalise(-segment.xyz), segment.w);
+            segments[base[k] + (LINKS - i) * STRAND_TILE] = vec4(tractrix_renormalise(-segment.xyz), segment.w);
 #else
-            int a = address(1 + i, s[k]);
+            int a = base[k] + (1 + i) * STRAND_TILE;
             vec4 segment = segments[a];
             segments[a] = vec4(tractrix_renormalise(segment.xyz), segment.w);
 #endif

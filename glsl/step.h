@@ -14,7 +14,6 @@ UNIFORM_BLOCK(StepParams, step_params, BIND_STEP)
     float decay;  // e^{-c h}: what drag leaves of a velocity
     float gain;   // h f: seconds that an acceleration acts
     float drag;   // c, 1/s
-    float style;  // 0: the physical strand is drawn, 1: the style
     uint strand_count;
     uint vertex_count;
     uint passes; // split: pulls along the strand

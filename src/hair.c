@@ -31,6 +31,11 @@ static Result order_by_size(Order *order, const Strands *strands, Error *error)
                 : error_set(error, RESULT_FAILED, "no memory for %u strands", order->count);
 }
 
+static uint32_t slots_of(uint32_t strands)
+{
+    return hair_slots(&(HairBatch){.strand_count = strands});
+}
+
 // Where the batch that begins at `begin` ends: at another vertex count, or where a buffer is full.
 static uint32_t batch_end(const Order *order, const Strands *strands, uint32_t begin,
                           const GpuLimits *limits)
@@ -39,22 +44,21 @@ static uint32_t batch_end(const Order *order, const Strands *strands, uint32_t b
     int64_t texels = limits->storage_block / 16;
     if (limits->texture_texels < texels) texels = limits->texture_texels;
     while (end < order->count && strands_size(strands, order->strand[end]) == n &&
-           (int64_t)(end - begin + 1) * n <= texels)
+           (int64_t)slots_of(end - begin + 1) * n <= texels)
         ++end;
     return end;
 }
 
 typedef float Float4[4];
 
-// The rest shape of strand `s` into column `column` of a batch of `width` strands.
-static void fill_strand(Float4 *rest, Float4 *position, const Strands *strands, uint32_t s,
-                        uint32_t column, uint32_t width)
+// The rest shape and first positions of the batch's strand `slot`, which is the file's strand `s`.
+static void fill_strand(Float4 *rest, Float4 *position, const HairBatch *batch, uint32_t slot,
+                        const Strands *strands, uint32_t s)
 {
     const float(*q)[3] = (const float(*)[3]) & strands->position[strands->first[s]];
-    uint32_t n = strands_size(strands, s);
     double total = 0;
-    for (uint32_t j = 0; j < n; ++j) {
-        size_t at = (size_t)j * width + column;
+    for (uint32_t j = 0; j < batch->vertex_count; ++j) {
+        size_t at = hair_address(batch, slot, j);
         memcpy(position[at], q[j], sizeof q[j]);
         position[at][3] = 1;
         if (j == 0) continue;
@@ -66,14 +70,15 @@ static void fill_strand(Float4 *rest, Float4 *position, const Strands *strands, 
         rest[at][3] = (float)length;
         total += (double)rest[at][3];
     }
-    memcpy(rest[column], q[0], sizeof q[0]);
-    rest[column][3] = (float)total;
+    size_t root = hair_address(batch, slot, 0);
+    memcpy(rest[root], q[0], sizeof q[0]);
+    rest[root][3] = (float)total;
 }
 
 static Result upload(HairBatch *batch, const GpuLimits *limits, const void *rest,
                      const void *position, const uint32_t *ids, Error *error)
 {
-    int64_t size = (int64_t)batch->vertex_count * batch->strand_count * (int64_t)sizeof(Float4);
+    int64_t size = (int64_t)batch->vertex_count * hair_slots(batch) * (int64_t)sizeof(Float4);
     Result result = gpu_buffer_create(&batch->position, limits, "hair positions", size, position,
                                       GL_RGBA32F, error);
     if (result == RESULT_OK)
@@ -81,22 +86,24 @@ static Result upload(HairBatch *batch, const GpuLimits *limits, const void *rest
             gpu_buffer_create(&batch->rest, limits, "hair style", size, rest, GL_RGBA32F, error);
     if (result == RESULT_OK)
         result = gpu_buffer_create(&batch->strand_id, limits, "strand numbers",
-                                   (int64_t)batch->strand_count * 4, ids, GL_R32UI, error);
+                                   (int64_t)hair_slots(batch) * 4, ids, GL_R32UI, error);
     return result;
 }
 
 static Result create_batch(HairBatch *batch, const Strands *strands, const uint32_t *order,
                            uint32_t first_id, const GpuLimits *limits, Error *error)
 {
-    size_t particles = (size_t)batch->vertex_count * batch->strand_count;
+    uint32_t slots = hair_slots(batch);
+    size_t particles = (size_t)batch->vertex_count * slots;
     Float4 *rest = malloc(particles * sizeof *rest),
            *position = malloc(particles * sizeof *position);
-    uint32_t *ids = malloc(batch->strand_count * sizeof *ids);
+    uint32_t *ids = malloc(slots * sizeof *ids);
     Result result = RESULT_FAILED;
     if (rest && position && ids) {
-        for (uint32_t i = 0; i < batch->strand_count; ++i) {
-            fill_strand(rest, position, strands, order[i], i, batch->strand_count);
-            ids[i] = first_id + order[i];
+        for (uint32_t slot = 0; slot < slots; ++slot) {
+            uint32_t s = order[slot < batch->strand_count ? slot : batch->strand_count - 1];
+            fill_strand(rest, position, batch, slot, strands, s);
+            ids[slot] = first_id + s;
         }
         result = upload(batch, limits, rest, position, ids, error);
     } else {

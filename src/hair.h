@@ -6,8 +6,13 @@
 #include "gpu_buffer.h"
 #include "strands.h"
 
-// Strands of equal vertex count, no more than one buffer holds. Particle j (0 = root) of strand s
-// stands at index j * strand_count + s, so that neighbouring lanes touch neighbouring memory.
+#include "shared.h"
+
+// Strands of equal vertex count, no more than one buffer holds. Strands lie in tiles of STRAND_TILE
+// (glsl/shared.h): particle 0 of a tile's strands side by side, then particle 1 and so on, so that
+// a group of lanes reads one piece of memory from its beginning to its end. (With a row of all
+// strands for each particle, CPUs lose up to a factor of two to far jumps.) The last tile is filled
+// up with copies of the last strand, which may be stepped like any other and are never drawn.
 typedef struct HairBatch {
     uint32_t vertex_count; // of each strand, >= 2
     uint32_t strand_count;
@@ -15,9 +20,22 @@ typedef struct HairBatch {
     GpuBuffer rest;     // vec4 a particle, the style in the head's frame. j = 0: root (m) and the
                     // strand's length (m); j > 0: unit direction of the segment from j - 1 to j and
                     // its rest length (m)
-    GpuBuffer strand_id; // uint a strand: its number among all strands of the run, seed of all that
-                         // varies by strand
+    GpuBuffer strand_id; // uint a strand (and copy): its number among all strands of the run, seed
+                         // of all that varies by strand
 } HairBatch;
+
+// Strands with the last tile's copies: what buffers have room for.
+static inline uint32_t hair_slots(const HairBatch *batch)
+{
+    return (batch->strand_count + STRAND_TILE - 1) / STRAND_TILE * STRAND_TILE;
+}
+
+// Index of particle `vertex` of strand `strand`, an element of `position` and `rest`.
+static inline size_t hair_address(const HairBatch *batch, uint32_t strand, uint32_t vertex)
+{
+    return ((size_t)(strand / STRAND_TILE) * batch->vertex_count + vertex) * STRAND_TILE +
+           strand % STRAND_TILE;
+}
 
 typedef struct Hair {
     HairBatch *batches;

@@ -6,22 +6,23 @@
 #include "shader.h"
 #include "solver.h"
 
-typedef enum PoseMix { POSE_STYLE, POSE_PHYSICAL, POSE_MIXED } PoseMix;
+// What the drawn directions are made of; the values are those of MIX in pose.comp.
+typedef enum PoseMix { POSE_STYLE, POSE_PHYSICAL, POSE_NEAR_PHYSICAL, POSE_NEAR_STYLE } PoseMix;
 
 typedef struct Pose {
     GLuint program;
     GpuBuffer uniforms;
-    PoseMix mix;
+    float turn_cos[8], turn_sin[8]; // see pose.c
 } Pose;
 
-// `style` 0 draws the physical strand, 1 the style, between them a mix of every direction; the
-// shader variant has only what that needs.
-Result pose_create(Pose *pose, PoseMix mix, Error *error);
+// `style` 0 draws the physical strand, 1 the style, between them every direction is turned by that
+// share of the angle between both (slerp, to 3e-7 rad); the shader variant has only what that
+// needs.
+Result pose_create(Pose *pose, float style, Error *error);
 void pose_destroy(Pose *pose);
-PoseMix pose_mix_of_style(float style);
 
 // Writes the batch's positions. `segments`: vec4 a particle (unit direction in the world, rest
-// length) in the batch's order; NULL for POSE_STYLE. Queues GPU work, its result is visible to
+// length) in the batch's order; NULL where `style` is 1. Queues GPU work, its result is visible to
 // texture fetches and storage reads that follow.
-void pose_write(Pose *pose, const HairBatch *batch, const GpuBuffer *segments, const HeadPose *head,
-                float style);
+void pose_write(Pose *pose, const HairBatch *batch, const GpuBuffer *segments,
+                const HeadPose *head);

@@ -24,7 +24,7 @@ static Result create(void **pointer, const SolverSetup *setup, Error *error)
     if (!state) return error_set(error, RESULT_FAILED, "no memory for a solver");
     state->hair = setup->hair;
     state->timer = setup->timer;
-    Result result = pose_create(&state->pose, POSE_STYLE, error);
+    Result result = pose_create(&state->pose, 1, error);
     if (result != RESULT_OK) {
         destroy(state);
         state = NULL;
@@ -38,7 +38,7 @@ static void write_pose(void *pointer, const HeadPose *head)
     NoneState *state = pointer;
     gpu_timer_begin(state->timer, "pose");
     for (uint32_t i = 0; i < state->hair->batch_count; ++i)
-        pose_write(&state->pose, &state->hair->batches[i], NULL, head, 1);
+        pose_write(&state->pose, &state->hair->batches[i], NULL, head);
     gpu_timer_end(state->timer);
 }
 

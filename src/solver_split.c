@@ -94,23 +94,26 @@ typedef float Float4[4];
 static Result create_state(SplitBatch *batch, const HairBatch *hair, const GpuLimits *limits,
                            Error *error)
 {
-    size_t particles = (size_t)hair->vertex_count * hair->strand_count;
+    uint32_t slots = hair_slots(hair);
+    size_t particles = (size_t)hair->vertex_count * slots;
     Float4 *rest = malloc(particles * sizeof *rest),
-           *tips = calloc(2 * (size_t)hair->strand_count, sizeof *tips);
+           *tips = calloc(2 * (size_t)slots, sizeof *tips);
     Result result = RESULT_FAILED;
     if (rest && tips) {
         glBindBuffer(GL_SHADER_STORAGE_BUFFER, hair->rest.buffer);
         glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(particles * sizeof *rest),
                            rest);
-        for (size_t a = 0; a < particles; ++a)
-            for (int k = 0; k < 3; ++k)
-                tips[2 * (a % hair->strand_count)][k] +=
-                    a < hair->strand_count ? rest[a][k] : rest[a][3] * rest[a][k];
+        for (uint32_t slot = 0; slot < slots; ++slot)
+            for (uint32_t j = 0; j < hair->vertex_count; ++j)
+                for (int k = 0; k < 3; ++k) {
+                    const float *at = rest[hair_address(hair, slot, j)];
+                    tips[2 * slot][k] += j == 0 ? at[k] : at[3] * at[k];
+                }
         result = gpu_buffer_create(&batch->segments, limits, "split's segments",
                                    (int64_t)(particles * sizeof *rest), rest, GL_RGBA32F, error);
         if (result == RESULT_OK)
-            result = gpu_buffer_create(&batch->tips, limits, "split's tips",
-                                       32 * (int64_t)hair->strand_count, tips, 0, error);
+            result = gpu_buffer_create(&batch->tips, limits, "split's tips", 32 * (int64_t)slots,
+                                       tips, 0, error);
     } else {
         error_set(error, RESULT_FAILED, "no memory for %zu particles", particles);
     }
@@ -125,8 +128,7 @@ static Result build(SplitState *state, const SolverSetup *setup, Error *error)
         calloc(state->hair->batch_count ? state->hair->batch_count : 1, sizeof *state->batches);
     if (!state->batches) return error_set(error, RESULT_FAILED, "no memory for a solver");
     Result result = build_programs(state, setup->gpu->software, error);
-    if (result == RESULT_OK)
-        result = pose_create(&state->pose, pose_mix_of_style(setup->params->style), error);
+    if (result == RESULT_OK) result = pose_create(&state->pose, setup->params->style, error);
     for (uint32_t i = 0; i < state->hair->batch_count && result == RESULT_OK; ++i)
         result =
             create_state(&state->batches[i], &state->hair->batches[i], &setup->gpu->limits, error);
@@ -179,8 +181,7 @@ static void write_pose(void *pointer, const HeadPose *head)
     SplitState *state = pointer;
     gpu_timer_begin(state->timer, "pose");
     for (uint32_t i = 0; i < state->hair->batch_count; ++i)
-        pose_write(&state->pose, &state->hair->batches[i], &state->batches[i].segments, head,
-                   state->params->style);
+        pose_write(&state->pose, &state->hair->batches[i], &state->batches[i].segments, head);
     gpu_timer_end(state->timer);
 }
 

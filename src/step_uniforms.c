@@ -21,7 +21,6 @@ StepParams step_uniforms(const SolverStep *step, const SectionParams *params)
     StepParams uniforms = {
         .dt = (float)step->dt,
         .drag = params->drag,
-        .style = params->style,
     };
     set_pose(uniforms.head_rotation_old, uniforms.head_translation_old, &step->head_old);
     set_pose(uniforms.head_rotation, uniforms.head_translation, &step->head);

@@ -70,7 +70,7 @@ void fixture_step(HairFixture *fixture)
 float (*fixture_positions(HairFixture *fixture, uint32_t batch))[4]
 {
     const HairBatch *hair = &fixture->hair.batches[batch];
-    size_t size = (size_t)hair->vertex_count * hair->strand_count * sizeof(float[4]);
+    size_t size = (size_t)hair->vertex_count * hair_slots(hair) * sizeof(float[4]);
     float(*positions)[4] = malloc(size);
     assert_non_null(positions);
     fixture->solver.type->pose(fixture->solver.state, &fixture->step.head);

@@ -27,5 +27,5 @@ void fixture_destroy(HairFixture *fixture);
 // One step, then the head of this step becomes the old one.
 void fixture_step(HairFixture *fixture);
 
-// The drawn positions of batch `batch` (after writing the pose): [n][count][4], malloc'ed.
+// The drawn positions of batch `batch` (after writing the pose), by hair_address; malloc'ed.
 float (*fixture_positions(HairFixture *fixture, uint32_t batch))[4];

@@ -34,7 +34,7 @@ static void to_double(const HairFixture *fixture, const float (*positions)[4], i
     const HairBatch *batch = &fixture->hair.batches[0];
     for (uint32_t j = 0; j < batch->vertex_count; ++j)
         for (int k = 0; k < 3; ++k)
-            q[j][k] = (double)positions[j * batch->strand_count + (uint32_t)s][k];
+            q[j][k] = (double)positions[hair_address(batch, (uint32_t)s, j)][k];
 }
 
 static void read_strand(HairFixture *fixture, int s, Vec *q)
