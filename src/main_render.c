@@ -10,6 +10,7 @@
 #include "sequence.h"
 #include "simulation.h"
 #include "stats.h"
+#include "target.h"
 
 #include "version.h"
 
@@ -123,14 +124,28 @@ static Result open_output(Run *run, Error *error)
     return output_create(&run->output, &options, error);
 }
 
+// What can be said before any file is opened.
+static Result check_words(const Scene *scene, Error *error)
+{
+    Target target = {0};
+    Result result =
+        *scene->run.output ? target_parse(&target, scene->run.output, error) : RESULT_OK;
+    target_destroy(&target);
+    for (uint32_t i = 0; i < scene->section_count && result == RESULT_OK; ++i)
+        result = solver_check(&scene->sections[i].params, error);
+    return result;
+}
+
 // Files first: what is wrong with them is told before a driver is started. The output's folder is
 // made last but before any work.
 static Result prepare(Run *run, Error *error)
 {
     const RunParams *params = &run->scene.run;
     bool draws = *params->output != 0;
-    Result result = assets_load(&run->assets, &run->scene, params->quiet ? NULL : stderr,
-                                params->verbose, error);
+    Result result = check_words(&run->scene, error);
+    if (result == RESULT_OK)
+        result = assets_load(&run->assets, &run->scene, params->quiet ? NULL : stderr,
+                             params->verbose, error);
     run->loaded_ms = stats_clock_ms();
     if (result == RESULT_OK) result = open_gpu(run, error);
     if (result == RESULT_OK)
@@ -151,7 +166,7 @@ static void tell_result(const Run *run, const Sequence *sequence, double ms)
     int frames = sequence->output ? sequence->frames_drawn + sequence->frames_repeated
                                   : run->simulation.frame + 1;
     SolverReport report = simulation_report(&run->simulation);
-    if (report.moves_limited)
+    if (report.moves_limited && run->scene.run.verbose)
         fprintf(stderr, "%llu moves of more than 100 strand lengths a step were cut\n",
                 (unsigned long long)report.moves_limited);
     fprintf(stderr, "%d frames in %.1f s, %.1f a second", frames, ms / 1e3, frames * 1e3 / ms);

@@ -41,12 +41,19 @@ static Result check_variant(const SolverType *type, const char *variant, Error *
                      type->name, variant, suggest_nearest(variant, type->variants, count));
 }
 
+Result solver_check(const SectionParams *params, Error *error)
+{
+    const SolverType *type = find_type(params->algo);
+    return type ? check_variant(type, params->variant, error) : refuse_type(params->algo, error);
+}
+
 Result solver_create(Solver *solver, const SolverSetup *setup, Error *error)
 {
-    *solver = (Solver){.type = find_type(setup->params->algo)};
-    if (!solver->type) return refuse_type(setup->params->algo, error);
-    Result result = check_variant(solver->type, setup->params->variant, error);
-    if (result == RESULT_OK) result = solver->type->create(&solver->state, setup, error);
+    *solver = (Solver){0};
+    Result result = solver_check(setup->params, error);
+    if (result != RESULT_OK) return result;
+    solver->type = find_type(setup->params->algo);
+    result = solver->type->create(&solver->state, setup, error);
     if (result != RESULT_OK) *solver = (Solver){0};
     return result;
 }

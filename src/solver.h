@@ -59,7 +59,11 @@ typedef struct Solver {
     void *state;
 } Solver;
 
-// Finds params->algo and checks params->variant; RESULT_USAGE naming the nearest valid word.
+// Whether params->algo and params->variant exist; RESULT_USAGE naming the nearest valid word. Needs
+// no context.
+Result solver_check(const SectionParams *params, Error *error);
+
+// Checks as above and creates.
 Result solver_create(Solver *solver, const SolverSetup *setup, Error *error);
 void solver_destroy(Solver *solver);
 

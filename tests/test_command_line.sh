@@ -1,0 +1,167 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# The command line of tractrix-render as a user meets it: exit statuses, messages, files.
+set -u
+bin=${TRACTRIX_BIN:-out/release}
+render=$bin/tractrix-render
+work=$(mktemp -d)
+trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
+passed=0 failed=0 skipped=0
+hair=assets/fur.tfx
+small="--frames 2 --size 32x24"
+
+# claim TEXT: what the next commands must make true. check CONDITION...
+claim() { claim=$1; }
+good() { passed=$((passed + 1)); }
+bad() { failed=$((failed + 1)); echo "FAILED: $claim: $*"; sed 's/^/    /' "$work/err"; }
+# run STATUS ARGUMENT...: runs tractrix-render and compares the exit status; output in $work/out and $work/err.
+run() {
+    expected=$1; shift
+    "$render" "$@" >"$work/out" 2>"$work/err" </dev/null
+    status=$?
+    if [ "$status" = "$expected" ]; then good; else bad "exit status $status, expected $expected: $*"; fi
+}
+says() { if grep -qF -- "$1" "$work/err" "$work/out"; then good; else bad "does not say '$1'"; fi; }
+one_line() { if [ "$(wc -l <"$work/err")" = 1 ]; then good; else bad "not one line"; fi; }
+is_file() { if [ -s "$1" ]; then good; else bad "no file $1"; fi; }
+no_files() { if [ -z "$(ls -A "$1" 2>/dev/null)" ]; then good; else bad "left behind: $(ls -A "$1")"; fi; }
+
+claim "frames are written and told"
+# shellcheck disable=SC2086
+run 0 $hair $small -o "$work/a/"
+is_file "$work/a/frame_0000.png"; is_file "$work/a/frame_0001.png"; says "OpenGL"; says "2 frames in"
+
+claim "-q says nothing"
+# shellcheck disable=SC2086
+run 0 $hair $small -q -o "$work/q_%03d.png"
+is_file "$work/q_001.png"
+if [ -s "$work/err" ]; then bad "said something"; else good; fi
+
+claim "only the frames asked for are drawn, and they are the same as in the whole sequence"
+# shellcheck disable=SC2086
+run 0 $hair --frames 6 --size 32x24 -q -o "$work/whole/"
+run 0 $hair --frames 6 --size 32x24 -q --first 1 --last 5 --every 2 -o "$work/part/"
+if [ "$(cd "$work/part" && echo *)" = "frame_0001.png frame_0003.png frame_0005.png" ]; then good; else bad "wrong frames"; fi
+if cmp -s "$work/whole/frame_0005.png" "$work/part/frame_0005.png"; then good; else bad "frame 5 differs"; fi
+
+claim "the same command gives the same bytes, with any number of driver threads"
+run 0 assets/demo.json --frames 3 --size 320x240 -q -o "$work/r1/"
+run 0 assets/demo.json --frames 3 --size 320x240 -q -o "$work/r2/"
+if LP_NUM_THREADS=1 "$render" assets/demo.json --frames 3 --size 320x240 -q -o "$work/r3/" 2>"$work/err"; then good; else bad "one thread"; fi
+for other in r2 r3; do
+    if diff -r "$work/r1" "$work/$other" >"$work/err"; then good; else bad "$other differs"; fi
+done
+
+claim "usage errors name the nearest valid word and end with 2"
+run 2; one_line
+run 2 $hair; one_line; says "-o"
+run 2 $hair --farmes 3 -o "$work/x/"; one_line; says "frames"
+run 2 $hair --frames 0 -o "$work/x/"; one_line; says "frames"
+run 2 $hair --frames many -o "$work/x/"; one_line
+run 2 $hair --algo splitt -o "$work/x/"; one_line; says "did you mean 'split'"
+run 2 $hair --variant thesiss -o "$work/x/"; one_line; says "did you mean 'thesis'"
+run 2 $hair --software --require-hardware -o "$work/x/"; one_line
+run 2 $hair -o "$work/x_%d_%d.png"; one_line
+run 2 $hair -o "$work/x.avi"; one_line
+if [ -e "$work/x" ]; then bad "made a folder"; else good; fi
+
+claim "bad files end with 3 and one line with file and place"
+printf 'numStrands 1\nis sorted 1\nstrand 0 numVerts 2 texcoord 0 0\n1 2 3\n' >"$work/cut.tfx"
+printf 'not hair\n' >"$work/text.tfx"
+printf '{"frames": 3, "sectoins": []}\n' >"$work/key.json"
+printf '{"frames": \n' >"$work/cut.json"
+for file in missing.tfx cut.tfx text.tfx key.json cut.json; do
+    run 3 "$work/$file" -o "$work/x/"
+    one_line; says "$work/$file"
+done
+says "cut.json"
+run 3 $hair --mesh "$work/missing.obj" -o "$work/x/"; one_line; says "missing.obj"
+
+claim "dirty files are mended with a report, or refused with --strict"
+printf 'numStrands 2\nis sorted 1\nstrand 0 numVerts 3 texcoord 0 0\n0 100 0\n0 100 0\n0 120 0\nstrand 1 numVerts 2 texcoord 0 0\n1 2 -1.#INF\n1 2 3\n' >"$work/dirty.tfx"
+run 0 "$work/dirty.tfx" --frames 1 --size 16x16 -o "$work/d/"; says "dirty.tfx:"
+run 3 "$work/dirty.tfx" --strict --frames 1 --size 16x16 -o "$work/d/"; one_line
+run 1 --check "$work/dirty.tfx"; says "strands"
+run 0 --check $hair; says "TressFX 4"
+run 3 --check "$work/text.tfx"
+
+claim "no usable GL ends with 4 and says what was tried"
+__EGL_VENDOR_LIBRARY_FILENAMES=/dev/null
+export __EGL_VENDOR_LIBRARY_FILENAMES
+run 4 $hair --backend egl --frames 1 -o "$work/x/"; one_line; says "surfaceless"; says "libgl1-mesa-dri"
+unset __EGL_VENDOR_LIBRARY_FILENAMES
+run 4 $hair --device 31 --frames 1 -o "$work/x/"; one_line; says "--list-devices"
+
+claim "OSMesa is another way in"
+run 0 $hair --backend osmesa --frames 1 --size 32x24 -o "$work/osmesa/"
+says "OSMesa"; is_file "$work/osmesa/frame_0000.png"
+
+claim "an unwritable place fails with 1 before any work, and nothing is left"
+run 1 $hair --frames 1 -o "/proc/none/here/"; says "/proc/none"
+printf x >"$work/plain"
+run 1 $hair --frames 1 -o "$work/plain/sub/"; says "plain"
+
+claim "an interrupt ends with 130, one line and whole files"
+"$render" assets/demo.json --size 320x240 -o "$work/int/" >"$work/out" 2>"$work/err" &
+pid=$!
+while [ ! -e "$work/int/frame_0001.png" ] && kill -0 $pid 2>/dev/null; do sleep 0.05; done
+kill -INT $pid; kill -TERM $pid 2>/dev/null
+wait $pid
+status=$?
+# A second signal ends the program at once (128 + 15) if it comes before the first was looked at.
+if [ $status = 130 ] || [ $status = 143 ]; then good; else bad "exit status $status"; fi
+"$render" assets/demo.json --size 320x240 -o "$work/int2/" >"$work/out" 2>"$work/err" &
+pid=$!
+while [ ! -e "$work/int2/frame_0001.png" ] && kill -0 $pid 2>/dev/null; do sleep 0.05; done
+kill -TERM $pid
+wait $pid
+status=$?
+if [ $status = 130 ]; then good; else bad "exit status $status, expected 130"; fi
+says "interrupted after"
+mkdir "$work/clean"
+for file in "$work"/int2/* "$work"/int2/.[!.]*; do
+    case $file in
+    *frame_0[0-9][0-9][0-9].png) ;;
+    *'*'*) ;;
+    *) mv "$file" "$work/clean/" ;;
+    esac
+done
+no_files "$work/clean"
+
+claim "statistics hold device, passes, frames and parameters"
+# shellcheck disable=SC2086
+run 0 $hair $small -q --seed 7 -o "$work/s/" --stats "$work/stats.json"
+for word in '"renderer"' '"sim_split"' '"draw_hair"' '"frames_drawn": 2' '"seed": 7' '"peak_memory_kib"' '"commit"'; do
+    if grep -qF -- "$word" "$work/stats.json"; then good; else bad "no $word"; fi
+done
+
+claim "a still scene is drawn once"
+run 0 $hair --algo none --frames 5 --size 32x24 -q -o "$work/still/" --stats "$work/stats.json"
+if grep -qF '"frames_repeated": 4' "$work/stats.json"; then good; else bad "was drawn again"; fi
+if cmp -s "$work/still/frame_0000.png" "$work/still/frame_0004.png"; then good; else bad "frames differ"; fi
+
+claim "the same hair in metres and in centimetres gives the same picture"
+awk 'BEGIN { print "numStrands 40"; print "is sorted 1"; for (s = 0; s < 40; ++s) { print "strand", s, "numVerts 8 texcoord 0 0"
+    for (j = 0; j < 8; ++j) print s * 0.5 - 10, 100 - j * 2, j * j * 0.25 } }' >"$work/cm.tfx"
+awk 'NF == 3 && $1 ~ /^[-0-9]/ { print $1 * 4, $2 * 4, $3 * 4; next } { print }' "$work/cm.tfx" >"$work/other.tfx"
+run 0 "$work/cm.tfx" --unit 0.015625 --frames 3 --size 64x48 -q -o "$work/u1/"
+run 0 "$work/other.tfx" --unit 0.00390625 --frames 3 --size 64x48 -q -o "$work/u2/"
+if diff -r "$work/u1" "$work/u2" >"$work/err"; then good; else bad "pictures differ"; fi
+
+claim "help, version and lists"
+run 0 --help; says "--turntable"; says "Exit status"
+run 0 --version; says "tractrix-render"
+run 0 --algo list; says "thesis"
+run 0 --list-devices; says "OpenGL"
+
+claim "video through ffmpeg"
+if command -v ffmpeg >/dev/null; then
+    run 0 $hair --frames 4 --size 64x48 -o "$work/v.mp4"
+    is_file "$work/v.mp4"
+    run 1 $hair --frames 4 --size 64x48 -o "/proc/v.mp4"
+else
+    echo "skipped: no ffmpeg"; skipped=$((skipped + 1))
+fi
+
+echo "$passed passed, $failed failed, $skipped skipped"
+[ "$failed" = 0 ]
