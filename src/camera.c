@@ -56,9 +56,9 @@ static void look_at(View *view, vec3 target, const float camera_up[3])
 static void find_depths(View *view, const Outline *all)
 {
     float nearest = 1e30f, farthest = 0;
-    for (int i = 0; i < FRAMING_DIRECTIONS && all->any; ++i) {
+    for (int i = 0; i < 8 && all->any; ++i) {
         vec3 p, seen;
-        memcpy(p, all->point[i], sizeof p);
+        outline_corner(all, i, p);
         glm_mat4_mulv3(view->view, p, 1, seen);
         nearest = fminf(nearest, -seen[2]);
         farthest = fmaxf(farthest, -seen[2]);

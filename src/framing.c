@@ -9,26 +9,50 @@
 static const float MARGIN = 1.06f;
 static const float SIDE_DEG = 25, ABOVE_DEG = 10;
 // Times, angles and vertices that are looked at; the margin covers what lies between.
-enum { TIMES = 16, ANGLES = 64, VERTICES = 100000 };
+enum { TIMES = 16, ANGLES = 64, VERTICES = 50000 };
+
+// A spiral of equal areas (Fibonacci lattice) over the sphere.
+static void begin_outline(Outline *outline, const float point[3])
+{
+    const float golden = 2.39996323f;
+    for (int i = 0; i < OUTLINE_DIRECTIONS; ++i) {
+        float z = 1 - (2 * (float)i + 1) / OUTLINE_DIRECTIONS, r = sqrtf(1 - z * z);
+        outline->direction[0][i] = r * cosf(golden * (float)i);
+        outline->direction[1][i] = r * sinf(golden * (float)i);
+        outline->direction[2][i] = z;
+        outline->reach[i] = -INFINITY;
+    }
+    memcpy(outline->low, point, sizeof outline->low);
+    memcpy(outline->high, point, sizeof outline->high);
+    outline->any = true;
+}
 
 void outline_add(Outline *outline, const float point[3])
 {
-    if (!outline->any)
-        for (int i = 0; i < FRAMING_DIRECTIONS; ++i) memcpy(outline->point[i], point, sizeof(vec3));
-    outline->any = true;
-    // The 27 vectors of -1, 0, 1 in order; the zero vector is the 14th, and left out.
-    for (int i = 0, code = 0; i < FRAMING_DIRECTIONS; ++i, ++code) {
-        if (code == 13) ++code;
-        float x = (float)(code % 3 - 1), y = (float)(code / 3 % 3 - 1), z = (float)(code / 9 - 1);
-        float *far = outline->point[i];
-        float gain = x * (point[0] - far[0]) + y * (point[1] - far[1]) + z * (point[2] - far[2]);
-        if (gain > 0) memcpy(far, point, sizeof(vec3));
+    if (!outline->any) begin_outline(outline, point);
+    float reach[OUTLINE_DIRECTIONS]; // all first: a loop without branches is done four at a time
+    const float *x = outline->direction[0], *y = outline->direction[1], *z = outline->direction[2];
+    for (int i = 0; i < OUTLINE_DIRECTIONS; ++i)
+        reach[i] = x[i] * point[0] + y[i] * point[1] + z[i] * point[2];
+    for (int i = 0; i < OUTLINE_DIRECTIONS; ++i)
+        if (reach[i] > outline->reach[i]) {
+            outline->reach[i] = reach[i];
+            memcpy(outline->point[i], point, sizeof(vec3));
+        }
+    for (int k = 0; k < 3; ++k) {
+        outline->low[k] = fminf(outline->low[k], point[k]);
+        outline->high[k] = fmaxf(outline->high[k], point[k]);
     }
+}
+
+void outline_corner(const Outline *outline, int which, float corner[3])
+{
+    for (int k = 0; k < 3; ++k) corner[k] = (which >> k & 1 ? outline->high : outline->low)[k];
 }
 
 static void add_outline(Outline *outline, const Outline *more)
 {
-    for (int i = 0; i < FRAMING_DIRECTIONS && more->any; ++i) outline_add(outline, more->point[i]);
+    for (int i = 0; i < OUTLINE_DIRECTIONS && more->any; ++i) outline_add(outline, more->point[i]);
 }
 
 // State of everything that moves, at one time.
@@ -63,15 +87,15 @@ static void carry(const Moment *moment, const float point[3], float carried[3])
     for (int k = 0; k < 3; ++k) carried[k] += moment->translation[k];
 }
 
-// Every how manieth strand is looked at.
-static uint32_t strand_stride(const Strands *strands)
+// Every how manieth strand is looked at, for `times` looks at each.
+static uint32_t strand_stride(const Strands *strands, uint32_t times)
 {
-    return 1 + strands->vertex_count / VERTICES;
+    return 1 + (uint32_t)((uint64_t)strands->vertex_count * times / VERTICES);
 }
 
 static void add_style(Outline *outline, const Strands *strands)
 {
-    for (uint32_t s = 0; s < strands->strand_count; s += strand_stride(strands))
+    for (uint32_t s = 0; s < strands->strand_count; s += strand_stride(strands, 1))
         for (uint32_t v = strands->first[s]; v < strands->first[s + 1]; ++v)
             outline_add(outline, strands->position[v]);
 }
@@ -97,20 +121,20 @@ static void add_rest_strand(Outline *outline, const Strands *strands, uint32_t s
 }
 
 static void add_rest(Outline *outline, const Strands *strands, const SectionParams *params,
-                     const Moment *moment)
+                     const Moment *moment, uint32_t times)
 {
     vec3 pull;
     for (int k = 0; k < 3; ++k) pull[k] = moment->gravity[k] + params->drag * moment->wind[k];
     float strength = glm_vec3_norm(pull);
     if (!(strength > 0) || params->style >= 1 || strcmp(params->algo, "none") == 0) return;
     glm_vec3_scale(pull, 1 / strength, pull);
-    for (uint32_t s = 0; s < strands->strand_count; s += strand_stride(strands))
+    for (uint32_t s = 0; s < strands->strand_count; s += strand_stride(strands, times))
         add_rest_strand(outline, strands, s, moment, pull, params->style);
 }
 
 static void add_carried(Outline *outline, const Outline *still, const Moment *moment)
 {
-    for (int i = 0; i < FRAMING_DIRECTIONS && still->any; ++i) {
+    for (int i = 0; i < OUTLINE_DIRECTIONS && still->any; ++i) {
         vec3 carried;
         carry(moment, still->point[i], carried);
         outline_add(outline, carried);
@@ -126,27 +150,16 @@ static void find_outlines(Framing *framing, const Scene *scene, const Strands *s
     bool moves = scene->head.translation.count || scene->head.rotation.count ||
                  scene->gravity.count || scene->wind.count;
     double duration = scene->run.frames / (double)scene->run.fps;
-    for (int t = 0; t < (moves ? TIMES : 1); ++t) {
+    uint32_t times = moves ? TIMES : 1;
+    for (uint32_t t = 0; t < times; ++t) {
         Moment moment;
         moment_at(&moment, scene, duration * t / (TIMES - 1));
         add_carried(&framing->hair, &style, &moment);
         add_carried(&framing->all, &body, &moment);
         for (uint32_t i = 0; i < scene->section_count; ++i)
-            add_rest(&framing->hair, &strands[i], &scene->sections[i].params, &moment);
+            add_rest(&framing->hair, &strands[i], &scene->sections[i].params, &moment, times);
     }
     add_outline(&framing->all, &framing->hair);
-}
-
-static void find_middle(const Outline *outline, float middle[3])
-{
-    for (int k = 0; k < 3; ++k) {
-        float low = outline->point[0][k], high = low;
-        for (int i = 1; i < FRAMING_DIRECTIONS; ++i) {
-            low = fminf(low, outline->point[i][k]);
-            high = fmaxf(high, outline->point[i][k]);
-        }
-        middle[k] = 0.5f * (low + high);
-    }
 }
 
 // Axes of the automatic camera: `right`, `top` and, from the target to the eye, `back`.
@@ -175,7 +188,7 @@ static float distance_to_see(const Outline *outline, const Axes *axes, const flo
                              float tan_x, float tan_y)
 {
     float distance = 0;
-    for (int i = 0; i < FRAMING_DIRECTIONS; ++i) {
+    for (int i = 0; i < OUTLINE_DIRECTIONS; ++i) {
         vec3 p, right, top, back;
         for (int k = 0; k < 3; ++k) p[k] = outline->point[i][k] - target[k];
         glm_vec3_copy((float *)axes->right, right);
@@ -219,7 +232,8 @@ void framing_compute(Framing *framing, const Scene *scene, const Strands *strand
 {
     memset(framing, 0, sizeof *framing);
     find_outlines(framing, scene, strands, mesh);
-    find_middle(framing->hair.any ? &framing->hair : &framing->all, framing->target);
+    const Outline *outline = framing->hair.any ? &framing->hair : &framing->all;
+    for (int k = 0; k < 3; ++k) framing->target[k] = 0.5f * (outline->low[k] + outline->high[k]);
     if (scene->target.count)
         keyframes_evaluate(&scene->target, 0, framing->target);
     else if (!scene->run.target.automatic)

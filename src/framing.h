@@ -7,14 +7,18 @@
 #include "scene.h"
 #include "strands.h"
 
-// Directions in which a set of points is bounded: the 26 to a cube's faces, edges and corners.
-enum { FRAMING_DIRECTIONS = 26 };
+// Directions in which a set of points is bounded, spread evenly: any direction is within 13 degrees
+// of one, so that the set reaches at most 3 % of its size beyond the points that are kept.
+enum { OUTLINE_DIRECTIONS = 96 };
 
-// The points of a set that lie farthest in each direction: they fill the picture more tightly than
-// the corners of a box would. A zeroed struct is an empty set.
+// The points of a set that lie farthest in each direction, and its box: they fill the picture more
+// tightly than the corners of the box alone would. A zeroed struct is an empty set.
 typedef struct Outline {
-    float point[FRAMING_DIRECTIONS][3]; // m
     bool any;
+    float low[3], high[3];                  // m
+    float point[OUTLINE_DIRECTIONS][3];     // m
+    float reach[OUTLINE_DIRECTIONS];        // m: of the point along its direction
+    float direction[3][OUTLINE_DIRECTIONS]; // unit; x of all, y of all, z of all
 } Outline;
 
 typedef struct Framing {
@@ -25,6 +29,9 @@ typedef struct Framing {
 } Framing;
 
 void outline_add(Outline *outline, const float point[3]);
+
+// Corner 0..7 of the box.
+void outline_corner(const Outline *outline, int which, float corner[3]);
 
 // Finds what the sequence will show without simulating it: the style carried by the head, and the
 // shape in which the hair comes to rest: each strand rebuilt from its root with directions between

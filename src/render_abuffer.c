@@ -33,8 +33,8 @@ Result render_abuffer_create(RenderABuffer *abuffer, const GpuLimits *limits, in
     glGenVertexArrays(1, &abuffer->vertex_array);
     Result result = create_pool(abuffer, smaller(FIRST_NODES, abuffer->most_nodes), error);
     if (result == RESULT_OK)
-        result = gpu_buffer_create(&abuffer->counters, limits, "A-buffer counters", SHARD_STEP * 4,
-                                   NULL, 0, error);
+        result = gpu_buffer_create(&abuffer->counters, limits, "A-buffer counters",
+                                   COUNTER_WORDS * 4, NULL, 0, error);
     if (result == RESULT_OK)
         result = gpu_buffer_create(&abuffer->extent, limits, "hair's screen box", 16, NULL, GL_R32I,
                                    error);
@@ -95,11 +95,11 @@ Result render_abuffer_begin(RenderABuffer *abuffer, int rows, const int box[4], 
 
 void render_abuffer_measure(const RenderABuffer *abuffer, ABufferUse *use)
 {
-    GLuint counters[SHARD_STEP];
+    GLuint counters[COUNTER_WORDS];
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, abuffer->counters.buffer);
     glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof counters, counters);
-    *use = (ABufferUse){0};
+    *use = (ABufferUse){.segments = counters[COUNTER_SEGMENTS], .culled = counters[COUNTER_CULLED]};
     for (int i = 0; i < SHARD_COUNT; ++i) {
         GLuint count = counters[i * SHARD_RUN];
         use->fragments += count;

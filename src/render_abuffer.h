@@ -12,7 +12,7 @@ typedef struct RenderABuffer {
     GLuint vertex_array; // without attributes
     GpuBuffer nodes;     // uvec4, see abuffer.glsl
     GpuBuffer heads;     // uint a pixel of the band
-    GpuBuffer counters;  // uint a shard, SHARD_RUN apart
+    GpuBuffer counters;  // uint, see COUNTER_WORDS
     GpuBuffer extent;    // int[4]: screen box of what has to be resolved: x, y lowest, highest, px
     const GpuLimits *limits;
     int64_t most_nodes; // that the pool can grow to
@@ -22,7 +22,8 @@ typedef struct RenderABuffer {
 // What drawing a band has stored.
 typedef struct ABufferUse {
     uint64_t fragments;
-    uint32_t fullest; // fragments of the fullest shard
+    uint32_t fullest;          // fragments of the fullest shard
+    uint32_t segments, culled; // see RendererCounts
 } ABufferUse;
 
 // `layers` fragments of a pixel are blended in order. `pool_bytes`: the pool's largest size, 0 for

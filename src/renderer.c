@@ -160,6 +160,8 @@ static Result draw_bands(Renderer *renderer, DrawParams *draw, const RenderItem 
         gpu_timer_end(renderer->timer);
         if (result != RESULT_OK) return result;
         counts->fragments += use.fragments;
+        counts->segments += use.segments;
+        counts->culled += use.culled;
         ++counts->bands;
         row += rows;
     }
@@ -197,8 +199,6 @@ Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderI
     fill_draw_params(renderer, frame, &draw);
     find_mesh_box(renderer, &draw, box);
     renderer->counts = (RendererCounts){0};
-    for (uint32_t i = 0; i < item_count; ++i)
-        renderer->counts.segments += items[i].hair->segment_count;
     set_state(renderer);
     gpu_uniforms_set(&renderer->draw_uniforms, BIND_DRAW, &draw, sizeof draw);
     draw_mesh(renderer, &draw);

@@ -38,7 +38,8 @@ typedef struct RenderFrame {
 
 // Of the last picture, for the statistics.
 typedef struct RendererCounts {
-    uint64_t segments;   // sent to the rasteriser, redraws not counted
+    uint64_t segments;   // sent to the rasteriser; straight runs count as one
+    uint64_t culled;     // strands outside the picture, which cost no drawing
     uint64_t fragments;  // stored and blended
     uint64_t pool_bytes; // of the A-buffer now
     uint32_t redraws;    // bands that were drawn again because the pool was too small

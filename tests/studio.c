@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#include "studio.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static const float EYE = 1000;
+
+#define NEEDED(call)                                                                               \
+    do {                                                                                           \
+        Error error_ = {{0}};                                                                      \
+        Error *error = &error_;                                                                    \
+        if ((call) != RESULT_OK) fail_msg("%s", error_.text);                                      \
+    } while (0)
+
+void studio_open(Studio *studio, const RendererOptions *options)
+{
+    memset(studio, 0, sizeof *studio);
+    NEEDED(gpu_create(&studio->gpu, &(GpuOptions){.device = -1}, error));
+    gpu_timer_create(&studio->timer, false, studio->gpu.software);
+    studio_set_options(studio, options);
+}
+
+void studio_set_options(Studio *studio, const RendererOptions *options)
+{
+    renderer_destroy(&studio->renderer);
+    image_destroy(&studio->image);
+    NEEDED(renderer_create(&studio->renderer, &studio->gpu, &studio->timer, options, error));
+    NEEDED(image_create(&studio->image, options->width, options->height,
+                        renderer_channels(&studio->renderer), error));
+}
+
+void studio_clear(Studio *studio)
+{
+    for (uint32_t i = 0; i < studio->count; ++i) {
+        hair_destroy(&studio->hair[i]);
+        section_params_destroy(&studio->material[i]);
+    }
+    studio->count = 0;
+}
+
+void studio_close(Studio *studio)
+{
+    studio_clear(studio);
+    renderer_destroy(&studio->renderer);
+    image_destroy(&studio->image);
+    gpu_timer_destroy(&studio->timer);
+    gpu_destroy(&studio->gpu);
+}
+
+uint32_t studio_add(Studio *studio, const Strands *strands, float radius, float opacity)
+{
+    uint32_t i = studio->count++, first_id = 0;
+    assert_true(i < STUDIO_MAX_ITEMS);
+    for (uint32_t k = 0; k < i; ++k) first_id += studio->hair[k].strand_count;
+    SectionParams *material = &studio->material[i];
+    NEEDED(section_params_create(material, error));
+    material->ambient = 1;
+    material->diffuse = material->specular1 = material->specular2 = 0;
+    material->color_variation = 0;
+    material->tip_ratio = 1;
+    material->opacity = opacity;
+    for (int k = 0; k < 3; ++k) material->color[k] = 1;
+    NEEDED(hair_create(&studio->hair[i], strands, first_id, &studio->gpu.limits, error));
+    studio->items[i] = (RenderItem){&studio->hair[i], material, radius};
+    return i;
+}
+
+void studio_view(View *view, int width, int height)
+{
+    memset(view, 0, sizeof *view);
+    view->eye[2] = EYE;
+    view->near_distance = 10;
+    view->far_distance = 10 * EYE;
+    view->fov = 2 * atanf(0.5f * (float)height / EYE);
+    glm_look(view->eye, (vec3){0, 0, -1}, (vec3){0, 1, 0}, view->view);
+    glm_perspective(view->fov, (float)width / (float)height, view->near_distance,
+                    view->far_distance, view->projection);
+}
+
+void studio_draw(Studio *studio)
+{
+    View view;
+    studio_view(&view, studio->image.width, studio->image.height);
+    RenderFrame frame = {.view = &view,
+                         .lights = &studio->light,
+                         .light_count = studio->light.intensity != 0,
+                         .head_rotation = {0, 0, 0, 1}};
+    NEEDED(renderer_draw(&studio->renderer, &frame, studio->items, studio->count, &studio->image,
+                         error));
+}
+
+const uint8_t *studio_pixel(const Studio *studio, int x, int y)
+{
+    const Image *image = &studio->image;
+    return &image->pixels[((size_t)y * (size_t)image->width + (size_t)x) * (size_t)image->channels];
+}
+
+uint8_t *studio_copy(const Studio *studio, size_t *size)
+{
+    const Image *image = &studio->image;
+    *size = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
+    uint8_t *copy = malloc(*size);
+    assert_non_null(copy);
+    return memcpy(copy, image->pixels, *size);
+}
+
+Strands studio_strands(uint32_t strand_count, uint32_t vertex_count, const float (*position)[3])
+{
+    Strands strands;
+    NEEDED(strands_create(&strands, strand_count, strand_count * vertex_count, error));
+    for (uint32_t s = 0; s <= strand_count; ++s) strands.first[s] = s * vertex_count;
+    memcpy(strands.position, position, (size_t)strands.vertex_count * sizeof *position);
+    return strands;
+}

@@ -1,0 +1,526 @@
+// SPDX-License-Identifier: MIT
+#include "random.h"
+#include "render_uniforms.h"
+#include "studio.h"
+
+#include <dirent.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { SIDE = 256 };
+
+static const RendererOptions TRANSPARENT = {.width = SIDE, .height = SIDE};
+static const RendererOptions BLACK = {.width = SIDE, .height = SIDE, .background = {0, 0, 0, 1}};
+
+static Studio studio; // one context for all tests; each leaves it without hair
+
+static int open_studio(void **state)
+{
+    (void)state;
+    studio_open(&studio, &TRANSPARENT);
+    print_message("drawing with %s\n", studio.gpu.renderer);
+    return 0;
+}
+
+static int close_studio(void **state)
+{
+    (void)state;
+    studio_close(&studio);
+    return 0;
+}
+
+static int clear_studio(void **state)
+{
+    (void)state;
+    studio_clear(&studio);
+    studio.light = (Light){0};
+    return 0;
+}
+
+static void use(const RendererOptions *options)
+{
+    studio_set_options(&studio, options);
+}
+
+static uint32_t add_line(const float from[3], const float to[3], float radius, float opacity)
+{
+    enum { VERTICES = 5 };
+    float position[VERTICES][3];
+    for (int j = 0; j < VERTICES; ++j)
+        for (int k = 0; k < 3; ++k)
+            position[j][k] = from[k] + (to[k] - from[k]) * (float)j / (VERTICES - 1);
+    Strands strands = studio_strands(1, VERTICES, (const float(*)[3])position);
+    uint32_t item = studio_add(&studio, &strands, radius, opacity);
+    strands_destroy(&strands);
+    return item;
+}
+
+// Curved strands all over the picture and up to `depth` before and behind its plane. `order` gives
+// the place of each strand, NULL: as they are made.
+static void add_tangle(uint32_t count, float radius, float opacity, const uint32_t *order)
+{
+    enum { VERTICES = 12 };
+    float(*position)[3] = malloc(count * VERTICES * sizeof *position);
+    assert_non_null(position);
+    Random random = random_create(7, 0);
+    for (uint32_t s = 0; s < count; ++s) {
+        double x[3], d[3], turn[3];
+        for (int k = 0; k < 3; ++k) x[k] = (random_real(&random) - 0.5) * SIDE;
+        random_direction(&random, d);
+        random_direction(&random, turn);
+        for (uint32_t j = 0; j < VERTICES; ++j)
+            for (int k = 0; k < 3; ++k) {
+                position[(order ? order[s] : s) * VERTICES + j][k] = (float)x[k];
+                x[k] += 8 * d[k];
+                d[k] += 0.2 * turn[k];
+            }
+    }
+    Strands strands = studio_strands(count, VERTICES, (const float(*)[3])position);
+    uint32_t item = studio_add(&studio, &strands, radius, opacity);
+    studio.material[item].diffuse = 1; // colours that differ along every strand
+    studio.material[item].ambient = 0.1f;
+    studio.light = (Light){LIGHT_DIRECTIONAL, {0.6f, 0.8f, 0}, {1, 0.8f, 0.5f}, 1};
+    strands_destroy(&strands);
+    free(position);
+}
+
+static uint8_t *draw_copy(size_t *size)
+{
+    studio_draw(&studio);
+    return studio_copy(&studio, size);
+}
+
+static void assert_draws_the_same(const uint8_t *expected, size_t size)
+{
+    studio_draw(&studio);
+    assert_memory_equal(studio.image.pixels, expected, size);
+}
+
+static double alpha_sum(void)
+{
+    double sum = 0;
+    for (int y = 0; y < SIDE; ++y)
+        for (int x = 0; x < SIDE; ++x) sum += studio_pixel(&studio, x, y)[3] / 255.0;
+    return sum;
+}
+
+// Rounding to 8 bits errs by up to 1/510 in each of the (width + 1.5) (length + 1) pixels that a
+// strand touches, all alike where it runs along the rows. At its ends the pixels' middles decide,
+// which can make it a pixel longer or shorter. At most angles both average out.
+static void coverage_of_a_strand_is_its_area(void **state)
+{
+    (void)state;
+    const float widths[] = {0.05f, 0.2f, 0.5f, 1, 2.3f, 5}, length = 180;
+    use(&TRANSPARENT);
+    for (size_t w = 0; w < sizeof widths / sizeof *widths; ++w) {
+        double mean = 0, area = widths[w] * length,
+               bound = (widths[w] + 1.5) * (length + 1) / 510 + widths[w];
+        int angles = 0;
+        for (float deg = 0; deg < 180; deg += 7.5f, ++angles) {
+            float x = 0.5f * length * cosf(glm_rad(deg)), y = 0.5f * length * sinf(glm_rad(deg));
+            float shift = 0.1f * (float)angles;
+            add_line((float[3]){shift - x, -y, 0}, (float[3]){shift + x, y, 0}, widths[w] / 2, 1);
+            studio_draw(&studio);
+            double off = alpha_sum() - area;
+            if (fabs(off) > bound)
+                fail_msg("width %g px at %g degrees: area off by %g, bound %g", widths[w], deg, off,
+                         bound);
+            mean += off;
+            studio_clear(&studio);
+        }
+        if (fabs(mean / angles) > 0.3 * bound)
+            fail_msg("width %g px: area off by %g on average", widths[w], mean / angles);
+    }
+}
+
+static void joints_are_covered_once(void **state)
+{
+    (void)state;
+    enum { VERTICES = 17 };
+    float position[VERTICES][3] = {{-90, 0, 0}}, angle = 0;
+    for (int j = 1; j < VERTICES; ++j) { // bends of up to 60 degrees, to and fro
+        angle += glm_rad(15) * (float)(j % 5) * (j % 2 ? 1 : -1);
+        position[j][0] = position[j - 1][0] + 12 * cosf(angle);
+        position[j][1] = position[j - 1][1] + 12 * sinf(angle);
+    }
+    use(&TRANSPARENT);
+    Strands strands = studio_strands(1, VERTICES, (const float(*)[3])position);
+    studio_add(&studio, &strands, 2.5f, 0.5f);
+    strands_destroy(&strands);
+    studio_draw(&studio);
+    for (int y = 0; y < SIDE; ++y)
+        for (int x = 0; x < SIDE; ++x) assert_true(studio_pixel(&studio, x, y)[3] <= 128);
+    for (int j = 1; j < VERTICES; ++j)
+        for (int i = 0; i <= 24; ++i) { // along the middle, at steps of half a pixel
+            float t = (float)i / 24;
+            if ((j == 1 && i < 4) || (j == VERTICES - 1 && i > 20)) continue; // ends
+            float x = position[j - 1][0] * (1 - t) + position[j][0] * t + SIDE / 2;
+            float y = SIDE / 2 - (position[j - 1][1] * (1 - t) + position[j][1] * t);
+            assert_true(studio_pixel(&studio, (int)x, (int)y)[3] >= 127);
+        }
+}
+
+static void layers_of_equal_opacity_multiply(void **state)
+{
+    (void)state;
+    enum { MOST = 8 };
+    use(&TRANSPARENT);
+    for (int n = 1; n <= MOST; ++n) {
+        float position[MOST][2][3];
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < 2; ++j)
+                memcpy(position[i][j], (float[3]){j ? 60 : -60, 0, (float)i}, sizeof(float[3]));
+        Strands strands = studio_strands((uint32_t)n, 2, (const float(*)[3])position);
+        studio_add(&studio, &strands, 6, 0.3f);
+        strands_destroy(&strands);
+        studio_draw(&studio);
+        double expected = 255 * (1 - pow(0.7, n));
+        assert_true(fabs(studio_pixel(&studio, SIDE / 2, SIDE / 2)[3] - expected) <= 0.6);
+        studio_clear(&studio);
+    }
+}
+
+// 30 layers: 8 in order, the rest in sums whose steps are far below one of 255.
+static void many_layers_still_multiply(void **state)
+{
+    (void)state;
+    enum { COUNT = 30 };
+    float position[COUNT][2][3];
+    for (int i = 0; i < COUNT; ++i)
+        for (int j = 0; j < 2; ++j)
+            memcpy(position[i][j], (float[3]){j ? 60 : -60, 0, (float)i}, sizeof(float[3]));
+    use(&TRANSPARENT);
+    Strands strands = studio_strands(COUNT, 2, (const float(*)[3])position);
+    studio_add(&studio, &strands, 6, 0.05f);
+    strands_destroy(&strands);
+    studio_draw(&studio);
+    assert_true(fabs(studio_pixel(&studio, SIDE / 2, SIDE / 2)[3] - 255 * (1 - pow(0.95, COUNT))) <=
+                1.0);
+}
+
+static double srgb(double linear)
+{
+    return 255 * (linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055);
+}
+
+static void add_band(float z, float red, float green)
+{
+    uint32_t i = add_line((float[3]){-60, 0, z}, (float[3]){60, 0, z}, 6, 0.6f);
+    memcpy(studio.material[i].color, (float[3]){red, green, 0}, sizeof(float[3]));
+}
+
+static void the_nearer_strand_is_in_front(void **state)
+{
+    (void)state;
+    use(&BLACK);
+    for (int order = 0; order < 4; ++order) { // which is added first, which is nearer
+        bool red_first = order & 1, red_near = order & 2;
+        float red_z = red_near ? 1 : -1;
+        add_band(red_first ? red_z : -red_z, red_first, !red_first);
+        add_band(red_first ? -red_z : red_z, !red_first, red_first);
+        studio_draw(&studio);
+        const uint8_t *pixel = studio_pixel(&studio, SIDE / 2, SIDE / 2);
+        assert_true(fabs(pixel[red_near ? 0 : 1] - srgb(0.6)) <= 1);
+        assert_true(fabs(pixel[red_near ? 1 : 0] - srgb(0.4 * 0.6)) <= 1);
+        assert_int_equal(pixel[2], 0);
+        studio_clear(&studio);
+    }
+}
+
+static void order_of_strands_does_not_matter(void **state)
+{
+    (void)state;
+    enum { COUNT = 1500 }; // up to 40 layers
+    uint32_t order[COUNT];
+    size_t size;
+    Random random = random_create(3, 1);
+    random_permutation(&random, order, COUNT);
+    use(&BLACK);
+    add_tangle(COUNT, 2, 0.4f, NULL);
+    uint8_t *expected = draw_copy(&size);
+    assert_draws_the_same(expected, size);
+    studio_clear(&studio);
+    add_tangle(COUNT, 2, 0.4f, order);
+    assert_draws_the_same(expected, size);
+    free(expected);
+}
+
+static void a_pool_that_is_too_small_grows(void **state)
+{
+    (void)state;
+    const RendererOptions large = {.width = 1024, .height = 1024, .background = {0, 0, 0, 1}};
+    size_t size;
+    use(&large);
+    add_tangle(3000, 6, 0.4f, NULL);
+    uint8_t *first = draw_copy(&size);
+    assert_true(studio.renderer.counts.redraws > 0);
+    assert_int_equal(studio.renderer.counts.bands, 1);
+    assert_draws_the_same(first, size);
+    assert_int_equal(studio.renderer.counts.redraws, 0);
+    free(first);
+}
+
+static void bands_give_the_same_picture(void **state)
+{
+    (void)state;
+    RendererOptions small = BLACK;
+    small.pool_bytes = 1 << 18;
+    size_t size;
+    use(&BLACK);
+    add_tangle(1500, 2, 0.4f, NULL);
+    uint8_t *expected = draw_copy(&size);
+    uint64_t fragments = studio.renderer.counts.fragments;
+    assert_int_equal(studio.renderer.counts.bands, 1);
+    use(&small);
+    assert_draws_the_same(expected, size);
+    assert_true(studio.renderer.counts.bands > 4);
+    assert_int_equal(studio.renderer.counts.fragments, fragments);
+    assert_draws_the_same(expected, size);
+    free(expected);
+}
+
+static void a_row_that_no_pool_holds_is_an_error(void **state)
+{
+    (void)state;
+    RendererOptions tiny = BLACK;
+    tiny.pool_bytes = 1; // the least there can be
+    use(&tiny);
+    add_tangle(3000, 8, 0.4f, NULL);
+    View view;
+    Error error = {{0}};
+    studio_view(&view, SIDE, SIDE);
+    RenderFrame frame = {.view = &view, .head_rotation = {0, 0, 0, 1}};
+    assert_int_equal(
+        renderer_draw(&studio.renderer, &frame, studio.items, studio.count, &studio.image, &error),
+        RESULT_FAILED);
+    assert_non_null(strstr(error.text, "one row"));
+}
+
+static void mesh_hides_the_hair_behind_it_only(void **state)
+{
+    (void)state;
+    Error error = {{0}};
+    Mesh mesh;
+    assert_int_equal(mesh_create(&mesh, 4, 2, &error), RESULT_OK);
+    for (int v = 0; v < 4; ++v) {
+        memcpy(mesh.position[v], (float[3]){v & 1 ? 50 : -50, v & 2 ? 50 : -50, 0}, 12);
+        mesh.normal[v][2] = 1;
+    }
+    const uint32_t triangles[2][3] = {{0, 1, 2}, {2, 1, 3}};
+    memcpy(mesh.triangle, triangles, sizeof triangles);
+    use(&BLACK);
+    const float green[3] = {0, 1, 0};
+    assert_int_equal(renderer_set_mesh(&studio.renderer, &mesh, green, &error), RESULT_OK);
+    mesh_destroy(&mesh);
+    add_line((float[3]){-90, 20, 10}, (float[3]){90, 20, 10}, 3, 1);     // before it
+    add_line((float[3]){-90, -20, -10}, (float[3]){90, -20, -10}, 3, 1); // behind it
+    studio_draw(&studio);
+    assert_int_equal(studio_pixel(&studio, SIDE / 2, SIDE / 2 - 20)[0], 255);
+    assert_int_equal(studio_pixel(&studio, SIDE / 2, SIDE / 2 + 20)[0], 0);
+    assert_true(studio_pixel(&studio, SIDE / 2, SIDE / 2 + 20)[1] > 50); // lit by what is ambient
+    assert_int_equal(studio_pixel(&studio, SIDE / 2 + 70, SIDE / 2 + 20)[0], 255);
+    assert_int_equal(studio_pixel(&studio, 5, 5)[1], 0);
+}
+
+static void no_hair_is_background(void **state)
+{
+    (void)state;
+    const RendererOptions colored = {
+        .width = 40, .height = 30, .background = {32 / 255.0f, 100 / 255.0f, 200 / 255.0f, 1}};
+    use(&colored);
+    studio_draw(&studio);
+    for (int i = 0; i < 40 * 30; ++i) {
+        const uint8_t expected[3] = {32, 100, 200};
+        assert_memory_equal(&studio.image.pixels[3 * i], expected, 3);
+    }
+}
+
+// Where hair's box begins must not be seen: the background comes out of the resolve as it went in.
+static void background_is_exact_beside_hair(void **state)
+{
+    (void)state;
+    for (int level = 0; level < 256; ++level) {
+        float value = (float)level / 255;
+        const RendererOptions grey = {
+            .width = 32, .height = 32, .background = {value, value, value, 1}};
+        use(&grey);
+        add_line((float[3]){-10, -10, 0}, (float[3]){10, 10, 0}, 0.5f, 1);
+        studio_draw(&studio);
+        assert_int_equal(studio_pixel(&studio, 9, 9)[1], level);
+        studio_clear(&studio);
+    }
+}
+
+static void a_strand_towards_the_eye_is_harmless(void **state)
+{
+    (void)state;
+    use(&TRANSPARENT);
+    add_line((float[3]){0, 0, -100}, (float[3]){0, 0, 100}, 3, 1);
+    add_line((float[3]){40, 40, 0}, (float[3]){40, 40, 0}, 3, 1); // no length at all
+    studio_draw(&studio);
+    for (int y = 0; y < SIDE; ++y)
+        for (int x = 0; x < SIDE; ++x)
+            if (abs(x - SIDE / 2) > 5 || abs(y - SIDE / 2) > 5)
+                assert_int_equal(studio_pixel(&studio, x, y)[3], 0);
+}
+
+static void a_strand_past_the_eye_is_drawn_up_to_it(void **state)
+{
+    (void)state;
+    use(&TRANSPARENT);
+    add_line((float[3]){20, 0, 0}, (float[3]){20, 0, 3000}, 3, 1);
+    add_line((float[3]){-20, 0, 3000}, (float[3]){-20, 0, 0}, 3, 1);    // the other way round
+    add_line((float[3]){0, -30, 1500}, (float[3]){0, -30, 3000}, 3, 1); // behind the eye
+    studio_draw(&studio);
+    for (int x = 22; x < SIDE / 2; ++x) {
+        assert_true(studio_pixel(&studio, SIDE / 2 + x, SIDE / 2)[3] >= 250);
+        assert_true(studio_pixel(&studio, SIDE / 2 - x, SIDE / 2)[3] >= 250);
+    }
+    for (int x = -15; x < 15; ++x)
+        for (int y = 0; y < SIDE; ++y)
+            assert_int_equal(studio_pixel(&studio, SIDE / 2 + x, y)[3], 0);
+}
+
+static void transparent_pictures_have_straight_alpha(void **state)
+{
+    (void)state;
+    use(&TRANSPARENT);
+    uint32_t i = add_line((float[3]){-60, 0, 0}, (float[3]){60, 0, 0}, 4, 0.5f);
+    memcpy(studio.material[i].color, (float[3]){1, 0.5f, 0}, sizeof(float[3]));
+    studio_draw(&studio);
+    const uint8_t *inside = studio_pixel(&studio, SIDE / 2, SIDE / 2),
+                  *edge = studio_pixel(&studio, SIDE / 2, SIDE / 2 + 4),
+                  *outside = studio_pixel(&studio, SIDE / 2, 10);
+    assert_int_equal(inside[3], 128);
+    assert_true(edge[3] < 30 && outside[3] == 0);
+    assert_int_equal(inside[0], 255);
+    assert_true(abs(inside[1] - 128) <= 1);
+}
+
+static void hair_outside_the_picture_costs_nothing(void **state)
+{
+    (void)state;
+    use(&TRANSPARENT);
+    add_line((float[3]){-60, 900, 0}, (float[3]){60, 900, 0}, 4, 0.5f);
+    studio_draw(&studio);
+    assert_int_equal(studio.renderer.counts.fragments, 0);
+    assert_int_equal(studio.renderer.counts.culled, 1);
+    assert_int_equal(studio.renderer.counts.segments, 0);
+}
+
+static int count_driver_threads(void)
+{
+    int count = 0;
+    DIR *tasks = opendir("/proc/self/task");
+    for (struct dirent *task; tasks && (task = readdir(tasks));) {
+        char path[300], name[64] = "";
+        snprintf(path, sizeof path, "/proc/self/task/%s/comm", task->d_name);
+        FILE *file = fopen(path, "r");
+        if (!file) continue;
+        if (fgets(name, sizeof name, file) && strncmp(name, "llvmpipe", 8) == 0) ++count;
+        fclose(file);
+    }
+    if (tasks) closedir(tasks);
+    return count;
+}
+
+static void bytes_do_not_depend_on_driver_threads(void **state)
+{
+    (void)state;
+    const char *counts[] = {"0", "1", "2"};
+    uint8_t *expected = NULL;
+    size_t size;
+    if (!studio.gpu.software) print_message("not a CPU driver: compares three runs only\n");
+    studio_close(&studio);
+    for (int i = 0; i < 3; ++i) {
+        setenv("LP_NUM_THREADS", counts[i], 1);
+        studio_open(&studio, &BLACK);
+        add_tangle(1500, 2, 0.4f, NULL);
+        studio_draw(&studio);
+        if (strstr(studio.gpu.renderer, "llvmpipe")) // rasteriser's, and compute's beside them
+            assert_true(count_driver_threads() >= i && (i > 0 || count_driver_threads() == 0));
+        if (expected) assert_memory_equal(studio.image.pixels, expected, size);
+        if (!expected) expected = studio_copy(&studio, &size);
+        studio_close(&studio);
+    }
+    unsetenv("LP_NUM_THREADS");
+    free(expected);
+    studio_open(&studio, &TRANSPARENT);
+}
+
+static void assert_offset(GLuint program, const char *name, size_t expected)
+{
+    const GLenum property = GL_OFFSET;
+    GLint offset = -1;
+    GLuint index = glGetProgramResourceIndex(program, GL_UNIFORM, name);
+    if (index == GL_INVALID_INDEX) fail_msg("the driver knows no %s", name);
+    glGetProgramResourceiv(program, GL_UNIFORM, index, 1, &property, 1, NULL, &offset);
+    if (offset != (GLint)expected)
+        fail_msg("%s is at %d for the driver, at %zu in C", name, offset, expected);
+}
+
+static void blocks_lie_alike_in_c_and_glsl(void **state)
+{
+    (void)state;
+    GLuint program = studio.renderer.hair.project;
+#define DRAW(field) assert_offset(program, "DrawParams." #field, offsetof(DrawParams, field))
+#define DRAW_ARRAY(field)                                                                          \
+    assert_offset(program, "DrawParams." #field "[0]", offsetof(DrawParams, field))
+#define MATERIAL(field)                                                                            \
+    assert_offset(program, "MaterialParams." #field, offsetof(MaterialParams, field))
+    DRAW(clip_from_world), DRAW(eye), DRAW_ARRAY(light_direction), DRAW_ARRAY(light_color);
+    DRAW(background), DRAW(head_rotation), DRAW(head_translation), DRAW(mesh_color);
+    DRAW(width), DRAW(height), DRAW(focal), DRAW(near_distance), DRAW(depth), DRAW(band);
+    DRAW(light_count), DRAW(seed);
+    MATERIAL(color), MATERIAL(color_variation), MATERIAL(radius), MATERIAL(tip_ratio);
+    MATERIAL(opacity), MATERIAL(ambient), MATERIAL(diffuse), MATERIAL(specular1);
+    MATERIAL(exponent1), MATERIAL(specular2), MATERIAL(exponent2), MATERIAL(shift1_cos);
+    MATERIAL(shift1_sin), MATERIAL(shift2_cos), MATERIAL(shift2_sin), MATERIAL(strand_count);
+    MATERIAL(vertex_count), MATERIAL(first_strand), MATERIAL(drawn_strands);
+}
+
+static void a_picture_beyond_the_driver_is_refused(void **state)
+{
+    (void)state;
+    Error error = {{0}};
+    Renderer renderer;
+    RendererOptions huge = {.width = studio.gpu.limits.framebuffer_side_px + 1, .height = 16};
+    assert_int_equal(renderer_create(&renderer, &studio.gpu, &studio.timer, &huge, &error),
+                     RESULT_FAILED);
+    assert_non_null(strstr(error.text, "at most"));
+    renderer_destroy(&renderer);
+}
+
+int main(void)
+{
+#define CLAIM(name) cmocka_unit_test_teardown(name, clear_studio)
+    const struct CMUnitTest tests[] = {
+        CLAIM(coverage_of_a_strand_is_its_area),
+        CLAIM(joints_are_covered_once),
+        CLAIM(layers_of_equal_opacity_multiply),
+        CLAIM(many_layers_still_multiply),
+        CLAIM(the_nearer_strand_is_in_front),
+        CLAIM(order_of_strands_does_not_matter),
+        CLAIM(a_pool_that_is_too_small_grows),
+        CLAIM(bands_give_the_same_picture),
+        CLAIM(a_row_that_no_pool_holds_is_an_error),
+        CLAIM(mesh_hides_the_hair_behind_it_only),
+        CLAIM(no_hair_is_background),
+        CLAIM(background_is_exact_beside_hair),
+        CLAIM(a_strand_towards_the_eye_is_harmless),
+        CLAIM(a_strand_past_the_eye_is_drawn_up_to_it),
+        CLAIM(transparent_pictures_have_straight_alpha),
+        CLAIM(hair_outside_the_picture_costs_nothing),
+        CLAIM(bytes_do_not_depend_on_driver_threads),
+        CLAIM(blocks_lie_alike_in_c_and_glsl),
+        CLAIM(a_picture_beyond_the_driver_is_refused),
+    };
+    return cmocka_run_group_tests(tests, open_studio, close_studio);
+}
