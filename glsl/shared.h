@@ -26,6 +26,7 @@ typedef uint uvec4[4] __attribute__((aligned(16)));
 #define BIND_POSITION_OUT 0 // vec4 a particle: where a solver puts the strand that is drawn
 #define BIND_STATE_OUT 1    // a solver's own state
 #define BIND_TIPS 2         // split: two vec4 a strand
+#define BIND_SCRATCH 3      // a solver's scratch memory
 
 // Buffer textures.
 #define BIND_POSITION 0  // vec4 a particle

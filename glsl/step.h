@@ -10,6 +10,7 @@ UNIFORM_BLOCK(StepParams, step_params, BIND_STEP)
     vec4 head_translation;
     vec4 gravity; // xyz, m/s^2
     vec4 wind[4]; // xyz, m/s: four directions around the main one, mixed for each strand
+    vec4 own[4];  // a solver's own parameters, named by macros in its shader
     float dt;     // s
     float decay;  // e^{-c h}: what drag leaves of a velocity
     float gain;   // h f: seconds that an acceleration acts

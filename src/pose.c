@@ -47,14 +47,14 @@ static void interpolate(double (*function)(double, double), double v, float coef
     for (int i = 0; i < TERMS; ++i) coefficients[i] = (float)c[i];
 }
 
-Result pose_create(Pose *pose, float style, Error *error)
+Result pose_create(Pose *pose, const Gpu *gpu, float style, Error *error)
 {
-    *pose = (Pose){0};
+    *pose = (Pose){.group_size = step_group_size(gpu)};
     double v = 2 * fmin((double)style, 1 - (double)style);
     interpolate(turn_cos, v, pose->turn_cos);
     interpolate(turn_sin, v, pose->turn_sin);
     const ShaderDefine defines[] = {
-        {"GROUP_SIZE", STEP_GROUP_SIZE}, {"MIX", (int)mix_of_style(style)}, {0}};
+        {"GROUP_SIZE", (int)pose->group_size}, {"MIX", (int)mix_of_style(style)}, {0}};
     return shader_build_compute(&pose->program, "pose.comp", defines, error);
 }
 
@@ -77,6 +77,6 @@ void pose_write(Pose *pose, const HairBatch *batch, const GpuBuffer *segments, c
     if (segments) gpu_buffer_bind_texture(segments, BIND_STATE);
     gpu_buffer_bind_storage(&batch->position, BIND_POSITION_OUT);
     glUseProgram(pose->program);
-    glDispatchCompute(step_group_count(batch->strand_count, 1), 1, 1);
+    glDispatchCompute(step_group_count(batch->strand_count, pose->group_size, 1), 1, 1);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
 }

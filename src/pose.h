@@ -11,6 +11,7 @@ typedef enum PoseMix { POSE_STYLE, POSE_PHYSICAL, POSE_NEAR_PHYSICAL, POSE_NEAR_
 
 typedef struct Pose {
     GLuint program;
+    uint32_t group_size;
     GpuBuffer uniforms;
     float turn_cos[8], turn_sin[8]; // see pose.c
 } Pose;
@@ -18,7 +19,7 @@ typedef struct Pose {
 // `style` 0 draws the physical strand, 1 the style, between them every direction is turned by that
 // share of the angle between both (slerp, to 3e-7 rad); the shader variant has only what that
 // needs.
-Result pose_create(Pose *pose, float style, Error *error);
+Result pose_create(Pose *pose, const Gpu *gpu, float style, Error *error);
 void pose_destroy(Pose *pose);
 
 // Writes the batch's positions. `segments`: vec4 a particle (unit direction in the world, rest

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "solver.h"
+#include "solver_dftl.h"
 #include "solver_none.h"
 #include "solver_split.h"
 #include "suggest.h"
 
 #include <string.h>
 
-const SolverType *const SOLVER_TYPES[] = {&SOLVER_SPLIT, &SOLVER_NONE, NULL};
+const SolverType *const SOLVER_TYPES[] = {&SOLVER_SPLIT, &SOLVER_DFTL, &SOLVER_NONE, NULL};
 
 enum { MAX_WORDS = 32 };
 

@@ -24,7 +24,7 @@ static Result create(void **pointer, const SolverSetup *setup, Error *error)
     if (!state) return error_set(error, RESULT_FAILED, "no memory for a solver");
     state->hair = setup->hair;
     state->timer = setup->timer;
-    Result result = pose_create(&state->pose, 1, error);
+    Result result = pose_create(&state->pose, setup->gpu, 1, error);
     if (result != RESULT_OK) {
         destroy(state);
         state = NULL;

@@ -32,6 +32,7 @@ typedef struct SplitState {
     GpuBuffer uniforms;
     SplitBatch *batches; // one for each of the hair
     Pose pose;
+    uint32_t group_size;
     bool thesis;
 } SplitState;
 
@@ -65,10 +66,10 @@ static bool fits_registers(const Hair *hair)
 }
 
 // Batches of equal vertex count, and all of them if strands go through memory, share a program.
-static Result build_programs(SplitState *state, bool software, Error *error)
+static Result build_programs(SplitState *state, const Gpu *gpu, Error *error)
 {
     bool in_registers = fits_registers(state->hair);
-    uint32_t strands = in_registers && software ? STRANDS_ON_CPU : STRANDS_ON_GPU;
+    uint32_t strands = in_registers && gpu->software ? STRANDS_ON_CPU : STRANDS_ON_GPU;
     for (uint32_t i = 0; i < state->hair->batch_count; ++i) {
         SplitBatch *batch = &state->batches[i];
         uint32_t n = state->hair->batches[i].vertex_count;
@@ -78,9 +79,12 @@ static Result build_programs(SplitState *state, bool software, Error *error)
             continue;
         }
         const ShaderDefine defines[] = {
-            {"GROUP_SIZE", STEP_GROUP_SIZE}, {"STRANDS", (int)strands},
-            {"IN_REGISTERS", in_registers},  {"VERTICES", (int)n},
-            {"THESIS", state->thesis},       {0},
+            {"GROUP_SIZE", (int)state->group_size},
+            {"STRANDS", (int)strands},
+            {"IN_REGISTERS", in_registers},
+            {"VERTICES", (int)n},
+            {"THESIS", state->thesis},
+            {0},
         };
         Result result = shader_build_compute(&batch->program, "split.comp", defines, error);
         if (result != RESULT_OK) return result;
@@ -127,8 +131,9 @@ static Result build(SplitState *state, const SolverSetup *setup, Error *error)
     state->batches =
         calloc(state->hair->batch_count ? state->hair->batch_count : 1, sizeof *state->batches);
     if (!state->batches) return error_set(error, RESULT_FAILED, "no memory for a solver");
-    Result result = build_programs(state, setup->gpu->software, error);
-    if (result == RESULT_OK) result = pose_create(&state->pose, setup->params->style, error);
+    Result result = build_programs(state, setup->gpu, error);
+    if (result == RESULT_OK)
+        result = pose_create(&state->pose, setup->gpu, setup->params->style, error);
     for (uint32_t i = 0; i < state->hair->batch_count && result == RESULT_OK; ++i)
         result =
             create_state(&state->batches[i], &state->hair->batches[i], &setup->gpu->limits, error);
@@ -143,6 +148,7 @@ static Result create(void **pointer, const SolverSetup *setup, Error *error)
     state->hair = setup->hair;
     state->params = setup->params;
     state->timer = setup->timer;
+    state->group_size = step_group_size(setup->gpu);
     state->thesis = strcmp(setup->params->variant, "thesis") == 0;
     Result result = build(state, setup, error);
     if (result == RESULT_OK)
@@ -170,7 +176,8 @@ static void step(void *pointer, const SolverStep *solver_step)
         gpu_buffer_bind_storage(&batch->segments, BIND_STATE_OUT);
         gpu_buffer_bind_storage(&batch->tips, BIND_TIPS);
         glUseProgram(batch->program);
-        glDispatchCompute(step_group_count(hair->strand_count, batch->strands_per_lane), 1, 1);
+        glDispatchCompute(
+            step_group_count(hair->strand_count, state->group_size, batch->strands_per_lane), 1, 1);
     }
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
     gpu_timer_end(state->timer);

@@ -31,8 +31,13 @@ StepParams step_uniforms(const SolverStep *step, const SectionParams *params)
     return uniforms;
 }
 
-uint32_t step_group_count(uint32_t count, uint32_t strands_per_lane)
+uint32_t step_group_size(const Gpu *gpu)
 {
-    uint32_t strands = STEP_GROUP_SIZE * strands_per_lane;
+    return gpu->software ? 8 : 64;
+}
+
+uint32_t step_group_count(uint32_t count, uint32_t group_size, uint32_t strands_per_lane)
+{
+    uint32_t strands = group_size * strands_per_lane;
     return (count + strands - 1) / strands;
 }

@@ -6,9 +6,10 @@
 
 #include "step.h"
 
-// A compute shader takes this many strands in a work group: enough groups for every core, whole
-// SIMD registers.
-enum { STEP_GROUP_SIZE = 8 };
+// Lanes of a work group: on a CPU driver one SIMD register, so that there are many groups to share
+// out among the cores; on a GPU whole warps. Both are such that a group's strands are whole tiles,
+// or the tile whole groups.
+uint32_t step_group_size(const Gpu *gpu);
 
 // The factors of exact drag c (1/s) over h seconds: *decay = e^{-ch}, *gain = (1 - e^{-ch})/c = h f
 // (h at c = 0).
@@ -17,5 +18,6 @@ void step_drag_factors(double c, double h, float *decay, float *gain);
 // What a step gives to each batch; `strand_count`, `vertex_count` and `passes` are left 0.
 StepParams step_uniforms(const SolverStep *step, const SectionParams *params);
 
-// Work groups that cover `count` strands with `strands_per_lane` strands a lane.
-uint32_t step_group_count(uint32_t count, uint32_t strands_per_lane);
+// Work groups of `group_size` lanes that cover `count` strands with `strands_per_lane` strands a
+// lane.
+uint32_t step_group_count(uint32_t count, uint32_t group_size, uint32_t strands_per_lane);

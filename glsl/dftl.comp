@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+// Dynamic follow-the-leader (Mueller, Kim, Chentanez: Fast Simulation of Inextensible Hair and Fur, VRIPHYS 2012).
+//
+// From the root on, every particle is predicted, p = x + v dt, and put at its length from its leader, x' = leader + l (p - leader)/|p -
+// leader|. That alone acts as if all mass sat at the leader; so the velocity gets back what the follower's correction d' took:
+//     v_i = (x'_i - x_i)/dt - s d'_{i+1}/dt,      s: ftl_damping
+#include "particles.glsl"
+
+#define FTL_DAMPING step_params.own[0].x
+
+void main()
+{
+    int s = first_strand(), n = int(step_params.vertex_count);
+    if (s >= int(step_params.strand_count)) return;
+    int a = particle_address(s, 0, n);
+    vec3 wind = strand_wind(texelFetch(strand_id, s).x);
+    float dt = step_params.dt, per_second = 1.0 / step_params.dt, damping = FTL_DAMPING;
+    vec3 leader = root_position(texelFetch(rest, a)), leader_velocity = vec3(0.0), along = vec3(0.0, -1.0, 0.0);
+    positions[a] = vec4(leader, 1.0);
+    for (int j = 1; j < n; ++j, a += STRAND_TILE) {
+        vec3 x = texelFetch(position_before, a + STRAND_TILE).xyz;
+        vec3 predicted = x + dt * kick(texelFetch(velocity_before, a + STRAND_TILE).xyz, wind);
+        vec3 reach = predicted - leader;
+        float square = dot(reach, reach);
+        along = square > 1e-24 ? reach * inversesqrt(square) : along; // on its leader: the last direction goes on
+        vec3 follower = leader + texelFetch(rest, a + STRAND_TILE).w * along;
+        velocities[a] = vec4(leader_velocity - damping * per_second * (follower - predicted), 0.0);
+        positions[a + STRAND_TILE] = vec4(follower, 1.0);
+        leader_velocity = per_second * (follower - x);
+        leader = follower;
+    }
+    velocities[a] = vec4(leader_velocity, 0.0);
+}

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: MIT
+#include "particle_solver.h"
+#include "pose.h"
+
+#include <cglm/cglm.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+// Each vertex count in registers costs a compilation, so only hair of few counts gets it.
+enum { MOST_REGISTER_VARIANTS = 2 };
+
+typedef struct ParticleBatch {
+    GLuint program;
+    uint32_t strands_per_lane;
+    GpuBuffer velocity; // vec4 a particle: m/s; w is the solver's own
+    GpuBuffer scratch;
+} ParticleBatch;
+
+typedef struct ParticleState {
+    const ParticleRecipe *recipe;
+    const Hair *hair;
+    const SectionParams *params;
+    GpuTimer *timer;
+    GpuBuffer uniforms;
+    ParticleBatch *batches; // one for each of the hair
+    Pose style;             // for the start
+    uint32_t group_size;
+    bool posed;
+} ParticleState;
+
+void particle_solver_destroy(void *pointer)
+{
+    ParticleState *state = pointer;
+    if (!state) return;
+    for (uint32_t i = 0; state->batches && i < state->hair->batch_count; ++i) {
+        ParticleBatch *batch = &state->batches[i];
+        bool shared = i > 0 && batch->program == state->batches[i - 1].program;
+        if (batch->program && !shared) glDeleteProgram(batch->program);
+        gpu_buffer_destroy(&batch->velocity);
+        gpu_buffer_destroy(&batch->scratch);
+    }
+    free(state->batches);
+    gpu_buffer_destroy(&state->uniforms);
+    pose_destroy(&state->style);
+    free(state);
+}
+
+static bool fits_registers(const Hair *hair, uint32_t most)
+{
+    uint32_t counts = 0, last = 0;
+    for (uint32_t i = 0; i < hair->batch_count; ++i) {
+        if (hair->batches[i].vertex_count > most) return false;
+        counts += hair->batches[i].vertex_count != last;
+        last = hair->batches[i].vertex_count;
+    }
+    return counts <= MOST_REGISTER_VARIANTS;
+}
+
+static Result build_program(const ParticleState *state, ParticleBatch *batch, uint32_t vertices,
+                            bool in_registers, Error *error)
+{
+    ShaderDefine defines[5 + PARTICLE_DEFINES] = {
+        {"GROUP_SIZE", (int)state->group_size},
+        {"STRANDS", (int)batch->strands_per_lane},
+        {"IN_REGISTERS", in_registers},
+        {"VERTICES", (int)vertices},
+    };
+    if (state->recipe->define) state->recipe->define(&defines[4], state->params);
+    return shader_build_compute(&batch->program, state->recipe->shader, defines, error);
+}
+
+// Batches of equal vertex count, and all of them if strands go through memory, share a program.
+static Result build_programs(ParticleState *state, bool software, Error *error)
+{
+    const ParticleRecipe *recipe = state->recipe;
+    bool in_registers = fits_registers(state->hair, recipe->most_in_registers);
+    for (uint32_t i = 0; i < state->hair->batch_count; ++i) {
+        uint32_t n = state->hair->batches[i].vertex_count;
+        state->batches[i].strands_per_lane =
+            software && recipe->strands_on_cpu ? recipe->strands_on_cpu : 1;
+        if (i > 0 && (!in_registers || n == state->hair->batches[i - 1].vertex_count)) {
+            state->batches[i].program = state->batches[i - 1].program;
+            continue;
+        }
+        Result result = build_program(state, &state->batches[i], n, in_registers, error);
+        if (result != RESULT_OK) return result;
+    }
+    return RESULT_OK;
+}
+
+static Result create_buffers(ParticleState *state, ParticleBatch *batch, const HairBatch *hair,
+                             const GpuLimits *limits, Error *error)
+{
+    size_t particles = (size_t)hair->vertex_count * hair_slots(hair);
+    float *zero = calloc(particles, 4 * sizeof *zero);
+    if (!zero) return error_set(error, RESULT_FAILED, "no memory for %zu particles", particles);
+    int64_t size = (int64_t)(particles * 4 * sizeof *zero);
+    Result result =
+        gpu_buffer_create(&batch->velocity, limits, "velocities", size, zero, GL_RGBA32F, error);
+    free(zero);
+    bool needs_scratch =
+        state->recipe->scratch && !fits_registers(state->hair, state->recipe->most_in_registers);
+    if (result == RESULT_OK && needs_scratch)
+        result = gpu_buffer_create(&batch->scratch, limits, "a solver's scratch memory",
+                                   size * state->recipe->scratch, NULL, 0, error);
+    return result;
+}
+
+Result particle_solver_create(void **pointer, const SolverSetup *setup,
+                              const ParticleRecipe *recipe, Error *error)
+{
+    ParticleState *state = calloc(1, sizeof *state);
+    *pointer = NULL;
+    if (!state) return error_set(error, RESULT_FAILED, "no memory for a solver");
+    *state = (ParticleState){.group_size = step_group_size(setup->gpu),
+                             .recipe = recipe,
+                             .hair = setup->hair,
+                             .params = setup->params,
+                             .timer = setup->timer};
+    state->batches = calloc(setup->hair->batch_count + 1, sizeof *state->batches);
+    Result result =
+        state->batches ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for a solver");
+    if (result == RESULT_OK) result = build_programs(state, setup->gpu->software, error);
+    if (result == RESULT_OK) result = pose_create(&state->style, setup->gpu, 1, error);
+    for (uint32_t i = 0; i < state->hair->batch_count && result == RESULT_OK; ++i)
+        result = create_buffers(state, &state->batches[i], &state->hair->batches[i],
+                                &setup->gpu->limits, error);
+    if (result == RESULT_OK)
+        *pointer = state;
+    else
+        particle_solver_destroy(state);
+    return result;
+}
+
+void particle_solver_pose(void *pointer, const HeadPose *head)
+{
+    ParticleState *state = pointer;
+    if (state->posed) return;
+    for (uint32_t i = 0; i < state->hair->batch_count; ++i)
+        pose_write(&state->style, &state->hair->batches[i], NULL, head);
+    state->posed = true;
+}
+
+static void dispatch(ParticleState *state, uint32_t i, StepParams *uniforms)
+{
+    const HairBatch *hair = &state->hair->batches[i];
+    const ParticleBatch *batch = &state->batches[i];
+    uniforms->strand_count = hair->strand_count;
+    uniforms->vertex_count = hair->vertex_count;
+    gpu_uniforms_set(&state->uniforms, BIND_STEP, uniforms, sizeof *uniforms);
+    gpu_buffer_bind_texture(&hair->position, BIND_POSITION);
+    gpu_buffer_bind_texture(&hair->rest, BIND_REST);
+    gpu_buffer_bind_texture(&hair->strand_id, BIND_STRAND_ID);
+    gpu_buffer_bind_texture(&batch->velocity, BIND_STATE);
+    gpu_buffer_bind_storage(&hair->position, BIND_POSITION_OUT);
+    gpu_buffer_bind_storage(&batch->velocity, BIND_STATE_OUT);
+    if (batch->scratch.buffer) gpu_buffer_bind_storage(&batch->scratch, BIND_SCRATCH);
+    glUseProgram(batch->program);
+    glDispatchCompute(
+        step_group_count(hair->strand_count, state->group_size, batch->strands_per_lane), 1, 1);
+}
+
+// The head's pose after the share t of a step: translation straight, rotation by slerp.
+static HeadPose pose_between(const HeadPose *a, const HeadPose *b, float t)
+{
+    HeadPose pose;
+    if (t >= 1) return *b;
+    glm_quat_slerp((float *)a->rotation, (float *)b->rotation, t, pose.rotation);
+    glm_vec3_lerp((float *)a->translation, (float *)b->translation, t, pose.translation);
+    return pose;
+}
+
+void particle_solver_step(void *pointer, const SolverStep *whole)
+{
+    ParticleState *state = pointer;
+    const ParticleRecipe *recipe = state->recipe;
+    particle_solver_pose(state, &whole->head_old);
+    int count = recipe->substeps ? recipe->substeps(whole, state->params, state->hair) : 1;
+    gpu_timer_begin(state->timer, recipe->label);
+    SolverStep step = *whole;
+    step.dt = whole->dt / count;
+    for (int part = 1; part <= count; ++part) {
+        step.head = pose_between(&whole->head_old, &whole->head, (float)part / (float)count);
+        StepParams uniforms = step_uniforms(&step, state->params);
+        if (recipe->fill) recipe->fill(&uniforms, &step, state->params);
+        for (uint32_t i = 0; i < state->hair->batch_count; ++i) dispatch(state, i, &uniforms);
+        glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+        step.head_old = step.head;
+        step.first = false;
+    }
+    gpu_timer_end(state->timer);
+}

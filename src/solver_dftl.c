@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#include "solver_dftl.h"
+#include "particle_solver.h"
+
+static void fill(StepParams *uniforms, const SolverStep *step, const SectionParams *params)
+{
+    (void)step;
+    uniforms->own[0][0] = params->ftl_damping;
+}
+
+static const ParticleRecipe RECIPE = {
+    .label = "sim_dftl", .shader = "dftl.comp", .strands_on_cpu = 1, .fill = fill};
+
+static Result create(void **state, const SolverSetup *setup, Error *error)
+{
+    return particle_solver_create(state, setup, &RECIPE, error);
+}
+
+const SolverType SOLVER_DFTL = {
+    .name = "dftl",
+    .summary = "dynamic follow-the-leader (Mueller et al. 2012): lengths exact in one pass, "
+               "strongly damped",
+    .create = create,
+    .step = particle_solver_step,
+    .pose = particle_solver_pose,
+    .destroy = particle_solver_destroy,
+};
