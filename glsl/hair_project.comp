@@ -29,35 +29,26 @@ const float PAD = 0.71;        // px; the corner of a pixel is sqrt(1/2) from it
 const float LEAST_COSINE = 0.25; // of the joints' 1 + n0.n1
 const float MITRE_MAX = 2.9;   // bound of |m|: sqrt(2 x) / max(x, LEAST_COSINE) over all x
 
-// Where the strand is drawn instead when `x` lies behind the near plane: on that plane, towards the
-// neighbour that is in sight. `w` is the distance before the eye.
+// Read once in main: a uniform costs a load wherever it is named.
+mat4 clip_from_world;
+vec2 size; // of the picture, px
+float near_distance, focal;
+
+// Where the strand is drawn instead, all in clip space, when `x` lies behind the near plane: on that
+// plane, towards the neighbour that is in sight.
 vec4 clip_near(vec4 x, vec4 before, vec4 after)
 {
-    float least = draw_params.near_distance;
-    vec4 other = after.w >= least ? after : before;
-    float share = (least - x.w) / max(other.w - x.w, 1e-20);
-    return x.w >= least || other.w < least ? x : vec4(mix(x.xyz, other.xyz, share), least);
+    vec4 other = after.w >= near_distance ? after : before;
+    float share = (near_distance - x.w) / max(other.w - x.w, 1e-20);
+    return x.w >= near_distance || other.w < near_distance ? x : mix(x, other, share);
 }
 
-float distance_before_eye(vec3 x)
+// x, y (px), 1/w (0: not in sight), half-width (px).
+vec4 project(vec4 clip, float radius)
 {
-    mat4 m = draw_params.clip_from_world;
-    return m[0].w * x.x + m[1].w * x.y + m[2].w * x.z + m[3].w;
-}
-
-vec4 fetch_particle(int at)
-{
-    vec3 x = texelFetch(position, at).xyz;
-    return vec4(x, distance_before_eye(x));
-}
-
-vec4 project(vec4 x, float radius)
-{
-    vec4 clip = draw_params.clip_from_world * vec4(x.xyz, 1.0);
-    float inverse = 1.0 / max(x.w, 1e-20);
-    vec2 size = 0.5 * vec2(draw_params.width, draw_params.height);
-    vec2 px = clamp(clip.xy * inverse, -1e4, 1e4) * size + size;
-    return vec4(px, x.w >= 0.999 * draw_params.near_distance ? inverse : 0.0, draw_params.focal * radius * inverse);
+    float inverse = 1.0 / max(clip.w, 1e-20);
+    vec2 px = (0.5 * clamp(clip.xy * inverse, -1e4, 1e4) + 0.5) * size;
+    return vec4(px, clip.w >= 0.999 * near_distance ? inverse : 0.0, focal * radius * inverse);
 }
 
 vec3 unit(vec3 v)
@@ -88,8 +79,7 @@ void store(int index, Particle p, vec2 d0, vec2 d1)
     vec2 normal = vec2(-d0.y - d1.y, d0.x + d1.x);
     // A cylinder's outline seen off the optical axis is wider: where its tangent planes through the
     // eye cut the screen at the distance q from the axis, by sqrt(1 + (q/focal)^2).
-    vec2 size = vec2(draw_params.width, draw_params.height);
-    float q = dot(normal, p.at.xy - 0.5 * size) * inversesqrt(max(dot(normal, normal), 1e-12)) / draw_params.focal;
+    float q = dot(normal, p.at.xy - 0.5 * size) * inversesqrt(max(dot(normal, normal), 1e-12)) / focal;
     float half_width = p.at.w * sqrt(1.0 + q * q);
     vec2 edge = normal * ((half_width + PAD) / max(1.0 + dot(d0, d1), LEAST_COSINE));
     edges[index] = vec4(p.at.xy * (2.0 / size) - 1.0, edge * (2.0 / size));
@@ -136,18 +126,28 @@ void main()
     vec3 base = material.color.rgb *
                 (1.0 + material.color_variation * hash_signed(texelFetch(strand_id, s).x ^ draw_params.seed));
     float thinning = (1.0 - material.tip_ratio) / float(n - 1);
-    vec4 here = fetch_particle(particle_address(s, 0, n)), before = here;
+    clip_from_world = draw_params.clip_from_world;
+    size = vec2(draw_params.width, draw_params.height);
+    near_distance = draw_params.near_distance;
+    focal = draw_params.focal;
+    float radius = material.radius;
+    vec3 eye = draw_params.eye.xyz;
+    Kajiya fibre = kajiya_material();
+
+    int root = particle_address(s, 0, n);
+    vec3 here = texelFetch(position, root).xyz, before = here;
+    vec4 here_clip = clip_from_world * vec4(here, 1.0), before_clip = here_clip;
     vec4 box = vec4(1e6);
     Particle kept, last; // the last one that was not left out; the one before this one
     vec2 way = vec2(0.0); // the ribbon's direction before `kept`
     float bent = 0.0;     // of all that was left out since `kept`
     int count = 0;
     for (int j = 0; j < n; ++j) {
-        vec4 after = fetch_particle(particle_address(s, min(j + 1, n - 1), n));
-        vec4 x = clip_near(here, before, after);
+        vec3 after = texelFetch(position, root + min(j + 1, n - 1) * STRAND_TILE).xyz;
+        vec4 after_clip = clip_from_world * vec4(after, 1.0);
         Particle p;
-        p.at = project(x, max(material.radius * (1.0 - thinning * float(j)), 1e-9));
-        p.color = shade_kajiya(base, unit(after.xyz - before.xyz), unit(draw_params.eye.xyz - x.xyz));
+        p.at = project(clip_near(here_clip, before_clip, after_clip), max(radius * (1.0 - thinning * float(j)), 1e-9));
+        p.color = shade_kajiya(fibre, base, unit(after - before), unit(eye - here));
         float reach = MITRE_MAX * (p.at.w + 1.0);
         if (p.at.z > 0.0) box = min(box, vec4(p.at.xy, -p.at.xy) - reach);
         if (j > 1) bent += bend(kept, last, p);
@@ -160,14 +160,16 @@ void main()
         }
         last = p;
         before = here;
+        before_clip = here_clip;
         here = after;
+        here_clip = after_clip;
     }
     vec2 next = direction(kept, last);
     store(first + count++, kept, way, next);
     store(first + count++, last, next, next);
 
     ivec4 whole = ivec4(floor(clamp(box, -1e6, 1e6)));
-    bool in_picture = whole.x < int(draw_params.band.x) && -whole.z > 0 && whole.y < int(draw_params.height) && -whole.w > 0;
+    bool in_picture = whole.x < int(size.x) && -whole.z > 0 && whole.y < int(size.y) && -whole.w > 0;
     bool in_band = whole.y < int(draw_params.band.z) && -whole.w > int(draw_params.band.y);
     if (!in_picture && draw_params.band.y == 0u) atomicAdd(counters[COUNTER_CULLED], 1u);
     if (!in_picture || !in_band) return;

@@ -17,7 +17,6 @@ UNIFORM_BLOCK(MaterialParams, material, BIND_MATERIAL)
     float specular2, exponent2;   // second highlight, tinted
     float shift1_cos, shift1_sin; // of the highlights' turn about the fibre: towards the root
     float shift2_cos, shift2_sin; // towards the tip
-    uint strand_count;            // of the batch
     uint vertex_count;
     uint first_strand, drawn_strands; // of the part of the batch that is being drawn
 }

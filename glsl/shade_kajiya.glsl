@@ -6,6 +6,19 @@
 // tilt the first reflection's cone towards the root; light that has gone through the fibre and
 // been reflected inside leaves on a cone tilted towards the tip, coloured on its way.
 
+// The material's share in it. Read once: a uniform costs a load wherever it is named.
+struct Kajiya {
+    float ambient, diffuse, specular1, exponent1, specular2, exponent2;
+    vec2 shift1, shift2; // cosine and sine
+};
+
+Kajiya kajiya_material()
+{
+    return Kajiya(material.ambient, material.diffuse, material.specular1, material.exponent1, material.specular2,
+                  material.exponent2, vec2(material.shift1_cos, material.shift1_sin),
+                  vec2(material.shift2_cos, material.shift2_sin));
+}
+
 float sine_of(float cosine)
 {
     return sqrt(max(1.0 - cosine * cosine, 0.0));
@@ -13,26 +26,26 @@ float sine_of(float cosine)
 
 // How near the eye is to the cone that lies mirrored to the light and turned by a small angle:
 // max(0, cos of the angle between).
-float cone_highlight(float light, float light_sine, float eye, float eye_sine, float turn_cos, float turn_sin)
+float cone_highlight(float light, float light_sine, float eye, float eye_sine, vec2 turn)
 {
-    float cone = -light * turn_cos - light_sine * turn_sin;
-    float cone_sine = light_sine * turn_cos - light * turn_sin;
+    float cone = -light * turn.x - light_sine * turn.y;
+    float cone_sine = light_sine * turn.x - light * turn.y;
     return max(cone * eye + cone_sine * eye_sine, 0.0);
 }
 
 // Linear RGB of a fibre of colour `base` along the unit tangent (root to tip), seen along the unit
 // vector to the eye.
-vec3 shade_kajiya(vec3 base, vec3 tangent, vec3 to_eye)
+vec3 shade_kajiya(Kajiya m, vec3 base, vec3 tangent, vec3 to_eye)
 {
     float eye = clamp(dot(tangent, to_eye), -1.0, 1.0), eye_sine = sine_of(eye);
-    vec3 color = material.ambient * base;
+    vec3 color = m.ambient * base;
     for (int i = 0; i < draw_params.light_count; ++i) {
         float light = clamp(dot(tangent, draw_params.light_direction[i].xyz), -1.0, 1.0);
         float light_sine = sine_of(light);
-        float first = cone_highlight(light, light_sine, eye, eye_sine, material.shift1_cos, material.shift1_sin);
-        float second = cone_highlight(light, light_sine, eye, eye_sine, material.shift2_cos, material.shift2_sin);
-        float white = material.specular1 * pow(first, material.exponent1);
-        float tinted = material.diffuse * light_sine + material.specular2 * pow(second, material.exponent2);
+        float first = cone_highlight(light, light_sine, eye, eye_sine, m.shift1);
+        float second = cone_highlight(light, light_sine, eye, eye_sine, m.shift2);
+        float white = m.specular1 * pow(first, m.exponent1);
+        float tinted = m.diffuse * light_sine + m.specular2 * pow(second, m.exponent2);
         color += draw_params.light_color[i].rgb * (white + tinted * base);
     }
     return color;

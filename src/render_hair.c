@@ -98,7 +98,6 @@ Result render_hair_draw(RenderHair *hair, const HairBatch *batch, const Material
 {
     uint32_t n = batch->vertex_count, most = n < PART_PARTICLES ? PART_PARTICLES / n : 1;
     MaterialParams part = *material;
-    part.strand_count = batch->strand_count;
     part.vertex_count = n;
     for (uint32_t first = 0; first < batch->strand_count; first += most) {
         uint32_t left = batch->strand_count - first;

@@ -371,6 +371,29 @@ static void a_strand_towards_the_eye_is_harmless(void **state)
                 assert_int_equal(studio_pixel(&studio, x, y)[3], 0);
 }
 
+// Solvers promise finite positions; if one breaks its word, the rest of the picture stands.
+static void broken_positions_harm_no_other_strand(void **state)
+{
+    (void)state;
+    const float values[] = {NAN, INFINITY, -INFINITY, 1e30f, -3e38f};
+    use(&TRANSPARENT);
+    for (size_t i = 0; i < sizeof values / sizeof *values; ++i)
+        for (int axis = 0; axis < 3; ++axis) {
+            float position[2][4][3] = {0};
+            for (int j = 0; j < 4; ++j) {
+                position[0][j][0] = position[1][j][0] = (float)(30 * j - 45);
+                position[1][j][1] = 40;
+            }
+            position[0][2][axis] = values[i];
+            Strands strands = studio_strands(2, 4, (const float(*)[3])position);
+            studio_add(&studio, &strands, 3, 1);
+            strands_destroy(&strands);
+            studio_draw(&studio);
+            assert_int_equal(studio_pixel(&studio, SIDE / 2, SIDE / 2 - 40)[3], 255);
+            studio_clear(&studio);
+        }
+}
+
 static void a_strand_past_the_eye_is_drawn_up_to_it(void **state)
 {
     (void)state;
@@ -482,8 +505,8 @@ static void blocks_lie_alike_in_c_and_glsl(void **state)
     MATERIAL(color), MATERIAL(color_variation), MATERIAL(radius), MATERIAL(tip_ratio);
     MATERIAL(opacity), MATERIAL(ambient), MATERIAL(diffuse), MATERIAL(specular1);
     MATERIAL(exponent1), MATERIAL(specular2), MATERIAL(exponent2), MATERIAL(shift1_cos);
-    MATERIAL(shift1_sin), MATERIAL(shift2_cos), MATERIAL(shift2_sin), MATERIAL(strand_count);
-    MATERIAL(vertex_count), MATERIAL(first_strand), MATERIAL(drawn_strands);
+    MATERIAL(shift1_sin), MATERIAL(shift2_cos), MATERIAL(shift2_sin), MATERIAL(vertex_count),
+        MATERIAL(first_strand), MATERIAL(drawn_strands);
 }
 
 static void a_picture_beyond_the_driver_is_refused(void **state)
@@ -515,6 +538,7 @@ int main(void)
         CLAIM(no_hair_is_background),
         CLAIM(background_is_exact_beside_hair),
         CLAIM(a_strand_towards_the_eye_is_harmless),
+        CLAIM(broken_positions_harm_no_other_strand),
         CLAIM(a_strand_past_the_eye_is_drawn_up_to_it),
         CLAIM(transparent_pictures_have_straight_alpha),
         CLAIM(hair_outside_the_picture_costs_nothing),
