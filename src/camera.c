@@ -30,7 +30,7 @@ static void choose_up(const float wanted[3], vec3 direction, vec3 up)
 static void turn_eye(View *view, vec3 target, const Scene *scene, int frame)
 {
     double degrees = fmod((double)scene->run.turntable * frame / scene->run.frames, 360);
-    vec3 arm, axis;
+    vec3 arm, axis = {0};
     memcpy(axis, scene->run.camera_up, sizeof axis);
     if (degrees == 0 || !(glm_vec3_norm(axis) > 0)) return;
     glm_vec3_sub(view->eye, target, arm);
@@ -57,7 +57,7 @@ static void find_depths(View *view, const Outline *all)
 {
     float nearest = 1e30f, farthest = 0;
     for (int i = 0; i < 8 && all->any; ++i) {
-        vec3 p, seen;
+        vec3 p = {0}, seen;
         outline_corner(all, i, p);
         glm_mat4_mulv3(view->view, p, 1, seen);
         nearest = fminf(nearest, -seen[2]);
@@ -71,7 +71,7 @@ static void find_depths(View *view, const Outline *all)
 void camera_view(View *view, const Scene *scene, const Framing *framing, int frame)
 {
     double time = frame / (double)scene->run.fps;
-    vec3 target;
+    vec3 target = {0};
     float fov_deg = scene->run.fov;
     auto_or_keyed(&scene->target, &scene->run.target, framing->target, time, target);
     auto_or_keyed(&scene->eye, &scene->run.eye, framing->eye, time, view->eye);

@@ -79,8 +79,8 @@ static void moment_at(Moment *moment, const Scene *scene, double time)
 
 static void carry(const Moment *moment, const float point[3], float carried[3])
 {
-    versor rotation;
-    vec3 p;
+    versor rotation = {0};
+    vec3 p = {0};
     memcpy(rotation, moment->rotation, sizeof rotation);
     memcpy(p, point, sizeof p);
     glm_quat_rotatev(rotation, p, carried);
@@ -104,7 +104,7 @@ static void add_style(Outline *outline, const Strands *strands)
 static void add_rest_strand(Outline *outline, const Strands *strands, uint32_t s,
                             const Moment *moment, const float pull[3], float style)
 {
-    vec3 x, carried, next;
+    vec3 x, carried = {0}, next = {0};
     carry(moment, strands->position[strands->first[s]], carried);
     glm_vec3_copy(carried, x);
     for (uint32_t v = strands->first[s] + 1; v < strands->first[s + 1]; ++v) {
@@ -135,7 +135,7 @@ static void add_rest(Outline *outline, const Strands *strands, const SectionPara
 static void add_carried(Outline *outline, const Outline *still, const Moment *moment)
 {
     for (int i = 0; i < OUTLINE_DIRECTIONS && still->any; ++i) {
-        vec3 carried;
+        vec3 carried = {0};
         carry(moment, still->point[i], carried);
         outline_add(outline, carried);
     }
@@ -152,7 +152,7 @@ static void find_outlines(Framing *framing, const Scene *scene, const Strands *s
     double duration = scene->run.frames / (double)scene->run.fps;
     uint32_t times = moves ? TIMES : 1;
     for (uint32_t t = 0; t < times; ++t) {
-        Moment moment;
+        Moment moment = {0};
         moment_at(&moment, scene, duration * t / (TIMES - 1));
         add_carried(&framing->hair, &style, &moment);
         add_carried(&framing->all, &body, &moment);
@@ -209,7 +209,7 @@ static float narrowest_fov(const Scene *scene)
 
 static void place_eye(Framing *framing, const Scene *scene)
 {
-    Axes axes;
+    Axes axes = {0};
     find_axes(&axes, scene->run.camera_up);
     float tan_y = tanf(narrowest_fov(scene) / 2), distance = 0;
     float tan_x = tan_y * (float)scene->run.size[0] / (float)scene->run.size[1];

@@ -23,6 +23,13 @@ static Result create_pool(RenderABuffer *abuffer, int64_t nodes, Error *error)
                              GL_RGBA32UI, error);
 }
 
+static Result build_resolve(RenderABuffer *abuffer, int over_mesh, Error *error)
+{
+    const ShaderDefine defines[] = {{"LAYERS", abuffer->layers}, {"BASE", over_mesh}, {NULL, 0}};
+    return shader_build_draw(&abuffer->resolve[over_mesh], "resolve.vert", "resolve.frag", defines,
+                             error);
+}
+
 Result render_abuffer_create(RenderABuffer *abuffer, const GpuLimits *limits, int width, int layers,
                              int64_t pool_bytes, Error *error)
 {
@@ -38,8 +45,14 @@ Result render_abuffer_create(RenderABuffer *abuffer, const GpuLimits *limits, in
     if (result == RESULT_OK)
         result = gpu_buffer_create(&abuffer->extent, limits, "hair's screen box", 16, NULL, GL_R32I,
                                    error);
+    if (result == RESULT_OK) result = build_resolve(abuffer, 0, error);
     if (result != RESULT_OK) render_abuffer_destroy(abuffer);
     return result;
+}
+
+Result render_abuffer_add_mesh(RenderABuffer *abuffer, Error *error)
+{
+    return abuffer->resolve[1] ? RESULT_OK : build_resolve(abuffer, 1, error);
 }
 
 void render_abuffer_destroy(RenderABuffer *abuffer)
@@ -121,16 +134,9 @@ Result render_abuffer_grow(RenderABuffer *abuffer, const ABufferUse *use, bool *
     return create_pool(abuffer, smaller(ample, abuffer->most_nodes), error);
 }
 
-Result render_abuffer_resolve(RenderABuffer *abuffer, const RenderTarget *target, bool over_mesh,
-                              Error *error)
+void render_abuffer_resolve(const RenderABuffer *abuffer, const RenderTarget *target,
+                            bool over_mesh)
 {
-    GLuint *program = &abuffer->resolve[over_mesh];
-    if (!*program) {
-        const ShaderDefine defines[] = {
-            {"LAYERS", abuffer->layers}, {"BASE", over_mesh}, {NULL, 0}};
-        Result result = shader_build_draw(program, "resolve.vert", "resolve.frag", defines, error);
-        if (result != RESULT_OK) return result;
-    }
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     gpu_buffer_bind_texture(&abuffer->nodes, BIND_NODES);
     gpu_buffer_bind_texture(&abuffer->heads, BIND_HEADS);
@@ -138,8 +144,7 @@ Result render_abuffer_resolve(RenderABuffer *abuffer, const RenderTarget *target
     glActiveTexture(GL_TEXTURE0 + BIND_BASE);
     glBindTexture(GL_TEXTURE_2D, target->base);
     glBindFramebuffer(GL_FRAMEBUFFER, target->picture_frame);
-    glUseProgram(*program);
+    glUseProgram(abuffer->resolve[over_mesh]);
     glBindVertexArray(abuffer->vertex_array);
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-    return RESULT_OK;
 }

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 
 typedef struct RenderABuffer {
-    GLuint resolve[2];   // programs: over the background alone, over a mesh; built when needed
+    GLuint resolve[2];   // programs: over the background alone, over a mesh
     GLuint vertex_array; // without attributes
     GpuBuffer nodes;     // uvec4, see abuffer.glsl
     GpuBuffer heads;     // uint a pixel of the band
@@ -32,6 +32,9 @@ Result render_abuffer_create(RenderABuffer *abuffer, const GpuLimits *limits, in
                              int64_t pool_bytes, Error *error);
 void render_abuffer_destroy(RenderABuffer *abuffer);
 
+// Makes what resolving over a mesh needs; nothing if it is there.
+Result render_abuffer_add_mesh(RenderABuffer *abuffer, Error *error);
+
 // Rows that one band can have at most; >= 1 for every picture that can be drawn.
 int render_abuffer_most_rows(const RenderABuffer *abuffer, int height);
 
@@ -51,6 +54,6 @@ Result render_abuffer_grow(RenderABuffer *abuffer, const ABufferUse *use, bool *
                            Error *error);
 
 // Writes the pixels within the extent and the scissor to the target's picture, over its base if
-// `over_mesh`. Needs the DrawParams block.
-Result render_abuffer_resolve(RenderABuffer *abuffer, const RenderTarget *target, bool over_mesh,
-                              Error *error);
+// `over_mesh` (after render_abuffer_add_mesh). Needs the DrawParams block.
+void render_abuffer_resolve(const RenderABuffer *abuffer, const RenderTarget *target,
+                            bool over_mesh);

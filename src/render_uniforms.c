@@ -19,7 +19,7 @@ void linear_from_srgb_color(const float srgb[3], float linear[3])
 
 void draw_params_set_view(DrawParams *draw, const View *view, int width, int height)
 {
-    mat4 projection, from_world;
+    mat4 projection = {0}, from_world = {0};
     memcpy(projection, view->projection, sizeof projection);
     memcpy(from_world, view->view, sizeof from_world);
     projection[1][1] = -projection[1][1]; // the picture's first row is its top

@@ -49,6 +49,8 @@ Result renderer_set_mesh(Renderer *renderer, const Mesh *mesh, const float color
         render_mesh_create(&renderer->mesh, mesh, linear, &renderer->gpu->limits, error);
     if (result == RESULT_OK && renderer->mesh.triangle_count)
         result = render_target_add_mesh(&renderer->target, error);
+    if (result == RESULT_OK && renderer->mesh.triangle_count)
+        result = render_abuffer_add_mesh(&renderer->abuffer, error);
     return result;
 }
 
@@ -155,10 +157,9 @@ static Result draw_bands(Renderer *renderer, DrawParams *draw, const RenderItem 
             continue;
         }
         gpu_timer_begin(renderer->timer, "draw_resolve");
-        result = render_abuffer_resolve(&renderer->abuffer, &renderer->target,
-                                        renderer->mesh.triangle_count > 0, error);
+        render_abuffer_resolve(&renderer->abuffer, &renderer->target,
+                               renderer->mesh.triangle_count > 0);
         gpu_timer_end(renderer->timer);
-        if (result != RESULT_OK) return result;
         counts->fragments += use.fragments;
         counts->segments += use.segments;
         counts->culled += use.culled;
