@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Forces on a velocity, the same for all solvers (needs step.h).
 
-// A hash of a strand's number: uniform bits, equal on every machine (the finaliser "lowbias32" of C. Wellons).
-uint hash_strand(uint id)
-{
-    id = (id ^ (id >> 16)) * 0x7feb352du;
-    id = (id ^ (id >> 15)) * 0x846ca68bu;
-    return id ^ (id >> 16);
-}
+#include "hash.glsl"
 
 // The wind at a strand: the four directions mixed with weights from its number, so that neighbours do not move in step.
 vec3 strand_wind(uint id)
 {
-    uint h = hash_strand(id);
+    uint h = hash_bits(id);
     vec2 mixing = vec2(float(int(h & 0xffffu)), float(int(h >> 16))) * (1.0 / 65535.0);
     vec3 left = mix(step_params.wind[0].xyz, step_params.wind[1].xyz, mixing.x);
     vec3 right = mix(step_params.wind[2].xyz, step_params.wind[3].xyz, mixing.x);
