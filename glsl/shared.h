@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Read by C and by GLSL: what both sides must agree on. Blocks use only float, int, uint, vec4, uvec4 and mat4, which both
-// lay out alike without padding by hand (tests/test_shader.c compares every offset with the driver's).
+// Read by C and by GLSL: what both sides must agree on. Blocks use only float, int, uint, vec4,
+// uvec4 and mat4, which both lay out alike without padding by hand (tests/test_shader.c compares
+// every offset with the driver's).
 #ifdef __STDC__
 #pragma once
 #include <cglm/cglm.h>
@@ -14,22 +15,23 @@ typedef uint uvec4[4] __attribute__((aligned(16)));
 #define END_BLOCK(type, instance)         instance
 #endif
 
-// Strands lie in tiles of this many (hair.h): what neighbouring lanes touch is one piece of memory, and so is what a lane touches next.
+// Strands lie in tiles of this many (hair.h): what neighbouring lanes touch is one piece of memory,
+// and so is what a lane touches next.
 #define STRAND_TILE 16
 
 // Uniform blocks.
-#define BIND_STEP 0
-#define BIND_DRAW 1
+#define BIND_STEP     0
+#define BIND_DRAW     1
 #define BIND_MATERIAL 2
 
 // Shader storage.
 #define BIND_POSITION_OUT 0 // vec4 a particle: where a solver puts the strand that is drawn
-#define BIND_STATE_OUT 1    // a solver's own state
-#define BIND_TIPS 2         // split: two vec4 a strand
-#define BIND_SCRATCH 3      // a solver's scratch memory
+#define BIND_STATE_OUT    1 // a solver's own state
+#define BIND_TIPS         2 // split: two vec4 a strand
+#define BIND_SCRATCH      3 // a solver's scratch memory
 
 // Buffer textures.
-#define BIND_POSITION 0  // vec4 a particle
-#define BIND_REST 1      // vec4 a particle: the style, see hair.h
+#define BIND_POSITION  0 // vec4 a particle
+#define BIND_REST      1 // vec4 a particle: the style, see hair.h
 #define BIND_STRAND_ID 2 // uint a strand
-#define BIND_STATE 3     // a solver's own state
+#define BIND_STATE     3 // a solver's own state

@@ -112,7 +112,7 @@ enum { DRAWN_FRAMES = 20, DRAWN_WARM_UP = 3 };
 static Result draw_frames(SpeedResult *result, Renderer *renderer, Bench *bench, Image *image,
                           Error *error)
 {
-    double samples[DRAWN_FRAMES];
+    double samples[DRAWN_FRAMES] = {0};
     Framing framing;
     View view;
     framing_compute(&framing, &bench->scene, &bench->strands, NULL);

@@ -4,7 +4,8 @@
 
 #include <stdarg.h>
 
-// What went wrong, by kind. The values are the programs' exit statuses, so that `main` returns them.
+// What went wrong, by kind. The values are the programs' exit statuses, so that `main` returns
+// them.
 typedef enum Result {
     RESULT_OK = 0,
     RESULT_FAILED = 1,        // at run time: disk full, out of memory, ffmpeg died, ...
@@ -19,8 +20,9 @@ typedef struct Error {
     char text[1024];
 } Error;
 
-// Writes the line (printf style, cut at the buffer's end) and returns `result`, so that failing reads
-// `return error_set(error, RESULT_BAD_INPUT, "%s: byte %zu: ...", path, at);`. `error` may be NULL.
+// Writes the line (printf style, cut at the buffer's end) and returns `result`, so that failing
+// reads `return error_set(error, RESULT_BAD_INPUT, "%s: byte %zu: ...", path, at);`. `error` may be
+// NULL.
 Result error_set(Error *error, Result result, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 

@@ -34,7 +34,7 @@ static void perpendiculars(const vec3 main, vec3 a, vec3 b)
 // the main direction; dividing by it keeps the mean.
 static void spread_wind(Forces *forces, const vec3 main, float spread_deg)
 {
-    vec3 a, b;
+    vec3 a = {0}, b = {0};
     float side = glm_vec3_norm((float *)main) * tanf(glm_rad(fminf(spread_deg, 89.0f)));
     perpendiculars(main, a, b);
     for (int i = 0; i < 4; ++i) {
@@ -50,7 +50,7 @@ void forces_evaluate(Forces *forces, const Scene *scene, double time)
     memcpy(forces->gravity, scene->run.gravity, sizeof forces->gravity);
     if (scene->gravity.count) keyframes_evaluate(&scene->gravity, time, forces->gravity);
     if (!blows(scene)) return;
-    vec3 main;
+    vec3 main = {0};
     memcpy(main, scene->run.wind, sizeof main);
     if (scene->wind.count) keyframes_evaluate(&scene->wind, time, main);
     glm_vec3_scale(main, (float)(1 + (double)scene->run.gust * gust_at(&scene->run, time)), main);

@@ -30,7 +30,7 @@ typedef Result (*Command)(const Arguments *arguments, const Gpu *gpu, Error *err
 static Result check_vectors(const Arguments *arguments, const Gpu *gpu, bool chains, Error *error)
 {
     if (!arguments->vectors) return error_set(error, RESULT_USAGE, "--vectors FILE.csv is needed");
-    VectorsReport report;
+    VectorsReport report = {0};
     Result result = (chains ? vectors_check_chains
                             : vectors_check_steps)(&report, gpu, arguments->vectors, error);
     if (result != RESULT_OK) return result;

@@ -164,7 +164,7 @@ static void dispatch(ParticleState *state, uint32_t i, StepParams *uniforms)
 // The head's pose after the share t of a step: translation straight, rotation by slerp.
 static HeadPose pose_between(const HeadPose *a, const HeadPose *b, float t)
 {
-    HeadPose pose;
+    HeadPose pose = {0};
     if (t >= 1) return *b;
     glm_quat_slerp((float *)a->rotation, (float *)b->rotation, t, pose.rotation);
     glm_vec3_lerp((float *)a->translation, (float *)b->translation, t, pose.translation);

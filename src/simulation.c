@@ -13,7 +13,7 @@ static bool same_pose(const HeadPose *a, const HeadPose *b)
 
 static HeadPose head_at(const Scene *scene, double time)
 {
-    HeadPose pose;
+    HeadPose pose = {0};
     rigid_track_evaluate(&scene->head, time, pose.rotation, pose.translation);
     return pose;
 }

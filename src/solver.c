@@ -22,8 +22,8 @@ static Result refuse_type(const char *name, Error *error)
 {
     const char *names[MAX_WORDS];
     size_t count = 0;
-    for (; count < MAX_WORDS && SOLVER_TYPES[count]; ++count)
-        names[count] = SOLVER_TYPES[count]->name;
+    for (const SolverType *const *type = SOLVER_TYPES; *type && count < MAX_WORDS; ++type)
+        names[count++] = (*type)->name;
     return error_set(error, RESULT_USAGE,
                      "algo: no solver '%s'; did you mean '%s'? (--algo list shows all)", name,
                      suggest_nearest(name, names, count));

@@ -91,7 +91,7 @@ static void hair_stays_in_the_picture_and_fills_it(void **state)
     (void)state;
     for (int kind = 0; kind < 3; ++kind) { // still, on a turntable, on a moving head
         Shot shot;
-        Error error;
+        Error error = {{0}};
         open_shot(&shot, 1);
         shot.section.params.style = 1;
         if (kind == 1) shot.scene.run.turntable = 360;

@@ -156,7 +156,7 @@ static void a_target_that_cannot_be_written_fails_before_any_frame(void **state)
     static const char *const names[] = {"plain/", "plain/x_%d.png", "plain/below/", "plain/x.mp4"};
     temporary_write(state, "plain", "a file, no folder", 0644);
     for (int i = 0; i < 4; i++) {
-        Error error;
+        Error error = {{0}};
         Output *output;
         OutputOptions options = make_options(temporary_path(state, names[i]), 3);
         assert_int_equal(output_create(&output, &options, &error), RESULT_FAILED);
@@ -300,7 +300,7 @@ static void a_dying_ffmpeg_fails_with_its_last_words_and_no_file(void **state)
         {"exec <&-; exit 0", "stopped reading"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        Error error;
+        Error error = {{0}};
         OutputOptions options = make_options(temporary_path(state, "x.mp4"), 3);
         // Larger than the pipe, so that no write ends before ffmpeg has.
         options.width = options.height = 1024;

@@ -23,7 +23,7 @@ static void *params_of(Params *params, const ParamInfo *info)
 
 static void create(Params *params)
 {
-    Error error;
+    Error error = {{0}};
     assert_int_equal(run_params_create(&params->run, &error), RESULT_OK);
     assert_int_equal(section_params_create(&params->section, &error), RESULT_OK);
 }
@@ -136,7 +136,7 @@ static void values_print_in_their_shortest_form_and_read_back(void **state)
         Params params, again;
         create(&params);
         create(&again);
-        Error error;
+        Error error = {{0}};
         assert_int_equal(param_parse(info, params_of(&params, info), VALID[i].text, &error),
                          RESULT_OK);
         assert_prints(info, params_of(&params, info), VALID[i].printed);
@@ -152,7 +152,7 @@ static void floats_read_back_to_the_same_bits(void **state)
 {
     (void)state;
     const ParamInfo *info = param_find("drag");
-    Error error;
+    Error error = {{0}};
     for (uint32_t bits = 1; bits < 0x49742400; bits += 99991 * 13) { // up to 1e6
         SectionParams params = {0}, again = {0};
         memcpy(&params.drag, &bits, sizeof bits);
@@ -234,7 +234,7 @@ static void a_long_wrong_value_is_cut_in_the_message(void **state)
     memset(text, 'a', sizeof text);
     text[sizeof text - 1] = 0;
     RunParams params = {0};
-    Error error;
+    Error error = {{0}};
     assert_int_equal(param_parse(param_find("fps"), &params, text, &error), RESULT_USAGE);
     assert_true(strlen(error.text) < 200);
     assert_non_null(strstr(error.text, "aaa...', expected"));
@@ -245,7 +245,7 @@ static void a_copy_owns_its_texts(void **state)
 {
     (void)state;
     SectionParams params, copy;
-    Error error;
+    Error error = {{0}};
     assert_int_equal(section_params_create(&params, &error), RESULT_OK);
     params.style = 0.25f;
     assert_int_equal(section_params_copy(&copy, &params, &error), RESULT_OK);

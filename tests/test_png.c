@@ -176,7 +176,7 @@ static void files_that_are_no_png_are_bad_input(void **state)
     temporary_write(state, "empty.png", "", 0644);
     temporary_write(state, "text.png", "P6 1 1 255 no PNG at all", 0644);
     for (int i = 0; i < 3; i++) {
-        Error error;
+        Error error = {{0}};
         Image image;
         const char *path = temporary_path(state, names[i]);
         assert_int_equal(png_read(&image, path, &error), RESULT_BAD_INPUT);

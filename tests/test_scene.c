@@ -22,7 +22,9 @@ static Result read_arguments(Scene *scene, const char *line, Error *error)
     snprintf(copy, sizeof copy, "%s", line);
     char *argv[ARGUMENTS_MAX + 1] = {"tractrix-render"};
     int argc = 1;
-    for (char *word = strtok(copy, " "); word; word = strtok(NULL, " ")) argv[argc++] = word;
+    char *rest = copy;
+    for (char *word; (word = strsep(&rest, " "));)
+        if (*word) argv[argc++] = word;
     return scene_from_arguments(scene, argc, argv, error);
 }
 
@@ -611,7 +613,7 @@ static void deep_and_huge_files_are_refused_in_one_short_line(void **state)
     texts[2] = closed;
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
         Scene scene;
-        Error error;
+        Error error = {{0}};
         assert_int_equal(read_scene(state, &scene, texts[i], &error), RESULT_BAD_INPUT);
         assert_true(strlen(error.text) < 500);
         assert_null(strchr(error.text, '\n'));

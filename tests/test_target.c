@@ -83,7 +83,7 @@ static void targets_without_sense_are_usage_errors(void **state)
                                         ""};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         Target target;
-        Error error;
+        Error error = {{0}};
         assert_int_equal(target_parse(&target, texts[i], &error), RESULT_USAGE);
         assert_non_null(strstr(error.text, texts[i]));
         assert_null(strchr(error.text, '\n'));

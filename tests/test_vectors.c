@@ -14,7 +14,7 @@
 static void every_step_is_within_16_floors_of_the_exact_curve(void **state)
 {
     (void)state;
-    VectorsReport report;
+    VectorsReport report = {0};
     Error error;
     if (vectors_check_steps(&report, fixture_gpu(), "tests/data/tractrix_steps.csv", &error))
         fail_msg("%s", error.text);
@@ -26,7 +26,7 @@ static void every_step_is_within_16_floors_of_the_exact_curve(void **state)
 static void every_chain_is_within_32_sensitivities(void **state)
 {
     (void)state;
-    VectorsReport report;
+    VectorsReport report = {0};
     Error error;
     if (vectors_check_chains(&report, fixture_gpu(), "tests/data/chain_pulls.csv", &error))
         fail_msg("%s", error.text);
@@ -51,7 +51,7 @@ static const char HEADER[] = "id,category,hx_hex,hy_hex,hz_hex,tx_hex,ty_hex,tz_
 static void a_wrong_answer_fails(void **state)
 {
     char text[1024];
-    VectorsReport report;
+    VectorsReport report = {0};
     Error error;
     // Dragged along itself by 0.5: the tail goes from (1,0,0) to (0.5,0,0). The second row claims
     // 2e-6 more, 20 floors.
@@ -67,7 +67,7 @@ static void a_wrong_answer_fails(void **state)
 static void a_bad_field_is_named_by_line_and_column(void **state)
 {
     char text[1024];
-    VectorsReport report;
+    VectorsReport report = {0};
     Error error;
     snprintf(text, sizeof text, "%s%s", HEADER, "0,pull,0,0,zero,1,0,0,-0.5,0,0,1e-7,0.5,0,0\n");
     assert_int_equal(
