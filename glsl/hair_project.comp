@@ -29,10 +29,10 @@ const float PAD = 0.71;        // px; the corner of a pixel is sqrt(1/2) from it
 const float LEAST_COSINE = 0.25; // of the joints' 1 + n0.n1
 const float MITRE_MAX = 2.9;   // bound of |m|: sqrt(2 x) / max(x, LEAST_COSINE) over all x
 
-// Read once in main: a uniform costs a load wherever it is named.
-mat4 clip_from_world;
-vec2 size; // of the picture, px
-float near_distance, focal;
+// Read once: a uniform costs a load wherever it is named.
+mat4 clip_from_world = draw_params.clip_from_world;
+vec2 size = vec2(draw_params.width, draw_params.height); // of the picture, px
+float near_distance = draw_params.near_distance, focal = draw_params.focal;
 
 // Where the strand is drawn instead, all in clip space, when `x` lies behind the near plane: on that
 // plane, towards the neighbour that is in sight.
@@ -126,10 +126,6 @@ void main()
     vec3 base = material.color.rgb *
                 (1.0 + material.color_variation * hash_signed(texelFetch(strand_id, s).x ^ draw_params.seed));
     float thinning = (1.0 - material.tip_ratio) / float(n - 1);
-    clip_from_world = draw_params.clip_from_world;
-    size = vec2(draw_params.width, draw_params.height);
-    near_distance = draw_params.near_distance;
-    focal = draw_params.focal;
     float radius = material.radius;
     vec3 eye = draw_params.eye.xyz;
     Kajiya fibre = kajiya_material();

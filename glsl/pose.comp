@@ -22,14 +22,14 @@ float polynomial(vec4 low, vec4 high, float x)
 // Slerp from the unit vector a towards the unit vector b by a share w <= 1/2 of their angle. With the bisector h this is a turn towards
 // h by v = 2w of the half angle p <= 90 deg: cos(v p) a + sin(v p)/sin(p) (h - cos(p) a). Both factors are smooth functions of
 // x = sin^2(p/2) <= 1/2, given as polynomials, so that no angle is needed. Antiparallel vectors have no bisector: a stays.
-vec3 turn(vec3 a, vec3 b)
+vec3 turn(vec3 a, vec3 b, Turn by)
 {
     vec3 sum = a + b;
     float ss = dot(sum, sum);
     float inverse = inversesqrt(max(ss, 1e-12));
     float cos_p = 0.5 * ss * inverse;
     float x = 0.5 - 0.5 * cos_p;
-    vec3 turned = polynomial(cos_low, cos_high, x) * a + polynomial(sin_low, sin_high, x) * (sum * inverse - cos_p * a);
+    vec3 turned = polynomial(by.cos_low, by.cos_high, x) * a + polynomial(by.sin_low, by.sin_high, x) * (sum * inverse - cos_p * a);
     return ss > 1e-12 ? turned : a;
 }
 
@@ -39,8 +39,7 @@ void main()
     if (s >= int(pose_params.strand_count)) return;
     int first = particle_address(s, 0, n);
     vec4 root = texelFetch(rest, first), rotation = pose_params.head_rotation;
-    cos_low = pose_params.turn_cos[0], cos_high = pose_params.turn_cos[1];
-    sin_low = pose_params.turn_sin[0], sin_high = pose_params.turn_sin[1];
+    Turn by = Turn(pose_params.turn_cos[0], pose_params.turn_cos[1], pose_params.turn_sin[0], pose_params.turn_sin[1]);
 
     vec3 x = rotate(rotation, root.xyz) + pose_params.head_translation.xyz;
     positions[first] = vec4(x, 1.0);
@@ -53,9 +52,9 @@ void main()
         vec4 segment = texelFetch(rest, a);
         vec3 d = rotate(rotation, segment.xyz);
 #if MIX == 2
-        d = turn(texelFetch(segments, a).xyz, d);
+        d = turn(texelFetch(segments, a).xyz, d, by);
 #elif MIX == 3
-        d = turn(d, texelFetch(segments, a).xyz);
+        d = turn(d, texelFetch(segments, a).xyz, by);
 #endif
 #endif
         x += segment.w * d;

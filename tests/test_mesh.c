@@ -37,7 +37,7 @@ static void all_forms_of_faces_give_the_same_square(void **state)
         SQUARE "vn 0 0 2\nf 1//1 2//1 3//1 4//-1\n",
         SQUARE "f -4 -3 -2 -1\n",
         SQUARE "f 1 2 \\\n3 \\\r\n4\n",
-        "f 1 2 3 4\n" SQUARE,
+        ("f 1 2 3 4\n" SQUARE),
         "v 0 0 0 1.0\nv\t1 0 0\n  v 1 1 0 0.5 0.5 0.5\nv 0 1e0 0\nf 1 2 3\nf 1 3 4\n",
     };
     static const uint32_t expected[2][3] = {{0, 1, 2}, {0, 2, 3}};
