@@ -134,7 +134,7 @@ void main()
     vec3 here = texelFetch(position, root).xyz, before = here;
     vec4 here_clip = clip_from_world * vec4(here, 1.0), before_clip = here_clip;
     vec4 box = vec4(1e6);
-    Particle kept, last; // the last one that was not left out; the one before this one
+    Particle kept = Particle(vec4(0.0), vec3(0.0)), last = kept; // the last one not left out; the one before this one
     vec2 way = vec2(0.0); // the ribbon's direction before `kept`
     float bent = 0.0;     // of all that was left out since `kept`
     int count = 0;

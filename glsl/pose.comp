@@ -10,8 +10,10 @@ layout(binding = BIND_REST) uniform samplerBuffer rest;
 layout(binding = BIND_STATE) uniform samplerBuffer segments; // unit direction, rest length
 layout(std430, binding = BIND_POSITION_OUT) writeonly buffer Positions { vec4 positions[]; };
 
-// Uniforms cost a load wherever they are named: these are read once.
-vec4 cos_low, cos_high, sin_low, sin_high;
+// The polynomials of a turn. Uniforms cost a load wherever they are named, so they are read once, into this.
+struct Turn {
+    vec4 cos_low, cos_high, sin_low, sin_high;
+};
 
 float polynomial(vec4 low, vec4 high, float x)
 {
