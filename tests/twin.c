@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+#include "twin.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+double vec_dot(const Vec a, const Vec b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+double vec_norm(const Vec a)
+{
+    return sqrt(vec_dot(a, a));
+}
+
+void vec_copy(const Vec a, Vec r)
+{
+    memcpy(r, a, sizeof(Vec));
+}
+
+void vec_add_scaled(const Vec a, double s, const Vec b, Vec r)
+{
+    for (int k = 0; k < 3; ++k) r[k] = a[k] + s * b[k];
+}
+
+void twin_start(TwinStrand *strand, int n, const Vec *positions)
+{
+    *strand = (TwinStrand){.n = n};
+    memcpy(strand->x, positions, (size_t)n * sizeof *positions);
+    memcpy(strand->style, positions, (size_t)n * sizeof *positions);
+    for (int j = 1; j < n; ++j) {
+        Vec r;
+        vec_add_scaled(positions[j], -1, positions[j - 1], r);
+        strand->length[j] = vec_norm(r);
+    }
+}
+
+static void cross(const Vec a, const Vec b, Vec r)
+{
+    for (int k = 0; k < 3; ++k)
+        r[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
+void twin_style(const TwinStrand *strand, const HeadPose *head, int j, Vec r)
+{
+    const double w = (double)head->rotation[3];
+    Vec q, once, twice;
+    for (int k = 0; k < 3; ++k) q[k] = (double)head->rotation[k];
+    cross(q, strand->style[j], once);
+    cross(q, once, twice);
+    for (int k = 0; k < 3; ++k)
+        r[k] = strand->style[j][k] + 2 * (w * once[k] + twice[k]) + (double)head->translation[k];
+}
+
+void twin_kick(Vec v, const TwinStep *step, double h)
+{
+    double c = step->drag, decay = exp(-c * h), gain = c > 0 ? -expm1(-c * h) / c : h;
+    for (int k = 0; k < 3; ++k) v[k] = v[k] * decay + (step->gravity[k] + c * step->wind[k]) * gain;
+}
+
+void twin_rebuild(const TwinStrand *strand, Vec *positions)
+{
+    vec_copy(strand->x[0], positions[0]);
+    for (int j = 1; j < strand->n; ++j) {
+        Vec r;
+        vec_add_scaled(strand->x[j], -1, strand->x[j - 1], r);
+        vec_add_scaled(positions[j - 1], strand->length[j] / vec_norm(r), r, positions[j]);
+    }
+}
+
+void twin_make_curl(Vec *q, int n, double x, double turns)
+{
+    for (int j = 0; j < n; ++j) {
+        double u = (double)j / (n - 1), angle = 6.283185307 * turns * u;
+        q[j][0] = (double)(float)(x + 0.2 * u);
+        q[j][1] = (double)(float)(0.02 * u * cos(angle) + 0.05 * u * u);
+        q[j][2] = (double)(float)(0.02 * u * sin(angle));
+    }
+}
+
+void twin_read_strand(HairFixture *fixture, int s, Vec *q)
+{
+    const HairBatch *batch = &fixture->hair.batches[0];
+    float(*positions)[4] = fixture_positions(fixture, 0);
+    for (uint32_t j = 0; j < batch->vertex_count; ++j)
+        for (int k = 0; k < 3; ++k)
+            q[j][k] = (double)positions[hair_address(batch, (uint32_t)s, j)][k];
+    free(positions);
+}
+
+double twin_rms(const Vec *a, const Vec *b, int n, double length)
+{
+    double sum = 0;
+    for (int j = 1; j < n; ++j)
+        for (int k = 0; k < 3; ++k) sum += (a[j][k] - b[j][k]) * (a[j][k] - b[j][k]);
+    return sqrt(sum / (n - 1)) / length;
+}
+
+double twin_length_error(const TwinStrand *rest, const Vec *q)
+{
+    double worst = 0;
+    for (int j = 1; j < rest->n; ++j) {
+        Vec r;
+        vec_add_scaled(q[j], -1, q[j - 1], r);
+        worst = fmax(worst, fabs(vec_norm(r) / rest->length[j] - 1));
+    }
+    return worst;
+}
+
+enum { CURLS = 5 };
+
+static void move_head(HeadPose *head, double time)
+{
+    double turn = 0.1 * sin(6.283185307 * 2 * time); // half the angle
+    head->translation[0] = (float)(0.02 * (1 - cos(6.283185307 * 2 * time)));
+    head->rotation[2] = (float)sin(turn);
+    head->rotation[3] = (float)cos(turn);
+}
+
+static TwinStep twin_step(const HairFixture *fixture)
+{
+    TwinStep step = {.dt = fixture->step.dt,
+                     .drag = (double)fixture->params.drag,
+                     .first = fixture->step.first,
+                     .head_old = fixture->step.head_old,
+                     .head = fixture->step.head};
+    for (int k = 0; k < 3; ++k) {
+        step.gravity[k] = (double)fixture->step.gravity[k];
+        step.wind[k] = (double)fixture->step.wind[0][k];
+    }
+    return step;
+}
+
+static double farthest(HairFixture *fixture, const TwinRun *run, const TwinStrand *twins)
+{
+    double worst = 0;
+    for (int s = 0; s < CURLS; ++s) {
+        Vec drawn[TWIN_MAX], rebuilt[TWIN_MAX];
+        double length = 0;
+        for (int j = 1; j < run->n; ++j) length += twins[s].length[j];
+        twin_read_strand(fixture, s, drawn);
+        twin_rebuild(&twins[s], rebuilt);
+        double off =
+            twin_rms((const Vec *)drawn,
+                     run->rebuilt ? (const Vec *)rebuilt : (const Vec *)twins[s].x, run->n, length);
+        worst = off > worst || isnan(off) ? off : worst;
+    }
+    return worst;
+}
+
+double twin_compare(const TwinRun *run)
+{
+    static Vec start[CURLS * TWIN_MAX];
+    static TwinStrand twins[CURLS];
+    HairFixture fixture;
+    for (int s = 0; s < CURLS; ++s) {
+        twin_make_curl(&start[s * run->n], run->n, 0.01 * s, 1 + s);
+        twin_start(&twins[s], run->n, (const Vec *)&start[s * run->n]);
+    }
+    fixture_create(&fixture, (const Vec *)start, CURLS, run->n, run->algo, run->variant, 0,
+                   (float)run->drag);
+    if (run->tune) run->tune(&fixture.params);
+    fixture.step.dt = run->dt;
+    for (int i = 0; i < 4; ++i) fixture.step.wind[i][0] = 1.5f, fixture.step.wind[i][2] = 0.5f;
+    for (int i = 1; i <= run->steps; ++i) {
+        move_head(&fixture.step.head, i * run->dt);
+        TwinStep step = twin_step(&fixture);
+        fixture_step(&fixture);
+        for (int s = 0; s < CURLS; ++s) run->twin(&twins[s], &step, &fixture.params);
+    }
+    double worst = farthest(&fixture, run, twins);
+    printf(
+        "%s %s, n = %d, %g steps a second: RMS %.2g of the length from the double-precision twin "
+        "after %d steps\n",
+        run->algo, run->variant, run->n, 1 / run->dt, worst, run->steps);
+    fixture_destroy(&fixture);
+    return worst;
+}
