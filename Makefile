@@ -111,8 +111,8 @@ test: ## set-up, build, and run all tests (ONLY=name: some of them)
 	$(AGAIN) $(JOBS) all tests
 	@tests/run $(OUT) $(ONLY)
 
-bench: all ## print the table of benchmarks
-	$(OUT)/tractrix-bench all
+bench: all ## print the table of benchmarks (BENCH="FILE... --size 1280x720": more hair, drawing)
+	$(OUT)/tractrix-bench all $(BENCH)
 
 # --- Static checks and the sanitizers; all of them run, then the failures are named. One alone: make check-format.
 CHECKS := format scripts warnings clang cppcheck shaders sanitize

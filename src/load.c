@@ -13,6 +13,17 @@ static StrandsReadOptions read_options(const Scene *scene, const Section *sectio
     };
 }
 
+// What a file asks for and this program does not do yet is said, not passed over.
+static void tell_unheeded(const Strands *strands, const char *file, FILE *messages)
+{
+    if (strands->both_ends_fixed)
+        fprintf(messages, "%s: the file fixes both ends of its strands; here the tips move\n",
+                file);
+    if (strands->followers)
+        fprintf(messages, "%s: the file asks for %u followers a guide; only the guides are drawn\n",
+                file, strands->followers);
+}
+
 static Result load_section(Assets *assets, const Scene *scene, uint32_t i, FILE *messages,
                            bool verbose, Error *error)
 {
@@ -22,6 +33,7 @@ static Result load_section(Assets *assets, const Scene *scene, uint32_t i, FILE 
         strands_read(&assets->strands[i], section->file, &options, &assets->reports[i], error);
     if (result != RESULT_OK || !messages) return result;
     strands_report_print_mended(&assets->reports[i], section->file, messages);
+    tell_unheeded(&assets->strands[i], section->file, messages);
     if (verbose) strands_report_print(&assets->reports[i], section->file, messages);
     return RESULT_OK;
 }

@@ -33,7 +33,7 @@ struct Video {
 typedef struct Format {
     const char *suffix;
     bool has_alpha, is_even;
-    double fps_max;
+    double fps_shown; // frames beyond so many a second are left out; 0: none are
     const char *filter, *filter_alpha;
     const char *arguments[FORMAT_ARGUMENTS];
 } Format;
@@ -43,11 +43,12 @@ typedef struct Format {
 #define TO_YUV                                                                                     \
     "scale=out_color_matrix=bt709:out_range=tv:flags=bicubic+accurate_rnd+bitexact,format="
 
+static const double FPS_MAX = 1000;
+
 static const Format formats[] = {
     {
         .suffix = ".mp4",
         .is_even = true, // with halved chroma H.264 has even sizes only
-        .fps_max = 1000.0,
         .filter = TO_YUV "yuv420p",
         .arguments = {"-c:v", "libx264", "-preset", "fast", "-crf", "18", "-movflags", "+faststart",
                       "-f", "mp4"},
@@ -55,7 +56,6 @@ static const Format formats[] = {
     {
         .suffix = ".webm",
         .has_alpha = true,
-        .fps_max = 1000.0,
         .filter = TO_YUV "yuv420p",
         .filter_alpha = TO_YUV "yuva420p",
         // Alternate reference frames cannot be transparent.
@@ -64,7 +64,7 @@ static const Format formats[] = {
     },
     {
         .suffix = ".gif",
-        .fps_max = 50.0, // players slow down shorter delays than 20 ms
+        .fps_shown = 50.0, // players slow down shorter delays than 20 ms
         // A palette for each frame: one for all would keep every frame in memory until the last.
         .filter = "split[a][b];[a]palettegen=stats_mode=single[p];[b][p]paletteuse=new=1",
         .arguments = {"-f", "gif"},
@@ -92,10 +92,9 @@ static Result check_options(const VideoOptions *options, const Format *format, E
         return error_set(error, RESULT_USAGE,
                          "%s: %s cannot hold a transparent background, write .webm or PNG frames",
                          options->path, format->suffix);
-    if (!(options->fps > 0.0 && options->fps <= format->fps_max))
-        return error_set(error, RESULT_USAGE,
-                         "%s: %g frames a second, %s takes at most %g; draw fewer of the frames",
-                         options->path, options->fps, format->suffix, format->fps_max);
+    if (!(options->fps > 0.0 && options->fps <= FPS_MAX))
+        return error_set(error, RESULT_USAGE, "%s: %g frames a second, expected at most %g",
+                         options->path, options->fps, FPS_MAX);
     return RESULT_OK;
 }
 
@@ -120,6 +119,8 @@ static void write_filter(Command *command, const Format *format, const VideoOpti
         snprintf(command->filter, sizeof command->filter,
                  "format=gbrp,pad=%d:%d,fillborders=right=%d:bottom=%d:mode=smear,%s",
                  options->width + right, options->height + bottom, right, bottom, filter);
+    else if (format->fps_shown > 0 && options->fps > format->fps_shown)
+        snprintf(command->filter, sizeof command->filter, "fps=%g,%s", format->fps_shown, filter);
     else
         snprintf(command->filter, sizeof command->filter, "%s", filter);
 }

@@ -13,7 +13,7 @@ typedef struct VideoOptions {
     const char *path;  // ends in .mp4 (H.264), .webm (VP9) or .gif
     int width, height; // pixels; mp4 is padded to even sizes by repeating the last column or row
     int channels;      // 3, or 4 for a transparent webm
-    double fps;        // frames a second, > 0; at most 50 for gif
+    double fps;        // frames a second, 0 < fps <= 1000; a gif shows 50 of them at most
 } VideoOptions;
 
 // Starts ffmpeg, in a process group of its own, so that ^C on the terminal does not reach it, on a

@@ -145,9 +145,9 @@ static void formats_refuse_what_they_cannot_hold(void **state)
     options.target = temporary_path(state, "x.gif");
     assert_int_equal(write_all(&options, 1, &error), RESULT_USAGE);
     options.channels = 3;
-    options.fps = 60.0;
+    options.fps = 1001.0;
     assert_int_equal(write_all(&options, 1, &error), RESULT_USAGE);
-    assert_one_line_with(&error, "at most 50");
+    assert_one_line_with(&error, "at most 1000");
     assert_int_equal(temporary_count_files(temporary_path(state, ".")), 0);
 }
 
