@@ -15,14 +15,15 @@ void main()
     int a = particle_address(s, 0, n);
     vec3 wind = strand_wind(texelFetch(strand_id, s).x);
     float dt = step_params.dt, per_second = 1.0 / step_params.dt, damping = FTL_DAMPING;
-    vec3 leader = root_position(texelFetch(rest, a)), leader_velocity = vec3(0.0), along = vec3(0.0, -1.0, 0.0);
+    vec3 leader = root_position(texelFetch(rest, a)), leader_velocity = vec3(0.0);
+    vec3 along = rotate(step_params.head_rotation, texelFetch(rest, a + STRAND_TILE).xyz);
     positions[a] = vec4(leader, 1.0);
     for (int j = 1; j < n; ++j, a += STRAND_TILE) {
         vec3 x = texelFetch(position_before, a + STRAND_TILE).xyz;
         vec3 predicted = x + dt * kick(texelFetch(velocity_before, a + STRAND_TILE).xyz, wind);
         vec3 reach = predicted - leader;
         float square = dot(reach, reach);
-        along = square > 1e-24 ? reach * inversesqrt(square) : along; // on its leader: the last direction goes on
+        along = square > 1e-24 ? reach * inversesqrt(square) : along; // on its leader: the last direction (first the style's) goes on
         vec3 follower = leader + texelFetch(rest, a + STRAND_TILE).w * along;
         velocities[a] = vec4(leader_velocity - damping * per_second * (follower - predicted), 0.0);
         positions[a + STRAND_TILE] = vec4(follower, 1.0);
