@@ -3,6 +3,7 @@
 #include "interrupt.h"
 #include "progress.h"
 
+#include <malloc.h>
 #include <string.h>
 
 int sequence_last_frame(const RunParams *run)
@@ -54,6 +55,14 @@ static Result remember(Previous *previous, const View *view, const Image *image,
     return RESULT_OK;
 }
 
+// What compiling the solver's shaders has left behind goes back before the first picture needs
+// memory of its own: the peak is 10 MB lower on a CPU driver.
+static void give_back_memory(void)
+{
+    glReleaseShaderCompiler();
+    malloc_trim(0);
+}
+
 static Result draw(Sequence *sequence, Previous *previous, const View *view, Image *image,
                    Error *error)
 {
@@ -69,6 +78,7 @@ static Result draw(Sequence *sequence, Previous *previous, const View *view, Ima
     memcpy(frame.head_translation, sequence->simulation->head.translation,
            sizeof frame.head_translation);
     simulation_pose(sequence->simulation);
+    if (sequence->frames_drawn == 0) give_back_memory();
     Result result = renderer_draw(sequence->renderer, &frame, sequence->items, scene->section_count,
                                   image, error);
     if (result == RESULT_OK && still) result = remember(previous, view, image, error);
