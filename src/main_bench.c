@@ -4,8 +4,8 @@
 #include "bench_shaders.h"
 #include "bench_speed.h"
 #include "compare.h"
-#include "file.h"
 #include "interrupt.h"
+#include "json_write.h"
 #include "png.h"
 #include "suggest.h"
 #include "vectors.h"
@@ -52,21 +52,6 @@ static Result run_chain(const Arguments *arguments, const Gpu *gpu, Error *error
     return check_vectors(arguments, gpu, true, error);
 }
 
-static Result write_json(json_t *value, const char *path, Error *error)
-{
-    char *text = value ? json_dumps(value, JSON_INDENT(2) | JSON_REAL_PRECISION(6)) : NULL;
-    json_decref(value);
-    if (!text) return error_set(error, RESULT_FAILED, "%s: no memory for the result", path);
-    OutFile file;
-    Result result = outfile_open(&file, path, error);
-    if (result == RESULT_OK) {
-        fprintf(file.stream, "%s\n", text);
-        result = outfile_commit(&file, error);
-    }
-    free(text);
-    return result;
-}
-
 static Result run_speed(const Arguments *arguments, const Gpu *gpu, Error *error)
 {
     const SpeedOptions *options = &arguments->speed;
@@ -77,8 +62,11 @@ static Result run_speed(const Arguments *arguments, const Gpu *gpu, Error *error
     if (result != RESULT_OK) return result;
     speed_print_head(stdout);
     speed_print(&row, options, stdout);
-    return arguments->json ? write_json(speed_to_json(&row, options, gpu), arguments->json, error)
-                           : RESULT_OK;
+    if (!arguments->json) return RESULT_OK;
+    json_t *value = speed_to_json(&row, options, gpu);
+    result = json_write_file(value, arguments->json, error);
+    json_decref(value);
+    return result;
 }
 
 // The thesis's sets and the files that are named, with every solver.
@@ -106,7 +94,8 @@ static Result run_all(const Arguments *arguments, const Gpu *gpu, Error *error)
             fflush(stdout);
             json_array_append_new(rows, speed_to_json(&row, &options, gpu));
         }
-    if (result == RESULT_OK && arguments->json) return write_json(rows, arguments->json, error);
+    if (result == RESULT_OK && arguments->json)
+        result = json_write_file(rows, arguments->json, error);
     json_decref(rows);
     return result;
 }

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "stats.h"
-#include "file.h"
+#include "json_write.h"
 
 #include "version.h"
 
-#include <stdlib.h>
 #include <sys/resource.h>
 #include <time.h>
 
@@ -180,14 +179,5 @@ void stats_finish(Stats *stats, const GpuTimer *timer, const Simulation *simulat
 
 Result stats_write(const Stats *stats, const char *path, Error *error)
 {
-    char *text = json_dumps(stats->root, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
-    if (!text) return error_set(error, RESULT_FAILED, "%s: no memory for statistics", path);
-    OutFile file;
-    Result result = outfile_open(&file, path, error);
-    if (result == RESULT_OK) {
-        fprintf(file.stream, "%s\n", text);
-        result = outfile_commit(&file, error);
-    }
-    free(text);
-    return result;
+    return json_write_file(stats->root, path, error);
 }

@@ -17,6 +17,17 @@ const Gpu *fixture_gpu(void)
     return &gpu;
 }
 
+void fixture_assert_offset(GLuint program, const char *name, size_t expected)
+{
+    const GLenum property = GL_OFFSET;
+    GLint offset = -1;
+    GLuint index = glGetProgramResourceIndex(program, GL_UNIFORM, name);
+    if (index == GL_INVALID_INDEX) fail_msg("the driver knows no %s", name);
+    glGetProgramResourceiv(program, GL_UNIFORM, index, 1, &property, 1, NULL, &offset);
+    if (offset != (GLint)expected)
+        fail_msg("%s is at %d for the driver, at %zu in C", name, offset, expected);
+}
+
 void fixture_create_strands(HairFixture *fixture, const Strands *strands, const char *algo,
                             const char *variant, float style, float drag)
 {

@@ -15,6 +15,10 @@ typedef struct HairFixture {
 // The context of a test program, made at the first call; the test fails if there is none.
 const Gpu *fixture_gpu(void);
 
+// That the member `name` ("Block.member", arrays with "[0]") of a program's uniform block lies
+// where C has it.
+void fixture_assert_offset(GLuint program, const char *name, size_t expected);
+
 // `count` strands of n particles each: positions[(s * n + j)]. Gravity (0, -9.81, 0), 1/60 s, no
 // wind, head at the origin, first step from rest. `style` as the parameter; drag in 1/s. The
 // fixture may be destroyed when zeroed.

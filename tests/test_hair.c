@@ -101,17 +101,6 @@ static void hair_larger_than_a_buffer_is_split_never_cut(void **state)
     strands_destroy(&strands);
 }
 
-static void assert_offset(GLuint program, const char *name, size_t expected)
-{
-    const GLenum property = GL_OFFSET;
-    GLint offset = -1;
-    GLuint index = glGetProgramResourceIndex(program, GL_UNIFORM, name);
-    if (index == GL_INVALID_INDEX) fail_msg("the driver knows no %s", name);
-    glGetProgramResourceiv(program, GL_UNIFORM, index, 1, &property, 1, NULL, &offset);
-    if (offset != (GLint)expected)
-        fail_msg("%s is at %d for the driver, at %zu in C", name, offset, expected);
-}
-
 static void blocks_lie_alike_in_c_and_glsl(void **state)
 {
     (void)state;
@@ -120,7 +109,7 @@ static void blocks_lie_alike_in_c_and_glsl(void **state)
                                   {"VERTICES", 4},   {"THESIS", 0},  {0}};
     assert_int_equal(shader_build_compute(&program, "split.comp", split, NULL), RESULT_OK);
 #define STEP(field, suffix)                                                                        \
-    assert_offset(program, "StepParams." #field suffix, offsetof(StepParams, field))
+    fixture_assert_offset(program, "StepParams." #field suffix, offsetof(StepParams, field))
     STEP(head_rotation_old, ""), STEP(head_translation_old, ""), STEP(head_rotation, ""),
         STEP(head_translation, "");
     STEP(gravity, ""), STEP(wind, "[0]"), STEP(own, "[0]"), STEP(dt, ""), STEP(decay, ""),
@@ -130,7 +119,7 @@ static void blocks_lie_alike_in_c_and_glsl(void **state)
     const ShaderDefine pose[] = {{"GROUP_SIZE", 8}, {"MIX", 2}, {0}};
     assert_int_equal(shader_build_compute(&program, "pose.comp", pose, NULL), RESULT_OK);
 #define POSE(field, suffix)                                                                        \
-    assert_offset(program, "PoseParams." #field suffix, offsetof(PoseParams, field))
+    fixture_assert_offset(program, "PoseParams." #field suffix, offsetof(PoseParams, field))
     POSE(head_rotation, ""), POSE(head_translation, ""), POSE(turn_cos, "[0]"),
         POSE(turn_sin, "[0]");
     POSE(strand_count, ""), POSE(vertex_count, "");

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "hair_fixture.h"
 #include "random.h"
 #include "render_uniforms.h"
 #include "studio.h"
@@ -478,26 +479,16 @@ static void bytes_do_not_depend_on_driver_threads(void **state)
     studio_open(&studio, &TRANSPARENT);
 }
 
-static void assert_offset(GLuint program, const char *name, size_t expected)
-{
-    const GLenum property = GL_OFFSET;
-    GLint offset = -1;
-    GLuint index = glGetProgramResourceIndex(program, GL_UNIFORM, name);
-    if (index == GL_INVALID_INDEX) fail_msg("the driver knows no %s", name);
-    glGetProgramResourceiv(program, GL_UNIFORM, index, 1, &property, 1, NULL, &offset);
-    if (offset != (GLint)expected)
-        fail_msg("%s is at %d for the driver, at %zu in C", name, offset, expected);
-}
-
 static void blocks_lie_alike_in_c_and_glsl(void **state)
 {
     (void)state;
     GLuint program = studio.renderer.hair.project;
-#define DRAW(field) assert_offset(program, "DrawParams." #field, offsetof(DrawParams, field))
+#define DRAW(field)                                                                                \
+    fixture_assert_offset(program, "DrawParams." #field, offsetof(DrawParams, field))
 #define DRAW_ARRAY(field)                                                                          \
-    assert_offset(program, "DrawParams." #field "[0]", offsetof(DrawParams, field))
+    fixture_assert_offset(program, "DrawParams." #field "[0]", offsetof(DrawParams, field))
 #define MATERIAL(field)                                                                            \
-    assert_offset(program, "MaterialParams." #field, offsetof(MaterialParams, field))
+    fixture_assert_offset(program, "MaterialParams." #field, offsetof(MaterialParams, field))
     DRAW(clip_from_world), DRAW(eye), DRAW_ARRAY(light_direction), DRAW_ARRAY(light_color);
     DRAW(background), DRAW(head_rotation), DRAW(head_translation), DRAW(mesh_color);
     DRAW(width), DRAW(height), DRAW(focal), DRAW(near_distance), DRAW(depth), DRAW(band);
