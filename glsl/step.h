@@ -18,5 +18,6 @@ UNIFORM_BLOCK(StepParams, step_params, BIND_STEP)
     uint strand_count;
     uint vertex_count;
     uint passes; // split: pulls along the strand
+    uint phase;  // which dispatch of a step this is
 }
 END_BLOCK(StepParams, step_params);

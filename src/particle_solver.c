@@ -26,6 +26,7 @@ typedef struct ParticleState {
     ParticleBatch *batches; // one for each of the hair
     Pose style;             // for the start
     uint32_t group_size;
+    bool in_registers; // strands; else they go through memory
     bool posed;
 } ParticleState;
 
@@ -74,7 +75,7 @@ static Result build_program(const ParticleState *state, ParticleBatch *batch, ui
 static Result build_programs(ParticleState *state, bool software, Error *error)
 {
     const ParticleRecipe *recipe = state->recipe;
-    bool in_registers = fits_registers(state->hair, recipe->most_in_registers);
+    bool in_registers = state->in_registers;
     for (uint32_t i = 0; i < state->hair->batch_count; ++i) {
         uint32_t n = state->hair->batches[i].vertex_count;
         state->batches[i].strands_per_lane =
@@ -99,9 +100,7 @@ static Result create_buffers(ParticleState *state, ParticleBatch *batch, const H
     Result result =
         gpu_buffer_create(&batch->velocity, limits, "velocities", size, zero, GL_RGBA32F, error);
     free(zero);
-    bool needs_scratch =
-        state->recipe->scratch && !fits_registers(state->hair, state->recipe->most_in_registers);
-    if (result == RESULT_OK && needs_scratch)
+    if (result == RESULT_OK && state->recipe->scratch && !state->in_registers)
         result = gpu_buffer_create(&batch->scratch, limits, "a solver's scratch memory",
                                    size * state->recipe->scratch, NULL, 0, error);
     return result;
@@ -113,11 +112,13 @@ Result particle_solver_create(void **pointer, const SolverSetup *setup,
     ParticleState *state = calloc(1, sizeof *state);
     *pointer = NULL;
     if (!state) return error_set(error, RESULT_FAILED, "no memory for a solver");
-    *state = (ParticleState){.group_size = step_group_size(setup->gpu),
-                             .recipe = recipe,
-                             .hair = setup->hair,
-                             .params = setup->params,
-                             .timer = setup->timer};
+    *state =
+        (ParticleState){.group_size = step_group_size(setup->gpu),
+                        .recipe = recipe,
+                        .hair = setup->hair,
+                        .params = setup->params,
+                        .timer = setup->timer,
+                        .in_registers = fits_registers(setup->hair, recipe->most_in_registers)};
     state->batches = calloc(setup->hair->batch_count + 1, sizeof *state->batches);
     Result result =
         state->batches ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for a solver");
@@ -171,6 +172,17 @@ static HeadPose pose_between(const HeadPose *a, const HeadPose *b, float t)
     return pose;
 }
 
+static void dispatch_phases(ParticleState *state, StepParams *uniforms)
+{
+    const ParticleRecipe *recipe = state->recipe;
+    int phases = recipe->phases && !state->in_registers ? recipe->phases(state->params) : 1;
+    for (int phase = 0; phase < phases; ++phase) {
+        uniforms->phase = (uint32_t)phase;
+        for (uint32_t i = 0; i < state->hair->batch_count; ++i) dispatch(state, i, uniforms);
+        glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+    }
+}
+
 void particle_solver_step(void *pointer, const SolverStep *whole)
 {
     ParticleState *state = pointer;
@@ -184,8 +196,7 @@ void particle_solver_step(void *pointer, const SolverStep *whole)
         step.head = pose_between(&whole->head_old, &whole->head, (float)part / (float)count);
         StepParams uniforms = step_uniforms(&step, state->params);
         if (recipe->fill) recipe->fill(&uniforms, &step, state->params);
-        for (uint32_t i = 0; i < state->hair->batch_count; ++i) dispatch(state, i, &uniforms);
-        glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+        dispatch_phases(state, &uniforms);
         step.head_old = step.head;
         step.first = false;
     }

@@ -27,6 +27,9 @@ typedef struct ParticleRecipe {
     void (*define)(ShaderDefine *defines, const SectionParams *params);
     // How many equal sub-steps a step needs for the longest strand; NULL: 1.
     int (*substeps)(const SolverStep *step, const SectionParams *params, const Hair *hair);
+    // How many dispatches (StepParams.phase) a (sub-)step takes where strands are not in registers:
+    // CPU drivers end loops silently after 65,535 iterations in all of an invocation; NULL: 1.
+    int (*phases)(const SectionParams *params);
 } ParticleRecipe;
 
 // SolverType's calls. `recipe` outlives the solver. Positions live in Hair's own buffer, so that a

@@ -15,7 +15,8 @@ uint32_t step_group_size(const Gpu *gpu);
 // (h at c = 0).
 void step_drag_factors(double c, double h, float *decay, float *gain);
 
-// What a step gives to each batch; `strand_count`, `vertex_count` and `passes` are left 0.
+// What a step gives to each batch; `strand_count`, `vertex_count`, `passes` and `phase` are
+// left 0.
 StepParams step_uniforms(const SolverStep *step, const SectionParams *params);
 
 // Work groups of `group_size` lanes that cover `count` strands with `strands_per_lane` strands a

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+// Position-based rope: particles fly, then sweeps over the links from root to tip move the two ends of each towards its length.
+//
+// BULLET 1: as btSoftBody::PSolve_Links (Bullet 2 and 3) does it, with all sweeps at the end of one step. A link with ends a, b
+// of weights w (the root's is 0, the others' 1), r = b - a and rest length l:
+//     k = (l^2 - r.r) / ((w_a + w_b) (l^2 + r.r)),    a -= w_a k r,  b += w_b k r
+// To first order in the stretch that is the usual projection, without a root; far off it overshoots.
+//
+// BULLET 0: XPBD by small steps (Macklin, Mueller, Chentanez: XPBD, MIG 2016; Macklin et al.: Small Steps in Physics Simulation, SCA
+// 2019): each sweep ends a step of its own, so that the multiplier starts at 0. With the compliance alpha and the small step h,
+//     lambda = (l - |r|) / (w_a + w_b + alpha/h^2),   a -= w_a lambda r/|r|,  b += w_b lambda r/|r|
+//
+// Then v = (1 - damping) (x - q)/h, q: the position before the flight.
+//
+// A rope stretches. Its links are drawn in their own length along the rope's directions; `w` of a particle's velocity keeps the stretch
+// of the link before it, |r|/l - 1, from which the next step rebuilds the rope.
+#include "particles.glsl"
+
+#define SMALL_STEPS   int(step_params.own[0].x)
+#define SWEEPS        int(step_params.own[0].y) // of each small step
+#define KEPT          step_params.own[0].z      // 1 - damping, of a small step
+#define SOFTNESS      step_params.own[0].w      // alpha/h^2
+#define FIRST_DECAY   step_params.own[1].x      // drag in the first small step: see forces.glsl
+#define FIRST_GAIN    step_params.own[1].y
+#define STRETCH_DRAWN step_params.own[1].z      // 1: links are drawn as long as they are
+
+vec3 mended(vec3 r, float l, float weights)
+{
+#if BULLET
+    float rr = dot(r, r), ll = l * l;
+    return r * ((ll - rr) / (weights * (ll + rr)));
+#else
+    float inverse = inversesqrt(max(dot(r, r), 1e-36));
+    return r * ((l * inverse - 1.0) / (weights + SOFTNESS));
+#endif
+}
+
+// Where the root is after the share t of the step.
+vec3 root_at(vec4 root, float t)
+{
+    vec3 old = rotate(step_params.head_rotation_old, root.xyz) + step_params.head_translation_old.xyz;
+    return t == 1.0 ? root_position(root) : mix(old, root_position(root), t);
+}
+
+// The rope's link (a + STRAND_TILE is its tip's address) before the step, from the strand that was drawn.
+vec3 link_before(vec3 drawn_from, vec3 drawn_to, float l, float stretch)
+{
+    vec3 r = drawn_to - drawn_from;
+    return r * (l * (1.0 + stretch) * inversesqrt(max(dot(r, r), 1e-36)));
+}
+
+// The flight in later small steps is x + (CARRIED (x - q) + fall), Verlet's form with drag; the first starts from a velocity.
+// It must be `precise`: Mesa takes it for a mix otherwise, x (1 + CARRIED) - q CARRIED, which rounds ten times as much.
+#define CARRIED (KEPT * step_params.decay)
+
+vec3 fall_of(vec3 wind) { return step_params.dt * kick(vec3(0.0), wind); }
+
+vec3 first_flight(vec3 x, vec3 v, vec3 wind)
+{
+    return x + step_params.dt * (v * FIRST_DECAY + (step_params.gravity.xyz + step_params.drag * wind) * FIRST_GAIN);
+}
+
+// Draws the link r behind what is drawn so far, whose end and last direction are in `drawn` and `along`, and keeps the rope's state.
+void finish(int a, vec3 r, float l, vec3 moved, inout vec3 drawn, inout vec3 along)
+{
+    float rr = dot(r, r), inverse = inversesqrt(max(rr, 1e-36));
+    along = rr > 1e-36 ? r * inverse : along;
+    drawn += along * (STRETCH_DRAWN != 0.0 ? rr * inverse : l);
+    positions[a] = vec4(drawn, 1.0);
+    velocities[a] = vec4(moved * (KEPT / step_params.dt), rr * inverse / l - 1.0);
+}
+
+#if IN_REGISTERS
+void main()
+{
+    int s = first_strand();
+    if (s >= int(step_params.strand_count)) return;
+    int base = particle_address(s, 0, VERTICES);
+    vec3 x[VERTICES], q[VERTICES], wind = strand_wind(texelFetch(strand_id, s).x); // x: now, q: before the flight
+    float l[VERTICES];
+    vec4 root = texelFetch(rest, base);
+    vec3 drawn = texelFetch(position_before, base).xyz, at = drawn;
+    for (int j = 1; j < VERTICES; ++j) {
+        int a = base + j * STRAND_TILE;
+        vec3 next = texelFetch(position_before, a).xyz;
+        vec4 v = texelFetch(velocity_before, a);
+        l[j] = texelFetch(rest, a).w;
+        at += link_before(drawn, next, l[j], v.w);
+        drawn = next;
+        q[j] = at;
+        x[j] = first_flight(at, v.xyz, wind);
+    }
+
+    int small_steps = SMALL_STEPS, sweeps = SWEEPS;
+    float carried = CARRIED;
+    vec3 fall = fall_of(wind);
+    for (int step = 0; step < small_steps; ++step) {
+        x[0] = root_at(root, step + 1 == small_steps ? 1.0 : float(step + 1) / float(small_steps));
+        if (step > 0)
+            for (int j = 1; j < VERTICES; ++j) {
+                precise vec3 next = x[j] + (carried * (x[j] - q[j]) + fall);
+                q[j] = x[j];
+                x[j] = next;
+            }
+        for (int sweep = 0; sweep < sweeps; ++sweep) {
+            vec3 from = x[1] + mended(x[1] - x[0], l[1], 1.0);
+            for (int j = 2; j < VERTICES; ++j) {
+                vec3 push = mended(x[j] - from, l[j], 2.0);
+                x[j - 1] = from - push;
+                from = x[j] + push;
+            }
+            x[VERTICES - 1] = from;
+        }
+    }
+
+    drawn = x[0];
+    vec3 along = rotate(step_params.head_rotation, texelFetch(rest, base + STRAND_TILE).xyz);
+    positions[base] = vec4(drawn, 1.0);
+    for (int j = 1; j < VERTICES; ++j)
+        finish(base + j * STRAND_TILE, x[j] - x[j - 1], l[j], x[j] - q[j], drawn, along);
+}
+#else
+// Any length: a dispatch (phase) is one sweep along the strand in scratch memory. A particle flies just before its first link is mended
+// in a small step; behind the last sweep of all it is drawn.
+layout(std430, binding = BIND_SCRATCH) buffer Scratch { vec4 scratch[]; }; // a particle: now; before the flight
+
+void main()
+{
+    int s = first_strand(), n = int(step_params.vertex_count);
+    if (s >= int(step_params.strand_count)) return;
+    int phase = int(step_params.phase), step = phase / SWEEPS, a = particle_address(s, 0, n);
+    bool loads = phase == 0, flies = phase == step * SWEEPS, draws = phase + 1 == SMALL_STEPS * SWEEPS;
+    vec3 wind = strand_wind(texelFetch(strand_id, s).x), fall = fall_of(wind);
+    vec4 root = texelFetch(rest, a);
+    vec3 drawn_before = texelFetch(position_before, a).xyz, at = drawn_before;
+    vec3 x = root_at(root, step + 1 == SMALL_STEPS ? 1.0 : float(step + 1) / float(SMALL_STEPS)), q = x;
+    vec3 before = x, drawn = x, along = rotate(step_params.head_rotation, texelFetch(rest, a + STRAND_TILE).xyz);
+    float weights = 1.0, l = 0.0, l_before = 0.0;
+    if (draws) positions[a] = vec4(drawn, 1.0);
+    // Link j is mended while j - 1 waits in `x`, `q`; then j - 1 is done with.
+    for (int j = 1; j < n; ++j, a += STRAND_TILE) {
+        int b = a + STRAND_TILE;
+        vec3 next, next_q;
+        l = texelFetch(rest, b).w;
+        if (loads) {
+            vec3 to = texelFetch(position_before, b).xyz;
+            vec4 v = texelFetch(velocity_before, b);
+            at += link_before(drawn_before, to, l, v.w);
+            drawn_before = to;
+            next_q = at;
+            next = first_flight(at, v.xyz, wind);
+        } else {
+            next = scratch[2 * b].xyz;
+            next_q = scratch[2 * b + 1].xyz;
+            if (flies) {
+                precise vec3 flown = next + (CARRIED * (next - next_q) + fall);
+                next_q = next;
+                next = flown;
+            }
+        }
+        vec3 push = mended(next - x, l, weights);
+        if (j > 1) {
+            x -= push;
+            if (draws) {
+                finish(a, x - before, l_before, x - q, drawn, along);
+            } else {
+                scratch[2 * a] = vec4(x, 0.0);
+                scratch[2 * a + 1] = vec4(q, 0.0);
+            }
+            before = x;
+        }
+        x = next + push;
+        q = next_q;
+        l_before = l;
+        weights = 2.0;
+    }
+    if (draws) {
+        finish(a, x - before, l, x - q, drawn, along);
+    } else {
+        scratch[2 * a] = vec4(x, 0.0);
+        scratch[2 * a + 1] = vec4(q, 0.0);
+    }
+}
+#endif
