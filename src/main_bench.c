@@ -7,6 +7,7 @@
 #include "interrupt.h"
 #include "json_write.h"
 #include "png.h"
+#include "solver.h"
 #include "suggest.h"
 #include "vectors.h"
 
@@ -69,7 +70,24 @@ static Result run_speed(const Arguments *arguments, const Gpu *gpu, Error *error
     return result;
 }
 
-// The thesis's sets and the files that are named, with every solver.
+// A row of the table. Drawing does not depend on the solver, so only the first one of a set draws.
+static Result add_row(const Arguments *arguments, const Gpu *gpu, const char *set, const char *file,
+                      const SolverType *type, json_t *rows, Error *error)
+{
+    SpeedOptions options = arguments->speed;
+    SpeedResult row;
+    options.set = set, options.file = file, options.algo = type->name;
+    if (type != SOLVER_TYPES[0]) options.size[0] = options.size[1] = 0;
+    if (interrupt_requested()) return error_set(error, RESULT_INTERRUPTED, "interrupted");
+    Result result = speed_measure(&row, gpu, &options, error);
+    if (result != RESULT_OK) return result;
+    speed_print(&row, &options, stdout);
+    fflush(stdout);
+    json_array_append_new(rows, speed_to_json(&row, &options, gpu));
+    return RESULT_OK;
+}
+
+// The thesis's sets and the files that are named, with every solver that steps.
 static Result run_all(const Arguments *arguments, const Gpu *gpu, Error *error)
 {
     static const char *const sets[] = {"1k16", "1k32", "10k16", "10k32"};
@@ -78,22 +96,11 @@ static Result run_all(const Arguments *arguments, const Gpu *gpu, Error *error)
     Result result = RESULT_OK;
     speed_print_head(stdout);
     for (int i = 0; i < set_count + arguments->file_count; ++i)
-        for (const char *const *algo = (const char *const[]){"split", "none", NULL};
-             *algo && result == RESULT_OK; ++algo) {
-            SpeedOptions options = arguments->speed;
-            SpeedResult row;
-            options.set = i < set_count ? sets[i] : NULL;
-            options.file = i < set_count ? NULL : arguments->files[i - set_count];
-            options.algo = *algo;
-            if (interrupt_requested())
-                result = error_set(error, RESULT_INTERRUPTED, "interrupted");
-            else
-                result = speed_measure(&row, gpu, &options, error);
-            if (result != RESULT_OK) break;
-            speed_print(&row, &options, stdout);
-            fflush(stdout);
-            json_array_append_new(rows, speed_to_json(&row, &options, gpu));
-        }
+        for (const SolverType *const *type = SOLVER_TYPES; *type && result == RESULT_OK; ++type)
+            if ((*type)->step)
+                result = add_row(arguments, gpu, i < set_count ? sets[i] : NULL,
+                                 i < set_count ? NULL : arguments->files[i - set_count], *type,
+                                 rows, error);
     if (result == RESULT_OK && arguments->json)
         result = json_write_file(rows, arguments->json, error);
     json_decref(rows);
