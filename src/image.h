@@ -15,3 +15,7 @@ typedef struct Image {
 // Allocates; pixels are not initialised. RESULT_FAILED when memory is short.
 Result image_create(Image *image, int width, int height, int channels, Error *error);
 void image_destroy(Image *image);
+
+// IEC 61966-2-1, between 0..1 and 0..1; what is linear is clamped to that first.
+double image_linear_from_srgb(double value);
+double image_srgb_from_linear(double value);

@@ -53,6 +53,16 @@ void studio_close(Studio *studio)
     gpu_destroy(&studio->gpu);
 }
 
+void studio_make_plain(SectionParams *material, float opacity)
+{
+    material->ambient = 1;
+    material->diffuse = material->specular1 = material->specular2 = 0;
+    material->color_variation = 0;
+    material->tip_ratio = 1;
+    material->opacity = opacity;
+    for (int k = 0; k < 3; ++k) material->color[k] = 1;
+}
+
 uint32_t studio_add(Studio *studio, const Strands *strands, float radius, float opacity)
 {
     uint32_t i = studio->count++, first_id = 0;
@@ -60,12 +70,7 @@ uint32_t studio_add(Studio *studio, const Strands *strands, float radius, float 
     for (uint32_t k = 0; k < i; ++k) first_id += studio->hair[k].strand_count;
     SectionParams *material = &studio->material[i];
     NEEDED(section_params_create(material, error));
-    material->ambient = 1;
-    material->diffuse = material->specular1 = material->specular2 = 0;
-    material->color_variation = 0;
-    material->tip_ratio = 1;
-    material->opacity = opacity;
-    for (int k = 0; k < 3; ++k) material->color[k] = 1;
+    studio_make_plain(material, opacity);
     NEEDED(hair_create(&studio->hair[i], strands, first_id, &studio->gpu.limits, error));
     studio->items[i] = (RenderItem){&studio->hair[i], material, radius};
     return i;

@@ -32,6 +32,9 @@ void studio_set_options(Studio *studio, const RendererOptions *options);
 // Returns the number.
 uint32_t studio_add(Studio *studio, const Strands *strands, float radius, float opacity);
 
+// What studio_add gives new hair: white everywhere, without lights, of one radius from root to tip.
+void studio_make_plain(SectionParams *material, float opacity);
+
 // Takes all hair away.
 void studio_clear(Studio *studio);
 
