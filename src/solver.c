@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "solver.h"
+#include "solver_chain.h"
 #include "solver_dftl.h"
 #include "solver_none.h"
 #include "solver_rope.h"
@@ -9,8 +10,9 @@
 
 #include <string.h>
 
-const SolverType *const SOLVER_TYPES[] = {&SOLVER_SPLIT, &SOLVER_TRESSFX, &SOLVER_ROPE,
-                                          &SOLVER_DFTL,  &SOLVER_NONE,    NULL};
+const SolverType *const SOLVER_TYPES[] = {
+    &SOLVER_SPLIT, &SOLVER_CHAIN, &SOLVER_TRESSFX, &SOLVER_ROPE, &SOLVER_DFTL, &SOLVER_NONE, NULL,
+};
 
 enum { MAX_WORDS = 32 };
 

@@ -31,6 +31,13 @@ StepParams step_uniforms(const SolverStep *step, const SectionParams *params)
     return uniforms;
 }
 
+float step_style_pull(const StepParams *uniforms, const SectionParams *params)
+{
+    double w = (double)params->style * (double)params->style_stiffness * (double)uniforms->dt *
+               (double)uniforms->gain;
+    return w > 0 ? (float)(w / (1 - (double)params->style + w)) : 0;
+}
+
 uint32_t step_group_size(const Gpu *gpu)
 {
     return gpu->software ? 8 : 64;

@@ -19,6 +19,10 @@ void step_drag_factors(double c, double h, float *decay, float *gain);
 // left 0.
 StepParams step_uniforms(const SolverStep *step, const SectionParams *params);
 
+// The implicit spring towards the style of stiffness k = style_stiffness style/(1 - style) (1/s^2):
+// the share w/(1 + w), w = k dt h f, of the way from a predicted position to the style's. 0 .. 1.
+float step_style_pull(const StepParams *uniforms, const SectionParams *params);
+
 // Work groups of `group_size` lanes that cover `count` strands with `strands_per_lane` strands a
 // lane.
 uint32_t step_group_count(uint32_t count, uint32_t group_size, uint32_t strands_per_lane);

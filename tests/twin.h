@@ -59,7 +59,7 @@ double twin_length_error(const TwinStrand *rest, const Vec *q);
 typedef struct TwinRun {
     const char *algo, *variant;
     int n, steps;
-    double dt, drag;
+    double dt, drag, style;
     void (*tune)(SectionParams *params); // changes parameters that are read at each step; or NULL
     TwinFunction twin;
     bool rebuilt; // the solver draws exact lengths where the twin's strand is stretched

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: MIT
+// A step of `chain`: rigid segments by direct solves, second order in dt.
+//
+// Segments r_j = q_j - q_{j-1} at the step's start with lengths l_j; predicted positions p_j (kicked, drawn to the style), s_j = p_j - p_{j-1}.
+//   1. Tensions: lambda_j from the constraint linearised about the old directions (Han, Harada: Tridiagonal Matrix Formulation for
+//      Inextensible Hair Strand Simulation, VRIPHYS 2013), J J^T lambda = l (|s| - l) with J J^T = tridiag(-r_j.r_{j-1}, 2 |r_j|^2; |r_1|^2).
+//   2. Positions: x = p - g_j + g_{j+1}, where pushing (lambda-) acts along r, and pulling (lambda+) along directions taken implicitly as
+//      in Newmark's method with theta = 1/4, 1/4 new + 1/2 now + 1/4 before: second order, and no tension is too stiff. That is
+//      (I + theta Laplacian(lambda+)) x = y, again tridiagonal.
+//   3. Twice: what lengths are still off is taken out along the current directions, J J^T lambda = |s| (|s| - l), x_j -= lambda_j s_j,
+//      x_{j-1} += lambda_j s_j, done on the segments themselves.
+//   4. Rebuild from the root with exact lengths.
+// Where a violent step leaves a segment off by more than half its length, two passes of tractrices take over (rescue).
+//
+// The sweeps run along the strand to and fro; each undoes one elimination and does the next. Positions are relative to the new root.
+#include "particles.glsl"
+#include "keep.glsl"
+#include "style_spring.glsl"
+#include "tractrix.glsl"
+#include "tridiagonal.glsl"
+
+const float THETA = 0.25;
+const float MOST_OFF = 0.5; // of a length, before tractrices take over
+const float SAFE_MOVE = 1e15; // metres: keeps squares finite whatever the head does
+
+struct Lane {
+    int address; // of the root
+    vec3 root, root_old, push;
+    vec4 rotation;
+    float dt, decay, pull;
+};
+
+vec3 fetch_position(Lane lane, int j) { return texelFetch(position_before, lane.address + j * STRAND_TILE).xyz; }
+vec3 fetch_velocity(Lane lane, int j) { return texelFetch(velocity_before, lane.address + j * STRAND_TILE).xyz; }
+vec4 fetch_rest(Lane lane, int j) { return texelFetch(rest, lane.address + j * STRAND_TILE); }
+
+vec3 limit_move(vec3 move) { return clamp(move, -SAFE_MOVE, SAFE_MOVE); }
+
+vec3 direction(vec3 v)
+{
+    float vv = dot(v, v);
+    return vv > 0.0 ? v * inversesqrt(vv) : vec3(0.0, 1.0, 0.0);
+}
+
+// Where particle j would go without constraints, relative to the new root. `style` goes from particle to particle, from 0 at the root.
+vec3 predicted(Lane lane, int j, inout vec3 style)
+{
+    vec3 p = (fetch_position(lane, j) - lane.root) + lane.dt * (lane.decay * fetch_velocity(lane, j) + lane.push);
+#if STYLED
+    style = next_style(style, fetch_rest(lane, j), lane.rotation);
+    p += lane.pull * (style - p);
+#endif
+    return p;
+}
+
+// Root to tip: predictions; the tensions' rows.
+void predict(Lane lane)
+{
+    int last = LAST;
+    vec3 q_before = lane.root_old, p_before = vec3(0.0), r_before = vec3(0.0), style = vec3(0.0);
+    Row row = NO_ROW;
+    keep(0, vec4(0.0));
+    keep_beside(0, 0.0);
+    for (int j = 1; j <= last; ++j) {
+        vec3 q = fetch_position(lane, j), p = predicted(lane, j, style), r = q - q_before, s = p - p_before;
+        float l = fetch_rest(lane, j).w, factor;
+        row = eliminate(row, -dot(r, r_before), (j == 1 ? 1.0 : 2.0) * dot(r, r), l * (sqrt(dot(s, s)) - l), factor);
+        keep(j, vec4(p, row.value));
+        keep_beside(j, factor);
+        q_before = q, p_before = p, r_before = r;
+    }
+}
+
+// Tip to root: tensions; rows of the positions.
+void pull_implicitly(Lane lane)
+{
+    float lambda = 0.0, factor_beyond = 0.0, tension_beyond = 0.0;
+    vec3 g_beyond = vec3(0.0), q = fetch_position(lane, LAST), v = fetch_velocity(lane, LAST);
+    Row3 row = NO_ROW3;
+    for (int j = LAST; j >= 1; --j) {
+        vec3 q_before = j == 1 ? lane.root_old : fetch_position(lane, j - 1), v_before = fetch_velocity(lane, j - 1);
+        vec4 k = recall(j);
+        lambda = k.w - factor_beyond * lambda;
+        factor_beyond = recall_beside(j);
+        float tension = max(lambda, 0.0), factor;
+        vec3 r = q - q_before, r_old = r - lane.dt * (v - v_before);
+        vec3 g = (lambda - tension) * r + tension * ((1.0 - 2.0 * THETA) * r + THETA * r_old);
+        row = eliminate(row, -THETA * tension_beyond, 1.0 + THETA * (tension + tension_beyond), k.xyz - g + g_beyond, factor);
+        keep(j, vec4(row.value, factor));
+        q = q_before, v = v_before, g_beyond = g, tension_beyond = tension;
+    }
+}
+
+// Root to tip: positions, of which only the segments are needed on; rows of the first correction.
+void correct(Lane lane)
+{
+    int last = LAST;
+    vec3 x_before = vec3(0.0), s_before = vec3(0.0);
+    float factor_before = 0.0, factor;
+    Row row = NO_ROW;
+    for (int j = 1; j <= last; ++j) {
+        vec4 k = recall(j);
+        vec3 x = k.xyz - factor_before * x_before, s = x - x_before;
+        factor_before = k.w;
+        float ss = dot(s, s), size = sqrt(ss);
+        row = eliminate(row, -dot(s, s_before), (j == 1 ? 1.0 : 2.0) * ss, ss - size * fetch_rest(lane, j).w, factor);
+        keep(j, vec4(s, row.value));
+        keep_beside(j, factor);
+        x_before = x, s_before = s;
+    }
+}
+
+// A correction takes t_j = lambda_j s_j out of segment j, and gives it to both neighbours (the root does not move): s_j += t_{j-1} - 2 t_j +
+// t_{j+1}, which is known one segment later. In the two sweeps that apply one, `here` is segment j's neighbour.
+struct Corrected {
+    vec3 s, t;
+};
+
+// Tip to root: the first correction is applied; rows of the second.
+void correct_again(Lane lane)
+{
+    float lambda = 0.0, factor_beyond = 0.0, factor;
+    Corrected here = Corrected(vec3(0.0), vec3(0.0));
+    vec3 t_beyond = vec3(0.0), s_beyond = vec3(0.0);
+    Row row = NO_ROW;
+    for (int j = LAST; j >= 0; --j) {
+        vec4 k = recall(j); // j = 0: zero
+        lambda = k.w - factor_beyond * lambda;
+        factor_beyond = recall_beside(j);
+        vec3 t = lambda * k.xyz;
+        if (j < LAST) {
+            vec3 s = here.s + t + t_beyond - (j == 0 ? 1.0 : 2.0) * here.t;
+            float ss = dot(s, s), size = sqrt(ss);
+            row = eliminate(row, -dot(s, s_beyond), (j == 0 ? 1.0 : 2.0) * ss, ss - size * fetch_rest(lane, j + 1).w, factor);
+            keep(j + 1, vec4(s, row.value));
+            keep_beside(j + 1, factor);
+            s_beyond = s;
+        }
+        t_beyond = here.t, here = Corrected(k.xyz, t);
+    }
+}
+
+// Keeps segment j scaled to its length l. Gives how far it is off, as bits that order like the number: above all of them a NaN.
+int finish_segment(int j, vec3 s, float l)
+{
+    float ss = dot(s, s), inverse = l * inversesqrt(ss);
+    keep(j, vec4(s * inverse, 0.0));
+    return floatBitsToInt(abs(ss * inverse - l * l) / (l * l));
+}
+
+// Root to tip: the second correction is applied. Gives how far the worst segment is off.
+int finish(Lane lane)
+{
+    int last = LAST, worst = 0;
+    float lambda = 0.0, factor_before = 0.0;
+    Corrected here = Corrected(vec3(0.0), vec3(0.0));
+    vec3 t_before = vec3(0.0);
+    for (int j = 1; j <= last; ++j) {
+        vec4 k = recall(j);
+        lambda = k.w - factor_before * lambda;
+        factor_before = recall_beside(j);
+        vec3 t = lambda * k.xyz;
+        if (j > 1) {
+            vec3 s = here.s + t + t_before - (j == 2 ? 1.0 : 2.0) * here.t;
+            worst = max(worst, finish_segment(j - 1, s, fetch_rest(lane, j - 1).w));
+        }
+        t_before = here.t, here = Corrected(k.xyz, t);
+    }
+    return max(worst, finish_segment(last, here.s + t_before - (last == 1 ? 1.0 : 2.0) * here.t, fetch_rest(lane, last).w));
+}
+
+// The velocity first: compilers may delay the fetch of q up to its use, beyond a store to the buffer that it comes from.
+void put(Lane lane, int j, vec3 x, vec3 q)
+{
+    velocities[lane.address + j * STRAND_TILE] = vec4((x - q) / lane.dt, 0.0);
+    positions[lane.address + j * STRAND_TILE] = vec4(x, 1.0);
+}
+
+// Root to tip: the strand is rebuilt and written.
+void write(Lane lane)
+{
+    int last = LAST;
+    vec3 x = lane.root;
+    for (int j = 1; j <= last; ++j) {
+        vec3 q = fetch_position(lane, j);
+        x += recall(j).xyz;
+        put(lane, j, x, q);
+    }
+}
+
+// Two passes of tractrices (glsl/hybrid.glsl) instead. Rolled loops, so that a CPU driver, where all lanes go through every branch,
+// leaves them after a round where no strand needs them. What is kept on the way lies where the velocities will.
+void rescue(Lane lane)
+{
+    int last = int(step_params.vertex_count - 1u);
+    vec3 style = vec3(0.0);
+    for (int j = 1; j <= last; ++j) velocities[lane.address + j * STRAND_TILE] = vec4(predicted(lane, j, style), 0.0);
+    vec3 y = velocities[lane.address + last * STRAND_TILE].xyz, q = fetch_position(lane, last);
+    for (int j = last; j >= 1; --j) {
+        vec3 q_before = fetch_position(lane, j - 1), p = lane.root_old - lane.root;
+        if (j > 1) p = velocities[lane.address + (j - 1) * STRAND_TILE].xyz;
+        float l = fetch_rest(lane, j).w;
+        vec3 d = direction(q_before - q), move = limit_move(y - (q + p - q_before));
+        d = tractrix_turn(d, l, move);
+        y += l * d;
+        velocities[lane.address + j * STRAND_TILE] = vec4(-d, 0.0);
+        q = q_before;
+    }
+    vec3 move = limit_move(-y), x = lane.root;
+    for (int j = 1; j <= last; ++j) {
+        float l = fetch_rest(lane, j).w;
+        vec3 d = tractrix_turn(tractrix_renormalise(velocities[lane.address + j * STRAND_TILE].xyz), l, move);
+        q = fetch_position(lane, j);
+        x += l * tractrix_renormalise(d);
+        put(lane, j, x, q);
+    }
+}
+
+void main()
+{
+    int s = first_strand();
+    if (s >= int(step_params.strand_count)) return;
+    keep_open(s);
+    Lane lane;
+    lane.address = particle_address(s, 0, LAST + 1);
+    lane.root = root_position(fetch_rest(lane, 0));
+    lane.root_old = fetch_position(lane, 0);
+    lane.push = kick(vec3(0.0), strand_wind(texelFetch(strand_id, s).x));
+    lane.dt = step_params.dt;
+    lane.decay = step_params.decay;
+    lane.rotation = step_params.head_rotation;
+    lane.pull = STYLE_PULL;
+
+    predict(lane);
+    pull_implicitly(lane);
+    correct(lane);
+    correct_again(lane);
+    bool violent = finish(lane) > floatBitsToInt(MOST_OFF);
+    put(lane, 0, lane.root, lane.root_old);
+    if (violent)
+        rescue(lane);
+    else
+        write(lane);
+}

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+#include "reference_chain.h"
+#include "reference_split.h"
+
+#include <math.h>
+#include <string.h>
+
+static void subtract(const Vec a, const Vec b, Vec r)
+{
+    vec_add_scaled(a, -1, b, r);
+}
+
+void reference_predict(TwinStrand *strand, const TwinStep *step, const SectionParams *params,
+                       Vec *predicted)
+{
+    double h = step->first ? step->dt / 2 : step->dt, c = step->drag;
+    double f = c > 0 ? -expm1(-c * h) / (c * h) : 1;
+    double share = (double)params->style;
+    double k = (double)params->style_stiffness * share / (1 - share), w = k * step->dt * h * f;
+    twin_style(strand, &step->head, 0, predicted[0]);
+    for (int j = 1; j < strand->n; ++j) {
+        Vec style;
+        twin_kick(strand->v[j], step, h);
+        twin_style(strand, &step->head, j, style);
+        for (int i = 0; i < 3; ++i)
+            predicted[j][i] =
+                (strand->x[j][i] + step->dt * strand->v[j][i] + w * style[i]) / (1 + w);
+    }
+}
+
+// Gaussian elimination of a tridiagonal matrix, rows 1 .. count.
+static void solve_tridiagonal(int count, const double *lower, double *diagonal, const double *upper,
+                              double *right)
+{
+    for (int i = 2; i <= count; ++i) {
+        double share = lower[i] / diagonal[i - 1];
+        diagonal[i] -= share * upper[i - 1];
+        right[i] -= share * right[i - 1];
+    }
+    for (int i = count; i >= 1; --i) {
+        if (i < count) right[i] -= upper[i] * right[i + 1];
+        right[i] /= diagonal[i];
+    }
+}
+
+void reference_solve_lengths(const Vec *r, int n, const double *right, double *lambda)
+{
+    double diagonal[TWIN_MAX], upper[TWIN_MAX], lower[TWIN_MAX];
+    for (int j = 1; j < n; ++j) {
+        diagonal[j] = (j == 1 ? 1 : 2) * vec_dot(r[j], r[j]);
+        lower[j] = j > 1 ? -vec_dot(r[j], r[j - 1]) : 0;
+        upper[j] = j < n - 1 ? -vec_dot(r[j], r[j + 1]) : 0;
+        lambda[j] = right[j];
+    }
+    solve_tridiagonal(n - 1, lower, diagonal, upper, lambda);
+}
+
+// x_j -= g_j, x_{j-1} += g_j for every segment j; the root stays.
+static void apply(Vec *x, int n, const Vec *g)
+{
+    for (int j = 1; j < n; ++j) {
+        vec_add_scaled(x[j], -1, g[j], x[j]);
+        if (j > 1) vec_add_scaled(x[j - 1], 1, g[j], x[j - 1]);
+    }
+}
+
+static void pull_implicitly(const TwinStrand *strand, const Vec *v_old, double dt, Vec *x)
+{
+    const double theta = 0.25;
+    const int n = strand->n;
+    Vec r[TWIN_MAX], g[TWIN_MAX];
+    double right[TWIN_MAX], lambda[TWIN_MAX], tension[TWIN_MAX + 1] = {0};
+    double diagonal[TWIN_MAX], upper[TWIN_MAX], lower[TWIN_MAX];
+    for (int j = 1; j < n; ++j) {
+        Vec s;
+        subtract(strand->x[j], strand->x[j - 1], r[j]);
+        subtract(x[j], x[j - 1], s);
+        right[j] = strand->length[j] * (vec_norm(s) - strand->length[j]);
+    }
+    reference_solve_lengths((const Vec *)r, n, right, lambda);
+    for (int j = 1; j < n; ++j) {
+        tension[j] = fmax(lambda[j], 0);
+        for (int i = 0; i < 3; ++i) {
+            double before = r[j][i] - dt * (v_old[j][i] - v_old[j - 1][i]);
+            g[j][i] = (lambda[j] - tension[j]) * r[j][i] +
+                      tension[j] * ((1 - 2 * theta) * r[j][i] + theta * before);
+        }
+    }
+    apply(x, n, (const Vec *)g);
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 1; j < n; ++j) {
+            diagonal[j] = 1 + theta * (tension[j] + (j < n - 1 ? tension[j + 1] : 0));
+            lower[j] = -theta * tension[j];
+            upper[j] = j < n - 1 ? -theta * tension[j + 1] : 0;
+            right[j] = x[j][i] + (j == 1 ? theta * tension[1] * x[0][i] : 0);
+        }
+        solve_tridiagonal(n - 1, lower, diagonal, upper, right);
+        for (int j = 1; j < n; ++j) x[j][i] = right[j];
+    }
+}
+
+static void correct(const TwinStrand *strand, Vec *x)
+{
+    Vec s[TWIN_MAX], g[TWIN_MAX];
+    double right[TWIN_MAX], lambda[TWIN_MAX];
+    for (int j = 1; j < strand->n; ++j) {
+        subtract(x[j], x[j - 1], s[j]);
+        right[j] = vec_norm(s[j]) * (vec_norm(s[j]) - strand->length[j]);
+    }
+    reference_solve_lengths((const Vec *)s, strand->n, right, lambda);
+    for (int j = 1; j < strand->n; ++j)
+        for (int i = 0; i < 3; ++i) g[j][i] = lambda[j] * s[j][i];
+    apply(x, strand->n, (const Vec *)g);
+}
+
+void reference_two_pass(const TwinStrand *strand, const Vec *predicted, const Vec root, Vec *x)
+{
+    const int n = strand->n;
+    Vec old_head, new_head;
+    memcpy(x, predicted, (size_t)n * sizeof *x);
+    vec_copy(strand->x[0], x[0]);
+    for (int i = n - 1; i > 0; --i) {
+        const double *tail = i > 1 ? predicted[i - 1] : strand->x[0];
+        Vec moved, head, y;
+        subtract(tail, strand->x[i - 1], moved);
+        vec_add_scaled(strand->x[i], 1, moved, head);
+        reference_tractrix(head, tail, x[i], strand->length[i], y);
+        vec_copy(y, x[i - 1]);
+    }
+    vec_copy(x[0], old_head);
+    vec_copy(root, new_head);
+    vec_copy(root, x[0]);
+    for (int j = 1; j < n; ++j) {
+        Vec tail, y;
+        vec_copy(x[j], tail);
+        reference_tractrix(old_head, tail, new_head, strand->length[j], y);
+        vec_copy(tail, old_head);
+        vec_copy(y, new_head);
+        vec_copy(y, x[j]);
+    }
+}
+
+void reference_chain_step(TwinStrand *strand, const TwinStep *step, const SectionParams *params)
+{
+    const int n = strand->n;
+    Vec v_old[TWIN_MAX], predicted[TWIN_MAX], x[TWIN_MAX];
+    double off = 0;
+    memcpy(v_old, strand->v, sizeof v_old);
+    reference_predict(strand, step, params, predicted);
+    memcpy(x, predicted, sizeof x);
+    pull_implicitly(strand, (const Vec *)v_old, step->dt, x);
+    correct(strand, x);
+    correct(strand, x);
+    for (int j = 1; j < n; ++j) {
+        Vec s;
+        subtract(x[j], x[j - 1], s);
+        off = fmax(off, fabs(vec_norm(s) / strand->length[j] - 1));
+    }
+    if (!(off <= 0.5)) reference_two_pass(strand, (const Vec *)predicted, predicted[0], x);
+    for (int j = 0; j < n; ++j) {
+        for (int i = 0; i < 3; ++i) strand->v[j][i] = -strand->x[j][i] / step->dt;
+        if (j > 0) {
+            Vec s;
+            subtract(x[j], x[j - 1], s);
+            vec_add_scaled(strand->x[j - 1], strand->length[j] / vec_norm(s), s, strand->x[j]);
+        } else {
+            vec_copy(predicted[0], strand->x[0]);
+        }
+        vec_add_scaled(strand->v[j], 1 / step->dt, strand->x[j], strand->v[j]);
+    }
+}
