@@ -5,12 +5,13 @@
 #include "solver_none.h"
 #include "solver_rope.h"
 #include "solver_split.h"
+#include "solver_tressfx.h"
 #include "suggest.h"
 
 #include <string.h>
 
 const SolverType *const SOLVER_TYPES[] = {
-    &SOLVER_SPLIT, &SOLVER_CHAIN, &SOLVER_ROPE, &SOLVER_DFTL, &SOLVER_NONE, NULL,
+    &SOLVER_SPLIT, &SOLVER_TRESSFX, &SOLVER_CHAIN, &SOLVER_ROPE, &SOLVER_DFTL, &SOLVER_NONE, NULL,
 };
 
 enum { MAX_WORDS = 32 };

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "solver_tressfx.h"
+#include "particle_solver.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { SCRATCH = 2, MOST_IN_REGISTERS = 4 };
+
+// llvmpipe ends all loops of an invocation after so many iterations, without a word.
+enum { MOST_ITERATIONS_ON_CPU = 65535 };
+
+// Newton's steps towards the lengths; the rebuilding does the rest.
+enum { STEADY_LENGTH_PASSES = 2 };
+
+static bool is_faithful(const SectionParams *params)
+{
+    return strcmp(params->variant, "tressfx4") == 0;
+}
+
+// A strand that passes of share k keep in shape is about as stiff, measured by its sag, as
+// passes k/(1 - 3k/4)/dt^2. Solved for the share that is as stiff as TressFX's two passes in its
+// frames (`frames`: of them in a step). Limited: long steps with few passes stay softer.
+static float steady_share(const SectionParams *params, float frames, float k)
+{
+    int passes = params->tressfx_local_constraints_iterations;
+    float firm = k / (1 - 0.75f * k) * 2 / (float)(passes > 0 ? passes : 1) * frames * frames;
+    return fminf(firm / (1 + 0.75f * firm), params->tressfx_local_max);
+}
+
+static void fill(StepParams *uniforms, const SolverStep *step, const SectionParams *params)
+{
+    bool faithful = is_faithful(params);
+    double rate = (double)params->drag +
+                  (double)params->tressfx_damping * (double)params->tressfx_damping_rate;
+    bool half = step->first && !faithful;
+    step_drag_factors(rate, half ? step->dt / 2 : step->dt, &uniforms->decay, &uniforms->gain);
+    // TressFX counts in frames; what it gives per frame is meant for one of 1/60 s.
+    float frames = (float)(step->dt * (double)params->tressfx_damping_rate);
+    float per_frame = faithful ? 1 : frames, per_frame2 = per_frame * per_frame;
+    float local = fminf(params->tressfx_local_constraint_stiffness, params->tressfx_local_max);
+    float global = params->tressfx_global_constraint_stiffness;
+    float spring = global / fmaxf(1 - global, 1e-6f) * per_frame2;
+    const float own[2][4] = {
+        {params->tressfx_local_share * (faithful ? local : steady_share(params, per_frame, local)),
+         faithful ? global : spring / (1 + spring), params->tressfx_global_constraints_range,
+         params->tressfx_vsp_coeff},
+        {0.01f * params->tressfx_vsp_accel_threshold * per_frame2,
+         0.01f * params->tressfx_clamp_position_delta * per_frame,
+         (float)params->tressfx_local_constraints_iterations,
+         faithful ? (float)params->tressfx_length_constraints_iterations : STEADY_LENGTH_PASSES},
+    };
+    memcpy(uniforms->own, own, sizeof own);
+}
+
+static void define(ShaderDefine *defines, const SectionParams *params)
+{
+    defines[0] = (ShaderDefine){"TRESSFX4", is_faithful(params)};
+}
+
+static const ParticleRecipe RECIPE = {
+    .label = "sim_tressfx",
+    .shader = "tressfx.comp",
+    .strands_on_cpu = 1,
+    .fill = fill,
+    .define = define,
+};
+
+// Loops over one strand: to predict and to write; a local pass; a pass of the lengths.
+static int64_t count_loops(const SectionParams *params)
+{
+    int64_t lengths = is_faithful(params)
+                          ? (params->tressfx_length_constraints_iterations + 1) / 2 + 1
+                          : 2 * STEADY_LENGTH_PASSES;
+    return 2 + params->tressfx_local_constraints_iterations + lengths;
+}
+
+static Result check_loops(const SolverSetup *setup, Error *error)
+{
+    int64_t passes = count_loops(setup->params);
+    for (uint32_t i = 0; i < setup->hair->batch_count && setup->gpu->software; ++i) {
+        uint32_t n = setup->hair->batches[i].vertex_count;
+        if (n * passes > MOST_ITERATIONS_ON_CPU)
+            return error_set(error, RESULT_USAGE,
+                             "tressfx: a strand of %u vertices is too long for this CPU driver, "
+                             "which ends loops after %d iterations; at most %lld with these "
+                             "iterations",
+                             n, MOST_ITERATIONS_ON_CPU,
+                             (long long)(MOST_ITERATIONS_ON_CPU / passes));
+    }
+    return RESULT_OK;
+}
+
+static Result create(void **state, const SolverSetup *setup, Error *error)
+{
+    *state = NULL;
+    Result result = check_loops(setup, error);
+    return result == RESULT_OK ? particle_solver_create(state, setup, &RECIPE, error) : result;
+}
+
+const SolverType SOLVER_TRESSFX = {
+    .name = "tressfx",
+    .summary = "TressFX's constraints: keeps the style by local and global shape, hides fast heads",
+    .variants = {"steady", "tressfx4"},
+    .create = create,
+    .step = particle_solver_step,
+    .pose = particle_solver_pose,
+    .destroy = particle_solver_destroy,
+};
