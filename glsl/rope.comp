@@ -12,9 +12,9 @@
 //
 // Then v = (1 - damping) (x - q)/h, q: the position before the flight.
 //
-// A rope stretches. Its links are drawn in their own length along the rope's directions; `w` of a particle's velocity keeps the stretch
-// of the link before it, |r|/l - 1, from which the next step rebuilds the rope.
+// A rope stretches; see stretch.glsl for what is drawn.
 #include "particles.glsl"
+#include "stretch.glsl"
 
 #define SMALL_STEPS   int(step_params.own[0].x)
 #define SWEEPS        int(step_params.own[0].y) // of each small step
@@ -42,13 +42,6 @@ vec3 root_at(vec4 root, float t)
     return t == 1.0 ? root_position(root) : mix(old, root_position(root), t);
 }
 
-// The rope's link (a + STRAND_TILE is its tip's address) before the step, from the strand that was drawn.
-vec3 link_before(vec3 drawn_from, vec3 drawn_to, float l, float stretch)
-{
-    vec3 r = drawn_to - drawn_from;
-    return r * (l * (1.0 + stretch) * inversesqrt(max(dot(r, r), 1e-36)));
-}
-
 // The flight in later small steps is x + (CARRIED (x - q) + fall), Verlet's form with drag; the first starts from a velocity.
 // It must be `precise`: Mesa takes it for a mix otherwise, x (1 + CARRIED) - q CARRIED, which rounds ten times as much.
 #define CARRIED (KEPT * step_params.decay)
@@ -60,14 +53,9 @@ vec3 first_flight(vec3 x, vec3 v, vec3 wind)
     return x + step_params.dt * (v * FIRST_DECAY + (step_params.gravity.xyz + step_params.drag * wind) * FIRST_GAIN);
 }
 
-// Draws the link r behind what is drawn so far, whose end and last direction are in `drawn` and `along`, and keeps the rope's state.
 void finish(int a, vec3 r, float l, vec3 moved, inout vec3 drawn, inout vec3 along)
 {
-    float rr = dot(r, r), inverse = inversesqrt(max(rr, 1e-36));
-    along = rr > 1e-36 ? r * inverse : along;
-    drawn += along * (STRETCH_DRAWN != 0.0 ? rr * inverse : l);
-    positions[a] = vec4(drawn, 1.0);
-    velocities[a] = vec4(moved * (KEPT / step_params.dt), rr * inverse / l - 1.0);
+    draw_link(a, r, l, moved * (KEPT / step_params.dt), STRETCH_DRAWN != 0.0, drawn, along);
 }
 
 #if IN_REGISTERS

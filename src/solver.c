@@ -5,14 +5,15 @@
 #include "solver_none.h"
 #include "solver_rope.h"
 #include "solver_split.h"
+#include "solver_spring.h"
 #include "solver_tressfx.h"
 #include "suggest.h"
 
 #include <string.h>
 
-const SolverType *const SOLVER_TYPES[] = {
-    &SOLVER_SPLIT, &SOLVER_TRESSFX, &SOLVER_CHAIN, &SOLVER_ROPE, &SOLVER_DFTL, &SOLVER_NONE, NULL,
-};
+const SolverType *const SOLVER_TYPES[] = {&SOLVER_SPLIT,  &SOLVER_CHAIN, &SOLVER_TRESSFX,
+                                          &SOLVER_SPRING, &SOLVER_ROPE,  &SOLVER_DFTL,
+                                          &SOLVER_NONE,   NULL};
 
 enum { MAX_WORDS = 32 };
 

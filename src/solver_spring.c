@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include "solver_spring.h"
+#include "particle_solver.h"
+
+#include <math.h>
+#include <string.h>
+
+static void fill(StepParams *uniforms, const SolverStep *step, const SectionParams *params)
+{
+    (void)step;
+    uniforms->own[0][0] = params->spring_coil;
+    uniforms->own[0][1] = params->spring_angular;
+    uniforms->own[0][2] = params->stretch_drawn;
+}
+
+static void define(ShaderDefine *defines, const SectionParams *params)
+{
+    defines[0] = (ShaderDefine){"IMPLICIT", strcmp(params->variant, "explicit") != 0};
+}
+
+static int two_phases(const SectionParams *params)
+{
+    (void)params;
+    return 2; // there and back
+}
+
+static const ParticleRecipe IMPLICIT = {
+    .label = "sim_spring",
+    .shader = "spring.comp",
+    .strands_on_cpu = 1,
+    .scratch = 3,
+    .fill = fill,
+    .define = define,
+    .phases = two_phases,
+};
+
+// Symplectic Euler needs h omega < 2. The chain of coils, each k/2, has omega^2 < 4 (k/2), the
+// angular springs, at most k/8 a length, add 4 (k/8). 1.6 leaves room for links that turn within a
+// step.
+static int stable_substeps(const SolverStep *step, const SectionParams *params, const Hair *hair)
+{
+    const double limit = 1.6;
+    uint32_t most = 2;
+    for (uint32_t i = 0; i < hair->batch_count; ++i)
+        if (hair->batches[i].vertex_count > most) most = hair->batches[i].vertex_count;
+    double omega = (most - 1) * sqrt(2.5 * (double)params->spring_coil);
+    return (int)fmin(ceil(step->dt * omega / limit), 1e9);
+}
+
+static const ParticleRecipe EXPLICIT = {
+    .label = "sim_spring",
+    .shader = "spring.comp",
+    .strands_on_cpu = 1,
+    .fill = fill,
+    .define = define,
+    .substeps = stable_substeps,
+};
+
+static Result create(void **state, const SolverSetup *setup, Error *error)
+{
+    bool is_explicit = strcmp(setup->params->variant, "explicit") == 0;
+    return particle_solver_create(state, setup, is_explicit ? &EXPLICIT : &IMPLICIT, error);
+}
+
+const SolverType SOLVER_SPRING = {
+    .name = "spring",
+    .summary = "mass-spring: coil springs along the links, angular springs towards the style",
+    .variants = {"implicit", "explicit"},
+    .create = create,
+    .step = particle_solver_step,
+    .pose = particle_solver_pose,
+    .destroy = particle_solver_destroy,
+};

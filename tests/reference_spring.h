@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// Mass-spring strands in double precision, one strand on the CPU, with absolute positions and a
+// banded solver instead of the shader's links and block elimination.
+#pragma once
+
+#include "twin.h"
+
+// Backward Euler, linearised at the step's start.
+void reference_spring_implicit_step(TwinStrand *strand, const TwinStep *step,
+                                    const SectionParams *params);
+
+// Symplectic Euler with as many sub-steps as the solver takes.
+void reference_spring_explicit_step(TwinStrand *strand, const TwinStep *step,
+                                    const SectionParams *params);
+
+// Kinetic energy, height and springs of a strand of particles of 1 kg, over the number of moving
+// particles (J); `root_height` is where height counts from.
+double reference_spring_energy(const TwinStrand *strand, const TwinStep *step,
+                               const SectionParams *params, double root_height);
