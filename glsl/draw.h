@@ -28,7 +28,8 @@
 #define BIND_BASE   9 // what stands behind the hair: linear, premultiplied
 
 // The A-buffer's pool is dealt out in shards, each with a counter of its own: pixels of different
-// 8x8 blocks then rarely wait for each other's atomics.
+// 8x8 blocks then rarely wait for each other's atomics. A small picture full of hair would fill few
+// of them: it uses one.
 #define SHARD_COUNT 64
 #define SHARD_RUN   16 // consecutive nodes of one shard
 
@@ -59,5 +60,6 @@ UNIFORM_BLOCK(DrawParams, draw_params, BIND_DRAW)
     uvec4 band;          // picture's width, first row, end row, pool's nodes in a shard
     int light_count;
     uint seed;
+    uint shards; // in use: a power of two, at most SHARD_COUNT
 }
 END_BLOCK(DrawParams, draw_params);

@@ -21,10 +21,11 @@ void main()
     if (alpha < LEAST_ALPHA) return;
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     uvec4 band = draw_params.band; // read once: a uniform costs a load wherever it is named
-    uint shard = uint((pixel.x >> 3) + (pixel.y & 56)) % SHARD_COUNT;
+    uint shards = draw_params.shards;
+    uint shard = uint((pixel.x >> 3) + (pixel.y & 56)) & (shards - 1u);
     uint slot = atomicAdd(counters[shard * SHARD_RUN], 1u); // counts on past the end: so the pool learns its size
     if (slot >= band.w) return;
-    uint index = (slot / SHARD_RUN * SHARD_COUNT + shard) * SHARD_RUN + slot % SHARD_RUN;
+    uint index = (slot / SHARD_RUN * shards + shard) * SHARD_RUN + slot % SHARD_RUN;
     int at = (pixel.y - int(band.y)) * int(band.x) + pixel.x;
     uint next = atomicExchange(heads[at], index + 1u);
     nodes[index] = uvec4(next, abuffer_pack(gl_FragCoord.w, color.rgb, alpha));

@@ -5,7 +5,7 @@
 //
 // The rest is summed in whole numbers, which give the same sum in every order: colour times alpha,
 // alpha, and optical depth -log2(1 - alpha). Together they let through what they would in any
-// order, and show their mean colour. The sums hold 8,192 opaque layers of white in one pixel.
+// order, and show their mean colour. A depth that nothing shines through may as well stay there.
 #include "draw.h"
 #include "abuffer.glsl"
 #include "srgb.glsl"
@@ -20,16 +20,28 @@ layout(location = 0) out vec4 pixel_out; // sRGB, alpha not multiplied in
 const float COLOR_STEPS = 16384.0;
 const float COLOR_MAX = 8.0;
 const float DEPTH_STEPS = 4096.0;
+const int DEPTH_MAX = 1 << 24;
+// A colour is at most 2^17 steps: their sum is carried over to a second word in time.
+const int CARRY_EVERY = 8192;
+const int CARRY_BITS = 16;
 
 vec4 over(vec4 front, vec4 behind)
 {
     return front + (1.0 - front.a) * behind;
 }
 
-vec4 rest_color(ivec4 sum, int optical_depth)
+void carry(inout ivec4 high, inout ivec4 low)
 {
+    high += low >> CARRY_BITS;
+    low &= (1 << CARRY_BITS) - 1;
+}
+
+vec4 rest_color(ivec4 high, ivec4 low, int optical_depth)
+{
+    carry(high, low);
+    vec4 sum = ldexp(vec4(high), ivec4(CARRY_BITS)) + vec4(low);
     float alpha = 1.0 - exp2(float(optical_depth) * (-1.0 / DEPTH_STEPS));
-    vec3 mean = vec3(sum.rgb) / max(float(sum.a), 1.0);
+    vec3 mean = sum.rgb / max(sum.a, 1.0);
     return vec4(mean * alpha, alpha);
 }
 
@@ -39,8 +51,8 @@ void main()
     int link = int(texelFetch(heads, (pixel.y - int(draw_params.band.y)) * int(draw_params.band.x) + pixel.x).x);
     ivec3 layer[LAYERS];
     for (int i = 0; i < LAYERS; ++i) layer[i] = ivec3(0);
-    ivec4 sum = ivec4(0);
-    int optical_depth = 0;
+    ivec4 high = ivec4(0), low = ivec4(0);
+    int optical_depth = 0, count = 0;
     while (link != 0) {
         ivec4 node = ivec4(texelFetch(nodes, link - 1));
         link = node.x;
@@ -52,15 +64,17 @@ void main()
             farther = nearer ? here : farther;
         }
         vec4 c = min(abuffer_color(farther), COLOR_MAX);
-        sum += ivec4(c * COLOR_STEPS + 0.5);
-        optical_depth += int(-log2(max(1.0 - c.a, 1.0 / 65536.0)) * DEPTH_STEPS + 0.5);
+        low += ivec4(c * COLOR_STEPS + 0.5);
+        int depth = int(-log2(max(1.0 - c.a, 1.0 / 65536.0)) * DEPTH_STEPS + 0.5);
+        optical_depth = min(optical_depth + depth, DEPTH_MAX);
+        if (++count % CARRY_EVERY == 0) carry(high, low);
     }
 #if BASE
     vec4 color = texelFetch(base, pixel, 0);
 #else
     vec4 color = draw_params.background;
 #endif
-    color = over(rest_color(sum, optical_depth), color);
+    color = over(rest_color(high, low, optical_depth), color);
     for (int i = LAYERS - 1; i >= 0; --i) color = over(abuffer_color(layer[i]), color);
     pixel_out = vec4(srgb_from_linear(color.rgb / max(color.a, 1e-6)), color.a);
 }

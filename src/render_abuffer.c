@@ -33,7 +33,8 @@ static Result build_resolve(RenderABuffer *abuffer, int over_mesh, Error *error)
 Result render_abuffer_create(RenderABuffer *abuffer, const GpuLimits *limits, int width, int layers,
                              int64_t pool_bytes, Error *error)
 {
-    *abuffer = (RenderABuffer){.limits = limits, .width = width, .layers = layers};
+    *abuffer =
+        (RenderABuffer){.limits = limits, .shards = SHARD_COUNT, .layers = layers, .width = width};
     int64_t bytes = pool_bytes ? smaller(pool_bytes, limits->storage_block) : limits->storage_block;
     int64_t most = smaller(smaller(bytes / NODE_BYTES, limits->texture_texels), INT32_MAX);
     abuffer->most_nodes = most < SHARD_STEP ? SHARD_STEP : most / SHARD_STEP * SHARD_STEP;
@@ -75,7 +76,7 @@ int render_abuffer_most_rows(const RenderABuffer *abuffer, int height)
 
 int render_abuffer_shard_nodes(const RenderABuffer *abuffer)
 {
-    return (int)(abuffer->nodes.size / NODE_BYTES / SHARD_COUNT);
+    return (int)(abuffer->nodes.size / NODE_BYTES / abuffer->shards);
 }
 
 static void clear(const GpuBuffer *buffer, int64_t size)
@@ -127,11 +128,15 @@ bool render_abuffer_holds(const RenderABuffer *abuffer, const ABufferUse *use)
 
 Result render_abuffer_grow(RenderABuffer *abuffer, const ABufferUse *use, bool *grown, Error *error)
 {
-    int64_t needed = round_up_nodes((int64_t)use->fullest * SHARD_COUNT);
+    int64_t needed = round_up_nodes((int64_t)use->fullest * abuffer->shards);
+    if (needed > abuffer->most_nodes && (int64_t)use->fragments <= abuffer->most_nodes) {
+        abuffer->shards = 1;
+        needed = round_up_nodes((int64_t)use->fragments);
+    }
     *grown = needed <= abuffer->most_nodes;
-    if (!*grown) return RESULT_OK;
-    int64_t ample = round_up_nodes(needed + needed / 4);
-    return create_pool(abuffer, smaller(ample, abuffer->most_nodes), error);
+    int64_t nodes = smaller(round_up_nodes(needed + needed / 4), abuffer->most_nodes);
+    return nodes * NODE_BYTES > abuffer->nodes.size ? create_pool(abuffer, nodes, error)
+                                                    : RESULT_OK;
 }
 
 void render_abuffer_resolve(const RenderABuffer *abuffer, const RenderTarget *target,

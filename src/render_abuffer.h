@@ -16,6 +16,7 @@ typedef struct RenderABuffer {
     GpuBuffer extent;    // int[4]: screen box of what has to be resolved: x, y lowest, highest, px
     const GpuLimits *limits;
     int64_t most_nodes; // that the pool can grow to
+    int shards;         // that the pool is dealt out in: SHARD_COUNT or 1
     int layers, width;
 } RenderABuffer;
 
@@ -38,6 +39,7 @@ Result render_abuffer_add_mesh(RenderABuffer *abuffer, Error *error);
 // Rows that one band can have at most; >= 1 for every picture that can be drawn.
 int render_abuffer_most_rows(const RenderABuffer *abuffer, int height);
 
+// Fragments that a shard can hold.
 int render_abuffer_shard_nodes(const RenderABuffer *abuffer);
 
 // Empties the lists for a band of `rows` rows, sets the extent to box[4], and binds all to the
@@ -48,8 +50,9 @@ Result render_abuffer_begin(RenderABuffer *abuffer, int rows, const int box[4], 
 void render_abuffer_measure(const RenderABuffer *abuffer, ABufferUse *use);
 bool render_abuffer_holds(const RenderABuffer *abuffer, const ABufferUse *use);
 
-// Makes the pool large enough for `use` and some more. *grown is false, and the pool as it was,
-// where that would be more than most_nodes.
+// Makes the pool large enough for `use` and some more, if need be by having one shard from now on,
+// which wastes nothing. *grown is false, and the pool as large as it can be, where that is too
+// small.
 Result render_abuffer_grow(RenderABuffer *abuffer, const ABufferUse *use, bool *grown,
                            Error *error);
 

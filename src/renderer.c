@@ -102,23 +102,46 @@ static void find_mesh_box(const Renderer *renderer, DrawParams *draw, int box[4]
     }
 }
 
+// What all bands of one picture share.
+typedef struct Picture {
+    DrawParams draw; // with the values of the band that is being drawn
+    const RenderItem *items;
+    uint32_t item_count;
+    int mesh_box[4];
+} Picture;
+
 // The band's lists; measured, but not resolved yet.
-static Result draw_band(Renderer *renderer, DrawParams *draw, const RenderItem *items,
-                        uint32_t item_count, const int box[4], int rows, Error *error)
+static Result draw_band(Renderer *renderer, Picture *picture, int row, int rows, Error *error)
 {
-    Result result = render_abuffer_begin(&renderer->abuffer, rows, box, error);
+    Result result = render_abuffer_begin(&renderer->abuffer, rows, picture->mesh_box, error);
+    DrawParams *draw = &picture->draw;
+    draw->band[1] = (uint32_t)row;
+    draw->band[2] = (uint32_t)(row + rows);
     draw->band[3] = (uint32_t)render_abuffer_shard_nodes(&renderer->abuffer);
+    draw->shards = (uint32_t)renderer->abuffer.shards;
     gpu_uniforms_set(&renderer->draw_uniforms, BIND_DRAW, draw, sizeof *draw);
     glBindFramebuffer(GL_FRAMEBUFFER, renderer->target.hair_frame);
-    glScissor(0, (GLint)draw->band[1], renderer->options.width, rows);
-    for (uint32_t i = 0; i < item_count; ++i) {
-        MaterialParams material = material_params(items[i].material, items[i].radius);
-        const Hair *hair = items[i].hair;
+    glScissor(0, row, renderer->options.width, rows);
+    for (uint32_t i = 0; i < picture->item_count; ++i) {
+        const RenderItem *item = &picture->items[i];
+        MaterialParams material = material_params(item->material, item->radius);
+        const Hair *hair = item->hair;
         for (uint32_t b = 0; b < hair->batch_count && result == RESULT_OK; ++b)
             result = render_hair_draw(&renderer->hair, &hair->batches[b], &material,
                                       &renderer->gpu->limits, renderer->timer, error);
     }
     return result;
+}
+
+// Rows that fill the pool well if hair is as dense in them as in a band of `rows` with this use:
+// some room is left, since a band that does not fit is drawn again. Not many more than before,
+// lest one sparse band speaks for all the rest.
+static int rows_that_fit(const Renderer *renderer, const ABufferUse *use, int rows)
+{
+    double capacity = render_abuffer_shard_nodes(&renderer->abuffer);
+    double share = fmin(0.85 * capacity / fmax(use->fullest, 1), 1.5);
+    int most = render_abuffer_most_rows(&renderer->abuffer, renderer->options.height);
+    return (int)fmax(1, fmin(rows * share, most));
 }
 
 // After a band that did not fit: a larger pool or, where there can be none, fewer rows.
@@ -133,38 +156,42 @@ static Result make_it_fit(Renderer *renderer, const ABufferUse *use, int *rows, 
                          "%lld bytes holds",
                          (unsigned long long)use->fragments,
                          (long long)renderer->abuffer.nodes.size);
-    *rows = renderer->band_rows = *rows / 2;
+    *rows = rows_that_fit(renderer, use, *rows);
     return RESULT_OK;
 }
 
-static Result draw_bands(Renderer *renderer, DrawParams *draw, const RenderItem *items,
-                         uint32_t item_count, const int box[4], Error *error)
+static void resolve_band(Renderer *renderer, const ABufferUse *use)
 {
     RendererCounts *counts = &renderer->counts;
-    int height = renderer->options.height;
+    gpu_timer_begin(renderer->timer, "draw_resolve");
+    render_abuffer_resolve(&renderer->abuffer, &renderer->target,
+                           renderer->mesh.triangle_count > 0);
+    gpu_timer_end(renderer->timer);
+    counts->fragments += use->fragments;
+    counts->segments += use->segments;
+    counts->culled += use->culled;
+    ++counts->bands;
+}
+
+static Result draw_bands(Renderer *renderer, Picture *picture, Error *error)
+{
+    int height = renderer->options.height, rows = renderer->band_rows;
     for (int row = 0; row < height;) {
         ABufferUse use;
-        int rows = row + renderer->band_rows < height ? renderer->band_rows : height - row;
-        draw->band[1] = (uint32_t)row;
-        draw->band[2] = (uint32_t)(row + rows);
-        Result result = draw_band(renderer, draw, items, item_count, box, rows, error);
+        if (rows > height - row) rows = height - row;
+        Result result = draw_band(renderer, picture, row, rows, error);
         if (result != RESULT_OK) return result;
         render_abuffer_measure(&renderer->abuffer, &use);
-        if (!render_abuffer_holds(&renderer->abuffer, &use)) {
-            ++counts->redraws;
-            result = make_it_fit(renderer, &use, &rows, error);
-            if (result != RESULT_OK) return result;
+        if (render_abuffer_holds(&renderer->abuffer, &use)) {
+            resolve_band(renderer, &use);
+            row += rows;
+            rows = rows_that_fit(renderer, &use, rows);
             continue;
         }
-        gpu_timer_begin(renderer->timer, "draw_resolve");
-        render_abuffer_resolve(&renderer->abuffer, &renderer->target,
-                               renderer->mesh.triangle_count > 0);
-        gpu_timer_end(renderer->timer);
-        counts->fragments += use.fragments;
-        counts->segments += use.segments;
-        counts->culled += use.culled;
-        ++counts->bands;
-        row += rows;
+        ++renderer->counts.redraws;
+        result = make_it_fit(renderer, &use, &rows, error);
+        if (result != RESULT_OK) return result;
+        if (row == 0) renderer->band_rows = rows;
     }
     return RESULT_OK;
 }
@@ -195,16 +222,16 @@ Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderI
 {
     assert(image->width == renderer->options.width && image->height == renderer->options.height);
     assert(image->channels == renderer_channels(renderer));
-    DrawParams draw;
-    int box[4];
-    fill_draw_params(renderer, frame, &draw);
-    find_mesh_box(renderer, &draw, box);
+    Picture picture = {.items = items, .item_count = item_count};
+    DrawParams *draw = &picture.draw;
+    fill_draw_params(renderer, frame, draw);
+    find_mesh_box(renderer, draw, picture.mesh_box);
     renderer->counts = (RendererCounts){0};
     set_state(renderer);
-    gpu_uniforms_set(&renderer->draw_uniforms, BIND_DRAW, &draw, sizeof draw);
-    draw_mesh(renderer, &draw);
+    gpu_uniforms_set(&renderer->draw_uniforms, BIND_DRAW, draw, sizeof *draw);
+    draw_mesh(renderer, draw);
     glEnable(GL_SCISSOR_TEST);
-    Result result = draw_bands(renderer, &draw, items, item_count, box, error);
+    Result result = draw_bands(renderer, &picture, error);
     glDisable(GL_SCISSOR_TEST);
     if (result != RESULT_OK) return result;
     gpu_timer_begin(renderer->timer, "draw_read");

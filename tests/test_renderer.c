@@ -287,6 +287,60 @@ static void bands_give_the_same_picture(void **state)
     free(expected);
 }
 
+static void bands_are_no_more_than_the_pool_asks_for(void **state)
+{
+    (void)state;
+    RendererOptions small = BLACK;
+    small.pool_bytes = 1 << 18;
+    size_t size;
+    use(&small);
+    add_tangle(1500, 2, 0.4f, NULL);
+    uint8_t *first = draw_copy(&size);
+    assert_draws_the_same(first, size);
+    free(first);
+    const RendererCounts *counts = &studio.renderer.counts;
+    uint64_t least = counts->fragments * 16 / (uint64_t)small.pool_bytes + 1;
+    assert_in_range(counts->bands, least, 3 * least);
+    assert_int_equal(counts->pool_bytes, small.pool_bytes);
+}
+
+// Its pixels are all of one 8x8 block, so of one shard.
+static void a_small_picture_uses_the_whole_pool(void **state)
+{
+    (void)state;
+    RendererOptions small = BLACK;
+    small.width = small.height = 8;
+    small.pool_bytes = 1 << 18;
+    use(&small);
+    add_tangle(20000, 2, 0.4f, NULL);
+    size_t size;
+    free(draw_copy(&size));
+    assert_true(studio.renderer.counts.fragments > 4096);
+    assert_int_equal(studio.renderer.counts.bands, 1);
+}
+
+// 60,000 glaring strands in one pixel: sums over them do not fit 32 bits.
+static void thousands_of_layers_are_still_white(void **state)
+{
+    (void)state;
+    enum { COUNT = 60000 };
+    RendererOptions pixel = BLACK;
+    pixel.width = pixel.height = 1;
+    use(&pixel);
+    float(*position)[3] = malloc(COUNT * 2 * sizeof *position);
+    assert_non_null(position);
+    for (int i = 0; i < 2 * COUNT; ++i)
+        for (int k = 0; k < 3; ++k) position[i][k] = k ? 0 : i % 2 ? 4 : -4;
+    Strands strands = studio_strands(COUNT, 2, (const float(*)[3])position);
+    uint32_t item = studio_add(&studio, &strands, 4, 1);
+    studio.material[item].ambient = 8;
+    studio_draw(&studio);
+    assert_int_equal(studio.renderer.counts.fragments, COUNT);
+    for (int k = 0; k < 3; ++k) assert_int_equal(studio.image.pixels[k], 255);
+    strands_destroy(&strands);
+    free(position);
+}
+
 static void a_row_that_no_pool_holds_is_an_error(void **state)
 {
     (void)state;
@@ -492,7 +546,7 @@ static void blocks_lie_alike_in_c_and_glsl(void **state)
     DRAW(clip_from_world), DRAW(eye), DRAW_ARRAY(light_direction), DRAW_ARRAY(light_color);
     DRAW(background), DRAW(head_rotation), DRAW(head_translation), DRAW(mesh_color);
     DRAW(width), DRAW(height), DRAW(focal), DRAW(near_distance), DRAW(depth), DRAW(band);
-    DRAW(light_count), DRAW(seed);
+    DRAW(light_count), DRAW(seed), DRAW(shards);
     MATERIAL(color), MATERIAL(color_variation), MATERIAL(radius), MATERIAL(tip_ratio);
     MATERIAL(opacity), MATERIAL(ambient), MATERIAL(diffuse), MATERIAL(specular1);
     MATERIAL(exponent1), MATERIAL(specular2), MATERIAL(exponent2), MATERIAL(shift1_cos);
@@ -524,6 +578,9 @@ int main(void)
         CLAIM(order_of_strands_does_not_matter),
         CLAIM(a_pool_that_is_too_small_grows),
         CLAIM(bands_give_the_same_picture),
+        CLAIM(bands_are_no_more_than_the_pool_asks_for),
+        CLAIM(a_small_picture_uses_the_whole_pool),
+        CLAIM(thousands_of_layers_are_still_white),
         CLAIM(a_row_that_no_pool_holds_is_an_error),
         CLAIM(mesh_hides_the_hair_behind_it_only),
         CLAIM(no_hair_is_background),
