@@ -122,15 +122,17 @@ void keep_local_shape()
 
 #if TRESSFX4
 
-// The force -(t x w) x t of the air on a segment t, towards where the air goes. It has TressFX's unit of length, the centimetre, built in.
+// The force -(t x w) x t of the air on a segment t, towards where the air goes. It has TressFX's unit of length, the centimetre, built in,
+// and grows with the square of a stretched segment: the clamp keeps a storm finite.
 void blow()
 {
     vec3 wind = rotate(conjugate(step_params.head_rotation), strand_wind(texelFetch(strand_id, strand).x));
-    float strength = 1e4 * step_params.dt * step_params.dt;
+    float strength = 1e4 * step_params.dt * step_params.dt, most = CLAMP;
     if (dot(wind, wind) == 0.0) return;
     for (int j = 2; j < n - 1; ++j) {
-        vec3 t = X(j + 1) - X(j);
-        X(j) += strength * cross(cross(t, wind), t);
+        vec3 t = X(j + 1) - X(j), blown = strength * cross(cross(t, wind), t);
+        float square = dot(blown, blown);
+        X(j) += square > most * most ? blown * (most * inversesqrt(square)) : blown;
     }
 }
 

@@ -1,0 +1,455 @@
+// SPDX-License-Identifier: MIT
+// What must hold for every solver that is in the table, whatever its method. A solver's own tests
+// are in test_solver_<name>.c.
+#include "twin.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+// What can be promised ...
+enum {
+    LENGTHS = 1, // segments as long as in the style
+    REST = 2,    // hair that hangs straight down stays so
+    ENERGY = 4,  // never more than at the start
+    UNIT = 8,    // a scene in centimetres moves like one in metres
+    ORDER = 16,  // strands move alike wherever they stand in the file
+    TURN = 32,   // a turned scene moves like the scene
+};
+
+// ... and who does not, from how many particles a strand on, and why. `variant` NULL: all of them.
+static const struct {
+    const char *algo, *variant;
+    unsigned lacks;
+    int from;
+    const char *why;
+} EXCEPTIONS[] = {
+    {"split", NULL, ENERGY, 0, "only its tip has mass (test_solver_split): the strand follows"},
+    {"emulation", NULL, ORDER, 0, "the order of its moves comes from a strand's place"},
+    {"emulation", "thesis", REST | ENERGY | TURN, 0, "unstable without much drag, as published"},
+    {"chain", NULL, ENERGY, 64, "its sub-steps do not suffice: up to 0.9 more at 30 and 120 Hz"},
+    {"tressfx", "tressfx4", LENGTHS | REST, 0, "two passes leave it stretched under gravity"},
+    {"dftl", NULL, ENERGY, 0, "corrects velocities, not displacements: what is drawn whips"},
+};
+
+static unsigned promises(const SolverType *type, const char *variant, int n)
+{
+    unsigned all = LENGTHS | REST | ENERGY | UNIT | ORDER | TURN;
+    for (size_t i = 0; i < sizeof EXCEPTIONS / sizeof *EXCEPTIONS; ++i)
+        if (strcmp(EXCEPTIONS[i].algo, type->name) == 0 && n >= EXCEPTIONS[i].from &&
+            (!EXCEPTIONS[i].variant || strcmp(EXCEPTIONS[i].variant, variant) == 0))
+            all &= ~EXCEPTIONS[i].lacks;
+    return all;
+}
+
+typedef void (*Check)(const SolverType *type, const char *variant);
+
+// Runs `check` for each solver that steps (TEST_ALGO: only that one) and each of its variants that
+// promises `needed` for short strands.
+static void for_each(Check check, unsigned needed)
+{
+    const char *only = getenv("TEST_ALGO");
+    for (const SolverType *const *type = SOLVER_TYPES; *type; ++type)
+        for (int v = 0; (*type)->step && (v == 0 || (*type)->variants[v]); ++v) {
+            const char *variant = (*type)->variants[v] ? (*type)->variants[v] : "";
+            if (only && strcmp(only, (*type)->name) != 0) continue;
+            if ((promises(*type, variant, 0) & needed) == needed) check(*type, variant);
+        }
+}
+
+static void require(bool holds, const SolverType *type, const char *variant, const char *format,
+                    double value)
+{
+    char text[128];
+    snprintf(text, sizeof text, format, value);
+    if (!holds) fail_msg("%s %s: %s", type->name, variant, text);
+}
+
+// Greatest error of a length, less what the rounding of stored positions explains: each coordinate
+// is off by at most 2^-24 of its size, so a difference by twice that, a length by sqrt(3) times as
+// much.
+static double length_error(const Vec *style, const Vec *q, int n)
+{
+    double worst = 0;
+    for (int j = 1; j < n; ++j) {
+        Vec before, now;
+        double size = 0;
+        for (int k = 0; k < 3; ++k) {
+            before[k] = (double)(float)style[j][k] - (double)(float)style[j - 1][k];
+            now[k] = q[j][k] - q[j - 1][k];
+            size = fmax(size, fabs(q[j][k]));
+        }
+        double length = vec_norm(before), rounding = 2 * 1.8 * 0x1p-24 * size;
+        worst = fmax(worst, (fabs(vec_norm(now) - length) - rounding) / length);
+    }
+    return worst;
+}
+
+// --- Lengths, rest.
+
+static void check_lengths(const SolverType *type, const char *variant)
+{
+    enum { N = 16 };
+    Vec start[3 * N], q[N];
+    HairFixture fixture;
+    for (int s = 0; s < 3; ++s) twin_make_curl(&start[s * N], N, 0.01 * s, 1 + s);
+    fixture_create(&fixture, (const Vec *)start, 3, N, type->name, variant, 0, 1);
+    for (int i = 1; i <= 120; ++i) {
+        fixture.step.head.translation[0] = (float)(0.03 * sin(0.2 * i));
+        fixture_step(&fixture);
+    }
+    for (int s = 0; s < 3; ++s) {
+        twin_read_strand(&fixture, s, q);
+        double error = length_error((const Vec *)&start[s * N], (const Vec *)q, N);
+        require(error < 1e-5, type, variant, "a segment's length is off by %.2g", error);
+    }
+    fixture_destroy(&fixture);
+}
+
+static void lengths_are_kept(void **state)
+{
+    (void)state;
+    for_each(check_lengths, LENGTHS);
+}
+
+static void check_rest(const SolverType *type, const char *variant)
+{
+    enum { N = 16 };
+    Vec start[N], q[N];
+    HairFixture fixture;
+    for (int j = 0; j < N; ++j) start[j][0] = 0.1, start[j][1] = 0.3 - 0.016 * j, start[j][2] = 0;
+    fixture_create(&fixture, (const Vec *)start, 1, N, type->name, variant, 0, 1);
+    for (int i = 0; i < 300; ++i) fixture_step(&fixture);
+    twin_read_strand(&fixture, 0, q);
+    double off = twin_rms((const Vec *)q, (const Vec *)start, N, 0.24);
+    require(off < 1e-5, type, variant, "hanging hair has moved by %.2g of its length", off);
+    fixture_destroy(&fixture);
+}
+
+static void hanging_hair_stays_at_rest(void **state)
+{
+    (void)state;
+    for_each(check_rest, REST);
+}
+
+// --- Symmetries. Rounding differs between the two runs; half a second with drag keeps what grows
+// from it below 1e-4 of the length, in solvers that whip too.
+
+enum { SYMMETRY_STEPS = 30 };
+
+static void check_turn(const SolverType *type, const char *variant)
+{
+    enum { N = 16 };
+    const double c = cos(0.5235987756), s = sin(0.5235987756);
+    Vec start[N], turned[N], a[N], b[N];
+    HairFixture plain, other;
+    twin_make_curl(start, N, 0, 2);
+    for (int j = 0; j < N; ++j)
+        turned[j][0] = c * start[j][0] - s * start[j][1],
+        turned[j][1] = s * start[j][0] + c * start[j][1], turned[j][2] = start[j][2];
+    fixture_create(&plain, (const Vec *)start, 1, N, type->name, variant, 0.4f, 4);
+    fixture_create(&other, (const Vec *)turned, 1, N, type->name, variant, 0.4f, 4);
+    other.step.gravity[0] = (float)(9.81 * s), other.step.gravity[1] = (float)(-9.81 * c);
+    for (int i = 0; i < SYMMETRY_STEPS; ++i) fixture_step(&plain), fixture_step(&other);
+    twin_read_strand(&plain, 0, a);
+    twin_read_strand(&other, 0, b);
+    for (int j = 0; j < N; ++j) {
+        Vec r = {c * a[j][0] - s * a[j][1], s * a[j][0] + c * a[j][1], a[j][2]};
+        memcpy(a[j], r, sizeof r);
+    }
+    double off = twin_rms((const Vec *)a, (const Vec *)b, N, 0.21);
+    require(off < 1e-4, type, variant, "a turned scene moves otherwise, by %.2g", off);
+    fixture_destroy(&plain);
+    fixture_destroy(&other);
+}
+
+static void turning_the_whole_scene_turns_the_result(void **state)
+{
+    (void)state;
+    for_each(check_turn, TURN);
+}
+
+// Parameters that are lengths, or accelerations of them, in a scene that is `scale` times as large.
+static void scale_params(SectionParams *params, float scale)
+{
+    params->tressfx_vsp_accel_threshold *= scale;
+    params->tressfx_clamp_position_delta *= scale;
+    params->spring_angular *= scale;
+}
+
+static void check_unit(const SolverType *type, const char *variant)
+{
+    enum { N = 16 };
+    const double scale = 100;
+    Vec start[N], larger[N], a[N], b[N];
+    HairFixture plain, other;
+    twin_make_curl(start, N, 0, 2);
+    for (int j = 0; j < N; ++j)
+        for (int k = 0; k < 3; ++k) larger[j][k] = scale * start[j][k];
+    fixture_create(&plain, (const Vec *)start, 1, N, type->name, variant, 0.4f, 4);
+    fixture_create(&other, (const Vec *)larger, 1, N, type->name, variant, 0.4f, 4);
+    scale_params(&other.params, (float)scale);
+    other.step.gravity[1] *= (float)scale;
+    for (int i = 0; i < SYMMETRY_STEPS; ++i) fixture_step(&plain), fixture_step(&other);
+    twin_read_strand(&plain, 0, a);
+    twin_read_strand(&other, 0, b);
+    for (int j = 0; j < N; ++j)
+        for (int k = 0; k < 3; ++k) b[j][k] /= scale;
+    double off = twin_rms((const Vec *)a, (const Vec *)b, N, 0.21);
+    require(off < 1e-4, type, variant, "a scene 100 times as large moves otherwise, by %.2g", off);
+    fixture_destroy(&plain);
+    fixture_destroy(&other);
+}
+
+static void the_unit_of_length_does_not_matter(void **state)
+{
+    (void)state;
+    for_each(check_unit, UNIT);
+}
+
+// --- Strands among others.
+
+enum { CROWD = 37, CROWD_N = 12 };
+
+// Fills a crowd and steps it; strand `at` is always the same curl, the others come from `other`.
+static void step_crowd(const SolverType *type, const char *variant, int at, int other, Vec *q)
+{
+    static Vec start[CROWD * CROWD_N];
+    HairFixture fixture;
+    for (int s = 0; s < CROWD; ++s)
+        twin_make_curl(&start[s * CROWD_N], CROWD_N, s == at ? 0 : 0.01 * (s + other),
+                       s == at ? 2 : 1 + (s + other) % 7);
+    fixture_create(&fixture, (const Vec *)start, CROWD, CROWD_N, type->name, variant, 0.3f, 1);
+    for (int i = 0; i < 40; ++i) fixture_step(&fixture);
+    twin_read_strand(&fixture, at, q);
+    fixture_destroy(&fixture);
+}
+
+static void check_neighbours(const SolverType *type, const char *variant)
+{
+    Vec a[CROWD_N], b[CROWD_N];
+    step_crowd(type, variant, 21, 0, a);
+    step_crowd(type, variant, 21, 5, b);
+    require(memcmp(a, b, sizeof a) == 0, type, variant,
+            "a strand moves otherwise among other strands, by %.2g of its length",
+            twin_rms((const Vec *)a, (const Vec *)b, CROWD_N, 0.21));
+}
+
+static void strands_do_not_depend_on_each_other(void **state)
+{
+    (void)state;
+    for_each(check_neighbours, 0);
+}
+
+static void check_order(const SolverType *type, const char *variant)
+{
+    Vec a[CROWD_N], b[CROWD_N];
+    step_crowd(type, variant, 3, 0, a);
+    step_crowd(type, variant, CROWD - 1, 0, b);
+    require(memcmp(a, b, sizeof a) == 0, type, variant,
+            "a strand moves otherwise in another place of the file, by %.2g of its length",
+            twin_rms((const Vec *)a, (const Vec *)b, CROWD_N, 0.21));
+}
+
+static void the_order_of_strands_does_not_matter(void **state)
+{
+    (void)state;
+    for_each(check_order, ORDER);
+}
+
+// --- Violence.
+
+static void check_violence(const SolverType *type, const char *variant)
+{
+    // gravity, wind, head jump (m), drag
+    const float violence[][4] = {
+        {1e6f, 0, 0, 0},      {0, 1e6f, 0, 1e6f}, {-9.81f, 0, 1e3f, 0},
+        {-9.81f, 0, 1e8f, 1}, {0, 0, 1e-30f, 0},  {1e6f, 1e6f, 1e6f, 1e-6f},
+    };
+    enum { N = 24, COUNT = 4 };
+    static Vec start[COUNT * N];
+    for (int s = 0; s < COUNT; ++s) twin_make_curl(&start[s * N], N, 0.01 * s, s);
+    for (size_t v = 0; v < sizeof violence / sizeof *violence; ++v) {
+        HairFixture fixture;
+        fixture_create(&fixture, (const Vec *)start, COUNT, N, type->name, variant, 0.5f,
+                       violence[v][3]);
+        fixture.step.gravity[1] = violence[v][0];
+        for (int i = 0; i < 4; ++i) fixture.step.wind[i][0] = violence[v][1];
+        for (int i = 0; i < 20; ++i) {
+            fixture.step.head.translation[1] = i % 2 ? violence[v][2] : 0;
+            fixture_step(&fixture);
+        }
+        for (int s = 0; s < COUNT; ++s) {
+            Vec q[N];
+            twin_read_strand(&fixture, s, q);
+            for (int j = 0; j < N; ++j)
+                require(isfinite(vec_norm(q[j])), type, variant,
+                        "violence %.0f: a position is not finite", (double)v);
+        }
+        fixture_destroy(&fixture);
+    }
+}
+
+static void no_finite_input_gives_a_nan(void **state)
+{
+    (void)state;
+    for_each(check_violence, 0);
+}
+
+// --- A long run without anything that moves the hair but gravity.
+
+enum { LONG_MOST = 64, LONG_KINDS = 2 };
+static const int LONG_COUNTS[] = {4, 16, 64};
+enum { LONG_SIZES = sizeof LONG_COUNTS / sizeof *LONG_COUNTS };
+
+typedef struct LongRun {
+    HairFixture fixture;
+    Vec start[LONG_SIZES][LONG_KINDS][LONG_MOST];
+    Vec before[LONG_SIZES][LONG_KINDS][LONG_MOST];
+} LongRun;
+
+// Of each vertex count a straight strand held horizontally and a curl.
+static void long_run_create(LongRun *run, const SolverType *type, double per_second, float style,
+                            float drag)
+{
+    Strands strands;
+    uint32_t count = LONG_SIZES * LONG_KINDS, vertices = 0, at = 0;
+    for (int i = 0; i < LONG_SIZES; ++i) vertices += LONG_KINDS * (uint32_t)LONG_COUNTS[i];
+    assert_int_equal(strands_create(&strands, count, vertices, NULL), RESULT_OK);
+    for (int i = 0; i < LONG_SIZES; ++i)
+        for (int kind = 0; kind < LONG_KINDS; ++kind) {
+            Vec *q = run->start[i][kind];
+            strands.first[i * LONG_KINDS + kind] = at;
+            twin_make_curl(q, LONG_COUNTS[i], 0, 1);
+            for (int j = 0; j < LONG_COUNTS[i]; ++j, ++at)
+                for (int k = 0; k < 3; ++k) {
+                    if (kind == 0) q[j][k] = k == 0 ? 0.25 * j / (LONG_COUNTS[i] - 1) : 0;
+                    q[j][k] = (double)(strands.position[at][k] = (float)q[j][k]);
+                }
+        }
+    strands.first[count] = at;
+    fixture_create_strands(&run->fixture, &strands, type->name, "", style, drag);
+    run->fixture.step.dt = 1 / per_second;
+    strands_destroy(&strands);
+}
+
+// Positions of all strands; batches lie in the order of vertex counts.
+static void long_run_read(LongRun *run, Vec positions[LONG_SIZES][LONG_KINDS][LONG_MOST])
+{
+    for (uint32_t i = 0; i < LONG_SIZES; ++i) {
+        const HairBatch *batch = &run->fixture.hair.batches[i];
+        float(*read)[4] = fixture_positions(&run->fixture, i);
+        for (uint32_t kind = 0; kind < LONG_KINDS; ++kind)
+            for (uint32_t j = 0; j < batch->vertex_count; ++j)
+                for (int k = 0; k < 3; ++k)
+                    positions[i][kind][j][k] = (double)read[hair_address(batch, kind, j)][k];
+        free(read);
+    }
+}
+
+// Kinetic and potential energy over what the strand could lose, less what it had: 0 at the start,
+// -1 when it hangs at rest. `a` and `b` are a step apart.
+static double energy(const Vec *start, const Vec *a, const Vec *b, int n, double dt)
+{
+    const double g = 9.81;
+    double sum = 0, budget = 0, length = 0;
+    for (int j = 1; j < n; ++j) {
+        Vec v, segment;
+        vec_add_scaled(b[j], -1, a[j], v);
+        vec_add_scaled(start[j], -1, start[j - 1], segment);
+        length += vec_norm(segment);
+        sum += vec_dot(v, v) / (2 * dt * dt) + g * ((a[j][1] + b[j][1]) / 2 - start[j][1]);
+        budget += g * (start[j][1] - start[0][1] + length);
+    }
+    return sum / budget;
+}
+
+// `most`: the greatest energy of each size so far.
+static void check_frame(LongRun *run, const SolverType *type, double most[LONG_SIZES])
+{
+    static Vec now[LONG_SIZES][LONG_KINDS][LONG_MOST];
+    const char *variant = type->variants[0] ? type->variants[0] : "";
+    long_run_read(run, now);
+    for (int i = 0; i < LONG_SIZES; ++i)
+        for (int kind = 0; kind < LONG_KINDS; ++kind) {
+            const Vec *start = (const Vec *)run->start[i][kind], *q = (const Vec *)now[i][kind];
+            int n = LONG_COUNTS[i];
+            double e = energy(start, (const Vec *)run->before[i][kind], q, n, run->fixture.step.dt);
+            double error = length_error(start, q, n);
+            require(isfinite(e), type, variant, "n = %.0f: a position is not finite", n);
+            require(error < 1e-5 || !(promises(type, variant, n) & LENGTHS), type, variant,
+                    "a length is off by %.2g", error);
+            most[i] = fmax(most[i], e);
+        }
+}
+
+// Energy is looked at every step in the first second, when hair falls, and 4 times a second then.
+static int check_run(const SolverType *type, double per_second, float style, float drag,
+                     double seconds)
+{
+    static LongRun run;
+    double most[LONG_SIZES] = {-1, -1, -1};
+    int failures = 0;
+    long_run_create(&run, type, per_second, style, drag);
+    int steps = (int)(seconds * per_second), sparse = (int)(per_second / 4);
+    memcpy(run.before, run.start, sizeof run.before);
+    for (int i = 1; i <= steps; ++i) {
+        bool look = i <= (int)per_second || i % sparse == 0;
+        if (look && i > 1) long_run_read(&run, run.before);
+        fixture_step(&run.fixture);
+        if (look) check_frame(&run, type, most);
+    }
+    fixture_destroy(&run.fixture);
+    const char *variant = type->variants[0] ? type->variants[0] : "";
+    for (int i = 0; i < LONG_SIZES; ++i) {
+        if (most[i] < 0.01 || !(promises(type, variant, LONG_COUNTS[i]) & ENERGY)) continue;
+        printf("%s, n = %d at %g Hz, drag %g, style %g: energy rises by %.2g of what could be "
+               "lost\n",
+               type->name, LONG_COUNTS[i], per_second, (double)drag, (double)style, most[i]);
+        ++failures;
+    }
+    return failures;
+}
+
+static int long_failures; // of all solvers, so that all are told
+
+// TEST_SECONDS=60 makes it the minute that the solvers' figures are stated for.
+static void check_long(const SolverType *type, const char *variant)
+{
+    const char *asked = getenv("TEST_SECONDS");
+    int failures = 0;
+    if (type->variants[0] && strcmp(variant, type->variants[0]) != 0) return;
+    for (double per_second = 30; per_second <= 240; per_second *= 2)
+        for (int drag = 0; drag < 2; ++drag)
+            for (int styled = 0; styled < 2; ++styled)
+                failures += check_run(type, per_second, styled ? 0.5f : 0, (float)drag,
+                                      asked ? strtod(asked, NULL) : 240 / per_second);
+    long_failures += failures;
+}
+
+static void energy_and_lengths_hold_in_the_long_run(void **state)
+{
+    (void)state;
+    long_failures = 0;
+    for_each(check_long, 0);
+    assert_int_equal(long_failures, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(lengths_are_kept),
+        cmocka_unit_test(hanging_hair_stays_at_rest),
+        cmocka_unit_test(turning_the_whole_scene_turns_the_result),
+        cmocka_unit_test(the_unit_of_length_does_not_matter),
+        cmocka_unit_test(strands_do_not_depend_on_each_other),
+        cmocka_unit_test(the_order_of_strands_does_not_matter),
+        cmocka_unit_test(no_finite_input_gives_a_nan),
+        cmocka_unit_test(energy_and_lengths_hold_in_the_long_run),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
