@@ -15,42 +15,18 @@
 // The sweeps run along the strand to and fro; each undoes one elimination and does the next. Positions are relative to the new root.
 #include "particles.glsl"
 #include "keep.glsl"
-#include "style_spring.glsl"
+#include "lane.glsl"
 #include "tractrix.glsl"
 #include "tridiagonal.glsl"
 
 const float THETA = 0.25;
 const float MOST_OFF = 0.5; // of a length, before tractrices take over
-const float SAFE_MOVE = 1e15; // metres: keeps squares finite whatever the head does
 
-struct Lane {
-    int address; // of the root
-    vec3 root, root_old, push;
-    vec4 rotation;
-    float dt, decay, pull;
-};
-
-vec3 fetch_position(Lane lane, int j) { return texelFetch(position_before, lane.address + j * STRAND_TILE).xyz; }
-vec3 fetch_velocity(Lane lane, int j) { return texelFetch(velocity_before, lane.address + j * STRAND_TILE).xyz; }
-vec4 fetch_rest(Lane lane, int j) { return texelFetch(rest, lane.address + j * STRAND_TILE); }
-
-vec3 limit_move(vec3 move) { return clamp(move, -SAFE_MOVE, SAFE_MOVE); }
-
-vec3 direction(vec3 v)
-{
-    float vv = dot(v, v);
-    return vv > 0.0 ? v * inversesqrt(vv) : vec3(0.0, 1.0, 0.0);
-}
-
-// Where particle j would go without constraints, relative to the new root. `style` goes from particle to particle, from 0 at the root.
+// Where particle j would go without constraints, relative to the new root.
 vec3 predicted(Lane lane, int j, inout vec3 style)
 {
-    vec3 p = (fetch_position(lane, j) - lane.root) + lane.dt * (lane.decay * fetch_velocity(lane, j) + lane.push);
-#if STYLED
-    style = next_style(style, fetch_rest(lane, j), lane.rotation);
-    p += lane.pull * (style - p);
-#endif
-    return p;
+    vec3 q = fetch_position(lane, j);
+    return (q - lane.root) + predicted_move(lane, j, q, style);
 }
 
 // Root to tip: predictions; the tensions' rows.
@@ -188,7 +164,7 @@ void write(Lane lane)
     }
 }
 
-// Two passes of tractrices (glsl/hybrid.glsl) instead. Rolled loops, so that a CPU driver, where all lanes go through every branch,
+// Two passes of tractrices (those of hybrid.comp) instead. Rolled loops, so that a CPU driver, where all lanes go through every branch,
 // leaves them after a round where no strand needs them. What is kept on the way lies where the velocities will.
 void rescue(Lane lane)
 {
@@ -221,16 +197,7 @@ void main()
     int s = first_strand();
     if (s >= int(step_params.strand_count)) return;
     keep_open(s);
-    Lane lane;
-    lane.address = particle_address(s, 0, LAST + 1);
-    lane.root = root_position(fetch_rest(lane, 0));
-    lane.root_old = fetch_position(lane, 0);
-    lane.push = kick(vec3(0.0), strand_wind(texelFetch(strand_id, s).x));
-    lane.dt = step_params.dt;
-    lane.decay = step_params.decay;
-    lane.rotation = step_params.head_rotation;
-    lane.pull = STYLE_PULL;
-
+    Lane lane = lane_open(s);
     predict(lane);
     pull_implicitly(lane);
     correct(lane);

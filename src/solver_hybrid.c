@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#include "solver_hybrid.h"
+#include "particle_solver.h"
+
+static void fill(StepParams *uniforms, const SolverStep *step, const SectionParams *params)
+{
+    (void)step;
+    uniforms->own[0][0] = step_style_pull(uniforms, params);
+}
+
+static void define(ShaderDefine *defines, const SectionParams *params)
+{
+    defines[0] = (ShaderDefine){"STYLED", params->style > 0};
+}
+
+static const ParticleRecipe RECIPE = {
+    .label = "sim_hybrid",
+    .shader = "hybrid.comp",
+    .most_in_registers = 32,
+    .strands_on_cpu = 1,
+    .scratch = 2,
+    .fill = fill,
+    .define = define,
+};
+
+static Result create(void **state, const SolverSetup *setup, Error *error)
+{
+    return particle_solver_create(state, setup, &RECIPE, error);
+}
+
+const SolverType SOLVER_HYBRID = {
+    .name = "hybrid",
+    .summary = "tractrices as length constraint in two passes, velocities projected on what the "
+               "shape allows",
+    .create = create,
+    .step = particle_solver_step,
+    .pose = particle_solver_pose,
+    .destroy = particle_solver_destroy,
+};

@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: MIT
+// Hybrid and emulation in double precision, one strand on the CPU.
+#pragma once
+
+#include "twin.h"
+
+void reference_hybrid_step(TwinStrand *strand, const TwinStep *step, const SectionParams *params);
