@@ -123,7 +123,8 @@ static Result try_devices(Gpu *gpu, const GpuOptions *options, Attempts *attempt
             note_failure(attempts, path, &why);
         }
     if (options->device >= devices.count) {
-        error_set(&why, RESULT_NO_GL, "there are %d devices (see --list-devices)", devices.count);
+        error_set(&why, RESULT_NO_GL, "no device %d, there are %d (see --list-devices)",
+                  options->device, devices.count);
         note_failure(attempts, "--device", &why);
     }
     return RESULT_NO_GL;

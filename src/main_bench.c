@@ -362,6 +362,8 @@ int main(int argc, char **argv)
     Error error = {{0}};
     interrupt_install();
     Result result = run(argc, argv, &error);
+    if (result == RESULT_OK && (fflush(stdout) != 0 || ferror(stdout)))
+        result = error_set(&error, RESULT_FAILED, "cannot write to standard output");
     if (result != RESULT_OK)
         fprintf(stderr, "%s%s\n", result == RESULT_BAD_INPUT ? "" : "tractrix-bench: ", error.text);
     return result;

@@ -169,7 +169,8 @@ static void tell_result(const Run *run, const Sequence *sequence, double ms)
     if (report.moves_limited && run->scene.run.verbose)
         fprintf(stderr, "%llu moves of more than 100 strand lengths a step were cut\n",
                 (unsigned long long)report.moves_limited);
-    fprintf(stderr, "%d frames in %.1f s, %.1f a second", frames, ms / 1e3, frames * 1e3 / ms);
+    fprintf(stderr, "%d frame%s in %.1f s, %.3g a second", frames, frames == 1 ? "" : "s", ms / 1e3,
+            frames * 1e3 / ms);
     fprintf(stderr, run->output ? ": %s\n" : "%s\n",
             run->output ? output_describe(run->output) : "");
 }
@@ -260,10 +261,11 @@ int main(int argc, char **argv)
     Result result = scene_from_arguments(&run.scene, argc, argv, &error);
     if (result == RESULT_OK) result = answer(&run, &error);
     run_destroy(&run);
+    if (fflush(stdout) != 0 || ferror(stdout))
+        result = error_set(&error, RESULT_FAILED, "cannot write to standard output");
     // A file's fault begins with the file; everything else with the program's name.
     if (result != RESULT_OK && error.text[0])
         fprintf(stderr, "%s%s\n",
                 result == RESULT_BAD_INPUT ? "" : "tractrix-render: ", error.text);
-    if (fflush(stdout) != 0 && result == RESULT_OK) result = RESULT_FAILED;
     return result;
 }

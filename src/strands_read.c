@@ -87,15 +87,32 @@ static void report_source(StrandsReport *report, const StrandsSource *source, St
     report->rotation_was_deg = source->rotation_was_deg;
 }
 
-static Result refuse_defects(const StrandsReport *report, const char *name, Error *error)
+static bool describe_first_defect(const StrandsReport *report, const char *name, char *text,
+                                  size_t size)
 {
     for (int kind = 0; kind < DEFECT_KINDS; kind++) {
         if (report->defects[kind].count == 0) continue;
-        char text[900];
-        strands_report_describe(report, name, (DefectKind)kind, false, text, sizeof text);
-        return error_set(error, RESULT_BAD_INPUT, "%s (refused: --strict)", text);
+        strands_report_describe(report, name, (DefectKind)kind, false, text, size);
+        return true;
     }
-    return RESULT_OK;
+    return false;
+}
+
+static Result refuse_defects(const StrandsReport *report, const char *name, Error *error)
+{
+    char text[900];
+    if (!describe_first_defect(report, name, text, sizeof text)) return RESULT_OK;
+    return error_set(error, RESULT_BAD_INPUT, "%s (refused: --strict)", text);
+}
+
+// The report is not printed for a file that leaves nothing, so its first defect is told here.
+static Result refuse_empty(const StrandsReport *report, const char *name, Error *error)
+{
+    char text[900];
+    if (!describe_first_defect(report, name, text, sizeof text))
+        snprintf(text, sizeof text, "%s: nothing but roots", name);
+    return error_set(error, RESULT_BAD_INPUT, "%s (no usable strand among %u)", text,
+                     report->declared_strands);
 }
 
 static Result finish(StrandsSource *source, const char *name, const StrandsReadOptions *options,
@@ -111,8 +128,7 @@ static Result finish(StrandsSource *source, const char *name, const StrandsReadO
     if (result == RESULT_OK) result = strands_report_measure(report, strands, error);
     if (result == RESULT_OK && options->strict) result = refuse_defects(report, name, error);
     if (result == RESULT_OK && strands->strand_count == 0)
-        result = error_set(error, RESULT_BAD_INPUT, "%s: no usable strand among %u", name,
-                           report->declared_strands);
+        result = refuse_empty(report, name, error);
     return result;
 }
 

@@ -117,8 +117,9 @@ void strands_report_describe(const StrandsReport *report, const char *path, Defe
     static const struct {
         const char *one, *many, *cure;
     } words[DEFECT_KINDS] = {
-        [DEFECT_NOT_FINITE] = {"strand with a coordinate that is not a finite number",
-                               "strands with a coordinate that is not a finite number", "dropped"},
+        [DEFECT_NOT_FINITE] = {"strand with a coordinate that is not finite or beyond 1000 km",
+                               "strands with a coordinate that is not finite or beyond 1000 km",
+                               "dropped"},
         [DEFECT_TOO_SHORT] = {"strand of fewer than two distinct vertices",
                               "strands of fewer than two distinct vertices", "dropped"},
         [DEFECT_COINCIDENT] = {"vertex that coincides with the one before it",

@@ -3,6 +3,7 @@
 
 #include <ctype.h>
 #include <limits.h>
+#include <stdbool.h>
 #include <string.h>
 
 enum { LONGEST = 63 };
@@ -10,6 +11,12 @@ enum { LONGEST = 63 };
 static int fold(char character)
 {
     return character == '-' ? '_' : tolower((unsigned char)character);
+}
+
+static bool begins(const char *name, const char *word)
+{
+    while (*word && fold(*word) == fold(*name)) word++, name++;
+    return !*word;
 }
 
 static int least(int a, int b)
@@ -42,11 +49,12 @@ static int distance(const char *a, const char *b)
 const char *suggest_nearest(const char *word, const char *const *names, size_t count)
 {
     const char *nearest = NULL;
-    int fewest = INT_MAX;
+    int lowest = INT_MAX;
     for (size_t i = 0; i < count; i++) {
-        int edits = distance(word, names[i]);
-        if (edits >= fewest) continue;
-        fewest = edits;
+        // Of two that are as near, the one that was cut short is meant.
+        int rank = 2 * distance(word, names[i]) - begins(names[i], word);
+        if (rank >= lowest) continue;
+        lowest = rank;
         nearest = names[i];
     }
     return nearest;

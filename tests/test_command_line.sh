@@ -52,6 +52,17 @@ for other in r2 r3; do
     if diff -r "$work/r1" "$work/$other" >"$work/err"; then good; else bad "$other differs"; fi
 done
 
+claim "what cannot be written to standard output is an error of one line"
+for words in --help "--check $hair"; do
+    # shellcheck disable=SC2086
+    "$render" $words >/dev/full 2>"$work/err"
+    if [ $? = 1 ]; then good; else bad "status of $words"; fi
+    one_line
+done
+"$bin/tractrix-bench" --help >/dev/full 2>"$work/err"
+if [ $? = 1 ]; then good; else bad "status of tractrix-bench --help"; fi
+one_line
+
 claim "usage errors name the nearest valid word and end with 2"
 run 2; one_line
 run 2 $hair; one_line; says "-o"

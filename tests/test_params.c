@@ -266,6 +266,8 @@ static void the_nearest_name_is_the_one_with_fewest_edits(void **state)
     assert_string_equal(suggest_nearest("windspread", NAMES, 5), "wind_spread");
     assert_string_equal(suggest_nearest("gus", NAMES, 5), "gust");
     assert_string_equal(suggest_nearest("", NAMES, 5), "fps");
+    static const char *const FRAMES[] = {"drag", "frames"};
+    assert_string_equal(suggest_nearest("fram", FRAMES, 2), "frames");
     assert_null(suggest_nearest("drag", NAMES, 0));
     char word[1000];
     memset(word, 'w', sizeof word);

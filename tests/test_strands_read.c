@@ -162,7 +162,7 @@ static void malformed_text_is_refused_with_its_line(void **state)
         {"version 2.0\ncolour 1\n", "FILE:2: expected is, got 'colour'"},
         {"scale 1.#INF\n", "FILE:1: expected the scale, got '1.#INF'"},
         {"numStrands 1\nis sorted 1\nstrand 0 numVerts 2\n0 0 0\n0 0 0\n",
-         "FILE: no usable strand among 1"},
+         "FILE:3: 1 strand of fewer than two distinct vertices (no usable strand among 1)"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Strands strands;
@@ -219,7 +219,7 @@ static void each_kind_of_mending_is_told_in_one_line(void **state)
     assert_int_equal(strands_report_print_mended(&report, "FILE", stream), 4);
     fclose(stream);
     assert_string_equal(
-        text, "FILE:9: 1 strand with a coordinate that is not a finite number: dropped\n"
+        text, "FILE:9: 1 strand with a coordinate that is not finite or beyond 1000 km: dropped\n"
               "FILE:10: first of 2 strands of fewer than two distinct vertices: dropped\n"
               "FILE:5: first of 2 vertices that coincide with the one before them: merged\n"
               "FILE:15: 1 attribute value that is not a finite number: replaced\n");
@@ -235,7 +235,7 @@ static void strict_refuses_what_would_be_mended(void **state)
     Error error = {""};
     assert_int_equal(read_text(&strands, DIRTY, &strict, &report, &error), RESULT_BAD_INPUT);
     assert_string_equal(error.text,
-                        "FILE:9: 1 strand with a coordinate that is not a finite number "
+                        "FILE:9: 1 strand with a coordinate that is not finite or beyond 1000 km "
                         "(refused: --strict)");
     assert_false(strands_report_is_clean(&report));
     assert_int_equal(
