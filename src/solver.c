@@ -77,12 +77,36 @@ bool solver_is_static(const Solver *solver)
     return !solver->type->step;
 }
 
+// Whether a parameter's help says that it is this solver's: "chain, hybrid: ...".
+static bool is_own(const ParamInfo *info, const char *name)
+{
+    const char *end = strchr(info->help, ':'), *found = strstr(info->help, name);
+    size_t length = strlen(name);
+    return end && found && found < end &&
+           (found == info->help || (found[-1] == ' ' && found[-2] == ',')) &&
+           (found[length] == ',' || found[length] == ':');
+}
+
+static void print_flags(FILE *stream, const char *name)
+{
+    for (size_t i = 0; i < PARAM_COUNT; ++i) {
+        if (!is_own(&PARAM_TABLE[i], name)) continue;
+        fputs("           --", stream);
+        for (const char *c = PARAM_TABLE[i].name; *c; ++c) fputc(*c == '_' ? '-' : *c, stream);
+        fprintf(stream, " (%s)\n", PARAM_TABLE[i].default_text);
+    }
+}
+
 void solver_print_list(FILE *stream)
 {
     for (const SolverType *const *type = SOLVER_TYPES; *type; ++type) {
-        fprintf(stream, "%-8s %s\n", (*type)->name, (*type)->summary);
+        fprintf(stream, "%-10s %s\n", (*type)->name, (*type)->summary);
+        fprintf(stream, "           lengths: %s; style: %s\n",
+                (*type)->lengths ? (*type)->lengths : "-",
+                (*type)->style ? (*type)->style : "not kept");
         for (int i = 0; (*type)->variants[i]; ++i)
-            fprintf(stream, "         --variant %s%s\n", (*type)->variants[i],
+            fprintf(stream, "           --variant %s%s\n", (*type)->variants[i],
                     i ? "" : " (default)");
+        print_flags(stream, (*type)->name);
     }
 }

@@ -42,6 +42,8 @@ typedef struct SolverReport {
 typedef struct SolverType {
     const char *name;        // the word of --algo
     const char *summary;     // one line for --algo list
+    const char *lengths;     // how well segments keep theirs, for --algo list; may be NULL
+    const char *style;       // what brings the style back, for --algo list; NULL: nothing does
     const char *variants[4]; // words of --variant, the default first; NULL ends
     Result (*create)(void **state, const SolverSetup *setup,
                      Error *error);                    // hair at rest in its style
@@ -70,5 +72,6 @@ void solver_destroy(Solver *solver);
 // True if stepping changes nothing: the pose depends on the head alone.
 bool solver_is_static(const Solver *solver);
 
-// Prints the table: name, variants, summary.
+// Prints the table: name, summary, what it keeps, variants, and the flags whose help begins with
+// the name ("chain, hybrid: ...").
 void solver_print_list(FILE *stream);

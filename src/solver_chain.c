@@ -32,6 +32,8 @@ const SolverType SOLVER_CHAIN = {
     .name = "chain",
     .summary = "rigid segments by direct solves with implicit tension: the accurate one, second "
                "order in the step",
+    .lengths = "exact",
+    .style = "position springs, --style, --style-stiffness",
     .create = create,
     .step = particle_solver_step,
     .pose = particle_solver_pose,

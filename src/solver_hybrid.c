@@ -32,6 +32,8 @@ const SolverType SOLVER_HYBRID = {
     .name = "hybrid",
     .summary = "tractrices as length constraint in two passes, velocities projected on what the "
                "shape allows",
+    .lengths = "exact",
+    .style = "position springs, --style, --style-stiffness",
     .create = create,
     .step = particle_solver_step,
     .pose = particle_solver_pose,

@@ -45,6 +45,8 @@ static void write_pose(void *pointer, const HeadPose *head)
 const SolverType SOLVER_NONE = {
     .name = "none",
     .summary = "hair stiff in its style, carried by the head",
+    .lengths = "exact",
+    .style = "rigid",
     .create = create,
     .pose = write_pose,
     .destroy = destroy,

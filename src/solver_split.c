@@ -212,6 +212,8 @@ const SolverType SOLVER_SPLIT = {
     .name = "split",
     .summary =
         "the tip is simulated, the strand follows it as tractrices, the style is mixed back in",
+    .lengths = "exact",
+    .style = "mixed into what is drawn, --style",
     .variants = {"ball", "thesis"},
     .create = create,
     .step = step,

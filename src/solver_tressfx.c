@@ -19,13 +19,32 @@ static bool is_faithful(const SectionParams *params)
 }
 
 // A strand that passes of share k keep in shape is about as stiff, measured by its sag, as
-// passes k/(1 - 3k/4)/dt^2. Solved for the share that is as stiff as TressFX's two passes in its
-// frames (`frames`: of them in a step). Limited: long steps with few passes stay softer.
-static float steady_share(const SectionParams *params, float frames, float k)
+// passes k/(1 - 3k/4)/dt^2.
+static float firmness(float share)
+{
+    return share / (1 - 0.75f * share);
+}
+
+// The share that makes a pass `times` as stiff.
+static float share_times(float share, float times, float most)
+{
+    float firm = firmness(share) * times;
+    return fminf(firm / (1 + 0.75f * firm), most);
+}
+
+// TressFX's own share, in its frames and two passes, is as firm as this one in a step of `frames`
+// of them. Limited: long steps with few passes stay softer.
+static float steady_share(const SectionParams *params, float frames, float share)
 {
     int passes = params->tressfx_local_constraints_iterations;
-    float firm = k / (1 - 0.75f * k) * 2 / (float)(passes > 0 ? passes : 1) * frames * frames;
-    return fminf(firm / (1 + 0.75f * firm), params->tressfx_local_max);
+    float times = 2 / (float)(passes > 0 ? passes : 1) * frames * frames;
+    return share_times(share, times, params->tressfx_local_max);
+}
+
+// As with the other solvers' springs, style 0.5 means the stiffness as given.
+static float style_odds(const SectionParams *params)
+{
+    return params->style / fmaxf(1 - params->style, 1e-6f);
 }
 
 static void fill(StepParams *uniforms, const SolverStep *step, const SectionParams *params)
@@ -38,12 +57,13 @@ static void fill(StepParams *uniforms, const SolverStep *step, const SectionPara
     // TressFX counts in frames; what it gives per frame is meant for one of 1/60 s.
     float frames = (float)(step->dt * (double)params->tressfx_damping_rate);
     float per_frame = faithful ? 1 : frames, per_frame2 = per_frame * per_frame;
-    float local = fminf(params->tressfx_local_constraint_stiffness, params->tressfx_local_max);
+    float odds = style_odds(params), most = params->tressfx_local_max;
+    float local = share_times(fminf(params->tressfx_local_constraint_stiffness, most), odds, most);
     float global = params->tressfx_global_constraint_stiffness;
-    float spring = global / fmaxf(1 - global, 1e-6f) * per_frame2;
+    float spring = global / fmaxf(1 - global, 1e-6f) * odds * per_frame2;
     const float own[2][4] = {
         {params->tressfx_local_share * (faithful ? local : steady_share(params, per_frame, local)),
-         faithful ? global : spring / (1 + spring), params->tressfx_global_constraints_range,
+         spring / (1 + spring), params->tressfx_global_constraints_range,
          params->tressfx_vsp_coeff},
         {0.01f * params->tressfx_vsp_accel_threshold * per_frame2,
          0.01f * params->tressfx_clamp_position_delta * per_frame,
@@ -101,6 +121,8 @@ static Result create(void **state, const SolverSetup *setup, Error *error)
 const SolverType SOLVER_TRESSFX = {
     .name = "tressfx",
     .summary = "TressFX's constraints: keeps the style by local and global shape, hides fast heads",
+    .lengths = "exact; tressfx4: stretch",
+    .style = "local and global shape, --style, its own flags",
     .variants = {"steady", "tressfx4"},
     .create = create,
     .step = particle_solver_step,

@@ -139,6 +139,22 @@ static void reach_lengths(const TwinStrand *strand, Vec *y)
         }
 }
 
+// The local stiffness k at style 0.5; else that of another firmness, k/(1 - 3k/4), times the odds.
+static double local_stiffness(const SectionParams *params)
+{
+    double odds = (double)params->style / (1 - (double)params->style);
+    double k =
+        fmin((double)params->tressfx_local_constraint_stiffness, (double)params->tressfx_local_max);
+    double firm = odds * k / (1 - 0.75 * k);
+    return fmin(firm / (1 + 0.75 * firm), (double)params->tressfx_local_max);
+}
+
+static double global_spring(const SectionParams *params)
+{
+    double k = (double)params->tressfx_global_constraint_stiffness;
+    return k / (1 - k) * (double)params->style / (1 - (double)params->style);
+}
+
 static double damping(const TwinStep *step, const SectionParams *params)
 {
     return step->drag + (double)params->tressfx_damping * (double)params->tressfx_damping_rate;
@@ -152,13 +168,11 @@ void reference_tressfx_steady(TwinStrand *strand, const TwinStep *step, const Se
     double dt = step->dt, h = step->first ? dt / 2 : dt;
     double frames = dt * (double)params->tressfx_damping_rate;
     double c = damping(step, params), decay = exp(-c * h), gain = c > 0 ? -expm1(-c * h) / c : h;
-    double local =
-        fmin((double)params->tressfx_local_constraint_stiffness, (double)params->tressfx_local_max);
+    double local = local_stiffness(params);
     int passes = params->tressfx_local_constraints_iterations;
     double firm = local / (1 - 0.75 * local) * 2 / passes * frames * frames;
     double share = fmin(firm / (1 + 0.75 * firm), (double)params->tressfx_local_max);
-    double global = (double)params->tressfx_global_constraint_stiffness;
-    double shape = global / (1 - global) * frames * frames;
+    double shape = global_spring(params) * frames * frames;
     // The threshold is an acceleration and the clamp a speed: both are meant for frames of 1/60 s.
     carry(&carried, strand, step, (double)params->tressfx_vsp_coeff,
           0.01 * (double)params->tressfx_vsp_accel_threshold * frames * frames);
@@ -210,7 +224,7 @@ static void predict_4(const TwinStrand *strand, const Carried *carried, const Tw
 {
     double dt = step->dt, decay = exp(-damping(step, params) * dt);
     double range = (double)params->tressfx_global_constraints_range * strand->n,
-           global = (double)params->tressfx_global_constraint_stiffness;
+           global = global_spring(params) / (1 + global_spring(params));
     memcpy(x[0], carried->style[0], 2 * sizeof(Vec));
     for (int j = 2; j < strand->n; ++j) {
         for (int k = 0; k < 3; ++k) {
@@ -228,8 +242,7 @@ void reference_tressfx_4(TwinStrand *strand, const TwinStep *step, const Section
     Carried carried;
     Vec from[TWIN_MAX], x[TWIN_MAX];
     int n = strand->n;
-    double local =
-        fmin((double)params->tressfx_local_constraint_stiffness, (double)params->tressfx_local_max);
+    double local = local_stiffness(params);
     carry(&carried, strand, step, (double)params->tressfx_vsp_coeff,
           0.01 * (double)params->tressfx_vsp_accel_threshold);
     predict_4(strand, &carried, step, params, from, x);
