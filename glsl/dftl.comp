@@ -4,9 +4,12 @@
 // From the root on, every particle is predicted, p = x + v dt, and put at its length from its leader, x' = leader + l (p - leader)/|p -
 // leader|. That alone acts as if all mass sat at the leader; so the velocity gets back what the follower's correction d' took:
 //     v_i = (x'_i - x_i)/dt - s d'_{i+1}/dt,      s: ftl_damping
+//
+// STYLED 1: before that, p is drawn to the style (style_spring.glsl).
 #include "particles.glsl"
+#include "style_spring.glsl"
 
-#define FTL_DAMPING step_params.own[0].x
+#define FTL_DAMPING step_params.own[0].y
 
 void main()
 {
@@ -16,15 +19,22 @@ void main()
     vec3 wind = strand_wind(texelFetch(strand_id, s).x);
     float dt = step_params.dt, per_second = 1.0 / step_params.dt, damping = FTL_DAMPING;
     vec3 leader = root_position(texelFetch(rest, a)), leader_velocity = vec3(0.0);
-    vec3 along = rotate(step_params.head_rotation, texelFetch(rest, a + STRAND_TILE).xyz);
+    vec4 rotation = step_params.head_rotation;
+    vec3 root = leader, style = vec3(0.0), along = rotate(rotation, texelFetch(rest, a + STRAND_TILE).xyz);
+    float pull = STYLE_PULL;
     positions[a] = vec4(leader, 1.0);
     for (int j = 1; j < n; ++j, a += STRAND_TILE) {
         vec3 x = texelFetch(position_before, a + STRAND_TILE).xyz;
         vec3 predicted = x + dt * kick(texelFetch(velocity_before, a + STRAND_TILE).xyz, wind);
+        vec4 segment = texelFetch(rest, a + STRAND_TILE);
+#if STYLED
+        style = next_style(style, segment, rotation);
+        predicted += pull * (root + style - predicted);
+#endif
         vec3 reach = predicted - leader;
         float square = dot(reach, reach);
         along = square > 1e-24 ? reach * inversesqrt(square) : along; // on its leader: the last direction (first the style's) goes on
-        vec3 follower = leader + texelFetch(rest, a + STRAND_TILE).w * along;
+        vec3 follower = leader + segment.w * along;
         velocities[a] = vec4(leader_velocity - damping * per_second * (follower - predicted), 0.0);
         positions[a + STRAND_TILE] = vec4(follower, 1.0);
         leader_velocity = per_second * (follower - x);

@@ -12,9 +12,10 @@
 //
 // Then v = (1 - damping) (x - q)/h, q: the position before the flight.
 //
-// A rope stretches; see stretch.glsl for what is drawn.
+// STYLED 1: after each flight particles are drawn to the style (style_spring.glsl). A rope stretches; see stretch.glsl for what is drawn.
 #include "particles.glsl"
 #include "stretch.glsl"
+#include "style_spring.glsl"
 
 #define SMALL_STEPS   int(step_params.own[0].x)
 #define SWEEPS        int(step_params.own[0].y) // of each small step
@@ -23,6 +24,8 @@
 #define FIRST_DECAY   step_params.own[1].x      // drag in the first small step: see forces.glsl
 #define FIRST_GAIN    step_params.own[1].y
 #define STRETCH_DRAWN step_params.own[1].z      // 1: links are drawn as long as they are
+#define FIRST_PULL    step_params.own[1].w      // towards the style, in the first small step and in later ones
+#define LATER_PULL    step_params.own[2].x
 
 vec3 mended(vec3 r, float l, float weights)
 {
@@ -35,11 +38,11 @@ vec3 mended(vec3 r, float l, float weights)
 #endif
 }
 
-// Where the root is after the share t of the step.
-vec3 root_at(vec4 root, float t)
+// Where the root is after `step` of the small steps.
+vec3 root_at(vec4 root, int step, int small_steps)
 {
     vec3 old = rotate(step_params.head_rotation_old, root.xyz) + step_params.head_translation_old.xyz;
-    return t == 1.0 ? root_position(root) : mix(old, root_position(root), t);
+    return step == small_steps ? root_position(root) : mix(old, root_position(root), float(step) / float(small_steps));
 }
 
 // The flight in later small steps is x + (CARRIED (x - q) + fall), Verlet's form with drag; the first starts from a velocity.
@@ -66,28 +69,41 @@ void main()
     int base = particle_address(s, 0, VERTICES);
     vec3 x[VERTICES], q[VERTICES], wind = strand_wind(texelFetch(strand_id, s).x); // x: now, q: before the flight
     float l[VERTICES];
-    vec4 root = texelFetch(rest, base);
+    int small_steps = SMALL_STEPS, sweeps = SWEEPS;
+    vec4 root = texelFetch(rest, base), rotation = step_params.head_rotation;
     vec3 drawn = texelFetch(position_before, base).xyz, at = drawn;
+    x[0] = root_at(root, 1, small_steps);
+#if STYLED
+    vec3 style[VERTICES]; // from the root
+    style[0] = vec3(0.0);
+#endif
     for (int j = 1; j < VERTICES; ++j) {
         int a = base + j * STRAND_TILE;
         vec3 next = texelFetch(position_before, a).xyz;
         vec4 v = texelFetch(velocity_before, a);
-        l[j] = texelFetch(rest, a).w;
+        vec4 segment = texelFetch(rest, a);
+        l[j] = segment.w;
         at += link_before(drawn, next, l[j], v.w);
         drawn = next;
         q[j] = at;
         x[j] = first_flight(at, v.xyz, wind);
+#if STYLED
+        style[j] = next_style(style[j - 1], segment, rotation);
+        x[j] += FIRST_PULL * (x[0] + style[j] - x[j]);
+#endif
     }
 
-    int small_steps = SMALL_STEPS, sweeps = SWEEPS;
-    float carried = CARRIED;
+    float carried = CARRIED, pull = LATER_PULL;
     vec3 fall = fall_of(wind);
     for (int step = 0; step < small_steps; ++step) {
-        x[0] = root_at(root, step + 1 == small_steps ? 1.0 : float(step + 1) / float(small_steps));
+        x[0] = root_at(root, step + 1, small_steps);
         if (step > 0)
             for (int j = 1; j < VERTICES; ++j) {
                 precise vec3 next = x[j] + (carried * (x[j] - q[j]) + fall);
                 q[j] = x[j];
+#if STYLED
+                next += pull * (x[0] + style[j] - next);
+#endif
                 x[j] = next;
             }
         for (int sweep = 0; sweep < sweeps; ++sweep) {
@@ -102,7 +118,7 @@ void main()
     }
 
     drawn = x[0];
-    vec3 along = rotate(step_params.head_rotation, texelFetch(rest, base + STRAND_TILE).xyz);
+    vec3 along = rotate(rotation, texelFetch(rest, base + STRAND_TILE).xyz);
     positions[base] = vec4(drawn, 1.0);
     for (int j = 1; j < VERTICES; ++j)
         finish(base + j * STRAND_TILE, x[j] - x[j - 1], l[j], x[j] - q[j], drawn, along);
@@ -121,15 +137,18 @@ void main()
     vec3 wind = strand_wind(texelFetch(strand_id, s).x), fall = fall_of(wind);
     vec4 root = texelFetch(rest, a);
     vec3 drawn_before = texelFetch(position_before, a).xyz, at = drawn_before;
-    vec3 x = root_at(root, step + 1 == SMALL_STEPS ? 1.0 : float(step + 1) / float(SMALL_STEPS)), q = x;
-    vec3 before = x, drawn = x, along = rotate(step_params.head_rotation, texelFetch(rest, a + STRAND_TILE).xyz);
+    vec3 x = root_at(root, step + 1, SMALL_STEPS), q = x, style_at = x;
+    vec4 rotation = step_params.head_rotation;
+    float pull = loads ? FIRST_PULL : LATER_PULL;
+    vec3 before = x, drawn = x, along = rotate(rotation, texelFetch(rest, a + STRAND_TILE).xyz);
     float weights = 1.0, l = 0.0, l_before = 0.0;
     if (draws) positions[a] = vec4(drawn, 1.0);
     // Link j is mended while j - 1 waits in `x`, `q`; then j - 1 is done with.
     for (int j = 1; j < n; ++j, a += STRAND_TILE) {
         int b = a + STRAND_TILE;
         vec3 next, next_q;
-        l = texelFetch(rest, b).w;
+        vec4 segment = texelFetch(rest, b);
+        l = segment.w;
         if (loads) {
             vec3 to = texelFetch(position_before, b).xyz;
             vec4 v = texelFetch(velocity_before, b);
@@ -146,6 +165,10 @@ void main()
                 next = flown;
             }
         }
+#if STYLED
+        style_at = next_style(style_at, segment, rotation);
+        if (flies) next += pull * (style_at - next);
+#endif
         vec3 push = mended(next - x, l, weights);
         if (j > 1) {
             x -= push;

@@ -18,9 +18,9 @@
 // From the tip on eliminate x_j = S^{-1} (z + d + H x_{j-1}), S = M + H: what is beyond the link acts on its end as M and d,
 // M = 1, d = 0 at the tip, and then
 //     M <- 1 + M S^{-1} H,    d <- d - M S^{-1} (z + d)
-// With A = M + q, g = A^{-1} u, a = u - q g, tau = sigma/(1 + sigma u.g), Sherman's and Morrison's formula gives forms that do not cancel
-// for stiff springs: M S^{-1} H = q (1 - q A^{-1}) + tau a a^T, M S^{-1} u = a/(1 + sigma u.g), M S^{-1} y = y - q A^{-1} y - tau a (g.y);
-// S^{-1} is the same with g for a and A^{-1} y in front. So x_j = C x_{j-1} + S^{-1} (z + d), C = q A^{-1} + tau g a^T.
+// With A = M + q, g = A^{-1} u, a = M g, tau = sigma/(1 + sigma u.g), Sherman's and Morrison's formula gives forms that do not cancel
+// for stiff springs: M S^{-1} H = q M A^{-1} + tau a a^T, M S^{-1} u = a/(1 + sigma u.g), M S^{-1} y = M A^{-1} y - tau a (g.y);
+// S^{-1} is the same without the M, g for a. So x_j = C x_{j-1} + S^{-1} (z + d), C = q A^{-1} + tau g a^T.
 #include "particles.glsl"
 #include "stretch.glsl"
 
@@ -97,7 +97,7 @@ void eliminate(int base, int n, vec3 wind, vec3 root_velocity)
         vec3 y = d + angular_force(u, t, b) - q * flown; // z + d without the coil's part
         float coil = p * (l - m) - sigma * dot(u, flown);
         mat3 inverse_A = inverse_of_symmetric(M + mat3(q));
-        vec3 g = inverse_A * u, Ay = inverse_A * y, a = u - q * g;
+        vec3 g = inverse_A * u, Ay = inverse_A * y, a = M * g;
         float share = 1.0 / (1.0 + sigma * dot(u, g)), tau = sigma * share;
         float gy = tau * dot(g, y);
         vec3 e = (coil * share - gy) * g + Ay;
@@ -106,8 +106,8 @@ void eliminate(int base, int n, vec3 wind, vec3 root_velocity)
         scratch[3 * at + 1] = vec4(C[0].y, C[1].y, C[2].y, e.y);
         scratch[3 * at + 2] = vec4(C[0].z, C[1].z, C[2].z, e.z);
 
-        d -= (coil * share - gy) * a + y - q * Ay;
-        M = mat3(1.0 + q) - q * q * inverse_A + outerProduct(tau * a, a);
+        d -= (coil * share - gy) * a + M * Ay;
+        M = mat3(1.0) + q * (M * inverse_A) + outerProduct(tau * a, a);
         drawn = drawn_before;
         v = v_before;
         flying = flying_before;

@@ -5,11 +5,22 @@
 static void fill(StepParams *uniforms, const SolverStep *step, const SectionParams *params)
 {
     (void)step;
-    uniforms->own[0][0] = params->ftl_damping;
+    uniforms->own[0][0] = step_style_pull(uniforms, params);
+    uniforms->own[0][1] = params->ftl_damping;
+}
+
+static void define(ShaderDefine *defines, const SectionParams *params)
+{
+    defines[0] = (ShaderDefine){"STYLED", params->style > 0};
 }
 
 static const ParticleRecipe RECIPE = {
-    .label = "sim_dftl", .shader = "dftl.comp", .strands_on_cpu = 1, .fill = fill};
+    .label = "sim_dftl",
+    .shader = "dftl.comp",
+    .strands_on_cpu = 1,
+    .fill = fill,
+    .define = define,
+};
 
 static Result create(void **state, const SolverSetup *setup, Error *error)
 {

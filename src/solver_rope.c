@@ -27,14 +27,19 @@ static void fill(StepParams *uniforms, const SolverStep *step, const SectionPara
     uniforms->own[0][1] = (float)params->rope_iterations / (float)count;
     uniforms->own[0][2] = (float)pow(1 - (double)params->rope_damping, 1.0 / count);
     uniforms->own[0][3] = (float)((double)params->rope_compliance / (h * h));
-    step_drag_factors(c, step->first ? h / 2 : h, &uniforms->own[1][0], &uniforms->own[1][1]);
+    step_drag_factors(c, step->first ? h / 2 : h, &uniforms->decay, &uniforms->gain);
+    uniforms->own[1][0] = uniforms->decay;
+    uniforms->own[1][1] = uniforms->gain;
+    uniforms->own[1][3] = step_style_pull(uniforms, params);
     step_drag_factors(c, h, &uniforms->decay, &uniforms->gain);
+    uniforms->own[2][0] = step_style_pull(uniforms, params);
     uniforms->own[1][2] = params->stretch_drawn;
 }
 
 static void define(ShaderDefine *defines, const SectionParams *params)
 {
     defines[0] = (ShaderDefine){"BULLET", is_bullet(params)};
+    defines[1] = (ShaderDefine){"STYLED", params->style > 0};
 }
 
 static int phases(const SectionParams *params)

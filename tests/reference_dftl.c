@@ -13,6 +13,7 @@ void reference_dftl_step(TwinStrand *strand, const TwinStep *step, const Section
         vec_add_scaled(old[i], step->dt, strand->v[i], strand->x[i]);
     }
     twin_style(strand, &step->head, 0, strand->x[0]);
+    twin_pull_to_style(strand, step, step->dt, step->first ? step->dt / 2 : step->dt, params);
     for (int i = 1; i < n; ++i) {
         Vec predicted, r;
         vec_copy(strand->x[i], predicted);

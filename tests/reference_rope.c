@@ -36,7 +36,7 @@ static void sweep(TwinStrand *strand, Correction correction, double softness)
 // seconds; the share `kept` of the velocity stays.
 static void small_step(TwinStrand *strand, const TwinStep *step, double h, double acts,
                        const Vec root, double kept, int sweeps, Correction correction,
-                       double softness)
+                       double softness, const SectionParams *params)
 {
     Vec old[TWIN_MAX];
     for (int j = 0; j < strand->n; ++j) {
@@ -45,6 +45,7 @@ static void small_step(TwinStrand *strand, const TwinStep *step, double h, doubl
         vec_add_scaled(strand->x[j], h, strand->v[j], strand->x[j]);
     }
     vec_copy(root, strand->x[0]);
+    twin_pull_to_style(strand, step, h, acts, params);
     for (int i = 0; i < sweeps; ++i) sweep(strand, correction, softness);
     for (int j = 0; j < strand->n; ++j)
         for (int k = 0; k < 3; ++k) strand->v[j][k] = kept * (strand->x[j][k] - old[j][k]) / h;
@@ -57,7 +58,7 @@ void reference_rope_bullet_step(TwinStrand *strand, const TwinStep *step,
     Vec root;
     twin_style(strand, &step->head, 0, root);
     small_step(strand, step, h, step->first ? h / 2 : h, root, 1 - (double)params->rope_damping,
-               params->rope_iterations, bullet, 0);
+               params->rope_iterations, bullet, 0, params);
 }
 
 void reference_rope_xpbd_step(TwinStrand *strand, const TwinStep *step, const SectionParams *params)
@@ -72,6 +73,6 @@ void reference_rope_xpbd_step(TwinStrand *strand, const TwinStep *step, const Se
         vec_add_scaled(from, (double)i / count, way, root);
         small_step(strand, step, h, step->first && i == 1 ? h / 2 : h, root,
                    pow(1 - (double)params->rope_damping, 1.0 / count), 1, xpbd,
-                   (double)params->rope_compliance / (h * h));
+                   (double)params->rope_compliance / (h * h), params);
     }
 }

@@ -13,10 +13,11 @@ typedef struct Link {
 static Link link_of(const TwinStrand *strand, const HeadPose *head, const SectionParams *params,
                     int j)
 {
-    double links = strand->n - 1;
+    double links = strand->n - 1, style = (double)params->style;
     Link link = {.l = strand->length[j], .k = (double)params->spring_coil * links * links};
     Vec from, to, r;
-    link.b = fmin((double)params->spring_angular * links, link.k * link.l / 8);
+    link.b =
+        fmin((double)params->spring_angular * style / (1 - style) * links, link.k * link.l / 8);
     vec_add_scaled(strand->x[j], -1, strand->x[j - 1], r);
     link.m = vec_norm(r);
     twin_style(strand, head, j - 1, from);

@@ -25,7 +25,7 @@ static void undamped(SectionParams *params)
     params->ftl_damping = 0;
 }
 
-static void assert_equals_twin(int n, double dt, double drag, int steps,
+static void assert_equals_twin(int n, double dt, double drag, double style, int steps,
                                void (*tune)(SectionParams *params))
 {
     const TwinRun run = {.algo = "dftl",
@@ -34,6 +34,7 @@ static void assert_equals_twin(int n, double dt, double drag, int steps,
                          .steps = steps,
                          .dt = dt,
                          .drag = drag,
+                         .style = style,
                          .tune = tune,
                          .twin = reference_dftl_step};
     double off = twin_compare(&run);
@@ -43,13 +44,14 @@ static void assert_equals_twin(int n, double dt, double drag, int steps,
 static void it_equals_its_double_precision_twin(void **state)
 {
     (void)state;
-    assert_equals_twin(2, 1.0 / 60, 1, 600, NULL);
-    assert_equals_twin(16, 1.0 / 60, 1, 600, NULL);
-    assert_equals_twin(16, 1.0 / 240, 1, 600, NULL);
-    assert_equals_twin(32, 1.0 / 60, 4, 600, NULL);
-    assert_equals_twin(64, 1.0 / 60, 4, 600, NULL);
-    assert_equals_twin(16, 1.0 / 60, 0, 600, NULL);
-    assert_equals_twin(16, 1.0 / 60, 4, 600, undamped);
+    assert_equals_twin(2, 1.0 / 60, 1, 0, 600, NULL);
+    assert_equals_twin(16, 1.0 / 60, 1, 0, 600, NULL);
+    assert_equals_twin(16, 1.0 / 240, 1, 0, 600, NULL);
+    assert_equals_twin(32, 1.0 / 60, 4, 0, 600, NULL);
+    assert_equals_twin(64, 1.0 / 60, 4, 0, 600, NULL);
+    assert_equals_twin(16, 1.0 / 60, 0, 0, 600, NULL);
+    assert_equals_twin(16, 1.0 / 60, 4, 0, 600, undamped);
+    assert_equals_twin(16, 1.0 / 60, 1, 0.5, 600, NULL);
 }
 
 // The reference implementation's error over the same scenarios: 0.11, 0.092, 0.078 (two digits, as

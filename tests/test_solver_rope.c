@@ -34,7 +34,7 @@ static void compliant(SectionParams *params)
     params->rope_compliance = 1e-5f;
 }
 
-static void assert_equals_twin(const char *variant, int n, double drag, int steps,
+static void assert_equals_twin(const char *variant, int n, double drag, double style, int steps,
                                void (*tune)(SectionParams *params), double tolerance)
 {
     const TwinRun run = {
@@ -44,6 +44,7 @@ static void assert_equals_twin(const char *variant, int n, double drag, int step
         .steps = steps,
         .dt = 1.0 / 60,
         .drag = drag,
+        .style = style,
         .tune = tune,
         .twin = strcmp(variant, "xpbd") ? reference_rope_bullet_step : reference_rope_xpbd_step,
         .rebuilt = tune != stretched,
@@ -57,14 +58,16 @@ static void assert_equals_twin(const char *variant, int n, double drag, int step
 static void bullets_rope_equals_its_double_precision_twin(void **state)
 {
     (void)state;
-    assert_equals_twin("bullet", 2, 1, 600, NULL, 1.6e-5);
-    assert_equals_twin("bullet", 16, 1, 600, NULL, 5e-6);
-    assert_equals_twin("bullet", 32, 0, 600, NULL, 5e-6);
-    assert_equals_twin("bullet", 33, 4, 600, NULL, 5e-6);
-    assert_equals_twin("bullet", 64, 1, 600, NULL, 5e-6);
-    assert_equals_twin("bullet", 16, 1, 600, slow_and_damped, 5e-6);
-    assert_equals_twin("bullet", 64, 1, 600, slow_and_damped, 1e-5);
-    assert_equals_twin("bullet", 16, 1, 600, stretched, 5e-6);
+    assert_equals_twin("bullet", 2, 1, 0, 600, NULL, 1.6e-5);
+    assert_equals_twin("bullet", 16, 1, 0, 600, NULL, 5e-6);
+    assert_equals_twin("bullet", 32, 0, 0, 600, NULL, 5e-6);
+    assert_equals_twin("bullet", 33, 4, 0, 600, NULL, 5e-6);
+    assert_equals_twin("bullet", 64, 1, 0, 600, NULL, 5e-6);
+    assert_equals_twin("bullet", 16, 1, 0, 600, slow_and_damped, 5e-6);
+    assert_equals_twin("bullet", 64, 1, 0, 600, slow_and_damped, 1e-5);
+    assert_equals_twin("bullet", 16, 1, 0, 600, stretched, 5e-6);
+    assert_equals_twin("bullet", 16, 1, 0.5, 600, NULL, 5e-6);
+    assert_equals_twin("bullet", 64, 1, 0.8, 600, NULL, 5e-6);
 }
 
 // 600 small steps a second: velocities, differences of positions over 1/600 s, carry 10 times the
@@ -73,16 +76,18 @@ static void bullets_rope_equals_its_double_precision_twin(void **state)
 static void xpbd_equals_its_double_precision_twin(void **state)
 {
     (void)state;
-    assert_equals_twin("xpbd", 2, 4, 600, NULL, 3e-4);
-    assert_equals_twin("xpbd", 16, 4, 600, NULL, 5e-5);
-    assert_equals_twin("xpbd", 32, 4, 600, NULL, 5e-5);
-    assert_equals_twin("xpbd", 33, 4, 600, NULL, 5e-5);
-    assert_equals_twin("xpbd", 64, 4, 600, NULL, 5e-5);
-    assert_equals_twin("xpbd", 16, 1, 60, NULL, 5e-5);
-    assert_equals_twin("xpbd", 64, 1, 12, NULL, 5e-5);
-    assert_equals_twin("xpbd", 16, 4, 600, slow_and_damped, 5e-5);
-    assert_equals_twin("xpbd", 64, 4, 600, compliant, 5e-5);
-    assert_equals_twin("xpbd", 16, 4, 600, stretched, 5e-5);
+    assert_equals_twin("xpbd", 2, 4, 0, 600, NULL, 3e-4);
+    assert_equals_twin("xpbd", 16, 4, 0, 600, NULL, 5e-5);
+    assert_equals_twin("xpbd", 32, 4, 0, 600, NULL, 5e-5);
+    assert_equals_twin("xpbd", 33, 4, 0, 600, NULL, 5e-5);
+    assert_equals_twin("xpbd", 64, 4, 0, 600, NULL, 5e-5);
+    assert_equals_twin("xpbd", 16, 1, 0, 60, NULL, 5e-5);
+    assert_equals_twin("xpbd", 64, 1, 0, 12, NULL, 5e-5);
+    assert_equals_twin("xpbd", 16, 4, 0, 600, slow_and_damped, 5e-5);
+    assert_equals_twin("xpbd", 64, 4, 0, 600, compliant, 5e-5);
+    assert_equals_twin("xpbd", 16, 4, 0, 600, stretched, 5e-5);
+    assert_equals_twin("xpbd", 16, 4, 0.5, 60, NULL, 5e-5);
+    assert_equals_twin("xpbd", 64, 4, 0.8, 20, NULL, 5e-5);
 }
 
 // The reference implementation of position-based dynamics errs by 0.65 and 0.18 with 2 and 10

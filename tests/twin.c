@@ -64,6 +64,23 @@ void twin_kick(Vec v, const TwinStep *step, double h)
     for (int k = 0; k < 3; ++k) v[k] = v[k] * decay + (step->gravity[k] + c * step->wind[k]) * gain;
 }
 
+void twin_pull_to_style(TwinStrand *strand, const TwinStep *step, double h, double acts,
+                        const SectionParams *params)
+{
+    double c = step->drag, gain = c > 0 ? -expm1(-c * acts) / c : acts;
+    double w = (double)params->style_stiffness * (double)params->style /
+               (1 - (double)params->style) * h * gain;
+    Vec root;
+    twin_style(strand, &step->head, 0, root);
+    for (int j = 1; j < strand->n; ++j) {
+        Vec style;
+        twin_style(strand, &step->head, j, style);
+        for (int k = 0; k < 3; ++k)
+            strand->x[j][k] =
+                (strand->x[j][k] + w * (strand->x[0][k] + style[k] - root[k])) / (1 + w);
+    }
+}
+
 void twin_rebuild(const TwinStrand *strand, Vec *positions)
 {
     vec_copy(strand->x[0], positions[0]);

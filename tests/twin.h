@@ -41,6 +41,12 @@ void twin_style(const TwinStrand *strand, const HeadPose *head, int j, Vec r);
 // Drag and acceleration over h seconds, exact for any h.
 void twin_kick(Vec v, const TwinStep *step, double h);
 
+// Draws particles that have flown for h seconds, in which forces acted for `acts`, to the style
+// around the root, which x[0] is: x = (x + w style)/(1 + w), w = stiffness style/(1 - style) h f
+// acts.
+void twin_pull_to_style(TwinStrand *strand, const TwinStep *step, double h, double acts,
+                        const SectionParams *params);
+
 // The strand with its directions kept and its lengths restored, from the root outwards.
 void twin_rebuild(const TwinStrand *strand, Vec *positions);
 
