@@ -17,7 +17,7 @@ UNIFORM_BLOCK(StepParams, step_params, BIND_STEP)
     float drag;   // c, 1/s
     uint strand_count;
     uint vertex_count;
-    uint passes; // split: pulls along the strand
+    uint passes; // split: pulls along the strand; emulation: seed of the step's order
     uint phase;  // which dispatch of a step this is
 }
 END_BLOCK(StepParams, step_params);

@@ -70,6 +70,7 @@ static SolverStep next_step(const Simulation *simulation, int substep)
     SolverStep step = {
         .dt = dt,
         .first = simulation->frame == 0 && substep == 0,
+        .shuffle = run->seed + (uint32_t)(simulation->frame * run->substeps + substep),
         .head_old = simulation->head,
         .head = head_at(simulation->scene, time + dt),
     };

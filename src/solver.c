@@ -2,6 +2,7 @@
 #include "solver.h"
 #include "solver_chain.h"
 #include "solver_dftl.h"
+#include "solver_emulation.h"
 #include "solver_hybrid.h"
 #include "solver_none.h"
 #include "solver_rope.h"
@@ -12,9 +13,9 @@
 
 #include <string.h>
 
-const SolverType *const SOLVER_TYPES[] = {&SOLVER_SPLIT,   &SOLVER_HYBRID, &SOLVER_CHAIN,
-                                          &SOLVER_TRESSFX, &SOLVER_SPRING, &SOLVER_ROPE,
-                                          &SOLVER_DFTL,    &SOLVER_NONE,   NULL};
+const SolverType *const SOLVER_TYPES[] = {
+    &SOLVER_SPLIT,  &SOLVER_EMULATION, &SOLVER_HYBRID, &SOLVER_CHAIN, &SOLVER_TRESSFX,
+    &SOLVER_SPRING, &SOLVER_ROPE,      &SOLVER_DFTL,   &SOLVER_NONE,  NULL};
 
 enum { MAX_WORDS = 32 };
 

@@ -20,6 +20,7 @@ typedef struct SolverStep {
     double dt;  // s
     bool first; // the first step from rest: forces act for dt/2 (leapfrog start, which second order
                 // needs)
+    uint32_t shuffle;        // random number of this step, the same for all strands
     HeadPose head_old, head; // at the step's start and end
     float gravity[3];        // m/s^2
     float wind[4][3];        // m/s: mixed by strand

@@ -76,6 +76,7 @@ void fixture_step(HairFixture *fixture)
     fixture->solver.type->step(fixture->solver.state, &fixture->step);
     fixture->step.head_old = fixture->step.head;
     fixture->step.first = false;
+    ++fixture->step.shuffle;
 }
 
 float (*fixture_positions(HairFixture *fixture, uint32_t batch))[4]

@@ -5,3 +5,7 @@
 #include "twin.h"
 
 void reference_hybrid_step(TwinStrand *strand, const TwinStep *step, const SectionParams *params);
+void reference_emulation_step(TwinStrand *strand, const TwinStep *step,
+                              const SectionParams *params);
+void reference_thesis_emulation_step(TwinStrand *strand, const TwinStep *step,
+                                     const SectionParams *params);

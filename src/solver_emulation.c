@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include "solver_emulation.h"
+#include "particle_solver.h"
+
+#include <stdio.h>
+#include <string.h>
+
+// Each particle pulls all others: n^2 rounds a step, of which CPU drivers allow 65,535 in all.
+enum { MOST_VERTICES = 240 };
+
+static bool is_thesis(const SectionParams *params)
+{
+    return strcmp(params->variant, "thesis") == 0;
+}
+
+static void fill(StepParams *uniforms, const SolverStep *step, const SectionParams *params)
+{
+    float style = params->style < 1 ? params->style : 0.999999f;
+    bool thesis = is_thesis(params);
+    uniforms->own[0][0] = thesis ? 0 : step_style_pull(uniforms, params);
+    uniforms->own[0][1] = thesis ? params->style_stiffness * style / (1 - style) : 0;
+    uniforms->passes = step->shuffle;
+}
+
+static void define(ShaderDefine *defines, const SectionParams *params)
+{
+    defines[0] = (ShaderDefine){"STYLED", params->style > 0 && !is_thesis(params)};
+    defines[1] = (ShaderDefine){"THESIS", is_thesis(params)};
+}
+
+static const ParticleRecipe RECIPE = {
+    .label = "sim_emulation",
+    .shader = "emulation.comp",
+    .most_in_registers =
+        32, // shared memory: 64 lanes of a GPU fill the 32 KiB that every driver has
+    .strands_on_cpu = 1,
+    .scratch = 1,
+    .fill = fill,
+    .define = define,
+};
+
+static Result create(void **state, const SolverSetup *setup, Error *error)
+{
+    for (uint32_t i = 0; i < setup->hair->batch_count; ++i)
+        if (setup->hair->batches[i].vertex_count > MOST_VERTICES)
+            return error_set(error, RESULT_USAGE,
+                             "emulation: a step costs the square of a strand's vertices and takes "
+                             "at most %d, got %u; hybrid does the same in two passes",
+                             MOST_VERTICES, setup->hair->batches[i].vertex_count);
+    if (is_thesis(setup->params))
+        fprintf(stderr,
+                "tractrix: emulation: the published rule (variant thesis) gains energy: hair "
+                "with little drag speeds up by itself\n");
+    return particle_solver_create(state, setup, &RECIPE, error);
+}
+
+const SolverType SOLVER_EMULATION = {
+    .name = "emulation",
+    .summary = "every particle pulls the strand along as tractrices, O(n^2); thesis: as published, "
+               "unstable without much drag",
+    .variants = {"projected", "thesis"},
+    .create = create,
+    .step = particle_solver_step,
+    .pose = particle_solver_pose,
+    .destroy = particle_solver_destroy,
+};
