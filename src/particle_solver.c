@@ -106,11 +106,25 @@ static Result create_buffers(ParticleState *state, ParticleBatch *batch, const H
     return result;
 }
 
+static Result check_vertices(const Hair *hair, const ParticleRecipe *recipe, Error *error)
+{
+    for (uint32_t i = 0; i < hair->batch_count; ++i)
+        if (recipe->most_vertices && hair->batches[i].vertex_count > recipe->most_vertices)
+            return error_set(
+                error, RESULT_USAGE,
+                "%s: takes strands of at most %u vertices, got %u (a step's loops have "
+                "65,535 rounds in all)",
+                recipe->label + strlen("sim_"), recipe->most_vertices,
+                hair->batches[i].vertex_count);
+    return RESULT_OK;
+}
+
 Result particle_solver_create(void **pointer, const SolverSetup *setup,
                               const ParticleRecipe *recipe, Error *error)
 {
-    ParticleState *state = calloc(1, sizeof *state);
     *pointer = NULL;
+    if (check_vertices(setup->hair, recipe, error) != RESULT_OK) return RESULT_USAGE;
+    ParticleState *state = calloc(1, sizeof *state);
     if (!state) return error_set(error, RESULT_FAILED, "no memory for a solver");
     *state =
         (ParticleState){.group_size = step_group_size(setup->gpu),

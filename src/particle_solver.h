@@ -20,6 +20,8 @@ typedef struct ParticleRecipe {
                              // 1 on a GPU)
     uint32_t scratch; // vec4 a particle of scratch memory (BIND_SCRATCH) where the strand is not in
                       // registers
+    uint32_t most_vertices; // longer strands are refused: their loops would take more than the
+                            // 65,535 iterations that CPU drivers allow an invocation; 0: any length
     // Fills StepParams.own for a step, may change other members; NULL: nothing.
     void (*fill)(StepParams *uniforms, const SolverStep *step, const SectionParams *params);
     // Appends the variant's own macros behind `defines` (room for PARTICLE_DEFINES, ended by {0});

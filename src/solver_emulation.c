@@ -5,9 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-// Each particle pulls all others: n^2 rounds a step, of which CPU drivers allow 65,535 in all.
-enum { MOST_VERTICES = 240 };
-
 static bool is_thesis(const SectionParams *params)
 {
     return strcmp(params->variant, "thesis") == 0;
@@ -35,18 +32,13 @@ static const ParticleRecipe RECIPE = {
         32, // shared memory: 64 lanes of a GPU fill the 32 KiB that every driver has
     .strands_on_cpu = 1,
     .scratch = 1,
+    .most_vertices = 240, // each particle pulls all others
     .fill = fill,
     .define = define,
 };
 
 static Result create(void **state, const SolverSetup *setup, Error *error)
 {
-    for (uint32_t i = 0; i < setup->hair->batch_count; ++i)
-        if (setup->hair->batches[i].vertex_count > MOST_VERTICES)
-            return error_set(error, RESULT_USAGE,
-                             "emulation: a step costs the square of a strand's vertices and takes "
-                             "at most %d, got %u; hybrid does the same in two passes",
-                             MOST_VERTICES, setup->hair->batches[i].vertex_count);
     if (is_thesis(setup->params))
         fprintf(stderr,
                 "tractrix: emulation: the published rule (variant thesis) gains energy: hair "

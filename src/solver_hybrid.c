@@ -19,6 +19,7 @@ static const ParticleRecipe RECIPE = {
     .most_in_registers = 32,
     .strands_on_cpu = 1,
     .scratch = 2,
+    .most_vertices = 16000, // four sweeps
     .fill = fill,
     .define = define,
 };

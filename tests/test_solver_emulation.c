@@ -102,7 +102,7 @@ static void long_strands_are_refused(void **state)
     assert_int_equal(hair_create(&hair, &strands, 0, &fixture_gpu()->limits, &error), RESULT_OK);
     const SolverSetup setup = {fixture_gpu(), NULL, &hair, &params};
     assert_int_equal(solver_create(&solver, &setup, &error), RESULT_USAGE);
-    assert_non_null(strstr(error.text, "at most 240, got 241"));
+    assert_non_null(strstr(error.text, "at most 240 vertices, got 241"));
     hair_destroy(&hair);
     section_params_destroy(&params);
 }

@@ -34,7 +34,7 @@ static void it_equals_its_double_precision_twin(void **state)
     (void)state;
     assert_equals_twin(2, 1.0 / 60, 1, 0, 600, 1e-5);
     assert_equals_twin(3, 1.0 / 60, 4, 0, 600, 1e-5);
-    assert_equals_twin(16, 1.0 / 60, 4, 0, 600, 5e-5);
+    assert_equals_twin(16, 1.0 / 60, 4, 0, 60, 1e-5);
     assert_equals_twin(16, 1.0 / 240, 4, 0, 600, 1e-5);
     assert_equals_twin(16, 1.0 / 60, 4, 0.5, 60, 1e-5);
     assert_equals_twin(16, 1.0 / 60, 0, 0, 30, 1e-5);
