@@ -27,6 +27,25 @@
 #define BIND_HEADS  8
 #define BIND_BASE   9 // what stands behind the hair: linear, premultiplied
 
+// The same points for the block-list rasteriser, which is never at work with the A-buffer.
+#define BIND_BLOCK_COUNTS_OUT 0 // uint, 16 for each of 64 groups: ribbons, strands without any
+#define BIND_LISTS_OUT        1 // uint a lane and block, see block_bin.comp
+#define BIND_LINKS_OUT        2 // uvec2 a node
+#define BIND_RECORDS_OUT      3 // RECORD_TEXELS uvec4 a ribbon, see block.glsl
+#define BIND_KEYS_OUT         4 // uint a ribbon
+#define BIND_BIN_STATE_OUT    5 // two ivec4 a lane
+#define BIND_PIXELS_OUT       6 // uint a pixel, rows of whole blocks
+#define BIND_RECORDS          4
+#define BIND_ORDER            5
+#define BIND_LISTS            6
+#define BIND_LINKS            7
+#define BIND_MESH_DEPTH       8
+
+#define BLOCK             4  // px, a block's width and height
+#define BIN_LANES         16 // that deal ribbons out to blocks
+#define BLOCK_COUNT_WORDS (64 * 16)
+#define BLOCK_COUNT_SHORT 2 // word that is not 0 if a block had too many ribbons to visit
+
 // The A-buffer's pool is dealt out in shards, each with a counter of its own: pixels of different
 // 8x8 blocks then rarely wait for each other's atomics. A small picture full of hair would fill few
 // of them: it uses one.

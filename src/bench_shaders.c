@@ -65,7 +65,7 @@ static void try_solvers(const Gpu *gpu, Result *worst, FILE *stream, Error *erro
             }
 }
 
-static Result try_renderer(const Gpu *gpu, float opacity, Error *error)
+static Result try_renderer(const Gpu *gpu, Raster raster, float opacity, Error *error)
 {
     Renderer renderer;
     GpuTimer timer;
@@ -77,7 +77,8 @@ static Result try_renderer(const Gpu *gpu, float opacity, Error *error)
                        .position = corners,
                        .normal = normals,
                        .triangle = triangle};
-    const RendererOptions options = {.width = 16, .height = 16, .background = {0, 0, 0, opacity}};
+    const RendererOptions options = {
+        .raster = raster, .width = 16, .height = 16, .background = {0, 0, 0, opacity}};
     gpu_timer_create(&timer, false, true);
     Result result = renderer_create(&renderer, gpu, &timer, &options, error);
     if (result != RESULT_OK) return result;
@@ -95,8 +96,15 @@ Result bench_shaders(const Gpu *gpu, FILE *stream, Error *error)
     for (size_t i = 0; i < sizeof checks / sizeof *checks; ++i)
         tell(checks[i], try_program(checks[i], &why), &why, &worst, stream, error);
     try_solvers(gpu, &worst, stream, error);
-    tell("renderer, opaque", try_renderer(gpu, 1, &why), &why, &worst, stream, error);
-    tell("renderer, transparent", try_renderer(gpu, 0, &why), &why, &worst, stream, error);
+    for (int transparent = 0; transparent < 2; ++transparent)
+        for (Raster raster = RASTER_QUADS; raster <= RASTER_BLOCKS; ++raster) {
+            char what[64];
+            snprintf(what, sizeof what, "renderer, %s, %s",
+                     raster == RASTER_QUADS ? "quads" : "blocks",
+                     transparent ? "transparent" : "opaque");
+            tell(what, try_renderer(gpu, raster, transparent ? 0 : 1, &why), &why, &worst, stream,
+                 error);
+        }
     shader_treat_warnings_as_errors(false);
     return worst;
 }

@@ -140,8 +140,10 @@ static Result measure_drawing(SpeedResult *result, const Gpu *gpu, Bench *bench,
 {
     Renderer renderer;
     Image image = {0};
-    const RendererOptions size = {
-        .width = options->size[0], .height = options->size[1], .background = {0.2f, 0.2f, 0.2f, 1}};
+    const RendererOptions size = {.raster = options->raster,
+                                  .width = options->size[0],
+                                  .height = options->size[1],
+                                  .background = {0.2f, 0.2f, 0.2f, 1}};
     bench->scene.run.size[0] = options->size[0], bench->scene.run.size[1] = options->size[1];
     Result outcome = renderer_create(&renderer, gpu, &bench->timer, &size, error);
     if (outcome != RESULT_OK) return outcome;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "gpu.h"
+#include "params.h"
 
 #include <jansson.h>
 
@@ -10,10 +11,11 @@ typedef struct SpeedOptions {
     const char *set;  // a name that strands_make_set knows, or NULL
     const char *file; // a hair file, or NULL; one of both
     const char *algo, *variant;
-    double style; // share of the style in the drawn strand; < 0: the default
-    int steps;    // measured
-    int warm_up;  // steps before that, not measured
-    int size[2];  // picture to draw in px; 0: no drawing
+    double style;  // share of the style in the drawn strand; < 0: the default
+    int steps;     // measured
+    int warm_up;   // steps before that, not measured
+    int size[2];   // picture to draw in px; 0: no drawing
+    Raster raster; // how hair is drawn
 } SpeedOptions;
 
 // Of some samples, ms.

@@ -163,6 +163,7 @@ enum {
     OPT_STEPS,
     OPT_WARM_UP,
     OPT_SIZE,
+    OPT_RASTER,
     OPT_JSON,
     OPT_DEVICE,
     OPT_SOFTWARE,
@@ -189,6 +190,8 @@ static const struct {
     {{"warm-up", required_argument, NULL, OPT_WARM_UP},
      "N  steps before that, 0 to 1000000 (default 20)"},
     {{"size", required_argument, NULL, OPT_SIZE}, "WxH  draw pictures of this size as well (px)"},
+    {{"raster", required_argument, NULL, OPT_RASTER},
+     "WORD  how hair is drawn: auto, quads or blocks (default auto)"},
     {{"json", required_argument, NULL, OPT_JSON}, "FILE  write the result as JSON"},
     {{"level", required_argument, NULL, OPT_LEVEL},
      "N  compare: a pixel may be off by this much, 0 to 255 (default 0)"},
@@ -233,6 +236,14 @@ static Result read_share(const char *name, const char *text, double *value, Erro
     *value = strtod(text, &end);
     if (end != text && !*end && *value >= 0 && *value <= 1) return RESULT_OK;
     return error_set(error, RESULT_USAGE, "--%s: expected 0 to 1, got '%s'", name, text);
+}
+
+static Result read_raster(const char *text, Raster *raster, Error *error)
+{
+    RunParams run = {0};
+    Result result = param_parse(param_find("raster"), &run, text, error);
+    *raster = (Raster)run.raster;
+    return result;
 }
 
 static Result read_size(const char *text, int size[2], Error *error)
@@ -280,6 +291,8 @@ static Result take_option(Arguments *arguments, int option, const char *text, Er
         return read_int("device", text, 0, 1000, &arguments->gpu.device, error);
     case OPT_SIZE:
         return read_size(text, speed->size, error);
+    case OPT_RASTER:
+        return read_raster(text, &speed->raster, error);
     case OPT_LEVEL:
         return read_int("level", text, 0, 255, &arguments->limits.level, error);
     case OPT_STYLE:

@@ -98,8 +98,10 @@ static Result create_items(Run *run, Error *error)
 static Result open_renderer(Run *run, Error *error)
 {
     const RunParams *params = &run->scene.run;
-    RendererOptions options = {
-        .width = params->size[0], .height = params->size[1], .seed = params->seed};
+    RendererOptions options = {.raster = (Raster)params->raster,
+                               .width = params->size[0],
+                               .height = params->size[1],
+                               .seed = params->seed};
     memcpy(options.background, params->background, sizeof options.background);
     Result result = renderer_create(&run->renderer, &run->gpu, &run->timer, &options, error);
     if (result == RESULT_OK && run->assets.has_mesh)

@@ -42,10 +42,12 @@ typedef enum ParamKind {
 #define CHOICES_NONE(X)
 #define CHOICES_UP(X)      X(UP_Y, "y") X(UP_Z, "z")
 #define CHOICES_BACKEND(X) X(BACKEND_AUTO, "auto") X(BACKEND_EGL, "egl") X(BACKEND_OSMESA, "osmesa")
+#define CHOICES_RASTER(X)  X(RASTER_AUTO, "auto") X(RASTER_QUADS, "quads") X(RASTER_BLOCKS, "blocks")
 
 #define CHOICE_VALUE(value, word) value,
 typedef enum UpAxis { CHOICES_UP(CHOICE_VALUE) } UpAxis;
 typedef enum Backend { CHOICES_BACKEND(CHOICE_VALUE) } Backend;
+typedef enum Raster { CHOICES_RASTER(CHOICE_VALUE) } Raster;
 #undef CHOICE_VALUE
 
 // The headings under which --help lists the parameters, in that order.

@@ -12,21 +12,55 @@ enum { SORTED_LAYERS = 8 };
 // Light on the mesh that comes from everywhere.
 static const float MESH_AMBIENT = 0.15f;
 
+// What all bands of one picture share.
+typedef struct Picture {
+    DrawParams draw; // with the values of the band that is being drawn
+    const RenderItem *items;
+    uint32_t item_count;
+    int mesh_box[4];
+} Picture;
+
+// A way from hair to pixels.
+typedef struct RasterType {
+    Result (*create)(Renderer *renderer, Error *error);
+    Result (*add_mesh)(Renderer *renderer, Error *error);
+    Result (*draw)(Renderer *renderer, Picture *picture, Image *image, Error *error);
+} RasterType;
+static const RasterType RASTERS[3];
+
+static Result create_quads(Renderer *renderer, Error *error)
+{
+    const RendererOptions *options = &renderer->options;
+    const GpuLimits *limits = &renderer->gpu->limits;
+    int layers = options->sorted_layers ? options->sorted_layers : SORTED_LAYERS;
+    Result result = render_hair_create(&renderer->hair, error);
+    if (result == RESULT_OK)
+        result = render_abuffer_create(&renderer->abuffer, limits, options->width, layers,
+                                       options->pool_bytes, error);
+    if (result == RESULT_OK)
+        renderer->band_rows = render_abuffer_most_rows(&renderer->abuffer, options->height);
+    return result;
+}
+
+static Result create_blocks(Renderer *renderer, Error *error)
+{
+    const RendererOptions *options = &renderer->options;
+    return render_blocks_create(&renderer->blocks, &renderer->gpu->limits, options->width,
+                                options->height, options->background[3] == 1, options->pool_bytes,
+                                error);
+}
+
 Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
                        const RendererOptions *options, Error *error)
 {
     *renderer = (Renderer){.options = *options, .gpu = gpu, .timer = timer};
-    int layers = options->sorted_layers ? options->sorted_layers : SORTED_LAYERS;
+    renderer->raster = options->raster != RASTER_AUTO ? options->raster
+                       : gpu->software                ? RASTER_BLOCKS
+                                                      : RASTER_QUADS;
     Result result = render_target_create(&renderer->target, &gpu->limits, options->width,
                                          options->height, error);
-    if (result == RESULT_OK) result = render_hair_create(&renderer->hair, error);
-    if (result == RESULT_OK)
-        result = render_abuffer_create(&renderer->abuffer, &gpu->limits, options->width, layers,
-                                       options->pool_bytes, error);
-    if (result != RESULT_OK)
-        renderer_destroy(renderer);
-    else
-        renderer->band_rows = render_abuffer_most_rows(&renderer->abuffer, options->height);
+    if (result == RESULT_OK) result = RASTERS[renderer->raster].create(renderer, error);
+    if (result != RESULT_OK) renderer_destroy(renderer);
     return result;
 }
 
@@ -35,6 +69,7 @@ void renderer_destroy(Renderer *renderer)
     render_target_destroy(&renderer->target);
     render_hair_destroy(&renderer->hair);
     render_abuffer_destroy(&renderer->abuffer);
+    render_blocks_destroy(&renderer->blocks);
     render_mesh_destroy(&renderer->mesh);
     gpu_buffer_destroy(&renderer->draw_uniforms);
     *renderer = (Renderer){0};
@@ -50,7 +85,7 @@ Result renderer_set_mesh(Renderer *renderer, const Mesh *mesh, const float color
     if (result == RESULT_OK && renderer->mesh.triangle_count)
         result = render_target_add_mesh(&renderer->target, error);
     if (result == RESULT_OK && renderer->mesh.triangle_count)
-        result = render_abuffer_add_mesh(&renderer->abuffer, error);
+        result = RASTERS[renderer->raster].add_mesh(renderer, error);
     return result;
 }
 
@@ -101,14 +136,6 @@ static void find_mesh_box(const Renderer *renderer, DrawParams *draw, int box[4]
         }
     }
 }
-
-// What all bands of one picture share.
-typedef struct Picture {
-    DrawParams draw; // with the values of the band that is being drawn
-    const RenderItem *items;
-    uint32_t item_count;
-    int mesh_box[4];
-} Picture;
 
 // The band's lists; measured, but not resolved yet.
 static Result draw_band(Renderer *renderer, Picture *picture, int row, int rows, Error *error)
@@ -217,26 +244,110 @@ static void draw_mesh(Renderer *renderer, const DrawParams *draw)
     gpu_timer_end(renderer->timer);
 }
 
-Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderItem *items,
-                     uint32_t item_count, Image *image, Error *error)
+static Result add_mesh_to_quads(Renderer *renderer, Error *error)
 {
-    assert(image->width == renderer->options.width && image->height == renderer->options.height);
-    assert(image->channels == renderer_channels(renderer));
-    Picture picture = {.items = items, .item_count = item_count};
-    DrawParams *draw = &picture.draw;
-    fill_draw_params(renderer, frame, draw);
-    find_mesh_box(renderer, draw, picture.mesh_box);
-    renderer->counts = (RendererCounts){0};
-    set_state(renderer);
-    gpu_uniforms_set(&renderer->draw_uniforms, BIND_DRAW, draw, sizeof *draw);
-    draw_mesh(renderer, draw);
+    return render_abuffer_add_mesh(&renderer->abuffer, error);
+}
+
+static Result draw_quads(Renderer *renderer, Picture *picture, Image *image, Error *error)
+{
+    find_mesh_box(renderer, &picture->draw, picture->mesh_box);
     glEnable(GL_SCISSOR_TEST);
-    Result result = draw_bands(renderer, &picture, error);
+    Result result = draw_bands(renderer, picture, error);
     glDisable(GL_SCISSOR_TEST);
     if (result != RESULT_OK) return result;
     gpu_timer_begin(renderer->timer, "draw_read");
     render_target_read(&renderer->target, image);
     gpu_timer_end(renderer->timer);
     renderer->counts.pool_bytes = (uint64_t)renderer->abuffer.nodes.size;
+    return RESULT_OK;
+}
+
+static Result add_mesh_to_blocks(Renderer *renderer, Error *error)
+{
+    return render_blocks_add_mesh(&renderer->blocks, error);
+}
+
+static void count_blocks(Renderer *renderer)
+{
+    const RenderBlocks *blocks = &renderer->blocks;
+    renderer->counts = (RendererCounts){.segments = blocks->segments,
+                                        .culled = blocks->culled,
+                                        .fragments = blocks->nodes,
+                                        .pool_bytes = (uint64_t)blocks->links.size,
+                                        .redraws = blocks->redraws,
+                                        .bands = blocks->bands};
+}
+
+// The quads take over for the rest of the run.
+static Result draw_quads_instead(Renderer *renderer, Picture *picture, Image *image, Error *error)
+{
+    renderer->raster = RASTER_QUADS;
+    Result result = create_quads(renderer, error);
+    if (result == RESULT_OK && renderer->mesh.triangle_count)
+        result = add_mesh_to_quads(renderer, error);
+    return result == RESULT_OK ? draw_quads(renderer, picture, image, error) : result;
+}
+
+static uint64_t count_segments(const Picture *picture)
+{
+    uint64_t count = 0;
+    for (uint32_t i = 0; i < picture->item_count; ++i)
+        count += picture->items[i].hair->segment_count;
+    return count;
+}
+
+static void project_items(Renderer *renderer, const Picture *picture)
+{
+    gpu_timer_begin(renderer->timer, "draw_project");
+    for (uint32_t i = 0; i < picture->item_count; ++i) {
+        const RenderItem *item = &picture->items[i];
+        MaterialParams material = material_params(item->material, item->radius);
+        for (uint32_t b = 0; b < item->hair->batch_count; ++b)
+            render_blocks_add(&renderer->blocks, &item->hair->batches[b], &material);
+    }
+    gpu_timer_end(renderer->timer);
+}
+
+static Result draw_blocks(Renderer *renderer, Picture *picture, Image *image, Error *error)
+{
+    RenderBlocks *blocks = &renderer->blocks;
+    uint64_t segments = count_segments(picture);
+    if (!render_blocks_can_hold(&renderer->gpu->limits, segments))
+        return draw_quads_instead(renderer, picture, image, error);
+    Result result = render_blocks_begin(blocks, segments, error);
+    if (result != RESULT_OK) return result;
+    project_items(renderer, picture);
+    result = render_blocks_draw(blocks, &renderer->target, renderer->mesh.triangle_count > 0,
+                                renderer->timer, error);
+    if (result != RESULT_OK) return result;
+    if (render_blocks_fell_short(blocks))
+        return draw_quads_instead(renderer, picture, image, error);
+    gpu_timer_begin(renderer->timer, "draw_read");
+    render_blocks_read(blocks, image);
+    gpu_timer_end(renderer->timer);
+    count_blocks(renderer);
+    return RESULT_OK;
+}
+
+static const RasterType RASTERS[] = {
+    [RASTER_QUADS] = {create_quads, add_mesh_to_quads, draw_quads},
+    [RASTER_BLOCKS] = {create_blocks, add_mesh_to_blocks, draw_blocks},
+};
+
+Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderItem *items,
+                     uint32_t item_count, Image *image, Error *error)
+{
+    assert(image->width == renderer->options.width && image->height == renderer->options.height);
+    assert(image->channels == renderer_channels(renderer));
+    Picture picture = {.items = items, .item_count = item_count};
+    const DrawParams *draw = &picture.draw;
+    fill_draw_params(renderer, frame, &picture.draw);
+    renderer->counts = (RendererCounts){0};
+    set_state(renderer);
+    gpu_uniforms_set(&renderer->draw_uniforms, BIND_DRAW, draw, sizeof *draw);
+    draw_mesh(renderer, draw);
+    Result result = RASTERS[renderer->raster].draw(renderer, &picture, image, error);
+    if (result != RESULT_OK) return result;
     return gpu_check("drawing", error);
 }

@@ -7,16 +7,18 @@
 #include "hair.h"
 #include "image.h"
 #include "render_abuffer.h"
+#include "render_blocks.h"
 #include "render_hair.h"
 #include "render_mesh.h"
 #include "render_target.h"
 
 typedef struct RendererOptions {
+    Raster raster;       // how hair becomes pixels; auto: blocks on CPU drivers, else quads
     int width, height;   // px, each 1 .. the driver's limits.framebuffer_side_px
     float background[4]; // sRGB and opacity 0..1; below 1 the pictures have an alpha channel
     uint32_t seed;       // of what varies by strand
-    int sorted_layers;   // fragments of a pixel that are blended in order, >= 1; 0: 8
-    int64_t pool_bytes;  // no larger A-buffer; 0: what the driver allows
+    int sorted_layers;   // quads: fragments of a pixel that are blended in order, >= 1; 0: 8
+    int64_t pool_bytes;  // no larger A-buffer or block lists; 0: what the driver allows
 } RendererOptions;
 
 // Hair to be drawn. The material is that of its section; `radius` is the fibre radius at the root
@@ -40,8 +42,8 @@ typedef struct RenderFrame {
 typedef struct RendererCounts {
     uint64_t segments;   // sent to the rasteriser; straight runs count as one
     uint64_t culled;     // strands outside the picture, which cost no drawing
-    uint64_t fragments;  // stored and blended
-    uint64_t pool_bytes; // of the A-buffer now
+    uint64_t fragments;  // stored and blended: pixels of a ribbon, or with blocks blocks of it
+    uint64_t pool_bytes; // of the A-buffer or the block lists now
     uint32_t redraws;    // bands that were drawn again because the pool was too small
     uint32_t bands;      // horizontal bands that the picture was drawn in
 } RendererCounts;
@@ -51,8 +53,10 @@ typedef struct Renderer {
     const Gpu *gpu;
     GpuTimer *timer;
     RenderTarget target;
+    Raster raster; // auto is decided; what the other one needs is made when it is drawn with
     RenderHair hair;
     RenderABuffer abuffer;
+    RenderBlocks blocks;
     RenderMesh mesh;
     GpuBuffer draw_uniforms;
     int band_rows; // that the next picture starts with
@@ -60,7 +64,8 @@ typedef struct Renderer {
 } Renderer;
 
 // Makes targets and shaders. `gpu` and `timer` outlive the renderer; spans "draw_mesh",
-// "draw_project", "draw_hair", "draw_resolve", "draw_read". RESULT_FAILED if the size exceeds the
+// "draw_project", "draw_hair" and "draw_resolve" or "draw_sort", "draw_bin" and "draw_composite",
+// "draw_read". RESULT_FAILED if the size exceeds the
 // driver's or memory is short.
 Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
                        const RendererOptions *options, Error *error);

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+// Projects and shades strands, one a lane, into records of ribbons (block.glsl) and their depths.
+// Particles are left out where the ribbon is straight, ribbons where they miss the picture. A
+// ribbon's slot is fixed by its strand, so that nothing depends on the order of lanes; slots
+// without a ribbon keep the key 0.
+#include "draw.h"
+#include "material.h"
+#include "hair_address.glsl"
+#include "hash.glsl"
+#include "shade_kajiya.glsl"
+#include "ribbon.glsl"
+#include "block.glsl"
+
+layout(local_size_x = GROUP_SIZE) in;
+layout(location = 0) uniform int first_record; // of this batch
+layout(binding = BIND_POSITION) uniform samplerBuffer position;
+layout(binding = BIND_STRAND_ID) uniform usamplerBuffer strand_id;
+layout(std430, binding = BIND_RECORDS_OUT) writeonly buffer Records { uvec4 records[]; };
+layout(std430, binding = BIND_KEYS_OUT) writeonly buffer Keys { uint keys[]; }; // 1/w as float bits
+layout(std430, binding = BIND_BLOCK_COUNTS_OUT) buffer Counts { uint counts[]; };
+
+const float LEAST_OPACITY = 1.0 / 4096.0;
+const float FOLD = LEAST_COSINE; // of 1 + d0.d1: beyond that a joint has no mitre
+
+// A ribbon's end as its record has it.
+struct End {
+    vec2 at;
+    float inverse_w, half_width;
+    vec2 bound, bound_before; // of the ribbon that begins here, of the one that ends here
+    vec3 color;
+};
+
+End make_end(Particle p, vec2 d0, vec2 d1)
+{
+    if (d0 == vec2(0.0)) d0 = d1;
+    if (d1 == vec2(0.0)) d1 = d0;
+    vec2 sum = d0 + d1;
+    bool folds = 1.0 + dot(d0, d1) < FOLD;
+    return End(p.at.xy, p.at.z, outline_half_width(p, vec2(-sum.y, sum.x)), folds ? d1 : sum, folds ? d0 : sum, p.color);
+}
+
+// Whether the ribbon was kept.
+bool store(int slot, End a, End b, float opacity)
+{
+    float reach = MITRE_MAX * (max(a.half_width, b.half_width) + PAD);
+    vec2 low = min(a.at, b.at) - reach, high = max(a.at, b.at) + reach;
+    bool seen = opacity >= LEAST_OPACITY && a.inverse_w > 0.0 && b.inverse_w > 0.0 && all(greaterThan(high, vec2(0.0))) &&
+                all(lessThan(low, size)) && a.at != b.at;
+    if (seen) {
+        float depth = 0.5 * (a.inverse_w + b.inverse_w);
+        int at = slot * RECORD_TEXELS;
+        records[at] = uvec4(floatBitsToUint(a.at), floatBitsToUint(b.at));
+        records[at + 1] = uvec4(packHalf2x16(vec2(a.half_width, b.half_width)), packHalf2x16(a.bound),
+                                packHalf2x16(b.bound_before), packHalf2x16(vec2(opacity, (b.inverse_w - a.inverse_w) / depth)));
+        records[at + 2] = uvec4(packHalf2x16(a.color.rg), packHalf2x16(vec2(a.color.b, b.color.r)),
+                                packHalf2x16(b.color.gb), floatBitsToUint(depth));
+        keys[slot] = floatBitsToUint(depth);
+    }
+    return seen;
+}
+
+void main()
+{
+    int n = int(material.vertex_count), s = int(gl_GlobalInvocationID.x);
+    if (s >= int(material.drawn_strands)) return;
+    int slot = first_record + s * (n - 1);
+    vec3 base = material.color.rgb *
+                (1.0 + material.color_variation * hash_signed(texelFetch(strand_id, s).x ^ draw_params.seed));
+    float thinning = (1.0 - material.tip_ratio) / float(n - 1);
+    float radius = material.radius, opacity = material.opacity;
+    vec3 eye = draw_params.eye.xyz;
+    Kajiya fibre = kajiya_material();
+
+    int root = particle_address(s, 0, n);
+    vec3 here = texelFetch(position, root).xyz, before = here;
+    vec4 here_clip = clip_from_world * vec4(here, 1.0), before_clip = here_clip;
+    Particle kept = Particle(vec4(0.0), vec3(0.0)), last = kept; // the last one not left out; the one before this one
+    End end = make_end(kept, vec2(0.0), vec2(0.0)); // of the ribbon that is not stored yet
+    vec2 way = vec2(0.0); // the ribbon's direction before `kept`
+    float bent = 0.0;     // of all that was left out since `kept`
+    int count = 0;
+    bool begun = false;
+    for (int j = 0; j < n; ++j) {
+        vec3 after = texelFetch(position, root + min(j + 1, n - 1) * STRAND_TILE).xyz;
+        vec4 after_clip = clip_from_world * vec4(after, 1.0);
+        Particle p;
+        p.at = project(clip_near(here_clip, before_clip, after_clip), max(radius * (1.0 - thinning * float(j)), 1e-9));
+        p.color = shade_kajiya(fibre, base, unit(after - before), unit(eye - here));
+        if (j > 1) bent += bend(kept, last, p);
+        if (j == 1 || bent > 1.0) {
+            vec2 next = direction(kept, last);
+            if (j > 1) {
+                End b = make_end(kept, way, next);
+                if (begun && store(slot + count, end, b, opacity)) ++count;
+                end = b;
+                begun = true;
+            }
+            way = next;
+            kept = last;
+            bent = 0.0;
+        }
+        last = p;
+        before = here;
+        before_clip = here_clip;
+        here = after;
+        here_clip = after_clip;
+    }
+    vec2 next = direction(kept, last);
+    End b = make_end(kept, way, next);
+    if (begun && store(slot + count, end, b, opacity)) ++count;
+    if (store(slot + count, b, make_end(last, next, next), opacity)) ++count;
+    uint group = gl_WorkGroupID.x % 64u * 16u;
+    atomicAdd(counts[group], uint(count));
+    if (count == 0) atomicAdd(counts[group + 1u], 1u);
+}

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// The block-list rasteriser: all in compute, for drivers on CPUs, where it is several times as fast
+// as ribbons that are drawn as triangles into an A-buffer. Every ribbon is dealt out to the lists
+// of the 4x4-pixel blocks that it touches, near to far, and each block is composited by itself.
+#pragma once
+
+#include "gpu_timer.h"
+#include "hair.h"
+#include "material.h"
+#include "radix.h"
+#include "render_target.h"
+#include "shader.h"
+
+#include <stdbool.h>
+
+typedef struct RenderBlocks {
+    GLuint project, bin, composite[2]; // programs; composite: over the background, over a mesh
+    GpuBuffer records, keys, order;    // of ribbons, see block.glsl; order near to far
+    GpuBuffer lists, links, states;    // see block_bin.comp
+    GpuBuffer counts, pixels, material;
+    const GpuLimits *limits;
+    Radix radix;
+    int width, height; // px
+    bool opaque;
+    int64_t most_nodes;    // of a lane
+    int band_rows;         // of blocks
+    size_t slots, ribbons; // records there is room for; that are seen
+    uint64_t nodes, segments, culled;
+    uint32_t redraws, bands;
+} RenderBlocks;
+
+// `opaque`: the background is. `pool_bytes`: the largest size of all lists, 0 for the driver's
+// limit.
+Result render_blocks_create(RenderBlocks *blocks, const GpuLimits *limits, int width, int height,
+                            bool opaque, int64_t pool_bytes, Error *error);
+void render_blocks_destroy(RenderBlocks *blocks);
+
+// Makes what drawing over a mesh needs; nothing if it is there.
+Result render_blocks_add_mesh(RenderBlocks *blocks, Error *error);
+
+// Whether so many ribbons fit into the driver's buffers.
+bool render_blocks_can_hold(const GpuLimits *limits, uint64_t segments);
+
+// Begins a picture of at most `segments` ribbons (render_blocks_can_hold).
+Result render_blocks_begin(RenderBlocks *blocks, uint64_t segments, Error *error);
+
+// Adds a batch. `material` is complete but for the batch's size. Needs the DrawParams block.
+void render_blocks_add(RenderBlocks *blocks, const HairBatch *batch,
+                       const MaterialParams *material);
+
+// Sorts, deals out and composites all that was added, over the target's base and behind its depth
+// if `over_mesh`. No ribbon is lost: the pool grows, or the picture is drawn in more bands.
+// RESULT_FAILED if memory is short or a single row of blocks needs more than there can be.
+Result render_blocks_draw(RenderBlocks *blocks, const RenderTarget *target, bool over_mesh,
+                          GpuTimer *timer, Error *error);
+
+// Whether a block had more ribbons than CPU drivers let a shader's loop visit. Waits.
+bool render_blocks_fell_short(const RenderBlocks *blocks);
+
+// Copies the picture into `image`; waits for it.
+void render_blocks_read(const RenderBlocks *blocks, Image *image);
