@@ -13,10 +13,11 @@ float share_above(float t, float a, float b, float scale)
     return t < 0.0 ? 1.0 - share : share;
 }
 
-// Coverage of the pixel by |across| < half_width, with the gradient of `across` by pixel.
+// Coverage of the pixel by |across| < half_width, with the gradient of `across` by pixel. That is near
+// 1, but where hundreds of particles share a pixel slivers of triangles have any, even infinite.
 float ribbon_coverage(float across, float half_width, vec2 gradient)
 {
-    gradient = abs(gradient);
+    gradient = min(abs(gradient), 1e6);
     float a = max(max(gradient.x, gradient.y), 1e-3), b = clamp(min(gradient.x, gradient.y), 1e-3 * a, a);
     float scale = 0.5 / (a * b);
     return share_above(across - half_width, a, b, scale) - share_above(across + half_width, a, b, scale);

@@ -18,7 +18,7 @@ const float LEAST_ALPHA = 1.0 / 4096.0;
 void main()
 {
     float alpha = color.a * ribbon_coverage(across, half_width, vec2(dFdx(across), dFdy(across)));
-    if (alpha < LEAST_ALPHA) return;
+    if (!(alpha >= LEAST_ALPHA)) return; // nor what is not a number
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     uvec4 band = draw_params.band; // read once: a uniform costs a load wherever it is named
     uint shards = draw_params.shards;

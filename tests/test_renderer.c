@@ -352,6 +352,33 @@ static void thousands_of_layers_are_still_white(void **state)
     free(position);
 }
 
+// Seen from far off hundreds of particles share a pixel.
+static void hair_smaller_than_a_pixel_leaves_no_holes(void **state)
+{
+    (void)state;
+    RendererOptions options = BLACK;
+    options.width = options.height = 2;
+    for (int k = 0; k < 3; ++k) options.background[k] = 1;
+    use(&options);
+    float(*position)[3] = malloc(2000 * 32 * sizeof *position);
+    assert_non_null(position);
+    Random random = random_create(3, 0);
+    for (int i = 0; i < 2000 * 32; ++i) {
+        double d[3];
+        random_direction(&random, d);
+        for (int k = 0; k < 3; ++k)
+            position[i][k] = (float)(1.5 * d[k]) + (i % 32 ? position[i - 1][k] / 2 : 0);
+    }
+    Strands strands = studio_strands(2000, 32, (const float(*)[3])position);
+    uint32_t item = studio_add(&studio, &strands, 0.2f, 1);
+    studio.material[item].opacity = 0; // so that only what is wrong is seen
+    studio_draw(&studio);
+    assert_int_equal(studio.renderer.counts.fragments, 0);
+    for (int i = 0; i < 2 * 2 * 3; ++i) assert_int_equal(studio.image.pixels[i], 255);
+    strands_destroy(&strands);
+    free(position);
+}
+
 static void a_row_that_no_pool_holds_is_an_error(void **state)
 {
     (void)state;
@@ -593,6 +620,7 @@ int main(void)
         CLAIM(bands_are_no_more_than_the_pool_asks_for),
         CLAIM(a_small_picture_uses_the_whole_pool),
         CLAIM(thousands_of_layers_are_still_white),
+        CLAIM(hair_smaller_than_a_pixel_leaves_no_holes),
         CLAIM(a_row_that_no_pool_holds_is_an_error),
         CLAIM(mesh_hides_the_hair_behind_it_only),
         CLAIM(no_hair_is_background),
