@@ -31,6 +31,8 @@ const SolverType SOLVER_DFTL = {
     .name = "dftl",
     .summary = "dynamic follow-the-leader (Mueller et al. 2012): lengths exact in one pass, "
                "strongly damped",
+    .lengths = "exact",
+    .style = "position springs, --style, --style-stiffness",
     .create = create,
     .step = particle_solver_step,
     .pose = particle_solver_pose,

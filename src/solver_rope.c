@@ -71,6 +71,8 @@ static Result create(void **state, const SolverSetup *setup, Error *error)
 const SolverType SOLVER_ROPE = {
     .name = "rope",
     .summary = "position-based rope as in Bullet's soft bodies, or XPBD by small steps",
+    .lengths = "within what its iterations allow; drawn exactly",
+    .style = "position springs, --style, --style-stiffness",
     .variants = {"bullet", "xpbd"},
     .create = create,
     .step = particle_solver_step,

@@ -86,6 +86,8 @@ static Result create(void **state, const SolverSetup *setup, Error *error)
 const SolverType SOLVER_SPRING = {
     .name = "spring",
     .summary = "mass-spring: coil springs along the links, angular springs towards the style",
+    .lengths = "within what its stiffness allows; drawn exactly",
+    .style = "angular springs, --style, --spring-angular",
     .variants = {"implicit", "explicit"},
     .create = create,
     .step = particle_solver_step,
