@@ -47,6 +47,12 @@ void particle_solver_destroy(void *pointer)
     free(state);
 }
 
+const GpuBuffer *particle_solver_velocities(const void *pointer, uint32_t batch)
+{
+    const ParticleState *state = pointer;
+    return &state->batches[batch].velocity;
+}
+
 static bool fits_registers(const Hair *hair, uint32_t most)
 {
     uint32_t counts = 0, last = 0;

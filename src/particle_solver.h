@@ -41,3 +41,6 @@ Result particle_solver_create(void **state, const SolverSetup *setup, const Part
 void particle_solver_step(void *state, const SolverStep *step);
 void particle_solver_pose(void *state, const HeadPose *head);
 void particle_solver_destroy(void *state);
+
+// The velocities of batch `batch` (vec4 a particle, m/s), by hair_address. For tests.
+const GpuBuffer *particle_solver_velocities(const void *state, uint32_t batch);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What must hold for every solver that is in the table, whatever its method. A solver's own tests
 // are in test_solver_<name>.c.
+#include "particle_solver.h"
 #include "twin.h"
 
 #include <math.h>
@@ -19,6 +20,7 @@ enum {
     UNIT = 8,    // a scene in centimetres moves like one in metres
     ORDER = 16,  // strands move alike wherever they stand in the file
     TURN = 32,   // a turned scene moves like the scene
+    RIGID = 64,  // not only what is drawn has the style's lengths, but what is simulated
 };
 
 // ... and who does not, from how many particles a strand on, and why. `variant` NULL: all of them.
@@ -31,14 +33,36 @@ static const struct {
     {"split", NULL, ENERGY, 0, "only its tip has mass (test_solver_split): the strand follows"},
     {"emulation", NULL, ORDER, 0, "the order of its moves comes from a strand's place"},
     {"emulation", "thesis", REST | ENERGY | TURN, 0, "unstable without much drag, as published"},
-    {"chain", NULL, ENERGY, 64, "its sub-steps do not suffice: up to 0.9 more at 30 and 120 Hz"},
-    {"tressfx", "tressfx4", LENGTHS | REST, 0, "two passes leave it stretched under gravity"},
+    {"spring", NULL, RIGID, 0, "its segments are springs"},
+    {"rope", NULL, RIGID, 0, "its iterations leave it stretched"},
+    {"tressfx", "tressfx4", LENGTHS | REST | RIGID, 0,
+     "two passes leave it stretched under gravity"},
     {"dftl", NULL, ENERGY, 0, "corrects velocities, not displacements: what is drawn whips"},
 };
 
+// Who gains more energy than 1 % of what can be lost by falling, from how many particles on and by
+// how much at most, as measured.
+static const struct {
+    const char *algo;
+    int from;
+    double most;
+    const char *why;
+} RISES[] = {
+    {"hybrid", 64, 0.2, "its blend of velocities is not calm enough for 64 at 120 Hz"},
+    {"chain", 64, 1, "its sub-steps are too long for 64 at 30 and at 120 Hz"},
+    {"spring", 0, 0.02, "30 Hz: what the springs give back within a step"},
+};
+
+static double allowed_rise(const SolverType *type, int n)
+{
+    for (size_t i = 0; i < sizeof RISES / sizeof *RISES; ++i)
+        if (strcmp(RISES[i].algo, type->name) == 0 && n >= RISES[i].from) return RISES[i].most;
+    return 0.01;
+}
+
 static unsigned promises(const SolverType *type, const char *variant, int n)
 {
-    unsigned all = LENGTHS | REST | ENERGY | UNIT | ORDER | TURN;
+    unsigned all = LENGTHS | REST | ENERGY | UNIT | ORDER | TURN | RIGID;
     for (size_t i = 0; i < sizeof EXCEPTIONS / sizeof *EXCEPTIONS; ++i)
         if (strcmp(EXCEPTIONS[i].algo, type->name) == 0 && n >= EXCEPTIONS[i].from &&
             (!EXCEPTIONS[i].variant || strcmp(EXCEPTIONS[i].variant, variant) == 0))
@@ -310,6 +334,8 @@ typedef struct LongRun {
     HairFixture fixture;
     Vec start[LONG_SIZES][LONG_KINDS][LONG_MOST];
     Vec before[LONG_SIZES][LONG_KINDS][LONG_MOST];
+    Vec v[LONG_SIZES][LONG_KINDS]
+         [LONG_MOST]; // the solver's own velocities; else displacements / dt
 } LongRun;
 
 // Of each vertex count a straight strand held horizontally and a curl.
@@ -333,6 +359,7 @@ static void long_run_create(LongRun *run, const SolverType *type, double per_sec
         }
     strands.first[count] = at;
     fixture_create_strands(&run->fixture, &strands, type->name, "", style, drag);
+    run->fixture.params.stretch_drawn = true; // the strand that has the energy
     run->fixture.step.dt = 1 / per_second;
     strands_destroy(&strands);
 }
@@ -351,18 +378,42 @@ static void long_run_read(LongRun *run, Vec positions[LONG_SIZES][LONG_KINDS][LO
     }
 }
 
+// The velocities that a step has led to: the solver's own where it keeps them.
+static void long_run_velocities(LongRun *run, Vec now[LONG_SIZES][LONG_KINDS][LONG_MOST])
+{
+    const Solver *solver = &run->fixture.solver;
+    for (uint32_t i = 0; i < LONG_SIZES; ++i) {
+        const HairBatch *batch = &run->fixture.hair.batches[i];
+        float(*own)[4] = NULL;
+        if (solver->type->step == particle_solver_step) {
+            const GpuBuffer *buffer = particle_solver_velocities(solver->state, i);
+            own = malloc((size_t)buffer->size);
+            assert_non_null(own);
+            glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
+            glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)buffer->size, own);
+        }
+        for (uint32_t kind = 0; kind < LONG_KINDS; ++kind)
+            for (uint32_t j = 1; j < batch->vertex_count; ++j)
+                for (int k = 0; k < 3; ++k)
+                    run->v[i][kind][j][k] =
+                        own ? (double)own[hair_address(batch, kind, j)][k]
+                            : (now[i][kind][j][k] - run->before[i][kind][j][k]) /
+                                  run->fixture.step.dt;
+        free(own);
+    }
+}
+
 // Kinetic and potential energy over what the strand could lose, less what it had: 0 at the start,
-// -1 when it hangs at rest. `a` and `b` are a step apart.
-static double energy(const Vec *start, const Vec *a, const Vec *b, int n, double dt)
+// -1 when it hangs at rest. `a` and `b` are a step apart, `v` the velocities between them.
+static double energy(const Vec *start, const Vec *a, const Vec *b, const Vec *v, int n)
 {
     const double g = 9.81;
     double sum = 0, budget = 0, length = 0;
     for (int j = 1; j < n; ++j) {
-        Vec v, segment;
-        vec_add_scaled(b[j], -1, a[j], v);
+        Vec segment;
         vec_add_scaled(start[j], -1, start[j - 1], segment);
         length += vec_norm(segment);
-        sum += vec_dot(v, v) / (2 * dt * dt) + g * ((a[j][1] + b[j][1]) / 2 - start[j][1]);
+        sum += vec_dot(v[j], v[j]) / 2 + g * ((a[j][1] + b[j][1]) / 2 - start[j][1]);
         budget += g * (start[j][1] - start[0][1] + length);
     }
     return sum / budget;
@@ -374,14 +425,16 @@ static void check_frame(LongRun *run, const SolverType *type, double most[LONG_S
     static Vec now[LONG_SIZES][LONG_KINDS][LONG_MOST];
     const char *variant = type->variants[0] ? type->variants[0] : "";
     long_run_read(run, now);
+    long_run_velocities(run, now);
     for (int i = 0; i < LONG_SIZES; ++i)
         for (int kind = 0; kind < LONG_KINDS; ++kind) {
             const Vec *start = (const Vec *)run->start[i][kind], *q = (const Vec *)now[i][kind];
             int n = LONG_COUNTS[i];
-            double e = energy(start, (const Vec *)run->before[i][kind], q, n, run->fixture.step.dt);
+            double e = energy(start, (const Vec *)run->before[i][kind], q,
+                              (const Vec *)run->v[i][kind], n);
             double error = length_error(start, q, n);
             require(isfinite(e), type, variant, "n = %.0f: a position is not finite", n);
-            require(error < 1e-5 || !(promises(type, variant, n) & LENGTHS), type, variant,
+            require(error < 1e-5 || !(promises(type, variant, n) & RIGID), type, variant,
                     "a length is off by %.2g", error);
             most[i] = fmax(most[i], e);
         }
@@ -406,7 +459,9 @@ static int check_run(const SolverType *type, double per_second, float style, flo
     fixture_destroy(&run.fixture);
     const char *variant = type->variants[0] ? type->variants[0] : "";
     for (int i = 0; i < LONG_SIZES; ++i) {
-        if (most[i] < 0.01 || !(promises(type, variant, LONG_COUNTS[i]) & ENERGY)) continue;
+        if (most[i] < allowed_rise(type, LONG_COUNTS[i]) ||
+            !(promises(type, variant, LONG_COUNTS[i]) & ENERGY))
+            continue;
         printf("%s, n = %d at %g Hz, drag %g, style %g: energy rises by %.2g of what could be "
                "lost\n",
                type->name, LONG_COUNTS[i], per_second, (double)drag, (double)style, most[i]);
