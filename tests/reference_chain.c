@@ -45,7 +45,7 @@ static void solve_tridiagonal(int count, const double *lower, double *diagonal, 
 
 void reference_solve_lengths(const Vec *r, int n, const double *right, double *lambda)
 {
-    double diagonal[TWIN_MAX], upper[TWIN_MAX], lower[TWIN_MAX];
+    double diagonal[TWIN_MAX] = {0}, upper[TWIN_MAX] = {0}, lower[TWIN_MAX] = {0};
     for (int j = 1; j < n; ++j) {
         diagonal[j] = (j == 1 ? 1 : 2) * vec_dot(r[j], r[j]);
         lower[j] = j > 1 ? -vec_dot(r[j], r[j - 1]) : 0;
@@ -69,8 +69,8 @@ static void pull_implicitly(const TwinStrand *strand, const Vec *v_old, double d
     const double theta = 0.25;
     const int n = strand->n;
     Vec r[TWIN_MAX], g[TWIN_MAX];
-    double right[TWIN_MAX], lambda[TWIN_MAX], tension[TWIN_MAX + 1] = {0};
-    double diagonal[TWIN_MAX], upper[TWIN_MAX], lower[TWIN_MAX];
+    double right[TWIN_MAX] = {0}, lambda[TWIN_MAX], tension[TWIN_MAX + 1] = {0};
+    double diagonal[TWIN_MAX] = {0}, upper[TWIN_MAX] = {0}, lower[TWIN_MAX] = {0};
     for (int j = 1; j < n; ++j) {
         Vec s;
         subtract(strand->x[j], strand->x[j - 1], r[j]);
@@ -102,7 +102,7 @@ static void pull_implicitly(const TwinStrand *strand, const Vec *v_old, double d
 static void correct(const TwinStrand *strand, Vec *x)
 {
     Vec s[TWIN_MAX], g[TWIN_MAX];
-    double right[TWIN_MAX], lambda[TWIN_MAX];
+    double right[TWIN_MAX] = {0}, lambda[TWIN_MAX];
     for (int j = 1; j < strand->n; ++j) {
         subtract(x[j], x[j - 1], s[j]);
         right[j] = vec_norm(s[j]) * (vec_norm(s[j]) - strand->length[j]);
