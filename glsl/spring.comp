@@ -164,7 +164,7 @@ void main()
     Springs springs = springs_of(n - 1);
     vec3 was = texelFetch(position_before, a).xyz, moved = root_move(root); // by the particle before
     vec3 drawn = root_position(root), along = rotate(rotation, texelFetch(rest, a + STRAND_TILE).xyz);
-    vec3 r, force = vec3(0.0); // of the link before
+    vec3 r = vec3(0.0), force = vec3(0.0); // of the link before
     vec4 v = vec4(0.0);
     float l = 0.0;
     positions[a] = vec4(drawn, 1.0);

@@ -27,7 +27,7 @@
 // The strand is corrected in the head's frame with its root at the origin, where the style needs no turning: REST(j) is the direction and
 // length of its segment j, X(j) the vertex. Everything stays in memory: loops of few accesses run as fast there as unrolled ones in
 // registers, and compile in a sixth of the time.
-int strand, n;
+int strand = 0, n = 0; // of the lane, set in main
 int address(int j) { return particle_address(strand, j, n); }
 #define REST(j) texelFetch(rest, address(j))
 #define X(j) positions[address(j)].xyz

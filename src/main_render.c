@@ -64,6 +64,16 @@ static GpuOptions gpu_options(const RunParams *params)
     return options;
 }
 
+static void tell_cautions(const Scene *scene)
+{
+    for (uint32_t i = 0; i < scene->section_count; ++i) {
+        const Section *section = &scene->sections[i];
+        const char *caution = solver_caution(&section->params);
+        if (caution)
+            fprintf(stderr, "%s: --algo %s: %s\n", section->file, section->params.algo, caution);
+    }
+}
+
 static Result open_gpu(Run *run, Error *error)
 {
     const RunParams *params = &run->scene.run;
@@ -149,6 +159,7 @@ static Result prepare(Run *run, Error *error)
         result = assets_load(&run->assets, &run->scene, params->quiet ? NULL : stderr,
                              params->verbose, error);
     run->loaded_ms = stats_clock_ms();
+    if (result == RESULT_OK && !params->quiet) tell_cautions(&run->scene);
     if (result == RESULT_OK) result = open_gpu(run, error);
     if (result == RESULT_OK)
         result = simulation_create(&run->simulation, &run->gpu, &run->timer, &run->scene,

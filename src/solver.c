@@ -56,6 +56,12 @@ Result solver_check(const SectionParams *params, Error *error)
     return type ? check_variant(type, params->variant, error) : refuse_type(params->algo, error);
 }
 
+const char *solver_caution(const SectionParams *params)
+{
+    const SolverType *type = find_type(params->algo);
+    return type->caution ? type->caution(params) : NULL;
+}
+
 Result solver_create(Solver *solver, const SolverSetup *setup, Error *error)
 {
     *solver = (Solver){0};

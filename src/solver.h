@@ -41,8 +41,10 @@ typedef struct SolverReport {
 
 // Every function is called with the context current; all but create and report only queue GPU work.
 typedef struct SolverType {
-    const char *name;        // the word of --algo
-    const char *summary;     // one line for --algo list
+    const char *name;                                    // the word of --algo
+    const char *summary;                                 // one line for --algo list
+    const char *(*caution)(const SectionParams *params); // what its user should know, one line;
+                                                         // NULL or giving NULL: nothing
     const char *lengths;     // how well segments keep theirs, for --algo list; may be NULL
     const char *style;       // what brings the style back, for --algo list; NULL: nothing does
     const char *variants[4]; // words of --variant, the default first; NULL ends
@@ -65,6 +67,9 @@ typedef struct Solver {
 // Whether params->algo and params->variant exist; RESULT_USAGE naming the nearest valid word. Needs
 // no context.
 Result solver_check(const SectionParams *params, Error *error);
+
+// What the user of this algo and variant should know, or NULL. The words have been checked.
+const char *solver_caution(const SectionParams *params);
 
 // Checks as above and creates.
 Result solver_create(Solver *solver, const SolverSetup *setup, Error *error);

@@ -39,11 +39,14 @@ static const ParticleRecipe RECIPE = {
 
 static Result create(void **state, const SolverSetup *setup, Error *error)
 {
-    if (is_thesis(setup->params))
-        fprintf(stderr,
-                "tractrix: emulation: the published rule (variant thesis) gains energy: hair "
-                "with little drag speeds up by itself\n");
     return particle_solver_create(state, setup, &RECIPE, error);
+}
+
+static const char *caution(const SectionParams *params)
+{
+    return is_thesis(params)
+               ? "the published rule gains energy: hair with little drag speeds up by itself"
+               : NULL;
 }
 
 const SolverType SOLVER_EMULATION = {
@@ -51,6 +54,7 @@ const SolverType SOLVER_EMULATION = {
     .summary = "every particle pulls the strand along as tractrices, O(n^2); thesis: as published, "
                "unstable without much drag",
     .variants = {"projected", "thesis"},
+    .caution = caution,
     .create = create,
     .step = particle_solver_step,
     .pose = particle_solver_pose,

@@ -159,6 +159,11 @@ run 0 "$work/cm.tfx" --unit 0.015625 --frames 3 --size 64x48 -q -o "$work/u1/"
 run 0 "$work/other.tfx" --unit 0.00390625 --frames 3 --size 64x48 -q -o "$work/u2/"
 if diff -r "$work/u1" "$work/u2" >"$work/err"; then good; else bad "pictures differ"; fi
 
+claim "a variant that may run away is told, unless quiet"
+run 0 $hair --algo emulation --variant thesis --frames 1 --size 16x16 -o "$work/e/"; says "gains energy"
+run 0 $hair --algo emulation --variant thesis --frames 1 --size 16x16 -q -o "$work/e/"
+if [ -s "$work/err" ]; then bad "said something"; else good; fi
+
 claim "help, version and lists"
 run 0 --help; says "--turntable"; says "Exit status"
 run 0 --version; says "tractrix-render"
