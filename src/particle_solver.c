@@ -7,9 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Each vertex count in registers costs a compilation, so only hair of few counts gets it.
-enum { MOST_REGISTER_VARIANTS = 2 };
-
 typedef struct ParticleBatch {
     GLuint program;
     uint32_t strands_per_lane;
@@ -51,17 +48,6 @@ const GpuBuffer *particle_solver_velocities(const void *pointer, uint32_t batch)
 {
     const ParticleState *state = pointer;
     return &state->batches[batch].velocity;
-}
-
-static bool fits_registers(const Hair *hair, uint32_t most)
-{
-    uint32_t counts = 0, last = 0;
-    for (uint32_t i = 0; i < hair->batch_count; ++i) {
-        if (hair->batches[i].vertex_count > most) return false;
-        counts += hair->batches[i].vertex_count != last;
-        last = hair->batches[i].vertex_count;
-    }
-    return counts <= MOST_REGISTER_VARIANTS;
 }
 
 static Result build_program(const ParticleState *state, ParticleBatch *batch, uint32_t vertices,
@@ -132,13 +118,13 @@ Result particle_solver_create(void **pointer, const SolverSetup *setup,
     if (check_vertices(setup->hair, recipe, error) != RESULT_OK) return RESULT_USAGE;
     ParticleState *state = calloc(1, sizeof *state);
     if (!state) return error_set(error, RESULT_FAILED, "no memory for a solver");
-    *state =
-        (ParticleState){.group_size = step_group_size(setup->gpu),
-                        .recipe = recipe,
-                        .hair = setup->hair,
-                        .params = setup->params,
-                        .timer = setup->timer,
-                        .in_registers = fits_registers(setup->hair, recipe->most_in_registers)};
+    *state = (ParticleState){.group_size = step_group_size(setup->gpu),
+                             .recipe = recipe,
+                             .hair = setup->hair,
+                             .params = setup->params,
+                             .timer = setup->timer,
+                             .in_registers =
+                                 step_fits_registers(setup->hair, recipe->most_in_registers)};
     state->batches = calloc(setup->hair->batch_count + 1, sizeof *state->batches);
     Result result =
         state->batches ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for a solver");

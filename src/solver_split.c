@@ -10,13 +10,14 @@
 // compiled for that count.
 enum { MOST_IN_REGISTERS = 40 };
 
-// Each vertex count in registers costs a compilation (0.2 to 0.4 s on a CPU driver), so only hair
-// of few counts gets it.
-enum { MOST_REGISTER_VARIANTS = 2 };
-
 // Simultaneous strands of a lane: two hide each other's latency on a CPU, a GPU has other lanes for
 // that.
 enum { STRANDS_ON_CPU = 2, STRANDS_ON_GPU = 1 };
+
+// A strand in memory takes six loops over its segments at most (span, four pulls, renormalisation),
+// and CPU drivers end loops silently after 65,535 iterations in all of an invocation: longer
+// strands are refused.
+enum { MOST_VERTICES = 10000 };
 
 typedef struct SplitBatch {
     GLuint program;
@@ -53,22 +54,10 @@ static void destroy(void *pointer)
     free(state);
 }
 
-// Vertex counts that are short enough for registers, up to the limit of variants.
-static bool fits_registers(const Hair *hair)
-{
-    uint32_t counts = 0, last = 0;
-    for (uint32_t i = 0; i < hair->batch_count; ++i) {
-        if (hair->batches[i].vertex_count > MOST_IN_REGISTERS) return false;
-        counts += hair->batches[i].vertex_count != last;
-        last = hair->batches[i].vertex_count;
-    }
-    return counts <= MOST_REGISTER_VARIANTS;
-}
-
 // Batches of equal vertex count, and all of them if strands go through memory, share a program.
 static Result build_programs(SplitState *state, const Gpu *gpu, Error *error)
 {
-    bool in_registers = fits_registers(state->hair);
+    bool in_registers = step_fits_registers(state->hair, MOST_IN_REGISTERS);
     uint32_t strands = in_registers && gpu->software ? STRANDS_ON_CPU : STRANDS_ON_GPU;
     for (uint32_t i = 0; i < state->hair->batch_count; ++i) {
         SplitBatch *batch = &state->batches[i];
@@ -126,12 +115,24 @@ static Result create_state(SplitBatch *batch, const HairBatch *hair, const GpuLi
     return result;
 }
 
+static Result check_lengths(const Hair *hair, Error *error)
+{
+    for (uint32_t i = 0; i < hair->batch_count; ++i)
+        if (hair->batches[i].vertex_count > MOST_VERTICES)
+            return error_set(error, RESULT_USAGE,
+                             "split: a strand of %u vertices; it takes at most %d (rope, spring "
+                             "and dftl take more)",
+                             hair->batches[i].vertex_count, MOST_VERTICES);
+    return RESULT_OK;
+}
+
 static Result build(SplitState *state, const SolverSetup *setup, Error *error)
 {
     state->batches =
         calloc(state->hair->batch_count ? state->hair->batch_count : 1, sizeof *state->batches);
     if (!state->batches) return error_set(error, RESULT_FAILED, "no memory for a solver");
-    Result result = build_programs(state, setup->gpu, error);
+    Result result = check_lengths(state->hair, error);
+    if (result == RESULT_OK) result = build_programs(state, setup->gpu, error);
     if (result == RESULT_OK)
         result = pose_create(&state->pose, setup->gpu, setup->params->style, error);
     for (uint32_t i = 0; i < state->hair->batch_count && result == RESULT_OK; ++i)

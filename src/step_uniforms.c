@@ -48,3 +48,16 @@ uint32_t step_group_count(uint32_t count, uint32_t group_size, uint32_t strands_
     uint32_t strands = group_size * strands_per_lane;
     return (count + strands - 1) / strands;
 }
+
+enum { MOST_REGISTER_VARIANTS = 2 };
+
+bool step_fits_registers(const Hair *hair, uint32_t most)
+{
+    uint32_t counts = 0, last = 0;
+    for (uint32_t i = 0; i < hair->batch_count; ++i) {
+        if (hair->batches[i].vertex_count > most) return false;
+        counts += hair->batches[i].vertex_count != last;
+        last = hair->batches[i].vertex_count;
+    }
+    return counts <= MOST_REGISTER_VARIANTS;
+}

@@ -26,3 +26,7 @@ float step_style_pull(const StepParams *uniforms, const SectionParams *params);
 // Work groups of `group_size` lanes that cover `count` strands with `strands_per_lane` strands a
 // lane.
 uint32_t step_group_count(uint32_t count, uint32_t group_size, uint32_t strands_per_lane);
+
+// Whether the hair's strands may stay in registers for a step: all have at most `most` vertices,
+// and of few different counts, since each costs a compilation (0.2 to 0.7 s on a CPU driver).
+bool step_fits_registers(const Hair *hair, uint32_t most);

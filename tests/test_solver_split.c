@@ -409,6 +409,31 @@ static void a_flung_tip_is_cut_and_counted(void **state)
     fixture_destroy(&fixture);
 }
 
+// Loops beyond 65,535 iterations end silently on CPU drivers: what would exceed them must not be
+// stepped at all.
+static void a_strand_beyond_the_drivers_loops_is_refused(void **state)
+{
+    (void)state;
+    const uint32_t counts[] = {10000, 10001};
+    for (int i = 0; i < 2; ++i) {
+        Strands strands;
+        Hair hair;
+        Solver solver;
+        Error error = {{0}};
+        SectionParams params = {.algo = "split", .variant = "", .style = 0.5f};
+        assert_int_equal(strands_create(&strands, 1, counts[i], NULL), RESULT_OK);
+        strands.first[1] = counts[i];
+        for (uint32_t j = 0; j < counts[i]; ++j) strands.position[j][0] = 0.001f * (float)j;
+        assert_int_equal(hair_create(&hair, &strands, 0, &fixture_gpu()->limits, NULL), RESULT_OK);
+        const SolverSetup setup = {fixture_gpu(), NULL, &hair, &params};
+        assert_int_equal(solver_create(&solver, &setup, &error), i == 0 ? RESULT_OK : RESULT_USAGE);
+        if (i == 1) assert_non_null(strstr(error.text, "10001 vertices"));
+        solver_destroy(&solver);
+        hair_destroy(&hair);
+        strands_destroy(&strands);
+    }
+}
+
 static void unknown_solvers_and_variants_name_the_nearest(void **state)
 {
     (void)state;
@@ -440,6 +465,7 @@ int main(void)
         cmocka_unit_test(turning_the_whole_scene_turns_the_result),
         cmocka_unit_test(no_finite_input_gives_a_nan),
         cmocka_unit_test(a_flung_tip_is_cut_and_counted),
+        cmocka_unit_test(a_strand_beyond_the_drivers_loops_is_refused),
         cmocka_unit_test(unknown_solvers_and_variants_name_the_nearest),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
