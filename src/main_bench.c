@@ -97,7 +97,7 @@ static Result run_all(const Arguments *arguments, const Gpu *gpu, Error *error)
     speed_print_head(stdout);
     for (int i = 0; i < set_count + arguments->file_count; ++i)
         for (const SolverType *const *type = SOLVER_TYPES; *type && result == RESULT_OK; ++type)
-            if ((*type)->step)
+            if ((*type)->calls->step)
                 result = add_row(arguments, gpu, i < set_count ? sets[i] : NULL,
                                  i < set_count ? NULL : arguments->files[i - set_count], *type,
                                  rows, error);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "particle_solver.h"
 #include "pose.h"
+#include "step_programs.h"
 
 #include <cglm/cglm.h>
 
@@ -8,8 +9,6 @@
 #include <string.h>
 
 typedef struct ParticleBatch {
-    GLuint program;
-    uint32_t strands_per_lane;
     GpuBuffer velocity; // vec4 a particle: m/s; w is the solver's own
     GpuBuffer scratch;
 } ParticleBatch;
@@ -20,25 +19,22 @@ typedef struct ParticleState {
     const SectionParams *params;
     GpuTimer *timer;
     GpuBuffer uniforms;
+    StepPrograms programs;
     ParticleBatch *batches; // one for each of the hair
     Pose style;             // for the start
-    uint32_t group_size;
-    bool in_registers; // strands; else they go through memory
     bool posed;
 } ParticleState;
 
-void particle_solver_destroy(void *pointer)
+static void destroy(void *pointer)
 {
     ParticleState *state = pointer;
     if (!state) return;
     for (uint32_t i = 0; state->batches && i < state->hair->batch_count; ++i) {
-        ParticleBatch *batch = &state->batches[i];
-        bool shared = i > 0 && batch->program == state->batches[i - 1].program;
-        if (batch->program && !shared) glDeleteProgram(batch->program);
-        gpu_buffer_destroy(&batch->velocity);
-        gpu_buffer_destroy(&batch->scratch);
+        gpu_buffer_destroy(&state->batches[i].velocity);
+        gpu_buffer_destroy(&state->batches[i].scratch);
     }
     free(state->batches);
+    step_programs_destroy(&state->programs);
     gpu_buffer_destroy(&state->uniforms);
     pose_destroy(&state->style);
     free(state);
@@ -50,36 +46,17 @@ const GpuBuffer *particle_solver_velocities(const void *pointer, uint32_t batch)
     return &state->batches[batch].velocity;
 }
 
-static Result build_program(const ParticleState *state, ParticleBatch *batch, uint32_t vertices,
-                            bool in_registers, Error *error)
+static Result build_programs(ParticleState *state, const Gpu *gpu, Error *error)
 {
-    ShaderDefine defines[5 + PARTICLE_DEFINES] = {
-        {"GROUP_SIZE", (int)state->group_size},
-        {"STRANDS", (int)batch->strands_per_lane},
-        {"IN_REGISTERS", in_registers},
-        {"VERTICES", (int)vertices},
+    ShaderDefine defines[STEP_OWN_DEFINES + 1] = {0};
+    if (state->recipe->define) state->recipe->define(defines, state->params);
+    const StepProgramsOptions options = {
+        .shader = state->recipe->shader,
+        .most_in_registers = state->recipe->most_in_registers,
+        .strands_on_cpu = 1,
+        .defines = defines,
     };
-    if (state->recipe->define) state->recipe->define(&defines[4], state->params);
-    return shader_build_compute(&batch->program, state->recipe->shader, defines, error);
-}
-
-// Batches of equal vertex count, and all of them if strands go through memory, share a program.
-static Result build_programs(ParticleState *state, bool software, Error *error)
-{
-    const ParticleRecipe *recipe = state->recipe;
-    bool in_registers = state->in_registers;
-    for (uint32_t i = 0; i < state->hair->batch_count; ++i) {
-        uint32_t n = state->hair->batches[i].vertex_count;
-        state->batches[i].strands_per_lane =
-            software && recipe->strands_on_cpu ? recipe->strands_on_cpu : 1;
-        if (i > 0 && (!in_registers || n == state->hair->batches[i - 1].vertex_count)) {
-            state->batches[i].program = state->batches[i - 1].program;
-            continue;
-        }
-        Result result = build_program(state, &state->batches[i], n, in_registers, error);
-        if (result != RESULT_OK) return result;
-    }
-    return RESULT_OK;
+    return step_programs_create(&state->programs, gpu, state->hair, &options, error);
 }
 
 static Result create_buffers(ParticleState *state, ParticleBatch *batch, const HairBatch *hair,
@@ -92,7 +69,7 @@ static Result create_buffers(ParticleState *state, ParticleBatch *batch, const H
     Result result =
         gpu_buffer_create(&batch->velocity, limits, "velocities", size, zero, GL_RGBA32F, error);
     free(zero);
-    if (result == RESULT_OK && state->recipe->scratch && !state->in_registers)
+    if (result == RESULT_OK && state->recipe->scratch && !state->programs.in_registers)
         result = gpu_buffer_create(&batch->scratch, limits, "a solver's scratch memory",
                                    size * state->recipe->scratch, NULL, 0, error);
     return result;
@@ -111,36 +88,50 @@ static Result check_vertices(const Hair *hair, const ParticleRecipe *recipe, Err
     return RESULT_OK;
 }
 
-Result particle_solver_create(void **pointer, const SolverSetup *setup,
-                              const ParticleRecipe *recipe, Error *error)
+static const ParticleRecipe *find_recipe(const SolverSetup *setup)
 {
-    *pointer = NULL;
-    if (check_vertices(setup->hair, recipe, error) != RESULT_OK) return RESULT_USAGE;
-    ParticleState *state = calloc(1, sizeof *state);
-    if (!state) return error_set(error, RESULT_FAILED, "no memory for a solver");
-    *state = (ParticleState){.group_size = step_group_size(setup->gpu),
-                             .recipe = recipe,
-                             .hair = setup->hair,
-                             .params = setup->params,
-                             .timer = setup->timer,
-                             .in_registers =
-                                 step_fits_registers(setup->hair, recipe->most_in_registers)};
+    const SolverType *type = setup->type;
+    const ParticleRecipe *own = type->recipes[solver_variant(type, setup->params->variant)];
+    return own ? own : type->recipes[0];
+}
+
+static Result check(const SolverSetup *setup, const ParticleRecipe *recipe, Error *error)
+{
+    Result result = check_vertices(setup->hair, recipe, error);
+    return result == RESULT_OK && recipe->check ? recipe->check(setup, error) : result;
+}
+
+static Result build(ParticleState *state, const SolverSetup *setup, Error *error)
+{
     state->batches = calloc(setup->hair->batch_count + 1, sizeof *state->batches);
-    Result result =
-        state->batches ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for a solver");
-    if (result == RESULT_OK) result = build_programs(state, setup->gpu->software, error);
+    if (!state->batches) return error_set(error, RESULT_FAILED, "no memory for a solver");
+    Result result = build_programs(state, setup->gpu, error);
     if (result == RESULT_OK) result = pose_create(&state->style, setup->gpu, 1, error);
     for (uint32_t i = 0; i < state->hair->batch_count && result == RESULT_OK; ++i)
         result = create_buffers(state, &state->batches[i], &state->hair->batches[i],
                                 &setup->gpu->limits, error);
-    if (result == RESULT_OK)
-        *pointer = state;
-    else
-        particle_solver_destroy(state);
     return result;
 }
 
-void particle_solver_pose(void *pointer, const HeadPose *head)
+static Result create(void **pointer, const SolverSetup *setup, Error *error)
+{
+    *pointer = NULL;
+    const ParticleRecipe *recipe = find_recipe(setup);
+    Result result = check(setup, recipe, error);
+    if (result != RESULT_OK) return result;
+    ParticleState *state = calloc(1, sizeof *state);
+    if (!state) return error_set(error, RESULT_FAILED, "no memory for a solver");
+    *state = (ParticleState){
+        .recipe = recipe, .hair = setup->hair, .params = setup->params, .timer = setup->timer};
+    result = build(state, setup, error);
+    if (result == RESULT_OK)
+        *pointer = state;
+    else
+        destroy(state);
+    return result;
+}
+
+static void write_pose(void *pointer, const HeadPose *head)
 {
     ParticleState *state = pointer;
     if (state->posed) return;
@@ -163,9 +154,7 @@ static void dispatch(ParticleState *state, uint32_t i, StepParams *uniforms)
     gpu_buffer_bind_storage(&hair->position, BIND_POSITION_OUT);
     gpu_buffer_bind_storage(&batch->velocity, BIND_STATE_OUT);
     if (batch->scratch.buffer) gpu_buffer_bind_storage(&batch->scratch, BIND_SCRATCH);
-    glUseProgram(batch->program);
-    glDispatchCompute(
-        step_group_count(hair->strand_count, state->group_size, batch->strands_per_lane), 1, 1);
+    step_programs_dispatch(&state->programs, i, hair->strand_count);
 }
 
 // The head's pose after the share t of a step: translation straight, rotation by slerp.
@@ -181,7 +170,8 @@ static HeadPose pose_between(const HeadPose *a, const HeadPose *b, float t)
 static void dispatch_phases(ParticleState *state, StepParams *uniforms)
 {
     const ParticleRecipe *recipe = state->recipe;
-    int phases = recipe->phases && !state->in_registers ? recipe->phases(state->params) : 1;
+    int phases =
+        recipe->phases && !state->programs.in_registers ? recipe->phases(state->params) : 1;
     for (int phase = 0; phase < phases; ++phase) {
         uniforms->phase = (uint32_t)phase;
         for (uint32_t i = 0; i < state->hair->batch_count; ++i) dispatch(state, i, uniforms);
@@ -189,11 +179,11 @@ static void dispatch_phases(ParticleState *state, StepParams *uniforms)
     }
 }
 
-void particle_solver_step(void *pointer, const SolverStep *whole)
+static void step_hair(void *pointer, const SolverStep *whole)
 {
     ParticleState *state = pointer;
     const ParticleRecipe *recipe = state->recipe;
-    particle_solver_pose(state, &whole->head_old);
+    write_pose(state, &whole->head_old);
     int count = recipe->substeps ? recipe->substeps(whole, state->params, state->hair) : 1;
     gpu_timer_begin(state->timer, recipe->label);
     SolverStep step = *whole;
@@ -208,3 +198,10 @@ void particle_solver_step(void *pointer, const SolverStep *whole)
     }
     gpu_timer_end(state->timer);
 }
+
+const SolverCalls PARTICLE_SOLVER = {
+    .create = create,
+    .step = step_hair,
+    .pose = write_pose,
+    .destroy = destroy,
+};

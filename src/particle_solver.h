@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What all solvers that move every particle have in common: positions and velocities on the GPU, a
-// compute shader per step. Such a solver is a ParticleRecipe, a GLSL file, and four lines that hand
-// SolverType's calls on (solver_dftl.c is the example).
+// compute shader per step. Such a solver is a ParticleRecipe, a GLSL file, and a SolverType with
+// .calls = &PARTICLE_SOLVER (solver_dftl.c is the example).
 #pragma once
 
 #include "shader.h"
@@ -9,23 +9,22 @@
 #include "step_uniforms.h"
 
 // The vec4s of StepParams.own that a recipe may fill.
-enum { PARTICLE_OWN = 4, PARTICLE_DEFINES = 8 };
+enum { PARTICLE_OWN = 4 };
 
 typedef struct ParticleRecipe {
     const char *label;          // of the timer: "sim_<name>"
     const char *shader;         // glsl file; see particles.glsl for what it is given
     uint32_t most_in_registers; // strands of at most this many vertices get IN_REGISTERS 1 and
                                 // VERTICES; 0: never
-    uint32_t strands_on_cpu; // strands a lane takes on a CPU driver, STRANDS in the shader (1 or 2;
-                             // 1 on a GPU)
     uint32_t scratch; // vec4 a particle of scratch memory (BIND_SCRATCH) where the strand is not in
                       // registers
     uint32_t most_vertices; // longer strands are refused: their loops would take more than the
                             // 65,535 iterations that CPU drivers allow an invocation; 0: any length
+    // Refuses what it cannot do by construction, RESULT_USAGE with the reason; NULL: nothing.
+    Result (*check)(const SolverSetup *setup, Error *error);
     // Fills StepParams.own for a step, may change other members; NULL: nothing.
     void (*fill)(StepParams *uniforms, const SolverStep *step, const SectionParams *params);
-    // Appends the variant's own macros behind `defines` (room for PARTICLE_DEFINES, ended by {0});
-    // NULL: none.
+    // Sets the variant's own macros, at most STEP_OWN_DEFINES; {0} ends them. NULL: none.
     void (*define)(ShaderDefine *defines, const SectionParams *params);
     // How many equal sub-steps a step needs for the longest strand; NULL: 1.
     int (*substeps)(const SolverStep *step, const SectionParams *params, const Hair *hair);
@@ -34,13 +33,9 @@ typedef struct ParticleRecipe {
     int (*phases)(const SectionParams *params);
 } ParticleRecipe;
 
-// SolverType's calls. `recipe` outlives the solver. Positions live in Hair's own buffer, so that a
-// pose costs nothing; the first pose puts the style where the head is. Velocities start at 0.
-Result particle_solver_create(void **state, const SolverSetup *setup, const ParticleRecipe *recipe,
-                              Error *error);
-void particle_solver_step(void *state, const SolverStep *step);
-void particle_solver_pose(void *state, const HeadPose *head);
-void particle_solver_destroy(void *state);
+// Positions live in Hair's own buffer, so that a pose costs nothing; the first pose puts the style
+// where the head is. Velocities start at 0. The recipe is that of the type for the variant.
+extern const SolverCalls PARTICLE_SOLVER;
 
 // The velocities of batch `batch` (vec4 a particle, m/s), by hair_address. For tests.
 const GpuBuffer *particle_solver_velocities(const void *state, uint32_t batch);

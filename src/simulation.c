@@ -24,7 +24,8 @@ static Result create_section(SimulationSection *section, const Gpu *gpu, GpuTime
 {
     Result result = hair_create(&section->hair, strands, first_id, &gpu->limits, error);
     if (result == RESULT_OK) {
-        const SolverSetup setup = {gpu, timer, &section->hair, &description->params};
+        const SolverSetup setup = {
+            .gpu = gpu, .timer = timer, .hair = &section->hair, .params = &description->params};
         result = solver_create(&section->solver, &setup, error);
     }
     return result == RESULT_OK ? RESULT_OK : error_prefix(error, result, "%s: ", description->file);
@@ -84,9 +85,9 @@ void simulation_advance(Simulation *simulation)
     for (int substep = 0; substep < simulation->scene->run.substeps; ++substep) {
         SolverStep step = next_step(simulation, substep);
         for (uint32_t i = 0; i < simulation->scene->section_count; ++i) {
-            Solver *solver = &simulation->sections[i].solver;
+            const Solver *solver = &simulation->sections[i].solver;
             if (solver_is_static(solver)) continue;
-            solver->type->step(solver->state, &step);
+            solver_step(solver, &step);
             ++simulation->steps;
         }
         simulation->head = step.head;
@@ -103,7 +104,7 @@ void simulation_pose(Simulation *simulation)
             ++simulation->poses_skipped;
             continue;
         }
-        section->solver.type->pose(section->solver.state, &simulation->head);
+        solver_pose(&section->solver, &simulation->head);
         section->posed = true;
         section->posed_at = simulation->head;
         ++simulation->poses;
@@ -121,9 +122,7 @@ bool simulation_is_still(const Simulation *simulation)
 SolverReport simulation_report(const Simulation *simulation)
 {
     SolverReport report = {0};
-    for (uint32_t i = 0; i < simulation->scene->section_count; ++i) {
-        const Solver *solver = &simulation->sections[i].solver;
-        if (solver->type->report) solver->type->report(solver->state, &report);
-    }
+    for (uint32_t i = 0; i < simulation->scene->section_count; ++i)
+        solver_report(&simulation->sections[i].solver, &report);
     return report;
 }

@@ -1,21 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "solver.h"
-#include "solver_chain.h"
-#include "solver_dftl.h"
-#include "solver_emulation.h"
-#include "solver_hybrid.h"
-#include "solver_none.h"
-#include "solver_rope.h"
-#include "solver_split.h"
-#include "solver_spring.h"
-#include "solver_tressfx.h"
 #include "suggest.h"
 
 #include <string.h>
 
-const SolverType *const SOLVER_TYPES[] = {
-    &SOLVER_SPLIT,  &SOLVER_EMULATION, &SOLVER_HYBRID, &SOLVER_CHAIN, &SOLVER_TRESSFX,
-    &SOLVER_SPRING, &SOLVER_ROPE,      &SOLVER_DFTL,   &SOLVER_NONE,  NULL};
+#define POINT_TO_SOLVER(name) &SOLVER_##name,
+const SolverType *const SOLVER_TYPES[] = {SOLVERS(POINT_TO_SOLVER) NULL};
 
 enum { MAX_WORDS = 32 };
 
@@ -68,20 +58,44 @@ Result solver_create(Solver *solver, const SolverSetup *setup, Error *error)
     Result result = solver_check(setup->params, error);
     if (result != RESULT_OK) return result;
     solver->type = find_type(setup->params->algo);
-    result = solver->type->create(&solver->state, setup, error);
+    SolverSetup typed = *setup;
+    typed.type = solver->type;
+    result = solver->type->calls->create(&solver->state, &typed, error);
     if (result != RESULT_OK) *solver = (Solver){0};
     return result;
 }
 
 void solver_destroy(Solver *solver)
 {
-    if (solver->type) solver->type->destroy(solver->state);
+    if (solver->type) solver->type->calls->destroy(solver->state);
     *solver = (Solver){0};
+}
+
+void solver_step(const Solver *solver, const SolverStep *step)
+{
+    if (solver->type->calls->step) solver->type->calls->step(solver->state, step);
+}
+
+void solver_pose(const Solver *solver, const HeadPose *head)
+{
+    solver->type->calls->pose(solver->state, head);
+}
+
+void solver_report(const Solver *solver, SolverReport *report)
+{
+    if (solver->type->calls->report) solver->type->calls->report(solver->state, report);
 }
 
 bool solver_is_static(const Solver *solver)
 {
-    return !solver->type->step;
+    return !solver->type->calls->step;
+}
+
+int solver_variant(const SolverType *type, const char *variant)
+{
+    for (int i = 0; i < SOLVER_MAX_VARIANTS && type->variants[i]; ++i)
+        if (strcmp(type->variants[i], variant) == 0) return i;
+    return 0;
 }
 
 // Whether a parameter's help says that it is this solver's: "chain, hybrid: ...".

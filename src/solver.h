@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Solvers: what moves the hair. One interface, one table; adding a solver is one C file, one GLSL
-// file and one line of the table.
+// file and one line of SOLVERS.
 #pragma once
 
 #include "gpu_timer.h"
@@ -26,12 +26,15 @@ typedef struct SolverStep {
     float wind[4][3];        // m/s: mixed by strand
 } SolverStep;
 
+typedef struct SolverType SolverType;
+
 // What a solver works on. All of it outlives the solver.
 typedef struct SolverSetup {
     const Gpu *gpu;
     GpuTimer *timer; // spans "sim_<name>" and "pose"
     const Hair *hair;
     const SectionParams *params;
+    const SolverType *type; // solver_create sets it
 } SolverSetup;
 
 // What happened so far, for the statistics.
@@ -39,24 +42,49 @@ typedef struct SolverReport {
     uint64_t moves_limited; // moves cut because a particle was flung beyond what float32 can follow
 } SolverReport;
 
-// Every function is called with the context current; all but create and report only queue GPU work.
-typedef struct SolverType {
-    const char *name;                                    // the word of --algo
-    const char *summary;                                 // one line for --algo list
-    const char *(*caution)(const SectionParams *params); // what its user should know, one line;
-                                                         // NULL or giving NULL: nothing
-    const char *lengths;     // how well segments keep theirs, for --algo list; may be NULL
-    const char *style;       // what brings the style back, for --algo list; NULL: nothing does
-    const char *variants[4]; // words of --variant, the default first; NULL ends
+// How a solver's state comes, moves and goes. Every function is called with the context current;
+// all but create and report only queue GPU work.
+typedef struct SolverCalls {
     Result (*create)(void **state, const SolverSetup *setup,
                      Error *error);                    // hair at rest in its style
     void (*step)(void *state, const SolverStep *step); // advances the physical state; may be NULL
     void (*pose)(void *state, const HeadPose *head);   // writes Hair's positions for drawing
     void (*report)(void *state, SolverReport *report); // waits for the GPU; may be NULL
     void (*destroy)(void *state);                      // NULL state is legal
-} SolverType;
+} SolverCalls;
 
-// Ends with a NULL name.
+enum { SOLVER_MAX_VARIANTS = 4 };
+
+struct SolverType {
+    const char *name;                                    // the word of --algo
+    const char *summary;                                 // one line for --algo list
+    const char *(*caution)(const SectionParams *params); // what its user should know, one line;
+                                                         // NULL or giving NULL: nothing
+    const char *lengths; // how well segments keep theirs, for --algo list; may be NULL
+    const char *style;   // what brings the style back, for --algo list; NULL: nothing does
+    const char *variants[SOLVER_MAX_VARIANTS]; // words of --variant, the default first; NULL ends
+    const SolverCalls *calls;                  // &PARTICLE_SOLVER, or its own
+    const struct ParticleRecipe
+        *recipes[SOLVER_MAX_VARIANTS]; // with PARTICLE_SOLVER: a variant's, or one for all
+};
+
+// The table, in the order of --algo list.
+#define SOLVERS(X)                                                                                 \
+    X(SPLIT)                                                                                       \
+    X(EMULATION)                                                                                   \
+    X(HYBRID)                                                                                      \
+    X(CHAIN)                                                                                       \
+    X(TRESSFX)                                                                                     \
+    X(SPRING)                                                                                      \
+    X(ROPE)                                                                                        \
+    X(DFTL)                                                                                        \
+    X(NONE)
+
+#define DECLARE_SOLVER(name) extern const SolverType SOLVER_##name;
+SOLVERS(DECLARE_SOLVER)
+#undef DECLARE_SOLVER
+
+// The same as pointers; ends with NULL.
 extern const SolverType *const SOLVER_TYPES[];
 
 typedef struct Solver {
@@ -75,8 +103,16 @@ const char *solver_caution(const SectionParams *params);
 Result solver_create(Solver *solver, const SolverSetup *setup, Error *error);
 void solver_destroy(Solver *solver);
 
+// The calls of its type, on its state.
+void solver_step(const Solver *solver, const SolverStep *step);
+void solver_pose(const Solver *solver, const HeadPose *head);
+void solver_report(const Solver *solver, SolverReport *report);
+
 // True if stepping changes nothing: the pose depends on the head alone.
 bool solver_is_static(const Solver *solver);
+
+// Which of the type's variants the parameters name: 0, the default, for "".
+int solver_variant(const SolverType *type, const char *variant);
 
 // Prints the table: name, summary, what it keeps, variants, and the flags whose help begins with
 // the name ("chain, hybrid: ...").

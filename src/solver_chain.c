@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "solver_chain.h"
 #include "particle_solver.h"
 
 static void fill(StepParams *uniforms, const SolverStep *step, const SectionParams *params)
@@ -17,17 +16,11 @@ static const ParticleRecipe RECIPE = {
     .label = "sim_chain",
     .shader = "chain.comp",
     .most_in_registers = 16,
-    .strands_on_cpu = 1,
     .scratch = 2,
     .most_vertices = 7000, // nine sweeps
     .fill = fill,
     .define = define,
 };
-
-static Result create(void **state, const SolverSetup *setup, Error *error)
-{
-    return particle_solver_create(state, setup, &RECIPE, error);
-}
 
 const SolverType SOLVER_CHAIN = {
     .name = "chain",
@@ -35,8 +28,6 @@ const SolverType SOLVER_CHAIN = {
                "order in the step",
     .lengths = "exact",
     .style = "position springs, --style, --style-stiffness",
-    .create = create,
-    .step = particle_solver_step,
-    .pose = particle_solver_pose,
-    .destroy = particle_solver_destroy,
+    .calls = &PARTICLE_SOLVER,
+    .recipes = {&RECIPE},
 };

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "solver_dftl.h"
 #include "particle_solver.h"
 
 static void fill(StepParams *uniforms, const SolverStep *step, const SectionParams *params)
@@ -17,15 +16,9 @@ static void define(ShaderDefine *defines, const SectionParams *params)
 static const ParticleRecipe RECIPE = {
     .label = "sim_dftl",
     .shader = "dftl.comp",
-    .strands_on_cpu = 1,
     .fill = fill,
     .define = define,
 };
-
-static Result create(void **state, const SolverSetup *setup, Error *error)
-{
-    return particle_solver_create(state, setup, &RECIPE, error);
-}
 
 const SolverType SOLVER_DFTL = {
     .name = "dftl",
@@ -33,8 +26,6 @@ const SolverType SOLVER_DFTL = {
                "strongly damped",
     .lengths = "exact",
     .style = "position springs, --style, --style-stiffness",
-    .create = create,
-    .step = particle_solver_step,
-    .pose = particle_solver_pose,
-    .destroy = particle_solver_destroy,
+    .calls = &PARTICLE_SOLVER,
+    .recipes = {&RECIPE},
 };

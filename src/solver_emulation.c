@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "solver_emulation.h"
 #include "particle_solver.h"
 
 #include <stdio.h>
@@ -30,17 +29,11 @@ static const ParticleRecipe RECIPE = {
     .shader = "emulation.comp",
     .most_in_registers =
         32, // shared memory: 64 lanes of a GPU fill the 32 KiB that every driver has
-    .strands_on_cpu = 1,
     .scratch = 1,
     .most_vertices = 240, // each particle pulls all others
     .fill = fill,
     .define = define,
 };
-
-static Result create(void **state, const SolverSetup *setup, Error *error)
-{
-    return particle_solver_create(state, setup, &RECIPE, error);
-}
 
 static const char *caution(const SectionParams *params)
 {
@@ -55,8 +48,6 @@ const SolverType SOLVER_EMULATION = {
                "unstable without much drag",
     .variants = {"projected", "thesis"},
     .caution = caution,
-    .create = create,
-    .step = particle_solver_step,
-    .pose = particle_solver_pose,
-    .destroy = particle_solver_destroy,
+    .calls = &PARTICLE_SOLVER,
+    .recipes = {&RECIPE},
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "solver_none.h"
 #include "pose.h"
+#include "solver.h"
 
 #include <stdlib.h>
 
@@ -42,12 +42,12 @@ static void write_pose(void *pointer, const HeadPose *head)
     gpu_timer_end(state->timer);
 }
 
+static const SolverCalls CALLS = {.create = create, .pose = write_pose, .destroy = destroy};
+
 const SolverType SOLVER_NONE = {
     .name = "none",
     .summary = "hair stiff in its style, carried by the head",
     .lengths = "exact",
     .style = "rigid",
-    .create = create,
-    .pose = write_pose,
-    .destroy = destroy,
+    .calls = &CALLS,
 };

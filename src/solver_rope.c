@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "solver_rope.h"
 #include "particle_solver.h"
 
 #include <math.h>
@@ -47,26 +46,25 @@ static int phases(const SectionParams *params)
     return params->rope_iterations;
 }
 
-static const ParticleRecipe RECIPE = {
-    .label = "sim_rope",
-    .shader = "rope.comp",
-    .most_in_registers = MOST_IN_REGISTERS,
-    .strands_on_cpu = 1,
-    .scratch = 2,
-    .fill = fill,
-    .define = define,
-    .phases = phases,
-};
-
-static Result create(void **state, const SolverSetup *setup, Error *error)
+static Result check(const SolverSetup *setup, Error *error)
 {
-    *state = NULL;
     if (is_bullet(setup->params) && setup->params->rope_compliance > 0)
         return error_set(error, RESULT_USAGE,
                          "rope_compliance: the rope as in Bullet has links of no compliance; "
                          "--variant xpbd has it");
-    return particle_solver_create(state, setup, &RECIPE, error);
+    return RESULT_OK;
 }
+
+static const ParticleRecipe RECIPE = {
+    .label = "sim_rope",
+    .shader = "rope.comp",
+    .most_in_registers = MOST_IN_REGISTERS,
+    .scratch = 2,
+    .check = check,
+    .fill = fill,
+    .define = define,
+    .phases = phases,
+};
 
 const SolverType SOLVER_ROPE = {
     .name = "rope",
@@ -74,8 +72,6 @@ const SolverType SOLVER_ROPE = {
     .lengths = "within what its iterations allow; drawn exactly",
     .style = "position springs, --style, --style-stiffness",
     .variants = {"bullet", "xpbd"},
-    .create = create,
-    .step = particle_solver_step,
-    .pose = particle_solver_pose,
-    .destroy = particle_solver_destroy,
+    .calls = &PARTICLE_SOLVER,
+    .recipes = {&RECIPE},
 };

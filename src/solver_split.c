@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "solver_split.h"
 #include "pose.h"
+#include "solver.h"
+#include "step_programs.h"
 #include "step_uniforms.h"
 
 #include <stdlib.h>
@@ -10,9 +11,8 @@
 // compiled for that count.
 enum { MOST_IN_REGISTERS = 40 };
 
-// Simultaneous strands of a lane: two hide each other's latency on a CPU, a GPU has other lanes for
-// that.
-enum { STRANDS_ON_CPU = 2, STRANDS_ON_GPU = 1 };
+// Strands of a lane on a CPU driver, where two hide each other's latency.
+enum { STRANDS_ON_CPU = 2 };
 
 // A strand in memory takes six loops over its segments at most (span, four pulls, renormalisation),
 // and CPU drivers end loops silently after 65,535 iterations in all of an invocation: longer
@@ -20,8 +20,6 @@ enum { STRANDS_ON_CPU = 2, STRANDS_ON_GPU = 1 };
 enum { MOST_VERTICES = 10000 };
 
 typedef struct SplitBatch {
-    GLuint program;
-    uint32_t strands_per_lane;
     GpuBuffer segments; // vec4 a particle: unit direction in the world, rest length (j = 0: unused)
     GpuBuffer tips;     // two vec4 a strand: position (m), times limited; velocity (m/s)
 } SplitBatch;
@@ -33,7 +31,7 @@ typedef struct SplitState {
     GpuBuffer uniforms;
     SplitBatch *batches; // one for each of the hair
     Pose pose;
-    uint32_t group_size;
+    StepPrograms programs;
     bool thesis;
 } SplitState;
 
@@ -43,42 +41,25 @@ static void destroy(void *pointer)
     if (!state) return;
     for (uint32_t i = 0; state->batches && i < state->hair->batch_count; ++i) {
         SplitBatch *batch = &state->batches[i];
-        bool shared = i > 0 && batch->program == state->batches[i - 1].program;
-        if (batch->program && !shared) glDeleteProgram(batch->program);
         gpu_buffer_destroy(&batch->segments);
         gpu_buffer_destroy(&batch->tips);
     }
     free(state->batches);
+    step_programs_destroy(&state->programs);
     gpu_buffer_destroy(&state->uniforms);
     pose_destroy(&state->pose);
     free(state);
 }
 
-// Batches of equal vertex count, and all of them if strands go through memory, share a program.
 static Result build_programs(SplitState *state, const Gpu *gpu, Error *error)
 {
-    bool in_registers = step_fits_registers(state->hair, MOST_IN_REGISTERS);
-    uint32_t strands = in_registers && gpu->software ? STRANDS_ON_CPU : STRANDS_ON_GPU;
-    for (uint32_t i = 0; i < state->hair->batch_count; ++i) {
-        SplitBatch *batch = &state->batches[i];
-        uint32_t n = state->hair->batches[i].vertex_count;
-        batch->strands_per_lane = strands;
-        if (i > 0 && (!in_registers || n == state->hair->batches[i - 1].vertex_count)) {
-            batch->program = state->batches[i - 1].program;
-            continue;
-        }
-        const ShaderDefine defines[] = {
-            {"GROUP_SIZE", (int)state->group_size},
-            {"STRANDS", (int)strands},
-            {"IN_REGISTERS", in_registers},
-            {"VERTICES", (int)n},
-            {"THESIS", state->thesis},
-            {0},
-        };
-        Result result = shader_build_compute(&batch->program, "split.comp", defines, error);
-        if (result != RESULT_OK) return result;
-    }
-    return RESULT_OK;
+    const StepProgramsOptions options = {
+        .shader = "split.comp",
+        .most_in_registers = MOST_IN_REGISTERS,
+        .strands_on_cpu = STRANDS_ON_CPU,
+        .defines = (const ShaderDefine[]){{"THESIS", state->thesis}, {0}},
+    };
+    return step_programs_create(&state->programs, gpu, state->hair, &options, error);
 }
 
 typedef float Float4[4];
@@ -149,7 +130,6 @@ static Result create(void **pointer, const SolverSetup *setup, Error *error)
     state->hair = setup->hair;
     state->params = setup->params;
     state->timer = setup->timer;
-    state->group_size = step_group_size(setup->gpu);
     state->thesis = strcmp(setup->params->variant, "thesis") == 0;
     Result result = build(state, setup, error);
     if (result == RESULT_OK)
@@ -176,9 +156,7 @@ static void step(void *pointer, const SolverStep *solver_step)
         gpu_buffer_bind_texture(&batch->segments, BIND_STATE);
         gpu_buffer_bind_storage(&batch->segments, BIND_STATE_OUT);
         gpu_buffer_bind_storage(&batch->tips, BIND_TIPS);
-        glUseProgram(batch->program);
-        glDispatchCompute(
-            step_group_count(hair->strand_count, state->group_size, batch->strands_per_lane), 1, 1);
+        step_programs_dispatch(&state->programs, i, hair->strand_count);
     }
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
     gpu_timer_end(state->timer);
@@ -209,6 +187,14 @@ static void report(void *pointer, SolverReport *solver_report)
     }
 }
 
+static const SolverCalls CALLS = {
+    .create = create,
+    .step = step,
+    .pose = write_pose,
+    .report = report,
+    .destroy = destroy,
+};
+
 const SolverType SOLVER_SPLIT = {
     .name = "split",
     .summary =
@@ -216,9 +202,5 @@ const SolverType SOLVER_SPLIT = {
     .lengths = "exact",
     .style = "mixed into what is drawn, --style",
     .variants = {"ball", "thesis"},
-    .create = create,
-    .step = step,
-    .pose = write_pose,
-    .report = report,
-    .destroy = destroy,
+    .calls = &CALLS,
 };

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "solver_spring.h"
 #include "particle_solver.h"
 
 #include <cglm/cglm.h>
@@ -50,7 +49,6 @@ static int calm_substeps(const SolverStep *step, const SectionParams *params, co
 static const ParticleRecipe IMPLICIT = {
     .label = "sim_spring",
     .shader = "spring.comp",
-    .strands_on_cpu = 1,
     .scratch = 3,
     .fill = fill,
     .define = define,
@@ -71,17 +69,10 @@ static int stable_substeps(const SolverStep *step, const SectionParams *params, 
 static const ParticleRecipe EXPLICIT = {
     .label = "sim_spring",
     .shader = "spring.comp",
-    .strands_on_cpu = 1,
     .fill = fill,
     .define = define,
     .substeps = stable_substeps,
 };
-
-static Result create(void **state, const SolverSetup *setup, Error *error)
-{
-    bool is_explicit = strcmp(setup->params->variant, "explicit") == 0;
-    return particle_solver_create(state, setup, is_explicit ? &EXPLICIT : &IMPLICIT, error);
-}
 
 const SolverType SOLVER_SPRING = {
     .name = "spring",
@@ -89,8 +80,6 @@ const SolverType SOLVER_SPRING = {
     .lengths = "within what its stiffness allows; drawn exactly",
     .style = "angular springs, --style, --spring-angular",
     .variants = {"implicit", "explicit"},
-    .create = create,
-    .step = particle_solver_step,
-    .pose = particle_solver_pose,
-    .destroy = particle_solver_destroy,
+    .calls = &PARTICLE_SOLVER,
+    .recipes = {&IMPLICIT, &EXPLICIT},
 };

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "solver_tressfx.h"
 #include "particle_solver.h"
 
 #include <math.h>
@@ -78,14 +77,6 @@ static void define(ShaderDefine *defines, const SectionParams *params)
     defines[0] = (ShaderDefine){"TRESSFX4", is_faithful(params)};
 }
 
-static const ParticleRecipe RECIPE = {
-    .label = "sim_tressfx",
-    .shader = "tressfx.comp",
-    .strands_on_cpu = 1,
-    .fill = fill,
-    .define = define,
-};
-
 // Loops over one strand: to predict and to write; a local pass; a pass of the lengths.
 static int64_t count_loops(const SectionParams *params)
 {
@@ -111,12 +102,13 @@ static Result check_loops(const SolverSetup *setup, Error *error)
     return RESULT_OK;
 }
 
-static Result create(void **state, const SolverSetup *setup, Error *error)
-{
-    *state = NULL;
-    Result result = check_loops(setup, error);
-    return result == RESULT_OK ? particle_solver_create(state, setup, &RECIPE, error) : result;
-}
+static const ParticleRecipe RECIPE = {
+    .label = "sim_tressfx",
+    .shader = "tressfx.comp",
+    .check = check_loops,
+    .fill = fill,
+    .define = define,
+};
 
 const SolverType SOLVER_TRESSFX = {
     .name = "tressfx",
@@ -124,8 +116,6 @@ const SolverType SOLVER_TRESSFX = {
     .lengths = "exact; tressfx4: stretch",
     .style = "local and global shape, --style, its own flags",
     .variants = {"steady", "tressfx4"},
-    .create = create,
-    .step = particle_solver_step,
-    .pose = particle_solver_pose,
-    .destroy = particle_solver_destroy,
+    .calls = &PARTICLE_SOLVER,
+    .recipes = {&RECIPE},
 };

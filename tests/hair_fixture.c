@@ -46,7 +46,10 @@ void fixture_create_strands(HairFixture *fixture, const Strands *strands, const 
     gpu_timer_create(&fixture->timer, false, true);
     if (hair_create(&fixture->hair, strands, 0, &fixture_gpu()->limits, &error) != RESULT_OK)
         fail_msg("%s", error.text);
-    const SolverSetup setup = {fixture_gpu(), &fixture->timer, &fixture->hair, &fixture->params};
+    const SolverSetup setup = {.gpu = fixture_gpu(),
+                               .timer = &fixture->timer,
+                               .hair = &fixture->hair,
+                               .params = &fixture->params};
     if (solver_create(&fixture->solver, &setup, &error) != RESULT_OK) fail_msg("%s", error.text);
 }
 
@@ -73,7 +76,7 @@ void fixture_destroy(HairFixture *fixture)
 
 void fixture_step(HairFixture *fixture)
 {
-    fixture->solver.type->step(fixture->solver.state, &fixture->step);
+    solver_step(&fixture->solver, &fixture->step);
     fixture->step.head_old = fixture->step.head;
     fixture->step.first = false;
     ++fixture->step.shuffle;
@@ -85,7 +88,7 @@ float (*fixture_positions(HairFixture *fixture, uint32_t batch))[4]
     size_t size = (size_t)hair->vertex_count * hair_slots(hair) * sizeof(float[4]);
     float(*positions)[4] = malloc(size);
     assert_non_null(positions);
-    fixture->solver.type->pose(fixture->solver.state, &fixture->step.head);
+    solver_pose(&fixture->solver, &fixture->step.head);
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, hair->position.buffer);
     glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, positions);
     return positions;

@@ -100,7 +100,7 @@ static void long_strands_are_refused(void **state)
     free(params.algo);
     params.algo = strdup("emulation");
     assert_int_equal(hair_create(&hair, &strands, 0, &fixture_gpu()->limits, &error), RESULT_OK);
-    const SolverSetup setup = {fixture_gpu(), NULL, &hair, &params};
+    const SolverSetup setup = {.gpu = fixture_gpu(), .hair = &hair, .params = &params};
     assert_int_equal(solver_create(&solver, &setup, &error), RESULT_USAGE);
     assert_non_null(strstr(error.text, "at most 240 vertices, got 241"));
     hair_destroy(&hair);

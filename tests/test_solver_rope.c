@@ -138,7 +138,7 @@ static void bullets_rope_refuses_compliance(void **state)
     Solver solver;
     const Hair hair = {0};
     SectionParams params = {.algo = "rope", .variant = "", .rope_compliance = 1e-6f};
-    const SolverSetup setup = {fixture_gpu(), NULL, &hair, &params};
+    const SolverSetup setup = {.gpu = fixture_gpu(), .hair = &hair, .params = &params};
     assert_int_equal(solver_create(&solver, &setup, &error), RESULT_USAGE);
     assert_non_null(strstr(error.text, "--variant xpbd"));
 }

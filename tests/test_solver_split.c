@@ -399,12 +399,12 @@ static void a_flung_tip_is_cut_and_counted(void **state)
     fixture_create(&fixture, (const Vec *)start, 1, 8, "split", "", 0, 0);
     SolverReport report = {0};
     fixture_step(&fixture);
-    fixture.solver.type->report(fixture.solver.state, &report);
+    solver_report(&fixture.solver, &report);
     assert_int_equal(report.moves_limited, 0);
     fixture.step.gravity[1] = -1e6f; // 1e6 / 60^2 = 278 m in a step, of a strand of 0.2 m
     fixture_step(&fixture);
     report = (SolverReport){0};
-    fixture.solver.type->report(fixture.solver.state, &report);
+    solver_report(&fixture.solver, &report);
     assert_int_equal(report.moves_limited, 1);
     fixture_destroy(&fixture);
 }
@@ -425,7 +425,7 @@ static void a_strand_beyond_the_drivers_loops_is_refused(void **state)
         strands.first[1] = counts[i];
         for (uint32_t j = 0; j < counts[i]; ++j) strands.position[j][0] = 0.001f * (float)j;
         assert_int_equal(hair_create(&hair, &strands, 0, &fixture_gpu()->limits, NULL), RESULT_OK);
-        const SolverSetup setup = {fixture_gpu(), NULL, &hair, &params};
+        const SolverSetup setup = {.gpu = fixture_gpu(), .hair = &hair, .params = &params};
         assert_int_equal(solver_create(&solver, &setup, &error), i == 0 ? RESULT_OK : RESULT_USAGE);
         if (i == 1) assert_non_null(strstr(error.text, "10001 vertices"));
         solver_destroy(&solver);
@@ -441,7 +441,7 @@ static void unknown_solvers_and_variants_name_the_nearest(void **state)
     Solver solver;
     SectionParams params = {.algo = "slpit", .variant = ""};
     const Hair hair = {0};
-    const SolverSetup setup = {fixture_gpu(), NULL, &hair, &params};
+    const SolverSetup setup = {.gpu = fixture_gpu(), .hair = &hair, .params = &params};
     assert_int_equal(solver_create(&solver, &setup, &error), RESULT_USAGE);
     assert_non_null(strstr(error.text, "did you mean 'split'"));
     params.algo = "split", params.variant = "bal";

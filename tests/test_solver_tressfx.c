@@ -157,7 +157,7 @@ static void too_long_strands_are_refused_on_cpu_drivers(void **state)
     assert_int_equal(section_params_create(&params, &error), RESULT_OK);
     free(params.algo);
     params.algo = strdup("tressfx");
-    const SolverSetup setup = {fixture_gpu(), NULL, &hair, &params};
+    const SolverSetup setup = {.gpu = fixture_gpu(), .hair = &hair, .params = &params};
     assert_int_equal(solver_create(&solver, &setup, &error), RESULT_USAGE);
     assert_non_null(strstr(error.text, "20000"));
     section_params_destroy(&params);

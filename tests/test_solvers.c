@@ -78,7 +78,7 @@ static void for_each(Check check, unsigned needed)
 {
     const char *only = getenv("TEST_ALGO");
     for (const SolverType *const *type = SOLVER_TYPES; *type; ++type)
-        for (int v = 0; (*type)->step && (v == 0 || (*type)->variants[v]); ++v) {
+        for (int v = 0; (*type)->calls->step && (v == 0 || (*type)->variants[v]); ++v) {
             const char *variant = (*type)->variants[v] ? (*type)->variants[v] : "";
             if (only && strcmp(only, (*type)->name) != 0) continue;
             if ((promises(*type, variant, 0) & needed) == needed) check(*type, variant);
@@ -385,7 +385,7 @@ static void long_run_velocities(LongRun *run, Vec now[LONG_SIZES][LONG_KINDS][LO
     for (uint32_t i = 0; i < LONG_SIZES; ++i) {
         const HairBatch *batch = &run->fixture.hair.batches[i];
         float(*own)[4] = NULL;
-        if (solver->type->step == particle_solver_step) {
+        if (solver->type->calls == &PARTICLE_SOLVER) {
             const GpuBuffer *buffer = particle_solver_velocities(solver->state, i);
             own = malloc((size_t)buffer->size);
             assert_non_null(own);
