@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "bench_shaders.h"
+#include "follow.h"
 #include "pose.h"
 #include "renderer.h"
 #include "simulation.h"
@@ -65,6 +66,24 @@ static void try_solvers(const Gpu *gpu, Result *worst, FILE *stream, Error *erro
             }
 }
 
+static Result try_follow(const Gpu *gpu, FollowMode mode, Error *error)
+{
+    Strands strands = {0};
+    Hair hair = {0};
+    Follow follow = {0};
+    StrandsRecipe recipe = strands_recipe_default(STRANDS_STYLE_FUR);
+    recipe.count = 4;
+    const SectionParams params = {.followers = 1, .follow = (int)mode};
+    Result result = strands_make(&strands, &recipe, error);
+    if (result == RESULT_OK) result = hair_create(&hair, &strands, 0, &gpu->limits, error);
+    if (result == RESULT_OK)
+        result = follow_create(&follow, gpu, NULL, &hair, &strands, &params, 1, error);
+    follow_destroy(&follow);
+    hair_destroy(&hair);
+    strands_destroy(&strands);
+    return result;
+}
+
 static Result try_renderer(const Gpu *gpu, Raster raster, float opacity, Error *error)
 {
     Renderer renderer;
@@ -96,6 +115,9 @@ Result bench_shaders(const Gpu *gpu, FILE *stream, Error *error)
     for (size_t i = 0; i < sizeof checks / sizeof *checks; ++i)
         tell(checks[i], try_program(checks[i], &why), &why, &worst, stream, error);
     try_solvers(gpu, &worst, stream, error);
+    for (FollowMode mode = FOLLOW_OFFSET; mode <= FOLLOW_INTERPOLATE; ++mode)
+        tell(mode == FOLLOW_OFFSET ? "followers, offset" : "followers, interpolated",
+             try_follow(gpu, mode, &why), &why, &worst, stream, error);
     for (int transparent = 0; transparent < 2; ++transparent)
         for (Raster raster = RASTER_QUADS; raster <= RASTER_BLOCKS; ++raster) {
             char what[64];

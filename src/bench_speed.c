@@ -117,7 +117,7 @@ static Result draw_frames(SpeedResult *result, Renderer *renderer, Bench *bench,
     View view;
     framing_compute(&framing, &bench->scene, &bench->strands, NULL);
     const RenderItem item = {&bench->simulation.sections[0].hair, &bench->scene.sections[0].params,
-                             fibre_auto_radius(&bench->strands)};
+                             fibre_auto_radius(&bench->strands, 0)};
     const RenderFrame frame = {
         &view, bench->scene.lights, bench->scene.light_count, {0, 0, 0, 1}, {0}};
     Result outcome = RESULT_OK;

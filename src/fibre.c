@@ -6,7 +6,7 @@
 static const double FIBRE_LAYERS = 3;
 static const double THINNEST = 1.0 / 5000, THICKEST = 1.0 / 400;
 
-float fibre_auto_radius(const Strands *strands)
+float fibre_auto_radius(const Strands *strands, uint32_t followers)
 {
     float low[3], high[3];
     strands_bounds(strands, low, high);
@@ -17,6 +17,7 @@ float fibre_auto_radius(const Strands *strands)
         total += length;
         longest = fmax(longest, length);
     }
+    total *= 1 + (double)followers;
     if (!(total > 0)) return 1e-4f; // nothing to draw
     double radius = FIBRE_LAYERS * silhouette / (2 * total);
     return (float)fmin(fmax(radius, longest * THINNEST), longest * THICKEST);

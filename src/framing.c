@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "framing.h"
+#include "follow_plan.h"
 
 #include <cglm/cglm.h>
 
@@ -53,6 +54,16 @@ void outline_corner(const Outline *outline, int which, float corner[3])
 static void add_outline(Outline *outline, const Outline *more)
 {
     for (int i = 0; i < OUTLINE_DIRECTIONS && more->any; ++i) outline_add(outline, more->point[i]);
+}
+
+// Moves all that bounds the points outwards (m).
+static void grow_outline(Outline *outline, float by)
+{
+    for (int i = 0; i < OUTLINE_DIRECTIONS && outline->any; ++i) {
+        for (int k = 0; k < 3; ++k) outline->point[i][k] += by * outline->direction[k][i];
+        outline->reach[i] += by;
+    }
+    for (int k = 0; k < 3 && outline->any; ++k) outline->low[k] -= by, outline->high[k] += by;
 }
 
 // State of everything that moves, at one time.
@@ -141,6 +152,14 @@ static void add_carried(Outline *outline, const Outline *still, const Moment *mo
     }
 }
 
+static float farthest_follower(const Scene *scene, const Strands *strands)
+{
+    float farthest = 0;
+    for (uint32_t i = 0; i < scene->section_count; ++i)
+        farthest = fmaxf(farthest, follow_reach(&scene->sections[i].params, &strands[i]));
+    return farthest;
+}
+
 static void find_outlines(Framing *framing, const Scene *scene, const Strands *strands,
                           const Mesh *mesh)
 {
@@ -159,6 +178,7 @@ static void find_outlines(Framing *framing, const Scene *scene, const Strands *s
         for (uint32_t i = 0; i < scene->section_count; ++i)
             add_rest(&framing->hair, &strands[i], &scene->sections[i].params, &moment, times);
     }
+    grow_outline(&framing->hair, farthest_follower(scene, strands));
     add_outline(&framing->all, &framing->hair);
 }
 

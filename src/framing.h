@@ -35,9 +35,10 @@ void outline_corner(const Outline *outline, int which, float corner[3]);
 
 // Finds what the sequence will show without simulating it: the style carried by the head, and the
 // shape in which the hair comes to rest: each strand rebuilt from its root with directions between
-// that of gravity + drag * wind and the style's, by the section's share of style. Motions are
-// sampled at 16 times. `strands`: one for each of the scene's sections, metres. `mesh`: NULL for
-// none. The eye stands in front (+z), 25 degrees to the side and 10 degrees above, just so far away
-// that everything stays in the picture with a margin of 6 %, at all angles of the turntable.
+// that of gravity + drag * wind and the style's, by the section's share of style, and around all of
+// it as much room as followers need. Motions are sampled at 16 times. `strands`: one for each of
+// the scene's sections, metres. `mesh`: NULL for none. The eye stands in front (+z), 25 degrees to
+// the side and 10 degrees above, just so far away that everything stays in the picture with a
+// margin of 6 %, at all angles of the turntable.
 void framing_compute(Framing *framing, const Scene *scene, const Strands *strands,
                      const Mesh *mesh);

@@ -90,8 +90,8 @@ static Result upload(HairBatch *batch, const GpuLimits *limits, const void *rest
     return result;
 }
 
-static Result create_batch(HairBatch *batch, const Strands *strands, const uint32_t *order,
-                           uint32_t first_id, const GpuLimits *limits, Error *error)
+static Result create_batch(HairBatch *batch, const Strands *strands, uint32_t first_id,
+                           const GpuLimits *limits, Error *error)
 {
     uint32_t slots = hair_slots(batch);
     size_t particles = (size_t)batch->vertex_count * slots;
@@ -101,7 +101,7 @@ static Result create_batch(HairBatch *batch, const Strands *strands, const uint3
     Result result = RESULT_FAILED;
     if (rest && position && ids) {
         for (uint32_t slot = 0; slot < slots; ++slot) {
-            uint32_t s = order[slot < batch->strand_count ? slot : batch->strand_count - 1];
+            uint32_t s = batch->strand[slot < batch->strand_count ? slot : batch->strand_count - 1];
             fill_strand(rest, position, batch, slot, strands, s);
             ids[slot] = first_id + s;
         }
@@ -128,9 +128,12 @@ static Result create_batches(Hair *hair, const Strands *strands, const Order *or
         if (!more) return error_set(error, RESULT_FAILED, "no memory for a batch of strands");
         hair->batches = more;
         HairBatch *batch = &hair->batches[hair->batch_count++];
-        *batch = (HairBatch){.vertex_count = n, .strand_count = end - begin};
-        Result result =
-            create_batch(batch, strands, &order->strand[begin], first_id, limits, error);
+        *batch = (HairBatch){.vertex_count = n,
+                             .strand_count = end - begin,
+                             .strand = malloc((end - begin) * sizeof *batch->strand)};
+        if (!batch->strand) return error_set(error, RESULT_FAILED, "no memory for a batch");
+        memcpy(batch->strand, &order->strand[begin], (end - begin) * sizeof *batch->strand);
+        Result result = create_batch(batch, strands, first_id, limits, error);
         if (result != RESULT_OK) return result;
         begin = end;
     }
@@ -158,6 +161,7 @@ Result hair_create(Hair *hair, const Strands *strands, uint32_t first_id, const 
 void hair_destroy(Hair *hair)
 {
     for (uint32_t i = 0; i < hair->batch_count; ++i) {
+        free(hair->batches[i].strand);
         gpu_buffer_destroy(&hair->batches[i].position);
         gpu_buffer_destroy(&hair->batches[i].rest);
         gpu_buffer_destroy(&hair->batches[i].strand_id);

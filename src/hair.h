@@ -16,6 +16,7 @@
 typedef struct HairBatch {
     uint32_t vertex_count; // of each strand, >= 2
     uint32_t strand_count;
+    uint32_t *strand;   // [strand_count], owned: which of the file's strands each is; may be NULL
     GpuBuffer position; // vec4 a particle: xyz in metres in the world, w = 1. Drawn.
     GpuBuffer rest;     // vec4 a particle, the style in the head's frame. j = 0: root (m) and the
                     // strand's length (m); j > 0: unit direction of the segment from j - 1 to j and

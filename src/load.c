@@ -19,9 +19,6 @@ static void tell_unheeded(const Strands *strands, const char *file, FILE *messag
     if (strands->both_ends_fixed)
         fprintf(messages, "%s: the file fixes both ends of its strands; here the tips move\n",
                 file);
-    if (strands->followers)
-        fprintf(messages, "%s: the file asks for %u followers a guide; only the guides are drawn\n",
-                file, strands->followers);
 }
 
 static Result load_section(Assets *assets, const Scene *scene, uint32_t i, FILE *messages,

@@ -26,7 +26,8 @@ typedef struct Run {
     GpuTimer timer;
     Simulation simulation;
     Renderer renderer;
-    RenderItem *items;
+    RenderItem *items; // of each section its guides and, if there are any, its followers
+    uint32_t item_count;
     Framing framing;
     Output *output;
     Stats stats;
@@ -89,18 +90,19 @@ static Result open_gpu(Run *run, Error *error)
 
 static Result create_items(Run *run, Error *error)
 {
-    run->items = calloc((size_t)run->scene.section_count + 1, sizeof *run->items);
+    run->items = calloc(2 * (size_t)run->scene.section_count + 1, sizeof *run->items);
     if (!run->items)
         return error_set(error, RESULT_FAILED, "no memory for %u sections",
                          run->scene.section_count);
     for (uint32_t i = 0; i < run->scene.section_count; ++i) {
+        const SimulationSection *section = &run->simulation.sections[i];
         const SectionParams *params = &run->scene.sections[i].params;
-        run->items[i] = (RenderItem){
-            .hair = &run->simulation.sections[i].hair,
-            .material = params,
-            .radius = params->radius.automatic ? fibre_auto_radius(&run->assets.strands[i])
-                                               : params->radius.value,
-        };
+        float radius = params->radius.automatic
+                           ? fibre_auto_radius(&run->assets.strands[i], section->follow.per_guide)
+                           : params->radius.value;
+        run->items[run->item_count++] = (RenderItem){&section->hair, params, radius};
+        if (section->follow.per_guide)
+            run->items[run->item_count++] = (RenderItem){&section->follow.hair, params, radius};
     }
     return RESULT_OK;
 }
@@ -214,6 +216,7 @@ static Result render(Run *run, Error *error)
         .output = run->output,
         .framing = &run->framing,
         .items = run->items,
+        .item_count = run->item_count,
         .timer = &run->timer,
         .stats = &run->stats,
     };

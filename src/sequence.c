@@ -79,7 +79,7 @@ static Result draw(Sequence *sequence, Previous *previous, const View *view, Ima
            sizeof frame.head_translation);
     simulation_pose(sequence->simulation);
     if (sequence->frames_drawn == 0) give_back_memory();
-    Result result = renderer_draw(sequence->renderer, &frame, sequence->items, scene->section_count,
+    Result result = renderer_draw(sequence->renderer, &frame, sequence->items, sequence->item_count,
                                   image, error);
     if (result == RESULT_OK && still) result = remember(previous, view, image, error);
     sequence->frames_drawn += result == RESULT_OK;

@@ -16,7 +16,8 @@ typedef struct Sequence {
     Renderer *renderer; // NULL: nothing is drawn
     Output *output;     // NULL as well
     const Framing *framing;
-    const RenderItem *items; // one a section
+    const RenderItem *items;
+    uint32_t item_count;
     GpuTimer *timer;
     Stats *stats; // may be off
     int frames_drawn;

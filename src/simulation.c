@@ -20,7 +20,7 @@ static HeadPose head_at(const Scene *scene, double time)
 
 static Result create_section(SimulationSection *section, const Gpu *gpu, GpuTimer *timer,
                              const Section *description, const Strands *strands, uint32_t first_id,
-                             Error *error)
+                             uint32_t seed, Error *error)
 {
     Result result = hair_create(&section->hair, strands, first_id, &gpu->limits, error);
     if (result == RESULT_OK) {
@@ -28,6 +28,9 @@ static Result create_section(SimulationSection *section, const Gpu *gpu, GpuTime
             .gpu = gpu, .timer = timer, .hair = &section->hair, .params = &description->params};
         result = solver_create(&section->solver, &setup, error);
     }
+    if (result == RESULT_OK)
+        result = follow_create(&section->follow, gpu, timer, &section->hair, strands,
+                               &description->params, seed, error);
     return result == RESULT_OK ? RESULT_OK : error_prefix(error, result, "%s: ", description->file);
 }
 
@@ -43,7 +46,7 @@ Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer
     uint32_t first_id = 0;
     for (uint32_t i = 0; i < scene->section_count && result == RESULT_OK; ++i) {
         result = create_section(&simulation->sections[i], gpu, timer, &scene->sections[i],
-                                &strands[i], first_id, error);
+                                &strands[i], first_id, scene->run.seed, error);
         first_id += strands[i].strand_count;
     }
     if (result != RESULT_OK) simulation_destroy(simulation);
@@ -53,6 +56,7 @@ Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer
 void simulation_destroy(Simulation *simulation)
 {
     for (uint32_t i = 0; simulation->sections && i < simulation->scene->section_count; ++i) {
+        follow_destroy(&simulation->sections[i].follow);
         solver_destroy(&simulation->sections[i].solver);
         hair_destroy(&simulation->sections[i].hair);
     }
@@ -105,6 +109,7 @@ void simulation_pose(Simulation *simulation)
             continue;
         }
         solver_pose(&section->solver, &simulation->head);
+        follow_write(&section->follow, &simulation->head);
         section->posed = true;
         section->posed_at = simulation->head;
         ++simulation->poses;

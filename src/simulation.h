@@ -2,6 +2,7 @@
 // A scene in motion: each section's hair with its solver, advanced frame by frame.
 #pragma once
 
+#include "follow.h"
 #include "scene.h"
 #include "solver.h"
 #include "strands.h"
@@ -9,6 +10,7 @@
 typedef struct SimulationSection {
     Hair hair;
     Solver solver;
+    Follow follow;
     bool posed; // positions are written ...
     HeadPose
         posed_at; // ... for this head; a static section needs no other pose while the head is there

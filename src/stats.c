@@ -58,13 +58,16 @@ static json_t *describe_device(const Gpu *gpu)
     return device;
 }
 
-static json_t *describe_section(const char *file, const StrandsReport *report, const Hair *hair)
+static json_t *describe_section(const char *file, const StrandsReport *report,
+                                const SimulationSection *simulated)
 {
+    const Hair *hair = &simulated->hair;
     json_t *section = json_object();
     json_object_set_new(section, "file", json_string(file));
     json_object_set_new(section, "kind", json_string(strands_kind_name(report->kind)));
     json_object_set_new(section, "metres_per_unit", json_real((double)report->unit_used));
     json_object_set_new(section, "strands", json_integer(hair->strand_count));
+    json_object_set_new(section, "followers", json_integer(simulated->follow.hair.strand_count));
     json_object_set_new(section, "strands_in_file", json_integer(report->declared_strands));
     json_object_set_new(section, "particles", json_integer((json_int_t)hair->particle_count));
     json_object_set_new(section, "batches", json_integer(hair->batch_count));
@@ -78,7 +81,7 @@ void stats_describe(Stats *stats, const Gpu *gpu, const Scene *scene, const Asse
     json_t *hair = json_array();
     for (uint32_t i = 0; i < scene->section_count; ++i)
         json_array_append_new(hair, describe_section(scene->sections[i].file, &assets->reports[i],
-                                                     &simulation->sections[i].hair));
+                                                     &simulation->sections[i]));
     json_object_set_new(stats->root, "program", json_string("tractrix-render"));
     json_object_set_new(stats->root, "version", json_string(TRACTRIX_VERSION));
     json_object_set_new(stats->root, "commit", json_string(TRACTRIX_COMMIT));

@@ -23,7 +23,7 @@ typedef struct Strands {
     float *vertex_thickness; // [vertex_count], metres (HAIR files)
     float (*color)[4];       // [vertex_count], linear RGB and opacity, 0..1
     uint32_t followers;      // followers that the file asks for, per guide
-    float follower_radius;   // metres: how far from their guide
+    float follower_radius;   // metres: how far from their guide; 0: the file does not say
     bool both_ends_fixed;    // the tips do not move either
 } Strands;
 

@@ -184,8 +184,9 @@ static void the_unit_does_not_change_the_picture(void **state)
     view_of(&hundred, 0, &b);
     assert_true(fabsf(extent_in_picture(&one, &a, STILL) - extent_in_picture(&hundred, &b, STILL)) <
                 1e-4f);
-    assert_true(fabsf(100 * fibre_auto_radius(&one.strands) / fibre_auto_radius(&hundred.strands) -
-                      1) < 1e-4f);
+    assert_true(
+        fabsf(100 * fibre_auto_radius(&one.strands, 0) / fibre_auto_radius(&hundred.strands, 0) -
+              1) < 1e-4f);
     close_shot(&one);
     close_shot(&hundred);
 }
@@ -254,10 +255,10 @@ static void denser_hair_is_drawn_finer(void **state)
     for (uint32_t s = 0; s <= 800 * STRANDS; ++s) many.first[s] = s * VERTICES;
     for (uint32_t v = 0; v < many.vertex_count; ++v)
         memcpy(many.position[v], few.position[v % few.vertex_count], sizeof(float[3]));
-    float coarse = fibre_auto_radius(&few), fine = fibre_auto_radius(&many);
+    float coarse = fibre_auto_radius(&few, 0), fine = fibre_auto_radius(&many, 0);
     assert_true(fine < coarse && fine > 0 && coarse <= 0.3f / 399);
     Strands none = {0};
-    assert_true(fibre_auto_radius(&none) > 0);
+    assert_true(fibre_auto_radius(&none, 0) > 0);
     strands_destroy(&few);
     strands_destroy(&many);
 }

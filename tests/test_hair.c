@@ -5,6 +5,7 @@
 #include "shader.h"
 #include "step_uniforms.h"
 
+#include "follow_params.h"
 #include "pose_params.h"
 
 #include <math.h>
@@ -123,6 +124,13 @@ static void blocks_lie_alike_in_c_and_glsl(void **state)
     POSE(head_rotation, ""), POSE(head_translation, ""), POSE(turn_cos, "[0]"),
         POSE(turn_sin, "[0]");
     POSE(strand_count, ""), POSE(vertex_count, "");
+    glDeleteProgram(program);
+    const ShaderDefine follow[] = {{"GROUP_SIZE", 8}, {"INTERPOLATE", 1}, {0}};
+    assert_int_equal(shader_build_compute(&program, "follow.comp", follow, NULL), RESULT_OK);
+#define FOLLOW(field)                                                                              \
+    fixture_assert_offset(program, "FollowParams." #field, offsetof(FollowParams, field))
+    FOLLOW(head_rotation), FOLLOW(tip_separation), FOLLOW(strand_count), FOLLOW(vertex_count),
+        FOLLOW(first_guide), FOLLOW(per_guide);
     glDeleteProgram(program);
 }
 
