@@ -47,6 +47,9 @@ static const struct {
      "{\"pivot\": [0, 1.5, 0], \"keys\": [{\"time\": 1, \"translate\": [0, 0, 0.1], "
      "\"rotate\": [0, 90, 0]}, ...]}",
      "rigid motion of the roots and the mesh: s, m, and axis times angle in deg about the pivot"},
+    {"head", "{\"translate\": [\"0.02*sin(2*pi*t)\", 0, 0], \"rotate\": [0, \"30*sin(6*t)\", 0]}",
+     "the same by formulas of the time t in s: + - * / ^, a ? b : c, pi, sin, exp, min, abs ... "
+     "(muParser's), smoothstep(a, b, x)"},
     {"gravity, wind", "{\"keys\": [{\"time\": 0, \"value\": [0, 0, 2]}, ...]}",
      "instead of one array: a force that changes"},
     {"camera",

@@ -37,18 +37,3 @@ void keyframes_destroy(Keyframes *keys);
 
 // The value at `time` (s, any finite number) into value[width]. There must be at least one key.
 void keyframes_evaluate(const Keyframes *keys, double time, float *value);
-
-// A rigid motion. Rotations are rotation vectors, axis times angle in radians, interpolated number
-// by number: about one fixed axis that is the slerp, except that turns beyond 180 degrees, even
-// several, are made as written. A track without keys moves or turns nothing.
-typedef struct RigidTrack {
-    Keyframes translation; // width 3, m
-    Keyframes rotation;    // width 3, rad
-    float pivot[3];        // m, point that the rotation leaves in place
-} RigidTrack;
-
-// The motion at `time` (s): x' = R x + translation takes a point from where it is without the track
-// to where it is at that time. `rotation` is the unit quaternion x, y, z, w of R (cglm's order).
-void rigid_track_evaluate(const RigidTrack *track, double time, float rotation[4],
-                          float translation[3]);
-void rigid_track_destroy(RigidTrack *track);

@@ -126,6 +126,18 @@ static Result check_output(const char *output, Error *error)
         "--output '%.200s': expected one %%d or %%04d (1 to 9 digits) and no other '%%'", output);
 }
 
+// A formula that fails somewhere is told before anything runs; of very long sequences the begin.
+static Result check_head(const Scene *scene, Error *error)
+{
+    const int most = 1000000;
+    int frames = scene->run.frames < most ? scene->run.frames : most;
+    Result result = RESULT_OK;
+    if (rigid_track_is_still(&scene->head)) return RESULT_OK;
+    for (int frame = 0; frame < frames && result == RESULT_OK; ++frame)
+        result = rigid_track_check(&scene->head, frame / (double)scene->run.fps, error);
+    return result == RESULT_OK ? RESULT_OK : error_prefix(error, result, "head.");
+}
+
 Result scene_check(const Scene *scene, Error *error)
 {
     const RunParams *run = &scene->run;
@@ -135,5 +147,6 @@ Result scene_check(const Scene *scene, Error *error)
     if (result == RESULT_OK) result = check_camera(scene, error);
     if (result == RESULT_OK) result = check_conflicts(run, error);
     if (result == RESULT_OK) result = check_output(run->output, error);
+    if (result == RESULT_OK) result = check_head(scene, error);
     return result;
 }

@@ -6,6 +6,7 @@
 #include "error.h"
 #include "keyframes.h"
 #include "params.h"
+#include "rigid_track.h"
 
 #include <jansson.h>
 #include <stdint.h>

@@ -199,6 +199,6 @@ Result scene_read(Scene *scene, const char *path, Error *error)
     Result result = scene_read_unchecked(scene, path, error);
     if (result != RESULT_OK) return result;
     result = scene_check(scene, error);
-    if (result != RESULT_USAGE) return result;
+    if (result != RESULT_USAGE && result != RESULT_BAD_INPUT) return result;
     return error_prefix(error, RESULT_BAD_INPUT, "%.300s: ", path);
 }

@@ -3,6 +3,7 @@
 #include "scene_param.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 const char *const INTERPOLATION_WORDS[] = {
@@ -116,20 +117,61 @@ Result scene_read_vector_keys(Keyframes *keys, const ParamInfo *info, const Plac
     return result == RESULT_OK ? read_track(&member, 1, place, value, error) : result;
 }
 
-Result scene_read_head(Scene *scene, const Place *place, const json_t *value, Error *error)
+// Three formulas of time; a number stands for itself.
+static Result read_formulas(Formula formulas[3], const char *name, const Keyframes *keys,
+                            const Place *parent, const json_t *object, Error *error)
 {
-    static const char *const NAMES[] = {"keys", "interpolation", "pivot", NULL};
+    const json_t *array = json_object_get(object, name);
+    if (!array) return RESULT_OK;
+    Place place = {.parent = parent, .key = name};
+    if (keys->count > 0) return place_fail(&place, error, "given here and by 'keys'");
+    if (!json_is_array(array) || json_array_size(array) != 3)
+        return place_refuse(&place, array, "an array of three numbers or formulas of t", error);
+    for (size_t i = 0; i < 3; i++) {
+        const json_t *value = json_array_get(array, i);
+        Place element = {.parent = &place, .index = i};
+        char number[32];
+        snprintf(number, sizeof number, "%.9g", json_number_value(value));
+        if (!json_is_number(value) && !json_is_string(value))
+            return place_refuse(&element, value, "a number or a formula of t", error);
+        Error why;
+        Result result = formula_create(
+            &formulas[i], json_is_string(value) ? json_string_value(value) : number, &why);
+        if (result != RESULT_OK) return place_fail(&element, error, "%s", why.text);
+    }
+    return RESULT_OK;
+}
+
+static Result read_head_keys(Scene *scene, const Place *place, const json_t *value, Error *error)
+{
     const Member members[] = {
         {"translate", &scene->head.translation, 3, -OFFSET_MAX, OFFSET_MAX, 1.0},
         {"rotate", &scene->head.rotation, 3, -OFFSET_MAX, OFFSET_MAX, DEGREE},
     };
+    bool by_formula = json_object_get(value, "translate") || json_object_get(value, "rotate");
+    if (by_formula && !json_object_get(value, "keys")) return RESULT_OK;
+    return read_track(members, 2, place, value, error);
+}
+
+Result scene_read_head(Scene *scene, const Place *place, const json_t *value, Error *error)
+{
+    static const char *const NAMES[] = {"keys",      "interpolation", "pivot",
+                                        "translate", "rotate",        NULL};
+    RigidTrack *head = &scene->head;
     Result result = place_check_object(place, value, NAMES, error);
     const json_t *pivot = json_object_get(value, "pivot");
     Place pivot_place = {.parent = place, .key = "pivot"};
     if (result == RESULT_OK && pivot)
         result = place_read_vector(&pivot_place, pivot, 3, -OFFSET_MAX, OFFSET_MAX,
-                                   "an array of three numbers", scene->head.pivot, error);
-    return result == RESULT_OK ? read_track(members, 2, place, value, error) : result;
+                                   "an array of three numbers", head->pivot, error);
+    if (result == RESULT_OK) result = read_head_keys(scene, place, value, error);
+    if (result == RESULT_OK)
+        result = read_formulas(head->translation_formula, "translate", &head->translation, place,
+                               value, error);
+    if (result == RESULT_OK)
+        result =
+            read_formulas(head->rotation_formula, "rotate", &head->rotation, place, value, error);
+    return result;
 }
 
 Result scene_read_camera(Scene *scene, const Place *place, const json_t *value, Error *error)

@@ -94,15 +94,29 @@ static bool write_camera(json_t *object, const Scene *scene)
     return good;
 }
 
+static json_t *write_formulas(const Formula formulas[3])
+{
+    json_t *array = json_array();
+    bool good = true;
+    for (int i = 0; i < 3; i++)
+        good = json_array_append_new(array, scene_write_text(formulas[i].text)) == 0 && good;
+    return finish(array, good);
+}
+
 static bool write_head(json_t *object, const Scene *scene)
 {
+    const RigidTrack *track = &scene->head;
     Track tracks[] = {
-        {.name = "translate", .keys = &scene->head.translation, .scale = 1.0},
-        {.name = "rotate", .keys = &scene->head.rotation, .scale = 1.0 / DEGREE},
+        {.name = "translate", .keys = &track->translation, .scale = 1.0},
+        {.name = "rotate", .keys = &track->rotation, .scale = 1.0 / DEGREE},
     };
-    if (isinf(next_time(tracks, 2))) return true;
-    json_t *head = write_tracks(tracks, 2);
-    bool good = put(head, "pivot", scene_write_floats(scene->head.pivot, 3));
+    bool keyed = !isinf(next_time(tracks, 2)), moved = track->translation_formula[0].text,
+         turned = track->rotation_formula[0].text;
+    if (!keyed && !moved && !turned) return true;
+    json_t *head = keyed ? write_tracks(tracks, 2) : json_object();
+    bool good = put(head, "pivot", scene_write_floats(track->pivot, 3));
+    if (moved) good = put(head, "translate", write_formulas(track->translation_formula)) && good;
+    if (turned) good = put(head, "rotate", write_formulas(track->rotation_formula)) && good;
     return put(object, "head", head) && good;
 }
 

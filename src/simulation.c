@@ -118,10 +118,9 @@ void simulation_pose(Simulation *simulation)
 
 bool simulation_is_still(const Simulation *simulation)
 {
-    const RigidTrack *head = &simulation->scene->head;
     for (uint32_t i = 0; i < simulation->scene->section_count; ++i)
         if (!solver_is_static(&simulation->sections[i].solver)) return false;
-    return head->translation.count < 2 && head->rotation.count < 2;
+    return rigid_track_is_still(&simulation->scene->head);
 }
 
 SolverReport simulation_report(const Simulation *simulation)

@@ -9,8 +9,6 @@
 
 #include <cmocka.h>
 
-static const float PI = 3.14159265f;
-
 typedef struct Sample {
     double time;
     float value;
@@ -145,94 +143,6 @@ static void many_keys_are_all_found(void **state)
     keyframes_destroy(&keys);
 }
 
-// The point where the track takes `point`, by the quaternion's matrix.
-static void move(const RigidTrack *track, double time, const float point[3], float moved[3])
-{
-    float q[4], t[3];
-    rigid_track_evaluate(track, time, q, t);
-    assert_true(fabsf(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1) < 1e-6f);
-    float x = q[0], y = q[1], z = q[2], w = q[3];
-    const float matrix[3][3] = {
-        {1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
-        {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
-        {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)},
-    };
-    for (int i = 0; i < 3; i++)
-        moved[i] =
-            matrix[i][0] * point[0] + matrix[i][1] * point[1] + matrix[i][2] * point[2] + t[i];
-}
-
-static void assert_at(const float moved[3], float x, float y, float z)
-{
-    assert_true(fabsf(moved[0] - x) < 1e-5f && fabsf(moved[1] - y) < 1e-5f &&
-                fabsf(moved[2] - z) < 1e-5f);
-}
-
-static void turn_to(RigidTrack *track, double time, float x, float y, float z)
-{
-    Error error;
-    const float vector[3] = {x, y, z};
-    assert_int_equal(keyframes_append(&track->rotation, time, vector, 3, &error), RESULT_OK);
-}
-
-static void a_track_without_keys_moves_nothing(void **state)
-{
-    (void)state;
-    RigidTrack track = {.pivot = {1, 2, 3}};
-    float q[4], t[3];
-    rigid_track_evaluate(&track, 7, q, t);
-    const float identity[4] = {0, 0, 0, 1}, zero[3] = {0, 0, 0};
-    assert_memory_equal(q, identity, sizeof q);
-    assert_memory_equal(t, zero, sizeof t);
-    rigid_track_destroy(&track);
-}
-
-static void a_turn_is_right_handed_and_leaves_its_pivot_in_place(void **state)
-{
-    (void)state;
-    RigidTrack track = {.pivot = {0, 1, 0}, .rotation.interpolation = INTERPOLATION_LINEAR};
-    turn_to(&track, 0, 0, 0, 0);
-    turn_to(&track, 1, 0, 0, PI / 2);
-    float moved[3];
-    move(&track, 1, (const float[3]){0, 1, 0}, moved);
-    assert_at(moved, 0, 1, 0);
-    move(&track, 1, (const float[3]){2, 1, 0}, moved);
-    assert_at(moved, 0, 3, 0);
-    move(&track, 0.5, (const float[3]){1, 1, 5}, moved);
-    assert_at(moved, sqrtf(0.5f), 1 + sqrtf(0.5f), 5);
-    rigid_track_destroy(&track);
-}
-
-static void translation_comes_after_the_turn(void **state)
-{
-    (void)state;
-    RigidTrack track = {0};
-    Error error;
-    const float shift[3] = {10, 0, 0};
-    turn_to(&track, 0, 0, PI, 0);
-    assert_int_equal(keyframes_append(&track.translation, 0, shift, 3, &error), RESULT_OK);
-    float moved[3];
-    move(&track, 0, (const float[3]){1, 2, 3}, moved);
-    assert_at(moved, 9, 2, -3);
-    rigid_track_destroy(&track);
-}
-
-static void turns_of_more_than_half_a_circle_are_made_as_written(void **state)
-{
-    (void)state;
-    RigidTrack track = {.rotation.interpolation = INTERPOLATION_LINEAR};
-    turn_to(&track, 0, 0, 0, 0);
-    turn_to(&track, 2, 0, 0, 4 * PI);
-    float moved[3];
-    move(&track, 0.25, (const float[3]){1, 0, 0}, moved);
-    assert_at(moved, 0, 1, 0);
-    move(&track, 0.75, (const float[3]){1, 0, 0}, moved);
-    assert_at(moved, 0, -1, 0);
-    move(&track, 2, (const float[3]){1, 0, 0}, moved);
-    assert_at(moved, 1, 0, 0);
-    rigid_track_destroy(&track);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -243,10 +153,6 @@ int main(void)
         cmocka_unit_test(one_key_is_a_constant),
         cmocka_unit_test(times_must_be_finite_and_increase),
         cmocka_unit_test(many_keys_are_all_found),
-        cmocka_unit_test(a_track_without_keys_moves_nothing),
-        cmocka_unit_test(a_turn_is_right_handed_and_leaves_its_pivot_in_place),
-        cmocka_unit_test(translation_comes_after_the_turn),
-        cmocka_unit_test(turns_of_more_than_half_a_circle_are_made_as_written),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

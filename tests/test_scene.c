@@ -430,12 +430,11 @@ static char *dump(const Scene *scene)
     return text;
 }
 
-static void what_is_written_is_a_scene_file_of_the_same_scene(void **state)
+static void assert_written_again(void **state, const Scene *scene)
 {
-    Scene scene, again;
+    Scene again;
     Error error = {{0}};
-    assert_int_equal(scene_read(&scene, "tests/data/scene_full.json", &error), RESULT_OK);
-    char *text = dump(&scene);
+    char *text = dump(scene);
     // Relative paths would be read as relative to the folder of the copy.
     char *folder;
     while ((folder = strstr(text, "tests/data/"))) memcpy(folder, "/////////////", 11);
@@ -444,8 +443,22 @@ static void what_is_written_is_a_scene_file_of_the_same_scene(void **state)
     assert_string_equal(text, second);
     free(text);
     free(second);
-    scene_destroy(&scene);
     scene_destroy(&again);
+}
+
+static void what_is_written_is_a_scene_file_of_the_same_scene(void **state)
+{
+    Scene scene;
+    Error error = {{0}};
+    assert_int_equal(scene_read(&scene, "tests/data/scene_full.json", &error), RESULT_OK);
+    assert_written_again(state, &scene);
+    scene_destroy(&scene);
+    const char *formulas =
+        "{\"sections\": [{\"file\": \"/a\"}], \"head\": {\"translate\": [\"0.1*sin(t)\", 0.25, "
+        "\"t^2\"], \"pivot\": [0, 1, 0], \"keys\": [{\"time\": 0, \"rotate\": [0, 9, 0]}]}}";
+    if (read_scene(state, &scene, formulas, &error) != RESULT_OK) fail_msg("%s", error.text);
+    assert_written_again(state, &scene);
+    scene_destroy(&scene);
 }
 
 static void a_file_name_that_is_no_utf_8_is_still_written(void **state)
@@ -526,6 +539,17 @@ static void wrong_scene_files_are_refused_with_place_and_expectation(void **stat
          "head.interpolation: got \"cubic\", expected one of \"smooth\" \"linear\""},
         {"{" HAIR ", \"head\": {\"keys\": [], \"pivot\": 1}}", "head.pivot: got 1"},
         {"{" HAIR ", \"head\": 1}", "head: got 1, expected an object"},
+        {"{" HAIR ", \"head\": {}}", "head: expected a key 'keys'"},
+        {"{" HAIR ", \"head\": {\"rotate\": [0, \"30*sin(6 t)\", 0]}}",
+         "head.rotate[1]: got '30*sin(6 t)', expected a formula of t"},
+        {"{" HAIR ", \"head\": {\"rotate\": [0, true, 0]}}",
+         "head.rotate[1]: got true, expected a number or a formula of t"},
+        {"{" HAIR ", \"head\": {\"rotate\": 7}}", "head.rotate: got 7, expected an array of three"},
+        {"{" HAIR ", \"head\": {\"translate\": [0, \"1/(t-0.5)\", 0]}}",
+         "head.translate[1]: '1/(t-0.5)' is inf at t = 0.5"},
+        {"{" HAIR ", \"head\": {\"rotate\": [0, 1, 0], "
+         "\"keys\": [{\"time\": 0, \"rotate\": [0, 0, 0]}]}}",
+         "head.rotate: given here and by 'keys'"},
         {"{" HAIR ", \"camera\": {\"keys\": [{\"time\": 0, \"fov\": 180}]}}",
          "camera.keys[0].fov: got 180, expected a number from 1 to 170 (nearest: 170)"},
         {"{" HAIR ", \"fov\": 20, \"camera\": {\"keys\": [{\"time\": 0, \"fov\": 30}]}}",
