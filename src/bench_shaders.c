@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "bench_shaders.h"
 #include "follow.h"
+#include "inbetween.h"
 #include "pose.h"
 #include "renderer.h"
 #include "simulation.h"
@@ -42,6 +43,15 @@ static Result try_solver(const Gpu *gpu, const SolverType *type, const char *var
     solver_destroy(&solver);
     hair_destroy(&hair);
     strands_destroy(&strands);
+    return result;
+}
+
+static Result try_inbetween(const Gpu *gpu, Error *error)
+{
+    const Hair bald = {0};
+    Inbetween inbetween;
+    Result result = inbetween_create(&inbetween, gpu, &bald, error);
+    inbetween_destroy(&inbetween);
     return result;
 }
 
@@ -114,6 +124,7 @@ Result bench_shaders(const Gpu *gpu, FILE *stream, Error *error)
     shader_treat_warnings_as_errors(true);
     for (size_t i = 0; i < sizeof checks / sizeof *checks; ++i)
         tell(checks[i], try_program(checks[i], &why), &why, &worst, stream, error);
+    tell("inbetween.comp", try_inbetween(gpu, &why), &why, &worst, stream, error);
     try_solvers(gpu, &worst, stream, error);
     for (FollowMode mode = FOLLOW_OFFSET; mode <= FOLLOW_INTERPOLATE; ++mode)
         tell(mode == FOLLOW_OFFSET ? "followers, offset" : "followers, interpolated",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "camera.h"
+#include "schedule.h"
 
 #include <cglm/cglm.h>
 
@@ -70,7 +71,7 @@ static void find_depths(View *view, const Outline *all)
 
 void camera_view(View *view, const Scene *scene, const Framing *framing, int frame)
 {
-    double time = frame / (double)scene->run.fps;
+    double time = schedule_frame_time(&scene->run, frame);
     vec3 target = {0};
     float fov_deg = scene->run.fov;
     auto_or_keyed(&scene->target, &scene->run.target, framing->target, time, target);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "framing.h"
 #include "follow_plan.h"
+#include "schedule.h"
 
 #include <cglm/cglm.h>
 
@@ -168,7 +169,7 @@ static void find_outlines(Framing *framing, const Scene *scene, const Strands *s
     for (uint32_t v = 0; mesh && v < mesh->vertex_count; ++v) outline_add(&body, mesh->position[v]);
     bool moves = scene->head.translation.count || scene->head.rotation.count ||
                  scene->gravity.count || scene->wind.count;
-    double duration = scene->run.frames / (double)scene->run.fps;
+    double duration = schedule_frame_time(&scene->run, scene->run.frames);
     uint32_t times = moves ? TIMES : 1;
     for (uint32_t t = 0; t < times; ++t) {
         Moment moment = {0};

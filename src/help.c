@@ -93,6 +93,7 @@ static void write_placeholder(const ParamInfo *info, char *text, size_t size)
                                         [PARAM_VEC3] = "X,Y,Z",
                                         [PARAM_COLOR] = "COLOR",
                                         [PARAM_BACKGROUND] = "COLOR",
+                                        [PARAM_AUTO_INT] = "N|auto",
                                         [PARAM_AUTO_FLOAT] = "X|auto",
                                         [PARAM_AUTO_VEC3] = "X,Y,Z|auto",
                                         [PARAM_UNIT] = "UNIT",

@@ -150,6 +150,16 @@ static Result check_words(const Scene *scene, Error *error)
     return result;
 }
 
+static void tell_steps(const Simulation *simulation)
+{
+    const Schedule *schedule = &simulation->schedule;
+    fprintf(stderr, "steps of %.6g ms, %d a %s, %.6g a frame", 1e3 / schedule->steps_per_s,
+            simulation->substeps, simulation->scene->run.sim_rate > 0 ? "period" : "frame",
+            schedule->steps_per_frame);
+    fprintf(stderr, schedule->settling ? ", %lld before the first\n" : "\n",
+            (long long)schedule->settling);
+}
+
 // Files first: what is wrong with them is told before a driver is started. The output's folder is
 // made last but before any work.
 static Result prepare(Run *run, Error *error)
@@ -172,6 +182,7 @@ static Result prepare(Run *run, Error *error)
         result = stats_create(&run->stats, error);
         stats_describe(&run->stats, &run->gpu, &run->scene, &run->assets, &run->simulation);
     }
+    if (result == RESULT_OK && params->verbose) tell_steps(&run->simulation);
     run->ready_ms = stats_clock_ms();
     return result;
 }

@@ -137,6 +137,14 @@ static Result parse_background(const Input *input, float value[4])
     return result;
 }
 
+static Result parse_auto_int(const Input *input, AutoInt *value)
+{
+    AutoInt parsed = {.automatic = strcmp(input->text, "auto") == 0};
+    Result result = parsed.automatic ? RESULT_OK : parse_int(input, 1, &parsed.value);
+    if (result == RESULT_OK) *value = parsed;
+    return result;
+}
+
 static Result parse_auto_float(const Input *input, AutoFloat *value)
 {
     AutoFloat parsed = {.automatic = strcmp(input->text, "auto") == 0};
@@ -203,6 +211,8 @@ Result param_parse(const ParamInfo *info, void *params, const char *text, Error 
         return parse_color(&input, field);
     case PARAM_BACKGROUND:
         return parse_background(&input, field);
+    case PARAM_AUTO_INT:
+        return parse_auto_int(&input, field);
     case PARAM_AUTO_FLOAT:
         return parse_auto_float(&input, field);
     case PARAM_AUTO_VEC3:
@@ -276,6 +286,7 @@ static char *format_whole(long long value)
 char *param_format(const ParamInfo *info, const void *params)
 {
     const void *field = (const char *)params + info->offset;
+    const AutoInt *whole = field;
     const AutoFloat *number = field;
     const AutoVec3 *vector = field;
     const float *floats = field;
@@ -294,6 +305,8 @@ char *param_format(const ParamInfo *info, const void *params)
         return format_color(floats);
     case PARAM_BACKGROUND:
         return floats[3] == 0 ? strdup("transparent") : format_color(floats);
+    case PARAM_AUTO_INT:
+        return whole->automatic ? strdup("auto") : format_whole(whole->value);
     case PARAM_AUTO_FLOAT:
         return number->automatic ? strdup("auto") : format_floats(&number->value, 1);
     case PARAM_AUTO_VEC3:
@@ -346,6 +359,9 @@ void param_describe(const ParamInfo *info, char *text, size_t size)
         break;
     case PARAM_BACKGROUND:
         snprintf(text, size, "#rrggbb, r,g,b %s, or transparent", range);
+        break;
+    case PARAM_AUTO_INT:
+        snprintf(text, size, "auto or a whole number %s", range);
         break;
     case PARAM_AUTO_FLOAT:
         snprintf(text, size, "auto or a number %s", range);

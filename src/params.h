@@ -15,6 +15,11 @@ typedef struct AutoFloat {
     float value;
 } AutoFloat;
 
+typedef struct AutoInt {
+    bool automatic;
+    int value;
+} AutoInt;
+
 typedef struct AutoVec3 {
     bool automatic;
     float value[3];
@@ -29,6 +34,7 @@ typedef enum ParamKind {
     PARAM_VEC3,       // float[3]: x,y,z
     PARAM_COLOR,      // float[3], sRGB 0..1: #rrggbb or r,g,b
     PARAM_BACKGROUND, // float[4], sRGB and opacity 0..1: a color (opacity 1), or transparent (0)
+    PARAM_AUTO_INT,   // AutoInt: auto, or a decimal
     PARAM_AUTO_FLOAT, // AutoFloat: auto, or a number
     PARAM_AUTO_VEC3,  // AutoVec3: auto, or x,y,z
     PARAM_UNIT,       // AutoFloat, metres per unit of a file: auto, m, cm, mm, in, or a number
@@ -74,6 +80,7 @@ typedef enum ParamGroup { PARAM_GROUPS(GROUP_VALUE) GROUP_COUNT } ParamGroup;
 #define PARAM_FIELD_VEC3(field)       float field[3];
 #define PARAM_FIELD_COLOR(field)      float field[3];
 #define PARAM_FIELD_BACKGROUND(field) float field[4];
+#define PARAM_FIELD_AUTO_INT(field)   AutoInt field;
 #define PARAM_FIELD_AUTO_FLOAT(field) AutoFloat field;
 #define PARAM_FIELD_AUTO_VEC3(field)  AutoVec3 field;
 #define PARAM_FIELD_UNIT(field)       AutoFloat field;

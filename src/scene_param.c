@@ -21,6 +21,7 @@ static const Form FORMS[] = {
     [PARAM_VEC3] = {.numbers = 3},
     [PARAM_COLOR] = {.string = true, .numbers = 3},
     [PARAM_BACKGROUND] = {.string = true, .numbers = 3},
+    [PARAM_AUTO_INT] = {.string = true, .number = true},
     [PARAM_AUTO_FLOAT] = {.string = true, .number = true},
     [PARAM_AUTO_VEC3] = {.string = true, .numbers = 3},
     [PARAM_UNIT] = {.string = true, .number = true},
@@ -143,6 +144,7 @@ json_t *scene_write_text(const char *text)
 json_t *scene_write_param(const ParamInfo *info, const void *params)
 {
     const void *field = (const char *)params + info->offset;
+    const AutoInt *whole = field;
     const AutoFloat *number = field;
     const AutoVec3 *vector = field;
     const int *size = field;
@@ -157,6 +159,8 @@ json_t *scene_write_param(const ParamInfo *info, const void *params)
         return scene_write_float(*(const float *)field);
     case PARAM_VEC3:
         return scene_write_floats(field, 3);
+    case PARAM_AUTO_INT:
+        return whole->automatic ? json_string("auto") : json_integer(whole->value);
     case PARAM_AUTO_FLOAT:
     case PARAM_UNIT:
         return number->automatic ? json_string("auto") : scene_write_float(number->value);

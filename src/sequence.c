@@ -118,13 +118,21 @@ static Result run_frame(Sequence *sequence, Previous *previous, int frame, Error
     return result;
 }
 
+// The warm-up before frame 0.
+static Result settle(Simulation *simulation, Error *error)
+{
+    while (!interrupt_requested())
+        if (!simulation_settle(simulation)) return RESULT_OK;
+    return error_set(error, RESULT_INTERRUPTED, "interrupted before the first frame");
+}
+
 Result sequence_run(Sequence *sequence, Error *error)
 {
     const RunParams *run = &sequence->scene->run;
     int last = sequence_last_frame(run);
     Previous previous = {0};
     Progress progress;
-    Result result = RESULT_OK;
+    Result result = settle(sequence->simulation, error);
     progress_start(&progress, stderr, last + 1, run->quiet);
     for (int frame = 0; frame <= last && result == RESULT_OK; ++frame) {
         result = interrupt_requested()

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "simulation.h"
 #include "forces.h"
+#include "stability.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,37 +20,66 @@ static HeadPose head_at(const Scene *scene, double time)
     return pose;
 }
 
-static Result create_section(SimulationSection *section, const Gpu *gpu, GpuTimer *timer,
-                             const Section *description, const Strands *strands, uint32_t first_id,
-                             uint32_t seed, Error *error)
+// Frames fall between steps if a frame is no whole number of steps; what does not step is drawn as
+// the head stands at any time.
+static bool needs_inbetween(const Simulation *simulation, const Solver *solver)
 {
+    double steps = simulation->schedule.steps_per_frame;
+    return steps != floor(steps) && !solver_is_static(solver);
+}
+
+static Result create_section(Simulation *simulation, uint32_t i, const Gpu *gpu,
+                             const Strands *strands, uint32_t first_id, Error *error)
+{
+    SimulationSection *section = &simulation->sections[i];
+    const Section *description = &simulation->scene->sections[i];
     Result result = hair_create(&section->hair, strands, first_id, &gpu->limits, error);
     if (result == RESULT_OK) {
-        const SolverSetup setup = {
-            .gpu = gpu, .timer = timer, .hair = &section->hair, .params = &description->params};
+        const SolverSetup setup = {.gpu = gpu,
+                                   .timer = simulation->timer,
+                                   .hair = &section->hair,
+                                   .params = &description->params};
         result = solver_create(&section->solver, &setup, error);
     }
     if (result == RESULT_OK)
-        result = follow_create(&section->follow, gpu, timer, &section->hair, strands,
-                               &description->params, seed, error);
+        result = follow_create(&section->follow, gpu, simulation->timer, &section->hair, strands,
+                               &description->params, simulation->scene->run.seed, error);
+    if (result == RESULT_OK && needs_inbetween(simulation, &section->solver))
+        result = inbetween_create(&section->inbetween, gpu, &section->hair, error);
     return result == RESULT_OK ? RESULT_OK : error_prefix(error, result, "%s: ", description->file);
 }
 
-Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer,
-                         const Scene *scene, const Strands *strands, Error *error)
+static Result create_sections(Simulation *simulation, const Gpu *gpu, const Strands *strands,
+                              Error *error)
 {
-    *simulation = (Simulation){.scene = scene, .timer = timer, .head = head_at(scene, 0)};
-    simulation->sections =
-        calloc(scene->section_count ? scene->section_count : 1, sizeof *simulation->sections);
+    const Scene *scene = simulation->scene;
+    simulation->sections = calloc((size_t)scene->section_count + 1, sizeof *simulation->sections);
     if (!simulation->sections)
         return error_set(error, RESULT_FAILED, "no memory for %u sections", scene->section_count);
     Result result = RESULT_OK;
     uint32_t first_id = 0;
     for (uint32_t i = 0; i < scene->section_count && result == RESULT_OK; ++i) {
-        result = create_section(&simulation->sections[i], gpu, timer, &scene->sections[i],
-                                &strands[i], first_id, scene->run.seed, error);
+        result = create_section(simulation, i, gpu, &strands[i], first_id, error);
         first_id += strands[i].strand_count;
     }
+    return result;
+}
+
+Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer,
+                         const Scene *scene, const Strands *strands, Error *error)
+{
+    const RunParams *run = &scene->run;
+    *simulation = (Simulation){
+        .scene = scene, .timer = timer, .head = head_at(scene, 0), .substeps = run->substeps.value};
+    simulation->step_head = simulation->step_head_before = simulation->head;
+    Result result = RESULT_OK;
+    for (uint32_t i = 0; i < scene->section_count && result == RESULT_OK; ++i)
+        result = solver_check(&scene->sections[i].params, error);
+    if (result == RESULT_OK && run->substeps.automatic)
+        result = stability_choose_substeps(&simulation->substeps, scene, strands, error);
+    simulation->schedule = schedule_create(run, simulation->substeps);
+    simulation->step = -simulation->schedule.settling;
+    if (result == RESULT_OK) result = create_sections(simulation, gpu, strands, error);
     if (result != RESULT_OK) simulation_destroy(simulation);
     return result;
 }
@@ -57,6 +88,7 @@ void simulation_destroy(Simulation *simulation)
 {
     for (uint32_t i = 0; simulation->sections && i < simulation->scene->section_count; ++i) {
         follow_destroy(&simulation->sections[i].follow);
+        inbetween_destroy(&simulation->sections[i].inbetween);
         solver_destroy(&simulation->sections[i].solver);
         hair_destroy(&simulation->sections[i].hair);
     }
@@ -65,38 +97,87 @@ void simulation_destroy(Simulation *simulation)
 }
 
 // Forces act at the step's start; the head's end pose is where the roots go.
-static SolverStep next_step(const Simulation *simulation, int substep)
+static SolverStep next_step(const Simulation *simulation)
 {
-    const RunParams *run = &simulation->scene->run;
-    double dt = 1 / ((double)run->fps * run->substeps);
-    double time = simulation->frame / (double)run->fps + substep * dt;
+    const Scene *scene = simulation->scene;
+    double rate = simulation->schedule.steps_per_s;
     Forces forces;
-    forces_evaluate(&forces, simulation->scene, time);
+    forces_evaluate(&forces, scene, (double)simulation->step / rate);
     SolverStep step = {
-        .dt = dt,
-        .first = simulation->frame == 0 && substep == 0,
-        .shuffle = run->seed + (uint32_t)(simulation->frame * run->substeps + substep),
-        .head_old = simulation->head,
-        .head = head_at(simulation->scene, time + dt),
+        .dt = 1 / rate,
+        .first = simulation->step == -simulation->schedule.settling,
+        .shuffle = scene->run.seed + (uint32_t)simulation->step,
+        .head_old = simulation->step_head,
+        .head = head_at(scene, fmax(0, (double)(simulation->step + 1) / rate)),
     };
     memcpy(step.gravity, forces.gravity, sizeof step.gravity);
     memcpy(step.wind, forces.wind, sizeof step.wind);
     return step;
 }
 
+static void take_step(Simulation *simulation)
+{
+    SolverStep step = next_step(simulation);
+    for (uint32_t i = 0; i < simulation->scene->section_count; ++i) {
+        SimulationSection *section = &simulation->sections[i];
+        if (solver_is_static(&section->solver)) continue;
+        inbetween_restore(&section->inbetween);
+        solver_step(&section->solver, &step);
+        ++simulation->steps;
+    }
+    simulation->step_head_before = step.head_old;
+    simulation->step_head = step.head;
+    ++simulation->step;
+}
+
+bool simulation_settle(Simulation *simulation)
+{
+    if (simulation->step < 0) take_step(simulation);
+    return simulation->step < 0;
+}
+
+static void pose_section(Simulation *simulation, SimulationSection *section, const HeadPose *head)
+{
+    inbetween_restore(&section->inbetween);
+    solver_pose(&section->solver, head);
+    section->posed = true;
+    section->posed_at = *head;
+    ++simulation->poses;
+}
+
+// Poses every section that moves as it is after the last step, and keeps that.
+static void keep(Simulation *simulation, void (*keep_positions)(Inbetween *inbetween))
+{
+    for (uint32_t i = 0; i < simulation->scene->section_count; ++i) {
+        SimulationSection *section = &simulation->sections[i];
+        if (!section->inbetween.hair) continue;
+        pose_section(simulation, section, &simulation->step_head);
+        keep_positions(&section->inbetween);
+    }
+}
+
 void simulation_advance(Simulation *simulation)
 {
-    for (int substep = 0; substep < simulation->scene->run.substeps; ++substep) {
-        SolverStep step = next_step(simulation, substep);
-        for (uint32_t i = 0; i < simulation->scene->section_count; ++i) {
-            const Solver *solver = &simulation->sections[i].solver;
-            if (solver_is_static(solver)) continue;
-            solver_step(solver, &step);
-            ++simulation->steps;
-        }
-        simulation->head = step.head;
+    const RunParams *run = &simulation->scene->run;
+    ScheduledFrame next = schedule_frame(&simulation->schedule, run, ++simulation->frame);
+    while (simulation->step < next.step) take_step(simulation);
+    if (next.share > 0 && simulation->step == next.step) {
+        keep(simulation, inbetween_keep_earlier);
+        take_step(simulation);
+        keep(simulation, inbetween_keep_later);
     }
-    ++simulation->frame;
+    simulation->share = next.share;
+    simulation->head =
+        next.share > 0 ? head_at(simulation->scene, next.time) : simulation->step_head;
+}
+
+static void pose_between(Simulation *simulation, SimulationSection *section)
+{
+    gpu_timer_begin(simulation->timer, "inbetween");
+    inbetween_mix(&section->inbetween, simulation->share, &simulation->step_head_before,
+                  &simulation->step_head, &simulation->head);
+    gpu_timer_end(simulation->timer);
+    ++simulation->poses;
 }
 
 void simulation_pose(Simulation *simulation)
@@ -108,11 +189,11 @@ void simulation_pose(Simulation *simulation)
             ++simulation->poses_skipped;
             continue;
         }
-        solver_pose(&section->solver, &simulation->head);
+        if (simulation->share > 0 && section->inbetween.hair)
+            pose_between(simulation, section);
+        else
+            pose_section(simulation, section, &simulation->head);
         follow_write(&section->follow, &simulation->head);
-        section->posed = true;
-        section->posed_at = simulation->head;
-        ++simulation->poses;
     }
 }
 

@@ -3,7 +3,9 @@
 #pragma once
 
 #include "follow.h"
+#include "inbetween.h"
 #include "scene.h"
+#include "schedule.h"
 #include "solver.h"
 #include "strands.h"
 
@@ -11,7 +13,8 @@ typedef struct SimulationSection {
     Hair hair;
     Solver solver;
     Follow follow;
-    bool posed; // positions are written ...
+    Inbetween inbetween; // empty where no frame falls between two steps, or the solver is static
+    bool posed;          // positions are written ...
     HeadPose
         posed_at; // ... for this head; a static section needs no other pose while the head is there
 } SimulationSection;
@@ -19,19 +22,29 @@ typedef struct SimulationSection {
 typedef struct Simulation {
     const Scene *scene;
     GpuTimer *timer;
+    Schedule schedule;
+    int substeps;                // steps a period, found if --substeps is auto
     SimulationSection *sections; // [scene->section_count]
-    HeadPose head;               // now
-    int frame;                   // now: time = frame / fps, frame 0 is the start, at rest
+    int frame;                   // to be drawn now; frame 0 is the start
+    HeadPose head;               // as drawn
+    float share;  // drawn so far on the way from the last step but one to the last; 0: the last
+    int64_t step; // steps since time 0; below 0 while the hair settles
+    HeadPose step_head, step_head_before; // after the last step and before it
     uint64_t steps, poses, poses_skipped;
 } Simulation;
 
 // Uploads strands[section] and makes the solvers. `gpu`, `timer`, `scene` outlive the simulation.
-// Errors of hair_create and solver_create, prefixed with the section's file.
+// Errors of hair_create and solver_create, prefixed with the section's file, and of
+// stability_choose_substeps.
 Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer,
                          const Scene *scene, const Strands *strands, Error *error);
 void simulation_destroy(Simulation *simulation);
 
-// To the next frame: `substeps` steps of each section. Only queues GPU work.
+// A step of the warm-up (--preroll), in which the head stands as at time 0. Returns whether more
+// are left; to be called until it says no, before the first simulation_advance.
+bool simulation_settle(Simulation *simulation);
+
+// To the next frame, by as many steps of each section as it takes. Only queues GPU work.
 void simulation_advance(Simulation *simulation);
 
 // Writes the positions that are drawn. Skips what has not changed.

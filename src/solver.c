@@ -52,6 +52,11 @@ const char *solver_caution(const SectionParams *params)
     return type->caution ? type->caution(params) : NULL;
 }
 
+float solver_most_stability(const SectionParams *params)
+{
+    return find_type(params->algo)->most_stability;
+}
+
 Result solver_create(Solver *solver, const SolverSetup *setup, Error *error)
 {
     *solver = (Solver){0};

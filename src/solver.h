@@ -60,8 +60,11 @@ struct SolverType {
     const char *summary;                                 // one line for --algo list
     const char *(*caution)(const SectionParams *params); // what its user should know, one line;
                                                          // NULL or giving NULL: nothing
-    const char *lengths; // how well segments keep theirs, for --algo list; may be NULL
-    const char *style;   // what brings the style back, for --algo list; NULL: nothing does
+    const char *lengths;  // how well segments keep theirs, for --algo list; may be NULL
+    const char *style;    // what brings the style back, for --algo list; NULL: nothing does
+    float most_stability; // greatest stability number of a step (stability.h) at which it is calm,
+                          // for
+                          // --substeps auto; 0: any
     const char *variants[SOLVER_MAX_VARIANTS]; // words of --variant, the default first; NULL ends
     const SolverCalls *calls;                  // &PARTICLE_SOLVER, or its own
     const struct ParticleRecipe
@@ -98,6 +101,9 @@ Result solver_check(const SectionParams *params, Error *error);
 
 // What the user of this algo and variant should know, or NULL. The words have been checked.
 const char *solver_caution(const SectionParams *params);
+
+// Its type's most_stability. The words have been checked.
+float solver_most_stability(const SectionParams *params);
 
 // Checks as above and creates.
 Result solver_create(Solver *solver, const SolverSetup *setup, Error *error);

@@ -28,6 +28,7 @@ const SolverType SOLVER_CHAIN = {
                "order in the step",
     .lengths = "exact",
     .style = "position springs, --style, --style-stiffness",
+    .most_stability = 3.2f,
     .calls = &PARTICLE_SOLVER,
     .recipes = {&RECIPE},
 };

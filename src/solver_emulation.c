@@ -48,6 +48,7 @@ const SolverType SOLVER_EMULATION = {
                "unstable without much drag",
     .variants = {"projected", "thesis"},
     .caution = caution,
+    .most_stability = 1.6f,
     .calls = &PARTICLE_SOLVER,
     .recipes = {&RECIPE},
 };

@@ -28,6 +28,7 @@ const SolverType SOLVER_HYBRID = {
                "shape allows",
     .lengths = "exact",
     .style = "position springs, --style, --style-stiffness",
+    .most_stability = 1.6f,
     .calls = &PARTICLE_SOLVER,
     .recipes = {&RECIPE},
 };

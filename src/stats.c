@@ -153,6 +153,10 @@ static json_t *describe_counts(const Simulation *simulation, int frames_drawn, i
                         json_integer(simulated - frames_drawn - frames_repeated));
     json_object_set_new(counts, "frames_repeated", json_integer(frames_repeated));
     json_object_set_new(counts, "steps", json_integer((json_int_t)simulation->steps));
+    json_object_set_new(counts, "substeps", json_integer(simulation->substeps));
+    json_object_set_new(counts, "steps_settling",
+                        json_integer((json_int_t)simulation->schedule.settling));
+    json_object_set_new(counts, "steps_per_s", json_real(simulation->schedule.steps_per_s));
     json_object_set_new(counts, "poses", json_integer((json_int_t)simulation->poses));
     json_object_set_new(counts, "poses_skipped",
                         json_integer((json_int_t)simulation->poses_skipped));

@@ -6,6 +6,7 @@
 #include "step_uniforms.h"
 
 #include "follow_params.h"
+#include "inbetween_params.h"
 #include "pose_params.h"
 
 #include <math.h>
@@ -131,6 +132,14 @@ static void blocks_lie_alike_in_c_and_glsl(void **state)
     fixture_assert_offset(program, "FollowParams." #field, offsetof(FollowParams, field))
     FOLLOW(head_rotation), FOLLOW(tip_separation), FOLLOW(strand_count), FOLLOW(vertex_count),
         FOLLOW(first_guide), FOLLOW(per_guide);
+    glDeleteProgram(program);
+    const ShaderDefine inbetween[] = {{"GROUP_SIZE", 8}, {0}};
+    assert_int_equal(shader_build_compute(&program, "inbetween.comp", inbetween, NULL), RESULT_OK);
+#define INBETWEEN(field)                                                                           \
+    fixture_assert_offset(program, "InbetweenParams." #field, offsetof(InbetweenParams, field))
+    INBETWEEN(earlier_rotation), INBETWEEN(earlier_translation), INBETWEEN(later_rotation);
+    INBETWEEN(later_translation), INBETWEEN(now_rotation), INBETWEEN(now_translation);
+    INBETWEEN(share), INBETWEEN(strand_count), INBETWEEN(vertex_count);
     glDeleteProgram(program);
 }
 
