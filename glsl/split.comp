@@ -2,10 +2,13 @@
 // A step of `split`: the tip is simulated, the strand follows as a chain of tractrices.
 //
 // State: unit directions of the segments with their rest lengths (j > 0 from particle j - 1 to j), and the tip particle.
-//   1. kick the tip; where it flies to is the target                       (ball or thesis, below)
+//   1. kick the tip; where it flies to is the target                       (THESIS 0 or 1, below)
 //   2. pull the strand's end to the target: every tail is the next head    (tip -> root)
 //   3. pull the root back to where the head carries it                     (root -> tip)
-//   `ball` repeats 2 and 3.
+//   Without THESIS 2 and 3 are repeated.
+//
+// DRAGGED 0: all moves are seen from the root, which carries the strand along, so that a head at constant speed is like one at rest.
+// DRAGGED 1: the strand is also pulled through the world by the root.
 //
 // After a pull the far end has moved by what is left in `move`; the next pull begins there and undoes it, so each pull is the
 // same loop over the strand turned round: order reversed, directions negated. With IN_REGISTERS the strand stays in
@@ -109,8 +112,12 @@ void main()
         tip[k] = Tip(at.xyz, kick(v.xyz, strand_wind(texelFetch(strand_id, s[k]).x)), at.w);
         limit_speed(tip[k], R);
         target[k] = tip_target(tip[k], root_old, root, R);
-        move[k] = target[k] - (root_old + span);
+#if DRAGGED
         home[k] = root - root_old;
+#else
+        home[k] = vec3(0.0);
+#endif
+        move[k] = target[k] - (root - home[k] + span);
     }
 
     for (int pass = 0; pass < int(step_params.passes); ++pass) {

@@ -157,6 +157,15 @@ static void dispatch(ParticleState *state, uint32_t i, StepParams *uniforms)
     step_programs_dispatch(&state->programs, i, hair->strand_count);
 }
 
+static int list_buffers(const void *pointer, uint32_t batch,
+                        SolverBuffer buffers[SOLVER_MAX_BUFFERS])
+{
+    const ParticleState *state = pointer;
+    buffers[0] = (SolverBuffer){&state->hair->batches[batch].position, SOLVER_POINTS};
+    buffers[1] = (SolverBuffer){&state->batches[batch].velocity, SOLVER_VELOCITIES};
+    return 2;
+}
+
 // The head's pose after the share t of a step: translation straight, rotation by slerp.
 static HeadPose pose_between(const HeadPose *a, const HeadPose *b, float t)
 {
@@ -201,6 +210,7 @@ static void step_hair(void *pointer, const SolverStep *whole)
 
 const SolverCalls PARTICLE_SOLVER = {
     .create = create,
+    .buffers = list_buffers,
     .step = step_hair,
     .pose = write_pose,
     .destroy = destroy,

@@ -76,6 +76,12 @@ void solver_destroy(Solver *solver)
     *solver = (Solver){0};
 }
 
+int solver_buffers(const Solver *solver, uint32_t batch, SolverBuffer buffers[SOLVER_MAX_BUFFERS])
+{
+    const SolverCalls *calls = solver->type->calls;
+    return calls->buffers ? calls->buffers(solver->state, batch, buffers) : 0;
+}
+
 void solver_step(const Solver *solver, const SolverStep *step)
 {
     if (solver->type->calls->step) solver->type->calls->step(solver->state, step);

@@ -34,8 +34,26 @@ typedef struct SolverSetup {
     GpuTimer *timer; // spans "sim_<name>" and "pose"
     const Hair *hair;
     const SectionParams *params;
+    const HeadPose *head;   // at the start; NULL: where the style is
     const SolverType *type; // solver_create sets it
 } SolverSetup;
+
+// What the vec4s of a buffer are; w is the solver's own.
+typedef enum SolverBufferKind {
+    SOLVER_POINTS,     // m, in the world
+    SOLVER_VELOCITIES, // m/s, of the points in the buffer before
+    SOLVER_DIRECTIONS, // unit vectors
+    SOLVER_TIPS,       // a point and its velocity in turn
+} SolverBufferKind;
+
+// All that a batch of strands hands on from one step to the next, together with Hair's positions
+// where it lists them.
+typedef struct SolverBuffer {
+    const GpuBuffer *buffer;
+    SolverBufferKind kind;
+} SolverBuffer;
+
+enum { SOLVER_MAX_BUFFERS = 4 };
 
 // What happened so far, for the statistics.
 typedef struct SolverReport {
@@ -46,7 +64,10 @@ typedef struct SolverReport {
 // all but create and report only queue GPU work.
 typedef struct SolverCalls {
     Result (*create)(void **state, const SolverSetup *setup,
-                     Error *error);                    // hair at rest in its style
+                     Error *error); // hair at rest in its style
+    int (*buffers)(const void *state, uint32_t batch,
+                   SolverBuffer buffers[SOLVER_MAX_BUFFERS]); // lists the state, gives its count;
+                                                              // NULL: there is none
     void (*step)(void *state, const SolverStep *step); // advances the physical state; may be NULL
     void (*pose)(void *state, const HeadPose *head);   // writes Hair's positions for drawing
     void (*report)(void *state, SolverReport *report); // waits for the GPU; may be NULL
@@ -109,7 +130,8 @@ float solver_most_stability(const SectionParams *params);
 Result solver_create(Solver *solver, const SolverSetup *setup, Error *error);
 void solver_destroy(Solver *solver);
 
-// The calls of its type, on its state.
+// The calls of its type, on its state. The buffers' content is there once the solver has posed.
+int solver_buffers(const Solver *solver, uint32_t batch, SolverBuffer buffers[SOLVER_MAX_BUFFERS]);
 void solver_step(const Solver *solver, const SolverStep *step);
 void solver_pose(const Solver *solver, const HeadPose *head);
 void solver_report(const Solver *solver, SolverReport *report);

@@ -4,6 +4,8 @@
 #include "step_programs.h"
 #include "step_uniforms.h"
 
+#include <cglm/cglm.h>
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -32,7 +34,7 @@ typedef struct SplitState {
     SplitBatch *batches; // one for each of the hair
     Pose pose;
     StepPrograms programs;
-    bool thesis;
+    bool thesis, dragged;
 } SplitState;
 
 static void destroy(void *pointer)
@@ -57,17 +59,31 @@ static Result build_programs(SplitState *state, const Gpu *gpu, Error *error)
         .shader = "split.comp",
         .most_in_registers = MOST_IN_REGISTERS,
         .strands_on_cpu = STRANDS_ON_CPU,
-        .defines = (const ShaderDefine[]){{"THESIS", state->thesis}, {0}},
+        .defines =
+            (const ShaderDefine[]){{"THESIS", state->thesis}, {"DRAGGED", state->dragged}, {0}},
     };
     return step_programs_create(&state->programs, gpu, state->hair, &options, error);
 }
 
 typedef float Float4[4];
 
-// At rest in the style, the tip at the strand's end.
-static Result create_state(SplitBatch *batch, const HairBatch *hair, const GpuLimits *limits,
+// The strand's texels of `rest` become directions in the world; the tip is at their end.
+static void place_strand(const HairBatch *hair, uint32_t slot, const HeadPose *head, Float4 *rest,
+                         Float4 tip)
+{
+    for (uint32_t j = 0; j < hair->vertex_count; ++j) {
+        float *at = rest[hair_address(hair, slot, j)];
+        if (head) glm_quat_rotatev((float *)head->rotation, at, at);
+        if (head && j == 0) glm_vec3_add((float *)head->translation, at, at);
+        for (int k = 0; k < 3; ++k) tip[k] += j == 0 ? at[k] : at[3] * at[k];
+    }
+}
+
+// At rest in the style where the head is.
+static Result create_state(SplitBatch *batch, const HairBatch *hair, const SolverSetup *setup,
                            Error *error)
 {
+    const GpuLimits *limits = &setup->gpu->limits;
     uint32_t slots = hair_slots(hair);
     size_t particles = (size_t)hair->vertex_count * slots;
     Float4 *rest = malloc(particles * sizeof *rest),
@@ -78,11 +94,7 @@ static Result create_state(SplitBatch *batch, const HairBatch *hair, const GpuLi
         glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(particles * sizeof *rest),
                            rest);
         for (uint32_t slot = 0; slot < slots; ++slot)
-            for (uint32_t j = 0; j < hair->vertex_count; ++j)
-                for (int k = 0; k < 3; ++k) {
-                    const float *at = rest[hair_address(hair, slot, j)];
-                    tips[2 * slot][k] += j == 0 ? at[k] : at[3] * at[k];
-                }
+            place_strand(hair, slot, setup->head, rest, tips[2 * slot]);
         result = gpu_buffer_create(&batch->segments, limits, "split's segments",
                                    (int64_t)(particles * sizeof *rest), rest, GL_RGBA32F, error);
         if (result == RESULT_OK)
@@ -117,8 +129,7 @@ static Result build(SplitState *state, const SolverSetup *setup, Error *error)
     if (result == RESULT_OK)
         result = pose_create(&state->pose, setup->gpu, setup->params->style, error);
     for (uint32_t i = 0; i < state->hair->batch_count && result == RESULT_OK; ++i)
-        result =
-            create_state(&state->batches[i], &state->hair->batches[i], &setup->gpu->limits, error);
+        result = create_state(&state->batches[i], &state->hair->batches[i], setup, error);
     return result;
 }
 
@@ -131,12 +142,22 @@ static Result create(void **pointer, const SolverSetup *setup, Error *error)
     state->params = setup->params;
     state->timer = setup->timer;
     state->thesis = strcmp(setup->params->variant, "thesis") == 0;
+    state->dragged = state->thesis || strcmp(setup->params->variant, "dragged") == 0;
     Result result = build(state, setup, error);
     if (result == RESULT_OK)
         *pointer = state;
     else
         destroy(state);
     return result;
+}
+
+static int list_buffers(const void *pointer, uint32_t batch,
+                        SolverBuffer buffers[SOLVER_MAX_BUFFERS])
+{
+    const SplitState *state = pointer;
+    buffers[0] = (SolverBuffer){&state->batches[batch].segments, SOLVER_DIRECTIONS};
+    buffers[1] = (SolverBuffer){&state->batches[batch].tips, SOLVER_TIPS};
+    return 2;
 }
 
 static void step(void *pointer, const SolverStep *solver_step)
@@ -189,6 +210,7 @@ static void report(void *pointer, SolverReport *solver_report)
 
 static const SolverCalls CALLS = {
     .create = create,
+    .buffers = list_buffers,
     .step = step,
     .pose = write_pose,
     .report = report,
@@ -201,6 +223,6 @@ const SolverType SOLVER_SPLIT = {
         "the tip is simulated, the strand follows it as tractrices, the style is mixed back in",
     .lengths = "exact",
     .style = "mixed into what is drawn, --style",
-    .variants = {"ball", "thesis"},
+    .variants = {"ball", "dragged", "thesis"},
     .calls = &CALLS,
 };

@@ -95,10 +95,11 @@ static void kick(ReferenceStrand *strand, const ReferenceForces *forces)
             strand->velocity[k] * decay + (forces->gravity[k] + c * forces->wind[k]) * gain;
 }
 
-void reference_ball_step(ReferenceStrand *strand, const double root[3],
-                         const ReferenceForces *forces)
+// The tip, a mass on a string of the strand's length: gives where it goes.
+static void fly(ReferenceStrand *strand, const double root[3], const ReferenceForces *forces,
+                Vec target)
 {
-    Vec target, s, r;
+    Vec s, r;
     double R = 0;
     for (int j = 1; j < strand->n; ++j) R += strand->length[j];
     kick(strand, forces);
@@ -113,10 +114,32 @@ void reference_ball_step(ReferenceStrand *strand, const double root[3],
     }
     for (int k = 0; k < 3; ++k) strand->velocity[k] = (target[k] - strand->tip[k]) / forces->dt;
     memcpy(strand->tip, target, sizeof(Vec));
+}
+
+static void pull_twice(ReferenceStrand *strand, const double root[3], const Vec target)
+{
     for (int round = 0; round < 2; ++round) {
         pull(strand, strand->n - 1, target);
         pull(strand, 0, root);
     }
+}
+
+void reference_ball_step(ReferenceStrand *strand, const double root[3],
+                         const ReferenceForces *forces)
+{
+    Vec target, home;
+    fly(strand, root, forces, target);
+    add_scaled(root, -1, strand->q[0], home);
+    for (int j = 0; j < strand->n; ++j) add_scaled(strand->q[j], 1, home, strand->q[j]);
+    pull_twice(strand, root, target);
+}
+
+void reference_dragged_step(ReferenceStrand *strand, const double root[3],
+                            const ReferenceForces *forces)
+{
+    Vec target;
+    fly(strand, root, forces, target);
+    pull_twice(strand, root, target);
 }
 
 void reference_thesis_step(ReferenceStrand *strand, const double root[3],

@@ -28,9 +28,14 @@ void reference_start(ReferenceStrand *strand, int n, const double (*positions)[3
 void reference_tractrix(const double h[3], const double t[3], const double p[3], double L,
                         double result[3]);
 
-// One step. `root` is where the head has carried the root to.
+// One step. `root` is where the head has carried the root to. The ball's strand is carried along
+// first, the dragged one is not.
+typedef void (*ReferenceStep)(ReferenceStrand *strand, const double root[3],
+                              const ReferenceForces *forces);
 void reference_ball_step(ReferenceStrand *strand, const double root[3],
                          const ReferenceForces *forces);
+void reference_dragged_step(ReferenceStrand *strand, const double root[3],
+                            const ReferenceForces *forces);
 void reference_thesis_step(ReferenceStrand *strand, const double root[3],
                            const ReferenceForces *forces);
 

@@ -75,6 +75,9 @@ static void run_against_reference(int n, const char *variant, float style)
     static ReferenceStrand twin[COUNT];
     Vec directions[MOST], drawn[MOST], expected[MOST];
     HairFixture fixture;
+    ReferenceStep step = *variant == 'b'   ? reference_ball_step
+                         : *variant == 'd' ? reference_dragged_step
+                                           : reference_thesis_step;
     for (int s = 0; s < COUNT; ++s) make_curl(&start[s * n], n, 0.01 * s, 1 + s);
     for (int i = 0; i < COUNT * n; ++i)
         for (int k = 0; k < 3; ++k) start[i][k] = (double)(float)start[i][k];
@@ -93,8 +96,7 @@ static void run_against_reference(int n, const char *variant, float style)
         for (int s = 0; s < COUNT; ++s) {
             Vec root = {start[s * n][0] + (double)fixture.step.head.translation[0], start[s * n][1],
                         start[s * n][2]};
-            (*variant == 't' ? reference_thesis_step : reference_ball_step)(&twin[s], root,
-                                                                            &forces);
+            step(&twin[s], root, &forces);
         }
         forces.first = false;
     }
@@ -123,6 +125,7 @@ static void ball_equals_its_double_precision_twin(void **state)
     run_against_reference(16, "ball", 0);
     run_against_reference(32, "ball", 0.5f);
     run_against_reference(2, "ball", 0);
+    run_against_reference(16, "dragged", 0);
 }
 
 static void thesis_equals_its_double_precision_twin(void **state)
@@ -175,7 +178,7 @@ static void compare_trace(const json_t *trace, bool ball)
                     start[j]);
     reference_start(&strand, n, (const Vec *)start);
     read_vector(json_object_get(trace, "wind"), wind);
-    fixture_create(&fixture, (const Vec *)start, 1, n, "split", ball ? "ball" : "thesis", 0,
+    fixture_create(&fixture, (const Vec *)start, 1, n, "split", ball ? "dragged" : "thesis", 0,
                    (float)c);
     fixture.step.dt = 1 / fps;
     for (int i = 0; i < 4; ++i)
@@ -199,8 +202,8 @@ static void compare_trace(const json_t *trace, bool ball)
         // are compared.
         double allowed = 16 * fmax(usual, 0x1p-23);
         if (!(off <= allowed))
-            fail_msg("%s n = %d, step %d: %.3g exceeds %.3g", ball ? "ball" : "thesis", n, i, off,
-                     allowed);
+            fail_msg("%s n = %d, step %d: %.3g exceeds %.3g", ball ? "dragged" : "thesis", n, i,
+                     off, allowed);
     }
     fixture_destroy(&fixture);
 }
@@ -222,7 +225,7 @@ static void compare_traces(const char *algorithm, bool ball, int expected_count)
     assert_int_equal(count, expected_count);
 }
 
-static void ball_equals_the_reference_traces(void **state)
+static void dragged_equals_the_reference_traces(void **state)
 {
     (void)state;
     compare_traces("ball_split", true, 4);
@@ -456,7 +459,7 @@ int main(void)
         cmocka_unit_test(ball_equals_its_double_precision_twin),
         cmocka_unit_test(thesis_equals_its_double_precision_twin),
         cmocka_unit_test(strands_through_memory_equal_the_twin_too),
-        cmocka_unit_test(ball_equals_the_reference_traces),
+        cmocka_unit_test(dragged_equals_the_reference_traces),
         cmocka_unit_test(thesis_equals_the_reference_traces),
         cmocka_unit_test(segment_lengths_do_not_drift_in_10000_steps),
         cmocka_unit_test(hanging_hair_stays_at_rest),
