@@ -10,7 +10,8 @@
 //   3. Twice: what lengths are still off is taken out along the current directions, J J^T lambda = |s| (|s| - l), x_j -= lambda_j s_j,
 //      x_{j-1} += lambda_j s_j, done on the segments themselves.
 //   4. Rebuild from the root with exact lengths.
-// Where a violent step leaves a segment off by more than half its length, two passes of tractrices take over (rescue).
+// Where a violent step leaves a segment off by more than half its length, two passes of tractrices take over (rescue). Long strands at long
+// steps would gain energy from either: energy_account.glsl.
 //
 // The sweeps run along the strand to and fro; each undoes one elimination and does the next. Positions are relative to the new root.
 #include "particles.glsl"
@@ -18,6 +19,7 @@
 #include "lane.glsl"
 #include "tractrix.glsl"
 #include "tridiagonal.glsl"
+#include "energy_account.glsl"
 
 const float THETA = 0.25;
 const float MOST_OFF = 0.5; // of a length, before tractrices take over
@@ -153,24 +155,31 @@ void put(Lane lane, int j, vec3 x, vec3 q)
 }
 
 // Root to tip: the strand is rebuilt and written.
-void write(Lane lane)
+void write(Lane lane, inout Account account)
 {
     int last = LAST;
-    vec3 x = lane.root;
+    vec3 x = lane.root, style = vec3(0.0);
     for (int j = 1; j <= last; ++j) {
-        vec3 q = fetch_position(lane, j);
+        vec3 q = fetch_position(lane, j), v = fetch_velocity(lane, j), free = predicted_move(lane, j, q, style);
         x += recall(j).xyz;
+        account_add(account, lane, x - q, free, v);
         put(lane, j, x, q);
     }
 }
 
 // Two passes of tractrices (those of hybrid.comp) instead. Rolled loops, so that a CPU driver, where all lanes go through every branch,
 // leaves them after a round where no strand needs them. What is kept on the way lies where the velocities will.
-void rescue(Lane lane)
+void rescue(Lane lane, inout Account account)
 {
     int last = int(step_params.vertex_count - 1u);
-    vec3 style = vec3(0.0);
-    for (int j = 1; j <= last; ++j) velocities[lane.address + j * STRAND_TILE] = vec4(predicted(lane, j, style), 0.0);
+    vec3 style = vec3(0.0), sum = vec3(0.0), sum_before = vec3(0.0);
+    float squares = 0.0, squares_before = 0.0;
+    for (int j = 1; j <= last; ++j) {
+        vec3 before = fetch_velocity(lane, j) * lane.dt - account.moved_before;
+        sum_before += before;
+        squares_before += dot(before, before);
+        velocities[lane.address + j * STRAND_TILE] = vec4(predicted(lane, j, style), 0.0);
+    }
     vec3 y = velocities[lane.address + last * STRAND_TILE].xyz, q = fetch_position(lane, last);
     for (int j = last; j >= 1; --j) {
         vec3 q_before = fetch_position(lane, j - 1), p = lane.root_old - lane.root;
@@ -188,8 +197,12 @@ void rescue(Lane lane)
         vec3 d = tractrix_turn(tractrix_renormalise(velocities[lane.address + j * STRAND_TILE].xyz), l, move);
         q = fetch_position(lane, j);
         x += l * tractrix_renormalise(d);
+        vec3 now = x - q - account.moved;
+        sum += now;
+        squares += dot(now, now);
         put(lane, j, x, q);
     }
+    account_add_sums(account, lane.dt * lane.push, sum, sum_before, squares, squares_before);
 }
 
 void main()
@@ -203,9 +216,11 @@ void main()
     correct(lane);
     correct_again(lane);
     bool violent = finish(lane) > floatBitsToInt(MOST_OFF);
-    put(lane, 0, lane.root, lane.root_old);
+    Account account = account_open(lane);
     if (violent)
-        rescue(lane);
+        rescue(lane, account);
     else
-        write(lane);
+        write(lane, account);
+    positions[lane.address] = vec4(lane.root, 1.0);
+    account_close(account, lane, int(step_params.vertex_count - 1u));
 }

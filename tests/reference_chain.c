@@ -140,32 +140,99 @@ void reference_two_pass(const TwinStrand *strand, const Vec *predicted, const Ve
     }
 }
 
+// Velocities relative to the root's at the time.
+static void subtract_root(int n, const Vec *v, Vec *u)
+{
+    for (int j = 0; j < n; ++j) subtract(v[j], v[0], u[j]);
+}
+
+// Seen from the root: velocities before and after the step, and what forces change them by (the
+// root's acceleration is one of them).
+typedef struct Motion {
+    Vec before[TWIN_MAX], now[TWIN_MAX], forced[TWIN_MAX];
+} Motion;
+
+// The kinetic energy that the step has brought less the work of the forces: what constraints gave.
+static double gained(const Motion *motion, int n)
+{
+    double sum = 0;
+    for (int j = 1; j < n; ++j)
+        for (int i = 0; i < 3; ++i)
+            sum += (motion->now[j][i] - motion->before[j][i] - motion->forced[j][i]) *
+                   (motion->now[j][i] + motion->before[j][i]) / 2;
+    return sum;
+}
+
+// Takes what the strand has gained beyond what is allowed out of its velocities.
+static void guard(TwinStrand *strand, const TwinStep *step, const Vec *now)
+{
+    double kinetic = 0, length = 0;
+    Vec acceleration;
+    for (int j = 1; j < strand->n; ++j)
+        kinetic += vec_dot(now[j], now[j]) / 2, length += strand->length[j];
+    vec_add_scaled(step->gravity, step->drag, step->wind, acceleration);
+    double fall = (strand->n - 1) * length / 2 * vec_norm(acceleration);
+    double over = strand->gained - 0.005 * (fall + kinetic);
+    if (!(over > 0) || !(kinetic > 0)) return;
+    double taken = fmin(over, kinetic), kept = sqrt(1 - taken / kinetic);
+    strand->gained -= taken;
+    for (int j = 1; j < strand->n; ++j) vec_add_scaled(strand->v[0], kept, now[j], strand->v[j]);
+}
+
+// Forces of a step that solves: to the predicted positions. Of one that is rescued: only those that
+// are uniform.
+static void find_forced(const TwinStep *step, const Vec *x_old, const Vec *v_old,
+                        const Vec *predicted, const Vec root, bool rescued, int n, Vec *forced)
+{
+    Vec fall = {0};
+    twin_kick(fall, step, step->first ? step->dt / 2 : step->dt);
+    for (int j = 1; j < n; ++j)
+        for (int i = 0; i < 3; ++i) {
+            double change = (predicted[j][i] - x_old[j][i]) / step->dt - v_old[j][i];
+            forced[j][i] = (rescued ? fall[i] : change) - (root[i] - v_old[0][i]);
+        }
+}
+
+// Puts the strand at x with exact lengths.
+static void rebuild(TwinStrand *strand, const Vec *x, double dt)
+{
+    Vec old[TWIN_MAX];
+    memcpy(old, strand->x, sizeof old);
+    vec_copy(x[0], strand->x[0]);
+    for (int j = 1; j < strand->n; ++j) {
+        Vec s;
+        subtract(x[j], x[j - 1], s);
+        vec_add_scaled(strand->x[j - 1], strand->length[j] / vec_norm(s), s, strand->x[j]);
+    }
+    for (int j = 0; j < strand->n; ++j)
+        for (int i = 0; i < 3; ++i) strand->v[j][i] = (strand->x[j][i] - old[j][i]) / dt;
+}
+
+static bool is_violent(const TwinStrand *strand, const Vec *x)
+{
+    return !(twin_length_error(strand, x) <= 0.5);
+}
+
 void reference_chain_step(TwinStrand *strand, const TwinStep *step, const SectionParams *params)
 {
     const int n = strand->n;
-    Vec v_old[TWIN_MAX], predicted[TWIN_MAX], x[TWIN_MAX];
-    double off = 0;
+    Vec x_old[TWIN_MAX], v_old[TWIN_MAX], predicted[TWIN_MAX], x[TWIN_MAX];
+    Motion motion;
+    memcpy(x_old, strand->x, sizeof x_old);
     memcpy(v_old, strand->v, sizeof v_old);
     reference_predict(strand, step, params, predicted);
     memcpy(x, predicted, sizeof x);
     pull_implicitly(strand, (const Vec *)v_old, step->dt, x);
     correct(strand, x);
     correct(strand, x);
-    for (int j = 1; j < n; ++j) {
-        Vec s;
-        subtract(x[j], x[j - 1], s);
-        off = fmax(off, fabs(vec_norm(s) / strand->length[j] - 1));
-    }
-    if (!(off <= 0.5)) reference_two_pass(strand, (const Vec *)predicted, predicted[0], x);
-    for (int j = 0; j < n; ++j) {
-        for (int i = 0; i < 3; ++i) strand->v[j][i] = -strand->x[j][i] / step->dt;
-        if (j > 0) {
-            Vec s;
-            subtract(x[j], x[j - 1], s);
-            vec_add_scaled(strand->x[j - 1], strand->length[j] / vec_norm(s), s, strand->x[j]);
-        } else {
-            vec_copy(predicted[0], strand->x[0]);
-        }
-        vec_add_scaled(strand->v[j], 1 / step->dt, strand->x[j], strand->v[j]);
-    }
+    bool violent = is_violent(strand, (const Vec *)x);
+    if (violent) reference_two_pass(strand, (const Vec *)predicted, predicted[0], x);
+    rebuild(strand, (const Vec *)x, step->dt);
+
+    subtract_root(n, (const Vec *)v_old, motion.before);
+    subtract_root(n, (const Vec *)strand->v, motion.now);
+    find_forced(step, (const Vec *)x_old, (const Vec *)v_old, (const Vec *)predicted, strand->v[0],
+                violent, n, motion.forced);
+    strand->gained = fmax(strand->gained + gained(&motion, n), 0);
+    guard(strand, step, (const Vec *)motion.now);
 }

@@ -49,7 +49,6 @@ static const struct {
     const char *why;
 } RISES[] = {
     {"hybrid", 64, 0.2, "its blend of velocities is not calm enough for 64 at 120 Hz"},
-    {"chain", 64, 1, "its sub-steps are too long for 64 at 30 and at 120 Hz"},
     {"spring", 0, 0.02, "30 Hz: what the springs give back within a step"},
 };
 
