@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // tractrix-bench: accuracy of the tractrix on test vectors, speed of solvers and drawing, check of
 // all shaders.
+#include "bench_accuracy.h"
 #include "bench_shaders.h"
 #include "bench_speed.h"
 #include "compare.h"
@@ -19,6 +20,7 @@
 
 typedef struct Arguments {
     SpeedOptions speed;
+    AccuracyOptions accuracy;
     GpuOptions gpu;
     CompareLimits limits;
     const char *vectors, *json;
@@ -107,6 +109,18 @@ static Result run_all(const Arguments *arguments, const Gpu *gpu, Error *error)
     return result;
 }
 
+static Result run_accuracy(const Arguments *arguments, const Gpu *gpu, Error *error)
+{
+    Error unwritten;
+    json_t *rows = arguments->json ? json_array() : NULL;
+    Result result = accuracy_run(gpu, &arguments->accuracy, stdout, rows, error);
+    if (rows && (result == RESULT_OK || result == RESULT_FAILED) &&
+        json_write_file(rows, arguments->json, &unwritten) != RESULT_OK)
+        result = error_set(error, RESULT_FAILED, "%s", unwritten.text);
+    json_decref(rows);
+    return result;
+}
+
 static Result run_shaders(const Arguments *arguments, const Gpu *gpu, Error *error)
 {
     (void)arguments;
@@ -146,6 +160,8 @@ static const struct {
      "chain pulls of --vectors FILE.csv (FILE_cases.csv beside it) against theirs"},
     {"speed", run_speed, true,
      "a solver's step on --set NAME or --tfx FILE, and drawing with --size"},
+    {"accuracy", run_accuracy, true,
+     "solvers' errors against exact motions, by the time step; status 1 if a bound is broken"},
     {"all", run_all, true, "a table: all sets, and the hair files named, with every solver"},
     {"compare", run_compare, false,
      "two PNG files by --level and --share; status 1 if they differ"},
@@ -169,7 +185,9 @@ enum {
     OPT_SOFTWARE,
     OPT_LEVEL,
     OPT_SHARE,
-    OPT_OSMESA
+    OPT_OSMESA,
+    OPT_REFERENCE,
+    OPT_RATES
 };
 
 static const struct {
@@ -185,6 +203,10 @@ static const struct {
      "NAME  form of the solver (default: its own choice)"},
     {{"style", required_argument, NULL, OPT_STYLE},
      "SHARE  of the style in the drawn strand, 0 to 1 (default 0.5)"},
+    {{"reference", required_argument, NULL, OPT_REFERENCE},
+     "DIR  accuracy: exact motions, NAME.csv with NAME.json (default tests/data/motion)"},
+    {{"rates", required_argument, NULL, OPT_RATES},
+     "LIST  accuracy: up to 8 numbers of steps a second (default 60,120,240)"},
     {{"steps", required_argument, NULL, OPT_STEPS},
      "N  measured steps, 1 to 1000000 (default 200)"},
     {{"warm-up", required_argument, NULL, OPT_WARM_UP},
@@ -238,6 +260,24 @@ static Result read_share(const char *name, const char *text, double *value, Erro
     return error_set(error, RESULT_USAGE, "--%s: expected 0 to 1, got '%s'", name, text);
 }
 
+static Result read_rates(const char *text, AccuracyOptions *options, Error *error)
+{
+    const char *at = text;
+    char *end = (char *)text;
+    for (options->rate_count = 0; options->rate_count < ACCURACY_MOST_RATES; at = end + 1) {
+        double rate = strtod(at, &end);
+        if (end == at || !(rate >= 1 && rate <= 1e6)) break;
+        options->rates[options->rate_count++] = rate;
+        if (!*end) return RESULT_OK;
+        if (*end != ',') break;
+    }
+    return error_set(
+        error, RESULT_USAGE,
+        "--rates: expected up to %d numbers from 1 to 1000000 with commas between them, "
+        "got '%s'",
+        ACCURACY_MOST_RATES, text);
+}
+
 static Result read_raster(const char *text, Raster *raster, Error *error)
 {
     RunParams run = {0};
@@ -269,11 +309,16 @@ static Result take_option(Arguments *arguments, int option, const char *text, Er
         speed->file = text;
         return RESULT_OK;
     case OPT_ALGO:
-        speed->algo = text;
+        speed->algo = arguments->accuracy.algo = text;
         return RESULT_OK;
     case OPT_VARIANT:
-        speed->variant = text;
+        speed->variant = arguments->accuracy.variant = text;
         return RESULT_OK;
+    case OPT_REFERENCE:
+        arguments->accuracy.reference = text;
+        return RESULT_OK;
+    case OPT_RATES:
+        return read_rates(text, &arguments->accuracy, error);
     case OPT_JSON:
         arguments->json = text;
         return RESULT_OK;
@@ -317,7 +362,9 @@ static Result read_arguments(Arguments *arguments, int argc, char **argv, bool *
 {
     struct option options[OPTION_COUNT + 1] = {{0}};
     for (size_t i = 0; i < OPTION_COUNT; ++i) options[i] = OPTIONS[i].option;
-    *arguments = (Arguments){.speed = speed_options_default(), .gpu = {.device = -1}};
+    *arguments = (Arguments){.speed = speed_options_default(),
+                             .accuracy = accuracy_options_default(),
+                             .gpu = {.device = -1}};
     opterr = 0;
     for (int option; (option = getopt_long(argc, argv, "hV", options, NULL)) != -1;) {
         if (option == 'h' || option == 'V') {

@@ -217,7 +217,7 @@ void reference_chain_step(TwinStrand *strand, const TwinStep *step, const Sectio
 {
     const int n = strand->n;
     Vec x_old[TWIN_MAX], v_old[TWIN_MAX], predicted[TWIN_MAX], x[TWIN_MAX];
-    Motion motion;
+    Motion motion = {0};
     memcpy(x_old, strand->x, sizeof x_old);
     memcpy(v_old, strand->v, sizeof v_old);
     reference_predict(strand, step, params, predicted);

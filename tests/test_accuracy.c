@@ -1,65 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Solvers that converge, against exact motions of rigid chains: every tenth frame of 1/60 s of two
-// scenarios, 0.25 m strands of 16 from rest, drag 4/s, computed for this project to 4e-10 m.
-#include "twin.h"
+// The reader of exact motions, the measure of errors against them, and what solvers that converge
+// are stated to keep.
+#include "reference_motion.h"
 
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 
-enum { N = 16, EVERY = 10, LAST_FRAME = 120 };
-
-static void read_frame(FILE *file, char **line, size_t *size, Vec *x)
-{
-    assert_true(getline(line, size, file) > 0);
-    char *at = *line;
-    strtod(at, &at), strtod(at + 1, &at); // frame, time
-    for (int j = 0; j < N; ++j)
-        for (int k = 0; k < 3; ++k) x[j][k] = strtod(at + 1, &at);
-}
-
-// RMS over particles and frames, over the strand's length.
-static double error_of(const char *path, const char *algo, int steps_per_frame, double wind_x,
-                       double wind_z)
-{
-    FILE *file = fopen(path, "r");
-    char *line = NULL;
-    size_t size = 0;
-    Vec exact[N], x[N];
-    double sum = 0;
-    HairFixture fixture;
-    assert_non_null(file);
-    assert_true(getline(&line, &size, file) > 0);
-    read_frame(file, &line, &size, exact);
-    fixture_create(&fixture, (const Vec *)exact, 1, N, algo, "", 0, 4);
-    fixture.step.dt = 1.0 / (60 * steps_per_frame);
-    for (int i = 0; i < 4; ++i)
-        fixture.step.wind[i][0] = (float)wind_x, fixture.step.wind[i][2] = (float)wind_z;
-    for (int frame = EVERY; frame <= LAST_FRAME; frame += EVERY) {
-        for (int i = 0; i < EVERY * steps_per_frame; ++i) fixture_step(&fixture);
-        read_frame(file, &line, &size, exact);
-        twin_read_strand(&fixture, 0, x);
-        sum += pow(twin_rms((const Vec *)x, (const Vec *)exact, N, 0.25), 2);
-    }
-    fixture_destroy(&fixture);
-    free(line);
-    fclose(file);
-    double error = sqrt(sum * EVERY / LAST_FRAME);
-    printf("%s, %s at %d Hz: %.3g of the length\n", path, algo, 60 * steps_per_frame, error);
-    return error;
-}
-
 static double released(const char *algo, int steps_per_frame)
 {
-    return error_of("tests/data/motion_a_horizontal_n16_c4.csv", algo, steps_per_frame, 0, 0);
-}
-
-static double curl_in_wind(const char *algo, int steps_per_frame)
-{
-    return error_of("tests/data/motion_bd_curly_wind_n16_c4.csv", algo, steps_per_frame, 3, 1);
+    return motion_error("a_horizontal_n16_c4", algo, "", steps_per_frame, NULL);
 }
 
 static void chain_is_of_second_order(void **state)
@@ -68,7 +22,6 @@ static void chain_is_of_second_order(void **state)
     double coarse = released("chain", 2), fine = released("chain", 8);
     assert_true(coarse < 0.005);
     assert_true(coarse / fine > 10); // 16; less where the frames that are compared are few
-    assert_true(curl_in_wind("chain", 1) < 0.04);
 }
 
 static void hybrid_and_emulation_are_of_first_order(void **state)
@@ -82,11 +35,57 @@ static void hybrid_and_emulation_are_of_first_order(void **state)
     }
 }
 
+static void the_order_is_the_slope_of_a_line(void **state)
+{
+    (void)state;
+    const double rates[] = {30, 60, 120}, errors[] = {0.16, 0.04, 0.01};
+    assert_true(fabs(accuracy_order(rates, errors, 3) - 2) < 1e-12);
+    assert_true(accuracy_order(rates, errors, 1) == 0);
+}
+
+// Hair that does not move is off by as much as the exact strand has moved.
+static void hair_that_stays_is_as_far_off_as_the_motion_goes(void **state)
+{
+    (void)state;
+    Error error;
+    Motion motion;
+    double sum = 0, counted = 0;
+    assert_int_equal(motion_read(&motion, "tests/data/motion", "c_root2Hz_n16_c4", &error), 0);
+    assert_int_equal(motion.n, 16);
+    assert_true(fabs(motion_root(&motion, 0.25) - 0.04) < 1e-12);
+    for (size_t f = 1; f < motion.frame_count; ++f)
+        for (int j = 1; motion.frames[f].followed && j < motion.n; ++j, counted += 1.0 / 15)
+            for (int k = 0; k < 3; ++k) {
+                double root = k == 0 ? motion_root(&motion, motion.frames[f].time) : 0;
+                double r = motion.frames[f].points[j][k] - motion.frames[0].points[j][k] - root;
+                sum += r * r / 15;
+            }
+    double still = motion_error("c_root2Hz_n16_c4", "none", "", 1, NULL);
+    assert_true(fabs(still / (sqrt(sum / counted) / motion.length) - 1) < 1e-5);
+    motion_destroy(&motion);
+}
+
+static void bad_motions_are_refused(void **state)
+{
+    (void)state;
+    Error error;
+    Motion motion;
+    char **names;
+    size_t count;
+    assert_int_equal(motion_read(&motion, "tests/data", "scene_full", &error), RESULT_BAD_INPUT);
+    assert_non_null(strstr(error.text, "scene_full.json: n: "));
+    assert_int_equal(motion_read(&motion, "tests/data", "nothing", &error), RESULT_BAD_INPUT);
+    assert_int_equal(motion_list(&names, &count, "tests/golden", &error), RESULT_BAD_INPUT);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(chain_is_of_second_order),
         cmocka_unit_test(hybrid_and_emulation_are_of_first_order),
+        cmocka_unit_test(the_order_is_the_slope_of_a_line),
+        cmocka_unit_test(hair_that_stays_is_as_far_off_as_the_motion_goes),
+        cmocka_unit_test(bad_motions_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

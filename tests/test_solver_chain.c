@@ -64,7 +64,6 @@ static void it_equals_the_reference_traces(void **state)
 static void its_error_falls_with_the_step(void **state)
 {
     (void)state;
-    if (!motion_available()) skip();
     assert_true(motion_mean_error("chain", "", 1, NULL) < 0.02);
     assert_true(motion_mean_error("chain", "", 4, NULL) < 0.005);
     double coarse = motion_error("a_horizontal_n16_c4", "chain", "", 2, NULL),

@@ -54,15 +54,20 @@ static void it_equals_its_double_precision_twin(void **state)
     assert_equals_twin(16, 1.0 / 60, 1, 0.5, 600, NULL);
 }
 
-// The reference implementation's error over the same scenarios: 0.11, 0.092, 0.078 (two digits, as
-// printed there).
+static void published(SectionParams *params)
+{
+    params->ftl_damping = 0.9f;
+}
+
+// The reference implementation's error over the same scenarios: 0.11, 0.092, 0.078 (two digits, over
+// all frames). With the default the drawn strand is calmer, and finer steps help more.
 static void its_error_is_that_of_the_reference_implementation(void **state)
 {
     (void)state;
-    if (!motion_available()) skip();
-    assert_true(fabs(motion_mean_error("dftl", "", 1, NULL) - 0.11) < 0.005);
-    assert_true(fabs(motion_mean_error("dftl", "", 2, NULL) - 0.092) < 0.001);
-    assert_true(fabs(motion_mean_error("dftl", "", 4, NULL) - 0.078) < 0.001);
+    assert_true(fabs(motion_mean_error("dftl", "", 1, published) - 0.11) < 0.005);
+    assert_true(fabs(motion_mean_error("dftl", "", 2, published) - 0.092) < 0.002);
+    assert_true(fabs(motion_mean_error("dftl", "", 4, published) - 0.078) < 0.002);
+    assert_true(motion_mean_error("dftl", "", 4, NULL) < 0.074);
 }
 
 // 1/64 s and 2048 m/s^2 take the follower from 0.25 m above its leader to exactly on it; all

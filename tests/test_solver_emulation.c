@@ -110,7 +110,6 @@ static void long_strands_are_refused(void **state)
 static void its_error_falls_with_the_step(void **state)
 {
     (void)state;
-    if (!motion_available()) skip();
     double coarse = motion_error("a_horizontal_n16_c4", "emulation", "", 2, NULL),
            fine = motion_error("a_horizontal_n16_c4", "emulation", "", 8, NULL);
     for (int i = 1; i <= 4; i *= 2) motion_mean_error("emulation", "", i, NULL);

@@ -51,7 +51,6 @@ static void strands_through_memory_equal_the_twin_too(void **state)
 static void its_error_falls_with_the_step(void **state)
 {
     (void)state;
-    if (!motion_available()) skip();
     double coarse = motion_error("a_horizontal_n16_c4", "hybrid", "", 2, NULL),
            fine = motion_error("a_horizontal_n16_c4", "hybrid", "", 8, NULL);
     for (int i = 1; i <= 4; i *= 2) motion_mean_error("hybrid", "", i, NULL);
