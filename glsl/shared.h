@@ -25,13 +25,17 @@ typedef uint uvec4[4] __attribute__((aligned(16)));
 #define BIND_MATERIAL 2
 
 // Shader storage.
-#define BIND_POSITION_OUT 0 // vec4 a particle: where a solver puts the strand that is drawn
-#define BIND_STATE_OUT    1 // a solver's own state
-#define BIND_TIPS         2 // split: two vec4 a strand
-#define BIND_SCRATCH      3 // a solver's scratch memory
+#define BIND_POSITION_OUT   0 // vec4 a particle: where a solver puts the strand that is drawn
+#define BIND_STATE_OUT      1 // a solver's own state
+#define BIND_TIPS           2 // split: two vec4 a strand
+#define BIND_SCRATCH        3 // a solver's scratch memory
+#define BIND_CONTACTS       4 // collisions: vec4 a particle
+#define BIND_CONTACT_COUNTS 5 // uvec4 a strand
 
 // Buffer textures.
 #define BIND_POSITION  0 // vec4 a particle
 #define BIND_REST      1 // vec4 a particle: the style, see hair.h
 #define BIND_STRAND_ID 2 // uint a strand
 #define BIND_STATE     3 // a solver's own state
+#define BIND_COLLIDERS 4 // shapes that hair must not cross
+#define BIND_FIELD     5 // distances to a mesh

@@ -56,6 +56,10 @@ static const struct {
      "{\"keys\": [{\"time\": 0, \"eye\": [0, 1.6, 2], \"target\": [0, 1.5, 0], "
      "\"fov\": 30}, ...]}",
      "path of the camera; what no key has is as the flag says"},
+    {"colliders",
+     "[{\"capsule\": [0, 1, 0, 0.08, 0, 1.4, 0, 0.05], \"frame\": \"head\"}, {\"ground\": 0}, ...]",
+     "shapes that hair must not cross: sphere, capsule, ground, plane with their numbers (m) as in "
+     "--colliders; frame: head or world"},
     {"lights",
      "[{\"type\": \"directional\", \"direction\": [0, -1, 0], \"color\": \"#ffffff\", "
      "\"intensity\": 1}, ...]",

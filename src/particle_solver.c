@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "particle_solver.h"
+#include "collision.h"
 #include "pose.h"
 #include "step_programs.h"
 
@@ -22,6 +23,7 @@ typedef struct ParticleState {
     StepPrograms programs;
     ParticleBatch *batches; // one for each of the hair
     Pose style;             // for the start
+    Collision collision;
     bool posed;
 } ParticleState;
 
@@ -37,6 +39,7 @@ static void destroy(void *pointer)
     step_programs_destroy(&state->programs);
     gpu_buffer_destroy(&state->uniforms);
     pose_destroy(&state->style);
+    collision_destroy(&state->collision);
     free(state);
 }
 
@@ -107,6 +110,9 @@ static Result build(ParticleState *state, const SolverSetup *setup, Error *error
     if (!state->batches) return error_set(error, RESULT_FAILED, "no memory for a solver");
     Result result = build_programs(state, setup->gpu, error);
     if (result == RESULT_OK) result = pose_create(&state->style, setup->gpu, 1, error);
+    if (result == RESULT_OK)
+        result = collision_create(&state->collision, setup, COLLISION_PARTICLES,
+                                  state->recipe->carried, error);
     for (uint32_t i = 0; i < state->hair->batch_count && result == RESULT_OK; ++i)
         result = create_buffers(state, &state->batches[i], &state->hair->batches[i],
                                 &setup->gpu->limits, error);
@@ -163,7 +169,9 @@ static int list_buffers(const void *pointer, uint32_t batch,
     const ParticleState *state = pointer;
     buffers[0] = (SolverBuffer){&state->hair->batches[batch].position, SOLVER_POINTS};
     buffers[1] = (SolverBuffer){&state->batches[batch].velocity, SOLVER_VELOCITIES};
-    return 2;
+    const GpuBuffer *contacts = collision_memory(&state->collision, batch);
+    if (contacts) buffers[2] = (SolverBuffer){contacts, SOLVER_POINTS};
+    return contacts ? 3 : 2;
 }
 
 // The head's pose after the share t of a step: translation straight, rotation by slerp.
@@ -188,6 +196,13 @@ static void dispatch_phases(ParticleState *state, StepParams *uniforms)
     }
 }
 
+static void collide(ParticleState *state, const SolverStep *step, int part, int parts)
+{
+    if (!collision_begin(&state->collision, step, part, parts)) return;
+    for (uint32_t i = 0; i < state->hair->batch_count; ++i)
+        collision_push(&state->collision, i, &state->batches[i].velocity, NULL);
+}
+
 static void step_hair(void *pointer, const SolverStep *whole)
 {
     ParticleState *state = pointer;
@@ -202,10 +217,17 @@ static void step_hair(void *pointer, const SolverStep *whole)
         StepParams uniforms = step_uniforms(&step, state->params);
         if (recipe->fill) recipe->fill(&uniforms, &step, state->params);
         dispatch_phases(state, &uniforms);
+        collide(state, &step, part, count);
         step.head_old = step.head;
         step.first = false;
     }
     gpu_timer_end(state->timer);
+}
+
+static void report(void *pointer, SolverReport *solver_report)
+{
+    const ParticleState *state = pointer;
+    collision_report(&state->collision, solver_report);
 }
 
 const SolverCalls PARTICLE_SOLVER = {
@@ -213,5 +235,6 @@ const SolverCalls PARTICLE_SOLVER = {
     .buffers = list_buffers,
     .step = step_hair,
     .pose = write_pose,
+    .report = report,
     .destroy = destroy,
 };

@@ -20,6 +20,8 @@ typedef struct ParticleRecipe {
                       // registers
     uint32_t most_vertices; // longer strands are refused: their loops would take more than the
                             // 65,535 iterations that CPU drivers allow an invocation; 0: any length
+    uint32_t carried;       // vertices, from the root, that the head carries; colliders leave them
+                            // where they are. The root always is.
     // Refuses what it cannot do by construction, RESULT_USAGE with the reason; NULL: nothing.
     Result (*check)(const SolverSetup *setup, Error *error);
     // Fills StepParams.own for a step, may change other members; NULL: nothing.

@@ -32,6 +32,7 @@ void scene_destroy(Scene *scene)
     keyframes_destroy(&scene->eye);
     keyframes_destroy(&scene->target);
     keyframes_destroy(&scene->fov);
+    colliders_destroy(&scene->colliders);
     *scene = (Scene){0};
 }
 

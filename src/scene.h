@@ -3,6 +3,7 @@
 // and lights, from the command line, a scene file or both.
 #pragma once
 
+#include "colliders.h"
 #include "error.h"
 #include "keyframes.h"
 #include "params.h"
@@ -51,6 +52,7 @@ typedef struct Scene {
     Keyframes eye, target;          // width 3, m; without keys run.eye, run.target hold
     Keyframes fov;                  // width 1, deg; without keys run.fov holds
     Light lights[SCENE_MAX_LIGHTS]; // two if the user names none: a key and a weaker fill
+    Colliders colliders;            // shapes that hair must not cross
     uint32_t light_count;           // 0 if the user gives an empty list: ambient light only
 } Scene;
 

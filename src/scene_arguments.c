@@ -215,6 +215,10 @@ static Result apply_flag(Scene *scene, const Argument *argument, Error *error)
     if (argument->info->scope == SCOPE_RUN) {
         drop_keyframes(scene, argument->info->name);
         result = param_parse(argument->info, &scene->run, argument->value, error);
+        if (result == RESULT_OK && strcmp(argument->info->name, "colliders") == 0) {
+            colliders_destroy(&scene->colliders);
+            result = colliders_parse(&scene->colliders, scene->run.colliders, error);
+        }
     }
     for (uint32_t i = 0; argument->info->scope == SCOPE_SECTION && i < scene->section_count; i++) {
         result = param_parse(argument->info, &scene->sections[i].params, argument->value, error);

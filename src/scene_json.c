@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scene_json.h"
 #include "file.h"
+#include "scene_colliders.h"
 #include "scene_param.h"
 #include "scene_tracks.h"
 
@@ -13,8 +14,10 @@ typedef struct Part {
     Result (*read)(Scene *scene, const Place *place, const json_t *value, Error *error);
 } Part;
 
-static const Part PARTS[] = {
-    {"head", scene_read_head}, {"camera", scene_read_camera}, {"lights", scene_read_lights}};
+static const Part PARTS[] = {{"head", scene_read_head},
+                             {"camera", scene_read_camera},
+                             {"lights", scene_read_lights},
+                             {"colliders", scene_read_colliders}};
 enum { PART_COUNT = sizeof PARTS / sizeof PARTS[0] };
 
 // The file being read. `root` is its place, `folder` what stands before the last '/' in its path
@@ -70,8 +73,8 @@ static Result check_keys(bool top, const Place *place, const json_t *object, Err
     return result;
 }
 
-// The parameters of one scope among the members of `object`. Keyframes of forces are for the
-// caller.
+// The parameters of one scope among the members of `object`. Keyframes of forces and the list of
+// colliders are for the caller.
 static Result read_params(const Document *document, ParamScope scope, void *params,
                           const Place *parent, const json_t *object, Error *error)
 {
@@ -79,7 +82,8 @@ static Result read_params(const Document *document, ParamScope scope, void *para
         const ParamInfo *info = &PARAM_TABLE[i];
         const json_t *value = json_object_get(object, info->name);
         bool keys = json_is_object(value) && info->kind == PARAM_VEC3;
-        if (info->scope != scope || !value || keys) continue;
+        bool list = json_is_array(value) && info->kind == PARAM_TEXT;
+        if (info->scope != scope || !value || keys || list) continue;
         Place place = {.parent = parent, .key = info->name};
         Result result = scene_read_param(info, params, document->folder, &place, value, error);
         if (result != RESULT_OK) return result;

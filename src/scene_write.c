@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A scene as JSON. jansson's functions take NULL for a value and then fail, so that memory running
 // out is found once, where the value is put into its parent.
+#include "scene_colliders.h"
 #include "scene_param.h"
 #include "scene_tracks.h"
 
@@ -183,6 +184,8 @@ json_t *scene_to_json(const Scene *scene)
     good = write_head(object, scene) && good;
     good = write_camera(object, scene) && good;
     good = write_lights(object, scene) && good;
+    if (scene->colliders.count)
+        good = put(object, "colliders", scene_write_colliders(&scene->colliders)) && good;
     good = write_sections(object, scene) && good;
     return finish(object, good);
 }

@@ -2,7 +2,6 @@
 // A scene in motion: each section's hair with its solver, advanced frame by frame.
 #pragma once
 
-#include "carry.h"
 #include "follow.h"
 #include "inbetween.h"
 #include "scene.h"
@@ -24,7 +23,6 @@ typedef struct Simulation {
     const Scene *scene;
     GpuTimer *timer;
     Schedule schedule;
-    Carry carry;                 // made if the head moves
     int substeps;                // steps a period, found if --substeps is auto
     SimulationSection *sections; // [scene->section_count]
     int frame;                   // to be drawn now; frame 0 is the start
@@ -33,7 +31,6 @@ typedef struct Simulation {
     int64_t step; // steps since time 0; below 0 while the hair settles
     HeadPose step_head, step_head_before; // after the last step and before it
     uint64_t steps, poses, poses_skipped;
-    uint64_t jumps; // of the head, by the rule of --teleport
 } Simulation;
 
 // Uploads strands[section] and makes the solvers. `gpu`, `timer`, `scene` outlive the simulation.

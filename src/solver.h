@@ -3,6 +3,7 @@
 // file and one line of SOLVERS.
 #pragma once
 
+#include "colliders.h"
 #include "gpu_timer.h"
 #include "hair.h"
 #include "params.h"
@@ -34,8 +35,9 @@ typedef struct SolverSetup {
     GpuTimer *timer; // spans "sim_<name>" and "pose"
     const Hair *hair;
     const SectionParams *params;
-    const HeadPose *head;   // at the start; NULL: where the style is
-    const SolverType *type; // solver_create sets it
+    const HeadPose *head;       // at the start; NULL: where the style is
+    const Colliders *colliders; // shapes that hair must not cross; NULL: none
+    const SolverType *type;     // solver_create sets it
 } SolverSetup;
 
 // What the vec4s of a buffer are; w is the solver's own.
@@ -58,6 +60,9 @@ enum { SOLVER_MAX_BUFFERS = 4 };
 // What happened so far, for the statistics.
 typedef struct SolverReport {
     uint64_t moves_limited; // moves cut because a particle was flung beyond what float32 can follow
+    uint64_t contacts;      // particles that touched a collider in the last step
+    float deepest_found, deepest_left; // m: deepest that a particle was in a collider, with its
+                                       // margin, before it was pushed out, and after
 } SolverReport;
 
 // How a solver's state comes, moves and goes. Every function is called with the context current;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "collision.h"
 #include "pose.h"
 #include "solver.h"
 #include "step_programs.h"
@@ -34,6 +35,7 @@ typedef struct SplitState {
     SplitBatch *batches; // one for each of the hair
     Pose pose;
     StepPrograms programs;
+    Collision collision, drawn; // of the physical strands, of what is drawn
     bool thesis, dragged;
 } SplitState;
 
@@ -50,6 +52,8 @@ static void destroy(void *pointer)
     step_programs_destroy(&state->programs);
     gpu_buffer_destroy(&state->uniforms);
     pose_destroy(&state->pose);
+    collision_destroy(&state->collision);
+    collision_destroy(&state->drawn);
     free(state);
 }
 
@@ -128,6 +132,10 @@ static Result build(SplitState *state, const SolverSetup *setup, Error *error)
     if (result == RESULT_OK) result = build_programs(state, setup->gpu, error);
     if (result == RESULT_OK)
         result = pose_create(&state->pose, setup->gpu, setup->params->style, error);
+    if (result == RESULT_OK)
+        result = collision_create(&state->collision, setup, COLLISION_SEGMENTS, 1, error);
+    if (result == RESULT_OK)
+        result = collision_create(&state->drawn, setup, COLLISION_DRAWN, 1, error);
     for (uint32_t i = 0; i < state->hair->batch_count && result == RESULT_OK; ++i)
         result = create_state(&state->batches[i], &state->hair->batches[i], setup, error);
     return result;
@@ -157,7 +165,9 @@ static int list_buffers(const void *pointer, uint32_t batch,
     const SplitState *state = pointer;
     buffers[0] = (SolverBuffer){&state->batches[batch].segments, SOLVER_DIRECTIONS};
     buffers[1] = (SolverBuffer){&state->batches[batch].tips, SOLVER_TIPS};
-    return 2;
+    const GpuBuffer *contacts = collision_memory(&state->collision, batch);
+    if (contacts) buffers[2] = (SolverBuffer){contacts, SOLVER_POINTS};
+    return contacts ? 3 : 2;
 }
 
 static void step(void *pointer, const SolverStep *solver_step)
@@ -180,6 +190,10 @@ static void step(void *pointer, const SolverStep *solver_step)
         step_programs_dispatch(&state->programs, i, hair->strand_count);
     }
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+    if (collision_begin(&state->collision, solver_step, 1, 1))
+        for (uint32_t i = 0; i < state->hair->batch_count; ++i)
+            collision_push(&state->collision, i, &state->batches[i].segments,
+                           &state->batches[i].tips);
     gpu_timer_end(state->timer);
 }
 
@@ -189,12 +203,14 @@ static void write_pose(void *pointer, const HeadPose *head)
     gpu_timer_begin(state->timer, "pose");
     for (uint32_t i = 0; i < state->hair->batch_count; ++i)
         pose_write(&state->pose, &state->hair->batches[i], &state->batches[i].segments, head);
+    collision_push_drawn(&state->drawn, head);
     gpu_timer_end(state->timer);
 }
 
 static void report(void *pointer, SolverReport *solver_report)
 {
     const SplitState *state = pointer;
+    collision_report(&state->collision, solver_report);
     for (uint32_t i = 0; i < state->hair->batch_count; ++i) {
         uint32_t count = state->hair->batches[i].strand_count;
         Float4 *tips = malloc(2 * (size_t)count * sizeof *tips);

@@ -105,6 +105,7 @@ static Result check_loops(const SolverSetup *setup, Error *error)
 static const ParticleRecipe RECIPE = {
     .label = "sim_tressfx",
     .shader = "tressfx.comp",
+    .carried = 2,
     .check = check_loops,
     .fill = fill,
     .define = define,

@@ -28,6 +28,17 @@ void fixture_assert_offset(GLuint program, const char *name, size_t expected)
         fail_msg("%s is at %d for the driver, at %zu in C", name, offset, expected);
 }
 
+static void create_solver(HairFixture *fixture)
+{
+    Error error = {{0}};
+    const SolverSetup setup = {.gpu = fixture_gpu(),
+                               .timer = &fixture->timer,
+                               .hair = &fixture->hair,
+                               .params = &fixture->params,
+                               .colliders = &fixture->colliders};
+    if (solver_create(&fixture->solver, &setup, &error) != RESULT_OK) fail_msg("%s", error.text);
+}
+
 void fixture_create_strands(HairFixture *fixture, const Strands *strands, const char *algo,
                             const char *variant, float style, float drag)
 {
@@ -46,11 +57,15 @@ void fixture_create_strands(HairFixture *fixture, const Strands *strands, const 
     gpu_timer_create(&fixture->timer, false, true);
     if (hair_create(&fixture->hair, strands, 0, &fixture_gpu()->limits, &error) != RESULT_OK)
         fail_msg("%s", error.text);
-    const SolverSetup setup = {.gpu = fixture_gpu(),
-                               .timer = &fixture->timer,
-                               .hair = &fixture->hair,
-                               .params = &fixture->params};
-    if (solver_create(&fixture->solver, &setup, &error) != RESULT_OK) fail_msg("%s", error.text);
+    create_solver(fixture);
+}
+
+void fixture_collide(HairFixture *fixture, const char *text)
+{
+    Error error = {{0}};
+    if (colliders_parse(&fixture->colliders, text, &error) != RESULT_OK) fail_msg("%s", error.text);
+    solver_destroy(&fixture->solver);
+    create_solver(fixture);
 }
 
 void fixture_create(HairFixture *fixture, const double (*positions)[3], int count, int n,
@@ -72,6 +87,7 @@ void fixture_destroy(HairFixture *fixture)
     hair_destroy(&fixture->hair);
     gpu_timer_destroy(&fixture->timer);
     section_params_destroy(&fixture->params);
+    colliders_destroy(&fixture->colliders);
 }
 
 void fixture_step(HairFixture *fixture)

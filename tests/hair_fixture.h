@@ -9,6 +9,7 @@ typedef struct HairFixture {
     Solver solver;
     SectionParams params;
     GpuTimer timer;
+    Colliders colliders;
     SolverStep step; // gravity, dt, head at rest; tests change it between steps
 } HairFixture;
 
@@ -27,6 +28,9 @@ void fixture_create(HairFixture *fixture, const double (*positions)[3], int coun
 void fixture_create_strands(HairFixture *fixture, const Strands *strands, const char *algo,
                             const char *variant, float style, float drag);
 void fixture_destroy(HairFixture *fixture);
+
+// Makes the solver anew, with the shapes that `text` lists (colliders_parse).
+void fixture_collide(HairFixture *fixture, const char *text);
 
 // One step, then the head of this step becomes the old one.
 void fixture_step(HairFixture *fixture);

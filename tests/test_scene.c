@@ -80,6 +80,7 @@ static const char *sample(const ParamInfo *info, char text[64])
     };
     bool whole = info->kind == PARAM_INT || info->kind == PARAM_UINT;
     if (info->kind == PARAM_CHOICE) return info->choices[1];
+    if (strcmp(info->name, "colliders") == 0) return "ground:0;sphere:1,2,3,4";
     if (!whole && info->kind != PARAM_FLOAT && info->kind != PARAM_AUTO_FLOAT)
         return TEXTS[info->kind];
     double least = fmax(info->minimum, -1);
@@ -339,6 +340,10 @@ static void a_scene_file_says_all_that_flags_can_and_more(void **state)
     assert_int_equal(scene.target.count, 0);
     assert_int_equal(scene.fov.count, 1);
     assert_int_equal(scene.light_count, 2);
+    assert_int_equal(scene.colliders.count, 3);
+    assert_true(scene.colliders.list[0].world && scene.colliders.list[0].numbers[7] == 0.05f);
+    assert_true(!scene.colliders.list[1].world && scene.colliders.list[1].numbers[3] == 0.09f);
+    assert_true(scene.colliders.list[2].kind == COLLIDER_GROUND);
     assert_true(scene.lights[0].direction[1] == 1);
     assert_true(fabsf(scene.lights[0].color[1] - 0.2158605f) < 1e-5f);
     assert_true(scene.lights[1].direction[0] == -0.6f && scene.lights[1].direction[2] == 0.8f);
@@ -554,6 +559,12 @@ static void wrong_scene_files_are_refused_with_place_and_expectation(void **stat
          "camera.keys[0].fov: got 180, expected a number from 1 to 170 (nearest: 170)"},
         {"{" HAIR ", \"fov\": 20, \"camera\": {\"keys\": [{\"time\": 0, \"fov\": 30}]}}",
          "fov: given here and by the keys of 'camera'"},
+        {"{" HAIR ", \"colliders\": [{\"sphere\": [1, 2, 3]}]}", "expected an array of 4 numbers"},
+        {"{" HAIR ", \"colliders\": [{\"ground\": 1, \"frame\": \"head\"}]}",
+         "colliders[0].frame: a ground always"},
+        {"{" HAIR ", \"colliders\": [{}]}", "colliders[0]: expected one key"},
+        {"{" HAIR ", \"colliders\": [{\"plane\": [0, 0, 0, 1]}]}", "plane: expected a direction"},
+        {"{" HAIR ", \"colliders\": \"ground\"}", "colliders: got 'ground'"},
         {"{" HAIR ", \"lights\": {}}", "lights: got {}, expected an array"},
         {"{" HAIR ", \"lights\": [{}]}", "lights[0]: expected a key 'direction'"},
         {"{" HAIR ", \"lights\": [{\"direction\": [0, 0, 0]}]}", "expected a direction"},

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// The surfaces that hair must not cross, as they are at the step's end: distances (negative inside), normals, motion.
+//
+// A rounded cone is all spheres with centres a + s e, 0 <= s <= L, and radii r + g s. The distance from p to it is the least of
+// |p - a - s e| - r - g s; with y along and h across the axis, the derivative vanishes where s = y + g h/sqrt(1 - g^2), and the
+// function is convex, so s is clamped to the axis. L = 0 is a sphere.
+
+layout(binding = BIND_COLLIDERS) uniform samplerBuffer colliders; // see collision.c
+
+struct Cone {
+    vec4 first; // a, r
+    vec4 axis;  // e, L
+    vec2 grow;  // g, g/sqrt(1 - g^2)
+};
+
+Cone fetch_cone(int i)
+{
+    int at = i * COLLIDER_TEXELS;
+    return Cone(texelFetch(colliders, at), texelFetch(colliders, at + 1), texelFetch(colliders, at + 2).xy);
+}
+
+float cone_distance(Cone cone, vec3 p, out vec3 normal)
+{
+    vec3 r = p - cone.first.xyz;
+    float y = dot(r, cone.axis.xyz);
+    float s = clamp(y + cone.grow.y * length(r - y * cone.axis.xyz), 0.0, cone.axis.w);
+    vec3 from = r - s * cone.axis.xyz;
+    float across = length(from);
+    normal = across > 1e-18 ? from / across : vec3(0.0, 1.0, 0.0);
+    return across - (cone.first.w + cone.grow.x * s);
+}
+
+float plane_distance(int i, vec3 p, out vec3 normal)
+{
+    vec4 plane = texelFetch(colliders, i * COLLIDER_TEXELS); // unit normal, height
+    normal = plane.xyz;
+    return dot(plane.xyz, p) - plane.w;
+}
+
+struct Nearest {
+    float distance;
+    vec3 normal;
+    float moved; // 1: with the head
+};
+
+void take_nearer(inout Nearest nearest, float distance, vec3 normal, float moved)
+{
+    bool nearer = distance < nearest.distance;
+    nearest.normal = nearer ? normal : nearest.normal;
+    nearest.moved = nearer ? moved : nearest.moved;
+    nearest.distance = min(distance, nearest.distance);
+}
+
+// The surface that is nearest to p, or that p is deepest inside.
+Nearest nearest_surface(vec3 p, int cones, int cones_moved, int planes)
+{
+    Nearest nearest = Nearest(1e30, vec3(0.0), 0.0);
+    for (int i = 0; i < cones; ++i) {
+        vec3 normal;
+        float distance = cone_distance(fetch_cone(i), p, normal);
+        take_nearer(nearest, distance, normal, i < cones_moved ? 1.0 : 0.0);
+    }
+    for (int i = cones; i < cones + planes; ++i) {
+        vec3 normal;
+        float distance = plane_distance(i, p, normal);
+        take_nearer(nearest, distance, normal, 0.0);
+    }
+#if FIELD
+    vec3 normal;
+    float distance = field_distance(p, normal);
+    take_nearer(nearest, distance, normal, 1.0);
+#endif
+    return nearest;
+}
+
+// How far what the head carries at p has come in this step. Small turns do not cancel.
+vec3 head_displacement(vec3 p)
+{
+    vec4 q = collide_params.head_turn_back;
+    vec3 y = p - collide_params.head_translation.xyz, t = 2.0 * cross(q.xyz, y);
+    return collide_params.head_translation.xyz - collide_params.head_translation_old.xyz - (q.w * t + cross(q.xyz, t));
+}
