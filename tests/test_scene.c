@@ -78,7 +78,8 @@ static const char *sample(const ParamInfo *info, char text[64])
         [PARAM_BACKGROUND] = "#010203", [PARAM_AUTO_VEC3] = "1,2,3", [PARAM_UNIT] = "in",
         [PARAM_SIZE] = "32x24",         [PARAM_TEXT] = "word",       [PARAM_PATH] = "/some/where/",
     };
-    bool whole = info->kind == PARAM_INT || info->kind == PARAM_UINT;
+    bool whole =
+        info->kind == PARAM_INT || info->kind == PARAM_UINT || info->kind == PARAM_AUTO_INT;
     if (info->kind == PARAM_CHOICE) return info->choices[1];
     if (strcmp(info->name, "colliders") == 0) return "ground:0;sphere:1,2,3,4";
     if (!whole && info->kind != PARAM_FLOAT && info->kind != PARAM_AUTO_FLOAT)
