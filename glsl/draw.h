@@ -27,6 +27,13 @@
 #define BIND_HEADS  8
 #define BIND_BASE   9 // what stands behind the hair: linear, premultiplied
 
+#define BIND_SCATTER 10 // marschner's table, see scatter.comp
+
+// Nodes of that table by azimuth (0 to pi), cosine of theta_d and colour (both 0 to 1).
+#define SCATTER_AZIMUTHS     128
+#define SCATTER_INCLINATIONS 64
+#define SCATTER_COLORS       24
+
 // The same points for the block-list rasteriser, which is never at work with the A-buffer.
 #define BIND_BLOCK_COUNTS_OUT 0 // uint, 16 for each of 64 groups: ribbons, strands without any
 #define BIND_LISTS_OUT        1 // uint a lane and block, see block_bin.comp
@@ -64,12 +71,18 @@
 
 UNIFORM_BLOCK(DrawParams, draw_params, BIND_DRAW)
 {
-    mat4 clip_from_world;             // y down
-    vec4 eye;                         // xyz, m
-    vec4 light_direction[MAX_LIGHTS]; // xyz: unit, towards the light
-    vec4 light_color[MAX_LIGHTS];     // linear RGB times intensity
-    vec4 background;                  // linear RGB, premultiplied; opacity
-    vec4 head_rotation;               // quaternion x y z w
+    mat4 clip_from_world;         // y down
+    vec4 eye;                     // xyz, m
+    vec4 light_place[MAX_LIGHTS]; // xyz: unit, towards the light, with w = 0; or where it is, m, w
+                                  // = 1
+    vec4 light_color[MAX_LIGHTS]; // linear RGB times intensity
+    vec4 light_axis[MAX_LIGHTS];  // xyz: unit, the way that a spot looks; w: reference distance
+                                  // squared, m2
+    vec4 light_cone[MAX_LIGHTS];  // x - y cos(angle off the axis): a spot's light before it is cut
+                                  // to 0..1
+    vec4 sky, ground;             // linear RGB from above, from below
+    vec4 background;              // linear RGB, premultiplied; opacity
+    vec4 head_rotation;           // quaternion x y z w
     vec4 head_translation;
     vec4 mesh_color;     // linear RGB; w: ambient share
     float width, height; // of the picture, px

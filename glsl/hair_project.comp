@@ -13,7 +13,7 @@
 #include "material.h"
 #include "hair_address.glsl"
 #include "hash.glsl"
-#include "shade_kajiya.glsl"
+#include "shade.glsl"
 #include "ribbon.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
@@ -66,7 +66,7 @@ void main()
     float thinning = (1.0 - material.tip_ratio) / float(n - 1);
     float radius = material.radius;
     vec3 eye = draw_params.eye.xyz;
-    Kajiya fibre = kajiya_material();
+    Fibre fibre = fibre_material();
 
     int root = particle_address(s, 0, n);
     vec3 here = texelFetch(position, root).xyz, before = here;
@@ -81,7 +81,7 @@ void main()
         vec4 after_clip = clip_from_world * vec4(after, 1.0);
         Particle p;
         p.at = project(clip_near(here_clip, before_clip, after_clip), max(radius * (1.0 - thinning * float(j)), 1e-9));
-        p.color = shade_kajiya(fibre, base, unit(after - before), unit(eye - here));
+        p.color = shade_fibre(fibre, base, here, unit(after - before), unit(eye - here));
         float reach = MITRE_MAX * (p.at.w + 1.0);
         if (p.at.z > 0.0) box = min(box, vec4(p.at.xy, -p.at.xy) - reach);
         if (j > 1) bent += bend(kept, last, p);

@@ -12,11 +12,13 @@ UNIFORM_BLOCK(MaterialParams, material, BIND_MATERIAL)
     float radius;          // m, at the root
     float tip_ratio;       // radius at the tip over that at the root
     float opacity;
-    float ambient, diffuse;       // Ka, Kd
-    float specular1, exponent1;   // first highlight, white
-    float specular2, exponent2;   // second highlight, tinted
-    float shift1_cos, shift1_sin; // of the highlights' turn about the fibre: towards the root
-    float shift2_cos, shift2_sin; // towards the tip
+    float ambient, diffuse;          // Ka, Kd
+    float specular1, exponent1;      // first highlight, white
+    float specular2, exponent2;      // second highlight, tinted
+    float shift1_cos, shift1_sin;    // of the highlights' turn about the fibre: towards the root
+    float shift2_cos, shift2_sin;    // towards the tip
+    vec4 lobe_sharpness, lobe_scale; // marschner, x R, y TT, z TRT: 1/v, and 1/(v (1 - exp(-2/v)))
+    vec4 lobe_tilt_cos, lobe_tilt_sin; // of twice their tilt
     uint vertex_count;
     uint first_strand, drawn_strands; // of the part of the batch that is being drawn
 }

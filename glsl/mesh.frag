@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Lambert's plain matt surface, in linear light. Surfaces seen from behind are lit as from in front.
 #include "draw.h"
+#include "lights.glsl"
 
 in vec3 world_position;
 in vec3 world_normal;
@@ -10,8 +11,10 @@ void main()
 {
     vec3 n = world_normal * inversesqrt(max(dot(world_normal, world_normal), 1e-20));
     if (dot(n, draw_params.eye.xyz - world_position) < 0.0) n = -n;
-    vec3 light = vec3(draw_params.mesh_color.a);
-    for (int i = 0; i < draw_params.light_count; ++i)
-        light += draw_params.light_color[i].rgb * max(dot(n, draw_params.light_direction[i].xyz), 0.0);
+    vec3 light = draw_params.mesh_color.a * light_around(n, 1.0);
+    for (int i = 0; i < draw_params.light_count; ++i) {
+        vec3 to_light, reaching = light_reaching(i, world_position, to_light);
+        light += reaching * max(dot(n, to_light), 0.0);
+    }
     color = vec4(draw_params.mesh_color.rgb * light, 1.0);
 }

@@ -1,27 +1,22 @@
 // SPDX-License-Identifier: MIT
 // Kajiya and Kay's fibre (SIGGRAPH 1989) with the two highlights of Scheuermann (2004), as TressFX
-// has them (needs draw.h, material.h).
+// has them (needs material.h, lights.glsl).
 //
 // Light that comes in at the angle t to the fibre leaves on a cone about it. Scales on the fibre
 // tilt the first reflection's cone towards the root; light that has gone through the fibre and
 // been reflected inside leaves on a cone tilted towards the tip, coloured on its way.
 
-// The material's share in it. Read once: a uniform costs a load wherever it is named.
-struct Kajiya {
+// Read once: a uniform costs a load wherever it is named.
+struct Fibre {
     float ambient, diffuse, specular1, exponent1, specular2, exponent2;
     vec2 shift1, shift2; // cosine and sine
 };
 
-Kajiya kajiya_material()
+Fibre fibre_material()
 {
-    return Kajiya(material.ambient, material.diffuse, material.specular1, material.exponent1, material.specular2,
-                  material.exponent2, vec2(material.shift1_cos, material.shift1_sin),
-                  vec2(material.shift2_cos, material.shift2_sin));
-}
-
-float sine_of(float cosine)
-{
-    return sqrt(max(1.0 - cosine * cosine, 0.0));
+    return Fibre(material.ambient, material.diffuse, material.specular1, material.exponent1, material.specular2,
+                 material.exponent2, vec2(material.shift1_cos, material.shift1_sin),
+                 vec2(material.shift2_cos, material.shift2_sin));
 }
 
 // How near the eye is to the cone that lies mirrored to the light and turned by a small angle:
@@ -33,20 +28,21 @@ float cone_highlight(float light, float light_sine, float eye, float eye_sine, v
     return max(cone * eye + cone_sine * eye_sine, 0.0);
 }
 
-// Linear RGB of a fibre of colour `base` along the unit tangent (root to tip), seen along the unit
-// vector to the eye.
-vec3 shade_kajiya(Kajiya m, vec3 base, vec3 tangent, vec3 to_eye)
+// Linear RGB of a fibre of colour `base` at x along the unit tangent (root to tip), seen along the
+// unit vector to the eye.
+vec3 shade_fibre(Fibre m, vec3 base, vec3 x, vec3 tangent, vec3 to_eye)
 {
     float eye = clamp(dot(tangent, to_eye), -1.0, 1.0), eye_sine = sine_of(eye);
-    vec3 color = m.ambient * base;
+    vec3 color = m.ambient * base * light_around_fibre(tangent, to_eye, eye);
     for (int i = 0; i < draw_params.light_count; ++i) {
-        float light = clamp(dot(tangent, draw_params.light_direction[i].xyz), -1.0, 1.0);
+        vec3 to_light, reaching = light_reaching(i, x, to_light);
+        float light = clamp(dot(tangent, to_light), -1.0, 1.0);
         float light_sine = sine_of(light);
         float first = cone_highlight(light, light_sine, eye, eye_sine, m.shift1);
         float second = cone_highlight(light, light_sine, eye, eye_sine, m.shift2);
         float white = m.specular1 * pow(first, m.exponent1);
         float tinted = m.diffuse * light_sine + m.specular2 * pow(second, m.exponent2);
-        color += draw_params.light_color[i].rgb * (white + tinted * base);
+        color += reaching * (white + tinted * base);
     }
     return color;
 }

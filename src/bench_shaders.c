@@ -18,10 +18,10 @@ static void tell(const char *what, Result result, const Error *why, Result *wors
     *error = *why;
 }
 
-static Result try_program(const char *file, Error *error)
+static Result try_program(const char *file, const ShaderDefine *defines, Error *error)
 {
     GLuint program;
-    Result result = shader_build_compute(&program, file, NULL, error);
+    Result result = shader_build_compute(&program, file, defines, error);
     if (result == RESULT_OK) glDeleteProgram(program);
     return result;
 }
@@ -94,6 +94,18 @@ static Result try_follow(const Gpu *gpu, FollowMode mode, Error *error)
     return result;
 }
 
+// The table of marschner shading, and every way that hair can look.
+static Result try_looks(Renderer *renderer, Error *error)
+{
+    LookPrograms *programs =
+        renderer->raster == RASTER_QUADS ? &renderer->hair.project : &renderer->blocks.project;
+    GLuint texture;
+    Result result = scatter_tables_find(&renderer->scatter, 1.5f, 0.2f, &texture, error);
+    for (unsigned features = 0; features < LOOK_VARIANTS && result == RESULT_OK; ++features)
+        result = look_programs_build(programs, features, error);
+    return result;
+}
+
 static Result try_renderer(const Gpu *gpu, Raster raster, float opacity, Error *error)
 {
     Renderer renderer;
@@ -112,18 +124,28 @@ static Result try_renderer(const Gpu *gpu, Raster raster, float opacity, Error *
     Result result = renderer_create(&renderer, gpu, &timer, &options, error);
     if (result != RESULT_OK) return result;
     result = renderer_set_mesh(&renderer, &mesh, (const float[3]){1, 1, 1}, error);
+    if (result == RESULT_OK) result = try_looks(&renderer, error);
     renderer_destroy(&renderer);
     return result;
 }
 
 Result bench_shaders(const Gpu *gpu, FILE *stream, Error *error)
 {
-    static const char *const checks[] = {"check_step.comp", "check_chain.comp"};
+    static const ShaderDefine energy[] = {{"MARSCHNER", 1}, {NULL, 0}},
+                              gauss[] = {{"MARSCHNER", 2}, {NULL, 0}};
+    static const struct {
+        const char *file;
+        const ShaderDefine *defines;
+    } checks[] = {{"check_step.comp", NULL},
+                  {"check_chain.comp", NULL},
+                  {"check_shade.comp", energy},
+                  {"check_shade.comp", gauss}};
     Result worst = RESULT_OK;
     Error why = {{0}};
     shader_treat_warnings_as_errors(true);
     for (size_t i = 0; i < sizeof checks / sizeof *checks; ++i)
-        tell(checks[i], try_program(checks[i], &why), &why, &worst, stream, error);
+        tell(checks[i].file, try_program(checks[i].file, checks[i].defines, &why), &why, &worst,
+             stream, error);
     tell("inbetween.comp", try_inbetween(gpu, &why), &why, &worst, stream, error);
     try_solvers(gpu, &worst, stream, error);
     for (FollowMode mode = FOLLOW_OFFSET; mode <= FOLLOW_INTERPOLATE; ++mode)

@@ -118,8 +118,10 @@ static Result draw_frames(SpeedResult *result, Renderer *renderer, Bench *bench,
     framing_compute(&framing, &bench->scene, &bench->strands, NULL);
     const RenderItem item = {&bench->simulation.sections[0].hair, &bench->scene.sections[0].params,
                              fibre_auto_radius(&bench->strands, 0)};
-    const RenderFrame frame = {
-        &view, bench->scene.lights, bench->scene.light_count, {0, 0, 0, 1}, {0}};
+    const RenderFrame frame = {.view = &view,
+                               .lights = bench->scene.lights,
+                               .light_count = bench->scene.light_count,
+                               .head_rotation = {0, 0, 0, 1}};
     Result outcome = RESULT_OK;
     for (int i = -DRAWN_WARM_UP; i < DRAWN_FRAMES && outcome == RESULT_OK; ++i) {
         camera_view(&view, &bench->scene, &framing, 0);

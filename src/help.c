@@ -62,9 +62,13 @@ static const struct {
      "--colliders; frame: head or world"},
     {"lights",
      "[{\"type\": \"directional\", \"direction\": [0, -1, 0], \"color\": \"#ffffff\", "
-     "\"intensity\": 1}, ...]",
-     "up to 8 lights; direction is the way the light travels; without this key there are two, with "
-     "an empty list only ambient light"},
+     "\"intensity\": 1}, {\"type\": \"spot\", \"position\": [0, 3, 1], \"distance\": 1, "
+     "\"direction\": [0, -1, 0], \"inner\": 0, \"outer\": 45}, ...]",
+     "up to 8 lights: directional, point or spot; direction is the way the light travels. A point "
+     "or "
+     "a spot has its intensity at the distance (m) and falls off by the square; a spot is whole up "
+     "to inner deg off its axis and nothing beyond outer. Without this key there are two lights, "
+     "with an empty list only ambient light"},
 };
 enum { SCENE_KEY_COUNT = sizeof SCENE_KEYS / sizeof SCENE_KEYS[0] };
 

@@ -51,11 +51,16 @@ typedef enum ParamKind {
 #define CHOICES_BACKEND(X) X(BACKEND_AUTO, "auto") X(BACKEND_EGL, "egl") X(BACKEND_OSMESA, "osmesa")
 #define CHOICES_RASTER(X)  X(RASTER_AUTO, "auto") X(RASTER_QUADS, "quads") X(RASTER_BLOCKS, "blocks")
 
+#define CHOICES_SHADING(X) X(SHADING_KAJIYA, "kajiya") X(SHADING_MARSCHNER, "marschner")
+#define CHOICES_LOBES(X)   X(LOBES_ENERGY, "energy") X(LOBES_GAUSS, "gauss")
+
 #define CHOICE_VALUE(value, word) value,
 typedef enum UpAxis { CHOICES_UP(CHOICE_VALUE) } UpAxis;
 typedef enum FollowMode { CHOICES_FOLLOW(CHOICE_VALUE) } FollowMode;
 typedef enum Backend { CHOICES_BACKEND(CHOICE_VALUE) } Backend;
 typedef enum Raster { CHOICES_RASTER(CHOICE_VALUE) } Raster;
+typedef enum Lobes { CHOICES_LOBES(CHOICE_VALUE) } Lobes;
+typedef enum Shading { CHOICES_SHADING(CHOICE_VALUE) } Shading;
 #undef CHOICE_VALUE
 
 // The headings under which --help lists the parameters, in that order.

@@ -73,11 +73,9 @@ static Result build_composite(RenderBlocks *blocks, int over_mesh, Error *error)
 
 static Result build_programs(RenderBlocks *blocks, Error *error)
 {
-    const ShaderDefine project[] = {{"GROUP_SIZE", PROJECT_GROUP}, {NULL, 0}},
-                       bin[] = {{"BIN_GROUP", BIN_LANES / 2}, {NULL, 0}};
-    Result result = shader_build_compute(&blocks->project, "block_project.comp", project, error);
-    if (result == RESULT_OK)
-        result = shader_build_compute(&blocks->bin, "block_bin.comp", bin, error);
+    const ShaderDefine bin[] = {{"BIN_GROUP", BIN_LANES / 2}, {NULL, 0}};
+    blocks->project = (LookPrograms){.file = "block_project.comp", .group_size = PROJECT_GROUP};
+    Result result = shader_build_compute(&blocks->bin, "block_bin.comp", bin, error);
     return result == RESULT_OK ? build_composite(blocks, 0, error) : result;
 }
 
@@ -116,11 +114,11 @@ Result render_blocks_create(RenderBlocks *blocks, const GpuLimits *limits, int w
 
 void render_blocks_destroy(RenderBlocks *blocks)
 {
-    const GLuint programs[] = {blocks->project, blocks->bin, blocks->composite[0],
-                               blocks->composite[1]};
+    const GLuint programs[] = {blocks->bin, blocks->composite[0], blocks->composite[1]};
     GpuBuffer *const buffers[] = {&blocks->records, &blocks->keys,   &blocks->order,
                                   &blocks->lists,   &blocks->links,  &blocks->states,
                                   &blocks->counts,  &blocks->pixels, &blocks->material};
+    look_programs_destroy(&blocks->project);
     for (size_t i = 0; i < sizeof programs / sizeof *programs; ++i)
         if (programs[i]) glDeleteProgram(programs[i]);
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; ++i) gpu_buffer_destroy(buffers[i]);
@@ -158,9 +156,12 @@ Result render_blocks_begin(RenderBlocks *blocks, uint64_t segments, Error *error
     return RESULT_OK;
 }
 
-void render_blocks_add(RenderBlocks *blocks, const HairBatch *batch, const MaterialParams *material)
+Result render_blocks_add(RenderBlocks *blocks, const HairBatch *batch, const Look *look,
+                         Error *error)
 {
-    MaterialParams whole = *material;
+    Result result = look_programs_use(&blocks->project, look, error);
+    if (result != RESULT_OK) return result;
+    MaterialParams whole = look->material;
     whole.vertex_count = batch->vertex_count;
     whole.drawn_strands = batch->strand_count;
     gpu_uniforms_set(&blocks->material, BIND_MATERIAL, &whole, sizeof whole);
@@ -169,10 +170,10 @@ void render_blocks_add(RenderBlocks *blocks, const HairBatch *batch, const Mater
     gpu_buffer_bind_storage(&blocks->records, BIND_RECORDS_OUT);
     gpu_buffer_bind_storage(&blocks->keys, BIND_KEYS_OUT);
     gpu_buffer_bind_storage(&blocks->counts, BIND_BLOCK_COUNTS_OUT);
-    glUseProgram(blocks->project);
     glUniform1i(0, (GLint)blocks->slots);
     glDispatchCompute((batch->strand_count + PROJECT_GROUP - 1) / PROJECT_GROUP, 1, 1);
     blocks->slots += (size_t)batch->strand_count * (batch->vertex_count - 1);
+    return RESULT_OK;
 }
 
 static Result sort(RenderBlocks *blocks, Error *error)

@@ -6,17 +6,17 @@
 
 #include "gpu_timer.h"
 #include "hair.h"
-#include "material.h"
 #include "radix.h"
+#include "render_look.h"
 #include "render_target.h"
-#include "shader.h"
 
 #include <stdbool.h>
 
 typedef struct RenderBlocks {
-    GLuint project, bin, composite[2]; // programs; composite: over the background, over a mesh
-    GpuBuffer records, keys, order;    // of ribbons, see block.glsl; order near to far
-    GpuBuffer lists, links, states;    // see block_bin.comp
+    LookPrograms project;
+    GLuint bin, composite[2];       // programs; composite: over the background, over a mesh
+    GpuBuffer records, keys, order; // of ribbons, see block.glsl; order near to far
+    GpuBuffer lists, links, states; // see block_bin.comp
     GpuBuffer counts, pixels, material;
     const GpuLimits *limits;
     Radix radix;
@@ -44,9 +44,9 @@ bool render_blocks_can_hold(const GpuLimits *limits, uint64_t segments);
 // Begins a picture of at most `segments` ribbons (render_blocks_can_hold).
 Result render_blocks_begin(RenderBlocks *blocks, uint64_t segments, Error *error);
 
-// Adds a batch. `material` is complete but for the batch's size. Needs the DrawParams block.
-void render_blocks_add(RenderBlocks *blocks, const HairBatch *batch,
-                       const MaterialParams *material);
+// Adds a batch. Needs the DrawParams block. RESULT_FAILED if the look's shader does not compile.
+Result render_blocks_add(RenderBlocks *blocks, const HairBatch *batch, const Look *look,
+                         Error *error);
 
 // Sorts, deals out and composites all that was added, over the target's base and behind its depth
 // if `over_mesh`. No ribbon is lost: the pool grows, or the picture is drawn in more bands.

@@ -8,19 +8,16 @@ enum { GROUP_SIZE = 8, PART_PARTICLES = 1 << 19 };
 
 Result render_hair_create(RenderHair *hair, Error *error)
 {
-    *hair = (RenderHair){0};
-    const ShaderDefine defines[] = {{"GROUP_SIZE", GROUP_SIZE}, {NULL, 0}};
+    *hair = (RenderHair){.project = {.file = "hair_project.comp", .group_size = GROUP_SIZE}};
     glGenVertexArrays(1, &hair->vertex_array);
-    Result result = shader_build_compute(&hair->project, "hair_project.comp", defines, error);
-    if (result == RESULT_OK)
-        result = shader_build_draw(&hair->draw, "hair.vert", "hair.frag", NULL, error);
+    Result result = shader_build_draw(&hair->draw, "hair.vert", "hair.frag", NULL, error);
     if (result != RESULT_OK) render_hair_destroy(hair);
     return result;
 }
 
 void render_hair_destroy(RenderHair *hair)
 {
-    if (hair->project) glDeleteProgram(hair->project);
+    look_programs_destroy(&hair->project);
     if (hair->draw) glDeleteProgram(hair->draw);
     if (hair->vertex_array) glDeleteVertexArrays(1, &hair->vertex_array);
     gpu_buffer_destroy(&hair->edges);
@@ -61,10 +58,13 @@ static void write(const GpuBuffer *buffer, int64_t at, const void *data, size_t 
     glBufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)at, (GLsizeiptr)size, data);
 }
 
-static void project(RenderHair *hair, const HairBatch *batch, const MaterialParams *material)
+static Result project(RenderHair *hair, const HairBatch *batch, const Look *look, Error *error)
 {
+    const MaterialParams *material = &look->material;
     const GLuint command[COMMAND_WORDS] = {[COMMAND_INSTANCE_COUNT] = 1};
     uint32_t strands = material->drawn_strands;
+    Result result = look_programs_use(&hair->project, look, error);
+    if (result != RESULT_OK) return result;
     write(&hair->command, 0, command, sizeof command);
     gpu_uniforms_set(&hair->material, BIND_MATERIAL, material, sizeof *material);
     gpu_buffer_bind_texture(&batch->position, BIND_POSITION);
@@ -73,10 +73,10 @@ static void project(RenderHair *hair, const HairBatch *batch, const MaterialPara
     gpu_buffer_bind_storage(&hair->shades, BIND_SHADES_OUT);
     gpu_buffer_bind_storage(&hair->indices, BIND_INDICES_OUT);
     gpu_buffer_bind_storage(&hair->command, BIND_COMMAND_OUT);
-    glUseProgram(hair->project);
     glDispatchCompute((strands + GROUP_SIZE - 1) / GROUP_SIZE, 1, 1);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT |
                     GL_COMMAND_BARRIER_BIT);
+    return RESULT_OK;
 }
 
 static void draw_ribbons(RenderHair *hair)
@@ -93,21 +93,21 @@ static void draw_ribbons(RenderHair *hair)
                     GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-Result render_hair_draw(RenderHair *hair, const HairBatch *batch, const MaterialParams *material,
+Result render_hair_draw(RenderHair *hair, const HairBatch *batch, const Look *look,
                         const GpuLimits *limits, GpuTimer *timer, Error *error)
 {
     uint32_t n = batch->vertex_count, most = n < PART_PARTICLES ? PART_PARTICLES / n : 1;
-    MaterialParams part = *material;
-    part.vertex_count = n;
+    Look part = *look;
+    part.material.vertex_count = n;
     for (uint32_t first = 0; first < batch->strand_count; first += most) {
         uint32_t left = batch->strand_count - first;
-        part.first_strand = first;
-        part.drawn_strands = left < most ? left : most;
-        Result result = make_scratch(hair, part.drawn_strands, n, limits, error);
-        if (result != RESULT_OK) return result;
+        part.material.first_strand = first;
+        part.material.drawn_strands = left < most ? left : most;
+        Result result = make_scratch(hair, part.material.drawn_strands, n, limits, error);
         gpu_timer_begin(timer, "draw_project");
-        project(hair, batch, &part);
+        if (result == RESULT_OK) result = project(hair, batch, &part, error);
         gpu_timer_end(timer);
+        if (result != RESULT_OK) return result;
         gpu_timer_begin(timer, "draw_hair");
         draw_ribbons(hair);
         gpu_timer_end(timer);

@@ -5,11 +5,11 @@
 
 #include "gpu_timer.h"
 #include "hair.h"
-#include "material.h"
-#include "shader.h"
+#include "render_look.h"
 
 typedef struct RenderHair {
-    GLuint project, draw;       // programs
+    LookPrograms project;
+    GLuint draw;                // program
     GLuint vertex_array;        // without attributes
     GpuBuffer edges, shades;    // vec4, uvec4 a particle, see hair.vert
     GpuBuffer indices, command; // triangles, and how many of them: glDrawElementsIndirect
@@ -19,7 +19,7 @@ typedef struct RenderHair {
 Result render_hair_create(RenderHair *hair, Error *error);
 void render_hair_destroy(RenderHair *hair);
 
-// Draws one batch into the current framebuffer and A-buffer, through the scissor. `material` is
-// complete but for the batch's size. RESULT_FAILED if memory is short.
-Result render_hair_draw(RenderHair *hair, const HairBatch *batch, const MaterialParams *material,
+// Draws one batch into the current framebuffer and A-buffer, through the scissor. RESULT_FAILED if
+// memory is short or the look's shader does not compile.
+Result render_hair_draw(RenderHair *hair, const HairBatch *batch, const Look *look,
                         const GpuLimits *limits, GpuTimer *timer, Error *error);

@@ -50,8 +50,9 @@ Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const float colo
     if (source->triangle_count == 0) return RESULT_OK;
     find_bounds(mesh, source);
     Result result = upload(mesh, source, limits, error);
+    const ShaderDefine defines[] = {{"LIGHTS", 1}, {NULL, 0}};
     if (result == RESULT_OK)
-        result = shader_build_draw(&mesh->program, "mesh.vert", "mesh.frag", NULL, error);
+        result = shader_build_draw(&mesh->program, "mesh.vert", "mesh.frag", defines, error);
     if (result != RESULT_OK) {
         render_mesh_destroy(mesh);
         return result;

@@ -3,6 +3,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 _Static_assert(MAX_LIGHTS == SCENE_MAX_LIGHTS, "one limit");
@@ -35,15 +36,63 @@ void draw_params_set_view(DrawParams *draw, const View *view, int width, int hei
     draw->depth[1] = view->projection[3][2];
 }
 
+// t = clamp((cos a - cos outer) / (cos inner - cos outer), 0, 1) with a the angle off the axis; the
+// shader knows the cosine off the way to the light, which is -cos a. Everything is inside for y =
+// 0.
+static void set_cone(const Light *light, float cone[4])
+{
+    cone[0] = 1;
+    if (light->kind != LIGHT_SPOT) return;
+    float outer = cosf(glm_rad(light->outer_deg)), inner = cosf(glm_rad(light->inner_deg));
+    cone[1] = 1 / fmaxf(inner - outer, 1e-6f);
+    cone[0] = -outer * cone[1];
+}
+
 void draw_params_set_lights(DrawParams *draw, const Light *lights, uint32_t count)
 {
     assert(count <= MAX_LIGHTS);
     draw->light_count = (int)count;
-    for (uint32_t i = 0; i < count; ++i)
+    for (uint32_t i = 0; i < count; ++i) {
+        const Light *light = &lights[i];
+        bool far = light->kind == LIGHT_DIRECTIONAL;
         for (int k = 0; k < 3; ++k) {
-            draw->light_direction[i][k] = lights[i].direction[k];
-            draw->light_color[i][k] = lights[i].intensity * lights[i].color[k];
+            draw->light_place[i][k] = far ? light->direction[k] : light->position[k];
+            draw->light_color[i][k] = light->intensity * light->color[k];
+            draw->light_axis[i][k] = far ? 0 : light->direction[k];
         }
+        draw->light_place[i][3] = !far;
+        draw->light_axis[i][3] = light->distance * light->distance;
+        set_cone(light, draw->light_cone[i]);
+    }
+}
+
+// Absorption by a unit of each pigment along the fibre's radius, red, green and blue (d'Eon et al.
+// 2011, section 6.1); the colour is what is left of white light along the diameter.
+static void hair_color(const SectionParams *params, float linear[3])
+{
+    static const float EUMELANIN[] = {0.419f, 0.697f, 1.37f}, PHEOMELANIN[] = {0.187f, 0.4f, 1.05f};
+    linear_from_srgb_color(params->color, linear);
+    for (int k = 0; k < 3 && !params->melanin.automatic; ++k) {
+        float red = params->melanin_redness;
+        linear[k] =
+            expf(-2 * params->melanin.value * ((1 - red) * EUMELANIN[k] + red * PHEOMELANIN[k]));
+    }
+}
+
+// beta and alpha are of theta_h = (theta_i + theta_r) / 2: the lobe in theta_r is twice as wide and
+// tilted by twice as much. Scales tilt R to the root; TT and TRT follow from R (Marschner et al.
+// 2003, table 1).
+static void set_lobes(const SectionParams *params, MaterialParams *material)
+{
+    static const float WIDTH[] = {1, 0.5f, 2}, TILT[] = {-1, 0.5f, 1.5f};
+    for (int p = 0; p < 3; ++p) {
+        float width = 2 * WIDTH[p] * glm_rad(params->roughness), v = width * width,
+              tilt = 2 * TILT[p] * glm_rad(params->cone_angle);
+        material->lobe_sharpness[p] = 1 / v;
+        material->lobe_scale[p] = 1 / (v * (1 - expf(-2 / v)));
+        material->lobe_tilt_cos[p] = cosf(tilt);
+        material->lobe_tilt_sin[p] = sinf(tilt);
+    }
 }
 
 MaterialParams material_params(const SectionParams *params, float radius)
@@ -65,6 +114,7 @@ MaterialParams material_params(const SectionParams *params, float radius)
         .shift2_cos = cosf(-3 * cone),
         .shift2_sin = sinf(-3 * cone),
     };
-    linear_from_srgb_color(params->color, material.color);
+    hair_color(params, material.color);
+    set_lobes(params, &material);
     return material;
 }

@@ -5,6 +5,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { SORTED_LAYERS = 8 };
@@ -17,6 +18,7 @@ typedef struct Picture {
     DrawParams draw; // with the values of the band that is being drawn
     const RenderItem *items;
     uint32_t item_count;
+    const Look *looks; // of the items
     int mesh_box[4];
 } Picture;
 
@@ -71,6 +73,8 @@ void renderer_destroy(Renderer *renderer)
     render_abuffer_destroy(&renderer->abuffer);
     render_blocks_destroy(&renderer->blocks);
     render_mesh_destroy(&renderer->mesh);
+    scatter_tables_destroy(&renderer->scatter);
+    free(renderer->looks);
     gpu_buffer_destroy(&renderer->draw_uniforms);
     *renderer = (Renderer){0};
 }
@@ -101,6 +105,10 @@ static void fill_draw_params(const Renderer *renderer, const RenderFrame *frame,
     memset(draw, 0, sizeof *draw);
     draw_params_set_view(draw, frame->view, options->width, options->height);
     draw_params_set_lights(draw, frame->lights, frame->light_count);
+    for (int k = 0; k < 3; ++k) {
+        draw->sky[k] = frame->ambient ? linear_from_srgb(frame->ambient->sky[k]) : 1;
+        draw->ground[k] = frame->ambient ? linear_from_srgb(frame->ambient->ground[k]) : 1;
+    }
     linear_from_srgb_color(options->background, draw->background);
     for (int k = 0; k < 3; ++k) draw->background[k] *= options->background[3];
     draw->background[3] = options->background[3];
@@ -150,11 +158,9 @@ static Result draw_band(Renderer *renderer, Picture *picture, int row, int rows,
     glBindFramebuffer(GL_FRAMEBUFFER, renderer->target.hair_frame);
     glScissor(0, row, renderer->options.width, rows);
     for (uint32_t i = 0; i < picture->item_count; ++i) {
-        const RenderItem *item = &picture->items[i];
-        MaterialParams material = material_params(item->material, item->radius);
-        const Hair *hair = item->hair;
+        const Hair *hair = picture->items[i].hair;
         for (uint32_t b = 0; b < hair->batch_count && result == RESULT_OK; ++b)
-            result = render_hair_draw(&renderer->hair, &hair->batches[b], &material,
+            result = render_hair_draw(&renderer->hair, &hair->batches[b], &picture->looks[i],
                                       &renderer->gpu->limits, renderer->timer, error);
     }
     return result;
@@ -236,6 +242,44 @@ static void set_state(const Renderer *renderer)
     glClearBufferfv(GL_COLOR, 0, options->background);
 }
 
+// Whether the lights ask for more than directions and one ambient colour.
+static bool lights_are_simple(const RenderFrame *frame)
+{
+    for (uint32_t i = 0; i < frame->light_count; ++i)
+        if (frame->lights[i].kind != LIGHT_DIRECTIONAL) return false;
+    const Ambient *ambient = frame->ambient;
+    return !ambient || memcmp(ambient->sky, ambient->ground, sizeof ambient->sky) == 0;
+}
+
+static Result make_looks(Renderer *renderer, Picture *picture, const RenderFrame *frame,
+                         Error *error)
+{
+    if (renderer->look_room < picture->item_count) {
+        Look *looks = realloc(renderer->looks, picture->item_count * sizeof *looks);
+        if (!looks)
+            return error_set(error, RESULT_FAILED, "no memory for %u sections",
+                             picture->item_count);
+        renderer->looks = looks;
+        renderer->look_room = picture->item_count;
+    }
+    picture->looks = renderer->looks;
+    unsigned lights = lights_are_simple(frame) ? 0 : LOOK_LIGHTS;
+    for (uint32_t i = 0; i < picture->item_count; ++i) {
+        const RenderItem *item = &picture->items[i];
+        Look *look = &renderer->looks[i];
+        *look =
+            (Look){.material = material_params(item->material, item->radius), .features = lights};
+        if (item->material->shading != SHADING_MARSCHNER) continue;
+        look->features |= LOOK_MARSCHNER;
+        if (item->material->lobes == LOBES_GAUSS) look->features |= LOOK_GAUSS;
+        Result result = scatter_tables_find(&renderer->scatter, item->material->refraction,
+                                            glm_rad(item->material->azimuthal_roughness),
+                                            &look->scatter, error);
+        if (result != RESULT_OK) return result;
+    }
+    return RESULT_OK;
+}
+
 static void draw_mesh(Renderer *renderer, const DrawParams *draw)
 {
     if (!renderer->mesh.triangle_count) return;
@@ -297,16 +341,18 @@ static uint64_t count_segments(const Picture *picture)
     return count;
 }
 
-static void project_items(Renderer *renderer, const Picture *picture)
+static Result project_items(Renderer *renderer, const Picture *picture, Error *error)
 {
+    Result result = RESULT_OK;
     gpu_timer_begin(renderer->timer, "draw_project");
     for (uint32_t i = 0; i < picture->item_count; ++i) {
-        const RenderItem *item = &picture->items[i];
-        MaterialParams material = material_params(item->material, item->radius);
-        for (uint32_t b = 0; b < item->hair->batch_count; ++b)
-            render_blocks_add(&renderer->blocks, &item->hair->batches[b], &material);
+        const Hair *hair = picture->items[i].hair;
+        for (uint32_t b = 0; b < hair->batch_count && result == RESULT_OK; ++b)
+            result =
+                render_blocks_add(&renderer->blocks, &hair->batches[b], &picture->looks[i], error);
     }
     gpu_timer_end(renderer->timer);
+    return result;
 }
 
 static Result draw_blocks(Renderer *renderer, Picture *picture, Image *image, Error *error)
@@ -317,7 +363,8 @@ static Result draw_blocks(Renderer *renderer, Picture *picture, Image *image, Er
         return draw_quads_instead(renderer, picture, image, error);
     Result result = render_blocks_begin(blocks, segments, error);
     if (result != RESULT_OK) return result;
-    project_items(renderer, picture);
+    result = project_items(renderer, picture, error);
+    if (result != RESULT_OK) return result;
     result = render_blocks_draw(blocks, &renderer->target, renderer->mesh.triangle_count > 0,
                                 renderer->timer, error);
     if (result != RESULT_OK) return result;
@@ -343,11 +390,13 @@ Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderI
     Picture picture = {.items = items, .item_count = item_count};
     const DrawParams *draw = &picture.draw;
     fill_draw_params(renderer, frame, &picture.draw);
+    Result result = make_looks(renderer, &picture, frame, error);
+    if (result != RESULT_OK) return result;
     renderer->counts = (RendererCounts){0};
     set_state(renderer);
     gpu_uniforms_set(&renderer->draw_uniforms, BIND_DRAW, draw, sizeof *draw);
     draw_mesh(renderer, draw);
-    Result result = RASTERS[renderer->raster].draw(renderer, &picture, image, error);
+    result = RASTERS[renderer->raster].draw(renderer, &picture, image, error);
     if (result != RESULT_OK) return result;
     return gpu_check("drawing", error);
 }

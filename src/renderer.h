@@ -10,6 +10,7 @@
 #include "render_blocks.h"
 #include "render_hair.h"
 #include "render_mesh.h"
+#include "render_scatter.h"
 #include "render_target.h"
 
 typedef struct RendererOptions {
@@ -29,11 +30,17 @@ typedef struct RenderItem {
     float radius;
 } RenderItem;
 
+// The light from everywhere, sRGB 0..1: from above (+y) and from below, evenly between them.
+typedef struct Ambient {
+    float sky[3], ground[3];
+} Ambient;
+
 // What all items of a picture have in common.
 typedef struct RenderFrame {
     const View *view; // made for the renderer's width and height
     const Light *lights;
     uint32_t light_count;      // 0 .. SCENE_MAX_LIGHTS
+    const Ambient *ambient;    // NULL: white
     float head_rotation[4];    // quaternion x y z w: the mesh's frame -> world
     float head_translation[3]; // m
 } RenderFrame;
@@ -58,6 +65,9 @@ typedef struct Renderer {
     RenderABuffer abuffer;
     RenderBlocks blocks;
     RenderMesh mesh;
+    ScatterTables scatter;
+    Look *looks; // [look_room], of the items of a picture
+    uint32_t look_room;
     GpuBuffer draw_uniforms;
     int band_rows; // that the next picture starts with
     RendererCounts counts;

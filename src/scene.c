@@ -7,8 +7,8 @@
 // From above the camera's left shoulder, and a weaker one from the right against black shadows, for
 // the automatic camera, which looks along -z. Unit vectors.
 static const Light DEFAULT_LIGHTS[] = {
-    {LIGHT_DIRECTIONAL, {-0.48f, 0.64f, 0.6f}, {1, 1, 1}, 1.0f},
-    {LIGHT_DIRECTIONAL, {0.8f, 0.0f, 0.6f}, {1, 1, 1}, 0.35f},
+    {.direction = {-0.48f, 0.64f, 0.6f}, .color = {1, 1, 1}, .intensity = 1.0f},
+    {.direction = {0.8f, 0.0f, 0.6f}, .color = {1, 1, 1}, .intensity = 0.35f},
 };
 
 Result scene_create(Scene *scene, Error *error)

@@ -18,14 +18,20 @@ typedef struct Section {
     SectionParams params;
 } Section;
 
-typedef enum LightKind { LIGHT_DIRECTIONAL } LightKind;
+typedef enum LightKind { LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_SPOT } LightKind;
 
+// What a white matt surface square to the light shows is color * intensity: everywhere for a
+// directional light; for the others at `distance`, and by the square of the distance elsewhere. A
+// spot has all of it up to `inner` degrees off its axis and nothing beyond `outer`.
 typedef struct Light {
     LightKind kind;
-    float
-        direction[3]; // unit vector from the hair towards the light (files give the way it travels)
-    float color[3];   // linear RGB, 0..1
-    float intensity;  // factor, >= 0
+    float direction[3]; // unit vector: directional, from the hair towards the light (files give the
+                        // way it travels); spot, the way that it looks
+    float color[3];     // linear RGB, 0..1
+    float intensity;    // factor, >= 0
+    float position[3];  // m, in the world; not directional
+    float distance;     // m, > 0; not directional
+    float inner_deg, outer_deg; // 0 <= inner < outer <= 90; spot
 } Light;
 
 enum { SCENE_MAX_LIGHTS = 8, SCENE_MAX_SECTIONS = 1024 };

@@ -8,7 +8,8 @@
 
 const char *const INTERPOLATION_WORDS[] = {
     [INTERPOLATION_SMOOTH] = "smooth", [INTERPOLATION_LINEAR] = "linear", NULL};
-const char *const LIGHT_KIND_WORDS[] = {[LIGHT_DIRECTIONAL] = "directional", NULL};
+const char *const LIGHT_KIND_WORDS[] = {
+    [LIGHT_DIRECTIONAL] = "directional", [LIGHT_POINT] = "point", [LIGHT_SPOT] = "spot", NULL};
 const double DEGREE = 3.14159265358979323846 / 180.0;
 
 static const double TIME_MAX_S = 1e9, OFFSET_MAX = 1e6, INTENSITY_MAX = 1e4;
@@ -187,7 +188,7 @@ Result scene_read_camera(Scene *scene, const Place *place, const json_t *value, 
     return result == RESULT_OK ? read_track(members, 3, place, value, error) : result;
 }
 
-// The unit vector against the way that the light travels.
+// A unit vector: against the way that a directional light travels, along that of a spot.
 static Result read_direction(Light *light, const Place *parent, const json_t *object, Error *error)
 {
     const json_t *value = json_object_get(object, "direction");
@@ -199,7 +200,8 @@ static Result read_direction(Light *light, const Place *parent, const json_t *ob
     if (result != RESULT_OK) return result;
     double length = hypot(hypot((double)way[0], (double)way[1]), (double)way[2]);
     if (length == 0) return place_refuse(&place, value, "a direction", error);
-    for (int i = 0; i < 3; i++) light->direction[i] = (float)(0.0 - (double)way[i] / length);
+    double sign = light->kind == LIGHT_SPOT ? 1 : -1;
+    for (int i = 0; i < 3; i++) light->direction[i] = (float)(sign * (double)way[i] / length + 0.0);
     return RESULT_OK;
 }
 
@@ -223,27 +225,68 @@ static Result read_light_color(Light *light, const Place *parent, const json_t *
     return result;
 }
 
+static Result read_position(Light *light, const Place *parent, const json_t *object, Error *error)
+{
+    const json_t *value = json_object_get(object, "position");
+    if (!value) return place_fail(parent, error, "expected a key 'position'");
+    Place place = {.parent = parent, .key = "position"};
+    return place_read_vector(&place, value, 3, -OFFSET_MAX, OFFSET_MAX, "an array of three numbers",
+                             light->position, error);
+}
+
+// A number that may be left out.
+static Result read_quantity(float *quantity, const Place *parent, const json_t *object,
+                            const char *key, double minimum, double maximum, const char *expected,
+                            Error *error)
+{
+    const json_t *value = json_object_get(object, key);
+    Place place = {.parent = parent, .key = key};
+    double number = (double)*quantity;
+    if (!value) return RESULT_OK;
+    Result result = place_read_number(&place, value, minimum, maximum, expected, &number, error);
+    *quantity = (float)number;
+    return result;
+}
+
+static Result read_cone(Light *light, const Place *place, const json_t *value, Error *error)
+{
+    Result result =
+        read_quantity(&light->outer_deg, place, value, "outer", 0.1, 90, "degrees", error);
+    if (result == RESULT_OK)
+        result = read_quantity(&light->inner_deg, place, value, "inner", 0, 90, "degrees", error);
+    if (result == RESULT_OK && light->inner_deg >= light->outer_deg)
+        return place_fail(place, error, "'inner' is %.9g deg, expected less than 'outer', %.9g deg",
+                          (double)light->inner_deg, (double)light->outer_deg);
+    return result;
+}
+
 static Result read_light(Light *light, const Place *place, const json_t *value, Error *error)
 {
-    static const char *const NAMES[] = {"type", "direction", "color", "intensity", NULL};
-    *light = (Light){.kind = LIGHT_DIRECTIONAL, .color = {1, 1, 1}, .intensity = 1.0f};
-    Result result = place_check_object(place, value, NAMES, error);
-    if (result != RESULT_OK) return result;
-
+    static const char *const DIRECTIONAL[] = {"type", "direction", "color", "intensity", NULL};
+    static const char *const POINT[] = {"type", "position", "distance", "color", "intensity", NULL};
+    static const char *const SPOT[] = {"type",  "position", "distance",  "direction", "inner",
+                                       "outer", "color",    "intensity", NULL};
+    static const char *const *const NAMES[] = {
+        [LIGHT_DIRECTIONAL] = DIRECTIONAL, [LIGHT_POINT] = POINT, [LIGHT_SPOT] = SPOT};
+    *light = (Light){.color = {1, 1, 1}, .intensity = 1, .distance = 1, .outer_deg = 45};
     const json_t *type = json_object_get(value, "type");
     Place type_place = {.parent = place, .key = "type"};
     int kind = LIGHT_DIRECTIONAL;
-    if (type) result = place_read_choice(&type_place, type, LIGHT_KIND_WORDS, &kind, error);
+    Result result =
+        type ? place_read_choice(&type_place, type, LIGHT_KIND_WORDS, &kind, error) : RESULT_OK;
     light->kind = (LightKind)kind;
-
-    const json_t *intensity = json_object_get(value, "intensity");
-    Place intensity_place = {.parent = place, .key = "intensity"};
-    double factor = 1.0;
-    if (result == RESULT_OK && intensity)
-        result = place_read_number(&intensity_place, intensity, 0, INTENSITY_MAX, "a factor",
-                                   &factor, error);
-    light->intensity = (float)factor;
-    if (result == RESULT_OK) result = read_direction(light, place, value, error);
+    if (result == RESULT_OK) result = place_check_object(place, value, NAMES[kind], error);
+    if (result == RESULT_OK)
+        result = read_quantity(&light->intensity, place, value, "intensity", 0, INTENSITY_MAX,
+                               "a factor", error);
+    if (result == RESULT_OK && kind != LIGHT_POINT)
+        result = read_direction(light, place, value, error);
+    if (result == RESULT_OK && kind != LIGHT_DIRECTIONAL)
+        result = read_position(light, place, value, error);
+    if (result == RESULT_OK && kind != LIGHT_DIRECTIONAL)
+        result = read_quantity(&light->distance, place, value, "distance", 1e-3, OFFSET_MAX,
+                               "metres", error);
+    if (result == RESULT_OK && kind == LIGHT_SPOT) result = read_cone(light, place, value, error);
     if (result == RESULT_OK) result = read_light_color(light, place, value, error);
     return result;
 }

@@ -129,14 +129,24 @@ static float srgb_from_linear(float linear)
 
 static json_t *write_light(const Light *light)
 {
+    bool far = light->kind == LIGHT_DIRECTIONAL;
     float way[3], color[3];
     for (int i = 0; i < 3; i++) {
-        way[i] = 0.0f - light->direction[i];
+        way[i] = (far ? -light->direction[i] : light->direction[i]) + 0.0f;
         color[i] = fminf(srgb_from_linear(light->color[i]), 1.0f);
     }
     json_t *object = json_object();
     bool good = put(object, "type", json_string(LIGHT_KIND_WORDS[light->kind]));
-    good = put(object, "direction", scene_write_floats(way, 3)) && good;
+    if (!far) {
+        good = put(object, "position", scene_write_floats(light->position, 3)) && good;
+        good = put(object, "distance", scene_write_float(light->distance)) && good;
+    }
+    if (light->kind != LIGHT_POINT)
+        good = put(object, "direction", scene_write_floats(way, 3)) && good;
+    if (light->kind == LIGHT_SPOT) {
+        good = put(object, "inner", scene_write_float(light->inner_deg)) && good;
+        good = put(object, "outer", scene_write_float(light->outer_deg)) && good;
+    }
     good = put(object, "color", scene_write_floats(color, 3)) && good;
     good = put(object, "intensity", scene_write_float(light->intensity)) && good;
     return finish(object, good);

@@ -73,7 +73,13 @@ static Result draw(Sequence *sequence, Previous *previous, const View *view, Ima
         ++sequence->frames_repeated;
         return RESULT_OK;
     }
-    RenderFrame frame = {.view = view, .lights = scene->lights, .light_count = scene->light_count};
+    Ambient ambient;
+    RenderFrame frame = {.view = view,
+                         .lights = scene->lights,
+                         .light_count = scene->light_count,
+                         .ambient = &ambient};
+    memcpy(ambient.sky, scene->run.sky, sizeof ambient.sky);
+    memcpy(ambient.ground, scene->run.ground, sizeof ambient.ground);
     memcpy(frame.head_rotation, sequence->simulation->head.rotation, sizeof frame.head_rotation);
     memcpy(frame.head_translation, sequence->simulation->head.translation,
            sizeof frame.head_translation);

@@ -294,7 +294,7 @@ static void compare_case(Studio *studio, const Case *c, double bound)
 {
     Sitting sitting;
     const float dark[4] = {0.125f, 0.14f, 0.17f, 1};
-    const Light light = {LIGHT_DIRECTIONAL, {0.6f, 0.8f, 0}, {1, 0.9f, 0.8f}, 2};
+    const Light light = {.direction = {0.6f, 0.8f, 0}, .color = {1, 0.9f, 0.8f}, .intensity = 2};
     sitting_open(&sitting, dark);
     SectionParams *material = sitting_add(&sitting, make_tangle(c->count), c->radius, c->opacity);
     dress(material, c->tip_ratio);

@@ -98,7 +98,7 @@ static void add_tangle(uint32_t count, float radius, float opacity, const uint32
     uint32_t item = studio_add(&studio, &strands, radius, opacity);
     studio.material[item].diffuse = 1; // colours that differ along every strand
     studio.material[item].ambient = 0.1f;
-    studio.light = (Light){LIGHT_DIRECTIONAL, {0.6f, 0.8f, 0}, {1, 0.8f, 0.5f}, 1};
+    studio.light = (Light){.direction = {0.6f, 0.8f, 0}, .color = {1, 0.8f, 0.5f}, .intensity = 1};
     strands_destroy(&strands);
     free(position);
 }
@@ -422,6 +422,59 @@ static void mesh_hides_the_hair_behind_it_only(void **state)
     assert_int_equal(studio_pixel(&studio, 5, 5)[1], 0);
 }
 
+// A white strand along x that only the light shows, and what its middle looks like, 0..1.
+static double light_strand(const Light *light)
+{
+    studio.light = *light;
+    uint32_t i = add_line((float[3]){-60, 0, 0}, (float[3]){60, 0, 0}, 6, 1);
+    studio.material[i].ambient = 0;
+    studio.material[i].diffuse = 1;
+    studio_draw(&studio);
+    studio_clear(&studio);
+    double level = studio_pixel(&studio, SIDE / 2, SIDE / 2)[0] / 255.0;
+    return level <= 0.04045 ? level / 12.92 : pow((level + 0.055) / 1.055, 2.4);
+}
+
+// One level of 255 is up to 0.009 of the light there.
+static void light_falls_off_by_the_square_of_the_distance(void **state)
+{
+    (void)state;
+    use(&BLACK);
+    Light light = {.kind = LIGHT_POINT,
+                   .color = {1, 1, 1},
+                   .intensity = 0.8f,
+                   .position = {0, 300, 400},
+                   .distance = 500};
+    assert_true(fabs(light_strand(&light) - 0.8) < 0.01);
+    light.distance = 250;
+    assert_true(fabs(light_strand(&light) - 0.2) < 0.01);
+    light.position[0] = 1e6f; // along the strand, and far away
+    assert_true(light_strand(&light) < 0.001);
+}
+
+// Full up to the inner angle, half as much (squared) half-way by cosine, nothing beyond. The next
+// vertices, 30 px off, are darker, and a block shows its middle, up to 2 px off: a fifteenth.
+static void a_spot_shines_into_its_cone(void **state)
+{
+    (void)state;
+    use(&BLACK);
+    const double angles_deg[] = {0, 19.5, 30.5, 46},
+                 half = (cos(glm_rad(20)) + cos(glm_rad(30))) / 2;
+    const double expected[] = {0.8, 0.8, 0, 0, 0.2};
+    for (int i = 0; i < 5; ++i) {
+        double a = i < 4 ? angles_deg[i] * acos(-1) / 180 : acos(half);
+        Light spot = {.kind = LIGHT_SPOT,
+                      .color = {1, 1, 1},
+                      .intensity = 0.8f,
+                      .position = {0, 0, 100},
+                      .distance = 100,
+                      .direction = {0, (float)sin(a), (float)-cos(a)},
+                      .inner_deg = 20,
+                      .outer_deg = 30};
+        assert_true(fabs(light_strand(&spot) - expected[i]) < 0.01 + expected[i] / 15);
+    }
+}
+
 static void no_hair_is_background(void **state)
 {
     (void)state;
@@ -574,23 +627,30 @@ static void bytes_do_not_depend_on_driver_threads(void **state)
 static void blocks_lie_alike_in_c_and_glsl(void **state)
 {
     (void)state;
-    GLuint program =
-        raster == RASTER_QUADS ? studio.renderer.hair.project : studio.renderer.blocks.project;
+    Error error = {{0}};
+    LookPrograms *programs =
+        raster == RASTER_QUADS ? &studio.renderer.hair.project : &studio.renderer.blocks.project;
+    unsigned all = LOOK_VARIANTS - 1; // every member is in use
+    assert_int_equal(look_programs_build(programs, all, &error), RESULT_OK);
+    GLuint program = programs->program[all];
 #define DRAW(field)                                                                                \
     fixture_assert_offset(program, "DrawParams." #field, offsetof(DrawParams, field))
 #define DRAW_ARRAY(field)                                                                          \
     fixture_assert_offset(program, "DrawParams." #field "[0]", offsetof(DrawParams, field))
 #define MATERIAL(field)                                                                            \
     fixture_assert_offset(program, "MaterialParams." #field, offsetof(MaterialParams, field))
-    DRAW(clip_from_world), DRAW(eye), DRAW_ARRAY(light_direction), DRAW_ARRAY(light_color);
+    DRAW(clip_from_world), DRAW(eye), DRAW_ARRAY(light_place), DRAW_ARRAY(light_color);
+    DRAW_ARRAY(light_axis), DRAW_ARRAY(light_cone), DRAW(sky), DRAW(ground);
     DRAW(background), DRAW(head_rotation), DRAW(head_translation), DRAW(mesh_color);
     DRAW(width), DRAW(height), DRAW(focal), DRAW(near_distance), DRAW(depth), DRAW(band);
     DRAW(light_count), DRAW(seed), DRAW(shards);
     MATERIAL(color), MATERIAL(color_variation), MATERIAL(radius), MATERIAL(tip_ratio);
     MATERIAL(opacity), MATERIAL(ambient), MATERIAL(diffuse), MATERIAL(specular1);
     MATERIAL(exponent1), MATERIAL(specular2), MATERIAL(exponent2), MATERIAL(shift1_cos);
-    MATERIAL(shift1_sin), MATERIAL(shift2_cos), MATERIAL(shift2_sin), MATERIAL(vertex_count),
-        MATERIAL(first_strand), MATERIAL(drawn_strands);
+    MATERIAL(shift1_sin), MATERIAL(shift2_cos), MATERIAL(shift2_sin);
+    MATERIAL(lobe_sharpness), MATERIAL(lobe_scale), MATERIAL(lobe_tilt_cos);
+    MATERIAL(lobe_tilt_sin), MATERIAL(vertex_count), MATERIAL(first_strand),
+        MATERIAL(drawn_strands);
 }
 
 static void a_picture_beyond_the_driver_is_refused(void **state)
@@ -623,6 +683,8 @@ int main(void)
         CLAIM(hair_smaller_than_a_pixel_leaves_no_holes),
         CLAIM(a_row_that_no_pool_holds_is_an_error),
         CLAIM(mesh_hides_the_hair_behind_it_only),
+        CLAIM(light_falls_off_by_the_square_of_the_distance),
+        CLAIM(a_spot_shines_into_its_cone),
         CLAIM(no_hair_is_background),
         CLAIM(background_is_exact_beside_hair),
         CLAIM(a_strand_towards_the_eye_is_harmless),

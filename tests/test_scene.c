@@ -340,14 +340,18 @@ static void a_scene_file_says_all_that_flags_can_and_more(void **state)
     assert_int_equal(scene.eye.count, 2);
     assert_int_equal(scene.target.count, 0);
     assert_int_equal(scene.fov.count, 1);
-    assert_int_equal(scene.light_count, 2);
     assert_int_equal(scene.colliders.count, 3);
     assert_true(scene.colliders.list[0].world && scene.colliders.list[0].numbers[7] == 0.05f);
     assert_true(!scene.colliders.list[1].world && scene.colliders.list[1].numbers[3] == 0.09f);
     assert_true(scene.colliders.list[2].kind == COLLIDER_GROUND);
+    assert_int_equal(scene.light_count, 4);
     assert_true(scene.lights[0].direction[1] == 1);
     assert_true(fabsf(scene.lights[0].color[1] - 0.2158605f) < 1e-5f);
     assert_true(scene.lights[1].direction[0] == -0.6f && scene.lights[1].direction[2] == 0.8f);
+    const Light *point = &scene.lights[2], *spot = &scene.lights[3];
+    assert_true(point->kind == LIGHT_POINT && point->position[1] == 2 && point->distance == 1);
+    assert_true(spot->kind == LIGHT_SPOT && spot->direction[1] == -1 && spot->distance == 2.5f);
+    assert_true(spot->inner_deg == 20 && spot->outer_deg == 30);
     scene_destroy(&scene);
 }
 
@@ -393,7 +397,6 @@ static void without_lights_there_are_two_and_an_empty_list_means_none(void **sta
     Scene scene;
     Error error;
     assert_read(&scene, "a.tfx -o x/");
-    assert_int_equal(scene.light_count, 2);
     assert_true(scene.lights[0].intensity > scene.lights[1].intensity);
     for (int i = 0; i < 2; i++) {
         const float *d = scene.lights[i].direction;
@@ -570,7 +573,18 @@ static void wrong_scene_files_are_refused_with_place_and_expectation(void **stat
         {"{" HAIR ", \"lights\": [{}]}", "lights[0]: expected a key 'direction'"},
         {"{" HAIR ", \"lights\": [{\"direction\": [0, 0, 0]}]}", "expected a direction"},
         {"{" HAIR ", \"lights\": [{\"type\": \"point\", \"direction\": [0, 0, 1]}]}",
-         "lights[0].type: got \"point\""},
+         "lights[0]: unknown key 'direction'"},
+        {"{" HAIR ", \"lights\": [{\"type\": \"area\", \"direction\": [0, 0, 1]}]}",
+         "lights[0].type: got \"area\""},
+        {"{" HAIR ", \"lights\": [{\"type\": \"point\"}]}", "lights[0]: expected a key 'position'"},
+        {"{" HAIR
+         ", \"lights\": [{\"type\": \"point\", \"position\": [0, 0, 1], \"distance\": 0}]}",
+         "lights[0].distance: got 0"},
+        {"{" HAIR ", \"lights\": [{\"type\": \"spot\", \"position\": [0, 0, 1]}]}",
+         "lights[0]: expected a key 'direction'"},
+        {"{" HAIR ", \"lights\": [{\"type\": \"spot\", \"position\": [0, 0, 1], "
+         "\"direction\": [0, 0, -1], \"inner\": 50}]}",
+         "'inner' is 50 deg, expected less than 'outer', 45 deg"},
         {"{" HAIR ", \"lights\": [{\"direction\": [0, 0, 1], \"color\": 7}]}",
          "lights[0].color: got 7"},
         {"{" HAIR ", \"lights\": [{\"direction\": [0, 0, 1], \"intensity\": -1}]}",

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#include "render_look.h"
+
+#include "draw.h"
+
+Result look_programs_build(LookPrograms *programs, unsigned features, Error *error)
+{
+    int model = !(features & LOOK_MARSCHNER) ? 0 : features & LOOK_GAUSS ? 2 : 1;
+    const ShaderDefine defines[] = {{"GROUP_SIZE", programs->group_size},
+                                    {"LIGHTS", (features & LOOK_LIGHTS) != 0},
+                                    {"MARSCHNER", model},
+                                    {NULL, 0}};
+    GLuint *program = &programs->program[features];
+    return *program ? RESULT_OK : shader_build_compute(program, programs->file, defines, error);
+}
+
+Result look_programs_use(LookPrograms *programs, const Look *look, Error *error)
+{
+    Result result = look_programs_build(programs, look->features, error);
+    if (result != RESULT_OK) return result;
+    glUseProgram(programs->program[look->features]);
+    if (look->features & LOOK_MARSCHNER) {
+        glActiveTexture(GL_TEXTURE0 + BIND_SCATTER);
+        glBindTexture(GL_TEXTURE_3D, look->scatter);
+    }
+    return RESULT_OK;
+}
+
+void look_programs_destroy(LookPrograms *programs)
+{
+    for (int i = 0; i < LOOK_VARIANTS; ++i)
+        if (programs->program[i]) glDeleteProgram(programs->program[i]);
+    *programs = (LookPrograms){0};
+}

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// How a section's hair looks, and the shaders that project and shade such hair: one variant for
+// each set of features, so that what a scene does not use costs nothing.
+#pragma once
+
+#include "shader.h"
+
+#include "material.h"
+
+// What shade.glsl's macros are made of.
+typedef enum LookFeature {
+    LOOK_LIGHTS = 1, // lights that are not directional, or a sky that differs from the ground
+    LOOK_MARSCHNER = 2,
+    LOOK_GAUSS = 4, // of marschner, --lobes gauss
+} LookFeature;
+
+enum { LOOK_VARIANTS = 8 };
+
+typedef struct Look {
+    MaterialParams material; // complete but for the batch's size
+    unsigned features;       // LookFeature bits
+    GLuint scatter;          // LOOK_MARSCHNER: the 3D texture of render_scatter.h
+} Look;
+
+// The variants of one compute shader; a zeroed struct with a file and a group size has none yet.
+typedef struct LookPrograms {
+    const char *file;
+    int group_size;
+    GLuint program[LOOK_VARIANTS];
+} LookPrograms;
+
+// Makes the look's variant the current program, compiled at first use, with the look's textures.
+// RESULT_FAILED with the compiler's words.
+Result look_programs_use(LookPrograms *programs, const Look *look, Error *error);
+
+// Compiles the variant of these features if it is not there.
+Result look_programs_build(LookPrograms *programs, unsigned features, Error *error);
+void look_programs_destroy(LookPrograms *programs);
