@@ -23,8 +23,9 @@ int sequence_count_drawn(const RunParams *run)
     return last < run->first ? 0 : (last - run->first) / run->every + 1;
 }
 
-// What the loop keeps from one drawn frame to the next. If nothing moves but perhaps the camera,
-// and that neither, the picture before is the picture.
+// What the loop keeps from one drawn frame to the next. If nothing has moved, and the camera
+// neither, the picture before is the picture. It is kept where that may be so: in the first frame,
+// and in every one that moved nothing.
 typedef struct Previous {
     bool any;
     View view;
@@ -67,7 +68,11 @@ static Result draw(Sequence *sequence, Previous *previous, const View *view, Ima
                    Error *error)
 {
     const Scene *scene = sequence->scene;
-    bool still = simulation_is_still(sequence->simulation);
+    Simulation *simulation = sequence->simulation;
+    uint64_t before = simulation->changes;
+    simulation_pose(simulation);
+    bool still = simulation->changes == before || sequence->frames_drawn == 0;
+    if (!still) previous->any = false;
     if (still && previous->any && same_view(view, &previous->view)) {
         memcpy(image->pixels, previous->image.pixels, image_size(image));
         ++sequence->frames_repeated;
@@ -80,10 +85,8 @@ static Result draw(Sequence *sequence, Previous *previous, const View *view, Ima
                          .ambient = &ambient};
     memcpy(ambient.sky, scene->run.sky, sizeof ambient.sky);
     memcpy(ambient.ground, scene->run.ground, sizeof ambient.ground);
-    memcpy(frame.head_rotation, sequence->simulation->head.rotation, sizeof frame.head_rotation);
-    memcpy(frame.head_translation, sequence->simulation->head.translation,
-           sizeof frame.head_translation);
-    simulation_pose(sequence->simulation);
+    memcpy(frame.head_rotation, simulation->head.rotation, sizeof frame.head_rotation);
+    memcpy(frame.head_translation, simulation->head.translation, sizeof frame.head_translation);
     if (sequence->frames_drawn == 0) give_back_memory();
     Result result = renderer_draw(sequence->renderer, &frame, sequence->items, sequence->item_count,
                                   image, error);

@@ -43,6 +43,9 @@ static Result create_section(Simulation *simulation, uint32_t i, const Gpu *gpu,
         result = solver_create(&section->solver, &setup, error);
     }
     if (result == RESULT_OK)
+        result = sleep_create(&section->sleep, gpu, simulation->timer, &section->hair,
+                              &section->solver, &description->params, error);
+    if (result == RESULT_OK)
         result = follow_create(&section->follow, gpu, simulation->timer, &section->hair, strands,
                                &description->params, simulation->scene->run.seed, error);
     if (result == RESULT_OK && needs_inbetween(simulation, &section->solver))
@@ -88,6 +91,7 @@ Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer
 void simulation_destroy(Simulation *simulation)
 {
     for (uint32_t i = 0; simulation->sections && i < simulation->scene->section_count; ++i) {
+        sleep_destroy(&simulation->sections[i].sleep);
         follow_destroy(&simulation->sections[i].follow);
         inbetween_destroy(&simulation->sections[i].inbetween);
         solver_destroy(&simulation->sections[i].solver);
@@ -116,16 +120,27 @@ static SolverStep next_step(const Simulation *simulation)
     return step;
 }
 
+static void step_section(Simulation *simulation, SimulationSection *section, const SolverStep *step)
+{
+    uint64_t strands = section->hair.strand_count;
+    if (solver_is_static(&section->solver)) return;
+    if (sleep_skips(&section->sleep, step)) {
+        simulation->strand_steps_asleep += strands;
+        return;
+    }
+    inbetween_restore(&section->inbetween);
+    solver_step(&section->solver, step);
+    sleep_look(&section->sleep, &section->solver);
+    section->stepped = true;
+    simulation->strand_steps += strands;
+    ++simulation->steps;
+}
+
 static void take_step(Simulation *simulation)
 {
     SolverStep step = next_step(simulation);
-    for (uint32_t i = 0; i < simulation->scene->section_count; ++i) {
-        SimulationSection *section = &simulation->sections[i];
-        if (solver_is_static(&section->solver)) continue;
-        inbetween_restore(&section->inbetween);
-        solver_step(&section->solver, &step);
-        ++simulation->steps;
-    }
+    for (uint32_t i = 0; i < simulation->scene->section_count; ++i)
+        step_section(simulation, &simulation->sections[i], &step);
     simulation->step_head_before = step.head_old;
     simulation->step_head = step.head;
     ++simulation->step;
@@ -135,6 +150,12 @@ bool simulation_settle(Simulation *simulation)
 {
     if (simulation->step < 0) take_step(simulation);
     return simulation->step < 0;
+}
+
+// Whether what is drawn of the section may differ from the last pose, the head staying where it is.
+static bool moves(const SimulationSection *section)
+{
+    return section->stepped || (section->inbetween.hair && !section->sleep.asleep);
 }
 
 static void pose_section(Simulation *simulation, SimulationSection *section, const HeadPose *head)
@@ -151,7 +172,7 @@ static void keep(Simulation *simulation, void (*keep_positions)(Inbetween *inbet
 {
     for (uint32_t i = 0; i < simulation->scene->section_count; ++i) {
         SimulationSection *section = &simulation->sections[i];
-        if (!section->inbetween.hair) continue;
+        if (!section->inbetween.hair || !moves(section)) continue;
         pose_section(simulation, section, &simulation->step_head);
         keep_positions(&section->inbetween);
     }
@@ -183,10 +204,11 @@ static void pose_between(Simulation *simulation, SimulationSection *section)
 
 void simulation_pose(Simulation *simulation)
 {
+    bool moved = !same_pose(&simulation->posed_at, &simulation->head);
     for (uint32_t i = 0; i < simulation->scene->section_count; ++i) {
         SimulationSection *section = &simulation->sections[i];
         bool same_head = same_pose(&section->posed_at, &simulation->head);
-        if (section->posed && same_head && solver_is_static(&section->solver)) {
+        if (section->posed && same_head && !moves(section)) {
             ++simulation->poses_skipped;
             continue;
         }
@@ -195,14 +217,11 @@ void simulation_pose(Simulation *simulation)
         else
             pose_section(simulation, section, &simulation->head);
         follow_write(&section->follow, &simulation->head);
+        section->stepped = false;
+        moved = true;
     }
-}
-
-bool simulation_is_still(const Simulation *simulation)
-{
-    for (uint32_t i = 0; i < simulation->scene->section_count; ++i)
-        if (!solver_is_static(&simulation->sections[i].solver)) return false;
-    return rigid_track_is_still(&simulation->scene->head);
+    simulation->posed_at = simulation->head;
+    simulation->changes += moved;
 }
 
 SolverReport simulation_report(const Simulation *simulation)

@@ -6,6 +6,7 @@
 #include "inbetween.h"
 #include "scene.h"
 #include "schedule.h"
+#include "sleep.h"
 #include "solver.h"
 #include "strands.h"
 
@@ -14,9 +15,10 @@ typedef struct SimulationSection {
     Solver solver;
     Follow follow;
     Inbetween inbetween; // empty where no frame falls between two steps, or the solver is static
-    bool posed;          // positions are written ...
-    HeadPose
-        posed_at; // ... for this head; a static section needs no other pose while the head is there
+    Sleep sleep;
+    bool posed;        // positions are written ...
+    bool stepped;      // ... and the hair has moved since ...
+    HeadPose posed_at; // ... or not, and they hold while the head is here
 } SimulationSection;
 
 typedef struct Simulation {
@@ -29,8 +31,11 @@ typedef struct Simulation {
     HeadPose head;               // as drawn
     float share;  // drawn so far on the way from the last step but one to the last; 0: the last
     int64_t step; // steps since time 0; below 0 while the hair settles
-    HeadPose step_head, step_head_before; // after the last step and before it
-    uint64_t steps, poses, poses_skipped;
+    HeadPose step_head, step_head_before;       // after the last step and before it
+    HeadPose posed_at;                          // the head at the last pose
+    uint64_t changes;                           // poses that moved what is drawn, or the head
+    uint64_t steps, poses, poses_skipped;       // of sections
+    uint64_t strand_steps, strand_steps_asleep; // made, and left out
 } Simulation;
 
 // Uploads strands[section] and makes the solvers. `gpu`, `timer`, `scene` outlive the simulation.
@@ -47,11 +52,9 @@ bool simulation_settle(Simulation *simulation);
 // To the next frame, by as many steps of each section as it takes. Only queues GPU work.
 void simulation_advance(Simulation *simulation);
 
-// Writes the positions that are drawn. Skips what has not changed.
+// Writes the positions that are drawn. Skips what has not changed. As long as `changes` stays the
+// same, so does what is drawn, but for the camera.
 void simulation_pose(Simulation *simulation);
-
-// True if no frame differs from the first but by the camera: no solver, head at rest.
-bool simulation_is_still(const Simulation *simulation);
 
 // Adds up the solvers' reports. Waits for the GPU.
 SolverReport simulation_report(const Simulation *simulation);

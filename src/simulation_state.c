@@ -55,6 +55,10 @@ static Result list_buffers(BufferList *list, const Simulation *simulation, Error
         }
         for (uint32_t b = 0; b < section->hair.batch_count; ++b)
             add_solver_buffers(list, section, b);
+        for (uint32_t b = 0; section->sleep.hair && b < section->hair.batch_count; ++b) {
+            add_buffer(list, &section->sleep.batches[b].anchors);
+            add_buffer(list, &section->sleep.batches[b].calm);
+        }
     }
     if (!list->failed) return RESULT_OK;
     free(list->buffers);
@@ -87,6 +91,26 @@ static void put_pose(FILE *stream, const HeadPose *pose)
 {
     for (int i = 0; i < 4; ++i) put_float(stream, pose->rotation[i]);
     for (int i = 0; i < 3; ++i) put_float(stream, pose->translation[i]);
+}
+
+// What of a step tells whether the next one is like it.
+static void put_last_step(FILE *stream, const SolverStep *step)
+{
+    uint64_t bits;
+    memcpy(&bits, &step->dt, sizeof bits);
+    put_u64(stream, bits);
+    put_u32(stream, step->first);
+    put_pose(stream, &step->head_old);
+    put_pose(stream, &step->head);
+    for (int i = 0; i < 3; ++i) put_float(stream, step->gravity[i]);
+    for (int i = 0; i < 12; ++i) put_float(stream, step->wind[i / 3][i % 3]);
+}
+
+static void put_sleep(FILE *stream, const Sleep *sleep)
+{
+    const int32_t numbers[] = {sleep->steps, sleep->due, sleep->looks, sleep->asleep};
+    for (int i = 0; i < 4; ++i) put_u32(stream, (uint32_t)numbers[i]);
+    put_last_step(stream, &sleep->last);
 }
 
 typedef struct Cursor {
@@ -136,6 +160,28 @@ static HeadPose take_pose(Cursor *cursor)
     return pose;
 }
 
+static SolverStep take_last_step(Cursor *cursor)
+{
+    SolverStep step = {0};
+    uint64_t bits = take_u64(cursor);
+    memcpy(&step.dt, &bits, sizeof bits);
+    step.first = take_u32(cursor) != 0;
+    step.head_old = take_pose(cursor);
+    step.head = take_pose(cursor);
+    for (int i = 0; i < 3; ++i) step.gravity[i] = take_float(cursor);
+    for (int i = 0; i < 12; ++i) step.wind[i / 3][i % 3] = take_float(cursor);
+    return step;
+}
+
+static void take_sleep(Cursor *cursor, Sleep *sleep)
+{
+    sleep->steps = (int)take_u32(cursor);
+    sleep->due = (int)take_u32(cursor);
+    sleep->looks = (int)take_u32(cursor);
+    sleep->asleep = take_u32(cursor) != 0;
+    sleep->last = take_last_step(cursor);
+}
+
 // ---
 
 static bool put_buffer(FILE *stream, const GpuBuffer *buffer)
@@ -164,6 +210,8 @@ static bool put_state(FILE *stream, const Simulation *simulation, const BufferLi
     put_pose(stream, &simulation->head);
     put_pose(stream, &simulation->step_head);
     put_pose(stream, &simulation->step_head_before);
+    for (uint32_t i = 0; i < simulation->scene->section_count; ++i)
+        put_sleep(stream, &simulation->sections[i].sleep);
     put_u32(stream, list->count);
     bool good = true;
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -231,6 +279,8 @@ Result simulation_state_restore(Simulation *simulation, const Bytes *state, Erro
     simulation->head = take_pose(&cursor);
     simulation->step_head = take_pose(&cursor);
     simulation->step_head_before = take_pose(&cursor);
+    for (uint32_t i = 0; i < simulation->scene->section_count; ++i)
+        take_sleep(&cursor, &simulation->sections[i].sleep);
     bool good = take_u32(&cursor) == list.count && !cursor.failed;
     if (good) begin_sections(simulation);
     for (uint32_t i = 0; i < list.count && good; ++i) good = take_buffer(&cursor, list.buffers[i]);

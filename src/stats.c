@@ -157,6 +157,9 @@ static json_t *describe_counts(const Simulation *simulation, int frames_drawn, i
     json_object_set_new(counts, "steps_settling",
                         json_integer((json_int_t)simulation->schedule.settling));
     json_object_set_new(counts, "steps_per_s", json_real(simulation->schedule.steps_per_s));
+    json_object_set_new(counts, "strand_steps", json_integer((json_int_t)simulation->strand_steps));
+    json_object_set_new(counts, "strand_steps_asleep",
+                        json_integer((json_int_t)simulation->strand_steps_asleep));
     json_object_set_new(counts, "poses", json_integer((json_int_t)simulation->poses));
     json_object_set_new(counts, "poses_skipped",
                         json_integer((json_int_t)simulation->poses_skipped));
