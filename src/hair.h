@@ -21,8 +21,8 @@ typedef struct HairBatch {
     GpuBuffer rest;     // vec4 a particle, the style in the head's frame. j = 0: root (m) and the
                     // strand's length (m); j > 0: unit direction of the segment from j - 1 to j and
                     // its rest length (m)
-    GpuBuffer strand_id; // uint a strand (and copy): its number among all strands of the run, seed
-                         // of all that varies by strand
+    GpuBuffer strand_id; // uint a strand (and copy): its number in its section, seed of all that
+                         // varies by strand
 } HairBatch;
 
 // Strands with the last tile's copies: what buffers have room for.

@@ -29,11 +29,11 @@ static bool needs_inbetween(const Simulation *simulation, const Solver *solver)
 }
 
 static Result create_section(Simulation *simulation, uint32_t i, const Gpu *gpu,
-                             const Strands *strands, uint32_t first_id, Error *error)
+                             const Strands *strands, Error *error)
 {
     SimulationSection *section = &simulation->sections[i];
     const Section *description = &simulation->scene->sections[i];
-    Result result = hair_create(&section->hair, strands, first_id, &gpu->limits, error);
+    Result result = hair_create(&section->hair, strands, 0, &gpu->limits, error);
     if (result == RESULT_OK) {
         const SolverSetup setup = {.gpu = gpu,
                                    .timer = simulation->timer,
@@ -61,11 +61,8 @@ static Result create_sections(Simulation *simulation, const Gpu *gpu, const Stra
     if (!simulation->sections)
         return error_set(error, RESULT_FAILED, "no memory for %u sections", scene->section_count);
     Result result = RESULT_OK;
-    uint32_t first_id = 0;
-    for (uint32_t i = 0; i < scene->section_count && result == RESULT_OK; ++i) {
-        result = create_section(simulation, i, gpu, &strands[i], first_id, error);
-        first_id += strands[i].strand_count;
-    }
+    for (uint32_t i = 0; i < scene->section_count && result == RESULT_OK; ++i)
+        result = create_section(simulation, i, gpu, &strands[i], error);
     return result;
 }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A scene in motion: each section's hair with its solver, advanced frame by frame.
+// A scene in motion: each section's hair with its solver, advanced frame by frame. A section moves
+// as it would if it were alone, to the bit: strands have their numbers within it, so that what
+// varies by strand does not depend on other sections. (Only --substeps auto looks at all of them.)
 #pragma once
 
 #include "follow.h"
