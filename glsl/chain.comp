@@ -11,7 +11,7 @@
 //      x_{j-1} += lambda_j s_j, done on the segments themselves.
 //   4. Rebuild from the root with exact lengths.
 // Where a violent step leaves a segment off by more than half its length, two passes of tractrices take over (rescue). Long strands at long
-// steps would gain energy from either: energy_account.glsl.
+// steps would gain energy from either: energy_account.glsl. BENDS 1: bend.glsl's forces and masses enter the second system.
 //
 // The sweeps run along the strand to and fro; each undoes one elimination and does the next. Positions are relative to the new root.
 #include "particles.glsl"
@@ -20,6 +20,9 @@
 #include "tractrix.glsl"
 #include "tridiagonal.glsl"
 #include "energy_account.glsl"
+#if BENDS
+#include "bend.glsl"
+#endif
 
 const float THETA = 0.25;
 const float MOST_OFF = 0.5; // of a length, before tractrices take over
@@ -31,22 +34,33 @@ vec3 predicted(Lane lane, int j, inout vec3 style)
     return (q - lane.root) + predicted_move(lane, j, q, style);
 }
 
-// Root to tip: predictions; the tensions' rows.
-void predict(Lane lane)
+// Root to tip: predictions; the tensions' rows. Gives the bending energy.
+float predict(Lane lane)
 {
     int last = LAST;
     vec3 q_before = lane.root_old, p_before = vec3(0.0), r_before = vec3(0.0), style = vec3(0.0);
     Row row = NO_ROW;
     keep(0, vec4(0.0));
     keep_beside(0, 0.0);
+#if BENDS
+    Frames frames = frames_open(lane);
+#endif
     for (int j = 1; j <= last; ++j) {
         vec3 q = fetch_position(lane, j), p = predicted(lane, j, style), r = q - q_before, s = p - p_before;
         float l = fetch_rest(lane, j).w, factor;
         row = eliminate(row, -dot(r, r_before), (j == 1 ? 1.0 : 2.0) * dot(r, r), l * (sqrt(dot(s, s)) - l), factor);
         keep(j, vec4(p, row.value));
         keep_beside(j, factor);
+#if BENDS
+        keep_goal(j, frames_advance(frames, r / l, fetch_rest(lane, j)));
+#endif
         q_before = q, p_before = p, r_before = r;
     }
+#if BENDS
+    return bend_stiffness(last) * frames.energy;
+#else
+    return 0.0;
+#endif
 }
 
 // Tip to root: tensions; rows of the positions.
@@ -55,6 +69,10 @@ void pull_implicitly(Lane lane)
     float lambda = 0.0, factor_beyond = 0.0, tension_beyond = 0.0;
     vec3 g_beyond = vec3(0.0), q = fetch_position(lane, LAST), v = fetch_velocity(lane, LAST);
     Row3 row = NO_ROW3;
+#if BENDS
+    float acts = lane.dt * step_params.gain, stiffness = acts * bend_stiffness(LAST), mass_beyond = 0.0;
+    vec3 G = vec3(0.0), h_beyond = vec3(0.0);
+#endif
     for (int j = LAST; j >= 1; --j) {
         vec3 q_before = j == 1 ? lane.root_old : fetch_position(lane, j - 1), v_before = fetch_velocity(lane, j - 1);
         vec4 k = recall(j);
@@ -63,7 +81,15 @@ void pull_implicitly(Lane lane)
         float tension = max(lambda, 0.0), factor;
         vec3 r = q - q_before, r_old = r - lane.dt * (v - v_before);
         vec3 g = (lambda - tension) * r + tension * ((1.0 - 2.0 * THETA) * r + THETA * r_old);
-        row = eliminate(row, -THETA * tension_beyond, 1.0 + THETA * (tension + tension_beyond), k.xyz - g + g_beyond, factor);
+        float off = THETA * tension_beyond, diagonal = 1.0 + THETA * (tension + tension_beyond);
+        vec3 y = k.xyz - g + g_beyond;
+#if BENDS
+        float l = fetch_rest(lane, j).w, mass = MASS * stiffness / l;
+        vec3 h = mass * (2.0 * r - r_old) - stiffness * bend_gradient(r, l, recall_goal(j), G);
+        off += mass_beyond, diagonal += mass + mass_beyond, y += h - h_beyond;
+        mass_beyond = mass, h_beyond = h;
+#endif
+        row = eliminate(row, -off, diagonal, y, factor);
         keep(j, vec4(row.value, factor));
         q = q_before, v = v_before, g_beyond = g, tension_beyond = tension;
     }
@@ -159,12 +185,22 @@ void write(Lane lane, inout Account account)
 {
     int last = LAST;
     vec3 x = lane.root, style = vec3(0.0);
+#if BENDS
+    Frames frames = frames_open(lane);
+#endif
     for (int j = 1; j <= last; ++j) {
-        vec3 q = fetch_position(lane, j), v = fetch_velocity(lane, j), free = predicted_move(lane, j, q, style);
-        x += recall(j).xyz;
+        vec3 q = fetch_position(lane, j), v = fetch_velocity(lane, j), free = predicted_move(lane, j, q, style), s = recall(j).xyz;
+        x += s;
         account_add(account, lane, x - q, free, v);
         put(lane, j, x, q);
+#if BENDS
+        vec4 segment = fetch_rest(lane, j);
+        frames_advance(frames, s / segment.w, segment);
+#endif
     }
+#if BENDS
+    account.stored = bend_stiffness(last) * frames.energy;
+#endif
 }
 
 // Two passes of tractrices (those of hybrid.comp) instead. Rolled loops, so that a CPU driver, where all lanes go through every branch,
@@ -192,16 +228,26 @@ void rescue(Lane lane, inout Account account)
         q = q_before;
     }
     vec3 move = limit_move(-y), x = lane.root;
+#if BENDS
+    Frames frames = frames_open(lane);
+#endif
     for (int j = 1; j <= last; ++j) {
         float l = fetch_rest(lane, j).w;
         vec3 d = tractrix_turn(tractrix_renormalise(velocities[lane.address + j * STRAND_TILE].xyz), l, move);
         q = fetch_position(lane, j);
-        x += l * tractrix_renormalise(d);
+        d = tractrix_renormalise(d);
+        x += l * d;
+#if BENDS
+        frames_advance(frames, d, fetch_rest(lane, j));
+#endif
         vec3 now = x - q - account.moved;
         sum += now;
         squares += dot(now, now);
         put(lane, j, x, q);
     }
+#if BENDS
+    account.stored = bend_stiffness(last) * frames.energy;
+#endif
     account_add_sums(account, lane.dt * lane.push, sum, sum_before, squares, squares_before);
 }
 
@@ -211,12 +257,12 @@ void main()
     if (s >= int(step_params.strand_count)) return;
     keep_open(s);
     Lane lane = lane_open(s);
-    predict(lane);
+    float bent = predict(lane);
     pull_implicitly(lane);
     correct(lane);
     correct_again(lane);
     bool violent = finish(lane) > floatBitsToInt(MOST_OFF);
-    Account account = account_open(lane);
+    Account account = account_open(lane, bent);
     if (violent)
         rescue(lane, account);
     else

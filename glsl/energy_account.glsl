@@ -13,12 +13,13 @@ const float ALLOWED = 0.005;
 struct Account {
     vec3 moved, moved_before; // of the root, in this step and in the one before
     float gained, kinetic;    // times dt^2, dt^2/2
+    float stored_before, stored; // in springs that count as constraints
 };
 
-Account account_open(Lane lane)
+Account account_open(Lane lane, float stored)
 {
     vec3 before = texelFetch(velocity_before, lane.address).xyz * lane.dt;
-    return Account(lane.root - lane.root_old, before, 0.0, 0.0);
+    return Account(lane.root - lane.root_old, before, 0.0, 0.0, stored, stored);
 }
 
 // A particle that has gone by `move`, would have gone by `free` without constraints, and had the velocity v.
@@ -42,7 +43,7 @@ void account_add_sums(inout Account account, vec3 fall, vec3 sum_now, vec3 sum_b
 void account_close(Account account, Lane lane, int last)
 {
     float per_square = 1.0 / (lane.dt * lane.dt), kinetic = 0.5 * per_square * account.kinetic;
-    float gained = texelFetch(velocity_before, lane.address).w + per_square * account.gained;
+    float gained = texelFetch(velocity_before, lane.address).w + per_square * account.gained + (account.stored - account.stored_before);
     float fall = 0.5 * float(last) * lane.length * length(lane.push) / step_params.gain;
     float over = max(gained, 0.0) - ALLOWED * (fall + kinetic);
     bool guards = over > 0.0 && kinetic > 0.0 && over < 1e30;

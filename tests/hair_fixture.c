@@ -39,8 +39,9 @@ static void create_solver(HairFixture *fixture)
     if (solver_create(&fixture->solver, &setup, &error) != RESULT_OK) fail_msg("%s", error.text);
 }
 
-void fixture_create_strands(HairFixture *fixture, const Strands *strands, const char *algo,
-                            const char *variant, float style, float drag)
+static void create(HairFixture *fixture, const Strands *strands, const char *algo,
+                   const char *variant, float style, float drag,
+                   void (*tune)(SectionParams *params))
 {
     Error error = {{0}};
     *fixture = (HairFixture){
@@ -54,6 +55,7 @@ void fixture_create_strands(HairFixture *fixture, const Strands *strands, const 
     fixture->params.variant = strdup(variant);
     fixture->params.style = style;
     fixture->params.drag = drag;
+    if (tune) tune(&fixture->params);
     gpu_timer_create(&fixture->timer, false, true);
     if (hair_create(&fixture->hair, strands, 0, &fixture_gpu()->limits, &error) != RESULT_OK)
         fail_msg("%s", error.text);
@@ -68,8 +70,15 @@ void fixture_collide(HairFixture *fixture, const char *text)
     create_solver(fixture);
 }
 
-void fixture_create(HairFixture *fixture, const double (*positions)[3], int count, int n,
-                    const char *algo, const char *variant, float style, float drag)
+void fixture_create_strands(HairFixture *fixture, const Strands *strands, const char *algo,
+                            const char *variant, float style, float drag)
+{
+    create(fixture, strands, algo, variant, style, drag, NULL);
+}
+
+void fixture_create_tuned(HairFixture *fixture, const double (*positions)[3], int count, int n,
+                          const char *algo, const char *variant, float style, float drag,
+                          void (*tune)(SectionParams *params))
 {
     Strands strands;
     assert_int_equal(strands_create(&strands, (uint32_t)count, (uint32_t)(count * n), NULL),
@@ -77,8 +86,14 @@ void fixture_create(HairFixture *fixture, const double (*positions)[3], int coun
     for (int s = 0; s <= count; ++s) strands.first[s] = (uint32_t)(s * n);
     for (int i = 0; i < count * n; ++i)
         for (int k = 0; k < 3; ++k) strands.position[i][k] = (float)positions[i][k];
-    fixture_create_strands(fixture, &strands, algo, variant, style, drag);
+    create(fixture, &strands, algo, variant, style, drag, tune);
     strands_destroy(&strands);
+}
+
+void fixture_create(HairFixture *fixture, const double (*positions)[3], int count, int n,
+                    const char *algo, const char *variant, float style, float drag)
+{
+    fixture_create_tuned(fixture, positions, count, n, algo, variant, style, drag, NULL);
 }
 
 void fixture_destroy(HairFixture *fixture)

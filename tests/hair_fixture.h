@@ -25,6 +25,11 @@ void fixture_assert_offset(GLuint program, const char *name, size_t expected);
 // fixture may be destroyed when zeroed.
 void fixture_create(HairFixture *fixture, const double (*positions)[3], int count, int n,
                     const char *algo, const char *variant, float style, float drag);
+
+// The same with parameters that `tune`, which may be NULL, changes before the solver is made.
+void fixture_create_tuned(HairFixture *fixture, const double (*positions)[3], int count, int n,
+                          const char *algo, const char *variant, float style, float drag,
+                          void (*tune)(SectionParams *params));
 void fixture_create_strands(HairFixture *fixture, const Strands *strands, const char *algo,
                             const char *variant, float style, float drag);
 void fixture_destroy(HairFixture *fixture);

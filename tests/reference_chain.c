@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "reference_chain.h"
+#include "reference_bend.h"
 #include "reference_split.h"
 
 #include <math.h>
@@ -64,35 +65,72 @@ static void apply(Vec *x, int n, const Vec *g)
     }
 }
 
-static void pull_implicitly(const TwinStrand *strand, const Vec *v_old, double dt, Vec *x)
+// What bending adds to the second system: masses between the ends of each segment, and the
+// positions that leapfrog with those masses would lead segments to.
+typedef struct Bending {
+    double mass[TWIN_MAX + 1];
+    Vec pull[TWIN_MAX];
+} Bending;
+
+static void find_bending(const TwinStrand *strand, const TwinStep *step,
+                         const SectionParams *params, const Vec *r, const Vec *v_old,
+                         Bending *bending)
+{
+    const int n = strand->n;
+    double h = step->first ? step->dt / 2 : step->dt, c = step->drag;
+    double acts = reference_bend_stiffness(params) * step->dt * (c > 0 ? -expm1(-c * h) / c : h);
+    Vec gradient[TWIN_MAX];
+    *bending = (Bending){0};
+    if (acts == 0) return;
+    reference_bend_energy(strand, &step->head, r, gradient);
+    for (int j = 1; j < n; ++j) {
+        bending->mass[j] = 3 * acts * (n - 1) * (n - 1) / strand->length[j];
+        for (int i = 0; i < 3; ++i)
+            bending->pull[j][i] =
+                bending->mass[j] * (r[j][i] + step->dt * (v_old[j][i] - v_old[j - 1][i])) -
+                acts * gradient[j][i];
+    }
+}
+
+static void find_tensions(const TwinStrand *strand, const Vec *r, const Vec *x, double *lambda)
+{
+    double right[TWIN_MAX] = {0};
+    for (int j = 1; j < strand->n; ++j) {
+        Vec s;
+        subtract(x[j], x[j - 1], s);
+        right[j] = strand->length[j] * (vec_norm(s) - strand->length[j]);
+    }
+    reference_solve_lengths(r, strand->n, right, lambda);
+}
+
+static void pull_implicitly(const TwinStrand *strand, const Vec *v_old, const TwinStep *step,
+                            const SectionParams *params, Vec *x)
 {
     const double theta = 0.25;
     const int n = strand->n;
     Vec r[TWIN_MAX], g[TWIN_MAX];
-    double right[TWIN_MAX] = {0}, lambda[TWIN_MAX], tension[TWIN_MAX + 1] = {0};
+    double right[TWIN_MAX] = {0}, lambda[TWIN_MAX], stiff[TWIN_MAX + 1] = {0};
     double diagonal[TWIN_MAX] = {0}, upper[TWIN_MAX] = {0}, lower[TWIN_MAX] = {0};
+    Bending bending;
+    for (int j = 1; j < n; ++j) subtract(strand->x[j], strand->x[j - 1], r[j]);
+    find_tensions(strand, (const Vec *)r, (const Vec *)x, lambda);
+    find_bending(strand, step, params, (const Vec *)r, v_old, &bending);
     for (int j = 1; j < n; ++j) {
-        Vec s;
-        subtract(strand->x[j], strand->x[j - 1], r[j]);
-        subtract(x[j], x[j - 1], s);
-        right[j] = strand->length[j] * (vec_norm(s) - strand->length[j]);
-    }
-    reference_solve_lengths((const Vec *)r, n, right, lambda);
-    for (int j = 1; j < n; ++j) {
-        tension[j] = fmax(lambda[j], 0);
+        double tension = fmax(lambda[j], 0);
+        stiff[j] = theta * tension + bending.mass[j];
         for (int i = 0; i < 3; ++i) {
-            double before = r[j][i] - dt * (v_old[j][i] - v_old[j - 1][i]);
-            g[j][i] = (lambda[j] - tension[j]) * r[j][i] +
-                      tension[j] * ((1 - 2 * theta) * r[j][i] + theta * before);
+            double before = r[j][i] - step->dt * (v_old[j][i] - v_old[j - 1][i]);
+            g[j][i] = (lambda[j] - tension) * r[j][i] +
+                      tension * ((1 - 2 * theta) * r[j][i] + theta * before) - bending.pull[j][i];
         }
     }
     apply(x, n, (const Vec *)g);
     for (int i = 0; i < 3; ++i) {
         for (int j = 1; j < n; ++j) {
-            diagonal[j] = 1 + theta * (tension[j] + (j < n - 1 ? tension[j + 1] : 0));
-            lower[j] = -theta * tension[j];
-            upper[j] = j < n - 1 ? -theta * tension[j + 1] : 0;
-            right[j] = x[j][i] + (j == 1 ? theta * tension[1] * x[0][i] : 0);
+            diagonal[j] = 1 + stiff[j] + stiff[j + 1];
+            lower[j] = -stiff[j];
+            upper[j] = -stiff[j + 1];
+            right[j] = x[j][i] + (j == 1 ? stiff[1] * x[0][i] : 0);
         }
         solve_tridiagonal(n - 1, lower, diagonal, upper, right);
         for (int j = 1; j < n; ++j) x[j][i] = right[j];
@@ -208,6 +246,18 @@ static void rebuild(TwinStrand *strand, const Vec *x, double dt)
         for (int i = 0; i < 3; ++i) strand->v[j][i] = (strand->x[j][i] - old[j][i]) / dt;
 }
 
+// In the frame of the head at the step's end.
+static double bending_energy(const TwinStrand *strand, const TwinStep *step,
+                             const SectionParams *params)
+{
+    Vec r[TWIN_MAX];
+    for (int j = 1; j < strand->n; ++j) subtract(strand->x[j], strand->x[j - 1], r[j]);
+    double stiffness = reference_bend_stiffness(params);
+    return stiffness > 0
+               ? stiffness * reference_bend_energy(strand, &step->head, (const Vec *)r, NULL)
+               : 0;
+}
+
 static bool is_violent(const TwinStrand *strand, const Vec *x)
 {
     return !(twin_length_error(strand, x) <= 0.5);
@@ -222,7 +272,8 @@ void reference_chain_step(TwinStrand *strand, const TwinStep *step, const Sectio
     memcpy(v_old, strand->v, sizeof v_old);
     reference_predict(strand, step, params, predicted);
     memcpy(x, predicted, sizeof x);
-    pull_implicitly(strand, (const Vec *)v_old, step->dt, x);
+    double bent = bending_energy(strand, step, params);
+    pull_implicitly(strand, (const Vec *)v_old, step, params, x);
     correct(strand, x);
     correct(strand, x);
     bool violent = is_violent(strand, (const Vec *)x);
@@ -233,6 +284,7 @@ void reference_chain_step(TwinStrand *strand, const TwinStep *step, const Sectio
     subtract_root(n, (const Vec *)strand->v, motion.now);
     find_forced(step, (const Vec *)x_old, (const Vec *)v_old, (const Vec *)predicted, strand->v[0],
                 violent, n, motion.forced);
-    strand->gained = fmax(strand->gained + gained(&motion, n), 0);
+    bent = bending_energy(strand, step, params) - bent;
+    strand->gained = fmax(strand->gained + gained(&motion, n) + bent, 0);
     guard(strand, step, (const Vec *)motion.now);
 }

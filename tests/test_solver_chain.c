@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Chain on the GPU against its double-precision form, the reference traces and the exact motion,
 // and what must hold for any hair.
+#include "reference_bend.h"
 #include "reference_chain.h"
 #include "reference_motion.h"
 #include "reference_traces.h"
@@ -13,8 +14,19 @@
 
 #include <cmocka.h>
 
-static void assert_equals_twin(int n, double dt, double drag, double style, int steps,
-                               double tolerance)
+static void bent(SectionParams *params)
+{
+    params->chain_bend = 20;
+}
+
+static void bent_alone(SectionParams *params)
+{
+    params->chain_bend = 50;
+    params->style_stiffness = 0;
+}
+
+static void assert_equals_tuned_twin(int n, double dt, double drag, double style, int steps,
+                                     double tolerance, void (*tune)(SectionParams *params))
 {
     const TwinRun run = {.algo = "chain",
                          .variant = "",
@@ -23,9 +35,16 @@ static void assert_equals_twin(int n, double dt, double drag, double style, int 
                          .dt = dt,
                          .drag = drag,
                          .style = style,
+                         .tune = tune,
                          .twin = reference_chain_step};
     double off = twin_compare(&run);
     if (!(off < tolerance)) fail_msg("%.3g exceeds %.3g", off, tolerance);
+}
+
+static void assert_equals_twin(int n, double dt, double drag, double style, int steps,
+                               double tolerance)
+{
+    assert_equals_tuned_twin(n, dt, drag, style, steps, tolerance, NULL);
 }
 
 // Measured: 5e-7 to 1e-6 of the length where drag forgets what rounding adds, 1e-5 at 240 Hz, 6e-5
@@ -106,6 +125,156 @@ static void violent_steps_are_rescued(void **state)
     }
 }
 
+// --- Bending and twist.
+
+// Measured: 1e-6 to 4e-5 (n = 32) while the account takes nothing; then it passes rounding on.
+static void bending_equals_its_double_precision_twin(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; ++i) {
+        void (*tune)(SectionParams * params) = i ? bent_alone : bent;
+        assert_equals_tuned_twin(8, 1.0 / 60, 1, 0.5, 5, 2e-5, tune);
+        assert_equals_tuned_twin(16, 1.0 / 60, 1, 0.5, 5, 2e-5, tune);
+        assert_equals_tuned_twin(16, 1.0 / 240, 1, 0.5, 10, 2e-5, tune);
+        assert_equals_tuned_twin(32, 1.0 / 60, 4, 0.5, 5, 2e-4, tune);
+        assert_equals_tuned_twin(16, 1.0 / 60, 4, 0.5, 60, 5e-3, tune);
+    }
+}
+
+// A helix that hangs, of radius 3 cm, 15 cm long.
+static void make_helix(Vec *q, int n, double turns)
+{
+    for (int j = 0; j < n; ++j) {
+        double u = (double)j / (n - 1), angle = 6.283185307 * turns * u;
+        q[j][0] = 0.03 * (cos(angle) - 1), q[j][2] = 0.03 * sin(angle), q[j][1] = -0.15 * u;
+    }
+}
+
+// The gradient is that of the energy, by differences.
+static void bending_forces_are_the_gradient_of_its_energy(void **state)
+{
+    (void)state;
+    enum { N = 9 };
+    const HeadPose head = {.rotation = {0.6f, 0, 0, 0.8f}};
+    const double step = 1e-6;
+    Vec q[N], r[N], gradient[N];
+    TwinStrand strand;
+    make_helix(q, N, 2);
+    twin_start(&strand, N, (const Vec *)q);
+    for (int j = 1; j < N; ++j)
+        for (int k = 0; k < 3; ++k) r[j][k] = q[j][k] - q[j - 1][k] + 0.01 * sin(7 * j + 3 * k);
+    for (int j = 1; j < N; ++j) { // the gradient is for segments of their lengths
+        double scale = strand.length[j] / vec_norm(r[j]);
+        for (int k = 0; k < 3; ++k) r[j][k] *= scale;
+    }
+    double size = fabs(reference_bend_energy(&strand, &head, (const Vec *)r, gradient));
+    for (int j = 1; j < N; ++j)
+        for (int k = 0; k < 3; ++k) {
+            double kept = r[j][k], energy[2];
+            for (int side = 0; side < 2; ++side) {
+                r[j][k] = kept + (side ? step : -step);
+                energy[side] = reference_bend_energy(&strand, &head, (const Vec *)r, NULL);
+            }
+            r[j][k] = kept;
+            double slope = (energy[1] - energy[0]) / (2 * step);
+            assert_true(fabs(slope - gradient[j][k]) < 1e-5 * size / 0.01);
+        }
+}
+
+static double helix_after(int n, double seconds, double gravity, double turn,
+                          void (*tune)(SectionParams *params), Vec *q)
+{
+    Vec start[64], wanted[64];
+    HairFixture fixture;
+    make_helix(start, n, 2);
+    fixture_create_tuned(&fixture, (const Vec *)start, 1, n, "chain", "", 0.5f, 1, tune);
+    fixture.step.dt = 1.0 / 240;
+    fixture.step.gravity[1] = (float)gravity;
+    for (int i = 1; i <= (int)(240 * seconds); ++i) {
+        double half = turn / 2 * fmin(i / 120.0, 1);
+        fixture.step.head.rotation[2] = (float)sin(half);
+        fixture.step.head.rotation[3] = (float)cos(half);
+        if (gravity != 0 && i > 240 * seconds / 2 && turn != 0) fixture.step.gravity[1] = 0;
+        fixture_step(&fixture);
+    }
+    twin_read_strand(&fixture, 0, q);
+    fixture_destroy(&fixture);
+    for (int j = 0; j < n; ++j) {
+        wanted[j][0] = cos(turn) * start[j][0] - sin(turn) * start[j][1];
+        wanted[j][1] = sin(turn) * start[j][0] + cos(turn) * start[j][1];
+        wanted[j][2] = start[j][2];
+    }
+    return twin_rms((const Vec *)q, (const Vec *)wanted, n, 0.4);
+}
+
+static void unpulled(SectionParams *params)
+{
+    params->style_stiffness = 0;
+}
+
+static void bends_rest_where_the_style_is_and_turn_with_their_root(void **state)
+{
+    (void)state;
+    Vec q[64];
+    for (int n = 16; n <= 32; n *= 2) {
+        double rest = helix_after(n, 2, 0, 0, bent_alone, q);
+        double turned = helix_after(n, 12, -9.81, 1.5, bent_alone, q);
+        double loose = helix_after(n, 12, -9.81, 1.5, unpulled, q);
+        printf(
+            "n = %d: at rest off by %.2g, after a turn of the root and a fall %.2g (loose: %.2g)\n",
+            n, rest, turned, loose);
+        assert_true(rest < 1e-5);
+        assert_true(turned < 0.02);
+        assert_true(loose > 0.2);
+    }
+}
+
+// Long steps, any stiffness, a head that jumps and turns: finite, of its lengths, and at rest in
+// the end where the style is.
+static void stiffest(SectionParams *params)
+{
+    params->chain_bend = 1e6f;
+    params->style_stiffness = 0;
+}
+
+static void soft(SectionParams *params)
+{
+    params->chain_bend = 2;
+    params->style_stiffness = 0;
+}
+
+static void bending_is_stable_at_any_stiffness(void **state)
+{
+    (void)state;
+    void (*const tunes[])(SectionParams *) = {soft, bent_alone, stiffest};
+    for (int i = 0; i < 3; ++i)
+        for (int n = 4; n <= 64; n *= 4) {
+            Vec start[64], q[64];
+            TwinStrand rest;
+            HairFixture fixture;
+            make_helix(start, n, 3);
+            twin_start(&rest, n, (const Vec *)start);
+            fixture_create_tuned(&fixture, (const Vec *)start, 1, n, "chain", "", 0.5f, 1,
+                                 tunes[i]);
+            fixture.step.dt = 1.0 / 30;
+            for (int frame = 0; frame < 600; ++frame) {
+                float half = frame < 100 ? 0.3f * (float)(frame % 9) : 0;
+                fixture.step.head.rotation[0] = sinf(half),
+                fixture.step.head.rotation[3] = cosf(half);
+                fixture.step.head.translation[1] = frame == 50 ? 10 : 0;
+                if (frame == 300) fixture.step.gravity[1] = 0;
+                fixture_step(&fixture);
+            }
+            twin_read_strand(&fixture, 0, q);
+            assert_true(twin_length_error(&rest, (const Vec *)q) < 1e-5);
+            assert_true(twin_rms((const Vec *)q, (const Vec *)start, n, 0.4) < 0.1);
+            printf("chain_bend %g, n = %d: %.2g off in the end\n",
+                   (double)fixture.params.chain_bend, n,
+                   twin_rms((const Vec *)q, (const Vec *)start, n, 0.4));
+            fixture_destroy(&fixture);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -115,6 +284,10 @@ int main(void)
         cmocka_unit_test(hanging_hair_stays_at_rest),
         cmocka_unit_test(violent_steps_are_rescued),
         cmocka_unit_test(strands_through_memory_equal_the_twin_too),
+        cmocka_unit_test(bending_equals_its_double_precision_twin),
+        cmocka_unit_test(bending_forces_are_the_gradient_of_its_energy),
+        cmocka_unit_test(bends_rest_where_the_style_is_and_turn_with_their_root),
+        cmocka_unit_test(bending_is_stable_at_any_stiffness),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

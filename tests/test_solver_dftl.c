@@ -59,8 +59,8 @@ static void published(SectionParams *params)
     params->ftl_damping = 0.9f;
 }
 
-// The reference implementation's error over the same scenarios: 0.11, 0.092, 0.078 (two digits, over
-// all frames). With the default the drawn strand is calmer, and finer steps help more.
+// The reference implementation's error over the same scenarios: 0.11, 0.092, 0.078 (two digits,
+// over all frames). With the default the drawn strand is calmer, and finer steps help more.
 static void its_error_is_that_of_the_reference_implementation(void **state)
 {
     (void)state;

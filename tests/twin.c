@@ -181,9 +181,8 @@ double twin_compare(const TwinRun *run)
         twin_make_curl(&start[s * run->n], run->n, 0.01 * s, 1 + s);
         twin_start(&twins[s], run->n, (const Vec *)&start[s * run->n]);
     }
-    fixture_create(&fixture, (const Vec *)start, CURLS, run->n, run->algo, run->variant,
-                   (float)run->style, (float)run->drag);
-    if (run->tune) run->tune(&fixture.params);
+    fixture_create_tuned(&fixture, (const Vec *)start, CURLS, run->n, run->algo, run->variant,
+                         (float)run->style, (float)run->drag, run->tune);
     fixture.step.dt = run->dt;
     for (int i = 0; i < 4; ++i) fixture.step.wind[i][0] = 1.5f, fixture.step.wind[i][2] = 0.5f;
     for (int i = 1; i <= run->steps; ++i) {

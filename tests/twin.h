@@ -68,7 +68,7 @@ typedef struct TwinRun {
     const char *algo, *variant;
     int n, steps;
     double dt, drag, style;
-    void (*tune)(SectionParams *params); // changes parameters that are read at each step; or NULL
+    void (*tune)(SectionParams *params); // changes parameters; or NULL
     TwinFunction twin;
     bool rebuilt; // the solver draws exact lengths where the twin's strand is stretched
 } TwinRun;

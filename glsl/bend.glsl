@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// Bending and twist towards the style: a rod without a twist of its own (after Bergou et al.: Discrete Elastic Rods, SIGGRAPH 2008) whose
+// frames are turned as little as possible from segment to segment. Needs keep.glsl, lane.glsl.
+//
+// The head's rotation is the frame Q_0. Segment j of direction t_j would go on as the style does along a_j = Q_{j-1} (the style's
+// direction j); Q_j is Q_{j-1} turned by the smallest rotation from a_j to t_j. Energy: E = sum beta_j (1 - t_j.a_j), beta_j = K (n-1)^2 l_j, so
+// that K (m/s^2) means the same for any n: its weight turns a strand that is held horizontally by about g/(2K) radians.
+//
+// Its gradient by the directions, exactly: with w_k the small rotation of frame k, t_k x dt_k across t_k, and along it, because a smallest
+// rotation does not twist, (w_k - w_{k-1}).(a_k + t_k) = 0. From tip to root G_k gathers what multiplies w_k in dE:
+//     tau = G_j.t_j/(1 + a_j.t_j),   dE/dt_j = -beta a_j + (G_j - tau a_j) x t_j,   G_{j-1} = tau (a_j + t_j) - beta a_j x t_j
+// so twist is handed on down to the root, and forces and moments are balanced.
+//
+// In time: forces of the positions at the step's start, and for masses M = 1 + MASS dt^2 b D^T D (D: differences along the strand, b =
+// K (n-1)^2/l), which leaves leapfrog's energy and all rest states as they are and bounds b dt^2/M at any stiffness.
+const float MASS = 3.0;
+
+#define BEND step_params.own[0].y // K
+
+#if IN_REGISTERS
+vec3 kept_goal[VERTICES];
+void keep_goal(int j, vec3 a) { kept_goal[j] = a; }
+vec3 recall_goal(int j) { return kept_goal[j]; }
+#else // the place beside keep_beside's
+void keep_goal(int j, vec3 a) { scratch[keep_base + (2 * j + 1) * STRAND_TILE].yzw = a; }
+vec3 recall_goal(int j) { return scratch[keep_base + (2 * j + 1) * STRAND_TILE].yzw; }
+#endif
+
+float bend_stiffness(int last) { return BEND * float(last) * float(last); } // K (n-1)^2
+
+// From root to tip.
+struct Frames {
+    vec4 rotation; // Q
+    float energy;  // over K (n-1)^2
+};
+
+Frames frames_open(Lane lane) { return Frames(lane.rotation, 0.0); }
+
+// Goes on to the segment of direction t; gives its a.
+vec3 frames_advance(inout Frames frames, vec3 t, vec4 rest)
+{
+    vec3 a = rotate(frames.rotation, rest.xyz), axis = cross(a, t);
+    float one_cosine = 1.0 + dot(a, t);
+    vec4 p = vec4(axis, one_cosine), q = frames.rotation;
+    p = one_cosine > 1e-6 ? p * inversesqrt(dot(p, p)) : vec4(0.0, 0.0, 0.0, 1.0);
+    vec4 turned = vec4(p.w * q.xyz + q.w * p.xyz + cross(p.xyz, q.xyz), p.w * q.w - dot(p.xyz, q.xyz));
+    frames.rotation = turned * inversesqrt(dot(turned, turned));
+    frames.energy += 0.5 * rest.w * dot(t - a, t - a); // 1 - t.a without cancellation
+    return a;
+}
+
+// From tip to root: the gradient by segment r of length l, over K (n-1)^2; G becomes that of the segment before.
+vec3 bend_gradient(vec3 r, float l, vec3 a, inout vec3 G)
+{
+    vec3 t = r / l;
+    float tau = dot(G, t) / max(1.0 + dot(a, t), 0.1);
+    vec3 by_t = -l * a + cross(G - tau * a, t);
+    G = tau * (a + t) - l * cross(a, t);
+    return (by_t - dot(by_t, t) * t) / l;
+}
