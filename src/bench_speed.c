@@ -23,7 +23,7 @@ static int compare_times(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static SpeedTimes summarise(double *samples, int count)
+SpeedTimes speed_summarise(double *samples, int count)
 {
     if (count == 0) return (SpeedTimes){0};
     qsort(samples, (size_t)count, sizeof *samples, compare_times);
@@ -58,6 +58,8 @@ static Result describe_section(SectionParams *params, const SpeedOptions *option
     if (result == RESULT_OK) result = param_parse(param_find("algo"), params, options->algo, error);
     if (result == RESULT_OK)
         result = param_parse(param_find("variant"), params, options->variant, error);
+    params->sleep = 0; // every step is one
+    params->followers = 0;
     if (options->style >= 0) params->style = (float)options->style;
     return result;
 }
@@ -97,8 +99,8 @@ static Result measure_steps(SpeedResult *result, Bench *bench, const SpeedOption
             if (i == -options->warm_up - 1) result->first_step_ms = end - begin;
             if (i >= 0) step[i] = end - begin, solve[i] = solved - begin;
         }
-        result->step = summarise(step, options->steps);
-        result->solve = summarise(solve, options->steps);
+        result->step = speed_summarise(step, options->steps);
+        result->solve = speed_summarise(solve, options->steps);
     }
     bool good = step && solve;
     free(step);
@@ -132,7 +134,7 @@ static Result draw_frames(SpeedResult *result, Renderer *renderer, Bench *bench,
         outcome = renderer_draw(renderer, &frame, &item, 1, image, error);
         if (i >= 0) samples[i] = stats_clock_ms() - begin;
     }
-    result->draw = summarise(samples, outcome == RESULT_OK ? DRAWN_FRAMES : 0);
+    result->draw = speed_summarise(samples, outcome == RESULT_OK ? DRAWN_FRAMES : 0);
     result->fragments = renderer->counts.fragments;
     return outcome;
 }

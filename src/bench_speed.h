@@ -37,6 +37,9 @@ typedef struct SpeedResult {
 // The defaults: 200 steps after 20, split, no drawing.
 SpeedOptions speed_options_default(void);
 
+// Of `count` samples, which are put in order; 0 for none.
+SpeedTimes speed_summarise(double *samples, int count);
+
 // Measures with the wall clock, waiting for the GPU at the end of each sample. Steps of 1/60 s from
 // rest under gravity.
 Result speed_measure(SpeedResult *result, const Gpu *gpu, const SpeedOptions *options,

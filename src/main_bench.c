@@ -2,6 +2,7 @@
 // tractrix-bench: accuracy of the tractrix on test vectors, speed of solvers and drawing, check of
 // all shaders.
 #include "bench_accuracy.h"
+#include "bench_scenes.h"
 #include "bench_shaders.h"
 #include "bench_speed.h"
 #include "compare.h"
@@ -109,6 +110,16 @@ static Result run_all(const Arguments *arguments, const Gpu *gpu, Error *error)
     return result;
 }
 
+static Result run_scenes(const Arguments *arguments, const Gpu *gpu, Error *error)
+{
+    json_t *rows = json_array();
+    Result result = scenes_measure(gpu, &arguments->speed, stdout, rows, error);
+    if (result == RESULT_OK && arguments->json)
+        result = json_write_file(rows, arguments->json, error);
+    json_decref(rows);
+    return result;
+}
+
 static Result run_accuracy(const Arguments *arguments, const Gpu *gpu, Error *error)
 {
     Error unwritten;
@@ -160,6 +171,8 @@ static const struct {
      "chain pulls of --vectors FILE.csv (FILE_cases.csv beside it) against theirs"},
     {"speed", run_speed, true,
      "a solver's step on --set NAME or --tfx FILE, and drawing with --size"},
+    {"scenes", run_scenes, true,
+     "frames with followers, asleep, and of two sections: --set NAME (default 10k16), --algo"},
     {"accuracy", run_accuracy, true,
      "solvers' errors against exact motions, by the time step; status 1 if a bound is broken"},
     {"all", run_all, true, "a table: all sets, and the hair files named, with every solver"},

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include "bench_scenes.h"
+#include "simulation.h"
+#include "stats.h"
+#include "strands_make.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_SECTIONS = 2, FPS = 60, LATEST_SLEEP_S = 60 };
+
+// A section that steps for ever, one that falls asleep (it may be off by its whole length), one
+// that has no solver.
+typedef enum Rest { MOVES, SLEEPS, STATIC } Rest;
+
+typedef struct Row {
+    const char *name;
+    int sections;
+    Rest rest[MOST_SECTIONS];
+    int followers;
+    FollowMode mode;
+} Row;
+
+static const Row ROWS[] = {
+    {"one section", 1, {MOVES}, 0, FOLLOW_OFFSET},
+    {"4 followers", 1, {MOVES}, 4, FOLLOW_OFFSET},
+    {"16 followers", 1, {MOVES}, 16, FOLLOW_OFFSET},
+    {"4 interpolated", 1, {MOVES}, 4, FOLLOW_INTERPOLATE},
+    {"16 interpolated", 1, {MOVES}, 16, FOLLOW_INTERPOLATE},
+    {"asleep", 1, {SLEEPS}, 0, FOLLOW_OFFSET},
+    {"moving + moving", 2, {MOVES, MOVES}, 0, FOLLOW_OFFSET},
+    {"moving + asleep", 2, {MOVES, SLEEPS}, 0, FOLLOW_OFFSET},
+    {"moving + static", 2, {MOVES, STATIC}, 0, FOLLOW_OFFSET},
+};
+
+typedef struct World {
+    Scene scene;
+    Strands strands[MOST_SECTIONS];
+    GpuTimer timer;
+    Simulation simulation;
+} World;
+
+static void world_destroy(World *world)
+{
+    if (world->simulation.scene) simulation_destroy(&world->simulation);
+    gpu_timer_destroy(&world->timer);
+    for (int i = 0; i < MOST_SECTIONS; ++i) strands_destroy(&world->strands[i]);
+    scene_destroy(&world->scene);
+}
+
+static Result add_section(World *world, const Row *row, int i, const SpeedOptions *options,
+                          Error *error)
+{
+    SectionParams params;
+    const char *set = options->set ? options->set : "10k16";
+    Result result = section_params_create(&params, error);
+    if (result == RESULT_OK)
+        result = param_parse(param_find("algo"), &params,
+                             row->rest[i] == STATIC ? "none" : options->algo, error);
+    if (result == RESULT_OK && row->rest[i] != STATIC)
+        result = param_parse(param_find("variant"), &params, options->variant, error);
+    params.sleep = row->rest[i] == SLEEPS ? 1 : 0;
+    params.followers = row->followers;
+    params.follow = (int)row->mode;
+    if (result == RESULT_OK) result = strands_make_set(&world->strands[i], set, 1, error);
+    if (result == RESULT_OK) result = scene_add_section(&world->scene, set, &params, error);
+    section_params_destroy(&params);
+    return result;
+}
+
+static Result world_create(World *world, const Gpu *gpu, const Row *row,
+                           const SpeedOptions *options, Error *error)
+{
+    *world = (World){0};
+    gpu_timer_create(&world->timer, false, true);
+    Result result = scene_create(&world->scene, error);
+    for (int i = 0; i < row->sections && result == RESULT_OK; ++i)
+        result = add_section(world, row, i, options, error);
+    return result == RESULT_OK ? simulation_create(&world->simulation, gpu, &world->timer,
+                                                   &world->scene, world->strands, error)
+                               : result;
+}
+
+static double frame_ms(Simulation *simulation)
+{
+    double begin = stats_clock_ms();
+    simulation_advance(simulation);
+    simulation_pose(simulation);
+    glFinish();
+    return stats_clock_ms() - begin;
+}
+
+// Until all that may sleep does.
+static Result wait_for_sleep(Simulation *simulation, const Row *row, Error *error)
+{
+    for (int i = 0; i < row->sections; ++i)
+        while (row->rest[i] == SLEEPS && !simulation->sections[i].sleep.asleep) {
+            if (simulation->frame > LATEST_SLEEP_S * FPS)
+                return error_set(error, RESULT_FAILED, "%s: still awake after %d s", row->name,
+                                 LATEST_SLEEP_S);
+            frame_ms(simulation);
+        }
+    return RESULT_OK;
+}
+
+static Result measure_frames(SpeedTimes *times, Simulation *simulation, const Row *row,
+                             const SpeedOptions *options, Error *error)
+{
+    double *samples = calloc((size_t)options->steps, sizeof *samples);
+    if (!samples)
+        return error_set(error, RESULT_FAILED, "no memory for %d samples", options->steps);
+    Result result = wait_for_sleep(simulation, row, error);
+    for (int i = -options->warm_up; i < options->steps && result == RESULT_OK; ++i) {
+        double ms = frame_ms(simulation);
+        if (i >= 0) samples[i] = ms;
+    }
+    *times = speed_summarise(samples, result == RESULT_OK ? options->steps : 0);
+    free(samples);
+    return result;
+}
+
+static Result measure_row(const Gpu *gpu, const Row *row, const SpeedOptions *options, FILE *stream,
+                          json_t *rows, Error *error)
+{
+    World world;
+    SpeedTimes times = {0};
+    uint64_t guides = 0, followers = 0;
+    Result result = world_create(&world, gpu, row, options, error);
+    if (result == RESULT_OK)
+        result = measure_frames(&times, &world.simulation, row, options, error);
+    for (int i = 0; i < row->sections && result == RESULT_OK; ++i) {
+        guides += world.simulation.sections[i].hair.strand_count;
+        followers += world.simulation.sections[i].follow.hair.strand_count;
+    }
+    world_destroy(&world);
+    if (result != RESULT_OK) return result;
+    fprintf(stream, "%-16s %-8s %8llu %9llu %9.4f %9.4f\n", row->name, options->algo,
+            (unsigned long long)guides, (unsigned long long)followers, times.median, times.minimum);
+    fflush(stream);
+    if (rows)
+        json_array_append_new(rows,
+                              json_pack("{s:s, s:s, s:I, s:I, s:i, s:f, s:f}", "scene", row->name,
+                                        "algo", options->algo, "guides", (json_int_t)guides,
+                                        "followers", (json_int_t)followers, "steps", options->steps,
+                                        "median_ms", times.median, "min_ms", times.minimum));
+    return RESULT_OK;
+}
+
+Result scenes_measure(const Gpu *gpu, const SpeedOptions *options, FILE *stream, json_t *rows,
+                      Error *error)
+{
+    Result result = RESULT_OK;
+    fprintf(stream, "%-16s %-8s %8s %9s %9s %9s\n", "scene", "algo", "guides", "followers",
+            "frame ms", "(min)");
+    for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS && result == RESULT_OK; ++i)
+        result = measure_row(gpu, &ROWS[i], options, stream, rows, error);
+    return result;
+}
