@@ -7,6 +7,7 @@
 #include "material.h"
 #include "hair_address.glsl"
 #include "hash.glsl"
+#include "paint.glsl"
 #include "shade.glsl"
 #include "ribbon.glsl"
 #include "block.glsl"
@@ -64,14 +65,12 @@ void main()
     int n = int(material.vertex_count), s = int(gl_GlobalInvocationID.x);
     if (s >= int(material.drawn_strands)) return;
     int slot = first_record + s * (n - 1);
-    vec3 base = material.color.rgb *
-                (1.0 + material.color_variation * hash_signed(texelFetch(strand_id, s).x ^ draw_params.seed));
-    float thinning = (1.0 - material.tip_ratio) / float(n - 1);
-    float radius = material.radius, opacity = material.opacity;
+    int root = particle_address(s, 0, n);
+    Painter painter = paint_strand(texelFetch(strand_id, s).x, n);
+    float opacity = paint_opacity(root);
     vec3 eye = draw_params.eye.xyz;
     Fibre fibre = fibre_material();
 
-    int root = particle_address(s, 0, n);
     vec3 here = texelFetch(position, root).xyz, before = here;
     vec4 here_clip = clip_from_world * vec4(here, 1.0), before_clip = here_clip;
     Particle kept = Particle(vec4(0.0), vec3(0.0)), last = kept; // the last one not left out; the one before this one
@@ -81,11 +80,12 @@ void main()
     int count = 0;
     bool begun = false;
     for (int j = 0; j < n; ++j) {
+        int at = root + j * STRAND_TILE;
         vec3 after = texelFetch(position, root + min(j + 1, n - 1) * STRAND_TILE).xyz;
         vec4 after_clip = clip_from_world * vec4(after, 1.0);
         Particle p;
-        p.at = project(clip_near(here_clip, before_clip, after_clip), max(radius * (1.0 - thinning * float(j)), 1e-9));
-        p.color = shade_fibre(fibre, base, here, unit(after - before), unit(eye - here));
+        p.at = project(clip_near(here_clip, before_clip, after_clip), paint_radius(painter, at, j));
+        p.color = shade_fibre(fibre, paint_color(painter, at), here, unit(after - before), unit(eye - here));
         if (j > 1) bent += bend(kept, last, p);
         if (j == 1 || bent > 1.0) {
             vec2 next = direction(kept, last);

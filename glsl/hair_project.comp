@@ -13,6 +13,7 @@
 #include "material.h"
 #include "hair_address.glsl"
 #include "hash.glsl"
+#include "paint.glsl"
 #include "shade.glsl"
 #include "ribbon.glsl"
 
@@ -27,7 +28,7 @@ layout(std430, binding = BIND_COUNTERS_OUT) buffer Counters { uint counters[]; }
 layout(std430, binding = BIND_EXTENT_OUT) buffer Extent { int extent[4]; }; // x, y lowest, highest
 
 // Stores the particle for the vertex shader, d0 and d1 the directions of the ribbon before and after it.
-void store(int index, Particle p, vec2 d0, vec2 d1)
+void store(int index, Particle p, vec2 d0, vec2 d1, float opacity)
 {
     if (d0 == vec2(0.0)) d0 = d1;
     if (d1 == vec2(0.0)) d1 = d0;
@@ -36,7 +37,7 @@ void store(int index, Particle p, vec2 d0, vec2 d1)
     vec2 edge = normal * ((half_width + PAD) / max(1.0 + dot(d0, d1), LEAST_COSINE));
     edges[index] = vec4(p.at.xy * (2.0 / size) - 1.0, edge * (2.0 / size));
     shades[index] = uvec4(floatBitsToUint(p.at.z), floatBitsToUint(half_width), packHalf2x16(p.color.rg),
-                          packHalf2x16(vec2(p.color.b, material.opacity)));
+                          packHalf2x16(vec2(p.color.b, opacity)));
 }
 
 // Two triangles for each of the `count` - 1 segments from the particle `first` on.
@@ -61,14 +62,12 @@ void main()
     int row = int(gl_GlobalInvocationID.x), s = int(material.first_strand) + row;
     if (row >= int(material.drawn_strands)) return;
     int first = row * n; // place of the root
-    vec3 base = material.color.rgb *
-                (1.0 + material.color_variation * hash_signed(texelFetch(strand_id, s).x ^ draw_params.seed));
-    float thinning = (1.0 - material.tip_ratio) / float(n - 1);
-    float radius = material.radius;
+    int root = particle_address(s, 0, n);
+    Painter painter = paint_strand(texelFetch(strand_id, s).x, n);
+    float opacity = paint_opacity(root);
     vec3 eye = draw_params.eye.xyz;
     Fibre fibre = fibre_material();
 
-    int root = particle_address(s, 0, n);
     vec3 here = texelFetch(position, root).xyz, before = here;
     vec4 here_clip = clip_from_world * vec4(here, 1.0), before_clip = here_clip;
     vec4 box = vec4(1e6);
@@ -77,17 +76,18 @@ void main()
     float bent = 0.0;     // of all that was left out since `kept`
     int count = 0;
     for (int j = 0; j < n; ++j) {
+        int at = root + j * STRAND_TILE;
         vec3 after = texelFetch(position, root + min(j + 1, n - 1) * STRAND_TILE).xyz;
         vec4 after_clip = clip_from_world * vec4(after, 1.0);
         Particle p;
-        p.at = project(clip_near(here_clip, before_clip, after_clip), max(radius * (1.0 - thinning * float(j)), 1e-9));
-        p.color = shade_fibre(fibre, base, here, unit(after - before), unit(eye - here));
+        p.at = project(clip_near(here_clip, before_clip, after_clip), paint_radius(painter, at, j));
+        p.color = shade_fibre(fibre, paint_color(painter, at), here, unit(after - before), unit(eye - here));
         float reach = MITRE_MAX * (p.at.w + 1.0);
         if (p.at.z > 0.0) box = min(box, vec4(p.at.xy, -p.at.xy) - reach);
         if (j > 1) bent += bend(kept, last, p);
         if (j == 1 || bent > 1.0) {
             vec2 next = direction(kept, last);
-            if (j > 1) store(first + count++, kept, way, next);
+            if (j > 1) store(first + count++, kept, way, next, opacity);
             way = next;
             kept = last;
             bent = 0.0;
@@ -99,8 +99,8 @@ void main()
         here_clip = after_clip;
     }
     vec2 next = direction(kept, last);
-    store(first + count++, kept, way, next);
-    store(first + count++, last, next, next);
+    store(first + count++, kept, way, next, opacity);
+    store(first + count++, last, next, next, opacity);
 
     ivec4 whole = ivec4(floor(clamp(box, -1e6, 1e6)));
     bool in_picture = whole.x < int(size.x) && -whole.z > 0 && whole.y < int(size.y) && -whole.w > 0;

@@ -7,10 +7,11 @@
 
 UNIFORM_BLOCK(MaterialParams, material, BIND_MATERIAL)
 {
-    vec4 color;            // linear RGB
-    float color_variation; // brightness of strands varies by this share either way
-    float radius;          // m, at the root
-    float tip_ratio;       // radius at the tip over that at the root
+    vec4 color;             // linear RGB
+    float color_variation;  // brightness of strands varies by this share either way
+    float warmth_variation; // red against blue, likewise
+    float radius;           // m, at the root
+    float tip_ratio;        // radius at the tip over that at the root
     float opacity;
     float ambient, diffuse;          // Ka, Kd
     float specular1, exponent1;      // first highlight, white

@@ -107,6 +107,10 @@ static Result create_batches(Follow *follow, uint32_t guide_batch, const FollowP
         HairBatch *hair = &follow->hair.batches[last];
         hair->vertex_count = n;
         hair->strand_count = count * follow->per_guide;
+        hair->strand = malloc(hair->strand_count * sizeof *hair->strand);
+        if (!hair->strand) return error_set(error, RESULT_FAILED, "no memory for followers");
+        for (uint32_t i = 0; i < hair->strand_count; ++i)
+            hair->strand[i] = guides->strand[first + i / follow->per_guide];
         follow->batches[last].guide_batch = guide_batch;
         follow->batches[last].first_guide = first;
         Result result =

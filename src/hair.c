@@ -165,6 +165,7 @@ void hair_destroy(Hair *hair)
         gpu_buffer_destroy(&hair->batches[i].position);
         gpu_buffer_destroy(&hair->batches[i].rest);
         gpu_buffer_destroy(&hair->batches[i].strand_id);
+        gpu_buffer_destroy(&hair->batches[i].paint);
     }
     free(hair->batches);
     *hair = (Hair){0};

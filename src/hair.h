@@ -16,13 +16,15 @@
 typedef struct HairBatch {
     uint32_t vertex_count; // of each strand, >= 2
     uint32_t strand_count;
-    uint32_t *strand;   // [strand_count], owned: which of the file's strands each is; may be NULL
+    uint32_t *strand; // [strand_count], owned: which of the file's strands each is, or follows; may
+                      // be NULL
     GpuBuffer position; // vec4 a particle: xyz in metres in the world, w = 1. Drawn.
     GpuBuffer rest;     // vec4 a particle, the style in the head's frame. j = 0: root (m) and the
                     // strand's length (m); j > 0: unit direction of the segment from j - 1 to j and
                     // its rest length (m)
     GpuBuffer strand_id; // uint a strand (and copy): its number in its section, seed of all that
                          // varies by strand
+    GpuBuffer paint; // uvec4 a particle, see hair_paint.c; no buffer where the section says it all
 } HairBatch;
 
 // Strands with the last tile's copies: what buffers have room for.
@@ -45,6 +47,7 @@ typedef struct Hair {
     uint64_t particle_count, segment_count;
     float low[3], high[3]; // bounds of the style in the head's frame, metres
     float longest;         // length of the longest strand, metres
+    bool alike;            // strands do not differ by chance: their file says their colours
 } Hair;
 
 // Uploads strands (every one with at least 2 vertices and no segment of length 0, as strands_read

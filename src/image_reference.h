@@ -12,12 +12,14 @@
 // eye, q how far the outline lies off the optical axis (a cylinder's outline is wider there). At a
 // joint the edges of both ribbons meet on the mitre; where a strand folds back by more than 139
 // degrees the mitre is shortened. Depth and colour, which is that of the vertices, are linear along
-// the ribbon on the screen (1/w is exactly). Shading is Kajiya's and Kay's with two highlights.
+// the ribbon on the screen (1/w is exactly). Opacity is that of the root. Shading is Kajiya's and
+// Kay's with two highlights, or what `shade` says.
 #pragma once
 
 #include "camera.h"
 #include "image.h"
 #include "mesh.h"
+#include "paint.h"
 #include "scene.h"
 #include "strands.h"
 
@@ -26,12 +28,27 @@ typedef struct ReferenceItem {
     uint32_t first_id;             // number of the first strand among all of the run
     const SectionParams *material; // colours, opacity, tip_ratio
     float radius;                  // fibre radius at the root, m
+    const Paint *paint;            // colours, opacity and thickness by vertex; NULL: the material's
 } ReferenceItem;
 
+// A vertex that is to be shaded, and its answer, linear RGB.
+typedef struct ReferenceVertex {
+    double position[3];           // m, in the world
+    double tangent[3], to_eye[3]; // unit
+    double base[3];               // the hair's colour there, linear
+} ReferenceVertex;
+
+struct ReferenceScene;
+typedef void ReferenceShade(const struct ReferenceScene *scene, const SectionParams *material,
+                            const ReferenceVertex *vertex, double color[3]);
+
 typedef struct ReferenceScene {
+    ReferenceShade *shade; // NULL: Kajiya's and Kay's
+
     const View *view; // made for the picture's size
     const Light *lights;
     uint32_t light_count;
+    const float *sky, *ground; // [3] linear: ambient light from above and below; NULL: white
     const ReferenceItem *items;
     uint32_t item_count;
     const Mesh *mesh;    // opaque, in the world; NULL: none. It hides what lies behind it and is

@@ -46,24 +46,57 @@ static double angle(const double a[3], const double b[3])
     return acos(fmin(fmax(dot(a, b), -1), 1));
 }
 
+// What reaches x from the light, as a white matt surface square to it shows it, and the unit vector
+// towards it (scene.h).
+static double reaching(const Light *light, const double x[3], double to_light[3])
+{
+    bool far = light->kind == LIGHT_DIRECTIONAL;
+    double square = 0, axis = 0;
+    for (int k = 0; k < 3; ++k)
+        to_light[k] = far ? (double)light->direction[k] : (double)light->position[k] - x[k];
+    square = dot(to_light, to_light);
+    unit(to_light);
+    if (far) return light->intensity;
+    for (int k = 0; k < 3; ++k) axis -= (double)light->direction[k] * to_light[k];
+    double outer = cos(light->outer_deg * acos(-1) / 180),
+           inner = cos(light->inner_deg * acos(-1) / 180);
+    double inside =
+        light->kind == LIGHT_SPOT ? fmin(fmax((axis - outer) / (inner - outer), 0), 1) : 1;
+    double distance = light->distance;
+    return light->intensity * fmin(distance * distance / square, 1e6) * inside * inside;
+}
+
+// Half-way between ground and sky where the side of the fibre that is seen faces the horizon.
+static double sky_share(const ReferenceVertex *v)
+{
+    double along = dot(v->tangent, v->to_eye), side[3];
+    for (int k = 0; k < 3; ++k) side[k] = v->to_eye[k] - along * v->tangent[k];
+    unit(side);
+    return 0.5 + acos(-1) / 8 * side[1];
+}
+
 // Kajiya & Kay (1989), highlights as Scheuermann (2004): light at the angle t to the fibre leaves
 // on the cone at pi - t, turned by twice the scales' tilt for the first highlight and by three
 // times, the other way, for the second, which has the fibre's colour.
-static void shade(const ReferenceScene *scene, const SectionParams *m, const double base[3],
-                  const double tangent[3], const double to_eye[3], double color[3])
+static void shade_kajiya(const ReferenceScene *scene, const SectionParams *m,
+                         const ReferenceVertex *v, double color[3])
 {
-    double e = angle(tangent, to_eye), tilt = m->cone_angle * acos(-1) / 180;
-    for (int k = 0; k < 3; ++k) color[k] = m->ambient * base[k];
+    double e = angle(v->tangent, v->to_eye), tilt = m->cone_angle * acos(-1) / 180;
+    double sky = sky_share(v);
+    for (int k = 0; k < 3; ++k)
+        color[k] = m->ambient * v->base[k] *
+                   (sky * (scene->sky ? scene->sky[k] : 1) +
+                    (1 - sky) * (scene->ground ? scene->ground[k] : 1));
     for (uint32_t i = 0; i < scene->light_count; ++i) {
         const Light *light = &scene->lights[i];
-        const double to_light[3] = {light->direction[0], light->direction[1], light->direction[2]};
-        double t = angle(tangent, to_light), cone = acos(-1) - t;
+        double to_light[3], intensity = reaching(light, v->position, to_light);
+        double t = angle(v->tangent, to_light), cone = acos(-1) - t;
         double first = fmax(cos(cone + 2 * tilt - e), 0),
                second = fmax(cos(cone - 3 * tilt - e), 0);
         double white = m->specular1 * pow(first, m->exponent1);
         double tinted = m->diffuse * sin(t) + m->specular2 * pow(second, m->exponent2);
         for (int k = 0; k < 3; ++k)
-            color[k] += (double)light->intensity * light->color[k] * (white + tinted * base[k]);
+            color[k] += intensity * light->color[k] * (white + tinted * v->base[k]);
     }
 }
 
@@ -84,24 +117,34 @@ static void to_camera(const View *view, const float x[3], double eye[3])
     }
 }
 
-static Vertex find_vertex(const Projector *p, uint32_t strand, uint32_t j, double brightness)
+static double radius_at(const ReferenceItem *item, uint32_t vertex, uint32_t j, uint32_t n)
+{
+    if (item->paint && item->paint->thickness)
+        return (double)item->radius * item->paint->thickness[vertex];
+    return item->radius * (1 - (1 - (double)item->material->tip_ratio) * j / (n - 1));
+}
+
+static Vertex find_vertex(const Projector *p, uint32_t strand, uint32_t j, const double tint[3])
 {
     const Strands *strands = p->item->strands;
     const SectionParams *m = p->item->material;
     uint32_t n = strands_size(strands, strand);
     const float(*x)[3] = (const float(*)[3])strands->position + strands->first[strand];
     const float *before = x[j ? j - 1 : 0], *after = x[j + 1 < n ? j + 1 : j];
-    double tangent[3], to_eye[3], base[3];
-    Vertex v = {.radius = p->item->radius * (1 - (1 - (double)m->tip_ratio) * j / (n - 1))};
+    const Paint *paint = p->item->paint;
+    uint32_t vertex = strands->first[strand] + j;
+    ReferenceVertex at;
+    Vertex v = {.radius = radius_at(p->item, vertex, j, n)};
     to_camera(p->scene->view, x[j], v.eye);
     for (int k = 0; k < 3; ++k) {
-        tangent[k] = (double)after[k] - before[k];
-        to_eye[k] = (double)p->scene->view->eye[k] - x[j][k];
-        base[k] = p->base[k] * brightness;
+        at.position[k] = x[j][k];
+        at.tangent[k] = (double)after[k] - before[k];
+        at.to_eye[k] = (double)p->scene->view->eye[k] - x[j][k];
+        at.base[k] = tint[k] * (paint && paint->color ? paint->color[vertex][k] : p->base[k]);
     }
-    unit(tangent);
-    unit(to_eye);
-    shade(p->scene, m, base, tangent, to_eye, v.color);
+    unit(at.tangent);
+    unit(at.to_eye);
+    (p->scene->shade ? p->scene->shade : shade_kajiya)(p->scene, m, &at, v.color);
     return v;
 }
 
@@ -171,7 +214,8 @@ static ShapePlane plane_between(const Point *a, const Point *b, double first, do
 
 // `before` and `after` are the neighbours' directions, d the ribbon's own; 0 where there is none.
 static void add_ribbon(Shapes *shapes, const Projector *p, const Point *a, const Point *b,
-                       const double before[2], const double d[2], const double after[2])
+                       const double before[2], const double d[2], const double after[2],
+                       double opacity)
 {
     double first[2], last[2];
     find_mitre(p, a, before[0] || before[1] ? before : d, d, first);
@@ -182,7 +226,7 @@ static void add_ribbon(Shapes *shapes, const Projector *p, const Point *a, const
                                 {a->x + first[0], a->y + first[1]},
                                 {b->x + last[0], b->y + last[1]},
                                 {b->x - last[0], b->y - last[1]}},
-                     .opacity = p->item->material->opacity,
+                     .opacity = opacity,
                      .inverse_w = plane_between(a, b, a->inverse_w, b->inverse_w)};
     for (int k = 0; k < 3; ++k) shape->color[k] = plane_between(a, b, a->color[k], b->color[k]);
     set_span(shape);
@@ -210,20 +254,27 @@ static Segment find_segment(const Projector *p, const Vertex *from, const Vertex
 static void add_strand(Shapes *shapes, const Projector *p, uint32_t s)
 {
     uint32_t n = strands_size(p->item->strands, s);
-    double brightness = 1 + p->item->material->color_variation *
-                                hash_signed((p->item->first_id + s) ^ p->scene->seed);
+    const SectionParams *m = p->item->material;
+    const Paint *paint = p->item->paint;
+    bool alike = paint && paint->colors_from_file;
+    uint32_t id = (p->item->first_id + s) ^ p->scene->seed;
+    double brightness = alike ? 1 : 1 + m->color_variation * hash_signed(id);
+    double warmth = alike ? 0 : m->warmth_variation * hash_signed(id + 0x9e3779b9u);
+    double tint[] = {brightness * (1 + warmth), brightness, brightness * (1 - warmth)};
+    double opacity = m->opacity;
+    if (paint && paint->color) opacity *= paint->color[p->item->strands->first[s]][3];
     Segment here = {0}, before = {0};
-    Vertex from = find_vertex(p, s, 0, brightness);
+    Vertex from = find_vertex(p, s, 0, tint);
     for (uint32_t j = 1; j <= n; ++j) {
         Segment next = {0};
         if (j < n) {
-            Vertex to = find_vertex(p, s, j, brightness);
+            Vertex to = find_vertex(p, s, j, tint);
             next = find_segment(p, &from, &to);
             from = to;
         }
         if (here.visible)
             add_ribbon(shapes, p, &here.a, &here.b, before.direction, here.direction,
-                       next.direction);
+                       next.direction, opacity);
         before = here;
         here = next;
     }
@@ -279,7 +330,9 @@ Result shapes_create(Shapes *shapes, const ReferenceScene *scene, int width, int
                    .near_distance = view->near_distance};
     for (uint32_t i = 0; i < scene->item_count; ++i) {
         p.item = &scene->items[i];
-        for (int k = 0; k < 3; ++k) p.base[k] = image_linear_from_srgb(p.item->material->color[k]);
+        float base[3];
+        hair_color(p.item->material, base);
+        for (int k = 0; k < 3; ++k) p.base[k] = base[k];
         for (uint32_t s = 0; s < p.item->strands->strand_count; ++s) add_strand(shapes, &p, s);
     }
     for (uint32_t t = 0; scene->mesh && t < scene->mesh->triangle_count; ++t)

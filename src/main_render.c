@@ -2,6 +2,7 @@
 // tractrix-render: from hair files and a scene to pictures.
 #include "fibre.h"
 #include "framing.h"
+#include "hair_paint.h"
 #include "help.h"
 #include "interrupt.h"
 #include "load.h"
@@ -88,6 +89,21 @@ static Result open_gpu(Run *run, Error *error)
     return RESULT_OK;
 }
 
+static Result paint_section(Run *run, uint32_t i, Error *error)
+{
+    SimulationSection *section = &run->simulation.sections[i];
+    const Strands *strands = &run->assets.strands[i];
+    const GpuLimits *limits = &run->gpu.limits;
+    Paint paint;
+    Result result = paint_create(&paint, strands, &run->scene.sections[i].params, error);
+    if (result == RESULT_OK) result = hair_paint(&section->hair, strands, &paint, limits, error);
+    if (result == RESULT_OK && section->follow.per_guide)
+        result = hair_paint(&section->follow.hair, strands, &paint, limits, error);
+    paint_destroy(&paint);
+    return result == RESULT_USAGE ? error_prefix(error, result, "%s: ", run->scene.sections[i].file)
+                                  : result;
+}
+
 static Result create_items(Run *run, Error *error)
 {
     run->items = calloc(2 * (size_t)run->scene.section_count + 1, sizeof *run->items);
@@ -100,6 +116,8 @@ static Result create_items(Run *run, Error *error)
         float radius = params->radius.automatic
                            ? fibre_auto_radius(&run->assets.strands[i], section->follow.per_guide)
                            : params->radius.value;
+        Result result = paint_section(run, i, error);
+        if (result != RESULT_OK) return result;
         run->items[run->item_count++] = (RenderItem){&section->hair, params, radius};
         if (section->follow.per_guide)
             run->items[run->item_count++] = (RenderItem){&section->follow.hair, params, radius};

@@ -159,7 +159,7 @@ Result render_blocks_begin(RenderBlocks *blocks, uint64_t segments, Error *error
 Result render_blocks_add(RenderBlocks *blocks, const HairBatch *batch, const Look *look,
                          Error *error)
 {
-    Result result = look_programs_use(&blocks->project, look, error);
+    Result result = look_programs_use(&blocks->project, look, batch, error);
     if (result != RESULT_OK) return result;
     MaterialParams whole = look->material;
     whole.vertex_count = batch->vertex_count;

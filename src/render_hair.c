@@ -63,7 +63,7 @@ static Result project(RenderHair *hair, const HairBatch *batch, const Look *look
     const MaterialParams *material = &look->material;
     const GLuint command[COMMAND_WORDS] = {[COMMAND_INSTANCE_COUNT] = 1};
     uint32_t strands = material->drawn_strands;
-    Result result = look_programs_use(&hair->project, look, error);
+    Result result = look_programs_use(&hair->project, look, batch, error);
     if (result != RESULT_OK) return result;
     write(&hair->command, 0, command, sizeof command);
     gpu_uniforms_set(&hair->material, BIND_MATERIAL, material, sizeof *material);

@@ -9,16 +9,20 @@ Result look_programs_build(LookPrograms *programs, unsigned features, Error *err
     const ShaderDefine defines[] = {{"GROUP_SIZE", programs->group_size},
                                     {"LIGHTS", (features & LOOK_LIGHTS) != 0},
                                     {"MARSCHNER", model},
+                                    {"PAINT", (features & LOOK_PAINT) != 0},
                                     {NULL, 0}};
     GLuint *program = &programs->program[features];
     return *program ? RESULT_OK : shader_build_compute(program, programs->file, defines, error);
 }
 
-Result look_programs_use(LookPrograms *programs, const Look *look, Error *error)
+Result look_programs_use(LookPrograms *programs, const Look *look, const HairBatch *batch,
+                         Error *error)
 {
-    Result result = look_programs_build(programs, look->features, error);
+    unsigned features = look->features | (batch->paint.buffer ? LOOK_PAINT : 0);
+    Result result = look_programs_build(programs, features, error);
     if (result != RESULT_OK) return result;
-    glUseProgram(programs->program[look->features]);
+    glUseProgram(programs->program[features]);
+    if (features & LOOK_PAINT) gpu_buffer_bind_texture(&batch->paint, BIND_PAINT);
     if (look->features & LOOK_MARSCHNER) {
         glActiveTexture(GL_TEXTURE0 + BIND_SCATTER);
         glBindTexture(GL_TEXTURE_3D, look->scatter);

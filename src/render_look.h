@@ -3,6 +3,7 @@
 // each set of features, so that what a scene does not use costs nothing.
 #pragma once
 
+#include "hair.h"
 #include "shader.h"
 
 #include "material.h"
@@ -12,9 +13,10 @@ typedef enum LookFeature {
     LOOK_LIGHTS = 1, // lights that are not directional, or a sky that differs from the ground
     LOOK_MARSCHNER = 2,
     LOOK_GAUSS = 4, // of marschner, --lobes gauss
+    LOOK_PAINT = 8, // colours and thickness by particle
 } LookFeature;
 
-enum { LOOK_VARIANTS = 8 };
+enum { LOOK_VARIANTS = 16 };
 
 typedef struct Look {
     MaterialParams material; // complete but for the batch's size
@@ -29,9 +31,10 @@ typedef struct LookPrograms {
     GLuint program[LOOK_VARIANTS];
 } LookPrograms;
 
-// Makes the look's variant the current program, compiled at first use, with the look's textures.
-// RESULT_FAILED with the compiler's words.
-Result look_programs_use(LookPrograms *programs, const Look *look, Error *error);
+// Makes the variant for the look and what the batch has the current program, compiled at first use,
+// with the textures of both. RESULT_FAILED with the compiler's words.
+Result look_programs_use(LookPrograms *programs, const Look *look, const HairBatch *batch,
+                         Error *error);
 
 // Compiles the variant of these features if it is not there.
 Result look_programs_build(LookPrograms *programs, unsigned features, Error *error);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "render_uniforms.h"
 
+#include "paint.h"
+
 #include <assert.h>
 #include <math.h>
 #include <stdbool.h>
@@ -66,19 +68,6 @@ void draw_params_set_lights(DrawParams *draw, const Light *lights, uint32_t coun
     }
 }
 
-// Absorption by a unit of each pigment along the fibre's radius, red, green and blue (d'Eon et al.
-// 2011, section 6.1); the colour is what is left of white light along the diameter.
-static void hair_color(const SectionParams *params, float linear[3])
-{
-    static const float EUMELANIN[] = {0.419f, 0.697f, 1.37f}, PHEOMELANIN[] = {0.187f, 0.4f, 1.05f};
-    linear_from_srgb_color(params->color, linear);
-    for (int k = 0; k < 3 && !params->melanin.automatic; ++k) {
-        float red = params->melanin_redness;
-        linear[k] =
-            expf(-2 * params->melanin.value * ((1 - red) * EUMELANIN[k] + red * PHEOMELANIN[k]));
-    }
-}
-
 // beta and alpha are of theta_h = (theta_i + theta_r) / 2: the lobe in theta_r is twice as wide and
 // tilted by twice as much. Scales tilt R to the root; TT and TRT follow from R (Marschner et al.
 // 2003, table 1).
@@ -100,6 +89,7 @@ MaterialParams material_params(const SectionParams *params, float radius)
     float cone = glm_rad(params->cone_angle);
     MaterialParams material = {
         .color_variation = params->color_variation,
+        .warmth_variation = params->warmth_variation,
         .radius = radius,
         .tip_ratio = params->tip_ratio,
         .opacity = params->opacity,

@@ -269,6 +269,7 @@ static Result make_looks(Renderer *renderer, Picture *picture, const RenderFrame
         Look *look = &renderer->looks[i];
         *look =
             (Look){.material = material_params(item->material, item->radius), .features = lights};
+        if (item->hair->alike) look->material.color_variation = look->material.warmth_variation = 0;
         if (item->material->shading != SHADING_MARSCHNER) continue;
         look->features |= LOOK_MARSCHNER;
         if (item->material->lobes == LOBES_GAUSS) look->features |= LOOK_GAUSS;

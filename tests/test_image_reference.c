@@ -54,7 +54,8 @@ static SectionParams *sitting_add(Sitting *sitting, Strands strands, float radiu
     assert_int_equal(section_params_create(material, &error), RESULT_OK);
     studio_make_plain(material, opacity);
     sitting->strands[i] = strands;
-    sitting->items[i] = (ReferenceItem){&sitting->strands[i], 0, material, radius};
+    sitting->items[i] =
+        (ReferenceItem){.strands = &sitting->strands[i], .material = material, .radius = radius};
     for (uint32_t k = 0; k < i; ++k) sitting->items[i].first_id += sitting->strands[k].strand_count;
     return material;
 }

@@ -644,7 +644,8 @@ static void blocks_lie_alike_in_c_and_glsl(void **state)
     DRAW(background), DRAW(head_rotation), DRAW(head_translation), DRAW(mesh_color);
     DRAW(width), DRAW(height), DRAW(focal), DRAW(near_distance), DRAW(depth), DRAW(band);
     DRAW(light_count), DRAW(seed), DRAW(shards);
-    MATERIAL(color), MATERIAL(color_variation), MATERIAL(radius), MATERIAL(tip_ratio);
+    MATERIAL(color), MATERIAL(color_variation), MATERIAL(warmth_variation), MATERIAL(radius),
+        MATERIAL(tip_ratio);
     MATERIAL(opacity), MATERIAL(ambient), MATERIAL(diffuse), MATERIAL(specular1);
     MATERIAL(exponent1), MATERIAL(specular2), MATERIAL(exponent2), MATERIAL(shift1_cos);
     MATERIAL(shift1_sin), MATERIAL(shift2_cos), MATERIAL(shift2_sin);

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// The colour, thickness and opacity of a strand's particles (needs draw.h, material.h, hash.glsl).
+//   PAINT 0: the section's   1: by particle, see hair_paint.c
+#if PAINT
+layout(binding = BIND_PAINT) uniform usamplerBuffer paint;
+#endif
+
+// Read once: a uniform costs a load wherever it is named.
+struct Painter {
+    vec3 tint;    // PAINT 0: the strand's colour, 1: a factor of it
+    float radius; // m
+    float thinning;
+};
+
+// Strands differ by brightness, and by red against blue.
+Painter paint_strand(uint id, int n)
+{
+    float warmth = material.warmth_variation * hash_signed((id ^ draw_params.seed) + 0x9e3779b9u);
+    float brightness = 1.0 + material.color_variation * hash_signed(id ^ draw_params.seed);
+    vec3 tint = brightness * vec3(1.0 + warmth, 1.0, 1.0 - warmth);
+#if !PAINT
+    tint *= material.color.rgb;
+#endif
+    return Painter(tint, material.radius, (1.0 - material.tip_ratio) / float(n - 1));
+}
+
+// Of particle j, which lies at `at`.
+vec3 paint_color(Painter p, int at)
+{
+#if PAINT
+    uvec2 texel = texelFetch(paint, at).xy;
+    return p.tint * vec3(unpackUnorm2x16(texel.x), unpackUnorm2x16(texel.y).x);
+#else
+    return p.tint;
+#endif
+}
+
+float paint_radius(Painter p, int at, int j)
+{
+#if PAINT
+    float share = uintBitsToFloat(texelFetch(paint, at).z);
+#else
+    float share = 1.0 - p.thinning * float(j);
+#endif
+    return max(p.radius * share, 1e-9);
+}
+
+// Of a strand whose root lies at `root`.
+float paint_opacity(int root)
+{
+#if PAINT
+    return material.opacity * unpackUnorm2x16(texelFetch(paint, root).y).y;
+#else
+    return material.opacity;
+#endif
+}
