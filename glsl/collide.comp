@@ -20,6 +20,9 @@
 #include "collide_params.h"
 #include "hair_address.glsl"
 #include "rigid.glsl"
+#if FIELD
+#include "distance_field.glsl"
+#endif
 #include "colliders.glsl"
 
 #define PARTICLES 0

@@ -8,6 +8,8 @@ UNIFORM_BLOCK(CollideParams, collide_params, BIND_STEP)
     vec4 head_translation;     // xyz
     vec4 head_translation_old; // at its start
     vec4 head_turn_back; // quaternion: from the head's rotation at the end to that at the start
+    vec4 field_low;      // a mesh's grid of distances: first point in the head's frame, spacing
+    vec4 field_size;     // points along x y z
     float dt;            // s
     float margin;        // colliders are this much larger, m
     float friction;      // Coulomb's coefficient

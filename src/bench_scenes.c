@@ -77,7 +77,7 @@ static Result world_create(World *world, const Gpu *gpu, const Row *row,
     for (int i = 0; i < row->sections && result == RESULT_OK; ++i)
         result = add_section(world, row, i, options, error);
     return result == RESULT_OK ? simulation_create(&world->simulation, gpu, &world->timer,
-                                                   &world->scene, world->strands, error)
+                                                   &world->scene, world->strands, NULL, error)
                                : result;
 }
 

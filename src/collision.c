@@ -36,7 +36,7 @@ static Result check_loops(const Collision *collision, bool software, Error *erro
     for (uint32_t i = 0; i < collision->hair->batch_count && software; ++i) {
         uint64_t n = collision->hair->batches[i].vertex_count;
         uint64_t most = MOST_ITERATIONS_ON_CPU / n / (ROUNDS + 3);
-        if (collision->colliders->count > most)
+        if (collision->colliders->count + (collision->field != NULL) > most)
             return error_set(error, RESULT_USAGE,
                              "%u colliders: strands of %u vertices take at most %llu of them on "
                              "this CPU driver",
@@ -77,24 +77,29 @@ Result collision_create(Collision *collision, const SolverSetup *setup, Collisio
                         uint32_t carried, Error *error)
 {
     *collision = (Collision){0};
-    if (!setup->colliders || !setup->colliders->count || !setup->params->collide) return RESULT_OK;
+    static const Colliders none;
+    const Colliders *colliders = setup->colliders ? setup->colliders : &none;
+    if ((!colliders->count && !setup->field) || !setup->params->collide) return RESULT_OK;
     *collision = (Collision){
         .hair = setup->hair,
         .params = setup->params,
-        .colliders = setup->colliders,
+        .colliders = colliders,
+        .field = setup->field,
         .mode = mode,
         .carried = carried,
         .group_size = step_group_size(setup->gpu),
     };
-    const ShaderDefine defines[] = {
-        {"GROUP_SIZE", (int)collision->group_size}, {"MODE", (int)mode}, {"FIELD", 0}, {0}};
+    const ShaderDefine defines[] = {{"GROUP_SIZE", (int)collision->group_size},
+                                    {"MODE", (int)mode},
+                                    {"FIELD", setup->field != NULL},
+                                    {0}};
     Result result = check_loops(collision, setup->gpu->software, error);
     if (result == RESULT_OK)
         result = shader_build_compute(&collision->program, "collide.comp", defines, error);
     if (result == RESULT_OK)
-        result = gpu_buffer_create(&collision->shapes, &setup->gpu->limits, "colliders",
-                                   (int64_t)(setup->colliders->count * sizeof(Shape)), NULL,
-                                   GL_RGBA32F, error);
+        result =
+            gpu_buffer_create(&collision->shapes, &setup->gpu->limits, "colliders",
+                              (int64_t)(colliders->count * sizeof(Shape)), NULL, GL_RGBA32F, error);
     if (result == RESULT_OK && mode != COLLISION_DRAWN)
         result = create_batches(collision, &setup->gpu->limits, error);
     if (result != RESULT_OK) collision_destroy(collision);
@@ -209,6 +214,11 @@ static CollideParams step_params(const Collision *collision, const SolverStep *s
         .cones_moved = counts->moved,
         .planes = counts->planes,
     };
+    if (collision->field) {
+        memcpy(params.field_low, collision->field->low, sizeof collision->field->low);
+        params.field_low[3] = collision->field->spacing;
+        for (int k = 0; k < 3; ++k) params.field_size[k] = (float)collision->field->size[k];
+    }
     versor inverse;
     glm_quat_conjugate((float *)step->head.rotation, inverse);
     glm_quat_mul((float *)step->head_old.rotation, inverse, params.head_turn_back);
@@ -230,10 +240,10 @@ static float stamp_of(uint32_t step, int part, int parts)
 bool collision_begin(Collision *collision, const SolverStep *step, int part, int parts)
 {
     if (!collision->program) return false;
-    Shape *shapes = malloc(collision->colliders->count * sizeof *shapes);
+    Shape *shapes = malloc((collision->colliders->count + (size_t)1) * sizeof *shapes);
     if (!shapes) return false;
     ShapeCounts counts = place_shapes(collision, &step->head, shapes);
-    bool any = counts.cones + counts.planes > 0;
+    bool any = counts.cones + counts.planes > 0 || collision->field;
     if (any) {
         glBindBuffer(GL_SHADER_STORAGE_BUFFER, collision->shapes.buffer);
         glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0,
@@ -258,6 +268,7 @@ void collision_push(Collision *collision, uint32_t batch, const GpuBuffer *state
     gpu_buffer_bind_texture(&hair->position, BIND_POSITION);
     gpu_buffer_bind_storage(&hair->position, BIND_POSITION_OUT);
     gpu_buffer_bind_texture(&collision->shapes, BIND_COLLIDERS);
+    if (collision->field) gpu_buffer_bind_texture(&collision->field->values, BIND_FIELD);
     if (state) {
         gpu_buffer_bind_texture(state, BIND_STATE);
         gpu_buffer_bind_storage(state, BIND_STATE_OUT);

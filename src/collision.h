@@ -23,7 +23,8 @@ typedef struct CollisionBatch {
 typedef struct Collision {
     const Hair *hair;
     const SectionParams *params;
-    const Colliders *colliders;
+    const Colliders *colliders; // never NULL while it is on
+    const DistanceField *field; // may be NULL
     CollisionMode mode;
     uint32_t carried; // vertices, from the root, that the head carries
     GLuint program;

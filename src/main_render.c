@@ -163,6 +163,8 @@ static Result check_words(const Scene *scene, Error *error)
     Result result =
         *scene->run.output ? target_parse(&target, scene->run.output, error) : RESULT_OK;
     target_destroy(&target);
+    if (result == RESULT_OK && scene->run.collide_mesh && !*scene->run.mesh)
+        result = error_set(error, RESULT_USAGE, "--collide-mesh: expected a mesh, --mesh");
     for (uint32_t i = 0; i < scene->section_count && result == RESULT_OK; ++i)
         result = solver_check(&scene->sections[i].params, error);
     return result;
@@ -193,7 +195,7 @@ static Result prepare(Run *run, Error *error)
     if (result == RESULT_OK) result = open_gpu(run, error);
     if (result == RESULT_OK)
         result = simulation_create(&run->simulation, &run->gpu, &run->timer, &run->scene,
-                                   run->assets.strands, error);
+                                   run->assets.strands, &run->assets.mesh, error);
     if (result == RESULT_OK && draws) result = open_renderer(run, error);
     if (result == RESULT_OK && draws) result = open_output(run, error);
     if (result == RESULT_OK && *params->stats) {

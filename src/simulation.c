@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "simulation.h"
+#include "field_cache.h"
 #include "forces.h"
 #include "stability.h"
 
@@ -39,7 +40,9 @@ static Result create_section(Simulation *simulation, uint32_t i, const Gpu *gpu,
                                    .timer = simulation->timer,
                                    .hair = &section->hair,
                                    .params = &description->params,
-                                   .colliders = &simulation->scene->colliders};
+                                   .colliders = &simulation->scene->colliders,
+                                   .field =
+                                       simulation->field.spacing > 0 ? &simulation->field : NULL};
         result = solver_create(&section->solver, &setup, error);
     }
     if (result == RESULT_OK)
@@ -66,8 +69,17 @@ static Result create_sections(Simulation *simulation, const Gpu *gpu, const Stra
     return result;
 }
 
+static Result create_field(DistanceField *field, const Gpu *gpu, const RunParams *run,
+                           const Mesh *mesh, Error *error)
+{
+    uint32_t resolution = (uint32_t)run->sdf_resolution;
+    if (!run->collide_mesh || !mesh || !mesh->triangle_count) return RESULT_OK;
+    return run->sdf_cache ? field_cache_create(field, gpu, mesh, resolution, NULL, error)
+                          : distance_field_create(field, gpu, mesh, resolution, error);
+}
+
 Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer,
-                         const Scene *scene, const Strands *strands, Error *error)
+                         const Scene *scene, const Strands *strands, const Mesh *mesh, Error *error)
 {
     const RunParams *run = &scene->run;
     *simulation = (Simulation){
@@ -80,6 +92,7 @@ Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer
         result = stability_choose_substeps(&simulation->substeps, scene, strands, error);
     simulation->schedule = schedule_create(run, simulation->substeps);
     simulation->step = -simulation->schedule.settling;
+    if (result == RESULT_OK) result = create_field(&simulation->field, gpu, run, mesh, error);
     if (result == RESULT_OK) result = create_sections(simulation, gpu, strands, error);
     if (result != RESULT_OK) simulation_destroy(simulation);
     return result;
@@ -95,6 +108,7 @@ void simulation_destroy(Simulation *simulation)
         hair_destroy(&simulation->sections[i].hair);
     }
     free(simulation->sections);
+    distance_field_destroy(&simulation->field);
     *simulation = (Simulation){0};
 }
 

@@ -4,6 +4,7 @@
 // varies by strand does not depend on other sections. (Only --substeps auto looks at all of them.)
 #pragma once
 
+#include "distance_field.h"
 #include "follow.h"
 #include "inbetween.h"
 #include "scene.h"
@@ -28,6 +29,7 @@ typedef struct Simulation {
     GpuTimer *timer;
     Schedule schedule;
     int substeps;                // steps a period, found if --substeps is auto
+    DistanceField field;         // of the mesh that hair collides with, or empty
     SimulationSection *sections; // [scene->section_count]
     int frame;                   // to be drawn now; frame 0 is the start
     HeadPose head;               // as drawn
@@ -40,11 +42,13 @@ typedef struct Simulation {
     uint64_t strand_steps, strand_steps_asleep; // made, and left out
 } Simulation;
 
-// Uploads strands[section] and makes the solvers. `gpu`, `timer`, `scene` outlive the simulation.
+// Uploads strands[section] and makes the solvers. `mesh` may be NULL where the scene says nothing
+// of collide_mesh; it is not needed afterwards. `gpu`, `timer`, `scene` outlive the simulation.
 // Errors of hair_create and solver_create, prefixed with the section's file, and of
 // stability_choose_substeps.
 Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer,
-                         const Scene *scene, const Strands *strands, Error *error);
+                         const Scene *scene, const Strands *strands, const Mesh *mesh,
+                         Error *error);
 void simulation_destroy(Simulation *simulation);
 
 // A step of the warm-up (--preroll), in which the head stands as at time 0. Returns whether more

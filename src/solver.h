@@ -4,6 +4,7 @@
 #pragma once
 
 #include "colliders.h"
+#include "distance_field.h"
 #include "gpu_timer.h"
 #include "hair.h"
 #include "params.h"
@@ -37,6 +38,7 @@ typedef struct SolverSetup {
     const SectionParams *params;
     const HeadPose *head;       // at the start; NULL: where the style is
     const Colliders *colliders; // shapes that hair must not cross; NULL: none
+    const DistanceField *field; // a mesh that it must not cross; NULL: none
     const SolverType *type;     // solver_create sets it
 } SolverSetup;
 

@@ -35,7 +35,8 @@ static void create_solver(HairFixture *fixture)
                                .timer = &fixture->timer,
                                .hair = &fixture->hair,
                                .params = &fixture->params,
-                               .colliders = &fixture->colliders};
+                               .colliders = &fixture->colliders,
+                               .field = fixture->field};
     if (solver_create(&fixture->solver, &setup, &error) != RESULT_OK) fail_msg("%s", error.text);
 }
 

@@ -10,7 +10,8 @@ typedef struct HairFixture {
     SectionParams params;
     GpuTimer timer;
     Colliders colliders;
-    SolverStep step; // gravity, dt, head at rest; tests change it between steps
+    const DistanceField *field; // NULL: none; not owned
+    SolverStep step;            // gravity, dt, head at rest; tests change it between steps
 } HairFixture;
 
 // The context of a test program, made at the first call; the test fails if there is none.

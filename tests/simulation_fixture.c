@@ -55,7 +55,7 @@ void simulation_fixture_start(SimulationFixture *fixture)
 {
     Error error;
     if (simulation_create(&fixture->simulation, fixture_gpu(), &fixture->timer, &fixture->scene,
-                          &fixture->strands, &error) != RESULT_OK)
+                          &fixture->strands, NULL, &error) != RESULT_OK)
         fail_msg("%s", error.text);
     while (simulation_settle(&fixture->simulation)) continue;
     simulation_pose(&fixture->simulation);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Hair and colliders, for every solver that moves hair.
 #include "collision.h"
+#include "shapes.h"
 #include "twin.h"
 
 #include <math.h>
@@ -155,6 +156,7 @@ static void a_world_collider_stays_where_it_is(void **state)
 // Strands of 0.24 m, rooted on a sphere of 0.1 m near its top, that begin horizontally.
 enum { DRAPED = 3, DRAPED_N = 16 };
 static const double DRAPED_LINK = 0.016, SPHERE = 0.1;
+static DistanceField sphere_field;
 static const char SPHERE_TEXT[] = "sphere:0,0,0,0.1";
 
 static void make_draped(Vec *q)
@@ -249,6 +251,44 @@ static void hair_comes_to_rest_on_a_sphere(void **state)
     (void)state;
     for_each(check_loose_rest);
     for_each(check_styled_rest);
+}
+
+// The same sphere as a mesh, by its field. Where facets (3e-5 m) and trilinear interpolation
+// between 64 samples (spacing h = 3.2 mm, sagging by h^2/(4 R) on a sphere) allow 1e-4 m.
+static void check_field(const SolverType *type, const char *variant)
+{
+    Vec start[DRAPED * DRAPED_N], q[DRAPED_N];
+    HairFixture fixture;
+    make_draped(start);
+    fixture_create(&fixture, (const Vec *)start, DRAPED, DRAPED_N, type->name, variant, 0.3f, 1);
+    fixture.field = &sphere_field;
+    fixture_collide(&fixture, "");
+    for (int i = 0; i < 240; ++i) {
+        float angle = 0.5f * sinf(0.05f * (float)(i < 120 ? i : 120));
+        fixture.step.head.rotation[0] = sinf(angle / 2);
+        fixture.step.head.rotation[3] = cosf(angle / 2);
+        fixture_step(&fixture);
+    }
+    for (int s = 0; s < DRAPED; ++s) {
+        twin_read_strand(&fixture, s, q);
+        double low = lowest_over_sphere((const Vec *)q);
+        require(low > -2e-4, type, variant, "%.2g m inside the mesh", -low);
+    }
+    fixture_destroy(&fixture);
+}
+
+static void hair_keeps_out_of_a_mesh(void **state)
+{
+    (void)state;
+    enum { RINGS = 60, SECTORS = 120 };
+    Mesh sphere;
+    Error error = {{0}};
+    shapes_make_sphere(&sphere, RINGS, SECTORS, (float)SPHERE);
+    if (distance_field_create(&sphere_field, fixture_gpu(), &sphere, 64, &error) != RESULT_OK)
+        fail_msg("%s", error.text);
+    for_each(check_field);
+    distance_field_destroy(&sphere_field);
+    mesh_destroy(&sphere);
 }
 
 // --- Motion.
@@ -455,6 +495,8 @@ static void the_uniform_block_lies_as_c_has_it(void **state)
     ASSERT_OFFSET(head_rotation);
     ASSERT_OFFSET(head_translation_old);
     ASSERT_OFFSET(head_turn_back);
+    ASSERT_OFFSET(field_low);
+    ASSERT_OFFSET(field_size);
     ASSERT_OFFSET(dt);
     ASSERT_OFFSET(margin);
     ASSERT_OFFSET(stamp);
@@ -481,6 +523,7 @@ int main(void)
         cmocka_unit_test(a_turning_head_pushes_hair_and_keeps_its_lengths),
         cmocka_unit_test(turning_the_whole_scene_turns_the_result),
         cmocka_unit_test(hair_comes_to_rest_on_a_sphere),
+        cmocka_unit_test(hair_keeps_out_of_a_mesh),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

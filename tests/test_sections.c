@@ -61,7 +61,7 @@ static void create(World *world, const Kind *kinds, int count)
 static void start(World *world)
 {
     assert_int_equal(simulation_create(&world->simulation, fixture_gpu(), &world->timer,
-                                       &world->scene, world->strands, NULL),
+                                       &world->scene, world->strands, NULL, NULL),
                      RESULT_OK);
 }
 

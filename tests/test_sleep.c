@@ -42,7 +42,7 @@ static void start(World *world)
     assert_int_equal(strands_make(&world->strands, &recipe, NULL), RESULT_OK);
     gpu_timer_create(&world->timer, false, true);
     assert_int_equal(simulation_create(&world->simulation, fixture_gpu(), &world->timer,
-                                       &world->scene, &world->strands, NULL),
+                                       &world->scene, &world->strands, NULL, NULL),
                      RESULT_OK);
 }
 
