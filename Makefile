@@ -111,8 +111,13 @@ test: ## set-up, build, and run all tests (ONLY=name: some of them)
 	$(AGAIN) $(JOBS) all tests
 	@tests/run $(OUT) $(ONLY)
 
+# The thesis's sets: four that the program makes, Mohawk where it lies beside the project, and hair of Short's size.
+MOHAWK := ../shared/assets/ratboy_mohawk.tfx
+SHORT   = $(OUT)/short_37747x8.tfx
 bench: all ## print the table of benchmarks (BENCH="FILE... --size 1280x720": more hair, drawing)
-	$(OUT)/tractrix-bench all $(BENCH)
+	@$(if $(wildcard $(MOHAWK)),,echo "bench: no $(MOHAWK): without the thesis's Mohawk")
+	@$(OUT)/tractrix-gen --kind fur --count 37747 --vertices 8 -q -o $(SHORT)
+	$(OUT)/tractrix-bench all $(wildcard $(MOHAWK)) $(SHORT) $(BENCH)
 
 # --- Static checks and the sanitizers; all of them run, then the failures are named. One alone: make check-format.
 CHECKS := format scripts warnings clang cppcheck shaders sanitize

@@ -125,6 +125,45 @@ static void only_the_stiffness_sets_how_stiff_steady_is(void **state)
     assert_true(most - least > 0.2);
 }
 
+// --- Sections with parameters of their own: stepped in turns they move as each does alone.
+
+static const struct {
+    const char *variant;
+    void (*tune)(SectionParams *params);
+} SECTIONS[] = {{"steady", loose}, {"tressfx4", shaped}, {"steady", shaped}};
+enum { SECTION_COUNT = sizeof SECTIONS / sizeof *SECTIONS, SECTION_N = 16 };
+
+static void create_section(HairFixture *fixture, int i)
+{
+    Vec start[SECTION_N];
+    twin_make_curl(start, SECTION_N, 0, 2);
+    fixture_create_tuned(fixture, (const Vec *)start, 1, SECTION_N, "tressfx", SECTIONS[i].variant,
+                         0.5f, 1, SECTIONS[i].tune);
+}
+
+static void sections_keep_their_own_parameters(void **state)
+{
+    (void)state;
+    HairFixture together[SECTION_COUNT];
+    Vec q[SECTION_COUNT][SECTION_N];
+    for (int i = 0; i < SECTION_COUNT; ++i) create_section(&together[i], i);
+    for (int step = 0; step < 30; ++step)
+        for (int i = 0; i < SECTION_COUNT; ++i) fixture_step(&together[i]);
+    for (int i = 0; i < SECTION_COUNT; ++i) {
+        HairFixture alone;
+        Vec x[SECTION_N];
+        create_section(&alone, i);
+        for (int step = 0; step < 30; ++step) fixture_step(&alone);
+        twin_read_strand(&alone, 0, x);
+        twin_read_strand(&together[i], 0, q[i]);
+        assert_memory_equal(x, q[i], sizeof x);
+        for (int k = 0; k < i; ++k)
+            assert_true(twin_rms((const Vec *)q[i], (const Vec *)q[k], SECTION_N, 0.21) > 0.01);
+        fixture_destroy(&alone);
+    }
+    for (int i = 0; i < SECTION_COUNT; ++i) fixture_destroy(&together[i]);
+}
+
 // 0.25 m of head motion in a frame, then rest: with the root's whole motion the strand arrives with
 // it, with none it is left behind.
 static void a_jerked_root_takes_the_strand_along(void **state)
@@ -169,6 +208,7 @@ int main(void)
         cmocka_unit_test(steady_equals_its_double_precision_twin),
         cmocka_unit_test(tressfx4_equals_its_double_precision_twin),
         cmocka_unit_test(only_the_stiffness_sets_how_stiff_steady_is),
+        cmocka_unit_test(sections_keep_their_own_parameters),
         cmocka_unit_test(a_jerked_root_takes_the_strand_along),
         cmocka_unit_test(too_long_strands_are_refused_on_cpu_drivers),
     };
