@@ -16,7 +16,7 @@ void main()
     int s = first_strand(), n = int(step_params.vertex_count);
     if (s >= int(step_params.strand_count)) return;
     int a = particle_address(s, 0, n);
-    vec3 wind = strand_wind(texelFetch(strand_id, s).x);
+    vec3 wind = strand_wind(texelFetch(strand_id, s).x, root_position(texelFetch(rest, a)));
     float dt = step_params.dt, per_second = 1.0 / step_params.dt, damping = FTL_DAMPING;
     vec3 leader = root_position(texelFetch(rest, a)), leader_velocity = vec3(0.0);
     vec4 rotation = step_params.head_rotation;

@@ -22,7 +22,7 @@ Lane lane_open(int strand)
     lane.root = root_position(root_rest);
     lane.root_old = texelFetch(position_before, lane.address).xyz;
     lane.length = root_rest.w;
-    lane.push = kick(vec3(0.0), strand_wind(texelFetch(strand_id, strand).x));
+    lane.push = kick(vec3(0.0), strand_wind(texelFetch(strand_id, strand).x, lane.root));
     lane.rotation = step_params.head_rotation;
     lane.dt = step_params.dt;
     lane.decay = step_params.decay;

@@ -67,7 +67,7 @@ void main()
     int s = first_strand();
     if (s >= int(step_params.strand_count)) return;
     int base = particle_address(s, 0, VERTICES);
-    vec3 x[VERTICES], q[VERTICES], wind = strand_wind(texelFetch(strand_id, s).x); // x: now, q: before the flight
+    vec3 x[VERTICES], q[VERTICES], wind = strand_wind(texelFetch(strand_id, s).x, root_position(texelFetch(rest, base))); // x: now, q: before the flight
     float l[VERTICES];
     int small_steps = SMALL_STEPS, sweeps = SWEEPS;
     vec4 root = texelFetch(rest, base), rotation = step_params.head_rotation;
@@ -134,7 +134,7 @@ void main()
     if (s >= int(step_params.strand_count)) return;
     int phase = int(step_params.phase), step = phase / SWEEPS, a = particle_address(s, 0, n);
     bool loads = phase == 0, flies = phase == step * SWEEPS, draws = phase + 1 == SMALL_STEPS * SWEEPS;
-    vec3 wind = strand_wind(texelFetch(strand_id, s).x), fall = fall_of(wind);
+    vec3 wind = strand_wind(texelFetch(strand_id, s).x, root_position(texelFetch(rest, a))), fall = fall_of(wind);
     vec4 root = texelFetch(rest, a);
     vec3 drawn_before = texelFetch(position_before, a).xyz, at = drawn_before;
     vec3 x = root_at(root, step + 1, SMALL_STEPS), q = x, style_at = x;

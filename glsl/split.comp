@@ -109,7 +109,7 @@ void main()
 #endif
         }
         vec4 at = tips[2 * s[k]], v = tips[2 * s[k] + 1];
-        tip[k] = Tip(at.xyz, kick(v.xyz, strand_wind(texelFetch(strand_id, s[k]).x)), at.w);
+        tip[k] = Tip(at.xyz, kick(v.xyz, strand_wind(texelFetch(strand_id, s[k]).x, root)), at.w);
         limit_speed(tip[k], R);
         target[k] = tip_target(tip[k], root_old, root, R);
 #if DRAGGED

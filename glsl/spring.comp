@@ -143,7 +143,7 @@ void main()
     int strand = first_strand(), n = int(step_params.vertex_count);
     if (strand >= int(step_params.strand_count)) return;
     int base = particle_address(strand, 0, n);
-    vec3 wind = strand_wind(texelFetch(strand_id, strand).x);
+    vec3 wind = strand_wind(texelFetch(strand_id, strand).x, root_position(texelFetch(rest, base)));
     vec4 root = texelFetch(rest, base);
     vec3 root_velocity = root_move(root) / step_params.dt;
     if (step_params.phase == 0u)
@@ -159,7 +159,7 @@ void main()
     if (strand >= int(step_params.strand_count)) return;
     int a = particle_address(strand, 0, n);
     vec4 rotation = step_params.head_rotation, root = texelFetch(rest, a);
-    vec3 wind = strand_wind(texelFetch(strand_id, strand).x), fall = kick(vec3(0.0), wind);
+    vec3 wind = strand_wind(texelFetch(strand_id, strand).x, root_position(root)), fall = kick(vec3(0.0), wind);
     float dt = step_params.dt, gain = step_params.gain, decay = step_params.decay;
     Springs springs = springs_of(n - 1);
     vec3 was = texelFetch(position_before, a).xyz, moved = root_move(root); // by the particle before

@@ -74,7 +74,7 @@ Carried carried_by_head()
 // Leaves the predicted vertices in `positions` and where they came from in `velocities`, both in the head's frame.
 void predict(Carried carried)
 {
-    vec3 wind = strand_wind(texelFetch(strand_id, strand).x), root_old = carried.root_old, home = carried.root - carried.root_old;
+    vec3 wind = strand_wind(texelFetch(strand_id, strand).x, carried.root), root_old = carried.root_old, home = carried.root - carried.root_old;
     vec3 style = vec3(0.0), first = REST(1).xyz, first_old = carried.first_old;
     vec4 to_head = conjugate(step_params.head_rotation);
     float dt = step_params.dt, global = GLOBAL_SHARE, last_global = GLOBAL_RANGE * float(n), share = carried.share;
@@ -126,7 +126,7 @@ void keep_local_shape()
 // and grows with the square of a stretched segment: the clamp keeps a storm finite.
 void blow()
 {
-    vec3 wind = rotate(conjugate(step_params.head_rotation), strand_wind(texelFetch(strand_id, strand).x));
+    vec3 wind = rotate(conjugate(step_params.head_rotation), strand_wind(texelFetch(strand_id, strand).x, root_position(texelFetch(rest, address(0)))));
     float strength = 1e4 * step_params.dt * step_params.dt, most = CLAMP;
     if (dot(wind, wind) == 0.0) return;
     for (int j = 2; j < n - 1; ++j) {

@@ -38,7 +38,8 @@ static Result try_solver(const Gpu *gpu, const SolverType *type, const char *var
         .algo = (char *)type->name, .variant = (char *)variant, .style = style};
     Result result = strands_make(&strands, &recipe, error);
     if (result == RESULT_OK) result = hair_create(&hair, &strands, 0, &gpu->limits, error);
-    const SolverSetup setup = {.gpu = gpu, .hair = &hair, .params = &params};
+    const SolverSetup setup = {
+        .gpu = gpu, .hair = &hair, .params = &params, .sheltered = style == 1};
     if (result == RESULT_OK) result = solver_create(&solver, &setup, error);
     solver_destroy(&solver);
     hair_destroy(&hair);

@@ -49,7 +49,7 @@ const GpuBuffer *particle_solver_velocities(const void *pointer, uint32_t batch)
     return &state->batches[batch].velocity;
 }
 
-static Result build_programs(ParticleState *state, const Gpu *gpu, Error *error)
+static Result build_programs(ParticleState *state, const SolverSetup *setup, Error *error)
 {
     ShaderDefine defines[STEP_OWN_DEFINES + 1] = {0};
     if (state->recipe->define) state->recipe->define(defines, state->params);
@@ -57,9 +57,10 @@ static Result build_programs(ParticleState *state, const Gpu *gpu, Error *error)
         .shader = state->recipe->shader,
         .most_in_registers = state->recipe->most_in_registers,
         .strands_on_cpu = 1,
+        .sheltered = setup->sheltered,
         .defines = defines,
     };
-    return step_programs_create(&state->programs, gpu, state->hair, &options, error);
+    return step_programs_create(&state->programs, setup->gpu, state->hair, &options, error);
 }
 
 static Result create_buffers(ParticleState *state, ParticleBatch *batch, const HairBatch *hair,
@@ -108,7 +109,7 @@ static Result build(ParticleState *state, const SolverSetup *setup, Error *error
 {
     state->batches = calloc(setup->hair->batch_count + 1, sizeof *state->batches);
     if (!state->batches) return error_set(error, RESULT_FAILED, "no memory for a solver");
-    Result result = build_programs(state, setup->gpu, error);
+    Result result = build_programs(state, setup, error);
     if (result == RESULT_OK) result = pose_create(&state->style, setup->gpu, 1, error);
     if (result == RESULT_OK)
         result = collision_create(&state->collision, setup, COLLISION_PARTICLES,

@@ -2,6 +2,7 @@
 #include "simulation.h"
 #include "field_cache.h"
 #include "forces.h"
+#include "shelter.h"
 #include "stability.h"
 
 #include <math.h>
@@ -85,6 +86,7 @@ Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer
     *simulation = (Simulation){
         .scene = scene, .timer = timer, .head = head_at(scene, 0), .substeps = run->substeps.value};
     simulation->step_head = simulation->step_head_before = simulation->head;
+    shelter_middle(simulation->middle, scene, strands);
     Result result = RESULT_OK;
     for (uint32_t i = 0; i < scene->section_count && result == RESULT_OK; ++i)
         result = solver_check(&scene->sections[i].params, error);

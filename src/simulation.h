@@ -33,8 +33,9 @@ typedef struct Simulation {
     SimulationSection *sections; // [scene->section_count]
     int frame;                   // to be drawn now; frame 0 is the start
     HeadPose head;               // as drawn
-    float share;  // drawn so far on the way from the last step but one to the last; 0: the last
-    int64_t step; // steps since time 0; below 0 while the hair settles
+    float share;     // drawn so far on the way from the last step but one to the last; 0: the last
+    float middle[3]; // of the roots, in the head's frame: who is in the lee (--wind-shelter)
+    int64_t step;    // steps since time 0; below 0 while the hair settles
     HeadPose step_head, step_head_before;       // after the last step and before it
     HeadPose posed_at;                          // the head at the last pose
     uint64_t changes;                           // poses that moved what is drawn, or the head

@@ -26,6 +26,8 @@ typedef struct SolverStep {
     HeadPose head_old, head; // at the step's start and end
     float gravity[3];        // m/s^2
     float wind[4][3];        // m/s: mixed by strand
+    float shelter[4];        // m: the middle of the head; share of the wind kept off behind it
+    float head_velocity[3];  // m/s, of that middle
 } SolverStep;
 
 typedef struct SolverType SolverType;
@@ -39,6 +41,7 @@ typedef struct SolverSetup {
     const HeadPose *head;       // at the start; NULL: where the style is
     const Colliders *colliders; // shapes that hair must not cross; NULL: none
     const DistanceField *field; // a mesh that it must not cross; NULL: none
+    bool sheltered;             // SolverStep.shelter counts
     const SolverType *type;     // solver_create sets it
 } SolverSetup;
 

@@ -57,16 +57,17 @@ static void destroy(void *pointer)
     free(state);
 }
 
-static Result build_programs(SplitState *state, const Gpu *gpu, Error *error)
+static Result build_programs(SplitState *state, const SolverSetup *setup, Error *error)
 {
     const StepProgramsOptions options = {
         .shader = "split.comp",
         .most_in_registers = MOST_IN_REGISTERS,
         .strands_on_cpu = STRANDS_ON_CPU,
+        .sheltered = setup->sheltered,
         .defines =
             (const ShaderDefine[]){{"THESIS", state->thesis}, {"DRAGGED", state->dragged}, {0}},
     };
-    return step_programs_create(&state->programs, gpu, state->hair, &options, error);
+    return step_programs_create(&state->programs, setup->gpu, state->hair, &options, error);
 }
 
 typedef float Float4[4];
@@ -129,7 +130,7 @@ static Result build(SplitState *state, const SolverSetup *setup, Error *error)
         calloc(state->hair->batch_count ? state->hair->batch_count : 1, sizeof *state->batches);
     if (!state->batches) return error_set(error, RESULT_FAILED, "no memory for a solver");
     Result result = check_lengths(state->hair, error);
-    if (result == RESULT_OK) result = build_programs(state, setup->gpu, error);
+    if (result == RESULT_OK) result = build_programs(state, setup, error);
     if (result == RESULT_OK)
         result = pose_create(&state->pose, setup->gpu, setup->params->style, error);
     if (result == RESULT_OK)

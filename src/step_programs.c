@@ -8,14 +8,13 @@
 static Result build(StepPrograms *programs, uint32_t batch, uint32_t vertices,
                     const StepProgramsOptions *options, Error *error)
 {
-    ShaderDefine defines[5 + STEP_OWN_DEFINES] = {
-        {"GROUP_SIZE", (int)programs->group_size},
-        {"STRANDS", (int)programs->strands_per_lane},
-        {"IN_REGISTERS", programs->in_registers},
-        {"VERTICES", (int)vertices},
+    ShaderDefine defines[6 + STEP_OWN_DEFINES] = {
+        {"GROUP_SIZE", (int)programs->group_size}, {"STRANDS", (int)programs->strands_per_lane},
+        {"IN_REGISTERS", programs->in_registers},  {"VERTICES", (int)vertices},
+        {"SHELTER", options->sheltered},
     };
     for (int i = 0; options->defines && options->defines[i].name; ++i)
-        defines[4 + i] = options->defines[i];
+        defines[5 + i] = options->defines[i];
     return shader_build_compute(&programs->programs[batch], options->shader, defines, error);
 }
 

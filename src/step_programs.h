@@ -13,6 +13,7 @@ typedef struct StepProgramsOptions {
                                 // costs a compilation for each vertex count; 0: never
     uint32_t strands_on_cpu;    // strands of a lane on CPU drivers where they are in registers: two
                                 // hide each other's latency, a GPU has other lanes for that
+    bool sheltered;             // the head keeps wind off (forces.glsl)
     const ShaderDefine *defines; // the variant's own, at most STEP_OWN_DEFINES
 } StepProgramsOptions;
 
@@ -24,8 +25,8 @@ typedef struct StepPrograms {
     bool in_registers;
 } StepPrograms;
 
-// Compiles with the macros GROUP_SIZE (lanes), STRANDS (a lane's), IN_REGISTERS, VERTICES and the
-// own ones. Errors of shader_build_compute; RESULT_FAILED without memory.
+// Compiles with the macros GROUP_SIZE (lanes), STRANDS (a lane's), IN_REGISTERS, VERTICES, SHELTER
+// and the own ones. Errors of shader_build_compute; RESULT_FAILED without memory.
 Result step_programs_create(StepPrograms *programs, const Gpu *gpu, const Hair *hair,
                             const StepProgramsOptions *options, Error *error);
 void step_programs_destroy(StepPrograms *programs);

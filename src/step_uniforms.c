@@ -26,6 +26,8 @@ StepParams step_uniforms(const SolverStep *step, const SectionParams *params)
     set_pose(uniforms.head_rotation, uniforms.head_translation, &step->head);
     memcpy(uniforms.gravity, step->gravity, sizeof step->gravity);
     for (int i = 0; i < 4; ++i) memcpy(uniforms.wind[i], step->wind[i], sizeof step->wind[i]);
+    memcpy(uniforms.shelter, step->shelter, sizeof step->shelter);
+    memcpy(uniforms.head_velocity, step->head_velocity, sizeof step->head_velocity);
     step_drag_factors((double)params->drag, step->first ? step->dt / 2 : step->dt, &uniforms.decay,
                       &uniforms.gain);
     return uniforms;

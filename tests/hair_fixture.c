@@ -36,7 +36,8 @@ static void create_solver(HairFixture *fixture)
                                .hair = &fixture->hair,
                                .params = &fixture->params,
                                .colliders = &fixture->colliders,
-                               .field = fixture->field};
+                               .field = fixture->field,
+                               .sheltered = fixture->sheltered};
     if (solver_create(&fixture->solver, &setup, &error) != RESULT_OK) fail_msg("%s", error.text);
 }
 
@@ -104,6 +105,13 @@ void fixture_destroy(HairFixture *fixture)
     gpu_timer_destroy(&fixture->timer);
     section_params_destroy(&fixture->params);
     colliders_destroy(&fixture->colliders);
+}
+
+void fixture_shelter(HairFixture *fixture)
+{
+    fixture->sheltered = true;
+    solver_destroy(&fixture->solver);
+    create_solver(fixture);
 }
 
 void fixture_step(HairFixture *fixture)

@@ -11,7 +11,8 @@ typedef struct HairFixture {
     GpuTimer timer;
     Colliders colliders;
     const DistanceField *field; // NULL: none; not owned
-    SolverStep step;            // gravity, dt, head at rest; tests change it between steps
+    bool sheltered;
+    SolverStep step; // gravity, dt, head at rest; tests change it between steps
 } HairFixture;
 
 // The context of a test program, made at the first call; the test fails if there is none.
@@ -37,6 +38,9 @@ void fixture_destroy(HairFixture *fixture);
 
 // Makes the solver anew, with the shapes that `text` lists (colliders_parse).
 void fixture_collide(HairFixture *fixture, const char *text);
+
+// Makes the solver anew, with regard to the step's shelter.
+void fixture_shelter(HairFixture *fixture);
 
 // One step, then the head of this step becomes the old one.
 void fixture_step(HairFixture *fixture);

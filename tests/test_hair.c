@@ -107,20 +107,16 @@ static void blocks_lie_alike_in_c_and_glsl(void **state)
 {
     (void)state;
     GLuint program;
-    const ShaderDefine split[] = {{"GROUP_SIZE", 8},
-                                  {"STRANDS", 1},
-                                  {"IN_REGISTERS", 0},
-                                  {"VERTICES", 4},
-                                  {"THESIS", 0},
-                                  {"DRAGGED", 0},
-                                  {0}};
+    const ShaderDefine split[] = {
+        {"GROUP_SIZE", 8}, {"STRANDS", 1}, {"IN_REGISTERS", 0}, {"VERTICES", 4},
+        {"THESIS", 0},     {"DRAGGED", 0}, {"SHELTER", 0},      {0}};
     assert_int_equal(shader_build_compute(&program, "split.comp", split, NULL), RESULT_OK);
 #define STEP(field, suffix)                                                                        \
     fixture_assert_offset(program, "StepParams." #field suffix, offsetof(StepParams, field))
     STEP(head_rotation_old, ""), STEP(head_translation_old, ""), STEP(head_rotation, ""),
         STEP(head_translation, "");
-    STEP(gravity, ""), STEP(wind, "[0]"), STEP(own, "[0]"), STEP(dt, ""), STEP(decay, ""),
-        STEP(gain, ""), STEP(drag, "");
+    STEP(gravity, ""), STEP(wind, "[0]"), STEP(shelter, ""), STEP(head_velocity, ""),
+        STEP(own, "[0]"), STEP(dt, ""), STEP(decay, ""), STEP(gain, ""), STEP(drag, "");
     STEP(strand_count, ""), STEP(vertex_count, ""), STEP(passes, "");
     glDeleteProgram(program);
     const ShaderDefine pose[] = {{"GROUP_SIZE", 8}, {"MIX", 2}, {0}};
