@@ -46,8 +46,10 @@ typedef enum ParamKind {
 
 // The words of each CHOICE and the values they stand for, counted from 0.
 #define CHOICES_NONE(X)
-#define CHOICES_UP(X)      X(UP_Y, "y") X(UP_Z, "z")
-#define CHOICES_FOLLOW(X)  X(FOLLOW_OFFSET, "offset") X(FOLLOW_INTERPOLATE, "interpolate")
+#define CHOICES_UP(X)     X(UP_Y, "y") X(UP_Z, "z")
+#define CHOICES_FOLLOW(X) X(FOLLOW_OFFSET, "offset") X(FOLLOW_INTERPOLATE, "interpolate")
+#define CHOICES_TELEPORT(X)                                                                        \
+    X(TELEPORT_CARRY, "carry") X(TELEPORT_LIMIT, "limit") X(TELEPORT_NONE, "none")
 #define CHOICES_BACKEND(X) X(BACKEND_AUTO, "auto") X(BACKEND_EGL, "egl") X(BACKEND_OSMESA, "osmesa")
 #define CHOICES_RASTER(X)  X(RASTER_AUTO, "auto") X(RASTER_QUADS, "quads") X(RASTER_BLOCKS, "blocks")
 
@@ -57,6 +59,7 @@ typedef enum ParamKind {
 #define CHOICE_VALUE(value, word) value,
 typedef enum UpAxis { CHOICES_UP(CHOICE_VALUE) } UpAxis;
 typedef enum FollowMode { CHOICES_FOLLOW(CHOICE_VALUE) } FollowMode;
+typedef enum TeleportRule { CHOICES_TELEPORT(CHOICE_VALUE) } TeleportRule;
 typedef enum Backend { CHOICES_BACKEND(CHOICE_VALUE) } Backend;
 typedef enum Raster { CHOICES_RASTER(CHOICE_VALUE) } Raster;
 typedef enum Lobes { CHOICES_LOBES(CHOICE_VALUE) } Lobes;

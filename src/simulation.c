@@ -2,6 +2,7 @@
 #include "simulation.h"
 #include "field_cache.h"
 #include "forces.h"
+#include "head_motion.h"
 #include "shelter.h"
 #include "stability.h"
 
@@ -13,13 +14,6 @@ static bool same_pose(const HeadPose *a, const HeadPose *b)
 {
     return memcmp(a->rotation, b->rotation, sizeof a->rotation) == 0 &&
            memcmp(a->translation, b->translation, sizeof a->translation) == 0;
-}
-
-static HeadPose head_at(const Scene *scene, double time)
-{
-    HeadPose pose = {0};
-    rigid_track_evaluate(&scene->head, time, pose.rotation, pose.translation);
-    return pose;
 }
 
 // Frames fall between steps if a frame is no whole number of steps; what does not step is drawn as
@@ -43,7 +37,10 @@ static Result create_section(Simulation *simulation, uint32_t i, const Gpu *gpu,
                                    .params = &description->params,
                                    .colliders = &simulation->scene->colliders,
                                    .field =
-                                       simulation->field.spacing > 0 ? &simulation->field : NULL};
+                                       simulation->field.spacing > 0 ? &simulation->field : NULL,
+
+                                   .sheltered = simulation->scene->run.wind_shelter > 0,
+                                   .head = &simulation->head};
         result = solver_create(&section->solver, &setup, error);
     }
     if (result == RESULT_OK)
@@ -83,8 +80,10 @@ Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer
                          const Scene *scene, const Strands *strands, const Mesh *mesh, Error *error)
 {
     const RunParams *run = &scene->run;
-    *simulation = (Simulation){
-        .scene = scene, .timer = timer, .head = head_at(scene, 0), .substeps = run->substeps.value};
+    *simulation = (Simulation){.scene = scene,
+                               .timer = timer,
+                               .head = head_motion_pose(scene, 0),
+                               .substeps = run->substeps.value};
     simulation->step_head = simulation->step_head_before = simulation->head;
     shelter_middle(simulation->middle, scene, strands);
     Result result = RESULT_OK;
@@ -96,6 +95,8 @@ Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer
     simulation->step = -simulation->schedule.settling;
     if (result == RESULT_OK) result = create_field(&simulation->field, gpu, run, mesh, error);
     if (result == RESULT_OK) result = create_sections(simulation, gpu, strands, error);
+    if (result == RESULT_OK && !rigid_track_is_still(&scene->head))
+        result = carry_create(&simulation->carry, error);
     if (result != RESULT_OK) simulation_destroy(simulation);
     return result;
 }
@@ -111,6 +112,7 @@ void simulation_destroy(Simulation *simulation)
     }
     free(simulation->sections);
     distance_field_destroy(&simulation->field);
+    carry_destroy(&simulation->carry);
     *simulation = (Simulation){0};
 }
 
@@ -126,7 +128,7 @@ static SolverStep next_step(const Simulation *simulation)
         .first = simulation->step == -simulation->schedule.settling,
         .shuffle = scene->run.seed + (uint32_t)simulation->step,
         .head_old = simulation->step_head,
-        .head = head_at(scene, fmax(0, (double)(simulation->step + 1) / rate)),
+        .head = head_motion_pose(scene, fmax(0, (double)(simulation->step + 1) / rate)),
     };
     memcpy(step.gravity, forces.gravity, sizeof step.gravity);
     memcpy(step.wind, forces.wind, sizeof step.wind);
@@ -149,12 +151,39 @@ static void step_section(Simulation *simulation, SimulationSection *section, con
     ++simulation->steps;
 }
 
+static void carry_sections(Simulation *simulation, const CarryMotion *motion)
+{
+    for (uint32_t i = 0; i < simulation->scene->section_count; ++i) {
+        SimulationSection *section = &simulation->sections[i];
+        if (solver_is_static(&section->solver)) continue;
+        inbetween_restore(&section->inbetween);
+        solver_pose(&section->solver, &simulation->step_head);
+        carry_apply(&simulation->carry, &section->solver, &section->hair, motion);
+    }
+}
+
+// What the head does at the step's start: it sets out, or jumps.
+static void carry_along(Simulation *simulation, SolverStep *step)
+{
+    CarryMotion motion;
+    HeadPose carried;
+    if (simulation->step == 0 && head_motion_start(simulation->scene, &motion))
+        carry_sections(simulation, &motion);
+    if (!head_motion_jumps(simulation->scene, &step->head_old, &step->head, &carried)) return;
+    motion = carry_between(&step->head_old, &carried);
+    carry_sections(simulation, &motion);
+    step->head_old = carried;
+    ++simulation->jumps;
+}
+
 static void take_step(Simulation *simulation)
 {
     SolverStep step = next_step(simulation);
+    if (simulation->carry.program) carry_along(simulation, &step);
+    shelter_fill(&step, simulation->middle, simulation->scene->run.wind_shelter);
     for (uint32_t i = 0; i < simulation->scene->section_count; ++i)
         step_section(simulation, &simulation->sections[i], &step);
-    simulation->step_head_before = step.head_old;
+    simulation->step_head_before = simulation->step_head;
     simulation->step_head = step.head;
     ++simulation->step;
 }
@@ -203,7 +232,7 @@ void simulation_advance(Simulation *simulation)
     }
     simulation->share = next.share;
     simulation->head =
-        next.share > 0 ? head_at(simulation->scene, next.time) : simulation->step_head;
+        next.share > 0 ? head_motion_pose(simulation->scene, next.time) : simulation->step_head;
 }
 
 static void pose_between(Simulation *simulation, SimulationSection *section)

@@ -4,6 +4,7 @@
 // varies by strand does not depend on other sections. (Only --substeps auto looks at all of them.)
 #pragma once
 
+#include "carry.h"
 #include "distance_field.h"
 #include "follow.h"
 #include "inbetween.h"
@@ -28,6 +29,7 @@ typedef struct Simulation {
     const Scene *scene;
     GpuTimer *timer;
     Schedule schedule;
+    Carry carry;                 // made if the head moves
     int substeps;                // steps a period, found if --substeps is auto
     DistanceField field;         // of the mesh that hair collides with, or empty
     SimulationSection *sections; // [scene->section_count]
@@ -41,6 +43,7 @@ typedef struct Simulation {
     uint64_t changes;                           // poses that moved what is drawn, or the head
     uint64_t steps, poses, poses_skipped;       // of sections
     uint64_t strand_steps, strand_steps_asleep; // made, and left out
+    uint64_t jumps;                             // of the head, by the rule of --teleport
 } Simulation;
 
 // Uploads strands[section] and makes the solvers. `mesh` may be NULL where the scene says nothing

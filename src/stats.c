@@ -163,6 +163,7 @@ static json_t *describe_counts(const Simulation *simulation, int frames_drawn, i
     json_object_set_new(counts, "poses", json_integer((json_int_t)simulation->poses));
     json_object_set_new(counts, "poses_skipped",
                         json_integer((json_int_t)simulation->poses_skipped));
+    json_object_set_new(counts, "head_jumps", json_integer((json_int_t)simulation->jumps));
     json_object_set_new(counts, "moves_limited", json_integer((json_int_t)report.moves_limited));
     json_object_set_new(counts, "contacts", json_integer((json_int_t)report.contacts));
     json_object_set_new(counts, "deepest_found_m", json_real((double)report.deepest_found));
