@@ -57,3 +57,9 @@ typedef struct Hair {
 Result hair_create(Hair *hair, const Strands *strands, uint32_t first_id, const GpuLimits *limits,
                    Error *error);
 void hair_destroy(Hair *hair);
+
+// The drawn positions of all strands, one behind the other from root to tip, in the order of the
+// batches: positions[hair->particle_count]. Reading waits for the GPU; writing fills the last
+// tile's copies, too. RESULT_FAILED when memory is short.
+Result hair_read_positions(const Hair *hair, float (*positions)[3], Error *error);
+Result hair_write_positions(const Hair *hair, const float (*positions)[3], Error *error);

@@ -8,6 +8,7 @@
 #include "load.h"
 #include "output.h"
 #include "renderer.h"
+#include "resume.h"
 #include "sequence.h"
 #include "simulation.h"
 #include "stats.h"
@@ -31,6 +32,10 @@ typedef struct Run {
     uint32_t item_count;
     Framing framing;
     Output *output;
+    FrameSource source;
+    Exporter exporter;
+    bool exports;
+    Resume resume;
     Stats stats;
     double begin_ms, loaded_ms, ready_ms;
 } Run;
@@ -38,7 +43,10 @@ typedef struct Run {
 static void run_destroy(Run *run)
 {
     output_destroy(run->output);
+    if (run->exports) exporter_destroy(&run->exporter);
+    resume_destroy(&run->resume);
     if (run->has_gpu) {
+        frame_source_close(&run->source);
         renderer_destroy(&run->renderer);
         simulation_destroy(&run->simulation);
         gpu_timer_destroy(&run->timer);
@@ -151,7 +159,7 @@ static Result open_output(Run *run, Error *error)
         .height = params->size[1],
         .channels = params->background[3] < 1 ? 4 : 3,
         .fps = (double)params->fps / params->every,
-        .frame_count = sequence_count_drawn(params),
+        .frame_count = sequence_count_drawn(params) - run->resume.count,
     };
     return output_create(&run->output, &options, error);
 }
@@ -165,8 +173,37 @@ static Result check_words(const Scene *scene, Error *error)
     target_destroy(&target);
     if (result == RESULT_OK && scene->run.collide_mesh && !*scene->run.mesh)
         result = error_set(error, RESULT_USAGE, "--collide-mesh: expected a mesh, --mesh");
+    if (result == RESULT_OK && *scene->run.export) {
+        result = target_parse_hair(&target, scene->run.export, error);
+        target_destroy(&target);
+    }
     for (uint32_t i = 0; i < scene->section_count && result == RESULT_OK; ++i)
         result = solver_check(&scene->sections[i].params, error);
+    return result;
+}
+
+static Result find_done(Run *run, Error *error)
+{
+    const RunParams *params = &run->scene.run;
+    if (!params->resume) return RESULT_OK;
+    Result result = resume_find(&run->resume, params, sequence_last_frame(params), error);
+    if (run->resume.count && !params->quiet)
+        fprintf(stderr, "%d of %d frames are there\n", run->resume.count,
+                sequence_count_drawn(params));
+    return result;
+}
+
+static Result open_source(Run *run, Error *error)
+{
+    const RunParams *params = &run->scene.run;
+    Result result =
+        frame_source_open(&run->source, &run->simulation, run->assets.strands,
+                          sequence_last_frame(params), params->quiet ? NULL : stderr, error);
+    if (result == RESULT_OK && *params->export) {
+        result = exporter_create(&run->exporter, params->export, sequence_count_drawn(params),
+                                 &run->simulation, run->assets.strands, error);
+        run->exports = result == RESULT_OK;
+    }
     return result;
 }
 
@@ -187,6 +224,7 @@ static Result prepare(Run *run, Error *error)
     const RunParams *params = &run->scene.run;
     bool draws = *params->output != 0;
     Result result = check_words(&run->scene, error);
+    if (result == RESULT_OK) result = find_done(run, error);
     if (result == RESULT_OK)
         result = assets_load(&run->assets, &run->scene, params->quiet ? NULL : stderr,
                              params->verbose, error);
@@ -196,6 +234,7 @@ static Result prepare(Run *run, Error *error)
     if (result == RESULT_OK)
         result = simulation_create(&run->simulation, &run->gpu, &run->timer, &run->scene,
                                    run->assets.strands, &run->assets.mesh, error);
+    if (result == RESULT_OK) result = open_source(run, error);
     if (result == RESULT_OK && draws) result = open_renderer(run, error);
     if (result == RESULT_OK && draws) result = open_output(run, error);
     if (result == RESULT_OK && *params->stats) {
@@ -217,8 +256,8 @@ static void tell_result(const Run *run, const Sequence *sequence, double ms)
                 (unsigned long long)report.moves_limited);
     fprintf(stderr, "%d frame%s in %.1f s, %.3g a second", frames, frames == 1 ? "" : "s", ms / 1e3,
             frames * 1e3 / ms);
-    fprintf(stderr, run->output ? ": %s\n" : "%s\n",
-            run->output ? output_describe(run->output) : "");
+    bool described = run->output && frames > 0;
+    fprintf(stderr, described ? ": %s\n" : "%s\n", described ? output_describe(run->output) : "");
 }
 
 static Result write_stats(Run *run, const Sequence *sequence, Error *error)
@@ -243,6 +282,9 @@ static Result render(Run *run, Error *error)
     Sequence sequence = {
         .scene = &run->scene,
         .simulation = &run->simulation,
+        .source = &run->source,
+        .exporter = run->exports ? &run->exporter : NULL,
+        .done = run->resume.done,
         .renderer = run->output ? &run->renderer : NULL,
         .output = run->output,
         .framing = &run->framing,
@@ -252,7 +294,10 @@ static Result render(Run *run, Error *error)
         .stats = &run->stats,
     };
     result = sequence_run(&sequence, error);
-    if (result == RESULT_OK && run->output) result = output_finish(run->output, error);
+    if (result == RESULT_OK && run->output &&
+        run->resume.count < sequence_count_drawn(&run->scene.run))
+        result = output_finish(run->output, error);
+    if (result == RESULT_OK) result = frame_source_finish(&run->source, error);
     if (result == RESULT_OK) result = write_stats(run, &sequence, error);
     if (result == RESULT_OK && !run->scene.run.quiet)
         tell_result(run, &sequence, stats_clock_ms() - run->begin_ms);

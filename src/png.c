@@ -129,3 +129,48 @@ Result png_read(Image *image, const char *path, Error *error)
     bytes_destroy(&file);
     return result;
 }
+
+// --- Whole or not, by the chunks of the PNG specification, section 5.
+
+static uint32_t take_u32(const uint8_t *bytes)
+{
+    return (uint32_t)bytes[0] << 24 | (uint32_t)bytes[1] << 16 | (uint32_t)bytes[2] << 8 | bytes[3];
+}
+
+enum { CHUNK_EXTRA_BYTES = 12, SIGNATURE_BYTES = 8, IHDR_BYTES = 13 };
+
+// The chunk at `at` with its checksum; bytes behind it, 0 if it isn't whole.
+static size_t chunk_end(const Bytes *file, size_t at)
+{
+    if (file->size - at < CHUNK_EXTRA_BYTES) return 0;
+    size_t size = take_u32(file->data + at);
+    if (size > file->size - at - CHUNK_EXTRA_BYTES) return 0;
+    uint32_t sum = libdeflate_crc32(0, file->data + at + 4, size + 4);
+    return sum == take_u32(file->data + at + 8 + size) ? at + CHUNK_EXTRA_BYTES + size : 0;
+}
+
+static bool begins_with(const Bytes *file, int width, int height, int channels)
+{
+    static const uint8_t begin[] = {137, 'P', 'N', 'G',        13,  10,  26,  10,
+                                    0,   0,   0,   IHDR_BYTES, 'I', 'H', 'D', 'R'};
+    const uint8_t *data = file->data + sizeof begin;
+    return file->size >= sizeof begin + IHDR_BYTES &&
+           memcmp(file->data, begin, sizeof begin) == 0 && take_u32(data) == (uint32_t)width &&
+           take_u32(data + 4) == (uint32_t)height && data[8] == 8 &&
+           data[9] == (channels == 4 ? 6 : 2);
+}
+
+bool png_is_whole(const char *path, int width, int height, int channels)
+{
+    Bytes file;
+    if (bytes_read_file(&file, path, NULL) != RESULT_OK) return false;
+    bool begun = begins_with(&file, width, height, channels), ended = false;
+    size_t at = SIGNATURE_BYTES;
+    while (begun && !ended && at) {
+        ended = file.size - at >= CHUNK_EXTRA_BYTES && memcmp(file.data + at + 4, "IEND", 4) == 0;
+        at = chunk_end(&file, at);
+    }
+    bool whole = ended && at == file.size;
+    bytes_destroy(&file);
+    return whole;
+}

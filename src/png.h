@@ -6,6 +6,8 @@
 #include "file.h"
 #include "image.h"
 
+#include <stdbool.h>
+
 // Encodes an image of 3 (RGB) or 4 (RGBA) channels. Made for speed: deflate level 1, filter 'up' in
 // every row. The same image gives the same bytes. May be called from several threads at once.
 // RESULT_FAILED when memory is short or the image has 1 GiB or more. Free `png` with bytes_destroy.
@@ -13,6 +15,10 @@ Result png_encode(const Image *image, Bytes *png, Error *error);
 
 // Encodes and writes; the file appears complete or not at all. RESULT_FAILED with path and reason.
 Result png_write(const char *path, const Image *image, Error *error);
+
+// Whether `path` is a PNG file of this size and these channels (8 bits each) whose chunks are
+// complete, in place and have the right checksums.
+bool png_is_whole(const char *path, int width, int height, int channels);
 
 // Reads a file of any PNG kind; grey becomes RGB, 16 bits a channel become 8; 4 channels if it has
 // alpha, else 3. RESULT_BAD_INPUT with path and reason when it is missing, not a PNG, damaged, or

@@ -90,6 +90,7 @@ static Result check_conflicts(const RunParams *run, Error *error)
 {
     const char *pair = NULL;
     if (run->quiet && run->verbose) pair = "--quiet and --verbose";
+    if (*run->cache && *run->from_cache) pair = "--cache and --from-cache";
     if (run->software && run->require_hardware) pair = "--software and --require-hardware";
     if (run->backend == BACKEND_OSMESA) {
         if (run->require_hardware) pair = "--backend osmesa and --require-hardware";

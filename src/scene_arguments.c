@@ -242,7 +242,8 @@ static Result check_arguments(const Scene *scene, Error *error)
 {
     const RunParams *run = &scene->run;
     Result result = scene_check(scene, error);
-    if (result == RESULT_OK && !run->output[0] && !run->check && !run->list_devices)
+    if (result == RESULT_OK && !run->output[0] && !run->cache[0] && !run->export[0] &&
+        !run->check && !run->list_devices)
         return error_set(error, RESULT_USAGE,
                          "no output: expected -o DIR/, -o FILE_%%04d.png or -o FILE.mp4");
     return result;

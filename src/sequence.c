@@ -28,6 +28,7 @@ int sequence_count_drawn(const RunParams *run)
 // and in every one that moved nothing.
 typedef struct Previous {
     bool any;
+    uint64_t changes; // of the simulation, when it was drawn
     View view;
     Image image;
 } Previous;
@@ -69,9 +70,8 @@ static Result draw(Sequence *sequence, Previous *previous, const View *view, Ima
 {
     const Scene *scene = sequence->scene;
     Simulation *simulation = sequence->simulation;
-    uint64_t before = simulation->changes;
-    simulation_pose(simulation);
-    bool still = simulation->changes == before || sequence->frames_drawn == 0;
+    bool still = simulation->changes == previous->changes || sequence->frames_drawn == 0;
+    previous->changes = simulation->changes;
     if (!still) previous->any = false;
     if (still && previous->any && same_view(view, &previous->view)) {
         memcpy(image->pixels, previous->image.pixels, image_size(image));
@@ -112,14 +112,23 @@ static Result output_frame(Sequence *sequence, Previous *previous, int frame, Fr
     return result == RESULT_OK ? submitted : result;
 }
 
+static bool wants(const Sequence *sequence, int frame)
+{
+    return sequence_draws_frame(&sequence->scene->run, frame) &&
+           !(sequence->done && sequence->done[frame]);
+}
+
 static Result run_frame(Sequence *sequence, Previous *previous, int frame, Error *error)
 {
     FrameTimes times = {.frame = frame};
     double begin = stats_clock_ms();
-    if (frame > 0) simulation_advance(sequence->simulation);
+    bool wanted = wants(sequence, frame);
+    Result result = frame_source_go(sequence->source, frame,
+                                    wanted && (sequence->output || sequence->exporter), error);
     times.simulate_ms = stats_clock_ms() - begin;
-    Result result = RESULT_OK;
-    if (sequence->output && sequence_draws_frame(&sequence->scene->run, frame))
+    if (result == RESULT_OK && wanted && sequence->exporter)
+        result = exporter_write(sequence->exporter, frame, error);
+    if (result == RESULT_OK && wanted && sequence->output)
         result = output_frame(sequence, previous, frame, &times, error);
     const RendererCounts none = {0};
     stats_add_frame(sequence->stats, sequence->timer, &times,
@@ -127,27 +136,29 @@ static Result run_frame(Sequence *sequence, Previous *previous, int frame, Error
     return result;
 }
 
-// The warm-up before frame 0.
-static Result settle(Simulation *simulation, Error *error)
+// The frames to go through: neither those that nobody wants and that need not be simulated, nor
+// those after the last that is wanted, unless a cache wants them.
+static int last_wanted(const Sequence *sequence)
 {
-    while (!interrupt_requested())
-        if (!simulation_settle(simulation)) return RESULT_OK;
-    return error_set(error, RESULT_INTERRUPTED, "interrupted before the first frame");
+    int last = sequence_last_frame(&sequence->scene->run);
+    if (*sequence->scene->run.cache) return last;
+    while (last >= 0 && !wants(sequence, last)) --last;
+    return last;
 }
 
 Result sequence_run(Sequence *sequence, Error *error)
 {
     const RunParams *run = &sequence->scene->run;
-    int last = sequence_last_frame(run);
+    int last = last_wanted(sequence), all = sequence_last_frame(run) + 1;
     Previous previous = {0};
     Progress progress;
-    Result result = settle(sequence->simulation, error);
-    progress_start(&progress, stderr, last + 1, run->quiet);
+    Result result = RESULT_OK;
+    progress_start(&progress, stderr, all, run->quiet);
     for (int frame = 0; frame <= last && result == RESULT_OK; ++frame) {
-        result = interrupt_requested()
-                     ? error_set(error, RESULT_INTERRUPTED, "interrupted after %d of %d frames",
-                                 frame, last + 1)
-                     : run_frame(sequence, &previous, frame, error);
+        if (!wants(sequence, frame) && !frame_source_needs(sequence->source, frame)) continue;
+        result = interrupt_requested() ? error_set(error, RESULT_INTERRUPTED,
+                                                   "interrupted after %d of %d frames", frame, all)
+                                       : run_frame(sequence, &previous, frame, error);
         progress_update(&progress, frame + 1);
     }
     progress_clear(&progress);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The main loop: simulates a scene's frames, draws those that are asked for, and hands them to the
-// output.
+// The main loop: goes through a scene's frames, draws those that are asked for, and hands them to
+// the output.
 #pragma once
 
+#include "export.h"
+#include "frame_source.h"
 #include "framing.h"
 #include "load.h"
 #include "output.h"
@@ -12,9 +14,12 @@
 
 typedef struct Sequence {
     const Scene *scene;
-    Simulation *simulation;
+    Simulation *simulation; // which the source moves
+    FrameSource *source;
     Renderer *renderer; // NULL: nothing is drawn
     Output *output;     // NULL as well
+    Exporter *exporter; // NULL: no hair files
+    const bool *done;   // [frames] those that need not be drawn again; NULL: none
     const Framing *framing;
     const RenderItem *items;
     uint32_t item_count;
@@ -28,7 +33,7 @@ typedef struct Sequence {
 int sequence_last_frame(const RunParams *run);
 bool sequence_draws_frame(const RunParams *run, int frame);
 
-// How many frames will be drawn.
+// How many frames are to be drawn.
 int sequence_count_drawn(const RunParams *run);
 
 // Runs all frames. RESULT_INTERRUPTED between two frames once SIGINT or SIGTERM has come.

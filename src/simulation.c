@@ -6,6 +6,8 @@
 #include "shelter.h"
 #include "stability.h"
 
+#include <libdeflate.h>
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,7 +32,8 @@ static Result create_section(Simulation *simulation, uint32_t i, const Gpu *gpu,
     SimulationSection *section = &simulation->sections[i];
     const Section *description = &simulation->scene->sections[i];
     Result result = hair_create(&section->hair, strands, 0, &gpu->limits, error);
-    if (result == RESULT_OK) {
+    bool simulated = !*simulation->scene->run.from_cache;
+    if (result == RESULT_OK && simulated) {
         const SolverSetup setup = {.gpu = gpu,
                                    .timer = simulation->timer,
                                    .hair = &section->hair,
@@ -43,13 +46,13 @@ static Result create_section(Simulation *simulation, uint32_t i, const Gpu *gpu,
                                    .head = &simulation->head};
         result = solver_create(&section->solver, &setup, error);
     }
-    if (result == RESULT_OK)
+    if (result == RESULT_OK && simulated)
         result = sleep_create(&section->sleep, gpu, simulation->timer, &section->hair,
                               &section->solver, &description->params, error);
     if (result == RESULT_OK)
         result = follow_create(&section->follow, gpu, simulation->timer, &section->hair, strands,
                                &description->params, simulation->scene->run.seed, error);
-    if (result == RESULT_OK && needs_inbetween(simulation, &section->solver))
+    if (result == RESULT_OK && simulated && needs_inbetween(simulation, &section->solver))
         result = inbetween_create(&section->inbetween, gpu, &section->hair, error);
     return result == RESULT_OK ? RESULT_OK : error_prefix(error, result, "%s: ", description->file);
 }
@@ -67,11 +70,16 @@ static Result create_sections(Simulation *simulation, const Gpu *gpu, const Stra
     return result;
 }
 
-static Result create_field(DistanceField *field, const Gpu *gpu, const RunParams *run,
-                           const Mesh *mesh, Error *error)
+static Result create_field(Simulation *simulation, const Gpu *gpu, const Mesh *mesh, Error *error)
 {
+    const RunParams *run = &simulation->scene->run;
+    DistanceField *field = &simulation->field;
     uint32_t resolution = (uint32_t)run->sdf_resolution;
     if (!run->collide_mesh || !mesh || !mesh->triangle_count) return RESULT_OK;
+    uint32_t sum = libdeflate_crc32(0, mesh->position, mesh->vertex_count * sizeof *mesh->position);
+    simulation->mesh_checksum =
+        libdeflate_crc32(sum, mesh->triangle, mesh->triangle_count * sizeof *mesh->triangle);
+    if (*run->from_cache) return RESULT_OK;
     return run->sdf_cache ? field_cache_create(field, gpu, mesh, resolution, NULL, error)
                           : distance_field_create(field, gpu, mesh, resolution, error);
 }
@@ -93,7 +101,7 @@ Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer
         result = stability_choose_substeps(&simulation->substeps, scene, strands, error);
     simulation->schedule = schedule_create(run, simulation->substeps);
     simulation->step = -simulation->schedule.settling;
-    if (result == RESULT_OK) result = create_field(&simulation->field, gpu, run, mesh, error);
+    if (result == RESULT_OK) result = create_field(simulation, gpu, mesh, error);
     if (result == RESULT_OK) result = create_sections(simulation, gpu, strands, error);
     if (result == RESULT_OK && !rigid_track_is_still(&scene->head))
         result = carry_create(&simulation->carry, error);
@@ -197,7 +205,8 @@ bool simulation_settle(Simulation *simulation)
 // Whether what is drawn of the section may differ from the last pose, the head staying where it is.
 static bool moves(const SimulationSection *section)
 {
-    return section->stepped || (section->inbetween.hair && !section->sleep.asleep);
+    return section->stepped ||
+           (section->inbetween.hair && (!section->sleep.asleep || section->inbetween.mixed));
 }
 
 static void pose_section(Simulation *simulation, SimulationSection *section, const HeadPose *head)
@@ -254,7 +263,7 @@ void simulation_pose(Simulation *simulation)
             ++simulation->poses_skipped;
             continue;
         }
-        if (simulation->share > 0 && section->inbetween.hair)
+        if (simulation->share > 0 && section->inbetween.hair && !section->sleep.asleep)
             pose_between(simulation, section);
         else
             pose_section(simulation, section, &simulation->head);
@@ -266,10 +275,28 @@ void simulation_pose(Simulation *simulation)
     simulation->changes += moved;
 }
 
+Result simulation_show(Simulation *simulation, int frame, const HeadPose *head,
+                       const float (*positions)[3], Error *error)
+{
+    simulation->frame = frame;
+    simulation->head = simulation->posed_at = *head;
+    ++simulation->changes;
+    Result result = RESULT_OK;
+    for (uint32_t i = 0; i < simulation->scene->section_count && result == RESULT_OK; ++i) {
+        SimulationSection *section = &simulation->sections[i];
+        result = hair_write_positions(&section->hair, positions, error);
+        if (result == RESULT_OK) follow_write(&section->follow, head);
+        positions += section->hair.particle_count;
+        section->posed = false;
+    }
+    return result;
+}
+
 SolverReport simulation_report(const Simulation *simulation)
 {
     SolverReport report = {0};
     for (uint32_t i = 0; i < simulation->scene->section_count; ++i)
-        solver_report(&simulation->sections[i].solver, &report);
+        if (simulation->sections[i].solver.type)
+            solver_report(&simulation->sections[i].solver, &report);
     return report;
 }

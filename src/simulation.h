@@ -32,6 +32,7 @@ typedef struct Simulation {
     Carry carry;                 // made if the head moves
     int substeps;                // steps a period, found if --substeps is auto
     DistanceField field;         // of the mesh that hair collides with, or empty
+    uint32_t mesh_checksum;      // CRC-32 of that mesh's vertices and triangles
     SimulationSection *sections; // [scene->section_count]
     int frame;                   // to be drawn now; frame 0 is the start
     HeadPose head;               // as drawn
@@ -46,9 +47,10 @@ typedef struct Simulation {
     uint64_t jumps;                             // of the head, by the rule of --teleport
 } Simulation;
 
-// Uploads strands[section] and makes the solvers. `mesh` may be NULL where the scene says nothing
-// of collide_mesh; it is not needed afterwards. `gpu`, `timer`, `scene` outlive the simulation.
-// Errors of hair_create and solver_create, prefixed with the section's file, and of
+// Uploads strands[section] and makes the solvers, unless scene->run.from_cache is set: then there
+// is nothing but simulation_show. `mesh` may be NULL where the scene says nothing of collide_mesh;
+// it is not needed afterwards. `gpu`, `timer`, `scene` outlive the simulation. Errors of
+// hair_create and solver_create, prefixed with the section's file, and of
 // stability_choose_substeps.
 Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer,
                          const Scene *scene, const Strands *strands, const Mesh *mesh,
@@ -65,6 +67,12 @@ void simulation_advance(Simulation *simulation);
 // Writes the positions that are drawn. Skips what has not changed. As long as `changes` stays the
 // same, so does what is drawn, but for the camera.
 void simulation_pose(Simulation *simulation);
+
+// Shows a frame that was simulated elsewhere: writes the drawn positions of all sections' guides,
+// one behind the other (hair_write_positions), and what follows from them. The simulation's own
+// state is lost. RESULT_FAILED when memory is short.
+Result simulation_show(Simulation *simulation, int frame, const HeadPose *head,
+                       const float (*positions)[3], Error *error);
 
 // Adds up the solvers' reports. Waits for the GPU.
 SolverReport simulation_report(const Simulation *simulation);

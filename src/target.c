@@ -118,6 +118,18 @@ Result target_parse(Target *target, const char *text, Error *error)
     return result;
 }
 
+Result target_parse_hair(Target *target, const char *text, Error *error)
+{
+    *target = (Target){.kind = TARGET_FRAMES};
+    Result result = RESULT_USAGE;
+    if (has_suffix(text, ".tfx") || has_suffix(text, ".hair"))
+        result = take_pattern(target, text, error);
+    else
+        error_set(error, RESULT_USAGE, "%s: expected a name ending in .tfx or .hair", text);
+    if (result != RESULT_OK) target_destroy(target);
+    return result;
+}
+
 void target_destroy(Target *target)
 {
     free(target->before);

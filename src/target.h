@@ -24,6 +24,10 @@ typedef struct Target {
 // ending in .png, or one ending in .mp4, .webm or .gif. RESULT_USAGE for anything else,
 // RESULT_FAILED when memory is short.
 Result target_parse(Target *target, const char *text, Error *error);
+
+// Takes the name of hair files: one ending in .tfx or .hair, with a number like those of pictures
+// or without one. Errors as above.
+Result target_parse_hair(Target *target, const char *text, Error *error);
 void target_destroy(Target *target);
 
 // The file for a frame (>= 0), to be freed; numbers that need more digits get them. The same name
