@@ -67,6 +67,9 @@ void main()
     float opacity = paint_opacity(root);
     vec3 eye = draw_params.eye.xyz;
     Fibre fibre = fibre_material();
+#if SHADOW
+    shadow_fibre = vec2(2.0 * material.radius, material.shadow_opacity);
+#endif
 
     vec3 here = texelFetch(position, root).xyz, before = here;
     vec4 here_clip = clip_from_world * vec4(here, 1.0), before_clip = here_clip;

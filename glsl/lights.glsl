@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: MIT
 // The light that reaches a point (needs draw.h).
+//   SHADOW, SHADOW_BY_MESH: see shadow.glsl
 //   LIGHTS 0: directional lights, and the same from everywhere else   1: also points, spots, a sky
 
+#if SHADOW
+#include "shadow.h"
+#endif
+#include "shadow.glsl"
+
 // Linear RGB of light i at x, as a matt white surface square to it would show it, and the unit
-// vector towards it. What stands between the light and x would be a factor here.
+// vector towards it.
 vec3 light_reaching(int i, vec3 x, out vec3 to_light)
 {
 #if LIGHTS
@@ -16,10 +22,10 @@ vec3 light_reaching(int i, vec3 x, out vec3 to_light)
     to_light = way * inversesqrt(square);
     float inside = clamp(cone.x - cone.y * dot(axis.xyz, to_light), 0.0, 1.0);
     float falloff = place.w == 0.0 ? 1.0 : min(axis.w / square, 1e6);
-    return draw_params.light_color[i].rgb * (falloff * inside * inside);
+    return draw_params.light_color[i].rgb * (falloff * inside * inside * light_left(i, x));
 #else
     to_light = draw_params.light_place[i].xyz;
-    return draw_params.light_color[i].rgb;
+    return draw_params.light_color[i].rgb * light_left(i, x);
 #endif
 }
 

@@ -7,12 +7,12 @@
 
 UNIFORM_BLOCK(MaterialParams, material, BIND_MATERIAL)
 {
-    vec4 color;             // linear RGB
-    float color_variation;  // brightness of strands varies by this share either way
-    float warmth_variation; // red against blue, likewise
-    float radius;           // m, at the root
-    float tip_ratio;        // radius at the tip over that at the root
-    float opacity;
+    vec4 color;                      // linear RGB
+    float color_variation;           // brightness of strands varies by this share either way
+    float warmth_variation;          // red against blue, likewise
+    float radius;                    // m, at the root
+    float tip_ratio;                 // radius at the tip over that at the root
+    float opacity, shadow_opacity;   // to the eye, to light
     float ambient, diffuse;          // Ka, Kd
     float specular1, exponent1;      // first highlight, white
     float specular2, exponent2;      // second highlight, tinted

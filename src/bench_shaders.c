@@ -102,8 +102,13 @@ static Result try_looks(Renderer *renderer, Error *error)
         renderer->raster == RASTER_QUADS ? &renderer->hair.project : &renderer->blocks.project;
     GLuint texture;
     Result result = scatter_tables_find(&renderer->scatter, 1.5f, 0.2f, &texture, error);
-    for (unsigned features = 0; features < LOOK_VARIANTS && result == RESULT_OK; ++features)
+    static const unsigned shadows[] = {LOOK_SHADOW_APPROX, LOOK_SHADOW_DOM,
+                                       LOOK_SHADOW_APPROX | LOOK_SHADOW_BY_MESH,
+                                       LOOK_SHADOW_DOM | LOOK_SHADOW_BY_MESH | LOOK_LIGHTS};
+    for (unsigned features = 0; features < LOOK_SHADOW_APPROX && result == RESULT_OK; ++features)
         result = look_programs_build(programs, features, error);
+    for (size_t i = 0; i < sizeof shadows / sizeof *shadows && result == RESULT_OK; ++i)
+        result = look_programs_build(programs, shadows[i], error);
     return result;
 }
 

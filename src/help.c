@@ -67,7 +67,8 @@ static const struct {
      "up to 8 lights: directional, point or spot; direction is the way the light travels. A point "
      "or "
      "a spot has its intensity at the distance (m) and falls off by the square; a spot is whole up "
-     "to inner deg off its axis and nothing beyond outer. Without this key there are two lights, "
+     "to inner deg off its axis and nothing beyond outer. With --shadow the first light casts "
+     "shadows, others with \"shadow\": true. Without this key there are two lights, "
      "with an empty list only ambient light"},
 };
 enum { SCENE_KEY_COUNT = sizeof SCENE_KEYS / sizeof SCENE_KEYS[0] };

@@ -139,7 +139,10 @@ static Result open_renderer(Run *run, Error *error)
     RendererOptions options = {.raster = (Raster)params->raster,
                                .width = params->size[0],
                                .height = params->size[1],
-                               .seed = params->seed};
+                               .seed = params->seed,
+                               .shadow = {.kind = (Shadow)params->shadow,
+                                          .side = params->shadow_size,
+                                          .spacing = params->shadow_spacing}};
     memcpy(options.background, params->background, sizeof options.background);
     Result result = renderer_create(&run->renderer, &run->gpu, &run->timer, &options, error);
     if (result == RESULT_OK && run->assets.has_mesh)

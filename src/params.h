@@ -55,12 +55,14 @@ typedef enum ParamKind {
 
 #define CHOICES_SHADING(X) X(SHADING_KAJIYA, "kajiya") X(SHADING_MARSCHNER, "marschner")
 #define CHOICES_LOBES(X)   X(LOBES_ENERGY, "energy") X(LOBES_GAUSS, "gauss")
+#define CHOICES_SHADOW(X)  X(SHADOW_NONE, "none") X(SHADOW_APPROX, "approx") X(SHADOW_DOM, "dom")
 
 #define CHOICE_VALUE(value, word) value,
 typedef enum UpAxis { CHOICES_UP(CHOICE_VALUE) } UpAxis;
 typedef enum FollowMode { CHOICES_FOLLOW(CHOICE_VALUE) } FollowMode;
 typedef enum TeleportRule { CHOICES_TELEPORT(CHOICE_VALUE) } TeleportRule;
 typedef enum Backend { CHOICES_BACKEND(CHOICE_VALUE) } Backend;
+typedef enum Shadow { CHOICES_SHADOW(CHOICE_VALUE) } Shadow;
 typedef enum Raster { CHOICES_RASTER(CHOICE_VALUE) } Raster;
 typedef enum Lobes { CHOICES_LOBES(CHOICE_VALUE) } Lobes;
 typedef enum Shading { CHOICES_SHADING(CHOICE_VALUE) } Shading;

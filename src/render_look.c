@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: MIT
 #include "render_look.h"
 
+#include "params.h"
+
 #include "draw.h"
 
 Result look_programs_build(LookPrograms *programs, unsigned features, Error *error)
 {
     int model = !(features & LOOK_MARSCHNER) ? 0 : features & LOOK_GAUSS ? 2 : 1;
+    int shadow = features & LOOK_SHADOW_DOM      ? SHADOW_DOM
+                 : features & LOOK_SHADOW_APPROX ? SHADOW_APPROX
+                                                 : SHADOW_NONE;
     const ShaderDefine defines[] = {{"GROUP_SIZE", programs->group_size},
                                     {"LIGHTS", (features & LOOK_LIGHTS) != 0},
                                     {"MARSCHNER", model},
                                     {"PAINT", (features & LOOK_PAINT) != 0},
+                                    {"SHADOW", shadow},
+                                    {"SHADOW_BY_MESH", (features & LOOK_SHADOW_BY_MESH) != 0},
                                     {NULL, 0}};
     GLuint *program = &programs->program[features];
     return *program ? RESULT_OK : shader_build_compute(program, programs->file, defines, error);

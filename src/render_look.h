@@ -14,9 +14,12 @@ typedef enum LookFeature {
     LOOK_MARSCHNER = 2,
     LOOK_GAUSS = 4, // of marschner, --lobes gauss
     LOOK_PAINT = 8, // colours and thickness by particle
+    LOOK_SHADOW_APPROX = 16,
+    LOOK_SHADOW_DOM = 32,
+    LOOK_SHADOW_BY_MESH = 64,
 } LookFeature;
 
-enum { LOOK_VARIANTS = 16 };
+enum { LOOK_VARIANTS = 128 };
 
 typedef struct Look {
     MaterialParams material; // complete but for the batch's size

@@ -43,14 +43,15 @@ static void describe_vertices(RenderMesh *mesh)
     glBindVertexArray(0);
 }
 
-Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const float color[3],
+Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const float color[3], Shadow shadow,
                           const GpuLimits *limits, Error *error)
 {
     *mesh = (RenderMesh){.color = {color[0], color[1], color[2]}};
     if (source->triangle_count == 0) return RESULT_OK;
     find_bounds(mesh, source);
     Result result = upload(mesh, source, limits, error);
-    const ShaderDefine defines[] = {{"LIGHTS", 1}, {NULL, 0}};
+    const ShaderDefine defines[] = {
+        {"LIGHTS", 1}, {"SHADOW", shadow}, {"SHADOW_BY_MESH", 1}, {NULL, 0}};
     if (result == RESULT_OK)
         result = shader_build_draw(&mesh->program, "mesh.vert", "mesh.frag", defines, error);
     if (result != RESULT_OK) {

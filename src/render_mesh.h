@@ -3,6 +3,7 @@
 #pragma once
 
 #include "mesh.h"
+#include "params.h"
 #include "render_target.h"
 #include "shader.h"
 
@@ -14,8 +15,8 @@ typedef struct RenderMesh {
     float color[3];                       // linear
 } RenderMesh;
 
-// Uploads. `color`: linear RGB. RESULT_FAILED if memory is short.
-Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const float color[3],
+// Uploads. `color`: linear RGB. `shadow`: what it receives. RESULT_FAILED if memory is short.
+Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const float color[3], Shadow shadow,
                           const GpuLimits *limits, Error *error);
 void render_mesh_destroy(RenderMesh *mesh);
 

@@ -93,6 +93,7 @@ MaterialParams material_params(const SectionParams *params, float radius)
         .radius = radius,
         .tip_ratio = params->tip_ratio,
         .opacity = params->opacity,
+        .shadow_opacity = params->shadow_opacity,
         .ambient = params->ambient,
         .diffuse = params->diffuse,
         .specular1 = params->specular1,

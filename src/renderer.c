@@ -62,6 +62,8 @@ Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
     Result result = render_target_create(&renderer->target, &gpu->limits, options->width,
                                          options->height, error);
     if (result == RESULT_OK) result = RASTERS[renderer->raster].create(renderer, error);
+    if (result == RESULT_OK && options->shadow.kind != SHADOW_NONE)
+        result = render_shadow_create(&renderer->shadow, &gpu->limits, &options->shadow, error);
     if (result != RESULT_OK) renderer_destroy(renderer);
     return result;
 }
@@ -73,6 +75,8 @@ void renderer_destroy(Renderer *renderer)
     render_abuffer_destroy(&renderer->abuffer);
     render_blocks_destroy(&renderer->blocks);
     render_mesh_destroy(&renderer->mesh);
+    render_shadow_destroy(&renderer->shadow);
+    free(renderer->casters);
     scatter_tables_destroy(&renderer->scatter);
     free(renderer->looks);
     gpu_buffer_destroy(&renderer->draw_uniforms);
@@ -84,8 +88,8 @@ Result renderer_set_mesh(Renderer *renderer, const Mesh *mesh, const float color
     float linear[3];
     linear_from_srgb_color(color, linear);
     render_mesh_destroy(&renderer->mesh);
-    Result result =
-        render_mesh_create(&renderer->mesh, mesh, linear, &renderer->gpu->limits, error);
+    Result result = render_mesh_create(&renderer->mesh, mesh, linear, renderer->options.shadow.kind,
+                                       &renderer->gpu->limits, error);
     if (result == RESULT_OK && renderer->mesh.triangle_count)
         result = render_target_add_mesh(&renderer->target, error);
     if (result == RESULT_OK && renderer->mesh.triangle_count)
@@ -251,6 +255,19 @@ static bool lights_are_simple(const RenderFrame *frame)
     return !ambient || memcmp(ambient->sky, ambient->ground, sizeof ambient->sky) == 0;
 }
 
+static unsigned shadow_features(const Renderer *renderer)
+{
+    unsigned by_mesh = renderer->mesh.triangle_count ? LOOK_SHADOW_BY_MESH : 0;
+    switch (renderer->options.shadow.kind) {
+    case SHADOW_APPROX:
+        return LOOK_SHADOW_APPROX | by_mesh;
+    case SHADOW_DOM:
+        return LOOK_SHADOW_DOM | by_mesh;
+    default:
+        return 0;
+    }
+}
+
 static Result make_looks(Renderer *renderer, Picture *picture, const RenderFrame *frame,
                          Error *error)
 {
@@ -263,7 +280,7 @@ static Result make_looks(Renderer *renderer, Picture *picture, const RenderFrame
         renderer->look_room = picture->item_count;
     }
     picture->looks = renderer->looks;
-    unsigned lights = lights_are_simple(frame) ? 0 : LOOK_LIGHTS;
+    unsigned lights = (lights_are_simple(frame) ? 0 : LOOK_LIGHTS) | shadow_features(renderer);
     for (uint32_t i = 0; i < picture->item_count; ++i) {
         const RenderItem *item = &picture->items[i];
         Look *look = &renderer->looks[i];
@@ -279,6 +296,59 @@ static Result make_looks(Renderer *renderer, Picture *picture, const RenderFrame
         if (result != RESULT_OK) return result;
     }
     return RESULT_OK;
+}
+
+static Result list_casters(Renderer *renderer, const Picture *picture, ShadowScene *scene,
+                           Error *error)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < picture->item_count; ++i) count += picture->items[i].hair->batch_count;
+    if (renderer->caster_room < count) {
+        ShadowCaster *casters = realloc(renderer->casters, count * sizeof *casters);
+        if (!casters) return error_set(error, RESULT_FAILED, "no memory for %u batches", count);
+        renderer->casters = casters;
+        renderer->caster_room = count;
+    }
+    for (uint32_t i = 0; i < picture->item_count; ++i) {
+        const RenderItem *item = &picture->items[i];
+        for (uint32_t b = 0; b < item->hair->batch_count; ++b)
+            renderer->casters[scene->caster_count++] =
+                (ShadowCaster){&item->hair->batches[b], item->radius, item->material->tip_ratio,
+                               item->material->shadow_opacity};
+    }
+    scene->casters = renderer->casters;
+    return RESULT_OK;
+}
+
+// The middle of the first section's style, about which lamps look.
+static void find_middle(const Picture *picture, float middle[3])
+{
+    if (!picture->item_count) return;
+    const Hair *hair = picture->items[0].hair;
+    vec3 x;
+    versor turn = {0};
+    memcpy(turn, picture->draw.head_rotation, sizeof turn);
+    for (int k = 0; k < 3; ++k) x[k] = 0.5f * (hair->low[k] + hair->high[k]);
+    glm_quat_rotatev(turn, x, x);
+    for (int k = 0; k < 3; ++k) middle[k] = x[k] + picture->draw.head_translation[k];
+}
+
+static Result draw_shadow(Renderer *renderer, const RenderFrame *frame, const Picture *picture,
+                          Error *error)
+{
+    ShadowScene scene = {.lights = frame->lights,
+                         .light_count = frame->light_count,
+                         .mesh = &renderer->mesh,
+                         .revision = frame->revision};
+    if (renderer->options.shadow.kind == SHADOW_NONE) return RESULT_OK;
+    memcpy(scene.head_rotation, frame->head_rotation, sizeof scene.head_rotation);
+    memcpy(scene.head_translation, frame->head_translation, sizeof scene.head_translation);
+    find_middle(picture, scene.middle);
+    Result result = list_casters(renderer, picture, &scene, error);
+    if (result == RESULT_OK)
+        result = render_shadow_draw(&renderer->shadow, &scene, renderer->timer, error);
+    if (result == RESULT_OK) render_shadow_bind(&renderer->shadow);
+    return result;
 }
 
 static void draw_mesh(Renderer *renderer, const DrawParams *draw)
@@ -394,10 +464,13 @@ Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderI
     Result result = make_looks(renderer, &picture, frame, error);
     if (result != RESULT_OK) return result;
     renderer->counts = (RendererCounts){0};
-    set_state(renderer);
     gpu_uniforms_set(&renderer->draw_uniforms, BIND_DRAW, draw, sizeof *draw);
+    result = draw_shadow(renderer, frame, &picture, error);
+    if (result != RESULT_OK) return result;
+    set_state(renderer);
     draw_mesh(renderer, draw);
     result = RASTERS[renderer->raster].draw(renderer, &picture, image, error);
     if (result != RESULT_OK) return result;
+    renderer->counts.shadow_maps = renderer->shadow.maps_drawn;
     return gpu_check("drawing", error);
 }

@@ -11,6 +11,7 @@
 #include "render_hair.h"
 #include "render_mesh.h"
 #include "render_scatter.h"
+#include "render_shadow.h"
 #include "render_target.h"
 
 typedef struct RendererOptions {
@@ -18,8 +19,9 @@ typedef struct RendererOptions {
     int width, height;   // px, each 1 .. the driver's limits.framebuffer_side_px
     float background[4]; // sRGB and opacity 0..1; below 1 the pictures have an alpha channel
     uint32_t seed;       // of what varies by strand
-    int sorted_layers;   // quads: fragments of a pixel that are blended in order, >= 1; 0: 8
-    int64_t pool_bytes;  // no larger A-buffer or block lists; 0: what the driver allows
+    ShadowOptions shadow;
+    int sorted_layers;  // quads: fragments of a pixel that are blended in order, >= 1; 0: 8
+    int64_t pool_bytes; // no larger A-buffer or block lists; 0: what the driver allows
 } RendererOptions;
 
 // Hair to be drawn. The material is that of its section; `radius` is the fibre radius at the root
@@ -43,16 +45,18 @@ typedef struct RenderFrame {
     const Ambient *ambient;    // NULL: white
     float head_rotation[4];    // quaternion x y z w: the mesh's frame -> world
     float head_translation[3]; // m
+    uint64_t revision; // another one wherever hair has moved, so that shadows are kept; 0: it has
 } RenderFrame;
 
 // Of the last picture, for the statistics.
 typedef struct RendererCounts {
-    uint64_t segments;   // sent to the rasteriser; straight runs count as one
-    uint64_t culled;     // strands outside the picture, which cost no drawing
-    uint64_t fragments;  // stored and blended: pixels of a ribbon, or with blocks blocks of it
-    uint64_t pool_bytes; // of the A-buffer or the block lists now
-    uint32_t redraws;    // bands that were drawn again because the pool was too small
-    uint32_t bands;      // horizontal bands that the picture was drawn in
+    uint64_t segments;    // sent to the rasteriser; straight runs count as one
+    uint64_t culled;      // strands outside the picture, which cost no drawing
+    uint64_t fragments;   // stored and blended: pixels of a ribbon, or with blocks blocks of it
+    uint64_t pool_bytes;  // of the A-buffer or the block lists now
+    uint32_t redraws;     // bands that were drawn again because the pool was too small
+    uint32_t bands;       // horizontal bands that the picture was drawn in
+    uint32_t shadow_maps; // that were made; those of the picture before may have done
 } RendererCounts;
 
 typedef struct Renderer {
@@ -65,6 +69,9 @@ typedef struct Renderer {
     RenderABuffer abuffer;
     RenderBlocks blocks;
     RenderMesh mesh;
+    RenderShadow shadow;
+    ShadowCaster *casters; // [caster_room], owned
+    uint32_t caster_room;
     ScatterTables scatter;
     Look *looks; // [look_room], of the items of a picture
     uint32_t look_room;

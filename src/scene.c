@@ -7,7 +7,7 @@
 // From above the camera's left shoulder, and a weaker one from the right against black shadows, for
 // the automatic camera, which looks along -z. Unit vectors.
 static const Light DEFAULT_LIGHTS[] = {
-    {.direction = {-0.48f, 0.64f, 0.6f}, .color = {1, 1, 1}, .intensity = 1.0f},
+    {.direction = {-0.48f, 0.64f, 0.6f}, .color = {1, 1, 1}, .intensity = 1.0f, .shadow = true},
     {.direction = {0.8f, 0.0f, 0.6f}, .color = {1, 1, 1}, .intensity = 0.35f},
 };
 

@@ -32,6 +32,7 @@ typedef struct Light {
     float position[3];  // m, in the world; not directional
     float distance;     // m, > 0; not directional
     float inner_deg, outer_deg; // 0 <= inner < outer <= 90; spot
+    bool shadow;                // casts shadows, if there are any
 } Light;
 
 enum { SCENE_MAX_LIGHTS = 8, SCENE_MAX_SECTIONS = 1024 };

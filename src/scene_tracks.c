@@ -260,15 +260,28 @@ static Result read_cone(Light *light, const Place *place, const json_t *value, E
     return result;
 }
 
+static Result read_light_shadow(Light *light, const Place *parent, const json_t *object,
+                                Error *error)
+{
+    const json_t *value = json_object_get(object, "shadow");
+    const Place place = {.parent = parent, .key = "shadow"};
+    if (value && !json_is_boolean(value))
+        return place_refuse(&place, value, "true or false", error);
+    if (value) light->shadow = json_is_true(value);
+    return RESULT_OK;
+}
+
+// `light` has its defaults.
 static Result read_light(Light *light, const Place *place, const json_t *value, Error *error)
 {
-    static const char *const DIRECTIONAL[] = {"type", "direction", "color", "intensity", NULL};
-    static const char *const POINT[] = {"type", "position", "distance", "color", "intensity", NULL};
+    static const char *const DIRECTIONAL[] = {"type",      "direction", "color",
+                                              "intensity", "shadow",    NULL};
+    static const char *const POINT[] = {"type",      "position", "distance", "color",
+                                        "intensity", "shadow",   NULL};
     static const char *const SPOT[] = {"type",  "position", "distance",  "direction", "inner",
-                                       "outer", "color",    "intensity", NULL};
+                                       "outer", "color",    "intensity", "shadow",    NULL};
     static const char *const *const NAMES[] = {
         [LIGHT_DIRECTIONAL] = DIRECTIONAL, [LIGHT_POINT] = POINT, [LIGHT_SPOT] = SPOT};
-    *light = (Light){.color = {1, 1, 1}, .intensity = 1, .distance = 1, .outer_deg = 45};
     const json_t *type = json_object_get(value, "type");
     Place type_place = {.parent = place, .key = "type"};
     int kind = LIGHT_DIRECTIONAL;
@@ -288,6 +301,7 @@ static Result read_light(Light *light, const Place *place, const json_t *value, 
                                "metres", error);
     if (result == RESULT_OK && kind == LIGHT_SPOT) result = read_cone(light, place, value, error);
     if (result == RESULT_OK) result = read_light_color(light, place, value, error);
+    if (result == RESULT_OK) result = read_light_shadow(light, place, value, error);
     return result;
 }
 
@@ -301,6 +315,8 @@ Result scene_read_lights(Scene *scene, const Place *place, const json_t *value, 
     scene->light_count = 0;
     for (size_t i = 0; i < count; i++) {
         Place light_place = {.parent = place, .index = i};
+        scene->lights[i] = (Light){
+            .color = {1, 1, 1}, .intensity = 1, .distance = 1, .outer_deg = 45, .shadow = i == 0};
         Result result =
             read_light(&scene->lights[i], &light_place, json_array_get(value, i), error);
         if (result != RESULT_OK) return result;

@@ -149,6 +149,7 @@ static json_t *write_light(const Light *light)
     }
     good = put(object, "color", scene_write_floats(color, 3)) && good;
     good = put(object, "intensity", scene_write_float(light->intensity)) && good;
+    good = put(object, "shadow", json_boolean(light->shadow)) && good;
     return finish(object, good);
 }
 

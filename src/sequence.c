@@ -87,6 +87,7 @@ static Result draw(Sequence *sequence, Previous *previous, const View *view, Ima
     memcpy(ambient.ground, scene->run.ground, sizeof ambient.ground);
     memcpy(frame.head_rotation, simulation->head.rotation, sizeof frame.head_rotation);
     memcpy(frame.head_translation, simulation->head.translation, sizeof frame.head_translation);
+    frame.revision = 1 + simulation->changes;
     if (sequence->frames_drawn == 0) give_back_memory();
     Result result = renderer_draw(sequence->renderer, &frame, sequence->items, sequence->item_count,
                                   image, error);

@@ -396,18 +396,26 @@ static void a_row_that_no_pool_holds_is_an_error(void **state)
     assert_non_null(strstr(error.text, "one row"));
 }
 
-static void mesh_hides_the_hair_behind_it_only(void **state)
+// In the plane z = 0, `half` px to each side.
+static Mesh make_square(float half)
 {
-    (void)state;
     Error error = {{0}};
     Mesh mesh;
     assert_int_equal(mesh_create(&mesh, 4, 2, &error), RESULT_OK);
     for (int v = 0; v < 4; ++v) {
-        memcpy(mesh.position[v], (float[3]){v & 1 ? 50 : -50, v & 2 ? 50 : -50, 0}, 12);
+        memcpy(mesh.position[v], (float[3]){v & 1 ? half : -half, v & 2 ? half : -half, 0}, 12);
         mesh.normal[v][2] = 1;
     }
     const uint32_t triangles[2][3] = {{0, 1, 2}, {2, 1, 3}};
     memcpy(mesh.triangle, triangles, sizeof triangles);
+    return mesh;
+}
+
+static void mesh_hides_the_hair_behind_it_only(void **state)
+{
+    (void)state;
+    Error error = {{0}};
+    Mesh mesh = make_square(50);
     use(&BLACK);
     const float green[3] = {0, 1, 0};
     assert_int_equal(renderer_set_mesh(&studio.renderer, &mesh, green, &error), RESULT_OK);
@@ -472,6 +480,34 @@ static void a_spot_shines_into_its_cone(void **state)
                       .inner_deg = 20,
                       .outer_deg = 30};
         assert_true(fabs(light_strand(&spot) - expected[i]) < 0.01 + expected[i] / 15);
+    }
+}
+
+// The strand stands 60 px before the square, in light that comes 37 degrees from the right: its
+// shadow falls 45 px to its left. What the light brings there is less by the strand's opacity.
+static void a_strand_throws_its_shadow_on_the_mesh(void **state)
+{
+    (void)state;
+    RendererOptions options = BLACK;
+    options.shadow = (ShadowOptions){SHADOW_DOM, 256, 200};
+    Error error = {{0}};
+    const float white[3] = {1, 1, 1};
+    Mesh mesh = make_square(100);
+    use(&options);
+    assert_int_equal(renderer_set_mesh(&studio.renderer, &mesh, white, &error), RESULT_OK);
+    mesh_destroy(&mesh);
+    uint32_t item = add_line((float[3]){20, -60, 60}, (float[3]){20, 60, 60}, 6, 1);
+    studio.material[item].shadow_opacity = 0.8f;
+    studio.light = (Light){.direction = {0.6f, 0, 0.8f}, .color = {1, 1, 1}, .intensity = 0.5f};
+    const double ambient = 0.15, light = 0.5 * 0.8; // as in renderer.c; times the cosine
+    for (int shadow = 0; shadow < 2; ++shadow) {
+        studio.light.shadow = shadow;
+        studio_draw(&studio);
+        double there = ambient + light * (shadow ? 0.2 : 1);
+        assert_int_equal(studio.renderer.counts.shadow_maps, shadow);
+        assert_true(fabs(studio_pixel(&studio, SIDE / 2 - 25, SIDE / 2)[0] - srgb(there)) <= 4);
+        assert_true(
+            fabs(studio_pixel(&studio, SIDE / 2 - 50, SIDE / 2)[0] - srgb(ambient + light)) <= 1);
     }
 }
 
@@ -646,7 +682,8 @@ static void blocks_lie_alike_in_c_and_glsl(void **state)
     DRAW(light_count), DRAW(seed), DRAW(shards);
     MATERIAL(color), MATERIAL(color_variation), MATERIAL(warmth_variation), MATERIAL(radius),
         MATERIAL(tip_ratio);
-    MATERIAL(opacity), MATERIAL(ambient), MATERIAL(diffuse), MATERIAL(specular1);
+    MATERIAL(opacity), MATERIAL(shadow_opacity), MATERIAL(ambient), MATERIAL(diffuse),
+        MATERIAL(specular1);
     MATERIAL(exponent1), MATERIAL(specular2), MATERIAL(exponent2), MATERIAL(shift1_cos);
     MATERIAL(shift1_sin), MATERIAL(shift2_cos), MATERIAL(shift2_sin);
     MATERIAL(lobe_sharpness), MATERIAL(lobe_scale), MATERIAL(lobe_tilt_cos);
@@ -686,6 +723,7 @@ int main(void)
         CLAIM(mesh_hides_the_hair_behind_it_only),
         CLAIM(light_falls_off_by_the_square_of_the_distance),
         CLAIM(a_spot_shines_into_its_cone),
+        CLAIM(a_strand_throws_its_shadow_on_the_mesh),
         CLAIM(no_hair_is_background),
         CLAIM(background_is_exact_beside_hair),
         CLAIM(a_strand_towards_the_eye_is_harmless),

@@ -352,6 +352,7 @@ static void a_scene_file_says_all_that_flags_can_and_more(void **state)
     assert_true(point->kind == LIGHT_POINT && point->position[1] == 2 && point->distance == 1);
     assert_true(spot->kind == LIGHT_SPOT && spot->direction[1] == -1 && spot->distance == 2.5f);
     assert_true(spot->inner_deg == 20 && spot->outer_deg == 30);
+    assert_true(scene.lights[0].shadow && !scene.lights[1].shadow && spot->shadow);
     scene_destroy(&scene);
 }
 
@@ -398,6 +399,7 @@ static void without_lights_there_are_two_and_an_empty_list_means_none(void **sta
     Error error;
     assert_read(&scene, "a.tfx -o x/");
     assert_true(scene.lights[0].intensity > scene.lights[1].intensity);
+    assert_true(scene.lights[0].shadow && !scene.lights[1].shadow);
     for (int i = 0; i < 2; i++) {
         const float *d = scene.lights[i].direction;
         assert_true(fabsf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] - 1) < 1e-6f);
@@ -587,6 +589,8 @@ static void wrong_scene_files_are_refused_with_place_and_expectation(void **stat
          "'inner' is 50 deg, expected less than 'outer', 45 deg"},
         {"{" HAIR ", \"lights\": [{\"direction\": [0, 0, 1], \"color\": 7}]}",
          "lights[0].color: got 7"},
+        {"{" HAIR ", \"lights\": [{\"direction\": [0, 0, 1], \"shadow\": 1}]}",
+         "lights[0].shadow: got 1, expected true or false"},
         {"{" HAIR ", \"lights\": [{\"direction\": [0, 0, 1], \"intensity\": -1}]}",
          "lights[0].intensity: got -1"},
         {"{" HAIR ", \"lights\": [1,2,3,4,5,6,7,8,9]}", "got 9 lights, expected 8 at most"},

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+// How much of a light reaches a point (needs shadow.h).
+//   SHADOW 0: all   1: approximated deep shadow map, as TressFX has it   2: deep opacity map
+//   SHADOW_BY_MESH 1: the mesh throws shadows, too
+
+#if SHADOW
+layout(binding = BIND_DEPTHS) uniform samplerBuffer shadow_depths;
+#if SHADOW == 1
+layout(binding = BIND_LAYERS) uniform usamplerBuffer shadow_first;
+#else
+layout(binding = BIND_LAYERS) uniform samplerBuffer shadow_layers;
+#endif
+#if SHADOW_BY_MESH
+layout(binding = BIND_SHADOW_MESH) uniform sampler2D shadow_mesh;
+#endif
+
+#include "shadow_layer.glsl"
+
+int shadow_side = shadow_params.side;
+
+// Of the fibre that is asked for: diameter (m) and opacity to light; 0 for the mesh.
+vec2 shadow_fibre = vec2(0.0);
+
+#if SHADOW == 2
+float mix4(float a, float b, float c, float d, vec2 share)
+{
+    return mix(mix(a, b, share.x), mix(c, d, share.x), share.y);
+}
+
+// Optical depth of all layers before one, and its own by share.
+float texel_depth(int texel, float share)
+{
+    vec2 layer = texelFetch(shadow_layers, texel).xy;
+    return layer.x + share * layer.y;
+}
+
+// A fibre is in the map itself, smeared over the texels beside it and its layer's depth: where it lies
+// it finds OWN_SHARE of its own optical depth -ln(1 - kept) (the middle of a box spread by 1 2 1; all of
+// it where the fibre is wide), by the share of the layer before it.
+const float OWN_SHARE = 0.5;
+
+float light_through_hair(int map, vec2 place, float depth, vec4 of_light)
+{
+    vec2 from = clamp(place - 0.5, 0.0, float(shadow_side) - 1.01), whole = floor(from), share = from - whole;
+    int row = int(whole.y) * shadow_side + int(whole.x), squares = shadow_side * shadow_side;
+    int at = map * squares + row, next = at + shadow_side;
+    float layer = layer_of(depth - mix4(texelFetch(shadow_depths, at).x, texelFetch(shadow_depths, at + 1).x,
+                                        texelFetch(shadow_depths, next).x, texelFetch(shadow_depths, next + 1).x, share));
+    float which = floor(layer), own = layer - which;
+    at = (map * SHADOW_LAYERS + int(which)) * squares + row;
+    next = at + shadow_side;
+    float sum = mix4(texel_depth(at, own), texel_depth(at + 1, own), texel_depth(next, own), texel_depth(next + 1, own), share);
+    float width = shadow_fibre.x * of_light.w, kept = shadow_fibre.y * min(width, 1.0);
+    sum -= own * OWN_SHARE * clamp(width, 1.0, 2.0) * kept * (1.0 + 0.5 * kept);
+    return exp2(-1.44269504 * max(sum, 0.0));
+}
+#else
+// Fibres stand at even distances behind the first, each letting the same share through; 5 x 5 texels
+// with the weights of a cone.
+float light_through_hair(int map, vec2 place, float depth, vec4 of_light)
+{
+    float fibres = shadow_params.fibres * of_light.y, passed = shadow_params.passed, sum = 0.0, weights = 0.0;
+    ivec2 middle = ivec2(place);
+    vec2 off = place - vec2(middle) - 0.5;
+    for (int y = -2; y <= 2; ++y)
+        for (int x = -2; x <= 2; ++x) {
+            ivec2 texel = clamp(middle + ivec2(x, y), ivec2(0), ivec2(shadow_side - 1));
+            uint first = min(texelFetch(shadow_first, (map * shadow_side + texel.y) * shadow_side + texel.x).x,
+                             uint(SHADOW_DEPTHS));
+            float behind = depth - float(int(first)) * (1.0 / float(SHADOW_DEPTHS));
+            float weight = max(3.0 - length(vec2(x, y) - off), 0.0);
+            float count = behind > 1e-4 && first < uint(SHADOW_DEPTHS) ? max(behind * fibres, 1.0) : 0.0;
+            sum += weight * exp2(passed * count);
+            weights += weight;
+        }
+    return sum / weights;
+}
+#endif
+
+#if SHADOW_BY_MESH
+float mesh_lets_through(ivec2 texel, float depth)
+{
+    return texelFetch(shadow_mesh, texel, 0).x < depth ? 0.0 : 1.0;
+}
+
+// The share of the nearest 2 x 2 texels that the mesh does not stand before, weighted evenly as the point moves.
+float light_past_mesh(int light, int map, vec3 x)
+{
+    vec4 place = vec4(x, 1.0) * shadow_params.mesh_from_world[light];
+    int mesh_side = shadow_params.mesh_side;
+    place.xyz /= place.w;
+    float depth = place.z - shadow_params.place[light].z;
+    vec2 from = clamp(place.xy - 0.5, 0.0, float(mesh_side) - 1.01), whole = floor(from), share = from - whole;
+    ivec2 at = ivec2(whole) + ivec2(0, map * mesh_side);
+    float light_00 = mesh_lets_through(at, depth), light_10 = mesh_lets_through(at + ivec2(1, 0), depth);
+    float light_01 = mesh_lets_through(at + ivec2(0, 1), depth), light_11 = mesh_lets_through(at + ivec2(1, 1), depth);
+    return mix(mix(light_00, light_10, share.x), mix(light_01, light_11, share.x), share.y);
+}
+#endif
+#endif
+
+// Share of light `light` that reaches x.
+float light_left(int light, vec3 x)
+{
+#if SHADOW
+    vec4 of_light = shadow_params.place[light];
+    int map = int(of_light.x);
+    if (map < 0) return 1.0;
+    vec4 place = vec4(x, 1.0) * shadow_params.from_world[light];
+    vec2 texel = place.xy / place.w;
+    // Beside the hair's map no hair stands in the light; before its first depth neither.
+    float left = light_through_hair(map, texel, place.z, of_light);
+    left = any(lessThan(texel, vec2(0.0))) || any(greaterThan(texel, vec2(shadow_side))) ? 1.0 : left;
+#if SHADOW_BY_MESH
+    left *= light_past_mesh(light, map, x);
+#endif
+    return left;
+#else
+    return 1.0;
+#endif
+}

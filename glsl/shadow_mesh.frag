@@ -1,0 +1,4 @@
+// SPDX-License-Identifier: MIT
+// Only depth is kept.
+
+void main() {}

@@ -1,0 +1,431 @@
+// SPDX-License-Identifier: MIT
+#include "fibre.h"
+#include "hair_fixture.h"
+#include "render_shadow.h"
+#include "render_uniforms.h"
+#include "shadow_reference.h"
+#include "strands_make.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static const Light ABOVE = {
+    .direction = {0, 1, 0}, .color = {1, 1, 1}, .intensity = 1, .shadow = true};
+
+// Hair and mesh with both judgements of the light that reaches a point.
+typedef struct Stage {
+    Strands strands;
+    Hair hair;
+    SectionParams material;
+    ReferenceItem item;
+    ReferenceScene reference_scene;
+    ShadowReference reference;
+    ShadowCaster casters[8];
+    ShadowScene scene;
+    RenderMesh mesh;
+    RenderShadow shadow;
+    bool on_fibre; // points that are asked for lie in the middle of fibres
+    Light light;
+} Stage;
+
+#define NEEDED(call)                                                                               \
+    do {                                                                                           \
+        Error error_ = {{0}};                                                                      \
+        Error *error = &error_;                                                                    \
+        if ((call) != RESULT_OK) fail_msg("%s", error_.text);                                      \
+    } while (0)
+
+static void assert_near(double got, double expected, double tolerance)
+{
+    if (!(fabs(got - expected) <= tolerance)) fail_msg("got %.9g, expected %.9g", got, expected);
+}
+
+// Takes the strands over.
+static void stage_open(Stage *stage, Strands strands, float radius, float opacity, const Mesh *mesh,
+                       const Light *light)
+{
+    *stage = (Stage){.strands = strands, .light = *light};
+    const GpuLimits *limits = &fixture_gpu()->limits;
+    NEEDED(section_params_create(&stage->material, error));
+    stage->material.tip_ratio = 1;
+    stage->material.shadow_opacity = opacity;
+    NEEDED(hair_create(&stage->hair, &stage->strands, 0, limits, error));
+    stage->item =
+        (ReferenceItem){.strands = &stage->strands, .material = &stage->material, .radius = radius};
+    stage->reference_scene = (ReferenceScene){.items = &stage->item, .item_count = 1, .mesh = mesh};
+    NEEDED(shadow_reference_create(&stage->reference, &stage->reference_scene, light,
+                                   (const float[3]){0}, error));
+    stage->scene = (ShadowScene){.lights = &stage->light,
+                                 .light_count = 1,
+                                 .casters = stage->casters,
+                                 .mesh = &stage->mesh,
+                                 .head_rotation = {0, 0, 0, 1},
+                                 .revision = 1};
+    for (uint32_t b = 0; b < stage->hair.batch_count && b < 8; ++b)
+        stage->casters[stage->scene.caster_count++] =
+            (ShadowCaster){&stage->hair.batches[b], radius, 1, opacity};
+    if (mesh)
+        NEEDED(render_mesh_create(&stage->mesh, mesh, (const float[3]){1, 1, 1}, SHADOW_NONE,
+                                  limits, error));
+}
+
+static void stage_close(Stage *stage)
+{
+    render_shadow_destroy(&stage->shadow);
+    render_mesh_destroy(&stage->mesh);
+    hair_destroy(&stage->hair);
+    shadow_reference_destroy(&stage->reference);
+    section_params_destroy(&stage->material);
+    strands_destroy(&stage->strands);
+}
+
+static void draw_maps(Stage *stage, Shadow kind, int side, float spacing)
+{
+    GpuTimer timer;
+    GpuBuffer uniforms = {0};
+    gpu_timer_create(&timer, false, true);
+    DrawParams draw = {.head_rotation = {0, 0, 0, 1}};
+    gpu_uniforms_set(&uniforms, BIND_DRAW, &draw, sizeof draw);
+    render_shadow_destroy(&stage->shadow);
+    const ShadowOptions options = {kind, side, spacing};
+    NEEDED(render_shadow_create(&stage->shadow, &fixture_gpu()->limits, &options, error));
+    NEEDED(render_shadow_draw(&stage->shadow, &stage->scene, &timer, error));
+    gpu_timer_destroy(&timer);
+    gpu_buffer_destroy(&uniforms);
+}
+
+// What the maps say of `count` points; the caller frees it.
+static float *light_left(Stage *stage, const float (*points)[4], uint32_t count)
+{
+    GLuint program;
+    GpuBuffer in, out;
+    const GpuLimits *limits = &fixture_gpu()->limits;
+    const ShaderDefine defines[] = {{"SHADOW", stage->shadow.options.kind},
+                                    {"SHADOW_BY_MESH", stage->mesh.triangle_count > 0},
+                                    {NULL, 0}};
+    uint32_t groups = (count + 7) / 8;
+    float *shares = malloc(groups * 8 * sizeof *shares);
+    float(*whole)[4] = calloc(groups * 8, sizeof *whole);
+    assert_true(shares && whole);
+    memcpy(whole, points, count * sizeof *points);
+    NEEDED(shader_build_compute(&program, "check_shadow.comp", defines, error));
+    NEEDED(gpu_buffer_create(&in, limits, "points", groups * 8 * 16, whole, 0, error));
+    NEEDED(gpu_buffer_create(&out, limits, "shares", groups * 8 * 4, NULL, 0, error));
+    gpu_buffer_bind_storage(&in, 0);
+    gpu_buffer_bind_storage(&out, 1);
+    render_shadow_bind(&stage->shadow);
+    glUseProgram(program);
+    glUniform2f(0, stage->on_fibre ? 2 * stage->item.radius : 0, stage->material.shadow_opacity);
+    glDispatchCompute(groups, 1, 1);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, count * 4, shares);
+    gpu_buffer_destroy(&in);
+    gpu_buffer_destroy(&out);
+    glDeleteProgram(program);
+    free(whole);
+    return shares;
+}
+
+static float light_at(Stage *stage, float x, float y, float z)
+{
+    const float point[1][4] = {{x, y, z, 1}};
+    float *share = light_left(stage, point, 1), value = *share;
+    free(share);
+    return value;
+}
+
+static void expect_light(Stage *stage, float x, float y, float z, double expected, double tolerance)
+{
+    assert_near((double)light_at(stage, x, y, z), expected, tolerance);
+}
+
+static double exact_at(const Stage *stage, double x, double y, double z)
+{
+    return shadow_reference_light(&stage->reference, (const double[3]){x, y, z}, 0);
+}
+
+// `layers` straight strands, 1 m long and 2 * radius wide, at y = 0, -0.1, -0.2 ...
+static Strands make_layers(uint32_t layers)
+{
+    enum { VERTICES = 5 };
+    Strands strands;
+    NEEDED(strands_create(&strands, layers, layers * VERTICES, error));
+    for (uint32_t s = 0; s <= layers; ++s) strands.first[s] = s * VERTICES;
+    for (uint32_t v = 0; v < strands.vertex_count; ++v) {
+        strands.position[v][0] = (float)(v % VERTICES) / (VERTICES - 1) - 0.5f;
+        strands.position[v][1] = -0.1f * (float)(v / VERTICES);
+    }
+    return strands;
+}
+
+static Mesh make_square(float y, float half)
+{
+    Mesh mesh;
+    NEEDED(mesh_create(&mesh, 4, 2, error));
+    for (int v = 0; v < 4; ++v) {
+        memcpy(mesh.position[v], (float[3]){v & 1 ? half : -half, y, v & 2 ? half : -half}, 12);
+        mesh.normal[v][1] = 1;
+    }
+    const uint32_t triangles[2][3] = {{0, 1, 2}, {2, 1, 3}};
+    memcpy(mesh.triangle, triangles, sizeof triangles);
+    return mesh;
+}
+
+static void exact_light_multiplies_through_layers(void **state)
+{
+    (void)state;
+    Stage stage;
+    stage_open(&stage, make_layers(5), 0.01f, 0.3f, NULL, &ABOVE);
+    assert_near(exact_at(&stage, 0.1, 1, 0), 1, 0); // before all of them
+    for (int n = 1; n <= 5; ++n) {
+        assert_near(exact_at(&stage, 0.1, 0.05 - 0.1 * n, 0.0099), pow(0.7, n), 1e-6);
+        assert_near(exact_at(&stage, 0.1, 0.05 - 0.1 * n, 0.0101), 1, 0);
+    }
+    assert_near(exact_at(&stage, 0.51, -1, 0), 1, 0); // beyond the ends
+    const double on_the_second[3] = {0.1, -0.1 - 1e-4, 0};
+    assert_near(shadow_reference_light(&stage.reference, on_the_second, 0.01), 0.7, 1e-6);
+    stage_close(&stage);
+}
+
+// Every straight way through a bent ribbon crosses it once: no joint is counted twice or left out.
+static void exact_light_meets_a_joint_once(void **state)
+{
+    (void)state;
+    enum { VERTICES = 12 };
+    Strands strands;
+    Stage stage;
+    NEEDED(strands_create(&strands, 1, VERTICES, error));
+    strands.first[1] = VERTICES;
+    for (int j = 0; j < VERTICES; ++j) {
+        strands.position[j][0] = 0.5f * cosf(0.3f * (float)j);
+        strands.position[j][2] = 0.5f * sinf(0.3f * (float)j);
+        strands.position[j][1] = 0.03f * (float)j;
+    }
+    stage_open(&stage, strands, 0.05f, 0.4f, NULL, &ABOVE);
+    for (int i = 5; i < 595; ++i) // not at the ends, which are square
+        for (int k = -4; k <= 4; ++k) {
+            double angle = 3.3 * i / 600, r = 0.495 + 0.01 * k;
+            assert_near(exact_at(&stage, r * cos(angle), -1, r * sin(angle)), 0.6, 1e-6);
+        }
+    stage_close(&stage);
+}
+
+static void exact_light_ends_at_the_mesh(void **state)
+{
+    (void)state;
+    Stage stage;
+    Mesh mesh = make_square(-0.05f, 0.3f);
+    stage_open(&stage, make_layers(2), 0.01f, 0.3f, &mesh, &ABOVE);
+    assert_near(exact_at(&stage, 0.1, -0.04, 0), 0.7, 1e-6);
+    assert_near(exact_at(&stage, 0.1, -0.06, 0), 0, 0);
+    assert_near(exact_at(&stage, 0.1, -0.06, 0.299), 0, 0);
+    assert_near(exact_at(&stage, 0.4, -0.2, 0), 0.49, 1e-6);
+    stage_close(&stage);
+    mesh_destroy(&mesh);
+}
+
+static const Light LAMP = {.kind = LIGHT_POINT,
+                           .position = {0.3f, 2, 0.1f},
+                           .color = {1, 1, 1},
+                           .intensity = 1,
+                           .distance = 1,
+                           .shadow = true};
+
+// Before a lamp what lies half as far off is twice as large: behind a fibre at half the way to the
+// plane y = -2 the shadow is twice as wide.
+static void exact_light_of_a_lamp_spreads(void **state)
+{
+    (void)state;
+    Stage stage;
+    stage_open(&stage, make_layers(1), 0.01f, 0.3f, NULL, &LAMP);
+    double x = 2 * 0.1 - 0.3;                      // below the fibre's point 0.1
+    for (double side = -1; side <= 1; side += 2) { // the fibre's middle lies at z = -0.1 there
+        assert_near(exact_at(&stage, x, -2, -0.1 + side * 0.0199), 0.7, 1e-6);
+        assert_near(exact_at(&stage, x, -2, -0.1 + side * 0.0203), 1, 0);
+    }
+    assert_near(exact_at(&stage, x, 0.01, -0.1), 1, 0);
+    assert_near(exact_at(&stage, 0.3, 3, 0.1), 1, 0); // behind the lamp
+    stage_close(&stage);
+}
+
+// Strands much wider than a texel, so that what is smoothed is beside them. In each gap the layer
+// before lies wholly before the point, whatever the map's own layers are; the rest is the rounding
+// of sums to steps of 2^-16, some thousand of them, and points that share a texel.
+static void layers_of_hair_multiply(void **state)
+{
+    (void)state;
+    Stage stage;
+    for (int lamp = 0; lamp < 2; ++lamp) {
+        stage_open(&stage, make_layers(5), 0.06f, 0.3f, NULL, lamp ? &LAMP : &ABOVE);
+        draw_maps(&stage, SHADOW_DOM, 256, 1);
+        expect_light(&stage, 0.1f, 1, 0, 1, 1e-6);
+        for (int n = 1; n <= 5; ++n) {
+            float y = 0.05f - 0.1f * (float)n;
+            assert_near(exact_at(&stage, 0.1, (double)y, 0), pow(0.7, n), 1e-6);
+            expect_light(&stage, 0.1f, y, 0, pow(0.7, n), 0.03);
+            expect_light(&stage, 0.1f, y, 0.2f, 1, 1e-6);
+        }
+        expect_light(&stage, 3, -2, 0, 1, 0); // beside the map
+        stage_close(&stage);
+    }
+}
+
+// Behind one fibre both schemes have its opacity, and before it all light.
+static void one_fibre_takes_its_opacity(void **state)
+{
+    (void)state;
+    for (Shadow kind = SHADOW_APPROX; kind <= SHADOW_DOM; ++kind) {
+        Stage stage;
+        stage_open(&stage, make_layers(1), 0.06f, 0.4f, NULL, &ABOVE);
+        draw_maps(&stage, kind, 256, 1e5f);
+        expect_light(&stage, 0.1f, 0.1f, 0, 1, 1e-6);
+        expect_light(&stage, 0.1f, -0.1f, 0, 0.6, 0.02);
+        expect_light(&stage, 0.1f, -0.1f, 0.3f, 1, 1e-6);
+        stage_close(&stage);
+    }
+}
+
+static void mesh_stands_in_the_light(void **state)
+{
+    (void)state;
+    Mesh mesh = make_square(-0.05f, 0.3f);
+    for (int lamp = 0; lamp < 2; ++lamp) {
+        Stage stage;
+        stage_open(&stage, make_layers(2), 0.06f, 0.3f, &mesh, lamp ? &LAMP : &ABOVE);
+        draw_maps(&stage, SHADOW_DOM, 256, 1);
+        expect_light(&stage, 0.1f, -0.04f, 0, 0.7, 0.03); // before it
+        expect_light(&stage, 0.1f, -0.06f, 0, 0, 1e-6);   // behind it
+        expect_light(&stage, 0.1f, -0.08f, 0.25f, 0, 1e-6);
+        expect_light(&stage, 0.1f, -0.08f, 0.4f, 1, 1e-6); // beside it
+        stage_close(&stage);
+    }
+    mesh_destroy(&mesh);
+}
+
+static void maps_are_kept_while_nothing_changes(void **state)
+{
+    (void)state;
+    Stage stage;
+    GpuTimer timer;
+    gpu_timer_create(&timer, false, true);
+    stage_open(&stage, make_layers(2), 0.06f, 0.3f, NULL, &ABOVE);
+    draw_maps(&stage, SHADOW_DOM, 64, 1);
+    const struct {
+        uint64_t revision;
+        float way;
+        uint32_t drawn;
+    } pictures[] = {{1, 0, 0},    {2, 0, 1},    {2, 0, 0},   {2, 0.5f, 1},
+                    {2, 0.5f, 0}, {0, 0.5f, 1}, {0, 0.5f, 1}};
+    assert_int_equal(stage.shadow.maps_drawn, 1);
+    for (size_t i = 0; i < sizeof pictures / sizeof *pictures; ++i) {
+        stage.scene.revision = pictures[i].revision;
+        stage.light.direction[0] = pictures[i].way;
+        NEEDED(render_shadow_draw(&stage.shadow, &stage.scene, &timer, error));
+        assert_int_equal(stage.shadow.maps_drawn, pictures[i].drawn);
+    }
+    stage.light.shadow = false;
+    NEEDED(render_shadow_draw(&stage.shadow, &stage.scene, &timer, error));
+    assert_int_equal(stage.shadow.maps_drawn, 0);
+    expect_light(&stage, 0.1f, -0.5f, 0, 1, 0);
+    stage_close(&stage);
+    gpu_timer_destroy(&timer);
+}
+
+static void broken_positions_leave_the_rest_its_shadow(void **state)
+{
+    (void)state;
+    const float values[] = {NAN, INFINITY, -1e30f, 1e7f};
+    for (size_t i = 0; i < sizeof values / sizeof *values; ++i) {
+        Stage stage;
+        Strands strands = make_layers(2);
+        strands.position[7][i % 3] = values[i];
+        stage_open(&stage, strands, 0.06f, 0.4f, NULL, &ABOVE);
+        draw_maps(&stage, SHADOW_DOM, 256, 1);
+        expect_light(&stage, 0.1f, -0.05f, 0, 0.6, 0.02);
+        stage_close(&stage);
+    }
+}
+
+typedef struct Fit {
+    double rms, bias;
+} Fit;
+
+// Against the exact light at every 7th vertex. Most of the difference is the exact light's own
+// noise: it steps by the opacity at every fibre's edge, the maps average over texels.
+static Fit judge(Stage *stage)
+{
+    const Strands *strands = &stage->strands;
+    uint32_t count = 0;
+    float(*points)[4] = malloc((strands->vertex_count / 7 + 1) * sizeof *points);
+    assert_non_null(points);
+    for (uint32_t v = 0; v < strands->vertex_count; v += 7, ++count)
+        memcpy(points[count], strands->position[v], 12);
+    stage->on_fibre = true;
+    float *shares = light_left(stage, (const float(*)[4])points, count);
+    Fit fit = {0};
+    for (uint32_t i = 0; i < count; ++i) {
+        const double x[3] = {(double)points[i][0], (double)points[i][1], (double)points[i][2]};
+        double off = (double)shares[i] -
+                     shadow_reference_light(&stage->reference, x, (double)stage->item.radius);
+        fit.rms += off * off / count;
+        fit.bias += off / count;
+    }
+    fit.rms = sqrt(fit.rms);
+    free(points);
+    free(shares);
+    return fit;
+}
+
+// The bounds are the figures as measured (docs/renderer.md), and a little more.
+static void deep_maps_are_near_the_exact_light(void **state)
+{
+    (void)state;
+    const struct {
+        StrandsStyle style;
+        uint32_t count, vertices;
+        double rms;
+    } sets[] = {{STRANDS_STYLE_STRAIGHT, 10000, 32, 0.2},
+                {STRANDS_STYLE_CURLS, 10000, 32, 0.19},
+                {STRANDS_STYLE_FUR, 37747, 8, 0.22}};
+    Light light = ABOVE;
+    memcpy(light.direction, (float[3]){0.36f, 0.8f, 0.48f}, sizeof light.direction);
+    for (size_t i = 0; i < sizeof sets / sizeof *sets; ++i) {
+        StrandsRecipe recipe = strands_recipe_default(sets[i].style);
+        Strands strands;
+        Stage stage;
+        recipe.count = sets[i].count, recipe.vertices = sets[i].vertices;
+        NEEDED(strands_make(&strands, &recipe, error));
+        stage_open(&stage, strands, fibre_auto_radius(&strands, 0), 0.33f, NULL, &light);
+        draw_maps(&stage, SHADOW_DOM, 256, 200);
+        Fit deep = judge(&stage);
+        draw_maps(&stage, SHADOW_APPROX, 256, 200);
+        Fit approximated = judge(&stage);
+        print_message("%u x %u: off by %.3f (mean %+.3f) dom, %.3f (%+.3f) approx\n", recipe.count,
+                      recipe.vertices, deep.rms, deep.bias, approximated.rms, approximated.bias);
+        assert_true(deep.rms < sets[i].rms && fabs(deep.bias) < 0.02);
+        assert_true(deep.rms < approximated.rms);
+        stage_close(&stage);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(exact_light_multiplies_through_layers),
+        cmocka_unit_test(exact_light_meets_a_joint_once),
+        cmocka_unit_test(exact_light_ends_at_the_mesh),
+        cmocka_unit_test(exact_light_of_a_lamp_spreads),
+        cmocka_unit_test(layers_of_hair_multiply),
+        cmocka_unit_test(one_fibre_takes_its_opacity),
+        cmocka_unit_test(mesh_stands_in_the_light),
+        cmocka_unit_test(maps_are_kept_while_nothing_changes),
+        cmocka_unit_test(broken_positions_leave_the_rest_its_shadow),
+        cmocka_unit_test(deep_maps_are_near_the_exact_light),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
