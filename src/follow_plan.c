@@ -7,8 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { NEIGHBOURS = 16, MOST_TRIANGLES = NEIGHBOURS * (NEIGHBOURS - 1) / 2, RADIUS_SAMPLES = 256 };
-static const double MOST_SIDE = 4; // radii
+enum {
+    NEIGHBOURS = 32,
+    MOST_TRIANGLES = NEIGHBOURS * (NEIGHBOURS - 1) / 2,
+    RADIUS_SAMPLES = 256,
+    SHARE_NEIGHBOURS = 16
+};
+static const double MOST_SIDE = 6; // radii
 static const double LEAST_COSINE = 0.5;
 
 static float find_radius(const SectionParams *params, const Strands *strands)
@@ -289,18 +294,25 @@ void follow_plan_destroy(FollowPlan *plan)
     *plan = (FollowPlan){0};
 }
 
-// The distance from strand s's root to the nearest elsewhere, 0 if there is none.
-static double nearest_root(const Strands *strands, uint32_t s)
+// The radius of a disc that is one root's share of the scalp around strand s: the area up to its
+// k-th neighbour in another place, over k. 0 if there is none. (The nearest neighbours alone say
+// little where roots stand in rows.)
+static double share_radius(const Strands *strands, uint32_t s)
 {
     const float *from = vertex(strands, s, 0);
-    float best = INFINITY;
+    float nearest[SHARE_NEIGHBOURS]; // squares, ascending
+    int count = 0;
     for (uint32_t t = 0; t < strands->strand_count; ++t) {
         const float *to = vertex(strands, t, 0);
         float square = 0;
         for (int k = 0; k < 3; ++k) square += (to[k] - from[k]) * (to[k] - from[k]);
-        best = square > 0 && square < best ? square : best;
+        bool full = count == SHARE_NEIGHBOURS;
+        if (!(square > 0) || (full && square >= nearest[count - 1])) continue;
+        int at = full ? count - 1 : count++;
+        for (; at > 0 && nearest[at - 1] > square; --at) nearest[at] = nearest[at - 1];
+        nearest[at] = square;
     }
-    return isinf(best) ? 0 : sqrt((double)best);
+    return count ? sqrt((double)nearest[count - 1] / count) : 0;
 }
 
 static int compare(const void *a, const void *b)
@@ -314,7 +326,7 @@ float follow_auto_radius(const Strands *strands)
     double distance[RADIUS_SAMPLES], longest = 0;
     uint32_t stride = strands->strand_count / RADIUS_SAMPLES + 1, count = 0;
     for (uint32_t s = 0; s < strands->strand_count; s += stride) {
-        double found = nearest_root(strands, s);
+        double found = share_radius(strands, s);
         if (found > 0) distance[count++] = found;
     }
     if (count) {

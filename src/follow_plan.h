@@ -44,10 +44,10 @@ typedef struct FollowPlan {
 // Offset: roots lie evenly in a disc of the radius around the guide's, perpendicular to its first
 // segment.
 //
-// Interpolate: files know no triangles between roots, so they are found: a guide and two of its 16
+// Interpolate: files know no triangles between roots, so they are found: a guide and two of its 32
 // nearest neighbours, if the circle around the three, in the plane that fits the neighbourhood
 // best, holds no other of them (Delaunay). Triangles that might bridge a parting are left out:
-// those with a side of more than 4 radii, or whose strands lead to middles or tips in directions
+// those with a side of more than 6 radii, or whose strands lead to middles or tips in directions
 // more than 60 degrees apart. Followers lie evenly in that third of its triangles that is
 // nearest to the guide; a guide without triangles has its followers offset.
 //
@@ -56,7 +56,7 @@ Result follow_plan_create(FollowPlan *plan, const Strands *strands, const uint32
                           uint32_t count, const FollowOptions *options, Error *error);
 void follow_plan_destroy(FollowPlan *plan);
 
-// A radius (m, > 0) for which discs around the roots about cover the scalp: the median distance
-// from a root to the nearest in another place, of at most 256 of them. 1/50 of the longest strand
-// where there is none.
+// A radius (m, > 0) for which discs around the roots about cover the scalp: that of a disc as large
+// as a root's share of the scalp, by the distance to its 16th neighbour in another place; the
+// median of at most 256 roots. 1/50 of the longest strand where no two roots differ.
 float follow_auto_radius(const Strands *strands);
