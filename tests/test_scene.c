@@ -158,6 +158,17 @@ static void write_man(FILE *stream)
     help_write_man(stream, "1.2.3");
 }
 
+// Where the help describes the flag: at the begin of a line, or behind the letter that stands for
+// it. Other flags' help may name it before.
+static const char *find_entry(const char *help, const char *flag)
+{
+    for (const char *at = help; (at = strstr(at, flag)); ++at) {
+        bool first = strncmp(at - 3, "\n  ", 3) == 0, behind_letter = strncmp(at - 2, ", ", 2) == 0;
+        if ((first || behind_letter) && strchr(" \n", at[strlen(flag)])) return at;
+    }
+    return NULL;
+}
+
 static void help_names_every_flag_with_its_default(void **state)
 {
     (void)state;
@@ -167,10 +178,8 @@ static void help_names_every_flag_with_its_default(void **state)
         char flag[64], shown[80];
         snprintf(flag, sizeof flag, "--%s", info->name);
         for (char *at = flag; *at; at++) *at = *at == '_' ? '-' : *at;
-        const char *entry = help;
-        do entry = strstr(entry + 1, flag);
-        while (entry && (entry[-1] != ' ' || !strchr(" \n", entry[strlen(flag)])));
-        assert_non_null(entry);
+        const char *entry = find_entry(help, flag);
+        if (!entry) fail_msg("--help lacks %s", flag);
         assert_non_null(strstr(table, flag));
         snprintf(shown, sizeof shown, "default %s]", info->default_text);
         const char *next = strstr(entry, "\n  --"), *found = strstr(entry, shown);
