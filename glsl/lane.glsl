@@ -7,7 +7,7 @@ const float SAFE_MOVE = 1e15; // metres: keeps squares finite whatever the head 
 
 struct Lane {
     int address; // of the root
-    vec3 root, root_old;
+    vec3 root, root_old, root_velocity;
     float length;  // of the strand
     vec3 push;     // what forces add to a velocity
     vec4 rotation; // of the head
@@ -21,6 +21,7 @@ Lane lane_open(int strand)
     vec4 root_rest = texelFetch(rest, lane.address);
     lane.root = root_position(root_rest);
     lane.root_old = texelFetch(position_before, lane.address).xyz;
+    lane.root_velocity = (lane.root - lane.root_old) / step_params.dt;
     lane.length = root_rest.w;
     lane.push = kick(vec3(0.0), strand_wind(texelFetch(strand_id, strand).x, lane.root));
     lane.rotation = step_params.head_rotation;

@@ -1,18 +1,38 @@
 // SPDX-License-Identifier: MIT
-// A random order of 0 .. count - 1 without memory: numbers in fours, each four in an order of its seed's choice (exclusive or by 0 .. 3);
-// those beyond count are passed over. Not more random than that: the accuracy of a step is best from root to tip. Needs hash.glsl.
+// A random order of 0 .. count - 1 without memory: a bijection on the numbers of as many bits (three rounds of multiplying by an odd number,
+// adding, and folding the upper half of the bits into the lower), in which those beyond count are passed over. Needs hash.glsl.
+
+const int SHUFFLE_ROUNDS = 3;
 
 struct Shuffle {
-    uint at, flip, count;
+    uint at, count, size; // place in the order; numbers wanted; places, up to 2 count
+    int fold;
+    uint factor[SHUFFLE_ROUNDS], shift[SHUFFLE_ROUNDS];
 };
 
-Shuffle shuffle_open(uint seed, uint count) { return Shuffle(0u, hash_bits(seed) >> 30, count); }
-
-uint shuffle_next(inout Shuffle s)
+// From place `at` on.
+Shuffle shuffle_open(uint seed, uint count, uint at)
 {
-    uint number;
-    do
-        number = s.at++ ^ s.flip;
-    while (number >= s.count && s.at < s.count + 4u); // that a call too many ends
-    return number;
+    Shuffle s;
+    int bits = max(findMSB(count - 1u) + 1, 1);
+    s.at = at, s.count = count, s.size = 1u << bits, s.fold = (bits + 1) / 2;
+    for (int i = 0; i < SHUFFLE_ROUNDS; ++i) {
+        s.factor[i] = hash_bits(seed + uint(2 * i)) | 1u;
+        s.shift[i] = hash_bits(seed + uint(2 * i + 1));
+    }
+    return s;
+}
+
+// The next number before place `end`; -1: none is left.
+int shuffle_next(inout Shuffle s, uint end)
+{
+    while (s.at < end) {
+        uint number = s.at++;
+        for (int i = 0; i < SHUFFLE_ROUNDS; ++i) {
+            number = (number * s.factor[i] + s.shift[i]) & (s.size - 1u);
+            number ^= number >> s.fold;
+        }
+        if (number < s.count) return int(number);
+    }
+    return -1;
 }

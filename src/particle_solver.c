@@ -188,8 +188,9 @@ static HeadPose pose_between(const HeadPose *a, const HeadPose *b, float t)
 static void dispatch_phases(ParticleState *state, StepParams *uniforms)
 {
     const ParticleRecipe *recipe = state->recipe;
-    int phases =
-        recipe->phases && !state->programs.in_registers ? recipe->phases(state->params) : 1;
+    int phases = recipe->phases && !state->programs.in_registers
+                     ? recipe->phases(state->params, state->hair)
+                     : 1;
     for (int phase = 0; phase < phases; ++phase) {
         uniforms->phase = (uint32_t)phase;
         for (uint32_t i = 0; i < state->hair->batch_count; ++i) dispatch(state, i, uniforms);

@@ -32,7 +32,7 @@ typedef struct ParticleRecipe {
     int (*substeps)(const SolverStep *step, const SectionParams *params, const Hair *hair);
     // How many dispatches (StepParams.phase) a (sub-)step takes where strands are not in registers:
     // CPU drivers end loops silently after 65,535 iterations in all of an invocation; NULL: 1.
-    int (*phases)(const SectionParams *params);
+    int (*phases)(const SectionParams *params, const Hair *hair);
 } ParticleRecipe;
 
 // Positions live in Hair's own buffer, so that a pose costs nothing; the first pose puts the style

@@ -13,7 +13,7 @@ static void fill(StepParams *uniforms, const SolverStep *step, const SectionPara
 {
     float style = params->style < 1 ? params->style : 0.999999f;
     bool thesis = is_thesis(params);
-    uniforms->own[0][0] = thesis ? 0 : step_style_pull(uniforms, params);
+    if (!thesis) step_midpoint(uniforms, step, params);
     uniforms->own[0][1] = thesis ? params->style_stiffness * style / (1 - style) : 0;
     uniforms->passes = step->shuffle;
 }
@@ -24,15 +24,31 @@ static void define(ShaderDefine *defines, const SectionParams *params)
     defines[1] = (ShaderDefine){"THESIS", is_thesis(params)};
 }
 
+// As many dispatches as let each turn MOST_LINKS links (emulation.comp), of the places in a random
+// order, whose number is a power of two.
+static int phases(const SectionParams *params, const Hair *hair)
+{
+    enum { MOST_LINKS = 40000 };
+    (void)params;
+    int most = 1;
+    for (uint32_t i = 0; i < hair->batch_count; ++i) {
+        int count = (int)hair->batches[i].vertex_count - 1, places = 2;
+        while (places < count) places *= 2;
+        int needed = (places + MOST_LINKS / count - 1) / (MOST_LINKS / count);
+        if (needed > most) most = needed;
+    }
+    return most;
+}
+
 static const ParticleRecipe RECIPE = {
     .label = "sim_emulation",
     .shader = "emulation.comp",
-    .most_in_registers =
-        32, // shared memory: 64 lanes of a GPU fill the 32 KiB that every driver has
-    .scratch = 1,
-    .most_vertices = 240, // each particle pulls all others
+    .most_in_registers = 32,
+    .scratch = 2,
+    .most_vertices = 5000, // four sweeps beside a dispatch's links
     .fill = fill,
     .define = define,
+    .phases = phases,
 };
 
 static const char *caution(const SectionParams *params)

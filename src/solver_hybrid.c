@@ -3,8 +3,7 @@
 
 static void fill(StepParams *uniforms, const SolverStep *step, const SectionParams *params)
 {
-    (void)step;
-    uniforms->own[0][0] = step_style_pull(uniforms, params);
+    step_midpoint(uniforms, step, params);
 }
 
 static void define(ShaderDefine *defines, const SectionParams *params)
@@ -17,7 +16,7 @@ static const ParticleRecipe RECIPE = {
     .shader = "hybrid.comp",
     .most_in_registers = 32,
     .scratch = 2,
-    .most_vertices = 16000, // four sweeps
+    .most_vertices = 12000, // five sweeps
     .fill = fill,
     .define = define,
 };

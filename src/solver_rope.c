@@ -41,8 +41,9 @@ static void define(ShaderDefine *defines, const SectionParams *params)
     defines[1] = (ShaderDefine){"STYLED", params->style > 0};
 }
 
-static int phases(const SectionParams *params)
+static int phases(const SectionParams *params, const Hair *hair)
 {
+    (void)hair;
     return params->rope_iterations;
 }
 

@@ -20,8 +20,9 @@ static void define(ShaderDefine *defines, const SectionParams *params)
     defines[0] = (ShaderDefine){"IMPLICIT", strcmp(params->variant, "explicit") != 0};
 }
 
-static int two_phases(const SectionParams *params)
+static int two_phases(const SectionParams *params, const Hair *hair)
 {
+    (void)hair;
     (void)params;
     return 2; // there and back
 }

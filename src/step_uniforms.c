@@ -40,6 +40,23 @@ float step_style_pull(const StepParams *uniforms, const SectionParams *params)
     return w > 0 ? (float)(w / (1 - (double)params->style + w)) : 0;
 }
 
+void step_midpoint(StepParams *uniforms, const SolverStep *step, const SectionParams *params)
+{
+    const double most_style = 0.999999; // springs of 1 would be infinitely stiff
+    double h = step->dt / 2, c = (double)params->drag,
+           style = fmin((double)params->style, most_style);
+    double k = (double)params->style_stiffness * style / (1 - style);
+    step_drag_factors(c, h, &uniforms->decay, &uniforms->gain);
+    // Two half kicks about a spring at rest add (1 + e^{-ch})/(1 + e^{-2ch}) gain each: as much of
+    // the spring keeps the balance exact.
+    double decay = (double)uniforms->decay,
+           z = k * h * (double)uniforms->gain * (1 + decay) / (1 + decay * decay);
+    double keep = 1 / (1 + z + z * z / (1 + z));
+    uniforms->own[1][0] = (float)keep;
+    uniforms->own[1][1] = (float)(keep * z / h);
+    uniforms->own[1][2] = (float)k;
+}
+
 uint32_t step_group_size(const Gpu *gpu)
 {
     return gpu->software ? 8 : 64;

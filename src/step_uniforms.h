@@ -23,6 +23,11 @@ StepParams step_uniforms(const SolverStep *step, const SectionParams *params);
 // the share w/(1 + w), w = k dt h f, of the way from a predicted position to the style's. 0 .. 1.
 float step_style_pull(const StepParams *uniforms, const SectionParams *params);
 
+// For solvers by the midpoint rule (glsl/midpoint.glsl): `decay` and `gain` become those of dt/2,
+// own[1] the springs towards the style: keep, draw (1/s) and their stiffness k (1/s^2). They start
+// from rest like any other step: `first` does not matter.
+void step_midpoint(StepParams *uniforms, const SolverStep *step, const SectionParams *params);
+
 // Work groups of `group_size` lanes that cover `count` strands with `strands_per_lane` strands a
 // lane.
 uint32_t step_group_count(uint32_t count, uint32_t group_size, uint32_t strands_per_lane);

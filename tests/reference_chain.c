@@ -29,9 +29,8 @@ void reference_predict(TwinStrand *strand, const TwinStep *step, const SectionPa
     }
 }
 
-// Gaussian elimination of a tridiagonal matrix, rows 1 .. count.
-static void solve_tridiagonal(int count, const double *lower, double *diagonal, const double *upper,
-                              double *right)
+void reference_solve_tridiagonal(int count, const double *lower, double *diagonal,
+                                 const double *upper, double *right)
 {
     for (int i = 2; i <= count; ++i) {
         double share = lower[i] / diagonal[i - 1];
@@ -53,7 +52,7 @@ void reference_solve_lengths(const Vec *r, int n, const double *right, double *l
         upper[j] = j < n - 1 ? -vec_dot(r[j], r[j + 1]) : 0;
         lambda[j] = right[j];
     }
-    solve_tridiagonal(n - 1, lower, diagonal, upper, lambda);
+    reference_solve_tridiagonal(n - 1, lower, diagonal, upper, lambda);
 }
 
 // x_j -= g_j, x_{j-1} += g_j for every segment j; the root stays.
@@ -132,7 +131,7 @@ static void pull_implicitly(const TwinStrand *strand, const Vec *v_old, const Tw
             upper[j] = -stiff[j + 1];
             right[j] = x[j][i] + (j == 1 ? stiff[1] * x[0][i] : 0);
         }
-        solve_tridiagonal(n - 1, lower, diagonal, upper, right);
+        reference_solve_tridiagonal(n - 1, lower, diagonal, upper, right);
         for (int j = 1; j < n; ++j) x[j][i] = right[j];
     }
 }

@@ -4,10 +4,15 @@
 
 #include "twin.h"
 
-// Predicted positions, with the implicit spring towards the style: what chain, hybrid and emulation
-// begin with. strand->v becomes the kicked velocities; predicted[0] is the root's new place.
+// Predicted positions, with the implicit spring towards the style: what chain and the
+// thesis's emulation begin with. strand->v becomes the kicked velocities; predicted[0] is the
+// root's new place.
 void reference_predict(TwinStrand *strand, const TwinStep *step, const SectionParams *params,
                        Vec *predicted);
+
+// Gaussian elimination of a tridiagonal matrix, rows 1 .. count; `right` becomes the solution.
+void reference_solve_tridiagonal(int count, const double *lower, double *diagonal,
+                                 const double *upper, double *right);
 
 // J J^T for unit masses and a fixed root, J the lengths' derivatives along the segments `r` (1 ..
 // n-1): solves it for n - 1 right sides. All arrays count segments from 1.

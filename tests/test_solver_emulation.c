@@ -87,22 +87,22 @@ static void thesis_equals_the_reference_traces(void **state)
 static void long_strands_are_refused(void **state)
 {
     (void)state;
-    static float position[241][3];
-    uint32_t first[2] = {0, 241};
+    static float position[5001][3];
+    uint32_t first[2] = {0, 5001};
     Strands strands = {
-        .strand_count = 1, .vertex_count = 241, .first = first, .position = position};
+        .strand_count = 1, .vertex_count = 5001, .first = first, .position = position};
     Hair hair;
     Solver solver;
     SectionParams params;
     Error error = {{0}};
-    for (int j = 0; j < 241; ++j) position[j][1] = -0.001f * (float)j;
+    for (int j = 0; j < 5001; ++j) position[j][1] = -0.0001f * (float)j;
     assert_int_equal(section_params_create(&params, &error), RESULT_OK);
     free(params.algo);
     params.algo = strdup("emulation");
     assert_int_equal(hair_create(&hair, &strands, 0, &fixture_gpu()->limits, &error), RESULT_OK);
     const SolverSetup setup = {.gpu = fixture_gpu(), .hair = &hair, .params = &params};
     assert_int_equal(solver_create(&solver, &setup, &error), RESULT_USAGE);
-    assert_non_null(strstr(error.text, "at most 240 vertices, got 241"));
+    assert_non_null(strstr(error.text, "at most 5000 vertices, got 5001"));
     hair_destroy(&hair);
     section_params_destroy(&params);
 }
