@@ -7,7 +7,7 @@
 
 typedef double Vec[3];
 
-enum { TWIN_MAX = 128 };
+enum { TWIN_MAX = 256 };
 
 // A strand: particle 0 is the root, length[j] the rest length between j - 1 and j (m).
 typedef struct TwinStrand {
