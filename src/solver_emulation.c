@@ -60,11 +60,12 @@ static const char *caution(const SectionParams *params)
 
 const SolverType SOLVER_EMULATION = {
     .name = "emulation",
-    .summary = "every particle pulls the strand along as tractrices, O(n^2); thesis: as published, "
-               "unstable without much drag",
+    .summary =
+        "every particle pulls the strand along as tractrices, O(n^2), second order; thesis: as "
+        "published, unstable without much drag",
     .variants = {"projected", "thesis"},
     .caution = caution,
-    .most_stability = 1.6f,
+    .most_stability = 1.6f, // as hybrid's
     .calls = &PARTICLE_SOLVER,
     .recipes = {&RECIPE},
 };

@@ -23,11 +23,12 @@ static const ParticleRecipe RECIPE = {
 
 const SolverType SOLVER_HYBRID = {
     .name = "hybrid",
-    .summary = "tractrices as length constraint in two passes, velocities projected on what the "
-               "shape allows",
+    .summary = "tractrices as length constraint in two passes about an implicit midpoint rule: "
+               "second order, energy never rises",
     .lengths = "exact",
     .style = "position springs, --style, --style-stiffness",
-    .most_stability = 1.6f,
+    .most_stability = 1.6f, // it is calm at any; 32 particles at 60 Hz (3.2) are off by 0.25 of
+                            // their length, at 1.6 by 0.015
     .calls = &PARTICLE_SOLVER,
     .recipes = {&RECIPE},
 };
