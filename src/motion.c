@@ -113,12 +113,15 @@ Result motion_read(Motion *motion, const char *folder, const char *name, Error *
 {
     char path[4096];
     json_error_t problem;
-    *motion = (Motion){.name = strdup(name)};
+    *motion = (Motion){0};
     snprintf(path, sizeof path, "%s/%s.json", folder, name);
     json_t *object = json_load_file(path, 0, &problem);
     if (!object)
         return error_set(error, RESULT_BAD_INPUT, "%s:%d: %s", path, problem.line, problem.text);
-    Result result = read_description(motion, &(Place){.key = path}, object, error);
+    motion->name = strdup(name);
+    Result result = motion->name
+                        ? read_description(motion, &(Place){.key = path}, object, error)
+                        : error_set(error, RESULT_FAILED, "%s: no memory for its name", path);
     snprintf(path, sizeof path, "%s/%s.csv", folder, name);
     if (result == RESULT_OK)
         result =
