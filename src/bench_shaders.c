@@ -34,8 +34,12 @@ static Result try_solver(const Gpu *gpu, const SolverType *type, const char *var
     Solver solver = {0};
     StrandsRecipe recipe = strands_recipe_default(STRANDS_STYLE_RANDOM);
     recipe.count = 4, recipe.vertices = vertices;
-    const SectionParams params = {
-        .algo = (char *)type->name, .variant = (char *)variant, .style = style};
+    const SectionParams params = {.algo = (char *)type->name,
+                                  .variant = (char *)variant,
+                                  .style = style,
+                                  .style_stiffness = 100,
+                                  .chain_bend =
+                                      style < 1 ? 10 : 0}; // springs with bending and without
     Result result = strands_make(&strands, &recipe, error);
     if (result == RESULT_OK) result = hair_create(&hair, &strands, 0, &gpu->limits, error);
     const SolverSetup setup = {
