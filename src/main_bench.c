@@ -2,6 +2,7 @@
 // tractrix-bench: accuracy of the tractrix on test vectors, speed of solvers and drawing, check of
 // all shaders.
 #include "bench_accuracy.h"
+#include "bench_image.h"
 #include "bench_scenes.h"
 #include "bench_shaders.h"
 #include "bench_speed.h"
@@ -22,6 +23,7 @@
 typedef struct Arguments {
     SpeedOptions speed;
     AccuracyOptions accuracy;
+    ImageOptions image; // but for what speed has
     GpuOptions gpu;
     CompareLimits limits;
     const char *vectors, *json;
@@ -132,6 +134,39 @@ static Result run_accuracy(const Arguments *arguments, const Gpu *gpu, Error *er
     return result;
 }
 
+static Result add_image(ImageBench *bench, const ImageOptions *options, json_t *rows, Error *error)
+{
+    ImageResult row;
+    Result result = image_bench_measure(bench, options, &row, error);
+    if (result != RESULT_OK) return result;
+    image_print(bench, options, &row, stdout);
+    fflush(stdout);
+    json_array_append_new(rows, image_to_json(bench, options, &row));
+    return RESULT_OK;
+}
+
+static Result run_image(const Arguments *arguments, const Gpu *gpu, Error *error)
+{
+    const SpeedOptions *speed = &arguments->speed;
+    ImageOptions options = arguments->image;
+    options.set = speed->set, options.file = speed->file;
+    options.scheme.raster = speed->raster;
+    if (speed->size[0]) memcpy(options.size, speed->size, sizeof options.size);
+    if (!options.set == !options.file)
+        return error_set(error, RESULT_USAGE, "image: one of --set NAME and --tfx FILE is needed");
+    Result result;
+    ImageBench *bench = image_bench_create(gpu, &options, &result, error);
+    if (!bench) return result;
+    json_t *rows = json_array();
+    image_print_head(stdout);
+    result = add_image(bench, &options, rows, error);
+    if (result == RESULT_OK && arguments->json)
+        result = json_write_file(rows, arguments->json, error);
+    json_decref(rows);
+    image_bench_destroy(bench);
+    return result;
+}
+
 static Result run_shaders(const Arguments *arguments, const Gpu *gpu, Error *error)
 {
     (void)arguments;
@@ -176,6 +211,8 @@ static const struct {
     {"accuracy", run_accuracy, true,
      "solvers' errors against exact motions, by the time step; status 1 if a bound is broken"},
     {"all", run_all, true, "a table: all sets, and the hair files named, with every solver"},
+    {"image", run_image, true,
+     "drawing --set NAME or --tfx FILE: its time, and its error against the exact picture"},
     {"compare", run_compare, false,
      "two PNG files by --level and --share; status 1 if they differ"},
     {"shaders", run_shaders, true, "compiles every shader variant with warnings as errors"},
@@ -200,7 +237,9 @@ enum {
     OPT_SHARE,
     OPT_OSMESA,
     OPT_REFERENCE,
-    OPT_RATES
+    OPT_RATES,
+    OPT_FRAMES,
+    OPT_NO_ERROR
 };
 
 static const struct {
@@ -232,6 +271,9 @@ static const struct {
      "N  compare: a pixel may be off by this much, 0 to 255 (default 0)"},
     {{"share", required_argument, NULL, OPT_SHARE},
      "F  compare: this share of the pixels may be off by more, 0 to 1 (default 0)"},
+    {{"frames", required_argument, NULL, OPT_FRAMES},
+     "N  image: measured pictures, 1 to 1000000 (default 15)"},
+    {{"no-error", no_argument, NULL, OPT_NO_ERROR}, " image: times only"},
     {{"device", required_argument, NULL, OPT_DEVICE}, "N  EGL device (default: the best one)"},
     {{"software", no_argument, NULL, OPT_SOFTWARE}, " use a CPU driver even where there is a GPU"},
     {{"osmesa", no_argument, NULL, OPT_OSMESA}, " use OSMesa instead of EGL"},
@@ -341,6 +383,11 @@ static Result take_option(Arguments *arguments, int option, const char *text, Er
     case OPT_OSMESA:
         arguments->gpu.backend = GPU_BACKEND_OSMESA;
         return RESULT_OK;
+    case OPT_NO_ERROR:
+        arguments->image.no_error = true;
+        return RESULT_OK;
+    case OPT_FRAMES:
+        return read_int("frames", text, 1, 1000000, &arguments->image.frames, error);
     case OPT_STEPS:
         return read_int("steps", text, 1, 1000000, &speed->steps, error);
     case OPT_WARM_UP:
@@ -376,6 +423,7 @@ static Result read_arguments(Arguments *arguments, int argc, char **argv, bool *
     struct option options[OPTION_COUNT + 1] = {{0}};
     for (size_t i = 0; i < OPTION_COUNT; ++i) options[i] = OPTIONS[i].option;
     *arguments = (Arguments){.speed = speed_options_default(),
+                             .image = image_options_default(),
                              .accuracy = accuracy_options_default(),
                              .gpu = {.device = -1}};
     opterr = 0;

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: MIT
+#include "bench_image.h"
+#include "fibre.h"
+#include "image_reference.h"
+#include "stats.h"
+#include "strands_make.h"
+#include "strands_read.h"
+
+#include "version.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WARM_UP = 3, PASS_FRAMES = 25 };
+
+struct ImageBench {
+    const Gpu *gpu;
+    char name[64];
+    int size[2];
+    Scene scene;
+    Strands strands;
+    Hair hair;
+    float radius;
+    View view;
+    Image reference; // without pixels until it is needed
+    double reference_s;
+};
+
+ImageOptions image_options_default(void)
+{
+    return (ImageOptions){.size = {1280, 720}, .frames = 15};
+}
+
+// The recipes of the sets that look like hair.
+static bool find_recipe(const char *name, StrandsRecipe *recipe)
+{
+    static const struct {
+        const char *name;
+        StrandsStyle style;
+        uint32_t count, vertices;
+    } sets[] = {{"straight", STRANDS_STYLE_STRAIGHT, 10000, 32},
+                {"curls", STRANDS_STYLE_CURLS, 10000, 32},
+                {"curls100k", STRANDS_STYLE_CURLS, 100000, 32},
+                {"fur", STRANDS_STYLE_FUR, 37747, 8}};
+    for (size_t i = 0; i < sizeof sets / sizeof *sets; ++i) {
+        if (strcmp(name, sets[i].name) != 0) continue;
+        *recipe = strands_recipe_default(sets[i].style);
+        recipe->count = sets[i].count;
+        recipe->vertices = sets[i].vertices;
+        return true;
+    }
+    return false;
+}
+
+static Result read_strands(ImageBench *bench, const ImageOptions *options, Error *error)
+{
+    StrandsRecipe recipe;
+    if (!options->set)
+        return strands_read(&bench->strands, options->file, &(StrandsReadOptions){0}, NULL, error);
+    if (find_recipe(options->set, &recipe)) return strands_make(&bench->strands, &recipe, error);
+    return strands_make_set(&bench->strands, options->set, 1, error);
+}
+
+static Result fill(ImageBench *bench, const ImageOptions *options, Error *error)
+{
+    const char *name = options->set ? options->set : options->file, *slash = strrchr(name, '/');
+    SectionParams params = {0};
+    Framing framing;
+    snprintf(bench->name, sizeof bench->name, "%s", slash ? slash + 1 : name);
+    Result result = scene_create(&bench->scene, error);
+    if (result == RESULT_OK) result = section_params_create(&params, error);
+    if (result == RESULT_OK) result = scene_add_section(&bench->scene, name, &params, error);
+    section_params_destroy(&params);
+    if (result == RESULT_OK) result = read_strands(bench, options, error);
+    if (result == RESULT_OK)
+        result = hair_create(&bench->hair, &bench->strands, 0, &bench->gpu->limits, error);
+    if (result != RESULT_OK) return result;
+    bench->radius = fibre_auto_radius(&bench->strands);
+    memcpy(bench->scene.run.size, bench->size, sizeof bench->size);
+    framing_compute(&framing, &bench->scene, &bench->strands, NULL);
+    camera_view(&bench->view, &bench->scene, &framing, 0);
+    return RESULT_OK;
+}
+
+ImageBench *image_bench_create(const Gpu *gpu, const ImageOptions *options, Result *result,
+                               Error *error)
+{
+    ImageBench *bench = calloc(1, sizeof *bench);
+    *result = bench ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for a benchmark");
+    if (!bench) return NULL;
+    bench->gpu = gpu;
+    memcpy(bench->size, options->size, sizeof bench->size);
+    *result = fill(bench, options, error);
+    if (*result == RESULT_OK) return bench;
+    image_bench_destroy(bench);
+    return NULL;
+}
+
+void image_bench_destroy(ImageBench *bench)
+{
+    if (!bench) return;
+    hair_destroy(&bench->hair);
+    strands_destroy(&bench->strands);
+    scene_destroy(&bench->scene);
+    image_destroy(&bench->reference);
+    free(bench);
+}
+
+static Result find_reference(ImageBench *bench, Error *error)
+{
+    if (bench->reference.pixels) return RESULT_OK;
+    const ReferenceItem item = {&bench->strands, 0, &bench->scene.sections[0].params,
+                                bench->radius};
+    ReferenceScene scene = {.view = &bench->view,
+                            .lights = bench->scene.lights,
+                            .light_count = bench->scene.light_count,
+                            .items = &item,
+                            .item_count = 1,
+                            .seed = bench->scene.run.seed};
+    memcpy(scene.background, bench->scene.run.background, sizeof scene.background);
+    double begin = stats_clock_ms();
+    Result result = image_create(&bench->reference, bench->size[0], bench->size[1], 3, error);
+    if (result == RESULT_OK)
+        result = image_reference_draw(&bench->reference, &scene, REFERENCE_SIDE, error);
+    bench->reference_s = (stats_clock_ms() - begin) / 1000;
+    return result;
+}
+
+// Over the pixels that differ from the background in either picture.
+static void compare(const ImageBench *bench, const Image *image, ImageResult *result)
+{
+    uint8_t background[3];
+    size_t count = (size_t)image->width * (size_t)image->height, covered = 0;
+    double sum = 0;
+    for (int k = 0; k < 3; ++k)
+        background[k] = (uint8_t)lrintf(255 * bench->scene.run.background[k]);
+    for (size_t i = 0; i < count; ++i) {
+        const uint8_t *p = &image->pixels[3 * i], *q = &bench->reference.pixels[3 * i];
+        if (memcmp(p, background, 3) == 0 && memcmp(q, background, 3) == 0) continue;
+        ++covered;
+        for (int k = 0; k < 3; ++k) sum += (p[k] - q[k]) * (p[k] - q[k]) / 3.0;
+    }
+    result->rms = sqrt(sum / (double)(covered ? covered : 1));
+    result->covered = (double)covered / (double)count;
+}
+
+static int compare_times(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// Some more pictures with waits between the passes, to tell what each costs at least.
+static Result time_passes(Renderer *renderer, const RenderFrame *frame, const RenderItem *item,
+                          Image *image, ImageResult *result, Error *error)
+{
+    GpuTimer *timer = renderer->timer;
+    double least[TIMER_MAX_LABELS], before[TIMER_MAX_LABELS] = {0};
+    Result outcome = RESULT_OK;
+    timer->enabled = true;
+    for (int i = 0; i < PASS_FRAMES && outcome == RESULT_OK; ++i) {
+        outcome = renderer_draw(renderer, frame, item, 1, image, error);
+        gpu_timer_collect(timer);
+        for (int k = 0; k < timer->count; ++k) {
+            double ms = timer->labels[k].total_ms - before[k];
+            before[k] = timer->labels[k].total_ms;
+            least[k] = i ? fmin(least[k], ms) : ms;
+        }
+    }
+    timer->enabled = false;
+    size_t at = 0;
+    for (int k = 0; k < timer->count && at < sizeof result->spans; ++k)
+        at += (size_t)snprintf(result->spans + at, sizeof result->spans - at, "%s%s %.1f",
+                               k ? ", " : "", timer->labels[k].name, least[k]);
+    return outcome;
+}
+
+static Result draw_frames(ImageBench *bench, Renderer *renderer, int frames, Image *image,
+                          ImageResult *result, Error *error)
+{
+    const RenderItem item = {&bench->hair, &bench->scene.sections[0].params, bench->radius};
+    const RenderFrame frame = {
+        &bench->view, bench->scene.lights, bench->scene.light_count, {0, 0, 0, 1}, {0}};
+    Result outcome = RESULT_OK;
+    double *samples = calloc((size_t)frames, sizeof *samples);
+    if (!samples) return error_set(error, RESULT_FAILED, "no memory for %d samples", frames);
+    for (int i = -WARM_UP; i < frames && outcome == RESULT_OK; ++i) {
+        glFinish();
+        double begin = stats_clock_ms();
+        outcome = renderer_draw(renderer, &frame, &item, 1, image, error);
+        if (i >= 0) samples[i] = stats_clock_ms() - begin;
+    }
+    qsort(samples, (size_t)frames, sizeof *samples, compare_times);
+    result->median_ms = samples[frames / 2];
+    result->min_ms = samples[0];
+    result->counts = renderer->counts;
+    free(samples);
+    return outcome == RESULT_OK ? time_passes(renderer, &frame, &item, image, result, error)
+                                : outcome;
+}
+
+Result image_bench_measure(ImageBench *bench, const ImageOptions *options, ImageResult *result,
+                           Error *error)
+{
+    Renderer renderer;
+    GpuTimer timer;
+    Image image = {0};
+    RendererOptions how = {.raster = options->scheme.raster,
+                           .sorted_layers = options->scheme.layers,
+                           .width = bench->size[0],
+                           .height = bench->size[1],
+                           .seed = bench->scene.run.seed};
+    memcpy(how.background, bench->scene.run.background, sizeof how.background);
+    how.background[3] = 1;
+    *result = (ImageResult){.rms = -1};
+    gpu_timer_create(&timer, false, bench->gpu->software);
+    Result outcome = renderer_create(&renderer, bench->gpu, &timer, &how, error);
+    if (outcome == RESULT_OK)
+        outcome = image_create(&image, bench->size[0], bench->size[1], 3, error);
+    if (outcome == RESULT_OK)
+        outcome = draw_frames(bench, &renderer, options->frames, &image, result, error);
+    renderer_destroy(&renderer);
+    gpu_timer_destroy(&timer);
+    if (outcome == RESULT_OK && !options->no_error) outcome = find_reference(bench, error);
+    if (outcome == RESULT_OK && !options->no_error) compare(bench, &image, result);
+    image_destroy(&image);
+    return outcome;
+}
+
+static const char *word_of(const char *param, int value)
+{
+    return param_find(param)->choices[value];
+}
+
+json_t *image_to_json(const ImageBench *bench, const ImageOptions *options,
+                      const ImageResult *result)
+{
+    const RendererCounts *counts = &result->counts;
+    json_t *row = json_pack(
+        "{s:s, s:I, s:I, s:[i,i], s:s, s:f, s:f, s:f, s:I, s:I, s:s, s:s, s:s, s:s, s:s}", "set",
+        bench->name, "strands", (json_int_t)bench->strands.strand_count, "particles",
+        (json_int_t)bench->strands.vertex_count, "size", bench->size[0], bench->size[1], "raster",
+        word_of("raster", (int)options->scheme.raster), "median_ms", result->median_ms, "min_ms",
+        result->min_ms, "covered", result->covered, "segments", (json_int_t)counts->segments,
+        "fragments", (json_int_t)counts->fragments, "passes", result->spans, "renderer",
+        bench->gpu->renderer, "gl_version", bench->gpu->version, "version", TRACTRIX_VERSION,
+        "commit", TRACTRIX_COMMIT);
+    if (row && result->rms >= 0) {
+        json_object_set_new(row, "rms", json_real(result->rms));
+        json_object_set_new(row, "reference_s", json_real(bench->reference_s));
+    }
+    return row;
+}
+
+void image_print_head(FILE *stream)
+{
+    fprintf(stream, "%-24s %-8s %9s %9s %7s %8s  %s\n", "set", "raster", "draw ms", "(min)", "RMS",
+            "covered", "passes, ms");
+}
+
+void image_print(const ImageBench *bench, const ImageOptions *options, const ImageResult *result,
+                 FILE *stream)
+{
+    fprintf(stream, "%-24s %-8s %9.2f %9.2f ", bench->name,
+            word_of("raster", (int)options->scheme.raster), result->median_ms, result->min_ms);
+    if (result->rms >= 0)
+        fprintf(stream, "%7.2f %7.1f%%", result->rms, 100 * result->covered);
+    else
+        fprintf(stream, "%7s %8s", "-", "-");
+    fprintf(stream, "  %s\n", result->spans);
+}
