@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: MIT
-// A 4x4-pixel block a lane: its lists' ribbons far to near, each 'over' what stands behind,
-// premultiplied and in linear light, then sRGB. The pixels' colours stay in registers.
-//   BASE 1: the mesh stands behind, and hides what is behind it   OPAQUE 1: alpha is 1 everywhere
+// A block of pixels a lane: its lists' ribbons near to far, each under what stands before it,
+// premultiplied and in linear light, over the background, then sRGB. The pixels stay in registers.
+//   BASE 1: the mesh stands behind, and hides what is behind it
 //
-// A ribbon's colour and depth are those beside the block's middle, its coverage is exact for each
-// pixel (coverage.glsl).
+// A ribbon's depth and width are those at the middle of its part beside the block, its coverage and its
+// colour are found for each pixel (coverage.glsl). Where less than LEAST shines through a whole block the rest is left.
 #include "draw.h"
 #include "block.glsl"
+#include "coverage.glsl"
 #include "srgb.glsl"
 
-layout(local_size_x = GROUP_SIZE) in;
-layout(location = 0) uniform ivec2 band; // first block row and end
+layout(local_size_x = TILE_BLOCKS) in;
+layout(location = 0) uniform ivec4 grid; // tiles across and down, first row of tiles, lists of a lane
 layout(binding = BIND_RECORDS) uniform usamplerBuffer records;
 layout(binding = BIND_LISTS) uniform usamplerBuffer lists;
 layout(binding = BIND_LINKS) uniform usamplerBuffer links;
+layout(binding = BIND_TILES) uniform usamplerBuffer tiles;
 #if BASE
 layout(binding = BIND_BASE) uniform sampler2D base;
 layout(binding = BIND_MESH_DEPTH) uniform sampler2D mesh_depth;
@@ -21,73 +23,87 @@ layout(binding = BIND_MESH_DEPTH) uniform sampler2D mesh_depth;
 layout(std430, binding = BIND_BLOCK_COUNTS_OUT) writeonly buffer Counts { uint counts[]; };
 layout(std430, binding = BIND_PIXELS_OUT) writeonly buffer Pixels { uvec4 pixels[]; };
 
-#if OPAQUE
-#define COLOR vec3
-#else
-#define COLOR vec4
-#endif
-#define PIXELS (BLOCK * BLOCK)
+#define PIXELS (BLOCK_WIDTH * BLOCK_HEIGHT)
 
 const int MOST_TURNS = 65000; // CPU drivers end loops silently after 65,535, lists' heads included
+const float LEAST = 1.0 / 1024.0;
 
-int blocks = (int(draw_params.width) + BLOCK - 1) / BLOCK;
+// Not a loop: compilers leave one with so long a body rolled, and then keep the pixels in memory.
+#define FOUR_IN_TURN(DO, k) DO(k) DO(k + 1) DO(k + 2) DO(k + 3)
+#define ROW_IN_TURN(DO, y) FOUR_IN_TURN(DO, y * BLOCK_WIDTH) FOUR_IN_TURN(DO, y * BLOCK_WIDTH + 4)
+#define PIXELS_IN_TURN(DO, NEXT_ROW)                                                                 \
+    ROW_IN_TURN(DO, 0) NEXT_ROW; ROW_IN_TURN(DO, 1) NEXT_ROW; ROW_IN_TURN(DO, 2) NEXT_ROW; ROW_IN_TURN(DO, 3)
 
-uint pack_pixel(COLOR c)
-{
-#if OPAQUE
-    vec4 straight = vec4(srgb_from_linear(c), 1.0);
+#if BASE
+#define HIDE(alpha, k) alpha = inverse_w >= mesh[k] ? alpha : 0.0
 #else
-    vec4 straight = vec4(srgb_from_linear(c.rgb / max(c.a, 1e-6)), c.a);
+#define HIDE(alpha, k)
 #endif
-    ivec4 level = ivec4(straight * 255.0 + 0.5);
-    return uint(level.r | (level.g << 8) | (level.b << 16) | (level.a << 24));
-}
+// `row` has four quantities at the row's first pixel: distance across, both ends' shares, and how far along the ribbon.
+#define ADD(k)                                                                                               \
+    {                                                                                                        \
+        vec4 here = row + float((k) % BLOCK_WIDTH) * by_x;                                                   \
+        float alpha = profile_coverage(profile, here.x) * clamp(min(here.y, here.z), 0.0, 1.0);              \
+        HIDE(alpha, k);                                                                                      \
+        alpha *= through[k];                                                                                 \
+        through[k] -= alpha;                                                                                 \
+        color[k] += alpha * (first + clamp(here.w, 0.0, 1.0) * change);                                                                             \
+        most = max(most, through[k]);                                                                        \
+    }
 
-uint list_of(int lane, int block)
+uint pack_pixel(vec3 color, float through, vec4 behind)
 {
-    return texelFetch(lists, lane * blocks * (band.y - band.x) + block).x;
+    vec4 c = vec4(color, 1.0 - through) + through * behind;
+    ivec4 level = ivec4(vec4(srgb_from_linear(c.rgb / max(c.a, 1e-6)), c.a) * 255.0 + 0.5);
+    return uint(level.r | (level.g << 8) | (level.b << 16) | (level.a << 24));
 }
 
 void main()
 {
-    // A CPU driver gives each thread one half of the groups: dealing rows out in turn evens them.
+    // A CPU driver gives each thread one half of the groups: dealing them out in turn evens them.
     int groups = int(gl_NumWorkGroups.x), group = int(gl_WorkGroupID.x), half_of = (groups + 1) / 2;
     group = group < half_of ? 2 * group : 2 * (group - half_of) + 1;
-    int block = group * GROUP_SIZE + int(gl_LocalInvocationID.x);
-    if (block >= blocks * (band.y - band.x)) return;
-    ivec2 corner = ivec2(block % blocks, block / blocks + band.x) * BLOCK;
+    int tile = int(texelFetch(tiles, 3 + group).x), within = int(gl_LocalInvocationID.x);
+    int blocks = grid.x * TILE_ACROSS, per_lane = grid.w;
+    ivec2 place = ivec2(tile % grid.x, tile / grid.x) * ivec2(TILE_ACROSS, TILE_DOWN) +
+                  ivec2(within % TILE_ACROSS, within / TILE_ACROSS);
+    int block = place.y * blocks + place.x;
+    ivec2 corner = (place + ivec2(0, grid.z * TILE_DOWN)) * ivec2(BLOCK_WIDTH, BLOCK_HEIGHT);
     vec2 origin = vec2(corner) + 0.5;
-    COLOR color[PIXELS];
-#if BASE
-    float mesh[PIXELS]; // 1/w
-#endif
+    vec3 color[PIXELS];
+    float through[PIXELS];
     for (int k = 0; k < PIXELS; ++k) {
-#if BASE
-        ivec2 pixel = min(corner + ivec2(k % BLOCK, k / BLOCK), ivec2(draw_params.width, draw_params.height) - 1);
-        color[k] = COLOR(texelFetch(base, pixel, 0));
-        float z = texelFetch(mesh_depth, pixel, 0).x;
-        mesh[k] = z < 1.0 ? (2.0 * z - 1.0 - draw_params.depth.x) / draw_params.depth.y : 0.0;
-#else
-        color[k] = COLOR(draw_params.background);
-#endif
+        color[k] = vec3(0.0);
+        through[k] = 1.0;
     }
-    int lane = BIN_LANES;
+#if BASE
+    ivec2 edge = ivec2(draw_params.width, draw_params.height) - 1;
+    float mesh[PIXELS]; // 1/w
+    for (int k = 0; k < PIXELS; ++k) {
+        float z = texelFetch(mesh_depth, min(corner + ivec2((k) % BLOCK_WIDTH, (k) / BLOCK_WIDTH), edge), 0).x;
+        mesh[k] = z < 1.0 ? (2.0 * z - 1.0 - draw_params.depth.x) / draw_params.depth.y : 0.0;
+    }
+#endif
+    int list = BIN_LANES * per_lane + block; // after the nearest lane's
     uint link = 0u;
     do {
-        link = list_of(--lane, block);
-    } while (link == 0u && lane > 0);
+        list -= per_lane;
+        link = texelFetch(lists, list).x;
+    } while (link == 0u && list >= per_lane);
     // What the next turn needs is fetched a turn ahead: its latency hides behind this one's sums.
     uvec2 node = texelFetch(links, max(int(link), 1) - 1).xy;
     int record = RECORD_TEXELS * int(link == 0u ? 0u : node.x), turns = 0;
     uvec4 next_ends = texelFetch(records, record), next_shape = texelFetch(records, record + 1),
           next_shade = texelFetch(records, record + 2);
+    float most = 1.0; // that shines through any of the pixels
     if (link != 0u) do {
         uvec4 shape = next_shape, shade = next_shade;
         Ribbon r = unpack_ribbon(next_ends, shape);
         link = node.y;
-        if (link == 0u && lane > 0) do {
-            link = list_of(--lane, block);
-        } while (link == 0u && lane > 0);
+        if (link == 0u && list >= per_lane) do {
+            list -= per_lane;
+            link = texelFetch(lists, list).x;
+        } while (link == 0u && list >= per_lane);
         node = texelFetch(links, max(int(link), 1) - 1).xy;
         record = RECORD_TEXELS * int(link == 0u ? 0u : node.x);
         next_ends = texelFetch(records, record);
@@ -96,42 +112,34 @@ void main()
         vec2 way = r.b - r.a;
         float inverse_length = inversesqrt(max(dot(way, way), 1e-20));
         vec2 d = way * inverse_length, q = origin - r.a;
-        // Coverage: share_above of coverage.glsl, with all that is the same for the block's pixels
-        // taken out.
-        float a = max(abs(d.x), abs(d.y)), b = max(min(abs(d.x), abs(d.y)), 1e-3 * a);
-        float scale = unpackHalf2x16(shape.w).x * 0.5 / (a * b), outer = 0.5 * (a + b), inner = 0.5 * (a - b);
-        float whole = 2.0 * a * b;
-        float t = clamp(dot(q + 0.5 * float(BLOCK - 1), d) * inverse_length, 0.0, 1.0);
-        float half_width = mix(r.half_width.x, r.half_width.y, t);
+        const vec2 HALF = 0.5 * vec2(BLOCK_WIDTH - 1, BLOCK_HEIGHT - 1);
+        float middle = dot(q + HALF, d) * inverse_length, side = dot(HALF, abs(d)) * inverse_length;
+        float t = 0.5 * (clamp(middle - side, 0.0, 1.0) + clamp(middle + side, 0.0, 1.0));
+        Profile profile = ribbon_profile(d, mix(r.half_width.x, r.half_width.y, t), unpackHalf2x16(shape.w).x);
         vec2 rg = unpackHalf2x16(shade.x), br = unpackHalf2x16(shade.y), gb = unpackHalf2x16(shade.z);
-        vec3 rgb = mix(vec3(rg, br.x), vec3(br.y, gb), t);
-#if OPAQUE
-        vec3 c = rgb;
-#else
-        vec4 c = vec4(rgb, 1.0);
-#endif
-        float across = q.y * d.x - q.x * d.y;
-        float side_a = dot(q, r.bound_a), side_b = dot(origin - r.b, r.bound_b);
+        vec3 first = vec3(rg, br.x), change = vec3(br.y, gb) - first;
+        // Linear in the pixel: by column and by row.
+        vec4 by_x = vec4(-d.y, r.bound_a.x, -r.bound_b.x, d.x * inverse_length),
+             by_y = vec4(d.x, r.bound_a.y, -r.bound_b.y, d.y * inverse_length);
+        vec4 row = vec4(q.y * d.x - q.x * d.y, dot(q, r.bound_a) + bound_offset(r.bound_a),
+                        1.0 - dot(origin - r.b, r.bound_b) - bound_offset(r.bound_b), dot(q, d) * inverse_length);
 #if BASE
         float inverse_w = uintBitsToFloat(shade.w) * (1.0 + unpackHalf2x16(shape.w).y * (t - 0.5));
 #endif
-        for (int k = 0; k < PIXELS; ++k) {
-            float x = float(k % BLOCK), y = float(k / BLOCK);
-            float off = abs(across - d.y * x + d.x * y), near = off - half_width, far = off + half_width, near_size = abs(near);
-            float near_ramp = clamp(outer - near_size, 0.0, b), far_ramp = clamp(outer - far, 0.0, b);
-            float near_share = near_ramp * near_ramp + 2.0 * b * max(inner - near_size, 0.0);
-            float far_share = far_ramp * far_ramp + 2.0 * b * max(inner - far, 0.0);
-            float alpha = scale * ((near < 0.0 ? whole - near_share : near_share) - far_share);
-            bool hit = side_a + r.bound_a.x * x + r.bound_a.y * y >= 0.0 && side_b + r.bound_b.x * x + r.bound_b.y * y < 0.0;
+        most = 0.0;
+        PIXELS_IN_TURN(ADD, row += by_y)
+    } while (link != 0u && most > LEAST && ++turns < MOST_TURNS);
+    if (link != 0u && most > LEAST) counts[BLOCK_COUNT_SHORT] = 1u;
 #if BASE
-            hit = hit && inverse_w >= mesh[k];
+#define BEHIND(k) texelFetch(base, min(corner + ivec2((k) % BLOCK_WIDTH, (k) / BLOCK_WIDTH), edge), 0)
+#else
+    vec4 background = draw_params.background;
+#define BEHIND(k) background
 #endif
-            alpha = hit ? alpha : 0.0;
-            color[k] += alpha * (c - color[k]);
-        }
-    } while (link != 0u && ++turns < MOST_TURNS);
-    if (link != 0u) counts[BLOCK_COUNT_SHORT] = 1u;
-    int at = (corner.y * blocks * BLOCK + corner.x) / 4;
-    for (int k = 0; k < PIXELS; k += 4, at += blocks * BLOCK / 4)
-        pixels[at] = uvec4(pack_pixel(color[k]), pack_pixel(color[k + 1]), pack_pixel(color[k + 2]), pack_pixel(color[k + 3]));
+    int pitch = blocks * BLOCK_WIDTH / 4, at = corner.y * pitch + corner.x / 4;
+    uint level[4];
+#define STORE(k)                                                \
+    level[(k) % 4] = pack_pixel(color[k], through[k], BEHIND(k)); \
+    if ((k) % 4 == 3) pixels[at + (k) % BLOCK_WIDTH / 4] = uvec4(level[0], level[1], level[2], level[3]);
+    PIXELS_IN_TURN(STORE, at += pitch)
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Projects and shades strands, one a lane, into records of ribbons (block.glsl) and their depths.
+// Projects and shades strands, one a lane, into records and spans of ribbons (block.glsl) and their
+// depths.
 // Particles are left out where the ribbon is straight, ribbons where they miss the picture. A
 // ribbon's slot is fixed by its strand, so that nothing depends on the order of lanes; slots
 // without a ribbon keep the key 0.
@@ -18,6 +19,7 @@ layout(binding = BIND_POSITION) uniform samplerBuffer position;
 layout(binding = BIND_STRAND_ID) uniform usamplerBuffer strand_id;
 layout(std430, binding = BIND_RECORDS_OUT) writeonly buffer Records { uvec4 records[]; };
 layout(std430, binding = BIND_KEYS_OUT) writeonly buffer Keys { uint keys[]; }; // 1/w as float bits
+layout(std430, binding = BIND_SPANS_OUT) writeonly buffer Spans { uvec4 spans[]; };
 layout(std430, binding = BIND_BLOCK_COUNTS_OUT) buffer Counts { uint counts[]; };
 
 const float LEAST_OPACITY = 1.0 / 4096.0;
@@ -33,20 +35,46 @@ struct End {
 
 End make_end(Particle p, vec2 d0, vec2 d1)
 {
+    bool free = d0 == vec2(0.0) || d1 == vec2(0.0) || 1.0 + dot(d0, d1) < FOLD;
     if (d0 == vec2(0.0)) d0 = d1;
     if (d1 == vec2(0.0)) d1 = d0;
-    vec2 sum = d0 + d1;
-    bool folds = 1.0 + dot(d0, d1) < FOLD;
-    return End(p.at.xy, p.at.z, outline_half_width(p, vec2(-sum.y, sum.x)), folds ? d1 : sum, folds ? d0 : sum, p.color);
+    vec2 sum = d0 + d1, joint = JOINT * sum;
+    return End(p.at.xy, p.at.z, outline_half_width(p, vec2(-sum.y, sum.x)), free ? d1 : joint, free ? d0 : joint, p.color);
+}
+
+// How far beyond an end along d its bound lets pixels be, for a ribbon that reaches so far across.
+float overhang(vec2 bound, vec2 d, float reach)
+{
+    float tangent = abs(bound.x * d.y - bound.y * d.x) / max(dot(bound, d), 0.1);
+    return bound_is_free(bound) ? 0.5 : min(tangent, 3.0) * reach + 0.01;
+}
+
+// In blocks, counted so that block c has its middle at c: its outer pixels' middles lie HALF to either
+// side, and it is touched if one of its pixels' middles is in reach.
+Span find_span(End a, End b, vec2 d, float reach, out bool seen)
+{
+    const vec2 SCALE = 1.0 / vec2(BLOCK_WIDTH, BLOCK_HEIGHT), HALF = 0.5 - 0.5 * SCALE;
+    vec2 p = a.at - d * overhang(a.bound, d, reach), q = b.at + d * overhang(b.bound_before, d, reach);
+    vec2 across = reach * abs(d.yx);
+    vec2 low = (min(p, q) - across) * SCALE - 0.5, high = (max(p, q) + across) * SCALE - 0.5;
+    low = max(ceil(low - HALF), 0.0);
+    high = min(floor(high + HALF), ceil(size * SCALE) - 1.0);
+    seen = all(lessThanEqual(low, high));
+    vec2 way = d * SCALE, middle = a.at * SCALE - 0.5;
+    float rows = 1.0 / max(abs(way.y), 1e-5), slope = way.x * (way.y < 0.0 ? -rows : rows);
+    ivec2 from = ivec2(low), to = ivec2(max(high, 0.0));
+    return Span(middle.x + (low.y - middle.y) * slope, slope,
+                reach * SCALE.x * SCALE.y * rows + HALF.y * abs(slope) + HALF.x, from.y, to.y, from.x, to.x);
 }
 
 // Whether the ribbon was kept.
 bool store(int slot, End a, End b, float opacity)
 {
-    float reach = MITRE_MAX * (max(a.half_width, b.half_width) + PAD);
-    vec2 low = min(a.at, b.at) - reach, high = max(a.at, b.at) + reach;
-    bool seen = opacity >= LEAST_OPACITY && a.inverse_w > 0.0 && b.inverse_w > 0.0 && all(greaterThan(high, vec2(0.0))) &&
-                all(lessThan(low, size)) && a.at != b.at;
+    vec2 way = b.at - a.at;
+    vec2 d = way * inversesqrt(max(dot(way, way), 1e-20));
+    bool seen;
+    Span span = find_span(a, b, d, max(a.half_width, b.half_width) + 0.5 * (abs(d.x) + abs(d.y)), seen);
+    seen = seen && opacity >= LEAST_OPACITY && a.inverse_w > 0.0 && b.inverse_w > 0.0 && a.at != b.at;
     if (seen) {
         float depth = 0.5 * (a.inverse_w + b.inverse_w);
         int at = slot * RECORD_TEXELS;
@@ -55,6 +83,7 @@ bool store(int slot, End a, End b, float opacity)
                                 packHalf2x16(b.bound_before), packHalf2x16(vec2(opacity, (b.inverse_w - a.inverse_w) / depth)));
         records[at + 2] = uvec4(packHalf2x16(a.color.rg), packHalf2x16(vec2(a.color.b, b.color.r)),
                                 packHalf2x16(b.color.gb), floatBitsToUint(depth));
+        spans[slot] = pack_span(span);
         keys[slot] = floatBitsToUint(depth);
     }
     return seen;
@@ -82,22 +111,21 @@ void main()
     float bent = 0.0;     // of all that was left out since `kept`
     int count = 0;
     bool begun = false;
-    for (int j = 0; j < n; ++j) {
-        int at = root + j * STRAND_TILE;
+    // Two turns more than particles: the tip stands in for those beyond it, which end its ribbon.
+    for (int j = 0; j < n + 2; ++j) {
+        int at = root + min(j, n - 1) * STRAND_TILE;
         vec3 after = texelFetch(position, root + min(j + 1, n - 1) * STRAND_TILE).xyz;
         vec4 after_clip = clip_from_world * vec4(after, 1.0);
         Particle p;
         p.at = project(clip_near(here_clip, before_clip, after_clip), paint_radius(painter, at, j));
         p.color = shade_fibre(fibre, paint_color(painter, at), here, unit(after - before), unit(eye - here));
         if (j > 1) bent += bend(kept, last, p);
-        if (j == 1 || bent > 1.0) {
+        if (j == 1 || bent > 1.0 || j >= n) {
             vec2 next = direction(kept, last);
-            if (j > 1) {
-                End b = make_end(kept, way, next);
-                if (begun && store(slot + count, end, b, opacity)) ++count;
-                end = b;
-                begun = true;
-            }
+            End b = make_end(kept, way, next);
+            if (begun && store(slot + count, end, b, opacity)) ++count;
+            end = b;
+            begun = j > 1;
             way = next;
             kept = last;
             bent = 0.0;
@@ -108,10 +136,6 @@ void main()
         here = after;
         here_clip = after_clip;
     }
-    vec2 next = direction(kept, last);
-    End b = make_end(kept, way, next);
-    if (begun && store(slot + count, end, b, opacity)) ++count;
-    if (store(slot + count, b, make_end(last, next, next), opacity)) ++count;
     uint group = gl_WorkGroupID.x % 64u * 16u;
     atomicAdd(counts[group], uint(count));
     if (count == 0) atomicAdd(counts[group + 1u], 1u);

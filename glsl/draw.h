@@ -42,14 +42,22 @@
 #define BIND_RECORDS_OUT      3 // RECORD_TEXELS uvec4 a ribbon, see block.glsl
 #define BIND_KEYS_OUT         4 // uint a ribbon
 #define BIND_BIN_STATE_OUT    5 // two ivec4 a lane
-#define BIND_PIXELS_OUT       6 // uint a pixel, rows of whole blocks
+#define BIND_PIXELS_OUT       6 // uint a pixel, rows of whole tiles
+#define BIND_SPANS_OUT        6 // uvec4 a ribbon, see block.glsl
+#define BIND_TILES_OUT        7 // three words of glDispatchComputeIndirect, then tiles
 #define BIND_RECORDS          4
 #define BIND_ORDER            5
 #define BIND_LISTS            6
 #define BIND_LINKS            7
 #define BIND_MESH_DEPTH       8
+#define BIND_SPANS            4 // while the ribbons are dealt out
+#define BIND_TILES            5 // while the blocks are composited
 
-#define BLOCK             4  // px, a block's width and height
+#define BLOCK_WIDTH       8 // px
+#define BLOCK_HEIGHT      4
+#define TILE_ACROSS       2 // blocks, composited side by side
+#define TILE_DOWN         4
+#define TILE_BLOCKS       8
 #define BIN_LANES         16 // that deal ribbons out to blocks
 #define BLOCK_COUNT_WORDS (64 * 16)
 #define BLOCK_COUNT_SHORT 2 // word that is not 0 if a block had too many ribbons to visit

@@ -76,7 +76,7 @@ static Result fill(ImageBench *bench, const ImageOptions *options, Error *error)
     if (result == RESULT_OK)
         result = hair_create(&bench->hair, &bench->strands, 0, &bench->gpu->limits, error);
     if (result != RESULT_OK) return result;
-    bench->radius = fibre_auto_radius(&bench->strands);
+    bench->radius = fibre_auto_radius(&bench->strands, 0);
     memcpy(bench->scene.run.size, bench->size, sizeof bench->size);
     framing_compute(&framing, &bench->scene, &bench->strands, NULL);
     camera_view(&bench->view, &bench->scene, &framing, 0);
@@ -110,8 +110,9 @@ void image_bench_destroy(ImageBench *bench)
 static Result find_reference(ImageBench *bench, Error *error)
 {
     if (bench->reference.pixels) return RESULT_OK;
-    const ReferenceItem item = {&bench->strands, 0, &bench->scene.sections[0].params,
-                                bench->radius};
+    const ReferenceItem item = {.strands = &bench->strands,
+                                .material = &bench->scene.sections[0].params,
+                                .radius = bench->radius};
     ReferenceScene scene = {.view = &bench->view,
                             .lights = bench->scene.lights,
                             .light_count = bench->scene.light_count,
@@ -180,8 +181,10 @@ static Result draw_frames(ImageBench *bench, Renderer *renderer, int frames, Ima
                           ImageResult *result, Error *error)
 {
     const RenderItem item = {&bench->hair, &bench->scene.sections[0].params, bench->radius};
-    const RenderFrame frame = {
-        &bench->view, bench->scene.lights, bench->scene.light_count, {0, 0, 0, 1}, {0}};
+    const RenderFrame frame = {.view = &bench->view,
+                               .lights = bench->scene.lights,
+                               .light_count = bench->scene.light_count,
+                               .head_rotation = {0, 0, 0, 1}};
     Result outcome = RESULT_OK;
     double *samples = calloc((size_t)frames, sizeof *samples);
     if (!samples) return error_set(error, RESULT_FAILED, "no memory for %d samples", frames);

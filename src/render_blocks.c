@@ -3,15 +3,20 @@
 
 #include "draw.h"
 
+#include <math.h>
 #include <string.h>
 
 enum {
     PROJECT_GROUP = 8,
-    COMPOSITE_GROUP = 64,
+    TILE_GROUP = 64,
+    TILE_WIDTH = BLOCK_WIDTH * TILE_ACROSS, // px
+    TILE_HEIGHT = BLOCK_HEIGHT * TILE_DOWN,
     RECORD_BYTES = 48,
+    SPAN_BYTES = 16,
     NODE_BYTES = 8,
-    FIRST_NODES = 1 << 15, // of a lane
-    STATE_WORDS = 8        // of a lane
+    FIRST_NODES = 1 << 14, // of a lane
+    STATE_WORDS = 8,       // of a lane
+    TILE_WORDS = 3         // before the tiles
 };
 
 // A lane's state in words (block_bin.comp).
@@ -23,14 +28,21 @@ static int64_t smaller(int64_t a, int64_t b)
     return a < b ? a : b;
 }
 
+// Tiles of the picture.
 static int across(const RenderBlocks *blocks)
 {
-    return (blocks->width + BLOCK - 1) / BLOCK;
+    return (blocks->width + TILE_WIDTH - 1) / TILE_WIDTH;
 }
 
 static int down(const RenderBlocks *blocks)
 {
-    return (blocks->height + BLOCK - 1) / BLOCK;
+    return (blocks->height + TILE_HEIGHT - 1) / TILE_HEIGHT;
+}
+
+// Lists of a lane.
+static int lists_of(const RenderBlocks *blocks, int rows)
+{
+    return across(blocks) * TILE_ACROSS * rows * TILE_DOWN;
 }
 
 static int64_t lane_nodes(const RenderBlocks *blocks)
@@ -46,12 +58,11 @@ static Result make_room(GpuBuffer *buffer, const GpuLimits *limits, const char *
     return gpu_buffer_create(buffer, limits, what, size, NULL, format, error);
 }
 
-static void clear(const GpuBuffer *buffer, int64_t size)
+static void clear(const GpuBuffer *buffer, int64_t size, GLuint value)
 {
-    const GLuint zero = 0;
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
     glClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, 0, (GLsizeiptr)size, GL_RED_INTEGER,
-                         GL_UNSIGNED_INT, &zero);
+                         GL_UNSIGNED_INT, &value);
 }
 
 static void read_back(const GpuBuffer *buffer, size_t size, void *data)
@@ -63,19 +74,19 @@ static void read_back(const GpuBuffer *buffer, size_t size, void *data)
 
 static Result build_composite(RenderBlocks *blocks, int over_mesh, Error *error)
 {
-    const ShaderDefine defines[] = {{"GROUP_SIZE", COMPOSITE_GROUP},
-                                    {"BASE", over_mesh},
-                                    {"OPAQUE", blocks->opaque},
-                                    {NULL, 0}};
+    const ShaderDefine defines[] = {{"BASE", over_mesh}, {NULL, 0}};
     return shader_build_compute(&blocks->composite[over_mesh], "block_composite.comp", defines,
                                 error);
 }
 
 static Result build_programs(RenderBlocks *blocks, Error *error)
 {
-    const ShaderDefine bin[] = {{"BIN_GROUP", BIN_LANES / 2}, {NULL, 0}};
+    const ShaderDefine bin[] = {{"BIN_GROUP", BIN_LANES / 2}, {NULL, 0}},
+                       tile[] = {{"GROUP_SIZE", TILE_GROUP}, {NULL, 0}};
     blocks->project = (LookPrograms){.file = "block_project.comp", .group_size = PROJECT_GROUP};
     Result result = shader_build_compute(&blocks->bin, "block_bin.comp", bin, error);
+    if (result == RESULT_OK)
+        result = shader_build_compute(&blocks->tile, "block_tiles.comp", tile, error);
     return result == RESULT_OK ? build_composite(blocks, 0, error) : result;
 }
 
@@ -85,39 +96,63 @@ static Result make_pool(RenderBlocks *blocks, int64_t nodes, Error *error)
                      GL_RG32UI, error);
 }
 
-Result render_blocks_create(RenderBlocks *blocks, const GpuLimits *limits, int width, int height,
-                            bool opaque, int64_t pool_bytes, Error *error)
+static uint32_t pack_background(const float background[4])
 {
-    *blocks = (RenderBlocks){.limits = limits, .width = width, .height = height, .opaque = opaque};
-    int64_t bytes = pool_bytes ? smaller(pool_bytes, limits->storage_block) : limits->storage_block;
-    int64_t most = smaller(bytes / NODE_BYTES, limits->texture_texels) / BIN_LANES;
-    blocks->most_nodes = most < 64 ? 64 : most;
-    int64_t row_bytes = (int64_t)across(blocks) * BIN_LANES * 4,
-            rows = smaller(limits->storage_block, limits->texture_texels * 4) / row_bytes;
-    blocks->band_rows = (int)smaller(rows, down(blocks));
-    int64_t pixels = (int64_t)across(blocks) * down(blocks) * BLOCK * BLOCK;
-    Result result = build_programs(blocks, error);
+    uint32_t level[4];
+    for (int k = 0; k < 4; ++k)
+        level[k] = background[3] > 0 ? (uint32_t)lrintf(255 * background[k]) : 0;
+    return level[0] | level[1] << 8 | level[2] << 16 | level[3] << 24;
+}
+
+static Result make_buffers(RenderBlocks *blocks, Error *error)
+{
+    const GpuLimits *limits = blocks->limits;
+    int64_t tiles = (int64_t)across(blocks) * down(blocks);
+    Result result = make_pool(blocks, smaller(FIRST_NODES, blocks->most_nodes), error);
     if (result == RESULT_OK)
-        result = make_pool(blocks, smaller(FIRST_NODES, blocks->most_nodes), error);
-    if (result == RESULT_OK)
-        result = make_room(&blocks->lists, limits, "blocks", row_bytes * blocks->band_rows,
-                           GL_R32UI, error);
+        result = make_room(&blocks->lists, limits, "blocks",
+                           (int64_t)lists_of(blocks, blocks->band_rows) * BIN_LANES * 4, GL_R32UI,
+                           error);
     if (result == RESULT_OK)
         result = make_room(&blocks->states, limits, "lanes", BIN_LANES * STATE_WORDS * 4, 0, error);
     if (result == RESULT_OK)
         result = make_room(&blocks->counts, limits, "counts", BLOCK_COUNT_WORDS * 4, 0, error);
     if (result == RESULT_OK)
-        result = make_room(&blocks->pixels, limits, "picture", pixels * 4, 0, error);
+        result =
+            make_room(&blocks->tiles, limits, "tiles", (TILE_WORDS + tiles) * 4, GL_R32UI, error);
+    if (result == RESULT_OK)
+        result = make_room(&blocks->pixels, limits, "picture", tiles * TILE_WIDTH * TILE_HEIGHT * 4,
+                           0, error);
+    return result;
+}
+
+Result render_blocks_create(RenderBlocks *blocks, const GpuLimits *limits, int width, int height,
+                            const float background[4], int64_t pool_bytes, Error *error)
+{
+    *blocks = (RenderBlocks){.limits = limits,
+                             .width = width,
+                             .height = height,
+                             .background = pack_background(background)};
+    int64_t bytes = pool_bytes ? smaller(pool_bytes, limits->storage_block) : limits->storage_block;
+    int64_t most = smaller(bytes / NODE_BYTES, limits->texture_texels) / BIN_LANES;
+    blocks->most_nodes = most < 64 ? 64 : most;
+    int64_t row_bytes = (int64_t)lists_of(blocks, 1) * BIN_LANES * 4,
+            rows = smaller(limits->storage_block, limits->texture_texels * 4) / row_bytes;
+    blocks->band_rows = (int)smaller(rows, down(blocks));
+    Result result = build_programs(blocks, error);
+    if (result == RESULT_OK) result = make_buffers(blocks, error);
     if (result != RESULT_OK) render_blocks_destroy(blocks);
     return result;
 }
 
 void render_blocks_destroy(RenderBlocks *blocks)
 {
-    const GLuint programs[] = {blocks->bin, blocks->composite[0], blocks->composite[1]};
-    GpuBuffer *const buffers[] = {&blocks->records, &blocks->keys,   &blocks->order,
-                                  &blocks->lists,   &blocks->links,  &blocks->states,
-                                  &blocks->counts,  &blocks->pixels, &blocks->material};
+    const GLuint programs[] = {blocks->bin, blocks->tile, blocks->composite[0],
+                               blocks->composite[1]};
+    GpuBuffer *const buffers[] = {&blocks->records, &blocks->spans,   &blocks->keys,
+                                  &blocks->order,   &blocks->lists,   &blocks->links,
+                                  &blocks->states,  &blocks->tiles,   &blocks->counts,
+                                  &blocks->pixels,  &blocks->material};
     look_programs_destroy(&blocks->project);
     for (size_t i = 0; i < sizeof programs / sizeof *programs; ++i)
         if (programs[i]) glDeleteProgram(programs[i]);
@@ -144,12 +179,15 @@ Result render_blocks_begin(RenderBlocks *blocks, uint64_t segments, Error *error
     Result result =
         make_room(&blocks->records, limits, "ribbons", count * RECORD_BYTES, GL_RGBA32UI, error);
     if (result == RESULT_OK)
+        result = make_room(&blocks->spans, limits, "spans", count * SPAN_BYTES, GL_RGBA32UI, error);
+    if (result == RESULT_OK)
         result = make_room(&blocks->keys, limits, "depths", count * 4, 0, error);
     if (result == RESULT_OK)
         result = make_room(&blocks->order, limits, "order", count * 4, GL_R32UI, error);
     if (result != RESULT_OK) return result;
-    clear(&blocks->keys, count * 4);
-    clear(&blocks->counts, blocks->counts.size);
+    clear(&blocks->keys, count * 4, 0);
+    clear(&blocks->counts, blocks->counts.size, 0);
+    clear(&blocks->pixels, blocks->pixels.size, blocks->background);
     blocks->slots = 0;
     blocks->redraws = blocks->bands = 0;
     blocks->nodes = 0;
@@ -168,6 +206,7 @@ Result render_blocks_add(RenderBlocks *blocks, const HairBatch *batch, const Loo
     gpu_buffer_bind_texture(&batch->position, BIND_POSITION);
     gpu_buffer_bind_texture(&batch->strand_id, BIND_STRAND_ID);
     gpu_buffer_bind_storage(&blocks->records, BIND_RECORDS_OUT);
+    gpu_buffer_bind_storage(&blocks->spans, BIND_SPANS_OUT);
     gpu_buffer_bind_storage(&blocks->keys, BIND_KEYS_OUT);
     gpu_buffer_bind_storage(&blocks->counts, BIND_BLOCK_COUNTS_OUT);
     glUniform1i(0, (GLint)blocks->slots);
@@ -206,15 +245,17 @@ static void bin_band(RenderBlocks *blocks, int row, int end, bool *full)
     GLint states[BIN_LANES][STATE_WORDS];
     bool going = true;
     *full = false;
-    clear(&blocks->lists, (int64_t)across(blocks) * (end - row) * BIN_LANES * 4);
-    clear(&blocks->states, blocks->states.size);
-    gpu_buffer_bind_texture(&blocks->records, BIND_RECORDS);
+    clear(&blocks->lists, (int64_t)lists_of(blocks, end - row) * BIN_LANES * 4, 0);
+    clear(&blocks->states, blocks->states.size, 0);
+    gpu_buffer_bind_texture(&blocks->spans, BIND_SPANS);
     gpu_buffer_bind_texture(&blocks->order, BIND_ORDER);
     gpu_buffer_bind_storage(&blocks->lists, BIND_LISTS_OUT);
     gpu_buffer_bind_storage(&blocks->links, BIND_LINKS_OUT);
     gpu_buffer_bind_storage(&blocks->states, BIND_BIN_STATE_OUT);
     glUseProgram(blocks->bin);
-    glUniform4i(0, (GLint)blocks->ribbons, (GLint)lane_nodes(blocks), row, end);
+    glUniform4i(0, (GLint)blocks->ribbons, (GLint)lane_nodes(blocks), row * TILE_DOWN,
+                end * TILE_DOWN);
+    glUniform1i(1, across(blocks) * TILE_ACROSS);
     while (going && !*full) {
         going = false;
         glDispatchCompute(2, 1, 1);
@@ -227,13 +268,31 @@ static void bin_band(RenderBlocks *blocks, int row, int end, bool *full)
     for (int i = 0; i < BIN_LANES && !*full; ++i) blocks->nodes += (uint64_t)states[i][STATE_NODES];
 }
 
+// Finds the band's tiles that are not background, and how many they are.
+static void find_tiles(const RenderBlocks *blocks, const int box[4], int row, int end)
+{
+    const GLuint command[TILE_WORDS] = {0, 1, 1};
+    GLuint count = (GLuint)(across(blocks) * (end - row));
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, blocks->tiles.buffer);
+    glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof command, command);
+    gpu_buffer_bind_texture(&blocks->lists, BIND_LISTS);
+    gpu_buffer_bind_storage(&blocks->tiles, BIND_TILES_OUT);
+    glUseProgram(blocks->tile);
+    glUniform4i(0, across(blocks), end - row, row, lists_of(blocks, end - row));
+    glUniform4i(1, box[0] / TILE_WIDTH, box[1] / TILE_HEIGHT, box[2] / TILE_WIDTH,
+                box[3] / TILE_HEIGHT);
+    glDispatchCompute((count + TILE_GROUP - 1) / TILE_GROUP, 1, 1);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+}
+
 static void composite_band(const RenderBlocks *blocks, const RenderTarget *target, bool over_mesh,
-                           int row, int end)
+                           const int box[4], int row, int end)
 {
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+    find_tiles(blocks, box, row, end);
     gpu_buffer_bind_texture(&blocks->records, BIND_RECORDS);
-    gpu_buffer_bind_texture(&blocks->lists, BIND_LISTS);
     gpu_buffer_bind_texture(&blocks->links, BIND_LINKS);
+    gpu_buffer_bind_texture(&blocks->tiles, BIND_TILES);
     gpu_buffer_bind_storage(&blocks->pixels, BIND_PIXELS_OUT);
     gpu_buffer_bind_storage(&blocks->counts, BIND_BLOCK_COUNTS_OUT);
     if (over_mesh) {
@@ -243,9 +302,9 @@ static void composite_band(const RenderBlocks *blocks, const RenderTarget *targe
         glBindTexture(GL_TEXTURE_2D, target->depth);
     }
     glUseProgram(blocks->composite[over_mesh]);
-    glUniform2i(0, row, end);
-    GLuint count = (GLuint)(across(blocks) * (end - row));
-    glDispatchCompute((count + COMPOSITE_GROUP - 1) / COMPOSITE_GROUP, 1, 1);
+    glUniform4i(0, across(blocks), end - row, row, lists_of(blocks, end - row));
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, blocks->tiles.buffer);
+    glDispatchComputeIndirect(0);
 }
 
 // After a band that did not fit: a larger pool or, where there can be none, fewer rows.
@@ -266,7 +325,7 @@ static Result make_it_fit(RenderBlocks *blocks, int rows, Error *error)
 }
 
 Result render_blocks_draw(RenderBlocks *blocks, const RenderTarget *target, bool over_mesh,
-                          GpuTimer *timer, Error *error)
+                          const int box[4], GpuTimer *timer, Error *error)
 {
     gpu_timer_begin(timer, "draw_sort");
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
@@ -283,7 +342,7 @@ Result render_blocks_draw(RenderBlocks *blocks, const RenderTarget *target, bool
             continue;
         }
         gpu_timer_begin(timer, "draw_composite");
-        composite_band(blocks, target, over_mesh, row, end);
+        composite_band(blocks, target, over_mesh, box, row, end);
         gpu_timer_end(timer);
         ++blocks->bands;
         row = end;
@@ -310,7 +369,7 @@ static void copy_row(const RenderBlocks *blocks, const uint8_t *from, uint8_t *t
 
 void render_blocks_read(const RenderBlocks *blocks, Image *image)
 {
-    size_t pitch = (size_t)across(blocks) * BLOCK * 4;
+    size_t pitch = (size_t)across(blocks) * TILE_WIDTH * 4;
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, blocks->pixels.buffer);
     const uint8_t *pixels = glMapBufferRange(GL_SHADER_STORAGE_BUFFER, 0,

@@ -14,25 +14,27 @@
 
 typedef struct RenderBlocks {
     LookPrograms project;
-    GLuint bin, composite[2];       // programs; composite: over the background, over a mesh
-    GpuBuffer records, keys, order; // of ribbons, see block.glsl; order near to far
-    GpuBuffer lists, links, states; // see block_bin.comp
+    GLuint bin, tile;
+    GLuint composite[2];                   // over the background, over a mesh
+    GpuBuffer records, spans, keys, order; // of ribbons, see block.glsl; order near to far
+    GpuBuffer lists, links, states;        // see block_bin.comp
+    GpuBuffer tiles;                       // see block_tiles.comp
     GpuBuffer counts, pixels, material;
     const GpuLimits *limits;
     Radix radix;
-    int width, height; // px
-    bool opaque;
+    int width, height;     // px
+    uint32_t background;   // a pixel without hair
     int64_t most_nodes;    // of a lane
-    int band_rows;         // of blocks
+    int band_rows;         // of tiles
     size_t slots, ribbons; // records there is room for; that are seen
     uint64_t nodes, segments, culled;
     uint32_t redraws, bands;
 } RenderBlocks;
 
-// `opaque`: the background is. `pool_bytes`: the largest size of all lists, 0 for the driver's
+// `background`: sRGB and opacity. `pool_bytes`: the largest size of all lists, 0 for the driver's
 // limit.
 Result render_blocks_create(RenderBlocks *blocks, const GpuLimits *limits, int width, int height,
-                            bool opaque, int64_t pool_bytes, Error *error);
+                            const float background[4], int64_t pool_bytes, Error *error);
 void render_blocks_destroy(RenderBlocks *blocks);
 
 // Makes what drawing over a mesh needs; nothing if it is there.
@@ -49,10 +51,11 @@ Result render_blocks_add(RenderBlocks *blocks, const HairBatch *batch, const Loo
                          Error *error);
 
 // Sorts, deals out and composites all that was added, over the target's base and behind its depth
-// if `over_mesh`. No ribbon is lost: the pool grows, or the picture is drawn in more bands.
+// if `over_mesh`. What has no hair is background, but for `box` (px: x, y lowest, highest), where
+// the mesh stands. No ribbon is lost: the pool grows, or the picture is drawn in more bands.
 // RESULT_FAILED if memory is short or a single row of blocks needs more than there can be.
 Result render_blocks_draw(RenderBlocks *blocks, const RenderTarget *target, bool over_mesh,
-                          GpuTimer *timer, Error *error);
+                          const int box[4], GpuTimer *timer, Error *error);
 
 // Whether a block had more ribbons than CPU drivers let a shader's loop visit. Waits.
 bool render_blocks_fell_short(const RenderBlocks *blocks);

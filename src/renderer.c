@@ -48,8 +48,7 @@ static Result create_blocks(Renderer *renderer, Error *error)
 {
     const RendererOptions *options = &renderer->options;
     return render_blocks_create(&renderer->blocks, &renderer->gpu->limits, options->width,
-                                options->height, options->background[3] == 1, options->pool_bytes,
-                                error);
+                                options->height, options->background, options->pool_bytes, error);
 }
 
 Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
@@ -426,6 +425,17 @@ static Result project_items(Renderer *renderer, const Picture *picture, Error *e
     return result;
 }
 
+// To the picture; an empty box stays empty.
+static void clip_box(int box[4], int width, int height)
+{
+    for (int k = 0; k < 4; ++k) {
+        int size = k % 2 ? height : width;
+        box[k] = box[k] < 0      ? (k < 2 ? 0 : -TILE_ACROSS * BLOCK_WIDTH)
+                 : box[k] < size ? box[k]
+                                 : size;
+    }
+}
+
 static Result draw_blocks(Renderer *renderer, Picture *picture, Image *image, Error *error)
 {
     RenderBlocks *blocks = &renderer->blocks;
@@ -436,8 +446,10 @@ static Result draw_blocks(Renderer *renderer, Picture *picture, Image *image, Er
     if (result != RESULT_OK) return result;
     result = project_items(renderer, picture, error);
     if (result != RESULT_OK) return result;
+    find_mesh_box(renderer, &picture->draw, picture->mesh_box);
+    clip_box(picture->mesh_box, renderer->options.width, renderer->options.height);
     result = render_blocks_draw(blocks, &renderer->target, renderer->mesh.triangle_count > 0,
-                                renderer->timer, error);
+                                picture->mesh_box, renderer->timer, error);
     if (result != RESULT_OK) return result;
     if (render_blocks_fell_short(blocks))
         return draw_quads_instead(renderer, picture, image, error);
