@@ -16,7 +16,7 @@
 // Roots may lie inside. A root that does stays there, and the distance that is needed grows with the arc length from the root.
 //
 // MODE 0: positions and velocities   1: unit directions and the tip (split)   2: positions that are drawn, neither velocity nor friction
-// FIELD 1: one more collider, a mesh (distance_field.glsl)
+// CONES: how many cones there are, or 0: any number   FIELD 1: one more collider, a mesh (distance_field.glsl)
 #include "collide_params.h"
 #include "hair_address.glsl"
 #include "rigid.glsl"
@@ -45,7 +45,8 @@ layout(std430, binding = BIND_STATE_OUT) buffer Velocities { vec4 velocities[]; 
 #endif
 #if MODE != DRAWN
 // A particle: where it was at the end of step w. In the root's place: split's tip.
-layout(std430, binding = BIND_CONTACTS) buffer Contacts { vec4 contacts[]; };
+layout(std430, binding = BIND_CONTACTS) writeonly buffer Contacts { vec4 contacts[]; };
+layout(binding = BIND_CONTACTS_BEFORE) uniform samplerBuffer contacts_before;
 // A strand, of its last step with contacts: their number, the step; of all steps, as bits of floats: deepest before and after the push.
 layout(std430, binding = BIND_CONTACT_COUNTS) buffer Counts { uvec4 counts[]; };
 #endif
@@ -135,8 +136,8 @@ bool touches(Strand strand, out float inside)
     vec3 tip = texelFetch(position_before, strand.first + (n - 1) * STRAND_TILE).xyz;
 #endif
     inside = 0.0;
-    for (int i = 0; i < cones; ++i) {
-        Cone cone = fetch_cone(i);
+    for (int i = 0; i < CONES_IN_ALL; ++i) {
+        Cone cone = CONE(i);
         PROBE(cone_distance(cone, p, unused))
     }
     for (int i = cones; i < cones + planes; ++i) PROBE(plane_distance(i, p, unused))
@@ -161,7 +162,7 @@ void push_out(inout vec3 at, inout vec3 v, vec3 p, float l, float need, int addr
     tally.found = max(tally.found, depth);
     vec3 aim = at;
 #if MODE != DRAWN
-    vec4 before = contacts[address];
+    vec4 before = texelFetch(contacts_before, address);
     vec3 surface = nearest.moved * head_displacement(at), slip = at - before.xyz - surface;
     aim -= before.w == collide_params.stamp_before ? held_back(slip, nearest.normal, max(depth, 0.0)) : vec3(0.0);
 #endif
@@ -243,6 +244,7 @@ void main()
     planes = int(collide_params.planes);
     margin = collide_params.margin;
     friction = collide_params.friction;
+    open_cones();
     int first = particle_address(s, 0, n);
     vec4 root = texelFetch(rest, first);
 #if MODE == SEGMENTS

@@ -19,6 +19,24 @@ Cone fetch_cone(int i)
     return Cone(texelFetch(colliders, at), texelFetch(colliders, at + 1), texelFetch(colliders, at + 2).xy);
 }
 
+// Few cones (CONES > 0) are fetched once and stay in registers; loops over them unroll. A fetch costs a CPU driver as much as a distance.
+#if CONES > 0
+Cone few_cones[CONES];
+
+void open_cones()
+{
+    for (int i = 0; i < CONES; ++i) few_cones[i] = fetch_cone(i);
+}
+
+#define CONE(i)      few_cones[i]
+#define CONES_IN_ALL CONES
+#else
+void open_cones() {}
+
+#define CONE(i)      fetch_cone(i)
+#define CONES_IN_ALL cones
+#endif
+
 float cone_distance(Cone cone, vec3 p, out vec3 normal)
 {
     vec3 r = p - cone.first.xyz;
@@ -55,9 +73,9 @@ void take_nearer(inout Nearest nearest, float distance, vec3 normal, float moved
 Nearest nearest_surface(vec3 p, int cones, int cones_moved, int planes)
 {
     Nearest nearest = Nearest(1e30, vec3(0.0), 0.0);
-    for (int i = 0; i < cones; ++i) {
+    for (int i = 0; i < CONES_IN_ALL; ++i) {
         vec3 normal;
-        float distance = cone_distance(fetch_cone(i), p, normal);
+        float distance = cone_distance(CONE(i), p, normal);
         take_nearer(nearest, distance, normal, i < cones_moved ? 1.0 : 0.0);
     }
     for (int i = cones; i < cones + planes; ++i) {

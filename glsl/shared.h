@@ -33,9 +33,10 @@ typedef uint uvec4[4] __attribute__((aligned(16)));
 #define BIND_CONTACT_COUNTS 5 // uvec4 a strand
 
 // Buffer textures.
-#define BIND_POSITION  0 // vec4 a particle
-#define BIND_REST      1 // vec4 a particle: the style, see hair.h
-#define BIND_STRAND_ID 2 // uint a strand
-#define BIND_STATE     3 // a solver's own state
-#define BIND_COLLIDERS 4 // shapes that hair must not cross
-#define BIND_FIELD     5 // distances to a mesh
+#define BIND_POSITION        0 // vec4 a particle
+#define BIND_REST            1 // vec4 a particle: the style, see hair.h
+#define BIND_STRAND_ID       2 // uint a strand
+#define BIND_STATE           3 // a solver's own state
+#define BIND_COLLIDERS       4 // shapes that hair must not cross
+#define BIND_FIELD           5 // distances to a mesh
+#define BIND_CONTACTS_BEFORE 6

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_SECTIONS = 2, FPS = 60, LATEST_SLEEP_S = 60 };
+enum { MOST_SECTIONS = 2, FPS = 60, LATEST_SLEEP_S = 60, RINGS = 36 };
 
 // A section that steps for ever, one that falls asleep (it may be off by its whole length), one
 // that has no solver.
@@ -19,23 +19,34 @@ typedef struct Row {
     Rest rest[MOST_SECTIONS];
     int followers;
     FollowMode mode;
+    const char *colliders; // as --colliders; NULL: none
+    bool mesh;             // collides with the sphere that the hair grows on, as a mesh
 } Row;
 
+#define SPHERE "sphere:0,0,0,0.1"
+#define SHOULDERS                                                                                  \
+    "capsule:-0.2,-0.2,0,0.05,-0.05,-0.15,0,0.07;capsule:0.05,-0.15,0,0.07,0.2,-0.2,0,0.05"
+
 static const Row ROWS[] = {
-    {"one section", 1, {MOVES}, 0, FOLLOW_OFFSET},
-    {"4 followers", 1, {MOVES}, 4, FOLLOW_OFFSET},
-    {"16 followers", 1, {MOVES}, 16, FOLLOW_OFFSET},
-    {"4 interpolated", 1, {MOVES}, 4, FOLLOW_INTERPOLATE},
-    {"16 interpolated", 1, {MOVES}, 16, FOLLOW_INTERPOLATE},
-    {"asleep", 1, {SLEEPS}, 0, FOLLOW_OFFSET},
-    {"moving + moving", 2, {MOVES, MOVES}, 0, FOLLOW_OFFSET},
-    {"moving + asleep", 2, {MOVES, SLEEPS}, 0, FOLLOW_OFFSET},
-    {"moving + static", 2, {MOVES, STATIC}, 0, FOLLOW_OFFSET},
+    {.name = "one section", .sections = 1},
+    {.name = "4 followers", .sections = 1, .followers = 4},
+    {.name = "16 followers", .sections = 1, .followers = 16},
+    {.name = "4 interpolated", .sections = 1, .followers = 4, .mode = FOLLOW_INTERPOLATE},
+    {.name = "16 interpolated", .sections = 1, .followers = 16, .mode = FOLLOW_INTERPOLATE},
+    {.name = "far colliders", .sections = 1, .colliders = "ground:-2; world:sphere:0,2,0,0.5"},
+    {.name = "3 capsules", .sections = 1, .colliders = SPHERE ";" SHOULDERS},
+    {.name = "mesh", .sections = 1, .mesh = true},
+    {.name = "mesh, 2 capsules", .sections = 1, .mesh = true, .colliders = SHOULDERS},
+    {.name = "asleep", .sections = 1, .rest = {SLEEPS}},
+    {.name = "moving + moving", .sections = 2},
+    {.name = "moving + asleep", .sections = 2, .rest = {MOVES, SLEEPS}},
+    {.name = "moving + static", .sections = 2, .rest = {MOVES, STATIC}},
 };
 
 typedef struct World {
     Scene scene;
     Strands strands[MOST_SECTIONS];
+    Mesh mesh;
     GpuTimer timer;
     Simulation simulation;
 } World;
@@ -45,6 +56,7 @@ static void world_destroy(World *world)
     if (world->simulation.scene) simulation_destroy(&world->simulation);
     gpu_timer_destroy(&world->timer);
     for (int i = 0; i < MOST_SECTIONS; ++i) strands_destroy(&world->strands[i]);
+    mesh_destroy(&world->mesh);
     scene_destroy(&world->scene);
 }
 
@@ -76,9 +88,16 @@ static Result world_create(World *world, const Gpu *gpu, const Row *row,
     Result result = scene_create(&world->scene, error);
     for (int i = 0; i < row->sections && result == RESULT_OK; ++i)
         result = add_section(world, row, i, options, error);
-    return result == RESULT_OK ? simulation_create(&world->simulation, gpu, &world->timer,
-                                                   &world->scene, world->strands, NULL, error)
-                               : result;
+    if (result == RESULT_OK && row->colliders)
+        result = colliders_parse(&world->scene.colliders, row->colliders, error);
+    if (result == RESULT_OK && row->mesh)
+        result = scalp_make_mesh(&world->mesh, SCALP_SPHERE, RINGS, error);
+    world->scene.run.collide_mesh = row->mesh;
+    world->scene.run.sdf_cache = false;
+    return result == RESULT_OK
+               ? simulation_create(&world->simulation, gpu, &world->timer, &world->scene,
+                                   world->strands, &world->mesh, error)
+               : result;
 }
 
 static double frame_ms(Simulation *simulation)

@@ -34,7 +34,6 @@ SpeedTimes speed_summarise(double *samples, int count)
 typedef struct Bench {
     Scene scene;
     Strands strands;
-    Mesh mesh; // that hair collides with, or empty
     GpuTimer timer;
     Simulation simulation;
 } Bench;
@@ -44,7 +43,6 @@ static void bench_destroy(Bench *bench)
     if (bench->simulation.scene) simulation_destroy(&bench->simulation);
     gpu_timer_destroy(&bench->timer);
     strands_destroy(&bench->strands);
-    mesh_destroy(&bench->mesh);
     scene_destroy(&bench->scene);
 }
 
@@ -80,7 +78,7 @@ static Result bench_create(Bench *bench, const Gpu *gpu, const SpeedOptions *opt
     if (result == RESULT_OK) result = read_strands(bench, options, error);
     if (result == RESULT_OK)
         result = simulation_create(&bench->simulation, gpu, &bench->timer, &bench->scene,
-                                   &bench->strands, &bench->mesh, error);
+                                   &bench->strands, NULL, error);
     return result;
 }
 

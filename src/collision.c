@@ -17,6 +17,31 @@ typedef struct Shape {
 // CPU drivers end loops silently after so many iterations in all of an invocation.
 enum { MOST_ITERATIONS_ON_CPU = 65535, ROUNDS = 3 };
 
+// So many cones a shader is compiled for.
+enum { MOST_IN_REGISTERS = 8 };
+
+// What a scene has: cones that move with the head, all cones, planes.
+typedef struct ShapeCounts {
+    uint32_t moved, cones, planes;
+} ShapeCounts;
+
+static bool is_flat(const Collider *collider)
+{
+    return collider->kind == COLLIDER_PLANE || collider->kind == COLLIDER_GROUND;
+}
+
+static ShapeCounts count_shapes(const Colliders *colliders)
+{
+    ShapeCounts counts = {0};
+    for (uint32_t i = 0; i < colliders->count; ++i) {
+        bool flat = is_flat(&colliders->list[i]);
+        counts.planes += flat;
+        counts.cones += !flat;
+        counts.moved += !flat && !colliders->list[i].world;
+    }
+    return counts;
+}
+
 void collision_destroy(Collision *collision)
 {
     for (uint32_t i = 0; collision->batches && i < collision->hair->batch_count; ++i) {
@@ -53,8 +78,9 @@ static Result create_batch(CollisionBatch *batch, const HairBatch *hair, const G
     size_t particles = (size_t)hair->vertex_count * slots;
     float *zero = calloc(particles, 4 * sizeof *zero);
     if (!zero) return error_set(error, RESULT_FAILED, "no memory for %zu particles", particles);
-    Result result = gpu_buffer_create(&batch->contacts, limits, "contacts",
-                                      (int64_t)(particles * 4 * sizeof *zero), zero, 0, error);
+    Result result =
+        gpu_buffer_create(&batch->contacts, limits, "contacts",
+                          (int64_t)(particles * 4 * sizeof *zero), zero, GL_RGBA32F, error);
     if (result == RESULT_OK)
         result = gpu_buffer_create(&batch->counts, limits, "counts of contacts",
                                    16 * (int64_t)slots, zero, 0, error);
@@ -89,10 +115,13 @@ Result collision_create(Collision *collision, const SolverSetup *setup, Collisio
         .carried = carried,
         .group_size = step_group_size(setup->gpu),
     };
-    const ShaderDefine defines[] = {{"GROUP_SIZE", (int)collision->group_size},
-                                    {"MODE", (int)mode},
-                                    {"FIELD", setup->field != NULL},
-                                    {0}};
+    const ShapeCounts counts = count_shapes(colliders);
+    const ShaderDefine defines[] = {
+        {"GROUP_SIZE", (int)collision->group_size},
+        {"MODE", (int)mode},
+        {"CONES", counts.cones <= MOST_IN_REGISTERS ? (int)counts.cones : 0},
+        {"FIELD", setup->field != NULL},
+        {0}};
     Result result = check_loops(collision, setup->gpu->software, error);
     if (result == RESULT_OK)
         result = shader_build_compute(&collision->program, "collide.comp", defines, error);
@@ -170,49 +199,54 @@ static bool plane_reaches(const Shape *shape, const vec3 centre, float radius)
     return glm_vec3_dot((float *)shape->texel[0], (float *)centre) - shape->texel[0][3] < radius;
 }
 
-// What the hair can reach: cones that move with the head, cones of the world, planes.
-typedef struct ShapeCounts {
-    uint32_t moved, cones, planes;
-} ShapeCounts;
+// Where the next shape of a kind goes: cones that move, other cones, planes.
+static Shape *next_shape(Shape *shapes, const Collider *collider, const ShapeCounts *counts,
+                         ShapeCounts *placed)
+{
+    if (is_flat(collider)) return &shapes[counts->cones + placed->planes++];
+    if (collider->world) return &shapes[counts->moved + placed->cones++];
+    return &shapes[placed->moved++];
+}
 
-static ShapeCounts place_shapes(const Collision *collision, const HeadPose *head, Shape *shapes)
+// At what distance everything is from a shape that hair cannot reach.
+static const float NEVER = 1e30f;
+
+// Returns how many of them the hair can reach.
+static uint32_t place_shapes(const Collision *collision, const HeadPose *head, Shape *shapes)
 {
     static const HeadPose world = {.rotation = {0, 0, 0, 1}};
     const Colliders *colliders = collision->colliders;
-    ShapeCounts counts = {0};
+    const ShapeCounts counts = count_shapes(colliders);
+    ShapeCounts placed = {0};
+    uint32_t reached = 0;
     vec3 centre;
     float radius = hair_ball(collision->hair, head, centre) + collision->params->collision_margin;
-    uint32_t count = 0;
-    for (int kind = 0; kind < 3; ++kind) {
-        for (uint32_t i = 0; i < colliders->count; ++i) {
-            const Collider *collider = &colliders->list[i];
-            bool flat = collider->kind == COLLIDER_PLANE || collider->kind == COLLIDER_GROUND;
-            if ((flat ? 2 : collider->world) != kind) continue;
-            if (flat)
-                set_plane(&shapes[count], collider);
-            else
-                set_cone(&shapes[count], collider, collider->world ? &world : head);
-            count += flat ? plane_reaches(&shapes[count], centre, radius)
-                          : cone_reaches(&shapes[count], centre, radius);
-        }
-        if (kind == 0) counts.moved = count;
-        if (kind == 1) counts.cones = count;
+    for (uint32_t i = 0; i < colliders->count; ++i) {
+        const Collider *collider = &colliders->list[i];
+        Shape *shape = next_shape(shapes, collider, &counts, &placed);
+        if (is_flat(collider))
+            set_plane(shape, collider);
+        else
+            set_cone(shape, collider, collider->world ? &world : head);
+        bool reaches = is_flat(collider) ? plane_reaches(shape, centre, radius)
+                                         : cone_reaches(shape, centre, radius);
+        reached += reaches;
+        if (!reaches) *shape = (Shape){.texel = {{0, 0, 0, -NEVER}}};
     }
-    counts.planes = count - counts.cones;
-    return counts;
+    return reached;
 }
 
-static CollideParams step_params(const Collision *collision, const SolverStep *step,
-                                 const ShapeCounts *counts)
+static CollideParams step_params(const Collision *collision, const SolverStep *step)
 {
+    const ShapeCounts counts = count_shapes(collision->colliders);
     CollideParams params = {
         .dt = (float)step->dt,
         .margin = collision->params->collision_margin,
         .friction = collision->params->friction,
         .carried = collision->carried,
-        .cones = counts->cones,
-        .cones_moved = counts->moved,
-        .planes = counts->planes,
+        .cones = counts.cones,
+        .cones_moved = counts.moved,
+        .planes = counts.planes,
     };
     if (collision->field) {
         memcpy(params.field_low, collision->field->low, sizeof collision->field->low);
@@ -242,13 +276,12 @@ bool collision_begin(Collision *collision, const SolverStep *step, int part, int
     if (!collision->program) return false;
     Shape *shapes = malloc((collision->colliders->count + (size_t)1) * sizeof *shapes);
     if (!shapes) return false;
-    ShapeCounts counts = place_shapes(collision, &step->head, shapes);
-    bool any = counts.cones + counts.planes > 0 || collision->field;
+    bool any = place_shapes(collision, &step->head, shapes) > 0 || collision->field;
     if (any) {
         glBindBuffer(GL_SHADER_STORAGE_BUFFER, collision->shapes.buffer);
         glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0,
-                        (GLsizeiptr)((counts.cones + counts.planes) * sizeof *shapes), shapes);
-        collision->step = step_params(collision, step, &counts);
+                        (GLsizeiptr)(collision->colliders->count * sizeof *shapes), shapes);
+        collision->step = step_params(collision, step);
     }
     collision->step.stamp = stamp_of(step->shuffle, part, parts);
     collision->step.stamp_before = part > 1 ? stamp_of(step->shuffle, part - 1, parts)
@@ -275,6 +308,7 @@ void collision_push(Collision *collision, uint32_t batch, const GpuBuffer *state
     }
     if (tips) gpu_buffer_bind_storage(tips, BIND_TIPS);
     if (collision->batches) {
+        gpu_buffer_bind_texture(&collision->batches[batch].contacts, BIND_CONTACTS_BEFORE);
         gpu_buffer_bind_storage(&collision->batches[batch].contacts, BIND_CONTACTS);
         gpu_buffer_bind_storage(&collision->batches[batch].counts, BIND_CONTACT_COUNTS);
     }
