@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // tractrix-gen: makes hair and the mesh it grows on.
+#include "bust.h"
 #include "strands_make.h"
 #include "strands_write.h"
 #include "suggest.h"
@@ -29,7 +30,7 @@ typedef struct Command {
     StrandsRecipe recipe;
     int format;      // index of format_words
     const char *set; // NULL: none
-    const char *output, *mesh;
+    const char *output, *mesh, *bust;
     const char *shaping; // an option given that a test set has its own value for; NULL: none
     bool quiet;
 } Command;
@@ -76,6 +77,8 @@ static const Option options[] = {
      "text (TressFX 2), tfx3, tfx4 (TressFX binary) or hair (HAIR)"},
     {"output", 'o', OPTION_TEXT, AT(output), NULL, "FILE", "the hair"},
     {"mesh", 0, OPTION_TEXT, AT(mesh), NULL, "FILE", "also write the shape, as Wavefront OBJ"},
+    {"bust", 0, OPTION_TEXT, AT(bust), NULL, "FILE",
+     "also write the head with shoulders below it, as Wavefront OBJ"},
     {"quiet", 'q', OPTION_QUIET, 0, NULL, NULL, "print nothing"},
     {"help", 'h', OPTION_HELP, 0, NULL, NULL, "print this"},
     {"version", 0, OPTION_VERSION, 0, NULL, NULL, "print the version"},
@@ -300,7 +303,7 @@ static Result parse(Command *command, int argc, char **argv, bool *leave, Error 
     if (result == RESULT_OK && command->set && command->shaping)
         return error_set(error, RESULT_USAGE, "--set %s and --%s exclude each other", command->set,
                          command->shaping);
-    if (result == RESULT_OK && !command->output && !command->mesh)
+    if (result == RESULT_OK && !command->output && !command->mesh && !command->bust)
         return error_set(error, RESULT_USAGE, "nothing to write: expected -o FILE");
     return result;
 }
@@ -322,16 +325,15 @@ static Result write_hair(const Command *command, Error *error)
     return result;
 }
 
-static Result write_mesh(const Command *command, Error *error)
+static Result write_mesh(const Command *command, const char *file, bool shoulders, Error *error)
 {
     Mesh mesh;
-    ScalpShape shape = command->set ? SCALP_SPHERE : command->recipe.shape;
+    ScalpShape shape = shoulders ? SCALP_HEAD : command->set ? SCALP_SPHERE : command->recipe.shape;
     Result result = scalp_make_mesh(&mesh, shape, 36, error);
-    if (result != RESULT_OK) return result;
-    result = mesh_write_obj(command->mesh, &mesh, error);
+    if (result == RESULT_OK && shoulders) result = bust_append_shoulders(&mesh, error);
+    if (result == RESULT_OK) result = mesh_write_obj(file, &mesh, error);
     if (result == RESULT_OK && !command->quiet)
-        printf("%s: %u vertices, %u triangles\n", command->mesh, mesh.vertex_count,
-               mesh.triangle_count);
+        printf("%s: %u vertices, %u triangles\n", file, mesh.vertex_count, mesh.triangle_count);
     mesh_destroy(&mesh);
     return result;
 }
@@ -343,7 +345,10 @@ int main(int argc, char **argv)
     bool leave = false;
     Result result = parse(&command, argc, argv, &leave, &error);
     if (result == RESULT_OK && !leave && command.output) result = write_hair(&command, &error);
-    if (result == RESULT_OK && !leave && command.mesh) result = write_mesh(&command, &error);
+    if (result == RESULT_OK && !leave && command.mesh)
+        result = write_mesh(&command, command.mesh, false, &error);
+    if (result == RESULT_OK && !leave && command.bust)
+        result = write_mesh(&command, command.bust, true, &error);
     if (result == RESULT_OK && (fflush(stdout) != 0 || ferror(stdout)))
         result = error_set(&error, RESULT_FAILED, "cannot write to standard output");
     if (result != RESULT_OK) fprintf(stderr, "tractrix-gen: %s\n", error.text);
