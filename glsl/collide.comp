@@ -30,7 +30,6 @@
 #define DRAWN     2
 
 layout(local_size_x = GROUP_SIZE) in;
-layout(binding = BIND_REST) uniform samplerBuffer rest;
 #if MODE == SEGMENTS
 layout(binding = BIND_STATE) uniform samplerBuffer segments_before; // unit direction, length
 layout(std430, binding = BIND_STATE_OUT) buffer Segments { vec4 segments[]; };
@@ -44,6 +43,7 @@ layout(binding = BIND_STATE) uniform samplerBuffer velocity_before;
 layout(std430, binding = BIND_STATE_OUT) buffer Velocities { vec4 velocities[]; };
 #endif
 #if MODE != DRAWN
+layout(binding = BIND_REST) uniform samplerBuffer rest;
 // A particle: where it was at the end of step w. In the root's place: split's tip.
 layout(std430, binding = BIND_CONTACTS) writeonly buffer Contacts { vec4 contacts[]; };
 layout(binding = BIND_CONTACTS_BEFORE) uniform samplerBuffer contacts_before;
@@ -246,13 +246,17 @@ void main()
     friction = collide_params.friction;
     open_cones();
     int first = particle_address(s, 0, n);
+    float longest = collide_params.longest;
+#if MODE != DRAWN
     vec4 root = texelFetch(rest, first);
+    longest = root.w;
+#endif
 #if MODE == SEGMENTS
     vec3 at = rotate(collide_params.head_rotation, root.xyz) + collide_params.head_translation.xyz;
 #else
     vec3 at = texelFetch(position_before, first).xyz;
 #endif
-    Strand strand = Strand(s, first, at, root.w);
+    Strand strand = Strand(s, first, at, longest);
     float inside;
     bool touched = touches(strand, inside);
     walk(strand, inside, touched);

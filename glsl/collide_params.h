@@ -12,6 +12,7 @@ UNIFORM_BLOCK(CollideParams, collide_params, BIND_STEP)
     vec4 field_size;     // points along x y z
     float dt;            // s
     float margin;        // colliders are this much larger, m
+    float longest;       // length of a strand at most, m
     float friction;      // Coulomb's coefficient
     float stamp;         // number of this step ...
     float stamp_before;  // ... and of the one before

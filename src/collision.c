@@ -108,6 +108,7 @@ Result collision_create(Collision *collision, const SolverSetup *setup, Collisio
     if ((!colliders->count && !setup->field) || !setup->params->collide) return RESULT_OK;
     *collision = (Collision){
         .hair = setup->hair,
+        .bounds = setup->hair,
         .params = setup->params,
         .colliders = colliders,
         .field = setup->field,
@@ -220,7 +221,7 @@ static uint32_t place_shapes(const Collision *collision, const HeadPose *head, S
     ShapeCounts placed = {0};
     uint32_t reached = 0;
     vec3 centre;
-    float radius = hair_ball(collision->hair, head, centre) + collision->params->collision_margin;
+    float radius = hair_ball(collision->bounds, head, centre) + collision->params->collision_margin;
     for (uint32_t i = 0; i < colliders->count; ++i) {
         const Collider *collider = &colliders->list[i];
         Shape *shape = next_shape(shapes, collider, &counts, &placed);
@@ -243,6 +244,7 @@ static CollideParams step_params(const Collision *collision, const SolverStep *s
         .dt = (float)step->dt,
         .margin = collision->params->collision_margin,
         .friction = collision->params->friction,
+        .longest = collision->bounds->longest,
         .carried = collision->carried,
         .cones = counts.cones,
         .cones_moved = counts.moved,
@@ -297,7 +299,7 @@ void collision_push(Collision *collision, uint32_t batch, const GpuBuffer *state
     collision->step.strand_count = hair->strand_count;
     collision->step.vertex_count = hair->vertex_count;
     gpu_uniforms_set(&collision->uniforms, BIND_STEP, &collision->step, sizeof collision->step);
-    gpu_buffer_bind_texture(&hair->rest, BIND_REST);
+    if (hair->rest.texture) gpu_buffer_bind_texture(&hair->rest, BIND_REST);
     gpu_buffer_bind_texture(&hair->position, BIND_POSITION);
     gpu_buffer_bind_storage(&hair->position, BIND_POSITION_OUT);
     gpu_buffer_bind_texture(&collision->shapes, BIND_COLLIDERS);

@@ -22,6 +22,7 @@ typedef struct CollisionBatch {
 // A zeroed struct is a pass that does nothing and has nothing.
 typedef struct Collision {
     const Hair *hair;
+    const Hair *bounds; // whose bounds and greatest length hold for `hair`
     const SectionParams *params;
     const Colliders *colliders; // never NULL while it is on
     const DistanceField *field; // may be NULL

@@ -26,6 +26,24 @@ static bool needs_inbetween(const Simulation *simulation, const Solver *solver)
     return steps != floor(steps) && !solver_is_static(solver);
 }
 
+// Followers of hair that moves keep out of what their guides keep out of.
+static Result create_follow_collision(SimulationSection *section, const SolverSetup *setup,
+                                      Error *error)
+{
+    SolverSetup drawn = *setup;
+    drawn.hair = &section->follow.hair;
+    if (!drawn.hair->batch_count || strcmp(setup->params->algo, "none") == 0) return RESULT_OK;
+    Result result = collision_create(&section->follow_collision, &drawn, COLLISION_DRAWN, 1, error);
+    section->follow_collision.bounds = &section->hair;
+    return result;
+}
+
+static void write_followers(SimulationSection *section, const HeadPose *head)
+{
+    follow_write(&section->follow, head);
+    collision_push_drawn(&section->follow_collision, head);
+}
+
 static Result create_section(Simulation *simulation, uint32_t i, const Gpu *gpu,
                              const Strands *strands, Error *error)
 {
@@ -33,25 +51,22 @@ static Result create_section(Simulation *simulation, uint32_t i, const Gpu *gpu,
     const Section *description = &simulation->scene->sections[i];
     Result result = hair_create(&section->hair, strands, 0, &gpu->limits, error);
     bool simulated = !*simulation->scene->run.from_cache;
-    if (result == RESULT_OK && simulated) {
-        const SolverSetup setup = {.gpu = gpu,
-                                   .timer = simulation->timer,
-                                   .hair = &section->hair,
-                                   .params = &description->params,
-                                   .colliders = &simulation->scene->colliders,
-                                   .field =
-                                       simulation->field.spacing > 0 ? &simulation->field : NULL,
-
-                                   .sheltered = simulation->scene->run.wind_shelter > 0,
-                                   .head = &simulation->head};
-        result = solver_create(&section->solver, &setup, error);
-    }
+    const SolverSetup setup = {.gpu = gpu,
+                               .timer = simulation->timer,
+                               .hair = &section->hair,
+                               .params = &description->params,
+                               .colliders = &simulation->scene->colliders,
+                               .field = simulation->field.spacing > 0 ? &simulation->field : NULL,
+                               .sheltered = simulation->scene->run.wind_shelter > 0,
+                               .head = &simulation->head};
+    if (result == RESULT_OK && simulated) result = solver_create(&section->solver, &setup, error);
     if (result == RESULT_OK && simulated)
         result = sleep_create(&section->sleep, gpu, simulation->timer, &section->hair,
                               &section->solver, &description->params, error);
     if (result == RESULT_OK)
         result = follow_create(&section->follow, gpu, simulation->timer, &section->hair, strands,
                                &description->params, simulation->scene->run.seed, error);
+    if (result == RESULT_OK) result = create_follow_collision(section, &setup, error);
     if (result == RESULT_OK && simulated && needs_inbetween(simulation, &section->solver))
         result = inbetween_create(&section->inbetween, gpu, &section->hair, error);
     return result == RESULT_OK ? RESULT_OK : error_prefix(error, result, "%s: ", description->file);
@@ -113,6 +128,7 @@ void simulation_destroy(Simulation *simulation)
 {
     for (uint32_t i = 0; simulation->sections && i < simulation->scene->section_count; ++i) {
         sleep_destroy(&simulation->sections[i].sleep);
+        collision_destroy(&simulation->sections[i].follow_collision);
         follow_destroy(&simulation->sections[i].follow);
         inbetween_destroy(&simulation->sections[i].inbetween);
         solver_destroy(&simulation->sections[i].solver);
@@ -267,7 +283,7 @@ void simulation_pose(Simulation *simulation)
             pose_between(simulation, section);
         else
             pose_section(simulation, section, &simulation->head);
-        follow_write(&section->follow, &simulation->head);
+        write_followers(section, &simulation->head);
         section->stepped = false;
         moved = true;
     }
@@ -285,7 +301,7 @@ Result simulation_show(Simulation *simulation, int frame, const HeadPose *head,
     for (uint32_t i = 0; i < simulation->scene->section_count && result == RESULT_OK; ++i) {
         SimulationSection *section = &simulation->sections[i];
         result = hair_write_positions(&section->hair, positions, error);
-        if (result == RESULT_OK) follow_write(&section->follow, head);
+        if (result == RESULT_OK) write_followers(section, head);
         positions += section->hair.particle_count;
         section->posed = false;
     }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "carry.h"
+#include "collision.h"
 #include "distance_field.h"
 #include "follow.h"
 #include "inbetween.h"
@@ -18,6 +19,7 @@ typedef struct SimulationSection {
     Hair hair;
     Solver solver;
     Follow follow;
+    Collision follow_collision; // of the followers, which take no part in the motion
     Inbetween inbetween; // empty where no frame falls between two steps, or the solver is static
     Sleep sleep;
     bool posed;        // positions are written ...
