@@ -8,7 +8,7 @@
 #include "draw.h"
 #include "block.glsl"
 #include "coverage.glsl"
-#include "srgb.glsl"
+#include "display.glsl"
 
 layout(local_size_x = TILE_BLOCKS) in;
 layout(location = 0) uniform ivec4 grid; // tiles across and down, first row of tiles, lists of a lane
@@ -54,7 +54,7 @@ const float LEAST = 1.0 / 1024.0;
 uint pack_pixel(vec3 color, float through, vec4 behind)
 {
     vec4 c = vec4(color, 1.0 - through) + through * behind;
-    ivec4 level = ivec4(vec4(srgb_from_linear(c.rgb / max(c.a, 1e-6)), c.a) * 255.0 + 0.5);
+    ivec4 level = ivec4(vec4(display_from_linear(c.rgb / max(c.a, 1e-6)), c.a) * 255.0 + 0.5);
     return uint(level.r | (level.g << 8) | (level.b << 16) | (level.a << 24));
 }
 

@@ -9,7 +9,7 @@ float sine_of(float cosine)
     return sqrt(max(1.0 - cosine * cosine, 0.0));
 }
 
-vec3 lit_from;
+vec3 lit_from = vec3(0.0);
 
 vec3 light_reaching(int i, vec3 x, out vec3 to_light)
 {

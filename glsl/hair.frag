@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A ribbon's fragment: its coverage, and a node in the A-buffer. Behind the mesh nothing is stored.
+//   NEAREST 1: a ribbon hides all behind it
 #include "draw.h"
 #include "coverage.glsl"
 #include "abuffer.glsl"
@@ -14,10 +15,16 @@ noperspective in float half_width;
 noperspective in vec4 color;
 
 const float LEAST_ALPHA = 1.0 / 4096.0;
+const float LEAST_COVERAGE = 1.0 / 16.0; // of a pixel whose nearest ribbon is asked for
 
 void main()
 {
-    float alpha = color.a * ribbon_coverage(across, half_width, vec2(dFdx(across), dFdy(across)));
+    float coverage = ribbon_coverage(across, half_width, vec2(dFdx(across), dFdy(across)));
+#if NEAREST
+    float alpha = coverage >= LEAST_COVERAGE ? 1.0 : 0.0;
+#else
+    float alpha = color.a * coverage;
+#endif
     if (!(alpha >= LEAST_ALPHA)) return; // nor what is not a number
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     uvec4 band = draw_params.band; // read once: a uniform costs a load wherever it is named

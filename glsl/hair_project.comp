@@ -84,7 +84,7 @@ void main()
         vec4 after_clip = clip_from_world * vec4(after, 1.0);
         Particle p;
         p.at = project(clip_near(here_clip, before_clip, after_clip), paint_radius(painter, at, j));
-        p.color = shade_fibre(fibre, paint_color(painter, at), here, unit(after - before), unit(eye - here));
+        p.color = shade_particle(fibre, painter, at, here, unit(after - before), unit(eye - here));
         float reach = MITRE_MAX * (p.at.w + 1.0);
         if (p.at.z > 0.0) box = min(box, vec4(p.at.xy, -p.at.xy) - reach);
         if (j > 1) bent += bend(kept, last, p);

@@ -7,6 +7,7 @@ layout(binding = BIND_PAINT) uniform usamplerBuffer paint;
 
 // Read once: a uniform costs a load wherever it is named.
 struct Painter {
+    uint id;
     vec3 tint;    // PAINT 0: the strand's colour, 1: a factor of it
     float radius; // m
     float thinning;
@@ -21,7 +22,7 @@ Painter paint_strand(uint id, int n)
 #if !PAINT
     tint *= material.color.rgb;
 #endif
-    return Painter(tint, material.radius, (1.0 - material.tip_ratio) / float(n - 1));
+    return Painter(id, tint, material.radius, (1.0 - material.tip_ratio) / float(n - 1));
 }
 
 // Of particle j, which lies at `at`.

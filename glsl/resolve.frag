@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: MIT
 // A pixel's fragments become its colour: the LAYERS nearest in order, the rest blended out of order
 // under them, all over what stands behind, premultiplied and in linear light.
-//   BASE 0: the background alone stands behind   1: the mesh does
+//   BASE 0: the background alone stands behind   1: the mesh does   DEPTH 1: the nearest fragment's distance instead
 //
 // The rest is summed in whole numbers, which give the same sum in every order: colour times alpha,
 // alpha, and optical depth -log2(1 - alpha). Together they let through what they would in any
 // order, and show their mean colour. A depth that nothing shines through may as well stay there.
 #include "draw.h"
 #include "abuffer.glsl"
-#include "srgb.glsl"
+#include "display.glsl"
 
 layout(binding = BIND_NODES) uniform usamplerBuffer nodes;
 layout(binding = BIND_HEADS) uniform usamplerBuffer heads;
 #if BASE
 layout(binding = BIND_BASE) uniform sampler2D base;
 #endif
-layout(location = 0) out vec4 pixel_out; // sRGB, alpha not multiplied in
+layout(location = 0) out vec4 pixel_out; // sRGB, alpha not multiplied in; or premultiplied light
 
 const float COLOR_STEPS = 16384.0;
 const float COLOR_MAX = 8.0;
@@ -76,5 +76,15 @@ void main()
 #endif
     color = over(rest_color(high, low, optical_depth), color);
     for (int i = LAYERS - 1; i >= 0; --i) color = over(abuffer_color(layer[i]), color);
-    pixel_out = vec4(srgb_from_linear(color.rgb / max(color.a, 1e-6)), color.a);
+#if DEPTH
+    float near = intBitsToFloat(layer[0].x); // 1 / distance, 0 without hair
+    float distance = 1.0 / max(near, 1e-20);
+    vec2 range = draw_params.depth_range.xy;
+    float share = range.y > range.x ? clamp((range.y - distance) / (range.y - range.x), 0.0, 1.0) : distance;
+    pixel_out = vec4(vec3(near > 0.0 ? share : 0.0), 1.0);
+#elif TONE == 3
+    pixel_out = color;
+#else
+    pixel_out = vec4(display_from_linear(color.rgb / max(color.a, 1e-6)), color.a);
+#endif
 }

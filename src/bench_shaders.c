@@ -106,13 +106,19 @@ static Result try_looks(Renderer *renderer, Error *error)
         renderer->raster == RASTER_QUADS ? &renderer->hair.project : &renderer->blocks.project;
     GLuint texture;
     Result result = scatter_tables_find(&renderer->scatter, 1.5f, 0.2f, &texture, error);
-    static const unsigned shadows[] = {LOOK_SHADOW_APPROX, LOOK_SHADOW_DOM,
-                                       LOOK_SHADOW_APPROX | LOOK_SHADOW_BY_MESH,
-                                       LOOK_SHADOW_DOM | LOOK_SHADOW_BY_MESH | LOOK_LIGHTS};
+    static const unsigned others[] = {LOOK_SHADOW_APPROX,
+                                      LOOK_SHADOW_DOM,
+                                      LOOK_SHADOW_APPROX | LOOK_SHADOW_BY_MESH,
+                                      LOOK_SHADOW_DOM | LOOK_SHADOW_BY_MESH | LOOK_LIGHTS,
+                                      LOOK_WHITE,
+                                      LOOK_WHITE | LOOK_PAINT,
+                                      LOOK_TANGENT,
+                                      LOOK_STRAND};
     for (unsigned features = 0; features < LOOK_SHADOW_APPROX && result == RESULT_OK; ++features)
-        result = look_programs_build(programs, features, error);
-    for (size_t i = 0; i < sizeof shadows / sizeof *shadows && result == RESULT_OK; ++i)
-        result = look_programs_build(programs, shadows[i], error);
+        if ((features & (LOOK_MARSCHNER | LOOK_GAUSS)) != LOOK_GAUSS) // which does not count alone
+            result = look_programs_build(programs, features, error);
+    for (size_t i = 0; i < sizeof others / sizeof *others && result == RESULT_OK; ++i)
+        result = look_programs_build(programs, others[i], error);
     return result;
 }
 
@@ -128,8 +134,11 @@ static Result try_renderer(const Gpu *gpu, Raster raster, float opacity, Error *
                        .position = corners,
                        .normal = normals,
                        .triangle = triangle};
-    const RendererOptions options = {
-        .raster = raster, .width = 16, .height = 16, .background = {0, 0, 0, opacity}};
+    const RendererOptions options = {.raster = raster,
+                                     .width = 16,
+                                     .height = 16,
+                                     .background = {0, 0, 0, opacity},
+                                     .tone = opacity < 1 ? TONE_REINHARD : TONE_FILMIC};
     gpu_timer_create(&timer, false, true);
     Result result = renderer_create(&renderer, gpu, &timer, &options, error);
     if (result != RESULT_OK) return result;

@@ -283,7 +283,7 @@ static Result flood(Work *work, Error *error)
     Result result = use(&program, "field_flood.comp", error);
     if (result != RESULT_OK) return result;
     while (2 * stride < longest) stride *= 2;
-    for (int ones = 0; ones < 2; stride = stride > 1 ? stride / 2 : 1) {
+    for (int ones = 0; ones<2; stride = stride> 1 ? stride / 2 : 1) {
         ones += stride == 1;
         work->params.stride = stride;
         gpu_buffer_bind_texture(&work->closest[work->present], BIND_REST);

@@ -6,8 +6,25 @@
 
 Result image_create(Image *image, int width, int height, int channels, Error *error)
 {
-    *image = (Image){.width = width, .height = height, .channels = channels};
-    image->pixels = malloc((size_t)width * (size_t)height * (size_t)channels);
+    return image_create_kind(image, width, height, channels, IMAGE_8, error);
+}
+
+size_t image_channel_size(ImageKind kind)
+{
+    return kind == IMAGE_8 ? 1 : kind == IMAGE_16 ? sizeof(uint16_t) : sizeof(float);
+}
+
+size_t image_size(const Image *image)
+{
+    return (size_t)image->width * (size_t)image->height * (size_t)image->channels *
+           image_channel_size(image->kind);
+}
+
+Result image_create_kind(Image *image, int width, int height, int channels, ImageKind kind,
+                         Error *error)
+{
+    *image = (Image){.width = width, .height = height, .channels = channels, .kind = kind};
+    image->pixels = malloc(image_size(image));
     if (!image->pixels)
         return error_set(error, RESULT_FAILED, "no memory for an image of %d x %d", width, height);
     return RESULT_OK;

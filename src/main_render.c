@@ -133,23 +133,56 @@ static Result create_items(Run *run, Error *error)
     return RESULT_OK;
 }
 
-static Result open_renderer(Run *run, Error *error)
+// Floats tell the depth in metres; PNG files from what the camera sees nearest to what is farthest,
+// as the first picture has it.
+static void set_depth_range(const Run *run, RendererOptions *options)
+{
+    View view;
+    if (options->aov != AOV_DEPTH || options->kind == IMAGE_FLOAT) return;
+    camera_view(&view, &run->scene, &run->framing, run->scene.run.first);
+    options->depth_range[0] = view.near_distance;
+    options->depth_range[1] = view.far_distance;
+    if (!run->scene.run.quiet)
+        fprintf(stderr, "depth: white is %.6g m before the eye, black %.6g m\n",
+                (double)view.near_distance, (double)view.far_distance);
+}
+
+static Result describe_pictures(const Run *run, RendererOptions *options, Error *error)
 {
     const RunParams *params = &run->scene.run;
-    RendererOptions options = {.raster = (Raster)params->raster,
-                               .width = params->size[0],
-                               .height = params->size[1],
-                               .seed = params->seed,
-                               .shadow = {.kind = (Shadow)params->shadow,
-                                          .side = params->shadow_size,
-                                          .spacing = params->shadow_spacing}};
-    memcpy(options.background, params->background, sizeof options.background);
-    Result result = renderer_create(&run->renderer, &run->gpu, &run->timer, &options, error);
-    if (result == RESULT_OK && run->assets.has_mesh)
-        result = renderer_set_mesh(&run->renderer, &run->assets.mesh, params->mesh_color, error);
-    if (result == RESULT_OK) result = create_items(run, error);
+    Target target;
+    Result result = target_parse(&target, params->output, error);
+    *options = (RendererOptions){.raster = (Raster)params->raster,
+                                 .width = params->size[0],
+                                 .height = params->size[1],
+                                 .exposure = params->exposure,
+                                 .tone = (Tone)params->tone_map,
+                                 .kind = params->depth == DEPTH_16 ? IMAGE_16 : IMAGE_8,
+                                 .aov = (Aov)params->aov,
+                                 .seed = params->seed,
+                                 .shadow = {.kind = (Shadow)params->shadow,
+                                            .side = params->shadow_size,
+                                            .spacing = params->shadow_spacing}};
+    memcpy(options->background, params->background, sizeof options->background);
+    if (result != RESULT_OK) return result;
+    if (target.floats) options->kind = IMAGE_FLOAT;
+    set_depth_range(run, options);
+    target_destroy(&target);
+    return RESULT_OK;
+}
+
+static Result open_renderer(Run *run, Error *error)
+{
+    RendererOptions options;
     framing_compute(&run->framing, &run->scene, run->assets.strands,
                     run->assets.has_mesh ? &run->assets.mesh : NULL);
+    Result result = describe_pictures(run, &options, error);
+    if (result == RESULT_OK)
+        result = renderer_create(&run->renderer, &run->gpu, &run->timer, &options, error);
+    if (result == RESULT_OK && run->assets.has_mesh)
+        result =
+            renderer_set_mesh(&run->renderer, &run->assets.mesh, run->scene.run.mesh_color, error);
+    if (result == RESULT_OK) result = create_items(run, error);
     return result;
 }
 
@@ -160,7 +193,8 @@ static Result open_output(Run *run, Error *error)
         .target = params->output,
         .width = params->size[0],
         .height = params->size[1],
-        .channels = params->background[3] < 1 ? 4 : 3,
+        .channels = renderer_channels(&run->renderer),
+        .kind = run->renderer.options.kind,
         .fps = (double)params->fps / params->every,
         .frame_count = sequence_count_drawn(params) - run->resume.count,
     };

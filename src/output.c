@@ -3,6 +3,7 @@
 
 #include "file.h"
 #include "interrupt.h"
+#include "pfm.h"
 #include "png.h"
 #include "target.h"
 #include "video.h"
@@ -66,7 +67,8 @@ static Result write_frame(const Output *output, const Slot *slot, uint64_t *byte
     if (!name)
         return error_set(error, RESULT_FAILED, "no memory for the name of frame %d", slot->frame);
     Bytes png;
-    Result result = png_encode(&slot->image, &png, error);
+    Result result = slot->image.kind == IMAGE_FLOAT ? pfm_encode(&slot->image, &png, error)
+                                                    : png_encode(&slot->image, &png, error);
     *bytes = png.size;
     if (result == RESULT_OK)
         result = bytes_write_file(&png, name, error);
@@ -165,6 +167,10 @@ static Result check_options(const OutputOptions *options, const Target *target, 
             error, RESULT_USAGE,
             "%s: one name for several frames, put the frame number into it: frame_%%04d.png",
             options->target);
+    if (target->floats != (options->kind == IMAGE_FLOAT) ||
+        (target->kind == TARGET_VIDEO && options->kind != IMAGE_8))
+        return error_set(error, RESULT_USAGE, "%s: cannot hold pictures of this depth",
+                         options->target);
     if (options->channels != 3 && options->channels != 4)
         return error_set(error, RESULT_USAGE, "%s: frames of %d channels, expected 3 or 4",
                          options->target, options->channels);
@@ -184,8 +190,8 @@ static Result create_slots(Output *output, const OutputOptions *options, Error *
     output->slot_count = count;
     Result result = RESULT_OK;
     for (int i = 0; i < count && result == RESULT_OK; i++)
-        result = image_create(&output->slots[i].image, options->width, options->height,
-                              options->channels, error);
+        result = image_create_kind(&output->slots[i].image, options->width, options->height,
+                                   options->channels, options->kind, error);
     return result;
 }
 

@@ -19,7 +19,8 @@ typedef struct OutputOptions {
     const char *target; // as target_parse takes it: "DIR/", "name_%04d.png", "x.png", "x.mp4",
                         // "x.webm", "x.gif"
     int width, height;  // pixels of every frame
-    int channels;       // 3, or 4 for PNG and webm
+    int channels;       // 3, or 4 for PNG, PFM and webm
+    ImageKind kind;     // 16 bits for PNG only; floats for PFM and for nothing else
     double fps;         // frames a second, used for videos
     int frame_count;    // how many will come, 0: not known; "x.png" needs 1
     int queue_length;   // images in the pool: drawn, waiting or being encoded; 0: the usual 3

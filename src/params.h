@@ -53,6 +53,12 @@ typedef enum ParamKind {
 #define CHOICES_BACKEND(X) X(BACKEND_AUTO, "auto") X(BACKEND_EGL, "egl") X(BACKEND_OSMESA, "osmesa")
 #define CHOICES_RASTER(X)  X(RASTER_AUTO, "auto") X(RASTER_QUADS, "quads") X(RASTER_BLOCKS, "blocks")
 
+#define CHOICES_TONE(X)  X(TONE_NONE, "none") X(TONE_REINHARD, "reinhard") X(TONE_FILMIC, "filmic")
+#define CHOICES_DEPTH(X) X(DEPTH_8, "8") X(DEPTH_16, "16")
+#define CHOICES_AOV(X)                                                                             \
+    X(AOV_NONE, "none")                                                                            \
+    X(AOV_COVERAGE, "coverage") X(AOV_DEPTH, "depth") X(AOV_TANGENT, "tangent")                    \
+        X(AOV_STRAND, "strand")
 #define CHOICES_SHADING(X) X(SHADING_KAJIYA, "kajiya") X(SHADING_MARSCHNER, "marschner")
 #define CHOICES_LOBES(X)   X(LOBES_ENERGY, "energy") X(LOBES_GAUSS, "gauss")
 #define CHOICES_SHADOW(X)  X(SHADOW_NONE, "none") X(SHADOW_APPROX, "approx") X(SHADOW_DOM, "dom")
@@ -65,6 +71,9 @@ typedef enum Backend { CHOICES_BACKEND(CHOICE_VALUE) } Backend;
 typedef enum Shadow { CHOICES_SHADOW(CHOICE_VALUE) } Shadow;
 typedef enum Raster { CHOICES_RASTER(CHOICE_VALUE) } Raster;
 typedef enum Lobes { CHOICES_LOBES(CHOICE_VALUE) } Lobes;
+typedef enum Tone { CHOICES_TONE(CHOICE_VALUE) } Tone;
+typedef enum Depth { CHOICES_DEPTH(CHOICE_VALUE) } Depth;
+typedef enum Aov { CHOICES_AOV(CHOICE_VALUE) } Aov;
 typedef enum Shading { CHOICES_SHADING(CHOICE_VALUE) } Shading;
 #undef CHOICE_VALUE
 

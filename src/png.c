@@ -65,6 +65,7 @@ Result png_encode(const Image *image, Bytes *png, Error *error)
     // it.
     static pthread_once_t once = PTHREAD_ONCE_INIT;
     pthread_once(&once, set_filter);
+    if (image->kind == IMAGE_16) return png_encode16(image, png, error);
     *png = (Bytes){0};
     size_t row = (size_t)image->width * (size_t)image->channels + 1;
     if (row * (size_t)image->height >= ENCODE_MAX_BYTES)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// PNG files: images of 8 bits a channel, to and from bytes in memory and files.
+// PNG files of 8 or 16 bits a channel, to and from bytes in memory and files.
 #pragma once
 
 #include "error.h"
@@ -12,6 +12,9 @@
 // every row. The same image gives the same bytes. May be called from several threads at once.
 // RESULT_FAILED when memory is short or the image has 1 GiB or more. Free `png` with bytes_destroy.
 Result png_encode(const Image *image, Bytes *png, Error *error);
+
+// The same for an IMAGE_16, which png_encode passes on here.
+Result png_encode16(const Image *image, Bytes *png, Error *error);
 
 // Encodes and writes; the file appears complete or not at all. RESULT_FAILED with path and reason.
 Result png_write(const char *path, const Image *image, Error *error);

@@ -25,16 +25,24 @@ static Result create_pool(RenderABuffer *abuffer, int64_t nodes, Error *error)
 
 static Result build_resolve(RenderABuffer *abuffer, int over_mesh, Error *error)
 {
-    const ShaderDefine defines[] = {{"LAYERS", abuffer->layers}, {"BASE", over_mesh}, {NULL, 0}};
+    const ShaderDefine defines[] = {{"LAYERS", abuffer->layers},
+                                    {"BASE", over_mesh},
+                                    {"TONE", abuffer->tone},
+                                    {"DEPTH", abuffer->depth},
+                                    {NULL, 0}};
     return shader_build_draw(&abuffer->resolve[over_mesh], "resolve.vert", "resolve.frag", defines,
                              error);
 }
 
 Result render_abuffer_create(RenderABuffer *abuffer, const GpuLimits *limits, int width, int layers,
-                             int64_t pool_bytes, Error *error)
+                             int tone, bool depth, int64_t pool_bytes, Error *error)
 {
-    *abuffer =
-        (RenderABuffer){.limits = limits, .shards = SHARD_COUNT, .layers = layers, .width = width};
+    *abuffer = (RenderABuffer){.limits = limits,
+                               .shards = SHARD_COUNT,
+                               .layers = layers,
+                               .width = width,
+                               .tone = tone,
+                               .depth = depth};
     int64_t bytes = pool_bytes ? smaller(pool_bytes, limits->storage_block) : limits->storage_block;
     int64_t most = smaller(smaller(bytes / NODE_BYTES, limits->texture_texels), INT32_MAX);
     abuffer->most_nodes = most < SHARD_STEP ? SHARD_STEP : most / SHARD_STEP * SHARD_STEP;

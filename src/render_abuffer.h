@@ -18,6 +18,8 @@ typedef struct RenderABuffer {
     int64_t most_nodes; // that the pool can grow to
     int shards;         // that the pool is dealt out in: SHARD_COUNT or 1
     int layers, width;
+    int tone;   // display.glsl's macro
+    bool depth; // pixels show their nearest fragment's depth
 } RenderABuffer;
 
 // What drawing a band has stored.
@@ -27,10 +29,11 @@ typedef struct ABufferUse {
     uint32_t segments, culled; // see RendererCounts
 } ABufferUse;
 
-// `layers` fragments of a pixel are blended in order. `pool_bytes`: the pool's largest size, 0 for
-// the driver's limit.
+// `layers` fragments of a pixel are blended in order. `tone`: a Tone, or TONE_LIGHT for
+// premultiplied light as it is. `depth`: pixels show their nearest fragment's distance before the
+// eye instead. `pool_bytes`: the pool's largest size, 0 for the driver's limit.
 Result render_abuffer_create(RenderABuffer *abuffer, const GpuLimits *limits, int width, int layers,
-                             int64_t pool_bytes, Error *error);
+                             int tone, bool depth, int64_t pool_bytes, Error *error);
 void render_abuffer_destroy(RenderABuffer *abuffer);
 
 // Makes what resolving over a mesh needs; nothing if it is there.

@@ -74,7 +74,7 @@ static void read_back(const GpuBuffer *buffer, size_t size, void *data)
 
 static Result build_composite(RenderBlocks *blocks, int over_mesh, Error *error)
 {
-    const ShaderDefine defines[] = {{"BASE", over_mesh}, {NULL, 0}};
+    const ShaderDefine defines[] = {{"BASE", over_mesh}, {"TONE", blocks->tone}, {NULL, 0}};
     return shader_build_compute(&blocks->composite[over_mesh], "block_composite.comp", defines,
                                 error);
 }
@@ -127,12 +127,13 @@ static Result make_buffers(RenderBlocks *blocks, Error *error)
 }
 
 Result render_blocks_create(RenderBlocks *blocks, const GpuLimits *limits, int width, int height,
-                            const float background[4], int64_t pool_bytes, Error *error)
+                            const float background[4], int tone, int64_t pool_bytes, Error *error)
 {
     *blocks = (RenderBlocks){.limits = limits,
                              .width = width,
                              .height = height,
-                             .background = pack_background(background)};
+                             .background = pack_background(background),
+                             .tone = tone};
     int64_t bytes = pool_bytes ? smaller(pool_bytes, limits->storage_block) : limits->storage_block;
     int64_t most = smaller(bytes / NODE_BYTES, limits->texture_texels) / BIN_LANES;
     blocks->most_nodes = most < 64 ? 64 : most;

@@ -24,6 +24,7 @@ typedef struct RenderBlocks {
     Radix radix;
     int width, height;     // px
     uint32_t background;   // a pixel without hair
+    int tone;              // display.glsl's macro
     int64_t most_nodes;    // of a lane
     int band_rows;         // of tiles
     size_t slots, ribbons; // records there is room for; that are seen
@@ -31,10 +32,10 @@ typedef struct RenderBlocks {
     uint32_t redraws, bands;
 } RenderBlocks;
 
-// `background`: sRGB and opacity. `pool_bytes`: the largest size of all lists, 0 for the driver's
-// limit.
+// `background`: sRGB and opacity. `tone`: a Tone. `pool_bytes`: the largest size of all lists, 0
+// for the driver's limit.
 Result render_blocks_create(RenderBlocks *blocks, const GpuLimits *limits, int width, int height,
-                            const float background[4], int64_t pool_bytes, Error *error);
+                            const float background[4], int tone, int64_t pool_bytes, Error *error);
 void render_blocks_destroy(RenderBlocks *blocks);
 
 // Makes what drawing over a mesh needs; nothing if it is there.

@@ -6,11 +6,12 @@
 // Particles that are projected at a time, so that what is kept of them stays small.
 enum { GROUP_SIZE = 8, PART_PARTICLES = 1 << 19 };
 
-Result render_hair_create(RenderHair *hair, Error *error)
+Result render_hair_create(RenderHair *hair, bool nearest, Error *error)
 {
+    const ShaderDefine defines[] = {{"NEAREST", nearest}, {NULL, 0}};
     *hair = (RenderHair){.project = {.file = "hair_project.comp", .group_size = GROUP_SIZE}};
     glGenVertexArrays(1, &hair->vertex_array);
-    Result result = shader_build_draw(&hair->draw, "hair.vert", "hair.frag", NULL, error);
+    Result result = shader_build_draw(&hair->draw, "hair.vert", "hair.frag", defines, error);
     if (result != RESULT_OK) render_hair_destroy(hair);
     return result;
 }

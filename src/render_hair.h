@@ -7,6 +7,8 @@
 #include "hair.h"
 #include "render_look.h"
 
+#include <stdbool.h>
+
 typedef struct RenderHair {
     LookPrograms project;
     GLuint draw;                // program
@@ -16,7 +18,8 @@ typedef struct RenderHair {
     GpuBuffer material;
 } RenderHair;
 
-Result render_hair_create(RenderHair *hair, Error *error);
+// `nearest`: a ribbon hides all that is behind it, in every pixel of which it covers a sixteenth.
+Result render_hair_create(RenderHair *hair, bool nearest, Error *error);
 void render_hair_destroy(RenderHair *hair);
 
 // Draws one batch into the current framebuffer and A-buffer, through the scissor. RESULT_FAILED if

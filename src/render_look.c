@@ -14,6 +14,7 @@ Result look_programs_build(LookPrograms *programs, unsigned features, Error *err
     const ShaderDefine defines[] = {{"GROUP_SIZE", programs->group_size},
                                     {"LIGHTS", (features & LOOK_LIGHTS) != 0},
                                     {"MARSCHNER", model},
+                                    {"AOV", (int)(features / LOOK_SHADED)},
                                     {"PAINT", (features & LOOK_PAINT) != 0},
                                     {"SHADOW", shadow},
                                     {"SHADOW_BY_MESH", (features & LOOK_SHADOW_BY_MESH) != 0},

@@ -17,9 +17,13 @@ typedef enum LookFeature {
     LOOK_SHADOW_APPROX = 16,
     LOOK_SHADOW_DOM = 32,
     LOOK_SHADOW_BY_MESH = 64,
+    // Instead of shading (with LOOK_PAINT alone): white, the tangent, the strand's own colour.
+    LOOK_WHITE = 128,
+    LOOK_TANGENT = 256,
+    LOOK_STRAND = 384,
 } LookFeature;
 
-enum { LOOK_VARIANTS = 128 };
+enum { LOOK_SHADED = 128, LOOK_VARIANTS = 4 * LOOK_SHADED };
 
 typedef struct Look {
     MaterialParams material; // complete but for the batch's size

@@ -2,6 +2,7 @@
 #include "render_target.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum { SAMPLES = 4 }; // of the mesh's edges; CPU drivers have no more
 
@@ -49,19 +50,20 @@ static Result check_frame(GLuint frame, const char *what, Error *error)
 }
 
 Result render_target_create(RenderTarget *target, const GpuLimits *limits, int width, int height,
-                            Error *error)
+                            ImageKind kind, Error *error)
 {
-    *target = (RenderTarget){.width = width, .height = height};
+    static const GLenum formats[] = {GL_RGBA8, GL_RGBA16, GL_RGBA32F};
+    *target = (RenderTarget){.width = width, .height = height, .kind = kind};
     int side = limits->framebuffer_side_px;
     if (width > side || height > side)
         return error_set(error, RESULT_FAILED,
                          "a picture of %d x %d px: this driver draws at most %d x %d", width,
                          height, side, side);
-    target->rgba = malloc((size_t)width * (size_t)height * 4);
+    target->rgba = malloc((size_t)width * (size_t)height * 4 * image_channel_size(kind));
     if (!target->rgba)
         return error_set(error, RESULT_FAILED, "no memory for a picture of %d x %d px", width,
                          height);
-    target->picture = create_texture(GL_RGBA8, width, height);
+    target->picture = create_texture(formats[kind], width, height);
     target->picture_frame = create_color_frame(target->picture);
     target->hair_frame = create_frame();
     glFramebufferParameteri(GL_FRAMEBUFFER, GL_FRAMEBUFFER_DEFAULT_WIDTH, width);
@@ -112,11 +114,17 @@ void render_target_destroy(RenderTarget *target)
 
 void render_target_read(RenderTarget *target, Image *image)
 {
-    size_t count = (size_t)target->width * (size_t)target->height;
+    static const GLenum types[] = {GL_UNSIGNED_BYTE, GL_UNSIGNED_SHORT, GL_FLOAT};
+    size_t count = (size_t)target->width * (size_t)target->height,
+           rgb = 3 * image_channel_size(target->kind), step = rgb / 3 * 4;
     uint8_t *rgba = image->channels == 4 ? image->pixels : target->rgba;
     glBindFramebuffer(GL_READ_FRAMEBUFFER, target->picture_frame);
-    glReadPixels(0, 0, target->width, target->height, GL_RGBA, GL_UNSIGNED_BYTE, rgba);
+    glReadPixels(0, 0, target->width, target->height, GL_RGBA, types[target->kind], rgba);
     if (image->channels == 4) return;
+    if (target->kind != IMAGE_8) {
+        for (size_t i = 0; i < count; ++i) memcpy(image->pixels + i * rgb, rgba + i * step, rgb);
+        return;
+    }
     for (size_t i = 0; i < count; ++i) {
         image->pixels[3 * i] = rgba[4 * i];
         image->pixels[3 * i + 1] = rgba[4 * i + 1];

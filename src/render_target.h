@@ -7,17 +7,18 @@
 
 typedef struct RenderTarget {
     int width, height;
-    GLuint picture, picture_frame; // RGBA8, sRGB, straight alpha
+    GLuint picture, picture_frame; // RGBA8, RGBA16 or RGBA32F as the image's kind
     GLuint hair_frame;             // no colour; `depth` if there is a mesh
     GLuint depth;                  // one sample, for the hair
     GLuint base, base_frame;       // RGBA16F: mesh over background, linear, premultiplied
     GLuint smooth_color, smooth_depth, smooth_frame; // the same before its samples are averaged
+    ImageKind kind;
     uint8_t *rgba; // [height][width][4], for pictures without alpha
 } RenderTarget;
 
 // RESULT_FAILED if the size is more than the driver allows or memory is short.
 Result render_target_create(RenderTarget *target, const GpuLimits *limits, int width, int height,
-                            Error *error);
+                            ImageKind kind, Error *error);
 void render_target_destroy(RenderTarget *target);
 
 // Adds what a mesh needs; nothing if it is there.

@@ -2,6 +2,7 @@
 #include "renderer.h"
 
 #include "render_uniforms.h"
+#include "tone.h"
 
 #include <assert.h>
 #include <math.h>
@@ -30,14 +31,27 @@ typedef struct RasterType {
 } RasterType;
 static const RasterType RASTERS[3];
 
+static bool needs_quads(const RendererOptions *options)
+{
+    return options->kind != IMAGE_8 || options->aov != AOV_NONE;
+}
+
+static int display_of(const RendererOptions *options)
+{
+    bool light = options->kind == IMAGE_FLOAT || options->aov != AOV_NONE;
+    return light ? TONE_LIGHT : (int)options->tone;
+}
+
 static Result create_quads(Renderer *renderer, Error *error)
 {
     const RendererOptions *options = &renderer->options;
     const GpuLimits *limits = &renderer->gpu->limits;
     int layers = options->sorted_layers ? options->sorted_layers : SORTED_LAYERS;
-    Result result = render_hair_create(&renderer->hair, error);
+    bool nearest = options->aov > AOV_COVERAGE;
+    Result result = render_hair_create(&renderer->hair, nearest, error);
     if (result == RESULT_OK)
         result = render_abuffer_create(&renderer->abuffer, limits, options->width, layers,
+                                       display_of(options), options->aov == AOV_DEPTH,
                                        options->pool_bytes, error);
     if (result == RESULT_OK)
         renderer->band_rows = render_abuffer_most_rows(&renderer->abuffer, options->height);
@@ -48,20 +62,26 @@ static Result create_blocks(Renderer *renderer, Error *error)
 {
     const RendererOptions *options = &renderer->options;
     return render_blocks_create(&renderer->blocks, &renderer->gpu->limits, options->width,
-                                options->height, options->background, options->pool_bytes, error);
+                                options->height, options->background, options->tone,
+                                options->pool_bytes, error);
 }
 
 Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
                        const RendererOptions *options, Error *error)
 {
     *renderer = (Renderer){.options = *options, .gpu = gpu, .timer = timer};
-    renderer->raster = options->raster != RASTER_AUTO ? options->raster
-                       : gpu->software                ? RASTER_BLOCKS
-                                                      : RASTER_QUADS;
+    if (options->aov != AOV_NONE) { // on black, without light
+        memcpy(renderer->options.background, (float[4]){0, 0, 0, 1}, 4 * sizeof(float));
+        renderer->options.shadow.kind = SHADOW_NONE;
+    }
+    renderer->raster = needs_quads(options)             ? RASTER_QUADS
+                       : options->raster != RASTER_AUTO ? options->raster
+                       : gpu->software                  ? RASTER_BLOCKS
+                                                        : RASTER_QUADS;
     Result result = render_target_create(&renderer->target, &gpu->limits, options->width,
-                                         options->height, error);
+                                         options->height, options->kind, error);
     if (result == RESULT_OK) result = RASTERS[renderer->raster].create(renderer, error);
-    if (result == RESULT_OK && options->shadow.kind != SHADOW_NONE)
+    if (result == RESULT_OK && renderer->options.shadow.kind != SHADOW_NONE)
         result = render_shadow_create(&renderer->shadow, &gpu->limits, &options->shadow, error);
     if (result != RESULT_OK) renderer_destroy(renderer);
     return result;
@@ -107,17 +127,24 @@ static void fill_draw_params(const Renderer *renderer, const RenderFrame *frame,
     const RendererOptions *options = &renderer->options;
     memset(draw, 0, sizeof *draw);
     draw_params_set_view(draw, frame->view, options->width, options->height);
+    float light = exp2f(options->exposure);
     draw_params_set_lights(draw, frame->lights, frame->light_count);
     for (int k = 0; k < 3; ++k) {
-        draw->sky[k] = frame->ambient ? linear_from_srgb(frame->ambient->sky[k]) : 1;
-        draw->ground[k] = frame->ambient ? linear_from_srgb(frame->ambient->ground[k]) : 1;
+        draw->sky[k] = light * (frame->ambient ? linear_from_srgb(frame->ambient->sky[k]) : 1);
+        draw->ground[k] =
+            light * (frame->ambient ? linear_from_srgb(frame->ambient->ground[k]) : 1);
+        for (uint32_t i = 0; i < frame->light_count; ++i) draw->light_color[i][k] *= light;
     }
+    memcpy(draw->depth_range, options->depth_range, sizeof options->depth_range);
     linear_from_srgb_color(options->background, draw->background);
-    for (int k = 0; k < 3; ++k) draw->background[k] *= options->background[3];
+    for (int k = 0; k < 3; ++k)
+        draw->background[k] =
+            options->background[3] * (float)tone_unmap(options->tone, (double)draw->background[k]);
     draw->background[3] = options->background[3];
     memcpy(draw->head_rotation, frame->head_rotation, sizeof draw->head_rotation);
     memcpy(draw->head_translation, frame->head_translation, sizeof frame->head_translation);
-    memcpy(draw->mesh_color, renderer->mesh.color, sizeof renderer->mesh.color);
+    if (options->aov == AOV_NONE)
+        memcpy(draw->mesh_color, renderer->mesh.color, sizeof renderer->mesh.color);
     draw->mesh_color[3] = MESH_AMBIENT;
     draw->seed = options->seed;
 }
@@ -232,7 +259,7 @@ static Result draw_bands(Renderer *renderer, Picture *picture, Error *error)
     return RESULT_OK;
 }
 
-static void set_state(const Renderer *renderer)
+static void set_state(const Renderer *renderer, const float background[4])
 {
     const RendererOptions *options = &renderer->options;
     glViewport(0, 0, options->width, options->height);
@@ -242,7 +269,10 @@ static void set_state(const Renderer *renderer)
     glDisable(GL_SCISSOR_TEST);
     glDepthFunc(GL_LESS);
     glBindFramebuffer(GL_FRAMEBUFFER, renderer->target.picture_frame);
-    glClearBufferfv(GL_COLOR, 0, options->background);
+    if (options->kind == IMAGE_FLOAT)
+        glClearBufferfv(GL_COLOR, 0, background);
+    else
+        glClearBufferfv(GL_COLOR, 0, options->background);
 }
 
 // Whether the lights ask for more than directions and one ambient colour.
@@ -279,14 +309,16 @@ static Result make_looks(Renderer *renderer, Picture *picture, const RenderFrame
         renderer->look_room = picture->item_count;
     }
     picture->looks = renderer->looks;
-    unsigned lights = (lights_are_simple(frame) ? 0 : LOOK_LIGHTS) | shadow_features(renderer);
+    static const unsigned aovs[] = {0, LOOK_WHITE, LOOK_WHITE, LOOK_TANGENT, LOOK_STRAND}; // by Aov
+    unsigned lights = (lights_are_simple(frame) ? 0 : LOOK_LIGHTS) | shadow_features(renderer),
+             aov = aovs[renderer->options.aov];
     for (uint32_t i = 0; i < picture->item_count; ++i) {
         const RenderItem *item = &picture->items[i];
         Look *look = &renderer->looks[i];
-        *look =
-            (Look){.material = material_params(item->material, item->radius), .features = lights};
+        *look = (Look){.material = material_params(item->material, item->radius),
+                       .features = aov ? aov : lights};
         if (item->hair->alike) look->material.color_variation = look->material.warmth_variation = 0;
-        if (item->material->shading != SHADING_MARSCHNER) continue;
+        if (aov || item->material->shading != SHADING_MARSCHNER) continue;
         look->features |= LOOK_MARSCHNER;
         if (item->material->lobes == LOBES_GAUSS) look->features |= LOOK_GAUSS;
         Result result = scatter_tables_find(&renderer->scatter, item->material->refraction,
@@ -479,7 +511,7 @@ Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderI
     gpu_uniforms_set(&renderer->draw_uniforms, BIND_DRAW, draw, sizeof *draw);
     result = draw_shadow(renderer, frame, &picture, error);
     if (result != RESULT_OK) return result;
-    set_state(renderer);
+    set_state(renderer, draw->background);
     draw_mesh(renderer, draw);
     result = RASTERS[renderer->raster].draw(renderer, &picture, image, error);
     if (result != RESULT_OK) return result;

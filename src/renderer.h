@@ -15,10 +15,15 @@
 #include "render_target.h"
 
 typedef struct RendererOptions {
-    Raster raster;       // how hair becomes pixels; auto: blocks on CPU drivers, else quads
-    int width, height;   // px, each 1 .. the driver's limits.framebuffer_side_px
-    float background[4]; // sRGB and opacity 0..1; below 1 the pictures have an alpha channel
-    uint32_t seed;       // of what varies by strand
+    Raster raster;        // how hair becomes pixels; auto: blocks on CPU drivers, else quads
+    int width, height;    // px, each 1 .. the driver's limits.framebuffer_side_px
+    float background[4];  // sRGB and opacity 0..1; below 1 the pictures have an alpha channel
+    float exposure;       // all light but the background's is this many times doubled
+    Tone tone;            // how light becomes colour; the background's does not change
+    ImageKind kind;       // of the pictures; other than 8 bits are drawn by quads
+    Aov aov;              // what is drawn instead of light, by quads, on black (docs/renderer.md)
+    float depth_range[2]; // AOV_DEPTH: m that are shown as 1 and as 0; alike: m themselves
+    uint32_t seed;        // of what varies by strand
     ShadowOptions shadow;
     int sorted_layers;  // quads: fragments of a pixel that are blended in order, >= 1; 0: 8
     int64_t pool_bytes; // no larger A-buffer or block lists; 0: what the driver allows

@@ -140,6 +140,30 @@ static Result check_head(const Scene *scene, Error *error)
     return result == RESULT_OK ? RESULT_OK : error_prefix(error, result, "head.");
 }
 
+static bool draws_floats(const RunParams *run)
+{
+    return ends_with(run->output, ".pfm");
+}
+
+// Light as it is, and what is no light, cannot be toned; and only quads draw deeper than 8 bits.
+static Result check_depth(const RunParams *run, Error *error)
+{
+    bool video = ends_with(run->output, ".mp4") || ends_with(run->output, ".webm") ||
+                 ends_with(run->output, ".gif");
+    const char *pair = NULL;
+    if (run->depth == DEPTH_16 && draws_floats(run)) pair = "--depth 16 and .pfm files";
+    if (run->depth == DEPTH_16 && video) pair = "--depth 16 and a video";
+    if (run->tone_map != TONE_NONE && draws_floats(run)) pair = "--tone-map and .pfm files";
+    if (run->tone_map != TONE_NONE && run->aov != AOV_NONE) pair = "--tone-map and --aov";
+    if (run->raster == RASTER_BLOCKS) {
+        if (run->depth == DEPTH_16) pair = "--raster blocks and --depth 16";
+        if (draws_floats(run)) pair = "--raster blocks and .pfm files";
+        if (run->aov != AOV_NONE) pair = "--raster blocks and --aov";
+    }
+    if (pair) return error_set(error, RESULT_USAGE, "%s exclude each other", pair);
+    return RESULT_OK;
+}
+
 Result scene_check(const Scene *scene, Error *error)
 {
     const RunParams *run = &scene->run;
@@ -149,6 +173,7 @@ Result scene_check(const Scene *scene, Error *error)
     if (result == RESULT_OK) result = check_camera(scene, error);
     if (result == RESULT_OK) result = check_conflicts(run, error);
     if (result == RESULT_OK) result = check_output(run->output, error);
+    if (result == RESULT_OK) result = check_depth(run, error);
     if (result == RESULT_OK) result = check_head(scene, error);
     return result;
 }

@@ -39,16 +39,11 @@ static bool same_view(const View *a, const View *b)
            memcmp(a->projection, b->projection, sizeof a->projection) == 0;
 }
 
-static size_t image_size(const Image *image)
-{
-    return (size_t)image->width * (size_t)image->height * (size_t)image->channels;
-}
-
 static Result remember(Previous *previous, const View *view, const Image *image, Error *error)
 {
     if (!previous->image.pixels) {
-        Result result =
-            image_create(&previous->image, image->width, image->height, image->channels, error);
+        Result result = image_create_kind(&previous->image, image->width, image->height,
+                                          image->channels, image->kind, error);
         if (result != RESULT_OK) return result;
     }
     memcpy(previous->image.pixels, image->pixels, image_size(image));

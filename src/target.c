@@ -104,12 +104,13 @@ Result target_parse(Target *target, const char *text, Error *error)
     Result result = RESULT_USAGE;
     if (is_folder(text)) {
         result = take_folder(target, text, error);
-    } else if (has_suffix(text, ".png")) {
+    } else if (has_suffix(text, ".png") || has_suffix(text, ".pfm")) {
+        target->floats = has_suffix(text, ".pfm");
         result = take_pattern(target, text, error);
     } else {
         error_set(error, RESULT_USAGE,
-                  "%s: expected a folder with a slash at its end, or a name ending in .png, .mp4, "
-                  ".webm or .gif",
+                  "%s: expected a folder with a slash at its end, or a name ending in .png, .pfm, "
+                  ".mp4, .webm or .gif",
                   *text ? text : "output name is empty");
         for (size_t i = 0; i < sizeof videos / sizeof *videos && result == RESULT_USAGE; i++)
             if (has_suffix(text, videos[i])) result = take_name(target, TARGET_VIDEO, text, error);

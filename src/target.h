@@ -7,8 +7,8 @@
 #include <stdbool.h>
 
 typedef enum TargetKind {
-    TARGET_FRAMES, // one PNG file a frame, numbered
-    TARGET_STILL,  // one PNG file for the only frame
+    TARGET_FRAMES, // one file a frame, numbered
+    TARGET_STILL,  // one file for the only frame
     TARGET_VIDEO,  // one file for all frames
 } TargetKind;
 
@@ -16,13 +16,14 @@ typedef struct Target {
     TargetKind kind;
     char *before; // the name up to the frame number; the whole name of a still or a video
     char *after;  // the name behind the number, with the suffix
+    bool floats;  // the files are PFM, not PNG
     int digits;   // the number is padded with zeros to this length
 } Target;
 
 // Takes "DIR/" or an existing folder (frame_0000.png, frame_0001.png, ... in it), a name ending in
 // .png with one %d or %0Nd (N from 1 to 9) in its last part ("%%" is a percent sign), a plain name
-// ending in .png, or one ending in .mp4, .webm or .gif. RESULT_USAGE for anything else,
-// RESULT_FAILED when memory is short.
+// ending in .png, the same with .pfm, or one ending in .mp4, .webm or .gif. RESULT_USAGE for
+// anything else, RESULT_FAILED when memory is short.
 Result target_parse(Target *target, const char *text, Error *error);
 
 // Takes the name of hair files: one ending in .tfx or .hair, with a number like those of pictures

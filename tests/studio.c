@@ -31,8 +31,8 @@ void studio_set_options(Studio *studio, const RendererOptions *options)
     renderer_destroy(&studio->renderer);
     image_destroy(&studio->image);
     NEEDED(renderer_create(&studio->renderer, &studio->gpu, &studio->timer, options, error));
-    NEEDED(image_create(&studio->image, options->width, options->height,
-                        renderer_channels(&studio->renderer), error));
+    NEEDED(image_create_kind(&studio->image, options->width, options->height,
+                             renderer_channels(&studio->renderer), options->kind, error));
 }
 
 void studio_clear(Studio *studio)

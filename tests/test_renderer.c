@@ -667,7 +667,7 @@ static void blocks_lie_alike_in_c_and_glsl(void **state)
     Error error = {{0}};
     LookPrograms *programs =
         raster == RASTER_QUADS ? &studio.renderer.hair.project : &studio.renderer.blocks.project;
-    unsigned all = LOOK_VARIANTS - 1; // every member is in use
+    unsigned all = LOOK_SHADED - 1; // every member is in use
     assert_int_equal(look_programs_build(programs, all, &error), RESULT_OK);
     GLuint program = programs->program[all];
 #define DRAW(field)                                                                                \
@@ -679,7 +679,8 @@ static void blocks_lie_alike_in_c_and_glsl(void **state)
     DRAW(clip_from_world), DRAW(eye), DRAW_ARRAY(light_place), DRAW_ARRAY(light_color);
     DRAW_ARRAY(light_axis), DRAW_ARRAY(light_cone), DRAW(sky), DRAW(ground);
     DRAW(background), DRAW(head_rotation), DRAW(head_translation), DRAW(mesh_color);
-    DRAW(width), DRAW(height), DRAW(focal), DRAW(near_distance), DRAW(depth), DRAW(band);
+    DRAW(width), DRAW(height), DRAW(focal), DRAW(near_distance), DRAW(depth), DRAW(depth_range);
+    DRAW(band);
     DRAW(light_count), DRAW(seed), DRAW(shards);
     MATERIAL(color), MATERIAL(color_variation), MATERIAL(warmth_variation), MATERIAL(radius),
         MATERIAL(tip_ratio);

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+// PFM files (Debevec's portable float map): three 32-bit floats a pixel, no compression.
+#pragma once
+
+#include "error.h"
+#include "file.h"
+#include "image.h"
+
+// Encodes an IMAGE_FLOAT: "PF", size, "-1" for little endian, then rows from the lowest up. A
+// fourth channel is left out: colours are premultiplied, and so those over black. RESULT_FAILED
+// when memory is short. Free `pfm` with bytes_destroy.
+Result pfm_encode(const Image *image, Bytes *pfm, Error *error);
