@@ -202,6 +202,32 @@ static void a_cut_file_is_bad_input(void **state)
     image_destroy(&image);
 }
 
+static void only_whole_files_of_the_right_form_are_whole(void **state)
+{
+    Image image = make_image(13, 9, 3);
+    const char *path = temporary_path(state, "image.png");
+    Bytes png;
+    assert_false(png_is_whole(path, 13, 9, 3));
+    assert_int_equal(png_encode(&image, &png, NULL), RESULT_OK);
+    assert_int_equal(bytes_write_file(&png, path, NULL), RESULT_OK);
+    assert_true(png_is_whole(path, 13, 9, 3));
+    assert_false(png_is_whole(path, 9, 13, 3));
+    assert_false(png_is_whole(path, 13, 9, 4));
+    for (size_t size = 0; size < png.size; size++) {
+        Bytes cut = {.data = png.data, .size = size};
+        assert_int_equal(bytes_write_file(&cut, path, NULL), RESULT_OK);
+        assert_false(png_is_whole(path, 13, 9, 3));
+    }
+    for (size_t at = 0; at < png.size; at++) {
+        png.data[at] ^= 0x10;
+        assert_int_equal(bytes_write_file(&png, path, NULL), RESULT_OK);
+        assert_false(png_is_whole(path, 13, 9, 3));
+        png.data[at] ^= 0x10;
+    }
+    bytes_destroy(&png);
+    image_destroy(&image);
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, temporary_create, temporary_destroy)
 
 int main(void)
@@ -215,6 +241,7 @@ int main(void)
         TEST(a_full_disk_leaves_no_file),
         TEST(files_that_are_no_png_are_bad_input),
         TEST(a_cut_file_is_bad_input),
+        TEST(only_whole_files_of_the_right_form_are_whole),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
