@@ -179,7 +179,7 @@ Result cache_writer_add(CacheWriter *writer, const Simulation *simulation, Error
         return error_set(error, RESULT_FAILED, "%s: no memory for a frame", writer->path);
     append(writer, "FRAM", writer->frame_count - 1, writer->payload, HEAD_BYTES + size);
     result = flush(writer, error);
-    writer->pack_ms += now_ms() - begin_ms;
+    writer->write_ms += now_ms() - begin_ms;
     return result;
 }
 

@@ -17,7 +17,7 @@ typedef struct CacheWriter {
     uint32_t frame_count, room;
     float (*positions)[3]; // of all guides
     uint8_t *payload;
-    double pack_ms; // spent so far
+    double write_ms; // spent so far, with packing
 } CacheWriter;
 
 // Makes the file anew, or empties it. RESULT_FAILED with path and reason, also if another process

@@ -36,7 +36,8 @@ static const char SCENE_RULES[] =
     "keys of a track run smoothly (monotone cubic) or, with \"interpolation\": \"linear\", "
     "straight; "
     "before the first and after the last key they are constant, and a value that a key leaves out "
-    "runs on between the keys that have it.";
+    "runs on between the keys that have it. Times are the scene's, which has 0 at frame 0 and runs "
+    "--speed times as fast as the video.";
 
 static const struct {
     const char *key, *example, *help;
@@ -79,7 +80,7 @@ static const struct {
     {"0", "done"},
     {"1", "failed while running (disk full, out of memory, ...), or --check found defects"},
     {"2", "a flag or a combination of values is wrong"},
-    {"3", "a hair, mesh or scene file is wrong"},
+    {"3", "a hair, mesh, scene or cache file is wrong, or the cache is of another scene"},
     {"4", "no usable OpenGL (4.3 core or better)"},
     {"130", "interrupted"},
 };
@@ -88,6 +89,8 @@ enum { STATUS_COUNT = sizeof STATUSES / sizeof STATUSES[0] };
 static const char *const EXAMPLES[] = {
     "tractrix-render hair.tfx --frames 120 -o frames/",
     "tractrix-render hair.tfx --turntable 360 --wind 2,0,0 -o hair.mp4",
+    "tractrix-render scene.json --cache sim.cache",
+    "tractrix-render scene.json --from-cache sim.cache --first 60 --last 119 -o frames/",
     "tractrix-render scene.json --size 1920x1080 -o frames/hair_%04d.png",
 };
 enum { EXAMPLE_COUNT = sizeof EXAMPLES / sizeof EXAMPLES[0] };

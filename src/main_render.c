@@ -291,6 +291,10 @@ static void tell_result(const Run *run, const Sequence *sequence, double ms)
     if (report.moves_limited && run->scene.run.verbose)
         fprintf(stderr, "%llu moves of more than 100 strand lengths a step were cut\n",
                 (unsigned long long)report.moves_limited);
+    const CacheWriter *cache = &run->source.writer;
+    if (cache->frame_count && run->scene.run.verbose)
+        fprintf(stderr, "%s: %u frames, %.3g MB, %.3g ms a frame to pack and write\n", cache->path,
+                cache->frame_count, (double)cache->at * 1e-6, cache->write_ms / cache->frame_count);
     fprintf(stderr, "%d frame%s in %.1f s, %.3g a second", frames, frames == 1 ? "" : "s", ms / 1e3,
             frames * 1e3 / ms);
     bool described = run->output && frames > 0;

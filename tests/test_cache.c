@@ -97,7 +97,7 @@ static int play(SimulationFixture *fixture, const Recorded *recorded, const char
 
 static void frames_come_back_bit_for_bit_in_any_order(void **state)
 {
-    Recorded recorded;
+    Recorded recorded = {0};
     SimulationFixture fixture;
     for (int whole = 0; whole < 2; ++whole) {
         record(&recorded, state, "frames.cache", whole);
@@ -118,7 +118,7 @@ static void write_bytes(const char *path, const uint8_t *data, size_t size)
 // Cut anywhere: the whole frames before the cut are there and right, the others are named.
 static void every_truncation_keeps_the_whole_frames(void **state)
 {
-    Recorded recorded;
+    Recorded recorded = {0};
     SimulationFixture fixture;
     Bytes file;
     record(&recorded, state, "whole.cache", true);
@@ -141,7 +141,7 @@ static void every_truncation_keeps_the_whole_frames(void **state)
 // be done without), or the file is refused.
 static void every_flipped_bit_is_found(void **state)
 {
-    Recorded recorded;
+    Recorded recorded = {0};
     SimulationFixture fixture;
     Bytes file;
     record(&recorded, state, "whole.cache", true);
@@ -166,7 +166,7 @@ static void every_flipped_bit_is_found(void **state)
 
 static void another_scene_is_refused_by_the_value_that_differs(void **state)
 {
-    Recorded recorded;
+    Recorded recorded = {0};
     SimulationFixture fixture;
     CacheReader reader;
     Error error;
@@ -224,7 +224,7 @@ static void assert_same_files(const char *a, const char *b)
 
 static void stopped_and_resumed_after_any_frame_is_the_same_file(void **state)
 {
-    Recorded recorded;
+    Recorded recorded = {0};
     record(&recorded, state, "whole.cache", true);
     char path[300]; // temporary_path's results do not last
     snprintf(path, sizeof path, "%s", temporary_path(state, "part.cache"));
