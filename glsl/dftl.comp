@@ -15,13 +15,14 @@ void main()
 {
     int s = first_strand(), n = int(step_params.vertex_count);
     if (s >= int(step_params.strand_count)) return;
-    int a = particle_address(s, 0, n);
-    vec3 wind = strand_wind(texelFetch(strand_id, s).x, root_position(texelFetch(rest, a)));
+    int a = strand_base(s);
+    vec3 wind = strand_wind(texelFetch(strand_id, s).x, root_position(strand_root(a)));
     float dt = step_params.dt, per_second = 1.0 / step_params.dt, damping = FTL_DAMPING;
-    vec3 leader = root_position(texelFetch(rest, a)), leader_velocity = vec3(0.0);
+    vec3 leader = root_position(strand_root(a)), leader_velocity = vec3(0.0);
     vec4 rotation = step_params.head_rotation;
     vec3 root = leader, style = vec3(0.0), along = rotate(rotation, texelFetch(rest, a + STRAND_TILE).xyz);
     float pull = STYLE_PULL;
+    carry_lead(a);
     positions[a] = vec4(leader, 1.0);
     for (int j = 1; j < n; ++j, a += STRAND_TILE) {
         vec3 x = texelFetch(position_before, a + STRAND_TILE).xyz;

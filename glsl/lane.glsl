@@ -17,8 +17,8 @@ struct Lane {
 Lane lane_open(int strand)
 {
     Lane lane;
-    lane.address = particle_address(strand, 0, int(step_params.vertex_count));
-    vec4 root_rest = texelFetch(rest, lane.address);
+    lane.address = strand_base(strand);
+    vec4 root_rest = strand_root(lane.address);
     lane.root = root_position(root_rest);
     lane.root_old = texelFetch(position_before, lane.address).xyz;
     lane.root_velocity = (lane.root - lane.root_old) / step_params.dt;
@@ -28,6 +28,7 @@ Lane lane_open(int strand)
     lane.dt = step_params.dt;
     lane.decay = step_params.decay;
     lane.pull = STYLE_PULL;
+    carry_lead(lane.address);
     return lane;
 }
 

@@ -66,11 +66,11 @@ void main()
 {
     int s = first_strand();
     if (s >= int(step_params.strand_count)) return;
-    int base = particle_address(s, 0, VERTICES);
-    vec3 x[VERTICES], q[VERTICES], wind = strand_wind(texelFetch(strand_id, s).x, root_position(texelFetch(rest, base))); // x: now, q: before the flight
+    int base = strand_base(s);
+    vec3 x[VERTICES], q[VERTICES], wind = strand_wind(texelFetch(strand_id, s).x, root_position(strand_root(base))); // x: now, q: before the flight
     float l[VERTICES];
     int small_steps = SMALL_STEPS, sweeps = SWEEPS;
-    vec4 root = texelFetch(rest, base), rotation = step_params.head_rotation;
+    vec4 root = strand_root(base), rotation = step_params.head_rotation;
     vec3 drawn = texelFetch(position_before, base).xyz, at = drawn;
     x[0] = root_at(root, 1, small_steps);
 #if STYLED
@@ -119,6 +119,7 @@ void main()
 
     drawn = x[0];
     vec3 along = rotate(rotation, texelFetch(rest, base + STRAND_TILE).xyz);
+    carry_lead(base);
     positions[base] = vec4(drawn, 1.0);
     for (int j = 1; j < VERTICES; ++j)
         finish(base + j * STRAND_TILE, x[j] - x[j - 1], l[j], x[j] - q[j], drawn, along);
@@ -132,17 +133,20 @@ void main()
 {
     int s = first_strand(), n = int(step_params.vertex_count);
     if (s >= int(step_params.strand_count)) return;
-    int phase = int(step_params.phase), step = phase / SWEEPS, a = particle_address(s, 0, n);
+    int phase = int(step_params.phase), step = phase / SWEEPS, a = strand_base(s);
     bool loads = phase == 0, flies = phase == step * SWEEPS, draws = phase + 1 == SMALL_STEPS * SWEEPS;
-    vec3 wind = strand_wind(texelFetch(strand_id, s).x, root_position(texelFetch(rest, a))), fall = fall_of(wind);
-    vec4 root = texelFetch(rest, a);
+    vec3 wind = strand_wind(texelFetch(strand_id, s).x, root_position(strand_root(a))), fall = fall_of(wind);
+    vec4 root = strand_root(a);
     vec3 drawn_before = texelFetch(position_before, a).xyz, at = drawn_before;
     vec3 x = root_at(root, step + 1, SMALL_STEPS), q = x, style_at = x;
     vec4 rotation = step_params.head_rotation;
     float pull = loads ? FIRST_PULL : LATER_PULL;
     vec3 before = x, drawn = x, along = rotate(rotation, texelFetch(rest, a + STRAND_TILE).xyz);
     float weights = 1.0, l = 0.0, l_before = 0.0;
-    if (draws) positions[a] = vec4(drawn, 1.0);
+    if (draws) {
+        carry_lead(a);
+        positions[a] = vec4(drawn, 1.0);
+    }
     // Link j is mended while j - 1 waits in `x`, `q`; then j - 1 is done with.
     for (int j = 1; j < n; ++j, a += STRAND_TILE) {
         int b = a + STRAND_TILE;

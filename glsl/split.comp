@@ -23,6 +23,7 @@
 layout(local_size_x = GROUP_SIZE) in;
 layout(binding = BIND_REST) uniform samplerBuffer rest;
 layout(binding = BIND_STRAND_ID) uniform usamplerBuffer strand_id;
+#include "strand_root.glsl"
 layout(binding = BIND_STATE) uniform samplerBuffer segments_before; // the same buffer, fetched before anything is written
 layout(std430, binding = BIND_STATE_OUT) buffer Segments { vec4 segments[]; };
 layout(std430, binding = BIND_TIPS) buffer Tips { vec4 tips[]; }; // a strand: position, times limited; velocity
@@ -94,8 +95,12 @@ void main()
 
     for (int k = 0; k < STRANDS; ++k) {
         s[k] = first + k * GROUP_SIZE;
-        base[k] = particle_address(s[k], 0, LINKS + 1);
-        vec4 root_rest = texelFetch(rest, base[k]);
+        base[k] = particle_address(s[k], LEAD, LINKS + 1 + LEAD);
+        vec4 root_rest = strand_root(base[k]);
+#if LEAD
+        vec4 lead = texelFetch(rest, base[k]);
+        segments[base[k]] = vec4(rotate(step_params.head_rotation, lead.xyz), lead.w);
+#endif
         float R = root_rest.w;
         vec3 root_old = root_at(step_params.head_rotation_old, step_params.head_translation_old, root_rest);
         vec3 root = root_at(step_params.head_rotation, step_params.head_translation, root_rest);

@@ -120,6 +120,7 @@ void substitute(int base, int n, vec3 wind, vec3 root_velocity, vec3 root)
     float dt = step_params.dt, per_second = 1.0 / step_params.dt;
     vec3 drawn_before = texelFetch(position_before, base).xyz, flying_before = root_velocity, x_before = vec3(0.0);
     vec3 drawn = root, along = rotate(step_params.head_rotation, texelFetch(rest, base + STRAND_TILE).xyz);
+    carry_lead(base);
     positions[base] = vec4(root, 1.0);
     for (int j = 1; j < n; ++j) {
         int a = base + j * STRAND_TILE;
@@ -142,9 +143,9 @@ void main()
 {
     int strand = first_strand(), n = int(step_params.vertex_count);
     if (strand >= int(step_params.strand_count)) return;
-    int base = particle_address(strand, 0, n);
-    vec3 wind = strand_wind(texelFetch(strand_id, strand).x, root_position(texelFetch(rest, base)));
-    vec4 root = texelFetch(rest, base);
+    int base = strand_base(strand);
+    vec3 wind = strand_wind(texelFetch(strand_id, strand).x, root_position(strand_root(base)));
+    vec4 root = strand_root(base);
     vec3 root_velocity = root_move(root) / step_params.dt;
     if (step_params.phase == 0u)
         eliminate(base, n, wind, root_velocity);
@@ -157,8 +158,8 @@ void main()
 {
     int strand = first_strand(), n = int(step_params.vertex_count);
     if (strand >= int(step_params.strand_count)) return;
-    int a = particle_address(strand, 0, n);
-    vec4 rotation = step_params.head_rotation, root = texelFetch(rest, a);
+    int a = strand_base(strand);
+    vec4 rotation = step_params.head_rotation, root = strand_root(a);
     vec3 wind = strand_wind(texelFetch(strand_id, strand).x, root_position(root)), fall = kick(vec3(0.0), wind);
     float dt = step_params.dt, gain = step_params.gain, decay = step_params.decay;
     Springs springs = springs_of(n - 1);
@@ -167,6 +168,7 @@ void main()
     vec3 r = vec3(0.0), force = vec3(0.0); // of the link before
     vec4 v = vec4(0.0);
     float l = 0.0;
+    carry_lead(a);
     positions[a] = vec4(drawn, 1.0);
     // Link j's force completes particle j - 1's.
     for (int j = 1; j <= n; ++j, a += STRAND_TILE) {

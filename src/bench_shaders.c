@@ -38,8 +38,9 @@ static Result try_solver(const Gpu *gpu, const SolverType *type, const char *var
                                   .variant = (char *)variant,
                                   .style = style,
                                   .style_stiffness = 100,
-                                  .chain_bend =
-                                      style < 1 ? 10 : 0}; // springs with bending and without
+                                  .clamped = style < 1 ? 1 : 2,
+                                  // Springs with bending and without.
+                                  .chain_bend = style < 1 ? 10 : 0};
     Result result = strands_make(&strands, &recipe, error);
     if (result == RESULT_OK) result = hair_create(&hair, &strands, 0, &gpu->limits, error);
     const SolverSetup setup = {

@@ -57,6 +57,7 @@ static Result build_programs(ParticleState *state, const SolverSetup *setup, Err
         .shader = state->recipe->shader,
         .most_in_registers = state->recipe->most_in_registers,
         .strands_on_cpu = 1,
+        .lead = state->recipe->carried < 2 && state->params->clamped > 1,
         .sheltered = setup->sheltered,
         .defines = defines,
     };
@@ -113,7 +114,7 @@ static Result build(ParticleState *state, const SolverSetup *setup, Error *error
     if (result == RESULT_OK) result = pose_create(&state->style, setup->gpu, 1, error);
     if (result == RESULT_OK)
         result = collision_create(&state->collision, setup, COLLISION_PARTICLES,
-                                  state->recipe->carried, error);
+                                  state->params->clamped > 1 ? 2 : state->recipe->carried, error);
     for (uint32_t i = 0; i < state->hair->batch_count && result == RESULT_OK; ++i)
         result = create_buffers(state, &state->batches[i], &state->hair->batches[i],
                                 &setup->gpu->limits, error);
@@ -152,7 +153,7 @@ static void dispatch(ParticleState *state, uint32_t i, StepParams *uniforms)
     const HairBatch *hair = &state->hair->batches[i];
     const ParticleBatch *batch = &state->batches[i];
     uniforms->strand_count = hair->strand_count;
-    uniforms->vertex_count = hair->vertex_count;
+    uniforms->vertex_count = hair->vertex_count - state->programs.leads[i];
     gpu_uniforms_set(&state->uniforms, BIND_STEP, uniforms, sizeof *uniforms);
     gpu_buffer_bind_texture(&hair->position, BIND_POSITION);
     gpu_buffer_bind_texture(&hair->rest, BIND_REST);

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_FILES = 16, MAX_LOG = 4096 };
+enum { MAX_FILES = 32, MAX_LOG = 4096 };
 
 static bool warnings_are_errors;
 

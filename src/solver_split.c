@@ -63,6 +63,7 @@ static Result build_programs(SplitState *state, const SolverSetup *setup, Error 
         .shader = "split.comp",
         .most_in_registers = MOST_IN_REGISTERS,
         .strands_on_cpu = STRANDS_ON_CPU,
+        .lead = state->params->clamped > 1,
         .sheltered = setup->sheltered,
         .defines =
             (const ShaderDefine[]){{"THESIS", state->thesis}, {"DRAGGED", state->dragged}, {0}},
@@ -133,10 +134,11 @@ static Result build(SplitState *state, const SolverSetup *setup, Error *error)
     if (result == RESULT_OK) result = build_programs(state, setup, error);
     if (result == RESULT_OK)
         result = pose_create(&state->pose, setup->gpu, setup->params->style, error);
+    uint32_t carried = state->params->clamped > 1 ? 2 : 1;
     if (result == RESULT_OK)
-        result = collision_create(&state->collision, setup, COLLISION_SEGMENTS, 1, error);
+        result = collision_create(&state->collision, setup, COLLISION_SEGMENTS, carried, error);
     if (result == RESULT_OK)
-        result = collision_create(&state->drawn, setup, COLLISION_DRAWN, 1, error);
+        result = collision_create(&state->drawn, setup, COLLISION_DRAWN, carried, error);
     for (uint32_t i = 0; i < state->hair->batch_count && result == RESULT_OK; ++i)
         result = create_state(&state->batches[i], &state->hair->batches[i], setup, error);
     return result;
@@ -181,7 +183,7 @@ static void step(void *pointer, const SolverStep *solver_step)
         const HairBatch *hair = &state->hair->batches[i];
         const SplitBatch *batch = &state->batches[i];
         uniforms.strand_count = hair->strand_count;
-        uniforms.vertex_count = hair->vertex_count;
+        uniforms.vertex_count = hair->vertex_count - state->programs.leads[i];
         gpu_uniforms_set(&state->uniforms, BIND_STEP, &uniforms, sizeof uniforms);
         gpu_buffer_bind_texture(&hair->rest, BIND_REST);
         gpu_buffer_bind_texture(&hair->strand_id, BIND_STRAND_ID);

@@ -13,7 +13,8 @@ typedef struct StepProgramsOptions {
                                 // costs a compilation for each vertex count; 0: never
     uint32_t strands_on_cpu;    // strands of a lane on CPU drivers where they are in registers: two
                                 // hide each other's latency, a GPU has other lanes for that
-    bool sheltered;             // the head keeps wind off (forces.glsl)
+    uint32_t lead;  // vertices that the head carries beside the root, where a strand has enough
+    bool sheltered; // the head keeps wind off (forces.glsl)
     const ShaderDefine *defines; // the variant's own, at most STEP_OWN_DEFINES
 } StepProgramsOptions;
 
@@ -21,12 +22,14 @@ enum { STEP_OWN_DEFINES = 8 };
 
 typedef struct StepPrograms {
     GLuint *programs; // [batch_count]; equal ones may be the same
+    uint32_t *leads;  // [batch_count]: of the batch's strands
     uint32_t batch_count, group_size, strands_per_lane;
     bool in_registers;
 } StepPrograms;
 
-// Compiles with the macros GROUP_SIZE (lanes), STRANDS (a lane's), IN_REGISTERS, VERTICES, SHELTER
-// and the own ones. Errors of shader_build_compute; RESULT_FAILED without memory.
+// Compiles with the macros GROUP_SIZE (lanes), STRANDS (a lane's), IN_REGISTERS, VERTICES (but for
+// the lead), LEAD, SHELTER and the own ones. Errors of shader_build_compute; RESULT_FAILED without
+// memory.
 Result step_programs_create(StepPrograms *programs, const Gpu *gpu, const Hair *hair,
                             const StepProgramsOptions *options, Error *error);
 void step_programs_destroy(StepPrograms *programs);

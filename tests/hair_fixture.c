@@ -107,11 +107,16 @@ void fixture_destroy(HairFixture *fixture)
     colliders_destroy(&fixture->colliders);
 }
 
+void fixture_solve_anew(HairFixture *fixture)
+{
+    solver_destroy(&fixture->solver);
+    create_solver(fixture);
+}
+
 void fixture_shelter(HairFixture *fixture)
 {
     fixture->sheltered = true;
-    solver_destroy(&fixture->solver);
-    create_solver(fixture);
+    fixture_solve_anew(fixture);
 }
 
 void fixture_step(HairFixture *fixture)

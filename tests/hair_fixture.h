@@ -39,7 +39,10 @@ void fixture_destroy(HairFixture *fixture);
 // Makes the solver anew, with the shapes that `text` lists (colliders_parse).
 void fixture_collide(HairFixture *fixture, const char *text);
 
-// Makes the solver anew, with regard to the step's shelter.
+// Makes the solver anew, with the parameters as they are now.
+void fixture_solve_anew(HairFixture *fixture);
+
+// The same, with regard to the step's shelter.
 void fixture_shelter(HairFixture *fixture);
 
 // One step, then the head of this step becomes the old one.

@@ -107,9 +107,9 @@ static void blocks_lie_alike_in_c_and_glsl(void **state)
 {
     (void)state;
     GLuint program;
-    const ShaderDefine split[] = {
-        {"GROUP_SIZE", 8}, {"STRANDS", 1}, {"IN_REGISTERS", 0}, {"VERTICES", 4},
-        {"THESIS", 0},     {"DRAGGED", 0}, {"SHELTER", 0},      {0}};
+    const ShaderDefine split[] = {{"GROUP_SIZE", 8}, {"STRANDS", 1}, {"IN_REGISTERS", 0},
+                                  {"VERTICES", 4},   {"THESIS", 0},  {"DRAGGED", 0},
+                                  {"SHELTER", 0},    {"LEAD", 0},    {0}};
     assert_int_equal(shader_build_compute(&program, "split.comp", split, NULL), RESULT_OK);
 #define STEP(field, suffix)                                                                        \
     fixture_assert_offset(program, "StepParams." #field suffix, offsetof(StepParams, field))
