@@ -13,7 +13,7 @@
 #define BIND_COUNTERS_OUT 0 // uint a shard, 16 apart
 #define BIND_INDICES_OUT  1 // uint, triangles
 #define BIND_COMMAND_OUT  2 // COMMAND_WORDS uint
-#define BIND_EDGES_OUT    3 // vec4 a particle, see hair.vert
+#define BIND_EDGES_OUT    3 // uvec4 a particle, see hair.vert
 #define BIND_SHADES_OUT   4 // uvec4 a particle
 #define BIND_EXTENT_OUT   5 // 4 int: screen box of the hair, px
 #define BIND_NODES_OUT    6 // uvec4 a fragment, see abuffer.glsl

@@ -12,6 +12,7 @@ layout(std430, binding = BIND_COUNTERS_OUT) buffer Counters { uint counters[]; }
 
 noperspective in float across;
 noperspective in float half_width;
+noperspective in vec2 ends;
 noperspective in vec4 color;
 
 const float LEAST_ALPHA = 1.0 / 4096.0;
@@ -19,7 +20,9 @@ const float LEAST_COVERAGE = 1.0 / 16.0; // of a pixel whose nearest ribbon is a
 
 void main()
 {
-    float coverage = ribbon_coverage(across, half_width, vec2(dFdx(across), dFdy(across)));
+    // The strand's end, spread over a pixel as if that lay along it.
+    float share = clamp(min(ends.x, ends.y) + 0.5, 0.0, 1.0);
+    float coverage = share * ribbon_coverage(across, half_width, vec2(dFdx(across), dFdy(across)));
 #if NEAREST
     float alpha = coverage >= LEAST_COVERAGE ? 1.0 : 0.0;
 #else

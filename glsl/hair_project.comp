@@ -7,7 +7,8 @@
 // pushed out to h + PAD, so that every pixel that the ribbon touches gets a fragment. At a joint
 // the edges of both segments meet on the mitre, at m (h + PAD) with m = (n0 + n1) / (1 + n0.n1), n
 // the segments' unit normals: no gap, no double coverage, and the distance to either middle line
-// is h + PAD exactly, so that interpolating it is exact, too. Where a strand folds back, m is kept
+// is h + PAD exactly, so that interpolating it is exact, too. At both ends of the strand the ribbon
+// is PAD longer, and the distance beyond its end is interpolated like that. Where a strand folds back, m is kept
 // from growing.
 #include "draw.h"
 #include "material.h"
@@ -20,22 +21,26 @@
 layout(local_size_x = GROUP_SIZE) in;
 layout(binding = BIND_POSITION) uniform samplerBuffer position;
 layout(binding = BIND_STRAND_ID) uniform usamplerBuffer strand_id;
-layout(std430, binding = BIND_EDGES_OUT) writeonly buffer Edges { vec4 edges[]; };
+layout(std430, binding = BIND_EDGES_OUT) writeonly buffer Edges { uvec4 edges[]; };
 layout(std430, binding = BIND_SHADES_OUT) writeonly buffer Shades { uvec4 shades[]; };
 layout(std430, binding = BIND_INDICES_OUT) writeonly buffer Indices { uint indices[]; };
 layout(std430, binding = BIND_COMMAND_OUT) buffer Command { uint command[]; };
 layout(std430, binding = BIND_COUNTERS_OUT) buffer Counters { uint counters[]; };
 layout(std430, binding = BIND_EXTENT_OUT) buffer Extent { int extent[4]; }; // x, y lowest, highest
 
-// Stores the particle for the vertex shader, d0 and d1 the directions of the ribbon before and after it.
-void store(int index, Particle p, vec2 d0, vec2 d1, float opacity)
+const float FAR = 3e4; // px: ends farther off than the picture is long; a half still holds it
+
+// Stores the particle for the vertex shader: d0 and d1 the directions of the ribbon before and after it, `beyond` the
+// ends' distances along the strand, both -PAD at its own end.
+void store(int index, Particle p, vec2 d0, vec2 d1, vec2 beyond, float opacity)
 {
     if (d0 == vec2(0.0)) d0 = d1;
     if (d1 == vec2(0.0)) d1 = d0;
     vec2 normal = vec2(-d0.y - d1.y, d0.x + d1.x);
     float half_width = outline_half_width(p, normal);
     vec2 edge = normal * ((half_width + PAD) / max(1.0 + dot(d0, d1), LEAST_COSINE));
-    edges[index] = vec4(p.at.xy * (2.0 / size) - 1.0, edge * (2.0 / size));
+    vec2 middle = p.at.xy + min(beyond.x, 0.0) * d1 - min(beyond.y, 0.0) * d0;
+    edges[index] = uvec4(floatBitsToUint(middle), packHalf2x16(edge), packHalf2x16(beyond));
     shades[index] = uvec4(floatBitsToUint(p.at.z), floatBitsToUint(half_width), packHalf2x16(p.color.rg),
                           packHalf2x16(vec2(p.color.b, opacity)));
 }
@@ -77,6 +82,7 @@ void main()
     Particle kept = Particle(vec4(0.0), vec3(0.0)), last = kept; // the last one not left out; the one before this one
     vec2 way = vec2(0.0); // the ribbon's direction before `kept`
     float bent = 0.0;     // of all that was left out since `kept`
+    float from_root = -PAD; // of `kept`, px
     int count = 0;
     for (int j = 0; j < n; ++j) {
         int at = root + j * STRAND_TILE;
@@ -90,7 +96,10 @@ void main()
         if (j > 1) bent += bend(kept, last, p);
         if (j == 1 || bent > 1.0) {
             vec2 next = direction(kept, last);
-            if (j > 1) store(first + count++, kept, way, next, opacity);
+            if (j > 1) {
+                store(first + count++, kept, way, next, vec2(from_root, FAR), opacity);
+                from_root = min(max(from_root, 0.0) + distance(kept.at.xy, last.at.xy), FAR);
+            }
             way = next;
             kept = last;
             bent = 0.0;
@@ -102,8 +111,9 @@ void main()
         here_clip = after_clip;
     }
     vec2 next = direction(kept, last);
-    store(first + count++, kept, way, next, opacity);
-    store(first + count++, last, next, next, opacity);
+    float left = min(distance(kept.at.xy, last.at.xy), FAR);
+    store(first + count++, kept, way, next, vec2(from_root, left), opacity);
+    store(first + count++, last, next, next, vec2(min(max(from_root, 0.0) + left, FAR), -PAD), opacity);
 
     ivec4 whole = ivec4(floor(clamp(box, -1e6, 1e6)));
     bool in_picture = whole.x < int(size.x) && -whole.z > 0 && whole.y < int(size.y) && -whole.w > 0;

@@ -42,7 +42,7 @@ static Result make_scratch(RenderHair *hair, uint32_t strands, uint32_t vertex_c
 {
     int64_t particles = (int64_t)strands * vertex_count, segments = particles - strands;
     Result result =
-        make_room(&hair->edges, limits, "hair edges", particles * 16, GL_RGBA32F, error);
+        make_room(&hair->edges, limits, "hair edges", particles * 16, GL_RGBA32UI, error);
     if (result == RESULT_OK)
         result =
             make_room(&hair->shades, limits, "hair shades", particles * 16, GL_RGBA32UI, error);

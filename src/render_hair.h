@@ -13,7 +13,7 @@ typedef struct RenderHair {
     LookPrograms project;
     GLuint draw;                // program
     GLuint vertex_array;        // without attributes
-    GpuBuffer edges, shades;    // vec4, uvec4 a particle, see hair.vert
+    GpuBuffer edges, shades;    // uvec4 a particle, see hair.vert
     GpuBuffer indices, command; // triangles, and how many of them: glDrawElementsIndirect
     GpuBuffer material;
 } RenderHair;
