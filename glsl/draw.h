@@ -18,6 +18,7 @@
 #define BIND_EXTENT_OUT   5 // 4 int: screen box of the hair, px
 #define BIND_NODES_OUT    6 // uvec4 a fragment, see abuffer.glsl
 #define BIND_HEADS_OUT    7 // uint a pixel
+#define BIND_SHORTAGE_OUT 0 // uint, while pixels are resolved
 
 // Textures, after those of shared.h.
 #define BIND_EDGES  4

@@ -2,6 +2,7 @@
 // A pixel's fragments become its colour: the LAYERS nearest in order, the rest blended out of order
 // under them, all over what stands behind, premultiplied and in linear light.
 //   BASE 0: the background alone stands behind   1: the mesh does   DEPTH 1: the nearest fragment's distance instead
+//   MOST_TURNS: fragments that the driver lets a loop visit
 //
 // The rest is summed in whole numbers, which give the same sum in every order: colour times alpha,
 // alpha, and optical depth -log2(1 - alpha). Together they let through what they would in any
@@ -15,6 +16,7 @@ layout(binding = BIND_HEADS) uniform usamplerBuffer heads;
 #if BASE
 layout(binding = BIND_BASE) uniform sampler2D base;
 #endif
+layout(std430, binding = BIND_SHORTAGE_OUT) writeonly buffer Shortage { uint shortage; };
 layout(location = 0) out vec4 pixel_out; // sRGB, alpha not multiplied in; or premultiplied light
 
 const float COLOR_STEPS = 16384.0;
@@ -49,33 +51,40 @@ void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     int link = int(texelFetch(heads, (pixel.y - int(draw_params.band.y)) * int(draw_params.band.x) + pixel.x).x);
+#if LAYERS
     ivec3 layer[LAYERS];
     for (int i = 0; i < LAYERS; ++i) layer[i] = ivec3(0);
+#endif
     ivec4 high = ivec4(0), low = ivec4(0);
     int optical_depth = 0, count = 0;
-    while (link != 0) {
+    while (link != 0 && count < MOST_TURNS) {
         ivec4 node = ivec4(texelFetch(nodes, link - 1));
         link = node.x;
         ivec3 farther = node.yzw;
+#if LAYERS
         for (int i = 0; i < LAYERS; ++i) {
             bool nearer = abuffer_nearer(farther, layer[i]);
             ivec3 here = layer[i];
             layer[i] = nearer ? farther : here;
             farther = nearer ? here : farther;
         }
+#endif
         vec4 c = min(abuffer_color(farther), COLOR_MAX);
         low += ivec4(c * COLOR_STEPS + 0.5);
         int depth = int(-log2(max(1.0 - c.a, 1.0 / 65536.0)) * DEPTH_STEPS + 0.5);
         optical_depth = min(optical_depth + depth, DEPTH_MAX);
         if (++count % CARRY_EVERY == 0) carry(high, low);
     }
+    if (link != 0) shortage = 1u;
 #if BASE
     vec4 color = texelFetch(base, pixel, 0);
 #else
     vec4 color = draw_params.background;
 #endif
     color = over(rest_color(high, low, optical_depth), color);
+#if LAYERS
     for (int i = LAYERS - 1; i >= 0; --i) color = over(abuffer_color(layer[i]), color);
+#endif
 #if DEPTH
     float near = intBitsToFloat(layer[0].x); // 1 / distance, 0 without hair
     float distance = 1.0 / max(near, 1e-20);

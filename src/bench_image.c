@@ -32,6 +32,15 @@ ImageOptions image_options_default(void)
     return (ImageOptions){.size = {1280, 720}, .frames = 15};
 }
 
+const ImageScheme IMAGE_SCHEMES[] = {
+    {RASTER_BLOCKS, OIT_AUTO, 0},    {RASTER_QUADS, OIT_NONE, 0},
+    {RASTER_QUADS, OIT_ABUFFER, 1},  {RASTER_QUADS, OIT_ABUFFER, 4},
+    {RASTER_QUADS, OIT_ABUFFER, 8},  {RASTER_QUADS, OIT_ABUFFER, 16},
+    {RASTER_QUADS, OIT_ABUFFER, 32},
+};
+const size_t IMAGE_SCHEME_COUNT = sizeof IMAGE_SCHEMES / sizeof *IMAGE_SCHEMES;
+const char *const IMAGE_SETS[] = {"straight", "curls", "fur", NULL};
+
 // The recipes of the sets that look like hair.
 static bool find_recipe(const char *name, StrandsRecipe *recipe)
 {
@@ -210,7 +219,8 @@ Result image_bench_measure(ImageBench *bench, const ImageOptions *options, Image
     GpuTimer timer;
     Image image = {0};
     RendererOptions how = {.raster = options->scheme.raster,
-                           .sorted_layers = options->scheme.layers,
+                           .oit = options->scheme.oit,
+                           .oit_layers = options->scheme.layers,
                            .width = bench->size[0],
                            .height = bench->size[1],
                            .seed = bench->scene.run.seed};
@@ -241,14 +251,15 @@ json_t *image_to_json(const ImageBench *bench, const ImageOptions *options,
 {
     const RendererCounts *counts = &result->counts;
     json_t *row = json_pack(
-        "{s:s, s:I, s:I, s:[i,i], s:s, s:f, s:f, s:f, s:I, s:I, s:s, s:s, s:s, s:s, s:s}", "set",
-        bench->name, "strands", (json_int_t)bench->strands.strand_count, "particles",
+        "{s:s, s:I, s:I, s:[i,i], s:s, s:s, s:i, s:f, s:f, s:f, s:I, s:I, s:s, s:s, s:s, s:s, s:s}",
+        "set", bench->name, "strands", (json_int_t)bench->strands.strand_count, "particles",
         (json_int_t)bench->strands.vertex_count, "size", bench->size[0], bench->size[1], "raster",
-        word_of("raster", (int)options->scheme.raster), "median_ms", result->median_ms, "min_ms",
-        result->min_ms, "covered", result->covered, "segments", (json_int_t)counts->segments,
-        "fragments", (json_int_t)counts->fragments, "passes", result->spans, "renderer",
-        bench->gpu->renderer, "gl_version", bench->gpu->version, "version", TRACTRIX_VERSION,
-        "commit", TRACTRIX_COMMIT);
+        word_of("raster", (int)options->scheme.raster), "oit",
+        word_of("oit", (int)options->scheme.oit), "layers", options->scheme.layers, "median_ms",
+        result->median_ms, "min_ms", result->min_ms, "covered", result->covered, "segments",
+        (json_int_t)counts->segments, "fragments", (json_int_t)counts->fragments, "passes",
+        result->spans, "renderer", bench->gpu->renderer, "gl_version", bench->gpu->version,
+        "version", TRACTRIX_VERSION, "commit", TRACTRIX_COMMIT);
     if (row && result->rms >= 0) {
         json_object_set_new(row, "rms", json_real(result->rms));
         json_object_set_new(row, "reference_s", json_real(bench->reference_s));
@@ -258,15 +269,24 @@ json_t *image_to_json(const ImageBench *bench, const ImageOptions *options,
 
 void image_print_head(FILE *stream)
 {
-    fprintf(stream, "%-24s %-8s %9s %9s %7s %8s  %s\n", "set", "raster", "draw ms", "(min)", "RMS",
+    fprintf(stream, "%-24s %-14s %9s %9s %7s %8s  %s\n", "set", "scheme", "draw ms", "(min)", "RMS",
             "covered", "passes, ms");
 }
 
 void image_print(const ImageBench *bench, const ImageOptions *options, const ImageResult *result,
                  FILE *stream)
 {
-    fprintf(stream, "%-24s %-8s %9.2f %9.2f ", bench->name,
-            word_of("raster", (int)options->scheme.raster), result->median_ms, result->min_ms);
+    const ImageScheme *scheme = &options->scheme;
+    char name[32];
+    const char *raster = word_of("raster", (int)scheme->raster);
+    if (scheme->raster != RASTER_QUADS && scheme->oit == OIT_AUTO && scheme->layers == 0)
+        snprintf(name, sizeof name, "%s", raster);
+    else if (scheme->oit == OIT_NONE)
+        snprintf(name, sizeof name, "%s, none", raster);
+    else
+        snprintf(name, sizeof name, "%s, k = %d", raster, scheme->layers ? scheme->layers : 8);
+    fprintf(stream, "%-24s %-14s %9.2f %9.2f ", bench->name, name, result->median_ms,
+            result->min_ms);
     if (result->rms >= 0)
         fprintf(stream, "%7.2f %7.1f%%", result->rms, 100 * result->covered);
     else

@@ -7,9 +7,10 @@
 
 #include <jansson.h>
 
-// A way to draw; 0 and auto stand for the renderer's own choices.
+// A way to draw.
 typedef struct ImageScheme {
     Raster raster;
+    Oit oit;
 
     int layers; // of abuffer that are sorted
 } ImageScheme;
@@ -34,8 +35,15 @@ typedef struct ImageResult {
 // Hair on the GPU and, once asked for, its exact picture: for any number of schemes.
 typedef struct ImageBench ImageBench;
 
-// 1280x720, 15 frames.
+// 1280x720, 15 frames, all auto.
 ImageOptions image_options_default(void);
+
+// The schemes that are worth comparing.
+extern const ImageScheme IMAGE_SCHEMES[];
+extern const size_t IMAGE_SCHEME_COUNT;
+
+// The sets that are worth it: names for ImageOptions.set; ends with NULL.
+extern const char *const IMAGE_SETS[];
 
 // NULL and *result for a set that does not exist or a file that cannot be read.
 ImageBench *image_bench_create(const Gpu *gpu, const ImageOptions *options, Result *result,

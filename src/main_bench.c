@@ -167,6 +167,43 @@ static Result run_image(const Arguments *arguments, const Gpu *gpu, Error *error
     return result;
 }
 
+// All schemes for one set.
+static Result add_images(const ImageOptions *options, const Gpu *gpu, json_t *rows, Error *error)
+{
+    Result result;
+    ImageOptions mine = *options;
+    ImageBench *bench = image_bench_create(gpu, &mine, &result, error);
+    for (size_t i = 0; i < IMAGE_SCHEME_COUNT && result == RESULT_OK; ++i) {
+        mine.scheme = IMAGE_SCHEMES[i];
+        result = interrupt_requested() ? error_set(error, RESULT_INTERRUPTED, "interrupted")
+                                       : add_image(bench, &mine, rows, error);
+    }
+    image_bench_destroy(bench);
+    return result;
+}
+
+static Result run_images(const Arguments *arguments, const Gpu *gpu, Error *error)
+{
+    ImageOptions options = arguments->image;
+    if (arguments->speed.size[0]) memcpy(options.size, arguments->speed.size, sizeof options.size);
+    json_t *rows = json_array();
+    Result result = RESULT_OK;
+    image_print_head(stdout);
+    for (int i = 0; IMAGE_SETS[i] && result == RESULT_OK; ++i) {
+        options.set = IMAGE_SETS[i];
+        result = add_images(&options, gpu, rows, error);
+    }
+    options.set = NULL;
+    for (int i = 0; i < arguments->file_count && result == RESULT_OK; ++i) {
+        options.file = arguments->files[i];
+        result = add_images(&options, gpu, rows, error);
+    }
+    if (result == RESULT_OK && arguments->json)
+        result = json_write_file(rows, arguments->json, error);
+    json_decref(rows);
+    return result;
+}
+
 static Result run_shaders(const Arguments *arguments, const Gpu *gpu, Error *error)
 {
     (void)arguments;
@@ -213,6 +250,7 @@ static const struct {
     {"all", run_all, true, "a table: all sets, and the hair files named, with every solver"},
     {"image", run_image, true,
      "drawing --set NAME or --tfx FILE: its time, and its error against the exact picture"},
+    {"images", run_images, true, "the same for every scheme, sets of hair and the files named"},
     {"compare", run_compare, false,
      "two PNG files by --level and --share; status 1 if they differ"},
     {"shaders", run_shaders, true, "compiles every shader variant with warnings as errors"},
@@ -238,6 +276,8 @@ enum {
     OPT_OSMESA,
     OPT_REFERENCE,
     OPT_RATES,
+    OPT_OIT,
+    OPT_LAYERS,
     OPT_FRAMES,
     OPT_NO_ERROR
 };
@@ -271,6 +311,10 @@ static const struct {
      "N  compare: a pixel may be off by this much, 0 to 255 (default 0)"},
     {{"share", required_argument, NULL, OPT_SHARE},
      "F  compare: this share of the pixels may be off by more, 0 to 1 (default 0)"},
+    {{"oit", required_argument, NULL, OPT_OIT},
+     "WORD  image, quads: abuffer or none (default auto: abuffer)"},
+    {{"layers", required_argument, NULL, OPT_LAYERS},
+     "K  image, quads: fragments of a pixel in order, 1 to 64 (default 0: 8)"},
     {{"frames", required_argument, NULL, OPT_FRAMES},
      "N  image: measured pictures, 1 to 1000000 (default 15)"},
     {{"no-error", no_argument, NULL, OPT_NO_ERROR}, " image: times only"},
@@ -341,6 +385,14 @@ static Result read_raster(const char *text, Raster *raster, Error *error)
     return result;
 }
 
+static Result read_oit(const char *text, Oit *oit, Error *error)
+{
+    RunParams run = {0};
+    Result result = param_parse(param_find("oit"), &run, text, error);
+    *oit = (Oit)run.oit;
+    return result;
+}
+
 static Result read_size(const char *text, int size[2], Error *error)
 {
     int end = 0;
@@ -386,6 +438,10 @@ static Result take_option(Arguments *arguments, int option, const char *text, Er
     case OPT_NO_ERROR:
         arguments->image.no_error = true;
         return RESULT_OK;
+    case OPT_OIT:
+        return read_oit(text, &arguments->image.scheme.oit, error);
+    case OPT_LAYERS:
+        return read_int("layers", text, 0, 64, &arguments->image.scheme.layers, error);
     case OPT_FRAMES:
         return read_int("frames", text, 1, 1000000, &arguments->image.frames, error);
     case OPT_STEPS:

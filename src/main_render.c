@@ -153,6 +153,8 @@ static Result describe_pictures(const Run *run, RendererOptions *options, Error 
     Target target;
     Result result = target_parse(&target, params->output, error);
     *options = (RendererOptions){.raster = (Raster)params->raster,
+                                 .oit = (Oit)params->oit,
+                                 .oit_layers = params->oit_layers,
                                  .width = params->size[0],
                                  .height = params->size[1],
                                  .exposure = params->exposure,

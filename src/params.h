@@ -52,6 +52,7 @@ typedef enum ParamKind {
     X(TELEPORT_CARRY, "carry") X(TELEPORT_LIMIT, "limit") X(TELEPORT_NONE, "none")
 #define CHOICES_BACKEND(X) X(BACKEND_AUTO, "auto") X(BACKEND_EGL, "egl") X(BACKEND_OSMESA, "osmesa")
 #define CHOICES_RASTER(X)  X(RASTER_AUTO, "auto") X(RASTER_QUADS, "quads") X(RASTER_BLOCKS, "blocks")
+#define CHOICES_OIT(X)     X(OIT_AUTO, "auto") X(OIT_ABUFFER, "abuffer") X(OIT_NONE, "none")
 
 #define CHOICES_TONE(X)  X(TONE_NONE, "none") X(TONE_REINHARD, "reinhard") X(TONE_FILMIC, "filmic")
 #define CHOICES_DEPTH(X) X(DEPTH_8, "8") X(DEPTH_16, "16")
@@ -70,6 +71,7 @@ typedef enum TeleportRule { CHOICES_TELEPORT(CHOICE_VALUE) } TeleportRule;
 typedef enum Backend { CHOICES_BACKEND(CHOICE_VALUE) } Backend;
 typedef enum Shadow { CHOICES_SHADOW(CHOICE_VALUE) } Shadow;
 typedef enum Raster { CHOICES_RASTER(CHOICE_VALUE) } Raster;
+typedef enum Oit { CHOICES_OIT(CHOICE_VALUE) } Oit;
 typedef enum Lobes { CHOICES_LOBES(CHOICE_VALUE) } Lobes;
 typedef enum Tone { CHOICES_TONE(CHOICE_VALUE) } Tone;
 typedef enum Depth { CHOICES_DEPTH(CHOICE_VALUE) } Depth;

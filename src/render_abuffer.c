@@ -29,20 +29,22 @@ static Result build_resolve(RenderABuffer *abuffer, int over_mesh, Error *error)
                                     {"BASE", over_mesh},
                                     {"TONE", abuffer->tone},
                                     {"DEPTH", abuffer->depth},
+                                    {"MOST_TURNS", abuffer->most_turns},
                                     {NULL, 0}};
     return shader_build_draw(&abuffer->resolve[over_mesh], "resolve.vert", "resolve.frag", defines,
                              error);
 }
 
 Result render_abuffer_create(RenderABuffer *abuffer, const GpuLimits *limits, int width, int layers,
-                             int tone, bool depth, int64_t pool_bytes, Error *error)
+                             int tone, bool depth, bool software, int64_t pool_bytes, Error *error)
 {
     *abuffer = (RenderABuffer){.limits = limits,
                                .shards = SHARD_COUNT,
                                .layers = layers,
                                .width = width,
                                .tone = tone,
-                               .depth = depth};
+                               .depth = depth,
+                               .most_turns = software ? ABUFFER_MOST_TURNS : INT32_MAX};
     int64_t bytes = pool_bytes ? smaller(pool_bytes, limits->storage_block) : limits->storage_block;
     int64_t most = smaller(smaller(bytes / NODE_BYTES, limits->texture_texels), INT32_MAX);
     abuffer->most_nodes = most < SHARD_STEP ? SHARD_STEP : most / SHARD_STEP * SHARD_STEP;
@@ -54,6 +56,10 @@ Result render_abuffer_create(RenderABuffer *abuffer, const GpuLimits *limits, in
     if (result == RESULT_OK)
         result = gpu_buffer_create(&abuffer->extent, limits, "hair's screen box", 16, NULL, GL_R32I,
                                    error);
+    const GLuint none = 0;
+    if (result == RESULT_OK)
+        result =
+            gpu_buffer_create(&abuffer->shortage, limits, "A-buffer's flag", 4, &none, 0, error);
     if (result == RESULT_OK) result = build_resolve(abuffer, 0, error);
     if (result != RESULT_OK) render_abuffer_destroy(abuffer);
     return result;
@@ -73,6 +79,7 @@ void render_abuffer_destroy(RenderABuffer *abuffer)
     gpu_buffer_destroy(&abuffer->heads);
     gpu_buffer_destroy(&abuffer->counters);
     gpu_buffer_destroy(&abuffer->extent);
+    gpu_buffer_destroy(&abuffer->shortage);
     *abuffer = (RenderABuffer){0};
 }
 
@@ -154,10 +161,20 @@ void render_abuffer_resolve(const RenderABuffer *abuffer, const RenderTarget *ta
     gpu_buffer_bind_texture(&abuffer->nodes, BIND_NODES);
     gpu_buffer_bind_texture(&abuffer->heads, BIND_HEADS);
     gpu_buffer_bind_texture(&abuffer->extent, BIND_EXTENT);
+    gpu_buffer_bind_storage(&abuffer->shortage, BIND_SHORTAGE_OUT);
     glActiveTexture(GL_TEXTURE0 + BIND_BASE);
     glBindTexture(GL_TEXTURE_2D, target->base);
     glBindFramebuffer(GL_FRAMEBUFFER, target->picture_frame);
     glUseProgram(abuffer->resolve[over_mesh]);
     glBindVertexArray(abuffer->vertex_array);
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+}
+
+bool render_abuffer_fell_short(const RenderABuffer *abuffer)
+{
+    GLuint flag;
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, abuffer->shortage.buffer);
+    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof flag, &flag);
+    return flag != 0;
 }

@@ -13,13 +13,15 @@ typedef struct RenderABuffer {
     GpuBuffer nodes;     // uvec4, see abuffer.glsl
     GpuBuffer heads;     // uint a pixel of the band
     GpuBuffer counters;  // uint, see COUNTER_WORDS
+    GpuBuffer shortage;  // uint: not 0 once a pixel had too many fragments to visit
     GpuBuffer extent;    // int[4]: screen box of what has to be resolved: x, y lowest, highest, px
     const GpuLimits *limits;
     int64_t most_nodes; // that the pool can grow to
     int shards;         // that the pool is dealt out in: SHARD_COUNT or 1
     int layers, width;
-    int tone;   // display.glsl's macro
-    bool depth; // pixels show their nearest fragment's depth
+    int tone;       // display.glsl's macro
+    bool depth;     // pixels show their nearest fragment's depth
+    int most_turns; // fragments of a pixel that can be visited
 } RenderABuffer;
 
 // What drawing a band has stored.
@@ -29,11 +31,15 @@ typedef struct ABufferUse {
     uint32_t segments, culled; // see RendererCounts
 } ABufferUse;
 
-// `layers` fragments of a pixel are blended in order. `tone`: a Tone, or TONE_LIGHT for
-// premultiplied light as it is. `depth`: pixels show their nearest fragment's distance before the
-// eye instead. `pool_bytes`: the pool's largest size, 0 for the driver's limit.
+// CPU drivers end loops silently after 65,535 turns.
+enum { ABUFFER_MOST_TURNS = 65000 };
+
+// `layers` fragments of a pixel are blended in order, >= 0, with `depth` >= 1. `tone`: a Tone, or
+// TONE_LIGHT for premultiplied light as it is. `depth`: pixels show their nearest fragment's
+// distance before the eye instead. `software`: by a CPU driver. `pool_bytes`: the pool's largest
+// size, 0 for the driver's limit.
 Result render_abuffer_create(RenderABuffer *abuffer, const GpuLimits *limits, int width, int layers,
-                             int tone, bool depth, int64_t pool_bytes, Error *error);
+                             int tone, bool depth, bool software, int64_t pool_bytes, Error *error);
 void render_abuffer_destroy(RenderABuffer *abuffer);
 
 // Makes what resolving over a mesh needs; nothing if it is there.
@@ -63,3 +69,7 @@ Result render_abuffer_grow(RenderABuffer *abuffer, const ABufferUse *use, bool *
 // `over_mesh` (after render_abuffer_add_mesh). Needs the DrawParams block.
 void render_abuffer_resolve(const RenderABuffer *abuffer, const RenderTarget *target,
                             bool over_mesh);
+
+// Whether a pixel that was resolved since render_abuffer_create had more fragments than a CPU
+// driver's loops can visit. Waits.
+bool render_abuffer_fell_short(const RenderABuffer *abuffer);

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SORTED_LAYERS = 8 };
+enum { OIT_LAYERS = 8 };
 
 // Light on the mesh that comes from everywhere.
 static const float MESH_AMBIENT = 0.15f;
@@ -46,13 +46,15 @@ static Result create_quads(Renderer *renderer, Error *error)
 {
     const RendererOptions *options = &renderer->options;
     const GpuLimits *limits = &renderer->gpu->limits;
-    int layers = options->sorted_layers ? options->sorted_layers : SORTED_LAYERS;
+    int layers = options->oit == OIT_NONE  ? (options->aov == AOV_DEPTH)
+                 : options->oit_layers > 0 ? options->oit_layers
+                                           : OIT_LAYERS;
     bool nearest = options->aov > AOV_COVERAGE;
     Result result = render_hair_create(&renderer->hair, nearest, error);
     if (result == RESULT_OK)
         result = render_abuffer_create(&renderer->abuffer, limits, options->width, layers,
                                        display_of(options), options->aov == AOV_DEPTH,
-                                       options->pool_bytes, error);
+                                       renderer->gpu->software, options->pool_bytes, error);
     if (result == RESULT_OK)
         renderer->band_rows = render_abuffer_most_rows(&renderer->abuffer, options->height);
     return result;
@@ -76,8 +78,9 @@ Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
     }
     renderer->raster = needs_quads(options)             ? RASTER_QUADS
                        : options->raster != RASTER_AUTO ? options->raster
-                       : gpu->software                  ? RASTER_BLOCKS
-                                                        : RASTER_QUADS;
+                       : gpu->software && options->oit == OIT_AUTO && options->oit_layers == 0
+                           ? RASTER_BLOCKS
+                           : RASTER_QUADS;
     Result result = render_target_create(&renderer->target, &gpu->limits, options->width,
                                          options->height, options->kind, error);
     if (result == RESULT_OK) result = RASTERS[renderer->raster].create(renderer, error);
@@ -404,7 +407,13 @@ static Result draw_quads(Renderer *renderer, Picture *picture, Image *image, Err
     if (result != RESULT_OK) return result;
     gpu_timer_begin(renderer->timer, "draw_read");
     render_target_read(&renderer->target, image);
+    bool short_of_turns = render_abuffer_fell_short(&renderer->abuffer);
     gpu_timer_end(renderer->timer);
+    if (short_of_turns)
+        return error_set(error, RESULT_FAILED,
+                         "a pixel has more than %d hair fragments, more than this driver's loops "
+                         "can visit",
+                         ABUFFER_MOST_TURNS);
     renderer->counts.pool_bytes = (uint64_t)renderer->abuffer.nodes.size;
     return RESULT_OK;
 }

@@ -25,7 +25,9 @@ typedef struct RendererOptions {
     float depth_range[2]; // AOV_DEPTH: m that are shown as 1 and as 0; alike: m themselves
     uint32_t seed;        // of what varies by strand
     ShadowOptions shadow;
-    int sorted_layers;  // quads: fragments of a pixel that are blended in order, >= 1; 0: 8
+    Oit oit;            // how the fragments of a pixel are blended; auto: abuffer. Else quads are
+                        // what raster auto is
+    int oit_layers;     // abuffer: how many of them in order, 1 .. 64, the same; 0: 8
     int64_t pool_bytes; // no larger A-buffer or block lists; 0: what the driver allows
 } RendererOptions;
 
@@ -102,7 +104,8 @@ int renderer_channels(const Renderer *renderer);
 // Draws one picture into `image`, which has the renderer's size and channels, and waits for it. The
 // order of items and of strands does not matter, and every run gives the same bytes. No fragment is
 // lost: if the pool is too small it grows and the band is drawn again; at its largest, the picture
-// is drawn in more bands. RESULT_FAILED if memory is short or a single row needs a larger pool than
-// there can be.
+// is drawn in more bands. RESULT_FAILED if memory is short, a single row needs a larger pool than
+// there can be, or a pixel has more fragments than a CPU driver's loops can visit (quads; where
+// blocks have more ribbons than that, quads take over).
 Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderItem *items,
                      uint32_t item_count, Image *image, Error *error);

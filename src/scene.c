@@ -96,6 +96,9 @@ static Result check_conflicts(const RunParams *run, Error *error)
         if (run->require_hardware) pair = "--backend osmesa and --require-hardware";
         if (run->device >= 0) pair = "--backend osmesa and --device";
     }
+    if (run->raster == RASTER_BLOCKS && run->oit != OIT_AUTO) pair = "--raster blocks and --oit";
+    if (run->raster == RASTER_BLOCKS && run->oit_layers > 0)
+        pair = "--raster blocks and --oit-layers";
     if (pair) return error_set(error, RESULT_USAGE, "%s exclude each other", pair);
     return RESULT_OK;
 }

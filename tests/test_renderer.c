@@ -353,6 +353,33 @@ static void thousands_of_layers_are_still_white(void **state)
     free(position);
 }
 
+// CPU drivers end loops silently after 65,535 turns: no picture is made without a word.
+static void more_layers_than_a_loop_can_visit_are_an_error(void **state)
+{
+    (void)state;
+    enum { COUNT = 66000 };
+    if (!studio.gpu.software) skip();
+    RendererOptions pixel = BLACK;
+    pixel.width = pixel.height = 1;
+    use(&pixel);
+    float(*position)[3] = malloc(COUNT * 2 * sizeof *position);
+    assert_non_null(position);
+    for (int i = 0; i < 2 * COUNT; ++i)
+        for (int k = 0; k < 3; ++k) position[i][k] = k ? 0 : i % 2 ? 4 : -4;
+    Strands strands = studio_strands(COUNT, 2, (const float(*)[3])position);
+    studio_add(&studio, &strands, 0.4f, 0.001f); // nothing that blocks could leave out
+    View view;
+    Error error = {{0}};
+    studio_view(&view, 1, 1);
+    RenderFrame frame = {.view = &view, .head_rotation = {0, 0, 0, 1}};
+    assert_int_equal(
+        renderer_draw(&studio.renderer, &frame, studio.items, studio.count, &studio.image, &error),
+        RESULT_FAILED);
+    assert_non_null(strstr(error.text, "a pixel has more than"));
+    strands_destroy(&strands);
+    free(position);
+}
+
 // Seen from far off hundreds of particles share a pixel.
 static void hair_smaller_than_a_pixel_leaves_no_holes(void **state)
 {
@@ -720,6 +747,7 @@ int main(void)
         CLAIM(bands_are_no_more_than_the_pool_asks_for),
         CLAIM(a_small_picture_uses_the_whole_pool),
         CLAIM(thousands_of_layers_are_still_white),
+        CLAIM(more_layers_than_a_loop_can_visit_are_an_error),
         CLAIM(hair_smaller_than_a_pixel_leaves_no_holes),
         CLAIM(a_row_that_no_pool_holds_is_an_error),
         CLAIM(mesh_hides_the_hair_behind_it_only),
