@@ -167,8 +167,7 @@ static void find_outlines(Framing *framing, const Scene *scene, const Strands *s
     Outline style = {0}, body = {0};
     for (uint32_t i = 0; i < scene->section_count; ++i) add_style(&style, &strands[i]);
     for (uint32_t v = 0; mesh && v < mesh->vertex_count; ++v) outline_add(&body, mesh->position[v]);
-    bool moves = scene->head.translation.count || scene->head.rotation.count ||
-                 scene->gravity.count || scene->wind.count;
+    bool moves = !rigid_track_is_still(&scene->head) || scene->gravity.count || scene->wind.count;
     double duration = schedule_frame_time(&scene->run, scene->run.frames);
     uint32_t times = moves ? TIMES : 1;
     for (uint32_t t = 0; t < times; ++t) {
