@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Distance fields against exact distances.
+#include "bust.h"
 #include "field_cache.h"
 #include "hair_fixture.h"
+#include "scalp.h"
 #include "shapes.h"
 #include "temporary.h"
 
@@ -279,6 +281,27 @@ static void a_mesh_turned_inside_out_is_the_same(void **state)
     mesh_destroy(&box);
 }
 
+// Closed surfaces have whole winding numbers everywhere: the head with shoulders, inside one of its
+// parts, inside two of them, outside.
+static void the_bust_is_closed(void **state)
+{
+    (void)state;
+    static const Point points[] = {
+        {0, 0, 0}, {0, -0.16, 0}, {0.2, -0.38, -0.02}, {0.168, -0.258, -0.03}, {0.3, 0, 0}};
+    Mesh bust;
+    double most = 0;
+    assert_int_equal(scalp_make_mesh(&bust, SCALP_HEAD, 12, NULL), RESULT_OK);
+    assert_int_equal(bust_append_shoulders(&bust, NULL), RESULT_OK);
+    for (size_t i = 0; i < sizeof points / sizeof *points; ++i) {
+        double w = winding(&bust, points[i]);
+        assert_true(fabs(w - round(w)) < 1e-6);
+        assert_true(i < 4 ? w > 0.5 : w < 0.5);
+        most = fmax(most, w);
+    }
+    assert_true(most > 1.5);
+    mesh_destroy(&bust);
+}
+
 // The second time it is read, to the same bits; a damaged file is as good as none.
 static void a_field_is_kept_on_disk(void **state)
 {
@@ -323,6 +346,7 @@ int main(void)
         cmocka_unit_test(the_bundled_head_has_exact_distances),
         cmocka_unit_test(holes_do_not_change_the_signs),
         cmocka_unit_test(a_mesh_turned_inside_out_is_the_same),
+        cmocka_unit_test(the_bust_is_closed),
         cmocka_unit_test_setup_teardown(a_field_is_kept_on_disk, temporary_create,
                                         temporary_destroy),
     };
