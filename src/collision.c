@@ -220,7 +220,7 @@ static uint32_t place_shapes(const Collision *collision, const HeadPose *head, S
     const ShapeCounts counts = count_shapes(colliders);
     ShapeCounts placed = {0};
     uint32_t reached = 0;
-    vec3 centre;
+    vec3 centre = {0};
     float radius = hair_ball(collision->bounds, head, centre) + collision->params->collision_margin;
     for (uint32_t i = 0; i < colliders->count; ++i) {
         const Collider *collider = &colliders->list[i];
