@@ -58,8 +58,8 @@ typedef enum ParamKind {
 #define CHOICES_DEPTH(X) X(DEPTH_8, "8") X(DEPTH_16, "16")
 #define CHOICES_AOV(X)                                                                             \
     X(AOV_NONE, "none")                                                                            \
-    X(AOV_COVERAGE, "coverage") X(AOV_DEPTH, "depth") X(AOV_TANGENT, "tangent")                    \
-        X(AOV_STRAND, "strand")
+    X(AOV_COVERAGE, "coverage")                                                                    \
+    X(AOV_DEPTH, "depth") X(AOV_TANGENT, "tangent") X(AOV_STRAND, "strand")
 #define CHOICES_SHADING(X) X(SHADING_KAJIYA, "kajiya") X(SHADING_MARSCHNER, "marschner")
 #define CHOICES_LOBES(X)   X(LOBES_ENERGY, "energy") X(LOBES_GAUSS, "gauss")
 #define CHOICES_SHADOW(X)  X(SHADOW_NONE, "none") X(SHADOW_APPROX, "approx") X(SHADOW_DOM, "dom")
