@@ -166,7 +166,7 @@ static Result time_passes(Renderer *renderer, const RenderFrame *frame, const Re
                           Image *image, ImageResult *result, Error *error)
 {
     GpuTimer *timer = renderer->timer;
-    double least[TIMER_MAX_LABELS], before[TIMER_MAX_LABELS] = {0};
+    double least[TIMER_MAX_LABELS] = {0}, before[TIMER_MAX_LABELS] = {0};
     Result outcome = RESULT_OK;
     timer->enabled = true;
     for (int i = 0; i < PASS_FRAMES && outcome == RESULT_OK; ++i) {

@@ -30,7 +30,7 @@ bool head_motion_start(const Scene *scene, CarryMotion *motion)
 {
     const double h = 1e-3;
     HeadPose at[3];
-    vec3 near, far, moved;
+    vec3 near = {0}, far = {0}, moved = {0};
     for (int i = 0; i < 3; ++i) at[i] = head_motion_pose(scene, i * h);
     rotation_between(&at[0], &at[1], near);
     rotation_between(&at[0], &at[2], far);
@@ -58,7 +58,7 @@ static HeadPose pose_on_the_way(const Scene *scene, const HeadPose *from, const 
                                 float share)
 {
     HeadPose pose = {0};
-    vec3 begin, end, place, turned;
+    vec3 begin = {0}, end = {0}, place = {0}, turned = {0};
     pivot_at(scene, from, begin);
     pivot_at(scene, to, end);
     glm_quat_slerp((float *)from->rotation, (float *)to->rotation, share, pose.rotation);
@@ -72,7 +72,7 @@ bool head_motion_jumps(const Scene *scene, const HeadPose *from, const HeadPose 
                        HeadPose *carried)
 {
     const RunParams *run = &scene->run;
-    vec3 begin, end, turn;
+    vec3 begin = {0}, end = {0}, turn = {0};
     pivot_at(scene, from, begin);
     pivot_at(scene, to, end);
     rotation_between(from, to, turn);

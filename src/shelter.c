@@ -26,7 +26,7 @@ static void carry(const HeadPose *head, const float point[3], vec3 carried)
 
 void shelter_fill(SolverStep *step, const float middle[3], float share)
 {
-    vec3 old;
+    vec3 old = {0};
     carry(&step->head_old, middle, old);
     carry(&step->head, middle, step->shelter);
     step->shelter[3] = share;

@@ -45,7 +45,7 @@ static void read_tip(SimulationFixture *fixture, vec3 tip)
 
 static float tips_apart(SimulationFixture *a, SimulationFixture *b)
 {
-    vec3 tip, other;
+    vec3 tip = {0}, other = {0};
     read_tip(a, tip);
     read_tip(b, other);
     return glm_vec3_distance(tip, other);
