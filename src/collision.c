@@ -104,7 +104,6 @@ Result collision_create(Collision *collision, const SolverSetup *setup, Collisio
 {
     *collision = (Collision){0};
     static const Colliders none;
-    const uint32_t clamped = (uint32_t)setup->params->clamped;
     const Colliders *colliders = setup->colliders ? setup->colliders : &none;
     if ((!colliders->count && !setup->field) || !setup->params->collide) return RESULT_OK;
     *collision = (Collision){
@@ -114,7 +113,7 @@ Result collision_create(Collision *collision, const SolverSetup *setup, Collisio
         .colliders = colliders,
         .field = setup->field,
         .mode = mode,
-        .carried = carried > clamped ? carried : clamped,
+        .carried = carried,
         .group_size = step_group_size(setup->gpu),
     };
     const ShapeCounts counts = count_shapes(colliders);
