@@ -96,6 +96,7 @@ void main()
     int slot = first_record + s * (n - 1);
     int root = particle_address(s, 0, n);
     Painter painter = paint_strand(texelFetch(strand_id, s).x, n);
+    if (s == int(material.last_strand)) painter.radius *= material.last_share;
     float opacity = paint_opacity(root);
     vec3 eye = draw_params.eye.xyz;
     Fibre fibre = fibre_material();

@@ -162,6 +162,8 @@ static Result describe_pictures(const Run *run, RendererOptions *options, Error 
                                  .kind = params->depth == DEPTH_16 ? IMAGE_16 : IMAGE_8,
                                  .aov = (Aov)params->aov,
                                  .seed = params->seed,
+                                 .lod = {params->lod_start, params->lod_end, params->lod_min,
+                                         params->lod_width},
                                  .shadow = {.kind = (Shadow)params->shadow,
                                             .side = params->shadow_size,
                                             .spacing = params->shadow_spacing}};

@@ -100,8 +100,9 @@ Result render_hair_draw(RenderHair *hair, const HairBatch *batch, const Look *lo
     uint32_t n = batch->vertex_count, most = n < PART_PARTICLES ? PART_PARTICLES / n : 1;
     Look part = *look;
     part.material.vertex_count = n;
-    for (uint32_t first = 0; first < batch->strand_count; first += most) {
-        uint32_t left = batch->strand_count - first;
+    uint32_t strands = look_strands(look, batch->strand_count, &part.material);
+    for (uint32_t first = 0; first < strands; first += most) {
+        uint32_t left = strands - first;
         part.material.first_strand = first;
         part.material.drawn_strands = left < most ? left : most;
         Result result = make_scratch(hair, part.material.drawn_strands, n, limits, error);

@@ -3,7 +3,18 @@
 
 #include "params.h"
 
+#include <math.h>
+
 #include "draw.h"
+
+uint32_t look_strands(const Look *look, uint32_t strand_count, MaterialParams *material)
+{
+    double drawn = fmax((double)look->share * strand_count, 1e-6),
+           count = fmin(ceil(drawn), strand_count);
+    material->last_strand = (uint)count - 1;
+    material->last_share = (float)(drawn - (count - 1));
+    return (uint32_t)count;
+}
 
 Result look_programs_build(LookPrograms *programs, unsigned features, Error *error)
 {

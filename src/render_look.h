@@ -29,7 +29,13 @@ typedef struct Look {
     MaterialParams material; // complete but for the batch's size
     unsigned features;       // LookFeature bits
     GLuint scatter;          // LOOK_MARSCHNER: the 3D texture of render_scatter.h
+    float share; // of the strands is drawn, 0 .. 1; the material's radius makes up for it
 } Look;
+
+// The look's share of a batch's strands: how many are drawn, the last of them narrower, so that the
+// sum of their widths is the share exactly, and grows and falls with it without a step. Notes the
+// last one in `material`.
+uint32_t look_strands(const Look *look, uint32_t strand_count, MaterialParams *material);
 
 // The variants of one compute shader; a zeroed struct with a file and a group size has none yet.
 typedef struct LookPrograms {

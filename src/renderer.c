@@ -287,6 +287,36 @@ static bool lights_are_simple(const RenderFrame *frame)
     return !ambient || memcmp(ambient->sky, ambient->ground, sizeof ambient->sky) == 0;
 }
 
+// The middle of hair's style, carried by the head: m, world.
+static void find_middle(const Picture *picture, const Hair *hair, vec3 middle)
+{
+    versor turn = {0};
+    memcpy(turn, picture->draw.head_rotation, sizeof turn);
+    for (int k = 0; k < 3; ++k) middle[k] = 0.5f * (hair->low[k] + hair->high[k]);
+    glm_quat_rotatev(turn, middle, middle);
+    for (int k = 0; k < 3; ++k) middle[k] += picture->draw.head_translation[k];
+}
+
+static bool uses_lod(const LodOptions *lod)
+{
+    return lod->end > lod->start || lod->width > 0;
+}
+
+// Share of an item's strands that is drawn.
+static float find_share(const LodOptions *lod, const Picture *picture, const RenderItem *item)
+{
+    const DrawParams *draw = &picture->draw;
+    vec3 middle, eye = {draw->eye[0], draw->eye[1], draw->eye[2]};
+    find_middle(picture, item->hair, middle);
+    float distance = fmaxf(glm_vec3_distance(middle, eye), draw->near_distance), share = 1;
+    if (lod->end > lod->start)
+        share -= (1 - lod->least) *
+                 fminf(fmaxf((distance - lod->start) / (lod->end - lod->start), 0), 1);
+    if (lod->width > 0)
+        share = fminf(share, 2 * item->radius * draw->focal / (distance * lod->width));
+    return fmaxf(share, lod->least);
+}
+
 static unsigned shadow_features(const Renderer *renderer)
 {
     unsigned by_mesh = renderer->mesh.triangle_count ? LOOK_SHADOW_BY_MESH : 0;
@@ -319,7 +349,11 @@ static Result make_looks(Renderer *renderer, Picture *picture, const RenderFrame
         const RenderItem *item = &picture->items[i];
         Look *look = &renderer->looks[i];
         *look = (Look){.material = material_params(item->material, item->radius),
-                       .features = aov ? aov : lights};
+                       .features = aov ? aov : lights,
+                       .share = 1};
+        if (uses_lod(&renderer->options.lod))
+            look->share = find_share(&renderer->options.lod, picture, item);
+        look->material.radius /= look->share;
         if (item->hair->alike) look->material.color_variation = look->material.warmth_variation = 0;
         if (aov || item->material->shading != SHADING_MARSCHNER) continue;
         look->features |= LOOK_MARSCHNER;
@@ -354,19 +388,6 @@ static Result list_casters(Renderer *renderer, const Picture *picture, ShadowSce
     return RESULT_OK;
 }
 
-// The middle of the first section's style, about which lamps look.
-static void find_middle(const Picture *picture, float middle[3])
-{
-    if (!picture->item_count) return;
-    const Hair *hair = picture->items[0].hair;
-    vec3 x;
-    versor turn = {0};
-    memcpy(turn, picture->draw.head_rotation, sizeof turn);
-    for (int k = 0; k < 3; ++k) x[k] = 0.5f * (hair->low[k] + hair->high[k]);
-    glm_quat_rotatev(turn, x, x);
-    for (int k = 0; k < 3; ++k) middle[k] = x[k] + picture->draw.head_translation[k];
-}
-
 static Result draw_shadow(Renderer *renderer, const RenderFrame *frame, const Picture *picture,
                           Error *error)
 {
@@ -377,7 +398,7 @@ static Result draw_shadow(Renderer *renderer, const RenderFrame *frame, const Pi
     if (renderer->options.shadow.kind == SHADOW_NONE) return RESULT_OK;
     memcpy(scene.head_rotation, frame->head_rotation, sizeof scene.head_rotation);
     memcpy(scene.head_translation, frame->head_translation, sizeof scene.head_translation);
-    find_middle(picture, scene.middle);
+    if (picture->item_count) find_middle(picture, picture->items[0].hair, scene.middle);
     Result result = list_casters(renderer, picture, &scene, error);
     if (result == RESULT_OK)
         result = render_shadow_draw(&renderer->shadow, &scene, renderer->timer, error);
@@ -506,6 +527,18 @@ static const RasterType RASTERS[] = {
     [RASTER_BLOCKS] = {create_blocks, add_mesh_to_blocks, draw_blocks},
 };
 
+static uint64_t count_thinned(const Renderer *renderer, const Picture *picture)
+{
+    uint64_t count = 0;
+    MaterialParams unused;
+    for (uint32_t i = 0; i < picture->item_count; ++i)
+        for (uint32_t b = 0; b < picture->items[i].hair->batch_count; ++b) {
+            uint32_t strands = picture->items[i].hair->batches[b].strand_count;
+            count += strands - look_strands(&renderer->looks[i], strands, &unused);
+        }
+    return count;
+}
+
 Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderItem *items,
                      uint32_t item_count, Image *image, Error *error)
 {
@@ -524,6 +557,7 @@ Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderI
     draw_mesh(renderer, draw);
     result = RASTERS[renderer->raster].draw(renderer, &picture, image, error);
     if (result != RESULT_OK) return result;
+    renderer->counts.thinned = count_thinned(renderer, &picture);
     renderer->counts.shadow_maps = renderer->shadow.maps_drawn;
     return gpu_check("drawing", error);
 }

@@ -14,6 +14,15 @@
 #include "render_shadow.h"
 #include "render_target.h"
 
+// How many strands are drawn, all zero: all of them. Files' strands lie in random order, so the
+// first so many stand for all.
+typedef struct LodOptions {
+    float start, end; // m: between these distances of the camera from a section's middle the share
+                      // falls from 1 to `least`; end 0: at none
+    float least;      // share, 0 .. 1
+    float width;      // px: narrower fibres are fewer and as wide as this; 0: are left as they are
+} LodOptions;
+
 typedef struct RendererOptions {
     Raster raster;        // how hair becomes pixels; auto: blocks on CPU drivers, else quads
     int width, height;    // px, each 1 .. the driver's limits.framebuffer_side_px
@@ -25,6 +34,7 @@ typedef struct RendererOptions {
     float depth_range[2]; // AOV_DEPTH: m that are shown as 1 and as 0; alike: m themselves
     uint32_t seed;        // of what varies by strand
     ShadowOptions shadow;
+    LodOptions lod;
     Oit oit;            // how the fragments of a pixel are blended; auto: abuffer. Else quads are
                         // what raster auto is
     int oit_layers;     // abuffer: how many of them in order, 1 .. 64, the same; 0: 8
@@ -63,6 +73,7 @@ typedef struct RendererCounts {
     uint64_t pool_bytes;  // of the A-buffer or the block lists now
     uint32_t redraws;     // bands that were drawn again because the pool was too small
     uint32_t bands;       // horizontal bands that the picture was drawn in
+    uint64_t thinned;     // strands that others stand for, at their distance
     uint32_t shadow_maps; // that were made; those of the picture before may have done
 } RendererCounts;
 

@@ -100,6 +100,10 @@ static Result check_conflicts(const RunParams *run, Error *error)
     if (run->raster == RASTER_BLOCKS && run->oit_layers > 0)
         pair = "--raster blocks and --oit-layers";
     if (pair) return error_set(error, RESULT_USAGE, "%s exclude each other", pair);
+    if (run->lod_end > 0 && run->lod_end <= run->lod_start)
+        return error_set(error, RESULT_USAGE,
+                         "--lod-end %g m: expected more than --lod-start, %g m",
+                         (double)run->lod_end, (double)run->lod_start);
     return RESULT_OK;
 }
 

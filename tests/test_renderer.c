@@ -539,6 +539,68 @@ static void a_strand_throws_its_shadow_on_the_mesh(void **state)
     }
 }
 
+// Options by which the studio's hair, 1000 from the eye, is drawn by this share of its strands.
+static void use_share(const RendererOptions *options, float share)
+{
+    RendererOptions mine = *options;
+    mine.lod = (LodOptions){.end = 2000, .least = 2 * share - 1};
+    use(&mine);
+}
+
+// Strands much thinner than a pixel seldom overlap: what they cover adds up. The sum over n random
+// strands of different lengths in the picture varies by about 1/sqrt(n) of itself.
+static void fewer_strands_cover_as_much(void **state)
+{
+    (void)state;
+    enum { COUNT = 4000 };
+    double all = 0;
+    add_tangle(COUNT, 0.05f, 0.2f, NULL);
+    for (float share = 1; share > 0.51f; share -= 0.08f) {
+        use_share(&TRANSPARENT, share);
+        studio_draw(&studio);
+        double sum = alpha_sum();
+        if (share == 1) all = sum;
+        if (fabs(sum / all - 1) > 0.02) fail_msg("share %g: %g, of all %g", share, sum, all);
+        double left_out = COUNT * (1 - (double)share);
+        assert_true(fabs((double)studio.renderer.counts.thinned - left_out) <=
+                    0.01 * COUNT); // by where their middle is
+    }
+}
+
+// From share to share a strand's width changes by a tenth of it, and so does no pixel by more than
+// a tenth of an opaque one, and some for the others' widths. Strands that came or went at once
+// would change pixels by six tenths.
+static void strands_neither_come_nor_go_at_once(void **state)
+{
+    (void)state;
+    enum { COUNT = 50 };
+    add_tangle(COUNT, 0.4f, 0.6f, NULL);
+    uint8_t *before = NULL;
+    size_t size;
+    for (int i = 0; i <= 40; ++i) {
+        use_share(&TRANSPARENT, 1 - 0.1f * (float)i / COUNT);
+        uint8_t *now = draw_copy(&size);
+        for (size_t k = 3; before && k < size; k += 4)
+            assert_true(abs(now[k] - before[k]) <= 0.15 * 255);
+        free(before);
+        before = now;
+    }
+    free(before);
+}
+
+// Narrower fibres are so many fewer that they are as wide as was asked for.
+static void fibres_are_as_wide_as_asked_for(void **state)
+{
+    (void)state;
+    RendererOptions options = TRANSPARENT;
+    options.lod = (LodOptions){.width = 0.5f, .least = 0.01f};
+    use(&options);
+    add_tangle(1000, 0.1f, 0.2f, NULL); // 0.2 px wide
+    studio_draw(&studio);
+    assert_in_range(studio.renderer.counts.thinned, 590,
+                    610); // their middle is not quite 1000 away
+}
+
 static void no_hair_is_background(void **state)
 {
     (void)state;
@@ -716,8 +778,8 @@ static void blocks_lie_alike_in_c_and_glsl(void **state)
     MATERIAL(exponent1), MATERIAL(specular2), MATERIAL(exponent2), MATERIAL(shift1_cos);
     MATERIAL(shift1_sin), MATERIAL(shift2_cos), MATERIAL(shift2_sin);
     MATERIAL(lobe_sharpness), MATERIAL(lobe_scale), MATERIAL(lobe_tilt_cos);
-    MATERIAL(lobe_tilt_sin), MATERIAL(vertex_count), MATERIAL(first_strand),
-        MATERIAL(drawn_strands);
+    MATERIAL(lobe_tilt_sin), MATERIAL(vertex_count), MATERIAL(first_strand), MATERIAL(last_strand),
+        MATERIAL(last_share), MATERIAL(drawn_strands);
 }
 
 static void a_picture_beyond_the_driver_is_refused(void **state)
@@ -754,6 +816,9 @@ int main(void)
         CLAIM(light_falls_off_by_the_square_of_the_distance),
         CLAIM(a_spot_shines_into_its_cone),
         CLAIM(a_strand_throws_its_shadow_on_the_mesh),
+        CLAIM(fewer_strands_cover_as_much),
+        CLAIM(strands_neither_come_nor_go_at_once),
+        CLAIM(fibres_are_as_wide_as_asked_for),
         CLAIM(no_hair_is_background),
         CLAIM(background_is_exact_beside_hair),
         CLAIM(a_strand_towards_the_eye_is_harmless),
