@@ -8,6 +8,7 @@
 #include "material.h"
 #include "hair_address.glsl"
 #include "hash.glsl"
+#include "curve.glsl"
 #include "paint.glsl"
 #include "shade.glsl"
 #include "ribbon.glsl"
@@ -15,7 +16,6 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 layout(location = 0) uniform int first_record; // of this batch
-layout(binding = BIND_POSITION) uniform samplerBuffer position;
 layout(binding = BIND_STRAND_ID) uniform usamplerBuffer strand_id;
 layout(std430, binding = BIND_RECORDS_OUT) writeonly buffer Records { uvec4 records[]; };
 layout(std430, binding = BIND_KEYS_OUT) writeonly buffer Keys { uint keys[]; }; // 1/w as float bits
@@ -93,7 +93,11 @@ void main()
 {
     int n = int(material.vertex_count), s = int(gl_GlobalInvocationID.x);
     if (s >= int(material.drawn_strands)) return;
+#if SMOOTH
+    int slot = first_record + s * (n - 1) * int(material.smooth_parts);
+#else
     int slot = first_record + s * (n - 1);
+#endif
     int root = particle_address(s, 0, n);
     Painter painter = paint_strand(texelFetch(strand_id, s).x, n);
     if (s == int(material.last_strand)) painter.radius *= material.last_share;
@@ -104,7 +108,9 @@ void main()
     shadow_fibre = vec2(2.0 * material.radius, material.shadow_opacity);
 #endif
 
-    vec3 here = texelFetch(position, root).xyz, before = here;
+    Curve curve = curve_open(root, n);
+    int points = curve.segments * curve.parts + 1;
+    vec3 here = curve_point(curve, 0), before = here;
     vec4 here_clip = clip_from_world * vec4(here, 1.0), before_clip = here_clip;
     Particle kept = Particle(vec4(0.0), vec3(0.0)), last = kept; // the last one not left out; the one before this one
     End end = make_end(kept, vec2(0.0), vec2(0.0)); // of the ribbon that is not stored yet
@@ -112,16 +118,17 @@ void main()
     float bent = 0.0;     // of all that was left out since `kept`
     int count = 0;
     bool begun = false;
-    // Two turns more than particles: the tip stands in for those beyond it, which end its ribbon.
-    for (int j = 0; j < n + 2; ++j) {
-        int at = root + min(j, n - 1) * STRAND_TILE;
-        vec3 after = texelFetch(position, root + min(j + 1, n - 1) * STRAND_TILE).xyz;
+    // Two turns more than points: the tip stands in for those beyond it, which end its ribbon.
+    for (int j = 0; j < points + 2; ++j) {
+        float place = curve_place(curve, min(j, points - 1));
+        int at = root + int(place) * STRAND_TILE;
+        vec3 after = curve_point(curve, j + 1);
         vec4 after_clip = clip_from_world * vec4(after, 1.0);
         Particle p;
-        p.at = project(clip_near(here_clip, before_clip, after_clip), paint_radius(painter, at, j));
+        p.at = project(clip_near(here_clip, before_clip, after_clip), paint_radius(painter, at, place));
         p.color = shade_particle(fibre, painter, at, here, unit(after - before), unit(eye - here));
         if (j > 1) bent += bend(kept, last, p);
-        if (j == 1 || bent > 1.0 || j >= n) {
+        if (j == 1 || bent > 1.0 || j >= points) {
             vec2 next = direction(kept, last);
             End b = make_end(kept, way, next);
             if (begun && store(slot + count, end, b, opacity)) ++count;

@@ -14,12 +14,12 @@
 #include "material.h"
 #include "hair_address.glsl"
 #include "hash.glsl"
+#include "curve.glsl"
 #include "paint.glsl"
 #include "shade.glsl"
 #include "ribbon.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
-layout(binding = BIND_POSITION) uniform samplerBuffer position;
 layout(binding = BIND_STRAND_ID) uniform usamplerBuffer strand_id;
 layout(std430, binding = BIND_EDGES_OUT) writeonly buffer Edges { uvec4 edges[]; };
 layout(std430, binding = BIND_SHADES_OUT) writeonly buffer Shades { uvec4 shades[]; };
@@ -66,7 +66,11 @@ void main()
     int n = int(material.vertex_count);
     int row = int(gl_GlobalInvocationID.x), s = int(material.first_strand) + row;
     if (row >= int(material.drawn_strands)) return;
-    int first = row * n; // place of the root
+#if SMOOTH
+    int first = row * ((n - 1) * int(material.smooth_parts) + 1); // place of the root
+#else
+    int first = row * n;
+#endif
     int root = particle_address(s, 0, n);
     Painter painter = paint_strand(texelFetch(strand_id, s).x, n);
     if (s == int(material.last_strand)) painter.radius *= material.last_share;
@@ -77,7 +81,9 @@ void main()
     shadow_fibre = vec2(2.0 * material.radius, material.shadow_opacity);
 #endif
 
-    vec3 here = texelFetch(position, root).xyz, before = here;
+    Curve curve = curve_open(root, n);
+    int points = curve.segments * curve.parts + 1;
+    vec3 here = curve_point(curve, 0), before = here;
     vec4 here_clip = clip_from_world * vec4(here, 1.0), before_clip = here_clip;
     vec4 box = vec4(1e6);
     Particle kept = Particle(vec4(0.0), vec3(0.0)), last = kept; // the last one not left out; the one before this one
@@ -85,12 +91,13 @@ void main()
     float bent = 0.0;     // of all that was left out since `kept`
     float from_root = -PAD; // of `kept`, px
     int count = 0;
-    for (int j = 0; j < n; ++j) {
-        int at = root + j * STRAND_TILE;
-        vec3 after = texelFetch(position, root + min(j + 1, n - 1) * STRAND_TILE).xyz;
+    for (int j = 0; j < points; ++j) {
+        float place = curve_place(curve, j);
+        int at = root + int(place) * STRAND_TILE;
+        vec3 after = curve_point(curve, j + 1);
         vec4 after_clip = clip_from_world * vec4(after, 1.0);
         Particle p;
-        p.at = project(clip_near(here_clip, before_clip, after_clip), paint_radius(painter, at, j));
+        p.at = project(clip_near(here_clip, before_clip, after_clip), paint_radius(painter, at, place));
         p.color = shade_particle(fibre, painter, at, here, unit(after - before), unit(eye - here));
         float reach = MITRE_MAX * (p.at.w + 1.0);
         if (p.at.z > 0.0) box = min(box, vec4(p.at.xy, -p.at.xy) - reach);

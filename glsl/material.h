@@ -22,6 +22,7 @@ UNIFORM_BLOCK(MaterialParams, material, BIND_MATERIAL)
     vec4 lobe_tilt_cos, lobe_tilt_sin; // of twice their tilt
     uint vertex_count;
     uint first_strand, drawn_strands; // of the part of the batch that is being drawn
+    uint smooth_parts, smooth_curve;  // parts of a segment; 0 Catmull-Rom, 1 B-spline
     uint last_strand;                 // of the batch, where a share of them is drawn ...
     float last_share;                 // ... and how much of its width
 }

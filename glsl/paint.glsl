@@ -25,7 +25,7 @@ Painter paint_strand(uint id, int n)
     return Painter(id, tint, material.radius, (1.0 - material.tip_ratio) / float(n - 1));
 }
 
-// Of particle j, which lies at `at`.
+// Of particle j, which lies at `at`, or of a place between it and the next.
 vec3 paint_color(Painter p, int at)
 {
 #if PAINT
@@ -36,12 +36,15 @@ vec3 paint_color(Painter p, int at)
 #endif
 }
 
-float paint_radius(Painter p, int at, int j)
+float paint_radius(Painter p, int at, float j)
 {
 #if PAINT
     float share = uintBitsToFloat(texelFetch(paint, at).z);
+#if SMOOTH
+    if (fract(j) > 0.0) share = mix(share, uintBitsToFloat(texelFetch(paint, at + STRAND_TILE).z), fract(j));
+#endif
 #else
-    float share = 1.0 - p.thinning * float(j);
+    float share = 1.0 - p.thinning * j;
 #endif
     return max(p.radius * share, 1e-9);
 }

@@ -114,7 +114,9 @@ static Result try_looks(Renderer *renderer, Error *error)
                                       LOOK_WHITE,
                                       LOOK_WHITE | LOOK_PAINT,
                                       LOOK_TANGENT,
-                                      LOOK_STRAND};
+                                      LOOK_STRAND,
+                                      LOOK_SMOOTH,
+                                      LOOK_SMOOTH | LOOK_PAINT};
     for (unsigned features = 0; features < LOOK_SHADOW_APPROX && result == RESULT_OK; ++features)
         if ((features & (LOOK_MARSCHNER | LOOK_GAUSS)) != LOOK_GAUSS) // which does not count alone
             result = look_programs_build(programs, features, error);

@@ -62,6 +62,7 @@ typedef enum ParamKind {
     X(AOV_DEPTH, "depth") X(AOV_TANGENT, "tangent") X(AOV_STRAND, "strand")
 #define CHOICES_SHADING(X) X(SHADING_KAJIYA, "kajiya") X(SHADING_MARSCHNER, "marschner")
 #define CHOICES_LOBES(X)   X(LOBES_ENERGY, "energy") X(LOBES_GAUSS, "gauss")
+#define CHOICES_CURVE(X)   X(CURVE_CATMULL_ROM, "catmull-rom") X(CURVE_BSPLINE, "bspline")
 #define CHOICES_SHADOW(X)  X(SHADOW_NONE, "none") X(SHADOW_APPROX, "approx") X(SHADOW_DOM, "dom")
 
 #define CHOICE_VALUE(value, word) value,
@@ -69,6 +70,7 @@ typedef enum UpAxis { CHOICES_UP(CHOICE_VALUE) } UpAxis;
 typedef enum FollowMode { CHOICES_FOLLOW(CHOICE_VALUE) } FollowMode;
 typedef enum TeleportRule { CHOICES_TELEPORT(CHOICE_VALUE) } TeleportRule;
 typedef enum Backend { CHOICES_BACKEND(CHOICE_VALUE) } Backend;
+typedef enum CurveKind { CHOICES_CURVE(CHOICE_VALUE) } CurveKind;
 typedef enum Shadow { CHOICES_SHADOW(CHOICE_VALUE) } Shadow;
 typedef enum Raster { CHOICES_RASTER(CHOICE_VALUE) } Raster;
 typedef enum Oit { CHOICES_OIT(CHOICE_VALUE) } Oit;

@@ -200,9 +200,7 @@ Result render_blocks_add(RenderBlocks *blocks, const HairBatch *batch, const Loo
 {
     Result result = look_programs_use(&blocks->project, look, batch, error);
     if (result != RESULT_OK) return result;
-    MaterialParams whole = look->material;
-    whole.vertex_count = batch->vertex_count;
-    whole.drawn_strands = look_strands(look, batch->strand_count, &whole);
+    MaterialParams whole = look_material(look, batch);
     gpu_uniforms_set(&blocks->material, BIND_MATERIAL, &whole, sizeof whole);
     gpu_buffer_bind_texture(&batch->position, BIND_POSITION);
     gpu_buffer_bind_texture(&batch->strand_id, BIND_STRAND_ID);
@@ -212,7 +210,7 @@ Result render_blocks_add(RenderBlocks *blocks, const HairBatch *batch, const Loo
     gpu_buffer_bind_storage(&blocks->counts, BIND_BLOCK_COUNTS_OUT);
     glUniform1i(0, (GLint)blocks->slots);
     glDispatchCompute((whole.drawn_strands + PROJECT_GROUP - 1) / PROJECT_GROUP, 1, 1);
-    blocks->slots += (size_t)batch->strand_count * (batch->vertex_count - 1);
+    blocks->slots += (size_t)batch->strand_count * (batch->vertex_count - 1) * whole.smooth_parts;
     return RESULT_OK;
 }
 

@@ -97,10 +97,11 @@ static void draw_ribbons(RenderHair *hair)
 Result render_hair_draw(RenderHair *hair, const HairBatch *batch, const Look *look,
                         const GpuLimits *limits, GpuTimer *timer, Error *error)
 {
-    uint32_t n = batch->vertex_count, most = n < PART_PARTICLES ? PART_PARTICLES / n : 1;
     Look part = *look;
-    part.material.vertex_count = n;
-    uint32_t strands = look_strands(look, batch->strand_count, &part.material);
+    part.material = look_material(look, batch);
+    uint32_t n = (batch->vertex_count - 1) * part.material.smooth_parts + 1,
+             most = n < PART_PARTICLES ? PART_PARTICLES / n : 1,
+             strands = part.material.drawn_strands;
     for (uint32_t first = 0; first < strands; first += most) {
         uint32_t left = strands - first;
         part.material.first_strand = first;

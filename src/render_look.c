@@ -7,13 +7,19 @@
 
 #include "draw.h"
 
-uint32_t look_strands(const Look *look, uint32_t strand_count, MaterialParams *material)
+MaterialParams look_material(const Look *look, const HairBatch *batch)
 {
-    double drawn = fmax((double)look->share * strand_count, 1e-6),
-           count = fmin(ceil(drawn), strand_count);
-    material->last_strand = (uint)count - 1;
-    material->last_share = (float)(drawn - (count - 1));
-    return (uint32_t)count;
+    enum { MOST_PARTS = 65000 };
+    MaterialParams material = look->material;
+    uint most = MOST_PARTS / (batch->vertex_count - 1);
+    double drawn = fmax((double)look->share * batch->strand_count, 1e-6),
+           count = fmin(ceil(drawn), batch->strand_count);
+    material.vertex_count = batch->vertex_count;
+    material.drawn_strands = (uint)count;
+    material.last_strand = (uint)count - 1;
+    material.last_share = (float)(drawn - (count - 1));
+    if (material.smooth_parts > most) material.smooth_parts = most ? most : 1;
+    return material;
 }
 
 Result look_programs_build(LookPrograms *programs, unsigned features, Error *error)
@@ -27,6 +33,7 @@ Result look_programs_build(LookPrograms *programs, unsigned features, Error *err
                                     {"MARSCHNER", model},
                                     {"AOV", (int)(features / LOOK_SHADED)},
                                     {"PAINT", (features & LOOK_PAINT) != 0},
+                                    {"SMOOTH", (features & LOOK_SMOOTH) != 0},
                                     {"SHADOW", shadow},
                                     {"SHADOW_BY_MESH", (features & LOOK_SHADOW_BY_MESH) != 0},
                                     {NULL, 0}};

@@ -17,13 +17,14 @@ typedef enum LookFeature {
     LOOK_SHADOW_APPROX = 16,
     LOOK_SHADOW_DOM = 32,
     LOOK_SHADOW_BY_MESH = 64,
+    LOOK_SMOOTH = 128, // the material's smooth_parts are more than 1
     // Instead of shading (with LOOK_PAINT alone): white, the tangent, the strand's own colour.
-    LOOK_WHITE = 128,
-    LOOK_TANGENT = 256,
-    LOOK_STRAND = 384,
+    LOOK_WHITE = 256,
+    LOOK_TANGENT = 512,
+    LOOK_STRAND = 768,
 } LookFeature;
 
-enum { LOOK_SHADED = 128, LOOK_VARIANTS = 4 * LOOK_SHADED };
+enum { LOOK_SHADED = 256, LOOK_VARIANTS = 4 * LOOK_SHADED };
 
 typedef struct Look {
     MaterialParams material; // complete but for the batch's size
@@ -32,10 +33,11 @@ typedef struct Look {
     float share; // of the strands is drawn, 0 .. 1; the material's radius makes up for it
 } Look;
 
-// The look's share of a batch's strands: how many are drawn, the last of them narrower, so that the
-// sum of their widths is the share exactly, and grows and falls with it without a step. Notes the
-// last one in `material`.
-uint32_t look_strands(const Look *look, uint32_t strand_count, MaterialParams *material);
+// Fills in what depends on the batch, as if it were drawn in one part: the look's share of its
+// strands, the last of them narrower, so that the sum of their widths is the share exactly, and
+// grows and falls with it without a step; and the parts of a segment, of which a strand has no more
+// than CPU drivers' loops can visit.
+MaterialParams look_material(const Look *look, const HairBatch *batch);
 
 // The variants of one compute shader; a zeroed struct with a file and a group size has none yet.
 typedef struct LookPrograms {

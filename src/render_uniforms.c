@@ -94,6 +94,8 @@ MaterialParams material_params(const SectionParams *params, float radius)
         .tip_ratio = params->tip_ratio,
         .opacity = params->opacity,
         .shadow_opacity = params->shadow_opacity,
+        .smooth_parts = (uint)params->smooth,
+        .smooth_curve = (uint)params->curve,
         .ambient = params->ambient,
         .diffuse = params->diffuse,
         .specular1 = params->specular1,

@@ -354,6 +354,7 @@ static Result make_looks(Renderer *renderer, Picture *picture, const RenderFrame
         if (uses_lod(&renderer->options.lod))
             look->share = find_share(&renderer->options.lod, picture, item);
         look->material.radius /= look->share;
+        if (item->material->smooth > 1) look->features |= LOOK_SMOOTH;
         if (item->hair->alike) look->material.color_variation = look->material.warmth_variation = 0;
         if (aov || item->material->shading != SHADING_MARSCHNER) continue;
         look->features |= LOOK_MARSCHNER;
@@ -469,7 +470,8 @@ static uint64_t count_segments(const Picture *picture)
 {
     uint64_t count = 0;
     for (uint32_t i = 0; i < picture->item_count; ++i)
-        count += picture->items[i].hair->segment_count;
+        count +=
+            picture->items[i].hair->segment_count * (uint64_t)picture->items[i].material->smooth;
     return count;
 }
 
@@ -530,11 +532,10 @@ static const RasterType RASTERS[] = {
 static uint64_t count_thinned(const Renderer *renderer, const Picture *picture)
 {
     uint64_t count = 0;
-    MaterialParams unused;
     for (uint32_t i = 0; i < picture->item_count; ++i)
         for (uint32_t b = 0; b < picture->items[i].hair->batch_count; ++b) {
-            uint32_t strands = picture->items[i].hair->batches[b].strand_count;
-            count += strands - look_strands(&renderer->looks[i], strands, &unused);
+            const HairBatch *batch = &picture->items[i].hair->batches[b];
+            count += batch->strand_count - look_material(&renderer->looks[i], batch).drawn_strands;
         }
     return count;
 }
