@@ -95,7 +95,7 @@ static void for_all_solvers(Claim claim)
 
 // Half a second of swinging, a carry in the middle of it, then as long again: 60 steps of float32,
 // whose rounding at a place 2 m away is 2.4e-7 m a step, 1e-6 of the length; the swing makes at
-// most 50 times that of it.
+// most 200 times that of it.
 static void check_carried(const SolverType *type, const char *variant)
 {
     Pair pair;
