@@ -62,6 +62,8 @@ typedef enum ParamKind {
     X(AOV_DEPTH, "depth") X(AOV_TANGENT, "tangent") X(AOV_STRAND, "strand")
 #define CHOICES_SHADING(X) X(SHADING_KAJIYA, "kajiya") X(SHADING_MARSCHNER, "marschner")
 #define CHOICES_LOBES(X)   X(LOBES_ENERGY, "energy") X(LOBES_GAUSS, "gauss")
+#define CHOICES_QUALITY(X)                                                                         \
+    X(QUALITY_NORMAL, "normal") X(QUALITY_DRAFT, "draft") X(QUALITY_FINAL, "final")
 #define CHOICES_CURVE(X)   X(CURVE_CATMULL_ROM, "catmull-rom") X(CURVE_BSPLINE, "bspline")
 #define CHOICES_SHADOW(X)  X(SHADOW_NONE, "none") X(SHADOW_APPROX, "approx") X(SHADOW_DOM, "dom")
 
@@ -70,6 +72,7 @@ typedef enum UpAxis { CHOICES_UP(CHOICE_VALUE) } UpAxis;
 typedef enum FollowMode { CHOICES_FOLLOW(CHOICE_VALUE) } FollowMode;
 typedef enum TeleportRule { CHOICES_TELEPORT(CHOICE_VALUE) } TeleportRule;
 typedef enum Backend { CHOICES_BACKEND(CHOICE_VALUE) } Backend;
+typedef enum Quality { CHOICES_QUALITY(CHOICE_VALUE) } Quality;
 typedef enum CurveKind { CHOICES_CURVE(CHOICE_VALUE) } CurveKind;
 typedef enum Shadow { CHOICES_SHADOW(CHOICE_VALUE) } Shadow;
 typedef enum Raster { CHOICES_RASTER(CHOICE_VALUE) } Raster;

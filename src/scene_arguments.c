@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "scene_json.h"
+#include "scene_quality.h"
 #include "suggest.h"
 
 #include <stdio.h>
@@ -154,43 +155,54 @@ static bool is_scene_file(const char *path)
 }
 
 // First pass: finds unknown flags, requests and the files, whose names go into `files`.
-static Result find_files(Scene *scene, Walk walk, const char **files, size_t *count, Error *error)
+static Result find_files(Scene *scene, Walk walk, const char **files, size_t *count,
+                         const char **quality, Error *error)
 {
     Argument argument;
     StepResult step;
     *count = 0;
     while ((step = walk_step(&walk, &argument, error)) == STEP_TAKEN) {
         if (!argument.info) files[(*count)++] = argument.value;
+        if (argument.info && strcmp(argument.info->name, "quality") == 0) *quality = argument.value;
     }
     if (step == STEP_REQUEST) scene->request = walk.request;
     return step == STEP_ERROR ? RESULT_USAGE : RESULT_OK;
 }
 
-static Result add_sections(Scene *scene, const char *const *files, size_t count, Error *error)
+static Result add_sections(Scene *scene, const char *const *files, size_t count,
+                           const char *quality, Error *error)
 {
     SectionParams defaults;
+    Quality preset = QUALITY_NORMAL;
     Result result = section_params_create(&defaults, error);
+    if (result == RESULT_OK && quality) {
+        result = quality_parse(&preset, quality, error);
+        if (result != RESULT_OK) error_prefix(error, result, "--quality: ");
+    }
+    if (result == RESULT_OK) result = quality_apply(preset, SCOPE_RUN, &scene->run, error);
+    if (result == RESULT_OK) result = quality_apply(preset, SCOPE_SECTION, &defaults, error);
     for (size_t i = 0; result == RESULT_OK && i < count; i++)
         result = scene_add_section(scene, files[i], &defaults, error);
     section_params_destroy(&defaults);
     return result;
 }
 
-static Result open_files(Scene *scene, const char *const *files, size_t count, Error *error)
+static Result open_files(Scene *scene, const char *const *files, size_t count, const char *quality,
+                         Error *error)
 {
     const char *scene_file = NULL;
     for (size_t i = 0; i < count; i++) {
         if (!files[i][0]) return error_set(error, RESULT_USAGE, "the name of a file is empty");
         if (is_scene_file(files[i])) scene_file = files[i];
     }
-    if (!scene_file) return add_sections(scene, files, count, error);
+    if (!scene_file) return add_sections(scene, files, count, quality, error);
     if (count > 1)
         return error_set(error, RESULT_USAGE,
                          "%.200s is a scene file: expected no other file beside it "
                          "(name hair in its 'sections')",
                          scene_file);
     scene_destroy(scene);
-    return scene_read_unchecked(scene, scene_file, error);
+    return scene_read_unchecked(scene, scene_file, quality, error);
 }
 
 // A value given as a flag also replaces the scene file's keyframes of that name.
@@ -257,9 +269,10 @@ Result scene_from_arguments(Scene *scene, int argc, char **argv, Error *error)
     if (!files) return error_set(error, RESULT_FAILED, "out of memory");
     Walk walk = {.argc = argc, .next = 1, .argv = argv};
     size_t count;
-    result = find_files(scene, walk, files, &count, error);
+    const char *quality = NULL;
+    result = find_files(scene, walk, files, &count, &quality, error);
     bool run = result == RESULT_OK && scene->request == REQUEST_RUN;
-    if (run) result = open_files(scene, files, count, error);
+    if (run) result = open_files(scene, files, count, quality, error);
     free(files);
     if (run && result == RESULT_OK) result = apply_flags(scene, walk, error);
     if (run && result == RESULT_OK) result = check_arguments(scene, error);

@@ -3,6 +3,7 @@
 #include "file.h"
 #include "scene_colliders.h"
 #include "scene_param.h"
+#include "scene_quality.h"
 #include "scene_tracks.h"
 
 #include <stdlib.h>
@@ -122,6 +123,8 @@ static Result read_sections(Scene *scene, const Document *document, Error *error
     SectionParams defaults;
     Result result = section_params_create(&defaults, error);
     if (result == RESULT_OK)
+        result = quality_apply((Quality)scene->run.quality, SCOPE_SECTION, &defaults, error);
+    if (result == RESULT_OK)
         result =
             read_params(document, SCOPE_SECTION, &defaults, &document->root, document->json, error);
     for (size_t i = 0; result == RESULT_OK && i < count; i++) {
@@ -165,18 +168,38 @@ static Result read_parts(Scene *scene, const Document *document, Error *error)
     return result;
 }
 
-static Result read_document(Scene *scene, const Document *document, Error *error)
+// The preset that the command line names, or else the file, becomes the run's defaults.
+static Result read_quality(Scene *scene, const Document *document, const char *asked, Error *error)
+{
+    const json_t *value = json_object_get(document->json, "quality");
+    Quality quality = QUALITY_NORMAL;
+    Error unused; // what is wrong with the file's value is told when it is read
+    Result result = RESULT_OK;
+    if (asked)
+        result = quality_parse(&quality, asked, error);
+    else if (json_is_string(value))
+        quality_parse(&quality, json_string_value(value), &unused);
+    if (result == RESULT_OK) result = quality_apply(quality, SCOPE_RUN, &scene->run, error);
+    if (result == RESULT_OK) scene->run.quality = quality;
+    return result;
+}
+
+static Result read_document(Scene *scene, const Document *document, const char *quality,
+                            Error *error)
 {
     Result result = check_keys(true, &document->root, document->json, error);
+    if (result == RESULT_OK) result = read_quality(scene, document, quality, error);
+    int asked = scene->run.quality;
     if (result == RESULT_OK)
         result =
             read_params(document, SCOPE_RUN, &scene->run, &document->root, document->json, error);
+    if (quality) scene->run.quality = asked;
     if (result == RESULT_OK) result = read_sections(scene, document, error);
     if (result == RESULT_OK) result = read_parts(scene, document, error);
     return result;
 }
 
-Result scene_read_unchecked(Scene *scene, const char *path, Error *error)
+Result scene_read_unchecked(Scene *scene, const char *path, const char *quality, Error *error)
 {
     Result result = scene_create(scene, error);
     if (result != RESULT_OK) return result;
@@ -191,7 +214,7 @@ Result scene_read_unchecked(Scene *scene, const char *path, Error *error)
     const char *slash = strrchr(path, '/');
     Document document = {.root = {.key = path}, .json = json};
     document.folder = strndup(path, slash ? (size_t)(slash + 1 - path) : 0);
-    result = document.folder ? read_document(scene, &document, error)
+    result = document.folder ? read_document(scene, &document, quality, error)
                              : error_set(error, RESULT_FAILED, "out of memory");
     free(document.folder);
     json_decref(json);
@@ -200,7 +223,7 @@ Result scene_read_unchecked(Scene *scene, const char *path, Error *error)
 
 Result scene_read(Scene *scene, const char *path, Error *error)
 {
-    Result result = scene_read_unchecked(scene, path, error);
+    Result result = scene_read_unchecked(scene, path, NULL, error);
     if (result != RESULT_OK) return result;
     result = scene_check(scene, error);
     if (result != RESULT_USAGE && result != RESULT_BAD_INPUT) return result;

@@ -5,4 +5,4 @@
 #include "scene.h"
 
 // As scene_read, but without scene_check, so that flags may still mend a combination.
-Result scene_read_unchecked(Scene *scene, const char *path, Error *error);
+Result scene_read_unchecked(Scene *scene, const char *path, const char *quality, Error *error);

@@ -84,6 +84,41 @@ static void paths_in_a_scene_file_are_relative_to_its_folder(void **state)
     scene_destroy(&scene);
 }
 
+static void a_preset_gives_way_to_what_is_said(void **state)
+{
+    Error error;
+    static const struct {
+        const char *arguments;
+        Shadow shadow;
+        int size, smooth;
+    } cases[] = {{"a.tfx -o x/", SHADOW_NONE, 256, 1},
+                 {"a.tfx -o x/ --quality final", SHADOW_DOM, 512, 3},
+                 {"--shadow approx --smooth 2 a.tfx -o x/ --quality final", SHADOW_APPROX, 512, 2},
+                 {"a.tfx -o x/ --quality final --shadow-size 100", SHADOW_DOM, 100, 3},
+                 {"a.tfx -o x/ --quality final --quality draft", SHADOW_NONE, 256, 1}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        Scene scene;
+        assert_read(&scene, cases[i].arguments);
+        assert_int_equal(scene.run.shadow, cases[i].shadow);
+        assert_int_equal(scene.run.shadow_size, cases[i].size);
+        assert_int_equal(scene.sections[0].params.smooth, cases[i].smooth);
+        scene_destroy(&scene);
+    }
+    Scene scene;
+    assert_int_equal(
+        read_scene(state, &scene,
+                   "{\"sections\": [{\"file\": \"a\", \"smooth\": 5}, {\"file\": \"b\"}], "
+                   "\"shadow\": \"approx\", \"quality\": \"final\"}",
+                   &error),
+        RESULT_OK);
+    assert_int_equal(scene.run.quality, QUALITY_FINAL);
+    assert_int_equal(scene.run.shadow, SHADOW_APPROX);
+    assert_int_equal(scene.run.shadow_size, 512);
+    assert_int_equal(scene.sections[0].params.smooth, 5);
+    assert_int_equal(scene.sections[1].params.smooth, 3);
+    scene_destroy(&scene);
+}
+
 static void without_lights_there_are_two_and_an_empty_list_means_none(void **state)
 {
     Scene scene;
@@ -366,6 +401,7 @@ int main(void)
         cmocka_unit_test(a_scene_file_says_all_that_flags_can_and_more),
         cmocka_unit_test(a_section_overrides_the_top_level_and_flags_override_both),
         cmocka_unit_test(paths_in_a_scene_file_are_relative_to_its_folder),
+        TEST(a_preset_gives_way_to_what_is_said),
         TEST(without_lights_there_are_two_and_an_empty_list_means_none),
         TEST(a_scene_file_is_known_by_its_content_and_stands_alone),
         TEST(what_is_written_is_a_scene_file_of_the_same_scene),
