@@ -119,6 +119,12 @@ bench: all ## print the table of benchmarks (BENCH="FILE... --size 1280x720": mo
 	@$(OUT)/tractrix-gen --kind fur --count 37747 --vertices 8 -q -o $(SHORT)
 	$(OUT)/tractrix-bench all $(wildcard $(MOHAWK)) $(SHORT) $(BENCH)
 
+IMAGES = $(wildcard ../shared/assets/ratboy_mohawk.tfx)
+bench-image: all ## image error and milliseconds of every scheme: table, out/image.json, diagrams (IMAGES=FILE...: more hair)
+	@scripts/setup build run plot
+	$(OUT)/tractrix-bench images $(IMAGES) --json out/image.json
+	@scripts/plot-image out/image.json out/image
+
 # --- Static checks and the sanitizers; all of them run, then the failures are named. One alone: make check-format.
 CHECKS := format scripts warnings clang cppcheck shaders sanitize
 C_FILES = $(wildcard src/*.[ch] src/*/*.[ch] tests/*.[ch] glsl/*.h)
@@ -175,11 +181,11 @@ clean: ## remove out/
 	rm -rf out
 
 help: ## this list
-	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 18
+	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 20
 	@echo; sed -n '4,7s/^#//p' $(firstword $(MAKEFILE_LIST))
 
 FORCE:
-.PHONY: all tests demo test bench check $(CHECKS:%=check-%) format install uninstall clean help FORCE
+.PHONY: all tests demo test bench bench-image check $(CHECKS:%=check-%) format install uninstall clean help FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
 -include $(patsubst %.o,%.d,$(OBJECTS) $(MAINS:src/%.c=$(OUT)/%.o) $(TEST_PROGRAMS:%=%.o) $(SUPPORT_OBJECTS))

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The block-list rasteriser's records: a ribbon each, three texels.
+// The block-list rasteriser's record of a ribbon: a line, a shape and a tint, each in a buffer of its
+// own, since drivers limit a buffer's size.
 //
-//   0: x, y of its ends, px, as float bits
-//   1: half-widths at its ends (halves, px); bound at the first end, bound at the last (two halves
+//   line: x, y of its ends, px, as float bits
+//   shape: half-widths at its ends (halves, px); bound at the first end, bound at the last (two halves
 //      each); opacity, and 1/w at the last end less that at the first, over the mean (halves)
-//   2: colour at the first end and at the last, linear (six halves); 1/w, the mean
+//   tint: colour at the first end and at the last, linear (six halves); 1/w, the mean
 //
 // Along the strand a ribbon has the share of a pixel that lies beyond its first end less the share
 // beyond its last one. At a joint both ribbons have the same share, so that they cover all of the
@@ -13,8 +14,6 @@
 // of a pixel that are laid over each other would cover less than the pixel. At a free end, and where
 // a strand folds back, the bound is the ribbon's own direction, and the share is exact for ribbons
 // along an axis: it grows evenly over the pixel's width. The bound's length tells which it is.
-
-#define RECORD_TEXELS 3
 
 const float JOINT = 512.0; // length of a joint's bound, times 2 at most
 

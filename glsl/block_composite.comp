@@ -12,7 +12,9 @@
 
 layout(local_size_x = TILE_BLOCKS) in;
 layout(location = 0) uniform ivec4 grid; // tiles across and down, first row of tiles, lists of a lane
-layout(binding = BIND_RECORDS) uniform usamplerBuffer records;
+layout(binding = BIND_LINES) uniform usamplerBuffer lines;
+layout(binding = BIND_SHAPES) uniform usamplerBuffer shapes;
+layout(binding = BIND_TINTS) uniform usamplerBuffer tints;
 layout(binding = BIND_LISTS) uniform usamplerBuffer lists;
 layout(binding = BIND_LINKS) uniform usamplerBuffer links;
 layout(binding = BIND_TILES) uniform usamplerBuffer tiles;
@@ -92,9 +94,9 @@ void main()
     } while (link == 0u && list >= per_lane);
     // What the next turn needs is fetched a turn ahead: its latency hides behind this one's sums.
     uvec2 node = texelFetch(links, max(int(link), 1) - 1).xy;
-    int record = RECORD_TEXELS * int(link == 0u ? 0u : node.x), turns = 0;
-    uvec4 next_ends = texelFetch(records, record), next_shape = texelFetch(records, record + 1),
-          next_shade = texelFetch(records, record + 2);
+    int ribbon = int(link == 0u ? 0u : node.x), turns = 0;
+    uvec4 next_ends = texelFetch(lines, ribbon), next_shape = texelFetch(shapes, ribbon),
+          next_shade = texelFetch(tints, ribbon);
     float most = 1.0; // that shines through any of the pixels
     if (link != 0u) do {
         uvec4 shape = next_shape, shade = next_shade;
@@ -105,10 +107,10 @@ void main()
             link = texelFetch(lists, list).x;
         } while (link == 0u && list >= per_lane);
         node = texelFetch(links, max(int(link), 1) - 1).xy;
-        record = RECORD_TEXELS * int(link == 0u ? 0u : node.x);
-        next_ends = texelFetch(records, record);
-        next_shape = texelFetch(records, record + 1);
-        next_shade = texelFetch(records, record + 2);
+        ribbon = int(link == 0u ? 0u : node.x);
+        next_ends = texelFetch(lines, ribbon);
+        next_shape = texelFetch(shapes, ribbon);
+        next_shade = texelFetch(tints, ribbon);
         vec2 way = r.b - r.a;
         float inverse_length = inversesqrt(max(dot(way, way), 1e-20));
         vec2 d = way * inverse_length, q = origin - r.a;

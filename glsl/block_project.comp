@@ -17,7 +17,9 @@
 layout(local_size_x = GROUP_SIZE) in;
 layout(location = 0) uniform int first_record; // of this batch
 layout(binding = BIND_STRAND_ID) uniform usamplerBuffer strand_id;
-layout(std430, binding = BIND_RECORDS_OUT) writeonly buffer Records { uvec4 records[]; };
+layout(std430, binding = BIND_LINES_OUT) writeonly buffer Lines { uvec4 lines[]; };
+layout(std430, binding = BIND_SHAPES_OUT) writeonly buffer Shapes { uvec4 shapes[]; };
+layout(std430, binding = BIND_TINTS_OUT) writeonly buffer Tints { uvec4 tints[]; };
 layout(std430, binding = BIND_KEYS_OUT) writeonly buffer Keys { uint keys[]; }; // 1/w as float bits
 layout(std430, binding = BIND_SPANS_OUT) writeonly buffer Spans { uvec4 spans[]; };
 layout(std430, binding = BIND_BLOCK_COUNTS_OUT) buffer Counts { uint counts[]; };
@@ -77,11 +79,10 @@ bool store(int slot, End a, End b, float opacity)
     seen = seen && opacity >= LEAST_OPACITY && a.inverse_w > 0.0 && b.inverse_w > 0.0 && a.at != b.at;
     if (seen) {
         float depth = 0.5 * (a.inverse_w + b.inverse_w);
-        int at = slot * RECORD_TEXELS;
-        records[at] = uvec4(floatBitsToUint(a.at), floatBitsToUint(b.at));
-        records[at + 1] = uvec4(packHalf2x16(vec2(a.half_width, b.half_width)), packHalf2x16(a.bound),
+        lines[slot] = uvec4(floatBitsToUint(a.at), floatBitsToUint(b.at));
+        shapes[slot] = uvec4(packHalf2x16(vec2(a.half_width, b.half_width)), packHalf2x16(a.bound),
                                 packHalf2x16(b.bound_before), packHalf2x16(vec2(opacity, (b.inverse_w - a.inverse_w) / depth)));
-        records[at + 2] = uvec4(packHalf2x16(a.color.rg), packHalf2x16(vec2(a.color.b, b.color.r)),
+        tints[slot] = uvec4(packHalf2x16(a.color.rg), packHalf2x16(vec2(a.color.b, b.color.r)),
                                 packHalf2x16(b.color.gb), floatBitsToUint(depth));
         spans[slot] = pack_span(span);
         keys[slot] = floatBitsToUint(depth);

@@ -40,13 +40,17 @@
 #define BIND_BLOCK_COUNTS_OUT 0 // uint, 16 for each of 64 groups: ribbons, strands without any
 #define BIND_LISTS_OUT        1 // uint a lane and block, see block_bin.comp
 #define BIND_LINKS_OUT        2 // uvec2 a node
-#define BIND_RECORDS_OUT      3 // RECORD_TEXELS uvec4 a ribbon, see block.glsl
+#define BIND_LINES_OUT        3 // uvec4 a ribbon each, see block.glsl
+#define BIND_SHAPES_OUT       1 // while strands are projected
+#define BIND_TINTS_OUT        2
 #define BIND_KEYS_OUT         4 // uint a ribbon
 #define BIND_BIN_STATE_OUT    5 // two ivec4 a lane
 #define BIND_PIXELS_OUT       6 // uint a pixel, rows of whole tiles
 #define BIND_SPANS_OUT        6 // uvec4 a ribbon, see block.glsl
 #define BIND_TILES_OUT        7 // three words of glDispatchComputeIndirect, then tiles
-#define BIND_RECORDS          4
+#define BIND_LINES            4
+#define BIND_SHAPES           14
+#define BIND_TINTS            15
 #define BIND_ORDER            5
 #define BIND_LISTS            6
 #define BIND_LINKS            7

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WARM_UP = 3, PASS_FRAMES = 25 };
+enum { WARM_UP = 3, PASS_FRAMES = 8 };
 
 struct ImageBench {
     const Gpu *gpu;

@@ -11,8 +11,7 @@ enum {
     TILE_GROUP = 64,
     TILE_WIDTH = BLOCK_WIDTH * TILE_ACROSS, // px
     TILE_HEIGHT = BLOCK_HEIGHT * TILE_DOWN,
-    RECORD_BYTES = 48,
-    SPAN_BYTES = 16,
+    RIBBON_BYTES = 16, // in each of four buffers
     NODE_BYTES = 8,
     FIRST_NODES = 1 << 14, // of a lane
     STATE_WORDS = 8,       // of a lane
@@ -150,10 +149,10 @@ void render_blocks_destroy(RenderBlocks *blocks)
 {
     const GLuint programs[] = {blocks->bin, blocks->tile, blocks->composite[0],
                                blocks->composite[1]};
-    GpuBuffer *const buffers[] = {&blocks->records, &blocks->spans,   &blocks->keys,
-                                  &blocks->order,   &blocks->lists,   &blocks->links,
-                                  &blocks->states,  &blocks->tiles,   &blocks->counts,
-                                  &blocks->pixels,  &blocks->material};
+    GpuBuffer *const buffers[] = {
+        &blocks->lines,  &blocks->shapes, &blocks->tints,   &blocks->spans,  &blocks->keys,
+        &blocks->order,  &blocks->lists,  &blocks->links,   &blocks->states, &blocks->tiles,
+        &blocks->counts, &blocks->pixels, &blocks->material};
     look_programs_destroy(&blocks->project);
     for (size_t i = 0; i < sizeof programs / sizeof *programs; ++i)
         if (programs[i]) glDeleteProgram(programs[i]);
@@ -169,7 +168,7 @@ Result render_blocks_add_mesh(RenderBlocks *blocks, Error *error)
 
 bool render_blocks_can_hold(const GpuLimits *limits, uint64_t segments)
 {
-    int64_t most = smaller(limits->storage_block, limits->texture_texels * 16) / RECORD_BYTES;
+    int64_t most = smaller(limits->storage_block, limits->texture_texels * 16) / RIBBON_BYTES;
     return segments <= (uint64_t)smaller(most, INT32_MAX / 3);
 }
 
@@ -178,9 +177,16 @@ Result render_blocks_begin(RenderBlocks *blocks, uint64_t segments, Error *error
     int64_t count = segments ? (int64_t)segments : 1;
     const GpuLimits *limits = blocks->limits;
     Result result =
-        make_room(&blocks->records, limits, "ribbons", count * RECORD_BYTES, GL_RGBA32UI, error);
+        make_room(&blocks->lines, limits, "ribbons", count * RIBBON_BYTES, GL_RGBA32UI, error);
     if (result == RESULT_OK)
-        result = make_room(&blocks->spans, limits, "spans", count * SPAN_BYTES, GL_RGBA32UI, error);
+        result =
+            make_room(&blocks->shapes, limits, "shapes", count * RIBBON_BYTES, GL_RGBA32UI, error);
+    if (result == RESULT_OK)
+        result =
+            make_room(&blocks->tints, limits, "tints", count * RIBBON_BYTES, GL_RGBA32UI, error);
+    if (result == RESULT_OK)
+        result =
+            make_room(&blocks->spans, limits, "spans", count * RIBBON_BYTES, GL_RGBA32UI, error);
     if (result == RESULT_OK)
         result = make_room(&blocks->keys, limits, "depths", count * 4, 0, error);
     if (result == RESULT_OK)
@@ -204,7 +210,9 @@ Result render_blocks_add(RenderBlocks *blocks, const HairBatch *batch, const Loo
     gpu_uniforms_set(&blocks->material, BIND_MATERIAL, &whole, sizeof whole);
     gpu_buffer_bind_texture(&batch->position, BIND_POSITION);
     gpu_buffer_bind_texture(&batch->strand_id, BIND_STRAND_ID);
-    gpu_buffer_bind_storage(&blocks->records, BIND_RECORDS_OUT);
+    gpu_buffer_bind_storage(&blocks->lines, BIND_LINES_OUT);
+    gpu_buffer_bind_storage(&blocks->shapes, BIND_SHAPES_OUT);
+    gpu_buffer_bind_storage(&blocks->tints, BIND_TINTS_OUT);
     gpu_buffer_bind_storage(&blocks->spans, BIND_SPANS_OUT);
     gpu_buffer_bind_storage(&blocks->keys, BIND_KEYS_OUT);
     gpu_buffer_bind_storage(&blocks->counts, BIND_BLOCK_COUNTS_OUT);
@@ -289,7 +297,9 @@ static void composite_band(const RenderBlocks *blocks, const RenderTarget *targe
 {
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     find_tiles(blocks, box, row, end);
-    gpu_buffer_bind_texture(&blocks->records, BIND_RECORDS);
+    gpu_buffer_bind_texture(&blocks->lines, BIND_LINES);
+    gpu_buffer_bind_texture(&blocks->shapes, BIND_SHAPES);
+    gpu_buffer_bind_texture(&blocks->tints, BIND_TINTS);
     gpu_buffer_bind_texture(&blocks->links, BIND_LINKS);
     gpu_buffer_bind_texture(&blocks->tiles, BIND_TILES);
     gpu_buffer_bind_storage(&blocks->pixels, BIND_PIXELS_OUT);

@@ -15,10 +15,11 @@
 typedef struct RenderBlocks {
     LookPrograms project;
     GLuint bin, tile;
-    GLuint composite[2];                   // over the background, over a mesh
-    GpuBuffer records, spans, keys, order; // of ribbons, see block.glsl; order near to far
-    GpuBuffer lists, links, states;        // see block_bin.comp
-    GpuBuffer tiles;                       // see block_tiles.comp
+    GLuint composite[2]; // over the background, over a mesh
+    GpuBuffer lines, shapes, tints, spans, keys,
+        order;                      // of ribbons, see block.glsl; order near to far
+    GpuBuffer lists, links, states; // see block_bin.comp
+    GpuBuffer tiles;                // see block_tiles.comp
     GpuBuffer counts, pixels, material;
     const GpuLimits *limits;
     Radix radix;
