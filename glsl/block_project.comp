@@ -127,6 +127,9 @@ void main()
         vec4 after_clip = clip_from_world * vec4(after, 1.0);
         Particle p;
         p.at = project(clip_near(here_clip, before_clip, after_clip), paint_radius(painter, at, place));
+#if SHADOW
+        shadow_find(here);
+#endif
         p.color = shade_particle(fibre, painter, at, here, unit(after - before), unit(eye - here));
         if (j > 1) bent += bend(kept, last, p);
         if (j == 1 || bent > 1.0 || j >= points) {

@@ -98,6 +98,9 @@ void main()
         vec4 after_clip = clip_from_world * vec4(after, 1.0);
         Particle p;
         p.at = project(clip_near(here_clip, before_clip, after_clip), paint_radius(painter, at, place));
+#if SHADOW
+        shadow_find(here);
+#endif
         p.color = shade_particle(fibre, painter, at, here, unit(after - before), unit(eye - here));
         float reach = MITRE_MAX * (p.at.w + 1.0);
         if (p.at.z > 0.0) box = min(box, vec4(p.at.xy, -p.at.xy) - reach);

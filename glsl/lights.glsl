@@ -9,7 +9,7 @@
 #include "shadow.glsl"
 
 // Linear RGB of light i at x, as a matt white surface square to it would show it, and the unit
-// vector towards it.
+// vector towards it. With SHADOW, x is the point of the last shadow_find.
 vec3 light_reaching(int i, vec3 x, out vec3 to_light)
 {
 #if LIGHTS
@@ -22,10 +22,10 @@ vec3 light_reaching(int i, vec3 x, out vec3 to_light)
     to_light = way * inversesqrt(square);
     float inside = clamp(cone.x - cone.y * dot(axis.xyz, to_light), 0.0, 1.0);
     float falloff = place.w == 0.0 ? 1.0 : min(axis.w / square, 1e6);
-    return draw_params.light_color[i].rgb * (falloff * inside * inside * light_left(i, x));
+    return draw_params.light_color[i].rgb * (falloff * inside * inside * light_left(i));
 #else
     to_light = draw_params.light_place[i].xyz;
-    return draw_params.light_color[i].rgb * light_left(i, x);
+    return draw_params.light_color[i].rgb * light_left(i);
 #endif
 }
 

@@ -15,6 +15,7 @@ void main()
     vec3 x = world_position;
 #if SHADOW
     x += shadow_params.mesh_lift * n; // so that the surface does not shadow itself
+    shadow_find(x);
 #endif
     for (int i = 0; i < draw_params.light_count; ++i) {
         vec3 to_light, reaching = light_reaching(i, x, to_light);

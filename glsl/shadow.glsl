@@ -84,12 +84,12 @@ float mesh_lets_through(ivec2 texel, float depth)
 }
 
 // The share of the nearest 2 x 2 texels that the mesh does not stand before, weighted evenly as the point moves.
-float light_past_mesh(int light, int map, vec3 x)
+float light_past_mesh(int map, vec3 x)
 {
-    vec4 place = vec4(x, 1.0) * shadow_params.mesh_from_world[light];
+    vec4 place = vec4(x, 1.0) * shadow_params.mesh_from_world[map];
     int mesh_side = shadow_params.mesh_side;
     place.xyz /= place.w;
-    float depth = place.z - shadow_params.place[light].z;
+    float depth = place.z - shadow_params.place[map].z;
     vec2 from = clamp(place.xy - 0.5, 0.0, float(mesh_side) - 1.01), whole = floor(from), share = from - whole;
     ivec2 at = ivec2(whole) + ivec2(0, map * mesh_side);
     float light_00 = mesh_lets_through(at, depth), light_10 = mesh_lets_through(at + ivec2(1, 0), depth);
@@ -99,22 +99,35 @@ float light_past_mesh(int light, int map, vec3 x)
 #endif
 #endif
 
-// Share of light `light` that reaches x.
-float light_left(int light, vec3 x)
+#if SHADOW
+// Of each light what is left at the point of the last shadow_find; whole where it has no map.
+float shadow_left[MAX_LIGHTS] = float[MAX_LIGHTS](1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0);
+int shadow_maps = shadow_params.maps;
+
+// Finds what is left of all lights at x, a turn for each map: CPU drivers run both sides of every `if`,
+// so that lights without a map would cost as much as those with one.
+void shadow_find(vec3 x)
+{
+    for (int map = 0; map < shadow_maps; ++map) {
+        vec4 of_light = shadow_params.place[map];
+        vec4 place = vec4(x, 1.0) * shadow_params.from_world[map];
+        vec2 texel = place.xy / place.w;
+        float left = light_through_hair(map, texel, place.z, of_light);
+        // Beside the map no hair stands in the light.
+        left = any(lessThan(texel, vec2(0.0))) || any(greaterThan(texel, vec2(shadow_side))) ? 1.0 : left;
+#if SHADOW_BY_MESH
+        left *= light_past_mesh(map, x);
+#endif
+        shadow_left[int(of_light.x)] = left;
+    }
+}
+#endif
+
+// Share of light `light` that reaches the point.
+float light_left(int light)
 {
 #if SHADOW
-    vec4 of_light = shadow_params.place[light];
-    int map = int(of_light.x);
-    if (map < 0) return 1.0;
-    vec4 place = vec4(x, 1.0) * shadow_params.from_world[light];
-    vec2 texel = place.xy / place.w;
-    // Beside the hair's map no hair stands in the light; before its first depth neither.
-    float left = light_through_hair(map, texel, place.z, of_light);
-    left = any(lessThan(texel, vec2(0.0))) || any(greaterThan(texel, vec2(shadow_side))) ? 1.0 : left;
-#if SHADOW_BY_MESH
-    left *= light_past_mesh(light, map, x);
-#endif
-    return left;
+    return shadow_left[light];
 #else
     return 1.0;
 #endif

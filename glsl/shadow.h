@@ -27,17 +27,19 @@
 #define BIND_DEPTHS      12
 #define BIND_SHADOW_MESH 13
 
-// One light's view, by the rows of a matrix that a point (x, y, z, 1) is multiplied with.
+// Of each map the light's view, by the rows of a matrix that a point (x, y, z, 1) is multiplied
+// with.
 UNIFORM_BLOCK(ShadowParams, shadow_params, BIND_SHADOW)
 {
     mat4 from_world[MAX_LIGHTS];      // u, v (texels of the map) times w; depth 0..1 of the hair; w
     mat4 mesh_from_world[MAX_LIGHTS]; // u, v (texels of the mesh's map), depth 0..1, all times w; w
-    vec4 place[MAX_LIGHTS]; // number of the light's map, -1: none; metres of depth; depth that the
-                            // mesh's map is moved by; texels in a metre across, about
-    int side, mesh_side;    // texels
-    float fibres;           // approx: fibres in a metre along the light
-    float passed;           // approx: share of the light that a fibre lets through, as a power of 2
-    float mesh_lift; // m: how far the mesh is moved along its normals where it receives light
+    vec4 place[MAX_LIGHTS];           // the light's number; metres of depth; depth that the
+                                      // mesh's map is moved by; texels in a metre across, about
+    int maps;
+    int side, mesh_side; // texels
+    float fibres;        // approx: fibres in a metre along the light
+    float passed;        // approx: share of the light that a fibre lets through, as a power of 2
+    float mesh_lift;     // m: how far the mesh is moved along its normals where it receives light
 }
 END_BLOCK(ShadowParams, shadow_params);
 

@@ -268,8 +268,8 @@ static void frame_mesh(RenderShadow *shadow, const Turn *turn, double box[6])
     } else {
         shift = 2 * texel / (far - near);
     }
-    set_rows(params->mesh_from_world[turn->light], to);
-    params->place[turn->light][2] = (float)shift;
+    set_rows(params->mesh_from_world[turn->map], to);
+    params->place[turn->map][2] = (float)shift;
     params->mesh_lift = fmaxf(params->mesh_lift, (float)(1.5 * texel));
 }
 
@@ -302,12 +302,12 @@ static bool frame_light(RenderShadow *shadow, Turn *turn, bool with_mesh)
     double texel = frame_window(box, box + 3, shadow->options.side, from, to);
     double range = exp2(ceil(8 * log2(fmax(1.02 * (box[5] - box[2]), 1e-6))) / 8);
     frame_depth(box[2] - 0.01 * range, range, from, to);
-    set_rows(params->from_world[turn->light], to);
+    set_rows(params->from_world[turn->map], to);
     set_rows(turn->cast.from_world, to);
-    params->place[turn->light][0] = (float)turn->map;
-    params->place[turn->light][1] = (float)range;
+    params->place[turn->map][0] = (float)turn->light;
+    params->place[turn->map][1] = (float)range;
     double distance = turn->view.perspective ? 0.5 * (box[2] + box[5]) : 1;
-    params->place[turn->light][3] = (float)(1 / (texel * distance));
+    params->place[turn->map][3] = (float)(1 / (texel * distance));
     turn->cast.side = shadow->options.side;
     turn->cast.map = turn->map;
     turn->cast.texels = (float)(1 / texel);
@@ -363,7 +363,7 @@ static void draw_mesh(const RenderShadow *shadow, const Turn *turn)
     if (turn->map == 0) glClearBufferfv(GL_DEPTH, 0, &farthest);
     glViewport(0, turn->map * MESH_SIDE, MESH_SIDE, MESH_SIDE);
     glUseProgram(shadow->mesh);
-    glUniform1i(1, turn->light);
+    glUniform1i(1, turn->map);
     glBindVertexArray(mesh->vertex_array);
     glDrawElements(GL_TRIANGLES, (GLsizei)(3 * mesh->triangle_count), GL_UNSIGNED_INT, NULL);
     glDisable(GL_DEPTH_TEST);
@@ -408,7 +408,6 @@ static void begin_maps(RenderShadow *shadow, const ShadowScene *scene)
     memset(params, 0, sizeof *params);
     params->side = shadow->options.side;
     params->mesh_side = MESH_SIDE;
-    for (int i = 0; i < MAX_LIGHTS; ++i) params->place[i][0] = -1;
     find_mean_fibre(shadow, scene, params);
     fill(&shadow->firsts, SHADOW_DEPTHS);
     if (shadow->options.kind == SHADOW_DOM) fill(&shadow->sums, 0);
@@ -427,7 +426,7 @@ static void draw_maps(RenderShadow *shadow, const ShadowScene *scene, bool with_
             draw_firsts(shadow, &turn, 1);
         gpu_uniforms_set(&shadow->uniforms, BIND_SHADOW, &shadow->params, sizeof shadow->params);
         if (with_mesh) draw_mesh(shadow, &turn);
-        ++shadow->maps_drawn;
+        shadow->params.maps = (int)++shadow->maps_drawn;
     }
 }
 
