@@ -152,21 +152,21 @@ static Result describe_pictures(const Run *run, RendererOptions *options, Error 
     const RunParams *params = &run->scene.run;
     Target target;
     Result result = target_parse(&target, params->output, error);
-    *options = (RendererOptions){.raster = (Raster)params->raster,
-                                 .oit = (Oit)params->oit,
-                                 .oit_layers = params->oit_layers,
-                                 .width = params->size[0],
-                                 .height = params->size[1],
-                                 .exposure = params->exposure,
-                                 .tone = (Tone)params->tone_map,
-                                 .kind = params->depth == DEPTH_16 ? IMAGE_16 : IMAGE_8,
-                                 .aov = (Aov)params->aov,
-                                 .seed = params->seed,
-                                 .lod = {params->lod_start, params->lod_end, params->lod_min,
-                                         params->lod_width},
-                                 .shadow = {.kind = (Shadow)params->shadow,
-                                            .side = params->shadow_size,
-                                            .spacing = params->shadow_spacing}};
+    *options = (RendererOptions){
+        .raster = (Raster)params->raster,
+        .oit = (Oit)params->oit,
+        .oit_layers = params->oit_layers,
+        .width = params->size[0],
+        .height = params->size[1],
+        .exposure = params->exposure,
+        .tone = (Tone)params->tone_map,
+        .kind = params->depth == DEPTH_16 ? IMAGE_16 : IMAGE_8,
+        .aov = (Aov)params->aov,
+        .seed = params->seed,
+        .lod = {params->lod_start, params->lod_end, params->lod_min, params->lod_width},
+        .shadow = {.kind = (Shadow)params->shadow,
+                   .side = params->shadow_size,
+                   .spacing = params->shadow_spacing}};
     memcpy(options->background, params->background, sizeof options->background);
     if (result != RESULT_OK) return result;
     if (target.floats) options->kind = IMAGE_FLOAT;

@@ -306,7 +306,7 @@ static bool uses_lod(const LodOptions *lod)
 static float find_share(const LodOptions *lod, const Picture *picture, const RenderItem *item)
 {
     const DrawParams *draw = &picture->draw;
-    vec3 middle, eye = {draw->eye[0], draw->eye[1], draw->eye[2]};
+    vec3 middle = {0}, eye = {draw->eye[0], draw->eye[1], draw->eye[2]};
     find_middle(picture, item->hair, middle);
     float distance = fmaxf(glm_vec3_distance(middle, eye), draw->near_distance), share = 1;
     if (lod->end > lod->start)
