@@ -51,7 +51,7 @@ PROGRAMS  := $(MAINS:src/main_%.c=$(OUT)/tractrix-%)
 TEST_PROGRAMS := $(TESTS:%.c=$(OUT)/%)
 SUPPORT_OBJECTS := $(SUPPORT:%.c=$(OUT)/%.o)
 KEEP_sanitize := $(KEEP:%.c=$(OUT)/%.o)
-MANUALS   := $(patsubst %,%.1,$(filter %/tractrix-render,$(PROGRAMS)))
+MANUALS   := $(patsubst %,%.1,$(filter %/tractrix-render %/tractrix-compare,$(PROGRAMS)))
 FOLDERS   := $(sort $(OUT)/tests/ $(dir $(OBJECTS)))
 
 # --- Build. Recipes that recurse use all processors unless -j says otherwise.

@@ -6,10 +6,8 @@
 #include "bench_scenes.h"
 #include "bench_shaders.h"
 #include "bench_speed.h"
-#include "compare.h"
 #include "interrupt.h"
 #include "json_write.h"
-#include "png.h"
 #include "solver.h"
 #include "suggest.h"
 #include "vectors.h"
@@ -25,7 +23,6 @@ typedef struct Arguments {
     AccuracyOptions accuracy;
     ImageOptions image; // but for what speed has
     GpuOptions gpu;
-    CompareLimits limits;
     const char *vectors, *json;
     char **files; // what is no option
     int file_count;
@@ -210,50 +207,24 @@ static Result run_shaders(const Arguments *arguments, const Gpu *gpu, Error *err
     return bench_shaders(gpu, stdout, error);
 }
 
-static Result run_compare(const Arguments *arguments, const Gpu *gpu, Error *error)
-{
-    (void)gpu;
-    if (arguments->file_count != 2)
-        return error_set(error, RESULT_USAGE, "compare: two PNG files are needed");
-    Image a = {0}, b = {0};
-    CompareResult comparison;
-    Result result = png_read(&a, arguments->files[0], error);
-    if (result == RESULT_OK) result = png_read(&b, arguments->files[1], error);
-    if (result == RESULT_OK)
-        result = compare_images(&comparison, &a, &b, &arguments->limits, error);
-    if (result == RESULT_OK) {
-        compare_print(&comparison, &arguments->limits, stdout);
-        if (!comparison.match)
-            result = error_set(error, RESULT_FAILED, "%s and %s differ", arguments->files[0],
-                               arguments->files[1]);
-    }
-    image_destroy(&a);
-    image_destroy(&b);
-    return result;
-}
-
 static const struct {
     const char *name;
     Command run;
-    bool needs_gpu;
     const char *help;
 } COMMANDS[] = {
-    {"step", run_step, true, "tractrix steps of --vectors FILE.csv against their exact results"},
-    {"chain", run_chain, true,
+    {"step", run_step, "tractrix steps of --vectors FILE.csv against their exact results"},
+    {"chain", run_chain,
      "chain pulls of --vectors FILE.csv (FILE_cases.csv beside it) against theirs"},
-    {"speed", run_speed, true,
-     "a solver's step on --set NAME or --tfx FILE, and drawing with --size"},
-    {"scenes", run_scenes, true,
+    {"speed", run_speed, "a solver's step on --set NAME or --tfx FILE, and drawing with --size"},
+    {"scenes", run_scenes,
      "frames with followers, asleep, and of two sections: --set NAME (default 10k16), --algo"},
-    {"accuracy", run_accuracy, true,
+    {"accuracy", run_accuracy,
      "solvers' errors against exact motions, by the time step; status 1 if a bound is broken"},
-    {"all", run_all, true, "a table: all sets, and the hair files named, with every solver"},
-    {"image", run_image, true,
+    {"all", run_all, "a table: all sets, and the hair files named, with every solver"},
+    {"image", run_image,
      "drawing --set NAME or --tfx FILE: its time, and its error against the exact picture"},
-    {"images", run_images, true, "the same for every scheme, sets of hair and the files named"},
-    {"compare", run_compare, false,
-     "two PNG files by --level and --share; status 1 if they differ"},
-    {"shaders", run_shaders, true, "compiles every shader variant with warnings as errors"},
+    {"images", run_images, "the same for every scheme, sets of hair and the files named"},
+    {"shaders", run_shaders, "compiles every shader variant with warnings as errors"},
 };
 enum { COMMAND_COUNT = sizeof COMMANDS / sizeof *COMMANDS };
 
@@ -271,8 +242,6 @@ enum {
     OPT_JSON,
     OPT_DEVICE,
     OPT_SOFTWARE,
-    OPT_LEVEL,
-    OPT_SHARE,
     OPT_OSMESA,
     OPT_REFERENCE,
     OPT_RATES,
@@ -307,10 +276,6 @@ static const struct {
     {{"raster", required_argument, NULL, OPT_RASTER},
      "WORD  how hair is drawn: auto, quads or blocks (default auto)"},
     {{"json", required_argument, NULL, OPT_JSON}, "FILE  write the result as JSON"},
-    {{"level", required_argument, NULL, OPT_LEVEL},
-     "N  compare: a pixel may be off by this much, 0 to 255 (default 0)"},
-    {{"share", required_argument, NULL, OPT_SHARE},
-     "F  compare: this share of the pixels may be off by more, 0 to 1 (default 0)"},
     {{"oit", required_argument, NULL, OPT_OIT},
      "WORD  image, quads: abuffer or none (default auto: abuffer)"},
     {{"layers", required_argument, NULL, OPT_LAYERS},
@@ -454,12 +419,8 @@ static Result take_option(Arguments *arguments, int option, const char *text, Er
         return read_size(text, speed->size, error);
     case OPT_RASTER:
         return read_raster(text, &speed->raster, error);
-    case OPT_LEVEL:
-        return read_int("level", text, 0, 255, &arguments->limits.level, error);
     case OPT_STYLE:
         return read_share("style", text, &speed->style, error);
-    case OPT_SHARE:
-        return read_share("share", text, &arguments->limits.share, error);
     default:
         return error_set(error, RESULT_USAGE, "option %d", option);
     }
@@ -525,7 +486,6 @@ static Result run(int argc, char **argv, Error *error)
     result = find_command(*arguments.files++, &command, error);
     --arguments.file_count;
     if (result != RESULT_OK) return result;
-    if (!COMMANDS[command].needs_gpu) return COMMANDS[command].run(&arguments, NULL, error);
     result = gpu_create(&gpu, &arguments.gpu, error);
     if (result != RESULT_OK) return result;
     fprintf(stderr, "%s, OpenGL %s (%s)\n", gpu.renderer, gpu.version, gpu.path);

@@ -101,20 +101,45 @@ static Result fail_to_read(const char *path, Error *error)
                      stbi_failure_reason());
 }
 
-static Result decode(Image *image, const Bytes *file, const char *path, Error *error)
+// Size and channels (3 or 4) of a file of less than 2 GiB.
+static Result look_at(Image *image, const Bytes *file, const char *path, Error *error)
 {
-    int width, height, channels;
-    int size = (int)file->size;
-    if (!stbi_info_from_memory(file->data, size, &width, &height, &channels))
+    int channels;
+    if (file->size > INT_MAX)
+        return error_set(error, RESULT_BAD_INPUT, "%s: larger than 2 GiB", path);
+    if (!stbi_info_from_memory(file->data, (int)file->size, &image->width, &image->height,
+                               &channels))
         return fail_to_read(path, error);
-    if ((long long)width * height > READ_MAX_PIXELS)
+    if ((long long)image->width * image->height > READ_MAX_PIXELS)
         return error_set(error, RESULT_BAD_INPUT, "%s: %d x %d pixels, at most %d are read", path,
-                         width, height, READ_MAX_PIXELS);
-    channels = channels == 2 || channels == 4 ? 4 : 3;
-    uint8_t *pixels = stbi_load_from_memory(file->data, size, &width, &height, NULL, channels);
-    if (!pixels) return fail_to_read(path, error);
-    *image = (Image){.width = width, .height = height, .channels = channels, .pixels = pixels};
+                         image->width, image->height, READ_MAX_PIXELS);
+    image->channels = channels == 2 || channels == 4 ? 4 : 3;
     return RESULT_OK;
+}
+
+static Result decode(Image *image, ImageKind kind, const Bytes *file, const char *path,
+                     Error *error)
+{
+    Image found = {.kind = kind};
+    *image = (Image){0};
+    Result result = look_at(&found, file, path, error);
+    if (result != RESULT_OK) return result;
+    int size = (int)file->size;
+    if (kind == IMAGE_16)
+        found.pixels = (uint8_t *)stbi_load_16_from_memory(file->data, size, &found.width,
+                                                           &found.height, NULL, found.channels);
+    else
+        found.pixels = stbi_load_from_memory(file->data, size, &found.width, &found.height, NULL,
+                                             found.channels);
+    if (!found.pixels) return fail_to_read(path, error);
+    *image = found;
+    return RESULT_OK;
+}
+
+Result png_decode_deep(Image *image, const Bytes *file, const char *path, Error *error)
+{
+    bool deep = file->size <= INT_MAX && stbi_is_16_bit_from_memory(file->data, (int)file->size);
+    return decode(image, deep ? IMAGE_16 : IMAGE_8, file, path, error);
 }
 
 Result png_read(Image *image, const char *path, Error *error)
@@ -123,10 +148,7 @@ Result png_read(Image *image, const char *path, Error *error)
     Bytes file;
     Result result = bytes_read_file(&file, path, error);
     if (result != RESULT_OK) return result;
-    if (file.size <= INT_MAX)
-        result = decode(image, &file, path, error);
-    else
-        result = error_set(error, RESULT_BAD_INPUT, "%s: larger than 2 GiB", path);
+    result = decode(image, IMAGE_8, &file, path, error);
     bytes_destroy(&file);
     return result;
 }

@@ -27,3 +27,7 @@ bool png_is_whole(const char *path, int width, int height, int channels);
 // alpha, else 3. RESULT_BAD_INPUT with path and reason when it is missing, not a PNG, damaged, or
 // of more than 2^28 pixels.
 Result png_read(Image *image, const char *path, Error *error);
+
+// The same, but 16 bits a channel stay as they are: IMAGE_16. From bytes in memory; `path` is for
+// the message.
+Result png_decode_deep(Image *image, const Bytes *file, const char *path, Error *error);

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: MIT
+#include "options.h"
+
+#include "suggest.h"
+
+#include "version.h"
+
+#include <ctype.h>
+#include <getopt.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WIDTH = 96, COLUMN = 30, MOST_OPTIONS = 64, FIRST_CODE = 256 };
+enum { CODE_HELP = FIRST_CODE + MOST_OPTIONS, CODE_VERSION };
+
+static const Option COMMON[] = {
+    {"help", 'h', OPTION_SWITCH, 0, NULL, 0, 0, "print this and stop; --help=man: in roff"},
+    {"version", 0, OPTION_SWITCH, 0, NULL, 0, 0, "print the version and stop"},
+};
+enum { COMMON_COUNT = sizeof COMMON / sizeof *COMMON };
+
+static const Option *option_at(const OptionsProgram *program, size_t i)
+{
+    return i < program->option_count ? &program->options[i] : &COMMON[i - program->option_count];
+}
+
+// "-j, --jobs N"
+static void write_flag(const Option *option, char *text, size_t size)
+{
+    char letter[8] = "";
+    if (option->letter) snprintf(letter, sizeof letter, "-%c, ", option->letter);
+    snprintf(text, size, "%s--%s%s%s", letter, option->name, option->value ? " " : "",
+             option->value ? option->value : "");
+}
+
+// --- The text.
+
+static void write_wrapped(const char *text, int column, int indent)
+{
+    bool first = true;
+    while (*text) {
+        int length = (int)strcspn(text, " ");
+        if (!first && column + 1 + length > WIDTH) {
+            printf("\n%*s", indent, "");
+            column = indent;
+            first = true;
+        }
+        column += printf("%s%.*s", first ? "" : " ", length, text);
+        first = false;
+        text += length;
+        text += strspn(text, " ");
+    }
+    printf("\n");
+}
+
+static void write_text(const OptionsProgram *program)
+{
+    printf("Usage: %s %s\n\n", program->name, program->synopsis);
+    write_wrapped(program->description, 0, 0);
+    printf("\nOptions:\n");
+    for (size_t i = 0; i < program->option_count + COMMON_COUNT; ++i) {
+        char flag[96];
+        write_flag(option_at(program, i), flag, sizeof flag);
+        int used = printf("  %s", flag);
+        if (used > COLUMN - 2) printf("\n"), used = 0;
+        printf("%*s", COLUMN - used, "");
+        write_wrapped(option_at(program, i)->help, COLUMN, COLUMN);
+    }
+    for (const char *const *note = program->notes; *note; ++note) {
+        printf("\n");
+        write_wrapped(*note, 0, 0);
+    }
+    printf("\nExit status:\n");
+    for (const char *const(*s)[2] = program->status; (*s)[0]; ++s)
+        printf("  %3s  %s\n", (*s)[0], (*s)[1]);
+    printf("\nExamples:\n");
+    for (const char *const *e = program->examples; *e; ++e) printf("  %s\n", *e);
+}
+
+// --- The manual page.
+
+// With what roff would take for its own escaped.
+static void write_roff(const char *text)
+{
+    if (*text == '.' || *text == '\'') printf("\\&");
+    for (; *text; ++text) {
+        if (*text == '\\')
+            printf("\\e");
+        else
+            printf(*text == '-' ? "\\-" : "%c", *text);
+    }
+    printf("\n");
+}
+
+static void write_roff_entry(const char *tag, const char *text)
+{
+    printf(".TP\n.B ");
+    write_roff(tag);
+    write_roff(text);
+}
+
+static void write_man(const OptionsProgram *program)
+{
+    printf(".TH ");
+    for (const char *at = program->name; *at; ++at) putchar(toupper((unsigned char)*at));
+    printf(" 1 \"\" \"Tractrix %s\"\n.SH NAME\n", TRACTRIX_VERSION);
+    printf("%s \\- ", program->name);
+    write_roff(program->summary);
+    printf(".SH SYNOPSIS\n.B %s\n", program->name);
+    write_roff(program->synopsis);
+    printf(".SH DESCRIPTION\n");
+    write_roff(program->description);
+    printf(".SH OPTIONS\n");
+    for (size_t i = 0; i < program->option_count + COMMON_COUNT; ++i) {
+        char flag[96];
+        write_flag(option_at(program, i), flag, sizeof flag);
+        write_roff_entry(flag, option_at(program, i)->help);
+    }
+    printf(".SH NOTES\n");
+    for (const char *const *note = program->notes; *note; ++note) {
+        printf(".PP\n");
+        write_roff(*note);
+    }
+    printf(".SH \"EXIT STATUS\"\n");
+    for (const char *const(*s)[2] = program->status; (*s)[0]; ++s)
+        write_roff_entry((*s)[0], (*s)[1]);
+    printf(".SH EXAMPLES\n.nf\n");
+    for (const char *const *e = program->examples; *e; ++e) write_roff(*e);
+    printf(".fi\n");
+}
+
+// --- Parsing.
+
+static Result fail_unknown(const OptionsProgram *program, const char *flag, Error *error)
+{
+    const char *names[MOST_OPTIONS + COMMON_COUNT];
+    char word[64];
+    size_t count = program->option_count + COMMON_COUNT, length = strcspn(flag, "=");
+    for (size_t i = 0; i < count; ++i) names[i] = option_at(program, i)->name;
+    snprintf(word, sizeof word, "%s", flag + strspn(flag, "-"));
+    word[strcspn(word, "=")] = 0;
+    return error_set(error, RESULT_USAGE, "no option '%.*s': did you mean '--%s'?", (int)length,
+                     flag, suggest_nearest(word, names, count));
+}
+
+static Result set_number(const Option *option, char *at, const char *text, Error *error)
+{
+    char *end;
+    double number = strtod(text, &end);
+    bool whole = option->kind == OPTION_WHOLE;
+    if (end == text || *end || !(number >= option->least && number <= option->most) ||
+        (whole && number != (int)number))
+        return error_set(error, RESULT_USAGE, "--%s: expected %s from %g to %g, got '%s'",
+                         option->name, whole ? "a whole number" : "a number", option->least,
+                         option->most, text);
+    int count = (int)number;
+    memcpy(at, whole ? (void *)&count : (void *)&number, whole ? sizeof count : sizeof number);
+    return RESULT_OK;
+}
+
+static Result set_option(const Option *option, char *values, const char *text, Error *error)
+{
+    char *at = values + option->place;
+    const bool on = true;
+    switch (option->kind) {
+    case OPTION_SWITCH:
+        memcpy(at, &on, sizeof on);
+        return RESULT_OK;
+    case OPTION_STRING:
+        if (!*text)
+            return error_set(error, RESULT_USAGE, "--%s: expected %s, got nothing", option->name,
+                             option->value);
+        memcpy(at, &text, sizeof text);
+        return RESULT_OK;
+    default:
+        return set_number(option, at, text, error);
+    }
+}
+
+static void make_tables(const OptionsProgram *program, struct option *table, char *letters)
+{
+    *letters++ = ':'; // tell a missing value from an unknown option
+    for (size_t i = 0; i < program->option_count; ++i) {
+        const Option *option = &program->options[i];
+        table[i] = (struct option){option->name, option->value != NULL, NULL, FIRST_CODE + (int)i};
+        if (!option->letter) continue;
+        *letters++ = option->letter;
+        if (option->value) *letters++ = ':';
+    }
+    table += program->option_count;
+    table[0] = (struct option){"help", optional_argument, NULL, CODE_HELP};
+    table[1] = (struct option){"version", no_argument, NULL, CODE_VERSION};
+    table[2] = (struct option){0};
+    *letters++ = 'h';
+    *letters = 0;
+}
+
+static Result answer(const OptionsProgram *program, int code, Error *error)
+{
+    if (code == CODE_VERSION)
+        printf("%s %s (%s)\n", program->name, TRACTRIX_VERSION, TRACTRIX_COMMIT);
+    else if (code == 'h' || !optarg)
+        write_text(program);
+    else if (strcmp(optarg, "man") == 0)
+        write_man(program);
+    else
+        return error_set(error, RESULT_USAGE, "--help: expected man or nothing, got '%s'", optarg);
+    return RESULT_OK;
+}
+
+static const Option *find_option(const OptionsProgram *program, int code)
+{
+    if (code >= FIRST_CODE) return &program->options[code - FIRST_CODE];
+    for (size_t i = 0; i < program->option_count; ++i)
+        if (program->options[i].letter == code) return &program->options[i];
+    return NULL;
+}
+
+Result options_parse(const OptionsProgram *program, void *values, int argc, char **argv, int *first,
+                     bool *done, Error *error)
+{
+    struct option table[MOST_OPTIONS + COMMON_COUNT + 1];
+    char letters[2 * MOST_OPTIONS + 4];
+    int code;
+    make_tables(program, table, letters);
+    opterr = 0;
+    optind = 0;
+    *done = false;
+    while ((code = getopt_long(argc, argv, letters, table, NULL)) != -1) {
+        if (code == ':')
+            return error_set(error, RESULT_USAGE, "'%s' needs a value", argv[optind - 1]);
+        if (code == CODE_HELP || code == CODE_VERSION || code == 'h') {
+            *done = true;
+            return answer(program, code, error);
+        }
+        const Option *option = code == '?' ? NULL : find_option(program, code);
+        if (!option) return fail_unknown(program, argv[optind - 1], error);
+        Result result = set_option(option, values, optarg, error);
+        if (result != RESULT_OK) return result;
+    }
+    *first = optind;
+    return RESULT_OK;
+}
