@@ -28,7 +28,8 @@ static void rotate(const double q[4], const float v[3], double rotated[3])
     rotated[2] = z + 2 * (q[3] * cross[2] + q[0] * cross[1] - q[1] * cross[0]);
 }
 
-static void evaluate_formulas(const Formula formulas[3], double time, double scale, float value[3])
+// `formulas`: three.
+static void evaluate_formulas(const Formula *formulas, double time, double scale, float value[3])
 {
     for (int i = 0; i < 3; i++) {
         double number = formula_evaluate(&formulas[i], time);
@@ -61,7 +62,8 @@ bool rigid_track_is_still(const RigidTrack *track)
            !track->translation_formula[0].text && !track->rotation_formula[0].text;
 }
 
-static Result check_formulas(const Formula formulas[3], const char *name, double time, Error *error)
+// `formulas`: three, or none.
+static Result check_formulas(const Formula *formulas, const char *name, double time, Error *error)
 {
     for (int i = 0; i < 3 && formulas[i].text; i++) {
         double number = formula_evaluate(&formulas[i], time);

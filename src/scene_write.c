@@ -95,7 +95,8 @@ static bool write_camera(json_t *object, const Scene *scene)
     return good;
 }
 
-static json_t *write_formulas(const Formula formulas[3])
+// `formulas`: three.
+static json_t *write_formulas(const Formula *formulas)
 {
     json_t *array = json_array();
     bool good = true;
