@@ -27,6 +27,8 @@ def picture(kind):
                 c = (128, 128, 128)
             elif kind == "dot":
                 c = (255, 255, 255) if (x, y) == (18, 14) else (128, 128, 128)
+            elif kind == "blue dot":
+                c = (128, 128, 255) if (x, y) == (18, 14) else (128, 128, 128)
             elif kind == "noise":
                 n = (x * 7919 + y * 104729 + x * y * 31) % 251
                 c = (n, n * 3 % 251, n * 7 % 251)
@@ -185,7 +187,8 @@ def flip(a, b, ppd):
 
 if __name__ == "__main__":
     for a, b, ppd in (("ramp", "ramp shifted", 67), ("ramp", "noise", 67), ("edge", "edge dimmer", 67),
-                      ("edge", "ramp", 20), ("grey", "dot", 67), ("grey", "dot", 30), ("black", "white", 67),
+                      ("edge", "ramp", 20), ("grey", "dot", 67), ("grey", "dot", 30),
+                      ("grey", "blue dot", 67), ("black", "white", 67),
                       ("green", "blue", 67)):
         p, q = picture(a), picture(b)
         r = rmse(p, q)
