@@ -3,7 +3,7 @@
 // premultiplied and in linear light, over the background, then sRGB. The pixels stay in registers.
 //   BASE 1: the mesh stands behind, and hides what is behind it
 //
-// A ribbon's depth and width are those at the middle of its part beside the block, its coverage and its
+// A ribbon's width is that at the middle of its part beside the block, its depth, its coverage and its
 // colour are found for each pixel (coverage.glsl). Where less than LEAST shines through a whole block the rest is left.
 #include "draw.h"
 #include "block.glsl"
@@ -37,19 +37,20 @@ const float LEAST = 1.0 / 1024.0;
     ROW_IN_TURN(DO, 0) NEXT_ROW; ROW_IN_TURN(DO, 1) NEXT_ROW; ROW_IN_TURN(DO, 2) NEXT_ROW; ROW_IN_TURN(DO, 3)
 
 #if BASE
-#define HIDE(alpha, k) alpha = inverse_w >= mesh[k] ? alpha : 0.0
+#define HIDE(alpha, along, k) alpha = inverse_w.x + inverse_w.y * (along) >= mesh[k] ? alpha : 0.0
 #else
-#define HIDE(alpha, k)
+#define HIDE(alpha, along, k)
 #endif
 // `row` has four quantities at the row's first pixel: distance across, both ends' shares, and how far along the ribbon.
 #define ADD(k)                                                                                               \
     {                                                                                                        \
         vec4 here = row + float((k) % BLOCK_WIDTH) * by_x;                                                   \
         float alpha = profile_coverage(profile, here.x) * clamp(min(here.y, here.z), 0.0, 1.0);              \
-        HIDE(alpha, k);                                                                                      \
+        float along = clamp(here.w, 0.0, 1.0);                                                               \
+        HIDE(alpha, along, k);                                                                               \
         alpha *= through[k];                                                                                 \
         through[k] -= alpha;                                                                                 \
-        color[k] += alpha * (first + clamp(here.w, 0.0, 1.0) * change);                                                                             \
+        color[k] += alpha * (first + along * change);                                                        \
         most = max(most, through[k]);                                                                        \
     }
 
@@ -126,7 +127,8 @@ void main()
         vec4 row = vec4(q.y * d.x - q.x * d.y, dot(q, r.bound_a) + bound_offset(r.bound_a),
                         1.0 - dot(origin - r.b, r.bound_b) - bound_offset(r.bound_b), dot(q, d) * inverse_length);
 #if BASE
-        float inverse_w = uintBitsToFloat(shade.w) * (1.0 + unpackHalf2x16(shape.w).y * (t - 0.5));
+        float change_w = unpackHalf2x16(shape.w).y; // 1/w is linear in the picture
+        vec2 inverse_w = uintBitsToFloat(shade.w) * vec2(1.0 - 0.5 * change_w, change_w);
 #endif
         most = 0.0;
         PIXELS_IN_TURN(ADD, row += by_y)

@@ -500,6 +500,27 @@ static void mesh_hides_the_hair_behind_it_only(void **state)
     assert_int_equal(studio_pixel(&studio, 5, 5)[1], 0);
 }
 
+// Two strands 2 px before and behind a mesh that slopes away from the eye, by 1 px a pixel: depths
+// must be right in every pixel, not on the average of some.
+static void hair_close_to_a_sloping_mesh_is_all_seen_or_all_hidden(void **state)
+{
+    (void)state;
+    Error error = {{0}};
+    Mesh mesh = make_square(50);
+    for (int v = 0; v < 4; ++v) mesh.position[v][2] = mesh.position[v][0];
+    use(&BLACK);
+    const float green[3] = {0, 1, 0};
+    assert_int_equal(renderer_set_mesh(&studio.renderer, &mesh, green, &error), RESULT_OK);
+    mesh_destroy(&mesh);
+    add_line((float[3]){-40, 20, -38}, (float[3]){40, 20, 42}, 3, 1);
+    add_line((float[3]){-40, -20, -42}, (float[3]){40, -20, 38}, 3, 1);
+    studio_draw(&studio);
+    for (int x = -30; x <= 30; ++x) {
+        assert_int_equal(studio_pixel(&studio, SIDE / 2 + x, SIDE / 2 - 20)[0], 255);
+        assert_int_equal(studio_pixel(&studio, SIDE / 2 + x, SIDE / 2 + 20)[0], 0);
+    }
+}
+
 // A white strand along x that only the light shows, and what its middle looks like, 0..1.
 static double light_strand(const Light *light)
 {
@@ -962,6 +983,7 @@ int main(void)
         CLAIM(hair_smaller_than_a_pixel_leaves_no_holes),
         CLAIM(a_row_that_no_pool_holds_is_an_error),
         CLAIM(mesh_hides_the_hair_behind_it_only),
+        CLAIM(hair_close_to_a_sloping_mesh_is_all_seen_or_all_hidden),
         CLAIM(light_falls_off_by_the_square_of_the_distance),
         CLAIM(a_spot_shines_into_its_cone),
         CLAIM(a_strand_throws_its_shadow_on_the_mesh),
