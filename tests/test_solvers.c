@@ -2,6 +2,7 @@
 // What must hold for every solver that is in the table, whatever its method. A solver's own tests
 // are in test_solver_<name>.c.
 #include "particle_solver.h"
+#include "strands_read.h"
 #include "twin.h"
 
 #include <math.h>
@@ -155,6 +156,100 @@ static void hanging_hair_stays_at_rest(void **state)
 {
     (void)state;
     for_each(check_rest, REST);
+}
+
+// --- Curls that have come to rest.
+
+// Who trembles from frame to frame by more than 1e-4 of the length at 60 Hz, from how many
+// particles on and by how much at most: twice the most that was measured over the curls in assets/
+// with drag 1 and 5/s (docs/solvers.md).
+static const struct {
+    const char *algo, *variant;
+    int from;
+    double most;
+} TREMORS[] = {
+    {"split", "thesis", 16, 3e-4},
+    {"emulation", "thesis", 16, 1},
+    {"emulation", "projected", 48, 8e-3},
+    {"hybrid", "", 48, 8e-3},
+    {"chain", "", 48, 0.05},
+    {"chain", "", 16, 3e-3},
+    {"tressfx", "steady", 48, 0.04},
+};
+
+static double allowed_tremor(const SolverType *type, const char *variant, int n)
+{
+    for (size_t i = 0; i < sizeof TREMORS / sizeof *TREMORS; ++i)
+        if (strcmp(TREMORS[i].algo, type->name) == 0 && n >= TREMORS[i].from &&
+            strcmp(TREMORS[i].variant, variant) == 0)
+            return TREMORS[i].most;
+    return 1e-4;
+}
+
+enum { CURLS = 4, CURL_MOST = 48 };
+
+// Four of the curls in assets/, by every vertex (48) or every third (16).
+static void read_curls(Vec *q, int n)
+{
+    const StrandsReadOptions options = {.unit = 1};
+    Error error;
+    Strands strands = {0};
+    if (strands_read(&strands, "assets/curls.tfx", &options, NULL, &error) != RESULT_OK)
+        fail_msg("%s", error.text);
+    for (uint32_t s = 0; s < CURLS; ++s) {
+        uint32_t root = strands.first[s * strands.strand_count / CURLS];
+        for (uint32_t j = 0; j < (uint32_t)n; ++j)
+            for (int k = 0; k < 3; ++k)
+                q[s * (uint32_t)n + j][k] =
+                    (double)strands.position[root + j * (CURL_MOST / (uint32_t)n)][k];
+    }
+    strands_destroy(&strands);
+}
+
+// The farthest that a particle goes in a frame of the second that follows, in metres.
+static double find_tremor(HairFixture *fixture)
+{
+    const HairBatch *batch = &fixture->hair.batches[0];
+    double most = 0;
+    float(*before)[4] = fixture_positions(fixture, 0);
+    for (int i = 0; i < 60; ++i) {
+        fixture_step(fixture);
+        float(*now)[4] = fixture_positions(fixture, 0);
+        for (uint32_t s = 0; s < CURLS; ++s)
+            for (uint32_t j = 0; j < batch->vertex_count; ++j) {
+                uint32_t at = hair_address(batch, s, j);
+                Vec moved;
+                for (int k = 0; k < 3; ++k) moved[k] = (double)now[at][k] - (double)before[at][k];
+                most = fmax(most, vec_norm(moved));
+            }
+        free(before);
+        before = now;
+    }
+    free(before);
+    return most;
+}
+
+static void check_tremor(const SolverType *type, const char *variant)
+{
+    for (int n = 16; n <= CURL_MOST; n *= 3) {
+        static Vec start[CURLS * CURL_MOST];
+        HairFixture fixture;
+        read_curls(start, n);
+        fixture_create(&fixture, (const Vec *)start, CURLS, n, type->name, variant, 0.5f, 5);
+        for (int i = 0; i < 480; ++i) fixture_step(&fixture);
+        double most = find_tremor(&fixture) / 0.3;
+        fixture_destroy(&fixture);
+        printf("%s %s, n = %d: moves by %.2g of its length a frame\n", type->name, variant, n,
+               most);
+        require(most < allowed_tremor(type, variant, n), type, variant,
+                "curls at rest move by %.2g of their length a frame", most);
+    }
+}
+
+static void curls_come_to_rest(void **state)
+{
+    (void)state;
+    for_each(check_tremor, 0);
 }
 
 // --- Symmetries. Rounding differs between the two runs; half a second with drag keeps what grows
@@ -521,6 +616,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lengths_are_kept),
         cmocka_unit_test(hanging_hair_stays_at_rest),
+        cmocka_unit_test(curls_come_to_rest),
         cmocka_unit_test(turning_the_whole_scene_turns_the_result),
         cmocka_unit_test(the_unit_of_length_does_not_matter),
         cmocka_unit_test(strands_do_not_depend_on_each_other),
