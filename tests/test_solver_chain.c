@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Chain on the GPU against its double-precision form, the reference traces and the exact motion,
 // and what must hold for any hair.
+#include "convergent.h"
 #include "reference_bend.h"
 #include "reference_chain.h"
 #include "reference_motion.h"
@@ -41,34 +42,30 @@ static void assert_equals_tuned_twin(int n, double dt, double drag, double style
     if (!(off < tolerance)) fail_msg("%.3g exceeds %.3g", off, tolerance);
 }
 
-static void assert_equals_twin(int n, double dt, double drag, double style, int steps,
-                               double tolerance)
-{
-    assert_equals_tuned_twin(n, dt, drag, style, steps, tolerance, NULL);
-}
-
 // Measured: 5e-7 to 1e-6 of the length where drag forgets what rounding adds, 1e-5 at 240 Hz, 6e-5
 // for 32 particles; strands without much drag are chaotic (a curl's start rounding grows to 1e-4
 // within 0.6 to 1.5 s), so those are compared while float32 can follow. 10 times what was measured.
 static void it_equals_its_double_precision_twin(void **state)
 {
     (void)state;
-    assert_equals_twin(2, 1.0 / 60, 1, 0, 600, 1e-5);
-    assert_equals_twin(3, 1.0 / 60, 4, 0, 600, 1e-5);
-    assert_equals_twin(16, 1.0 / 60, 4, 0, 600, 1e-5);
-    assert_equals_twin(16, 1.0 / 240, 4, 0, 600, 1e-4);
-    assert_equals_twin(16, 1.0 / 60, 4, 0.5, 60, 1e-5);
-    assert_equals_twin(16, 1.0 / 60, 0, 0, 30, 1e-5);
-    assert_equals_twin(16, 1.0 / 60, 1, 0.5, 60, 1e-5);
+    static const ConvergentCase cases[] = {
+        {2, 60, 1, 0, 600, 1e-5},   {3, 60, 4, 0, 600, 1e-5},   {16, 60, 4, 0, 600, 1e-5},
+        {16, 240, 4, 0, 600, 1e-4}, {16, 60, 4, 0.5, 60, 1e-5}, {16, 60, 0, 0, 30, 1e-5},
+        {16, 60, 1, 0.5, 60, 1e-5},
+    };
+    convergent_equals_twin("chain", reference_chain_step, cases, sizeof cases / sizeof *cases);
 }
 
 static void strands_through_memory_equal_the_twin_too(void **state)
 {
     (void)state;
-    assert_equals_twin(17, 1.0 / 60, 4, 0, 600, 1e-5);
-    assert_equals_twin(32, 1.0 / 60, 4, 0, 600, 6e-4);
-    assert_equals_twin(32, 1.0 / 60, 4, 0.5, 30, 1e-4);
-    assert_equals_twin(64, 1.0 / 60, 4, 0.5, 8, 6e-5);
+    static const ConvergentCase cases[] = {
+        {17, 60, 4, 0, 600, 1e-5},
+        {32, 60, 4, 0, 600, 6e-4},
+        {32, 60, 4, 0.5, 30, 1e-4},
+        {64, 60, 4, 0.5, 8, 6e-5},
+    };
+    convergent_equals_twin("chain", reference_chain_step, cases, sizeof cases / sizeof *cases);
 }
 
 static void it_equals_the_reference_traces(void **state)
@@ -85,44 +82,20 @@ static void its_error_falls_with_the_step(void **state)
     (void)state;
     assert_true(motion_mean_error("chain", "", 1, NULL) < 0.02);
     assert_true(motion_mean_error("chain", "", 4, NULL) < 0.005);
-    double coarse = motion_error("a_horizontal_n16_c4", "chain", "", 2, NULL),
-           fine = motion_error("a_horizontal_n16_c4", "chain", "", 8, NULL);
-    printf("a_horizontal_n16_c4: %.2g at 120 Hz, %.2g at 480 Hz\n", coarse, fine);
-    assert_true(coarse / fine > 12); // second order: 16
+    convergent_falls_with_the_step("chain", 0.03, 12); // second order: 16
 }
 
 static void hanging_hair_stays_at_rest(void **state)
 {
     (void)state;
-    Vec start[16], q[16];
-    HairFixture fixture;
-    for (int j = 0; j < 16; ++j) start[j][0] = 0.1, start[j][1] = 0.3 - 0.016 * j, start[j][2] = 0;
-    fixture_create(&fixture, (const Vec *)start, 1, 16, "chain", "", 0, 0);
-    for (int i = 0; i < 600; ++i) fixture_step(&fixture);
-    twin_read_strand(&fixture, 0, q);
-    assert_true(twin_rms((const Vec *)q, (const Vec *)start, 16, 0.24) < 1e-5);
-    fixture_destroy(&fixture);
+    convergent_stays_at_rest("chain");
 }
 
 // A jump of the head by 1000 lengths breaks the solves: tractrices take over for that step.
 static void violent_steps_are_rescued(void **state)
 {
     (void)state;
-    for (int n = 8; n <= 64; n *= 8) {
-        Vec start[64], q[64];
-        TwinStrand rest;
-        HairFixture fixture;
-        twin_make_curl(start, n, 0, 3);
-        twin_start(&rest, n, (const Vec *)start);
-        fixture_create(&fixture, (const Vec *)start, 1, n, "chain", "", 0.5f, 0);
-        for (int i = 0; i < 200; ++i) {
-            fixture.step.head.translation[1] = i == 100 ? 200 : 0;
-            fixture_step(&fixture);
-        }
-        twin_read_strand(&fixture, 0, q);
-        assert_true(twin_length_error(&rest, (const Vec *)q) < 1e-5);
-        fixture_destroy(&fixture);
-    }
+    convergent_survives_violence("chain");
 }
 
 // --- Bending and twist.
