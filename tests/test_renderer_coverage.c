@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: MIT
+// What strands cover of the picture: areas, layers, few for many.
+#include "random.h"
+#include "stage.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+// Rounding to 8 bits errs by up to 1/510 in each of the (width + 1.5) (length + 1) pixels that a
+// strand touches, all alike where it runs along the rows. At its ends the pixels' middles decide,
+// which can make it a pixel longer or shorter. At most angles both average out.
+static void coverage_of_a_strand_is_its_area(void **state)
+{
+    (void)state;
+    const float widths[] = {0.05f, 0.2f, 0.5f, 1, 2.3f, 5}, length = 180;
+    use(&TRANSPARENT);
+    for (size_t w = 0; w < sizeof widths / sizeof *widths; ++w) {
+        double mean = 0, area = widths[w] * length,
+               bound = (widths[w] + 1.5) * (length + 1) / 510 + widths[w];
+        int angles = 0;
+        for (float deg = 0; deg < 180; deg += 7.5f, ++angles) {
+            float x = 0.5f * length * cosf(glm_rad(deg)), y = 0.5f * length * sinf(glm_rad(deg));
+            float shift = 0.1f * (float)angles;
+            add_line((float[3]){shift - x, -y, 0}, (float[3]){shift + x, y, 0}, widths[w] / 2, 1);
+            studio_draw(&studio);
+            double off = alpha_sum() - area;
+            if (fabs(off) > bound)
+                fail_msg("width %g px at %g degrees: area off by %g, bound %g", widths[w], deg, off,
+                         bound);
+            mean += off;
+            studio_clear(&studio);
+        }
+        if (fabs(mean / angles) > 0.3 * bound)
+            fail_msg("width %g px: area off by %g on average", widths[w], mean / angles);
+    }
+}
+
+static double line_area(double deg, float distance, float radius, float length)
+{
+    float angle = glm_rad((float)deg), z = 1000 - distance;
+    float x = 0.5f * length * cosf(angle), y = 0.5f * length * sinf(angle);
+    add_line((float[3]){-x, -y, z}, (float[3]){x, y, z}, radius, 1);
+    studio_draw(&studio);
+    double sum = alpha_sum();
+    studio_clear(&studio);
+    return sum;
+}
+
+// What flickers in a slow turntable is coverage that depends on where the pixels lie. A strand of
+// 90 px^2 in some 450 pixels, each rounded by 1/510 at most and by half of that on average, if to
+// either side: 0.3 px^2 is more than ten standard deviations. Its ends add what their ramps of a
+// pixel's length differ from its diagonal's: 2 ends x 0.5 px wide x 0.1.
+static void coverage_is_steady_in_a_slow_turn(void **state)
+{
+    (void)state;
+    use(&TRANSPARENT);
+    double low = 1e9, high = 0;
+    for (int i = 0; i <= 20; ++i) {
+        double area = line_area(29.5 + 0.05 * i, 1000, 0.25f, 180);
+        low = fmin(low, area);
+        high = fmax(high, area);
+    }
+    assert_true(fabs(low - 90) < 0.4 && fabs(high - 90) < 0.4);
+}
+
+// The same strand from farther and farther off, down to 0.12 px: its area falls by the square of
+// the distance. Every pixel is rounded to 1/255; to 0.12 of it that is 2 % at most, which evens
+// out over the many pixels.
+static void coverage_does_not_change_below_a_pixel(void **state)
+{
+    (void)state;
+    use(&TRANSPARENT);
+    for (double zoom = 1; zoom < 10; zoom *= 1.25) {
+        double area = line_area(33, (float)(1000 * zoom), 0.5f, 220) * zoom * zoom;
+        if (fabs(area - 220) > 0.015 * 220)
+            fail_msg("%g times as far off: %g of 220 px^2", zoom, area);
+    }
+}
+
+static void joints_are_covered_once(void **state)
+{
+    (void)state;
+    enum { VERTICES = 17 };
+    float position[VERTICES][3] = {{-90, 0, 0}}, angle = 0;
+    for (int j = 1; j < VERTICES; ++j) { // bends of up to 60 degrees, to and fro
+        angle += glm_rad(15) * (float)(j % 5) * (j % 2 ? 1 : -1);
+        position[j][0] = position[j - 1][0] + 12 * cosf(angle);
+        position[j][1] = position[j - 1][1] + 12 * sinf(angle);
+    }
+    use(&TRANSPARENT);
+    Strands strands = studio_strands(1, VERTICES, (const float(*)[3])position);
+    studio_add(&studio, &strands, 2.5f, 0.5f);
+    strands_destroy(&strands);
+    studio_draw(&studio);
+    for (int y = 0; y < SIDE; ++y)
+        for (int x = 0; x < SIDE; ++x) assert_true(studio_pixel(&studio, x, y)[3] <= 128);
+    for (int j = 1; j < VERTICES; ++j)
+        for (int i = 0; i <= 24; ++i) { // along the middle, at steps of half a pixel
+            float t = (float)i / 24;
+            if ((j == 1 && i < 4) || (j == VERTICES - 1 && i > 20)) continue; // ends
+            float x = position[j - 1][0] * (1 - t) + position[j][0] * t + SIDE / 2;
+            float y = SIDE / 2 - (position[j - 1][1] * (1 - t) + position[j][1] * t);
+            assert_true(studio_pixel(&studio, (int)x, (int)y)[3] >= 127);
+        }
+}
+
+static void layers_of_equal_opacity_multiply(void **state)
+{
+    (void)state;
+    enum { MOST = 8 };
+    use(&TRANSPARENT);
+    for (int n = 1; n <= MOST; ++n) {
+        float position[MOST][2][3];
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < 2; ++j)
+                memcpy(position[i][j], (float[3]){j ? 60 : -60, 0, (float)i}, sizeof(float[3]));
+        Strands strands = studio_strands((uint32_t)n, 2, (const float(*)[3])position);
+        studio_add(&studio, &strands, 6, 0.3f);
+        strands_destroy(&strands);
+        studio_draw(&studio);
+        double expected = 255 * (1 - pow(0.7, n));
+        assert_true(fabs(studio_pixel(&studio, SIDE / 2, SIDE / 2)[3] - expected) <= 0.6);
+        studio_clear(&studio);
+    }
+}
+
+// 30 layers: 8 in order, the rest in sums whose steps are far below one of 255.
+static void many_layers_still_multiply(void **state)
+{
+    (void)state;
+    enum { COUNT = 30 };
+    float position[COUNT][2][3];
+    for (int i = 0; i < COUNT; ++i)
+        for (int j = 0; j < 2; ++j)
+            memcpy(position[i][j], (float[3]){j ? 60 : -60, 0, (float)i}, sizeof(float[3]));
+    use(&TRANSPARENT);
+    Strands strands = studio_strands(COUNT, 2, (const float(*)[3])position);
+    studio_add(&studio, &strands, 6, 0.05f);
+    strands_destroy(&strands);
+    studio_draw(&studio);
+    assert_true(fabs(studio_pixel(&studio, SIDE / 2, SIDE / 2)[3] - 255 * (1 - pow(0.95, COUNT))) <=
+                1.0);
+}
+
+// Seen from far off hundreds of particles share a pixel.
+static void hair_smaller_than_a_pixel_leaves_no_holes(void **state)
+{
+    (void)state;
+    RendererOptions options = BLACK;
+    options.width = options.height = 2;
+    for (int k = 0; k < 3; ++k) options.background[k] = 1;
+    use(&options);
+    float(*position)[3] = malloc(2000 * 32 * sizeof *position);
+    assert_non_null(position);
+    Random random = random_create(3, 0);
+    for (int i = 0; i < 2000 * 32; ++i) {
+        double d[3];
+        random_direction(&random, d);
+        for (int k = 0; k < 3; ++k)
+            position[i][k] = (float)(1.5 * d[k]) + (i % 32 ? position[i - 1][k] / 2 : 0);
+    }
+    Strands strands = studio_strands(2000, 32, (const float(*)[3])position);
+    uint32_t item = studio_add(&studio, &strands, 0.2f, 1);
+    studio.material[item].opacity = 0; // so that only what is wrong is seen
+    studio_draw(&studio);
+    assert_int_equal(studio.renderer.counts.fragments, 0);
+    for (int i = 0; i < 2 * 2 * 3; ++i) assert_int_equal(studio.image.pixels[i], 255);
+    strands_destroy(&strands);
+    free(position);
+}
+
+// Options by which the studio's hair, 1000 from the eye, is drawn by this share of its strands.
+static void use_share(const RendererOptions *options, float share)
+{
+    RendererOptions mine = *options;
+    mine.lod = (LodOptions){.end = 2000, .least = 2 * share - 1};
+    use(&mine);
+}
+
+// Strands much thinner than a pixel seldom overlap: what they cover adds up. The sum over n random
+// strands of different lengths in the picture varies by about 1/sqrt(n) of itself.
+static void fewer_strands_cover_as_much(void **state)
+{
+    (void)state;
+    enum { COUNT = 4000 };
+    double all = 0;
+    add_tangle(COUNT, 0.05f, 0.2f, NULL);
+    for (float share = 1; share > 0.51f; share -= 0.08f) {
+        use_share(&TRANSPARENT, share);
+        studio_draw(&studio);
+        double sum = alpha_sum();
+        if (share == 1) all = sum;
+        if (fabs(sum / all - 1) > 0.02) fail_msg("share %g: %g, of all %g", share, sum, all);
+        double left_out = COUNT * (1 - (double)share);
+        assert_true(fabs((double)studio.renderer.counts.thinned - left_out) <=
+                    0.01 * COUNT); // by where their middle is
+    }
+}
+
+// From share to share a strand's width changes by a tenth of it, and so does no pixel by more than
+// a tenth of an opaque one, and some for the others' widths. Strands that came or went at once
+// would change pixels by six tenths.
+static void strands_neither_come_nor_go_at_once(void **state)
+{
+    (void)state;
+    enum { COUNT = 50 };
+    add_tangle(COUNT, 0.4f, 0.6f, NULL);
+    uint8_t *before = NULL;
+    size_t size;
+    for (int i = 0; i <= 40; ++i) {
+        use_share(&TRANSPARENT, 1 - 0.1f * (float)i / COUNT);
+        uint8_t *now = draw_copy(&size);
+        for (size_t k = 3; before && k < size; k += 4)
+            assert_true(abs(now[k] - before[k]) <= 0.15 * 255);
+        free(before);
+        before = now;
+    }
+    free(before);
+}
+
+// Narrower fibres are so many fewer that they are as wide as was asked for.
+static void fibres_are_as_wide_as_asked_for(void **state)
+{
+    (void)state;
+    RendererOptions options = TRANSPARENT;
+    options.lod = (LodOptions){.width = 0.5f, .least = 0.01f};
+    use(&options);
+    add_tangle(1000, 0.1f, 0.2f, NULL); // 0.2 px wide
+    studio_draw(&studio);
+    assert_in_range(studio.renderer.counts.thinned, 590,
+                    610); // their middle is not quite 1000 away
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        CLAIM(coverage_of_a_strand_is_its_area),          CLAIM(coverage_is_steady_in_a_slow_turn),
+        CLAIM(coverage_does_not_change_below_a_pixel),    CLAIM(joints_are_covered_once),
+        CLAIM(layers_of_equal_opacity_multiply),          CLAIM(many_layers_still_multiply),
+        CLAIM(hair_smaller_than_a_pixel_leaves_no_holes), CLAIM(fewer_strands_cover_as_much),
+        CLAIM(strands_neither_come_nor_go_at_once),       CLAIM(fibres_are_as_wide_as_asked_for),
+    };
+    return stage_run(tests);
+}
