@@ -15,7 +15,6 @@
 
 #include "version.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 typedef Result (*Command)(const BenchOptions *arguments, const Gpu *gpu, Error *error);
