@@ -146,7 +146,7 @@ static void compare(const ImageBench *bench, const Image *image, ImageResult *re
     for (int k = 0; k < 3; ++k)
         background[k] = (uint8_t)lrintf(255 * bench->scene.run.background[k]);
     for (size_t i = 0; i < count; ++i) {
-        const uint8_t *p = &image->pixels[3 * i], *q = &bench->reference.pixels[3 * i];
+        const uint8_t *p = image->pixels + 3 * i, *q = bench->reference.pixels + 3 * i;
         if (memcmp(p, background, 3) == 0 && memcmp(q, background, 3) == 0) continue;
         ++covered;
         for (int k = 0; k < 3; ++k) sum += (p[k] - q[k]) * (p[k] - q[k]) / 3.0;

@@ -173,7 +173,7 @@ static Result read_quality(Scene *scene, const Document *document, const char *a
 {
     const json_t *value = json_object_get(document->json, "quality");
     Quality quality = QUALITY_NORMAL;
-    Error unused; // what is wrong with the file's value is told when it is read
+    Error unused = {{0}}; // what is wrong with the file's value is told when it is read
     Result result = RESULT_OK;
     if (asked)
         result = quality_parse(&quality, asked, error);
