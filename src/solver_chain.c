@@ -28,8 +28,9 @@ static const ParticleRecipe RECIPE = {
 
 const SolverType SOLVER_CHAIN = {
     .name = "chain",
-    .summary = "rigid segments by direct solves with implicit tension: the accurate one, second "
-               "order in the step",
+    .summary =
+        "rigid segments by direct solves with implicit tension, second order in the step; curls "
+        "keep their form by --chain-bend",
     .lengths = "exact",
     .style = "position springs, bending: --style, --style-stiffness, --chain-bend",
     .most_stability = 3.2f,
