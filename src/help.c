@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "help.h"
 #include "params.h"
+#include "prose.h"
 
-#include <ctype.h>
 #include <string.h>
 
-enum { WIDTH = 96, COLUMN = 30, TEXT_SIZE = 600 };
+enum { TEXT_SIZE = 600 };
 
 static const char SUMMARY[] = "simulate hair and render it, without a window";
 
@@ -165,39 +165,6 @@ static void write_brackets(const ParamInfo *info, char *text, size_t size)
              shown ? info->default_text : "");
 }
 
-// Writes `text` from `column` on, wrapped at WIDTH; every line but the first is indented to
-// `indent`.
-static void write_wrapped(FILE *stream, const char *text, size_t column, size_t indent)
-{
-    bool first = true;
-    while (*text) {
-        size_t length = *text == '[' ? strcspn(text, "]") + 1 : strcspn(text, " ");
-        if (!first && column + 1 + length > WIDTH) {
-            fprintf(stream, "\n%*s", (int)indent, "");
-            column = indent;
-            first = true;
-        }
-        fprintf(stream, "%s%.*s", first ? "" : " ", (int)length, text);
-        column += length + (first ? 0 : 1);
-        first = false;
-        text += length;
-        text += strspn(text, " ");
-    }
-    fputc('\n', stream);
-}
-
-// A flag in the left column and its text in the right one.
-static void write_entry(FILE *stream, const char *flag, const char *text)
-{
-    int used = fprintf(stream, "  %s", flag);
-    if (used > COLUMN - 2) {
-        fputc('\n', stream);
-        used = 0;
-    }
-    fprintf(stream, "%*s", COLUMN - used, "");
-    write_wrapped(stream, text, COLUMN, COLUMN);
-}
-
 static void write_param_entry(FILE *stream, const ParamInfo *info)
 {
     char flag[160], brackets[160], text[TEXT_SIZE];
@@ -205,14 +172,14 @@ static void write_param_entry(FILE *stream, const ParamInfo *info)
     write_brackets(info, brackets, sizeof brackets);
     snprintf(text, sizeof text, "%s%s%s", info->scope == SCOPE_SECTION ? "* " : "", info->help,
              brackets);
-    write_entry(stream, flag, text);
+    prose_write_entry(stream, flag, text);
 }
 
 void help_write_text(FILE *stream)
 {
     fprintf(stream, "Usage: tractrix-render [FLAGS] HAIR_FILE...\n"
                     "       tractrix-render [FLAGS] SCENE.json\n\n");
-    write_wrapped(stream, DESCRIPTION, 0, 0);
+    prose_write_wrapped(stream, DESCRIPTION, 0, 0);
     for (int group = 0; group < GROUP_COUNT; group++) {
         fprintf(stream, "\n%s:\n", GROUP_TITLES[group]);
         for (size_t i = 0; i < PARAM_COUNT; i++) {
@@ -221,44 +188,14 @@ void help_write_text(FILE *stream)
     }
     fprintf(stream, "\nOther:\n");
     for (int i = 0; i < REQUEST_COUNT; i++)
-        write_entry(stream, REQUESTS[i].flags, REQUESTS[i].help);
+        prose_write_entry(stream, REQUESTS[i].flags, REQUESTS[i].help);
     fprintf(stream, "\n");
-    write_wrapped(stream, FLAG_RULES, 0, 0);
+    prose_write_wrapped(stream, FLAG_RULES, 0, 0);
     fprintf(stream, "\nExit status:\n");
     for (int i = 0; i < STATUS_COUNT; i++)
         fprintf(stream, "  %3s  %s\n", STATUSES[i].status, STATUSES[i].meaning);
     fprintf(stream, "\nExamples:\n");
     for (int i = 0; i < EXAMPLE_COUNT; i++) fprintf(stream, "  %s\n", EXAMPLES[i]);
-}
-
-// Text with what roff would take for its own escaped: backslashes, hyphens of flags, and a control
-// character at a line's start.
-static void write_roff(FILE *stream, const char *text)
-{
-    if (*text == '.' || *text == '\'') fputs("\\&", stream);
-    for (; *text; text++) {
-        if (*text == '\\')
-            fputs("\\e", stream);
-        else if (*text == '-')
-            fputs("\\-", stream);
-        else
-            fputc(*text, stream);
-    }
-    fputc('\n', stream);
-}
-
-static void write_roff_entry(FILE *stream, const char *tag, const char *text)
-{
-    fprintf(stream, ".TP\n.B ");
-    write_roff(stream, tag);
-    write_roff(stream, text);
-}
-
-static void write_roff_title(FILE *stream, const char *macro, const char *title)
-{
-    fprintf(stream, ".%s \"", macro);
-    for (; *title; title++) fputc(toupper((unsigned char)*title), stream);
-    fprintf(stream, "\"\n");
 }
 
 static void write_roff_param(FILE *stream, const ParamInfo *info)
@@ -268,7 +205,7 @@ static void write_roff_param(FILE *stream, const ParamInfo *info)
     write_brackets(info, brackets, sizeof brackets);
     snprintf(text, sizeof text, "%s%s%s", info->scope == SCOPE_SECTION ? "* " : "", info->help,
              brackets);
-    write_roff_entry(stream, flag, text);
+    prose_write_roff_entry(stream, flag, text);
 }
 
 void help_write_man(FILE *stream, const char *version)
@@ -277,10 +214,10 @@ void help_write_man(FILE *stream, const char *version)
     fprintf(stream, "tractrix\\-render \\- %s\n.SH SYNOPSIS\n", SUMMARY);
     fprintf(stream, ".B tractrix\\-render\n[\\fIflags\\fR] \\fIhair_file\\fR...\n.br\n"
                     ".B tractrix\\-render\n[\\fIflags\\fR] \\fIscene.json\\fR\n");
-    write_roff_title(stream, "SH", "Description");
-    write_roff(stream, DESCRIPTION);
-    write_roff_title(stream, "SH", "Options");
-    write_roff(stream, FLAG_RULES);
+    prose_write_roff_heading(stream, "SH", "Description");
+    prose_write_roff(stream, DESCRIPTION);
+    prose_write_roff_heading(stream, "SH", "Options");
+    prose_write_roff(stream, FLAG_RULES);
     for (int group = 0; group < GROUP_COUNT; group++) {
         fprintf(stream, ".SS %s\n", GROUP_TITLES[group]);
         for (size_t i = 0; i < PARAM_COUNT; i++) {
@@ -289,20 +226,20 @@ void help_write_man(FILE *stream, const char *version)
     }
     fprintf(stream, ".SS Other\n");
     for (int i = 0; i < REQUEST_COUNT; i++)
-        write_roff_entry(stream, REQUESTS[i].flags, REQUESTS[i].help);
-    write_roff_title(stream, "SH", "Scene files");
-    write_roff(stream, SCENE_RULES);
+        prose_write_roff_entry(stream, REQUESTS[i].flags, REQUESTS[i].help);
+    prose_write_roff_heading(stream, "SH", "Scene files");
+    prose_write_roff(stream, SCENE_RULES);
     for (int i = 0; i < SCENE_KEY_COUNT; i++) {
-        write_roff_entry(stream, SCENE_KEYS[i].key, SCENE_KEYS[i].help);
+        prose_write_roff_entry(stream, SCENE_KEYS[i].key, SCENE_KEYS[i].help);
         fprintf(stream, ".br\n");
-        write_roff(stream, SCENE_KEYS[i].example);
+        prose_write_roff(stream, SCENE_KEYS[i].example);
     }
-    write_roff_title(stream, "SH", "Exit status");
+    prose_write_roff_heading(stream, "SH", "Exit status");
     for (int i = 0; i < STATUS_COUNT; i++)
-        write_roff_entry(stream, STATUSES[i].status, STATUSES[i].meaning);
-    write_roff_title(stream, "SH", "Examples");
+        prose_write_roff_entry(stream, STATUSES[i].status, STATUSES[i].meaning);
+    prose_write_roff_heading(stream, "SH", "Examples");
     fprintf(stream, ".nf\n");
-    for (int i = 0; i < EXAMPLE_COUNT; i++) write_roff(stream, EXAMPLES[i]);
+    for (int i = 0; i < EXAMPLE_COUNT; i++) prose_write_roff(stream, EXAMPLES[i]);
     fprintf(stream, ".fi\n");
 }
 

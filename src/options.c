@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "options.h"
 
+#include "prose.h"
 #include "suggest.h"
 
 #include "version.h"
@@ -10,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDTH = 96, COLUMN = 30, MOST_OPTIONS = 64, FIRST_CODE = 256 };
+enum { MOST_OPTIONS = 64, FIRST_CODE = 256 };
 enum { CODE_HELP = FIRST_CODE + MOST_OPTIONS, CODE_VERSION };
 
 static const Option COMMON[] = {
@@ -35,40 +36,19 @@ static void write_flag(const Option *option, char *text, size_t size)
 
 // --- The text.
 
-static void write_wrapped(const char *text, int column, int indent)
-{
-    bool first = true;
-    while (*text) {
-        int length = (int)strcspn(text, " ");
-        if (!first && column + 1 + length > WIDTH) {
-            printf("\n%*s", indent, "");
-            column = indent;
-            first = true;
-        }
-        column += printf("%s%.*s", first ? "" : " ", length, text);
-        first = false;
-        text += length;
-        text += strspn(text, " ");
-    }
-    printf("\n");
-}
-
 static void write_text(const OptionsProgram *program)
 {
     printf("Usage: %s %s\n\n", program->name, program->synopsis);
-    write_wrapped(program->description, 0, 0);
+    prose_write_wrapped(stdout, program->description, 0, 0);
     printf("\nOptions:\n");
     for (size_t i = 0; i < program->option_count + COMMON_COUNT; ++i) {
         char flag[96];
         write_flag(option_at(program, i), flag, sizeof flag);
-        int used = printf("  %s", flag);
-        if (used > COLUMN - 2) printf("\n"), used = 0;
-        printf("%*s", COLUMN - used, "");
-        write_wrapped(option_at(program, i)->help, COLUMN, COLUMN);
+        prose_write_entry(stdout, flag, option_at(program, i)->help);
     }
     for (const char *const *note = program->notes; *note; ++note) {
         printf("\n");
-        write_wrapped(*note, 0, 0);
+        prose_write_wrapped(stdout, *note, 0, 0);
     }
     printf("\nExit status:\n");
     for (const char *const(*s)[2] = program->status; (*s)[0]; ++s)
@@ -79,53 +59,33 @@ static void write_text(const OptionsProgram *program)
 
 // --- The manual page.
 
-// With what roff would take for its own escaped.
-static void write_roff(const char *text)
-{
-    if (*text == '.' || *text == '\'') printf("\\&");
-    for (; *text; ++text) {
-        if (*text == '\\')
-            printf("\\e");
-        else
-            printf(*text == '-' ? "\\-" : "%c", *text);
-    }
-    printf("\n");
-}
-
-static void write_roff_entry(const char *tag, const char *text)
-{
-    printf(".TP\n.B ");
-    write_roff(tag);
-    write_roff(text);
-}
-
 static void write_man(const OptionsProgram *program)
 {
     printf(".TH ");
     for (const char *at = program->name; *at; ++at) putchar(toupper((unsigned char)*at));
     printf(" 1 \"\" \"Tractrix %s\"\n.SH NAME\n", TRACTRIX_VERSION);
     printf("%s \\- ", program->name);
-    write_roff(program->summary);
+    prose_write_roff(stdout, program->summary);
     printf(".SH SYNOPSIS\n.B %s\n", program->name);
-    write_roff(program->synopsis);
+    prose_write_roff(stdout, program->synopsis);
     printf(".SH DESCRIPTION\n");
-    write_roff(program->description);
+    prose_write_roff(stdout, program->description);
     printf(".SH OPTIONS\n");
     for (size_t i = 0; i < program->option_count + COMMON_COUNT; ++i) {
         char flag[96];
         write_flag(option_at(program, i), flag, sizeof flag);
-        write_roff_entry(flag, option_at(program, i)->help);
+        prose_write_roff_entry(stdout, flag, option_at(program, i)->help);
     }
     printf(".SH NOTES\n");
     for (const char *const *note = program->notes; *note; ++note) {
         printf(".PP\n");
-        write_roff(*note);
+        prose_write_roff(stdout, *note);
     }
     printf(".SH \"EXIT STATUS\"\n");
     for (const char *const(*s)[2] = program->status; (*s)[0]; ++s)
-        write_roff_entry((*s)[0], (*s)[1]);
+        prose_write_roff_entry(stdout, (*s)[0], (*s)[1]);
     printf(".SH EXAMPLES\n.nf\n");
-    for (const char *const *e = program->examples; *e; ++e) write_roff(*e);
+    for (const char *const *e = program->examples; *e; ++e) prose_write_roff(stdout, *e);
     printf(".fi\n");
 }
 
