@@ -1,334 +1,200 @@
 // SPDX-License-Identifier: MIT
 // tractrix-gen: makes hair and the mesh it grows on.
 #include "bust.h"
+#include "options.h"
 #include "strands_make.h"
 #include "strands_write.h"
-#include "suggest.h"
-#include "version.h"
 
-#include <errno.h>
-#include <getopt.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#define ARRAY_SIZE(array) (sizeof(array) / sizeof *(array))
-
-// --- One table: name, letter, what the value is, where it goes, what it does.
-
-typedef enum OptionKind {
-    OPTION_HELP,
-    OPTION_VERSION,
-    OPTION_QUIET,
-    OPTION_WORD,  // one of `words`; an index
-    OPTION_COUNT, // uint32_t
-    OPTION_NUMBER,
-    OPTION_TEXT
-} OptionKind;
-
+// Negative or NaN: not given.
 typedef struct Command {
-    StrandsRecipe recipe;
-    int format;      // index of format_words
-    const char *set; // NULL: none
+    int kind, shape, count, vertices, set, format, seed;
+    double length, length_variation, curl_radius, curl_turns, curl_disorder;
     const char *output, *mesh, *bust;
-    const char *shaping; // an option given that a test set has its own value for; NULL: none
     bool quiet;
 } Command;
 
-static const char *const kind_words[] = {"random", "straight", "curls", "fur", NULL};
-static const char *const shape_words[] = {"sphere", "head", NULL};
-static const char *const format_words[] = {"text", "tfx3", "tfx4", "hair", NULL};
-static const char *const set_words[] = {"1k16", "1k32", "10k16", "10k32", NULL};
-static const StrandsKind format_kinds[] = {STRANDS_TFX2_TEXT, STRANDS_TFX3, STRANDS_TFX4,
-                                           STRANDS_HAIR};
-
-typedef struct Option {
-    const char *name;
-    char letter;
-    OptionKind kind;
-    size_t place; // in Command
-    const char *const *words;
-    const char *value, *help;
-} Option;
+static const char KINDS[] = "random|straight|curls|fur";
+static const char *const KIND_NAMES[] = {"random", "straight", "curls", "fur"};
+static const char *const SET_NAMES[] = {"1k16", "1k32", "10k16", "10k32"};
+static const StrandsKind FORMATS[] = {STRANDS_TFX2_TEXT, STRANDS_TFX3, STRANDS_TFX4, STRANDS_HAIR};
 
 #define AT(member) offsetof(Command, member)
-static const Option options[] = {
-    {"kind", 0, OPTION_WORD, AT(recipe.style), kind_words, "WORD",
-     "random (segments in random directions), straight, curls or fur"},
-    {"shape", 0, OPTION_WORD, AT(recipe.shape), shape_words, "WORD",
-     "what it grows on: sphere (radius 0.1 m) or head"},
-    {"count", 'n', OPTION_COUNT, AT(recipe.count), NULL, "N", "strands, 1 to 10000000"},
-    {"vertices", 0, OPTION_COUNT, AT(recipe.vertices), NULL, "N", "per strand, 2 to 65535"},
-    {"length", 0, OPTION_NUMBER, AT(recipe.length), NULL, "M",
-     "of the longest strand, metres, 0.001 to 100"},
-    {"length-variation", 0, OPTION_NUMBER, AT(recipe.length_variation), NULL, "SHARE",
-     "strands are up to this share shorter, 0 to 1"},
-    {"curl-radius", 0, OPTION_NUMBER, AT(recipe.curl_radius), NULL, "M",
-     "of the curls at the tip, metres, 0 to 1"},
-    {"curl-turns", 0, OPTION_NUMBER, AT(recipe.curl_turns), NULL, "N",
-     "of the curls over a strand, 0 to 1000"},
-    {"curl-disorder", 0, OPTION_NUMBER, AT(recipe.curl_disorder), NULL, "SHARE",
-     "0: neighbours wind in step, 1: each for itself"},
-    {"seed", 0, OPTION_COUNT, AT(recipe.seed), NULL, "N", "of all that is random"},
-    {"set", 0, OPTION_TEXT, AT(set), set_words, "NAME",
-     "a test set of the thesis instead: 1k16, 1k32, 10k16 or 10k32 (thousands of strands x "
-     "vertices)"},
-    {"format", 0, OPTION_WORD, AT(format), format_words, "WORD",
-     "text (TressFX 2), tfx3, tfx4 (TressFX binary) or hair (HAIR)"},
-    {"output", 'o', OPTION_TEXT, AT(output), NULL, "FILE", "the hair"},
-    {"mesh", 0, OPTION_TEXT, AT(mesh), NULL, "FILE", "also write the shape, as Wavefront OBJ"},
-    {"bust", 0, OPTION_TEXT, AT(bust), NULL, "FILE",
+
+static const Option OPTIONS[] = {
+    {"kind", 0, OPTION_WORD, AT(kind), KINDS, 0, 0,
+     "segments in random directions, or hair of some sort [default curls]"},
+    {"shape", 0, OPTION_WORD, AT(shape), "sphere|head", 0, 0,
+     "what it grows on: a sphere (radius 0.1 m) or a head"},
+    {"count", 'n', OPTION_WHOLE, AT(count), "N", 1, 1e7, "strands"},
+    {"vertices", 0, OPTION_WHOLE, AT(vertices), "N", 2, 65535, "per strand"},
+    {"length", 0, OPTION_REAL, AT(length), "M", 1e-3, 100, "of the longest strand, metres"},
+    {"length-variation", 0, OPTION_REAL, AT(length_variation), "SHARE", 0, 1,
+     "strands are up to this share shorter"},
+    {"curl-radius", 0, OPTION_REAL, AT(curl_radius), "M", 0, 1,
+     "of the curls at the tip, metres; --kind curls"},
+    {"curl-turns", 0, OPTION_REAL, AT(curl_turns), "N", 0, 1000,
+     "of the curls over a strand; --kind curls"},
+    {"curl-disorder", 0, OPTION_REAL, AT(curl_disorder), "SHARE", 0, 1,
+     "0: neighbours wind in step, 1: each for itself; --kind curls"},
+    {"seed", 0, OPTION_WHOLE, AT(seed), "N", 0, 2147483647, "of all that is random [default 1]"},
+    {"set", 0, OPTION_WORD, AT(set), "1k16|1k32|10k16|10k32", 0, 0,
+     "a test set of the thesis instead: thousands of strands x vertices"},
+    {"format", 0, OPTION_WORD, AT(format), "text|tfx3|tfx4|hair", 0, 0,
+     "TressFX 2 text, TressFX binary or HAIR [default tfx4]"},
+    {"output", 'o', OPTION_STRING, AT(output), "FILE", 0, 0, "the hair"},
+    {"mesh", 0, OPTION_STRING, AT(mesh), "FILE", 0, 0, "also write the shape, as Wavefront OBJ"},
+    {"bust", 0, OPTION_STRING, AT(bust), "FILE", 0, 0,
      "also write the head with shoulders below it, as Wavefront OBJ"},
-    {"quiet", 'q', OPTION_QUIET, 0, NULL, NULL, "print nothing"},
-    {"help", 'h', OPTION_HELP, 0, NULL, NULL, "print this"},
-    {"version", 0, OPTION_VERSION, 0, NULL, NULL, "print the version"},
+    {"quiet", 'q', OPTION_SWITCH, AT(quiet), NULL, 0, 0, "print nothing"},
 };
 
-// --- Help.
+static const char *const STATUS[][2] = {
+    {"0", "done"}, {"1", "failed: disk full, no memory, ..."}, {"2", "wrong usage"}, {NULL, NULL}};
 
-static void print_default(const Option *option, StrandsStyle style, char *text, size_t size)
+static const char *const EXAMPLES[] = {
+    "tractrix-gen --kind curls --shape head --count 2000 -o curls.tfx --mesh head.obj",
+    "tractrix-gen --set 10k16 -o 10k16.tfx", NULL};
+
+static const OptionsProgram PROGRAM = {
+    .name = "tractrix-gen",
+    .summary = "make hair, and what it grows on",
+    .synopsis = "[OPTION]... -o FILE",
+    .description = "Makes hair, and with --mesh the shape it grows on. Metres, y up, the face "
+                   "towards +z.",
+    .options = OPTIONS,
+    .option_count = sizeof OPTIONS / sizeof *OPTIONS,
+    .status = STATUS,
+    .examples = EXAMPLES,
+};
+
+// --- What is asked.
+
+// What each kind has where nothing is said: a paragraph of the help.
+static void write_defaults(char *text, size_t size)
 {
-    Command command = {.recipe = strands_recipe_default(style), .format = 2};
-    const char *at = (const char *)&command + option->place;
-    int index;
-    uint32_t count;
-    float number;
-    text[0] = 0;
-    if (option->kind == OPTION_WORD) {
-        memcpy(&index, at, sizeof index);
-        snprintf(text, size, "%s", option->words[index]);
-    } else if (option->kind == OPTION_COUNT) {
-        memcpy(&count, at, sizeof count);
-        snprintf(text, size, "%u", count);
-    } else if (option->kind == OPTION_NUMBER) {
-        memcpy(&number, at, sizeof number);
-        snprintf(text, size, "%g", (double)number);
+    size_t at = (size_t)snprintf(text, size, "Defaults.");
+    for (int style = 0; style < STRANDS_STYLES && at < size; ++style) {
+        StrandsRecipe r = strands_recipe_default((StrandsStyle)style);
+        at += (size_t)snprintf(
+            text + at, size - at,
+            " %s: --shape %s --count %u --vertices %u --length %g --length-variation %g",
+            KIND_NAMES[style], r.shape == SCALP_SPHERE ? "sphere" : "head", r.count, r.vertices,
+            (double)r.length, (double)r.length_variation);
+        if (style == STRANDS_STYLE_CURLS && at < size)
+            at += (size_t)snprintf(
+                text + at, size - at, " --curl-radius %g --curl-turns %g --curl-disorder %g",
+                (double)r.curl_radius, (double)r.curl_turns, (double)r.curl_disorder);
+        if (at < size) at += (size_t)snprintf(text + at, size - at, ".");
     }
 }
 
-// One default where all kinds of hair have the same, else each kind's.
-static void print_defaults(const Option *option)
+// The first of `names` that was given a value; NULL: none.
+static const char *find_given(const Command *command, const char *const *names)
 {
-    char text[STRANDS_STYLES][32];
-    bool same = true;
-    for (int style = 0; style < STRANDS_STYLES; style++) {
-        print_default(option, (StrandsStyle)style, text[style], sizeof text[style]);
-        same = same && strcmp(text[style], text[0]) == 0;
+    for (; *names; ++names) {
+        size_t i = 0;
+        while (strcmp(OPTIONS[i].name, *names) != 0) ++i;
+        const char *at = (const char *)command + OPTIONS[i].place;
+        double number;
+        int whole;
+        memcpy(&whole, at, sizeof whole);
+        if (OPTIONS[i].kind == OPTION_REAL) memcpy(&number, at, sizeof number);
+        if (OPTIONS[i].kind == OPTION_REAL ? !isnan(number) : whole >= 0) return *names;
     }
-    if (strcmp(option->name, "kind") == 0) {
-        printf(" [curls]");
-    } else if (same) {
-        if (text[0][0]) printf(" [%s]", text[0]);
-    } else {
-        for (int style = 0; style < STRANDS_STYLES; style++)
-            printf("%s%s %s", style ? ", " : "\n                            [", kind_words[style],
-                   text[style]);
-        printf("]");
-    }
-}
-
-static void print_help(void)
-{
-    printf("tractrix-gen [OPTION]... -o FILE\n"
-           "Makes hair, and with --mesh the shape it grows on. Metres, y up, the face towards "
-           "+z.\n\n");
-    for (size_t i = 0; i < ARRAY_SIZE(options); i++) {
-        const Option *option = &options[i];
-        char flag[48], letter[8] = "    ";
-        if (option->letter) snprintf(letter, sizeof letter, "-%c, ", option->letter);
-        snprintf(flag, sizeof flag, "%s--%s %s", letter, option->name,
-                 option->value ? option->value : "");
-        printf("  %-25s %s", flag, option->help);
-        print_defaults(option);
-        printf("\n");
-    }
-    printf("\nExit status: 0 done, 1 failed (disk full, no memory, ...), 2 wrong usage.\n");
-}
-
-// --- Parsing.
-
-static Result fail_unknown(const char *flag, Error *error)
-{
-    const char *names[ARRAY_SIZE(options)];
-    for (size_t i = 0; i < ARRAY_SIZE(options); i++) names[i] = options[i].name;
-    size_t length = strcspn(flag, "=");
-    char word[64];
-    snprintf(word, sizeof word, "%.*s", (int)length, flag + strspn(flag, "-"));
-    word[strcspn(word, "=")] = 0;
-    return error_set(error, RESULT_USAGE, "no option '%.*s': did you mean '--%s'?", (int)length,
-                     flag, suggest_nearest(word, names, ARRAY_SIZE(names)));
-}
-
-static Result find_word(const Option *option, const char *text, int *index, Error *error)
-{
-    size_t count = 0;
-    for (; option->words[count]; count++) {
-        if (strcmp(text, option->words[count]) != 0) continue;
-        *index = (int)count;
-        return RESULT_OK;
-    }
-    return error_set(error, RESULT_USAGE, "--%s '%s': did you mean '%s'?", option->name, text,
-                     suggest_nearest(text, option->words, count));
-}
-
-static Result parse_count(const Option *option, const char *text, uint32_t *count, Error *error)
-{
-    char *end;
-    errno = 0;
-    unsigned long value = strtoul(text, &end, 10);
-    if (*text >= '0' && *text <= '9' && *end == 0 && errno == 0 && value <= UINT32_MAX) {
-        *count = (uint32_t)value;
-        return RESULT_OK;
-    }
-    return error_set(error, RESULT_USAGE, "--%s '%s': expected a whole number from 0 to %u",
-                     option->name, text, UINT32_MAX);
-}
-
-static Result parse_number(const Option *option, const char *text, float *number, Error *error)
-{
-    char *end;
-    *number = strtof(text, &end);
-    if (end != text && *end == 0 && isfinite(*number)) return RESULT_OK;
-    return error_set(error, RESULT_USAGE, "--%s '%s': expected a number", option->name, text);
-}
-
-static Result set_option(Command *command, const Option *option, const char *text, Error *error)
-{
-    char *at = (char *)command + option->place;
-    int index = 0;
-    Result result = RESULT_OK;
-    switch (option->kind) {
-    case OPTION_WORD:
-        result = find_word(option, text, &index, error);
-        if (result == RESULT_OK) memcpy(at, &index, sizeof index);
-        return result;
-    case OPTION_COUNT:
-        return parse_count(option, text, (uint32_t *)(void *)at, error);
-    case OPTION_NUMBER:
-        return parse_number(option, text, (float *)(void *)at, error);
-    case OPTION_TEXT:
-        if (option->words) result = find_word(option, text, &index, error);
-        if (result == RESULT_OK && text[0] == 0)
-            result = error_set(error, RESULT_USAGE, "--%s: expected a name", option->name);
-        memcpy(at, &text, sizeof text);
-        return result;
-    case OPTION_QUIET:
-        command->quiet = true;
-        return RESULT_OK;
-    default:
-        return RESULT_OK;
-    }
-}
-
-// getopt's tables, from ours; both have room for an end.
-static void make_getopt_tables(struct option *table, char *letters)
-{
-    *letters++ = ':'; // tell a missing value from an unknown option
-    for (size_t i = 0; i < ARRAY_SIZE(options); i++) {
-        bool has_value = options[i].value != NULL;
-        table[i] = (struct option){options[i].name, has_value ? required_argument : no_argument,
-                                   NULL, 256 + (int)i};
-        if (!options[i].letter) continue;
-        *letters++ = options[i].letter;
-        if (has_value) *letters++ = ':';
-    }
-    table[ARRAY_SIZE(options)] = (struct option){0};
-    *letters = 0;
-}
-
-static const Option *find_option(int code)
-{
-    if (code >= 256) return &options[code - 256];
-    for (size_t i = 0; i < ARRAY_SIZE(options); i++)
-        if (options[i].letter && options[i].letter == code) return &options[i];
     return NULL;
 }
 
 // No option is passed over without a word.
-static Result check_effect(Command *command, const Option *option, Error *error)
+static Result check_effect(const Command *command, Error *error)
 {
-    bool is_number = option->kind == OPTION_COUNT || option->kind == OPTION_NUMBER;
-    if (strncmp(option->name, "curl-", 5) == 0 && command->recipe.style != STRANDS_STYLE_CURLS)
-        return error_set(error, RESULT_USAGE, "--%s is for --kind curls, not %s", option->name,
-                         kind_words[command->recipe.style]);
-    if ((is_number || option->words == kind_words || option->words == shape_words) &&
-        option->place != AT(recipe.seed))
-        command->shaping = option->name;
-    return RESULT_OK;
-}
-
-// The kind comes first, wherever it stands: the other defaults depend on it.
-static Result parse_pass(Command *command, int argc, char **argv, bool kind_only, bool *leave,
-                         Error *error)
-{
-    struct option table[ARRAY_SIZE(options) + 1];
-    char letters[2 * ARRAY_SIZE(options) + 2];
-    make_getopt_tables(table, letters);
-    opterr = 0;
-    optind = 0;
-    int code;
-    while ((code = getopt_long(argc, argv, letters, table, NULL)) != -1) {
-        const Option *option = code == '?' || code == ':' ? NULL : find_option(code);
-        if (code == ':')
-            return error_set(error, RESULT_USAGE, "'%s' needs a value", argv[optind - 1]);
-        if (!option) return fail_unknown(argv[optind - 1], error);
-        if (option->kind == OPTION_HELP || option->kind == OPTION_VERSION) {
-            if (option->kind == OPTION_HELP)
-                print_help();
-            else
-                printf("tractrix-gen %s\n", TRACTRIX_VERSION);
-            *leave = true;
-            return RESULT_OK;
-        }
-        if (kind_only != (option->place == AT(recipe.style) && option->kind == OPTION_WORD))
-            continue;
-        Result result = set_option(command, option, optarg, error);
-        if (result == RESULT_OK) result = check_effect(command, option, error);
-        if (result != RESULT_OK) return result;
-    }
-    if (optind < argc)
-        return error_set(error, RESULT_USAGE, "'%s' is no option: expected -o FILE", argv[optind]);
-    return RESULT_OK;
-}
-
-static Result parse(Command *command, int argc, char **argv, bool *leave, Error *error)
-{
-    *command = (Command){.recipe.style = STRANDS_STYLE_CURLS};
-    Result result = parse_pass(command, argc, argv, true, leave, error);
-    if (result != RESULT_OK || *leave) return result;
-    *command = (Command){.recipe = strands_recipe_default(command->recipe.style),
-                         .shaping = command->shaping,
-                         .format = 2};
-    result = parse_pass(command, argc, argv, false, leave, error);
-    if (result == RESULT_OK && command->set && command->shaping)
-        return error_set(error, RESULT_USAGE, "--set %s and --%s exclude each other", command->set,
-                         command->shaping);
-    if (result == RESULT_OK && !command->output && !command->mesh && !command->bust)
+    static const char *const CURLS[] = {"curl-radius", "curl-turns", "curl-disorder", NULL};
+    static const char *const SHAPING[] = {
+        "kind",        "shape",      "count",         "vertices", "length", "length-variation",
+        "curl-radius", "curl-turns", "curl-disorder", NULL};
+    const char *curl = find_given(command, CURLS), *shaping = find_given(command, SHAPING);
+    if (curl && command->kind >= 0 && command->kind != STRANDS_STYLE_CURLS)
+        return error_set(error, RESULT_USAGE, "--%s is for --kind curls, not %s", curl,
+                         KIND_NAMES[command->kind]);
+    if (command->set >= 0 && shaping)
+        return error_set(error, RESULT_USAGE, "--set %s and --%s exclude each other",
+                         SET_NAMES[command->set], shaping);
+    if (!command->output && !command->mesh && !command->bust)
         return error_set(error, RESULT_USAGE, "nothing to write: expected -o FILE");
-    return result;
+    return RESULT_OK;
 }
 
-// ---
+static Result parse(Command *command, int argc, char **argv, bool *done, Error *error)
+{
+    char defaults[1024];
+    const char *const notes[] = {defaults, NULL};
+    OptionsProgram program = PROGRAM;
+    int first;
+    program.notes = notes;
+    write_defaults(defaults, sizeof defaults);
+    *command = (Command){.kind = -1,
+                         .shape = -1,
+                         .count = -1,
+                         .vertices = -1,
+                         .set = -1,
+                         .format = 2,
+                         .seed = 1,
+                         .length = NAN,
+                         .length_variation = NAN,
+                         .curl_radius = NAN,
+                         .curl_turns = NAN,
+                         .curl_disorder = NAN};
+    Result result = options_parse(&program, command, argc, argv, &first, done, error);
+    if (result != RESULT_OK || *done) return result;
+    if (first < argc)
+        return error_set(error, RESULT_USAGE, "'%s' is no option: expected -o FILE", argv[first]);
+    return check_effect(command, error);
+}
 
-static Result write_hair(const Command *command, Error *error)
+static void set_real(float *to, double value)
+{
+    if (!isnan(value)) *to = (float)value;
+}
+
+static StrandsRecipe make_recipe(const Command *command)
+{
+    StrandsStyle style = command->kind < 0 ? STRANDS_STYLE_CURLS : (StrandsStyle)command->kind;
+    StrandsRecipe recipe = strands_recipe_default(style);
+    if (command->shape >= 0) recipe.shape = (ScalpShape)command->shape;
+    if (command->count >= 0) recipe.count = (uint32_t)command->count;
+    if (command->vertices >= 0) recipe.vertices = (uint32_t)command->vertices;
+    set_real(&recipe.length, command->length);
+    set_real(&recipe.length_variation, command->length_variation);
+    set_real(&recipe.curl_radius, command->curl_radius);
+    set_real(&recipe.curl_turns, command->curl_turns);
+    set_real(&recipe.curl_disorder, command->curl_disorder);
+    recipe.seed = (uint32_t)command->seed;
+    return recipe;
+}
+
+// --- The work.
+
+static Result write_hair(const Command *command, const StrandsRecipe *recipe, Error *error)
 {
     Strands strands;
-    Result result = command->set
-                        ? strands_make_set(&strands, command->set, command->recipe.seed, error)
-                        : strands_make(&strands, &command->recipe, error);
+    Result result = command->set >= 0
+                        ? strands_make_set(&strands, SET_NAMES[command->set], recipe->seed, error)
+                        : strands_make(&strands, recipe, error);
     if (result != RESULT_OK) return result;
-    result = strands_write(command->output, format_kinds[command->format], &strands, error);
+    result = strands_write(command->output, FORMATS[command->format], &strands, error);
     if (result == RESULT_OK && !command->quiet)
         printf("%s: %u strands of %u vertices, %s\n", command->output, strands.strand_count,
-               strands_size(&strands, 0), strands_kind_name(format_kinds[command->format]));
+               strands_size(&strands, 0), strands_kind_name(FORMATS[command->format]));
     strands_destroy(&strands);
     return result;
 }
 
-static Result write_mesh(const Command *command, const char *file, bool shoulders, Error *error)
+static Result write_mesh(const Command *command, ScalpShape shape, const char *file, bool shoulders,
+                         Error *error)
 {
     Mesh mesh;
-    ScalpShape shape = shoulders ? SCALP_HEAD : command->set ? SCALP_SPHERE : command->recipe.shape;
     Result result = scalp_make_mesh(&mesh, shape, 36, error);
     if (result == RESULT_OK && shoulders) result = bust_append_shoulders(&mesh, error);
     if (result == RESULT_OK) result = mesh_write_obj(file, &mesh, error);
@@ -338,17 +204,25 @@ static Result write_mesh(const Command *command, const char *file, bool shoulder
     return result;
 }
 
+static Result write_all(const Command *command, Error *error)
+{
+    StrandsRecipe recipe = make_recipe(command);
+    ScalpShape shape = command->set >= 0 ? SCALP_SPHERE : recipe.shape;
+    Result result = command->output ? write_hair(command, &recipe, error) : RESULT_OK;
+    if (result == RESULT_OK && command->mesh)
+        result = write_mesh(command, shape, command->mesh, false, error);
+    if (result == RESULT_OK && command->bust)
+        result = write_mesh(command, SCALP_HEAD, command->bust, true, error);
+    return result;
+}
+
 int main(int argc, char **argv)
 {
     Command command;
     Error error;
-    bool leave = false;
-    Result result = parse(&command, argc, argv, &leave, &error);
-    if (result == RESULT_OK && !leave && command.output) result = write_hair(&command, &error);
-    if (result == RESULT_OK && !leave && command.mesh)
-        result = write_mesh(&command, command.mesh, false, &error);
-    if (result == RESULT_OK && !leave && command.bust)
-        result = write_mesh(&command, command.bust, true, &error);
+    bool done;
+    Result result = parse(&command, argc, argv, &done, &error);
+    if (result == RESULT_OK && !done) result = write_all(&command, &error);
     if (result == RESULT_OK && (fflush(stdout) != 0 || ferror(stdout)))
         result = error_set(&error, RESULT_FAILED, "cannot write to standard output");
     if (result != RESULT_OK) fprintf(stderr, "tractrix-gen: %s\n", error.text);

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_OPTIONS = 64, FIRST_CODE = 256 };
+enum { MOST_OPTIONS = 64, MOST_WORDS = 16, FIRST_CODE = 256 };
 enum { CODE_HELP = FIRST_CODE + MOST_OPTIONS, CODE_VERSION };
 
 static const Option COMMON[] = {
@@ -110,12 +110,31 @@ static Result set_number(const Option *option, char *at, const char *text, Error
     bool whole = option->kind == OPTION_WHOLE;
     if (end == text || *end || !(number >= option->least && number <= option->most) ||
         (whole && number != (int)number))
-        return error_set(error, RESULT_USAGE, "--%s: expected %s from %g to %g, got '%s'",
+        return error_set(error, RESULT_USAGE, "--%s: expected %s from %.10g to %.10g, got '%s'",
                          option->name, whole ? "a whole number" : "a number", option->least,
                          option->most, text);
     int count = (int)number;
     memcpy(at, whole ? (void *)&count : (void *)&number, whole ? sizeof count : sizeof number);
     return RESULT_OK;
+}
+
+// Which of the words in "one|two|three" the text is.
+static Result set_word(const Option *option, char *at, const char *text, Error *error)
+{
+    char words[MOST_WORDS * 32];
+    const char *names[MOST_WORDS];
+    int count = 0;
+    snprintf(words, sizeof words, "%s", option->value);
+    for (char *rest = words, *word; count < MOST_WORDS && (word = strsep(&rest, "|"));) {
+        if (strcmp(word, text) == 0) {
+            memcpy(at, &count, sizeof count);
+            return RESULT_OK;
+        }
+        names[count++] = word;
+    }
+    return error_set(error, RESULT_USAGE, "--%s: expected %s, got '%s': did you mean '%s'?",
+                     option->name, option->value, text,
+                     suggest_nearest(text, names, (size_t)count));
 }
 
 static Result set_option(const Option *option, char *values, const char *text, Error *error)
@@ -132,6 +151,8 @@ static Result set_option(const Option *option, char *values, const char *text, E
                              option->value);
         memcpy(at, &text, sizeof text);
         return RESULT_OK;
+    case OPTION_WORD:
+        return set_word(option, at, text, error);
     default:
         return set_number(option, at, text, error);
     }

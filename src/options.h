@@ -14,6 +14,7 @@ typedef enum OptionKind {
     OPTION_STRING, // sets a const char *, not empty
     OPTION_REAL,   // sets a double between least and most
     OPTION_WHOLE,  // sets an int between least and most
+    OPTION_WORD,   // sets an int: which of the words in `value`, "one|two|three", from 0
 } OptionKind;
 
 typedef struct Option {
