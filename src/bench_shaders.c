@@ -103,10 +103,10 @@ static Result try_follow(const Gpu *gpu, FollowMode mode, Error *error)
 // The table of marschner shading, and every way that hair can look.
 static Result try_looks(Renderer *renderer, Error *error)
 {
-    LookPrograms *programs =
-        renderer->raster == RASTER_QUADS ? &renderer->hair.project : &renderer->blocks.project;
+    LookPrograms *programs = renderer->raster == RASTER_QUADS ? &renderer->quads.hair.project
+                                                              : &renderer->blocks.project;
     GLuint texture;
-    Result result = scatter_tables_find(&renderer->scatter, 1.5f, 0.2f, &texture, error);
+    Result result = scatter_tables_find(&renderer->picture.scatter, 1.5f, 0.2f, &texture, error);
     static const unsigned others[] = {LOOK_SHADOW_APPROX,
                                       LOOK_SHADOW_DOM,
                                       LOOK_SHADOW_APPROX | LOOK_SHADOW_BY_MESH,

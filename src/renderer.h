@@ -2,80 +2,10 @@
 // From hair on the GPU to a picture: mesh, hair ribbons into an A-buffer, and its resolution.
 #pragma once
 
-#include "camera.h"
-#include "gpu_timer.h"
-#include "hair.h"
-#include "image.h"
-#include "render_abuffer.h"
 #include "render_blocks.h"
-#include "render_hair.h"
-#include "render_mesh.h"
-#include "render_scatter.h"
-#include "render_shadow.h"
-#include "render_target.h"
-
-// How many strands are drawn, all zero: all of them. Files' strands lie in random order, so the
-// first so many stand for all.
-typedef struct LodOptions {
-    float start, end; // m: between these distances of the camera from a section's middle the share
-                      // falls from 1 to `least`; end 0: at none
-    float least;      // share, 0 .. 1
-    float width;      // px: narrower fibres are fewer and as wide as this; 0: are left as they are
-} LodOptions;
-
-typedef struct RendererOptions {
-    Raster raster;        // how hair becomes pixels; auto: blocks on CPU drivers, else quads
-    int width, height;    // px, each 1 .. the driver's limits.framebuffer_side_px
-    float background[4];  // sRGB and opacity 0..1; below 1 the pictures have an alpha channel
-    float exposure;       // all light but the background's is this many times doubled
-    Tone tone;            // how light becomes colour; the background's does not change
-    ImageKind kind;       // of the pictures; other than 8 bits are drawn by quads
-    Aov aov;              // what is drawn instead of light, by quads, on black (docs/renderer.md)
-    float depth_range[2]; // AOV_DEPTH: m that are shown as 1 and as 0; alike: m themselves
-    uint32_t seed;        // of what varies by strand
-    ShadowOptions shadow;
-    LodOptions lod;
-    Oit oit;            // how the fragments of a pixel are blended; auto: abuffer. Else quads are
-                        // what raster auto is
-    int oit_layers;     // abuffer: how many of them in order, 1 .. 64, the same; 0: 8
-    int64_t pool_bytes; // no larger A-buffer or block lists; 0: what the driver allows
-} RendererOptions;
-
-// Hair to be drawn. The material is that of its section; `radius` is the fibre radius at the root
-// in metres (fibre_auto_radius where the section has none).
-typedef struct RenderItem {
-    const Hair *hair;
-    const SectionParams *material;
-    float radius;
-} RenderItem;
-
-// The light from everywhere, sRGB 0..1: from above (+y) and from below, evenly between them.
-typedef struct Ambient {
-    float sky[3], ground[3];
-} Ambient;
-
-// What all items of a picture have in common.
-typedef struct RenderFrame {
-    const View *view; // made for the renderer's width and height
-    const Light *lights;
-    uint32_t light_count;      // 0 .. SCENE_MAX_LIGHTS
-    const Ambient *ambient;    // NULL: white
-    float head_rotation[4];    // quaternion x y z w: the mesh's frame -> world
-    float head_translation[3]; // m
-    uint64_t revision; // another one wherever hair has moved, so that shadows are kept; 0: it has
-} RenderFrame;
-
-// Of the last picture, for the statistics.
-typedef struct RendererCounts {
-    uint64_t segments;    // sent to the rasteriser; straight runs count as one
-    uint64_t culled;      // strands outside the picture, which cost no drawing
-    uint64_t fragments;   // stored and blended: pixels of a ribbon, or with blocks blocks of it
-    uint64_t pool_bytes;  // of the A-buffer or the block lists now
-    uint32_t redraws;     // bands that were drawn again because the pool was too small
-    uint32_t bands;       // horizontal bands that the picture was drawn in
-    uint64_t thinned;     // strands that others stand for, at their distance
-    uint32_t shadow_maps; // that were made; those of the picture before may have done
-} RendererCounts;
+#include "render_options.h"
+#include "render_picture.h"
+#include "render_quads.h"
 
 typedef struct Renderer {
     RendererOptions options;
@@ -83,18 +13,13 @@ typedef struct Renderer {
     GpuTimer *timer;
     RenderTarget target;
     Raster raster; // auto is decided; what the other one needs is made when it is drawn with
-    RenderHair hair;
-    RenderABuffer abuffer;
+    RenderQuads quads;
     RenderBlocks blocks;
     RenderMesh mesh;
     RenderShadow shadow;
     ShadowCaster *casters; // [caster_room], owned
     uint32_t caster_room;
-    ScatterTables scatter;
-    Look *looks; // [look_room], of the items of a picture
-    uint32_t look_room;
-    GpuBuffer draw_uniforms;
-    int band_rows; // that the next picture starts with
+    Picture picture; // the last one
     RendererCounts counts;
 } Renderer;
 

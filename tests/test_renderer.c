@@ -344,8 +344,8 @@ static void blocks_lie_alike_in_c_and_glsl(void **state)
 {
     (void)state;
     Error error = {{0}};
-    LookPrograms *programs =
-        raster == RASTER_QUADS ? &studio.renderer.hair.project : &studio.renderer.blocks.project;
+    LookPrograms *programs = raster == RASTER_QUADS ? &studio.renderer.quads.hair.project
+                                                    : &studio.renderer.blocks.project;
     unsigned all = LOOK_SHADED - 1; // every member is in use
     assert_int_equal(look_programs_build(programs, all, &error), RESULT_OK);
     GLuint program = programs->program[all];

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// The rasteriser of GPUs: ribbons as triangles, whose fragments go to an A-buffer, in bands of rows
+// where that cannot hold the whole picture's.
+#pragma once
+
+#include "gpu.h"
+#include "gpu_timer.h"
+#include "render_abuffer.h"
+#include "render_hair.h"
+#include "render_picture.h"
+
+// A zeroed struct has nothing.
+typedef struct RenderQuads {
+    RenderHair hair;
+    RenderABuffer abuffer;
+    const GpuLimits *limits;
+    int width, height; // px
+    int band_rows;     // that the next picture starts with
+} RenderQuads;
+
+// RESULT_FAILED if memory is short. `gpu` outlives the quads.
+Result render_quads_create(RenderQuads *quads, const Gpu *gpu, const RendererOptions *options,
+                           Error *error);
+void render_quads_destroy(RenderQuads *quads);
+
+// Makes what drawing over a mesh needs; nothing if it is there.
+Result render_quads_add_mesh(RenderQuads *quads, Error *error);
+
+// Draws the picture's hair over the target's base, or over the background if `over_mesh` is false,
+// and copies it into `image`; waits for it. What it does is added to `counts`. See renderer_draw.
+Result render_quads_draw(RenderQuads *quads, Picture *picture, RenderTarget *target, bool over_mesh,
+                         GpuTimer *timer, Image *image, RendererCounts *counts, Error *error);
