@@ -28,7 +28,7 @@
 #define BIND_HEADS  8
 #define BIND_BASE   9 // what stands behind the hair: linear, premultiplied
 
-#define BIND_PAINT   11 // uvec4 a particle, see hair_paint.c
+#define BIND_PAINT   8  // uvec4 a particle, see hair_paint.c; beside what shadows are read from
 #define BIND_SCATTER 10 // marschner's table, see scatter.comp
 
 // Nodes of that table by azimuth (0 to pi), cosine of theta_d and colour (both 0 to 1).

@@ -193,6 +193,45 @@ static void hair_shows_its_paint(void **state)
     }
 }
 
+// White paint changes nothing: not in the shadow of the strand to the right either, which is dark.
+static void painted_hair_lies_in_shadow(void **state)
+{
+    (void)state;
+    for (Raster raster = RASTER_QUADS; raster <= RASTER_BLOCKS; ++raster) {
+        Studio studio;
+        studio_open(&studio, &(RendererOptions){.raster = raster,
+                                                .width = 128,
+                                                .height = 128,
+                                                .background = {0, 0, 0, 1},
+                                                .shadow = {SHADOW_DOM, 64, 200}});
+        Strands strands = make_strands();
+        float color[STRANDS * SIZE][4], thickness[STRANDS * SIZE];
+        for (int v = 0; v < STRANDS * SIZE; ++v) {
+            for (int k = 0; k < 4; ++k) color[v][k] = 1;
+            thickness[v] = 1;
+        }
+        const Paint paint = {
+            .color = color, .thickness = thickness, .vertex_count = STRANDS * SIZE};
+        studio.light =
+            (Light){.direction = {1, 0, 0}, .color = {1, 1, 1}, .intensity = 1, .shadow = true};
+        studio_add(&studio, &strands, 2, 1);
+        studio.material[0].ambient = 0;
+        studio.material[0].diffuse = 1;
+        studio.material[0].shadow_opacity = 0.9f;
+        studio_draw(&studio);
+        size_t size;
+        uint8_t *plain = studio_copy(&studio, &size);
+        assert_true(studio_pixel(&studio, 64 + 30, 64)[0] > 250);
+        assert_true(studio_pixel(&studio, 64 - 10, 64)[0] < 60);
+        NEEDED(hair_paint(&studio.hair[0], &strands, &paint, &studio.gpu.limits, error));
+        studio_draw(&studio);
+        assert_memory_equal(plain, studio.image.pixels, size);
+        free(plain);
+        strands_destroy(&strands);
+        studio_close(&studio);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -203,6 +242,7 @@ int main(void)
                                         temporary_destroy),
         cmocka_unit_test(melanin_gives_the_colors_of_hair),
         cmocka_unit_test(hair_shows_its_paint),
+        cmocka_unit_test(painted_hair_lies_in_shadow),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
