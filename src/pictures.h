@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// What draws a run's frames, and where they go: renderer, camera and output, as the scene says.
+#pragma once
+
+#include "framing.h"
+#include "load.h"
+#include "output.h"
+#include "renderer.h"
+#include "simulation.h"
+
+// A zeroed struct draws nothing and may be destroyed.
+typedef struct Pictures {
+    const Scene *scene;
+    const Assets *assets;
+    Simulation *simulation;
+    const Gpu *gpu;
+    Renderer renderer;
+    RenderItem *items; // of each section its guides and, if there are any, its followers
+    uint32_t item_count;
+    Framing framing;
+    Output *output;
+} Pictures;
+
+// `frame_count`: how many frames will be drawn. The arguments outlive the pictures, which may be
+// destroyed (while the context is current) in each case. Errors of renderer_create, paint_create
+// and output_create.
+Result pictures_create(Pictures *pictures, const Scene *scene, const Assets *assets,
+                       Simulation *simulation, const Gpu *gpu, GpuTimer *timer, int frame_count,
+                       Error *error);
+void pictures_destroy(Pictures *pictures);
