@@ -51,7 +51,9 @@ PROGRAMS  := $(MAINS:src/main_%.c=$(OUT)/tractrix-%)
 TEST_PROGRAMS := $(TESTS:%.c=$(OUT)/%)
 SUPPORT_OBJECTS := $(SUPPORT:%.c=$(OUT)/%.o)
 KEEP_sanitize := $(KEEP:%.c=$(OUT)/%.o)
-MANUALS   := $(patsubst %,%.1,$(filter %/tractrix-render %/tractrix-compare,$(PROGRAMS)))
+TOLD      := $(filter %/tractrix-render %/tractrix-compare,$(PROGRAMS)) # those with --help=man and --help=bash
+MANUALS   := $(TOLD:%=%.1)
+COMPLETIONS := $(TOLD:%=%.bash)
 FOLDERS   := $(sort $(OUT)/tests/ $(dir $(OBJECTS)))
 
 # --- Build. Recipes that recurse use all processors unless -j says otherwise.
@@ -78,6 +80,8 @@ $(OUT)/tractrix-%: $(OUT)/main_%.o $(KEEP_$(CONFIG)) $(OUT)/libtractrix.a
 	$(call run,LINK,$(CC) $(LD_FLAGS) -o $@ $^ $(LD_LIBS))
 $(OUT)/tractrix-%.1: $(OUT)/tractrix-%
 	$(call run,MAN,$< --help=man >$@.tmp && mv $@.tmp $@)
+$(OUT)/tractrix-%.bash: $(OUT)/tractrix-%
+	$(call run,BASH,$< --help=bash >$@.tmp && mv $@.tmp $@)
 
 $(OUT)/tests/%.o: tests/%.c $(OUT)/flags | $(OUT)/version.h
 	$(call run,CC,$(CC) $(C_FLAGS) -Itests -MMD -MP -c -o $@ $<)
@@ -140,7 +144,7 @@ check: ## static checks, warnings as errors with gcc and clang, tests under sani
 check-format:
 	@clang-format --dry-run -Werror $(C_FILES)
 check-scripts:
-	@shellcheck $$(scripts/list-shell)
+	@shellcheck -x $$(scripts/list-shell)
 check-warnings: # where warnings are errors anyway (CI), the usual build is the check
 	$(QUIET) WERROR=1 OUT=$(if $(WERROR),$(OUT),$(SIDE)check-gcc) all tests
 check-clang:
@@ -165,16 +169,19 @@ BIN_DIR = $(DESTDIR)$(PREFIX)/bin
 MAN_DIR = $(DESTDIR)$(PREFIX)/share/man/man1
 DATA_DIR = $(DESTDIR)$(PREFIX)/share/tractrix
 DOC_DIR = $(DESTDIR)$(PREFIX)/share/doc/tractrix
+BASH_DIR = $(DESTDIR)$(PREFIX)/share/bash-completion/completions
 
-install: all $(MANUALS) ## programs, manual, assets and licence under $(DESTDIR)$(PREFIX)
-	install -d $(BIN_DIR) $(MAN_DIR) $(DATA_DIR) $(DOC_DIR)
+install: all $(MANUALS) $(COMPLETIONS) ## programs, manuals, bash completion, docs and assets under $(DESTDIR)$(PREFIX)
+	install -d $(BIN_DIR) $(MAN_DIR) $(BASH_DIR) $(DATA_DIR) $(DOC_DIR)/docs
 	install $(PROGRAMS) $(BIN_DIR)
-	$(if $(MANUALS),install -m 644 $(MANUALS) $(MAN_DIR))
+	install -m 644 $(MANUALS) $(MAN_DIR)
+	for file in $(COMPLETIONS); do install -m 644 $$file $(BASH_DIR)/$$(basename $$file .bash) || exit 1; done
 	$(if $(wildcard assets/*),install -m 644 $(wildcard assets/*) $(DATA_DIR))
-	install -m 644 LICENSE $(wildcard README.md) $(DOC_DIR)
+	install -m 644 LICENSE README.md $(DOC_DIR)
+	install -m 644 $(wildcard docs/*.*) $(DOC_DIR)/docs
 
 uninstall: ## remove what install put there
-	rm -f $(PROGRAMS:$(OUT)/%=$(BIN_DIR)/%) $(MANUALS:$(OUT)/%=$(MAN_DIR)/%)
+	rm -f $(PROGRAMS:$(OUT)/%=$(BIN_DIR)/%) $(MANUALS:$(OUT)/%=$(MAN_DIR)/%) $(TOLD:$(OUT)/%=$(BASH_DIR)/%)
 	rm -rf $(DATA_DIR) $(DOC_DIR)
 
 clean: ## remove out/

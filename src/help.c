@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "help.h"
+
+#include "completion.h"
 #include "params.h"
 #include "prose.h"
+#include "solver.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 enum { TEXT_SIZE = 600 };
@@ -23,7 +27,7 @@ static const struct {
     const char *flags, *help;
 } REQUESTS[] = {
     {"-h, --help", "print this and stop; --help=man: the manual page in roff; --help=markdown: "
-                   "the tables of flags"},
+                   "the tables of flags; --help=bash: completion for bash"},
     {"--version", "print the version and stop"},
 };
 enum { REQUEST_COUNT = sizeof REQUESTS / sizeof REQUESTS[0] };
@@ -282,4 +286,38 @@ void help_write_markdown(FILE *stream)
         }
     }
     write_markdown_scene(stream);
+}
+
+// Words of a TEXT parameter: the solvers, or all their variants.
+static size_t write_solvers(char *text, size_t size, bool variants)
+{
+    size_t length = 0;
+    for (const SolverType *const *type = SOLVER_TYPES; *type; ++type) {
+        const char *const *words = variants ? (*type)->variants : &(*type)->name;
+        for (int i = 0; i < (variants ? SOLVER_MAX_VARIANTS : 1) && words[i]; ++i)
+            if (length < size)
+                length += (size_t)snprintf(text + length, size - length, "%s%s", length ? "|" : "",
+                                           words[i]);
+    }
+    return length;
+}
+
+void help_write_bash(FILE *stream)
+{
+    enum { FLAG_SIZE = 400 };
+    size_t count = PARAM_COUNT + REQUEST_COUNT;
+    char(*texts)[FLAG_SIZE] = calloc(count, sizeof *texts);
+    const char **flags = calloc(count, sizeof *flags);
+    for (size_t i = 0; texts && flags && i < count; ++i) {
+        flags[i] = i < PARAM_COUNT ? texts[i] : REQUESTS[i - PARAM_COUNT].flags;
+        if (i < PARAM_COUNT) write_flag(&PARAM_TABLE[i], texts[i], FLAG_SIZE);
+        const char *name = i < PARAM_COUNT ? PARAM_TABLE[i].name : "";
+        bool algo = strcmp(name, "algo") == 0, variant = strcmp(name, "variant") == 0;
+        if (!algo && !variant) continue;
+        int start = snprintf(texts[i], FLAG_SIZE, "--%s ", name);
+        write_solvers(texts[i] + start, FLAG_SIZE - (size_t)start, variant);
+    }
+    if (texts && flags) completion_write_bash(stream, "tractrix-render", flags, count);
+    free(texts);
+    free(flags);
 }

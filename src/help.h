@@ -12,3 +12,6 @@ void help_write_man(FILE *stream, const char *version);
 
 // The tables for README.md in Markdown: flags, one table per group, and what else a scene file has.
 void help_write_markdown(FILE *stream);
+
+// Completion of the flags and their values in bash.
+void help_write_bash(FILE *stream);

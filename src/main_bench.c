@@ -250,7 +250,7 @@ static Result run(int argc, char **argv, Error *error)
     Result result = bench_options_read(&arguments, argc, argv, error);
     if (result != RESULT_OK) return result;
     if (arguments.help) print_help();
-    if (arguments.version) printf("tractrix-bench %s (%s)\n", TRACTRIX_VERSION, TRACTRIX_COMMIT);
+    if (arguments.version) printf("tractrix-bench %s\n", TRACTRIX_VERSION);
     if (arguments.help || arguments.version) return RESULT_OK;
     if (arguments.file_count == 0) return error_set(error, RESULT_USAGE, "no command; see --help");
     result = find_command(*arguments.files++, &command, error);

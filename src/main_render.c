@@ -21,8 +21,11 @@ static Result answer(Run *run, Error *error)
     case REQUEST_MARKDOWN:
         help_write_markdown(stdout);
         return RESULT_OK;
+    case REQUEST_BASH:
+        help_write_bash(stdout);
+        return RESULT_OK;
     case REQUEST_VERSION:
-        printf("tractrix-render %s (%s)\n", TRACTRIX_VERSION, TRACTRIX_COMMIT);
+        printf("tractrix-render %s\n", TRACTRIX_VERSION);
         return RESULT_OK;
     case REQUEST_RUN:
         break;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "options.h"
 
+#include "completion.h"
 #include "prose.h"
 #include "suggest.h"
 
@@ -15,7 +16,8 @@ enum { MOST_OPTIONS = 64, MOST_WORDS = 16, FIRST_CODE = 256 };
 enum { CODE_HELP = FIRST_CODE + MOST_OPTIONS, CODE_VERSION };
 
 static const Option COMMON[] = {
-    {"help", 'h', OPTION_SWITCH, 0, NULL, 0, 0, "print this and stop; --help=man: in roff"},
+    {"help", 'h', OPTION_SWITCH, 0, NULL, 0, 0,
+     "print this and stop; --help=man: in roff; --help=bash: completion"},
     {"version", 0, OPTION_SWITCH, 0, NULL, 0, 0, "print the version and stop"},
 };
 enum { COMMON_COUNT = sizeof COMMON / sizeof *COMMON };
@@ -87,6 +89,18 @@ static void write_man(const OptionsProgram *program)
     printf(".SH EXAMPLES\n.nf\n");
     for (const char *const *e = program->examples; *e; ++e) prose_write_roff(stdout, *e);
     printf(".fi\n");
+}
+
+static void write_bash(const OptionsProgram *program)
+{
+    char texts[MOST_OPTIONS + COMMON_COUNT][96];
+    const char *flags[MOST_OPTIONS + COMMON_COUNT];
+    size_t count = program->option_count + COMMON_COUNT;
+    for (size_t i = 0; i < count; ++i) {
+        write_flag(option_at(program, i), texts[i], sizeof *texts);
+        flags[i] = texts[i];
+    }
+    completion_write_bash(stdout, program->name, flags, count);
 }
 
 // --- Parsing.
@@ -179,13 +193,16 @@ static void make_tables(const OptionsProgram *program, struct option *table, cha
 static Result answer(const OptionsProgram *program, int code, Error *error)
 {
     if (code == CODE_VERSION)
-        printf("%s %s (%s)\n", program->name, TRACTRIX_VERSION, TRACTRIX_COMMIT);
+        printf("%s %s\n", program->name, TRACTRIX_VERSION);
     else if (code == 'h' || !optarg)
         write_text(program);
     else if (strcmp(optarg, "man") == 0)
         write_man(program);
+    else if (strcmp(optarg, "bash") == 0)
+        write_bash(program);
     else
-        return error_set(error, RESULT_USAGE, "--help: expected man or nothing, got '%s'", optarg);
+        return error_set(error, RESULT_USAGE, "--help: expected man, bash or nothing, got '%s'",
+                         optarg);
     return RESULT_OK;
 }
 

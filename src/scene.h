@@ -45,6 +45,7 @@ typedef enum SceneRequest {
     REQUEST_HELP,     // -h, --help
     REQUEST_MAN,      // --help=man: the man page in roff
     REQUEST_MARKDOWN, // --help=markdown: the tables of README.md
+    REQUEST_BASH,     // --help=bash: completion of the command line
 } SceneRequest;
 
 // A zeroed scene is empty and may be destroyed.

@@ -66,13 +66,13 @@ static StepResult take_value(Walk *walk, Argument *argument, Error *error)
 
 static StepResult take_help(Walk *walk, const char *form, Error *error)
 {
-    static const char *const FORMS[] = {"text", "man", "markdown"};
-    for (int i = 0; i < 3; i++) {
+    static const char *const FORMS[] = {"text", "man", "markdown", "bash"};
+    for (int i = 0; i < 4; i++) {
         if (strcmp(form, FORMS[i]) != 0) continue;
         walk->request = (SceneRequest)(REQUEST_HELP + i);
         return STEP_REQUEST;
     }
-    return fail(error, "--help", "expected text, man or markdown");
+    return fail(error, "--help", "expected text, man, markdown or bash");
 }
 
 static StepResult step_letter(Walk *walk, Argument *argument, Error *error)

@@ -104,8 +104,7 @@ static Result output_frame(Sequence *sequence, Previous *previous, int frame, Fr
     camera_view(&view, sequence->scene, sequence->framing, frame);
     result = draw(sequence, previous, &view, image, error);
     times->draw_ms = stats_clock_ms() - acquired;
-    Result submitted = output_submit(sequence->output, frame, image, error);
-    return result == RESULT_OK ? submitted : result;
+    return result == RESULT_OK ? output_submit(sequence->output, frame, image, error) : result;
 }
 
 static bool wants(const Sequence *sequence, int frame)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "shader.h"
 
+#include "file.h"
+
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,12 +17,21 @@ void shader_treat_warnings_as_errors(bool on)
     warnings_are_errors = on;
 }
 
+const char *shader_folder(void)
+{
+    const char *folder = getenv("TRACTRIX_GLSL_DIR");
+    return folder && *folder ? folder : NULL;
+}
+
 // The joined text of a stage. `line_file` and `line_number` tell for each of its lines where it
 // comes from: Mesa loses the string number of `#line` in semantic errors, so the map is ours.
 typedef struct Composition {
     char *text;
     size_t length, capacity;
-    const GlslSource *files[MAX_FILES];
+    struct File {
+        const GlslSource *source;
+        Bytes text; // from TRACTRIX_GLSL_DIR; empty: the source's own
+    } files[MAX_FILES];
     int file_count;
     struct Origin {
         int file, line;
@@ -30,6 +41,7 @@ typedef struct Composition {
 
 static void composition_destroy(Composition *composition)
 {
+    for (int i = 0; i < composition->file_count; ++i) bytes_destroy(&composition->files[i].text);
     free(composition->text);
     free(composition->origins);
     *composition = (Composition){0};
@@ -75,7 +87,7 @@ static const GlslSource *find_source(const char *name, size_t length)
 static bool taken(const Composition *c, const GlslSource *source)
 {
     for (int i = 0; i < c->file_count; ++i)
-        if (c->files[i] == source) return true;
+        if (c->files[i].source == source) return true;
     return false;
 }
 
@@ -93,6 +105,16 @@ static Result append_source_line(Composition *c, const char *line, size_t length
     return append_file(c, name, quote ? (size_t)(quote - name) : 0, error);
 }
 
+static Result read_file(struct File *file, Error *error)
+{
+    const char *folder = shader_folder();
+    char path[4096];
+    if (!folder) return RESULT_OK;
+    if (snprintf(path, sizeof path, "%s/%s", folder, file->source->name) >= (int)sizeof path)
+        return error_set(error, RESULT_FAILED, "TRACTRIX_GLSL_DIR: too long a path");
+    return bytes_read_file(&file->text, path, error);
+}
+
 static Result append_file(Composition *c, const char *name, size_t length, Error *error)
 {
     const GlslSource *source = find_source(name, length);
@@ -102,14 +124,15 @@ static Result append_file(Composition *c, const char *name, size_t length, Error
     if (c->file_count == MAX_FILES)
         return error_set(error, RESULT_FAILED, "glsl/%s: too many includes", source->name);
     int file = c->file_count++, number = 1;
-    c->files[file] = source;
-    for (const char *line = source->text; *line; ++number) {
+    c->files[file] = (struct File){.source = source};
+    Result result = read_file(&c->files[file], error);
+    const char *line = c->files[file].text.data ? (char *)c->files[file].text.data : source->text;
+    for (; result == RESULT_OK && *line; ++number) {
         size_t end = strcspn(line, "\n");
-        Result result = append_source_line(c, line, end, file, number, error);
-        if (result != RESULT_OK) return result;
+        result = append_source_line(c, line, end, file, number, error);
         line += end + (line[end] == '\n');
     }
-    return RESULT_OK;
+    return result;
 }
 
 static Result compose(Composition *c, const char *file, const ShaderDefine *defines, Error *error)
@@ -148,7 +171,7 @@ static Result tell_log(const Composition *c, const char *file, char *log, Error 
     if (line < 1 || line > c->line_count || c->origins[line - 1].file < 0)
         return error_set(error, RESULT_FAILED, "glsl/%s: %s", file, log);
     struct Origin origin = c->origins[line - 1];
-    return error_set(error, RESULT_FAILED, "glsl/%s:%d: %s", c->files[origin.file]->name,
+    return error_set(error, RESULT_FAILED, "glsl/%s:%d: %s", c->files[origin.file].source->name,
                      origin.line, log + ends);
 }
 

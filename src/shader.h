@@ -9,7 +9,9 @@
 
 #include <stdbool.h>
 
-// A file of glsl/, embedded by scripts/embed-glsl. The table ends with {NULL, NULL}.
+// A file of glsl/, embedded by scripts/embed-glsl. The table ends with {NULL, NULL}. For work on
+// shaders without a build, TRACTRIX_GLSL_DIR names a folder from which all of them are read
+// instead.
 typedef struct GlslSource {
     const char *name; // "split.comp"
     const char *text;
@@ -31,6 +33,9 @@ Result shader_build_compute(GLuint *program, const char *file, const ShaderDefin
                             Error *error);
 Result shader_build_draw(GLuint *program, const char *vertex_file, const char *fragment_file,
                          const ShaderDefine *defines, Error *error);
+
+// The folder of TRACTRIX_GLSL_DIR; NULL: the shaders are the program's own.
+const char *shader_folder(void);
 
 // The complete text of one stage as the driver gets it (malloc'ed; NULL if a file is missing, with
 // the error set). For tests and for checks by other compilers.

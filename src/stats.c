@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "stats.h"
+
 #include "json_write.h"
+#include "shader.h"
 
 #include "version.h"
 
@@ -85,6 +87,8 @@ void stats_describe(Stats *stats, const Gpu *gpu, const Scene *scene, const Asse
     json_object_set_new(stats->root, "program", json_string("tractrix-render"));
     json_object_set_new(stats->root, "version", json_string(TRACTRIX_VERSION));
     json_object_set_new(stats->root, "commit", json_string(TRACTRIX_COMMIT));
+    json_object_set_new(stats->root, "shaders",
+                        json_string(shader_folder() ? shader_folder() : "built in"));
     json_object_set_new(stats->root, "device", describe_device(gpu));
     json_object_set_new(stats->root, "hair", hair);
     json_object_set_new(stats->root, "parameters", scene_to_json(scene));

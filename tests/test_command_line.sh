@@ -1,30 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # The command line of tractrix-render as a user meets it: exit statuses, messages, files.
-set -u
-bin=${TRACTRIX_BIN:-out/release}
-render=$bin/tractrix-render
-work=$(mktemp -d)
-trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
-passed=0 failed=0 skipped=0
+. tests/claims.sh
+program=$bin/tractrix-render
 hair=assets/fur.tfx
 small="--frames 2 --size 32x24"
-
-# claim TEXT: what the next commands must make true. check CONDITION...
-claim() { claim=$1; }
-good() { passed=$((passed + 1)); }
-bad() { failed=$((failed + 1)); echo "FAILED: $claim: $*"; sed 's/^/    /' "$work/err"; }
-# run STATUS ARGUMENT...: runs tractrix-render and compares the exit status; output in $work/out and $work/err.
-run() {
-    expected=$1; shift
-    "$render" "$@" >"$work/out" 2>"$work/err" </dev/null
-    status=$?
-    if [ "$status" = "$expected" ]; then good; else bad "exit status $status, expected $expected: $*"; fi
-}
-says() { if grep -qF -- "$1" "$work/err" "$work/out"; then good; else bad "does not say '$1'"; fi; }
-one_line() { if [ "$(wc -l <"$work/err")" = 1 ]; then good; else bad "not one line"; fi; }
-is_file() { if [ -s "$1" ]; then good; else bad "no file $1"; fi; }
-no_files() { if [ -z "$(ls -A "$1" 2>/dev/null)" ]; then good; else bad "left behind: $(ls -A "$1")"; fi; }
 
 claim "frames are written and told"
 # shellcheck disable=SC2086
@@ -47,7 +27,7 @@ if cmp -s "$work/whole/frame_0005.png" "$work/part/frame_0005.png"; then good; e
 claim "the same command gives the same bytes, with any number of driver threads"
 run 0 assets/demo.json --frames 3 --size 320x240 -q -o "$work/r1/"
 run 0 assets/demo.json --frames 3 --size 320x240 -q -o "$work/r2/"
-if LP_NUM_THREADS=1 "$render" assets/demo.json --frames 3 --size 320x240 -q -o "$work/r3/" 2>"$work/err"; then good; else bad "one thread"; fi
+if LP_NUM_THREADS=1 "$program" assets/demo.json --frames 3 --size 320x240 -q -o "$work/r3/" 2>"$work/err"; then good; else bad "one thread"; fi
 for other in r2 r3; do
     if diff -r "$work/r1" "$work/$other" >"$work/err"; then good; else bad "$other differs"; fi
 done
@@ -55,7 +35,7 @@ done
 claim "what cannot be written to standard output is an error of one line"
 for words in --help "--check $hair"; do
     # shellcheck disable=SC2086
-    "$render" $words >/dev/full 2>"$work/err"
+    "$program" $words >/dev/full 2>"$work/err"
     if [ $? = 1 ]; then good; else bad "status of $words"; fi
     one_line
 done
@@ -113,7 +93,7 @@ printf x >"$work/plain"
 run 1 $hair --frames 1 -o "$work/plain/sub/"; says "plain"
 
 claim "an interrupt ends with 130, one line and whole files"
-"$render" assets/demo.json --size 320x240 -o "$work/int/" >"$work/out" 2>"$work/err" &
+"$program" assets/demo.json --size 320x240 -o "$work/int/" >"$work/out" 2>"$work/err" &
 pid=$!
 while [ ! -e "$work/int/frame_0001.png" ] && kill -0 $pid 2>/dev/null; do sleep 0.05; done
 kill -INT $pid; kill -TERM $pid 2>/dev/null
@@ -121,7 +101,7 @@ wait $pid
 status=$?
 # A second signal ends the program at once (128 + 15) if it comes before the first was looked at.
 if [ $status = 130 ] || [ $status = 143 ]; then good; else bad "exit status $status"; fi
-"$render" assets/demo.json --size 320x240 -o "$work/int2/" >"$work/out" 2>"$work/err" &
+"$program" assets/demo.json --size 320x240 -o "$work/int2/" >"$work/out" 2>"$work/err" &
 pid=$!
 while [ ! -e "$work/int2/frame_0001.png" ] && kill -0 $pid 2>/dev/null; do sleep 0.05; done
 kill -TERM $pid
@@ -170,7 +150,7 @@ scene="assets/demo.json --size 48x32 --frames 12"
 {
 run 0 $scene -q --cache "$work/a.cache" -o "$work/direct/"
 run 0 $scene -q --from-cache "$work/a.cache" -o "$work/played/"
-"$render" $scene -q --from-cache "$work/a.cache" --first 6 -o "$work/farm/" 2>"$work/err" &
+"$program" $scene -q --from-cache "$work/a.cache" --first 6 -o "$work/farm/" 2>"$work/err" &
 pid=$!
 run 0 $scene -q --from-cache "$work/a.cache" --last 5 -o "$work/farm/"
 }
@@ -218,7 +198,7 @@ run 0 $scene --resume --cache "$work/r.cache"; says "simulating again from the s
 if cmp -s "$work/a.cache" "$work/r.cache"; then good; else bad "the cache made again differs"; fi
 run 3 $scene -q --resume --cache "$work/r.cache" --gravity 0,-1,0; one_line; says "gravity"
 run 2 $scene -q --resume -o "$work/v.mp4"; one_line; says "--cache"
-"$render" assets/demo.json --frames 5000 --cache "$work/i.cache" >"$work/out" 2>"$work/err" &
+"$program" assets/demo.json --frames 5000 --cache "$work/i.cache" >"$work/out" 2>"$work/err" &
 pid=$!
 while [ ! -s "$work/i.cache" ] && kill -0 $pid 2>/dev/null; do sleep 0.05; done
 sleep 0.3; kill -INT $pid
@@ -253,8 +233,7 @@ if command -v ffmpeg >/dev/null; then
     is_file "$work/v.mp4"
     run 1 $hair --frames 4 --size 64x48 -o "/proc/v.mp4"
 else
-    echo "skipped: no ffmpeg"; skipped=$((skipped + 1))
+    skip "no ffmpeg"
 fi
 
-echo "$passed passed, $failed failed, $skipped skipped"
-[ "$failed" = 0 ]
+finish

@@ -1,31 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # The command line of tractrix-compare as CI meets it: every exit status, messages, files, and scripts/compare-goldens.
-set -u
-bin=${TRACTRIX_BIN:-out/release}
-compare=$bin/tractrix-compare
+. tests/claims.sh
+program=$bin/tractrix-compare
 golden=tests/golden
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-passed=0 failed=0
-
-claim() { claim=$1; }
-good() { passed=$((passed + 1)); }
-bad() { failed=$((failed + 1)); echo "FAILED: $claim: $*"; sed 's/^/    /' "$work/out" "$work/err"; }
-# run STATUS ARGUMENT...
-run() {
-    expected=$1; shift
-    "$compare" "$@" >"$work/out" 2>"$work/err" </dev/null
-    status=$?
-    if [ "$status" = "$expected" ]; then good; else bad "exit status $status, expected $expected: $*"; fi
-}
-says() { if grep -qF -- "$1" "$work/err" "$work/out"; then good; else bad "does not say '$1'"; fi; }
-silent() { if [ -s "$work/$1" ]; then bad "said something on $1"; else good; fi; }
-one_line() { if [ "$(wc -l <"$work/err")" = 1 ]; then good; else bad "not one line"; fi; }
-in_file() { if grep -qF -- "$2" "$1"; then good; else bad "$1 has no $2"; fi; }
-is_png() { if [ "$(head -c 4 "$1" | tail -c 3)" = PNG ]; then good; else bad "no picture $1"; fi; }
-none() { if [ -e "$1" ]; then bad "there is $1"; else good; fi; }
-equal() { if cmp -s "$1" "$2"; then good; else bad "$1 and $2 are not equal"; fi; }
 
 a=$golden/curls_still.png b=$golden/curls_split.png other=$golden/fur_transparent.png
 
@@ -71,7 +49,7 @@ run 3 "$work/empty" "$work/empty"; says "no picture in either"
 
 claim "help and version are answered"
 run 0 --help; says "--max-failing-pixels N|P%"; run 0 --help=man; says ".TH TRACTRIX-COMPARE 1"; run 0 --version; says "tractrix-compare "
-"$compare" --help >/dev/full 2>"$work/err"
+"$program" --help >/dev/full 2>"$work/err"
 if [ $? = 1 ]; then good; else bad "status with a full disk"; fi
 
 claim "heat map and sheet are written, the same whatever else is asked"
@@ -136,5 +114,4 @@ is_png "$work/result/sheets/plain.png"; in_file "$work/result/report.xml" "plain
 printf 'plain nowhere.tfx\n' >"$work/list"
 goldens 3; says "did not render"
 
-echo "$passed passed, $failed failed, 0 skipped"
-[ "$failed" = 0 ]
+finish
