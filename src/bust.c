@@ -15,6 +15,15 @@ static Result grow_mesh(Mesh *mesh, uint32_t vertices, uint32_t triangles, Error
     if (result != RESULT_OK) return result;
     memcpy(larger.position, mesh->position, mesh->vertex_count * sizeof *mesh->position);
     memcpy(larger.triangle, mesh->triangle, mesh->triangle_count * sizeof *mesh->triangle);
+    if (mesh->uv && mesh_create_uv(&larger, mesh->uv_count, error) != RESULT_OK) {
+        mesh_destroy(&larger);
+        return RESULT_FAILED;
+    }
+    if (mesh->uv) {
+        memcpy(larger.uv, mesh->uv, mesh->uv_count * sizeof *mesh->uv);
+        memcpy(larger.triangle_uv, mesh->triangle_uv,
+               mesh->triangle_count * sizeof *mesh->triangle_uv);
+    }
     mesh_destroy(mesh);
     *mesh = larger;
     return RESULT_OK;

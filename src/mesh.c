@@ -17,11 +17,25 @@ Result mesh_create(Mesh *mesh, uint32_t vertex_count, uint32_t triangle_count, E
                      vertex_count, triangle_count);
 }
 
+Result mesh_create_uv(Mesh *mesh, uint32_t uv_count, Error *error)
+{
+    mesh->uv_count = uv_count;
+    mesh->uv = calloc((size_t)uv_count + 1, sizeof *mesh->uv);
+    mesh->triangle_uv = malloc(((size_t)mesh->triangle_count + 1) * sizeof *mesh->triangle_uv);
+    if (!mesh->uv || !mesh->triangle_uv)
+        return error_set(error, RESULT_FAILED, "no memory for %u texture coordinates", uv_count);
+    for (size_t i = 0; i < 3 * (size_t)mesh->triangle_count; i++)
+        mesh->triangle_uv[i / 3][i % 3] = MESH_NO_UV;
+    return RESULT_OK;
+}
+
 void mesh_destroy(Mesh *mesh)
 {
     free(mesh->position);
     free(mesh->normal);
     free(mesh->triangle);
+    free(mesh->uv);
+    free(mesh->triangle_uv);
     *mesh = (Mesh){0};
 }
 

@@ -18,10 +18,10 @@ typedef struct Pile {
 // The file's content while it is read.
 typedef struct Obj {
     Reader reader;
-    Pile position, normal;          // float[3]
-    Pile triangle, triangle_normal; // uint32_t[3]; normals 1-based, 0: none
-    uint32_t largest[2];            // index used by a face so far: vertex, normal (1-based)
-    uint32_t largest_line[2];       // and where
+    Pile position, normal, uv;                   // float[3], [3], [2]
+    Pile triangle, triangle_normal, triangle_uv; // uint32_t[3]; normals and uvs from 1, 0: none
+    uint32_t largest[3];      // index (from 1) that a face used: vertex, normal, uv
+    uint32_t largest_line[3]; // and where
 } Obj;
 
 // Room for one more record of `size` bytes; NULL after failing.
@@ -45,10 +45,11 @@ static void *pile_add(Reader *reader, Pile *pile, size_t size)
     return (char *)pile->data + size * pile->count++;
 }
 
-static void read_vector(Reader *reader, Pile *pile, const char *what)
+// Reads `size` coordinates; those behind the first `needed` are 0 where the line ends before them.
+static void read_vector(Reader *reader, Pile *pile, int size, int needed, const char *what)
 {
-    float vector[3];
-    for (int i = 0; i < 3; i++) {
+    float vector[3] = {0};
+    for (int i = 0; i < size && (i < needed || !reader_line_ended(reader)); i++) {
         Reader before = *reader;
         vector[i] = reader_read_number(reader, what);
         if (!reader_ok(reader) || fabsf(vector[i]) <= 1e18f) continue;
@@ -56,8 +57,8 @@ static void read_vector(Reader *reader, Pile *pile, const char *what)
         *reader = before;
         reader_fail_expected(reader, what);
     }
-    float *record = pile_add(reader, pile, sizeof vector);
-    if (record) memcpy(record, vector, sizeof vector);
+    float *record = pile_add(reader, pile, (size_t)size * sizeof *vector);
+    if (record) memcpy(record, vector, (size_t)size * sizeof *vector);
     reader_skip_line(reader); // w, or colours that some programs put there
 }
 
@@ -84,16 +85,18 @@ static uint32_t resolve_index(Obj *obj, int64_t index, size_t count, int which)
     return (uint32_t)index;
 }
 
-// Parses "v", "v/t", "v//n" or "v/t/n"; a missing normal is 0. False for anything else.
-static bool parse_corner(Obj *obj, const char *text, uint32_t corner[2])
+// Parses "v", "v/t", "v//n" or "v/t/n" into vertex, normal, uv; what is missing is 0. False for
+// anything else.
+static bool parse_corner(Obj *obj, const char *text, uint32_t corner[3])
 {
     corner[0] = resolve_index(obj, scan_index(&text), obj->position.count, 0);
-    corner[1] = 0;
+    corner[1] = corner[2] = 0;
     if (corner[0] == 0) return false;
     if (*text == '/') {
         text++;
         bool textured = *text != '/' && *text != 0;
-        if (textured && scan_index(&text) == 0) return false;
+        if (textured) corner[2] = resolve_index(obj, scan_index(&text), obj->uv.count, 2);
+        if (textured && corner[2] == 0) return false;
         if (*text == '/') {
             text++;
             corner[1] = resolve_index(obj, scan_index(&text), obj->normal.count, 1);
@@ -103,7 +106,7 @@ static bool parse_corner(Obj *obj, const char *text, uint32_t corner[2])
     return *text == 0;
 }
 
-static void read_corner(Obj *obj, uint32_t corner[2])
+static void read_corner(Obj *obj, uint32_t corner[3])
 {
     Reader *reader = &obj->reader;
     Reader before = *reader;
@@ -114,20 +117,22 @@ static void read_corner(Obj *obj, uint32_t corner[2])
     }
 }
 
-static void add_triangle(Obj *obj, uint32_t corner[3][2])
+static void add_triangle(Obj *obj, uint32_t corner[3][3])
 {
     uint32_t *triangle = pile_add(&obj->reader, &obj->triangle, 3 * sizeof *triangle);
     uint32_t *normal = pile_add(&obj->reader, &obj->triangle_normal, 3 * sizeof *normal);
-    for (int i = 0; i < 3 && triangle && normal; i++) {
+    uint32_t *uv = pile_add(&obj->reader, &obj->triangle_uv, 3 * sizeof *uv);
+    for (int i = 0; i < 3 && triangle && normal && uv; i++) {
         triangle[i] = corner[i][0] - 1;
         normal[i] = corner[i][1];
+        uv[i] = corner[i][2];
     }
 }
 
 static void read_face(Obj *obj)
 {
     Reader *reader = &obj->reader;
-    uint32_t corner[3][2] = {{0}}; // the first, the one before, this one
+    uint32_t corner[3][3] = {{0}}; // the first, the one before, this one
     size_t corners = 0;
     while (!reader_line_ended(reader) && reader->data[reader->at] != '#') {
         memcpy(corner[1], corner[2], sizeof corner[1]);
@@ -144,20 +149,24 @@ static void read_statements(Obj *obj)
     Reader *reader = &obj->reader;
     while (!reader_ended(reader)) {
         if (reader_take(reader, "v"))
-            read_vector(reader, &obj->position, "a vertex's coordinate");
+            read_vector(reader, &obj->position, 3, 3, "a vertex's coordinate");
+        else if (reader_take(reader, "vt"))
+            read_vector(reader, &obj->uv, 2, 1, "a texture coordinate");
         else if (reader_take(reader, "vn"))
-            read_vector(reader, &obj->normal, "a normal's coordinate");
+            read_vector(reader, &obj->normal, 3, 3, "a normal's coordinate");
         else if (reader_take(reader, "f"))
             read_face(obj);
         else
             reader_skip_line(reader);
     }
     if (reader_ok(reader) && obj->triangle.count == 0) reader_fail(reader, "no faces");
-    for (int which = 0; which < 2 && reader_ok(reader); which++) {
-        size_t count = which ? obj->normal.count : obj->position.count;
+    static const char *const names[] = {"vertex", "normal", "texture coordinate"};
+    const size_t counts[] = {obj->position.count, obj->normal.count, obj->uv.count};
+    for (int which = 0; which < 3 && reader_ok(reader); which++) {
+        size_t count = counts[which];
         if (obj->largest[which] <= count) continue;
         reader->line = obj->largest_line[which];
-        reader_fail(reader, "a face uses %s %u, the file has %zu", which ? "normal" : "vertex",
+        reader_fail(reader, "a face uses %s %u, the file has %zu", names[which],
                     obj->largest[which], count);
     }
 }
@@ -192,6 +201,18 @@ static bool apply_normals(Mesh *mesh, const Obj *obj, bool up_z)
     return true;
 }
 
+// Texture coordinates, if any corner names one.
+static bool apply_uv(Mesh *mesh, const Obj *obj)
+{
+    const uint32_t *index = obj->triangle_uv.data;
+    if (obj->largest[2] == 0) return true;
+    if (mesh_create_uv(mesh, (uint32_t)obj->uv.count, NULL) != RESULT_OK) return false;
+    memcpy(mesh->uv, obj->uv.data, obj->uv.count * sizeof *mesh->uv);
+    for (size_t i = 0; i < 3 * (size_t)mesh->triangle_count; i++)
+        mesh->triangle_uv[i / 3][i % 3] = index[i] - 1; // 0, none, becomes MESH_NO_UV
+    return true;
+}
+
 static Result make_mesh(Mesh *mesh, Obj *obj, float unit, bool up_z)
 {
     if (!reader_ok(&obj->reader)) return obj->reader.result;
@@ -202,6 +223,10 @@ static Result make_mesh(Mesh *mesh, Obj *obj, float unit, bool up_z)
     for (size_t v = 0; v < vertices; v++) turn(mesh->position[v], position + 3 * v, unit, up_z);
     memcpy(mesh->triangle, obj->triangle.data, triangles * sizeof *mesh->triangle);
     mesh_compute_normals(mesh);
+    if (!apply_uv(mesh, obj)) {
+        mesh_destroy(mesh);
+        return reader_fail_memory(&obj->reader);
+    }
     if (obj->normal.count == 0 || apply_normals(mesh, obj, up_z)) return RESULT_OK;
     mesh_destroy(mesh);
     return reader_fail_memory(&obj->reader);
@@ -222,8 +247,21 @@ Result mesh_read_obj(Mesh *mesh, const char *path, float unit, bool up_z, Error 
     free(obj.normal.data);
     free(obj.triangle.data);
     free(obj.triangle_normal.data);
+    free(obj.uv.data);
+    free(obj.triangle_uv.data);
     bytes_destroy(&bytes);
     return result;
+}
+
+static void put_face(FILE *stream, const Mesh *mesh, uint32_t t)
+{
+    fputc('f', stream);
+    for (int i = 0; i < 3; i++) {
+        uint32_t uv = mesh->triangle_uv ? mesh->triangle_uv[t][i] : MESH_NO_UV;
+        fprintf(stream, " %u", mesh->triangle[t][i] + 1);
+        if (uv != MESH_NO_UV) fprintf(stream, "/%u", uv + 1);
+    }
+    fputc('\n', stream);
 }
 
 Result mesh_write_obj(const char *path, const Mesh *mesh, Error *error)
@@ -239,9 +277,11 @@ Result mesh_write_obj(const char *path, const Mesh *mesh, Error *error)
         decimal_put(file.stream, " ", mesh->position[v][2]);
         fputc('\n', file.stream);
     }
-    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
-        const uint32_t *corner = mesh->triangle[t];
-        fprintf(file.stream, "f %u %u %u\n", corner[0] + 1, corner[1] + 1, corner[2] + 1);
+    for (uint32_t i = 0; i < mesh->uv_count; i++) {
+        decimal_put(file.stream, "vt ", mesh->uv[i][0]);
+        decimal_put(file.stream, " ", mesh->uv[i][1]);
+        fputc('\n', file.stream);
     }
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) put_face(file.stream, mesh, t);
     return outfile_commit(&file, error);
 }

@@ -166,6 +166,15 @@ void scalp_roots_next(ScalpRoots *roots, double direction[3])
     }
 }
 
+static void set_triangle(Mesh *mesh, uint32_t t, const uint32_t triangle[3], const uint32_t uv[3])
+{
+    for (int k = 0; k < 3; k++) {
+        mesh->triangle[t][k] = triangle[k];
+        mesh->triangle_uv[t][k] = uv[k];
+    }
+}
+
+// Texture coordinates have a column more than there are vertices around: the seam, at the back.
 static void add_ring_triangles(Mesh *mesh, uint32_t ring, uint32_t rings)
 {
     uint32_t around = 2 * rings, t = ring == 0 ? 0 : around * (2 * ring - 1);
@@ -174,16 +183,13 @@ static void add_ring_triangles(Mesh *mesh, uint32_t ring, uint32_t rings)
         uint32_t next = (i + 1) % around;
         uint32_t a = ring == 0 ? 0 : top + i,
                  b = ring == last ? mesh->vertex_count - 1 : bottom + i;
-        if (ring != last) {
-            uint32_t triangle[3] = {a, b, bottom + next};
-            for (int k = 0; k < 3; k++) mesh->triangle[t][k] = triangle[k];
-            t++;
-        }
-        if (ring != 0) {
-            uint32_t triangle[3] = {a, ring == last ? b : bottom + next, top + next};
-            for (int k = 0; k < 3; k++) mesh->triangle[t][k] = triangle[k];
-            t++;
-        }
+        uint32_t upper = ring * (around + 1) + (i + rings) % around, lower = upper + around + 1;
+        if (ring != last)
+            set_triangle(mesh, t++, (uint32_t[]){a, b, bottom + next},
+                         (uint32_t[]){upper, lower, lower + 1});
+        if (ring != 0)
+            set_triangle(mesh, t++, (uint32_t[]){a, ring == last ? b : bottom + next, top + next},
+                         (uint32_t[]){upper, lower + (ring != last), upper + 1});
     }
 }
 
@@ -191,7 +197,12 @@ Result scalp_make_mesh(Mesh *mesh, ScalpShape shape, uint32_t rings, Error *erro
 {
     uint32_t around = 2 * rings;
     Result result = mesh_create(mesh, 2 + (rings - 1) * around, 2 * (rings - 1) * around, error);
+    if (result == RESULT_OK) result = mesh_create_uv(mesh, (rings + 1) * (around + 1), error);
     if (result != RESULT_OK) return result;
+    for (uint32_t i = 0; i < mesh->uv_count; i++) {
+        mesh->uv[i][0] = (float)(i % (around + 1)) / (float)around;
+        mesh->uv[i][1] = 1.0f - (float)(i / (around + 1)) / (float)rings;
+    }
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         uint32_t ring = v == 0 ? 0 : 1 + (v - 1) / around;
         double angle = PI * ring / rings, turn = 2.0 * PI * ((v - 1) % around) / around;

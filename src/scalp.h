@@ -38,4 +38,5 @@ void scalp_roots_next(ScalpRoots *roots, double direction[3]);
 
 // A closed mesh of `rings` bands between the poles, 2 * rings squares around: 4 * rings *
 // (rings - 1) triangles; 3 <= rings <= 4096. Its vertices lie on the surface.
+// Texture coordinates are longitude (0.5 in front, the seam at the back) and latitude (1 on top).
 Result scalp_make_mesh(Mesh *mesh, ScalpShape shape, uint32_t rings, Error *error);

@@ -59,6 +59,21 @@ static void z_up_turns_positions_and_normals(void **state)
     mesh_destroy(&mesh);
 }
 
+static void texture_coordinates_belong_to_corners(void **state)
+{
+    Mesh mesh =
+        read_good(state, SQUARE "vt 0 0.25\nvt 1\nvt 1 1 0\nf 1/1 2/2 3/3\nf 1 3/3 4/-3\n", false);
+    static const float uv[3][2] = {{0.0f, 0.25f}, {1.0f, 0.0f}, {1.0f, 1.0f}};
+    static const uint32_t expected[2][3] = {{0, 1, 2}, {MESH_NO_UV, 2, 0}};
+    assert_int_equal(mesh.uv_count, 3);
+    assert_memory_equal(mesh.uv, uv, sizeof uv);
+    assert_memory_equal(mesh.triangle_uv, expected, sizeof expected);
+    mesh_destroy(&mesh);
+    mesh = read_good(state, SQUARE "vt 0 0\nf 1 2 3\n", false);
+    assert_null(mesh.uv);
+    mesh_destroy(&mesh);
+}
+
 static void malformed_files_are_refused_with_their_line(void **state)
 {
     static const struct {
@@ -72,6 +87,8 @@ static void malformed_files_are_refused_with_their_line(void **state)
         {SQUARE "f 1 2\n", "5: a face of 2 corners: expected at least 3"},
         {SQUARE "f 1 2 5\n\n", "5: a face uses vertex 5, the file has 4"},
         {SQUARE "f 1//1 2//1 3//2\nvn 0 0 1\n", "5: a face uses normal 2, the file has 1"},
+        {SQUARE "vt 0 0\nf 1/1 2/1 3/2\n", "6: a face uses texture coordinate 2, the file has 1"},
+        {SQUARE "vt 0 inf\n", "5: expected a texture coordinate, got 'inf'"},
         {SQUARE "f 1 2 0\n",
          "5: expected a corner v, v/t, v//n or v/t/n with an index in range, got '0'"},
         {SQUARE "f 1 2 -5\n",
@@ -118,6 +135,9 @@ static void written_meshes_read_back_bit_for_bit(void **state)
     assert_int_equal(back.triangle_count, mesh.triangle_count);
     assert_memory_equal(back.position, mesh.position, 12 * (size_t)mesh.vertex_count);
     assert_memory_equal(back.triangle, mesh.triangle, 12 * (size_t)mesh.triangle_count);
+    assert_int_equal(back.uv_count, mesh.uv_count);
+    assert_memory_equal(back.uv, mesh.uv, 8 * (size_t)mesh.uv_count);
+    assert_memory_equal(back.triangle_uv, mesh.triangle_uv, 12 * (size_t)mesh.triangle_count);
     mesh_destroy(&mesh);
     mesh_destroy(&back);
 }
@@ -144,6 +164,28 @@ static void shapes_are_closed_and_face_outwards(void **state)
         }
         mesh_destroy(&mesh);
     }
+}
+
+// Longitude runs by a 20th from side to side of a sector, its seam too; the vertex says latitude.
+static void shapes_have_longitude_and_latitude(void **state)
+{
+    (void)state;
+    Mesh mesh;
+    assert_int_equal(scalp_make_mesh(&mesh, SCALP_SPHERE, 10, NULL), RESULT_OK);
+    for (uint32_t t = 0; t < mesh.triangle_count; t++) {
+        float low = 2, high = -1;
+        for (int i = 0; i < 3; i++) {
+            const float *uv = mesh.uv[mesh.triangle_uv[t][i]];
+            const float *p = mesh.position[mesh.triangle[t][i]];
+            double u = (double)uv[0], pi = 3.14159265358979323846, x = (double)p[0];
+            double flat = sqrt(x * x + (double)p[2] * (double)p[2]);
+            assert_true(fabs((double)p[1] - 0.1 * sin(pi * ((double)uv[1] - 0.5))) < 1e-6);
+            assert_true(fabs(x - flat * sin(2 * pi * (u - 0.5))) < 1e-6);
+            low = fminf(low, uv[0]), high = fmaxf(high, uv[0]);
+        }
+        assert_true(low >= 0 && high <= 1 && high - low < 0.0501f);
+    }
+    mesh_destroy(&mesh);
 }
 
 static void bundled_head_is_read(void **state)
@@ -183,10 +225,12 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(all_forms_of_faces_give_the_same_square),
         TEST(z_up_turns_positions_and_normals),
+        TEST(texture_coordinates_belong_to_corners),
         TEST(malformed_files_are_refused_with_their_line),
         TEST(every_truncation_is_read_or_refused),
         TEST(written_meshes_read_back_bit_for_bit),
         TEST(shapes_are_closed_and_face_outwards),
+        TEST(shapes_have_longitude_and_latitude),
         TEST(bundled_head_is_read),
         TEST(real_head_is_read),
     };
