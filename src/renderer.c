@@ -117,11 +117,11 @@ static Result list_casters(Renderer *renderer, ShadowScene *scene, Error *error)
     for (uint32_t i = 0; i < picture->item_count; ++i) {
         const RenderItem *item = &picture->items[i];
         for (uint32_t b = 0; b < item->hair->batch_count; ++b)
-            renderer->casters[scene->caster_count++] =
+            renderer->casters[scene->casters.count++] =
                 (ShadowCaster){&item->hair->batches[b], item->radius, item->material->tip_ratio,
                                item->material->shadow_opacity};
     }
-    scene->casters = renderer->casters;
+    scene->casters.list = renderer->casters;
     return RESULT_OK;
 }
 
@@ -130,11 +130,11 @@ static Result draw_shadow(Renderer *renderer, const RenderFrame *frame, Error *e
     const Picture *picture = &renderer->picture;
     ShadowScene scene = {.lights = frame->lights,
                          .light_count = frame->light_count,
-                         .mesh = &renderer->mesh,
+                         .mesh = {.mesh = &renderer->mesh},
                          .revision = frame->revision};
     if (renderer->options.shadow.kind == SHADOW_NONE) return RESULT_OK;
-    memcpy(scene.head_rotation, frame->head_rotation, sizeof scene.head_rotation);
-    memcpy(scene.head_translation, frame->head_translation, sizeof scene.head_translation);
+    memcpy(scene.mesh.rotation, frame->head_rotation, sizeof scene.mesh.rotation);
+    memcpy(scene.mesh.translation, frame->head_translation, sizeof scene.mesh.translation);
     if (picture->item_count) picture_find_middle(picture, picture->items[0].hair, scene.middle);
     Result result = list_casters(renderer, &scene, error);
     if (result == RESULT_OK)

@@ -62,12 +62,11 @@ static void stage_open(Stage *stage, Strands strands, float radius, float opacit
                                    (const float[3]){0}, error));
     stage->scene = (ShadowScene){.lights = &stage->light,
                                  .light_count = 1,
-                                 .casters = stage->casters,
-                                 .mesh = &stage->mesh,
-                                 .head_rotation = {0, 0, 0, 1},
+                                 .casters = {.list = stage->casters},
+                                 .mesh = {&stage->mesh, {0, 0, 0, 1}, {0}},
                                  .revision = 1};
     for (uint32_t b = 0; b < stage->hair.batch_count && b < 8; ++b)
-        stage->casters[stage->scene.caster_count++] =
+        stage->casters[stage->scene.casters.count++] =
             (ShadowCaster){&stage->hair.batches[b], radius, 1, opacity};
     if (mesh)
         NEEDED(render_mesh_create(&stage->mesh, mesh, (const float[3]){1, 1, 1}, SHADOW_NONE,

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: MIT
+#include "render_shadow_hair.h"
+
+#include <math.h>
+#include <string.h>
+
+enum {
+    GROUP = 8,
+    TEXEL_GROUP = 64,
+    PART_VERTICES = 64, // that one lane walks
+    PART_SEGMENTS = 8,
+    MARGIN = 3, // texels at the edges of a map that hair leaves free
+    BOX_WORDS = 6
+};
+
+static const double UNIT = 1 << 16;    // steps for an optical depth of 1
+static const double SUM_MAX = 2e9;     // of those steps: sums do not overflow
+static const double LEAST_LEFT = 1e-3; // of the light behind one fibre, as in shadow_splat.comp
+
+static Result build(GLuint *program, const char *file, int group, int deep, Error *error)
+{
+    const ShaderDefine defines[] = {{"GROUP_SIZE", group},
+                                    {"DEEP", deep},
+                                    {"PART_VERTICES", PART_VERTICES},
+                                    {"PART_SEGMENTS", PART_SEGMENTS},
+                                    {NULL, 0}};
+    return shader_build_compute(program, file, defines, error);
+}
+
+static Result build_programs(RenderShadowHair *hair, Error *error)
+{
+    bool deep = hair->deep;
+    Result result = build(&hair->bounds, "shadow_bounds.comp", GROUP, deep, error);
+    if (result == RESULT_OK) result = build(&hair->first, "shadow_splat.comp", GROUP, false, error);
+    if (result == RESULT_OK && deep)
+        result = build(&hair->splat, "shadow_splat.comp", GROUP, true, error);
+    if (result == RESULT_OK && deep)
+        result = build(&hair->spread, "shadow_spread.comp", TEXEL_GROUP, deep, error);
+    if (result == RESULT_OK && deep)
+        result = build(&hair->finish, "shadow_finish.comp", TEXEL_GROUP, deep, error);
+    return result;
+}
+
+Result render_shadow_hair_create(RenderShadowHair *hair, const GpuLimits *limits, bool deep,
+                                 int side, Error *error)
+{
+    *hair = (RenderShadowHair){.deep = deep, .side = side, .limits = limits};
+    Result result = build_programs(hair, error);
+    if (result == RESULT_OK)
+        result =
+            gpu_buffer_create(&hair->box, limits, "light's box", BOX_WORDS * 4, NULL, 0, error);
+    if (result != RESULT_OK) render_shadow_hair_destroy(hair);
+    return result;
+}
+
+static void destroy_maps(RenderShadowHair *hair)
+{
+    gpu_buffer_destroy(&hair->firsts);
+    gpu_buffer_destroy(&hair->depths);
+    gpu_buffer_destroy(&hair->sums);
+    gpu_buffer_destroy(&hair->layers);
+    hair->maps = 0;
+}
+
+void render_shadow_hair_destroy(RenderShadowHair *hair)
+{
+    const GLuint programs[] = {hair->bounds, hair->first, hair->spread, hair->splat, hair->finish};
+    for (size_t i = 0; i < sizeof programs / sizeof *programs; ++i)
+        if (programs[i]) glDeleteProgram(programs[i]);
+    destroy_maps(hair);
+    gpu_buffer_destroy(&hair->box);
+    gpu_buffer_destroy(&hair->cast_uniforms);
+    *hair = (RenderShadowHair){0};
+}
+
+Result render_shadow_hair_reserve(RenderShadowHair *hair, int maps, Error *error)
+{
+    const GpuLimits *limits = hair->limits;
+    if (hair->maps >= maps) return RESULT_OK;
+    destroy_maps(hair);
+    int64_t side = hair->side, coarse = hair->deep ? side / SHADOW_COARSE : side,
+            texels = maps * side * side;
+    Result result = gpu_buffer_create(&hair->firsts, limits, "shadow's depths",
+                                      maps * coarse * coarse * 4, NULL, GL_R32UI, error);
+    if (result == RESULT_OK && hair->deep)
+        result = gpu_buffer_create(&hair->depths, limits, "shadow's beginnings", texels * 4, NULL,
+                                   GL_R32F, error);
+    if (result == RESULT_OK && hair->deep)
+        result = gpu_buffer_create(&hair->sums, limits, "shadow's sums", texels * 4 * SHADOW_LAYERS,
+                                   NULL, GL_R32UI, error);
+    if (result == RESULT_OK && hair->deep)
+        result = gpu_buffer_create(&hair->layers, limits, "shadow's layers",
+                                   texels * 8 * SHADOW_LAYERS, NULL, GL_RG32F, error);
+    hair->maps = maps;
+    if (result != RESULT_OK) destroy_maps(hair);
+    return result;
+}
+
+// Runs a pass over all strands, in parts of `part` of a strand's vertices.
+static void cast(RenderShadowHair *hair, ShadowCasters casters, CastParams *params, GLuint program,
+                 uint32_t part)
+{
+    glUseProgram(program);
+    for (uint32_t i = 0; i < casters.count; ++i) {
+        const ShadowCaster *caster = &casters.list[i];
+        const HairBatch *batch = caster->batch;
+        params->strand_count = batch->strand_count;
+        params->vertex_count = batch->vertex_count;
+        params->radius = caster->radius;
+        params->tip_ratio = caster->tip_ratio;
+        params->opacity = caster->opacity;
+        gpu_uniforms_set(&hair->cast_uniforms, BIND_CAST, params, sizeof *params);
+        gpu_buffer_bind_texture(&batch->position, BIND_POSITION);
+        glDispatchCompute((batch->strand_count + GROUP - 1) / GROUP,
+                          (batch->vertex_count + part - 1) / part, 1);
+    }
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
+                    GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+static float decode(int32_t bits)
+{
+    float value;
+    bits = bits < 0 ? bits ^ 0x7fffffff : bits;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+static void set_rows(CastParams *params, double rows[4][4])
+{
+    for (int k = 0; k < 4; ++k)
+        for (int i = 0; i < 4; ++i) params->from_world[k][i] = (float)rows[k][i];
+}
+
+bool render_shadow_hair_find_box(RenderShadowHair *hair, const LightView *view,
+                                 ShadowCasters casters, double box[6])
+{
+    double rows[4][4];
+    const GLint none[BOX_WORDS] = {INT32_MAX, INT32_MAX, INT32_MAX,
+                                   INT32_MIN, INT32_MIN, INT32_MIN};
+    GLint words[BOX_WORDS];
+    CastParams params = {
+        .limit = (float)LIGHT_FRAME_FAR,
+        .reach = (float)(view->perspective ? LIGHT_FRAME_WIDE : LIGHT_FRAME_FAR),
+    };
+    for (int k = 0; k < 4; ++k) light_view_row(view, k, rows[k]);
+    set_rows(&params, rows);
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, hair->box.buffer);
+    glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof none, none);
+    gpu_buffer_bind_storage(&hair->box, BIND_BOUNDS_OUT);
+    cast(hair, casters, &params, hair->bounds, PART_VERTICES);
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, hair->box.buffer);
+    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof words, words);
+    if (words[0] > words[3]) return false;
+    for (int i = 0; i < 6; ++i) box[i] = (double)decode(words[i]);
+    return true;
+}
+
+LightFrame render_shadow_hair_frame(const RenderShadowHair *hair, const LightView *view,
+                                    const double box[6])
+{
+    return light_frame_steady(view, box, hair->side, MARGIN);
+}
+
+// The smallest step of sums that cannot overflow, were all segments in one texel.
+static float find_unit(ShadowCasters casters, bool perspective, double texels)
+{
+    double most = 1;
+    for (uint32_t i = 0; i < casters.count; ++i) {
+        const ShadowCaster *caster = &casters.list[i];
+        double width = perspective ? 1 : fmin(2.0 * (double)caster->radius * texels, 1);
+        double left = fmax(1 - (double)caster->opacity * width, LEAST_LEFT);
+        most -= log(left) * caster->batch->strand_count * (caster->batch->vertex_count - 1);
+    }
+    return (float)fmin(UNIT, SUM_MAX / most);
+}
+
+static void fill(const GpuBuffer *buffer, GLuint value)
+{
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
+    glClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, 0, (GLsizeiptr)buffer->size,
+                         GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
+}
+
+void render_shadow_hair_clear(const RenderShadowHair *hair)
+{
+    fill(&hair->firsts, SHADOW_DEPTHS);
+    if (hair->deep) fill(&hair->sums, 0);
+}
+
+// First depths, in texels that are `coarse` of the map's wide.
+static void draw_firsts(RenderShadowHair *hair, ShadowCasters casters, const CastParams *params,
+                        int coarse)
+{
+    CastParams wide = *params;
+    wide.side /= coarse;
+    wide.texels /= (float)coarse;
+    for (int k = 0; k < 2; ++k)
+        for (int i = 0; i < 4; ++i) wide.from_world[k][i] /= (float)coarse;
+    gpu_buffer_bind_storage(&hair->firsts, BIND_FIRST_OUT);
+    cast(hair, casters, &wide, hair->first, PART_SEGMENTS);
+}
+
+static void run_texels(const RenderShadowHair *hair, const CastParams *params, GLuint program)
+{
+    glUseProgram(program);
+    glUniform2i(0, params->side, params->map);
+    if (program == hair->finish) glUniform1f(1, params->unit);
+    glDispatchCompute((GLuint)(params->side * params->side / TEXEL_GROUP), 1, 1);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+}
+
+static void draw_deep(RenderShadowHair *hair, ShadowCasters casters, CastParams *params)
+{
+    draw_firsts(hair, casters, params, SHADOW_COARSE);
+    gpu_buffer_bind_texture(&hair->firsts, BIND_FIRST);
+    gpu_buffer_bind_storage(&hair->depths, BIND_DEPTHS_OUT);
+    run_texels(hair, params, hair->spread);
+    gpu_buffer_bind_texture(&hair->depths, BIND_DEPTHS);
+    gpu_buffer_bind_storage(&hair->sums, BIND_SUMS_OUT);
+    cast(hair, casters, params, hair->splat, PART_SEGMENTS);
+    gpu_buffer_bind_texture(&hair->sums, BIND_SUMS);
+    gpu_buffer_bind_storage(&hair->layers, BIND_LAYERS_OUT);
+    run_texels(hair, params, hair->finish);
+}
+
+void render_shadow_hair_draw(RenderShadowHair *hair, const LightView *view, const LightFrame *frame,
+                             int map, ShadowCasters casters)
+{
+    double rows[4][4];
+    memcpy(rows, frame->rows, sizeof rows);
+    CastParams params = {
+        .side = hair->side,
+        .map = map,
+        .texels = (float)(1 / frame->texel),
+        .unit = find_unit(casters, view->perspective, 1 / frame->texel),
+        .reach = (float)(view->perspective ? LIGHT_FRAME_WIDE : LIGHT_FRAME_FAR),
+        .limit = (float)LIGHT_FRAME_FAR,
+    };
+    set_rows(&params, rows);
+    if (hair->deep)
+        draw_deep(hair, casters, &params);
+    else
+        draw_firsts(hair, casters, &params, 1);
+}
+
+void render_shadow_hair_bind(const RenderShadowHair *hair)
+{
+    if (hair->deep) gpu_buffer_bind_texture(&hair->depths, BIND_DEPTHS);
+    gpu_buffer_bind_texture(hair->deep ? &hair->layers : &hair->firsts, BIND_LAYERS);
+}
