@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "camera.h"
 #include "schedule.h"
+#include "turntable.h"
 
 #include <cglm/cglm.h>
 
@@ -30,7 +31,7 @@ static void choose_up(const float wanted[3], vec3 direction, vec3 up)
 
 static void turn_eye(View *view, vec3 target, const Scene *scene, int frame)
 {
-    double degrees = fmod((double)scene->run.turntable * frame / scene->run.frames, 360);
+    double degrees = turntable_angle_deg(&scene->run, frame);
     vec3 arm, axis = {0};
     memcpy(axis, scene->run.camera_up, sizeof axis);
     if (degrees == 0 || !(glm_vec3_norm(axis) > 0)) return;

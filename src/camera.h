@@ -19,6 +19,6 @@ typedef struct View {
 // The camera of frame `frame` (0 .. run.frames - 1) for a picture of run.size. Keyframes of eye,
 // target and fov win over the parameters; what is automatic comes from the framing. The turntable
 // turns the eye about the axis through the target along camera_up, counter-clockwise seen from its
-// tip, by run.turntable * frame / run.frames. Any finite input gives a finite camera: an eye on the
+// tip, by turntable_angle_deg. Any finite input gives a finite camera: an eye on the
 // target looks along -z, an up direction along the line of sight is replaced.
 void camera_view(View *view, const Scene *scene, const Framing *framing, int frame);

@@ -68,6 +68,10 @@ static Result check_words(const Scene *scene, Error *error)
     target_destroy(&target);
     if (result == RESULT_OK && scene->run.collide_mesh && !*scene->run.mesh)
         result = error_set(error, RESULT_USAGE, "--collide-mesh: expected a mesh, --mesh");
+    if (result == RESULT_OK && scene->run.turntable == 0 &&
+        (scene->run.ease_in > 0 || scene->run.ease_out > 0))
+        result = error_set(error, RESULT_USAGE, "%s: expected a turntable, --turntable",
+                           scene->run.ease_in > 0 ? "--ease-in" : "--ease-out");
     if (result == RESULT_OK && *scene->run.export) {
         result = target_parse_hair(&target, scene->run.export, error);
         target_destroy(&target);

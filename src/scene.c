@@ -59,6 +59,10 @@ Result scene_add_section(Scene *scene, const char *file, const SectionParams *pa
 
 static Result check_frames(const RunParams *run, Error *error)
 {
+    const float slowest = 1e-4f;
+    if (run->speed > 0 && run->speed < slowest)
+        return error_set(error, RESULT_USAGE, "--speed %g: expected 0 or at least %g",
+                         (double)run->speed, (double)slowest);
     if (run->first >= run->frames)
         return error_set(error, RESULT_USAGE, "--first %d: expected 0 to %d, since --frames is %d",
                          run->first, run->frames - 1, run->frames);
@@ -78,6 +82,10 @@ static Result check_camera(const Scene *scene, Error *error)
     const float *up = run->camera_up;
     if (up[0] == 0 && up[1] == 0 && up[2] == 0)
         return error_set(error, RESULT_USAGE, "--camera-up 0,0,0: expected a direction");
+    if (run->ease_in + run->ease_out > 1.000001f)
+        return error_set(error, RESULT_USAGE,
+                         "--ease-in %g and --ease-out %g: expected 1 at most together",
+                         (double)run->ease_in, (double)run->ease_out);
     bool fixed_eye = scene->eye.count == 0 && !run->eye.automatic;
     bool fixed_target = scene->target.count == 0 && !run->target.automatic;
     if (fixed_eye && fixed_target &&

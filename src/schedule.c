@@ -19,7 +19,8 @@ double schedule_frame_time(const RunParams *run, double frame)
 
 double schedule_period_rate(const RunParams *run)
 {
-    return run->sim_rate > 0 ? (double)run->sim_rate : (double)run->fps / (double)run->speed;
+    if (run->sim_rate > 0) return (double)run->sim_rate;
+    return (double)run->fps / (run->speed > 0 ? (double)run->speed : 1);
 }
 
 Schedule schedule_create(const RunParams *run, int substeps)

@@ -26,7 +26,7 @@ typedef struct ScheduledFrame {
 double schedule_frame_time(const RunParams *run, double frame);
 
 // The periods that --substeps divides into steps, 1/s of the scene's clock: --sim-rate, or the
-// frames'.
+// frames'; where the scene stands still (speed 0), the video's, for the warm-up.
 double schedule_period_rate(const RunParams *run);
 
 // `substeps`: what --substeps says or, if that is auto, what has been found (stability.h).

@@ -158,6 +158,23 @@ static void slow_motion_shows_the_same_motion_more_often(void **state)
     simulation_fixture_destroy(&slow);
 }
 
+// It stands as the warm-up leaves it; the head, too, which moves otherwise.
+static void at_speed_0_everything_stands(void **state)
+{
+    (void)state;
+    SimulationFixture fixture;
+    simulation_fixture_create(&fixture, "split", "");
+    fixture.scene.run.speed = 0;
+    fixture.scene.run.preroll = 0.5f;
+    simulation_fixture_start(&fixture);
+    assert_true(fixture.simulation.schedule.steps_per_s == 60);
+    uint64_t first = simulation_fixture_hash(&fixture);
+    simulation_fixture_go(&fixture, 90);
+    assert_int_equal(fixture.simulation.step, 0);
+    assert_true(simulation_fixture_hash(&fixture) == first);
+    simulation_fixture_destroy(&fixture);
+}
+
 // With constant forces and the head at rest, the warm-up is the run's own beginning.
 static void the_warm_up_is_simulated_with_the_head_at_rest(void **state)
 {
@@ -239,6 +256,7 @@ int main(void)
         cmocka_unit_test(frames_between_steps_lie_between_them),
         cmocka_unit_test(roots_stay_on_the_head_between_steps),
         cmocka_unit_test(slow_motion_shows_the_same_motion_more_often),
+        cmocka_unit_test(at_speed_0_everything_stands),
         cmocka_unit_test(the_warm_up_is_simulated_with_the_head_at_rest),
         cmocka_unit_test(automatic_substeps_are_the_fewest_stable_ones),
         cmocka_unit_test(a_strand_of_n_has_the_stability_number_of_its_links),
