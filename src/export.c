@@ -1,101 +1,79 @@
 // SPDX-License-Identifier: MIT
 #include "export.h"
+#include "strands_features.h"
+#include "strands_join.h"
 #include "strands_write.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
-// --- One set of strands from all sections.
-
-// The arrays that a set may have or not.
-static const struct {
-    size_t offset, element;
-    bool of_strands; // else of vertices
-} OPTIONAL[] = {
-    {offsetof(Strands, mobility), sizeof(float), false},
-    {offsetof(Strands, strand_uv), sizeof(float[2]), true},
-    {offsetof(Strands, vertex_uv), sizeof(float[2]), false},
-    {offsetof(Strands, strand_thickness), sizeof(float), true},
-    {offsetof(Strands, vertex_thickness), sizeof(float), false},
-    {offsetof(Strands, color), sizeof(float[4]), false},
-};
-
-static char **array_at(const Strands *strands, size_t offset)
+// Where `frame_count` frames of one name would overwrite each other.
+static Result check_name(const Target *target, const char *text, int frame_count, Error *error)
 {
-    return (char **)(void *)((char *)strands + offset);
+    if (target->kind != TARGET_STILL || frame_count == 1) return RESULT_OK;
+    return error_set(error, RESULT_USAGE,
+                     "%s: one name for several frames, put the frame number into it: frame_%%04d%s",
+                     text, strrchr(text, '.'));
 }
 
-static bool join_array(Strands *all, const Strands *sections, uint32_t count, size_t which)
-{
-    size_t offset = OPTIONAL[which].offset, element = OPTIONAL[which].element;
-    bool of_strands = OPTIONAL[which].of_strands;
-    for (uint32_t i = 0; i < count; ++i)
-        if (!*array_at(&sections[i], offset)) return true;
-    char *joined = malloc((of_strands ? all->strand_count : all->vertex_count) * element + 1);
-    *array_at(all, offset) = joined;
-    for (uint32_t i = 0; joined && i < count; ++i) {
-        size_t size = (of_strands ? sections[i].strand_count : sections[i].vertex_count) * element;
-        memcpy(joined, *array_at(&sections[i], offset), size);
-        joined += size;
-    }
-    return *array_at(all, offset) != NULL;
-}
-
-static Result join(Strands *all, const Strands *sections, uint32_t count, Error *error)
-{
-    uint64_t strands = 0, vertices = 0;
-    for (uint32_t i = 0; i < count; ++i) {
-        strands += sections[i].strand_count;
-        vertices += sections[i].vertex_count;
-    }
-    if (strands >= UINT32_MAX || vertices >= UINT32_MAX)
-        return error_set(error, RESULT_FAILED, "more vertices than a hair file holds");
-    Result result = strands_create(all, (uint32_t)strands, (uint32_t)vertices, error);
-    if (result != RESULT_OK) return result;
-    uint32_t s = 0, v = 0;
-    for (uint32_t i = 0; i < count; ++i) {
-        for (uint32_t k = 0; k < sections[i].strand_count; ++k)
-            all->first[s++] = v + sections[i].first[k];
-        v += sections[i].vertex_count;
-    }
-    all->first[s] = v;
-    bool good = true;
-    for (size_t i = 0; i < sizeof OPTIONAL / sizeof *OPTIONAL && good; ++i)
-        good = join_array(all, sections, count, i);
-    return good ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for a hair file");
-}
-
-static StrandsKind choose_kind(const Target *target, const Strands *strands)
+static const char *target_suffix(const Target *target)
 {
     const char *name = target->after && *target->after ? target->after : target->before;
-    size_t length = strlen(name);
-    if (length >= 5 && strcasecmp(name + length - 5, ".hair") == 0) return STRANDS_HAIR;
-    for (uint32_t s = 1; s < strands->strand_count; ++s)
-        if (strands_size(strands, s) != strands_size(strands, 0)) return STRANDS_TFX2_TEXT;
-    return STRANDS_TFX4;
+    const char *dot = strrchr(name, '.');
+    return dot ? dot : "";
+}
+
+// The options of a USD file for frames first, first + every, ...
+static Result describe_usd(Exporter *exporter, const Strands *sections, int frame_count,
+                           Error *error)
+{
+    const Scene *scene = exporter->simulation->scene;
+    const RunParams *run = &scene->run;
+    Result result = scene_look_create(&exporter->look, scene, sections, &exporter->strands, error);
+    if (result != RESULT_OK) return result;
+    exporter->options = (UsdOptions){.metres_per_unit = 1,
+                                     .animated = exporter->target.kind == TARGET_VIDEO,
+                                     .fps = (double)run->fps,
+                                     .first = run->first,
+                                     .last = run->first + (frame_count - 1) * run->every,
+                                     .look = exporter->look.usd};
+    if (!exporter->options.animated || frame_count < 1) return RESULT_OK;
+    return usd_writer_open(&exporter->usd, exporter->target.before, &exporter->strands,
+                           &exporter->options, error);
+}
+
+// What some or all sections have and the files will not.
+static void find_lost(Exporter *exporter, const Strands *sections, uint32_t count)
+{
+    uint32_t features = 0;
+    for (uint32_t i = 0; i < count; ++i) features |= strands_features(&sections[i]);
+    exporter->lost =
+        features & ~(strands_features(&exporter->strands) & strands_kind_features(exporter->kind));
 }
 
 Result exporter_create(Exporter *exporter, const char *text, int frame_count,
                        const Simulation *simulation, const Strands *strands, Error *error)
 {
     *exporter = (Exporter){.simulation = simulation};
+    uint32_t count = simulation->scene->section_count;
     Result result = target_parse_hair(&exporter->target, text, error);
-    if (result == RESULT_OK && exporter->target.kind == TARGET_STILL && frame_count != 1)
-        result = error_set(error, RESULT_USAGE,
-                           "%s: one name for several frames, put the frame number into it: "
-                           "frame_%%04d.tfx",
-                           text);
+    if (result == RESULT_OK) result = check_name(&exporter->target, text, frame_count, error);
     if (result == RESULT_OK) result = target_prepare(&exporter->target, error);
-    if (result == RESULT_OK)
-        result = join(&exporter->strands, strands, simulation->scene->section_count, error);
-    if (result == RESULT_OK) exporter->kind = choose_kind(&exporter->target, &exporter->strands);
+    if (result == RESULT_OK) result = strands_join(&exporter->strands, strands, count, error);
+    if (result == RESULT_OK) {
+        exporter->kind = strands_choose_kind(target_suffix(&exporter->target), &exporter->strands);
+        find_lost(exporter, strands, count);
+        if (exporter->kind == STRANDS_USD)
+            result = describe_usd(exporter, strands, frame_count, error);
+    }
     if (result != RESULT_OK) exporter_destroy(exporter);
     return result;
 }
 
 void exporter_destroy(Exporter *exporter)
 {
+    usd_writer_discard(&exporter->usd);
+    scene_look_destroy(&exporter->look);
     target_destroy(&exporter->target);
     strands_destroy(&exporter->strands);
     *exporter = (Exporter){0};
@@ -135,14 +113,33 @@ static Result read_positions(Exporter *exporter, Error *error)
     return result;
 }
 
+static Result write_file(const Exporter *exporter, int frame, Error *error)
+{
+    char *name = target_name_frame(&exporter->target, frame);
+    if (!name) return error_set(error, RESULT_FAILED, "no memory for the name of frame %d", frame);
+    Result result = exporter->kind == STRANDS_USD
+                        ? usd_write_still(name, &exporter->strands, &exporter->options, error)
+                        : strands_write(name, exporter->kind, &exporter->strands, error);
+    free(name);
+    return result;
+}
+
 Result exporter_write(Exporter *exporter, int frame, Error *error)
 {
     Result result = read_positions(exporter, error);
     if (result != RESULT_OK) return result;
-    char *name = target_name_frame(&exporter->target, frame);
-    if (!name) return error_set(error, RESULT_FAILED, "no memory for the name of frame %d", frame);
-    result = strands_write(name, exporter->kind, &exporter->strands, error);
+    if (exporter->options.animated)
+        return usd_writer_add(&exporter->usd, frame, (const float(*)[3])exporter->strands.position,
+                              error);
+    result = write_file(exporter, frame, error);
     exporter->files += result == RESULT_OK;
-    free(name);
+    return result;
+}
+
+Result exporter_finish(Exporter *exporter, Error *error)
+{
+    if (!exporter->usd.strands) return RESULT_OK;
+    Result result = usd_writer_finish(&exporter->usd, error);
+    exporter->files += result == RESULT_OK;
     return result;
 }

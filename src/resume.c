@@ -44,13 +44,13 @@ Result resume_find(Resume *resume, const RunParams *run, int last, Error *error)
     Result result = *run->output ? target_parse(&pictures, run->output, error) : RESULT_OK;
     if (result == RESULT_OK && *run->export) result = target_parse_hair(&hair, run->export, error);
     bool video = result == RESULT_OK && *run->output && pictures.kind == TARGET_VIDEO;
-    if (video && !*run->cache)
-        result =
-            error_set(error, RESULT_USAGE,
-                      "--resume: %s: a video is written in one piece; with --cache at least its "
-                      "simulation can be resumed",
-                      run->output);
-    if (result == RESULT_OK && !video)
+    bool whole = video || (result == RESULT_OK && *run->export && hair.kind == TARGET_VIDEO);
+    if (whole && !*run->cache)
+        result = error_set(error, RESULT_USAGE,
+                           "--resume: %s: it is written in one piece; with --cache at least its "
+                           "simulation can be resumed",
+                           video ? run->output : run->export);
+    if (result == RESULT_OK && !whole)
         result = find_files(resume, run, last, &pictures, &hair, error);
     target_destroy(&pictures);
     target_destroy(&hair);

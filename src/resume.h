@@ -12,8 +12,8 @@ typedef struct Resume {
 
 // Looks at each frame first .. last by steps of `every`. A picture is whole if it is a PNG file of
 // the run's size and channels whose chunks are complete with right checksums; a hair file if it is
-// there, since those appear complete or not at all. RESULT_USAGE for a video without --cache: it
-// cannot be continued, only the simulation behind it can. RESULT_FAILED when memory is short. A
-// zeroed struct may be destroyed.
+// there, since those appear complete or not at all. RESULT_USAGE for a video, or a USD file of all
+// frames, without --cache: it cannot be continued, only the simulation behind it can. RESULT_FAILED
+// when memory is short. A zeroed struct may be destroyed.
 Result resume_find(Resume *resume, const RunParams *run, int last, Error *error);
 void resume_destroy(Resume *resume);

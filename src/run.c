@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "run.h"
 #include "interrupt.h"
+#include "strands_features.h"
 #include "target.h"
 
 #include <string.h>
@@ -92,6 +93,15 @@ static Result find_done(Run *run, Error *error)
     return result;
 }
 
+static void tell_lost(const Exporter *exporter)
+{
+    char lost[300];
+    strands_features_describe(exporter->lost, lost, sizeof lost);
+    if (*lost)
+        fprintf(stderr, "--export: %s files leave out: %s\n", strands_kind_name(exporter->kind),
+                lost);
+}
+
 static Result open_source(Run *run, Error *error)
 {
     const RunParams *params = &run->scene.run;
@@ -102,6 +112,7 @@ static Result open_source(Run *run, Error *error)
         result = exporter_create(&run->exporter, params->export, sequence_count_drawn(params),
                                  &run->simulation, run->assets.strands, error);
         run->exports = result == RESULT_OK;
+        if (run->exports && !params->quiet) tell_lost(&run->exporter);
     }
     return result;
 }
@@ -203,6 +214,7 @@ Result run_go(Run *run, Error *error)
     if (result == RESULT_OK && run->pictures.output &&
         run->resume.count < sequence_count_drawn(&run->scene.run))
         result = output_finish(run->pictures.output, error);
+    if (result == RESULT_OK && run->exports) result = exporter_finish(&run->exporter, error);
     if (result == RESULT_OK) result = frame_source_finish(&run->source, error);
     if (result == RESULT_OK) result = write_stats(run, &sequence, error);
     if (result == RESULT_OK && !run->scene.run.quiet)

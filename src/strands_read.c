@@ -2,6 +2,7 @@
 #include "strands_read.h"
 
 #include "hair_file.h"
+#include "obj_file.h"
 #include "salon_file.h"
 #include "strands_mend.h"
 #include "strands_order.h"
@@ -17,6 +18,8 @@ static StrandsKind detect(const Bytes *bytes)
 {
     if (hair_file_matches(bytes)) return STRANDS_HAIR;
     if (tfx_text_matches(bytes)) return STRANDS_TFX2_TEXT;
+    if (bytes->size >= 5 && memcmp(bytes->data, "#usda", 5) == 0) return STRANDS_USD;
+    if (obj_file_matches(bytes)) return STRANDS_OBJ;
     float version = tfx_binary_version(bytes);
     if (version > 0.0f) return version < 4.0f ? STRANDS_TFX3 : STRANDS_TFX4;
     int floats = salon_file_match(bytes);
@@ -39,13 +42,17 @@ static Result parse(StrandsSource *source, Reader *reader, StrandsKind kind)
         return salon_file_read(source, reader, SALON_DATA_FLOATS);
     case STRANDS_SALON_BIN:
         return salon_file_read(source, reader, SALON_BIN_FLOATS);
+    case STRANDS_OBJ:
+        return obj_file_read(source, reader);
+    case STRANDS_USD:
+        return reader_fail(reader, "USD files are only written, not read");
     case STRANDS_KINDS:
         break;
     }
     if (reader->size == 0) return reader_fail(reader, "the file is empty");
     return reader_fail(reader,
-                       "not hair: neither TressFX 2, 3 or 4, nor HAIR, nor whole strands of "
-                       "USC-HairSalon or CT2Hair");
+                       "not hair: neither TressFX 2, 3 or 4, HAIR or Wavefront lines, nor whole "
+                       "strands of USC-HairSalon or CT2Hair");
 }
 
 // --- Unit.
@@ -142,8 +149,9 @@ Result strands_read_bytes(Strands *strands, const char *name, const Bytes *bytes
     *strands = (Strands){0};
     *report = (StrandsReport){.kind = STRANDS_KINDS};
     StrandsKind kind = detect(bytes);
-    Reader reader = kind == STRANDS_TFX2_TEXT ? reader_begin_text(name, bytes, error)
-                                              : reader_begin_binary(name, bytes, error);
+    bool is_text = kind == STRANDS_TFX2_TEXT || kind == STRANDS_OBJ || kind == STRANDS_USD;
+    Reader reader =
+        is_text ? reader_begin_text(name, bytes, error) : reader_begin_binary(name, bytes, error);
     StrandsSource source = {0};
     Result result = parse(&source, &reader, kind);
     reader_end(&reader);

@@ -6,9 +6,9 @@
 
 const char *strands_kind_name(StrandsKind kind)
 {
-    static const char *const names[STRANDS_KINDS] = {"TressFX 2 text",        "TressFX 3 binary",
-                                                     "TressFX 4 binary",      "HAIR",
-                                                     "USC-HairSalon (.data)", "CT2Hair (.bin)"};
+    static const char *const names[STRANDS_KINDS] = {
+        "TressFX 2 text",        "TressFX 3 binary", "TressFX 4 binary", "HAIR",
+        "USC-HairSalon (.data)", "CT2Hair (.bin)",   "Wavefront lines",  "USD (.usda)"};
     return (unsigned)kind < STRANDS_KINDS ? names[kind] : "unknown";
 }
 
@@ -133,7 +133,7 @@ void strands_report_describe(const StrandsReport *report, const char *path, Defe
                            "not read"},
     };
     const Defect *defect = &report->defects[kind];
-    bool is_text = report->kind == STRANDS_TFX2_TEXT;
+    bool is_text = report->kind == STRANDS_TFX2_TEXT || report->kind == STRANDS_OBJ;
     snprintf(text, size, is_text ? "%s:%llu: %s%u %s%s%s" : "%s: byte %llu: %s%u %s%s%s", path,
              (unsigned long long)defect->first_place, defect->count > 1 ? "first of " : "",
              defect->count, defect->count == 1 ? words[kind].one : words[kind].many,

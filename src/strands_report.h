@@ -13,6 +13,8 @@ typedef enum StrandsKind {
     STRANDS_HAIR,
     STRANDS_SALON_DATA,
     STRANDS_SALON_BIN,
+    STRANDS_OBJ,
+    STRANDS_USD,
     STRANDS_KINDS
 } StrandsKind;
 

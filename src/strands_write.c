@@ -4,10 +4,13 @@
 #include "decimal.h"
 #include "file.h"
 #include "hair_file.h"
+#include "obj_file.h"
 #include "tfx_binary.h"
+#include "usd_file.h"
 
 #include <endian.h>
 #include <string.h>
+#include <strings.h>
 
 // --- Text.
 
@@ -227,6 +230,18 @@ static Result write_hair(FILE *stream, const Strands *strands, const char *path,
     return RESULT_OK;
 }
 
+// --- USC-HairSalon.
+
+static void write_salon(FILE *stream, const Strands *strands)
+{
+    put_u32(stream, strands->strand_count);
+    for (uint32_t s = 0; s < strands->strand_count; s++) {
+        put_u32(stream, strands_size(strands, s));
+        put_floats(stream, strands->position[strands->first[s]],
+                   3 * (size_t)strands_size(strands, s));
+    }
+}
+
 // ---
 
 static Result write_kind(FILE *stream, StrandsKind kind, const Strands *strands, const char *path,
@@ -242,16 +257,40 @@ static Result write_kind(FILE *stream, StrandsKind kind, const Strands *strands,
         return write_tfx4(stream, strands, path, error);
     case STRANDS_HAIR:
         return write_hair(stream, strands, path, error);
+    case STRANDS_SALON_DATA:
+        write_salon(stream, strands);
+        return RESULT_OK;
+    case STRANDS_OBJ:
+        obj_file_write(stream, strands);
+        return RESULT_OK;
     default:
         return error_set(error, RESULT_FAILED, "%s: %s can only be read", path,
                          strands_kind_name(kind));
     }
 }
 
+StrandsKind strands_choose_kind(const char *suffix, const Strands *strands)
+{
+    static const struct {
+        const char *suffix;
+        StrandsKind kind;
+    } kinds[] = {{".hair", STRANDS_HAIR},
+                 {".obj", STRANDS_OBJ},
+                 {".data", STRANDS_SALON_DATA},
+                 {".usda", STRANDS_USD}};
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+        if (strcasecmp(suffix, kinds[i].suffix) == 0) return kinds[i].kind;
+    for (uint32_t s = 1; s < strands->strand_count; s++)
+        if (strands_size(strands, s) != strands_size(strands, 0)) return STRANDS_TFX2_TEXT;
+    return STRANDS_TFX4;
+}
+
 Result strands_write(const char *path, StrandsKind kind, const Strands *strands, Error *error)
 {
     if (strands->strand_count == 0)
         return error_set(error, RESULT_FAILED, "%s: no strands to write", path);
+    if (kind == STRANDS_USD)
+        return usd_write_still(path, strands, &(UsdOptions){.metres_per_unit = 1}, error);
     OutFile file;
     Result result = outfile_open(&file, path, error);
     if (result != RESULT_OK) return result;

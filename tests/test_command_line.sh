@@ -214,6 +214,12 @@ run 0 --check "$work/hair/fur_002.tfx"; says "TressFX 4"
 run 0 assets/curls.tfx assets/demo.tfx --frames 1 -q --export "$work/hair/both.hair"
 run 0 --check "$work/hair/both.hair"
 run 2 $hair --frames 3 -q --export "$work/hair/one.tfx"; one_line
+run 0 assets/curls.tfx assets/demo.tfx --frames 3 --export "$work/hair/x.usda" --cache "$work/hair/cache"
+run 0 assets/curls.tfx assets/demo.tfx --frames 3 -q --export "$work/hair/y.usda" --from-cache "$work/hair/cache"
+if cmp -s "$work/hair/x.usda" "$work/hair/y.usda"; then good; else bad "the USD file from a cache differs"; fi
+run 0 $hair --frames 2 --export "$work/hair/x_%d.obj"; says "--export: Wavefront lines files leave out: texture coordinates of strands"
+run 0 --check --unit m "$work/hair/x_1.obj"; says "Wavefront lines"
+run 2 $hair --frames 3 -q --resume --export "$work/hair/x.usda"; says "written in one piece"; one_line
 run 2 $hair --frames 3 -q --export "$work/hair/"; one_line
 
 claim "slow motion, a rate of its own, and a warm-up"

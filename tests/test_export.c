@@ -65,6 +65,60 @@ static void files_hold_what_is_drawn_bit_for_bit(void **state)
 {
     check(state, "x_%02d.tfx", "x_04.tfx", STRANDS_TFX2_TEXT); // 8 and 12 vertices
     check(state, "x_%d.hair", "x_4.hair", STRANDS_HAIR);
+    check(state, "x_%d.obj", "x_4.obj", STRANDS_OBJ);
+    check(state, "x_%d.data", "x_4.data", STRANDS_SALON_DATA);
+}
+
+// The numbers of the next list behind `key`, which has `count`.
+static void parse_list(const char *text, const char *key, float *numbers, size_t count)
+{
+    const char *at = strstr(text, key);
+    if (!at) fail_msg("no '%s'", key);
+    at += strlen(key);
+    for (size_t i = 0; i < count; ++i) {
+        char *end;
+        at += strcspn(at, "-0123456789");
+        numbers[i] = strtof(at, &end);
+        assert_ptr_not_equal(end, at);
+        at = end;
+    }
+    assert_true(*at == ')' || *at == ']');
+}
+
+static void usd_holds_all_frames_of_all_sections(void **state)
+{
+    SimulationFixture fixture;
+    Exporter exporter;
+    Error error;
+    simulation_fixture_create(&fixture, "chain", "");
+    simulation_fixture_start(&fixture);
+    char path[300];
+    snprintf(path, sizeof path, "%s", temporary_path(state, "x.usda"));
+    if (exporter_create(&exporter, path, 3, &fixture.simulation, &fixture.strands, &error) !=
+        RESULT_OK)
+        fail_msg("%s", error.text);
+    assert_int_equal(exporter.lost, 0);
+    size_t count = 3 * (size_t)fixture.strands.vertex_count;
+    float *drawn = malloc(2 * count * sizeof *drawn), *read = drawn + count;
+    for (int frame = 0; frame < 3; ++frame) {
+        if (frame) simulation_fixture_go(&fixture, frame);
+        assert_int_equal(exporter_write(&exporter, frame, &error), RESULT_OK);
+        if (frame == 1) memcpy(drawn, exporter.strands.position, count * sizeof *drawn);
+    }
+    assert_false(temporary_has(state, "x.usda"));
+    assert_int_equal(exporter_finish(&exporter, &error), RESULT_OK);
+    exporter_destroy(&exporter);
+    Bytes bytes;
+    assert_int_equal(bytes_read_file(&bytes, path, &error), RESULT_OK);
+    const char *text = (const char *)bytes.data;
+    parse_list(text, "\n        1: ", read, count);
+    assert_memory_equal(read, drawn, count * sizeof *drawn);
+    assert_non_null(strstr(text, "startTimeCode = 0\n    endTimeCode = 2\n"));
+    assert_non_null(strstr(text, "color3f[] primvars:displayColor = [("));
+    assert_non_null(strstr(text, "float[] widths = ["));
+    bytes_destroy(&bytes);
+    free(drawn);
+    simulation_fixture_destroy(&fixture);
 }
 
 static void names_without_a_number_or_a_kind_are_refused(void **state)
@@ -74,7 +128,7 @@ static void names_without_a_number_or_a_kind_are_refused(void **state)
     Error error;
     simulation_fixture_create(&fixture, "none", "");
     simulation_fixture_start(&fixture);
-    const char *const names[] = {"x.tfx", "x_%d.obj", "x_%s.tfx", "%d/x.tfx", ""};
+    const char *const names[] = {"x.tfx", "x.obj", "x_%d.png", "x_%s.tfx", "%d/x.tfx", ""};
     for (size_t i = 0; i < sizeof names / sizeof *names; ++i)
         assert_int_equal(exporter_create(&exporter, temporary_path(state, names[i]), 2,
                                          &fixture.simulation, &fixture.strands, &error),
@@ -88,6 +142,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST(files_hold_what_is_drawn_bit_for_bit),
+        TEST(usd_holds_all_frames_of_all_sections),
         TEST(names_without_a_number_or_a_kind_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -129,9 +129,9 @@ static void malformed_text_is_refused_with_its_line(void **state)
         const char *text, *message;
     } cases[] = {
         {"", "FILE: byte 0: the file is empty"},
-        {"hello\n",
-         "FILE: byte 0: not hair: neither TressFX 2, 3 or 4, nor HAIR, nor whole strands of "
-         "USC-HairSalon or CT2Hair"},
+        {"hello\n", "FILE: byte 0: not hair: neither TressFX 2, 3 or 4, HAIR or Wavefront lines, "
+                    "nor whole strands of "
+                    "USC-HairSalon or CT2Hair"},
         {"numStrands", "FILE:1: expected the number of strands, got the end of the file"},
         {"numStrands x\n", "FILE:1: expected the number of strands, got 'x'"},
         {"numStrands -1\n", "FILE:1: expected the number of strands, got '-1'"},

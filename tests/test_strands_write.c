@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "random.h"
+#include "strands_features.h"
 #include "strands_make.h"
 #include "strands_read.h"
 #include "strands_write.h"
@@ -46,13 +47,13 @@ static Strands read_back(void **state, StrandsKind kind, const Strands *strands,
 
 static void reading_back_gives_the_same_bits(void **state)
 {
-    static const StrandsKind kinds[] = {STRANDS_TFX2_TEXT, STRANDS_TFX3, STRANDS_TFX4,
-                                        STRANDS_HAIR};
+    static const StrandsKind kinds[] = {STRANDS_TFX2_TEXT, STRANDS_TFX3,       STRANDS_TFX4,
+                                        STRANDS_HAIR,      STRANDS_SALON_DATA, STRANDS_OBJ};
     Strands strands = make_awkward();
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         Strands back = read_back(state, kinds[i], &strands, &METRES);
         assert_memory_equal(back.position, strands.position, 12 * (size_t)strands.vertex_count);
-        if (kinds[i] != STRANDS_HAIR)
+        if (strands_kind_features(kinds[i]) & STRANDS_HAS_STRAND_UV)
             assert_memory_equal(back.strand_uv, strands.strand_uv,
                                 8 * (size_t)strands.strand_count);
         strands_destroy(&back);
@@ -123,6 +124,76 @@ static void uneven_strands_go_into_text_and_hair_only(void **state)
     strands_destroy(&strands);
 }
 
+static Strands read_obj(void **state, const char *text, Result expected, Error *error)
+{
+    Strands strands;
+    temporary_write(state, "x.obj", text, 0644);
+    Result result = strands_read(&strands, temporary_path(state, "x.obj"), &METRES, NULL, error);
+    if (result != expected) fail_msg("%s: %d, %s", text, result, error->text);
+    return strands;
+}
+
+static void lines_of_obj_files_are_strands(void **state)
+{
+    Error error = {""};
+    Strands a = read_obj(state,
+                         "# a\nmtllib x\nv 0 0 0\nv 0 1 0 1 0 0\nv 0 2 0\nvt 0 0\nl 1 2/1 3\n"
+                         "v 5 0 0\nv 5 1 0\nl -2 -1 # b\nf 1 2 3\nl 3 \\\n2\n",
+                         RESULT_OK, &error);
+    assert_int_equal(a.strand_count, 3);
+    assert_int_equal(strands_size(&a, 0), 3);
+    assert_int_equal(strands_size(&a, 1), 2);
+    assert_true(a.position[3][0] == 5 && a.position[4][1] == 1 && a.position[6][1] == 1);
+    Strands edges = read_obj(state, "v 0 0 0\nv 0 1 0\nv 0 2 0\nl 1 2\nl 2 3\nl 1 3\n", RESULT_OK,
+                             &error); // two edges of one strand, and another
+    assert_int_equal(edges.strand_count, 2);
+    assert_int_equal(strands_size(&edges, 0), 3);
+    strands_destroy(&a);
+    strands_destroy(&edges);
+}
+
+static void broken_obj_files_are_refused_with_their_line(void **state)
+{
+    static const struct {
+        const char *text, *says;
+    } cases[] = {{"v 0 0 0\nv 0 1 0\nf 1 2 1\n", "without lines"},
+                 {"v 0 0 0\nv 0 1 0\nl 1 3\n", "x.obj:3: "},
+                 {"v 0 0 0\nl 1 0\n", "x.obj:2: "},
+                 {"v 0 0 0\nl 1 -2\n", "x.obj:2: "},
+                 {"v 0 0 0\nl 1 x\n", "x.obj:2: "},
+                 {"v 0 0 0\nl 1\n", "x.obj:2: a line of 1 vertices"},
+                 {"v 0 0 0\nl\n", "x.obj:2: "},
+                 {"l 1 2\nv 0 0 0\nv 0 1 0\n", "x.obj:1: "},
+                 {"v 0 0\nv 0 1 0\nl 1 2\n", "x.obj:1: "},
+                 {"v 0 a 0\nv 0 1 0\nl 1 2\n", "x.obj:1: "},
+                 {"v 0 0 0\nv 0 nan 0\nl 1 2\n", "x.obj:2: 1 strand"},
+                 {"#usda 1.0\n", "only written"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Error error = {""};
+        read_obj(state, cases[i].text, RESULT_BAD_INPUT, &error);
+        if (!strstr(error.text, cases[i].says)) fail_msg("%s: %s", cases[i].text, error.text);
+    }
+}
+
+static void what_a_kind_cannot_hold_is_known(void **state)
+{
+    (void)state;
+    Strands strands = make_awkward();
+    char text[300];
+    assert_int_equal(strands_features(&strands), STRANDS_HAS_STRAND_UV);
+    strands.followers = 2;
+    strands.follower_radius = 0.01f;
+    strands.vertex_thickness = calloc(strands.vertex_count, sizeof(float));
+    uint32_t features = strands_features(&strands);
+    strands_features_describe(features & ~strands_kind_features(STRANDS_TFX3), text, sizeof text);
+    assert_string_equal(text, "thickness of vertices, radius of followers");
+    strands_features_describe(features & ~strands_kind_features(STRANDS_USD), text, sizeof text);
+    assert_string_equal(text, "");
+    strands_features_describe(UINT32_MAX, text, sizeof text);
+    assert_true(strlen(text) < sizeof text - 1);
+    strands_destroy(&strands);
+}
+
 static void other_kinds_can_only_be_read(void **state)
 {
     Strands strands = make_uneven();
@@ -159,6 +230,9 @@ int main(void)
         TEST(what_was_written_in_metres_is_guessed_to_be_metres),
         TEST(followers_and_fixed_ends_survive_where_the_kind_holds_them),
         TEST(uneven_strands_go_into_text_and_hair_only),
+        TEST(lines_of_obj_files_are_strands),
+        TEST(broken_obj_files_are_refused_with_their_line),
+        TEST(what_a_kind_cannot_hold_is_known),
         TEST(other_kinds_can_only_be_read),
         TEST(text_does_not_depend_on_the_locale),
     };
