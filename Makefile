@@ -121,7 +121,7 @@ SHORT   = $(OUT)/short_37747x8.tfx
 bench: all ## print the table of benchmarks (BENCH="FILE... --size 1280x720": more hair, drawing)
 	@$(if $(wildcard $(MOHAWK)),,echo "bench: no $(MOHAWK): without the thesis's Mohawk")
 	@$(OUT)/tractrix-gen --kind fur --count 37747 --vertices 8 -q -o $(SHORT)
-	$(OUT)/tractrix-bench all $(wildcard $(MOHAWK)) $(SHORT) $(BENCH)
+	$(OUT)/tractrix-bench speed $(wildcard $(MOHAWK)) $(SHORT) $(BENCH)
 
 IMAGES = $(wildcard ../shared/assets/ratboy_mohawk.tfx)
 bench-image: all ## image error and milliseconds of every scheme: table, out/image.json, diagrams (IMAGES=FILE...: more hair)

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Runs tractrix_step on test vectors: three vec4 a case in (head, tail, the head's target), the new tail out.
+// Runs tractrix_step, or with PUBLISHED 1 the thesis's, on test vectors: three vec4 a case in (head, tail, the head's target), the new
+// tail out.
 #include "shared.h"
 #include "tractrix.glsl"
+#include "tractrix_published.glsl"
 
 layout(local_size_x = 8) in;
 layout(std430, binding = BIND_STATE_OUT) readonly buffer Cases { vec4 cases[]; };
@@ -11,5 +13,10 @@ void main()
 {
     int i = int(gl_GlobalInvocationID.x);
     if (i >= tails.length()) return;
-    tails[i] = vec4(tractrix_step(cases[3 * i].xyz, cases[3 * i + 1].xyz, cases[3 * i + 2].xyz), 0.0);
+    vec3 head = cases[3 * i].xyz, tail = cases[3 * i + 1].xyz, target = cases[3 * i + 2].xyz;
+#if PUBLISHED
+    tails[i] = vec4(tractrix_published(head, tail, target), 0.0);
+#else
+    tails[i] = vec4(tractrix_step(head, tail, target), 0.0);
+#endif
 }

@@ -1,40 +1,59 @@
 // SPDX-License-Identifier: MIT
-// How far solvers are from exact motions (motion.h), by the time step.
+// How far solvers are from what is known exactly: the command `tractrix-bench accuracy` and what
+// its parts (bench_motions.h and its siblings) share.
 #pragma once
 
-#include "gpu.h"
+#include "bench_options.h"
 #include "motion.h"
-#include "params.h"
 
-#include <jansson.h>
-#include <stdio.h>
+// A result. Errors are shares of the strand's length unless `what` says otherwise.
+typedef struct AccuracyRow {
+    const char *part;
+    Method method;
+    char scenario[80]; // what the hair does
+    const char *set;   // the hair that ms were measured on, or ""
+    double rate;       // steps a second
+    const char *what;  // the quantity
+    double value;
+    double spread;              // standard error of a fit
+    double bound;               // what is stated at most; NaN: nothing is
+    double ms_min, ms_median;   // a simulated second of that set
+    double ms_q1, ms_q3;        // quartiles
+    const char *front, *remark; // "front" if nothing is both faster and closer; why it falls short
+} AccuracyRow;
 
-enum { ACCURACY_MOST_RATES = 8 };
+typedef struct Accuracy {
+    const Gpu *gpu;
+    const BenchOptions *options;
+    BenchTable table;
+    Method methods[METHODS_MOST]; // that are asked for
+    int method_count;
+    Motion *motions;
+    size_t motion_count;
+    bool whole; // all motions that the mean is stated for are there
+} Accuracy;
 
-typedef struct AccuracyOptions {
-    const char *reference;             // folder of exact motions; NULL: those that ship
-    const char *algo, *variant;        // NULL: all solvers that step, in their default form
-    double rates[ACCURACY_MOST_RATES]; // steps a second
-    int rate_count;
-} AccuracyOptions;
+// The command. RESULT_FAILED if a stated bound is broken, after all rows.
+Result accuracy_run(const BenchOptions *options, const Gpu *gpu, Error *error);
 
-// All solvers at 60, 120 and 240 Hz.
-AccuracyOptions accuracy_options_default(void);
+// A row of which nothing is known yet but the part, the method and the rate.
+AccuracyRow accuracy_row(const char *part, const Method *method, double rate);
 
-// RMS of |x - exact| over the strand's length, over particles 1 .. n-1 and those frames that
-// float32 can follow and that steps of 1/rate s meet. `params` say which solver, and its
-// parameters; drag is the motion's, the wind blows evenly. NaN if no frame is met. RESULT_USAGE and
-// others as solver_create.
-Result accuracy_measure(double *error_over_length, const Gpu *gpu, const Motion *motion,
-                        const SectionParams *params, double rate, Error *error);
+// Checks the bound, and adds the row with the command that repeats it.
+void accuracy_add(Accuracy *accuracy, const AccuracyRow *row);
 
-// The slope of log(error) against log(1/rate), least squares; 0 for less than two of them.
-double accuracy_order(const double *rates, const double *errors, int count);
+// The rates that are asked for, or `own` (`count` of them); gives their count.
+int accuracy_rates(const Accuracy *accuracy, const double *own, int count,
+                   double rates[BENCH_MOST_RATES]);
 
-// Writes lines of CSV: algo, variant, scenario, an error for each rate, order; after each solver's
-// scenarios one named "mean", their geometric mean. `rows` is an array that the same goes to, or
-// NULL. RESULT_FAILED, after all lines, if a stated bound is broken: the message names the first
-// and how many. Bounds are those of the default forms; they hold for the 13 motions that ship,
-// however many frames of them the folder has.
-Result accuracy_run(const Gpu *gpu, const AccuracyOptions *options, FILE *stream, json_t *rows,
-                    Error *error);
+// Calls `run` for each method that is asked for; stops at an error or an interruption.
+Result accuracy_for_each(Accuracy *accuracy,
+                         Result (*run)(Accuracy *accuracy, const Method *method, Error *error),
+                         Error *error);
+
+// method_params without style, unless the method says one: hair that nothing holds.
+Result accuracy_loose_params(SectionParams *params, const Method *method, Error *error);
+
+// The slope of log(error) against log(1/rate), least squares, and its standard error (NaN for less
+// than three); 0 for less than two of them.
+double accuracy_order(const double *rates, const double *errors, int count, double *spread);

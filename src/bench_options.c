@@ -1,100 +1,146 @@
 // SPDX-License-Identifier: MIT
 #include "bench_options.h"
-#include "params.h"
-#include "suggest.h"
+#include "options.h"
 
-#include <getopt.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    OPT_VECTORS = 256,
-    OPT_SET,
-    OPT_TFX,
-    OPT_ALGO,
-    OPT_VARIANT,
-    OPT_STYLE,
-    OPT_STEPS,
-    OPT_WARM_UP,
-    OPT_SIZE,
-    OPT_RASTER,
-    OPT_JSON,
-    OPT_DEVICE,
-    OPT_SOFTWARE,
-    OPT_OSMESA,
-    OPT_REFERENCE,
-    OPT_RATES,
-    OPT_OIT,
-    OPT_LAYERS,
-    OPT_FRAMES,
-    OPT_NO_ERROR
-};
+// What options_parse fills; numbers that are lists or words come as text first.
+typedef struct Values {
+    BenchOptions bench;
+    const char *rates, *size, *raster, *oit;
+    const char *param[BENCH_MOST_PARAMS]; // of the row of that number below
+    bool software, osmesa, no_error;
+} Values;
 
-static const struct {
-    struct option option;
-    const char *help;
-} OPTIONS[] = {
-    {{"vectors", required_argument, NULL, OPT_VECTORS}, "FILE.csv  test vectors"},
-    {{"set", required_argument, NULL, OPT_SET},
-     "NAME  1k16, 1k32, 10k16 or 10k32: the thesis's sets"},
-    {{"tfx", required_argument, NULL, OPT_TFX}, "FILE  a hair file of any known kind"},
-    {{"algo", required_argument, NULL, OPT_ALGO}, "NAME  solver (default split)"},
-    {{"variant", required_argument, NULL, OPT_VARIANT},
-     "NAME  form of the solver (default: its own choice)"},
-    {{"style", required_argument, NULL, OPT_STYLE},
-     "SHARE  of the style in the drawn strand, 0 to 1 (default 0.5)"},
-    {{"reference", required_argument, NULL, OPT_REFERENCE},
-     "DIR  accuracy: exact motions, NAME.csv with NAME.json (default tests/data/motion)"},
-    {{"rates", required_argument, NULL, OPT_RATES},
-     "LIST  accuracy: up to 8 numbers of steps a second (default 60,120,240)"},
-    {{"steps", required_argument, NULL, OPT_STEPS},
-     "N  measured steps, 1 to 1000000 (default 200)"},
-    {{"warm-up", required_argument, NULL, OPT_WARM_UP},
-     "N  steps before that, 0 to 1000000 (default 20)"},
-    {{"size", required_argument, NULL, OPT_SIZE}, "WxH  draw pictures of this size as well (px)"},
-    {{"raster", required_argument, NULL, OPT_RASTER},
-     "WORD  how hair is drawn: auto, quads or blocks (default auto)"},
-    {{"json", required_argument, NULL, OPT_JSON}, "FILE  write the result as JSON"},
-    {{"oit", required_argument, NULL, OPT_OIT},
-     "WORD  image, quads: abuffer or none (default auto: abuffer)"},
-    {{"layers", required_argument, NULL, OPT_LAYERS},
-     "K  image, quads: fragments of a pixel in order, 1 to 64 (default 0: 8)"},
-    {{"frames", required_argument, NULL, OPT_FRAMES},
-     "N  image: measured pictures, 1 to 1000000 (default 15)"},
-    {{"no-error", no_argument, NULL, OPT_NO_ERROR}, " image: times only"},
-    {{"device", required_argument, NULL, OPT_DEVICE}, "N  EGL device (default: the best one)"},
-    {{"software", no_argument, NULL, OPT_SOFTWARE}, " use a CPU driver even where there is a GPU"},
-    {{"osmesa", no_argument, NULL, OPT_OSMESA}, " use OSMesa instead of EGL"},
-    {{"help", no_argument, NULL, 'h'}, " print this and stop"},
-    {{"version", no_argument, NULL, 'V'}, " print the version and stop"},
+#define AT(member) offsetof(Values, member)
+static const Option OPTIONS[] = {
+    {"set", 0, OPTION_STRING, AT(bench.set), "NAME", 0, 0,
+     "1k16, 1k32, 10k16 or 10k32: the thesis's sets (image: straight, curls, fur, too)"},
+    {"tfx", 0, OPTION_STRING, AT(bench.tfx), "FILE", 0, 0, "a hair file of any known kind"},
+    {"vectors", 0, OPTION_STRING, AT(bench.vectors), "FILE.csv", 0, 0,
+     "step, chain: test vectors (default: those in tests/data)"},
+    {"reference", 0, OPTION_STRING, AT(bench.reference), "DIR", 0, 0,
+     "accuracy: exact motions, NAME.csv with NAME.json (default tests/data/motion)"},
+    {"part", 0, OPTION_STRING, AT(bench.parts), "LIST", 0, 0,
+     "only these parts of the command, with commas between them (default all)"},
+    {"algo", 0, OPTION_STRING, AT(bench.method.algo), "NAME", 0, 0,
+     "solver (default: all; scenes: split)"},
+    {"variant", 0, OPTION_STRING, AT(bench.method.variant), "NAME", 0, 0,
+     "form of the solver (default: its own choice)"},
+    {"rates", 0, OPTION_STRING, AT(rates), "LIST", 0, 0,
+     "accuracy: up to 8 numbers of steps a second (default: the part's own)"},
+    {"seconds", 0, OPTION_REAL, AT(bench.seconds), "S", 0.1, 1e5,
+     "accuracy: length of the long runs (default 60)"},
+    {"steps", 0, OPTION_WHOLE, AT(bench.steps), "N", 1, 1e6, "measured steps (default 200)"},
+    {"warm-up", 0, OPTION_WHOLE, AT(bench.warm_up), "N", 0, 1e6, "steps before that (default 20)"},
+    {"size", 0, OPTION_STRING, AT(size), "WxH", 0, 0, "draw pictures of this size as well (px)"},
+    {"raster", 0, OPTION_STRING, AT(raster), "WORD", 0, 0,
+     "how hair is drawn: auto, quads or blocks (default auto)"},
+    {"oit", 0, OPTION_STRING, AT(oit), "WORD", 0, 0,
+     "image, quads: abuffer or none (default auto: abuffer)"},
+    {"layers", 0, OPTION_WHOLE, AT(bench.image.scheme.layers), "K", 0, 64,
+     "image, quads: fragments of a pixel in order, 1 to 64 (default 0: 8)"},
+    {"frames", 0, OPTION_WHOLE, AT(bench.image.frames), "N", 1, 1e6,
+     "image: measured pictures (default 15)"},
+    {"no-error", 0, OPTION_SWITCH, AT(no_error), NULL, 0, 0, "image: times only"},
+    {"json", 0, OPTION_STRING, AT(bench.output.json), "FILE", 0, 0, "write the rows as JSON"},
+    {"csv", 0, OPTION_STRING, AT(bench.output.csv), "FILE", 0, 0,
+     "write the rows as CSV (not image, images, scenes)"},
+    {"device", 0, OPTION_WHOLE, AT(bench.gpu.device), "N", 0, 1000,
+     "EGL device (default: the best one)"},
+    {"software", 0, OPTION_SWITCH, AT(software), NULL, 0, 0,
+     "use a CPU driver even where there is a GPU"},
+    {"osmesa", 0, OPTION_SWITCH, AT(osmesa), NULL, 0, 0, "use OSMesa instead of EGL"},
 };
-enum { OPTION_COUNT = sizeof OPTIONS / sizeof *OPTIONS };
+enum { OWN_COUNT = sizeof OPTIONS / sizeof *OPTIONS, NAME_SIZE = 64 };
 
-static Result read_int(const char *name, const char *text, long least, long most, int *value,
-                       Error *error)
+static const char *const STATUS[][2] = {
+    {"0", "done"},         {"1", "failure, or a stated bound is broken"},
+    {"2", "wrong usage"},  {"3", "bad input file"},
+    {"4", "no usable GL"}, {"130", "interrupted"},
+    {NULL, NULL}};
+
+static const char *const EXAMPLES[] = {
+    "tractrix-bench step --vectors tests/data/tractrix_steps.csv",
+    "tractrix-bench accuracy --part motions --algo rope --rope-iterations 50 --rates 60,120",
+    "tractrix-bench speed --set 10k32 --algo chain --csv chain.csv", NULL};
+
+static const char *const NOTES[] = {
+    "The options from --style on are those of tractrix-render; they change the solvers. Times are "
+    "wall-clock milliseconds after a warm-up, waiting for the driver at the end of each sample.",
+    NULL};
+
+// --- Solvers' parameters as options.
+
+// Options and, behind them, every parameter of solvers; param_info[i] is of the row OWN_COUNT + i.
+typedef struct Rows {
+    Option option[OWN_COUNT + BENCH_MOST_PARAMS];
+    char name[BENCH_MOST_PARAMS][NAME_SIZE];
+    const ParamInfo *info[BENCH_MOST_PARAMS];
+    size_t params;
+} Rows;
+
+static void list_rows(Rows *rows)
 {
-    char *end;
-    long number = strtol(text, &end, 10);
-    if (end == text || *end || number < least || number > most)
-        return error_set(error, RESULT_USAGE, "--%s: expected %ld to %ld, got '%s'", name, least,
-                         most, text);
-    *value = (int)number;
+    memcpy(rows->option, OPTIONS, sizeof OPTIONS);
+    rows->params = 0;
+    for (size_t i = 0; i < PARAM_COUNT && rows->params < BENCH_MOST_PARAMS; ++i) {
+        const ParamInfo *info = &PARAM_TABLE[i];
+        size_t row = rows->params;
+        if (!method_takes(info)) continue;
+        snprintf(rows->name[row], NAME_SIZE, "%s", info->name);
+        for (char *at = rows->name[row]; *at; ++at)
+            if (*at == '_') *at = '-';
+        rows->info[row] = info;
+        rows->option[OWN_COUNT + row] = (Option){rows->name[row],
+                                                 0,
+                                                 OPTION_STRING,
+                                                 AT(param) + row * sizeof(const char *),
+                                                 *info->unit ? info->unit : "VALUE",
+                                                 0,
+                                                 0,
+                                                 info->help};
+        ++rows->params;
+    }
+}
+
+// "--rope-iterations 50 --style 0": what was given, in the table's order.
+static Result join_settings(Values *values, const Rows *rows, Error *error)
+{
+    size_t size = 0;
+    FILE *stream = open_memstream(&values->bench.settings, &size);
+    if (!stream) return error_set(error, RESULT_FAILED, "no memory for settings");
+    for (size_t i = 0; i < rows->params; ++i)
+        if (values->param[i])
+            fprintf(stream, "%s--%s %s", ftell(stream) > 0 ? " " : "", rows->name[i],
+                    values->param[i]);
+    if (fclose(stream) != 0) return error_set(error, RESULT_FAILED, "no memory for settings");
+    values->bench.method.settings = values->bench.settings;
     return RESULT_OK;
 }
 
-static Result read_share(const char *name, const char *text, double *value, Error *error)
+// That values are such, whatever the solver will be.
+static Result check_settings(const BenchOptions *options, Error *error)
 {
-    char *end;
-    *value = strtod(text, &end);
-    if (end != text && !*end && *value >= 0 && *value <= 1) return RESULT_OK;
-    return error_set(error, RESULT_USAGE, "--%s: expected 0 to 1, got '%s'", name, text);
+    SectionParams params;
+    Method method = options->method;
+    if (!method.algo && *method.variant)
+        return error_set(error, RESULT_USAGE, "--variant '%s' needs --algo", method.variant);
+    if (!method.algo) method.algo = "split";
+    Result result = method_params(&params, &method, error);
+    section_params_destroy(&params);
+    return result;
 }
 
-static Result read_rates(const char *text, AccuracyOptions *options, Error *error)
+// --- Values that are words or lists.
+
+static Result read_rates(const char *text, BenchOptions *options, Error *error)
 {
     const char *at = text;
     char *end = (char *)text;
-    for (options->rate_count = 0; options->rate_count < ACCURACY_MOST_RATES; at = end + 1) {
+    for (options->rate_count = 0; options->rate_count < BENCH_MOST_RATES; at = end + 1) {
         double rate = strtod(at, &end);
         if (end == at || !(rate >= 1 && rate <= 1e6)) break;
         options->rates[options->rate_count++] = rate;
@@ -105,125 +151,115 @@ static Result read_rates(const char *text, AccuracyOptions *options, Error *erro
         error, RESULT_USAGE,
         "--rates: expected up to %d numbers from 1 to 1000000 with commas between them, "
         "got '%s'",
-        ACCURACY_MOST_RATES, text);
-}
-
-static Result read_raster(const char *text, Raster *raster, Error *error)
-{
-    RunParams run = {0};
-    Result result = param_parse(param_find("raster"), &run, text, error);
-    *raster = (Raster)run.raster;
-    return result;
-}
-
-static Result read_oit(const char *text, Oit *oit, Error *error)
-{
-    RunParams run = {0};
-    Result result = param_parse(param_find("oit"), &run, text, error);
-    *oit = (Oit)run.oit;
-    return result;
+        BENCH_MOST_RATES, text);
 }
 
 static Result read_size(const char *text, int size[2], Error *error)
 {
-    int end = 0;
-    if (sscanf(text, "%5dx%5d%n", &size[0], &size[1], &end) == 2 && !text[end] && size[0] > 0 &&
-        size[1] > 0 && size[0] <= 16384 && size[1] <= 16384)
+    char rest;
+    if (sscanf(text, "%dx%d%c", &size[0], &size[1], &rest) == 2 && size[0] >= 1 && size[1] >= 1 &&
+        size[0] <= 16384 && size[1] <= 16384)
         return RESULT_OK;
     return error_set(error, RESULT_USAGE, "--size: expected WxH, each 1 to 16384, got '%s'", text);
 }
 
-static Result take_option(BenchOptions *options, int option, const char *text, Error *error)
+static Result read_choice(const char *name, const char *text, int *value, Error *error)
 {
-    SpeedOptions *speed = &options->speed;
-    switch (option) {
-    case OPT_VECTORS:
-        options->vectors = text;
-        return RESULT_OK;
-    case OPT_SET:
-        speed->set = text;
-        return RESULT_OK;
-    case OPT_TFX:
-        speed->file = text;
-        return RESULT_OK;
-    case OPT_ALGO:
-        speed->algo = options->accuracy.algo = text;
-        return RESULT_OK;
-    case OPT_VARIANT:
-        speed->variant = options->accuracy.variant = text;
-        return RESULT_OK;
-    case OPT_REFERENCE:
-        options->accuracy.reference = text;
-        return RESULT_OK;
-    case OPT_RATES:
-        return read_rates(text, &options->accuracy, error);
-    case OPT_JSON:
-        options->json = text;
-        return RESULT_OK;
-    case OPT_SOFTWARE:
-        options->gpu.software = true;
-        return RESULT_OK;
-    case OPT_OSMESA:
-        options->gpu.backend = GPU_BACKEND_OSMESA;
-        return RESULT_OK;
-    case OPT_NO_ERROR:
-        options->image.no_error = true;
-        return RESULT_OK;
-    case OPT_OIT:
-        return read_oit(text, &options->image.scheme.oit, error);
-    case OPT_LAYERS:
-        return read_int("layers", text, 0, 64, &options->image.scheme.layers, error);
-    case OPT_FRAMES:
-        return read_int("frames", text, 1, 1000000, &options->image.frames, error);
-    case OPT_STEPS:
-        return read_int("steps", text, 1, 1000000, &speed->steps, error);
-    case OPT_WARM_UP:
-        return read_int("warm-up", text, 0, 1000000, &speed->warm_up, error);
-    case OPT_DEVICE:
-        return read_int("device", text, 0, 1000, &options->gpu.device, error);
-    case OPT_SIZE:
-        return read_size(text, speed->size, error);
-    case OPT_RASTER:
-        return read_raster(text, &speed->raster, error);
-    case OPT_STYLE:
-        return read_share("style", text, &speed->style, error);
-    default:
-        return error_set(error, RESULT_USAGE, "option %d", option);
-    }
-}
-
-static Result refuse_option(char **argv, Error *error)
-{
-    const char *names[OPTION_COUNT], *word = argv[optind - 1];
-    for (size_t i = 0; i < OPTION_COUNT; ++i) names[i] = OPTIONS[i].option.name;
-    return error_set(error, RESULT_USAGE,
-                     "%s: no such option, or its value is missing; did you mean --%s?", word,
-                     suggest_nearest(word + strspn(word, "-"), names, OPTION_COUNT));
-}
-
-Result bench_options_read(BenchOptions *options, int argc, char **argv, Error *error)
-{
-    struct option known[OPTION_COUNT + 1] = {{0}};
-    for (size_t i = 0; i < OPTION_COUNT; ++i) known[i] = OPTIONS[i].option;
-    *options = (BenchOptions){.speed = speed_options_default(),
-                              .image = image_options_default(),
-                              .accuracy = accuracy_options_default(),
-                              .gpu = {.device = -1}};
-    opterr = 0;
-    for (int option; (option = getopt_long(argc, argv, "hV", known, NULL)) != -1;) {
-        options->help = option == 'h', options->version = option == 'V';
-        if (options->help || options->version) return RESULT_OK;
-        Result result = option == '?' ? refuse_option(argv, error)
-                                      : take_option(options, option, optarg, error);
-        if (result != RESULT_OK) return result;
-    }
-    options->files = argv + optind;
-    options->file_count = argc - optind;
+    RunParams run = {0};
+    Result result = param_parse(param_find(name), &run, text, error);
+    if (result != RESULT_OK) return error_prefix(error, result, "--%s: ", name);
+    *value = strcmp(name, "raster") == 0 ? run.raster : run.oit;
     return RESULT_OK;
 }
 
-void bench_options_list(FILE *out)
+static Result read_words(Values *values, Error *error)
 {
-    for (size_t i = 0; i < OPTION_COUNT; ++i)
-        fprintf(out, "  --%s %s\n", OPTIONS[i].option.name, OPTIONS[i].help);
+    BenchOptions *options = &values->bench;
+    int raster = 0, oit = 0;
+    Result result = values->rates ? read_rates(values->rates, options, error) : RESULT_OK;
+    if (result == RESULT_OK && values->size) result = read_size(values->size, options->size, error);
+    if (result == RESULT_OK && values->raster)
+        result = read_choice("raster", values->raster, &raster, error);
+    if (result == RESULT_OK && values->oit) result = read_choice("oit", values->oit, &oit, error);
+    options->raster = (Raster)raster;
+    options->image.scheme.oit = (Oit)oit;
+    options->image.no_error = values->no_error;
+    options->gpu.software = values->software;
+    if (values->osmesa) options->gpu.backend = GPU_BACKEND_OSMESA;
+    return result;
+}
+
+// --- All of it.
+
+Result bench_options_read(BenchOptions *options, int argc, char **argv,
+                          const char *const (*commands)[2], Error *error)
+{
+    Rows rows;
+    Values values = {.bench = {.method = {NULL, "", ""},
+                               .seconds = 60,
+                               .steps = 200,
+                               .warm_up = 20,
+                               .image = image_options_default(),
+                               .gpu = {.device = -1}}};
+    int first = 0;
+    list_rows(&rows);
+    const OptionsProgram program = {.name = "tractrix-bench",
+                                    .summary = "measure accuracy and speed",
+                                    .synopsis = "COMMAND [OPTION]... [HAIR_FILE]...",
+                                    .description =
+                                        "Measures how accurate and how fast this program is, a "
+                                        "line for each result.",
+                                    .commands = commands,
+                                    .options = rows.option,
+                                    .option_count = OWN_COUNT + rows.params,
+                                    .notes = NOTES,
+                                    .status = STATUS,
+                                    .examples = EXAMPLES};
+    Result result = options_parse(&program, &values, argc, argv, &first, &values.bench.done, error);
+    if (result == RESULT_OK && !values.bench.done) result = read_words(&values, error);
+    if (result == RESULT_OK && !values.bench.done) result = join_settings(&values, &rows, error);
+    values.bench.files = argv + first;
+    values.bench.file_count = argc - first;
+    *options = values.bench;
+    if (result == RESULT_OK && !options->done) result = check_settings(options, error);
+    return result;
+}
+
+void bench_options_destroy(BenchOptions *options)
+{
+    free(options->settings);
+    *options = (BenchOptions){0};
+}
+
+// Whether a word of `length` is in the list of `text`.
+static bool lists(const char *text, const char *word, size_t length)
+{
+    for (size_t part; *text; text += part + (text[part] == ',')) {
+        part = strcspn(text, ",");
+        if (part == length && strncmp(text, word, length) == 0) return true;
+    }
+    return false;
+}
+
+bool bench_options_part(const BenchOptions *options, const char *name)
+{
+    return !options->parts || lists(options->parts, name, strlen(name));
+}
+
+Result bench_options_check_parts(const BenchOptions *options, const char *const *names,
+                                 Error *error)
+{
+    char all[256] = "";
+    for (const char *const *name = names; *name; ++name) {
+        size_t at = strlen(all);
+        snprintf(all + at, sizeof all - at, "%s%s", at ? "," : "", *name);
+    }
+    const char *text = options->parts ? options->parts : "";
+    for (size_t part; *text; text += part + (text[part] == ',')) {
+        part = strcspn(text, ",");
+        if (!lists(all, text, part))
+            return error_set(error, RESULT_USAGE, "--part: no part '%.*s'; there are %s", (int)part,
+                             text, all);
+    }
+    return RESULT_OK;
 }

@@ -60,17 +60,20 @@ static void world_destroy(World *world)
     scene_destroy(&world->scene);
 }
 
-static Result add_section(World *world, const Row *row, int i, const SpeedOptions *options,
+static const char *algo_of(const BenchOptions *options)
+{
+    return options->method.algo ? options->method.algo : "split";
+}
+
+static Result add_section(World *world, const Row *row, int i, const BenchOptions *options,
                           Error *error)
 {
     SectionParams params;
     const char *set = options->set ? options->set : "10k16";
-    Result result = section_params_create(&params, error);
-    if (result == RESULT_OK)
-        result = param_parse(param_find("algo"), &params,
-                             row->rest[i] == STATIC ? "none" : options->algo, error);
-    if (result == RESULT_OK && row->rest[i] != STATIC)
-        result = param_parse(param_find("variant"), &params, options->variant, error);
+    Method method = {"none", "", ""};
+    if (row->rest[i] != STATIC)
+        method = (Method){algo_of(options), options->method.variant, options->method.settings};
+    Result result = method_params(&params, &method, error);
     params.sleep = row->rest[i] == SLEEPS ? 1 : 0;
     params.followers = row->followers;
     params.follow = (int)row->mode;
@@ -81,7 +84,7 @@ static Result add_section(World *world, const Row *row, int i, const SpeedOption
 }
 
 static Result world_create(World *world, const Gpu *gpu, const Row *row,
-                           const SpeedOptions *options, Error *error)
+                           const BenchOptions *options, Error *error)
 {
     *world = (World){0};
     gpu_timer_create(&world->timer, false, true);
@@ -123,7 +126,7 @@ static Result wait_for_sleep(Simulation *simulation, const Row *row, Error *erro
 }
 
 static Result measure_frames(SpeedTimes *times, Simulation *simulation, const Row *row,
-                             const SpeedOptions *options, Error *error)
+                             const BenchOptions *options, Error *error)
 {
     double *samples = calloc((size_t)options->steps, sizeof *samples);
     if (!samples)
@@ -138,7 +141,7 @@ static Result measure_frames(SpeedTimes *times, Simulation *simulation, const Ro
     return result;
 }
 
-static Result measure_row(const Gpu *gpu, const Row *row, const SpeedOptions *options, FILE *stream,
+static Result measure_row(const Gpu *gpu, const Row *row, const BenchOptions *options, FILE *stream,
                           json_t *rows, Error *error)
 {
     World world;
@@ -153,19 +156,19 @@ static Result measure_row(const Gpu *gpu, const Row *row, const SpeedOptions *op
     }
     world_destroy(&world);
     if (result != RESULT_OK) return result;
-    fprintf(stream, "%-16s %-8s %8llu %9llu %9.4f %9.4f\n", row->name, options->algo,
+    fprintf(stream, "%-16s %-8s %8llu %9llu %9.4f %9.4f\n", row->name, algo_of(options),
             (unsigned long long)guides, (unsigned long long)followers, times.median, times.minimum);
     fflush(stream);
     if (rows)
         json_array_append_new(rows,
                               json_pack("{s:s, s:s, s:I, s:I, s:i, s:f, s:f}", "scene", row->name,
-                                        "algo", options->algo, "guides", (json_int_t)guides,
+                                        "algo", algo_of(options), "guides", (json_int_t)guides,
                                         "followers", (json_int_t)followers, "steps", options->steps,
                                         "median_ms", times.median, "min_ms", times.minimum));
     return RESULT_OK;
 }
 
-Result scenes_measure(const Gpu *gpu, const SpeedOptions *options, FILE *stream, json_t *rows,
+Result scenes_measure(const Gpu *gpu, const BenchOptions *options, FILE *stream, json_t *rows,
                       Error *error)
 {
     Result result = RESULT_OK;

@@ -1,21 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "bench_speed.h"
 #include "fibre.h"
+#include "interrupt.h"
 #include "renderer.h"
 #include "simulation.h"
 #include "stats.h"
 #include "strands_make.h"
 #include "strands_read.h"
 
-#include "version.h"
-
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-SpeedOptions speed_options_default(void)
-{
-    return (SpeedOptions){.algo = "split", .variant = "", .style = -1, .steps = 200, .warm_up = 20};
-}
 
 static int compare_times(const void *a, const void *b)
 {
@@ -25,15 +20,15 @@ static int compare_times(const void *a, const void *b)
 
 SpeedTimes speed_summarise(double *samples, int count)
 {
-    if (count == 0) return (SpeedTimes){0};
+    if (count == 0) return (SpeedTimes){NAN, NAN, NAN, NAN};
     qsort(samples, (size_t)count, sizeof *samples, compare_times);
-    return (SpeedTimes){.median = samples[count / 2], .minimum = samples[0]};
+    return (SpeedTimes){samples[0], samples[count / 4], samples[count / 2], samples[3 * count / 4]};
 }
 
-// A scene of one section, as the command line would make it.
+// --- A scene of one section, as the command line would make it.
+
 typedef struct Bench {
     Scene scene;
-    Strands strands;
     GpuTimer timer;
     Simulation simulation;
 } Bench;
@@ -42,47 +37,49 @@ static void bench_destroy(Bench *bench)
 {
     if (bench->simulation.scene) simulation_destroy(&bench->simulation);
     gpu_timer_destroy(&bench->timer);
-    strands_destroy(&bench->strands);
     scene_destroy(&bench->scene);
 }
 
-static Result read_strands(Bench *bench, const SpeedOptions *options, Error *error)
-{
-    if (options->set) return strands_make_set(&bench->strands, options->set, 1, error);
-    return strands_read(&bench->strands, options->file, &(StrandsReadOptions){0}, NULL, error);
-}
-
-static Result describe_section(SectionParams *params, const SpeedOptions *options, Error *error)
-{
-    Result result = section_params_create(params, error);
-    if (result == RESULT_OK) result = param_parse(param_find("algo"), params, options->algo, error);
-    if (result == RESULT_OK)
-        result = param_parse(param_find("variant"), params, options->variant, error);
-    params->sleep = 0; // every step is one
-    params->followers = 0;
-    if (options->style >= 0) params->style = (float)options->style;
-    return result;
-}
-
-static Result bench_create(Bench *bench, const Gpu *gpu, const SpeedOptions *options, Error *error)
+static Result bench_create(Bench *bench, const Gpu *gpu, const SpeedSubject *subject, Error *error)
 {
     SectionParams params;
     *bench = (Bench){0};
     gpu_timer_create(&bench->timer, false, true);
     Result result = scene_create(&bench->scene, error);
-    if (result == RESULT_OK) result = describe_section(&params, options, error);
     if (result != RESULT_OK) return result;
-    result = scene_add_section(&bench->scene, options->set ? options->set : options->file, &params,
-                               error);
+    result = method_params(&params, &subject->method, error);
+    params.sleep = 0; // every step is one
+    params.followers = 0;
+    if (result == RESULT_OK)
+        result = scene_add_section(&bench->scene, subject->name, &params, error);
     section_params_destroy(&params);
-    if (result == RESULT_OK) result = read_strands(bench, options, error);
     if (result == RESULT_OK)
         result = simulation_create(&bench->simulation, gpu, &bench->timer, &bench->scene,
-                                   &bench->strands, NULL, error);
+                                   subject->strands, NULL, error);
     return result;
 }
 
-static Result measure_steps(SpeedResult *result, Bench *bench, const SpeedOptions *options,
+// Each buffer of the solver's state is read and written; so are the drawn positions, unless they
+// are such a buffer; the style is read. What a solver touches more often, or beside, is not in it.
+static uint64_t count_bytes(const Bench *bench)
+{
+    const SimulationSection *section = &bench->simulation.sections[0];
+    uint64_t bytes = 0;
+    for (uint32_t i = 0; i < section->hair.batch_count; ++i) {
+        const HairBatch *batch = &section->hair.batches[i];
+        SolverBuffer buffers[SOLVER_MAX_BUFFERS];
+        int count = solver_buffers(&section->solver, i, buffers);
+        bool drawn = false;
+        for (int b = 0; b < count; ++b) {
+            bytes += 2 * (uint64_t)buffers[b].buffer->size;
+            drawn = drawn || buffers[b].buffer == &batch->position;
+        }
+        bytes += (uint64_t)batch->rest.size + (drawn ? 0 : (uint64_t)batch->position.size);
+    }
+    return bytes;
+}
+
+static Result measure_steps(SpeedResult *result, Bench *bench, const BenchOptions *options,
                             Error *error)
 {
     double *step = calloc((size_t)options->steps + 1, sizeof *step),
@@ -101,6 +98,7 @@ static Result measure_steps(SpeedResult *result, Bench *bench, const SpeedOption
         }
         result->step = speed_summarise(step, options->steps);
         result->solve = speed_summarise(solve, options->steps);
+        result->bytes = count_bytes(bench);
     }
     bool good = step && solve;
     free(step);
@@ -111,15 +109,15 @@ static Result measure_steps(SpeedResult *result, Bench *bench, const SpeedOption
 
 enum { DRAWN_FRAMES = 20, DRAWN_WARM_UP = 3 };
 
-static Result draw_frames(SpeedResult *result, Renderer *renderer, Bench *bench, Image *image,
-                          Error *error)
+static Result draw_frames(SpeedResult *result, Renderer *renderer, Bench *bench,
+                          const Strands *strands, Image *image, Error *error)
 {
     double samples[DRAWN_FRAMES] = {0};
     Framing framing;
     View view;
-    framing_compute(&framing, &bench->scene, &bench->strands, NULL);
+    framing_compute(&framing, &bench->scene, strands, NULL);
     const RenderItem item = {&bench->simulation.sections[0].hair, &bench->scene.sections[0].params,
-                             fibre_auto_radius(&bench->strands, 0)};
+                             fibre_auto_radius(strands, 0)};
     const RenderFrame frame = {.view = &view,
                                .lights = bench->scene.lights,
                                .light_count = bench->scene.light_count,
@@ -140,7 +138,7 @@ static Result draw_frames(SpeedResult *result, Renderer *renderer, Bench *bench,
 }
 
 static Result measure_drawing(SpeedResult *result, const Gpu *gpu, Bench *bench,
-                              const SpeedOptions *options, Error *error)
+                              const Strands *strands, const BenchOptions *options, Error *error)
 {
     Renderer renderer;
     Image image = {0};
@@ -153,65 +151,248 @@ static Result measure_drawing(SpeedResult *result, const Gpu *gpu, Bench *bench,
     if (outcome != RESULT_OK) return outcome;
     outcome = image_create(&image, options->size[0], options->size[1], renderer_channels(&renderer),
                            error);
-    if (outcome == RESULT_OK) outcome = draw_frames(result, &renderer, bench, &image, error);
+    if (outcome == RESULT_OK)
+        outcome = draw_frames(result, &renderer, bench, strands, &image, error);
     image_destroy(&image);
     renderer_destroy(&renderer);
     return outcome;
 }
 
-Result speed_measure(SpeedResult *result, const Gpu *gpu, const SpeedOptions *options, Error *error)
+Result speed_measure(SpeedResult *result, const Gpu *gpu, const SpeedSubject *subject,
+                     const BenchOptions *options, Error *error)
 {
     Bench bench;
-    *result = (SpeedResult){0};
-    Result outcome = bench_create(&bench, gpu, options, error);
-    if (outcome == RESULT_OK) {
-        const char *name = options->set ? options->set : options->file, *slash = strrchr(name, '/');
-        snprintf(result->name, sizeof result->name, "%s", slash ? slash + 1 : name);
-        result->strands = bench.strands.strand_count;
-        result->particles = bench.strands.vertex_count;
-        result->batches = bench.simulation.sections[0].hair.batch_count;
-        outcome = measure_steps(result, &bench, options, error);
-    }
+    *result = (SpeedResult){.draw = speed_summarise(NULL, 0)};
+    Result outcome = bench_create(&bench, gpu, subject, error);
+    if (outcome == RESULT_OK) outcome = measure_steps(result, &bench, options, error);
     if (outcome == RESULT_OK && options->size[0])
-        outcome = measure_drawing(result, gpu, &bench, options, error);
+        outcome = measure_drawing(result, gpu, &bench, subject->strands, options, error);
     bench_destroy(&bench);
     return outcome;
 }
 
-json_t *speed_to_json(const SpeedResult *result, const SpeedOptions *options, const Gpu *gpu)
+// --- Rows.
+
+// What a row is in the files: also what follows from it.
+typedef struct Line {
+    SpeedRow row;
+    const char *variant, *verdict;
+    long bytes, fragments;
+    double ns_particle, gigabytes_s, share, draw_min, draw_median;
+    char command[512];
+} Line;
+
+#define AT(member) offsetof(Line, member)
+static const Column COLUMNS[] = {
+    {"part", COLUMN_TEXT, AT(row.part), 8},
+    {"hair", COLUMN_CHARS, AT(row.hair), 20},
+    {"algo", COLUMN_TEXT, AT(row.method.algo), 9},
+    {"variant", COLUMN_TEXT, AT(variant), 9},
+    {"settings", COLUMN_TEXT, AT(row.method.settings), 0},
+    {"strands", COLUMN_WHOLE, AT(row.strands), 8},
+    {"vertices", COLUMN_WHOLE, AT(row.vertices), 8},
+    {"particles", COLUMN_WHOLE, AT(row.particles), 9},
+    {"threads", COLUMN_WHOLE, AT(row.threads), 7},
+    {"ms_min", COLUMN_REAL, AT(row.result.step.minimum), 8},
+    {"ms_q1", COLUMN_REAL, AT(row.result.step.lower_quartile), 8},
+    {"ms_median", COLUMN_REAL, AT(row.result.step.median), 9},
+    {"ms_q3", COLUMN_REAL, AT(row.result.step.upper_quartile), 8},
+    {"solve_ms_min", COLUMN_REAL, AT(row.result.solve.minimum), 0},
+    {"solve_ms_median", COLUMN_REAL, AT(row.result.solve.median), 0},
+    {"ns_particle", COLUMN_REAL, AT(ns_particle), 11},
+    {"thesis_ms", COLUMN_REAL, AT(row.thesis_ms), 9},
+    {"bound_ms", COLUMN_REAL, AT(row.bound_ms), 8},
+    {"verdict", COLUMN_TEXT, AT(verdict), 7},
+    {"bytes", COLUMN_WHOLE, AT(bytes), 10},
+    {"gb_s", COLUMN_REAL, AT(gigabytes_s), 7},
+    {"bandwidth_share", COLUMN_REAL, AT(share), 15},
+    {"exponent", COLUMN_REAL, AT(row.exponent), 8},
+    {"spread", COLUMN_REAL, AT(row.spread), 8},
+    {"first_ms", COLUMN_REAL, AT(row.result.first_step_ms), 8},
+    {"draw_ms_min", COLUMN_REAL, AT(draw_min), 11},
+    {"draw_ms_median", COLUMN_REAL, AT(draw_median), 0},
+    {"fragments", COLUMN_WHOLE, AT(fragments), 0},
+    {"remark", COLUMN_TEXT, AT(row.remark), 1},
+    {"command", COLUMN_CHARS, AT(command), 0},
+};
+
+SpeedRow speed_row(const char *part, const SpeedSubject *subject)
 {
-    json_t *row = json_pack(
-        "{s:s, s:s, s:s, s:I, s:I, s:i, s:f, s:f, s:f, s:f, s:f, s:s, s:s, s:s, s:s}", "set",
-        result->name, "algo", options->algo, "variant", options->variant, "strands",
-        (json_int_t)result->strands, "particles", (json_int_t)result->particles, "steps",
-        options->steps, "median_ms", result->step.median, "min_ms", result->step.minimum,
-        "solve_median_ms", result->solve.median, "solve_min_ms", result->solve.minimum,
-        "first_step_ms", result->first_step_ms, "renderer", gpu->renderer, "gl_version",
-        gpu->version, "version", TRACTRIX_VERSION, "commit", TRACTRIX_COMMIT);
-    if (row && options->size[0]) {
-        json_object_set_new(row, "draw_median_ms", json_real(result->draw.median));
-        json_object_set_new(row, "draw_min_ms", json_real(result->draw.minimum));
-        json_object_set_new(row, "draw_size",
-                            json_pack("[i, i]", options->size[0], options->size[1]));
-        json_object_set_new(row, "fragments", json_integer((json_int_t)result->fragments));
-    }
+    const SpeedTimes none = speed_summarise(NULL, 0);
+    SpeedRow row = {.part = part,
+                    .method = {"", "", ""},
+                    .result = {.step = none, .solve = none, .draw = none, .first_step_ms = NAN},
+                    .thesis_ms = NAN,
+                    .bound_ms = NAN,
+                    .exponent = NAN,
+                    .spread = NAN,
+                    .gigabytes_s = NAN,
+                    .remark = ""};
+    if (!subject) return row;
+    const Strands *strands = subject->strands;
+    snprintf(row.hair, sizeof row.hair, "%s", subject->name);
+    row.set = subject->set, row.file = subject->file;
+    row.method = subject->method;
+    row.strands = strands->strand_count;
+    row.particles = strands->vertex_count;
+    row.vertices = strands->first[1];
     return row;
 }
 
-void speed_print_head(FILE *stream)
+static void write_command(const Speed *speed, Line *line)
 {
-    fprintf(stream, "%-24s %-8s %-8s %8s %10s %9s %9s %9s %9s %9s\n", "set", "algo", "variant",
-            "strands", "particles", "step ms", "(min)", "draw ms", "(min)", "first ms");
+    const SpeedRow *row = &line->row;
+    char method[256] = "", hair[128] = "", size[64] = "";
+    if (*row->method.algo) method_format(&row->method, method, sizeof method);
+    if (row->set) snprintf(hair, sizeof hair, " --set %s", row->set);
+    if (row->file) snprintf(hair, sizeof hair, " --tfx %s", row->file);
+    if (!isnan(line->draw_min))
+        snprintf(size, sizeof size, " --size %dx%d", speed->options->size[0],
+                 speed->options->size[1]);
+    snprintf(line->command, sizeof line->command, "tractrix-bench speed --part %s %s%s%s",
+             row->part, method, hair, size);
 }
 
-void speed_print(const SpeedResult *result, const SpeedOptions *options, FILE *stream)
+void speed_add(Speed *speed, const SpeedRow *row)
 {
-    fprintf(stream, "%-24s %-8s %-8s %8u %10llu %9.3f %9.3f ", result->name, options->algo,
-            *options->variant ? options->variant : "-", result->strands,
-            (unsigned long long)result->particles, result->step.median, result->step.minimum);
-    if (options->size[0])
-        fprintf(stream, "%9.2f %9.2f ", result->draw.median, result->draw.minimum);
-    else
-        fprintf(stream, "%9s %9s ", "-", "-");
-    fprintf(stream, "%9.1f\n", result->first_step_ms);
+    const SpeedResult *result = &row->result;
+    double least = result->step.minimum;
+    Line line = {.row = *row,
+                 .variant = *row->method.algo ? method_variant(&row->method) : "",
+                 .bytes = (long)result->bytes,
+                 .fragments = (long)result->fragments,
+                 .ns_particle = row->particles ? least * 1e6 / (double)row->particles : NAN,
+                 .gigabytes_s = row->gigabytes_s,
+                 .draw_min = result->draw.minimum,
+                 .draw_median = result->draw.median};
+    if (result->bytes) line.gigabytes_s = (double)result->bytes / least * 1e-6;
+    line.share = speed->bandwidth > 0 ? line.gigabytes_s / speed->bandwidth : NAN;
+    line.verdict = bench_table_check(&speed->table, result->step.median, row->bound_ms,
+                                     "%s, %s: median ms a step", row->hair, row->method.algo);
+    write_command(speed, &line);
+    bench_table_add(&speed->table, &line);
+}
+
+// --- The hair.
+
+static Result use_hair(Speed *speed, SpeedSubject *subject, const Strands *strands,
+                       Result (*use)(Speed *speed, const SpeedSubject *subject, Error *error),
+                       Error *error)
+{
+    Result result = RESULT_OK;
+    const char *name = subject->set ? subject->set : subject->file, *slash = strrchr(name, '/');
+    subject->name = slash ? slash + 1 : name;
+    subject->strands = strands;
+    for (int i = 0; i < speed->method_count && result == RESULT_OK; ++i) {
+        subject->method = speed->methods[i];
+        result = interrupt_requested() ? error_set(error, RESULT_INTERRUPTED, "interrupted")
+                                       : use(speed, subject, error);
+    }
+    return result;
+}
+
+static Result read_and_use(Speed *speed, const char *set, const char *file,
+                           Result (*use)(Speed *speed, const SpeedSubject *subject, Error *error),
+                           Error *error)
+{
+    Strands strands = {0};
+    SpeedSubject subject = {.set = set, .file = file};
+    Result result = set ? strands_make_set(&strands, set, 1, error)
+                        : strands_read(&strands, file, &(StrandsReadOptions){0}, NULL, error);
+    if (result == RESULT_OK) result = use_hair(speed, &subject, &strands, use, error);
+    strands_destroy(&strands);
+    return result;
+}
+
+Result speed_for_each(Speed *speed,
+                      Result (*use)(Speed *speed, const SpeedSubject *subject, Error *error),
+                      Error *error)
+{
+    static const char *const sets[] = {"1k16", "1k32", "10k16", "10k32"};
+    const BenchOptions *options = speed->options;
+    bool chosen = options->set || options->tfx;
+    Result result = RESULT_OK;
+    if (options->set) result = read_and_use(speed, options->set, NULL, use, error);
+    if (options->tfx && result == RESULT_OK)
+        result = read_and_use(speed, NULL, options->tfx, use, error);
+    for (size_t i = 0; i < sizeof sets / sizeof *sets && !chosen && result == RESULT_OK; ++i)
+        result = read_and_use(speed, sets[i], NULL, use, error);
+    for (int i = 0; i < options->file_count && result == RESULT_OK; ++i)
+        result = read_and_use(speed, NULL, options->files[i], use, error);
+    return result;
+}
+
+// --- The part "sets".
+
+// Table 4.2 of the thesis: ms a step on a GTX 1080 Ti. Its Mohawk and Short are one scene, which is
+// not among these sets.
+static const struct {
+    const char *set, *algo;
+    double ms;
+} THESIS[] = {
+    {"1k16", "emulation", 3.5},  {"1k16", "split", 0.4},     {"1k32", "emulation", 42.5},
+    {"1k32", "split", 0.75},     {"10k16", "emulation", 31}, {"10k16", "split", 1.4},
+    {"10k32", "emulation", 410}, {"10k32", "split", 5.9},
+};
+
+// What is stated for the solvers' default forms on llvmpipe with two cores: medians, ms a step.
+static const struct {
+    const char *set, *algo;
+    double ms;
+} BOUNDS[] = {
+    {"1k16", "emulation", 1.5}, {"10k32", "emulation", 60}, {"10k32", "hybrid", 12},
+    {"10k32", "chain", 15},     {"10k32", "tressfx", 15},
+};
+
+static void look_up(SpeedRow *row, const Gpu *gpu)
+{
+    bool plain = row->set && !*row->method.variant && !*row->method.settings;
+    bool thesis = row->set && (plain || strcmp(row->method.variant, "thesis") == 0);
+    for (size_t i = 0; i < sizeof THESIS / sizeof *THESIS && thesis; ++i)
+        if (strcmp(THESIS[i].set, row->set) == 0 && strcmp(THESIS[i].algo, row->method.algo) == 0)
+            row->thesis_ms = THESIS[i].ms;
+    for (size_t i = 0; i < sizeof BOUNDS / sizeof *BOUNDS && plain; ++i)
+        if (strcmp(BOUNDS[i].set, row->set) == 0 && strcmp(BOUNDS[i].algo, row->method.algo) == 0 &&
+            strstr(gpu->renderer, "llvmpipe"))
+            row->bound_ms = BOUNDS[i].ms;
+}
+
+static Result measure_set(Speed *speed, const SpeedSubject *subject, Error *error)
+{
+    SpeedRow row = speed_row("sets", subject);
+    Result result = speed_measure(&row.result, speed->gpu, subject, speed->options, error);
+    if (result != RESULT_OK) return result;
+    look_up(&row, speed->gpu);
+    speed_add(speed, &row);
+    return RESULT_OK;
+}
+
+static Result run_sets(Speed *speed, Error *error)
+{
+    return speed_for_each(speed, measure_set, error);
+}
+
+// --- The command.
+
+static const struct {
+    const char *name;
+    Result (*run)(Speed *speed, Error *error);
+} PARTS[] = {
+    {"sets", run_sets},
+};
+enum { PART_COUNT = sizeof PARTS / sizeof *PARTS };
+
+Result speed_run(const BenchOptions *options, const Gpu *gpu, Error *error)
+{
+    Speed speed = {.gpu = gpu, .options = options};
+    const char *names[PART_COUNT + 1] = {NULL};
+    for (int i = 0; i < PART_COUNT; ++i) names[i] = PARTS[i].name;
+    Result result = bench_options_check_parts(options, names, error);
+    if (result != RESULT_OK) return result;
+    speed.method_count = method_list(&options->method, speed.methods);
+    result = bench_table_open(&speed.table, COLUMNS, sizeof COLUMNS / sizeof *COLUMNS, gpu,
+                              &options->output, stdout, error);
+    for (int i = 0; i < PART_COUNT && result == RESULT_OK; ++i)
+        if (bench_options_part(options, PARTS[i].name)) result = PARTS[i].run(&speed, error);
+    return bench_table_close(&speed.table, result, error);
 }

@@ -1,54 +1,75 @@
 // SPDX-License-Identifier: MIT
-// How long a solver's step and a drawn frame take.
+// How long a solver's step and a drawn frame take: the command `tractrix-bench speed`, and what its
+// parts (bench_scaling.h and its siblings) share.
 #pragma once
 
-#include "gpu.h"
-#include "params.h"
-
-#include <jansson.h>
-
-typedef struct SpeedOptions {
-    const char *set;  // a name that strands_make_set knows, or NULL
-    const char *file; // a hair file, or NULL; one of both
-    const char *algo, *variant;
-    double style;  // share of the style in the drawn strand; < 0: the default
-    int steps;     // measured
-    int warm_up;   // steps before that, not measured
-    int size[2];   // picture to draw in px; 0: no drawing
-    Raster raster; // how hair is drawn
-} SpeedOptions;
+#include "bench_options.h"
+#include "strands.h"
 
 // Of some samples, ms.
 typedef struct SpeedTimes {
-    double median, minimum;
+    double minimum, lower_quartile, median, upper_quartile;
 } SpeedTimes;
 
+// Of `count` samples, which are put in order; NaN for none.
+SpeedTimes speed_summarise(double *samples, int count);
+
+// What is measured: hair and a solver.
+typedef struct SpeedSubject {
+    const char *name;       // of the hair, without folders
+    const char *set, *file; // where it comes from; both NULL: made by the part itself
+    const Strands *strands;
+    Method method;
+} SpeedSubject;
+
 typedef struct SpeedResult {
-    char name[128];
-    uint32_t strands, batches;
-    uint64_t particles;
+    uint64_t bytes;       // of the buffers that a step and its pose use, each once a way
     double first_step_ms; // with shader compilation, unless the driver's cache has it
     SpeedTimes step; // what moves the hair one step further and writes the positions that are drawn
     SpeedTimes solve;   // its part without the positions
-    SpeedTimes draw;    // drawing and reading back
+    SpeedTimes draw;    // drawing and reading back; NaN without
     uint64_t fragments; // of the last picture
 } SpeedResult;
 
-// The defaults: 200 steps after 20, split, no drawing.
-SpeedOptions speed_options_default(void);
+// Measures with the wall clock, waiting for the GPU at the end of each sample: options->steps of
+// 1/60 s from rest under gravity, after options->warm_up; pictures of options->size.
+Result speed_measure(SpeedResult *result, const Gpu *gpu, const SpeedSubject *subject,
+                     const BenchOptions *options, Error *error);
 
-// Of `count` samples, which are put in order; 0 for none.
-SpeedTimes speed_summarise(double *samples, int count);
+typedef struct SpeedRow {
+    const char *part;
+    char hair[64];
+    const char *set, *file;
+    Method method;
+    long strands, vertices, particles; // vertices: of the first strand
+    long threads;                      // of the driver or the program; 0: as many as it likes
+    SpeedResult result;
+    double thesis_ms, bound_ms; // what the thesis states for its GPU, what we state
+    double exponent, spread;    // of a fit over a part's rows, its standard error
+    double gigabytes_s;         // where the row is not a step
+    const char *remark;
+} SpeedRow;
 
-// Measures with the wall clock, waiting for the GPU at the end of each sample. Steps of 1/60 s from
-// rest under gravity.
-Result speed_measure(SpeedResult *result, const Gpu *gpu, const SpeedOptions *options,
-                     Error *error);
+typedef struct Speed {
+    const Gpu *gpu;
+    const BenchOptions *options;
+    BenchTable table;
+    Method methods[METHODS_MOST];
+    int method_count;
+    double bandwidth; // of the memory, GB/s; measured once
+} Speed;
 
-// One row as JSON, with device, processor-independent set-up, version and commit. The caller owns
-// the reference.
-json_t *speed_to_json(const SpeedResult *result, const SpeedOptions *options, const Gpu *gpu);
+// The command. RESULT_FAILED if a stated bound is broken, after all rows.
+Result speed_run(const BenchOptions *options, const Gpu *gpu, Error *error);
 
-// A table: a head line, then a line a row.
-void speed_print_head(FILE *stream);
-void speed_print(const SpeedResult *result, const SpeedOptions *options, FILE *stream);
+// A row of which only what the subject says is known; the subject may be NULL.
+SpeedRow speed_row(const char *part, const SpeedSubject *subject);
+
+// Checks the bound, and adds the row with what follows from it and the command that repeats it.
+void speed_add(Speed *speed, const SpeedRow *row);
+
+// The hair that is asked for: --set, --tfx, or all of the thesis's sets and the files that are
+// named. `use` is called with each set and method.
+Result speed_for_each(Speed *speed,
+                      Result (*use)(Speed *speed, const SpeedSubject *subject, Error *error),
+                      Error *error);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// tractrix-bench: accuracy of the tractrix on test vectors, speed of solvers and drawing, check of
+// tractrix-bench: accuracy of the tractrix and of solvers, speed of solvers and drawing, check of
 // all shaders.
 #include "bench_accuracy.h"
 #include "bench_image.h"
@@ -7,116 +7,19 @@
 #include "bench_scenes.h"
 #include "bench_shaders.h"
 #include "bench_speed.h"
+#include "bench_step.h"
 #include "interrupt.h"
 #include "json_write.h"
-#include "solver.h"
 #include "suggest.h"
-#include "vectors.h"
-
-#include "version.h"
 
 #include <string.h>
-
-typedef Result (*Command)(const BenchOptions *arguments, const Gpu *gpu, Error *error);
-
-static Result check_vectors(const BenchOptions *arguments, const Gpu *gpu, bool chains,
-                            Error *error)
-{
-    if (!arguments->vectors) return error_set(error, RESULT_USAGE, "--vectors FILE.csv is needed");
-    VectorsReport report = {0};
-    Result result = (chains ? vectors_check_chains
-                            : vectors_check_steps)(&report, gpu, arguments->vectors, error);
-    if (result != RESULT_OK) return result;
-    double mark = chains ? VECTORS_CHAIN_MARK : VECTORS_STEP_MARK;
-    const char *unit = chains ? "sens32" : "floor32";
-    vectors_print(&report, unit, mark, stdout);
-    if (report.failed == 0) return RESULT_OK;
-    return error_set(error, RESULT_FAILED, "%zu of %zu rows are above %g %s", report.failed,
-                     report.rows, mark, unit);
-}
-
-static Result run_step(const BenchOptions *arguments, const Gpu *gpu, Error *error)
-{
-    return check_vectors(arguments, gpu, false, error);
-}
-
-static Result run_chain(const BenchOptions *arguments, const Gpu *gpu, Error *error)
-{
-    return check_vectors(arguments, gpu, true, error);
-}
-
-static Result run_speed(const BenchOptions *arguments, const Gpu *gpu, Error *error)
-{
-    const SpeedOptions *options = &arguments->speed;
-    if (!options->set == !options->file)
-        return error_set(error, RESULT_USAGE, "speed: one of --set NAME and --tfx FILE is needed");
-    SpeedResult row;
-    Result result = speed_measure(&row, gpu, options, error);
-    if (result != RESULT_OK) return result;
-    speed_print_head(stdout);
-    speed_print(&row, options, stdout);
-    if (!arguments->json) return RESULT_OK;
-    json_t *value = speed_to_json(&row, options, gpu);
-    result = json_write_file(value, arguments->json, error);
-    json_decref(value);
-    return result;
-}
-
-// A row of the table. Drawing does not depend on the solver, so only the first one of a set draws.
-static Result add_row(const BenchOptions *arguments, const Gpu *gpu, const char *set,
-                      const char *file, const SolverType *type, json_t *rows, Error *error)
-{
-    SpeedOptions options = arguments->speed;
-    SpeedResult row;
-    options.set = set, options.file = file, options.algo = type->name;
-    if (type != SOLVER_TYPES[0]) options.size[0] = options.size[1] = 0;
-    if (interrupt_requested()) return error_set(error, RESULT_INTERRUPTED, "interrupted");
-    Result result = speed_measure(&row, gpu, &options, error);
-    if (result != RESULT_OK) return result;
-    speed_print(&row, &options, stdout);
-    fflush(stdout);
-    json_array_append_new(rows, speed_to_json(&row, &options, gpu));
-    return RESULT_OK;
-}
-
-// The thesis's sets and the files that are named, with every solver that steps.
-static Result run_all(const BenchOptions *arguments, const Gpu *gpu, Error *error)
-{
-    static const char *const sets[] = {"1k16", "1k32", "10k16", "10k32"};
-    int set_count = (int)(sizeof sets / sizeof *sets);
-    json_t *rows = json_array();
-    Result result = RESULT_OK;
-    speed_print_head(stdout);
-    for (int i = 0; i < set_count + arguments->file_count; ++i)
-        for (const SolverType *const *type = SOLVER_TYPES; *type && result == RESULT_OK; ++type)
-            if ((*type)->calls->step)
-                result = add_row(arguments, gpu, i < set_count ? sets[i] : NULL,
-                                 i < set_count ? NULL : arguments->files[i - set_count], *type,
-                                 rows, error);
-    if (result == RESULT_OK && arguments->json)
-        result = json_write_file(rows, arguments->json, error);
-    json_decref(rows);
-    return result;
-}
 
 static Result run_scenes(const BenchOptions *arguments, const Gpu *gpu, Error *error)
 {
     json_t *rows = json_array();
-    Result result = scenes_measure(gpu, &arguments->speed, stdout, rows, error);
-    if (result == RESULT_OK && arguments->json)
-        result = json_write_file(rows, arguments->json, error);
-    json_decref(rows);
-    return result;
-}
-
-static Result run_accuracy(const BenchOptions *arguments, const Gpu *gpu, Error *error)
-{
-    Error unwritten;
-    json_t *rows = arguments->json ? json_array() : NULL;
-    Result result = accuracy_run(gpu, &arguments->accuracy, stdout, rows, error);
-    if (rows && (result == RESULT_OK || result == RESULT_FAILED) &&
-        json_write_file(rows, arguments->json, &unwritten) != RESULT_OK)
-        result = error_set(error, RESULT_FAILED, "%s", unwritten.text);
+    Result result = scenes_measure(gpu, arguments, stdout, rows, error);
+    if (result == RESULT_OK && arguments->output.json)
+        result = json_write_file(rows, arguments->output.json, error);
     json_decref(rows);
     return result;
 }
@@ -134,11 +37,10 @@ static Result add_image(ImageBench *bench, const ImageOptions *options, json_t *
 
 static Result run_image(const BenchOptions *arguments, const Gpu *gpu, Error *error)
 {
-    const SpeedOptions *speed = &arguments->speed;
     ImageOptions options = arguments->image;
-    options.set = speed->set, options.file = speed->file;
-    options.scheme.raster = speed->raster;
-    if (speed->size[0]) memcpy(options.size, speed->size, sizeof options.size);
+    options.set = arguments->set, options.file = arguments->tfx;
+    options.scheme.raster = arguments->raster;
+    if (arguments->size[0]) memcpy(options.size, arguments->size, sizeof options.size);
     if (!options.set == !options.file)
         return error_set(error, RESULT_USAGE, "image: one of --set NAME and --tfx FILE is needed");
     Result result;
@@ -147,8 +49,8 @@ static Result run_image(const BenchOptions *arguments, const Gpu *gpu, Error *er
     json_t *rows = json_array();
     image_print_head(stdout);
     result = add_image(bench, &options, rows, error);
-    if (result == RESULT_OK && arguments->json)
-        result = json_write_file(rows, arguments->json, error);
+    if (result == RESULT_OK && arguments->output.json)
+        result = json_write_file(rows, arguments->output.json, error);
     json_decref(rows);
     image_bench_destroy(bench);
     return result;
@@ -172,7 +74,7 @@ static Result add_images(const ImageOptions *options, const Gpu *gpu, json_t *ro
 static Result run_images(const BenchOptions *arguments, const Gpu *gpu, Error *error)
 {
     ImageOptions options = arguments->image;
-    if (arguments->speed.size[0]) memcpy(options.size, arguments->speed.size, sizeof options.size);
+    if (arguments->size[0]) memcpy(options.size, arguments->size, sizeof options.size);
     json_t *rows = json_array();
     Result result = RESULT_OK;
     image_print_head(stdout);
@@ -185,8 +87,8 @@ static Result run_images(const BenchOptions *arguments, const Gpu *gpu, Error *e
         options.file = arguments->files[i];
         result = add_images(&options, gpu, rows, error);
     }
-    if (result == RESULT_OK && arguments->json)
-        result = json_write_file(rows, arguments->json, error);
+    if (result == RESULT_OK && arguments->output.json)
+        result = json_write_file(rows, arguments->output.json, error);
     json_decref(rows);
     return result;
 }
@@ -199,36 +101,25 @@ static Result run_shaders(const BenchOptions *arguments, const Gpu *gpu, Error *
 
 static const struct {
     const char *name;
-    Command run;
+    Result (*run)(const BenchOptions *options, const Gpu *gpu, Error *error);
     const char *help;
 } COMMANDS[] = {
-    {"step", run_step, "tractrix steps of --vectors FILE.csv against their exact results"},
-    {"chain", run_chain,
+    {"step", bench_step,
+     "tractrix steps of --vectors against their exact results, by our rule and by the thesis's"},
+    {"chain", bench_chain,
      "chain pulls of --vectors FILE.csv (FILE_cases.csv beside it) against theirs"},
-    {"speed", run_speed, "a solver's step on --set NAME or --tfx FILE, and drawing with --size"},
+    {"accuracy", accuracy_run,
+     "solvers against exact motions and other truths, with the time that they take"},
+    {"speed", speed_run,
+     "solvers' steps on --set, --tfx, or all sets and the hair files named; drawing with --size"},
     {"scenes", run_scenes,
      "frames with followers, asleep, and of two sections: --set NAME (default 10k16), --algo"},
-    {"accuracy", run_accuracy,
-     "solvers' errors against exact motions, by the time step; status 1 if a bound is broken"},
-    {"all", run_all, "a table: all sets, and the hair files named, with every solver"},
     {"image", run_image,
      "drawing --set NAME or --tfx FILE: its time, and its error against the exact picture"},
     {"images", run_images, "the same for every scheme, sets of hair and the files named"},
     {"shaders", run_shaders, "compiles every shader variant with warnings as errors"},
 };
 enum { COMMAND_COUNT = sizeof COMMANDS / sizeof *COMMANDS };
-
-static void print_help(void)
-{
-    printf("usage: tractrix-bench COMMAND [OPTION...] [HAIR_FILE...]\n\nCommands:\n");
-    for (size_t i = 0; i < COMMAND_COUNT; ++i)
-        printf("  %-8s %s\n", COMMANDS[i].name, COMMANDS[i].help);
-    printf("\nOptions:\n");
-    bench_options_list(stdout);
-    printf("\nTimes are wall-clock milliseconds, median and minimum, after a warm-up.\n"
-           "Exit status: 0 done, 1 failure or a row above its pass mark, 2 usage, 3 bad input "
-           "file, 4 no usable GL.\n");
-}
 
 static Result find_command(const char *word, size_t *command, Error *error)
 {
@@ -242,25 +133,30 @@ static Result find_command(const char *word, size_t *command, Error *error)
                      suggest_nearest(word, names, COMMAND_COUNT));
 }
 
-static Result run(int argc, char **argv, Error *error)
+static Result run_command(BenchOptions *options, Error *error)
 {
-    BenchOptions arguments;
     size_t command = 0;
     Gpu gpu;
-    Result result = bench_options_read(&arguments, argc, argv, error);
-    if (result != RESULT_OK) return result;
-    if (arguments.help) print_help();
-    if (arguments.version) printf("tractrix-bench %s\n", TRACTRIX_VERSION);
-    if (arguments.help || arguments.version) return RESULT_OK;
-    if (arguments.file_count == 0) return error_set(error, RESULT_USAGE, "no command; see --help");
-    result = find_command(*arguments.files++, &command, error);
-    --arguments.file_count;
-    if (result != RESULT_OK) return result;
-    result = gpu_create(&gpu, &arguments.gpu, error);
+    if (options->file_count == 0) return error_set(error, RESULT_USAGE, "no command; see --help");
+    Result result = find_command(*options->files++, &command, error);
+    --options->file_count;
+    if (result == RESULT_OK) result = gpu_create(&gpu, &options->gpu, error);
     if (result != RESULT_OK) return result;
     fprintf(stderr, "%s, OpenGL %s (%s)\n", gpu.renderer, gpu.version, gpu.path);
-    result = COMMANDS[command].run(&arguments, &gpu, error);
+    result = COMMANDS[command].run(options, &gpu, error);
     gpu_destroy(&gpu);
+    return result;
+}
+
+static Result run(int argc, char **argv, Error *error)
+{
+    BenchOptions options;
+    const char *help[COMMAND_COUNT + 1][2] = {{NULL}};
+    for (size_t i = 0; i < COMMAND_COUNT; ++i)
+        help[i][0] = COMMANDS[i].name, help[i][1] = COMMANDS[i].help;
+    Result result = bench_options_read(&options, argc, argv, (const char *const(*)[2])help, error);
+    if (result == RESULT_OK && !options.done) result = run_command(&options, error);
+    bench_options_destroy(&options);
     return result;
 }
 

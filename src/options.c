@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_OPTIONS = 64, MOST_WORDS = 16, FIRST_CODE = 256 };
+enum { MOST_OPTIONS = 128, MOST_WORDS = 16, FIRST_CODE = 256 };
 enum { CODE_HELP = FIRST_CODE + MOST_OPTIONS, CODE_VERSION };
 
 static const Option COMMON[] = {
@@ -42,6 +42,9 @@ static void write_text(const OptionsProgram *program)
 {
     printf("Usage: %s %s\n\n", program->name, program->synopsis);
     prose_write_wrapped(stdout, program->description, 0, 0);
+    if (program->commands) printf("\nCommands:\n");
+    for (const char *const(*c)[2] = program->commands; c && (*c)[0]; ++c)
+        prose_write_entry(stdout, (*c)[0], (*c)[1]);
     printf("\nOptions:\n");
     for (size_t i = 0; i < program->option_count + COMMON_COUNT; ++i) {
         char flag[96];
@@ -72,6 +75,9 @@ static void write_man(const OptionsProgram *program)
     prose_write_roff(stdout, program->synopsis);
     printf(".SH DESCRIPTION\n");
     prose_write_roff(stdout, program->description);
+    if (program->commands) printf(".SH COMMANDS\n");
+    for (const char *const(*c)[2] = program->commands; c && (*c)[0]; ++c)
+        prose_write_roff_entry(stdout, (*c)[0], (*c)[1]);
     printf(".SH OPTIONS\n");
     for (size_t i = 0; i < program->option_count + COMMON_COUNT; ++i) {
         char flag[96];

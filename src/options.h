@@ -29,6 +29,7 @@ typedef struct Option {
 
 typedef struct OptionsProgram {
     const char *name, *summary, *synopsis, *description; // synopsis: behind the name
+    const char *const (*commands)[2]; // words and what they do, {NULL} behind the last; NULL: none
     const Option *options;
     size_t option_count;
     const char *const *notes;       // paragraphs below the options, NULL behind the last

@@ -25,12 +25,34 @@ static Result judge(VectorsReport *report, const char *category, long id, double
         snprintf(at->name, sizeof at->name, "%s", category);
         at->worst = -1;
     }
-    if (isnan(ratio)) ratio = INFINITY;
-    bool failed = !(ratio <= mark);
+    double *ratios = realloc(at->ratios, (at->rows + 1) * sizeof *ratios);
+    if (!ratios) return error_set(error, RESULT_FAILED, "no memory for rows");
+    at->ratios = ratios;
+    bool finite = isfinite(ratio), failed = !(ratio <= mark);
+    if (!finite) ratio = INFINITY;
+    at->ratios[at->rows] = ratio;
     at->failed += failed, report->failed += failed;
+    at->not_finite += !finite, report->not_finite += !finite;
     ++at->rows, ++report->rows;
     if (ratio > at->worst) at->worst = ratio, at->worst_id = id;
     return RESULT_OK;
+}
+
+static int compare_ratios(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static void sum_up(VectorsReport *report)
+{
+    for (size_t i = 0; i < report->category_count; ++i) {
+        VectorsCategory *at = &report->categories[i];
+        qsort(at->ratios, at->rows, sizeof *at->ratios, compare_ratios);
+        at->median = at->rows ? at->ratios[at->rows / 2] : 0;
+        free(at->ratios);
+        at->ratios = NULL;
+    }
 }
 
 // Three numbers of a row in consecutive named columns.
@@ -66,12 +88,13 @@ typedef struct CheckBuffer {
     size_t size;
 } CheckBuffer;
 
-static Result run_check(const Gpu *gpu, const char *file, const CheckBuffer *inputs, int count,
-                        size_t lanes, void *results, size_t size, Error *error)
+static Result run_check(const Gpu *gpu, const char *file, const ShaderDefine *defines,
+                        const CheckBuffer *inputs, int count, size_t lanes, void *results,
+                        size_t size, Error *error)
 {
     GLuint program = 0;
     GpuBuffer buffers[4] = {{0}};
-    Result result = shader_build_compute(&program, file, NULL, error);
+    Result result = shader_build_compute(&program, file, defines, error);
     for (int i = 0; i < count && result == RESULT_OK; ++i) {
         result = gpu_buffer_create(&buffers[i], &gpu->limits, file, (int64_t)inputs[i].size,
                                    inputs[i].data, 0, error);
@@ -134,8 +157,10 @@ static Result judge_steps(VectorsReport *report, const Csv *csv, const size_t *c
     return result;
 }
 
-Result vectors_check_steps(VectorsReport *report, const Gpu *gpu, const char *path, Error *error)
+Result vectors_check_steps(VectorsReport *report, const Gpu *gpu, VectorsRule rule,
+                           const char *path, Error *error)
 {
+    const ShaderDefine defines[] = {{"PUBLISHED", rule == VECTORS_PUBLISHED}, {0}};
     *report = (VectorsReport){0};
     Csv csv;
     size_t columns[STEP_COLUMNS];
@@ -151,11 +176,12 @@ Result vectors_check_steps(VectorsReport *report, const Gpu *gpu, const char *pa
     if (result == RESULT_OK) {
         const CheckBuffer buffers[] = {{BIND_POSITION_OUT, tails, csv.row_count * sizeof *tails},
                                        {BIND_STATE_OUT, cases, 3 * csv.row_count * sizeof *cases}};
-        result = run_check(gpu, "check_step.comp", buffers, 2, csv.row_count, tails,
+        result = run_check(gpu, "check_step.comp", defines, buffers, 2, csv.row_count, tails,
                            buffers[0].size, error);
     }
     if (result == RESULT_OK)
         result = judge_steps(report, &csv, columns, (const Float4 *)tails, error);
+    sum_up(report);
     free(cases);
     free(tails);
     csv_destroy(&csv);
@@ -330,21 +356,11 @@ Result vectors_check_chains(VectorsReport *report, const Gpu *gpu, const char *p
             {BIND_STATE_OUT, chains.spans, chains.cases.row_count * sizeof *chains.spans},
             {BIND_TIPS, chains.waypoint, (chains.waypoint_count + 1) * sizeof(Float4)},
         };
-        result = run_check(gpu, "check_chain.comp", buffers, 3, chains.cases.row_count,
+        result = run_check(gpu, "check_chain.comp", NULL, buffers, 3, chains.cases.row_count,
                            chains.result, size, error);
     }
     if (result == RESULT_OK) result = judge_chains(report, &chains, error);
+    sum_up(report);
     chains_destroy(&chains);
     return result;
-}
-
-void vectors_print(const VectorsReport *report, const char *unit, double mark, FILE *stream)
-{
-    fprintf(stream, "%-20s %6s %6s %9s  %s\n", "category", "rows", "failed", "worst row", unit);
-    for (size_t i = 0; i < report->category_count; ++i) {
-        const VectorsCategory *at = &report->categories[i];
-        fprintf(stream, "%-20s %6zu %6zu %9ld  %.3g\n", at->name, at->rows, at->failed,
-                at->worst_id, at->worst);
-    }
-    fprintf(stream, "%zu rows, %zu above %g %s\n", report->rows, report->failed, mark, unit);
 }

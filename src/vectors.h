@@ -16,17 +16,21 @@
 
 enum { VECTORS_MAX_CATEGORIES = 64 };
 
-// The worst row of a category.
+// The rule of a step: ours, or the one that the thesis published.
+typedef enum VectorsRule { VECTORS_OURS, VECTORS_PUBLISHED } VectorsRule;
+
+// The rows of a category; errors in units of floor32 or sens32, infinite for NaN.
 typedef struct VectorsCategory {
     char name[32];
-    size_t rows, failed;
+    size_t rows, failed, not_finite;
     long worst_id;
-    double worst; // error in units of floor32 or sens32; infinite for NaN
+    double worst, median;
+    double *ratios; // [rows], until they are summed up
 } VectorsCategory;
 
 typedef struct VectorsReport {
     VectorsCategory categories[VECTORS_MAX_CATEGORIES];
-    size_t category_count, rows, failed;
+    size_t category_count, rows, failed, not_finite;
 } VectorsReport;
 
 // Steps: a CSV file with a header naming at least id, category, hx_hex .. pz_hex, floor32, tnx,
@@ -34,8 +38,6 @@ typedef struct VectorsReport {
 // z_hex, x, y, z, and FILE_cases.csv beside it with case, segments, moves, shape, path, sens32.
 // Categories are "shape path". RESULT_BAD_INPUT naming file and line; failed rows are no error but
 // counted. Needs a current context.
-Result vectors_check_steps(VectorsReport *report, const Gpu *gpu, const char *path, Error *error);
+Result vectors_check_steps(VectorsReport *report, const Gpu *gpu, VectorsRule rule,
+                           const char *path, Error *error);
 Result vectors_check_chains(VectorsReport *report, const Gpu *gpu, const char *path, Error *error);
-
-// A table: category, rows, failed, worst row, its error over the unit.
-void vectors_print(const VectorsReport *report, const char *unit, double mark, FILE *stream);

@@ -3,7 +3,7 @@
 // fourth frame of 1/60 s of 13 scenarios, computed for this project to 4e-10 m).
 #pragma once
 
-#include "bench_accuracy.h"
+#include "bench_motions.h"
 
 // accuracy_measure of a scenario such as "a_horizontal_n16_c4" without style, in steps of
 // 1/(60 steps_per_frame) s. `tune`, which may be NULL, changes parameters.

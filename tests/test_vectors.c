@@ -16,9 +16,9 @@ static void every_step_is_within_16_floors_of_the_exact_curve(void **state)
     (void)state;
     VectorsReport report = {0};
     Error error;
-    if (vectors_check_steps(&report, fixture_gpu(), "tests/data/tractrix_steps.csv", &error))
+    if (vectors_check_steps(&report, fixture_gpu(), VECTORS_OURS, "tests/data/tractrix_steps.csv",
+                            &error))
         fail_msg("%s", error.text);
-    vectors_print(&report, "floor32", VECTORS_STEP_MARK, stdout);
     assert_int_equal(report.rows, 2000);
     assert_int_equal(report.failed, 0);
 }
@@ -30,7 +30,6 @@ static void every_chain_is_within_32_sensitivities(void **state)
     Error error;
     if (vectors_check_chains(&report, fixture_gpu(), "tests/data/chain_pulls.csv", &error))
         fail_msg("%s", error.text);
-    vectors_print(&report, "sens32", VECTORS_CHAIN_MARK, stdout);
     assert_int_equal(report.rows, 100);
     assert_int_equal(report.failed, 0);
 }
@@ -57,11 +56,32 @@ static void a_wrong_answer_fails(void **state)
     // 2e-6 more, 20 floors.
     snprintf(text, sizeof text, "%s%s%s", HEADER, "0,pull,0,0,0,1,0,0,-0.5,0,0,1e-7,0.5,0,0\n",
              "1,pull,0,0,0,1,0,0,-0.5,0,0,1e-7,0.500002,0,0\n");
-    assert_int_equal(
-        vectors_check_steps(&report, fixture_gpu(), write_vectors(state, text), &error), RESULT_OK);
+    assert_int_equal(vectors_check_steps(&report, fixture_gpu(), VECTORS_OURS,
+                                         write_vectors(state, text), &error),
+                     RESULT_OK);
     assert_int_equal(report.rows, 2);
     assert_int_equal(report.failed, 1);
     assert_int_equal(report.categories[0].worst_id, 1);
+}
+
+// What is measured beside ours is really the published rule: right for a tail that is towed (0) and
+// for one that is pushed (1), wrong where the head passes the tail that it pushes, s > 2aL (2), and
+// not a number for a tail beside the head whose distance rounds to more than the length (3).
+static void the_published_step_errs_where_it_is_known_to(void **state)
+{
+    char text[1024];
+    VectorsReport report = {0};
+    Error error;
+    snprintf(text, sizeof text, "%s%s%s%s", HEADER,
+             "0,towed,0,0,0,-0.8,0.6,0,0.5,0,0,1e-7,-0.421459416072,0.388474699583,0\n",
+             "1,pushed,0,0,0,0.8,0.6,0,0.5,0,0,1e-7,1.03606137375,0.844179039812,0\n",
+             "2,passed,0,0,0,0.8,0.6,0,2,0,0,1e-7,1.28302709691,0.697101071519,0\n");
+    assert_int_equal(vectors_check_steps(&report, fixture_gpu(), VECTORS_PUBLISHED,
+                                         write_vectors(state, text), &error),
+                     RESULT_OK);
+    assert_true(report.categories[0].worst < VECTORS_STEP_MARK);
+    assert_true(report.categories[1].worst < VECTORS_STEP_MARK);
+    assert_true(report.categories[2].worst > 1e6);
 }
 
 static void a_bad_field_is_named_by_line_and_column(void **state)
@@ -70,17 +90,17 @@ static void a_bad_field_is_named_by_line_and_column(void **state)
     VectorsReport report = {0};
     Error error;
     snprintf(text, sizeof text, "%s%s", HEADER, "0,pull,0,0,zero,1,0,0,-0.5,0,0,1e-7,0.5,0,0\n");
-    assert_int_equal(
-        vectors_check_steps(&report, fixture_gpu(), write_vectors(state, text), &error),
-        RESULT_BAD_INPUT);
+    assert_int_equal(vectors_check_steps(&report, fixture_gpu(), VECTORS_OURS,
+                                         write_vectors(state, text), &error),
+                     RESULT_BAD_INPUT);
     assert_non_null(strstr(error.text, "vectors.csv:2: hz_hex: expected a number, got 'zero'"));
-    assert_int_equal(
-        vectors_check_steps(&report, fixture_gpu(), write_vectors(state, "a,b\n1\n"), &error),
-        RESULT_BAD_INPUT);
+    assert_int_equal(vectors_check_steps(&report, fixture_gpu(), VECTORS_OURS,
+                                         write_vectors(state, "a,b\n1\n"), &error),
+                     RESULT_BAD_INPUT);
     assert_non_null(strstr(error.text, "vectors.csv:2: 1 fields, the header has 2"));
-    assert_int_equal(
-        vectors_check_steps(&report, fixture_gpu(), write_vectors(state, "a,b\n1,2\n"), &error),
-        RESULT_BAD_INPUT);
+    assert_int_equal(vectors_check_steps(&report, fixture_gpu(), VECTORS_OURS,
+                                         write_vectors(state, "a,b\n1,2\n"), &error),
+                     RESULT_BAD_INPUT);
     assert_non_null(strstr(error.text, "no column 'id'"));
 }
 
@@ -90,6 +110,8 @@ int main(void)
         cmocka_unit_test(every_step_is_within_16_floors_of_the_exact_curve),
         cmocka_unit_test(every_chain_is_within_32_sensitivities),
         cmocka_unit_test_setup_teardown(a_wrong_answer_fails, temporary_create, temporary_destroy),
+        cmocka_unit_test_setup_teardown(the_published_step_errs_where_it_is_known_to,
+                                        temporary_create, temporary_destroy),
         cmocka_unit_test_setup_teardown(a_bad_field_is_named_by_line_and_column, temporary_create,
                                         temporary_destroy),
     };
