@@ -78,7 +78,7 @@ void main()
     vec3 eye = draw_params.eye.xyz;
     Fibre fibre = fibre_material();
 #if SHADOW
-    shadow_fibre = vec2(2.0 * material.radius, material.shadow_opacity);
+    float shadow_opacity = material.shadow_opacity * paint_opacity_share(root);
 #endif
 
     Curve curve = curve_open(root, n);
@@ -97,8 +97,10 @@ void main()
         vec3 after = curve_point(curve, j + 1);
         vec4 after_clip = clip_from_world * vec4(after, 1.0);
         Particle p;
-        p.at = project(clip_near(here_clip, before_clip, after_clip), paint_radius(painter, at, place));
+        float radius = paint_radius(painter, at, place);
+        p.at = project(clip_near(here_clip, before_clip, after_clip), radius);
 #if SHADOW
+        shadow_fibre = vec2(2.0 * radius, shadow_opacity);
         shadow_find(here);
 #endif
         p.color = shade_particle(fibre, painter, at, here, unit(after - before), unit(eye - here));

@@ -49,12 +49,17 @@ float paint_radius(Painter p, int at, float j)
     return max(p.radius * share, 1e-9);
 }
 
-// Of a strand whose root lies at `root`.
-float paint_opacity(int root)
+// Factor of all opacities of a strand whose root lies at `root`.
+float paint_opacity_share(int root)
 {
 #if PAINT
-    return material.opacity * unpackUnorm2x16(texelFetch(paint, root).y).y;
+    return unpackUnorm2x16(texelFetch(paint, root).y).y;
 #else
-    return material.opacity;
+    return 1.0;
 #endif
+}
+
+float paint_opacity(int root)
+{
+    return material.opacity * paint_opacity_share(root);
 }

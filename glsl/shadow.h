@@ -11,7 +11,7 @@
 #define SHADOW_DEPTHS 16777215 // steps from the first depth that there can be to the last
 
 #define BIND_SHADOW 3 // uniform block
-#define BIND_CAST   2 // uniform block, in the passes that make maps
+#define BIND_CAST   4 // uniform block, in the passes that make maps
 
 // Shader storage.
 #define BIND_BOUNDS_OUT 0 // 6 int: lowest and highest place, see shadow_bounds.comp
@@ -43,19 +43,15 @@ UNIFORM_BLOCK(ShadowParams, shadow_params, BIND_SHADOW)
 }
 END_BLOCK(ShadowParams, shadow_params);
 
-// What throws the shadow: a batch of hair, before one light.
+// One light before which hair stands; what the hair is like tells material.h.
 UNIFORM_BLOCK(CastParams, cast_params, BIND_CAST)
 {
     mat4 from_world; // see above, of the light in turn
-    uint strand_count, vertex_count;
-    int side;     // texels
-    int map;      // number
-    float radius; // m, at the root
-    float tip_ratio;
-    float opacity; // to light
-    float unit;    // of sums: steps for an optical depth of 1
-    float texels;  // in a metre across the light (a perspective one: at w = 1)
-    float reach;   // greatest u and v that a bound may have
-    float limit;   // no coordinate in the world is beyond this, m: others are broken
+    int side;        // texels
+    int map;         // number
+    float unit;      // of sums: steps for an optical depth of 1
+    float texels;    // in a metre across the light (a perspective one: at w = 1)
+    float reach;     // greatest u and v that a bound may have
+    float limit;     // no coordinate in the world is beyond this, m: others are broken
 }
 END_BLOCK(CastParams, cast_params);

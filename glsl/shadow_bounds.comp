@@ -2,11 +2,12 @@
 // The box around all hair as the light sees it: (u, v, depth). Floats are compared as ints, which
 // atomics can do: of positive ones the bits grow with the value, of negative ones they fall.
 #include "shadow.h"
+#include "material.h"
 #include "hair_address.glsl"
+#include "curve.glsl"
 #include "shadow_cast.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
-layout(binding = BIND_POSITION) uniform samplerBuffer position;
 layout(std430, binding = BIND_BOUNDS_OUT) buffer Bounds { int bounds[]; };
 
 int ordered(float x)
@@ -17,13 +18,15 @@ int ordered(float x)
 
 void main()
 {
-    int s = int(gl_GlobalInvocationID.x), n = int(cast_params.vertex_count);
-    int begin = int(gl_GlobalInvocationID.y) * PART_VERTICES, end = min(begin + PART_VERTICES, n);
-    if (s >= int(cast_params.strand_count)) return;
+    int s = int(gl_GlobalInvocationID.x), n = int(material.vertex_count);
+    if (s >= int(material.drawn_strands)) return;
+    Curve curve = curve_open(particle_address(s, 0, n), n);
+    int begin = int(gl_GlobalInvocationID.y) * PART_VERTICES;
+    int end = min(begin + PART_VERTICES, curve.segments * curve.parts + 1);
     float reach = cast_params.reach;
     vec3 low = vec3(1e30), high = vec3(-1e30);
     for (int j = begin; j < end; ++j) {
-        vec3 x = texelFetch(position, particle_address(s, j, n)).xyz;
+        vec3 x = curve_point(curve, j);
         bool sound = all(lessThan(abs(x), vec3(limit)));
         vec3 place = shadow_place(x).xyz;
         sound = sound && all(lessThan(abs(place.xy), vec2(reach)));

@@ -5,13 +5,17 @@
 // A texel that a fibre of opacity a crosses, covering the share c of its width, loses the share a c
 // of its light: an optical depth of -ln(1 - a c), or -ln(1 - a) where it is covered whole. Fibres at
 // random places multiply, so that optical depths add up. Sums are integers: their order does not matter.
+// The ribbons are those that are drawn: curves, thickness and opacity, the share of strands (material.h).
 #include "shadow.h"
+#include "material.h"
 #include "hair_address.glsl"
+#include "hash.glsl"
+#include "curve.glsl"
+#include "paint.glsl"
 #include "shadow_cast.glsl"
 #include "shadow_layer.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
-layout(binding = BIND_POSITION) uniform samplerBuffer position;
 #if DEEP
 layout(binding = BIND_DEPTHS) uniform samplerBuffer depths;
 layout(std430, binding = BIND_SUMS_OUT) buffer Sums { uint sums[]; };
@@ -20,29 +24,42 @@ layout(std430, binding = BIND_FIRST_OUT) buffer First { uint first[]; };
 #endif
 
 // Points in a texel: sums are smoothed afterwards, but where ribbons are wide their pattern would
-// show; of first depths none may be far from a point.
+// show; of first depths none may be far from a point, and within a wide ribbon every texel must have
+// one: its inner circle does if they are no more than sqrt(1/2) apart.
 #if DEEP
 const float DENSITY = 0.5, WIDE_DENSITY = 2.0;
 #else
-const float DENSITY = 1.0, WIDE_DENSITY = 1.0;
+const float DENSITY = 1.0, WIDE_DENSITY = 1.42;
 #endif
 // Points on a segment: CPU drivers end loops silently after 65,535 turns of a lane.
 const float MOST_ALONG = 512.0, MOST = 60000.0 / float(PART_SEGMENTS);
 
+float point_radius(Painter painter, Curve curve, int k)
+{
+    float place = curve_place(curve, k);
+    return paint_radius(painter, curve.root + int(place) * STRAND_TILE, place);
+}
+
 void main()
 {
-    int s = int(gl_GlobalInvocationID.x), n = int(cast_params.vertex_count);
-    int begin = int(gl_GlobalInvocationID.y) * PART_SEGMENTS, end = min(begin + PART_SEGMENTS, n - 1);
-    if (s >= int(cast_params.strand_count) || begin >= end) return;
-    float thinning = (1.0 - cast_params.tip_ratio) / float(n - 1), opacity = cast_params.opacity;
-    float width_root = 2.0 * cast_params.radius * cast_params.texels;
-    float unit = cast_params.unit, edge = float(side) - 0.5;
+    int s = int(gl_GlobalInvocationID.x), n = int(material.vertex_count);
+    int root = particle_address(s, 0, n);
+    Curve curve = curve_open(root, n);
+    int begin = int(gl_GlobalInvocationID.y) * PART_SEGMENTS;
+    int end = min(begin + PART_SEGMENTS, curve.segments * curve.parts);
+    if (s >= int(material.drawn_strands) || begin >= end) return;
+    Painter painter = paint_strand(0u, n); // no colour is asked for
+    if (s == int(material.last_strand)) painter.radius *= material.last_share;
+    float opacity = material.shadow_opacity * paint_opacity_share(root);
+    float texels = cast_params.texels, unit = cast_params.unit, edge = float(side) - 0.5;
     int map = cast_params.map * side * side;
-    vec4 a = shadow_place(texelFetch(position, particle_address(s, begin, n)).xyz);
+    vec4 a = shadow_place(curve_point(curve, begin));
+    float radius = point_radius(painter, curve, begin);
     for (int j = begin; j < end; ++j) {
-        vec4 b = shadow_place(texelFetch(position, particle_address(s, j + 1, n)).xyz);
+        vec4 b = shadow_place(curve_point(curve, j + 1));
+        float next_radius = point_radius(painter, curve, j + 1);
         vec2 way = b.xy - a.xy;
-        float size = length(way), width = width_root * (1.0 - thinning * (float(j) + 0.5)) / (0.5 * (a.w + b.w));
+        float size = length(way), width = 2.0 * texels * (radius + next_radius) / (a.w + b.w);
         float density = width > 1.5 ? WIDE_DENSITY : DENSITY;
         float along = clamp(ceil(size * density), 1.0, MOST_ALONG);
         float across = width > 1.5 ? clamp(ceil(width * density), 1.0, floor(MOST / along)) : 1.0;
@@ -74,5 +91,6 @@ void main()
             }
         }
         a = b;
+        radius = next_radius;
     }
 }

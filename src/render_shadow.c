@@ -2,6 +2,7 @@
 #include "render_shadow.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const double LEAST_LEFT = 1e-3; // of the light behind one fibre
@@ -19,6 +20,7 @@ void render_shadow_destroy(RenderShadow *shadow)
 {
     render_shadow_hair_destroy(&shadow->hair);
     render_shadow_mesh_destroy(&shadow->mesh);
+    free(shadow->casters);
     gpu_buffer_destroy(&shadow->uniforms);
     *shadow = (RenderShadow){0};
 }
@@ -41,8 +43,8 @@ static void find_mean_fibre(const RenderShadow *shadow, const ShadowScene *scene
     for (uint32_t i = 0; i < scene->casters.count; ++i) {
         const ShadowCaster *caster = &scene->casters.list[i];
         double share = (double)caster->batch->strand_count * caster->batch->vertex_count;
-        radius += share * (double)caster->radius;
-        opacity += share * (double)caster->opacity;
+        radius += share * (double)caster->look.material.radius;
+        opacity += share * (double)caster->look.material.shadow_opacity;
         weight += share;
     }
     if (weight == 0) weight = 1, radius = 1;
@@ -99,6 +101,23 @@ static void draw_map(RenderShadow *shadow, const ShadowScene *scene, int light)
     ++params->maps;
 }
 
+static bool same_ribbons(const ShadowCaster *a, const ShadowCaster *b)
+{
+    const MaterialParams *p = &a->look.material, *q = &b->look.material;
+    return a->batch == b->batch && a->look.share == b->look.share &&
+           a->look.features == b->look.features && p->radius == q->radius &&
+           p->tip_ratio == q->tip_ratio && p->shadow_opacity == q->shadow_opacity &&
+           p->smooth_parts == q->smooth_parts && p->smooth_curve == q->smooth_curve;
+}
+
+static bool same_casters(const RenderShadow *shadow, ShadowCasters casters)
+{
+    bool same = casters.count == shadow->drawn.casters.count;
+    for (uint32_t i = 0; i < casters.count && same; ++i)
+        same = same_ribbons(&casters.list[i], &shadow->casters[i]);
+    return same;
+}
+
 static bool is_drawn(const RenderShadow *shadow, const ShadowScene *scene)
 {
     const ShadowScene *drawn = &shadow->drawn;
@@ -107,7 +126,8 @@ static bool is_drawn(const RenderShadow *shadow, const ShadowScene *scene)
            memcmp(scene->mesh.rotation, drawn->mesh.rotation, sizeof drawn->mesh.rotation) == 0 &&
            memcmp(scene->mesh.translation, drawn->mesh.translation,
                   sizeof drawn->mesh.translation) == 0 &&
-           memcmp(scene->lights, shadow->lights, scene->light_count * sizeof(Light)) == 0;
+           memcmp(scene->lights, shadow->lights, scene->light_count * sizeof(Light)) == 0 &&
+           same_casters(shadow, scene->casters);
 }
 
 static Result reserve(RenderShadow *shadow, const ShadowScene *scene, Error *error)
@@ -116,7 +136,15 @@ static Result reserve(RenderShadow *shadow, const ShadowScene *scene, Error *err
     for (uint32_t i = 0; i < scene->light_count; ++i) maps += casts(&scene->lights[i]);
     if (maps == 0) maps = 1;
     shadow->any = false;
-    Result result = render_shadow_hair_reserve(&shadow->hair, maps, error);
+    ShadowCasters casters = scene->casters;
+    if (casters.count > shadow->caster_room) {
+        ShadowCaster *room = realloc(shadow->casters, casters.count * sizeof *room);
+        if (!room)
+            return error_set(error, RESULT_FAILED, "no memory for %u batches", casters.count);
+        shadow->casters = room;
+        shadow->caster_room = casters.count;
+    }
+    Result result = render_shadow_hair_reserve(&shadow->hair, maps, casters, error);
     if (result == RESULT_OK && has_mesh(scene))
         result = render_shadow_mesh_reserve(&shadow->mesh, maps, error);
     return result;
@@ -147,6 +175,9 @@ Result render_shadow_draw(RenderShadow *shadow, const ShadowScene *scene, GpuTim
     gpu_timer_end(timer);
     shadow->drawn = *scene;
     memcpy(shadow->lights, scene->lights, scene->light_count * sizeof(Light));
+    if (scene->casters.count)
+        memcpy(shadow->casters, scene->casters.list,
+               scene->casters.count * sizeof *shadow->casters);
     shadow->any = true;
     return gpu_check("shadow maps", error);
 }

@@ -32,6 +32,8 @@ typedef struct RenderShadow {
     ShadowParams params;
     ShadowScene drawn; // what the maps show; pointers are not followed
     Light lights[SCENE_MAX_LIGHTS];
+    ShadowCaster *casters; // [caster_room], owned
+    uint32_t caster_room;
     bool any;
     uint32_t maps_drawn; // in the last render_shadow_draw
 } RenderShadow;

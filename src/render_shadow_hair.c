@@ -17,27 +17,33 @@ static const double UNIT = 1 << 16;    // steps for an optical depth of 1
 static const double SUM_MAX = 2e9;     // of those steps: sums do not overflow
 static const double LEAST_LEFT = 1e-3; // of the light behind one fibre, as in shadow_splat.comp
 
-static Result build(GLuint *program, const char *file, int group, int deep, Error *error)
+static Result build(GLuint *program, const char *file, int group, int deep, unsigned variant,
+                    Error *error)
 {
     const ShaderDefine defines[] = {{"GROUP_SIZE", group},
                                     {"DEEP", deep},
                                     {"PART_VERTICES", PART_VERTICES},
                                     {"PART_SEGMENTS", PART_SEGMENTS},
+                                    {"PAINT", (variant & CAST_PAINT) != 0},
+                                    {"SMOOTH", (variant & CAST_SMOOTH) != 0},
                                     {NULL, 0}};
-    return shader_build_compute(program, file, defines, error);
+    return *program ? RESULT_OK : shader_build_compute(program, file, defines, error);
 }
 
-static Result build_programs(RenderShadowHair *hair, Error *error)
+static unsigned variant_of(const ShadowCaster *caster)
 {
-    bool deep = hair->deep;
-    Result result = build(&hair->bounds, "shadow_bounds.comp", GROUP, deep, error);
-    if (result == RESULT_OK) result = build(&hair->first, "shadow_splat.comp", GROUP, false, error);
-    if (result == RESULT_OK && deep)
-        result = build(&hair->splat, "shadow_splat.comp", GROUP, true, error);
-    if (result == RESULT_OK && deep)
-        result = build(&hair->spread, "shadow_spread.comp", TEXEL_GROUP, deep, error);
-    if (result == RESULT_OK && deep)
-        result = build(&hair->finish, "shadow_finish.comp", TEXEL_GROUP, deep, error);
+    return (caster->batch->paint.buffer ? CAST_PAINT : 0) |
+           (caster->look.features & LOOK_SMOOTH ? CAST_SMOOTH : 0);
+}
+
+static Result build_variant(RenderShadowHair *hair, unsigned variant, Error *error)
+{
+    Result result =
+        build(&hair->bounds[variant], "shadow_bounds.comp", GROUP, hair->deep, variant, error);
+    if (result == RESULT_OK)
+        result = build(&hair->first[variant], "shadow_splat.comp", GROUP, false, variant, error);
+    if (result == RESULT_OK && hair->deep)
+        result = build(&hair->splat[variant], "shadow_splat.comp", GROUP, true, variant, error);
     return result;
 }
 
@@ -45,10 +51,12 @@ Result render_shadow_hair_create(RenderShadowHair *hair, const GpuLimits *limits
                                  int side, Error *error)
 {
     *hair = (RenderShadowHair){.deep = deep, .side = side, .limits = limits};
-    Result result = build_programs(hair, error);
-    if (result == RESULT_OK)
-        result =
-            gpu_buffer_create(&hair->box, limits, "light's box", BOX_WORDS * 4, NULL, 0, error);
+    Result result =
+        gpu_buffer_create(&hair->box, limits, "light's box", BOX_WORDS * 4, NULL, 0, error);
+    if (result == RESULT_OK && deep)
+        result = build(&hair->spread, "shadow_spread.comp", TEXEL_GROUP, deep, 0, error);
+    if (result == RESULT_OK && deep)
+        result = build(&hair->finish, "shadow_finish.comp", TEXEL_GROUP, deep, 0, error);
     if (result != RESULT_OK) render_shadow_hair_destroy(hair);
     return result;
 }
@@ -62,21 +70,29 @@ static void destroy_maps(RenderShadowHair *hair)
     hair->maps = 0;
 }
 
+static void destroy_programs(const GLuint *programs, int count)
+{
+    for (int i = 0; i < count; ++i)
+        if (programs[i]) glDeleteProgram(programs[i]);
+}
+
 void render_shadow_hair_destroy(RenderShadowHair *hair)
 {
-    const GLuint programs[] = {hair->bounds, hair->first, hair->spread, hair->splat, hair->finish};
-    for (size_t i = 0; i < sizeof programs / sizeof *programs; ++i)
-        if (programs[i]) glDeleteProgram(programs[i]);
+    destroy_programs(hair->bounds, CAST_VARIANTS);
+    destroy_programs(hair->first, CAST_VARIANTS);
+    destroy_programs(hair->splat, CAST_VARIANTS);
+    destroy_programs(&hair->spread, 1);
+    destroy_programs(&hair->finish, 1);
     destroy_maps(hair);
     gpu_buffer_destroy(&hair->box);
     gpu_buffer_destroy(&hair->cast_uniforms);
+    gpu_buffer_destroy(&hair->material);
     *hair = (RenderShadowHair){0};
 }
 
-Result render_shadow_hair_reserve(RenderShadowHair *hair, int maps, Error *error)
+static Result make_maps(RenderShadowHair *hair, int maps, Error *error)
 {
     const GpuLimits *limits = hair->limits;
-    if (hair->maps >= maps) return RESULT_OK;
     destroy_maps(hair);
     int64_t side = hair->side, coarse = hair->deep ? side / SHADOW_COARSE : side,
             texels = maps * side * side;
@@ -96,23 +112,32 @@ Result render_shadow_hair_reserve(RenderShadowHair *hair, int maps, Error *error
     return result;
 }
 
-// Runs a pass over all strands, in parts of `part` of a strand's vertices.
-static void cast(RenderShadowHair *hair, ShadowCasters casters, CastParams *params, GLuint program,
-                 uint32_t part)
+Result render_shadow_hair_reserve(RenderShadowHair *hair, int maps, ShadowCasters casters,
+                                  Error *error)
 {
-    glUseProgram(program);
+    Result result = hair->maps < maps ? make_maps(hair, maps, error) : RESULT_OK;
+    for (uint32_t i = 0; i < casters.count && result == RESULT_OK; ++i)
+        result = build_variant(hair, variant_of(&casters.list[i]), error);
+    return result;
+}
+
+// Runs a pass, which has a program for each variant, over all ribbons, in parts of `part` of a
+// strand's points.
+static void cast(RenderShadowHair *hair, ShadowCasters casters, const CastParams *params,
+                 const GLuint programs[CAST_VARIANTS], uint32_t part)
+{
+    gpu_uniforms_set(&hair->cast_uniforms, BIND_CAST, params, sizeof *params);
     for (uint32_t i = 0; i < casters.count; ++i) {
         const ShadowCaster *caster = &casters.list[i];
         const HairBatch *batch = caster->batch;
-        params->strand_count = batch->strand_count;
-        params->vertex_count = batch->vertex_count;
-        params->radius = caster->radius;
-        params->tip_ratio = caster->tip_ratio;
-        params->opacity = caster->opacity;
-        gpu_uniforms_set(&hair->cast_uniforms, BIND_CAST, params, sizeof *params);
+        MaterialParams material = look_material(&caster->look, batch);
+        uint32_t points = (batch->vertex_count - 1) * material.smooth_parts + 1;
+        glUseProgram(programs[variant_of(caster)]);
+        gpu_uniforms_set(&hair->material, BIND_MATERIAL, &material, sizeof material);
         gpu_buffer_bind_texture(&batch->position, BIND_POSITION);
-        glDispatchCompute((batch->strand_count + GROUP - 1) / GROUP,
-                          (batch->vertex_count + part - 1) / part, 1);
+        if (batch->paint.buffer) gpu_buffer_bind_texture(&batch->paint, BIND_PAINT);
+        glDispatchCompute((material.drawn_strands + GROUP - 1) / GROUP, (points + part - 1) / part,
+                          1);
     }
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
                     GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -168,9 +193,12 @@ static float find_unit(ShadowCasters casters, bool perspective, double texels)
     double most = 1;
     for (uint32_t i = 0; i < casters.count; ++i) {
         const ShadowCaster *caster = &casters.list[i];
-        double width = perspective ? 1 : fmin(2.0 * (double)caster->radius * texels, 1);
-        double left = fmax(1 - (double)caster->opacity * width, LEAST_LEFT);
-        most -= log(left) * caster->batch->strand_count * (caster->batch->vertex_count - 1);
+        const MaterialParams *material = &caster->look.material;
+        bool any_width = perspective || caster->batch->paint.buffer;
+        double width = any_width ? 1 : fmin(2.0 * (double)material->radius * texels, 1);
+        double left = fmax(1 - (double)material->shadow_opacity * width, LEAST_LEFT);
+        most -= log(left) * caster->batch->strand_count * (caster->batch->vertex_count - 1) *
+                material->smooth_parts;
     }
     return (float)fmin(UNIT, SUM_MAX / most);
 }

@@ -5,17 +5,15 @@
 // layers behind. An approximated one has the first depth only.
 #pragma once
 
-#include "hair.h"
 #include "light_frame.h"
-#include "shader.h"
+#include "render_look.h"
 
 #include "shadow.h"
 
-// Hair that stands in the light.
+// Hair that stands in the light: the ribbons that are drawn, with the material's shadow_opacity.
 typedef struct ShadowCaster {
     const HairBatch *batch;
-    float radius; // m, at the root
-    float tip_ratio, opacity;
+    Look look;
 } ShadowCaster;
 
 typedef struct ShadowCasters {
@@ -23,13 +21,16 @@ typedef struct ShadowCasters {
     uint32_t count;
 } ShadowCasters;
 
+enum { CAST_PAINT = 1, CAST_SMOOTH = 2, CAST_VARIANTS = 4 }; // what the ribbons' shaders need
+
 typedef struct RenderShadowHair {
     bool deep;
     int side; // texels across a map
     const GpuLimits *limits;
-    GLuint bounds, first, spread, splat, finish; // programs
+    GLuint bounds[CAST_VARIANTS], first[CAST_VARIANTS], splat[CAST_VARIANTS]; // programs
+    GLuint spread, finish;
     GpuBuffer box, firsts, depths, sums, layers; // see shadow.h
-    GpuBuffer cast_uniforms;
+    GpuBuffer cast_uniforms, material;
     int maps; // there is room for
 } RenderShadowHair;
 
@@ -38,8 +39,10 @@ Result render_shadow_hair_create(RenderShadowHair *hair, const GpuLimits *limits
                                  int side, Error *error);
 void render_shadow_hair_destroy(RenderShadowHair *hair);
 
-// Room for so many maps; nothing if there is. RESULT_FAILED if memory is short.
-Result render_shadow_hair_reserve(RenderShadowHair *hair, int maps, Error *error);
+// Room for so many maps, and the shaders for such hair; nothing if all is there. RESULT_FAILED if
+// memory is short or a shader does not compile.
+Result render_shadow_hair_reserve(RenderShadowHair *hair, int maps, ShadowCasters casters,
+                                  Error *error);
 
 // The box (see light_frame.h) of all hair before the light; false if there is none. Waits for the
 // GPU.

@@ -118,8 +118,7 @@ static Result list_casters(Renderer *renderer, ShadowScene *scene, Error *error)
         const RenderItem *item = &picture->items[i];
         for (uint32_t b = 0; b < item->hair->batch_count; ++b)
             renderer->casters[scene->casters.count++] =
-                (ShadowCaster){&item->hair->batches[b], item->radius, item->material->tip_ratio,
-                               item->material->shadow_opacity};
+                (ShadowCaster){&item->hair->batches[b], picture->looks[i]};
     }
     scene->casters.list = renderer->casters;
     return RESULT_OK;

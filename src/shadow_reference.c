@@ -81,9 +81,12 @@ static Place find_place(const ShadowReference *reference, const ReferenceItem *i
                         uint32_t j)
 {
     const Strands *strands = item->strands;
-    const float *x = strands->position[strands->first[s] + j];
+    uint32_t vertex = strands->first[s] + j;
+    const float *x = strands->position[vertex];
     double thinning = (1 - (double)item->material->tip_ratio) / (strands_size(strands, s) - 1);
-    Place place = {.radius = item->radius * (1 - thinning * j)};
+    double share =
+        item->paint && item->paint->color ? item->paint->thickness[vertex] : 1 - thinning * j;
+    Place place = {.radius = item->radius * share};
     place.seen = find_point(reference, x, place.at);
     if (reference->view.perspective) place.radius *= -place.at[2];
     return place;
@@ -92,7 +95,9 @@ static Place find_place(const ShadowReference *reference, const ReferenceItem *i
 static void add_strand(ShadowReference *reference, const ReferenceItem *item, uint32_t s)
 {
     uint32_t n = strands_size(item->strands, s);
-    double before[2] = {0}, way[2], after[2] = {0};
+    double before[2] = {0}, way[2], after[2] = {0}, opacity = item->material->shadow_opacity;
+    if (item->paint && item->paint->color)
+        opacity *= (double)item->paint->color[item->strands->first[s]][3];
     Place a = find_place(reference, item, s, 0), b = find_place(reference, item, s, 1);
     bool seen = find_way(&a, &b, way);
     for (uint32_t j = 1; j < n; ++j) {
@@ -103,7 +108,7 @@ static void add_strand(ShadowReference *reference, const ReferenceItem *item, ui
             next = find_place(reference, item, s, j + 1);
             next_seen = find_way(&b, &next, after);
         }
-        if (seen) add_ribbon(reference, &a, &b, before, way, after, item->material->shadow_opacity);
+        if (seen) add_ribbon(reference, &a, &b, before, way, after, opacity);
         memcpy(before, way, sizeof before);
         memcpy(way, after, sizeof way);
         a = b, b = next, seen = next_seen;

@@ -22,7 +22,7 @@ typedef struct ShadowReference {
 } ShadowReference;
 
 // What stands in the light: the scene's items and its mesh; of its other members none matters.
-// Ribbons have the material's shadow_opacity. A lamp looks at `middle` (world, m), and what is not
+// Ribbons have the material's shadow_opacity, times that of the paint at the root. A lamp looks at `middle` (world, m), and what is not
 // before it is left out. RESULT_FAILED when memory is short.
 Result shadow_reference_create(ShadowReference *reference, const ReferenceScene *scene,
                                const Light *light, const float middle[3], Error *error);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fibre.h"
 #include "hair_fixture.h"
+#include "hair_paint.h"
 #include "render_shadow.h"
 #include "render_uniforms.h"
 #include "shadow_reference.h"
@@ -67,7 +68,8 @@ static void stage_open(Stage *stage, Strands strands, float radius, float opacit
                                  .revision = 1};
     for (uint32_t b = 0; b < stage->hair.batch_count && b < 8; ++b)
         stage->casters[stage->scene.casters.count++] =
-            (ShadowCaster){&stage->hair.batches[b], radius, 1, opacity};
+            (ShadowCaster){&stage->hair.batches[b],
+                           {.material = material_params(&stage->material, radius), .share = 1}};
     if (mesh)
         NEEDED(render_mesh_create(&stage->mesh, mesh, (const float[3]){1, 1, 1}, SHADOW_NONE,
                                   limits, error));
@@ -306,6 +308,99 @@ static void mesh_stands_in_the_light(void **state)
     mesh_destroy(&mesh);
 }
 
+// Thickness and opacity that a file has: the first strand grows from 1 to 3 radii, the second one
+// lets half as much through as the material says.
+static void shadows_are_as_wide_and_dark_as_the_paint(void **state)
+{
+    (void)state;
+    enum { VERTICES = 5 };
+    Stage stage;
+    Strands strands = make_layers(2);
+    for (int v = VERTICES; v < 2 * VERTICES; ++v) strands.position[v][2] = 0.5f;
+    stage_open(&stage, strands, 0.03f, 0.4f, NULL, &ABOVE);
+    float color[2 * VERTICES][4], thickness[2 * VERTICES];
+    for (int v = 0; v < 2 * VERTICES; ++v) {
+        for (int k = 0; k < 4; ++k) color[v][k] = k == 3 && v >= VERTICES ? 0.5f : 1;
+        thickness[v] = v < VERTICES ? 1 + 0.5f * (float)v : 2;
+    }
+    const Paint paint = {.color = color, .thickness = thickness, .vertex_count = 2 * VERTICES};
+    NEEDED(hair_paint(&stage.hair, &strands, &paint, &fixture_gpu()->limits, error));
+    stage.item.paint = &paint;
+    shadow_reference_destroy(&stage.reference);
+    NEEDED(shadow_reference_create(&stage.reference, &stage.reference_scene, &ABOVE,
+                                   (const float[3]){0}, error));
+    for (Shadow kind = SHADOW_APPROX; kind <= SHADOW_DOM; ++kind) {
+        draw_maps(&stage, kind, 256, 1e5f);
+        const float places[][2] = {{-0.4f, 0.015f}, {-0.4f, 0.06f}, {0.4f, 0.06f},
+                                   {0.4f, 0.12f},   {0, 0.48f},     {0, 0.6f}};
+        for (size_t i = 0; i < 6; ++i) {
+            float x = places[i][0], z = places[i][1];
+            if (kind == SHADOW_APPROX && z > 0.4f) continue; // it knows the mean opacity only
+            expect_light(&stage, x, -0.3f, z, exact_at(&stage, (double)x, -0.3, (double)z), 0.02);
+        }
+    }
+    assert_near(exact_at(&stage, 0, -0.3, 0.48), 0.8, 1e-6); // 1 - 0.5 * 0.4
+    stage_close(&stage);
+}
+
+// A bent strand of three particles as a B-spline, which passes its corner at two thirds of the way.
+static void smooth_strands_cast_the_shadow_of_their_curve(void **state)
+{
+    (void)state;
+    Stage stage;
+    Strands strands;
+    NEEDED(strands_create(&strands, 1, 3, error));
+    strands.first[1] = 3;
+    const float corners[3][3] = {{-0.5f, 0, 0}, {0, 0, 0.5f}, {0.5f, 0, 0}};
+    memcpy(strands.position, corners, sizeof corners);
+    stage_open(&stage, strands, 0.03f, 0.4f, NULL, &ABOVE);
+    Look *look = &stage.casters[0].look;
+    for (Shadow kind = SHADOW_APPROX; kind <= SHADOW_DOM; ++kind)
+        for (uint parts = 1; parts <= 20; parts += 19) {
+            look->material.smooth_parts = parts;
+            look->material.smooth_curve = CURVE_BSPLINE;
+            look->features = parts > 1 ? LOOK_SMOOTH : 0;
+            draw_maps(&stage, kind, 256, 1e5f);
+            expect_light(&stage, 0, -0.1f, 1 / 3.0f, parts > 1 ? 0.6 : 1, 0.02);
+            expect_light(&stage, -0.1f, -0.1f, 0.4f, parts > 1 ? 1 : 0.6, 0.02);
+        }
+    stage_close(&stage);
+}
+
+// Three eighths of four strands side by side: one and a half, wider by the inverse share.
+static void strands_left_out_cast_no_shadow(void **state)
+{
+    (void)state;
+    Stage stage;
+    Strands strands = make_layers(4);
+    for (uint32_t v = 0; v < strands.vertex_count; ++v) {
+        strands.position[v][2] = -2 * strands.position[v][1];
+        strands.position[v][1] = 0;
+    }
+    stage_open(&stage, strands, 0.02f, 0.4f, NULL, &ABOVE);
+    Look *look = &stage.casters[0].look;
+    look->share = 0.375f; // one and a half
+    look->material.radius /= look->share;
+    for (Shadow kind = SHADOW_APPROX; kind <= SHADOW_DOM; ++kind) {
+        draw_maps(&stage, kind, 256, 1e5f);
+        expect_light(&stage, 0, -0.1f, 0.04f, 0.6, 0.02);         // 0.053 to each side
+        expect_light(&stage, 0, -0.1f, 0.015f + 0.2f, 0.6, 0.02); // 0.027 to each side
+        expect_light(&stage, 0, -0.1f, 0.04f + 0.2f, 1, 0.02);
+        expect_light(&stage, 0, -0.1f, 0.4f, 1, 0);
+    }
+    uint32_t drawn = stage.shadow.maps_drawn;
+    GpuTimer timer;
+    gpu_timer_create(&timer, false, true);
+    assert_int_equal(drawn, 1);
+    for (uint32_t pass = 0; pass < 2; ++pass) { // a share that changes makes them anew
+        NEEDED(render_shadow_draw(&stage.shadow, &stage.scene, &timer, error));
+        assert_int_equal(stage.shadow.maps_drawn, pass);
+        look->share = 0.5f;
+    }
+    gpu_timer_destroy(&timer);
+    stage_close(&stage);
+}
+
 static void maps_are_kept_while_nothing_changes(void **state)
 {
     (void)state;
@@ -422,6 +517,9 @@ int main(void)
         cmocka_unit_test(layers_of_hair_multiply),
         cmocka_unit_test(one_fibre_takes_its_opacity),
         cmocka_unit_test(mesh_stands_in_the_light),
+        cmocka_unit_test(shadows_are_as_wide_and_dark_as_the_paint),
+        cmocka_unit_test(smooth_strands_cast_the_shadow_of_their_curve),
+        cmocka_unit_test(strands_left_out_cast_no_shadow),
         cmocka_unit_test(maps_are_kept_while_nothing_changes),
         cmocka_unit_test(broken_positions_leave_the_rest_its_shadow),
         cmocka_unit_test(deep_maps_are_near_the_exact_light),
