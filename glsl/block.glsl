@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The block-list rasteriser's record of a ribbon: a line, a shape and a tint, each in a buffer of its
-// own, since drivers limit a buffer's size.
+// The block-list rasteriser's record of a ribbon: RIBBON_TEXELS uvec4, that is one line of a CPU's cache
+// (RibbonRecord of block_lists.h).
 //
 //   line: x, y of its ends, px, as float bits
 //   shape: half-widths at its ends (halves, px); bound at the first end, bound at the last (two halves
 //      each); opacity, and 1/w at the last end less that at the first, over the mean (halves)
 //   tint: colour at the first end and at the last, linear (six halves); 1/w, the mean
+//   span: what dealing it out to blocks needs, in blocks: slope and reach (float bits), rows, columns
+//      (first | last << 16); the strip's middle moves by `slope` columns from row to row and it
+//      reaches so far to either side
 //
 // Along the strand a ribbon has the share of a pixel that lies beyond its first end less the share
 // beyond its last one. At a joint both ribbons have the same share, so that they cover all of the
@@ -34,36 +37,12 @@ bool bound_is_free(vec2 bound) { return dot(bound, bound) < 4.0; }
 // The share beyond an end is clamp(distance along the bound + this, 0, 1).
 float bound_offset(vec2 bound) { return bound_is_free(bound) ? 0.5 : 1.0; }
 
-// A ribbon's span is what dealing it out to blocks needs, in blocks: where its strip's middle crosses
-// the middle of the first row that it touches, and how far that moves from row to row (float bits);
-// how far the strip reaches to either side, in SPAN_STEPS of a block; first and last row; first and
-// last column. Rows and columns have SPAN_BITS, the reach has the other bits of both words.
-const int SPAN_BITS = 13;
-const float SPAN_STEPS = 32.0;
-const int SPAN_REACH_BITS = 32 - SPAN_BITS * 2;
-const int SPAN_REACH_MAX = (1 << SPAN_REACH_BITS * 2) - 1; // and any more
-
 struct Span {
-    float middle, slope, reach;
-    int row, last_row, column, last_column;
+    float slope, reach;
+    ivec4 box; // first column and row, last column and row
 };
 
 uvec4 pack_span(Span s)
 {
-    int reach = s.reach * SPAN_STEPS < float(SPAN_REACH_MAX - 1) ? int(s.reach * SPAN_STEPS) + 1 : SPAN_REACH_MAX;
-    int low = reach & ((1 << SPAN_REACH_BITS) - 1), high = reach >> SPAN_REACH_BITS;
-    return uvec4(floatBitsToUint(s.middle), floatBitsToUint(s.slope),
-                 uint(s.row | (s.last_row << SPAN_BITS) | (low << (2 * SPAN_BITS))),
-                 uint(s.column | (s.last_column << SPAN_BITS) | (high << (2 * SPAN_BITS))));
-}
-
-Span unpack_span(uvec4 words)
-{
-    const int MASK = (1 << SPAN_BITS) - 1;
-    ivec2 w = ivec2(words.zw);
-    int low = int(words.z >> (2 * SPAN_BITS)), high = int(words.w >> (2 * SPAN_BITS));
-    int reach = low | (high << SPAN_REACH_BITS);
-    return Span(uintBitsToFloat(words.x), uintBitsToFloat(words.y),
-                reach == SPAN_REACH_MAX ? 1e6 : float(reach) * (1.0 / SPAN_STEPS), w.x & MASK, (w.x >> SPAN_BITS) & MASK,
-                w.y & MASK, (w.y >> SPAN_BITS) & MASK);
+    return uvec4(floatBitsToUint(vec2(s.slope, s.reach)), uvec2(s.box.yx | (s.box.wz << 16)));
 }

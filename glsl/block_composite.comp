@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A block of pixels a lane: its lists' ribbons near to far, each under what stands before it,
+// A block of pixels a lane: its list's ribbons near to far, each under what stands before it,
 // premultiplied and in linear light, over the background, then sRGB. The pixels stay in registers.
 //   BASE 1: the mesh stands behind, and hides what is behind it
 //
@@ -10,14 +10,11 @@
 #include "coverage.glsl"
 #include "display.glsl"
 
-layout(local_size_x = TILE_BLOCKS) in;
-layout(location = 0) uniform ivec4 grid; // tiles across and down, first row of tiles, lists of a lane
-layout(binding = BIND_LINES) uniform usamplerBuffer lines;
-layout(binding = BIND_SHAPES) uniform usamplerBuffer shapes;
-layout(binding = BIND_TINTS) uniform usamplerBuffer tints;
+layout(local_size_x = BLOCK_GROUP) in;
+layout(location = 0) uniform int columns; // of blocks
+layout(binding = BIND_RIBBONS) uniform usamplerBuffer ribbons;
+layout(binding = BIND_JOBS) uniform usamplerBuffer jobs;
 layout(binding = BIND_LISTS) uniform usamplerBuffer lists;
-layout(binding = BIND_LINKS) uniform usamplerBuffer links;
-layout(binding = BIND_TILES) uniform usamplerBuffer tiles;
 #if BASE
 layout(binding = BIND_BASE) uniform sampler2D base;
 layout(binding = BIND_MESH_DEPTH) uniform sampler2D mesh_depth;
@@ -27,7 +24,7 @@ layout(std430, binding = BIND_PIXELS_OUT) writeonly buffer Pixels { uvec4 pixels
 
 #define PIXELS (BLOCK_WIDTH * BLOCK_HEIGHT)
 
-const int MOST_TURNS = 65000; // CPU drivers end loops silently after 65,535, lists' heads included
+const int MOST_TURNS = 65000; // CPU drivers end loops silently after 65,535
 const float LEAST = 1.0 / 1024.0;
 
 // Not a loop: compilers leave one with so long a body rolled, and then keep the pixels in memory.
@@ -66,12 +63,9 @@ void main()
     // A CPU driver gives each thread one half of the groups: dealing them out in turn evens them.
     int groups = int(gl_NumWorkGroups.x), group = int(gl_WorkGroupID.x), half_of = (groups + 1) / 2;
     group = group < half_of ? 2 * group : 2 * (group - half_of) + 1;
-    int tile = int(texelFetch(tiles, 3 + group).x), within = int(gl_LocalInvocationID.x);
-    int blocks = grid.x * TILE_ACROSS, per_lane = grid.w;
-    ivec2 place = ivec2(tile % grid.x, tile / grid.x) * ivec2(TILE_ACROSS, TILE_DOWN) +
-                  ivec2(within % TILE_ACROSS, within / TILE_ACROSS);
-    int block = place.y * blocks + place.x;
-    ivec2 corner = (place + ivec2(0, grid.z * TILE_DOWN)) * ivec2(BLOCK_WIDTH, BLOCK_HEIGHT);
+    uvec4 job = texelFetch(jobs, group * BLOCK_GROUP + int(gl_LocalInvocationID.x));
+    int block = int(job.x), stride = columns;
+    ivec2 corner = ivec2(block % stride, block / stride) * ivec2(BLOCK_WIDTH, BLOCK_HEIGHT);
     vec2 origin = vec2(corner) + 0.5;
     vec3 color[PIXELS];
     float through[PIXELS];
@@ -87,31 +81,20 @@ void main()
         mesh[k] = z < 1.0 ? (2.0 * z - 1.0 - draw_params.depth.x) / draw_params.depth.y : 0.0;
     }
 #endif
-    int list = BIN_LANES * per_lane + block; // after the nearest lane's
-    uint link = 0u;
-    do {
-        list -= per_lane;
-        link = texelFetch(lists, list).x;
-    } while (link == 0u && list >= per_lane);
-    // What the next turn needs is fetched a turn ahead: its latency hides behind this one's sums.
-    uvec2 node = texelFetch(links, max(int(link), 1) - 1).xy;
-    int ribbon = int(link == 0u ? 0u : node.x), turns = 0;
-    uvec4 next_ends = texelFetch(lines, ribbon), next_shape = texelFetch(shapes, ribbon),
-          next_shade = texelFetch(tints, ribbon);
+    // What the next turns need is fetched turns ahead: its latency hides behind this one's sums.
+    int at = int(job.y), last = at + int(job.z) - 1, end = min(last, at + MOST_TURNS - 1);
+    int ribbon = int(texelFetch(lists, max(min(at, last), 0)).x) * RIBBON_TEXELS;
+    int next_ribbon = int(texelFetch(lists, max(min(at + 1, last), 0)).x) * RIBBON_TEXELS;
+    uvec4 next_ends = texelFetch(ribbons, ribbon), next_shape = texelFetch(ribbons, ribbon + 1),
+          next_shade = texelFetch(ribbons, ribbon + 2);
     float most = 1.0; // that shines through any of the pixels
-    if (link != 0u) do {
+    if (at <= last) do {
         uvec4 shape = next_shape, shade = next_shade;
         Ribbon r = unpack_ribbon(next_ends, shape);
-        link = node.y;
-        if (link == 0u && list >= per_lane) do {
-            list -= per_lane;
-            link = texelFetch(lists, list).x;
-        } while (link == 0u && list >= per_lane);
-        node = texelFetch(links, max(int(link), 1) - 1).xy;
-        ribbon = int(link == 0u ? 0u : node.x);
-        next_ends = texelFetch(lines, ribbon);
-        next_shape = texelFetch(shapes, ribbon);
-        next_shade = texelFetch(tints, ribbon);
+        next_ends = texelFetch(ribbons, next_ribbon);
+        next_shape = texelFetch(ribbons, next_ribbon + 1);
+        next_shade = texelFetch(ribbons, next_ribbon + 2);
+        next_ribbon = int(texelFetch(lists, min(at + 2, last)).x) * RIBBON_TEXELS;
         vec2 way = r.b - r.a;
         float inverse_length = inversesqrt(max(dot(way, way), 1e-20));
         vec2 d = way * inverse_length, q = origin - r.a;
@@ -132,18 +115,19 @@ void main()
 #endif
         most = 0.0;
         PIXELS_IN_TURN(ADD, row += by_y)
-    } while (link != 0u && most > LEAST && ++turns < MOST_TURNS);
-    if (link != 0u && most > LEAST) counts[BLOCK_COUNT_SHORT] = 1u;
+        ++at;
+    } while (at <= end && most > LEAST);
+    if (at <= last && most > LEAST) counts[BLOCK_COUNT_SHORT] = 1u;
 #if BASE
 #define BEHIND(k) texelFetch(base, min(corner + ivec2((k) % BLOCK_WIDTH, (k) / BLOCK_WIDTH), edge), 0)
 #else
     vec4 background = draw_params.background;
 #define BEHIND(k) background
 #endif
-    int pitch = blocks * BLOCK_WIDTH / 4, at = corner.y * pitch + corner.x / 4;
+    int pitch = stride * BLOCK_WIDTH / 4, place = corner.y * pitch + corner.x / 4;
     uint level[4];
 #define STORE(k)                                                \
     level[(k) % 4] = pack_pixel(color[k], through[k], BEHIND(k)); \
-    if ((k) % 4 == 3) pixels[at + (k) % BLOCK_WIDTH / 4] = uvec4(level[0], level[1], level[2], level[3]);
-    PIXELS_IN_TURN(STORE, at += pitch)
+    if ((k) % 4 == 3) pixels[place + (k) % BLOCK_WIDTH / 4] = uvec4(level[0], level[1], level[2], level[3]);
+    PIXELS_IN_TURN(STORE, place += pitch)
 }

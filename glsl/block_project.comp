@@ -15,13 +15,10 @@
 #include "block.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
-layout(location = 0) uniform int first_record; // of this batch
+layout(location = 0) uniform ivec2 first_slot; // of this part of a batch: in all, in the buffer that is bound
 layout(binding = BIND_STRAND_ID) uniform usamplerBuffer strand_id;
-layout(std430, binding = BIND_LINES_OUT) writeonly buffer Lines { uvec4 lines[]; };
-layout(std430, binding = BIND_SHAPES_OUT) writeonly buffer Shapes { uvec4 shapes[]; };
-layout(std430, binding = BIND_TINTS_OUT) writeonly buffer Tints { uvec4 tints[]; };
+layout(std430, binding = BIND_RIBBONS_OUT) writeonly buffer Ribbons { uvec4 ribbons[]; };
 layout(std430, binding = BIND_KEYS_OUT) writeonly buffer Keys { uint keys[]; }; // 1/w as float bits
-layout(std430, binding = BIND_SPANS_OUT) writeonly buffer Spans { uvec4 spans[]; };
 layout(std430, binding = BIND_BLOCK_COUNTS_OUT) buffer Counts { uint counts[]; };
 
 const float LEAST_OPACITY = 1.0 / 4096.0;
@@ -62,11 +59,9 @@ Span find_span(End a, End b, vec2 d, float reach, out bool seen)
     low = max(ceil(low - HALF), 0.0);
     high = min(floor(high + HALF), ceil(size * SCALE) - 1.0);
     seen = all(lessThanEqual(low, high));
-    vec2 way = d * SCALE, middle = a.at * SCALE - 0.5;
+    vec2 way = d * SCALE;
     float rows = 1.0 / max(abs(way.y), 1e-5), slope = way.x * (way.y < 0.0 ? -rows : rows);
-    ivec2 from = ivec2(low), to = ivec2(max(high, 0.0));
-    return Span(middle.x + (low.y - middle.y) * slope, slope,
-                reach * SCALE.x * SCALE.y * rows + HALF.y * abs(slope) + HALF.x, from.y, to.y, from.x, to.x);
+    return Span(slope, reach * SCALE.x * SCALE.y * rows + HALF.y * abs(slope) + HALF.x, ivec4(low, max(high, 0.0)));
 }
 
 // Whether the ribbon was kept.
@@ -79,25 +74,26 @@ bool store(int slot, End a, End b, float opacity)
     seen = seen && opacity >= LEAST_OPACITY && a.inverse_w > 0.0 && b.inverse_w > 0.0 && a.at != b.at;
     if (seen) {
         float depth = 0.5 * (a.inverse_w + b.inverse_w);
-        lines[slot] = uvec4(floatBitsToUint(a.at), floatBitsToUint(b.at));
-        shapes[slot] = uvec4(packHalf2x16(vec2(a.half_width, b.half_width)), packHalf2x16(a.bound),
+        int at = (slot + first_slot.y) * RIBBON_TEXELS;
+        ribbons[at] = uvec4(floatBitsToUint(a.at), floatBitsToUint(b.at));
+        ribbons[at + 1] = uvec4(packHalf2x16(vec2(a.half_width, b.half_width)), packHalf2x16(a.bound),
                                 packHalf2x16(b.bound_before), packHalf2x16(vec2(opacity, (b.inverse_w - a.inverse_w) / depth)));
-        tints[slot] = uvec4(packHalf2x16(a.color.rg), packHalf2x16(vec2(a.color.b, b.color.r)),
+        ribbons[at + 2] = uvec4(packHalf2x16(a.color.rg), packHalf2x16(vec2(a.color.b, b.color.r)),
                                 packHalf2x16(b.color.gb), floatBitsToUint(depth));
-        spans[slot] = pack_span(span);
-        keys[slot] = floatBitsToUint(depth);
+        ribbons[at + 3] = pack_span(span);
+        keys[slot + first_slot.x] = floatBitsToUint(depth);
     }
     return seen;
 }
 
 void main()
 {
-    int n = int(material.vertex_count), s = int(gl_GlobalInvocationID.x);
-    if (s >= int(material.drawn_strands)) return;
+    int n = int(material.vertex_count), row = int(gl_GlobalInvocationID.x), s = int(material.first_strand) + row;
+    if (row >= int(material.drawn_strands)) return;
 #if SMOOTH
-    int slot = first_record + s * (n - 1) * int(material.smooth_parts);
+    int slot = row * (n - 1) * int(material.smooth_parts);
 #else
-    int slot = first_record + s * (n - 1);
+    int slot = row * (n - 1);
 #endif
     int root = particle_address(s, 0, n);
     Painter painter = paint_strand(texelFetch(strand_id, s).x, n);

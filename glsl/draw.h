@@ -38,32 +38,18 @@
 
 // The same points for the block-list rasteriser, which is never at work with the A-buffer.
 #define BIND_BLOCK_COUNTS_OUT 0 // uint, 16 for each of 64 groups: ribbons, strands without any
-#define BIND_LISTS_OUT        1 // uint a lane and block, see block_bin.comp
-#define BIND_LINKS_OUT        2 // uvec2 a node
-#define BIND_LINES_OUT        3 // uvec4 a ribbon each, see block.glsl
-#define BIND_SHAPES_OUT       1 // while strands are projected
-#define BIND_TINTS_OUT        2
+#define BIND_RIBBONS_OUT      1 // RIBBON_TEXELS uvec4 a ribbon, see block.glsl
 #define BIND_KEYS_OUT         4 // uint a ribbon
-#define BIND_BIN_STATE_OUT    5 // two ivec4 a lane
-#define BIND_PIXELS_OUT       6 // uint a pixel, rows of whole tiles
-#define BIND_SPANS_OUT        6 // uvec4 a ribbon, see block.glsl
-#define BIND_TILES_OUT        7 // three words of glDispatchComputeIndirect, then tiles
-#define BIND_LINES            4
-#define BIND_SHAPES           14
-#define BIND_TINTS            15
-#define BIND_ORDER            5
-#define BIND_LISTS            6
-#define BIND_LINKS            7
+#define BIND_PIXELS_OUT       6 // uint a pixel, rows of whole blocks
+#define BIND_RIBBONS          4
+#define BIND_JOBS             5 // uvec4 a block: its number, where its list begins, how long it is
+#define BIND_LISTS            6 // uint a ribbon in a block: the ribbon
 #define BIND_MESH_DEPTH       8
-#define BIND_SPANS            4 // while the ribbons are dealt out
-#define BIND_TILES            5 // while the blocks are composited
 
+#define RIBBON_TEXELS     4
 #define BLOCK_WIDTH       8 // px
 #define BLOCK_HEIGHT      4
-#define TILE_ACROSS       2 // blocks, composited side by side
-#define TILE_DOWN         4
-#define TILE_BLOCKS       8
-#define BIN_LANES         16 // that deal ribbons out to blocks
+#define BLOCK_GROUP       8 // blocks that are composited side by side
 #define BLOCK_COUNT_WORDS (64 * 16)
 #define BLOCK_COUNT_SHORT 2 // word that is not 0 if a block had too many ribbons to visit
 

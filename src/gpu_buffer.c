@@ -15,10 +15,9 @@ static int64_t texel_size(GLenum format)
     }
 }
 
-static Result check_size(const GpuLimits *limits, const char *what, int64_t size, GLenum format,
-                         Error *error)
+static Result check_size(int64_t most, const GpuLimits *limits, const char *what, int64_t size,
+                         GLenum format, Error *error)
 {
-    int64_t most = limits->storage_block;
     if (format && limits->texture_texels * texel_size(format) < most)
         most = limits->texture_texels * texel_size(format);
     if (size <= most) return RESULT_OK;
@@ -26,12 +25,10 @@ static Result check_size(const GpuLimits *limits, const char *what, int64_t size
                      what, (long long)size, (long long)most);
 }
 
-Result gpu_buffer_create(GpuBuffer *buffer, const GpuLimits *limits, const char *what, int64_t size,
-                         const void *data, GLenum texel_format, Error *error)
+static Result fill(GpuBuffer *buffer, const char *what, const void *data, GLenum texel_format,
+                   Error *error)
 {
-    *buffer = (GpuBuffer){.size = size};
-    Result result = check_size(limits, what, size, texel_format, error);
-    if (result != RESULT_OK) return result;
+    int64_t size = buffer->size;
     glGenBuffers(1, &buffer->buffer);
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
     glBufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)(size ? size : 16), data, GL_DYNAMIC_COPY);
@@ -40,9 +37,25 @@ Result gpu_buffer_create(GpuBuffer *buffer, const GpuLimits *limits, const char 
         glBindTexture(GL_TEXTURE_BUFFER, buffer->texture);
         glTexBuffer(GL_TEXTURE_BUFFER, texel_format, buffer->buffer);
     }
-    result = gpu_check(what, error);
+    Result result = gpu_check(what, error);
     if (result != RESULT_OK) gpu_buffer_destroy(buffer);
     return result;
+}
+
+Result gpu_buffer_create(GpuBuffer *buffer, const GpuLimits *limits, const char *what, int64_t size,
+                         const void *data, GLenum texel_format, Error *error)
+{
+    *buffer = (GpuBuffer){.size = size};
+    Result result = check_size(limits->storage_block, limits, what, size, texel_format, error);
+    return result == RESULT_OK ? fill(buffer, what, data, texel_format, error) : result;
+}
+
+Result gpu_buffer_create_pieces(GpuBuffer *buffer, const GpuLimits *limits, const char *what,
+                                int64_t size, GLenum texel_format, Error *error)
+{
+    *buffer = (GpuBuffer){.size = size};
+    Result result = check_size(INT64_MAX, limits, what, size, texel_format, error);
+    return result == RESULT_OK ? fill(buffer, what, NULL, texel_format, error) : result;
 }
 
 void gpu_buffer_destroy(GpuBuffer *buffer)

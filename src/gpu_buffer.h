@@ -19,6 +19,11 @@ typedef struct GpuBuffer {
 // larger than the driver allows or memory is short.
 Result gpu_buffer_create(GpuBuffer *buffer, const GpuLimits *limits, const char *what, int64_t size,
                          const void *data, GLenum texel_format, Error *error);
+
+// The same for a buffer that shaders write by ranges (glBindBufferRange), each no larger than the
+// driver allows, and read as a texture.
+Result gpu_buffer_create_pieces(GpuBuffer *buffer, const GpuLimits *limits, const char *what,
+                                int64_t size, GLenum texel_format, Error *error);
 void gpu_buffer_destroy(GpuBuffer *buffer);
 
 // Binds as storage at a BIND_..._OUT point, or the texture at a BIND_ texture unit (glsl/shared.h).

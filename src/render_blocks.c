@@ -4,49 +4,21 @@
 #include "draw.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum {
     PROJECT_GROUP = 8,
-    TILE_GROUP = 64,
-    TILE_WIDTH = BLOCK_WIDTH * TILE_ACROSS, // px
-    TILE_HEIGHT = BLOCK_HEIGHT * TILE_DOWN,
-    RIBBON_BYTES = 16, // in each of four buffers
-    NODE_BYTES = 8,
-    FIRST_NODES = 1 << 14, // of a lane
-    STATE_WORDS = 8,       // of a lane
-    TILE_WORDS = 3         // before the tiles
+    RIBBON_BYTES = RIBBON_TEXELS * 16,
+    NUMBER_BYTES = 4,   // of a ribbon in a list
+    LEAST_NUMBERS = 64, // that there is always room for
+    FIRST_NUMBERS = 1 << 16,
+    ALIGNED_RIBBONS = 16 // at whose multiples every driver lets a buffer's range begin
 };
-
-// A lane's state in words (block_bin.comp).
-enum { STATE_NODES = 1, STATE_STOPPED = 3 };
-enum { STOPPED_DONE, STOPPED_BY_TURNS, STOPPED_BY_POOL };
 
 static int64_t smaller(int64_t a, int64_t b)
 {
     return a < b ? a : b;
-}
-
-// Tiles of the picture.
-static int across(const RenderBlocks *blocks)
-{
-    return (blocks->width + TILE_WIDTH - 1) / TILE_WIDTH;
-}
-
-static int down(const RenderBlocks *blocks)
-{
-    return (blocks->height + TILE_HEIGHT - 1) / TILE_HEIGHT;
-}
-
-// Lists of a lane.
-static int lists_of(const RenderBlocks *blocks, int rows)
-{
-    return across(blocks) * TILE_ACROSS * rows * TILE_DOWN;
-}
-
-static int64_t lane_nodes(const RenderBlocks *blocks)
-{
-    return blocks->links.size / NODE_BYTES / BIN_LANES;
 }
 
 static Result make_room(GpuBuffer *buffer, const GpuLimits *limits, const char *what, int64_t size,
@@ -71,28 +43,24 @@ static void read_back(const GpuBuffer *buffer, size_t size, void *data)
     glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, data);
 }
 
+// Maps the first `size` bytes; NULL on failure.
+static void *map(const GpuBuffer *buffer, int64_t size, GLbitfield access)
+{
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
+    return glMapBufferRange(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, access);
+}
+
+static void unmap(const GpuBuffer *buffer)
+{
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
+    glUnmapBuffer(GL_SHADER_STORAGE_BUFFER);
+}
+
 static Result build_composite(RenderBlocks *blocks, int over_mesh, Error *error)
 {
     const ShaderDefine defines[] = {{"BASE", over_mesh}, {"TONE", blocks->tone}, {NULL, 0}};
     return shader_build_compute(&blocks->composite[over_mesh], "block_composite.comp", defines,
                                 error);
-}
-
-static Result build_programs(RenderBlocks *blocks, Error *error)
-{
-    const ShaderDefine bin[] = {{"BIN_GROUP", BIN_LANES / 2}, {NULL, 0}},
-                       tile[] = {{"GROUP_SIZE", TILE_GROUP}, {NULL, 0}};
-    blocks->project = (LookPrograms){.file = "block_project.comp", .group_size = PROJECT_GROUP};
-    Result result = shader_build_compute(&blocks->bin, "block_bin.comp", bin, error);
-    if (result == RESULT_OK)
-        result = shader_build_compute(&blocks->tile, "block_tiles.comp", tile, error);
-    return result == RESULT_OK ? build_composite(blocks, 0, error) : result;
-}
-
-static Result make_pool(RenderBlocks *blocks, int64_t nodes, Error *error)
-{
-    return make_room(&blocks->links, blocks->limits, "block lists", nodes * BIN_LANES * NODE_BYTES,
-                     GL_RG32UI, error);
 }
 
 static uint32_t pack_background(const float background[4])
@@ -106,22 +74,19 @@ static uint32_t pack_background(const float background[4])
 static Result make_buffers(RenderBlocks *blocks, Error *error)
 {
     const GpuLimits *limits = blocks->limits;
-    int64_t tiles = (int64_t)across(blocks) * down(blocks);
-    Result result = make_pool(blocks, smaller(FIRST_NODES, blocks->most_nodes), error);
-    if (result == RESULT_OK)
-        result = make_room(&blocks->lists, limits, "blocks",
-                           (int64_t)lists_of(blocks, blocks->band_rows) * BIN_LANES * 4, GL_R32UI,
-                           error);
-    if (result == RESULT_OK)
-        result = make_room(&blocks->states, limits, "lanes", BIN_LANES * STATE_WORDS * 4, 0, error);
+    int columns = (blocks->width + BLOCK_WIDTH - 1) / BLOCK_WIDTH,
+        rows = (blocks->height + BLOCK_HEIGHT - 1) / BLOCK_HEIGHT;
+    int64_t count = (int64_t)columns * rows;
+    Result result =
+        block_lists_create(&blocks->lists, columns, rows, BLOCK_WIDTH, BLOCK_HEIGHT, error);
     if (result == RESULT_OK)
         result = make_room(&blocks->counts, limits, "counts", BLOCK_COUNT_WORDS * 4, 0, error);
     if (result == RESULT_OK)
-        result =
-            make_room(&blocks->tiles, limits, "tiles", (TILE_WORDS + tiles) * 4, GL_R32UI, error);
+        result = make_room(&blocks->jobs, limits, "blocks",
+                           (count + BLOCK_GROUP) * (int64_t)sizeof(BlockJob), GL_RGBA32UI, error);
     if (result == RESULT_OK)
-        result = make_room(&blocks->pixels, limits, "picture", tiles * TILE_WIDTH * TILE_HEIGHT * 4,
-                           0, error);
+        result = make_room(&blocks->pixels, limits, "picture",
+                           count * BLOCK_WIDTH * BLOCK_HEIGHT * 4, 0, error);
     return result;
 }
 
@@ -133,13 +98,11 @@ Result render_blocks_create(RenderBlocks *blocks, const GpuLimits *limits, int w
                              .height = height,
                              .background = pack_background(background),
                              .tone = tone};
+    blocks->project = (LookPrograms){.file = "block_project.comp", .group_size = PROJECT_GROUP};
     int64_t bytes = pool_bytes ? smaller(pool_bytes, limits->storage_block) : limits->storage_block;
-    int64_t most = smaller(bytes / NODE_BYTES, limits->texture_texels) / BIN_LANES;
-    blocks->most_nodes = most < 64 ? 64 : most;
-    int64_t row_bytes = (int64_t)lists_of(blocks, 1) * BIN_LANES * 4,
-            rows = smaller(limits->storage_block, limits->texture_texels * 4) / row_bytes;
-    blocks->band_rows = (int)smaller(rows, down(blocks));
-    Result result = build_programs(blocks, error);
+    int64_t most = smaller(bytes / NUMBER_BYTES, limits->texture_texels);
+    blocks->most_numbers = most < LEAST_NUMBERS ? LEAST_NUMBERS : most;
+    Result result = build_composite(blocks, 0, error);
     if (result == RESULT_OK) result = make_buffers(blocks, error);
     if (result != RESULT_OK) render_blocks_destroy(blocks);
     return result;
@@ -147,17 +110,16 @@ Result render_blocks_create(RenderBlocks *blocks, const GpuLimits *limits, int w
 
 void render_blocks_destroy(RenderBlocks *blocks)
 {
-    const GLuint programs[] = {blocks->bin, blocks->tile, blocks->composite[0],
-                               blocks->composite[1]};
-    GpuBuffer *const buffers[] = {
-        &blocks->lines,  &blocks->shapes, &blocks->tints,   &blocks->spans,  &blocks->keys,
-        &blocks->order,  &blocks->lists,  &blocks->links,   &blocks->states, &blocks->tiles,
-        &blocks->counts, &blocks->pixels, &blocks->material};
+    GpuBuffer *const buffers[] = {&blocks->ribbons, &blocks->keys,   &blocks->numbers,
+                                  &blocks->jobs,    &blocks->counts, &blocks->pixels,
+                                  &blocks->material};
     look_programs_destroy(&blocks->project);
-    for (size_t i = 0; i < sizeof programs / sizeof *programs; ++i)
-        if (programs[i]) glDeleteProgram(programs[i]);
+    for (int i = 0; i < 2; ++i)
+        if (blocks->composite[i]) glDeleteProgram(blocks->composite[i]);
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; ++i) gpu_buffer_destroy(buffers[i]);
+    block_lists_destroy(&blocks->lists);
     radix_destroy(&blocks->radix);
+    free(blocks->order);
     *blocks = (RenderBlocks){0};
 }
 
@@ -168,37 +130,56 @@ Result render_blocks_add_mesh(RenderBlocks *blocks, Error *error)
 
 bool render_blocks_can_hold(const GpuLimits *limits, uint64_t segments)
 {
-    int64_t most = smaller(limits->storage_block, limits->texture_texels * 16) / RIBBON_BYTES;
-    return segments <= (uint64_t)smaller(most, INT32_MAX / 3);
+    int64_t most = smaller(limits->storage_block / 4, limits->texture_texels / RIBBON_TEXELS);
+    return segments + ALIGNED_RIBBONS <= (uint64_t)smaller(most, INT32_MAX / RIBBON_TEXELS);
+}
+
+static Result make_order(RenderBlocks *blocks, size_t count, Error *error)
+{
+    if (blocks->order_room >= count) return RESULT_OK;
+    free(blocks->order);
+    blocks->order_room = 0;
+    blocks->order = malloc(count * sizeof *blocks->order);
+    if (!blocks->order)
+        return error_set(error, RESULT_FAILED, "no memory to sort %zu ribbons", count);
+    blocks->order_room = count;
+    return RESULT_OK;
 }
 
 Result render_blocks_begin(RenderBlocks *blocks, uint64_t segments, Error *error)
 {
     int64_t count = segments ? (int64_t)segments : 1;
     const GpuLimits *limits = blocks->limits;
-    Result result =
-        make_room(&blocks->lines, limits, "ribbons", count * RIBBON_BYTES, GL_RGBA32UI, error);
-    if (result == RESULT_OK)
-        result =
-            make_room(&blocks->shapes, limits, "shapes", count * RIBBON_BYTES, GL_RGBA32UI, error);
-    if (result == RESULT_OK)
-        result =
-            make_room(&blocks->tints, limits, "tints", count * RIBBON_BYTES, GL_RGBA32UI, error);
-    if (result == RESULT_OK)
-        result =
-            make_room(&blocks->spans, limits, "spans", count * RIBBON_BYTES, GL_RGBA32UI, error);
+    Result result = make_order(blocks, (size_t)count, error);
+    if (result == RESULT_OK && blocks->ribbons.size < count * RIBBON_BYTES) {
+        gpu_buffer_destroy(&blocks->ribbons);
+        result = gpu_buffer_create_pieces(&blocks->ribbons, limits, "ribbons", count * RIBBON_BYTES,
+                                          GL_RGBA32UI, error);
+    }
     if (result == RESULT_OK)
         result = make_room(&blocks->keys, limits, "depths", count * 4, 0, error);
-    if (result == RESULT_OK)
-        result = make_room(&blocks->order, limits, "order", count * 4, GL_R32UI, error);
     if (result != RESULT_OK) return result;
     clear(&blocks->keys, count * 4, 0);
     clear(&blocks->counts, blocks->counts.size, 0);
     clear(&blocks->pixels, blocks->pixels.size, blocks->background);
     blocks->slots = 0;
-    blocks->redraws = blocks->bands = 0;
-    blocks->nodes = 0;
+    blocks->bands = 0;
+    blocks->touched = 0;
     return RESULT_OK;
+}
+
+// Projects part.drawn_strands strands from part.first_strand on, whose ribbons a shader can see at
+// once.
+static void project_part(RenderBlocks *blocks, const MaterialParams *part, int64_t slots)
+{
+    int64_t first = (int64_t)blocks->slots, begin = first / ALIGNED_RIBBONS * ALIGNED_RIBBONS;
+    gpu_uniforms_set(&blocks->material, BIND_MATERIAL, part, sizeof *part);
+    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, BIND_RIBBONS_OUT, blocks->ribbons.buffer,
+                      (GLintptr)(begin * RIBBON_BYTES),
+                      (GLsizeiptr)((first + slots - begin) * RIBBON_BYTES));
+    glUniform2i(0, (GLint)first, (GLint)(first - begin));
+    glDispatchCompute((part->drawn_strands + PROJECT_GROUP - 1) / PROJECT_GROUP, 1, 1);
+    blocks->slots += (size_t)slots;
 }
 
 Result render_blocks_add(RenderBlocks *blocks, const HairBatch *batch, const Look *look,
@@ -206,19 +187,19 @@ Result render_blocks_add(RenderBlocks *blocks, const HairBatch *batch, const Loo
 {
     Result result = look_programs_use(&blocks->project, look, batch, error);
     if (result != RESULT_OK) return result;
-    MaterialParams whole = look_material(look, batch);
-    gpu_uniforms_set(&blocks->material, BIND_MATERIAL, &whole, sizeof whole);
+    MaterialParams part = look_material(look, batch);
+    int64_t of_strand = (int64_t)(batch->vertex_count - 1) * part.smooth_parts,
+            most = (blocks->limits->storage_block / RIBBON_BYTES - ALIGNED_RIBBONS) / of_strand;
+    uint strands = part.drawn_strands;
     gpu_buffer_bind_texture(&batch->position, BIND_POSITION);
     gpu_buffer_bind_texture(&batch->strand_id, BIND_STRAND_ID);
-    gpu_buffer_bind_storage(&blocks->lines, BIND_LINES_OUT);
-    gpu_buffer_bind_storage(&blocks->shapes, BIND_SHAPES_OUT);
-    gpu_buffer_bind_storage(&blocks->tints, BIND_TINTS_OUT);
-    gpu_buffer_bind_storage(&blocks->spans, BIND_SPANS_OUT);
     gpu_buffer_bind_storage(&blocks->keys, BIND_KEYS_OUT);
     gpu_buffer_bind_storage(&blocks->counts, BIND_BLOCK_COUNTS_OUT);
-    glUniform1i(0, (GLint)blocks->slots);
-    glDispatchCompute((whole.drawn_strands + PROJECT_GROUP - 1) / PROJECT_GROUP, 1, 1);
-    blocks->slots += (size_t)batch->strand_count * (batch->vertex_count - 1) * whole.smooth_parts;
+    for (uint first = 0; first < strands; first += part.drawn_strands) {
+        part.first_strand = first;
+        part.drawn_strands = (uint)smaller(strands - first, most);
+        project_part(blocks, &part, part.drawn_strands * of_strand);
+    }
     return RESULT_OK;
 }
 
@@ -226,82 +207,85 @@ static Result sort(RenderBlocks *blocks, Error *error)
 {
     GLuint counts[BLOCK_COUNT_WORDS];
     read_back(&blocks->counts, sizeof counts, counts);
-    blocks->segments = blocks->culled = blocks->ribbons = 0;
+    blocks->segments = blocks->culled = blocks->seen = 0;
     for (int i = 0; i < BLOCK_COUNT_WORDS; i += 16) {
         blocks->segments += counts[i];
         blocks->culled += counts[i + 1];
     }
     if (blocks->segments == 0) return RESULT_OK;
-    GLsizeiptr size = (GLsizeiptr)(blocks->slots * 4);
-    glBindBuffer(GL_SHADER_STORAGE_BUFFER, blocks->keys.buffer);
-    const GLuint *keys = glMapBufferRange(GL_SHADER_STORAGE_BUFFER, 0, size, GL_MAP_READ_BIT);
-    glBindBuffer(GL_COPY_WRITE_BUFFER, blocks->order.buffer);
-    GLuint *order = glMapBufferRange(GL_COPY_WRITE_BUFFER, 0, size,
-                                     GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT);
-    Result result = keys && order ? radix_sort_descending(&blocks->radix, keys, blocks->slots,
-                                                          order, &blocks->ribbons, error)
-                                  : error_set(error, RESULT_FAILED, "hair's depths cannot be read");
-    if (keys) glUnmapBuffer(GL_SHADER_STORAGE_BUFFER);
-    if (order) glUnmapBuffer(GL_COPY_WRITE_BUFFER);
+    const GLuint *keys = map(&blocks->keys, (int64_t)blocks->slots * 4, GL_MAP_READ_BIT);
+    if (!keys) return error_set(error, RESULT_FAILED, "hair's depths cannot be read");
+    Result result = radix_sort_descending(&blocks->radix, keys, blocks->slots, blocks->order,
+                                          &blocks->seen, error);
+    unmap(&blocks->keys);
     return result;
 }
 
-// Deals out what touches the rows of blocks; *full if the pool did not hold it.
-static void bin_band(RenderBlocks *blocks, int row, int end, bool *full)
+// Room for the numbers of rows from `row` on, as many as may be: the lists grow as long as they
+// may.
+static Result fit_band(RenderBlocks *blocks, int row, int *end, Error *error)
 {
-    GLint states[BIN_LANES][STATE_WORDS];
-    bool going = true;
-    *full = false;
-    clear(&blocks->lists, (int64_t)lists_of(blocks, end - row) * BIN_LANES * 4, 0);
-    clear(&blocks->states, blocks->states.size, 0);
-    gpu_buffer_bind_texture(&blocks->spans, BIND_SPANS);
-    gpu_buffer_bind_texture(&blocks->order, BIND_ORDER);
-    gpu_buffer_bind_storage(&blocks->lists, BIND_LISTS_OUT);
-    gpu_buffer_bind_storage(&blocks->links, BIND_LINKS_OUT);
-    gpu_buffer_bind_storage(&blocks->states, BIND_BIN_STATE_OUT);
-    glUseProgram(blocks->bin);
-    glUniform4i(0, (GLint)blocks->ribbons, (GLint)lane_nodes(blocks), row * TILE_DOWN,
-                end * TILE_DOWN);
-    glUniform1i(1, across(blocks) * TILE_ACROSS);
-    while (going && !*full) {
-        going = false;
-        glDispatchCompute(2, 1, 1);
-        read_back(&blocks->states, sizeof states, states);
-        for (int i = 0; i < BIN_LANES; ++i) {
-            if (states[i][STATE_STOPPED] == STOPPED_BY_POOL) *full = true;
-            if (states[i][STATE_STOPPED] == STOPPED_BY_TURNS) going = true;
-        }
+    uint64_t size;
+    *end = block_lists_fit(&blocks->lists, row, (uint64_t)blocks->most_numbers, &size);
+    if (*end == row)
+        return error_set(error, RESULT_FAILED,
+                         "one row of blocks of the picture needs more hair lists than %lld bytes "
+                         "hold",
+                         (long long)blocks->most_numbers * NUMBER_BYTES);
+    int64_t room = blocks->numbers.size / NUMBER_BYTES, needed = (int64_t)size;
+    if (needed > room || room == 0) {
+        room = room ? 2 * room : FIRST_NUMBERS;
+        if (room < needed) room = needed + needed / 4;
+        room = smaller(room, blocks->most_numbers);
     }
-    for (int i = 0; i < BIN_LANES && !*full; ++i) blocks->nodes += (uint64_t)states[i][STATE_NODES];
+    return make_room(&blocks->numbers, blocks->limits, "block lists", room * NUMBER_BYTES, GL_R32UI,
+                     error);
 }
 
-// Finds the band's tiles that are not background, and how many they are.
-static void find_tiles(const RenderBlocks *blocks, const int box[4], int row, int end)
+static int block_of(int px, int size)
 {
-    const GLuint command[TILE_WORDS] = {0, 1, 1};
-    GLuint count = (GLuint)(across(blocks) * (end - row));
-    glBindBuffer(GL_SHADER_STORAGE_BUFFER, blocks->tiles.buffer);
-    glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof command, command);
-    gpu_buffer_bind_texture(&blocks->lists, BIND_LISTS);
-    gpu_buffer_bind_storage(&blocks->tiles, BIND_TILES_OUT);
-    glUseProgram(blocks->tile);
-    glUniform4i(0, across(blocks), end - row, row, lists_of(blocks, end - row));
-    glUniform4i(1, box[0] / TILE_WIDTH, box[1] / TILE_HEIGHT, box[2] / TILE_WIDTH,
-                box[3] / TILE_HEIGHT);
-    glDispatchCompute((count + TILE_GROUP - 1) / TILE_GROUP, 1, 1);
-    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+    return px < 0 ? -1 : px / size;
+}
+
+static Result count_touched(RenderBlocks *blocks, Error *error)
+{
+    const RibbonRecord *ribbons = map(&blocks->ribbons, blocks->ribbons.size, GL_MAP_READ_BIT);
+    if (!ribbons) return error_set(error, RESULT_FAILED, "hair's ribbons cannot be read");
+    blocks->touched = block_lists_count(&blocks->lists, ribbons, blocks->order, blocks->seen);
+    unmap(&blocks->ribbons);
+    return RESULT_OK;
+}
+
+// Makes the lists of the rows, and how many groups of jobs they are.
+static Result deal_band(RenderBlocks *blocks, const int box[4], int row, int end, size_t *groups,
+                        Error *error)
+{
+    const GLbitfield write = GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT;
+    const int in_blocks[4] = {block_of(box[0], BLOCK_WIDTH), block_of(box[1], BLOCK_HEIGHT),
+                              block_of(box[2], BLOCK_WIDTH), block_of(box[3], BLOCK_HEIGHT)};
+    const RibbonRecord *ribbons = map(&blocks->ribbons, blocks->ribbons.size, GL_MAP_READ_BIT);
+    BlockJob *jobs = map(&blocks->jobs, blocks->jobs.size, write);
+    uint32_t *numbers = map(&blocks->numbers, blocks->numbers.size, write);
+    bool mapped = ribbons && jobs && numbers;
+    if (mapped) {
+        size_t count = block_lists_place(&blocks->lists, row, end, in_blocks, jobs);
+        for (; count % BLOCK_GROUP; ++count) jobs[count] = jobs[count - 1]; // the same twice
+        *groups = count / BLOCK_GROUP;
+        block_lists_fill(&blocks->lists, ribbons, blocks->order, blocks->seen, row, end, numbers);
+    }
+    if (ribbons) unmap(&blocks->ribbons);
+    if (jobs) unmap(&blocks->jobs);
+    if (numbers) unmap(&blocks->numbers);
+    return mapped ? RESULT_OK : error_set(error, RESULT_FAILED, "block lists cannot be written");
 }
 
 static void composite_band(const RenderBlocks *blocks, const RenderTarget *target, bool over_mesh,
-                           const int box[4], int row, int end)
+                           size_t groups)
 {
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-    find_tiles(blocks, box, row, end);
-    gpu_buffer_bind_texture(&blocks->lines, BIND_LINES);
-    gpu_buffer_bind_texture(&blocks->shapes, BIND_SHAPES);
-    gpu_buffer_bind_texture(&blocks->tints, BIND_TINTS);
-    gpu_buffer_bind_texture(&blocks->links, BIND_LINKS);
-    gpu_buffer_bind_texture(&blocks->tiles, BIND_TILES);
+    gpu_buffer_bind_texture(&blocks->ribbons, BIND_RIBBONS);
+    gpu_buffer_bind_texture(&blocks->jobs, BIND_JOBS);
+    gpu_buffer_bind_texture(&blocks->numbers, BIND_LISTS);
     gpu_buffer_bind_storage(&blocks->pixels, BIND_PIXELS_OUT);
     gpu_buffer_bind_storage(&blocks->counts, BIND_BLOCK_COUNTS_OUT);
     if (over_mesh) {
@@ -311,26 +295,29 @@ static void composite_band(const RenderBlocks *blocks, const RenderTarget *targe
         glBindTexture(GL_TEXTURE_2D, target->depth);
     }
     glUseProgram(blocks->composite[over_mesh]);
-    glUniform4i(0, across(blocks), end - row, row, lists_of(blocks, end - row));
-    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, blocks->tiles.buffer);
-    glDispatchComputeIndirect(0);
+    glUniform1i(0, blocks->lists.columns);
+    if (groups) glDispatchCompute((GLuint)groups, 1, 1);
 }
 
-// After a band that did not fit: a larger pool or, where there can be none, fewer rows.
-static Result make_it_fit(RenderBlocks *blocks, int rows, Error *error)
+// Deals all ribbons out and composites them, in as many bands of rows as the lists need.
+static Result draw_bands(RenderBlocks *blocks, const RenderTarget *target, bool over_mesh,
+                         const int box[4], GpuTimer *timer, Error *error)
 {
-    int64_t nodes = lane_nodes(blocks);
-    ++blocks->redraws;
-    if (nodes < blocks->most_nodes) {
-        return make_pool(blocks, smaller(2 * nodes, blocks->most_nodes), error);
+    gpu_timer_begin(timer, "draw_bin");
+    Result result = count_touched(blocks, error);
+    gpu_timer_end(timer);
+    for (int row = 0, end; row < blocks->lists.rows && result == RESULT_OK; row = end) {
+        size_t groups = 0;
+        gpu_timer_begin(timer, "draw_bin");
+        result = fit_band(blocks, row, &end, error);
+        if (result == RESULT_OK) result = deal_band(blocks, box, row, end, &groups, error);
+        gpu_timer_end(timer);
+        gpu_timer_begin(timer, "draw_composite");
+        if (result == RESULT_OK) composite_band(blocks, target, over_mesh, groups);
+        gpu_timer_end(timer);
+        ++blocks->bands;
     }
-    if (rows == 1)
-        return error_set(error, RESULT_FAILED,
-                         "one row of blocks of the picture needs more hair lists than %lld bytes "
-                         "hold",
-                         (long long)blocks->links.size);
-    blocks->band_rows = rows / 2;
-    return RESULT_OK;
+    return result;
 }
 
 Result render_blocks_draw(RenderBlocks *blocks, const RenderTarget *target, bool over_mesh,
@@ -340,22 +327,7 @@ Result render_blocks_draw(RenderBlocks *blocks, const RenderTarget *target, bool
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     Result result = sort(blocks, error);
     gpu_timer_end(timer);
-    for (int row = 0; row < down(blocks) && result == RESULT_OK;) {
-        bool full;
-        int end = row + (int)smaller(blocks->band_rows, down(blocks) - row);
-        gpu_timer_begin(timer, "draw_bin");
-        bin_band(blocks, row, end, &full);
-        gpu_timer_end(timer);
-        if (full) {
-            result = make_it_fit(blocks, end - row, error);
-            continue;
-        }
-        gpu_timer_begin(timer, "draw_composite");
-        composite_band(blocks, target, over_mesh, box, row, end);
-        gpu_timer_end(timer);
-        ++blocks->bands;
-        row = end;
-    }
+    if (result == RESULT_OK) result = draw_bands(blocks, target, over_mesh, box, timer, error);
     return result;
 }
 
@@ -378,7 +350,7 @@ static void copy_row(const RenderBlocks *blocks, const uint8_t *from, uint8_t *t
 
 void render_blocks_read(const RenderBlocks *blocks, Image *image)
 {
-    size_t pitch = (size_t)across(blocks) * TILE_WIDTH * 4;
+    size_t pitch = (size_t)blocks->lists.columns * BLOCK_WIDTH * 4;
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, blocks->pixels.buffer);
     const uint8_t *pixels = glMapBufferRange(GL_SHADER_STORAGE_BUFFER, 0,

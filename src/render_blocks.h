@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The block-list rasteriser: all in compute, for drivers on CPUs, where it is several times as fast
-// as ribbons that are drawn as triangles into an A-buffer. Every ribbon is dealt out to the lists
-// of the 4x4-pixel blocks that it touches, near to far, and each block is composited by itself.
+// The block-list rasteriser: in compute and on the CPU, for drivers on CPUs, where it is several
+// times as fast as ribbons that are drawn as triangles into an A-buffer. Every ribbon is dealt out
+// to the lists of the blocks of pixels that it touches, near to far, and each block is composited
+// by itself.
 #pragma once
 
+#include "block_lists.h"
 #include "gpu_timer.h"
 #include "hair.h"
 #include "radix.h"
@@ -14,23 +16,22 @@
 
 typedef struct RenderBlocks {
     LookPrograms project;
-    GLuint bin, tile;
-    GLuint composite[2]; // over the background, over a mesh
-    GpuBuffer lines, shapes, tints, spans, keys,
-        order;                      // of ribbons, see block.glsl; order near to far
-    GpuBuffer lists, links, states; // see block_bin.comp
-    GpuBuffer tiles;                // see block_tiles.comp
+    GLuint composite[2];     // over the background, over a mesh
+    GpuBuffer ribbons, keys; // see block.glsl
+    GpuBuffer numbers, jobs; // see block_lists.h
     GpuBuffer counts, pixels, material;
     const GpuLimits *limits;
     Radix radix;
-    int width, height;     // px
-    uint32_t background;   // a pixel without hair
-    int tone;              // display.glsl's macro
-    int64_t most_nodes;    // of a lane
-    int band_rows;         // of tiles
-    size_t slots, ribbons; // records there is room for; that are seen
-    uint64_t nodes, segments, culled;
-    uint32_t redraws, bands;
+    BlockLists lists;
+    uint32_t *order; // [order_room], owned: ribbons near to far
+    size_t order_room;
+    int width, height;                  // px
+    uint32_t background;                // a pixel without hair
+    int tone;                           // display.glsl's macro
+    int64_t most_numbers;               // in all lists of a band
+    size_t slots, seen;                 // records there is room for; that are seen
+    uint64_t touched, segments, culled; // blocks that ribbons touch, each counted
+    uint32_t bands;
 } RenderBlocks;
 
 // `background`: sRGB and opacity. `tone`: a Tone. `pool_bytes`: the largest size of all lists, 0

@@ -172,9 +172,8 @@ static void count_blocks(Renderer *renderer)
     const RenderBlocks *blocks = &renderer->blocks;
     renderer->counts = (RendererCounts){.segments = blocks->segments,
                                         .culled = blocks->culled,
-                                        .fragments = blocks->nodes,
-                                        .pool_bytes = (uint64_t)blocks->links.size,
-                                        .redraws = blocks->redraws,
+                                        .fragments = blocks->touched,
+                                        .pool_bytes = (uint64_t)blocks->numbers.size,
                                         .bands = blocks->bands};
 }
 
@@ -203,17 +202,6 @@ static Result project_items(Renderer *renderer, Error *error)
     return result;
 }
 
-// To the picture; an empty box stays empty.
-static void clip_box(int box[4], int width, int height)
-{
-    for (int k = 0; k < 4; ++k) {
-        int size = k % 2 ? height : width;
-        box[k] = box[k] < 0      ? (k < 2 ? 0 : -TILE_ACROSS * BLOCK_WIDTH)
-                 : box[k] < size ? box[k]
-                                 : size;
-    }
-}
-
 static Result draw_blocks(Renderer *renderer, Image *image, Error *error)
 {
     RenderBlocks *blocks = &renderer->blocks;
@@ -225,7 +213,6 @@ static Result draw_blocks(Renderer *renderer, Image *image, Error *error)
     if (result != RESULT_OK) return result;
     result = project_items(renderer, error);
     if (result != RESULT_OK) return result;
-    clip_box(picture->mesh_box, renderer->options.width, renderer->options.height);
     result = render_blocks_draw(blocks, &renderer->target, renderer->mesh.triangle_count > 0,
                                 picture->mesh_box, renderer->timer, error);
     if (result != RESULT_OK) return result;

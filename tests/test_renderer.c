@@ -66,18 +66,25 @@ static void a_pool_that_is_too_small_grows(void **state)
     use(&large);
     add_tangle(3000, 6, 0.4f, NULL);
     uint8_t *first = draw_copy(&size);
-    assert_true(studio.renderer.counts.redraws > 0);
+    if (raster == RASTER_QUADS)
+        assert_true(studio.renderer.counts.redraws > 0); // blocks count first
     assert_int_equal(studio.renderer.counts.bands, 1);
     assert_draws_the_same(first, size);
     assert_int_equal(studio.renderer.counts.redraws, 0);
     free(first);
 }
 
+// Too small for a tangle: its lists of blocks take less room than those of fragments.
+static int64_t small_pool(void)
+{
+    return raster == RASTER_QUADS ? 1 << 17 : 1 << 15;
+}
+
 static void bands_give_the_same_picture(void **state)
 {
     (void)state;
     RendererOptions small = BLACK;
-    small.pool_bytes = 1 << 17;
+    small.pool_bytes = small_pool();
     size_t size;
     use(&BLACK);
     add_tangle(1500, 2, 0.4f, NULL);
@@ -96,7 +103,7 @@ static void bands_are_no_more_than_the_pool_asks_for(void **state)
 {
     (void)state;
     RendererOptions small = BLACK;
-    small.pool_bytes = 1 << 17;
+    small.pool_bytes = small_pool();
     size_t size;
     use(&small);
     add_tangle(1500, 2, 0.4f, NULL);
@@ -104,7 +111,7 @@ static void bands_are_no_more_than_the_pool_asks_for(void **state)
     assert_draws_the_same(first, size);
     free(first);
     const RendererCounts *counts = &studio.renderer.counts;
-    uint64_t node_bytes = raster == RASTER_QUADS ? 16 : 8;
+    uint64_t node_bytes = raster == RASTER_QUADS ? 16 : 4;
     uint64_t least = counts->fragments * node_bytes / (uint64_t)small.pool_bytes + 1;
     assert_in_range(counts->bands, least, 3 * least);
     assert_int_equal(counts->pool_bytes, small.pool_bytes);
