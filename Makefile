@@ -130,7 +130,7 @@ bench-image: all ## image error and milliseconds of every scheme: table, out/ima
 	@scripts/plot-image out/image.json out/image
 
 # --- Static checks and the sanitizers; all of them run, then the failures are named. One alone: make check-format.
-CHECKS := format scripts warnings clang cppcheck shaders sanitize
+CHECKS := format scripts warnings clang cppcheck shaders farm sanitize
 C_FILES = $(wildcard src/*.[ch] src/*/*.[ch] tests/*.[ch] glsl/*.h)
 SIDE   := $(if $(filter command line,$(origin OUT)),$(OUT)/,out/)
 QUIET   = $(AGAIN) $(JOBS) --silent
@@ -157,6 +157,10 @@ check-cppcheck: # readdirCalled: it asks for readdir_r, which POSIX has since wi
 check-shaders:
 	$(QUIET) all
 	@scripts/check-shaders $(OUT)
+check-farm: # GNU parallel and a Slurm of one node, which make test does without
+	@scripts/setup farm
+	$(QUIET) all
+	@tests/run $(OUT) test_farm
 check-sanitize:
 	$(QUIET) CONFIG=sanitize OUT=$(SIDE)sanitize all tests
 	@tests/run $(SIDE)sanitize test_

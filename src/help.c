@@ -114,6 +114,7 @@ static void write_placeholder(const ParamInfo *info, char *text, size_t size)
                                         [PARAM_AUTO_VEC3] = "X,Y,Z|auto",
                                         [PARAM_UNIT] = "UNIT",
                                         [PARAM_SIZE] = "WxH",
+                                        [PARAM_PART] = "I/N",
                                         [PARAM_CHOICE] = "",
                                         [PARAM_TEXT] = "NAME",
                                         [PARAM_PATH] = "PATH"};

@@ -162,7 +162,7 @@ static Result report_failure(const Output *output, Error *error)
 
 static Result check_options(const OutputOptions *options, const Target *target, Error *error)
 {
-    if (target->kind == TARGET_STILL && options->frame_count != 1)
+    if (target->kind == TARGET_STILL && options->frame_count > 1)
         return error_set(
             error, RESULT_USAGE,
             "%s: one name for several frames, put the frame number into it: frame_%%04d.png",

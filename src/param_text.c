@@ -93,24 +93,34 @@ static Result parse_bool(const Input *input, bool *value)
 }
 
 // Integers, too, go through double, which holds all of those that any range allows.
-static Result parse_whole(const Input *input, int count, double *numbers)
+static Result parse_whole(const Input *input, int count, char separator, double *numbers)
 {
     if (strpbrk(input->text, ".eE")) return refuse(input, NULL);
-    return read_numbers(input, count, 'x', numbers);
+    return read_numbers(input, count, separator, numbers);
 }
 
-static Result parse_int(const Input *input, int count, int *value)
+static Result parse_int(const Input *input, int *value)
+{
+    double number;
+    Result result = parse_whole(input, 1, 0, &number);
+    if (result == RESULT_OK) *value = (int)number;
+    return result;
+}
+
+static Result parse_pair(const Input *input, char separator, int value[2])
 {
     double numbers[2];
-    Result result = parse_whole(input, count, numbers);
-    for (int i = 0; result == RESULT_OK && i < count; i++) value[i] = (int)numbers[i];
-    return result;
+    Result result = parse_whole(input, 2, separator, numbers);
+    if (result != RESULT_OK) return result;
+    if (input->info->kind == PARAM_PART && numbers[0] > numbers[1]) return refuse(input, NULL);
+    for (int i = 0; i < 2; i++) value[i] = (int)numbers[i];
+    return RESULT_OK;
 }
 
 static Result parse_uint(const Input *input, uint32_t *value)
 {
     double number;
-    Result result = parse_whole(input, 1, &number);
+    Result result = parse_whole(input, 1, 0, &number);
     if (result == RESULT_OK) *value = (uint32_t)number;
     return result;
 }
@@ -140,7 +150,7 @@ static Result parse_background(const Input *input, float value[4])
 static Result parse_auto_int(const Input *input, AutoInt *value)
 {
     AutoInt parsed = {.automatic = strcmp(input->text, "auto") == 0};
-    Result result = parsed.automatic ? RESULT_OK : parse_int(input, 1, &parsed.value);
+    Result result = parsed.automatic ? RESULT_OK : parse_int(input, &parsed.value);
     if (result == RESULT_OK) *value = parsed;
     return result;
 }
@@ -200,7 +210,7 @@ Result param_parse(const ParamInfo *info, void *params, const char *text, Error 
     case PARAM_BOOL:
         return parse_bool(&input, field);
     case PARAM_INT:
-        return parse_int(&input, 1, field);
+        return parse_int(&input, field);
     case PARAM_UINT:
         return parse_uint(&input, field);
     case PARAM_FLOAT:
@@ -220,7 +230,9 @@ Result param_parse(const ParamInfo *info, void *params, const char *text, Error 
     case PARAM_UNIT:
         return parse_unit(&input, field);
     case PARAM_SIZE:
-        return parse_int(&input, 2, field);
+        return parse_pair(&input, 'x', field);
+    case PARAM_PART:
+        return parse_pair(&input, '/', field);
     case PARAM_CHOICE:
         return parse_choice(&input, field);
     case PARAM_TEXT:
@@ -271,10 +283,10 @@ static char *format_unit(const AutoFloat *value)
     return value->automatic ? strdup("auto") : format_floats(&value->value, 1);
 }
 
-static char *format_size(const int value[2])
+static char *format_pair(const int value[2], char separator)
 {
     char *text = NULL;
-    return asprintf(&text, "%dx%d", value[0], value[1]) < 0 ? NULL : text;
+    return asprintf(&text, "%d%c%d", value[0], separator, value[1]) < 0 ? NULL : text;
 }
 
 static char *format_whole(long long value)
@@ -314,7 +326,9 @@ char *param_format(const ParamInfo *info, const void *params)
     case PARAM_UNIT:
         return format_unit(number);
     case PARAM_SIZE:
-        return format_size(field);
+        return format_pair(field, 'x');
+    case PARAM_PART:
+        return format_pair(field, '/');
     case PARAM_CHOICE:
         return strdup(info->choices[*(const int *)field]);
     case PARAM_TEXT:
@@ -374,6 +388,9 @@ void param_describe(const ParamInfo *info, char *text, size_t size)
         break;
     case PARAM_SIZE:
         snprintf(text, size, "WxH, each %s", range);
+        break;
+    case PARAM_PART:
+        snprintf(text, size, "I/N, each %s and I at most N", range);
         break;
     case PARAM_CHOICE:
         describe_choices(info, text, size);

@@ -39,6 +39,7 @@ typedef enum ParamKind {
     PARAM_AUTO_VEC3,  // AutoVec3: auto, or x,y,z
     PARAM_UNIT,       // AutoFloat, metres per unit of a file: auto, m, cm, mm, in, or a number
     PARAM_SIZE,       // int[2]: WxH
+    PARAM_PART,       // int[2]: I/N, I at most N
     PARAM_CHOICE,     // int, an enumerator: one of the words
     PARAM_TEXT,       // char *, owned, never NULL: any text
     PARAM_PATH,       // char *, owned, never NULL: a path; empty for none
@@ -112,6 +113,7 @@ typedef enum ParamGroup { PARAM_GROUPS(GROUP_VALUE) GROUP_COUNT } ParamGroup;
 #define PARAM_FIELD_AUTO_VEC3(field)  AutoVec3 field;
 #define PARAM_FIELD_UNIT(field)       AutoFloat field;
 #define PARAM_FIELD_SIZE(field)       int field[2];
+#define PARAM_FIELD_PART(field)       int field[2];
 #define PARAM_FIELD_CHOICE(field)     int field;
 #define PARAM_FIELD_TEXT(field)       char *field;
 #define PARAM_FIELD_PATH(field)       char *field;

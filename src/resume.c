@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "resume.h"
 #include "png.h"
+#include "sequence.h"
 
 #include <stdlib.h>
 #include <unistd.h>
@@ -30,6 +31,7 @@ static Result find_files(Resume *resume, const RunParams *run, int last, const T
     resume->done = calloc((size_t)last + 1, sizeof *resume->done);
     if (!resume->done) return error_set(error, RESULT_FAILED, "no memory for %d frames", last);
     for (int frame = run->first; frame <= last; frame += run->every) {
+        if (!sequence_draws_frame(run, frame)) continue;
         resume->done[frame] = (!draws || picture_is_whole(pictures, frame, run)) &&
                               (!exports || file_is_there(hair, frame));
         resume->count += resume->done[frame];

@@ -66,6 +66,11 @@ static Result check_words(const Scene *scene, Error *error)
     Target target = {0};
     Result result =
         *scene->run.output ? target_parse(&target, scene->run.output, error) : RESULT_OK;
+    if (result == RESULT_OK && *scene->run.output && target.kind == TARGET_VIDEO &&
+        scene->run.part[1] > 1)
+        result = error_set(error, RESULT_USAGE,
+                           "--part: %s: a video is written in one piece, expected pictures",
+                           scene->run.output);
     target_destroy(&target);
     if (result == RESULT_OK && scene->run.collide_mesh && !*scene->run.mesh)
         result = error_set(error, RESULT_USAGE, "--collide-mesh: expected a mesh, --mesh");

@@ -26,6 +26,7 @@ static const Form FORMS[] = {
     [PARAM_AUTO_VEC3] = {.string = true, .numbers = 3},
     [PARAM_UNIT] = {.string = true, .number = true},
     [PARAM_SIZE] = {.string = true, .numbers = 2},
+    [PARAM_PART] = {.string = true},
     [PARAM_CHOICE] = {.string = true},
     [PARAM_TEXT] = {.string = true},
     [PARAM_PATH] = {.string = true},
@@ -169,6 +170,7 @@ json_t *scene_write_param(const ParamInfo *info, const void *params)
     case PARAM_SIZE:
         return json_pack("[i, i]", size[0], size[1]);
     // As flags have them; a color of no whole levels is "r,g,b".
+    case PARAM_PART:
     case PARAM_COLOR:
     case PARAM_BACKGROUND:
     case PARAM_CHOICE:

@@ -13,14 +13,16 @@ int sequence_last_frame(const RunParams *run)
 
 bool sequence_draws_frame(const RunParams *run, int frame)
 {
+    int place = (frame - run->first) / run->every;
     return frame >= run->first && frame <= sequence_last_frame(run) &&
-           (frame - run->first) % run->every == 0;
+           (frame - run->first) % run->every == 0 && place % run->part[1] == run->part[0] - 1;
 }
 
 int sequence_count_drawn(const RunParams *run)
 {
-    int last = sequence_last_frame(run);
-    return last < run->first ? 0 : (last - run->first) / run->every + 1;
+    int last = sequence_last_frame(run), before = run->part[0] - 1, parts = run->part[1];
+    int all = last < run->first ? 0 : (last - run->first) / run->every + 1;
+    return all <= before ? 0 : (all - before - 1) / parts + 1;
 }
 
 // What the loop keeps from one drawn frame to the next. If nothing has moved, and the camera
