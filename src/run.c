@@ -60,28 +60,32 @@ static Result open_gpu(Run *run, Error *error)
         fprintf(stderr, "%s, OpenGL %s (%s)\n", run->gpu.renderer, run->gpu.version, run->gpu.path);
     return RESULT_OK;
 }
+// A name of files is one of its kind, and holds a share of the frames if no more is asked for.
+static Result check_target(const RunParams *run, const char *path,
+                           Result (*parse)(Target *target, const char *text, Error *error),
+                           Error *error)
+{
+    Target target = {0};
+    if (!*path) return RESULT_OK;
+    Result result = parse(&target, path, error);
+    if (result == RESULT_OK && target.kind == TARGET_VIDEO && run->part[1] > 1)
+        result = error_set(error, RESULT_USAGE,
+                           "--part: %s holds all frames, expected a file for each", path);
+    target_destroy(&target);
+    return result;
+}
+
 // What can be said before any file is opened.
 static Result check_words(const Scene *scene, Error *error)
 {
-    Target target = {0};
-    Result result =
-        *scene->run.output ? target_parse(&target, scene->run.output, error) : RESULT_OK;
-    if (result == RESULT_OK && *scene->run.output && target.kind == TARGET_VIDEO &&
-        scene->run.part[1] > 1)
-        result = error_set(error, RESULT_USAGE,
-                           "--part: %s: a video is written in one piece, expected pictures",
-                           scene->run.output);
-    target_destroy(&target);
-    if (result == RESULT_OK && scene->run.collide_mesh && !*scene->run.mesh)
+    const RunParams *run = &scene->run;
+    Result result = check_target(run, run->output, target_parse, error);
+    if (result == RESULT_OK) result = check_target(run, run->export, target_parse_hair, error);
+    if (result == RESULT_OK && run->collide_mesh && !*run->mesh)
         result = error_set(error, RESULT_USAGE, "--collide-mesh: expected a mesh, --mesh");
-    if (result == RESULT_OK && scene->run.turntable == 0 &&
-        (scene->run.ease_in > 0 || scene->run.ease_out > 0))
+    if (result == RESULT_OK && run->turntable == 0 && (run->ease_in > 0 || run->ease_out > 0))
         result = error_set(error, RESULT_USAGE, "%s: expected a turntable, --turntable",
-                           scene->run.ease_in > 0 ? "--ease-in" : "--ease-out");
-    if (result == RESULT_OK && *scene->run.export) {
-        result = target_parse_hair(&target, scene->run.export, error);
-        target_destroy(&target);
-    }
+                           run->ease_in > 0 ? "--ease-in" : "--ease-out");
     for (uint32_t i = 0; i < scene->section_count && result == RESULT_OK; ++i)
         result = solver_check(&scene->sections[i].params, error);
     return result;

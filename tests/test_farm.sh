@@ -37,6 +37,8 @@ done
 # shellcheck disable=SC2086
 run 2 $scene --part 1/2 -o "$work/x.mp4"; one_line
 none "$work/x.mp4"
+# shellcheck disable=SC2086
+run 2 $scene --part 1/2 --export "$work/x.usda"; one_line
 
 claim "one process after the other"
 # shellcheck disable=SC2086
