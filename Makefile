@@ -51,9 +51,8 @@ PROGRAMS  := $(MAINS:src/main_%.c=$(OUT)/tractrix-%)
 TEST_PROGRAMS := $(TESTS:%.c=$(OUT)/%)
 SUPPORT_OBJECTS := $(SUPPORT:%.c=$(OUT)/%.o)
 KEEP_sanitize := $(KEEP:%.c=$(OUT)/%.o)
-TOLD      := $(filter %/tractrix-render %/tractrix-compare,$(PROGRAMS)) # those with --help=man and --help=bash
-MANUALS   := $(TOLD:%=%.1)
-COMPLETIONS := $(TOLD:%=%.bash)
+MANUALS   := $(PROGRAMS:%=%.1)
+COMPLETIONS := $(PROGRAMS:%=%.bash)
 FOLDERS   := $(sort $(OUT)/tests/ $(dir $(OBJECTS)))
 
 # --- Build. Recipes that recurse use all processors unless -j says otherwise.
@@ -185,7 +184,7 @@ install: all $(MANUALS) $(COMPLETIONS) ## programs, manuals, bash completion, do
 	install -m 644 $(wildcard docs/*.*) $(DOC_DIR)/docs
 
 uninstall: ## remove what install put there
-	rm -f $(PROGRAMS:$(OUT)/%=$(BIN_DIR)/%) $(MANUALS:$(OUT)/%=$(MAN_DIR)/%) $(TOLD:$(OUT)/%=$(BASH_DIR)/%)
+	rm -f $(PROGRAMS:$(OUT)/%=$(BIN_DIR)/%) $(MANUALS:$(OUT)/%=$(MAN_DIR)/%) $(PROGRAMS:$(OUT)/%=$(BASH_DIR)/%)
 	rm -rf $(DATA_DIR) $(DOC_DIR)
 
 clean: ## remove out/

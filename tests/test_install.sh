@@ -11,10 +11,12 @@ config=release
 if grep -q fsanitize "$bin/flags"; then config=sanitize; fi
 claim "make install puts everything under DESTDIR and PREFIX"
 holds make --no-print-directory install OUT="$bin" CONFIG=$config DESTDIR="$root" PREFIX=/usr
-for file in bin/tractrix-render bin/tractrix-compare bin/tractrix-gen bin/tractrix-bench share/man/man1/tractrix-render.1 \
-    share/bash-completion/completions/tractrix-render share/doc/tractrix/LICENSE share/doc/tractrix/docs/renderer.md share/tractrix/demo.json; do
-    is_file "$root/usr/$file"
+for name in "$bin"/tractrix-*.1; do
+    name=${name##*/}
+    name=${name%.1}
+    is_file "$root/usr/bin/$name"; is_file "$share/man/man1/$name.1"; is_file "$share/bash-completion/completions/$name"
 done
+for file in doc/tractrix/LICENSE doc/tractrix/docs/renderer.md tractrix/demo.json; do is_file "$share/$file"; done
 
 claim "an installed program needs nothing of the checkout"
 program=$root/usr/bin/tractrix-render
