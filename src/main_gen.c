@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // tractrix-gen: makes hair and the mesh it grows on.
 #include "bust.h"
+#include "fur.h"
+#include "fur_options.h"
 #include "options.h"
 #include "strands_make.h"
 #include "strands_write.h"
@@ -63,7 +65,7 @@ static const OptionsProgram PROGRAM = {
     .summary = "make hair, and what it grows on",
     .synopsis = "[OPTION]... -o FILE",
     .description = "Makes hair, and with --mesh the shape it grows on. Metres, y up, the face "
-                   "towards +z.",
+                   "towards +z. `tractrix-gen fur` grows fur and hair on any mesh: see its --help.",
     .options = OPTIONS,
     .option_count = sizeof OPTIONS / sizeof *OPTIONS,
     .status = STATUS,
@@ -216,13 +218,58 @@ static Result write_all(const Command *command, Error *error)
     return result;
 }
 
-int main(int argc, char **argv)
+// --- tractrix-gen fur.
+
+static Result write_fur(const FurOptions *options, const Mesh *mesh, Error *error)
+{
+    Strands strands;
+    FurReport report;
+    Result result = fur_grow(&strands, &options->recipe, mesh, options->mesh, &report, error);
+    if (result != RESULT_OK) return result;
+    if (report.flat_triangles)
+        fprintf(stderr, "%s: %u triangles without an area are passed over\n", options->mesh,
+                report.flat_triangles);
+    if (report.stuck)
+        fprintf(stderr, "%s: %llu segments could not be kept outside the mesh\n", options->output,
+                (unsigned long long)report.stuck);
+    result = strands_write(options->output, options->format, &strands, error);
+    if (result == RESULT_OK && !options->quiet)
+        printf("%s: %u strands of %u vertices, %u of them guides, %s\n", options->output,
+               strands.strand_count, strands_size(&strands, 0), report.guides,
+               strands_kind_name(options->format));
+    strands_destroy(&strands);
+    return result;
+}
+
+static Result grow_fur(int argc, char **argv, Error *error)
+{
+    FurOptions options;
+    Mesh mesh;
+    bool done;
+    Result result = fur_options_read(&options, argc, argv, &done, error);
+    if (result != RESULT_OK || done) return result;
+    result = mesh_read_obj(&mesh, options.mesh, (float)options.unit, options.up_z, error);
+    if (result != RESULT_OK) return result;
+    result = write_fur(&options, &mesh, error);
+    mesh_destroy(&mesh);
+    return result;
+}
+
+// ---
+
+static Result run(int argc, char **argv, Error *error)
 {
     Command command;
-    Error error;
     bool done;
-    Result result = parse(&command, argc, argv, &done, &error);
-    if (result == RESULT_OK && !done) result = write_all(&command, &error);
+    if (argc > 1 && strcmp(argv[1], "fur") == 0) return grow_fur(argc - 1, argv + 1, error);
+    Result result = parse(&command, argc, argv, &done, error);
+    return result == RESULT_OK && !done ? write_all(&command, error) : result;
+}
+
+int main(int argc, char **argv)
+{
+    Error error;
+    Result result = run(argc, argv, &error);
     if (result == RESULT_OK && (fflush(stdout) != 0 || ferror(stdout)))
         result = error_set(&error, RESULT_FAILED, "cannot write to standard output");
     if (result != RESULT_OK) fprintf(stderr, "tractrix-gen: %s\n", error.text);

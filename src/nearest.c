@@ -109,3 +109,11 @@ uint32_t nearest_find(const Nearest *nearest, uint32_t self, Neighbour *found, u
     if (most) descend(&search, 0, nearest->count, 0);
     return search.count;
 }
+
+uint32_t nearest_find_at(const Nearest *nearest, const float from[3], Neighbour *found,
+                         uint32_t most)
+{
+    Search search = {nearest, UINT32_MAX, from, found, 0, most};
+    if (most) descend(&search, 0, nearest->count, 0);
+    return search.count;
+}

@@ -26,3 +26,7 @@ void nearest_destroy(Nearest *nearest);
 // The `most` points nearest to point `self`, itself not among them, nearest first, equal distances
 // in any order. Returns how many there are.
 uint32_t nearest_find(const Nearest *nearest, uint32_t self, Neighbour *found, uint32_t most);
+
+// The same for any place.
+uint32_t nearest_find_at(const Nearest *nearest, const float from[3], Neighbour *found,
+                         uint32_t most);

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// Vectors of three doubles. Sums, products and square roots only: the same numbers on every
+// machine.
+#pragma once
+
+#include <math.h>
+#include <string.h>
+
+typedef double Double3[3];
+
+static inline void double3_copy(const Double3 from, Double3 to)
+{
+    memmove(to, from, sizeof(Double3));
+}
+
+static inline void double3_from_float(const float from[3], Double3 to)
+{
+    for (int i = 0; i < 3; i++) to[i] = (double)from[i];
+}
+
+static inline double double3_dot(const Double3 a, const Double3 b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+// c must be neither a nor b.
+static inline void double3_cross(const Double3 a, const Double3 b, Double3 c)
+{
+    c[0] = a[1] * b[2] - a[2] * b[1];
+    c[1] = a[2] * b[0] - a[0] * b[2];
+    c[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static inline void double3_subtract(const Double3 a, const Double3 b, Double3 c)
+{
+    for (int i = 0; i < 3; i++) c[i] = a[i] - b[i];
+}
+
+static inline void double3_add_scaled(Double3 to, double factor, const Double3 v)
+{
+    for (int i = 0; i < 3; i++) to[i] += factor * v[i];
+}
+
+// a + share (b - a)
+static inline void double3_mix(const Double3 a, const Double3 b, double share, Double3 c)
+{
+    for (int i = 0; i < 3; i++) c[i] = a[i] + share * (b[i] - a[i]);
+}
+
+static inline double double3_length(const Double3 v)
+{
+    return sqrt(double3_dot(v, v));
+}
+
+static inline double double3_distance(const Double3 a, const Double3 b)
+{
+    Double3 difference;
+    double3_subtract(a, b, difference);
+    return double3_length(difference);
+}
+
+// Returns the length that it had; a vector of length 0 stays.
+static inline double double3_normalize(Double3 v)
+{
+    double length = double3_length(v);
+    for (int i = 0; i < 3 && length > 0.0; i++) v[i] /= length;
+    return length;
+}
+
+// Takes away what points along `normal`, which has unit length.
+static inline void double3_flatten(Double3 v, const Double3 normal)
+{
+    double3_add_scaled(v, -double3_dot(v, normal), normal);
+}
