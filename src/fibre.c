@@ -22,3 +22,8 @@ float fibre_auto_radius(const Strands *strands, uint32_t followers)
     double radius = FIBRE_LAYERS * silhouette / (2 * total);
     return (float)fmin(fmax(radius, longest * THINNEST), longest * THICKEST);
 }
+
+float fibre_radius(const SectionParams *params, const Strands *strands, uint32_t followers)
+{
+    return params->radius.automatic ? fibre_auto_radius(strands, followers) : params->radius.value;
+}

@@ -2,6 +2,7 @@
 // How thick a strand is drawn when nobody says.
 #pragma once
 
+#include "params.h"
 #include "strands.h"
 
 // Fibre radius at the root, metres, > 0, for drawing these strands with so many followers each.
@@ -12,3 +13,6 @@
 // strands are drawn half as thick; the same hair in another unit looks the same. Kept between
 // 1/5000 and 1/400 of the longest strand, for single strands and very dense fur.
 float fibre_auto_radius(const Strands *strands, uint32_t followers);
+
+// The section's radius if it says one, else that.
+float fibre_radius(const SectionParams *params, const Strands *strands, uint32_t followers);

@@ -8,7 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-static const float MARGIN = 1.06f;
 static const float SIDE_DEG = 25, ABOVE_DEG = 10;
 // Times, angles and vertices that are looked at; the margin covers what lies between.
 enum { TIMES = 16, ANGLES = 64, VERTICES = 50000 };
@@ -202,10 +201,10 @@ static void find_axes(Axes *axes, const float camera_up[3])
     glm_vec3_cross(axes->back, axes->right, axes->top);
 }
 
-// How far from the target the eye must be to see all of `outline`, tangents of the half angles
-// given.
+// How far from the target the eye must be to see all of `outline` in a picture that is larger by
+// `scale`, tangents of the half angles given.
 static float distance_to_see(const Outline *outline, const Axes *axes, const float target[3],
-                             float tan_x, float tan_y)
+                             float tan_x, float tan_y, float scale)
 {
     float distance = 0;
     for (int i = 0; i < OUTLINE_DIRECTIONS; ++i) {
@@ -215,7 +214,7 @@ static float distance_to_see(const Outline *outline, const Axes *axes, const flo
         glm_vec3_copy((float *)axes->top, top);
         glm_vec3_copy((float *)axes->back, back);
         float x = fabsf(glm_vec3_dot(p, right)) / tan_x, y = fabsf(glm_vec3_dot(p, top)) / tan_y;
-        distance = fmaxf(distance, glm_vec3_dot(p, back) + MARGIN * fmaxf(x, y));
+        distance = fmaxf(distance, glm_vec3_dot(p, back) + scale * fmaxf(x, y));
     }
     return distance;
 }
@@ -240,7 +239,8 @@ static void place_eye(Framing *framing, const Scene *scene)
         glm_vec3_rotate(turned.right, angle, axes.up);
         glm_vec3_rotate(turned.top, angle, axes.up);
         glm_vec3_rotate(turned.back, angle, axes.up);
-        float needed = distance_to_see(&framing->hair, &turned, framing->target, tan_x, tan_y);
+        float needed = distance_to_see(&framing->hair, &turned, framing->target, tan_x, tan_y,
+                                       1 + scene->run.margin);
         distance = fmaxf(distance, needed);
         if (turn == 0) break;
     }

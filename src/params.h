@@ -65,7 +65,10 @@ typedef enum ParamKind {
 #define CHOICES_LOBES(X)   X(LOBES_ENERGY, "energy") X(LOBES_GAUSS, "gauss")
 #define CHOICES_QUALITY(X)                                                                         \
     X(QUALITY_NORMAL, "normal") X(QUALITY_DRAFT, "draft") X(QUALITY_FINAL, "final")
-#define CHOICES_CURVE(X)  X(CURVE_CATMULL_ROM, "catmull-rom") X(CURVE_BSPLINE, "bspline")
+#define CHOICES_CURVE(X) X(CURVE_CATMULL_ROM, "catmull-rom") X(CURVE_BSPLINE, "bspline")
+#define CHOICES_FRAMING(X)                                                                         \
+    X(FRAMING_AUTO, "auto")                                                                        \
+    X(FRAMING_EXPECTED, "expected") X(FRAMING_HAIR, "hair") X(FRAMING_ALL, "all")
 #define CHOICES_SHADOW(X) X(SHADOW_NONE, "none") X(SHADOW_APPROX, "approx") X(SHADOW_DOM, "dom")
 
 #define CHOICE_VALUE(value, word) value,
@@ -75,6 +78,7 @@ typedef enum TeleportRule { CHOICES_TELEPORT(CHOICE_VALUE) } TeleportRule;
 typedef enum Backend { CHOICES_BACKEND(CHOICE_VALUE) } Backend;
 typedef enum Quality { CHOICES_QUALITY(CHOICE_VALUE) } Quality;
 typedef enum CurveKind { CHOICES_CURVE(CHOICE_VALUE) } CurveKind;
+typedef enum FramingKind { CHOICES_FRAMING(CHOICE_VALUE) } FramingKind;
 typedef enum Shadow { CHOICES_SHADOW(CHOICE_VALUE) } Shadow;
 typedef enum Raster { CHOICES_RASTER(CHOICE_VALUE) } Raster;
 typedef enum Oit { CHOICES_OIT(CHOICE_VALUE) } Oit;

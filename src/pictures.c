@@ -34,9 +34,8 @@ static Result create_items(Pictures *pictures, Error *error)
     for (uint32_t i = 0; i < pictures->scene->section_count; ++i) {
         const SimulationSection *section = &pictures->simulation->sections[i];
         const SectionParams *params = &pictures->scene->sections[i].params;
-        float radius = params->radius.automatic ? fibre_auto_radius(&pictures->assets->strands[i],
-                                                                    section->follow.per_guide)
-                                                : params->radius.value;
+        float radius =
+            fibre_radius(params, &pictures->assets->strands[i], section->follow.per_guide);
         Result result = paint_section(pictures, i, error);
         if (result != RESULT_OK) return result;
         pictures->items[pictures->item_count++] = (RenderItem){&section->hair, params, radius};
@@ -53,7 +52,7 @@ static void set_depth_range(const Pictures *pictures, RendererOptions *options)
 {
     View view;
     if (options->aov != AOV_DEPTH || options->kind == IMAGE_FLOAT) return;
-    camera_view(&view, pictures->scene, &pictures->framing, pictures->scene->run.first);
+    camera_view(&view, pictures->scene, pictures->framing, pictures->scene->run.first);
     options->depth_range[0] = view.near_distance;
     options->depth_range[1] = view.far_distance;
     if (!pictures->scene->run.quiet)
@@ -92,8 +91,6 @@ static Result open_renderer(Pictures *pictures, GpuTimer *timer, Error *error)
 {
     const Assets *assets = pictures->assets;
     RendererOptions options;
-    framing_compute(&pictures->framing, pictures->scene, assets->strands,
-                    assets->has_mesh ? &assets->mesh : NULL);
     Result result = describe_pictures(pictures, &options, error);
     if (result == RESULT_OK)
         result = renderer_create(&pictures->renderer, pictures->gpu, timer, &options, error);
@@ -120,10 +117,11 @@ static Result open_output(Pictures *pictures, int frame_count, Error *error)
 }
 
 Result pictures_create(Pictures *pictures, const Scene *scene, const Assets *assets,
-                       Simulation *simulation, const Gpu *gpu, GpuTimer *timer, int frame_count,
-                       Error *error)
+                       Simulation *simulation, const Framing *framing, const Gpu *gpu,
+                       GpuTimer *timer, int frame_count, Error *error)
 {
-    *pictures = (Pictures){.scene = scene, .assets = assets, .simulation = simulation, .gpu = gpu};
+    *pictures = (Pictures){
+        .scene = scene, .assets = assets, .simulation = simulation, .framing = framing, .gpu = gpu};
     Result result = open_renderer(pictures, timer, error);
     return result == RESULT_OK ? open_output(pictures, frame_count, error) : result;
 }

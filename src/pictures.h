@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What draws a run's frames, and where they go: renderer, camera and output, as the scene says.
+// What draws a run's frames, and where they go: renderer and output, as the scene says.
 #pragma once
 
 #include "framing.h"
@@ -13,11 +13,11 @@ typedef struct Pictures {
     const Scene *scene;
     const Assets *assets;
     Simulation *simulation;
+    const Framing *framing;
     const Gpu *gpu;
     Renderer renderer;
     RenderItem *items; // of each section its guides and, if there are any, its followers
     uint32_t item_count;
-    Framing framing;
     Output *output;
 } Pictures;
 
@@ -25,6 +25,6 @@ typedef struct Pictures {
 // destroyed (while the context is current) in each case. Errors of renderer_create, paint_create
 // and output_create.
 Result pictures_create(Pictures *pictures, const Scene *scene, const Assets *assets,
-                       Simulation *simulation, const Gpu *gpu, GpuTimer *timer, int frame_count,
-                       Error *error);
+                       Simulation *simulation, const Framing *framing, const Gpu *gpu,
+                       GpuTimer *timer, int frame_count, Error *error);
 void pictures_destroy(Pictures *pictures);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "run.h"
+#include "fit.h"
 #include "interrupt.h"
 #include "strands_features.h"
+#include "survey.h"
 #include "target.h"
 
 #include <string.h>
@@ -60,6 +62,7 @@ static Result open_gpu(Run *run, Error *error)
         fprintf(stderr, "%s, OpenGL %s (%s)\n", run->gpu.renderer, run->gpu.version, run->gpu.path);
     return RESULT_OK;
 }
+
 // A name of files is one of its kind, and holds a share of the frames if no more is asked for.
 static Result check_target(const RunParams *run, const char *path,
                            Result (*parse)(Target *target, const char *text, Error *error),
@@ -86,6 +89,12 @@ static Result check_words(const Scene *scene, Error *error)
     if (result == RESULT_OK && run->turntable == 0 && (run->ease_in > 0 || run->ease_out > 0))
         result = error_set(error, RESULT_USAGE, "%s: expected a turntable, --turntable",
                            run->ease_in > 0 ? "--ease-in" : "--ease-out");
+    bool fits = run->framing == FRAMING_HAIR || run->framing == FRAMING_ALL;
+    if (result == RESULT_OK && fits && !fit_is_free(scene))
+        result =
+            error_set(error, RESULT_USAGE,
+                      "--framing %s: expected an automatic --eye, and no keys of eye or target",
+                      run->framing == FRAMING_ALL ? "all" : "hair");
     for (uint32_t i = 0; i < scene->section_count && result == RESULT_OK; ++i)
         result = solver_check(&scene->sections[i].params, error);
     return result;
@@ -136,6 +145,27 @@ static void tell_steps(const Simulation *simulation)
             (long long)schedule->settling);
 }
 
+// Where the camera stands, unless the scene says it.
+static Result aim(Run *run, Error *error)
+{
+    const RunParams *params = &run->scene.run;
+    SurveyReport report;
+    framing_compute(&run->framing, &run->scene, run->assets.strands,
+                    run->assets.has_mesh ? &run->assets.mesh : NULL);
+    if (!survey_is_wanted(&run->scene)) return RESULT_OK;
+    Result result =
+        survey_fit_camera(&run->framing, &report, &run->scene, &run->assets, &run->gpu, error);
+    if (result == RESULT_OK && params->verbose)
+        fprintf(stderr, "camera: fits %d frames, looked at in %.2g s\n", report.frames,
+                report.ms / 1e3);
+    if (result == RESULT_OK && !params->quiet && report.most_step_m > 0)
+        fprintf(stderr,
+                "loop: from the last frame to the first hair moves by %.3g mm at most, else from "
+                "frame to frame by %.3g mm\n",
+                1e3 * (double)report.seam_m, 1e3 * (double)report.most_step_m);
+    return result;
+}
+
 // Files first: what is wrong with them is told before a driver is started. The output's folder is
 // made last but before any work.
 static Result prepare(Run *run, Error *error)
@@ -150,14 +180,15 @@ static Result prepare(Run *run, Error *error)
     run->loaded_ms = stats_clock_ms();
     if (result == RESULT_OK && !params->quiet) tell_cautions(&run->scene);
     if (result == RESULT_OK) result = open_gpu(run, error);
+    if (result == RESULT_OK && draws) result = aim(run, error);
     if (result == RESULT_OK)
         result = simulation_create(&run->simulation, &run->gpu, &run->timer, &run->scene,
                                    run->assets.strands, &run->assets.mesh, error);
     if (result == RESULT_OK) result = open_source(run, error);
     if (result == RESULT_OK && draws)
-        result =
-            pictures_create(&run->pictures, &run->scene, &run->assets, &run->simulation, &run->gpu,
-                            &run->timer, sequence_count_drawn(params) - run->resume.count, error);
+        result = pictures_create(&run->pictures, &run->scene, &run->assets, &run->simulation,
+                                 &run->framing, &run->gpu, &run->timer,
+                                 sequence_count_drawn(params) - run->resume.count, error);
     if (result == RESULT_OK && *params->stats) {
         result = stats_create(&run->stats, error);
         stats_describe(&run->stats, &run->gpu, &run->scene, &run->assets, &run->simulation);
@@ -213,7 +244,7 @@ Result run_go(Run *run, Error *error)
         .done = run->resume.done,
         .renderer = run->pictures.output ? &run->pictures.renderer : NULL,
         .output = run->pictures.output,
-        .framing = &run->pictures.framing,
+        .framing = &run->framing,
         .items = run->pictures.items,
         .item_count = run->pictures.item_count,
         .timer = &run->timer,

@@ -14,6 +14,7 @@ typedef struct Run {
     Gpu gpu;
     bool has_gpu;
     GpuTimer timer;
+    Framing framing;
     Simulation simulation;
     Pictures pictures; // empty unless the scene has an output
     FrameSource source;
