@@ -12,10 +12,7 @@
 #include <time.h>
 #include <unistd.h>
 
-static const char MAGIC[] = "TRXCACHE", TRAILER[] = "TRXINDEX";
-
-// A frame's payload: rotation and translation of the head, then the packed positions.
-enum { HEAD_BYTES = 28, TRAILER_BYTES = 16, STRIDE = 3 };
+enum { HEAD_BYTES = 4 * CACHE_HEAD_FLOATS };
 
 static uint64_t count_particles(const Simulation *simulation)
 {
@@ -30,19 +27,6 @@ static double now_ms(void)
     struct timespec time;
     clock_gettime(CLOCK_MONOTONIC, &time);
     return 1e3 * (double)time.tv_sec + 1e-6 * (double)time.tv_nsec;
-}
-
-static bool add_offset(uint64_t **offsets, uint32_t *count, uint32_t *room, uint64_t offset)
-{
-    if (*count == *room) {
-        uint32_t larger = 2 * *room + 64;
-        uint64_t *more = realloc(*offsets, larger * sizeof *more);
-        if (!more) return false;
-        *offsets = more;
-        *room = larger;
-    }
-    (*offsets)[(*count)++] = offset;
-    return true;
 }
 
 // --- Writing.
@@ -104,7 +88,7 @@ static Result write_beginning(CacheWriter *writer, const Simulation *simulation,
     Result result = cache_scene_describe(&scene, simulation, error);
     if (result == RESULT_OK) result = cache_hair_describe(&hair, simulation, strands, error);
     if (result == RESULT_OK) {
-        chunk_file_begin(writer->stream, MAGIC);
+        chunk_file_begin(writer->stream, CACHE_MAGIC);
         writer->at += CHUNK_FILE_HEADER_BYTES;
         append(writer, "SCEN", 0, scene.data, scene.size);
         append(writer, "HAIR", 0, hair.data, hair.size);
@@ -129,12 +113,13 @@ Result cache_writer_continue(CacheWriter *writer, const CacheReader *reader, uin
                              const Simulation *simulation, Error *error)
 {
     Chunk last;
-    Result result =
-        chunk_find((ChunkFile *)&reader->file, reader->offsets[frame_count - 1], &last, error);
+    Result result = chunk_find((ChunkFile *)&reader->cache.file,
+                               reader->cache.offsets[frame_count - 1], &last, error);
     if (result != RESULT_OK) return result;
-    result = open_stream(writer, reader->file.path, simulation, error);
+    result = open_stream(writer, reader->cache.file.path, simulation, error);
     for (uint32_t i = 0; i < frame_count && result == RESULT_OK; ++i)
-        if (!add_offset(&writer->offsets, &writer->frame_count, &writer->room, reader->offsets[i]))
+        if (!cache_add_offset(&writer->offsets, &writer->frame_count, &writer->room,
+                              reader->cache.offsets[i]))
             result = error_set(error, RESULT_FAILED, "no memory for an index");
     if (result == RESULT_OK) result = cut(writer, chunk_end(&last), error);
     if (result != RESULT_OK) cache_writer_close(writer);
@@ -173,9 +158,10 @@ Result cache_writer_add(CacheWriter *writer, const Simulation *simulation, Error
     if (result != RESULT_OK) return result;
     double begin_ms = now_ms();
     put_head(writer->payload, &simulation->head);
-    size_t size = float_planes_pack((const float *)writer->positions, count, STRIDE,
+    size_t size = float_planes_pack((const float *)writer->positions, count, CACHE_STRIDE,
                                     writer->payload + HEAD_BYTES);
-    if (size == 0 || !add_offset(&writer->offsets, &writer->frame_count, &writer->room, writer->at))
+    if (size == 0 ||
+        !cache_add_offset(&writer->offsets, &writer->frame_count, &writer->room, writer->at))
         return error_set(error, RESULT_FAILED, "%s: no memory for a frame", writer->path);
     append(writer, "FRAM", writer->frame_count - 1, writer->payload, HEAD_BYTES + size);
     result = flush(writer, error);
@@ -192,8 +178,8 @@ Result cache_writer_finish(CacheWriter *writer, Error *error)
     append(writer, "INDX", writer->frame_count, index, writer->frame_count * sizeof *index);
     free(index);
     fwrite(&at, sizeof at, 1, writer->stream);
-    fwrite(TRAILER, 1, sizeof at, writer->stream);
-    writer->at += TRAILER_BYTES;
+    fwrite(CACHE_TRAILER, 1, sizeof at, writer->stream);
+    writer->at += CACHE_TRAILER_BYTES;
     Result result = flush(writer, error);
     if (result == RESULT_OK && fsync(fileno(writer->stream)) != 0 && errno != EINVAL)
         result = fail_to_write(writer, errno, error);
@@ -212,160 +198,50 @@ void cache_writer_close(CacheWriter *writer)
 
 // --- Reading.
 
-// The chunk at `at`, which must have this tag. *end: where the next one begins.
-static Result read_part(CacheReader *reader, uint64_t at, const char *tag, Bytes *payload,
-                        uint64_t *end, Error *error)
+static Result compare(const CacheReader *reader, const Simulation *simulation,
+                      const Strands *strands, Error *error)
 {
-    Chunk chunk;
-    Result result = chunk_find(&reader->file, at, &chunk, error);
-    if (result == RESULT_OK && strcmp(chunk.tag, tag) != 0)
-        result = error_set(error, RESULT_BAD_INPUT, "%s: byte %llu: expected %s", reader->file.path,
-                           (unsigned long long)at, tag);
+    const CacheFile *cache = &reader->cache;
+    const char *path = cache->file.path;
+    Result result = cache_scene_compare(&cache->scene, simulation, path, error);
     if (result != RESULT_OK) return result;
-    *end = chunk_end(&chunk);
-    return chunk_read(&reader->file, &chunk, payload, error);
-}
-
-// The scene and the hair; *at moves behind them.
-static Result check_beginning(CacheReader *reader, uint64_t *at, const Simulation *simulation,
-                              const Strands *strands, Error *error)
-{
-    Bytes part = {0};
-    Result result = read_part(reader, *at, "SCEN", &part, at, error);
-    if (result == RESULT_OK)
-        result = cache_scene_compare(&part, simulation, reader->file.path, error);
-    bytes_destroy(&part);
-    if (result == RESULT_OK) result = read_part(reader, *at, "HAIR", &part, at, error);
-    if (result == RESULT_OK)
-        result = cache_hair_compare(&part, simulation, strands, reader->file.path, error);
-    bytes_destroy(&part);
-    return result;
-}
-
-// By the index at the end; false if there is none that is whole.
-static bool read_index(CacheReader *reader)
-{
-    struct {
-        uint64_t at;
-        char magic[8];
-    } trailer;
-    _Static_assert(sizeof trailer == TRAILER_BYTES, "a trailer has no holes");
-    uint64_t size = reader->file.size, end;
-    Bytes index = {0};
-    if (size < TRAILER_BYTES ||
-        !chunk_file_read_raw(&reader->file, size - TRAILER_BYTES, &trailer, sizeof trailer) ||
-        memcmp(trailer.magic, TRAILER, sizeof trailer.magic) != 0 ||
-        read_part(reader, le64toh(trailer.at), "INDX", &index, &end, NULL) != RESULT_OK)
-        return false;
-    bool good = true;
-    for (size_t i = 0; i < index.size / sizeof(uint64_t) && good; ++i) {
-        uint64_t offset;
-        memcpy(&offset, index.data + i * sizeof offset, sizeof offset);
-        good = add_offset(&reader->offsets, &reader->frame_count, &reader->room, le64toh(offset));
-    }
-    bytes_destroy(&index);
-    return good;
-}
-
-// Chunk by chunk from `at`, as far as they are whole and in order.
-static Result scan(CacheReader *reader, uint64_t at, Error *error)
-{
-    reader->frame_count = 0;
-    while (at < reader->file.size) {
-        Chunk chunk;
-        if (chunk_find(&reader->file, at, &chunk, &reader->end) != RESULT_OK) return RESULT_OK;
-        if (strcmp(chunk.tag, "INDX") == 0) return RESULT_OK;
-        if (strcmp(chunk.tag, "FRAM") != 0 || chunk.number != reader->frame_count) {
-            error_set(&reader->end, RESULT_BAD_INPUT, "%s: byte %llu: not frame %u",
-                      reader->file.path, (unsigned long long)at, reader->frame_count);
-            return RESULT_OK;
-        }
-        if (!add_offset(&reader->offsets, &reader->frame_count, &reader->room, at))
-            return error_set(error, RESULT_FAILED, "%s: no memory for an index", reader->file.path);
-        at = chunk_end(&chunk);
-    }
-    return RESULT_OK;
+    return cache_hair_compare(&cache->hair, simulation, strands, path, error);
 }
 
 Result cache_reader_open(CacheReader *reader, const char *path, const Simulation *simulation,
                          const Strands *strands, Error *error)
 {
-    uint64_t at = CHUNK_FILE_HEADER_BYTES;
     *reader = (CacheReader){.particle_count = count_particles(simulation)};
-    Result result = chunk_file_open(&reader->file, path, MAGIC, error);
+    Result result = cache_file_open(&reader->cache, path, error);
     if (result != RESULT_OK) return result;
     reader->positions = malloc(reader->particle_count * sizeof *reader->positions + 1);
     if (!reader->positions)
         result = error_set(error, RESULT_FAILED, "%s: no memory for a frame", path);
-    if (result == RESULT_OK) result = check_beginning(reader, &at, simulation, strands, error);
-    if (result == RESULT_OK && !read_index(reader)) result = scan(reader, at, error);
+    if (result == RESULT_OK) result = compare(reader, simulation, strands, error);
     if (result != RESULT_OK) cache_reader_close(reader);
     return result;
 }
 
 void cache_reader_close(CacheReader *reader)
 {
-    chunk_file_close(&reader->file);
-    free(reader->offsets);
+    cache_file_close(&reader->cache);
     free(reader->positions);
     *reader = (CacheReader){0};
 }
 
-// What follows the file's name in a message about it.
-static const char *without_path(const CacheReader *reader, const Error *why)
-{
-    size_t length = strlen(reader->file.path) + strlen(": ");
-    return strlen(why->text) > length ? why->text + length : why->text;
-}
-
 Result cache_reader_check(const CacheReader *reader, int last, Error *error)
 {
-    if (last < (int)reader->frame_count) return RESULT_OK;
-    char range[32] = "none";
-    if (reader->frame_count) snprintf(range, sizeof range, "0 to %u", reader->frame_count - 1);
-    bool ended = reader->end.text[0] == 0;
-    return error_set(error, RESULT_BAD_INPUT, "%s: no frame %d, whole ones: %s%s%s",
-                     reader->file.path, last, range, ended ? "" : "; ",
-                     ended ? "" : without_path(reader, &reader->end));
-}
-
-static float take_float(const uint8_t *bytes)
-{
-    uint32_t bits;
-    float value;
-    memcpy(&bits, bytes, sizeof bits);
-    bits = le32toh(bits);
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
-static Result read_frame(CacheReader *reader, uint32_t frame, HeadPose *head, Error *error)
-{
-    Bytes payload = {0};
-    uint64_t end;
-    Error why;
-    Result result = read_part(reader, reader->offsets[frame], "FRAM", &payload, &end, &why);
-    if (result != RESULT_OK)
-        return error_set(error, result, "%s: frame %u, %s", reader->file.path, frame,
-                         without_path(reader, &why));
-    bool good =
-        payload.size >= HEAD_BYTES &&
-        float_planes_unpack((float *)reader->positions, (size_t)(3 * reader->particle_count),
-                            STRIDE, payload.data + HEAD_BYTES, payload.size - HEAD_BYTES);
-    for (int i = 0; i < 4 && good; ++i) head->rotation[i] = take_float(payload.data + 4 * i);
-    for (int i = 0; i < 3 && good; ++i)
-        head->translation[i] = take_float(payload.data + 16 + 4 * i);
-    bytes_destroy(&payload);
-    if (good) return RESULT_OK;
-    return error_set(error, RESULT_BAD_INPUT, "%s: frame %u at byte %llu is no frame of this hair",
-                     reader->file.path, frame, (unsigned long long)reader->offsets[frame]);
+    return cache_file_check(&reader->cache, last, error);
 }
 
 Result cache_reader_show(CacheReader *reader, Simulation *simulation, int frame, Error *error)
 {
+    float pose[CACHE_HEAD_FLOATS];
     HeadPose head = {0};
-    Result result = cache_reader_check(reader, frame, error);
-    if (result == RESULT_OK) result = read_frame(reader, (uint32_t)frame, &head, error);
+    Result result = cache_file_read(&reader->cache, frame, pose, reader->positions,
+                                    reader->particle_count, error);
     if (result != RESULT_OK) return result;
+    memcpy(head.rotation, pose, sizeof head.rotation);
+    memcpy(head.translation, pose + 4, sizeof head.translation);
     return simulation_show(simulation, frame, &head, (const float(*)[3])reader->positions, error);
 }

@@ -3,7 +3,7 @@
 // (docs/cache.md). One process writes, any number reads, any frame without the others.
 #pragma once
 
-#include "chunk_file.h"
+#include "cache_file.h"
 #include "simulation.h"
 
 // --- Writing. After a failure, or instead of cache_writer_finish, the file keeps the frames that
@@ -42,10 +42,7 @@ void cache_writer_close(CacheWriter *writer);
 // --- Reading.
 
 typedef struct CacheReader {
-    ChunkFile file;
-    uint64_t *offsets; // [frame_count]
-    uint32_t frame_count, room;
-    Error end; // why there are no more, if that is not the file's proper end
+    CacheFile cache;
     float (*positions)[3];
     uint64_t particle_count;
 } CacheReader;

@@ -39,7 +39,7 @@ static bool find_state(FrameSource *source, FILE *messages, Error *error)
     int frame = 0;
     Result result = snapshot_read(&source->state, &frame, source->state_path, source->simulation,
                                   source->strands, error);
-    if (result == RESULT_OK && frame < (int)source->reader.frame_count) {
+    if (result == RESULT_OK && frame < (int)source->reader.cache.frame_count) {
         source->played = frame + 1;
         return true;
     }
@@ -58,9 +58,9 @@ static Result resume_cache(FrameSource *source, const char *path, int last, FILE
     Result result = cache_reader_open(reader, path, source->simulation, source->strands, error);
     if (result != RESULT_OK) return result;
     source->reads = true;
-    if (messages) fprintf(messages, "%s: %u frames are there\n", path, reader->frame_count);
-    if ((int)reader->frame_count > last) {
-        source->played = (int)reader->frame_count;
+    if (messages) fprintf(messages, "%s: %u frames are there\n", path, reader->cache.frame_count);
+    if ((int)reader->cache.frame_count > last) {
+        source->played = (int)reader->cache.frame_count;
         return RESULT_OK;
     }
     if (!find_state(source, messages, error)) return begin_cache(source, path, error);
