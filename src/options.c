@@ -157,6 +157,16 @@ static Result set_word(const Option *option, char *at, const char *text, Error *
                      suggest_nearest(text, names, (size_t)count));
 }
 
+static Result append_step(const Option *option, OptionSteps *steps, const char *text, Error *error)
+{
+    if (steps->count == OPTION_MOST_STEPS)
+        return error_set(error, RESULT_USAGE, "--%s: more than %d steps", option->name,
+                         OPTION_MOST_STEPS);
+    steps->step[steps->count].option = option;
+    steps->step[steps->count++].text = text;
+    return RESULT_OK;
+}
+
 static Result set_option(const Option *option, char *values, const char *text, Error *error)
 {
     char *at = values + option->place;
@@ -173,6 +183,8 @@ static Result set_option(const Option *option, char *values, const char *text, E
         return RESULT_OK;
     case OPTION_WORD:
         return set_word(option, at, text, error);
+    case OPTION_STEP:
+        return append_step(option, (OptionSteps *)(void *)at, text, error);
     default:
         return set_number(option, at, text, error);
     }

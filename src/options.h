@@ -15,6 +15,7 @@ typedef enum OptionKind {
     OPTION_REAL,   // sets a double between least and most
     OPTION_WHOLE,  // sets an int between least and most
     OPTION_WORD,   // sets an int: which of the words in `value`, "one|two|three", from 0
+    OPTION_STEP,   // appends itself and its text, if it has one, to an OptionSteps
 } OptionKind;
 
 typedef struct Option {
@@ -26,6 +27,17 @@ typedef struct Option {
     double least, most;
     const char *help;
 } Option;
+
+enum { OPTION_MOST_STEPS = 32 };
+
+// Options whose order counts, as they stand on the command line.
+typedef struct OptionSteps {
+    struct {
+        const Option *option;
+        const char *text; // NULL: it takes none
+    } step[OPTION_MOST_STEPS];
+    int count;
+} OptionSteps;
 
 typedef struct OptionsProgram {
     const char *name, *summary, *synopsis, *description; // synopsis: behind the name

@@ -6,10 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Makes room in `to` for the optional arrays that `from` has.
+// Makes room in `to`, whose counts are set, for the optional arrays that `from` has.
 static bool allocate_like(Strands *to, const Strands *from)
 {
-    size_t strands = (size_t)from->strand_count + 1, vertices = (size_t)from->vertex_count + 1;
+    size_t strands = (size_t)to->strand_count + 1, vertices = (size_t)to->vertex_count + 1;
     bool good = true;
 #define ALLOCATE(array, count)                                                                     \
     if (from->array) good = (to->array = malloc((count) * sizeof *to->array)) != NULL && good
@@ -40,23 +40,53 @@ static void copy_strand(Strands *to, uint32_t t, const Strands *from, uint32_t s
 #undef COPY
 }
 
-Result strands_reorder(Strands *strands, const uint32_t *order, Error *error)
+Result strands_pick(Strands *strands, const uint32_t *which, uint32_t count, Error *error)
 {
     Strands other;
-    Result result = strands_create(&other, strands->strand_count, strands->vertex_count, error);
+    uint64_t vertices = 0;
+    for (uint32_t i = 0; i < count; i++) vertices += strands_size(strands, which[i]);
+    if (vertices >= UINT32_MAX)
+        return error_set(error, RESULT_FAILED, "more vertices than 32-bit indices hold");
+    Result result = strands_create(&other, count, (uint32_t)vertices, error);
     if (result != RESULT_OK) return result;
     if (!allocate_like(&other, strands)) {
         strands_destroy(&other);
-        return error_set(error, RESULT_FAILED, "no memory to reorder %u strands",
-                         strands->strand_count);
+        return error_set(error, RESULT_FAILED, "no memory to pick %u strands", count);
     }
-    for (uint32_t i = 0; i < strands->strand_count; i++) copy_strand(&other, i, strands, order[i]);
+    for (uint32_t i = 0; i < count; i++) copy_strand(&other, i, strands, which[i]);
     other.followers = strands->followers;
     other.follower_radius = strands->follower_radius;
     other.both_ends_fixed = strands->both_ends_fixed;
     strands_destroy(strands);
     *strands = other;
     return RESULT_OK;
+}
+
+Result strands_reorder(Strands *strands, const uint32_t *order, Error *error)
+{
+    return strands_pick(strands, order, strands->strand_count, error);
+}
+
+static int compare_numbers(const void *a, const void *b)
+{
+    uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+    return (x > y) - (x < y);
+}
+
+Result strands_thin(Strands *strands, double share, uint32_t seed, Error *error)
+{
+    uint32_t *order = malloc(((size_t)strands->strand_count + 1) * sizeof *order);
+    if (!order)
+        return error_set(error, RESULT_FAILED, "no memory to pick %u strands",
+                         strands->strand_count);
+    uint32_t count = (uint32_t)(share * strands->strand_count + 0.5);
+    if (count == 0 && strands->strand_count) count = 1;
+    Random random = random_create(seed, 0x7468696e); // "thin"
+    random_permutation(&random, order, strands->strand_count);
+    qsort(order, count, sizeof *order, compare_numbers);
+    Result result = strands_pick(strands, order, count, error);
+    free(order);
+    return result;
 }
 
 Result strands_shuffle(Strands *strands, uint32_t seed, Error *error)
