@@ -136,6 +136,14 @@ Result target_parse_hair(Target *target, const char *text, Error *error)
     return result;
 }
 
+Result target_parse_any(Target *target, const char *text, Error *error)
+{
+    *target = (Target){.kind = TARGET_FRAMES};
+    Result result = take_pattern(target, text, error);
+    if (result != RESULT_OK) target_destroy(target);
+    return result;
+}
+
 void target_destroy(Target *target)
 {
     free(target->before);

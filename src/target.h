@@ -30,6 +30,10 @@ Result target_parse(Target *target, const char *text, Error *error);
 // those of pictures or without one. A .usda without a number holds all frames (TARGET_VIDEO).
 // Errors as above.
 Result target_parse_hair(Target *target, const char *text, Error *error);
+
+// Takes any name, with a number or without one (TARGET_STILL), whatever it ends in. Errors as
+// above.
+Result target_parse_any(Target *target, const char *text, Error *error);
 void target_destroy(Target *target);
 
 // The file for a frame (>= 0), to be freed; numbers that need more digits get them. The same name
