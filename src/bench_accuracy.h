@@ -17,6 +17,7 @@ typedef struct AccuracyRow {
     double value;
     double spread;              // standard error of a fit
     double bound;               // what is stated at most; NaN: nothing is
+    double known;               // how far a solver is known to fall short of it; NaN: it is not
     double ms_min, ms_median;   // a simulated second of that set
     double ms_q1, ms_q3;        // quartiles
     const char *front, *remark; // "front" if nothing is both faster and closer; why it falls short
@@ -28,6 +29,7 @@ typedef struct Accuracy {
     BenchTable table;
     Method methods[METHODS_MOST]; // that are asked for
     int method_count;
+    const char *folder; // of the references
     Motion *motions;
     size_t motion_count;
     bool whole; // all motions that the mean is stated for are there
@@ -39,7 +41,8 @@ Result accuracy_run(const BenchOptions *options, const Gpu *gpu, Error *error);
 // A row of which nothing is known yet but the part, the method and the rate.
 AccuracyRow accuracy_row(const char *part, const Method *method, double rate);
 
-// Checks the bound, and adds the row with the command that repeats it.
+// Checks the bound, and adds the row with the command that repeats it. What falls short of the
+// bound by no more than is known gets the verdict "short", which is no failure.
 void accuracy_add(Accuracy *accuracy, const AccuracyRow *row);
 
 // The rates that are asked for, or `own` (`count` of them); gives their count.

@@ -6,8 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SHIPPED "tests/data/motion"
-
 // What is stated: errors of default forms, over the length. "mean": geometric mean of all motions.
 static const struct {
     const char *algo, *scenario;
@@ -106,7 +104,7 @@ Result accuracy_measure(double *error_over_length, const Gpu *gpu, const Motion 
 
 Result motions_read(Accuracy *accuracy, Error *error)
 {
-    const char *folder = accuracy->options->reference ? accuracy->options->reference : SHIPPED;
+    const char *folder = accuracy->folder;
     char **names;
     size_t count, in_mean = 0;
     Result result = motion_list(&names, &count, folder, error);

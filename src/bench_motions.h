@@ -19,7 +19,7 @@ Result motions_start(Trial *trial, const Gpu *gpu, const Motion *motion,
 // A step, at whose end the root is where the motion has it.
 void motions_advance(Trial *trial, const Motion *motion);
 
-// Reads accuracy->motions from --reference or tests/data/motion.
+// Reads accuracy->motions from accuracy->folder.
 Result motions_read(Accuracy *accuracy, Error *error);
 
 // Geometric mean of the errors over the motions that are averaged: MOTIONS_MEAN of them, or all

@@ -29,3 +29,14 @@ Result trial_read(Trial *trial, Error *error);
 
 // A strand of `n` particles on `points` (m) alone. Free with strands_destroy.
 Result trial_make_strand(Strands *strands, const double (*points)[3], int n, Error *error);
+
+// A helix of `n` particles, `length` metres along its segments, `turns` turns of 2 cm around an
+// axis that leads aside and down from the root at the origin.
+void trial_make_helix(double (*points)[3], int n, double length, double turns);
+
+// A straight one, held horizontally along x.
+void trial_make_beam(double (*points)[3], int n, double length);
+
+// The simulated tip of a strand (position and velocity) where a solver has one beside the drawn
+// strand; false if it has none. Waits for the GPU.
+bool trial_read_tip(const Trial *trial, uint32_t batch, uint32_t strand, float tip[2][4]);
