@@ -5,6 +5,7 @@
 #include "interrupt.h"
 #include "pfm.h"
 #include "png.h"
+#include "sheet.h"
 #include "target.h"
 #include "video.h"
 
@@ -35,6 +36,7 @@ typedef struct Slot {
 struct Output {
     Target target;
     Video *video; // NULL unless a video is written
+    Sheet sheet;  // empty unless a contact sheet is; the worker's
     Slot *slots;
     Slot **queue; // ring of `slot_count`, so there is always room
     int slot_count;
@@ -61,14 +63,14 @@ static double now_ms(void)
     return 1e3 * (double)time.tv_sec + 1e-6 * (double)time.tv_nsec;
 }
 
-static Result write_frame(const Output *output, const Slot *slot, uint64_t *bytes, Error *error)
+static Result write_image(const Output *output, const Image *image, int frame, uint64_t *bytes,
+                          Error *error)
 {
-    char *name = target_name_frame(&output->target, slot->frame);
-    if (!name)
-        return error_set(error, RESULT_FAILED, "no memory for the name of frame %d", slot->frame);
+    char *name = target_name_frame(&output->target, frame);
+    if (!name) return error_set(error, RESULT_FAILED, "no memory for the name of frame %d", frame);
     Bytes png;
-    Result result = slot->image.kind == IMAGE_FLOAT ? pfm_encode(&slot->image, &png, error)
-                                                    : png_encode(&slot->image, &png, error);
+    Result result = image->kind == IMAGE_FLOAT ? pfm_encode(image, &png, error)
+                                               : png_encode(image, &png, error);
     *bytes = png.size;
     if (result == RESULT_OK)
         result = bytes_write_file(&png, name, error);
@@ -77,6 +79,14 @@ static Result write_frame(const Output *output, const Slot *slot, uint64_t *byte
     bytes_destroy(&png);
     free(name);
     return result;
+}
+
+static Result take_frame(Output *output, const Slot *slot, uint64_t *bytes, Error *error)
+{
+    if (output->video) return video_write(output->video, &slot->image, error);
+    if (!output->sheet.columns) return write_image(output, &slot->image, slot->frame, bytes, error);
+    sheet_add(&output->sheet, &slot->image);
+    return RESULT_OK;
 }
 
 // Encodes the oldest frame that waits. Called with the mutex held, which is let go meanwhile.
@@ -89,8 +99,7 @@ static Result encode_next(Output *output)
     double start_ms = now_ms();
     uint64_t bytes = 0;
     Error error;
-    Result result = output->video ? video_write(output->video, &slot->image, &error)
-                                  : write_frame(output, slot, &bytes, &error);
+    Result result = take_frame(output, slot, &bytes, &error);
     double encode_ms = now_ms() - start_ms;
     pthread_mutex_lock(&output->mutex);
     slot->state = SLOT_FREE;
@@ -104,13 +113,16 @@ static Result encode_next(Output *output)
     return result;
 }
 
-static Result end_video(Output *output)
+// Completes the one file that all frames have gone to, if there is one.
+static Result end_file(Output *output)
 {
+    if (!output->video && !output->sheet.columns) return RESULT_OK;
     pthread_mutex_unlock(&output->mutex);
     double start_ms = now_ms();
     uint64_t bytes = 0;
     Error error;
-    Result result = video_finish(output->video, &bytes, &error);
+    Result result = output->video ? video_finish(output->video, &bytes, &error)
+                                  : write_image(output, &output->sheet.image, 0, &bytes, &error);
     double encode_ms = now_ms() - start_ms;
     pthread_mutex_lock(&output->mutex);
     output->counters.encode_ms += encode_ms;
@@ -133,7 +145,7 @@ static void *work(void *argument)
             pthread_cond_wait(&output->changed, &output->mutex);
         pthread_cond_broadcast(&output->changed);
     }
-    if (result == RESULT_OK && !output->aborting && output->video) result = end_video(output);
+    if (result == RESULT_OK && !output->aborting) result = end_file(output);
     output->result = result;
     output->ended = true;
     pthread_cond_broadcast(&output->changed);
@@ -160,9 +172,20 @@ static Result report_failure(const Output *output, Error *error)
     return error_set(error, output->result, "%s", output->failure.text);
 }
 
+static bool is_sheet(const OutputOptions *options)
+{
+    return options->columns > 1 || options->rows > 1;
+}
+
 static Result check_options(const OutputOptions *options, const Target *target, Error *error)
 {
-    if (target->kind == TARGET_STILL && options->frame_count > 1)
+    bool sheet = is_sheet(options);
+    if (sheet && target->kind != TARGET_STILL)
+        return error_set(error, RESULT_USAGE,
+                         "%s: a contact sheet is one picture: expected a name ending in .png or "
+                         ".pfm, without a number",
+                         options->target);
+    if (target->kind == TARGET_STILL && !sheet && options->frame_count > 1)
         return error_set(
             error, RESULT_USAGE,
             "%s: one name for several frames, put the frame number into it: frame_%%04d.png",
@@ -210,6 +233,14 @@ static Result start_worker(Output *output, Error *error)
                      strerror(reason));
 }
 
+static Result start_sheet(Output *output, const OutputOptions *options, Error *error)
+{
+    if (!is_sheet(options)) return RESULT_OK;
+    Result result = sheet_create(&output->sheet, options->columns, options->rows,
+                                 &output->slots[0].image, error);
+    return result == RESULT_USAGE ? error_prefix(error, result, "%s: ", options->target) : result;
+}
+
 static Result start_video(Output *output, const OutputOptions *options, Error *error)
 {
     VideoOptions video = {
@@ -241,6 +272,7 @@ Result output_create(Output **output, const OutputOptions *options, Error *error
     Result result = target_parse(&created->target, options->target, error);
     if (result == RESULT_OK) result = check_options(options, &created->target, error);
     if (result == RESULT_OK) result = create_slots(created, options, error);
+    if (result == RESULT_OK) result = start_sheet(created, options, error);
     if (result == RESULT_OK) result = target_prepare(&created->target, error);
     if (result == RESULT_OK && created->target.kind == TARGET_VIDEO)
         result = start_video(created, options, error);
@@ -330,6 +362,7 @@ void output_destroy(Output *output)
     if (!output) return;
     if (output->has_worker) stop_worker(output);
     video_destroy(output->video);
+    sheet_destroy(&output->sheet);
     for (int i = 0; i < output->slot_count; i++) image_destroy(&output->slots[i].image);
     free(output->slots);
     free(output->queue);

@@ -22,13 +22,14 @@ typedef struct OutputOptions {
     int channels;       // 3, or 4 for PNG, PFM and webm
     ImageKind kind;     // 16 bits for PNG only; floats for PFM and for nothing else
     double fps;         // frames a second, used for videos
-    int frame_count;    // how many will come, 0: not known; "x.png" needs 1
+    int frame_count;    // how many will come, 0: not known; "x.png" takes 1, or a sheet
+    int columns, rows;  // of a contact sheet that takes all frames, "x.png" or "x.pfm"; <= 1: none
     int queue_length;   // images in the pool: drawn, waiting or being encoded; 0: the usual 3
 } OutputOptions;
 
 typedef struct OutputCounters {
     int frames;       // encoded so far
-    uint64_t bytes;   // in the files; a video counts when it is complete
+    uint64_t bytes;   // in the files; a video or sheet counts when it is complete
     double encode_ms; // wall time that the worker spent encoding and writing
 } OutputCounters;
 
@@ -47,7 +48,7 @@ Result output_acquire(Output *output, Image **image, Error *error);
 // all the same.
 Result output_submit(Output *output, int frame_index, Image *image, Error *error);
 
-// Waits until everything submitted is written and a video has its final name. Fails like
+// Waits until everything submitted is written and a video or sheet has its final name. Fails like
 // output_acquire, and with RESULT_FAILED if a video has no frame.
 Result output_finish(Output *output, Error *error);
 

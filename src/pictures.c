@@ -112,6 +112,8 @@ static Result open_output(Pictures *pictures, int frame_count, Error *error)
         .kind = pictures->renderer.options.kind,
         .fps = (double)run->fps / run->every,
         .frame_count = frame_count,
+        .columns = run->contact_sheet[0],
+        .rows = run->contact_sheet[1],
     };
     return output_create(&pictures->output, &options, error);
 }

@@ -78,12 +78,25 @@ static Result check_target(const RunParams *run, const char *path,
     return result;
 }
 
+static Result check_sheet(const RunParams *run, Error *error)
+{
+    const int *sheet = run->contact_sheet;
+    const char *expected = NULL;
+    if (sheet[0] == 1 && sheet[1] == 1) return RESULT_OK;
+    if (!*run->output) expected = "a picture to write, -o x.png";
+    if (run->part[1] > 1) expected = "no --part, since one file holds all frames";
+    if (!expected) return RESULT_OK;
+    return error_set(error, RESULT_USAGE, "--contact-sheet %dx%d: expected %s", sheet[0], sheet[1],
+                     expected);
+}
+
 // What can be said before any file is opened.
 static Result check_words(const Scene *scene, Error *error)
 {
     const RunParams *run = &scene->run;
     Result result = check_target(run, run->output, target_parse, error);
     if (result == RESULT_OK) result = check_target(run, run->export, target_parse_hair, error);
+    if (result == RESULT_OK) result = check_sheet(run, error);
     if (result == RESULT_OK && run->collide_mesh && !*run->mesh)
         result = error_set(error, RESULT_USAGE, "--collide-mesh: expected a mesh, --mesh");
     if (result == RESULT_OK && run->turntable == 0 && (run->ease_in > 0 || run->ease_out > 0))

@@ -11,17 +11,44 @@ int sequence_last_frame(const RunParams *run)
     return run->last < 0 ? run->frames - 1 : run->last;
 }
 
+// Frames that --first, --last and --every name.
+static int count_named(const RunParams *run)
+{
+    int last = sequence_last_frame(run);
+    return last < run->first ? 0 : (last - run->first) / run->every + 1;
+}
+
+// 0: no contact sheet.
+static int count_tiles(const RunParams *run)
+{
+    int64_t tiles = (int64_t)run->contact_sheet[0] * run->contact_sheet[1];
+    if (tiles <= 1) return 0;
+    return tiles < count_named(run) ? (int)tiles : count_named(run);
+}
+
+// A contact sheet of T tiles shows the frames at places floor(i n / T) of n, i = 0 .. T - 1: evenly
+// spaced and, of a whole turn, without its start again at the end. Only the first i with i n / T at
+// or behind a place can lead there.
+static bool is_on_sheet(const RunParams *run, int place)
+{
+    int64_t named = count_named(run), tiles = count_tiles(run);
+    if (tiles == 0) return true;
+    int64_t i = (place * tiles + named - 1) / named;
+    return i < tiles && i * named / tiles == place;
+}
+
 bool sequence_draws_frame(const RunParams *run, int frame)
 {
     int place = (frame - run->first) / run->every;
     return frame >= run->first && frame <= sequence_last_frame(run) &&
-           (frame - run->first) % run->every == 0 && place % run->part[1] == run->part[0] - 1;
+           (frame - run->first) % run->every == 0 && place % run->part[1] == run->part[0] - 1 &&
+           is_on_sheet(run, place);
 }
 
 int sequence_count_drawn(const RunParams *run)
 {
-    int last = sequence_last_frame(run), before = run->part[0] - 1, parts = run->part[1];
-    int all = last < run->first ? 0 : (last - run->first) / run->every + 1;
+    int all = count_named(run), before = run->part[0] - 1, parts = run->part[1];
+    if (count_tiles(run)) return count_tiles(run);
     return all <= before ? 0 : (all - before - 1) / parts + 1;
 }
 

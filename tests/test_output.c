@@ -396,6 +396,58 @@ static void a_second_interrupt_ends_the_program(void **state)
     assert_int_equal(WTERMSIG(status), SIGTERM);
 }
 
+// Tiles lie as one reads; what is left over is black. Every byte is looked at.
+static void a_contact_sheet_holds_its_frames_in_order(void **state)
+{
+    enum { COLUMNS = 3, ROWS = 2, FRAMES = 5 };
+    Error error;
+    Image image;
+    const char *path = temporary_path(state, "new/sheet.png");
+    OutputOptions options = make_options(path, 3);
+    options.columns = COLUMNS, options.rows = ROWS, options.frame_count = FRAMES;
+    assert_int_equal(write_all(&options, FRAMES, &error), RESULT_OK);
+    assert_int_equal(temporary_count_files(temporary_path(state, "new")), 1);
+    assert_int_equal(png_read(&image, path, &error), RESULT_OK);
+    assert_true(image.width == COLUMNS * WIDTH && image.height == ROWS * HEIGHT);
+    for (int y = 0; y < image.height; y++)
+        for (int x = 0; x < image.width; x++) {
+            int tile = y / HEIGHT * COLUMNS + x / WIDTH;
+            uint8_t grey = tile < FRAMES ? grey_of_frame(tile) : 0;
+            for (int k = 0; k < 3; k++)
+                assert_int_equal(image.pixels[3 * (y * image.width + x) + k], grey);
+        }
+    image_destroy(&image);
+}
+
+static void a_contact_sheet_is_one_picture_of_less_than_1_gib(void **state)
+{
+    Error error;
+    static const char *const names[] = {"x.mp4", "x_%d.png", "o/"};
+    for (int i = 0; i < 3; i++) {
+        OutputOptions options = make_options(temporary_path(state, names[i]), 3);
+        options.columns = 2, options.rows = 1;
+        assert_int_equal(write_all(&options, 1, &error), RESULT_USAGE);
+        assert_one_line_with(&error, "contact sheet");
+    }
+    OutputOptions options = make_options(temporary_path(state, "x.png"), 4);
+    options.columns = options.rows = 1000;
+    assert_int_equal(write_all(&options, 1, &error), RESULT_USAGE);
+    assert_one_line_with(&error, "1 GiB");
+    assert_int_equal(temporary_count_files(temporary_path(state, ".")), 0);
+}
+
+static void destroying_a_contact_sheet_early_leaves_nothing(void **state)
+{
+    Error error;
+    Output *output;
+    OutputOptions options = make_options(temporary_path(state, "sheet.png"), 3);
+    options.columns = options.rows = 2;
+    assert_int_equal(output_create(&output, &options, &error), RESULT_OK);
+    assert_int_equal(draw_frames(output, 3, &error), RESULT_OK);
+    output_destroy(output);
+    assert_int_equal(temporary_count_files(temporary_path(state, ".")), 0);
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, temporary_create, temporary_destroy)
 
 int main(void)
@@ -414,6 +466,9 @@ int main(void)
         TEST(a_dying_ffmpeg_fails_with_its_last_words_and_no_file),
         TEST(destroying_a_video_early_leaves_nothing),
         TEST(a_video_without_frames_is_an_error),
+        TEST(a_contact_sheet_holds_its_frames_in_order),
+        TEST(a_contact_sheet_is_one_picture_of_less_than_1_gib),
+        TEST(destroying_a_contact_sheet_early_leaves_nothing),
         TEST(an_interrupt_ends_a_wait_and_leaves_nothing),
         TEST(a_second_interrupt_ends_the_program),
     };

@@ -114,6 +114,34 @@ static void still_hair_loops_to_the_byte(void **state)
     for (int frame = 0; frame < 10; ++frame) assert_same(state, "once", frame % 5, "twice", frame);
 }
 
+// Each tile is the picture that the frame has by itself.
+static void a_contact_sheet_shows_the_frames(void **state)
+{
+    enum { COLUMNS = 3, ROWS = 2 };
+    Error error;
+    Image sheet;
+    char line[1000];
+    const char *hair = "assets/fur.tfx --frames 12 --turntable 360";
+    render(state, hair, "all");
+    snprintf(line, sizeof line,
+             "%s/tractrix-render %s --size %dx%d -q --contact-sheet %dx%d -o '%s'",
+             getenv("TRACTRIX_BIN"), hair, WIDTH, HEIGHT, COLUMNS, ROWS,
+             temporary_path(state, "sheet.png"));
+    assert_int_equal(system(line), 0);
+    assert_int_equal(png_read(&sheet, temporary_path(state, "sheet.png"), &error), RESULT_OK);
+    assert_true(sheet.width == COLUMNS * WIDTH && sheet.height == ROWS * HEIGHT);
+    for (int tile = 0; tile < COLUMNS * ROWS; ++tile) {
+        Image image;
+        read_frame(state, "all", 2 * tile, &image);
+        for (int y = 0; y < HEIGHT; ++y) {
+            int at = (tile / COLUMNS * HEIGHT + y) * sheet.width + tile % COLUMNS * WIDTH;
+            assert_memory_equal(sheet.pixels + 3 * at, image.pixels + 3 * y * WIDTH, 3 * WIDTH);
+        }
+        image_destroy(&image);
+    }
+    image_destroy(&sheet);
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, temporary_create, temporary_destroy)
 
 int main(void)
@@ -123,6 +151,7 @@ int main(void)
         TEST(so_does_hair_in_the_wind_on_a_moving_head_with_a_mesh),
         TEST(so_do_followers_drawn_from_a_cache),
         TEST(still_hair_loops_to_the_byte),
+        TEST(a_contact_sheet_shows_the_frames),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
