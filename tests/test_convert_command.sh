@@ -147,6 +147,15 @@ run 3 "$work/cut.cache" --last 3; says "no frame 3"; one_line
 head -c 40 "$work/a.cache" >"$work/cut.cache"; run 3 "$work/cut.cache"; one_line
 run 2 "$work/a.cache" $curls; says "can't be joined"; one_line
 
+claim "an interrupted export leaves no USD file, nor a part of one"
+mkdir "$work/broken"
+"$bin/tractrix-render" $curls --frames 1000000 -q --export "$work/broken/x.usda" >"$work/out" 2>"$work/err" &
+pid=$!
+for _ in $(seq 100); do [ -n "$(ls -A "$work/broken")" ] && break; sleep 0.1; done
+sleep 0.3; kill -INT $pid; wait $pid
+status=$?
+if [ $status = 130 ] && [ -z "$(ls -A "$work/broken")" ]; then good; else bad "status $status, $(ls -A "$work/broken")"; fi
+
 claim "what can't be read is status 3 and one line with the place"
 printf 'hello\n' >"$work/text"; : >"$work/empty"; head -c 5000 $curls >"$work/cut.tfx"; printf 'v 0 0 0\nl 1 2\n' >"$work/bad.obj"
 for file in "$work/text" "$work/empty" "$work/cut.tfx" "$work/bad.obj" "$work/missing.tfx" "$work" assets/head.obj "$work/anim.usda"; do
