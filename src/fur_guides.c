@@ -8,6 +8,7 @@
 #include <stdlib.h>
 
 static const double EXTRA = 1.2;
+static const double RISE = 100.0; // rad/m: how fast hair turns up that lies too low
 
 void fur_line_at(const Double3 *line, double step, double s, Double3 place)
 {
@@ -22,8 +23,8 @@ typedef struct Shoot {
     const Surface *surface;
     const FurComb *comb;
     double step, volume;
-    double high;        // m: how much farther from the surface than it is to be
-    SurfacePoint under; // the surface's point nearest to its end
+    double height, goal; // m: how far its end is from the surface, and is to be
+    SurfacePoint under;  // the surface's point nearest to its end
     Double3 direction;
 } Shoot;
 
@@ -66,37 +67,49 @@ static void turn(Shoot *shoot, const Double3 at, double s)
     if (recipe->lie > 0.0) {
         fur_comb_at(shoot->comb, shoot->surface, &shoot->under, normal, combed);
         double share = comb_share(recipe, s) * double3_length(combed);
-        double3_add_scaled(combed, -fmin(shoot->high / (2.0 * recipe->lie), 1.0), normal);
+        double high = fmax(shoot->height - shoot->goal, 0.0);
+        double3_add_scaled(combed, -fmin(high / (2.0 * recipe->lie), 1.0), normal);
         double3_subtract(combed, d, change);
         for (int i = 0; i < 3; i++) change[i] *= share * shoot->step / (shoot->step + recipe->lie);
     }
     double3_flatten(down, d);
     double3_add_scaled(change, recipe->gravity_bend * shoot->step, down);
+    if (shoot->height < shoot->goal)
+        double3_add_scaled(change,
+                           RISE * shoot->step * (1.0 - shoot->height / shoot->goal) *
+                               (1.0 + recipe->gravity_bend * shoot->goal),
+                           normal);
     if (recipe->noise > 0.0) add_noise(shoot, at, change);
     double3_add_scaled(d, 1.0, change);
     double3_normalize(d);
 }
 
-// A step in the shoot's direction, or as near to that as it ends outside: again, since the next
-// nearest point may be on another side.
-static void step(Shoot *shoot, const Double3 from, double gap, Double3 to)
+// A step in the shoot's direction, or as near to that as it ends outside and hardly nearer to the
+// surface than it began: again, since the next nearest point may be on another side. The direction
+// loses what leads inward, but gains nothing outward: a shoot slides along what is in its way and
+// does not bounce off.
+static void step(Shoot *shoot, const Double3 from, Double3 to)
 {
+    double least = fmax(0.9 * fmin(shoot->height, shoot->goal), shoot->recipe->root_lift);
+    Double3 way;
+    double3_copy(shoot->direction, way);
     for (int attempt = 0;; attempt++) {
         Double3 away;
         double3_copy(from, to);
-        double3_add_scaled(to, shoot->step, shoot->direction);
-        double height = surface_nearest(shoot->surface, to, &shoot->under);
-        shoot->high = fmax(height - gap, 0.0);
-        if (height >= gap || attempt == 3) return;
+        double3_add_scaled(to, shoot->step, way);
+        shoot->height = surface_nearest(shoot->surface, to, &shoot->under);
+        if (shoot->height >= least || attempt == 3) break;
         double3_subtract(to, shoot->under.place, away);
         if (double3_normalize(away) < 1e-9)
             surface_normal(shoot->surface, &shoot->under, away);
-        else if (height < 0.0)
+        else if (shoot->height < 0.0)
             for (int i = 0; i < 3; i++) away[i] = -away[i];
-        double3_add_scaled(to, gap - height, away);
-        double3_subtract(to, from, shoot->direction);
-        double3_normalize(shoot->direction);
+        double3_add_scaled(to, least - shoot->height, away);
+        double3_subtract(to, from, way);
+        double3_normalize(way);
+        if (double3_dot(shoot->direction, away) < 0.0) double3_flatten(shoot->direction, away);
     }
+    if (double3_normalize(shoot->direction) < 1e-3) double3_copy(way, shoot->direction);
 }
 
 static void grow(Shoot *shoot, const SurfacePoint *root, Double3 *line)
@@ -107,12 +120,12 @@ static void grow(Shoot *shoot, const SurfacePoint *root, Double3 *line)
     set_first_direction(shoot, normal);
     double3_copy(root->place, line[0]);
     double3_add_scaled(line[0], shoot->recipe->root_lift, normal);
+    shoot->height = shoot->recipe->root_lift;
     for (int i = 0; i < FUR_STEPS; i++) {
-        double s = (i + 1) * shoot->step;
-        // From the root on the gap grows by a quarter of the way.
-        double far = shoot->volume * s / (s + 4.0 * shoot->volume + 1e-9);
+        double s = (i + 1) * shoot->step, far = s / (s + 4.0 * shoot->volume + 1e-9);
+        shoot->goal = shoot->recipe->root_lift + shoot->volume * far;
         if (i > 0) turn(shoot, line[i], s);
-        step(shoot, line[i], shoot->recipe->root_lift + far, line[i + 1]);
+        step(shoot, line[i], line[i + 1]);
     }
 }
 
