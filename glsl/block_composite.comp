@@ -2,6 +2,9 @@
 // A block of pixels a lane: its list's ribbons near to far, each under what stands before it,
 // premultiplied and in linear light, over the background, then sRGB. The pixels stay in registers.
 //   BASE 1: the mesh stands behind, and hides what is behind it
+//   SAMPLES: what is a pixel here is one of SAMPLES x SAMPLES that the picture has the mean of
+//   NEAREST 1: a ribbon hides all behind it where it covers LEAST_COVERAGE of the pixel   DEPTH 1: and shows its distance
+//   KIND 0: 8 bits a channel are stored   1: 16   2: floats
 //
 // A ribbon's width is that at the middle of its part beside the block, its depth, its coverage and its
 // colour are found for each pixel (coverage.glsl). Where less than LEAST shines through a whole block the rest is left.
@@ -26,6 +29,7 @@ layout(std430, binding = BIND_PIXELS_OUT) writeonly buffer Pixels { uvec4 pixels
 
 const int MOST_TURNS = 65000; // CPU drivers end loops silently after 65,535
 const float LEAST = 1.0 / 1024.0;
+const float LEAST_COVERAGE = 1.0 / 16.0; // as in hair.frag
 
 // Not a loop: compilers leave one with so long a body rolled, and then keep the pixels in memory.
 #define FOUR_IN_TURN(DO, k) DO(k) DO(k + 1) DO(k + 2) DO(k + 3)
@@ -34,11 +38,24 @@ const float LEAST = 1.0 / 1024.0;
     ROW_IN_TURN(DO, 0) NEXT_ROW; ROW_IN_TURN(DO, 1) NEXT_ROW; ROW_IN_TURN(DO, 2) NEXT_ROW; ROW_IN_TURN(DO, 3)
 
 #if BASE
-#define HIDE(alpha, along, k) alpha = inverse_w.x + inverse_w.y * (along) >= mesh[k] ? alpha : 0.0
+#define HIDE(alpha, along, k) alpha = inverse_w.x + inverse_w.y * (along) >= hidden[k] ? alpha : 0.0
 #else
 #define HIDE(alpha, along, k)
 #endif
 // `row` has four quantities at the row's first pixel: distance across, both ends' shares, and how far along the ribbon.
+#if NEAREST
+#define ADD(k)                                                                                               \
+    {                                                                                                        \
+        vec4 here = row + float((k) % BLOCK_WIDTH) * by_x;                                                   \
+        float coverage = profile_coverage(profile, here.x) * clamp(min(here.y, here.z), 0.0, 1.0);           \
+        float along = clamp(here.w, 0.0, 1.0), near = inverse_w.x + inverse_w.y * along;                     \
+        bool seen = coverage >= LEAST_COVERAGE && near > hidden[k];                                            \
+        hidden[k] = seen ? near : hidden[k];                                                                     \
+        through[k] = seen ? 0.0 : through[k];                                                                \
+        color[k] = seen ? first + along * change : color[k];                                                 \
+        most = 1.0;                                                                                          \
+    }
+#else
 #define ADD(k)                                                                                               \
     {                                                                                                        \
         vec4 here = row + float((k) % BLOCK_WIDTH) * by_x;                                                   \
@@ -50,12 +67,38 @@ const float LEAST = 1.0 / 1024.0;
         color[k] += alpha * (first + along * change);                                                        \
         most = max(most, through[k]);                                                                        \
     }
+#endif
 
-uint pack_pixel(vec3 color, float through, vec4 behind)
+// Pixels of the picture in a row of the block; what is stored of one, and how many fit in four words.
+#define ACROSS (BLOCK_WIDTH / SAMPLES)
+#define STORED (4 >> KIND)
+#if KIND == 0
+#define PACKED uint
+#define STORED_WORDS uvec4(word[0], word[1], word[2], word[3])
+#elif KIND == 1
+#define PACKED uvec2
+#define STORED_WORDS uvec4(word[0], word[1])
+#else
+#define PACKED uvec4
+#define STORED_WORDS word[0]
+#endif
+
+PACKED pack_pixel(vec4 c)
 {
-    vec4 c = vec4(color, 1.0 - through) + through * behind;
-    ivec4 level = ivec4(vec4(display_from_linear(c.rgb / max(c.a, 1e-6)), c.a) * 255.0 + 0.5);
-    return uint(level.r | (level.g << 8) | (level.b << 16) | (level.a << 24));
+#if KIND < 2
+    c = vec4(display_from_linear(c.rgb / max(c.a, 1e-6)), c.a);
+#if TONE == 3 || KIND == 1
+    c = clamp(c, 0.0, 1.0); // srgb.glsl goes beyond by less than half a level of 8 bits, but not of 16
+#endif
+    uvec4 level = uvec4(ivec4(c * (KIND == 0 ? 255.0 : 65535.0) + 0.5));
+#endif
+#if KIND == 0
+    return level.r | (level.g << 8) | (level.b << 16) | (level.a << 24);
+#elif KIND == 1
+    return level.rb | (level.ga << 16);
+#else
+    return floatBitsToUint(c);
+#endif
 }
 
 void main()
@@ -73,12 +116,15 @@ void main()
         color[k] = vec3(0.0);
         through[k] = 1.0;
     }
+#if BASE || NEAREST
+    float hidden[PIXELS]; // what lies behind it, 1/w
+    for (int k = 0; k < PIXELS; ++k) hidden[k] = 0.0;
+#endif
 #if BASE
     ivec2 edge = ivec2(draw_params.width, draw_params.height) - 1;
-    float mesh[PIXELS]; // 1/w
     for (int k = 0; k < PIXELS; ++k) {
         float z = texelFetch(mesh_depth, min(corner + ivec2((k) % BLOCK_WIDTH, (k) / BLOCK_WIDTH), edge), 0).x;
-        mesh[k] = z < 1.0 ? (2.0 * z - 1.0 - draw_params.depth.x) / draw_params.depth.y : 0.0;
+        hidden[k] = z < 1.0 ? (2.0 * z - 1.0 - draw_params.depth.x) / draw_params.depth.y : 0.0;
     }
 #endif
     // What the next turns need is fetched turns ahead: its latency hides behind this one's sums.
@@ -101,7 +147,7 @@ void main()
         const vec2 HALF = 0.5 * vec2(BLOCK_WIDTH - 1, BLOCK_HEIGHT - 1);
         float middle = dot(q + HALF, d) * inverse_length, side = dot(HALF, abs(d)) * inverse_length;
         float t = 0.5 * (clamp(middle - side, 0.0, 1.0) + clamp(middle + side, 0.0, 1.0));
-        Profile profile = ribbon_profile(d, mix(r.half_width.x, r.half_width.y, t), unpackHalf2x16(shape.w).x);
+        Profile profile = ribbon_profile(d, mix(r.half_width.x, r.half_width.y, t), NEAREST == 1 ? 1.0 : unpackHalf2x16(shape.w).x);
         vec2 rg = unpackHalf2x16(shade.x), br = unpackHalf2x16(shade.y), gb = unpackHalf2x16(shade.z);
         vec3 first = vec3(rg, br.x), change = vec3(br.y, gb) - first;
         // Linear in the pixel: by column and by row.
@@ -109,7 +155,7 @@ void main()
              by_y = vec4(d.x, r.bound_a.y, -r.bound_b.y, d.y * inverse_length);
         vec4 row = vec4(q.y * d.x - q.x * d.y, dot(q, r.bound_a) + bound_offset(r.bound_a),
                         1.0 - dot(origin - r.b, r.bound_b) - bound_offset(r.bound_b), dot(q, d) * inverse_length);
-#if BASE
+#if BASE || NEAREST
         float change_w = unpackHalf2x16(shape.w).y; // 1/w is linear in the picture
         vec2 inverse_w = uintBitsToFloat(shade.w) * vec2(1.0 - 0.5 * change_w, change_w);
 #endif
@@ -124,10 +170,26 @@ void main()
     vec4 background = draw_params.background;
 #define BEHIND(k) background
 #endif
-    int pitch = stride * BLOCK_WIDTH / 4, place = corner.y * pitch + corner.x / 4;
-    uint level[4];
-#define STORE(k)                                                \
-    level[(k) % 4] = pack_pixel(color[k], through[k], BEHIND(k)); \
-    if ((k) % 4 == 3) pixels[place + (k) % BLOCK_WIDTH / 4] = uvec4(level[0], level[1], level[2], level[3]);
+#if DEPTH
+#define LIT(k) vec4(vec3(depth_shown(through[k] == 0.0 ? hidden[k] : 0.0)), 1.0)
+#else
+#define LIT(k) (vec4(color[k], 1.0 - through[k]) + through[k] * BEHIND(k))
+#endif
+#if SAMPLES == 1
+#define PIXEL(p) LIT(p)
+#else
+#define FIRST_SAMPLE(p) ((p) / ACROSS * 2 * BLOCK_WIDTH + (p) % ACROSS * 2)
+#define PIXEL(p) 0.25 * (LIT(FIRST_SAMPLE(p)) + LIT(FIRST_SAMPLE(p) + 1) + \
+                         LIT(FIRST_SAMPLE(p) + BLOCK_WIDTH) + LIT(FIRST_SAMPLE(p) + BLOCK_WIDTH + 1))
+#endif
+    int pitch = stride * ACROSS / STORED, place = corner.y / SAMPLES * pitch + corner.x / SAMPLES / STORED;
+    PACKED word[STORED];
+#define STORE(p)                                 \
+    word[(p) % STORED] = pack_pixel(PIXEL(p)); \
+    if ((p) % STORED == STORED - 1) pixels[place + (p) % ACROSS / STORED] = STORED_WORDS;
+#if SAMPLES == 1
     PIXELS_IN_TURN(STORE, place += pitch)
+#else
+    FOUR_IN_TURN(STORE, 0) place += pitch; FOUR_IN_TURN(STORE, ACROSS)
+#endif
 }

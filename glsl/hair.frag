@@ -14,6 +14,7 @@ noperspective in float across;
 noperspective in float half_width;
 noperspective in vec2 ends;
 noperspective in vec4 color;
+noperspective in float inverse_w;
 
 const float LEAST_ALPHA = 1.0 / 4096.0;
 const float LEAST_COVERAGE = 1.0 / 16.0; // of a pixel whose nearest ribbon is asked for
@@ -24,7 +25,7 @@ void main()
     float share = clamp(min(ends.x, ends.y) + 0.5, 0.0, 1.0);
     float coverage = share * ribbon_coverage(across, half_width, vec2(dFdx(across), dFdy(across)));
 #if NEAREST
-    float alpha = coverage >= LEAST_COVERAGE ? 1.0 : 0.0;
+    float alpha = coverage >= LEAST_COVERAGE && color.a >= LEAST_ALPHA ? 1.0 : 0.0;
 #else
     float alpha = color.a * coverage;
 #endif
@@ -38,5 +39,5 @@ void main()
     uint index = (slot / SHARD_RUN * shards + shard) * SHARD_RUN + slot % SHARD_RUN;
     int at = (pixel.y - int(band.y)) * int(band.x) + pixel.x;
     uint next = atomicExchange(heads[at], index + 1u);
-    nodes[index] = uvec4(next, abuffer_pack(gl_FragCoord.w, color.rgb, alpha));
+    nodes[index] = uvec4(next, abuffer_pack(inverse_w, color.rgb, alpha));
 }

@@ -2,7 +2,8 @@
 // A pixel's fragments become its colour: the LAYERS nearest in order, the rest blended out of order
 // under them, all over what stands behind, premultiplied and in linear light.
 //   BASE 0: the background alone stands behind   1: the mesh does   DEPTH 1: the nearest fragment's distance instead
-//   MOST_TURNS: fragments that the driver lets a loop visit
+//   SAMPLES: the picture has the mean of SAMPLES x SAMPLES pixels of the lists
+//   MOST_TURNS: fragments that the driver lets all loops visit
 //
 // The rest is summed in whole numbers, which give the same sum in every order: colour times alpha,
 // alpha, and optical depth -log2(1 - alpha). Together they let through what they would in any
@@ -47,16 +48,18 @@ vec4 rest_color(ivec4 high, ivec4 low, int optical_depth)
     return vec4(mean * alpha, alpha);
 }
 
-void main()
+int count = 0; // of all fragments visited
+
+// A pixel of the lists: light, premultiplied.
+vec4 blend(ivec2 pixel)
 {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
     int link = int(texelFetch(heads, (pixel.y - int(draw_params.band.y)) * int(draw_params.band.x) + pixel.x).x);
 #if LAYERS
     ivec3 layer[LAYERS];
     for (int i = 0; i < LAYERS; ++i) layer[i] = ivec3(0);
 #endif
     ivec4 high = ivec4(0), low = ivec4(0);
-    int optical_depth = 0, count = 0;
+    int optical_depth = 0;
     while (link != 0 && count < MOST_TURNS) {
         ivec4 node = ivec4(texelFetch(nodes, link - 1));
         link = node.x;
@@ -76,6 +79,9 @@ void main()
         if (++count % CARRY_EVERY == 0) carry(high, low);
     }
     if (link != 0) shortage = 1u;
+#if DEPTH
+    return vec4(vec3(depth_shown(intBitsToFloat(layer[0].x))), 1.0);
+#else
 #if BASE
     vec4 color = texelFetch(base, pixel, 0);
 #else
@@ -85,13 +91,17 @@ void main()
 #if LAYERS
     for (int i = LAYERS - 1; i >= 0; --i) color = over(abuffer_color(layer[i]), color);
 #endif
-#if DEPTH
-    float near = intBitsToFloat(layer[0].x); // 1 / distance, 0 without hair
-    float distance = 1.0 / max(near, 1e-20);
-    vec2 range = draw_params.depth_range.xy;
-    float share = range.y > range.x ? clamp((range.y - distance) / (range.y - range.x), 0.0, 1.0) : distance;
-    pixel_out = vec4(vec3(near > 0.0 ? share : 0.0), 1.0);
-#elif TONE == 3
+    return color;
+#endif
+}
+
+void main()
+{
+    ivec2 pixel = ivec2(gl_FragCoord.xy) * SAMPLES;
+    vec4 color = vec4(0.0);
+    for (int i = 0; i < SAMPLES * SAMPLES; ++i) color += blend(pixel + ivec2(i % SAMPLES, i / SAMPLES));
+    color *= 1.0 / float(SAMPLES * SAMPLES);
+#if TONE == 3
     pixel_out = color;
 #else
     pixel_out = vec4(display_from_linear(color.rgb / max(color.a, 1e-6)), color.a);

@@ -125,7 +125,8 @@ static Result try_looks(Renderer *renderer, Error *error)
     return result;
 }
 
-static Result try_renderer(const Gpu *gpu, Raster raster, float opacity, Error *error)
+static Result try_renderer(const Gpu *gpu, Raster raster, const RendererOptions *pictures,
+                           Error *error)
 {
     Renderer renderer;
     GpuTimer timer;
@@ -137,11 +138,9 @@ static Result try_renderer(const Gpu *gpu, Raster raster, float opacity, Error *
                        .position = corners,
                        .normal = normals,
                        .triangle = triangle};
-    const RendererOptions options = {.raster = raster,
-                                     .width = 16,
-                                     .height = 16,
-                                     .background = {0, 0, 0, opacity},
-                                     .tone = opacity < 1 ? TONE_REINHARD : TONE_FILMIC};
+    RendererOptions options = *pictures;
+    options.raster = raster;
+    options.width = options.height = 16;
     gpu_timer_create(&timer, false, true);
     Result result = renderer_create(&renderer, gpu, &timer, &options, error);
     if (result != RESULT_OK) return result;
@@ -149,6 +148,29 @@ static Result try_renderer(const Gpu *gpu, Raster raster, float opacity, Error *
     if (result == RESULT_OK) result = try_looks(&renderer, error);
     renderer_destroy(&renderer);
     return result;
+}
+
+static void try_renderers(const Gpu *gpu, Result *worst, FILE *stream, Error *error)
+{
+    static const struct {
+        const char *name;
+        RendererOptions options;
+    } pictures[] = {{"opaque", {.background = {0, 0, 0, 1}, .tone = TONE_FILMIC}},
+                    {"transparent, 2 x 2", {.tone = TONE_REINHARD, .samples = 2}},
+                    {"16 bits", {.kind = IMAGE_16}},
+                    {"floats, 2 x 2", {.kind = IMAGE_FLOAT, .samples = 2}},
+                    {"coverage", {.aov = AOV_COVERAGE}},
+                    {"depth", {.aov = AOV_DEPTH, .kind = IMAGE_FLOAT}},
+                    {"tangent", {.aov = AOV_TANGENT, .kind = IMAGE_16}}};
+    for (size_t i = 0; i < sizeof pictures / sizeof *pictures; ++i)
+        for (Raster raster = RASTER_QUADS; raster <= RASTER_BLOCKS; ++raster) {
+            char what[64];
+            Error why = {{0}};
+            snprintf(what, sizeof what, "renderer, %s, %s",
+                     raster == RASTER_QUADS ? "quads" : "blocks", pictures[i].name);
+            tell(what, try_renderer(gpu, raster, &pictures[i].options, &why), &why, worst, stream,
+                 error);
+        }
 }
 
 Result bench_shaders(const Gpu *gpu, FILE *stream, Error *error)
@@ -173,15 +195,7 @@ Result bench_shaders(const Gpu *gpu, FILE *stream, Error *error)
     for (FollowMode mode = FOLLOW_OFFSET; mode <= FOLLOW_INTERPOLATE; ++mode)
         tell(mode == FOLLOW_OFFSET ? "followers, offset" : "followers, interpolated",
              try_follow(gpu, mode, &why), &why, &worst, stream, error);
-    for (int transparent = 0; transparent < 2; ++transparent)
-        for (Raster raster = RASTER_QUADS; raster <= RASTER_BLOCKS; ++raster) {
-            char what[64];
-            snprintf(what, sizeof what, "renderer, %s, %s",
-                     raster == RASTER_QUADS ? "quads" : "blocks",
-                     transparent ? "transparent" : "opaque");
-            tell(what, try_renderer(gpu, raster, transparent ? 0 : 1, &why), &why, &worst, stream,
-                 error);
-        }
+    try_renderers(gpu, &worst, stream, error);
     shader_treat_warnings_as_errors(false);
     return worst;
 }

@@ -75,6 +75,7 @@ static Result describe_pictures(const Pictures *pictures, RendererOptions *optio
         .tone = (Tone)run->tone_map,
         .kind = run->depth == DEPTH_16 ? IMAGE_16 : IMAGE_8,
         .aov = (Aov)run->aov,
+        .samples = run->samples,
         .seed = run->seed,
         .lod = {run->lod_start, run->lod_end, run->lod_min, run->lod_width},
         .shadow = {

@@ -29,19 +29,22 @@ static Result build_resolve(RenderABuffer *abuffer, int over_mesh, Error *error)
                                     {"BASE", over_mesh},
                                     {"TONE", abuffer->tone},
                                     {"DEPTH", abuffer->depth},
+                                    {"SAMPLES", abuffer->samples},
                                     {"MOST_TURNS", abuffer->most_turns},
                                     {NULL, 0}};
     return shader_build_draw(&abuffer->resolve[over_mesh], "resolve.vert", "resolve.frag", defines,
                              error);
 }
 
-Result render_abuffer_create(RenderABuffer *abuffer, const GpuLimits *limits, int width, int layers,
-                             int tone, bool depth, bool software, int64_t pool_bytes, Error *error)
+Result render_abuffer_create(RenderABuffer *abuffer, const GpuLimits *limits, int width,
+                             int samples, int layers, int tone, bool depth, bool software,
+                             int64_t pool_bytes, Error *error)
 {
     *abuffer = (RenderABuffer){.limits = limits,
                                .shards = SHARD_COUNT,
                                .layers = layers,
-                               .width = width,
+                               .width = width * samples,
+                               .samples = samples,
                                .tone = tone,
                                .depth = depth,
                                .most_turns = software ? ABUFFER_MOST_TURNS : INT32_MAX};
@@ -86,7 +89,7 @@ void render_abuffer_destroy(RenderABuffer *abuffer)
 int render_abuffer_most_rows(const RenderABuffer *abuffer, int height)
 {
     int64_t pixels = smaller(abuffer->limits->storage_block / 4, abuffer->limits->texture_texels);
-    return (int)smaller(height, pixels / abuffer->width);
+    return (int)smaller(height, pixels / abuffer->width / abuffer->samples);
 }
 
 int render_abuffer_shard_nodes(const RenderABuffer *abuffer)
@@ -104,7 +107,7 @@ static void clear(const GpuBuffer *buffer, int64_t size)
 
 Result render_abuffer_begin(RenderABuffer *abuffer, int rows, const int box[4], Error *error)
 {
-    int64_t size = (int64_t)rows * abuffer->width * 4;
+    int64_t size = (int64_t)rows * abuffer->samples * abuffer->width * 4;
     if (abuffer->heads.size < size) {
         gpu_buffer_destroy(&abuffer->heads);
         Result result = gpu_buffer_create(&abuffer->heads, abuffer->limits, "A-buffer heads", size,

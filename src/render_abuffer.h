@@ -11,17 +11,18 @@ typedef struct RenderABuffer {
     GLuint resolve[2];   // programs: over the background alone, over a mesh
     GLuint vertex_array; // without attributes
     GpuBuffer nodes;     // uvec4, see abuffer.glsl
-    GpuBuffer heads;     // uint a pixel of the band
+    GpuBuffer heads;     // uint a sample of the band
     GpuBuffer counters;  // uint, see COUNTER_WORDS
     GpuBuffer shortage;  // uint: not 0 once a pixel had too many fragments to visit
     GpuBuffer extent;    // int[4]: screen box of what has to be resolved: x, y lowest, highest, px
     const GpuLimits *limits;
     int64_t most_nodes; // that the pool can grow to
     int shards;         // that the pool is dealt out in: SHARD_COUNT or 1
-    int layers, width;
-    int tone;       // display.glsl's macro
-    bool depth;     // pixels show their nearest fragment's depth
-    int most_turns; // fragments of a pixel that can be visited
+    int layers, width;  // of the samples
+    int samples;        // across a pixel of the picture, which has their mean
+    int tone;           // display.glsl's macro
+    bool depth;         // pixels show their nearest fragment's depth
+    int most_turns;     // fragments of a pixel that can be visited
 } RenderABuffer;
 
 // What drawing a band has stored.
@@ -34,12 +35,14 @@ typedef struct ABufferUse {
 // CPU drivers end loops silently after 65,535 turns.
 enum { ABUFFER_MOST_TURNS = 65000 };
 
-// `layers` fragments of a pixel are blended in order, >= 0, with `depth` >= 1. `tone`: a Tone, or
+// `width`: of the picture, px, whose pixels are the means of `samples` x `samples`. `layers`
+// fragments of a sample are blended in order, >= 0, with `depth` >= 1. `tone`: a Tone, or
 // TONE_LIGHT for premultiplied light as it is. `depth`: pixels show their nearest fragment's
 // distance before the eye instead. `software`: by a CPU driver. `pool_bytes`: the pool's largest
 // size, 0 for the driver's limit.
-Result render_abuffer_create(RenderABuffer *abuffer, const GpuLimits *limits, int width, int layers,
-                             int tone, bool depth, bool software, int64_t pool_bytes, Error *error);
+Result render_abuffer_create(RenderABuffer *abuffer, const GpuLimits *limits, int width,
+                             int samples, int layers, int tone, bool depth, bool software,
+                             int64_t pool_bytes, Error *error);
 void render_abuffer_destroy(RenderABuffer *abuffer);
 
 // Makes what resolving over a mesh needs; nothing if it is there.

@@ -29,11 +29,19 @@ static Result make_room(GpuBuffer *buffer, const GpuLimits *limits, const char *
     return gpu_buffer_create(buffer, limits, what, size, NULL, format, error);
 }
 
-static void clear(const GpuBuffer *buffer, int64_t size, GLuint value)
+static void clear(const GpuBuffer *buffer, int64_t size)
 {
+    const GLuint zero = 0;
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
     glClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, 0, (GLsizeiptr)size, GL_RED_INTEGER,
-                         GL_UNSIGNED_INT, &value);
+                         GL_UNSIGNED_INT, &zero);
+}
+
+static void clear_pixels(const RenderBlocks *blocks)
+{
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, blocks->pixels.buffer);
+    glClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_RGBA32UI, 0, (GLsizeiptr)blocks->pixels.size,
+                         GL_RGBA_INTEGER, GL_UNSIGNED_INT, blocks->background);
 }
 
 static void read_back(const GpuBuffer *buffer, size_t size, void *data)
@@ -58,48 +66,97 @@ static void unmap(const GpuBuffer *buffer)
 
 static Result build_composite(RenderBlocks *blocks, int over_mesh, Error *error)
 {
-    const ShaderDefine defines[] = {{"BASE", over_mesh}, {"TONE", blocks->tone}, {NULL, 0}};
+    const ShaderDefine defines[] = {{"BASE", over_mesh},
+                                    {"TONE", blocks->tone},
+                                    {"SAMPLES", blocks->samples},
+                                    {"KIND", (int)blocks->kind},
+                                    {"NEAREST", blocks->aov > AOV_COVERAGE},
+                                    {"DEPTH", blocks->aov == AOV_DEPTH},
+                                    {NULL, 0}};
     return shader_build_compute(&blocks->composite[over_mesh], "block_composite.comp", defines,
                                 error);
 }
 
-static uint32_t pack_background(const float background[4])
+// As block_composite.comp packs pixels.
+static void pack_background(const RendererOptions *options, uint32_t words[4])
 {
-    uint32_t level[4];
+    float light[4];
+    uint32_t level[4], most = options->kind == IMAGE_8 ? 255 : 65535;
+    picture_background(options, light);
     for (int k = 0; k < 4; ++k)
-        level[k] = background[3] > 0 ? (uint32_t)lrintf(255 * background[k]) : 0;
-    return level[0] | level[1] << 8 | level[2] << 16 | level[3] << 24;
+        level[k] = light[3] > 0 ? (uint32_t)lrintf((float)most * options->background[k]) : 0;
+    for (int i = 0; i < 4; ++i)
+        if (options->kind == IMAGE_8)
+            words[i] = level[0] | level[1] << 8 | level[2] << 16 | level[3] << 24;
+        else if (options->kind == IMAGE_16)
+            words[i] = level[i % 2 * 2] | level[i % 2 * 2 + 1] << 16;
+        else
+            memcpy(&words[i], &light[i], sizeof light[i]);
+}
+
+static int columns(const RenderBlocks *blocks)
+{
+    return (blocks->width + BLOCK_WIDTH - 1) / BLOCK_WIDTH;
+}
+
+static int rows(const RenderBlocks *blocks)
+{
+    return (blocks->height + BLOCK_HEIGHT - 1) / BLOCK_HEIGHT;
+}
+
+// Between two rows of the picture.
+static int64_t pitch(const RenderBlocks *blocks)
+{
+    return (int64_t)columns(blocks) * BLOCK_WIDTH / blocks->samples * 4 *
+           (int64_t)image_channel_size(blocks->kind);
+}
+
+static int64_t picture_bytes(const RenderBlocks *blocks)
+{
+    return pitch(blocks) * rows(blocks) * BLOCK_HEIGHT / blocks->samples;
 }
 
 static Result make_buffers(RenderBlocks *blocks, Error *error)
 {
     const GpuLimits *limits = blocks->limits;
-    int columns = (blocks->width + BLOCK_WIDTH - 1) / BLOCK_WIDTH,
-        rows = (blocks->height + BLOCK_HEIGHT - 1) / BLOCK_HEIGHT;
-    int64_t count = (int64_t)columns * rows;
-    Result result =
-        block_lists_create(&blocks->lists, columns, rows, BLOCK_WIDTH, BLOCK_HEIGHT, error);
+    int64_t count = (int64_t)columns(blocks) * rows(blocks);
+    Result result = block_lists_create(&blocks->lists, columns(blocks), rows(blocks), BLOCK_WIDTH,
+                                       BLOCK_HEIGHT, error);
     if (result == RESULT_OK)
         result = make_room(&blocks->counts, limits, "counts", BLOCK_COUNT_WORDS * 4, 0, error);
     if (result == RESULT_OK)
         result = make_room(&blocks->jobs, limits, "blocks",
                            (count + BLOCK_GROUP) * (int64_t)sizeof(BlockJob), GL_RGBA32UI, error);
     if (result == RESULT_OK)
-        result = make_room(&blocks->pixels, limits, "picture",
-                           count * BLOCK_WIDTH * BLOCK_HEIGHT * 4, 0, error);
+        result = make_room(&blocks->pixels, limits, "picture", picture_bytes(blocks), 0, error);
     return result;
 }
 
-Result render_blocks_create(RenderBlocks *blocks, const GpuLimits *limits, int width, int height,
-                            const float background[4], int tone, int64_t pool_bytes, Error *error)
+static RenderBlocks describe(const GpuLimits *limits, const RendererOptions *options)
 {
-    *blocks = (RenderBlocks){.limits = limits,
-                             .width = width,
-                             .height = height,
-                             .background = pack_background(background),
-                             .tone = tone};
-    blocks->project = (LookPrograms){.file = "block_project.comp", .group_size = PROJECT_GROUP};
-    int64_t bytes = pool_bytes ? smaller(pool_bytes, limits->storage_block) : limits->storage_block;
+    return (RenderBlocks){.project = {.file = "block_project.comp", .group_size = PROJECT_GROUP},
+                          .limits = limits,
+                          .width = options->width * options->samples,
+                          .height = options->height * options->samples,
+                          .samples = options->samples,
+                          .kind = options->kind,
+                          .aov = options->aov,
+                          .tone = picture_display(options)};
+}
+
+bool render_blocks_can_store(const GpuLimits *limits, const RendererOptions *options)
+{
+    RenderBlocks blocks = describe(limits, options);
+    return picture_bytes(&blocks) <= limits->storage_block;
+}
+
+Result render_blocks_create(RenderBlocks *blocks, const GpuLimits *limits,
+                            const RendererOptions *options, Error *error)
+{
+    *blocks = describe(limits, options);
+    pack_background(options, blocks->background);
+    int64_t bytes = options->pool_bytes ? smaller(options->pool_bytes, limits->storage_block)
+                                        : limits->storage_block;
     int64_t most = smaller(bytes / NUMBER_BYTES, limits->texture_texels);
     blocks->most_numbers = most < LEAST_NUMBERS ? LEAST_NUMBERS : most;
     Result result = build_composite(blocks, 0, error);
@@ -159,9 +216,9 @@ Result render_blocks_begin(RenderBlocks *blocks, uint64_t segments, Error *error
     if (result == RESULT_OK)
         result = make_room(&blocks->keys, limits, "depths", count * 4, 0, error);
     if (result != RESULT_OK) return result;
-    clear(&blocks->keys, count * 4, 0);
-    clear(&blocks->counts, blocks->counts.size, 0);
-    clear(&blocks->pixels, blocks->pixels.size, blocks->background);
+    clear(&blocks->keys, count * 4);
+    clear(&blocks->counts, blocks->counts.size);
+    clear_pixels(blocks);
     blocks->slots = 0;
     blocks->bands = 0;
     blocks->touched = 0;
@@ -338,26 +395,25 @@ bool render_blocks_fell_short(const RenderBlocks *blocks)
     return counts[BLOCK_COUNT_SHORT] != 0;
 }
 
-static void copy_row(const RenderBlocks *blocks, const uint8_t *from, uint8_t *to, int channels)
+static void copy_row(const Image *image, const uint8_t *from, uint8_t *to)
 {
-    if (channels == 4) {
-        memcpy(to, from, (size_t)blocks->width * 4);
-        return;
-    }
-    for (int x = 0; x < blocks->width; ++x, from += 4, to += 3)
-        to[0] = from[0], to[1] = from[1], to[2] = from[2];
+    size_t width = (size_t)image->width, size = image_channel_size(image->kind);
+    if (image->channels == 4)
+        memcpy(to, from, width * 4 * size);
+    else if (image->kind == IMAGE_8)
+        for (size_t x = 0; x < width; ++x, from += 4, to += 3)
+            to[0] = from[0], to[1] = from[1], to[2] = from[2];
+    else
+        for (size_t x = 0; x < width; ++x) memcpy(to + x * 3 * size, from + x * 4 * size, 3 * size);
 }
 
 void render_blocks_read(const RenderBlocks *blocks, Image *image)
 {
-    size_t pitch = (size_t)blocks->lists.columns * BLOCK_WIDTH * 4;
+    size_t row_bytes =
+        (size_t)image->width * (size_t)image->channels * image_channel_size(image->kind);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    glBindBuffer(GL_SHADER_STORAGE_BUFFER, blocks->pixels.buffer);
-    const uint8_t *pixels = glMapBufferRange(GL_SHADER_STORAGE_BUFFER, 0,
-                                             (GLsizeiptr)blocks->pixels.size, GL_MAP_READ_BIT);
-    for (int y = 0; pixels && y < blocks->height; ++y)
-        copy_row(blocks, pixels + (size_t)y * pitch,
-                 image->pixels + (size_t)y * (size_t)image->width * (size_t)image->channels,
-                 image->channels);
-    if (pixels) glUnmapBuffer(GL_SHADER_STORAGE_BUFFER);
+    const uint8_t *pixels = map(&blocks->pixels, blocks->pixels.size, GL_MAP_READ_BIT);
+    for (int y = 0; pixels && y < image->height; ++y)
+        copy_row(image, pixels + y * pitch(blocks), image->pixels + (size_t)y * row_bytes);
+    if (pixels) unmap(&blocks->pixels);
 }

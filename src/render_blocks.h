@@ -9,7 +9,7 @@
 #include "gpu_timer.h"
 #include "hair.h"
 #include "radix.h"
-#include "render_look.h"
+#include "render_picture.h"
 #include "render_target.h"
 
 #include <stdbool.h>
@@ -25,8 +25,11 @@ typedef struct RenderBlocks {
     BlockLists lists;
     uint32_t *order; // [order_room], owned: ribbons near to far
     size_t order_room;
-    int width, height;                  // px
-    uint32_t background;                // a pixel without hair
+    int width, height;                  // of the samples
+    int samples;                        // across a pixel
+    ImageKind kind;                     // of the picture
+    Aov aov;                            // that is drawn instead of light
+    uint32_t background[4];             // pixels without hair: four words of them
     int tone;                           // display.glsl's macro
     int64_t most_numbers;               // in all lists of a band
     size_t slots, seen;                 // records there is room for; that are seen
@@ -34,10 +37,12 @@ typedef struct RenderBlocks {
     uint32_t bands;
 } RenderBlocks;
 
-// `background`: sRGB and opacity. `tone`: a Tone. `pool_bytes`: the largest size of all lists, 0
-// for the driver's limit.
-Result render_blocks_create(RenderBlocks *blocks, const GpuLimits *limits, int width, int height,
-                            const float background[4], int tone, int64_t pool_bytes, Error *error);
+// Whether a picture of these options fits into the driver's buffers.
+bool render_blocks_can_store(const GpuLimits *limits, const RendererOptions *options);
+
+// `limits` outlives the blocks.
+Result render_blocks_create(RenderBlocks *blocks, const GpuLimits *limits,
+                            const RendererOptions *options, Error *error);
 void render_blocks_destroy(RenderBlocks *blocks);
 
 // Makes what drawing over a mesh needs; nothing if it is there.
@@ -54,8 +59,8 @@ Result render_blocks_add(RenderBlocks *blocks, const HairBatch *batch, const Loo
                          Error *error);
 
 // Sorts, deals out and composites all that was added, over the target's base and behind its depth
-// if `over_mesh`. What has no hair is background, but for `box` (px: x, y lowest, highest), where
-// the mesh stands. No ribbon is lost: the pool grows, or the picture is drawn in more bands.
+// if `over_mesh`. What has no hair is background, but for `box` (samples: x, y lowest, highest),
+// where the mesh stands. No ribbon is lost: the pool grows, or the picture is drawn in more bands.
 // RESULT_FAILED if memory is short or a single row of blocks needs more than there can be.
 Result render_blocks_draw(RenderBlocks *blocks, const RenderTarget *target, bool over_mesh,
                           const int box[4], GpuTimer *timer, Error *error);

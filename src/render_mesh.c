@@ -93,7 +93,7 @@ void render_mesh_draw(const RenderMesh *mesh, const RenderTarget *target, const 
     draw_to(mesh, target->smooth_frame, background);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, target->smooth_frame);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target->base_frame);
-    glBlitFramebuffer(0, 0, target->width, target->height, 0, 0, target->width, target->height,
-                      GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    int width = target->width * target->samples, height = target->height * target->samples;
+    glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
     glDepthMask(GL_FALSE);
 }

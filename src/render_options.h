@@ -24,10 +24,12 @@ typedef struct RendererOptions {
     float background[4];  // sRGB and opacity 0..1; below 1 the pictures have an alpha channel
     float exposure;       // all light but the background's is this many times doubled
     Tone tone;            // how light becomes colour; the background's does not change
-    ImageKind kind;       // of the pictures; other than 8 bits are drawn by quads
-    Aov aov;              // what is drawn instead of light, by quads, on black (docs/renderer.md)
+    ImageKind kind;       // of the pictures
+    Aov aov;              // what is drawn instead of light, on black (docs/renderer.md)
     float depth_range[2]; // AOV_DEPTH: m that are shown as 1 and as 0; alike: m themselves
-    uint32_t seed;        // of what varies by strand
+    int samples;   // 1 or 2: a pixel is the mean of samples x samples, each with lists of its
+                   // own; 0: 1. AOVs of what is nearest have one
+    uint32_t seed; // of what varies by strand
     ShadowOptions shadow;
     LodOptions lod;
     Oit oit;            // how the fragments of a pixel are blended; auto: abuffer. Else quads are

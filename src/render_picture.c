@@ -17,12 +17,21 @@ int picture_display(const RendererOptions *options)
     return light ? TONE_LIGHT : (int)options->tone;
 }
 
+void picture_background(const RendererOptions *options, float light[4])
+{
+    linear_from_srgb_color(options->background, light);
+    for (int k = 0; k < 3; ++k)
+        light[k] = options->background[3] * (float)tone_unmap(options->tone, (double)light[k]);
+    light[3] = options->background[3];
+}
+
 // The picture without the band's values.
 static void fill_draw_params(const RendererOptions *options, const RenderMesh *mesh,
                              const RenderFrame *frame, DrawParams *draw)
 {
     memset(draw, 0, sizeof *draw);
-    draw_params_set_view(draw, frame->view, options->width, options->height);
+    draw_params_set_view(draw, frame->view, options->width * options->samples,
+                         options->height * options->samples);
     float light = exp2f(options->exposure);
     draw_params_set_lights(draw, frame->lights, frame->light_count);
     for (int k = 0; k < 3; ++k) {
@@ -32,11 +41,7 @@ static void fill_draw_params(const RendererOptions *options, const RenderMesh *m
         for (uint32_t i = 0; i < frame->light_count; ++i) draw->light_color[i][k] *= light;
     }
     memcpy(draw->depth_range, options->depth_range, sizeof options->depth_range);
-    linear_from_srgb_color(options->background, draw->background);
-    for (int k = 0; k < 3; ++k)
-        draw->background[k] =
-            options->background[3] * (float)tone_unmap(options->tone, (double)draw->background[k]);
-    draw->background[3] = options->background[3];
+    picture_background(options, draw->background);
     memcpy(draw->head_rotation, frame->head_rotation, sizeof draw->head_rotation);
     memcpy(draw->head_translation, frame->head_translation, sizeof frame->head_translation);
     if (options->aov == AOV_NONE) memcpy(draw->mesh_color, mesh->color, sizeof mesh->color);
@@ -93,8 +98,10 @@ static bool uses_lod(const LodOptions *lod)
 }
 
 // Share of an item's strands that is drawn.
-static float find_share(const LodOptions *lod, const Picture *picture, const RenderItem *item)
+static float find_share(const RendererOptions *options, const Picture *picture,
+                        const RenderItem *item)
 {
+    const LodOptions *lod = &options->lod;
     const DrawParams *draw = &picture->draw;
     vec3 middle = {0}, eye = {draw->eye[0], draw->eye[1], draw->eye[2]};
     picture_find_middle(picture, item->hair, middle);
@@ -103,7 +110,8 @@ static float find_share(const LodOptions *lod, const Picture *picture, const Ren
         share -= (1 - lod->least) *
                  fminf(fmaxf((distance - lod->start) / (lod->end - lod->start), 0), 1);
     if (lod->width > 0)
-        share = fminf(share, 2 * item->radius * draw->focal / (distance * lod->width));
+        share = fminf(share, 2 * item->radius * draw->focal /
+                                 (distance * lod->width * (float)options->samples));
     return fmaxf(share, lod->least);
 }
 
@@ -138,7 +146,7 @@ static Result make_look(Picture *picture, const RendererOptions *options, const 
     *look = (Look){.material = material_params(item->material, item->radius),
                    .features = features,
                    .share = 1};
-    if (uses_lod(&options->lod)) look->share = find_share(&options->lod, picture, item);
+    if (uses_lod(&options->lod)) look->share = find_share(options, picture, item);
     look->material.radius /= look->share;
     if (item->material->smooth > 1) look->features |= LOOK_SMOOTH;
     if (item->hair->alike) look->material.color_variation = look->material.warmth_variation = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What the passes of one picture share: camera and lights, the hair and how it looks, and where the
-// mesh is.
+// mesh is. Their pixels are the samples that the picture's pixels are the means of.
 #pragma once
 
 #include "render_look.h"
@@ -17,13 +17,16 @@ typedef struct Picture {
     uint32_t item_count;
     Look *looks; // [look_room], owned: of the items
     uint32_t look_room;
-    int mesh_box[4]; // px: x, y lowest, highest; empty without a mesh
+    int mesh_box[4]; // samples: x, y lowest, highest; empty without a mesh
     ScatterTables scatter;
     GpuBuffer uniforms;
 } Picture;
 
 // How light becomes colour: a Tone, or TONE_LIGHT where pixels are light as it is.
 int picture_display(const RendererOptions *options);
+
+// What stands behind everything: light, premultiplied, and its opacity.
+void picture_background(const RendererOptions *options, float light[4]);
 
 // Begins another picture of `items`, which must stay until the next one. RESULT_FAILED if memory is
 // short or marschner's table cannot be made.

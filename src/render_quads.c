@@ -12,13 +12,16 @@ Result render_quads_create(RenderQuads *quads, const Gpu *gpu, const RendererOpt
                  : options->oit_layers > 0 ? options->oit_layers
                                            : OIT_LAYERS;
     bool nearest = options->aov > AOV_COVERAGE;
-    *quads =
-        (RenderQuads){.limits = &gpu->limits, .width = options->width, .height = options->height};
+    *quads = (RenderQuads){.limits = &gpu->limits,
+                           .width = options->width,
+                           .height = options->height,
+                           .samples = options->samples};
     Result result = render_hair_create(&quads->hair, nearest, error);
     if (result == RESULT_OK)
-        result = render_abuffer_create(&quads->abuffer, &gpu->limits, options->width, layers,
-                                       picture_display(options), options->aov == AOV_DEPTH,
-                                       gpu->software, options->pool_bytes, error);
+        result =
+            render_abuffer_create(&quads->abuffer, &gpu->limits, options->width, options->samples,
+                                  layers, picture_display(options), options->aov == AOV_DEPTH,
+                                  gpu->software, options->pool_bytes, error);
     if (result == RESULT_OK)
         quads->band_rows = render_abuffer_most_rows(&quads->abuffer, options->height);
     return result;
@@ -42,13 +45,15 @@ static Result draw_band(RenderQuads *quads, Picture *picture, const RenderTarget
 {
     Result result = render_abuffer_begin(&quads->abuffer, rows, picture->mesh_box, error);
     DrawParams *draw = &picture->draw;
-    draw->band[1] = (uint32_t)row;
-    draw->band[2] = (uint32_t)(row + rows);
+    int samples = quads->samples;
+    draw->band[1] = (uint32_t)(row * samples);
+    draw->band[2] = (uint32_t)((row + rows) * samples);
     draw->band[3] = (uint32_t)render_abuffer_shard_nodes(&quads->abuffer);
     draw->shards = (uint32_t)quads->abuffer.shards;
     picture_upload(picture);
     glBindFramebuffer(GL_FRAMEBUFFER, target->hair_frame);
-    glScissor(0, row, quads->width, rows);
+    glViewport(0, 0, quads->width * samples, quads->height * samples);
+    glScissor(0, row * samples, quads->width * samples, rows * samples);
     for (uint32_t i = 0; i < picture->item_count; ++i) {
         const Hair *hair = picture->items[i].hair;
         for (uint32_t b = 0; b < hair->batch_count && result == RESULT_OK; ++b)
@@ -104,6 +109,8 @@ static Result draw_bands(RenderQuads *quads, Picture *picture, const RenderTarge
         render_abuffer_measure(&quads->abuffer, &use);
         if (render_abuffer_holds(&quads->abuffer, &use)) {
             gpu_timer_begin(timer, "draw_resolve");
+            glViewport(0, 0, quads->width, quads->height);
+            glScissor(0, row, quads->width, rows);
             render_abuffer_resolve(&quads->abuffer, target, over_mesh);
             gpu_timer_end(timer);
             count_band(&use, counts);

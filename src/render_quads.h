@@ -14,7 +14,8 @@ typedef struct RenderQuads {
     RenderHair hair;
     RenderABuffer abuffer;
     const GpuLimits *limits;
-    int width, height; // px
+    int width, height; // px of the picture
+    int samples;       // across a pixel
     int band_rows;     // that the next picture starts with
 } RenderQuads;
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SAMPLES = 4 }; // of the mesh's edges; CPU drivers have no more
+enum { EDGE_SAMPLES = 4 }; // of the mesh; CPU drivers have no more
 
 static GLuint create_texture(GLenum format, int width, int height)
 {
@@ -22,7 +22,7 @@ static GLuint create_samples(GLenum format, int width, int height)
     GLuint buffer;
     glGenRenderbuffers(1, &buffer);
     glBindRenderbuffer(GL_RENDERBUFFER, buffer);
-    glRenderbufferStorageMultisample(GL_RENDERBUFFER, SAMPLES, format, width, height);
+    glRenderbufferStorageMultisample(GL_RENDERBUFFER, EDGE_SAMPLES, format, width, height);
     return buffer;
 }
 
@@ -50,15 +50,15 @@ static Result check_frame(GLuint frame, const char *what, Error *error)
 }
 
 Result render_target_create(RenderTarget *target, const GpuLimits *limits, int width, int height,
-                            ImageKind kind, Error *error)
+                            int samples, ImageKind kind, Error *error)
 {
     static const GLenum formats[] = {GL_RGBA8, GL_RGBA16, GL_RGBA32F};
-    *target = (RenderTarget){.width = width, .height = height, .kind = kind};
-    int side = limits->framebuffer_side_px;
+    *target = (RenderTarget){.width = width, .height = height, .samples = samples, .kind = kind};
+    int side = limits->framebuffer_side_px / samples;
     if (width > side || height > side)
         return error_set(error, RESULT_FAILED,
-                         "a picture of %d x %d px: this driver draws at most %d x %d", width,
-                         height, side, side);
+                         "a picture of %d x %d px%s: this driver draws at most %d x %d", width,
+                         height, samples > 1 ? " of 2 x 2 samples" : "", side, side);
     target->rgba = malloc((size_t)width * (size_t)height * 4 * image_channel_size(kind));
     if (!target->rgba)
         return error_set(error, RESULT_FAILED, "no memory for a picture of %d x %d px", width,
@@ -66,8 +66,8 @@ Result render_target_create(RenderTarget *target, const GpuLimits *limits, int w
     target->picture = create_texture(formats[kind], width, height);
     target->picture_frame = create_color_frame(target->picture);
     target->hair_frame = create_frame();
-    glFramebufferParameteri(GL_FRAMEBUFFER, GL_FRAMEBUFFER_DEFAULT_WIDTH, width);
-    glFramebufferParameteri(GL_FRAMEBUFFER, GL_FRAMEBUFFER_DEFAULT_HEIGHT, height);
+    glFramebufferParameteri(GL_FRAMEBUFFER, GL_FRAMEBUFFER_DEFAULT_WIDTH, width * samples);
+    glFramebufferParameteri(GL_FRAMEBUFFER, GL_FRAMEBUFFER_DEFAULT_HEIGHT, height * samples);
     glDrawBuffer(GL_NONE);
     Result result = check_frame(target->hair_frame, "hair target", error);
     if (result == RESULT_OK) result = check_frame(target->picture_frame, "picture", error);
@@ -78,7 +78,7 @@ Result render_target_create(RenderTarget *target, const GpuLimits *limits, int w
 Result render_target_add_mesh(RenderTarget *target, Error *error)
 {
     if (target->depth) return RESULT_OK;
-    int width = target->width, height = target->height;
+    int width = target->width * target->samples, height = target->height * target->samples;
     target->depth = create_texture(GL_DEPTH_COMPONENT32F, width, height);
     glBindFramebuffer(GL_FRAMEBUFFER, target->hair_frame);
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, target->depth, 0);

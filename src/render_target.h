@@ -6,7 +6,8 @@
 #include "image.h"
 
 typedef struct RenderTarget {
-    int width, height;
+    int width, height; // px of the picture; all else is drawn in samples, which are smaller
+    int samples;       // across a pixel
     GLuint picture, picture_frame; // RGBA8, RGBA16 or RGBA32F as the image's kind
     GLuint hair_frame;             // no colour; `depth` if there is a mesh
     GLuint depth;                  // one sample, for the hair
@@ -16,9 +17,10 @@ typedef struct RenderTarget {
     uint8_t *rgba; // [height][width][4], for pictures without alpha
 } RenderTarget;
 
-// RESULT_FAILED if the size is more than the driver allows or memory is short.
+// A pixel has `samples` x `samples` samples. RESULT_FAILED if the size is more than the driver
+// allows or memory is short.
 Result render_target_create(RenderTarget *target, const GpuLimits *limits, int width, int height,
-                            ImageKind kind, Error *error);
+                            int samples, ImageKind kind, Error *error);
 void render_target_destroy(RenderTarget *target);
 
 // Adds what a mesh needs; nothing if it is there.

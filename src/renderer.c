@@ -16,11 +16,6 @@ typedef struct RasterType {
 } RasterType;
 static const RasterType RASTERS[3];
 
-static bool needs_quads(const RendererOptions *options)
-{
-    return options->kind != IMAGE_8 || options->aov != AOV_NONE;
-}
-
 static Result create_quads(Renderer *renderer, Error *error)
 {
     return render_quads_create(&renderer->quads, renderer->gpu, &renderer->options, error);
@@ -28,29 +23,41 @@ static Result create_quads(Renderer *renderer, Error *error)
 
 static Result create_blocks(Renderer *renderer, Error *error)
 {
-    const RendererOptions *options = &renderer->options;
-    return render_blocks_create(&renderer->blocks, &renderer->gpu->limits, options->width,
-                                options->height, options->background, options->tone,
-                                options->pool_bytes, error);
+    return render_blocks_create(&renderer->blocks, &renderer->gpu->limits, &renderer->options,
+                                error);
+}
+
+// The options as they are drawn by: with what an AOV asks for.
+static RendererOptions settle(const RendererOptions *asked)
+{
+    RendererOptions options = *asked;
+    if (options.samples == 0 || options.aov > AOV_COVERAGE) options.samples = 1;
+    if (options.aov != AOV_NONE) { // on black, without light
+        memcpy(options.background, (float[4]){0, 0, 0, 1}, 4 * sizeof(float));
+        options.shadow.kind = SHADOW_NONE;
+    }
+    return options;
+}
+
+static Raster choose_raster(const Gpu *gpu, const RendererOptions *options)
+{
+    bool plain = options->oit == OIT_AUTO && options->oit_layers == 0;
+    Raster raster = options->raster != RASTER_AUTO ? options->raster
+                    : gpu->software && plain       ? RASTER_BLOCKS
+                                                   : RASTER_QUADS;
+    return render_blocks_can_store(&gpu->limits, options) ? raster : RASTER_QUADS;
 }
 
 Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
-                       const RendererOptions *options, Error *error)
+                       const RendererOptions *asked, Error *error)
 {
-    *renderer = (Renderer){.options = *options, .gpu = gpu, .timer = timer};
-    if (options->aov != AOV_NONE) { // on black, without light
-        memcpy(renderer->options.background, (float[4]){0, 0, 0, 1}, 4 * sizeof(float));
-        renderer->options.shadow.kind = SHADOW_NONE;
-    }
-    renderer->raster = needs_quads(options)             ? RASTER_QUADS
-                       : options->raster != RASTER_AUTO ? options->raster
-                       : gpu->software && options->oit == OIT_AUTO && options->oit_layers == 0
-                           ? RASTER_BLOCKS
-                           : RASTER_QUADS;
+    *renderer = (Renderer){.options = settle(asked), .gpu = gpu, .timer = timer};
+    const RendererOptions *options = &renderer->options;
+    renderer->raster = choose_raster(gpu, options);
     Result result = render_target_create(&renderer->target, &gpu->limits, options->width,
-                                         options->height, options->kind, error);
+                                         options->height, options->samples, options->kind, error);
     if (result == RESULT_OK) result = RASTERS[renderer->raster].create(renderer, error);
-    if (result == RESULT_OK && renderer->options.shadow.kind != SHADOW_NONE)
+    if (result == RESULT_OK && options->shadow.kind != SHADOW_NONE)
         result = render_shadow_create(&renderer->shadow, &gpu->limits, &options->shadow, error);
     if (result != RESULT_OK) renderer_destroy(renderer);
     return result;
@@ -90,7 +97,7 @@ int renderer_channels(const Renderer *renderer)
 static void set_state(const Renderer *renderer, const float background[4])
 {
     const RendererOptions *options = &renderer->options;
-    glViewport(0, 0, options->width, options->height);
+    glViewport(0, 0, options->width * options->samples, options->height * options->samples);
     glDisable(GL_BLEND);
     glDisable(GL_CULL_FACE);
     glDisable(GL_DEPTH_TEST);

@@ -92,7 +92,12 @@ void studio_draw(Studio *studio)
 {
     View view;
     studio_view(&view, studio->image.width, studio->image.height);
-    RenderFrame frame = {.view = &view,
+    studio_draw_view(studio, &view);
+}
+
+void studio_draw_view(Studio *studio, const View *view)
+{
+    RenderFrame frame = {.view = view,
                          .lights = &studio->light,
                          .light_count = studio->light.intensity != 0,
                          .head_rotation = {0, 0, 0, 1}};
@@ -109,7 +114,7 @@ const uint8_t *studio_pixel(const Studio *studio, int x, int y)
 uint8_t *studio_copy(const Studio *studio, size_t *size)
 {
     const Image *image = &studio->image;
-    *size = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
+    *size = image_size(image);
     uint8_t *copy = malloc(*size);
     assert_non_null(copy);
     return memcpy(copy, image->pixels, *size);

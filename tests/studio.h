@@ -38,8 +38,9 @@ void studio_make_plain(SectionParams *material, float opacity);
 // Takes all hair away.
 void studio_clear(Studio *studio);
 
-// Draws to studio->image.
+// Draws to studio->image, as studio_view shows it or another view.
 void studio_draw(Studio *studio);
+void studio_draw_view(Studio *studio, const View *view);
 
 // The view of which the above is true.
 void studio_view(View *view, int width, int height);

@@ -280,6 +280,23 @@ static void a_strand_past_the_eye_is_drawn_up_to_it(void **state)
             assert_int_equal(studio_pixel(&studio, SIDE / 2 + x, y)[3], 0);
 }
 
+// Through the picture's corner, ever nearer to the eye: Mesa's clipping by w once cut pieces off.
+static void a_strand_is_whole_up_to_the_edge(void **state)
+{
+    (void)state;
+    RendererOptions small = TRANSPARENT;
+    small.width = 101;
+    small.height = 67;
+    use(&small);
+    add_line((float[3]){50, 44, 14}, (float[3]){45, -5, 24}, 0.7f, 0.6f);
+    studio_draw(&studio);
+    for (int y = 0; y < 30; ++y) {
+        double sum = 0;
+        for (int x = 90; x < 101; ++x) sum += studio_pixel(&studio, x, y)[3] / 255.0;
+        if (y > 0) assert_true(fabs(sum - 0.6 * 1.4) < 0.05);
+    }
+}
+
 static void transparent_pictures_have_straight_alpha(void **state)
 {
     (void)state;
@@ -409,6 +426,7 @@ int main(void)
         CLAIM(a_strand_towards_the_eye_is_harmless),
         CLAIM(broken_positions_harm_no_other_strand),
         CLAIM(a_strand_past_the_eye_is_drawn_up_to_it),
+        CLAIM(a_strand_is_whole_up_to_the_edge),
         CLAIM(transparent_pictures_have_straight_alpha),
         CLAIM(hair_outside_the_picture_costs_nothing),
         CLAIM(bytes_do_not_depend_on_driver_threads),
