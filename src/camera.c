@@ -29,15 +29,23 @@ static void choose_up(const float wanted[3], vec3 direction, vec3 up)
     if (fabsf(direction[2]) > 0.9f) glm_vec3_copy((vec3){0, 1, 0}, up);
 }
 
-static void turn_eye(View *view, vec3 target, const Scene *scene, int frame)
+// Turns a vector by the turntable's angle, in place.
+static void turn(const Scene *scene, int frame, float vector[3])
 {
     double degrees = turntable_angle_deg(&scene->run, frame);
-    vec3 arm, axis = {0};
+    vec3 axis = {0};
     memcpy(axis, scene->run.camera_up, sizeof axis);
-    if (degrees == 0 || !(glm_vec3_norm(axis) > 0)) return;
-    glm_vec3_sub(view->eye, target, arm);
-    glm_vec3_rotate(arm, glm_rad((float)degrees), axis);
-    glm_vec3_add(target, arm, view->eye);
+    if (degrees != 0 && glm_vec3_norm(axis) > 0)
+        glm_vec3_rotate(vector, glm_rad((float)degrees), axis);
+}
+
+static void turn_about(const Scene *scene, int frame, vec3 middle, vec3 point)
+{
+    vec3 arm, turned;
+    glm_vec3_sub(point, middle, arm);
+    glm_vec3_copy(arm, turned);
+    turn(scene, frame, turned);
+    if (memcmp(arm, turned, sizeof arm) != 0) glm_vec3_add(middle, turned, point);
 }
 
 static void look_at(View *view, vec3 target, const float camera_up[3])
@@ -78,10 +86,24 @@ void camera_view(View *view, const Scene *scene, const Framing *framing, int fra
     auto_or_keyed(&scene->target, &scene->run.target, framing->target, time, target);
     auto_or_keyed(&scene->eye, &scene->run.eye, framing->eye, time, view->eye);
     if (scene->fov.count) keyframes_evaluate(&scene->fov, time, &fov_deg);
-    turn_eye(view, target, scene, frame);
+    turn_about(scene, frame, target, view->eye);
     look_at(view, target, scene->run.camera_up);
     find_depths(view, &framing->all);
     view->fov = glm_rad(fov_deg);
     glm_perspective(view->fov, (float)scene->run.size[0] / (float)scene->run.size[1],
                     view->near_distance, view->far_distance, view->projection);
+}
+
+void camera_lights(Light lights[SCENE_MAX_LIGHTS], const Scene *scene, const Framing *framing,
+                   int frame)
+{
+    vec3 target = {0};
+    memcpy(lights, scene->lights, sizeof scene->lights);
+    if (!scene->run.turn_lights) return;
+    auto_or_keyed(&scene->target, &scene->run.target, framing->target,
+                  schedule_frame_time(&scene->run, frame), target);
+    for (uint32_t i = 0; i < scene->light_count; ++i) {
+        turn(scene, frame, lights[i].direction);
+        turn_about(scene, frame, target, lights[i].position);
+    }
 }

@@ -22,3 +22,7 @@ typedef struct View {
 // tip, by turntable_angle_deg. Any finite input gives a finite camera: an eye on the
 // target looks along -z, an up direction along the line of sight is replaced.
 void camera_view(View *view, const Scene *scene, const Framing *framing, int frame);
+
+// The lights of frame `frame`: the scene's, or with run.turn_lights turned with the eye.
+void camera_lights(Light lights[SCENE_MAX_LIGHTS], const Scene *scene, const Framing *framing,
+                   int frame);

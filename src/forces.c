@@ -12,11 +12,20 @@ static bool blows(const Scene *scene)
     return scene->wind.count > 0 || w[0] != 0 || w[1] != 0 || w[2] != 0;
 }
 
-// Three sines without a common period, so that gusts do not repeat soon. Weights add up to 1.
+// Three sines without a common period, so that gusts do not repeat soon. Weights add up to 1. Where
+// they shall repeat, each gets the nearest whole number of periods in that time.
 static double gust_at(const RunParams *run, double time)
 {
-    double phase = 2 * 3.14159265358979323846 * time / (double)run->gust_period;
-    return 0.5 * sin(phase) + 0.3 * sin(2.31 * phase + 1.3) + 0.2 * sin(5.17 * phase + 2.1);
+    static const struct {
+        double rate, weight, phase;
+    } SINES[] = {{1, 0.5, 0}, {2.31, 0.3, 1.3}, {5.17, 0.2, 2.1}};
+    double gust = 0, repeat = (double)run->gust_repeat;
+    for (int i = 0; i < 3; ++i) {
+        double rate = SINES[i].rate / (double)run->gust_period; // 1/s
+        if (repeat > 0) rate = fmax(1, round(rate * repeat)) / repeat;
+        gust += SINES[i].weight * sin(2 * 3.14159265358979323846 * rate * time + SINES[i].phase);
+    }
+    return gust;
 }
 
 // Two unit vectors perpendicular to `main` and to each other.

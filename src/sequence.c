@@ -89,24 +89,24 @@ static void give_back_memory(void)
     malloc_trim(0);
 }
 
-static Result draw(Sequence *sequence, Previous *previous, const View *view, Image *image,
-                   Error *error)
+static Result draw(Sequence *sequence, Previous *previous, int number, const View *view,
+                   Image *image, Error *error)
 {
     const Scene *scene = sequence->scene;
     Simulation *simulation = sequence->simulation;
     bool still = simulation->changes == previous->changes || sequence->frames_drawn == 0;
     previous->changes = simulation->changes;
     if (!still) previous->any = false;
-    if (still && previous->any && same_view(view, &previous->view)) {
+    if (still && previous->any && !scene->run.turn_lights && same_view(view, &previous->view)) {
         memcpy(image->pixels, previous->image.pixels, image_size(image));
         ++sequence->frames_repeated;
         return RESULT_OK;
     }
     Ambient ambient;
-    RenderFrame frame = {.view = view,
-                         .lights = scene->lights,
-                         .light_count = scene->light_count,
-                         .ambient = &ambient};
+    Light lights[SCENE_MAX_LIGHTS];
+    camera_lights(lights, scene, sequence->framing, number);
+    RenderFrame frame = {
+        .view = view, .lights = lights, .light_count = scene->light_count, .ambient = &ambient};
     memcpy(ambient.sky, scene->run.sky, sizeof ambient.sky);
     memcpy(ambient.ground, scene->run.ground, sizeof ambient.ground);
     memcpy(frame.head_rotation, simulation->head.rotation, sizeof frame.head_rotation);
@@ -131,7 +131,7 @@ static Result output_frame(Sequence *sequence, Previous *previous, int frame, Fr
     times->wait_ms = acquired - begin;
     if (result != RESULT_OK) return result;
     camera_view(&view, sequence->scene, sequence->framing, frame);
-    result = draw(sequence, previous, &view, image, error);
+    result = draw(sequence, previous, frame, &view, image, error);
     times->draw_ms = stats_clock_ms() - acquired;
     return result == RESULT_OK ? output_submit(sequence->output, frame, image, error) : result;
 }

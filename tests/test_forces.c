@@ -55,6 +55,30 @@ static void four_winds_turn_by_the_spread_and_keep_the_mean(void **state)
     scene_destroy(&scene);
 }
 
+// Whatever the period: it is changed to fit, by no more than half of one in the whole time.
+static void gusts_repeat_if_told(void **state)
+{
+    (void)state;
+    Scene scene;
+    make_scene(&scene, 3, 0, 0);
+    scene.run.gust_repeat = 4;
+    const float periods[] = {0.3f, 1.7f, 2, 100};
+    for (int p = 0; p < 4; ++p) {
+        float most = 0;
+        scene.run.gust_period = periods[p];
+        for (double time = -1; time < 3; time += 0.13) {
+            Forces now, later, middle;
+            forces_evaluate(&now, &scene, time);
+            forces_evaluate(&later, &scene, time + 4);
+            forces_evaluate(&middle, &scene, time + 1.9);
+            assert_true(fabsf(now.wind[0][0] - later.wind[0][0]) < 1e-5f);
+            most = fmaxf(most, fabsf(now.wind[0][0] - middle.wind[0][0]));
+        }
+        assert_true(most > 0.3f);
+    }
+    scene_destroy(&scene);
+}
+
 static void gusts_stay_within_their_share_and_vary(void **state)
 {
     (void)state;
@@ -101,6 +125,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(without_wind_there_is_gravity_alone),
         cmocka_unit_test(four_winds_turn_by_the_spread_and_keep_the_mean),
+        cmocka_unit_test(gusts_repeat_if_told),
         cmocka_unit_test(gusts_stay_within_their_share_and_vary),
         cmocka_unit_test(keyframes_win_over_constants),
     };

@@ -10,6 +10,7 @@
 #include <stdint.h>
 #include <string.h>
 
+#include <cglm/cglm.h>
 #include <cmocka.h>
 
 enum { FRAMES = 200 };
@@ -95,12 +96,42 @@ static void the_camera_of_the_next_round_is_that_of_the_first(void **state)
     }
 }
 
+// Seen from the camera, light comes from where it came in the first frame.
+static void lights_turn_with_the_camera(void **state)
+{
+    (void)state;
+    Scene scene;
+    assert_int_equal(scene_create(&scene, NULL), RESULT_OK);
+    scene.run.frames = FRAMES, scene.run.turntable = 360;
+    scene.lights[1].kind = LIGHT_POINT;
+    memcpy(scene.lights[1].position, (float[3]){0.5f, 0.7f, -0.2f}, sizeof(vec3));
+    Framing framing = {.target = {0.1f, 0.2f, 0.3f}, .eye = {0.4f, 0.3f, 1.2f}};
+    vec3 first[2], seen[2];
+    for (int turns = 0; turns < 2; ++turns)
+        for (int frame = 0; frame < FRAMES; frame += 20) {
+            View view;
+            Light lights[SCENE_MAX_LIGHTS];
+            scene.run.turn_lights = turns;
+            camera_view(&view, &scene, &framing, frame);
+            camera_lights(lights, &scene, &framing, frame);
+            glm_mat4_mulv3(view.view, lights[0].direction, 0, seen[0]);
+            glm_mat4_mulv3(view.view, lights[1].position, 1, seen[1]);
+            if (frame == 0) memcpy(first, seen, sizeof first);
+            for (int i = 0; i < 2; ++i) {
+                float moved = glm_vec3_distance(first[i], seen[i]);
+                assert_true(turns || frame == 0 ? moved < 1e-5f : moved > 0.05f);
+            }
+        }
+    scene_destroy(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(whole_turns_come_back_to_the_bit),
         cmocka_unit_test(no_jump_at_the_seam),
         cmocka_unit_test(eases_speed_up_and_slow_down),
+        cmocka_unit_test(lights_turn_with_the_camera),
         cmocka_unit_test(the_camera_of_the_next_round_is_that_of_the_first),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
