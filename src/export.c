@@ -2,6 +2,7 @@
 #include "export.h"
 #include "strands_features.h"
 #include "strands_join.h"
+#include "strands_order.h"
 #include "strands_write.h"
 
 #include <stdlib.h>
@@ -51,21 +52,67 @@ static void find_lost(Exporter *exporter, const Strands *sections, uint32_t coun
         features & ~(strands_features(&exporter->strands) & strands_kind_features(exporter->kind));
 }
 
+// A section's guides and, behind them in the order of their batches, its followers, which have
+// their guides' looks.
+static Result add_followers(Strands *all, const Strands *guides, const Hair *followers,
+                            Error *error)
+{
+    uint32_t count = guides->strand_count;
+    for (uint32_t i = 0; i < followers->batch_count; ++i)
+        count += followers->batches[i].strand_count;
+    Result result = strands_join(all, guides, 1, error);
+    if (result != RESULT_OK || count == guides->strand_count) return result;
+    uint32_t *which = malloc(count * sizeof *which), *at = which;
+    if (!which) return error_set(error, RESULT_FAILED, "no memory for a hair file");
+    for (uint32_t s = 0; s < guides->strand_count; ++s) *at++ = s;
+    for (uint32_t i = 0; i < followers->batch_count; ++i)
+        for (uint32_t s = 0; s < followers->batches[i].strand_count; ++s)
+            *at++ = followers->batches[i].strand[s];
+    result = strands_pick(all, which, count, error);
+    free(which);
+    all->followers = 0;
+    all->follower_radius = 0;
+    return result;
+}
+
+static Result prepare(Exporter *exporter, const Strands *sections, uint32_t count, int frame_count,
+                      Error *error)
+{
+    Result result = strands_join(&exporter->strands, sections, count, error);
+    if (result != RESULT_OK) return result;
+    exporter->kind = strands_choose_kind(target_suffix(&exporter->target), &exporter->strands);
+    find_lost(exporter, sections, count);
+    if (exporter->kind != STRANDS_USD) return RESULT_OK;
+    return describe_usd(exporter, sections, frame_count, error);
+}
+
+static Result prepare_with_followers(Exporter *exporter, const Strands *strands, uint32_t count,
+                                     int frame_count, Error *error)
+{
+    Strands *sections = calloc((size_t)count + 1, sizeof *sections);
+    Result result =
+        sections ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for %u sections", count);
+    for (uint32_t i = 0; i < count && result == RESULT_OK; ++i)
+        result = add_followers(&sections[i], &strands[i],
+                               &exporter->simulation->sections[i].follow.hair, error);
+    if (result == RESULT_OK) result = prepare(exporter, sections, count, frame_count, error);
+    for (uint32_t i = 0; sections && i < count; ++i) strands_destroy(&sections[i]);
+    free(sections);
+    return result;
+}
+
 Result exporter_create(Exporter *exporter, const char *text, int frame_count,
                        const Simulation *simulation, const Strands *strands, Error *error)
 {
-    *exporter = (Exporter){.simulation = simulation};
+    *exporter =
+        (Exporter){.simulation = simulation, .followers = simulation->scene->run.export_followers};
     uint32_t count = simulation->scene->section_count;
     Result result = target_parse_hair(&exporter->target, text, error);
     if (result == RESULT_OK) result = check_name(&exporter->target, text, frame_count, error);
     if (result == RESULT_OK) result = target_prepare(&exporter->target, error);
-    if (result == RESULT_OK) result = strands_join(&exporter->strands, strands, count, error);
-    if (result == RESULT_OK) {
-        exporter->kind = strands_choose_kind(target_suffix(&exporter->target), &exporter->strands);
-        find_lost(exporter, strands, count);
-        if (exporter->kind == STRANDS_USD)
-            result = describe_usd(exporter, strands, frame_count, error);
-    }
+    if (result == RESULT_OK)
+        result = (exporter->followers ? prepare_with_followers : prepare)(exporter, strands, count,
+                                                                          frame_count, error);
     if (result != RESULT_OK) exporter_destroy(exporter);
     return result;
 }
@@ -95,6 +142,16 @@ static void put_section(Strands *strands, uint32_t first_strand, const Hair *hai
     }
 }
 
+// Their order in the file is that of their batches.
+static Result read_followers(Exporter *exporter, uint32_t section, uint32_t *first_strand,
+                             Error *error)
+{
+    const Hair *hair = &exporter->simulation->sections[section].follow.hair;
+    uint32_t first = exporter->strands.first[*first_strand];
+    for (uint32_t i = 0; i < hair->batch_count; ++i) *first_strand += hair->batches[i].strand_count;
+    return hair_read_positions(hair, exporter->strands.position + first, error);
+}
+
 static Result read_positions(Exporter *exporter, Error *error)
 {
     const Simulation *simulation = exporter->simulation;
@@ -109,6 +166,8 @@ static Result read_positions(Exporter *exporter, Error *error)
             put_section(&exporter->strands, first_strand, hair, (const float(*)[3])positions);
         free(positions);
         first_strand += hair->strand_count;
+        if (exporter->followers && result == RESULT_OK)
+            result = read_followers(exporter, i, &first_strand, error);
     }
     return result;
 }

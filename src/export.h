@@ -12,6 +12,7 @@ typedef struct Exporter {
     StrandsKind kind;
     const Simulation *simulation;
     Strands strands; // of all sections, one behind the other
+    bool followers;  // they are among them, behind the guides of their section
     uint32_t lost;   // features (strands_features.h) of the sections that the files do not have
     SceneLook look;  // USD only, like the rest
     UsdOptions options;
@@ -20,12 +21,12 @@ typedef struct Exporter {
 } Exporter;
 
 // `text`: as target_parse_hair takes it; strands_choose_kind has the kinds. Files have the guides
-// of all sections in the order in which they were read, in metres with y up, and of texture
-// coordinates, colours and so on what all sections have. USD also has the sections' widths and
-// colours (usd_look.h), and frames as time codes. `frame_count`: how many will come; a name without
-// a number takes one, but for USD. All arguments outlive the exporter. RESULT_USAGE for the name,
-// RESULT_FAILED if no file can be made there or memory is short. A zeroed struct may be destroyed;
-// destroying discards a USD file that is not finished.
+// (with export_followers: and the followers) of all sections in the order in which they were read,
+// in metres with y up, and of texture coordinates, colours and so on what all sections have. USD
+// also has the sections' widths and colours (usd_look.h), and frames as time codes. `frame_count`:
+// how many will come; a name without a number takes one, but for USD. All arguments outlive the
+// exporter. RESULT_USAGE for the name, RESULT_FAILED if no file can be made there or memory is
+// short. A zeroed struct may be destroyed; destroying discards a USD file that is not finished.
 Result exporter_create(Exporter *exporter, const char *text, int frame_count,
                        const Simulation *simulation, const Strands *strands, Error *error);
 void exporter_destroy(Exporter *exporter);

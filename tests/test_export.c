@@ -5,6 +5,7 @@
 #include "strands_read.h"
 #include "temporary.h"
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -121,6 +122,47 @@ static void usd_holds_all_frames_of_all_sections(void **state)
     simulation_fixture_destroy(&fixture);
 }
 
+// Behind the guides, each near the one that it follows: their roots lie within the radius.
+static void followers_come_with_them_if_asked_for(void **state)
+{
+    SimulationFixture fixture;
+    Exporter exporter;
+    Error error;
+    simulation_fixture_create(&fixture, "chain", "");
+    SectionParams *params = &fixture.scene.sections[0].params;
+    params->followers = 3;
+    params->follower_radius.automatic = false;
+    params->follower_radius.value = 0.01f;
+    fixture.scene.run.export_followers = true;
+    simulation_fixture_start(&fixture);
+    simulation_fixture_go(&fixture, 2);
+    if (exporter_create(&exporter, temporary_path(state, "x_%d.hair"), 1, &fixture.simulation,
+                        &fixture.strands, &error) != RESULT_OK ||
+        exporter_write(&exporter, 2, &error) != RESULT_OK)
+        fail_msg("%s", error.text);
+    const Strands *all = &exporter.strands;
+    const Hair *followers = &fixture.simulation.sections[0].follow.hair;
+    uint32_t guides = fixture.strands.strand_count, at = guides;
+    assert_int_equal(all->strand_count, 4 * guides);
+    float(*drawn)[3] = malloc(followers->particle_count * sizeof *drawn), (*p)[3] = drawn;
+    assert_int_equal(hair_read_positions(followers, drawn, NULL), RESULT_OK);
+    for (uint32_t i = 0; i < followers->batch_count; ++i)
+        for (uint32_t s = 0; s < followers->batches[i].strand_count; ++s, ++at) {
+            uint32_t guide = followers->batches[i].strand[s], n = strands_size(all, at);
+            const float *root = all->position[all->first[guide]];
+            assert_int_equal(n, strands_size(all, guide));
+            assert_memory_equal(all->position[all->first[at]], p, n * sizeof *p);
+            double square = 0;
+            for (int k = 0; k < 3; ++k) square += pow((double)(*p)[k] - (double)root[k], 2);
+            assert_true(square > 0 && sqrt(square) < 0.01 + 1e-6);
+            p += n;
+        }
+    assert_int_equal(at, all->strand_count);
+    free(drawn);
+    exporter_destroy(&exporter);
+    simulation_fixture_destroy(&fixture);
+}
+
 static void names_without_a_number_or_a_kind_are_refused(void **state)
 {
     SimulationFixture fixture;
@@ -143,6 +185,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(files_hold_what_is_drawn_bit_for_bit),
         TEST(usd_holds_all_frames_of_all_sections),
+        TEST(followers_come_with_them_if_asked_for),
         TEST(names_without_a_number_or_a_kind_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
