@@ -1,29 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # The command line of tractrix-convert: what it tells, what it writes and reads back, and how it fails.
-set -u
-bin=${TRACTRIX_BIN:-out/release}
-convert=$bin/tractrix-convert
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-passed=0 failed=0
-
-claim() { claim=$1; }
-good() { passed=$((passed + 1)); }
-bad() { failed=$((failed + 1)); echo "FAILED: $claim: $*"; sed 's/^/    /' "$work/out" "$work/err"; }
-# run STATUS ARGUMENT...
-run() {
-    expected=$1; shift
-    "$convert" "$@" >"$work/out" 2>"$work/err" </dev/null
-    status=$?
-    if [ "$status" = "$expected" ]; then good; else bad "exit status $status, expected $expected: $*"; fi
-}
-says() { if grep -qF -- "$1" "$work/err" "$work/out"; then good; else bad "does not say '$1'"; fi; }
-silent() { if [ -s "$work/$1" ]; then bad "said something on $1"; else good; fi; }
-one_line() { if [ "$(wc -l <"$work/err")" = 1 ]; then good; else bad "not one line"; fi; }
-in_file() { if grep -qF -- "$2" "$1"; then good; else bad "$1 has no $2"; fi; }
-none() { if [ -e "$1" ]; then bad "there is $1"; else good; fi; }
-equal() { if cmp -s "$1" "$2"; then good; else bad "$1 and $2 are not equal"; fi; }
+. tests/claims.sh
+program=$bin/tractrix-convert
 
 curls=assets/curls.tfx fur=assets/fur.tfx
 x=$work/x
@@ -180,8 +159,7 @@ run 2 --resampel 3 $curls; says "did you mean '--resample'?"
 
 claim "help and version are answered"
 run 0 --help; says "--resample-spline N"; run 0 --help=man; says ".TH TRACTRIX-CONVERT 1"; run 0 --version; says "tractrix-convert "
-"$convert" --help >/dev/full 2>"$work/err"
+"$program" --help >/dev/full 2>"$work/err"
 if [ $? = 1 ]; then good; else bad "status with a full disk"; fi
 
-echo "$passed passed, $failed failed"
-[ "$failed" = 0 ]
+finish
