@@ -2,6 +2,7 @@
 #include "bench_accuracy.h"
 #include "bench_beam.h"
 #include "bench_energy.h"
+#include "bench_fit.h"
 #include "bench_invariance.h"
 #include "bench_motions.h"
 #include "bench_pendulum.h"
@@ -132,17 +133,7 @@ Result accuracy_loose_params(SectionParams *params, const Method *method, Error 
 
 double accuracy_order(const double *rates, const double *errors, int count, double *spread)
 {
-    double x = 0, y = 0, xx = 0, xy = 0, yy = 0;
-    for (int i = 0; i < count; ++i) {
-        double u = -log(rates[i]), w = log(errors[i]);
-        x += u, y += w, xx += u * u, xy += u * w, yy += w * w;
-    }
-    *spread = NAN;
-    if (count < 2) return 0;
-    xx -= x * x / count, xy -= x * y / count, yy -= y * y / count;
-    if (!(xx > 0)) return 0;
-    if (count > 2) *spread = sqrt(fmax(yy - xy * xy / xx, 0) / (count - 2) / xx);
-    return xy / xx;
+    return -fit_exponent(rates, errors, count, spread);
 }
 
 static Result run_parts(Accuracy *accuracy, Error *error)

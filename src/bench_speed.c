@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "bench_speed.h"
+#include "bench_cpu.h"
+#include "bench_scaling.h"
 #include "fibre.h"
 #include "interrupt.h"
 #include "renderer.h"
@@ -209,9 +211,11 @@ static const Column COLUMNS[] = {
     {"exponent", COLUMN_REAL, AT(row.exponent), 8},
     {"spread", COLUMN_REAL, AT(row.spread), 8},
     {"first_ms", COLUMN_REAL, AT(row.result.first_step_ms), 8},
+    {"process_ms", COLUMN_REAL, AT(row.process_ms), 10},
     {"draw_ms_min", COLUMN_REAL, AT(draw_min), 11},
     {"draw_ms_median", COLUMN_REAL, AT(draw_median), 0},
     {"fragments", COLUMN_WHOLE, AT(fragments), 0},
+    {"off", COLUMN_REAL, AT(row.off), 9},
     {"remark", COLUMN_TEXT, AT(row.remark), 1},
     {"command", COLUMN_CHARS, AT(command), 0},
 };
@@ -227,6 +231,9 @@ SpeedRow speed_row(const char *part, const SpeedSubject *subject)
                     .exponent = NAN,
                     .spread = NAN,
                     .gigabytes_s = NAN,
+                    .process_ms = NAN,
+                    .off = NAN,
+                    .off_bound = NAN,
                     .remark = ""};
     if (!subject) return row;
     const Strands *strands = subject->strands;
@@ -269,6 +276,9 @@ void speed_add(Speed *speed, const SpeedRow *row)
     line.share = speed->bandwidth > 0 ? line.gigabytes_s / speed->bandwidth : NAN;
     line.verdict = bench_table_check(&speed->table, result->step.median, row->bound_ms,
                                      "%s, %s: median ms a step", row->hair, row->method.algo);
+    if (!isnan(row->off_bound))
+        line.verdict = bench_table_check(&speed->table, row->off, row->off_bound,
+                                         "%s, %s: off the GPU's strands", row->hair, row->remark);
     write_command(speed, &line);
     bench_table_add(&speed->table, &line);
 }
@@ -378,9 +388,22 @@ static const struct {
     const char *name;
     Result (*run)(Speed *speed, Error *error);
 } PARTS[] = {
+    {"memory", cpu_run_memory}, // first: the others have shares of its bandwidth
     {"sets", run_sets},
+    {"c", cpu_run_split},
+    {"strands", scaling_run_strands},
+    {"vertices", scaling_run_vertices},
+    {"threads", scaling_run_threads},
+    {"start", scaling_run_start},
 };
 enum { PART_COUNT = sizeof PARTS / sizeof *PARTS };
+
+// Hair that is named without a part is only measured itself.
+static bool is_asked(const BenchOptions *options, const char *part)
+{
+    if (!options->parts && (options->set || options->tfx)) return strcmp(part, "sets") == 0;
+    return bench_options_part(options, part);
+}
 
 Result speed_run(const BenchOptions *options, const Gpu *gpu, Error *error)
 {
@@ -393,6 +416,6 @@ Result speed_run(const BenchOptions *options, const Gpu *gpu, Error *error)
     result = bench_table_open(&speed.table, COLUMNS, sizeof COLUMNS / sizeof *COLUMNS, gpu,
                               &options->output, stdout, error);
     for (int i = 0; i < PART_COUNT && result == RESULT_OK; ++i)
-        if (bench_options_part(options, PARTS[i].name)) result = PARTS[i].run(&speed, error);
+        if (is_asked(options, PARTS[i].name)) result = PARTS[i].run(&speed, error);
     return bench_table_close(&speed.table, result, error);
 }

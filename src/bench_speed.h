@@ -47,6 +47,8 @@ typedef struct SpeedRow {
     double thesis_ms, bound_ms; // what the thesis states for its GPU, what we state
     double exponent, spread;    // of a fit over a part's rows, its standard error
     double gigabytes_s;         // where the row is not a step
+    double process_ms;          // wall time of a process of its own
+    double off, off_bound;      // from the GPU's strands, RMS over the length; what is stated
     const char *remark;
 } SpeedRow;
 
@@ -59,7 +61,8 @@ typedef struct Speed {
     double bandwidth; // of the memory, GB/s; measured once
 } Speed;
 
-// The command. RESULT_FAILED if a stated bound is broken, after all rows.
+// The command: all parts, or those that --part lists; with --set or --tfx and no --part only
+// "sets". RESULT_FAILED if a stated bound is broken, after all rows.
 Result speed_run(const BenchOptions *options, const Gpu *gpu, Error *error);
 
 // A row of which only what the subject says is known; the subject may be NULL.

@@ -109,9 +109,11 @@ static const struct {
     {"chain", bench_chain,
      "chain pulls of --vectors FILE.csv (FILE_cases.csv beside it) against theirs"},
     {"accuracy", accuracy_run,
-     "solvers against exact motions and other truths, with the time that they take"},
+     "solvers against what is known exactly. Parts: motions, work (time beside error), pendulum, "
+     "static, drift, beam, stretch, energy, rate, scale"},
     {"speed", speed_run,
-     "solvers' steps on --set, --tfx, or all sets and the hair files named; drawing with --size"},
+     "solvers' steps. Parts: memory, sets (--set, --tfx or all of the thesis's; files named; "
+     "drawing with --size), c (split in plain C), strands, vertices, threads, start"},
     {"scenes", run_scenes,
      "frames with followers, asleep, and of two sections: --set NAME (default 10k16), --algo"},
     {"image", run_image,

@@ -66,6 +66,22 @@ run 0 speed --set 1k16 --algo split --steps 2 --warm-up 0 --csv "$work/s.csv"
 same "$(field "$work/s.csv" thesis_ms)" 0.4 "the thesis's ms"
 same "$(field "$work/s.csv" particles)" 16000 "particles"
 
+claim "split in plain C moves as on the GPU"
+run 0 speed --part c --set 1k16 --algo split --steps 1 --warm-up 0 --csv "$work/c.csv"
+same "$(field "$work/c.csv" verdict | tr '\n' ' ')" "holds holds holds holds " "bounds"
+
+claim "growth, threads and start-up have rows of the same form, and exponents"
+run 0 speed --part vertices --algo dftl --steps 1 --warm-up 0 --csv "$work/v.csv"
+same "$(field "$work/v.csv" exponent | grep -c .)" 1 "exponents"
+run 0 speed --part start,memory --algo dftl --csv "$work/n.csv"
+same "$(field "$work/n.csv" remark | tr '\n' ' ')" "a = b + 3 c; 3 x 64 MiB cold warm " "starts"
+if field "$work/n.csv" renderer | grep -q llvmpipe; then
+    run 0 speed --part threads --set 1k16 --algo dftl --steps 1 --warm-up 0 --csv "$work/h.csv"
+    same "$(field "$work/h.csv" threads | tr '\n' ' ')" "1 2 0 " "threads"
+else
+    skip "threads are of llvmpipe"
+fi
+
 claim "wrong usage ends with 2 and one line that helps"
 run 2 stepp; says "did you mean 'step'"
 run 2 accuracy --part motion; says "motions"
