@@ -8,9 +8,9 @@
 #endif
 #include "shadow.glsl"
 
-// Linear RGB of light i at x, as a matt white surface square to it would show it, and the unit
-// vector towards it. With SHADOW, x is the point of the last shadow_find.
-vec3 light_reaching(int i, vec3 x, out vec3 to_light)
+// Linear RGB of light i at x, as a matt white surface square to it would show it, were nothing
+// between them, and the unit vector towards it.
+vec3 light_sent(int i, vec3 x, out vec3 to_light)
 {
 #if LIGHTS
     // A directional light's place is its direction, with w = 0. The square of the reference
@@ -22,11 +22,17 @@ vec3 light_reaching(int i, vec3 x, out vec3 to_light)
     to_light = way * inversesqrt(square);
     float inside = clamp(cone.x - cone.y * dot(axis.xyz, to_light), 0.0, 1.0);
     float falloff = place.w == 0.0 ? 1.0 : min(axis.w / square, 1e6);
-    return draw_params.light_color[i].rgb * (falloff * inside * inside * light_left(i));
+    return draw_params.light_color[i].rgb * (falloff * inside * inside);
 #else
     to_light = draw_params.light_place[i].xyz;
-    return draw_params.light_color[i].rgb * light_left(i);
+    return draw_params.light_color[i].rgb;
 #endif
+}
+
+// The same with what stands between them. With SHADOW, x is the point of the last shadow_find.
+vec3 light_reaching(int i, vec3 x, out vec3 to_light)
+{
+    return light_sent(i, x, to_light) * light_left(i);
 }
 
 // The mean light from everywhere on surfaces whose unit normals fan out by so much about n, above

@@ -61,6 +61,7 @@ float light_through_hair(int map, vec2 place, float depth, vec4 of_light)
 {
     float fibres = shadow_params.fibres * of_light.y, passed = shadow_params.passed, sum = 0.0, weights = 0.0;
     ivec2 middle = ivec2(place);
+    depth = min(depth, 1.01); // farther off there is no hair
     vec2 off = place - vec2(middle) - 0.5;
     for (int y = -2; y <= 2; ++y)
         for (int x = -2; x <= 2; ++x) {
@@ -78,23 +79,30 @@ float light_through_hair(int map, vec2 place, float depth, vec4 of_light)
 #endif
 
 #if SHADOW_BY_MESH
-float mesh_lets_through(ivec2 texel, float depth)
-{
-    return texelFetch(shadow_mesh, texel, 0).x < depth ? 0.0 : 1.0;
-}
+// Texels each way that a point looks at.
+#ifndef MESH_TAPS
+#define MESH_TAPS 2
+#endif
 
-// The share of the nearest 2 x 2 texels that the mesh does not stand before, weighted evenly as the point moves.
+// The share of a square of MESH_TAPS - 1 texels around the point that the mesh does not stand before: texels at its edge
+// count by how much of them is inside, so that it changes evenly as the point moves.
 float light_past_mesh(int map, vec3 x)
 {
     vec4 place = vec4(x, 1.0) * shadow_params.mesh_from_world[map];
-    int mesh_side = shadow_params.mesh_side;
+    int last = shadow_params.mesh_side - 1;
     place.xyz /= place.w;
-    float depth = place.z - shadow_params.place[map].z;
-    vec2 from = clamp(place.xy - 0.5, 0.0, float(mesh_side) - 1.01), whole = floor(from), share = from - whole;
-    ivec2 at = ivec2(whole) + ivec2(0, map * mesh_side);
-    float light_00 = mesh_lets_through(at, depth), light_10 = mesh_lets_through(at + ivec2(1, 0), depth);
-    float light_01 = mesh_lets_through(at + ivec2(0, 1), depth), light_11 = mesh_lets_through(at + ivec2(1, 1), depth);
-    return mix(mix(light_00, light_10, share.x), mix(light_01, light_11, share.x), share.y);
+    float depth = min(place.z - shadow_params.place[map].z, 1.0); // what lies behind all of the map
+    vec2 from = clamp(place.xy, 0.0, float(last)) - 0.5 * float(MESH_TAPS - 1), whole = floor(from), share = from - whole;
+    ivec2 first = ivec2(whole);
+    float sum = 0.0;
+    for (int j = 0; j < MESH_TAPS; ++j)
+        for (int i = 0; i < MESH_TAPS; ++i) {
+            ivec2 texel = clamp(first + ivec2(i, j), ivec2(0), ivec2(last));
+            float weight = (i == 0 ? 1.0 - share.x : i == MESH_TAPS - 1 ? share.x : 1.0) *
+                           (j == 0 ? 1.0 - share.y : j == MESH_TAPS - 1 ? share.y : 1.0);
+            sum += texelFetch(shadow_mesh, texel + ivec2(0, map * (last + 1)), 0).x < depth ? 0.0 : weight;
+        }
+    return sum * (1.0 / float((MESH_TAPS - 1) * (MESH_TAPS - 1)));
 }
 #endif
 #endif
@@ -118,7 +126,7 @@ void shadow_find(vec3 x)
 #if SHADOW_BY_MESH
         left *= light_past_mesh(map, x);
 #endif
-        shadow_left[int(of_light.x)] = left;
+        shadow_left[int(of_light.x)] = place.w > 0.0 ? left : 1.0; // a lamp has no map behind it
     }
 }
 #endif

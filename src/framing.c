@@ -226,6 +226,13 @@ static float narrowest_fov(const Scene *scene)
     return glm_rad(fov);
 }
 
+// What the automatic camera shows.
+static const Outline *outline_shown(const Framing *framing, const Scene *scene)
+{
+    bool hair_alone = framing->hair.any && scene->run.floor == FLOOR_NONE;
+    return hair_alone ? &framing->hair : &framing->all;
+}
+
 static void place_eye(Framing *framing, const Scene *scene)
 {
     Axes axes = {0};
@@ -239,8 +246,8 @@ static void place_eye(Framing *framing, const Scene *scene)
         glm_vec3_rotate(turned.right, angle, axes.up);
         glm_vec3_rotate(turned.top, angle, axes.up);
         glm_vec3_rotate(turned.back, angle, axes.up);
-        float needed = distance_to_see(&framing->hair, &turned, framing->target, tan_x, tan_y,
-                                       1 + scene->run.margin);
+        float needed = distance_to_see(outline_shown(framing, scene), &turned, framing->target,
+                                       tan_x, tan_y, 1 + scene->run.margin);
         distance = fmaxf(distance, needed);
         if (turn == 0) break;
     }
@@ -252,7 +259,7 @@ void framing_compute(Framing *framing, const Scene *scene, const Strands *strand
 {
     memset(framing, 0, sizeof *framing);
     find_outlines(framing, scene, strands, mesh);
-    const Outline *outline = framing->hair.any ? &framing->hair : &framing->all;
+    const Outline *outline = outline_shown(framing, scene);
     for (int k = 0; k < 3; ++k) framing->target[k] = 0.5f * (outline->low[k] + outline->high[k]);
     if (scene->target.count)
         keyframes_evaluate(&scene->target, 0, framing->target);

@@ -39,6 +39,7 @@ void outline_corner(const Outline *outline, int which, float corner[3]);
 // it as much room as followers need. Motions are sampled at 16 times. `strands`: one for each of
 // the scene's sections, metres. `mesh`: NULL for none. The eye stands in front (+z), 25 degrees to
 // the side and 10 degrees above, just so far away that everything stays in the picture with a
-// margin (run.margin), at all angles of the turntable.
+// margin (run.margin), at all angles of the turntable. With a floor "everything" is the mesh, too,
+// which stands on it.
 void framing_compute(Framing *framing, const Scene *scene, const Strands *strands,
                      const Mesh *mesh);

@@ -77,6 +77,7 @@ static Result describe_pictures(const Pictures *pictures, RendererOptions *optio
         .aov = (Aov)run->aov,
         .samples = run->samples,
         .seed = run->seed,
+        .floor = floor_find(pictures->scene, pictures->framing),
         .lod = {run->lod_start, run->lod_end, run->lod_min, run->lod_width},
         .shadow = {
             .kind = (Shadow)run->shadow, .side = run->shadow_size, .spacing = run->shadow_spacing}};

@@ -73,27 +73,17 @@ void render_mesh_destroy(RenderMesh *mesh)
     *mesh = (RenderMesh){0};
 }
 
-static void draw_to(const RenderMesh *mesh, GLuint frame, const float *background)
+static void draw_to(const RenderMesh *mesh, GLuint frame)
 {
-    const float farthest = 1;
     glBindFramebuffer(GL_FRAMEBUFFER, frame);
-    glClearBufferfv(GL_DEPTH, 0, &farthest);
-    if (background) glClearBufferfv(GL_COLOR, 0, background);
     glDrawElements(GL_TRIANGLES, (GLsizei)(3 * mesh->triangle_count), GL_UNSIGNED_INT, NULL);
 }
 
-void render_mesh_draw(const RenderMesh *mesh, const RenderTarget *target, const float background[4])
+void render_mesh_draw(const RenderMesh *mesh, const RenderTarget *target)
 {
-    glDisable(GL_SCISSOR_TEST);
-    glEnable(GL_DEPTH_TEST);
-    glDepthMask(GL_TRUE);
+    if (!mesh->triangle_count) return;
     glUseProgram(mesh->program);
     glBindVertexArray(mesh->vertex_array);
-    draw_to(mesh, target->hair_frame, NULL);
-    draw_to(mesh, target->smooth_frame, background);
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, target->smooth_frame);
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target->base_frame);
-    int width = target->width * target->samples, height = target->height * target->samples;
-    glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-    glDepthMask(GL_FALSE);
+    draw_to(mesh, target->hair_frame);
+    draw_to(mesh, target->smooth_frame);
 }

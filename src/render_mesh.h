@@ -20,7 +20,5 @@ Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const float colo
                           const GpuLimits *limits, Error *error);
 void render_mesh_destroy(RenderMesh *mesh);
 
-// Fills the target's depth and its `base`: the mesh over `background` (linear, premultiplied).
-// Needs the DrawParams block; leaves the scissor off.
-void render_mesh_draw(const RenderMesh *mesh, const RenderTarget *target,
-                      const float background[4]);
+// Draws into the target's depth and over its samples. Needs the DrawParams block.
+void render_mesh_draw(const RenderMesh *mesh, const RenderTarget *target);

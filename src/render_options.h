@@ -3,6 +3,7 @@
 #pragma once
 
 #include "camera.h"
+#include "floor.h"
 #include "hair.h"
 #include "image.h"
 #include "params.h"
@@ -31,6 +32,7 @@ typedef struct RendererOptions {
                    // own; 0: 1. AOVs of what is nearest have one
     uint32_t seed; // of what varies by strand
     ShadowOptions shadow;
+    Floor floor; // not with an AOV
     LodOptions lod;
     Oit oit;            // how the fragments of a pixel are blended; auto: abuffer. Else quads are
                         // what raster auto is

@@ -49,28 +49,42 @@ static void fill_draw_params(const RendererOptions *options, const RenderMesh *m
     draw->seed = options->seed;
 }
 
-// Screen box of the mesh (px; empty without one): what must be resolved where there is no hair.
-static void find_mesh_box(const RenderMesh *mesh, DrawParams *draw, int box[4])
+// Widens a box of the picture by a point of the world; a point before the near plane makes it as
+// wide as can be.
+static void add_to_box(DrawParams *draw, vec3 x, int box[4])
+{
+    vec4 clip;
+    const int far = 1 << 20;
+    glm_mat4_mulv(draw->clip_from_world, (vec4){x[0], x[1], x[2], 1}, clip);
+    if (clip[3] < draw->near_distance) { // crosses the eye's plane: anywhere
+        box[0] = box[1] = 0, box[2] = box[3] = far;
+        return;
+    }
+    for (int k = 0; k < 2; ++k) {
+        float size = k ? draw->height : draw->width, px = (clip[k] / clip[3] + 1) * size / 2;
+        px = fmaxf(fminf(px, (float)far - 2), 2 - (float)far);
+        box[k] = (int)fminf((float)box[k], floorf(px) - 1);
+        box[k + 2] = (int)fmaxf((float)box[k + 2], ceilf(px) + 1);
+    }
+}
+
+// What must be resolved where there is no hair.
+static void find_mesh_box(const RenderMesh *mesh, const Floor *floor, DrawParams *draw, int box[4])
 {
     const int far = 1 << 20;
+    vec3 x;
     box[0] = box[1] = far, box[2] = box[3] = -far;
     for (int corner = 0; corner < 8 && mesh->triangle_count; ++corner) {
-        vec4 clip;
-        vec3 x;
         for (int k = 0; k < 3; ++k) x[k] = (corner >> k & 1 ? mesh->high : mesh->low)[k];
         glm_quat_rotatev(draw->head_rotation, x, x);
         glm_vec3_add(x, draw->head_translation, x);
-        glm_mat4_mulv(draw->clip_from_world, (vec4){x[0], x[1], x[2], 1}, clip);
-        if (clip[3] < draw->near_distance) { // crosses the eye's plane: anywhere
-            box[0] = box[1] = 0, box[2] = box[3] = far;
-            return;
-        }
-        for (int k = 0; k < 2; ++k) {
-            float size = k ? draw->height : draw->width, px = (clip[k] / clip[3] + 1) * size / 2;
-            px = fmaxf(fminf(px, (float)far - 2), 2 - (float)far);
-            box[k] = (int)fminf((float)box[k], floorf(px) - 1);
-            box[k + 2] = (int)fmaxf((float)box[k + 2], ceilf(px) + 1);
-        }
+        add_to_box(draw, x, box);
+    }
+    for (int corner = 0; corner < 4 && floor->kind != FLOOR_NONE; ++corner) {
+        for (int k = 0; k < 3; ++k) x[k] = floor->middle[k];
+        x[0] += corner & 1 ? floor->faded : -floor->faded;
+        x[2] += corner & 2 ? floor->faded : -floor->faded;
+        add_to_box(draw, x, box);
     }
 }
 
@@ -168,7 +182,7 @@ Result picture_begin(Picture *picture, const RendererOptions *options, const Ren
     picture->items = items;
     picture->item_count = item_count;
     fill_draw_params(options, mesh, frame, &picture->draw);
-    find_mesh_box(mesh, &picture->draw, picture->mesh_box);
+    find_mesh_box(mesh, &options->floor, &picture->draw, picture->mesh_box);
     Result result = make_room(picture, error);
     for (uint32_t i = 0; i < item_count && result == RESULT_OK; ++i)
         result = make_look(picture, options, &items[i], features, &picture->looks[i], error);

@@ -35,6 +35,7 @@ static RendererOptions settle(const RendererOptions *asked)
     if (options.aov != AOV_NONE) { // on black, without light
         memcpy(options.background, (float[4]){0, 0, 0, 1}, 4 * sizeof(float));
         options.shadow.kind = SHADOW_NONE;
+        options.floor.kind = FLOOR_NONE;
     }
     return options;
 }
@@ -48,6 +49,19 @@ static Raster choose_raster(const Gpu *gpu, const RendererOptions *options)
     return render_blocks_can_store(&gpu->limits, options) ? raster : RASTER_QUADS;
 }
 
+static bool has_base(const Renderer *renderer)
+{
+    return render_base_is_needed(&renderer->base, &renderer->options.floor);
+}
+
+// What drawing over mesh or floor needs, if there is any.
+static Result make_base(Renderer *renderer, Error *error)
+{
+    if (!has_base(renderer)) return RESULT_OK;
+    Result result = render_target_add_mesh(&renderer->target, error);
+    return result == RESULT_OK ? RASTERS[renderer->raster].add_mesh(renderer, error) : result;
+}
+
 Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
                        const RendererOptions *asked, Error *error)
 {
@@ -57,6 +71,7 @@ Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
     Result result = render_target_create(&renderer->target, &gpu->limits, options->width,
                                          options->height, options->samples, options->kind, error);
     if (result == RESULT_OK) result = RASTERS[renderer->raster].create(renderer, error);
+    if (result == RESULT_OK) result = make_base(renderer, error);
     if (result == RESULT_OK && options->shadow.kind != SHADOW_NONE)
         result = render_shadow_create(&renderer->shadow, &gpu->limits, &options->shadow, error);
     if (result != RESULT_OK) renderer_destroy(renderer);
@@ -68,7 +83,7 @@ void renderer_destroy(Renderer *renderer)
     render_target_destroy(&renderer->target);
     render_quads_destroy(&renderer->quads);
     render_blocks_destroy(&renderer->blocks);
-    render_mesh_destroy(&renderer->mesh);
+    render_base_destroy(&renderer->base);
     render_shadow_destroy(&renderer->shadow);
     free(renderer->casters);
     picture_destroy(&renderer->picture);
@@ -79,14 +94,11 @@ Result renderer_set_mesh(Renderer *renderer, const Mesh *mesh, const float color
 {
     float linear[3];
     linear_from_srgb_color(color, linear);
-    render_mesh_destroy(&renderer->mesh);
-    Result result = render_mesh_create(&renderer->mesh, mesh, linear, renderer->options.shadow.kind,
+    RenderMesh *mine = &renderer->base.mesh;
+    render_mesh_destroy(mine);
+    Result result = render_mesh_create(mine, mesh, linear, renderer->options.shadow.kind,
                                        &renderer->gpu->limits, error);
-    if (result == RESULT_OK && renderer->mesh.triangle_count)
-        result = render_target_add_mesh(&renderer->target, error);
-    if (result == RESULT_OK && renderer->mesh.triangle_count)
-        result = RASTERS[renderer->raster].add_mesh(renderer, error);
-    return result;
+    return result == RESULT_OK ? make_base(renderer, error) : result;
 }
 
 int renderer_channels(const Renderer *renderer)
@@ -136,7 +148,7 @@ static Result draw_shadow(Renderer *renderer, const RenderFrame *frame, Error *e
     const Picture *picture = &renderer->picture;
     ShadowScene scene = {.lights = frame->lights,
                          .light_count = frame->light_count,
-                         .mesh = {.mesh = &renderer->mesh},
+                         .mesh = {.mesh = &renderer->base.mesh},
                          .revision = frame->revision};
     if (renderer->options.shadow.kind == SHADOW_NONE) return RESULT_OK;
     memcpy(scene.mesh.rotation, frame->head_rotation, sizeof scene.mesh.rotation);
@@ -149,14 +161,6 @@ static Result draw_shadow(Renderer *renderer, const RenderFrame *frame, Error *e
     return result;
 }
 
-static void draw_mesh(Renderer *renderer, const DrawParams *draw)
-{
-    if (!renderer->mesh.triangle_count) return;
-    gpu_timer_begin(renderer->timer, "draw_mesh");
-    render_mesh_draw(&renderer->mesh, &renderer->target, draw->background);
-    gpu_timer_end(renderer->timer);
-}
-
 static Result add_mesh_to_quads(Renderer *renderer, Error *error)
 {
     return render_quads_add_mesh(&renderer->quads, error);
@@ -165,8 +169,7 @@ static Result add_mesh_to_quads(Renderer *renderer, Error *error)
 static Result draw_quads(Renderer *renderer, Image *image, Error *error)
 {
     return render_quads_draw(&renderer->quads, &renderer->picture, &renderer->target,
-                             renderer->mesh.triangle_count > 0, renderer->timer, image,
-                             &renderer->counts, error);
+                             has_base(renderer), renderer->timer, image, &renderer->counts, error);
 }
 
 static Result add_mesh_to_blocks(Renderer *renderer, Error *error)
@@ -189,8 +192,7 @@ static Result draw_quads_instead(Renderer *renderer, Image *image, Error *error)
 {
     renderer->raster = RASTER_QUADS;
     Result result = create_quads(renderer, error);
-    if (result == RESULT_OK && renderer->mesh.triangle_count)
-        result = add_mesh_to_quads(renderer, error);
+    if (result == RESULT_OK && has_base(renderer)) result = add_mesh_to_quads(renderer, error);
     return result == RESULT_OK ? draw_quads(renderer, image, error) : result;
 }
 
@@ -220,8 +222,8 @@ static Result draw_blocks(Renderer *renderer, Image *image, Error *error)
     if (result != RESULT_OK) return result;
     result = project_items(renderer, error);
     if (result != RESULT_OK) return result;
-    result = render_blocks_draw(blocks, &renderer->target, renderer->mesh.triangle_count > 0,
-                                picture->mesh_box, renderer->timer, error);
+    result = render_blocks_draw(blocks, &renderer->target, has_base(renderer), picture->mesh_box,
+                                renderer->timer, error);
     if (result != RESULT_OK) return result;
     if (render_blocks_fell_short(blocks)) return draw_quads_instead(renderer, image, error);
     gpu_timer_begin(renderer->timer, "draw_read");
@@ -242,15 +244,17 @@ Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderI
     assert(image->width == renderer->options.width && image->height == renderer->options.height);
     assert(image->channels == renderer_channels(renderer));
     const DrawParams *draw = &renderer->picture.draw;
-    Result result = picture_begin(&renderer->picture, &renderer->options, &renderer->mesh, frame,
-                                  items, item_count, error);
+    Result result = picture_begin(&renderer->picture, &renderer->options, &renderer->base.mesh,
+                                  frame, items, item_count, error);
     if (result != RESULT_OK) return result;
     renderer->counts = (RendererCounts){0};
     picture_upload(&renderer->picture);
     result = draw_shadow(renderer, frame, error);
     if (result != RESULT_OK) return result;
     set_state(renderer, draw->background);
-    draw_mesh(renderer, draw);
+    result = render_base_draw(&renderer->base, &renderer->options.floor, &renderer->target, draw,
+                              renderer->options.shadow.kind, renderer->timer, error);
+    if (result != RESULT_OK) return result;
     result = RASTERS[renderer->raster].draw(renderer, image, error);
     if (result != RESULT_OK) return result;
     renderer->counts.thinned = picture_count_thinned(&renderer->picture);

@@ -2,6 +2,7 @@
 // From hair on the GPU to a picture: mesh, hair ribbons into an A-buffer, and its resolution.
 #pragma once
 
+#include "render_base.h"
 #include "render_blocks.h"
 #include "render_options.h"
 #include "render_picture.h"
@@ -15,7 +16,7 @@ typedef struct Renderer {
     Raster raster; // auto is decided; what the other one needs is made when it is drawn with
     RenderQuads quads;
     RenderBlocks blocks;
-    RenderMesh mesh;
+    RenderBase base;
     RenderShadow shadow;
     ShadowCaster *casters; // [caster_room], owned
     uint32_t caster_room;

@@ -179,6 +179,13 @@ static Result check_depth(const RunParams *run, Error *error)
     return RESULT_OK;
 }
 
+static Result check_floor(const RunParams *run, Error *error)
+{
+    if (run->floor != FLOOR_SHADOW || run->shadow != SHADOW_NONE) return RESULT_OK;
+    return error_set(error, RESULT_USAGE,
+                     "--floor shadow: expected shadows, --shadow dom or approx");
+}
+
 Result scene_check(const Scene *scene, Error *error)
 {
     const RunParams *run = &scene->run;
@@ -189,6 +196,7 @@ Result scene_check(const Scene *scene, Error *error)
     if (result == RESULT_OK) result = check_conflicts(run, error);
     if (result == RESULT_OK) result = check_output(run->output, error);
     if (result == RESULT_OK) result = check_depth(run, error);
+    if (result == RESULT_OK) result = check_floor(run, error);
     if (result == RESULT_OK) result = check_head(scene, error);
     return result;
 }
