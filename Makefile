@@ -131,6 +131,10 @@ bench-image: all ## image error and milliseconds of every scheme: table, out/ima
 	$(OUT)/tractrix-bench images $(IMAGES) --json out/image.json
 	@scripts/plot-image out/image.json out/image
 
+STRESS = --cases 5000 --steps 10000 --seed 1
+stress: all ## random circumstances for every solver until a rule breaks, an hour or so (STRESS="--algo chain --seed 2")
+	$(OUT)/tractrix-bench stress $(STRESS)
+
 # --- Static checks and the sanitizers; all of them run, then the failures are named. One alone: make check-format.
 CHECKS := format scripts warnings clang cppcheck shaders farm sanitize
 C_FILES = $(wildcard src/*.[ch] src/*/*.[ch] tests/*.[ch] glsl/*.h)
@@ -198,7 +202,7 @@ help: ## this list
 	@echo; sed -n '4,7s/^#//p' $(firstword $(MAKEFILE_LIST))
 
 FORCE:
-.PHONY: all tests demo test bench bench-image check $(CHECKS:%=check-%) format install uninstall clean help FORCE
+.PHONY: all tests demo test bench bench-image stress check $(CHECKS:%=check-%) format install uninstall clean help FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
 -include $(patsubst %.o,%.d,$(OBJECTS) $(MAINS:src/%.c=$(OUT)/%.o) $(TEST_PROGRAMS:%=%.o) $(SUPPORT_OBJECTS))

@@ -6,7 +6,8 @@
 //      Inextensible Hair Strand Simulation, VRIPHYS 2013), J J^T lambda = l (|s| - l) with J J^T = tridiag(-r_j.r_{j-1}, 2 |r_j|^2; |r_1|^2).
 //   2. Positions: x = p - g_j + g_{j+1}, where pushing (lambda-) acts along r, and pulling (lambda+) along directions taken implicitly as
 //      in Newmark's method with theta = 1/4, 1/4 new + 1/2 now + 1/4 before: second order, and no tension is too stiff. That is
-//      (I + theta Laplacian(lambda+)) x = y, again tridiagonal.
+//      (I + theta Laplacian(lambda+)) x = y, again tridiagonal. What is much stiffer than the step would swing to -3, 5, -7 .. of where
+//      it was, which only small swings survive: theta grows to 1/2 with tensions above STIFF, where it stays at plus or minus.
 //   3. Twice: what lengths are still off is taken out along the current directions, J J^T lambda = |s| (|s| - l), x_j -= lambda_j s_j,
 //      x_{j-1} += lambda_j s_j, done on the segments themselves.
 //   4. Rebuild from the root with exact lengths.
@@ -25,6 +26,7 @@
 #endif
 
 const float THETA = 0.25;
+const float STIFF = 8.0; // the tension beyond which theta grows
 const float MOST_OFF = 0.5; // of a length, before tractrices take over
 
 // Where particle j would go without constraints, relative to the new root.
@@ -63,10 +65,16 @@ float predict(Lane lane)
 #endif
 }
 
+float implicit_share(float tension)
+{
+    float beyond = max(tension - STIFF, 0.0);
+    return THETA + THETA * beyond / (beyond + STIFF);
+}
+
 // Tip to root: tensions; rows of the positions.
 void pull_implicitly(Lane lane)
 {
-    float lambda = 0.0, factor_beyond = 0.0, tension_beyond = 0.0;
+    float lambda = 0.0, factor_beyond = 0.0, implicit_beyond = 0.0;
     vec3 g_beyond = vec3(0.0), q = fetch_position(lane, LAST), v = fetch_velocity(lane, LAST);
     Row3 row = NO_ROW3;
 #if BENDS
@@ -78,10 +86,10 @@ void pull_implicitly(Lane lane)
         vec4 k = recall(j);
         lambda = k.w - factor_beyond * lambda;
         factor_beyond = recall_beside(j);
-        float tension = max(lambda, 0.0), factor;
+        float tension = max(lambda, 0.0), theta = implicit_share(tension), factor;
         vec3 r = q - q_before, r_old = r - lane.dt * (v - v_before);
-        vec3 g = (lambda - tension) * r + tension * ((1.0 - 2.0 * THETA) * r + THETA * r_old);
-        float off = THETA * tension_beyond, diagonal = 1.0 + THETA * (tension + tension_beyond);
+        vec3 g = (lambda - tension) * r + tension * ((1.0 - 2.0 * theta) * r + theta * r_old);
+        float off = implicit_beyond, diagonal = 1.0 + (theta * tension + implicit_beyond);
         vec3 y = k.xyz - g + g_beyond;
 #if BENDS
         float l = fetch_rest(lane, j).w, mass = MASS * stiffness / l;
@@ -91,7 +99,7 @@ void pull_implicitly(Lane lane)
 #endif
         row = eliminate(row, -off, diagonal, y, factor);
         keep(j, vec4(row.value, factor));
-        q = q_before, v = v_before, g_beyond = g, tension_beyond = tension;
+        q = q_before, v = v_before, g_beyond = g, implicit_beyond = theta * tension;
     }
 }
 
@@ -222,7 +230,7 @@ void rescue(Lane lane, inout Account account)
         if (j > 1) p = velocities[lane.address + (j - 1) * STRAND_TILE].xyz;
         float l = fetch_rest(lane, j).w;
         vec3 d = direction(q_before - q), move = limit_move(y - (q + p - q_before));
-        d = tractrix_turn(d, l, move);
+        d = direction(tractrix_turn(d, l, move)); // far off where the move pushes exactly along the segment
         y += l * d;
         velocities[lane.address + j * STRAND_TILE] = vec4(-d, 0.0);
         q = q_before;
@@ -235,7 +243,7 @@ void rescue(Lane lane, inout Account account)
         float l = fetch_rest(lane, j).w;
         vec3 d = tractrix_turn(tractrix_renormalise(velocities[lane.address + j * STRAND_TILE].xyz), l, move);
         q = fetch_position(lane, j);
-        d = tractrix_renormalise(d);
+        d = direction(d);
         x += l * d;
 #if BENDS
         frames_advance(frames, d, fetch_rest(lane, j));

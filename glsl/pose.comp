@@ -23,7 +23,8 @@ float polynomial(vec4 low, vec4 high, float x)
 
 // Slerp from the unit vector a towards the unit vector b by a share w <= 1/2 of their angle. With the bisector h this is a turn towards
 // h by v = 2w of the half angle p <= 90 deg: cos(v p) a + sin(v p)/sin(p) (h - cos(p) a). Both factors are smooth functions of
-// x = sin^2(p/2) <= 1/2, given as polynomials, so that no angle is needed. Antiparallel vectors have no bisector: a stays.
+// x = sin^2(p/2) <= 1/2, given as polynomials, so that no angle is needed. Antiparallel vectors have no bisector: a stays. Where the sum is
+// short, what rounding leaves of it is not quite across, and the result not quite of length 1.
 vec3 turn(vec3 a, vec3 b, Turn by)
 {
     vec3 sum = a + b;
@@ -32,6 +33,7 @@ vec3 turn(vec3 a, vec3 b, Turn by)
     float cos_p = 0.5 * ss * inverse;
     float x = 0.5 - 0.5 * cos_p;
     vec3 turned = polynomial(by.cos_low, by.cos_high, x) * a + polynomial(by.sin_low, by.sin_high, x) * (sum * inverse - cos_p * a);
+    turned *= ss < 1e-2 ? inversesqrt(dot(turned, turned)) : 1.0;
     return ss > 1e-12 ? turned : a;
 }
 

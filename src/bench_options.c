@@ -11,7 +11,7 @@ typedef struct Values {
     BenchOptions bench;
     const char *rates, *size, *raster, *oit;
     const char *param[BENCH_MOST_PARAMS]; // of the row of that number below
-    bool software, osmesa, no_error;
+    bool software, osmesa, no_error, no_shrink;
 } Values;
 
 #define AT(member) offsetof(Values, member)
@@ -33,7 +33,8 @@ static const Option OPTIONS[] = {
      "accuracy: up to 8 numbers of steps a second (default: the part's own)"},
     {"seconds", 0, OPTION_REAL, AT(bench.seconds), "S", 0.1, 1e5,
      "accuracy: length of the long runs (default 60)"},
-    {"steps", 0, OPTION_WHOLE, AT(bench.steps), "N", 1, 1e6, "measured steps (default 200)"},
+    {"steps", 0, OPTION_WHOLE, AT(bench.steps), "N", 1, 1e6,
+     "measured steps (default 200; stress: of each case, default 10000)"},
     {"warm-up", 0, OPTION_WHOLE, AT(bench.warm_up), "N", 0, 1e6, "steps before that (default 20)"},
     {"size", 0, OPTION_STRING, AT(size), "WxH", 0, 0, "draw pictures of this size as well (px)"},
     {"raster", 0, OPTION_STRING, AT(raster), "WORD", 0, 0,
@@ -45,6 +46,14 @@ static const Option OPTIONS[] = {
     {"frames", 0, OPTION_WHOLE, AT(bench.image.frames), "N", 1, 1e6,
      "image: measured pictures (default 15)"},
     {"no-error", 0, OPTION_SWITCH, AT(no_error), NULL, 0, 0, "image: times only"},
+    {"cases", 0, OPTION_WHOLE, AT(bench.stress.cases), "N", 1, 1e6,
+     "stress: random cases of each form of a solver (default 5000)"},
+    {"seed", 0, OPTION_WHOLE, AT(bench.stress.seed), "N", 0, 2e9,
+     "stress: start of its random numbers (default 1)"},
+    {"case", 0, OPTION_STRING, AT(bench.stress.text), "TEXT", 0, 0,
+     "stress: this case of --algo, as one that failed was printed, or 'plain'"},
+    {"no-shrink", 0, OPTION_SWITCH, AT(no_shrink), NULL, 0, 0,
+     "stress: print failures as they were found, not made smaller"},
     {"json", 0, OPTION_STRING, AT(bench.output.json), "FILE", 0, 0, "write the rows as JSON"},
     {"csv", 0, OPTION_STRING, AT(bench.output.csv), "FILE", 0, 0,
      "write the rows as CSV (not image, images, scenes)"},
@@ -184,6 +193,9 @@ static Result read_words(Values *values, Error *error)
     options->raster = (Raster)raster;
     options->image.scheme.oit = (Oit)oit;
     options->image.no_error = values->no_error;
+    options->stress.shrinks = !values->no_shrink;
+    if (options->steps) options->stress.steps = options->steps;
+    if (!options->steps) options->steps = 200;
     options->gpu.software = values->software;
     if (values->osmesa) options->gpu.backend = GPU_BACKEND_OSMESA;
     return result;
@@ -197,8 +209,8 @@ Result bench_options_read(BenchOptions *options, int argc, char **argv,
     Rows rows;
     Values values = {.bench = {.method = {NULL, "", ""},
                                .seconds = 60,
-                               .steps = 200,
                                .warm_up = 20,
+                               .stress = stress_options_default(),
                                .image = image_options_default(),
                                .gpu = {.device = -1}}};
     int first = 0;

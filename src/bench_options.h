@@ -4,6 +4,7 @@
 
 #include "bench_image.h"
 #include "bench_method.h"
+#include "bench_stress.h"
 #include "bench_table.h"
 #include "gpu.h"
 
@@ -19,6 +20,7 @@ typedef struct BenchOptions {
     int rate_count;                  // 0: the part's own
     double seconds;                  // of long runs
     int steps, warm_up;              // measured, and not measured before that
+    StressOptions stress;            // but for its method
     int size[2];                     // picture to draw in px; 0: no drawing
     Raster raster;                   // how hair is drawn
     ImageOptions image;              // but for what is above

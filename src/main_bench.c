@@ -8,6 +8,7 @@
 #include "bench_shaders.h"
 #include "bench_speed.h"
 #include "bench_step.h"
+#include "bench_stress.h"
 #include "interrupt.h"
 #include "json_write.h"
 #include "suggest.h"
@@ -93,6 +94,23 @@ static Result run_images(const BenchOptions *arguments, const Gpu *gpu, Error *e
     return result;
 }
 
+static Result run_stress(const BenchOptions *arguments, const Gpu *gpu, Error *error)
+{
+    Error unwritten;
+    const char *json = arguments->output.json, *variant = arguments->method.variant;
+    StressOptions options = arguments->stress;
+    options.algo = arguments->method.algo, options.variant = *variant ? variant : NULL;
+    if (*arguments->method.settings)
+        return error_set(error, RESULT_USAGE, "stress: draws %s itself, or takes it from --case",
+                         arguments->method.settings);
+    json_t *rows = json ? json_array() : NULL;
+    Result result = bench_stress(gpu, &options, stdout, rows, error);
+    if (rows && result != RESULT_USAGE && json_write_file(rows, json, &unwritten) != RESULT_OK)
+        result = error_set(error, RESULT_FAILED, "%s", unwritten.text);
+    json_decref(rows);
+    return result;
+}
+
 static Result run_shaders(const BenchOptions *arguments, const Gpu *gpu, Error *error)
 {
     (void)arguments;
@@ -116,6 +134,8 @@ static const struct {
      "drawing with --size), c (split in plain C), strands, vertices, threads, start"},
     {"scenes", run_scenes,
      "frames with followers, asleep, and of two sections: --set NAME (default 10k16), --algo"},
+    {"stress", run_stress,
+     "random circumstances for every solver; the smallest case that breaks a rule, if one does"},
     {"image", run_image,
      "drawing --set NAME or --tfx FILE: its time, and its error against the exact picture"},
     {"images", run_images, "the same for every scheme, sets of hair and the files named"},

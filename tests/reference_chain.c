@@ -105,7 +105,7 @@ static void find_tensions(const TwinStrand *strand, const Vec *r, const Vec *x, 
 static void pull_implicitly(const TwinStrand *strand, const Vec *v_old, const TwinStep *step,
                             const SectionParams *params, Vec *x)
 {
-    const double theta = 0.25;
+    const double least = 0.25, stiff_from = 8;
     const int n = strand->n;
     Vec r[TWIN_MAX], g[TWIN_MAX];
     double right[TWIN_MAX] = {0}, lambda[TWIN_MAX], stiff[TWIN_MAX + 1] = {0};
@@ -115,7 +115,8 @@ static void pull_implicitly(const TwinStrand *strand, const Vec *v_old, const Tw
     find_tensions(strand, (const Vec *)r, (const Vec *)x, lambda);
     find_bending(strand, step, params, (const Vec *)r, v_old, &bending);
     for (int j = 1; j < n; ++j) {
-        double tension = fmax(lambda[j], 0);
+        double tension = fmax(lambda[j], 0), beyond = fmax(tension - stiff_from, 0);
+        double theta = least + least * beyond / (beyond + stiff_from);
         stiff[j] = theta * tension + bending.mass[j];
         for (int i = 0; i < 3; ++i) {
             double before = r[j][i] - step->dt * (v_old[j][i] - v_old[j - 1][i]);

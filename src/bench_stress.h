@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// `tractrix-bench stress`: random circumstances for every solver, within what is documented, until
+// something breaks; what breaks is made as small as it goes and printed with the command that
+// repeats it.
+#pragma once
+
+#include "gpu.h"
+
+#include <jansson.h>
+
+#include <stdbool.h>
+#include <stdio.h>
+
+typedef struct StressOptions {
+    const char *algo, *variant; // NULL: all
+    const char *text;           // --case: this one instead of random ones; NULL: none
+    int cases;                  // of each solver's form, 1 .. 10^6
+    int steps;                  // of each case, 1 .. 10^6
+    int seed;
+    bool shrinks; // failures are made smaller before they are printed
+} StressOptions;
+
+StressOptions stress_options_default(void);
+
+// Prints a line for each solver's form, those of failures between, and a sum. A case is a strand
+// under a set of circumstances; STRESS_STRANDS strands share a set. `rows`: an object for each form
+// and failure; NULL: not asked for. RESULT_FAILED if a case failed, RESULT_INTERRUPTED after what
+// was done until then has been printed.
+enum { STRESS_STRANDS = 32 };
+Result bench_stress(const Gpu *gpu, const StressOptions *options, FILE *stream, json_t *rows,
+                    Error *error);

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+// The stress test in its short form, every case that once broke a rule, and the tool itself.
+#include "bench_stress.h"
+#include "hair_fixture.h"
+#include "stress_bound.h"
+#include "stress_run.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+// --- Cases.
+
+static void a_case_is_its_text(void **state)
+{
+    (void)state;
+    Random random = random_create(7, 0);
+    for (int i = 0; i < 200; ++i) {
+        StressCase set = stress_case_random("rope", "xpbd", 16, &random),
+                   made = stress_case_random_strand(&set, i, &random),
+                   read = {.algo = "rope", .variant = "xpbd"};
+        char text[1024];
+        Error error = {{0}};
+        stress_case_write(&made, text, sizeof text);
+        if (stress_case_read(&read, text, &error) != RESULT_OK) fail_msg("%s", error.text);
+        assert_memory_equal(made.value, read.value, sizeof made.value);
+    }
+}
+
+static void a_wrong_word_is_refused(void **state)
+{
+    (void)state;
+    static const char *const wrong[][2] = {
+        {"dt=2", "--case: dt: expected 1e-06 to 1, got 'dt=2'"},
+        {"n=2.5", "--case: n: expected 2 to 64, got 'n=2.5'"},
+        {"dt=nan", "--case: dt: expected 1e-06 to 1, got 'dt=nan'"},
+        {"gravty=1", "--case: no 'gravty'; did you mean 'gravity'?"},
+        {"drag", "--case: drag: expected 0.001 to 10000, got 'drag'"},
+        {"spring_coil=5", "--case: spring_coil does not belong to hybrid "},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
+        StressCase read = {.algo = "hybrid", .variant = ""};
+        Error error = {{0}};
+        assert_int_equal(stress_case_read(&read, wrong[i][0], &error), RESULT_USAGE);
+        assert_string_equal(error.text, wrong[i][1]);
+    }
+}
+
+// Simpler and simpler, a case becomes the plain one of the fewest vertices.
+static void every_case_can_be_made_plain(void **state)
+{
+    (void)state;
+    Random random = random_create(3, 0);
+    StressCase stress = stress_case_random("tressfx", "steady", 64, &random), simpler;
+    for (int move = 0; stress_case_simplify(&stress, move, &simpler); ++move) stress = simpler;
+    char text[1024];
+    stress_case_write(&stress, text, sizeof text);
+    assert_string_equal(text, "n=2");
+}
+
+// Reading leaves a strand as it is that has no defects.
+static void strands_are_such_as_reading_leaves(void **state)
+{
+    (void)state;
+    Random random = random_create(5, 0);
+    for (int i = 0; i < 1000; ++i) {
+        StressCase set = stress_case_random("dftl", "", STRESS_VERTICES[i % 4], &random),
+                   stress = stress_case_random_strand(&set, i, &random);
+        int n = (int)stress.value[STRESS_n];
+        float points[64][3];
+        double largest = 0;
+        stress_case_make_strand(&stress, points);
+        for (int j = 0; j < n; ++j)
+            for (int k = 0; k < 3; ++k) largest = fmax(largest, fabs((double)points[j][k]));
+        for (int j = 1; j < n; ++j) {
+            double square = 0;
+            for (int k = 0; k < 3; ++k)
+                square += pow((double)points[j][k] - (double)points[j - 1][k], 2);
+            assert_true(sqrt(square) > 1e-9 && sqrt(square) > 1e-7 * largest);
+        }
+    }
+}
+
+// --- Rules.
+
+static StressVerdict verdict_of(const char *algo, const char *variant, const char *text, int steps)
+{
+    StressCase stress = {.algo = algo, .variant = variant};
+    StressVerdict verdict;
+    Error error = {{0}};
+    if (stress_case_read(&stress, text, &error) != RESULT_OK ||
+        stress_run(&verdict, fixture_gpu(), &stress, 1, steps, &error) != RESULT_OK)
+        fail_msg("%s", error.text);
+    return verdict;
+}
+
+// A pendulum without drag comes back to where it began: its energy is all that it may have, so that
+// a little more would be found.
+static void the_bound_is_as_tight_as_can_be(void **state)
+{
+    (void)state;
+    StressVerdict verdict = verdict_of("hybrid", "", "n=2 dt=0.001 style=0 drag=0", 2000);
+    assert_true(verdict.worst[STRESS_ENERGY] > 0.95 && verdict.worst[STRESS_ENERGY] < 1);
+    // What nothing moves has no energy to lose.
+    verdict = verdict_of("hybrid", "", "gravity=0", 200);
+    assert_true(verdict.worst[STRESS_ENERGY] < 1e-3);
+}
+
+// The bound lets a kick through, and no more than it.
+static void the_heads_motion_counts(void **state)
+{
+    (void)state;
+    const double still[3] = {0}, moved[3] = {0.5, 0, 0};
+    StressCase stress = stress_case_plain("hybrid", "");
+    SectionParams params;
+    StressParams out = {0};
+    stress.value[STRESS_drag] = 0;
+    assert_int_equal(stress_case_params(&stress, &params, NULL), RESULT_OK);
+    StressBound bound = stress_bound_create(&stress, &params, 100);
+    stress_bound_step(&bound, still, 0);
+    stress_bound_fill(&bound, false, &out);
+    assert_true(out.kicks == 0 && out.added == 0);
+    stress_bound_step(&bound, moved, 0);
+    stress_bound_step(&bound, still, 0);
+    stress_bound_fill(&bound, false, &out);
+    assert_true(fabs((double)out.kicks - 2 * 0.5 * 60) < 1e-3); // off at 30 m/s, and stopped
+    assert_true(out.added == 0);
+    section_params_destroy(&params);
+}
+
+// --- What broke once.
+
+static const struct {
+    const char *algo, *variant, *text;
+    int steps;
+    const char *why;
+} BROKEN[] = {
+    {"split", "ball",
+     "n=3 dt=0.090958 jump=0.81078 arm=0.02309 tilt=176.75 shape_seed=10510 strand=25 drag=3.1023 "
+     "style=0.51929",
+     100, "a drawn segment was longer by 1.2e-5, its style nearly opposite to where it is"},
+    {"chain", "", "n=2 dt=0.0017299 length=2.8807e-05 gravity=7558.6 tilt=4.976", 50,
+     "tension a hundred times stiffer than the step: swung up to the side"},
+    {"chain", "",
+     "n=64 dt=1.4744e-05 jump=5.1846 shape=4 shape_seed=56306 strand=16 drag=0 chain_bend=6.4677",
+     1000, "pushed exactly along segments: turned ones were shorter by half"},
+};
+
+static void what_broke_once_holds(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof BROKEN / sizeof *BROKEN; ++i) {
+        StressVerdict verdict =
+            verdict_of(BROKEN[i].algo, BROKEN[i].variant, BROKEN[i].text, BROKEN[i].steps);
+        for (int rule = 0; rule < STRESS_RULES; ++rule)
+            if (verdict.first[rule])
+                fail_msg("%s %s, '%s': %s broken at step %d (%s)", BROKEN[i].algo,
+                         BROKEN[i].variant, BROKEN[i].text, STRESS_RULE_NAMES[rule],
+                         verdict.first[rule], BROKEN[i].why);
+    }
+}
+
+static void no_solver_breaks_a_rule_in_the_short_form(void **state)
+{
+    (void)state;
+    const StressOptions options = {
+        .algo = getenv("TEST_ALGO"), .cases = 256, .steps = 200, .seed = 1, .shrinks = true};
+    Error error = {{0}};
+    if (bench_stress(fixture_gpu(), &options, stdout, NULL, &error) != RESULT_OK)
+        fail_msg("%s", error.text);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_case_is_its_text),
+        cmocka_unit_test(a_wrong_word_is_refused),
+        cmocka_unit_test(every_case_can_be_made_plain),
+        cmocka_unit_test(strands_are_such_as_reading_leaves),
+        cmocka_unit_test(the_bound_is_as_tight_as_can_be),
+        cmocka_unit_test(the_heads_motion_counts),
+        cmocka_unit_test(what_broke_once_holds),
+        cmocka_unit_test(no_solver_breaks_a_rule_in_the_short_form),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
