@@ -27,7 +27,7 @@ layout(std430, binding = BIND_PIXELS_OUT) writeonly buffer Pixels { uvec4 pixels
 
 #define PIXELS (BLOCK_WIDTH * BLOCK_HEIGHT)
 
-const int MOST_TURNS = 65000; // CPU drivers end loops silently after 65,535
+const int MOST_TURNS = 61000, MOST_TOUCHED = 4000; // CPU drivers end loops silently after 65,535 turns in all
 const float LEAST = 1.0 / 1024.0;
 const float LEAST_COVERAGE = 1.0 / 16.0; // as in hair.frag
 
@@ -103,10 +103,7 @@ PACKED pack_pixel(vec4 c)
 
 void main()
 {
-    // A CPU driver gives each thread one half of the groups: dealing them out in turn evens them.
-    int groups = int(gl_NumWorkGroups.x), group = int(gl_WorkGroupID.x), half_of = (groups + 1) / 2;
-    group = group < half_of ? 2 * group : 2 * (group - half_of) + 1;
-    uvec4 job = texelFetch(jobs, group * BLOCK_GROUP + int(gl_LocalInvocationID.x));
+    uvec4 job = texelFetch(jobs, int(gl_GlobalInvocationID.x));
     int block = int(job.x), stride = columns;
     ivec2 corner = ivec2(block % stride, block / stride) * ivec2(BLOCK_WIDTH, BLOCK_HEIGHT);
     vec2 origin = vec2(corner) + 0.5;
@@ -127,8 +124,15 @@ void main()
         hidden[k] = z < 1.0 ? (2.0 * z - 1.0 - draw_params.depth.x) / draw_params.depth.y : 0.0;
     }
 #endif
-    // What the next turns need is fetched turns ahead: its latency hides behind this one's sums.
     int at = int(job.y), last = at + int(job.z) - 1, end = min(last, at + MOST_TURNS - 1);
+    // Records lie far apart: a CPU waits for each turn's, but for many at once where there is nothing else to do.
+    // So all are touched before; a sign of what is never negative keeps compilers from leaving it out.
+    int touched = at, most_touched = min(last, at + MOST_TOUCHED - 1);
+    uint signs = 0u;
+    if (touched <= most_touched) do {
+        signs |= texelFetch(ribbons, int(texelFetch(lists, touched).x) * RIBBON_TEXELS + 2).w;
+    } while (++touched <= most_touched);
+    last -= int(signs >> 31);
     int ribbon = int(texelFetch(lists, max(min(at, last), 0)).x) * RIBBON_TEXELS;
     int next_ribbon = int(texelFetch(lists, max(min(at + 1, last), 0)).x) * RIBBON_TEXELS;
     uvec4 next_ends = texelFetch(ribbons, ribbon), next_shape = texelFetch(ribbons, ribbon + 1),

@@ -6,7 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { AHEAD = 16, LENGTHS = 1024 };
+enum {
+    AHEAD = 16,
+    LENGTHS = 1024,
+    REGION_COLUMNS = 16, // whose lists are composited one after the other: their ribbons
+    REGION_ROWS = 32     // stay in a core's cache
+};
 
 // A range of ribbons on the way to their blocks.
 typedef struct Dealing {
@@ -28,8 +33,9 @@ Result block_lists_create(BlockLists *lists, int columns, int rows, float width,
                           .height = height,
                           .parts = parallel_threads()};
     lists->places = malloc((size_t)lists->parts * blocks * sizeof *lists->places);
-    lists->sorted = malloc(blocks * sizeof *lists->sorted);
-    if (lists->places && lists->sorted) return RESULT_OK;
+    lists->jobs = malloc((blocks + JOB_GROUP) * sizeof *lists->jobs);
+    lists->sorted = malloc((blocks + JOB_GROUP) * sizeof *lists->sorted);
+    if (lists->places && lists->jobs && lists->sorted) return RESULT_OK;
     block_lists_destroy(lists);
     return error_set(error, RESULT_FAILED, "no memory for lists of %zu blocks", blocks);
 }
@@ -37,8 +43,14 @@ Result block_lists_create(BlockLists *lists, int columns, int rows, float width,
 void block_lists_destroy(BlockLists *lists)
 {
     free(lists->places);
+    free(lists->jobs);
     free(lists->sorted);
     *lists = (BlockLists){0};
+}
+
+static int smaller(int a, int b)
+{
+    return a < b ? a : b;
 }
 
 static uint32_t *places_of(const BlockLists *lists, int part)
@@ -159,18 +171,83 @@ static void sort_jobs(const BlockJob *jobs, size_t count, BlockJob *sorted)
     for (size_t i = 0; i < count; ++i) sorted[places[length_of(&jobs[i])]++] = jobs[i];
 }
 
-size_t block_lists_place(BlockLists *lists, int row, int end, const int box[4], BlockJob *jobs)
+// Of a region, sorted by length.
+static size_t place_region(BlockLists *lists, const int in[4], const int box[4], uint32_t *at,
+                           BlockJob *sorted)
+{
+    size_t count = 0;
+    for (int y = in[1]; y < in[3]; ++y)
+        for (int x = in[0]; x < in[2]; ++x) {
+            BlockJob job = place_block(lists, y * lists->columns + x, at);
+            if (job.count || (x >= box[0] && x <= box[2] && y >= box[1] && y <= box[3]))
+                lists->jobs[count++] = job;
+        }
+    sort_jobs(lists->jobs, count, sorted);
+    return count;
+}
+
+static BlockJob idle_job(const BlockLists *lists)
+{
+    return (BlockJob){.block = (uint32_t)(lists->columns * lists->rows)};
+}
+
+static uint64_t turns_of(const BlockLists *lists, size_t group)
+{
+    uint64_t most = 0;
+    for (int k = 0; k < JOB_GROUP; ++k) {
+        uint32_t own = lists->sorted[group * JOB_GROUP + (size_t)k].count;
+        if (own > most) most = own;
+    }
+    return most;
+}
+
+// Ends parts where their share of all work is reached: a group's work is a fifth of what a mean
+// group's is, and as much more as its lists are long. So no part has more than five times its share
+// of the groups. Returns the largest part's number of groups.
+static size_t split(BlockLists *lists, size_t groups)
+{
+    uint64_t all = 0, work = 0;
+    size_t begin = 0, largest = 0;
+    int part = 0;
+    for (size_t g = 0; g < groups; ++g) all += turns_of(lists, g);
+    for (size_t g = 0; g < groups; ++g) {
+        work += 4 * groups * turns_of(lists, g) + all + 1;
+        uint64_t share = (5 * all + 1) * groups / (uint64_t)lists->parts;
+        while (part < lists->parts - 1 && work >= share * (uint64_t)(part + 1))
+            lists->ends[part++] = g + 1;
+    }
+    while (part < lists->parts) lists->ends[part++] = groups;
+    for (part = 0; part < lists->parts; begin = lists->ends[part++])
+        if (lists->ends[part] - begin > largest) largest = lists->ends[part] - begin;
+    return largest;
+}
+
+size_t block_lists_place(BlockLists *lists, int row, int end, const int box[4])
 {
     uint32_t at = 0;
     size_t count = 0;
-    for (int y = row; y < end; ++y)
-        for (int x = 0; x < lists->columns; ++x) {
-            BlockJob job = place_block(lists, y * lists->columns + x, &at);
-            if (job.count || (x >= box[0] && x <= box[2] && y >= box[1] && y <= box[3]))
-                lists->sorted[count++] = job;
+    for (int y = row; y < end; y += REGION_ROWS)
+        for (int x = 0; x < lists->columns; x += REGION_COLUMNS) {
+            const int in[4] = {x, y, smaller(x + REGION_COLUMNS, lists->columns),
+                               smaller(y + REGION_ROWS, end)};
+            count += place_region(lists, in, box, &at, lists->sorted + count);
         }
-    sort_jobs(lists->sorted, count, jobs);
-    return count;
+    while (count % JOB_GROUP) lists->sorted[count++] = idle_job(lists);
+    lists->part_groups = split(lists, count / JOB_GROUP);
+    return lists->part_groups * (size_t)lists->parts * JOB_GROUP;
+}
+
+void block_lists_write_jobs(const BlockLists *lists, BlockJob *jobs)
+{
+    size_t begin = 0;
+    for (int part = 0; part < lists->parts; ++part) {
+        size_t count = (lists->ends[part] - begin) * JOB_GROUP,
+               room = lists->part_groups * JOB_GROUP;
+        memcpy(jobs, lists->sorted + begin * JOB_GROUP, count * sizeof *jobs);
+        for (size_t i = count; i < room; ++i) jobs[i] = idle_job(lists);
+        begin = lists->ends[part];
+        jobs += room;
+    }
 }
 
 void block_lists_fill(BlockLists *lists, const RibbonRecord *ribbons, const uint32_t *order,

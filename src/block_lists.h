@@ -3,9 +3,12 @@
 #pragma once
 
 #include "error.h"
+#include "parallel.h"
 
 #include <stddef.h>
 #include <stdint.h>
+
+enum { JOB_GROUP = 8 }; // jobs that are composited side by side
 
 // A ribbon's record as shaders write and read it (glsl/block.glsl); what matters here is the span.
 // In blocks, whose middles lie at whole numbers: the ribbon's middle line moves by `slope` columns
@@ -31,7 +34,8 @@ typedef struct BlockLists {
     int parts;
     uint32_t
         *places; // [parts][rows * columns], owned: ribbons in a block, later where the next goes
-    BlockJob *sorted; // [rows * columns], owned
+    BlockJob *jobs, *sorted;                 // [rows * columns + JOB_GROUP], owned
+    size_t ends[PARALLEL_MOST], part_groups; // groups of jobs: before a part's end, in the largest
 } BlockLists;
 
 // RESULT_FAILED when memory is short.
@@ -48,10 +52,16 @@ uint64_t block_lists_count(BlockLists *lists, const RibbonRecord *ribbons, const
 // to *size; `row` itself if it alone has more.
 int block_lists_fit(const BlockLists *lists, int row, uint64_t most, uint64_t *size);
 
-// The jobs [(end - row) * columns, at most] of rows row .. end - 1: blocks with a list, and those
-// in `box` (columns and rows, x, y lowest, highest). Neighbours in the result have lists of similar
-// length. Returns how many there are. Once a picture for each row.
-size_t block_lists_place(BlockLists *lists, int row, int end, const int box[4], BlockJob *jobs);
+// Finds the jobs of rows row .. end - 1: blocks with a list, and those in `box` (columns and rows,
+// x, y lowest, highest). They come in groups of JOB_GROUP whose lists have similar lengths,
+// near each other in the picture, and in as many parts of equal work and size as there are threads:
+// drivers on CPUs give each thread one such part of a dispatch. Returns how many jobs there are
+// with those that fill up groups and parts. Once a picture for each row.
+size_t block_lists_place(BlockLists *lists, int row, int end, const int box[4]);
+
+// Writes the jobs of the last block_lists_place. Those that fill up have no list, and the block
+// columns * rows.
+void block_lists_write_jobs(const BlockLists *lists, BlockJob *jobs);
 
 // Writes the lists of those rows, numbers of ribbons in the order of `order`, after
 // block_lists_place.

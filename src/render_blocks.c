@@ -16,6 +16,8 @@ enum {
     ALIGNED_RIBBONS = 16 // at whose multiples every driver lets a buffer's range begin
 };
 
+_Static_assert((int)JOB_GROUP == BLOCK_GROUP, "a group of jobs is a work group");
+
 static int64_t smaller(int64_t a, int64_t b)
 {
     return a < b ? a : b;
@@ -111,22 +113,19 @@ static int64_t pitch(const RenderBlocks *blocks)
            (int64_t)image_channel_size(blocks->kind);
 }
 
+// With a row for lanes that have nothing to do.
 static int64_t picture_bytes(const RenderBlocks *blocks)
 {
-    return pitch(blocks) * rows(blocks) * BLOCK_HEIGHT / blocks->samples;
+    return pitch(blocks) * (rows(blocks) + 1) * BLOCK_HEIGHT / blocks->samples;
 }
 
 static Result make_buffers(RenderBlocks *blocks, Error *error)
 {
     const GpuLimits *limits = blocks->limits;
-    int64_t count = (int64_t)columns(blocks) * rows(blocks);
     Result result = block_lists_create(&blocks->lists, columns(blocks), rows(blocks), BLOCK_WIDTH,
                                        BLOCK_HEIGHT, error);
     if (result == RESULT_OK)
         result = make_room(&blocks->counts, limits, "counts", BLOCK_COUNT_WORDS * 4, 0, error);
-    if (result == RESULT_OK)
-        result = make_room(&blocks->jobs, limits, "blocks",
-                           (count + BLOCK_GROUP) * (int64_t)sizeof(BlockJob), GL_RGBA32UI, error);
     if (result == RESULT_OK)
         result = make_room(&blocks->pixels, limits, "picture", picture_bytes(blocks), 0, error);
     return result;
@@ -321,13 +320,15 @@ static Result deal_band(RenderBlocks *blocks, const int box[4], int row, int end
     const int in_blocks[4] = {block_of(box[0], BLOCK_WIDTH), block_of(box[1], BLOCK_HEIGHT),
                               block_of(box[2], BLOCK_WIDTH), block_of(box[3], BLOCK_HEIGHT)};
     const RibbonRecord *ribbons = map(&blocks->ribbons, blocks->ribbons.size, GL_MAP_READ_BIT);
-    BlockJob *jobs = map(&blocks->jobs, blocks->jobs.size, write);
     uint32_t *numbers = map(&blocks->numbers, blocks->numbers.size, write);
+    size_t count = block_lists_place(&blocks->lists, row, end, in_blocks);
+    *groups = count / BLOCK_GROUP;
+    Result result = make_room(&blocks->jobs, blocks->limits, "blocks",
+                              (int64_t)(count + 1) * (int64_t)sizeof(BlockJob), GL_RGBA32UI, error);
+    BlockJob *jobs = result == RESULT_OK ? map(&blocks->jobs, blocks->jobs.size, write) : NULL;
     bool mapped = ribbons && jobs && numbers;
     if (mapped) {
-        size_t count = block_lists_place(&blocks->lists, row, end, in_blocks, jobs);
-        for (; count % BLOCK_GROUP; ++count) jobs[count] = jobs[count - 1]; // the same twice
-        *groups = count / BLOCK_GROUP;
+        block_lists_write_jobs(&blocks->lists, jobs);
         block_lists_fill(&blocks->lists, ribbons, blocks->order, blocks->seen, row, end, numbers);
     }
     if (ribbons) unmap(&blocks->ribbons);
