@@ -81,13 +81,10 @@ static Result check_target(const RunParams *run, const char *path,
 static Result check_sheet(const RunParams *run, Error *error)
 {
     const int *sheet = run->contact_sheet;
-    const char *expected = NULL;
-    if (sheet[0] == 1 && sheet[1] == 1) return RESULT_OK;
-    if (!*run->output) expected = "a picture to write, -o x.png";
-    if (run->part[1] > 1) expected = "no --part, since one file holds all frames";
-    if (!expected) return RESULT_OK;
-    return error_set(error, RESULT_USAGE, "--contact-sheet %dx%d: expected %s", sheet[0], sheet[1],
-                     expected);
+    if ((sheet[0] == 1 && sheet[1] == 1) || run->part[1] == 1) return RESULT_OK;
+    return error_set(error, RESULT_USAGE,
+                     "--contact-sheet %dx%d: expected no --part, since one file holds all frames",
+                     sheet[0], sheet[1]);
 }
 
 // What can be said before any file is opened.
@@ -171,11 +168,12 @@ static Result aim(Run *run, Error *error)
     if (result == RESULT_OK && params->verbose)
         fprintf(stderr, "camera: fits %d frames, looked at in %.2g s\n", report.frames,
                 report.ms / 1e3);
-    if (result == RESULT_OK && !params->quiet && report.most_step_m > 0)
+    if (result == RESULT_OK && !params->quiet && report.step.most > 0)
         fprintf(stderr,
-                "loop: from the last frame to the first hair moves by %.3g mm at most, else from "
-                "frame to frame by %.3g mm\n",
-                1e3 * (double)report.seam_m, 1e3 * (double)report.most_step_m);
+                "loop: from the last frame to the first hair moves by %.3g mm at most (RMS %.3g), "
+                "from others to the next by %.3g mm (%.3g)\n",
+                1e3 * (double)report.seam.most, 1e3 * (double)report.seam.rms,
+                1e3 * (double)report.step.most, 1e3 * (double)report.step.rms);
     return result;
 }
 

@@ -97,14 +97,17 @@ static Result read_points(Survey *survey, Error *error)
     return result;
 }
 
-static float most_between(const float (*a)[3], const float (*b)[3], size_t count)
+static SurveyMove move_between(const float (*a)[3], const float (*b)[3], size_t count)
 {
     float most = 0;
+    double sum = 0;
     for (size_t i = 0; i < count; ++i) {
         float x = a[i][0] - b[i][0], y = a[i][1] - b[i][1], z = a[i][2] - b[i][2];
-        most = fmaxf(most, x * x + y * y + z * z);
+        float square = x * x + y * y + z * z;
+        most = fmaxf(most, square);
+        sum += (double)square;
     }
-    return sqrtf(most);
+    return (SurveyMove){sqrtf(most), count ? (float)sqrt(sum / (double)count) : 0};
 }
 
 // Reads the points if they have moved since the frame before.
@@ -116,13 +119,14 @@ static Result follow_points(Survey *survey, SurveyReport *report, Error *error)
     survey->before = before;
     Result result = read_points(survey, error);
     if (result != RESULT_OK) return result;
-    if (survey->any)
-        report->most_step_m =
-            fmaxf(report->most_step_m,
-                  most_between((const float(*)[3])survey->points, (const float(*)[3])survey->before,
-                               survey->point_count));
-    else
+    if (survey->any) {
+        SurveyMove step = move_between((const float(*)[3])survey->points,
+                                       (const float(*)[3])survey->before, survey->point_count);
+        report->step.most = fmaxf(report->step.most, step.most);
+        report->step.rms = fmaxf(report->step.rms, step.rms);
+    } else {
         memcpy(survey->first, survey->points, survey->point_count * sizeof *survey->points);
+    }
     survey->changes = survey->simulation.changes;
     survey->any = true;
     return RESULT_OK;
@@ -150,8 +154,8 @@ static Result look(Survey *survey, SurveyReport *report, Error *error)
         ++report->frames;
     }
     if (result == RESULT_OK)
-        report->seam_m = most_between((const float(*)[3])survey->points,
-                                      (const float(*)[3])survey->first, survey->point_count);
+        report->seam = move_between((const float(*)[3])survey->points,
+                                    (const float(*)[3])survey->first, survey->point_count);
     return result;
 }
 

@@ -7,11 +7,16 @@
 #include "gpu.h"
 #include "load.h"
 
+// How far points of hair and mesh move from one picture to another, m.
+typedef struct SurveyMove {
+    float most, rms;
+} SurveyMove;
+
 typedef struct SurveyReport {
-    int frames;        // all of the scene
-    double ms;         // that it took
-    float most_step_m; // largest move of any point of hair or mesh from one frame to the next
-    float seam_m;      // and from the last frame to the first
+    int frames;      // all of the scene
+    double ms;       // that it took
+    SurveyMove step; // the largest `most` and the largest `rms` from one frame to the next
+    SurveyMove seam; // from the last frame to the first
 } SurveyReport;
 
 // Whether the scene asks for it: --framing, or a turntable whose camera is left to the program.

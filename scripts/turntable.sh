@@ -1,0 +1,58 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Hair file or scene -> turntable, in every format that is asked for. Simulates once.
+# usage: turntable.sh ASSET [FORMAT...] [-- OPTION...]
+#   FORMAT   mp4 webm gif sheet frames; default: mp4 sheet (without ffmpeg: sheet)
+#   OPTION   of tractrix-render, for all of them, over what is set below: -- --mesh head.obj --wind 2,0,0
+# Environment: TRACTRIX_BIN folder of the programs (out/release), TURNTABLE_OUT where files go (out/turntable),
+# TURNTABLE_S seconds of a turn (4).
+set -eu
+programs=${TRACTRIX_BIN:-$(dirname "$0")/../out/release}
+out=${TURNTABLE_OUT:-out/turntable}
+seconds=${TURNTABLE_S:-4}
+fail() { echo "turntable.sh: $*" >&2; exit 2; }
+
+[ $# -gt 0 ] || fail "usage: turntable.sh ASSET [mp4|webm|gif|sheet|frames ...] [-- OPTION...]"
+asset=$1
+shift
+formats=
+while [ $# -gt 0 ] && [ "$1" != -- ]; do
+    case $1 in mp4 | webm | gif | sheet | frames) formats="$formats $1" ;;
+    *) fail "$1: expected mp4, webm, gif, sheet or frames, or -- before options" ;; esac
+    shift
+done
+[ $# -eq 0 ] || shift
+if [ -z "$formats" ]; then
+    formats=sheet
+    if command -v ffmpeg >/dev/null; then formats="mp4 sheet"; else echo "turntable.sh: no ffmpeg here: no video" >&2; fi
+fi
+name=$(basename "$asset")
+name=${name%.*}
+mkdir -p "$out"
+cache=$(mktemp "$out/$name.XXXXXX.cache")
+trap 'rm -f "$cache" "$cache.state"' EXIT
+trap 'exit 130' INT TERM
+
+# What moves: 24 frames a second, forces that repeat with the turn, hair that has settled for two turns before.
+frames=$(awk "BEGIN { print int(24 * $seconds + 0.5) }")
+[ "$frames" -gt 0 ] || fail "TURNTABLE_S=$seconds: expected seconds"
+turn_s=$(awk "BEGIN { print $frames / 24 }")
+moves="--frames $frames --fps 24 --sim-rate 120 --gust-repeat $turn_s --preroll $(awk "BEGIN { print 2 * $turn_s }")"
+
+# The picture: a neutral ground, light that stays with the camera, shadows.
+looks="--turntable 360 --quality final --background #8a8d91 --turn-lights"
+
+# shellcheck disable=SC2086 # lists of words
+run() { "$programs/tractrix-render" "$asset" $moves $looks "$@"; }
+run --quiet --cache "$cache" "$@"
+for format in $formats; do
+    case $format in
+    mp4 | webm) run --from-cache "$cache" --size 1280x720 -o "$out/$name.$format" "$@" ;;
+    gif) run --from-cache "$cache" --size 480x360 --every 2 -o "$out/$name.gif" "$@" ;;
+    sheet) run --from-cache "$cache" --size 320x320 --contact-sheet 6x4 -o "$out/${name}_sheet.png" "$@" ;;
+    frames)
+        rm -f "$out/$name"/frame_*.png
+        run --from-cache "$cache" --size 1280x720 -o "$out/$name/" "$@"
+        ;;
+    esac
+done
