@@ -74,7 +74,7 @@ static void turn(Shoot *shoot, const Double3 at, double s)
     }
     double3_flatten(down, d);
     double3_add_scaled(change, recipe->gravity_bend * shoot->step, down);
-    if (shoot->height < shoot->goal)
+    if (shoot->volume > 0.0 && shoot->height < shoot->goal)
         double3_add_scaled(change,
                            RISE * shoot->step * (1.0 - shoot->height / shoot->goal) *
                                (1.0 + recipe->gravity_bend * shoot->goal),

@@ -91,6 +91,43 @@ static void distances_to_a_box_are_exact(void **state)
     mesh_destroy(&mesh);
 }
 
+// A tetrahedron is inside of all its planes. This one is sharp: beside an edge or a corner of it
+// one face's normal alone would call the outside inside. Corners are exact, planes are off by
+// 1e-16.
+static void sharp_edges_and_corners_have_two_sides(void **state)
+{
+    (void)state;
+    static const float corners[4][3] = {{-1, 0, 0}, {1, 0.25f, 0}, {0, 0.25f, -1}, {0, 0.375f, 1}};
+    static const uint32_t faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+    Mesh mesh;
+    Surface surface;
+    assert_int_equal(mesh_create(&mesh, 4, 4, NULL), RESULT_OK);
+    memcpy(mesh.position, corners, sizeof corners);
+    memcpy(mesh.triangle, faces, sizeof faces);
+    mesh_compute_normals(&mesh);
+    assert_int_equal(surface_create(&surface, &mesh, "mesh", NULL), RESULT_OK);
+    Random random = random_create(5, 0);
+    SurfacePoint nearest = {0};
+    int inside = 0;
+    for (int i = 0; i < 20000; i++) {
+        Double3 p, normal, at;
+        double height = -INFINITY;
+        for (int k = 0; k < 3; k++) p[k] = (k == 1 ? 1.0 : 3.0) * (random_real(&random) - 0.5);
+        for (uint32_t t = 0; t < 4; t++) {
+            surface_triangle(&mesh, t, normal);
+            double3_from_float(mesh.position[faces[t][0]], at);
+            double3_subtract(p, at, at);
+            height = fmax(height, double3_dot(at, normal));
+        }
+        if (fabs(height) < 1e-12) continue;
+        assert_true((surface_nearest(&surface, p, &nearest) < 0) == (height < 0));
+        inside += height < 0;
+    }
+    assert_true(inside > 100);
+    surface_destroy(&surface);
+    mesh_destroy(&mesh);
+}
+
 // The tree finds what looking at all triangles finds, whatever triangle it begins with.
 static void the_tree_misses_nothing(void **state)
 {
@@ -167,6 +204,7 @@ int main(void)
         cmocka_unit_test(sine_and_cosine_are_near_the_librarys),
         cmocka_unit_test(noise_is_even_and_smooth),
         cmocka_unit_test(distances_to_a_box_are_exact),
+        cmocka_unit_test(sharp_edges_and_corners_have_two_sides),
         cmocka_unit_test(the_tree_misses_nothing),
         cmocka_unit_test(texture_coordinates_have_axes),
         cmocka_unit_test(triangles_without_area_are_counted),
