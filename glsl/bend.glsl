@@ -3,8 +3,8 @@
 // frames are turned as little as possible from segment to segment. Needs keep.glsl, lane.glsl.
 //
 // The head's rotation is the frame Q_0. Segment j of direction t_j would go on as the style does along a_j = Q_{j-1} (the style's
-// direction j); Q_j is Q_{j-1} turned by the smallest rotation from a_j to t_j. Energy: E = sum beta_j (1 - t_j.a_j), beta_j = K (n-1)^2 l_j, so
-// that K (m/s^2) means the same for any n: its weight turns a strand that is held horizontally by about g/(2K) radians.
+// direction j); Q_j is Q_{j-1} turned by the smallest rotation from a_j to t_j. Energy: E = sum beta_j (1 - t_j.a_j), beta_j = K (n-1)^2 l_j: the
+// weight of a strand that is held horizontally turns its first joint by about g/(2K) radians, whatever n (and all of it by (n-1)/3 as much).
 //
 // Its gradient by the directions, exactly: with w_k the small rotation of frame k, t_k x dt_k across t_k, and along it, because a smallest
 // rotation does not twist, (w_k - w_{k-1}).(a_k + t_k) = 0. From tip to root G_k gathers what multiplies w_k in dE:
@@ -12,7 +12,8 @@
 // so twist is handed on down to the root, and forces and moments are balanced.
 //
 // In time: forces of the positions at the step's start, and for masses M = 1 + MASS dt^2 b D^T D (D: differences along the strand, b =
-// K (n-1)^2/l), which leaves leapfrog's energy and all rest states as they are and bounds b dt^2/M at any stiffness.
+// K (n-1)^2/l), which leaves leapfrog's energy as it is and bounds b dt^2/M at any stiffness. (Rest states under load are right in the limit of
+// short steps, probably because tensions are found for masses of 1: docs/benchmarks.md, beams.)
 const float MASS = 3.0;
 
 #define BEND step_params.own[0].y // K

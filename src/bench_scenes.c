@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "bench_scenes.h"
+#include "bench_speed.h"
 #include "simulation.h"
 #include "stats.h"
 #include "strands_make.h"
@@ -141,40 +142,69 @@ static Result measure_frames(SpeedTimes *times, Simulation *simulation, const Ro
     return result;
 }
 
-static Result measure_row(const Gpu *gpu, const Row *row, const BenchOptions *options, FILE *stream,
-                          json_t *rows, Error *error)
+// --- Rows.
+
+typedef struct Line {
+    const char *scene, *algo, *variant, *set;
+    long guides, followers;
+    SpeedTimes times;
+    char command[256];
+} Line;
+
+#define AT(member) offsetof(Line, member)
+static const Column COLUMNS[] = {
+    {"scene", COLUMN_TEXT, AT(scene), 16},
+    {"algo", COLUMN_TEXT, AT(algo), 9},
+    {"variant", COLUMN_TEXT, AT(variant), 9},
+    {"set", COLUMN_TEXT, AT(set), 5},
+    {"guides", COLUMN_WHOLE, AT(guides), 7},
+    {"followers", COLUMN_WHOLE, AT(followers), 9},
+    {"ms_min", COLUMN_REAL, AT(times.minimum), 9},
+    {"ms_q1", COLUMN_REAL, AT(times.lower_quartile), 9},
+    {"ms_median", COLUMN_REAL, AT(times.median), 9},
+    {"ms_q3", COLUMN_REAL, AT(times.upper_quartile), 9},
+    {"command", COLUMN_CHARS, AT(command), 0},
+};
+
+static void add_line(BenchTable *table, const Row *row, const BenchOptions *options,
+                     const World *world, const SpeedTimes *times)
+{
+    const Method method = {algo_of(options), options->method.variant, options->method.settings};
+    char words[160];
+    Line line = {.scene = row->name,
+                 .algo = method.algo,
+                 .variant = method_variant(&method),
+                 .set = options->set ? options->set : "10k16",
+                 .times = *times};
+    for (int i = 0; i < row->sections; ++i) {
+        line.guides += world->simulation.sections[i].hair.strand_count;
+        line.followers += world->simulation.sections[i].follow.hair.strand_count;
+    }
+    method_format(&method, words, sizeof words);
+    snprintf(line.command, sizeof line.command, "tractrix-bench scenes %s --set %s", words,
+             line.set);
+    bench_table_add(table, &line);
+}
+
+static Result measure_row(const Gpu *gpu, const Row *row, const BenchOptions *options,
+                          BenchTable *table, Error *error)
 {
     World world;
     SpeedTimes times = {0};
-    uint64_t guides = 0, followers = 0;
     Result result = world_create(&world, gpu, row, options, error);
     if (result == RESULT_OK)
         result = measure_frames(&times, &world.simulation, row, options, error);
-    for (int i = 0; i < row->sections && result == RESULT_OK; ++i) {
-        guides += world.simulation.sections[i].hair.strand_count;
-        followers += world.simulation.sections[i].follow.hair.strand_count;
-    }
+    if (result == RESULT_OK) add_line(table, row, options, &world, &times);
     world_destroy(&world);
-    if (result != RESULT_OK) return result;
-    fprintf(stream, "%-16s %-8s %8llu %9llu %9.4f %9.4f\n", row->name, algo_of(options),
-            (unsigned long long)guides, (unsigned long long)followers, times.median, times.minimum);
-    fflush(stream);
-    if (rows)
-        json_array_append_new(rows,
-                              json_pack("{s:s, s:s, s:I, s:I, s:i, s:f, s:f}", "scene", row->name,
-                                        "algo", algo_of(options), "guides", (json_int_t)guides,
-                                        "followers", (json_int_t)followers, "steps", options->steps,
-                                        "median_ms", times.median, "min_ms", times.minimum));
-    return RESULT_OK;
+    return result;
 }
 
-Result scenes_measure(const Gpu *gpu, const BenchOptions *options, FILE *stream, json_t *rows,
-                      Error *error)
+Result scenes_run(const BenchOptions *options, const Gpu *gpu, Error *error)
 {
-    Result result = RESULT_OK;
-    fprintf(stream, "%-16s %-8s %8s %9s %9s %9s\n", "scene", "algo", "guides", "followers",
-            "frame ms", "(min)");
+    BenchTable table;
+    Result result = bench_table_open(&table, COLUMNS, sizeof COLUMNS / sizeof *COLUMNS, gpu,
+                                     &options->output, stdout, error);
     for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS && result == RESULT_OK; ++i)
-        result = measure_row(gpu, &ROWS[i], options, stream, rows, error);
-    return result;
+        result = measure_row(gpu, &ROWS[i], options, &table, error);
+    return bench_table_close(&table, result, error);
 }

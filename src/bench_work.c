@@ -40,8 +40,8 @@ enum { LEVEL_COUNT = sizeof LEVELS / sizeof *LEVELS, SET_COUNT = sizeof SETS / s
 
 // A frame is what is timed: its steps, and the positions that are drawn. Rounds over all points,
 // so that a noisy minute hits none alone.
-enum { FPS = 60, ROUNDS = 2, WARM_UP = 3, FEWEST = 3, MOST_SAMPLES = 30 };
-#define ENOUGH_MS 200.0
+enum { FPS = 60, ROUNDS = 2, WARM_UP = 2, FEWEST = 2, MOST_SAMPLES = 20 };
+#define ENOUGH_MS 250.0 // of a point in a round
 
 typedef struct Point {
     Method method;

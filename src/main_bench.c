@@ -15,16 +15,6 @@
 
 #include <string.h>
 
-static Result run_scenes(const BenchOptions *arguments, const Gpu *gpu, Error *error)
-{
-    json_t *rows = json_array();
-    Result result = scenes_measure(gpu, arguments, stdout, rows, error);
-    if (result == RESULT_OK && arguments->output.json)
-        result = json_write_file(rows, arguments->output.json, error);
-    json_decref(rows);
-    return result;
-}
-
 static Result add_image(ImageBench *bench, const ImageOptions *options, json_t *rows, Error *error)
 {
     ImageResult row;
@@ -132,7 +122,7 @@ static const struct {
     {"speed", speed_run,
      "solvers' steps. Parts: memory, sets (--set, --tfx or all of the thesis's; files named; "
      "drawing with --size), c (split in plain C), strands, vertices, threads, start"},
-    {"scenes", run_scenes,
+    {"scenes", scenes_run,
      "frames with followers, asleep, and of two sections: --set NAME (default 10k16), --algo"},
     {"stress", run_stress,
      "random circumstances for every solver; the smallest case that breaks a rule, if one does"},

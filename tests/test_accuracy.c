@@ -41,7 +41,15 @@ static void the_order_is_the_slope_of_a_line(void **state)
     const double rates[] = {30, 60, 120}, errors[] = {0.16, 0.04, 0.01};
     double spread;
     assert_true(fabs(accuracy_order(rates, errors, 3, &spread) - 2) < 1e-12);
+    assert_true(spread < 1e-6); // the root of what rounding leaves
     assert_true(accuracy_order(rates, errors, 1, &spread) == 0);
+    assert_true(isnan(spread));
+    // Off a line by 1 at one end of three points a unit apart: the residuals' standard deviation is
+    // 1/sqrt(6), over the spread of x, sqrt(2).
+    const double units[] = {1, exp(1), exp(2)};
+    assert_true(fabs(accuracy_order(units, (const double[]){exp(1), 1, 1}, 3, &spread) - 0.5) <
+                1e-12);
+    assert_true(fabs(spread - sqrt(1.0 / 6 / 2)) < 1e-12);
 }
 
 // Hair that does not move is off by as much as the exact strand has moved.

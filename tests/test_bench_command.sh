@@ -82,6 +82,10 @@ else
     skip "threads are of llvmpipe"
 fi
 
+claim "scenes have rows of the same form"
+run 0 scenes --set 1k16 --steps 1 --warm-up 0 --algo dftl --csv "$work/scenes.csv"
+same "$(field "$work/scenes.csv" guides | tail -1)" 2000 "guides of two sections"
+
 claim "wrong usage ends with 2 and one line that helps"
 run 2 stepp; says "did you mean 'step'"
 run 2 accuracy --part motion; says "motions"
