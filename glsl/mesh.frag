@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Lambert's plain matt surface, in linear light. Surfaces seen from behind are lit as from in front.
 #include "draw.h"
+#define MESH_TAPS 4 // of its own map, whose texels are seen where light grazes it
 #include "lights.glsl"
 
 in vec3 world_position;

@@ -6,6 +6,7 @@
 layout(location = 0) in vec3 position; // m, the head's frame
 layout(location = 1) in vec3 normal;
 
+invariant gl_Position; // by both of its programs
 out vec3 world_position;
 out vec3 world_normal;
 

@@ -23,8 +23,7 @@ static Result build(RenderFloor *render, const Floor *floor, Shadow shadow, bool
     Result result = RESULT_OK;
     if (!*color) result = shader_build_draw(color, "floor.vert", "floor.frag", defines, error);
     if (result == RESULT_OK && !render->depth)
-        result =
-            shader_build_draw(&render->depth, "floor.vert", "shadow_mesh.frag", defines, error);
+        result = shader_build_draw(&render->depth, "floor.vert", "depth.frag", defines, error);
     if (!render->vertex_array) glGenVertexArrays(1, &render->vertex_array);
     return result;
 }

@@ -54,6 +54,8 @@ Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const float colo
         {"LIGHTS", 1}, {"SHADOW", shadow}, {"SHADOW_BY_MESH", 1}, {NULL, 0}};
     if (result == RESULT_OK)
         result = shader_build_draw(&mesh->program, "mesh.vert", "mesh.frag", defines, error);
+    if (result == RESULT_OK)
+        result = shader_build_draw(&mesh->depth_program, "mesh.vert", "depth.frag", NULL, error);
     if (result != RESULT_OK) {
         render_mesh_destroy(mesh);
         return result;
@@ -66,6 +68,7 @@ Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const float colo
 void render_mesh_destroy(RenderMesh *mesh)
 {
     if (mesh->program) glDeleteProgram(mesh->program);
+    if (mesh->depth_program) glDeleteProgram(mesh->depth_program);
     if (mesh->vertex_array) glDeleteVertexArrays(1, &mesh->vertex_array);
     gpu_buffer_destroy(&mesh->position);
     gpu_buffer_destroy(&mesh->normal);
@@ -73,17 +76,22 @@ void render_mesh_destroy(RenderMesh *mesh)
     *mesh = (RenderMesh){0};
 }
 
-static void draw_to(const RenderMesh *mesh, GLuint frame)
+static void draw_with(const RenderMesh *mesh, GLuint program)
 {
-    glBindFramebuffer(GL_FRAMEBUFFER, frame);
+    glUseProgram(program);
     glDrawElements(GL_TRIANGLES, (GLsizei)(3 * mesh->triangle_count), GL_UNSIGNED_INT, NULL);
 }
 
+// Depth first, so that only what is seen is shaded.
 void render_mesh_draw(const RenderMesh *mesh, const RenderTarget *target)
 {
     if (!mesh->triangle_count) return;
-    glUseProgram(mesh->program);
     glBindVertexArray(mesh->vertex_array);
-    draw_to(mesh, target->hair_frame);
-    draw_to(mesh, target->smooth_frame);
+    glBindFramebuffer(GL_FRAMEBUFFER, target->hair_frame);
+    draw_with(mesh, mesh->depth_program);
+    glBindFramebuffer(GL_FRAMEBUFFER, target->smooth_frame);
+    draw_with(mesh, mesh->depth_program);
+    glDepthFunc(GL_LEQUAL);
+    draw_with(mesh, mesh->program);
+    glDepthFunc(GL_LESS);
 }

@@ -8,7 +8,7 @@
 #include "shader.h"
 
 typedef struct RenderMesh {
-    GLuint program, vertex_array;
+    GLuint program, depth_program, vertex_array;
     GpuBuffer position, normal, triangle; // float[3], float[3], uint[3]
     uint32_t triangle_count;              // 0: no mesh, nothing is done
     float low[3], high[3];                // bounds in the head's frame, m

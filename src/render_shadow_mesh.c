@@ -23,7 +23,7 @@ Result render_shadow_mesh_reserve(RenderShadowMesh *shadow, int maps, Error *err
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, shadow->depth, 0);
     glDrawBuffer(GL_NONE);
     Result result =
-        shader_build_draw(&shadow->program, "shadow_mesh.vert", "shadow_mesh.frag", NULL, error);
+        shader_build_draw(&shadow->program, "shadow_mesh.vert", "depth.frag", NULL, error);
     if (result == RESULT_OK) result = gpu_check("the mesh's shadow map", error);
     shadow->maps = maps;
     if (result != RESULT_OK) render_shadow_mesh_destroy(shadow);
