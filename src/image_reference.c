@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "image_reference.h"
 #include "image_shapes.h"
+#include "parallel.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -151,39 +152,66 @@ static void write_row(const Row *row, const double background[4], Image *image)
     }
 }
 
-static Result draw_rows(Row *row, const Shapes *shapes, const double background[4], Image *image,
-                        Error *error)
+// A picture that is being drawn: rows of pixels are dealt out to the threads in turn, and no row
+// knows of another.
+typedef struct Drawing {
+    const Shapes *shapes;
+    const double *background; // [4], linear, premultiplied
+    Image *image;
+    int side, parts;
+    Result results[PARALLEL_MOST];
+    Error errors[PARALLEL_MOST];
+} Drawing;
+
+static Result draw_row(Row *row, const Drawing *drawing, Error *error)
 {
-    for (row->row = 0; row->row < image->height; ++row->row) {
-        row->count = 0;
-        for (uint32_t i = 0; i < shapes->count; ++i) {
-            const Shape *shape = &shapes->shapes[i];
-            if (shape->top >= row->row + 1 || shape->bottom <= row->row) continue;
-            Result result = add_shape(row, shape, i, error);
-            if (result != RESULT_OK) return result;
-        }
-        sort_by_sample(row);
-        write_row(row, background, image);
+    const Shapes *shapes = drawing->shapes;
+    row->count = 0;
+    for (uint32_t i = 0; i < shapes->count; ++i) {
+        const Shape *shape = &shapes->shapes[i];
+        if (shape->top >= row->row + 1 || shape->bottom <= row->row) continue;
+        Result result = add_shape(row, shape, i, error);
+        if (result != RESULT_OK) return result;
     }
+    sort_by_sample(row);
+    write_row(row, drawing->background, drawing->image);
     return RESULT_OK;
+}
+
+static void draw_part(void *data, int part)
+{
+    Drawing *drawing = data;
+    Error *error = &drawing->errors[part];
+    Row row = {.width = drawing->image->width, .side = drawing->side};
+    size_t samples = (size_t)row.width * (size_t)row.side * (size_t)row.side;
+    row.first = malloc((samples + 1) * sizeof *row.first);
+    Result result = row.first
+                        ? RESULT_OK
+                        : error_set(error, RESULT_FAILED, "no memory for %zu sub-samples", samples);
+    for (row.row = part; row.row < drawing->image->height && result == RESULT_OK;
+         row.row += drawing->parts)
+        result = draw_row(&row, drawing, error);
+    free(row.hits);
+    free(row.sorted);
+    free(row.first);
+    drawing->results[part] = result;
 }
 
 Result image_reference_draw(Image *image, const ReferenceScene *scene, int side, Error *error)
 {
     Shapes shapes = {0};
-    Row row = {.width = image->width, .side = side};
     double background[4] = {[3] = scene->background[3]};
     for (int k = 0; k < 3; ++k)
         background[k] = image_linear_from_srgb(scene->background[k]) * scene->background[3];
-    size_t samples = (size_t)image->width * (size_t)side * (size_t)side;
+    Drawing drawing = {.shapes = &shapes,
+                       .background = background,
+                       .image = image,
+                       .side = side,
+                       .parts = scene->threads ? scene->threads : parallel_threads()};
     Result result = shapes_create(&shapes, scene, image->width, image->height, error);
-    row.first = malloc((samples + 1) * sizeof *row.first);
-    if (result == RESULT_OK && !row.first)
-        result = error_set(error, RESULT_FAILED, "no memory for %zu sub-samples", samples);
-    if (result == RESULT_OK) result = draw_rows(&row, &shapes, background, image, error);
+    if (result == RESULT_OK) parallel_run(drawing.parts, draw_part, &drawing);
+    for (int i = 0; i < drawing.parts && result == RESULT_OK; ++i)
+        if ((result = drawing.results[i]) != RESULT_OK) *error = drawing.errors[i];
     shapes_destroy(&shapes);
-    free(row.hits);
-    free(row.sorted);
-    free(row.first);
     return result;
 }

@@ -29,13 +29,16 @@ typedef struct ReferenceItem {
     const SectionParams *material; // colours, opacity, tip_ratio
     float radius;                  // fibre radius at the root, m
     const Paint *paint;            // colours, opacity and thickness by vertex; NULL: the material's
+    const float *left; // [light_count][vertex_count]: the share of each light that reaches
+                       // a vertex (shadow_reference_fill); NULL: all
 } ReferenceItem;
 
 // A vertex that is to be shaded, and its answer, linear RGB.
 typedef struct ReferenceVertex {
-    double position[3];           // m, in the world
-    double tangent[3], to_eye[3]; // unit
-    double base[3];               // the hair's colour there, linear
+    double position[3];            // m, in the world
+    double tangent[3], to_eye[3];  // unit
+    double base[3];                // the hair's colour there, linear
+    double left[SCENE_MAX_LIGHTS]; // share of each light that shadows leave
 } ReferenceVertex;
 
 struct ReferenceScene;
@@ -55,11 +58,13 @@ typedef struct ReferenceScene {
     float mesh_color[4]; // drawn in one linear colour, premultiplied
     float background[4]; // sRGB and opacity 0..1
     uint32_t seed;       // of what varies by strand
+    int threads;         // up to PARALLEL_MOST, the picture is the same; 0: as processors are there
 } ReferenceScene;
 
 enum { REFERENCE_SIDE = 16 };
 
 // Draws into `image`, which has a size and 3 (opaque background) or 4 channels, with `side` x
-// `side` sub-samples a pixel, >= 1. Takes time with the covered sub-samples, about 0.1 us each, and
-// memory with those of one row of pixels. RESULT_FAILED when memory is short.
+// `side` sub-samples a pixel, >= 1. Takes time with the covered sub-samples, about 0.1 us each on
+// one thread, and memory with those of one row of pixels for each thread. RESULT_FAILED when memory
+// is short.
 Result image_reference_draw(Image *image, const ReferenceScene *scene, int side, Error *error);

@@ -89,7 +89,7 @@ static void shade_kajiya(const ReferenceScene *scene, const SectionParams *m,
                     (1 - sky) * (scene->ground ? scene->ground[k] : 1));
     for (uint32_t i = 0; i < scene->light_count; ++i) {
         const Light *light = &scene->lights[i];
-        double to_light[3], intensity = reaching(light, v->position, to_light);
+        double to_light[3], intensity = v->left[i] * reaching(light, v->position, to_light);
         double t = angle(v->tangent, to_light), cone = acos(-1) - t;
         double first = fmax(cos(cone + 2 * tilt - e), 0),
                second = fmax(cos(cone - 3 * tilt - e), 0);
@@ -142,6 +142,8 @@ static Vertex find_vertex(const Projector *p, uint32_t strand, uint32_t j, const
         at.to_eye[k] = (double)p->scene->view->eye[k] - x[j][k];
         at.base[k] = tint[k] * (paint && paint->color ? paint->color[vertex][k] : p->base[k]);
     }
+    for (uint32_t i = 0; i < p->scene->light_count; ++i)
+        at.left[i] = p->item->left ? p->item->left[i * strands->vertex_count + vertex] : 1;
     unit(at.tangent);
     unit(at.to_eye);
     (p->scene->shade ? p->scene->shade : shade_kajiya)(p->scene, m, &at, v.color);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "shadow_reference.h"
+#include "parallel.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -263,4 +264,72 @@ double shadow_reference_light(const ShadowReference *reference, const double poi
         if (depth < limit && is_inside(shape, place[0], place[1])) light *= 1 - shape->opacity;
     }
     return light;
+}
+
+// The vertices whose light is sought, dealt out to the threads by strands.
+typedef struct Filling {
+    const ShadowReference *reference;
+    const ReferenceItem *item;
+    float *left;
+    int parts;
+} Filling;
+
+// Unit, square to the fibre from `a` to `b` and to the light's way there.
+static void find_across(const ShadowReference *reference, const float a[3], const float b[3],
+                        double across[3])
+{
+    double way[3], along[3], length = 0;
+    for (int k = 0; k < 3; ++k) {
+        way[k] = reference->view.perspective ? (double)a[k] - reference->view.origin[k]
+                                             : reference->view.axis[2][k];
+        along[k] = (double)b[k] - a[k];
+    }
+    for (int k = 0; k < 3; ++k) {
+        int m = (k + 1) % 3, n = (k + 2) % 3;
+        across[k] = along[m] * way[n] - along[n] * way[m];
+        length += across[k] * across[k];
+    }
+    for (int k = 0; k < 3; ++k) across[k] /= fmax(sqrt(length), 1e-30);
+}
+
+// Over the half of the segment from vertex `here` that lies before or behind it.
+static double sum_half(const Filling *filling, const float here[3], const float other[3],
+                       double radius)
+{
+    enum { ALONG = 2, ACROSS = SHADOW_REFERENCE_POINTS / 2 / ALONG };
+    double across[3], point[3], sum = 0;
+    find_across(filling->reference, here, other, across);
+    for (int i = 0; i < ALONG * ACROSS; ++i) {
+        double share = 0.5 * (i % ALONG + 0.5) / ALONG,
+               aside = radius * (2 * (i / ALONG + 0.5) / ACROSS - 1);
+        for (int k = 0; k < 3; ++k)
+            point[k] = here[k] + share * ((double)other[k] - here[k]) + aside * across[k];
+        sum += shadow_reference_light(filling->reference, point, radius);
+    }
+    return sum;
+}
+
+static void fill_part(void *data, int part)
+{
+    const Filling *filling = data;
+    const ReferenceItem *item = filling->item;
+    const Strands *strands = item->strands;
+    for (uint32_t s = (uint32_t)part; s < strands->strand_count; s += (uint32_t)filling->parts)
+        for (uint32_t v = strands->first[s]; v < strands->first[s + 1]; ++v) {
+            const float *here = strands->position[v];
+            const float *before = strands->position[v > strands->first[s] ? v - 1 : v + 1],
+                        *after = strands->position[v + 1 < strands->first[s + 1] ? v + 1 : v - 1];
+            double thinning =
+                (1 - (double)item->material->tip_ratio) / (strands_size(strands, s) - 1);
+            double radius = item->radius * (1 - thinning * (v - strands->first[s]));
+            filling->left[v] = (float)((sum_half(filling, here, before, radius) +
+                                        sum_half(filling, here, after, radius)) /
+                                       SHADOW_REFERENCE_POINTS);
+        }
+}
+
+void shadow_reference_fill(const ShadowReference *reference, const ReferenceItem *item, float *left)
+{
+    Filling filling = {reference, item, left, parallel_threads()};
+    parallel_run(filling.parts, fill_part, &filling);
 }

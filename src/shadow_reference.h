@@ -22,8 +22,8 @@ typedef struct ShadowReference {
 } ShadowReference;
 
 // What stands in the light: the scene's items and its mesh; of its other members none matters.
-// Ribbons have the material's shadow_opacity, times that of the paint at the root. A lamp looks at `middle` (world, m), and what is not
-// before it is left out. RESULT_FAILED when memory is short.
+// Ribbons have the material's shadow_opacity, times that of the paint at the root. A lamp looks at
+// `middle` (world, m), and what is not before it is left out. RESULT_FAILED when memory is short.
 Result shadow_reference_create(ShadowReference *reference, const ReferenceScene *scene,
                                const Light *light, const float middle[3], Error *error);
 void shadow_reference_destroy(ShadowReference *reference);
@@ -32,3 +32,10 @@ void shadow_reference_destroy(ShadowReference *reference);
 // before the point, as the fibre that it is part of does, is passed over.
 double shadow_reference_light(const ShadowReference *reference, const double point[3],
                               double clearance);
+
+// left[v]: the mean share over the ribbon that vertex v stands for, half a segment to each side and
+// as wide as the fibre, at SHADOW_REFERENCE_POINTS places: what light that is linear from vertex to
+// vertex comes nearest to. On all processors; any number of them gives the same.
+enum { SHADOW_REFERENCE_POINTS = 16 };
+void shadow_reference_fill(const ShadowReference *reference, const ReferenceItem *item,
+                           float *left);

@@ -232,6 +232,23 @@ static void a_mesh_hides_what_is_behind_it(void **state)
     sitting_close(&sitting);
 }
 
+static void threads_do_not_change_it(void **state)
+{
+    (void)state;
+    uint8_t first[SIDE * SIDE * 4];
+    for (int threads = 1; threads <= 3; ++threads) {
+        Sitting sitting;
+        sitting_open(&sitting, TRANSPARENT);
+        sitting_add(&sitting, make_stack(20), 6, 0.2f);
+        sitting_add(&sitting, make_line((float[3]){-50, -60, 4}, (float[3]){50, 60, 4}), 3, 0.5f);
+        sitting.scene.threads = threads;
+        draw(&sitting);
+        if (threads == 1) memcpy(first, sitting.image.pixels, sizeof first);
+        assert_memory_equal(sitting.image.pixels, first, sizeof first);
+        sitting_close(&sitting);
+    }
+}
+
 // --- The renderer against it.
 
 typedef struct Case {
@@ -347,6 +364,7 @@ int main(void)
         cmocka_unit_test(joints_have_neither_gap_nor_overlap),
         cmocka_unit_test(the_nearer_strand_is_in_front),
         cmocka_unit_test(a_mesh_hides_what_is_behind_it),
+        cmocka_unit_test(threads_do_not_change_it),
         cmocka_unit_test(the_renderer_is_near_the_reference),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
