@@ -2,9 +2,12 @@
 #include "bench_image.h"
 #include "fibre.h"
 #include "image_reference.h"
+#include "scene_quality.h"
+#include "shadow_reference.h"
 #include "stats.h"
 #include "strands_make.h"
 #include "strands_read.h"
+#include "strands_resample.h"
 
 #include "version.h"
 
@@ -13,6 +16,12 @@
 #include <string.h>
 
 enum { WARM_UP = 3, PASS_FRAMES = 8 };
+
+// An exact picture; without pixels until it is needed.
+typedef struct Reference {
+    Image image;
+    double seconds; // that it took
+} Reference;
 
 struct ImageBench {
     const Gpu *gpu;
@@ -23,9 +32,14 @@ struct ImageBench {
     Hair hair;
     float radius;
     View view;
-    Image reference; // without pixels until it is needed
-    double reference_s;
+    Reference references[2][2]; // without and with shadows, straight and smooth
 };
+
+// How a scheme draws: parameters are those of the scene, which owns their texts.
+typedef struct Manner {
+    RunParams run;
+    SectionParams material;
+} Manner;
 
 ImageOptions image_options_default(void)
 {
@@ -33,13 +47,24 @@ ImageOptions image_options_default(void)
 }
 
 const ImageScheme IMAGE_SCHEMES[] = {
-    {RASTER_BLOCKS, OIT_AUTO, 0},    {RASTER_QUADS, OIT_NONE, 0},
-    {RASTER_QUADS, OIT_ABUFFER, 1},  {RASTER_QUADS, OIT_ABUFFER, 4},
-    {RASTER_QUADS, OIT_ABUFFER, 8},  {RASTER_QUADS, OIT_ABUFFER, 16},
-    {RASTER_QUADS, OIT_ABUFFER, 32},
+    {.raster = RASTER_BLOCKS},
+    {.raster = RASTER_BLOCKS, .samples = 2},
+    {.raster = RASTER_QUADS, .oit = OIT_NONE},
+    {.raster = RASTER_QUADS, .layers = 1},
+    {.raster = RASTER_QUADS, .layers = 4},
+    {.raster = RASTER_QUADS, .layers = 8},
+    {.raster = RASTER_QUADS, .layers = 16},
+    {.raster = RASTER_QUADS, .layers = 32},
+    {.raster = RASTER_QUADS, .layers = 16, .samples = 2},
+    {.raster = RASTER_BLOCKS, .shadow = SHADOW_APPROX},
+    {.raster = RASTER_BLOCKS, .shadow = SHADOW_DOM},
+    {.raster = RASTER_BLOCKS, .samples = 2, .shadow = SHADOW_DOM},
+    {.raster = RASTER_QUADS, .layers = 8, .shadow = SHADOW_DOM},
+    {.quality = QUALITY_DRAFT},
+    {.quality = QUALITY_FINAL},
 };
 const size_t IMAGE_SCHEME_COUNT = sizeof IMAGE_SCHEMES / sizeof *IMAGE_SCHEMES;
-const char *const IMAGE_SETS[] = {"straight", "curls", "fur", NULL};
+const char *const IMAGE_SETS[] = {"straight", "curls", "fur", "files", NULL};
 
 // The recipes of the sets that look like hair.
 static bool find_recipe(const char *name, StrandsRecipe *recipe)
@@ -62,13 +87,13 @@ static bool find_recipe(const char *name, StrandsRecipe *recipe)
     return false;
 }
 
-static Result read_strands(ImageBench *bench, const ImageOptions *options, Error *error)
+static Result read_strands(Strands *strands, const ImageOptions *options, Error *error)
 {
     StrandsRecipe recipe;
     if (!options->set)
-        return strands_read(&bench->strands, options->file, &(StrandsReadOptions){0}, NULL, error);
-    if (find_recipe(options->set, &recipe)) return strands_make(&bench->strands, &recipe, error);
-    return strands_make_set(&bench->strands, options->set, 1, error);
+        return strands_read(strands, options->file, &(StrandsReadOptions){0}, NULL, error);
+    if (find_recipe(options->set, &recipe)) return strands_make(strands, &recipe, error);
+    return strands_make_set(strands, options->set, 1, error);
 }
 
 static Result fill(ImageBench *bench, const ImageOptions *options, Error *error)
@@ -81,7 +106,7 @@ static Result fill(ImageBench *bench, const ImageOptions *options, Error *error)
     if (result == RESULT_OK) result = section_params_create(&params, error);
     if (result == RESULT_OK) result = scene_add_section(&bench->scene, name, &params, error);
     section_params_destroy(&params);
-    if (result == RESULT_OK) result = read_strands(bench, options, error);
+    if (result == RESULT_OK) result = read_strands(&bench->strands, options, error);
     if (result == RESULT_OK)
         result = hair_create(&bench->hair, &bench->strands, 0, &bench->gpu->limits, error);
     if (result != RESULT_OK) return result;
@@ -112,16 +137,51 @@ void image_bench_destroy(ImageBench *bench)
     hair_destroy(&bench->hair);
     strands_destroy(&bench->strands);
     scene_destroy(&bench->scene);
-    image_destroy(&bench->reference);
+    for (int i = 0; i < 4; ++i) image_destroy(&bench->references[i / 2][i % 2].image);
     free(bench);
 }
 
-static Result find_reference(ImageBench *bench, Error *error)
+static Result find_manner(const ImageBench *bench, const ImageScheme *scheme, Manner *manner,
+                          Error *error)
 {
-    if (bench->reference.pixels) return RESULT_OK;
-    const ReferenceItem item = {.strands = &bench->strands,
-                                .material = &bench->scene.sections[0].params,
-                                .radius = bench->radius};
+    *manner = (Manner){bench->scene.run, bench->scene.sections[0].params};
+    Result result = quality_apply(scheme->quality, SCOPE_RUN, &manner->run, error);
+    if (result == RESULT_OK)
+        result = quality_apply(scheme->quality, SCOPE_SECTION, &manner->material, error);
+    manner->run.raster = scheme->raster;
+    if (scheme->oit != OIT_AUTO) manner->run.oit = scheme->oit;
+    if (scheme->layers) manner->run.oit_layers = scheme->layers;
+    if (scheme->samples) manner->run.samples = scheme->samples;
+    if (scheme->shadow != SHADOW_NONE) manner->run.shadow = scheme->shadow;
+    return result;
+}
+
+// The share of each light that reaches the vertices: [light_count][vertex_count], the caller's.
+static Result find_left(const ReferenceScene *scene, const float middle[3], float **left,
+                        Error *error)
+{
+    uint32_t count = scene->items[0].strands->vertex_count;
+    *left = malloc((size_t)scene->light_count * count * sizeof **left);
+    if (!*left) return error_set(error, RESULT_FAILED, "no memory for %u vertices' light", count);
+    for (uint32_t i = 0; i < scene->light_count; ++i) {
+        float *of_light = *left + (size_t)i * count;
+        for (uint32_t v = 0; v < count; ++v) of_light[v] = 1;
+        if (!scene->lights[i].shadow) continue;
+        ShadowReference shadow;
+        Result result = shadow_reference_create(&shadow, scene, &scene->lights[i], middle, error);
+        if (result != RESULT_OK) return result;
+        shadow_reference_fill(&shadow, &scene->items[0], of_light);
+        shadow_reference_destroy(&shadow);
+    }
+    return RESULT_OK;
+}
+
+static Result draw_reference(const ImageBench *bench, const Manner *manner, const Strands *strands,
+                             Image *image, Error *error)
+{
+    float *left = NULL, middle[3];
+    ReferenceItem item = {
+        .strands = strands, .material = &manner->material, .radius = bench->radius};
     ReferenceScene scene = {.view = &bench->view,
                             .lights = bench->scene.lights,
                             .light_count = bench->scene.light_count,
@@ -129,16 +189,47 @@ static Result find_reference(ImageBench *bench, Error *error)
                             .item_count = 1,
                             .seed = bench->scene.run.seed};
     memcpy(scene.background, bench->scene.run.background, sizeof scene.background);
+    for (int k = 0; k < 3; ++k) middle[k] = 0.5f * (bench->hair.low[k] + bench->hair.high[k]);
+    Result result =
+        manner->run.shadow != SHADOW_NONE ? find_left(&scene, middle, &left, error) : RESULT_OK;
+    item.left = left;
+    if (result == RESULT_OK) result = image_create(image, bench->size[0], bench->size[1], 3, error);
+    if (result == RESULT_OK) result = image_reference_draw(image, &scene, REFERENCE_SIDE, error);
+    free(left);
+    return result;
+}
+
+// Strands with the points of their smooth curves as vertices, if the manner is such.
+static Result smooth_strands(const Manner *manner, Strands *strands, Error *error)
+{
+    uint32_t parts = (uint32_t)manner->material.smooth;
+    if (parts == 1) return RESULT_OK;
+    const ResampleOptions resample = {.count = parts * (strands_size(strands, 0) - 1) + 1,
+                                      .spline = true};
+    return strands_resample(strands, &resample, error);
+}
+
+static Result find_reference(ImageBench *bench, const ImageOptions *options, const Manner *manner,
+                             const Reference **found, Error *error)
+{
+    bool shadow = manner->run.shadow != SHADOW_NONE, smooth = manner->material.smooth > 1;
+    Reference *reference = &bench->references[shadow][smooth];
+    *found = reference;
+    if (reference->image.pixels) return RESULT_OK;
+    Strands strands = {0};
     double begin = stats_clock_ms();
-    Result result = image_create(&bench->reference, bench->size[0], bench->size[1], 3, error);
+    Result result = read_strands(&strands, options, error);
+    if (result == RESULT_OK) result = smooth_strands(manner, &strands, error);
     if (result == RESULT_OK)
-        result = image_reference_draw(&bench->reference, &scene, REFERENCE_SIDE, error);
-    bench->reference_s = (stats_clock_ms() - begin) / 1000;
+        result = draw_reference(bench, manner, &strands, &reference->image, error);
+    strands_destroy(&strands);
+    reference->seconds = (stats_clock_ms() - begin) / 1000;
     return result;
 }
 
 // Over the pixels that differ from the background in either picture.
-static void compare(const ImageBench *bench, const Image *image, ImageResult *result)
+static void compare(const ImageBench *bench, const Reference *reference, const Image *image,
+                    ImageResult *result)
 {
     uint8_t background[3];
     size_t count = (size_t)image->width * (size_t)image->height, covered = 0;
@@ -146,13 +237,14 @@ static void compare(const ImageBench *bench, const Image *image, ImageResult *re
     for (int k = 0; k < 3; ++k)
         background[k] = (uint8_t)lrintf(255 * bench->scene.run.background[k]);
     for (size_t i = 0; i < count; ++i) {
-        const uint8_t *p = image->pixels + 3 * i, *q = bench->reference.pixels + 3 * i;
+        const uint8_t *p = image->pixels + 3 * i, *q = reference->image.pixels + 3 * i;
         if (memcmp(p, background, 3) == 0 && memcmp(q, background, 3) == 0) continue;
         ++covered;
         for (int k = 0; k < 3; ++k) sum += (p[k] - q[k]) * (p[k] - q[k]) / 3.0;
     }
     result->rms = sqrt(sum / (double)(covered ? covered : 1));
     result->covered = (double)covered / (double)count;
+    result->reference_s = reference->seconds;
 }
 
 static int compare_times(const void *a, const void *b)
@@ -186,10 +278,10 @@ static Result time_passes(Renderer *renderer, const RenderFrame *frame, const Re
     return outcome;
 }
 
-static Result draw_frames(ImageBench *bench, Renderer *renderer, int frames, Image *image,
-                          ImageResult *result, Error *error)
+static Result draw_frames(ImageBench *bench, const Manner *manner, Renderer *renderer, int frames,
+                          Image *image, ImageResult *result, Error *error)
 {
-    const RenderItem item = {&bench->hair, &bench->scene.sections[0].params, bench->radius};
+    const RenderItem item = {&bench->hair, &manner->material, bench->radius};
     const RenderFrame frame = {.view = &bench->view,
                                .lights = bench->scene.lights,
                                .light_count = bench->scene.light_count,
@@ -212,31 +304,48 @@ static Result draw_frames(ImageBench *bench, Renderer *renderer, int frames, Ima
                                 : outcome;
 }
 
+static RendererOptions renderer_options(const ImageBench *bench, const RunParams *run)
+{
+    RendererOptions options = {
+        .raster = (Raster)run->raster,
+        .oit = (Oit)run->oit,
+        .oit_layers = run->oit_layers,
+        .width = bench->size[0],
+        .height = bench->size[1],
+        .samples = run->samples,
+        .seed = run->seed,
+        .lod = {run->lod_start, run->lod_end, run->lod_min, run->lod_width},
+        .shadow = {(Shadow)run->shadow, run->shadow_size, run->shadow_spacing}};
+    memcpy(options.background, run->background, sizeof options.background);
+    options.background[3] = 1;
+    return options;
+}
+
 Result image_bench_measure(ImageBench *bench, const ImageOptions *options, ImageResult *result,
                            Error *error)
 {
     Renderer renderer;
     GpuTimer timer;
     Image image = {0};
-    RendererOptions how = {.raster = options->scheme.raster,
-                           .oit = options->scheme.oit,
-                           .oit_layers = options->scheme.layers,
-                           .width = bench->size[0],
-                           .height = bench->size[1],
-                           .seed = bench->scene.run.seed};
-    memcpy(how.background, bench->scene.run.background, sizeof how.background);
-    how.background[3] = 1;
+    Manner manner;
+    const Reference *reference;
     *result = (ImageResult){.rms = -1};
+    Result outcome = find_manner(bench, &options->scheme, &manner, error);
+    if (outcome != RESULT_OK) return outcome;
+    const RendererOptions how = renderer_options(bench, &manner.run);
     gpu_timer_create(&timer, false, bench->gpu->software);
-    Result outcome = renderer_create(&renderer, bench->gpu, &timer, &how, error);
+    outcome = renderer_create(&renderer, bench->gpu, &timer, &how, error);
+    result->raster = renderer.raster;
     if (outcome == RESULT_OK)
         outcome = image_create(&image, bench->size[0], bench->size[1], 3, error);
     if (outcome == RESULT_OK)
-        outcome = draw_frames(bench, &renderer, options->frames, &image, result, error);
+        outcome = draw_frames(bench, &manner, &renderer, options->frames, &image, result, error);
     renderer_destroy(&renderer);
     gpu_timer_destroy(&timer);
-    if (outcome == RESULT_OK && !options->no_error) outcome = find_reference(bench, error);
-    if (outcome == RESULT_OK && !options->no_error) compare(bench, &image, result);
+    if (outcome == RESULT_OK && !options->no_error) {
+        outcome = find_reference(bench, options, &manner, &reference, error);
+        if (outcome == RESULT_OK) compare(bench, reference, &image, result);
+    }
     image_destroy(&image);
     return outcome;
 }
@@ -246,46 +355,61 @@ static const char *word_of(const char *param, int value)
     return param_find(param)->choices[value];
 }
 
+// "quads, k = 8, 2 x 2, dom"; a preset by its word.
+static void name_scheme(const ImageScheme *scheme, char *name, size_t size)
+{
+    char layers[24] = "";
+    bool quads = scheme->raster == RASTER_QUADS || scheme->oit != OIT_AUTO || scheme->layers;
+    if (scheme->oit == OIT_NONE)
+        snprintf(layers, sizeof layers, ", none");
+    else if (quads)
+        snprintf(layers, sizeof layers, ", k = %d", scheme->layers ? scheme->layers : 8);
+    const char *first = scheme->quality != QUALITY_NORMAL ? word_of("quality", (int)scheme->quality)
+                                                          : word_of("raster", (int)scheme->raster);
+    snprintf(name, size, "%s%s%s%s%s", first, layers, scheme->samples == 2 ? ", 2 x 2" : "",
+             scheme->shadow != SHADOW_NONE ? ", " : "",
+             scheme->shadow != SHADOW_NONE ? word_of("shadow", (int)scheme->shadow) : "");
+}
+
 json_t *image_to_json(const ImageBench *bench, const ImageOptions *options,
                       const ImageResult *result)
 {
     const RendererCounts *counts = &result->counts;
+    const ImageScheme *scheme = &options->scheme;
+    char name[64];
+    name_scheme(scheme, name, sizeof name);
     json_t *row = json_pack(
-        "{s:s, s:I, s:I, s:[i,i], s:s, s:s, s:i, s:f, s:f, s:f, s:I, s:I, s:s, s:s, s:s, s:s, s:s}",
+        "{s:s, s:I, s:I, s:[i,i], s:s, s:s, s:s, s:i, s:i, s:s, s:s, s:f, s:f, s:f, s:I, s:I, s:s, "
+        "s:s, s:s, s:s, s:s}",
         "set", bench->name, "strands", (json_int_t)bench->strands.strand_count, "particles",
-        (json_int_t)bench->strands.vertex_count, "size", bench->size[0], bench->size[1], "raster",
-        word_of("raster", (int)options->scheme.raster), "oit",
-        word_of("oit", (int)options->scheme.oit), "layers", options->scheme.layers, "median_ms",
-        result->median_ms, "min_ms", result->min_ms, "covered", result->covered, "segments",
-        (json_int_t)counts->segments, "fragments", (json_int_t)counts->fragments, "passes",
-        result->spans, "renderer", bench->gpu->renderer, "gl_version", bench->gpu->version,
-        "version", TRACTRIX_VERSION, "commit", TRACTRIX_COMMIT);
+        (json_int_t)bench->strands.vertex_count, "size", bench->size[0], bench->size[1], "scheme",
+        name, "raster", word_of("raster", (int)result->raster), "oit",
+        word_of("oit", (int)scheme->oit), "layers", scheme->layers, "samples", scheme->samples,
+        "shadow", word_of("shadow", (int)scheme->shadow), "quality",
+        word_of("quality", (int)scheme->quality), "median_ms", result->median_ms, "min_ms",
+        result->min_ms, "covered", result->covered, "segments", (json_int_t)counts->segments,
+        "fragments", (json_int_t)counts->fragments, "passes", result->spans, "renderer",
+        bench->gpu->renderer, "gl_version", bench->gpu->version, "version", TRACTRIX_VERSION,
+        "commit", TRACTRIX_COMMIT);
     if (row && result->rms >= 0) {
         json_object_set_new(row, "rms", json_real(result->rms));
-        json_object_set_new(row, "reference_s", json_real(bench->reference_s));
+        json_object_set_new(row, "reference_s", json_real(result->reference_s));
     }
     return row;
 }
 
 void image_print_head(FILE *stream)
 {
-    fprintf(stream, "%-24s %-14s %9s %9s %7s %8s  %s\n", "set", "scheme", "draw ms", "(min)", "RMS",
+    fprintf(stream, "%-22s %-26s %9s %9s %7s %8s  %s\n", "set", "scheme", "draw ms", "(min)", "RMS",
             "covered", "passes, ms");
 }
 
 void image_print(const ImageBench *bench, const ImageOptions *options, const ImageResult *result,
                  FILE *stream)
 {
-    const ImageScheme *scheme = &options->scheme;
-    char name[32];
-    const char *raster = word_of("raster", (int)scheme->raster);
-    if (scheme->raster != RASTER_QUADS && scheme->oit == OIT_AUTO && scheme->layers == 0)
-        snprintf(name, sizeof name, "%s", raster);
-    else if (scheme->oit == OIT_NONE)
-        snprintf(name, sizeof name, "%s, none", raster);
-    else
-        snprintf(name, sizeof name, "%s, k = %d", raster, scheme->layers ? scheme->layers : 8);
-    fprintf(stream, "%-24s %-14s %9.2f %9.2f ", bench->name, name, result->median_ms,
+    char name[64];
+    name_scheme(&options->scheme, name, sizeof name);
+    fprintf(stream, "%-22s %-26s %9.2f %9.2f ", bench->name, name, result->median_ms,
             result->min_ms);
     if (result->rms >= 0)
         fprintf(stream, "%7.2f %7.1f%%", result->rms, 100 * result->covered);

@@ -11,8 +11,10 @@
 typedef struct ImageScheme {
     Raster raster;
     Oit oit;
-
-    int layers; // of abuffer that are sorted
+    int layers;      // of abuffer that are sorted
+    int samples;     // across a pixel; 0: as the quality says
+    Shadow shadow;   // none: as the quality says
+    Quality quality; // the defaults of all else
 } ImageScheme;
 
 typedef struct ImageOptions {
@@ -28,6 +30,8 @@ typedef struct ImageResult {
     double median_ms, min_ms; // drawing and reading back
     double rms;               // levels of 255 over covered pixels; negative: not measured
     double covered;           // share of the picture's pixels
+    double reference_s;       // that the exact picture took
+    Raster raster;            // that drew
     RendererCounts counts;    // of one picture
     char spans[256];          // passes and their least ms, with waits between them
 } ImageResult;
@@ -42,7 +46,7 @@ ImageOptions image_options_default(void);
 extern const ImageScheme IMAGE_SCHEMES[];
 extern const size_t IMAGE_SCHEME_COUNT;
 
-// The sets that are worth it: names for ImageOptions.set; ends with NULL.
+// The sets that are worth it, names for ImageOptions.set, and "files"; ends with NULL.
 extern const char *const IMAGE_SETS[];
 
 // NULL and *result for a set that does not exist or a file that cannot be read.
@@ -51,7 +55,9 @@ ImageBench *image_bench_create(const Gpu *gpu, const ImageOptions *options, Resu
 void image_bench_destroy(ImageBench *bench);
 
 // Draws by options->scheme and compares with the reference (image_reference.h), which is found at
-// the first call that needs it.
+// the first call that needs it: with the exact light at the vertices (shadow_reference_fill) for a
+// scheme with shadows, without shadows for one without; smooth strands for one that smoothes; and
+// all strands for one that leaves some out.
 Result image_bench_measure(ImageBench *bench, const ImageOptions *options, ImageResult *result,
                            Error *error);
 

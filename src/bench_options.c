@@ -9,7 +9,7 @@
 // What options_parse fills; numbers that are lists or words come as text first.
 typedef struct Values {
     BenchOptions bench;
-    const char *rates, *size, *raster, *oit;
+    const char *rates, *size, *raster, *oit, *shadow, *quality;
     const char *param[BENCH_MOST_PARAMS]; // of the row of that number below
     bool software, osmesa, no_error, no_shrink;
 } Values;
@@ -43,6 +43,12 @@ static const Option OPTIONS[] = {
      "image, quads: abuffer or none (default auto: abuffer)"},
     {"layers", 0, OPTION_WHOLE, AT(bench.image.scheme.layers), "K", 0, 64,
      "image, quads: fragments of a pixel in order, 1 to 64 (default 0: 8)"},
+    {"samples", 0, OPTION_WHOLE, AT(bench.image.scheme.samples), "N", 1, 2,
+     "image: 2: four samples a pixel (default 1)"},
+    {"shadow", 0, OPTION_STRING, AT(shadow), "WORD", 0, 0,
+     "image: none, approx or dom (default none)"},
+    {"quality", 0, OPTION_STRING, AT(quality), "WORD", 0, 0,
+     "image: a preset, normal, draft or final, for what is not said (default normal)"},
     {"frames", 0, OPTION_WHOLE, AT(bench.image.frames), "N", 1, 1e6,
      "image: measured pictures (default 15)"},
     {"no-error", 0, OPTION_SWITCH, AT(no_error), NULL, 0, 0, "image: times only"},
@@ -177,20 +183,29 @@ static Result read_choice(const char *name, const char *text, int *value, Error 
     RunParams run = {0};
     Result result = param_parse(param_find(name), &run, text, error);
     if (result != RESULT_OK) return error_prefix(error, result, "--%s: ", name);
-    *value = strcmp(name, "raster") == 0 ? run.raster : run.oit;
+    *value = strcmp(name, "raster") == 0    ? run.raster
+             : strcmp(name, "shadow") == 0  ? run.shadow
+             : strcmp(name, "quality") == 0 ? run.quality
+                                            : run.oit;
     return RESULT_OK;
 }
 
 static Result read_words(Values *values, Error *error)
 {
     BenchOptions *options = &values->bench;
-    int raster = 0, oit = 0;
+    int raster = 0, oit = 0, shadow = 0, quality = 0;
     Result result = values->rates ? read_rates(values->rates, options, error) : RESULT_OK;
     if (result == RESULT_OK && values->size) result = read_size(values->size, options->size, error);
     if (result == RESULT_OK && values->raster)
         result = read_choice("raster", values->raster, &raster, error);
     if (result == RESULT_OK && values->oit) result = read_choice("oit", values->oit, &oit, error);
+    if (result == RESULT_OK && values->shadow)
+        result = read_choice("shadow", values->shadow, &shadow, error);
+    if (result == RESULT_OK && values->quality)
+        result = read_choice("quality", values->quality, &quality, error);
     options->raster = (Raster)raster;
+    options->image.scheme.shadow = (Shadow)shadow;
+    options->image.scheme.quality = (Quality)quality;
     options->image.scheme.oit = (Oit)oit;
     options->image.no_error = values->no_error;
     options->stress.shrinks = !values->no_shrink;

@@ -66,15 +66,18 @@ static Result run_images(const BenchOptions *arguments, const Gpu *gpu, Error *e
 {
     ImageOptions options = arguments->image;
     if (arguments->size[0]) memcpy(options.size, arguments->size, sizeof options.size);
+    Result result = bench_options_check_parts(arguments, IMAGE_SETS, error);
+    if (result != RESULT_OK) return result;
     json_t *rows = json_array();
-    Result result = RESULT_OK;
     image_print_head(stdout);
     for (int i = 0; IMAGE_SETS[i] && result == RESULT_OK; ++i) {
         options.set = IMAGE_SETS[i];
-        result = add_images(&options, gpu, rows, error);
+        if (strcmp(options.set, "files") != 0 && bench_options_part(arguments, options.set))
+            result = add_images(&options, gpu, rows, error);
     }
     options.set = NULL;
-    for (int i = 0; i < arguments->file_count && result == RESULT_OK; ++i) {
+    bool files = bench_options_part(arguments, "files");
+    for (int i = 0; i < arguments->file_count && files && result == RESULT_OK; ++i) {
         options.file = arguments->files[i];
         result = add_images(&options, gpu, rows, error);
     }
@@ -128,7 +131,7 @@ static const struct {
      "random circumstances for every solver; the smallest case that breaks a rule, if one does"},
     {"image", run_image,
      "drawing --set NAME or --tfx FILE: its time, and its error against the exact picture"},
-    {"images", run_images, "the same for every scheme, sets of hair and the files named"},
+    {"images", run_images, "the same for every scheme and preset; parts: straight, curls, fur, files (those named)"},
     {"shaders", run_shaders, "compiles every shader variant with warnings as errors"},
 };
 enum { COMMAND_COUNT = sizeof COMMANDS / sizeof *COMMANDS };

@@ -36,7 +36,8 @@ typedef struct RendererOptions {
     LodOptions lod;
     Oit oit;            // how the fragments of a pixel are blended; auto: abuffer. Else quads are
                         // what raster auto is
-    int oit_layers;     // abuffer: how many of them in order, 1 .. 64, the same; 0: 8
+    int oit_layers;     // abuffer: how many of them in order, 1 .. 64, the same; 0: 8, of two
+                        // samples 16
     int64_t pool_bytes; // no larger A-buffer or block lists; 0: what the driver allows
 } RendererOptions;
 

@@ -3,13 +3,14 @@
 
 #include <math.h>
 
-enum { OIT_LAYERS = 8 };
+enum { OIT_LAYERS = 8, OIT_LAYERS_OF_SAMPLES = 16 };
 
 Result render_quads_create(RenderQuads *quads, const Gpu *gpu, const RendererOptions *options,
                            Error *error)
 {
     int layers = options->oit == OIT_NONE  ? (options->aov == AOV_DEPTH)
                  : options->oit_layers > 0 ? options->oit_layers
+                 : options->samples > 1    ? OIT_LAYERS_OF_SAMPLES
                                            : OIT_LAYERS;
     bool nearest = options->aov > AOV_COVERAGE;
     *quads = (RenderQuads){.limits = &gpu->limits,

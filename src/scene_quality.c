@@ -8,9 +8,9 @@ static const struct {
     Quality quality;
     const char *name, *value;
 } PRESETS[] = {
-    {QUALITY_DRAFT, "lod_width", "1"},   {QUALITY_DRAFT, "oit_layers", "4"},
-    {QUALITY_FINAL, "shadow", "dom"},    {QUALITY_FINAL, "shadow_size", "512"},
-    {QUALITY_FINAL, "oit_layers", "16"}, {QUALITY_FINAL, "smooth", "3"},
+    {QUALITY_DRAFT, "lod_width", "1"},     {QUALITY_FINAL, "shadow", "dom"},
+    {QUALITY_FINAL, "shadow_size", "512"}, {QUALITY_FINAL, "samples", "2"},
+    {QUALITY_FINAL, "smooth", "3"},
 };
 
 Result quality_apply(Quality quality, ParamScope scope, void *params, Error *error)
