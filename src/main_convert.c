@@ -78,7 +78,8 @@ static const Option OPTIONS[] = {
 };
 
 static const char *const NOTES[] = {
-    "FILE is a hair file (TressFX 2, 3 or 4, HAIR, USC-HairSalon, CT2Hair, Wavefront lines), a "
+    "FILE is a hair file (TressFX 2, 3 or 4, HAIR, USC-HairSalon, CT2Hair, Wavefront lines, USD "
+    "curves), a "
     "name "
     "with %d or %04d that stands for numbered ones, or a cache of tractrix-render. Several hair "
     "files become one. Without -o, --stats and --json it is only told what they are.",

@@ -8,6 +8,7 @@
 #include "strands_order.h"
 #include "tfx_binary.h"
 #include "tfx_text.h"
+#include "usd_reader.h"
 
 #include <math.h>
 #include <string.h>
@@ -18,7 +19,7 @@ static StrandsKind detect(const Bytes *bytes)
 {
     if (hair_file_matches(bytes)) return STRANDS_HAIR;
     if (tfx_text_matches(bytes)) return STRANDS_TFX2_TEXT;
-    if (bytes->size >= 5 && memcmp(bytes->data, "#usda", 5) == 0) return STRANDS_USD;
+    if (usd_reader_matches(bytes)) return STRANDS_USD;
     if (obj_file_matches(bytes)) return STRANDS_OBJ;
     float version = tfx_binary_version(bytes);
     if (version > 0.0f) return version < 4.0f ? STRANDS_TFX3 : STRANDS_TFX4;
@@ -45,7 +46,7 @@ static Result parse(StrandsSource *source, Reader *reader, StrandsKind kind)
     case STRANDS_OBJ:
         return obj_file_read(source, reader);
     case STRANDS_USD:
-        return reader_fail(reader, "USD files are only written, not read");
+        return usd_reader_read(source, reader);
     case STRANDS_KINDS:
         break;
     }
@@ -91,6 +92,7 @@ static void report_source(StrandsReport *report, const StrandsSource *source, St
     report->declared_strands = source->strands.strand_count;
     report->declared_vertices = source->strands.vertex_count;
     report->shuffled = source->shuffle;
+    report->samples = source->samples;
     report->rotation_was_deg = source->rotation_was_deg;
 }
 
@@ -125,9 +127,10 @@ static Result refuse_empty(const StrandsReport *report, const char *name, Error 
 static Result finish(StrandsSource *source, const char *name, const StrandsReadOptions *options,
                      StrandsReport *report, Error *error)
 {
-    report->unit_guessed = options->unit == 0.0f;
-    report->unit_used = report->unit_guessed ? guess_unit(source, report->kind) : options->unit;
-    strands_convert(source, (double)report->unit_used, options->up_z);
+    float told = options->unit != 0.0f ? options->unit : source->unit;
+    report->unit_guessed = told == 0.0f;
+    report->unit_used = report->unit_guessed ? guess_unit(source, report->kind) : told;
+    strands_convert(source, (double)report->unit_used, options->up_z || source->up_z);
     Result result = strands_mend(source, name, report, error);
     Strands *strands = &source->strands;
     if (result == RESULT_OK && source->shuffle && strands->strand_count > 1)

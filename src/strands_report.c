@@ -133,7 +133,8 @@ void strands_report_describe(const StrandsReport *report, const char *path, Defe
                            "not read"},
     };
     const Defect *defect = &report->defects[kind];
-    bool is_text = report->kind == STRANDS_TFX2_TEXT || report->kind == STRANDS_OBJ;
+    bool is_text = report->kind == STRANDS_TFX2_TEXT || report->kind == STRANDS_OBJ ||
+                   report->kind == STRANDS_USD;
     snprintf(text, size, is_text ? "%s:%llu: %s%u %s%s%s" : "%s: byte %llu: %s%u %s%s%s", path,
              (unsigned long long)defect->first_place, defect->count > 1 ? "first of " : "",
              defect->count, defect->count == 1 ? words[kind].one : words[kind].many,
@@ -148,6 +149,10 @@ uint32_t strands_report_print_mended(const StrandsReport *report, const char *pa
         char text[1024];
         strands_report_describe(report, path, (DefectKind)kind, true, text, sizeof text);
         fprintf(stream, "%s\n", text);
+        lines++;
+    }
+    if (report->samples > 1) {
+        fprintf(stream, "%s: of %u time samples only the first is read\n", path, report->samples);
         lines++;
     }
     return lines;
@@ -166,6 +171,7 @@ static void print_unit(const StrandsReport *report, FILE *stream)
 
 static void print_notes(const StrandsReport *report, FILE *stream)
 {
+    if (report->samples) fprintf(stream, "  times     the first of %u\n", report->samples);
     if (report->shuffled) fprintf(stream, "  order     shuffled, the file says 'is sorted 0'\n");
     if (report->rotation_was_deg)
         fprintf(stream, "  rotation  taken to be in degrees: a value is beyond 2 pi\n");

@@ -45,6 +45,7 @@ typedef struct StrandsReport {
     uint32_t strands, vertices;                   // after mending
     float unit_used;                              // metres per unit of the file
     bool unit_guessed;
+    uint32_t samples;      // in time, of which the first was read; 0: the file has no time
     bool shuffled;         // the file said `is sorted 0`
     bool rotation_was_deg; // a `rotation` was taken to be in degrees
     Defect defects[DEFECT_KINDS];
@@ -66,7 +67,8 @@ bool strands_report_is_clean(const StrandsReport *report);
 void strands_report_describe(const StrandsReport *report, const char *path, DefectKind kind,
                              bool mended, char *text, size_t size);
 
-// Prints one such line for each kind of defect that there is. Returns how many lines.
+// Prints one such line for each kind of defect that there is, and one if the file has more than one
+// time sample. Returns how many lines.
 uint32_t strands_report_print_mended(const StrandsReport *report, const char *path, FILE *stream);
 
 // Prints everything: kind, version, counts, lengths, box, unit and, last, the defects.

@@ -14,6 +14,9 @@ typedef struct StrandsSource {
     uint32_t vertex_stride; // binary: bytes from one vertex of a strand to the next
     float version;          // 0: the format has none
     bool shuffle;           // the order is by place on the head and has to be made random
+    float unit;             // metres, as the file says; 0: it doesn't
+    bool up_z;              // the file says that z is up
+    uint32_t samples;       // in time, of which the first is here; 0: the file has no time
     bool roots_only;        // strands of one vertex are meant: roots without hair (USC-HairSalon)
     double scale;           // p' = translation + rotation * (scale * p), in the file's unit; 0 = 1
     double rotation[3];     // about x, y, z, radians; applied in the order z, x, y

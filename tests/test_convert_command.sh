@@ -12,7 +12,7 @@ run 0 $curls; says "TressFX 4 binary"; says "defects   none"; silent err
 run 0 $curls $fur; says "$curls:"; says "$fur:"
 
 claim "all that a format holds comes back, to the bit, through any other that holds it"
-for format in text tfx3 tfx4 hair data obj; do
+for format in text tfx3 tfx4 hair data obj usda; do
     run 0 $curls --unit m -q -o "$x.$format" --format $format; silent out; silent err
     run 0 "$x.$format" --unit m -q -o "$work/again.data"
     run 0 $curls --unit m -q -o "$work/direct.data"
@@ -36,7 +36,7 @@ claim "units and axes of what is written are those that are asked for"
 run 0 $curls --unit m -q -o "$x.data" --to-unit 0.25 --to-up z
 run 0 "$x.data" -q --unit 0.25 --up z -o "$work/again.data"
 run 0 $curls --unit m -q -o "$work/direct.data"; equal "$work/again.data" "$work/direct.data"
-run 0 $curls -q -o "$x.usda" --to-unit cm --to-up z; in_file "$x.usda" "metersPerUnit = 0.01"; in_file "$x.usda" 'upAxis = "Z"'
+run 0 $curls -q -o "$x.usda" --to-unit cm --to-up z; in_file "$x.usda" "metersPerUnit = 0.01"; in_file "$x.usda" 'upAxis = "Z"'; run 0 "$x.usda"; says "unit      0.01 m as told"
 
 claim "steps are done in their order"
 run 0 $curls -q -o "$work/a.data" --translate 1,0,0 --rotate y,90 --scale 2
@@ -103,6 +103,8 @@ claim "numbered files are frames"
 for i in 0 1 2 3; do run 0 $fur --unit m --subsample 1% -q --translate "0,$i,0" -o "$work/f_0$i.tfx"; done
 run 0 "$work/f_%02d.tfx" -o "$work/anim.usda" --fps 24; says "anim.usda: USD (.usda), 4 frames"
 in_file "$work/anim.usda" "endTimeCode = 3"; in_file "$work/anim.usda" "timeCodesPerSecond = 24"; in_file "$work/anim.usda" "        3: [("
+run 0 "$work/anim.usda" -o "$work/h.data"; says "anim.usda: of 4 time samples only the first is read"
+run 0 "$work/f_00.tfx" --unit m -q -o "$work/g_0.data"; equal "$work/h.data" "$work/g_0.data"; rm "$work/g_0.data"
 run 0 "$work/f_%02d.tfx"; says "frames    4, 0 to 3, 60 a second"
 run 0 "$work/f_%02d.tfx" --first 1 --every 2 -q -o "$work/g_%d.data"; none "$work/g_0.data"; none "$work/g_2.data"
 run 0 "$work/f_03.tfx" --unit m -q -o "$work/h.data"
@@ -137,7 +139,7 @@ if [ $status = 130 ] && [ -z "$(ls -A "$work/broken")" ]; then good; else bad "s
 
 claim "what can't be read is status 3 and one line with the place"
 printf 'hello\n' >"$work/text"; : >"$work/empty"; head -c 5000 $curls >"$work/cut.tfx"; printf 'v 0 0 0\nl 1 2\n' >"$work/bad.obj"
-for file in "$work/text" "$work/empty" "$work/cut.tfx" "$work/bad.obj" "$work/missing.tfx" "$work" assets/head.obj "$work/anim.usda"; do
+for file in "$work/text" "$work/empty" "$work/cut.tfx" "$work/bad.obj" "$work/missing.tfx" "$work" assets/head.obj; do
     run 3 "$file" -o "$work/none.hair"; one_line; says "$file"; silent out; none "$work/none.hair"
 done
 

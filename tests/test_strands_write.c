@@ -167,7 +167,7 @@ static void broken_obj_files_are_refused_with_their_line(void **state)
                  {"v 0 0\nv 0 1 0\nl 1 2\n", "x.obj:1: "},
                  {"v 0 a 0\nv 0 1 0\nl 1 2\n", "x.obj:1: "},
                  {"v 0 0 0\nv 0 nan 0\nl 1 2\n", "x.obj:2: 1 strand"},
-                 {"#usda 1.0\n", "only written"}};
+                 {"#usda 1.0\n", "no BasisCurves"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Error error = {""};
         read_obj(state, cases[i].text, RESULT_BAD_INPUT, &error);

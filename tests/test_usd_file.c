@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // USD's text form. The expected files are written out: such files have been read by TinyUSDZ and by
 // the parser of three.js, with the same numbers.
+#include "strands_read.h"
 #include "strands_write.h"
 #include "temporary.h"
 #include "usd_file.h"
@@ -100,7 +101,8 @@ static void frames_are_time_samples(void **state)
     strands_destroy(&strands);
 }
 
-static void everything_that_strands_have_is_written(void **state)
+// The uneven strands with all that strands can have.
+static void make_rich(Strands *made)
 {
     Strands strands;
     make_uneven(&strands);
@@ -112,6 +114,13 @@ static void everything_that_strands_have_is_written(void **state)
     strands.color = calloc(5, sizeof *strands.color);
     strands.strand_uv[1][0] = strands.vertex_uv[4][1] = 0.5f;
     for (int v = 0; v < 5; ++v) strands.color[v][3] = 1, strands.color[v][0] = 0.1f * (float)v;
+    *made = strands;
+}
+
+static void everything_that_strands_have_is_written(void **state)
+{
+    Strands strands;
+    make_rich(&strands);
     assert_int_equal(strands_write(temporary_path(state, "x.usda"), STRANDS_USD, &strands, NULL),
                      RESULT_OK);
     Bytes bytes;
@@ -151,6 +160,149 @@ static void a_file_that_is_not_finished_is_not_there(void **state)
     strands_destroy(&strands);
 }
 
+// --- Reading.
+
+static Strands read_text(const char *text, size_t size, StrandsReport *report, Result expected,
+                         Error *error)
+{
+    Strands strands;
+    Bytes bytes = {malloc(size + 1), size}; // of its exact size, for sanitizers
+    memcpy(bytes.data, text, size);
+    bytes.data[size] = 0;
+    Result result = strands_read_bytes(&strands, "FILE", &bytes, NULL, report, error);
+    bytes_destroy(&bytes);
+    if (result != expected) fail_msg("%.*s: %d, %s", (int)size, text, result, error->text);
+    return strands;
+}
+
+static void what_is_written_is_read_to_the_bit(void **state)
+{
+    Strands strands, back;
+    Error error = {""};
+    make_rich(&strands);
+    strands.followers = 7;
+    strands.follower_radius = 0.0123f;
+    strands.both_ends_fixed = true;
+    strands.color[2][3] = 0.25f;
+    strands.mobility[1] = 1; // and nothing else, which isn't usual
+    strands.strand_thickness[1] = 0.1f;
+    strands.vertex_thickness[3] = 1e-4f;
+    const char *path = temporary_path(state, "x.usda");
+    assert_int_equal(strands_write(path, STRANDS_USD, &strands, &error), RESULT_OK);
+    const StrandsReadOptions strict = {.strict = true};
+    if (strands_read(&back, path, &strict, NULL, &error) != RESULT_OK) fail_msg("%s", error.text);
+    assert_memory_equal(back.first, strands.first, 3 * sizeof(uint32_t));
+    assert_memory_equal(back.position, strands.position, 5 * sizeof *back.position);
+    assert_memory_equal(back.strand_uv, strands.strand_uv, 2 * sizeof *back.strand_uv);
+    assert_memory_equal(back.vertex_uv, strands.vertex_uv, 5 * sizeof *back.vertex_uv);
+    assert_memory_equal(back.strand_thickness, strands.strand_thickness, 2 * sizeof(float));
+    assert_memory_equal(back.vertex_thickness, strands.vertex_thickness, 5 * sizeof(float));
+    assert_memory_equal(back.mobility, strands.mobility, 5 * sizeof(float));
+    assert_memory_equal(back.color, strands.color, 5 * sizeof *back.color);
+    assert_int_equal(back.followers, 7);
+    assert_true(back.follower_radius == 0.0123f && back.both_ends_fixed);
+    strands_destroy(&strands);
+    strands_destroy(&back);
+}
+
+// As other programs write them: comments, parents, other prims, several curves, frames, z up.
+static const char FOREIGN[] =
+    "#usda 1.0\n(\n    \"a (comment) = {\"\n    doc = \"\"\"three\n \"quotes\" \"\"\"\n"
+    "    subLayers = [\n        @a(b.usd@\n    ]\n    metersPerUnit = 0.1\n    upAxis = \"Z\"\n)\n"
+    "def Xform \"World\" (\n    prepend apiSchemas = [\"X\"]\n    kind = \"group\"\n)\n{\n"
+    "    token visibility\n    def Mesh \"m\"\n    {\n        point3f[] points = [(9, 9, 9)]\n"
+    "        double3 xformOp:translate = (0, 1, 2)\n"
+    "        uniform token[] xformOpOrder = [\"xformOp:translate\"]\n    }\n"
+    "    def BasisCurves \"a\" (\n        variants = { string x = \"}\" }\n    )\n    {\n"
+    "        rel material:binding = </World/m> # of all\n"
+    "        uniform token type = \"linear\"\n        int[] curveVertexCounts = [2]\n"
+    "        float[] widths = [0.5] (\n            interpolation = \"constant\"\n        )\n"
+    "        point3f[] points.timeSamples = {\n            -1.5: [(0, 0, 0), (0, 0, 1)],\n"
+    "            2: [(5, 5, 5), (6, 6, 6)],\n        }\n    }\n"
+    "    def Scope \"s\" { def BasisCurves \"b\" {\n"
+    "        vector3f[] velocities = None; uniform token type = \"linear\"\n"
+    "        point3f[] points = [(1, 0, 0), (1, 2, 0), (1, 2, 4)]\n"
+    "        int[] curveVertexCounts = [3]\n        float[] widths = [1, 2, 3]\n    } }\n}\n";
+
+static void curves_of_other_programs_are_read(void **state)
+{
+    (void)state;
+    Error error = {""};
+    StrandsReport report;
+    Strands strands = read_text(FOREIGN, strlen(FOREIGN), &report, RESULT_OK, &error);
+    assert_int_equal(strands.strand_count, 2);
+    assert_int_equal(strands_size(&strands, 1), 3);
+    assert_false(report.unit_guessed);
+    assert_int_equal(report.samples, 2);
+    assert_true(strands.position[1][1] == 0.1f && strands.position[1][2] == 0); // z is up
+    assert_true(strands.position[4][1] == 0.4f && strands.position[4][2] == -0.2f);
+    assert_true(strands.vertex_thickness[0] == 0.05f && strands.vertex_thickness[1] == 0.05f);
+    assert_true(strands.vertex_thickness[4] == 0.3f);
+    strands_destroy(&strands);
+}
+
+#define CURVES(more)                                                                               \
+    "#usda 1.0\ndef BasisCurves \"x\"\n{\nuniform token type = \"linear\"\n"                       \
+    "int[] curveVertexCounts = [2]\npoint3f[] points = [(0, 0, 0), (0, 1, 0)]\n" more "}\n"
+
+static void what_would_give_other_hair_is_refused_with_its_line(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *says;
+    } cases[] = {
+        {"#usda 1.0\n", "FILE:2: no BasisCurves"},
+        {CURVES("double3 xformOp:translate = (1, 2, 3)\n"), "FILE:7: curves with a transform"},
+        {CURVES("uniform token type = \"cubic\"\n"), "FILE:2: curves of type cubic"},
+        {CURVES("uniform token wrap = \"periodic\"\n"), "FILE:2: periodic"},
+        {CURVES("float[] widths = [1, 2, 3]\n"), "FILE:7: widths: 3 numbers"},
+        {CURVES("int[] primvars:st:indices = [1]\n"), "FILE:7: primvars:st: indexed"},
+        {CURVES("int[] curveVertexCounts = [3]\n"), "FILE:7: curveVertexCounts: 1 numbers"},
+        {CURVES("int[] curveVertexCounts = [1]\n"), "FILE:6: points: 6 numbers"},
+        {CURVES("int[] curveVertexCounts = [1.5]\n"), "FILE:7: curveVertexCounts"},
+        {CURVES("int[] curveVertexCounts = [-1]\n"), "FILE:7: curveVertexCounts"},
+        {CURVES("point3f[] points = [(0, 0)]\n"), "FILE:7: points: 2 numbers"},
+        {CURVES("point3f[] points = [(0, x, 0)]\n"), "FILE:7: expected a number, got 'x'"},
+        {CURVES("= 3\n"), "FILE:7: unexpected '='"},
+        {"#usda 1.0\n(\nmetersPerUnit = 0\n)\n" CURVES(""), "metersPerUnit"},
+        {"#usda 1.0\ndef BasisCurves {}\n", "FILE:2: expected a prim's name"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        Error error = {""};
+        read_text(cases[i].text, strlen(cases[i].text), NULL, RESULT_BAD_INPUT, &error);
+        if (!strstr(error.text, cases[i].says)) fail_msg("%s: %s", cases[i].text, error.text);
+    }
+}
+
+static void every_truncation_and_damage_is_survived(void **state)
+{
+    (void)state;
+    size_t size = strlen(FOREIGN);
+    char *text = strdup(FOREIGN);
+    static const char marks[] = "\0(){}[]\"'=:,@<#9";
+    for (size_t cut = 5; cut + 2 < size; ++cut) {
+        Error error = {""};
+        read_text(FOREIGN, cut, NULL, RESULT_BAD_INPUT, &error);
+        assert_true(error.text[0] != 0);
+    }
+    for (size_t at = 5; at < size; ++at)
+        for (size_t mark = 0; mark < sizeof marks - 1; ++mark) {
+            Strands strands;
+            const Bytes bytes = {(uint8_t *)text, size};
+            text[at] = marks[mark];
+            strands_read_bytes(&strands, "FILE", &bytes, NULL, NULL, NULL);
+            strands_destroy(&strands);
+            text[at] = FOREIGN[at];
+        }
+    char *deep = malloc(100000), *end = deep + sprintf(deep, "#usda 1.0\n");
+    for (int i = 0; i < 5000; ++i) end += sprintf(end, "def X \"x\"\n{\n");
+    Error error = {""};
+    read_text(deep, strlen(deep), NULL, RESULT_BAD_INPUT, &error);
+    assert_non_null(strstr(error.text, "deep"));
+    free(deep);
+    free(text);
+}
+
 int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, temporary_create, temporary_destroy)
@@ -158,6 +310,10 @@ int main(void)
         TEST(a_still_is_one_prim_with_its_points),
         TEST(frames_are_time_samples),
         TEST(everything_that_strands_have_is_written),
+        TEST(what_is_written_is_read_to_the_bit),
+        TEST(curves_of_other_programs_are_read),
+        TEST(what_would_give_other_hair_is_refused_with_its_line),
+        TEST(every_truncation_and_damage_is_survived),
         TEST(a_file_that_is_not_finished_is_not_there),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
