@@ -83,6 +83,11 @@ static void read_word(Reader *reader, char word[WORD_SIZE])
 static void read_string(Reader *reader, char text[WORD_SIZE])
 {
     char quote = peek(reader, false);
+    text[0] = 0;
+    if (quote != '"' && quote != '\'') {
+        if (reader_ok(reader)) reader_fail(reader, "expected a string");
+        return;
+    }
     const uint8_t *at = reader->data + reader->at;
     int marks = at[1] == quote && at[2] == quote ? 3 : 1, found = 0;
     size_t length = 0;

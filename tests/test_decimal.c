@@ -33,7 +33,7 @@ static void check(const float *values, size_t count)
     assert_int_equal(fclose(stream), 0);
     const char *at = text;
     for (size_t i = 0; i < count; ++i) {
-        const char *end = strchr(at, '\n');
+        const char *end = memchr(at, '\n', size - (size_t)(at - text));
         shortest(values[i], expected, sizeof expected);
         if ((size_t)(end - at) != strlen(expected) || memcmp(at, expected, strlen(expected)) != 0)
             fail_msg("%a: got %.*s, expected %s", (double)values[i], (int)(end - at), at, expected);
