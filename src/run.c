@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "run.h"
+#include "caption.h"
 #include "fit.h"
 #include "interrupt.h"
 #include "strands_features.h"
@@ -94,6 +95,7 @@ static Result check_words(const Scene *scene, Error *error)
     Result result = check_target(run, run->output, target_parse, error);
     if (result == RESULT_OK) result = check_target(run, run->export, target_parse_hair, error);
     if (result == RESULT_OK) result = check_sheet(run, error);
+    if (result == RESULT_OK) result = caption_check(run->caption, error);
     if (result == RESULT_OK && run->collide_mesh && !*run->mesh)
         result = error_set(error, RESULT_USAGE, "--collide-mesh: expected a mesh, --mesh");
     if (result == RESULT_OK && run->turntable == 0 && (run->ease_in > 0 || run->ease_out > 0))

@@ -170,6 +170,8 @@ static Result check_depth(const RunParams *run, Error *error)
     if (run->depth == DEPTH_16 && video) pair = "--depth 16 and a video";
     if (run->tone_map != TONE_NONE && draws_floats(run)) pair = "--tone-map and .pfm files";
     if (run->tone_map != TONE_NONE && run->aov != AOV_NONE) pair = "--tone-map and --aov";
+    if (*run->caption && draws_floats(run)) pair = "--caption and .pfm files";
+    if (*run->caption && run->aov != AOV_NONE) pair = "--caption and --aov";
     if (run->raster == RASTER_BLOCKS) {
         if (run->depth == DEPTH_16) pair = "--raster blocks and --depth 16";
         if (draws_floats(run)) pair = "--raster blocks and .pfm files";

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "sequence.h"
+#include "caption.h"
 #include "interrupt.h"
 #include "progress.h"
 
@@ -132,6 +133,11 @@ static Result output_frame(Sequence *sequence, Previous *previous, int frame, Fr
     if (result != RESULT_OK) return result;
     camera_view(&view, sequence->scene, sequence->framing, frame);
     result = draw(sequence, previous, frame, &view, image, error);
+    if (result == RESULT_OK && *sequence->scene->run.caption) {
+        char text[CAPTION_BYTES];
+        caption_write(text, sequence->scene, frame);
+        caption_draw(image, text);
+    }
     times->draw_ms = stats_clock_ms() - acquired;
     return result == RESULT_OK ? output_submit(sequence->output, frame, image, error) : result;
 }
