@@ -67,18 +67,18 @@ void fit_add(Fit *fit, int frame, const float (*points)[3], size_t count, float 
 
 typedef struct Search {
     const Fit *fit;
-    double axis[3][3]; // along which the target may move from `from`, unit vectors; up first
+    int sides;         // of a frame that count: 2, left and right, or 4
+    double axis[2][3]; // along which the target moves, unit vectors
     int axes;
-    double from[3];
     double reach; // m, how far either way
 } Search;
 
-static double distance_needed(const Fit *fit, const double target[3])
+static double distance_needed(const Search *search, const double target[3])
 {
     double distance = 0;
-    for (int frame = 0; frame < fit->frame_count; ++frame)
-        for (int i = 0; i < 4; ++i) {
-            const FitSide *side = &fit->frames[frame][i];
+    for (int frame = 0; frame < search->fit->frame_count; ++frame)
+        for (int i = 0; i < search->sides; ++i) {
+            const FitSide *side = &search->fit->frames[frame][i];
             double needed = (double)side->reach;
             for (int k = 0; k < 3; ++k) needed -= (double)side->normal[k] * target[k];
             distance = fmax(distance, needed);
@@ -103,27 +103,45 @@ static double search_along(const Search *search, int axis, const double from[3],
 {
     const double golden = 0.61803398874989485;
     if (axis == search->axes) {
-        memcpy(target, from, 3 * sizeof *target);
-        return distance_needed(search->fit, from);
+        memmove(target, from, 3 * sizeof *target);
+        return distance_needed(search, from);
     }
     double low = -search->reach, high = search->reach;
     double a = high - golden * (high - low), b = low + golden * (high - low);
-    double at_a = distance_at(search, axis, from, a, target);
-    double at_b = distance_at(search, axis, from, b, target);
+    double found[3];
+    double at_a = distance_at(search, axis, from, a, found);
+    double at_b = distance_at(search, axis, from, b, found);
     for (int i = 0; i < 24; ++i)
         if (at_a < at_b) {
             high = b, b = a, at_b = at_a;
             a = high - golden * (high - low);
-            at_a = distance_at(search, axis, from, a, target);
+            at_a = distance_at(search, axis, from, a, found);
         } else {
             low = a, a = b, at_a = at_b;
             b = low + golden * (high - low);
-            at_b = distance_at(search, axis, from, b, target);
+            at_b = distance_at(search, axis, from, b, found);
         }
     return distance_at(search, axis, from, 0.5 * (low + high), target);
 }
 
-static void begin_search(Search *search, const Scene *scene, const Framing *framing)
+static void put_axis(Search *search, vec3 direction)
+{
+    for (int k = 0; k < 3; ++k) search->axis[search->axes][k] = (double)direction[k];
+    ++search->axes;
+}
+
+static double room_to_search(const Framing *framing)
+{
+    double room = 0;
+    for (int k = 0; k < 3; ++k) room += (double)framing->all.high[k] - (double)framing->all.low[k];
+    return room;
+}
+
+// Puts the target of a whole turn on the axis from which left and right need the least, so that the
+// hair turns about its middle (above and below would prefer an axis for which it is far off when it
+// is high), and then at the best height.
+static void find_target(const Fit *fit, const Scene *scene, const Framing *framing,
+                        double target[3])
 {
     vec3 up = {0}, arm = {0}, across, ahead;
     memcpy(up, scene->run.camera_up, sizeof up);
@@ -131,28 +149,28 @@ static void begin_search(Search *search, const Scene *scene, const Framing *fram
     for (int k = 0; k < 3; ++k) arm[k] = framing->eye[k] - framing->target[k];
     glm_vec3_crossn(up, arm, across);
     glm_vec3_cross(across, up, ahead);
-    for (int k = 0; k < 3; ++k) {
-        float extent = framing->all.high[k] - framing->all.low[k];
-        search->axis[0][k] = (double)up[k];
-        search->axis[1][k] = (double)across[k];
-        search->axis[2][k] = (double)ahead[k];
-        search->from[k] = (double)framing->target[k];
-        search->reach += (double)extent;
-    }
-    bool whole = fabsf(scene->run.turntable) >= 360;
-    search->axes = !scene->run.target.automatic ? 0 : whole ? 3 : 1;
+    Search beside = {.fit = fit, .sides = 2, .reach = room_to_search(framing)}, height = beside;
+    put_axis(&beside, across);
+    put_axis(&beside, ahead);
+    if (fabsf(scene->run.turntable) >= 360) search_along(&beside, 0, target, target);
+    height.sides = 4;
+    put_axis(&height, up);
+    search_along(&height, 0, target, target);
 }
 
 void fit_solve(const Fit *fit, const Scene *scene, Framing *framing)
 {
-    Search search = {.fit = fit};
     double target[3];
     vec3 back = {0};
-    begin_search(&search, scene, framing);
-    for (int k = 0; k < 3; ++k) back[k] = framing->eye[k] - framing->target[k];
+    for (int k = 0; k < 3; ++k) {
+        target[k] = (double)framing->target[k];
+        back[k] = framing->eye[k] - framing->target[k];
+    }
     glm_vec3_normalize(back);
-    double distance = search_along(&search, 0, search.from, target);
-    if (!(distance > 0)) return;
+    const Search all = {.fit = fit, .sides = 4};
+    if (!(distance_needed(&all, target) > 0)) return;
+    if (scene->run.target.automatic) find_target(fit, scene, framing, target);
+    double distance = distance_needed(&all, target);
     for (int k = 0; k < 3; ++k) {
         framing->target[k] = (float)target[k];
         framing->eye[k] = (float)(target[k] + distance * (double)back[k]);

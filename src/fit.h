@@ -7,7 +7,7 @@
 //     scale side . (p - target) <= s (d - back . (p - target)),
 // so if d >= n . (p - target) with n = back + scale / s side. Four such n belong to a frame, and
 // of all its points only the greatest n . p counts: d is the largest of greatest - n . target.
-// That is convex in the target, which is found by nested searches.
+// That is convex in the target, so nested searches find the best one.
 #pragma once
 
 #include "framing.h"
@@ -36,7 +36,8 @@ void fit_destroy(Fit *fit);
 void fit_add(Fit *fit, int frame, const float (*points)[3], size_t count, float radius);
 
 // Moves the eye, and the target if that is automatic, of `framing`, which fit_create was given: in
-// no frame does a point cross the margin (run.margin), and in some it touches it. Of whole turns
-// the target goes where the camera comes nearest, of others only its height does, since a part of
-// a turn would be nearest about an axis in front of the hair. Without points nothing changes.
+// no frame does a point cross the margin (run.margin), and in some it touches it. The target gets
+// the height that brings the camera nearest; of whole turns, before that, the axis from which left
+// and right need the least distance. (Of a part of a turn that would be one in front of the hair.)
+// Without points nothing changes.
 void fit_solve(const Fit *fit, const Scene *scene, Framing *framing);

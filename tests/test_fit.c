@@ -142,17 +142,21 @@ static float distance_of(const Shot *shot)
     return glm_vec3_distance((float *)shot->framing.eye, (float *)shot->framing.target);
 }
 
-// No target nearby lets the camera come nearer, and above and below the margin is touched alike.
-// The target is found to 1e-5 of the search's range, here 4 m, and the distance changes by at most
-// 5 times as much.
+// No target nearby lets the camera come nearer: none higher or lower, and where only the sides
+// count, in a narrow picture taken from the height of the target, none beside it. The target is
+// found to 1e-5 of the search's range, here 4 m, and the distance changes by at most 40 times as
+// much (scale / slope).
 static void of_whole_turns_the_target_is_the_best_one(void **state)
 {
     (void)state;
-    Shot shot;
-    open_shot(&shot);
-    fit(&shot, 0);
-    float best = distance_of(&shot);
     for (int i = 0; i < 6; ++i) {
+        Shot shot;
+        open_shot(&shot);
+        if (i / 2 != 1) {
+            shot.scene.run.size[0] = 100, shot.scene.run.size[1] = 1000;
+            shot.framing.eye[1] = shot.framing.target[1];
+        }
+        fit(&shot, 0);
         Shot other = shot;
         other.scene.run.target.automatic = false;
         for (int k = 0; k < 3; ++k) {
@@ -161,10 +165,10 @@ static void of_whole_turns_the_target_is_the_best_one(void **state)
             other.framing.eye[k] += by;
         }
         fit(&other, 0);
-        assert_true(distance_of(&other) >= best - 2e-4f);
+        assert_true(distance_of(&other) > distance_of(&shot) - 2e-3f);
         assert_memory_equal(other.framing.target, other.scene.run.target.value, sizeof(vec3));
+        close_shot(&shot);
     }
-    close_shot(&shot);
 }
 
 static void without_points_nothing_changes(void **state)
