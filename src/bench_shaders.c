@@ -125,6 +125,24 @@ static Result try_looks(Renderer *renderer, Error *error)
     return result;
 }
 
+// What the options' shadows and floor are drawn by.
+static Result try_shadows(Renderer *renderer, Error *error)
+{
+    const RendererOptions *options = &renderer->options;
+    Result result = RESULT_OK;
+    for (unsigned variant = 0;
+         variant < CAST_VARIANTS && options->shadow.kind != SHADOW_NONE && result == RESULT_OK;
+         ++variant)
+        result = render_shadow_hair_build(&renderer->shadow.hair, variant, error);
+    if (result == RESULT_OK && options->shadow.kind != SHADOW_NONE)
+        result = render_shadow_mesh_reserve(&renderer->shadow.mesh, 1, error);
+    for (int by_mesh = 0; by_mesh < 2 && options->floor.kind != FLOOR_NONE && result == RESULT_OK;
+         ++by_mesh)
+        result = render_floor_build(&renderer->base.floor, &options->floor, options->shadow.kind,
+                                    by_mesh, error);
+    return result;
+}
+
 static Result try_renderer(const Gpu *gpu, Raster raster, const RendererOptions *pictures,
                            Error *error)
 {
@@ -146,6 +164,7 @@ static Result try_renderer(const Gpu *gpu, Raster raster, const RendererOptions 
     if (result != RESULT_OK) return result;
     result = renderer_set_mesh(&renderer, &mesh, (const float[3]){1, 1, 1}, error);
     if (result == RESULT_OK) result = try_looks(&renderer, error);
+    if (result == RESULT_OK) result = try_shadows(&renderer, error);
     renderer_destroy(&renderer);
     return result;
 }
@@ -155,13 +174,17 @@ static void try_renderers(const Gpu *gpu, Result *worst, FILE *stream, Error *er
     static const struct {
         const char *name;
         RendererOptions options;
-    } pictures[] = {{"opaque", {.background = {0, 0, 0, 1}, .tone = TONE_FILMIC}},
-                    {"transparent, 2 x 2", {.tone = TONE_REINHARD, .samples = 2}},
-                    {"16 bits", {.kind = IMAGE_16}},
-                    {"floats, 2 x 2", {.kind = IMAGE_FLOAT, .samples = 2}},
-                    {"coverage", {.aov = AOV_COVERAGE}},
-                    {"depth", {.aov = AOV_DEPTH, .kind = IMAGE_FLOAT}},
-                    {"tangent", {.aov = AOV_TANGENT, .kind = IMAGE_16}}};
+    } pictures[] = {
+        {"opaque", {.background = {0, 0, 0, 1}, .tone = TONE_FILMIC}},
+        {"transparent, 2 x 2", {.tone = TONE_REINHARD, .samples = 2}},
+        {"16 bits", {.kind = IMAGE_16}},
+        {"floats, 2 x 2", {.kind = IMAGE_FLOAT, .samples = 2}},
+        {"floor", {.floor = {.kind = FLOOR_PLANE}}},
+        {"floor, dom", {.shadow = {SHADOW_DOM, 64, 200}, .floor = {.kind = FLOOR_PLANE}}},
+        {"catcher, approx", {.shadow = {SHADOW_APPROX, 64, 200}, .floor = {.kind = FLOOR_SHADOW}}},
+        {"coverage", {.aov = AOV_COVERAGE}},
+        {"depth", {.aov = AOV_DEPTH, .kind = IMAGE_FLOAT}},
+        {"tangent", {.aov = AOV_TANGENT, .kind = IMAGE_16}}};
     for (size_t i = 0; i < sizeof pictures / sizeof *pictures; ++i)
         for (Raster raster = RASTER_QUADS; raster <= RASTER_BLOCKS; ++raster) {
             char what[64];

@@ -10,8 +10,8 @@ bool render_floor_is_seen(const Floor *floor, const DrawParams *draw)
     return floor->kind != FLOOR_NONE && draw->eye[1] > floor->middle[1];
 }
 
-static Result build(RenderFloor *render, const Floor *floor, Shadow shadow, bool by_mesh,
-                    Error *error)
+Result render_floor_build(RenderFloor *render, const Floor *floor, Shadow shadow, bool by_mesh,
+                          Error *error)
 {
     const ShaderDefine defines[] = {{"LIGHTS", 1},
                                     {"SHADOW", shadow},
@@ -44,7 +44,7 @@ Result render_floor_draw(RenderFloor *render, const Floor *floor, const RenderTa
                          Shadow shadow, bool by_mesh, Error *error)
 {
     float color[3];
-    Result result = build(render, floor, shadow, by_mesh, error);
+    Result result = render_floor_build(render, floor, shadow, by_mesh, error);
     if (result != RESULT_OK) return result;
     linear_from_srgb_color(floor->color, color);
     glUseProgram(render->color[by_mesh]);

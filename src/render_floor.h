@@ -17,6 +17,10 @@ typedef struct RenderFloor {
 // Whether anything of the floor is to be drawn: not to an eye that is not above it.
 bool render_floor_is_seen(const Floor *floor, const DrawParams *draw);
 
+// Compiles what such a floor needs, unless it is there.
+Result render_floor_build(RenderFloor *render, const Floor *floor, Shadow shadow, bool by_mesh,
+                          Error *error);
+
 // Draws over what the target's samples show and into its depth, which hides hair below a plane
 // where more than half of it is left. `shadow`: what it receives, the mesh's, too, if `by_mesh`.
 // Needs the DrawParams block and render_shadow_bind. RESULT_FAILED if a shader does not compile.

@@ -36,7 +36,7 @@ static unsigned variant_of(const ShadowCaster *caster)
            (caster->look.features & LOOK_SMOOTH ? CAST_SMOOTH : 0);
 }
 
-static Result build_variant(RenderShadowHair *hair, unsigned variant, Error *error)
+Result render_shadow_hair_build(RenderShadowHair *hair, unsigned variant, Error *error)
 {
     Result result =
         build(&hair->bounds[variant], "shadow_bounds.comp", GROUP, hair->deep, variant, error);
@@ -117,7 +117,7 @@ Result render_shadow_hair_reserve(RenderShadowHair *hair, int maps, ShadowCaster
 {
     Result result = hair->maps < maps ? make_maps(hair, maps, error) : RESULT_OK;
     for (uint32_t i = 0; i < casters.count && result == RESULT_OK; ++i)
-        result = build_variant(hair, variant_of(&casters.list[i]), error);
+        result = render_shadow_hair_build(hair, variant_of(&casters.list[i]), error);
     return result;
 }
 

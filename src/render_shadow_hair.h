@@ -39,6 +39,9 @@ Result render_shadow_hair_create(RenderShadowHair *hair, const GpuLimits *limits
                                  int side, Error *error);
 void render_shadow_hair_destroy(RenderShadowHair *hair);
 
+// Compiles the shaders for hair that needs CAST_ bits `variant`, unless they are there.
+Result render_shadow_hair_build(RenderShadowHair *hair, unsigned variant, Error *error);
+
 // Room for so many maps, and the shaders for such hair; nothing if all is there. RESULT_FAILED if
 // memory is short or a shader does not compile.
 Result render_shadow_hair_reserve(RenderShadowHair *hair, int maps, ShadowCasters casters,
