@@ -13,6 +13,30 @@
 #include "coverage.glsl"
 #include "display.glsl"
 
+// Pixels of the picture in a row of the block; how one is stored, and how many at once.
+#define ACROSS (BLOCK_WIDTH / SAMPLES)
+#if KIND == 0 && SAMPLES == 1
+#define STORED 4
+#define PACKED uint
+#define WORDS uvec4
+#define STORED_WORDS uvec4(word[0], word[1], word[2], word[3])
+#elif KIND == 0
+#define STORED 2
+#define PACKED uint
+#define WORDS uvec2
+#define STORED_WORDS uvec2(word[0], word[1])
+#elif KIND == 1
+#define STORED 2
+#define PACKED uvec2
+#define WORDS uvec4
+#define STORED_WORDS uvec4(word[0], word[1])
+#else
+#define STORED 1
+#define PACKED uvec4
+#define WORDS uvec4
+#define STORED_WORDS word[0]
+#endif
+
 layout(local_size_x = BLOCK_GROUP) in;
 layout(location = 0) uniform int columns; // of blocks
 layout(binding = BIND_RIBBONS) uniform usamplerBuffer ribbons;
@@ -23,7 +47,7 @@ layout(binding = BIND_BASE) uniform sampler2D base;
 layout(binding = BIND_MESH_DEPTH) uniform sampler2D mesh_depth;
 #endif
 layout(std430, binding = BIND_BLOCK_COUNTS_OUT) writeonly buffer Counts { uint counts[]; };
-layout(std430, binding = BIND_PIXELS_OUT) writeonly buffer Pixels { uvec4 pixels[]; };
+layout(std430, binding = BIND_PIXELS_OUT) writeonly buffer Pixels { WORDS pixels[]; };
 
 #define PIXELS (BLOCK_WIDTH * BLOCK_HEIGHT)
 
@@ -32,10 +56,10 @@ const float LEAST = 1.0 / 1024.0;
 const float LEAST_COVERAGE = 1.0 / 16.0; // as in hair.frag
 
 // Not a loop: compilers leave one with so long a body rolled, and then keep the pixels in memory.
-#define FOUR_IN_TURN(DO, k) DO(k) DO(k + 1) DO(k + 2) DO(k + 3)
-#define ROW_IN_TURN(DO, y) FOUR_IN_TURN(DO, y * BLOCK_WIDTH) FOUR_IN_TURN(DO, y * BLOCK_WIDTH + 4)
-#define PIXELS_IN_TURN(DO, NEXT_ROW)                                                                 \
-    ROW_IN_TURN(DO, 0) NEXT_ROW; ROW_IN_TURN(DO, 1) NEXT_ROW; ROW_IN_TURN(DO, 2) NEXT_ROW; ROW_IN_TURN(DO, 3)
+#define ROW_IN_TURN(DO, y) DO((y) * BLOCK_WIDTH) DO((y) * BLOCK_WIDTH + 1) DO((y) * BLOCK_WIDTH + 2) DO((y) * BLOCK_WIDTH + 3)
+#define FOUR_ROWS_IN_TURN(DO, NEXT_ROW, y)                                                           \
+    ROW_IN_TURN(DO, y) NEXT_ROW; ROW_IN_TURN(DO, y + 1) NEXT_ROW; ROW_IN_TURN(DO, y + 2) NEXT_ROW; ROW_IN_TURN(DO, y + 3)
+#define PIXELS_IN_TURN(DO, NEXT_ROW) FOUR_ROWS_IN_TURN(DO, NEXT_ROW, 0) NEXT_ROW; FOUR_ROWS_IN_TURN(DO, NEXT_ROW, 4)
 
 #if BASE
 #define HIDE(alpha, along, k) alpha = inverse_w.x + inverse_w.y * (along) >= hidden[k] ? alpha : 0.0
@@ -67,20 +91,6 @@ const float LEAST_COVERAGE = 1.0 / 16.0; // as in hair.frag
         color[k] += alpha * (first + along * change);                                                        \
         most = max(most, through[k]);                                                                        \
     }
-#endif
-
-// Pixels of the picture in a row of the block; what is stored of one, and how many fit in four words.
-#define ACROSS (BLOCK_WIDTH / SAMPLES)
-#define STORED (4 >> KIND)
-#if KIND == 0
-#define PACKED uint
-#define STORED_WORDS uvec4(word[0], word[1], word[2], word[3])
-#elif KIND == 1
-#define PACKED uvec2
-#define STORED_WORDS uvec4(word[0], word[1])
-#else
-#define PACKED uvec4
-#define STORED_WORDS word[0]
 #endif
 
 PACKED pack_pixel(vec4 c)
@@ -194,6 +204,6 @@ void main()
 #if SAMPLES == 1
     PIXELS_IN_TURN(STORE, place += pitch)
 #else
-    FOUR_IN_TURN(STORE, 0) place += pitch; FOUR_IN_TURN(STORE, ACROSS)
+    STORE(0) STORE(1) place += pitch; STORE(2) STORE(3) place += pitch; STORE(4) STORE(5) place += pitch; STORE(6) STORE(7)
 #endif
 }

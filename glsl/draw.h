@@ -47,8 +47,8 @@
 #define BIND_MESH_DEPTH       8
 
 #define RIBBON_TEXELS     4
-#define BLOCK_WIDTH       8 // px
-#define BLOCK_HEIGHT      4
+#define BLOCK_WIDTH       4 // px; tall, since hair hangs down
+#define BLOCK_HEIGHT      8
 #define BLOCK_GROUP       8 // blocks that are composited side by side
 #define BLOCK_COUNT_WORDS (64 * 16)
 #define BLOCK_COUNT_SHORT 2 // word that is not 0 if a block had too many ribbons to visit

@@ -9,8 +9,8 @@
 enum {
     AHEAD = 16,
     LENGTHS = 1024,
-    REGION_COLUMNS = 16, // whose lists are composited one after the other: their ribbons
-    REGION_ROWS = 32     // stay in a core's cache
+    REGION_COLUMNS = 32, // whose lists are composited one after the other: their ribbons
+    REGION_ROWS = 16     // stay in a core's cache
 };
 
 // A range of ribbons on the way to their blocks.
