@@ -28,7 +28,7 @@ static void set_depth(LightFrame *frame, double near, double far)
 
 static LightFrame begin(const LightView *view, const double box[6], int side, int margin)
 {
-    LightFrame frame;
+    LightFrame frame = {0};
     for (int k = 0; k < 4; ++k) light_view_row(view, k, frame.rows[k]);
     set_window(&frame, box, box + 3, side, margin);
     return frame;
