@@ -32,7 +32,8 @@ static const char *sample(const ParamInfo *info, char text[64])
     static const char *const TEXTS[] = {
         [PARAM_BOOL] = "true",          [PARAM_VEC3] = "1,2,3",      [PARAM_COLOR] = "#010203",
         [PARAM_BACKGROUND] = "#010203", [PARAM_AUTO_VEC3] = "1,2,3", [PARAM_UNIT] = "in",
-        [PARAM_SIZE] = "32x24",         [PARAM_TEXT] = "word",       [PARAM_PATH] = "/some/where/",
+        [PARAM_SIZE] = "32x24",         [PARAM_PART] = "2/3",        [PARAM_TEXT] = "word",
+        [PARAM_PATH] = "/some/where/",
     };
     bool whole =
         info->kind == PARAM_INT || info->kind == PARAM_UINT || info->kind == PARAM_AUTO_INT;
@@ -110,6 +111,7 @@ static void help_and_version_win_over_all_but_wrong_flags_before_them(void **sta
                  {"-qh", REQUEST_HELP},
                  {"--help=man", REQUEST_MAN},
                  {"--help=markdown", REQUEST_MARKDOWN},
+                 {"--help=bash", REQUEST_BASH},
                  {"--version", REQUEST_VERSION},
                  {"missing.json --fps x --help", REQUEST_HELP}};
     for (size_t i = 0; i < sizeof LINES / sizeof LINES[0]; i++) {
@@ -119,7 +121,7 @@ static void help_and_version_win_over_all_but_wrong_flags_before_them(void **sta
         scene_destroy(&scene);
     }
     assert_refused("--halp --help", RESULT_USAGE, "unknown flag --halp (nearest: --help");
-    assert_refused("--help=html", RESULT_USAGE, "--help: expected text, man or markdown");
+    assert_refused("--help=html", RESULT_USAGE, "--help: expected text, man, markdown or bash");
 }
 
 static void flags_may_stand_anywhere_and_values_may_look_like_flags(void **state)
