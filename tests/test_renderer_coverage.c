@@ -42,6 +42,31 @@ static void coverage_of_a_strand_is_its_area(void **state)
     }
 }
 
+// A ribbon that is wider than blocks are covers all of the pixels between its edges, whole, in
+// every direction, and none beside them.
+static void wide_ribbons_are_whole(void **state)
+{
+    (void)state;
+    const float widths[] = {21, 60, 150}; // px
+    use(&TRANSPARENT);
+    for (size_t w = 0; w < sizeof widths / sizeof *widths; ++w)
+        for (float deg = 0; deg < 180; deg += 22.5f) {
+            float x = cosf(glm_rad(deg)), y = sinf(glm_rad(deg));
+            add_line((float[3]){-300 * x, -300 * y, 0}, (float[3]){300 * x, 300 * y, 0},
+                     widths[w] / 2, 1);
+            studio_draw(&studio);
+            for (int row = 0; row < SIDE; ++row)
+                for (int column = 0; column < SIDE; ++column) {
+                    float across =
+                        fabsf((column + 0.5f - SIDE / 2) * y + (row + 0.5f - SIDE / 2) * x);
+                    int alpha = studio_pixel(&studio, column, row)[3];
+                    if (across < widths[w] / 2 - 0.75f) assert_int_equal(alpha, 255);
+                    if (across > widths[w] / 2 + 0.75f) assert_int_equal(alpha, 0);
+                }
+            studio_clear(&studio);
+        }
+}
+
 static double line_area(double deg, float distance, float radius, float length)
 {
     float angle = glm_rad((float)deg), z = 1000 - distance;
@@ -241,11 +266,17 @@ static void fibres_are_as_wide_as_asked_for(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        CLAIM(coverage_of_a_strand_is_its_area),          CLAIM(coverage_is_steady_in_a_slow_turn),
-        CLAIM(coverage_does_not_change_below_a_pixel),    CLAIM(joints_are_covered_once),
-        CLAIM(layers_of_equal_opacity_multiply),          CLAIM(many_layers_still_multiply),
-        CLAIM(hair_smaller_than_a_pixel_leaves_no_holes), CLAIM(fewer_strands_cover_as_much),
-        CLAIM(strands_neither_come_nor_go_at_once),       CLAIM(fibres_are_as_wide_as_asked_for),
+        CLAIM(coverage_of_a_strand_is_its_area),
+        CLAIM(coverage_is_steady_in_a_slow_turn),
+        CLAIM(coverage_does_not_change_below_a_pixel),
+        CLAIM(joints_are_covered_once),
+        CLAIM(wide_ribbons_are_whole),
+        CLAIM(layers_of_equal_opacity_multiply),
+        CLAIM(many_layers_still_multiply),
+        CLAIM(hair_smaller_than_a_pixel_leaves_no_holes),
+        CLAIM(fewer_strands_cover_as_much),
+        CLAIM(strands_neither_come_nor_go_at_once),
+        CLAIM(fibres_are_as_wide_as_asked_for),
     };
     return stage_run(tests);
 }

@@ -31,6 +31,38 @@ static void mesh_hides_the_hair_behind_it_only(void **state)
     assert_int_equal(studio_pixel(&studio, 5, 5)[1], 0);
 }
 
+// Hundreds of strands, wide ones too, on both sides of a mesh that fills a part of the picture:
+// what is seen through it is nothing, and beside it the picture is as without the mesh.
+static void a_mesh_hides_all_of_many_strands(void **state)
+{
+    (void)state;
+    Error error = {{0}};
+    Mesh mesh = make_square(50);
+    size_t size;
+    for (int wide = 0; wide < 2; ++wide) {
+        use(&BLACK);
+        add_tangle(200, wide ? 9 : 0.7f, 0.5f, NULL);
+        uint8_t *without = draw_copy(&size);
+        for (int v = 0; v < 4; ++v) mesh.position[v][2] = 300; // before all of them
+        assert_int_equal(renderer_set_mesh(&studio.renderer, &mesh, (float[3]){0}, &error),
+                         RESULT_OK);
+        studio_draw(&studio);
+        const int edge = (int)(50 * 1000 / 700.0); // px from the middle
+        for (int y = 0; y < SIDE; ++y)
+            for (int x = 0; x < SIDE; ++x) {
+                int far =
+                    abs(x - SIDE / 2) > abs(y - SIDE / 2) ? abs(x - SIDE / 2) : abs(y - SIDE / 2);
+                const uint8_t *pixel = studio_pixel(&studio, x, y);
+                const uint8_t black[3] = {0};
+                if (far < edge - 2) assert_memory_equal(pixel, black, 3);
+                if (far > edge + 2) assert_memory_equal(pixel, without + 3 * (y * SIDE + x), 3);
+            }
+        free(without);
+        studio_clear(&studio);
+    }
+    mesh_destroy(&mesh);
+}
+
 // Two strands 2 px before and behind a mesh that slopes away from the eye, by 1 px a pixel: depths
 // must be right in every pixel, not on the average of some.
 static void hair_close_to_a_sloping_mesh_is_all_seen_or_all_hidden(void **state)
@@ -137,6 +169,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         CLAIM(mesh_hides_the_hair_behind_it_only),
+        CLAIM(a_mesh_hides_all_of_many_strands),
         CLAIM(hair_close_to_a_sloping_mesh_is_all_seen_or_all_hidden),
         CLAIM(light_falls_off_by_the_square_of_the_distance),
         CLAIM(a_spot_shines_into_its_cone),
