@@ -34,7 +34,7 @@ vec3 shade_fibre(Fibre m, vec3 base, vec3 x, vec3 tangent, vec3 to_eye)
 {
     float eye = clamp(dot(tangent, to_eye), -1.0, 1.0), eye_sine = sine_of(eye);
     vec3 color = m.ambient * base * light_around_fibre(tangent, to_eye, eye);
-    for (int i = 0; i < draw_params.light_count; ++i) {
+    for (int i = 0; i < light_count; ++i) {
         vec3 to_light, reaching = light_reaching(i, x, to_light);
         float light = clamp(dot(tangent, to_light), -1.0, 1.0);
         float light_sine = sine_of(light);

@@ -86,7 +86,7 @@ vec3 shade_fibre(Fibre m, vec3 base, vec3 x, vec3 tangent, vec3 to_eye)
     float sin_r = clamp(dot(tangent, to_eye), -1.0, 1.0), cos_r = sine_of(sin_r);
     Outgoing to = outgoing(m, sin_r, cos_r);
     vec3 color = m.ambient * base * light_around_fibre(tangent, to_eye, sin_r);
-    for (int i = 0; i < draw_params.light_count; ++i) {
+    for (int i = 0; i < light_count; ++i) {
         vec3 to_light, reaching = light_reaching(i, x, to_light);
         float sin_i = clamp(dot(tangent, to_light), -1.0, 1.0), cos_i = sine_of(sin_i), across = cos_i * cos_r;
         float cos_phi = clamp((dot(to_eye, to_light) - sin_i * sin_r) / max(across, 1e-6), -1.0, 1.0);

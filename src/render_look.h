@@ -29,6 +29,7 @@ enum { LOOK_SHADED = 256, LOOK_VARIANTS = 4 * LOOK_SHADED };
 typedef struct Look {
     MaterialParams material; // complete but for the batch's size
     unsigned features;       // LookFeature bits
+    int light_count;         // of the scene
     GLuint scatter;          // LOOK_MARSCHNER: the 3D texture of render_scatter.h
     float share; // of the strands is drawn, 0 .. 1; the material's radius makes up for it
 } Look;
@@ -39,10 +40,11 @@ typedef struct Look {
 // than CPU drivers' loops can visit.
 MaterialParams look_material(const Look *look, const HairBatch *batch);
 
-// The variants of one compute shader; a zeroed struct with a file and a group size has none yet.
+// The variants of one compute shader, for so many lights; a zeroed struct with a file and a group
+// size has none yet.
 typedef struct LookPrograms {
     const char *file;
-    int group_size;
+    int group_size, light_count;
     GLuint program[LOOK_VARIANTS];
 } LookPrograms;
 

@@ -159,6 +159,7 @@ static Result make_look(Picture *picture, const RendererOptions *options, const 
 {
     *look = (Look){.material = material_params(item->material, item->radius),
                    .features = features,
+                   .light_count = picture->draw.light_count,
                    .share = 1};
     if (uses_lod(&options->lod)) look->share = find_share(options, picture, item);
     look->material.radius /= look->share;
