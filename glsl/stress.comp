@@ -18,7 +18,7 @@ layout(std430, binding = BIND_TIPS) buffer Tips { vec4 tips[]; };
 #endif
 
 const float HUGE = 1e30;
-const float RESOLVED = 8.0; // roundings that a segment must be long: shorter ones have no direction where they are
+const float RESOLVED = 64.0; // roundings that a segment must be long: shorter ones have no direction where they are
 
 float largest(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
 

@@ -36,10 +36,12 @@ vec3 tractrix_turn(vec3 d, float L, inout vec3 move)
     return d + change;
 }
 
-// One Newton step towards length 1, for a direction that is off by rounding only.
+// To length 1: one Newton step for a direction that is off by rounding only. (Where the head has pushed almost exactly along the segment, by
+// so much that it turned nevertheless, rounding decides where to, and how long it is.)
 vec3 tractrix_renormalise(vec3 d)
 {
-    return d * (1.5 - 0.5 * dot(d, d));
+    float dd = dot(d, d);
+    return d * (abs(dd - 1.0) < 1e-3 ? 1.5 - 0.5 * dd : inversesqrt(dd));
 }
 
 // A unit vector along v and its length, at any scale: squares are formed after dividing by the largest component.

@@ -21,7 +21,8 @@
 // solver's own quantities: v is how far what is drawn goes in a step, by the step.
 //
 // Rounding. Positions are float32, off by 2^-24 of their size X: v is off by 2^-23 X/dt, and a
-// solver that takes velocities from positions hands that on.
+// solver that takes velocities from positions hands that on: in N steps, small ones counted, as far
+// as a random walk.
 //
 // Rest. With the head at rest and steady forces, drag takes all energy. A swing dies like e^{-c
 // t/2}, what is overdamped creeps like e^{-t g/(c L)}; where both have passed for 30 times, the
@@ -33,7 +34,8 @@
 #include "stress_params.h"
 
 typedef struct StressBound {
-    double step_s; // of the solver's own time
+    double small_steps, steps; // that the solver makes of one, at most; so far
+    double step_s;             // of the solver's own time
     double drag, wind, g, length;
     double stiffness;         // added to S^2 for each radian that the head turns, m^2/s^2
     double kicks, blown, cap; // m/s; m^2/s^2

@@ -97,13 +97,13 @@ static void keep_apart(StressCase *stress)
     stress->value[STRESS_arm] = rounded(fmin(stress->value[STRESS_arm], 1e6 * link));
 }
 
-// The explicit spring takes sub-steps by the thousand for long steps: no more than MOST of them.
+// The explicit spring takes sub-steps by the thousand for long steps.
 static void keep_affordable(StressCase *stress)
 {
-    const double most = 40;
     double omega = (stress->value[STRESS_n] - 1) * sqrt(2.5 * stress->value[STRESS_spring_coil]);
     if (strcmp(stress->variant, "explicit") == 0)
-        stress->value[STRESS_dt] = rounded(fmin(stress->value[STRESS_dt], most * 1.6 / omega));
+        stress->value[STRESS_dt] =
+            rounded(fmin(stress->value[STRESS_dt], STRESS_MOST_SMALL_STEPS * 1.6 / omega));
 }
 
 StressCase stress_case_random(const char *algo, const char *variant, int vertices, Random *random)
