@@ -14,6 +14,8 @@
 // In time: forces of the positions at the step's start, and for masses M = 1 + MASS dt^2 b D^T D (D: differences along the strand, b =
 // K (n-1)^2/l), which leaves leapfrog's energy as it is and bounds b dt^2/M at any stiffness. (Rest states under load are right in the limit of
 // short steps, probably because tensions are found for masses of 1: docs/benchmarks.md, beams.)
+// A segment also bends what comes behind it: its own stiffness is K (n-1)^2 (l_j + l_{j+1})/l_j^2, so b is larger by l_{j+1}/(2 l_j) where
+// that is above 1.
 const float MASS = 3.0;
 
 #define BEND step_params.own[0].y // K

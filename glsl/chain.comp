@@ -78,7 +78,7 @@ void pull_implicitly(Lane lane)
     vec3 g_beyond = vec3(0.0), q = fetch_position(lane, LAST), v = fetch_velocity(lane, LAST);
     Row3 row = NO_ROW3;
 #if BENDS
-    float acts = lane.dt * step_params.gain, stiffness = acts * bend_stiffness(LAST), mass_beyond = 0.0;
+    float acts = lane.dt * step_params.gain, stiffness = acts * bend_stiffness(LAST), mass_beyond = 0.0, l_beyond = 0.0;
     vec3 G = vec3(0.0), h_beyond = vec3(0.0);
 #endif
     for (int j = LAST; j >= 1; --j) {
@@ -92,10 +92,10 @@ void pull_implicitly(Lane lane)
         float off = implicit_beyond, diagonal = 1.0 + (theta * tension + implicit_beyond);
         vec3 y = k.xyz - g + g_beyond;
 #if BENDS
-        float l = fetch_rest(lane, j).w, mass = MASS * stiffness / l;
+        float l = fetch_rest(lane, j).w, mass = MASS * stiffness / l * max(1.0, 0.5 * l_beyond / l);
         vec3 h = mass * (2.0 * r - r_old) - stiffness * bend_gradient(r, l, recall_goal(j), G);
         off += mass_beyond, diagonal += mass + mass_beyond, y += h - h_beyond;
-        mass_beyond = mass, h_beyond = h;
+        mass_beyond = mass, h_beyond = h, l_beyond = l;
 #endif
         row = eliminate(row, -off, diagonal, y, factor);
         keep(j, vec4(row.value, factor));

@@ -18,7 +18,6 @@ layout(std430, binding = BIND_TIPS) buffer Tips { vec4 tips[]; };
 #endif
 
 const float HUGE = 1e30;
-const float RESOLVED = 64.0; // roundings that a segment must be long: shorter ones have no direction where they are
 
 float largest(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
 
@@ -65,12 +64,12 @@ void main()
     float mean = 1.0 / float(n - 1);
     kinetic *= mean, potential *= mean, budget *= mean, highest *= mean, lifted *= mean;
 #endif
-    float noise = rounding * size, noise_speed = stress_params.noise_steps * noise * per_dt;
-    float speed = sqrt(2.0 * (budget + strength * noise) + stress_params.added) + stress_params.kicks + noise_speed;
+    float noise = rounding * size, bent = stress_params.bends * noise * noise / (shortest * shortest), noise_speed = stress_params.noise_steps * noise * per_dt;
+    float speed = sqrt(2.0 * (budget + strength * noise) + stress_params.added + bent) + stress_params.kicks + noise_speed;
     float allowed = 0.5 * speed * speed * (1.0 + stress_params.rise) + stress_params.rise * highest + lifted;
     vec4 value = vec4(0.0);
     if (stress_params.length_error > 0.0) value.x = off / stress_params.length_error;
-    if (stress_params.energy != 0u && shortest > RESOLVED * noise && allowed < HUGE && allowed > 0.0) value.y = (kinetic - potential + budget) / allowed;
+    if (stress_params.energy != 0u && shortest > stress_params.resolved * noise && allowed < HUGE && allowed > 0.0) value.y = (kinetic - potential + budget) / allowed;
     if (stress_params.rest_move > 0.0 && shortest > stress_params.rest_shortest) value.z = move / (stress_params.rest_move + noise);
     uvec4 broken = uvec4(!finite, !passes(value.x), !passes(value.y), !passes(value.z));
     uvec4 was = first[s];

@@ -21,11 +21,13 @@ UNIFORM_BLOCK(StressParams, stress_params, BIND_STEP)
     float added;        // m^2/s^2: what wind and the turning style may have added, twice the energy
     float rise;         // share of this and of mean(|g| l) by which energy may rise
     float rounding;     // of a coordinate's size: error of a stored length or move
+    float bends;        // m^2/s^2: bends by a radian add this to twice the energy
+    float resolved;     // roundings that all segments must be long for energy to be looked at
     float noise_steps;  // steps whose rounding may add up in velocities
     float length_error; // allowed, of a segment's length; 0: not looked at
     float rest_shortest; // m: strands with a segment as short need not rest
-    float rest_move;    // m: allowed in this step; 0: not looked at
-    uint energy;        // whether it is looked at
+    float rest_move;     // m: allowed in this step; 0: not looked at
+    uint energy;         // whether it is looked at
     uint step;
     uint strand_count;
     uint vertex_count;

@@ -102,6 +102,10 @@ void predict(Carried carried)
     positions[address(0)] = vec4(0.0, 0.0, 0.0, 1.0);
 }
 
+// A vertex between a short segment and one more than MOST_LEVER times as long gives way by less than its share: it would turn the short
+// segment, and with it the frame that the long one is held in, by more than it mends.
+const float MOST_LEVER = 2.0;
+
 void keep_local_shape()
 {
     float share = LOCAL_SHARE;
@@ -111,7 +115,7 @@ void keep_local_shape()
         vec4 rest_next = REST(j + 1);
         vec3 wanted = rest_next.w * turn_between(rest_here.xyz, unit(x - before, rest_here.xyz), rest_next.xyz);
         vec3 next = X(j + 1), gap = share * (x + wanted - next);
-        x = j > 1 ? x - gap : x;
+        x = j > 1 ? x - gap * min(1.0, MOST_LEVER * rest_here.w / rest_next.w) : x;
         X(j) = x;
         before = x;
         x = next + gap;

@@ -22,7 +22,8 @@
 //
 // Rounding. Positions are float32, off by 2^-24 of their size X: v is off by 2^-23 X/dt, and a
 // solver that takes velocities from positions hands that on: in N steps, small ones counted, as far
-// as a random walk.
+// as a random walk. Directions are off by the rounding over the shortest segment: what stiff bends
+// store by that is there from the start.
 //
 // Rest. With the head at rest and steady forces, drag takes all energy. A swing dies like e^{-c
 // t/2}, what is overdamped creeps like e^{-t g/(c L)}; where both have passed for 30 times, the
@@ -42,7 +43,10 @@ typedef struct StressBound {
     double turning;           // m/s: of a strand that goes rigidly with the head
     double turned;            // m^2/s^2
     double root_velocity[3];
-    double rise;          // share by which the solver lets energy rise; < 0: no bound
+    double rise;     // share by which the solver lets energy rise; < 0: no bound
+    double bends;    // m^2/s^2: what bends by a radian would store, 16 times: twice the energy, and
+                     // both segments' directions off by as much again
+    double resolved; // roundings that segments must be long for energy to be looked at
     double length_error;  // of segments; 0: it does not keep them
     double rest_move;     // m a step, at the end; 0: it need not rest
     double rest_shortest; // m: nor with a segment as short as this

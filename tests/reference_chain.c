@@ -83,7 +83,8 @@ static void find_bending(const TwinStrand *strand, const TwinStep *step,
     if (acts == 0) return;
     reference_bend_energy(strand, &step->head, r, gradient);
     for (int j = 1; j < n; ++j) {
-        bending->mass[j] = 3 * acts * (n - 1) * (n - 1) / strand->length[j];
+        double beyond = j + 1 < n ? strand->length[j + 1] / (2 * strand->length[j]) : 0;
+        bending->mass[j] = 3 * acts * (n - 1) * (n - 1) / strand->length[j] * fmax(1, beyond);
         for (int i = 0; i < 3; ++i)
             bending->pull[j][i] =
                 bending->mass[j] * (r[j][i] + step->dt * (v_old[j][i] - v_old[j - 1][i])) -

@@ -172,7 +172,7 @@ static const struct {
     {"emulation", "thesis", 16, 1},
     {"emulation", "projected", 48, 8e-3},
     {"hybrid", "", 48, 8e-3},
-    {"chain", "", 48, 0.05},
+    {"chain", "", 48, 0.02},
     {"chain", "", 16, 3e-3},
     {"tressfx", "steady", 48, 0.04},
 };
