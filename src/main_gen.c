@@ -100,7 +100,7 @@ static const char *find_given(const Command *command, const char *const *names)
         size_t i = 0;
         while (strcmp(OPTIONS[i].name, *names) != 0) ++i;
         const char *at = (const char *)command + OPTIONS[i].place;
-        double number;
+        double number = NAN;
         int whole;
         memcpy(&whole, at, sizeof whole);
         if (OPTIONS[i].kind == OPTION_REAL) memcpy(&number, at, sizeof number);
