@@ -131,9 +131,10 @@ bench-image: all ## image error and milliseconds of every scheme: table, out/ima
 	$(OUT)/tractrix-bench images $(IMAGES) --json out/image.json
 	@scripts/plot-image out/image.json out/image
 
+# A CPU driver shares such small dispatches out among threads at a loss.
 STRESS = --cases 5000 --steps 10000 --seed 1
 stress: all ## random circumstances for every solver until a rule breaks, an hour or so (STRESS="--algo chain --seed 2")
-	$(OUT)/tractrix-bench stress $(STRESS)
+	LP_NUM_THREADS=$${LP_NUM_THREADS-0} $(OUT)/tractrix-bench stress $(STRESS)
 
 # --- Static checks and the sanitizers; all of them run, then the failures are named. One alone: make check-format.
 CHECKS := format scripts warnings clang cppcheck shaders farm sanitize
