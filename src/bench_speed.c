@@ -168,6 +168,7 @@ Result speed_measure(SpeedResult *result, const Gpu *gpu, const SpeedSubject *su
     *result = (SpeedResult){.draw = speed_summarise(NULL, 0)};
     Result outcome = bench_create(&bench, gpu, subject, error);
     if (outcome == RESULT_OK) outcome = measure_steps(result, &bench, options, error);
+    if (outcome == RESULT_OK) outcome = gpu_check("steps", error);
     if (outcome == RESULT_OK && options->size[0])
         outcome = measure_drawing(result, gpu, &bench, subject->strands, options, error);
     bench_destroy(&bench);

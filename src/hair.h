@@ -27,6 +27,10 @@ typedef struct HairBatch {
     GpuBuffer paint; // uvec4 a particle, see hair_paint.c; no buffer where the section says it all
 } HairBatch;
 
+// The fewest strands that a work group of any shader takes (step_group_size): no batch has more
+// strands than a dispatch of such groups, GpuLimits.work_groups.
+enum { HAIR_LEAST_GROUP = 8 };
+
 // Strands with the last tile's copies: what buffers have room for.
 static inline uint32_t hair_slots(const HairBatch *batch)
 {
