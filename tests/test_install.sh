@@ -6,11 +6,17 @@
 program=$bin/tractrix-render
 root=$work/root share=$work/root/usr/share
 
-# The programs are there, built by who runs the tests: with these make takes them as they are.
-config=release
-if grep -q fsanitize "$bin/flags"; then config=sanitize; fi
+# The programs are there, built by who runs the tests; told of the same flags, make takes them as they are.
+same="OUT=$(realpath --relative-to=. "$bin") CC=$(cut -d' ' -f1 "$bin/flags")"
+if grep -q fsanitize "$bin/flags"; then same="$same CONFIG=sanitize"; else same="$same CONFIG=release"; fi
+if grep -q -- -Werror "$bin/flags"; then same="$same WERROR=1"; else same="$same WERROR="; fi
+installs() {
+    # shellcheck disable=SC2086
+    holds make --no-print-directory "$1" $same DESTDIR="$root" PREFIX=/usr
+    if grep -qE '^  (CC|LINK) ' "$work/out"; then bad "built anew"; else good; fi
+}
 claim "make install puts everything under DESTDIR and PREFIX"
-holds make --no-print-directory install OUT="$bin" CONFIG=$config DESTDIR="$root" PREFIX=/usr
+installs install
 for name in "$bin"/tractrix-*.1; do
     name=${name##*/}
     name=${name%.1}
@@ -37,7 +43,7 @@ for page in "$share"/man/man1/*; do
 done
 
 claim "make uninstall leaves no file behind"
-holds make --no-print-directory uninstall OUT="$bin" CONFIG=$config DESTDIR="$root" PREFIX=/usr
+installs uninstall
 holds test -z "$(find "$root" -type f)"
 
 # offers WORD... -- EXPECTED...: the command line so far makes bash offer these words and no others.
@@ -55,7 +61,7 @@ claim "bash completes flags, their words and files"
 program=$bin/tractrix-render
 run 0 --help=bash
 cp "$work/out" "$work/complete"
-offers tractrix-render --turn -- --turntable
+offers tractrix-render --turn -- --turn-lights --turntable
 offers tractrix-render --raster '' -- auto blocks quads
 offers tractrix-render --raster = b -- blocks
 offers tractrix-render --algo e -- emulation
