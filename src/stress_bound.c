@@ -37,10 +37,6 @@ static const double REST_MOVE =
 static const double PATIENCE = 30; // of each time constant, until a strand must lie still
 static const double CALM = 2; // stability number (stability.h) up to which solvers come to rest
 
-// Where the root jumps by tens of links, chain's corrections of the lengths overshoot, for that
-// step.
-static const double CHAIN_JERK = 1.4;
-
 static const double NOISE_STEPS = 8; // steps whose rounding may add up, beside a random walk's
 
 bool stress_bound_tip_only(const StressCase *stress)
@@ -51,6 +47,14 @@ bool stress_bound_tip_only(const StressCase *stress)
 static double value(const StressCase *stress, enum StressField field)
 {
     return stress->value[field];
+}
+
+// What a jerk of the root gives to a strand, over its change of velocity: where it is by tens of
+// links, chain's corrections of the lengths overshoot, for that step; those of dftl are velocities.
+static double jerk_of(const StressCase *stress)
+{
+    bool overshoots = strcmp(stress->algo, "chain") == 0 || strcmp(stress->algo, "dftl") == 0;
+    return overshoots ? 1.5 : 1;
 }
 
 static double odds_of(const SectionParams *params)
@@ -135,7 +139,7 @@ StressBound stress_bound_create(const StressCase *stress, const SectionParams *p
         .g = value(stress, STRESS_gravity),
         .length = value(stress, STRESS_length),
         .stiffness = turned_springs(stress, params),
-        .jerk = strcmp(stress->algo, "chain") == 0 ? CHAIN_JERK : 1,
+        .jerk = jerk_of(stress),
         .bends = 16 * value(stress, STRESS_chain_bend) * odds_of(params) *
                  (value(stress, STRESS_n) - 1) * value(stress, STRESS_length),
         .small_steps = strcmp(stress->variant, "xpbd") == 0       ? params->rope_iterations

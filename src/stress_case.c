@@ -97,13 +97,16 @@ static void keep_apart(StressCase *stress)
     stress->value[STRESS_arm] = rounded(fmin(stress->value[STRESS_arm], 1e6 * link));
 }
 
-// The explicit spring takes sub-steps by the thousand for long steps.
+// Springs take sub-steps by the thousand for long steps (solver_spring.c).
 static void keep_affordable(StressCase *stress)
 {
-    double omega = (stress->value[STRESS_n] - 1) * sqrt(2.5 * stress->value[STRESS_spring_coil]);
-    if (strcmp(stress->variant, "explicit") == 0)
-        stress->value[STRESS_dt] =
-            rounded(fmin(stress->value[STRESS_dt], STRESS_MOST_SMALL_STEPS * 1.6 / omega));
+    const double *value = stress->value;
+    double links = value[STRESS_n] - 1, most = STRESS_MOST_SMALL_STEPS;
+    if (strcmp(stress->algo, "spring") != 0) return;
+    most *= strcmp(stress->variant, "explicit") == 0
+                ? 1.6 / (links * sqrt(2.5 * value[STRESS_spring_coil]))
+                : 10 / (links * sqrt(fmax(value[STRESS_gravity], 1e-9) / value[STRESS_length]));
+    stress->value[STRESS_dt] = rounded(fmax(fmin(value[STRESS_dt], most), 1e-6));
 }
 
 StressCase stress_case_random(const char *algo, const char *variant, int vertices, Random *random)

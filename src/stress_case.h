@@ -94,7 +94,7 @@ StressCase stress_case_plain(const char *algo, const char *variant);
 // A random set: the circumstances of all its strands; `vertices` of STRESS_VERTICES in turn.
 enum {
     STRESS_VERTEX_COUNTS = 4,
-    STRESS_MOST_SMALL_STEPS = 40, // that random cases give to the explicit spring
+    STRESS_MOST_SMALL_STEPS = 40, // that random cases give to the spring
 };
 extern const int STRESS_VERTICES[STRESS_VERTEX_COUNTS];
 StressCase stress_case_random(const char *algo, const char *variant, int vertices, Random *random);
