@@ -68,7 +68,7 @@ Result render_abuffer_create(RenderABuffer *abuffer, const GpuLimits *limits, in
     return result;
 }
 
-Result render_abuffer_add_mesh(RenderABuffer *abuffer, Error *error)
+Result render_abuffer_add_base(RenderABuffer *abuffer, Error *error)
 {
     return abuffer->resolve[1] ? RESULT_OK : build_resolve(abuffer, 1, error);
 }

@@ -46,7 +46,7 @@ Result render_abuffer_create(RenderABuffer *abuffer, const GpuLimits *limits, in
 void render_abuffer_destroy(RenderABuffer *abuffer);
 
 // Makes what resolving over a mesh needs; nothing if it is there.
-Result render_abuffer_add_mesh(RenderABuffer *abuffer, Error *error);
+Result render_abuffer_add_base(RenderABuffer *abuffer, Error *error);
 
 // Rows that one band can have at most; >= 1 for every picture that can be drawn.
 int render_abuffer_most_rows(const RenderABuffer *abuffer, int height);
@@ -69,7 +69,7 @@ Result render_abuffer_grow(RenderABuffer *abuffer, const ABufferUse *use, bool *
                            Error *error);
 
 // Writes the pixels within the extent and the scissor to the target's picture, over its base if
-// `over_mesh` (after render_abuffer_add_mesh). Needs the DrawParams block.
+// `over_mesh` (after render_abuffer_add_base). Needs the DrawParams block.
 void render_abuffer_resolve(const RenderABuffer *abuffer, const RenderTarget *target,
                             bool over_mesh);
 

@@ -179,7 +179,7 @@ void render_blocks_destroy(RenderBlocks *blocks)
     *blocks = (RenderBlocks){0};
 }
 
-Result render_blocks_add_mesh(RenderBlocks *blocks, Error *error)
+Result render_blocks_add_base(RenderBlocks *blocks, Error *error)
 {
     return blocks->composite[1] ? RESULT_OK : build_composite(blocks, 1, error);
 }

@@ -45,8 +45,8 @@ Result render_blocks_create(RenderBlocks *blocks, const GpuLimits *limits,
                             const RendererOptions *options, Error *error);
 void render_blocks_destroy(RenderBlocks *blocks);
 
-// Makes what drawing over a mesh needs; nothing if it is there.
-Result render_blocks_add_mesh(RenderBlocks *blocks, Error *error);
+// Makes what drawing over a mesh or a floor needs; nothing if it is there.
+Result render_blocks_add_base(RenderBlocks *blocks, Error *error);
 
 // Whether so many ribbons fit into the driver's buffers.
 bool render_blocks_can_hold(const GpuLimits *limits, uint64_t segments);

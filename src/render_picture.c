@@ -69,7 +69,7 @@ static void add_to_box(DrawParams *draw, vec3 x, int box[4])
 }
 
 // What must be resolved where there is no hair.
-static void find_mesh_box(const RenderMesh *mesh, const Floor *floor, DrawParams *draw, int box[4])
+static void find_base_box(const RenderMesh *mesh, const Floor *floor, DrawParams *draw, int box[4])
 {
     const int far = 1 << 20;
     vec3 x;
@@ -183,7 +183,7 @@ Result picture_begin(Picture *picture, const RendererOptions *options, const Ren
     picture->items = items;
     picture->item_count = item_count;
     fill_draw_params(options, mesh, frame, &picture->draw);
-    find_mesh_box(mesh, &options->floor, &picture->draw, picture->mesh_box);
+    find_base_box(mesh, &options->floor, &picture->draw, picture->base_box);
     Result result = make_room(picture, error);
     for (uint32_t i = 0; i < item_count && result == RESULT_OK; ++i)
         result = make_look(picture, options, &items[i], features, &picture->looks[i], error);

@@ -17,7 +17,7 @@ typedef struct Picture {
     uint32_t item_count;
     Look *looks; // [look_room], owned: of the items
     uint32_t look_room;
-    int mesh_box[4]; // samples: x, y lowest, highest, of mesh and floor; empty without any
+    int base_box[4]; // samples: x, y lowest, highest, of mesh and floor; empty without any
     ScatterTables scatter;
     GpuBuffer uniforms;
 } Picture;

@@ -35,16 +35,16 @@ void render_quads_destroy(RenderQuads *quads)
     *quads = (RenderQuads){0};
 }
 
-Result render_quads_add_mesh(RenderQuads *quads, Error *error)
+Result render_quads_add_base(RenderQuads *quads, Error *error)
 {
-    return render_abuffer_add_mesh(&quads->abuffer, error);
+    return render_abuffer_add_base(&quads->abuffer, error);
 }
 
 // The band's lists; measured, but not resolved yet.
 static Result draw_band(RenderQuads *quads, Picture *picture, const RenderTarget *target, int row,
                         int rows, GpuTimer *timer, Error *error)
 {
-    Result result = render_abuffer_begin(&quads->abuffer, rows, picture->mesh_box, error);
+    Result result = render_abuffer_begin(&quads->abuffer, rows, picture->base_box, error);
     DrawParams *draw = &picture->draw;
     int samples = quads->samples;
     draw->band[1] = (uint32_t)(row * samples);

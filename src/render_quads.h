@@ -25,7 +25,7 @@ Result render_quads_create(RenderQuads *quads, const Gpu *gpu, const RendererOpt
 void render_quads_destroy(RenderQuads *quads);
 
 // Makes what drawing over a mesh needs; nothing if it is there.
-Result render_quads_add_mesh(RenderQuads *quads, Error *error);
+Result render_quads_add_base(RenderQuads *quads, Error *error);
 
 // Draws the picture's hair over the target's base, or over the background if `over_mesh` is false,
 // and copies it into `image`; waits for it. What it does is added to `counts`. See renderer_draw.

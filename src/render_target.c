@@ -75,7 +75,7 @@ Result render_target_create(RenderTarget *target, const GpuLimits *limits, int w
     return result;
 }
 
-Result render_target_add_mesh(RenderTarget *target, Error *error)
+Result render_target_add_base(RenderTarget *target, Error *error)
 {
     if (target->depth) return RESULT_OK;
     int width = target->width * target->samples, height = target->height * target->samples;

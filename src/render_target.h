@@ -23,8 +23,8 @@ Result render_target_create(RenderTarget *target, const GpuLimits *limits, int w
                             int samples, ImageKind kind, Error *error);
 void render_target_destroy(RenderTarget *target);
 
-// Adds what a mesh needs; nothing if it is there.
-Result render_target_add_mesh(RenderTarget *target, Error *error);
+// Adds what a mesh or a floor needs; nothing if it is there.
+Result render_target_add_base(RenderTarget *target, Error *error);
 
 // Copies the picture into `image` of 3 or 4 channels; waits for it.
 void render_target_read(RenderTarget *target, Image *image);

@@ -11,7 +11,7 @@
 // A way from hair to pixels.
 typedef struct RasterType {
     Result (*create)(Renderer *renderer, Error *error);
-    Result (*add_mesh)(Renderer *renderer, Error *error);
+    Result (*add_base)(Renderer *renderer, Error *error);
     Result (*draw)(Renderer *renderer, Image *image, Error *error);
 } RasterType;
 static const RasterType RASTERS[3];
@@ -58,8 +58,8 @@ static bool has_base(const Renderer *renderer)
 static Result make_base(Renderer *renderer, Error *error)
 {
     if (!has_base(renderer)) return RESULT_OK;
-    Result result = render_target_add_mesh(&renderer->target, error);
-    return result == RESULT_OK ? RASTERS[renderer->raster].add_mesh(renderer, error) : result;
+    Result result = render_target_add_base(&renderer->target, error);
+    return result == RESULT_OK ? RASTERS[renderer->raster].add_base(renderer, error) : result;
 }
 
 Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
@@ -161,9 +161,9 @@ static Result draw_shadow(Renderer *renderer, const RenderFrame *frame, Error *e
     return result;
 }
 
-static Result add_mesh_to_quads(Renderer *renderer, Error *error)
+static Result add_base_to_quads(Renderer *renderer, Error *error)
 {
-    return render_quads_add_mesh(&renderer->quads, error);
+    return render_quads_add_base(&renderer->quads, error);
 }
 
 static Result draw_quads(Renderer *renderer, Image *image, Error *error)
@@ -172,9 +172,9 @@ static Result draw_quads(Renderer *renderer, Image *image, Error *error)
                              has_base(renderer), renderer->timer, image, &renderer->counts, error);
 }
 
-static Result add_mesh_to_blocks(Renderer *renderer, Error *error)
+static Result add_base_to_blocks(Renderer *renderer, Error *error)
 {
-    return render_blocks_add_mesh(&renderer->blocks, error);
+    return render_blocks_add_base(&renderer->blocks, error);
 }
 
 static void count_blocks(Renderer *renderer)
@@ -192,7 +192,7 @@ static Result draw_quads_instead(Renderer *renderer, Image *image, Error *error)
 {
     renderer->raster = RASTER_QUADS;
     Result result = create_quads(renderer, error);
-    if (result == RESULT_OK && has_base(renderer)) result = add_mesh_to_quads(renderer, error);
+    if (result == RESULT_OK && has_base(renderer)) result = add_base_to_quads(renderer, error);
     return result == RESULT_OK ? draw_quads(renderer, image, error) : result;
 }
 
@@ -222,7 +222,7 @@ static Result draw_blocks(Renderer *renderer, Image *image, Error *error)
     if (result != RESULT_OK) return result;
     result = project_items(renderer, error);
     if (result != RESULT_OK) return result;
-    result = render_blocks_draw(blocks, &renderer->target, has_base(renderer), picture->mesh_box,
+    result = render_blocks_draw(blocks, &renderer->target, has_base(renderer), picture->base_box,
                                 renderer->timer, error);
     if (result != RESULT_OK) return result;
     if (render_blocks_fell_short(blocks)) return draw_quads_instead(renderer, image, error);
@@ -234,8 +234,8 @@ static Result draw_blocks(Renderer *renderer, Image *image, Error *error)
 }
 
 static const RasterType RASTERS[] = {
-    [RASTER_QUADS] = {create_quads, add_mesh_to_quads, draw_quads},
-    [RASTER_BLOCKS] = {create_blocks, add_mesh_to_blocks, draw_blocks},
+    [RASTER_QUADS] = {create_quads, add_base_to_quads, draw_quads},
+    [RASTER_BLOCKS] = {create_blocks, add_base_to_blocks, draw_blocks},
 };
 
 Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderItem *items,
