@@ -21,7 +21,7 @@ static void solve_joints(double stiffness, int n, double *angle)
 {
     for (int j = 1; j <= n; ++j) angle[j] = 0;
     for (int round = 0; round < 2000; ++round) {
-        double moment = 0, hanging = 0, turn[MOST + 1];
+        double moment = 0, hanging = 0, turn[MOST + 1] = {0};
         for (int j = n; j >= 1; --j) {
             hanging += 1;
             moment += G * hanging * cos(angle[j]);

@@ -57,7 +57,7 @@ static void blend(FurWeave *weave, const FurGuides *guides, const float at[3], D
 static uint32_t find_clump(const FurGuides *guides, const float at[3])
 {
     enum { TRIED = 6 };
-    Neighbour guide, found[TRIED];
+    Neighbour guide = {0}, found[TRIED] = {0};
     nearest_find_at(&guides->nearest, at, &guide, 1);
     uint32_t count = nearest_find_at(&guides->centers, at, found, TRIED);
     for (uint32_t i = 0; i < count; i++)

@@ -131,7 +131,8 @@ static const struct {
      "random circumstances for every solver; the smallest case that breaks a rule, if one does"},
     {"image", run_image,
      "drawing --set NAME or --tfx FILE: its time, and its error against the exact picture"},
-    {"images", run_images, "the same for every scheme and preset; parts: straight, curls, fur, files (those named)"},
+    {"images", run_images,
+     "the same for every scheme and preset; parts: straight, curls, fur, files (those named)"},
     {"shaders", run_shaders, "compiles every shader variant with warnings as errors"},
 };
 enum { COMMAND_COUNT = sizeof COMMANDS / sizeof *COMMANDS };

@@ -87,7 +87,7 @@ static Result collect_roots(const Strands *strands, double *values, size_t *coun
     Result result =
         nearest_create(&nearest, (const float(*)[3])roots, strands->strand_count, error);
     for (uint32_t s = 0; s < strands->strand_count && result == RESULT_OK; s++) {
-        Neighbour found;
+        Neighbour found = {0};
         if (nearest_find(&nearest, s, &found, 1) == 1) values[(*count)++] = sqrt(found.square);
     }
     nearest_destroy(&nearest);
