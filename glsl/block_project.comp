@@ -16,6 +16,8 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 layout(location = 0) uniform ivec2 first_slot; // of this part of a batch: in all, in the buffer that is bound
+layout(location = 1) uniform ivec2 strands;    // how many; 1: they are those of the list (block_cull.comp)
+layout(binding = BIND_LISTED) uniform usamplerBuffer listed;
 layout(binding = BIND_STRAND_ID) uniform usamplerBuffer strand_id;
 layout(std430, binding = BIND_RIBBONS_OUT) writeonly buffer Ribbons { uvec4 ribbons[]; };
 layout(std430, binding = BIND_KEYS_OUT) writeonly buffer Keys { uint keys[]; }; // 1/w as float bits
@@ -88,8 +90,10 @@ bool store(int slot, End a, End b, float opacity)
 
 void main()
 {
-    int n = int(material.vertex_count), row = int(gl_GlobalInvocationID.x), s = int(material.first_strand) + row;
-    if (row >= int(material.drawn_strands)) return;
+    int n = int(material.vertex_count), row = int(gl_GlobalInvocationID.x);
+    if (row >= strands.x) return;
+    if (strands.y != 0) row = int(texelFetch(listed, row + 1).x);
+    int s = int(material.first_strand) + row;
 #if SMOOTH
     int slot = row * (n - 1) * int(material.smooth_parts);
 #else

@@ -16,9 +16,11 @@
 
 typedef struct RenderBlocks {
     LookPrograms project;
+    GLuint cull;
     GLuint composite[2];     // over the background, over a mesh
     GpuBuffer ribbons, keys; // see block.glsl
     GpuBuffer numbers, jobs; // see block_lists.h
+    GpuBuffer listed;        // strands, see block_cull.comp
     GpuBuffer counts, pixels, material;
     const GpuLimits *limits;
     Radix radix;
@@ -33,6 +35,9 @@ typedef struct RenderBlocks {
     int tone;                           // display.glsl's macro
     int64_t most_numbers;               // in all lists of a band
     size_t slots, seen;                 // records there is room for; that are seen
+    bool culls;                         // strands before they are projected: many were out of sight
+    uint64_t strands;                   // of the picture
+    uint64_t unlisted;                  // left out before they were projected
     uint64_t touched, segments, culled; // blocks that ribbons touch, each counted
     uint32_t bands;
 } RenderBlocks;
