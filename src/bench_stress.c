@@ -34,7 +34,7 @@ typedef struct Bench {
     FILE *stream;
     json_t *rows;
     Progress progress;
-    int sets_done;
+    int sets_done, cases_done;
 } Bench;
 
 static double now_s(void)
@@ -223,6 +223,7 @@ static Result run_form(Bench *bench, const char *algo, const char *variant, int 
     tally.seconds = now_s() - begun;
     if (tally.cases) print_tally(bench, &tally);
     *failures += tally.failures;
+    bench->cases_done += tally.cases;
     return result;
 }
 
@@ -270,8 +271,11 @@ Result bench_stress(const Gpu *gpu, const StressOptions *options, FILE *stream, 
     int sets = options->text ? 1 : (options->cases + STRESS_STRANDS - 1) / STRESS_STRANDS;
     progress_start(&bench.progress, stderr, forms ? forms * sets : 1, false);
     print_head(stream);
+    double begun = now_s();
     result = for_forms(&bench, options, &failures, &unused, error);
     progress_clear(&bench.progress);
+    fprintf(stream, "%d cases, %d steps each, of %d forms of solvers in %.0f s: %d failed\n",
+            bench.cases_done, options->steps, forms, now_s() - begun, failures);
     if (result == RESULT_OK && failures)
         result = error_set(error, RESULT_FAILED, "%d cases failed", failures);
     return result;
