@@ -9,12 +9,13 @@ float sine_of(float cosine)
     return sqrt(max(1.0 - cosine * cosine, 0.0));
 }
 
+const int light_count = 1;
 vec3 lit_from = vec3(0.0);
 
 vec3 light_reaching(int i, vec3 x, out vec3 to_light)
 {
     to_light = lit_from;
-    return vec3(0.25 * float(i) + 1.0 / 3.14159265); // there is but light 0
+    return vec3(1.0 / 3.14159265);
 }
 
 vec3 light_around_fibre(vec3 tangent, vec3 to_eye, float eye)

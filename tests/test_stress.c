@@ -90,7 +90,7 @@ static void strands_are_such_as_reading_leaves(void **state)
 static StressVerdict verdict_of(const char *algo, const char *variant, const char *text, int steps)
 {
     StressCase stress = {.algo = algo, .variant = variant};
-    StressVerdict verdict;
+    StressVerdict verdict = {0};
     Error error = {{0}};
     if (stress_case_read(&stress, text, &error) != RESULT_OK ||
         stress_run(&verdict, fixture_gpu(), &stress, 1, steps, &error) != RESULT_OK)
