@@ -28,7 +28,7 @@ claim "the tutorial's commands work"
 cd "$work/checkout" || exit 1
 holds sh -eu commands
 says "they differ"
-for file in fur.tfx still.png scene.mp4 split.mp4 hybrid.json turn.mp4 near.mp4 farmed/frame_0003.png sim.usda heat/frame_0000.png report.xml; do
+for file in fur.tfx still.png scene.mp4 split.mp4 hybrid.json turn.mp4 sheet.png near.mp4 farmed/frame_0003.png sim.usda heat/frame_0000.png report.xml; do
     is_file "out/tutorial/$file"
 done
 finish
