@@ -12,9 +12,6 @@ float sine_of(float cosine)
 }
 
 #include "lights.glsl"
-#ifndef LIGHT_COUNT
-#define LIGHT_COUNT 0
-#endif
 #if LIGHT_COUNT
 const int light_count = LIGHT_COUNT;
 #else

@@ -2,6 +2,13 @@
 // How much of a light reaches a point (needs shadow.h).
 //   SHADOW 0: all   1: approximated deep shadow map, as TressFX has it   2: deep opacity map
 //   SHADOW_BY_MESH 1: the mesh throws shadows, too
+//   LIGHT_COUNT, SHADOW_MAPS: how many lights and maps, so that loops over them are unrolled; 0: any number
+#ifndef LIGHT_COUNT
+#define LIGHT_COUNT 0
+#endif
+#ifndef SHADOW_MAPS
+#define SHADOW_MAPS 0
+#endif
 
 #if SHADOW
 layout(binding = BIND_DEPTHS) uniform samplerBuffer shadow_depths;
@@ -110,7 +117,21 @@ float light_past_mesh(int map, vec3 x)
 #if SHADOW
 // Of each light what is left at the point of the last shadow_find; whole where it has no map.
 float shadow_left[MAX_LIGHTS] = float[MAX_LIGHTS](1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0);
+#if SHADOW_MAPS
+const int shadow_maps = SHADOW_MAPS;
+#else
 int shadow_maps = shadow_params.maps;
+#endif
+
+void shadow_keep(int light, float left)
+{
+#if LIGHT_COUNT
+    // An array whose every place is known when compiling stays in registers.
+    for (int i = 0; i < LIGHT_COUNT; ++i) shadow_left[i] = i == light ? left : shadow_left[i];
+#else
+    shadow_left[light] = left;
+#endif
+}
 
 // Finds what is left of all lights at x, a turn for each map: CPU drivers run both sides of every `if`,
 // so that lights without a map would cost as much as those with one.
@@ -126,7 +147,7 @@ void shadow_find(vec3 x)
 #if SHADOW_BY_MESH
         left *= light_past_mesh(map, x);
 #endif
-        shadow_left[int(of_light.x)] = place.w > 0.0 ? left : 1.0; // a lamp has no map behind it
+        shadow_keep(int(of_light.x), place.w > 0.0 ? left : 1.0); // a lamp has no map behind it
     }
 }
 #endif

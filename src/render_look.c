@@ -34,6 +34,7 @@ Result look_programs_build(LookPrograms *programs, unsigned features, Error *err
     int unrolled = programs->light_count <= MOST_UNROLLED ? programs->light_count : 0;
     const ShaderDefine defines[] = {{"GROUP_SIZE", programs->group_size},
                                     {"LIGHT_COUNT", unrolled},
+                                    {"SHADOW_MAPS", unrolled ? programs->map_count : 0},
                                     {"LIGHTS", (features & LOOK_LIGHTS) != 0},
                                     {"MARSCHNER", model},
                                     {"AOV", (int)(features / LOOK_SHADED)},
@@ -58,9 +59,10 @@ Result look_programs_use(LookPrograms *programs, const Look *look, const HairBat
                          Error *error)
 {
     unsigned features = look->features | (batch->paint.buffer ? LOOK_PAINT : 0);
-    if (programs->light_count != look->light_count) {
+    if (programs->light_count != look->light_count || programs->map_count != look->map_count) {
         forget(programs);
         programs->light_count = look->light_count;
+        programs->map_count = look->map_count;
     }
     Result result = look_programs_build(programs, features, error);
     if (result != RESULT_OK) return result;

@@ -30,6 +30,7 @@ typedef struct Look {
     MaterialParams material; // complete but for the batch's size
     unsigned features;       // LookFeature bits
     int light_count;         // of the scene
+    int map_count;           // lights that have a shadow map
     GLuint scatter;          // LOOK_MARSCHNER: the 3D texture of render_scatter.h
     float share; // of the strands is drawn, 0 .. 1; the material's radius makes up for it
 } Look;
@@ -40,11 +41,11 @@ typedef struct Look {
 // than CPU drivers' loops can visit.
 MaterialParams look_material(const Look *look, const HairBatch *batch);
 
-// The variants of one compute shader, for so many lights; a zeroed struct with a file and a group
-// size has none yet.
+// The variants of one compute shader, for so many lights and shadow maps; a zeroed struct with a
+// file and a group size has none yet.
 typedef struct LookPrograms {
     const char *file;
-    int group_size, light_count;
+    int group_size, light_count, map_count;
     GLuint program[LOOK_VARIANTS];
 } LookPrograms;
 

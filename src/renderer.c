@@ -145,7 +145,7 @@ static Result list_casters(Renderer *renderer, ShadowScene *scene, Error *error)
 
 static Result draw_shadow(Renderer *renderer, const RenderFrame *frame, Error *error)
 {
-    const Picture *picture = &renderer->picture;
+    Picture *picture = &renderer->picture;
     ShadowScene scene = {.lights = frame->lights,
                          .light_count = frame->light_count,
                          .mesh = {.mesh = &renderer->base.mesh},
@@ -157,8 +157,11 @@ static Result draw_shadow(Renderer *renderer, const RenderFrame *frame, Error *e
     Result result = list_casters(renderer, &scene, error);
     if (result == RESULT_OK)
         result = render_shadow_draw(&renderer->shadow, &scene, renderer->timer, error);
-    if (result == RESULT_OK) render_shadow_bind(&renderer->shadow);
-    return result;
+    if (result != RESULT_OK) return result;
+    render_shadow_bind(&renderer->shadow);
+    for (uint32_t i = 0; i < picture->item_count; ++i)
+        picture->looks[i].map_count = renderer->shadow.params.maps;
+    return RESULT_OK;
 }
 
 static Result add_base_to_quads(Renderer *renderer, Error *error)
