@@ -18,7 +18,7 @@
 typedef struct Line {
     AccuracyRow row;
     const char *variant, *verdict;
-    char command[512];
+    char command[1024];
 } Line;
 
 #define AT(member) offsetof(Line, member)
