@@ -142,6 +142,30 @@ static Result create_batches(Hair *hair, const Strands *strands, const Order *or
     return RESULT_OK;
 }
 
+static double shortest_segment(const Strands *strands, uint32_t s)
+{
+    double shortest = INFINITY;
+    for (uint32_t v = strands->first[s] + 1; v < strands->first[s + 1]; ++v) {
+        const float *a = strands->position[v - 1], *b = strands->position[v];
+        double x = (double)b[0] - (double)a[0], y = (double)b[1] - (double)a[1],
+               z = (double)b[2] - (double)a[2];
+        shortest = fmin(shortest, sqrt(x * x + y * y + z * z));
+    }
+    return shortest;
+}
+
+static void measure_lengths(Hair *hair, const Strands *strands)
+{
+    double evenness = 1;
+    for (uint32_t s = 0; s < strands->strand_count; ++s) {
+        double length = strands_length(strands, s);
+        hair->longest = fmaxf(hair->longest, (float)length);
+        evenness =
+            fmin(evenness, shortest_segment(strands, s) * (strands_size(strands, s) - 1) / length);
+    }
+    hair->evenness = (float)evenness;
+}
+
 Result hair_create(Hair *hair, const Strands *strands, uint32_t first_id, const GpuLimits *limits,
                    Error *error)
 {
@@ -149,8 +173,7 @@ Result hair_create(Hair *hair, const Strands *strands, uint32_t first_id, const 
                    .particle_count = strands->vertex_count,
                    .segment_count = strands->vertex_count - strands->strand_count};
     strands_bounds(strands, hair->low, hair->high);
-    for (uint32_t s = 0; s < strands->strand_count; ++s)
-        hair->longest = fmaxf(hair->longest, (float)strands_length(strands, s));
+    measure_lengths(hair, strands);
     Order order = {0};
     Result result = order_by_size(&order, strands, error);
     if (result == RESULT_OK)

@@ -51,6 +51,7 @@ typedef struct Hair {
     uint64_t particle_count, segment_count;
     float low[3], high[3]; // bounds of the style in the head's frame, metres
     float longest;         // length of the longest strand, metres
+    float evenness;        // the least share that a segment has of its strand's average one
     bool alike;            // strands do not differ by chance: their file says their colours
 } Hair;
 

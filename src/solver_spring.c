@@ -59,10 +59,12 @@ static const ParticleRecipe IMPLICIT = {
 
 // Symplectic Euler needs h omega < 2. The chain of coils, each k/2, has omega^2 < 4 (k/2), the
 // angular springs, at most k/8 a length, add 4 (k/8). 1.6 leaves room for links that turn within a
-// step.
+// step. A link as short as waves stretch it turns over in one, and what it gains there is for
+// good: hair with links below a tenth of the average, without drag, gets hotter at 0.4 and does
+// not at 0.3.
 static int stable_substeps(const SolverStep *step, const SectionParams *params, const Hair *hair)
 {
-    const double limit = 1.6;
+    const double limit = hair->evenness < 0.1f ? 0.3 : 1.6;
     double omega = most_links(hair) * sqrt(2.5 * (double)params->spring_coil);
     return (int)fmin(ceil(step->dt * omega / limit), 1e9);
 }
