@@ -28,6 +28,12 @@
 #define BIND_HEADS  8
 #define BIND_BASE   9 // what stands behind the hair: linear, premultiplied
 
+// While the base is drawn, before all of these but what shadows are read from.
+#define BIND_SURFACE      4 // see surface.frag
+#define BIND_LIT          5 // that surface's light
+#define BIND_MIDDLE_DEPTH 6 // the mesh's
+#define BIND_EDGE_DEPTH   7 // the same of some samples a pixel
+
 #define BIND_PAINT   8  // uvec4 a particle, see hair_paint.c; beside what shadows are read from
 #define BIND_SCATTER 10 // marschner's table, see scatter.comp
 

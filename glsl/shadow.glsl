@@ -86,28 +86,30 @@ float light_through_hair(int map, vec2 place, float depth, vec4 of_light)
 #endif
 
 #if SHADOW_BY_MESH
-// Texels each way that a point looks at.
+// Texels each way that a point looks at: an even number, since four are fetched at once.
 #ifndef MESH_TAPS
 #define MESH_TAPS 2
 #endif
 
 // The share of a square of MESH_TAPS - 1 texels around the point that the mesh does not stand before: texels at its edge
-// count by how much of them is inside, so that it changes evenly as the point moves.
+// count by how much of them is inside, so that it changes evenly as the point moves. At the map's edges nothing stands.
 float light_past_mesh(int map, vec3 x)
 {
     vec4 place = vec4(x, 1.0) * shadow_params.mesh_from_world[map];
-    int last = shadow_params.mesh_side - 1;
+    float side = float(shadow_params.mesh_side), reach = 0.5 * float(MESH_TAPS - 1);
     place.xyz /= place.w;
     float depth = min(place.z - shadow_params.place[map].z, 1.0); // what lies behind all of the map
-    vec2 from = clamp(place.xy, 0.0, float(last)) - 0.5 * float(MESH_TAPS - 1), whole = floor(from), share = from - whole;
-    ivec2 first = ivec2(whole);
+    vec2 from = clamp(place.xy - reach, 0.0, side - float(MESH_TAPS)), first = floor(from), share = from - first;
+    vec2 texel = 1.0 / vec2(textureSize(shadow_mesh, 0));
+    first += vec2(1.0, float(map) * side + 1.0); // the corner that four texels share
     float sum = 0.0;
-    for (int j = 0; j < MESH_TAPS; ++j)
-        for (int i = 0; i < MESH_TAPS; ++i) {
-            ivec2 texel = clamp(first + ivec2(i, j), ivec2(0), ivec2(last));
-            float weight = (i == 0 ? 1.0 - share.x : i == MESH_TAPS - 1 ? share.x : 1.0) *
-                           (j == 0 ? 1.0 - share.y : j == MESH_TAPS - 1 ? share.y : 1.0);
-            sum += texelFetch(shadow_mesh, texel + ivec2(0, map * (last + 1)), 0).x < depth ? 0.0 : weight;
+    for (int j = 0; j < MESH_TAPS; j += 2)
+        for (int i = 0; i < MESH_TAPS; i += 2) {
+            vec4 gap = textureGather(shadow_mesh, (first + vec2(i, j)) * texel, 0);
+            vec4 lit = mix(vec4(1.0), vec4(0.0), lessThan(gap, vec4(depth)));
+            vec2 column = vec2(i == 0 ? 1.0 - share.x : 1.0, i == MESH_TAPS - 2 ? share.x : 1.0);
+            vec2 row = vec2(j == 0 ? 1.0 - share.y : 1.0, j == MESH_TAPS - 2 ? share.y : 1.0);
+            sum += row.y * dot(column, lit.xy) + row.x * dot(column, lit.wz);
         }
     return sum * (1.0 / float((MESH_TAPS - 1) * (MESH_TAPS - 1)));
 }

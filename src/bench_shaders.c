@@ -136,10 +136,10 @@ static Result try_shadows(Renderer *renderer, Error *error)
         result = render_shadow_hair_build(&renderer->shadow.hair, variant, error);
     if (result == RESULT_OK && options->shadow.kind != SHADOW_NONE)
         result = render_shadow_mesh_reserve(&renderer->shadow.mesh, 1, error);
-    for (int by_mesh = 0; by_mesh < 2 && options->floor.kind != FLOOR_NONE && result == RESULT_OK;
-         ++by_mesh)
-        result = render_floor_build(&renderer->base.floor, &options->floor, options->shadow.kind,
-                                    by_mesh, error);
+    if (result == RESULT_OK) result = render_floor_build(&renderer->base.floor, error);
+    for (int area = 0; area < 3 && result == RESULT_OK; ++area)
+        result = render_base_build(&renderer->base, (BaseArea)area, options->floor.kind,
+                                   options->shadow.kind, error);
     return result;
 }
 

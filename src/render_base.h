@@ -1,24 +1,52 @@
 // SPDX-License-Identifier: MIT
 // What stands behind and among the hair: mesh and floor over the background.
+//
+// The mesh's surface and the depth of samples at its edges are drawn first, each pixel is lit once
+// by that, and then all is put together. None of this is done again for a picture in which neither
+// camera, head, lights nor shadows have changed.
 #pragma once
 
 #include "gpu_timer.h"
 #include "render_floor.h"
 #include "render_mesh.h"
+#include "render_shadow.h"
+
+// A part of a picture: in one without a mesh; beside the mesh, whose shadow may be there; or where
+// it may be itself.
+typedef enum BaseArea { BASE_WITHOUT_MESH, BASE_BESIDE_MESH, BASE_OVER_MESH } BaseArea;
 
 // A zeroed struct has no mesh.
 typedef struct RenderBase {
     RenderMesh mesh;
     RenderFloor floor;
+    GLuint finish[3][3]; // programs, by BaseArea and FloorKind
+    GLuint vertex_array; // without attributes
+    DrawParams drawn;    // what the target's surface and base show
+    uint64_t shadowed;   // RenderShadow.version of it
+    bool any;
+    uint64_t version; // counts the times that anything was drawn
 } RenderBase;
+
+// A picture of it. Boxes in samples: x, y lowest, highest; outside of them is background.
+typedef struct BaseScene {
+    const Floor *floor;
+    const RenderShadow *shadow; // what mesh and floor receive, which is bound
+    const DrawParams *draw;     // uploaded
+    const int *mesh_box, *box;  // [4]: of the mesh, of mesh and floor
+} BaseScene;
 
 // Whether there is more than background.
 bool render_base_is_needed(const RenderBase *base, const Floor *floor);
 
-// Fills the target's depth and its `base`, over the background of the DrawParams block `draw`.
-// `shadow`: what mesh and floor receive; needs render_shadow_bind. Spans "draw_mesh" and
-// "draw_floor". Leaves scissor and writing of depth off. RESULT_FAILED if a shader does not
-// compile.
-Result render_base_draw(RenderBase *base, const Floor *floor, const RenderTarget *target,
-                        const DrawParams *draw, Shadow shadow, GpuTimer *timer, Error *error);
+// Compiles what puts all together there with the floor that is seen and what it receives, unless
+// it is there. The shadow stays the same for a RenderBase.
+Result render_base_build(RenderBase *base, BaseArea area, FloorKind floor, Shadow shadow,
+                         Error *error);
+
+// Fills the target's depth and its `base`, unless they show this scene already. Spans "draw_mesh"
+// and "draw_floor", the latter with the edges of the mesh. Leaves scissor and writing of depth off.
+// RESULT_FAILED if a shader does not compile.
+Result render_base_draw(RenderBase *base, const BaseScene *scene, const RenderTarget *target,
+                        GpuTimer *timer, Error *error);
+
 void render_base_destroy(RenderBase *base);

@@ -10,20 +10,21 @@
 
 // A zeroed struct is empty.
 typedef struct RenderFloor {
-    GLuint depth, color[2]; // programs; color where nothing but hair casts shadows, and with a mesh
-    GLuint vertex_array;    // without attributes
+    GLuint depth;        // program
+    GLuint vertex_array; // without attributes
 } RenderFloor;
 
 // Whether anything of the floor is to be drawn: not to an eye that is not above it.
 bool render_floor_is_seen(const Floor *floor, const DrawParams *draw);
 
-// Compiles what such a floor needs, unless it is there.
-Result render_floor_build(RenderFloor *render, const Floor *floor, Shadow shadow, bool by_mesh,
-                          Error *error);
+// Compiles what a floor's depth needs, unless it is there.
+Result render_floor_build(RenderFloor *render, Error *error);
 
-// Draws over what the target's samples show and into its depth, which hides hair below a plane
-// where more than half of it is left. `shadow`: what it receives, the mesh's, too, if `by_mesh`.
-// Needs the DrawParams block and render_shadow_bind. RESULT_FAILED if a shader does not compile.
-Result render_floor_draw(RenderFloor *render, const Floor *floor, const RenderTarget *target,
-                         Shadow shadow, bool by_mesh, Error *error);
+// Gives a program in use that includes glsl/floor_light.glsl the floor's place and colour.
+void render_floor_set(const Floor *floor);
+
+// Draws a plane's depth to the frame that is bound, which hides hair below it where more than half
+// of it is left. Needs the DrawParams block, depth test and writing on. RESULT_FAILED if the shader
+// does not compile.
+Result render_floor_draw_depth(RenderFloor *render, const Floor *floor, Error *error);
 void render_floor_destroy(RenderFloor *render);

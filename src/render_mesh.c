@@ -53,9 +53,11 @@ Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const float colo
     const ShaderDefine defines[] = {
         {"LIGHTS", 1}, {"SHADOW", shadow}, {"SHADOW_BY_MESH", 1}, {NULL, 0}};
     if (result == RESULT_OK)
-        result = shader_build_draw(&mesh->program, "mesh.vert", "mesh.frag", defines, error);
+        result = shader_build_draw(&mesh->light, "screen.vert", "mesh.frag", defines, error);
     if (result == RESULT_OK)
-        result = shader_build_draw(&mesh->depth_program, "mesh.vert", "depth.frag", NULL, error);
+        result = shader_build_draw(&mesh->surface, "mesh.vert", "surface.frag", NULL, error);
+    if (result == RESULT_OK)
+        result = shader_build_draw(&mesh->edges, "mesh.vert", "depth.frag", NULL, error);
     if (result != RESULT_OK) {
         render_mesh_destroy(mesh);
         return result;
@@ -67,8 +69,9 @@ Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const float colo
 
 void render_mesh_destroy(RenderMesh *mesh)
 {
-    if (mesh->program) glDeleteProgram(mesh->program);
-    if (mesh->depth_program) glDeleteProgram(mesh->depth_program);
+    const GLuint programs[] = {mesh->surface, mesh->edges, mesh->light};
+    for (int i = 0; i < 3; ++i)
+        if (programs[i]) glDeleteProgram(programs[i]);
     if (mesh->vertex_array) glDeleteVertexArrays(1, &mesh->vertex_array);
     gpu_buffer_destroy(&mesh->position);
     gpu_buffer_destroy(&mesh->normal);
@@ -79,19 +82,26 @@ void render_mesh_destroy(RenderMesh *mesh)
 static void draw_with(const RenderMesh *mesh, GLuint program)
 {
     glUseProgram(program);
+    glBindVertexArray(mesh->vertex_array);
     glDrawElements(GL_TRIANGLES, (GLsizei)(3 * mesh->triangle_count), GL_UNSIGNED_INT, NULL);
 }
 
-// Depth first, so that only what is seen is shaded.
 void render_mesh_draw(const RenderMesh *mesh, const RenderTarget *target)
 {
+    const float farthest = 1;
     if (!mesh->triangle_count) return;
+    glBindFramebuffer(GL_FRAMEBUFFER, target->surface_frame);
+    draw_with(mesh, mesh->surface);
+    glBindFramebuffer(GL_FRAMEBUFFER, target->edge_frame);
+    glClearBufferfv(GL_DEPTH, 0, &farthest);
+    draw_with(mesh, mesh->edges);
+}
+
+void render_mesh_light(const RenderMesh *mesh, const RenderTarget *target)
+{
+    if (!mesh->triangle_count) return;
+    glBindFramebuffer(GL_FRAMEBUFFER, target->lit_frame);
+    glUseProgram(mesh->light);
     glBindVertexArray(mesh->vertex_array);
-    glBindFramebuffer(GL_FRAMEBUFFER, target->hair_frame);
-    draw_with(mesh, mesh->depth_program);
-    glBindFramebuffer(GL_FRAMEBUFFER, target->smooth_frame);
-    draw_with(mesh, mesh->depth_program);
-    glDepthFunc(GL_LEQUAL);
-    draw_with(mesh, mesh->program);
-    glDepthFunc(GL_LESS);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
 }

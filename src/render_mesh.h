@@ -8,7 +8,8 @@
 #include "shader.h"
 
 typedef struct RenderMesh {
-    GLuint program, depth_program, vertex_array;
+    GLuint surface, edges, light; // programs
+    GLuint vertex_array;
     GpuBuffer position, normal, triangle; // float[3], float[3], uint[3]
     uint32_t triangle_count;              // 0: no mesh, nothing is done
     float low[3], high[3];                // bounds in the head's frame, m
@@ -20,5 +21,11 @@ Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const float colo
                           const GpuLimits *limits, Error *error);
 void render_mesh_destroy(RenderMesh *mesh);
 
-// Draws into the target's depth and over its samples. Needs the DrawParams block.
+// Draws into the target's depth, its surface, which is right where there is depth, and its edges.
+// Needs the DrawParams block, depth cleared, depth test and writing on.
 void render_mesh_draw(const RenderMesh *mesh, const RenderTarget *target);
+
+// Lights what render_mesh_draw has left in the target's surface, which is bound. Needs the
+// DrawParams block and render_shadow_bind where it receives shadows; depth test GL_GREATER leaves
+// all else out.
+void render_mesh_light(const RenderMesh *mesh, const RenderTarget *target);

@@ -68,8 +68,7 @@ static void add_to_box(DrawParams *draw, vec3 x, int box[4])
     }
 }
 
-// What must be resolved where there is no hair.
-static void find_base_box(const RenderMesh *mesh, const Floor *floor, DrawParams *draw, int box[4])
+static void find_mesh_box(const RenderMesh *mesh, DrawParams *draw, int box[4])
 {
     const int far = 1 << 20;
     vec3 x;
@@ -80,6 +79,11 @@ static void find_base_box(const RenderMesh *mesh, const Floor *floor, DrawParams
         glm_vec3_add(x, draw->head_translation, x);
         add_to_box(draw, x, box);
     }
+}
+
+static void add_floor_to_box(const Floor *floor, DrawParams *draw, int box[4])
+{
+    vec3 x;
     for (int corner = 0; corner < 4 && floor->kind != FLOOR_NONE; ++corner) {
         for (int k = 0; k < 3; ++k) x[k] = floor->middle[k];
         x[0] += corner & 1 ? floor->faded : -floor->faded;
@@ -183,7 +187,9 @@ Result picture_begin(Picture *picture, const RendererOptions *options, const Ren
     picture->items = items;
     picture->item_count = item_count;
     fill_draw_params(options, mesh, frame, &picture->draw);
-    find_base_box(mesh, &options->floor, &picture->draw, picture->base_box);
+    find_mesh_box(mesh, &picture->draw, picture->mesh_box);
+    memcpy(picture->base_box, picture->mesh_box, sizeof picture->base_box);
+    add_floor_to_box(&options->floor, &picture->draw, picture->base_box);
     Result result = make_room(picture, error);
     for (uint32_t i = 0; i < item_count && result == RESULT_OK; ++i)
         result = make_look(picture, options, &items[i], features, &picture->looks[i], error);

@@ -17,7 +17,8 @@ typedef struct Picture {
     uint32_t item_count;
     Look *looks; // [look_room], owned: of the items
     uint32_t look_room;
-    int base_box[4]; // samples: x, y lowest, highest, of mesh and floor; empty without any
+    int mesh_box[4]; // samples: x, y lowest, highest; empty without a mesh
+    int base_box[4]; // the same of mesh and floor
     ScatterTables scatter;
     GpuBuffer uniforms;
 } Picture;

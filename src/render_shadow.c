@@ -161,6 +161,7 @@ static void draw_maps(RenderShadow *shadow, const ShadowScene *scene)
     for (uint32_t i = 0; i < scene->light_count; ++i)
         if (casts(&scene->lights[i])) draw_map(shadow, scene, (int)i);
     shadow->maps_drawn = (uint32_t)params->maps;
+    ++shadow->version;
 }
 
 Result render_shadow_draw(RenderShadow *shadow, const ShadowScene *scene, GpuTimer *timer,

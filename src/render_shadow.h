@@ -35,6 +35,7 @@ typedef struct RenderShadow {
     ShadowCaster *casters; // [caster_room], owned
     uint32_t caster_room;
     bool any;
+    uint64_t version;    // counts the times that they were made
     uint32_t maps_drawn; // in the last render_shadow_draw
 } RenderShadow;
 

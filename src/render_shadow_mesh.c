@@ -6,7 +6,9 @@
 #include <math.h>
 #include <string.h>
 
-enum { MARGIN = 3 }; // texels at the edges of a map that stay empty: beside it is light
+enum {
+    MARGIN = 6
+}; // texels at the edges of a map that stay empty: all that a point beside it looks at
 
 Result render_shadow_mesh_reserve(RenderShadowMesh *shadow, int maps, Error *error)
 {

@@ -4,8 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { EDGE_SAMPLES = 4 }; // of the mesh; CPU drivers have no more
-
 static GLuint create_texture(GLenum format, int width, int height)
 {
     GLuint texture;
@@ -17,13 +15,14 @@ static GLuint create_texture(GLenum format, int width, int height)
     return texture;
 }
 
-static GLuint create_samples(GLenum format, int width, int height)
+static GLuint create_edge_depth(int width, int height)
 {
-    GLuint buffer;
-    glGenRenderbuffers(1, &buffer);
-    glBindRenderbuffer(GL_RENDERBUFFER, buffer);
-    glRenderbufferStorageMultisample(GL_RENDERBUFFER, EDGE_SAMPLES, format, width, height);
-    return buffer;
+    GLuint texture;
+    glGenTextures(1, &texture);
+    glBindTexture(GL_TEXTURE_2D_MULTISAMPLE, texture);
+    glTexStorage2DMultisample(GL_TEXTURE_2D_MULTISAMPLE, EDGE_SAMPLES, GL_DEPTH_COMPONENT32F, width,
+                              height, GL_TRUE);
+    return texture;
 }
 
 static GLuint create_frame(void)
@@ -75,6 +74,16 @@ Result render_target_create(RenderTarget *target, const GpuLimits *limits, int w
     return result;
 }
 
+static Result add_edges(RenderTarget *target, int width, int height, Error *error)
+{
+    target->edge_depth = create_edge_depth(width, height);
+    target->edge_frame = create_frame();
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D_MULTISAMPLE,
+                           target->edge_depth, 0);
+    glDrawBuffer(GL_NONE);
+    return check_frame(target->edge_frame, "mesh edges", error);
+}
+
 Result render_target_add_base(RenderTarget *target, Error *error)
 {
     if (target->depth) return RESULT_OK;
@@ -84,29 +93,29 @@ Result render_target_add_base(RenderTarget *target, Error *error)
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, target->depth, 0);
     target->base = create_texture(GL_RGBA16F, width, height);
     target->base_frame = create_color_frame(target->base);
-    target->smooth_color = create_samples(GL_RGBA16F, width, height);
-    target->smooth_depth = create_samples(GL_DEPTH_COMPONENT32F, width, height);
-    target->smooth_frame = create_frame();
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
-                              target->smooth_color);
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER,
-                              target->smooth_depth);
+    target->lit = create_texture(GL_RGBA16F, width, height);
+    target->lit_frame = create_color_frame(target->lit);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, target->depth, 0);
+    target->surface = create_texture(GL_RGBA32F, width, height);
+    target->surface_frame = create_color_frame(target->surface);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, target->depth, 0);
     Result result = check_frame(target->hair_frame, "hair target", error);
     if (result == RESULT_OK) result = check_frame(target->base_frame, "mesh target", error);
-    if (result == RESULT_OK) result = check_frame(target->smooth_frame, "mesh samples", error);
+    if (result == RESULT_OK) result = check_frame(target->lit_frame, "mesh light", error);
+    if (result == RESULT_OK) result = check_frame(target->surface_frame, "mesh surface", error);
+    if (result == RESULT_OK) result = add_edges(target, width, height, error);
     return result;
 }
 
 void render_target_destroy(RenderTarget *target)
 {
-    const GLuint frames[] = {target->picture_frame, target->hair_frame, target->base_frame,
-                             target->smooth_frame};
-    const GLuint textures[] = {target->picture, target->depth, target->base};
-    const GLuint buffers[] = {target->smooth_color, target->smooth_depth};
+    const GLuint frames[] = {target->picture_frame, target->hair_frame,    target->base_frame,
+                             target->lit_frame,     target->surface_frame, target->edge_frame};
+    const GLuint textures[] = {target->picture, target->depth,   target->base,
+                               target->lit,     target->surface, target->edge_depth};
     if (target->picture) { // names of 0 are ignored, but without a context nothing may be called
-        glDeleteFramebuffers(4, frames);
-        glDeleteTextures(3, textures);
-        glDeleteRenderbuffers(2, buffers);
+        glDeleteFramebuffers(6, frames);
+        glDeleteTextures(6, textures);
     }
     free(target->rgba);
     *target = (RenderTarget){0};

@@ -5,6 +5,8 @@
 #include "gpu_buffer.h"
 #include "image.h"
 
+enum { EDGE_SAMPLES = 4 }; // of the mesh's depth where the hair has one; CPU drivers have no more
+
 typedef struct RenderTarget {
     int width, height; // px of the picture; all else is drawn in samples, which are smaller
     int samples;       // across a pixel
@@ -12,7 +14,9 @@ typedef struct RenderTarget {
     GLuint hair_frame;             // no colour; `depth` if there is a mesh
     GLuint depth;                  // one sample, for the hair
     GLuint base, base_frame;       // RGBA16F: mesh over background, linear, premultiplied
-    GLuint smooth_color, smooth_depth, smooth_frame; // the same before its samples are averaged
+    GLuint surface, surface_frame; // RGBA32F, glsl/surface.frag; with `depth`
+    GLuint lit, lit_frame;         // RGBA16F, light of that surface; with `depth`
+    GLuint edge_depth, edge_frame; // the mesh's, EDGE_SAMPLES a sample
     ImageKind kind;
     uint8_t *rgba; // [height][width][4], for pictures without alpha
 } RenderTarget;

@@ -95,6 +95,7 @@ Result renderer_set_mesh(Renderer *renderer, const Mesh *mesh, const float color
     float linear[3];
     linear_from_srgb_color(color, linear);
     RenderMesh *mine = &renderer->base.mesh;
+    renderer->base.any = false;
     render_mesh_destroy(mine);
     Result result = render_mesh_create(mine, mesh, linear, renderer->options.shadow.kind,
                                        &renderer->gpu->limits, error);
@@ -241,6 +242,17 @@ static const RasterType RASTERS[] = {
     [RASTER_BLOCKS] = {create_blocks, add_base_to_blocks, draw_blocks},
 };
 
+static Result draw_base(Renderer *renderer, Error *error)
+{
+    const Picture *picture = &renderer->picture;
+    const BaseScene scene = {.floor = &renderer->options.floor,
+                             .shadow = &renderer->shadow,
+                             .draw = &picture->draw,
+                             .mesh_box = picture->mesh_box,
+                             .box = picture->base_box};
+    return render_base_draw(&renderer->base, &scene, &renderer->target, renderer->timer, error);
+}
+
 Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderItem *items,
                      uint32_t item_count, Image *image, Error *error)
 {
@@ -255,8 +267,7 @@ Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderI
     result = draw_shadow(renderer, frame, error);
     if (result != RESULT_OK) return result;
     set_state(renderer, draw->background);
-    result = render_base_draw(&renderer->base, &renderer->options.floor, &renderer->target, draw,
-                              renderer->options.shadow.kind, renderer->timer, error);
+    result = draw_base(renderer, error);
     if (result != RESULT_OK) return result;
     result = RASTERS[renderer->raster].draw(renderer, image, error);
     if (result != RESULT_OK) return result;

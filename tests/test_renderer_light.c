@@ -165,6 +165,64 @@ static void a_strand_throws_its_shadow_on_the_mesh(void **state)
     }
 }
 
+static void put_square(void)
+{
+    Error error = {{0}};
+    Mesh mesh = make_square(50);
+    assert_int_equal(
+        renderer_set_mesh(&studio.renderer, &mesh, (const float[3]){1, 0.5f, 0}, &error),
+        RESULT_OK);
+    mesh_destroy(&mesh);
+}
+
+// Hair moves before a still mesh (a studio's hair is another one in every picture), light and eye
+// do: pictures are those of a renderer that has drawn nothing before.
+static void a_mesh_is_drawn_again_where_it_looks_different(void **state)
+{
+    (void)state;
+    RendererOptions options = BLACK;
+    size_t size;
+    View view, turned;
+    studio_view(&view, options.width, options.height);
+    turned = view;
+    turned.view[3][0] += 20;
+    turned.eye[0] -= 20;
+    add_line((float[3]){20, -60, 60}, (float[3]){20, 60, 60}, 6, 0.8f);
+    const Light front = {.direction = {0, 0, 1}, .color = {1, 1, 1}, .intensity = 0.5f},
+                side = {.direction = {0.6f, 0, 0.8f}, .color = {1, 1, 1}, .intensity = 0.5f};
+    const struct {
+        Light light;
+        const View *view;
+        bool again;
+    } pictures[] = {
+        {front, &view, true}, {front, &view, false}, {side, &view, true}, {side, &turned, true}};
+    for (int shadow = 0; shadow < 2; ++shadow) {
+        options.shadow = (ShadowOptions){shadow ? SHADOW_DOM : SHADOW_NONE, 64, 200};
+        uint8_t *seen[4];
+        use(&options);
+        put_square();
+        for (int i = 0; i < 4; ++i) {
+            uint64_t version = studio.renderer.base.version;
+            studio.light = pictures[i].light;
+            studio.light.shadow = shadow;
+            studio_draw_view(&studio, pictures[i].view);
+            seen[i] = studio_copy(&studio, &size);
+            assert_int_equal(studio.renderer.base.version - version, pictures[i].again || shadow);
+        }
+        for (int i = 0; i < 4; ++i) {
+            use(&options);
+            put_square();
+            studio.light = pictures[i].light;
+            studio.light.shadow = shadow;
+            studio_draw_view(&studio, pictures[i].view);
+            uint8_t *fresh = studio_copy(&studio, &size);
+            assert_memory_equal(seen[i], fresh, size);
+            free(fresh);
+            free(seen[i]);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -174,6 +232,7 @@ int main(void)
         CLAIM(light_falls_off_by_the_square_of_the_distance),
         CLAIM(a_spot_shines_into_its_cone),
         CLAIM(a_strand_throws_its_shadow_on_the_mesh),
+        CLAIM(a_mesh_is_drawn_again_where_it_looks_different),
     };
     return stage_run(tests);
 }

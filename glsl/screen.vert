@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: MIT
+// A triangle over the whole picture, behind everything; scissors cut it.
+
+void main()
+{
+    gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 1.0, 1.0);
+}
