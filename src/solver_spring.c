@@ -59,9 +59,9 @@ static const ParticleRecipe IMPLICIT = {
 
 // Symplectic Euler needs h omega < 2. The chain of coils, each k/2, has omega^2 < 4 (k/2), the
 // angular springs, at most k/8 a length, add 4 (k/8). 1.6 leaves room for links that turn within a
-// step. A link as short as waves stretch it turns over in one, and what it gains there is for
-// good: hair with links below a tenth of the average, without drag, gets hotter at 0.4 and does
-// not at 0.3.
+// step. Measured: uneven hair gains energy; probably a link as short as waves stretch it turns
+// over in one. With links of lengths that differ by 1e4, 16 particles, no drag, four strands:
+// at 0.4 two of them gain in 6000 steps of 1/60 s, at 0.3 none does.
 static int stable_substeps(const SolverStep *step, const SectionParams *params, const Hair *hair)
 {
     const double limit = hair->evenness < 0.1f ? 0.3 : 1.6;

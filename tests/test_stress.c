@@ -151,7 +151,7 @@ static const struct {
     {"chain", "", "n=3 shape=4 tilt=109.28 shape_seed=19935 chain_bend=1000", 50,
      "a short segment that bends a long one is stiffer than its own length says"},
     {"spring", "explicit", "spin=0.1 shape=4 stretch_drawn=1", 400,
-     "links as short as waves stretch them turned over within a sub-step, which heated the strand"},
+     "sub-steps that suit even hair heated a strand of very uneven links"},
 };
 
 static void what_broke_once_holds(void **state)
