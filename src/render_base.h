@@ -44,7 +44,8 @@ Result render_base_build(RenderBase *base, BaseArea area, FloorKind floor, Shado
                          Error *error);
 
 // Fills the target's depth and its `base`, unless they show this scene already. Spans "draw_mesh"
-// and "draw_floor", the latter with the edges of the mesh. Leaves scissor and writing of depth off.
+// and "draw_floor"; where a floor is seen, the latter has what puts mesh, floor and background
+// together. Leaves scissor and writing of depth off.
 // RESULT_FAILED if a shader does not compile.
 Result render_base_draw(RenderBase *base, const BaseScene *scene, const RenderTarget *target,
                         GpuTimer *timer, Error *error);

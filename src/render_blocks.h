@@ -65,7 +65,8 @@ Result render_blocks_add(RenderBlocks *blocks, const HairBatch *batch, const Loo
 
 // Sorts, deals out and composites all that was added, over the target's base and behind its depth
 // if `over_mesh`. What has no hair is background, but for `box` (samples: x, y lowest, highest),
-// where the mesh stands. No ribbon is lost: the pool grows, or the picture is drawn in more bands.
+// where the mesh stands. No ribbon is lost: lists are counted before they are made, and a picture
+// whose lists are too long for a buffer is drawn in bands.
 // RESULT_FAILED if memory is short or a single row of blocks needs more than there can be.
 Result render_blocks_draw(RenderBlocks *blocks, const RenderTarget *target, bool over_mesh,
                           const int box[4], GpuTimer *timer, Error *error);

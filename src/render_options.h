@@ -71,7 +71,7 @@ typedef struct RendererCounts {
     uint64_t culled;      // strands outside the picture, which cost no drawing
     uint64_t fragments;   // stored and blended: pixels of a ribbon, or with blocks blocks of it
     uint64_t pool_bytes;  // of the A-buffer or the block lists now
-    uint32_t redraws;     // bands that were drawn again because the pool was too small
+    uint32_t redraws;     // bands that were drawn again because the A-buffer was too small
     uint32_t bands;       // horizontal bands that the picture was drawn in
     uint64_t thinned;     // strands that others stand for, at their distance
     uint32_t shadow_maps; // that were made; those of the picture before may have done

@@ -40,9 +40,9 @@ int renderer_channels(const Renderer *renderer);
 
 // Draws one picture into `image`, which has the renderer's size and channels, and waits for it. The
 // order of items and of strands does not matter, and every run gives the same bytes. No fragment is
-// lost: if the pool is too small it grows and the band is drawn again; at its largest, the picture
-// is drawn in more bands. RESULT_FAILED if memory is short, a single row needs a larger pool than
-// there can be, or a pixel has more fragments than a CPU driver's loops can visit (quads; where
-// blocks have more ribbons than that, quads take over).
+// lost: an A-buffer that is too small grows and the band is drawn again; at its largest, or where
+// lists are too long for one buffer, the picture is drawn in more bands. RESULT_FAILED if memory is
+// short, a single row needs more than there can be, or a pixel has more fragments than a CPU
+// driver's loops can visit (quads; where blocks have more ribbons than that, quads take over).
 Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderItem *items,
                      uint32_t item_count, Image *image, Error *error);
