@@ -152,6 +152,12 @@ static const struct {
      "a short segment that bends a long one is stiffer than its own length says"},
     {"spring", "explicit", "spin=0.1 shape=4 stretch_drawn=1", 400,
      "sub-steps that suit even hair heated a strand of very uneven links"},
+    {"rope", "xpbd",
+     "n=3 wind=19.476 away=5.5659 arm=0.14315 shape=4 tilt=105.6 shape_seed=30697 strand=23 style=0 "
+     "rope_iterations=81",
+     10000, "small steps differed coordinates in the world: their rounding shook it at rest"},
+    {"rope", "xpbd", "n=33 gravity=1.5 away=1000 drag=6 style=0 rope_iterations=20", 4000,
+     "so did those of strands too long for registers"},
 };
 
 static void what_broke_once_holds(void **state)
