@@ -126,10 +126,10 @@ bench: all ## print the table of benchmarks (BENCH="FILE... --size 1280x720": mo
 	$(OUT)/tractrix-bench speed --part memory,sets $(wildcard $(MOHAWK)) $(SHORT) $(BENCH)
 
 IMAGES = $(wildcard ../shared/assets/ratboy_mohawk.tfx)
-bench-image: all ## image error and milliseconds of every scheme: table, out/image.json, diagrams (IMAGES=FILE...: more hair)
+bench-image: all ## image error and milliseconds of every scheme: table, out/image.csv, diagrams (IMAGES=FILE...: more hair)
 	@scripts/setup build run plot
-	$(OUT)/tractrix-bench images $(IMAGES) --json out/image.json
-	@scripts/plot-image out/image.json out/image
+	$(OUT)/tractrix-bench images $(IMAGES) --csv out/image.csv
+	@scripts/plot-image out/image.csv out/image
 
 # A CPU driver shares such small dispatches out among threads at a loss.
 STRESS = --cases 5000 --steps 10000 --seed 1

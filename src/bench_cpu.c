@@ -87,7 +87,7 @@ Result cpu_run_memory(Speed *speed, Error *error)
             run_team(processors(), add_arrays, &arrays);
             samples[i] = stats_clock_ms() - begin;
         }
-        row.result.step = speed_summarise(samples, RUNS);
+        row.result.step = bench_times_of(samples, RUNS);
         speed->bandwidth = 3.0 * (double)size / row.result.step.minimum * 1e-6;
         row.gigabytes_s = speed->bandwidth;
         row.threads = processors();
@@ -131,7 +131,7 @@ static void march(void *data, int number, int count)
     }
 }
 
-static Result measure_march(SpeedTimes *times, CpuSplit *split, CpuSplitForm form, int threads,
+static Result measure_march(BenchTimes *times, CpuSplit *split, CpuSplitForm form, int threads,
                             const BenchOptions *options, Error *error)
 {
     March m = {.split = split,
@@ -144,7 +144,7 @@ static Result measure_march(SpeedTimes *times, CpuSplit *split, CpuSplitForm for
     pthread_barrier_init(&m.barrier, NULL, (unsigned)threads);
     run_team(threads, march, &m);
     pthread_barrier_destroy(&m.barrier);
-    *times = speed_summarise(m.samples, options->steps);
+    *times = bench_times_of(m.samples, options->steps);
     free(m.samples);
     return RESULT_OK;
 }

@@ -2,10 +2,9 @@
 // How long drawing hair takes, and how far the picture is from the exact one.
 #pragma once
 
-#include "gpu.h"
+#include "bench_image_exact.h"
+#include "bench_times.h"
 #include "renderer.h"
-
-#include <jansson.h>
 
 // A way to draw.
 typedef struct ImageScheme {
@@ -27,45 +26,32 @@ typedef struct ImageOptions {
 } ImageOptions;
 
 typedef struct ImageResult {
-    double median_ms, min_ms; // drawing and reading back
-    double rms;               // levels of 255 over covered pixels; negative: not measured
-    double covered;           // share of the picture's pixels
-    double reference_s;       // that the exact picture took
-    Raster raster;            // that drew
-    RendererCounts counts;    // of one picture
-    char spans[256];          // passes and their least ms, with waits between them
+    BenchTimes wall, processor; // drawing and reading back; by the clock and as
+    // processor time of all threads, which a busy machine lengthens less
+    ImageDistance distance; // from the exact picture; NaN: not measured
+    double reference_s;     // that the exact picture took; NaN: none
+    Raster raster;          // that drew
+    RendererCounts counts;  // of one picture
+    char spans[256];        // passes and their least ms, with waits between them
 } ImageResult;
 
 // Hair on the GPU and, once asked for, its exact picture: for any number of schemes.
-typedef struct ImageBench ImageBench;
+typedef struct ImageBench {
+    const Gpu *gpu;
+    ImageHair hair;
+    ImageExact exact;
+} ImageBench;
 
 // 1280x720, 15 frames, all auto.
 ImageOptions image_options_default(void);
 
-// The schemes that are worth comparing.
-extern const ImageScheme IMAGE_SCHEMES[];
-extern const size_t IMAGE_SCHEME_COUNT;
-
-// The sets that are worth it, names for ImageOptions.set, and "files"; ends with NULL.
-extern const char *const IMAGE_SETS[];
-
-// NULL and *result for a set that does not exist or a file that cannot be read.
-ImageBench *image_bench_create(const Gpu *gpu, const ImageOptions *options, Result *result,
-                               Error *error);
+// RESULT_USAGE for a set that does not exist, RESULT_BAD_INPUT for a file that cannot be read. It
+// may be destroyed in either case.
+Result image_bench_create(ImageBench *bench, const Gpu *gpu, const ImageOptions *options,
+                          Error *error);
 void image_bench_destroy(ImageBench *bench);
 
-// Draws by options->scheme and compares with the reference (image_reference.h), which is found at
-// the first call that needs it: with the exact light at the vertices (shadow_reference_fill) for a
-// scheme with shadows, without shadows for one without; smooth strands for one that smoothes; and
-// all strands for one that leaves some out.
+// Draws by options->scheme and compares with the exact picture (image_exact_find), which is drawn
+// at the first call that needs it.
 Result image_bench_measure(ImageBench *bench, const ImageOptions *options, ImageResult *result,
                            Error *error);
-
-// A row for JSON with set, size, scheme and device. The caller owns the reference.
-json_t *image_to_json(const ImageBench *bench, const ImageOptions *options,
-                      const ImageResult *result);
-
-// A table: a head line, then a line a row.
-void image_print_head(FILE *stream);
-void image_print(const ImageBench *bench, const ImageOptions *options, const ImageResult *result,
-                 FILE *stream);

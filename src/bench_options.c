@@ -62,7 +62,7 @@ static const Option OPTIONS[] = {
      "stress: print failures as they were found, not made smaller"},
     {"json", 0, OPTION_STRING, AT(bench.output.json), "FILE", 0, 0, "write the rows as JSON"},
     {"csv", 0, OPTION_STRING, AT(bench.output.csv), "FILE", 0, 0,
-     "write the rows as CSV (not image, images)"},
+     "write the rows as CSV (not stress)"},
     {"device", 0, OPTION_WHOLE, AT(bench.gpu.device), "N", 0, 1000,
      "EGL device (default: the best one)"},
     {"software", 0, OPTION_SWITCH, AT(software), NULL, 0, 0,

@@ -115,7 +115,7 @@ static void take_times(SpeedRow *row, const json_t *from)
     row->vertices = (long)number(from, "vertices");
     row->particles = (long)number(from, "particles");
     row->result.first_step_ms = number(from, "first_ms");
-    row->result.step = (SpeedTimes){number(from, "ms_min"), number(from, "ms_q1"),
+    row->result.step = (BenchTimes){number(from, "ms_min"), number(from, "ms_q1"),
                                     number(from, "ms_median"), number(from, "ms_q3")};
 }
 
@@ -189,7 +189,7 @@ static Result measure_start(Speed *speed, int method, const char *cache, const c
     Result result = child_measure(speed->options, &row.method, row.set, row.file, 1, 0, &variable,
                                   1, &from, &row.process_ms, error);
     if (result != RESULT_OK) return result;
-    const SpeedTimes none = row.result.step;
+    const BenchTimes none = row.result.step;
     take_times(&row, from);
     row.result.step = none; // of one step: says nothing
     row.remark = remark;

@@ -126,7 +126,7 @@ static Result wait_for_sleep(Simulation *simulation, const Row *row, Error *erro
     return RESULT_OK;
 }
 
-static Result measure_frames(SpeedTimes *times, Simulation *simulation, const Row *row,
+static Result measure_frames(BenchTimes *times, Simulation *simulation, const Row *row,
                              const BenchOptions *options, Error *error)
 {
     double *samples = calloc((size_t)options->steps, sizeof *samples);
@@ -137,7 +137,7 @@ static Result measure_frames(SpeedTimes *times, Simulation *simulation, const Ro
         double ms = frame_ms(simulation);
         if (i >= 0) samples[i] = ms;
     }
-    *times = speed_summarise(samples, result == RESULT_OK ? options->steps : 0);
+    *times = bench_times_of(samples, result == RESULT_OK ? options->steps : 0);
     free(samples);
     return result;
 }
@@ -147,7 +147,7 @@ static Result measure_frames(SpeedTimes *times, Simulation *simulation, const Ro
 typedef struct Line {
     const char *scene, *algo, *variant, *set;
     long guides, followers;
-    SpeedTimes times;
+    BenchTimes times;
     char command[256];
 } Line;
 
@@ -167,7 +167,7 @@ static const Column COLUMNS[] = {
 };
 
 static void add_line(BenchTable *table, const Row *row, const BenchOptions *options,
-                     const World *world, const SpeedTimes *times)
+                     const World *world, const BenchTimes *times)
 {
     const Method method = {algo_of(options), options->method.variant, options->method.settings};
     char words[160];
@@ -190,7 +190,7 @@ static Result measure_row(const Gpu *gpu, const Row *row, const BenchOptions *op
                           BenchTable *table, Error *error)
 {
     World world;
-    SpeedTimes times = {0};
+    BenchTimes times = {0};
     Result result = world_create(&world, gpu, row, options, error);
     if (result == RESULT_OK)
         result = measure_frames(&times, &world.simulation, row, options, error);

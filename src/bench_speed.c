@@ -15,19 +15,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int compare_times(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-SpeedTimes speed_summarise(double *samples, int count)
-{
-    if (count == 0) return (SpeedTimes){NAN, NAN, NAN, NAN};
-    qsort(samples, (size_t)count, sizeof *samples, compare_times);
-    return (SpeedTimes){samples[0], samples[count / 4], samples[count / 2], samples[3 * count / 4]};
-}
-
 // --- A scene of one section, as the command line would make it.
 
 typedef struct Bench {
@@ -99,8 +86,8 @@ static Result measure_steps(SpeedResult *result, Bench *bench, const BenchOption
             if (i == -options->warm_up - 1) result->first_step_ms = end - begin;
             if (i >= 0) step[i] = end - begin, solve[i] = solved - begin;
         }
-        result->step = speed_summarise(step, options->steps);
-        result->solve = speed_summarise(solve, options->steps);
+        result->step = bench_times_of(step, options->steps);
+        result->solve = bench_times_of(solve, options->steps);
         result->bytes = count_bytes(bench);
     }
     bool good = step && solve;
@@ -135,7 +122,7 @@ static Result draw_frames(SpeedResult *result, Renderer *renderer, Bench *bench,
         outcome = renderer_draw(renderer, &frame, &item, 1, image, error);
         if (i >= 0) samples[i] = stats_clock_ms() - begin;
     }
-    result->draw = speed_summarise(samples, outcome == RESULT_OK ? DRAWN_FRAMES : 0);
+    result->draw = bench_times_of(samples, outcome == RESULT_OK ? DRAWN_FRAMES : 0);
     result->fragments = renderer->counts.fragments;
     return outcome;
 }
@@ -165,7 +152,7 @@ Result speed_measure(SpeedResult *result, const Gpu *gpu, const SpeedSubject *su
                      const BenchOptions *options, Error *error)
 {
     Bench bench;
-    *result = (SpeedResult){.draw = speed_summarise(NULL, 0)};
+    *result = (SpeedResult){.draw = bench_times_of(NULL, 0)};
     Result outcome = bench_create(&bench, gpu, subject, error);
     if (outcome == RESULT_OK) outcome = measure_steps(result, &bench, options, error);
     if (outcome == RESULT_OK) outcome = gpu_check("steps", error);
@@ -224,7 +211,7 @@ static const Column COLUMNS[] = {
 
 SpeedRow speed_row(const char *part, const SpeedSubject *subject)
 {
-    const SpeedTimes none = speed_summarise(NULL, 0);
+    const BenchTimes none = bench_times_of(NULL, 0);
     SpeedRow row = {.part = part,
                     .method = {"", "", ""},
                     .result = {.step = none, .solve = none, .draw = none, .first_step_ms = NAN},

@@ -4,15 +4,8 @@
 #pragma once
 
 #include "bench_options.h"
+#include "bench_times.h"
 #include "strands.h"
-
-// Of some samples, ms.
-typedef struct SpeedTimes {
-    double minimum, lower_quartile, median, upper_quartile;
-} SpeedTimes;
-
-// Of `count` samples, which are put in order; NaN for none.
-SpeedTimes speed_summarise(double *samples, int count);
 
 // What is measured: hair and a solver.
 typedef struct SpeedSubject {
@@ -25,9 +18,9 @@ typedef struct SpeedSubject {
 typedef struct SpeedResult {
     uint64_t bytes;       // of the buffers that a step and its pose use, each once a way
     double first_step_ms; // with shader compilation, unless the driver's cache has it
-    SpeedTimes step; // what moves the hair one step further and writes the positions that are drawn
-    SpeedTimes solve;   // its part without the positions
-    SpeedTimes draw;    // drawing and reading back; NaN without
+    BenchTimes step; // what moves the hair one step further and writes the positions that are drawn
+    BenchTimes solve;   // its part without the positions
+    BenchTimes draw;    // drawing and reading back; NaN without
     uint64_t fragments; // of the last picture
 } SpeedResult;
 

@@ -48,7 +48,7 @@ typedef struct Point {
     double rate, error; // 1/s; mean over the length
     double samples[ROUNDS * MOST_SAMPLES];
     int count;
-    SpeedTimes times; // a simulated second, ms
+    BenchTimes times; // a simulated second, ms
     bool front;
 } Point;
 
@@ -130,7 +130,7 @@ static Result time_points(Work *work, const Strands *strands, Error *error)
         for (int i = 0; i < work->count && result == RESULT_OK; ++i)
             result = time_point(work, &work->points[i], strands, error);
     for (int i = 0; i < work->count; ++i)
-        work->points[i].times = speed_summarise(work->points[i].samples, work->points[i].count);
+        work->points[i].times = bench_times_of(work->points[i].samples, work->points[i].count);
     return result;
 }
 

@@ -2,8 +2,7 @@
 // tractrix-bench: accuracy of the tractrix and of solvers, speed of solvers and drawing, check of
 // all shaders.
 #include "bench_accuracy.h"
-#include "bench_image.h"
-#include "bench_options.h"
+#include "bench_images.h"
 #include "bench_scenes.h"
 #include "bench_shaders.h"
 #include "bench_speed.h"
@@ -14,78 +13,6 @@
 #include "suggest.h"
 
 #include <string.h>
-
-static Result add_image(ImageBench *bench, const ImageOptions *options, json_t *rows, Error *error)
-{
-    ImageResult row;
-    Result result = image_bench_measure(bench, options, &row, error);
-    if (result != RESULT_OK) return result;
-    image_print(bench, options, &row, stdout);
-    fflush(stdout);
-    json_array_append_new(rows, image_to_json(bench, options, &row));
-    return RESULT_OK;
-}
-
-static Result run_image(const BenchOptions *arguments, const Gpu *gpu, Error *error)
-{
-    ImageOptions options = arguments->image;
-    options.set = arguments->set, options.file = arguments->tfx;
-    options.scheme.raster = arguments->raster;
-    if (arguments->size[0]) memcpy(options.size, arguments->size, sizeof options.size);
-    if (!options.set == !options.file)
-        return error_set(error, RESULT_USAGE, "image: one of --set NAME and --tfx FILE is needed");
-    Result result;
-    ImageBench *bench = image_bench_create(gpu, &options, &result, error);
-    if (!bench) return result;
-    json_t *rows = json_array();
-    image_print_head(stdout);
-    result = add_image(bench, &options, rows, error);
-    if (result == RESULT_OK && arguments->output.json)
-        result = json_write_file(rows, arguments->output.json, error);
-    json_decref(rows);
-    image_bench_destroy(bench);
-    return result;
-}
-
-// All schemes for one set.
-static Result add_images(const ImageOptions *options, const Gpu *gpu, json_t *rows, Error *error)
-{
-    Result result;
-    ImageOptions mine = *options;
-    ImageBench *bench = image_bench_create(gpu, &mine, &result, error);
-    for (size_t i = 0; i < IMAGE_SCHEME_COUNT && result == RESULT_OK; ++i) {
-        mine.scheme = IMAGE_SCHEMES[i];
-        result = interrupt_requested() ? error_set(error, RESULT_INTERRUPTED, "interrupted")
-                                       : add_image(bench, &mine, rows, error);
-    }
-    image_bench_destroy(bench);
-    return result;
-}
-
-static Result run_images(const BenchOptions *arguments, const Gpu *gpu, Error *error)
-{
-    ImageOptions options = arguments->image;
-    if (arguments->size[0]) memcpy(options.size, arguments->size, sizeof options.size);
-    Result result = bench_options_check_parts(arguments, IMAGE_SETS, error);
-    if (result != RESULT_OK) return result;
-    json_t *rows = json_array();
-    image_print_head(stdout);
-    for (int i = 0; IMAGE_SETS[i] && result == RESULT_OK; ++i) {
-        options.set = IMAGE_SETS[i];
-        if (strcmp(options.set, "files") != 0 && bench_options_part(arguments, options.set))
-            result = add_images(&options, gpu, rows, error);
-    }
-    options.set = NULL;
-    bool files = bench_options_part(arguments, "files");
-    for (int i = 0; i < arguments->file_count && files && result == RESULT_OK; ++i) {
-        options.file = arguments->files[i];
-        result = add_images(&options, gpu, rows, error);
-    }
-    if (result == RESULT_OK && arguments->output.json)
-        result = json_write_file(rows, arguments->output.json, error);
-    json_decref(rows);
-    return result;
-}
 
 static Result run_stress(const BenchOptions *arguments, const Gpu *gpu, Error *error)
 {
@@ -129,9 +56,9 @@ static const struct {
      "frames with followers, asleep, and of two sections: --set NAME (default 10k16), --algo"},
     {"stress", run_stress,
      "random circumstances for every solver; the smallest case that breaks a rule, if one does"},
-    {"image", run_image,
+    {"image", images_run_one,
      "drawing --set NAME or --tfx FILE: its time, and its error against the exact picture"},
-    {"images", run_images,
+    {"images", images_run,
      "the same for every scheme and preset; parts: straight, curls, fur, files (those named)"},
     {"shaders", run_shaders, "compiles every shader variant with warnings as errors"},
 };

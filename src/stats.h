@@ -50,3 +50,7 @@ Result stats_write(const Stats *stats, const char *path, Error *error);
 
 // Milliseconds on the steady clock.
 double stats_clock_ms(void);
+
+// Milliseconds of processor time that all threads of the process have used, the driver's among
+// them.
+double stats_processor_ms(void);
