@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "bench_child.h"
+#include "file.h"
 #include "stats.h"
 
 #include <errno.h>
@@ -57,9 +58,9 @@ Result child_measure(const BenchOptions *options, const Method *method, const ch
                      const char *file, int steps, int warm_up, const ChildVariable *variables,
                      int variable_count, json_t **row, double *wall_ms, Error *error)
 {
-    char path[] = "/tmp/tractrix-bench-XXXXXX", counts[3][16], *settings = strdup(method->settings),
-         *rest = NULL;
+    char path[PATH_MAX], counts[3][16], *settings = strdup(method->settings), *rest = NULL;
     Words words = {{NULL}, 0};
+    file_scratch_name(path, "tractrix-bench");
     int temporary = mkstemp(path);
     *row = NULL;
     if (temporary >= 0) close(temporary);

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WARM_UP = 3, PASS_FRAMES = 8 };
+enum { WARM_UP = 2, PASS_FRAMES = 4 };
 
 ImageOptions image_options_default(void)
 {

@@ -20,7 +20,7 @@ typedef struct ImageOptions {
     const char *set;  // straight, curls, fur or a name that strands_make_set knows; or NULL
     const char *file; // a hair file, or NULL; one of both
     int size[2];      // px
-    int frames;       // measured, >= 1, after three that are not
+    int frames;       // measured, >= 1, after two that are not
     bool no_error;    // the reference takes many seconds
     ImageScheme scheme;
 } ImageOptions;

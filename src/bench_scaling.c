@@ -2,6 +2,7 @@
 #include "bench_scaling.h"
 #include "bench_child.h"
 #include "bench_fit.h"
+#include "file.h"
 #include "interrupt.h"
 #include "strands_make.h"
 
@@ -13,13 +14,13 @@
 
 enum { MOST_SIZES = 8 };
 
-// As many steps as take a second or so, by what a particle costs; at least 3.
+// As many steps as take half a second or so, by what a particle costs; at least 3.
 static BenchOptions fewer_steps(const Speed *speed, uint64_t particles)
 {
     BenchOptions options = *speed->options;
-    double most = fmax(3, 2e7 / (double)particles);
+    double most = fmax(3, 1e7 / (double)particles);
     if (options.steps > most) options.steps = (int)most;
-    if (options.warm_up > options.steps) options.warm_up = options.steps;
+    if (options.warm_up > options.steps / 3) options.warm_up = options.steps / 3;
     options.size[0] = 0;
     return options;
 }
@@ -204,7 +205,8 @@ Result scaling_run_start(Speed *speed, Error *error)
     char *kept = before ? strdup(before) : NULL;
     Result result = RESULT_OK;
     for (int m = 0; m < speed->method_count && result == RESULT_OK; ++m) {
-        char cache[] = "/tmp/tractrix-cache-XXXXXX";
+        char cache[PATH_MAX];
+        file_scratch_name(cache, "tractrix-cache");
         if (!mkdtemp(cache)) result = error_set(error, RESULT_FAILED, "%s: cannot be made", cache);
         if (result == RESULT_OK) result = measure_start(speed, m, cache, "cold", error);
         if (result == RESULT_OK) result = measure_start(speed, m, cache, "warm", error);

@@ -14,7 +14,8 @@ static const struct {
     {"10k32", "emulation", 410}, {"10k32", "split", 5.9},
 };
 
-// What is stated for the solvers' default forms on llvmpipe with two cores: medians, ms a step.
+// What is stated for the solvers' default forms on llvmpipe with two cores, ms a step: of the
+// least, since what else runs on the machine only adds.
 static const struct {
     const char *set, *algo;
     double ms;

@@ -100,6 +100,26 @@ static Result try_follow(const Gpu *gpu, FollowMode mode, Error *error)
     return result;
 }
 
+// Loops over lights and shadow maps unrolled, for as many as scenes often have and for the most.
+static Result try_light_counts(LookPrograms *programs, Error *error)
+{
+    static const struct {
+        int lights, maps;
+    } counts[] = {{1, 0}, {2, 0}, {2, 1}, {4, 4}};
+    static const unsigned features[] = {0, LOOK_SHADOW_DOM,
+                                        LOOK_SHADOW_DOM | LOOK_SHADOW_BY_MESH | LOOK_LIGHTS,
+                                        LOOK_MARSCHNER | LOOK_SHADOW_APPROX};
+    Result result = RESULT_OK;
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; ++i) {
+        look_programs_count(programs, counts[i].lights, counts[i].maps);
+        for (size_t k = 0; k < sizeof features / sizeof *features && result == RESULT_OK; ++k)
+            if (counts[i].maps || !(features[k] & (LOOK_SHADOW_DOM | LOOK_SHADOW_APPROX)))
+                result = look_programs_build(programs, features[k], error);
+    }
+    look_programs_count(programs, 0, 0);
+    return result;
+}
+
 // The table of marschner shading, and every way that hair can look.
 static Result try_looks(Renderer *renderer, Error *error)
 {
@@ -122,6 +142,8 @@ static Result try_looks(Renderer *renderer, Error *error)
             result = look_programs_build(programs, features, error);
     for (size_t i = 0; i < sizeof others / sizeof *others && result == RESULT_OK; ++i)
         result = look_programs_build(programs, others[i], error);
+    if (renderer->options.shadow.kind != SHADOW_NONE && result == RESULT_OK)
+        result = try_light_counts(programs, error);
     return result;
 }
 

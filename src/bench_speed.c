@@ -263,8 +263,8 @@ void speed_add(Speed *speed, const SpeedRow *row)
                  .draw_median = result->draw.median};
     if (result->bytes) line.gigabytes_s = (double)result->bytes / least * 1e-6;
     line.share = speed->bandwidth > 0 ? line.gigabytes_s / speed->bandwidth : NAN;
-    line.verdict = bench_table_check(&speed->table, result->step.median, row->bound_ms,
-                                     "%s, %s: median ms a step", row->hair, row->method.algo);
+    line.verdict = bench_table_check(&speed->table, least, row->bound_ms, "%s, %s: least ms a step",
+                                     row->hair, row->method.algo);
     if (!isnan(row->off_bound))
         line.verdict = bench_table_check(&speed->table, row->off, row->off_bound,
                                          "%s, %s: off the GPU's strands", row->hair, row->remark);

@@ -40,8 +40,8 @@ enum { LEVEL_COUNT = sizeof LEVELS / sizeof *LEVELS, SET_COUNT = sizeof SETS / s
 
 // A frame is what is timed: its steps, and the positions that are drawn. Rounds over all points,
 // so that a noisy minute hits none alone.
-enum { FPS = 60, ROUNDS = 2, WARM_UP = 2, FEWEST = 2, MOST_SAMPLES = 20 };
-#define ENOUGH_MS 250.0 // of a point in a round
+enum { FPS = 60, ROUNDS = 2, WARM_UP = 2, MOST_SAMPLES = 20 };
+#define ENOUGH_MS 200.0 // of a point in a round, and of its warm-up
 
 typedef struct Point {
     Method method;
@@ -98,13 +98,15 @@ static void time_frames(Trial *trial, Point *point, int most)
     double per_second = point->rate / steps, begun = stats_clock_ms();
     for (int i = -WARM_UP; i < most; ++i) {
         double begin = stats_clock_ms();
+        if (i < 0 && begin - begun > ENOUGH_MS) i = 0; // warm enough
         for (int step = 0; step < steps; ++step) trial_step(trial);
         solver_pose(&trial->solver, &trial->step.head);
         glFinish();
         double end = stats_clock_ms();
-        if (i < 0) begun = end;
-        if (i >= 0) point->samples[point->count++] = (end - begin) * per_second;
-        if (i + 1 >= FEWEST && end - begun > ENOUGH_MS) return;
+        if (i == -1) begun = end;
+        if (i < 0) continue;
+        point->samples[point->count++] = (end - begin) * per_second;
+        if (end - begun > ENOUGH_MS) return;
     }
 }
 

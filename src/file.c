@@ -174,3 +174,9 @@ Result bytes_write_file(const Bytes *bytes, const char *path, Error *error)
     fwrite(bytes->data, 1, bytes->size, file.stream);
     return outfile_commit(&file, error);
 }
+
+void file_scratch_name(char path[PATH_MAX], const char *name)
+{
+    const char *folder = getenv("TMPDIR");
+    snprintf(path, PATH_MAX, "%s/%s-XXXXXX", folder && *folder ? folder : "/tmp", name);
+}

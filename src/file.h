@@ -4,6 +4,7 @@
 
 #include "error.h"
 
+#include <limits.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -44,3 +45,7 @@ void outfile_discard(OutFile *file);
 // Writes the bytes as a whole file through the three above: complete or not at all, RESULT_FAILED
 // with path and reason.
 Result bytes_write_file(const Bytes *bytes, const char *path, Error *error);
+
+// A template for mkstemp or mkdtemp: NAME-XXXXXX in the folder that the environment's TMPDIR names,
+// or in /tmp.
+void file_scratch_name(char path[PATH_MAX], const char *name);

@@ -55,15 +55,19 @@ static void forget(LookPrograms *programs)
     }
 }
 
+void look_programs_count(LookPrograms *programs, int light_count, int map_count)
+{
+    if (programs->light_count == light_count && programs->map_count == map_count) return;
+    forget(programs);
+    programs->light_count = light_count;
+    programs->map_count = map_count;
+}
+
 Result look_programs_use(LookPrograms *programs, const Look *look, const HairBatch *batch,
                          Error *error)
 {
     unsigned features = look->features | (batch->paint.buffer ? LOOK_PAINT : 0);
-    if (programs->light_count != look->light_count || programs->map_count != look->map_count) {
-        forget(programs);
-        programs->light_count = look->light_count;
-        programs->map_count = look->map_count;
-    }
+    look_programs_count(programs, look->light_count, look->map_count);
     Result result = look_programs_build(programs, features, error);
     if (result != RESULT_OK) return result;
     glUseProgram(programs->program[features]);

@@ -54,6 +54,9 @@ typedef struct LookPrograms {
 Result look_programs_use(LookPrograms *programs, const Look *look, const HairBatch *batch,
                          Error *error);
 
+// Says for how many lights and shadow maps variants are; those for others are forgotten.
+void look_programs_count(LookPrograms *programs, int light_count, int map_count);
+
 // Compiles the variant of these features if it is not there.
 Result look_programs_build(LookPrograms *programs, unsigned features, Error *error);
 void look_programs_destroy(LookPrograms *programs);
