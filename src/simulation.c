@@ -85,7 +85,20 @@ static Result create_sections(Simulation *simulation, const Gpu *gpu, const Stra
     return result;
 }
 
-static Result create_field(Simulation *simulation, const Gpu *gpu, const Mesh *mesh, Error *error)
+// What a cache holds is out of the mesh already; its guides' followers are not.
+static bool needs_field(const Scene *scene, const Strands *strands)
+{
+    if (!*scene->run.from_cache) return true;
+    for (uint32_t i = 0; i < scene->section_count; ++i) {
+        const SectionParams *params = &scene->sections[i].params;
+        bool moves = strcmp(params->algo, "none") != 0;
+        if (moves && follow_options(params, &strands[i], 0).per_guide > 0) return true;
+    }
+    return false;
+}
+
+static Result create_field(Simulation *simulation, const Gpu *gpu, const Strands *strands,
+                           const Mesh *mesh, Error *error)
 {
     const RunParams *run = &simulation->scene->run;
     DistanceField *field = &simulation->field;
@@ -94,7 +107,7 @@ static Result create_field(Simulation *simulation, const Gpu *gpu, const Mesh *m
     uint32_t sum = libdeflate_crc32(0, mesh->position, mesh->vertex_count * sizeof *mesh->position);
     simulation->mesh_checksum =
         libdeflate_crc32(sum, mesh->triangle, mesh->triangle_count * sizeof *mesh->triangle);
-    if (*run->from_cache) return RESULT_OK;
+    if (!needs_field(simulation->scene, strands)) return RESULT_OK;
     return run->sdf_cache ? field_cache_create(field, gpu, mesh, resolution, NULL, error)
                           : distance_field_create(field, gpu, mesh, resolution, error);
 }
@@ -116,7 +129,7 @@ Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer
         result = stability_choose_substeps(&simulation->substeps, scene, strands, error);
     simulation->schedule = schedule_create(run, simulation->substeps);
     simulation->step = -simulation->schedule.settling;
-    if (result == RESULT_OK) result = create_field(simulation, gpu, mesh, error);
+    if (result == RESULT_OK) result = create_field(simulation, gpu, strands, mesh, error);
     if (result == RESULT_OK) result = create_sections(simulation, gpu, strands, error);
     if (result == RESULT_OK && !rigid_track_is_still(&scene->head))
         result = carry_create(&simulation->carry, error);

@@ -145,7 +145,7 @@ run 0 $hair --algo emulation --variant thesis --frames 1 --size 16x16 -q -o "$wo
 if [ -s "$work/err" ]; then bad "said something"; else good; fi
 
 claim "a cache plays back what was simulated: any frames, the same pictures, in several processes at once"
-scene="assets/demo.json --size 48x32 --frames 12"
+scene="assets/demo.json --size 48x32 --frames 12" # followers that keep out of the mesh, which a cache does not hold
 # shellcheck disable=SC2086
 {
 run 0 $scene -q --cache "$work/a.cache" -o "$work/direct/"
