@@ -8,7 +8,7 @@
 
 static const double PI = 3.14159265358979323846;
 static const double SPHERE_RADIUS = 0.1;
-static const double NECK_DEPTH = 0.19;
+static const double NECK_DEPTH = 0.19, NECK_BEGIN = 0.7 * 3.14159265358979323846;
 
 static double dot(const double a[3], const double b[3])
 {
@@ -55,8 +55,9 @@ static double bump_height(const Bump *bump, const double direction[3])
     return bump->height * exp(-square / (bump->width * bump->width));
 }
 
-// Skull, face with jaw, and neck, joined softly: the 14-norm of three radii is a smooth maximum.
-static double head_radius(const double direction[3])
+// Skull, face with jaw, and a neck without end, joined softly: the 14-norm of three radii is a
+// smooth maximum.
+static double endless_head_radius(const double direction[3])
 {
     static const Ellipsoid parts[] = {
         {{0.0, 0.018, -0.008}, {0.074, 0.090, 0.096}},
@@ -76,8 +77,13 @@ static double head_radius(const double direction[3])
         sum += pow(ellipsoid_radius(&parts[i], direction), 14.0);
     for (size_t i = 0; i < sizeof bumps / sizeof *bumps; i++)
         bump += bump_height(&bumps[i], direction);
-    double radius = pow(sum, 1.0 / 14.0) + bump;
-    // The neck ends in a plane.
+    return pow(sum, 1.0 / 14.0) + bump;
+}
+
+// The neck ends in a plane.
+static double head_radius(const double direction[3])
+{
+    double radius = endless_head_radius(direction);
     return direction[1] < 0.0 ? fmin(radius, NECK_DEPTH / -direction[1]) : radius;
 }
 
@@ -193,6 +199,40 @@ static void add_ring_triangles(Mesh *mesh, uint32_t ring, uint32_t rings)
     }
 }
 
+static void direction_at(double angle, double turn, double direction[3])
+{
+    direction[0] = sin(angle) * sin(turn);
+    direction[1] = cos(angle);
+    direction[2] = sin(angle) * cos(turn);
+}
+
+// The angle from the top at which the neck comes to the plane where it ends.
+static double neck_edge(double turn)
+{
+    double inside = NECK_BEGIN, outside = PI;
+    for (int i = 0; i < 50; i++) {
+        double angle = 0.5 * (inside + outside), direction[3];
+        direction_at(angle, turn, direction);
+        if (-direction[1] * endless_head_radius(direction) < NECK_DEPTH)
+            inside = angle;
+        else
+            outside = angle;
+    }
+    return outside;
+}
+
+// The angle of a ring from the top: even steps, but on the neck, where they are such that one ring
+// runs along its edge, which would be ragged else.
+static double ring_angle(ScalpShape shape, uint32_t ring, uint32_t rings, double turn)
+{
+    double even = PI * ring / rings;
+    if (shape == SCALP_SPHERE || even <= NECK_BEGIN) return even;
+    double edge = neck_edge(turn), edge_ring = round(rings * neck_edge(0.0) / PI);
+    double first = floor(rings * NECK_BEGIN / PI), begin = PI * first / rings;
+    if (ring <= edge_ring) return begin + (edge - begin) * (ring - first) / (edge_ring - first);
+    return edge + (PI - edge) * (ring - edge_ring) / (rings - edge_ring);
+}
+
 Result scalp_make_mesh(Mesh *mesh, ScalpShape shape, uint32_t rings, Error *error)
 {
     uint32_t around = 2 * rings;
@@ -205,8 +245,8 @@ Result scalp_make_mesh(Mesh *mesh, ScalpShape shape, uint32_t rings, Error *erro
     }
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         uint32_t ring = v == 0 ? 0 : 1 + (v - 1) / around;
-        double angle = PI * ring / rings, turn = 2.0 * PI * ((v - 1) % around) / around;
-        double direction[3] = {sin(angle) * sin(turn), cos(angle), sin(angle) * cos(turn)};
+        double turn = 2.0 * PI * ((v - 1) % around) / around, direction[3];
+        direction_at(ring_angle(shape, ring, rings, turn), turn, direction);
         double radius = scalp_radius(shape, direction);
         for (int i = 0; i < 3; i++) mesh->position[v][i] = (float)(radius * direction[i]);
     }
