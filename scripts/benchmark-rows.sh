@@ -1,0 +1,19 @@
+# shellcheck shell=sh disable=SC2016,SC2154 # sourced; awk programs
+# SPDX-License-Identifier: MIT
+# What benchmark-tables and benchmark-words share: rows of tractrix-bench read by awk, columns by name.
+# With `rows` the folder of NAME.csv: defines rows_of NAME PROGRAM.
+
+# c["algo"] is the number of that column; a scenario's commas are semicolons in CSV.
+awk_functions='
+    function digits(x) { return x == "" ? "-" : sprintf(x < 0.001 ? "%.2g" : x < 0.1 ? "%.4f" : x < 100 ? "%.3g" : "%.0f", x) }
+    function percent(x) { return sprintf(x < 0.00095 ? "%.1g %%" : x < 0.095 ? "%.2g %%" : "%.0f %%", 100 * x) }
+    function rule(n,  line) { line = "| ---"; while (n--) line = line " | ---:"; print line " |" }
+    function name() { return $c["algo"] ($c["variant"] == "" ? "" : " `" $c["variant"] "`") ($c["settings"] == "" ? "" : " `" $c["settings"] "`") }
+    function join(before, word) { return before == "" ? word : before ", " word }
+    function base(path) { sub(/.*\//, "", path); return path }
+'
+
+rows_of() {
+    [ -e "$rows/$1.csv" ] || { echo "$0: no $rows/$1.csv: measure $1 first" >&2; exit 1; }
+    awk -F, "$awk_functions"' FNR == 1 { for (i = 1; i <= NF; ++i) c[$i] = i; next } '"$2" "$rows/$1.csv"
+}
