@@ -92,7 +92,7 @@ void main()
 {
     int n = int(material.vertex_count), row = int(gl_GlobalInvocationID.x);
     if (row >= strands.x) return;
-    if (strands.y != 0) row = int(texelFetch(listed, row + 1).x);
+    if (strands.y != 0) row = int(texelFetch(listed, row + 2).x);
     int s = int(material.first_strand) + row;
 #if SMOOTH
     int slot = row * (n - 1) * int(material.smooth_parts);

@@ -25,6 +25,41 @@ vec3 particle(Curve c, int j)
     return texelFetch(position, c.root + j * STRAND_TILE).xyz;
 }
 
+#if SMOOTH
+// A segment's ends b and d, and their neighbours.
+struct Around {
+    vec3 a, b, d, e;
+};
+
+Around curve_around(Curve c, int j)
+{
+    vec3 b = particle(c, j), d = particle(c, j + 1);
+    vec3 a = j > 0 ? particle(c, j - 1) : 2.0 * b - d, e = j + 2 <= c.segments ? particle(c, j + 2) : 2.0 * d - b;
+    return Around(a, b, d, e);
+}
+
+// The knots' distances are the roots of the particles', and the tangents at b and d those of the
+// parabolas through three knots (Barry and Goldman 1988), over the segment's own distance.
+void curve_tangents(Around o, out vec3 from, out vec3 to)
+{
+    float before = max(sqrt(length(o.b - o.a)), 1e-9), own = max(sqrt(length(o.d - o.b)), 1e-9),
+          after = max(sqrt(length(o.e - o.d)), 1e-9);
+    vec3 way = o.d - o.b;
+    from = way + own * ((o.b - o.a) / before - (o.d - o.a) / (before + own));
+    to = way + own * ((o.e - o.d) / after - (o.e - o.b) / (own + after));
+}
+
+// Four points whose convex hull has all of segment j of the curve: the B-spline's own, or Bezier's.
+vec3[4] curve_hull(Curve c, int j)
+{
+    Around o = curve_around(c, j);
+    vec3 from, to;
+    curve_tangents(o, from, to);
+    bool spline = material.smooth_curve != 0u;
+    return vec3[4](spline ? o.a : o.b, spline ? o.b : o.b + from / 3.0, spline ? o.d : o.d - to / 3.0, spline ? o.e : o.d);
+}
+#endif
+
 // Point k = 0 .. segments * parts.
 vec3 curve_point(Curve c, int k)
 {
@@ -32,20 +67,15 @@ vec3 curve_point(Curve c, int k)
 #if SMOOTH
     int j = min(k / c.parts, c.segments - 1);
     float t = float(k - j * c.parts) / float(c.parts);
-    vec3 b = particle(c, j), d = particle(c, j + 1);
-    vec3 a = j > 0 ? particle(c, j - 1) : 2.0 * b - d, e = j + 2 <= c.segments ? particle(c, j + 2) : 2.0 * d - b;
+    Around o = curve_around(c, j);
     if (material.smooth_curve != 0u) {
         float s = 1.0 - t;
-        return (s * s * s * a + (3.0 * t * t * t - 6.0 * t * t + 4.0) * b + (3.0 * s * s * s - 6.0 * s * s + 4.0) * d +
-                t * t * t * e) * (1.0 / 6.0);
+        return (s * s * s * o.a + (3.0 * t * t * t - 6.0 * t * t + 4.0) * o.b + (3.0 * s * s * s - 6.0 * s * s + 4.0) * o.d +
+                t * t * t * o.e) * (1.0 / 6.0);
     }
-    // The knots' distances are the roots of the particles', and the tangents at b and d those of the
-    // parabolas through three knots (Barry and Goldman 1988), over the segment's own distance.
-    float before = max(sqrt(length(b - a)), 1e-9), own = max(sqrt(length(d - b)), 1e-9), after = max(sqrt(length(e - d)), 1e-9);
-    vec3 way = d - b;
-    vec3 from = way + own * ((b - a) / before - (d - a) / (before + own));
-    vec3 to = way + own * ((e - d) / after - (e - b) / (own + after));
-    return b + t * (from + t * (3.0 * way - 2.0 * from - to + t * (from + to - 2.0 * way)));
+    vec3 way = o.d - o.b, from, to;
+    curve_tangents(o, from, to);
+    return o.b + t * (from + t * (3.0 * way - 2.0 * from - to + t * (from + to - 2.0 * way)));
 #else
     return particle(c, k);
 #endif

@@ -45,7 +45,8 @@
 // The same points for the block-list rasteriser, which is never at work with the A-buffer.
 #define BIND_BLOCK_COUNTS_OUT 0 // uint, 16 for each of 64 groups: ribbons, strands without any
 #define BIND_RIBBONS_OUT      1 // RIBBON_TEXELS uvec4 a ribbon, see block.glsl
-#define BIND_LISTED_OUT       3 // uint: how many strands are listed, then their rows
+#define BIND_HIDING_OUT       1 // float a tile, see block_hide.comp
+#define BIND_LISTED_OUT       3 // uint: how many strands are listed, how many are hidden, then rows
 #define BIND_KEYS_OUT         4 // uint a ribbon
 #define BIND_PIXELS_OUT       6 // uint a pixel, rows of whole blocks
 #define BIND_LISTED           7 // while strands are projected
@@ -53,6 +54,10 @@
 #define BIND_JOBS             5 // uvec4 a block: its number, where its list begins, how long it is
 #define BIND_LISTS            6 // uint a ribbon in a block: the ribbon
 #define BIND_MESH_DEPTH       8
+#define BIND_HIDING           9 // float a tile and level, see block_cull.comp
+
+#define HIDE_TILE   8 // px of the tiles by which hair is found to be hidden
+#define HIDE_LEVELS 6 // each of tiles twice as wide
 
 #define RIBBON_TEXELS     4
 #define BLOCK_WIDTH       4 // px; tall, since hair hangs down

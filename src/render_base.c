@@ -185,6 +185,7 @@ Result render_base_draw(RenderBase *base, const BaseScene *scene, const RenderTa
     if (moved || base->shadowed != scene->shadow->version) {
         base->any = false;
         ++base->version;
+        if (moved) ++base->depth_version;
         result = draw_all(base, scene, target, moved, timer, error);
         base->drawn = *scene->draw;
         base->shadowed = scene->shadow->version;

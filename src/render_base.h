@@ -24,7 +24,8 @@ typedef struct RenderBase {
     DrawParams drawn;    // what the target's surface and base show
     uint64_t shadowed;   // RenderShadow.version of it
     bool any;
-    uint64_t version; // counts the times that anything was drawn
+    uint64_t version;       // counts the times that anything was drawn
+    uint64_t depth_version; // counts the times that the target's depth was
 } RenderBase;
 
 // A picture of it. Boxes in samples: x, y lowest, highest; outside of them is background.

@@ -13,7 +13,7 @@ enum {
     NUMBER_BYTES = 4,   // of a ribbon in a list
     LEAST_NUMBERS = 64, // that there is always room for
     FIRST_NUMBERS = 1 << 16,
-    CULL_SHARE = 16,     // of the strands out of sight: culling them pays
+    CULL_SHARE = 16,     // of the strands left out: looking for them pays
     ALIGNED_RIBBONS = 16 // at whose multiples every driver lets a buffer's range begin
 };
 
@@ -139,7 +139,7 @@ static RenderBlocks describe(const GpuLimits *limits, const RendererOptions *opt
                           .width = options->width * options->samples,
                           .height = options->height * options->samples,
                           .samples = options->samples,
-                          .culls = true,
+                          .skips = true,
                           .kind = options->kind,
                           .aov = options->aov,
                           .tone = picture_display(options)};
@@ -168,11 +168,11 @@ Result render_blocks_create(RenderBlocks *blocks, const GpuLimits *limits,
 
 void render_blocks_destroy(RenderBlocks *blocks)
 {
-    GpuBuffer *const buffers[] = {&blocks->ribbons,  &blocks->keys,   &blocks->numbers,
-                                  &blocks->jobs,     &blocks->counts, &blocks->pixels,
-                                  &blocks->material, &blocks->listed};
+    GpuBuffer *const buffers[] = {&blocks->ribbons, &blocks->keys,   &blocks->numbers,
+                                  &blocks->jobs,    &blocks->counts, &blocks->pixels,
+                                  &blocks->material};
     look_programs_destroy(&blocks->project);
-    if (blocks->cull) glDeleteProgram(blocks->cull);
+    render_cull_destroy(&blocks->cull);
     for (int i = 0; i < 2; ++i)
         if (blocks->composite[i]) glDeleteProgram(blocks->composite[i]);
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; ++i) gpu_buffer_destroy(buffers[i]);
@@ -205,7 +205,8 @@ static Result make_order(RenderBlocks *blocks, size_t count, Error *error)
     return RESULT_OK;
 }
 
-Result render_blocks_begin(RenderBlocks *blocks, uint64_t segments, Error *error)
+Result render_blocks_begin(RenderBlocks *blocks, uint64_t segments, const CullBase *base,
+                           Error *error)
 {
     int64_t count = segments ? (int64_t)segments : 1;
     const GpuLimits *limits = blocks->limits;
@@ -217,55 +218,36 @@ Result render_blocks_begin(RenderBlocks *blocks, uint64_t segments, Error *error
     }
     if (result == RESULT_OK)
         result = make_room(&blocks->keys, limits, "depths", count * 4, 0, error);
+    if (result == RESULT_OK)
+        result = render_cull_begin(&blocks->cull, limits, base, blocks->skips, error);
     if (result != RESULT_OK) return result;
     clear(&blocks->keys, count * 4);
     clear(&blocks->counts, blocks->counts.size);
     clear_pixels(blocks);
     blocks->slots = 0;
-    blocks->strands = blocks->unlisted = 0;
+    blocks->strands = 0;
     blocks->bands = 0;
     blocks->touched = 0;
     return RESULT_OK;
 }
 
-// Lists the part's strands that may be in sight; how many they are.
-static Result cull(RenderBlocks *blocks, const MaterialParams *part, GLuint *count, Error *error)
-{
-    const ShaderDefine defines[] = {{"GROUP_SIZE", PROJECT_GROUP}, {NULL, 0}};
-    Result result = blocks->cull
-                        ? RESULT_OK
-                        : shader_build_compute(&blocks->cull, "block_cull.comp", defines, error);
-    if (result != RESULT_OK) return result;
-    const GLuint none = 0;
-    glBindBuffer(GL_SHADER_STORAGE_BUFFER, blocks->listed.buffer);
-    glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof none, &none);
-    gpu_buffer_bind_storage(&blocks->listed, BIND_LISTED_OUT);
-    glUseProgram(blocks->cull);
-    glDispatchCompute((part->drawn_strands + PROJECT_GROUP - 1) / PROJECT_GROUP, 1, 1);
-    read_back(&blocks->listed, sizeof *count, count);
-    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-    blocks->unlisted += part->drawn_strands - *count;
-    return RESULT_OK;
-}
-
 // Projects part.drawn_strands strands from part.first_strand on, whose ribbons a shader can see at
-// once. Curves and painted hair may reach farther than what is culled by: they are all projected.
+// once.
 static Result project_part(RenderBlocks *blocks, const HairBatch *batch, const Look *look,
                            const MaterialParams *part, int64_t slots, Error *error)
 {
     int64_t first = (int64_t)blocks->slots, begin = first / ALIGNED_RIBBONS * ALIGNED_RIBBONS;
-    bool culls = blocks->culls && part->smooth_parts == 1 && !batch->paint.buffer;
-    GLuint count = part->drawn_strands;
+    uint32_t count = part->drawn_strands;
     gpu_uniforms_set(&blocks->material, BIND_MATERIAL, part, sizeof *part);
-    Result result = culls ? cull(blocks, part, &count, error) : RESULT_OK;
+    Result result = RESULT_OK;
+    if (blocks->cull.tries) result = render_cull_list(&blocks->cull, batch, part, &count, error);
     if (result == RESULT_OK) result = look_programs_use(&blocks->project, look, batch, error);
     if (result != RESULT_OK) return result;
-    if (culls) gpu_buffer_bind_texture(&blocks->listed, BIND_LISTED);
     glBindBufferRange(GL_SHADER_STORAGE_BUFFER, BIND_RIBBONS_OUT, blocks->ribbons.buffer,
                       (GLintptr)(begin * RIBBON_BYTES),
                       (GLsizeiptr)((first + slots - begin) * RIBBON_BYTES));
     glUniform2i(0, (GLint)first, (GLint)(first - begin));
-    glUniform2i(1, (GLint)count, culls);
+    glUniform2i(1, (GLint)count, blocks->cull.tries);
     if (count) glDispatchCompute((count + PROJECT_GROUP - 1) / PROJECT_GROUP, 1, 1);
     blocks->slots += (size_t)slots;
     blocks->strands += part->drawn_strands;
@@ -276,8 +258,7 @@ Result render_blocks_add(RenderBlocks *blocks, const HairBatch *batch, const Loo
                          Error *error)
 {
     MaterialParams part = look_material(look, batch);
-    Result result = make_room(&blocks->listed, blocks->limits, "strands",
-                              ((int64_t)part.drawn_strands + 1) * 4, GL_R32UI, error);
+    Result result = render_cull_make_room(&blocks->cull, blocks->limits, part.drawn_strands, error);
     if (result != RESULT_OK) return result;
     int64_t of_strand = (int64_t)(batch->vertex_count - 1) * part.smooth_parts,
             most = (blocks->limits->storage_block / RIBBON_BYTES - ALIGNED_RIBBONS) / of_strand;
@@ -303,8 +284,8 @@ static Result sort(RenderBlocks *blocks, Error *error)
         blocks->segments += counts[i];
         blocks->culled += counts[i + 1];
     }
-    blocks->culled += blocks->unlisted;
-    blocks->culls = blocks->culled > blocks->strands / CULL_SHARE;
+    blocks->culled += blocks->cull.outside;
+    blocks->skips = blocks->culled + blocks->cull.hidden > blocks->strands / CULL_SHARE;
     if (blocks->segments == 0) return RESULT_OK;
     const GLuint *keys = map(&blocks->keys, (int64_t)blocks->slots * 4, GL_MAP_READ_BIT);
     if (!keys) return error_set(error, RESULT_FAILED, "hair's depths cannot be read");

@@ -9,6 +9,7 @@
 #include "gpu_timer.h"
 #include "hair.h"
 #include "radix.h"
+#include "render_cull.h"
 #include "render_picture.h"
 #include "render_target.h"
 
@@ -16,11 +17,10 @@
 
 typedef struct RenderBlocks {
     LookPrograms project;
-    GLuint cull;
+    RenderCull cull;
     GLuint composite[2];     // over the background, over a mesh
     GpuBuffer ribbons, keys; // see block.glsl
     GpuBuffer numbers, jobs; // see block_lists.h
-    GpuBuffer listed;        // strands, see block_cull.comp
     GpuBuffer counts, pixels, material;
     const GpuLimits *limits;
     Radix radix;
@@ -35,9 +35,8 @@ typedef struct RenderBlocks {
     int tone;                           // display.glsl's macro
     int64_t most_numbers;               // in all lists of a band
     size_t slots, seen;                 // records there is room for; that are seen
-    bool culls;                         // strands before they are projected: many were out of sight
+    bool skips;                         // many strands of the last picture could be left out
     uint64_t strands;                   // of the picture
-    uint64_t unlisted;                  // left out before they were projected
     uint64_t touched, segments, culled; // blocks that ribbons touch, each counted
     uint32_t bands;
 } RenderBlocks;
@@ -56,8 +55,10 @@ Result render_blocks_add_base(RenderBlocks *blocks, Error *error);
 // Whether so many ribbons fit into the driver's buffers.
 bool render_blocks_can_hold(const GpuLimits *limits, uint64_t segments);
 
-// Begins a picture of at most `segments` ribbons (render_blocks_can_hold).
-Result render_blocks_begin(RenderBlocks *blocks, uint64_t segments, Error *error);
+// Begins a picture of at most `segments` ribbons (render_blocks_can_hold) with `base` before and
+// among them. Needs the DrawParams block.
+Result render_blocks_begin(RenderBlocks *blocks, uint64_t segments, const CullBase *base,
+                           Error *error);
 
 // Adds a batch. Needs the DrawParams block. RESULT_FAILED if the look's shader does not compile.
 Result render_blocks_add(RenderBlocks *blocks, const HairBatch *batch, const Look *look,

@@ -69,6 +69,7 @@ typedef struct RenderFrame {
 typedef struct RendererCounts {
     uint64_t segments;    // sent to the rasteriser; straight runs count as one
     uint64_t culled;      // strands outside the picture, which cost no drawing
+    uint64_t hidden;      // strands behind mesh or floor that were not even projected (blocks)
     uint64_t fragments;   // stored and blended: pixels of a ribbon, or with blocks blocks of it
     uint64_t pool_bytes;  // of the A-buffer or the block lists now
     uint32_t redraws;     // bands that were drawn again because the A-buffer was too small

@@ -186,6 +186,7 @@ static void count_blocks(Renderer *renderer)
     const RenderBlocks *blocks = &renderer->blocks;
     renderer->counts = (RendererCounts){.segments = blocks->segments,
                                         .culled = blocks->culled,
+                                        .hidden = blocks->cull.hidden,
                                         .fragments = blocks->touched,
                                         .pool_bytes = (uint64_t)blocks->numbers.size,
                                         .bands = blocks->bands};
@@ -222,7 +223,9 @@ static Result draw_blocks(Renderer *renderer, Image *image, Error *error)
     uint64_t segments = picture_count_segments(picture);
     if (!render_blocks_can_hold(&renderer->gpu->limits, segments))
         return draw_quads_instead(renderer, image, error);
-    Result result = render_blocks_begin(blocks, segments, error);
+    const CullBase base = {has_base(renderer) ? &renderer->target : NULL,
+                           renderer->base.depth_version};
+    Result result = render_blocks_begin(blocks, segments, &base, error);
     if (result != RESULT_OK) return result;
     result = project_items(renderer, error);
     if (result != RESULT_OK) return result;

@@ -124,6 +124,7 @@ void stats_add_frame(Stats *stats, GpuTimer *timer, const FrameTimes *times,
     json_object_set_new(frame, "gpu_ms", passes);
     json_object_set_new(frame, "segments", json_integer((json_int_t)counts->segments));
     json_object_set_new(frame, "strands_culled", json_integer((json_int_t)counts->culled));
+    json_object_set_new(frame, "strands_hidden", json_integer((json_int_t)counts->hidden));
     json_object_set_new(frame, "strands_thinned", json_integer((json_int_t)counts->thinned));
     json_object_set_new(frame, "shadow_maps", json_integer((json_int_t)counts->shadow_maps));
     json_object_set_new(frame, "fragments", json_integer((json_int_t)counts->fragments));

@@ -324,44 +324,6 @@ static void hair_outside_the_picture_costs_nothing(void **state)
     assert_int_equal(studio.renderer.counts.segments, 0);
 }
 
-// Lines all about the picture's sides, some of them wide, before they are projected or after.
-static void strands_out_of_sight_are_left_out_early_without_a_trace(void **state)
-{
-    (void)state;
-    enum { COUNT = 600 };
-    float position[2 * COUNT][3];
-    Random random = random_create(3, 0);
-    if (raster == RASTER_QUADS) {
-        print_message("skipped: what is out of sight the driver clips from quads\n");
-        skip();
-    }
-    for (int i = 0; i < COUNT; ++i) {
-        float middle[3], way[3];
-        for (int k = 0; k < 3; ++k) {
-            middle[k] = (float)(k < 2 ? 4 * SIDE * random_real(&random) - 2 * SIDE : 0);
-            way[k] = (float)(60 * random_real(&random) - 30);
-        }
-        for (int k = 0; k < 3; ++k)
-            position[2 * i][k] = middle[k] - way[k], position[2 * i + 1][k] = middle[k] + way[k];
-    }
-    Strands strands = studio_strands(COUNT, 2, (const float(*)[3])position);
-    size_t size;
-    use(&BLACK);
-    studio_add(&studio, &strands, 5, 0.4f);
-    RenderBlocks *blocks = &studio.renderer.blocks;
-    uint8_t *culled = draw_copy(&size);
-    uint64_t count = studio.renderer.counts.culled;
-    assert_in_range(blocks->unlisted, COUNT / 2, count);
-    assert_in_range(count, COUNT / 2, COUNT - 10);
-    blocks->culls = false;
-    assert_draws_the_same(culled, size);
-    assert_int_equal(blocks->unlisted, 0);
-    assert_int_equal(studio.renderer.counts.culled, count);
-    assert_true(blocks->culls); // the next picture
-    free(culled);
-    strands_destroy(&strands);
-}
-
 static int count_driver_threads(void)
 {
     int count = 0;
@@ -467,7 +429,6 @@ int main(void)
         CLAIM(a_strand_is_whole_up_to_the_edge),
         CLAIM(transparent_pictures_have_straight_alpha),
         CLAIM(hair_outside_the_picture_costs_nothing),
-        CLAIM(strands_out_of_sight_are_left_out_early_without_a_trace),
         CLAIM(bytes_do_not_depend_on_driver_threads),
         CLAIM(blocks_lie_alike_in_c_and_glsl),
         CLAIM(a_picture_beyond_the_driver_is_refused),
