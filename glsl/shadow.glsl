@@ -15,7 +15,7 @@ layout(binding = BIND_DEPTHS) uniform samplerBuffer shadow_depths;
 #if SHADOW == 1
 layout(binding = BIND_LAYERS) uniform usamplerBuffer shadow_first;
 #else
-layout(binding = BIND_LAYERS) uniform samplerBuffer shadow_layers;
+layout(binding = BIND_LAYERS) uniform usamplerBuffer shadow_layers;
 #endif
 #if SHADOW_BY_MESH
 layout(binding = BIND_SHADOW_MESH) uniform sampler2D shadow_mesh;
@@ -37,7 +37,7 @@ float mix4(float a, float b, float c, float d, vec2 share)
 // Optical depth of all layers before one, and its own by share.
 float texel_depth(int texel, float share)
 {
-    vec2 layer = texelFetch(shadow_layers, texel).xy;
+    vec2 layer = unpack_layer(texelFetch(shadow_layers, texel).x);
     return layer.x + share * layer.y;
 }
 

@@ -17,7 +17,7 @@
 #define BIND_BOUNDS_OUT 0 // 6 int: lowest and highest place, see shadow_bounds.comp
 #define BIND_FIRST_OUT  1 // uint a texel: first depth
 #define BIND_SUMS_OUT   2 // uint a layer and texel
-#define BIND_LAYERS_OUT 3 // vec2 a layer and texel: optical depth before it, its own
+#define BIND_LAYERS_OUT 3 // uint a layer and texel: see pack_layer
 #define BIND_DEPTHS_OUT 4 // float a texel: where the layers begin
 
 // Textures.

@@ -1,40 +1,49 @@
 // SPDX-License-Identifier: MIT
-// Smooths each layer's sums with the neighbours' (1 2 1 each way), and adds them up.
+// Smooths each layer's sums with the neighbours' (1 2 1 each way), and adds them up. A lane goes down a column of STRIP
+// texels, so that what a row adds is read once for three.
 #include "shadow.h"
+#include "shadow_layer.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 layout(location = 0) uniform ivec2 map; // side, number
 layout(location = 1) uniform float unit; // steps for an optical depth of 1
 layout(binding = BIND_SUMS) uniform usamplerBuffer sums;
-layout(std430, binding = BIND_LAYERS_OUT) writeonly buffer Layers { vec2 layers[]; };
+layout(std430, binding = BIND_LAYERS_OUT) writeonly buffer Layers { uint layers[]; };
 
-int side = map.x;
+int side = map.x, first = map.y * SHADOW_LAYERS * map.x * map.x;
 
-float smooth_sum(int layer, ivec4 x, ivec4 y)
+struct Row {
+    float sum[SHADOW_LAYERS];
+};
+
+Row read_row(int row, ivec3 columns)
 {
-    float sum = 0.0;
-    for (int j = 0; j < 3; ++j) {
-        int row = layer + y[j] * side;
-        float line = float(int(texelFetch(sums, row + x[0]).x)) + float(int(texelFetch(sums, row + x[2]).x)) +
-                     2.0 * float(int(texelFetch(sums, row + x[1]).x));
-        sum += j == 1 ? 2.0 * line : line;
+    Row line;
+    ivec3 at = first + clamp(row, 0, side - 1) * side + columns;
+    for (int k = 0; k < SHADOW_LAYERS; ++k) {
+        line.sum[k] = float(int(texelFetch(sums, at.x).x)) + 2.0 * float(int(texelFetch(sums, at.y).x)) +
+                      float(int(texelFetch(sums, at.z).x));
+        at += side * side;
     }
-    return sum;
+    return line;
 }
 
 void main()
 {
-    int at = int(gl_GlobalInvocationID.x);
-    if (at >= side * side) return;
-    int column = at % side, row = at / side;
-    ivec4 x = ivec4(max(column - 1, 0), column, min(column + 1, side - 1), 0);
-    ivec4 y = ivec4(max(row - 1, 0), row, min(row + 1, side - 1), 0);
+    int at = int(gl_GlobalInvocationID.x), column = at % side, row = at / side * STRIP;
+    if (row >= side) return;
+    ivec3 columns = clamp(column + ivec3(-1, 0, 1), 0, side - 1);
     float scale = 1.0 / (16.0 * unit);
-    float before = 0.0;
-    for (int k = 0; k < SHADOW_LAYERS; ++k) {
-        int layer = (map.y * SHADOW_LAYERS + k) * side * side;
-        float own = scale * smooth_sum(layer, x, y);
-        layers[layer + at] = vec2(before, own);
-        before += own;
+    Row above = read_row(row - 1, columns), here = read_row(row, columns);
+    for (int turn = 0; turn < STRIP; ++turn, ++row) {
+        Row below = read_row(row + 1, columns);
+        float before = 0.0;
+        for (int k = 0; k < SHADOW_LAYERS; ++k) {
+            float own = scale * (above.sum[k] + 2.0 * here.sum[k] + below.sum[k]);
+            layers[first + (k * side + row) * side + column] = pack_layer(vec2(before, own));
+            before += own;
+        }
+        above = here;
+        here = below;
     }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Where the layers of each texel begin: a smooth bound of the first depths. Of the coarse map, the
 // least of 3 x 3 texels, then linear between them: nothing begins before it, since a texel lies
-// among four coarse ones whose squares of three all contain its own.
+// among four coarse ones whose squares of three all contain its own. A lane has the texels among four.
 #include "shadow.h"
 
 layout(local_size_x = GROUP_SIZE) in;
@@ -21,10 +21,8 @@ float first_at(ivec2 texel)
 void main()
 {
     int at = int(gl_GlobalInvocationID.x);
-    if (at >= side * side) return;
-    vec2 place = (vec2(at % side, at / side) + 0.5) * (1.0 / float(SHADOW_COARSE)) - 0.5;
-    vec2 whole = floor(place), share = place - whole;
-    ivec2 corner = ivec2(whole);
+    ivec2 corner = ivec2(at % (coarse + 1), at / (coarse + 1)) - 1; // the lower left one of the four
+    if (corner.y >= coarse) return;
     float least[4] = float[4](1.0, 1.0, 1.0, 1.0);
     for (int y = -1; y <= 2; ++y)
         for (int x = -1; x <= 2; ++x) {
@@ -34,5 +32,14 @@ void main()
             if (x < 2 && y > -1) least[2] = min(least[2], depth);
             if (x > -1 && y > -1) least[3] = min(least[3], depth);
         }
-    depths[map.y * side * side + at] = mix(mix(least[0], least[1], share.x), mix(least[2], least[3], share.x), share.y);
+    ivec2 low = corner * SHADOW_COARSE + SHADOW_COARSE / 2;
+    for (int y = 0; y < SHADOW_COARSE; ++y)
+        for (int x = 0; x < SHADOW_COARSE; ++x) {
+            ivec2 texel = low + ivec2(x, y);
+            vec2 share = (vec2(x, y) + 0.5) * (1.0 / float(SHADOW_COARSE));
+            bool inside = texel == clamp(texel, ivec2(0), ivec2(side - 1));
+            if (inside)
+                depths[(map.y * side + texel.y) * side + texel.x] =
+                    mix(mix(least[0], least[1], share.x), mix(least[2], least[3], share.x), share.y);
+        }
 }

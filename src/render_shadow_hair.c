@@ -7,6 +7,7 @@
 enum {
     GROUP = 8,
     TEXEL_GROUP = 64,
+    STRIP = 8,          // divides the side of a map
     PART_VERTICES = 64, // that one lane walks
     PART_SEGMENTS = 8,
     MARGIN = 3, // texels at the edges of a map that hair leaves free
@@ -17,13 +18,18 @@ static const double UNIT = 1 << 16;    // steps for an optical depth of 1
 static const double SUM_MAX = 2e9;     // of those steps: sums do not overflow
 static const double LEAST_LEFT = 1e-3; // of the light behind one fibre, as in shadow_splat.comp
 
-static Result build(GLuint *program, const char *file, int group, int deep, unsigned variant,
+// What a program of the deep maps or of the first depths is built for.
+enum { FIRSTS = 0, DEEP = 1, FIRSTS_IN_PAIRS = 2 };
+
+static Result build(GLuint *program, const char *file, int group, int kind, unsigned variant,
                     Error *error)
 {
     const ShaderDefine defines[] = {{"GROUP_SIZE", group},
-                                    {"DEEP", deep},
+                                    {"DEEP", kind == DEEP},
+                                    {"PAIRS", kind == FIRSTS_IN_PAIRS},
                                     {"PART_VERTICES", PART_VERTICES},
                                     {"PART_SEGMENTS", PART_SEGMENTS},
+                                    {"STRIP", STRIP},
                                     {"PAINT", (variant & CAST_PAINT) != 0},
                                     {"SMOOTH", (variant & CAST_SMOOTH) != 0},
                                     {NULL, 0}};
@@ -39,11 +45,12 @@ static unsigned variant_of(const ShadowCaster *caster)
 Result render_shadow_hair_build(RenderShadowHair *hair, unsigned variant, Error *error)
 {
     Result result =
-        build(&hair->bounds[variant], "shadow_bounds.comp", GROUP, hair->deep, variant, error);
+        build(&hair->bounds[variant], "shadow_bounds.comp", GROUP, FIRSTS, variant, error);
     if (result == RESULT_OK)
-        result = build(&hair->first[variant], "shadow_splat.comp", GROUP, false, variant, error);
+        result = build(&hair->first[variant], "shadow_splat.comp", GROUP,
+                       hair->deep ? FIRSTS_IN_PAIRS : FIRSTS, variant, error);
     if (result == RESULT_OK && hair->deep)
-        result = build(&hair->splat[variant], "shadow_splat.comp", GROUP, true, variant, error);
+        result = build(&hair->splat[variant], "shadow_splat.comp", GROUP, DEEP, variant, error);
     return result;
 }
 
@@ -54,9 +61,9 @@ Result render_shadow_hair_create(RenderShadowHair *hair, const GpuLimits *limits
     Result result =
         gpu_buffer_create(&hair->box, limits, "light's box", BOX_WORDS * 4, NULL, 0, error);
     if (result == RESULT_OK && deep)
-        result = build(&hair->spread, "shadow_spread.comp", TEXEL_GROUP, deep, 0, error);
+        result = build(&hair->spread, "shadow_spread.comp", TEXEL_GROUP, DEEP, 0, error);
     if (result == RESULT_OK && deep)
-        result = build(&hair->finish, "shadow_finish.comp", TEXEL_GROUP, deep, 0, error);
+        result = build(&hair->finish, "shadow_finish.comp", TEXEL_GROUP, DEEP, 0, error);
     if (result != RESULT_OK) render_shadow_hair_destroy(hair);
     return result;
 }
@@ -106,7 +113,7 @@ static Result make_maps(RenderShadowHair *hair, int maps, Error *error)
                                    NULL, GL_R32UI, error);
     if (result == RESULT_OK && hair->deep)
         result = gpu_buffer_create(&hair->layers, limits, "shadow's layers",
-                                   texels * 8 * SHADOW_LAYERS, NULL, GL_RG32F, error);
+                                   texels * 4 * SHADOW_LAYERS, NULL, GL_R32UI, error);
     hair->maps = maps;
     if (result != RESULT_OK) destroy_maps(hair);
     return result;
@@ -229,13 +236,25 @@ static void draw_firsts(RenderShadowHair *hair, ShadowCasters casters, const Cas
     cast(hair, casters, &wide, hair->first, PART_SEGMENTS);
 }
 
-static void run_texels(const RenderShadowHair *hair, const CastParams *params, GLuint program)
+static void run_texels(const CastParams *params, GLuint program, int lanes)
 {
     glUseProgram(program);
     glUniform2i(0, params->side, params->map);
-    if (program == hair->finish) glUniform1f(1, params->unit);
-    glDispatchCompute((GLuint)(params->side * params->side / TEXEL_GROUP), 1, 1);
+    glDispatchCompute((GLuint)((lanes + TEXEL_GROUP - 1) / TEXEL_GROUP), 1, 1);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+}
+
+static void spread(const RenderShadowHair *hair, const CastParams *params)
+{
+    int corners = params->side / SHADOW_COARSE + 1;
+    run_texels(params, hair->spread, corners * corners);
+}
+
+static void finish(const RenderShadowHair *hair, const CastParams *params)
+{
+    glUseProgram(hair->finish);
+    glUniform1f(1, params->unit);
+    run_texels(params, hair->finish, params->side * params->side / STRIP);
 }
 
 static void draw_deep(RenderShadowHair *hair, ShadowCasters casters, CastParams *params)
@@ -243,13 +262,13 @@ static void draw_deep(RenderShadowHair *hair, ShadowCasters casters, CastParams 
     draw_firsts(hair, casters, params, SHADOW_COARSE);
     gpu_buffer_bind_texture(&hair->firsts, BIND_FIRST);
     gpu_buffer_bind_storage(&hair->depths, BIND_DEPTHS_OUT);
-    run_texels(hair, params, hair->spread);
+    spread(hair, params);
     gpu_buffer_bind_texture(&hair->depths, BIND_DEPTHS);
     gpu_buffer_bind_storage(&hair->sums, BIND_SUMS_OUT);
     cast(hair, casters, params, hair->splat, PART_SEGMENTS);
     gpu_buffer_bind_texture(&hair->sums, BIND_SUMS);
     gpu_buffer_bind_storage(&hair->layers, BIND_LAYERS_OUT);
-    run_texels(hair, params, hair->finish);
+    finish(hair, params);
 }
 
 void render_shadow_hair_draw(RenderShadowHair *hair, const LightView *view, const LightFrame *frame,
