@@ -12,8 +12,14 @@
 // so twist is handed on down to the root, and forces and moments are balanced.
 //
 // In time: forces of the positions at the step's start, and for masses M = 1 + MASS dt^2 b D^T D (D: differences along the strand, b =
-// K (n-1)^2/l), which leaves leapfrog's energy as it is and bounds b dt^2/M at any stiffness. (Rest states under load are right in the limit of
-// short steps, probably because tensions are found for masses of 1: docs/benchmarks.md, beams.)
+// K (n-1)^2/l), which leaves leapfrog's energy as it is and bounds b dt^2/M at any stiffness. Drag acts on these masses too,
+// up to half of what is critical for the slowest swing that they allow, pi/(2 (n-1) sqrt(MASS) dt): 0.9/((n-1) dt).
+//
+// At rest: tensions lambda, found for masses of 1 and without bending, and the corrections' mu leave the strand where it is if
+// f = J^T lambda + M J^T mu, which is the balance of forces f = J^T lambda only for mu = 0. So mu is carried on: it adds to the tensions of
+// the next step (1/s^2, in the fourth component of velocities), and rest states do not depend on the step. (Tensions that take bending
+// into account at once, J J^T lambda = J f, have the same rest states, but are unstable at long steps: where joints are bent by an angle d, a
+// share d^2 of a stiff zigzag's force acts on smooth motions, whose masses M are smaller by thousands.)
 // A segment also bends what comes behind it: its own stiffness is K (n-1)^2 (l_j + l_{j+1})/l_j^2, so b is larger by l_{j+1}/(2 l_j) where
 // that is above 1.
 const float MASS = 3.0;
@@ -24,10 +30,18 @@ const float MASS = 3.0;
 vec3 kept_goal[VERTICES];
 void keep_goal(int j, vec3 a) { kept_goal[j] = a; }
 vec3 recall_goal(int j) { return kept_goal[j]; }
+void keep_carried(int j, float mu) { kept_goal[j].x = mu; }
+float recall_carried(int j) { return kept_goal[j].x; }
 #else // the place beside keep_beside's
 void keep_goal(int j, vec3 a) { scratch[keep_base + (2 * j + 1) * STRAND_TILE].yzw = a; }
 vec3 recall_goal(int j) { return scratch[keep_base + (2 * j + 1) * STRAND_TILE].yzw; }
+void keep_carried(int j, float mu) { scratch[keep_base + (2 * j + 1) * STRAND_TILE].y = mu; }
+float recall_carried(int j) { return scratch[keep_base + (2 * j + 1) * STRAND_TILE].y; }
 #endif
+// (goals are no longer needed where tensions to carry on are kept)
+
+// What an acceleration moves particles by in a step, with the implicit style spring as it does gravity.
+float bend_acts(Lane lane) { return lane.dt * step_params.gain * (1.0 - lane.pull); }
 
 float bend_stiffness(int last) { return BEND * float(last) * float(last); } // K (n-1)^2
 

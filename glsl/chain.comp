@@ -65,6 +65,24 @@ float predict(Lane lane)
 #endif
 }
 
+// What corrections before this step have found missing in the tension of segment j (bend.glsl).
+float carried_tension(Lane lane, int j)
+{
+#if BENDS
+    return bend_acts(lane) * texelFetch(velocity_before, lane.address + j * STRAND_TILE).w;
+#else
+    return 0.0;
+#endif
+}
+
+// At rest neither the tension nor what step 1 takes for it is more than the forces on all that is beyond.
+float limit_carried(Lane lane, int j, float carried)
+{
+    float move = lane.dt * length(lane.push) * (1.0 - lane.pull) + 2.0 * lane.length * lane.pull;
+    float most = 2.0 * float(LAST + 1 - j) * move / fetch_rest(lane, max(j, 1)).w;
+    return clamp(carried, -most, most);
+}
+
 float implicit_share(float tension)
 {
     float beyond = max(tension - STIFF, 0.0);
@@ -78,22 +96,23 @@ void pull_implicitly(Lane lane)
     vec3 g_beyond = vec3(0.0), q = fetch_position(lane, LAST), v = fetch_velocity(lane, LAST);
     Row3 row = NO_ROW3;
 #if BENDS
-    float acts = lane.dt * step_params.gain, stiffness = acts * bend_stiffness(LAST), mass_beyond = 0.0, l_beyond = 0.0;
+    float acts = bend_acts(lane), stiffness = acts * bend_stiffness(LAST), mass_beyond = 0.0, l_beyond = 0.0;
     vec3 G = vec3(0.0), h_beyond = vec3(0.0);
+    float kept = max(lane.decay, 1.0 - 0.9 / float(LAST));
 #endif
     for (int j = LAST; j >= 1; --j) {
         vec3 q_before = j == 1 ? lane.root_old : fetch_position(lane, j - 1), v_before = fetch_velocity(lane, j - 1);
         vec4 k = recall(j);
         lambda = k.w - factor_beyond * lambda;
         factor_beyond = recall_beside(j);
-        float tension = max(lambda, 0.0), theta = implicit_share(tension), factor;
+        float along = lambda + carried_tension(lane, j), tension = max(along, 0.0), theta = implicit_share(tension), factor;
         vec3 r = q - q_before, r_old = r - lane.dt * (v - v_before);
-        vec3 g = (lambda - tension) * r + tension * ((1.0 - 2.0 * theta) * r + theta * r_old);
+        vec3 g = (along - tension) * r + tension * ((1.0 - 2.0 * theta) * r + theta * r_old);
         float off = implicit_beyond, diagonal = 1.0 + (theta * tension + implicit_beyond);
         vec3 y = k.xyz - g + g_beyond;
 #if BENDS
         float l = fetch_rest(lane, j).w, mass = MASS * stiffness / l * max(1.0, 0.5 * l_beyond / l);
-        vec3 h = mass * (2.0 * r - r_old) - stiffness * bend_gradient(r, l, recall_goal(j), G);
+        vec3 h = mass * (r + kept * (r - r_old)) - stiffness * bend_gradient(r, l, recall_goal(j), G);
         off += mass_beyond, diagonal += mass + mass_beyond, y += h - h_beyond;
         mass_beyond = mass, h_beyond = h, l_beyond = l;
 #endif
@@ -139,6 +158,9 @@ void correct_again(Lane lane)
         vec4 k = recall(j); // j = 0: zero
         lambda = k.w - factor_beyond * lambda;
         factor_beyond = recall_beside(j);
+#if BENDS
+        keep_carried(j, limit_carried(lane, j, carried_tension(lane, j) + lambda));
+#endif
         vec3 t = lambda * k.xyz;
         if (j < LAST) {
             vec3 s = here.s + t + t_beyond - (j == 0 ? 1.0 : 2.0) * here.t;
@@ -182,9 +204,9 @@ int finish(Lane lane)
 }
 
 // The velocity first: compilers may delay the fetch of q up to its use, beyond a store to the buffer that it comes from.
-void put(Lane lane, int j, vec3 x, vec3 q)
+void put(Lane lane, int j, vec3 x, vec3 q, float carried)
 {
-    velocities[lane.address + j * STRAND_TILE] = vec4((x - q) / lane.dt, 0.0);
+    velocities[lane.address + j * STRAND_TILE] = vec4((x - q) / lane.dt, carried);
     positions[lane.address + j * STRAND_TILE] = vec4(x, 1.0);
 }
 
@@ -200,10 +222,12 @@ void write(Lane lane, inout Account account)
         vec3 q = fetch_position(lane, j), v = fetch_velocity(lane, j), free = predicted_move(lane, j, q, style), s = recall(j).xyz;
         x += s;
         account_add(account, lane, x - q, free, v);
-        put(lane, j, x, q);
 #if BENDS
+        put(lane, j, x, q, recall_carried(j) / bend_acts(lane));
         vec4 segment = fetch_rest(lane, j);
         frames_advance(frames, s / segment.w, segment);
+#else
+        put(lane, j, x, q, 0.0);
 #endif
     }
 #if BENDS
@@ -251,7 +275,7 @@ void rescue(Lane lane, inout Account account)
         vec3 now = x - q - account.moved;
         sum += now;
         squares += dot(now, now);
-        put(lane, j, x, q);
+        put(lane, j, x, q, 0.0);
     }
 #if BENDS
     account.stored = bend_stiffness(last) * frames.energy;

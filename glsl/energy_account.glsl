@@ -52,7 +52,7 @@ void account_close(Account account, Lane lane, int last)
     gained = gained > 0.0 && gained < 1e30 ? gained : 0.0; // 0 for a NaN
     velocities[lane.address] = vec4(root, guards ? gained - min(over, kinetic) : gained);
     for (int j = 1; guards && j <= last; ++j) {
-        vec3 v = velocities[lane.address + j * STRAND_TILE].xyz;
-        velocities[lane.address + j * STRAND_TILE] = vec4(root + kept * (v - root), 0.0);
+        vec4 v = velocities[lane.address + j * STRAND_TILE];
+        velocities[lane.address + j * STRAND_TILE] = vec4(root + kept * (v.xyz - root), v.w);
     }
 }

@@ -71,13 +71,22 @@ typedef struct Bending {
     Vec pull[TWIN_MAX];
 } Bending;
 
+// What an acceleration moves particles by in a step, with the style's springs implicit.
+static double find_acts(const TwinStep *step, const SectionParams *params)
+{
+    double h = step->first ? step->dt / 2 : step->dt, c = step->drag, share = params->style;
+    double acts = step->dt * (c > 0 ? -expm1(-c * h) / c : h);
+    return acts / (1 + (double)params->style_stiffness * share / (1 - share) * acts);
+}
+
 static void find_bending(const TwinStrand *strand, const TwinStep *step,
                          const SectionParams *params, const Vec *r, const Vec *v_old,
                          Bending *bending)
 {
     const int n = strand->n;
-    double h = step->first ? step->dt / 2 : step->dt, c = step->drag;
-    double acts = reference_bend_stiffness(params) * step->dt * (c > 0 ? -expm1(-c * h) / c : h);
+    double acts = reference_bend_stiffness(params) * find_acts(step, params);
+    double decay = exp(-step->drag * (step->first ? step->dt / 2 : step->dt));
+    double kept = fmax(decay, 1 - 0.9 / (n - 1));
     Vec gradient[TWIN_MAX];
     *bending = (Bending){0};
     if (acts == 0) return;
@@ -87,12 +96,13 @@ static void find_bending(const TwinStrand *strand, const TwinStep *step,
         bending->mass[j] = 3 * acts * (n - 1) * (n - 1) / strand->length[j] * fmax(1, beyond);
         for (int i = 0; i < 3; ++i)
             bending->pull[j][i] =
-                bending->mass[j] * (r[j][i] + step->dt * (v_old[j][i] - v_old[j - 1][i])) -
+                bending->mass[j] * (r[j][i] + kept * step->dt * (v_old[j][i] - v_old[j - 1][i])) -
                 acts * gradient[j][i];
     }
 }
 
-static void find_tensions(const TwinStrand *strand, const Vec *r, const Vec *x, double *lambda)
+static void find_tensions(const TwinStrand *strand, const Vec *r, const Vec *x, double acts,
+                          double *lambda)
 {
     double right[TWIN_MAX] = {0};
     for (int j = 1; j < strand->n; ++j) {
@@ -101,6 +111,7 @@ static void find_tensions(const TwinStrand *strand, const Vec *r, const Vec *x, 
         right[j] = strand->length[j] * (vec_norm(s) - strand->length[j]);
     }
     reference_solve_lengths(r, strand->n, right, lambda);
+    for (int j = 1; j < strand->n; ++j) lambda[j] += acts * strand->carried[j];
 }
 
 static void pull_implicitly(const TwinStrand *strand, const Vec *v_old, const TwinStep *step,
@@ -113,7 +124,7 @@ static void pull_implicitly(const TwinStrand *strand, const Vec *v_old, const Tw
     double diagonal[TWIN_MAX] = {0}, upper[TWIN_MAX] = {0}, lower[TWIN_MAX] = {0};
     Bending bending;
     for (int j = 1; j < n; ++j) subtract(strand->x[j], strand->x[j - 1], r[j]);
-    find_tensions(strand, (const Vec *)r, (const Vec *)x, lambda);
+    find_tensions(strand, (const Vec *)r, (const Vec *)x, find_acts(step, params), lambda);
     find_bending(strand, step, params, (const Vec *)r, v_old, &bending);
     for (int j = 1; j < n; ++j) {
         double tension = fmax(lambda[j], 0), beyond = fmax(tension - stiff_from, 0);
@@ -138,10 +149,10 @@ static void pull_implicitly(const TwinStrand *strand, const Vec *v_old, const Tw
     }
 }
 
-static void correct(const TwinStrand *strand, Vec *x)
+static void correct(const TwinStrand *strand, Vec *x, double *lambda)
 {
     Vec s[TWIN_MAX], g[TWIN_MAX];
-    double right[TWIN_MAX] = {0}, lambda[TWIN_MAX];
+    double right[TWIN_MAX] = {0};
     for (int j = 1; j < strand->n; ++j) {
         subtract(x[j], x[j - 1], s[j]);
         right[j] = vec_norm(s[j]) * (vec_norm(s[j]) - strand->length[j]);
@@ -259,6 +270,24 @@ static double bending_energy(const TwinStrand *strand, const TwinStep *step,
                : 0;
 }
 
+// What the first correction was goes on into the next steps' tensions, as far as both that at rest
+// and what the step takes for it can be: the forces on all that is beyond.
+static void carry_tensions(TwinStrand *strand, const TwinStep *step, const SectionParams *params,
+                           const double *lambda, bool violent)
+{
+    double length = 0, acts = find_acts(step, params), share = (double)params->style;
+    Vec push;
+    for (int j = 1; j < strand->n; ++j) length += strand->length[j];
+    vec_add_scaled(step->gravity, step->drag, step->wind, push);
+    double spring = (double)params->style_stiffness * share / (1 - share);
+    double force = vec_norm(push) + spring * 2 * length;
+    for (int j = 1; j < strand->n; ++j) {
+        double most = 2 * (strand->n - j) * force / strand->length[j];
+        double carried = strand->carried[j] + lambda[j] / acts;
+        strand->carried[j] = violent ? 0 : fmin(fmax(carried, -most), most);
+    }
+}
+
 static bool is_violent(const TwinStrand *strand, const Vec *x)
 {
     return !(twin_length_error(strand, x) <= 0.5);
@@ -268,6 +297,7 @@ void reference_chain_step(TwinStrand *strand, const TwinStep *step, const Sectio
 {
     const int n = strand->n;
     Vec x_old[TWIN_MAX], v_old[TWIN_MAX], predicted[TWIN_MAX], x[TWIN_MAX];
+    double lambda[TWIN_MAX], again[TWIN_MAX];
     Motion motion = {0};
     memcpy(x_old, strand->x, sizeof x_old);
     memcpy(v_old, strand->v, sizeof v_old);
@@ -275,9 +305,10 @@ void reference_chain_step(TwinStrand *strand, const TwinStep *step, const Sectio
     memcpy(x, predicted, sizeof x);
     double bent = bending_energy(strand, step, params);
     pull_implicitly(strand, (const Vec *)v_old, step, params, x);
-    correct(strand, x);
-    correct(strand, x);
+    correct(strand, x, lambda);
+    correct(strand, x, again);
     bool violent = is_violent(strand, (const Vec *)x);
+    if (reference_bend_stiffness(params) > 0) carry_tensions(strand, step, params, lambda, violent);
     if (violent) reference_two_pass(strand, (const Vec *)predicted, predicted[0], x);
     rebuild(strand, (const Vec *)x, step->dt);
 

@@ -53,6 +53,8 @@ run 0 accuracy --part static --algo hybrid --csv "$work/t.csv"
 same "$(field "$work/t.csv" value | awk '$1 < 1e-5' | wc -l)" 8 "states that are exact"
 run 0 accuracy --part beam --algo spring --rates 60 --csv "$work/b.csv"
 same "$(awk -F, '$8 == "error" && $9 < 1e-5' "$work/b.csv" | wc -l)" 6 "shapes that are exact"
+run 0 accuracy --part beam --algo chain --rates 30 --csv "$work/c.csv"
+same "$(field "$work/c.csv" verdict | grep -c holds)" 6 "bounds of rods at long steps"
 
 claim "what should change nothing: units and frame rates; what strands should keep: lengths and energy"
 run 0 accuracy --part scale,stretch,rate,drift --algo hybrid --seconds 1 --csv "$work/i.csv"

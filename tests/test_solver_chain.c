@@ -202,6 +202,44 @@ static void bends_rest_where_the_style_is_and_turn_with_their_root(void **state)
     }
 }
 
+// How far the tip of a straight strand of n particles, 0.25 m long and held horizontally, hangs
+// below its root after `seconds`, over the length.
+static double drop_after(int n, double rate, double seconds, void (*tune)(SectionParams *params))
+{
+    Vec start[64] = {{0}}, q[64];
+    HairFixture fixture;
+    for (int j = 0; j < n; ++j) start[j][0] = 0.25 * j / (n - 1);
+    fixture_create_tuned(&fixture, (const Vec *)start, 1, n, "chain", "", 0.5f, 5, tune);
+    fixture.step.dt = 1 / rate;
+    for (int i = 0; i < (int)(rate * seconds); ++i) fixture_step(&fixture);
+    twin_read_strand(&fixture, 0, q);
+    fixture_destroy(&fixture);
+    return -q[n - 1][1] / 0.25;
+}
+
+// The exact rest of 15 and of 31 links with K = 50, K n^2 l sin(turn of a joint) = moment of all
+// that hangs beyond it, drops by 0.3983 and 0.5943 (tractrix-bench accuracy --part beam).
+static void rest_under_load_is_exact_at_any_step(void **state)
+{
+    (void)state;
+    for (double rate = 30; rate <= 240; rate *= 2) {
+        double few = drop_after(16, rate, 20, bent_alone);
+        double many = drop_after(32, rate, 20, bent_alone);
+        printf("%g steps a second: drops by %.4f and %.4f\n", rate, few, many);
+        assert_true(fabs(few / 0.3983 - 1) < 0.01);
+        assert_true(fabs(many / 0.5943 - 1) < 0.01);
+    }
+}
+
+// With the style's springs as well: none of the forces may weigh more than another at long steps.
+static void rest_under_load_and_springs_does_not_depend_on_the_step(void **state)
+{
+    (void)state;
+    double coarse = drop_after(16, 30, 20, bent), fine = drop_after(16, 240, 20, bent);
+    printf("drops by %.4f at 30 and %.4f at 240 steps a second\n", coarse, fine);
+    assert_true(fabs(coarse / fine - 1) < 0.01);
+}
+
 // Long steps, any stiffness, a head that jumps and turns: finite, of its lengths, and at rest in
 // the end where the style is.
 static void stiffest(SectionParams *params)
@@ -260,6 +298,8 @@ int main(void)
         cmocka_unit_test(bending_equals_its_double_precision_twin),
         cmocka_unit_test(bending_forces_are_the_gradient_of_its_energy),
         cmocka_unit_test(bends_rest_where_the_style_is_and_turn_with_their_root),
+        cmocka_unit_test(rest_under_load_is_exact_at_any_step),
+        cmocka_unit_test(rest_under_load_and_springs_does_not_depend_on_the_step),
         cmocka_unit_test(bending_is_stable_at_any_stiffness),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

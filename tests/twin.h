@@ -15,6 +15,7 @@ typedef struct TwinStrand {
     Vec x[TWIN_MAX], v[TWIN_MAX]; // m, m/s
     Vec style[TWIN_MAX];          // the rest shape in the head's frame, m
     double length[TWIN_MAX];
+    double carried[TWIN_MAX]; // 1/s^2: what chain's corrections add to tensions with bending
     double gained; // m^2/s^2: what chain's constraints have given since it last had least
 } TwinStrand;
 
