@@ -8,6 +8,13 @@
 // short link shall not be stiffer across than along.
 //
 // IMPLICIT 0, symplectic Euler: v' = e^{-ch} v + (g + c w + F_j - F_{j+1}) h f (forces.glsl), then r' = r + h (v'_j - v'_{j-1}).
+// Nothing damps it, so F must have a potential, and one that is smooth on the scale that a link moves on in a sub-step. That above is and
+// has neither: of a link that stretches and shrinks at different angles the angular force takes work again and again; near m = 0 the coil's
+// force turns over with u, and at theta = pi the angular one. With e = SHORT L/(n-1), l' = max(l, e) and phi = theta^2/2 therefore
+//     U = k/4 (M - l')^2 + b' m^2/(m^2 + e^2) phi,    M^2 = m^2 + l'^2 - l^2,    b' = min(b, k l^3/8/(l^2 + e^2)) (l^2 + e^2)/l
+//     F = -dU/dr = -k/2 (1 - l'/M) r - 2 b' phi m e^2/(m^2 + e^2)^2 u + b' phi' m/(m^2 + e^2) e
+// which is the same at m = l, but for the second term (there b theta^2 e^2/(l^2 + e^2), 0.06 b theta^2 in an average link), for links below e,
+// which are softer, and for angles above 135 degrees, where phi' = 3 (pi - theta). No derivative of the coil's part is beyond k/2.
 //
 // IMPLICIT 1, backward Euler, linearised at the step's start (Baraff, Witkin: Large Steps in Cloth Simulation, SIGGRAPH 1998), so that rest
 // states are exact at any step. Without springs the particles would fly at v* (forces.glsl) and the link become r + w, w = h (v*_j -
@@ -28,6 +35,8 @@
 #define ANGULAR       step_params.own[0].y // B, m/s^2
 #define STRETCH_DRAWN step_params.own[0].z
 
+const float PI       = 3.14159265;
+const float SHORT    = 0.25; // of an average link; solver_spring.c knows it
 const float STIFFEST = 1e9; // h^2 f k/2: beyond what float32 tells from rigid
 
 struct Springs {
@@ -153,6 +162,20 @@ void main()
         substitute(base, n, wind, root_velocity, root_position(root));
 }
 #else
+// F above, of a link r = m u of length l.
+vec3 link_force(vec3 r, vec3 u, vec3 t, float m, float l, Springs springs, float softness)
+{
+    float ee = softness * softness, both = l * l + ee, mm = m * m + ee, longer = max(l, softness);
+    float b = min(springs.b, 0.125 * springs.k * l * (l * l / both)), part = b * both / l * (m / mm);
+    float coil = 0.5 * springs.k * (1.0 - longer * inversesqrt(max(m * m + (longer * longer - l * l), 1e-36)));
+    float cosine = dot(u, t);
+    vec3 across = t - cosine * u;
+    float sine = length(across), theta = atan(sine, cosine), back = PI - theta, turning = min(theta, 3.0 * back);
+    float stored = theta < 0.75 * PI ? 0.5 * theta * theta : 0.375 * PI * PI - 1.5 * back * back; // phi
+    float ratio = sine > 1e-6 ? turning / sine : (cosine > 0.0 ? 1.0 : 3.0);
+    return -coil * r - (part * 2.0 * stored * ee / mm) * u + (part * ratio) * across;
+}
+
 // The links' lengths come from their own stretch, not from differences of positions, which would shake stiff springs by rounding.
 void main()
 {
@@ -163,6 +186,7 @@ void main()
     vec3 wind = strand_wind(texelFetch(strand_id, strand).x, root_position(root)), fall = kick(vec3(0.0), wind);
     float dt = step_params.dt, gain = step_params.gain, decay = step_params.decay;
     Springs springs = springs_of(n - 1);
+    float softness = SHORT * root.w / float(n - 1); // e
     vec3 was = texelFetch(position_before, a).xyz, moved = root_move(root); // by the particle before
     vec3 drawn = root_position(root), along = rotate(rotation, texelFetch(rest, a + STRAND_TILE).xyz);
     vec3 r = vec3(0.0), force = vec3(0.0); // of the link before
@@ -181,7 +205,7 @@ void main()
             float m;
             next_r = link_before(was, to, style.w, next_v.w);
             vec3 u = direction_of(next_r, t, m);
-            next_force = 0.5 * springs.k * (style.w - m) * u + angular_force(u, t, min(springs.b, 0.125 * springs.k * style.w));
+            next_force = link_force(next_r, u, t, m, style.w, springs, softness);
             was = to;
         }
         if (j > 1) {

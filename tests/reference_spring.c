@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#define PI 3.14159265358979323846
+
 // A link as it is: length, direction, the style's direction, spring constants.
 typedef struct Link {
     double m, l, k, b;
@@ -46,18 +48,29 @@ static void link_force(const Link *link, Vec force)
     }
 }
 
-double reference_spring_energy(const TwinStrand *strand, const TwinStep *step,
-                               const SectionParams *params, double root_height)
+// Of a link r of which the explicit rule's springs have this potential (spring.comp).
+static double potential(const Link *link, const Vec r, double softness)
 {
-    double energy = 0;
-    for (int j = 1; j < strand->n; ++j) {
-        Link link = link_of(strand, &step->head, params, j);
-        double stretch = link.m - link.l, angle = angle_of(&link);
-        energy += vec_dot(strand->v[j], strand->v[j]) / 2 -
-                  step->gravity[1] * (strand->x[j][1] - root_height) +
-                  link.k / 4 * stretch * stretch + link.b * link.l / 2 * angle * angle;
+    double l = link->l, e = softness, m = vec_norm(r), longer = fmax(l, e);
+    double stretched = sqrt(m * m + longer * longer - l * l) - longer;
+    double b = fmin(link->b, link->k * l * l * l / 8 / (l * l + e * e)) * (l * l + e * e) / l;
+    double theta = acos(fmax(-1, fmin(1, vec_dot(r, link->t) / m))), back = PI - theta;
+    double phi = theta < 0.75 * PI ? theta * theta / 2 : 0.375 * PI * PI - 1.5 * back * back;
+    return link->k / 4 * stretched * stretched + b * m * m / (m * m + e * e) * phi;
+}
+
+// By central differences, so that it is known to have a potential.
+static void conservative_force(const Link *link, double softness, Vec force)
+{
+    double delta = 1e-6 * link->l;
+    for (int k = 0; k < 3; ++k) {
+        Vec more, less;
+        for (int i = 0; i < 3; ++i) {
+            more[i] = link->m * link->u[i] + (i == k ? delta : 0);
+            less[i] = link->m * link->u[i] - (i == k ? delta : 0);
+        }
+        force[k] = (potential(link, less, softness) - potential(link, more, softness)) / 2 / delta;
     }
-    return energy / (strand->n - 1);
 }
 
 enum { BAND = 5, SIZE = 3 * TWIN_MAX }; // unknowns that one equation couples to either side
@@ -159,9 +172,11 @@ static void symplectic_euler(TwinStrand *strand, const TwinStep *step, const Hea
                              const SectionParams *params)
 {
     Vec force[TWIN_MAX + 1] = {{0}};
+    double softness = 0; // a quarter of an average link
+    for (int j = 1; j < strand->n; ++j) softness += strand->length[j] / (strand->n - 1) / 4;
     for (int j = 1; j < strand->n; ++j) {
         Link link = link_of(strand, head, params, j);
-        link_force(&link, force[j]);
+        conservative_force(&link, softness, force[j]);
     }
     twin_style(strand, head, 0, strand->x[0]);
     for (int j = 1; j < strand->n; ++j) {

@@ -12,8 +12,3 @@ void reference_spring_implicit_step(TwinStrand *strand, const TwinStep *step,
 // Symplectic Euler with as many sub-steps as the solver takes.
 void reference_spring_explicit_step(TwinStrand *strand, const TwinStep *step,
                                     const SectionParams *params);
-
-// Kinetic energy, height and springs of a strand of particles of 1 kg, over the number of moving
-// particles (J); `root_height` is where height counts from.
-double reference_spring_energy(const TwinStrand *strand, const TwinStep *step,
-                               const SectionParams *params, double root_height);

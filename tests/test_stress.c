@@ -152,6 +152,8 @@ static const struct {
      "a short segment that bends a long one is stiffer than its own length says"},
     {"spring", "explicit", "spin=0.1 shape=4 stretch_drawn=1", 400,
      "sub-steps that suit even hair heated a strand of very uneven links"},
+    {"spring", "explicit", "shape=4 drag=0 stretch_drawn=1", 600,
+     "angular springs without a potential did work in every turn of short links"},
     {"rope", "xpbd",
      "n=3 wind=19.476 away=5.5659 arm=0.14315 shape=4 tilt=105.6 shape_seed=30697 strand=23 style=0 "
      "rope_iterations=81",
