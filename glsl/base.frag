@@ -5,6 +5,10 @@
 //
 // Only middles of pixels are lit. A sample at an edge, whose depth is not that of its pixel's middle, shows what the
 // middle nearest to it in depth does among the nine around it.
+//
+// The depth left behind hides hair. Beside an edge that is the farthest of the pixel's samples: where background, or
+// something farther, shows between them, hair that stands before that must hide it. (The nearest, or the middle's,
+// would leave a fringe of background along a silhouette before hair.)
 #include "draw.h"
 #include "ray.glsl"
 #if FLOOR
@@ -50,10 +54,13 @@ void add_samples(ivec2 at, vec4 background)
     vec4 own = middle < NOWHERE ? texelFetch(lit, at, 0) : background;
     float z[EDGE_SAMPLES], steep = STEEP * depth_step(middle);
     bool edge = false;
+    float farthest = middle;
     for (int i = 0; i < EDGE_SAMPLES; ++i) {
         z[i] = texelFetch(edge_depth, at, i).x;
+        farthest = max(farthest, z[i]);
         edge = edge || abs(z[i] - middle) > (z[i] < NOWHERE && middle < NOWHERE ? steep : 0.0);
     }
+    gl_FragDepth = edge ? farthest : middle;
     vec4 color[EDGE_SAMPLES];
     float off[EDGE_SAMPLES];
     for (int i = 0; i < EDGE_SAMPLES; ++i) {

@@ -63,7 +63,7 @@ static void draw_surfaces(const RenderBase *base, const BaseScene *scene,
     glDisable(GL_SCISSOR_TEST);
     glEnable(GL_DEPTH_TEST);
     glDepthMask(GL_TRUE);
-    glBindFramebuffer(GL_FRAMEBUFFER, target->hair_frame);
+    glBindFramebuffer(GL_FRAMEBUFFER, target->surface_frame);
     glClearBufferfv(GL_DEPTH, 0, &farthest);
     scissor(find_box(target, scene->mesh_box));
     render_mesh_draw(&base->mesh, target);
@@ -83,17 +83,22 @@ static void light_mesh(const RenderBase *base, const BaseScene *scene, const Ren
     glDisable(GL_DEPTH_TEST);
 }
 
+// Its depth, too: what hides hair.
 static void finish_over_mesh(const RenderBase *base, FloorKind floor, const RenderTarget *target,
                              Box box)
 {
-    bind_texture(BIND_MIDDLE_DEPTH, GL_TEXTURE_2D, target->depth);
+    bind_texture(BIND_MIDDLE_DEPTH, GL_TEXTURE_2D, target->middle_depth);
     bind_texture(BIND_LIT, GL_TEXTURE_2D, target->lit);
     bind_texture(BIND_EDGE_DEPTH, GL_TEXTURE_2D_MULTISAMPLE, target->edge_depth);
     glUseProgram(base->finish[BASE_OVER_MESH][floor]);
     glUniform2i(3, box.low[0], box.low[1]);
     glUniform2i(4, box.high[0], box.high[1]);
     scissor(box);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_ALWAYS);
     glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDepthFunc(GL_LESS);
+    glDisable(GL_DEPTH_TEST);
 }
 
 // The rest of `all`: whole rows above and below the box, and what is left and right of it.
@@ -118,9 +123,12 @@ static void finish(const RenderBase *base, const BaseScene *scene, FloorKind flo
     bool by_mesh = base->mesh.triangle_count > 0;
     Box all = find_box(target, scene->box), box = find_box(target, scene->mesh_box);
     if (!by_mesh) box = (Box){{all.low[0], all.low[1]}, {all.low[0], all.low[1]}};
+    const float farthest = 1;
     glDisable(GL_SCISSOR_TEST);
+    glDepthMask(GL_TRUE);
     glBindFramebuffer(GL_FRAMEBUFFER, target->base_frame);
     glClearBufferfv(GL_COLOR, 0, scene->draw->background);
+    glClearBufferfv(GL_DEPTH, 0, &farthest);
     glBindVertexArray(base->vertex_array);
     if (by_mesh) finish_over_mesh(base, floor, target, box);
     if (floor != FLOOR_NONE)
@@ -128,7 +136,6 @@ static void finish(const RenderBase *base, const BaseScene *scene, FloorKind flo
     glDisable(GL_SCISSOR_TEST);
 }
 
-// Depth last: until then it is the mesh's alone.
 static Result draw_floor(RenderBase *base, const BaseScene *scene, const RenderTarget *target,
                          Error *error)
 {
@@ -180,8 +187,6 @@ Result render_base_draw(RenderBase *base, const BaseScene *scene, const RenderTa
     Result result = RESULT_OK;
     if (!render_base_is_needed(base, scene->floor)) return result;
     bool moved = !base->any || memcmp(&base->drawn, scene->draw, sizeof base->drawn) != 0;
-    if (scene->shadow->version != base->shadowed && scene->floor->kind == FLOOR_PLANE)
-        moved = true; // its depth lies over the mesh's
     if (moved || base->shadowed != scene->shadow->version) {
         base->any = false;
         ++base->version;

@@ -33,10 +33,12 @@ static GLuint create_frame(void)
     return frame;
 }
 
-static GLuint create_color_frame(GLuint texture)
+// `depth` may be 0.
+static GLuint create_color_frame(GLuint texture, GLuint depth)
 {
     GLuint frame = create_frame();
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth, 0);
     return frame;
 }
 
@@ -63,7 +65,7 @@ Result render_target_create(RenderTarget *target, const GpuLimits *limits, int w
         return error_set(error, RESULT_FAILED, "no memory for a picture of %d x %d px", width,
                          height);
     target->picture = create_texture(formats[kind], width, height);
-    target->picture_frame = create_color_frame(target->picture);
+    target->picture_frame = create_color_frame(target->picture, 0);
     target->hair_frame = create_frame();
     glFramebufferParameteri(GL_FRAMEBUFFER, GL_FRAMEBUFFER_DEFAULT_WIDTH, width * samples);
     glFramebufferParameteri(GL_FRAMEBUFFER, GL_FRAMEBUFFER_DEFAULT_HEIGHT, height * samples);
@@ -92,13 +94,12 @@ Result render_target_add_base(RenderTarget *target, Error *error)
     glBindFramebuffer(GL_FRAMEBUFFER, target->hair_frame);
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, target->depth, 0);
     target->base = create_texture(GL_RGBA16F, width, height);
-    target->base_frame = create_color_frame(target->base);
+    target->base_frame = create_color_frame(target->base, target->depth);
+    target->middle_depth = create_texture(GL_DEPTH_COMPONENT32F, width, height);
     target->lit = create_texture(GL_RGBA16F, width, height);
-    target->lit_frame = create_color_frame(target->lit);
-    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, target->depth, 0);
+    target->lit_frame = create_color_frame(target->lit, target->middle_depth);
     target->surface = create_texture(GL_RGBA32F, width, height);
-    target->surface_frame = create_color_frame(target->surface);
-    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, target->depth, 0);
+    target->surface_frame = create_color_frame(target->surface, target->middle_depth);
     Result result = check_frame(target->hair_frame, "hair target", error);
     if (result == RESULT_OK) result = check_frame(target->base_frame, "mesh target", error);
     if (result == RESULT_OK) result = check_frame(target->lit_frame, "mesh light", error);
@@ -111,11 +112,12 @@ void render_target_destroy(RenderTarget *target)
 {
     const GLuint frames[] = {target->picture_frame, target->hair_frame,    target->base_frame,
                              target->lit_frame,     target->surface_frame, target->edge_frame};
-    const GLuint textures[] = {target->picture, target->depth,   target->base,
-                               target->lit,     target->surface, target->edge_depth};
+    const GLuint textures[] = {target->picture,     target->depth,   target->base,
+                               target->lit,         target->surface, target->edge_depth,
+                               target->middle_depth};
     if (target->picture) { // names of 0 are ignored, but without a context nothing may be called
         glDeleteFramebuffers(6, frames);
-        glDeleteTextures(6, textures);
+        glDeleteTextures(7, textures);
     }
     free(target->rgba);
     *target = (RenderTarget){0};

@@ -12,10 +12,11 @@ typedef struct RenderTarget {
     int samples;       // across a pixel
     GLuint picture, picture_frame; // RGBA8, RGBA16 or RGBA32F as the image's kind
     GLuint hair_frame;             // no colour; `depth` if there is a mesh
-    GLuint depth;                  // one sample, for the hair
-    GLuint base, base_frame;       // RGBA16F: mesh over background, linear, premultiplied
-    GLuint surface, surface_frame; // RGBA32F, glsl/surface.frag; with `depth`
-    GLuint lit, lit_frame;         // RGBA16F, light of that surface; with `depth`
+    GLuint depth;                  // that hides hair: at edges the farthest of all samples'
+    GLuint base, base_frame;       // RGBA16F: mesh over background, linear, premultiplied; `depth`
+    GLuint middle_depth;           // the mesh's in the middles of pixels
+    GLuint surface, surface_frame; // RGBA32F, glsl/surface.frag; with `middle_depth`
+    GLuint lit, lit_frame;         // RGBA16F, light of that surface; with `middle_depth`
     GLuint edge_depth, edge_frame; // the mesh's, EDGE_SAMPLES a sample
     ImageKind kind;
     uint8_t *rgba; // [height][width][4], for pictures without alpha

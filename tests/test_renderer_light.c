@@ -31,6 +31,33 @@ static void mesh_hides_the_hair_behind_it_only(void **state)
     assert_int_equal(studio_pixel(&studio, 5, 5)[1], 0);
 }
 
+// A leaning grey square before a strand that fills its surroundings, white: no pixel along the
+// edges is as dark as some share of the black background would make it, with either number of
+// samples.
+static void no_background_shows_between_a_silhouette_and_hair(void **state)
+{
+    (void)state;
+    Error error = {{0}};
+    RendererOptions options = BLACK;
+    Mesh mesh = make_square(30);
+    for (int v = 0; v < 4; ++v) mesh.position[v][0] += 0.3f * mesh.position[v][1];
+    for (options.samples = 1; options.samples <= 2; ++options.samples) {
+        use(&options);
+        assert_int_equal(renderer_set_mesh(&studio.renderer, &mesh, (float[3]){1, 1, 1}, &error),
+                         RESULT_OK);
+        add_line((float[3]){-90, 0, -10}, (float[3]){90, 0, -10}, 60, 1);
+        studio_draw(&studio);
+        int grey = studio_pixel(&studio, SIDE / 2, SIDE / 2)[0];
+        assert_true(grey > 50 && grey < 200); // the mesh
+        for (int y = SIDE / 2 - 45; y < SIDE / 2 + 45; ++y)
+            for (int x = SIDE / 2 - 45; x < SIDE / 2 + 45; ++x)
+                if (studio_pixel(&studio, x, y)[0] < grey - 1)
+                    fail_msg("%d, %d: %d, and the mesh is %d", x, y, studio_pixel(&studio, x, y)[0],
+                             grey);
+    }
+    mesh_destroy(&mesh);
+}
+
 // Hundreds of strands, wide ones too, on both sides of a mesh that fills a part of the picture:
 // what is seen through it is nothing, and beside it the picture is as without the mesh.
 static void a_mesh_hides_all_of_many_strands(void **state)
@@ -227,6 +254,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         CLAIM(mesh_hides_the_hair_behind_it_only),
+        CLAIM(no_background_shows_between_a_silhouette_and_hair),
         CLAIM(a_mesh_hides_all_of_many_strands),
         CLAIM(hair_close_to_a_sloping_mesh_is_all_seen_or_all_hidden),
         CLAIM(light_falls_off_by_the_square_of_the_distance),
