@@ -9,7 +9,7 @@
 #include "render_hair.h"
 #include "render_picture.h"
 
-// A zeroed struct has nothing.
+// A zeroed struct has nothing, and no limits.
 typedef struct RenderQuads {
     RenderHair hair;
     RenderABuffer abuffer;

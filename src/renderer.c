@@ -192,11 +192,12 @@ static void count_blocks(Renderer *renderer)
                                         .bands = blocks->bands};
 }
 
-// The quads take over for the rest of the run.
+// The quads take over, for this picture: blocks try the next one again, so that no picture depends
+// on which ones were drawn before it in the same run.
 static Result draw_quads_instead(Renderer *renderer, Image *image, Error *error)
 {
-    renderer->raster = RASTER_QUADS;
-    Result result = create_quads(renderer, error);
+    Result result = RESULT_OK;
+    if (!renderer->quads.limits) result = create_quads(renderer, error);
     if (result == RESULT_OK && has_base(renderer)) result = add_base_to_quads(renderer, error);
     return result == RESULT_OK ? draw_quads(renderer, image, error) : result;
 }

@@ -132,6 +132,18 @@ static void a_small_picture_uses_the_whole_pool(void **state)
     assert_int_equal(studio.renderer.counts.bands, 1);
 }
 
+// So many strands through the middle, all in the same place.
+static Strands crowd(uint32_t count)
+{
+    float(*position)[3] = malloc((size_t)count * 2 * sizeof *position);
+    assert_non_null(position);
+    for (uint32_t i = 0; i < 2 * count; ++i)
+        for (int k = 0; k < 3; ++k) position[i][k] = k ? 0 : i % 2 ? 4 : -4;
+    Strands strands = studio_strands(count, 2, (const float(*)[3])position);
+    free(position);
+    return strands;
+}
+
 // 60,000 glaring strands in one pixel: sums over them do not fit 32 bits.
 static void thousands_of_layers_are_still_white(void **state)
 {
@@ -140,18 +152,13 @@ static void thousands_of_layers_are_still_white(void **state)
     RendererOptions pixel = BLACK;
     pixel.width = pixel.height = 1;
     use(&pixel);
-    float(*position)[3] = malloc(COUNT * 2 * sizeof *position);
-    assert_non_null(position);
-    for (int i = 0; i < 2 * COUNT; ++i)
-        for (int k = 0; k < 3; ++k) position[i][k] = k ? 0 : i % 2 ? 4 : -4;
-    Strands strands = studio_strands(COUNT, 2, (const float(*)[3])position);
+    Strands strands = crowd(COUNT);
     uint32_t item = studio_add(&studio, &strands, 4, 1);
     studio.material[item].ambient = 8;
     studio_draw(&studio);
     assert_int_equal(studio.renderer.counts.fragments, COUNT);
     for (int k = 0; k < 3; ++k) assert_int_equal(studio.image.pixels[k], 255);
     strands_destroy(&strands);
-    free(position);
 }
 
 // CPU drivers end loops silently after 65,535 turns: no picture is made without a word.
@@ -163,11 +170,7 @@ static void more_layers_than_a_loop_can_visit_are_an_error(void **state)
     RendererOptions pixel = BLACK;
     pixel.width = pixel.height = 1;
     use(&pixel);
-    float(*position)[3] = malloc(COUNT * 2 * sizeof *position);
-    assert_non_null(position);
-    for (int i = 0; i < 2 * COUNT; ++i)
-        for (int k = 0; k < 3; ++k) position[i][k] = k ? 0 : i % 2 ? 4 : -4;
-    Strands strands = studio_strands(COUNT, 2, (const float(*)[3])position);
+    Strands strands = crowd(COUNT);
     studio_add(&studio, &strands, 0.4f, 0.001f); // nothing that blocks could leave out
     View view;
     Error error = {{0}};
@@ -178,7 +181,27 @@ static void more_layers_than_a_loop_can_visit_are_an_error(void **state)
         RESULT_FAILED);
     assert_non_null(strstr(error.text, "a pixel has more than"));
     strands_destroy(&strands);
-    free(position);
+}
+
+// Not even on one that was too much for blocks, so that the quads drew it.
+static void a_picture_does_not_depend_on_the_one_before(void **state)
+{
+    (void)state;
+    use(&BLACK);
+    add_tangle(3000, 2, 0.4f, NULL);
+    size_t size;
+    uint8_t *expected = draw_copy(&size);
+    studio_clear(&studio);
+    use(&BLACK);
+    Strands strands = crowd(62000);
+    studio_add(&studio, &strands, 0.4f, 0.001f);
+    studio_draw(&studio);
+    if (raster == RASTER_BLOCKS) assert_non_null(studio.renderer.quads.limits);
+    studio_clear(&studio);
+    add_tangle(3000, 2, 0.4f, NULL);
+    assert_draws_the_same(expected, size);
+    free(expected);
+    strands_destroy(&strands);
 }
 
 static void a_row_that_no_pool_holds_is_an_error(void **state)
@@ -420,6 +443,7 @@ int main(void)
         CLAIM(a_small_picture_uses_the_whole_pool),
         CLAIM(thousands_of_layers_are_still_white),
         CLAIM(more_layers_than_a_loop_can_visit_are_an_error),
+        CLAIM(a_picture_does_not_depend_on_the_one_before),
         CLAIM(a_row_that_no_pool_holds_is_an_error),
         CLAIM(no_hair_is_background),
         CLAIM(background_is_exact_beside_hair),
