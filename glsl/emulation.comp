@@ -2,7 +2,7 @@
 // A step of `emulation`: every particle is pulled to where it wants to go, and both sides of the strand follow as tractrices. O(n^2).
 //
 //   1. where particles want to go, p: midpoint.glsl
-//   2. in a random order, the same for all strands, new in every step: pull particle i to p_i, tip's side and root's side follow. With the
+//   2. in a random order, the same for all strands and steps: pull particle i to p_i, tip's side and root's side follow. With the
 //      first of them every segment follows as seen from its tail's own p, which moves along (as in hybrid.comp), so that the others have
 //      little left to go and it hardly matters in which order
 //   3. pull the root to where the head carries it

@@ -15,7 +15,7 @@ static void fill(StepParams *uniforms, const SolverStep *step, const SectionPara
     bool thesis = is_thesis(params);
     if (!thesis) step_midpoint(uniforms, step, params);
     uniforms->own[0][1] = thesis ? params->style_stiffness * style / (1 - style) : 0;
-    uniforms->passes = step->shuffle;
+    uniforms->passes = 1; // the order of every step: with a new one each, hair on a sphere trembles
 }
 
 static void define(ShaderDefine *defines, const SectionParams *params)

@@ -282,7 +282,7 @@ void reference_emulation_step(TwinStrand *strand, const TwinStep *step, const Se
     Vec x[TWIN_MAX];
     int order[TWIN_MAX];
     middle(&m, strand, step, params);
-    shuffle(step->shuffle, strand->n - 1, order);
+    shuffle(1, strand->n - 1, order);
     pull_along(strand, &m, x, order[0]);
     for (int k = 1; k < strand->n - 1; ++k) pull(strand, x, order[k], m.aim[order[k]]);
     pull(strand, x, 0, m.q[0]);

@@ -176,7 +176,6 @@ static const struct {
     double most;
     const char *why;
 } RESTLESS[] = {
-    {"emulation", 5e-4, "projected trembles by 1.4e-4 at style 0.5; why was not looked for"},
     {"tressfx", 2e-3, "style 0: vertices step back and forth between friction and its lengths"},
     {"spring", 2e-3, "explicit: light springs swing for long; implicit: they tremble"},
 };
