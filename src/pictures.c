@@ -34,6 +34,7 @@ static Result create_items(Pictures *pictures, Error *error)
     for (uint32_t i = 0; i < pictures->scene->section_count; ++i) {
         const SimulationSection *section = &pictures->simulation->sections[i];
         const SectionParams *params = &pictures->scene->sections[i].params;
+        if (params->hidden) continue;
         float radius =
             fibre_radius(params, &pictures->assets->strands[i], section->follow.per_guide);
         Result result = paint_section(pictures, i, error);

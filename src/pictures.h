@@ -16,7 +16,7 @@ typedef struct Pictures {
     const Framing *framing;
     const Gpu *gpu;
     Renderer renderer;
-    RenderItem *items; // of each section its guides and, if there are any, its followers
+    RenderItem *items; // of each section, unless hidden, its guides and followers if there are any
     uint32_t item_count;
     Output *output;
 } Pictures;

@@ -43,6 +43,29 @@ done
 if [ $? = 1 ]; then good; else bad "status of tractrix-bench --help"; fi
 one_line
 
+claim "a hidden section costs no drawing, casts no shadow and leaves the picture as it is without it, from a cache, too"
+sections() {
+    printf '{"frames": 2, "size": "80x60", "eye": [0, 0.1, 0.9], "target": [0, 0, 0], "mesh": "%s/assets/ball.obj", "shadow": "dom",\n' "$PWD"
+    printf '"sections": [{"file": "%s/assets/curls.tfx"}%s]}\n' "$PWD" "$1"
+}
+counts() { grep -E '"(segments|fragments|shadow_maps|strands_[a-z]*)":' "$1"; }
+sections "" >"$work/alone.json"
+sections ", {\"file\": \"$PWD/assets/fur.tfx\", \"hidden\": true, \"followers\": 1}" >"$work/hidden.json"
+sections ", {\"file\": \"$PWD/assets/fur.tfx\", \"followers\": 1}" >"$work/shown.json"
+for which in alone hidden shown; do
+    run 0 "$work/$which.json" -q -o "$work/$which/" --stats "$work/$which.stats" --export "$work/${which}_%d.tfx"
+    counts "$work/$which.stats" >"$work/$which.counts"
+done
+if diff -r "$work/alone" "$work/hidden" && diff "$work/alone.counts" "$work/hidden.counts"; then good; else bad "not as without it"; fi
+if cmp -s "$work/alone/frame_0001.png" "$work/shown/frame_0001.png"; then bad "not shown"; else good; fi
+if cmp -s "$work/hidden_1.tfx" "$work/shown_1.tfx"; then good; else bad "exported otherwise"; fi
+run 0 "$work/shown.json" -q --cache "$work/layers.cache"
+run 0 "$work/hidden.json" -q --from-cache "$work/layers.cache" -o "$work/layer/"
+if diff -r "$work/alone" "$work/layer"; then good; else bad "another picture from the cache"; fi
+for raster in blocks quads; do
+    for shadow in none approx dom; do run 0 $hair --hidden --frames 1 --raster $raster --shadow $shadow --size 32x24 -q -o "$work/nothing.png"; done
+done
+
 claim "usage errors name the nearest valid word and end with 2"
 run 2; one_line
 run 2 $hair; one_line; says "-o"
