@@ -10,9 +10,9 @@
 
 enum { TEXT_SIZE = 1024 };
 
-// Of the failures of a set only the first of each rule is made smaller and told, and so many of a
-// form.
-enum { MOST_TOLD = 8 };
+// Of the failures of a set only the worst of each rule is made smaller, and so many of a form; all
+// are named.
+enum { MOST_SHRUNK = 8 };
 
 StressOptions stress_options_default(void)
 {
@@ -22,7 +22,7 @@ StressOptions stress_options_default(void)
 // What happened to a solver's form.
 typedef struct Tally {
     const char *algo, *variant;
-    int cases, sets, failures, told;
+    int cases, sets, failures, shrunk;
     int broken[STRESS_RULES];
     double worst[STRESS_RULES];
     double seconds;
@@ -128,12 +128,36 @@ static void tell_failure(Bench *bench, const StressCase *stress, const StressVer
     print_case(bench, &smallest, &verdict, rule, steps);
 }
 
+// Names a case as it was found.
+static void name_failure(Bench *bench, const Tally *tally, const StressCase *stress, int strand,
+                         const StressVerdict *verdict, StressRule rule)
+{
+    char text[TEXT_SIZE];
+    stress_case_write(stress, text, sizeof text);
+    progress_clear(&bench->progress);
+    fprintf(bench->stream, "  set %d, strand %d: %s at step %d (%.3g): '%s'\n", tally->sets, strand,
+            STRESS_RULE_NAMES[rule], verdict->first[rule], verdict->worst[rule], text);
+    if (bench->rows)
+        json_array_append_new(bench->rows,
+                              json_pack("{s:s, s:s, s:s, s:s, s:i, s:i, s:i, s:i, s:f}", "algo",
+                                        stress->algo, "variant", stress->variant, "failed",
+                                        STRESS_RULE_NAMES[rule], "case", text, "set", tally->sets,
+                                        "strand", strand, "steps", bench->options->steps, "at",
+                                        verdict->first[rule], "of_allowed", verdict->worst[rule]));
+}
+
+// Whether a breaks the rule worse than b: by more, or else sooner.
+static bool is_worse(const StressVerdict *a, const StressVerdict *b, StressRule rule)
+{
+    if (a->worst[rule] > b->worst[rule]) return true;
+    return a->worst[rule] == b->worst[rule] && a->first[rule] < b->first[rule];
+}
+
+// Counts a set's strands, names all that failed, and tells the worst by each rule.
 static void count(Bench *bench, Tally *tally, const StressCase *strands,
                   const StressVerdict *verdicts, int strand_count)
 {
-    unsigned told = 0; // rules
-    ++tally->sets;
-    tally->cases += strand_count;
+    int worst[STRESS_RULES] = {-1, -1, -1, -1};
     for (int s = 0; s < strand_count; ++s) {
         for (int i = 0; i < STRESS_RULES; ++i) {
             tally->broken[i] += verdicts[s].first[i] > 0;
@@ -142,11 +166,15 @@ static void count(Bench *bench, Tally *tally, const StressCase *strands,
         StressRule rule = STRESS_FINITE;
         if (!first_step(&verdicts[s], &rule)) continue;
         ++tally->failures;
-        if (interrupt_requested() || (told >> rule & 1) || tally->told >= MOST_TOLD) continue;
-        told |= 1u << rule;
-        ++tally->told;
-        tell_failure(bench, &strands[s], &verdicts[s]);
+        if (!bench->options->text) name_failure(bench, tally, &strands[s], s, &verdicts[s], rule);
+        if (worst[rule] < 0 || is_worse(&verdicts[s], &verdicts[worst[rule]], rule))
+            worst[rule] = s;
     }
+    for (int i = 0; i < STRESS_RULES; ++i)
+        if (worst[i] >= 0 && !interrupt_requested() && tally->shrunk++ < MOST_SHRUNK)
+            tell_failure(bench, &strands[worst[i]], &verdicts[worst[i]]);
+    ++tally->sets;
+    tally->cases += strand_count;
 }
 
 // One set, its circumstances from the seed and its number.

@@ -44,7 +44,9 @@ typedef struct StressBound {
     double turned;            // m^2/s^2
     double root_velocity[3];
     double rise;     // share by which the solver lets energy rise; < 0: no bound
-    double jerk;     // times the root's changes of velocity
+    double jerk;     // times the root's changes of velocity,
+    bool jerk_stays; // of all so far; else of the last step's only
+    double changed;  // m/s: the last of them
     double bends;    // m^2/s^2: what bends by a radian would store, 16 times: twice the energy, and
                      // both segments' directions off by as much again
     double resolved; // roundings that segments must be long for energy to be looked at
