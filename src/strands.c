@@ -22,12 +22,10 @@ void strands_destroy(Strands *strands)
 {
     free(strands->first);
     free(strands->position);
-    free(strands->mobility);
-    free(strands->strand_uv);
-    free(strands->vertex_uv);
-    free(strands->strand_thickness);
-    free(strands->vertex_thickness);
-    free(strands->color);
+#define FREE(array, width, mended) free(strands->array);
+    STRANDS_ARRAYS_OF_VERTICES(FREE)
+    STRANDS_ARRAYS_OF_STRANDS(FREE)
+#undef FREE
     *strands = (Strands){0};
 }
 

@@ -27,6 +27,12 @@ typedef struct Strands {
     bool both_ends_fixed;    // the tips do not move either
 } Strands;
 
+// The arrays that a set may have or not, of vertices and of whole strands: X(member, numbers in an
+// element, what mends a number that is not finite).
+#define STRANDS_ARRAYS_OF_VERTICES(X)                                                              \
+    X(mobility, 1, 1) X(vertex_uv, 2, 0) X(vertex_thickness, 1, 1) X(color, 4, 1)
+#define STRANDS_ARRAYS_OF_STRANDS(X) X(strand_uv, 2, 0) X(strand_thickness, 1, 1)
+
 // Makes room: `first` (all zero), `position` (all zero), no optional array. RESULT_FAILED when
 // memory is short or a count is beyond what 32-bit indices hold.
 Result strands_create(Strands *strands, uint32_t strand_count, uint32_t vertex_count, Error *error);

@@ -9,12 +9,11 @@ static const struct {
     size_t offset, element;
     bool of_strands; // else of vertices
 } OPTIONAL[] = {
-    {offsetof(Strands, mobility), sizeof(float), false},
-    {offsetof(Strands, strand_uv), sizeof(float[2]), true},
-    {offsetof(Strands, vertex_uv), sizeof(float[2]), false},
-    {offsetof(Strands, strand_thickness), sizeof(float), true},
-    {offsetof(Strands, vertex_thickness), sizeof(float), false},
-    {offsetof(Strands, color), sizeof(float[4]), false},
+#define OF_VERTICES(array, width, mended) {offsetof(Strands, array), sizeof(float[width]), false},
+#define OF_STRANDS(array, width, mended)  {offsetof(Strands, array), sizeof(float[width]), true},
+    STRANDS_ARRAYS_OF_VERTICES(OF_VERTICES) STRANDS_ARRAYS_OF_STRANDS(OF_STRANDS)
+#undef OF_VERTICES
+#undef OF_STRANDS
 };
 
 static char **array_at(const Strands *strands, size_t offset)

@@ -86,24 +86,22 @@ static bool coincide(const float a[3], const float b[3], double nearest)
     return x * x + y * y + z * z <= nearest * nearest;
 }
 
+#define MOVE(array, width, mended)                                                                 \
+    if (strands->array) memcpy(&strands->array[to], &strands->array[from], sizeof *strands->array);
+
 static void move_vertex(Strands *strands, uint32_t to, uint32_t from)
 {
     if (to == from) return;
     memcpy(strands->position[to], strands->position[from], sizeof *strands->position);
-    if (strands->mobility) strands->mobility[to] = strands->mobility[from];
-    if (strands->vertex_thickness) strands->vertex_thickness[to] = strands->vertex_thickness[from];
-    if (strands->vertex_uv)
-        memcpy(strands->vertex_uv[to], strands->vertex_uv[from], sizeof *strands->vertex_uv);
-    if (strands->color) memcpy(strands->color[to], strands->color[from], sizeof *strands->color);
+    STRANDS_ARRAYS_OF_VERTICES(MOVE)
 }
 
 static void move_strand(Strands *strands, uint32_t to, uint32_t from)
 {
     if (to == from) return;
-    if (strands->strand_uv)
-        memcpy(strands->strand_uv[to], strands->strand_uv[from], sizeof *strands->strand_uv);
-    if (strands->strand_thickness) strands->strand_thickness[to] = strands->strand_thickness[from];
+    STRANDS_ARRAYS_OF_STRANDS(MOVE)
 }
+#undef MOVE
 
 // Whether every coordinate of strand s is usable; notes the defect if not.
 static bool check_coordinates(const StrandsSource *source, uint32_t s, uint32_t end,
@@ -167,14 +165,15 @@ static void mend_attributes(StrandsSource *source, uint32_t s, StrandsReport *re
     Strands *strands = &source->strands;
     uint32_t v = strands->first[s], size = strands->first[s + 1] - v;
     uint64_t place = source->place[s];
-    if (strands->strand_uv) mend_values(strands->strand_uv[s], 1, 2, 0.0f, report, place);
-    if (strands->strand_thickness)
-        mend_values(strands->strand_thickness + s, 1, 1, 1.0f, report, place);
-    if (strands->mobility) mend_values(strands->mobility + v, size, 1, 1.0f, report, place);
-    if (strands->vertex_uv) mend_values(strands->vertex_uv[v], size, 2, 0.0f, report, place);
-    if (strands->vertex_thickness)
-        mend_values(strands->vertex_thickness + v, size, 1, 1.0f, report, place);
-    if (strands->color) mend_values(strands->color[v], size, 4, 1.0f, report, place);
+#define OF_VERTICES(array, width, mended)                                                          \
+    if (strands->array)                                                                            \
+        mend_values((float *)&strands->array[v], size, width, mended, report, place);
+#define OF_STRANDS(array, width, mended)                                                           \
+    if (strands->array) mend_values((float *)&strands->array[s], 1, width, mended, report, place);
+    STRANDS_ARRAYS_OF_VERTICES(OF_VERTICES)
+    STRANDS_ARRAYS_OF_STRANDS(OF_STRANDS)
+#undef OF_VERTICES
+#undef OF_STRANDS
 }
 
 static Result fail_too_long(const StrandsSource *source, uint32_t s, uint32_t size,

@@ -12,13 +12,13 @@ static bool allocate_like(Strands *to, const Strands *from)
     size_t strands = (size_t)to->strand_count + 1, vertices = (size_t)to->vertex_count + 1;
     bool good = true;
 #define ALLOCATE(array, count)                                                                     \
-    if (from->array) good = (to->array = malloc((count) * sizeof *to->array)) != NULL && good
-    ALLOCATE(mobility, vertices);
-    ALLOCATE(strand_uv, strands);
-    ALLOCATE(vertex_uv, vertices);
-    ALLOCATE(strand_thickness, strands);
-    ALLOCATE(vertex_thickness, vertices);
-    ALLOCATE(color, vertices);
+    if (from->array) good = (to->array = malloc((count) * sizeof *to->array)) != NULL && good;
+#define OF_VERTICES(array, width, mended) ALLOCATE(array, vertices)
+#define OF_STRANDS(array, width, mended)  ALLOCATE(array, strands)
+    STRANDS_ARRAYS_OF_VERTICES(OF_VERTICES)
+    STRANDS_ARRAYS_OF_STRANDS(OF_STRANDS)
+#undef OF_VERTICES
+#undef OF_STRANDS
 #undef ALLOCATE
     return good;
 }
@@ -28,15 +28,15 @@ static void copy_strand(Strands *to, uint32_t t, const Strands *from, uint32_t s
 {
     uint32_t a = to->first[t], b = from->first[s], size = strands_size(from, s);
     to->first[t + 1] = a + size;
+    memcpy(to->position + a, from->position + b, size * sizeof *to->position);
 #define COPY(array, at, source, count)                                                             \
-    if (from->array) memcpy(&to->array[at], &from->array[source], (count) * sizeof *to->array)
-    COPY(position, a, b, size);
-    COPY(mobility, a, b, size);
-    COPY(vertex_uv, a, b, size);
-    COPY(vertex_thickness, a, b, size);
-    COPY(color, a, b, size);
-    COPY(strand_uv, t, s, 1);
-    COPY(strand_thickness, t, s, 1);
+    if (from->array) memcpy(&to->array[at], &from->array[source], (count) * sizeof *to->array);
+#define OF_VERTICES(array, width, mended) COPY(array, a, b, size)
+#define OF_STRANDS(array, width, mended)  COPY(array, t, s, 1)
+    STRANDS_ARRAYS_OF_VERTICES(OF_VERTICES)
+    STRANDS_ARRAYS_OF_STRANDS(OF_STRANDS)
+#undef OF_VERTICES
+#undef OF_STRANDS
 #undef COPY
 }
 

@@ -171,13 +171,10 @@ static Result make_room(Strands *to, const Strands *from, const ResampleOptions 
     for (uint32_t s = 0; s < from->strand_count; s++)
         to->first[s + 1] = to->first[s] + (uint32_t)count_wanted(from, s, options);
     bool good = true;
-#define ALLOCATE(array)                                                                            \
+#define ALLOCATE(array, width, mended)                                                             \
     if (from->array)                                                                               \
-    good = (to->array = malloc(((size_t)to->vertex_count + 1) * sizeof *to->array)) != NULL && good
-    ALLOCATE(mobility);
-    ALLOCATE(vertex_uv);
-    ALLOCATE(vertex_thickness);
-    ALLOCATE(color);
+        good = (to->array = malloc(((size_t)to->vertex_count + 1) * sizeof *to->array)) && good;
+    STRANDS_ARRAYS_OF_VERTICES(ALLOCATE)
 #undef ALLOCATE
     return good ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory to resample strands");
 }
@@ -185,10 +182,9 @@ static Result make_room(Strands *to, const Strands *from, const ResampleOptions 
 // What belongs to whole strands stays.
 static void move_the_rest(Strands *to, Strands *from)
 {
-    to->strand_uv = from->strand_uv;
-    to->strand_thickness = from->strand_thickness;
-    from->strand_uv = NULL;
-    from->strand_thickness = NULL;
+#define MOVE(array, width, mended) to->array = from->array, from->array = NULL;
+    STRANDS_ARRAYS_OF_STRANDS(MOVE)
+#undef MOVE
     to->followers = from->followers;
     to->follower_radius = from->follower_radius;
     to->both_ends_fixed = from->both_ends_fixed;
