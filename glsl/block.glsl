@@ -3,9 +3,10 @@
 // (RibbonRecord of block_lists.h).
 //
 //   line: x, y of its ends, px, as float bits
-//   shape: half-widths at its ends (halves, px); bound at the first end, bound at the last (two halves
-//      each); opacity, and 1/w at the last end less that at the first, over the mean (halves)
-//   tint: colour at the first end and at the last, linear (six halves); 1/w, the mean
+//   shape: half-widths at its ends (px, levels); bound at the first end, bound at the last (two shorts
+//      each); opacity (12 bits), and 1/w at the last end less that at the first, over the mean (a float's
+//      upper 20 bits)
+//   tint: colour at the first end and at the last, linear (six levels); 1/w, the mean
 //   span: what dealing it out to blocks needs, in blocks: slope and reach (float bits), rows, columns
 //      (first | last << 16); the strip's middle moves by `slope` columns from row to row and it
 //      reaches so far to either side
@@ -18,7 +19,45 @@
 // a strand folds back, the bound is the ribbon's own direction, and the share is exact for ribbons
 // along an axis: it grows evenly over the pixel's width. The bound's length tells which it is.
 
+// Two numbers are packed into a word so that a CPU unpacks them in a few operations: a half takes it a dozen and a
+// half.
+//   levels: not negative; six bits of a float's exponent, from 2^-40 (which is 0, too), and ten of its mantissa, as
+//      many as a half has
+//   shorts: any; a float's upper half
+
 const float JOINT = 512.0; // length of a joint's bound, times 2 at most
+const uint LEAST_LEVEL = (127u - 40u) << 23; // as float bits
+
+uint pack_levels(vec2 v)
+{
+    uvec2 bits = (floatBitsToUint(clamp(v, uintBitsToFloat(LEAST_LEVEL), 65504.0)) - LEAST_LEVEL + 0x1000u) >> 13;
+    return bits.x | (bits.y << 16);
+}
+
+vec2 unpack_levels(uint word)
+{
+    return uintBitsToFloat(uvec2((word & 0xffffu) << 13, (word >> 16) << 13) + LEAST_LEVEL);
+}
+
+uint pack_shorts(vec2 v)
+{
+    uvec2 bits = floatBitsToUint(v) + 0x8000u;
+    return (bits.x >> 16) | (bits.y & 0xffff0000u);
+}
+
+vec2 unpack_shorts(uint word)
+{
+    return uintBitsToFloat(uvec2(word << 16, word & 0xffff0000u));
+}
+
+// How opacity and the change of 1/w share a word.
+uint pack_depth(float opacity, float change)
+{
+    return uint(int(clamp(opacity, 0.0, 1.0) * 4095.0 + 0.5)) | ((floatBitsToUint(change) + 0x800u) & 0xfffff000u);
+}
+
+float unpack_opacity(uint word) { return float(int(word & 0xfffu)) * (1.0 / 4095.0); }
+float unpack_change(uint word) { return uintBitsToFloat(word & 0xfffff000u); }
 
 struct Ribbon {
     vec2 a, b;       // ends, px
@@ -28,8 +67,8 @@ struct Ribbon {
 
 Ribbon unpack_ribbon(uvec4 ends, uvec4 shape)
 {
-    return Ribbon(uintBitsToFloat(ends.xy), uintBitsToFloat(ends.zw), unpackHalf2x16(shape.x), unpackHalf2x16(shape.y),
-                  unpackHalf2x16(shape.z));
+    return Ribbon(uintBitsToFloat(ends.xy), uintBitsToFloat(ends.zw), unpack_levels(shape.x), unpack_shorts(shape.y),
+                  unpack_shorts(shape.z));
 }
 
 bool bound_is_free(vec2 bound) { return dot(bound, bound) < 4.0; }

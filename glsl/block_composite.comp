@@ -161,8 +161,8 @@ void main()
         const vec2 HALF = 0.5 * vec2(BLOCK_WIDTH - 1, BLOCK_HEIGHT - 1);
         float middle = dot(q + HALF, d) * inverse_length, side = dot(HALF, abs(d)) * inverse_length;
         float t = 0.5 * (clamp(middle - side, 0.0, 1.0) + clamp(middle + side, 0.0, 1.0));
-        Profile profile = ribbon_profile(d, mix(r.half_width.x, r.half_width.y, t), NEAREST == 1 ? 1.0 : unpackHalf2x16(shape.w).x);
-        vec2 rg = unpackHalf2x16(shade.x), br = unpackHalf2x16(shade.y), gb = unpackHalf2x16(shade.z);
+        Profile profile = ribbon_profile(d, mix(r.half_width.x, r.half_width.y, t), NEAREST == 1 ? 1.0 : unpack_opacity(shape.w));
+        vec2 rg = unpack_levels(shade.x), br = unpack_levels(shade.y), gb = unpack_levels(shade.z);
         vec3 first = vec3(rg, br.x), change = vec3(br.y, gb) - first;
         // Linear in the pixel: by column and by row.
         vec4 by_x = vec4(-d.y, r.bound_a.x, -r.bound_b.x, d.x * inverse_length),
@@ -170,7 +170,7 @@ void main()
         vec4 row = vec4(q.y * d.x - q.x * d.y, dot(q, r.bound_a) + bound_offset(r.bound_a),
                         1.0 - dot(origin - r.b, r.bound_b) - bound_offset(r.bound_b), dot(q, d) * inverse_length);
 #if BASE || NEAREST
-        float change_w = unpackHalf2x16(shape.w).y; // 1/w is linear in the picture
+        float change_w = unpack_change(shape.w); // 1/w is linear in the picture
         vec2 inverse_w = uintBitsToFloat(shade.w) * vec2(1.0 - 0.5 * change_w, change_w);
 #endif
         most = 0.0;

@@ -78,10 +78,11 @@ bool store(int slot, End a, End b, float opacity)
         float depth = 0.5 * (a.inverse_w + b.inverse_w);
         int at = (slot + first_slot.y) * RIBBON_TEXELS;
         ribbons[at] = uvec4(floatBitsToUint(a.at), floatBitsToUint(b.at));
-        ribbons[at + 1] = uvec4(packHalf2x16(vec2(a.half_width, b.half_width)), packHalf2x16(a.bound),
-                                packHalf2x16(b.bound_before), packHalf2x16(vec2(opacity, (b.inverse_w - a.inverse_w) / depth)));
-        ribbons[at + 2] = uvec4(packHalf2x16(a.color.rg), packHalf2x16(vec2(a.color.b, b.color.r)),
-                                packHalf2x16(b.color.gb), floatBitsToUint(depth));
+        ribbons[at + 1] = uvec4(pack_levels(vec2(a.half_width, b.half_width)), pack_shorts(a.bound),
+                                pack_shorts(b.bound_before),
+                                pack_depth(opacity, (b.inverse_w - a.inverse_w) / depth));
+        ribbons[at + 2] = uvec4(pack_levels(a.color.rg), pack_levels(vec2(a.color.b, b.color.r)),
+                                pack_levels(b.color.gb), floatBitsToUint(depth));
         ribbons[at + 3] = pack_span(span);
         keys[slot + first_slot.x] = floatBitsToUint(depth);
     }
