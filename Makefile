@@ -185,6 +185,7 @@ BASH_DIR = $(DESTDIR)$(PREFIX)/share/bash-completion/completions
 install: all $(MANUALS) $(COMPLETIONS) ## programs, manuals, bash completion, docs and assets under $(DESTDIR)$(PREFIX)
 	install -d $(BIN_DIR) $(MAN_DIR) $(BASH_DIR) $(DATA_DIR) $(DOC_DIR)/docs
 	install $(PROGRAMS) $(BIN_DIR)
+	install scripts/turntable.sh $(BIN_DIR)/tractrix-turntable
 	install -m 644 $(MANUALS) $(MAN_DIR)
 	for file in $(COMPLETIONS); do install -m 644 $$file $(BASH_DIR)/$$(basename $$file .bash) || exit 1; done
 	$(if $(wildcard assets/*),install -m 644 $(wildcard assets/*) $(DATA_DIR))
@@ -193,6 +194,7 @@ install: all $(MANUALS) $(COMPLETIONS) ## programs, manuals, bash completion, do
 
 uninstall: ## remove what install put there
 	rm -f $(PROGRAMS:$(OUT)/%=$(BIN_DIR)/%) $(MANUALS:$(OUT)/%=$(MAN_DIR)/%) $(PROGRAMS:$(OUT)/%=$(BASH_DIR)/%)
+	rm -f $(BIN_DIR)/tractrix-turntable
 	rm -rf $(DATA_DIR) $(DOC_DIR)
 
 clean: ## remove out/

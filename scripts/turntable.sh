@@ -4,10 +4,12 @@
 # usage: turntable.sh ASSET [FORMAT...] [-- OPTION...]
 #   FORMAT   mp4 webm gif sheet frames; default: mp4 sheet (without ffmpeg: sheet)
 #   OPTION   of tractrix-render, for all of them, over what is set below: -- --mesh head.obj --wind 2,0,0
-# Environment: TRACTRIX_BIN folder of the programs (out/release), TURNTABLE_OUT where files go (out/turntable),
+# Environment: TRACTRIX_BIN folder of the programs (this one's, or out/release), TURNTABLE_OUT where files go (out/turntable),
 # TURNTABLE_S seconds of a turn (4).
 set -eu
-programs=${TRACTRIX_BIN:-$(dirname "$0")/../out/release}
+here=$(dirname "$0")
+if [ -x "$here/tractrix-render" ]; then beside=$here; else beside=$here/../out/release; fi # installed as tractrix-turntable, or not
+programs=${TRACTRIX_BIN:-$beside}
 out=${TURNTABLE_OUT:-out/turntable}
 seconds=${TURNTABLE_S:-4}
 fail() { echo "turntable.sh: $*" >&2; exit 2; }

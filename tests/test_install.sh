@@ -28,8 +28,13 @@ claim "an installed program needs nothing of the checkout"
 program=$root/usr/bin/tractrix-render
 cd "$work" || exit 1
 run 0 "$share/tractrix/demo.json" --frames 1 --size 64x48 -q -o "$work/installed/"
+program=$root/usr/bin/tractrix-turntable
+export TURNTABLE_S=0.1 TURNTABLE_OUT="$work/turn"
+run 0 "$share/tractrix/fur.tfx" frames -- --size 48x32 -q
+unset TURNTABLE_S TURNTABLE_OUT
+program=$root/usr/bin/tractrix-render
 cd - >/dev/null || exit 1
-is_file "$work/installed/frame_0000.png"
+is_file "$work/installed/frame_0000.png"; is_file "$work/turn/fur/frame_0000.png"
 
 claim "manual pages are sound"
 for page in "$share"/man/man1/*; do
