@@ -155,7 +155,8 @@ static const struct {
     {"spring", "explicit", "shape=4 drag=0 stretch_drawn=1", 600,
      "angular springs without a potential did work in every turn of short links"},
     {"rope", "xpbd",
-     "n=3 wind=19.476 away=5.5659 arm=0.14315 shape=4 tilt=105.6 shape_seed=30697 strand=23 style=0 "
+     "n=3 wind=19.476 away=5.5659 arm=0.14315 shape=4 tilt=105.6 shape_seed=30697 strand=23 "
+     "style=0 "
      "rope_iterations=81",
      10000, "small steps differed coordinates in the world: their rounding shook it at rest"},
     {"rope", "xpbd", "n=33 gravity=1.5 away=1000 drag=6 style=0 rope_iterations=20", 4000,
