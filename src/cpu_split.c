@@ -140,10 +140,19 @@ INLINE Float3 turn(Float3 d, float l, Float3 *move, bool inlined)
 }
 
 // Where the tip is drawn to, and its new velocity: a mass on a string of length R.
-INLINE Float3 tip_target(Float3 tip, Float3 *velocity, Float3 root, float R, float dt)
+// `push`: what forces have changed that velocity by.
+INLINE Float3 tip_target(Float3 tip, Float3 *velocity, Float3 push, Float3 root, float R, float dt)
 {
     Float3 target = add(tip, dt, *velocity), s = add(target, -1, root), r = add(tip, -1, root);
     float ss = dot(s, s), rr = dot(r, r), sr = dot(s, r), excess = ss - R * R;
+    Float3 pushed = scale(dt, push), middle = add(s, -0.5f, pushed);
+    pushed = add(pushed, -dot(pushed, r) / rr, r);
+    middle = add(middle, -dot(middle, r) / rr, r);
+    float bent = dot(middle, middle) / (R * R);
+    bool swings = excess > 0 && rr > 0.99f * R * R && sr > 0 && bent < 1;
+    Float3 turned = add(add(s, -bent / 6, pushed), -dot(pushed, middle) / (3 * R * R), middle);
+    if (swings) s = turned, target = add(root, 1, s);
+    ss = dot(s, s), sr = dot(s, r), excess = ss - R * R;
     float disc = sr * sr - rr * excess;
     bool taut = rr > 0.99f * R * R && sr > 0 && disc > 0.1f * sr * sr;
     float along = taut ? excess / (sr + sqrtf(larger(disc, 0))) : 0;
@@ -169,7 +178,7 @@ INLINE Float3 begin_strand(const CpuSplit *split, float *end, Float3 span)
     Float3 g = {split->gravity[0], split->gravity[1], split->gravity[2]};
     Float3 root = load(end + ROOT * W), tip = load(end + TIP * W);
     Float3 v = add(scale(split->decay, load(end + VELOCITY * W)), split->gain, g);
-    Float3 target = tip_target(tip, &v, root, end[REACH * W], split->dt);
+    Float3 target = tip_target(tip, &v, scale(split->gain, g), root, end[REACH * W], split->dt);
     store(end + TIP * W, add(tip, split->dt, v));
     store(end + VELOCITY * W, v);
     return add(add(target, -1, root), -1, span);

@@ -86,6 +86,30 @@ static void pull(ReferenceStrand *strand, int end, const Vec target)
     follow(strand->q, end, end == 0 ? strand->n - 1 : 0, strand->length, old);
 }
 
+// What forces change a velocity by.
+static void find_push(const ReferenceForces *forces, Vec push)
+{
+    double h = forces->first ? forces->dt / 2 : forces->dt, c = forces->drag;
+    double gain = c > 0 ? -expm1(-c * h) / c : h;
+    for (int k = 0; k < 3; ++k) push[k] = (forces->gravity[k] + c * forces->wind[k]) * gain;
+}
+
+// Forces turn the string by the angles that they push across it, as glsl/split.comp has it.
+static void push_by_arcs(const ReferenceForces *forces, const Vec r, double R, Vec s)
+{
+    Vec push, middle;
+    double rr = dot(r, r);
+    find_push(forces, push);
+    for (int k = 0; k < 3; ++k) push[k] *= forces->dt;
+    add_scaled(s, -0.5, push, middle);
+    add_scaled(push, -dot(push, r) / rr, r, push);
+    add_scaled(middle, -dot(middle, r) / rr, r, middle);
+    double bent = dot(middle, middle) / (R * R), along = dot(push, middle) / (3 * R * R);
+    if (!(rr > 0.99 * R * R && dot(s, r) > 0 && bent < 1)) return;
+    add_scaled(s, -bent / 6, push, s);
+    add_scaled(s, -along, middle, s);
+}
+
 static void kick(ReferenceStrand *strand, const ReferenceForces *forces)
 {
     double h = forces->first ? forces->dt / 2 : forces->dt, c = forces->drag;
@@ -97,7 +121,7 @@ static void kick(ReferenceStrand *strand, const ReferenceForces *forces)
 
 // The tip, a mass on a string of the strand's length: gives where it goes.
 static void fly(ReferenceStrand *strand, const double root[3], const ReferenceForces *forces,
-                Vec target)
+                bool arcs, Vec target)
 {
     Vec s, r;
     double R = 0;
@@ -106,6 +130,10 @@ static void fly(ReferenceStrand *strand, const double root[3], const ReferenceFo
     add_scaled(strand->tip, forces->dt, strand->velocity, target);
     add_scaled(target, -1, root, s);
     add_scaled(strand->tip, -1, strand->q[0], r);
+    if (norm(s) > R && arcs) {
+        push_by_arcs(forces, r, R, s);
+        add_scaled(root, 1, s, target);
+    }
     if (norm(s) > R) {
         double rr = dot(r, r), sr = dot(s, r), disc = sr * sr - rr * (dot(s, s) - R * R);
         if (rr > 0.99 * R * R && sr > 0 && disc > 0.1 * sr * sr)
@@ -128,7 +156,7 @@ void reference_ball_step(ReferenceStrand *strand, const double root[3],
                          const ReferenceForces *forces)
 {
     Vec target, home;
-    fly(strand, root, forces, target);
+    fly(strand, root, forces, true, target);
     add_scaled(root, -1, strand->q[0], home);
     for (int j = 0; j < strand->n; ++j) add_scaled(strand->q[j], 1, home, strand->q[j]);
     pull_twice(strand, root, target);
@@ -138,7 +166,7 @@ void reference_dragged_step(ReferenceStrand *strand, const double root[3],
                             const ReferenceForces *forces)
 {
     Vec target;
-    fly(strand, root, forces, target);
+    fly(strand, root, forces, false, target);
     pull_twice(strand, root, target);
 }
 
