@@ -13,6 +13,10 @@
 // TRESSFX4 0 (`steady`): the same local passes; their share is chosen such that the stiffness does not (solver_tressfx.c). The lengths by
 // Newton's method, J J^T lambda = |s| (|s| - l), tridiagonal, x_j -= lambda_j s_j, x_{j-1} += lambda_j s_j; twice, then each segment gets
 // its length. v = (x - x_before)/dt.
+// Where segment j+1 should be follows segment j, which takes no reaction: these forces have no potential, K of x'' = -K x is not symmetric,
+// and eigenvalues w^2 (1 + i e) of it gain about e w/2 per second. A long step damps that by w^2 dt/2. So that a short one does not flutter
+// either, neighbours exchange a share X of what their velocities differ by before they fly, v_j += X u, v_{j+1} -= X u, u = v_{j+1} - v_j:
+// momentum stays, energy falls for any X < 1. A joint alone would oscillate by W^2 = 2 passes LOCAL_SHARE/dt^2; X = W dt damps it critically.
 #include "particles.glsl"
 
 #define LOCAL_SHARE step_params.own[0].x
@@ -23,6 +27,7 @@
 #define CLAMP step_params.own[1].y           // m a step
 #define LOCAL_PASSES int(step_params.own[1].z)
 #define LENGTH_PASSES int(step_params.own[1].w)
+#define EXCHANGED step_params.own[2].x // share of the difference of two neighbours' velocities; 0 for TRESSFX4
 
 // The strand is corrected in the head's frame with its root at the origin, where the style needs no turning: REST(j) is the direction and
 // length of its segment j, X(j) the vertex. Everything stays in memory: loops of few accesses run as fast there as unrolled ones in
@@ -71,6 +76,10 @@ Carried carried_by_head()
     return carried;
 }
 
+// A vertex between a short segment and one more than MOST_LEVER times as long gives way by less than its share, and exchanges less: it would
+// turn the short segment, and with it the frame that the long one is held in, by more than it mends.
+const float MOST_LEVER = 2.0;
+
 // Leaves the predicted vertices in `positions` and where they came from in `velocities`, both in the head's frame.
 void predict(Carried carried)
 {
@@ -79,16 +88,26 @@ void predict(Carried carried)
     vec4 to_head = conjugate(step_params.head_rotation);
     float dt = step_params.dt, global = GLOBAL_SHARE, last_global = GLOBAL_RANGE * float(n), share = carried.share;
     home = rotate(to_head, home);
+#if !TRESSFX4
+    // The others' velocities are relative to the motion that the whole strand takes part in.
+    vec3 ahead = (1.0 - share) * texelFetch(velocity_before, address(1)).xyz;
+    float exchanged = EXCHANGED;
+#endif
     for (int j = 1; j < n; ++j) {
         int a = address(j);
         vec4 segment = REST(j);
         style += segment.w * segment.xyz;
         vec3 from = rotate(to_head, texelFetch(position_before, a).xyz - root_old);
-        vec3 v = texelFetch(velocity_before, a).xyz;
 #if TRESSFX4
+        vec3 v = texelFetch(velocity_before, a).xyz;
         vec3 x = from + dt * rotate(to_head, v * step_params.decay + step_params.gravity.xyz * dt);
         if (float(j) < last_global) x = mix(x, style + home, global);
 #else
+        vec3 v = ahead;
+        ahead = texelFetch(velocity_before, address(min(j + 1, n - 1))).xyz;
+        float lever = min(1.0, MOST_LEVER * segment.w / REST(min(j + 1, n - 1)).w);
+        vec3 given = (j + 1 < n ? exchanged * lever : 0.0) * (ahead - v);
+        v += given, ahead -= given;
         vec3 x = from + dt * rotate(to_head, kick(v, wind));
 #endif
         x = mix(x - home, turn_between(first_old, first, x), share);
@@ -101,10 +120,6 @@ void predict(Carried carried)
     }
     positions[address(0)] = vec4(0.0, 0.0, 0.0, 1.0);
 }
-
-// A vertex between a short segment and one more than MOST_LEVER times as long gives way by less than its share: it would turn the short
-// segment, and with it the frame that the long one is held in, by more than it mends.
-const float MOST_LEVER = 2.0;
 
 void keep_local_shape()
 {

@@ -160,6 +160,18 @@ static double damping(const TwinStep *step, const SectionParams *params)
     return step->drag + (double)params->tressfx_damping * (double)params->tressfx_damping_rate;
 }
 
+// Neighbours give each other a share of what their velocities differ by. Vertex 1 is the head's;
+// the others' are relative to the strand's share of the root's motion.
+static void exchange_velocities(TwinStrand *strand, double shock, double share)
+{
+    for (int k = 0; k < 3; ++k) strand->v[1][k] *= 1 - shock;
+    for (int j = 1; j < strand->n - 1; ++j)
+        for (int k = 0; k < 3; ++k) {
+            double given = share * (strand->v[j + 1][k] - strand->v[j][k]);
+            strand->v[j][k] += given, strand->v[j + 1][k] -= given;
+        }
+}
+
 void reference_tressfx_steady(TwinStrand *strand, const TwinStep *step, const SectionParams *params)
 {
     Carried carried;
@@ -176,6 +188,9 @@ void reference_tressfx_steady(TwinStrand *strand, const TwinStep *step, const Se
     // The threshold is an acceleration and the clamp a speed: both are meant for frames of 1/60 s.
     carry(&carried, strand, step, (double)params->tressfx_vsp_coeff,
           0.01 * (double)params->tressfx_vsp_accel_threshold * frames * frames);
+    share *= (double)params->tressfx_local_share;
+    exchange_velocities(strand, carried.shock,
+                        fmin(sqrt(2 * passes * share), 0.5) / fmax(pow(frames, 3), 1));
     memcpy(x[0], carried.style[0], 2 * sizeof(Vec));
     for (int j = 2; j < n; ++j) {
         Vec predicted;
@@ -189,8 +204,7 @@ void reference_tressfx_steady(TwinStrand *strand, const TwinStep *step, const Se
             for (int k = 0; k < 3; ++k)
                 x[j][k] = (x[j][k] + shape * carried.style[j][k]) / (1 + shape);
     }
-    for (int i = 0; i < passes; ++i)
-        keep_local_shape(&carried, n, (double)params->tressfx_local_share * share, x);
+    for (int i = 0; i < passes; ++i) keep_local_shape(&carried, n, share, x);
     for (int i = 0; i < 2; ++i) reach_lengths(strand, x);
     memcpy(strand->x, x, (size_t)n * sizeof(Vec));
     twin_rebuild(strand, x);
