@@ -34,6 +34,8 @@ void main()
     vec3 last = root, style = vec3(0.0);
     float along = 0.0, short_by = 0.0, lifted = 0.0, shortest = HUGE, highest = 0.0, kinetic = 0.0, potential = 0.0, budget = 0.0, size = largest(root), off = 0.0, move = 0.0;
     bool finite = size < HUGE;
+    vec4 lead = texelFetch(rest, base + STRAND_TILE); // what the head carries, if it does
+    float raised = stress_params.carried * (strength * lead.w + lead.w * dot(g, lead.xyz));
     for (int j = 1; j < n; ++j) {
         int a = base + j * STRAND_TILE;
         vec4 segment = texelFetch(rest, a);
@@ -57,7 +59,7 @@ void main()
         kinetic += 0.5 * dot(v, v);
         potential += dot(g, x - root - 0.5 * moved - style);
         highest += strength * along;
-        lifted += strength * short_by;
+        lifted += strength * short_by + raised;
         budget += strength * along - dot(g, style);
     }
 #if !TIP
@@ -65,7 +67,7 @@ void main()
     kinetic *= mean, potential *= mean, budget *= mean, highest *= mean, lifted *= mean;
 #endif
     float noise = rounding * size, bent = stress_params.bends * noise * noise / (shortest * shortest), noise_speed = stress_params.noise_steps * noise * per_dt;
-    float speed = sqrt(2.0 * (budget + strength * noise) + stress_params.added + bent) + stress_params.kicks + noise_speed;
+    float speed = sqrt(2.0 * (budget + strength * noise) + stress_params.added + bent) + stress_params.kicks + stress_params.spun * lead.w + noise_speed;
     float allowed = 0.5 * speed * speed * (1.0 + stress_params.rise) + stress_params.rise * highest + lifted;
     vec4 value = vec4(0.0);
     if (stress_params.length_error > 0.0) value.x = off / stress_params.length_error;

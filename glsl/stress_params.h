@@ -18,6 +18,9 @@ UNIFORM_BLOCK(StressParams, stress_params, BIND_STEP)
     vec4 gravity;       // xyz, m/s^2
     float per_dt;       // 1/s
     float kicks;        // m/s: all changes of the root's velocity so far
+    float spun;         // 1/s: as kicks, of vertex 1 about the root, over their distance; where the
+                        // head carries it, else 0
+    float carried;      // 1: it does
     float added;        // m^2/s^2: what wind and the turning style may have added, twice the energy
     float rise;         // share of this and of mean(|g| l) by which energy may rise
     float rounding;     // of a coordinate's size: error of a stored length or move

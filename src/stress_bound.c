@@ -56,6 +56,12 @@ static double jerk_of(const StressCase *stress)
     return overshoots ? 1.5 : 1;
 }
 
+static bool head_carries(const StressCase *stress)
+{
+    return strcmp(stress->algo, "tressfx") == 0 ||
+           (value(stress, STRESS_clamped) > 1 && value(stress, STRESS_n) > 2);
+}
+
 static double odds_of(const SectionParams *params)
 {
     return (double)params->style / fmax(1 - (double)params->style, 1e-6);
@@ -140,6 +146,7 @@ StressBound stress_bound_create(const StressCase *stress, const SectionParams *p
         .stiffness = turned_springs(stress, params),
         .jerk = jerk_of(stress),
         .jerk_stays = strcmp(stress->algo, "dftl") == 0,
+        .carries = head_carries(stress),
         .bends = 16 * value(stress, STRESS_chain_bend) * odds_of(params) *
                  (value(stress, STRESS_n) - 1) * value(stress, STRESS_length),
         .small_steps = strcmp(stress->variant, "xpbd") == 0       ? params->rope_iterations
@@ -156,7 +163,7 @@ StressBound stress_bound_create(const StressCase *stress, const SectionParams *p
 
 void stress_bound_step(StressBound *bound, const double moved[3], double angle)
 {
-    double change = 0, speed = 0;
+    double change = 0, speed = 0, rate = fabs(angle) / bound->step_s;
     for (int k = 0; k < 3; ++k) {
         double u = moved[k] / bound->step_s;
         change += (u - bound->root_velocity[k]) * (u - bound->root_velocity[k]);
@@ -167,7 +174,9 @@ void stress_bound_step(StressBound *bound, const double moved[3], double angle)
     bound->kicks += bound->changed = sqrt(change);
     bound->steps += 1;
     bound->turned += bound->stiffness * fabs(angle);
-    bound->turning = fmax(bound->turning, fabs(angle) / bound->step_s * bound->length);
+    bound->turning = fmax(bound->turning, rate * bound->length);
+    bound->spun += fabs(rate - bound->rate) + rate * fmin(fabs(angle), 2);
+    bound->rate = rate;
     if (!(bound->drag > 0)) return;
     bound->cap = fmax(bound->cap, air * air + 4 * bound->g * bound->length);
     if (air > 0)
@@ -180,6 +189,8 @@ void stress_bound_fill(const StressBound *bound, bool last, StressParams *params
     double overshoot = (bound->jerk - 1) * (bound->jerk_stays ? bound->kicks : bound->changed);
     params->per_dt = (float)(1 / bound->step_s);
     params->kicks = (float)fmin(bound->kicks + overshoot + bound->turning, most);
+    params->spun = bound->carries ? (float)fmin(bound->spun, most) : 0;
+    params->carried = bound->carries;
     params->added = (float)fmin(bound->blown + bound->turned, most * most);
     params->rise = (float)bound->rise;
     params->energy = bound->rise >= 0;

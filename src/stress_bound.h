@@ -16,6 +16,10 @@
 //   - A style of stiffness k that is turned by an angle does (2 l)(l) k per radian: S^2 grows by
 //     4 k L^2 per radian; angular springs b (m/s^2) give 2 pi b L.
 //   - What the head carries beside the root, or takes along rigidly, has the speed of its turning.
+//   - Vertex 1, where the head carries it: nothing bounds what the head does to lift it, by at most
+//     |g| l_1 + g.s_1, and all that hangs from it as much. Seen from there, the bound above holds
+//     with the changes of its velocity for those of the root's: those about the root, w l_1 by
+//     which a turn at the rate w begins or ends, and w l_1 per radian, are added.
 // Taken together in any order, S <= sqrt(2B + wind + style) + kicks, for sqrt((S + d)^2 + w) <=
 // sqrt(S^2 + w) + d. All terms scale alike, so the bound does not depend on units. It needs no
 // solver's own quantities: v is how far what is drawn goes in a step, by the step.
@@ -42,6 +46,8 @@ typedef struct StressBound {
     double kicks, blown, cap; // m/s; m^2/s^2
     double turning;           // m/s: of a strand that goes rigidly with the head
     double turned;            // m^2/s^2
+    bool carries;             // vertex 1 is the head's
+    double rate, spun;        // 1/s: the head's turning; its changes, and its own direction's
     double root_velocity[3];
     double rise;     // share by which the solver lets energy rise; < 0: no bound
     double jerk;     // times the root's changes of velocity,

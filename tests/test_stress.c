@@ -161,6 +161,16 @@ static const struct {
      10000, "small steps differed coordinates in the world: their rounding shook it at rest"},
     {"rope", "xpbd", "n=33 gravity=1.5 away=1000 drag=6 style=0 rope_iterations=20", 4000,
      "so did those of strands too long for registers"},
+    {"tressfx", "steady", "n=2 spin=0.79584 tilt=17.738 style=0", 1000,
+     "the bound left out that the head lifts the vertex that it carries"},
+    {"tressfx", "steady", "dt=0.0083333 shape=1", 2600, "curls fluttered, 4 times"},
+    {"tressfx", "steady", "dt=0.005 shape=1", 4200, "curls fluttered, 9 times what may move"},
+    {"tressfx", "steady", "dt=0.005 shape=2", 4200, "zigzags fluttered, 4 times"},
+    {"tressfx", "steady", "dt=0.0083333 shape=1 tilt=170", 2600,
+     "curls that droop fluttered, 21 times"},
+    {"tressfx", "steady", "dt=0.011263 length=2.3063 arm=0.51063 shape=1 tilt=170 style=0.26411",
+     7400, "long soft curls fluttered, 4 times"},
+    {"tressfx", "steady", "dt=0.005 length=1 shape=1", 1000, "long curls gained energy"},
 };
 
 static void what_broke_once_holds(void **state)
