@@ -34,7 +34,7 @@ static void each_level_has_the_least_around(void **state)
     Random random = random_create(1, 0);
     for (size_t c = 0; c < sizeof sizes / sizeof *sizes; ++c) {
         int columns = sizes[c][0], rows = sizes[c][1];
-        float nearest[MOST], used[MOST];
+        float nearest[MOST] = {0}, used[MOST];
         for (int i = 0; i < columns * rows; ++i) nearest[i] = (float)random_real(&random);
         memcpy(used, nearest, sizeof used);
         hide_levels_make(used, columns, rows, levels[0]);
