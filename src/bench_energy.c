@@ -22,7 +22,7 @@ static const struct {
     const char *algo;
     int from;
     double most;
-} KNOWN[] = {{"dftl", 64, 0.12}, {"dftl", 16, 0.04}, {"split", 0, 0.03}};
+} KNOWN[] = {{"dftl", 64, 0.12}, {"dftl", 16, 0.04}};
 
 static double known(const Method *method, int n)
 {
