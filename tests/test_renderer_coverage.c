@@ -95,6 +95,69 @@ static void coverage_is_steady_in_a_slow_turn(void **state)
     assert_true(fabs(low - 90) < 0.4 && fabs(high - 90) < 0.4);
 }
 
+// Draws from `distance` px off the middle, the camera turned by `deg` about the upright axis.
+static void draw_from(float distance, double deg)
+{
+    View view;
+    float angle = glm_rad((float)deg);
+    studio_view(&view, SIDE, SIDE);
+    glm_vec3_copy((vec3){distance * sinf(angle), 0, distance * cosf(angle)}, view.eye);
+    glm_lookat(view.eye, (vec3){0, 0, 0}, (vec3){0, 1, 0}, view.view);
+    studio_draw_view(&studio, &view);
+}
+
+// `count` straight strands of `length` in the plane z = `depth`, all over 256 x 256 of it.
+static void add_flat(uint32_t count, float length, float depth, float radius)
+{
+    float(*position)[3] = malloc((size_t)count * 2 * sizeof *position);
+    assert_non_null(position);
+    Random random = random_create(7, 0);
+    for (uint32_t s = 0; s < count; ++s) {
+        double x[2] = {random_real(&random) - 0.5, random_real(&random) - 0.5},
+               angle = random_real(&random) * 2 * M_PI;
+        for (int j = 0; j < 2; ++j) {
+            float t = ((float)j - 0.5f) * length, *to = position[2 * s + (uint32_t)j];
+            to[0] = (float)(256 * x[0] + t * cos(angle));
+            to[1] = (float)(256 * x[1] + t * sin(angle));
+            to[2] = depth;
+        }
+    }
+    Strands strands = studio_strands(count, 2, (const float(*)[3])position);
+    studio_add(&studio, &strands, radius, 1);
+    strands_destroy(&strands);
+    free(position);
+}
+
+// The camera turns by a degree about an axis behind hair that faces it: it moves by 4 px, but what
+// it covers, and what of that twice, stays to 4e-5. An end's ramp is a pixel long whatever pixels'
+// middles it meets, which is off by less than half a pixel's length, as often too short as too
+// long: sqrt(1/12) of the width by standard deviation. Rounding to 1/255 adds sqrt(1/12) of that in
+// each of the (width + 1.5) length pixels. 4 standard deviations are allowed from lowest to
+// highest. Strands that cover the pixels whose middle they meet would vary by sqrt(COUNT length
+// width) px.
+static void thin_hair_is_steady_in_a_slow_turn(void **state)
+{
+    (void)state;
+    enum { COUNT = 200, STEPS = 20 };
+    const float widths[] = {0.1f, 0.3f, 0.8f}, length = 40, scale = 2; // px in the picture
+    use(&TRANSPARENT);
+    for (size_t w = 0; w < sizeof widths / sizeof *widths; ++w) {
+        double width = widths[w], low = INFINITY, high = 0;
+        double ends = 2 * COUNT / 12.0 * width * width,
+               rounding = COUNT * length * (width + 1.5) / (12.0 * 255 * 255),
+               bound = 4 * sqrt(ends + rounding);
+        add_flat(COUNT, scale * length, 500, scale * widths[w] / 2);
+        for (int i = 0; i <= STEPS; ++i) {
+            draw_from(1000 * scale + 500, (double)i / STEPS - 0.5);
+            low = fmin(low, alpha_sum());
+            high = fmax(high, alpha_sum());
+        }
+        if (!(high - low < bound))
+            fail_msg("width %g px: %g to %g px^2, bound %g", width, low, high, bound);
+        studio_clear(&studio);
+    }
+}
+
 // The same strand from farther and farther off, down to 0.12 px: its area falls by the square of
 // the distance. Every pixel is rounded to 1/255; to 0.12 of it that is 2 % at most, which evens
 // out over the many pixels.
@@ -250,6 +313,53 @@ static void strands_neither_come_nor_go_at_once(void **state)
     free(before);
 }
 
+// Of the picture from `distance`, how much opacity differs in all between two levels of detail; the
+// sum of opacity without any.
+static double find_change(float distance, LodOptions before, LodOptions now, double *all)
+{
+    size_t size;
+    double sum = 0;
+    studio.renderer.options.lod = (LodOptions){0};
+    draw_from(distance, 0);
+    *all = alpha_sum();
+    studio.renderer.options.lod = before;
+    draw_from(distance, 0);
+    uint8_t *old = studio_copy(&studio, &size);
+    studio.renderer.options.lod = now;
+    draw_from(distance, 0);
+    for (size_t k = 3; k < size; k += 4) sum += abs(studio.image.pixels[k] - old[k]) / 255.0;
+    free(old);
+    return sum;
+}
+
+// 40 pictures while the share of strands falls from 1 to its least. What the zoom itself changes is
+// taken out: each picture is compared with that from the same place whose level of detail is of the
+// place before. From share s to s - d the strands that go take the part d/s of what all cover with
+// them, and the others, wider, cover as much more; where strands overlap less is seen. Rounding to
+// 1/255 makes as many changes greater as smaller. 80 strands go at a time; of the lengths of what
+// is seen of a strand, which vary by half, their mean varies by 0.5/sqrt(80): 4 of these are 22 %
+// of one of the two parts. A share in quarters would pop by 12 times as much as one of them.
+static void nothing_pops_along_a_zoom(void **state)
+{
+    (void)state;
+    enum { COUNT = 4000, FRAMES = 40 };
+    const float near = 1000, far = 3000, least = 0.2f, step = (far - near) / FRAMES;
+    const double goes = (1 - (double)least) / FRAMES;
+    use(&TRANSPARENT);
+    add_tangle(COUNT, 0.05f, 0.2f, NULL);
+    double low = INFINITY, high = 0; // change, of the part that goes
+    for (int i = 1; i <= FRAMES; ++i) {
+        const LodOptions before = {.start = near + step, .end = far + step, .least = least},
+                         now = {.start = near, .end = far, .least = least};
+        double all, part = goes / (1 - goes * (i - 1)),
+                    change = find_change(near + step * (float)i, before, now, &all) / all;
+        low = fmin(low, change / part);
+        high = fmax(high, change / part);
+    }
+    if (!(high < 2 + 0.22)) fail_msg("from one picture to the next %g parts change", high);
+    assert_true(low > 1); // they do go, a few at a time
+}
+
 // Narrower fibres are so many fewer that they are as wide as was asked for.
 static void fibres_are_as_wide_as_asked_for(void **state)
 {
@@ -268,6 +378,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         CLAIM(coverage_of_a_strand_is_its_area),
         CLAIM(coverage_is_steady_in_a_slow_turn),
+        CLAIM(thin_hair_is_steady_in_a_slow_turn),
         CLAIM(coverage_does_not_change_below_a_pixel),
         CLAIM(joints_are_covered_once),
         CLAIM(wide_ribbons_are_whole),
@@ -276,6 +387,7 @@ int main(void)
         CLAIM(hair_smaller_than_a_pixel_leaves_no_holes),
         CLAIM(fewer_strands_cover_as_much),
         CLAIM(strands_neither_come_nor_go_at_once),
+        CLAIM(nothing_pops_along_a_zoom),
         CLAIM(fibres_are_as_wide_as_asked_for),
     };
     return stage_run(tests);
