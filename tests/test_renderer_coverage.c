@@ -338,7 +338,7 @@ static double find_change(float distance, LodOptions before, LodOptions now, dou
 // them, and the others, wider, cover as much more; where strands overlap less is seen. Rounding to
 // 1/255 makes as many changes greater as smaller. 80 strands go at a time; of the lengths of what
 // is seen of a strand, which vary by half, their mean varies by 0.5/sqrt(80): 4 of these are 22 %
-// of one of the two parts. A share in quarters would pop by 12 times as much as one of them.
+// of one of the two parts. With a share in quarters some picture changes by 8 parts.
 static void nothing_pops_along_a_zoom(void **state)
 {
     (void)state;
