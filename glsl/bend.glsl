@@ -11,6 +11,12 @@
 //     tau = G_j.t_j/(1 + a_j.t_j),   dE/dt_j = -beta a_j + (G_j - tau a_j) x t_j,   G_{j-1} = tau (a_j + t_j) - beta a_j x t_j
 // so twist is handed on down to the root, and forces and moments are balanced.
 //
+// Folds: a joint bent by d hands on up to 1/cos(d/2) times the twist that it is given, so that G grows exponentially with the number of joints
+// that are nearly folded, whose gradients hold within angles too small for any step (E itself is at most 2 sum beta): crumpled strands were
+// thrown about. Where joints hand on what they are given, turning frame j - 1 turns those beyond as much, and with them each a_i:
+//     |G_{j-1}| <= sum_{i >= j} beta_i
+// G is shortened to that, which changes nothing that is not folded. What is then missing from the gradient the account sees as gained.
+//
 // In time: forces of the positions at the step's start, and for masses M = 1 + MASS dt^2 b D^T D (D: differences along the strand, b =
 // K (n-1)^2/l), which leaves leapfrog's energy as it is and bounds b dt^2/M at any stiffness. Drag acts on these masses too,
 // up to half of what is critical for the slowest swing that they allow, pi/(2 (n-1) sqrt(MASS) dt): 0.9/((n-1) dt).
@@ -66,12 +72,22 @@ vec3 frames_advance(inout Frames frames, vec3 t, vec4 rest)
     return a;
 }
 
-// From tip to root: the gradient by segment r of length l, over K (n-1)^2; G becomes that of the segment before.
-vec3 bend_gradient(vec3 r, float l, vec3 a, inout vec3 G)
+// From tip to root, over K (n-1)^2.
+struct Moment {
+    vec3 G;
+    float most; // of the length of G: the sum of beta
+};
+
+const Moment NO_MOMENT = Moment(vec3(0.0), 0.0);
+
+// The gradient by segment r of length l; the moment becomes that of the segment before.
+vec3 bend_gradient(vec3 r, float l, vec3 a, inout Moment moment)
 {
-    vec3 t = r / l;
+    vec3 t = r / l, G = moment.G;
     float tau = dot(G, t) / max(1.0 + dot(a, t), 0.1);
     vec3 by_t = -l * a + cross(G - tau * a, t);
     G = tau * (a + t) - l * cross(a, t);
+    moment.most += l;
+    moment.G = G * min(moment.most * inversesqrt(max(dot(G, G), 1e-30)), 1.0);
     return (by_t - dot(by_t, t) * t) / l;
 }

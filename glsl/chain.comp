@@ -97,7 +97,8 @@ void pull_implicitly(Lane lane)
     Row3 row = NO_ROW3;
 #if BENDS
     float acts = bend_acts(lane), stiffness = acts * bend_stiffness(LAST), mass_beyond = 0.0, l_beyond = 0.0;
-    vec3 G = vec3(0.0), h_beyond = vec3(0.0);
+    vec3 h_beyond = vec3(0.0);
+    Moment moment = NO_MOMENT;
     float kept = max(lane.decay, 1.0 - 0.9 / float(LAST));
 #endif
     for (int j = LAST; j >= 1; --j) {
@@ -112,7 +113,7 @@ void pull_implicitly(Lane lane)
         vec3 y = k.xyz - g + g_beyond;
 #if BENDS
         float l = fetch_rest(lane, j).w, mass = MASS * stiffness / l * max(1.0, 0.5 * l_beyond / l);
-        vec3 h = mass * (r + kept * (r - r_old)) - stiffness * bend_gradient(r, l, recall_goal(j), G);
+        vec3 h = mass * (r + kept * (r - r_old)) - stiffness * bend_gradient(r, l, recall_goal(j), moment);
         off += mass_beyond, diagonal += mass + mass_beyond, y += h - h_beyond;
         mass_beyond = mass, h_beyond = h, l_beyond = l;
 #endif

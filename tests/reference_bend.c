@@ -66,6 +66,7 @@ static void find_gradient(const TwinStrand *strand, const Vec *goal, const Vec *
                           Vec *gradient)
 {
     double scale = (strand->n - 1) * (strand->n - 1);
+    double most = 0;
     Vec G = {0};
     for (int j = strand->n - 1; j >= 1; --j) {
         const double *a = goal[j], *t = direction[j];
@@ -81,6 +82,9 @@ static void find_gradient(const TwinStrand *strand, const Vec *goal, const Vec *
             gradient[j][i] = (by_t[i] - along * t[i]) / strand->length[j];
             G[i] = tau * (a[i] + t[i]) - beta * moment[i];
         }
+        most += beta;
+        double shorter = fmin(most / fmax(vec_norm(G), 1e-30), 1);
+        for (int i = 0; i < 3; ++i) G[i] *= shorter;
     }
 }
 

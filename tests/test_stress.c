@@ -150,6 +150,14 @@ static const struct {
      1000, "pushed exactly along segments: turned ones were shorter by half"},
     {"chain", "", "n=3 shape=4 tilt=109.28 shape_seed=19935 chain_bend=1000", 50,
      "a short segment that bends a long one is stiffer than its own length says"},
+    {"chain", "",
+     "n=64 dt=4.766e-06 gravity=49493 shake=0.23027 shape=3 shape_seed=25118 strand=15 "
+     "style=0.71576 chain_bend=22.504",
+     10000, "each fold of a crumpled strand handed on several times the twist that it was given"},
+    {"chain", "",
+     "n=64 dt=4.766e-06 gravity=49493 shake=0.23027 shape=3 shape_seed=1 strand=15 "
+     "style=0.71576 chain_bend=22.504",
+     4000, "so did those of another one"},
     {"spring", "explicit", "spin=0.1 shape=4 stretch_drawn=1", 400,
      "sub-steps that suit even hair heated a strand of very uneven links"},
     {"spring", "explicit", "shape=4 drag=0 stretch_drawn=1", 600,
