@@ -51,7 +51,7 @@ PROGRAMS  := $(MAINS:src/main_%.c=$(OUT)/tractrix-%)
 TEST_PROGRAMS := $(TESTS:%.c=$(OUT)/%)
 SUPPORT_OBJECTS := $(SUPPORT:%.c=$(OUT)/%.o)
 KEEP_sanitize := $(KEEP:%.c=$(OUT)/%.o)
-MANUALS   := $(PROGRAMS:%=%.1)
+MANUALS   := $(PROGRAMS:%=%.1) $(OUT)/tractrix-gen-fur.1
 COMPLETIONS := $(PROGRAMS:%=%.bash)
 FOLDERS   := $(sort $(OUT)/tests/ $(dir $(OBJECTS)))
 
@@ -82,6 +82,8 @@ $(OUT)/tractrix-%: $(OUT)/main_%.o $(KEEP_$(CONFIG)) $(OUT)/libtractrix.a
 	$(call run,LINK,$(CC) $(LD_FLAGS) -o $@ $^ $(LD_LIBS))
 $(OUT)/tractrix-%.1: $(OUT)/tractrix-%
 	$(call run,MAN,$< --help=man >$@.tmp && mv $@.tmp $@)
+$(OUT)/tractrix-gen-fur.1: $(OUT)/tractrix-gen
+	$(call run,MAN,$< fur --help=man >$@.tmp && mv $@.tmp $@)
 $(OUT)/tractrix-%.bash: $(OUT)/tractrix-%
 	$(call run,BASH,$< --help=bash >$@.tmp && mv $@.tmp $@)
 

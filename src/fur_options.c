@@ -117,6 +117,7 @@ static const char *const EXAMPLES[] = {
 
 static const OptionsProgram PROGRAM = {
     .name = "tractrix-gen",
+    .page = "tractrix-gen-fur",
     .summary = "grow fur or hair on a mesh",
     .synopsis = "fur [OPTION]... MESH.obj -o FILE",
     .description = "Grows fur or hair on a mesh (Wavefront OBJ): strands spread evenly, combed, "

@@ -65,7 +65,8 @@ static const OptionsProgram PROGRAM = {
     .summary = "make hair, and what it grows on",
     .synopsis = "[OPTION]... -o FILE",
     .description = "Makes hair, and with --mesh the shape it grows on. Metres, y up, the face "
-                   "towards +z. `tractrix-gen fur` grows fur and hair on any mesh: see its --help.",
+                   "towards +z. `tractrix-gen fur` grows fur and hair on any mesh: see its --help "
+                   "or tractrix-gen-fur(1).",
     .options = OPTIONS,
     .option_count = sizeof OPTIONS / sizeof *OPTIONS,
     .status = STATUS,

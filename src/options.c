@@ -66,10 +66,11 @@ static void write_text(const OptionsProgram *program)
 
 static void write_man(const OptionsProgram *program)
 {
+    const char *page = program->page ? program->page : program->name;
     printf(".TH ");
-    for (const char *at = program->name; *at; ++at) putchar(toupper((unsigned char)*at));
+    for (const char *at = page; *at; ++at) putchar(toupper((unsigned char)*at));
     printf(" 1 \"\" \"Tractrix %s\"\n.SH NAME\n", TRACTRIX_VERSION);
-    printf("%s \\- ", program->name);
+    printf("%s \\- ", page);
     prose_write_roff(stdout, program->summary);
     printf(".SH SYNOPSIS\n.B %s\n", program->name);
     prose_write_roff(stdout, program->synopsis);

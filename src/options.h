@@ -41,6 +41,7 @@ typedef struct OptionSteps {
 
 typedef struct OptionsProgram {
     const char *name, *summary, *synopsis, *description; // synopsis: behind the name
+    const char *page;                                    // name of the manual page; NULL: `name`
     const char *const (*commands)[2]; // words and what they do, {NULL} behind the last; NULL: none
     const Option *options;
     size_t option_count;

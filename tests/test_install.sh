@@ -17,12 +17,12 @@ installs() {
 }
 claim "make install puts everything under DESTDIR and PREFIX"
 installs install
-for name in "$bin"/tractrix-*.1; do
+for name in "$bin"/tractrix-*.bash; do # one of each program
     name=${name##*/}
-    name=${name%.1}
+    name=${name%.bash}
     is_file "$root/usr/bin/$name"; is_file "$share/man/man1/$name.1"; is_file "$share/bash-completion/completions/$name"
 done
-for file in doc/tractrix/LICENSE doc/tractrix/docs/renderer.md tractrix/demo.json; do is_file "$share/$file"; done
+for file in man/man1/tractrix-gen-fur.1 doc/tractrix/LICENSE doc/tractrix/docs/renderer.md tractrix/demo.json; do is_file "$share/$file"; done
 
 claim "an installed program needs nothing of the checkout"
 program=$root/usr/bin/tractrix-render
@@ -39,6 +39,8 @@ is_file "$work/installed/frame_0000.png"; is_file "$work/turn/fur/frame_0000.png
 claim "manual pages are sound"
 for page in "$share"/man/man1/*; do
     in_file "$page" '.SH "'
+    name=$(basename "$page" .1 | tr '[:lower:]' '[:upper:]')
+    in_file "$page" ".TH $name 1"
     if command -v man >/dev/null; then
         holds man -l -Tutf8 --warnings=w "$page"
         silent err
