@@ -165,6 +165,14 @@ static Result try_shadows(Renderer *renderer, Error *error)
     return result;
 }
 
+static Result try_culling(Renderer *renderer, Error *error)
+{
+    Result result = RESULT_OK;
+    for (unsigned variant = 0; variant < CULL_VARIANTS && result == RESULT_OK; ++variant)
+        result = render_cull_build(&renderer->blocks.cull, variant, error);
+    return result;
+}
+
 static Result try_renderer(const Gpu *gpu, Raster raster, const RendererOptions *pictures,
                            Error *error)
 {
@@ -187,6 +195,7 @@ static Result try_renderer(const Gpu *gpu, Raster raster, const RendererOptions 
     result = renderer_set_mesh(&renderer, &mesh, (const float[3]){1, 1, 1}, error);
     if (result == RESULT_OK) result = try_looks(&renderer, error);
     if (result == RESULT_OK) result = try_shadows(&renderer, error);
+    if (result == RESULT_OK && raster == RASTER_BLOCKS) result = try_culling(&renderer, error);
     renderer_destroy(&renderer);
     return result;
 }

@@ -89,19 +89,31 @@ Result render_cull_begin(RenderCull *cull, const GpuLimits *limits, const CullBa
     return result;
 }
 
+static Result build_list(RenderCull *cull, unsigned variant, Error *error)
+{
+    const ShaderDefine defines[] = {{"GROUP_SIZE", GROUP},
+                                    {"HIDING", (variant & CULL_HIDING) != 0},
+                                    {"PAINT", (variant & CULL_PAINT) != 0},
+                                    {"SMOOTH", (variant & CULL_SMOOTH) != 0},
+                                    {NULL, 0}};
+    GLuint *list = &cull->list[variant];
+    return *list ? RESULT_OK : shader_build_compute(list, "block_cull.comp", defines, error);
+}
+
+Result render_cull_build(RenderCull *cull, unsigned variant, Error *error)
+{
+    Result result = variant & CULL_HIDING ? build_hide(cull, error) : RESULT_OK;
+    return result == RESULT_OK ? build_list(cull, variant, error) : result;
+}
+
 static Result use(RenderCull *cull, const HairBatch *batch, bool smooth, Error *error)
 {
     bool painted = batch->paint.buffer != 0;
-    const ShaderDefine defines[] = {{"GROUP_SIZE", GROUP},
-                                    {"HIDING", cull->covered},
-                                    {"PAINT", painted},
-                                    {"SMOOTH", smooth},
-                                    {NULL, 0}};
-    GLuint *list = &cull->list[cull->covered][painted][smooth];
-    Result result =
-        *list ? RESULT_OK : shader_build_compute(list, "block_cull.comp", defines, error);
+    unsigned variant =
+        (cull->covered ? CULL_HIDING : 0) | (painted ? CULL_PAINT : 0) | (smooth ? CULL_SMOOTH : 0);
+    Result result = build_list(cull, variant, error);
     if (result != RESULT_OK) return result;
-    glUseProgram(*list);
+    glUseProgram(cull->list[variant]);
     if (painted) gpu_buffer_bind_texture(&batch->paint, BIND_PAINT);
     if (!cull->covered) return RESULT_OK;
     gpu_buffer_bind_texture(&cull->levels, BIND_HIDING);
@@ -138,9 +150,8 @@ Result render_cull_list(RenderCull *cull, const HairBatch *batch, const Material
 void render_cull_destroy(RenderCull *cull)
 {
     GpuBuffer *const buffers[] = {&cull->listed, &cull->nearest, &cull->levels};
-    for (int i = 0; i < 8; ++i)
-        if (cull->list[i / 4][i / 2 % 2][i % 2])
-            glDeleteProgram(cull->list[i / 4][i / 2 % 2][i % 2]);
+    for (int i = 0; i < CULL_VARIANTS; ++i)
+        if (cull->list[i]) glDeleteProgram(cull->list[i]);
     if (cull->hide) glDeleteProgram(cull->hide);
     for (int i = 0; i < 3; ++i) gpu_buffer_destroy(buffers[i]);
     *cull = (RenderCull){0};

@@ -9,18 +9,21 @@
 
 #include <stdbool.h>
 
+// What the shader that lists strands needs: something opaque is there, painted, smooth.
+enum { CULL_HIDING = 1, CULL_PAINT = 2, CULL_SMOOTH = 4, CULL_VARIANTS = 8 };
+
 // A zeroed struct is empty.
 typedef struct RenderCull {
-    GLuint list[2][2][2]; // programs: with opaque things, painted, smooth
-    GLuint hide;          // program
-    GpuBuffer listed;     // how many, how many hidden, rows: see block_cull.comp
-    GpuBuffer nearest;    // by tile, see block_hide.comp
-    GpuBuffer levels;     // see hide_levels.h
-    int tiles[2];         // columns, rows
-    uint64_t base;        // RenderBase.depth_version that `levels` were made for; 0: none
-    bool covered;         // something opaque is in this picture
-    bool tries;           // this picture: many were left out of the last one, or the base is new
-    bool off;             // never try, so that tests can tell
+    GLuint list[CULL_VARIANTS]; // programs
+    GLuint hide;                // program
+    GpuBuffer listed;           // how many, how many hidden, rows: see block_cull.comp
+    GpuBuffer nearest;          // by tile, see block_hide.comp
+    GpuBuffer levels;           // see hide_levels.h
+    int tiles[2];               // columns, rows
+    uint64_t base;              // RenderBase.depth_version that `levels` were made for; 0: none
+    bool covered;               // something opaque is in this picture
+    bool tries; // this picture: many were left out of the last one, or the base is new
+    bool off;   // never try, so that tests can tell
     uint64_t outside, hidden; // strands of this picture that were left out
 } RenderCull;
 
@@ -30,6 +33,9 @@ typedef struct CullBase {
     const RenderTarget *target;
     uint64_t version;
 } CullBase;
+
+// Compiles the shaders for hair that needs CULL_ bits `variant`, unless they are there.
+Result render_cull_build(RenderCull *cull, unsigned variant, Error *error);
 
 // Begins a picture. `many`: of the last one so many strands were left out, here or later, that it
 // is worth trying. Needs the DrawParams block. RESULT_FAILED if memory is short.
