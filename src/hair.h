@@ -31,6 +31,10 @@ typedef struct HairBatch {
 // strands than a dispatch of such groups, GpuLimits.work_groups.
 enum { HAIR_LEAST_GROUP = 8 };
 
+// The most vec4 a particle that a solver keeps in one buffer (ParticleRecipe.scratch): no batch has
+// more particles than such a buffer can hold.
+enum { HAIR_MOST_SCRATCH = 3 };
+
 // Strands with the last tile's copies: what buffers have room for.
 static inline uint32_t hair_slots(const HairBatch *batch)
 {

@@ -6,6 +6,7 @@
 
 #include <cglm/cglm.h>
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -69,6 +70,7 @@ static Result create_buffers(ParticleState *state, ParticleBatch *batch, const H
 {
     size_t particles = (size_t)hair->vertex_count * hair_slots(hair);
     float *zero = calloc(particles, 4 * sizeof *zero);
+    assert(state->recipe->scratch <= HAIR_MOST_SCRATCH);
     if (!zero) return error_set(error, RESULT_FAILED, "no memory for %zu particles", particles);
     int64_t size = (int64_t)(particles * 4 * sizeof *zero);
     Result result =

@@ -90,14 +90,14 @@ static void hair_larger_than_a_buffer_is_split_never_cut(void **state)
     Strands strands;
     Hair hair;
     GpuLimits limits = fixture_gpu()->limits;
-    limits.storage_block = 4 * 16 * 16; // one tile of 16 strands of 4 vertices
+    limits.storage_block = HAIR_MOST_SCRATCH * 4 * 16 * 16; // one tile of 16 strands of 4 vertices
     make_strands(&strands, 300);
     assert_int_equal(hair_create(&hair, &strands, 0, &limits, NULL), RESULT_OK);
     assert_true(hair.batch_count > 3 * 100 / 32);
     check_batches(&hair, &strands, 0);
     hair_destroy(&hair);
     Error error;
-    limits.storage_block = 16 * 16; // not even that
+    limits.storage_block = HAIR_MOST_SCRATCH * 16 * 16; // not even that
     assert_int_equal(hair_create(&hair, &strands, 0, &limits, &error), RESULT_FAILED);
     assert_non_null(strstr(error.text, "exceeds this driver's buffers"));
     strands_destroy(&strands);
