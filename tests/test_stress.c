@@ -169,6 +169,10 @@ static const struct {
      10000, "small steps differed coordinates in the world: their rounding shook it at rest"},
     {"rope", "xpbd", "n=33 gravity=1.5 away=1000 drag=6 style=0 rope_iterations=20", 4000,
      "so did those of strands too long for registers"},
+    {"emulation", "projected",
+     "n=64 dt=0.024926 length=0.65906 gravity=95093 gust=0.78189 arm=0.4083 tilt=2.4643 "
+     "shape_seed=17077 strand=12",
+     200, "another random order of pulls in every step let single steps gain energy"},
     {"tressfx", "steady", "n=2 spin=0.79584 tilt=17.738 style=0", 1000,
      "the bound left out that the head lifts the vertex that it carries"},
     {"tressfx", "steady", "dt=0.0083333 shape=1", 2600, "curls fluttered, 4 times"},
