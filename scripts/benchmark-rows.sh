@@ -1,5 +1,5 @@
-# shellcheck shell=sh disable=SC2016,SC2154 # sourced; awk programs
 # SPDX-License-Identifier: MIT
+# shellcheck shell=sh disable=SC2016,SC2154 # sourced; awk programs
 # What benchmark-tables and benchmark-words share: rows of tractrix-bench read by awk, columns by name.
 # With `rows` the folder of NAME.csv: defines rows_of NAME PROGRAM.
 
