@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "hair_fixture.h"
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -137,4 +138,15 @@ float (*fixture_positions(HairFixture *fixture, uint32_t batch))[4]
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, hair->position.buffer);
     glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, positions);
     return positions;
+}
+
+void fixture_require_finite(HairFixture *fixture)
+{
+    const HairBatch *batch = &fixture->hair.batches[0];
+    const size_t count = hair_slots(batch) * (size_t)batch->vertex_count;
+    float(*positions)[4] = fixture_positions(fixture, 0);
+    for (size_t i = 0; i < count; ++i)
+        for (int k = 0; k < 3; ++k)
+            if (!isfinite(positions[i][k])) fail_msg("position %zu is not finite", i);
+    free(positions);
 }

@@ -48,5 +48,8 @@ void fixture_shelter(HairFixture *fixture);
 // One step, then the head of this step becomes the old one.
 void fixture_step(HairFixture *fixture);
 
+// Fails unless every drawn position of batch 0 is finite.
+void fixture_require_finite(HairFixture *fixture);
+
 // The drawn positions of batch `batch` (after writing the pose), by hair_address; malloc'ed.
 float (*fixture_positions(HairFixture *fixture, uint32_t batch))[4];

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Chain on the GPU against its double-precision form, the reference traces and the exact motion,
-// and what must hold for any hair.
-#include "convergent.h"
+// Chain on the GPU against its double-precision form and the reference traces; its bending. What it
+// shares with others that converge is in test_solvers_convergent.c.
 #include "reference_bend.h"
 #include "reference_chain.h"
-#include "reference_motion.h"
 #include "reference_traces.h"
 
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include <cmocka.h>
 
@@ -26,21 +23,7 @@ static void bent_alone(SectionParams *params)
     params->style_stiffness = 0;
 }
 
-static void assert_equals_tuned_twin(int n, double dt, double drag, double style, int steps,
-                                     double tolerance, void (*tune)(SectionParams *params))
-{
-    const TwinRun run = {.algo = "chain",
-                         .variant = "",
-                         .n = n,
-                         .steps = steps,
-                         .dt = dt,
-                         .drag = drag,
-                         .style = style,
-                         .tune = tune,
-                         .twin = reference_chain_step};
-    double off = twin_compare(&run);
-    if (!(off < tolerance)) fail_msg("%.3g exceeds %.3g", off, tolerance);
-}
+static const TwinPair PAIR = {"chain", "", reference_chain_step, false};
 
 // Measured: 5e-7 to 1e-6 of the length where drag forgets what rounding adds, 1e-5 at 240 Hz, 6e-5
 // for 32 particles; strands without much drag are chaotic (a curl's start rounding grows to 1e-4
@@ -48,24 +31,25 @@ static void assert_equals_tuned_twin(int n, double dt, double drag, double style
 static void it_equals_its_double_precision_twin(void **state)
 {
     (void)state;
-    static const ConvergentCase cases[] = {
-        {2, 60, 1, 0, 600, 1e-5},   {3, 60, 4, 0, 600, 1e-5},   {16, 60, 4, 0, 600, 1e-5},
-        {16, 240, 4, 0, 600, 1e-4}, {16, 60, 4, 0.5, 60, 1e-5}, {16, 60, 0, 0, 30, 1e-5},
-        {16, 60, 1, 0.5, 60, 1e-5},
+    static const TwinCase cases[] = {
+        {2, 60, 1, 0, 600, 1e-5, NULL},   {3, 60, 4, 0, 600, 1e-5, NULL},
+        {16, 60, 4, 0, 600, 1e-5, NULL},  {16, 240, 4, 0, 600, 1e-4, NULL},
+        {16, 60, 4, 0.5, 60, 1e-5, NULL}, {16, 60, 0, 0, 30, 1e-5, NULL},
+        {16, 60, 1, 0.5, 60, 1e-5, NULL},
     };
-    convergent_equals_twin("chain", reference_chain_step, cases, sizeof cases / sizeof *cases);
+    twin_require(&PAIR, cases, sizeof cases / sizeof *cases);
 }
 
 static void strands_through_memory_equal_the_twin_too(void **state)
 {
     (void)state;
-    static const ConvergentCase cases[] = {
-        {17, 60, 4, 0, 600, 1e-5},
-        {32, 60, 4, 0, 600, 6e-4},
-        {32, 60, 4, 0.5, 30, 1e-4},
-        {64, 60, 4, 0.5, 8, 6e-5},
+    static const TwinCase cases[] = {
+        {17, 60, 4, 0, 600, 1e-5, NULL},
+        {32, 60, 4, 0, 600, 6e-4, NULL},
+        {32, 60, 4, 0.5, 30, 1e-4, NULL},
+        {64, 60, 4, 0.5, 8, 6e-5, NULL},
     };
-    convergent_equals_twin("chain", reference_chain_step, cases, sizeof cases / sizeof *cases);
+    twin_require(&PAIR, cases, sizeof cases / sizeof *cases);
 }
 
 static void it_equals_the_reference_traces(void **state)
@@ -73,29 +57,6 @@ static void it_equals_the_reference_traces(void **state)
     (void)state;
     assert_int_equal(traces_compare("chain_step", "chain", "", NULL), 4);
     assert_int_equal(traces_compare("chain_step_style", "chain", "", NULL), 4);
-}
-
-// As the reference implementation, whose geometric mean over 13 scenarios is 0.019, 0.0096 and
-// 0.0048.
-static void its_error_falls_with_the_step(void **state)
-{
-    (void)state;
-    assert_true(motion_mean_error("chain", "", 1, NULL) < 0.02);
-    assert_true(motion_mean_error("chain", "", 4, NULL) < 0.005);
-    convergent_falls_with_the_step("chain", 0.03, 12); // second order: 16
-}
-
-static void hanging_hair_stays_at_rest(void **state)
-{
-    (void)state;
-    convergent_stays_at_rest("chain");
-}
-
-// A jump of the head by 1000 lengths breaks the solves: tractrices take over for that step.
-static void violent_steps_are_rescued(void **state)
-{
-    (void)state;
-    convergent_survives_violence("chain");
 }
 
 // --- Bending and twist.
@@ -106,11 +67,12 @@ static void bending_equals_its_double_precision_twin(void **state)
     (void)state;
     for (int i = 0; i < 2; ++i) {
         void (*tune)(SectionParams * params) = i ? bent_alone : bent;
-        assert_equals_tuned_twin(8, 1.0 / 60, 1, 0.5, 5, 2e-5, tune);
-        assert_equals_tuned_twin(16, 1.0 / 60, 1, 0.5, 5, 2e-5, tune);
-        assert_equals_tuned_twin(16, 1.0 / 240, 1, 0.5, 10, 2e-5, tune);
-        assert_equals_tuned_twin(32, 1.0 / 60, 4, 0.5, 5, 2e-4, tune);
-        assert_equals_tuned_twin(16, 1.0 / 60, 4, 0.5, 60, 5e-3, tune);
+        const TwinCase cases[] = {
+            {8, 60, 1, 0.5, 5, 2e-5, tune},    {16, 60, 1, 0.5, 5, 2e-5, tune},
+            {16, 240, 1, 0.5, 10, 2e-5, tune}, {32, 60, 4, 0.5, 5, 2e-4, tune},
+            {16, 60, 4, 0.5, 60, 5e-3, tune},
+        };
+        twin_require(&PAIR, cases, sizeof cases / sizeof *cases);
     }
 }
 
@@ -291,9 +253,6 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_equals_its_double_precision_twin),
         cmocka_unit_test(it_equals_the_reference_traces),
-        cmocka_unit_test(its_error_falls_with_the_step),
-        cmocka_unit_test(hanging_hair_stays_at_rest),
-        cmocka_unit_test(violent_steps_are_rescued),
         cmocka_unit_test(strands_through_memory_equal_the_twin_too),
         cmocka_unit_test(bending_equals_its_double_precision_twin),
         cmocka_unit_test(bending_forces_are_the_gradient_of_its_energy),

@@ -8,50 +8,28 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include <cmocka.h>
-
-// Measured against the twin after 600 steps, drag 0 to 4/s: at most 1e-6 of the length at 30 to
-// 120 Hz with corrections that damp what rounding adds, 7e-5 at 240 Hz, where nothing but drag does
-// and a strand whips for longer. 10 times that.
-static double tolerance(double dt)
-{
-    return dt < 1.0 / 200 ? 7e-4 : 1e-5;
-}
 
 static void undamped(SectionParams *params)
 {
     params->ftl_damping = 0;
 }
 
-static void assert_equals_twin(int n, double dt, double drag, double style, int steps,
-                               void (*tune)(SectionParams *params))
-{
-    const TwinRun run = {.algo = "dftl",
-                         .variant = "",
-                         .n = n,
-                         .steps = steps,
-                         .dt = dt,
-                         .drag = drag,
-                         .style = style,
-                         .tune = tune,
-                         .twin = reference_dftl_step};
-    double off = twin_compare(&run);
-    if (!(off < tolerance(dt))) fail_msg("%.3g exceeds %.3g", off, tolerance(dt));
-}
-
+// Measured against the twin after 600 steps, drag 0 to 4/s: at most 1e-6 of the length at 30 to
+// 120 Hz with corrections that damp what rounding adds, 7e-5 at 240 Hz, where nothing but drag does
+// and a strand whips for longer. 10 times that.
 static void it_equals_its_double_precision_twin(void **state)
 {
     (void)state;
-    assert_equals_twin(2, 1.0 / 60, 1, 0, 600, NULL);
-    assert_equals_twin(16, 1.0 / 60, 1, 0, 600, NULL);
-    assert_equals_twin(16, 1.0 / 240, 1, 0, 600, NULL);
-    assert_equals_twin(32, 1.0 / 60, 4, 0, 600, NULL);
-    assert_equals_twin(64, 1.0 / 60, 4, 0, 600, NULL);
-    assert_equals_twin(16, 1.0 / 60, 0, 0, 600, NULL);
-    assert_equals_twin(16, 1.0 / 60, 4, 0, 600, undamped);
-    assert_equals_twin(16, 1.0 / 60, 1, 0.5, 600, NULL);
+    static const TwinCase cases[] = {
+        {2, 60, 1, 0, 600, 1e-5, NULL},      {16, 60, 1, 0, 600, 1e-5, NULL},
+        {16, 240, 1, 0, 600, 7e-4, NULL},    {32, 60, 4, 0, 600, 1e-5, NULL},
+        {64, 60, 4, 0, 600, 1e-5, NULL},     {16, 60, 0, 0, 600, 1e-5, NULL},
+        {16, 60, 4, 0, 600, 1e-5, undamped}, {16, 60, 1, 0.5, 600, 1e-5, NULL},
+    };
+    static const TwinPair pair = {"dftl", "", reference_dftl_step, false};
+    twin_require(&pair, cases, sizeof cases / sizeof *cases);
 }
 
 static void published(SectionParams *params)

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Emulation on the GPU against its double-precision form, the reference traces and the exact
-// motion, and what must hold for any hair.
-#include "convergent.h"
+// Emulation on the GPU against its double-precision form and the reference traces. What it shares
+// with others that converge is in test_solvers_convergent.c.
 #include "reference_hybrid.h"
-#include "reference_motion.h"
 #include "reference_traces.h"
 
 #include <math.h>
@@ -14,67 +12,39 @@
 
 #include <cmocka.h>
 
+static const TwinPair PAIR = {"emulation", "", reference_emulation_step, false};
+
 // Measured: at most 1.9e-6 of the length for 2 and 3 particles over 600 steps, 1e-6 for 16, 1e-5
 // for 32, whose pulls amplify what rounding adds. 10 times that.
 static void it_equals_its_double_precision_twin(void **state)
 {
     (void)state;
-    const ConvergentCase cases[] = {
-        {2, 60, 1, 0, 600, 2e-5},   {3, 60, 4, 0, 600, 1e-5},   {16, 60, 4, 0, 60, 1e-5},
-        {16, 240, 4, 0, 120, 1e-5}, {16, 60, 4, 0.5, 60, 1e-5}, {32, 60, 4, 0, 20, 1e-4},
+    static const TwinCase cases[] = {
+        {2, 60, 1, 0, 600, 2e-5, NULL},   {3, 60, 4, 0, 600, 1e-5, NULL},
+        {16, 60, 4, 0, 60, 1e-5, NULL},   {16, 240, 4, 0, 120, 1e-5, NULL},
+        {16, 60, 4, 0.5, 60, 1e-5, NULL}, {32, 60, 4, 0, 20, 1e-4, NULL},
     };
-    convergent_equals_twin("emulation", reference_emulation_step, cases,
-                           sizeof cases / sizeof *cases);
+    twin_require(&PAIR, cases, sizeof cases / sizeof *cases);
 }
 
 static void strands_through_memory_equal_the_twin_too(void **state)
 {
     (void)state;
-    const ConvergentCase cases[] = {
-        {33, 60, 4, 0, 20, 1e-4},
-        {64, 60, 4, 0.5, 8, 1e-4},
-        {250, 60, 4, 0.5, 3, 1e-4},
+    static const TwinCase cases[] = {
+        {33, 60, 4, 0, 20, 1e-4, NULL},
+        {64, 60, 4, 0.5, 8, 1e-4, NULL},
+        {250, 60, 4, 0.5, 3, 1e-4, NULL},
     };
-    convergent_equals_twin("emulation", reference_emulation_step, cases,
-                           sizeof cases / sizeof *cases);
-}
-
-// As its double-precision form: 0.0048, 0.0017 and 0.00014 of the length, over all scenarios
-// 0.0190, 0.0081 and 0.0035 at 60, 120 and 240 Hz.
-static void its_error_falls_with_the_step(void **state)
-{
-    (void)state;
-    convergent_falls_with_the_step("emulation", 0.003, 10);
-    assert_true(motion_mean_error("emulation", "", 1, NULL) < 0.02);
-    assert_true(motion_mean_error("emulation", "", 2, NULL) < 0.009);
-    assert_true(motion_mean_error("emulation", "", 4, NULL) < 0.004);
-}
-
-static void hanging_hair_stays_at_rest(void **state)
-{
-    (void)state;
-    convergent_stays_at_rest("emulation");
-}
-
-static void lengths_survive_violence(void **state)
-{
-    (void)state;
-    convergent_survives_violence("emulation");
+    twin_require(&PAIR, cases, sizeof cases / sizeof *cases);
 }
 
 // The published rule amplifies what rounding adds from the first steps on.
 static void thesis_equals_its_double_precision_twin(void **state)
 {
     (void)state;
-    const TwinRun run = {.algo = "emulation",
-                         .variant = "thesis",
-                         .n = 16,
-                         .steps = 20,
-                         .dt = 1.0 / 60,
-                         .drag = 4,
-                         .style = 0.5,
-                         .twin = reference_thesis_emulation_step};
-    assert_true(twin_compare(&run) < 3e-5);
+    static const TwinPair pair = {"emulation", "thesis", reference_thesis_emulation_step, false};
+    static const TwinCase trial = {16, 60, 4, 0.5, 20, 3e-5, NULL};
+    twin_require(&pair, &trial, 1);
 }
 
 // The traces have explicit drag v += (g + (w - v) c) dt, which exact drag imitates with other
@@ -125,9 +95,6 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_equals_its_double_precision_twin),
         cmocka_unit_test(strands_through_memory_equal_the_twin_too),
-        cmocka_unit_test(its_error_falls_with_the_step),
-        cmocka_unit_test(hanging_hair_stays_at_rest),
-        cmocka_unit_test(lengths_survive_violence),
         cmocka_unit_test(thesis_equals_its_double_precision_twin),
         cmocka_unit_test(thesis_equals_the_reference_traces),
         cmocka_unit_test(long_strands_are_refused),

@@ -34,40 +34,27 @@ static void compliant(SectionParams *params)
     params->rope_compliance = 1e-5f;
 }
 
-static void assert_equals_twin(const char *variant, int n, double drag, double style, int steps,
-                               void (*tune)(SectionParams *params), double tolerance)
-{
-    const TwinRun run = {
-        .algo = "rope",
-        .variant = variant,
-        .n = n,
-        .steps = steps,
-        .dt = 1.0 / 60,
-        .drag = drag,
-        .style = style,
-        .tune = tune,
-        .twin = strcmp(variant, "xpbd") ? reference_rope_bullet_step : reference_rope_xpbd_step,
-        .rebuilt = tune != stretched,
-    };
-    double off = twin_compare(&run);
-    if (!(off < tolerance)) fail_msg("%.3g exceeds %.3g", off, tolerance);
-}
+static const TwinPair BULLET = {"rope", "bullet", reference_rope_bullet_step, true};
+static const TwinPair XPBD = {"rope", "xpbd", reference_rope_xpbd_step, true};
 
 // Measured: 1e-7 to 1.6e-6 of the length after 600 steps, n = 2 the largest (its rope is a pendulum
 // that only drag brings to rest). 10 times that.
 static void bullets_rope_equals_its_double_precision_twin(void **state)
 {
     (void)state;
-    assert_equals_twin("bullet", 2, 1, 0, 600, NULL, 1.6e-5);
-    assert_equals_twin("bullet", 16, 1, 0, 600, NULL, 5e-6);
-    assert_equals_twin("bullet", 32, 0, 0, 600, NULL, 5e-6);
-    assert_equals_twin("bullet", 33, 4, 0, 600, NULL, 5e-6);
-    assert_equals_twin("bullet", 64, 1, 0, 600, NULL, 5e-6);
-    assert_equals_twin("bullet", 16, 1, 0, 600, slow_and_damped, 5e-6);
-    assert_equals_twin("bullet", 64, 1, 0, 600, slow_and_damped, 1e-5);
-    assert_equals_twin("bullet", 16, 1, 0, 600, stretched, 5e-6);
-    assert_equals_twin("bullet", 16, 1, 0.5, 600, NULL, 5e-6);
-    assert_equals_twin("bullet", 64, 1, 0.8, 600, NULL, 5e-6);
+    static const TwinCase cases[] = {
+        {2, 60, 1, 0, 600, 1.6e-5, NULL},
+        {16, 60, 1, 0, 600, 5e-6, NULL},
+        {32, 60, 0, 0, 600, 5e-6, NULL},
+        {33, 60, 4, 0, 600, 5e-6, NULL},
+        {64, 60, 1, 0, 600, 5e-6, NULL},
+        {16, 60, 1, 0, 600, 5e-6, slow_and_damped},
+        {64, 60, 1, 0, 600, 1e-5, slow_and_damped},
+        {16, 60, 1, 0, 600, 5e-6, stretched},
+        {16, 60, 1, 0.5, 600, 5e-6, NULL},
+        {64, 60, 1, 0.8, 600, 5e-6, NULL},
+    };
+    twin_require(&BULLET, cases, sizeof cases / sizeof *cases);
 }
 
 // 600 small steps a second: velocities, differences of positions over 1/600 s, carry 10 times the
@@ -76,18 +63,15 @@ static void bullets_rope_equals_its_double_precision_twin(void **state)
 static void xpbd_equals_its_double_precision_twin(void **state)
 {
     (void)state;
-    assert_equals_twin("xpbd", 2, 4, 0, 600, NULL, 3e-4);
-    assert_equals_twin("xpbd", 16, 4, 0, 600, NULL, 5e-5);
-    assert_equals_twin("xpbd", 32, 4, 0, 600, NULL, 5e-5);
-    assert_equals_twin("xpbd", 33, 4, 0, 600, NULL, 5e-5);
-    assert_equals_twin("xpbd", 64, 4, 0, 600, NULL, 5e-5);
-    assert_equals_twin("xpbd", 16, 1, 0, 60, NULL, 5e-5);
-    assert_equals_twin("xpbd", 64, 1, 0, 12, NULL, 5e-5);
-    assert_equals_twin("xpbd", 16, 4, 0, 600, slow_and_damped, 5e-5);
-    assert_equals_twin("xpbd", 64, 4, 0, 600, compliant, 5e-5);
-    assert_equals_twin("xpbd", 16, 4, 0, 600, stretched, 5e-5);
-    assert_equals_twin("xpbd", 16, 4, 0.5, 60, NULL, 5e-5);
-    assert_equals_twin("xpbd", 64, 4, 0.8, 20, NULL, 5e-5);
+    static const TwinCase cases[] = {
+        {2, 60, 4, 0, 600, 3e-4, NULL},       {16, 60, 4, 0, 600, 5e-5, NULL},
+        {32, 60, 4, 0, 600, 5e-5, NULL},      {33, 60, 4, 0, 600, 5e-5, NULL},
+        {64, 60, 4, 0, 600, 5e-5, NULL},      {16, 60, 1, 0, 60, 5e-5, NULL},
+        {64, 60, 1, 0, 12, 5e-5, NULL},       {16, 60, 4, 0, 600, 5e-5, slow_and_damped},
+        {64, 60, 4, 0, 600, 5e-5, compliant}, {16, 60, 4, 0, 600, 5e-5, stretched},
+        {16, 60, 4, 0.5, 60, 5e-5, NULL},     {64, 60, 4, 0.8, 20, 5e-5, NULL},
+    };
+    twin_require(&XPBD, cases, sizeof cases / sizeof *cases);
 }
 
 // The reference implementation of position-based dynamics errs by 0.65 and 0.18 with 2 and 10
@@ -141,16 +125,6 @@ static void bullets_rope_refuses_compliance(void **state)
     assert_non_null(strstr(error.text, "--variant xpbd"));
 }
 
-static void assert_finite(HairFixture *fixture)
-{
-    float(*positions)[4] = fixture_positions(fixture, 0);
-    for (size_t i = 0;
-         i < hair_slots(&fixture->hair.batches[0]) * (size_t)fixture->hair.batches[0].vertex_count;
-         ++i)
-        for (int k = 0; k < 3; ++k) assert_true(isfinite(positions[i][k]));
-    free(positions);
-}
-
 // Gravity of 1e6 m/s^2, a head that jumps by 1e8 m, links whose ends meet.
 static void no_violence_gives_a_nan(void **state)
 {
@@ -170,7 +144,7 @@ static void no_violence_gives_a_nan(void **state)
                     fixture.step.head.translation[0] = (float)(start[1][0] - start[0][0]) * (i % 2);
                 fixture_step(&fixture);
             }
-            assert_finite(&fixture);
+            fixture_require_finite(&fixture);
             fixture_destroy(&fixture);
         }
 }

@@ -27,41 +27,22 @@ static void stretched(SectionParams *params)
     params->stretch_drawn = true;
 }
 
-static void assert_equals_twin(const char *variant, int n, double rate, double drag, int steps,
-                               void (*tune)(SectionParams *params), double tolerance)
-{
-    const TwinRun run = {
-        .algo = "spring",
-        .variant = variant,
-        .n = n,
-        .steps = steps,
-        .dt = 1 / rate,
-        .drag = drag,
-        .style = 0.5,
-        .tune = tune,
-        .twin = strcmp(variant, "explicit") ? reference_spring_implicit_step
-                                            : reference_spring_explicit_step,
-        .rebuilt = tune != stretched,
-    };
-    double off = twin_compare(&run);
-    if (!(off < tolerance)) fail_msg("%.3g exceeds %.3g", off, tolerance);
-}
+static const TwinPair IMPLICIT = {"spring", "implicit", reference_spring_implicit_step, true};
+static const TwinPair EXPLICIT = {"spring", "explicit", reference_spring_explicit_step, true};
 
 // Measured: 1e-7 to 1e-6 of the length after 600 steps at 60 and 240 Hz. 10 times that. At 30 Hz,
 // without angular springs, strands of 16 and more tremble by some 1e-3: chaos, left out.
 static void implicit_equals_its_double_precision_twin(void **state)
 {
     (void)state;
-    assert_equals_twin("implicit", 2, 60, 1, 600, NULL, 4e-6);
-    assert_equals_twin("implicit", 3, 60, 1, 600, NULL, 5e-6);
-    assert_equals_twin("implicit", 16, 60, 0, 600, NULL, 3e-6);
-    assert_equals_twin("implicit", 16, 240, 1, 600, NULL, 6e-6);
-    assert_equals_twin("implicit", 16, 60, 1, 600, loose, 3e-6);
-    assert_equals_twin("implicit", 32, 60, 1, 600, NULL, 3e-6);
-    assert_equals_twin("implicit", 32, 30, 4, 600, NULL, 3e-6);
-    assert_equals_twin("implicit", 64, 60, 4, 600, NULL, 3e-6);
-    assert_equals_twin("implicit", 64, 240, 1, 600, loose, 4e-5);
-    assert_equals_twin("implicit", 32, 60, 4, 600, stretched, 3e-6);
+    static const TwinCase cases[] = {
+        {2, 60, 1, 0.5, 600, 4e-6, NULL},    {3, 60, 1, 0.5, 600, 5e-6, NULL},
+        {16, 60, 0, 0.5, 600, 3e-6, NULL},   {16, 240, 1, 0.5, 600, 6e-6, NULL},
+        {16, 60, 1, 0.5, 600, 3e-6, loose},  {32, 60, 1, 0.5, 600, 3e-6, NULL},
+        {32, 30, 4, 0.5, 600, 3e-6, NULL},   {64, 60, 4, 0.5, 600, 3e-6, NULL},
+        {64, 240, 1, 0.5, 600, 4e-5, loose}, {32, 60, 4, 0.5, 600, 3e-6, stretched},
+    };
+    twin_require(&IMPLICIT, cases, sizeof cases / sizeof *cases);
 }
 
 // Measured: 3e-7 to 1e-6 with drag 4/s for n = 2 and 3. Longer strands ring undamped along their
@@ -70,11 +51,12 @@ static void implicit_equals_its_double_precision_twin(void **state)
 static void explicit_equals_its_double_precision_twin(void **state)
 {
     (void)state;
-    assert_equals_twin("explicit", 2, 60, 4, 600, NULL, 1e-5);
-    assert_equals_twin("explicit", 3, 60, 4, 600, NULL, 5e-5);
-    assert_equals_twin("explicit", 16, 60, 4, 20, NULL, 1e-4);
-    assert_equals_twin("explicit", 16, 240, 4, 80, loose, 1e-4);
-    assert_equals_twin("explicit", 32, 60, 4, 20, NULL, 1e-4);
+    static const TwinCase cases[] = {
+        {2, 60, 4, 0.5, 600, 1e-5, NULL}, {3, 60, 4, 0.5, 600, 5e-5, NULL},
+        {16, 60, 4, 0.5, 20, 1e-4, NULL}, {16, 240, 4, 0.5, 80, 1e-4, loose},
+        {32, 60, 4, 0.5, 20, 1e-4, NULL},
+    };
+    twin_require(&EXPLICIT, cases, sizeof cases / sizeof *cases);
 }
 
 // Explicit springs are second order and leave their own stretch as error, which goes with 1/K.
@@ -186,12 +168,7 @@ static void no_violence_gives_a_nan(void **state)
             fixture.step.head.translation[0] = kind == 1 && i % 2 ? 1e8f : 0;
             fixture_step(&fixture);
         }
-        float(*positions)[4] = fixture_positions(&fixture, 0);
-        for (int i = 0; i < N; ++i)
-            for (int k = 0; k < 3; ++k)
-                if (!isfinite(positions[hair_address(&fixture.hair.batches[0], 0, (uint32_t)i)][k]))
-                    fail_msg("kind %d: particle %d is not finite", kind, i);
-        free(positions);
+        fixture_require_finite(&fixture);
         fixture_destroy(&fixture);
     }
 }

@@ -11,35 +11,8 @@
 
 #include <cmocka.h>
 
-// Measured against the twin: at most 6e-7 of the length after 600 steps where the shape is firm; up
-// to 9e-6 at 240 Hz, for n = 64 and with little of it, where a strand whips. 10 times that.
-// `steady` with loose or long strands is chaotic (two doubles part as well), so those are followed
-// for 20 steps only.
-static double tolerance(int n, double dt, int steps, void (*tune)(SectionParams *params));
-
-static void assert_equals_twin(const char *variant, int n, double dt, double drag, int steps,
-                               void (*tune)(SectionParams *params))
-{
-    const TwinRun run = {.algo = "tressfx",
-                         .variant = variant,
-                         .n = n,
-                         .steps = steps,
-                         .dt = dt,
-                         .drag = drag,
-                         .tune = tune,
-                         .twin = *variant == 's' ? reference_tressfx_steady : reference_tressfx_4};
-    double off = twin_compare(&run), most = tolerance(n, dt, steps, tune);
-    if (!(off < most)) fail_msg("%.3g exceeds %.3g", off, most);
-}
-
-static void styled(SectionParams *params)
-{
-    params->style = 0.5f;
-}
-
 static void shaped(SectionParams *params)
 {
-    params->style = 0.7f;
     params->tressfx_global_constraint_stiffness = 0.2f;
     params->tressfx_global_constraints_range = 0.4f;
     params->tressfx_local_constraints_iterations = 3;
@@ -48,39 +21,39 @@ static void shaped(SectionParams *params)
 
 static void loose(SectionParams *params)
 {
-    params->style = 0.5f;
     params->tressfx_local_constraint_stiffness = 0.1f;
     params->tressfx_vsp_coeff = 0;
     params->tressfx_damping = 0.02f;
 }
 
-static double tolerance(int n, double dt, int steps, void (*tune)(SectionParams *params))
-{
-    return n > 32 || dt < 1.0 / 200 || steps < 600 || tune == loose ? 1e-4 : 6e-6;
-}
+// Measured against the twin: at most 6e-7 of the length after 600 steps where the shape is firm; up
+// to 9e-6 at 240 Hz, for n = 64 and with little of it, where a strand whips. 10 times that.
+// `steady` with loose or long strands is chaotic (two doubles part as well), so those are followed
+// for 20 steps only.
+static const TwinPair STEADY = {"tressfx", "steady", reference_tressfx_steady, false};
+static const TwinPair TRESSFX4 = {"tressfx", "tressfx4", reference_tressfx_4, false};
 
 static void steady_equals_its_double_precision_twin(void **state)
 {
     (void)state;
-    assert_equals_twin("steady", 2, 1.0 / 60, 1, 600, styled);
-    assert_equals_twin("steady", 3, 1.0 / 60, 1, 600, styled);
-    assert_equals_twin("steady", 4, 1.0 / 60, 1, 600, styled);
-    assert_equals_twin("steady", 16, 1.0 / 60, 1, 600, styled);
-    assert_equals_twin("steady", 16, 1.0 / 240, 1, 600, styled);
-    assert_equals_twin("steady", 32, 1.0 / 60, 4, 600, shaped);
-    assert_equals_twin("steady", 16, 1.0 / 60, 1, 20, loose);
-    assert_equals_twin("steady", 64, 1.0 / 240, 1, 20, styled);
+    static const TwinCase cases[] = {
+        {2, 60, 1, 0.5, 600, 6e-6, NULL},   {3, 60, 1, 0.5, 600, 6e-6, NULL},
+        {4, 60, 1, 0.5, 600, 6e-6, NULL},   {16, 60, 1, 0.5, 600, 6e-6, NULL},
+        {16, 240, 1, 0.5, 600, 1e-4, NULL}, {32, 60, 4, 0.7, 600, 6e-6, shaped},
+        {16, 60, 1, 0.5, 20, 1e-4, loose},  {64, 240, 1, 0.5, 20, 1e-4, NULL},
+    };
+    twin_require(&STEADY, cases, sizeof cases / sizeof *cases);
 }
 
 static void tressfx4_equals_its_double_precision_twin(void **state)
 {
     (void)state;
-    assert_equals_twin("tressfx4", 2, 1.0 / 60, 1, 600, styled);
-    assert_equals_twin("tressfx4", 5, 1.0 / 60, 1, 600, styled);
-    assert_equals_twin("tressfx4", 16, 1.0 / 60, 1, 600, styled);
-    assert_equals_twin("tressfx4", 32, 1.0 / 60, 0, 600, shaped);
-    assert_equals_twin("tressfx4", 16, 1.0 / 60, 1, 600, loose);
-    assert_equals_twin("tressfx4", 64, 1.0 / 60, 1, 600, styled);
+    static const TwinCase cases[] = {
+        {2, 60, 1, 0.5, 600, 6e-6, NULL},   {5, 60, 1, 0.5, 600, 6e-6, NULL},
+        {16, 60, 1, 0.5, 600, 6e-6, NULL},  {32, 60, 0, 0.7, 600, 6e-6, shaped},
+        {16, 60, 1, 0.5, 600, 1e-4, loose}, {64, 60, 1, 0.5, 600, 1e-4, NULL},
+    };
+    twin_require(&TRESSFX4, cases, sizeof cases / sizeof *cases);
 }
 
 // How far below its root the tip of a straight strand hangs after 3 s, over its length, when it is
@@ -129,8 +102,9 @@ static void only_the_stiffness_sets_how_stiff_steady_is(void **state)
 
 static const struct {
     const char *variant;
+    float style;
     void (*tune)(SectionParams *params);
-} SECTIONS[] = {{"steady", loose}, {"tressfx4", shaped}, {"steady", shaped}};
+} SECTIONS[] = {{"steady", 0.5f, loose}, {"tressfx4", 0.7f, shaped}, {"steady", 0.7f, shaped}};
 enum { SECTION_COUNT = sizeof SECTIONS / sizeof *SECTIONS, SECTION_N = 16 };
 
 static void create_section(HairFixture *fixture, int i)
@@ -138,7 +112,7 @@ static void create_section(HairFixture *fixture, int i)
     Vec start[SECTION_N];
     twin_make_curl(start, SECTION_N, 0, 2);
     fixture_create_tuned(fixture, (const Vec *)start, 1, SECTION_N, "tressfx", SECTIONS[i].variant,
-                         0.5f, 1, SECTIONS[i].tune);
+                         SECTIONS[i].style, 1, SECTIONS[i].tune);
 }
 
 static void sections_keep_their_own_parameters(void **state)

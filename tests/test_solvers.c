@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What must hold for every solver that is in the table, whatever its method. A solver's own tests
-// are in test_solver_<name>.c, energy in test_solvers_energy.c.
+// are in test_solver_<name>.c, energy in test_solvers_energy.c, convergence in
+// test_solvers_convergent.c.
 #include "every_solver.h"
 #include "strands_read.h"
 

@@ -155,47 +155,60 @@ static TwinStep twin_step(const HairFixture *fixture)
     return step;
 }
 
-static double farthest(HairFixture *fixture, const TwinRun *run, const TwinStrand *twins)
+// The farthest that a drawn strand is from its twin.
+static double find_distance(HairFixture *fixture, const TwinPair *pair, const TwinStrand *twins)
 {
+    const bool rebuilt = pair->rebuilt && !fixture->params.stretch_drawn;
     double worst = 0;
     for (int s = 0; s < CURLS; ++s) {
-        Vec drawn[TWIN_MAX], rebuilt[TWIN_MAX];
+        const TwinStrand *twin = &twins[s];
+        Vec drawn[TWIN_MAX], exact[TWIN_MAX];
         double length = 0;
-        for (int j = 1; j < run->n; ++j) length += twins[s].length[j];
+        for (int j = 1; j < twin->n; ++j) length += twin->length[j];
         twin_read_strand(fixture, s, drawn);
-        twin_rebuild(&twins[s], rebuilt);
-        double off =
-            twin_rms((const Vec *)drawn,
-                     run->rebuilt ? (const Vec *)rebuilt : (const Vec *)twins[s].x, run->n, length);
+        twin_rebuild(twin, exact);
+        double off = twin_rms((const Vec *)drawn,
+                              rebuilt ? (const Vec *)exact : (const Vec *)twin->x, twin->n, length);
         worst = off > worst || isnan(off) ? off : worst;
     }
     return worst;
 }
 
-double twin_compare(const TwinRun *run)
+// The same after the case's steps.
+static double run_case(const TwinPair *pair, const TwinCase *trial)
 {
     static Vec start[CURLS * TWIN_MAX];
     static TwinStrand twins[CURLS];
+    const int n = trial->n;
     HairFixture fixture;
     for (int s = 0; s < CURLS; ++s) {
-        twin_make_curl(&start[s * run->n], run->n, 0.01 * s, 1 + s);
-        twin_start(&twins[s], run->n, (const Vec *)&start[s * run->n]);
+        twin_make_curl(&start[s * n], n, 0.01 * s, 1 + s);
+        twin_start(&twins[s], n, (const Vec *)&start[s * n]);
     }
-    fixture_create_tuned(&fixture, (const Vec *)start, CURLS, run->n, run->algo, run->variant,
-                         (float)run->style, (float)run->drag, run->tune);
-    fixture.step.dt = run->dt;
+    fixture_create_tuned(&fixture, (const Vec *)start, CURLS, n, pair->algo, pair->variant,
+                         (float)trial->style, (float)trial->drag, trial->tune);
+    fixture.step.dt = 1 / trial->per_second;
     for (int i = 0; i < 4; ++i) fixture.step.wind[i][0] = 1.5f, fixture.step.wind[i][2] = 0.5f;
-    for (int i = 1; i <= run->steps; ++i) {
-        move_head(&fixture.step.head, i * run->dt);
+    for (int i = 1; i <= trial->steps; ++i) {
+        move_head(&fixture.step.head, i * fixture.step.dt);
         TwinStep step = twin_step(&fixture);
         fixture_step(&fixture);
-        for (int s = 0; s < CURLS; ++s) run->twin(&twins[s], &step, &fixture.params);
+        for (int s = 0; s < CURLS; ++s) pair->twin(&twins[s], &step, &fixture.params);
     }
-    double worst = farthest(&fixture, run, twins);
-    printf(
-        "%s %s, n = %d, %g steps a second: RMS %.2g of the length from the double-precision twin "
-        "after %d steps\n",
-        run->algo, run->variant, run->n, 1 / run->dt, worst, run->steps);
+    double worst = find_distance(&fixture, pair, twins);
     fixture_destroy(&fixture);
     return worst;
+}
+
+void twin_require(const TwinPair *pair, const TwinCase *cases, int count)
+{
+    for (int i = 0; i < count; ++i) {
+        const TwinCase *trial = &cases[i];
+        double off = run_case(pair, trial);
+        printf("%s %s, n = %d, %g steps a second: RMS %.2g of the length from the double-precision "
+               "twin after %d steps\n",
+               pair->algo, pair->variant, trial->n, trial->per_second, off, trial->steps);
+        if (!(off < trial->tolerance))
+            fail_msg("case %d: %.3g exceeds %.3g", i, off, trial->tolerance);
+    }
 }

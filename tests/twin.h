@@ -65,16 +65,23 @@ double twin_rms(const Vec *a, const Vec *b, int n, double length);
 // Largest | |x_j - x_(j-1)| / length_j - 1 |.
 double twin_length_error(const TwinStrand *rest, const Vec *q);
 
-typedef struct TwinRun {
-    const char *algo, *variant;
-    int n, steps;
-    double dt, drag, style;
-    void (*tune)(SectionParams *params); // changes parameters; or NULL
+// A solver and its twin.
+typedef struct TwinPair {
+    const char *algo, *variant; // variant "": the solver's first
     TwinFunction twin;
-    bool rebuilt; // the solver draws exact lengths where the twin's strand is stretched
-} TwinRun;
+    bool rebuilt; // particles stretch, but without stretch_drawn exact lengths are drawn
+} TwinPair;
 
-// The farthest that a drawn strand is from its twin's at the run's end: RMS over the strand's
-// length. Five curls of different turns, wind of 1.6 m/s, a head that moves at 2 Hz by 4 cm and
-// turns by 0.2 rad.
-double twin_compare(const TwinRun *run);
+// A strand that both step.
+typedef struct TwinCase {
+    int n;                          // particles
+    double per_second, drag, style; // steps a second; drag in 1/s
+    int steps;
+    double tolerance;                    // greatest distance at the end: RMS over the length
+    void (*tune)(SectionParams *params); // changes parameters; or NULL
+} TwinCase;
+
+// Fails at the first of `count` cases in which a drawn strand ends as far from its twin as the
+// tolerance, or farther; prints each distance. Five curls of different turns, wind of 1.6 m/s, a
+// head that moves at 2 Hz by 4 cm and turns by 0.2 rad.
+void twin_require(const TwinPair *pair, const TwinCase *cases, int count);
