@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Strands into a shadow map, by points along their segments and, where they are wide, across them.
 //   DEEP 0: the map keeps first depths   1: sums of optical depth by layers
-//   PAIRS 1: two segments at a time where their chord is as good (first depths of a coarse map)
+//   COARSE 1: first depths of a coarse map
 //
 // A texel that a fibre of opacity a crosses, covering the share c of its width, loses the share a c
 // of its light: an optical depth of -ln(1 - a c), or -ln(1 - a) where it is covered whole. Fibres at
@@ -26,11 +26,11 @@ layout(std430, binding = BIND_FIRST_OUT) buffer First { uint first[]; };
 
 // Points in a texel: sums are smoothed afterwards, but where ribbons are wide their pattern would
 // show; of first depths none may be far from a point, and within a wide ribbon every texel must have
-// one: its inner circle does if they are no more than sqrt(1/2) apart. Those found in pairs of segments are
+// one: its inner circle does if they are no more than sqrt(1/2) apart. Those of a coarse map are
 // spread to a texel or two around each point afterwards, so that fewer will do.
 #if DEEP
 const float DENSITY = 0.5, WIDE_DENSITY = 2.0, SLACK = 0.0;
-#elif PAIRS
+#elif COARSE
 const float DENSITY = 0.5, WIDE_DENSITY = 1.42, SLACK = 0.5;
 #else
 const float DENSITY = 1.0, WIDE_DENSITY = 1.42, SLACK = 0.0;
@@ -42,23 +42,6 @@ float point_radius(Painter painter, Curve curve, int k)
 {
     float place = curve_place(curve, k);
     return paint_radius(painter, curve.root + int(place) * STRAND_TILE, place);
-}
-
-// The end of what begins at a, point j, and its place: two segments on if the one between lies within a texel of the
-// middle of their chord.
-int find_end(Curve curve, int j, int last, vec4 a, out vec4 b)
-{
-    int next = j + 1;
-    b = shadow_place(curve_point(curve, next));
-#if PAIRS
-    vec4 beyond = shadow_place(curve_point(curve, min(j + 2, last)));
-    bool near = all(lessThan(abs(2.0 * b.xy - a.xy - beyond.xy), vec2(2.0)));
-    if (near) {
-        next = min(j + 2, last);
-        b = beyond;
-    }
-#endif
-    return next;
 }
 
 void main()
@@ -76,10 +59,9 @@ void main()
     int map = cast_params.map * side * side;
     vec4 a = shadow_place(curve_point(curve, begin));
     float radius = point_radius(painter, curve, begin);
-    for (int j = begin, next = begin; j < end; j = next) {
-        vec4 b;
-        next = find_end(curve, j, end, a, b);
-        float next_radius = point_radius(painter, curve, next);
+    for (int j = begin; j < end; ++j) {
+        vec4 b = shadow_place(curve_point(curve, j + 1));
+        float next_radius = point_radius(painter, curve, j + 1);
         vec2 way = b.xy - a.xy;
         float size = length(way), width = 2.0 * texels * (radius + next_radius) / (a.w + b.w);
         float density = width > 1.5 ? WIDE_DENSITY : DENSITY;

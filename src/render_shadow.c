@@ -8,12 +8,12 @@
 static const double LEAST_LEFT = 1e-3; // of the light behind one fibre
 
 Result render_shadow_create(RenderShadow *shadow, const GpuLimits *limits,
-                            const ShadowOptions *options, Error *error)
+                            const ShadowOptions *options, bool by_processor, Error *error)
 {
     *shadow = (RenderShadow){.options = *options};
     shadow->options.side = (options->side + 7) / 8 * 8;
     return render_shadow_hair_create(&shadow->hair, limits, options->kind == SHADOW_DOM,
-                                     shadow->options.side, error);
+                                     shadow->options.side, by_processor, error);
 }
 
 void render_shadow_destroy(RenderShadow *shadow)
@@ -130,11 +130,15 @@ static bool is_drawn(const RenderShadow *shadow, const ShadowScene *scene)
            same_casters(shadow, scene->casters);
 }
 
-static Result reserve(RenderShadow *shadow, const ShadowScene *scene, Error *error)
+static int count_maps(const ShadowScene *scene)
 {
     int maps = 0;
     for (uint32_t i = 0; i < scene->light_count; ++i) maps += casts(&scene->lights[i]);
-    if (maps == 0) maps = 1;
+    return maps ? maps : 1;
+}
+
+static Result reserve(RenderShadow *shadow, const ShadowScene *scene, Error *error)
+{
     shadow->any = false;
     ShadowCasters casters = scene->casters;
     if (casters.count > shadow->caster_room) {
@@ -144,24 +148,26 @@ static Result reserve(RenderShadow *shadow, const ShadowScene *scene, Error *err
         shadow->casters = room;
         shadow->caster_room = casters.count;
     }
-    Result result = render_shadow_hair_reserve(&shadow->hair, maps, casters, error);
-    if (result == RESULT_OK && has_mesh(scene))
-        result = render_shadow_mesh_reserve(&shadow->mesh, maps, error);
-    return result;
+    return has_mesh(scene) ? render_shadow_mesh_reserve(&shadow->mesh, count_maps(scene), error)
+                           : RESULT_OK;
 }
 
-static void draw_maps(RenderShadow *shadow, const ShadowScene *scene)
+static Result draw_maps(RenderShadow *shadow, const ShadowScene *scene, Error *error)
 {
     ShadowParams *params = &shadow->params;
     memset(params, 0, sizeof *params);
     params->side = shadow->options.side;
     params->mesh_side = SHADOW_MESH_SIDE;
     find_mean_fibre(shadow, scene, params);
-    render_shadow_hair_clear(&shadow->hair);
+    Result result =
+        render_shadow_hair_begin(&shadow->hair, count_maps(scene), scene->casters, error);
+    if (result != RESULT_OK) return result;
     for (uint32_t i = 0; i < scene->light_count; ++i)
         if (casts(&scene->lights[i])) draw_map(shadow, scene, (int)i);
+    render_shadow_hair_end(&shadow->hair);
     shadow->maps_drawn = (uint32_t)params->maps;
     ++shadow->version;
+    return result;
 }
 
 Result render_shadow_draw(RenderShadow *shadow, const ShadowScene *scene, GpuTimer *timer,
@@ -172,8 +178,9 @@ Result render_shadow_draw(RenderShadow *shadow, const ShadowScene *scene, GpuTim
     Result result = reserve(shadow, scene, error);
     if (result != RESULT_OK) return result;
     gpu_timer_begin(timer, "draw_shadow");
-    draw_maps(shadow, scene);
+    result = draw_maps(shadow, scene, error);
     gpu_timer_end(timer);
+    if (result != RESULT_OK) return result;
     shadow->drawn = *scene;
     memcpy(shadow->lights, scene->lights, scene->light_count * sizeof(Light));
     if (scene->casters.count)

@@ -39,8 +39,9 @@ typedef struct RenderShadow {
     uint32_t maps_drawn; // in the last render_shadow_draw
 } RenderShadow;
 
+// `by_processor`: C makes the maps where it can, for CPU drivers, which share its memory.
 Result render_shadow_create(RenderShadow *shadow, const GpuLimits *limits,
-                            const ShadowOptions *options, Error *error);
+                            const ShadowOptions *options, bool by_processor, Error *error);
 void render_shadow_destroy(RenderShadow *shadow);
 
 // Makes the map of each light that casts shadows, unless they show this scene already. Waits for

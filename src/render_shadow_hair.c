@@ -19,14 +19,14 @@ static const double SUM_MAX = 2e9;     // of those steps: sums do not overflow
 static const double LEAST_LEFT = 1e-3; // of the light behind one fibre, as in shadow_splat.comp
 
 // What a program of the deep maps or of the first depths is built for.
-enum { FIRSTS = 0, DEEP = 1, FIRSTS_IN_PAIRS = 2 };
+enum { FIRSTS = 0, DEEP = 1, COARSE_FIRSTS = 2 };
 
 static Result build(GLuint *program, const char *file, int group, int kind, unsigned variant,
                     Error *error)
 {
     const ShaderDefine defines[] = {{"GROUP_SIZE", group},
                                     {"DEEP", kind == DEEP},
-                                    {"PAIRS", kind == FIRSTS_IN_PAIRS},
+                                    {"COARSE", kind == COARSE_FIRSTS},
                                     {"PART_VERTICES", PART_VERTICES},
                                     {"PART_SEGMENTS", PART_SEGMENTS},
                                     {"STRIP", STRIP},
@@ -48,24 +48,22 @@ Result render_shadow_hair_build(RenderShadowHair *hair, unsigned variant, Error 
         build(&hair->bounds[variant], "shadow_bounds.comp", GROUP, FIRSTS, variant, error);
     if (result == RESULT_OK)
         result = build(&hair->first[variant], "shadow_splat.comp", GROUP,
-                       hair->deep ? FIRSTS_IN_PAIRS : FIRSTS, variant, error);
+                       hair->deep ? COARSE_FIRSTS : FIRSTS, variant, error);
     if (result == RESULT_OK && hair->deep)
         result = build(&hair->splat[variant], "shadow_splat.comp", GROUP, DEEP, variant, error);
+    if (result == RESULT_OK && hair->deep)
+        result = build(&hair->spread, "shadow_spread.comp", TEXEL_GROUP, DEEP, 0, error);
+    if (result == RESULT_OK && hair->deep)
+        result = build(&hair->finish, "shadow_finish.comp", TEXEL_GROUP, DEEP, 0, error);
     return result;
 }
 
 Result render_shadow_hair_create(RenderShadowHair *hair, const GpuLimits *limits, bool deep,
-                                 int side, Error *error)
+                                 int side, bool by_processor, Error *error)
 {
-    *hair = (RenderShadowHair){.deep = deep, .side = side, .limits = limits};
-    Result result =
-        gpu_buffer_create(&hair->box, limits, "light's box", BOX_WORDS * 4, NULL, 0, error);
-    if (result == RESULT_OK && deep)
-        result = build(&hair->spread, "shadow_spread.comp", TEXEL_GROUP, DEEP, 0, error);
-    if (result == RESULT_OK && deep)
-        result = build(&hair->finish, "shadow_finish.comp", TEXEL_GROUP, DEEP, 0, error);
-    if (result != RESULT_OK) render_shadow_hair_destroy(hair);
-    return result;
+    *hair = (RenderShadowHair){
+        .deep = deep, .by_processor = by_processor, .side = side, .limits = limits};
+    return by_processor ? render_shadow_cpu_create(&hair->cpu, side, deep, error) : RESULT_OK;
 }
 
 static void destroy_maps(RenderShadowHair *hair)
@@ -91,41 +89,78 @@ void render_shadow_hair_destroy(RenderShadowHair *hair)
     destroy_programs(&hair->spread, 1);
     destroy_programs(&hair->finish, 1);
     destroy_maps(hair);
+    render_shadow_cpu_destroy(&hair->cpu);
     gpu_buffer_destroy(&hair->box);
     gpu_buffer_destroy(&hair->cast_uniforms);
     gpu_buffer_destroy(&hair->material);
     *hair = (RenderShadowHair){0};
 }
 
+static Result make_buffer(GpuBuffer *buffer, const RenderShadowHair *hair, const char *what,
+                          int64_t words, GLenum format, Error *error)
+{
+    if (buffer->buffer) return RESULT_OK;
+    return gpu_buffer_create(buffer, hair->limits, what, words * 4, NULL, format, error);
+}
+
+// What is read later.
 static Result make_maps(RenderShadowHair *hair, int maps, Error *error)
 {
-    const GpuLimits *limits = hair->limits;
-    destroy_maps(hair);
-    int64_t side = hair->side, coarse = hair->deep ? side / SHADOW_COARSE : side,
-            texels = maps * side * side;
-    Result result = gpu_buffer_create(&hair->firsts, limits, "shadow's depths",
-                                      maps * coarse * coarse * 4, NULL, GL_R32UI, error);
-    if (result == RESULT_OK && hair->deep)
-        result = gpu_buffer_create(&hair->depths, limits, "shadow's beginnings", texels * 4, NULL,
-                                   GL_R32F, error);
-    if (result == RESULT_OK && hair->deep)
-        result = gpu_buffer_create(&hair->sums, limits, "shadow's sums", texels * 4 * SHADOW_LAYERS,
-                                   NULL, GL_R32UI, error);
-    if (result == RESULT_OK && hair->deep)
-        result = gpu_buffer_create(&hair->layers, limits, "shadow's layers",
-                                   texels * 4 * SHADOW_LAYERS, NULL, GL_R32UI, error);
-    hair->maps = maps;
-    if (result != RESULT_OK) destroy_maps(hair);
+    if (hair->maps < maps) {
+        destroy_maps(hair);
+        hair->maps = maps;
+    }
+    int64_t texels = (int64_t)hair->maps * hair->side * hair->side;
+    if (!hair->deep)
+        return make_buffer(&hair->firsts, hair, "shadow's depths", texels, GL_R32UI, error);
+    Result result = make_buffer(&hair->depths, hair, "shadow's beginnings", texels, GL_R32F, error);
+    if (result == RESULT_OK)
+        result = make_buffer(&hair->layers, hair, "shadow's layers", texels * SHADOW_LAYERS,
+                             GL_R32UI, error);
     return result;
 }
 
-Result render_shadow_hair_reserve(RenderShadowHair *hair, int maps, ShadowCasters casters,
-                                  Error *error)
+// What shaders make them with.
+static Result make_scratch(RenderShadowHair *hair, ShadowCasters casters, Error *error)
 {
-    Result result = hair->maps < maps ? make_maps(hair, maps, error) : RESULT_OK;
+    int64_t texels = (int64_t)hair->maps * hair->side * hair->side;
+    Result result = make_buffer(&hair->box, hair, "light's box", BOX_WORDS, 0, error);
+    if (result == RESULT_OK && hair->deep)
+        result = make_buffer(&hair->firsts, hair, "shadow's depths",
+                             texels / (SHADOW_COARSE * SHADOW_COARSE), GL_R32UI, error);
+    if (result == RESULT_OK && hair->deep)
+        result = make_buffer(&hair->sums, hair, "shadow's sums", texels * SHADOW_LAYERS, GL_R32UI,
+                             error);
     for (uint32_t i = 0; i < casters.count && result == RESULT_OK; ++i)
         result = render_shadow_hair_build(hair, variant_of(&casters.list[i]), error);
     return result;
+}
+
+static void fill(const GpuBuffer *buffer, GLuint value)
+{
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
+    glClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, 0, (GLsizeiptr)buffer->size,
+                         GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
+}
+
+Result render_shadow_hair_begin(RenderShadowHair *hair, int maps, ShadowCasters casters,
+                                Error *error)
+{
+    hair->in_c = hair->by_processor && render_shadow_cpu_can(casters);
+    Result result = make_maps(hair, maps, error);
+    if (result == RESULT_OK && hair->in_c)
+        return render_shadow_cpu_begin(&hair->cpu, casters, &hair->depths,
+                                       hair->deep ? &hair->layers : &hair->firsts, error);
+    if (result == RESULT_OK) result = make_scratch(hair, casters, error);
+    if (result != RESULT_OK) return result;
+    fill(&hair->firsts, SHADOW_DEPTHS);
+    if (hair->deep) fill(&hair->sums, 0);
+    return result;
+}
+
+void render_shadow_hair_end(RenderShadowHair *hair)
+{
+    if (hair->in_c) render_shadow_cpu_end(&hair->cpu);
 }
 
 // Runs a pass, which has a program for each variant, over all ribbons, in parts of `part` of a
@@ -177,6 +212,7 @@ bool render_shadow_hair_find_box(RenderShadowHair *hair, const LightView *view,
     };
     for (int k = 0; k < 4; ++k) light_view_row(view, k, rows[k]);
     set_rows(&params, rows);
+    if (hair->in_c) return render_shadow_cpu_find_box(&hair->cpu, &params, box);
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, hair->box.buffer);
     glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof none, none);
     gpu_buffer_bind_storage(&hair->box, BIND_BOUNDS_OUT);
@@ -208,19 +244,6 @@ static float find_unit(ShadowCasters casters, bool perspective, double texels)
                 material->smooth_parts;
     }
     return (float)fmin(UNIT, SUM_MAX / most);
-}
-
-static void fill(const GpuBuffer *buffer, GLuint value)
-{
-    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
-    glClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, 0, (GLsizeiptr)buffer->size,
-                         GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
-}
-
-void render_shadow_hair_clear(const RenderShadowHair *hair)
-{
-    fill(&hair->firsts, SHADOW_DEPTHS);
-    if (hair->deep) fill(&hair->sums, 0);
 }
 
 // First depths, in texels that are `coarse` of the map's wide.
@@ -285,7 +308,9 @@ void render_shadow_hair_draw(RenderShadowHair *hair, const LightView *view, cons
         .limit = (float)LIGHT_FRAME_FAR,
     };
     set_rows(&params, rows);
-    if (hair->deep)
+    if (hair->in_c)
+        render_shadow_cpu_draw(&hair->cpu, &params);
+    else if (hair->deep)
         draw_deep(hair, casters, &params);
     else
         draw_firsts(hair, casters, &params, 1);

@@ -1,30 +1,20 @@
 // SPDX-License-Identifier: MIT
-// What hair lets through of each light: maps made in compute, for either rasteriser.
+// What hair lets through of each light: maps made in compute or, where the driver is the
+// processor's, by C (curves excepted), for either rasteriser.
 //
 // A deep opacity map has for each texel the depth at which hair begins and the optical depth of the
 // layers behind. An approximated one has the first depth only.
 #pragma once
 
 #include "light_frame.h"
-#include "render_look.h"
-
-#include "shadow.h"
-
-// Hair that stands in the light: the ribbons that are drawn, with the material's shadow_opacity.
-typedef struct ShadowCaster {
-    const HairBatch *batch;
-    Look look;
-} ShadowCaster;
-
-typedef struct ShadowCasters {
-    const ShadowCaster *list;
-    uint32_t count;
-} ShadowCasters;
+#include "render_shadow_cpu.h"
 
 enum { CAST_PAINT = 1, CAST_SMOOTH = 2, CAST_VARIANTS = 4 }; // what the ribbons' shaders need
 
 typedef struct RenderShadowHair {
-    bool deep;
+    bool deep, by_processor;
+    bool in_c; // the maps at hand are made by `cpu`
+    RenderShadowCpu cpu;
     int side; // texels across a map
     const GpuLimits *limits;
     GLuint bounds[CAST_VARIANTS], first[CAST_VARIANTS], splat[CAST_VARIANTS]; // programs
@@ -34,18 +24,20 @@ typedef struct RenderShadowHair {
     int maps; // there is room for
 } RenderShadowHair;
 
-// `side`: a multiple of 8.
+// `side`: a multiple of 8. `by_processor`: C makes the maps where it can.
 Result render_shadow_hair_create(RenderShadowHair *hair, const GpuLimits *limits, bool deep,
-                                 int side, Error *error);
+                                 int side, bool by_processor, Error *error);
 void render_shadow_hair_destroy(RenderShadowHair *hair);
 
 // Compiles the shaders for hair that needs CAST_ bits `variant`, unless they are there.
 Result render_shadow_hair_build(RenderShadowHair *hair, unsigned variant, Error *error);
 
-// Room for so many maps, and the shaders for such hair; nothing if all is there. RESULT_FAILED if
-// memory is short or a shader does not compile.
-Result render_shadow_hair_reserve(RenderShadowHair *hair, int maps, ShadowCasters casters,
-                                  Error *error);
+// Empties all maps, of which there are `maps`, and makes the shaders for such hair if they are
+// needed and not there yet. RESULT_FAILED if memory is short or a shader does not compile.
+Result render_shadow_hair_begin(RenderShadowHair *hair, int maps, ShadowCasters casters,
+                                Error *error);
+
+// Between begin and end.
 
 // The box (see light_frame.h) of all hair before the light; false if there is none. Waits for the
 // GPU.
@@ -56,10 +48,11 @@ bool render_shadow_hair_find_box(RenderShadowHair *hair, const LightView *view,
 LightFrame render_shadow_hair_frame(const RenderShadowHair *hair, const LightView *view,
                                     const double box[6]);
 
-// Empties all maps; draws map `map`.
-void render_shadow_hair_clear(const RenderShadowHair *hair);
+// Draws map `map`.
 void render_shadow_hair_draw(RenderShadowHair *hair, const LightView *view, const LightFrame *frame,
                              int map, ShadowCasters casters);
+
+void render_shadow_hair_end(RenderShadowHair *hair);
 
 // Binds what glsl/shadow.glsl reads.
 void render_shadow_hair_bind(const RenderShadowHair *hair);

@@ -73,7 +73,8 @@ Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
     if (result == RESULT_OK) result = RASTERS[renderer->raster].create(renderer, error);
     if (result == RESULT_OK) result = make_base(renderer, error);
     if (result == RESULT_OK && options->shadow.kind != SHADOW_NONE)
-        result = render_shadow_create(&renderer->shadow, &gpu->limits, &options->shadow, error);
+        result = render_shadow_create(&renderer->shadow, &gpu->limits, &options->shadow,
+                                      gpu->software, error);
     if (result != RESULT_OK) renderer_destroy(renderer);
     return result;
 }
