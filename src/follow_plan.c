@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "follow_plan.h"
+
+#include "double3.h"
 #include "nearest.h"
 #include "random.h"
 
@@ -36,36 +38,23 @@ float follow_reach(const SectionParams *params, const Strands *strands)
     return options.radius * fmaxf(1, 1 + params->tip_separation);
 }
 
-typedef double Vec[3];
-
-static double dot(const Vec a, const Vec b)
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const Vec a, const Vec b, Vec c)
-{
-    for (int k = 0; k < 3; ++k)
-        c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-}
-
-static void scale(Vec a, double by)
+static void scale(Double3 a, double by)
 {
     for (int k = 0; k < 3; ++k) a[k] *= by;
 }
 
 // Two unit vectors perpendicular to `normal` (any length but 0) and to each other.
-static void span_plane(const Vec normal, Vec u, Vec v)
+static void span_plane(const Double3 normal, Double3 u, Double3 v)
 {
     int least = 0;
     for (int k = 1; k < 3; ++k)
         if (fabs(normal[k]) < fabs(normal[least])) least = k;
-    Vec axis = {0};
+    Double3 axis = {0};
     axis[least] = 1;
-    cross(normal, axis, u);
-    scale(u, 1 / sqrt(dot(u, u)));
-    cross(normal, u, v);
-    scale(v, 1 / sqrt(dot(v, v)));
+    double3_cross(normal, axis, u);
+    scale(u, 1 / sqrt(double3_dot(u, u)));
+    double3_cross(normal, u, v);
+    scale(v, 1 / sqrt(double3_dot(v, v)));
 }
 
 static const float *vertex(const Strands *strands, uint32_t s, uint32_t j)
@@ -74,7 +63,7 @@ static const float *vertex(const Strands *strands, uint32_t s, uint32_t j)
 }
 
 // From the root to vertex j.
-static void chord(const Strands *strands, uint32_t s, uint32_t j, Vec way)
+static void chord(const Strands *strands, uint32_t s, uint32_t j, Double3 way)
 {
     const float *root = vertex(strands, s, 0), *end = vertex(strands, s, j);
     for (int k = 0; k < 3; ++k) way[k] = (double)end[k] - (double)root[k];
@@ -110,26 +99,26 @@ typedef struct Fan {
 typedef struct Neighbourhood {
     uint32_t count;
     Neighbour neighbour[NEIGHBOURS];
-    Vec at[NEIGHBOURS];         // m, from the root
+    Double3 at[NEIGHBOURS];     // m, from the root
     double flat[NEIGHBOURS][2]; // m, in the plane that fits best
 } Neighbourhood;
 
 // The direction in which the points spread least: the eigenvector of the least eigenvalue of
 // C = sum x x^T, which repeated multiplication by (trace C) I - C brings out.
-static void least_spread(const Neighbourhood *around, Vec normal)
+static void least_spread(const Neighbourhood *around, Double3 normal)
 {
     double c[3][3] = {{0}};
-    Vec next, fit = {0.36, 0.48, 0.8};
+    Double3 next, fit = {0.36, 0.48, 0.8};
     for (uint32_t i = 0; i < around->count; ++i)
         for (int k = 0; k < 9; ++k) c[k / 3][k % 3] += around->at[i][k / 3] * around->at[i][k % 3];
     double trace = c[0][0] + c[1][1] + c[2][2];
     for (int turn = 0; turn < 50 && trace > 0; ++turn) {
-        for (int k = 0; k < 3; ++k) next[k] = fit[k] - dot(c[k], fit) / trace;
-        double length = sqrt(dot(next, next));
+        for (int k = 0; k < 3; ++k) next[k] = fit[k] - double3_dot(c[k], fit) / trace;
+        double length = sqrt(double3_dot(next, next));
         if (!(length > 0)) break;
         for (int k = 0; k < 3; ++k) fit[k] = next[k] / length;
     }
-    memcpy(normal, fit, sizeof(Vec));
+    double3_copy(fit, normal);
 }
 
 static void look_around(Neighbourhood *around, const Nearest *roots, uint32_t guide)
@@ -139,11 +128,12 @@ static void look_around(Neighbourhood *around, const Nearest *roots, uint32_t gu
         for (int k = 0; k < 3; ++k)
             around->at[i][k] = (double)roots->point[around->neighbour[i].point][k] -
                                (double)roots->point[guide][k];
-    Vec normal, u, v;
+    Double3 normal, u, v;
     least_spread(around, normal);
     span_plane(normal, u, v);
     for (uint32_t i = 0; i < around->count; ++i)
-        around->flat[i][0] = dot(around->at[i], u), around->flat[i][1] = dot(around->at[i], v);
+        around->flat[i][0] = double3_dot(around->at[i], u),
+        around->flat[i][1] = double3_dot(around->at[i], v);
 }
 
 // The middle m of the circle through the origin, a and b solves 2 m.a = a.a, 2 m.b = b.b; a point
@@ -169,19 +159,20 @@ static bool agree(const Strands *strands, uint32_t s, uint32_t t)
 {
     uint32_t n = strands_size(strands, s);
     for (int part = 1; part <= 2; ++part) {
-        Vec a, b;
+        Double3 a, b;
         chord(strands, s, part * (n - 1) / 2, a);
         chord(strands, t, part * (n - 1) / 2, b);
-        if (dot(a, b) < LEAST_COSINE * sqrt(dot(a, a) * dot(b, b))) return false;
+        if (double3_dot(a, b) < LEAST_COSINE * sqrt(double3_dot(a, a) * double3_dot(b, b)))
+            return false;
     }
     return true;
 }
 
 static bool side_is_short(const Neighbourhood *around, uint32_t i, uint32_t j, double most)
 {
-    Vec side;
+    Double3 side;
     for (int k = 0; k < 3; ++k) side[k] = around->at[i][k] - around->at[j][k];
-    return dot(side, side) <= most * most;
+    return double3_dot(side, side) <= most * most;
 }
 
 static void find_fan(Fan *fan, const Strands *strands, const uint32_t *guides, const Nearest *roots,
@@ -227,7 +218,7 @@ static void place_between(Follower *follower, const Fan *fan, Random *random)
 static void place_beside(Follower *follower, const Strands *strands, uint32_t s, double radius,
                          Random *random)
 {
-    Vec along, u, v;
+    Double3 along, u, v;
     chord(strands, s, 1, along);
     span_plane(along, u, v);
     double from = radius * sqrt(random_real(random));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "image_shapes.h"
 
+#include "double3.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,21 +31,16 @@ typedef struct Point {
     double color[3];
 } Point;
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static void unit(double v[3])
 {
-    double length = sqrt(dot(v, v));
+    double length = sqrt(double3_dot(v, v));
     if (length == 0) v[1] = length = 1;
     for (int k = 0; k < 3; ++k) v[k] /= length;
 }
 
 static double angle(const double a[3], const double b[3])
 {
-    return acos(fmin(fmax(dot(a, b), -1), 1));
+    return acos(fmin(fmax(double3_dot(a, b), -1), 1));
 }
 
 // What reaches x from the light, as a white matt surface square to it shows it, and the unit vector
@@ -54,7 +51,7 @@ static double reaching(const Light *light, const double x[3], double to_light[3]
     double square = 0, axis = 0;
     for (int k = 0; k < 3; ++k)
         to_light[k] = far ? (double)light->direction[k] : (double)light->position[k] - x[k];
-    square = dot(to_light, to_light);
+    square = double3_dot(to_light, to_light);
     unit(to_light);
     if (far) return light->intensity;
     for (int k = 0; k < 3; ++k) axis -= (double)light->direction[k] * to_light[k];
@@ -69,7 +66,7 @@ static double reaching(const Light *light, const double x[3], double to_light[3]
 // Half-way between ground and sky where the side of the fibre that is seen faces the horizon.
 static double sky_share(const ReferenceVertex *v)
 {
-    double along = dot(v->tangent, v->to_eye), side[3];
+    double along = double3_dot(v->tangent, v->to_eye), side[3];
     for (int k = 0; k < 3; ++k) side[k] = v->to_eye[k] - along * v->tangent[k];
     unit(side);
     return 0.5 + acos(-1) / 8 * side[1];

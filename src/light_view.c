@@ -1,36 +1,27 @@
 // SPDX-License-Identifier: MIT
 #include "light_view.h"
 
+#include "double3.h"
+
 #include <math.h>
 #include <string.h>
-
-static void cross(const double a[3], const double b[3], double c[3])
-{
-    for (int k = 0; k < 3; ++k)
-        c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-}
-
-static void normalise(double v[3])
-{
-    double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int k = 0; k < 3; ++k) v[k] /= length;
-}
 
 LightView light_view(const Light *light, const float middle[3])
 {
     LightView view = {.perspective = light->kind != LIGHT_DIRECTIONAL};
-    double *way = view.axis[2], across[3] = {0};
+    double *way = view.axis[2];
+    Double3 across = {0};
     for (int k = 0; k < 3; ++k) {
         view.origin[k] = view.perspective ? (double)light->position[k] : 0;
         way[k] =
             view.perspective ? (double)middle[k] - view.origin[k] : -(double)light->direction[k];
     }
     if (way[0] == 0 && way[1] == 0 && way[2] == 0) way[1] = -1; // a lamp in the middle
-    normalise(way);
+    double3_normalize(way);
     across[fabs(way[1]) < 0.9 ? 1 : 0] = 1;
-    cross(across, way, view.axis[0]);
-    normalise(view.axis[0]);
-    cross(way, view.axis[0], view.axis[1]);
+    double3_cross(across, way, view.axis[0]);
+    double3_normalize(view.axis[0]);
+    double3_cross(way, view.axis[0], view.axis[1]);
     return view;
 }
 

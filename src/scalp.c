@@ -10,24 +10,13 @@ static const double PI = 3.14159265358979323846;
 static const double SPHERE_RADIUS = 0.1;
 static const double NECK_DEPTH = 0.19, NECK_BEGIN = 0.7 * 3.14159265358979323846;
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void normalize(double v[3])
-{
-    double length = sqrt(dot(v, v));
-    for (int i = 0; i < 3; i++) v[i] /= length;
-}
-
 // An axis-aligned ellipsoid around the origin, which need not be its centre.
 typedef struct Ellipsoid {
-    double center[3], axis[3];
+    Double3 center, axis;
 } Ellipsoid;
 
 // Solves |(t d - c) / a| = 1 for the positive t.
-static double ellipsoid_radius(const Ellipsoid *ellipsoid, const double direction[3])
+static double ellipsoid_radius(const Ellipsoid *ellipsoid, const Double3 direction)
 {
     double a = 0.0, b = 0.0, c = -1.0;
     for (int i = 0; i < 3; i++) {
@@ -42,10 +31,11 @@ static double ellipsoid_radius(const Ellipsoid *ellipsoid, const double directio
 
 // A swelling of the surface around a direction.
 typedef struct Bump {
-    double direction[3], height, width; // unit length; metres; radians or so
+    Double3 direction;    // unit length
+    double height, width; // metres; radians or so
 } Bump;
 
-static double bump_height(const Bump *bump, const double direction[3])
+static double bump_height(const Bump *bump, const Double3 direction)
 {
     double square = 0.0;
     for (int i = 0; i < 3; i++) {
@@ -57,7 +47,7 @@ static double bump_height(const Bump *bump, const double direction[3])
 
 // Skull, face with jaw, and a neck without end, joined softly: the 14-norm of three radii is a
 // smooth maximum.
-static double endless_head_radius(const double direction[3])
+static double endless_head_radius(const Double3 direction)
 {
     static const Ellipsoid parts[] = {
         {{0.0, 0.018, -0.008}, {0.074, 0.090, 0.096}},
@@ -65,12 +55,13 @@ static double endless_head_radius(const double direction[3])
         {{0.0, -0.150, -0.022}, {0.054, 0.210, 0.056}},
     };
     static const Bump bumps[] = {
-        {{0.0, -0.259, 0.966}, 0.016, 0.13},                                             // nose
-        {{0.0, -0.556, 0.831}, 0.005, 0.14},                                             // lips
-        {{0.0, -0.755, 0.656}, 0.006, 0.16},                                             // chin
-        {{0.314, -0.010, 0.949}, -0.006, 0.16},                                          // eyes
-        {{-0.314, -0.010, 0.949}, -0.006, 0.16}, {{0.978, -0.130, -0.163}, 0.012, 0.15}, // ears
-        {{-0.978, -0.130, -0.163}, 0.012, 0.15},
+        {{0.0, -0.259, 0.966}, 0.016, 0.13},     // nose
+        {{0.0, -0.556, 0.831}, 0.005, 0.14},     // lips
+        {{0.0, -0.755, 0.656}, 0.006, 0.16},     // chin
+        {{0.314, -0.010, 0.949}, -0.006, 0.16},  // left eye
+        {{-0.314, -0.010, 0.949}, -0.006, 0.16}, // right eye
+        {{0.978, -0.130, -0.163}, 0.012, 0.15},  // left ear
+        {{-0.978, -0.130, -0.163}, 0.012, 0.15}, // right ear
     };
     double sum = 0.0, bump = 0.0;
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
@@ -81,37 +72,38 @@ static double endless_head_radius(const double direction[3])
 }
 
 // The neck ends in a plane.
-static double head_radius(const double direction[3])
+static double head_radius(const Double3 direction)
 {
     double radius = endless_head_radius(direction);
     return direction[1] < 0.0 ? fmin(radius, NECK_DEPTH / -direction[1]) : radius;
 }
 
-double scalp_radius(ScalpShape shape, const double direction[3])
+double scalp_radius(ScalpShape shape, const Double3 direction)
 {
     return shape == SCALP_SPHERE ? SPHERE_RADIUS : head_radius(direction);
 }
 
 // For r(d), with r extended to all p as r(p / |p|), F(p) = |p| - r is 0 on the surface and its
 // gradient, d - grad r, points along the normal.
-void scalp_normal(ScalpShape shape, const double direction[3], double normal[3])
+void scalp_normal(ScalpShape shape, const Double3 direction, Double3 normal)
 {
     const double step = 1e-4;
     double radius = scalp_radius(shape, direction);
     for (int i = 0; i < 3; i++) {
-        double ahead[3] = {direction[0], direction[1], direction[2]};
-        double behind[3] = {direction[0], direction[1], direction[2]};
+        Double3 ahead, behind;
+        double3_copy(direction, ahead);
+        double3_copy(direction, behind);
         ahead[i] += step;
         behind[i] -= step;
-        normalize(ahead);
-        normalize(behind);
+        double3_normalize(ahead);
+        double3_normalize(behind);
         double slope = (scalp_radius(shape, ahead) - scalp_radius(shape, behind)) / (2.0 * step);
         normal[i] = shape == SCALP_SPHERE ? direction[i] : direction[i] - slope / radius;
     }
-    normalize(normal);
+    double3_normalize(normal);
 }
 
-bool scalp_has_hair(ScalpShape shape, const double direction[3], bool everywhere)
+bool scalp_has_hair(ScalpShape shape, const Double3 direction, bool everywhere)
 {
     if (shape == SCALP_SPHERE) return everywhere || direction[1] > 0.2;
     // The hair line, from the nape past the ears to the forehead.
@@ -121,15 +113,16 @@ bool scalp_has_hair(ScalpShape shape, const double direction[3], bool everywhere
 }
 
 // Area of the surface per area of the unit sphere.
-static double area_ratio(ScalpShape shape, const double direction[3])
+static double area_ratio(ScalpShape shape, const Double3 direction)
 {
-    double normal[3], radius = scalp_radius(shape, direction);
+    Double3 normal;
+    double radius = scalp_radius(shape, direction);
     scalp_normal(shape, direction, normal);
-    return radius * radius / dot(normal, direction);
+    return radius * radius / double3_dot(normal, direction);
 }
 
 // Archimedes: even in y and in the angle about the y axis is even on the sphere.
-static void map_to_sphere(double u, double v, double direction[3])
+static void map_to_sphere(double u, double v, Double3 direction)
 {
     double y = 1.0 - 2.0 * u, flat = sqrt(fmax(0.0, 1.0 - y * y));
     direction[0] = flat * sin(2.0 * PI * v);
@@ -144,7 +137,7 @@ ScalpRoots scalp_roots_begin(ScalpShape shape, bool everywhere, uint32_t seed)
     for (int i = 0; i < 3; i++) roots.shift[i] = random_real(&random);
     enum { GRID = 64 };
     for (int i = 0; i < GRID * GRID; i++) {
-        double direction[3];
+        Double3 direction;
         map_to_sphere((i / GRID + 0.5) / GRID, (i % GRID + 0.5) / GRID, direction);
         if (scalp_has_hair(shape, direction, everywhere))
             roots.heaviest = fmax(roots.heaviest, area_ratio(shape, direction));
@@ -156,11 +149,11 @@ ScalpRoots scalp_roots_begin(ScalpShape shape, bool everywhere, uint32_t seed)
 // Points of a low-discrepancy sequence in three dimensions (additive recurrence with powers of the
 // inverse of g, g^4 = g + 1: Roberts 2018, "The unreasonable effectiveness of quasirandom
 // sequences"). Two dimensions give the direction, the third thins out by area.
-void scalp_roots_next(ScalpRoots *roots, double direction[3])
+void scalp_roots_next(ScalpRoots *roots, Double3 direction)
 {
-    static const double alpha[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
+    static const Double3 alpha = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
     for (;;) {
-        double point[3];
+        Double3 point;
         for (int i = 0; i < 3; i++) {
             double x = roots->shift[i] + alpha[i] * (double)roots->next;
             point[i] = x - floor(x);
@@ -199,7 +192,7 @@ static void add_ring_triangles(Mesh *mesh, uint32_t ring, uint32_t rings)
     }
 }
 
-static void direction_at(double angle, double turn, double direction[3])
+static void direction_at(double angle, double turn, Double3 direction)
 {
     direction[0] = sin(angle) * sin(turn);
     direction[1] = cos(angle);
@@ -211,7 +204,8 @@ static double neck_edge(double turn)
 {
     double inside = NECK_BEGIN, outside = PI;
     for (int i = 0; i < 50; i++) {
-        double angle = 0.5 * (inside + outside), direction[3];
+        double angle = 0.5 * (inside + outside);
+        Double3 direction;
         direction_at(angle, turn, direction);
         if (-direction[1] * endless_head_radius(direction) < NECK_DEPTH)
             inside = angle;
@@ -245,7 +239,8 @@ Result scalp_make_mesh(Mesh *mesh, ScalpShape shape, uint32_t rings, Error *erro
     }
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         uint32_t ring = v == 0 ? 0 : 1 + (v - 1) / around;
-        double turn = 2.0 * PI * ((v - 1) % around) / around, direction[3];
+        double turn = 2.0 * PI * ((v - 1) % around) / around;
+        Double3 direction;
         direction_at(ring_angle(shape, ring, rings, turn), turn, direction);
         double radius = scalp_radius(shape, direction);
         for (int i = 0; i < 3; i++) mesh->position[v][i] = (float)(radius * direction[i]);

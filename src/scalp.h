@@ -3,6 +3,7 @@
 // origin: each direction from there meets the surface once. Metres, y up, face towards +z.
 #pragma once
 
+#include "double3.h"
 #include "mesh.h"
 
 #include <stdbool.h>
@@ -14,27 +15,27 @@ typedef enum ScalpShape {
 } ScalpShape;
 
 // Distance of the surface from the origin in a direction of unit length.
-double scalp_radius(ScalpShape shape, const double direction[3]);
+double scalp_radius(ScalpShape shape, const Double3 direction);
 
 // Normal of unit length, outwards, of the surface in a direction of unit length.
-void scalp_normal(ScalpShape shape, const double direction[3], double normal[3]);
+void scalp_normal(ScalpShape shape, const Double3 direction, Double3 normal);
 
 // Where hair grows in a direction of unit length: the sphere's upper part (y > 0.2 of the radius)
 // or all of it (`everywhere`), the head above its hair line.
-bool scalp_has_hair(ScalpShape shape, const double direction[3], bool everywhere);
+bool scalp_has_hair(ScalpShape shape, const Double3 direction, bool everywhere);
 
 // Directions of roots, one after the other: even over the area, and so is any number of them from
 // the first on.
 typedef struct ScalpRoots {
     ScalpShape shape;
     bool everywhere;
-    double shift[3]; // of the sequence, 0 .. 1
+    Double3 shift;   // of the sequence, 0 .. 1
     double heaviest; // largest area per solid angle, over the unit sphere's
     uint64_t next;
 } ScalpRoots;
 
 ScalpRoots scalp_roots_begin(ScalpShape shape, bool everywhere, uint32_t seed);
-void scalp_roots_next(ScalpRoots *roots, double direction[3]);
+void scalp_roots_next(ScalpRoots *roots, Double3 direction);
 
 // A closed mesh of `rings` bands between the poles, 2 * rings squares around: 4 * rings *
 // (rings - 1) triangles; 3 <= rings <= 4096. Its vertices lie on the surface.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "strands_figures.h"
 
+#include "double3.h"
 #include "nearest.h"
 
 #include <math.h>
@@ -22,37 +23,29 @@ const char *figure_unit(FigureKind kind)
 
 // --- Quantities.
 
-static void subtract(const float a[3], const float b[3], double d[3])
+static void subtract(const float a[3], const float b[3], Double3 d)
 {
     for (int k = 0; k < 3; k++) d[k] = (double)b[k] - (double)a[k];
 }
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static double norm(const double a[3])
-{
-    return sqrt(dot(a, a));
-}
-
 // The angle between two directions, radians, by arctangent: exact for small ones, too.
-static double angle(const double a[3], const double b[3])
+static double angle(const Double3 a, const Double3 b)
 {
-    double c[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-    return atan2(norm(c), dot(a, b));
+    Double3 c;
+    double3_cross(a, b, c);
+    return atan2(double3_length(c), double3_dot(a, b));
 }
 
 static size_t collect_strands(const Strands *strands, FigureKind kind, double *values)
 {
     for (uint32_t s = 0; s < strands->strand_count; s++) {
-        double reach[3], length = strands_length(strands, s);
+        Double3 reach;
+        double length = strands_length(strands, s);
         subtract(strands->position[strands->first[s]], strands->position[strands->first[s + 1] - 1],
                  reach);
         values[s] = kind == FIGURE_SIZE     ? strands_size(strands, s)
                     : kind == FIGURE_LENGTH ? length
-                                            : norm(reach) / length;
+                                            : double3_length(reach) / length;
     }
     return strands->strand_count;
 }
@@ -63,13 +56,14 @@ static size_t collect_vertices(const Strands *strands, FigureKind kind, double *
     size_t count = 0;
     for (uint32_t s = 0; s < strands->strand_count; s++)
         for (uint32_t v = strands->first[s]; v + 1 < strands->first[s + 1]; v++) {
-            double before[3], after[3];
+            Double3 before, after;
             subtract(strands->position[v], strands->position[v + 1], after);
             if (kind == FIGURE_SEGMENT) {
-                values[count++] = norm(after);
+                values[count++] = double3_length(after);
             } else if (v > strands->first[s]) {
                 subtract(strands->position[v - 1], strands->position[v], before);
-                double turn = angle(before, after), mean = (norm(before) + norm(after)) / 2;
+                double turn = angle(before, after),
+                       mean = (double3_length(before) + double3_length(after)) / 2;
                 values[count++] = kind == FIGURE_TURN ? deg * turn : turn / mean;
             }
         }

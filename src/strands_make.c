@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "strands_make.h"
 
+#include "double3.h"
 #include "random.h"
 #include "suggest.h"
 
@@ -9,32 +10,6 @@
 #include <string.h>
 
 static const double PI = 3.14159265358979323846;
-
-typedef double Vector[3];
-
-static double dot(const Vector a, const Vector b)
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const Vector a, const Vector b, Vector c)
-{
-    c[0] = a[1] * b[2] - a[2] * b[1];
-    c[1] = a[2] * b[0] - a[0] * b[2];
-    c[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static double normalize(Vector v)
-{
-    double length = sqrt(dot(v, v));
-    for (int i = 0; i < 3 && length > 0.0; i++) v[i] /= length;
-    return length;
-}
-
-static void add_scaled(Vector to, double factor, const Vector v)
-{
-    for (int i = 0; i < 3; i++) to[i] += factor * v[i];
-}
 
 static double ramp(double low, double high, double x)
 {
@@ -45,8 +20,8 @@ static double ramp(double low, double high, double x)
 // What one strand is grown from.
 typedef struct Seedling {
     const StrandsRecipe *recipe;
-    Vector direction, normal,
-        root; // of the root, seen from the origin; of the surface there; its place
+    Double3 root, direction; // its place; seen from the origin
+    Double3 normal;          // of the surface there
     double length, phase;
     Random random;
 } Seedling;
@@ -56,7 +31,8 @@ static Seedling begin_strand(const StrandsRecipe *recipe, ScalpRoots *roots, uin
     Seedling seedling = {.recipe = recipe, .random = random_create(recipe->seed, s)};
     scalp_roots_next(roots, seedling.direction);
     scalp_normal(recipe->shape, seedling.direction, seedling.normal);
-    add_scaled(seedling.root, scalp_radius(recipe->shape, seedling.direction), seedling.direction);
+    double3_add_scaled(seedling.root, scalp_radius(recipe->shape, seedling.direction),
+                       seedling.direction);
     seedling.length =
         recipe->length * (1.0 - recipe->length_variation * random_real(&seedling.random));
     // Slow waves over the head keep neighbours in step.
@@ -68,15 +44,15 @@ static Seedling begin_strand(const StrandsRecipe *recipe, ScalpRoots *roots, uin
 
 // --- The thesis's random strands.
 
-static void grow_random(Seedling *seedling, Vector *points)
+static void grow_random(Seedling *seedling, Double3 *points)
 {
     uint32_t count = seedling->recipe->vertices;
-    memcpy(points[0], seedling->root, sizeof(Vector));
+    double3_copy(seedling->root, points[0]);
     for (uint32_t v = 1; v < count; v++) {
-        Vector direction;
+        Double3 direction;
         random_direction(&seedling->random, direction);
-        memcpy(points[v], points[v - 1], sizeof(Vector));
-        add_scaled(points[v], seedling->length / (count - 1), direction);
+        double3_copy(points[v - 1], points[v]);
+        double3_add_scaled(points[v], seedling->length / (count - 1), direction);
     }
 }
 
@@ -84,92 +60,100 @@ static void grow_random(Seedling *seedling, Vector *points)
 
 // Where the comb pulls at a place: back and, from the parting in front, to the sides; then down,
 // spreading a little.
-static void comb(const Seedling *seedling, const Vector at, double share, Vector pull)
+static void comb(const Seedling *seedling, const Double3 at, double share, Double3 pull)
 {
     const double *root = seedling->direction;
     double fallen = ramp(0.0, 0.3, share), front = ramp(-0.7, 0.5, root[2]);
-    Vector down = {0.6 * at[0], -1.0, 0.6 * at[2] - 0.5 * ramp(0.0, 0.08, at[2])};
-    Vector back = {0.75 * front * tanh(root[0] / 0.12), -0.25, -0.8};
+    Double3 down = {0.6 * at[0], -1.0, 0.6 * at[2] - 0.5 * ramp(0.0, 0.08, at[2])};
+    Double3 back = {0.75 * front * tanh(root[0] / 0.12), -0.25, -0.8};
     for (int i = 0; i < 3; i++) pull[i] = (1.0 - fallen) * back[i] + fallen * down[i];
-    normalize(pull);
+    double3_normalize(pull);
 }
 
 // Lifts a point to at least `gap` over the surface.
-static void keep_outside(const Seedling *seedling, Vector point, double gap)
+static void keep_outside(const Seedling *seedling, Double3 point, double gap)
 {
-    Vector direction = {point[0], point[1], point[2]};
-    double distance = normalize(direction);
+    Double3 direction;
+    double3_copy(point, direction);
+    double distance = double3_normalize(direction);
     double least = distance > 0.0 ? scalp_radius(seedling->recipe->shape, direction) + gap : 0.0;
     if (distance >= least) return;
     for (int i = 0; i < 3; i++) point[i] = least * direction[i];
 }
 
+// A segment of its length from `from` along `direction`, which becomes where it goes when its end
+// is kept outside by `gap`.
+static void grow_segment(const Seedling *seedling, const Double3 from, double segment, double gap,
+                         Double3 direction, Double3 to)
+{
+    double3_copy(from, to);
+    double3_add_scaled(to, segment, direction);
+    keep_outside(seedling, to, gap);
+    double3_subtract(to, from, direction);
+    double3_normalize(direction);
+    double3_copy(from, to);
+    double3_add_scaled(to, segment, direction);
+}
+
 // A strand that leaves along the normal and bends towards the comb's pull, `length` long.
-static void grow_combed(const Seedling *seedling, double length, Vector *points)
+static void grow_combed(const Seedling *seedling, double length, Double3 *points)
 {
     uint32_t count = seedling->recipe->vertices;
     double segment = length / (count - 1), lift = 0.006 + 0.010 * seedling->normal[1];
-    Vector direction = {seedling->normal[0], seedling->normal[1], seedling->normal[2]};
-    memcpy(points[0], seedling->root, sizeof(Vector));
+    Double3 direction;
+    double3_copy(seedling->normal, direction);
+    double3_copy(seedling->root, points[0]);
     for (uint32_t v = 1; v < count; v++) {
         double share = v / (double)(count - 1);
-        Vector pull;
+        Double3 pull;
         comb(seedling, points[v - 1], share, pull);
         // Bending over a fixed length makes the shape independent of the number of vertices.
-        add_scaled(direction, 1.0 - exp(-segment / 0.012), pull);
-        normalize(direction);
-        memcpy(points[v], points[v - 1], sizeof(Vector));
-        add_scaled(points[v], segment, direction);
-        keep_outside(seedling, points[v], lift * ramp(0.0, 0.03, share * length));
-        for (int i = 0; i < 3; i++) direction[i] = points[v][i] - points[v - 1][i];
-        normalize(direction);
-        for (int i = 0; i < 3; i++) points[v][i] = points[v - 1][i] + segment * direction[i];
+        double3_add_scaled(direction, 1.0 - exp(-segment / 0.012), pull);
+        double3_normalize(direction);
+        grow_segment(seedling, points[v - 1], segment, lift * ramp(0.0, 0.03, share * length),
+                     direction, points[v]);
     }
 }
 
-static double measure(const Vector *points, uint32_t count)
+static double measure(const Double3 *points, uint32_t count)
 {
     double length = 0.0;
-    for (uint32_t v = 1; v < count; v++) {
-        Vector edge = {points[v][0], points[v][1], points[v][2]};
-        add_scaled(edge, -1.0, points[v - 1]);
-        length += sqrt(dot(edge, edge));
-    }
+    for (uint32_t v = 1; v < count; v++) length += double3_distance(points[v], points[v - 1]);
     return length;
 }
 
 // Winds a smooth strand: each vertex moves sideways, in a frame that is carried along the strand.
-static void wind(const Seedling *seedling, Vector *points)
+static void wind(const Seedling *seedling, Double3 *points)
 {
     const StrandsRecipe *recipe = seedling->recipe;
-    Vector side = {seedling->normal[1], seedling->normal[2], seedling->normal[0]}, before;
-    memcpy(before, points[0], sizeof before);
+    Double3 side = {seedling->normal[1], seedling->normal[2], seedling->normal[0]}, before;
+    double3_copy(points[0], before);
     for (uint32_t v = 1; v < recipe->vertices; v++) {
         double share = v / (double)(recipe->vertices - 1);
-        Vector tangent = {points[v][0], points[v][1], points[v][2]}, other;
-        add_scaled(tangent, -1.0, before);
-        memcpy(before, points[v], sizeof before);
-        normalize(tangent);
-        add_scaled(side, -dot(side, tangent), tangent);
-        normalize(side);
-        cross(tangent, side, other);
+        Double3 tangent, other;
+        double3_subtract(points[v], before, tangent);
+        double3_copy(points[v], before);
+        double3_normalize(tangent);
+        double3_flatten(side, tangent);
+        double3_normalize(side);
+        double3_cross(tangent, side, other);
         double angle = seedling->phase + 2.0 * PI * recipe->curl_turns * share;
         double radius = recipe->curl_radius * ramp(0.0, 0.6, share);
-        add_scaled(points[v], radius * cos(angle), side);
-        add_scaled(points[v], radius * sin(angle), other);
+        double3_add_scaled(points[v], radius * cos(angle), side);
+        double3_add_scaled(points[v], radius * sin(angle), other);
         keep_outside(seedling, points[v], 0.002 * ramp(0.0, 0.1, share));
     }
 }
 
 // Winding lengthens: the smooth strand is made shorter until the wound one has its length.
-static void grow_curls(const Seedling *seedling, Vector *points)
+static void grow_curls(const Seedling *seedling, Double3 *points)
 {
     double smooth = seedling->length;
     for (int attempt = 0; attempt < 12; attempt++) {
         grow_combed(seedling, smooth, points);
         wind(seedling, points);
         double ratio =
-            seedling->length / measure((const Vector *)points, seedling->recipe->vertices);
+            seedling->length / measure((const Double3 *)points, seedling->recipe->vertices);
         if (fabs(ratio - 1.0) < 0.002) break;
         smooth *= ratio;
     }
@@ -177,30 +161,26 @@ static void grow_curls(const Seedling *seedling, Vector *points)
 
 // --- Fur.
 
-static void grow_fur(Seedling *seedling, Vector *points)
+static void grow_fur(Seedling *seedling, Double3 *points)
 {
     uint32_t count = seedling->recipe->vertices;
     double segment = seedling->length / (count - 1);
-    Vector direction = {seedling->normal[0], seedling->normal[1], seedling->normal[2]};
-    Vector stray, pull = {0.0, -0.9, -0.5};
+    Double3 direction;
+    double3_copy(seedling->normal, direction);
+    Double3 stray, pull = {0.0, -0.9, -0.5};
     random_direction(&seedling->random, stray);
-    add_scaled(direction, 0.3, stray);
-    memcpy(points[0], seedling->root, sizeof(Vector));
+    double3_add_scaled(direction, 0.3, stray);
+    double3_copy(seedling->root, points[0]);
     for (uint32_t v = 1; v < count; v++) {
-        add_scaled(direction, 1.1 / (count - 1), pull);
-        normalize(direction);
-        memcpy(points[v], points[v - 1], sizeof(Vector));
-        add_scaled(points[v], segment, direction);
-        keep_outside(seedling, points[v], 0.1 * segment);
-        for (int i = 0; i < 3; i++) direction[i] = points[v][i] - points[v - 1][i];
-        normalize(direction);
-        for (int i = 0; i < 3; i++) points[v][i] = points[v - 1][i] + segment * direction[i];
+        double3_add_scaled(direction, 1.1 / (count - 1), pull);
+        double3_normalize(direction);
+        grow_segment(seedling, points[v - 1], segment, 0.1 * segment, direction, points[v]);
     }
 }
 
 // ---
 
-static void grow(Seedling *seedling, Vector *points)
+static void grow(Seedling *seedling, Double3 *points)
 {
     switch (seedling->recipe->style) {
     case STRANDS_STYLE_RANDOM:
@@ -220,7 +200,7 @@ static void grow(Seedling *seedling, Vector *points)
     }
 }
 
-static void make_all(Strands *strands, const StrandsRecipe *recipe, Vector *points)
+static void make_all(Strands *strands, const StrandsRecipe *recipe, Double3 *points)
 {
     bool everywhere = recipe->style == STRANDS_STYLE_FUR;
     ScalpRoots roots = scalp_roots_begin(recipe->shape, everywhere, recipe->seed);
@@ -313,7 +293,7 @@ Result strands_make(Strands *strands, const StrandsRecipe *recipe, Error *error)
     result = strands_create(strands, recipe->count, recipe->count * recipe->vertices, error);
     if (result != RESULT_OK) return result;
     strands->strand_uv = calloc(recipe->count, sizeof *strands->strand_uv);
-    Vector *points = malloc(recipe->vertices * sizeof *points);
+    Double3 *points = malloc(recipe->vertices * sizeof *points);
     if (strands->strand_uv && points)
         make_all(strands, recipe, points);
     else

@@ -2,6 +2,8 @@
 // Strands of stress_case.h.
 #include "stress_case.h"
 
+#include "double3.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -33,15 +35,9 @@ static void link_of(const StressCase *stress, int j, const double main[3], const
     case STRESS_SHAPES:
         break;
     }
-    const double third[3] = {main[1] * side[2] - main[2] * side[1],
-                             main[2] * side[0] - main[0] * side[2],
-                             main[0] * side[1] - main[1] * side[0]};
+    Double3 third;
+    double3_cross(main, side, third);
     for (int k = 0; k < 3; ++k) link[k] = along * main[k] + across * side[k] + over * third[k];
-}
-
-static double norm(const double v[3])
-{
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
 void stress_case_make_strand(const StressCase *stress, float (*points)[3])
@@ -54,12 +50,12 @@ void stress_case_make_strand(const StressCase *stress, float (*points)[3])
     Random random = random_create((uint64_t)stress->value[STRESS_shape_seed], 0);
     for (int j = 1; j < n; ++j) {
         link_of(stress, j, main, side, &random, links[j]);
-        total += norm(links[j]);
+        total += double3_length(links[j]);
     }
     // Reading leaves apart what is by more than 1e-7 of the largest coordinate, after rounding.
     double least = fmax(1.1e-9, 4e-7 * (arm + length));
     for (int j = 0; j < n; ++j) {
-        double size = j ? norm(links[j]) : 1,
+        double size = j ? double3_length(links[j]) : 1,
                scaled = j ? fmax(size * length / total, least) / size : 0;
         for (int k = 0; k < 3; ++k) points[j][k] = (float)(x[k] += j ? scaled * links[j][k] : 0);
     }
