@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Wavefront OBJ in and out.
-#include "decimal.h"
 #include "file.h"
 #include "mesh.h"
-#include "reader.h"
+#include "obj_text.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -46,6 +45,7 @@ static void *pile_add(Reader *reader, Pile *pile, size_t size)
 }
 
 // Reads `size` coordinates; those behind the first `needed` are 0 where the line ends before them.
+// What follows, w or colours that some programs put there, is left.
 static void read_vector(Reader *reader, Pile *pile, int size, int needed, const char *what)
 {
     float vector[3] = {0};
@@ -59,21 +59,10 @@ static void read_vector(Reader *reader, Pile *pile, int size, int needed, const 
     }
     float *record = pile_add(reader, pile, (size_t)size * sizeof *vector);
     if (record) memcpy(record, vector, (size_t)size * sizeof *vector);
-    reader_skip_line(reader); // w, or colours that some programs put there
 }
 
-// A whole number other than 0 at *text, which is moved behind it; 0 if there is none.
-static int64_t scan_index(const char **text)
-{
-    char *end;
-    if (**text != '-' && !(**text >= '0' && **text <= '9')) return 0;
-    long long value = strtoll(*text, &end, 10);
-    *text = end;
-    return llabs(value) <= UINT32_MAX ? value : 0;
-}
-
-// The 1-based index that `index` means, 0 for a mistake. An index beyond what has been read so far
-// may still become valid: the largest is kept and checked at the end.
+// The index from 1 that `index` of the file means, 0 for a mistake and for none. An index beyond
+// what has been read so far may still become valid: the largest is kept and checked at the end.
 static uint32_t resolve_index(Obj *obj, int64_t index, size_t count, int which)
 {
     if (index < 0) index += (int64_t)count + 1;
@@ -85,36 +74,20 @@ static uint32_t resolve_index(Obj *obj, int64_t index, size_t count, int which)
     return (uint32_t)index;
 }
 
-// Parses "v", "v/t", "v//n" or "v/t/n" into vertex, normal, uv; what is missing is 0. False for
-// anything else.
-static bool parse_corner(Obj *obj, const char *text, uint32_t corner[3])
-{
-    corner[0] = resolve_index(obj, scan_index(&text), obj->position.count, 0);
-    corner[1] = corner[2] = 0;
-    if (corner[0] == 0) return false;
-    if (*text == '/') {
-        text++;
-        bool textured = *text != '/' && *text != 0;
-        if (textured) corner[2] = resolve_index(obj, scan_index(&text), obj->uv.count, 2);
-        if (textured && corner[2] == 0) return false;
-        if (*text == '/') {
-            text++;
-            corner[1] = resolve_index(obj, scan_index(&text), obj->normal.count, 1);
-            if (corner[1] == 0) return false;
-        }
-    }
-    return *text == 0;
-}
-
-static void read_corner(Obj *obj, uint32_t corner[3])
+// Vertex, normal, uv from 1; a normal or uv that is missing is 0.
+static void read_corner(Obj *obj, uint32_t index[3])
 {
     Reader *reader = &obj->reader;
     Reader before = *reader;
-    char text[64];
-    if (!reader_read_word(reader, text, sizeof text) || !parse_corner(obj, text, corner)) {
-        *reader = before;
-        reader_fail_expected(reader, "a corner v, v/t, v//n or v/t/n with an index in range");
+    ObjCorner corner;
+    if (obj_text_take_corner(reader, &corner)) {
+        index[0] = resolve_index(obj, corner.vertex, obj->position.count, 0);
+        index[1] = resolve_index(obj, corner.normal, obj->normal.count, 1);
+        index[2] = resolve_index(obj, corner.uv, obj->uv.count, 2);
+        if (index[0] && (index[1] || !corner.normal) && (index[2] || !corner.uv)) return;
     }
+    *reader = before;
+    reader_fail_expected(reader, "a corner v, v/t, v//n or v/t/n with an index in range");
 }
 
 static void add_triangle(Obj *obj, uint32_t corner[3][3])
@@ -134,30 +107,27 @@ static void read_face(Obj *obj)
     Reader *reader = &obj->reader;
     uint32_t corner[3][3] = {{0}}; // the first, the one before, this one
     size_t corners = 0;
-    while (!reader_line_ended(reader) && reader->data[reader->at] != '#') {
+    while (obj_text_goes_on(reader)) {
         memcpy(corner[1], corner[2], sizeof corner[1]);
         read_corner(obj, corner[2]);
         if (corners == 0) memcpy(corner[0], corner[2], sizeof corner[0]);
         if (++corners >= 3) add_triangle(obj, corner);
     }
     if (corners < 3) reader_fail(reader, "a face of %zu corners: expected at least 3", corners);
-    reader_skip_line(reader);
 }
 
 static void read_statements(Obj *obj)
 {
     Reader *reader = &obj->reader;
-    while (!reader_ended(reader)) {
-        if (reader_take(reader, "v"))
+    ObjStatement statement;
+    while (obj_text_next(reader, &statement)) {
+        if (statement == OBJ_VERTEX)
             read_vector(reader, &obj->position, 3, 3, "a vertex's coordinate");
-        else if (reader_take(reader, "vt"))
-            read_vector(reader, &obj->uv, 2, 1, "a texture coordinate");
-        else if (reader_take(reader, "vn"))
+        if (statement == OBJ_UV) read_vector(reader, &obj->uv, 2, 1, "a texture coordinate");
+        if (statement == OBJ_NORMAL)
             read_vector(reader, &obj->normal, 3, 3, "a normal's coordinate");
-        else if (reader_take(reader, "f"))
-            read_face(obj);
-        else
-            reader_skip_line(reader);
+        if (statement == OBJ_FACE) read_face(obj);
+        reader_skip_line(reader);
     }
     if (reader_ok(reader) && obj->triangle.count == 0) reader_fail(reader, "no faces");
     static const char *const names[] = {"vertex", "normal", "texture coordinate"};
@@ -271,17 +241,9 @@ Result mesh_write_obj(const char *path, const Mesh *mesh, Error *error)
     if (result != RESULT_OK) return result;
     fprintf(file.stream, "# %u vertices, %u triangles; metres, y up\n", mesh->vertex_count,
             mesh->triangle_count);
-    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-        decimal_put(file.stream, "v ", mesh->position[v][0]);
-        decimal_put(file.stream, " ", mesh->position[v][1]);
-        decimal_put(file.stream, " ", mesh->position[v][2]);
-        fputc('\n', file.stream);
-    }
-    for (uint32_t i = 0; i < mesh->uv_count; i++) {
-        decimal_put(file.stream, "vt ", mesh->uv[i][0]);
-        decimal_put(file.stream, " ", mesh->uv[i][1]);
-        fputc('\n', file.stream);
-    }
+    for (uint32_t v = 0; v < mesh->vertex_count; v++)
+        obj_text_put(file.stream, "v", mesh->position[v], 3);
+    for (uint32_t i = 0; i < mesh->uv_count; i++) obj_text_put(file.stream, "vt", mesh->uv[i], 2);
     for (uint32_t t = 0; t < mesh->triangle_count; t++) put_face(file.stream, mesh, t);
     return outfile_commit(&file, error);
 }

@@ -1,23 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "obj_file.h"
 
-#include "decimal.h"
+#include "obj_text.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-bool obj_file_matches(const Bytes *bytes)
-{
-    static const char *const words[] = {"v", "vn", "vt", "vp",     "o",     "g",
-                                        "s", "l",  "f",  "mtllib", "usemtl"};
-    const char *text = (const char *)bytes->data;
-    text += strspn(text, " \t\r\n");
-    if (*text == '#') return strncmp(text, "#usda", 5) != 0;
-    size_t length = strcspn(text, " \t\r\n");
-    for (size_t i = 0; i < sizeof words / sizeof *words; i++)
-        if (strlen(words[i]) == length && strncmp(text, words[i], length) == 0) return true;
-    return false;
-}
 
 // --- Reading: once to count, once to keep.
 
@@ -32,23 +19,17 @@ typedef struct Obj {
     int64_t last;                      // vertex at which the last line ended, -1: none
 } Obj;
 
-static bool corner_follows(Reader *reader)
-{
-    return !reader_line_ended(reader) && reader->data[reader->at] != '#';
-}
-
 static void count_statements(Obj *obj)
 {
     Reader counter = *obj->reader;
+    ObjStatement statement;
     char word[256];
-    while (!reader_ended(&counter)) {
-        if (reader_take(&counter, "v")) {
-            obj->vertices++;
-        } else if (reader_take(&counter, "l")) {
-            obj->lines++;
-            while (corner_follows(&counter) && reader_read_word(&counter, word, sizeof word))
-                obj->corners++;
-        }
+    while (obj_text_next(&counter, &statement)) {
+        obj->vertices += statement == OBJ_VERTEX;
+        obj->lines += statement == OBJ_LINE;
+        while (statement == OBJ_LINE && obj_text_goes_on(&counter) &&
+               reader_read_word(&counter, word, sizeof word))
+            obj->corners++;
         reader_skip_line(&counter);
     }
     obj->reader->locale = counter.locale;
@@ -63,16 +44,16 @@ static void read_vertex(Obj *obj)
     obj->read++;
 }
 
-// The vertex that "12", "-1" or "12/7" means, from 0.
+// The vertex that a corner means, from 0.
 static uint32_t read_corner(Obj *obj)
 {
     Reader *reader = obj->reader, before = *reader;
-    char word[256], *end = word;
-    long long index = 0;
-    if (reader_read_word(reader, word, sizeof word)) index = strtoll(word, &end, 10);
-    if (index < 0) index += (long long)obj->read + 1;
-    bool good = end != word && (*end == 0 || *end == '/') && index >= 1 && index <= obj->read;
-    if (good || !reader_ok(reader)) return good ? (uint32_t)index - 1 : 0;
+    ObjCorner corner = {0};
+    if (!reader_ok(reader)) return 0;
+    if (obj_text_take_corner(reader, &corner)) {
+        int64_t index = corner.vertex + (corner.vertex < 0 ? (int64_t)obj->read + 1 : 0);
+        if (index >= 1 && index <= obj->read) return (uint32_t)index - 1;
+    }
     *reader = before;
     reader_fail_expected(reader, "a vertex's number, of those that stand before this line");
     return 0;
@@ -88,7 +69,7 @@ static void read_line(Obj *obj)
 {
     Strands *strands = &obj->source->strands;
     uint32_t corners = 0, line = obj->reader->line;
-    while (corner_follows(obj->reader)) {
+    while (obj_text_goes_on(obj->reader)) {
         uint32_t vertex = read_corner(obj);
         if (!reader_ok(obj->reader)) return;
         if (corners++ == 0) {
@@ -105,13 +86,11 @@ static void read_line(Obj *obj)
 
 static void read_statements(Obj *obj)
 {
-    Reader *reader = obj->reader;
-    while (!reader_ended(reader)) {
-        if (reader_take(reader, "v"))
-            read_vertex(obj);
-        else if (reader_take(reader, "l"))
-            read_line(obj);
-        reader_skip_line(reader);
+    ObjStatement statement;
+    while (obj_text_next(obj->reader, &statement)) {
+        if (statement == OBJ_VERTEX) read_vertex(obj);
+        if (statement == OBJ_LINE) read_line(obj);
+        reader_skip_line(obj->reader);
     }
 }
 
@@ -151,12 +130,8 @@ void obj_file_write(FILE *stream, const Strands *strands)
 {
     fprintf(stream, "# %u strands, %u vertices\no hair\n", strands->strand_count,
             strands->vertex_count);
-    for (uint32_t v = 0; v < strands->vertex_count; v++) {
-        decimal_put(stream, "v ", strands->position[v][0]);
-        decimal_put(stream, " ", strands->position[v][1]);
-        decimal_put(stream, " ", strands->position[v][2]);
-        fputc('\n', stream);
-    }
+    for (uint32_t v = 0; v < strands->vertex_count; v++)
+        obj_text_put(stream, "v", strands->position[v], 3);
     for (uint32_t s = 0; s < strands->strand_count; s++) {
         fputc('l', stream);
         for (uint32_t v = strands->first[s]; v < strands->first[s + 1]; v++)

@@ -6,9 +6,6 @@
 
 #include <stdio.h>
 
-// Whether the content is text that begins with a statement or a comment of this format.
-bool obj_file_matches(const Bytes *bytes);
-
 // Reads `v` and `l` statements and passes over all others. Indices are from 1 or negative from the
 // last vertex; corners may be v or v/t. An `l` that begins at the vertex at which the one before it
 // ended goes on with that strand, as programs that write each edge for itself have it. Vertices

@@ -3,6 +3,7 @@
 
 #include "hair_file.h"
 #include "obj_file.h"
+#include "obj_text.h"
 #include "salon_file.h"
 #include "strands_mend.h"
 #include "strands_order.h"
@@ -20,7 +21,7 @@ static StrandsKind detect(const Bytes *bytes)
     if (hair_file_matches(bytes)) return STRANDS_HAIR;
     if (tfx_text_matches(bytes)) return STRANDS_TFX2_TEXT;
     if (usd_reader_matches(bytes)) return STRANDS_USD;
-    if (obj_file_matches(bytes)) return STRANDS_OBJ;
+    if (obj_text_matches(bytes)) return STRANDS_OBJ;
     float version = tfx_binary_version(bytes);
     if (version > 0.0f) return version < 4.0f ? STRANDS_TFX3 : STRANDS_TFX4;
     int floats = salon_file_match(bytes);

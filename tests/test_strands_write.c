@@ -161,6 +161,7 @@ static void broken_obj_files_are_refused_with_their_line(void **state)
                  {"v 0 0 0\nl 1 0\n", "x.obj:2: "},
                  {"v 0 0 0\nl 1 -2\n", "x.obj:2: "},
                  {"v 0 0 0\nl 1 x\n", "x.obj:2: "},
+                 {"v 0 0 0\nv 0 1 0\nl 1/1 2/x\n", "x.obj:3: "},
                  {"v 0 0 0\nl 1\n", "x.obj:2: a line of 1 vertices"},
                  {"v 0 0 0\nl\n", "x.obj:2: "},
                  {"l 1 2\nv 0 0 0\nv 0 1 0\n", "x.obj:1: "},
