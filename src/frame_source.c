@@ -80,13 +80,20 @@ static Result play_cache(FrameSource *source, const char *path, int last, Error 
     return cache_reader_check(&source->reader, last, error);
 }
 
+Result frame_source_look(FrameSource *source, Simulation *simulation, const Strands *strands,
+                         int last, Error *error)
+{
+    const char *from = simulation->scene->run.from_cache;
+    *source = (FrameSource){.simulation = simulation, .strands = strands, .written_ms = now_ms()};
+    return *from ? play_cache(source, from, last, error) : RESULT_OK;
+}
+
 Result frame_source_open(FrameSource *source, Simulation *simulation, const Strands *strands,
                          int last, FILE *messages, Error *error)
 {
     const RunParams *run = &simulation->scene->run;
-    *source = (FrameSource){.simulation = simulation, .strands = strands, .written_ms = now_ms()};
-    if (*run->from_cache) return play_cache(source, run->from_cache, last, error);
-    if (!*run->cache) return RESULT_OK;
+    Result result = frame_source_look(source, simulation, strands, last, error);
+    if (result != RESULT_OK || source->reads || !*run->cache) return result;
     if (asprintf(&source->state_path, "%s.state", run->cache) < 0) {
         source->state_path = NULL;
         return error_set(error, RESULT_FAILED, "no memory for a file's name");

@@ -24,6 +24,11 @@ typedef struct FrameSource {
 Result frame_source_open(FrameSource *source, Simulation *simulation, const Strands *strands,
                          int last, FILE *messages, Error *error);
 
+// The same without run.cache: frames come from run.from_cache or the simulation, and nothing is
+// written.
+Result frame_source_look(FrameSource *source, Simulation *simulation, const Strands *strands,
+                         int last, Error *error);
+
 // Makes `frame` the present one; frames are asked for in rising order. Those that are `drawn` have
 // their positions written. Frames between, which nobody asks for, are simulated if they have to be.
 // RESULT_INTERRUPTED if the warm-up before frame 0 was; errors as above.

@@ -19,7 +19,7 @@ typedef struct Group {
 } Group;
 
 typedef struct Survey {
-    Scene scene; // a shallow copy that writes nothing
+    const Scene *scene;
     const Assets *assets;
     GpuTimer timer;
     Simulation simulation;
@@ -47,7 +47,7 @@ static void add_group(Survey *survey, size_t count, float radius)
 
 static Result make_room(Survey *survey, Error *error)
 {
-    const Scene *scene = &survey->scene;
+    const Scene *scene = survey->scene;
     survey->groups = calloc(2 * (size_t)scene->section_count + 1, sizeof *survey->groups);
     for (uint32_t i = 0; survey->groups && i < scene->section_count; ++i) {
         const SimulationSection *section = &survey->simulation.sections[i];
@@ -82,7 +82,7 @@ static void carry_mesh(const Mesh *mesh, const HeadPose *head, float (*points)[3
 static Result read_points(Survey *survey, Error *error)
 {
     Result result = RESULT_OK;
-    uint32_t sections = survey->scene.section_count;
+    uint32_t sections = survey->scene->section_count;
     for (uint32_t i = 0; i < sections && result == RESULT_OK; ++i) {
         const SimulationSection *section = &survey->simulation.sections[i];
         const Group *guides = &survey->groups[2 * i], *followers = guides + 1;
@@ -147,7 +147,7 @@ static Result look_at_frame(Survey *survey, SurveyReport *report, int frame, Err
 static Result look(Survey *survey, SurveyReport *report, Error *error)
 {
     Result result = RESULT_OK;
-    for (int frame = 0; frame < survey->scene.run.frames && result == RESULT_OK; ++frame) {
+    for (int frame = 0; frame < survey->scene->run.frames && result == RESULT_OK; ++frame) {
         if (interrupt_requested())
             return error_set(error, RESULT_INTERRUPTED, "interrupted before the first picture");
         result = look_at_frame(survey, report, frame, error);
@@ -174,18 +174,15 @@ static void close_survey(Survey *survey)
 Result survey_fit_camera(Framing *framing, SurveyReport *report, const Scene *scene,
                          const Assets *assets, const Gpu *gpu, Error *error)
 {
-    char nothing[] = "";
-    Survey survey = {.scene = *scene, .assets = assets};
-    survey.scene.run.cache = nothing;
-    survey.scene.run.resume = false;
+    Survey survey = {.scene = scene, .assets = assets};
     *report = (SurveyReport){0};
     double begin = stats_clock_ms();
     gpu_timer_create(&survey.timer, false, gpu->software);
-    Result result = simulation_create(&survey.simulation, gpu, &survey.timer, &survey.scene,
+    Result result = simulation_create(&survey.simulation, gpu, &survey.timer, scene,
                                       assets->strands, &assets->mesh, error);
     if (result == RESULT_OK)
-        result = frame_source_open(&survey.source, &survey.simulation, assets->strands,
-                                   scene->run.frames - 1, NULL, error);
+        result = frame_source_look(&survey.source, &survey.simulation, assets->strands,
+                                   scene->run.frames - 1, error);
     if (result == RESULT_OK) result = fit_create(&survey.fit, scene, framing, error);
     if (result == RESULT_OK) result = make_room(&survey, error);
     if (result == RESULT_OK) result = look(&survey, report, error);

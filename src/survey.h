@@ -26,6 +26,6 @@ bool survey_is_wanted(const Scene *scene);
 // writing nothing, and moves the camera of `framing`, which framing_compute has filled in, to fit
 // what is drawn there (fit_solve): hair, with its followers and radii, and the mesh, unless
 // run.framing says hair only. Straight between particles; --smooth may bulge beyond.
-// RESULT_INTERRUPTED between two frames; other errors as simulation_create and frame_source_open.
+// RESULT_INTERRUPTED between two frames; other errors as simulation_create and frame_source_look.
 Result survey_fit_camera(Framing *framing, SurveyReport *report, const Scene *scene,
                          const Assets *assets, const Gpu *gpu, Error *error);
