@@ -213,8 +213,8 @@ static Result prepare(Run *run, Error *error)
 
 static void tell_result(const Run *run, const Sequence *sequence, double ms)
 {
-    int frames = sequence->output ? sequence->frames_drawn + sequence->frames_repeated
-                                  : run->simulation.frame + 1;
+    int frames = run->pictures.output ? sequence->frames_drawn + sequence->frames_repeated
+                                      : run->simulation.frame + 1;
     SolverReport report = simulation_report(&run->simulation);
     if (report.moves_limited && run->scene.run.verbose)
         fprintf(stderr, "%llu moves of more than 100 strand lengths a step were cut\n",
@@ -251,15 +251,10 @@ Result run_go(Run *run, Error *error)
     if (result != RESULT_OK) return result;
     Sequence sequence = {
         .scene = &run->scene,
-        .simulation = &run->simulation,
         .source = &run->source,
+        .pictures = &run->pictures,
         .exporter = run->exports ? &run->exporter : NULL,
         .done = run->resume.done,
-        .renderer = run->pictures.output ? &run->pictures.renderer : NULL,
-        .output = run->pictures.output,
-        .framing = &run->framing,
-        .items = run->pictures.items,
-        .item_count = run->pictures.item_count,
         .timer = &run->timer,
         .stats = &run->stats,
     };

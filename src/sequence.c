@@ -94,7 +94,8 @@ static Result draw(Sequence *sequence, Previous *previous, int number, const Vie
                    Image *image, Error *error)
 {
     const Scene *scene = sequence->scene;
-    Simulation *simulation = sequence->simulation;
+    Pictures *pictures = sequence->pictures;
+    const Simulation *simulation = sequence->source->simulation;
     bool still = simulation->changes == previous->changes || sequence->frames_drawn == 0;
     previous->changes = simulation->changes;
     if (!still) previous->any = false;
@@ -105,7 +106,7 @@ static Result draw(Sequence *sequence, Previous *previous, int number, const Vie
     }
     Ambient ambient;
     Light lights[SCENE_MAX_LIGHTS];
-    camera_lights(lights, scene, sequence->framing, number);
+    camera_lights(lights, scene, pictures->framing, number);
     RenderFrame frame = {
         .view = view, .lights = lights, .light_count = scene->light_count, .ambient = &ambient};
     memcpy(ambient.sky, scene->run.sky, sizeof ambient.sky);
@@ -114,8 +115,8 @@ static Result draw(Sequence *sequence, Previous *previous, int number, const Vie
     memcpy(frame.head_translation, simulation->head.translation, sizeof frame.head_translation);
     frame.revision = 1 + simulation->changes;
     if (sequence->frames_drawn == 0) give_back_memory();
-    Result result = renderer_draw(sequence->renderer, &frame, sequence->items, sequence->item_count,
-                                  image, error);
+    Result result = renderer_draw(&pictures->renderer, &frame, pictures->items,
+                                  pictures->item_count, image, error);
     if (result == RESULT_OK && still) result = remember(previous, view, image, error);
     sequence->frames_drawn += result == RESULT_OK;
     return result;
@@ -124,14 +125,15 @@ static Result draw(Sequence *sequence, Previous *previous, int number, const Vie
 static Result output_frame(Sequence *sequence, Previous *previous, int frame, FrameTimes *times,
                            Error *error)
 {
+    Output *output = sequence->pictures->output;
     View view;
     Image *image;
     double begin = stats_clock_ms();
-    Result result = output_acquire(sequence->output, &image, error);
+    Result result = output_acquire(output, &image, error);
     double acquired = stats_clock_ms();
     times->wait_ms = acquired - begin;
     if (result != RESULT_OK) return result;
-    camera_view(&view, sequence->scene, sequence->framing, frame);
+    camera_view(&view, sequence->scene, sequence->pictures->framing, frame);
     result = draw(sequence, previous, frame, &view, image, error);
     if (result == RESULT_OK && *sequence->scene->run.caption) {
         char text[CAPTION_BYTES];
@@ -139,7 +141,7 @@ static Result output_frame(Sequence *sequence, Previous *previous, int frame, Fr
         caption_draw(image, text);
     }
     times->draw_ms = stats_clock_ms() - acquired;
-    return result == RESULT_OK ? output_submit(sequence->output, frame, image, error) : result;
+    return result == RESULT_OK ? output_submit(output, frame, image, error) : result;
 }
 
 static bool wants(const Sequence *sequence, int frame)
@@ -152,17 +154,15 @@ static Result run_frame(Sequence *sequence, Previous *previous, int frame, Error
 {
     FrameTimes times = {.frame = frame};
     double begin = stats_clock_ms();
-    bool wanted = wants(sequence, frame);
-    Result result = frame_source_go(sequence->source, frame,
-                                    wanted && (sequence->output || sequence->exporter), error);
+    bool wanted = wants(sequence, frame), draws = sequence->pictures->output != NULL;
+    Result result =
+        frame_source_go(sequence->source, frame, wanted && (draws || sequence->exporter), error);
     times.simulate_ms = stats_clock_ms() - begin;
     if (result == RESULT_OK && wanted && sequence->exporter)
         result = exporter_write(sequence->exporter, frame, error);
-    if (result == RESULT_OK && wanted && sequence->output)
+    if (result == RESULT_OK && wanted && draws)
         result = output_frame(sequence, previous, frame, &times, error);
-    const RendererCounts none = {0};
-    stats_add_frame(sequence->stats, sequence->timer, &times,
-                    sequence->renderer ? &sequence->renderer->counts : &none);
+    stats_add_frame(sequence->stats, sequence->timer, &times, &sequence->pictures->renderer.counts);
     return result;
 }
 

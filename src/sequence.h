@@ -5,24 +5,15 @@
 
 #include "export.h"
 #include "frame_source.h"
-#include "framing.h"
-#include "load.h"
-#include "output.h"
-#include "renderer.h"
-#include "simulation.h"
+#include "pictures.h"
 #include "stats.h"
 
 typedef struct Sequence {
     const Scene *scene;
-    Simulation *simulation; // which the source moves
-    FrameSource *source;
-    Renderer *renderer; // NULL: nothing is drawn
-    Output *output;     // NULL as well
-    Exporter *exporter; // NULL: no hair files
-    const bool *done;   // [frames] those that need not be drawn again; NULL: none
-    const Framing *framing;
-    const RenderItem *items;
-    uint32_t item_count;
+    FrameSource *source; // moves its simulation
+    Pictures *pictures;  // empty: nothing is drawn
+    Exporter *exporter;  // NULL: no hair files
+    const bool *done;    // [frames] those that need not be drawn again; NULL: none
     GpuTimer *timer;
     Stats *stats; // may be off
     int frames_drawn;
