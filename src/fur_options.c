@@ -1,31 +1,25 @@
 // SPDX-License-Identifier: MIT
 #include "fur_options.h"
 
-#include "options.h"
-
 // 0 or NULL: not given, where the recipe takes that for something else.
 typedef struct Command {
     FurRecipe recipe;
-    const char *output;
+    GenOutput output;
     double unit;
-    int format, up;
-    bool quiet;
+    int up;
 } Command;
-
-static const StrandsKind FORMATS[] = {STRANDS_TFX2_TEXT, STRANDS_TFX3, STRANDS_TFX4, STRANDS_HAIR};
 
 #define AT(member)         offsetof(Command, recipe.member)
 #define AT_COMMAND(member) offsetof(Command, member)
 
 static const Option OPTIONS[] = {
-    {"output", 'o', OPTION_STRING, AT_COMMAND(output), "FILE", 0, 0, "the hair"},
-    {"format", 0, OPTION_WORD, AT_COMMAND(format), "text|tfx3|tfx4|hair", 0, 0,
-     "TressFX 2 text, TressFX binary or HAIR [default tfx4]"},
+    GEN_OPTION_OUTPUT(AT_COMMAND(output.path)),
+    GEN_OPTION_FORMAT(AT_COMMAND(output.format)),
     {"unit", 0, OPTION_REAL, AT_COMMAND(unit), "M", 1e-6, 1e6,
      "metres per unit of the mesh [default 1]"},
     {"up", 0, OPTION_WORD, AT_COMMAND(up), "y|z", 0, 0, "axis of the mesh that is up [default y]"},
-    {"seed", 0, OPTION_WHOLE, AT(seed), "N", 0, 2147483647, "of all that is random [default 1]"},
-    {"quiet", 'q', OPTION_SWITCH, AT_COMMAND(quiet), NULL, 0, 0, "print nothing"},
+    GEN_OPTION_SEED(AT(seed)),
+    GEN_OPTION_QUIET(AT_COMMAND(output.quiet)),
     // Roots.
     {"count", 'n', OPTION_WHOLE, AT(count), "N", 1, 2e6, "strands [default 4000]"},
     {"per-cm2", 0, OPTION_REAL, AT(per_cm2), "N", 1e-6, 1e6,
@@ -131,8 +125,8 @@ static const OptionsProgram PROGRAM = {
 
 static Result check(const Command *command, Error *error)
 {
-    StrandsKind kind = FORMATS[command->format];
-    if (!command->output)
+    StrandsKind kind = gen_output_kind(&command->output);
+    if (!command->output.path)
         return error_set(error, RESULT_USAGE, "nothing to write: expected -o FILE");
     if (command->recipe.followers > 0 && kind != STRANDS_TFX2_TEXT && kind != STRANDS_TFX3)
         return error_set(error, RESULT_USAGE, "--followers needs --format text or tfx3");
@@ -143,18 +137,17 @@ static Result check(const Command *command, Error *error)
 
 Result fur_options_read(FurOptions *options, int argc, char **argv, bool *done, Error *error)
 {
-    Command command = {.recipe = fur_recipe_default(), .unit = 1.0, .format = 2};
+    Command command = {
+        .recipe = fur_recipe_default(), .output.format = GEN_OUTPUT_TFX4, .unit = 1.0};
     int first;
     Result result = options_parse(&PROGRAM, &command, argc, argv, &first, done, error);
     if (result != RESULT_OK || *done) return result;
     if (argc - first != 1)
         return error_set(error, RESULT_USAGE, "fur: expected one mesh, got %d", argc - first);
     *options = (FurOptions){.recipe = command.recipe,
-                            .mesh = argv[first],
                             .output = command.output,
-                            .format = FORMATS[command.format],
+                            .mesh = argv[first],
                             .unit = command.unit,
-                            .up_z = command.up == 1,
-                            .quiet = command.quiet};
+                            .up_z = command.up == 1};
     return check(&command, error);
 }

@@ -3,16 +3,16 @@
 #pragma once
 
 #include "fur_recipe.h"
-#include "strands_report.h"
+#include "gen_output.h"
 
 #include <stdbool.h>
 
 typedef struct FurOptions {
     FurRecipe recipe;
-    const char *mesh, *output;
-    StrandsKind format;
+    GenOutput output;
+    const char *mesh;
     double unit; // metres per unit of the mesh's file
-    bool up_z, quiet;
+    bool up_z;
 } FurOptions;
 
 // argv[0] is the word fur. Errors as options_parse gives them, and for what does not go together.

@@ -3,25 +3,22 @@
 #include "bust.h"
 #include "fur.h"
 #include "fur_options.h"
-#include "options.h"
 #include "strands_make.h"
-#include "strands_write.h"
 
 #include <math.h>
 #include <string.h>
 
 // Negative or NaN: not given.
 typedef struct Command {
-    int kind, shape, count, vertices, set, format, seed;
+    int kind, shape, count, vertices, set, seed;
     double length, length_variation, curl_radius, curl_turns, curl_disorder;
-    const char *output, *mesh, *bust;
-    bool quiet;
+    GenOutput output;
+    const char *mesh, *bust;
 } Command;
 
 static const char KINDS[] = "random|straight|curls|fur";
 static const char *const KIND_NAMES[] = {"random", "straight", "curls", "fur"};
 static const char *const SET_NAMES[] = {"1k16", "1k32", "10k16", "10k32"};
-static const StrandsKind FORMATS[] = {STRANDS_TFX2_TEXT, STRANDS_TFX3, STRANDS_TFX4, STRANDS_HAIR};
 
 #define AT(member) offsetof(Command, member)
 
@@ -41,16 +38,15 @@ static const Option OPTIONS[] = {
      "of the curls over a strand; --kind curls"},
     {"curl-disorder", 0, OPTION_REAL, AT(curl_disorder), "SHARE", 0, 1,
      "0: neighbours wind in step, 1: each for itself; --kind curls"},
-    {"seed", 0, OPTION_WHOLE, AT(seed), "N", 0, 2147483647, "of all that is random [default 1]"},
+    GEN_OPTION_SEED(AT(seed)),
     {"set", 0, OPTION_WORD, AT(set), "1k16|1k32|10k16|10k32", 0, 0,
      "a test set of the thesis instead: thousands of strands x vertices"},
-    {"format", 0, OPTION_WORD, AT(format), "text|tfx3|tfx4|hair", 0, 0,
-     "TressFX 2 text, TressFX binary or HAIR [default tfx4]"},
-    {"output", 'o', OPTION_STRING, AT(output), "FILE", 0, 0, "the hair"},
+    GEN_OPTION_FORMAT(AT(output.format)),
+    GEN_OPTION_OUTPUT(AT(output.path)),
     {"mesh", 0, OPTION_STRING, AT(mesh), "FILE", 0, 0, "also write the shape, as Wavefront OBJ"},
     {"bust", 0, OPTION_STRING, AT(bust), "FILE", 0, 0,
      "also write the head with shoulders below it, as Wavefront OBJ"},
-    {"quiet", 'q', OPTION_SWITCH, AT(quiet), NULL, 0, 0, "print nothing"},
+    GEN_OPTION_QUIET(AT(output.quiet)),
 };
 
 static const char *const STATUS[][2] = {
@@ -124,7 +120,7 @@ static Result check_effect(const Command *command, Error *error)
     if (command->set >= 0 && shaping)
         return error_set(error, RESULT_USAGE, "--set %s and --%s exclude each other",
                          SET_NAMES[command->set], shaping);
-    if (!command->output && !command->mesh && !command->bust)
+    if (!command->output.path && !command->mesh && !command->bust)
         return error_set(error, RESULT_USAGE, "nothing to write: expected -o FILE");
     return RESULT_OK;
 }
@@ -142,7 +138,7 @@ static Result parse(Command *command, int argc, char **argv, bool *done, Error *
                          .count = -1,
                          .vertices = -1,
                          .set = -1,
-                         .format = 2,
+                         .output.format = GEN_OUTPUT_TFX4,
                          .seed = 1,
                          .length = NAN,
                          .length_variation = NAN,
@@ -186,10 +182,7 @@ static Result write_hair(const Command *command, const StrandsRecipe *recipe, Er
                         ? strands_make_set(&strands, SET_NAMES[command->set], recipe->seed, error)
                         : strands_make(&strands, recipe, error);
     if (result != RESULT_OK) return result;
-    result = strands_write(command->output, FORMATS[command->format], &strands, error);
-    if (result == RESULT_OK && !command->quiet)
-        printf("%s: %u strands of %u vertices, %s\n", command->output, strands.strand_count,
-               strands_size(&strands, 0), strands_kind_name(FORMATS[command->format]));
+    result = gen_output_write(&command->output, &strands, 0, error);
     strands_destroy(&strands);
     return result;
 }
@@ -201,7 +194,7 @@ static Result write_mesh(const Command *command, ScalpShape shape, const char *f
     Result result = scalp_make_mesh(&mesh, shape, 36, error);
     if (result == RESULT_OK && shoulders) result = bust_append_shoulders(&mesh, error);
     if (result == RESULT_OK) result = mesh_write_obj(file, &mesh, error);
-    if (result == RESULT_OK && !command->quiet)
+    if (result == RESULT_OK && !command->output.quiet)
         printf("%s: %u vertices, %u triangles\n", file, mesh.vertex_count, mesh.triangle_count);
     mesh_destroy(&mesh);
     return result;
@@ -211,7 +204,7 @@ static Result write_all(const Command *command, Error *error)
 {
     StrandsRecipe recipe = make_recipe(command);
     ScalpShape shape = command->set >= 0 ? SCALP_SPHERE : recipe.shape;
-    Result result = command->output ? write_hair(command, &recipe, error) : RESULT_OK;
+    Result result = command->output.path ? write_hair(command, &recipe, error) : RESULT_OK;
     if (result == RESULT_OK && command->mesh)
         result = write_mesh(command, shape, command->mesh, false, error);
     if (result == RESULT_OK && command->bust)
@@ -231,13 +224,9 @@ static Result write_fur(const FurOptions *options, const Mesh *mesh, Error *erro
         fprintf(stderr, "%s: %u triangles without an area are passed over\n", options->mesh,
                 report.flat_triangles);
     if (report.stuck)
-        fprintf(stderr, "%s: %llu segments could not be kept outside the mesh\n", options->output,
-                (unsigned long long)report.stuck);
-    result = strands_write(options->output, options->format, &strands, error);
-    if (result == RESULT_OK && !options->quiet)
-        printf("%s: %u strands of %u vertices, %u of them guides, %s\n", options->output,
-               strands.strand_count, strands_size(&strands, 0), report.guides,
-               strands_kind_name(options->format));
+        fprintf(stderr, "%s: %llu segments could not be kept outside the mesh\n",
+                options->output.path, (unsigned long long)report.stuck);
+    result = gen_output_write(&options->output, &strands, report.guides, error);
     strands_destroy(&strands);
     return result;
 }
