@@ -10,9 +10,13 @@
 // TRESSFX4 1: as published. Each local pass moves, from the root on, both ends of a segment by a share of the gap b - s; each pass of the
 // lengths moves both ends of every second edge, then of the others. What a stiffness does depends on passes and dt.
 //
-// TRESSFX4 0 (`steady`): the same local passes; their share is chosen such that the stiffness does not (solver_tressfx.c). The lengths by
-// Newton's method, J J^T lambda = |s| (|s| - l), tridiagonal, x_j -= lambda_j s_j, x_{j-1} += lambda_j s_j; twice, then each segment gets
-// its length. v = (x - x_before)/dt.
+// TRESSFX4 0 (`steady`): the same local passes; their share is chosen such that the stiffness does not (solver_tressfx.c). Lengths: Newton's
+// method, J J^T lambda = |s| (|s| - l), tridiagonal, tells by how much of itself each segment s must draw its ends together. Along s as it
+// is that would be y_j = x_j - lambda_j s_j + lambda_{j+1} s_{j+1}: under the strand's weight lambda is up to n g dt^2/l, and a segment turns
+// by 4 lambda times what it is off from where the tension turns it to, to and fro in each step where that is much more than 1. So tension
+// draws along the segments that it leaves: (I + K) y = x, (K y)_j = lambda_j (y_j - y_{j-1}) - lambda_{j+1} (y_{j+1} - y_j), tridiagonal and
+// positive definite, which turns nothing beyond that for any lambda. Where lambda is negative it pushes, along s. All that twice; a second
+// step along s would let long loose strands gain half of what they can fall. Then each segment gets its length. v = (x - x_before)/dt.
 // Where segment j+1 should be follows segment j, which takes no reaction: these forces have no potential, K of x'' = -K x is not symmetric,
 // and eigenvalues w^2 (1 + i e) of it gain about e w/2 per second. A long step damps that by w^2 dt/2. So that a short one does not flutter
 // either, neighbours exchange a share X of what their velocities differ by before they fly, v_j += X u, v_{j+1} -= X u, u = v_{j+1} - v_j:
@@ -26,7 +30,7 @@
 #define SHOCK_THRESHOLD step_params.own[1].x // m: second difference of vertex 1 over steps
 #define CLAMP step_params.own[1].y           // m a step
 #define LOCAL_PASSES int(step_params.own[1].z)
-#define LENGTH_PASSES int(step_params.own[1].w)
+#define LENGTH_PASSES int(step_params.own[1].w) // TRESSFX4
 #define EXCHANGED step_params.own[2].x // share of the difference of two neighbours' velocities; 0 for TRESSFX4
 
 // The strand is corrected in the head's frame with its root at the origin, where the style needs no turning: REST(j) is the direction and
@@ -181,31 +185,61 @@ void keep_lengths()
 
 #else
 
-// What elimination leaves of a row, and the factor that brings the row before it to this one, wait in the fourth components.
+// The rows of J J^T lambda = |s| (|s| - l), eliminated from the root on.
+struct Rows {
+    vec3 before, s;         // the vertex before, the segment that ends there
+    float per_pivot, right; // of the last row
+};
+
+Rows open_rows() { return Rows(X(1), vec3(0.0), 0.0, 0.0); }
+
+// What elimination leaves of the right side of the row of the segment that ends in vertex j at x: it waits in the fourth component of
+// `positions`, the factor that brings the row before to this one in that of `velocities`.
+float add_row(inout Rows rows, int j, vec3 x)
+{
+    vec3 s = x - rows.before;
+    float square = dot(s, s), off = -dot(s, rows.s);
+    float diagonal = j == 2 ? square : 2.0 * square, factor = off * rows.per_pivot;
+    float pivot = max(diagonal - off * factor, 1e-6 * diagonal);
+    float per_pivot = pivot > 1e-30 ? 1.0 / pivot : 0.0;
+    float right = (square - sqrt(square) * REST(j).w - off * rows.right) * per_pivot;
+    velocities[address(j)].w = factor;
+    rows = Rows(x, s, per_pivot, right);
+    return right;
+}
+
+// From the tip on, lambda of each segment out of its row, and with it the row of (I + K) y = x, eliminated in turn: as resistors in a
+// ladder, one to the ground at each vertex, are taken together, own_j = 1 + own_{j+1} lambda_{j+1}/(own_{j+1} + lambda_{j+1}), which needs
+// no difference. Leaves y_j = xyz + w y_{j-1}.
+void pull_together()
+{
+    float lambda = 0.0, factor = 0.0, own = 0.0, share = 0.0;
+    vec3 x = X(n - 1), kept = vec3(0.0), pushed = vec3(0.0);
+    for (int j = n - 1; j >= 2; --j) {
+        int a = address(j);
+        lambda = positions[a].w - factor * lambda;
+        vec3 next = X(j - 1), push = min(lambda, 0.0) * (x - next);
+        kept = x - push + pushed + share * kept;
+        own = 1.0 + share * own;
+        float tension = max(lambda, 0.0), per_pivot = 1.0 / (own + tension);
+        share = tension * per_pivot;
+        positions[a] = vec4(per_pivot * kept, share);
+        factor = velocities[a].w, x = next, pushed = push;
+    }
+}
+
 void keep_lengths()
 {
-    vec3 before = X(1), s_before = vec3(0.0);
-    float per_pivot = 0.0, right = 0.0;
+    Rows rows = open_rows();
+    for (int j = 2; j < n; ++j) positions[address(j)].w = add_row(rows, j, X(j));
+    pull_together();
+    rows = open_rows();
     for (int j = 2; j < n; ++j) {
-        vec3 x = X(j), s = x - before;
-        float square = dot(s, s), off = -dot(s, s_before);
-        float diagonal = j == 2 ? square : 2.0 * square, factor = off * per_pivot;
-        float pivot = max(diagonal - off * factor, 1e-6 * diagonal);
-        per_pivot = pivot > 1e-30 ? 1.0 / pivot : 0.0;
-        right = (square - sqrt(square) * REST(j).w - off * right) * per_pivot;
-        positions[address(j)].w = right;
-        velocities[address(j)].w = factor;
-        before = x, s_before = s;
+        vec4 pulled = positions[address(j)];
+        vec3 x = pulled.xyz + pulled.w * rows.before;
+        positions[address(j)] = vec4(x, add_row(rows, j, x));
     }
-    float lambda = 0.0, factor = 0.0;
-    vec3 x = before, pull = vec3(0.0);
-    for (int j = n - 1; j >= 2; --j) {
-        lambda = positions[address(j)].w - factor * lambda;
-        vec3 next = X(j - 1), s = x - next;
-        X(j) = x - lambda * s + pull;
-        pull = lambda * s;
-        factor = velocities[address(j)].w, x = next;
-    }
+    pull_together();
 }
 
 #endif
@@ -220,14 +254,15 @@ void finish(Carried carried)
     velocities[address(0)] = vec4(0.0);
     for (int j = 1; j < n; ++j) {
         int a = address(j);
-        vec3 now = positions[a].xyz;
+        vec4 now = positions[a];
 #if TRESSFX4
-        x = now;
+        x = now.xyz;
 #else
         vec4 segment = REST(j);
-        along = unit(now - before, segment.xyz);
+        vec3 here = j > 1 ? now.xyz + now.w * before : now.xyz;
+        along = unit(here - before, segment.xyz);
         x += segment.w * along;
-        before = now;
+        before = here;
 #endif
         vec3 moved = x - velocities[a].xyz;
         float square = dot(moved, moved), limit = most * most;
@@ -248,12 +283,15 @@ void main()
     n = int(step_params.vertex_count);
     Carried carried = carried_by_head();
     predict(carried);
-    int local_passes = n > 2 ? LOCAL_PASSES : 0, length_passes = LENGTH_PASSES;
+    int local_passes = n > 2 ? LOCAL_PASSES : 0;
     for (int i = 0; i < local_passes; ++i) keep_local_shape();
 #if TRESSFX4
     blow();
-#endif
+    int length_passes = LENGTH_PASSES;
     for (int i = 0; i < length_passes; ++i) keep_lengths();
+#else
+    keep_lengths();
+#endif
     // Collisions push vertices out of capsules here, where TressFX does.
     finish(carried);
 }

@@ -9,7 +9,7 @@ enum { SCRATCH = 2, MOST_IN_REGISTERS = 4 };
 // llvmpipe ends all loops of an invocation after so many iterations, without a word.
 enum { MOST_ITERATIONS_ON_CPU = 65535 };
 
-// Newton's steps towards the lengths; the rebuilding does the rest.
+// Newton's steps towards the lengths of `steady`; the rebuilding does the rest.
 enum { STEADY_LENGTH_PASSES = 2 };
 
 static bool is_faithful(const SectionParams *params)
@@ -80,7 +80,7 @@ static void fill(StepParams *uniforms, const SolverStep *step, const SectionPara
         {0.01f * params->tressfx_vsp_accel_threshold * per_frame2,
          0.01f * params->tressfx_clamp_position_delta * per_frame,
          (float)params->tressfx_local_constraints_iterations,
-         faithful ? (float)params->tressfx_length_constraints_iterations : STEADY_LENGTH_PASSES},
+         (float)params->tressfx_length_constraints_iterations},
         {faithful ? 0 : exchanged(params, per_frame, share)},
     };
     memcpy(uniforms->own, own, sizeof own);

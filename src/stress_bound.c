@@ -20,7 +20,6 @@ static const struct {
     {"split", "thesis", ENERGY, 0, "its tip's velocity is what the pulls of the root leave"},
     {"emulation", "thesis", ENERGY | REST, 0, "gains energy, as published"},
     {"tressfx", "tressfx4", LENGTHS | ENERGY | REST, 0, "its passes leave it stretched"},
-    {"tressfx", "steady", 0, 0.3, "its local shape has no potential"},
     {"chain", "", 0, 0.2, "its account takes a gain out of velocities, after the step's move"},
     {"hybrid", "", 0, 0.03, "so does its balance"},
     {"emulation", "projected", 0, 0.06, "so does its balance"},

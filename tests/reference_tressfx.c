@@ -118,25 +118,46 @@ static void keep_local_shape(const Carried *carried, int n, double share, Vec *x
     }
 }
 
-// Newton's step towards the lengths: J J^T lambda = (|s_j|^2 - l_j |s_j|), y -= J^T lambda.
-static void reach_lengths(const TwinStrand *strand, Vec *y)
+// By how much of itself each segment must draw its ends together (or push them apart, if negative):
+// Newton's step towards the lengths, J J^T lambda = (|s_j|^2 - l_j |s_j|).
+static void find_tensions(const TwinStrand *strand, const Vec *s, double *lambda)
 {
     static double matrix[TWIN_MAX][TWIN_MAX];
-    Vec s[TWIN_MAX], right[TWIN_MAX] = {{0}};
+    Vec right[TWIN_MAX] = {{0}};
     int n = strand->n;
     memset(matrix, 0, sizeof matrix);
-    for (int j = 2; j < n; ++j) subtract(y[j], y[j - 1], s[j]);
     for (int j = 2; j < n; ++j) {
         matrix[j - 2][j - 2] = (j > 2 ? 2 : 1) * vec_dot(s[j], s[j]);
         if (j > 2) matrix[j - 2][j - 3] = matrix[j - 3][j - 2] = -vec_dot(s[j], s[j - 1]);
         right[j - 2][0] = vec_norm(s[j]) * (vec_norm(s[j]) - strand->length[j]);
     }
     solve(n - 2, matrix, right);
-    for (int j = 2; j < n; ++j)
-        for (int k = 0; k < 3; ++k) {
-            y[j][k] -= right[j - 2][0] * s[j][k];
-            if (j > 2) y[j - 1][k] += right[j - 2][0] * s[j][k];
+    for (int j = 2; j < n; ++j) lambda[j] = right[j - 2][0];
+}
+
+// What draws together does so along the segments as they will be, (I + K) y' = y - pushes; what
+// pushes apart along those that are.
+static void reach_lengths(const TwinStrand *strand, Vec *y)
+{
+    static double matrix[TWIN_MAX][TWIN_MAX];
+    double lambda[TWIN_MAX] = {0};
+    Vec s[TWIN_MAX];
+    int n = strand->n;
+    for (int j = 2; j < n; ++j) subtract(y[j], y[j - 1], s[j]);
+    find_tensions(strand, (const Vec *)s, lambda);
+    memset(matrix, 0, sizeof matrix);
+    for (int j = 2; j < n; ++j) {
+        double tension = fmax(lambda[j], 0), push = fmin(lambda[j], 0);
+        matrix[j - 2][j - 2] += 1 + tension;
+        if (j > 2) {
+            matrix[j - 3][j - 3] += tension;
+            matrix[j - 2][j - 3] = matrix[j - 3][j - 2] = -tension;
+            vec_add_scaled(y[j - 1], push, s[j], y[j - 1]);
         }
+        vec_add_scaled(y[j], -push, s[j], y[j]);
+        if (j == 2) vec_add_scaled(y[2], tension, y[1], y[2]);
+    }
+    solve(n - 2, matrix, y + 2);
 }
 
 // The local stiffness k at style 0.5; else that of another firmness, k/(1 - 3k/4), times the odds.

@@ -176,7 +176,6 @@ static const struct {
     double most;
     const char *why;
 } RESTLESS[] = {
-    {"tressfx", 2e-3, "style 0: vertices step back and forth between friction and its lengths"},
     {"spring", 2e-3, "explicit: light springs swing for long; implicit: they tremble"},
 };
 

@@ -78,7 +78,6 @@ static const struct {
     {"hybrid", "", 48, 8e-3},
     {"chain", "", 48, 0.02},
     {"chain", "", 16, 3e-3},
-    {"tressfx", "steady", 48, 0.04},
 };
 
 static double allowed_tremor(const SolverType *type, const char *variant, int n)

@@ -183,6 +183,11 @@ static const struct {
     {"tressfx", "steady", "dt=0.011263 length=2.3063 arm=0.51063 shape=1 tilt=170 style=0.26411",
      7400, "long soft curls fluttered, 4 times"},
     {"tressfx", "steady", "dt=0.005 length=1 shape=1", 1000, "long curls gained energy"},
+    {"tressfx", "steady", "style=0", 2600,
+     "tension along predicted segments turned loose hair to and fro, 1.4 times what may move"},
+    {"tressfx", "steady", "shape=2 style=0.1", 2600, "and soft zigzags, 1.5 times"},
+    {"tressfx", "steady", "n=64 dt=0.025 gravity=95000 tilt=3", 200,
+     "so did that of strands 10,000 times as heavy, with 2.5 times their energy"},
 };
 
 static void what_broke_once_holds(void **state)
