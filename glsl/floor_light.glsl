@@ -25,7 +25,7 @@ vec4 floor_shown(vec3 x, float there)
 #if SHADOW
     shadow_find_on(x, FLOOR_UP);
 #endif
-    for (int i = 0; i < draw_params.light_count; ++i) {
+    for (int i = 0; i < light_count; ++i) {
         vec3 to_light, all_light = light_sent(i, x, to_light);
         all_light *= max(to_light.y, 0.0);
         sent += all_light;

@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: MIT
 // The light that reaches a point (needs draw.h).
-//   SHADOW, SHADOW_BY_MESH: see shadow.glsl
+//   SHADOW, SHADOW_BY_MESH, LIGHT_COUNT: see shadow.glsl
 //   LIGHTS 0: directional lights, and the same from everywhere else   1: also points, spots, a sky
 
 #if SHADOW
 #include "shadow.h"
 #endif
 #include "shadow.glsl"
+
+#if LIGHT_COUNT
+const int light_count = LIGHT_COUNT;
+#else
+int light_count = draw_params.light_count;
+#endif
 
 // Linear RGB of light i at x, as a matt white surface square to it would show it, were nothing
 // between them, and the unit vector towards it.

@@ -17,7 +17,7 @@ vec3 light_on(vec3 x, vec3 n)
     x += shadow_params.mesh_lift * n; // so that the surface does not shadow itself
     shadow_find_on(x, n);
 #endif
-    for (int i = 0; i < draw_params.light_count; ++i) {
+    for (int i = 0; i < light_count; ++i) {
         vec3 to_light, reaching = light_reaching(i, x, to_light);
         light += reaching * max(dot(n, to_light), 0.0);
     }

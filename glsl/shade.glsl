@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Light on a fibre, by one of the models (needs draw.h, material.h, paint.glsl). Each gives Fibre, what it knows of
 // the material, and shade_fibre.
-//   LIGHT_COUNT: how many lights, so that the loop over them is unrolled; 0: any number
 //   AOV 0: light   1: white   2: the tangent   3: a colour of the strand's own
 //   MARSCHNER 0: Kajiya and Kay's   1, 2: Marschner's, see there
 
@@ -12,11 +11,6 @@ float sine_of(float cosine)
 }
 
 #include "lights.glsl"
-#if LIGHT_COUNT
-const int light_count = LIGHT_COUNT;
-#else
-int light_count = draw_params.light_count;
-#endif
 #if MARSCHNER
 #include "shade_marschner.glsl"
 #else

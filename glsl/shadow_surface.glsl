@@ -26,7 +26,7 @@ void shadow_find_on(vec3 x, vec3 n)
         turns = shone && shadow_covers(mesh_place.xy / mesh_place.w, shadow_params.mesh_side) ? 1 : 0;
         for (int turn = 0; turn < turns; ++turn) left *= light_past_mesh(map, x);
 #endif
-        shadow_left[int(of_light.x)] = left;
+        shadow_keep(int(of_light.x), left);
     }
 }
 #endif

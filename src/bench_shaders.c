@@ -159,9 +159,14 @@ static Result try_shadows(Renderer *renderer, Error *error)
     if (result == RESULT_OK && options->shadow.kind != SHADOW_NONE)
         result = render_shadow_mesh_reserve(&renderer->shadow.mesh, 1, error);
     if (result == RESULT_OK) result = render_floor_build(&renderer->base.floor, error);
-    for (int area = 0; area < 3 && result == RESULT_OK; ++area)
-        result = render_base_build(&renderer->base, (BaseArea)area, options->floor.kind,
-                                   options->shadow.kind, error);
+    for (int count = 0; count <= 2; count += 2) {
+        render_base_count(&renderer->base, count, options->shadow.kind != SHADOW_NONE ? count : 0);
+        if (result == RESULT_OK)
+            result = render_base_build_light(&renderer->base, options->shadow.kind, error);
+        for (int area = 0; area < 3 && result == RESULT_OK; ++area)
+            result = render_base_build(&renderer->base, (BaseArea)area, options->floor.kind,
+                                       options->shadow.kind, error);
+    }
     return result;
 }
 

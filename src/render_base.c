@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "render_base.h"
 
+#include "render_look.h"
+
 #include <string.h>
 
 typedef struct Box {
@@ -12,10 +14,46 @@ bool render_base_is_needed(const RenderBase *base, const Floor *floor)
     return base->mesh.triangle_count > 0 || floor->kind != FLOOR_NONE;
 }
 
+static void forget(RenderBase *base)
+{
+    GLuint *finish = &base->finish[0][0];
+    if (base->light) glDeleteProgram(base->light);
+    base->light = 0;
+    for (int i = 0; i < 9; ++i) {
+        if (finish[i]) glDeleteProgram(finish[i]);
+        finish[i] = 0;
+    }
+}
+
+void render_base_count(RenderBase *base, int light_count, int map_count)
+{
+    if (base->light_count == light_count && base->map_count == map_count) return;
+    forget(base);
+    base->light_count = light_count;
+    base->map_count = map_count;
+}
+
+Result render_base_build_light(RenderBase *base, Shadow shadow, Error *error)
+{
+    int unrolled = look_unrolled(base->light_count);
+    const ShaderDefine defines[] = {{"LIGHTS", 1},
+                                    {"LIGHT_COUNT", unrolled},
+                                    {"SHADOW_MAPS", unrolled ? base->map_count : 0},
+                                    {"SHADOW", shadow},
+                                    {"SHADOW_BY_MESH", 1},
+                                    {NULL, 0}};
+    return base->light
+               ? RESULT_OK
+               : shader_build_draw(&base->light, "screen.vert", "mesh.frag", defines, error);
+}
+
 Result render_base_build(RenderBase *base, BaseArea area, FloorKind floor, Shadow shadow,
                          Error *error)
 {
+    int unrolled = look_unrolled(base->light_count);
     const ShaderDefine defines[] = {{"LIGHTS", 1},
+                                    {"LIGHT_COUNT", unrolled},
+                                    {"SHADOW_MAPS", unrolled ? base->map_count : 0},
                                     {"SHADOW", shadow},
                                     {"SHADOW_BY_MESH", area != BASE_WITHOUT_MESH},
                                     {"MESH", area == BASE_OVER_MESH},
@@ -73,12 +111,16 @@ static void draw_surfaces(const RenderBase *base, const BaseScene *scene,
 // Only where there is mesh: a triangle behind everything is before nothing else.
 static void light_mesh(const RenderBase *base, const BaseScene *scene, const RenderTarget *target)
 {
+    if (!base->mesh.triangle_count) return;
     scissor(find_box(target, scene->mesh_box));
     bind_texture(BIND_SURFACE, GL_TEXTURE_2D, target->surface);
     glEnable(GL_DEPTH_TEST);
     glDepthMask(GL_FALSE);
     glDepthFunc(GL_GREATER);
-    render_mesh_light(&base->mesh, target);
+    glBindFramebuffer(GL_FRAMEBUFFER, target->lit_frame);
+    glUseProgram(base->light);
+    glBindVertexArray(base->vertex_array);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
     glDepthFunc(GL_LESS);
     glDisable(GL_DEPTH_TEST);
 }
@@ -156,7 +198,8 @@ static Result build(RenderBase *base, FloorKind floor, Shadow shadow, Error *err
 {
     if (base->mesh.triangle_count == 0)
         return render_base_build(base, BASE_WITHOUT_MESH, floor, shadow, error);
-    Result result = render_base_build(base, BASE_OVER_MESH, floor, shadow, error);
+    Result result = render_base_build_light(base, shadow, error);
+    if (result == RESULT_OK) result = render_base_build(base, BASE_OVER_MESH, floor, shadow, error);
     if (result == RESULT_OK && floor != FLOOR_NONE)
         result = render_base_build(base, BASE_BESIDE_MESH, floor, shadow, error);
     return result;
@@ -167,6 +210,7 @@ static Result draw_all(RenderBase *base, const BaseScene *scene, const RenderTar
 {
     bool seen = render_floor_is_seen(scene->floor, scene->draw);
     FloorKind floor = seen ? scene->floor->kind : FLOOR_NONE;
+    render_base_count(base, scene->draw->light_count, scene->shadow->params.maps);
     Result result = build(base, floor, scene->shadow->options.kind, error);
     if (result != RESULT_OK) return result;
     gpu_timer_begin(timer, "draw_mesh");
@@ -205,8 +249,7 @@ void render_base_destroy(RenderBase *base)
 {
     render_mesh_destroy(&base->mesh);
     render_floor_destroy(&base->floor);
-    for (int i = 0; i < 9; ++i)
-        if (base->finish[i / 3][i % 3]) glDeleteProgram(base->finish[i / 3][i % 3]);
+    forget(base);
     if (base->vertex_array) glDeleteVertexArrays(1, &base->vertex_array);
     *base = (RenderBase){0};
 }

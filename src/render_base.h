@@ -19,10 +19,12 @@ typedef enum BaseArea { BASE_WITHOUT_MESH, BASE_BESIDE_MESH, BASE_OVER_MESH } Ba
 typedef struct RenderBase {
     RenderMesh mesh;
     RenderFloor floor;
-    GLuint finish[3][3]; // programs, by BaseArea and FloorKind
-    GLuint vertex_array; // without attributes
-    DrawParams drawn;    // what the target's surface and base show
-    uint64_t shadowed;   // RenderShadow.version of it
+    GLuint light;               // program of the mesh
+    GLuint finish[3][3];        // programs, by BaseArea and FloorKind
+    int light_count, map_count; // that these are for
+    GLuint vertex_array;        // without attributes
+    DrawParams drawn;           // what the target's surface and base show
+    uint64_t shadowed;          // RenderShadow.version of it
     bool any;
     uint64_t version;       // counts the times that anything was drawn
     uint64_t depth_version; // counts the times that the target's depth was
@@ -39,8 +41,12 @@ typedef struct BaseScene {
 // Whether there is more than background.
 bool render_base_is_needed(const RenderBase *base, const Floor *floor);
 
-// Compiles what puts all together there with the floor that is seen and what it receives, unless
-// it is there. The shadow stays the same for a RenderBase.
+// Says for how many lights and shadow maps programs are; those for others are forgotten.
+void render_base_count(RenderBase *base, int light_count, int map_count);
+
+// Compiles what lights the mesh, and what puts all together there with the floor that is seen and
+// what it receives, unless it is there. The shadow stays the same for a RenderBase.
+Result render_base_build_light(RenderBase *base, Shadow shadow, Error *error);
 Result render_base_build(RenderBase *base, BaseArea area, FloorKind floor, Shadow shadow,
                          Error *error);
 

@@ -24,14 +24,19 @@ MaterialParams look_material(const Look *look, const HairBatch *batch)
     return material;
 }
 
+// A light that is read at a number known when compiling costs a fifth of one in a loop.
+int look_unrolled(int light_count)
+{
+    return light_count <= MOST_UNROLLED ? light_count : 0;
+}
+
 Result look_programs_build(LookPrograms *programs, unsigned features, Error *error)
 {
     int model = !(features & LOOK_MARSCHNER) ? 0 : features & LOOK_GAUSS ? 2 : 1;
     int shadow = features & LOOK_SHADOW_DOM      ? SHADOW_DOM
                  : features & LOOK_SHADOW_APPROX ? SHADOW_APPROX
                                                  : SHADOW_NONE;
-    // A light that is read at a number known when compiling costs a fifth of one in a loop.
-    int unrolled = programs->light_count <= MOST_UNROLLED ? programs->light_count : 0;
+    int unrolled = look_unrolled(programs->light_count);
     const ShaderDefine defines[] = {{"GROUP_SIZE", programs->group_size},
                                     {"LIGHT_COUNT", unrolled},
                                     {"SHADOW_MAPS", unrolled ? programs->map_count : 0},

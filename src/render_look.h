@@ -57,6 +57,10 @@ Result look_programs_use(LookPrograms *programs, const Look *look, const HairBat
 // Says for how many lights and shadow maps variants are; those for others are forgotten.
 void look_programs_count(LookPrograms *programs, int light_count, int map_count);
 
+// LIGHT_COUNT of a shader for so many lights, as shadow.glsl has it: 0 if there are too many to
+// unroll loops over them.
+int look_unrolled(int light_count);
+
 // Compiles the variant of these features if it is not there.
 Result look_programs_build(LookPrograms *programs, unsigned features, Error *error);
 void look_programs_destroy(LookPrograms *programs);

@@ -43,17 +43,13 @@ static void describe_vertices(RenderMesh *mesh)
     glBindVertexArray(0);
 }
 
-Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const float color[3], Shadow shadow,
+Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const float color[3],
                           const GpuLimits *limits, Error *error)
 {
     *mesh = (RenderMesh){.color = {color[0], color[1], color[2]}};
     if (source->triangle_count == 0) return RESULT_OK;
     find_bounds(mesh, source);
     Result result = upload(mesh, source, limits, error);
-    const ShaderDefine defines[] = {
-        {"LIGHTS", 1}, {"SHADOW", shadow}, {"SHADOW_BY_MESH", 1}, {NULL, 0}};
-    if (result == RESULT_OK)
-        result = shader_build_draw(&mesh->light, "screen.vert", "mesh.frag", defines, error);
     if (result == RESULT_OK)
         result = shader_build_draw(&mesh->surface, "mesh.vert", "surface.frag", NULL, error);
     if (result == RESULT_OK)
@@ -69,8 +65,8 @@ Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const float colo
 
 void render_mesh_destroy(RenderMesh *mesh)
 {
-    const GLuint programs[] = {mesh->surface, mesh->edges, mesh->light};
-    for (int i = 0; i < 3; ++i)
+    const GLuint programs[] = {mesh->surface, mesh->edges};
+    for (int i = 0; i < 2; ++i)
         if (programs[i]) glDeleteProgram(programs[i]);
     if (mesh->vertex_array) glDeleteVertexArrays(1, &mesh->vertex_array);
     gpu_buffer_destroy(&mesh->position);
@@ -95,13 +91,4 @@ void render_mesh_draw(const RenderMesh *mesh, const RenderTarget *target)
     glBindFramebuffer(GL_FRAMEBUFFER, target->edge_frame);
     glClearBufferfv(GL_DEPTH, 0, &farthest);
     draw_with(mesh, mesh->edges);
-}
-
-void render_mesh_light(const RenderMesh *mesh, const RenderTarget *target)
-{
-    if (!mesh->triangle_count) return;
-    glBindFramebuffer(GL_FRAMEBUFFER, target->lit_frame);
-    glUseProgram(mesh->light);
-    glBindVertexArray(mesh->vertex_array);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
 }

@@ -8,7 +8,7 @@
 #include "shader.h"
 
 typedef struct RenderMesh {
-    GLuint surface, edges, light; // programs
+    GLuint surface, edges; // programs
     GLuint vertex_array;
     GpuBuffer position, normal, triangle; // float[3], float[3], uint[3]
     uint32_t triangle_count;              // 0: no mesh, nothing is done
@@ -16,16 +16,11 @@ typedef struct RenderMesh {
     float color[3];                       // linear
 } RenderMesh;
 
-// Uploads. `color`: linear RGB. `shadow`: what it receives. RESULT_FAILED if memory is short.
-Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const float color[3], Shadow shadow,
+// Uploads. `color`: linear RGB. RESULT_FAILED if memory is short.
+Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const float color[3],
                           const GpuLimits *limits, Error *error);
 void render_mesh_destroy(RenderMesh *mesh);
 
 // Draws into the target's depth, its surface, which is right where there is depth, and its edges.
 // Needs the DrawParams block, depth cleared, depth test and writing on.
 void render_mesh_draw(const RenderMesh *mesh, const RenderTarget *target);
-
-// Lights what render_mesh_draw has left in the target's surface, which is bound. Needs the
-// DrawParams block and render_shadow_bind where it receives shadows; depth test GL_GREATER leaves
-// all else out.
-void render_mesh_light(const RenderMesh *mesh, const RenderTarget *target);

@@ -98,8 +98,7 @@ Result renderer_set_mesh(Renderer *renderer, const Mesh *mesh, const float color
     RenderMesh *mine = &renderer->base.mesh;
     renderer->base.any = false;
     render_mesh_destroy(mine);
-    Result result = render_mesh_create(mine, mesh, linear, renderer->options.shadow.kind,
-                                       &renderer->gpu->limits, error);
+    Result result = render_mesh_create(mine, mesh, linear, &renderer->gpu->limits, error);
     return result == RESULT_OK ? make_base(renderer, error) : result;
 }
 

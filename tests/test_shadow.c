@@ -71,8 +71,7 @@ static void stage_open(Stage *stage, Strands strands, float radius, float opacit
             (ShadowCaster){&stage->hair.batches[b],
                            {.material = material_params(&stage->material, radius), .share = 1}};
     if (mesh)
-        NEEDED(render_mesh_create(&stage->mesh, mesh, (const float[3]){1, 1, 1}, SHADOW_NONE,
-                                  limits, error));
+        NEEDED(render_mesh_create(&stage->mesh, mesh, (const float[3]){1, 1, 1}, limits, error));
 }
 
 static void stage_close(Stage *stage)
