@@ -21,8 +21,9 @@ const float LEAST_COVERAGE = 1.0 / 16.0; // of a pixel whose nearest ribbon is a
 
 void main()
 {
-    // The strand's end, spread over a pixel as if that lay along it.
-    float share = clamp(min(ends.x, ends.y) + 0.5, 0.0, 1.0);
+    // Of the pixel, as if it lay along the strand, what is beyond the root less what is beyond the tip.
+    vec2 beyond = clamp(ends + 0.5, 0.0, 1.0);
+    float share = max(beyond.x + beyond.y - 1.0, 0.0);
     float coverage = share * ribbon_coverage(across, half_width, vec2(dFdx(across), dFdy(across)));
 #if NEAREST
     float alpha = coverage >= LEAST_COVERAGE && color.a >= LEAST_ALPHA ? 1.0 : 0.0;

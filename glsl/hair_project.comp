@@ -28,6 +28,9 @@ layout(std430, binding = BIND_COMMAND_OUT) buffer Command { uint command[]; };
 layout(std430, binding = BIND_COUNTERS_OUT) buffer Counters { uint counters[]; };
 layout(std430, binding = BIND_EXTENT_OUT) buffer Extent { int extent[4]; }; // x, y lowest, highest
 
+// px. Edges reach PAD beyond the ribbon: of segments that are much shorter and turn, as of hair that points at the eye,
+// many cover the same pixel each by itself, and hide more than there is.
+const float LEAST_WAY = 0.5;
 const float FAR = 3e4; // px: ends farther off than the picture is long; a half still holds it
 
 // Stores the particle for the vertex shader: d0 and d1 the directions of the ribbon before and after it, `beyond` the
@@ -107,7 +110,7 @@ void main()
         float reach = MITRE_MAX * (p.at.w + 1.0);
         if (p.at.z > 0.0) box = min(box, vec4(p.at.xy, -p.at.xy) - reach);
         if (j > 1) bent += bend(kept, last, p);
-        if (j == 1 || bent > 1.0) {
+        if (j == 1 || (bent > 1.0 && distance(kept.at.xy, last.at.xy) > LEAST_WAY)) {
             vec2 next = direction(kept, last);
             if (j > 1) {
                 store(first + count++, kept, way, next, vec2(from_root, FAR), opacity);

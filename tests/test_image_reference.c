@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "image_reference.h"
 #include "random.h"
+#include "strands_read.h"
 #include "studio.h"
 
 #include <math.h>
@@ -9,6 +10,7 @@
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -251,15 +253,20 @@ static void threads_do_not_change_it(void **state)
 
 // --- The renderer against it.
 
+enum { MOST_CASES = 4 };
+
 typedef struct Case {
     const char *name;
-    uint32_t count;
+    const char *file;  // hair that fills the picture; NULL: a tangle
+    uint32_t count;    // of its strands
+    double step, turn; // px from vertex to vertex, and by how much each changes its direction
     float radius, opacity, tip_ratio;
-    double bound[2][2]; // RMS of the difference in levels of 255 over the pixels that hair touches:
-                        // quads, blocks; each of one sample a pixel and of 2 x 2
+    double bound[2][2][2]; // RMS of the difference in levels of 255 over the pixels that hair
+                           // touches: of colour and of opacity; quads, blocks; each of one sample a
+                           // pixel and of 2 x 2
 } Case;
 
-static Strands make_tangle(uint32_t count)
+static Strands make_tangle(uint32_t count, double step, double bend)
 {
     enum { VERTICES = 16 };
     float(*position)[3] = malloc(count * VERTICES * sizeof *position);
@@ -273,12 +280,28 @@ static Strands make_tangle(uint32_t count)
         for (uint32_t j = 0; j < VERTICES; ++j)
             for (int k = 0; k < 3; ++k) {
                 position[s * VERTICES + j][k] = (float)x[k];
-                x[k] += 3 * d[k];
-                d[k] += 0.1 * turn[k];
+                x[k] += step * d[k];
+                d[k] += bend * turn[k];
             }
     }
     Strands strands = studio_strands(count, VERTICES, (const float(*)[3])position);
     free(position);
+    return strands;
+}
+
+// A file's hair, from the front, in the middle of the picture.
+static Strands read_hair(const char *file)
+{
+    Error error = {{0}};
+    Strands strands;
+    StrandsReport report;
+    float low[3], high[3];
+    assert_int_equal(strands_read(&strands, file, NULL, &report, &error), RESULT_OK);
+    strands_bounds(&strands, low, high);
+    float scale = 0.9f * SIDE / fmaxf(high[0] - low[0], high[1] - low[1]);
+    for (uint32_t v = 0; v < strands.vertex_count; ++v)
+        for (int k = 0; k < 3; ++k)
+            strands.position[v][k] = scale * (strands.position[v][k] - 0.5f * (low[k] + high[k]));
     return strands;
 }
 
@@ -294,65 +317,151 @@ static void dress(SectionParams *material, float tip_ratio)
     section_params_destroy(&old);
 }
 
-static double rms_difference(const Image *a, const Image *b, const uint8_t background[3])
+// RMS over the pixels that differ from `background` in either picture: of colours, or of opacity
+// where that is a channel.
+static double rms_difference(const Image *a, const Image *b, const uint8_t background[4])
 {
     double sum = 0;
-    size_t covered = 0;
-    for (int i = 0; i < SIDE * SIDE; ++i) {
-        const uint8_t *p = &a->pixels[3 * i], *q = &b->pixels[3 * i];
-        if (memcmp(p, background, 3) == 0 && memcmp(q, background, 3) == 0) continue;
+    size_t covered = 0, channels = (size_t)a->channels, first = channels == 4 ? 3 : 0;
+    for (size_t i = 0; i < (size_t)SIDE * SIDE; ++i) {
+        const uint8_t *p = &a->pixels[channels * i], *q = &b->pixels[channels * i];
+        if (!memcmp(p + first, background + first, channels - first) &&
+            !memcmp(q + first, background + first, channels - first))
+            continue;
         ++covered;
-        for (int k = 0; k < 3; ++k) sum += (p[k] - q[k]) * (p[k] - q[k]) / 3.0;
+        for (size_t k = first; k < channels; ++k)
+            sum += (p[k] - q[k]) * (p[k] - q[k]) / (double)(channels - first);
     }
     assert_true(covered > SIDE);
     return sqrt(sum / (double)covered);
 }
 
-static void compare_case(Studio *studio, const Case *c, double bound)
+static const float DARK[4] = {0.125f, 0.14f, 0.17f, 1};
+static const uint8_t DARK_BYTES[4] = {32, 36, 43};
+static const Light LIGHT = {.direction = {0.6f, 0.8f, 0}, .color = {1, 0.9f, 0.8f}, .intensity = 2};
+
+// The exact picture of a scene before a dark background and, for its opacity, without any.
+static void sitting_draw_case(Sitting exact[2], const Case *c)
 {
-    Sitting sitting;
-    const float dark[4] = {0.125f, 0.14f, 0.17f, 1};
-    const Light light = {.direction = {0.6f, 0.8f, 0}, .color = {1, 0.9f, 0.8f}, .intensity = 2};
-    sitting_open(&sitting, dark);
-    SectionParams *material = sitting_add(&sitting, make_tangle(c->count), c->radius, c->opacity);
-    dress(material, c->tip_ratio);
-    sitting.scene.lights = &light;
-    sitting.scene.light_count = 1;
-    draw(&sitting);
-    uint32_t item = studio_add(studio, &sitting.strands[0], c->radius, c->opacity);
+    for (int clear = 0; clear < 2; ++clear) {
+        sitting_open(&exact[clear], clear ? TRANSPARENT : DARK);
+        Strands strands = c->file ? read_hair(c->file) : make_tangle(c->count, c->step, c->turn);
+        dress(sitting_add(&exact[clear], strands, c->radius, c->opacity), c->tip_ratio);
+        exact[clear].scene.lights = &LIGHT;
+        exact[clear].scene.light_count = 1;
+        draw(&exact[clear]);
+    }
+}
+
+static void compare_case(Studio *studio, const Case *c, const Sitting *exact, const char *what,
+                         double bound)
+{
+    const uint8_t nothing[4] = {0};
+    bool clear = exact->image.channels == 4;
+    uint32_t item = studio_add(studio, &exact->strands[0], c->radius, c->opacity);
     dress(&studio->material[item], c->tip_ratio);
-    studio->light = light;
+    studio->light = LIGHT;
     studio_draw(studio);
-    const uint8_t background[3] = {32, 36, 43};
-    double rms = rms_difference(&sitting.image, &studio->image, background);
-    print_message("%s: RMS %.2f of 255, bound %.2f\n", c->name, rms, bound);
+    double rms = rms_difference(&exact->image, &studio->image, clear ? nothing : DARK_BYTES);
+    print_message("%s, %s, %s: RMS %.2f of 255, bound %.2f\n", what, c->name,
+                  clear ? "opacity" : "colour", rms, bound);
     studio_clear(studio);
-    sitting_close(&sitting);
-    if (rms > bound) fail_msg("%s: RMS %.2f of 255, bound %.2f", c->name, rms, bound);
+    if (rms > bound) fail_msg("%s, %s: RMS %.2f of 255, bound %.2f", what, c->name, rms, bound);
+}
+
+// Both rasterisers, of one sample a pixel and of 2 x 2, colour and opacity.
+static void compare_cases(const Case *cases, size_t count)
+{
+    static const char *const names[] = {"quads", "quads, 2 x 2", "blocks", "blocks, 2 x 2"};
+    Sitting exact[MOST_CASES][2];
+    assert_true(count <= MOST_CASES);
+    for (size_t i = 0; i < count; ++i) sitting_draw_case(exact[i], &cases[i]);
+    for (int kind = 0; kind < 4; ++kind)
+        for (int clear = 0; clear < 2; ++clear) {
+            Studio studio;
+            RendererOptions options = {.width = SIDE,
+                                       .height = SIDE,
+                                       .raster = kind < 2 ? RASTER_QUADS : RASTER_BLOCKS,
+                                       .samples = 1 + kind % 2};
+            memcpy(options.background, clear ? TRANSPARENT : DARK, sizeof DARK);
+            studio_open(&studio, &options);
+            for (size_t i = 0; i < count; ++i)
+                compare_case(&studio, &cases[i], &exact[i][clear], names[kind],
+                             cases[i].bound[clear][kind / 2][kind % 2]);
+            studio_close(&studio);
+        }
+    for (size_t i = 0; i < count; ++i)
+        for (int clear = 0; clear < 2; ++clear) sitting_close(&exact[i][clear]);
 }
 
 // What is left is that a pixel's ribbons are taken to be spread evenly and independently over it,
-// where the reference knows which sub-samples they share; and the sorted layers' number.
+// where the reference knows which sub-samples they share; and, of colour, the sorted layers'
+// number.
 static void the_renderer_is_near_the_reference(void **state)
 {
     (void)state;
     static const Case cases[] = {
-        {"fine hair, 0.6 px", 1000, 0.3f, 0.6f, 0.3f, {{2.1, 1.1}, {2.1, 1.15}}},
-        {"sparse hair, 1 px", 150, 0.5f, 0.6f, 1, {{1.2, 0.56}, {1.2, 0.55}}},
-        {"thick hair, 5 px", 100, 2.5f, 0.5f, 0.3f, {{0.85, 0.48}, {1.25, 0.77}}},
+        {.name = "fine hair, 0.6 px",
+         .count = 1000,
+         .step = 3,
+         .turn = 0.1,
+         .radius = 0.3f,
+         .opacity = 0.6f,
+         .tip_ratio = 0.3f,
+         .bound = {{{2.1, 1.1}, {2.1, 1.15}}, {{7.9, 3.9}, {7.9, 3.9}}}},
+        {.name = "sparse hair, 1 px",
+         .count = 150,
+         .step = 3,
+         .turn = 0.1,
+         .radius = 0.5f,
+         .opacity = 0.6f,
+         .tip_ratio = 1,
+         .bound = {{{1.2, 0.56}, {1.2, 0.55}}, {{4.4, 1.85}, {4.4, 1.6}}}},
+        {.name = "thick hair, 5 px",
+         .count = 100,
+         .step = 3,
+         .turn = 0.1,
+         .radius = 2.5f,
+         .opacity = 0.5f,
+         .tip_ratio = 0.3f,
+         .bound = {{{0.85, 0.48}, {1.25, 0.77}}, {{2.7, 1.65}, {3.8, 2.0}}}},
+        {.name = "hair on end, 0.6 px",
+         .count = 3000,
+         .step = 0.2,
+         .turn = 0.2,
+         .radius = 0.3f,
+         .opacity = 0.6f,
+         .tip_ratio = 0.3f,
+         .bound = {{{4.3, 2.4}, {3.2, 1.4}}, {{12.2, 6.7}, {7.3, 3.3}}}},
     };
-    RendererOptions options = {
-        .width = SIDE, .height = SIDE, .background = {0.125f, 0.14f, 0.17f, 1}};
-    for (int kind = 0; kind < 4; ++kind) {
-        Studio studio;
-        options.raster = kind < 2 ? RASTER_QUADS : RASTER_BLOCKS;
-        options.samples = 1 + kind % 2;
-        studio_open(&studio, &options);
-        print_message("%s, samples %d:\n", kind < 2 ? "quads" : "blocks", options.samples);
-        for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i)
-            compare_case(&studio, &cases[i], cases[i].bound[kind / 2][kind % 2]);
-        studio_close(&studio);
-    }
+    compare_cases(cases, sizeof cases / sizeof *cases);
+}
+
+// From so far off that strands are 0.4 and 0.8 px wide, many of them shorter than a few pixels.
+static void real_hair_is_near_the_reference(void **state)
+{
+    (void)state;
+    static const Case cases[] = {
+        {.name = "Mohawk",
+         .file = "../shared/assets/ratboy_mohawk.tfx",
+         .radius = 0.2f,
+         .opacity = 0.6f,
+         .tip_ratio = 0.3f,
+         .bound = {{{4.9, 2.8}, {3.9, 2.0}}, {{20.3, 12.0}, {13.9, 7.4}}}},
+        {.name = "Sintel",
+         .file = "../shared/assets/sintel_228x32.tfx",
+         .radius = 0.4f,
+         .opacity = 0.6f,
+         .tip_ratio = 0.3f,
+         .bound = {{{1.75, 0.92}, {1.76, 0.94}}, {{9.5, 4.75}, {9.7, 4.9}}}},
+    };
+    size_t count = sizeof cases / sizeof *cases;
+    for (size_t i = 0; i < count; ++i)
+        if (access(cases[i].file, R_OK) != 0) {
+            print_message("%s is not here: skipped\n", cases[i].file);
+            skip();
+        }
+    compare_cases(cases, count);
 }
 
 int main(void)
@@ -366,6 +475,7 @@ int main(void)
         cmocka_unit_test(a_mesh_hides_what_is_behind_it),
         cmocka_unit_test(threads_do_not_change_it),
         cmocka_unit_test(the_renderer_is_near_the_reference),
+        cmocka_unit_test(real_hair_is_near_the_reference),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
