@@ -2,23 +2,10 @@
 # SPDX-License-Identifier: MIT
 # The commands of docs/tutorial.md work as they stand there, one after the other. They run in a copy of what they need, with
 # smaller pictures and fewer frames.
-. tests/claims.sh
+. tests/checkout.sh
 
 command -v ffmpeg >/dev/null || { echo "skipped: no ffmpeg"; exit 77; }
-mkdir -p "$work/checkout/out" "$work/bin"
-cp -r assets scripts "$work/checkout/"
-ln -s "$(realpath "$bin")" "$work/checkout/out/release"
-printf 'all:\n' >"$work/checkout/Makefile"
-
-# The last of equal flags counts.
-cat >"$work/checkout/small" <<END
-#!/bin/sh
-case " \$* " in
-*" --frames 1 "*) exec "$(realpath "$bin")/tractrix-render" "\$@" --size 96x64 ;;
-*) exec "$(realpath "$bin")/tractrix-render" "\$@" --size 96x64 --frames 4 ;;
-esac
-END
-chmod +x "$work/checkout/small"
+make_checkout
 awk '/^```sh$/ { inside = 1; print "# line " NR; next } /^```$/ { inside = 0 } inside' docs/tutorial.md >"$work/commands"
 # shellcheck disable=SC2016 # the shell that runs them expands it
 sed -e 's/^\( *\)tractrix-render /\1.\/small /' -e 's/--count 20000 --guides 1500/--count 1000 --guides 400/' \
