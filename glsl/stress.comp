@@ -22,7 +22,7 @@ const float HUGE = 1e30;
 float largest(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
 
 // Written so that a NaN does not pass.
-bool passes(float value) { return value <= 1.0; }
+bool passes(float value) { return value <= stress_params.used_most; }
 
 void main()
 {

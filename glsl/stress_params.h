@@ -30,6 +30,7 @@ UNIFORM_BLOCK(StressParams, stress_params, BIND_STEP)
     float length_error; // allowed, of a segment's length; 0: not looked at
     float rest_shortest; // m: strands with a segment as short need not rest
     float rest_move;     // m: allowed in this step; 0: not looked at
+    float used_most;     // share of what is allowed, above 0 to 1, that keeps a rule
     uint energy;         // whether it is looked at
     uint step;
     uint strand_count;

@@ -5,10 +5,46 @@
 #include "solver.h"
 #include "stress_run.h"
 
+#include <math.h>
 #include <string.h>
 #include <time.h>
 
 enum { TEXT_SIZE = 1024 };
+
+// A form's sum, a case that failed, or the smallest that such a one was made to.
+typedef struct Line {
+    const char *what, *algo, *variant;
+    long cases, sets, failures;
+    double seconds;
+    const char *rule; // that was broken
+    long set, strand; // -1: it is no strand of a set
+    long steps, at;   // of the case; the first that broke it
+    double of_allowed, worst_length, worst_energy, worst_rest;
+    char text[TEXT_SIZE], command[TEXT_SIZE + 128];
+} Line;
+
+#define AT(member) offsetof(Line, member)
+static const Column COLUMNS[] = {
+    {"what", COLUMN_TEXT, AT(what), 0},
+    {"algo", COLUMN_TEXT, AT(algo), 0},
+    {"variant", COLUMN_TEXT, AT(variant), 0},
+    {"cases", COLUMN_WHOLE, AT(cases), 0},
+    {"sets", COLUMN_WHOLE, AT(sets), 0},
+    {"failures", COLUMN_WHOLE, AT(failures), 0},
+    {"seconds", COLUMN_REAL, AT(seconds), 0},
+    {"rule", COLUMN_TEXT, AT(rule), 0},
+    {"set", COLUMN_WHOLE, AT(set), 0},
+    {"strand", COLUMN_WHOLE, AT(strand), 0},
+    {"steps", COLUMN_WHOLE, AT(steps), 0},
+    {"at", COLUMN_WHOLE, AT(at), 0},
+    {"of_allowed", COLUMN_REAL, AT(of_allowed), 0},
+    {"worst_length", COLUMN_REAL, AT(worst_length), 0},
+    {"worst_energy", COLUMN_REAL, AT(worst_energy), 0},
+    {"worst_rest", COLUMN_REAL, AT(worst_rest), 0},
+    {"case", COLUMN_CHARS, AT(text), 0},
+    {"command", COLUMN_CHARS, AT(command), 0},
+};
+enum { COLUMN_COUNT = sizeof COLUMNS / sizeof *COLUMNS };
 
 // Of the failures of a set only the worst of each rule is made smaller, and so many of a form; all
 // are named.
@@ -16,7 +52,7 @@ enum { MOST_SHRUNK = 8 };
 
 StressOptions stress_options_default(void)
 {
-    return (StressOptions){.cases = 5000, .steps = 10000, .seed = 1, .shrinks = true};
+    return (StressOptions){.cases = 5000, .steps = 10000, .seed = 1, .allowed = 1, .shrinks = true};
 }
 
 // What happened to a solver's form.
@@ -32,7 +68,7 @@ typedef struct Bench {
     const Gpu *gpu;
     const StressOptions *options;
     FILE *stream;
-    json_t *rows;
+    BenchTable table; // of the files
     Progress progress;
     int sets_done, cases_done;
 } Bench;
@@ -58,8 +94,8 @@ static bool breaks(Bench *bench, const StressCase *stress, StressRule rule, int 
 {
     StressVerdict verdict;
     Error unused;
-    if (interrupt_requested() ||
-        stress_run(&verdict, bench->gpu, stress, 1, *steps, &unused) != RESULT_OK)
+    if (interrupt_requested() || stress_run(&verdict, bench->gpu, stress, 1, *steps,
+                                            bench->options->allowed, &unused) != RESULT_OK)
         return false;
     if (!verdict.first[rule]) return false;
     // The head rests in the second half, and strands must lie still at the end.
@@ -90,22 +126,49 @@ static void shrink(Bench *bench, StressCase *stress, StressRule rule, int *steps
     }
 }
 
+// The command that repeats a case, of the line's form and steps.
+static void write_command(const Bench *bench, Line *line)
+{
+    char allow[32] = "";
+    if (bench->options->allowed < 1)
+        snprintf(allow, sizeof allow, " --allow %.9g", bench->options->allowed);
+    snprintf(line->command, sizeof line->command,
+             "tractrix-bench stress --algo %s%s%s --steps %ld%s --case '%s'", line->algo,
+             *line->variant ? " --variant " : "", line->variant, line->steps, allow, line->text);
+}
+
+static Line line_of_case(const Bench *bench, const char *what, const StressCase *stress,
+                         const StressVerdict *verdict, StressRule rule, int steps)
+{
+    Line line = {.what = what,
+                 .algo = stress->algo,
+                 .variant = stress->variant,
+                 .cases = 1,
+                 .sets = 1,
+                 .failures = 1,
+                 .seconds = NAN,
+                 .rule = STRESS_RULE_NAMES[rule],
+                 .set = -1,
+                 .strand = -1,
+                 .steps = steps,
+                 .at = verdict->first[rule],
+                 .of_allowed = verdict->worst[rule],
+                 .worst_length = verdict->worst[STRESS_LENGTHS],
+                 .worst_energy = verdict->worst[STRESS_ENERGY],
+                 .worst_rest = verdict->worst[STRESS_REST]};
+    stress_case_write(stress, line.text, sizeof line.text);
+    write_command(bench, &line);
+    return line;
+}
+
 static void print_case(Bench *bench, const StressCase *stress, const StressVerdict *verdict,
                        StressRule rule, int steps)
 {
-    char text[TEXT_SIZE];
-    stress_case_write(stress, text, sizeof text);
-    fprintf(bench->stream, "  %s broken at step %d (%.3g of what is allowed):\n",
-            STRESS_RULE_NAMES[rule], verdict->first[rule], verdict->worst[rule]);
-    fprintf(bench->stream, "    tractrix-bench stress --algo %s%s%s --steps %d --case '%s'\n",
-            stress->algo, *stress->variant ? " --variant " : "", stress->variant, steps, text);
+    const Line line = line_of_case(bench, "smallest", stress, verdict, rule, steps);
+    fprintf(bench->stream, "  %s broken at step %ld (%.3g of what is allowed):\n    %s\n",
+            line.rule, line.at, line.of_allowed, line.command);
     fflush(bench->stream);
-    if (bench->rows)
-        json_array_append_new(bench->rows,
-                              json_pack("{s:s, s:s, s:s, s:s, s:i, s:i, s:f}", "algo", stress->algo,
-                                        "variant", stress->variant, "broken",
-                                        STRESS_RULE_NAMES[rule], "case", text, "steps", steps, "at",
-                                        verdict->first[rule], "of_allowed", verdict->worst[rule]));
+    bench_table_add(&bench->table, &line);
 }
 
 static void tell_failure(Bench *bench, const StressCase *stress, const StressVerdict *found)
@@ -122,7 +185,8 @@ static void tell_failure(Bench *bench, const StressCase *stress, const StressVer
         return;
     }
     if (!bench->options->text && bench->options->shrinks) shrink(bench, &smallest, rule, &steps);
-    if (stress_run(&verdict, bench->gpu, &smallest, 1, steps, &unused) != RESULT_OK)
+    if (stress_run(&verdict, bench->gpu, &smallest, 1, steps, bench->options->allowed, &unused) !=
+        RESULT_OK)
         verdict = *found;
     (void)at;
     print_case(bench, &smallest, &verdict, rule, steps);
@@ -132,18 +196,12 @@ static void tell_failure(Bench *bench, const StressCase *stress, const StressVer
 static void name_failure(Bench *bench, const Tally *tally, const StressCase *stress, int strand,
                          const StressVerdict *verdict, StressRule rule)
 {
-    char text[TEXT_SIZE];
-    stress_case_write(stress, text, sizeof text);
+    Line line = line_of_case(bench, "failed", stress, verdict, rule, bench->options->steps);
+    line.set = tally->sets, line.strand = strand;
     progress_clear(&bench->progress);
-    fprintf(bench->stream, "  set %d, strand %d: %s at step %d (%.3g): '%s'\n", tally->sets, strand,
-            STRESS_RULE_NAMES[rule], verdict->first[rule], verdict->worst[rule], text);
-    if (bench->rows)
-        json_array_append_new(bench->rows,
-                              json_pack("{s:s, s:s, s:s, s:s, s:i, s:i, s:i, s:i, s:f}", "algo",
-                                        stress->algo, "variant", stress->variant, "failed",
-                                        STRESS_RULE_NAMES[rule], "case", text, "set", tally->sets,
-                                        "strand", strand, "steps", bench->options->steps, "at",
-                                        verdict->first[rule], "of_allowed", verdict->worst[rule]));
+    fprintf(bench->stream, "  set %d, strand %d: %s at step %ld (%.3g): '%s'\n", tally->sets,
+            strand, line.rule, line.at, line.of_allowed, line.text);
+    bench_table_add(&bench->table, &line);
 }
 
 // Whether a breaks the rule worse than b: by more, or else sooner.
@@ -187,8 +245,8 @@ static Result run_set(Bench *bench, Tally *tally, int set, int strand_count, Err
                                           STRESS_VERTICES[set % STRESS_VERTEX_COUNTS], &random);
     for (int s = 0; s < strand_count; ++s)
         strands[s] = stress_case_random_strand(&plain, s, &random);
-    Result result =
-        stress_run(verdicts, bench->gpu, strands, strand_count, bench->options->steps, error);
+    Result result = stress_run(verdicts, bench->gpu, strands, strand_count, bench->options->steps,
+                               bench->options->allowed, error);
     if (result == RESULT_OK) count(bench, tally, strands, verdicts, strand_count);
     return result;
 }
@@ -199,7 +257,8 @@ static Result run_text(Bench *bench, Tally *tally, Error *error)
     StressVerdict verdict;
     Result result = stress_case_read(&stress, bench->options->text, error);
     if (result == RESULT_OK)
-        result = stress_run(&verdict, bench->gpu, &stress, 1, bench->options->steps, error);
+        result = stress_run(&verdict, bench->gpu, &stress, 1, bench->options->steps,
+                            bench->options->allowed, error);
     if (result == RESULT_OK) count(bench, tally, &stress, &verdict, 1);
     return result;
 }
@@ -232,13 +291,22 @@ static void print_tally(Bench *bench, const Tally *tally)
             tally->failures, tally->seconds, broken[0], broken[1], broken[2], broken[3], worst[1],
             worst[2], worst[3]);
     fflush(bench->stream);
-    if (bench->rows)
-        json_array_append_new(
-            bench->rows, json_pack("{s:s, s:s, s:i, s:i, s:i, s:i, s:f, s:f, s:f, s:f}", "algo",
-                                   tally->algo, "variant", tally->variant, "cases", tally->cases,
-                                   "sets", tally->sets, "steps", bench->options->steps, "failures",
-                                   tally->failures, "seconds", tally->seconds, "worst_length",
-                                   worst[1], "worst_energy", worst[2], "worst_rest", worst[3]));
+    const Line line = {.what = "form",
+                       .algo = tally->algo,
+                       .variant = tally->variant,
+                       .cases = tally->cases,
+                       .sets = tally->sets,
+                       .failures = tally->failures,
+                       .seconds = tally->seconds,
+                       .rule = "",
+                       .set = -1,
+                       .strand = -1,
+                       .steps = bench->options->steps,
+                       .of_allowed = NAN,
+                       .worst_length = worst[STRESS_LENGTHS],
+                       .worst_energy = worst[STRESS_ENERGY],
+                       .worst_rest = worst[STRESS_REST]};
+    bench_table_add(&bench->table, &line);
 }
 
 static Result run_form(Bench *bench, const char *algo, const char *variant, int *failures,
@@ -288,12 +356,22 @@ static Result check_words(const StressOptions *options, Error *error)
     return solver_check(&params, error);
 }
 
-Result bench_stress(const Gpu *gpu, const StressOptions *options, FILE *stream, json_t *rows,
-                    Error *error)
+// The files have what was done until an interruption, too.
+static Result close_table(BenchTable *table, Result result, Error *error)
 {
-    Bench bench = {.gpu = gpu, .options = options, .stream = stream, .rows = rows};
+    Error unwritten;
+    Result closed = bench_table_close(table, RESULT_OK, &unwritten);
+    return closed == RESULT_OK ? result : error_set(error, closed, "%s", unwritten.text);
+}
+
+Result bench_stress(const Gpu *gpu, const StressOptions *options, const BenchOutput *output,
+                    FILE *stream, Error *error)
+{
+    Bench bench = {.gpu = gpu, .options = options, .stream = stream};
     int forms = 0, failures = 0, unused = 0;
     Result result = check_words(options, error);
+    if (result == RESULT_OK)
+        result = bench_table_open(&bench.table, COLUMNS, COLUMN_COUNT, gpu, output, NULL, error);
     if (result != RESULT_OK) return result;
     for_forms(NULL, options, &failures, &forms, error);
     int sets = options->text ? 1 : (options->cases + STRESS_STRANDS - 1) / STRESS_STRANDS;
@@ -306,5 +384,5 @@ Result bench_stress(const Gpu *gpu, const StressOptions *options, FILE *stream, 
             bench.cases_done, options->steps, forms, now_s() - begun, failures);
     if (result == RESULT_OK && failures)
         result = error_set(error, RESULT_FAILED, "%d cases failed", failures);
-    return result;
+    return close_table(&bench.table, result, error);
 }

@@ -4,9 +4,8 @@
 // repeats it.
 #pragma once
 
+#include "bench_table.h"
 #include "gpu.h"
-
-#include <jansson.h>
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -17,15 +16,17 @@ typedef struct StressOptions {
     int cases;                  // of each solver's form, 1 .. 10^6
     int steps;                  // of each case, 1 .. 10^6
     int seed;
-    bool shrinks; // failures are made smaller before they are printed
+    double allowed; // share of each bound that a case may use, above 0 to 1
+    bool shrinks;   // failures are made smaller before they are printed
 } StressOptions;
 
 StressOptions stress_options_default(void);
 
 // Prints a line for each solver's form, those of failures between, and a sum. A case is a strand
-// under a set of circumstances; STRESS_STRANDS strands share a set. `rows`: an object for each form
-// and failure; NULL: not asked for. RESULT_FAILED if a case failed, RESULT_INTERRUPTED after what
-// was done until then has been printed.
+// under a set of circumstances; STRESS_STRANDS strands share a set. The files get a row for each
+// form, for each case that failed, and for what these were made smaller to ("form", "failed",
+// "smallest"). RESULT_FAILED if a case failed, RESULT_INTERRUPTED after what was done until then
+// has been printed and written.
 enum { STRESS_STRANDS = 32 };
-Result bench_stress(const Gpu *gpu, const StressOptions *options, FILE *stream, json_t *rows,
-                    Error *error);
+Result bench_stress(const Gpu *gpu, const StressOptions *options, const BenchOutput *output,
+                    FILE *stream, Error *error);

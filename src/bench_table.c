@@ -78,6 +78,7 @@ static void format_value(const Column *column, const void *row, bool precise, ch
 
 static void write_screen(const BenchTable *table, const void *row)
 {
+    if (!table->screen) return;
     for (size_t i = 0; i < table->column_count; ++i) {
         const Column *column = &table->columns[i];
         char text[512];

@@ -44,7 +44,8 @@ typedef struct BenchTable {
     char first_broken[512];
 } BenchTable;
 
-// Prints the head. `columns` and `gpu` outlive the table. RESULT_FAILED when memory is short.
+// Prints the head. `columns` and `gpu` outlive the table. `screen` NULL: the caller prints in its
+// own way. RESULT_FAILED when memory is short.
 Result bench_table_open(BenchTable *table, const Column *columns, size_t column_count,
                         const Gpu *gpu, const BenchOutput *output, FILE *screen, Error *error);
 

@@ -9,26 +9,19 @@
 #include "bench_step.h"
 #include "bench_stress.h"
 #include "interrupt.h"
-#include "json_write.h"
 #include "suggest.h"
 
 #include <string.h>
 
 static Result run_stress(const BenchOptions *arguments, const Gpu *gpu, Error *error)
 {
-    Error unwritten;
-    const char *json = arguments->output.json, *variant = arguments->method.variant;
+    const char *variant = arguments->method.variant;
     StressOptions options = arguments->stress;
     options.algo = arguments->method.algo, options.variant = *variant ? variant : NULL;
     if (*arguments->method.settings)
         return error_set(error, RESULT_USAGE, "stress: draws %s itself, or takes it from --case",
                          arguments->method.settings);
-    json_t *rows = json ? json_array() : NULL;
-    Result result = bench_stress(gpu, &options, stdout, rows, error);
-    if (rows && result != RESULT_USAGE && json_write_file(rows, json, &unwritten) != RESULT_OK)
-        result = error_set(error, RESULT_FAILED, "%s", unwritten.text);
-    json_decref(rows);
-    return result;
+    return bench_stress(gpu, &options, &arguments->output, stdout, error);
 }
 
 static Result run_shaders(const BenchOptions *arguments, const Gpu *gpu, Error *error)

@@ -20,6 +20,7 @@ const char *const STRESS_RULE_NAMES[STRESS_RULES] = {"finite", "lengths", "energ
 typedef struct Run {
     const StressCase *set;
     int steps;
+    double allowed;
     Hair hair;
     SectionParams params;
     Scene scene; // its wind
@@ -119,9 +120,9 @@ static void root_at(const Run *run, const HeadPose *pose, double root[3])
 }
 
 static Result run_create(Run *run, const Gpu *gpu, const StressCase *strands, int count, int steps,
-                         Error *error)
+                         double allowed, Error *error)
 {
-    *run = (Run){.set = strands, .steps = steps};
+    *run = (Run){.set = strands, .steps = steps, .allowed = allowed};
     const double *value = strands->value;
     double pitch = value[STRESS_wind_pitch] * PI / 180;
     RunParams *forces = &run->scene.run;
@@ -162,6 +163,7 @@ static void look(Run *run, int i)
 {
     const HairBatch *batch = &run->hair.batches[0];
     StressParams params = {.step = (uint32_t)i,
+                           .used_most = (float)run->allowed,
                            .strand_count = batch->strand_count,
                            .vertex_count = batch->vertex_count};
     memcpy(params.gravity, run->step.gravity, sizeof run->step.gravity);
@@ -241,10 +243,10 @@ static Result take_steps(Run *run, StressVerdict *verdicts, int count, Error *er
 }
 
 Result stress_run(StressVerdict *verdicts, const Gpu *gpu, const StressCase *strands, int count,
-                  int steps, Error *error)
+                  int steps, double allowed, Error *error)
 {
     Run run;
-    Result result = run_create(&run, gpu, strands, count, steps, error);
+    Result result = run_create(&run, gpu, strands, count, steps, allowed, error);
     if (result == RESULT_OK) result = take_steps(&run, verdicts, count, error);
     run_destroy(&run);
     return result;

@@ -19,8 +19,8 @@ typedef struct StressVerdict {
 bool stress_verdict_fails(const StressVerdict *verdict);
 
 // Steps `count` strands of one set, `steps` steps. `strands` differ in what is a strand's own, and
-// have consecutive numbers.
+// have consecutive numbers. Using more than the share `allowed` (0 to 1] of a bound breaks it.
 // Looks at each of the first 64 steps, at eight after each jump of the head, at every sixteenth of
 // the others and at the last. RESULT_INTERRUPTED if one was asked for; errors of solver_create.
 Result stress_run(StressVerdict *verdicts, const Gpu *gpu, const StressCase *strands, int count,
-                  int steps, Error *error);
+                  int steps, double allowed, Error *error);

@@ -88,6 +88,28 @@ claim "scenes have rows of the same form"
 run 0 scenes --set 1k16 --steps 1 --warm-up 0 --algo dftl --csv "$work/scenes.csv"
 same "$(field "$work/scenes.csv" guides | tail -1)" 2000 "guides of two sections"
 
+claim "stress: solvers that keep their bounds have a row each, and it ends with 0"
+run 0 stress --algo hybrid --cases 48 --steps 50 --csv "$work/kept.csv"
+same "$(field "$work/kept.csv" what) $(field "$work/kept.csv" cases) $(field "$work/kept.csv" failures)" "form 48 0" "the row"
+
+claim "stress: every case that breaks a bound is named on the screen and in both files, its command repeats it, and it ends with 1"
+# A strand that falls uses half of what it is allowed, whatever its solver: so a bound of 0.4 of that is broken.
+run 1 stress --algo hybrid --cases 48 --steps 50 --allow 0.4 --csv "$work/stress.csv" --json "$work/stress.json"
+failures=$(field "$work/stress.csv" failures | tail -1)
+if [ "$failures" -gt 0 ]; then good; else bad "nothing is broken"; fi
+says "$failures cases failed"
+same "$(field "$work/stress.csv" what | grep -c failed)" "$failures" "failed cases in CSV"
+same "$(grep -c '"what": "failed"' "$work/stress.json")" "$failures" "in JSON"
+same "$(grep -c '  set [0-9]*, strand [0-9]*: energy at step' "$work/out")" "$failures" "on the screen"
+found=$(field "$work/stress.csv" case | head -1) used=$(field "$work/stress.csv" of_allowed | head -1)
+smallest=$(field "$work/stress.csv" case | tail -2 | head -1)
+says "set 0, strand $(field "$work/stress.csv" strand | head -1): energy"; says ": '$found'"
+says "--allow 0.4 --case '$smallest'"
+run 1 stress --algo hybrid --steps 50 --allow 0.4 --case "$found" --csv "$work/repeated.csv"
+same "$(field "$work/repeated.csv" of_allowed | head -1)" "$used" "the repeated case"
+run 0 stress --algo hybrid --steps 50 --case "$found"
+run 2 stress --algo hybrid --allow 1.1; says "--allow"
+
 claim "wrong usage ends with 2 and one line that helps"
 run 2 stepp; says "did you mean 'step'"
 run 2 accuracy --part motion; says "motions"

@@ -93,7 +93,7 @@ static StressVerdict verdict_of(const char *algo, const char *variant, const cha
     StressVerdict verdict = {0};
     Error error = {{0}};
     if (stress_case_read(&stress, text, &error) != RESULT_OK ||
-        stress_run(&verdict, fixture_gpu(), &stress, 1, steps, &error) != RESULT_OK)
+        stress_run(&verdict, fixture_gpu(), &stress, 1, steps, 1, &error) != RESULT_OK)
         fail_msg("%s", error.text);
     return verdict;
 }
@@ -236,10 +236,15 @@ static void uneven_hair_stays_where_it_is(void **state)
 static void no_solver_breaks_a_rule_in_the_short_form(void **state)
 {
     (void)state;
-    const StressOptions options = {
-        .algo = getenv("TEST_ALGO"), .cases = 256, .steps = 200, .seed = 1, .shrinks = true};
+    const StressOptions options = {.algo = getenv("TEST_ALGO"),
+                                   .cases = 256,
+                                   .steps = 200,
+                                   .seed = 1,
+                                   .allowed = 1,
+                                   .shrinks = true};
+    const BenchOutput nowhere = {0};
     Error error = {{0}};
-    if (bench_stress(fixture_gpu(), &options, stdout, NULL, &error) != RESULT_OK)
+    if (bench_stress(fixture_gpu(), &options, &nowhere, stdout, &error) != RESULT_OK)
         fail_msg("%s", error.text);
 }
 
