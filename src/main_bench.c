@@ -11,6 +11,7 @@
 #include "interrupt.h"
 #include "suggest.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static Result run_stress(const BenchOptions *arguments, const Gpu *gpu, Error *error)
@@ -76,6 +77,9 @@ static Result run_command(BenchOptions *options, Error *error)
     if (options->file_count == 0) return error_set(error, RESULT_USAGE, "no command; see --help");
     Result result = find_command(*options->files++, &command, error);
     --options->file_count;
+    // What Mesa finds in its cache it does not compile, and warns of nothing.
+    if (result == RESULT_OK && COMMANDS[command].run == run_shaders)
+        setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
     if (result == RESULT_OK) result = gpu_create(&gpu, &options->gpu, error);
     if (result != RESULT_OK) return result;
     fprintf(stderr, "%s, OpenGL %s (%s)\n", gpu.renderer, gpu.version, gpu.path);
