@@ -332,32 +332,51 @@ static double find_change(float distance, LodOptions before, LodOptions now, dou
     return sum;
 }
 
-// 40 pictures while the share of strands falls from 1 to its least. What the zoom itself changes is
-// taken out: each picture is compared with that from the same place whose level of detail is of the
-// place before. From share s to s - d the strands that go take the part d/s of what all cover with
-// them, and the others, wider, cover as much more; where strands overlap less is seen. Rounding to
-// 1/255 makes as many changes greater as smaller. 80 strands go at a time; of the lengths of what
-// is seen of a strand, which vary by half, their mean varies by 0.5/sqrt(80): 4 of these are 22 %
-// of one of the two parts. With a share in quarters some picture changes by 8 parts.
+// A zoom out from `near` to `far` in so many pictures, and how level of detail goes by it: the
+// share of strands falls evenly with the distance, or as the width of a fibre does, from 1 on.
+enum { ZOOM_STRANDS = 4000, ZOOM_FRAMES = 40 };
+static const float ZOOM_NEAR = 1000, ZOOM_FAR = 3000, ZOOM_LEAST = 0.2f, FIBRE_PX = 0.1f;
+
+// The level of detail at `distance` that has the share which `of` has.
+static LodOptions zoom_level(bool by_width, float distance, float of)
+{
+    float shift = distance - of;
+    LodOptions even = {.start = ZOOM_NEAR + shift, .end = ZOOM_FAR + shift, .least = ZOOM_LEAST};
+    LodOptions width = {.width = FIBRE_PX * of / distance, .least = ZOOM_LEAST};
+    return by_width ? width : even;
+}
+
+static double zoom_share(bool by_width, float distance)
+{
+    double even = 1 - (1 - ZOOM_LEAST) * (distance - ZOOM_NEAR) / (ZOOM_FAR - ZOOM_NEAR);
+    return by_width ? ZOOM_NEAR / distance : even;
+}
+
+// What the zoom itself changes is taken out: each picture is compared with that from the same place
+// whose level of detail is of the place before. From share s to s - d the strands that go take the
+// part d/s of what all cover with them, and the others, wider, cover as much more; where strands
+// overlap less is seen. Rounding to 1/255 makes as many changes greater as smaller. Of n strands
+// that go at a time the lengths of what is seen vary by half, their mean by 0.5/sqrt(n): 4 of these
+// are added to one of the two parts. With a share in quarters some picture changes by 8 parts.
 static void nothing_pops_along_a_zoom(void **state)
 {
     (void)state;
-    enum { COUNT = 4000, FRAMES = 40 };
-    const float near = 1000, far = 3000, least = 0.2f, step = (far - near) / FRAMES;
-    const double goes = (1 - (double)least) / FRAMES;
+    const float step = (ZOOM_FAR - ZOOM_NEAR) / ZOOM_FRAMES;
     use(&TRANSPARENT);
-    add_tangle(COUNT, 0.05f, 0.2f, NULL);
-    double low = INFINITY, high = 0; // change, of the part that goes
-    for (int i = 1; i <= FRAMES; ++i) {
-        const LodOptions before = {.start = near + step, .end = far + step, .least = least},
-                         now = {.start = near, .end = far, .least = least};
-        double all, part = goes / (1 - goes * (i - 1)),
-                    change = find_change(near + step * (float)i, before, now, &all) / all;
-        low = fmin(low, change / part);
-        high = fmax(high, change / part);
-    }
-    if (!(high < 2 + 0.22)) fail_msg("from one picture to the next %g parts change", high);
-    assert_true(low > 1); // they do go, a few at a time
+    add_tangle(ZOOM_STRANDS, FIBRE_PX / 2, 0.2f, NULL);
+    for (int by_width = 0; by_width < 2; ++by_width)
+        for (int i = 1; i <= ZOOM_FRAMES; ++i) {
+            float now = ZOOM_NEAR + step * (float)i, before = now - step;
+            double all, share = zoom_share(by_width, before),
+                        goes = share - zoom_share(by_width, now),
+                        change = find_change(now, zoom_level(by_width, now, before),
+                                             zoom_level(by_width, now, now), &all);
+            double parts = change / all * share / goes;
+            if (!(parts < 2 + 4 * 0.5 / sqrt(goes * ZOOM_STRANDS)))
+                fail_msg("%s, picture %d: %g parts change", by_width ? "width" : "distance", i,
+                         parts);
+            assert_true(parts > 1); // they do go, a few at a time
+        }
 }
 
 // Narrower fibres are so many fewer that they are as wide as was asked for.
