@@ -170,14 +170,20 @@ static void write_brackets(const ParamInfo *info, char *text, size_t size)
              shown ? info->default_text : "");
 }
 
-static void write_param_entry(FILE *stream, const ParamInfo *info)
+// The rows of a group, each as `write` lays out a flag and its text.
+static void write_group(FILE *stream, int group,
+                        void (*write)(FILE *stream, const char *flag, const char *text))
 {
-    char flag[160], brackets[160], text[TEXT_SIZE];
-    write_flag(info, flag, sizeof flag);
-    write_brackets(info, brackets, sizeof brackets);
-    snprintf(text, sizeof text, "%s%s%s", info->scope == SCOPE_SECTION ? "* " : "", info->help,
-             brackets);
-    prose_write_entry(stream, flag, text);
+    for (size_t i = 0; i < PARAM_COUNT; i++) {
+        const ParamInfo *info = &PARAM_TABLE[i];
+        if ((int)info->group != group) continue;
+        char flag[160], brackets[160], text[TEXT_SIZE];
+        write_flag(info, flag, sizeof flag);
+        write_brackets(info, brackets, sizeof brackets);
+        snprintf(text, sizeof text, "%s%s%s", info->scope == SCOPE_SECTION ? "* " : "", info->help,
+                 brackets);
+        write(stream, flag, text);
+    }
 }
 
 void help_write_text(FILE *stream)
@@ -187,9 +193,7 @@ void help_write_text(FILE *stream)
     prose_write_wrapped(stream, DESCRIPTION, 0, 0);
     for (int group = 0; group < GROUP_COUNT; group++) {
         fprintf(stream, "\n%s:\n", GROUP_TITLES[group]);
-        for (size_t i = 0; i < PARAM_COUNT; i++) {
-            if ((int)PARAM_TABLE[i].group == group) write_param_entry(stream, &PARAM_TABLE[i]);
-        }
+        write_group(stream, group, prose_write_entry);
     }
     fprintf(stream, "\nOther:\n");
     for (int i = 0; i < REQUEST_COUNT; i++)
@@ -201,16 +205,6 @@ void help_write_text(FILE *stream)
         fprintf(stream, "  %3s  %s\n", STATUSES[i].status, STATUSES[i].meaning);
     fprintf(stream, "\nExamples:\n");
     for (int i = 0; i < EXAMPLE_COUNT; i++) fprintf(stream, "  %s\n", EXAMPLES[i]);
-}
-
-static void write_roff_param(FILE *stream, const ParamInfo *info)
-{
-    char flag[160], brackets[160], text[TEXT_SIZE];
-    write_flag(info, flag, sizeof flag);
-    write_brackets(info, brackets, sizeof brackets);
-    snprintf(text, sizeof text, "%s%s%s", info->scope == SCOPE_SECTION ? "* " : "", info->help,
-             brackets);
-    prose_write_roff_entry(stream, flag, text);
 }
 
 void help_write_man(FILE *stream, const char *version)
@@ -225,9 +219,7 @@ void help_write_man(FILE *stream, const char *version)
     prose_write_roff(stream, FLAG_RULES);
     for (int group = 0; group < GROUP_COUNT; group++) {
         fprintf(stream, ".SS %s\n", GROUP_TITLES[group]);
-        for (size_t i = 0; i < PARAM_COUNT; i++) {
-            if ((int)PARAM_TABLE[i].group == group) write_roff_param(stream, &PARAM_TABLE[i]);
-        }
+        write_group(stream, group, prose_write_roff_entry);
     }
     fprintf(stream, ".SS Other\n");
     for (int i = 0; i < REQUEST_COUNT; i++)

@@ -348,58 +348,36 @@ static void describe_choices(const ParamInfo *info, char *text, size_t size)
     }
 }
 
+// What a value of each kind is: before and behind its range; without the second it has none.
+static const char *const FORMS[][2] = {
+    [PARAM_BOOL] = {"true or false", NULL},
+    [PARAM_INT] = {"a whole number ", ""},
+    [PARAM_UINT] = {"a whole number ", ""},
+    [PARAM_FLOAT] = {"a number ", ""},
+    [PARAM_VEC3] = {"three numbers x,y,z ", ""},
+    [PARAM_COLOR] = {"#rrggbb or r,g,b ", ""},
+    [PARAM_BACKGROUND] = {"#rrggbb, r,g,b ", ", or transparent"},
+    [PARAM_AUTO_INT] = {"auto or a whole number ", ""},
+    [PARAM_AUTO_FLOAT] = {"auto or a number ", ""},
+    [PARAM_AUTO_VEC3] = {"auto or three numbers x,y,z ", ""},
+    [PARAM_UNIT] = {"auto, m, cm, mm, in or a number ", ""},
+    [PARAM_SIZE] = {"WxH, each ", ""},
+    [PARAM_PART] = {"I/N, each ", " and I at most N"},
+    [PARAM_TEXT] = {"a name", NULL},
+    [PARAM_PATH] = {"a path", NULL},
+};
+
 void param_describe(const ParamInfo *info, char *text, size_t size)
 {
-    char range[80];
-    const char *open = info->unit[0] ? " (" : "", *close = info->unit[0] ? ")" : "";
-    snprintf(range, sizeof range, "from %.10g to %.10g%s%s%s", info->minimum, info->maximum, open,
-             info->unit, close);
-    switch (info->kind) {
-    case PARAM_BOOL:
-        snprintf(text, size, "true or false");
-        break;
-    case PARAM_INT:
-    case PARAM_UINT:
-        snprintf(text, size, "a whole number %s", range);
-        break;
-    case PARAM_FLOAT:
-        snprintf(text, size, "a number %s", range);
-        break;
-    case PARAM_VEC3:
-        snprintf(text, size, "three numbers x,y,z %s", range);
-        break;
-    case PARAM_COLOR:
-        snprintf(text, size, "#rrggbb or r,g,b %s", range);
-        break;
-    case PARAM_BACKGROUND:
-        snprintf(text, size, "#rrggbb, r,g,b %s, or transparent", range);
-        break;
-    case PARAM_AUTO_INT:
-        snprintf(text, size, "auto or a whole number %s", range);
-        break;
-    case PARAM_AUTO_FLOAT:
-        snprintf(text, size, "auto or a number %s", range);
-        break;
-    case PARAM_AUTO_VEC3:
-        snprintf(text, size, "auto or three numbers x,y,z %s", range);
-        break;
-    case PARAM_UNIT:
-        snprintf(text, size, "auto, m, cm, mm, in or a number %s", range);
-        break;
-    case PARAM_SIZE:
-        snprintf(text, size, "WxH, each %s", range);
-        break;
-    case PARAM_PART:
-        snprintf(text, size, "I/N, each %s and I at most N", range);
-        break;
-    case PARAM_CHOICE:
+    if (info->kind == PARAM_CHOICE) {
         describe_choices(info, text, size);
-        break;
-    case PARAM_TEXT:
-        snprintf(text, size, "a name");
-        break;
-    case PARAM_PATH:
-        snprintf(text, size, "a path");
-        break;
+        return;
     }
+    const char *const *form = FORMS[info->kind];
+    const char *open = info->unit[0] ? " (" : "", *close = info->unit[0] ? ")" : "";
+    if (!form[1])
+        snprintf(text, size, "%s", form[0]);
+    else
+        snprintf(text, size, "%sfrom %.10g to %.10g%s%s%s%s", form[0], info->minimum, info->maximum,
+                 open, info->unit, close, form[1]);
 }
