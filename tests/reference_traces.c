@@ -95,3 +95,16 @@ int traces_compare(const char *algorithm, const char *algo, const char *variant,
     json_decref(traces);
     return count;
 }
+
+// e^{-c' dt} = 1 - c dt, and forces scaled so that they gain the same speed.
+void traces_imitate_explicit_drag(HairFixture *fixture)
+{
+    double dt = fixture->step.dt, c = (double)fixture->params.drag;
+    double other = -log1p(-c * dt) / dt, gain = -expm1(-other * dt) / other;
+    fixture->params.drag = (float)other;
+    for (int k = 0; k < 3; ++k) {
+        fixture->step.gravity[k] *= (float)(dt / gain);
+        for (int i = 0; i < 4; ++i) fixture->step.wind[i][k] *= (float)(c * dt / (other * gain));
+    }
+    fixture->step.first = false;
+}

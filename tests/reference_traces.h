@@ -11,3 +11,7 @@
 // before the first step. Gives the number of traces.
 int traces_compare(const char *algorithm, const char *algo, const char *variant,
                    void (*prepare)(HairFixture *fixture));
+
+// To be passed as `prepare` where the traces have explicit drag v += (g + (w - v) c) dt, which the
+// program's exact drag imitates with other constants.
+void traces_imitate_explicit_drag(HairFixture *fixture);

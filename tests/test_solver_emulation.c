@@ -47,24 +47,11 @@ static void thesis_equals_its_double_precision_twin(void **state)
     twin_require(&pair, &trial, 1);
 }
 
-// The traces have explicit drag v += (g + (w - v) c) dt, which exact drag imitates with other
-// constants: e^{-c' dt} = 1 - c dt, and forces scaled so that they gain the same speed.
-static void imitate_explicit_drag(HairFixture *fixture)
-{
-    double dt = fixture->step.dt, c = (double)fixture->params.drag;
-    double other = -log1p(-c * dt) / dt, gain = -expm1(-other * dt) / other;
-    fixture->params.drag = (float)other;
-    for (int k = 0; k < 3; ++k) {
-        fixture->step.gravity[k] *= (float)(dt / gain);
-        for (int i = 0; i < 4; ++i) fixture->step.wind[i][k] *= (float)(c * dt / (other * gain));
-    }
-    fixture->step.first = false;
-}
-
 static void thesis_equals_the_reference_traces(void **state)
 {
     (void)state;
-    assert_int_equal(traces_compare("emulation", "emulation", "thesis", imitate_explicit_drag), 4);
+    assert_int_equal(
+        traces_compare("emulation", "emulation", "thesis", traces_imitate_explicit_drag), 4);
 }
 
 static void long_strands_are_refused(void **state)

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The split solver on the GPU against its double-precision form, the reference traces, and what
 // must hold for any hair.
-#include "hair_fixture.h"
 #include "reference_split.h"
+#include "reference_traces.h"
 #include "step_uniforms.h"
+#include "twin.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,50 +14,13 @@
 
 #include <cmocka.h>
 
-typedef double Vec[3];
-
 enum { MOST = REFERENCE_MAX };
-
-// A curly strand of n particles, 0.25 m long, from a root at `x`.
-static void make_curl(Vec *q, int n, double x, double turns)
-{
-    for (int j = 0; j < n; ++j) {
-        double u = (double)j / (n - 1), angle = 6.283185307 * turns * u;
-        q[j][0] = x + 0.2 * u;
-        q[j][1] = 0.02 * u * cos(angle) + 0.05 * u * u;
-        q[j][2] = 0.02 * u * sin(angle);
-    }
-}
-
-static void to_double(const HairFixture *fixture, const float (*positions)[4], int s, Vec *q)
-{
-    const HairBatch *batch = &fixture->hair.batches[0];
-    for (uint32_t j = 0; j < batch->vertex_count; ++j)
-        for (int k = 0; k < 3; ++k)
-            q[j][k] = (double)positions[hair_address(batch, (uint32_t)s, j)][k];
-}
-
-static void read_strand(HairFixture *fixture, int s, Vec *q)
-{
-    float(*positions)[4] = fixture_positions(fixture, 0);
-    to_double(fixture, (const float(*)[4])positions, s, q);
-    free(positions);
-}
 
 static double total_length(const ReferenceStrand *strand)
 {
     double sum = 0;
     for (int j = 1; j < strand->n; ++j) sum += strand->length[j];
     return sum;
-}
-
-// RMS distance of particles 1 .. n-1 over the strand's length.
-static double rms(const Vec *a, const Vec *b, int n, double length)
-{
-    double sum = 0;
-    for (int j = 1; j < n; ++j)
-        for (int k = 0; k < 3; ++k) sum += (a[j][k] - b[j][k]) * (a[j][k] - b[j][k]);
-    return sqrt(sum / (n - 1)) / length;
 }
 
 // A step adds rounding of about 2^-24 a particle, which a strand of n sums up to sqrt(n) 2^-24 of
@@ -78,9 +41,7 @@ static void run_against_reference(int n, const char *variant, float style)
     ReferenceStep step = *variant == 'b'   ? reference_ball_step
                          : *variant == 'd' ? reference_dragged_step
                                            : reference_thesis_step;
-    for (int s = 0; s < COUNT; ++s) make_curl(&start[s * n], n, 0.01 * s, 1 + s);
-    for (int i = 0; i < COUNT * n; ++i)
-        for (int k = 0; k < 3; ++k) start[i][k] = (double)(float)start[i][k];
+    for (int s = 0; s < COUNT; ++s) twin_make_curl(&start[s * n], n, 0.01 * s, 1 + s);
     fixture_create(&fixture, (const Vec *)start, COUNT, n, "split", variant, style, 1);
     for (int s = 0; s < COUNT; ++s) reference_start(&twin[s], n, (const Vec *)&start[s * n]);
     for (int i = 0; i < 4; ++i) fixture.step.wind[i][0] = 1.5f, fixture.step.wind[i][2] = 0.5f;
@@ -107,8 +68,8 @@ static void run_against_reference(int n, const char *variant, float style)
                 directions[j][k] =
                     (start[s * n + j][k] - start[s * n + j - 1][k]) / twin[s].length[j];
         reference_pose(&twin[s], (const Vec *)directions, (double)style, expected);
-        read_strand(&fixture, s, drawn);
-        double off = rms((const Vec *)drawn, (const Vec *)expected, n, total_length(&twin[s]));
+        twin_read_strand(&fixture, s, drawn);
+        double off = twin_rms((const Vec *)drawn, (const Vec *)expected, n, total_length(&twin[s]));
         worst = fmax(worst, off);
     }
     printf("split %s, n = %d, style %g: RMS %.2g of the length from the double-precision twin "
@@ -142,99 +103,16 @@ static void strands_through_memory_equal_the_twin_too(void **state)
     run_against_reference(64, "thesis", 0);
 }
 
-// The traces of the reference implementation. Its `split` has explicit drag v += (g + (w - v) c)
-// dt, which exact drag imitates with other constants: e^{-c' dt} = 1 - c dt and forces scaled so
-// that they gain the same speed.
-static void imitate_explicit_drag(HairFixture *fixture, double c, double dt)
-{
-    double other = -log1p(-c * dt) / dt, gain = -expm1(-other * dt) / other;
-    fixture->params.drag = (float)other;
-    for (int k = 0; k < 3; ++k) {
-        fixture->step.gravity[k] *= (float)(dt / gain);
-        for (int i = 0; i < 4; ++i) fixture->step.wind[i][k] *= (float)(c * dt / (other * gain));
-    }
-    fixture->step.first = false;
-}
-
-static void read_vector(const json_t *array, double value[3])
-{
-    for (size_t k = 0; k < 3; ++k) value[k] = json_number_value(json_array_get(array, k));
-}
-
-static void compare_trace(const json_t *trace, bool ball)
-{
-    int n = (int)json_integer_value(json_object_get(trace, "n"));
-    double fps = json_number_value(json_object_get(trace, "fps")),
-           c = json_number_value(json_object_get(trace, "drag_c"));
-    double amplitude =
-        json_number_value(json_object_get(json_object_get(trace, "root_motion"), "amp"));
-    double frequency =
-        json_number_value(json_object_get(json_object_get(trace, "root_motion"), "freq"));
-    Vec start[MOST], expected[MOST], got[MOST], wind;
-    HairFixture fixture;
-    ReferenceStrand strand;
-    for (int j = 0; j < n; ++j)
-        read_vector(json_array_get(json_object_get(trace, "initial_positions"), (size_t)j),
-                    start[j]);
-    reference_start(&strand, n, (const Vec *)start);
-    read_vector(json_object_get(trace, "wind"), wind);
-    fixture_create(&fixture, (const Vec *)start, 1, n, "split", ball ? "dragged" : "thesis", 0,
-                   (float)c);
-    fixture.step.dt = 1 / fps;
-    for (int i = 0; i < 4; ++i)
-        for (int k = 0; k < 3; ++k) fixture.step.wind[i][k] = (float)wind[k];
-    if (!ball) imitate_explicit_drag(&fixture, c, 1 / fps);
-    for (int i = 1; i <= 600; ++i) {
-        char name[16];
-        snprintf(name, sizeof name, "%d", i);
-        fixture.step.head.translation[0] =
-            (float)(amplitude * (1 - cos(6.283185307179586 * frequency * i / fps)));
-        fixture_step(&fixture);
-        const json_t *frame = json_object_get(json_object_get(trace, "steps"), name);
-        if (!frame) continue;
-        double usual = json_number_value(json_object_get(frame, "f32_rms_over_length"));
-        for (int j = 0; j < n; ++j)
-            read_vector(json_array_get(json_object_get(frame, "positions"), (size_t)j),
-                        expected[j]);
-        read_strand(&fixture, 0, got);
-        double off = rms((const Vec *)got, (const Vec *)expected, n, total_length(&strand));
-        // What float32 usually costs here, times 16; at least the rounding of the positions that
-        // are compared.
-        double allowed = 16 * fmax(usual, 0x1p-23);
-        if (!(off <= allowed))
-            fail_msg("%s n = %d, step %d: %.3g exceeds %.3g", ball ? "dragged" : "thesis", n, i,
-                     off, allowed);
-    }
-    fixture_destroy(&fixture);
-}
-
-static void compare_traces(const char *algorithm, bool ball, int expected_count)
-{
-    json_t *traces = json_load_file("tests/data/traces.json", 0, NULL), *trace;
-    size_t i;
-    int count = 0;
-    assert_non_null(traces);
-    json_array_foreach(json_object_get(traces, "cases"), i, trace)
-    {
-        if (strcmp(json_string_value(json_object_get(trace, "algorithm")), algorithm) != 0)
-            continue;
-        compare_trace(trace, ball);
-        ++count;
-    }
-    json_decref(traces);
-    assert_int_equal(count, expected_count);
-}
-
 static void dragged_equals_the_reference_traces(void **state)
 {
     (void)state;
-    compare_traces("ball_split", true, 4);
+    assert_int_equal(traces_compare("ball_split", "split", "dragged", NULL), 4);
 }
 
 static void thesis_equals_the_reference_traces(void **state)
 {
     (void)state;
-    compare_traces("split", false, 4);
+    assert_int_equal(traces_compare("split", "split", "thesis", traces_imitate_explicit_drag), 4);
 }
 
 // Positions are float32: each coordinate is off by at most 2^-24 of its size, the difference of two
@@ -246,7 +124,7 @@ static void segment_lengths_do_not_drift_in_10000_steps(void **state)
     static Vec start[COUNT * N];
     Vec q[N];
     HairFixture fixture;
-    for (int s = 0; s < COUNT; ++s) make_curl(&start[s * N], N, 0.01 * s, 1 + s % 4);
+    for (int s = 0; s < COUNT; ++s) twin_make_curl(&start[s * N], N, 0.01 * s, 1 + s % 4);
     fixture_create(&fixture, (const Vec *)start, COUNT, N, "split", "", 0, 0);
     for (int i = 0; i < 10000; ++i) {
         fixture.step.head.translation[0] = (float)(0.05 * sin(0.13 * i));
@@ -256,7 +134,7 @@ static void segment_lengths_do_not_drift_in_10000_steps(void **state)
     for (int s = 0; s < COUNT; ++s) {
         ReferenceStrand rest;
         reference_start(&rest, N, (const Vec *)&start[s * N]);
-        read_strand(&fixture, s, q);
+        twin_read_strand(&fixture, s, q);
         for (int j = 1; j < N; ++j) {
             Vec r;
             double size = 0;
@@ -280,8 +158,8 @@ static void hanging_hair_stays_at_rest(void **state)
     for (int j = 0; j < 16; ++j) start[j][0] = 0.1, start[j][1] = 0.3 - 0.016 * j, start[j][2] = 0;
     fixture_create(&fixture, (const Vec *)start, 1, 16, "split", "", 0, 0);
     for (int i = 0; i < 600; ++i) fixture_step(&fixture);
-    read_strand(&fixture, 0, q);
-    assert_true(rms((const Vec *)q, (const Vec *)start, 16, 0.24) < 1e-6);
+    twin_read_strand(&fixture, 0, q);
+    assert_true(twin_rms((const Vec *)q, (const Vec *)start, 16, 0.24) < 1e-6);
     fixture_destroy(&fixture);
 }
 
@@ -300,7 +178,7 @@ static void the_tip_swings_like_a_pendulum(void **state)
     for (int i = 1; i < 1000 && count < 4; ++i) {
         fixture_step(&fixture);
         time += fixture.step.dt;
-        read_strand(&fixture, 0, q);
+        twin_read_strand(&fixture, 0, q);
         if (before * q[1][0] < 0)
             passages[count++] = time - fixture.step.dt * q[1][0] / (q[1][0] - before);
         before = q[1][0];
@@ -345,7 +223,7 @@ static void the_tip_is_a_damped_pendulum(void **state)
     for (int i = 0; i < FRAMES; ++i) {
         fixture_step(&fixture);
         swing(&angle, &rate, 4, fixture.step.dt);
-        read_strand(&fixture, 0, q);
+        twin_read_strand(&fixture, 0, q);
         sum += pow(q[1][0] - 0.25 * cos(angle), 2) + pow(q[1][1] + 0.25 * sin(angle), 2);
     }
     double off = sqrt(sum / FRAMES) / 0.25;
@@ -361,12 +239,12 @@ static void strands_do_not_depend_on_each_other(void **state)
     static Vec start[COUNT * N];
     Vec together[N], alone[N];
     HairFixture all, one;
-    for (int s = 0; s < COUNT; ++s) make_curl(&start[s * N], N, 0.01 * s, 1 + s % 7);
+    for (int s = 0; s < COUNT; ++s) twin_make_curl(&start[s * N], N, 0.01 * s, 1 + s % 7);
     fixture_create(&all, (const Vec *)start, COUNT, N, "split", "", 0.3f, 1);
     fixture_create(&one, (const Vec *)&start[21 * N], 1, N, "split", "", 0.3f, 1);
     for (int i = 0; i < 50; ++i) fixture_step(&all), fixture_step(&one);
-    read_strand(&all, 21, together);
-    read_strand(&one, 0, alone);
+    twin_read_strand(&all, 21, together);
+    twin_read_strand(&one, 0, alone);
     assert_memory_equal(together, alone, sizeof together);
     fixture_destroy(&all);
     fixture_destroy(&one);
@@ -381,7 +259,7 @@ static void turning_the_whole_scene_turns_the_result(void **state)
     const double c = cos(0.5235987756), s = sin(0.5235987756);
     Vec start[N], turned[N], a[N], b[N];
     HairFixture plain, other;
-    make_curl(start, N, 0, 2);
+    twin_make_curl(start, N, 0, 2);
     for (int j = 0; j < N; ++j)
         turned[j][0] = c * start[j][0] - s * start[j][1],
         turned[j][1] = s * start[j][0] + c * start[j][1], turned[j][2] = start[j][2];
@@ -389,13 +267,14 @@ static void turning_the_whole_scene_turns_the_result(void **state)
     fixture_create(&other, (const Vec *)turned, 1, N, "split", "", 0.4f, 1);
     other.step.gravity[0] = (float)(9.81 * s), other.step.gravity[1] = (float)(-9.81 * c);
     for (int i = 0; i < 120; ++i) fixture_step(&plain), fixture_step(&other);
-    read_strand(&plain, 0, a);
-    read_strand(&other, 0, b);
+    twin_read_strand(&plain, 0, a);
+    twin_read_strand(&other, 0, b);
     for (int j = 0; j < N; ++j) {
         Vec r = {c * a[j][0] - s * a[j][1], s * a[j][0] + c * a[j][1], a[j][2]};
         memcpy(a[j], r, sizeof r);
     }
-    assert_true(rms((const Vec *)a, (const Vec *)b, N, 0.25) < 2 * step_tolerance(N, 1, 1.0 / 60));
+    assert_true(twin_rms((const Vec *)a, (const Vec *)b, N, 0.25) <
+                2 * step_tolerance(N, 1, 1.0 / 60));
     fixture_destroy(&plain);
     fixture_destroy(&other);
 }
@@ -410,7 +289,7 @@ static void no_finite_input_gives_a_nan(void **state)
     };
     enum { N = 24, COUNT = 8 };
     static Vec start[COUNT * N];
-    for (int s = 0; s < COUNT; ++s) make_curl(&start[s * N], N, 0.01 * s, s);
+    for (int s = 0; s < COUNT; ++s) twin_make_curl(&start[s * N], N, 0.01 * s, s);
     for (size_t v = 0; v < sizeof violence / sizeof *violence; ++v)
         for (int thesis = 0; thesis < 2; ++thesis) {
             HairFixture fixture;
@@ -422,13 +301,7 @@ static void no_finite_input_gives_a_nan(void **state)
                 fixture.step.head.translation[1] = i % 2 ? violence[v][2] : 0;
                 fixture_step(&fixture);
             }
-            float(*positions)[4] = fixture_positions(&fixture, 0);
-            for (int i = 0; i < COUNT * N; ++i)
-                for (int k = 0; k < 3; ++k)
-                    if (!isfinite(positions[i][k]))
-                        fail_msg("violence %zu, thesis %d: particle %d is not finite", v, thesis,
-                                 i);
-            free(positions);
+            fixture_require_finite(&fixture);
             fixture_destroy(&fixture);
         }
 }
@@ -438,7 +311,7 @@ static void a_flung_tip_is_cut_and_counted(void **state)
     (void)state;
     Vec start[8];
     HairFixture fixture;
-    make_curl(start, 8, 0, 1);
+    twin_make_curl(start, 8, 0, 1);
     fixture_create(&fixture, (const Vec *)start, 1, 8, "split", "", 0, 0);
     SolverReport report = {0};
     fixture_step(&fixture);
