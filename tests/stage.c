@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "stage.h"
-#include "random.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -69,29 +68,12 @@ uint32_t add_line(const float from[3], const float to[3], float radius, float op
 
 void add_tangle(uint32_t count, float radius, float opacity, const uint32_t *order)
 {
-    enum { VERTICES = 12 };
-    float(*position)[3] = malloc(count * VERTICES * sizeof *position);
-    assert_non_null(position);
-    Random random = random_create(7, 0);
-    for (uint32_t s = 0; s < count; ++s) {
-        double x[3], d[3], turn[3];
-        for (int k = 0; k < 3; ++k) x[k] = (random_real(&random) - 0.5) * SIDE;
-        random_direction(&random, d);
-        random_direction(&random, turn);
-        for (uint32_t j = 0; j < VERTICES; ++j)
-            for (int k = 0; k < 3; ++k) {
-                position[(order ? order[s] : s) * VERTICES + j][k] = (float)x[k];
-                x[k] += 8 * d[k];
-                d[k] += 0.2 * turn[k];
-            }
-    }
-    Strands strands = studio_strands(count, VERTICES, (const float(*)[3])position);
+    Strands strands = studio_tangle(7, SIDE, count, 12, 8, 0.2, order);
     uint32_t item = studio_add(&studio, &strands, radius, opacity);
     studio.material[item].diffuse = 1; // colours that differ along every strand
     studio.material[item].ambient = 0.1f;
     studio.light = (Light){.direction = {0.6f, 0.8f, 0}, .color = {1, 0.8f, 0.5f}, .intensity = 1};
     strands_destroy(&strands);
-    free(position);
 }
 
 uint8_t *draw_copy(size_t *size)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "studio.h"
+#include "random.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -126,5 +127,28 @@ Strands studio_strands(uint32_t strand_count, uint32_t vertex_count, const float
     NEEDED(strands_create(&strands, strand_count, strand_count * vertex_count, error));
     for (uint32_t s = 0; s <= strand_count; ++s) strands.first[s] = s * vertex_count;
     memcpy(strands.position, position, (size_t)strands.vertex_count * sizeof *position);
+    return strands;
+}
+
+Strands studio_tangle(uint64_t seed, double side, uint32_t count, uint32_t vertices, double step,
+                      double bend, const uint32_t *order)
+{
+    float(*position)[3] = malloc(count * vertices * sizeof *position);
+    assert_non_null(position);
+    Random random = random_create(seed, 0);
+    for (uint32_t s = 0; s < count; ++s) {
+        double x[3], d[3], turn[3];
+        for (int k = 0; k < 3; ++k) x[k] = (random_real(&random) - 0.5) * side;
+        random_direction(&random, d);
+        random_direction(&random, turn);
+        for (uint32_t j = 0; j < vertices; ++j)
+            for (int k = 0; k < 3; ++k) {
+                position[(order ? order[s] : s) * vertices + j][k] = (float)x[k];
+                x[k] += step * d[k];
+                d[k] += bend * turn[k];
+            }
+    }
+    Strands strands = studio_strands(count, vertices, (const float(*)[3])position);
+    free(position);
     return strands;
 }

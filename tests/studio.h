@@ -53,3 +53,9 @@ uint8_t *studio_copy(const Studio *studio, size_t *size);
 
 // Strands of equal vertex counts from positions in one array. The caller destroys them.
 Strands studio_strands(uint32_t strand_count, uint32_t vertex_count, const float (*position)[3]);
+
+// `count` strands of `vertices` each that wind through a square of `side` px around the picture's
+// middle: `step` px from vertex to vertex, their direction turned by about `bend` at each. `order`
+// gives the place of each, NULL: as they are made. The caller destroys them.
+Strands studio_tangle(uint64_t seed, double side, uint32_t count, uint32_t vertices, double step,
+                      double bend, const uint32_t *order);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "image_reference.h"
-#include "random.h"
 #include "strands_read.h"
 #include "studio.h"
 
@@ -266,29 +265,6 @@ typedef struct Case {
                            // pixel and of 2 x 2
 } Case;
 
-static Strands make_tangle(uint32_t count, double step, double bend)
-{
-    enum { VERTICES = 16 };
-    float(*position)[3] = malloc(count * VERTICES * sizeof *position);
-    assert_non_null(position);
-    Random random = random_create(11, 0);
-    for (uint32_t s = 0; s < count; ++s) {
-        double x[3], d[3], turn[3];
-        for (int k = 0; k < 3; ++k) x[k] = (random_real(&random) - 0.5) * SIDE;
-        random_direction(&random, d);
-        random_direction(&random, turn);
-        for (uint32_t j = 0; j < VERTICES; ++j)
-            for (int k = 0; k < 3; ++k) {
-                position[s * VERTICES + j][k] = (float)x[k];
-                x[k] += step * d[k];
-                d[k] += bend * turn[k];
-            }
-    }
-    Strands strands = studio_strands(count, VERTICES, (const float(*)[3])position);
-    free(position);
-    return strands;
-}
-
 // A file's hair, from the front, in the middle of the picture.
 static Strands read_hair(const char *file)
 {
@@ -345,7 +321,8 @@ static void sitting_draw_case(Sitting exact[2], const Case *c)
 {
     for (int clear = 0; clear < 2; ++clear) {
         sitting_open(&exact[clear], clear ? TRANSPARENT : DARK);
-        Strands strands = c->file ? read_hair(c->file) : make_tangle(c->count, c->step, c->turn);
+        Strands strands = c->file ? read_hair(c->file)
+                                  : studio_tangle(11, SIDE, c->count, 16, c->step, c->turn, NULL);
         dress(sitting_add(&exact[clear], strands, c->radius, c->opacity), c->tip_ratio);
         exact[clear].scene.lights = &LIGHT;
         exact[clear].scene.light_count = 1;
