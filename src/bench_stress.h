@@ -20,6 +20,7 @@ typedef struct StressOptions {
     bool shrinks;   // failures are made smaller before they are printed
 } StressOptions;
 
+// What tractrix-bench stress does without options.
 StressOptions stress_options_default(void);
 
 // Prints a line for each solver's form, those of failures between, and a sum. A case is a strand

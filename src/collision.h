@@ -15,7 +15,7 @@ typedef enum CollisionMode {
 } CollisionMode;
 
 typedef struct CollisionBatch {
-    GpuBuffer contacts; // vec4 a particle: where it was at the end of step w
+    GpuBuffer contacts; // vec4 a particle: where it was at the end of step number w
     GpuBuffer counts;   // uvec4 a strand: see collide.comp
 } CollisionBatch;
 

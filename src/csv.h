@@ -24,6 +24,7 @@ void csv_destroy(Csv *csv);
 // Column of that name; RESULT_BAD_INPUT naming file and column if it is missing.
 Result csv_find(const Csv *csv, const char *name, size_t *column, Error *error);
 
+// The field as it stands in the file; valid until csv_destroy.
 const char *csv_text(const Csv *csv, size_t row, size_t column);
 
 // A number, decimal or C hex. RESULT_BAD_INPUT with "FILE:LINE: ..." if the field is none.

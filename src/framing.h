@@ -28,6 +28,7 @@ typedef struct Framing {
     float eye[3];    // m, automatic place for a camera that turns by 0
 } Framing;
 
+// Takes in a point, m.
 void outline_add(Outline *outline, const float point[3]);
 
 // Corner 0..7 of the box.

@@ -33,6 +33,7 @@ enum { GEN_OUTPUT_TFX4 = 2 }; // the default format
         "quiet", 'q', OPTION_SWITCH, at, NULL, 0, 0, "print nothing"                               \
     }
 
+// What --format asks for.
 StrandsKind gen_output_kind(const GenOutput *output);
 
 // Writes strands of one size to output->path and, unless quiet, tells so on the standard output;

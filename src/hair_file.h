@@ -14,6 +14,7 @@ enum {
     HAIR_HAS_COLOR = 16,
 };
 
+// Whether the content begins as such a file, with "HAIR".
 bool hair_file_matches(const Bytes *bytes);
 
 // The reader stands at byte 0. Where only one of colour and transparency is an array, the header's

@@ -10,10 +10,8 @@
 // after the last.
 typedef enum Interpolation {
     // Monotone cubic Hermite (Fritsch and Butland 1984, as in PCHIP), each number on its own, slope
-    // 0
-    // at both ends: velocity is continuous at all times, a held value stays held, nothing
-    // overshoots.
-    // The default, since a head whose velocity jumps tears at the hair.
+    // 0 at both ends: velocity is continuous at all times, a held value stays held, nothing
+    // overshoots. The default, since a head whose velocity jumps tears at the hair.
     INTERPOLATION_SMOOTH,
     INTERPOLATION_LINEAR,
 } Interpolation;

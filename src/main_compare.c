@@ -37,8 +37,7 @@ static const Option OPTIONS[] = {
      "pixels that fill a degree of view, for FLIP [default 67]"},
     {"heatmap", 0, OPTION_STRING, AT(heat_map), "PATH", 0, 0,
      "PNG file of FLIP's error per pixel, black to yellow; for folders and patterns a folder, "
-     "where "
-     "only pictures that differ get one"},
+     "where only pictures that differ get one"},
     {"sheet", 0, OPTION_STRING, AT(sheet), "PATH", 0, 0,
      "the same with A, B and the heat map side by side"},
     {"json", 0, OPTION_STRING, AT(json), "FILE", 0, 0, "write all figures as JSON"},
@@ -52,15 +51,12 @@ static const Option OPTIONS[] = {
 
 static const char *const NOTES[] = {
     "A and B are two pictures (PNG of 8 or 16 bits, PFM), two folders, whose .png and .pfm files "
-    "go "
-    "by name, or two patterns with %d or %04d, whose files go by number. Pictures of two sizes and "
-    "pictures that only one side has are different.",
+    "go by name, or two patterns with %d or %04d, whose files go by number. Pictures of two sizes "
+    "and pictures that only one side has are different.",
     "RMSE and PSNR are over red, green and blue in sRGB levels of 0 to 255; SSIM is that of Wang "
-    "et "
-    "al. 2004 on luma; FLIP that of Andersson et al. 2020, 0: looks the same, 1: cannot differ "
-    "more. "
-    "Equal pictures score exactly 0 (SSIM 1). Pictures with alpha are compared over black and over "
-    "white, and the worse counts.",
+    "et al. 2004 on luma; FLIP that of Andersson et al. 2020, 0: looks the same, 1: cannot differ "
+    "more. Equal pictures score exactly 0 (SSIM 1). Pictures with alpha are compared over black "
+    "and over white, and the worse counts.",
     NULL};
 
 static const char *const STATUS[][2] = {{"0", "the same, within the limits"},

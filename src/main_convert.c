@@ -30,8 +30,7 @@ static const Option OPTIONS[] = {
      "frame"},
     {"format", 0, OPTION_WORD, AT(format), CONVERT_FORMATS, 0, 0,
      "format of FILE, whatever its name; auto goes by the name, .tfx is tfx4, or text where "
-     "strands "
-     "differ in their number of vertices [default auto]"},
+     "strands differ in their number of vertices [default auto]"},
     {"stats", 0, OPTION_SWITCH, AT(stats), NULL, 0, 0,
      "print counts, lengths, curvature, spacing and a histogram of vertices of the hair as it is "
      "after all steps"},
@@ -79,10 +78,9 @@ static const Option OPTIONS[] = {
 
 static const char *const NOTES[] = {
     "FILE is a hair file (TressFX 2, 3 or 4, HAIR, USC-HairSalon, CT2Hair, Wavefront lines, USD "
-    "curves), a "
-    "name "
-    "with %d or %04d that stands for numbered ones, or a cache of tractrix-render. Several hair "
-    "files become one. Without -o, --stats and --json it is only told what they are.",
+    "curves), a name with %d or %04d that stands for numbered ones, or a cache of "
+    "tractrix-render. Several hair files become one. Without -o, --stats and --json it is only "
+    "told what they are.",
     "Steps are done in the order in which they stand. Lengths are metres with y up, whatever the "
     "file has.",
     "Defects are mended when a file is read, as tractrix-render does, with a line for each kind: "

@@ -56,6 +56,7 @@ Result output_finish(Output *output, Error *error);
 // file. NULL is legal.
 void output_destroy(Output *output);
 
+// What has happened so far. Waits for nothing.
 OutputCounters output_count(Output *output);
 
 // Where to look: "out/frame_0000.png ... out/frame_0119.png" or the one file. Valid until the next

@@ -18,7 +18,7 @@ typedef struct Pose {
 
 // `style` 0 draws the physical strand, 1 the style, between them every direction is turned by that
 // share of the angle between both (slerp, to 3e-7 rad); the shader variant has only what that
-// needs.
+// needs. Errors of shader_build_compute.
 Result pose_create(Pose *pose, const Gpu *gpu, float style, Error *error);
 void pose_destroy(Pose *pose);
 

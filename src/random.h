@@ -14,6 +14,7 @@ typedef struct Random {
 // A sequence of its own for each pair: `stream` tells apart what is drawn with one seed.
 Random random_create(uint64_t seed, uint64_t stream);
 
+// The next 64 bits.
 uint64_t random_next(Random *random);
 
 // Uniform in [0, 1), a multiple of 2^-53.

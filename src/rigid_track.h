@@ -32,4 +32,5 @@ bool rigid_track_is_still(const RigidTrack *track);
 // formula.
 Result rigid_track_check(const RigidTrack *track, double time, Error *error);
 
+// A zeroed one may be destroyed.
 void rigid_track_destroy(RigidTrack *track);

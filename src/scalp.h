@@ -34,7 +34,9 @@ typedef struct ScalpRoots {
     uint64_t next;
 } ScalpRoots;
 
+// `everywhere` as in scalp_has_hair. The same seed gives the same roots.
 ScalpRoots scalp_roots_begin(ScalpShape shape, bool everywhere, uint32_t seed);
+// The next root's direction, of unit length.
 void scalp_roots_next(ScalpRoots *roots, Double3 direction);
 
 // A closed mesh of `rings` bands between the poles, 2 * rings squares around: 4 * rings *

@@ -32,4 +32,5 @@ double schedule_period_rate(const RunParams *run);
 // `substeps`: what --substeps says or, if that is auto, what has been found (stability.h).
 Schedule schedule_create(const RunParams *run, int substeps);
 
+// Where a frame, from 0, falls among the steps.
 ScheduledFrame schedule_frame(const Schedule *schedule, const RunParams *run, int frame);

@@ -43,6 +43,7 @@ typedef struct Sleep {
 } Sleep;
 
 // With params->sleep 0 or a solver that steps nothing, the hair never sleeps.
+// RESULT_FAILED when memory is short; errors of shader_build_compute.
 Result sleep_create(Sleep *sleep, const Gpu *gpu, GpuTimer *timer, const Hair *hair,
                     const Solver *solver, const SectionParams *params, Error *error);
 void sleep_destroy(Sleep *sleep);

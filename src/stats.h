@@ -26,6 +26,7 @@ typedef struct FrameTimes {
     double draw_ms;     // drawing and reading back, with whatever simulation was still queued
 } FrameTimes;
 
+// An empty record. RESULT_FAILED when memory is short.
 Result stats_create(Stats *stats, Error *error);
 void stats_destroy(Stats *stats);
 

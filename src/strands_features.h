@@ -19,6 +19,7 @@ enum {
     STRANDS_HAS_FIXED_ENDS = 256,
 };
 
+// Those of the bits above that the strands have.
 uint32_t strands_features(const Strands *strands);
 
 // Those that a file of this kind holds as strands_write writes it.

@@ -16,9 +16,10 @@ typedef struct Surface {
     uint32_t flat_count; // triangles without an area, which are passed over
     double area;         // of all together, m2
     SurfaceNode *nodes;  // a tree of boxes
-    double (
-        *edge_normal)[3][3]; // [mesh's triangles], of the edge behind each corner; not unit length
-    double (*corner_normal)[3]; // [mesh's vertices], weighted by angle; not unit length
+    // Not of unit length: of the edge behind each corner, [mesh's triangles], and of the vertices,
+    // weighted by angle, [mesh's vertices].
+    double (*edge_normal)[3][3];
+    double (*corner_normal)[3];
 } Surface;
 
 typedef struct SurfacePoint {

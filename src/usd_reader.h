@@ -4,6 +4,7 @@
 
 #include "strands_source.h"
 
+// Whether the content begins as such a file, with "#usda".
 bool usd_reader_matches(const Bytes *bytes);
 
 // Reads everything that usd_file.h writes, and such curves from other programs. Layers, prims and

@@ -35,6 +35,7 @@ void usd_text_read_string(Reader *reader, char text[USD_WORD_SIZE]);
 // Whatever value comes: brackets with all that is in them, a string, a path, an asset, a word.
 void usd_text_skip_value(Reader *reader);
 
+// One number; beyond what float32 holds it is infinite.
 float usd_text_read_float(Reader *reader);
 
 // All numbers between brackets, however they are grouped. `value` is the caller's to free.

@@ -12,6 +12,7 @@ typedef struct Tally {
     double flip;
 } Tally;
 
+// Counts `count` verdicts.
 Tally verdict_count(const Verdict *verdicts, size_t count);
 
 // RESULT_OK if all are good; RESULT_BAD_INPUT if a picture could not be read and is not replaced;

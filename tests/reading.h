@@ -7,6 +7,7 @@
 
 extern const StrandsReadOptions METRES; // the unit is a metre
 
+// strands_read of these bytes, or of this text.
 Result reading_copy(Strands *strands, const void *data, size_t size,
                     const StrandsReadOptions *options, StrandsReport *report, Error *error);
 Result reading_text(Strands *strands, const char *text, const StrandsReadOptions *options,

@@ -22,4 +22,5 @@ void reference_solve_lengths(const Vec *r, int n, const double *right, double *l
 // root, every segment in the frame of its tail's own prediction, then the root pulled home.
 void reference_two_pass(const TwinStrand *strand, const Vec *predicted, const Vec root, Vec *x);
 
+// A TwinFunction.
 void reference_chain_step(TwinStrand *strand, const TwinStep *step, const SectionParams *params);

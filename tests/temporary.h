@@ -20,6 +20,7 @@ const char *temporary_path(void **state, const char *name);
 // such folder.
 int temporary_count_files(const char *path);
 
+// Whether there is a file of that name in the folder.
 bool temporary_has(void **state, const char *name);
 
 // Writes a text as a file, with the mode given.

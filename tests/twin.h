@@ -30,6 +30,7 @@ typedef struct TwinStep {
 // A twin: one step of one strand, by the same parameters as the solver.
 typedef void (*TwinFunction)(TwinStrand *strand, const TwinStep *step, const SectionParams *params);
 
+// Products, lengths, copies and sums of vectors.
 double vec_dot(const Vec a, const Vec b);
 double vec_norm(const Vec a);
 void vec_copy(const Vec a, Vec r);                              // r = a
