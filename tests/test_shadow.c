@@ -292,6 +292,24 @@ static void layers_of_hair_multiply(void **state)
     }
 }
 
+// The other scheme supposes fibres at even distances. Where they are, it has the exact light behind
+// n of them, within the steps of its depths.
+static void approximated_layers_multiply_at_even_distances(void **state)
+{
+    (void)state;
+    const float radius = 0.06f, distance = 0.1f;
+    Stage stage;
+    stage_open(&stage, make_layers(5), radius, 0.3f, NULL, &ABOVE);
+    draw_maps(&stage, SHADOW_APPROX, 256, distance / radius);
+    for (int n = 1; n <= 4; ++n) {
+        float y = 0.001f - distance * (float)n;
+        assert_near(exact_at(&stage, 0.1, (double)y, 0), pow(0.7, n), 1e-6);
+        expect_light(&stage, 0.1f, y, 0, pow(0.7, n), 0.01);
+        expect_light(&stage, 0.1f, y, 0.2f, 1, 1e-6);
+    }
+    stage_close(&stage);
+}
+
 // Behind one fibre both schemes have its opacity, and before it all light.
 static void one_fibre_takes_its_opacity(void **state)
 {
@@ -575,6 +593,7 @@ int main(void)
     };
     const struct CMUnitTest maps[] = {
         cmocka_unit_test(layers_of_hair_multiply),
+        cmocka_unit_test(approximated_layers_multiply_at_even_distances),
         cmocka_unit_test(one_fibre_takes_its_opacity),
         cmocka_unit_test(mesh_stands_in_the_light),
         cmocka_unit_test(shadows_are_as_wide_and_dark_as_the_paint),
