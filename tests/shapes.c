@@ -33,3 +33,15 @@ void shapes_make_sphere(Mesh *mesh, int rings, int sectors, float radius)
         }
     mesh->triangle_count = t;
 }
+
+void shapes_make_scalp(Scalp *scalp, ScalpShape shape, uint32_t rings)
+{
+    assert_int_equal(scalp_make_mesh(&scalp->mesh, shape, rings, NULL), RESULT_OK);
+    assert_int_equal(surface_create(&scalp->surface, &scalp->mesh, "mesh", NULL), RESULT_OK);
+}
+
+void shapes_destroy_scalp(Scalp *scalp)
+{
+    surface_destroy(&scalp->surface);
+    mesh_destroy(&scalp->mesh);
+}

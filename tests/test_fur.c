@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
+// Strands of fur: lengths, form, and what they keep out of. Where roots are is in test_fur_roots.c.
 #include "fur.h"
-#include "fur_roots.h"
 #include "png.h"
-#include "random.h"
-#include "scalp.h"
-#include "surface.h"
+#include "shapes.h"
 #include "temporary.h"
 
 #include <math.h>
@@ -14,23 +12,6 @@
 #include <string.h>
 
 #include <cmocka.h>
-
-typedef struct Field {
-    Mesh mesh;
-    Surface surface;
-} Field;
-
-static void field_create(Field *field, ScalpShape shape, uint32_t rings)
-{
-    assert_int_equal(scalp_make_mesh(&field->mesh, shape, rings, NULL), RESULT_OK);
-    assert_int_equal(surface_create(&field->surface, &field->mesh, "mesh", NULL), RESULT_OK);
-}
-
-static void field_destroy(Field *field)
-{
-    surface_destroy(&field->surface);
-    mesh_destroy(&field->mesh);
-}
 
 static Strands grow(const FurRecipe *recipe, const Mesh *mesh)
 {
@@ -66,147 +47,6 @@ static FurRecipe long_hair(void)
     return recipe;
 }
 
-static void make_roots(SurfacePoint *roots, uint32_t count, const Field *field, const char *density,
-                       uint32_t seed)
-{
-    FurMap map;
-    Error error = {""};
-    if (fur_map_create(&map, "--density", density, &field->mesh, &error) != RESULT_OK ||
-        fur_roots_make(roots, count, &field->surface, &map, seed, "mesh", &error) != RESULT_OK)
-        fail_msg("%s", error.text);
-    fur_map_destroy(&map);
-}
-
-// --- Roots.
-
-// 60 groups of the head's triangles, in their order. Random points by area have a chi-square of
-// mean 59 and deviation sqrt(2 x 59) = 10.9; points that keep away from each other have less, else
-// they would not be evener than random. Bound: where random ones are only once in 400 times, 2.8
-// deviations below their mean. (Triangles picked without regard to their area: 92.)
-static void roots_are_even_by_area(void **state)
-{
-    (void)state;
-    enum { GROUPS = 60, COUNT = 6000 };
-    static SurfacePoint roots[COUNT];
-    double area[GROUPS] = {0}, found[GROUPS] = {0}, chi = 0;
-    Field field;
-    field_create(&field, SCALP_HEAD, 24);
-    make_roots(roots, COUNT, &field, "1", 1);
-    uint32_t size = (field.mesh.triangle_count + GROUPS - 1) / GROUPS;
-    for (uint32_t t = 0; t < field.mesh.triangle_count; t++) {
-        Double3 normal;
-        area[t / size] += 0.5 * surface_triangle(&field.mesh, t, normal);
-    }
-    for (int i = 0; i < COUNT; i++) found[roots[i].triangle / size]++;
-    for (int g = 0; g < GROUPS; g++) {
-        double expected = COUNT * area[g] / field.surface.area;
-        chi += (found[g] - expected) * (found[g] - expected) / expected;
-    }
-    assert_true(chi < 59 - 2.8 * 10.9);
-    field_destroy(&field);
-}
-
-// Within a triangle: of even points (x, y) with x, y >= 0, x + y <= 1 half lie within each of
-// x + y < sqrt(1/2), |x - y| ... by symmetry x < y. Deviations of n points: sqrt(n)/2.
-static void roots_are_even_within_a_triangle(void **state)
-{
-    (void)state;
-    enum { COUNT = 4000 };
-    static SurfacePoint roots[COUNT];
-    Mesh mesh;
-    Field field;
-    assert_int_equal(mesh_create(&mesh, 3, 1, NULL), RESULT_OK);
-    mesh.position[1][0] = mesh.position[2][1] = 1;
-    mesh.triangle[0][1] = 1, mesh.triangle[0][2] = 2;
-    mesh_compute_normals(&mesh);
-    field.mesh = mesh;
-    assert_int_equal(surface_create(&field.surface, &mesh, "mesh", NULL), RESULT_OK);
-    make_roots(roots, COUNT, &field, "1", 5);
-    int near = 0, below = 0;
-    for (int i = 0; i < COUNT; i++) {
-        near += roots[i].place[0] + roots[i].place[1] < sqrt(0.5);
-        below += roots[i].place[0] < roots[i].place[1];
-    }
-    assert_true(abs(near - COUNT / 2) < 5 * sqrt(COUNT) / 2);
-    assert_true(abs(below - COUNT / 2) < 5 * sqrt(COUNT) / 2);
-    surface_destroy(&field.surface);
-    mesh_destroy(&mesh);
-}
-
-// The closest two of `count` roots, over the distance of a hexagonal lattice of as many.
-static double find_closest(const SurfacePoint *roots, uint32_t count, double area)
-{
-    double closest = INFINITY;
-    for (uint32_t i = 0; i < count; i++)
-        for (uint32_t j = 0; j < i; j++)
-            closest = fmin(closest, double3_distance(roots[i].place, roots[j].place));
-    return closest / sqrt(2 / sqrt(3.0) * area / count);
-}
-
-// Of random points the closest two of n are some 1/n of the width apart: a share of 1/sqrt(n), 0.03
-// here. Yuksel (2015) has 0.7 and more with four candidates each; a quarter of the roots, picked
-// from so few, is a little less even.
-static void roots_keep_away_from_each_other(void **state)
-{
-    (void)state;
-    enum { COUNT = 1200 };
-    static SurfacePoint roots[COUNT];
-    Field field;
-    field_create(&field, SCALP_HEAD, 24);
-    make_roots(roots, COUNT, &field, "1", 2);
-    assert_true(find_closest(roots, COUNT, field.surface.area) > 0.55);
-    assert_int_equal(fur_roots_order(roots, COUNT, 60, 1, NULL), RESULT_OK);
-    assert_true(find_closest(roots, 60, field.surface.area) > 0.45);
-    field_destroy(&field);
-}
-
-// A fifth as dense on one half of a sphere: a sixth of the roots, within five deviations of random
-// ones; none where the density is 0 or below.
-static void roots_are_as_dense_as_the_map_says(void **state)
-{
-    (void)state;
-    enum { COUNT = 6000 };
-    static SurfacePoint roots[COUNT];
-    int thin = 0;
-    Field field;
-    field_create(&field, SCALP_SPHERE, 24);
-    make_roots(roots, COUNT, &field, "x < 0 ? 1 : 0.2", 3);
-    for (int i = 0; i < COUNT; i++) thin += roots[i].place[0] >= 0;
-    assert_true(fabs(thin - COUNT / 6.0) < 5 * sqrt(COUNT * 5 / 36.0));
-    make_roots(roots, COUNT, &field, "y - 0.05", 3);
-    for (int i = 0; i < COUNT; i++) assert_true(roots[i].place[1] >= 0.05);
-    field_destroy(&field);
-}
-
-// White where u is between 0.25 and 0.75: the front half of the sphere. A texel's value reaches
-// into its neighbours.
-static void pictures_lie_on_texture_coordinates(void **state)
-{
-    enum { SIZE = 64, COUNT = 500 };
-    static SurfacePoint roots[COUNT];
-    Image image;
-    Field field;
-    field_create(&field, SCALP_SPHERE, 24);
-    assert_int_equal(image_create(&image, SIZE, 8, 3, NULL), RESULT_OK);
-    for (int i = 0; i < SIZE * 8 * 3; i++) {
-        int x = i / 3 % SIZE;
-        image.pixels[i] = x >= SIZE / 4 && x < 3 * SIZE / 4 ? 255 : 0;
-    }
-    const char *path = temporary_path(state, "front.png");
-    assert_int_equal(png_write(path, &image, NULL), RESULT_OK);
-    make_roots(roots, COUNT, &field, path, 1);
-    int left = 0;
-    for (int i = 0; i < COUNT; i++) {
-        left += roots[i].place[0] < 0;
-        assert_true(roots[i].place[2] > -0.1 * sin(2 * 3.14159265 / SIZE));
-    }
-    assert_true(abs(left - COUNT / 2) < 5 * sqrt(COUNT) / 2);
-    image_destroy(&image);
-    field_destroy(&field);
-}
-
-// --- Strands.
-
 // Coordinates of 0.3 m are rounded to 2^-25: two ends of each of n segments are off by sqrt(3)
 // 2^-26 m at most, n times as much over the strand.
 static void check_lengths(const Strands *strands, double shortest, double longest)
@@ -221,11 +61,11 @@ static void check_lengths(const Strands *strands, double shortest, double longes
 static void lengths_are_within_the_variation(void **state)
 {
     (void)state;
-    Field field;
-    field_create(&field, SCALP_HEAD, 24);
+    Scalp scalp;
+    shapes_make_scalp(&scalp, SCALP_HEAD, 24);
     FurRecipe recipe = long_hair();
     recipe.length_variation = 0.4;
-    Strands strands = grow(&recipe, &field.mesh);
+    Strands strands = grow(&recipe, &scalp.mesh);
     check_lengths(&strands, 0.6 * recipe.length, recipe.length);
     double sum = 0;
     for (uint32_t s = 0; s < strands.strand_count; s++) sum += strands_length(&strands, s);
@@ -235,7 +75,7 @@ static void lengths_are_within_the_variation(void **state)
     strands_destroy(&strands);
     recipe.length_variation = 0;
     recipe.length_map = "x > 0 ? 0.5 : (x > -0.03 ? 0 : 1)";
-    strands = grow(&recipe, &field.mesh);
+    strands = grow(&recipe, &scalp.mesh);
     assert_true(strands.strand_count < (uint32_t)recipe.count);
     for (uint32_t s = 0; s < strands.strand_count; s++) {
         double x = (double)strands.position[strands.first[s]][0];
@@ -243,7 +83,7 @@ static void lengths_are_within_the_variation(void **state)
         assert_true(x > 0 || x < -0.029);
         assert_true(fabs(strands_length(&strands, s) - expected) < 1e-5);
     }
-    field_destroy(&field);
+    shapes_destroy_scalp(&scalp);
     strands_destroy(&strands);
 }
 
@@ -270,35 +110,35 @@ static void check_outside(const Strands *strands, const Surface *surface, double
 static void hair_stays_out_of_the_mesh(void **state)
 {
     (void)state;
-    Field field;
-    field_create(&field, SCALP_HEAD, 36);
+    Scalp scalp;
+    shapes_make_scalp(&scalp, SCALP_HEAD, 36);
     FurRecipe recipe = long_hair();
     recipe.comb = "0, -0.2, 1";
     recipe.gravity_bend = 60;
     for (int curls = 0; curls < 2; curls++) {
         recipe.curl_radius = 0.01 * curls;
-        Strands strands = grow(&recipe, &field.mesh);
-        check_outside(&strands, &field.surface, recipe.root_lift);
+        Strands strands = grow(&recipe, &scalp.mesh);
+        check_outside(&strands, &scalp.surface, recipe.root_lift);
         strands_destroy(&strands);
     }
-    field_destroy(&field);
+    shapes_destroy_scalp(&scalp);
 }
 
 static void equal_seeds_give_equal_hair(void **state)
 {
     (void)state;
-    Field field;
-    field_create(&field, SCALP_HEAD, 24);
+    Scalp scalp;
+    shapes_make_scalp(&scalp, SCALP_HEAD, 24);
     FurRecipe recipe = long_hair();
-    Strands a = grow(&recipe, &field.mesh), b = grow(&recipe, &field.mesh);
+    Strands a = grow(&recipe, &scalp.mesh), b = grow(&recipe, &scalp.mesh);
     assert_memory_equal(a.position, b.position, 12 * (size_t)a.vertex_count);
     recipe.seed = 2;
-    Strands c = grow(&recipe, &field.mesh);
+    Strands c = grow(&recipe, &scalp.mesh);
     assert_memory_not_equal(a.position, c.position, 12 * (size_t)a.vertex_count);
     strands_destroy(&a);
     strands_destroy(&b);
     strands_destroy(&c);
-    field_destroy(&field);
+    shapes_destroy_scalp(&scalp);
 }
 
 // How far the tips are from the nearest tip of a guide, in the mean, m. Guides come first.
@@ -324,22 +164,22 @@ static double measure_clumps(const Strands *strands, uint32_t guides)
 static void clumps_gather_tips(void **state)
 {
     (void)state;
-    Field field;
-    field_create(&field, SCALP_SPHERE, 24);
+    Scalp scalp;
+    shapes_make_scalp(&scalp, SCALP_SPHERE, 24);
     FurRecipe recipe = fur_recipe_default();
     recipe.count = 2000;
     recipe.guides = 500;
     recipe.length = 0.1;
     recipe.length_variation = 0;
     recipe.gravity_bend = 0;
-    Strands loose = grow(&recipe, &field.mesh);
+    Strands loose = grow(&recipe, &scalp.mesh);
     recipe.clump = 0.8;
-    Strands gathered = grow(&recipe, &field.mesh);
+    Strands gathered = grow(&recipe, &scalp.mesh);
     double ratio = measure_clumps(&gathered, 500) / measure_clumps(&loose, 500);
     assert_true(fabs(ratio - 0.2) < 0.03);
     strands_destroy(&loose);
     strands_destroy(&gathered);
-    field_destroy(&field);
+    shapes_destroy_scalp(&scalp);
 }
 
 // Combed down without lift on a sphere: the first segment is along the surface and down; with 90
@@ -350,8 +190,8 @@ static void clumps_gather_tips(void **state)
 static void hair_leaves_as_it_is_combed(void **state)
 {
     (void)state;
-    Field field;
-    field_create(&field, SCALP_SPHERE, 36);
+    Scalp scalp;
+    shapes_make_scalp(&scalp, SCALP_SPHERE, 36);
     for (int upright = 0; upright < 2; upright++) {
         FurRecipe recipe = fur_recipe_default();
         recipe.count = 300;
@@ -360,7 +200,7 @@ static void hair_leaves_as_it_is_combed(void **state)
         recipe.length_variation = 0;
         recipe.gravity_bend = 0;
         recipe.lift_deg = upright ? 90 : 0;
-        Strands strands = grow(&recipe, &field.mesh);
+        Strands strands = grow(&recipe, &scalp.mesh);
         for (uint32_t s = 0; s < strands.strand_count; s++) {
             Double3 root, next, normal;
             double3_from_float(strands.position[strands.first[s]], root);
@@ -376,16 +216,16 @@ static void hair_leaves_as_it_is_combed(void **state)
         }
         strands_destroy(&strands);
     }
-    field_destroy(&field);
+    shapes_destroy_scalp(&scalp);
 }
 
 // A picture that says u everywhere: along the circles of latitude, turned up by at most 0.1 as
 // above.
 static void pictures_comb_along_texture_coordinates(void **state)
 {
-    Field field;
+    Scalp scalp;
     Image image;
-    field_create(&field, SCALP_SPHERE, 36);
+    shapes_make_scalp(&scalp, SCALP_SPHERE, 36);
     assert_int_equal(image_create(&image, 2, 2, 3, NULL), RESULT_OK);
     for (int i = 0; i < 12; i++) image.pixels[i] = i % 3 == 0 ? 255 : 128;
     const char *path = temporary_path(state, "u.png");
@@ -397,7 +237,7 @@ static void pictures_comb_along_texture_coordinates(void **state)
     recipe.length_variation = 0;
     recipe.gravity_bend = 0;
     recipe.lift_deg = 0;
-    Strands strands = grow(&recipe, &field.mesh);
+    Strands strands = grow(&recipe, &scalp.mesh);
     for (uint32_t s = 0; s < strands.strand_count; s++) {
         const float *root = strands.position[strands.first[s]], *next = root + 3;
         Double3 east = {(double)root[2], 0, -(double)root[0]}, way;
@@ -408,7 +248,7 @@ static void pictures_comb_along_texture_coordinates(void **state)
     }
     strands_destroy(&strands);
     image_destroy(&image);
-    field_destroy(&field);
+    shapes_destroy_scalp(&scalp);
 }
 
 // Curls without a common phase: in the half of a strand where they have their full radius, 0.8 to
@@ -417,8 +257,8 @@ static void pictures_comb_along_texture_coordinates(void **state)
 static void curls_wind(void **state)
 {
     (void)state;
-    Field field;
-    field_create(&field, SCALP_SPHERE, 24);
+    Scalp scalp;
+    shapes_make_scalp(&scalp, SCALP_SPHERE, 24);
     FurRecipe recipe = fur_recipe_default();
     recipe.count = 100;
     recipe.length = 0.1;
@@ -428,7 +268,7 @@ static void curls_wind(void **state)
     for (int curls = 0; curls < 2; curls++) {
         recipe.curl_radius = 0.004 * curls;
         recipe.curl_frequency = 70;
-        Strands strands = grow(&recipe, &field.mesh);
+        Strands strands = grow(&recipe, &scalp.mesh);
         double reach = 0;
         for (uint32_t s = 0; s < strands.strand_count; s++) {
             Double3 root, tip;
@@ -441,14 +281,14 @@ static void curls_wind(void **state)
         assert_true(curls ? reach > 1 / 2.02 && reach < 1 / 1.3 : reach > 0.9999);
         strands_destroy(&strands);
     }
-    field_destroy(&field);
+    shapes_destroy_scalp(&scalp);
 }
 
 static void what_does_not_go_together_is_named(void **state)
 {
     (void)state;
-    Field field;
-    field_create(&field, SCALP_SPHERE, 6);
+    Scalp scalp;
+    shapes_make_scalp(&scalp, SCALP_SPHERE, 6);
     Strands strands;
     FurReport report;
     static const struct {
@@ -470,23 +310,18 @@ static void what_does_not_go_together_is_named(void **state)
         recipe.density = cases[i].density;
         recipe.length_map = cases[i].length;
         recipe.comb = cases[i].comb;
-        Result result = fur_grow(&strands, &recipe, &field.mesh, "mesh", &report, &error);
+        Result result = fur_grow(&strands, &recipe, &scalp.mesh, "mesh", &report, &error);
         assert_true(result == RESULT_USAGE || (i == 3 && result == RESULT_BAD_INPUT));
         if (strncmp(error.text, cases[i].message, strlen(cases[i].message)) != 0)
             fail_msg("%s", error.text);
     }
-    field_destroy(&field);
+    shapes_destroy_scalp(&scalp);
 }
 
 int main(void)
 {
 #define WITH_FILES(name) cmocka_unit_test_setup_teardown(name, temporary_create, temporary_destroy)
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(roots_are_even_by_area),
-        cmocka_unit_test(roots_are_even_within_a_triangle),
-        cmocka_unit_test(roots_keep_away_from_each_other),
-        cmocka_unit_test(roots_are_as_dense_as_the_map_says),
-        WITH_FILES(pictures_lie_on_texture_coordinates),
         cmocka_unit_test(lengths_are_within_the_variation),
         cmocka_unit_test(hair_stays_out_of_the_mesh),
         cmocka_unit_test(equal_seeds_give_equal_hair),
