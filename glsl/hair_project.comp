@@ -104,7 +104,7 @@ void main()
         p.at = project(clip_near(here_clip, before_clip, after_clip), radius);
 #if SHADOW
         shadow_fibre = vec2(2.0 * radius, shadow_opacity);
-        shadow_find(here);
+        shadow_find(at, here);
 #endif
         p.color = shade_particle(fibre, painter, at, here, unit(after - before), unit(eye - here));
         float reach = MITRE_MAX * (p.at.w + 1.0);

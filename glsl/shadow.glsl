@@ -2,6 +2,7 @@
 // How much of a light reaches a point (needs shadow.h).
 //   SHADOW 0: all   1: approximated deep shadow map, as TressFX has it   2: deep opacity map
 //   SHADOW_BY_MESH 1: the mesh throws shadows, too
+//   SHADOW_FOUND 1: what hair leaves at each particle has been found before (cpu_shadow.h)
 //   LIGHT_COUNT, SHADOW_MAPS: how many lights and maps, so that loops over them are unrolled; 0: any number
 #ifndef LIGHT_COUNT
 #define LIGHT_COUNT 0
@@ -9,13 +10,21 @@
 #ifndef SHADOW_MAPS
 #define SHADOW_MAPS 0
 #endif
+#ifndef SHADOW_FOUND
+#define SHADOW_FOUND 0
+#endif
 
 #if SHADOW
+#if SHADOW_FOUND
+layout(binding = BIND_SHADOW_LEFT) uniform samplerBuffer shadow_found;
+layout(location = SHADOW_PARTICLES_AT) uniform int shadow_particles;
+#else
 layout(binding = BIND_DEPTHS) uniform samplerBuffer shadow_depths;
 #if SHADOW == 1
 layout(binding = BIND_LAYERS) uniform usamplerBuffer shadow_first;
 #else
 layout(binding = BIND_LAYERS) uniform usamplerBuffer shadow_layers;
+#endif
 #endif
 #if SHADOW_BY_MESH
 layout(binding = BIND_SHADOW_MESH) uniform sampler2D shadow_mesh;
@@ -28,7 +37,8 @@ int shadow_side = shadow_params.side;
 // Of the fibre that is asked for: diameter (m) and opacity to light; 0 for the mesh.
 vec2 shadow_fibre = vec2(0.0);
 
-#if SHADOW == 2
+#if SHADOW_FOUND
+#elif SHADOW == 2
 float mix4(float a, float b, float c, float d, vec2 share)
 {
     return mix(mix(a, b, share.x), mix(c, d, share.x), share.y);
@@ -135,21 +145,27 @@ void shadow_keep(int light, float left)
 #endif
 }
 
-// Finds what is left of all lights at x, a turn for each map: CPU drivers run both sides of every `if`,
+// Finds what is left of all lights at x, where the particle lies, a turn for each map: CPU drivers run both sides of every `if`,
 // so that lights without a map would cost as much as those with one.
-void shadow_find(vec3 x)
+void shadow_find(int particle, vec3 x)
 {
     for (int map = 0; map < shadow_maps; ++map) {
         vec4 of_light = shadow_params.place[map];
+#if SHADOW_FOUND
+        float left = texelFetch(shadow_found, map * shadow_particles + particle).x;
+#else
         vec4 place = vec4(x, 1.0) * shadow_params.from_world[map];
         vec2 texel = place.xy / place.w;
         float left = light_through_hair(map, texel, place.z, of_light);
-        // Beside the map no hair stands in the light.
-        left = any(lessThan(texel, vec2(0.0))) || any(greaterThan(texel, vec2(shadow_side))) ? 1.0 : left;
-#if SHADOW_BY_MESH
-        left *= light_past_mesh(map, x);
+        // Beside the map no hair stands in the light, and a lamp has no map behind it.
+        bool beside = any(lessThan(texel, vec2(0.0))) || any(greaterThan(texel, vec2(shadow_side)));
+        left = beside || place.w <= 0.0 ? 1.0 : left;
 #endif
-        shadow_keep(int(of_light.x), place.w > 0.0 ? left : 1.0); // a lamp has no map behind it
+#if SHADOW_BY_MESH
+        float past = light_past_mesh(map, x);
+        left *= dot(vec4(x, 1.0), shadow_params.from_world[map][3]) > 0.0 ? past : 1.0;
+#endif
+        shadow_keep(int(of_light.x), left);
     }
 }
 #endif

@@ -129,6 +129,8 @@ static Result try_looks(Renderer *renderer, Error *error)
     Result result = scatter_tables_find(&renderer->picture.scatter, 1.5f, 0.2f, &texture, error);
     static const unsigned others[] = {LOOK_SHADOW_APPROX,
                                       LOOK_SHADOW_DOM,
+                                      LOOK_SHADOW_DOM | LOOK_SHADOW_FOUND,
+                                      LOOK_SHADOW_DOM | LOOK_SHADOW_FOUND | LOOK_SHADOW_BY_MESH,
                                       LOOK_SHADOW_APPROX | LOOK_SHADOW_BY_MESH,
                                       LOOK_SHADOW_DOM | LOOK_SHADOW_BY_MESH | LOOK_LIGHTS,
                                       LOOK_WHITE,

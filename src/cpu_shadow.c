@@ -53,6 +53,9 @@ typedef struct Cast {
     bool deep;
     float (*box)[6];  // [parts]
     uint32_t *layers; // [LAYERS][side][side]
+    // Where light is found:
+    const uint32_t *found_layers;
+    float across, *left, last; // LAYERS - 1e-3: a bound that compilers know makes them jump
 } Cast;
 
 Result cpu_shadow_create(CpuShadow *shadow, int side, bool deep, Error *error)
@@ -93,6 +96,12 @@ INLINE float larger(float a, float least)
 INLINE float smaller(float a, float most)
 {
     return a < most ? a : most;
+}
+// The larger of x and 0, without a comparison: one whose outcome tells that of the next becomes a
+// jump, and its loop does not become vector instructions.
+INLINE float positive(float x)
+{
+    return 0.5f * (x + fabsf(x));
 }
 INLINE float ceiling(float x)
 {
@@ -183,17 +192,19 @@ INLINE void widen_box(const Cast *cast, const Tile *tile, int j, float box[6][W]
     float limit = params->limit, reach = params->reach;
     Places p;
     find_places(params, tile, j, &p);
+    float place[3][W];
     for (int k = 0; k < W; ++k) {
         bool sound = (k < tile->strands) & (fabsf(x[k][0]) < limit) & (fabsf(x[k][1]) < limit) &
                      (fabsf(x[k][2]) < limit) & (fabsf(p.u[k]) < reach) & (fabsf(p.v[k]) < reach);
-        float far = INFINITY;
-        box[0][k] = smaller(sound ? p.u[k] : far, box[0][k]);
-        box[1][k] = smaller(sound ? p.v[k] : far, box[1][k]);
-        box[2][k] = smaller(sound ? p.z[k] : far, box[2][k]);
-        box[3][k] = larger(sound ? p.u[k] : -far, box[3][k]);
-        box[4][k] = larger(sound ? p.v[k] : -far, box[4][k]);
-        box[5][k] = larger(sound ? p.z[k] : -far, box[5][k]);
+        place[0][k] = sound ? p.u[k] : NAN; // which no comparison takes
+        place[1][k] = sound ? p.v[k] : NAN;
+        place[2][k] = sound ? p.z[k] : NAN;
     }
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < W; ++k) {
+            box[i][k] = smaller(place[i][k], box[i][k]);
+            box[i + 3][k] = larger(place[i][k], box[i + 3][k]);
+        }
 }
 
 INLINE void find_box(const Cast *cast, int part)
@@ -339,19 +350,18 @@ static void lay_wide(const Cast *cast, const Tile *tile, const Points *p, int k,
 
 INLINE void lay_tile(const Cast *cast, const Tile *tile, bool deep, uint32_t *sums, float *first)
 {
-    Places a, b;
+    Places ends[2];
     Points points;
-    find_places(cast->params, tile, 0, &a);
+    find_places(cast->params, tile, 0, &ends[0]);
     for (int j = 1; j < (int)tile->caster->material.vertex_count; ++j) {
-        find_places(cast->params, tile, j, &b);
-        lay_points(cast, tile, &a, &b, &points);
+        find_places(cast->params, tile, j, &ends[j % 2]);
+        lay_points(cast, tile, &ends[(j + 1) % 2], &ends[j % 2], &points);
         if (deep)
             add_points(cast, &points, sums);
         else
             keep_firsts(cast, &points, first);
         for (int k = 0; points.wide && k < tile->strands; ++k)
             if (points.width[k] > WIDE) lay_wide(cast, tile, &points, k, sums, first);
-        a = b;
     }
 }
 
@@ -488,6 +498,113 @@ static void spread(CpuShadow *shadow)
     }
 }
 
+// --- Light at particles, as light_through_hair of shadow.glsl finds it.
+
+// 2^x for -60 <= x <= 0: of the fraction -1/2 .. 1/2 the Taylor series to the sixth power (1.2e-7
+// off), the rest as exponent bits.
+INLINE float exp2_of(float x)
+{
+    int whole = (int)(x - 0.5f);
+    float f = (x - (float)whole) * 0.693147181f;
+    float power =
+        1 + f * (1 + f * (0.5f + f * (1.f / 6 + f * (1.f / 24 + f * (1.f / 120 + f / 720)))));
+    union {
+        int bits;
+        float value;
+    } exponent = {.bits = (whole + 127) * (1 << 23)};
+    return power * exponent.value;
+}
+
+INLINE float mix4(float a, float b, float c, float d, float u, float v)
+{
+    float above = a + u * (b - a), below = c + u * (d - c);
+    return above + v * (below - above);
+}
+
+// Optical depth before a layer and of its own by share (unpack_layer).
+INLINE float texel_depth(uint32_t bits, float share)
+{
+    return ((float)(int)(bits & 0xffff) + share * (float)(int)(bits >> 16)) * (1.f / 4096);
+}
+
+// Where a tile's particles look: the texel before them, what they are beyond it, and their layer.
+typedef struct Looks {
+    float u[W], v[W], share[W];
+    int texel[W], layer[W];
+} Looks;
+
+INLINE void find_looks(const Cast *cast, const Places *places, Looks *looks)
+{
+    const float *depths = cast->shadow->depths;
+    int side = cast->shadow->side;
+    float edge = (float)side - 1.01f, last = cast->last, begin[W];
+    for (int k = 0; k < W; ++k) {
+        float u = smaller(larger(places->u[k] - 0.5f, 0), edge),
+              v = smaller(larger(places->v[k] - 0.5f, 0), edge);
+        looks->texel[k] = (int)v * side + (int)u;
+        looks->u[k] = u - (float)(int)u;
+        looks->v[k] = v - (float)(int)v;
+    }
+    for (int k = 0; k < W; ++k) {
+        int at = looks->texel[k], below = at + side;
+        begin[k] = mix4(depths[at], depths[at + 1], depths[below], depths[below + 1], looks->u[k],
+                        looks->v[k]);
+    }
+    for (int k = 0; k < W; ++k) {
+        float root = sqrtf(positive(places->z[k] - begin[k])),
+              layer = smaller((float)LAYERS * root, last);
+        looks->layer[k] = (int)layer;
+        looks->share[k] = layer - (float)(int)layer;
+    }
+}
+
+// What of its own optical depth a fibre finds in its layer (OWN_SHARE of shadow.glsl).
+INLINE float own_depth(float width, float opacity, float share)
+{
+    float kept = opacity * smaller(width, 1), beyond = smaller(larger(width - 1, 0), 1);
+    return share * 0.5f * (1 + beyond) * kept * (1 + 0.5f * kept);
+}
+
+INLINE void find_lights(const Cast *cast, const Tile *tile, const Places *places, float *left)
+{
+    const uint32_t *layers = cast->found_layers;
+    int side = cast->shadow->side, squares = side * side;
+    float sum[W], most = (float)side;
+    Looks looks;
+    find_looks(cast, places, &looks);
+    for (int k = 0; k < W; ++k) {
+        int at = looks.texel[k] + looks.layer[k] * squares, below = at + side;
+        float share = looks.share[k];
+        sum[k] = mix4(texel_depth(layers[at], share), texel_depth(layers[at + 1], share),
+                      texel_depth(layers[below], share), texel_depth(layers[below + 1], share),
+                      looks.u[k], looks.v[k]);
+    }
+    for (int k = 0; k < W; ++k)
+        sum[k] -= own_depth(2 * places->radius[k] * cast->across, tile->opacity[k], looks.share[k]);
+    // Beside the map no hair stands in the light, nor behind a lamp.
+    for (int k = 0; k < W; ++k) {
+        bool inside = (places->u[k] >= 0) & (places->v[k] >= 0) & (places->u[k] <= most) &
+                      (places->v[k] <= most);
+        sum[k] *= inside ? 1.f : 0.f;
+    }
+    for (int k = 0; k < W; ++k) left[k] = exp2_of(-1.44269504f * positive(sum[k]));
+}
+
+INLINE void find_light(const Cast *cast, int part)
+{
+    const CpuCaster *caster = cast->casters.list;
+    Places places;
+    int range[2];
+    find_range(cast, caster, part, range);
+    for (int t = range[0]; t < range[1]; ++t) {
+        Tile tile = open_tile(caster, t);
+        for (int j = 0; j < (int)caster->material.vertex_count; ++j) {
+            find_places(cast->params, &tile, j, &places);
+            find_lights(cast, &tile, &places, cast->left + tile.at + (size_t)j * W);
+        }
+    }
+}
+
 // --- Threads, and the same code for wider lanes.
 
 INLINE void splat(const Cast *cast, int part)
@@ -534,6 +651,7 @@ static bool has_avx2(void)
 STAGE(find_box)
 STAGE(splat)
 STAGE(finish)
+STAGE(find_light)
 
 bool cpu_shadow_find_box(const CpuShadow *shadow, const CastParams *params, CpuCasters casters,
                          double box[6])
@@ -578,6 +696,19 @@ void cpu_shadow_draw_deep(CpuShadow *shadow, const CastParams *params, CpuCaster
     run_splat(&cast);
     run_finish(&cast);
     memcpy(depths, shadow->depths, (size_t)shadow->side * (size_t)shadow->side * sizeof *depths);
+}
+
+void cpu_shadow_find_light(CpuShadow *shadow, const CastParams *params, const CpuCaster *caster,
+                           float across, const uint32_t *layers, float *left)
+{
+    Cast cast = {.shadow = shadow,
+                 .params = params,
+                 .casters = {caster, 1},
+                 .across = across,
+                 .found_layers = layers,
+                 .last = (float)LAYERS - 1e-3f,
+                 .left = left};
+    run_find_light(&cast);
 }
 
 void cpu_shadow_draw_firsts(CpuShadow *shadow, const CastParams *params, CpuCasters casters,

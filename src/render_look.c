@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "draw.h"
+#include "shadow.h"
 
 enum { MOST_UNROLLED = 4 };
 
@@ -46,6 +47,7 @@ Result look_programs_build(LookPrograms *programs, unsigned features, Error *err
                                     {"PAINT", (features & LOOK_PAINT) != 0},
                                     {"SMOOTH", (features & LOOK_SMOOTH) != 0},
                                     {"SHADOW", shadow},
+                                    {"SHADOW_FOUND", (features & LOOK_SHADOW_FOUND) != 0},
                                     {"SHADOW_BY_MESH", (features & LOOK_SHADOW_BY_MESH) != 0},
                                     {NULL, 0}};
     GLuint *program = &programs->program[features];
@@ -68,6 +70,14 @@ void look_programs_count(LookPrograms *programs, int light_count, int map_count)
     programs->map_count = map_count;
 }
 
+static void use_lights(const Look *look, const HairBatch *batch)
+{
+    uint32_t i = 0;
+    while (i + 1 < look->batches && look->lights[i].batch != batch) ++i;
+    gpu_buffer_bind_texture(&look->lights[i].left, BIND_SHADOW_LEFT);
+    glUniform1i(SHADOW_PARTICLES_AT, (GLint)(hair_slots(batch) * batch->vertex_count));
+}
+
 Result look_programs_use(LookPrograms *programs, const Look *look, const HairBatch *batch,
                          Error *error)
 {
@@ -77,6 +87,7 @@ Result look_programs_use(LookPrograms *programs, const Look *look, const HairBat
     if (result != RESULT_OK) return result;
     glUseProgram(programs->program[features]);
     if (features & LOOK_PAINT) gpu_buffer_bind_texture(&batch->paint, BIND_PAINT);
+    if (features & LOOK_SHADOW_FOUND) use_lights(look, batch);
     if (look->features & LOOK_MARSCHNER) {
         glActiveTexture(GL_TEXTURE0 + BIND_SCATTER);
         glBindTexture(GL_TEXTURE_3D, look->scatter);

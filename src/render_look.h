@@ -17,21 +17,30 @@ typedef enum LookFeature {
     LOOK_SHADOW_APPROX = 16,
     LOOK_SHADOW_DOM = 32,
     LOOK_SHADOW_BY_MESH = 64,
-    LOOK_SMOOTH = 128, // the material's smooth_parts are more than 1
+    LOOK_SMOOTH = 128,       // the material's smooth_parts are more than 1
+    LOOK_SHADOW_FOUND = 256, // the look has a ParticleLight of each batch
     // Instead of shading (with LOOK_PAINT alone): white, the tangent, the strand's own colour.
-    LOOK_WHITE = 256,
-    LOOK_TANGENT = 512,
-    LOOK_STRAND = 768,
+    LOOK_WHITE = 512,
+    LOOK_TANGENT = 1024,
+    LOOK_STRAND = 1536,
 } LookFeature;
 
-enum { LOOK_SHADED = 256, LOOK_VARIANTS = 4 * LOOK_SHADED };
+enum { LOOK_SHADED = 512, LOOK_VARIANTS = 4 * LOOK_SHADED };
+
+// What hair leaves of light at the particles of a batch.
+typedef struct ParticleLight {
+    const HairBatch *batch;
+    GpuBuffer left; // float a shadow map and particle, 0..1
+} ParticleLight;
 
 typedef struct Look {
-    MaterialParams material; // complete but for the batch's size
-    unsigned features;       // LookFeature bits
-    int light_count;         // of the scene
-    int map_count;           // lights that have a shadow map
-    GLuint scatter;          // LOOK_MARSCHNER: the 3D texture of render_scatter.h
+    MaterialParams material;     // complete but for the batch's size
+    unsigned features;           // LookFeature bits
+    int light_count;             // of the scene
+    int map_count;               // lights that have a shadow map
+    GLuint scatter;              // LOOK_MARSCHNER: the 3D texture of render_scatter.h
+    const ParticleLight *lights; // [batches], LOOK_SHADOW_FOUND
+    uint32_t batches;
     float share; // of the strands is drawn, 0 .. 1; the material's radius makes up for it
 } Look;
 

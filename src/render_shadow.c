@@ -58,14 +58,13 @@ static void set_rows(mat4 matrix, const LightFrame *frame)
         for (int i = 0; i < 4; ++i) matrix[k][i] = (float)frame->rows[k][i];
 }
 
-static void set_hair_frame(ShadowParams *params, int map, int light, bool perspective,
+static void set_hair_frame(ShadowParams *params, int map, int light, const LightView *view,
                            const LightFrame *frame)
 {
-    double distance = perspective ? 0.5 * (frame->depth[0] + frame->depth[1]) : 1;
     set_rows(params->from_world[map], frame);
     params->place[map][0] = (float)light;
     params->place[map][1] = (float)(frame->depth[1] - frame->depth[0]);
-    params->place[map][3] = (float)(1 / (frame->texel * distance));
+    params->place[map][3] = render_shadow_hair_scale(view, frame);
 }
 
 static void set_mesh_frame(ShadowParams *params, int map, const ShadowMeshFrame *mesh)
@@ -89,7 +88,7 @@ static void draw_map(RenderShadow *shadow, const ShadowScene *scene, int light)
         shadow_mesh_add_box(&scene->mesh, &view, box);
     }
     LightFrame frame = render_shadow_hair_frame(&shadow->hair, &view, box);
-    set_hair_frame(params, map, light, view.perspective, &frame);
+    set_hair_frame(params, map, light, &view, &frame);
     render_shadow_hair_draw(&shadow->hair, &view, &frame, map, scene->casters);
     if (by_mesh) {
         shadow_mesh_add_box(&scene->mesh, &view, box);

@@ -21,7 +21,10 @@ typedef struct RenderShadowCpu {
     CpuShadow shadow;
     CpuCaster *casters; // [room], owned
     uint32_t count, room;
-    GLuint *mapped; // [2 room + 2], owned: buffers
+    ParticleLight *lights; // [room], owned
+    float **left;          // [room], owned: theirs, while maps are drawn
+    uint32_t lit;          // of them there are; 0: none, they would not fit into a buffer
+    GLuint *mapped;        // [3 room + 2], owned: buffers
     uint32_t mapped_count;
     float *depths; // of all maps, while they are drawn; deep
     uint32_t *texels;
@@ -35,12 +38,14 @@ Result render_shadow_cpu_create(RenderShadowCpu *cpu, int side, bool deep, Error
 void render_shadow_cpu_destroy(RenderShadowCpu *cpu);
 
 // Maps all that is read and written, and waits for the GPU. `depths` (deep) and `texels` are what
-// shaders read later, the first depths or the layers of all maps. After RESULT_FAILED (memory is
+// shaders read later, the first depths or the layers of all `maps`. After RESULT_FAILED (memory is
 // short, a buffer cannot be mapped) nothing is.
-Result render_shadow_cpu_begin(RenderShadowCpu *cpu, ShadowCasters casters, const GpuBuffer *depths,
+Result render_shadow_cpu_begin(RenderShadowCpu *cpu, const GpuLimits *limits, int maps,
+                               ShadowCasters casters, const GpuBuffer *depths,
                                const GpuBuffer *texels, Error *error);
 void render_shadow_cpu_end(RenderShadowCpu *cpu);
 
-// Between the two: see cpu_shadow.h; map params->map.
+// Between the two: see cpu_shadow.h; map params->map. What is drawn of a deep map leaves its light
+// in `lights`, too; `across`: ShadowParams.place[map].w.
 bool render_shadow_cpu_find_box(RenderShadowCpu *cpu, const CastParams *params, double box[6]);
-void render_shadow_cpu_draw(RenderShadowCpu *cpu, const CastParams *params);
+void render_shadow_cpu_draw(RenderShadowCpu *cpu, const CastParams *params, float across);

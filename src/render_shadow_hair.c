@@ -149,7 +149,7 @@ Result render_shadow_hair_begin(RenderShadowHair *hair, int maps, ShadowCasters 
     hair->in_c = hair->by_processor && render_shadow_cpu_can(casters);
     Result result = make_maps(hair, maps, error);
     if (result == RESULT_OK && hair->in_c)
-        return render_shadow_cpu_begin(&hair->cpu, casters, &hair->depths,
+        return render_shadow_cpu_begin(&hair->cpu, hair->limits, maps, casters, &hair->depths,
                                        hair->deep ? &hair->layers : &hair->firsts, error);
     if (result == RESULT_OK) result = make_scratch(hair, casters, error);
     if (result != RESULT_OK) return result;
@@ -294,6 +294,12 @@ static void draw_deep(RenderShadowHair *hair, ShadowCasters casters, CastParams 
     finish(hair, params);
 }
 
+float render_shadow_hair_scale(const LightView *view, const LightFrame *frame)
+{
+    double distance = view->perspective ? 0.5 * (frame->depth[0] + frame->depth[1]) : 1;
+    return (float)(1 / (frame->texel * distance));
+}
+
 void render_shadow_hair_draw(RenderShadowHair *hair, const LightView *view, const LightFrame *frame,
                              int map, ShadowCasters casters)
 {
@@ -309,7 +315,7 @@ void render_shadow_hair_draw(RenderShadowHair *hair, const LightView *view, cons
     };
     set_rows(&params, rows);
     if (hair->in_c)
-        render_shadow_cpu_draw(&hair->cpu, &params);
+        render_shadow_cpu_draw(&hair->cpu, &params, render_shadow_hair_scale(view, frame));
     else if (hair->deep)
         draw_deep(hair, casters, &params);
     else
@@ -320,4 +326,12 @@ void render_shadow_hair_bind(const RenderShadowHair *hair)
 {
     if (hair->deep) gpu_buffer_bind_texture(&hair->depths, BIND_DEPTHS);
     gpu_buffer_bind_texture(hair->deep ? &hair->layers : &hair->firsts, BIND_LAYERS);
+}
+
+bool render_shadow_hair_lights(const RenderShadowHair *hair, const ParticleLight **lights,
+                               uint32_t *count)
+{
+    *lights = hair->cpu.lights;
+    *count = hair->cpu.lit;
+    return hair->in_c && hair->cpu.lit > 0;
 }

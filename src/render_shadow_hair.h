@@ -48,11 +48,18 @@ bool render_shadow_hair_find_box(RenderShadowHair *hair, const LightView *view,
 LightFrame render_shadow_hair_frame(const RenderShadowHair *hair, const LightView *view,
                                     const double box[6]);
 
+// Texels of such a map in a metre across, about.
+float render_shadow_hair_scale(const LightView *view, const LightFrame *frame);
+
 // Draws map `map`.
 void render_shadow_hair_draw(RenderShadowHair *hair, const LightView *view, const LightFrame *frame,
                              int map, ShadowCasters casters);
 
 void render_shadow_hair_end(RenderShadowHair *hair);
+
+// The light at all particles of the casters, if C has found it: false where shaders look for it.
+bool render_shadow_hair_lights(const RenderShadowHair *hair, const ParticleLight **lights,
+                               uint32_t *count);
 
 // Binds what glsl/shadow.glsl reads.
 void render_shadow_hair_bind(const RenderShadowHair *hair);

@@ -160,8 +160,12 @@ static Result draw_shadow(Renderer *renderer, const RenderFrame *frame, Error *e
         result = render_shadow_draw(&renderer->shadow, &scene, renderer->timer, error);
     if (result != RESULT_OK) return result;
     render_shadow_bind(&renderer->shadow);
-    for (uint32_t i = 0; i < picture->item_count; ++i)
-        picture->looks[i].map_count = renderer->shadow.params.maps;
+    for (uint32_t i = 0; i < picture->item_count; ++i) {
+        Look *look = &picture->looks[i];
+        look->map_count = renderer->shadow.params.maps;
+        if (render_shadow_hair_lights(&renderer->shadow.hair, &look->lights, &look->batches))
+            look->features |= LOOK_SHADOW_FOUND;
+    }
     return RESULT_OK;
 }
 
