@@ -74,6 +74,7 @@ $(OUT)/cpu_split.o: C_FLAGS += -O3 -fno-math-errno -fno-trapping-math -ffinite-m
 endif
 # Lanes: selects and roots without a thought for traps and errno, or nothing becomes vector instructions. The same bits.
 $(OUT)/cpu_shadow.o: C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math
+$(OUT)/block_composite.o $(OUT)/block_pixels.o: C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math -ffinite-math-only -fno-signed-zeros
 $(OUT)/glsl_sources.c: scripts/embed-glsl $(SHADERS) $(OUT)/files
 	$(call run,EMBED,scripts/embed-glsl $(SHADERS) >$@.tmp && mv $@.tmp $@)
 $(OUT)/glsl_sources.o: $(OUT)/glsl_sources.c $(OUT)/flags # C promises only 4095 characters a string; every compiler takes more

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The block-list rasteriser's record of a ribbon: RIBBON_TEXELS uvec4, that is one line of a CPU's cache
-// (RibbonRecord of block_lists.h).
+// The block rasteriser's record of a ribbon: RIBBON_TEXELS uvec4, that is one line of a CPU's cache
+// (RibbonRecord of ribbon_record.h; src/block_composite.c unpacks it).
 //
 //   line: x, y of its ends, px, as float bits
 //   shape: half-widths at its ends (px, levels); bound at the first end, bound at the last (two shorts
 //      each); opacity (12 bits), and 1/w at the last end less that at the first, over the mean (a float's
 //      upper 20 bits)
 //   tint: colour at the first end and at the last, linear (six levels); 1/w, the mean
-//   span: what dealing it out to blocks needs, in blocks: slope and reach (float bits), rows, columns
-//      (first | last << 16); the strip's middle moves by `slope` columns from row to row and it
-//      reaches so far to either side
+//   span: which pixels it may touch: slope and reach (float bits), rows, columns (first | last << 16), px; the
+//      strip's middle moves by `slope` from row to row and it reaches so far to either side
 //
 // Along the strand a ribbon has the share of a pixel that lies beyond its first end less the share
 // beyond its last one. At a joint both ribbons have the same share, so that they cover all of the
@@ -34,20 +33,10 @@ uint pack_levels(vec2 v)
     return bits.x | (bits.y << 16);
 }
 
-vec2 unpack_levels(uint word)
-{
-    return uintBitsToFloat(uvec2((word & 0xffffu) << 13, (word >> 16) << 13) + LEAST_LEVEL);
-}
-
 uint pack_shorts(vec2 v)
 {
     uvec2 bits = floatBitsToUint(v) + 0x8000u;
     return (bits.x >> 16) | (bits.y & 0xffff0000u);
-}
-
-vec2 unpack_shorts(uint word)
-{
-    return uintBitsToFloat(uvec2(word << 16, word & 0xffff0000u));
 }
 
 // How opacity and the change of 1/w share a word.
@@ -56,29 +45,11 @@ uint pack_depth(float opacity, float change)
     return uint(int(clamp(opacity, 0.0, 1.0) * 4095.0 + 0.5)) | ((floatBitsToUint(change) + 0x800u) & 0xfffff000u);
 }
 
-float unpack_opacity(uint word) { return float(int(word & 0xfffu)) * (1.0 / 4095.0); }
-float unpack_change(uint word) { return uintBitsToFloat(word & 0xfffff000u); }
-
-struct Ribbon {
-    vec2 a, b;       // ends, px
-    vec2 half_width; // at each
-    vec2 bound_a, bound_b;
-};
-
-Ribbon unpack_ribbon(uvec4 ends, uvec4 shape)
-{
-    return Ribbon(uintBitsToFloat(ends.xy), uintBitsToFloat(ends.zw), unpack_levels(shape.x), unpack_shorts(shape.y),
-                  unpack_shorts(shape.z));
-}
-
 bool bound_is_free(vec2 bound) { return dot(bound, bound) < 4.0; }
-
-// The share beyond an end is clamp(distance along the bound + this, 0, 1).
-float bound_offset(vec2 bound) { return bound_is_free(bound) ? 0.5 : 1.0; }
 
 struct Span {
     float slope, reach;
-    ivec4 box; // first column and row, last column and row
+    ivec4 box; // px: first column and row, last column and row
 };
 
 uvec4 pack_span(Span s)

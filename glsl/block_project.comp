@@ -15,12 +15,12 @@
 #include "block.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
-layout(location = 0) uniform ivec2 first_slot; // of this part of a batch: in all, in the buffer that is bound
+layout(location = 0) uniform int first_slot; // of this part of a batch, in what is bound of the buffers
 layout(location = 1) uniform ivec2 strands;    // how many; 1: they are those of the list (block_cull.comp)
 layout(binding = BIND_LISTED) uniform usamplerBuffer listed;
 layout(binding = BIND_STRAND_ID) uniform usamplerBuffer strand_id;
 layout(std430, binding = BIND_RIBBONS_OUT) writeonly buffer Ribbons { uvec4 ribbons[]; };
-layout(std430, binding = BIND_KEYS_OUT) writeonly buffer Keys { uint keys[]; }; // 1/w as float bits
+layout(std430, binding = BIND_KEYS_OUT) writeonly buffer Keys { uvec2 keys[]; }; // RibbonKey of ribbon_record.h
 layout(std430, binding = BIND_BLOCK_COUNTS_OUT) buffer Counts { uint counts[]; };
 
 const float LEAST_OPACITY = 1.0 / 4096.0;
@@ -50,20 +50,23 @@ float overhang(vec2 bound, vec2 d, float reach)
     return bound_is_free(bound) ? 0.5 : min(tangent, 3.0) * reach + 0.01;
 }
 
-// In blocks, counted so that block c has its middle at c: its outer pixels' middles lie HALF to either
-// side, and it is touched if one of its pixels' middles is in reach.
+// Which pixels' middles are in reach.
 Span find_span(End a, End b, vec2 d, float reach, out bool seen)
 {
-    const vec2 SCALE = 1.0 / vec2(BLOCK_WIDTH, BLOCK_HEIGHT), HALF = 0.5 - 0.5 * SCALE;
     vec2 p = a.at - d * overhang(a.bound, d, reach), q = b.at + d * overhang(b.bound_before, d, reach);
     vec2 across = reach * abs(d.yx);
-    vec2 low = (min(p, q) - across) * SCALE - 0.5, high = (max(p, q) + across) * SCALE - 0.5;
-    low = max(ceil(low - HALF), 0.0);
-    high = min(floor(high + HALF), ceil(size * SCALE) - 1.0);
+    vec2 low = max(ceil(min(p, q) - across - 0.5), 0.0), high = min(floor(max(p, q) + across - 0.5), size - 1.0);
     seen = all(lessThanEqual(low, high));
-    vec2 way = d * SCALE;
-    float rows = 1.0 / max(abs(way.y), 1e-5), slope = way.x * (way.y < 0.0 ? -rows : rows);
-    return Span(slope, reach * SCALE.x * SCALE.y * rows + HALF.y * abs(slope) + HALF.x, ivec4(low, max(high, 0.0)));
+    float rows = 1.0 / max(abs(d.y), 1e-5);
+    return Span(d.x * (d.y < 0.0 ? -rows : rows), reach * rows, ivec4(low, max(high, 0.0)));
+}
+
+// First and last column and row of blocks, in bytes, if they are so few.
+uint pack_blocks(ivec4 box)
+{
+    const int WIDTH = BLOCK_WIDTH, HEIGHT = BLOCK_HEIGHT; // powers of two
+    ivec4 at = box / ivec4(WIDTH, HEIGHT, WIDTH, HEIGHT);
+    return max(at.z, at.w) < 256 ? uint(at.x | (at.y << 8) | (at.z << 16) | (at.w << 24)) : MANY_BLOCKS;
 }
 
 // Whether the ribbon was kept.
@@ -76,7 +79,7 @@ bool store(int slot, End a, End b, float opacity)
     seen = seen && opacity >= LEAST_OPACITY && a.inverse_w > 0.0 && b.inverse_w > 0.0 && a.at != b.at;
     if (seen) {
         float depth = 0.5 * (a.inverse_w + b.inverse_w);
-        int at = (slot + first_slot.y) * RIBBON_TEXELS;
+        int at = slot * RIBBON_TEXELS;
         ribbons[at] = uvec4(floatBitsToUint(a.at), floatBitsToUint(b.at));
         ribbons[at + 1] = uvec4(pack_levels(vec2(a.half_width, b.half_width)), pack_shorts(a.bound),
                                 pack_shorts(b.bound_before),
@@ -84,7 +87,7 @@ bool store(int slot, End a, End b, float opacity)
         ribbons[at + 2] = uvec4(pack_levels(a.color.rg), pack_levels(vec2(a.color.b, b.color.r)),
                                 pack_levels(b.color.gb), floatBitsToUint(depth));
         ribbons[at + 3] = pack_span(span);
-        keys[slot + first_slot.x] = floatBitsToUint(depth);
+        keys[slot] = uvec2(floatBitsToUint(depth), pack_blocks(span.box));
     }
     return seen;
 }
@@ -96,9 +99,9 @@ void main()
     if (strands.y != 0) row = int(texelFetch(listed, row + 2).x);
     int s = int(material.first_strand) + row;
 #if SMOOTH
-    int slot = row * (n - 1) * int(material.smooth_parts);
+    int slot = first_slot + row * (n - 1) * int(material.smooth_parts);
 #else
-    int slot = row * (n - 1);
+    int slot = first_slot + row * (n - 1);
 #endif
     int root = particle_address(s, 0, n);
     Painter painter = paint_strand(texelFetch(strand_id, s).x, n);

@@ -47,12 +47,8 @@
 #define BIND_RIBBONS_OUT      1 // RIBBON_TEXELS uvec4 a ribbon, see block.glsl
 #define BIND_HIDING_OUT       1 // float a tile, see block_hide.comp
 #define BIND_LISTED_OUT       3 // uint: how many strands are listed, how many are hidden, then rows
-#define BIND_KEYS_OUT         4 // uint a ribbon
-#define BIND_PIXELS_OUT       6 // uint a pixel, rows of whole blocks
+#define BIND_KEYS_OUT         4 // uvec2 a ribbon
 #define BIND_LISTED           7 // while strands are projected
-#define BIND_RIBBONS          4
-#define BIND_JOBS             5 // uvec4 a block: its number, where its list begins, how long it is
-#define BIND_LISTS            6 // uint a ribbon in a block: the ribbon
 #define BIND_MESH_DEPTH       8
 #define BIND_HIDING           9 // float a tile and level, see block_cull.comp
 
@@ -60,11 +56,10 @@
 #define HIDE_LEVELS 6 // each of tiles twice as wide
 
 #define RIBBON_TEXELS     4
-#define BLOCK_WIDTH       4 // px; tall, since hair hangs down
-#define BLOCK_HEIGHT      8
-#define BLOCK_GROUP       8 // blocks that are composited side by side
+#define BLOCK_WIDTH       64 // px, of what is composited at once
+#define BLOCK_HEIGHT      64
 #define BLOCK_COUNT_WORDS (64 * 16)
-#define BLOCK_COUNT_SHORT 2 // word that is not 0 if a block had too many ribbons to visit
+#define MANY_BLOCKS       0xffffffffu
 
 // The A-buffer's pool is dealt out in shards, each with a counter of its own: pixels of different
 // 8x8 blocks then rarely wait for each other's atomics. A small picture full of hair would fill few

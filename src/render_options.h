@@ -38,7 +38,7 @@ typedef struct RendererOptions {
                         // what raster auto is
     int oit_layers;     // abuffer: how many of them in order, 1 .. 64, the same; 0: 8, of two
                         // samples 16
-    int64_t pool_bytes; // no larger A-buffer or block lists; 0: what the driver allows
+    int64_t pool_bytes; // no larger A-buffer; 0: what the driver allows
 } RendererOptions;
 
 // Hair to be drawn. The material is that of its section; `radius` is the fibre radius at the root

@@ -11,7 +11,7 @@
 // A way from hair to pixels.
 typedef struct RasterType {
     Result (*create)(Renderer *renderer, Error *error);
-    Result (*add_base)(Renderer *renderer, Error *error);
+    Result (*add_base)(Renderer *renderer, Error *error); // NULL: nothing is to be made
     Result (*draw)(Renderer *renderer, Image *image, Error *error);
 } RasterType;
 static const RasterType RASTERS[3];
@@ -43,10 +43,8 @@ static RendererOptions settle(const RendererOptions *asked)
 static Raster choose_raster(const Gpu *gpu, const RendererOptions *options)
 {
     bool plain = options->oit == OIT_AUTO && options->oit_layers == 0;
-    Raster raster = options->raster != RASTER_AUTO ? options->raster
-                    : gpu->software && plain       ? RASTER_BLOCKS
-                                                   : RASTER_QUADS;
-    return render_blocks_can_store(&gpu->limits, options) ? raster : RASTER_QUADS;
+    if (options->raster != RASTER_AUTO) return options->raster;
+    return gpu->software && plain ? RASTER_BLOCKS : RASTER_QUADS;
 }
 
 static bool has_base(const Renderer *renderer)
@@ -59,7 +57,8 @@ static Result make_base(Renderer *renderer, Error *error)
 {
     if (!has_base(renderer)) return RESULT_OK;
     Result result = render_target_add_base(&renderer->target, error);
-    return result == RESULT_OK ? RASTERS[renderer->raster].add_base(renderer, error) : result;
+    const RasterType *raster = &RASTERS[renderer->raster];
+    return result == RESULT_OK && raster->add_base ? raster->add_base(renderer, error) : result;
 }
 
 Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
@@ -180,30 +179,16 @@ static Result draw_quads(Renderer *renderer, Image *image, Error *error)
                              has_base(renderer), renderer->timer, image, &renderer->counts, error);
 }
 
-static Result add_base_to_blocks(Renderer *renderer, Error *error)
-{
-    return render_blocks_add_base(&renderer->blocks, error);
-}
-
 static void count_blocks(Renderer *renderer)
 {
     const RenderBlocks *blocks = &renderer->blocks;
-    renderer->counts = (RendererCounts){.segments = blocks->segments,
-                                        .culled = blocks->culled,
-                                        .hidden = blocks->cull.hidden,
-                                        .fragments = blocks->touched,
-                                        .pool_bytes = (uint64_t)blocks->numbers.size,
-                                        .bands = blocks->bands};
-}
-
-// The quads take over, for this picture: blocks try the next one again, so that no picture depends
-// on which ones were drawn before it in the same run.
-static Result draw_quads_instead(Renderer *renderer, Image *image, Error *error)
-{
-    Result result = RESULT_OK;
-    if (!renderer->quads.limits) result = create_quads(renderer, error);
-    if (result == RESULT_OK && has_base(renderer)) result = add_base_to_quads(renderer, error);
-    return result == RESULT_OK ? draw_quads(renderer, image, error) : result;
+    renderer->counts =
+        (RendererCounts){.segments = blocks->segments,
+                         .culled = blocks->culled,
+                         .hidden = blocks->cull.hidden,
+                         .fragments = blocks->touched,
+                         .pool_bytes = blocks->raster.lists.pair_room * sizeof(uint64_t),
+                         .bands = 1};
 }
 
 static Result project_items(Renderer *renderer, Error *error)
@@ -224,30 +209,22 @@ static Result project_items(Renderer *renderer, Error *error)
 static Result draw_blocks(Renderer *renderer, Image *image, Error *error)
 {
     RenderBlocks *blocks = &renderer->blocks;
-    Picture *picture = &renderer->picture;
-    uint64_t segments = picture_count_segments(picture);
-    if (!render_blocks_can_hold(&renderer->gpu->limits, segments))
-        return draw_quads_instead(renderer, image, error);
-    const CullBase base = {has_base(renderer) ? &renderer->target : NULL,
-                           renderer->base.depth_version};
-    Result result = render_blocks_begin(blocks, segments, &base, error);
-    if (result != RESULT_OK) return result;
-    result = project_items(renderer, error);
-    if (result != RESULT_OK) return result;
-    result = render_blocks_draw(blocks, &renderer->target, has_base(renderer), picture->base_box,
-                                renderer->timer, error);
-    if (result != RESULT_OK) return result;
-    if (render_blocks_fell_short(blocks)) return draw_quads_instead(renderer, image, error);
-    gpu_timer_begin(renderer->timer, "draw_read");
-    render_blocks_read(blocks, image);
-    gpu_timer_end(renderer->timer);
-    count_blocks(renderer);
-    return RESULT_OK;
+    const Picture *picture = &renderer->picture;
+    const BlocksBase base = {
+        .cull = {has_base(renderer) ? &renderer->target : NULL, renderer->base.depth_version},
+        .version = renderer->base.version,
+        .box = picture->base_box,
+        .depth = {picture->draw.depth[0], picture->draw.depth[1]}};
+    Result result = render_blocks_begin(blocks, picture_count_segments(picture), &base, error);
+    if (result == RESULT_OK) result = project_items(renderer, error);
+    if (result == RESULT_OK) result = render_blocks_draw(blocks, renderer->timer, image, error);
+    if (result == RESULT_OK) count_blocks(renderer);
+    return result;
 }
 
 static const RasterType RASTERS[] = {
     [RASTER_QUADS] = {create_quads, add_base_to_quads, draw_quads},
-    [RASTER_BLOCKS] = {create_blocks, add_base_to_blocks, draw_blocks},
+    [RASTER_BLOCKS] = {create_blocks, NULL, draw_blocks},
 };
 
 static Result draw_base(Renderer *renderer, Error *error)

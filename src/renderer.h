@@ -13,7 +13,7 @@ typedef struct Renderer {
     const Gpu *gpu;
     GpuTimer *timer;
     RenderTarget target;
-    Raster raster; // auto is decided; what the other one needs is made when it is drawn with
+    Raster raster; // auto is decided
     RenderQuads quads;
     RenderBlocks blocks;
     RenderBase base;
@@ -25,9 +25,9 @@ typedef struct Renderer {
 } Renderer;
 
 // Makes targets and shaders. `gpu` and `timer` outlive the renderer; spans "draw_mesh",
-// "draw_project", "draw_hair" and "draw_resolve" or "draw_sort", "draw_bin" and "draw_composite",
-// "draw_read". RESULT_FAILED if the size exceeds the
-// driver's or memory is short.
+// "draw_project", and of quads "draw_hair", "draw_resolve" and "draw_read" (of the picture), of
+// blocks "draw_read" (of mesh and floor), "draw_bin" and "draw_composite". RESULT_FAILED if the
+// size exceeds the driver's or memory is short.
 Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
                        const RendererOptions *options, Error *error);
 void renderer_destroy(Renderer *renderer);
@@ -40,9 +40,8 @@ int renderer_channels(const Renderer *renderer);
 
 // Draws one picture into `image`, which has the renderer's size and channels, and waits for it. The
 // order of items and of strands does not matter, and every run gives the same bytes. No fragment is
-// lost: an A-buffer that is too small grows and the band is drawn again; at its largest, or where
-// lists are too long for one buffer, the picture is drawn in more bands. RESULT_FAILED if memory is
-// short, a single row needs more than there can be, or a pixel has more fragments than a CPU
-// driver's loops can visit (quads; where blocks have more ribbons than that, quads take over).
+// lost: an A-buffer that is too small grows and the band is drawn again; at its largest the picture
+// is drawn in more bands. RESULT_FAILED if memory is short or, with quads, a single row needs more
+// than there can be or a pixel has more fragments than a CPU driver's loops can visit.
 Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderItem *items,
                      uint32_t item_count, Image *image, Error *error);

@@ -16,10 +16,13 @@ extern const RendererOptions TRANSPARENT, BLACK;
 extern Raster raster; // that draws now
 extern Studio studio; // each test leaves it without hair
 
-// A test that clears the studio behind it; runs all with each rasteriser, gives how many failed.
+// A test that clears the studio behind it; runs all with each rasteriser, or with quads alone, and
+// gives how many failed.
 #define CLAIM(name)      cmocka_unit_test_teardown(name, clear_studio)
-#define stage_run(tests) stage_run_count(tests, sizeof(tests) / sizeof(tests)[0])
-int stage_run_count(const struct CMUnitTest *tests, size_t count);
+#define stage_run(tests) stage_run_count(tests, sizeof(tests) / sizeof(tests)[0], RASTER_BLOCKS)
+#define stage_run_quads(tests)                                                                     \
+    stage_run_count(tests, sizeof(tests) / sizeof(tests)[0], RASTER_QUADS)
+int stage_run_count(const struct CMUnitTest *tests, size_t count, Raster last);
 int clear_studio(void **state);
 
 // Opens the studio anew, in a new context.
@@ -34,6 +37,9 @@ uint32_t add_line(const float from[3], const float to[3], float radius, float op
 // Curved strands all over the picture, lit. `order` gives the place of each, NULL: as they are
 // made.
 void add_tangle(uint32_t count, float radius, float opacity, const uint32_t *order);
+
+// So many strands through the middle, all in the same place.
+Strands crowd(uint32_t count);
 
 // Draws; a copy of the bytes, which the caller frees. Draws, and the bytes must be those.
 uint8_t *draw_copy(size_t *size);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "block_lists.h"
+#include "draw.h"
 #include "random.h"
 
 #include <math.h>
@@ -11,188 +12,145 @@
 
 #include <cmocka.h>
 
-enum { COUNT = 3000, COLUMNS = 37, ROWS = 23, BLOCKS = COLUMNS * ROWS, MOST = COUNT * BLOCKS / 4 };
+enum { COUNT = 3000, COLUMNS = 17, ROWS = 13, BLOCKS = COLUMNS * ROWS };
 
-static RibbonRecord ribbons[COUNT];
-static uint32_t order[COUNT], numbers[MOST];
-static BlockJob jobs[16 * (BLOCKS + 2 * JOB_GROUP)];
-static const int NOWHERE[4] = {1, 1, 0, 0};
+static RibbonRecord records[COUNT];
+static RibbonKey keys[COUNT];
 
-static size_t filled = COUNT; // of the ribbons
-
-static size_t make(BlockLists *lists, int row, int end, const int box[4])
+static uint32_t below(Random *random, uint32_t end)
 {
-    size_t count = block_lists_place(lists, row, end, box);
-    assert_true(count % ((size_t)lists->parts * JOB_GROUP) == 0 &&
-                count <= sizeof jobs / sizeof *jobs);
-    block_lists_write_jobs(lists, jobs);
-    block_lists_fill(lists, ribbons, order, filled, row, end, numbers);
-    return count;
+    return (uint32_t)(random_real(random) * end);
 }
 
+// Boxes anywhere, most of them small, some of ribbons that reach all of it; every 7th slot is
+// empty, every 11th key does not say which blocks.
 static int setup(void **state)
 {
     (void)state;
     Random random = random_create(1, 0);
-    random_permutation(&random, order, COUNT);
     for (int i = 0; i < COUNT; ++i) {
-        RibbonRecord *r = &ribbons[i];
-        uint32_t row = (uint32_t)(random_real(&random) * ROWS),
-                 column = (uint32_t)(random_real(&random) * COLUMNS);
-        *r = (RibbonRecord){.a = {(float)(random_real(&random) * COLUMNS * 8),
-                                  (float)(random_real(&random) * ROWS * 4)},
-                            .slope = (float)(4 * random_real(&random) - 2),
-                            .reach = i % 50 ? (float)(2 * random_real(&random)) : 1e30f};
-        r->rows = row | (row + (uint32_t)(random_real(&random) * (ROWS - row))) << 16;
-        r->columns = column | (column + (uint32_t)(random_real(&random) * (COLUMNS - column)))
-                                  << 16;
+        uint32_t width = COLUMNS * BLOCK_WIDTH, height = ROWS * BLOCK_HEIGHT,
+                 row = below(&random, height), column = below(&random, width),
+                 last_row = row + below(&random, i % 3 ? 20 : height - row),
+                 last_column = column + below(&random, i % 3 ? 20 : width - column);
+        if (last_row >= height) last_row = height - 1;
+        if (last_column >= width) last_column = width - 1;
+        records[i] = (RibbonRecord){.a = {(float)column, (float)row},
+                                    .slope = (float)(4 * random_real(&random) - 2),
+                                    .reach = i % 50 ? (float)(2 * random_real(&random)) : 1e30f,
+                                    .rows = row | last_row << 16,
+                                    .columns = column | last_column << 16};
+        keys[i].depth = i % 7 ? 1 + below(&random, 1000) : 0;
+        keys[i].blocks = i % 11
+                             ? column / BLOCK_WIDTH | row / BLOCK_HEIGHT << 8 |
+                                   last_column / BLOCK_WIDTH << 16 | last_row / BLOCK_HEIGHT << 24
+                             : MANY_BLOCKS;
     }
     return 0;
 }
 
+// Whether the middle of a pixel of the block, in the ribbon's box, is in reach of its strip.
 static bool touches(const RibbonRecord *r, int column, int row)
 {
-    double middle =
-        (double)r->a[0] / 8 - 0.5 + (row - ((double)r->a[1] / 4 - 0.5)) * (double)r->slope;
-    return row >= (int)(r->rows & 0xffff) && row <= (int)(r->rows >> 16) &&
-           column >= (int)(r->columns & 0xffff) && column <= (int)(r->columns >> 16) &&
-           fabs(column - middle) <= (double)r->reach;
-}
-
-static void check_job(const BlockJob *job)
-{
-    int column = (int)job->block % COLUMNS, row = (int)job->block / COLUMNS;
-    uint32_t found = 0;
-    if (job->block == BLOCKS) { // fills up
-        assert_int_equal(job->count, 0);
-        return;
+    for (int y = row * BLOCK_HEIGHT; y < (row + 1) * BLOCK_HEIGHT; ++y) {
+        double middle = (double)r->a[0] + (y + 0.5 - (double)r->a[1]) * (double)r->slope;
+        if (y < (int)(r->rows & 0xffff) || y > (int)(r->rows >> 16)) continue;
+        double low = fmax(middle - (double)r->reach, (r->columns & 0xffff) + 0.5),
+               high = fmin(middle + (double)r->reach, (r->columns >> 16) + 0.5);
+        low = fmax(ceil(low - 0.5), column * BLOCK_WIDTH);
+        high = fmin(floor(high - 0.5), (column + 1) * BLOCK_WIDTH - 1);
+        if (low <= high) return true;
     }
-    for (int i = 0; i < COUNT; ++i) {
-        if (!touches(&ribbons[order[i]], column, row)) continue;
-        assert_true(found < job->count);
-        assert_int_equal(numbers[job->begin + found++], order[i]);
-    }
-    assert_int_equal(found, job->count);
+    return false;
 }
 
 static BlockLists make_lists(int parts)
 {
     BlockLists lists;
     Error error = {{0}};
-    assert_int_equal(block_lists_create(&lists, COLUMNS, ROWS, 8, 4, &error), RESULT_OK);
-    assert_true(parts <= lists.parts);
+    assert_int_equal(block_lists_create(&lists, COLUMNS, ROWS, &error), RESULT_OK);
+    free(lists.places);
+    lists.places = malloc((size_t)parts * BLOCKS * sizeof *lists.places);
+    assert_non_null(lists.places);
     lists.parts = parts;
+    assert_int_equal(block_lists_fill(&lists, keys, records, COUNT, &error), RESULT_OK);
     return lists;
 }
 
-// No ribbon's edge comes so near to a block's middle that rounding would tell.
-static void a_block_lists_what_touches_it_in_order(void **state)
+static bool lists_slot(const BlockLists *lists, int block, int slot)
+{
+    for (size_t i = lists->begins[block]; i < lists->begins[block + 1]; ++i)
+        if ((uint32_t)lists->pairs[i] == (uint32_t)slot) return true;
+    return false;
+}
+
+static void a_block_lists_all_that_touch_it(void **state)
 {
     (void)state;
     BlockLists lists = make_lists(1);
-    uint64_t size = block_lists_count(&lists, ribbons, order, COUNT), sum = 0;
-    assert_true(size > COUNT && size < MOST);
-    size_t count = make(&lists, 0, ROWS, NOWHERE);
-    for (size_t i = 0; i < count; ++i) {
-        check_job(&jobs[i]);
-        sum += jobs[i].count;
-    }
-    assert_int_equal(sum, size);
+    int found = 0;
+    for (int i = 0; i < COUNT; ++i)
+        for (int b = 0; b < BLOCKS && keys[i].depth; ++b) {
+            if (!touches(&records[i], b % COLUMNS, b / COLUMNS)) continue;
+            assert_true(lists_slot(&lists, b, i));
+            ++found;
+        }
+    assert_true(found > COUNT);
+    block_lists_destroy(&lists);
+}
+
+// In a box of several rows and columns of blocks, no more than what a strip reaches between a row's
+// outer pixels' middles.
+static void a_block_lists_little_else(void **state)
+{
+    (void)state;
+    BlockLists lists = make_lists(1);
+    size_t more = 0, all = 0;
+    for (int b = 0; b < BLOCKS; ++b)
+        for (size_t i = lists.begins[b]; i < lists.begins[b + 1]; ++i) {
+            const RibbonRecord *r = &records[(uint32_t)lists.pairs[i]];
+            if ((r->rows & 0xffff) / BLOCK_HEIGHT == (r->rows >> 16) / BLOCK_HEIGHT) continue;
+            if ((r->columns & 0xffff) / BLOCK_WIDTH == (r->columns >> 16) / BLOCK_WIDTH) continue;
+            ++all;
+            more += !touches(r, b % COLUMNS, b / COLUMNS);
+        }
+    assert_true(all > COUNT / 2 && more < all / 50);
+    block_lists_destroy(&lists);
+}
+
+static void a_list_goes_by_slots_and_sorts_near_to_far(void **state)
+{
+    (void)state;
+    BlockLists lists = make_lists(1);
+    for (int b = 0; b < BLOCKS; ++b)
+        for (size_t i = lists.begins[b]; i < lists.begins[b + 1]; ++i) {
+            uint64_t pair = lists.pairs[i];
+            assert_int_equal(pair >> 32, ~keys[(uint32_t)pair].depth);
+            if (i > lists.begins[b]) assert_true((uint32_t)lists.pairs[i - 1] < (uint32_t)pair);
+        }
     block_lists_destroy(&lists);
 }
 
 static void lists_do_not_depend_on_how_many_make_them(void **state)
 {
     (void)state;
-    static uint32_t expected[MOST];
-    for (int parts = 1; parts <= 16; parts *= 4) {
-        BlockLists lists = make_lists(1);
-        memset(numbers, 0, sizeof numbers);
-        free(lists.places);
-        lists.places = malloc((size_t)parts * BLOCKS * sizeof *lists.places);
-        assert_non_null(lists.places);
-        lists.parts = parts;
-        size_t size = (size_t)block_lists_count(&lists, ribbons, order, COUNT),
-               count = make(&lists, 0, ROWS, NOWHERE);
-        if (parts == 1) memcpy(expected, numbers, size * sizeof *numbers);
-        assert_memory_equal(numbers, expected, size * sizeof *numbers);
-        for (size_t i = 0; i < count; ++i) check_job(&jobs[i]);
+    BlockLists one = make_lists(1);
+    for (int parts = 2; parts <= 16; parts *= 2) {
+        BlockLists lists = make_lists(parts);
+        assert_memory_equal(lists.begins, one.begins, (BLOCKS + 1) * sizeof *one.begins);
+        assert_memory_equal(lists.pairs, one.pairs, one.begins[BLOCKS] * sizeof *one.pairs);
         block_lists_destroy(&lists);
     }
-}
-
-// Turns of a group are those of its longest list.
-static void parts_of_jobs_are_of_like_work(void **state)
-{
-    (void)state;
-    BlockLists lists = make_lists(1);
-    block_lists_count(&lists, ribbons, order, COUNT);
-    size_t one = block_lists_place(&lists, 0, ROWS, NOWHERE);
-    lists.parts = 2;
-    free(lists.places);
-    lists.places = malloc((size_t)2 * BLOCKS * sizeof *lists.places);
-    assert_non_null(lists.places);
-    block_lists_count(&lists, ribbons, order, COUNT);
-    size_t two = make(&lists, 0, ROWS, NOWHERE);
-    assert_in_range(two, one, 2 * one);
-    size_t turns[2] = {0};
-    for (size_t g = 0; g < two / JOB_GROUP; ++g) {
-        size_t most = 0;
-        for (size_t k = g * JOB_GROUP; k < (g + 1) * JOB_GROUP; ++k)
-            if (jobs[k].count > most) most = jobs[k].count;
-        turns[2 * g >= two / JOB_GROUP] += most;
-    }
-    assert_in_range(10 * turns[0], 8 * turns[1], 12 * turns[1]);
-    block_lists_destroy(&lists);
-}
-
-static void bands_have_all_rows_and_no_more_than_fits(void **state)
-{
-    (void)state;
-    BlockLists lists = make_lists(1);
-    uint64_t all = block_lists_count(&lists, ribbons, order, COUNT), sum = 0, size, most = all / 5;
-    int bands = 0;
-    for (int row = 0, end; row < ROWS; row = end, ++bands) {
-        end = block_lists_fit(&lists, row, most, &size);
-        assert_true(end > row && size <= most);
-        size_t count = make(&lists, row, end, NOWHERE);
-        for (size_t i = 0; i < count; ++i) check_job(&jobs[i]);
-        sum += size;
-    }
-    assert_int_equal(sum, all);
-    assert_in_range(bands, 5, 9);
-    assert_int_equal(block_lists_count(&lists, ribbons, order, COUNT), all);
-    assert_int_equal(block_lists_fit(&lists, 3, 1, &size), 3);
-    block_lists_destroy(&lists);
-}
-
-static void blocks_in_the_box_are_there_without_ribbons(void **state)
-{
-    (void)state;
-    BlockLists lists = make_lists(1);
-    const int box[4] = {-1, 5, 2, 1000};
-    assert_int_equal(block_lists_count(&lists, ribbons, order, 0), 0);
-    filled = 0;
-    size_t count = make(&lists, 0, ROWS, box), found = 0;
-    filled = COUNT;
-    for (size_t i = 0; i < count; ++i) {
-        assert_int_equal(jobs[i].count, 0);
-        if (jobs[i].block == BLOCKS) continue;
-        ++found;
-        assert_true(jobs[i].block % COLUMNS <= 2 && jobs[i].block / COLUMNS >= 5);
-    }
-    assert_int_equal(found, 3 * (ROWS - 5));
-    block_lists_destroy(&lists);
+    block_lists_destroy(&one);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_block_lists_what_touches_it_in_order),
+        cmocka_unit_test(a_block_lists_all_that_touch_it),
+        cmocka_unit_test(a_block_lists_little_else),
+        cmocka_unit_test(a_list_goes_by_slots_and_sorts_near_to_far),
         cmocka_unit_test(lists_do_not_depend_on_how_many_make_them),
-        cmocka_unit_test(parts_of_jobs_are_of_like_work),
-        cmocka_unit_test(bands_have_all_rows_and_no_more_than_fits),
-        cmocka_unit_test(blocks_in_the_box_are_there_without_ribbons),
     };
     return cmocka_run_group_tests(tests, setup, NULL);
 }

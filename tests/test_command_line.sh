@@ -145,7 +145,7 @@ no_files "$work/clean"
 claim "statistics hold device, passes, frames and parameters"
 # shellcheck disable=SC2086
 run 0 $hair $small -q --seed 7 -o "$work/s/" --stats "$work/stats.json"
-for word in '"renderer"' '"sim_split"' '"draw_read"' '"frames_drawn": 2' '"seed": 7' '"peak_memory_kib"' '"commit"'; do
+for word in '"renderer"' '"sim_split"' '"draw_composite"' '"frames_drawn": 2' '"seed": 7' '"peak_memory_kib"' '"commit"'; do
     if grep -qF -- "$word" "$work/stats.json"; then good; else bad "no $word"; fi
 done
 

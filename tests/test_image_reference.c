@@ -401,7 +401,7 @@ static void the_renderer_is_near_the_reference(void **state)
          .radius = 2.5f,
          .opacity = 0.5f,
          .tip_ratio = 0.3f,
-         .bound = {{{0.85, 0.48}, {1.25, 0.77}}, {{2.7, 1.65}, {3.8, 2.0}}}},
+         .bound = {{{0.85, 0.48}, {0.8, 0.46}}, {{2.7, 1.65}, {2.2, 0.92}}}},
         {.name = "hair on end, 0.6 px",
          .count = 3000,
          .step = 0.2,
@@ -409,7 +409,7 @@ static void the_renderer_is_near_the_reference(void **state)
          .radius = 0.3f,
          .opacity = 0.6f,
          .tip_ratio = 0.3f,
-         .bound = {{{4.3, 2.4}, {3.2, 1.4}}, {{12.2, 6.7}, {7.3, 3.3}}}},
+         .bound = {{{4.3, 2.4}, {3.1, 1.3}}, {{12.2, 6.7}, {6.7, 2.8}}}},
     };
     compare_cases(cases, sizeof cases / sizeof *cases);
 }

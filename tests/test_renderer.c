@@ -58,132 +58,25 @@ static void order_of_strands_does_not_matter(void **state)
     free(expected);
 }
 
-static void a_pool_that_is_too_small_grows(void **state)
-{
-    (void)state;
-    const RendererOptions large = {.width = 1024, .height = 1024, .background = {0, 0, 0, 1}};
-    size_t size;
-    use(&large);
-    add_tangle(3000, 6, 0.4f, NULL);
-    uint8_t *first = draw_copy(&size);
-    if (raster == RASTER_QUADS)
-        assert_true(studio.renderer.counts.redraws > 0); // blocks count first
-    assert_int_equal(studio.renderer.counts.bands, 1);
-    assert_draws_the_same(first, size);
-    assert_int_equal(studio.renderer.counts.redraws, 0);
-    free(first);
-}
-
-// Too small for a tangle: its lists of blocks take less room than those of fragments.
-static int64_t small_pool(void)
-{
-    return raster == RASTER_QUADS ? 1 << 17 : 1 << 15;
-}
-
-static void bands_give_the_same_picture(void **state)
-{
-    (void)state;
-    RendererOptions small = BLACK;
-    small.pool_bytes = small_pool();
-    size_t size;
-    use(&BLACK);
-    add_tangle(1500, 2, 0.4f, NULL);
-    uint8_t *expected = draw_copy(&size);
-    uint64_t fragments = studio.renderer.counts.fragments;
-    assert_int_equal(studio.renderer.counts.bands, 1);
-    use(&small);
-    assert_draws_the_same(expected, size);
-    assert_true(studio.renderer.counts.bands > 4);
-    assert_int_equal(studio.renderer.counts.fragments, fragments);
-    assert_draws_the_same(expected, size);
-    free(expected);
-}
-
-static void bands_are_no_more_than_the_pool_asks_for(void **state)
-{
-    (void)state;
-    RendererOptions small = BLACK;
-    small.pool_bytes = small_pool();
-    size_t size;
-    use(&small);
-    add_tangle(1500, 2, 0.4f, NULL);
-    uint8_t *first = draw_copy(&size);
-    assert_draws_the_same(first, size);
-    free(first);
-    const RendererCounts *counts = &studio.renderer.counts;
-    uint64_t node_bytes = raster == RASTER_QUADS ? 16 : 4;
-    uint64_t least = counts->fragments * node_bytes / (uint64_t)small.pool_bytes + 1;
-    assert_in_range(counts->bands, least, 3 * least);
-    assert_int_equal(counts->pool_bytes, small.pool_bytes);
-}
-
-// Its pixels are all of one 8x8 block, so of one shard.
-static void a_small_picture_uses_the_whole_pool(void **state)
-{
-    (void)state;
-    RendererOptions small = BLACK;
-    small.width = small.height = 8;
-    small.pool_bytes = 1 << 18;
-    use(&small);
-    add_tangle(20000, 2, 0.4f, NULL);
-    size_t size;
-    free(draw_copy(&size));
-    if (raster == RASTER_QUADS) assert_true(studio.renderer.counts.fragments > 4096);
-    assert_int_equal(studio.renderer.counts.bands, 1);
-}
-
-// So many strands through the middle, all in the same place.
-static Strands crowd(uint32_t count)
-{
-    float(*position)[3] = malloc((size_t)count * 2 * sizeof *position);
-    assert_non_null(position);
-    for (uint32_t i = 0; i < 2 * count; ++i)
-        for (int k = 0; k < 3; ++k) position[i][k] = k ? 0 : i % 2 ? 4 : -4;
-    Strands strands = studio_strands(count, 2, (const float(*)[3])position);
-    free(position);
-    return strands;
-}
-
-// 60,000 glaring strands in one pixel: sums over them do not fit 32 bits.
+// Glaring strands in one pixel: 32 bits do not hold sums over 60,000 of them. Blocks take any
+// number.
 static void thousands_of_layers_are_still_white(void **state)
 {
     (void)state;
-    enum { COUNT = 60000 };
+    const uint32_t count = raster == RASTER_QUADS ? 60000 : 200000;
     RendererOptions pixel = BLACK;
     pixel.width = pixel.height = 1;
     use(&pixel);
-    Strands strands = crowd(COUNT);
+    Strands strands = crowd(count);
     uint32_t item = studio_add(&studio, &strands, 4, 1);
     studio.material[item].ambient = 8;
     studio_draw(&studio);
-    assert_int_equal(studio.renderer.counts.fragments, COUNT);
+    assert_int_equal(studio.renderer.counts.fragments, count);
     for (int k = 0; k < 3; ++k) assert_int_equal(studio.image.pixels[k], 255);
     strands_destroy(&strands);
 }
 
-// CPU drivers end loops silently after 65,535 turns: no picture is made without a word.
-static void more_layers_than_a_loop_can_visit_are_an_error(void **state)
-{
-    (void)state;
-    enum { COUNT = 66000 };
-    if (!studio.gpu.software) skip();
-    RendererOptions pixel = BLACK;
-    pixel.width = pixel.height = 1;
-    use(&pixel);
-    Strands strands = crowd(COUNT);
-    studio_add(&studio, &strands, 0.4f, 0.001f); // nothing that blocks could leave out
-    View view;
-    Error error = {{0}};
-    studio_view(&view, 1, 1);
-    RenderFrame frame = {.view = &view, .head_rotation = {0, 0, 0, 1}};
-    assert_int_equal(
-        renderer_draw(&studio.renderer, &frame, studio.items, studio.count, &studio.image, &error),
-        RESULT_FAILED);
-    assert_non_null(strstr(error.text, "a pixel has more than"));
-    strands_destroy(&strands);
-}
-
-// Not even on one that was too much for blocks, so that the quads drew it.
+// Not even on one of much more hair.
 static void a_picture_does_not_depend_on_the_one_before(void **state)
 {
     (void)state;
@@ -196,29 +89,11 @@ static void a_picture_does_not_depend_on_the_one_before(void **state)
     Strands strands = crowd(62000);
     studio_add(&studio, &strands, 0.4f, 0.001f);
     studio_draw(&studio);
-    if (raster == RASTER_BLOCKS) assert_non_null(studio.renderer.quads.limits);
     studio_clear(&studio);
     add_tangle(3000, 2, 0.4f, NULL);
     assert_draws_the_same(expected, size);
     free(expected);
     strands_destroy(&strands);
-}
-
-static void a_row_that_no_pool_holds_is_an_error(void **state)
-{
-    (void)state;
-    RendererOptions tiny = BLACK;
-    tiny.pool_bytes = 1; // the least there can be
-    use(&tiny);
-    add_tangle(3000, 8, 0.4f, NULL);
-    View view;
-    Error error = {{0}};
-    studio_view(&view, SIDE, SIDE);
-    RenderFrame frame = {.view = &view, .head_rotation = {0, 0, 0, 1}};
-    assert_int_equal(
-        renderer_draw(&studio.renderer, &frame, studio.items, studio.count, &studio.image, &error),
-        RESULT_FAILED);
-    assert_non_null(strstr(error.text, "one row"));
 }
 
 static void no_hair_is_background(void **state)
@@ -437,14 +312,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         CLAIM(the_nearer_strand_is_in_front),
         CLAIM(order_of_strands_does_not_matter),
-        CLAIM(a_pool_that_is_too_small_grows),
-        CLAIM(bands_give_the_same_picture),
-        CLAIM(bands_are_no_more_than_the_pool_asks_for),
-        CLAIM(a_small_picture_uses_the_whole_pool),
         CLAIM(thousands_of_layers_are_still_white),
-        CLAIM(more_layers_than_a_loop_can_visit_are_an_error),
         CLAIM(a_picture_does_not_depend_on_the_one_before),
-        CLAIM(a_row_that_no_pool_holds_is_an_error),
         CLAIM(no_hair_is_background),
         CLAIM(background_is_exact_beside_hair),
         CLAIM(a_strand_towards_the_eye_is_harmless),

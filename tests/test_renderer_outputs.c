@@ -112,24 +112,6 @@ static void samples_are_the_pixels_of_a_larger_picture(void **state)
     image_destroy(&mean);
 }
 
-// Where the pool is short of room, bands end between pixels, not in their midst.
-static void samples_do_not_depend_on_bands(void **state)
-{
-    (void)state;
-    size_t size;
-    RendererOptions options = SMALL;
-    options.samples = 2;
-    add_hair();
-    use(&options);
-    uint8_t *expected = draw_copy(&size);
-    assert_int_equal(studio.renderer.counts.bands, 1);
-    options.pool_bytes = raster == RASTER_QUADS ? 1 << 16 : 1 << 12;
-    use(&options);
-    assert_draws_the_same(expected, size);
-    assert_true(studio.renderer.counts.bands > 1);
-    free(expected);
-}
-
 // Levels of detail go by what is seen of a strand, not by how finely it is drawn.
 static void samples_leave_the_number_of_strands(void **state)
 {
@@ -235,9 +217,11 @@ static void rasterisers_agree_on_coverage(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        CLAIM(every_kind_shows_the_same_picture), CLAIM(samples_are_the_pixels_of_a_larger_picture),
-        CLAIM(samples_do_not_depend_on_bands),    CLAIM(samples_leave_the_number_of_strands),
-        CLAIM(what_is_nearest_has_one_sample),    CLAIM(rasterisers_agree_on_what_is_nearest),
+        CLAIM(every_kind_shows_the_same_picture),
+        CLAIM(samples_are_the_pixels_of_a_larger_picture),
+        CLAIM(samples_leave_the_number_of_strands),
+        CLAIM(what_is_nearest_has_one_sample),
+        CLAIM(rasterisers_agree_on_what_is_nearest),
         CLAIM(rasterisers_agree_on_coverage),
     };
     return stage_run(tests);
