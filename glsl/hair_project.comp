@@ -20,6 +20,8 @@
 #include "ribbon.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
+layout(location = 0) uniform ivec2 strands; // how many; 1: they are those of the list (block_cull.comp)
+layout(binding = BIND_LISTED) uniform usamplerBuffer listed;
 layout(binding = BIND_STRAND_ID) uniform usamplerBuffer strand_id;
 layout(std430, binding = BIND_EDGES_OUT) writeonly buffer Edges { uvec4 edges[]; };
 layout(std430, binding = BIND_SHADES_OUT) writeonly buffer Shades { uvec4 shades[]; };
@@ -67,8 +69,9 @@ void emit_segments(int first, int count)
 void main()
 {
     int n = int(material.vertex_count);
-    int row = int(gl_GlobalInvocationID.x), s = int(material.first_strand) + row;
-    if (row >= int(material.drawn_strands)) return;
+    int row = int(gl_GlobalInvocationID.x);
+    if (row >= strands.x) return;
+    int s = int(material.first_strand) + (strands.y != 0 ? int(texelFetch(listed, row + 2).x) : row);
 #if SMOOTH
     int first = row * ((n - 1) * int(material.smooth_parts) + 1); // place of the root
 #else

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which strands the block-list rasteriser need not project: those outside the picture, and those
+// Which strands need not be projected: those outside the picture, and those
 // that lie wholly behind the mesh or the floor. Either way the picture is the same to the byte.
 #pragma once
 
@@ -8,6 +8,9 @@
 #include "render_target.h"
 
 #include <stdbool.h>
+
+// Of the strands of a picture, left out: looking for them in the next one pays.
+enum { RENDER_CULL_SHARE = 16 };
 
 // What the shader that lists strands needs: something opaque is there, painted, smooth.
 enum { CULL_HIDING = 1, CULL_PAINT = 2, CULL_SMOOTH = 4, CULL_VARIANTS = 8 };

@@ -59,22 +59,27 @@ static void write(const GpuBuffer *buffer, int64_t at, const void *data, size_t 
     glBufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)at, (GLsizeiptr)size, data);
 }
 
-static Result project(RenderHair *hair, const HairBatch *batch, const Look *look, Error *error)
+// How many strands are projected goes to *strands.
+static Result project(RenderHair *hair, const HairBatch *batch, const Look *look, RenderCull *cull,
+                      uint32_t *strands, Error *error)
 {
     const MaterialParams *material = &look->material;
     const GLuint command[COMMAND_WORDS] = {[COMMAND_INSTANCE_COUNT] = 1};
-    uint32_t strands = material->drawn_strands;
-    Result result = look_programs_use(&hair->project, look, batch, error);
-    if (result != RESULT_OK) return result;
-    write(&hair->command, 0, command, sizeof command);
+    *strands = material->drawn_strands;
     gpu_uniforms_set(&hair->material, BIND_MATERIAL, material, sizeof *material);
     gpu_buffer_bind_texture(&batch->position, BIND_POSITION);
+    Result result = RESULT_OK;
+    if (cull->tries) result = render_cull_list(cull, batch, material, strands, error);
+    if (result == RESULT_OK) result = look_programs_use(&hair->project, look, batch, error);
+    if (result != RESULT_OK || *strands == 0) return result;
+    glUniform2i(0, (GLint)*strands, cull->tries);
+    write(&hair->command, 0, command, sizeof command);
     gpu_buffer_bind_texture(&batch->strand_id, BIND_STRAND_ID);
     gpu_buffer_bind_storage(&hair->edges, BIND_EDGES_OUT);
     gpu_buffer_bind_storage(&hair->shades, BIND_SHADES_OUT);
     gpu_buffer_bind_storage(&hair->indices, BIND_INDICES_OUT);
     gpu_buffer_bind_storage(&hair->command, BIND_COMMAND_OUT);
-    glDispatchCompute((strands + GROUP_SIZE - 1) / GROUP_SIZE, 1, 1);
+    glDispatchCompute((*strands + GROUP_SIZE - 1) / GROUP_SIZE, 1, 1);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT |
                     GL_COMMAND_BARRIER_BIT);
     return RESULT_OK;
@@ -95,7 +100,7 @@ static void draw_ribbons(RenderHair *hair)
 }
 
 Result render_hair_draw(RenderHair *hair, const HairBatch *batch, const Look *look,
-                        const GpuLimits *limits, GpuTimer *timer, Error *error)
+                        RenderCull *cull, const GpuLimits *limits, GpuTimer *timer, Error *error)
 {
     Look part = *look;
     part.material = look_material(look, batch);
@@ -103,14 +108,17 @@ Result render_hair_draw(RenderHair *hair, const HairBatch *batch, const Look *lo
              most = n < PART_PARTICLES ? PART_PARTICLES / n : 1,
              strands = part.material.drawn_strands;
     for (uint32_t first = 0; first < strands; first += most) {
-        uint32_t left = strands - first;
+        uint32_t left = strands - first, seen;
         part.material.first_strand = first;
         part.material.drawn_strands = left < most ? left : most;
         Result result = make_scratch(hair, part.material.drawn_strands, n, limits, error);
+        if (result == RESULT_OK)
+            result = render_cull_make_room(cull, limits, part.material.drawn_strands, error);
         gpu_timer_begin(timer, "draw_project");
-        if (result == RESULT_OK) result = project(hair, batch, &part, error);
+        if (result == RESULT_OK) result = project(hair, batch, &part, cull, &seen, error);
         gpu_timer_end(timer);
         if (result != RESULT_OK) return result;
+        if (seen == 0) continue;
         gpu_timer_begin(timer, "draw_hair");
         draw_ribbons(hair);
         gpu_timer_end(timer);

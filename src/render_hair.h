@@ -5,6 +5,7 @@
 
 #include "gpu_timer.h"
 #include "hair.h"
+#include "render_cull.h"
 #include "render_look.h"
 
 #include <stdbool.h>
@@ -22,7 +23,8 @@ typedef struct RenderHair {
 Result render_hair_create(RenderHair *hair, bool nearest, Error *error);
 void render_hair_destroy(RenderHair *hair);
 
-// Draws one batch into the current framebuffer and A-buffer, through the scissor. RESULT_FAILED if
-// memory is short or the look's shader does not compile.
+// Draws one batch into the current framebuffer and A-buffer, through the scissor, but for strands
+// that `cull` leaves out if it tries. RESULT_FAILED if memory is short or a shader does not
+// compile.
 Result render_hair_draw(RenderHair *hair, const HairBatch *batch, const Look *look,
-                        const GpuLimits *limits, GpuTimer *timer, Error *error);
+                        RenderCull *cull, const GpuLimits *limits, GpuTimer *timer, Error *error);

@@ -16,7 +16,8 @@ Result render_quads_create(RenderQuads *quads, const Gpu *gpu, const RendererOpt
     *quads = (RenderQuads){.limits = &gpu->limits,
                            .width = options->width,
                            .height = options->height,
-                           .samples = options->samples};
+                           .samples = options->samples,
+                           .skips = true};
     Result result = render_hair_create(&quads->hair, nearest, error);
     if (result == RESULT_OK)
         result =
@@ -32,6 +33,7 @@ void render_quads_destroy(RenderQuads *quads)
 {
     render_hair_destroy(&quads->hair);
     render_abuffer_destroy(&quads->abuffer);
+    render_cull_destroy(&quads->cull);
     *quads = (RenderQuads){0};
 }
 
@@ -52,6 +54,7 @@ static Result draw_band(RenderQuads *quads, Picture *picture, const RenderTarget
     draw->band[3] = (uint32_t)render_abuffer_shard_nodes(&quads->abuffer);
     draw->shards = (uint32_t)quads->abuffer.shards;
     picture_upload(picture);
+    quads->cull.outside = quads->cull.hidden = 0; // the same in every band
     glBindFramebuffer(GL_FRAMEBUFFER, target->hair_frame);
     glViewport(0, 0, quads->width * samples, quads->height * samples);
     glScissor(0, row * samples, quads->width * samples, rows * samples);
@@ -59,7 +62,7 @@ static Result draw_band(RenderQuads *quads, Picture *picture, const RenderTarget
         const Hair *hair = picture->items[i].hair;
         for (uint32_t b = 0; b < hair->batch_count && result == RESULT_OK; ++b)
             result = render_hair_draw(&quads->hair, &hair->batches[b], &picture->looks[i],
-                                      quads->limits, timer, error);
+                                      &quads->cull, quads->limits, timer, error);
     }
     return result;
 }
@@ -127,13 +130,29 @@ static Result draw_bands(RenderQuads *quads, Picture *picture, const RenderTarge
     return RESULT_OK;
 }
 
-Result render_quads_draw(RenderQuads *quads, Picture *picture, RenderTarget *target, bool over_mesh,
-                         GpuTimer *timer, Image *image, RendererCounts *counts, Error *error)
+static void count_left_out(RenderQuads *quads, const Picture *picture, RendererCounts *counts)
 {
+    uint64_t strands = 0;
+    for (uint32_t i = 0; i < picture->item_count; ++i)
+        for (uint32_t b = 0; b < picture->items[i].hair->batch_count; ++b)
+            strands += look_material(&picture->looks[i], &picture->items[i].hair->batches[b])
+                           .drawn_strands;
+    counts->culled += quads->cull.outside;
+    counts->hidden = quads->cull.hidden;
+    quads->skips = counts->culled + counts->hidden > strands / RENDER_CULL_SHARE;
+}
+
+Result render_quads_draw(RenderQuads *quads, Picture *picture, RenderTarget *target,
+                         const CullBase *base, GpuTimer *timer, Image *image,
+                         RendererCounts *counts, Error *error)
+{
+    Result result = render_cull_begin(&quads->cull, quads->limits, base, quads->skips, error);
+    if (result != RESULT_OK) return result;
     glEnable(GL_SCISSOR_TEST);
-    Result result = draw_bands(quads, picture, target, over_mesh, timer, counts, error);
+    result = draw_bands(quads, picture, target, base->target != NULL, timer, counts, error);
     glDisable(GL_SCISSOR_TEST);
     if (result != RESULT_OK) return result;
+    count_left_out(quads, picture, counts);
     gpu_timer_begin(timer, "draw_read");
     render_target_read(target, image);
     bool short_of_turns = render_abuffer_fell_short(&quads->abuffer);

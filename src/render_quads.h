@@ -17,6 +17,8 @@ typedef struct RenderQuads {
     int width, height; // px of the picture
     int samples;       // across a pixel
     int band_rows;     // that the next picture starts with
+    RenderCull cull;
+    bool skips; // strands are looked through before they are projected
 } RenderQuads;
 
 // RESULT_FAILED if memory is short. `gpu` outlives the quads.
@@ -28,6 +30,8 @@ void render_quads_destroy(RenderQuads *quads);
 Result render_quads_add_base(RenderQuads *quads, Error *error);
 
 // Draws the picture's hair over the target's base, or over the background if `over_mesh` is false,
-// and copies it into `image`; waits for it. What it does is added to `counts`. See renderer_draw.
-Result render_quads_draw(RenderQuads *quads, Picture *picture, RenderTarget *target, bool over_mesh,
-                         GpuTimer *timer, Image *image, RendererCounts *counts, Error *error);
+// and copies it into `image`; waits for it. `base`: what is opaque. What it does is added to
+// `counts`. See renderer_draw.
+Result render_quads_draw(RenderQuads *quads, Picture *picture, RenderTarget *target,
+                         const CullBase *base, GpuTimer *timer, Image *image,
+                         RendererCounts *counts, Error *error);

@@ -175,8 +175,10 @@ static Result add_base_to_quads(Renderer *renderer, Error *error)
 
 static Result draw_quads(Renderer *renderer, Image *image, Error *error)
 {
-    return render_quads_draw(&renderer->quads, &renderer->picture, &renderer->target,
-                             has_base(renderer), renderer->timer, image, &renderer->counts, error);
+    const CullBase base = {has_base(renderer) ? &renderer->target : NULL,
+                           renderer->base.depth_version};
+    return render_quads_draw(&renderer->quads, &renderer->picture, &renderer->target, &base,
+                             renderer->timer, image, &renderer->counts, error);
 }
 
 static void count_blocks(Renderer *renderer)

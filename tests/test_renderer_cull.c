@@ -14,14 +14,15 @@ enum { COUNT = 1500, VERTICES = 6, HEAD = 70 };
 
 static RenderCull *cull(void)
 {
-    return &studio.renderer.blocks.cull;
+    Renderer *renderer = &studio.renderer;
+    return raster == RASTER_QUADS ? &renderer->quads.cull : &renderer->blocks.cull;
 }
 
-static void skip_quads(void)
+// Whether the next picture's strands are looked through.
+static bool *skips(void)
 {
-    if (raster != RASTER_QUADS) return;
-    print_message("skipped: the driver clips and hides quads\n");
-    skip();
+    Renderer *renderer = &studio.renderer;
+    return raster == RASTER_QUADS ? &renderer->quads.skips : &renderer->blocks.skips;
 }
 
 // A ball of 32 x 16 faces around the middle, with what may stand on it.
@@ -110,14 +111,13 @@ typedef struct Left {
 static Left leaves_no_trace(const View *view)
 {
     size_t size;
-    RenderBlocks *blocks = &studio.renderer.blocks;
-    blocks->skips = true;
+    *skips() = true;
     studio_draw_view(&studio, view);
-    const Left left = {studio.renderer.counts.hidden, blocks->cull.outside};
+    const Left left = {studio.renderer.counts.hidden, cull()->outside};
     uint8_t *expected = studio_copy(&studio, &size);
-    blocks->cull.off = true;
+    cull()->off = true;
     studio_draw_view(&studio, view);
-    blocks->cull.off = false;
+    cull()->off = false;
     assert_int_equal(studio.renderer.counts.hidden, 0);
     assert_memory_equal(studio.image.pixels, expected, size);
     free(expected);
@@ -162,7 +162,6 @@ static void use_with_head(const RendererOptions *options)
 static void strands_behind_the_head_are_left_out_without_a_trace(void **state)
 {
     (void)state;
-    skip_quads();
     Strands strands = make_hair();
     RendererOptions options = DARK;
     for (options.samples = 1; options.samples <= 2; ++options.samples)
@@ -181,7 +180,6 @@ static void strands_behind_the_head_are_left_out_without_a_trace(void **state)
 static void painted_and_smooth_hair_is_left_out_as_well(void **state)
 {
     (void)state;
-    skip_quads();
     use_with_head(&DARK);
     Strands strands = make_hair();
     for (int painted = 0; painted < 2; ++painted) {
@@ -236,7 +234,6 @@ static void use_with_boards(void)
 static void a_thicket_about_boards_is_left_out_without_a_trace(void **state)
 {
     (void)state;
-    skip_quads();
     use_with_boards();
     Strands strands = make_thicket();
     View view, aside;
@@ -261,7 +258,6 @@ static void a_thicket_about_boards_is_left_out_without_a_trace(void **state)
 static void a_curve_may_swing_into_the_picture(void **state)
 {
     (void)state;
-    skip_quads();
     const float bow[4][3] = {
         {-200, -60, 0}, {-6 - SIDE / 2, -40, 0}, {-6 - SIDE / 2, 40, 0}, {-200, 60, 0}};
     Strands strands = studio_strands(1, 4, bow);
@@ -278,7 +274,6 @@ static void a_curve_may_swing_into_the_picture(void **state)
 static void strands_below_a_floor_are_left_out_without_a_trace(void **state)
 {
     (void)state;
-    skip_quads();
     RendererOptions options = DARK;
     options.floor = (Floor){.kind = FLOOR_PLANE, .whole = 900, .faded = 1200, .color = {1, 1, 1}};
     use(&options);
@@ -294,7 +289,6 @@ static void strands_below_a_floor_are_left_out_without_a_trace(void **state)
 static void what_is_hidden_follows_the_camera(void **state)
 {
     (void)state;
-    skip_quads();
     use_with_head(&DARK);
     float line[5][3];
     for (int j = 0; j < 5; ++j)
@@ -322,7 +316,6 @@ static void strands_out_of_sight_are_left_out_early_without_a_trace(void **state
     enum { LINES = 600 };
     float position[2 * LINES][3];
     Random random = random_create(3, 0);
-    skip_quads();
     for (int i = 0; i < LINES; ++i) {
         float middle[3], way[3];
         for (int k = 0; k < 3; ++k) {
@@ -336,16 +329,15 @@ static void strands_out_of_sight_are_left_out_early_without_a_trace(void **state
     size_t size;
     use(&BLACK);
     studio_add(&studio, &strands, 5, 0.4f);
-    RenderBlocks *blocks = &studio.renderer.blocks;
     uint8_t *culled = draw_copy(&size);
     uint64_t count = studio.renderer.counts.culled;
     assert_in_range(cull()->outside, LINES / 2, count);
     assert_in_range(count, LINES / 2, LINES - 10);
-    blocks->skips = false;
+    *skips() = false;
     assert_draws_the_same(culled, size);
     assert_int_equal(cull()->outside, 0);
     assert_int_equal(studio.renderer.counts.culled, count);
-    assert_true(blocks->skips); // the next picture
+    assert_true(*skips()); // the next picture
     free(culled);
     strands_destroy(&strands);
 }
