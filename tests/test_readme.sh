@@ -9,7 +9,7 @@ make_checkout
 
 # What stands in a line of its own; tractrix-render is the small one, and has fewer frames to choose from.
 sed -n -e 's/^    \(PATH=\|tractrix-gen \|tractrix-convert \)/\1/p' -e 's/^    tractrix-render /.\/small /p' README.md |
-    sed -e 's/--first 43 --last 93 --every 50/--first 1 --last 3 --every 2/' -e 's/--first 60 --last 119/--first 2 --last 3/' \
+    sed -e 's/--first 43 --last 93 --every 50/--first 1 --last 3 --every 2/' -e 's/--first 60 --last 119/--first 2 --last 3/; s/--last 29/--last 3/' \
         >"$work/checkout/commands"
 
 claim "the README's commands work"
