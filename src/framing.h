@@ -11,8 +11,9 @@
 // of one, so that the set reaches at most 3 % of its size beyond the points that are kept.
 enum { OUTLINE_DIRECTIONS = 96 };
 
-// The points of a set that lie farthest in each direction, and its box: they fill the picture more
-// tightly than the corners of the box alone would. A zeroed struct is an empty set.
+// The points of a set that lie farthest in each direction (the support of a k-DOP), and its box:
+// they fill the picture more tightly than the corners of the box alone would. A zeroed struct is an
+// empty set.
 typedef struct Outline {
     bool any;
     float low[3], high[3];                  // m

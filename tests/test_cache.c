@@ -115,53 +115,71 @@ static void write_bytes(const char *path, const uint8_t *data, size_t size)
     fclose(file);
 }
 
+// A whole cache, its bytes, and a simulation of the same scene to play others with.
+typedef struct Original {
+    Recorded recorded;
+    SimulationFixture fixture;
+    Bytes file;
+} Original;
+
+static void original_create(Original *original, void **state)
+{
+    *original = (Original){0};
+    record(&original->recorded, state, "whole.cache", true);
+    assert_int_equal(bytes_read_file(&original->file, original->recorded.path, NULL), RESULT_OK);
+    start(&original->fixture, original->recorded.path);
+}
+
+static void original_destroy(Original *original)
+{
+    bytes_destroy(&original->file);
+    simulation_fixture_destroy(&original->fixture);
+}
+
+// Plays its first `size` bytes.
+static int original_play(Original *original, void **state, size_t size)
+{
+    const char *path = temporary_path(state, "other.cache");
+    write_bytes(path, original->file.data, size);
+    return play(&original->fixture, &original->recorded, path);
+}
+
 // Cut anywhere: the whole frames before the cut are there and right, the others are named.
 static void every_truncation_keeps_the_whole_frames(void **state)
 {
-    Recorded recorded = {0};
-    SimulationFixture fixture;
-    Bytes file;
-    record(&recorded, state, "whole.cache", true);
-    assert_int_equal(bytes_read_file(&file, recorded.path, NULL), RESULT_OK);
-    start(&fixture, recorded.path);
-    const char *cut = temporary_path(state, "cut.cache");
+    Original original;
+    original_create(&original, state);
+    const size_t all = original.file.size;
     int before = -1;
-    for (size_t size = 0; size < file.size; size += size < 64 || size + 64 > file.size ? 1 : 23) {
-        write_bytes(cut, file.data, size);
-        int count = play(&fixture, &recorded, cut);
+    for (size_t size = 0; size < all; size += size < 64 || size + 64 > all ? 1 : 23) {
+        int count = original_play(&original, state, size);
         assert_true(count >= before);
         before = count;
     }
     assert_int_equal(before, FRAMES);
-    bytes_destroy(&file);
-    simulation_fixture_destroy(&fixture);
+    original_destroy(&original);
 }
 
 // One bit wrong anywhere: never a wrong picture. All but one frame are there, or all (the index can
 // be done without), or the file is refused.
 static void every_flipped_bit_is_found(void **state)
 {
-    Recorded recorded = {0};
-    SimulationFixture fixture;
-    Bytes file;
-    record(&recorded, state, "whole.cache", true);
-    assert_int_equal(bytes_read_file(&file, recorded.path, NULL), RESULT_OK);
-    start(&fixture, recorded.path);
-    const char *flipped = temporary_path(state, "flipped.cache");
+    Original original;
+    original_create(&original, state);
+    const size_t all = original.file.size;
     int refused = 0, damaged = 0, harmless = 0;
-    for (size_t at = 0; at < file.size; at += at < 64 || at + 300 > file.size ? 1 : 29) {
-        file.data[at] ^= (uint8_t)(1u << at % 8);
-        write_bytes(flipped, file.data, file.size);
-        file.data[at] ^= (uint8_t)(1u << at % 8);
-        int count = play(&fixture, &recorded, flipped);
+    for (size_t at = 0; at < all; at += at < 64 || at + 300 > all ? 1 : 29) {
+        const uint8_t bit = (uint8_t)(1u << at % 8);
+        original.file.data[at] ^= bit;
+        int count = original_play(&original, state, all);
+        original.file.data[at] ^= bit;
         refused += count < 0;
         damaged += count >= 0 && count < FRAMES;
         harmless += count == FRAMES;
     }
     assert_true(refused > 50 && damaged > 50);
     assert_true(harmless > 0 && harmless < 200); // the unused header bytes, and the index
-    bytes_destroy(&file);
-    simulation_fixture_destroy(&fixture);
+    original_destroy(&original);
 }
 
 static void another_scene_is_refused_by_the_value_that_differs(void **state)
