@@ -20,10 +20,10 @@
 #include "lane.glsl"
 #include "tractrix.glsl"
 #include "tridiagonal.glsl"
-#include "energy_account.glsl"
 #if BENDS
 #include "bend.glsl"
 #endif
+#include "energy_account.glsl"
 
 const float THETA = 0.25;
 const float STIFF = 8.0; // the tension beyond which theta grows

@@ -7,52 +7,99 @@
 //
 // (leapfrog's energy: velocities between steps, work over the mean of two steps). The strand carries a = max(a + X, 0), what it has gained
 // since it last had least, in the fourth component of the root's velocity. Above ALLOWED of what gravity could give to it, and of what it
-// has, all its velocities are scaled so that the rest is gone.
+// has, it goes by the share k of its way only, each segment from where it was towards where it went. For moves k m, X = A k^2 + B k + C
+// (springs give what they give along the way: to B), of which the greatest k that keeps within ALLOWED is known at once. Segments that turn
+// far go by more than k; that goes into the account. Should no k do, the velocities of the one that gains least pay for the rest.
 const float ALLOWED = 0.005;
 
 struct Account {
     vec3 moved, moved_before; // of the root, in this step and in the one before
-    float gained, kinetic;    // times dt^2, dt^2/2
+    float squares, linear, constant; // times dt^2/2
     float stored_before, stored; // in springs that count as constraints
 };
 
 Account account_open(Lane lane, float stored)
 {
     vec3 before = texelFetch(velocity_before, lane.address).xyz * lane.dt;
-    return Account(lane.root - lane.root_old, before, 0.0, 0.0, stored, stored);
+    return Account(lane.root - lane.root_old, before, 0.0, 0.0, 0.0, stored, stored);
 }
 
 // A particle that has gone by `move`, would have gone by `free` without constraints, and had the velocity v.
 void account_add(inout Account account, Lane lane, vec3 move, vec3 free, vec3 v)
 {
-    vec3 now = move - account.moved, before = v * lane.dt - account.moved_before;
-    account.gained += dot(move - free, 0.5 * (now + before));
-    account.kinetic += dot(now, now);
+    vec3 now = move - account.moved, before = v * lane.dt - account.moved_before, forced = free - account.moved;
+    account.squares += dot(now, now);
+    account.linear += dot(now, before - forced);
+    account.constant -= dot(forced, before);
 }
 
 // A whole step in sums, for want of each particle's f: uniform forces that move particles by `fall`.
 void account_add_sums(inout Account account, vec3 fall, vec3 sum_now, vec3 sum_before, float squares_now, float squares_before)
 {
     vec3 forced = fall - (account.moved - account.moved_before);
-    account.gained += 0.5 * (squares_now - squares_before - dot(forced, sum_now + sum_before));
-    account.kinetic += squares_now;
+    account.squares += squares_now;
+    account.linear -= dot(forced, sum_now);
+    account.constant -= squares_before + dot(forced, sum_before);
 }
 
-// Writes the root's velocity with the account, and scales the strand's velocities if need be. Its loop is rolled, so that a CPU driver
-// leaves it after a round where no strand needs it.
+// The greatest k of [0, 1] with a k^2 + b k + c <= 0, or what comes nearest to it; a > 0.
+float share_within(float a, float b, float c)
+{
+    float discriminant = b * b - 4.0 * a * c;
+    if (discriminant <= 0.0) return clamp(-0.5 * b / a, 0.0, 1.0);
+    float q = 0.5 * (abs(b) + sqrt(discriminant));
+    return clamp(b > 0.0 ? -c / q : q / a, 0.0, 1.0);
+}
+
+// Scales the strand's move by `share` and its velocities by `kept` besides. Gives what springs store then.
+float account_slow(inout Account account, Lane lane, int last, float share, float kept)
+{
+#if BENDS
+    Frames frames = frames_open(lane);
+#endif
+    float squares = 0.0;
+    vec3 x = lane.root, x_full = lane.root, q = lane.root_old, root = account.moved / lane.dt;
+    for (int j = 1; j <= last; ++j) {
+        int a = lane.address + j * STRAND_TILE;
+        vec4 v = velocities[a];
+        vec3 full = positions[a].xyz, from = full - lane.dt * v.xyz;
+        vec4 segment = fetch_rest(lane, j);
+        vec3 d = direction(mix(from - q, full - x_full, share));
+        x += segment.w * d;
+        x_full = full, q = from;
+#if BENDS
+        frames_advance(frames, d, segment);
+#endif
+        velocities[a] = vec4(root + kept * ((x - from) / lane.dt - root), v.w);
+        positions[a] = vec4(x, 1.0);
+        vec3 now = x - from - account.moved;
+        squares += dot(now, now);
+    }
+    account.squares = squares;
+#if BENDS
+    return bend_stiffness(last) * frames.energy;
+#else
+    return account.stored;
+#endif
+}
+
+// Writes the root's velocity with the account, and slows the strand down if need be. Its loop is rolled, so that a CPU driver leaves it
+// after a round where no strand needs it.
 void account_close(Account account, Lane lane, int last)
 {
-    float per_square = 1.0 / (lane.dt * lane.dt), kinetic = 0.5 * per_square * account.kinetic;
-    float gained = texelFetch(velocity_before, lane.address).w + per_square * account.gained + (account.stored - account.stored_before);
-    float fall = 0.5 * float(last) * lane.length * length(lane.push) / step_params.gain;
-    float over = max(gained, 0.0) - ALLOWED * (fall + kinetic);
+    float per_square = 0.5 / (lane.dt * lane.dt), kinetic = per_square * account.squares, linear = per_square * account.linear + (account.stored - account.stored_before);
+    float constant = texelFetch(velocity_before, lane.address).w + per_square * account.constant;
+    float fall = ALLOWED * 0.5 * float(last) * lane.length * length(lane.push) / step_params.gain;
+    float gained = kinetic + linear + constant, over = max(gained, 0.0) - (fall + ALLOWED * kinetic), share = 1.0, kept = 1.0;
     bool guards = over > 0.0 && kinetic > 0.0 && over < 1e30;
-    vec3 root = account.moved / lane.dt;
-    float kept = guards ? sqrt(max(1.0 - over / kinetic, 0.0)) : 1.0;
-    gained = gained > 0.0 && gained < 1e30 ? gained : 0.0; // 0 for a NaN
-    velocities[lane.address] = vec4(root, guards ? gained - min(over, kinetic) : gained);
-    for (int j = 1; guards && j <= last; ++j) {
-        vec4 v = velocities[lane.address + j * STRAND_TILE];
-        velocities[lane.address + j * STRAND_TILE] = vec4(root + kept * (v.xyz - root), v.w);
+    if (guards) {
+        share = share_within((1.0 - ALLOWED) * kinetic, linear, constant - fall);
+        kinetic *= share * share;
+        gained = kinetic + share * linear + constant;
+        over = clamp(gained - (fall + ALLOWED * kinetic), 0.0, kinetic);
+        kept = kinetic > 0.0 ? sqrt(1.0 - over / kinetic) : 1.0;
+        gained += account_slow(account, lane, last, share, kept) - mix(account.stored_before, account.stored, share) - over;
+        gained += kept * kept * (per_square * account.squares - kinetic);
     }
+    velocities[lane.address] = vec4(account.moved / lane.dt, gained > 0.0 && gained < 1e30 ? gained : 0.0); // 0 for a NaN
 }

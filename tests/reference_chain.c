@@ -202,33 +202,6 @@ typedef struct Motion {
     Vec before[TWIN_MAX], now[TWIN_MAX], forced[TWIN_MAX];
 } Motion;
 
-// The kinetic energy that the step has brought less the work of the forces: what constraints gave.
-static double gained(const Motion *motion, int n)
-{
-    double sum = 0;
-    for (int j = 1; j < n; ++j)
-        for (int i = 0; i < 3; ++i)
-            sum += (motion->now[j][i] - motion->before[j][i] - motion->forced[j][i]) *
-                   (motion->now[j][i] + motion->before[j][i]) / 2;
-    return sum;
-}
-
-// Takes what the strand has gained beyond what is allowed out of its velocities.
-static void guard(TwinStrand *strand, const TwinStep *step, const Vec *now)
-{
-    double kinetic = 0, length = 0;
-    Vec acceleration;
-    for (int j = 1; j < strand->n; ++j)
-        kinetic += vec_dot(now[j], now[j]) / 2, length += strand->length[j];
-    vec_add_scaled(step->gravity, step->drag, step->wind, acceleration);
-    double fall = (strand->n - 1) * length / 2 * vec_norm(acceleration);
-    double over = strand->gained - 0.005 * (fall + kinetic);
-    if (!(over > 0) || !(kinetic > 0)) return;
-    double taken = fmin(over, kinetic), kept = sqrt(1 - taken / kinetic);
-    strand->gained -= taken;
-    for (int j = 1; j < strand->n; ++j) vec_add_scaled(strand->v[0], kept, now[j], strand->v[j]);
-}
-
 // Forces of a step that solves: to the predicted positions. Of one that is rescued: only those that
 // are uniform.
 static void find_forced(const TwinStep *step, const Vec *x_old, const Vec *v_old,
@@ -268,6 +241,83 @@ static double bending_energy(const TwinStrand *strand, const TwinStep *step,
     return stiffness > 0
                ? stiffness * reference_bend_energy(strand, &step->head, (const Vec *)r, NULL)
                : 0;
+}
+
+// The kinetic energy that a step has brought less the work of the forces, what constraints gave,
+// had the strand gone by the share k of its way: a k^2 + b k + c.
+static void account(const Motion *motion, int n, double *a, double *b, double *c)
+{
+    *a = *b = *c = 0;
+    for (int j = 1; j < n; ++j) {
+        *a += vec_dot(motion->now[j], motion->now[j]) / 2;
+        *b -= vec_dot(motion->forced[j], motion->now[j]) / 2;
+        *c -= (vec_dot(motion->before[j], motion->before[j]) +
+               vec_dot(motion->forced[j], motion->before[j])) /
+              2;
+    }
+}
+
+// The greatest k of 0 .. 1 for which a k^2 + b k + c is 0 or less, or what comes nearest to it.
+static double share_within(double a, double b, double c)
+{
+    double discriminant = b * b - 4 * a * c;
+    return fmin(fmax((sqrt(fmax(discriminant, 0)) - b) / (2 * a), 0), 1);
+}
+
+// The strand goes by the share of its way only, each segment towards where it went.
+static void slow_down(TwinStrand *strand, const Vec *x_old, double share, double dt)
+{
+    Vec x[TWIN_MAX];
+    vec_copy(strand->x[0], x[0]);
+    for (int j = 1; j < strand->n; ++j) {
+        Vec from, to;
+        subtract(x_old[j], x_old[j - 1], from);
+        subtract(strand->x[j], strand->x[j - 1], to);
+        vec_add_scaled(x[j - 1], 1 - share, from, x[j]);
+        vec_add_scaled(x[j], share, to, x[j]);
+    }
+    memcpy(strand->x, x_old, (size_t)strand->n * sizeof *x_old);
+    rebuild(strand, (const Vec *)x, dt);
+}
+
+static double allowed(const TwinStrand *strand, const TwinStep *step, double kinetic)
+{
+    double length = 0;
+    Vec acceleration;
+    for (int j = 1; j < strand->n; ++j) length += strand->length[j];
+    vec_add_scaled(step->gravity, step->drag, step->wind, acceleration);
+    return 0.005 * ((strand->n - 1) * length / 2 * vec_norm(acceleration) + kinetic);
+}
+
+// Slows the strand down where it has gained more than is allowed. What its springs store has risen
+// by `stored` in the step.
+static void guard(TwinStrand *strand, const TwinStep *step, const SectionParams *params,
+                  const Motion *motion, const Vec *x_old, double stored)
+{
+    const int n = strand->n;
+    double kinetic, linear, constant, bent = bending_energy(strand, step, params);
+    account(motion, n, &kinetic, &linear, &constant);
+    linear += stored;
+    constant += strand->gained;
+    strand->gained = fmax(kinetic + linear + constant, 0);
+    if (!(strand->gained > allowed(strand, step, kinetic)) || !(kinetic > 0)) return;
+    double share = share_within(0.995 * kinetic, linear, constant - allowed(strand, step, 0)),
+           squares = 0;
+    kinetic *= share * share;
+    double slowed = kinetic + share * linear + constant;
+    double over = fmin(fmax(slowed - allowed(strand, step, kinetic), 0), kinetic);
+    double kept = kinetic > 0 ? sqrt(1 - over / kinetic) : 1;
+    slow_down(strand, x_old, share, step->dt);
+    for (int j = 1; j < n; ++j) {
+        Vec now;
+        subtract(strand->v[j], strand->v[0], now);
+        squares += vec_dot(now, now) / 2;
+        vec_add_scaled(strand->v[0], kept, now, strand->v[j]);
+    }
+    // Segments that turn go a little farther than by the share of the way.
+    slowed += bending_energy(strand, step, params) - (bent - (1 - share) * stored) +
+              kept * kept * (squares - kinetic);
+    strand->gained = fmax(slowed - over, 0);
 }
 
 // What the first correction was goes on into the next steps' tensions, as far as both that at rest
@@ -316,7 +366,6 @@ void reference_chain_step(TwinStrand *strand, const TwinStep *step, const Sectio
     subtract_root(n, (const Vec *)strand->v, motion.now);
     find_forced(step, (const Vec *)x_old, (const Vec *)v_old, (const Vec *)predicted, strand->v[0],
                 violent, n, motion.forced);
-    bent = bending_energy(strand, step, params) - bent;
-    strand->gained = fmax(strand->gained + gained(&motion, n) + bent, 0);
-    guard(strand, step, (const Vec *)motion.now);
+    guard(strand, step, params, &motion, (const Vec *)x_old,
+          bending_energy(strand, step, params) - bent);
 }

@@ -158,6 +158,12 @@ static const struct {
      "n=64 dt=4.766e-06 gravity=49493 shake=0.23027 shape=3 shape_seed=1 strand=15 "
      "style=0.71576 chain_bend=22.504",
      4000, "so did those of another one"},
+    {"chain", "",
+     "n=64 gravity=33.92 wind_pitch=98.152 arm=0.0012246 tilt=57.309 shape_seed=64718 strand=17 "
+     "style=0",
+     100, "what its account found too much was still drawn, 1.2 times the energy in step 4"},
+    {"chain", "", "dt=0.1213 length=0.064838 jump=0.73531 tilt=8.8725 drag=0", 200,
+     "so was it after a jump, 2.2 times"},
     {"spring", "explicit", "spin=0.1 shape=4 stretch_drawn=1", 400,
      "sub-steps that suit even hair heated a strand of very uneven links"},
     {"spring", "explicit", "shape=4 drag=0 stretch_drawn=1", 600,
