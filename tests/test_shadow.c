@@ -591,10 +591,11 @@ static void c_and_shaders_are_alike(void **state)
         stage_open(&stage, strands, radius, 0.33f, NULL, &lights[i / 4]);
         stage.on_fibre = true;
         uint32_t count = strands.vertex_count;
-        float(*points)[4] = malloc(count * sizeof *points), *shares[3];
+        float(*points)[4] = malloc(count * sizeof *points);
         assert_non_null(points);
         for (uint32_t v = 0; v < count; ++v) memcpy(points[v], strands.position[v], 12);
         for (Shadow kind = SHADOW_APPROX; kind <= SHADOW_DOM; ++kind) {
+            float *shares[3];
             for (int way = 0; way < 2; ++way) {
                 by_processor = way;
                 draw_maps(&stage, kind, 128, 200);
