@@ -265,7 +265,8 @@ INLINE void lay_points(const Cast *cast, const Tile *tile, const Places *a, cons
         points->along[k] = along;
         points->width[k] = width;
         points->part[k] = find_part(tile->opacity[k], width, size, unit, along);
-        points->count[k] = (k < tile->strands) & (width <= WIDE) ? (int)along : 0;
+        bool thin = (k < tile->strands) & (width <= WIDE);
+        points->count[k] = thin ? (int)along : 0;
     }
     for (int k = 0; k < W; ++k) most = points->count[k] > most ? points->count[k] : most;
     for (int k = 0; k < W; ++k) widest = larger(points->width[k], widest);
