@@ -9,6 +9,7 @@
 #include "bench_step.h"
 #include "bench_stress.h"
 #include "interrupt.h"
+#include "program.h"
 #include "suggest.h"
 
 #include <stdlib.h>
@@ -105,9 +106,5 @@ int main(int argc, char **argv)
     Error error = {{0}};
     interrupt_install();
     Result result = run(argc, argv, &error);
-    if (result == RESULT_OK && (fflush(stdout) != 0 || ferror(stdout)))
-        result = error_set(&error, RESULT_FAILED, "cannot write to standard output");
-    if (result != RESULT_OK)
-        fprintf(stderr, "%s%s\n", result == RESULT_BAD_INPUT ? "" : "tractrix-bench: ", error.text);
-    return result;
+    return program_end("tractrix-bench", result, &error);
 }

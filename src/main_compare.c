@@ -4,6 +4,7 @@
 #include "interrupt.h"
 #include "options.h"
 #include "pairs.h"
+#include "program.h"
 #include "progress.h"
 #include "verdict.h"
 #include "verdict_report.h"
@@ -308,10 +309,5 @@ int main(int argc, char **argv)
     interrupt_install();
     Result result = parse(&command, argc, argv, &done, &error);
     if (result == RESULT_OK && !done) result = run(&command, &error);
-    if (fflush(stdout) != 0 || ferror(stdout))
-        result = error_set(&error, RESULT_FAILED, "cannot write to standard output");
-    if (result != RESULT_OK && error.text[0])
-        fprintf(stderr, "%s%s\n",
-                result == RESULT_BAD_INPUT ? "" : "tractrix-compare: ", error.text);
-    return result;
+    return program_end("tractrix-compare", result, &error);
 }

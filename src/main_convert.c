@@ -7,6 +7,7 @@
 #include "interrupt.h"
 #include "options.h"
 #include "params.h"
+#include "program.h"
 #include "progress.h"
 #include "strands_features.h"
 
@@ -279,10 +280,5 @@ int main(int argc, char **argv)
     convert_output_close(&job.output);
     convert_input_close(&job.input);
     strands_figures_destroy(&job.figures);
-    if ((fflush(stdout) != 0 || ferror(stdout)) && result == RESULT_OK)
-        result = error_set(&error, RESULT_FAILED, "cannot write to standard output");
-    if (result != RESULT_OK)
-        fprintf(stderr, "%s%s\n",
-                result == RESULT_BAD_INPUT ? "" : "tractrix-convert: ", error.text);
-    return result;
+    return program_end("tractrix-convert", result, &error);
 }

@@ -3,6 +3,7 @@
 #include "bust.h"
 #include "fur.h"
 #include "fur_options.h"
+#include "program.h"
 #include "strands_make.h"
 
 #include <math.h>
@@ -258,10 +259,7 @@ static Result run(int argc, char **argv, Error *error)
 
 int main(int argc, char **argv)
 {
-    Error error;
+    Error error = {{0}};
     Result result = run(argc, argv, &error);
-    if (result == RESULT_OK && (fflush(stdout) != 0 || ferror(stdout)))
-        result = error_set(&error, RESULT_FAILED, "cannot write to standard output");
-    if (result != RESULT_OK) fprintf(stderr, "tractrix-gen: %s\n", error.text);
-    return result;
+    return program_end("tractrix-gen", result, &error);
 }

@@ -2,6 +2,7 @@
 // tractrix-render: from hair files and a scene to pictures.
 #include "help.h"
 #include "interrupt.h"
+#include "program.h"
 #include "run.h"
 
 #include "version.h"
@@ -50,21 +51,15 @@ static bool wants_solver_list(int argc, char **argv)
 
 int main(int argc, char **argv)
 {
+    Error error = {{0}};
     interrupt_install();
     if (wants_solver_list(argc, argv)) {
         solver_print_list(stdout);
-        return RESULT_OK;
+        return program_end("tractrix-render", RESULT_OK, &error);
     }
     Run run = {.begin_ms = stats_clock_ms()};
-    Error error = {{0}};
     Result result = scene_from_arguments(&run.scene, argc, argv, &error);
     if (result == RESULT_OK) result = answer(&run, &error);
     run_destroy(&run);
-    if (fflush(stdout) != 0 || ferror(stdout))
-        result = error_set(&error, RESULT_FAILED, "cannot write to standard output");
-    // A file's fault begins with the file; everything else with the program's name.
-    if (result != RESULT_OK && error.text[0])
-        fprintf(stderr, "%s%s\n",
-                result == RESULT_BAD_INPUT ? "" : "tractrix-render: ", error.text);
-    return result;
+    return program_end("tractrix-render", result, &error);
 }

@@ -33,7 +33,7 @@ for other in r2 r3; do
 done
 
 claim "what cannot be written to standard output is an error of one line"
-for words in --help "--check $hair"; do
+for words in --help "--algo list" "--check $hair"; do
     # shellcheck disable=SC2086
     "$program" $words >/dev/full 2>"$work/err"
     if [ $? = 1 ]; then good; else bad "status of $words"; fi
