@@ -215,6 +215,7 @@ INLINE int list_touches(const Batch *b, int i, const uint8_t *open, Touch *touch
               high = most(least(at + reach, right), left - 1);
         int column = (int)low;
         column += (float)column < low;
+        column = column < b->left[i] ? b->left[i] : column; // of what is no number
         int wide = (int)(high + 1) - column, cell = row * BLOCK_CELLS_ACROSS + column;
         for (int k = 0; k < USUAL; ++k) {
             touches[count] = (Touch){(uint16_t)i, (uint16_t)(cell + k)};
@@ -343,8 +344,8 @@ INLINE void composite(const Block *block, BlockForm form, const RibbonRecord *re
     }
 }
 
-// --- The same for several kinds of processors. None fuses multiplications and additions, so that
-// all give the same bits.
+// --- The same for all kinds of processors. None fuses multiplications and additions
+// (-ffp-contract=off), so that all give the same bits.
 
 typedef void Composite(const Block *block, BlockForm form, const RibbonRecord *records,
                        const uint64_t *order, size_t count);
@@ -362,25 +363,19 @@ typedef void Composite(const Block *block, BlockForm form, const RibbonRecord *r
     COMPOSITE(name##_nearest, BLOCK_NEAREST, target)                                               \
     static Composite *const name[BLOCK_FORMS] = {name##_open, name##_over_mesh, name##_nearest};
 
-COMPOSITES(baseline, )
-#if defined __x86_64__
-COMPOSITES(avx2, __attribute__((target("avx2"))))
-COMPOSITES(avx512, __attribute__((target("avx2,avx512vl,avx512dq,avx512bw"))))
-#endif
+COMPOSITES(any, FOR_ANY)
+COMPOSITES(avx2, FOR_AVX2)
+COMPOSITES(avx512, FOR_AVX512)
 
-static Composite *const *choose(void)
+void block_composite_on(Processor processor, const Block *block, BlockForm form,
+                        const RibbonRecord *records, const uint64_t *order, size_t count)
 {
-#if defined __x86_64__
-    if (__builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq") &&
-        __builtin_cpu_supports("avx512bw"))
-        return avx512;
-    if (__builtin_cpu_supports("avx2")) return avx2;
-#endif
-    return baseline;
+    static Composite *const *const versions[PROCESSOR_KINDS] = {any, avx2, avx512};
+    versions[processor][form](block, form, records, order, count);
 }
 
 void block_composite(const Block *block, BlockForm form, const RibbonRecord *records,
                      const uint64_t *order, size_t count)
 {
-    choose()[form](block, form, records, order, count);
+    block_composite_on(processor_kind(), block, form, records, order, count);
 }

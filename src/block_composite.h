@@ -4,6 +4,7 @@
 #pragma once
 
 #include "draw.h"
+#include "processor.h"
 #include "ribbon_record.h"
 
 #include <stddef.h>
@@ -37,3 +38,7 @@ typedef struct Block {
 // shines through all of a cell the rest may be left out.
 void block_composite(const Block *block, BlockForm form, const RibbonRecord *records,
                      const uint64_t *order, size_t count);
+
+// The same as a processor would that is no better than this one: the same bits.
+void block_composite_on(Processor processor, const Block *block, BlockForm form,
+                        const RibbonRecord *records, const uint64_t *order, size_t count);

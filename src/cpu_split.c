@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cpu_split.h"
 
+#include "processor.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -246,28 +248,20 @@ INLINE void step_tile(const CpuSplit *split, float *links, float *ends)
         for (int k = 0; k < W; ++k) renormalise(links + j * LINK_ROWS * W + k);
 }
 
-static void step_tile_baseline(const CpuSplit *split, float *links, float *ends)
+FOR_ANY static void step_tile_baseline(const CpuSplit *split, float *links, float *ends)
 {
     step_tile(split, links, ends);
 }
 
-#if defined __x86_64__
-__attribute__((target("avx2,fma"))) static void step_tile_avx2(const CpuSplit *split, float *links,
-                                                               float *ends)
+FOR_AVX2 static void step_tile_avx2(const CpuSplit *split, float *links, float *ends)
 {
     step_tile(split, links, ends);
 }
+
 static bool has_avx2(void)
 {
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+    return processor_kind() >= PROCESSOR_AVX2;
 }
-#else
-#define step_tile_avx2 step_tile_baseline
-static bool has_avx2(void)
-{
-    return false;
-}
-#endif
 
 const char *cpu_split_lanes(void)
 {
