@@ -20,6 +20,7 @@ static const struct {
     {"split", "thesis", ENERGY, 0, "its tip's velocity is what the pulls of the root leave"},
     {"emulation", "thesis", ENERGY | REST, 0, "gains energy, as published"},
     {"tressfx", "tressfx4", LENGTHS | ENERGY | REST, 0, "its passes leave it stretched"},
+    {"chain", "", 0, 0.03, "its account leaves out what stiff springs of the style give"},
     {"hybrid", "", 0, 0.03, "its balance takes a gain out of velocities, after the step's move"},
     {"emulation", "projected", 0, 0.06, "so does its balance"},
     {"dftl", "", 0, 0.15, "its corrections go into velocities, not into what is drawn"},
