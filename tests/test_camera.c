@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Automatic cameras: hair stays in the picture, whatever it does, and fills it.
 #include "camera.h"
 #include "fibre.h"
 

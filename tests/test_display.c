@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// What becomes of light behind the renderer: tones, floats, PFM files, auxiliary pictures.
 #include "pfm.h"
 #include "png.h"
 #include "studio.h"

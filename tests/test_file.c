@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Whole files in and out: nothing half-written is ever seen.
 #include "file.h"
 #include "temporary.h"
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Packed floats come back bit for bit.
 #include "float_planes.h"
 
 #include <math.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The height at which the floor lies.
 #include "floor.h"
 
 #include <setjmp.h>

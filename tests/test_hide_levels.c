@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The levels of hide_levels.h, each against the one below it.
 #include "hide_levels.h"
 
 #include "random.h"

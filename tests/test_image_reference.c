@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// The exact picture against areas and opacities that can be computed by hand, and what rasterisers
+// make of the same hair against it.
 #include "image_reference.h"
 #include "strands_read.h"
 #include "studio.h"

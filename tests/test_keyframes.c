@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Tracks of keys, smooth and straight.
 #include "keyframes.h"
 
 #include <math.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Meshes in Wavefront files, and those that the program makes.
 #include "mesh.h"
 #include "scalp.h"
 #include "temporary.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Colours and thickness that differ over a section.
 #include "hair_paint.h"
 #include "image.h"
 #include "png.h"

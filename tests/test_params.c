@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The table of parameters: defaults, names, values as text and back.
 #include "params.h"
 #include "suggest.h"
 

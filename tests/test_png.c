@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// PNG files: every size and kind there and back, and the format by its letter.
 #include "file.h"
 #include "image.h"
 #include "png.h"

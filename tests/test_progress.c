@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The line that tells how far a run is.
 #include "progress.h"
 
 #include <pty.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Marschner's table against the reference, and what holds for all light.
 #include "gpu_buffer.h"
 #include "reference_marschner.h"
 #include "render_scatter.h"

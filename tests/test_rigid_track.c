@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The head's motion by keys and by formulas.
 #include "rigid_track.h"
 
 #include <math.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Hair of tractrix-gen's own kinds, and the random numbers behind it.
 #include "random.h"
 #include "strands_make.h"
 #include "strands_read.h"

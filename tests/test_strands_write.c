@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Hair files: what is written reads back to the bit.
 #include "random.h"
 #include "strands_features.h"
 #include "strands_make.h"

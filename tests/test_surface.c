@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// A mesh as a surface: distances, normals, texture coordinates; noise, sine and cosine for it.
 #include "noise.h"
 #include "random.h"
 #include "scalp.h"

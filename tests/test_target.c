@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Names of output files.
 #include "target.h"
 #include "temporary.h"
 
