@@ -58,9 +58,18 @@ typedef struct Cast {
     float across, *left, last; // LAYERS - 1e-3: a bound that compilers know makes them jump
 } Cast;
 
+// As many threads as there are, but for the memory of their maps.
+static size_t count_parts(size_t map_bytes)
+{
+    const size_t most_bytes = (size_t)256 << 20;
+    size_t parts = (size_t)parallel_threads(), most = most_bytes / map_bytes;
+    return parts <= most ? parts : most ? most : 1;
+}
+
 Result cpu_shadow_create(CpuShadow *shadow, int side, bool deep, Error *error)
 {
-    size_t parts = (size_t)parallel_threads(), texels = (size_t)side * (size_t)side,
+    size_t texels = (size_t)side * (size_t)side,
+           parts = count_parts((deep ? LAYERS : 1) * texels * sizeof *shadow->sums),
            coarse = (size_t)(deep ? side / SHADOW_COARSE : side);
     *shadow = (CpuShadow){.side = side, .coarse = (int)coarse, .deep = deep, .parts = (int)parts};
     shadow->first = malloc(parts * coarse * coarse * sizeof *shadow->first);

@@ -24,7 +24,8 @@ typedef struct CpuCasters {
     uint32_t count;
 } CpuCasters;
 
-// Each thread draws into a map of its own; sums and minima of them all are the map.
+// Each thread draws into a map of its own; sums and minima of them all are the map. There are fewer
+// threads where such maps would take more than 256 MiB.
 typedef struct CpuShadow {
     int side, coarse; // texels across a map and across that of the first depths
     bool deep;

@@ -2,6 +2,7 @@
 #include "fibre.h"
 #include "hair_fixture.h"
 #include "hair_paint.h"
+#include "random.h"
 #include "render_shadow.h"
 #include "render_uniforms.h"
 #include "shadow_reference.h"
@@ -611,6 +612,46 @@ static void c_and_shaders_are_alike(void **state)
     }
 }
 
+// Sums are integers, and the least of some depths is the same in any order.
+static void c_makes_the_same_maps_with_any_thread_count(void **state)
+{
+    (void)state;
+    enum { SIDE = 64, TEXELS = SIDE * SIDE, STRANDS = 10 * STRAND_TILE, N = 6 };
+    static float position[STRANDS * N][4], depths[2][TEXELS];
+    static uint32_t layers[2][TEXELS * SHADOW_LAYERS];
+    Random random = random_create(7, 0);
+    for (int i = 0; i < STRANDS * N; ++i) {
+        for (int k = 0; k < 3; ++k) position[i][k] = (float)random_real(&random);
+        position[i][3] = 1;
+    }
+    const CpuCaster caster = {.position = (const float(*)[4])position,
+                              .material = {.radius = 0.005f,
+                                           .tip_ratio = 0.5f,
+                                           .shadow_opacity = 0.5f,
+                                           .vertex_count = N,
+                                           .drawn_strands = STRANDS - 3,
+                                           .last_strand = STRANDS - 4,
+                                           .last_share = 0.4f}};
+    const CastParams params = {
+        .side = SIDE,
+        .unit = 1000,
+        .texels = SIDE,
+        .from_world = {{SIDE, 0, 0, 0}, {0, SIDE, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
+    CpuShadow shadow;
+    NEEDED(cpu_shadow_create(&shadow, SIDE, true, error));
+    for (int parts = shadow.parts; parts >= 1; --parts) {
+        int at = parts == shadow.parts ? 0 : 1;
+        CpuShadow some = shadow;
+        some.parts = parts;
+        cpu_shadow_draw_deep(&some, &params, (CpuCasters){&caster, 1}, depths[at], layers[at]);
+        assert_memory_equal(depths[at], depths[0], sizeof depths[0]);
+        assert_memory_equal(layers[at], layers[0], sizeof layers[0]);
+    }
+    const int middle = TEXELS / 2 + SIDE / 2; // where there is hair
+    assert_true(depths[0][middle] < 1 && layers[0][TEXELS * (SHADOW_LAYERS - 1) + middle] != 0);
+    cpu_shadow_destroy(&shadow);
+}
+
 int main(void)
 {
     const struct CMUnitTest exact[] = {
@@ -619,6 +660,7 @@ int main(void)
         cmocka_unit_test(exact_light_ends_at_the_mesh),
         cmocka_unit_test(exact_light_of_a_lamp_spreads),
         cmocka_unit_test(c_and_shaders_are_alike),
+        cmocka_unit_test(c_makes_the_same_maps_with_any_thread_count),
     };
     const struct CMUnitTest maps[] = {
         cmocka_unit_test(layers_of_hair_multiply),
