@@ -9,7 +9,6 @@
 
 enum {
     PROJECT_GROUP = 8,
-    CULL_SHARE = 16,     // of the strands left out: looking for them pays
     ALIGNED_RIBBONS = 32 // at whose multiples every driver lets a buffer's range begin
 };
 
@@ -173,7 +172,7 @@ static Result read_counts(RenderBlocks *blocks, Error *error)
     }
     unmap(&blocks->counts);
     blocks->culled += blocks->cull.outside;
-    blocks->skips = blocks->culled + blocks->cull.hidden > blocks->strands / CULL_SHARE;
+    blocks->skips = blocks->culled + blocks->cull.hidden > blocks->strands / RENDER_CULL_SHARE;
     return RESULT_OK;
 }
 
