@@ -73,7 +73,7 @@ ifeq ($(CONFIG),release) # a yardstick shall be as fast as the compiler makes it
 $(OUT)/cpu_split.o: C_FLAGS += -O3 -fno-math-errno -fno-trapping-math -ffinite-math-only -fno-signed-zeros -ffp-contract=fast
 endif
 # Lanes: selects and roots without a thought for traps and errno, or nothing becomes vector instructions. The same bits.
-$(OUT)/cpu_shadow.o: C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math
+$(OUT)/cpu_shadow.o $(OUT)/cpu_shadow_maps.o $(OUT)/cpu_shadow_light.o: C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math
 $(OUT)/block_composite.o $(OUT)/block_pixels.o: C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math -ffinite-math-only -fno-signed-zeros
 $(OUT)/glsl_sources.c: scripts/embed-glsl $(SHADERS) $(OUT)/files
 	$(call run,EMBED,scripts/embed-glsl $(SHADERS) >$@.tmp && mv $@.tmp $@)

@@ -2,7 +2,7 @@
 // How much of a light reaches a point (needs shadow.h).
 //   SHADOW 0: all   1: approximated deep shadow map, as TressFX has it   2: deep opacity map
 //   SHADOW_BY_MESH 1: the mesh throws shadows, too
-//   SHADOW_FOUND 1: what hair leaves at each particle has been found before (cpu_shadow.h)
+//   SHADOW_FOUND 1: what hair leaves at each particle has been found before (cpu_shadow_light.h)
 //   LIGHT_COUNT, SHADOW_MAPS: how many lights and maps, so that loops over them are unrolled; 0: any number
 #ifndef LIGHT_COUNT
 #define LIGHT_COUNT 0

@@ -51,12 +51,6 @@ bool cpu_shadow_find_box(const CpuShadow *shadow, const CastParams *params, CpuC
 void cpu_shadow_draw_deep(CpuShadow *shadow, const CastParams *params, CpuCasters casters,
                           float *depths, uint32_t *layers);
 
-// What of the light the last deep map, whose `layers` these are, leaves of it where the particles
-// of one caster lie: light_through_hair of shadow.glsl. left[particle], as its positions lie; those
-// of strands that are not drawn may be left out. `across`: ShadowParams.place[map].w.
-void cpu_shadow_find_light(CpuShadow *shadow, const CastParams *params, const CpuCaster *caster,
-                           float across, const uint32_t *layers, float *left);
-
 // Not deep: firsts[side][side].
 void cpu_shadow_draw_firsts(CpuShadow *shadow, const CastParams *params, CpuCasters casters,
                             uint32_t *firsts);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "render_shadow_cpu.h"
 
+#include "cpu_shadow_light.h"
+
 #include <stdlib.h>
 
 static const GLbitfield WRITTEN = GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT;
