@@ -9,6 +9,7 @@
 static const ImageScheme SCHEMES[] = {
     {.raster = RASTER_BLOCKS},
     {.raster = RASTER_BLOCKS, .samples = 2},
+    {.raster = RASTER_BLOCKS, .samples = 4},
     {.raster = RASTER_QUADS, .oit = OIT_NONE},
     {.raster = RASTER_QUADS, .layers = 1},
     {.raster = RASTER_QUADS, .layers = 4},
@@ -72,15 +73,17 @@ static const char *word_of(const char *param, int value)
 // "quads, k = 8, 2 x 2, dom"; a preset by its word.
 static void name_scheme(const ImageScheme *scheme, char *name, size_t size)
 {
-    char layers[24] = "";
+    char layers[24] = "", samples[32] = "";
     bool quads = scheme->raster == RASTER_QUADS || scheme->oit != OIT_AUTO || scheme->layers;
     if (scheme->oit == OIT_NONE)
         snprintf(layers, sizeof layers, ", none");
     else if (quads)
         snprintf(layers, sizeof layers, ", k = %d", scheme->layers ? scheme->layers : 8);
+    if (scheme->samples > 1)
+        snprintf(samples, sizeof samples, ", %d x %d", scheme->samples, scheme->samples);
     const char *first = scheme->quality != QUALITY_NORMAL ? word_of("quality", (int)scheme->quality)
                                                           : word_of("raster", (int)scheme->raster);
-    snprintf(name, size, "%s%s%s%s%s", first, layers, scheme->samples == 2 ? ", 2 x 2" : "",
+    snprintf(name, size, "%s%s%s%s%s", first, layers, samples,
              scheme->shadow != SHADOW_NONE ? ", " : "",
              scheme->shadow != SHADOW_NONE ? word_of("shadow", (int)scheme->shadow) : "");
 }

@@ -138,16 +138,23 @@ static void fill_strip(const Block *block, const BlockBase *base, const PixelSty
     }
 }
 
-// Pixels are the means of 2 x 2 samples.
-static void average(Strip *strip)
+// Pixels are the means of side x side samples.
+INLINE void average_squares(Strip *strip, int side)
 {
     for (int c = 0; c < CHANNELS; ++c)
-        for (int y = 0; y < CELL_HEIGHT / 2; ++y)
-            for (int x = 0; x < BLOCK_WIDTH / 2; ++x) {
-                const float *upper = &strip->light[c][2 * y][2 * x],
-                            *lower = &strip->light[c][2 * y + 1][2 * x];
-                strip->light[c][y][x] = 0.25f * (upper[0] + upper[1] + lower[0] + lower[1]);
+        for (int y = 0; y < CELL_HEIGHT / side; ++y)
+            for (int x = 0; x < BLOCK_WIDTH / side; ++x) {
+                float sum = 0;
+                for (int k = 0; k < side * side; ++k)
+                    sum += strip->light[c][y * side + k / side][x * side + k % side];
+                strip->light[c][y][x] = sum / (float)(side * side);
             }
+}
+
+static void average(Strip *strip, int side)
+{
+    if (side == 2) average_squares(strip, 2);
+    if (side == 4) average_squares(strip, 4);
 }
 
 // --- Colours, as display.glsl and srgb.glsl have them.
@@ -269,7 +276,7 @@ void block_store(const Block *block, const BlockBase *base, const PixelStyle *st
         if (is_clear) clear = to;
         if (within == 0) {
             fill_strip(block, base, style, row, &strip);
-            if (s == 2) average(&strip);
+            average(&strip, s);
         }
         store_row(&strip, within, style, image, width, to);
     }

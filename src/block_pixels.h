@@ -16,7 +16,7 @@ typedef struct BlockBase {
 
 // How pixels become colours.
 typedef struct PixelStyle {
-    int samples;      // across a pixel: 1 or 2
+    int samples;      // across a pixel: 1, 2 or 4
     int tone;         // Tone or TONE_LIGHT
     bool shows_depth; // of the nearest ribbon, m, in place of light: 1 at depth_range[0], 0 at [1];
                       // alike: m

@@ -28,7 +28,7 @@ typedef struct RendererOptions {
     ImageKind kind;       // of the pictures
     Aov aov;              // what is drawn instead of light, on black (docs/renderer.md)
     float depth_range[2]; // AOV_DEPTH: m that are shown as 1 and as 0; alike: m themselves
-    int samples;   // 1 or 2: a pixel is the mean of samples x samples, each with lists of its
+    int samples;   // 1, 2 or 4: a pixel is the mean of samples x samples, each with lists of its
                    // own; 0: 1. AOVs of what is nearest have one
     uint32_t seed; // of what varies by strand
     ShadowOptions shadow;

@@ -59,7 +59,11 @@ Result render_target_create(RenderTarget *target, const GpuLimits *limits, int w
     if (width > side || height > side)
         return error_set(error, RESULT_FAILED,
                          "a picture of %d x %d px%s: this driver draws at most %d x %d", width,
-                         height, samples > 1 ? " of 2 x 2 samples" : "", side, side);
+                         height,
+                         samples == 4   ? " of 4 x 4 samples"
+                         : samples == 2 ? " of 2 x 2 samples"
+                                        : "",
+                         side, side);
     target->rgba = malloc((size_t)width * (size_t)height * 4 * image_channel_size(kind));
     if (!target->rgba)
         return error_set(error, RESULT_FAILED, "no memory for a picture of %d x %d px", width,

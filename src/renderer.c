@@ -66,6 +66,8 @@ Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
 {
     *renderer = (Renderer){.options = settle(asked), .gpu = gpu, .timer = timer};
     const RendererOptions *options = &renderer->options;
+    if (options->samples != 1 && options->samples != 2 && options->samples != 4)
+        return error_set(error, RESULT_USAGE, "--samples %d: expected 1, 2 or 4", options->samples);
     renderer->raster = choose_raster(gpu, options);
     Result result = render_target_create(&renderer->target, &gpu->limits, options->width,
                                          options->height, options->samples, options->kind, error);

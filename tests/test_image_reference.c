@@ -262,9 +262,9 @@ typedef struct Case {
     uint32_t count;    // of its strands
     double step, turn; // px from vertex to vertex, and by how much each changes its direction
     float radius, opacity, tip_ratio;
-    double bound[2][2][2]; // RMS of the difference in levels of 255 over the pixels that hair
+    double bound[2][2][3]; // RMS of the difference in levels of 255 over the pixels that hair
                            // touches: of colour and of opacity; quads, blocks; each of one sample a
-                           // pixel and of 2 x 2
+                           // pixel, of 2 x 2 and of 4 x 4
 } Case;
 
 // A file's hair, from the front, in the middle of the picture.
@@ -348,25 +348,26 @@ static void compare_case(Studio *studio, const Case *c, const Sitting *exact, co
     if (rms > bound) fail_msg("%s, %s: RMS %.2f of 255, bound %.2f", what, c->name, rms, bound);
 }
 
-// Both rasterisers, of one sample a pixel and of 2 x 2, colour and opacity.
+// Both rasterisers, of one sample a pixel, of 2 x 2 and of 4 x 4, colour and opacity.
 static void compare_cases(const Case *cases, size_t count)
 {
-    static const char *const names[] = {"quads", "quads, 2 x 2", "blocks", "blocks, 2 x 2"};
+    static const char *const names[] = {"quads",  "quads, 2 x 2",  "quads, 4 x 4",
+                                        "blocks", "blocks, 2 x 2", "blocks, 4 x 4"};
     Sitting exact[MOST_CASES][2];
     assert_true(count <= MOST_CASES);
     for (size_t i = 0; i < count; ++i) sitting_draw_case(exact[i], &cases[i]);
-    for (int kind = 0; kind < 4; ++kind)
+    for (int kind = 0; kind < 6; ++kind)
         for (int clear = 0; clear < 2; ++clear) {
             Studio studio;
             RendererOptions options = {.width = SIDE,
                                        .height = SIDE,
-                                       .raster = kind < 2 ? RASTER_QUADS : RASTER_BLOCKS,
-                                       .samples = 1 + kind % 2};
+                                       .raster = kind < 3 ? RASTER_QUADS : RASTER_BLOCKS,
+                                       .samples = 1 << kind % 3};
             memcpy(options.background, clear ? TRANSPARENT : DARK, sizeof DARK);
             studio_open(&studio, &options);
             for (size_t i = 0; i < count; ++i)
                 compare_case(&studio, &cases[i], &exact[i][clear], names[kind],
-                             cases[i].bound[clear][kind / 2][kind % 2]);
+                             cases[i].bound[clear][kind / 3][kind % 3]);
             studio_close(&studio);
         }
     for (size_t i = 0; i < count; ++i)
@@ -387,7 +388,7 @@ static void the_renderer_is_near_the_reference(void **state)
          .radius = 0.3f,
          .opacity = 0.6f,
          .tip_ratio = 0.3f,
-         .bound = {{{2.1, 1.1}, {2.1, 1.15}}, {{7.9, 3.9}, {7.9, 3.9}}}},
+         .bound = {{{2.1, 1.1, 0.61}, {2.1, 1.15, 0.64}}, {{7.9, 3.9, 1.75}, {7.9, 3.9, 1.7}}}},
         {.name = "sparse hair, 1 px",
          .count = 150,
          .step = 3,
@@ -395,7 +396,7 @@ static void the_renderer_is_near_the_reference(void **state)
          .radius = 0.5f,
          .opacity = 0.6f,
          .tip_ratio = 1,
-         .bound = {{{1.2, 0.56}, {1.2, 0.55}}, {{4.4, 1.85}, {4.4, 1.6}}}},
+         .bound = {{{1.2, 0.56, 0.43}, {1.2, 0.55, 0.43}}, {{4.4, 1.85, 1.2}, {4.4, 1.6, 0.94}}}},
         {.name = "thick hair, 5 px",
          .count = 100,
          .step = 3,
@@ -403,7 +404,7 @@ static void the_renderer_is_near_the_reference(void **state)
          .radius = 2.5f,
          .opacity = 0.5f,
          .tip_ratio = 0.3f,
-         .bound = {{{0.85, 0.48}, {0.8, 0.46}}, {{2.7, 1.65}, {2.2, 0.92}}}},
+         .bound = {{{0.85, 0.48, 0.37}, {0.8, 0.46, 0.38}}, {{2.7, 1.65, 1}, {2.2, 0.92, 0.63}}}},
         {.name = "hair on end, 0.6 px",
          .count = 3000,
          .step = 0.2,
@@ -411,7 +412,7 @@ static void the_renderer_is_near_the_reference(void **state)
          .radius = 0.3f,
          .opacity = 0.6f,
          .tip_ratio = 0.3f,
-         .bound = {{{4.3, 2.4}, {3.1, 1.3}}, {{12.2, 6.7}, {6.7, 2.8}}}},
+         .bound = {{{4.3, 2.4, 1.22}, {3.1, 1.3, 0.66}}, {{12.2, 6.7, 3.5}, {6.7, 2.8, 1.6}}}},
     };
     compare_cases(cases, sizeof cases / sizeof *cases);
 }
@@ -426,13 +427,14 @@ static void real_hair_is_near_the_reference(void **state)
          .radius = 0.2f,
          .opacity = 0.6f,
          .tip_ratio = 0.3f,
-         .bound = {{{4.9, 2.8}, {3.9, 2.0}}, {{20.3, 12.0}, {13.9, 7.4}}}},
+         .bound = {{{4.9, 2.8, 1.5}, {3.9, 2.0, 1.05}}, {{20.3, 12.0, 6.6}, {13.9, 7.4, 3.9}}}},
         {.name = "Sintel",
          .file = "../shared/assets/sintel_228x32.tfx",
          .radius = 0.4f,
          .opacity = 0.6f,
          .tip_ratio = 0.3f,
-         .bound = {{{1.75, 0.92}, {1.76, 0.94}}, {{9.5, 4.75}, {9.7, 4.9}}}},
+         .bound = {{{1.75, 0.92, 0.52}, {1.76, 0.94, 0.52}},
+                   {{9.5, 4.75, 1.95}, {9.7, 4.9, 1.95}}}},
     };
     size_t count = sizeof cases / sizeof *cases;
     for (size_t i = 0; i < count; ++i)

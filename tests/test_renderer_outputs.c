@@ -66,7 +66,7 @@ static void every_kind_shows_the_same_picture(void **state)
 {
     (void)state;
     add_hair();
-    for (int samples = 1; samples <= 2; ++samples) {
+    for (int samples = 1; samples <= 4; samples *= 2) {
         RendererOptions options = SMALL;
         options.samples = samples;
         use_with_mesh(&options);
@@ -82,34 +82,55 @@ static void every_kind_shows_the_same_picture(void **state)
     }
 }
 
-// A picture of 2 x 2 samples is one of twice its size, averaged in light. Blocks sum in floats of
+// A picture of s x s samples is one of s times its size, averaged in light. Blocks sum in floats of
 // 24 bits; quads' fragments are the same halves in both.
-static void samples_are_the_pixels_of_a_larger_picture(void **state)
+static void check_samples(int side)
 {
-    (void)state;
     View view;
     RendererOptions options = SMALL;
     options.kind = IMAGE_FLOAT;
     options.background[3] = 0.25f;
     studio_view(&view, options.width, options.height);
-    add_hair();
-    options.samples = 2;
+    options.samples = side;
     use_with_mesh(&options);
     studio_draw(&studio);
     Image mean = take_image();
     options.samples = 1;
-    options.width *= 2;
-    options.height *= 2;
+    options.width *= side;
+    options.height *= side;
     use_with_mesh(&options);
     studio_draw_view(&studio, &view);
     for (size_t i = 0; i < count_values(&mean); ++i) {
-        size_t channel = i % 4, x = i / 4 % (size_t)mean.width, y = i / 4 / (size_t)mean.width,
-               row = 4 * 2 * (size_t)mean.width, at = 2 * y * row + 8 * x + channel;
-        float sum = float_at(&studio.image, at) + float_at(&studio.image, at + 4) +
-                    float_at(&studio.image, at + row) + float_at(&studio.image, at + row + 4);
-        assert_true(fabsf(float_at(&mean, i) - sum / 4) <= 1e-6f);
+        size_t s = (size_t)side, channel = i % 4, x = i / 4 % (size_t)mean.width,
+               y = i / 4 / (size_t)mean.width, row = 4 * s * (size_t)mean.width;
+        double sum = 0;
+        for (size_t k = 0; k < s * s; ++k)
+            sum += (double)float_at(&studio.image,
+                                    (y * s + k / s) * row + 4 * (x * s + k % s) + channel);
+        assert_true(fabs((double)float_at(&mean, i) - sum / (double)(s * s)) <= 1e-6);
     }
     image_destroy(&mean);
+}
+
+static void samples_are_the_pixels_of_a_larger_picture(void **state)
+{
+    (void)state;
+    add_hair();
+    check_samples(2);
+    check_samples(4);
+}
+
+static void three_samples_are_refused(void **state)
+{
+    (void)state;
+    Error error = {{0}};
+    Renderer renderer;
+    RendererOptions options = SMALL;
+    options.raster = raster;
+    options.samples = 3;
+    assert_int_equal(renderer_create(&renderer, &studio.gpu, &studio.timer, &options, &error),
+                     RESULT_USAGE);
+    assert_non_null(strstr(error.text, "expected 1, 2 or 4"));
 }
 
 // Levels of detail go by what is seen of a strand, not by how finely it is drawn.
@@ -217,11 +238,9 @@ static void rasterisers_agree_on_coverage(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        CLAIM(every_kind_shows_the_same_picture),
-        CLAIM(samples_are_the_pixels_of_a_larger_picture),
-        CLAIM(samples_leave_the_number_of_strands),
-        CLAIM(what_is_nearest_has_one_sample),
-        CLAIM(rasterisers_agree_on_what_is_nearest),
+        CLAIM(every_kind_shows_the_same_picture), CLAIM(samples_are_the_pixels_of_a_larger_picture),
+        CLAIM(three_samples_are_refused),         CLAIM(samples_leave_the_number_of_strands),
+        CLAIM(what_is_nearest_has_one_sample),    CLAIM(rasterisers_agree_on_what_is_nearest),
         CLAIM(rasterisers_agree_on_coverage),
     };
     return stage_run(tests);
