@@ -4,11 +4,11 @@
 // vector. Compilers make the vectors; what they may make of them is said at the end of this file.
 #include "block_composite.h"
 
+#include "lanes.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
-
-#define INLINE static inline __attribute__((always_inline))
 
 enum {
     BATCH = 128,    // ribbons at a time
@@ -71,26 +71,9 @@ typedef struct Touch {
     uint16_t ribbon, cell;
 } Touch;
 
-INLINE float float_of(uint32_t bits)
-{
-    float value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
-INLINE float least(float a, float b)
-{
-    return a < b ? a : b;
-}
-
-INLINE float most(float a, float b)
-{
-    return a > b ? a : b;
-}
-
 INLINE float clamp_share(float x)
 {
-    return least(most(x, 0), 1);
+    return smaller(larger(x, 0), 1);
 }
 
 // --- Records, packed as in block.glsl.
@@ -141,7 +124,7 @@ INLINE void find_line(uint32_t words[WORDS][BATCH], int i, float x, float y, boo
 {
     float ax = x - float_of(words[FIRST_X][i]), ay = y - float_of(words[FIRST_Y][i]),
           bx = x - float_of(words[LAST_X][i]), by = y - float_of(words[LAST_Y][i]), way_x = ax - bx,
-          way_y = ay - by, inverse = 1 / sqrtf(most(way_x * way_x + way_y * way_y, 1e-20f)),
+          way_y = ay - by, inverse = 1 / sqrtf(larger(way_x * way_x + way_y * way_y, 1e-20f)),
           dx = way_x * inverse, dy = way_y * inverse;
     set_linear(&b->across, i, ay * dx - ax * dy, -dy, dx);
     set_linear(&b->along, i, (ax * dx + ay * dy) * inverse, dx * inverse, dy * inverse);
@@ -150,7 +133,7 @@ INLINE void find_line(uint32_t words[WORDS][BATCH], int i, float x, float y, boo
     set_linear(&b->first_share, i, ax * fx + ay * fy + bound_offset(fx, fy), fx, fy);
     set_linear(&b->last_share, i, 1 - bx * lx - by * ly - bound_offset(lx, ly), -lx, -ly);
     float opacity = solid ? 1 : (float)(int)(words[OPACITY][i] & 0xfff) * (1.0f / 4095),
-          steep = most(fabsf(dx), fabsf(dy)), flat = most(least(fabsf(dx), fabsf(dy)), 1e-3f);
+          steep = larger(fabsf(dx), fabsf(dy)), flat = larger(smaller(fabsf(dx), fabsf(dy)), 1e-3f);
     b->inner[i] = 0.5f * (steep - flat), b->outer[i] = 0.5f * (steep + flat);
     b->factor[i] = opacity / steep, b->curve[i] = 0.5f / flat;
 }
@@ -211,8 +194,8 @@ INLINE int list_touches(const Batch *b, int i, const uint8_t *open, Touch *touch
     float middle = b->middle[i], slope = b->slope[i], reach = b->reach[i];
     float left = (float)b->left[i], right = (float)b->right[i];
     for (int row = b->top[i]; row <= b->bottom[i]; ++row) {
-        float at = middle + (float)row * slope, low = least(most(at - reach, left), right + 1),
-              high = most(least(at + reach, right), left - 1);
+        float at = middle + (float)row * slope, low = smaller(larger(at - reach, left), right + 1),
+              high = larger(smaller(at + reach, right), left - 1);
         int column = (int)low;
         column += (float)column < low;
         column = column < b->left[i] ? b->left[i] : column; // of what is no number
@@ -236,7 +219,7 @@ INLINE float linear(const Linear *l, int i, float x, float y)
 
 INLINE float profile_area(const Batch *b, int i, float t)
 {
-    float m = least(t, b->outer[i]), u = most(m - b->inner[i], 0);
+    float m = smaller(t, b->outer[i]), u = larger(m - b->inner[i], 0);
     return m - b->curve[i] * (u * u);
 }
 
@@ -252,7 +235,7 @@ INLINE float coverage(const Batch *b, int i, float x, float y, float along)
           before = profile_area(b, i, fabsf(beyond)),
           covered = profile_area(b, i, across + half_width) - copysignf(before, beyond);
     float first = linear(&b->first_share, i, x, y), last = linear(&b->last_share, i, x, y);
-    return b->factor[i] * covered * clamp_share(least(first, last));
+    return b->factor[i] * covered * clamp_share(smaller(first, last));
 }
 
 INLINE float color(const Batch *b, int i, int channel, float along)
@@ -313,7 +296,7 @@ INLINE bool look_through(const Block *block, uint8_t *open)
     bool any = false;
     for (int c = 0; c < BLOCK_CELLS; ++c) {
         float through = 0;
-        for (int k = 0; k < CELL_PIXELS; ++k) through = most(through, block->cells[c].through[k]);
+        for (int k = 0; k < CELL_PIXELS; ++k) through = larger(through, block->cells[c].through[k]);
         open[c] = through > LEAST;
         any |= open[c];
     }

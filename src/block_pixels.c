@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "block_pixels.h"
 
+#include "lanes.h"
 #include "tone.h"
 
 #include <math.h>
 #include <string.h>
-
-#define INLINE static inline __attribute__((always_inline))
 
 enum { CHANNELS = 4 };
 
@@ -14,23 +13,6 @@ enum { CHANNELS = 4 };
 typedef struct Strip {
     float light[CHANNELS][CELL_HEIGHT][BLOCK_WIDTH];
 } Strip;
-
-INLINE float float_of(uint32_t bits)
-{
-    float value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
-INLINE float least(float a, float b)
-{
-    return a < b ? a : b;
-}
-
-INLINE float most(float a, float b)
-{
-    return a > b ? a : b;
-}
 
 static int least_int(int a, int b)
 {
@@ -106,9 +88,9 @@ INLINE void lay_over(const Cell *restrict cell, float light[restrict CHANNELS][C
 // display.glsl.
 static float depth_shown(const PixelStyle *style, float near)
 {
-    float distance = 1 / most(near, 1e-20f), from = style->depth_range[0],
+    float distance = 1 / larger(near, 1e-20f), from = style->depth_range[0],
           to = style->depth_range[1],
-          share = to > from ? least(most((to - distance) / (to - from), 0), 1) : distance;
+          share = to > from ? smaller(larger((to - distance) / (to - from), 0), 1) : distance;
     return near > 0 ? share : 0;
 }
 
@@ -162,11 +144,11 @@ static void average(Strip *strip, int side)
 INLINE float tone(int tone, float c)
 {
     if (tone == TONE_REINHARD) {
-        c = most(c, 0);
+        c = larger(c, 0);
         return c * (1 + c / 16) / (1 + c);
     }
     if (tone == TONE_FILMIC) {
-        c = most(c, 0);
+        c = larger(c, 0);
         return c * (2.51f * c + 0.03f) / (c * (2.43f * c + 0.59f) + 0.14f);
     }
     return c;
@@ -174,7 +156,7 @@ INLINE float tone(int tone, float c)
 
 INLINE float srgb_from_linear(float c)
 {
-    c = least(most(c, 0), 1);
+    c = smaller(larger(c, 0), 1);
     float root2 = sqrtf(c), root4 = sqrtf(root2), root8 = sqrtf(root4);
     float curve =
         0.64236677f * root2 + 0.71210915f * root4 - 0.33686939f * root8 - 0.017563495f * c;
@@ -185,7 +167,7 @@ INLINE float srgb_from_linear(float c)
 INLINE void display_as(Strip *restrict strip, int y, int kind)
 {
     for (int x = 0; x < BLOCK_WIDTH; ++x) {
-        float straight = 1 / most(strip->light[3][y][x], 1e-6f);
+        float straight = 1 / larger(strip->light[3][y][x], 1e-6f);
         for (int c = 0; c < 3; ++c) {
             float light = strip->light[c][y][x] * straight;
             strip->light[c][y][x] =
@@ -206,7 +188,7 @@ static void find_levels(const float light[BLOCK_WIDTH], float most_level,
                         int32_t levels[BLOCK_WIDTH])
 {
     for (int x = 0; x < BLOCK_WIDTH; ++x)
-        levels[x] = (int32_t)(least(most(light[x], 0), 1) * most_level + 0.5f);
+        levels[x] = (int32_t)(smaller(larger(light[x], 0), 1) * most_level + 0.5f);
 }
 
 static void store_8(const Strip *strip, int y, int channels, int width, uint8_t *to)
@@ -251,7 +233,7 @@ static bool is_row_clear(const Block *block, int row)
     for (int c = 0; c < BLOCK_CELLS_ACROSS; ++c)
         for (int k = 0; k < CELL_PIXELS; ++k)
             least_through =
-                least(least_through, block->cells[row * BLOCK_CELLS_ACROSS + c].through[k]);
+                smaller(least_through, block->cells[row * BLOCK_CELLS_ACROSS + c].through[k]);
     return least_through == 1;
 }
 

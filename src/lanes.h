@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Arithmetic for loops over lanes that compilers turn into vector instructions, and the same loops
-// for wider vectors. Private to cpu_shadow*.c; such loops are innermost and have no branches.
-// -ffp-contract=off and no function of libm keep the bits the same whatever the vectors are.
+// for wider vectors. For cpu_shadow*.c and block_*.c; such loops are innermost and have no
+// branches. -ffp-contract=off and no function of libm keep the bits the same whatever the vectors
+// are.
 #pragma once
 
 #include "parallel.h"
 #include "processor.h"
 
 #include <math.h>
+#include <stdint.h>
+#include <string.h>
 
 #define INLINE static inline __attribute__((always_inline))
 
@@ -26,6 +29,13 @@
     {                                                                                              \
         parallel_run(parts, processor_kind() >= PROCESSOR_AVX2 ? name##_avx2 : name##_any, data);  \
     }
+
+INLINE float float_of(uint32_t bits)
+{
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
 
 // The larger, the smaller: one instruction; an a that is not a number becomes the bound.
 INLINE float larger(float a, float least)
