@@ -18,6 +18,6 @@ void main()
     for (int y = 0; y < HIDE_TILE; ++y)
         for (int x = 0; x < HIDE_TILE; ++x)
             farthest = max(farthest, texelFetch(mesh_depth, min(corner + ivec2(x, y), edge), 0).x);
-    // As block_composite.comp has it, so that the two agree to the bit.
+    // As src/block_pixels.c has it, so that the two agree to the bit.
     hiding[tile] = farthest < 1.0 ? (2.0 * farthest - 1.0 - draw_params.depth.x) / draw_params.depth.y : 0.0;
 }

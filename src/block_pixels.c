@@ -141,7 +141,7 @@ static void average(Strip *strip, int side)
 
 // --- Colours, as display.glsl and srgb.glsl have them.
 
-INLINE float tone(int tone, float c)
+INLINE float tone_mapped(int tone, float c)
 {
     if (tone == TONE_REINHARD) {
         c = larger(c, 0);
@@ -171,7 +171,7 @@ INLINE void display_as(Strip *restrict strip, int y, int kind)
         for (int c = 0; c < 3; ++c) {
             float light = strip->light[c][y][x] * straight;
             strip->light[c][y][x] =
-                kind == TONE_LIGHT ? light : srgb_from_linear(tone(kind, light));
+                kind == TONE_LIGHT ? light : srgb_from_linear(tone_mapped(kind, light));
         }
     }
 }
@@ -248,9 +248,10 @@ void block_store(const Block *block, const BlockBase *base, const PixelStyle *st
     uint8_t *to = image->pixels + (size_t)top * pitch + (size_t)left * pixel;
     const uint8_t *clear = NULL; // a row without hair
     Strip strip;
+    bool is_clear = false;
     for (int y = 0; y < height; ++y, to += pitch) {
         int row = y * s / CELL_HEIGHT, within = y % (CELL_HEIGHT / s);
-        bool is_clear = !base && is_row_clear(block, row);
+        if (within == 0) is_clear = !base && is_row_clear(block, row);
         if (is_clear && clear) {
             memcpy(to, clear, (size_t)width * pixel);
             continue;

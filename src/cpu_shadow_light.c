@@ -13,21 +13,6 @@ typedef struct Search {
     float last; // LAYERS - 1e-3: a bound that compilers know makes them jump
 } Search;
 
-// 2^x for -60 <= x <= 0: of the fraction -1/2 .. 1/2 the Taylor series to the sixth power (1.2e-7
-// off), the rest as exponent bits.
-INLINE float exp2_of(float x)
-{
-    int whole = (int)(x - 0.5f);
-    float f = (x - (float)whole) * 0.693147181f;
-    float power =
-        1 + f * (1 + f * (0.5f + f * (1.f / 6 + f * (1.f / 24 + f * (1.f / 120 + f / 720)))));
-    union {
-        int bits;
-        float value;
-    } exponent = {.bits = (whole + 127) * (1 << 23)};
-    return power * exponent.value;
-}
-
 INLINE float mix4(float a, float b, float c, float d, float u, float v)
 {
     float above = a + u * (b - a), below = c + u * (d - c);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cpu_split.h"
 
-#include "processor.h"
+#include "lanes.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -86,8 +86,6 @@ typedef struct Float3 {
     float x, y, z;
 } Float3;
 
-#define INLINE static inline __attribute__((always_inline))
-
 INLINE float dot(Float3 a, Float3 b)
 {
     return a.x * b.x + a.y * b.y + a.z * b.z;
@@ -102,38 +100,13 @@ INLINE Float3 scale(float s, Float3 a)
 }
 
 // Comparisons that are one instruction: fmaxf must look for NaNs.
-INLINE float larger(float a, float b)
-{
-    return a > b ? a : b;
-}
-INLINE float smaller(float a, float b)
-{
-    return a < b ? a : b;
-}
-
-// 2^x for -60 <= x <= 0 without a call, so that it vectorises: 2^f for the fraction f in -1/2 ..
-// 1/2 by its Taylor series to the sixth power (1.2e-7 off at most), the rest as exponent bits.
-INLINE float exp2_inline(float x)
-{
-    int whole = (int)(x - 0.5f);
-    float f = (x - (float)whole) * 0.693147181f, result;
-    float power =
-        1 + f * (1 + f * (0.5f + f * (1.f / 6 + f * (1.f / 24 + f * (1.f / 120 + f / 720)))));
-    union {
-        int bits;
-        float value;
-    } exponent = {.bits = (whole + 127) * (1 << 23)};
-    result = power * exponent.value;
-    return result;
-}
-
 INLINE Float3 turn(Float3 d, float l, Float3 *move, bool inlined)
 {
     float ss = larger(dot(*move, *move), 1e-36f);
     float inverse = 1 / sqrtf(ss);
     Float3 e = scale(inverse, *move);
     float x = -smaller(ss * inverse * (LOG2_E / l), MAX_EXPONENT);
-    float E = inlined ? exp2_inline(x) : exp2f(x);
+    float E = inlined ? exp2_of(x) : exp2f(x);
     Float3 m = add(d, -1, e);
     float M = dot(m, m), A = 4 * E - M * (1 + E), B = A + 2 * M, D = M + E * E * (4 - M);
     Float3 change = scale((1 - E) / D, add(scale(A, d), -B, e));

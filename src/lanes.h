@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Arithmetic for loops over lanes that compilers turn into vector instructions, and the same loops
-// for wider vectors. For cpu_shadow*.c and block_*.c; such loops are innermost and have no
+// for wider vectors. For cpu_*.c and block_*.c; such loops are innermost and have no
 // branches. -ffp-contract=off and no function of libm keep the bits the same whatever the vectors
 // are.
 #pragma once
@@ -59,4 +59,19 @@ INLINE float ceiling(float x)
 {
     float whole = (float)(int)x;
     return whole < x ? whole + 1 : whole;
+}
+
+// 2^x for -60 <= x <= 0: of the fraction -1/2 .. 1/2 the Taylor series to the sixth power (1.2e-7
+// off), the rest as exponent bits.
+INLINE float exp2_of(float x)
+{
+    int whole = (int)(x - 0.5f);
+    float f = (x - (float)whole) * 0.693147181f;
+    float power =
+        1 + f * (1 + f * (0.5f + f * (1.f / 6 + f * (1.f / 24 + f * (1.f / 120 + f / 720)))));
+    union {
+        int bits;
+        float value;
+    } exponent = {.bits = (whole + 127) * (1 << 23)};
+    return power * exponent.value;
 }

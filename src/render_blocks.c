@@ -3,8 +3,6 @@
 
 #include "draw.h"
 
-#include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum {

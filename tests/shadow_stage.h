@@ -3,6 +3,7 @@
 #pragma once
 
 #include "hair_fixture.h"
+#include "needed.h"
 #include "render_shadow.h"
 #include "shadow_reference.h"
 
@@ -30,14 +31,6 @@ typedef struct ShadowStage {
     bool on_fibre; // points that are asked for lie in the middle of fibres
     Light light;
 } ShadowStage;
-
-// A fallible call, whose last argument is `error`: the test fails with its message.
-#define NEEDED(call)                                                                               \
-    do {                                                                                           \
-        Error error_ = {{0}};                                                                      \
-        Error *error = &error_;                                                                    \
-        if ((call) != RESULT_OK) fail_msg("%s", error_.text);                                      \
-    } while (0)
 
 // Takes the strands over; `radius` (m) and `opacity` of them all, `mesh` may be NULL. No maps are
 // drawn yet.

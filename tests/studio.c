@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "studio.h"
+#include "needed.h"
 #include "random.h"
 
 #include <math.h>
@@ -11,13 +12,6 @@
 #include <cmocka.h>
 
 static const float EYE = 1000;
-
-#define NEEDED(call)                                                                               \
-    do {                                                                                           \
-        Error error_ = {{0}};                                                                      \
-        Error *error = &error_;                                                                    \
-        if ((call) != RESULT_OK) fail_msg("%s", error_.text);                                      \
-    } while (0)
 
 void studio_open(Studio *studio, const RendererOptions *options)
 {
