@@ -33,27 +33,27 @@ WARNINGS  := -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wvla $(if $(
 # Library headers are not ours to mend: -isystem keeps their warnings out.
 INCLUDES  := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(LIBRARIES) $(HEADERS) 2>/dev/null))
 # -ffp-contract=off: the same bits whether or not the compiler may use fused multiply-adds.
-C_FLAGS   := -std=c11 -D_GNU_SOURCE -Isrc -Iglsl -I$(OUT) $(INCLUDES) $(WARNINGS) -ffp-contract=off -pthread \
+C_FLAGS   := -std=c11 -D_GNU_SOURCE -I. -Isrc -Iglsl -I$(OUT) $(INCLUDES) $(WARNINGS) -ffp-contract=off -pthread \
              $(OPTIMISE_$(CONFIG)) $(SANITIZE_$(CONFIG)) $(CPPFLAGS) $(CFLAGS)
 LD_FLAGS  := -pthread -Wl,--as-needed $(SANITIZE_$(CONFIG)) $(LINKER_$(CONFIG)) $(LDFLAGS)
 LD_LIBS   := $(shell pkg-config --libs $(LIBRARIES) 2>/dev/null) -ldl -lm $(LDLIBS)
 
-# --- Files. Every src/main_<x>.c is the program tractrix-<x>, every tests/test_<x>.c a program of its own; the other
-# files of tests/ are shared by the tests.
-MAINS     := $(wildcard src/main_*.c)
-SOURCES   := $(filter-out $(MAINS),$(wildcard src/*.c src/*/*.c))
-SHADERS   := $(wildcard glsl/*)
-TESTS     := $(wildcard tests/test_*.c)
-KEEP      := tests/keep_drivers.c
-SUPPORT   := $(filter-out $(TESTS) $(KEEP),$(wildcard tests/*.c))
+# --- Files, in the rooms of src/, glsl/ and tests/. Every src/<room>/main_<x>.c is the program tractrix-<x>, every
+# tests/<room>/test_<x>.c a program of its own; the tests share tests/support/.
+MAINS     := $(wildcard src/*/main_*.c)
+SOURCES   := $(filter-out $(MAINS),$(wildcard src/*/*.c src/*/*/*.c))
+SHADERS   := $(wildcard glsl/*/*)
+TESTS     := $(wildcard tests/*/test_*.c)
+KEEP      := tests/support/keep_drivers.c
+SUPPORT   := $(filter-out $(KEEP),$(wildcard tests/support/*.c))
 OBJECTS   := $(SOURCES:src/%.c=$(OUT)/%.o) $(if $(SHADERS),$(OUT)/glsl_sources.o)
-PROGRAMS  := $(MAINS:src/main_%.c=$(OUT)/tractrix-%)
+PROGRAMS  := $(foreach main,$(MAINS),$(OUT)/$(patsubst main_%.c,tractrix-%,$(notdir $(main))))
 TEST_PROGRAMS := $(TESTS:%.c=$(OUT)/%)
 SUPPORT_OBJECTS := $(SUPPORT:%.c=$(OUT)/%.o)
 KEEP_sanitize := $(KEEP:%.c=$(OUT)/%.o)
 MANUALS   := $(PROGRAMS:%=%.1) $(OUT)/tractrix-gen-fur.1
 COMPLETIONS := $(PROGRAMS:%=%.bash)
-FOLDERS   := $(sort $(OUT)/tests/ $(dir $(OBJECTS)))
+FOLDERS   := $(sort $(dir $(OBJECTS) $(SUPPORT_OBJECTS) $(TEST_PROGRAMS)))
 
 # --- Build. Recipes that recurse use all processors unless -j says otherwise.
 JOBS = $(if $(filter -j% --jobserver%,$(MAKEFLAGS)),,-j$(shell nproc))
@@ -70,19 +70,22 @@ tests: $(TEST_PROGRAMS)
 $(OUT)/%.o: src/%.c $(OUT)/flags | $(OUT)/version.h
 	$(call run,CC,$(CC) $(C_FLAGS) -MMD -MP -c -o $@ $<)
 ifeq ($(CONFIG),release) # a yardstick shall be as fast as the compiler makes it
-$(OUT)/cpu_split.o: C_FLAGS += -O3 -fno-math-errno -fno-trapping-math -ffinite-math-only -fno-signed-zeros -ffp-contract=fast
+$(OUT)/bench/cpu_split.o: C_FLAGS += -O3 -fno-math-errno -fno-trapping-math -ffinite-math-only -fno-signed-zeros -ffp-contract=fast
 endif
 # Lanes: selects and roots without a thought for traps and errno, or nothing becomes vector instructions. The same bits.
-$(OUT)/cpu_shadow.o $(OUT)/cpu_shadow_maps.o $(OUT)/cpu_shadow_light.o: C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math
-$(OUT)/block_composite.o $(OUT)/block_pixels.o: C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math -ffinite-math-only -fno-signed-zeros
+$(OUT)/draw/cpu_shadow.o $(OUT)/draw/cpu_shadow_maps.o $(OUT)/draw/cpu_shadow_light.o: C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math
+$(OUT)/draw/block_composite.o $(OUT)/draw/block_pixels.o: C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math -ffinite-math-only -fno-signed-zeros
 $(OUT)/glsl_sources.c: scripts/embed-glsl $(SHADERS) $(OUT)/files
 	$(call run,EMBED,scripts/embed-glsl $(SHADERS) >$@.tmp && mv $@.tmp $@)
 $(OUT)/glsl_sources.o: $(OUT)/glsl_sources.c $(OUT)/flags # C promises only 4095 characters a string; every compiler takes more
 	$(call run,CC,$(CC) $(C_FLAGS) -Wno-overlength-strings -MMD -MP -c -o $@ $<)
 $(OUT)/libtractrix.a: $(OBJECTS) $(OUT)/files
-	$(call run,AR,rm -f $@ && $(AR) rcs $@ $(OBJECTS))
-$(OUT)/tractrix-%: $(OUT)/main_%.o $(KEEP_$(CONFIG)) $(OUT)/libtractrix.a
-	$(call run,LINK,$(CC) $(LD_FLAGS) -o $@ $^ $(LD_LIBS))
+	$(call run,AR,rm -f $@ && $(AR) qcs $@ $(OBJECTS))
+define program # MAIN: the program of src/MAIN.c, a room and its main
+$(OUT)/$(patsubst main_%,tractrix-%,$(notdir $(1))): $(OUT)/$(1).o $(KEEP_$(CONFIG)) $(OUT)/libtractrix.a
+	$$(call run,LINK,$$(CC) $$(LD_FLAGS) -o $$@ $$^ $$(LD_LIBS))
+endef
+$(foreach main,$(MAINS:src/%.c=%),$(eval $(call program,$(main))))
 $(OUT)/tractrix-%.1: $(OUT)/tractrix-%
 	$(call run,MAN,$< --help=man >$@.tmp && mv $@.tmp $@)
 $(OUT)/tractrix-gen-fur.1: $(OUT)/tractrix-gen
@@ -92,9 +95,9 @@ $(OUT)/tractrix-%.bash: $(OUT)/tractrix-%
 
 $(OUT)/tests/%.o: tests/%.c $(OUT)/flags | $(OUT)/version.h
 	$(call run,CC,$(CC) $(C_FLAGS) -Itests -MMD -MP -c -o $@ $<)
-$(OUT)/tests/libsupport.a: $(SUPPORT_OBJECTS) $(OUT)/files
+$(OUT)/tests/support/libsupport.a: $(SUPPORT_OBJECTS) $(OUT)/files
 	$(call run,AR,rm -f $@ && $(AR) rcs $@ $(SUPPORT_OBJECTS))
-$(OUT)/tests/%: $(OUT)/tests/%.o $(KEEP_$(CONFIG)) $(OUT)/tests/libsupport.a $(OUT)/libtractrix.a
+$(OUT)/tests/%: $(OUT)/tests/%.o $(KEEP_$(CONFIG)) $(OUT)/tests/support/libsupport.a $(OUT)/libtractrix.a
 	$(call run,LINK,$(CC) $(LD_FLAGS) -o $@ $^ $(LD_LIBS) -lcmocka)
 
 # Stamps, rewritten only when what they hold changes, so that what depends on them is rebuilt just then: the flags,
@@ -120,7 +123,7 @@ demo: ## set-up, build, and render the bundled scene to out/demo/
 test: ## set-up, build, and run all tests (ONLY=name: some of them)
 	@scripts/setup build run test
 	$(AGAIN) $(JOBS) all tests
-	@tests/run $(OUT) $(ONLY)
+	@tests/runner $(OUT) $(ONLY)
 
 # The thesis's sets: four that the program makes, Mohawk where it lies beside the project, and hair of Short's size.
 MOHAWK := ../shared/assets/ratboy_mohawk.tfx
@@ -143,7 +146,7 @@ stress: all ## random circumstances for every solver until a rule breaks, an hou
 
 # --- Static checks and the sanitizers; all of them run, then the failures are named. One alone: make check-format.
 CHECKS := format scripts warnings clang cppcheck shaders farm sanitize
-C_FILES = $(wildcard src/*.[ch] src/*/*.[ch] tests/*.[ch] glsl/*.h)
+C_FILES = $(wildcard src/*/*.[ch] src/*/*/*.[ch] tests/*/*.[ch] glsl/*/*.h)
 SIDE   := $(if $(filter command line,$(origin OUT)),$(OUT)/,out/)
 QUIET   = $(AGAIN) $(JOBS) --silent
 
@@ -165,17 +168,17 @@ check-clang:
 check-cppcheck: # readdirCalled: it asks for readdir_r, which POSIX has since withdrawn
 	@mkdir -p $(SIDE)check-cppcheck
 	@cppcheck --quiet --std=c11 --language=c --library=posix --enable=warning,performance,portability --inline-suppr \
-	    --suppress=readdirCalled --error-exitcode=1 --cppcheck-build-dir=$(SIDE)check-cppcheck -D_GNU_SOURCE -Isrc -Iglsl -Itests src tests
+	    --suppress=readdirCalled --error-exitcode=1 --cppcheck-build-dir=$(SIDE)check-cppcheck -D_GNU_SOURCE -I. -Isrc -Iglsl -Itests src tests
 check-shaders:
 	$(QUIET) all
 	@scripts/check-shaders $(OUT)
 check-farm: # GNU parallel and a Slurm of one node, which make test does without
 	@scripts/setup farm
 	$(QUIET) all
-	@tests/run $(OUT) test_farm
+	@tests/runner $(OUT) test_farm
 check-sanitize: # but for scripts that run the programs as others do, many times over
 	$(QUIET) CONFIG=sanitize OUT=$(SIDE)sanitize all tests
-	@tests/run $(SIDE)sanitize test_ '^test_(farm|readme|tutorial)'
+	@tests/runner $(SIDE)sanitize test_ '^test_(farm|readme|tutorial)'
 
 format: ## clang-format all C files
 	clang-format -i $(C_FILES)

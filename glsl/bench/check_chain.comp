@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// Pulls chains along waypoints as the solvers do: unit directions and lengths are the state, positions are summed up at the end.
+// A lane takes a case; `spans` holds for each its first point, segments, first waypoint, waypoints.
+#include "common/shared.h"
+#include "sim/tractrix.glsl"
+
+layout(local_size_x = 8) in;
+layout(std430, binding = BIND_STATE_OUT) readonly buffer Spans { uvec4 spans[]; };
+layout(std430, binding = BIND_TIPS) readonly buffer Waypoints { vec4 waypoints[]; };
+layout(std430, binding = BIND_POSITION_OUT) buffer Points { vec4 points[]; }; // in: start, out: result
+
+void main()
+{
+    if (int(gl_GlobalInvocationID.x) >= spans.length()) return;
+    uvec4 span = spans[gl_GlobalInvocationID.x];
+    uint head = span.x, segments = span.y;
+    vec3 x = points[head].xyz, before = x;
+    for (uint j = head + 1u; j <= head + segments; ++j) {
+        vec3 here = points[j].xyz;
+        float L;
+        vec3 d = tractrix_direction(here - before, L);
+        points[j] = vec4(d, L);
+        before = here;
+    }
+    for (uint m = 0u; m < span.w; ++m) {
+        vec3 target = waypoints[span.z + m].xyz, move = target - x;
+        x = target;
+        for (uint j = head + 1u; j <= head + segments; ++j) {
+            vec4 segment = points[j];
+            segment.xyz = tractrix_renormalise(tractrix_turn(segment.xyz, segment.w, move));
+            points[j] = segment;
+        }
+    }
+    points[head] = vec4(x, 0.0);
+    for (uint j = head + 1u; j <= head + segments; ++j) {
+        x += points[j].w * points[j].xyz;
+        points[j] = vec4(x, 0.0);
+    }
+}

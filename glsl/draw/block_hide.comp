@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// How far away hair may be and still be seen, by tiles of the picture: 1/w of the farthest of what is opaque in each,
+// 0 where the background shows.
+#include "draw/draw.h"
+
+layout(local_size_x = GROUP_SIZE) in;
+layout(location = 0) uniform ivec2 tiles; // columns, rows
+layout(binding = BIND_MESH_DEPTH) uniform sampler2D mesh_depth;
+layout(std430, binding = BIND_HIDING_OUT) writeonly buffer Hiding { float hiding[]; };
+
+void main()
+{
+    int tile = int(gl_GlobalInvocationID.x), columns = tiles.x;
+    if (tile >= columns * tiles.y) return;
+    ivec2 corner = HIDE_TILE * ivec2(tile % columns, tile / columns);
+    ivec2 edge = ivec2(draw_params.width, draw_params.height) - 1;
+    float farthest = 0.0;
+    for (int y = 0; y < HIDE_TILE; ++y)
+        for (int x = 0; x < HIDE_TILE; ++x)
+            farthest = max(farthest, texelFetch(mesh_depth, min(corner + ivec2(x, y), edge), 0).x);
+    // As src/block_pixels.c has it, so that the two agree to the bit.
+    hiding[tile] = farthest < 1.0 ? (2.0 * farthest - 1.0 - draw_params.depth.x) / draw_params.depth.y : 0.0;
+}

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// A ribbon's fragment: its coverage, and a node in the A-buffer. Behind the mesh nothing is stored.
+//   NEAREST 1: a ribbon hides all behind it
+#include "draw/draw.h"
+#include "draw/coverage.glsl"
+#include "draw/abuffer.glsl"
+
+layout(early_fragment_tests) in;
+layout(std430, binding = BIND_NODES_OUT) writeonly buffer Nodes { uvec4 nodes[]; };
+layout(std430, binding = BIND_HEADS_OUT) buffer Heads { uint heads[]; };
+layout(std430, binding = BIND_COUNTERS_OUT) buffer Counters { uint counters[]; };
+
+noperspective in float across;
+noperspective in float half_width;
+noperspective in vec2 ends;
+noperspective in vec4 color;
+noperspective in float inverse_w;
+
+const float LEAST_ALPHA = 1.0 / 4096.0;
+const float LEAST_COVERAGE = 1.0 / 16.0; // of a pixel whose nearest ribbon is asked for
+
+void main()
+{
+    // Of the pixel, as if it lay along the strand, what is beyond the root less what is beyond the tip.
+    vec2 beyond = clamp(ends + 0.5, 0.0, 1.0);
+    float share = max(beyond.x + beyond.y - 1.0, 0.0);
+    float coverage = share * ribbon_coverage(across, half_width, vec2(dFdx(across), dFdy(across)));
+#if NEAREST
+    float alpha = coverage >= LEAST_COVERAGE && color.a >= LEAST_ALPHA ? 1.0 : 0.0;
+#else
+    float alpha = color.a * coverage;
+#endif
+    if (!(alpha >= LEAST_ALPHA)) return; // nor what is not a number
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    uvec4 band = draw_params.band; // read once: a uniform costs a load wherever it is named
+    uint shards = draw_params.shards;
+    uint shard = uint((pixel.x >> 3) + (pixel.y & 56)) & (shards - 1u);
+    uint slot = atomicAdd(counters[shard * SHARD_RUN], 1u); // counts on past the end: so the pool learns its size
+    if (slot >= band.w) return;
+    uint index = (slot / SHARD_RUN * shards + shard) * SHARD_RUN + slot % SHARD_RUN;
+    int at = (pixel.y - int(band.y)) * int(band.x) + pixel.x;
+    uint next = atomicExchange(heads[at], index + 1u);
+    nodes[index] = uvec4(next, abuffer_pack(inverse_w, color.rgb, alpha));
+}

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+// The light that reaches a point (needs draw.h).
+//   SHADOW, SHADOW_BY_MESH, LIGHT_COUNT: see shadow.glsl
+//   LIGHTS 0: directional lights, and the same from everywhere else   1: also points, spots, a sky
+
+#if SHADOW
+#include "draw/shadow.h"
+#endif
+#include "draw/shadow.glsl"
+
+#if LIGHT_COUNT
+const int light_count = LIGHT_COUNT;
+#else
+int light_count = draw_params.light_count;
+#endif
+
+// Linear RGB of light i at x, as a matt white surface square to it would show it, were nothing
+// between them, and the unit vector towards it.
+vec3 light_sent(int i, vec3 x, out vec3 to_light)
+{
+#if LIGHTS
+    // A directional light's place is its direction, with w = 0. The square of the reference
+    // distance over that of the distance: 1 where the light has its intensity. A cap keeps it
+    // finite. The cone's edge as glTF's KHR_lights_punctual has it.
+    vec4 place = draw_params.light_place[i], axis = draw_params.light_axis[i], cone = draw_params.light_cone[i];
+    vec3 way = place.xyz - place.w * x;
+    float square = max(dot(way, way), 1e-12);
+    to_light = way * inversesqrt(square);
+    float inside = clamp(cone.x - cone.y * dot(axis.xyz, to_light), 0.0, 1.0);
+    float falloff = place.w == 0.0 ? 1.0 : min(axis.w / square, 1e6);
+    return draw_params.light_color[i].rgb * (falloff * inside * inside);
+#else
+    to_light = draw_params.light_place[i].xyz;
+    return draw_params.light_color[i].rgb;
+#endif
+}
+
+// The same with what stands between them. With SHADOW, x is the point of the last shadow_find.
+vec3 light_reaching(int i, vec3 x, out vec3 to_light)
+{
+    return light_sent(i, x, to_light) * light_left(i);
+}
+
+// The mean light from everywhere on surfaces whose unit normals fan out by so much about n, above
+// them the sky and below the ground: `share` is 1 for a plane.
+vec3 light_around(vec3 n, float share)
+{
+    return mix(draw_params.ground.rgb, draw_params.sky.rgb, 0.5 + 0.5 * share * n.y);
+}
+
+// The same on the side of a fibre that is seen, whose unit tangent has the cosine `eye` with the unit
+// vector to the eye: a normal at the angle a off the middle is seen by cos a, so that PI/4 of the
+// middle one counts.
+vec3 light_around_fibre(vec3 tangent, vec3 to_eye, float eye)
+{
+#if LIGHTS
+    vec3 side = to_eye - eye * tangent;
+    return light_around(side * inversesqrt(max(dot(side, side), 1e-12)), 0.25 * 3.14159265);
+#else
+    return draw_params.sky.rgb;
+#endif
+}

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// The head or body, carried by the head's motion.
+#include "draw/draw.h"
+#include "common/rigid.glsl"
+
+layout(location = 0) in vec3 position; // m, the head's frame
+layout(location = 1) in vec3 normal;
+
+invariant gl_Position; // by both of its programs
+out vec3 world_position;
+out vec3 world_normal;
+
+void main()
+{
+    world_position = rotate(draw_params.head_rotation, position) + draw_params.head_translation.xyz;
+    world_normal = rotate(draw_params.head_rotation, normal);
+    gl_Position = draw_params.clip_from_world * vec4(world_position, 1.0);
+}

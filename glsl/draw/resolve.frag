@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+// A pixel's fragments become its colour: the LAYERS nearest in order, the rest blended out of order
+// under them, all over what stands behind, premultiplied and in linear light.
+//   BASE 0: the background alone stands behind   1: the mesh does   DEPTH 1: the nearest fragment's distance instead
+//   SAMPLES: the picture has the mean of SAMPLES x SAMPLES pixels of the lists
+//   MOST_TURNS: fragments that the driver lets all loops visit
+//
+// The rest is summed in whole numbers, which give the same sum in every order: colour times alpha,
+// alpha, and optical depth -log2(1 - alpha). Together they let through what they would in any
+// order, and show their mean colour. A depth that nothing shines through may as well stay there.
+#include "draw/draw.h"
+#include "draw/abuffer.glsl"
+#include "draw/display.glsl"
+
+layout(binding = BIND_NODES) uniform usamplerBuffer nodes;
+layout(binding = BIND_HEADS) uniform usamplerBuffer heads;
+#if BASE
+layout(binding = BIND_BASE) uniform sampler2D base;
+#endif
+layout(std430, binding = BIND_SHORTAGE_OUT) writeonly buffer Shortage { uint shortage; };
+layout(location = 0) out vec4 pixel_out; // sRGB, alpha not multiplied in; or premultiplied light
+
+const float COLOR_STEPS = 16384.0;
+const float COLOR_MAX = 8.0;
+const float DEPTH_STEPS = 4096.0;
+const int DEPTH_MAX = 1 << 24;
+// A colour is at most 2^17 steps: their sum is carried over to a second word in time.
+const int CARRY_EVERY = 8192;
+const int CARRY_BITS = 16;
+
+vec4 over(vec4 front, vec4 behind)
+{
+    return front + (1.0 - front.a) * behind;
+}
+
+void carry(inout ivec4 high, inout ivec4 low)
+{
+    high += low >> CARRY_BITS;
+    low &= (1 << CARRY_BITS) - 1;
+}
+
+vec4 rest_color(ivec4 high, ivec4 low, int optical_depth)
+{
+    carry(high, low);
+    vec4 sum = ldexp(vec4(high), ivec4(CARRY_BITS)) + vec4(low);
+    float alpha = 1.0 - exp2(float(optical_depth) * (-1.0 / DEPTH_STEPS));
+    vec3 mean = sum.rgb / max(sum.a, 1.0);
+    return vec4(mean * alpha, alpha);
+}
+
+int count = 0; // of all fragments visited
+
+// A pixel of the lists: light, premultiplied.
+vec4 blend(ivec2 pixel)
+{
+    int link = int(texelFetch(heads, (pixel.y - int(draw_params.band.y)) * int(draw_params.band.x) + pixel.x).x);
+#if LAYERS
+    ivec3 layer[LAYERS];
+    for (int i = 0; i < LAYERS; ++i) layer[i] = ivec3(0);
+#endif
+    ivec4 high = ivec4(0), low = ivec4(0);
+    int optical_depth = 0;
+    while (link != 0 && count < MOST_TURNS) {
+        ivec4 node = ivec4(texelFetch(nodes, link - 1));
+        link = node.x;
+        ivec3 farther = node.yzw;
+#if LAYERS
+        for (int i = 0; i < LAYERS; ++i) {
+            bool nearer = abuffer_nearer(farther, layer[i]);
+            ivec3 here = layer[i];
+            layer[i] = nearer ? farther : here;
+            farther = nearer ? here : farther;
+        }
+#endif
+        vec4 c = min(abuffer_color(farther), COLOR_MAX);
+        low += ivec4(c * COLOR_STEPS + 0.5);
+        int depth = int(-log2(max(1.0 - c.a, 1.0 / 65536.0)) * DEPTH_STEPS + 0.5);
+        optical_depth = min(optical_depth + depth, DEPTH_MAX);
+        if (++count % CARRY_EVERY == 0) carry(high, low);
+    }
+    if (link != 0) shortage = 1u;
+#if DEPTH
+    return vec4(vec3(depth_shown(intBitsToFloat(layer[0].x))), 1.0);
+#else
+#if BASE
+    vec4 color = texelFetch(base, pixel, 0);
+#else
+    vec4 color = draw_params.background;
+#endif
+    color = over(rest_color(high, low, optical_depth), color);
+#if LAYERS
+    for (int i = LAYERS - 1; i >= 0; --i) color = over(abuffer_color(layer[i]), color);
+#endif
+    return color;
+#endif
+}
+
+void main()
+{
+    ivec2 pixel = ivec2(gl_FragCoord.xy) * SAMPLES;
+    vec4 color = vec4(0.0);
+    for (int i = 0; i < SAMPLES * SAMPLES; ++i) color += blend(pixel + ivec2(i % SAMPLES, i / SAMPLES));
+    color *= 1.0 / float(SAMPLES * SAMPLES);
+#if TONE == 3
+    pixel_out = color;
+#else
+    pixel_out = vec4(display_from_linear(color.rgb / max(color.a, 1e-6)), color.a);
+#endif
+}

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+// Light on a fibre, by one of the models (needs draw.h, material.h, paint.glsl). Each gives Fibre, what it knows of
+// the material, and shade_fibre.
+//   AOV 0: light   1: white   2: the tangent   3: a colour of the strand's own
+//   MARSCHNER 0: Kajiya and Kay's   1, 2: Marschner's, see there
+
+// Of the sine the cosine or the other way round, where it is not negative.
+float sine_of(float cosine)
+{
+    return sqrt(max(1.0 - cosine * cosine, 0.0));
+}
+
+#include "draw/lights.glsl"
+#if MARSCHNER
+#include "draw/shade_marschner.glsl"
+#else
+#include "draw/shade_kajiya.glsl"
+#endif
+
+// What particle at `at`, which lies at x, shows of itself.
+vec3 shade_particle(Fibre m, Painter painter, int at, vec3 x, vec3 tangent, vec3 to_eye)
+{
+#if AOV == 0
+    return shade_fibre(m, paint_color(painter, at), x, tangent, to_eye);
+#elif AOV == 1
+    return vec3(1.0);
+#elif AOV == 2
+    return 0.5 + 0.5 * tangent;
+#else
+    uint bits = hash_bits(painter.id) | 0x10101u; // black is no strand
+    return vec3(uvec3(bits, bits >> 8, bits >> 16) & 255u) / 255.0;
+#endif
+}

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// The box around all hair as the light sees it: (u, v, depth). Floats are compared as ints, which
+// atomics can do: of positive ones the bits grow with the value, of negative ones they fall.
+#include "draw/shadow.h"
+#include "draw/material.h"
+#include "common/hair_address.glsl"
+#include "draw/curve.glsl"
+#include "draw/shadow_cast.glsl"
+
+layout(local_size_x = GROUP_SIZE) in;
+layout(std430, binding = BIND_BOUNDS_OUT) buffer Bounds { int bounds[]; };
+
+int ordered(float x)
+{
+    int bits = floatBitsToInt(x);
+    return bits < 0 ? bits ^ 0x7fffffff : bits;
+}
+
+void main()
+{
+    int s = int(gl_GlobalInvocationID.x), n = int(material.vertex_count);
+    if (s >= int(material.drawn_strands)) return;
+    Curve curve = curve_open(particle_address(s, 0, n), n);
+    int begin = int(gl_GlobalInvocationID.y) * PART_VERTICES;
+    int end = min(begin + PART_VERTICES, curve.segments * curve.parts + 1);
+    float reach = cast_params.reach;
+    vec3 low = vec3(1e30), high = vec3(-1e30);
+    for (int j = begin; j < end; ++j) {
+        vec3 x = curve_point(curve, j);
+        bool sound = all(lessThan(abs(x), vec3(limit)));
+        vec3 place = shadow_place(x).xyz;
+        sound = sound && all(lessThan(abs(place.xy), vec2(reach)));
+        low = sound ? min(low, place) : low;
+        high = sound ? max(high, place) : high;
+    }
+    if (high.x < low.x) return;
+    for (int k = 0; k < 3; ++k) {
+        atomicMin(bounds[k], ordered(low[k]));
+        atomicMax(bounds[3 + k], ordered(high[k]));
+    }
+}

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+// Strands into a shadow map, by points along their segments and, where they are wide, across them.
+//   DEEP 0: the map keeps first depths   1: sums of optical depth by layers
+//   COARSE 1: first depths of a coarse map
+//
+// A texel that a fibre of opacity a crosses, covering the share c of its width, loses the share a c
+// of its light: an optical depth of -ln(1 - a c), or -ln(1 - a) where it is covered whole. Fibres at
+// random places multiply, so that optical depths add up. Sums are integers: their order does not matter.
+// The ribbons are those that are drawn: curves, thickness and opacity, the share of strands (material.h).
+#include "draw/shadow.h"
+#include "draw/material.h"
+#include "common/hair_address.glsl"
+#include "common/hash.glsl"
+#include "draw/curve.glsl"
+#include "draw/paint.glsl"
+#include "draw/shadow_cast.glsl"
+#include "draw/shadow_layer.glsl"
+
+layout(local_size_x = GROUP_SIZE) in;
+#if DEEP
+layout(binding = BIND_DEPTHS) uniform samplerBuffer depths;
+layout(std430, binding = BIND_SUMS_OUT) buffer Sums { uint sums[]; };
+#else
+layout(std430, binding = BIND_FIRST_OUT) buffer First { uint first[]; };
+#endif
+
+// Points in a texel: sums are smoothed afterwards, but where ribbons are wide their pattern would
+// show; of first depths none may be far from a point, and within a wide ribbon every texel must have
+// one: its inner circle does if they are no more than sqrt(1/2) apart. Those of a coarse map are
+// spread to a texel or two around each point afterwards, so that fewer will do.
+#if DEEP
+const float DENSITY = 0.5, WIDE_DENSITY = 2.0, SLACK = 0.0;
+#elif COARSE
+const float DENSITY = 0.5, WIDE_DENSITY = 1.42, SLACK = 0.5;
+#else
+const float DENSITY = 1.0, WIDE_DENSITY = 1.42, SLACK = 0.0;
+#endif
+// Points on a segment: CPU drivers end loops silently after 65,535 turns of a lane.
+const float MOST_ALONG = 512.0, MOST = 60000.0 / float(PART_SEGMENTS);
+
+float point_radius(Painter painter, Curve curve, int k)
+{
+    float place = curve_place(curve, k);
+    return paint_radius(painter, curve.root + int(place) * STRAND_TILE, place);
+}
+
+void main()
+{
+    int s = int(gl_GlobalInvocationID.x), n = int(material.vertex_count);
+    int root = particle_address(s, 0, n);
+    Curve curve = curve_open(root, n);
+    int begin = int(gl_GlobalInvocationID.y) * PART_SEGMENTS;
+    int end = min(begin + PART_SEGMENTS, curve.segments * curve.parts);
+    if (s >= int(material.drawn_strands) || begin >= end) return;
+    Painter painter = paint_strand(0u, n); // no colour is asked for
+    if (s == int(material.last_strand)) painter.radius *= material.last_share;
+    float opacity = material.shadow_opacity * paint_opacity_share(root);
+    float texels = cast_params.texels, unit = cast_params.unit, edge = float(side) - 0.5;
+    int map = cast_params.map * side * side;
+    vec4 a = shadow_place(curve_point(curve, begin));
+    float radius = point_radius(painter, curve, begin);
+    for (int j = begin; j < end; ++j) {
+        vec4 b = shadow_place(curve_point(curve, j + 1));
+        float next_radius = point_radius(painter, curve, j + 1);
+        vec2 way = b.xy - a.xy;
+        float size = length(way), width = 2.0 * texels * (radius + next_radius) / (a.w + b.w);
+        float density = width > 1.5 ? WIDE_DENSITY : DENSITY;
+        float along = clamp(ceil(size * density - SLACK), 1.0, MOST_ALONG);
+        float across = width > 1.5 ? clamp(ceil(width * density), 1.0, floor(MOST / along)) : 1.0;
+#if DEEP
+        float covered = min(width, 1.0);
+        float depth_sum = -log(max(1.0 - opacity * covered, 1e-3)) / covered * width * size;
+        uint part = uint(int(depth_sum * unit / (along * across) + 0.5));
+#endif
+        vec2 beside = vec2(-way.y, way.x) * (width / max(size, 1e-9)) / across;
+        vec3 step = vec3(way, b.z - a.z) / along, at = a.xyz + 0.5 * step;
+        at.xy -= 0.5 * (across - 1.0) * beside;
+        int count = int(along * across), column = 0, columns = int(across);
+        for (int k = 0; k < count; ++k) {
+            vec2 here = at.xy + float(column) * beside;
+            ivec2 texel = ivec2(clamp(here, 0.0, edge));
+            bool inside = here == clamp(here, 0.0, edge);
+            int place = texel.y * side + texel.x;
+#if DEEP
+            int layer = int(layer_of(at.z - texelFetch(depths, map + place).x));
+            if (inside) atomicAdd(sums[map * SHADOW_LAYERS + layer * side * side + place], part);
+#else
+            uint depth = uint(int(clamp(at.z, 0.0, 1.0) * float(SHADOW_DEPTHS)));
+            if (inside && depth < first[map + place]) atomicMin(first[map + place], depth); // a load costs a quarter
+#endif
+            ++column;
+            if (column == columns) {
+                column = 0;
+                at += step;
+            }
+        }
+        a = b;
+        radius = next_radius;
+    }
+}

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+// A step of `emulation`: every particle is pulled to where it wants to go, and both sides of the strand follow as tractrices. O(n^2).
+//
+//   1. where particles want to go, p: midpoint.glsl
+//   2. in a random order, the same for all strands and steps: pull particle i to p_i, tip's side and root's side follow. With the
+//      first of them every segment follows as seen from its tail's own p, which moves along (as in hybrid.comp), so that the others have
+//      little left to go and it hardly matters in which order
+//   3. pull the root to where the head carries it
+//   4. velocities: projected on what the new shape allows, energy balanced (project.glsl). Second order
+// THESIS: order from root to tip, predictions by a kick alone, and as published v = (x - q)/dt + k (style - x) dt. That is unstable: hair
+// without drag speeds up to 3 .. 14 m/s by itself.
+//
+// State of the pulls: unit directions d (j - 1 to j) with lengths. Where the particle that is pulled next has come to is summed up on the way.
+// A step of long strands takes several dispatches (step_params.phase), each with MOST_LINKS links to turn.
+#include "sim/particles.glsl"
+#include "sim/keep.glsl"
+#include "sim/lane.glsl"
+#include "sim/shuffle.glsl"
+#include "sim/tractrix.glsl"
+#include "sim/tridiagonal.glsl"
+#if !THESIS
+#include "sim/midpoint.glsl"
+#include "sim/project.glsl"
+#endif
+
+#define EXPLICIT_STIFFNESS step_params.own[0].y // thesis: k, 1/s^2
+#define SHUFFLE            step_params.passes
+
+const uint MOST_LINKS = 40000u; // as in solver_emulation.c
+
+vec4 link_at(Lane lane, int j, vec3 q, vec3 q_before) { return vec4(direction(q - q_before), fetch_rest(lane, j).w); }
+
+// Where particles want to go, and the links at the step's start. The root stands at 0; thesis: the new root.
+#if THESIS
+void predict(Lane lane)
+{
+    int last = int(step_params.vertex_count - 1u);
+    vec3 q_before = lane.root_old, style = vec3(0.0);
+    for (int j = 1; j <= last; ++j) {
+        vec3 q = fetch_position(lane, j), p = (q - lane.root) + predicted_move(lane, j, q, style);
+        keep(j, link_at(lane, j, q, q_before));
+        keep_velocity(lane.address + j * STRAND_TILE, j, vec4(p, 0.0));
+        q_before = q;
+    }
+    keep(0, vec4(lane.root_old - lane.root, 0.0));
+}
+
+vec3 aim_of(Lane lane, int j) { return recall_velocity(lane.address + j * STRAND_TILE, j).xyz; }
+#else
+void predict(Lane lane)
+{
+    Middle middle = middle_open(lane);
+    vec3 q = fetch_position(lane, LAST);
+    for (int j = LAST; j >= 1; --j) {
+        vec3 q_before = j == 1 ? lane.root_old : fetch_position(lane, j - 1);
+        middle_place(middle, lane, j, q);
+        keep(j, link_at(lane, j, q, q_before));
+        q = q_before;
+    }
+    keep(0, vec4(vec3(0.0), middle.gained));
+}
+
+vec3 aim_of(Lane lane, int j) { return j == 0 ? vec3(0.0) : recall_aim(lane.address + j * STRAND_TILE, j); }
+
+// Pulls particle i to where it wants to go, and lets the others follow as seen from where they want to go. Gives where particle `next` is
+// then, as pull does.
+vec3 pull_along(Lane lane, int i, int next)
+{
+    int last = int(step_params.vertex_count - 1u);
+    vec3 target = aim_of(lane, i), at = target, x = target;
+    for (int j = i + 1; j <= last; ++j) {
+        vec4 link = recall(j);
+        vec3 move = limit_move(x + link.w * link.xyz - aim_of(lane, j));
+        vec3 d = tractrix_turn(link.xyz, link.w, move);
+        keep(j, vec4(d, link.w));
+        x += link.w * d;
+        at = j <= next ? x : at;
+    }
+    x = target;
+    for (int j = i; j >= 1; --j) {
+        vec4 link = recall(j);
+        vec3 move = limit_move(x - link.w * link.xyz - aim_of(lane, j - 1));
+        vec3 d = -tractrix_turn(-link.xyz, link.w, move);
+        keep(j, vec4(d, link.w));
+        x -= link.w * d;
+        at = j > next ? x : at;
+    }
+    return at;
+}
+#endif
+
+// Pulls particle i, now at x, to where it wants to go. Gives where particle `next` is then.
+vec3 pull(Lane lane, int i, int next, vec3 x)
+{
+    int last = int(step_params.vertex_count - 1u);
+    vec3 target = aim_of(lane, i), at = target;
+    vec3 move = limit_move(target - x);
+    for (int j = i + 1; j <= last; ++j) {
+        vec4 link = recall(j);
+        vec3 d = tractrix_turn(link.xyz, link.w, move);
+        keep(j, vec4(d, link.w));
+        at += (j <= next ? link.w : 0.0) * d;
+    }
+    move = limit_move(target - x);
+    for (int j = i; j >= 1; --j) {
+        vec4 link = recall(j);
+        vec3 d = -tractrix_turn(-link.xyz, link.w, move);
+        keep(j, vec4(d, link.w));
+        at -= (j > next ? link.w : 0.0) * d;
+    }
+    return at;
+}
+
+// The particle whose turn is next, before place `end` of the order; 0: none.
+int next_mover(inout Shuffle order, uint end)
+{
+#if THESIS
+    return order.at < min(end, order.count) ? int(++order.at) : 0;
+#else
+    return shuffle_next(order, end) + 1;
+#endif
+}
+
+// The moves of this phase; whether they were the last. Place 0 has where the root is by then, and what the step's middle has gained.
+bool pull_all(Lane lane)
+{
+    uint count = step_params.vertex_count - 1u, phase = step_params.phase;
+    uint most = IN_REGISTERS == 1 ? 2u * count : MOST_LINKS / count, start = phase * most;
+    Shuffle order = shuffle_open(SHUFFLE, count, start);
+    if (start >= order.size) return false; // longer strands need more phases
+    uint end = min(start + most, order.size);
+    Shuffle counted = order;
+    int moves = 0;
+    while (next_mover(counted, end) > 0) ++moves;
+    int i = next_mover(order, end);
+    vec4 root = recall(0);
+    vec3 x = root.xyz;
+    for (int j = 1; j <= i; ++j) {
+        vec4 link = recall(j);
+        x += link.w * link.xyz;
+    }
+#if !THESIS
+    if (phase == 0u) {
+        int next = next_mover(order, end);
+        x = pull_along(lane, i, next);
+        i = next, --moves;
+    }
+#endif
+    for (int k = 0; k < moves; ++k) {
+        int next = next_mover(order, end);
+        x = pull(lane, i, next, x);
+        i = next;
+    }
+    keep(0, vec4(x, root.w));
+    return end == order.size;
+}
+
+// The root is pulled home.
+vec3 home(inout vec3 move, int j)
+{
+    vec4 link = recall(j);
+    return tractrix_renormalise(tractrix_turn(tractrix_renormalise(link.xyz), link.w, move));
+}
+
+void finish(Lane lane)
+{
+    int last = int(step_params.vertex_count - 1u);
+    vec4 root = recall(0);
+    vec3 move = limit_move(-root.xyz), x = vec3(0.0);
+#if THESIS
+    vec3 style = vec3(0.0);
+    velocities[lane.address] = vec4(lane.root_velocity, 0.0);
+    positions[lane.address] = vec4(lane.root, 1.0);
+    for (int j = 1; j <= last; ++j) {
+        int a = lane.address + j * STRAND_TILE;
+        vec4 r = fetch_rest(lane, j);
+        vec3 q = fetch_position(lane, j);
+        x += r.w * home(move, j);
+        style = next_style(style, r, lane.rotation);
+        velocities[a] = vec4((x - (q - lane.root)) / lane.dt + EXPLICIT_STIFFNESS * lane.dt * (style - x), 0.0);
+        positions[a] = vec4(lane.root + x, 1.0);
+    }
+#else
+    Projection projection = project_open(lane);
+    for (int j = 1; j <= last; ++j) {
+        vec3 d = home(move, j);
+        x += fetch_rest(lane, j).w * d;
+        project_add(projection, lane, j, d, x);
+    }
+    project_finish(projection, lane, root.w);
+#endif
+}
+
+void main()
+{
+    int s = first_strand();
+    if (s >= int(step_params.strand_count)) return;
+    keep_open(s);
+    Lane lane = lane_open(s);
+    if (step_params.phase == 0u) predict(lane);
+    if (pull_all(lane)) finish(lane);
+}

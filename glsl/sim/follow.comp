@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+// Where followers are (follow_plan.h): beside their guide, or between three of them. A strand a lane; those of a guide lie side by side.
+#include "sim/follow_params.h"
+#include "common/hair_address.glsl"
+#include "common/rigid.glsl"
+
+layout(local_size_x = GROUP_SIZE) in;
+layout(binding = BIND_POSITION) uniform samplerBuffer guides;
+layout(binding = BIND_FOLLOW_OFFSETS) uniform samplerBuffer offsets;
+layout(binding = BIND_FOLLOW_GUIDES) uniform usamplerBuffer others; // INTERPOLATE only
+layout(std430, binding = BIND_POSITION_OUT) writeonly buffer Positions { vec4 positions[]; };
+
+void main()
+{
+    int s = int(gl_GlobalInvocationID.x), n = int(follow_params.vertex_count);
+    if (s >= int(follow_params.strand_count)) return;
+    vec4 own = texelFetch(offsets, s);
+    vec3 offset = rotate(follow_params.head_rotation, own.xyz), spread = offset * (follow_params.tip_separation / float(n - 1));
+    int a = particle_address(int(follow_params.first_guide) + s / int(follow_params.per_guide), 0, n), to = particle_address(s, 0, n);
+#if INTERPOLATE
+    uvec4 other = texelFetch(others, s);
+    int b = particle_address(int(other.x), 0, n), c = particle_address(int(other.y), 0, n);
+    float share_b = own.w, share_c = uintBitsToFloat(other.z);
+#endif
+    for (int j = 0; j < n; ++j) {
+        int at = j * STRAND_TILE;
+        vec3 x = texelFetch(guides, a + at).xyz;
+#if INTERPOLATE
+        x += share_b * (texelFetch(guides, b + at).xyz - x) + share_c * (texelFetch(guides, c + at).xyz - x);
+#endif
+        positions[to + at] = vec4(x + offset + float(j) * spread, 1.0);
+    }
+}

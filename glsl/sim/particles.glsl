@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// What a solver of particles (particle_solver.h) is given: positions and velocities of the step before by texture, both to be
+// written to the same places, the style, and where the head carries the root.
+//
+// Macros: GROUP_SIZE lanes a group; STRANDS strands a lane, GROUP_SIZE apart; IN_REGISTERS and VERTICES: the strand has VERTICES
+// vertices and may be held in arrays, whose loops unroll; else any length, step_params.vertex_count. LEAD: vertices before the solver's
+// root, which the head carries (0 or 1).
+#include "sim/step.h"
+#include "sim/forces.glsl"
+#include "common/hair_address.glsl"
+#include "common/rigid.glsl"
+
+layout(local_size_x = GROUP_SIZE) in;
+layout(binding = BIND_POSITION) uniform samplerBuffer position_before; // xyz: m
+layout(binding = BIND_STATE) uniform samplerBuffer velocity_before;    // xyz: m/s
+layout(binding = BIND_REST) uniform samplerBuffer rest;                // the style: see hair.h
+layout(binding = BIND_STRAND_ID) uniform usamplerBuffer strand_id;
+#include "sim/strand_root.glsl"
+layout(std430, binding = BIND_POSITION_OUT) buffer Positions { vec4 positions[]; };
+layout(std430, binding = BIND_STATE_OUT) buffer Velocities { vec4 velocities[]; };
+
+// The first of the lane's strands. Lanes beyond the last strand have nothing to do.
+int first_strand() { return int(gl_WorkGroupID.x) * GROUP_SIZE * STRANDS + int(gl_LocalInvocationID.x); }
+
+// With LEAD 1 the head carries vertex 1 too, and that is the solver's root: it sees vertices 0 .. vertex_count - 1 from strand_base on.
+int strand_base(int strand)
+{
+#if IN_REGISTERS
+    return particle_address(strand, LEAD, VERTICES + LEAD);
+#else
+    return particle_address(strand, LEAD, int(step_params.vertex_count) + LEAD);
+#endif
+}
+
+// Where the head has carried the root (a texel of `rest` with j = 0) at the step's end.
+vec3 root_position(vec4 root) { return rotate(step_params.head_rotation, root.xyz) + step_params.head_translation.xyz; }
+
+// Writes what is before the solver's root.
+void carry_lead(int base)
+{
+#if LEAD
+    positions[base - STRAND_TILE] = vec4(root_position(texelFetch(rest, base - STRAND_TILE)), 1.0);
+#endif
+}

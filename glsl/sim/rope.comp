@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+// Position-based rope: particles fly, then sweeps over the links from root to tip move the two ends of each towards its length.
+//
+// BULLET 1: as btSoftBody::PSolve_Links (Bullet 2 and 3) does it, with all sweeps at the end of one step. A link with ends a, b
+// of weights w (the root's is 0, the others' 1), r = b - a and rest length l:
+//     k = (l^2 - r.r) / ((w_a + w_b) (l^2 + r.r)),    a -= w_a k r,  b += w_b k r
+// To first order in the stretch that is the usual projection, without a root; far off it overshoots.
+//
+// BULLET 0: XPBD by small steps (Macklin, Mueller, Chentanez: XPBD, MIG 2016; Macklin et al.: Small Steps in Physics Simulation, SCA
+// 2019): each sweep ends a step of its own, so that the multiplier starts at 0. With the compliance alpha and the small step h,
+//     lambda = (l - |r|) / (w_a + w_b + alpha/h^2),   a -= w_a lambda r/|r|,  b += w_b lambda r/|r|
+//
+// Then v = (1 - damping) m/h, m: all that the particle has gone by in the small step, flight and sweeps. To take m for x - q, q the position
+// before the flight, would round it like x, by the size X of coordinates: 2^-24 X, in each of small steps in which gravity gives g h^2. So
+// each move is added to m as well as to x. (Of 1 m/s2 drag, 12,000 small steps a second were off by 0.015 of the length after 2 s, now 4e-6.)
+//
+// For the same reason coordinates are from where the root was at the step's start: sweeps see the rounding of x.
+// (Five metres off the origin, 81 small steps of 1/60 s trembled by 0.0045 of their length a step.)
+//
+// STYLED 1: after each flight particles are drawn to the style (style_spring.glsl). A rope stretches; see stretch.glsl for what is drawn.
+#include "sim/particles.glsl"
+#include "sim/stretch.glsl"
+#include "sim/style_spring.glsl"
+
+#define SMALL_STEPS   int(step_params.own[0].x)
+#define SWEEPS        int(step_params.own[0].y) // of each small step
+#define KEPT          step_params.own[0].z      // 1 - damping, of a small step
+#define SOFTNESS      step_params.own[0].w      // alpha/h^2
+#define FIRST_DECAY   step_params.own[1].x      // drag in the first small step: see forces.glsl
+#define FIRST_GAIN    step_params.own[1].y
+#define STRETCH_DRAWN step_params.own[1].z      // 1: links are drawn as long as they are
+#define FIRST_PULL    step_params.own[1].w      // towards the style, in the first small step and in later ones
+#define LATER_PULL    step_params.own[2].x
+
+vec3 mended(vec3 r, float l, float weights)
+{
+#if BULLET
+    float rr = dot(r, r), ll = l * l;
+    return r * ((ll - rr) / (weights * (ll + rr)));
+#else
+    float inverse = inversesqrt(max(dot(r, r), 1e-36));
+    return r * ((l * inverse - 1.0) / (weights + SOFTNESS));
+#endif
+}
+
+// By how much the head carries the root in the step.
+vec3 root_move(vec4 root)
+{
+    vec3 old = rotate(step_params.head_rotation_old, root.xyz) + step_params.head_translation_old.xyz;
+    return root_position(root) - old;
+}
+
+// Where the root is after `step` of the small steps.
+vec3 root_at(vec3 root_move, int step, int small_steps) { return root_move * (float(step) / float(small_steps)); }
+
+// The flight in later small steps is by CARRIED m + fall, Verlet's form with drag; the first starts from a velocity.
+#define CARRIED (KEPT * step_params.decay)
+
+vec3 fall_of(vec3 wind) { return step_params.dt * kick(vec3(0.0), wind); }
+
+vec3 first_flight(vec3 v, vec3 wind)
+{
+    return step_params.dt * (v * FIRST_DECAY + (step_params.gravity.xyz + step_params.drag * wind) * FIRST_GAIN);
+}
+
+void finish(int a, vec3 r, float l, vec3 moved, inout vec3 drawn, inout vec3 along)
+{
+    draw_link(a, r, l, moved * (KEPT / step_params.dt), STRETCH_DRAWN != 0.0, drawn, along);
+}
+
+#if IN_REGISTERS
+void main()
+{
+    int s = first_strand();
+    if (s >= int(step_params.strand_count)) return;
+    int base = strand_base(s);
+    vec3 x[VERTICES], m[VERTICES], wind = strand_wind(texelFetch(strand_id, s).x, root_position(strand_root(base)));
+    float l[VERTICES];
+    int small_steps = SMALL_STEPS, sweeps = SWEEPS;
+    vec4 root = strand_root(base), rotation = step_params.head_rotation;
+    vec3 drawn = texelFetch(position_before, base).xyz, at = vec3(0.0), carry = root_move(root);
+    x[0] = root_at(carry, 1, small_steps);
+#if STYLED
+    vec3 style[VERTICES]; // from the root
+    style[0] = vec3(0.0);
+#endif
+    for (int j = 1; j < VERTICES; ++j) {
+        int a = base + j * STRAND_TILE;
+        vec3 next = texelFetch(position_before, a).xyz;
+        vec4 v = texelFetch(velocity_before, a);
+        vec4 segment = texelFetch(rest, a);
+        l[j] = segment.w;
+        at += link_before(drawn, next, l[j], v.w);
+        drawn = next;
+        x[j] = at;
+        m[j] = first_flight(v.xyz, wind);
+#if STYLED
+        style[j] = next_style(style[j - 1], segment, rotation);
+        m[j] += FIRST_PULL * (x[0] + style[j] - (x[j] + m[j]));
+#endif
+    }
+
+#if BULLET
+    vec3 q[VERTICES]; // before the flight
+    for (int j = 1; j < VERTICES; ++j) q[j] = x[j], x[j] += m[j];
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
+        vec3 from = x[1] + mended(x[1] - x[0], l[1], 1.0);
+        for (int j = 2; j < VERTICES; ++j) {
+            vec3 push = mended(x[j] - from, l[j], 2.0);
+            x[j - 1] = from - push;
+            from = x[j] + push;
+        }
+        x[VERTICES - 1] = from;
+    }
+    for (int j = 1; j < VERTICES; ++j) m[j] = x[j] - q[j];
+#else
+    // The first small step's flight is known; a particle flies just before its first link is mended.
+    float carried = 1.0, pull = 0.0;
+    vec3 fall = vec3(0.0);
+    for (int step = 0; step < small_steps; ++step) {
+        vec3 from = root_at(carry, step + 1, small_steps), gone = vec3(0.0), push = vec3(0.0);
+        x[0] = from;
+        for (int j = 1; j < VERTICES; ++j) {
+            vec3 move = carried * m[j] + fall;
+#if STYLED
+            move += pull * (x[0] + style[j] - (x[j] + move));
+#endif
+            vec3 to = x[j] + move;
+            push = mended(to - from, l[j], j == 1 ? 1.0 : 2.0);
+            if (j > 1) x[j - 1] = from - push, m[j - 1] = gone - push;
+            from = to + push, gone = move + push;
+        }
+        x[VERTICES - 1] = from, m[VERTICES - 1] = gone;
+        carried = CARRIED, pull = LATER_PULL, fall = fall_of(wind);
+    }
+#endif
+
+    drawn = root_position(root);
+    vec3 along = rotate(rotation, texelFetch(rest, base + STRAND_TILE).xyz);
+    carry_lead(base);
+    positions[base] = vec4(drawn, 1.0);
+    for (int j = 1; j < VERTICES; ++j)
+        finish(base + j * STRAND_TILE, x[j] - x[j - 1], l[j], m[j], drawn, along);
+}
+#else
+// Any length: a dispatch (phase) is one sweep along the strand in scratch memory. A particle flies just before its first link is mended
+// in a small step; behind the last sweep of all it is drawn.
+layout(std430, binding = BIND_SCRATCH) buffer Scratch { vec4 scratch[]; }; // a particle: x; m
+
+void main()
+{
+    int s = first_strand(), n = int(step_params.vertex_count);
+    if (s >= int(step_params.strand_count)) return;
+    int phase = int(step_params.phase), step = phase / SWEEPS, a = strand_base(s);
+    bool loads = phase == 0, flies = phase == step * SWEEPS, draws = phase + 1 == SMALL_STEPS * SWEEPS;
+    vec3 wind = strand_wind(texelFetch(strand_id, s).x, root_position(strand_root(a))), fall = fall_of(wind);
+    vec4 root = strand_root(a);
+    vec3 drawn_before = texelFetch(position_before, a).xyz, at = vec3(0.0);
+    vec3 x = root_at(root_move(root), step + 1, SMALL_STEPS), m = vec3(0.0), style_at = x;
+    vec4 rotation = step_params.head_rotation;
+    float pull = loads ? FIRST_PULL : LATER_PULL;
+    vec3 before = x, drawn = root_position(root), along = rotate(rotation, texelFetch(rest, a + STRAND_TILE).xyz);
+    float weights = 1.0, l = 0.0, l_before = 0.0;
+    if (draws) {
+        carry_lead(a);
+        positions[a] = vec4(drawn, 1.0);
+    }
+    // Link j is mended while j - 1 waits in `x`, `m`; then j - 1 is done with.
+    for (int j = 1; j < n; ++j, a += STRAND_TILE) {
+        int b = a + STRAND_TILE;
+        vec3 next, next_m;
+        vec4 segment = texelFetch(rest, b);
+        l = segment.w;
+        if (loads) {
+            vec3 to = texelFetch(position_before, b).xyz;
+            vec4 v = texelFetch(velocity_before, b);
+            at += link_before(drawn_before, to, l, v.w);
+            drawn_before = to;
+            next = at;
+            next_m = first_flight(v.xyz, wind);
+        } else {
+            next = scratch[2 * b].xyz;
+            next_m = scratch[2 * b + 1].xyz;
+            if (flies) next_m = CARRIED * next_m + fall;
+        }
+#if STYLED
+        style_at = next_style(style_at, segment, rotation);
+        if (flies) next_m += pull * (style_at - (next + next_m));
+#endif
+        if (flies) next += next_m;
+        vec3 push = mended(next - x, l, weights);
+        if (j > 1) {
+            x -= push, m -= push;
+            if (draws) {
+                finish(a, x - before, l_before, m, drawn, along);
+            } else {
+                scratch[2 * a] = vec4(x, 0.0);
+                scratch[2 * a + 1] = vec4(m, 0.0);
+            }
+            before = x;
+        }
+        x = next + push;
+        m = next_m + push;
+        l_before = l;
+        weights = 2.0;
+    }
+    if (draws) {
+        finish(a, x - before, l, m, drawn, along);
+    } else {
+        scratch[2 * a] = vec4(x, 0.0);
+        scratch[2 * a + 1] = vec4(m, 0.0);
+    }
+}
+#endif

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// Looks whether strands are calm (sleep.h): each particle within `leave` of its anchor, and no farther from it than it has been before.
+// If not, they begin anew, those that have left their anchor with another one. A strand a lane.
+#include "sim/sleep_params.h"
+#include "common/hair_address.glsl"
+
+layout(local_size_x = GROUP_SIZE) in;
+layout(binding = BIND_POSITION) uniform samplerBuffer position;
+layout(binding = BIND_REST) uniform samplerBuffer rest;
+layout(std430, binding = BIND_ANCHORS_OUT) buffer Anchors { vec4 anchors[]; };
+layout(std430, binding = BIND_CALM_OUT) buffer Calm { uint calm[]; };
+
+void main()
+{
+    int s = int(gl_GlobalInvocationID.x), n = int(sleep_params.vertex_count);
+    if (s >= int(sleep_params.strand_count)) return;
+    int first = particle_address(s, 0, n);
+    float strand_length = texelFetch(rest, first).w;
+    float leave = sleep_params.leave * strand_length, grow = sleep_params.grow * strand_length;
+    float farthest = 0.0, growth = 0.0;
+    for (int j = 0; j < n; ++j) {
+        int a = first + j * STRAND_TILE;
+        vec4 anchor = anchors[a];
+        float way = distance(texelFetch(position, a).xyz, anchor.xyz);
+        farthest = max(farthest, way);
+        growth = max(growth, way - anchor.w);
+    }
+    bool was_ready = (calm[s] & SLEEP_READY) != 0u;
+    bool keeps_anchor = sleep_params.anchor == SLEEP_ANCHOR_LEFT || (sleep_params.anchor == SLEEP_ANCHOR_UNREADY && was_ready);
+    // Written so that a position that is no number is never calm.
+    bool stays = farthest <= leave && keeps_anchor, is_calm = stays && growth <= grow;
+    float reach = 0.0;
+    for (int j = 0; j < n; ++j) {
+        int a = first + j * STRAND_TILE;
+        vec4 anchor = anchors[a];
+        vec3 x = texelFetch(position, a).xyz;
+        float way = distance(x, anchor.xyz);
+        anchor.w = way - anchor.w > grow ? way : anchor.w;
+        anchors[a] = stays ? anchor : vec4(x, 0.0);
+        reach = max(reach, anchor.w);
+    }
+    uint looks = is_calm ? (calm[s] & ~SLEEP_READY) + 1u : 0u;
+    bool ready = stays && was_ready || float(looks) >= sleep_params.looks + sleep_params.looks_reach * reach / strand_length;
+    calm[s] = ready ? looks | SLEEP_READY : looks;
+}

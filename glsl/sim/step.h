@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// What a step of any solver is given, for one batch of strands. SI units.
+#include "common/shared.h"
+
+UNIFORM_BLOCK(StepParams, step_params, BIND_STEP)
+{
+    vec4 head_rotation_old;    // quaternion x y z w: the head's frame -> world, at the step's start
+    vec4 head_translation_old; // xyz
+    vec4 head_rotation;        // at the step's end
+    vec4 head_translation;
+    vec4 gravity; // xyz, m/s^2
+    vec4 wind[4]; // xyz, m/s: four directions around the main one, mixed for each strand
+    vec4
+        shelter; // xyz, m: the middle of the head; w: share of the wind that it keeps off behind it
+    vec4 head_velocity; // xyz, m/s, of that middle
+    vec4 own[4];        // a solver's own parameters, named by macros in its shader
+    float dt;           // s
+    float decay;        // e^{-c h}: what drag leaves of a velocity
+    float gain;         // h f: seconds that an acceleration acts
+    float drag;         // c, 1/s
+    uint strand_count;
+    uint vertex_count;
+    uint passes; // split: pulls along the strand; emulation: seed of the step's order
+    uint phase;  // which dispatch of a step this is
+}
+END_BLOCK(StepParams, step_params);

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: MIT
+// TressFX's constraints (AMD TressFX 4; Han, Harada: Real-time Hair Simulation with Efficient Hair Style Preservation, VRIPHYS 2012).
+//
+// The head carries vertices 0 and 1; the others are predicted, x* = x + dt (v decay + g gain), and corrected:
+//   shock    a share of the rigid motion of the root's segment moves the whole strand (all of it where the root is jerked)
+//   global   towards the style's position, the first `range` of the vertices
+//   local    with R_j, the smallest rotation from the style's segment j to the strand's, segment j+1 should be b_{j+1} = R_j r_{j+1}
+//   lengths
+//
+// TRESSFX4 1: as published. Each local pass moves, from the root on, both ends of a segment by a share of the gap b - s; each pass of the
+// lengths moves both ends of every second edge, then of the others. What a stiffness does depends on passes and dt.
+//
+// TRESSFX4 0 (`steady`): the same local passes; their share is chosen such that the stiffness does not (solver_tressfx.c). Lengths: Newton's
+// method, J J^T lambda = |s| (|s| - l), tridiagonal, tells by how much of itself each segment s must draw its ends together. Along s as it
+// is that would be y_j = x_j - lambda_j s_j + lambda_{j+1} s_{j+1}: under the strand's weight lambda is up to n g dt^2/l, and a segment turns
+// by 4 lambda times what it is off from where the tension turns it to, to and fro in each step where that is much more than 1. So tension
+// draws along the segments that it leaves: (I + K) y = x, (K y)_j = lambda_j (y_j - y_{j-1}) - lambda_{j+1} (y_{j+1} - y_j), tridiagonal and
+// positive definite, which turns nothing beyond that for any lambda. Where lambda is negative it pushes, along s. All that twice; a second
+// step along s would let long loose strands gain half of what they can fall. Then each segment gets its length. v = (x - x_before)/dt.
+// Where segment j+1 should be follows segment j, which takes no reaction: these forces have no potential, K of x'' = -K x is not symmetric,
+// and eigenvalues w^2 (1 + i e) of it gain about e w/2 per second. A long step damps that by w^2 dt/2. So that a short one does not flutter
+// either, neighbours exchange a share X of what their velocities differ by before they fly, v_j += X u, v_{j+1} -= X u, u = v_{j+1} - v_j:
+// momentum stays, energy falls for any X < 1. A joint alone would oscillate by W^2 = 2 passes LOCAL_SHARE/dt^2; X = W dt damps it critically.
+#include "sim/particles.glsl"
+
+#define LOCAL_SHARE step_params.own[0].x
+#define GLOBAL_SHARE step_params.own[0].y
+#define GLOBAL_RANGE step_params.own[0].z
+#define SHOCK step_params.own[0].w
+#define SHOCK_THRESHOLD step_params.own[1].x // m: second difference of vertex 1 over steps
+#define CLAMP step_params.own[1].y           // m a step
+#define LOCAL_PASSES int(step_params.own[1].z)
+#define LENGTH_PASSES int(step_params.own[1].w) // TRESSFX4
+#define EXCHANGED step_params.own[2].x // share of the difference of two neighbours' velocities; 0 for TRESSFX4
+
+// The strand is corrected in the head's frame with its root at the origin, where the style needs no turning: REST(j) is the direction and
+// length of its segment j, X(j) the vertex. Everything stays in memory: loops of few accesses run as fast there as unrolled ones in
+// registers, and compile in a sixth of the time.
+int strand = 0, n = 0; // of the lane, set in main
+int address(int j) { return particle_address(strand, j, n); }
+#define REST(j) texelFetch(rest, address(j))
+#define X(j) positions[address(j)].xyz
+
+// x turned by the smallest rotation from the unit vector a to the unit vector b.
+vec3 turn_between(vec3 a, vec3 b, vec3 x)
+{
+    vec3 k = cross(a, b);
+    float c = dot(a, b);
+    return c * x + cross(k, x) + k * (dot(k, x) / max(1.0 + c, 1e-6));
+}
+
+vec3 unit(vec3 v, vec3 otherwise)
+{
+    float square = dot(v, v);
+    return square > 1e-30 ? v * inversesqrt(square) : otherwise;
+}
+
+vec4 conjugate(vec4 rotation) { return vec4(-rotation.xyz, rotation.w); }
+
+// What the head does to the strand in this step, in the head's frame at its end.
+struct Carried {
+    vec3 root_old, root; // in the world
+    vec3 first_old;      // where the first segment, now REST(1), pointed
+    float share;         // of the root's rigid motion that the whole strand takes part in
+};
+
+Carried carried_by_head()
+{
+    vec4 root = texelFetch(rest, address(0)), first = REST(1), old = step_params.head_rotation_old;
+    Carried carried;
+    carried.root_old = rotate(old, root.xyz) + step_params.head_translation_old.xyz;
+    carried.root = root_position(root);
+    vec3 first_old = rotate(old, first.xyz), first_new = rotate(step_params.head_rotation, first.xyz);
+    carried.first_old = rotate(conjugate(step_params.head_rotation), first_old);
+    vec3 moved = carried.root - carried.root_old + first.w * (first_new - first_old);
+    vec3 jerk = moved - step_params.dt * texelFetch(velocity_before, address(1)).xyz;
+    float threshold = SHOCK_THRESHOLD;
+    carried.share = dot(jerk, jerk) > threshold * threshold ? 1.0 : SHOCK;
+    velocities[address(1)] = vec4(moved / step_params.dt, 0.0); // for the next step's jerk
+    return carried;
+}
+
+// A vertex between a short segment and one more than MOST_LEVER times as long gives way by less than its share, and exchanges less: it would
+// turn the short segment, and with it the frame that the long one is held in, by more than it mends.
+const float MOST_LEVER = 2.0;
+
+// Leaves the predicted vertices in `positions` and where they came from in `velocities`, both in the head's frame.
+void predict(Carried carried)
+{
+    vec3 wind = strand_wind(texelFetch(strand_id, strand).x, carried.root), root_old = carried.root_old, home = carried.root - carried.root_old;
+    vec3 style = vec3(0.0), first = REST(1).xyz, first_old = carried.first_old;
+    vec4 to_head = conjugate(step_params.head_rotation);
+    float dt = step_params.dt, global = GLOBAL_SHARE, last_global = GLOBAL_RANGE * float(n), share = carried.share;
+    home = rotate(to_head, home);
+#if !TRESSFX4
+    // The others' velocities are relative to the motion that the whole strand takes part in.
+    vec3 ahead = (1.0 - share) * texelFetch(velocity_before, address(1)).xyz;
+    float exchanged = EXCHANGED;
+#endif
+    for (int j = 1; j < n; ++j) {
+        int a = address(j);
+        vec4 segment = REST(j);
+        style += segment.w * segment.xyz;
+        vec3 from = rotate(to_head, texelFetch(position_before, a).xyz - root_old);
+#if TRESSFX4
+        vec3 v = texelFetch(velocity_before, a).xyz;
+        vec3 x = from + dt * rotate(to_head, v * step_params.decay + step_params.gravity.xyz * dt);
+        if (float(j) < last_global) x = mix(x, style + home, global);
+#else
+        vec3 v = ahead;
+        ahead = texelFetch(velocity_before, address(min(j + 1, n - 1))).xyz;
+        float lever = min(1.0, MOST_LEVER * segment.w / REST(min(j + 1, n - 1)).w);
+        vec3 given = (j + 1 < n ? exchanged * lever : 0.0) * (ahead - v);
+        v += given, ahead -= given;
+        vec3 x = from + dt * rotate(to_head, kick(v, wind));
+#endif
+        x = mix(x - home, turn_between(first_old, first, x), share);
+        from = mix(from - home, turn_between(first_old, first, from), share);
+#if !TRESSFX4
+        if (float(j) < last_global) x = mix(x, style, global);
+#endif
+        positions[a] = vec4(j < 2 ? style : x, 1.0);
+        if (j > 1) velocities[a] = vec4(from, 0.0);
+    }
+    positions[address(0)] = vec4(0.0, 0.0, 0.0, 1.0);
+}
+
+void keep_local_shape()
+{
+    float share = LOCAL_SHARE;
+    vec3 before = X(0), x = X(1);
+    vec4 rest_here = REST(1);
+    for (int j = 1; j < n - 1; ++j) {
+        vec4 rest_next = REST(j + 1);
+        vec3 wanted = rest_next.w * turn_between(rest_here.xyz, unit(x - before, rest_here.xyz), rest_next.xyz);
+        vec3 next = X(j + 1), gap = share * (x + wanted - next);
+        x = j > 1 ? x - gap * min(1.0, MOST_LEVER * rest_here.w / rest_next.w) : x;
+        X(j) = x;
+        before = x;
+        x = next + gap;
+        rest_here = rest_next;
+    }
+    X(n - 1) = x;
+}
+
+#if TRESSFX4
+
+// The force -(t x w) x t of the air on a segment t, towards where the air goes. It has TressFX's unit of length, the centimetre, built in,
+// and grows with the square of a stretched segment: the clamp keeps a storm finite.
+void blow()
+{
+    vec3 wind = rotate(conjugate(step_params.head_rotation), strand_wind(texelFetch(strand_id, strand).x, root_position(texelFetch(rest, address(0)))));
+    float strength = 1e4 * step_params.dt * step_params.dt, most = CLAMP;
+    if (dot(wind, wind) == 0.0) return;
+    for (int j = 2; j < n - 1; ++j) {
+        vec3 t = X(j + 1) - X(j), blown = strength * cross(cross(t, wind), t);
+        float square = dot(blown, blown);
+        X(j) += square > most * most ? blown * (most * inversesqrt(square)) : blown;
+    }
+}
+
+void keep_edge(inout vec3 a, inout vec3 b, float rest_length, float share_a, float share_b)
+{
+    vec3 edge = b - a;
+    vec3 excess = edge * (1.0 - rest_length / max(length(edge), 1e-9));
+    a += share_a * excess;
+    b -= share_b * excess;
+}
+
+// The even edges (0 1), (2 3) .. and the odd ones (1 2), (3 4) .. in one sweep: an odd edge has its turn as soon as the even edges on both
+// sides have had theirs. The head holds vertices 0 and 1.
+void keep_lengths()
+{
+    vec3 b = X(1); // the end of the even edge before
+    for (int j = 2; j < n; j += 2) {
+        vec3 c = X(j), d = X(min(j + 1, n - 1));
+        if (j + 1 < n) keep_edge(c, d, REST(min(j + 1, n - 1)).w, 0.5, 0.5);
+        keep_edge(b, c, REST(j).w, j > 2 ? 0.5 : 0.0, j > 2 ? 0.5 : 1.0);
+        X(j - 1) = b;
+        X(j) = c;
+        b = d;
+    }
+    if ((n & 1) == 0) X(n - 1) = b;
+}
+
+#else
+
+// The rows of J J^T lambda = |s| (|s| - l), eliminated from the root on.
+struct Rows {
+    vec3 before, s;         // the vertex before, the segment that ends there
+    float per_pivot, right; // of the last row
+};
+
+Rows open_rows() { return Rows(X(1), vec3(0.0), 0.0, 0.0); }
+
+// What elimination leaves of the right side of the row of the segment that ends in vertex j at x: it waits in the fourth component of
+// `positions`, the factor that brings the row before to this one in that of `velocities`.
+float add_row(inout Rows rows, int j, vec3 x)
+{
+    vec3 s = x - rows.before;
+    float square = dot(s, s), off = -dot(s, rows.s);
+    float diagonal = j == 2 ? square : 2.0 * square, factor = off * rows.per_pivot;
+    float pivot = max(diagonal - off * factor, 1e-6 * diagonal);
+    float per_pivot = pivot > 1e-30 ? 1.0 / pivot : 0.0;
+    float right = (square - sqrt(square) * REST(j).w - off * rows.right) * per_pivot;
+    velocities[address(j)].w = factor;
+    rows = Rows(x, s, per_pivot, right);
+    return right;
+}
+
+// From the tip on, lambda of each segment out of its row, and with it the row of (I + K) y = x, eliminated in turn: as resistors in a
+// ladder, one to the ground at each vertex, are taken together, own_j = 1 + own_{j+1} lambda_{j+1}/(own_{j+1} + lambda_{j+1}), which needs
+// no difference. Leaves y_j = xyz + w y_{j-1}.
+void pull_together()
+{
+    float lambda = 0.0, factor = 0.0, own = 0.0, share = 0.0;
+    vec3 x = X(n - 1), kept = vec3(0.0), pushed = vec3(0.0);
+    for (int j = n - 1; j >= 2; --j) {
+        int a = address(j);
+        lambda = positions[a].w - factor * lambda;
+        vec3 next = X(j - 1), push = min(lambda, 0.0) * (x - next);
+        kept = x - push + pushed + share * kept;
+        own = 1.0 + share * own;
+        float tension = max(lambda, 0.0), per_pivot = 1.0 / (own + tension);
+        share = tension * per_pivot;
+        positions[a] = vec4(per_pivot * kept, share);
+        factor = velocities[a].w, x = next, pushed = push;
+    }
+}
+
+void keep_lengths()
+{
+    Rows rows = open_rows();
+    for (int j = 2; j < n; ++j) positions[address(j)].w = add_row(rows, j, X(j));
+    pull_together();
+    rows = open_rows();
+    for (int j = 2; j < n; ++j) {
+        vec4 pulled = positions[address(j)];
+        vec3 x = pulled.xyz + pulled.w * rows.before;
+        positions[address(j)] = vec4(x, add_row(rows, j, x));
+    }
+    pull_together();
+}
+
+#endif
+
+// Lengths, velocities and the way back to the world.
+void finish(Carried carried)
+{
+    vec4 to_world = step_params.head_rotation;
+    float dt = step_params.dt, most = CLAMP;
+    vec3 x = vec3(0.0), before = vec3(0.0), along = vec3(0.0);
+    positions[address(0)] = vec4(carried.root, 1.0);
+    velocities[address(0)] = vec4(0.0);
+    for (int j = 1; j < n; ++j) {
+        int a = address(j);
+        vec4 now = positions[a];
+#if TRESSFX4
+        x = now.xyz;
+#else
+        vec4 segment = REST(j);
+        vec3 here = j > 1 ? now.xyz + now.w * before : now.xyz;
+        along = unit(here - before, segment.xyz);
+        x += segment.w * along;
+        before = here;
+#endif
+        vec3 moved = x - velocities[a].xyz;
+        float square = dot(moved, moved), limit = most * most;
+#if TRESSFX4
+        float kept = square > limit ? limit / square : 1.0;
+#else
+        float kept = square > limit ? most * inversesqrt(square) : 1.0;
+#endif
+        if (j > 1) velocities[a] = vec4(rotate(to_world, moved * (kept / dt)), 0.0);
+        positions[a] = vec4(carried.root + rotate(to_world, x), 1.0);
+    }
+}
+
+void main()
+{
+    strand = first_strand();
+    if (strand >= int(step_params.strand_count)) return;
+    n = int(step_params.vertex_count);
+    Carried carried = carried_by_head();
+    predict(carried);
+    int local_passes = n > 2 ? LOCAL_PASSES : 0;
+    for (int i = 0; i < local_passes; ++i) keep_local_shape();
+#if TRESSFX4
+    blow();
+    int length_passes = LENGTH_PASSES;
+    for (int i = 0; i < length_passes; ++i) keep_lengths();
+#else
+    keep_lengths();
+#endif
+    // Collisions push vertices out of capsules here, where TressFX does.
+    finish(carried);
+}

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#include "base/bytes.h"
+
+#include "base/outfile.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+// Reads until the end from `descriptor` into a buffer that starts with room for `capacity` bytes
+// and the zero. Returns 0 or an errno. Growing lets pipes and /proc files, whose size is not known,
+// be read too.
+static int read_all(Bytes *bytes, int descriptor, size_t capacity)
+{
+    bytes->data = malloc(capacity + 1);
+    if (!bytes->data) return ENOMEM;
+    for (;;) {
+        if (bytes->size == capacity) {
+            if (capacity > SIZE_MAX / 2 - 4096) return ENOMEM;
+            size_t larger = capacity + capacity / 2 + 4096;
+            uint8_t *data = realloc(bytes->data, larger + 1);
+            if (!data) return ENOMEM;
+            bytes->data = data;
+            capacity = larger;
+        }
+        ssize_t got = read(descriptor, bytes->data + bytes->size, capacity - bytes->size);
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) return errno;
+        if (got == 0) break;
+        bytes->size += (size_t)got;
+    }
+    bytes->data[bytes->size] = 0;
+    return 0;
+}
+
+Result bytes_read_file(Bytes *bytes, const char *path, Error *error)
+{
+    *bytes = (Bytes){0};
+    int descriptor = open(path, O_RDONLY | O_CLOEXEC);
+    struct stat status;
+    if (descriptor < 0 || fstat(descriptor, &status) != 0) {
+        int reason = errno;
+        if (descriptor >= 0) close(descriptor);
+        return error_set(error, RESULT_BAD_INPUT, "%s: %s", path, strerror(reason));
+    }
+    // One byte more than the size, so that the end of file is met without growing.
+    size_t capacity = S_ISREG(status.st_mode) ? (size_t)status.st_size + 1 : 4096;
+    int reason = read_all(bytes, descriptor, capacity);
+    close(descriptor);
+    if (reason == 0) return RESULT_OK;
+    bytes_destroy(bytes);
+    return error_set(error, reason == ENOMEM ? RESULT_FAILED : RESULT_BAD_INPUT, "%s: %s", path,
+                     strerror(reason));
+}
+
+void bytes_destroy(Bytes *bytes)
+{
+    free(bytes->data);
+    *bytes = (Bytes){0};
+}
+
+Result bytes_write_file(const Bytes *bytes, const char *path, Error *error)
+{
+    OutFile file;
+    Result result = outfile_open(&file, path, error);
+    if (result != RESULT_OK) return result;
+    fwrite(bytes->data, 1, bytes->size, file.stream);
+    return outfile_commit(&file, error);
+}

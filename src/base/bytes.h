@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// The bytes of a whole file, read or written at once.
+#pragma once
+
+#include "base/error.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+// The bytes of a file. `data` has one more byte, zero, behind `size`, so that text may be read as a
+// string.
+typedef struct Bytes {
+    uint8_t *data;
+    size_t size;
+} Bytes;
+
+// Reads all of `path` ("-" is not special; pipes and devices are read until they end). Fails with
+// RESULT_BAD_INPUT naming the path and the reason (missing, a folder, unreadable), or RESULT_FAILED
+// when memory is short. Free with bytes_destroy, which takes a zeroed struct too.
+Result bytes_read_file(Bytes *bytes, const char *path, Error *error);
+void bytes_destroy(Bytes *bytes);
+
+// Writes the bytes as a whole file through an OutFile: complete or not at all, RESULT_FAILED
+// with path and reason.
+Result bytes_write_file(const Bytes *bytes, const char *path, Error *error);

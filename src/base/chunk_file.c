@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+#include "base/chunk_file.h"
+
+#include <endian.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <libdeflate.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { VERSION = 1, MAGIC_BYTES = 8, TAG_BYTES = 4 };
+
+// Little-endian, as in the file.
+typedef struct Header {
+    char tag[TAG_BYTES];
+    uint32_t number;
+    uint64_t size;
+    uint32_t checksum;        // of the payload
+    uint32_t header_checksum; // of the 20 bytes before
+} Header;
+_Static_assert(sizeof(Header) == CHUNK_HEADER_BYTES, "a header has no holes");
+
+void chunk_file_begin(FILE *stream, const char *magic)
+{
+    const uint32_t rest[2] = {htole32(VERSION), 0};
+    fwrite(magic, 1, MAGIC_BYTES, stream);
+    fwrite(rest, 1, sizeof rest, stream);
+}
+
+void chunk_write(FILE *stream, const char *tag, uint32_t number, const void *payload, size_t size)
+{
+    Header header = {.number = htole32(number),
+                     .size = htole64(size),
+                     .checksum = htole32(libdeflate_crc32(0, payload, size))};
+    memcpy(header.tag, tag, TAG_BYTES);
+    header.header_checksum =
+        htole32(libdeflate_crc32(0, &header, offsetof(Header, header_checksum)));
+    fwrite(&header, 1, sizeof header, stream);
+    fwrite(payload, 1, size, stream);
+}
+
+bool chunk_file_read_raw(ChunkFile *file, uint64_t at, void *bytes, size_t size)
+{
+    uint8_t *to = bytes;
+    while (size > 0) {
+        ssize_t got = pread(file->descriptor, to, size, (off_t)at);
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0) return false;
+        to += got, at += (uint64_t)got, size -= (size_t)got;
+    }
+    return true;
+}
+
+static Result check_header(ChunkFile *file, const char *magic, Error *error)
+{
+    char header[CHUNK_FILE_HEADER_BYTES];
+    uint32_t version;
+    if (!chunk_file_read_raw(file, 0, header, sizeof header) ||
+        memcmp(header, magic, MAGIC_BYTES) != 0)
+        return error_set(error, RESULT_BAD_INPUT, "%s: does not begin with %s", file->path, magic);
+    memcpy(&version, header + MAGIC_BYTES, sizeof version);
+    if (le32toh(version) == VERSION) return RESULT_OK;
+    return error_set(error, RESULT_BAD_INPUT, "%s: version %u, this program reads %d", file->path,
+                     le32toh(version), VERSION);
+}
+
+Result chunk_file_open(ChunkFile *file, const char *path, const char *magic, Error *error)
+{
+    *file = (ChunkFile){.path = strdup(path), .descriptor = -1};
+    if (!file->path) return error_set(error, RESULT_FAILED, "no memory for a file's name");
+    struct stat status;
+    file->descriptor = open(path, O_RDONLY | O_CLOEXEC);
+    Result result = RESULT_OK;
+    if (file->descriptor < 0 || fstat(file->descriptor, &status) != 0)
+        result = error_set(error, RESULT_BAD_INPUT, "%s: %s", path, strerror(errno));
+    else if (!S_ISREG(status.st_mode))
+        result = error_set(error, RESULT_BAD_INPUT, "%s: not a plain file", path);
+    else
+        file->size = (uint64_t)status.st_size;
+    if (result == RESULT_OK) result = check_header(file, magic, error);
+    if (result != RESULT_OK) chunk_file_close(file);
+    return result;
+}
+
+void chunk_file_close(ChunkFile *file)
+{
+    if (file->path && file->descriptor >= 0) close(file->descriptor);
+    free(file->path);
+    *file = (ChunkFile){.descriptor = -1};
+}
+
+Result chunk_find(ChunkFile *file, uint64_t at, Chunk *chunk, Error *error)
+{
+    Header header;
+    if (!chunk_file_read_raw(file, at, &header, sizeof header))
+        return error_set(error, RESULT_BAD_INPUT, "%s: byte %llu: the file ends", file->path,
+                         (unsigned long long)at);
+    if (le32toh(header.header_checksum) !=
+        libdeflate_crc32(0, &header, offsetof(Header, header_checksum)))
+        return error_set(error, RESULT_BAD_INPUT, "%s: byte %llu: damaged, no chunk begins here",
+                         file->path, (unsigned long long)at);
+    *chunk = (Chunk){.number = le32toh(header.number),
+                     .at = at,
+                     .size = le64toh(header.size),
+                     .checksum = le32toh(header.checksum)};
+    memcpy(chunk->tag, header.tag, TAG_BYTES);
+    if (chunk->size <= file->size && chunk_end(chunk) <= file->size) return RESULT_OK;
+    return error_set(error, RESULT_BAD_INPUT, "%s: byte %llu: the file ends within this chunk",
+                     file->path, (unsigned long long)at);
+}
+
+Result chunk_read(ChunkFile *file, const Chunk *chunk, Bytes *payload, Error *error)
+{
+    *payload = (Bytes){.data = malloc((size_t)chunk->size + 1), .size = (size_t)chunk->size};
+    if (!payload->data) {
+        *payload = (Bytes){0};
+        return error_set(error, RESULT_FAILED, "%s: no memory for %llu bytes", file->path,
+                         (unsigned long long)chunk->size);
+    }
+    payload->data[payload->size] = 0;
+    if (chunk_file_read_raw(file, chunk->at + CHUNK_HEADER_BYTES, payload->data, payload->size) &&
+        libdeflate_crc32(0, payload->data, payload->size) == chunk->checksum)
+        return RESULT_OK;
+    bytes_destroy(payload);
+    return error_set(error, RESULT_BAD_INPUT, "%s: byte %llu: damaged, the checksum differs",
+                     file->path, (unsigned long long)chunk->at);
+}

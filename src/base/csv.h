@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// Plain CSV: a header line with column names, comma-separated fields without quotes.
+#pragma once
+
+#include "base/bytes.h"
+#include "base/error.h"
+
+#include <stddef.h>
+#include <stdio.h>
+
+// A table in memory. `field[row * column_count + column]` points into `bytes`.
+typedef struct Csv {
+    char *path;
+    Bytes bytes;
+    char **field; // row 0 is the first after the header
+    char **column;
+    size_t column_count, row_count;
+} Csv;
+
+// Reads the file. RESULT_BAD_INPUT with "FILE:LINE: ..." if a row has not as many fields as the
+// header.
+Result csv_read(Csv *csv, const char *path, Error *error);
+void csv_destroy(Csv *csv);
+
+// Column of that name; RESULT_BAD_INPUT naming file and column if it is missing.
+Result csv_find(const Csv *csv, const char *name, size_t *column, Error *error);
+
+// The field as it stands in the file; valid until csv_destroy.
+const char *csv_text(const Csv *csv, size_t row, size_t column);
+
+// A number, decimal or C hex. RESULT_BAD_INPUT with "FILE:LINE: ..." if the field is none.
+Result csv_number(const Csv *csv, size_t row, size_t column, double *value, Error *error);

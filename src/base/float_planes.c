@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+#include "base/float_planes.h"
+
+#include <endian.h>
+#include <libdeflate.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Measured on 10,000 x 32 particles: level 6 takes 4 times as long for 1 % less.
+enum { DEFLATE_LEVEL = 1, PLANES = 4, SIZE_BYTES = 8 };
+
+// Where bytes have more bits of information than this, deflate finds nothing.
+static const double NOISE_BITS = 7.8;
+
+size_t float_planes_bound(size_t count)
+{
+    return PLANES * (count + SIZE_BYTES);
+}
+
+// Bits as integers in the order of the numbers: neighbouring floats differ by 1.
+static uint32_t to_order(uint32_t bits)
+{
+    return bits >> 31 ? ~bits : bits | 0x80000000u;
+}
+
+static uint32_t from_order(uint32_t order)
+{
+    return order >> 31 ? order & 0x7fffffffu : ~order;
+}
+
+// 0, -1, 1, -2, ... as 0, 1, 2, 3, ...: small distances either way have zeros above.
+static uint32_t fold(uint32_t difference)
+{
+    return difference << 1 ^ (difference >> 31 ? UINT32_MAX : 0);
+}
+
+static uint32_t unfold(uint32_t folded)
+{
+    return folded >> 1 ^ (folded & 1 ? UINT32_MAX : 0);
+}
+
+static uint32_t order_of(float value)
+{
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return to_order(bits);
+}
+
+static void split(const float *values, size_t count, size_t stride, uint8_t *planes)
+{
+    for (size_t i = 0; i < count; ++i) {
+        uint32_t before = i < stride ? 0x80000000u : order_of(values[i - stride]);
+        uint32_t folded = fold(order_of(values[i]) - before);
+        for (int plane = 0; plane < PLANES; ++plane)
+            planes[(size_t)plane * count + i] = (uint8_t)(folded >> 8 * plane);
+    }
+}
+
+static void join(float *values, size_t count, size_t stride, const uint8_t *planes)
+{
+    for (size_t i = 0; i < count; ++i) {
+        uint32_t folded = 0;
+        for (int plane = 0; plane < PLANES; ++plane)
+            folded |= (uint32_t)planes[(size_t)plane * count + i] << 8 * plane;
+        uint32_t before = i < stride ? 0x80000000u : order_of(values[i - stride]);
+        uint32_t bits = from_order(before + unfold(folded));
+        memcpy(&values[i], &bits, sizeof bits);
+    }
+}
+
+static bool is_noise(const uint8_t *bytes, size_t count)
+{
+    size_t times[256] = {0};
+    double bits = 0;
+    for (size_t i = 0; i < count; ++i) ++times[bytes[i]];
+    for (int i = 0; i < 256; ++i)
+        if (times[i]) bits -= (double)times[i] * log2((double)times[i] / (double)count);
+    return bits > NOISE_BITS * (double)count;
+}
+
+// One plane behind its size: deflated or, with the size that it has unpacked, as it is.
+static size_t pack_plane(struct libdeflate_compressor *compressor, const uint8_t *plane,
+                         size_t count, uint8_t *packed)
+{
+    size_t size = 0;
+    if (!is_noise(plane, count) && count > 1)
+        size =
+            libdeflate_deflate_compress(compressor, plane, count, packed + SIZE_BYTES, count - 1);
+    if (size == 0) {
+        size = count;
+        memcpy(packed + SIZE_BYTES, plane, count);
+    }
+    uint64_t told = htole64(size);
+    memcpy(packed, &told, SIZE_BYTES);
+    return SIZE_BYTES + size;
+}
+
+size_t float_planes_pack(const float *values, size_t count, size_t stride, uint8_t *packed)
+{
+    struct libdeflate_compressor *compressor = libdeflate_alloc_compressor(DEFLATE_LEVEL);
+    uint8_t *planes = malloc(PLANES * count + 1);
+    size_t size = 0;
+    if (compressor && planes) {
+        split(values, count, stride, planes);
+        for (size_t plane = 0; plane < PLANES; ++plane)
+            size += pack_plane(compressor, planes + plane * count, count, packed + size);
+    }
+    if (compressor) libdeflate_free_compressor(compressor);
+    free(planes);
+    return size;
+}
+
+// Returns how many bytes of `packed` the plane takes, 0 if they make no sense.
+static size_t unpack_plane(struct libdeflate_decompressor *decompressor, uint8_t *plane,
+                           size_t count, const uint8_t *packed, size_t left)
+{
+    uint64_t told;
+    if (left < SIZE_BYTES) return 0;
+    memcpy(&told, packed, SIZE_BYTES);
+    told = le64toh(told);
+    if (told > count || told > left - SIZE_BYTES) return 0;
+    size_t size = (size_t)told;
+    if (size == count)
+        memcpy(plane, packed + SIZE_BYTES, count);
+    else if (libdeflate_deflate_decompress(decompressor, packed + SIZE_BYTES, size, plane, count,
+                                           NULL) != LIBDEFLATE_SUCCESS)
+        return 0;
+    return SIZE_BYTES + size;
+}
+
+bool float_planes_unpack(float *values, size_t count, size_t stride, const uint8_t *packed,
+                         size_t size)
+{
+    struct libdeflate_decompressor *decompressor = libdeflate_alloc_decompressor();
+    uint8_t *planes = malloc(PLANES * count + 1);
+    bool good = decompressor && planes;
+    size_t at = 0;
+    for (size_t plane = 0; plane < PLANES && good; ++plane) {
+        size_t used =
+            unpack_plane(decompressor, planes + plane * count, count, packed + at, size - at);
+        good = used > 0;
+        at += used;
+    }
+    good = good && at == size;
+    if (good) join(values, count, stride, planes);
+    if (decompressor) libdeflate_free_decompressor(decompressor);
+    free(planes);
+    return good;
+}

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "base/formula.h"
+
+#include "base/noise.h"
+
+#include <muParserDLL.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double smoothstep(double a, double b, double x)
+{
+    double u = fmin(fmax((x - a) / (b - a), 0), 1);
+    return u * u * (3 - 2 * u);
+}
+
+// muParser prints errors itself unless somebody listens; formula_create asks for them by mupError.
+static void stay_silent(muParserHandle_t parser)
+{
+    (void)parser;
+}
+
+// A probe of what the parser lets pass: `1,2` is two values, `t=3` sets the time.
+static const char *find_fault(const Formula *formula)
+{
+    const double probe = 0.25;
+    int values = 0;
+    for (int i = 0; i < formula->count; i++) formula->value[i] = probe;
+    mupEvalMulti(formula->parser, &values);
+    if (mupError(formula->parser)) return mupGetErrorMsg(formula->parser);
+    if (values != 1) return "more than one value, and a decimal point is '.'";
+    for (int i = 0; i < formula->count; i++)
+        if (formula->value[i] != probe) return "variables are given, they cannot be set";
+    return NULL;
+}
+
+static Result fail(Formula *formula, const char *const *names, const char *fault, Error *error)
+{
+    char list[128] = "";
+    for (int i = 0; i < formula->count; i++) {
+        size_t used = strlen(list);
+        snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", names[i]);
+    }
+    error_set(error, RESULT_BAD_INPUT, "got '%.100s', expected a formula of %s: %.200s",
+              formula->text, list, fault);
+    formula_destroy(formula);
+    return RESULT_BAD_INPUT;
+}
+
+Result formula_create_named(Formula *formula, const char *text, const char *const *names, int count,
+                            Error *error)
+{
+    *formula = (Formula){.text = strdup(text),
+                         .parser = mupCreate(muBASETYPE_FLOAT),
+                         .value = calloc((size_t)count, sizeof *formula->value),
+                         .count = count};
+    if (!formula->text || !formula->parser || !formula->value) {
+        formula_destroy(formula);
+        return error_set(error, RESULT_FAILED, "out of memory");
+    }
+    muParserHandle_t parser = formula->parser;
+    mupSetErrorHandler(parser, stay_silent);
+    for (int i = 0; i < count; i++) mupDefineVar(parser, names[i], &formula->value[i]);
+    mupDefineConst(parser, "pi", 3.14159265358979323846);
+    mupDefineFun3(parser, "smoothstep", smoothstep, 1);
+    mupDefineFun3(parser, "noise", noise_at, 1);
+    mupSetExpr(parser, text);
+    const char *fault = find_fault(formula);
+    return fault ? fail(formula, names, fault, error) : RESULT_OK;
+}
+
+Result formula_create(Formula *formula, const char *text, Error *error)
+{
+    static const char *const names[] = {"t"};
+    return formula_create_named(formula, text, names, 1, error);
+}
+
+void formula_destroy(Formula *formula)
+{
+    if (formula->parser) mupRelease(formula->parser);
+    free(formula->text);
+    free(formula->value);
+    *formula = (Formula){0};
+}
+
+double formula_evaluate(const Formula *formula, double time)
+{
+    formula->value[0] = time;
+    return mupEval(formula->parser);
+}
+
+double formula_evaluate_named(const Formula *formula, const double *values)
+{
+    memcpy(formula->value, values, (size_t)formula->count * sizeof *values);
+    return mupEval(formula->parser);
+}

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: MIT
+#include "base/json_place.h"
+#include "base/suggest.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { EXCERPT_SIZE = 64 };
+
+// Writes the place's name from the root on; returns its length, cut at `size` - 1.
+static size_t name_place(const Place *place, char *text, size_t size)
+{
+    size_t length = place->parent ? name_place(place->parent, text, size) : 0;
+    const char *between = !place->parent ? "" : place->parent->parent ? "." : ": ";
+    if (place->key)
+        length += (size_t)snprintf(text + length, size - length, "%s%.80s", between, place->key);
+    else
+        length += (size_t)snprintf(text + length, size - length, "[%zu]", place->index);
+    return length < size ? length : size - 1;
+}
+
+// Keys and values may hold line ends; a message is one line.
+static void replace_controls(char *text)
+{
+    for (; *text; text++) {
+        if ((unsigned char)*text < ' ' || *text == 127) *text = '?';
+    }
+}
+
+Result place_fail(const Place *place, Error *error, const char *format, ...)
+{
+    char name[512], rest[400];
+    name_place(place, name, sizeof name);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(rest, sizeof rest, format, arguments);
+    va_end(arguments);
+    replace_controls(name);
+    replace_controls(rest);
+    return error_set(error, RESULT_BAD_INPUT, "%s: %s", name, rest);
+}
+
+// The beginning of a value's text.
+typedef struct Excerpt {
+    char text[EXCERPT_SIZE];
+    size_t length;
+} Excerpt;
+
+// json_dump_callback_t: takes what fits and ends the dump when the excerpt is full.
+static int append_to_excerpt(const char *bytes, size_t size, void *data)
+{
+    Excerpt *excerpt = data;
+    size_t room = sizeof excerpt->text - 1 - excerpt->length;
+    bool fits = size <= room;
+    if (!fits) size = room;
+    memcpy(excerpt->text + excerpt->length, bytes, size);
+    excerpt->length += size;
+    return fits ? 0 : -1;
+}
+
+// The value as JSON on one line, cut between characters.
+static Excerpt excerpt_value(const json_t *value)
+{
+    Excerpt excerpt = {.length = 0};
+    size_t flags = JSON_ENCODE_ANY | JSON_COMPACT | JSON_REAL_PRECISION(9);
+    if (json_dump_callback(value, append_to_excerpt, &excerpt, flags) != 0) {
+        size_t cut = sizeof excerpt.text - 4;
+        while (cut > 0 && (excerpt.text[cut] & 0xc0) == 0x80) cut--;
+        memcpy(excerpt.text + cut, "...", 4);
+    }
+    return excerpt;
+}
+
+Result place_refuse(const Place *place, const json_t *value, const char *expected, Error *error)
+{
+    return place_fail(place, error, "got %s, expected %s", excerpt_value(value).text, expected);
+}
+
+Result place_read_number(const Place *place, const json_t *value, double minimum, double maximum,
+                         const char *expected, double *number, Error *error)
+{
+    double read = json_number_value(value);
+    double inside = fmin(fmax(read, minimum), maximum);
+    char words[160];
+    int length =
+        snprintf(words, sizeof words, "%s from %.10g to %.10g", expected, minimum, maximum);
+    if (json_is_number(value) && read == inside) {
+        *number = read;
+        return RESULT_OK;
+    }
+    if (json_is_number(value))
+        snprintf(words + length, sizeof words - (size_t)length, " (nearest: %.10g)", inside);
+    return place_refuse(place, value, words, error);
+}
+
+Result place_read_vector(const Place *place, const json_t *value, size_t count, double minimum,
+                         double maximum, const char *expected, float *numbers, Error *error)
+{
+    if (!json_is_array(value) || json_array_size(value) != count)
+        return place_refuse(place, value, expected, error);
+    for (size_t i = 0; i < count; i++) {
+        Place element = {.parent = place, .index = i};
+        double number;
+        Result result = place_read_number(&element, json_array_get(value, i), minimum, maximum,
+                                          "a number", &number, error);
+        if (result != RESULT_OK) return result;
+        numbers[i] = (float)number;
+    }
+    return RESULT_OK;
+}
+
+static size_t count_words(const char *const *words)
+{
+    size_t count = 0;
+    while (words[count]) count++;
+    return count;
+}
+
+Result place_read_choice(const Place *place, const json_t *value, const char *const *words,
+                         int *index, Error *error)
+{
+    char expected[160] = "one of";
+    size_t length = strlen(expected), count = count_words(words);
+    for (size_t i = 0; i < count; i++) {
+        if (json_is_string(value) && strcmp(json_string_value(value), words[i]) == 0) {
+            *index = (int)i;
+            return RESULT_OK;
+        }
+        if (length < sizeof expected)
+            length +=
+                (size_t)snprintf(expected + length, sizeof expected - length, " \"%s\"", words[i]);
+    }
+    if (json_is_string(value) && length < sizeof expected)
+        snprintf(expected + length, sizeof expected - length, " (nearest: \"%s\")",
+                 suggest_nearest(json_string_value(value), words, count));
+    return place_refuse(place, value, expected, error);
+}
+
+Result place_check_object(const Place *place, const json_t *value, const char *const *names,
+                          Error *error)
+{
+    if (!json_is_object(value)) return place_refuse(place, value, "an object", error);
+    size_t count = count_words(names);
+    const char *key;
+    json_t *member;
+    json_object_foreach((json_t *)value, key, member)
+    {
+        size_t i = 0;
+        while (i < count && strcmp(key, names[i]) != 0) i++;
+        if (i == count)
+            return place_fail(place, error, "unknown key '%.60s' (nearest: '%s')", key,
+                              suggest_nearest(key, names, count));
+    }
+    return RESULT_OK;
+}

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+// The parameters of a run: two structs, and a table by which they are read, written and explained.
+// Names, defaults, ranges and texts stand in params.def, nowhere else.
+#pragma once
+
+#include "base/error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+// A number or a vector that the program may choose itself. `value` is zero while `automatic`.
+typedef struct AutoFloat {
+    bool automatic;
+    float value;
+} AutoFloat;
+
+typedef struct AutoInt {
+    bool automatic;
+    int value;
+} AutoInt;
+
+typedef struct AutoVec3 {
+    bool automatic;
+    float value[3];
+} AutoVec3;
+
+// What a value is, in C and as text. No number may be infinite or NaN.
+typedef enum ParamKind {
+    PARAM_BOOL,       // bool: true, false
+    PARAM_INT,        // int: decimal
+    PARAM_UINT,       // uint32_t: decimal
+    PARAM_FLOAT,      // float: decimal, with or without exponent
+    PARAM_VEC3,       // float[3]: x,y,z
+    PARAM_COLOR,      // float[3], sRGB 0..1: #rrggbb or r,g,b
+    PARAM_BACKGROUND, // float[4], sRGB and opacity 0..1: a color (opacity 1), or transparent (0)
+    PARAM_AUTO_INT,   // AutoInt: auto, or a decimal
+    PARAM_AUTO_FLOAT, // AutoFloat: auto, or a number
+    PARAM_AUTO_VEC3,  // AutoVec3: auto, or x,y,z
+    PARAM_UNIT,       // AutoFloat, metres per unit of a file: auto, m, cm, mm, in, or a number
+    PARAM_SIZE,       // int[2]: WxH
+    PARAM_PART,       // int[2]: I/N, I at most N
+    PARAM_CHOICE,     // int, an enumerator: one of the words
+    PARAM_TEXT,       // char *, owned, never NULL: any text
+    PARAM_PATH,       // char *, owned, never NULL: a path; empty for none
+} ParamKind;
+
+// The words of each CHOICE and the values they stand for, counted from 0.
+#define CHOICES_NONE(X)
+#define CHOICES_UP(X)     X(UP_Y, "y") X(UP_Z, "z")
+#define CHOICES_FOLLOW(X) X(FOLLOW_OFFSET, "offset") X(FOLLOW_INTERPOLATE, "interpolate")
+#define CHOICES_TELEPORT(X)                                                                        \
+    X(TELEPORT_CARRY, "carry") X(TELEPORT_LIMIT, "limit") X(TELEPORT_NONE, "none")
+#define CHOICES_BACKEND(X) X(BACKEND_AUTO, "auto") X(BACKEND_EGL, "egl") X(BACKEND_OSMESA, "osmesa")
+#define CHOICES_RASTER(X)  X(RASTER_AUTO, "auto") X(RASTER_QUADS, "quads") X(RASTER_BLOCKS, "blocks")
+#define CHOICES_OIT(X)     X(OIT_AUTO, "auto") X(OIT_ABUFFER, "abuffer") X(OIT_NONE, "none")
+
+#define CHOICES_TONE(X)  X(TONE_NONE, "none") X(TONE_REINHARD, "reinhard") X(TONE_FILMIC, "filmic")
+#define CHOICES_DEPTH(X) X(DEPTH_8, "8") X(DEPTH_16, "16")
+#define CHOICES_AOV(X)                                                                             \
+    X(AOV_NONE, "none")                                                                            \
+    X(AOV_COVERAGE, "coverage")                                                                    \
+    X(AOV_DEPTH, "depth") X(AOV_TANGENT, "tangent") X(AOV_STRAND, "strand")
+#define CHOICES_SHADING(X) X(SHADING_KAJIYA, "kajiya") X(SHADING_MARSCHNER, "marschner")
+#define CHOICES_LOBES(X)   X(LOBES_ENERGY, "energy") X(LOBES_GAUSS, "gauss")
+#define CHOICES_QUALITY(X)                                                                         \
+    X(QUALITY_NORMAL, "normal") X(QUALITY_DRAFT, "draft") X(QUALITY_FINAL, "final")
+#define CHOICES_CURVE(X) X(CURVE_CATMULL_ROM, "catmull-rom") X(CURVE_BSPLINE, "bspline")
+#define CHOICES_FRAMING(X)                                                                         \
+    X(FRAMING_AUTO, "auto")                                                                        \
+    X(FRAMING_EXPECTED, "expected") X(FRAMING_HAIR, "hair") X(FRAMING_ALL, "all")
+#define CHOICES_SHADOW(X) X(SHADOW_NONE, "none") X(SHADOW_APPROX, "approx") X(SHADOW_DOM, "dom")
+#define CHOICES_FLOOR(X)  X(FLOOR_NONE, "none") X(FLOOR_PLANE, "plane") X(FLOOR_SHADOW, "shadow")
+
+#define CHOICE_VALUE(value, word) value,
+typedef enum UpAxis { CHOICES_UP(CHOICE_VALUE) } UpAxis;
+typedef enum FollowMode { CHOICES_FOLLOW(CHOICE_VALUE) } FollowMode;
+typedef enum TeleportRule { CHOICES_TELEPORT(CHOICE_VALUE) } TeleportRule;
+typedef enum Backend { CHOICES_BACKEND(CHOICE_VALUE) } Backend;
+typedef enum Quality { CHOICES_QUALITY(CHOICE_VALUE) } Quality;
+typedef enum CurveKind { CHOICES_CURVE(CHOICE_VALUE) } CurveKind;
+typedef enum FramingKind { CHOICES_FRAMING(CHOICE_VALUE) } FramingKind;
+typedef enum Shadow { CHOICES_SHADOW(CHOICE_VALUE) } Shadow;
+typedef enum FloorKind { CHOICES_FLOOR(CHOICE_VALUE) } FloorKind;
+typedef enum Raster { CHOICES_RASTER(CHOICE_VALUE) } Raster;
+typedef enum Oit { CHOICES_OIT(CHOICE_VALUE) } Oit;
+typedef enum Lobes { CHOICES_LOBES(CHOICE_VALUE) } Lobes;
+typedef enum Tone { CHOICES_TONE(CHOICE_VALUE) } Tone;
+typedef enum Depth { CHOICES_DEPTH(CHOICE_VALUE) } Depth;
+typedef enum Aov { CHOICES_AOV(CHOICE_VALUE) } Aov;
+typedef enum Shading { CHOICES_SHADING(CHOICE_VALUE) } Shading;
+#undef CHOICE_VALUE
+
+// The headings under which --help lists the parameters, in that order.
+#define PARAM_GROUPS(X)                                                                            \
+    X(INPUT, "Input")                                                                              \
+    X(OUTPUT, "Output")                                                                            \
+    X(SIMULATION, "Simulation")                                                                    \
+    X(FORCES, "Forces")                                                                            \
+    X(COLLISION, "Collisions")                                                                     \
+    X(CAMERA, "Camera")                                                                            \
+    X(SHADING, "Shading")                                                                          \
+    X(DEVICE, "Device")
+
+#define GROUP_VALUE(group, title) GROUP_##group,
+typedef enum ParamGroup { PARAM_GROUPS(GROUP_VALUE) GROUP_COUNT } ParamGroup;
+#undef GROUP_VALUE
+
+// The two structs: a field for every row of params.def.
+#define PARAM_FIELD_BOOL(field)       bool field;
+#define PARAM_FIELD_INT(field)        int field;
+#define PARAM_FIELD_UINT(field)       uint32_t field;
+#define PARAM_FIELD_FLOAT(field)      float field;
+#define PARAM_FIELD_VEC3(field)       float field[3];
+#define PARAM_FIELD_COLOR(field)      float field[3];
+#define PARAM_FIELD_BACKGROUND(field) float field[4];
+#define PARAM_FIELD_AUTO_INT(field)   AutoInt field;
+#define PARAM_FIELD_AUTO_FLOAT(field) AutoFloat field;
+#define PARAM_FIELD_AUTO_VEC3(field)  AutoVec3 field;
+#define PARAM_FIELD_UNIT(field)       AutoFloat field;
+#define PARAM_FIELD_SIZE(field)       int field[2];
+#define PARAM_FIELD_PART(field)       int field[2];
+#define PARAM_FIELD_CHOICE(field)     int field;
+#define PARAM_FIELD_TEXT(field)       char *field;
+#define PARAM_FIELD_PATH(field)       char *field;
+
+#define PARAM_IN_RUN(KIND, field) PARAM_FIELD_##KIND(field)
+#define PARAM_IN_SECTION(KIND, field)
+#define PARAM(scope, KIND, GROUP, field, ...) PARAM_IN_##scope(KIND, field)
+typedef struct RunParams {
+#include "base/params.def"
+} RunParams;
+#undef PARAM_IN_RUN
+#undef PARAM_IN_SECTION
+
+#define PARAM_IN_RUN(KIND, field)
+#define PARAM_IN_SECTION(KIND, field) PARAM_FIELD_##KIND(field)
+typedef struct SectionParams {
+#include "base/params.def"
+} SectionParams;
+#undef PARAM_IN_RUN
+#undef PARAM_IN_SECTION
+#undef PARAM
+
+typedef enum ParamScope { SCOPE_RUN, SCOPE_SECTION } ParamScope;
+
+// A row of params.def.
+typedef struct ParamInfo {
+    const char *name; // of the field and of the scene file's key; the flag has '-' for '_'
+    ParamScope scope;
+    ParamKind kind;
+    ParamGroup group;
+    char letter;   // one-letter flag, or 0
+    size_t offset; // of the field in RunParams or SectionParams, bytes
+    const char *default_text;
+    double minimum, maximum;    // of each number, inclusive
+    const char *unit;           // "" for a plain number
+    const char *const *choices; // words, ended by NULL; empty unless the kind is CHOICE
+    const char *help;
+} ParamInfo;
+
+extern const ParamInfo PARAM_TABLE[];
+extern const size_t PARAM_COUNT;
+extern const char *const GROUP_TITLES[GROUP_COUNT];
+
+// The defaults. RESULT_FAILED when memory is short; the struct may be destroyed in either case.
+Result run_params_create(RunParams *params, Error *error);
+Result section_params_create(SectionParams *params, Error *error);
+
+// Free what the struct owns and zero it; a zeroed struct is fine.
+void run_params_destroy(RunParams *params);
+void section_params_destroy(SectionParams *params);
+
+// A deep copy into `to`, which must not own anything. RESULT_FAILED when memory is short.
+Result section_params_copy(SectionParams *to, const SectionParams *from, Error *error);
+
+// The row whose name is `name`, read with '-' and '_' as the same; NULL if there is none.
+const ParamInfo *param_find(const char *name);
+const ParamInfo *param_find_letter(char letter);
+
+// Reads `text` into the row's field of `params`, a RunParams or SectionParams as the row's scope
+// says. RESULT_USAGE if it isn't a value of that kind or out of range: the field keeps its value
+// and the error says what was got and what was expected, but not the parameter's name, which the
+// caller puts before it as its user wrote it. RESULT_FAILED when memory is short.
+Result param_parse(const ParamInfo *info, void *params, const char *text, Error *error);
+
+// The field's value as text that param_parse reads back to the same bits, in its shortest form.
+// The caller frees it; NULL when memory is short.
+char *param_format(const ParamInfo *info, const void *params);
+
+// What param_parse takes, in words: "a number from 1 to 10000 (1/s)". Cut at `size`.
+void param_describe(const ParamInfo *info, char *text, size_t size);
+
+// The shortest decimal number that reads back as `value` (finite), cut at `size`; 16 suffice.
+void param_format_float(float value, char *text, size_t size);

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// Reads bytes or words from a file's content. Failure sticks: after the first one every function
+// returns 0 and changes nothing, so that a parser may check once, behind a row of reads. The
+// message names the place: "FILE:LINE: ..." in text, "FILE: byte N: ..." in binary content.
+#pragma once
+
+#include "base/bytes.h"
+#include "base/error.h"
+
+#include <locale.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+typedef struct Reader {
+    const char *path;    // for messages
+    const uint8_t *data; // not owned; data[size] is 0
+    size_t size;
+    size_t at;         // next byte
+    uint32_t line;     // text: of `at`, from 1; binary: 0
+    bool continuation; // text: a backslash at a line's end joins the next line (Wavefront OBJ)
+    Result result;     // RESULT_OK until the first failure
+    Error *error;
+    locale_t locale; // "C", made when first needed
+} Reader;
+
+// `bytes` and `path` must outlive the reader. reader_end frees what the reader holds.
+Reader reader_begin_binary(const char *path, const Bytes *bytes, Error *error);
+Reader reader_begin_text(const char *path, const Bytes *bytes, Error *error);
+void reader_end(Reader *reader);
+
+// Fails at the present place with RESULT_BAD_INPUT and a line (printf style, without the place);
+// keeps an older failure. Returns the reader's result.
+Result reader_fail(Reader *reader, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+// Fails with RESULT_FAILED: no memory.
+Result reader_fail_memory(Reader *reader);
+
+static inline bool reader_ok(const Reader *reader)
+{
+    return reader->result == RESULT_OK;
+}
+
+static inline size_t reader_left(const Reader *reader)
+{
+    return reader->size - reader->at;
+}
+
+// --- Binary, little-endian. `what` names the value in the message.
+uint32_t reader_read_u32(Reader *reader, const char *what);
+uint16_t reader_read_u16(Reader *reader, const char *what);
+float reader_read_f32(Reader *reader, const char *what);
+
+// Fails unless `count` things of `stride` bytes lie within the file from byte `start` on; nothing
+// overflows for any value. The failure's place is the present one (the field that asks for the
+// array). Returns whether they do.
+bool reader_check_array(Reader *reader, uint64_t start, uint64_t count, uint64_t stride,
+                        const char *what);
+
+// Copies `count` floats from byte `start`, which must have been checked.
+void reader_copy_floats(const Reader *reader, uint64_t start, float *floats, size_t count);
+
+// --- Text. Blanks are space, tab and carriage return; a word is anything between blanks.
+bool reader_line_ended(Reader *reader); // skips blanks; at a newline or the file's end
+bool reader_ended(Reader *reader);      // skips blanks and empty lines; at the file's end
+void reader_next_line(Reader *reader);  // fails unless only blanks are left on this line
+void reader_skip_line(Reader *reader);  // whatever is left on it
+bool reader_take(Reader *reader,
+                 const char *word); // steps over the next word of this line if it is `word`
+void reader_expect(Reader *reader, const char *word); // ... and fails if it is not
+
+// Copies the next word of this line and steps over it; false, and nothing happens, if there is none
+// or it does not fit into `size` bytes with its zero.
+bool reader_read_word(Reader *reader, char *word, size_t size);
+
+// A whole number 0 .. 2^32 - 1 on this line.
+uint32_t reader_read_count(Reader *reader, const char *what);
+
+// A decimal number on this line, rounded correctly to float32 whatever the locale. Infinities and
+// NaNs are values too, also as old Windows libraries print them (-1.#INF, 1.#QNAN, -1.#IND).
+float reader_read_number(Reader *reader, const char *what);
+
+// Fails with "expected WHAT, got 'the next word'", the end of the line or the end of the file.
+Result reader_fail_expected(Reader *reader, const char *what);

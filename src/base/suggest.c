@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#include "base/suggest.h"
+
+#include <ctype.h>
+#include <limits.h>
+#include <stdbool.h>
+#include <string.h>
+
+enum { LONGEST = 63 };
+
+static int fold(char character)
+{
+    return character == '-' ? '_' : tolower((unsigned char)character);
+}
+
+static bool begins(const char *name, const char *word)
+{
+    while (*word && fold(*word) == fold(*name)) word++, name++;
+    return !*word;
+}
+
+static int least(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+// Optimal string alignment distance (Damerau 1964): row i of the usual table has the distances of
+// the first i characters of `a` from every beginning of `b`; a swap looks two rows back.
+static int distance(const char *a, const char *b)
+{
+    int a_length = (int)strnlen(a, LONGEST), b_length = (int)strnlen(b, LONGEST);
+    int rows[3][LONGEST + 1];
+    for (int j = 0; j <= b_length; j++) rows[0][j] = j;
+    for (int i = 1; i <= a_length; i++) {
+        int *row = rows[i % 3];
+        const int *above = rows[(i + 2) % 3], *two_above = rows[(i + 1) % 3];
+        row[0] = i;
+        for (int j = 1; j <= b_length; j++) {
+            int replaced = above[j - 1] + (fold(a[i - 1]) != fold(b[j - 1]));
+            row[j] = least(replaced, least(above[j], row[j - 1]) + 1);
+            if (i > 1 && j > 1 && fold(a[i - 1]) == fold(b[j - 2]) &&
+                fold(a[i - 2]) == fold(b[j - 1]))
+                row[j] = least(row[j], two_above[j - 2] + 1);
+        }
+    }
+    return rows[a_length % 3][b_length];
+}
+
+const char *suggest_nearest(const char *word, const char *const *names, size_t count)
+{
+    const char *nearest = NULL;
+    int lowest = INT_MAX;
+    for (size_t i = 0; i < count; i++) {
+        // Of two that are as near, the one that was cut short is meant.
+        int rank = 2 * distance(word, names[i]) - begins(names[i], word);
+        if (rank >= lowest) continue;
+        lowest = rank;
+        nearest = names[i];
+    }
+    return nearest;
+}

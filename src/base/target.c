@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+#include "base/target.h"
+
+#include "base/outfile.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+static bool has_suffix(const char *text, const char *suffix)
+{
+    size_t length = strlen(text), suffix_length = strlen(suffix);
+    return length > suffix_length && strcasecmp(text + length - suffix_length, suffix) == 0;
+}
+
+static bool is_folder(const char *text)
+{
+    struct stat status;
+    size_t length = strlen(text);
+    if (length > 0 && text[length - 1] == '/') return true;
+    return stat(text, &status) == 0 && S_ISDIR(status.st_mode);
+}
+
+static Result fail_memory(Error *error)
+{
+    return error_set(error, RESULT_FAILED, "no memory for the name of the output");
+}
+
+static Result take_folder(Target *target, const char *text, Error *error)
+{
+    bool slash = text[strlen(text) - 1] == '/';
+    if (asprintf(&target->before, "%s%sframe_", text, slash ? "" : "/") < 0) target->before = NULL;
+    target->after = strdup(".png");
+    target->digits = 4;
+    return target->before && target->after ? RESULT_OK : fail_memory(error);
+}
+
+static Result take_name(Target *target, TargetKind kind, const char *text, Error *error)
+{
+    target->kind = kind;
+    target->before = strdup(text);
+    return target->before ? RESULT_OK : fail_memory(error);
+}
+
+// Reads "d" or "0Nd" behind a percent sign. Returns how many characters, 0 if it is something else.
+static int read_conversion(const char *at, int *digits)
+{
+    *digits = 1;
+    if (at[0] == 'd') return 1;
+    if (at[0] != '0' || at[1] < '1' || at[1] > '9' || at[2] != 'd') return 0;
+    *digits = at[1] - '0';
+    return 3;
+}
+
+// `before` and `after` have room for the whole text; "%%" comes out as "%". Returns how many
+// numbers were met, -1 for a percent sign that starts no number.
+static int split_pattern(Target *target, const char *text)
+{
+    int numbers = 0;
+    char *out = target->before;
+    for (const char *at = text; *at; at++) {
+        if (at[0] != '%' || at[1] == '%') {
+            *out++ = *at;
+            at += at[0] == '%';
+            continue;
+        }
+        int length = read_conversion(at + 1, &target->digits);
+        if (length == 0) return -1;
+        if (numbers++ == 0) {
+            *out = 0;
+            out = target->after;
+        }
+        at += length;
+    }
+    *out = 0;
+    return numbers;
+}
+
+static Result take_pattern(Target *target, const char *text, Error *error)
+{
+    target->before = calloc(1, strlen(text) + 1);
+    target->after = calloc(1, strlen(text) + 1);
+    if (!target->before || !target->after) return fail_memory(error);
+    int numbers = split_pattern(target, text);
+    if (numbers < 0 || numbers > 1)
+        return error_set(error, RESULT_USAGE,
+                         "%s: expected one frame number, %%d or %%04d (%%%% for a percent sign)",
+                         text);
+    if (strchr(target->after, '/'))
+        return error_set(error, RESULT_USAGE,
+                         "%s: the frame number must be in the file's name, not in a folder's",
+                         text);
+    if (numbers == 0) target->kind = TARGET_STILL;
+    return RESULT_OK;
+}
+
+Result target_parse(Target *target, const char *text, Error *error)
+{
+    static const char *const videos[] = {".mp4", ".webm", ".gif"};
+    *target = (Target){.kind = TARGET_FRAMES};
+    Result result = RESULT_USAGE;
+    if (is_folder(text)) {
+        result = take_folder(target, text, error);
+    } else if (has_suffix(text, ".png") || has_suffix(text, ".pfm")) {
+        target->floats = has_suffix(text, ".pfm");
+        result = take_pattern(target, text, error);
+    } else {
+        error_set(error, RESULT_USAGE,
+                  "%s: expected a folder with a slash at its end, or a name ending in .png, .pfm, "
+                  ".mp4, .webm or .gif",
+                  *text ? text : "output name is empty");
+        for (size_t i = 0; i < sizeof videos / sizeof *videos && result == RESULT_USAGE; i++)
+            if (has_suffix(text, videos[i])) result = take_name(target, TARGET_VIDEO, text, error);
+    }
+    if (result != RESULT_OK) target_destroy(target);
+    return result;
+}
+
+Result target_parse_hair(Target *target, const char *text, Error *error)
+{
+    *target = (Target){.kind = TARGET_FRAMES};
+    Result result = RESULT_USAGE;
+    bool usd = has_suffix(text, ".usda");
+    if (usd || has_suffix(text, ".tfx") || has_suffix(text, ".hair") || has_suffix(text, ".obj") ||
+        has_suffix(text, ".data"))
+        result = take_pattern(target, text, error);
+    else
+        error_set(error, RESULT_USAGE,
+                  "%s: expected a name ending in .usda, .tfx, .hair, .obj or .data",
+                  *text ? text : "the hair file's name is empty");
+    if (usd && target->kind == TARGET_STILL) target->kind = TARGET_VIDEO;
+    if (result != RESULT_OK) target_destroy(target);
+    return result;
+}
+
+Result target_parse_any(Target *target, const char *text, Error *error)
+{
+    *target = (Target){.kind = TARGET_FRAMES};
+    Result result = take_pattern(target, text, error);
+    if (result != RESULT_OK) target_destroy(target);
+    return result;
+}
+
+void target_destroy(Target *target)
+{
+    free(target->before);
+    free(target->after);
+    *target = (Target){0};
+}
+
+char *target_name_frame(const Target *target, int frame)
+{
+    if (target->kind != TARGET_FRAMES) return strdup(target->before);
+    char *name = NULL;
+    int length = asprintf(&name, "%s%0*d%s", target->before, target->digits, frame, target->after);
+    return length < 0 ? NULL : name;
+}
+
+// Like `mkdir -p` for what stands before the last slash of `name`, which is changed and changed
+// back.
+static Result make_folders(char *name, Error *error)
+{
+    for (char *slash = strchr(name + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
+        *slash = 0;
+        struct stat status;
+        int reason = mkdir(name, 0777) == 0 || errno == EEXIST ? 0 : errno;
+        if (reason == 0 && stat(name, &status) == 0 && !S_ISDIR(status.st_mode)) reason = ENOTDIR;
+        // "No permission" may be said of a folder that is there: what counts is whether a file can
+        // be made in it.
+        if (reason != 0 && reason != ENOTDIR && stat(name, &status) == 0) reason = 0;
+        if (reason != 0)
+            error_set(error, RESULT_FAILED, "%s: cannot make this folder: %s", name,
+                      strerror(reason));
+        *slash = '/';
+        if (reason != 0) return RESULT_FAILED;
+    }
+    return RESULT_OK;
+}
+
+Result target_prepare(const Target *target, Error *error)
+{
+    char *name = target_name_frame(target, 0);
+    if (!name) return fail_memory(error);
+    Result result = make_folders(name, error);
+    if (result == RESULT_OK) {
+        OutFile probe;
+        result = outfile_open(&probe, name, error);
+        outfile_discard(&probe);
+    }
+    free(name);
+    return result;
+}

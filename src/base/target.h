@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// Where frames go: what the text behind `-o` means.
+#pragma once
+
+#include "base/error.h"
+
+#include <stdbool.h>
+
+typedef enum TargetKind {
+    TARGET_FRAMES, // one file a frame, numbered
+    TARGET_STILL,  // one file for the only frame
+    TARGET_VIDEO,  // one file for all frames
+} TargetKind;
+
+typedef struct Target {
+    TargetKind kind;
+    char *before; // the name up to the frame number; the whole name of a still or a video
+    char *after;  // the name behind the number, with the suffix
+    bool floats;  // the files are PFM, not PNG
+    int digits;   // the number is padded with zeros to this length
+} Target;
+
+// Takes "DIR/" or an existing folder (frame_0000.png, frame_0001.png, ... in it), a name ending in
+// .png with one %d or %0Nd (N from 1 to 9) in its last part ("%%" is a percent sign), a plain name
+// ending in .png, the same with .pfm, or one ending in .mp4, .webm or .gif. RESULT_USAGE for
+// anything else, RESULT_FAILED when memory is short.
+Result target_parse(Target *target, const char *text, Error *error);
+
+// Takes the name of hair files: one ending in .usda, .tfx, .hair, .obj or .data, with a number like
+// those of pictures or without one. A .usda without a number holds all frames (TARGET_VIDEO).
+// Errors as above.
+Result target_parse_hair(Target *target, const char *text, Error *error);
+
+// Takes any name, with a number or without one (TARGET_STILL), whatever it ends in. Errors as
+// above.
+Result target_parse_any(Target *target, const char *text, Error *error);
+void target_destroy(Target *target);
+
+// The file for a frame (>= 0), to be freed; numbers that need more digits get them. The same name
+// for every frame of a still or a video. NULL when memory is short.
+char *target_name_frame(const Target *target, int frame);
+
+// Makes the folders that are missing and tries to create a file there. RESULT_FAILED with path and
+// reason.
+Result target_prepare(const Target *target, Error *error);

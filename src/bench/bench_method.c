@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#include "bench/bench_method.h"
+#include "sim/solver.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+bool method_takes(const ParamInfo *info)
+{
+    static const char *const other[] = {
+        "algo", "variant", "followers", "follow", "follower_radius", "tip_separation", "sleep"};
+    for (size_t i = 0; i < sizeof other / sizeof *other; ++i)
+        if (strcmp(info->name, other[i]) == 0) return false;
+    return info->scope == SCOPE_SECTION && info->group == GROUP_SIMULATION;
+}
+
+static Result set(SectionParams *params, const char *name, const char *text, Error *error)
+{
+    const ParamInfo *info = param_find(name);
+    if (!info) return error_set(error, RESULT_USAGE, "--%s: no such parameter", name);
+    Result result = param_parse(info, params, text, error);
+    return result == RESULT_OK ? result : error_prefix(error, result, "--%s: ", name);
+}
+
+// Words in turn a flag and its value.
+static Result apply(SectionParams *params, char *words, Error *error)
+{
+    char *rest = NULL;
+    for (char *flag = strtok_r(words, " ", &rest); flag; flag = strtok_r(NULL, " ", &rest)) {
+        const char *value = strtok_r(NULL, " ", &rest);
+        if (strncmp(flag, "--", 2) != 0 || !value)
+            return error_set(error, RESULT_USAGE, "settings: expected --flag value, got '%s'",
+                             flag);
+        Result result = set(params, flag + 2, value, error);
+        if (result != RESULT_OK) return result;
+    }
+    return RESULT_OK;
+}
+
+Result method_params(SectionParams *params, const Method *method, Error *error)
+{
+    char *words = strdup(method->settings);
+    Result result = section_params_create(params, error);
+    if (!words) result = error_set(error, RESULT_FAILED, "no memory for settings");
+    if (result == RESULT_OK) result = set(params, "algo", method->algo, error);
+    if (result == RESULT_OK) result = set(params, "variant", method->variant, error);
+    if (result == RESULT_OK) result = apply(params, words, error);
+    if (result == RESULT_OK) result = solver_check(params, error);
+    free(words);
+    return result;
+}
+
+const char *method_variant(const Method *method)
+{
+    if (*method->variant) return method->variant;
+    for (const SolverType *const *type = SOLVER_TYPES; *type; ++type)
+        if (strcmp((*type)->name, method->algo) == 0 && (*type)->variants[0])
+            return (*type)->variants[0];
+    return "";
+}
+
+void method_format(const Method *method, char *text, size_t size)
+{
+    const char *variant = method_variant(method);
+    snprintf(text, size, "--algo %s%s%s%s%s", method->algo, *variant ? " --variant " : "", variant,
+             *method->settings ? " " : "", method->settings);
+}
+
+int method_list(const Method *asked, Method methods[METHODS_MOST])
+{
+    int count = 0;
+    if (asked->algo) {
+        methods[0] = *asked;
+        return 1;
+    }
+    for (const SolverType *const *type = SOLVER_TYPES; *type && count < METHODS_MOST; ++type)
+        if ((*type)->calls->step) methods[count++] = (Method){(*type)->name, "", asked->settings};
+    return count;
+}

@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: MIT
+#include "bench/bench_options.h"
+#include "base/options.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// What options_parse fills; numbers that are lists or words come as text first.
+typedef struct Values {
+    BenchOptions bench;
+    const char *rates, *size, *raster, *oit, *shadow, *quality;
+    const char *param[BENCH_MOST_PARAMS]; // of the row of that number below
+    bool software, osmesa, no_error, no_shrink;
+} Values;
+
+#define AT(member) offsetof(Values, member)
+static const Option OPTIONS[] = {
+    {"set", 0, OPTION_STRING, AT(bench.set), "NAME", 0, 0,
+     "1k16, 1k32, 10k16 or 10k32: the thesis's sets (image: straight, curls, fur, too)"},
+    {"tfx", 0, OPTION_STRING, AT(bench.tfx), "FILE", 0, 0, "a hair file of any known kind"},
+    {"vectors", 0, OPTION_STRING, AT(bench.vectors), "FILE.csv", 0, 0,
+     "step, chain: test vectors (default: those in tests/data)"},
+    {"reference", 0, OPTION_STRING, AT(bench.reference), "DIR", 0, 0,
+     "accuracy: exact motions, NAME.csv with NAME.json (default tests/data/motion)"},
+    {"part", 0, OPTION_STRING, AT(bench.parts), "LIST", 0, 0,
+     "only these parts of the command, with commas between them (default all)"},
+    {"algo", 0, OPTION_STRING, AT(bench.method.algo), "NAME", 0, 0,
+     "solver (default: all; scenes: split)"},
+    {"variant", 0, OPTION_STRING, AT(bench.method.variant), "NAME", 0, 0,
+     "form of the solver (default: its own choice)"},
+    {"rates", 0, OPTION_STRING, AT(rates), "LIST", 0, 0,
+     "accuracy: up to 8 numbers of steps a second (default: the part's own)"},
+    {"seconds", 0, OPTION_REAL, AT(bench.seconds), "S", 0.1, 1e5,
+     "accuracy: length of the long runs (default 60)"},
+    {"steps", 0, OPTION_WHOLE, AT(bench.steps), "N", 1, 1e6,
+     "measured steps (default 200; stress: of each case, default 10000)"},
+    {"warm-up", 0, OPTION_WHOLE, AT(bench.warm_up), "N", 0, 1e6, "steps before that (default 20)"},
+    {"size", 0, OPTION_STRING, AT(size), "WxH", 0, 0, "draw pictures of this size as well (px)"},
+    {"raster", 0, OPTION_STRING, AT(raster), "WORD", 0, 0,
+     "how hair is drawn: auto, quads or blocks (default auto)"},
+    {"oit", 0, OPTION_STRING, AT(oit), "WORD", 0, 0,
+     "image, quads: abuffer or none (default auto: abuffer)"},
+    {"layers", 0, OPTION_WHOLE, AT(bench.image.scheme.layers), "K", 0, 64,
+     "image, quads: fragments of a pixel in order, 1 to 64 (default 0: 8)"},
+    {"samples", 0, OPTION_WHOLE, AT(bench.image.scheme.samples), "N", 1, 4,
+     "image: 2, 4: 2 x 2 or 4 x 4 samples a pixel (default 1)"},
+    {"shadow", 0, OPTION_STRING, AT(shadow), "WORD", 0, 0,
+     "image: none, approx or dom (default none)"},
+    {"quality", 0, OPTION_STRING, AT(quality), "WORD", 0, 0,
+     "image: a preset, normal, draft or final, for what is not said (default normal)"},
+    {"frames", 0, OPTION_WHOLE, AT(bench.image.frames), "N", 1, 1e6,
+     "image: measured pictures (default 15)"},
+    {"no-error", 0, OPTION_SWITCH, AT(no_error), NULL, 0, 0, "image: times only"},
+    {"cases", 0, OPTION_WHOLE, AT(bench.stress.cases), "N", 1, 1e6,
+     "stress: random cases of each form of a solver (default 5000)"},
+    {"seed", 0, OPTION_WHOLE, AT(bench.stress.seed), "N", 0, 2e9,
+     "stress: start of its random numbers (default 1)"},
+    {"case", 0, OPTION_STRING, AT(bench.stress.text), "TEXT", 0, 0,
+     "stress: this case of --algo, as one that failed was printed, or 'plain'"},
+    {"allow", 0, OPTION_REAL, AT(bench.stress.allowed), "X", 1e-3, 1,
+     "stress: share of each bound that a case may use (default 1)"},
+    {"no-shrink", 0, OPTION_SWITCH, AT(no_shrink), NULL, 0, 0,
+     "stress: print failures as they were found, not made smaller"},
+    {"json", 0, OPTION_STRING, AT(bench.output.json), "FILE", 0, 0, "write the rows as JSON"},
+    {"csv", 0, OPTION_STRING, AT(bench.output.csv), "FILE", 0, 0, "write the rows as CSV"},
+    {"device", 0, OPTION_WHOLE, AT(bench.gpu.device), "N", 0, 1000,
+     "EGL device (default: the best one)"},
+    {"software", 0, OPTION_SWITCH, AT(software), NULL, 0, 0,
+     "use a CPU driver even where there is a GPU"},
+    {"osmesa", 0, OPTION_SWITCH, AT(osmesa), NULL, 0, 0, "use OSMesa instead of EGL"},
+};
+enum { OWN_COUNT = sizeof OPTIONS / sizeof *OPTIONS, NAME_SIZE = 64 };
+
+static const char *const STATUS[][2] = {
+    {"0", "done"},         {"1", "failure, or a stated bound is broken"},
+    {"2", "wrong usage"},  {"3", "bad input file"},
+    {"4", "no usable GL"}, {"130", "interrupted"},
+    {NULL, NULL}};
+
+static const char *const EXAMPLES[] = {
+    "tractrix-bench step --vectors tests/data/tractrix_steps.csv",
+    "tractrix-bench accuracy --part motions --algo rope --rope-iterations 50 --rates 60,120",
+    "tractrix-bench speed --set 10k32 --algo chain --csv chain.csv", NULL};
+
+static const char *const NOTES[] = {
+    "The options from --style on are those of tractrix-render; they change the solvers. Times are "
+    "wall-clock milliseconds after a warm-up, waiting for the driver at the end of each sample.",
+    NULL};
+
+// --- Solvers' parameters as options.
+
+// Options and, behind them, every parameter of solvers; param_info[i] is of the row OWN_COUNT + i.
+typedef struct Rows {
+    Option option[OWN_COUNT + BENCH_MOST_PARAMS];
+    char name[BENCH_MOST_PARAMS][NAME_SIZE];
+    const ParamInfo *info[BENCH_MOST_PARAMS];
+    size_t params;
+} Rows;
+
+static void list_rows(Rows *rows)
+{
+    memcpy(rows->option, OPTIONS, sizeof OPTIONS);
+    rows->params = 0;
+    for (size_t i = 0; i < PARAM_COUNT && rows->params < BENCH_MOST_PARAMS; ++i) {
+        const ParamInfo *info = &PARAM_TABLE[i];
+        size_t row = rows->params;
+        if (!method_takes(info)) continue;
+        snprintf(rows->name[row], NAME_SIZE, "%s", info->name);
+        for (char *at = rows->name[row]; *at; ++at)
+            if (*at == '_') *at = '-';
+        rows->info[row] = info;
+        rows->option[OWN_COUNT + row] = (Option){rows->name[row],
+                                                 0,
+                                                 OPTION_STRING,
+                                                 AT(param) + row * sizeof(const char *),
+                                                 *info->unit ? info->unit : "VALUE",
+                                                 0,
+                                                 0,
+                                                 info->help};
+        ++rows->params;
+    }
+}
+
+// "--rope-iterations 50 --style 0": what was given, in the table's order.
+static Result join_settings(Values *values, const Rows *rows, Error *error)
+{
+    size_t size = 0;
+    FILE *stream = open_memstream(&values->bench.settings, &size);
+    if (!stream) return error_set(error, RESULT_FAILED, "no memory for settings");
+    for (size_t i = 0; i < rows->params; ++i)
+        if (values->param[i])
+            fprintf(stream, "%s--%s %s", ftell(stream) > 0 ? " " : "", rows->name[i],
+                    values->param[i]);
+    if (fclose(stream) != 0) return error_set(error, RESULT_FAILED, "no memory for settings");
+    values->bench.method.settings = values->bench.settings;
+    return RESULT_OK;
+}
+
+// That values are such, whatever the solver will be.
+static Result check_settings(const BenchOptions *options, Error *error)
+{
+    SectionParams params;
+    Method method = options->method;
+    if (!method.algo && *method.variant)
+        return error_set(error, RESULT_USAGE, "--variant '%s' needs --algo", method.variant);
+    if (!method.algo) method.algo = "split";
+    Result result = method_params(&params, &method, error);
+    section_params_destroy(&params);
+    return result;
+}
+
+// --- Values that are words or lists.
+
+static Result read_rates(const char *text, BenchOptions *options, Error *error)
+{
+    const char *at = text;
+    char *end = (char *)text;
+    for (options->rate_count = 0; options->rate_count < BENCH_MOST_RATES; at = end + 1) {
+        double rate = strtod(at, &end);
+        if (end == at || !(rate >= 1 && rate <= 1e6)) break;
+        options->rates[options->rate_count++] = rate;
+        if (!*end) return RESULT_OK;
+        if (*end != ',') break;
+    }
+    return error_set(
+        error, RESULT_USAGE,
+        "--rates: expected up to %d numbers from 1 to 1000000 with commas between them, "
+        "got '%s'",
+        BENCH_MOST_RATES, text);
+}
+
+static Result read_size(const char *text, int size[2], Error *error)
+{
+    char rest;
+    if (sscanf(text, "%dx%d%c", &size[0], &size[1], &rest) == 2 && size[0] >= 1 && size[1] >= 1 &&
+        size[0] <= 16384 && size[1] <= 16384)
+        return RESULT_OK;
+    return error_set(error, RESULT_USAGE, "--size: expected WxH, each 1 to 16384, got '%s'", text);
+}
+
+static Result read_choice(const char *name, const char *text, int *value, Error *error)
+{
+    RunParams run = {0};
+    Result result = param_parse(param_find(name), &run, text, error);
+    if (result != RESULT_OK) return error_prefix(error, result, "--%s: ", name);
+    *value = strcmp(name, "raster") == 0    ? run.raster
+             : strcmp(name, "shadow") == 0  ? run.shadow
+             : strcmp(name, "quality") == 0 ? run.quality
+                                            : run.oit;
+    return RESULT_OK;
+}
+
+static Result read_words(Values *values, Error *error)
+{
+    BenchOptions *options = &values->bench;
+    int raster = 0, oit = 0, shadow = 0, quality = 0;
+    Result result = values->rates ? read_rates(values->rates, options, error) : RESULT_OK;
+    if (result == RESULT_OK && values->size) result = read_size(values->size, options->size, error);
+    if (result == RESULT_OK && values->raster)
+        result = read_choice("raster", values->raster, &raster, error);
+    if (result == RESULT_OK && values->oit) result = read_choice("oit", values->oit, &oit, error);
+    if (result == RESULT_OK && values->shadow)
+        result = read_choice("shadow", values->shadow, &shadow, error);
+    if (result == RESULT_OK && values->quality)
+        result = read_choice("quality", values->quality, &quality, error);
+    options->raster = (Raster)raster;
+    options->image.scheme.shadow = (Shadow)shadow;
+    options->image.scheme.quality = (Quality)quality;
+    options->image.scheme.oit = (Oit)oit;
+    options->image.no_error = values->no_error;
+    options->stress.shrinks = !values->no_shrink;
+    if (options->steps) options->stress.steps = options->steps;
+    if (!options->steps) options->steps = 200;
+    options->gpu.software = values->software;
+    if (values->osmesa) options->gpu.backend = GPU_BACKEND_OSMESA;
+    return result;
+}
+
+// --- All of it.
+
+Result bench_options_read(BenchOptions *options, int argc, char **argv,
+                          const char *const (*commands)[2], Error *error)
+{
+    Rows rows;
+    Values values = {.bench = {.method = {NULL, "", ""},
+                               .seconds = 60,
+                               .warm_up = 20,
+                               .stress = stress_options_default(),
+                               .image = image_options_default(),
+                               .gpu = {.device = -1}}};
+    int first = 0;
+    list_rows(&rows);
+    const OptionsProgram program = {.name = "tractrix-bench",
+                                    .summary = "measure accuracy and speed",
+                                    .synopsis = "COMMAND [OPTION]... [HAIR_FILE]...",
+                                    .description =
+                                        "Measures how accurate and how fast this program is, a "
+                                        "line for each result.",
+                                    .commands = commands,
+                                    .options = rows.option,
+                                    .option_count = OWN_COUNT + rows.params,
+                                    .notes = NOTES,
+                                    .status = STATUS,
+                                    .examples = EXAMPLES};
+    Result result = options_parse(&program, &values, argc, argv, &first, &values.bench.done, error);
+    if (result == RESULT_OK && !values.bench.done) result = read_words(&values, error);
+    if (result == RESULT_OK && !values.bench.done) result = join_settings(&values, &rows, error);
+    values.bench.files = argv + first;
+    values.bench.file_count = argc - first;
+    *options = values.bench;
+    if (result == RESULT_OK && !options->done) result = check_settings(options, error);
+    return result;
+}
+
+void bench_options_destroy(BenchOptions *options)
+{
+    free(options->settings);
+    *options = (BenchOptions){0};
+}
+
+// Whether a word of `length` is in the list of `text`.
+static bool lists(const char *text, const char *word, size_t length)
+{
+    for (size_t part; *text; text += part + (text[part] == ',')) {
+        part = strcspn(text, ",");
+        if (part == length && strncmp(text, word, length) == 0) return true;
+    }
+    return false;
+}
+
+bool bench_options_part(const BenchOptions *options, const char *name)
+{
+    return !options->parts || lists(options->parts, name, strlen(name));
+}
+
+Result bench_options_check_parts(const BenchOptions *options, const char *const *names,
+                                 Error *error)
+{
+    char all[256] = "";
+    for (const char *const *name = names; *name; ++name) {
+        size_t at = strlen(all);
+        snprintf(all + at, sizeof all - at, "%s%s", at ? "," : "", *name);
+    }
+    const char *text = options->parts ? options->parts : "";
+    for (size_t part; *text; text += part + (text[part] == ',')) {
+        part = strcspn(text, ",");
+        if (!lists(all, text, part))
+            return error_set(error, RESULT_USAGE, "--part: no part '%.*s'; there are %s", (int)part,
+                             text, all);
+    }
+    return RESULT_OK;
+}

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// The command line of tractrix-bench: all that its commands are asked.
+#pragma once
+
+#include "bench/bench_image.h"
+#include "bench/bench_method.h"
+#include "bench/bench_stress.h"
+#include "bench/bench_table.h"
+#include "gpu/gpu.h"
+
+enum { BENCH_MOST_RATES = 8, BENCH_MOST_PARAMS = 64 };
+
+typedef struct BenchOptions {
+    const char *set, *tfx;           // a set's name; a hair file; NULL: neither
+    const char *vectors, *reference; // file of test vectors, folder of exact motions; NULL: those
+                                     // that ship
+    const char *parts;               // "motions,work"; NULL: all of the command
+    Method method;                   // algo NULL: all
+    double rates[BENCH_MOST_RATES];  // steps a second
+    int rate_count;                  // 0: the part's own
+    double seconds;                  // of long runs
+    int steps, warm_up;              // measured, and not measured before that
+    StressOptions stress;            // but for its method
+    int size[2];                     // picture to draw in px; 0: no drawing
+    Raster raster;                   // how hair is drawn
+    ImageOptions image;              // but for what is above
+    GpuOptions gpu;
+    BenchOutput output;
+    char **files; // what is no option: the command and hair files
+    int file_count;
+    bool done;      // --help or --version was answered
+    char *settings; // owned: the text that `method` points to
+} BenchOptions;
+
+// Reads a command line; strings point into argv, which is reordered. `commands`, names and what
+// they do, {NULL} behind the last, are for --help. RESULT_USAGE for an option that is unknown,
+// lacks its value, or has one out of range. The struct may be destroyed in either case.
+Result bench_options_read(BenchOptions *options, int argc, char **argv,
+                          const char *const (*commands)[2], Error *error);
+void bench_options_destroy(BenchOptions *options);
+
+// Whether a command shall do its part `name`.
+bool bench_options_part(const BenchOptions *options, const char *name);
+
+// That every part which is asked for is one of `names`, which end with NULL; RESULT_USAGE naming
+// them.
+Result bench_options_check_parts(const BenchOptions *options, const char *const *names,
+                                 Error *error);

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: MIT
+#include "bench/bench_table.h"
+#include "base/bytes.h"
+#include "base/json_write.h"
+
+#include "version.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// --- The device's columns, the same in every row.
+
+typedef struct Device {
+    const char *name, *value;
+} Device;
+
+enum { DEVICE_COUNT = 5 };
+
+static const char *cpu_name(void)
+{
+    static char name[128] = "";
+    char line[256];
+    FILE *file = *name ? NULL : fopen("/proc/cpuinfo", "r");
+    while (file && !*name && fgets(line, sizeof line, file)) {
+        const char *colon = strchr(line, ':');
+        if (strncmp(line, "model name", 10) == 0 && colon)
+            snprintf(name, sizeof name, "%.*s", (int)strcspn(colon + 2, "\n"), colon + 2);
+    }
+    if (file) fclose(file);
+    return name;
+}
+
+static void list_device(const Gpu *gpu, Device device[DEVICE_COUNT])
+{
+    device[0] = (Device){"renderer", gpu->renderer};
+    device[1] = (Device){"gl_version", gpu->version};
+    device[2] = (Device){"cpu", cpu_name()};
+    device[3] = (Device){"version", TRACTRIX_VERSION};
+    device[4] = (Device){"commit", TRACTRIX_COMMIT};
+}
+
+// --- One value.
+
+static const char *text_at(const Column *column, const void *row)
+{
+    const char *at = (const char *)row + column->place;
+    return column->kind == COLUMN_CHARS ? at : *(const char *const *)(const void *)at;
+}
+
+static double real_at(const Column *column, const void *row)
+{
+    double value;
+    memcpy(&value, (const char *)row + column->place, sizeof value);
+    return value;
+}
+
+static long whole_at(const Column *column, const void *row)
+{
+    long value;
+    memcpy(&value, (const char *)row + column->place, sizeof value);
+    return value;
+}
+
+// As it is on the screen (`precise` false) and in CSV.
+static void format_value(const Column *column, const void *row, bool precise, char *text,
+                         size_t size)
+{
+    if (column->kind == COLUMN_WHOLE)
+        snprintf(text, size, "%ld", whole_at(column, row));
+    else if (column->kind == COLUMN_REAL && isnan(real_at(column, row)))
+        *text = 0;
+    else if (column->kind == COLUMN_REAL)
+        snprintf(text, size, precise ? "%.9g" : "%.4g", real_at(column, row));
+    else
+        snprintf(text, size, "%s", text_at(column, row));
+}
+
+static void write_screen(const BenchTable *table, const void *row)
+{
+    if (!table->screen) return;
+    for (size_t i = 0; i < table->column_count; ++i) {
+        const Column *column = &table->columns[i];
+        char text[512];
+        bool left = column->kind == COLUMN_TEXT || column->kind == COLUMN_CHARS;
+        if (column->width == 0) continue;
+        snprintf(text, sizeof text, "%s", column->name);
+        if (row) format_value(column, row, false, text, sizeof text);
+        fprintf(table->screen, left ? "%s%-*s" : "%s%*s", i ? " " : "", column->width,
+                *text ? text : "-");
+    }
+    fprintf(table->screen, "\n");
+    fflush(table->screen);
+}
+
+static void write_field(FILE *stream, const char *text, bool first)
+{
+    if (!first) putc(',', stream);
+    for (; *text; ++text) putc(*text == ',' ? ';' : *text, stream);
+}
+
+static void write_csv(BenchTable *table, const void *row)
+{
+    Device device[DEVICE_COUNT];
+    list_device(table->gpu, device);
+    for (size_t i = 0; i < table->column_count; ++i) {
+        char text[1024];
+        snprintf(text, sizeof text, "%s", table->columns[i].name);
+        if (row) format_value(&table->columns[i], row, true, text, sizeof text);
+        write_field(table->csv_stream, text, i == 0);
+    }
+    for (int i = 0; i < DEVICE_COUNT; ++i)
+        write_field(table->csv_stream, row ? device[i].value : device[i].name, false);
+    putc('\n', table->csv_stream);
+}
+
+static json_t *value_to_json(const Column *column, const void *row)
+{
+    switch (column->kind) {
+    case COLUMN_WHOLE:
+        return json_integer(whole_at(column, row));
+    case COLUMN_REAL:
+        return isfinite(real_at(column, row)) ? json_real(real_at(column, row)) : json_null();
+    default:
+        return json_string(text_at(column, row));
+    }
+}
+
+static json_t *row_to_json(const BenchTable *table, const void *row)
+{
+    json_t *object = json_object();
+    Device device[DEVICE_COUNT];
+    list_device(table->gpu, device);
+    for (size_t i = 0; i < table->column_count; ++i)
+        json_object_set_new(object, table->columns[i].name, value_to_json(&table->columns[i], row));
+    for (int i = 0; i < DEVICE_COUNT; ++i)
+        json_object_set_new(object, device[i].name, json_string(device[i].value));
+    return object;
+}
+
+// --- The table.
+
+Result bench_table_open(BenchTable *table, const Column *columns, size_t column_count,
+                        const Gpu *gpu, const BenchOutput *output, FILE *screen, Error *error)
+{
+    *table = (BenchTable){.columns = columns,
+                          .column_count = column_count,
+                          .gpu = gpu,
+                          .output = *output,
+                          .screen = screen,
+                          .rows = json_array()};
+    table->csv_stream = open_memstream(&table->csv, &table->csv_size);
+    if (!table->rows || !table->csv_stream)
+        return error_set(error, RESULT_FAILED, "no memory for a table");
+    write_screen(table, NULL);
+    write_csv(table, NULL);
+    return RESULT_OK;
+}
+
+void bench_table_add(BenchTable *table, const void *row)
+{
+    write_screen(table, row);
+    write_csv(table, row);
+    json_array_append_new(table->rows, row_to_json(table, row));
+}
+
+const char *bench_table_check(BenchTable *table, double value, double most, const char *format, ...)
+{
+    if (isnan(most)) return "";
+    ++table->bounds;
+    if (value <= most) return "holds";
+    if (table->broken++ == 0) {
+        char what[384];
+        va_list arguments;
+        va_start(arguments, format);
+        vsnprintf(what, sizeof what, format, arguments);
+        va_end(arguments);
+        snprintf(table->first_broken, sizeof table->first_broken, "%s: %.4g, stated is at most %g",
+                 what, value, most);
+    }
+    return "broken";
+}
+
+static Result write_files(BenchTable *table, Error *error)
+{
+    Result result = RESULT_OK;
+    const Bytes bytes = {.data = (uint8_t *)table->csv, .size = table->csv_size};
+    if (table->output.csv) result = bytes_write_file(&bytes, table->output.csv, error);
+    if (result == RESULT_OK && table->output.json)
+        result = json_write_file(table->rows, table->output.json, error);
+    return result;
+}
+
+Result bench_table_close(BenchTable *table, Result result, Error *error)
+{
+    bool whole = table->csv_stream && fclose(table->csv_stream) == 0;
+    if (result == RESULT_OK && !whole)
+        result = error_set(error, RESULT_FAILED, "no memory for the table");
+    if ((result == RESULT_OK || result == RESULT_FAILED) && whole) {
+        Error unwritten;
+        Result written = write_files(table, &unwritten);
+        if (written != RESULT_OK) result = error_set(error, written, "%s", unwritten.text);
+    }
+    if (result == RESULT_OK && table->broken)
+        result = error_set(error, RESULT_FAILED, "%ld of %ld bounds are broken; the first: %s",
+                           table->broken, table->bounds, table->first_broken);
+    free(table->csv);
+    json_decref(table->rows);
+    *table = (BenchTable){0};
+    return result;
+}

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: MIT
+// tractrix-compare: how much pictures differ, frame by frame, and whether that is too much.
+#include "base/interrupt.h"
+#include "base/options.h"
+#include "base/program.h"
+#include "base/progress.h"
+#include "compare/pairs.h"
+#include "compare/verdict.h"
+#include "compare/verdict_report.h"
+#include "image/compare.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+typedef struct Command {
+    double pixel_tolerance, max_flip, ppd; // the first two: negative if not given
+    const char *max_failing, *heat_map, *sheet, *json, *junit;
+    bool update, quiet;
+    int jobs;
+    const char *a, *b;
+    CompareLimits limits;
+} Command;
+
+#define AT(member) offsetof(Command, member)
+
+static const Option OPTIONS[] = {
+    {"pixel-tolerance", 0, OPTION_REAL, AT(pixel_tolerance), "LEVELS", 0, 255,
+     "a pixel passes if no channel is off by more, of 255 levels [default 0]"},
+    {"max-failing-pixels", 0, OPTION_STRING, AT(max_failing), "N|P%", 0, 0,
+     "pixels of a picture that may be off by more: a number, or a percentage [default 0]"},
+    {"max-flip", 0, OPTION_REAL, AT(max_flip), "X", 0, 1,
+     "largest mean of FLIP; without the two options above it is the only limit"},
+    {"ppd", 0, OPTION_REAL, AT(ppd), "X", 1, 1000,
+     "pixels that fill a degree of view, for FLIP [default 67]"},
+    {"heatmap", 0, OPTION_STRING, AT(heat_map), "PATH", 0, 0,
+     "PNG file of FLIP's error per pixel, black to yellow; for folders and patterns a folder, "
+     "where only pictures that differ get one"},
+    {"sheet", 0, OPTION_STRING, AT(sheet), "PATH", 0, 0,
+     "the same with A, B and the heat map side by side"},
+    {"json", 0, OPTION_STRING, AT(json), "FILE", 0, 0, "write all figures as JSON"},
+    {"junit", 0, OPTION_STRING, AT(junit), "FILE", 0, 0, "write the outcomes as JUnit XML, for CI"},
+    {"update", 0, OPTION_SWITCH, AT(update), NULL, 0, 0,
+     "accept B: copy it over A wherever they differ or A has none"},
+    {"jobs", 'j', OPTION_WHOLE, AT(jobs), "N", 1, 1024,
+     "pictures compared at a time [default: as many as there are processors]"},
+    {"quiet", 'q', OPTION_SWITCH, AT(quiet), NULL, 0, 0, "print errors only"},
+};
+
+static const char *const NOTES[] = {
+    "A and B are two pictures (PNG of 8 or 16 bits, PFM), two folders, whose .png and .pfm files "
+    "go by name, or two patterns with %d or %04d, whose files go by number. Pictures of two sizes "
+    "and pictures that only one side has are different.",
+    "RMSE and PSNR are over red, green and blue in sRGB levels of 0 to 255; SSIM is that of Wang "
+    "et al. 2004 on luma; FLIP that of Andersson et al. 2020, 0: looks the same, 1: cannot differ "
+    "more. Equal pictures score exactly 0 (SSIM 1). Pictures with alpha are compared over black "
+    "and over white, and the worse counts.",
+    NULL};
+
+static const char *const STATUS[][2] = {{"0", "the same, within the limits"},
+                                        {"1", "different or missing; or a file can't be written"},
+                                        {"2", "wrong usage"},
+                                        {"3", "a picture or folder can't be read"},
+                                        {"130", "interrupted"},
+                                        {NULL, NULL}};
+
+static const char *const EXAMPLES[] = {
+    "tractrix-compare golden.png new.png --heatmap difference.png",
+    "tractrix-compare goldens/ frames/ --pixel-tolerance 8 --max-failing-pixels 2% --sheet bad/",
+    "tractrix-compare ref_%04d.png new_%04d.png --max-flip 0.05 --junit report.xml",
+    "tractrix-compare goldens/ frames/ --update", NULL};
+
+static const OptionsProgram PROGRAM = {
+    .name = "tractrix-compare",
+    .summary = "compare rendered pictures, frame by frame",
+    .synopsis = "[OPTION]... A B",
+    .description =
+        "Measures how much the pictures B differ from the references A, a line for each, "
+        "and tells by its exit status whether that is too much.",
+    .options = OPTIONS,
+    .option_count = sizeof OPTIONS / sizeof *OPTIONS,
+    .notes = NOTES,
+    .status = STATUS,
+    .examples = EXAMPLES,
+};
+
+// --- What is asked.
+
+static Result read_failing(CompareLimits *limits, const char *text, Error *error)
+{
+    char *end;
+    double number = strtod(text, &end);
+    bool percent = end != text && end[0] == '%' && !end[1];
+    bool whole = end != text && !*end && number <= 1e15 && number == (double)(long long)number;
+    limits->max_failing = number;
+    limits->max_failing_percent = percent;
+    if (number >= 0 && ((percent && number <= 100) || whole)) return RESULT_OK;
+    return error_set(error, RESULT_USAGE,
+                     "--max-failing-pixels: expected a whole number, or 0%% to 100%%, got '%s'",
+                     text);
+}
+
+// Limits that are named count; if none is, only equal pictures pass.
+static Result read_limits(Command *command, Error *error)
+{
+    CompareLimits *limits = &command->limits;
+    *limits = compare_limits_default();
+    limits->pixels_per_degree = command->ppd;
+    limits->flip_matters = command->max_flip >= 0;
+    limits->max_flip = command->max_flip;
+    limits->pixels_matter =
+        !limits->flip_matters || command->pixel_tolerance >= 0 || command->max_failing;
+    if (command->pixel_tolerance >= 0) limits->pixel_tolerance = command->pixel_tolerance;
+    return command->max_failing ? read_failing(limits, command->max_failing, error) : RESULT_OK;
+}
+
+static Result parse(Command *command, int argc, char **argv, bool *done, Error *error)
+{
+    long cores = sysconf(_SC_NPROCESSORS_ONLN);
+    int first;
+    *command = (Command){.pixel_tolerance = -1,
+                         .max_flip = -1,
+                         .ppd = compare_limits_default().pixels_per_degree,
+                         .jobs = cores < 1      ? 1
+                                 : cores > 1024 ? 1024
+                                                : (int)cores};
+    Result result = options_parse(&PROGRAM, command, argc, argv, &first, done, error);
+    if (result != RESULT_OK || *done) return result;
+    if (argc - first != 2)
+        return error_set(error, RESULT_USAGE, "expected two files, folders or patterns, got %d",
+                         argc - first);
+    command->a = argv[first], command->b = argv[first + 1];
+    return read_limits(command, error);
+}
+
+// --- The work: threads take pairs in order, the main one prints verdicts in order.
+
+typedef struct Work {
+    const Command *command;
+    const PairList *list;
+    Verdict *verdicts;
+    bool *ready;
+    size_t next; // pair to be taken
+    pthread_mutex_t lock;
+    pthread_cond_t changed;
+} Work;
+
+// The file for this pair in the folder, "frame_0001.png" or "frame_0001.pfm.png"; the file itself
+// if there is just one pair. NULL for NULL, or when memory is short.
+static char *name_drawing(const Work *work, const char *path, const Pair *pair)
+{
+    char *name;
+    size_t length = strlen(pair->name);
+    if (!path) return NULL;
+    if (!work->list->many) return strdup(path);
+    bool png = length > 4 && strcasecmp(pair->name + length - 4, ".png") == 0;
+    return asprintf(&name, "%s/%s%s", path, pair->name, png ? "" : ".png") < 0 ? NULL : name;
+}
+
+static void judge(Work *work, size_t i)
+{
+    const Command *command = work->command;
+    const Pair *pair = &work->list->pairs[i];
+    char *heat_map = name_drawing(work, command->heat_map, pair);
+    char *sheet = name_drawing(work, command->sheet, pair);
+    VerdictOptions options = {.limits = command->limits,
+                              .heat_map = heat_map,
+                              .sheet = sheet,
+                              .draw_same = !work->list->many,
+                              .update = command->update};
+    verdict_find(&work->verdicts[i], pair, &options);
+    free(heat_map);
+    free(sheet);
+}
+
+static void *run_thread(void *argument)
+{
+    Work *work = argument;
+    pthread_mutex_lock(&work->lock);
+    while (work->next < work->list->count && !interrupt_requested()) {
+        size_t i = work->next++;
+        pthread_mutex_unlock(&work->lock);
+        judge(work, i);
+        pthread_mutex_lock(&work->lock);
+        work->ready[i] = true;
+        pthread_cond_signal(&work->changed);
+    }
+    work->next = work->list->count;
+    pthread_cond_signal(&work->changed);
+    pthread_mutex_unlock(&work->lock);
+    return NULL;
+}
+
+// Waits for each verdict in turn. A pair that nobody took, after an interruption, ends it.
+static Result print_verdicts(Work *work, Error *error)
+{
+    Progress progress;
+    progress_start(&progress, stderr, (int)work->list->count, work->command->quiet);
+    for (size_t i = 0; i < work->list->count; ++i) {
+        pthread_mutex_lock(&work->lock);
+        while (!work->ready[i] && !interrupt_requested())
+            pthread_cond_wait(&work->changed, &work->lock);
+        bool ready = work->ready[i];
+        pthread_mutex_unlock(&work->lock);
+        if (!ready) {
+            progress_clear(&progress);
+            return error_set(error, RESULT_INTERRUPTED, "interrupted");
+        }
+        if (!work->command->quiet) {
+            progress_clear(&progress);
+            verdict_print(&work->verdicts[i], &work->list->pairs[i], stdout);
+        }
+        progress_update(&progress, (int)i + 1);
+    }
+    progress_clear(&progress);
+    return RESULT_OK;
+}
+
+static Result run_threads(Work *work, Error *error)
+{
+    pthread_t threads[1024];
+    int count = 0, wanted = work->command->jobs;
+    if ((size_t)wanted > work->list->count) wanted = (int)work->list->count;
+    while (count < wanted && pthread_create(&threads[count], NULL, run_thread, work) == 0) ++count;
+    if (count == 0) return error_set(error, RESULT_FAILED, "cannot start a thread");
+    Result result = print_verdicts(work, error);
+    for (int i = 0; i < count; ++i) pthread_join(threads[i], NULL);
+    return result;
+}
+
+// ---
+
+static Result make_folder(const char *path, Error *error)
+{
+    if (mkdir(path, 0777) == 0 || errno == EEXIST) return RESULT_OK;
+    return error_set(error, RESULT_FAILED, "%s: %s", path, strerror(errno));
+}
+
+static Result make_folders(const Command *command, const PairList *list, Error *error)
+{
+    const char *const folders[] = {command->heat_map, command->sheet};
+    Result result = RESULT_OK;
+    for (int i = 0; i < 2 && list->many && result == RESULT_OK; ++i)
+        if (folders[i]) result = make_folder(folders[i], error);
+    if (result == RESULT_OK && list->many && command->update && !strchr(command->a, '%'))
+        result = make_folder(command->a, error);
+    return result;
+}
+
+// Status 3 names the first culprit on stderr as well, where the other programs name theirs.
+static Result conclude(const Work *work, Error *error)
+{
+    size_t count = work->list->count;
+    Tally tally = verdict_count(work->verdicts, count);
+    Result result = verdict_status(work->verdicts, count);
+    if (!work->command->quiet) verdict_print_tally(&tally, work->list, stdout);
+    for (size_t i = 0; i < count && result != RESULT_OK; ++i) {
+        const Verdict *verdict = &work->verdicts[i];
+        bool told = verdict->outcome == OUTCOME_UNREADABLE || verdict->outcome == OUTCOME_FAILED;
+        if (!told || verdict->updated) continue;
+        return error_set(error, result, "%s", verdict->text);
+    }
+    error->text[0] = 0;
+    return result;
+}
+
+static Result write_reports(const Work *work, Error *error)
+{
+    const Command *command = work->command;
+    Result result = RESULT_OK;
+    if (command->json)
+        result =
+            verdict_write_json(command->json, work->list, work->verdicts, &command->limits, error);
+    if (result == RESULT_OK && command->junit)
+        result = verdict_write_junit(command->junit, work->list, work->verdicts, error);
+    return result;
+}
+
+static Result run(const Command *command, Error *error)
+{
+    PairList list;
+    Result result = pairs_find(&list, command->a, command->b, command->update, error);
+    if (result != RESULT_OK) return result;
+    Work work = {.command = command,
+                 .list = &list,
+                 .verdicts = calloc(list.count, sizeof *work.verdicts),
+                 .ready = calloc(list.count, sizeof *work.ready),
+                 .lock = PTHREAD_MUTEX_INITIALIZER,
+                 .changed = PTHREAD_COND_INITIALIZER};
+    result = work.verdicts && work.ready ? make_folders(command, &list, error)
+                                         : error_set(error, RESULT_FAILED, "no memory");
+    if (result == RESULT_OK) result = run_threads(&work, error);
+    if (result == RESULT_OK) result = write_reports(&work, error);
+    if (result == RESULT_OK) result = conclude(&work, error);
+    free(work.verdicts);
+    free(work.ready);
+    pairs_destroy(&list);
+    return result;
+}
+
+int main(int argc, char **argv)
+{
+    Command command;
+    Error error = {{0}};
+    bool done = false;
+    interrupt_install();
+    Result result = parse(&command, argc, argv, &done, &error);
+    if (result == RESULT_OK && !done) result = run(&command, &error);
+    return program_end("tractrix-compare", result, &error);
+}

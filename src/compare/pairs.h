@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// Which pictures belong together: two files, or those of two folders or of two numbered sequences.
+#pragma once
+
+#include "base/error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef struct Pair {
+    char *name;        // for people: the file's name in a folder or sequence, else b
+    char *a, *b;       // where both are, or would be
+    bool has_a, has_b; // whether they were found
+} Pair;
+
+typedef struct PairList {
+    Pair *pairs; // in the order of names or numbers
+    size_t count;
+    bool many; // folders or sequences, though they may have one picture
+} PairList;
+
+// `a` and `b` are both files; or both folders, whose files ending in .png or .pfm (not hidden ones)
+// go by name; or both patterns with %d or %04d in the file's name, as tractrix-render -o takes
+// them, whose files go by number. What only one has is a pair with the other missing. With `create`
+// `a` need not exist: it is what `b` is, and empty. RESULT_USAGE for mixed kinds, RESULT_BAD_INPUT
+// if a folder can't be read or there is no picture at all. Files are not opened.
+Result pairs_find(PairList *list, const char *a, const char *b, bool create, Error *error);
+void pairs_destroy(PairList *list);

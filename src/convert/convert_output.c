@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+#include "convert/convert_output.h"
+
+#include "strands/fibre.h"
+#include "strands/strands_edit.h"
+#include "strands/strands_features.h"
+#include "strands/strands_write.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// As CONVERT_FORMATS has them.
+static const StrandsKind FORMATS[] = {STRANDS_KINDS, STRANDS_TFX2_TEXT,  STRANDS_TFX3, STRANDS_TFX4,
+                                      STRANDS_HAIR,  STRANDS_SALON_DATA, STRANDS_OBJ,  STRANDS_USD};
+
+// --- The name.
+
+static const char *suffix_of(const char *path)
+{
+    const char *dot = strrchr(path, '.'), *slash = strrchr(path, '/');
+    return dot && (!slash || dot > slash) ? dot : "";
+}
+
+// With --format any name will do.
+static Result parse_target(ConvertOutput *output, Error *error)
+{
+    if (!output->format) return target_parse_hair(&output->target, output->path, error);
+    Result result = target_parse_any(&output->target, output->path, error);
+    if (FORMATS[output->format] == STRANDS_USD && output->target.kind == TARGET_STILL)
+        output->target.kind = TARGET_VIDEO;
+    return result;
+}
+
+Result convert_output_open(ConvertOutput *output, int frame_count, Error *error)
+{
+    Result result = parse_target(output, error);
+    if (result == RESULT_OK && output->target.kind == TARGET_STILL && frame_count > 1)
+        result = error_set(error, RESULT_USAGE,
+                           "%s: one name for %d frames, put the frame number into it, x_%%04d%s, "
+                           "or write .usda",
+                           output->path, frame_count, suffix_of(output->path));
+    if (result == RESULT_OK) result = target_prepare(&output->target, error);
+    return result;
+}
+
+void convert_output_close(ConvertOutput *output)
+{
+    usd_writer_discard(&output->usd);
+    strands_destroy(&output->still);
+    target_destroy(&output->target);
+    free(output->widths);
+    *output = (ConvertOutput){0};
+}
+
+// --- USD.
+
+// A diameter for each strand, thick ones by the file's thickness over its mean, or one for all.
+static Result find_widths(ConvertOutput *output, const Strands *strands, UsdLook *look,
+                          Error *error)
+{
+    double width = output->width > 0 ? output->width / output->unit
+                                     : 2 * (double)fibre_auto_radius(strands, 0);
+    const float *thickness = strands->strand_thickness;
+    uint32_t count = thickness ? strands->strand_count : 1;
+    double mean = 0;
+    if (strands->vertex_thickness && output->width <= 0) return RESULT_OK;
+    free(output->widths);
+    output->widths = malloc(((size_t)count + 1) * sizeof *output->widths);
+    if (!output->widths) return error_set(error, RESULT_FAILED, "no memory for the widths");
+    for (uint32_t s = 0; thickness && s < count; ++s) mean += (double)thickness[s] / count;
+    for (uint32_t s = 0; s < count; ++s)
+        output->widths[s] = (float)(thickness && mean > 0 ? width * thickness[s] / mean : width);
+    look->width = output->widths;
+    look->width_rate = thickness ? USD_UNIFORM : USD_CONSTANT;
+    return RESULT_OK;
+}
+
+static Result describe_usd(ConvertOutput *output, const Strands *strands, bool animated,
+                           UsdOptions *options, Error *error)
+{
+    *options = (UsdOptions){.metres_per_unit = output->unit,
+                            .up_z = output->up_z,
+                            .animated = animated,
+                            .fps = output->fps,
+                            .first = output->first,
+                            .last = output->last,
+                            .look = {.section = output->section}};
+    return find_widths(output, strands, &options->look, error);
+}
+
+// The first frame's strands are kept, since the writer looks at their numbers.
+static Result open_usd(ConvertOutput *output, Strands *strands, Error *error)
+{
+    UsdOptions options;
+    output->still = *strands;
+    *strands = (Strands){0};
+    Result result = describe_usd(output, &output->still, output->animated, &options, error);
+    if (result != RESULT_OK) return result;
+    return usd_writer_open(&output->usd, output->target.before, &output->still, &options, error);
+}
+
+static bool same_strands(const Strands *a, const Strands *b)
+{
+    return a->strand_count == b->strand_count &&
+           memcmp(a->first, b->first, ((size_t)a->strand_count + 1) * sizeof *a->first) == 0;
+}
+
+static Result add_usd(ConvertOutput *output, int frame, Strands *strands, Error *error)
+{
+    bool begins = !output->usd.strands;
+    if (begins) {
+        Result result = open_usd(output, strands, error);
+        if (result != RESULT_OK) return result;
+    } else if (!same_strands(&output->still, strands)) {
+        return error_set(error, RESULT_FAILED,
+                         "%s: frame %d has other strands than frame %d; in one file they must be "
+                         "the same",
+                         output->path, frame, output->first);
+    }
+    const Strands *now = begins ? &output->still : strands;
+    return usd_writer_add(&output->usd, frame, (const float(*)[3])now->position, error);
+}
+
+// --- Any kind.
+
+static Result write_file(ConvertOutput *output, int frame, const Strands *strands, Error *error)
+{
+    UsdOptions options;
+    char *name = target_name_frame(&output->target, frame);
+    Result result =
+        name ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for the name of a frame");
+    if (result == RESULT_OK && output->kind == STRANDS_USD) {
+        result = describe_usd(output, strands, false, &options, error);
+        if (result == RESULT_OK) result = usd_write_still(name, strands, &options, error);
+    } else if (result == RESULT_OK) {
+        result = strands_write(name, output->kind, strands, error);
+    }
+    output->files += result == RESULT_OK;
+    free(name);
+    return result;
+}
+
+Result convert_output_add(ConvertOutput *output, int frame, Strands *strands, Error *error)
+{
+    if (strands->strand_count == 0)
+        return error_set(error, RESULT_FAILED, "%s: no strands to write", output->path);
+    strands_to_unit(strands, output->unit, output->up_z);
+    output->kind = output->format ? FORMATS[output->format]
+                                  : strands_choose_kind(suffix_of(output->path), strands);
+    output->lost |= strands_features(strands) & ~strands_kind_features(output->kind);
+    if (output->target.kind == TARGET_VIDEO) return add_usd(output, frame, strands, error);
+    return write_file(output, frame, strands, error);
+}
+
+Result convert_output_finish(ConvertOutput *output, Error *error)
+{
+    if (!output->usd.strands) return RESULT_OK;
+    Result result = usd_writer_finish(&output->usd, error);
+    output->files += result == RESULT_OK;
+    return result;
+}

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+#include "convert/convert_steps.h"
+
+#include "strands/strands_mend.h"
+#include "strands/strands_order.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// --- Reading values.
+
+// A decimal number at the text's begin; returns what follows, NULL if there is none.
+static const char *scan_number(const char *text, double *number)
+{
+    char *end;
+    if (!*text || !strchr("0123456789+-.", *text)) return NULL;
+    *number = strtod(text, &end);
+    return end == text || !isfinite(*number) ? NULL : end;
+}
+
+static Result refuse(const char *name, const char *text, const char *expected, Error *error)
+{
+    return error_set(error, RESULT_USAGE, "--%s: expected %s, got '%s'", name, expected, text);
+}
+
+static Result parse_share(ConvertStep *step, const char *name, const char *text, Error *error)
+{
+    const char *end = scan_number(text, &step->number);
+    bool percent = end && strcmp(end, "%") == 0;
+    if (percent) step->number /= 100;
+    if (end && (percent || !*end) && step->number > 0 && step->number <= 1) return RESULT_OK;
+    return refuse(name, text, "a share above 0 up to 1, or 100%", error);
+}
+
+static Result parse_count(ConvertStep *step, const char *name, const char *text, Error *error)
+{
+    static const struct {
+        ConvertKind kind;
+        double least, most;
+    } limits[] = {
+        {CONVERT_NTH, 1, 1e9}, {CONVERT_SMOOTH, 1, 10000}, {CONVERT_RESAMPLE, 2, STRANDS_MAX_SIZE}};
+    double number;
+    char expected[64];
+    const char *end = scan_number(text, &number);
+    for (size_t i = 0; i < sizeof limits / sizeof *limits; i++) {
+        if (limits[i].kind != step->kind) continue;
+        snprintf(expected, sizeof expected, "a whole number from %.0f to %.0f", limits[i].least,
+                 limits[i].most);
+        if (!end || *end || number != floor(number) || number < limits[i].least ||
+            number > limits[i].most)
+            return refuse(name, text, expected, error);
+    }
+    step->count = step->resample.count = (uint32_t)number;
+    return RESULT_OK;
+}
+
+static Result parse_positive(double *number, const char *name, const char *text, Error *error)
+{
+    const char *end = scan_number(text, number);
+    if (end && !*end && *number >= 1e-9 && *number <= 1e9) return RESULT_OK;
+    return refuse(name, text, "a number from 1e-9 to 1e9", error);
+}
+
+static Result parse_rotation(StrandsMove *move, const char *name, const char *text, Error *error)
+{
+    double angle_deg;
+    bool axis = *text >= 'x' && *text <= 'z' && text[1] == ',';
+    const char *end = axis ? scan_number(text + 2, &angle_deg) : NULL;
+    if (!end || *end) return refuse(name, text, "an axis and degrees such as y,90", error);
+    *move = strands_move_rotation(*text - 'x', angle_deg);
+    return RESULT_OK;
+}
+
+static Result parse_translation(StrandsMove *move, const char *name, const char *text, Error *error)
+{
+    const char *at = text;
+    for (int i = 0; i < 3 && at; i++) {
+        if (i) at = *at == ',' ? at + 1 : NULL;
+        if (at) at = scan_number(at, &move->translation[i]);
+        if (at && fabs(move->translation[i]) > 1e6) at = NULL;
+    }
+    return at && !*at ? RESULT_OK : refuse(name, text, "X,Y,Z, each up to 1e6 m", error);
+}
+
+static Result parse_step(ConvertStep *step, const char *name, const char *text, Error *error)
+{
+    *step = (ConvertStep){.move = strands_move_none()};
+    step->kind = CONVERT_MOVE;
+    if (strcmp(name, "scale") == 0) return parse_positive(&step->move.scale, name, text, error);
+    if (strcmp(name, "rotate") == 0) return parse_rotation(&step->move, name, text, error);
+    if (strcmp(name, "translate") == 0) return parse_translation(&step->move, name, text, error);
+    step->kind = CONVERT_REVERSE;
+    if (strcmp(name, "reverse") == 0) return RESULT_OK;
+    step->kind = CONVERT_SUBSAMPLE;
+    if (strcmp(name, "subsample") == 0) return parse_share(step, name, text, error);
+    step->kind = CONVERT_MIN_LENGTH;
+    if (strcmp(name, "min-length") == 0) return parse_positive(&step->number, name, text, error);
+    step->kind = CONVERT_RESAMPLE;
+    if (strcmp(name, "spacing") == 0)
+        return parse_positive(&step->resample.spacing, name, text, error);
+    step->resample.spline = strcmp(name, "resample-spline") == 0;
+    if (strcmp(name, "nth") == 0) step->kind = CONVERT_NTH;
+    if (strcmp(name, "smooth") == 0) step->kind = CONVERT_SMOOTH;
+    return parse_count(step, name, text, error);
+}
+
+Result convert_steps_parse(ConvertSteps *steps, const OptionSteps *options, Error *error)
+{
+    Result result = RESULT_OK;
+    steps->count = options->count;
+    for (int i = 0; i < options->count && result == RESULT_OK; i++)
+        result = parse_step(&steps->step[i], options->step[i].option->name, options->step[i].text,
+                            error);
+    return result;
+}
+
+// --- Doing it.
+
+static bool keeps(const ConvertStep *step, const Strands *strands, uint32_t s)
+{
+    return step->kind == CONVERT_NTH ? s % step->count == 0
+                                     : strands_length(strands, s) >= step->number;
+}
+
+static Result pick(const ConvertStep *step, Strands *strands, Error *error)
+{
+    uint32_t count = 0, *which = malloc(((size_t)strands->strand_count + 1) * sizeof *which);
+    if (!which) return error_set(error, RESULT_FAILED, "no memory to pick strands");
+    for (uint32_t s = 0; s < strands->strand_count; s++)
+        if (keeps(step, strands, s)) which[count++] = s;
+    Result result = strands_pick(strands, which, count, error);
+    free(which);
+    if (result == RESULT_OK && count == 0)
+        result = error_set(error, RESULT_FAILED, "no strand is as long as %g m: --min-length",
+                           step->number);
+    return result;
+}
+
+static Result apply(const ConvertStep *step, uint32_t seed, Strands *strands, Error *error)
+{
+    switch (step->kind) {
+    case CONVERT_SUBSAMPLE:
+        return strands_thin(strands, step->number, seed, error);
+    case CONVERT_NTH:
+    case CONVERT_MIN_LENGTH:
+        return pick(step, strands, error);
+    case CONVERT_RESAMPLE:
+        return strands_resample(strands, &step->resample, error);
+    case CONVERT_SMOOTH:
+        strands_smooth(strands, step->count);
+        return RESULT_OK;
+    case CONVERT_MOVE:
+        strands_move(strands, &step->move);
+        return RESULT_OK;
+    default:
+        strands_reverse(strands);
+        return RESULT_OK;
+    }
+}
+
+Result convert_steps_apply(const ConvertSteps *steps, Strands *strands, Error *error)
+{
+    Result result = RESULT_OK;
+    for (int i = 0; i < steps->count && result == RESULT_OK; i++)
+        result = apply(&steps->step[i], steps->seed, strands, error);
+    return result;
+}

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: MIT
+// tractrix-convert: tells what hair files are, changes hair, and writes it in other formats.
+#include "base/interrupt.h"
+#include "base/options.h"
+#include "base/params.h"
+#include "base/program.h"
+#include "base/progress.h"
+#include "convert/convert_input.h"
+#include "convert/convert_output.h"
+#include "convert/convert_report.h"
+#include "convert/convert_steps.h"
+#include "strands/strands_features.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct Command {
+    const char *unit, *to_unit, *output, *json; // NULL: not given
+    int up, to_up, format, first, last, every, seed;
+    double fps, width;
+    bool strict, stats, quiet;
+    OptionSteps steps;
+} Command;
+
+#define AT(member) offsetof(Command, member)
+static const char AXES[] = "y|z", UNITS[] = "m|cm|mm|in|NUMBER";
+
+static const Option OPTIONS[] = {
+    {"output", 'o', OPTION_STRING, AT(output), "FILE", 0, 0,
+     "what is written: .usda, .tfx, .hair, .obj or .data; with one %d or %04d a file for each "
+     "frame"},
+    {"format", 0, OPTION_WORD, AT(format), CONVERT_FORMATS, 0, 0,
+     "format of FILE, whatever its name; auto goes by the name, .tfx is tfx4, or text where "
+     "strands differ in their number of vertices [default auto]"},
+    {"stats", 0, OPTION_SWITCH, AT(stats), NULL, 0, 0,
+     "print counts, lengths, curvature, spacing and a histogram of vertices of the hair as it is "
+     "after all steps"},
+    {"json", 0, OPTION_STRING, AT(json), "FILE", 0, 0, "write all that is known as JSON"},
+    {"quiet", 'q', OPTION_SWITCH, AT(quiet), NULL, 0, 0, "print errors only"},
+
+    {"unit", 0, OPTION_STRING, AT(unit), UNITS, 0, 0,
+     "what one unit of the hair files is [default: a guess by their size]"},
+    {"up", 0, OPTION_WORD, AT(up), AXES, 0, 0, "axis of the hair files that points up [default y]"},
+    {"strict", 0, OPTION_SWITCH, AT(strict), NULL, 0, 0,
+     "refuse files with defects instead of mending them"},
+    {"to-unit", 0, OPTION_STRING, AT(to_unit), UNITS, 0, 0, "unit of what is written [default m]"},
+    {"to-up", 0, OPTION_WORD, AT(to_up), AXES, 0, 0, "its axis that points up [default y]"},
+    {"width", 0, OPTION_REAL, AT(width), "M", 1e-7, 1,
+     "diameter of the strands in .usda, metres [default: the file's, or by their number and size]"},
+
+    {"first", 0, OPTION_WHOLE, AT(first), "N", 0, 9999999, "first frame [default 0]"},
+    {"last", 0, OPTION_WHOLE, AT(last), "N", 0, 9999999,
+     "last frame [default: as many as are there]"},
+    {"every", 0, OPTION_WHOLE, AT(every), "N", 1, 9999999, "each so many-th frame [default 1]"},
+    {"fps", 0, OPTION_REAL, AT(fps), "X", 1, 10000,
+     "frames a second, of .usda [default: the cache's, of numbered files 60]"},
+
+    {"subsample", 0, OPTION_STEP, AT(steps), "SHARE", 0, 0,
+     "step: keep a random share of the strands, 0.1 or 10%"},
+    {"nth", 0, OPTION_STEP, AT(steps), "N", 0, 0, "step: keep each N-th strand"},
+    {"min-length", 0, OPTION_STEP, AT(steps), "M", 0, 0,
+     "step: drop strands that are shorter, metres"},
+    {"resample", 0, OPTION_STEP, AT(steps), "N", 0, 0,
+     "step: N vertices at equal distances on every strand"},
+    {"resample-spline", 0, OPTION_STEP, AT(steps), "N", 0, 0,
+     "step: the same along a spline through the vertices (Catmull-Rom, centripetal)"},
+    {"spacing", 0, OPTION_STEP, AT(steps), "M", 0, 0,
+     "step: vertices at equal distances of at most M metres"},
+    {"smooth", 0, OPTION_STEP, AT(steps), "N", 0, 0,
+     "step: N passes of a binomial filter over the vertices between root and tip"},
+    {"scale", 0, OPTION_STEP, AT(steps), "X", 0, 0, "step: scale about the origin"},
+    {"rotate", 0, OPTION_STEP, AT(steps), "AXIS,DEG", 0, 0,
+     "step: turn about x, y or z, such as y,90"},
+    {"translate", 0, OPTION_STEP, AT(steps), "X,Y,Z", 0, 0, "step: move, metres"},
+    {"reverse", 0, OPTION_STEP, AT(steps), NULL, 0, 0, "step: make roots of tips"},
+    {"seed", 0, OPTION_WHOLE, AT(seed), "N", 0, 2147483647,
+     "of --subsample, and of the shuffle that some files ask for [default 1]"},
+};
+
+static const char *const NOTES[] = {
+    "FILE is a hair file (TressFX 2, 3 or 4, HAIR, USC-HairSalon, CT2Hair, Wavefront lines, USD "
+    "curves), a name with %d or %04d that stands for numbered ones, or a cache of "
+    "tractrix-render. Several hair files become one. Without -o, --stats and --json it is only "
+    "told what they are.",
+    "Steps are done in the order in which they stand. Lengths are metres with y up, whatever the "
+    "file has.",
+    "Defects are mended when a file is read, as tractrix-render does, with a line for each kind: "
+    "strands with coordinates that are no numbers and strands without length are dropped, "
+    "coincident vertices merged, bad attributes replaced. What the written format can't hold is "
+    "told, too.",
+    NULL};
+
+static const char *const STATUS[][2] = {
+    {"0", "done"},          {"1", "a file can't be written"},
+    {"2", "wrong usage"},   {"3", "a file can't be read or is refused"},
+    {"130", "interrupted"}, {NULL, NULL}};
+
+static const char *const EXAMPLES[] = {
+    "tractrix-convert hair.tfx",
+    "tractrix-convert hair.tfx --stats --json hair.json",
+    "tractrix-convert hair.tfx -o hair.usda",
+    "tractrix-convert in.tfx --resample 32 --subsample 10% --scale 0.5 -o out.hair",
+    "tractrix-convert scan.data --up z --min-length 0.01 --spacing 0.005 -o scan.tfx --format text",
+    "tractrix-convert anim.cache -o anim.usda",
+    "tractrix-convert sim_%04d.tfx --fps 30 -o sim.usda",
+    NULL};
+
+static const OptionsProgram PROGRAM = {
+    .name = "tractrix-convert",
+    .summary = "convert, change and measure hair files",
+    .synopsis = "[OPTION]... FILE...",
+    .description =
+        "Tells what hair files are, thins, resamples, smooths and moves hair, and writes "
+        "it in other formats, also animated.",
+    .options = OPTIONS,
+    .option_count = sizeof OPTIONS / sizeof *OPTIONS,
+    .notes = NOTES,
+    .status = STATUS,
+    .examples = EXAMPLES,
+};
+
+// --- What is asked.
+
+typedef struct Job {
+    Command command;
+    ConvertSteps steps;
+    ConvertInput input;
+    ConvertOutput output;
+    StrandsFigures figures;
+} Job;
+
+static Result parse_unit(const char *name, const char *text, float *metres, Error *error)
+{
+    SectionParams params = {0};
+    if (!text) return RESULT_OK;
+    Result result = param_parse(param_find("unit"), &params, text, error);
+    *metres = params.unit.automatic ? 0 : params.unit.value;
+    return result == RESULT_OK ? result : error_prefix(error, result, "--%s: ", name);
+}
+
+static Result check_sense(const Command *command, int files, Error *error)
+{
+    bool to = command->to_unit || command->to_up || command->format || command->width > 0;
+    if (files == 0) return error_set(error, RESULT_USAGE, "expected a hair file or a cache");
+    if (!command->output && to)
+        return error_set(error, RESULT_USAGE,
+                         "--to-unit, --to-up, --format and --width are for what -o writes");
+    if (!command->output && !command->stats && !command->json && command->steps.count)
+        return error_set(error, RESULT_USAGE, "--%s: nothing comes of it without -o or --stats",
+                         command->steps.step[0].option->name);
+    return RESULT_OK;
+}
+
+static Result parse(Job *job, int argc, char **argv, bool *done, Error *error)
+{
+    Command *command = &job->command;
+    int first;
+    float unit = 0, to_unit = 1;
+    *command = (Command){.last = -1, .every = 1, .seed = 1};
+    Result result = options_parse(&PROGRAM, command, argc, argv, &first, done, error);
+    if (result != RESULT_OK || *done) return result;
+    result = check_sense(command, argc - first, error);
+    if (result == RESULT_OK) result = parse_unit("unit", command->unit, &unit, error);
+    if (result == RESULT_OK) result = parse_unit("to-unit", command->to_unit, &to_unit, error);
+    if (result == RESULT_OK && to_unit == 0)
+        result = error_set(error, RESULT_USAGE, "--to-unit: got 'auto', expected a unit");
+    if (result == RESULT_OK) result = convert_steps_parse(&job->steps, &command->steps, error);
+    job->steps.seed = (uint32_t)command->seed;
+    job->input = (ConvertInput){.paths = argv + first,
+                                .path_count = argc - first,
+                                .options = {.unit = unit,
+                                            .up_z = command->up == 1,
+                                            .strict = command->strict,
+                                            .seed = (uint32_t)command->seed},
+                                .messages = command->quiet ? NULL : stderr,
+                                .first = command->first,
+                                .last = command->last,
+                                .every = command->every,
+                                .fps = command->fps};
+    job->output = (ConvertOutput){.path = command->output,
+                                  .format = command->format,
+                                  .unit = (double)to_unit,
+                                  .up_z = command->to_up == 1,
+                                  .width = command->width};
+    return result;
+}
+
+// --- The work.
+
+static Result open_files(Job *job, Error *error)
+{
+    ConvertInput *input = &job->input;
+    ConvertOutput *output = &job->output;
+    Result result = convert_input_open(input, error);
+    if (result != RESULT_OK || !output->path) return result;
+    int count = convert_input_count(input);
+    output->animated = convert_input_moves(input);
+    output->first = input->first;
+    output->last = input->first + (count - 1) * input->every;
+    output->fps = input->fps;
+    // Numbers of sections go by strand: they hold as long as no step picks some.
+    if (input->cached && input->cache.section_count > 1 && job->steps.count == 0)
+        output->section = input->cache.section;
+    return convert_output_open(output, count, error);
+}
+
+static Result do_frame(Job *job, int frame, Error *error)
+{
+    const Command *command = &job->command;
+    Strands strands;
+    bool first = frame == job->input.first;
+    Result result = convert_input_read(&job->input, frame, &strands, error);
+    if (result == RESULT_OK && first)
+        job->output.lost = job->input.features & ~strands_features(&strands);
+    if (result == RESULT_OK) result = convert_steps_apply(&job->steps, &strands, error);
+    if (result == RESULT_OK && first && (command->stats || command->json))
+        result = strands_figures_measure(&job->figures, &strands, error);
+    if (result == RESULT_OK && command->output)
+        result = convert_output_add(&job->output, frame, &strands, error);
+    strands_destroy(&strands);
+    return result;
+}
+
+static Result do_frames(Job *job, Error *error)
+{
+    const ConvertInput *input = &job->input;
+    int done = 0, count = job->command.output ? convert_input_count(input) : 1;
+    Progress progress;
+    Result result = RESULT_OK;
+    progress_start(&progress, stderr, count, job->command.quiet || count == 1);
+    for (; done < count && result == RESULT_OK; ++done) {
+        result = interrupt_requested() ? error_set(error, RESULT_INTERRUPTED,
+                                                   "interrupted after %d of %d frames", done, count)
+                                       : do_frame(job, input->first + done * input->every, error);
+        progress_update(&progress, done + 1);
+    }
+    progress_clear(&progress);
+    if (result == RESULT_OK && job->command.output)
+        result = convert_output_finish(&job->output, error);
+    return result;
+}
+
+static void tell_output(const Job *job)
+{
+    const ConvertOutput *output = &job->output;
+    const char *kind = strands_kind_name(output->kind);
+    char lost[300];
+    strands_features_describe(output->lost, lost, sizeof lost);
+    if (*lost) fprintf(stderr, "%s: %s leaves out: %s\n", output->path, kind, lost);
+    if (output->animated)
+        printf("%s: %s, %d frames\n", output->path, kind, convert_input_count(&job->input));
+    else
+        printf("%s: %s\n", output->path, kind);
+}
+
+static Result run(Job *job, Error *error)
+{
+    const Command *command = &job->command;
+    Result result = open_files(job, error);
+    if (result == RESULT_OK) result = do_frames(job, error);
+    if (result == RESULT_OK && !command->quiet && !command->output && !command->stats &&
+        !command->json)
+        convert_print_input(&job->input, stdout);
+    if (result == RESULT_OK && !command->quiet && command->output) tell_output(job);
+    if (result == RESULT_OK && command->stats) convert_print_figures(&job->figures, stdout);
+    if (result == RESULT_OK && command->json)
+        result = convert_write_json(command->json, &job->input, &job->figures,
+                                    command->output ? &job->output : NULL, error);
+    return result;
+}
+
+int main(int argc, char **argv)
+{
+    Job job = {0};
+    Error error = {{0}};
+    bool done = false;
+    interrupt_install();
+    Result result = parse(&job, argc, argv, &done, &error);
+    if (result == RESULT_OK && !done) result = run(&job, &error);
+    convert_output_close(&job.output);
+    convert_input_close(&job.input);
+    strands_figures_destroy(&job.figures);
+    return program_end("tractrix-convert", result, &error);
+}

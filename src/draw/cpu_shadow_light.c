@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#include "draw/cpu_shadow_light.h"
+
+#include "draw/cpu_tile.h"
+
+// As light_through_hair of shadow.glsl finds it.
+typedef struct Search {
+    const CpuShadow *shadow;
+    const CastParams *params;
+    const CpuCaster *caster;
+    const uint32_t *layers; // [LAYERS][side][side]
+    float across, *left;
+    float last; // LAYERS - 1e-3: a bound that compilers know makes them jump
+} Search;
+
+INLINE float mix4(float a, float b, float c, float d, float u, float v)
+{
+    float above = a + u * (b - a), below = c + u * (d - c);
+    return above + v * (below - above);
+}
+
+// Optical depth before a layer and of its own by share (unpack_layer).
+INLINE float texel_depth(uint32_t bits, float share)
+{
+    return ((float)(int)(bits & 0xffff) + share * (float)(int)(bits >> 16)) * (1.f / 4096);
+}
+
+// Where a tile's particles look: the texel before them, what they are beyond it, and their layer.
+typedef struct Looks {
+    float u[W], v[W], share[W];
+    int texel[W], layer[W];
+} Looks;
+
+INLINE void find_looks(const Search *search, const Places *places, Looks *looks)
+{
+    const float *depths = search->shadow->depths;
+    int side = search->shadow->side;
+    float edge = (float)side - 1.01f, last = search->last, begin[W];
+    for (int k = 0; k < W; ++k) {
+        float u = smaller(larger(places->u[k] - 0.5f, 0), edge),
+              v = smaller(larger(places->v[k] - 0.5f, 0), edge);
+        looks->texel[k] = (int)v * side + (int)u;
+        looks->u[k] = u - (float)(int)u;
+        looks->v[k] = v - (float)(int)v;
+    }
+    for (int k = 0; k < W; ++k) {
+        int at = looks->texel[k], below = at + side;
+        begin[k] = mix4(depths[at], depths[at + 1], depths[below], depths[below + 1], looks->u[k],
+                        looks->v[k]);
+    }
+    for (int k = 0; k < W; ++k) {
+        float root = sqrtf(positive(places->z[k] - begin[k])),
+              layer = smaller((float)LAYERS * root, last);
+        looks->layer[k] = (int)layer;
+        looks->share[k] = layer - (float)(int)layer;
+    }
+}
+
+// What of its own optical depth a fibre finds in its layer (OWN_SHARE of shadow.glsl).
+INLINE float own_depth(float width, float opacity, float share)
+{
+    float kept = opacity * smaller(width, 1), beyond = smaller(larger(width - 1, 0), 1);
+    return share * 0.5f * (1 + beyond) * kept * (1 + 0.5f * kept);
+}
+
+INLINE void find_lights(const Search *search, const Tile *tile, const Places *places, float *left)
+{
+    const uint32_t *layers = search->layers;
+    int side = search->shadow->side, squares = side * side;
+    float sum[W], most = (float)side;
+    Looks looks;
+    find_looks(search, places, &looks);
+    for (int k = 0; k < W; ++k) {
+        int at = looks.texel[k] + looks.layer[k] * squares, below = at + side;
+        float share = looks.share[k];
+        sum[k] = mix4(texel_depth(layers[at], share), texel_depth(layers[at + 1], share),
+                      texel_depth(layers[below], share), texel_depth(layers[below + 1], share),
+                      looks.u[k], looks.v[k]);
+    }
+    for (int k = 0; k < W; ++k)
+        sum[k] -=
+            own_depth(2 * places->radius[k] * search->across, tile->opacity[k], looks.share[k]);
+    // Beside the map no hair stands in the light, nor behind a lamp.
+    for (int k = 0; k < W; ++k) {
+        bool inside = (places->u[k] >= 0) & (places->v[k] >= 0) & (places->u[k] <= most) &
+                      (places->v[k] <= most);
+        sum[k] *= inside ? 1.f : 0.f;
+    }
+    for (int k = 0; k < W; ++k) left[k] = exp2_of(-1.44269504f * positive(sum[k]));
+}
+
+INLINE void find_light(const Search *search, int part)
+{
+    const CpuCaster *caster = search->caster;
+    Places places;
+    int range[2];
+    find_range(caster, part, search->shadow->parts, range);
+    for (int t = range[0]; t < range[1]; ++t) {
+        Tile tile = open_tile(caster, t);
+        for (int j = 0; j < (int)caster->material.vertex_count; ++j) {
+            find_places(search->params, &tile, j, &places);
+            find_lights(search, &tile, &places, search->left + tile.at + (size_t)j * W);
+        }
+    }
+}
+
+STAGE(find_light, Search)
+
+void cpu_shadow_find_light(CpuShadow *shadow, const CastParams *params, const CpuCaster *caster,
+                           float across, const uint32_t *layers, float *left)
+{
+    Search search = {.shadow = shadow,
+                     .params = params,
+                     .caster = caster,
+                     .layers = layers,
+                     .across = across,
+                     .left = left,
+                     .last = (float)LAYERS - 1e-3f};
+    run_find_light(&search, shadow->parts);
+}

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// How a section's hair looks, and the shaders that project and shade such hair: one variant for
+// each set of features, so that what a scene does not use costs nothing.
+#pragma once
+
+#include "gpu/shader.h"
+#include "sim/hair.h"
+
+#include "glsl/draw/material.h"
+
+// What shade.glsl's macros are made of.
+typedef enum LookFeature {
+    LOOK_LIGHTS = 1, // lights that are not directional, or a sky that differs from the ground
+    LOOK_MARSCHNER = 2,
+    LOOK_GAUSS = 4, // of marschner, --lobes gauss
+    LOOK_PAINT = 8, // colours and thickness by particle
+    LOOK_SHADOW_APPROX = 16,
+    LOOK_SHADOW_DOM = 32,
+    LOOK_SHADOW_BY_MESH = 64,
+    LOOK_SMOOTH = 128,       // the material's smooth_parts are more than 1
+    LOOK_SHADOW_FOUND = 256, // the look has a ParticleLight of each batch
+    // Instead of shading (with LOOK_PAINT alone): white, the tangent, the strand's own colour.
+    LOOK_WHITE = 512,
+    LOOK_TANGENT = 1024,
+    LOOK_STRAND = 1536,
+} LookFeature;
+
+enum { LOOK_SHADED = 512, LOOK_VARIANTS = 4 * LOOK_SHADED };
+
+// What hair leaves of light at the particles of a batch.
+typedef struct ParticleLight {
+    const HairBatch *batch;
+    GpuBuffer left; // float a shadow map and particle, 0..1
+} ParticleLight;
+
+typedef struct Look {
+    MaterialParams material;     // complete but for the batch's size
+    unsigned features;           // LookFeature bits
+    int light_count;             // of the scene
+    int map_count;               // lights that have a shadow map
+    GLuint scatter;              // LOOK_MARSCHNER: the 3D texture of render_scatter.h
+    const ParticleLight *lights; // [batches], LOOK_SHADOW_FOUND
+    uint32_t batches;
+    float share; // of the strands is drawn, 0 .. 1; the material's radius makes up for it
+} Look;
+
+// Fills in what depends on the batch, as if it were drawn in one part: the look's share of its
+// strands, the last of them narrower, so that the sum of their widths is the share exactly, and
+// grows and falls with it without a step; and the parts of a segment, of which a strand has no more
+// than CPU drivers' loops can visit.
+MaterialParams look_material(const Look *look, const HairBatch *batch);
+
+// The variants of one compute shader, for so many lights and shadow maps; a zeroed struct with a
+// file and a group size has none yet.
+typedef struct LookPrograms {
+    const char *file;
+    int group_size, light_count, map_count;
+    GLuint program[LOOK_VARIANTS];
+} LookPrograms;
+
+// Makes the variant for the look and what the batch has the current program, compiled at first use,
+// with the textures of both. RESULT_FAILED with the compiler's words.
+Result look_programs_use(LookPrograms *programs, const Look *look, const HairBatch *batch,
+                         Error *error);
+
+// Says for how many lights and shadow maps variants are; those for others are forgotten.
+void look_programs_count(LookPrograms *programs, int light_count, int map_count);
+
+// LIGHT_COUNT of a shader for so many lights, as shadow.glsl has it: 0 if there are too many to
+// unroll loops over them.
+int look_unrolled(int light_count);
+
+// Compiles the variant of these features if it is not there.
+Result look_programs_build(LookPrograms *programs, unsigned features, Error *error);
+void look_programs_destroy(LookPrograms *programs);

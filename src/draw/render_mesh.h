@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// The opaque mesh behind and among the hair.
+#pragma once
+
+#include "base/params.h"
+#include "draw/render_target.h"
+#include "gpu/shader.h"
+#include "mesh/mesh.h"
+
+typedef struct RenderMesh {
+    GLuint surface, edges; // programs
+    GLuint vertex_array;
+    GpuBuffer position, normal, triangle; // float[3], float[3], uint[3]
+    uint32_t triangle_count;              // 0: no mesh, nothing is done
+    float low[3], high[3];                // bounds in the head's frame, m
+    float color[3];                       // linear
+} RenderMesh;
+
+// Uploads. `color`: linear RGB. RESULT_FAILED if memory is short.
+Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const float color[3],
+                          const GpuLimits *limits, Error *error);
+void render_mesh_destroy(RenderMesh *mesh);
+
+// Draws into the target's depth, its surface, which is right where there is depth, and its edges.
+// Needs the DrawParams block, depth cleared, depth test and writing on.
+void render_mesh_draw(const RenderMesh *mesh, const RenderTarget *target);

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// What is asked of a renderer, and what a picture came to.
+#pragma once
+
+#include "base/params.h"
+#include "draw/render_shadow.h"
+#include "image/image.h"
+#include "scene/camera.h"
+#include "scene/floor.h"
+#include "scene/scene.h"
+#include "sim/hair.h"
+
+// How many strands are drawn, all zero: all of them. Files' strands lie in random order, so the
+// first so many stand for all.
+typedef struct LodOptions {
+    float start, end; // m: between these distances of the camera from a section's middle the share
+                      // falls from 1 to `least`; end 0: at none
+    float least;      // share, 0 .. 1
+    float width;      // px: narrower fibres are fewer and as wide as this; 0: are left as they are
+} LodOptions;
+
+typedef struct RendererOptions {
+    Raster raster;        // how hair becomes pixels; auto: blocks on CPU drivers, else quads
+    int width, height;    // px, each 1 .. the driver's limits.framebuffer_side_px
+    float background[4];  // sRGB and opacity 0..1; below 1 the pictures have an alpha channel
+    float exposure;       // all light but the background's is this many times doubled
+    Tone tone;            // how light becomes colour; the background's does not change
+    ImageKind kind;       // of the pictures
+    Aov aov;              // what is drawn instead of light, on black (docs/renderer.md)
+    float depth_range[2]; // AOV_DEPTH: m that are shown as 1 and as 0; alike: m themselves
+    int samples;   // 1, 2 or 4: a pixel is the mean of samples x samples, each with lists of its
+                   // own; 0: 1. AOVs of what is nearest have one
+    uint32_t seed; // of what varies by strand
+    ShadowOptions shadow;
+    Floor floor; // not with an AOV
+    LodOptions lod;
+    Oit oit;            // how the fragments of a pixel are blended; auto: abuffer. Else quads are
+                        // what raster auto is
+    int oit_layers;     // abuffer: how many of them in order, 1 .. 64, the same; 0: 8, of two
+                        // samples 16
+    int64_t pool_bytes; // no larger A-buffer; 0: what the driver allows
+} RendererOptions;
+
+// Hair to be drawn. The material is that of its section; `radius` is the fibre radius at the root
+// in metres (fibre_auto_radius where the section has none).
+typedef struct RenderItem {
+    const Hair *hair;
+    const SectionParams *material;
+    float radius;
+} RenderItem;
+
+// The light from everywhere, sRGB 0..1: from above (+y) and from below, evenly between them.
+typedef struct Ambient {
+    float sky[3], ground[3];
+} Ambient;
+
+// What all items of a picture have in common.
+typedef struct RenderFrame {
+    const View *view; // made for the renderer's width and height
+    const Light *lights;
+    uint32_t light_count;      // 0 .. SCENE_MAX_LIGHTS
+    const Ambient *ambient;    // NULL: white
+    float head_rotation[4];    // quaternion x y z w: the mesh's frame -> world
+    float head_translation[3]; // m
+    uint64_t revision; // another one wherever hair has moved, so that shadows are kept; 0: it has
+} RenderFrame;
+
+// Of the last picture, for the statistics.
+typedef struct RendererCounts {
+    uint64_t segments;    // sent to the rasteriser; straight runs count as one
+    uint64_t culled;      // strands outside the picture, which cost no drawing
+    uint64_t hidden;      // strands behind mesh or floor that were not even projected (blocks)
+    uint64_t fragments;   // stored and blended: pixels of a ribbon, or with blocks blocks of it
+    uint64_t pool_bytes;  // of the A-buffer or the block lists now
+    uint32_t redraws;     // bands that were drawn again because the A-buffer was too small
+    uint32_t bands;       // horizontal bands that the picture was drawn in
+    uint64_t thinned;     // strands that others stand for, at their distance
+    uint32_t shadow_maps; // that were made; those of the picture before may have done
+} RendererCounts;

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// What of each light hair and mesh let through: a pair of maps for each light that casts shadows,
+// made anew when something has changed, and read where hair and mesh are shaded
+// (glsl/draw/shadow.glsl).
+#pragma once
+
+#include "draw/render_shadow_hair.h"
+#include "draw/render_shadow_mesh.h"
+#include "gpu/gpu_timer.h"
+#include "scene/scene.h"
+
+typedef struct ShadowOptions {
+    Shadow kind;   // not none
+    int side;      // texels across a map of hair, rounded up to a multiple of 8
+    float spacing; // approx: between fibres along the light, in radii
+} ShadowOptions;
+
+// What the maps are made of. Two scenes of equal bytes and of the same revision have the same maps.
+typedef struct ShadowScene {
+    const Light *lights;
+    uint32_t light_count;
+    ShadowCasters casters;
+    ShadowMesh mesh;   // stands in the light, too, if there is one with triangles
+    float middle[3];   // m, world: what a lamp looks at
+    uint64_t revision; // another one wherever positions differ; 0: never the same
+} ShadowScene;
+
+typedef struct RenderShadow {
+    ShadowOptions options;
+    RenderShadowHair hair;
+    RenderShadowMesh mesh;
+    GpuBuffer uniforms;
+    ShadowParams params;
+    ShadowScene drawn; // what the maps show; pointers are not followed
+    Light lights[SCENE_MAX_LIGHTS];
+    ShadowCaster *casters; // [caster_room], owned
+    uint32_t caster_room;
+    bool any;
+    uint64_t version;    // counts the times that they were made
+    uint32_t maps_drawn; // in the last render_shadow_draw
+} RenderShadow;
+
+// `by_processor`: C makes the maps where it can, for CPU drivers, which share its memory.
+Result render_shadow_create(RenderShadow *shadow, const GpuLimits *limits,
+                            const ShadowOptions *options, bool by_processor, Error *error);
+void render_shadow_destroy(RenderShadow *shadow);
+
+// Makes the map of each light that casts shadows, unless they show this scene already. Waits for
+// the GPU, changes framebuffer and viewport. Needs the DrawParams block. RESULT_FAILED if memory is
+// short.
+Result render_shadow_draw(RenderShadow *shadow, const ShadowScene *scene, GpuTimer *timer,
+                          Error *error);
+
+// Binds what glsl/draw/shadow.glsl reads.
+void render_shadow_bind(RenderShadow *shadow);

@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: MIT
+#include "draw/render_shadow_hair.h"
+
+#include <math.h>
+#include <string.h>
+
+enum {
+    GROUP = 8,
+    TEXEL_GROUP = 64,
+    STRIP = 8,          // divides the side of a map
+    PART_VERTICES = 64, // that one lane walks
+    PART_SEGMENTS = 8,
+    MARGIN = 3, // texels at the edges of a map that hair leaves free
+    BOX_WORDS = 6
+};
+
+static const double UNIT = 1 << 16;    // steps for an optical depth of 1
+static const double SUM_MAX = 2e9;     // of those steps: sums do not overflow
+static const double LEAST_LEFT = 1e-3; // of the light behind one fibre, as in shadow_splat.comp
+
+// What a program of the deep maps or of the first depths is built for.
+enum { FIRSTS = 0, DEEP = 1, COARSE_FIRSTS = 2 };
+
+static Result build(GLuint *program, const char *file, int group, int kind, unsigned variant,
+                    Error *error)
+{
+    const ShaderDefine defines[] = {{"GROUP_SIZE", group},
+                                    {"DEEP", kind == DEEP},
+                                    {"COARSE", kind == COARSE_FIRSTS},
+                                    {"PART_VERTICES", PART_VERTICES},
+                                    {"PART_SEGMENTS", PART_SEGMENTS},
+                                    {"STRIP", STRIP},
+                                    {"PAINT", (variant & CAST_PAINT) != 0},
+                                    {"SMOOTH", (variant & CAST_SMOOTH) != 0},
+                                    {NULL, 0}};
+    return *program ? RESULT_OK : shader_build_compute(program, file, defines, error);
+}
+
+static unsigned variant_of(const ShadowCaster *caster)
+{
+    return (caster->batch->paint.buffer ? CAST_PAINT : 0) |
+           (caster->look.features & LOOK_SMOOTH ? CAST_SMOOTH : 0);
+}
+
+Result render_shadow_hair_build(RenderShadowHair *hair, unsigned variant, Error *error)
+{
+    Result result =
+        build(&hair->bounds[variant], "draw/shadow_bounds.comp", GROUP, FIRSTS, variant, error);
+    if (result == RESULT_OK)
+        result = build(&hair->first[variant], "draw/shadow_splat.comp", GROUP,
+                       hair->deep ? COARSE_FIRSTS : FIRSTS, variant, error);
+    if (result == RESULT_OK && hair->deep)
+        result =
+            build(&hair->splat[variant], "draw/shadow_splat.comp", GROUP, DEEP, variant, error);
+    if (result == RESULT_OK && hair->deep)
+        result = build(&hair->spread, "draw/shadow_spread.comp", TEXEL_GROUP, DEEP, 0, error);
+    if (result == RESULT_OK && hair->deep)
+        result = build(&hair->finish, "draw/shadow_finish.comp", TEXEL_GROUP, DEEP, 0, error);
+    return result;
+}
+
+Result render_shadow_hair_create(RenderShadowHair *hair, const GpuLimits *limits, bool deep,
+                                 int side, bool by_processor, Error *error)
+{
+    *hair = (RenderShadowHair){
+        .deep = deep, .by_processor = by_processor, .side = side, .limits = limits};
+    return by_processor ? render_shadow_cpu_create(&hair->cpu, side, deep, error) : RESULT_OK;
+}
+
+static void destroy_maps(RenderShadowHair *hair)
+{
+    gpu_buffer_destroy(&hair->firsts);
+    gpu_buffer_destroy(&hair->depths);
+    gpu_buffer_destroy(&hair->sums);
+    gpu_buffer_destroy(&hair->layers);
+    hair->maps = 0;
+}
+
+static void destroy_programs(const GLuint *programs, int count)
+{
+    for (int i = 0; i < count; ++i)
+        if (programs[i]) glDeleteProgram(programs[i]);
+}
+
+void render_shadow_hair_destroy(RenderShadowHair *hair)
+{
+    destroy_programs(hair->bounds, CAST_VARIANTS);
+    destroy_programs(hair->first, CAST_VARIANTS);
+    destroy_programs(hair->splat, CAST_VARIANTS);
+    destroy_programs(&hair->spread, 1);
+    destroy_programs(&hair->finish, 1);
+    destroy_maps(hair);
+    render_shadow_cpu_destroy(&hair->cpu);
+    gpu_buffer_destroy(&hair->box);
+    gpu_buffer_destroy(&hair->cast_uniforms);
+    gpu_buffer_destroy(&hair->material);
+    *hair = (RenderShadowHair){0};
+}
+
+static Result make_buffer(GpuBuffer *buffer, const RenderShadowHair *hair, const char *what,
+                          int64_t words, GLenum format, Error *error)
+{
+    if (buffer->buffer) return RESULT_OK;
+    return gpu_buffer_create(buffer, hair->limits, what, words * 4, NULL, format, error);
+}
+
+// What is read later.
+static Result make_maps(RenderShadowHair *hair, int maps, Error *error)
+{
+    if (hair->maps < maps) {
+        destroy_maps(hair);
+        hair->maps = maps;
+    }
+    int64_t texels = (int64_t)hair->maps * hair->side * hair->side;
+    if (!hair->deep)
+        return make_buffer(&hair->firsts, hair, "shadow's depths", texels, GL_R32UI, error);
+    Result result = make_buffer(&hair->depths, hair, "shadow's beginnings", texels, GL_R32F, error);
+    if (result == RESULT_OK)
+        result = make_buffer(&hair->layers, hair, "shadow's layers", texels * SHADOW_LAYERS,
+                             GL_R32UI, error);
+    return result;
+}
+
+// What shaders make them with.
+static Result make_scratch(RenderShadowHair *hair, ShadowCasters casters, Error *error)
+{
+    int64_t texels = (int64_t)hair->maps * hair->side * hair->side;
+    Result result = make_buffer(&hair->box, hair, "light's box", BOX_WORDS, 0, error);
+    if (result == RESULT_OK && hair->deep)
+        result = make_buffer(&hair->firsts, hair, "shadow's depths",
+                             texels / (SHADOW_COARSE * SHADOW_COARSE), GL_R32UI, error);
+    if (result == RESULT_OK && hair->deep)
+        result = make_buffer(&hair->sums, hair, "shadow's sums", texels * SHADOW_LAYERS, GL_R32UI,
+                             error);
+    for (uint32_t i = 0; i < casters.count && result == RESULT_OK; ++i)
+        result = render_shadow_hair_build(hair, variant_of(&casters.list[i]), error);
+    return result;
+}
+
+static void fill(const GpuBuffer *buffer, GLuint value)
+{
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
+    glClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, 0, (GLsizeiptr)buffer->size,
+                         GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
+}
+
+Result render_shadow_hair_begin(RenderShadowHair *hair, int maps, ShadowCasters casters,
+                                Error *error)
+{
+    hair->in_c = hair->by_processor && render_shadow_cpu_can(casters);
+    Result result = make_maps(hair, maps, error);
+    if (result == RESULT_OK && hair->in_c)
+        return render_shadow_cpu_begin(&hair->cpu, hair->limits, maps, casters, &hair->depths,
+                                       hair->deep ? &hair->layers : &hair->firsts, error);
+    if (result == RESULT_OK) result = make_scratch(hair, casters, error);
+    if (result != RESULT_OK) return result;
+    fill(&hair->firsts, SHADOW_DEPTHS);
+    if (hair->deep) fill(&hair->sums, 0);
+    return result;
+}
+
+void render_shadow_hair_end(RenderShadowHair *hair)
+{
+    if (hair->in_c) render_shadow_cpu_end(&hair->cpu);
+}
+
+// Runs a pass, which has a program for each variant, over all ribbons, in parts of `part` of a
+// strand's points.
+static void cast(RenderShadowHair *hair, ShadowCasters casters, const CastParams *params,
+                 const GLuint programs[CAST_VARIANTS], uint32_t part)
+{
+    gpu_uniforms_set(&hair->cast_uniforms, BIND_CAST, params, sizeof *params);
+    for (uint32_t i = 0; i < casters.count; ++i) {
+        const ShadowCaster *caster = &casters.list[i];
+        const HairBatch *batch = caster->batch;
+        MaterialParams material = look_material(&caster->look, batch);
+        uint32_t points = (batch->vertex_count - 1) * material.smooth_parts + 1;
+        glUseProgram(programs[variant_of(caster)]);
+        gpu_uniforms_set(&hair->material, BIND_MATERIAL, &material, sizeof material);
+        gpu_buffer_bind_texture(&batch->position, BIND_POSITION);
+        if (batch->paint.buffer) gpu_buffer_bind_texture(&batch->paint, BIND_PAINT);
+        glDispatchCompute((material.drawn_strands + GROUP - 1) / GROUP, (points + part - 1) / part,
+                          1);
+    }
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
+                    GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+static float decode(int32_t bits)
+{
+    float value;
+    bits = bits < 0 ? bits ^ 0x7fffffff : bits;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+static void set_rows(CastParams *params, double rows[4][4])
+{
+    for (int k = 0; k < 4; ++k)
+        for (int i = 0; i < 4; ++i) params->from_world[k][i] = (float)rows[k][i];
+}
+
+bool render_shadow_hair_find_box(RenderShadowHair *hair, const LightView *view,
+                                 ShadowCasters casters, double box[6])
+{
+    double rows[4][4];
+    const GLint none[BOX_WORDS] = {INT32_MAX, INT32_MAX, INT32_MAX,
+                                   INT32_MIN, INT32_MIN, INT32_MIN};
+    GLint words[BOX_WORDS];
+    CastParams params = {
+        .limit = (float)LIGHT_FRAME_FAR,
+        .reach = (float)(view->perspective ? LIGHT_FRAME_WIDE : LIGHT_FRAME_FAR),
+    };
+    for (int k = 0; k < 4; ++k) light_view_row(view, k, rows[k]);
+    set_rows(&params, rows);
+    if (hair->in_c) return render_shadow_cpu_find_box(&hair->cpu, &params, box);
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, hair->box.buffer);
+    glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof none, none);
+    gpu_buffer_bind_storage(&hair->box, BIND_BOUNDS_OUT);
+    cast(hair, casters, &params, hair->bounds, PART_VERTICES);
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, hair->box.buffer);
+    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof words, words);
+    if (words[0] > words[3]) return false;
+    for (int i = 0; i < 6; ++i) box[i] = (double)decode(words[i]);
+    return true;
+}
+
+LightFrame render_shadow_hair_frame(const RenderShadowHair *hair, const LightView *view,
+                                    const double box[6])
+{
+    return light_frame_steady(view, box, hair->side, MARGIN);
+}
+
+// The smallest step of sums that cannot overflow, were all segments in one texel.
+static float find_unit(ShadowCasters casters, bool perspective, double texels)
+{
+    double most = 1;
+    for (uint32_t i = 0; i < casters.count; ++i) {
+        const ShadowCaster *caster = &casters.list[i];
+        const MaterialParams *material = &caster->look.material;
+        bool any_width = perspective || caster->batch->paint.buffer;
+        double width = any_width ? 1 : fmin(2.0 * (double)material->radius * texels, 1);
+        double left = fmax(1 - (double)material->shadow_opacity * width, LEAST_LEFT);
+        most -= log(left) * caster->batch->strand_count * (caster->batch->vertex_count - 1) *
+                material->smooth_parts;
+    }
+    return (float)fmin(UNIT, SUM_MAX / most);
+}
+
+// First depths, in texels that are `coarse` of the map's wide.
+static void draw_firsts(RenderShadowHair *hair, ShadowCasters casters, const CastParams *params,
+                        int coarse)
+{
+    CastParams wide = *params;
+    wide.side /= coarse;
+    wide.texels /= (float)coarse;
+    for (int k = 0; k < 2; ++k)
+        for (int i = 0; i < 4; ++i) wide.from_world[k][i] /= (float)coarse;
+    gpu_buffer_bind_storage(&hair->firsts, BIND_FIRST_OUT);
+    cast(hair, casters, &wide, hair->first, PART_SEGMENTS);
+}
+
+static void run_texels(const CastParams *params, GLuint program, int lanes)
+{
+    glUseProgram(program);
+    glUniform2i(0, params->side, params->map);
+    glDispatchCompute((GLuint)((lanes + TEXEL_GROUP - 1) / TEXEL_GROUP), 1, 1);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+}
+
+static void spread(const RenderShadowHair *hair, const CastParams *params)
+{
+    int corners = params->side / SHADOW_COARSE + 1;
+    run_texels(params, hair->spread, corners * corners);
+}
+
+static void finish(const RenderShadowHair *hair, const CastParams *params)
+{
+    glUseProgram(hair->finish);
+    glUniform1f(1, params->unit);
+    run_texels(params, hair->finish, params->side * params->side / STRIP);
+}
+
+static void draw_deep(RenderShadowHair *hair, ShadowCasters casters, CastParams *params)
+{
+    draw_firsts(hair, casters, params, SHADOW_COARSE);
+    gpu_buffer_bind_texture(&hair->firsts, BIND_FIRST);
+    gpu_buffer_bind_storage(&hair->depths, BIND_DEPTHS_OUT);
+    spread(hair, params);
+    gpu_buffer_bind_texture(&hair->depths, BIND_DEPTHS);
+    gpu_buffer_bind_storage(&hair->sums, BIND_SUMS_OUT);
+    cast(hair, casters, params, hair->splat, PART_SEGMENTS);
+    gpu_buffer_bind_texture(&hair->sums, BIND_SUMS);
+    gpu_buffer_bind_storage(&hair->layers, BIND_LAYERS_OUT);
+    finish(hair, params);
+}
+
+float render_shadow_hair_scale(const LightView *view, const LightFrame *frame)
+{
+    double distance = view->perspective ? 0.5 * (frame->depth[0] + frame->depth[1]) : 1;
+    return (float)(1 / (frame->texel * distance));
+}
+
+void render_shadow_hair_draw(RenderShadowHair *hair, const LightView *view, const LightFrame *frame,
+                             int map, ShadowCasters casters)
+{
+    double rows[4][4];
+    memcpy(rows, frame->rows, sizeof rows);
+    CastParams params = {
+        .side = hair->side,
+        .map = map,
+        .texels = (float)(1 / frame->texel),
+        .unit = find_unit(casters, view->perspective, 1 / frame->texel),
+        .reach = (float)(view->perspective ? LIGHT_FRAME_WIDE : LIGHT_FRAME_FAR),
+        .limit = (float)LIGHT_FRAME_FAR,
+    };
+    set_rows(&params, rows);
+    if (hair->in_c)
+        render_shadow_cpu_draw(&hair->cpu, &params, render_shadow_hair_scale(view, frame));
+    else if (hair->deep)
+        draw_deep(hair, casters, &params);
+    else
+        draw_firsts(hair, casters, &params, 1);
+}
+
+void render_shadow_hair_bind(const RenderShadowHair *hair)
+{
+    if (hair->deep) gpu_buffer_bind_texture(&hair->depths, BIND_DEPTHS);
+    gpu_buffer_bind_texture(hair->deep ? &hair->layers : &hair->firsts, BIND_LAYERS);
+}
+
+bool render_shadow_hair_lights(const RenderShadowHair *hair, const ParticleLight **lights,
+                               uint32_t *count)
+{
+    *lights = hair->cpu.lights;
+    *count = hair->cpu.lit;
+    return hair->in_c && hair->cpu.lit > 0;
+}

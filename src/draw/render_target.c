@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include "draw/render_target.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static GLuint create_texture(GLenum format, int width, int height)
+{
+    GLuint texture;
+    glGenTextures(1, &texture);
+    glBindTexture(GL_TEXTURE_2D, texture);
+    glTexStorage2D(GL_TEXTURE_2D, 1, format, width, height);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    return texture;
+}
+
+static GLuint create_edge_depth(int width, int height)
+{
+    GLuint texture;
+    glGenTextures(1, &texture);
+    glBindTexture(GL_TEXTURE_2D_MULTISAMPLE, texture);
+    glTexStorage2DMultisample(GL_TEXTURE_2D_MULTISAMPLE, EDGE_SAMPLES, GL_DEPTH_COMPONENT32F, width,
+                              height, GL_TRUE);
+    return texture;
+}
+
+static GLuint create_frame(void)
+{
+    GLuint frame;
+    glGenFramebuffers(1, &frame);
+    glBindFramebuffer(GL_FRAMEBUFFER, frame);
+    return frame;
+}
+
+// `depth` may be 0.
+static GLuint create_color_frame(GLuint texture, GLuint depth)
+{
+    GLuint frame = create_frame();
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth, 0);
+    return frame;
+}
+
+static Result check_frame(GLuint frame, const char *what, Error *error)
+{
+    glBindFramebuffer(GL_FRAMEBUFFER, frame);
+    GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
+    if (status == GL_FRAMEBUFFER_COMPLETE) return gpu_check(what, error);
+    return error_set(error, RESULT_FAILED, "%s: framebuffer status 0x%04x", what, status);
+}
+
+Result render_target_create(RenderTarget *target, const GpuLimits *limits, int width, int height,
+                            int samples, ImageKind kind, Error *error)
+{
+    static const GLenum formats[] = {GL_RGBA8, GL_RGBA16, GL_RGBA32F};
+    *target = (RenderTarget){.width = width, .height = height, .samples = samples, .kind = kind};
+    int side = limits->framebuffer_side_px / samples;
+    if (width > side || height > side)
+        return error_set(error, RESULT_FAILED,
+                         "a picture of %d x %d px%s: this driver draws at most %d x %d", width,
+                         height,
+                         samples == 4   ? " of 4 x 4 samples"
+                         : samples == 2 ? " of 2 x 2 samples"
+                                        : "",
+                         side, side);
+    target->rgba = malloc((size_t)width * (size_t)height * 4 * image_channel_size(kind));
+    if (!target->rgba)
+        return error_set(error, RESULT_FAILED, "no memory for a picture of %d x %d px", width,
+                         height);
+    target->picture = create_texture(formats[kind], width, height);
+    target->picture_frame = create_color_frame(target->picture, 0);
+    target->hair_frame = create_frame();
+    glFramebufferParameteri(GL_FRAMEBUFFER, GL_FRAMEBUFFER_DEFAULT_WIDTH, width * samples);
+    glFramebufferParameteri(GL_FRAMEBUFFER, GL_FRAMEBUFFER_DEFAULT_HEIGHT, height * samples);
+    glDrawBuffer(GL_NONE);
+    Result result = check_frame(target->hair_frame, "hair target", error);
+    if (result == RESULT_OK) result = check_frame(target->picture_frame, "picture", error);
+    if (result != RESULT_OK) render_target_destroy(target);
+    return result;
+}
+
+static Result add_edges(RenderTarget *target, int width, int height, Error *error)
+{
+    target->edge_depth = create_edge_depth(width, height);
+    target->edge_frame = create_frame();
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D_MULTISAMPLE,
+                           target->edge_depth, 0);
+    glDrawBuffer(GL_NONE);
+    return check_frame(target->edge_frame, "mesh edges", error);
+}
+
+Result render_target_add_base(RenderTarget *target, Error *error)
+{
+    if (target->depth) return RESULT_OK;
+    int width = target->width * target->samples, height = target->height * target->samples;
+    target->depth = create_texture(GL_DEPTH_COMPONENT32F, width, height);
+    glBindFramebuffer(GL_FRAMEBUFFER, target->hair_frame);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, target->depth, 0);
+    target->base = create_texture(GL_RGBA16F, width, height);
+    target->base_frame = create_color_frame(target->base, target->depth);
+    target->middle_depth = create_texture(GL_DEPTH_COMPONENT32F, width, height);
+    target->lit = create_texture(GL_RGBA16F, width, height);
+    target->lit_frame = create_color_frame(target->lit, target->middle_depth);
+    target->surface = create_texture(GL_RGBA32F, width, height);
+    target->surface_frame = create_color_frame(target->surface, target->middle_depth);
+    Result result = check_frame(target->hair_frame, "hair target", error);
+    if (result == RESULT_OK) result = check_frame(target->base_frame, "mesh target", error);
+    if (result == RESULT_OK) result = check_frame(target->lit_frame, "mesh light", error);
+    if (result == RESULT_OK) result = check_frame(target->surface_frame, "mesh surface", error);
+    if (result == RESULT_OK) result = add_edges(target, width, height, error);
+    return result;
+}
+
+void render_target_destroy(RenderTarget *target)
+{
+    const GLuint frames[] = {target->picture_frame, target->hair_frame,    target->base_frame,
+                             target->lit_frame,     target->surface_frame, target->edge_frame};
+    const GLuint textures[] = {target->picture,     target->depth,   target->base,
+                               target->lit,         target->surface, target->edge_depth,
+                               target->middle_depth};
+    if (target->picture) { // names of 0 are ignored, but without a context nothing may be called
+        glDeleteFramebuffers(6, frames);
+        glDeleteTextures(7, textures);
+    }
+    free(target->rgba);
+    *target = (RenderTarget){0};
+}
+
+void render_target_read(RenderTarget *target, Image *image)
+{
+    static const GLenum types[] = {GL_UNSIGNED_BYTE, GL_UNSIGNED_SHORT, GL_FLOAT};
+    size_t count = (size_t)target->width * (size_t)target->height,
+           rgb = 3 * image_channel_size(target->kind), step = rgb / 3 * 4;
+    uint8_t *rgba = image->channels == 4 ? image->pixels : target->rgba;
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, target->picture_frame);
+    glReadPixels(0, 0, target->width, target->height, GL_RGBA, types[target->kind], rgba);
+    if (image->channels == 4) return;
+    if (target->kind != IMAGE_8) {
+        for (size_t i = 0; i < count; ++i) memcpy(image->pixels + i * rgb, rgba + i * step, rgb);
+        return;
+    }
+    for (size_t i = 0; i < count; ++i) {
+        image->pixels[3 * i] = rgba[4 * i];
+        image->pixels[3 * i + 1] = rgba[4 * i + 1];
+        image->pixels[3 * i + 2] = rgba[4 * i + 2];
+    }
+}

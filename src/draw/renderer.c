@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: MIT
+#include "draw/renderer.h"
+
+#include "draw/render_uniforms.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// A way from hair to pixels.
+typedef struct RasterType {
+    Result (*create)(Renderer *renderer, Error *error);
+    Result (*add_base)(Renderer *renderer, Error *error); // NULL: nothing is to be made
+    Result (*draw)(Renderer *renderer, Image *image, Error *error);
+} RasterType;
+static const RasterType RASTERS[3];
+
+static Result create_quads(Renderer *renderer, Error *error)
+{
+    return render_quads_create(&renderer->quads, renderer->gpu, &renderer->options, error);
+}
+
+static Result create_blocks(Renderer *renderer, Error *error)
+{
+    return render_blocks_create(&renderer->blocks, &renderer->gpu->limits, &renderer->options,
+                                error);
+}
+
+// The options as they are drawn by: with what an AOV asks for.
+static RendererOptions settle(const RendererOptions *asked)
+{
+    RendererOptions options = *asked;
+    if (options.samples == 0 || options.aov > AOV_COVERAGE) options.samples = 1;
+    if (options.aov != AOV_NONE) { // on black, without light
+        memcpy(options.background, (float[4]){0, 0, 0, 1}, 4 * sizeof(float));
+        options.shadow.kind = SHADOW_NONE;
+        options.floor.kind = FLOOR_NONE;
+    }
+    return options;
+}
+
+static Raster choose_raster(const Gpu *gpu, const RendererOptions *options)
+{
+    bool plain = options->oit == OIT_AUTO && options->oit_layers == 0;
+    if (options->raster != RASTER_AUTO) return options->raster;
+    return gpu->software && plain ? RASTER_BLOCKS : RASTER_QUADS;
+}
+
+static bool has_base(const Renderer *renderer)
+{
+    return render_base_is_needed(&renderer->base, &renderer->options.floor);
+}
+
+// What drawing over mesh or floor needs, if there is any.
+static Result make_base(Renderer *renderer, Error *error)
+{
+    if (!has_base(renderer)) return RESULT_OK;
+    Result result = render_target_add_base(&renderer->target, error);
+    const RasterType *raster = &RASTERS[renderer->raster];
+    return result == RESULT_OK && raster->add_base ? raster->add_base(renderer, error) : result;
+}
+
+Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
+                       const RendererOptions *asked, Error *error)
+{
+    *renderer = (Renderer){.options = settle(asked), .gpu = gpu, .timer = timer};
+    const RendererOptions *options = &renderer->options;
+    if (options->samples != 1 && options->samples != 2 && options->samples != 4)
+        return error_set(error, RESULT_USAGE, "--samples %d: expected 1, 2 or 4", options->samples);
+    renderer->raster = choose_raster(gpu, options);
+    Result result = render_target_create(&renderer->target, &gpu->limits, options->width,
+                                         options->height, options->samples, options->kind, error);
+    if (result == RESULT_OK) result = RASTERS[renderer->raster].create(renderer, error);
+    if (result == RESULT_OK) result = make_base(renderer, error);
+    if (result == RESULT_OK && options->shadow.kind != SHADOW_NONE)
+        result = render_shadow_create(&renderer->shadow, &gpu->limits, &options->shadow,
+                                      gpu->software, error);
+    if (result != RESULT_OK) renderer_destroy(renderer);
+    return result;
+}
+
+void renderer_destroy(Renderer *renderer)
+{
+    render_target_destroy(&renderer->target);
+    render_quads_destroy(&renderer->quads);
+    render_blocks_destroy(&renderer->blocks);
+    render_base_destroy(&renderer->base);
+    render_shadow_destroy(&renderer->shadow);
+    free(renderer->casters);
+    picture_destroy(&renderer->picture);
+    *renderer = (Renderer){0};
+}
+
+Result renderer_set_mesh(Renderer *renderer, const Mesh *mesh, const float color[3], Error *error)
+{
+    float linear[3];
+    linear_from_srgb_color(color, linear);
+    RenderMesh *mine = &renderer->base.mesh;
+    renderer->base.any = false;
+    render_mesh_destroy(mine);
+    Result result = render_mesh_create(mine, mesh, linear, &renderer->gpu->limits, error);
+    return result == RESULT_OK ? make_base(renderer, error) : result;
+}
+
+int renderer_channels(const Renderer *renderer)
+{
+    return renderer->options.background[3] < 1 ? 4 : 3;
+}
+
+static void set_state(const Renderer *renderer, const float background[4])
+{
+    const RendererOptions *options = &renderer->options;
+    glViewport(0, 0, options->width * options->samples, options->height * options->samples);
+    glDisable(GL_BLEND);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_SCISSOR_TEST);
+    glDepthFunc(GL_LESS);
+    glBindFramebuffer(GL_FRAMEBUFFER, renderer->target.picture_frame);
+    if (options->kind == IMAGE_FLOAT)
+        glClearBufferfv(GL_COLOR, 0, background);
+    else
+        glClearBufferfv(GL_COLOR, 0, options->background);
+}
+
+static Result list_casters(Renderer *renderer, ShadowScene *scene, Error *error)
+{
+    const Picture *picture = &renderer->picture;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < picture->item_count; ++i) count += picture->items[i].hair->batch_count;
+    if (renderer->caster_room < count) {
+        ShadowCaster *casters = realloc(renderer->casters, count * sizeof *casters);
+        if (!casters) return error_set(error, RESULT_FAILED, "no memory for %u batches", count);
+        renderer->casters = casters;
+        renderer->caster_room = count;
+    }
+    for (uint32_t i = 0; i < picture->item_count; ++i) {
+        const RenderItem *item = &picture->items[i];
+        for (uint32_t b = 0; b < item->hair->batch_count; ++b)
+            renderer->casters[scene->casters.count++] =
+                (ShadowCaster){&item->hair->batches[b], picture->looks[i]};
+    }
+    scene->casters.list = renderer->casters;
+    return RESULT_OK;
+}
+
+static Result draw_shadow(Renderer *renderer, const RenderFrame *frame, Error *error)
+{
+    Picture *picture = &renderer->picture;
+    ShadowScene scene = {.lights = frame->lights,
+                         .light_count = frame->light_count,
+                         .mesh = {.mesh = &renderer->base.mesh},
+                         .revision = frame->revision};
+    if (renderer->options.shadow.kind == SHADOW_NONE) return RESULT_OK;
+    memcpy(scene.mesh.rotation, frame->head_rotation, sizeof scene.mesh.rotation);
+    memcpy(scene.mesh.translation, frame->head_translation, sizeof scene.mesh.translation);
+    if (picture->item_count) picture_find_middle(picture, picture->items[0].hair, scene.middle);
+    Result result = list_casters(renderer, &scene, error);
+    if (result == RESULT_OK)
+        result = render_shadow_draw(&renderer->shadow, &scene, renderer->timer, error);
+    if (result != RESULT_OK) return result;
+    render_shadow_bind(&renderer->shadow);
+    for (uint32_t i = 0; i < picture->item_count; ++i) {
+        Look *look = &picture->looks[i];
+        look->map_count = renderer->shadow.params.maps;
+        if (render_shadow_hair_lights(&renderer->shadow.hair, &look->lights, &look->batches))
+            look->features |= LOOK_SHADOW_FOUND;
+    }
+    return RESULT_OK;
+}
+
+static Result add_base_to_quads(Renderer *renderer, Error *error)
+{
+    return render_quads_add_base(&renderer->quads, error);
+}
+
+static Result draw_quads(Renderer *renderer, Image *image, Error *error)
+{
+    const CullBase base = {has_base(renderer) ? &renderer->target : NULL,
+                           renderer->base.depth_version};
+    return render_quads_draw(&renderer->quads, &renderer->picture, &renderer->target, &base,
+                             renderer->timer, image, &renderer->counts, error);
+}
+
+static void count_blocks(Renderer *renderer)
+{
+    const RenderBlocks *blocks = &renderer->blocks;
+    renderer->counts =
+        (RendererCounts){.segments = blocks->segments,
+                         .culled = blocks->culled,
+                         .hidden = blocks->cull.hidden,
+                         .fragments = blocks->touched,
+                         .pool_bytes = blocks->raster.lists.pair_room * sizeof(uint64_t),
+                         .bands = 1};
+}
+
+static Result project_items(Renderer *renderer, Error *error)
+{
+    const Picture *picture = &renderer->picture;
+    Result result = RESULT_OK;
+    gpu_timer_begin(renderer->timer, "draw_project");
+    for (uint32_t i = 0; i < picture->item_count; ++i) {
+        const Hair *hair = picture->items[i].hair;
+        for (uint32_t b = 0; b < hair->batch_count && result == RESULT_OK; ++b)
+            result =
+                render_blocks_add(&renderer->blocks, &hair->batches[b], &picture->looks[i], error);
+    }
+    gpu_timer_end(renderer->timer);
+    return result;
+}
+
+static Result draw_blocks(Renderer *renderer, Image *image, Error *error)
+{
+    RenderBlocks *blocks = &renderer->blocks;
+    const Picture *picture = &renderer->picture;
+    const BlocksBase base = {
+        .cull = {has_base(renderer) ? &renderer->target : NULL, renderer->base.depth_version},
+        .version = renderer->base.version,
+        .box = picture->base_box,
+        .depth = {picture->draw.depth[0], picture->draw.depth[1]}};
+    Result result = render_blocks_begin(blocks, picture_count_segments(picture), &base, error);
+    if (result == RESULT_OK) result = project_items(renderer, error);
+    if (result == RESULT_OK) result = render_blocks_draw(blocks, renderer->timer, image, error);
+    if (result == RESULT_OK) count_blocks(renderer);
+    return result;
+}
+
+static const RasterType RASTERS[] = {
+    [RASTER_QUADS] = {create_quads, add_base_to_quads, draw_quads},
+    [RASTER_BLOCKS] = {create_blocks, NULL, draw_blocks},
+};
+
+static Result draw_base(Renderer *renderer, Error *error)
+{
+    const Picture *picture = &renderer->picture;
+    const BaseScene scene = {.floor = &renderer->options.floor,
+                             .shadow = &renderer->shadow,
+                             .draw = &picture->draw,
+                             .mesh_box = picture->mesh_box,
+                             .box = picture->base_box};
+    return render_base_draw(&renderer->base, &scene, &renderer->target, renderer->timer, error);
+}
+
+Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderItem *items,
+                     uint32_t item_count, Image *image, Error *error)
+{
+    assert(image->width == renderer->options.width && image->height == renderer->options.height);
+    assert(image->channels == renderer_channels(renderer));
+    const DrawParams *draw = &renderer->picture.draw;
+    Result result = picture_begin(&renderer->picture, &renderer->options, &renderer->base.mesh,
+                                  frame, items, item_count, error);
+    if (result != RESULT_OK) return result;
+    renderer->counts = (RendererCounts){0};
+    picture_upload(&renderer->picture);
+    result = draw_shadow(renderer, frame, error);
+    if (result != RESULT_OK) return result;
+    set_state(renderer, draw->background);
+    result = draw_base(renderer, error);
+    if (result != RESULT_OK) return result;
+    result = RASTERS[renderer->raster].draw(renderer, image, error);
+    if (result != RESULT_OK) return result;
+    renderer->counts.thinned = picture_count_thinned(&renderer->picture);
+    renderer->counts.shadow_maps = renderer->shadow.maps_drawn;
+    return gpu_check("drawing", error);
+}

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// From hair on the GPU to a picture: mesh, hair ribbons into an A-buffer, and its resolution.
+#pragma once
+
+#include "draw/picture.h"
+#include "draw/render_base.h"
+#include "draw/render_blocks.h"
+#include "draw/render_options.h"
+#include "draw/render_quads.h"
+
+typedef struct Renderer {
+    RendererOptions options;
+    const Gpu *gpu;
+    GpuTimer *timer;
+    RenderTarget target;
+    Raster raster; // auto is decided
+    RenderQuads quads;
+    RenderBlocks blocks;
+    RenderBase base;
+    RenderShadow shadow;
+    ShadowCaster *casters; // [caster_room], owned
+    uint32_t caster_room;
+    Picture picture; // the last one
+    RendererCounts counts;
+} Renderer;
+
+// Makes targets and shaders. `gpu` and `timer` outlive the renderer; spans "draw_mesh",
+// "draw_project", and of quads "draw_hair", "draw_resolve" and "draw_read" (of the picture), of
+// blocks "draw_read" (of mesh and floor), "draw_bin" and "draw_composite". RESULT_FAILED if the
+// size exceeds the driver's or memory is short.
+Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
+                       const RendererOptions *options, Error *error);
+void renderer_destroy(Renderer *renderer);
+
+// The mesh that hides hair, in the head's frame, and its colour (sRGB 0..1). Copied to the GPU.
+Result renderer_set_mesh(Renderer *renderer, const Mesh *mesh, const float color[3], Error *error);
+
+// 3, or 4 where the background is not opaque: what image_create must be given.
+int renderer_channels(const Renderer *renderer);
+
+// Draws one picture into `image`, which has the renderer's size and channels, and waits for it. The
+// order of items and of strands does not matter, and every run gives the same bytes. No fragment is
+// lost: an A-buffer that is too small grows and the band is drawn again; at its largest the picture
+// is drawn in more bands. RESULT_FAILED if memory is short or, with quads, a single row needs more
+// than there can be or a pixel has more fragments than a CPU driver's loops can visit.
+Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderItem *items,
+                     uint32_t item_count, Image *image, Error *error);

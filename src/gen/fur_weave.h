@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// The way of a strand between its guides: gathered in clumps, wound into curls, frizzy.
+#pragma once
+
+#include "base/random.h"
+#include "gen/fur_guides.h"
+
+// A curve by arc length of the smooth line within, m.
+typedef struct FurWeave {
+    FurLine line, side; // the smooth line; a unit vector across it, carried along without turning
+    double step;        // m
+    double length;      // m, of the strand
+    double radius, frequency, phase; // of curls: m, turns a metre, turns
+    double frizz;                    // m
+    double wave[2][2][2];            // frizz across in two directions, two waves: 1/m, phase
+} FurWeave;
+
+#define FUR_NO_GUIDE UINT32_MAX
+
+// The strand with its root there, `length` (m) long, along a guide of its own or between them. All
+// that is random in it comes from `random` and, what a clump has in common, from the recipe's seed
+// and the clump.
+void fur_weave_create(FurWeave *weave, const FurRecipe *recipe, const FurGuides *guides,
+                      uint32_t own_guide, const SurfacePoint *root, const Double3 normal,
+                      double length, Random *random);
+
+// The curve's place; behind the line's end it goes on straight.
+void fur_weave_at(const FurWeave *weave, double s, Double3 place);

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: MIT
+// tractrix-gen: makes hair and the mesh it grows on.
+#include "base/program.h"
+#include "gen/fur.h"
+#include "gen/fur_options.h"
+#include "gen/strands_make.h"
+#include "mesh/bust.h"
+
+#include <math.h>
+#include <string.h>
+
+// Negative or NaN: not given.
+typedef struct Command {
+    int kind, shape, count, vertices, set, seed;
+    double length, length_variation, curl_radius, curl_turns, curl_disorder;
+    GenOutput output;
+    const char *mesh, *bust;
+} Command;
+
+static const char KINDS[] = "random|straight|curls|fur";
+static const char *const KIND_NAMES[] = {"random", "straight", "curls", "fur"};
+static const char *const SET_NAMES[] = {"1k16", "1k32", "10k16", "10k32"};
+
+#define AT(member) offsetof(Command, member)
+
+static const Option OPTIONS[] = {
+    {"kind", 0, OPTION_WORD, AT(kind), KINDS, 0, 0,
+     "segments in random directions, or hair of some sort [default curls]"},
+    {"shape", 0, OPTION_WORD, AT(shape), "sphere|head", 0, 0,
+     "what it grows on: a sphere (radius 0.1 m) or a head"},
+    {"count", 'n', OPTION_WHOLE, AT(count), "N", 1, 1e7, "strands"},
+    {"vertices", 0, OPTION_WHOLE, AT(vertices), "N", 2, 65535, "per strand"},
+    {"length", 0, OPTION_REAL, AT(length), "M", 1e-3, 100, "of the longest strand, metres"},
+    {"length-variation", 0, OPTION_REAL, AT(length_variation), "SHARE", 0, 1,
+     "strands are up to this share shorter"},
+    {"curl-radius", 0, OPTION_REAL, AT(curl_radius), "M", 0, 1,
+     "of the curls at the tip, metres; --kind curls"},
+    {"curl-turns", 0, OPTION_REAL, AT(curl_turns), "N", 0, 1000,
+     "of the curls over a strand; --kind curls"},
+    {"curl-disorder", 0, OPTION_REAL, AT(curl_disorder), "SHARE", 0, 1,
+     "0: neighbours wind in step, 1: each for itself; --kind curls"},
+    GEN_OPTION_SEED(AT(seed)),
+    {"set", 0, OPTION_WORD, AT(set), "1k16|1k32|10k16|10k32", 0, 0,
+     "a test set of the thesis instead: thousands of strands x vertices"},
+    GEN_OPTION_FORMAT(AT(output.format)),
+    GEN_OPTION_OUTPUT(AT(output.path)),
+    {"mesh", 0, OPTION_STRING, AT(mesh), "FILE", 0, 0, "also write the shape, as Wavefront OBJ"},
+    {"bust", 0, OPTION_STRING, AT(bust), "FILE", 0, 0,
+     "also write the head with shoulders below it, as Wavefront OBJ"},
+    GEN_OPTION_QUIET(AT(output.quiet)),
+};
+
+static const char *const STATUS[][2] = {
+    {"0", "done"}, {"1", "failed: disk full, no memory, ..."}, {"2", "wrong usage"}, {NULL, NULL}};
+
+static const char *const EXAMPLES[] = {
+    "tractrix-gen --kind curls --shape head --count 2000 -o curls.tfx --mesh head.obj",
+    "tractrix-gen --set 10k16 -o 10k16.tfx", NULL};
+
+static const OptionsProgram PROGRAM = {
+    .name = "tractrix-gen",
+    .summary = "make hair, and what it grows on",
+    .synopsis = "[OPTION]... -o FILE",
+    .description = "Makes hair, and with --mesh the shape it grows on. Metres, y up, the face "
+                   "towards +z. `tractrix-gen fur` grows fur and hair on any mesh: see its --help "
+                   "or tractrix-gen-fur(1).",
+    .options = OPTIONS,
+    .option_count = sizeof OPTIONS / sizeof *OPTIONS,
+    .status = STATUS,
+    .examples = EXAMPLES,
+};
+
+// --- What is asked.
+
+// What each kind has where nothing is said: a paragraph of the help.
+static void write_defaults(char *text, size_t size)
+{
+    size_t at = (size_t)snprintf(text, size, "Defaults.");
+    for (int style = 0; style < STRANDS_STYLES && at < size; ++style) {
+        StrandsRecipe r = strands_recipe_default((StrandsStyle)style);
+        at += (size_t)snprintf(
+            text + at, size - at,
+            " %s: --shape %s --count %u --vertices %u --length %g --length-variation %g",
+            KIND_NAMES[style], r.shape == SCALP_SPHERE ? "sphere" : "head", r.count, r.vertices,
+            (double)r.length, (double)r.length_variation);
+        if (style == STRANDS_STYLE_CURLS && at < size)
+            at += (size_t)snprintf(
+                text + at, size - at, " --curl-radius %g --curl-turns %g --curl-disorder %g",
+                (double)r.curl_radius, (double)r.curl_turns, (double)r.curl_disorder);
+        if (at < size) at += (size_t)snprintf(text + at, size - at, ".");
+    }
+}
+
+// The first of `names` that was given a value; NULL: none.
+static const char *find_given(const Command *command, const char *const *names)
+{
+    for (; *names; ++names) {
+        size_t i = 0;
+        while (strcmp(OPTIONS[i].name, *names) != 0) ++i;
+        const char *at = (const char *)command + OPTIONS[i].place;
+        double number = NAN;
+        int whole;
+        memcpy(&whole, at, sizeof whole);
+        if (OPTIONS[i].kind == OPTION_REAL) memcpy(&number, at, sizeof number);
+        if (OPTIONS[i].kind == OPTION_REAL ? !isnan(number) : whole >= 0) return *names;
+    }
+    return NULL;
+}
+
+// No option is passed over without a word.
+static Result check_effect(const Command *command, Error *error)
+{
+    static const char *const CURLS[] = {"curl-radius", "curl-turns", "curl-disorder", NULL};
+    static const char *const SHAPING[] = {
+        "kind",        "shape",      "count",         "vertices", "length", "length-variation",
+        "curl-radius", "curl-turns", "curl-disorder", NULL};
+    const char *curl = find_given(command, CURLS), *shaping = find_given(command, SHAPING);
+    if (curl && command->kind >= 0 && command->kind != STRANDS_STYLE_CURLS)
+        return error_set(error, RESULT_USAGE, "--%s is for --kind curls, not %s", curl,
+                         KIND_NAMES[command->kind]);
+    if (command->set >= 0 && shaping)
+        return error_set(error, RESULT_USAGE, "--set %s and --%s exclude each other",
+                         SET_NAMES[command->set], shaping);
+    if (!command->output.path && !command->mesh && !command->bust)
+        return error_set(error, RESULT_USAGE, "nothing to write: expected -o FILE");
+    return RESULT_OK;
+}
+
+static Result parse(Command *command, int argc, char **argv, bool *done, Error *error)
+{
+    char defaults[1024];
+    const char *const notes[] = {defaults, NULL};
+    OptionsProgram program = PROGRAM;
+    int first;
+    program.notes = notes;
+    write_defaults(defaults, sizeof defaults);
+    *command = (Command){.kind = -1,
+                         .shape = -1,
+                         .count = -1,
+                         .vertices = -1,
+                         .set = -1,
+                         .output.format = GEN_OUTPUT_TFX4,
+                         .seed = 1,
+                         .length = NAN,
+                         .length_variation = NAN,
+                         .curl_radius = NAN,
+                         .curl_turns = NAN,
+                         .curl_disorder = NAN};
+    Result result = options_parse(&program, command, argc, argv, &first, done, error);
+    if (result != RESULT_OK || *done) return result;
+    if (first < argc)
+        return error_set(error, RESULT_USAGE, "'%s' is no option: expected -o FILE", argv[first]);
+    return check_effect(command, error);
+}
+
+static void set_real(float *to, double value)
+{
+    if (!isnan(value)) *to = (float)value;
+}
+
+static StrandsRecipe make_recipe(const Command *command)
+{
+    StrandsStyle style = command->kind < 0 ? STRANDS_STYLE_CURLS : (StrandsStyle)command->kind;
+    StrandsRecipe recipe = strands_recipe_default(style);
+    if (command->shape >= 0) recipe.shape = (ScalpShape)command->shape;
+    if (command->count >= 0) recipe.count = (uint32_t)command->count;
+    if (command->vertices >= 0) recipe.vertices = (uint32_t)command->vertices;
+    set_real(&recipe.length, command->length);
+    set_real(&recipe.length_variation, command->length_variation);
+    set_real(&recipe.curl_radius, command->curl_radius);
+    set_real(&recipe.curl_turns, command->curl_turns);
+    set_real(&recipe.curl_disorder, command->curl_disorder);
+    recipe.seed = (uint32_t)command->seed;
+    return recipe;
+}
+
+// --- The work.
+
+static Result write_hair(const Command *command, const StrandsRecipe *recipe, Error *error)
+{
+    Strands strands;
+    Result result = command->set >= 0
+                        ? strands_make_set(&strands, SET_NAMES[command->set], recipe->seed, error)
+                        : strands_make(&strands, recipe, error);
+    if (result != RESULT_OK) return result;
+    result = gen_output_write(&command->output, &strands, 0, error);
+    strands_destroy(&strands);
+    return result;
+}
+
+static Result write_mesh(const Command *command, ScalpShape shape, const char *file, bool shoulders,
+                         Error *error)
+{
+    Mesh mesh;
+    Result result = scalp_make_mesh(&mesh, shape, 36, error);
+    if (result == RESULT_OK && shoulders) result = bust_append_shoulders(&mesh, error);
+    if (result == RESULT_OK) result = mesh_write_obj(file, &mesh, error);
+    if (result == RESULT_OK && !command->output.quiet)
+        printf("%s: %u vertices, %u triangles\n", file, mesh.vertex_count, mesh.triangle_count);
+    mesh_destroy(&mesh);
+    return result;
+}
+
+static Result write_all(const Command *command, Error *error)
+{
+    StrandsRecipe recipe = make_recipe(command);
+    ScalpShape shape = command->set >= 0 ? SCALP_SPHERE : recipe.shape;
+    Result result = command->output.path ? write_hair(command, &recipe, error) : RESULT_OK;
+    if (result == RESULT_OK && command->mesh)
+        result = write_mesh(command, shape, command->mesh, false, error);
+    if (result == RESULT_OK && command->bust)
+        result = write_mesh(command, SCALP_HEAD, command->bust, true, error);
+    return result;
+}
+
+// --- tractrix-gen fur.
+
+static Result write_fur(const FurOptions *options, const Mesh *mesh, Error *error)
+{
+    Strands strands;
+    FurReport report;
+    Result result = fur_grow(&strands, &options->recipe, mesh, options->mesh, &report, error);
+    if (result != RESULT_OK) return result;
+    if (report.flat_triangles)
+        fprintf(stderr, "%s: %u triangles without an area are passed over\n", options->mesh,
+                report.flat_triangles);
+    if (report.stuck)
+        fprintf(stderr, "%s: %llu segments could not be kept outside the mesh\n",
+                options->output.path, (unsigned long long)report.stuck);
+    result = gen_output_write(&options->output, &strands, report.guides, error);
+    strands_destroy(&strands);
+    return result;
+}
+
+static Result grow_fur(int argc, char **argv, Error *error)
+{
+    FurOptions options;
+    Mesh mesh;
+    bool done;
+    Result result = fur_options_read(&options, argc, argv, &done, error);
+    if (result != RESULT_OK || done) return result;
+    result = mesh_read_obj(&mesh, options.mesh, (float)options.unit, options.up_z, error);
+    if (result != RESULT_OK) return result;
+    result = write_fur(&options, &mesh, error);
+    mesh_destroy(&mesh);
+    return result;
+}
+
+// ---
+
+static Result run(int argc, char **argv, Error *error)
+{
+    Command command;
+    bool done;
+    if (argc > 1 && strcmp(argv[1], "fur") == 0) return grow_fur(argc - 1, argv + 1, error);
+    Result result = parse(&command, argc, argv, &done, error);
+    return result == RESULT_OK && !done ? write_all(&command, error) : result;
+}
+
+int main(int argc, char **argv)
+{
+    Error error = {{0}};
+    Result result = run(argc, argv, &error);
+    return program_end("tractrix-gen", result, &error);
+}

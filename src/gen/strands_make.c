@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: MIT
+#include "gen/strands_make.h"
+
+#include "base/double3.h"
+#include "base/random.h"
+#include "base/suggest.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double PI = 3.14159265358979323846;
+
+static double ramp(double low, double high, double x)
+{
+    double t = fmin(fmax((x - low) / (high - low), 0.0), 1.0);
+    return t * t * (3.0 - 2.0 * t);
+}
+
+// What one strand is grown from.
+typedef struct Seedling {
+    const StrandsRecipe *recipe;
+    Double3 root, direction; // its place; seen from the origin
+    Double3 normal;          // of the surface there
+    double length, phase;
+    Random random;
+} Seedling;
+
+static Seedling begin_strand(const StrandsRecipe *recipe, ScalpRoots *roots, uint32_t s)
+{
+    Seedling seedling = {.recipe = recipe, .random = random_create(recipe->seed, s)};
+    scalp_roots_next(roots, seedling.direction);
+    scalp_normal(recipe->shape, seedling.direction, seedling.normal);
+    double3_add_scaled(seedling.root, scalp_radius(recipe->shape, seedling.direction),
+                       seedling.direction);
+    seedling.length =
+        recipe->length * (1.0 - recipe->length_variation * random_real(&seedling.random));
+    // Slow waves over the head keep neighbours in step.
+    const double *d = seedling.direction;
+    double slow = 1.7 * sin(3.1 * d[0] + 1.0) + 1.3 * sin(4.3 * d[2]) + 1.1 * sin(3.7 * d[1] + 2.0);
+    seedling.phase = slow + 2.0 * PI * recipe->curl_disorder * random_real(&seedling.random);
+    return seedling;
+}
+
+// --- The thesis's random strands.
+
+static void grow_random(Seedling *seedling, Double3 *points)
+{
+    uint32_t count = seedling->recipe->vertices;
+    double3_copy(seedling->root, points[0]);
+    for (uint32_t v = 1; v < count; v++) {
+        Double3 direction;
+        random_direction(&seedling->random, direction);
+        double3_copy(points[v - 1], points[v]);
+        double3_add_scaled(points[v], seedling->length / (count - 1), direction);
+    }
+}
+
+// --- Long hair.
+
+// Where the comb pulls at a place: back and, from the parting in front, to the sides; then down,
+// spreading a little.
+static void comb(const Seedling *seedling, const Double3 at, double share, Double3 pull)
+{
+    const double *root = seedling->direction;
+    double fallen = ramp(0.0, 0.3, share), front = ramp(-0.7, 0.5, root[2]);
+    Double3 down = {0.6 * at[0], -1.0, 0.6 * at[2] - 0.5 * ramp(0.0, 0.08, at[2])};
+    Double3 back = {0.75 * front * tanh(root[0] / 0.12), -0.25, -0.8};
+    for (int i = 0; i < 3; i++) pull[i] = (1.0 - fallen) * back[i] + fallen * down[i];
+    double3_normalize(pull);
+}
+
+// Lifts a point to at least `gap` over the surface.
+static void keep_outside(const Seedling *seedling, Double3 point, double gap)
+{
+    Double3 direction;
+    double3_copy(point, direction);
+    double distance = double3_normalize(direction);
+    double least = distance > 0.0 ? scalp_radius(seedling->recipe->shape, direction) + gap : 0.0;
+    if (distance >= least) return;
+    for (int i = 0; i < 3; i++) point[i] = least * direction[i];
+}
+
+// A segment of its length from `from` along `direction`, which becomes where it goes when its end
+// is kept outside by `gap`.
+static void grow_segment(const Seedling *seedling, const Double3 from, double segment, double gap,
+                         Double3 direction, Double3 to)
+{
+    double3_copy(from, to);
+    double3_add_scaled(to, segment, direction);
+    keep_outside(seedling, to, gap);
+    double3_subtract(to, from, direction);
+    double3_normalize(direction);
+    double3_copy(from, to);
+    double3_add_scaled(to, segment, direction);
+}
+
+// A strand that leaves along the normal and bends towards the comb's pull, `length` long.
+static void grow_combed(const Seedling *seedling, double length, Double3 *points)
+{
+    uint32_t count = seedling->recipe->vertices;
+    double segment = length / (count - 1), lift = 0.006 + 0.010 * seedling->normal[1];
+    Double3 direction;
+    double3_copy(seedling->normal, direction);
+    double3_copy(seedling->root, points[0]);
+    for (uint32_t v = 1; v < count; v++) {
+        double share = v / (double)(count - 1);
+        Double3 pull;
+        comb(seedling, points[v - 1], share, pull);
+        // Bending over a fixed length makes the shape independent of the number of vertices.
+        double3_add_scaled(direction, 1.0 - exp(-segment / 0.012), pull);
+        double3_normalize(direction);
+        grow_segment(seedling, points[v - 1], segment, lift * ramp(0.0, 0.03, share * length),
+                     direction, points[v]);
+    }
+}
+
+static double measure(const Double3 *points, uint32_t count)
+{
+    double length = 0.0;
+    for (uint32_t v = 1; v < count; v++) length += double3_distance(points[v], points[v - 1]);
+    return length;
+}
+
+// Winds a smooth strand: each vertex moves sideways, in a frame that is carried along the strand.
+static void wind(const Seedling *seedling, Double3 *points)
+{
+    const StrandsRecipe *recipe = seedling->recipe;
+    Double3 side = {seedling->normal[1], seedling->normal[2], seedling->normal[0]}, before;
+    double3_copy(points[0], before);
+    for (uint32_t v = 1; v < recipe->vertices; v++) {
+        double share = v / (double)(recipe->vertices - 1);
+        Double3 tangent, other;
+        double3_subtract(points[v], before, tangent);
+        double3_copy(points[v], before);
+        double3_normalize(tangent);
+        double3_flatten(side, tangent);
+        double3_normalize(side);
+        double3_cross(tangent, side, other);
+        double angle = seedling->phase + 2.0 * PI * recipe->curl_turns * share;
+        double radius = recipe->curl_radius * ramp(0.0, 0.6, share);
+        double3_add_scaled(points[v], radius * cos(angle), side);
+        double3_add_scaled(points[v], radius * sin(angle), other);
+        keep_outside(seedling, points[v], 0.002 * ramp(0.0, 0.1, share));
+    }
+}
+
+// Winding lengthens: the smooth strand is made shorter until the wound one has its length.
+static void grow_curls(const Seedling *seedling, Double3 *points)
+{
+    double smooth = seedling->length;
+    for (int attempt = 0; attempt < 12; attempt++) {
+        grow_combed(seedling, smooth, points);
+        wind(seedling, points);
+        double ratio =
+            seedling->length / measure((const Double3 *)points, seedling->recipe->vertices);
+        if (fabs(ratio - 1.0) < 0.002) break;
+        smooth *= ratio;
+    }
+}
+
+// --- Fur.
+
+static void grow_fur(Seedling *seedling, Double3 *points)
+{
+    uint32_t count = seedling->recipe->vertices;
+    double segment = seedling->length / (count - 1);
+    Double3 direction;
+    double3_copy(seedling->normal, direction);
+    Double3 stray, pull = {0.0, -0.9, -0.5};
+    random_direction(&seedling->random, stray);
+    double3_add_scaled(direction, 0.3, stray);
+    double3_copy(seedling->root, points[0]);
+    for (uint32_t v = 1; v < count; v++) {
+        double3_add_scaled(direction, 1.1 / (count - 1), pull);
+        double3_normalize(direction);
+        grow_segment(seedling, points[v - 1], segment, 0.1 * segment, direction, points[v]);
+    }
+}
+
+// ---
+
+static void grow(Seedling *seedling, Double3 *points)
+{
+    switch (seedling->recipe->style) {
+    case STRANDS_STYLE_RANDOM:
+        grow_random(seedling, points);
+        break;
+    case STRANDS_STYLE_STRAIGHT:
+        grow_combed(seedling, seedling->length, points);
+        break;
+    case STRANDS_STYLE_CURLS:
+        grow_curls(seedling, points);
+        break;
+    case STRANDS_STYLE_FUR:
+        grow_fur(seedling, points);
+        break;
+    case STRANDS_STYLES:
+        break;
+    }
+}
+
+static void make_all(Strands *strands, const StrandsRecipe *recipe, Double3 *points)
+{
+    bool everywhere = recipe->style == STRANDS_STYLE_FUR;
+    ScalpRoots roots = scalp_roots_begin(recipe->shape, everywhere, recipe->seed);
+    for (uint32_t s = 0; s < recipe->count; s++) {
+        Seedling seedling = begin_strand(recipe, &roots, s);
+        grow(&seedling, points);
+        uint32_t first = s * recipe->vertices;
+        strands->first[s + 1] = first + recipe->vertices;
+        for (uint32_t v = 0; v < recipe->vertices; v++)
+            for (int i = 0; i < 3; i++) strands->position[first + v][i] = (float)points[v][i];
+        const double *d = seedling.direction;
+        strands->strand_uv[s][0] = (float)(0.5 + atan2(d[0], d[2]) / (2.0 * PI));
+        strands->strand_uv[s][1] = (float)(0.5 + asin(fmin(fmax(d[1], -1.0), 1.0)) / PI);
+    }
+}
+
+StrandsRecipe strands_recipe_default(StrandsStyle style)
+{
+    StrandsRecipe recipe = {.style = style,
+                            .shape = SCALP_HEAD,
+                            .count = 1500,
+                            .vertices = 24,
+                            .length = 0.30f,
+                            .length_variation = 0.2f,
+                            .curl_disorder = 0.2f,
+                            .seed = 1};
+    if (style == STRANDS_STYLE_CURLS) {
+        recipe.vertices = 32;
+        recipe.curl_radius = 0.012f;
+        recipe.curl_turns = 3.0f;
+    }
+    if (style == STRANDS_STYLE_FUR) {
+        recipe.shape = SCALP_SPHERE;
+        recipe.count = 4000;
+        recipe.vertices = 8;
+        recipe.length = 0.03f;
+        recipe.length_variation = 0.4f;
+    }
+    if (style == STRANDS_STYLE_RANDOM) {
+        recipe.shape = SCALP_SPHERE;
+        recipe.count = 1000;
+        recipe.vertices = 16;
+        recipe.length = 0.25f;
+        recipe.length_variation = 0.0f;
+    }
+    return recipe;
+}
+
+static Result check_range(const char *name, double value, double low, double high, Error *error)
+{
+    if (value >= low && value <= high) return RESULT_OK;
+    return error_set(error, RESULT_USAGE, "%s %g: expected %g to %g", name, value, low, high);
+}
+
+static Result check_recipe(const StrandsRecipe *recipe, Error *error)
+{
+    const struct {
+        const char *name;
+        double value, low, high;
+    } ranges[] = {
+        {"count", recipe->count, 1, 1e7},
+        {"vertices", recipe->vertices, 2, 65535},
+        {"length", (double)recipe->length, 1e-3, 100},
+        {"length variation", (double)recipe->length_variation, 0, 1},
+        {"curl radius", (double)recipe->curl_radius, 0, 1},
+        {"curl turns", (double)recipe->curl_turns, 0, 1000},
+        {"curl disorder", (double)recipe->curl_disorder, 0, 1},
+    };
+    for (size_t i = 0; i < sizeof ranges / sizeof *ranges; i++)
+        if (check_range(ranges[i].name, ranges[i].value, ranges[i].low, ranges[i].high, error) !=
+            RESULT_OK)
+            return RESULT_USAGE;
+    if ((uint64_t)recipe->count * recipe->vertices >= UINT32_MAX)
+        return error_set(error, RESULT_USAGE, "%u strands of %u vertices are too many",
+                         recipe->count, recipe->vertices);
+    double wound = 2.0 * PI * (double)recipe->curl_radius * (double)recipe->curl_turns;
+    if (recipe->style == STRANDS_STYLE_CURLS && wound > 0.9 * (double)recipe->length)
+        return error_set(error, RESULT_USAGE,
+                         "curls of radius %g m with %g turns do not fit into a length of %g m",
+                         (double)recipe->curl_radius, (double)recipe->curl_turns,
+                         (double)recipe->length);
+    return RESULT_OK;
+}
+
+Result strands_make(Strands *strands, const StrandsRecipe *recipe, Error *error)
+{
+    *strands = (Strands){0};
+    Result result = check_recipe(recipe, error);
+    if (result != RESULT_OK) return result;
+    result = strands_create(strands, recipe->count, recipe->count * recipe->vertices, error);
+    if (result != RESULT_OK) return result;
+    strands->strand_uv = calloc(recipe->count, sizeof *strands->strand_uv);
+    Double3 *points = malloc(recipe->vertices * sizeof *points);
+    if (strands->strand_uv && points)
+        make_all(strands, recipe, points);
+    else
+        result = error_set(error, RESULT_FAILED, "no memory for %u strands", recipe->count);
+    free(points);
+    if (result != RESULT_OK) strands_destroy(strands);
+    return result;
+}
+
+Result strands_make_set(Strands *strands, const char *name, uint32_t seed, Error *error)
+{
+    static const char *const names[] = {"1k16", "1k32", "10k16", "10k32"};
+    StrandsRecipe recipe = strands_recipe_default(STRANDS_STYLE_RANDOM);
+    recipe.seed = seed;
+    for (int i = 0; i < 4; i++) {
+        if (strcmp(name, names[i]) != 0) continue;
+        recipe.count = i < 2 ? 1000 : 10000;
+        recipe.vertices = i % 2 ? 32 : 16;
+        return strands_make(strands, &recipe, error);
+    }
+    *strands = (Strands){0};
+    return error_set(error, RESULT_USAGE,
+                     "no test set '%s': did you mean '%s'? (1k16, 1k32, 10k16, 10k32)", name,
+                     suggest_nearest(name, names, 4));
+}

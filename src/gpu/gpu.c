@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: MIT
+#include "gpu/gpu.h"
+#include "gpu/gpu_egl.h"
+#include "gpu/gpu_osmesa.h"
+
+#include <epoxy/gl.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+// What was tried so far and why it failed, for the one line that the user gets if nothing works.
+typedef struct Attempts {
+    Error reasons;
+} Attempts;
+
+static void note_failure(Attempts *attempts, const char *path, const Error *why)
+{
+    size_t used = strlen(attempts->reasons.text), room = sizeof attempts->reasons.text - used;
+    int length = snprintf(attempts->reasons.text + used, room, "%s%s: %s", used ? "; " : "", path,
+                          why->text);
+    if (length < 0 || (size_t)length >= room)
+        attempts->reasons.text[used] = 0; // no room for this one
+}
+
+static void copy_string(char *to, size_t size, GLenum name)
+{
+    const char *text = (const char *)glGetString(name);
+    snprintf(to, size, "%s", text ? text : "unknown");
+}
+
+// A device may call itself software and be hardware, or the other way round: the renderer's name
+// decides.
+static bool is_cpu_driver(const char *renderer)
+{
+    static const char *const names[] = {"llvmpipe",    "softpipe", "swrast",
+                                        "SwiftShader", "lavapipe", "SWR"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; ++i)
+        if (strcasestr(renderer, names[i])) return true;
+    return false;
+}
+
+static int query_int(GLenum name)
+{
+    GLint value = 0;
+    glGetIntegerv(name, &value);
+    return value;
+}
+
+// GL 4.3 guarantees shader storage in compute shaders only; vertex and fragment stages get theirs
+// by buffer texture and images.
+static Result read_limits(Gpu *gpu, Error *error)
+{
+    copy_string(gpu->renderer, sizeof gpu->renderer, GL_RENDERER);
+    copy_string(gpu->version, sizeof gpu->version, GL_VERSION);
+    copy_string(gpu->vendor, sizeof gpu->vendor, GL_VENDOR);
+    gpu->software = is_cpu_driver(gpu->renderer);
+    int version = 10 * query_int(GL_MAJOR_VERSION) + query_int(GL_MINOR_VERSION);
+    if (version < 43)
+        return error_set(error, RESULT_NO_GL, "%s has OpenGL %d.%d, 4.3 is needed", gpu->renderer,
+                         version / 10, version % 10);
+    int side_px = query_int(GL_MAX_TEXTURE_SIZE), layer_px = query_int(GL_MAX_FRAMEBUFFER_WIDTH);
+    gpu->limits = (GpuLimits){
+        .storage_block = query_int(GL_MAX_SHADER_STORAGE_BLOCK_SIZE),
+        .texture_texels = query_int(GL_MAX_TEXTURE_BUFFER_SIZE),
+        .framebuffer_side_px = layer_px && layer_px < side_px ? layer_px : side_px,
+        .work_groups = 65535,
+    };
+    if (query_int(GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS) < 4)
+        return error_set(error, RESULT_NO_GL, "%s has no shader storage in fragment shaders",
+                         gpu->renderer);
+    return RESULT_OK;
+}
+
+static Result accept(Gpu *gpu, const GpuOptions *options, const char *path, Error *error)
+{
+    snprintf(gpu->path, sizeof gpu->path, "%s", path);
+    Result result = read_limits(gpu, error);
+    if (result != RESULT_OK) return result;
+    if (options->require_hardware && gpu->software)
+        return error_set(error, RESULT_NO_GL, "%s is a CPU driver", gpu->renderer);
+    if (options->software && !gpu->software)
+        return error_set(error, RESULT_NO_GL, "%s is not a CPU driver", gpu->renderer);
+    return RESULT_OK;
+}
+
+static Result try_egl(Gpu *gpu, const GpuOptions *options, void *device, const char *path,
+                      Error *error)
+{
+    EglContext egl;
+    Result result = gpu_egl_create(&egl, device, options->debug, error);
+    if (result != RESULT_OK) return result;
+    gpu->display = egl.display;
+    gpu->context = egl.context;
+    result = accept(gpu, options, path, error);
+    if (result != RESULT_OK) gpu_destroy(gpu);
+    return result;
+}
+
+static Result try_osmesa(Gpu *gpu, const GpuOptions *options, Error *error)
+{
+    if (options->require_hardware) return error_set(error, RESULT_NO_GL, "OSMesa draws on the CPU");
+    Result result = gpu_osmesa_create(&gpu->osmesa, error);
+    if (result == RESULT_OK) result = accept(gpu, options, "OSMesa", error);
+    if (result != RESULT_OK) gpu_destroy(gpu);
+    return result;
+}
+
+// Hardware devices first, so that the fastest is taken where both are there.
+static Result try_devices(Gpu *gpu, const GpuOptions *options, Attempts *attempts)
+{
+    Error why;
+    EglDevices devices;
+    if (gpu_egl_find_devices(&devices, &why) != RESULT_OK)
+        note_failure(attempts, "EGL devices", &why);
+    for (int pass = 0; pass < 2; ++pass)
+        for (int i = 0; i < devices.count; ++i) {
+            char path[64];
+            snprintf(path, sizeof path, "EGL device %d", i);
+            if (devices.software[i] != (pass == 1) ||
+                (options->device >= 0 && options->device != i))
+                continue;
+            if (try_egl(gpu, options, devices.device[i], path, &why) == RESULT_OK) return RESULT_OK;
+            note_failure(attempts, path, &why);
+        }
+    if (options->device >= devices.count) {
+        error_set(&why, RESULT_NO_GL, "no device %d, there are %d (see --list-devices)",
+                  options->device, devices.count);
+        note_failure(attempts, "--device", &why);
+    }
+    return RESULT_NO_GL;
+}
+
+static Result try_all(Gpu *gpu, const GpuOptions *options, Attempts *attempts)
+{
+    Error why;
+    bool any_path = options->device < 0;
+    if (options->backend != GPU_BACKEND_OSMESA) {
+        if (try_devices(gpu, options, attempts) == RESULT_OK) return RESULT_OK;
+        if (any_path && try_egl(gpu, options, NULL, "EGL surfaceless", &why) == RESULT_OK)
+            return RESULT_OK;
+        if (any_path) note_failure(attempts, "EGL surfaceless", &why);
+    }
+    if (options->backend != GPU_BACKEND_EGL && any_path) {
+        if (try_osmesa(gpu, options, &why) == RESULT_OK) return RESULT_OK;
+        note_failure(attempts, "OSMesa", &why);
+    }
+    return RESULT_NO_GL;
+}
+
+static void APIENTRY print_message(GLenum source, GLenum type, GLuint id, GLenum severity,
+                                   GLsizei length, const GLchar *text, const void *user)
+{
+    (void)source, (void)id, (void)length, (void)user;
+    if (severity == GL_DEBUG_SEVERITY_NOTIFICATION || type == GL_DEBUG_TYPE_PERFORMANCE) return;
+    fprintf(stderr, "tractrix: GL: %s\n", text);
+}
+
+Result gpu_create(Gpu *gpu, const GpuOptions *options, Error *error)
+{
+    *gpu = (Gpu){0};
+    Attempts attempts = {0};
+    if (try_all(gpu, options, &attempts) != RESULT_OK)
+        return error_set(
+            error, RESULT_NO_GL,
+            "no usable OpenGL 4.3 (%s); on Debian the packages libegl1 and libgl1-mesa-dri give a "
+            "CPU "
+            "driver, in a container on NVIDIA the 'graphics' driver capability is needed",
+            attempts.reasons.text);
+    if (options->debug) {
+        glEnable(GL_DEBUG_OUTPUT);
+        glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+        glDebugMessageCallback(print_message, NULL);
+    }
+    return RESULT_OK;
+}
+
+void gpu_destroy(Gpu *gpu)
+{
+    gpu_egl_destroy(&(EglContext){gpu->display, gpu->context});
+    gpu_osmesa_destroy(gpu->osmesa);
+    *gpu = (Gpu){0};
+}
+
+static bool list_one(FILE *stream, Gpu *gpu, Result result, const char *name, const Error *why)
+{
+    if (result == RESULT_OK)
+        fprintf(stream, "%-17s %s, OpenGL %s%s\n", name, gpu->renderer, gpu->version,
+                gpu->software ? " (CPU)" : "");
+    else
+        fprintf(stream, "%-17s not usable: %s\n", name, why->text);
+    gpu_destroy(gpu);
+    return result == RESULT_OK;
+}
+
+Result gpu_list_devices(FILE *stream, Error *error)
+{
+    Gpu gpu = {0};
+    Error why;
+    EglDevices devices;
+    const GpuOptions any = {.device = -1};
+    bool usable = false;
+    if (gpu_egl_find_devices(&devices, &why) != RESULT_OK)
+        list_one(stream, &gpu, RESULT_NO_GL, "EGL devices", &why);
+    for (int i = 0; i < devices.count; ++i) {
+        char name[32];
+        snprintf(name, sizeof name, "--device %d", i);
+        usable |=
+            list_one(stream, &gpu, try_egl(&gpu, &any, devices.device[i], name, &why), name, &why);
+    }
+    usable |= list_one(stream, &gpu, try_egl(&gpu, &any, NULL, "EGL surfaceless", &why),
+                       "EGL surfaceless", &why);
+    usable |= list_one(stream, &gpu, try_osmesa(&gpu, &any, &why), "--backend osmesa", &why);
+    return usable ? RESULT_OK : error_set(error, RESULT_NO_GL, "no usable OpenGL 4.3 device");
+}
+
+Result gpu_check(const char *what, Error *error)
+{
+    GLenum code = glGetError();
+    if (code == GL_NO_ERROR) return RESULT_OK;
+    return error_set(error, RESULT_FAILED, "%s: OpenGL error 0x%04x%s", what, code,
+                     code == GL_OUT_OF_MEMORY ? " (out of memory)" : "");
+}

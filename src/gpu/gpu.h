@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// The OpenGL context: headless, 4.3 core or better, by EGL without a window system or by OSMesa.
+#pragma once
+
+#include "base/error.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+typedef enum GpuBackend { GPU_BACKEND_AUTO, GPU_BACKEND_EGL, GPU_BACKEND_OSMESA } GpuBackend;
+
+typedef struct GpuOptions {
+    GpuBackend backend;
+    int device;            // index as `gpu_list_devices` prints it; -1: the best one
+    bool software;         // only CPU drivers
+    bool require_hardware; // no CPU driver
+    bool debug;            // KHR_debug context; messages go to stderr
+} GpuOptions;
+
+// What the driver allows, read once after the context is made. Bytes unless said otherwise.
+typedef struct GpuLimits {
+    int64_t storage_block;   // largest SSBO range that a shader can see
+    int64_t texture_texels;  // largest buffer texture, in texels
+    int framebuffer_side_px; // largest width and height
+    int work_groups;         // per dispatch, x
+} GpuLimits;
+
+// A current context. Everything else in this program calls GL only while one exists, on the thread
+// that made it.
+typedef struct Gpu {
+    GpuLimits limits;
+    bool software;           // a CPU driver, judged by GL_RENDERER
+    char renderer[256];      // GL_RENDERER
+    char version[256];       // GL_VERSION
+    char vendor[128];        // GL_VENDOR
+    char path[64];           // the way in: "EGL device 0", "EGL surfaceless", "OSMesa"
+    void *display, *context; // EGL
+    void *osmesa;            // OSMesa's state
+} Gpu;
+
+// Makes a context and makes it current. Order: EGL devices, hardware before software; EGL
+// surfaceless; OSMesa. RESULT_NO_GL with one line that says what was tried, why it failed and which
+// package helps.
+Result gpu_create(Gpu *gpu, const GpuOptions *options, Error *error);
+void gpu_destroy(Gpu *gpu);
+
+// Prints one line per EGL device and per other way in: index, renderer, version, or why it can't be
+// used. RESULT_NO_GL if none works.
+Result gpu_list_devices(FILE *stream, Error *error);
+
+// RESULT_FAILED naming `what` if a GL error is pending (out of memory, ...). Waits for nothing.
+Result gpu_check(const char *what, Error *error);

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include "gpu/gpu_buffer.h"
+
+static int64_t texel_size(GLenum format)
+{
+    switch (format) {
+    case GL_RGBA32F:
+    case GL_RGBA32UI:
+        return 16;
+    case GL_RG32F:
+    case GL_RG32UI:
+        return 8;
+    default:
+        return 4;
+    }
+}
+
+static Result check_size(int64_t most, const GpuLimits *limits, const char *what, int64_t size,
+                         GLenum format, Error *error)
+{
+    if (format && limits->texture_texels * texel_size(format) < most)
+        most = limits->texture_texels * texel_size(format);
+    if (size <= most) return RESULT_OK;
+    return error_set(error, RESULT_FAILED, "%s: %lld bytes in one buffer, this driver allows %lld",
+                     what, (long long)size, (long long)most);
+}
+
+static Result fill(GpuBuffer *buffer, const char *what, const void *data, GLenum texel_format,
+                   Error *error)
+{
+    int64_t size = buffer->size;
+    glGenBuffers(1, &buffer->buffer);
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
+    glBufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)(size ? size : 16), data, GL_DYNAMIC_COPY);
+    if (texel_format) {
+        glGenTextures(1, &buffer->texture);
+        glBindTexture(GL_TEXTURE_BUFFER, buffer->texture);
+        glTexBuffer(GL_TEXTURE_BUFFER, texel_format, buffer->buffer);
+    }
+    Result result = gpu_check(what, error);
+    if (result != RESULT_OK) gpu_buffer_destroy(buffer);
+    return result;
+}
+
+Result gpu_buffer_create(GpuBuffer *buffer, const GpuLimits *limits, const char *what, int64_t size,
+                         const void *data, GLenum texel_format, Error *error)
+{
+    *buffer = (GpuBuffer){.size = size};
+    Result result = check_size(limits->storage_block, limits, what, size, texel_format, error);
+    return result == RESULT_OK ? fill(buffer, what, data, texel_format, error) : result;
+}
+
+Result gpu_buffer_create_pieces(GpuBuffer *buffer, const GpuLimits *limits, const char *what,
+                                int64_t size, GLenum texel_format, Error *error)
+{
+    *buffer = (GpuBuffer){.size = size};
+    Result result = check_size(INT64_MAX, limits, what, size, texel_format, error);
+    return result == RESULT_OK ? fill(buffer, what, NULL, texel_format, error) : result;
+}
+
+void gpu_buffer_destroy(GpuBuffer *buffer)
+{
+    if (buffer->texture) glDeleteTextures(1, &buffer->texture);
+    if (buffer->buffer) glDeleteBuffers(1, &buffer->buffer);
+    *buffer = (GpuBuffer){0};
+}
+
+void gpu_buffer_bind_storage(const GpuBuffer *buffer, GLuint binding)
+{
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer->buffer);
+}
+
+void gpu_buffer_bind_texture(const GpuBuffer *buffer, GLuint unit)
+{
+    glActiveTexture(GL_TEXTURE0 + unit);
+    glBindTexture(GL_TEXTURE_BUFFER, buffer->texture);
+}
+
+void gpu_uniforms_set(GpuBuffer *buffer, GLuint binding, const void *data, size_t size)
+{
+    if (!buffer->buffer) glGenBuffers(1, &buffer->buffer);
+    buffer->size = (int64_t)size;
+    glBindBuffer(GL_UNIFORM_BUFFER, buffer->buffer);
+    glBufferData(GL_UNIFORM_BUFFER, (GLsizeiptr)size, data, GL_STREAM_DRAW);
+    glBindBufferBase(GL_UNIFORM_BUFFER, binding, buffer->buffer);
+}

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+#include "gpu/gpu_egl.h"
+
+#include <epoxy/egl.h>
+
+#include <dlfcn.h>
+#include <string.h>
+
+static const char *error_words(EGLint code)
+{
+    switch (code) {
+    case EGL_NOT_INITIALIZED:
+        return "the driver can't be initialised";
+    case EGL_BAD_ACCESS:
+        return "no access to the device";
+    case EGL_BAD_ALLOC:
+        return "out of memory";
+    case EGL_BAD_ATTRIBUTE:
+        return "an attribute is not known";
+    case EGL_BAD_CONFIG:
+        return "no usable configuration";
+    case EGL_BAD_DISPLAY:
+        return "no such display";
+    case EGL_BAD_MATCH:
+        return "OpenGL 4.3 core is not offered";
+    case EGL_BAD_PARAMETER:
+        return "a parameter is not known";
+    case EGL_BAD_DEVICE_EXT:
+        return "no such device";
+    case EGL_SUCCESS:
+        return "no reason given";
+    default:
+        return "unknown error";
+    }
+}
+
+static Result fail(const char *call, Error *error)
+{
+    EGLint code = eglGetError();
+    return error_set(error, RESULT_NO_GL, "%s: %s (0x%04x)", call, error_words(code),
+                     (unsigned)code);
+}
+
+// libepoxy ends the program if it can't load libEGL, so that is tried before its first EGL call.
+static Result require_library(Error *error)
+{
+    void *library = dlopen("libEGL.so.1", RTLD_LAZY | RTLD_LOCAL);
+    if (!library) return error_set(error, RESULT_NO_GL, "libEGL.so.1 is not installed");
+    return RESULT_OK; // cppcheck-suppress resourceLeak // libepoxy will want it
+}
+
+Result gpu_egl_find_devices(EglDevices *devices, Error *error)
+{
+    *devices = (EglDevices){0};
+    Result result = require_library(error);
+    if (result != RESULT_OK) return result;
+    if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device") ||
+        !epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration"))
+        return error_set(error, RESULT_NO_GL, "EGL can't enumerate devices");
+    if (!eglQueryDevicesEXT(32, devices->device, &devices->count))
+        return fail("eglQueryDevicesEXT", error);
+    for (int i = 0; i < devices->count; ++i) {
+        const char *extensions = eglQueryDeviceStringEXT(devices->device[i], EGL_EXTENSIONS);
+        devices->software[i] = extensions && strstr(extensions, "EGL_MESA_device_software");
+    }
+    return RESULT_OK;
+}
+
+// Always by platform, never EGL_DEFAULT_DISPLAY, which would look for X or Wayland.
+static Result open_display(EglContext *egl, void *device, Error *error)
+{
+    const char *client = device ? "EGL_EXT_platform_device" : "EGL_MESA_platform_surfaceless";
+    if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, client))
+        return error_set(error, RESULT_NO_GL, "%s is not offered", client);
+    EGLenum platform = device ? EGL_PLATFORM_DEVICE_EXT : EGL_PLATFORM_SURFACELESS_MESA;
+    egl->display = eglGetPlatformDisplayEXT(platform, device, NULL);
+    if (!egl->display) return fail("eglGetPlatformDisplay", error);
+    if (!eglInitialize(egl->display, NULL, NULL)) return fail("eglInitialize", error);
+    if (!epoxy_has_egl_extension(egl->display, "EGL_KHR_surfaceless_context"))
+        return error_set(error, RESULT_NO_GL, "EGL_KHR_surfaceless_context is not offered");
+    return RESULT_OK;
+}
+
+static EGLConfig choose_config(EGLDisplay display)
+{
+    if (epoxy_has_egl_extension(display, "EGL_KHR_no_config_context")) return EGL_NO_CONFIG_KHR;
+    const EGLint wanted[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, EGL_DONT_CARE,
+                             EGL_NONE};
+    EGLConfig config = NULL;
+    EGLint count = 0;
+    return eglChooseConfig(display, wanted, &config, 1, &count) && count > 0 ? config : NULL;
+}
+
+static Result open_context(EglContext *egl, bool debug, Error *error)
+{
+    if (!eglBindAPI(EGL_OPENGL_API)) return fail("eglBindAPI", error);
+    const EGLint attributes[] = {
+        EGL_CONTEXT_MAJOR_VERSION,
+        4,
+        EGL_CONTEXT_MINOR_VERSION,
+        3,
+        EGL_CONTEXT_OPENGL_PROFILE_MASK,
+        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+        EGL_CONTEXT_OPENGL_DEBUG,
+        debug ? EGL_TRUE : EGL_FALSE,
+        EGL_NONE,
+    };
+    egl->context =
+        eglCreateContext(egl->display, choose_config(egl->display), EGL_NO_CONTEXT, attributes);
+    if (!egl->context) return fail("eglCreateContext", error);
+    if (!eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, egl->context))
+        return fail("eglMakeCurrent", error);
+    return RESULT_OK;
+}
+
+Result gpu_egl_create(EglContext *egl, void *device, bool debug, Error *error)
+{
+    *egl = (EglContext){0};
+    Result result = require_library(error);
+    if (result == RESULT_OK) result = open_display(egl, device, error);
+    if (result == RESULT_OK) result = open_context(egl, debug, error);
+    if (result != RESULT_OK) gpu_egl_destroy(egl);
+    return result;
+}
+
+void gpu_egl_destroy(EglContext *egl)
+{
+    if (egl->display) {
+        eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+        if (egl->context) eglDestroyContext(egl->display, egl->context);
+        eglTerminate(egl->display);
+        eglReleaseThread();
+    }
+    *egl = (EglContext){0};
+}

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// Contexts by EGL without a window system: the device platform, or Mesa's surfaceless platform.
+#pragma once
+
+#include "base/error.h"
+
+#include <stdbool.h>
+
+// EGL objects of a current context (EGLDisplay, EGLContext).
+typedef struct EglContext {
+    void *display, *context;
+} EglContext;
+
+typedef struct EglDevices {
+    void *device[32];  // EGLDeviceEXT
+    bool software[32]; // says of itself that it is a CPU driver
+    int count;
+} EglDevices;
+
+// The devices that EGL enumerates, in its order. RESULT_NO_GL if libEGL is missing or can't
+// enumerate.
+Result gpu_egl_find_devices(EglDevices *devices, Error *error);
+
+// Makes a 4.3 core context on a device, or on the surfaceless platform for device NULL, and makes
+// it current without a surface. RESULT_NO_GL with the failed call and EGL's error in words.
+Result gpu_egl_create(EglContext *egl, void *device, bool debug, Error *error);
+void gpu_egl_destroy(EglContext *egl);

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: MIT
+#include "gpu/shader.h"
+
+#include "base/bytes.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_FILES = 32, MAX_LOG = 4096 };
+
+static bool warnings_are_errors;
+
+void shader_treat_warnings_as_errors(bool on)
+{
+    warnings_are_errors = on;
+}
+
+const char *shader_folder(void)
+{
+    const char *folder = getenv("TRACTRIX_GLSL_DIR");
+    return folder && *folder ? folder : NULL;
+}
+
+// The joined text of a stage. `line_file` and `line_number` tell for each of its lines where it
+// comes from: Mesa loses the string number of `#line` in semantic errors, so the map is ours.
+typedef struct Composition {
+    char *text;
+    size_t length, capacity;
+    struct File {
+        const GlslSource *source;
+        Bytes text; // from TRACTRIX_GLSL_DIR; empty: the source's own
+    } files[MAX_FILES];
+    int file_count;
+    struct Origin {
+        int file, line;
+    } * origins;
+    int line_count, line_capacity;
+} Composition;
+
+static void composition_destroy(Composition *composition)
+{
+    for (int i = 0; i < composition->file_count; ++i) bytes_destroy(&composition->files[i].text);
+    free(composition->text);
+    free(composition->origins);
+    *composition = (Composition){0};
+}
+
+static bool grow(Composition *c, size_t length)
+{
+    if (c->length + length + 2 > c->capacity) {
+        size_t capacity = 2 * (c->length + length) + 4096;
+        char *text = realloc(c->text, capacity);
+        if (!text) return false;
+        c->text = text, c->capacity = capacity;
+    }
+    if (c->line_count == c->line_capacity) {
+        int capacity = 2 * c->line_capacity + 256;
+        struct Origin *origins = realloc(c->origins, (size_t)capacity * sizeof *origins);
+        if (!origins) return false;
+        c->origins = origins, c->line_capacity = capacity;
+    }
+    return true;
+}
+
+static Result append_line(Composition *c, const char *line, size_t length, int file, int number,
+                          Error *error)
+{
+    if (!grow(c, length)) return error_set(error, RESULT_FAILED, "no memory for shader text");
+    memcpy(c->text + c->length, line, length);
+    c->length += length;
+    c->text[c->length++] = '\n';
+    c->text[c->length] = 0;
+    c->origins[c->line_count++] = (struct Origin){file, number};
+    return RESULT_OK;
+}
+
+static const GlslSource *find_source(const char *name, size_t length)
+{
+    for (const GlslSource *source = GLSL_SOURCES; source->name; ++source)
+        if (strlen(source->name) == length && memcmp(source->name, name, length) == 0)
+            return source;
+    return NULL;
+}
+
+static bool taken(const Composition *c, const GlslSource *source)
+{
+    for (int i = 0; i < c->file_count; ++i)
+        if (c->files[i].source == source) return true;
+    return false;
+}
+
+static Result append_file(Composition *c, const char *name, size_t length, Error *error);
+
+// `#include "name"` alone is ours; every other line goes to the driver as it is.
+static Result append_source_line(Composition *c, const char *line, size_t length, int file,
+                                 int number, Error *error)
+{
+    static const char include[] = "#include \"";
+    size_t prefix = sizeof include - 1;
+    if (length <= prefix || memcmp(line, include, prefix) != 0)
+        return append_line(c, line, length, file, number, error);
+    const char *name = line + prefix, *quote = memchr(name, '"', length - prefix);
+    return append_file(c, name, quote ? (size_t)(quote - name) : 0, error);
+}
+
+static Result read_file(struct File *file, Error *error)
+{
+    const char *folder = shader_folder();
+    char path[4096];
+    if (!folder) return RESULT_OK;
+    if (snprintf(path, sizeof path, "%s/%s", folder, file->source->name) >= (int)sizeof path)
+        return error_set(error, RESULT_FAILED, "TRACTRIX_GLSL_DIR: too long a path");
+    return bytes_read_file(&file->text, path, error);
+}
+
+static Result append_file(Composition *c, const char *name, size_t length, Error *error)
+{
+    const GlslSource *source = find_source(name, length);
+    if (!source)
+        return error_set(error, RESULT_FAILED, "glsl/%.*s: no such shader file", (int)length, name);
+    if (taken(c, source)) return RESULT_OK;
+    if (c->file_count == MAX_FILES)
+        return error_set(error, RESULT_FAILED, "glsl/%s: too many includes", source->name);
+    int file = c->file_count++, number = 1;
+    c->files[file] = (struct File){.source = source};
+    Result result = read_file(&c->files[file], error);
+    const char *line = c->files[file].text.data ? (char *)c->files[file].text.data : source->text;
+    for (; result == RESULT_OK && *line; ++number) {
+        size_t end = strcspn(line, "\n");
+        result = append_source_line(c, line, end, file, number, error);
+        line += end + (line[end] == '\n');
+    }
+    return result;
+}
+
+static Result compose(Composition *c, const char *file, const ShaderDefine *defines, Error *error)
+{
+    Result result = append_line(c, "#version 430 core", 17, -1, 0, error);
+    for (const ShaderDefine *define = defines; result == RESULT_OK && define && define->name;
+         ++define) {
+        char line[128];
+        int length = snprintf(line, sizeof line, "#define %s %d", define->name, define->value);
+        result = append_line(c, line, (size_t)length, -1, 0, error);
+    }
+    return result == RESULT_OK ? append_file(c, file, strlen(file), error) : result;
+}
+
+char *shader_compose(const char *file, const ShaderDefine *defines, Error *error)
+{
+    Composition composition = {0};
+    char *text = NULL;
+    if (compose(&composition, file, defines, error) == RESULT_OK) {
+        text = composition.text;
+        composition.text = NULL;
+    }
+    composition_destroy(&composition);
+    return text;
+}
+
+// The first line of a driver's log as "glsl/FILE:LINE: message". Mesa writes "0:12(5): error: ...",
+// NVIDIA "0(12) : ...".
+static Result tell_log(const Composition *c, const char *file, char *log, Error *error)
+{
+    int line = 0, ends = 0;
+    log[strcspn(log, "\n")] = 0;
+    if (sscanf(log, "%*d:%d(%*d): %n", &line, &ends) < 1 &&
+        sscanf(log, "%*d(%d) : %n", &line, &ends) < 1)
+        line = 0;
+    if (line < 1 || line > c->line_count || c->origins[line - 1].file < 0)
+        return error_set(error, RESULT_FAILED, "glsl/%s: %s", file, log);
+    struct Origin origin = c->origins[line - 1];
+    return error_set(error, RESULT_FAILED, "glsl/%s:%d: %s", c->files[origin.file].source->name,
+                     origin.line, log + ends);
+}
+
+static Result compile(GLuint shader, const char *file, const ShaderDefine *defines, Error *error)
+{
+    Composition composition = {0};
+    Result result = compose(&composition, file, defines, error);
+    if (result == RESULT_OK) {
+        GLint good = 0, length = (GLint)composition.length;
+        char log[MAX_LOG] = "";
+        glShaderSource(shader, 1, (const char *const *)&composition.text, &length);
+        glCompileShader(shader);
+        glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
+        glGetShaderInfoLog(shader, sizeof log, NULL, log);
+        if (!good || (warnings_are_errors && *log))
+            result = tell_log(&composition, file, log, error);
+    }
+    composition_destroy(&composition);
+    return result;
+}
+
+static Result link_program(GLuint program, const char *file, Error *error)
+{
+    GLint good = 0;
+    char log[MAX_LOG] = "";
+    glLinkProgram(program);
+    glGetProgramiv(program, GL_LINK_STATUS, &good);
+    glGetProgramInfoLog(program, sizeof log, NULL, log);
+    if (good && !(warnings_are_errors && *log)) return RESULT_OK;
+    log[strcspn(log, "\n")] = 0;
+    return error_set(error, RESULT_FAILED, "glsl/%s: link: %s", file, log);
+}
+
+typedef struct Stage {
+    GLenum type;
+    const char *file;
+} Stage;
+
+static Result build(GLuint *program, const Stage *stages, int count, const ShaderDefine *defines,
+                    Error *error)
+{
+    *program = glCreateProgram();
+    Result result = RESULT_OK;
+    for (int i = 0; i < count && result == RESULT_OK; ++i) {
+        GLuint shader = glCreateShader(stages[i].type);
+        result = compile(shader, stages[i].file, defines, error);
+        if (result == RESULT_OK) glAttachShader(*program, shader);
+        glDeleteShader(shader); // lives on while it is attached
+    }
+    if (result == RESULT_OK) result = link_program(*program, stages[count - 1].file, error);
+    if (result != RESULT_OK) {
+        glDeleteProgram(*program);
+        *program = 0;
+    }
+    return result;
+}
+
+Result shader_build_compute(GLuint *program, const char *file, const ShaderDefine *defines,
+                            Error *error)
+{
+    return build(program, &(Stage){GL_COMPUTE_SHADER, file}, 1, defines, error);
+}
+
+Result shader_build_draw(GLuint *program, const char *vertex_file, const char *fragment_file,
+                         const ShaderDefine *defines, Error *error)
+{
+    const Stage stages[] = {{GL_VERTEX_SHADER, vertex_file}, {GL_FRAGMENT_SHADER, fragment_file}};
+    return build(program, stages, 2, defines, error);
+}

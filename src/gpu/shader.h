@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// From GLSL files to programs: joins included files, puts the variant's defines in front, compiles,
+// and tells errors by file and line.
+#pragma once
+
+#include "base/error.h"
+
+#include <epoxy/gl.h>
+
+#include <stdbool.h>
+
+// A file of glsl/, embedded by scripts/embed-glsl. The table ends with {NULL, NULL}. For work on
+// shaders without a build, TRACTRIX_GLSL_DIR names a folder from which all of them are read
+// instead.
+typedef struct GlslSource {
+    const char *name; // "sim/split.comp"
+    const char *text;
+} GlslSource;
+extern const GlslSource GLSL_SOURCES[];
+
+// A macro of a shader variant. Lists end with {NULL, 0}. Every macro that a shader tests must be
+// given: an undefined one would silently count as 0.
+typedef struct ShaderDefine {
+    const char *name;
+    int value;
+} ShaderDefine;
+
+// Builds a program from a compute shader, or from a vertex and a fragment shader. `defines` may be
+// NULL. A file may
+// `#include "other.glsl"`; each file is taken once. On failure *program is 0 and the line is
+// "glsl/FILE:LINE: compiler's message" (RESULT_FAILED). Programs are freed with glDeleteProgram.
+Result shader_build_compute(GLuint *program, const char *file, const ShaderDefine *defines,
+                            Error *error);
+Result shader_build_draw(GLuint *program, const char *vertex_file, const char *fragment_file,
+                         const ShaderDefine *defines, Error *error);
+
+// The folder of TRACTRIX_GLSL_DIR; NULL: the shaders are the program's own.
+const char *shader_folder(void);
+
+// The complete text of one stage as the driver gets it (malloc'ed; NULL if a file is missing, with
+// the error set). For tests and for checks by other compilers.
+char *shader_compose(const char *file, const ShaderDefine *defines, Error *error);
+
+// Compiler warnings of all programs built so far count as failures if this is on (the shader check
+// of `make check`).
+void shader_treat_warnings_as_errors(bool on);

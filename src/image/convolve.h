@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// Convolution of a plane of floats by kernels that are a product of one in x and one in y.
+#pragma once
+
+enum { CONVOLVE_MOST_RADIUS = 160 };
+
+// Weights from -radius to radius; weight x is at [radius + x].
+typedef struct ConvolveKernel {
+    int radius; // 0 .. CONVOLVE_MOST_RADIUS
+    double weights[2 * CONVOLVE_MOST_RADIUS + 1];
+} ConvolveKernel;
+
+// exp(-x^2 / (2 sigma^2)), sampled and scaled to the sum 1. `sigma` > 0 in pixels.
+void convolve_make_gauss(ConvolveKernel *kernel, int radius, double sigma);
+
+// Its first (order 1) or second (2) derivative, up to the sign of the first: the negative weights
+// scaled to the sum -1, the positive ones to 1. radius > sigma.
+void convolve_make_derivative(ConvolveKernel *kernel, int order, int radius, double sigma);
+
+// Correlates `in` [height][width] along x or y into `out`, which must be another array; beyond the
+// border lies the nearest pixel.
+void convolve_apply_x(float *out, const float *in, int width, int height,
+                      const ConvolveKernel *kernel);
+void convolve_apply_y(float *out, const float *in, int width, int height,
+                      const ConvolveKernel *kernel);

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#include "image/heat_map.h"
+
+#include "image/float_image.h"
+
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+// Colours at equal steps; their CIE L* is 0, 25, 50, 75 and 98 to within 2.
+static const float STOPS[][3] = {
+    {0, 0, 2}, {88, 30, 120}, {200, 62, 110}, {252, 159, 106}, {254, 250, 205}};
+enum { STOP_COUNT = sizeof STOPS / sizeof *STOPS, GAP_PX = 4, CHECK_PX = 8 };
+
+void heat_map_color(uint8_t rgb[3], float error)
+{
+    float place = fminf(fmaxf(error, 0), 1) * (STOP_COUNT - 1);
+    int stop = place >= STOP_COUNT - 1 ? STOP_COUNT - 2 : (int)place;
+    float share = place - (float)stop;
+    for (int k = 0; k < 3; ++k)
+        rgb[k] = (uint8_t)lrintf(STOPS[stop][k] + share * (STOPS[stop + 1][k] - STOPS[stop][k]));
+}
+
+Result heat_map_create(Image *image, const float *errors, int width, int height, Error *error)
+{
+    Result result = image_create(image, width, height, 3, error);
+    size_t count = (size_t)width * (size_t)height;
+    for (size_t i = 0; i < count && result == RESULT_OK; ++i)
+        heat_map_color(image->pixels + 3 * i, errors[i]);
+    return result;
+}
+
+// --- The sheet.
+
+static uint8_t *pixel_at(const Image *image, int x, int y)
+{
+    return image->pixels + 3 * ((size_t)y * (size_t)image->width + (size_t)x);
+}
+
+// Over light and dark grey in squares.
+static Result put_picture(Image *sheet, int left, const Image *image, Error *error)
+{
+    FloatImage dark = {0}, light = {0};
+    Result result = float_image_create(&dark, image, 102, error);
+    if (result == RESULT_OK) result = float_image_create(&light, image, 153, error);
+    for (int y = 0; y < image->height && result == RESULT_OK; ++y)
+        for (int x = 0; x < image->width; ++x) {
+            const FloatImage *plate = (x / CHECK_PX + y / CHECK_PX) % 2 ? &light : &dark;
+            const float *from = plate->rgb + 3 * ((size_t)y * (size_t)image->width + (size_t)x);
+            uint8_t *to = pixel_at(sheet, left + x, y);
+            for (int k = 0; k < 3; ++k) to[k] = (uint8_t)lrintf(fminf(fmaxf(from[k], 0), 255));
+        }
+    float_image_destroy(&dark);
+    float_image_destroy(&light);
+    return result;
+}
+
+Result heat_map_create_sheet(Image *sheet, const Image *a, const Image *b, const float *errors,
+                             Error *error)
+{
+    int width = a->width, height = a->height, step = width + GAP_PX;
+    *sheet = (Image){0};
+    if (width > (INT_MAX - 2 * GAP_PX) / 3)
+        return error_set(error, RESULT_FAILED, "pictures of %d pixels are too wide for a sheet",
+                         width);
+    Result result = image_create(sheet, 3 * width + 2 * GAP_PX, height, 3, error);
+    if (result != RESULT_OK) return result;
+    memset(sheet->pixels, 255, image_size(sheet));
+    result = put_picture(sheet, 0, a, error);
+    if (result == RESULT_OK) result = put_picture(sheet, step, b, error);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            heat_map_color(pixel_at(sheet, 2 * step + x, y),
+                           errors[(size_t)y * (size_t)width + (size_t)x]);
+    if (result != RESULT_OK) image_destroy(sheet);
+    return result;
+}

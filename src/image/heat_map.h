@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+// Pictures that show where two others differ.
+#pragma once
+
+#include "base/error.h"
+#include "image/image.h"
+
+// Red, green, blue for an error between 0 (black) and 1 (pale yellow), over violet, red and orange;
+// lightness rises evenly, so that it reads in grey as well. Others are clamped.
+void heat_map_color(uint8_t rgb[3], float error);
+
+// The errors [height][width] in these colours, an IMAGE_8 of 3 channels. RESULT_FAILED when memory
+// is short.
+Result heat_map_create(Image *image, const float *errors, int width, int height, Error *error);
+
+// A, B and the heat map of their errors side by side, with a gap between; what is transparent shows
+// a chequered ground, floats are clamped. `a` and `b` have one size. RESULT_FAILED when memory is
+// short or the sheet is larger than pictures may be.
+Result heat_map_create_sheet(Image *sheet, const Image *a, const Image *b, const float *errors,
+                             Error *error);

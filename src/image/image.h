@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// A picture in memory, top row first, no padding between rows.
+#pragma once
+
+#include "base/error.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+// 8 and 16 bits: sRGB, straight (not premultiplied) alpha. Float: linear light, premultiplied.
+typedef enum ImageKind { IMAGE_8, IMAGE_16, IMAGE_FLOAT } ImageKind;
+
+typedef struct Image {
+    int width, height;
+    int channels;    // 3: RGB, 4: RGBA
+    uint8_t *pixels; // [height][width][channels] of uint8_t, uint16_t or float, owned
+    ImageKind kind;
+} Image;
+
+// Allocates; pixels are not initialised. RESULT_FAILED when memory is short.
+Result image_create(Image *image, int width, int height, int channels, Error *error); // IMAGE_8
+Result image_create_kind(Image *image, int width, int height, int channels, ImageKind kind,
+                         Error *error);
+void image_destroy(Image *image);
+
+// Bytes of a channel, and of all pixels.
+size_t image_channel_size(ImageKind kind);
+size_t image_size(const Image *image);
+
+// IEC 61966-2-1, between 0..1 and 0..1; what is linear is clamped to that first.
+double image_linear_from_srgb(double value);
+double image_srgb_from_linear(double value);

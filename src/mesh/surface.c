@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: MIT
+#include "mesh/surface.h"
+#include "mesh/surface_normals.h"
+
+#include <stdlib.h>
+
+enum { LEAF = 4, DEEPEST = 64 };
+
+struct SurfaceNode {
+    Double3 low, high;
+    uint32_t begin, end; // of Surface.triangle
+    uint32_t right;      // the left child is the next node; 0: a leaf
+};
+
+// --- Triangles.
+
+void surface_corners(const Mesh *mesh, uint32_t triangle, Double3 corner[3])
+{
+    for (int k = 0; k < 3; k++)
+        double3_from_float(mesh->position[mesh->triangle[triangle][k]], corner[k]);
+}
+
+double surface_triangle(const Mesh *mesh, uint32_t triangle, Double3 normal)
+{
+    Double3 corner[3], u, v;
+    surface_corners(mesh, triangle, corner);
+    double3_subtract(corner[1], corner[0], u);
+    double3_subtract(corner[2], corner[0], v);
+    double3_cross(u, v, normal);
+    return double3_normalize(normal);
+}
+
+SurfacePoint surface_at(const Surface *surface, uint32_t triangle, const Double3 weight)
+{
+    SurfacePoint point = {.triangle = triangle};
+    Double3 corner[3];
+    surface_corners(surface->mesh, triangle, corner);
+    double3_copy(weight, point.weight);
+    for (int k = 0; k < 3; k++) double3_add_scaled(point.place, weight[k], corner[k]);
+    return point;
+}
+
+void surface_normal(const Surface *surface, const SurfacePoint *point, Double3 normal)
+{
+    const Mesh *mesh = surface->mesh;
+    Double3 sum = {0};
+    for (int k = 0; k < 3; k++) {
+        Double3 corner;
+        double3_from_float(mesh->normal[mesh->triangle[point->triangle][k]], corner);
+        double3_add_scaled(sum, point->weight[k], corner);
+    }
+    if (double3_normalize(sum) < 1e-3) surface_triangle(mesh, point->triangle, sum);
+    double3_copy(sum, normal);
+}
+
+bool surface_uv(const Surface *surface, const SurfacePoint *point, double uv[2])
+{
+    const Mesh *mesh = surface->mesh;
+    uv[0] = uv[1] = 0.0;
+    for (int k = 0; k < 3; k++) {
+        uint32_t index = mesh->uv ? mesh->triangle_uv[point->triangle][k] : MESH_NO_UV;
+        if (index == MESH_NO_UV) return false;
+        for (int i = 0; i < 2; i++) uv[i] += point->weight[k] * (double)mesh->uv[index][i];
+    }
+    return true;
+}
+
+// P = P0 + a E1 + b E2 and (u, v) = (u0, v0) + a F1 + b F2: solved for dP/du and dP/dv.
+bool surface_uv_axes(const Surface *surface, const SurfacePoint *point, Double3 u, Double3 v)
+{
+    const Mesh *mesh = surface->mesh;
+    Double3 corner[3], edge[2];
+    double f[2][2], uv[2];
+    if (!surface_uv(surface, point, uv)) return false;
+    surface_corners(mesh, point->triangle, corner);
+    const uint32_t *index = mesh->triangle_uv[point->triangle];
+    for (int k = 0; k < 2; k++) {
+        double3_subtract(corner[k + 1], corner[0], edge[k]);
+        for (int i = 0; i < 2; i++)
+            f[k][i] = (double)mesh->uv[index[k + 1]][i] - (double)mesh->uv[index[0]][i];
+    }
+    double determinant = f[0][0] * f[1][1] - f[0][1] * f[1][0], side = determinant < 0 ? -1.0 : 1.0;
+    for (int i = 0; i < 3; i++) {
+        u[i] = side * (f[1][1] * edge[0][i] - f[0][1] * edge[1][i]);
+        v[i] = side * (f[0][0] * edge[1][i] - f[1][0] * edge[0][i]);
+    }
+    return determinant != 0.0 && double3_normalize(u) > 0.0 && double3_normalize(v) > 0.0;
+}
+
+// --- The tree.
+
+static double middle_of(const Mesh *mesh, uint32_t triangle, int axis)
+{
+    double sum = 0.0;
+    for (int k = 0; k < 3; k++) sum += (double)mesh->position[mesh->triangle[triangle][k]][axis];
+    return sum;
+}
+
+// Hoare's selection, as in nearest.c: the middle one of begin .. end - 1 comes to its place.
+static void split(Surface *surface, uint32_t begin, uint32_t end, uint32_t middle, int axis)
+{
+    int64_t low = begin, high = (int64_t)end - 1;
+    while (low < high) {
+        double pivot = middle_of(surface->mesh, surface->triangle[middle], axis);
+        int64_t i = low, j = high;
+        while (i <= j) {
+            while (middle_of(surface->mesh, surface->triangle[i], axis) < pivot) i++;
+            while (middle_of(surface->mesh, surface->triangle[j], axis) > pivot) j--;
+            if (i > j) break;
+            uint32_t kept = surface->triangle[i];
+            surface->triangle[i++] = surface->triangle[j];
+            surface->triangle[j--] = kept;
+        }
+        if (j < (int64_t)middle) low = i;
+        if (i > (int64_t)middle) high = j;
+    }
+}
+
+static void set_box(const Surface *surface, SurfaceNode *node)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        node->low[axis] = INFINITY;
+        node->high[axis] = -INFINITY;
+    }
+    for (uint32_t i = node->begin; i < node->end; i++) {
+        Double3 corner[3];
+        surface_corners(surface->mesh, surface->triangle[i], corner);
+        for (int k = 0; k < 9; k++) {
+            node->low[k % 3] = fmin(node->low[k % 3], corner[k / 3][k % 3]);
+            node->high[k % 3] = fmax(node->high[k % 3], corner[k / 3][k % 3]);
+        }
+    }
+}
+
+// Returns the node behind the last of this subtree.
+static uint32_t build(Surface *surface, uint32_t at, uint32_t begin, uint32_t end)
+{
+    SurfaceNode *node = &surface->nodes[at];
+    *node = (SurfaceNode){.begin = begin, .end = end};
+    set_box(surface, node);
+    if (end - begin <= LEAF) return at + 1;
+    int axis = 0;
+    for (int k = 1; k < 3; k++)
+        if (node->high[k] - node->low[k] > node->high[axis] - node->low[axis]) axis = k;
+    uint32_t middle = begin + (end - begin) / 2;
+    split(surface, begin, end, middle, axis);
+    node->right = build(surface, at + 1, begin, middle);
+    return build(surface, node->right, middle, end);
+}
+
+Result surface_create(Surface *surface, const Mesh *mesh, const char *name, Error *error)
+{
+    uint32_t count = mesh->triangle_count;
+    *surface = (Surface){.mesh = mesh};
+    surface->triangle = malloc(((size_t)count + 1) * sizeof *surface->triangle);
+    surface->edge_normal = calloc((size_t)count + 1, sizeof *surface->edge_normal);
+    surface->corner_normal = calloc((size_t)mesh->vertex_count + 1, sizeof *surface->corner_normal);
+    surface->nodes = malloc(((size_t)count + 1) * 2 * sizeof *surface->nodes);
+    bool good =
+        surface->triangle && surface->edge_normal && surface->corner_normal && surface->nodes;
+    for (uint32_t t = 0; good && t < count; t++) {
+        Double3 normal;
+        double twice = surface_triangle(mesh, t, normal);
+        surface->area += 0.5 * twice;
+        if (twice > 0.0) surface->triangle[surface->triangle_count++] = t;
+    }
+    surface->flat_count = count - surface->triangle_count;
+    if (good && !(surface->area > 0.0 && isfinite(surface->area))) {
+        surface_destroy(surface);
+        return error_set(error, RESULT_BAD_INPUT, "%s: no triangle has an area", name);
+    }
+    if (good) build(surface, 0, 0, surface->triangle_count);
+    if (good && surface_compute_normals(surface)) return RESULT_OK;
+    surface_destroy(surface);
+    return error_set(error, RESULT_FAILED, "%s: no memory for %u triangles", name, count);
+}
+
+void surface_destroy(Surface *surface)
+{
+    free(surface->triangle);
+    free(surface->edge_normal);
+    free(surface->corner_normal);
+    free(surface->nodes);
+    *surface = (Surface){0};
+}
+
+// --- The nearest point.
+
+// A side of a triangle or a share along it: weights of the point of edge a b nearest to p.
+static void nearest_on_edge(const Double3 corner[3], const Double3 p, int a, Double3 weight)
+{
+    int b = (a + 1) % 3;
+    Double3 edge, to;
+    double3_subtract(corner[b], corner[a], edge);
+    double3_subtract(p, corner[a], to);
+    double share = fmin(fmax(double3_dot(to, edge) / double3_dot(edge, edge), 0.0), 1.0);
+    weight[a] = 1.0 - share;
+    weight[b] = share;
+    weight[(a + 2) % 3] = 0.0;
+}
+
+// The projection onto the plane if all its weights are positive, else the best of the edges.
+static double nearest_on_triangle(const Mesh *mesh, uint32_t triangle, const Double3 p,
+                                  Double3 weight)
+{
+    Double3 corner[3], u, v, w, n, cross;
+    surface_corners(mesh, triangle, corner);
+    double3_subtract(corner[1], corner[0], u);
+    double3_subtract(corner[2], corner[0], v);
+    double3_subtract(p, corner[0], w);
+    double3_cross(u, v, n);
+    double square = double3_dot(n, n);
+    double3_cross(u, w, cross);
+    weight[2] = double3_dot(cross, n) / square;
+    double3_cross(w, v, cross);
+    weight[1] = double3_dot(cross, n) / square;
+    weight[0] = 1.0 - weight[1] - weight[2];
+    double height = double3_dot(w, n);
+    if (weight[0] > 0.0 && weight[1] > 0.0 && weight[2] > 0.0) return height * height / square;
+    double best = INFINITY;
+    for (int a = 0; a < 3; a++) {
+        Double3 on_edge, difference;
+        nearest_on_edge((const Double3 *)corner, p, a, on_edge);
+        for (int i = 0; i < 3; i++)
+            difference[i] = on_edge[0] * corner[0][i] + on_edge[1] * corner[1][i] +
+                            on_edge[2] * corner[2][i] - p[i];
+        double distance = double3_dot(difference, difference);
+        if (distance >= best) continue;
+        best = distance;
+        double3_copy(on_edge, weight);
+    }
+    return best;
+}
+
+static double box_distance(const SurfaceNode *node, const Double3 p)
+{
+    double sum = 0.0;
+    for (int i = 0; i < 3; i++) {
+        double out = fmax(fmax(node->low[i] - p[i], p[i] - node->high[i]), 0.0);
+        sum += out * out;
+    }
+    return sum;
+}
+
+static void try_triangle(const Surface *surface, uint32_t triangle, const Double3 from,
+                         SurfacePoint *nearest, double *best)
+{
+    Double3 weight;
+    double square = nearest_on_triangle(surface->mesh, triangle, from, weight);
+    if (square >= *best) return;
+    *best = square;
+    nearest->triangle = triangle;
+    double3_copy(weight, nearest->weight);
+}
+
+// The normal that tells inside from outside: of the face, or of the edge or corner where weights
+// are 0.
+static const double *find_side(const Surface *surface, const SurfacePoint *point, Double3 face)
+{
+    int zeros = 0, zero = 0, full = 0;
+    for (int k = 0; k < 3; k++) {
+        if (point->weight[k] <= 0.0) zeros++, zero = k;
+        if (point->weight[k] >= 1.0) full = k;
+    }
+    if (zeros == 2) return surface->corner_normal[surface->mesh->triangle[point->triangle][full]];
+    if (zeros == 1) return surface->edge_normal[point->triangle][(zero + 1) % 3];
+    surface_triangle(surface->mesh, point->triangle, face);
+    return face;
+}
+
+double surface_nearest(const Surface *surface, const Double3 from, SurfacePoint *nearest)
+{
+    uint32_t stack[DEEPEST], depth = 0;
+    double best = INFINITY;
+    Double3 face, away;
+    bool known = nearest->triangle < surface->mesh->triangle_count &&
+                 surface_triangle(surface->mesh, nearest->triangle, face) > 0.0;
+    if (known) try_triangle(surface, nearest->triangle, from, nearest, &best);
+    stack[depth++] = 0;
+    while (depth > 0) {
+        uint32_t at = stack[--depth];
+        const SurfaceNode *node = &surface->nodes[at];
+        if (box_distance(node, from) >= best) continue;
+        if (node->right == 0) {
+            for (uint32_t i = node->begin; i < node->end; i++)
+                try_triangle(surface, surface->triangle[i], from, nearest, &best);
+            continue;
+        }
+        bool left_first = box_distance(&surface->nodes[at + 1], from) <=
+                          box_distance(&surface->nodes[node->right], from);
+        stack[depth++] = left_first ? node->right : at + 1;
+        stack[depth++] = left_first ? at + 1 : node->right;
+    }
+    *nearest = surface_at(surface, nearest->triangle, nearest->weight);
+    double3_subtract(from, nearest->place, away);
+    double side = double3_dot(away, find_side(surface, nearest, face));
+    return side < 0.0 ? -sqrt(best) : sqrt(best);
+}

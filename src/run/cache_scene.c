@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+#include "run/cache_scene.h"
+
+#include <endian.h>
+#include <libdeflate.h>
+#include <stdlib.h>
+#include <string.h>
+
+// --- Values.
+
+// Parameters of the groups that count which yet change nothing of the guides' motion.
+static const char *const HARMLESS[] = {"frames",          "followers", "follow",
+                                       "follower_radius", "sdf_cache", "tip_separation"};
+
+// Keys beside the parameters that are for drawing only.
+static const char *const DRAWN[] = {"camera", "lights", "file"};
+
+static bool moves_hair(const ParamInfo *info)
+{
+    for (size_t i = 0; i < sizeof HARMLESS / sizeof *HARMLESS; ++i)
+        if (strcmp(info->name, HARMLESS[i]) == 0) return false;
+    return info->group != GROUP_INPUT && info->group != GROUP_OUTPUT &&
+           info->group != GROUP_CAMERA && info->group != GROUP_SHADING &&
+           info->group != GROUP_DEVICE;
+}
+
+static void keep_what_moves(json_t *object)
+{
+    for (size_t i = 0; i < PARAM_COUNT; ++i)
+        if (!moves_hair(&PARAM_TABLE[i])) json_object_del(object, PARAM_TABLE[i].name);
+    for (size_t i = 0; i < sizeof DRAWN / sizeof *DRAWN; ++i) json_object_del(object, DRAWN[i]);
+}
+
+static json_t *describe_values(const Simulation *simulation)
+{
+    json_t *object = scene_to_json(simulation->scene);
+    if (!object) return NULL;
+    keep_what_moves(object);
+    if (simulation->mesh_checksum)
+        json_object_set_new(object, "mesh_checksum", json_integer(simulation->mesh_checksum));
+    json_t *sections = json_object_get(object, "sections");
+    for (size_t i = 0; i < json_array_size(sections); ++i)
+        keep_what_moves(json_array_get(sections, i));
+    return object;
+}
+
+Result cache_scene_describe(Bytes *text, const Simulation *simulation, Error *error)
+{
+    json_t *object = describe_values(simulation);
+    // 17 digits: key times are doubles.
+    char *dump = json_dumps(object, JSON_COMPACT | JSON_SORT_KEYS | JSON_REAL_PRECISION(17));
+    json_decref(object);
+    if (!dump) return error_set(error, RESULT_FAILED, "no memory for the scene's values");
+    *text = (Bytes){.data = (uint8_t *)dump, .size = strlen(dump)};
+    return RESULT_OK;
+}
+
+// Where two values differ: "sections[1].style".
+typedef struct Difference {
+    char place[200];
+    const json_t *a, *b; // either may be NULL: there is none
+} Difference;
+
+static bool find_difference(Difference *difference, const char *place, const json_t *a,
+                            const json_t *b)
+{
+    if (json_equal((json_t *)a, (json_t *)b)) return false;
+    snprintf(difference->place, sizeof difference->place, "%s", place);
+    difference->a = a;
+    difference->b = b;
+    char inner[sizeof difference->place + 64];
+    if (json_is_array(a) && json_is_array(b) && json_array_size(a) == json_array_size(b))
+        for (size_t i = 0; i < json_array_size(a); ++i) {
+            snprintf(inner, sizeof inner, "%s[%zu]", place, i);
+            if (find_difference(difference, inner, json_array_get(a, i), json_array_get(b, i)))
+                return true;
+        }
+    if (!json_is_object(a) || !json_is_object(b)) return true;
+    for (int turn = 0; turn < 2; ++turn) { // the keys of a, then those that only b has
+        const char *key;
+        json_t *value;
+        json_object_foreach((json_t *)(turn ? b : a), key, value)
+        {
+            snprintf(inner, sizeof inner, "%s%s%s", place, *place ? "." : "", key);
+            if (find_difference(difference, inner, json_object_get(a, key),
+                                json_object_get(b, key)))
+                return true;
+        }
+    }
+    return true;
+}
+
+static void print_value(const json_t *value, char *text, size_t size)
+{
+    char *dump =
+        value ? json_dumps(value, JSON_COMPACT | JSON_ENCODE_ANY | JSON_REAL_PRECISION(9)) : NULL;
+    snprintf(text, size, "%.60s", dump ? dump : "nothing");
+    free(dump);
+}
+
+static Result refuse(const Difference *difference, const char *path, Error *error)
+{
+    char was[80], is[80];
+    print_value(difference->a, was, sizeof was);
+    print_value(difference->b, is, sizeof is);
+    return error_set(error, RESULT_BAD_INPUT, "%s: was simulated with %s %s, this scene has %s",
+                     path, difference->place, was, is);
+}
+
+Result cache_scene_compare(const Bytes *text, const Simulation *simulation, const char *path,
+                           Error *error)
+{
+    json_t *was = json_loadb((const char *)text->data, text->size, 0, NULL);
+    Bytes now = {0};
+    if (!was) return error_set(error, RESULT_BAD_INPUT, "%s: its scene is no JSON object", path);
+    Result result = cache_scene_describe(&now, simulation, error);
+    if (result == RESULT_OK) {
+        // Read back, so that numbers are of the same kinds on both sides.
+        json_t *is = json_loadb((const char *)now.data, now.size, 0, NULL);
+        Difference difference;
+        if (!is)
+            result = error_set(error, RESULT_FAILED, "no memory for the scene's values");
+        else if (find_difference(&difference, "", was, is))
+            result = refuse(&difference, path, error);
+        json_decref(is);
+    }
+    bytes_destroy(&now);
+    json_decref(was);
+    return result;
+}
+
+// --- Hair.
+
+static void put_u32(FILE *stream, uint32_t value)
+{
+    value = htole32(value);
+    fwrite(&value, sizeof value, 1, stream);
+}
+
+// Of counts and positions.
+static uint32_t checksum(const Strands *strands)
+{
+    uint32_t crc = libdeflate_crc32(0, strands->first,
+                                    ((size_t)strands->strand_count + 1) * sizeof *strands->first);
+    return libdeflate_crc32(crc, strands->position,
+                            (size_t)strands->vertex_count * sizeof *strands->position);
+}
+
+// Batches of equal vertex counts are one run, however many buffers a driver needs for them.
+static void put_runs(FILE *stream, const Hair *hair)
+{
+    uint32_t runs = 0;
+    for (uint32_t i = 0; i < hair->batch_count; ++i)
+        runs += i == 0 || hair->batches[i].vertex_count != hair->batches[i - 1].vertex_count;
+    put_u32(stream, runs);
+    for (uint32_t i = 0; i < hair->batch_count;) {
+        uint32_t n = hair->batches[i].vertex_count, count = 0;
+        for (; i < hair->batch_count && hair->batches[i].vertex_count == n; ++i)
+            count += hair->batches[i].strand_count;
+        put_u32(stream, n);
+        put_u32(stream, count);
+    }
+}
+
+static void put_section(FILE *stream, const Hair *hair, const Strands *strands)
+{
+    put_u32(stream, hair->strand_count);
+    put_u32(stream, checksum(strands));
+    put_runs(stream, hair);
+    for (uint32_t i = 0; i < hair->batch_count; ++i)
+        for (uint32_t s = 0; s < hair->batches[i].strand_count; ++s)
+            put_u32(stream, hair->batches[i].strand[s]);
+}
+
+// `ends`, unless NULL: how many bytes there are up to and with each section.
+static Result describe_hair(Bytes *bytes, size_t *ends, const Simulation *simulation,
+                            const Strands *strands, Error *error)
+{
+    char *data = NULL;
+    *bytes = (Bytes){0};
+    FILE *stream = open_memstream(&data, &bytes->size);
+    if (stream) {
+        put_u32(stream, simulation->scene->section_count);
+        for (uint32_t i = 0; i < simulation->scene->section_count; ++i) {
+            put_section(stream, &simulation->sections[i].hair, &strands[i]);
+            if (ends) ends[i] = (size_t)ftell(stream);
+        }
+    }
+    bool good = stream && fclose(stream) == 0;
+    bytes->data = (uint8_t *)data;
+    if (good) return RESULT_OK;
+    bytes_destroy(bytes);
+    return error_set(error, RESULT_FAILED, "no memory for the numbers of the strands");
+}
+
+Result cache_hair_describe(Bytes *bytes, const Simulation *simulation, const Strands *strands,
+                           Error *error)
+{
+    return describe_hair(bytes, NULL, simulation, strands, error);
+}
+
+Result cache_hair_compare(const Bytes *bytes, const Simulation *simulation, const Strands *strands,
+                          const char *path, Error *error)
+{
+    uint32_t count = simulation->scene->section_count, i = 0;
+    Bytes now = {0};
+    size_t *ends = calloc((size_t)count + 1, sizeof *ends);
+    if (!ends) return error_set(error, RESULT_FAILED, "no memory for %u sections", count);
+    Result result = describe_hair(&now, ends, simulation, strands, error);
+    if (result == RESULT_OK &&
+        (bytes->size != now.size || memcmp(bytes->data, now.data, now.size) != 0)) {
+        while (i + 1 < count && ends[i] <= bytes->size &&
+               memcmp(bytes->data, now.data, ends[i]) == 0)
+            ++i;
+        result = error_set(error, RESULT_BAD_INPUT, "%s: was simulated with other hair than %s",
+                           path, count ? simulation->scene->sections[i].file : "none");
+    }
+    bytes_destroy(&now);
+    free(ends);
+    return result;
+}

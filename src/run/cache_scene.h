@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// What a simulation depends on, as it is told in caches and saved states, so that none is used with
+// another scene. docs/cache.md has the formats.
+#pragma once
+
+#include "base/bytes.h"
+#include "sim/simulation.h"
+
+// The scene's values that move the guides, as JSON: those of the groups Simulation and Forces, the
+// head, keyed forces, colliders, a checksum of the mesh that hair collides with. Not files (their
+// content is told below), the camera, looks, followers and the length of the sequence.
+// RESULT_FAILED when memory is short.
+Result cache_scene_describe(Bytes *text, const Simulation *simulation, Error *error);
+
+// Compares such a text with the scene: RESULT_BAD_INPUT with `path`, the first key that differs,
+// and both values.
+Result cache_scene_compare(const Bytes *text, const Simulation *simulation, const char *path,
+                           Error *error);
+
+// Of each section: strands, a checksum of their vertices as they were loaded, runs of equal vertex
+// counts, and the strands' numbers in their file, in the order in which frames hold them. Free with
+// bytes_destroy. RESULT_FAILED when memory is short.
+Result cache_hair_describe(Bytes *bytes, const Simulation *simulation, const Strands *strands,
+                           Error *error);
+
+// Compares such bytes with the simulation's hair: RESULT_BAD_INPUT with `path` and the first
+// section's file that differs.
+Result cache_hair_compare(const Bytes *bytes, const Simulation *simulation, const Strands *strands,
+                          const char *path, Error *error);

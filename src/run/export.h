@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// Hair files of what is drawn: one for each frame, or one USD file for all of them (--export).
+#pragma once
+
+#include "base/target.h"
+#include "run/usd_look.h"
+#include "sim/simulation.h"
+#include "strands/strands_report.h"
+
+typedef struct Exporter {
+    Target target;
+    StrandsKind kind;
+    const Simulation *simulation;
+    Strands strands; // of all sections, one behind the other
+    bool followers;  // they are among them, behind the guides of their section
+    uint32_t lost;   // features (strands_features.h) of the sections that the files do not have
+    SceneLook look;  // USD only, like the rest
+    UsdOptions options;
+    UsdWriter usd; // open if one file takes all frames
+    int files;     // written so far
+} Exporter;
+
+// `text`: as target_parse_hair takes it; strands_choose_kind has the kinds. Files have the guides
+// (with export_followers: and the followers) of all sections in the order in which they were read,
+// in metres with y up, and of texture coordinates, colours and so on what all sections have. USD
+// also has the sections' widths and colours (usd_look.h), and frames as time codes. `frame_count`:
+// how many will come; a name without a number takes one, but for USD. All arguments outlive the
+// exporter. RESULT_USAGE for the name, RESULT_FAILED if no file can be made there or memory is
+// short. A zeroed struct may be destroyed; destroying discards a USD file that is not finished.
+Result exporter_create(Exporter *exporter, const char *text, int frame_count,
+                       const Simulation *simulation, const Strands *strands, Error *error);
+void exporter_destroy(Exporter *exporter);
+
+// Writes the positions that are drawn now. Files appear whole or not at all.
+Result exporter_write(Exporter *exporter, int frame, Error *error);
+
+// After the last frame.
+Result exporter_finish(Exporter *exporter, Error *error);

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+// tractrix-render: from hair files and a scene to pictures.
+#include "base/interrupt.h"
+#include "base/program.h"
+#include "run/help.h"
+#include "run/run.h"
+
+#include "version.h"
+
+#include <string.h>
+
+static Result answer(Run *run, Error *error)
+{
+    const RunParams *params = &run->scene.run;
+    switch (run->scene.request) {
+    case REQUEST_HELP:
+        help_write_text(stdout);
+        return RESULT_OK;
+    case REQUEST_MAN:
+        help_write_man(stdout, TRACTRIX_VERSION);
+        return RESULT_OK;
+    case REQUEST_MARKDOWN:
+        help_write_markdown(stdout);
+        return RESULT_OK;
+    case REQUEST_BASH:
+        help_write_bash(stdout);
+        return RESULT_OK;
+    case REQUEST_VERSION:
+        printf("tractrix-render %s\n", TRACTRIX_VERSION);
+        return RESULT_OK;
+    case REQUEST_RUN:
+        break;
+    }
+    if (params->list_devices) return gpu_list_devices(stdout, error);
+    if (params->check) {
+        error->text[0] = 0; // the report says it all
+        return assets_check(&run->scene, stdout);
+    }
+    return run_go(run, error);
+}
+
+// `--algo list` needs no hair file, so it is looked for before anything else.
+static bool wants_solver_list(int argc, char **argv)
+{
+    for (int i = 1; i < argc; ++i)
+        if (strcmp(argv[i], "--algo=list") == 0 ||
+            (strcmp(argv[i], "--algo") == 0 && i + 1 < argc && strcmp(argv[i + 1], "list") == 0))
+            return true;
+    return false;
+}
+
+int main(int argc, char **argv)
+{
+    Error error = {{0}};
+    interrupt_install();
+    if (wants_solver_list(argc, argv)) {
+        solver_print_list(stdout);
+        return program_end("tractrix-render", RESULT_OK, &error);
+    }
+    Run run = {.begin_ms = stats_clock_ms()};
+    Result result = scene_from_arguments(&run.scene, argc, argv, &error);
+    if (result == RESULT_OK) result = answer(&run, &error);
+    run_destroy(&run);
+    return program_end("tractrix-render", result, &error);
+}

@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: MIT
+#include "run/output.h"
+
+#include "base/bytes.h"
+#include "base/interrupt.h"
+#include "base/target.h"
+#include "image/pfm.h"
+#include "image/png.h"
+#include "image/sheet.h"
+#include "run/video.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+// One image is drawn, one encoded, one waits: more helps only if the times vary a lot from frame to
+// frame.
+#define QUEUE_LENGTH_DEFAULT 3
+// How soon a wait sees an interrupt.
+#define WAIT_SLICE_NS 20000000
+
+typedef enum SlotState { SLOT_FREE, SLOT_LENT, SLOT_QUEUED } SlotState;
+
+typedef struct Slot {
+    Image image; // first, so that an image lent out leads back to its slot
+    SlotState state;
+    int frame;
+} Slot;
+
+struct Output {
+    Target target;
+    Video *video; // NULL unless a video is written
+    Sheet sheet;  // empty unless a contact sheet is; the worker's
+    Slot *slots;
+    Slot **queue; // ring of `slot_count`, so there is always room
+    int slot_count;
+    char *description;
+
+    pthread_t worker;
+    bool has_worker;
+    pthread_mutex_t mutex; // guards all that follows, and the slots' states
+    pthread_cond_t changed;
+    int queue_first, queued;
+    int submitted, frame_first, frame_last;
+    bool closing;  // no more frames will come
+    bool aborting; // the frames that wait are not wanted
+    bool ended;    // the worker has done all it will do
+    Result result; // the worker's failure and what it says
+    Error failure;
+    OutputCounters counters;
+};
+
+static double now_ms(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return 1e3 * (double)time.tv_sec + 1e-6 * (double)time.tv_nsec;
+}
+
+static Result write_image(const Output *output, const Image *image, int frame, uint64_t *bytes,
+                          Error *error)
+{
+    char *name = target_name_frame(&output->target, frame);
+    if (!name) return error_set(error, RESULT_FAILED, "no memory for the name of frame %d", frame);
+    Bytes png;
+    Result result = image->kind == IMAGE_FLOAT ? pfm_encode(image, &png, error)
+                                               : png_encode(image, &png, error);
+    *bytes = png.size;
+    if (result == RESULT_OK)
+        result = bytes_write_file(&png, name, error);
+    else
+        error_prefix(error, result, "%s: ", name);
+    bytes_destroy(&png);
+    free(name);
+    return result;
+}
+
+static Result take_frame(Output *output, const Slot *slot, uint64_t *bytes, Error *error)
+{
+    if (output->video) return video_write(output->video, &slot->image, error);
+    if (!output->sheet.columns) return write_image(output, &slot->image, slot->frame, bytes, error);
+    sheet_add(&output->sheet, &slot->image);
+    return RESULT_OK;
+}
+
+// Encodes the oldest frame that waits. Called with the mutex held, which is let go meanwhile.
+static Result encode_next(Output *output)
+{
+    Slot *slot = output->queue[output->queue_first];
+    output->queue_first = (output->queue_first + 1) % output->slot_count;
+    output->queued--;
+    pthread_mutex_unlock(&output->mutex);
+    double start_ms = now_ms();
+    uint64_t bytes = 0;
+    Error error;
+    Result result = take_frame(output, slot, &bytes, &error);
+    double encode_ms = now_ms() - start_ms;
+    pthread_mutex_lock(&output->mutex);
+    slot->state = SLOT_FREE;
+    output->counters.encode_ms += encode_ms;
+    if (result == RESULT_OK) {
+        output->counters.frames++;
+        output->counters.bytes += bytes;
+    } else {
+        output->failure = error;
+    }
+    return result;
+}
+
+// Completes the one file that all frames have gone to, if there is one.
+static Result end_file(Output *output)
+{
+    if (!output->video && !output->sheet.columns) return RESULT_OK;
+    pthread_mutex_unlock(&output->mutex);
+    double start_ms = now_ms();
+    uint64_t bytes = 0;
+    Error error;
+    Result result = output->video ? video_finish(output->video, &bytes, &error)
+                                  : write_image(output, &output->sheet.image, 0, &bytes, &error);
+    double encode_ms = now_ms() - start_ms;
+    pthread_mutex_lock(&output->mutex);
+    output->counters.encode_ms += encode_ms;
+    output->counters.bytes += bytes;
+    if (result != RESULT_OK) output->failure = error;
+    return result;
+}
+
+static void *work(void *argument)
+{
+    Output *output = argument;
+    Result result = RESULT_OK;
+    pthread_mutex_lock(&output->mutex);
+    while (result == RESULT_OK && !output->aborting) {
+        if (output->queued > 0)
+            result = encode_next(output);
+        else if (output->closing)
+            break;
+        else
+            pthread_cond_wait(&output->changed, &output->mutex);
+        pthread_cond_broadcast(&output->changed);
+    }
+    if (result == RESULT_OK && !output->aborting) result = end_file(output);
+    output->result = result;
+    output->ended = true;
+    pthread_cond_broadcast(&output->changed);
+    pthread_mutex_unlock(&output->mutex);
+    return NULL;
+}
+
+// Waits for a change, but not for long. Called with the mutex held.
+static Result wait_changed(Output *output, Error *error)
+{
+    if (interrupt_requested()) return error_set(error, RESULT_INTERRUPTED, "interrupted");
+    struct timespec until;
+    clock_gettime(CLOCK_MONOTONIC, &until);
+    until.tv_nsec += WAIT_SLICE_NS;
+    until.tv_sec += until.tv_nsec / 1000000000;
+    until.tv_nsec %= 1000000000;
+    pthread_cond_timedwait(&output->changed, &output->mutex, &until);
+    return RESULT_OK;
+}
+
+static Result report_failure(const Output *output, Error *error)
+{
+    if (output->result == RESULT_OK) return RESULT_OK;
+    return error_set(error, output->result, "%s", output->failure.text);
+}
+
+static bool is_sheet(const OutputOptions *options)
+{
+    return options->columns > 1 || options->rows > 1;
+}
+
+static Result check_options(const OutputOptions *options, const Target *target, Error *error)
+{
+    bool sheet = is_sheet(options);
+    if (sheet && target->kind != TARGET_STILL)
+        return error_set(error, RESULT_USAGE,
+                         "%s: a contact sheet is one picture: expected a name ending in .png or "
+                         ".pfm, without a number",
+                         options->target);
+    if (target->kind == TARGET_STILL && !sheet && options->frame_count > 1)
+        return error_set(
+            error, RESULT_USAGE,
+            "%s: one name for several frames, put the frame number into it: frame_%%04d.png",
+            options->target);
+    if (target->floats != (options->kind == IMAGE_FLOAT) ||
+        (target->kind == TARGET_VIDEO && options->kind != IMAGE_8))
+        return error_set(error, RESULT_USAGE, "%s: cannot hold pictures of this depth",
+                         options->target);
+    if (options->channels != 3 && options->channels != 4)
+        return error_set(error, RESULT_USAGE, "%s: frames of %d channels, expected 3 or 4",
+                         options->target, options->channels);
+    if (options->width < 1 || options->height < 1)
+        return error_set(error, RESULT_USAGE, "%s: frames of %d x %d pixels", options->target,
+                         options->width, options->height);
+    return RESULT_OK;
+}
+
+static Result create_slots(Output *output, const OutputOptions *options, Error *error)
+{
+    int count = options->queue_length > 0 ? options->queue_length : QUEUE_LENGTH_DEFAULT;
+    output->slots = calloc((size_t)count, sizeof *output->slots);
+    output->queue = calloc((size_t)count, sizeof *output->queue);
+    if (!output->slots || !output->queue)
+        return error_set(error, RESULT_FAILED, "no memory for the output's queue");
+    output->slot_count = count;
+    Result result = RESULT_OK;
+    for (int i = 0; i < count && result == RESULT_OK; i++)
+        result = image_create_kind(&output->slots[i].image, options->width, options->height,
+                                   options->channels, options->kind, error);
+    return result;
+}
+
+// Signals are the main thread's; with SIGPIPE and SIGXFSZ blocked a write that fails says so by its
+// result.
+static Result start_worker(Output *output, Error *error)
+{
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    int reason = pthread_create(&output->worker, NULL, work, output);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    output->has_worker = reason == 0;
+    if (reason == 0) return RESULT_OK;
+    return error_set(error, RESULT_FAILED, "cannot start the thread that writes frames: %s",
+                     strerror(reason));
+}
+
+static Result start_sheet(Output *output, const OutputOptions *options, Error *error)
+{
+    if (!is_sheet(options)) return RESULT_OK;
+    Result result = sheet_create(&output->sheet, options->columns, options->rows,
+                                 &output->slots[0].image, error);
+    return result == RESULT_USAGE ? error_prefix(error, result, "%s: ", options->target) : result;
+}
+
+static Result start_video(Output *output, const OutputOptions *options, Error *error)
+{
+    VideoOptions video = {
+        .path = output->target.before,
+        .width = options->width,
+        .height = options->height,
+        .channels = options->channels,
+        .fps = options->fps,
+    };
+    return video_create(&output->video, &video, error);
+}
+
+static void create_lock(Output *output)
+{
+    pthread_condattr_t attributes;
+    pthread_condattr_init(&attributes);
+    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
+    pthread_cond_init(&output->changed, &attributes);
+    pthread_condattr_destroy(&attributes);
+    pthread_mutex_init(&output->mutex, NULL);
+}
+
+Result output_create(Output **output, const OutputOptions *options, Error *error)
+{
+    *output = NULL;
+    Output *created = calloc(1, sizeof *created);
+    if (!created) return error_set(error, RESULT_FAILED, "no memory for the output");
+    create_lock(created);
+    Result result = target_parse(&created->target, options->target, error);
+    if (result == RESULT_OK) result = check_options(options, &created->target, error);
+    if (result == RESULT_OK) result = create_slots(created, options, error);
+    if (result == RESULT_OK) result = start_sheet(created, options, error);
+    if (result == RESULT_OK) result = target_prepare(&created->target, error);
+    if (result == RESULT_OK && created->target.kind == TARGET_VIDEO)
+        result = start_video(created, options, error);
+    if (result == RESULT_OK) result = start_worker(created, error);
+    if (result == RESULT_OK)
+        *output = created;
+    else
+        output_destroy(created);
+    return result;
+}
+
+static Slot *find_free_slot(Output *output)
+{
+    for (int i = 0; i < output->slot_count; i++)
+        if (output->slots[i].state == SLOT_FREE) return &output->slots[i];
+    return NULL;
+}
+
+Result output_acquire(Output *output, Image **image, Error *error)
+{
+    *image = NULL;
+    pthread_mutex_lock(&output->mutex);
+    Slot *slot = NULL;
+    Result result = report_failure(output, error);
+    while (result == RESULT_OK && !(slot = find_free_slot(output))) {
+        result = wait_changed(output, error);
+        if (result == RESULT_OK) result = report_failure(output, error);
+    }
+    if (slot) {
+        slot->state = SLOT_LENT;
+        *image = &slot->image;
+    }
+    pthread_mutex_unlock(&output->mutex);
+    return result;
+}
+
+Result output_submit(Output *output, int frame_index, Image *image, Error *error)
+{
+    Slot *slot = (Slot *)image;
+    assert(frame_index >= 0);
+    pthread_mutex_lock(&output->mutex);
+    assert(slot->state == SLOT_LENT && !output->closing);
+    Result result = report_failure(output, error);
+    if (result == RESULT_OK) {
+        slot->state = SLOT_QUEUED;
+        slot->frame = frame_index;
+        output->queue[(output->queue_first + output->queued++) % output->slot_count] = slot;
+        if (output->submitted++ == 0) output->frame_first = frame_index;
+        output->frame_last = frame_index;
+        pthread_cond_broadcast(&output->changed);
+    } else {
+        slot->state = SLOT_FREE;
+    }
+    pthread_mutex_unlock(&output->mutex);
+    return result;
+}
+
+Result output_finish(Output *output, Error *error)
+{
+    pthread_mutex_lock(&output->mutex);
+    Result result = RESULT_OK;
+    if (output->video && output->submitted == 0)
+        result = error_set(error, RESULT_FAILED, "%s: a video needs at least one frame",
+                           output->target.before);
+    output->closing = result == RESULT_OK;
+    pthread_cond_broadcast(&output->changed);
+    while (result == RESULT_OK && !output->ended) result = wait_changed(output, error);
+    if (result == RESULT_OK) result = report_failure(output, error);
+    pthread_mutex_unlock(&output->mutex);
+    return result;
+}
+
+static void stop_worker(Output *output)
+{
+    pthread_mutex_lock(&output->mutex);
+    output->aborting = true;
+    bool ended = output->ended;
+    pthread_cond_broadcast(&output->changed);
+    pthread_mutex_unlock(&output->mutex);
+    // The worker may be waiting for ffmpeg: its end wakes it.
+    if (output->video && !ended) video_kill(output->video);
+    pthread_join(output->worker, NULL);
+}
+
+void output_destroy(Output *output)
+{
+    if (!output) return;
+    if (output->has_worker) stop_worker(output);
+    video_destroy(output->video);
+    sheet_destroy(&output->sheet);
+    for (int i = 0; i < output->slot_count; i++) image_destroy(&output->slots[i].image);
+    free(output->slots);
+    free(output->queue);
+    free(output->description);
+    target_destroy(&output->target);
+    pthread_cond_destroy(&output->changed);
+    pthread_mutex_destroy(&output->mutex);
+    free(output);
+}
+
+OutputCounters output_count(Output *output)
+{
+    pthread_mutex_lock(&output->mutex);
+    OutputCounters counters = output->counters;
+    pthread_mutex_unlock(&output->mutex);
+    return counters;
+}
+
+const char *output_describe(Output *output)
+{
+    pthread_mutex_lock(&output->mutex);
+    int first = output->frame_first, last = output->frame_last;
+    pthread_mutex_unlock(&output->mutex);
+    char *first_name = target_name_frame(&output->target, first);
+    char *last_name = target_name_frame(&output->target, last);
+    free(output->description);
+    output->description = NULL;
+    if (first_name && last_name && strcmp(first_name, last_name) != 0 &&
+        asprintf(&output->description, "%s ... %s", first_name, last_name) < 0)
+        output->description = NULL;
+    if (!output->description && first_name) {
+        output->description = first_name;
+        first_name = NULL;
+    }
+    free(first_name);
+    free(last_name);
+    return output->description ? output->description : output->target.before;
+}

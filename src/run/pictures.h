@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// What draws a run's frames, and where they go: renderer and output, as the scene says.
+#pragma once
+
+#include "draw/renderer.h"
+#include "run/output.h"
+#include "scene/assets.h"
+#include "scene/outline.h"
+#include "sim/simulation.h"
+
+// A zeroed struct draws nothing and may be destroyed.
+typedef struct Pictures {
+    const Scene *scene;
+    const Assets *assets;
+    Simulation *simulation;
+    const Framing *framing;
+    const Gpu *gpu;
+    Renderer renderer;
+    RenderItem *items; // of each section, unless hidden, its guides and followers if there are any
+    uint32_t item_count;
+    Output *output;
+} Pictures;
+
+// `frame_count`: how many frames will be drawn. The arguments outlive the pictures, which may be
+// destroyed (while the context is current) in each case. Errors of renderer_create, paint_create
+// and output_create.
+Result pictures_create(Pictures *pictures, const Scene *scene, const Assets *assets,
+                       Simulation *simulation, const Framing *framing, const Gpu *gpu,
+                       GpuTimer *timer, int frame_count, Error *error);
+void pictures_destroy(Pictures *pictures);

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// The main loop: goes through a scene's frames, draws those that are asked for, and hands them to
+// the output.
+#pragma once
+
+#include "run/export.h"
+#include "run/frame_source.h"
+#include "run/pictures.h"
+#include "run/stats.h"
+
+typedef struct Sequence {
+    const Scene *scene;
+    FrameSource *source; // moves its simulation
+    Pictures *pictures;  // empty: nothing is drawn
+    Exporter *exporter;  // NULL: no hair files
+    const bool *done;    // [frames] those that need not be drawn again; NULL: none
+    GpuTimer *timer;
+    Stats *stats; // may be off
+    int frames_drawn;
+    int frames_repeated; // equal to the frame before: written again, not drawn again
+} Sequence;
+
+// The last frame that is needed, and whether a frame is drawn (--first, --last, --every).
+int sequence_last_frame(const RunParams *run);
+bool sequence_draws_frame(const RunParams *run, int frame);
+
+// How many frames are to be drawn.
+int sequence_count_drawn(const RunParams *run);
+
+// Runs all frames. RESULT_INTERRUPTED between two frames once SIGINT or SIGTERM has come.
+Result sequence_run(Sequence *sequence, Error *error);

@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: MIT
+#include "run/video.h"
+
+#include "base/outfile.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#define ARGUMENTS_MAX      64
+#define FORMAT_ARGUMENTS   24
+#define PIPE_BYTES         (1 << 20) // a third of a frame of 1280x720 at once instead of 64 KiB
+#define MESSAGE_TAIL_BYTES 600
+
+struct Video {
+    OutFile file; // only ffmpeg writes to it, the stream here serves to sync and rename
+    pid_t
+        process;  // 0: none. Reaped by video_destroy only, so that video_kill never hits a stranger
+    int input;    // the end of ffmpeg's standard input that is written, -1: closed
+    int messages; // ffmpeg's standard error: a file in memory, which unlike a pipe nobody needs to
+                  // empty
+};
+
+typedef struct Format {
+    const char *suffix;
+    bool has_alpha, is_even;
+    double fps_shown; // frames beyond so many a second are left out; 0: none are
+    const char *filter, *filter_alpha;
+    const char *arguments[FORMAT_ARGUMENTS];
+} Format;
+
+// Players take BT.709 for granted in videos of this size, ffmpeg makes BT.601 of RGB unless told.
+// The bitexact flag keeps out of the conversion what depends on the processor.
+#define TO_YUV                                                                                     \
+    "scale=out_color_matrix=bt709:out_range=tv:flags=bicubic+accurate_rnd+bitexact,format="
+
+static const double FPS_MAX = 1000;
+
+static const Format formats[] = {
+    {
+        .suffix = ".mp4",
+        .is_even = true, // with halved chroma H.264 has even sizes only
+        .filter = TO_YUV "yuv420p",
+        .arguments = {"-c:v", "libx264", "-preset", "fast", "-crf", "18", "-movflags", "+faststart",
+                      "-f", "mp4"},
+    },
+    {
+        .suffix = ".webm",
+        .has_alpha = true,
+        .filter = TO_YUV "yuv420p",
+        .filter_alpha = TO_YUV "yuva420p",
+        // Alternate reference frames cannot be transparent.
+        .arguments = {"-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-cpu-used", "4",
+                      "-tile-columns", "2", "-auto-alt-ref", "0", "-f", "webm"},
+    },
+    {
+        .suffix = ".gif",
+        .fps_shown = 50.0, // players slow down shorter delays than 20 ms
+        // A palette for each frame: one for all would keep every frame in memory until the last.
+        .filter = "split[a][b];[a]palettegen=stats_mode=single[p];[b][p]paletteuse=new=1",
+        .arguments = {"-f", "gif"},
+    },
+};
+
+static const Format *find_format(const char *path)
+{
+    size_t length = strlen(path);
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
+        size_t suffix_length = strlen(formats[i].suffix);
+        if (length > suffix_length &&
+            strcasecmp(path + length - suffix_length, formats[i].suffix) == 0)
+            return &formats[i];
+    }
+    return NULL;
+}
+
+static Result check_options(const VideoOptions *options, const Format *format, Error *error)
+{
+    if (!format)
+        return error_set(error, RESULT_USAGE, "%s: a video's name ends in .mp4, .webm or .gif",
+                         options->path);
+    if (options->channels == 4 && !format->has_alpha)
+        return error_set(error, RESULT_USAGE,
+                         "%s: %s cannot hold a transparent background, write .webm or PNG frames",
+                         options->path, format->suffix);
+    if (!(options->fps > 0.0 && options->fps <= FPS_MAX))
+        return error_set(error, RESULT_USAGE, "%s: %g frames a second, expected at most %g",
+                         options->path, options->fps, FPS_MAX);
+    return RESULT_OK;
+}
+
+// The texts that depend on the options, and the argument list that points to them.
+typedef struct Command {
+    char size[32], rate[32], filter[400];
+    char *output;
+    const char *arguments[ARGUMENTS_MAX];
+    int count;
+} Command;
+
+static void add_arguments(Command *command, const char *const *arguments)
+{
+    for (; *arguments; arguments++) command->arguments[command->count++] = *arguments;
+}
+
+static void write_filter(Command *command, const Format *format, const VideoOptions *options)
+{
+    const char *filter = options->channels == 4 ? format->filter_alpha : format->filter;
+    int right = options->width % 2, bottom = options->height % 2;
+    if (format->is_even && (right || bottom))
+        snprintf(command->filter, sizeof command->filter,
+                 "format=gbrp,pad=%d:%d,fillborders=right=%d:bottom=%d:mode=smear,%s",
+                 options->width + right, options->height + bottom, right, bottom, filter);
+    else if (format->fps_shown > 0 && options->fps > format->fps_shown)
+        snprintf(command->filter, sizeof command->filter, "fps=%g,%s", format->fps_shown, filter);
+    else
+        snprintf(command->filter, sizeof command->filter, "%s", filter);
+}
+
+static bool make_command(Command *command, const Format *format, const VideoOptions *options,
+                         const char *temporary)
+{
+    *command = (Command){0};
+    snprintf(command->size, sizeof command->size, "%dx%d", options->width, options->height);
+    snprintf(command->rate, sizeof command->rate, "%.9g", options->fps);
+    write_filter(command, format, options);
+    // With the protocol named, no character of the name has a meaning to ffmpeg.
+    if (asprintf(&command->output, "file:%s", temporary) < 0) {
+        command->output = NULL;
+        return false;
+    }
+    add_arguments(
+        command,
+        (const char *const[]){
+            "ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y",
+            // Without this ffmpeg ends with status 0 when the disk fills up at the end.
+            "-xerror", "-f", "rawvideo", "-pixel_format", options->channels == 4 ? "rgba" : "rgb24",
+            "-video_size", command->size, "-framerate", command->rate, "-i", "pipe:0", "-lavfi",
+            command->filter,
+            // The same frames shall give the same bytes: no dates, no versions, and not as many
+            // threads as there are processors, since the encoders' results depend on the number.
+            "-map_metadata", "-1", "-fflags", "+bitexact", "-flags:v", "+bitexact", "-threads", "4",
+            NULL});
+    if (format->filter_alpha || format->is_even)
+        add_arguments(command,
+                      (const char *const[]){"-colorspace", "bt709", "-color_primaries", "bt709",
+                                            "-color_trc", "bt709", "-color_range", "tv", NULL});
+    add_arguments(command, format->arguments);
+    add_arguments(command, (const char *const[]){command->output, NULL});
+    return true;
+}
+
+// ffmpeg starts with an empty mask and no signal ignored, whatever they are here.
+static int spawn(Video *video, const Command *command, int input_read_end)
+{
+    posix_spawn_file_actions_t actions;
+    posix_spawnattr_t attributes;
+    sigset_t none, ignored;
+    sigemptyset(&none);
+    sigemptyset(&ignored);
+    sigaddset(&ignored, SIGPIPE);
+    sigaddset(&ignored, SIGXFSZ);
+    posix_spawn_file_actions_init(&actions);
+    posix_spawnattr_init(&attributes);
+    posix_spawn_file_actions_adddup2(&actions, input_read_end, STDIN_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, video->messages, STDERR_FILENO);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawnattr_setpgroup(&attributes, 0);
+    posix_spawnattr_setsigmask(&attributes, &none);
+    posix_spawnattr_setsigdefault(&attributes, &ignored);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK |
+                                              POSIX_SPAWN_SETSIGDEF);
+    // The list is not written to; the const is missing from the declaration for historical reasons.
+    int reason = posix_spawnp(&video->process, "ffmpeg", &actions, &attributes,
+                              (char *const *)command->arguments, environ);
+    if (reason != 0) video->process = 0;
+    posix_spawnattr_destroy(&attributes);
+    posix_spawn_file_actions_destroy(&actions);
+    return reason;
+}
+
+static int start(Video *video, const Command *command)
+{
+    video->messages = memfd_create("ffmpeg-messages", MFD_CLOEXEC);
+    int ends[2];
+    if (video->messages < 0 || pipe2(ends, O_CLOEXEC) != 0) return errno;
+    video->input = ends[1];
+    // Only a wish: a smaller pipe is slower, no more.
+    fcntl(video->input, F_SETPIPE_SZ, PIPE_BYTES);
+    int reason = spawn(video, command, ends[0]);
+    close(ends[0]);
+    return reason;
+}
+
+static Result start_ffmpeg(Video *video, const VideoOptions *options, Error *error)
+{
+    // A device cannot be renamed to, and most formats are not written from front to back.
+    if (!video->file.temporary)
+        return error_set(error, RESULT_FAILED, "%s: not a regular file", options->path);
+    Command command;
+    int reason = ENOMEM;
+    if (make_command(&command, find_format(options->path), options, video->file.temporary))
+        reason = start(video, &command);
+    free(command.output);
+    if (reason == ENOENT)
+        return error_set(
+            error, RESULT_FAILED,
+            "%s: ffmpeg is not installed (Debian package ffmpeg), only PNG frames can be written",
+            options->path);
+    if (reason != 0)
+        return error_set(error, RESULT_FAILED, "%s: cannot start ffmpeg: %s", options->path,
+                         strerror(reason));
+    return RESULT_OK;
+}
+
+Result video_create(Video **video, const VideoOptions *options, Error *error)
+{
+    *video = NULL;
+    Result result = check_options(options, find_format(options->path), error);
+    if (result != RESULT_OK) return result;
+    Video *created = calloc(1, sizeof *created);
+    if (!created) return error_set(error, RESULT_FAILED, "%s: no memory", options->path);
+    created->input = created->messages = -1;
+    result = outfile_open(&created->file, options->path, error);
+    if (result == RESULT_OK) result = start_ffmpeg(created, options, error);
+    if (result == RESULT_OK)
+        *video = created;
+    else
+        video_destroy(created);
+    return result;
+}
+
+static void close_input(Video *video)
+{
+    if (video->input >= 0) close(video->input);
+    video->input = -1;
+}
+
+// The last line that ffmpeg has written, "" if none.
+static void read_last_message(const Video *video, char *text, size_t size)
+{
+    struct stat status;
+    off_t start_at = 0;
+    text[0] = 0;
+    if (fstat(video->messages, &status) != 0) return;
+    if (status.st_size >= (off_t)size) start_at = status.st_size - (off_t)size + 1;
+    ssize_t length = pread(video->messages, text, size - 1, start_at);
+    while (length > 0 && (text[length - 1] == '\n' || text[length - 1] == '\r')) length--;
+    text[length > 0 ? length : 0] = 0;
+    const char *line = strrchr(text, '\n');
+    if (line) memmove(text, line + 1, strlen(line));
+}
+
+// Waits for ffmpeg's end and says how it was. It stays a zombie, and its number its own, until
+// video_destroy.
+static Result wait_end(Video *video, Error *error)
+{
+    close_input(video);
+    siginfo_t end = {0};
+    while (waitid(P_PID, (id_t)video->process, &end, WEXITED | WNOWAIT) != 0 && errno == EINTR) {
+    }
+    if (end.si_code == CLD_EXITED && end.si_status == 0) return RESULT_OK;
+    char message[MESSAGE_TAIL_BYTES];
+    read_last_message(video, message, sizeof message);
+    const char *colon = message[0] ? ": " : "";
+    if (end.si_code == CLD_EXITED)
+        return error_set(error, RESULT_FAILED, "%s: ffmpeg ended with status %d%s%s",
+                         video->file.path, end.si_status, colon, message);
+    return error_set(error, RESULT_FAILED, "%s: ffmpeg was ended by a signal (%s)%s%s",
+                     video->file.path, strsignal(end.si_status), colon, message);
+}
+
+Result video_write(Video *video, const Image *image, Error *error)
+{
+    const uint8_t *data = image->pixels;
+    size_t left = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
+    while (left > 0) {
+        ssize_t written = write(video->input, data, left);
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) {
+            // Why the pipe broke is for ffmpeg to say.
+            int reason = errno;
+            if (wait_end(video, error) != RESULT_OK) return RESULT_FAILED;
+            return error_set(error, RESULT_FAILED, "%s: ffmpeg stopped reading: %s",
+                             video->file.path, strerror(reason));
+        }
+        data += written;
+        left -= (size_t)written;
+    }
+    return RESULT_OK;
+}
+
+Result video_finish(Video *video, uint64_t *bytes, Error *error)
+{
+    *bytes = 0;
+    Result result = wait_end(video, error);
+    if (result != RESULT_OK) return result;
+    struct stat status;
+    if (fstat(fileno(video->file.stream), &status) == 0) *bytes = (uint64_t)status.st_size;
+    return outfile_commit(&video->file, error);
+}
+
+void video_kill(Video *video)
+{
+    kill(video->process, SIGKILL);
+}
+
+void video_destroy(Video *video)
+{
+    if (!video) return;
+    close_input(video);
+    if (video->process > 0) {
+        kill(video->process, SIGKILL);
+        while (waitpid(video->process, NULL, 0) < 0 && errno == EINTR) {
+        }
+    }
+    if (video->messages >= 0) close(video->messages);
+    outfile_discard(&video->file);
+    free(video);
+}

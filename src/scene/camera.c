@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "scene/camera.h"
+#include "scene/schedule.h"
+#include "scene/turntable.h"
+
+#include <cglm/cglm.h>
+
+#include <math.h>
+#include <string.h>
+
+static void auto_or_keyed(const Keyframes *keys, const AutoVec3 *param, const float automatic[3],
+                          double time, float *value)
+{
+    if (keys->count)
+        keyframes_evaluate(keys, time, value);
+    else
+        memcpy(value, param->automatic ? automatic : param->value, sizeof(vec3));
+}
+
+// Unit vector that is not parallel to `direction` (unit): `wanted` if that will do.
+static void choose_up(const float wanted[3], vec3 direction, vec3 up)
+{
+    vec3 across;
+    memcpy(up, wanted, sizeof(vec3));
+    glm_vec3_normalize(up);
+    glm_vec3_cross(up, direction, across);
+    if (glm_vec3_norm(across) > 1e-4f) return;
+    glm_vec3_copy((vec3){0, 0, -1}, up);
+    if (fabsf(direction[2]) > 0.9f) glm_vec3_copy((vec3){0, 1, 0}, up);
+}
+
+// Turns a vector by the turntable's angle, in place.
+static void turn(const Scene *scene, int frame, float vector[3])
+{
+    double degrees = turntable_angle_deg(&scene->run, frame);
+    vec3 axis = {0};
+    memcpy(axis, scene->run.camera_up, sizeof axis);
+    if (degrees != 0 && glm_vec3_norm(axis) > 0)
+        glm_vec3_rotate(vector, glm_rad((float)degrees), axis);
+}
+
+static void turn_about(const Scene *scene, int frame, vec3 middle, vec3 point)
+{
+    vec3 arm, turned;
+    glm_vec3_sub(point, middle, arm);
+    glm_vec3_copy(arm, turned);
+    turn(scene, frame, turned);
+    if (memcmp(arm, turned, sizeof arm) != 0) glm_vec3_add(middle, turned, point);
+}
+
+static void look_at(View *view, vec3 target, const float camera_up[3])
+{
+    vec3 direction, up;
+    glm_vec3_sub(target, view->eye, direction);
+    float distance = glm_vec3_norm(direction);
+    if (distance > 0)
+        glm_vec3_scale(direction, 1 / distance, direction);
+    else
+        glm_vec3_copy((vec3){0, 0, -1}, direction);
+    choose_up(camera_up, direction, up);
+    glm_look(view->eye, direction, up, view->view);
+}
+
+// The near plane stands well before the expected hair, since real hair may swing beyond that, and
+// the far plane well behind it: depths of the hair itself do not depend on either.
+static void find_depths(View *view, const Outline *all)
+{
+    float nearest = 1e30f, farthest = 0;
+    for (int i = 0; i < 8 && all->any; ++i) {
+        vec3 p = {0}, seen;
+        outline_corner(all, i, p);
+        glm_mat4_mulv3(view->view, p, 1, seen);
+        nearest = fminf(nearest, -seen[2]);
+        farthest = fmaxf(farthest, -seen[2]);
+    }
+    if (!(farthest > 0)) farthest = 1;
+    view->far_distance = 4 * farthest;
+    view->near_distance = fmaxf(0.1f * fminf(nearest, farthest), 1e-3f * farthest);
+}
+
+void camera_view(View *view, const Scene *scene, const Framing *framing, int frame)
+{
+    double time = schedule_frame_time(&scene->run, frame);
+    vec3 target = {0};
+    float fov_deg = scene->run.fov;
+    auto_or_keyed(&scene->target, &scene->run.target, framing->target, time, target);
+    auto_or_keyed(&scene->eye, &scene->run.eye, framing->eye, time, view->eye);
+    if (scene->fov.count) keyframes_evaluate(&scene->fov, time, &fov_deg);
+    turn_about(scene, frame, target, view->eye);
+    look_at(view, target, scene->run.camera_up);
+    find_depths(view, &framing->all);
+    view->fov = glm_rad(fov_deg);
+    glm_perspective(view->fov, (float)scene->run.size[0] / (float)scene->run.size[1],
+                    view->near_distance, view->far_distance, view->projection);
+}
+
+void camera_lights(Light lights[SCENE_MAX_LIGHTS], const Scene *scene, const Framing *framing,
+                   int frame)
+{
+    vec3 target = {0};
+    memcpy(lights, scene->lights, sizeof scene->lights);
+    if (!scene->run.turn_lights) return;
+    auto_or_keyed(&scene->target, &scene->run.target, framing->target,
+                  schedule_frame_time(&scene->run, frame), target);
+    for (uint32_t i = 0; i < scene->light_count; ++i) {
+        turn(scene, frame, lights[i].direction);
+        turn_about(scene, frame, target, lights[i].position);
+    }
+}

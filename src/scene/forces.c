@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include "scene/forces.h"
+
+#include <cglm/cglm.h>
+
+#include <math.h>
+#include <string.h>
+
+static bool blows(const Scene *scene)
+{
+    const float *w = scene->run.wind;
+    return scene->wind.count > 0 || w[0] != 0 || w[1] != 0 || w[2] != 0;
+}
+
+// Three sines without a common period, so that gusts do not repeat soon. Weights add up to 1. Where
+// they shall repeat, each gets the nearest whole number of periods in that time.
+static double gust_at(const RunParams *run, double time)
+{
+    static const struct {
+        double rate, weight, phase;
+    } SINES[] = {{1, 0.5, 0}, {2.31, 0.3, 1.3}, {5.17, 0.2, 2.1}};
+    double gust = 0, repeat = (double)run->gust_repeat;
+    for (int i = 0; i < 3; ++i) {
+        double rate = SINES[i].rate / (double)run->gust_period; // 1/s
+        if (repeat > 0) rate = fmax(1, round(rate * repeat)) / repeat;
+        gust += SINES[i].weight * sin(2 * 3.14159265358979323846 * rate * time + SINES[i].phase);
+    }
+    return gust;
+}
+
+// Two unit vectors perpendicular to `main` and to each other.
+static void perpendiculars(const vec3 main, vec3 a, vec3 b)
+{
+    vec3 n;
+    glm_vec3_normalize_to((float *)main, n);
+    glm_vec3_cross(n, fabsf(n[1]) < 0.9f ? (vec3){0, 1, 0} : (vec3){1, 0, 0}, a);
+    glm_vec3_normalize(a);
+    glm_vec3_cross(n, a, b);
+}
+
+// The main wind turned by the spread to four sides. strand_wind (forces.glsl) mixes 0 with 1, 2
+// with 3, and the two: 0 and 3 are opposite corners of the square. Turning by t leaves cos t along
+// the main direction; dividing by it keeps the mean.
+static void spread_wind(Forces *forces, const vec3 main, float spread_deg)
+{
+    vec3 a = {0}, b = {0};
+    float side = glm_vec3_norm((float *)main) * tanf(glm_rad(fminf(spread_deg, 89.0f)));
+    perpendiculars(main, a, b);
+    for (int i = 0; i < 4; ++i) {
+        float sign_a = i & 1 ? 1 : -1, sign_b = i & 2 ? 1 : -1;
+        for (int k = 0; k < 3; ++k)
+            forces->wind[i][k] = main[k] + side * 0.70710678f * (sign_a * a[k] + sign_b * b[k]);
+    }
+}
+
+void forces_evaluate(Forces *forces, const Scene *scene, double time)
+{
+    *forces = (Forces){0};
+    memcpy(forces->gravity, scene->run.gravity, sizeof forces->gravity);
+    if (scene->gravity.count) keyframes_evaluate(&scene->gravity, time, forces->gravity);
+    if (!blows(scene)) return;
+    vec3 main = {0};
+    memcpy(main, scene->run.wind, sizeof main);
+    if (scene->wind.count) keyframes_evaluate(&scene->wind, time, main);
+    glm_vec3_scale(main, (float)(1 + (double)scene->run.gust * gust_at(&scene->run, time)), main);
+    if (glm_vec3_norm2(main) > 0) spread_wind(forces, main, scene->run.wind_spread);
+}
+
+bool forces_are_constant(const Scene *scene)
+{
+    return scene->gravity.count < 2 && scene->wind.count < 2 &&
+           (!blows(scene) || scene->run.gust == 0);
+}

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: MIT
+#include "scene/outline.h"
+#include "scene/schedule.h"
+#include "strands/follow_plan.h"
+
+#include <cglm/cglm.h>
+
+#include <math.h>
+#include <string.h>
+
+static const float SIDE_DEG = 25, ABOVE_DEG = 10;
+// Times, angles and vertices that are looked at; the margin covers what lies between.
+enum { TIMES = 16, ANGLES = 64, VERTICES = 50000 };
+
+// A spiral of equal areas (Fibonacci lattice) over the sphere.
+static void begin_outline(Outline *outline, const float point[3])
+{
+    const float golden = 2.39996323f;
+    for (int i = 0; i < OUTLINE_DIRECTIONS; ++i) {
+        float z = 1 - (2 * (float)i + 1) / OUTLINE_DIRECTIONS, r = sqrtf(1 - z * z);
+        outline->direction[0][i] = r * cosf(golden * (float)i);
+        outline->direction[1][i] = r * sinf(golden * (float)i);
+        outline->direction[2][i] = z;
+        outline->reach[i] = -INFINITY;
+    }
+    memcpy(outline->low, point, sizeof outline->low);
+    memcpy(outline->high, point, sizeof outline->high);
+    outline->any = true;
+}
+
+void outline_add(Outline *outline, const float point[3])
+{
+    if (!outline->any) begin_outline(outline, point);
+    float reach[OUTLINE_DIRECTIONS]; // all first: a loop without branches is done four at a time
+    const float *x = outline->direction[0], *y = outline->direction[1], *z = outline->direction[2];
+    for (int i = 0; i < OUTLINE_DIRECTIONS; ++i)
+        reach[i] = x[i] * point[0] + y[i] * point[1] + z[i] * point[2];
+    for (int i = 0; i < OUTLINE_DIRECTIONS; ++i)
+        if (reach[i] > outline->reach[i]) {
+            outline->reach[i] = reach[i];
+            memcpy(outline->point[i], point, sizeof(vec3));
+        }
+    for (int k = 0; k < 3; ++k) {
+        outline->low[k] = fminf(outline->low[k], point[k]);
+        outline->high[k] = fmaxf(outline->high[k], point[k]);
+    }
+}
+
+void outline_corner(const Outline *outline, int which, float corner[3])
+{
+    for (int k = 0; k < 3; ++k) corner[k] = (which >> k & 1 ? outline->high : outline->low)[k];
+}
+
+static void add_outline(Outline *outline, const Outline *more)
+{
+    for (int i = 0; i < OUTLINE_DIRECTIONS && more->any; ++i) outline_add(outline, more->point[i]);
+}
+
+// Moves all that bounds the points outwards (m).
+static void grow_outline(Outline *outline, float by)
+{
+    for (int i = 0; i < OUTLINE_DIRECTIONS && outline->any; ++i) {
+        for (int k = 0; k < 3; ++k) outline->point[i][k] += by * outline->direction[k][i];
+        outline->reach[i] += by;
+    }
+    for (int k = 0; k < 3 && outline->any; ++k) outline->low[k] -= by, outline->high[k] += by;
+}
+
+// State of everything that moves, at one time.
+typedef struct Moment {
+    versor rotation;
+    vec3 translation, gravity, wind;
+} Moment;
+
+static void keyed_or_constant(const Keyframes *keys, double time, const float constant[3],
+                              float *value)
+{
+    if (keys->count)
+        keyframes_evaluate(keys, time, value);
+    else
+        memcpy(value, constant, sizeof(vec3));
+}
+
+static void moment_at(Moment *moment, const Scene *scene, double time)
+{
+    rigid_track_evaluate(&scene->head, time, moment->rotation, moment->translation);
+    keyed_or_constant(&scene->gravity, time, scene->run.gravity, moment->gravity);
+    keyed_or_constant(&scene->wind, time, scene->run.wind, moment->wind);
+}
+
+static void carry(const Moment *moment, const float point[3], float carried[3])
+{
+    versor rotation = {0};
+    vec3 p = {0};
+    memcpy(rotation, moment->rotation, sizeof rotation);
+    memcpy(p, point, sizeof p);
+    glm_quat_rotatev(rotation, p, carried);
+    for (int k = 0; k < 3; ++k) carried[k] += moment->translation[k];
+}
+
+// Every how manieth strand is looked at, for `times` looks at each.
+static uint32_t strand_stride(const Strands *strands, uint32_t times)
+{
+    return 1 + (uint32_t)((uint64_t)strands->vertex_count * times / VERTICES);
+}
+
+static void add_style(Outline *outline, const Strands *strands)
+{
+    for (uint32_t s = 0; s < strands->strand_count; s += strand_stride(strands, 1))
+        for (uint32_t v = strands->first[s]; v < strands->first[s + 1]; ++v)
+            outline_add(outline, strands->position[v]);
+}
+
+// The strand at rest: from its root on, directions between that of `pull` (unit) and the style's.
+static void add_rest_strand(Outline *outline, const Strands *strands, uint32_t s,
+                            const Moment *moment, const float pull[3], float style)
+{
+    vec3 x, carried = {0}, next = {0};
+    carry(moment, strands->position[strands->first[s]], carried);
+    glm_vec3_copy(carried, x);
+    for (uint32_t v = strands->first[s] + 1; v < strands->first[s + 1]; ++v) {
+        vec3 segment, mixed;
+        carry(moment, strands->position[v], next);
+        glm_vec3_sub(next, carried, segment);
+        glm_vec3_copy(next, carried);
+        float length = glm_vec3_norm(segment);
+        for (int k = 0; k < 3; ++k) mixed[k] = style * segment[k] + (1 - style) * length * pull[k];
+        float norm = glm_vec3_norm(mixed);
+        for (int k = 0; k < 3 && norm > 0; ++k) x[k] += mixed[k] * (length / norm);
+        outline_add(outline, x);
+    }
+}
+
+static void add_rest(Outline *outline, const Strands *strands, const SectionParams *params,
+                     const Moment *moment, uint32_t times)
+{
+    vec3 pull;
+    for (int k = 0; k < 3; ++k) pull[k] = moment->gravity[k] + params->drag * moment->wind[k];
+    float strength = glm_vec3_norm(pull);
+    if (!(strength > 0) || params->style >= 1 || strcmp(params->algo, "none") == 0) return;
+    glm_vec3_scale(pull, 1 / strength, pull);
+    for (uint32_t s = 0; s < strands->strand_count; s += strand_stride(strands, times))
+        add_rest_strand(outline, strands, s, moment, pull, params->style);
+}
+
+static void add_carried(Outline *outline, const Outline *still, const Moment *moment)
+{
+    for (int i = 0; i < OUTLINE_DIRECTIONS && still->any; ++i) {
+        vec3 carried = {0};
+        carry(moment, still->point[i], carried);
+        outline_add(outline, carried);
+    }
+}
+
+static float farthest_follower(const Scene *scene, const Strands *strands)
+{
+    float farthest = 0;
+    for (uint32_t i = 0; i < scene->section_count; ++i)
+        farthest = fmaxf(farthest, follow_reach(&scene->sections[i].params, &strands[i]));
+    return farthest;
+}
+
+static void find_outlines(Framing *framing, const Scene *scene, const Strands *strands,
+                          const Mesh *mesh)
+{
+    Outline style = {0}, body = {0};
+    for (uint32_t i = 0; i < scene->section_count; ++i) add_style(&style, &strands[i]);
+    for (uint32_t v = 0; mesh && v < mesh->vertex_count; ++v) outline_add(&body, mesh->position[v]);
+    bool moves = !rigid_track_is_still(&scene->head) || scene->gravity.count || scene->wind.count;
+    double duration = schedule_frame_time(&scene->run, scene->run.frames);
+    uint32_t times = moves ? TIMES : 1;
+    for (uint32_t t = 0; t < times; ++t) {
+        Moment moment = {0};
+        moment_at(&moment, scene, duration * t / (TIMES - 1));
+        add_carried(&framing->hair, &style, &moment);
+        add_carried(&framing->all, &body, &moment);
+        for (uint32_t i = 0; i < scene->section_count; ++i)
+            add_rest(&framing->hair, &strands[i], &scene->sections[i].params, &moment, times);
+    }
+    grow_outline(&framing->hair, farthest_follower(scene, strands));
+    add_outline(&framing->all, &framing->hair);
+}
+
+// Axes of the automatic camera: `right`, `top` and, from the target to the eye, `back`.
+typedef struct Axes {
+    vec3 right, top, back, up;
+} Axes;
+
+static void find_axes(Axes *axes, const float camera_up[3])
+{
+    memcpy(axes->up, camera_up, sizeof(vec3));
+    glm_vec3_normalize(axes->up);
+    if (glm_vec3_norm(axes->up) < 0.5f) glm_vec3_copy((vec3){0, 1, 0}, axes->up);
+    vec3 front = {0, 0, 1};
+    if (fabsf(axes->up[2]) > 0.99f) glm_vec3_copy((vec3){0, -1, 0}, front);
+    glm_vec3_crossn(axes->up, front, axes->right);
+    glm_vec3_cross(axes->right, axes->up, axes->back);
+    glm_vec3_rotate(axes->right, glm_rad(SIDE_DEG), axes->up);
+    glm_vec3_rotate(axes->back, glm_rad(SIDE_DEG), axes->up);
+    glm_vec3_rotate(axes->back, -glm_rad(ABOVE_DEG), axes->right);
+    glm_vec3_cross(axes->back, axes->right, axes->top);
+}
+
+// How far from the target the eye must be to see all of `outline` in a picture that is larger by
+// `scale`, tangents of the half angles given.
+static float distance_to_see(const Outline *outline, const Axes *axes, const float target[3],
+                             float tan_x, float tan_y, float scale)
+{
+    float distance = 0;
+    for (int i = 0; i < OUTLINE_DIRECTIONS; ++i) {
+        vec3 p, right, top, back;
+        for (int k = 0; k < 3; ++k) p[k] = outline->point[i][k] - target[k];
+        glm_vec3_copy((float *)axes->right, right);
+        glm_vec3_copy((float *)axes->top, top);
+        glm_vec3_copy((float *)axes->back, back);
+        float x = fabsf(glm_vec3_dot(p, right)) / tan_x, y = fabsf(glm_vec3_dot(p, top)) / tan_y;
+        distance = fmaxf(distance, glm_vec3_dot(p, back) + scale * fmaxf(x, y));
+    }
+    return distance;
+}
+
+static float narrowest_fov(const Scene *scene)
+{
+    float fov = scene->fov.count ? scene->fov.value[0] : scene->run.fov;
+    for (uint32_t i = 1; i < scene->fov.count; ++i) fov = fminf(fov, scene->fov.value[i]);
+    return glm_rad(fov);
+}
+
+// What the automatic camera shows.
+static const Outline *outline_shown(const Framing *framing, const Scene *scene)
+{
+    bool hair_alone = framing->hair.any && scene->run.floor == FLOOR_NONE;
+    return hair_alone ? &framing->hair : &framing->all;
+}
+
+static void place_eye(Framing *framing, const Scene *scene)
+{
+    Axes axes = {0};
+    find_axes(&axes, scene->run.camera_up);
+    float tan_y = tanf(narrowest_fov(scene) / 2), distance = 0;
+    float tan_x = tan_y * (float)scene->run.size[0] / (float)scene->run.size[1];
+    float turn = fminf(fabsf(scene->run.turntable), 360) * (scene->run.turntable < 0 ? -1 : 1);
+    for (int a = 0; a < ANGLES; ++a) {
+        Axes turned = axes;
+        float angle = glm_rad(turn) * (float)a / (ANGLES - 1);
+        glm_vec3_rotate(turned.right, angle, axes.up);
+        glm_vec3_rotate(turned.top, angle, axes.up);
+        glm_vec3_rotate(turned.back, angle, axes.up);
+        float needed = distance_to_see(outline_shown(framing, scene), &turned, framing->target,
+                                       tan_x, tan_y, 1 + scene->run.margin);
+        distance = fmaxf(distance, needed);
+        if (turn == 0) break;
+    }
+    if (!(distance > 0)) distance = 1;
+    for (int k = 0; k < 3; ++k) framing->eye[k] = framing->target[k] + distance * axes.back[k];
+}
+
+void outline_frame(Framing *framing, const Scene *scene, const Strands *strands, const Mesh *mesh)
+{
+    memset(framing, 0, sizeof *framing);
+    find_outlines(framing, scene, strands, mesh);
+    const Outline *outline = outline_shown(framing, scene);
+    for (int k = 0; k < 3; ++k) framing->target[k] = 0.5f * (outline->low[k] + outline->high[k]);
+    if (scene->target.count)
+        keyframes_evaluate(&scene->target, 0, framing->target);
+    else if (!scene->run.target.automatic)
+        memcpy(framing->target, scene->run.target.value, sizeof framing->target);
+    place_eye(framing, scene);
+}

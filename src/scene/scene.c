@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: MIT
+#include "scene/scene.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// From above the camera's left shoulder, and a weaker one from the right against black shadows, for
+// the automatic camera, which looks along -z. Unit vectors.
+static const Light DEFAULT_LIGHTS[] = {
+    {.direction = {-0.48f, 0.64f, 0.6f}, .color = {1, 1, 1}, .intensity = 1.0f, .shadow = true},
+    {.direction = {0.8f, 0.0f, 0.6f}, .color = {1, 1, 1}, .intensity = 0.35f},
+};
+
+Result scene_create(Scene *scene, Error *error)
+{
+    *scene = (Scene){.light_count = sizeof DEFAULT_LIGHTS / sizeof DEFAULT_LIGHTS[0]};
+    memcpy(scene->lights, DEFAULT_LIGHTS, sizeof DEFAULT_LIGHTS);
+    return run_params_create(&scene->run, error);
+}
+
+void scene_destroy(Scene *scene)
+{
+    for (uint32_t i = 0; i < scene->section_count; i++) {
+        free(scene->sections[i].file);
+        section_params_destroy(&scene->sections[i].params);
+    }
+    free(scene->sections);
+    run_params_destroy(&scene->run);
+    rigid_track_destroy(&scene->head);
+    keyframes_destroy(&scene->gravity);
+    keyframes_destroy(&scene->wind);
+    keyframes_destroy(&scene->eye);
+    keyframes_destroy(&scene->target);
+    keyframes_destroy(&scene->fov);
+    colliders_destroy(&scene->colliders);
+    *scene = (Scene){0};
+}
+
+Result scene_add_section(Scene *scene, const char *file, const SectionParams *params, Error *error)
+{
+    if (scene->section_count == SCENE_MAX_SECTIONS)
+        return error_set(error, RESULT_USAGE, "more than %d hair files", SCENE_MAX_SECTIONS);
+    Section section = {.file = strdup(file)};
+    Section *sections =
+        realloc(scene->sections, (scene->section_count + (size_t)1) * sizeof sections[0]);
+    if (sections) scene->sections = sections;
+    if (!section.file || !sections) {
+        free(section.file);
+        return error_set(error, RESULT_FAILED, "out of memory");
+    }
+    Result result = section_params_copy(&section.params, params, error);
+    if (result != RESULT_OK) {
+        free(section.file);
+        return result;
+    }
+    sections[scene->section_count++] = section;
+    return RESULT_OK;
+}
+
+static Result check_frames(const RunParams *run, Error *error)
+{
+    const float slowest = 1e-4f;
+    if (run->speed > 0 && run->speed < slowest)
+        return error_set(error, RESULT_USAGE, "--speed %g: expected 0 or at least %g",
+                         (double)run->speed, (double)slowest);
+    if (run->first >= run->frames)
+        return error_set(error, RESULT_USAGE, "--first %d: expected 0 to %d, since --frames is %d",
+                         run->first, run->frames - 1, run->frames);
+    if (run->last >= run->frames)
+        return error_set(error, RESULT_USAGE,
+                         "--last %d: expected %d to %d (or -1), since --frames is %d", run->last,
+                         run->first, run->frames - 1, run->frames);
+    if (run->last >= 0 && run->last < run->first)
+        return error_set(error, RESULT_USAGE, "--last %d is before --first %d", run->last,
+                         run->first);
+    return RESULT_OK;
+}
+
+static Result check_camera(const Scene *scene, Error *error)
+{
+    const RunParams *run = &scene->run;
+    const float *up = run->camera_up;
+    if (up[0] == 0 && up[1] == 0 && up[2] == 0)
+        return error_set(error, RESULT_USAGE, "--camera-up 0,0,0: expected a direction");
+    if (run->ease_in + run->ease_out > 1.000001f)
+        return error_set(error, RESULT_USAGE,
+                         "--ease-in %g and --ease-out %g: expected 1 at most together",
+                         (double)run->ease_in, (double)run->ease_out);
+    bool fixed_eye = scene->eye.count == 0 && !run->eye.automatic;
+    bool fixed_target = scene->target.count == 0 && !run->target.automatic;
+    if (fixed_eye && fixed_target &&
+        memcmp(run->eye.value, run->target.value, sizeof run->eye.value) == 0)
+        return error_set(error, RESULT_USAGE, "--eye and --target are the same point");
+    return RESULT_OK;
+}
+
+static Result check_conflicts(const RunParams *run, Error *error)
+{
+    const char *pair = NULL;
+    if (run->quiet && run->verbose) pair = "--quiet and --verbose";
+    if (*run->cache && *run->from_cache) pair = "--cache and --from-cache";
+    if (run->software && run->require_hardware) pair = "--software and --require-hardware";
+    if (run->backend == BACKEND_OSMESA) {
+        if (run->require_hardware) pair = "--backend osmesa and --require-hardware";
+        if (run->device >= 0) pair = "--backend osmesa and --device";
+    }
+    if (run->raster == RASTER_BLOCKS && run->oit != OIT_AUTO) pair = "--raster blocks and --oit";
+    if (run->raster == RASTER_BLOCKS && run->oit_layers > 0)
+        pair = "--raster blocks and --oit-layers";
+    if (pair) return error_set(error, RESULT_USAGE, "%s exclude each other", pair);
+    if (run->lod_end > 0 && run->lod_end <= run->lod_start)
+        return error_set(error, RESULT_USAGE,
+                         "--lod-end %g m: expected more than --lod-start, %g m",
+                         (double)run->lod_end, (double)run->lod_start);
+    return RESULT_OK;
+}
+
+static bool ends_with(const char *text, const char *end)
+{
+    size_t length = strlen(text), end_length = strlen(end);
+    return length >= end_length && strcmp(text + length - end_length, end) == 0;
+}
+
+// A conversion that prints one int and no more: %d, or %0Nd with N from 1 to 9. Returns its length,
+// or 0 if `text`, which begins with '%', is anything else.
+static size_t conversion_length(const char *text)
+{
+    if (text[1] == 'd') return 2;
+    return text[1] == '0' && text[2] >= '1' && text[2] <= '9' && text[3] == 'd' ? 4 : 0;
+}
+
+// In a folder's or a video's name '%' is an ordinary character.
+static Result check_output(const char *output, Error *error)
+{
+    const char *percent = strchr(output, '%');
+    bool literal = ends_with(output, "/") || ends_with(output, ".mp4") ||
+                   ends_with(output, ".webm") || ends_with(output, ".gif");
+    if (!percent || literal) return RESULT_OK;
+    size_t length = conversion_length(percent);
+    if (length > 0 && !strchr(percent + length, '%')) return RESULT_OK;
+    return error_set(
+        error, RESULT_USAGE,
+        "--output '%.200s': expected one %%d or %%04d (1 to 9 digits) and no other '%%'", output);
+}
+
+// A formula that fails somewhere is told before anything runs; of very long sequences the begin.
+static Result check_head(const Scene *scene, Error *error)
+{
+    const int most = 1000000;
+    int frames = scene->run.frames < most ? scene->run.frames : most;
+    Result result = RESULT_OK;
+    if (rigid_track_is_still(&scene->head)) return RESULT_OK;
+    for (int frame = 0; frame < frames && result == RESULT_OK; ++frame)
+        result = rigid_track_check(&scene->head, frame / (double)scene->run.fps, error);
+    return result == RESULT_OK ? RESULT_OK : error_prefix(error, result, "head.");
+}
+
+static bool draws_floats(const RunParams *run)
+{
+    return ends_with(run->output, ".pfm");
+}
+
+// Light as it is, and what is no light, cannot be toned; and only quads draw deeper than 8 bits.
+static Result check_depth(const RunParams *run, Error *error)
+{
+    bool video = ends_with(run->output, ".mp4") || ends_with(run->output, ".webm") ||
+                 ends_with(run->output, ".gif");
+    const char *pair = NULL;
+    if (run->depth == DEPTH_16 && draws_floats(run)) pair = "--depth 16 and .pfm files";
+    if (run->depth == DEPTH_16 && video) pair = "--depth 16 and a video";
+    if (run->tone_map != TONE_NONE && draws_floats(run)) pair = "--tone-map and .pfm files";
+    if (run->tone_map != TONE_NONE && run->aov != AOV_NONE) pair = "--tone-map and --aov";
+    if (*run->caption && draws_floats(run)) pair = "--caption and .pfm files";
+    if (*run->caption && run->aov != AOV_NONE) pair = "--caption and --aov";
+    if (run->raster == RASTER_BLOCKS) {
+        if (run->depth == DEPTH_16) pair = "--raster blocks and --depth 16";
+        if (draws_floats(run)) pair = "--raster blocks and .pfm files";
+        if (run->aov != AOV_NONE) pair = "--raster blocks and --aov";
+    }
+    if (pair) return error_set(error, RESULT_USAGE, "%s exclude each other", pair);
+    return RESULT_OK;
+}
+
+static Result check_floor(const RunParams *run, Error *error)
+{
+    if (run->floor != FLOOR_SHADOW || run->shadow != SHADOW_NONE) return RESULT_OK;
+    return error_set(error, RESULT_USAGE,
+                     "--floor shadow: expected shadows, --shadow dom or approx");
+}
+
+Result scene_check(const Scene *scene, Error *error)
+{
+    const RunParams *run = &scene->run;
+    if (scene->section_count == 0 && !run->list_devices)
+        return error_set(error, RESULT_USAGE, "no hair: expected a hair file or a scene file");
+    Result result = check_frames(run, error);
+    if (result == RESULT_OK) result = check_camera(scene, error);
+    if (result == RESULT_OK) result = check_conflicts(run, error);
+    if (result == RESULT_OK) result = check_output(run->output, error);
+    if (result == RESULT_OK) result = check_depth(run, error);
+    if (result == RESULT_OK) result = check_floor(run, error);
+    if (result == RESULT_OK) result = check_head(scene, error);
+    return result;
+}

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// Everything that a run needs to know: parameters, hair sections, head motion, forces, camera path
+// and lights, from the command line, a scene file or both.
+#pragma once
+
+#include "base/error.h"
+#include "base/params.h"
+#include "scene/colliders.h"
+#include "scene/keyframes.h"
+#include "scene/rigid_track.h"
+
+#include <jansson.h>
+#include <stdint.h>
+
+// One hair file and how it behaves and looks.
+typedef struct Section {
+    char *file; // owned; relative to the working folder
+    SectionParams params;
+} Section;
+
+typedef enum LightKind { LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_SPOT } LightKind;
+
+// What a white matt surface square to the light shows is color * intensity: everywhere for a
+// directional light; for the others at `distance`, and by the square of the distance elsewhere. A
+// spot has all of it up to `inner` degrees off its axis and nothing beyond `outer`.
+typedef struct Light {
+    LightKind kind;
+    float direction[3]; // unit vector: directional, from the hair towards the light (files give the
+                        // way it travels); spot, the way that it looks
+    float color[3];     // linear RGB, 0..1
+    float intensity;    // factor, >= 0
+    float position[3];  // m, in the world; not directional
+    float distance;     // m, > 0; not directional
+    float inner_deg, outer_deg; // 0 <= inner < outer <= 90; spot
+    bool shadow;                // casts shadows, if there are any
+} Light;
+
+enum { SCENE_MAX_LIGHTS = 8, SCENE_MAX_SECTIONS = 1024 };
+
+// What the command line asks for. Anything but REQUEST_RUN leaves the rest of the scene unfinished:
+// print that (help.h) and stop.
+typedef enum SceneRequest {
+    REQUEST_RUN,
+    REQUEST_VERSION,  // --version
+    REQUEST_HELP,     // -h, --help
+    REQUEST_MAN,      // --help=man: the man page in roff
+    REQUEST_MARKDOWN, // --help=markdown: the tables of README.md
+    REQUEST_BASH,     // --help=bash: completion of the command line
+} SceneRequest;
+
+// A zeroed scene is empty and may be destroyed.
+typedef struct Scene {
+    SceneRequest request;
+    RunParams run;
+    Section *sections; // [section_count], owned
+    uint32_t section_count;
+    RigidTrack head;                // moves the roots and the mesh
+    Keyframes gravity;              // width 3, m/s2; without keys run.gravity holds
+    Keyframes wind;                 // width 3, m/s; without keys run.wind holds
+    Keyframes eye, target;          // width 3, m; without keys run.eye, run.target hold
+    Keyframes fov;                  // width 1, deg; without keys run.fov holds
+    Light lights[SCENE_MAX_LIGHTS]; // two if the user names none: a key and a weaker fill
+    Colliders colliders;            // shapes that hair must not cross
+    uint32_t light_count;           // 0 if the user gives an empty list: ambient light only
+} Scene;
+
+// Reads the command line of tractrix-render (argv[0] is skipped). Arguments that are no flags are
+// hair files, each a section, or one scene file, which is known by the end ".json" or by its
+// content. Flags override the scene file: those of a run its values (--gravity, --wind, --eye,
+// --target and --fov also replace keyframes), those of a section the values of all sections.
+// RESULT_USAGE for wrong flags, values or combinations; RESULT_BAD_INPUT for the scene file's
+// content; RESULT_FAILED when memory is short. The scene may be destroyed in each case.
+Result scene_from_arguments(Scene *scene, int argc, char **argv, Error *error);
+
+// Reads a scene file and checks the combination of values as scene_check does. RESULT_BAD_INPUT
+// with file, line or key, what was got and what was expected. Paths in the file are relative to the
+// file's folder; in the struct, to the working folder. Hair files are not opened.
+Result scene_read(Scene *scene, const char *path, Error *error);
+
+// Whether the values fit together: frame range, camera, message flags, device flags, the '%' in an
+// output pattern, names of files. RESULT_USAGE naming the flags in conflict.
+Result scene_check(const Scene *scene, Error *error);
+
+// Every effective value as an object that is a scene file again (paths are relative to the working
+// folder), for the stats file. Floats are as short as they can be if dumped with
+// JSON_REAL_PRECISION(9). The caller owns the reference; NULL when memory is short.
+json_t *scene_to_json(const Scene *scene);
+
+// A run with defaults, the default lights and no section. RESULT_FAILED when memory is short; the
+// scene may be destroyed in either case.
+Result scene_create(Scene *scene, Error *error);
+void scene_destroy(Scene *scene);
+
+// Appends a section with copies of `file` and `params`. RESULT_USAGE beyond SCENE_MAX_SECTIONS,
+// RESULT_FAILED when memory is short.
+Result scene_add_section(Scene *scene, const char *file, const SectionParams *params, Error *error);

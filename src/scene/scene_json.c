@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: MIT
+#include "scene/scene_json.h"
+#include "base/bytes.h"
+#include "scene/scene_colliders.h"
+#include "scene/scene_param.h"
+#include "scene/scene_quality.h"
+#include "scene/scene_tracks.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// A member of the file that is no parameter.
+typedef struct Part {
+    const char *key;
+    Result (*read)(Scene *scene, const Place *place, const json_t *value, Error *error);
+} Part;
+
+static const Part PARTS[] = {{"head", scene_read_head},
+                             {"camera", scene_read_camera},
+                             {"lights", scene_read_lights},
+                             {"colliders", scene_read_colliders}};
+enum { PART_COUNT = sizeof PARTS / sizeof PARTS[0] };
+
+// The file being read. `root` is its place, `folder` what stands before the last '/' in its path
+// and that '/', or "".
+typedef struct Document {
+    Place root;
+    char *folder;
+    const json_t *json;
+} Document;
+
+// Reads the bytes as JSON; the caller owns the reference. Errors have file, line and column.
+static Result parse_document(json_t **json, const char *path, const Bytes *bytes, Error *error)
+{
+    json_error_t why;
+    *json = json_loadb((const char *)bytes->data, bytes->size, JSON_REJECT_DUPLICATES, &why);
+    if (*json) return RESULT_OK;
+    // jansson has no place for what is not the text's fault.
+    if (why.line < 0) return error_set(error, RESULT_FAILED, "%.300s: out of memory", path);
+    for (char *at = why.text; *at; at++) {
+        if ((unsigned char)*at < ' ') *at = '?';
+    }
+    return error_set(error, RESULT_BAD_INPUT, "%.300s:%d:%d: %s", path, why.line, why.column,
+                     why.text);
+}
+
+// The names of all keys that an object of the file may have, ended by NULL; the caller frees the
+// array. The top level may have parameters of either scope, sections only their own.
+static const char **list_keys(bool top)
+{
+    const char **names = calloc(PARAM_COUNT + PART_COUNT + 2, sizeof names[0]);
+    size_t count = 0;
+    if (!names) return NULL;
+    for (size_t i = 0; i < PARAM_COUNT; i++) {
+        if (top || PARAM_TABLE[i].scope == SCOPE_SECTION) names[count++] = PARAM_TABLE[i].name;
+    }
+    for (size_t i = 0; top && i < PART_COUNT; i++) names[count++] = PARTS[i].key;
+    names[count] = top ? "sections" : "file";
+    return names;
+}
+
+static Result check_keys(bool top, const Place *place, const json_t *object, Error *error)
+{
+    for (size_t i = 0; !top && i < PARAM_COUNT; i++) {
+        const ParamInfo *info = &PARAM_TABLE[i];
+        if (info->scope == SCOPE_RUN && json_object_get(object, info->name))
+            return place_fail(place, error, "'%s' belongs to the top level, not to a section",
+                              info->name);
+    }
+    const char **names = list_keys(top);
+    if (!names) return error_set(error, RESULT_FAILED, "out of memory");
+    Result result = place_check_object(place, object, names, error);
+    free(names);
+    return result;
+}
+
+// The parameters of one scope among the members of `object`. Keyframes of forces and the list of
+// colliders are for the caller.
+static Result read_params(const Document *document, ParamScope scope, void *params,
+                          const Place *parent, const json_t *object, Error *error)
+{
+    for (size_t i = 0; i < PARAM_COUNT; i++) {
+        const ParamInfo *info = &PARAM_TABLE[i];
+        const json_t *value = json_object_get(object, info->name);
+        bool keys = json_is_object(value) && info->kind == PARAM_VEC3;
+        bool list = json_is_array(value) && info->kind == PARAM_TEXT;
+        if (info->scope != scope || !value || keys || list) continue;
+        Place place = {.parent = parent, .key = info->name};
+        Result result = scene_read_param(info, params, document->folder, &place, value, error);
+        if (result != RESULT_OK) return result;
+    }
+    return RESULT_OK;
+}
+
+static Result read_section(Scene *scene, const Document *document, const SectionParams *defaults,
+                           const Place *place, const json_t *object, Error *error)
+{
+    Result result = check_keys(false, place, object, error);
+    if (result != RESULT_OK) return result;
+    const json_t *file = json_object_get(object, "file");
+    if (!file) return place_fail(place, error, "expected a key 'file'");
+    Place file_place = {.parent = place, .key = "file"};
+    if (!json_is_string(file) || json_string_length(file) == 0)
+        return place_refuse(&file_place, file, "the path of a hair file", error);
+    char *path = scene_join_path(document->folder, json_string_value(file));
+    if (!path) return error_set(error, RESULT_FAILED, "out of memory");
+    result = scene_add_section(scene, path, defaults, error);
+    free(path);
+    if (result != RESULT_OK) return result;
+    SectionParams *params = &scene->sections[scene->section_count - 1].params;
+    return read_params(document, SCOPE_SECTION, params, place, object, error);
+}
+
+// Section parameters at the top level are the defaults of every section.
+static Result read_sections(Scene *scene, const Document *document, Error *error)
+{
+    const json_t *array = json_object_get(document->json, "sections");
+    if (!array) return place_fail(&document->root, error, "expected a key 'sections'");
+    Place place = {.parent = &document->root, .key = "sections"};
+    size_t count = json_array_size(array);
+    if (!json_is_array(array) || count == 0 || count > SCENE_MAX_SECTIONS)
+        return place_refuse(&place, array, "an array of 1 to 1024 sections", error);
+    SectionParams defaults;
+    Result result = section_params_create(&defaults, error);
+    if (result == RESULT_OK)
+        result = quality_apply((Quality)scene->run.quality, SCOPE_SECTION, &defaults, error);
+    if (result == RESULT_OK)
+        result =
+            read_params(document, SCOPE_SECTION, &defaults, &document->root, document->json, error);
+    for (size_t i = 0; result == RESULT_OK && i < count; i++) {
+        Place element = {.parent = &place, .index = i};
+        result =
+            read_section(scene, document, &defaults, &element, json_array_get(array, i), error);
+    }
+    section_params_destroy(&defaults);
+    return result;
+}
+
+// A force given as an object: keyframes. `name` is gravity or wind.
+static Result read_force(Keyframes *keys, const char *name, const Document *document, Error *error)
+{
+    const json_t *value = json_object_get(document->json, name);
+    if (!json_is_object(value)) return RESULT_OK;
+    Place place = {.parent = &document->root, .key = name};
+    return scene_read_vector_keys(keys, param_find(name), &place, value, error);
+}
+
+static Result refuse_both(const Document *document, const char *name, const Keyframes *keys,
+                          Error *error)
+{
+    if (keys->count == 0 || !json_object_get(document->json, name)) return RESULT_OK;
+    Place place = {.parent = &document->root, .key = name};
+    return place_fail(&place, error, "given here and by the keys of 'camera'");
+}
+
+static Result read_parts(Scene *scene, const Document *document, Error *error)
+{
+    Result result = read_force(&scene->gravity, "gravity", document, error);
+    if (result == RESULT_OK) result = read_force(&scene->wind, "wind", document, error);
+    for (size_t i = 0; result == RESULT_OK && i < PART_COUNT; i++) {
+        const json_t *value = json_object_get(document->json, PARTS[i].key);
+        Place place = {.parent = &document->root, .key = PARTS[i].key};
+        if (value) result = PARTS[i].read(scene, &place, value, error);
+    }
+    if (result == RESULT_OK) result = refuse_both(document, "eye", &scene->eye, error);
+    if (result == RESULT_OK) result = refuse_both(document, "target", &scene->target, error);
+    if (result == RESULT_OK) result = refuse_both(document, "fov", &scene->fov, error);
+    return result;
+}
+
+// The preset that the command line names, or else the file, becomes the run's defaults.
+static Result read_quality(Scene *scene, const Document *document, const char *asked, Error *error)
+{
+    const json_t *value = json_object_get(document->json, "quality");
+    Quality quality = QUALITY_NORMAL;
+    Error unused = {{0}}; // what is wrong with the file's value is told when it is read
+    Result result = RESULT_OK;
+    if (asked)
+        result = quality_parse(&quality, asked, error);
+    else if (json_is_string(value))
+        quality_parse(&quality, json_string_value(value), &unused);
+    if (result == RESULT_OK) result = quality_apply(quality, SCOPE_RUN, &scene->run, error);
+    if (result == RESULT_OK) scene->run.quality = quality;
+    return result;
+}
+
+static Result read_document(Scene *scene, const Document *document, const char *quality,
+                            Error *error)
+{
+    Result result = check_keys(true, &document->root, document->json, error);
+    if (result == RESULT_OK) result = read_quality(scene, document, quality, error);
+    int asked = scene->run.quality;
+    if (result == RESULT_OK)
+        result =
+            read_params(document, SCOPE_RUN, &scene->run, &document->root, document->json, error);
+    if (quality) scene->run.quality = asked;
+    if (result == RESULT_OK) result = read_sections(scene, document, error);
+    if (result == RESULT_OK) result = read_parts(scene, document, error);
+    return result;
+}
+
+Result scene_read_unchecked(Scene *scene, const char *path, const char *quality, Error *error)
+{
+    Result result = scene_create(scene, error);
+    if (result != RESULT_OK) return result;
+    Bytes bytes;
+    result = bytes_read_file(&bytes, path, error);
+    if (result != RESULT_OK) return result;
+    json_t *json;
+    result = parse_document(&json, path, &bytes, error);
+    bytes_destroy(&bytes);
+    if (result != RESULT_OK) return result;
+
+    const char *slash = strrchr(path, '/');
+    Document document = {.root = {.key = path}, .json = json};
+    document.folder = strndup(path, slash ? (size_t)(slash + 1 - path) : 0);
+    result = document.folder ? read_document(scene, &document, quality, error)
+                             : error_set(error, RESULT_FAILED, "out of memory");
+    free(document.folder);
+    json_decref(json);
+    return result;
+}
+
+Result scene_read(Scene *scene, const char *path, Error *error)
+{
+    Result result = scene_read_unchecked(scene, path, NULL, error);
+    if (result != RESULT_OK) return result;
+    result = scene_check(scene, error);
+    if (result != RESULT_USAGE && result != RESULT_BAD_INPUT) return result;
+    return error_prefix(error, RESULT_BAD_INPUT, "%.300s: ", path);
+}

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+#include "scene/scene_param.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { TEXT_SIZE = 128, NUMBERS_MAX = 3 };
+
+// Which JSON types may stand for a kind's value.
+typedef struct Form {
+    bool boolean, number, string;
+    size_t numbers; // in an array; 0: no array
+} Form;
+
+static const Form FORMS[] = {
+    [PARAM_BOOL] = {.boolean = true},
+    [PARAM_INT] = {.number = true},
+    [PARAM_UINT] = {.number = true},
+    [PARAM_FLOAT] = {.number = true},
+    [PARAM_VEC3] = {.numbers = 3},
+    [PARAM_COLOR] = {.string = true, .numbers = 3},
+    [PARAM_BACKGROUND] = {.string = true, .numbers = 3},
+    [PARAM_AUTO_INT] = {.string = true, .number = true},
+    [PARAM_AUTO_FLOAT] = {.string = true, .number = true},
+    [PARAM_AUTO_VEC3] = {.string = true, .numbers = 3},
+    [PARAM_UNIT] = {.string = true, .number = true},
+    [PARAM_SIZE] = {.string = true, .numbers = 2},
+    [PARAM_PART] = {.string = true},
+    [PARAM_CHOICE] = {.string = true},
+    [PARAM_TEXT] = {.string = true},
+    [PARAM_PATH] = {.string = true},
+};
+
+// The number as a flag's value would have it. Returns its length.
+static int number_to_text(const json_t *value, char *text, size_t size)
+{
+    if (json_is_integer(value))
+        return snprintf(text, size, "%" JSON_INTEGER_FORMAT, json_integer_value(value));
+    return snprintf(text, size, "%.17g", json_real_value(value));
+}
+
+// An array of numbers as a flag's value would have it; false if it is anything else.
+static bool array_to_text(const json_t *value, size_t count, char separator, char text[TEXT_SIZE])
+{
+    if (!json_is_array(value) || json_array_size(value) != count || count > NUMBERS_MAX)
+        return false;
+    int length = 0;
+    for (size_t i = 0; i < count; i++) {
+        const json_t *number = json_array_get(value, i);
+        if (!json_is_number(number)) return false;
+        if (i > 0) text[length++] = separator;
+        length += number_to_text(number, text + length, TEXT_SIZE - (size_t)length);
+    }
+    return true;
+}
+
+// The value in the form that a flag's value has, in `buffer` or where it stands; NULL if its type
+// is wrong for the kind.
+static const char *value_to_text(ParamKind kind, const json_t *value, char buffer[TEXT_SIZE])
+{
+    const Form *form = &FORMS[kind];
+    if (form->boolean && json_is_boolean(value)) return json_is_true(value) ? "true" : "false";
+    if (form->string && json_is_string(value)) return json_string_value(value);
+    if (form->number && json_is_number(value)) {
+        number_to_text(value, buffer, TEXT_SIZE);
+        return buffer;
+    }
+    char separator = kind == PARAM_SIZE ? 'x' : ',';
+    return form->numbers && array_to_text(value, form->numbers, separator, buffer) ? buffer : NULL;
+}
+
+// As param_describe has it, where JSON differs from a flag's value.
+static void describe_value(const ParamInfo *info, char *text, size_t size)
+{
+    char flag[160];
+    param_describe(info, flag, sizeof flag);
+    const Form *form = &FORMS[info->kind];
+    bool vector = form->numbers == 3 && info->kind != PARAM_COLOR && info->kind != PARAM_BACKGROUND;
+    snprintf(text, size, "%s%s%s",
+             form->string && !form->number && !form->numbers ? "a string: " : "", flag,
+             vector ? ", as an array" : "");
+}
+
+char *scene_join_path(const char *folder, const char *path)
+{
+    if (!folder || path[0] == '/' || !path[0]) return strdup(path);
+    char *joined = NULL;
+    return asprintf(&joined, "%s%s", folder, path) < 0 ? NULL : joined;
+}
+
+Result scene_read_param(const ParamInfo *info, void *params, const char *folder, const Place *place,
+                        const json_t *value, Error *error)
+{
+    char buffer[TEXT_SIZE];
+    const char *text = value_to_text(info->kind, value, buffer);
+    if (!text) {
+        char expected[200];
+        describe_value(info, expected, sizeof expected);
+        return place_refuse(place, value, expected, error);
+    }
+    char *path = NULL;
+    if (info->kind == PARAM_PATH) {
+        path = scene_join_path(folder, text);
+        if (!path) return error_set(error, RESULT_FAILED, "out of memory");
+    }
+    Error why = {{0}};
+    Result result = param_parse(info, params, path ? path : text, &why);
+    free(path);
+    if (result == RESULT_USAGE) return place_fail(place, error, "%s", why.text);
+    return result == RESULT_OK ? result : error_set(error, result, "%s", why.text);
+}
+
+json_t *scene_write_float(float value)
+{
+    char text[32];
+    param_format_float(value, text, sizeof text);
+    return json_real(strtod(text, NULL));
+}
+
+json_t *scene_write_floats(const float *values, size_t count)
+{
+    json_t *array = json_array();
+    for (size_t i = 0; i < count; i++) {
+        if (json_array_append_new(array, scene_write_float(values[i])) == 0) continue;
+        json_decref(array);
+        return NULL;
+    }
+    return array;
+}
+
+json_t *scene_write_text(const char *text)
+{
+    json_t *string = json_string(text);
+    if (string) return string;
+    char *copy = strdup(text);
+    for (char *at = copy; at && *at; at++) {
+        if ((unsigned char)*at >= 128) *at = '?';
+    }
+    string = copy ? json_string(copy) : NULL;
+    free(copy);
+    return string;
+}
+
+json_t *scene_write_param(const ParamInfo *info, const void *params)
+{
+    const void *field = (const char *)params + info->offset;
+    const AutoInt *whole = field;
+    const AutoFloat *number = field;
+    const AutoVec3 *vector = field;
+    const int *size = field;
+    switch (info->kind) {
+    case PARAM_BOOL:
+        return json_boolean(*(const bool *)field);
+    case PARAM_INT:
+        return json_integer(*(const int *)field);
+    case PARAM_UINT:
+        return json_integer(*(const uint32_t *)field);
+    case PARAM_FLOAT:
+        return scene_write_float(*(const float *)field);
+    case PARAM_VEC3:
+        return scene_write_floats(field, 3);
+    case PARAM_AUTO_INT:
+        return whole->automatic ? json_string("auto") : json_integer(whole->value);
+    case PARAM_AUTO_FLOAT:
+    case PARAM_UNIT:
+        return number->automatic ? json_string("auto") : scene_write_float(number->value);
+    case PARAM_AUTO_VEC3:
+        return vector->automatic ? json_string("auto") : scene_write_floats(vector->value, 3);
+    case PARAM_SIZE:
+        return json_pack("[i, i]", size[0], size[1]);
+    // As flags have them; a color of no whole levels is "r,g,b".
+    case PARAM_PART:
+    case PARAM_COLOR:
+    case PARAM_BACKGROUND:
+    case PARAM_CHOICE:
+    case PARAM_TEXT:
+    case PARAM_PATH:
+        break;
+    }
+    char *text = param_format(info, params);
+    json_t *value = text ? scene_write_text(text) : NULL;
+    free(text);
+    return value;
+}

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#include "sim/carry.h"
+
+#include "glsl/sim/carry_params.h"
+
+#include <cglm/cglm.h>
+
+#include <string.h>
+
+// Lanes of a group; groups in a row, which every driver allows.
+enum { GROUP = 64, ROW = 65535 };
+
+Result carry_create(Carry *carry, Error *error)
+{
+    *carry = (Carry){0};
+    const ShaderDefine defines[] = {{"GROUP_SIZE", GROUP}, {0}};
+    return shader_build_compute(&carry->program, "sim/carry.comp", defines, error);
+}
+
+void carry_destroy(Carry *carry)
+{
+    if (carry->program) glDeleteProgram(carry->program);
+    gpu_buffer_destroy(&carry->uniforms);
+    *carry = (Carry){0};
+}
+
+static void dispatch(Carry *carry, CarryParams *params, const GpuBuffer *points,
+                     const GpuBuffer *vectors)
+{
+    params->count = (uint)(vectors->size / (int64_t)sizeof(vec4)) / params->stride;
+    gpu_uniforms_set(&carry->uniforms, BIND_STEP, params, sizeof *params);
+    gpu_buffer_bind_storage(points, BIND_POSITION_OUT);
+    gpu_buffer_bind_storage(vectors, BIND_STATE_OUT);
+    GLuint groups = (params->count + GROUP - 1) / GROUP;
+    glUseProgram(carry->program);
+    glDispatchCompute(groups < ROW ? groups : ROW, (groups + ROW - 1) / ROW, 1);
+}
+
+static void carry_buffer(Carry *carry, CarryParams params, const SolverBuffer *buffer)
+{
+    params.stride = buffer->kind == SOLVER_TIPS ? 2 : 1;
+    params.beside = buffer->kind == SOLVER_TIPS;
+    params.directions = buffer->kind == SOLVER_DIRECTIONS;
+    if (buffer->kind == SOLVER_POINTS) return; // with their velocities, which follow
+    const SolverBuffer *points = buffer->kind == SOLVER_VELOCITIES ? buffer - 1 : buffer;
+    dispatch(carry, &params, points->buffer, buffer->buffer);
+}
+
+void carry_apply(Carry *carry, const Solver *solver, const Hair *hair, const CarryMotion *motion)
+{
+    CarryParams params = {0};
+    memcpy(params.rotation, motion->rotation, sizeof motion->rotation);
+    memcpy(params.translation, motion->translation, sizeof motion->translation);
+    memcpy(params.velocity, motion->velocity, sizeof motion->velocity);
+    memcpy(params.spin, motion->spin, sizeof motion->spin);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    for (uint32_t batch = 0; batch < hair->batch_count; ++batch) {
+        SolverBuffer buffers[SOLVER_MAX_BUFFERS];
+        int count = solver_buffers(solver, batch, buffers);
+        for (int i = 0; i < count; ++i) carry_buffer(carry, params, &buffers[i]);
+    }
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+CarryMotion carry_between(const HeadPose *from, const HeadPose *to)
+{
+    CarryMotion motion = {0};
+    versor back;
+    vec3 moved;
+    glm_quat_inv((float *)from->rotation, back);
+    glm_quat_mul((float *)to->rotation, back, motion.rotation);
+    glm_quat_normalize(motion.rotation);
+    glm_quat_rotatev(motion.rotation, (float *)from->translation, moved);
+    glm_vec3_sub((float *)to->translation, moved, motion.translation);
+    return motion;
+}

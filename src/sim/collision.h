@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// The pass that pushes a section's hair out of the scene's colliders (glsl/sim/collide.comp).
+#pragma once
+
+#include "gpu/shader.h"
+#include "sim/solver.h"
+
+#include "glsl/sim/collide_params.h"
+
+// What the pass works on; the values are those of MODE in collide.comp.
+typedef enum CollisionMode {
+    COLLISION_PARTICLES, // positions in Hair's buffer and velocities
+    COLLISION_SEGMENTS,  // unit directions with lengths, and tips: the state of split
+    COLLISION_DRAWN,     // positions in Hair's buffer alone
+} CollisionMode;
+
+typedef struct CollisionBatch {
+    GpuBuffer contacts; // vec4 a particle: where it was at the end of step number w
+    GpuBuffer counts;   // uvec4 a strand: see collide.comp
+} CollisionBatch;
+
+// A zeroed struct is a pass that does nothing and has nothing.
+typedef struct Collision {
+    const Hair *hair;
+    const Hair *bounds; // whose bounds and greatest length hold for `hair`
+    const SectionParams *params;
+    const Colliders *colliders; // never NULL while it is on
+    const DistanceField *field; // may be NULL
+    CollisionMode mode;
+    uint32_t carried; // vertices, from the root, that the head carries
+    GLuint program;
+    uint32_t group_size;
+    GpuBuffer uniforms, shapes;
+    CollisionBatch *batches; // [hair->batch_count]; NULL with COLLISION_DRAWN
+    CollideParams step;      // the present one's
+} Collision;
+
+// Makes nothing where the scene has no colliders. Velocities and friction need a mode other than
+// COLLISION_DRAWN. RESULT_USAGE for more colliders than the loops of a CPU driver can take.
+Result collision_create(Collision *collision, const SolverSetup *setup, CollisionMode mode,
+                        uint32_t carried, Error *error);
+void collision_destroy(Collision *collision);
+
+// The colliders of a (sub-)step: where the head has them at its end. It is number `part` (1 ..
+// `parts`) of those that the step has; step->head is that at its end. False if the hair can't reach
+// any.
+bool collision_begin(Collision *collision, const SolverStep *step, int part, int parts);
+
+// Pushes out batch `batch`; `state` are its velocities or segments, `tips` those of split, else
+// NULL. Queues GPU work, visible to texture fetches and storage reads that follow.
+void collision_push(Collision *collision, uint32_t batch, const GpuBuffer *state,
+                    const GpuBuffer *tips);
+
+// Both for all batches of hair that is drawn as it is (COLLISION_DRAWN).
+void collision_push_drawn(Collision *collision, const HeadPose *head);
+
+// What a batch hands on to the next step: SOLVER_POINTS. NULL: nothing.
+const GpuBuffer *collision_memory(const Collision *collision, uint32_t batch);
+
+// Adds what happened. Waits for the GPU.
+void collision_report(const Collision *collision, SolverReport *report);

@@ -1,0 +1,366 @@
+// SPDX-License-Identifier: MIT
+#include "sim/distance_field.h"
+#include "gpu/shader.h"
+
+#include "glsl/field/field_params.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Spacings around the mesh, and within which distances to triangles are computed.
+enum { PADDING = 3, BAND = 2 };
+
+// What a work item is: a triangle, and where its block or square begins
+// (glsl/field/field_near.comp, field_cross.comp).
+typedef struct Item {
+    uint32_t at[4];
+} Item;
+
+typedef struct Items {
+    Item *list;
+    size_t count, capacity;
+    bool failed; // memory was short
+} Items;
+
+// What is needed while the field is computed.
+typedef struct Work {
+    const Gpu *gpu;
+    const Mesh *mesh;
+    DistanceField *field;
+    FieldParams params;
+    GpuBuffer uniforms, triangles, items, squares, nearest, closest[2], winding;
+    int present; // of closest
+} Work;
+
+static void work_destroy(Work *work)
+{
+    GpuBuffer *buffers[] = {&work->uniforms, &work->triangles,  &work->items,      &work->squares,
+                            &work->nearest,  &work->closest[0], &work->closest[1], &work->winding};
+    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; ++i) gpu_buffer_destroy(buffers[i]);
+}
+
+void distance_field_destroy(DistanceField *field)
+{
+    gpu_buffer_destroy(&field->values);
+    *field = (DistanceField){0};
+}
+
+static void choose_grid(DistanceField *field, const Mesh *mesh, uint32_t resolution)
+{
+    float low[3], high[3], longest = 0;
+    mesh_bounds(mesh, low, high);
+    for (int k = 0; k < 3; ++k) longest = fmaxf(longest, high[k] - low[k]);
+    field->spacing = longest > 0 ? longest / (float)resolution : 1;
+    for (int k = 0; k < 3; ++k) {
+        field->size[k] = (uint32_t)ceilf((high[k] - low[k]) / field->spacing) + 1 + 2 * PADDING;
+        float side = (float)(field->size[k] - 1) * field->spacing;
+        field->low[k] = 0.5f * (low[k] + high[k]) - 0.5f * side;
+    }
+}
+
+// --- Work items.
+
+static void add_item(Items *items, const uint32_t at[4])
+{
+    if (items->count == items->capacity && !items->failed) {
+        size_t capacity = 2 * items->capacity + 1024;
+        Item *list = realloc(items->list, capacity * sizeof *list);
+        items->failed = !list;
+        if (list) items->list = list, items->capacity = capacity;
+    }
+    if (!items->failed) memcpy(items->list[items->count++].at, at, sizeof items->list->at);
+}
+
+// Along one axis, the steps of `step` grid points that the range low .. high (in spacings) touches.
+static void cover(double low, double high, uint32_t size, uint32_t step, uint32_t *first,
+                  uint32_t *end)
+{
+    double from = fmin(fmax(floor(low), 0), size - 1.0), to = fmin(fmax(ceil(high), 0), size - 1.0);
+    *first = (uint32_t)from / step * step;
+    *end = (uint32_t)to + 1;
+}
+
+// A triangle's box in spacings from the first grid point, and its plane.
+typedef struct Extent {
+    double low[3], high[3];
+    double normal[3], height; // unit normal; zero for a sliver
+} Extent;
+
+static Extent extent_of(const DistanceField *field, const Mesh *mesh, uint32_t triangle)
+{
+    Extent extent;
+    double p[3][3], length = 0;
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k)
+            p[i][k] =
+                ((double)mesh->position[mesh->triangle[triangle][i]][k] - (double)field->low[k]) /
+                (double)field->spacing;
+    for (int k = 0; k < 3; ++k) {
+        int u = (k + 1) % 3, v = (k + 2) % 3;
+        extent.low[k] = fmin(p[0][k], fmin(p[1][k], p[2][k]));
+        extent.high[k] = fmax(p[0][k], fmax(p[1][k], p[2][k]));
+        extent.normal[k] =
+            (p[1][u] - p[0][u]) * (p[2][v] - p[0][v]) - (p[1][v] - p[0][v]) * (p[2][u] - p[0][u]);
+        length += extent.normal[k] * extent.normal[k];
+    }
+    length = sqrt(length);
+    extent.height = 0;
+    for (int k = 0; k < 3; ++k) {
+        extent.normal[k] = length > 0 ? extent.normal[k] / length : 0;
+        extent.height += extent.normal[k] * p[0][k];
+    }
+    return extent;
+}
+
+// Whether the plane passes within the band of a block.
+static bool plane_is_near(const Extent *extent, const uint32_t at[3])
+{
+    double half = 0.5 * (FIELD_BLOCK - 1), away = -extent->height, reach = BAND;
+    for (int k = 0; k < 3; ++k) {
+        away += extent->normal[k] * (at[k] + half);
+        reach += fabs(extent->normal[k]) * half;
+    }
+    return fabs(away) <= reach;
+}
+
+static void add_blocks(Items *items, const DistanceField *field, const Extent *extent,
+                       uint32_t triangle)
+{
+    uint32_t first[3], end[3], at[3];
+    for (int k = 0; k < 3; ++k)
+        cover(extent->low[k] - BAND, extent->high[k] + BAND, field->size[k], FIELD_BLOCK, &first[k],
+              &end[k]);
+    for (at[2] = first[2]; at[2] < end[2]; at[2] += FIELD_BLOCK)
+        for (at[1] = first[1]; at[1] < end[1]; at[1] += FIELD_BLOCK)
+            for (at[0] = first[0]; at[0] < end[0]; at[0] += FIELD_BLOCK)
+                if (plane_is_near(extent, at))
+                    add_item(items, (const uint32_t[]){triangle, at[0], at[1], at[2]});
+}
+
+static void add_columns(Items *items, const DistanceField *field, const Extent *extent,
+                        uint32_t triangle, uint32_t axis)
+{
+    uint32_t u = (axis + 1) % 3, v = (axis + 2) % 3, first[2], end[2];
+    cover(extent->low[u], extent->high[u], field->size[u], FIELD_COLUMNS, &first[0], &end[0]);
+    cover(extent->low[v], extent->high[v], field->size[v], FIELD_COLUMNS, &first[1], &end[1]);
+    for (uint32_t j = first[1]; j < end[1]; j += FIELD_COLUMNS)
+        for (uint32_t i = first[0]; i < end[0]; i += FIELD_COLUMNS)
+            add_item(items, (const uint32_t[]){triangle, axis, i, j});
+}
+
+// --- Passes.
+
+static void set_params(Work *work)
+{
+    gpu_uniforms_set(&work->uniforms, BIND_STEP, &work->params, sizeof work->params);
+}
+
+static void dispatch_grid(Work *work)
+{
+    const uint32_t *size = work->field->size;
+    set_params(work);
+    glDispatchCompute((size[0] + FIELD_GROUP - 1) / FIELD_GROUP, size[1], size[2]);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+static void dispatch_items(Work *work)
+{
+    uint32_t groups = (work->params.count + FIELD_GROUP - 1) / FIELD_GROUP;
+    set_params(work);
+    glDispatchCompute(groups < FIELD_ROW ? groups : FIELD_ROW, groups / FIELD_ROW + 1, 1);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+static Result use(GLuint *program, const char *file, Error *error)
+{
+    Result result = shader_build_compute(program, file, NULL, error);
+    if (result == RESULT_OK) glUseProgram(*program);
+    return result;
+}
+
+// Uploads the items and frees them.
+static Result take_items(Work *work, Items *items, Error *error)
+{
+    gpu_buffer_destroy(&work->items);
+    Result result = RESULT_OK;
+    if (items->failed || items->count > UINT32_MAX / 2)
+        result = error_set(error, RESULT_FAILED, "no memory for a distance field");
+    if (result == RESULT_OK)
+        result = gpu_buffer_create(&work->items, &work->gpu->limits, "a distance field's work",
+                                   (int64_t)(items->count * sizeof(Item)), items->list, 0, error);
+    work->params.count = (uint32_t)items->count;
+    free(items->list);
+    return result;
+}
+
+static void fill_bits(const GpuBuffer *buffer, uint32_t bits)
+{
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
+    glClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, 0, (GLsizeiptr)buffer->size,
+                         GL_RED_INTEGER, GL_UNSIGNED_INT, &bits);
+}
+
+static Result upload_triangles(Work *work, Error *error)
+{
+    const Mesh *mesh = work->mesh;
+    float(*corners)[4] = calloc((size_t)mesh->triangle_count * 3 + 1, sizeof *corners);
+    if (!corners) return error_set(error, RESULT_FAILED, "no memory for a distance field");
+    for (size_t i = 0; i < (size_t)mesh->triangle_count * 3; ++i)
+        for (int k = 0; k < 3; ++k)
+            corners[i][k] = mesh->position[mesh->triangle[i / 3][i % 3]][k] - work->field->low[k];
+    Result result = gpu_buffer_create(
+        &work->triangles, &work->gpu->limits, "a distance field's triangles",
+        (int64_t)mesh->triangle_count * 3 * (int64_t)sizeof *corners, corners, GL_RGBA32F, error);
+    free(corners);
+    return result;
+}
+
+static Result create_buffers(Work *work, Error *error)
+{
+    const GpuLimits *limits = &work->gpu->limits;
+    int64_t count = (int64_t)distance_field_count(work->field);
+    const struct {
+        GpuBuffer *buffer;
+        int64_t size;
+        GLenum format;
+    } buffers[] = {
+        {&work->squares, 4, 0},
+        {&work->nearest, 4, 0},
+        {&work->winding, 4, 0},
+        {&work->closest[0], 16, GL_RGBA32F},
+        {&work->closest[1], 16, GL_RGBA32F},
+        {&work->field->values, 4, GL_R32F},
+    };
+    Result result = upload_triangles(work, error);
+    for (size_t i = 0; i < sizeof buffers / sizeof *buffers && result == RESULT_OK; ++i)
+        result = gpu_buffer_create(buffers[i].buffer, limits, "a distance field (--sdf-resolution)",
+                                   count * buffers[i].size, NULL, buffers[i].format, error);
+    return result;
+}
+
+static Result find_near(Work *work, Error *error)
+{
+    GLuint program;
+    Items items = {0};
+    for (uint32_t t = 0; t < work->mesh->triangle_count; ++t) {
+        Extent extent = extent_of(work->field, work->mesh, t);
+        add_blocks(&items, work->field, &extent, t);
+    }
+    Result result = take_items(work, &items, error);
+    if (result == RESULT_OK) result = use(&program, "field/field_near.comp", error);
+    if (result != RESULT_OK) return result;
+    fill_bits(&work->squares, 0x7f7fffff); // the largest float
+    fill_bits(&work->nearest, 0xffffffff);
+    gpu_buffer_bind_texture(&work->triangles, BIND_POSITION);
+    gpu_buffer_bind_storage(&work->items, 0);
+    gpu_buffer_bind_storage(&work->squares, 1);
+    gpu_buffer_bind_storage(&work->nearest, 2);
+    for (work->params.phase = 0; work->params.phase < 2; ++work->params.phase) dispatch_items(work);
+    glDeleteProgram(program);
+    return RESULT_OK;
+}
+
+static Result seed(Work *work, Error *error)
+{
+    GLuint program;
+    Result result = use(&program, "field/field_seed.comp", error);
+    if (result != RESULT_OK) return result;
+    gpu_buffer_bind_storage(&work->nearest, 0);
+    gpu_buffer_bind_storage(&work->closest[0], 1);
+    dispatch_grid(work);
+    glDeleteProgram(program);
+    return RESULT_OK;
+}
+
+// Strides halve from half the grid to 1; a second pass of 1 mends most of what they miss.
+static Result flood(Work *work, Error *error)
+{
+    GLuint program;
+    const uint32_t *size = work->field->size;
+    uint32_t longest = size[0] > size[1] ? size[0] : size[1], stride = 1;
+    if (size[2] > longest) longest = size[2];
+    Result result = use(&program, "field/field_flood.comp", error);
+    if (result != RESULT_OK) return result;
+    while (2 * stride < longest) stride *= 2;
+    for (int ones = 0; ones<2; stride = stride> 1 ? stride / 2 : 1) {
+        ones += stride == 1;
+        work->params.stride = stride;
+        gpu_buffer_bind_texture(&work->closest[work->present], BIND_REST);
+        gpu_buffer_bind_storage(&work->closest[!work->present], 1);
+        dispatch_grid(work);
+        work->present = !work->present;
+    }
+    glDeleteProgram(program);
+    return RESULT_OK;
+}
+
+static Result cross(Work *work, uint32_t axis, Error *error)
+{
+    GLuint program;
+    Items items = {0};
+    for (uint32_t t = 0; t < work->mesh->triangle_count; ++t) {
+        Extent extent = extent_of(work->field, work->mesh, t);
+        add_columns(&items, work->field, &extent, t, axis);
+    }
+    Result result = take_items(work, &items, error);
+    if (result == RESULT_OK) result = use(&program, "field/field_cross.comp", error);
+    if (result != RESULT_OK) return result;
+    gpu_buffer_bind_storage(&work->items, 0);
+    gpu_buffer_bind_storage(&work->squares, 1); // now the crossings
+    dispatch_items(work);
+    glDeleteProgram(program);
+    return RESULT_OK;
+}
+
+static Result sign(Work *work, uint32_t axis, Error *error)
+{
+    GLuint program;
+    const uint32_t *size = work->field->size;
+    Result result = use(&program, "field/field_sign.comp", error);
+    if (result != RESULT_OK) return result;
+    work->params.axis = axis;
+    set_params(work);
+    gpu_buffer_bind_storage(&work->squares, 0);
+    gpu_buffer_bind_storage(&work->winding, 1);
+    gpu_buffer_bind_storage(&work->field->values, 2);
+    gpu_buffer_bind_texture(&work->closest[work->present], BIND_REST);
+    glDispatchCompute((size[(axis + 1) % 3] + FIELD_GROUP - 1) / FIELD_GROUP, size[(axis + 2) % 3],
+                      1);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+    glDeleteProgram(program);
+    return RESULT_OK;
+}
+
+static Result compute(Work *work, Error *error)
+{
+    Result result = create_buffers(work, error);
+    if (result == RESULT_OK) result = find_near(work, error);
+    if (result == RESULT_OK) result = seed(work, error);
+    if (result == RESULT_OK) result = flood(work, error);
+    if (result != RESULT_OK) return result;
+    fill_bits(&work->squares, 0);
+    fill_bits(&work->winding, 0);
+    for (uint32_t axis = 0; axis < 3 && result == RESULT_OK; ++axis) {
+        result = cross(work, axis, error);
+        if (result == RESULT_OK) result = sign(work, axis, error);
+    }
+    return result == RESULT_OK ? gpu_check("a distance field", error) : result;
+}
+
+Result distance_field_create(DistanceField *field, const Gpu *gpu, const Mesh *mesh,
+                             uint32_t resolution, Error *error)
+{
+    *field = (DistanceField){0};
+    choose_grid(field, mesh, resolution);
+    Work work = {.gpu = gpu, .mesh = mesh, .field = field};
+    memcpy(work.params.low, field->low, sizeof field->low);
+    work.params.low[3] = field->spacing;
+    work.params.size_x = field->size[0];
+    work.params.size_y = field->size[1];
+    work.params.size_z = field->size[2];
+    Result result = compute(&work, error);
+    work_destroy(&work);
+    if (result != RESULT_OK) distance_field_destroy(field);
+    return result;
+}

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// Followers on the GPU: hair that is drawn like any other and takes its positions from the guides
+// that a solver steps (glsl/sim/follow.comp).
+#pragma once
+
+#include "gpu/shader.h"
+#include "sim/solver.h"
+#include "strands/follow_plan.h"
+
+// The guides of a batch of followers, and what follow.comp reads.
+typedef struct FollowBatch {
+    uint32_t guide_batch, first_guide; // guide s is strand first_guide + s of that batch
+    GpuBuffer offsets, guides;
+} FollowBatch;
+
+typedef struct Follow {
+    Hair hair; // the followers; no style. Follower i of guide g is strand g * per_guide + i of its
+               // batch.
+    FollowBatch *batches; // [hair.batch_count]
+    const Hair *guides;
+    GpuTimer *timer;
+    GLuint program;
+    GpuBuffer uniforms;
+    uint32_t per_guide, group_size;
+    float tip_separation;
+} Follow;
+
+// Plans the followers of the guides, which are `strands` on the GPU and outlive them. With no
+// followers the result is all zero, and the other functions do nothing. RESULT_USAGE if there would
+// be 2^32 vertices or more; RESULT_FAILED if memory is short or a guide's followers exceed the
+// driver's limits.
+Result follow_create(Follow *follow, const Gpu *gpu, GpuTimer *timer, const Hair *guides,
+                     const Strands *strands, const SectionParams *params, uint32_t seed,
+                     Error *error);
+void follow_destroy(Follow *follow);
+
+// Writes the followers' positions by their guides', span "follow". Queues GPU work.
+void follow_write(Follow *follow, const HeadPose *head);

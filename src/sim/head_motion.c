@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "sim/head_motion.h"
+
+#include <cglm/cglm.h>
+
+#include <math.h>
+#include <string.h>
+
+HeadPose head_motion_pose(const Scene *scene, double time)
+{
+    HeadPose pose = {0};
+    rigid_track_evaluate(&scene->head, time, pose.rotation, pose.translation);
+    return pose;
+}
+
+// The turn from one pose to the other: axis times angle, rad.
+static void rotation_between(const HeadPose *from, const HeadPose *to, vec3 vector)
+{
+    versor back, turn;
+    glm_quat_inv((float *)from->rotation, back);
+    glm_quat_mul((float *)to->rotation, back, turn);
+    if (turn[3] < 0) glm_vec4_negate(turn);
+    float sine = glm_vec3_norm(turn);
+    glm_vec3_scale(turn, sine > 0 ? 2 * atan2f(sine, turn[3]) / sine : 0, vector);
+}
+
+// One-sided differences of second order, (4 f(h) - f(2h) - 3 f(0))/(2h): a track may begin with a
+// jump of its velocity at 0.
+bool head_motion_start(const Scene *scene, CarryMotion *motion)
+{
+    const double h = 1e-3;
+    HeadPose at[3];
+    vec3 near = {0}, far = {0}, moved = {0};
+    for (int i = 0; i < 3; ++i) at[i] = head_motion_pose(scene, i * h);
+    rotation_between(&at[0], &at[1], near);
+    rotation_between(&at[0], &at[2], far);
+    *motion = (CarryMotion){.rotation = {0, 0, 0, 1}};
+    for (int k = 0; k < 3; ++k) {
+        double step = (double)at[1].translation[k] - (double)at[0].translation[k],
+               two_steps = (double)at[2].translation[k] - (double)at[0].translation[k];
+        motion->velocity[k] = (float)((4 * step - two_steps) / (2 * h));
+        motion->spin[k] = (float)((4 * (double)near[k] - (double)far[k]) / (2 * h));
+    }
+    // Of the point that is now at the world's origin.
+    glm_vec3_cross(motion->spin, at[0].translation, moved);
+    glm_vec3_sub(motion->velocity, moved, motion->velocity);
+    return glm_vec3_norm2(motion->velocity) > 0 || glm_vec3_norm2(motion->spin) > 0;
+}
+
+static void pivot_at(const Scene *scene, const HeadPose *pose, vec3 place)
+{
+    glm_quat_rotatev((float *)pose->rotation, (float *)scene->head.pivot, place);
+    glm_vec3_add((float *)pose->translation, place, place);
+}
+
+// The pose with the head turned by `share` of the way between both, its pivot moved by as much.
+static HeadPose pose_on_the_way(const Scene *scene, const HeadPose *from, const HeadPose *to,
+                                float share)
+{
+    HeadPose pose = {0};
+    vec3 begin = {0}, end = {0}, place = {0}, turned = {0};
+    pivot_at(scene, from, begin);
+    pivot_at(scene, to, end);
+    glm_quat_slerp((float *)from->rotation, (float *)to->rotation, share, pose.rotation);
+    glm_vec3_lerp(begin, end, share, place);
+    glm_quat_rotatev(pose.rotation, (float *)scene->head.pivot, turned);
+    glm_vec3_sub(place, turned, pose.translation);
+    return pose;
+}
+
+bool head_motion_jumps(const Scene *scene, const HeadPose *from, const HeadPose *to,
+                       HeadPose *carried)
+{
+    const RunParams *run = &scene->run;
+    vec3 begin = {0}, end = {0}, turn = {0};
+    pivot_at(scene, from, begin);
+    pivot_at(scene, to, end);
+    rotation_between(from, to, turn);
+    float felt = 1; // the share of the motion that is within both limits
+    felt = fminf(felt, run->teleport_distance / fmaxf(glm_vec3_distance(begin, end), 1e-30f));
+    felt = fminf(felt, glm_rad(run->teleport_angle) / fmaxf(glm_vec3_norm(turn), 1e-30f));
+    if (felt >= 1 || run->teleport == TELEPORT_NONE) return false;
+    *carried = run->teleport == TELEPORT_CARRY ? *to : pose_on_the_way(scene, from, to, 1 - felt);
+    return true;
+}

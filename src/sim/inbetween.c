@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include "sim/inbetween.h"
+#include "sim/step_uniforms.h"
+
+#include "glsl/sim/inbetween_params.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static Result create_copies(GpuBuffer **copies, const Hair *hair, const GpuLimits *limits,
+                            Error *error)
+{
+    *copies = calloc((size_t)hair->batch_count + 1, sizeof **copies);
+    if (!*copies) return error_set(error, RESULT_FAILED, "no memory for frames between steps");
+    Result result = RESULT_OK;
+    for (uint32_t i = 0; i < hair->batch_count && result == RESULT_OK; ++i)
+        result = gpu_buffer_create(&(*copies)[i], limits, "hair positions between steps",
+                                   hair->batches[i].position.size, NULL, GL_RGBA32F, error);
+    return result;
+}
+
+Result inbetween_create(Inbetween *inbetween, const Gpu *gpu, const Hair *hair, Error *error)
+{
+    *inbetween = (Inbetween){.hair = hair, .group_size = step_group_size(gpu)};
+    const ShaderDefine defines[] = {{"GROUP_SIZE", (int)inbetween->group_size}, {0}};
+    Result result = shader_build_compute(&inbetween->program, "sim/inbetween.comp", defines, error);
+    if (result == RESULT_OK) result = create_copies(&inbetween->earlier, hair, &gpu->limits, error);
+    if (result == RESULT_OK) result = create_copies(&inbetween->later, hair, &gpu->limits, error);
+    if (result != RESULT_OK) inbetween_destroy(inbetween);
+    return result;
+}
+
+static void destroy_copies(GpuBuffer *copies, const Hair *hair)
+{
+    for (uint32_t i = 0; copies && i < hair->batch_count; ++i) gpu_buffer_destroy(&copies[i]);
+    free(copies);
+}
+
+void inbetween_destroy(Inbetween *inbetween)
+{
+    destroy_copies(inbetween->earlier, inbetween->hair);
+    destroy_copies(inbetween->later, inbetween->hair);
+    if (inbetween->program) glDeleteProgram(inbetween->program);
+    gpu_buffer_destroy(&inbetween->uniforms);
+    *inbetween = (Inbetween){0};
+}
+
+static void copy(const GpuBuffer *from, const GpuBuffer *to)
+{
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glBindBuffer(GL_COPY_READ_BUFFER, from->buffer);
+    glBindBuffer(GL_COPY_WRITE_BUFFER, to->buffer);
+    glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, (GLsizeiptr)from->size);
+}
+
+void inbetween_keep_earlier(Inbetween *inbetween)
+{
+    for (uint32_t i = 0; i < inbetween->hair->batch_count; ++i)
+        copy(&inbetween->hair->batches[i].position, &inbetween->earlier[i]);
+}
+
+void inbetween_keep_later(Inbetween *inbetween)
+{
+    for (uint32_t i = 0; i < inbetween->hair->batch_count; ++i)
+        copy(&inbetween->hair->batches[i].position, &inbetween->later[i]);
+}
+
+static void set_pose(vec4 rotation, vec4 translation, const HeadPose *pose)
+{
+    memcpy(rotation, pose->rotation, sizeof pose->rotation);
+    memcpy(translation, pose->translation, sizeof pose->translation);
+}
+
+void inbetween_mix(Inbetween *inbetween, float share, const HeadPose *earlier,
+                   const HeadPose *later, const HeadPose *now)
+{
+    InbetweenParams params = {.share = share};
+    set_pose(params.earlier_rotation, params.earlier_translation, earlier);
+    set_pose(params.later_rotation, params.later_translation, later);
+    set_pose(params.now_rotation, params.now_translation, now);
+    for (uint32_t i = 0; i < inbetween->hair->batch_count; ++i) {
+        const HairBatch *batch = &inbetween->hair->batches[i];
+        params.strand_count = batch->strand_count;
+        params.vertex_count = batch->vertex_count;
+        gpu_uniforms_set(&inbetween->uniforms, BIND_STEP, &params, sizeof params);
+        gpu_buffer_bind_texture(&inbetween->earlier[i], BIND_POSITION);
+        gpu_buffer_bind_texture(&inbetween->later[i], BIND_STATE);
+        gpu_buffer_bind_storage(&batch->position, BIND_POSITION_OUT);
+        glUseProgram(inbetween->program);
+        glDispatchCompute(step_group_count(batch->strand_count, inbetween->group_size, 1), 1, 1);
+    }
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+    inbetween->mixed = true;
+}
+
+void inbetween_restore(Inbetween *inbetween)
+{
+    if (!inbetween->mixed) return;
+    for (uint32_t i = 0; i < inbetween->hair->batch_count; ++i)
+        copy(&inbetween->later[i], &inbetween->hair->batches[i].position);
+    inbetween->mixed = false;
+}

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// Frames that fall between two steps of the simulation (glsl/sim/inbetween.comp). Keeps what is
+// drawn after both steps, and puts the later one back before the next step, since solvers that move
+// every particle have their state in it.
+#pragma once
+
+#include "gpu/shader.h"
+#include "sim/hair.h"
+#include "sim/solver.h"
+
+// A zeroed struct may be destroyed.
+typedef struct Inbetween {
+    const Hair *hair;
+    GpuBuffer *earlier, *later; // [hair->batch_count], vec4 a particle as in HairBatch.position
+    GLuint program;
+    uint32_t group_size;
+    GpuBuffer uniforms;
+    bool mixed; // Hair's positions are not `later` now
+} Inbetween;
+
+// `hair` outlives it. RESULT_FAILED when memory is short.
+Result inbetween_create(Inbetween *inbetween, const Gpu *gpu, const Hair *hair, Error *error);
+void inbetween_destroy(Inbetween *inbetween);
+
+// Copies the positions that are drawn now. All of these only queue GPU work.
+void inbetween_keep_earlier(Inbetween *inbetween);
+void inbetween_keep_later(Inbetween *inbetween);
+
+// Writes Hair's positions: `share` (0 .. 1) of the way from the earlier to the later ones. Heads
+// are those of both steps, and the one to draw.
+void inbetween_mix(Inbetween *inbetween, float share, const HeadPose *earlier,
+                   const HeadPose *later, const HeadPose *now);
+
+// Puts the later positions back if they were mixed. To be called before a step.
+void inbetween_restore(Inbetween *inbetween);

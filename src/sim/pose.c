@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#include "sim/pose.h"
+#include "sim/step_uniforms.h"
+
+#include "glsl/sim/pose_params.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { TERMS = 8 };
+
+static PoseMix mix_of_style(float style)
+{
+    if (style <= 0) return POSE_PHYSICAL;
+    if (style >= 1) return POSE_STYLE;
+    return style <= 0.5f ? POSE_NEAR_PHYSICAL : POSE_NEAR_STYLE;
+}
+
+// The factors of a turn by v p, as functions of x = sin^2(p/2): cos(v p) and sin(v p)/sin(p).
+static double turn_cos(double x, double v)
+{
+    return cos(2 * v * asin(sqrt(x)));
+}
+
+static double turn_sin(double x, double v)
+{
+    double p = 2 * asin(sqrt(x));
+    return p < 1e-9 ? v : sin(v * p) / sin(p);
+}
+
+// The polynomial through the function at the Chebyshev nodes of 0 <= x <= 1/2 (p <= 90 deg), by
+// Newton's divided differences. The nearest singularity is x = 1, so that a term more gains a
+// factor of 3 + sqrt(8); with 8 the error is below 3e-7 for any v.
+static void interpolate(double (*function)(double, double), double v, float coefficients[TERMS])
+{
+    double x[TERMS], d[TERMS], c[TERMS] = {0};
+    for (int i = 0; i < TERMS; ++i) {
+        x[i] = 0.25 + 0.25 * cos(3.14159265358979323846 * (2 * i + 1) / (2 * TERMS));
+        d[i] = function(x[i], v);
+    }
+    for (int k = 1; k < TERMS; ++k)
+        for (int i = TERMS - 1; i >= k; --i) d[i] = (d[i] - d[i - 1]) / (x[i] - x[i - k]);
+    for (int k = TERMS - 1; k >= 0; --k) { // c = c (X - x[k]) + d[k]
+        for (int i = TERMS - 1; i > 0; --i) c[i] = c[i - 1] - x[k] * c[i];
+        c[0] = d[k] - x[k] * c[0];
+    }
+    for (int i = 0; i < TERMS; ++i) coefficients[i] = (float)c[i];
+}
+
+Result pose_create(Pose *pose, const Gpu *gpu, float style, Error *error)
+{
+    *pose = (Pose){.group_size = step_group_size(gpu)};
+    double v = 2 * fmin((double)style, 1 - (double)style);
+    interpolate(turn_cos, v, pose->turn_cos);
+    interpolate(turn_sin, v, pose->turn_sin);
+    const ShaderDefine defines[] = {
+        {"GROUP_SIZE", (int)pose->group_size}, {"MIX", (int)mix_of_style(style)}, {0}};
+    return shader_build_compute(&pose->program, "sim/pose.comp", defines, error);
+}
+
+void pose_destroy(Pose *pose)
+{
+    if (pose->program) glDeleteProgram(pose->program);
+    gpu_buffer_destroy(&pose->uniforms);
+    *pose = (Pose){0};
+}
+
+void pose_write(Pose *pose, const HairBatch *batch, const GpuBuffer *segments, const HeadPose *head)
+{
+    PoseParams params = {.strand_count = batch->strand_count, .vertex_count = batch->vertex_count};
+    memcpy(params.head_rotation, head->rotation, sizeof head->rotation);
+    memcpy(params.head_translation, head->translation, sizeof head->translation);
+    memcpy(params.turn_cos, pose->turn_cos, sizeof pose->turn_cos);
+    memcpy(params.turn_sin, pose->turn_sin, sizeof pose->turn_sin);
+    gpu_uniforms_set(&pose->uniforms, BIND_STEP, &params, sizeof params);
+    gpu_buffer_bind_texture(&batch->rest, BIND_REST);
+    if (segments) gpu_buffer_bind_texture(segments, BIND_STATE);
+    gpu_buffer_bind_storage(&batch->position, BIND_POSITION_OUT);
+    glUseProgram(pose->program);
+    glDispatchCompute(step_group_count(batch->strand_count, pose->group_size, 1), 1, 1);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+}

@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: MIT
+#include "sim/simulation.h"
+#include "scene/forces.h"
+#include "sim/field_cache.h"
+#include "sim/head_motion.h"
+#include "sim/shelter.h"
+#include "sim/stability.h"
+
+#include <libdeflate.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool same_pose(const HeadPose *a, const HeadPose *b)
+{
+    return memcmp(a->rotation, b->rotation, sizeof a->rotation) == 0 &&
+           memcmp(a->translation, b->translation, sizeof a->translation) == 0;
+}
+
+// Frames fall between steps if a frame is no whole number of steps; what does not step is drawn as
+// the head stands at any time.
+static bool needs_inbetween(const Simulation *simulation, const Solver *solver)
+{
+    double steps = simulation->schedule.steps_per_frame;
+    return steps != floor(steps) && !solver_is_static(solver);
+}
+
+// Followers of hair that moves keep out of what their guides keep out of.
+static Result create_follow_collision(SimulationSection *section, const SolverSetup *setup,
+                                      Error *error)
+{
+    SolverSetup drawn = *setup;
+    drawn.hair = &section->follow.hair;
+    if (!drawn.hair->batch_count || strcmp(setup->params->algo, "none") == 0) return RESULT_OK;
+    Result result = collision_create(&section->follow_collision, &drawn, COLLISION_DRAWN, 1, error);
+    section->follow_collision.bounds = &section->hair;
+    return result;
+}
+
+static void write_followers(SimulationSection *section, const HeadPose *head)
+{
+    follow_write(&section->follow, head);
+    collision_push_drawn(&section->follow_collision, head);
+}
+
+static Result create_section(Simulation *simulation, uint32_t i, const Gpu *gpu,
+                             const Strands *strands, Error *error)
+{
+    SimulationSection *section = &simulation->sections[i];
+    const Section *description = &simulation->scene->sections[i];
+    Result result = hair_create(&section->hair, strands, 0, &gpu->limits, error);
+    bool simulated = !*simulation->scene->run.from_cache;
+    const SolverSetup setup = {.gpu = gpu,
+                               .timer = simulation->timer,
+                               .hair = &section->hair,
+                               .params = &description->params,
+                               .colliders = &simulation->scene->colliders,
+                               .field = simulation->field.spacing > 0 ? &simulation->field : NULL,
+                               .sheltered = simulation->scene->run.wind_shelter > 0,
+                               .head = &simulation->head};
+    if (result == RESULT_OK && simulated) result = solver_create(&section->solver, &setup, error);
+    if (result == RESULT_OK && simulated)
+        result = sleep_create(&section->sleep, gpu, simulation->timer, &section->hair,
+                              &section->solver, &description->params, error);
+    if (result == RESULT_OK)
+        result = follow_create(&section->follow, gpu, simulation->timer, &section->hair, strands,
+                               &description->params, simulation->scene->run.seed, error);
+    if (result == RESULT_OK) result = create_follow_collision(section, &setup, error);
+    if (result == RESULT_OK && simulated && needs_inbetween(simulation, &section->solver))
+        result = inbetween_create(&section->inbetween, gpu, &section->hair, error);
+    return result == RESULT_OK ? RESULT_OK : error_prefix(error, result, "%s: ", description->file);
+}
+
+static Result create_sections(Simulation *simulation, const Gpu *gpu, const Strands *strands,
+                              Error *error)
+{
+    const Scene *scene = simulation->scene;
+    simulation->sections = calloc((size_t)scene->section_count + 1, sizeof *simulation->sections);
+    if (!simulation->sections)
+        return error_set(error, RESULT_FAILED, "no memory for %u sections", scene->section_count);
+    Result result = RESULT_OK;
+    for (uint32_t i = 0; i < scene->section_count && result == RESULT_OK; ++i)
+        result = create_section(simulation, i, gpu, &strands[i], error);
+    return result;
+}
+
+// What a cache holds is out of the mesh already; its guides' followers are not.
+static bool needs_field(const Scene *scene, const Strands *strands)
+{
+    if (!*scene->run.from_cache) return true;
+    for (uint32_t i = 0; i < scene->section_count; ++i) {
+        const SectionParams *params = &scene->sections[i].params;
+        bool moves = strcmp(params->algo, "none") != 0;
+        if (moves && follow_options(params, &strands[i], 0).per_guide > 0) return true;
+    }
+    return false;
+}
+
+static Result create_field(Simulation *simulation, const Gpu *gpu, const Strands *strands,
+                           const Mesh *mesh, Error *error)
+{
+    const RunParams *run = &simulation->scene->run;
+    DistanceField *field = &simulation->field;
+    uint32_t resolution = (uint32_t)run->sdf_resolution;
+    if (!run->collide_mesh || !mesh || !mesh->triangle_count) return RESULT_OK;
+    uint32_t sum = libdeflate_crc32(0, mesh->position, mesh->vertex_count * sizeof *mesh->position);
+    simulation->mesh_checksum =
+        libdeflate_crc32(sum, mesh->triangle, mesh->triangle_count * sizeof *mesh->triangle);
+    if (!needs_field(simulation->scene, strands)) return RESULT_OK;
+    return run->sdf_cache ? field_cache_create(field, gpu, mesh, resolution, NULL, error)
+                          : distance_field_create(field, gpu, mesh, resolution, error);
+}
+
+Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer,
+                         const Scene *scene, const Strands *strands, const Mesh *mesh, Error *error)
+{
+    const RunParams *run = &scene->run;
+    *simulation = (Simulation){.scene = scene,
+                               .timer = timer,
+                               .head = head_motion_pose(scene, 0),
+                               .substeps = run->substeps.value};
+    simulation->step_head = simulation->step_head_before = simulation->head;
+    shelter_middle(simulation->middle, scene, strands);
+    Result result = RESULT_OK;
+    for (uint32_t i = 0; i < scene->section_count && result == RESULT_OK; ++i)
+        result = solver_check(&scene->sections[i].params, error);
+    if (result == RESULT_OK && run->substeps.automatic)
+        result = stability_choose_substeps(&simulation->substeps, scene, strands, error);
+    simulation->schedule = schedule_create(run, simulation->substeps);
+    simulation->step = -simulation->schedule.settling;
+    if (result == RESULT_OK) result = create_field(simulation, gpu, strands, mesh, error);
+    if (result == RESULT_OK) result = create_sections(simulation, gpu, strands, error);
+    if (result == RESULT_OK && !rigid_track_is_still(&scene->head))
+        result = carry_create(&simulation->carry, error);
+    if (result != RESULT_OK) simulation_destroy(simulation);
+    return result;
+}
+
+void simulation_destroy(Simulation *simulation)
+{
+    for (uint32_t i = 0; simulation->sections && i < simulation->scene->section_count; ++i) {
+        sleep_destroy(&simulation->sections[i].sleep);
+        collision_destroy(&simulation->sections[i].follow_collision);
+        follow_destroy(&simulation->sections[i].follow);
+        inbetween_destroy(&simulation->sections[i].inbetween);
+        solver_destroy(&simulation->sections[i].solver);
+        hair_destroy(&simulation->sections[i].hair);
+    }
+    free(simulation->sections);
+    distance_field_destroy(&simulation->field);
+    carry_destroy(&simulation->carry);
+    *simulation = (Simulation){0};
+}
+
+// Forces act at the step's start; the head's end pose is where the roots go.
+static SolverStep next_step(const Simulation *simulation)
+{
+    const Scene *scene = simulation->scene;
+    double rate = simulation->schedule.steps_per_s;
+    Forces forces;
+    forces_evaluate(&forces, scene, (double)simulation->step / rate);
+    SolverStep step = {
+        .dt = 1 / rate,
+        .first = simulation->step == -simulation->schedule.settling,
+        .shuffle = scene->run.seed + (uint32_t)simulation->step,
+        .head_old = simulation->step_head,
+        .head = head_motion_pose(scene, fmax(0, (double)(simulation->step + 1) / rate)),
+    };
+    memcpy(step.gravity, forces.gravity, sizeof step.gravity);
+    memcpy(step.wind, forces.wind, sizeof step.wind);
+    return step;
+}
+
+static void step_section(Simulation *simulation, SimulationSection *section, const SolverStep *step)
+{
+    uint64_t strands = section->hair.strand_count;
+    if (solver_is_static(&section->solver)) return;
+    if (sleep_skips(&section->sleep, step)) {
+        simulation->strand_steps_asleep += strands;
+        return;
+    }
+    inbetween_restore(&section->inbetween);
+    solver_step(&section->solver, step);
+    sleep_look(&section->sleep, &section->solver);
+    section->stepped = true;
+    simulation->strand_steps += strands;
+    ++simulation->steps;
+}
+
+static void carry_sections(Simulation *simulation, const CarryMotion *motion)
+{
+    for (uint32_t i = 0; i < simulation->scene->section_count; ++i) {
+        SimulationSection *section = &simulation->sections[i];
+        if (solver_is_static(&section->solver)) continue;
+        inbetween_restore(&section->inbetween);
+        solver_pose(&section->solver, &simulation->step_head);
+        carry_apply(&simulation->carry, &section->solver, &section->hair, motion);
+    }
+}
+
+// What the head does at the step's start: it sets out, or jumps.
+static void carry_along(Simulation *simulation, SolverStep *step)
+{
+    CarryMotion motion;
+    HeadPose carried;
+    if (simulation->step == 0 && head_motion_start(simulation->scene, &motion))
+        carry_sections(simulation, &motion);
+    if (!head_motion_jumps(simulation->scene, &step->head_old, &step->head, &carried)) return;
+    motion = carry_between(&step->head_old, &carried);
+    carry_sections(simulation, &motion);
+    step->head_old = carried;
+    ++simulation->jumps;
+}
+
+static void take_step(Simulation *simulation)
+{
+    SolverStep step = next_step(simulation);
+    if (simulation->carry.program) carry_along(simulation, &step);
+    shelter_fill(&step, simulation->middle, simulation->scene->run.wind_shelter);
+    for (uint32_t i = 0; i < simulation->scene->section_count; ++i)
+        step_section(simulation, &simulation->sections[i], &step);
+    simulation->step_head_before = simulation->step_head;
+    simulation->step_head = step.head;
+    ++simulation->step;
+}
+
+bool simulation_settle(Simulation *simulation)
+{
+    if (simulation->step < 0) take_step(simulation);
+    return simulation->step < 0;
+}
+
+// Whether what is drawn of the section may differ from the last pose, the head staying where it is.
+static bool moves(const SimulationSection *section)
+{
+    return section->stepped ||
+           (section->inbetween.hair && (!section->sleep.asleep || section->inbetween.mixed));
+}
+
+static void pose_section(Simulation *simulation, SimulationSection *section, const HeadPose *head)
+{
+    inbetween_restore(&section->inbetween);
+    solver_pose(&section->solver, head);
+    section->posed = true;
+    section->posed_at = *head;
+    ++simulation->poses;
+}
+
+// Poses every section that moves as it is after the last step, and keeps that.
+static void keep(Simulation *simulation, void (*keep_positions)(Inbetween *inbetween))
+{
+    for (uint32_t i = 0; i < simulation->scene->section_count; ++i) {
+        SimulationSection *section = &simulation->sections[i];
+        if (!section->inbetween.hair || !moves(section)) continue;
+        pose_section(simulation, section, &simulation->step_head);
+        keep_positions(&section->inbetween);
+    }
+}
+
+void simulation_advance(Simulation *simulation)
+{
+    const RunParams *run = &simulation->scene->run;
+    ScheduledFrame next = schedule_frame(&simulation->schedule, run, ++simulation->frame);
+    while (simulation->step < next.step) take_step(simulation);
+    if (next.share > 0 && simulation->step == next.step) {
+        keep(simulation, inbetween_keep_earlier);
+        take_step(simulation);
+        keep(simulation, inbetween_keep_later);
+    }
+    simulation->share = next.share;
+    simulation->head =
+        next.share > 0 ? head_motion_pose(simulation->scene, next.time) : simulation->step_head;
+}
+
+static void pose_between(Simulation *simulation, SimulationSection *section)
+{
+    gpu_timer_begin(simulation->timer, "inbetween");
+    inbetween_mix(&section->inbetween, simulation->share, &simulation->step_head_before,
+                  &simulation->step_head, &simulation->head);
+    gpu_timer_end(simulation->timer);
+    ++simulation->poses;
+}
+
+void simulation_pose(Simulation *simulation)
+{
+    bool moved = !same_pose(&simulation->posed_at, &simulation->head);
+    for (uint32_t i = 0; i < simulation->scene->section_count; ++i) {
+        SimulationSection *section = &simulation->sections[i];
+        bool same_head = same_pose(&section->posed_at, &simulation->head);
+        if (section->posed && same_head && !moves(section)) {
+            ++simulation->poses_skipped;
+            continue;
+        }
+        if (simulation->share > 0 && section->inbetween.hair && !section->sleep.asleep)
+            pose_between(simulation, section);
+        else
+            pose_section(simulation, section, &simulation->head);
+        write_followers(section, &simulation->head);
+        section->stepped = false;
+        moved = true;
+    }
+    simulation->posed_at = simulation->head;
+    simulation->changes += moved;
+}
+
+Result simulation_show(Simulation *simulation, int frame, const HeadPose *head,
+                       const float (*positions)[3], Error *error)
+{
+    simulation->frame = frame;
+    simulation->head = simulation->posed_at = *head;
+    ++simulation->changes;
+    Result result = RESULT_OK;
+    for (uint32_t i = 0; i < simulation->scene->section_count && result == RESULT_OK; ++i) {
+        SimulationSection *section = &simulation->sections[i];
+        result = hair_write_positions(&section->hair, positions, error);
+        if (result == RESULT_OK) write_followers(section, head);
+        positions += section->hair.particle_count;
+        section->posed = false;
+    }
+    return result;
+}
+
+SolverReport simulation_report(const Simulation *simulation)
+{
+    SolverReport report = {0};
+    for (uint32_t i = 0; i < simulation->scene->section_count; ++i)
+        if (simulation->sections[i].solver.type)
+            solver_report(&simulation->sections[i].solver, &report);
+    return report;
+}

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// A scene in motion: each section's hair with its solver, advanced frame by frame. A section moves
+// as it would if it were alone, to the bit: strands have their numbers within it, so that what
+// varies by strand does not depend on other sections. (Only --substeps auto looks at all of them.)
+#pragma once
+
+#include "scene/scene.h"
+#include "scene/schedule.h"
+#include "sim/carry.h"
+#include "sim/collision.h"
+#include "sim/distance_field.h"
+#include "sim/follow.h"
+#include "sim/inbetween.h"
+#include "sim/sleep.h"
+#include "sim/solver.h"
+#include "strands/strands.h"
+
+typedef struct SimulationSection {
+    Hair hair;
+    Solver solver;
+    Follow follow;
+    Collision follow_collision; // of the followers, which take no part in the motion
+    Inbetween inbetween; // empty where no frame falls between two steps, or the solver is static
+    Sleep sleep;
+    bool posed;        // positions are written ...
+    bool stepped;      // ... and the hair has moved since ...
+    HeadPose posed_at; // ... or not, and they hold while the head is here
+} SimulationSection;
+
+typedef struct Simulation {
+    const Scene *scene;
+    GpuTimer *timer;
+    Schedule schedule;
+    Carry carry;                 // made if the head moves
+    int substeps;                // steps a period, found if --substeps is auto
+    DistanceField field;         // of the mesh that hair collides with, or empty
+    uint32_t mesh_checksum;      // CRC-32 of that mesh's vertices and triangles
+    SimulationSection *sections; // [scene->section_count]
+    int frame;                   // to be drawn now; frame 0 is the start
+    HeadPose head;               // as drawn
+    float share;     // drawn so far on the way from the last step but one to the last; 0: the last
+    float middle[3]; // of the roots, in the head's frame: who is in the lee (--wind-shelter)
+    int64_t step;    // steps since time 0; below 0 while the hair settles
+    HeadPose step_head, step_head_before;       // after the last step and before it
+    HeadPose posed_at;                          // the head at the last pose
+    uint64_t changes;                           // poses that moved what is drawn, or the head
+    uint64_t steps, poses, poses_skipped;       // of sections
+    uint64_t strand_steps, strand_steps_asleep; // made, and left out
+    uint64_t jumps;                             // of the head, by the rule of --teleport
+} Simulation;
+
+// Uploads strands[section] and makes the solvers, unless scene->run.from_cache is set: then there
+// is nothing but simulation_show. `mesh` may be NULL where the scene says nothing of collide_mesh;
+// it is not needed afterwards. `gpu`, `timer`, `scene` outlive the simulation. Errors of
+// hair_create and solver_create, prefixed with the section's file, and of
+// stability_choose_substeps.
+Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer,
+                         const Scene *scene, const Strands *strands, const Mesh *mesh,
+                         Error *error);
+void simulation_destroy(Simulation *simulation);
+
+// A step of the warm-up (--preroll), in which the head stands as at time 0. Returns whether more
+// are left; to be called until it says no, before the first simulation_advance.
+bool simulation_settle(Simulation *simulation);
+
+// To the next frame, by as many steps of each section as it takes. Only queues GPU work.
+void simulation_advance(Simulation *simulation);
+
+// Writes the positions that are drawn. Skips what has not changed. As long as `changes` stays the
+// same, so does what is drawn, but for the camera.
+void simulation_pose(Simulation *simulation);
+
+// Shows a frame that was simulated elsewhere: writes the drawn positions of all sections' guides,
+// one behind the other (hair_write_positions), and what follows from them. The simulation's own
+// state is lost. RESULT_FAILED when memory is short.
+Result simulation_show(Simulation *simulation, int frame, const HeadPose *head,
+                       const float (*positions)[3], Error *error);
+
+// Adds up the solvers' reports. Waits for the GPU.
+SolverReport simulation_report(const Simulation *simulation);

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include "sim/sleep.h"
+#include "sim/step_uniforms.h"
+
+#include "glsl/sim/sleep_params.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// The rule of sleep.h.
+static const double LOOKS_A_SECOND = 4, CALM_S = 2, REACH_S = 120;
+enum { MOST_AGAIN = 64 };
+static const float LEAVE = 1.0f / 4, GROW = 1.0f / 60;
+
+static Result create_batch(SleepBatch *batch, const HairBatch *hair, const GpuLimits *limits,
+                           Error *error)
+{
+    size_t slots = hair_slots(hair), particles = slots * hair->vertex_count;
+    void *zero = calloc(particles, 16);
+    if (!zero) return error_set(error, RESULT_FAILED, "no memory for %zu particles", particles);
+    Result result = gpu_buffer_create(&batch->anchors, limits, "hair's anchors",
+                                      (int64_t)particles * 16, zero, 0, error);
+    if (result == RESULT_OK)
+        result = gpu_buffer_create(&batch->calm, limits, "hair's calm", (int64_t)slots * 4, zero, 0,
+                                   error);
+    free(zero);
+    return result;
+}
+
+Result sleep_create(Sleep *sleep, const Gpu *gpu, GpuTimer *timer, const Hair *hair,
+                    const Solver *solver, const SectionParams *params, Error *error)
+{
+    *sleep = (Sleep){0};
+    if (params->sleep == 0 || solver_is_static(solver)) return RESULT_OK;
+    *sleep = (Sleep){.hair = hair,
+                     .timer = timer,
+                     .tolerance = params->sleep,
+                     .group_size = step_group_size(gpu),
+                     .batches = calloc(hair->batch_count + 1, sizeof *sleep->batches)};
+    const ShaderDefine defines[] = {{"GROUP_SIZE", (int)sleep->group_size}, {0}};
+    Result result = sleep->batches ? RESULT_OK
+                                   : error_set(error, RESULT_FAILED, "no memory for %u batches",
+                                               hair->batch_count);
+    if (result == RESULT_OK)
+        result = shader_build_compute(&sleep->program, "sim/sleep.comp", defines, error);
+    for (uint32_t i = 0; i < hair->batch_count && result == RESULT_OK; ++i)
+        result = create_batch(&sleep->batches[i], &hair->batches[i], &gpu->limits, error);
+    if (result != RESULT_OK) sleep_destroy(sleep);
+    return result;
+}
+
+void sleep_destroy(Sleep *sleep)
+{
+    for (uint32_t i = 0; sleep->batches && i < sleep->hair->batch_count; ++i) {
+        gpu_buffer_destroy(&sleep->batches[i].anchors);
+        gpu_buffer_destroy(&sleep->batches[i].calm);
+    }
+    free(sleep->batches);
+    if (sleep->program) glDeleteProgram(sleep->program);
+    gpu_buffer_destroy(&sleep->uniforms);
+    *sleep = (Sleep){0};
+}
+
+static bool same_head(const HeadPose *a, const HeadPose *b)
+{
+    return memcmp(a->rotation, b->rotation, sizeof a->rotation) == 0 &&
+           memcmp(a->translation, b->translation, sizeof a->translation) == 0;
+}
+
+// Whether nothing that moves hair differs between two steps, nor within them.
+static bool same_forces(const SolverStep *a, const SolverStep *b)
+{
+    return a->dt == b->dt && !a->first && !b->first && same_head(&a->head, &b->head) &&
+           same_head(&b->head_old, &b->head) &&
+           memcmp(a->gravity, b->gravity, sizeof a->gravity) == 0 &&
+           memcmp(a->wind, b->wind, sizeof a->wind) == 0;
+}
+
+// Steps to the next look: three quarters and five quarters of the mean, in turn.
+static int interval(const Sleep *sleep)
+{
+    double mean = 1 / (LOOKS_A_SECOND * sleep->last.dt);
+    return (int)fmax(1, mean * (sleep->looks % 2 ? 1.25 : 0.75));
+}
+
+bool sleep_skips(Sleep *sleep, const SolverStep *step)
+{
+    if (!sleep->hair) return false;
+    bool same = same_forces(&sleep->last, step);
+    sleep->last = *step;
+    if (!same) {
+        sleep->steps = sleep->looks = sleep->due = 0;
+        sleep->asleep = false;
+    }
+    return sleep->asleep;
+}
+
+// Whether every strand was ready at the last look.
+static bool all_ready(const Sleep *sleep)
+{
+    uint32_t all = SLEEP_READY;
+    for (uint32_t i = 0; i < sleep->hair->batch_count; ++i) {
+        uint32_t count = sleep->hair->batches[i].strand_count, *calm = malloc(count * sizeof *calm);
+        if (!calm) return false;
+        glBindBuffer(GL_SHADER_STORAGE_BUFFER, sleep->batches[i].calm.buffer);
+        glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(count * sizeof *calm), calm);
+        for (uint32_t s = 0; s < count; ++s) all &= calm[s];
+        free(calm);
+    }
+    return all != 0;
+}
+
+static void look(Sleep *sleep)
+{
+    bool again = sleep->looks <= MOST_AGAIN && (sleep->looks & (sleep->looks - 1)) == 0;
+    double looks_a_second = fmin(LOOKS_A_SECOND, 1 / sleep->last.dt);
+    SleepParams params = {
+        .leave = sleep->tolerance * LEAVE,
+        .grow = sleep->tolerance * GROW,
+        .looks = (float)fmax(2, CALM_S * looks_a_second),
+        .looks_reach = (float)(REACH_S * looks_a_second / (double)sleep->tolerance),
+    };
+    params.anchor = sleep->looks == 0 ? SLEEP_ANCHOR_ALL
+                    : again           ? SLEEP_ANCHOR_UNREADY
+                                      : SLEEP_ANCHOR_LEFT;
+    glUseProgram(sleep->program);
+    for (uint32_t i = 0; i < sleep->hair->batch_count; ++i) {
+        const HairBatch *hair = &sleep->hair->batches[i];
+        params.strand_count = hair->strand_count;
+        params.vertex_count = hair->vertex_count;
+        gpu_uniforms_set(&sleep->uniforms, BIND_STEP, &params, sizeof params);
+        gpu_buffer_bind_texture(&hair->position, BIND_POSITION);
+        gpu_buffer_bind_texture(&hair->rest, BIND_REST);
+        gpu_buffer_bind_storage(&sleep->batches[i].anchors, BIND_ANCHORS_OUT);
+        gpu_buffer_bind_storage(&sleep->batches[i].calm, BIND_CALM_OUT);
+        glDispatchCompute(step_group_count(hair->strand_count, sleep->group_size, 1), 1, 1);
+    }
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+void sleep_look(Sleep *sleep, const Solver *solver)
+{
+    if (!sleep->hair || ++sleep->steps < sleep->due) return;
+    if (sleep->looks > 1 && all_ready(sleep)) {
+        sleep->asleep = true;
+        return;
+    }
+    solver_pose(solver, &sleep->last.head);
+    gpu_timer_begin(sleep->timer, "sleep");
+    look(sleep);
+    gpu_timer_end(sleep->timer);
+    sleep->due = sleep->steps + interval(sleep);
+    ++sleep->looks;
+}

@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: MIT
+#include "strands/follow_plan.h"
+
+#include "base/double3.h"
+#include "base/nearest.h"
+#include "base/random.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    NEIGHBOURS = 32,
+    MOST_TRIANGLES = NEIGHBOURS * (NEIGHBOURS - 1) / 2,
+    RADIUS_SAMPLES = 256,
+    SHARE_NEIGHBOURS = 16
+};
+static const double MOST_SIDE = 6; // radii
+static const double LEAST_COSINE = 0.5;
+
+static float find_radius(const SectionParams *params, const Strands *strands)
+{
+    if (!params->follower_radius.automatic) return params->follower_radius.value;
+    return strands->follower_radius > 0 ? strands->follower_radius : follow_auto_radius(strands);
+}
+
+FollowOptions follow_options(const SectionParams *params, const Strands *strands, uint32_t seed)
+{
+    FollowOptions options = {.interpolate = params->follow == FOLLOW_INTERPOLATE, .seed = seed};
+    options.per_guide = params->followers < 0 ? strands->followers : (uint32_t)params->followers;
+    if (options.per_guide) options.radius = find_radius(params, strands);
+    return options;
+}
+
+float follow_reach(const SectionParams *params, const Strands *strands)
+{
+    FollowOptions options = follow_options(params, strands, 0);
+    return options.radius * fmaxf(1, 1 + params->tip_separation);
+}
+
+static void scale(Double3 a, double by)
+{
+    for (int k = 0; k < 3; ++k) a[k] *= by;
+}
+
+// Two unit vectors perpendicular to `normal` (any length but 0) and to each other.
+static void span_plane(const Double3 normal, Double3 u, Double3 v)
+{
+    int least = 0;
+    for (int k = 1; k < 3; ++k)
+        if (fabs(normal[k]) < fabs(normal[least])) least = k;
+    Double3 axis = {0};
+    axis[least] = 1;
+    double3_cross(normal, axis, u);
+    scale(u, 1 / sqrt(double3_dot(u, u)));
+    double3_cross(normal, u, v);
+    scale(v, 1 / sqrt(double3_dot(v, v)));
+}
+
+static const float *vertex(const Strands *strands, uint32_t s, uint32_t j)
+{
+    return strands->position[strands->first[s] + j];
+}
+
+// From the root to vertex j.
+static void chord(const Strands *strands, uint32_t s, uint32_t j, Double3 way)
+{
+    const float *root = vertex(strands, s, 0), *end = vertex(strands, s, j);
+    for (int k = 0; k < 3; ++k) way[k] = (double)end[k] - (double)root[k];
+}
+
+// FNV-1a over the vertices: a guide's random numbers belong to its shape, not to its place.
+static uint64_t shape_hash(const Strands *strands, uint32_t s)
+{
+    uint64_t hash = 0xcbf29ce484222325;
+    const float(*at)[3] = (const float(*)[3]) & strands->position[strands->first[s]];
+    for (uint32_t j = 0; j < strands_size(strands, s); ++j)
+        for (int k = 0; k < 3; ++k) {
+            uint32_t bits;
+            memcpy(&bits, &at[j][k], sizeof bits);
+            hash = (hash ^ bits) * 0x100000001b3;
+        }
+    return hash;
+}
+
+// A triangle of guides around a root.
+typedef struct Triangle {
+    uint32_t second, third;
+    double area;
+} Triangle;
+
+typedef struct Fan {
+    Triangle triangle[MOST_TRIANGLES];
+    uint32_t count;
+    double area;
+} Fan;
+
+// A guide and its neighbours, seen from its root.
+typedef struct Neighbourhood {
+    uint32_t count;
+    Neighbour neighbour[NEIGHBOURS];
+    Double3 at[NEIGHBOURS];     // m, from the root
+    double flat[NEIGHBOURS][2]; // m, in the plane that fits best
+} Neighbourhood;
+
+// The direction in which the points spread least: the eigenvector of the least eigenvalue of
+// C = sum x x^T, which repeated multiplication by (trace C) I - C brings out.
+static void least_spread(const Neighbourhood *around, Double3 normal)
+{
+    double c[3][3] = {{0}};
+    Double3 next, fit = {0.36, 0.48, 0.8};
+    for (uint32_t i = 0; i < around->count; ++i)
+        for (int k = 0; k < 9; ++k) c[k / 3][k % 3] += around->at[i][k / 3] * around->at[i][k % 3];
+    double trace = c[0][0] + c[1][1] + c[2][2];
+    for (int turn = 0; turn < 50 && trace > 0; ++turn) {
+        for (int k = 0; k < 3; ++k) next[k] = fit[k] - double3_dot(c[k], fit) / trace;
+        double length = sqrt(double3_dot(next, next));
+        if (!(length > 0)) break;
+        for (int k = 0; k < 3; ++k) fit[k] = next[k] / length;
+    }
+    double3_copy(fit, normal);
+}
+
+static void look_around(Neighbourhood *around, const Nearest *roots, uint32_t guide)
+{
+    around->count = nearest_find(roots, guide, around->neighbour, NEIGHBOURS);
+    for (uint32_t i = 0; i < around->count; ++i)
+        for (int k = 0; k < 3; ++k)
+            around->at[i][k] = (double)roots->point[around->neighbour[i].point][k] -
+                               (double)roots->point[guide][k];
+    Double3 normal, u, v;
+    least_spread(around, normal);
+    span_plane(normal, u, v);
+    for (uint32_t i = 0; i < around->count; ++i)
+        around->flat[i][0] = double3_dot(around->at[i], u),
+        around->flat[i][1] = double3_dot(around->at[i], v);
+}
+
+// The middle m of the circle through the origin, a and b solves 2 m.a = a.a, 2 m.b = b.b; a point
+// p lies within it where p.p < 2 m.p. A point on the circle, to rounding, does not count.
+static bool is_delaunay(const Neighbourhood *around, uint32_t i, uint32_t j, double *area)
+{
+    const double *a = around->flat[i], *b = around->flat[j];
+    double aa = a[0] * a[0] + a[1] * a[1], bb = b[0] * b[0] + b[1] * b[1];
+    double twice = a[0] * b[1] - a[1] * b[0];
+    if (!(fabs(twice) > 1e-6 * (aa + bb))) return false;                             // no triangle
+    double x = (aa * b[1] - bb * a[1]) / twice, y = (bb * a[0] - aa * b[0]) / twice; // 2 m
+    for (uint32_t k = 0; k < around->count; ++k) {
+        const double *p = around->flat[k];
+        double pp = p[0] * p[0] + p[1] * p[1];
+        if (k != i && k != j && pp < (1 - 1e-9) * (x * p[0] + y * p[1])) return false;
+    }
+    *area = fabs(twice) / 2;
+    return true;
+}
+
+// Whether two strands lead the same way: a follower between them would hang in the air otherwise.
+static bool agree(const Strands *strands, uint32_t s, uint32_t t)
+{
+    uint32_t n = strands_size(strands, s);
+    for (int part = 1; part <= 2; ++part) {
+        Double3 a, b;
+        chord(strands, s, part * (n - 1) / 2, a);
+        chord(strands, t, part * (n - 1) / 2, b);
+        if (double3_dot(a, b) < LEAST_COSINE * sqrt(double3_dot(a, a) * double3_dot(b, b)))
+            return false;
+    }
+    return true;
+}
+
+static bool side_is_short(const Neighbourhood *around, uint32_t i, uint32_t j, double most)
+{
+    Double3 side;
+    for (int k = 0; k < 3; ++k) side[k] = around->at[i][k] - around->at[j][k];
+    return double3_dot(side, side) <= most * most;
+}
+
+static void find_fan(Fan *fan, const Strands *strands, const uint32_t *guides, const Nearest *roots,
+                     uint32_t guide, double most_side)
+{
+    Neighbourhood around;
+    look_around(&around, roots, guide);
+    bool near[NEIGHBOURS];
+    fan->count = 0, fan->area = 0;
+    for (uint32_t i = 0; i < around.count; ++i)
+        near[i] = around.neighbour[i].square <= most_side * most_side &&
+                  agree(strands, guides[guide], guides[around.neighbour[i].point]);
+    for (uint32_t i = 0; i < around.count; ++i)
+        for (uint32_t j = i + 1; j < around.count && near[i]; ++j) {
+            uint32_t second = around.neighbour[i].point, third = around.neighbour[j].point;
+            double area;
+            if (!near[j] || !side_is_short(&around, i, j, most_side) ||
+                !agree(strands, guides[second], guides[third]) ||
+                !is_delaunay(&around, i, j, &area))
+                continue;
+            fan->triangle[fan->count++] = (Triangle){second, third, area};
+            fan->area += area;
+        }
+}
+
+// Evenly in one of the fan's triangles, each chosen by its area; then turned so that the guide has
+// the largest weight, which takes the triangle's other two thirds to the one at the guide.
+static void place_between(Follower *follower, const Fan *fan, Random *random)
+{
+    double choice = random_real(random) * fan->area;
+    uint32_t t = 0;
+    while (t + 1 < fan->count && choice >= fan->triangle[t].area) choice -= fan->triangle[t++].area;
+    double root = sqrt(random_real(random)), share = random_real(random);
+    double weight[3] = {1 - root, root * (1 - share), root * share};
+    int first = 0;
+    for (int k = 1; k < 3; ++k)
+        if (weight[k] > weight[first]) first = k;
+    follower->guide[1] = fan->triangle[t].second;
+    follower->guide[2] = fan->triangle[t].third;
+    for (int k = 0; k < 3; ++k) follower->weight[k] = (float)weight[(first + k) % 3];
+}
+
+static void place_beside(Follower *follower, const Strands *strands, uint32_t s, double radius,
+                         Random *random)
+{
+    Double3 along, u, v;
+    chord(strands, s, 1, along);
+    span_plane(along, u, v);
+    double from = radius * sqrt(random_real(random));
+    double angle = 6.283185307179586 * random_real(random);
+    for (int k = 0; k < 3; ++k)
+        follower->offset[k] = (float)(from * (cos(angle) * u[k] + sin(angle) * v[k]));
+}
+
+static void plan_guide(FollowPlan *plan, const Strands *strands, uint32_t s, uint32_t guide,
+                       const Fan *fan, const FollowOptions *options)
+{
+    Random random = random_create(options->seed, shape_hash(strands, s));
+    for (uint32_t i = 0; i < options->per_guide; ++i) {
+        Follower *follower = &plan->follower[(size_t)guide * options->per_guide + i];
+        *follower = (Follower){.guide = {guide, guide, guide}, .weight = {1, 0, 0}};
+        follower->id = (uint32_t)random_next(&random);
+        if (fan->count)
+            place_between(follower, fan, &random);
+        else
+            place_beside(follower, strands, s, (double)options->radius, &random);
+    }
+}
+
+// The roots, and a tree of them; both NULL on failure.
+static Result collect_roots(float (**root)[3], Nearest *nearest, const Strands *strands,
+                            const uint32_t *guides, uint32_t count, Error *error)
+{
+    *nearest = (Nearest){0};
+    *root = malloc(((size_t)count + 1) * sizeof **root);
+    if (!*root) return error_set(error, RESULT_FAILED, "no memory for %u roots", count);
+    for (uint32_t i = 0; i < count; ++i)
+        memcpy((*root)[i], vertex(strands, guides[i], 0), sizeof **root);
+    return nearest_create(nearest, (const float(*)[3]) * root, count, error);
+}
+
+Result follow_plan_create(FollowPlan *plan, const Strands *strands, const uint32_t *guides,
+                          uint32_t count, const FollowOptions *options, Error *error)
+{
+    float(*root)[3] = NULL;
+    Nearest nearest = {0};
+    Result result = RESULT_OK;
+    *plan = (FollowPlan){.per_guide = options->per_guide};
+    plan->follower = malloc(((size_t)count * options->per_guide + 1) * sizeof *plan->follower);
+    if (!plan->follower)
+        result = error_set(error, RESULT_FAILED, "no memory for %u followers of %u strands",
+                           options->per_guide, count);
+    if (result == RESULT_OK && options->interpolate)
+        result = collect_roots(&root, &nearest, strands, guides, count, error);
+    for (uint32_t i = 0; i < count && result == RESULT_OK; ++i) {
+        Fan fan = {.count = 0};
+        if (options->interpolate)
+            find_fan(&fan, strands, guides, &nearest, i, MOST_SIDE * (double)options->radius);
+        plan_guide(plan, strands, guides[i], i, &fan, options);
+    }
+    nearest_destroy(&nearest);
+    free(root);
+    if (result != RESULT_OK) follow_plan_destroy(plan);
+    return result;
+}
+
+void follow_plan_destroy(FollowPlan *plan)
+{
+    free(plan->follower);
+    *plan = (FollowPlan){0};
+}
+
+// The radius of a disc that is one root's share of the scalp around strand s: the area up to its
+// k-th neighbour in another place, over k. 0 if there is none. (The nearest neighbours alone say
+// little where roots stand in rows.)
+static double share_radius(const Strands *strands, uint32_t s)
+{
+    const float *from = vertex(strands, s, 0);
+    float nearest[SHARE_NEIGHBOURS]; // squares, ascending
+    int count = 0;
+    for (uint32_t t = 0; t < strands->strand_count; ++t) {
+        const float *to = vertex(strands, t, 0);
+        float square = 0;
+        for (int k = 0; k < 3; ++k) square += (to[k] - from[k]) * (to[k] - from[k]);
+        bool full = count == SHARE_NEIGHBOURS;
+        if (!(square > 0) || (full && square >= nearest[count - 1])) continue;
+        int at = full ? count - 1 : count++;
+        for (; at > 0 && nearest[at - 1] > square; --at) nearest[at] = nearest[at - 1];
+        nearest[at] = square;
+    }
+    return count ? sqrt((double)nearest[count - 1] / count) : 0;
+}
+
+static int compare(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+float follow_auto_radius(const Strands *strands)
+{
+    double distance[RADIUS_SAMPLES], longest = 0;
+    uint32_t stride = strands->strand_count / RADIUS_SAMPLES + 1, count = 0;
+    for (uint32_t s = 0; s < strands->strand_count; s += stride) {
+        double found = share_radius(strands, s);
+        if (found > 0) distance[count++] = found;
+    }
+    if (count) {
+        qsort(distance, count, sizeof *distance, compare);
+        return (float)distance[count / 2];
+    }
+    for (uint32_t s = 0; s < strands->strand_count; ++s)
+        longest = fmax(longest, strands_length(strands, s));
+    return longest > 0 ? (float)(longest / 50) : 1e-3f;
+}

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+#include "strands/formats/hair_file.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct Header {
+    uint32_t strands, points, arrays, default_segments;
+    float default_transparency, default_color[3];
+} Header;
+
+bool hair_file_matches(const Bytes *bytes)
+{
+    return bytes->size >= 4 && memcmp(bytes->data, "HAIR", 4) == 0;
+}
+
+// Fails at the header field at byte `at`.
+static void fail_at(Reader *reader, size_t at, const char *what)
+{
+    if (!reader_ok(reader)) return;
+    reader->at = at;
+    reader_fail(reader, "%s", what);
+}
+
+static Header read_header(Reader *reader)
+{
+    Header header = {0};
+    reader->at = 4;
+    header.strands = reader_read_u32(reader, "the number of strands");
+    header.points = reader_read_u32(reader, "the number of points");
+    header.arrays = reader_read_u32(reader, "the bits of the arrays");
+    header.default_segments = reader_read_u32(reader, "the default number of segments");
+    reader_read_f32(reader, "the default thickness");
+    header.default_transparency = reader_read_f32(reader, "the default transparency");
+    for (int i = 0; i < 3; i++)
+        header.default_color[i] = reader_read_f32(reader, "the default colour");
+    if (reader_ok(reader) && reader->size < HAIR_HEADER_BYTES)
+        fail_at(reader, reader->size, "the file ends within the header of 128 bytes");
+    reader->at = reader_ok(reader) ? HAIR_HEADER_BYTES : reader->at;
+    if (header.strands == 0) fail_at(reader, 4, "0 strands: expected at least 1");
+    if (header.points == 0) fail_at(reader, 8, "0 points: expected at least 2");
+    if (!(header.arrays & HAIR_HAS_POINTS)) fail_at(reader, 12, "the file has no points");
+    return header;
+}
+
+// Where each array starts; all are whole.
+typedef struct Layout {
+    uint64_t segments, points, thickness, transparency, color, end;
+} Layout;
+
+static uint64_t lay_array(Reader *reader, const Header *header, uint32_t bit, uint64_t count,
+                          uint32_t stride, uint64_t *end, const char *what)
+{
+    uint64_t start = *end;
+    if (!(header->arrays & bit) || !reader_ok(reader)) return start;
+    reader->at = start;
+    if (reader_check_array(reader, start, count, stride, what)) *end = start + count * stride;
+    return start;
+}
+
+static Layout lay_out(Reader *reader, const Header *header)
+{
+    Layout layout = {.end = HAIR_HEADER_BYTES};
+    uint64_t points = header->points, *end = &layout.end;
+    layout.segments =
+        lay_array(reader, header, HAIR_HAS_SEGMENTS, header->strands, 2, end, "segment counts");
+    layout.points = lay_array(reader, header, HAIR_HAS_POINTS, points, 12, end, "points");
+    layout.thickness = lay_array(reader, header, HAIR_HAS_THICKNESS, points, 4, end, "thicknesses");
+    layout.transparency =
+        lay_array(reader, header, HAIR_HAS_TRANSPARENCY, points, 4, end, "transparencies");
+    layout.color = lay_array(reader, header, HAIR_HAS_COLOR, points, 12, end, "colours");
+    return layout;
+}
+
+// Without an array of segments nothing but this bounds the number of strands.
+static void check_default_segments(Reader *reader, const Header *header)
+{
+    if (!reader_ok(reader) || (header->arrays & HAIR_HAS_SEGMENTS)) return;
+    uint64_t points = (uint64_t)header->strands * ((uint64_t)header->default_segments + 1);
+    if (points == header->points) return;
+    reader->at = 16;
+    reader_fail(reader, "%u strands of %u segments each have %llu points, the header says %u",
+                header->strands, header->default_segments, (unsigned long long)points,
+                header->points);
+}
+
+static void read_sizes(StrandsSource *source, Reader *reader, const Header *header,
+                       const Layout *layout)
+{
+    uint64_t first = 0;
+    reader->at = layout->segments;
+    for (uint32_t s = 0; s < header->strands && reader_ok(reader); s++) {
+        source->place[s] = layout->points + 12 * first;
+        first += 1u + (header->arrays & HAIR_HAS_SEGMENTS
+                           ? reader_read_u16(reader, "a number of segments")
+                           : header->default_segments);
+        if (first > header->points) {
+            reader->at = 8;
+            reader_fail(reader, "the segments of strand %u go beyond the %u points", s,
+                        header->points);
+        }
+        source->strands.first[s + 1] = (uint32_t)first;
+    }
+    if (reader_ok(reader) && first != header->points) {
+        reader->at = 8;
+        reader_fail(reader, "%u points, the segments make %llu", header->points,
+                    (unsigned long long)first);
+    }
+}
+
+static void read_colors(Strands *strands, Reader *reader, const Header *header,
+                        const Layout *layout)
+{
+    bool has_color = header->arrays & HAIR_HAS_COLOR;
+    bool has_transparency = header->arrays & HAIR_HAS_TRANSPARENCY;
+    if (!reader_ok(reader) || !(has_color || has_transparency)) return;
+    strands->color = malloc(strands->vertex_count * sizeof *strands->color);
+    if (!strands->color) {
+        reader_fail_memory(reader);
+        return;
+    }
+    for (uint32_t v = 0; v < strands->vertex_count; v++) {
+        float *color = strands->color[v], transparency = header->default_transparency;
+        memcpy(color, header->default_color, 12);
+        if (has_color) reader_copy_floats(reader, layout->color + 12 * (uint64_t)v, color, 3);
+        if (has_transparency)
+            reader_copy_floats(reader, layout->transparency + 4 * (uint64_t)v, &transparency, 1);
+        color[3] = 1.0f - transparency;
+    }
+}
+
+Result hair_file_read(StrandsSource *source, Reader *reader)
+{
+    Header header = read_header(reader);
+    Layout layout = lay_out(reader, &header);
+    check_default_segments(reader, &header);
+    if (!reader_ok(reader)) return reader->result;
+    if (strands_source_create(source, reader, header.strands, header.points) != RESULT_OK)
+        return reader->result;
+    source->vertex_stride = 12;
+    source->unread_at = layout.end;
+    source->unread_bytes = reader->size - layout.end;
+    Strands *strands = &source->strands;
+    read_sizes(source, reader, &header, &layout);
+    if (!reader_ok(reader)) return reader->result;
+    reader_copy_floats(reader, layout.points, strands->position[0], 3 * (size_t)header.points);
+    if (header.arrays & HAIR_HAS_THICKNESS)
+        strands_source_copy(reader, &strands->vertex_thickness, layout.thickness, header.points, 1);
+    read_colors(strands, reader, &header, &layout);
+    return reader->result;
+}

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#include "strands/formats/obj_file.h"
+
+#include "mesh/obj_text.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// --- Reading: once to count, once to keep.
+
+typedef struct Obj {
+    Reader *reader;
+    StrandsSource *source;
+    float (*position)[3];              // [vertices]
+    uint32_t *line;                    // [vertices] where it stands
+    uint64_t vertices, lines, corners; // in the file
+    uint32_t read;                     // vertices so far
+    uint32_t strands, used;            // so far; `used`: corners
+    int64_t last;                      // vertex at which the last line ended, -1: none
+} Obj;
+
+static void count_statements(Obj *obj)
+{
+    Reader counter = *obj->reader;
+    ObjStatement statement;
+    char word[256];
+    while (obj_text_next(&counter, &statement)) {
+        obj->vertices += statement == OBJ_VERTEX;
+        obj->lines += statement == OBJ_LINE;
+        while (statement == OBJ_LINE && obj_text_goes_on(&counter) &&
+               reader_read_word(&counter, word, sizeof word))
+            obj->corners++;
+        reader_skip_line(&counter);
+    }
+    obj->reader->locale = counter.locale;
+}
+
+static void read_vertex(Obj *obj)
+{
+    Reader *reader = obj->reader;
+    obj->line[obj->read] = reader->line;
+    for (int i = 0; i < 3; i++)
+        obj->position[obj->read][i] = reader_read_number(reader, "a vertex's coordinate");
+    obj->read++;
+}
+
+// The vertex that a corner means, from 0.
+static uint32_t read_corner(Obj *obj)
+{
+    Reader *reader = obj->reader, before = *reader;
+    ObjCorner corner = {0};
+    if (!reader_ok(reader)) return 0;
+    if (obj_text_take_corner(reader, &corner)) {
+        int64_t index = corner.vertex + (corner.vertex < 0 ? (int64_t)obj->read + 1 : 0);
+        if (index >= 1 && index <= obj->read) return (uint32_t)index - 1;
+    }
+    *reader = before;
+    reader_fail_expected(reader, "a vertex's number, of those that stand before this line");
+    return 0;
+}
+
+static void add_corner(Obj *obj, uint32_t vertex)
+{
+    memcpy(obj->source->strands.position[obj->used], obj->position[vertex], sizeof(float[3]));
+    obj->source->vertex_line[obj->used++] = obj->line[vertex];
+}
+
+static void read_line(Obj *obj)
+{
+    Strands *strands = &obj->source->strands;
+    uint32_t corners = 0, line = obj->reader->line;
+    while (obj_text_goes_on(obj->reader)) {
+        uint32_t vertex = read_corner(obj);
+        if (!reader_ok(obj->reader)) return;
+        if (corners++ == 0) {
+            if (obj->strands > 0 && vertex == obj->last) continue;
+            obj->source->place[obj->strands++] = line;
+        }
+        add_corner(obj, vertex);
+        obj->last = vertex;
+        strands->first[obj->strands] = obj->used;
+    }
+    if (corners < 2)
+        reader_fail(obj->reader, "a line of %u vertices: expected at least 2", corners);
+}
+
+static void read_statements(Obj *obj)
+{
+    ObjStatement statement;
+    while (obj_text_next(obj->reader, &statement)) {
+        if (statement == OBJ_VERTEX) read_vertex(obj);
+        if (statement == OBJ_LINE) read_line(obj);
+        reader_skip_line(obj->reader);
+    }
+}
+
+static Result make_room(Obj *obj)
+{
+    Reader *reader = obj->reader;
+    if (obj->lines == 0) return reader_fail(reader, "a Wavefront file without lines (l)");
+    if (obj->vertices >= UINT32_MAX || obj->lines >= UINT32_MAX)
+        return reader_fail(reader, "more vertices or lines than 32-bit indices hold");
+    Result result = strands_source_create(obj->source, reader, (uint32_t)obj->lines, obj->corners);
+    if (result != RESULT_OK) return result;
+    obj->position = malloc(obj->vertices * sizeof *obj->position + 1);
+    obj->line = malloc(obj->vertices * sizeof *obj->line + 1);
+    obj->source->vertex_line = calloc(obj->corners + 1, sizeof *obj->source->vertex_line);
+    bool good = obj->position && obj->line && obj->source->vertex_line;
+    return good ? RESULT_OK : reader_fail_memory(reader);
+}
+
+Result obj_file_read(StrandsSource *source, Reader *reader)
+{
+    Obj obj = {.reader = reader, .source = source, .last = -1};
+    reader->continuation = true;
+    count_statements(&obj);
+    if (make_room(&obj) == RESULT_OK) {
+        read_statements(&obj);
+        source->strands.strand_count = obj.strands;
+        source->strands.vertex_count = obj.used;
+    }
+    free(obj.position);
+    free(obj.line);
+    return reader->result;
+}
+
+// --- Writing.
+
+void obj_file_write(FILE *stream, const Strands *strands)
+{
+    fprintf(stream, "# %u strands, %u vertices\no hair\n", strands->strand_count,
+            strands->vertex_count);
+    for (uint32_t v = 0; v < strands->vertex_count; v++)
+        obj_text_put(stream, "v", strands->position[v], 3);
+    for (uint32_t s = 0; s < strands->strand_count; s++) {
+        fputc('l', stream);
+        for (uint32_t v = strands->first[s]; v < strands->first[s + 1]; v++)
+            fprintf(stream, " %u", v + 1);
+        fputc('\n', stream);
+    }
+}

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: MIT
+#include "strands/formats/usd_file.h"
+
+#include "base/decimal.h"
+#include "strands/strands_features.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// --- Arrays: values of `width` floats in brackets, all on one line as in Pixar's own files (and as
+// some readers need it within time samples).
+
+static void put_value(FILE *stream, const float *value, int width)
+{
+    if (width > 1) fputc('(', stream);
+    for (int i = 0; i < width; ++i) decimal_put(stream, i ? ", " : "", value[i]);
+    if (width > 1) fputc(')', stream);
+}
+
+// Values `stride` floats apart.
+static void put_list(FILE *stream, const float *values, size_t count, int width, size_t stride)
+{
+    fputc('[', stream);
+    for (size_t i = 0; i < count; ++i) {
+        if (i) fputs(", ", stream);
+        put_value(stream, values + i * stride, width);
+    }
+    fputc(']', stream);
+}
+
+static size_t count_values(const Strands *strands, UsdRate rate)
+{
+    return rate == USD_CONSTANT  ? 1
+           : rate == USD_UNIFORM ? strands->strand_count
+                                 : strands->vertex_count;
+}
+
+// An attribute with its interpolation; nothing for NULL.
+static void put_primvar(UsdWriter *writer, const char *type_and_name, const float *values,
+                        UsdRate rate, int width, size_t stride)
+{
+    static const char *const names[] = {"constant", "uniform", "vertex"};
+    FILE *stream = writer->file.stream;
+    if (!values) return;
+    fprintf(stream, "    %s = ", type_and_name);
+    put_list(stream, values, count_values(writer->strands, rate), width, stride);
+    fprintf(stream, " (\n        interpolation = \"%s\"\n    )\n", names[rate]);
+}
+
+// --- What does not move.
+
+static void put_layer(FILE *stream, const UsdOptions *options)
+{
+    fprintf(stream, "#usda 1.0\n(\n    defaultPrim = \"Hair\"\n    doc = \"Tractrix\"\n");
+    decimal_put(stream, "    metersPerUnit = ", (float)options->metres_per_unit);
+    if (options->animated) {
+        fprintf(stream, "\n    startTimeCode = %d\n    endTimeCode = %d", options->first,
+                options->last);
+        decimal_put(stream, "\n    timeCodesPerSecond = ", (float)options->fps);
+        decimal_put(stream, "\n    framesPerSecond = ", (float)options->fps);
+    }
+    fprintf(stream, "\n    upAxis = \"%c\"\n)\n\n", options->up_z ? 'Z' : 'Y');
+}
+
+// What has no attribute of its own in the schema.
+static void put_wishes(FILE *stream, const Strands *strands)
+{
+    if (!strands->followers && strands->follower_radius == 0.0f && !strands->both_ends_fixed)
+        return;
+    fprintf(stream, " (\n    customData = {\n        dictionary tractrix = {\n");
+    fprintf(stream, "            bool bothEndsFixed = %d\n", strands->both_ends_fixed);
+    decimal_put(stream, "            float followerRadius = ", strands->follower_radius);
+    fprintf(stream, "\n            int followers = %u\n        }\n    }\n)", strands->followers);
+}
+
+static void put_sections(FILE *stream, const uint32_t *section, uint32_t count)
+{
+    if (!section) return;
+    fprintf(stream, "    int[] primvars:section = [");
+    for (uint32_t s = 0; s < count; ++s) fprintf(stream, s ? ", %u" : "%u", section[s]);
+    fprintf(stream, "] (\n        interpolation = \"uniform\"\n    )\n");
+}
+
+static void put_sizes(FILE *stream, const Strands *strands)
+{
+    fprintf(stream, "    int[] curveVertexCounts = [");
+    for (uint32_t s = 0; s < strands->strand_count; ++s)
+        fprintf(stream, s ? ", %u" : "%u", strands_size(strands, s));
+    fprintf(stream, "]\n");
+}
+
+static void put_color(UsdWriter *writer, const float (*color)[4], UsdRate rate)
+{
+    bool transparent = false;
+    for (size_t i = 0; color && i < count_values(writer->strands, rate); ++i)
+        transparent = transparent || color[i][3] != 1.0f;
+    if (!color) return;
+    put_primvar(writer, "color3f[] primvars:displayColor", color[0], rate, 3, 4);
+    if (transparent)
+        put_primvar(writer, "float[] primvars:displayOpacity", &color[0][3], rate, 1, 4);
+}
+
+static void put_attributes(UsdWriter *writer)
+{
+    const Strands *strands = writer->strands;
+    const UsdLook *look = &writer->options.look;
+    uint32_t features = strands_features(strands);
+    put_sizes(writer->file.stream, strands);
+    put_primvar(writer, "float[] widths", look->width, look->width_rate, 1, 1);
+    put_color(writer, look->color, look->color_rate);
+    if (features & STRANDS_HAS_STRAND_UV)
+        put_primvar(writer, "texCoord2f[] primvars:st", strands->strand_uv[0], USD_UNIFORM, 2, 2);
+    if (features & STRANDS_HAS_VERTEX_UV)
+        put_primvar(writer, "texCoord2f[] primvars:st1", strands->vertex_uv[0], USD_VERTEX, 2, 2);
+    put_primvar(writer, "float[] primvars:thickness", strands->strand_thickness, USD_UNIFORM, 1, 1);
+    if (features & STRANDS_HAS_MOBILITY)
+        put_primvar(writer, "float[] primvars:mobility", strands->mobility, USD_VERTEX, 1, 1);
+    put_sections(writer->file.stream, look->section, strands->strand_count);
+}
+
+static float largest_width(const UsdLook *look, const Strands *strands)
+{
+    float largest = 0;
+    for (size_t i = 0; look->width && i < count_values(strands, look->width_rate); ++i)
+        largest = fmaxf(largest, look->width[i]);
+    return largest;
+}
+
+Result usd_writer_open(UsdWriter *writer, const char *path, const Strands *strands,
+                       const UsdOptions *options, Error *error)
+{
+    *writer = (UsdWriter){.strands = strands, .options = *options};
+    UsdLook *look = &writer->options.look;
+    if (!look->width && strands->vertex_thickness) {
+        look->width = strands->vertex_thickness;
+        look->width_rate = USD_VERTEX;
+    }
+    if (!look->color && strands->color) {
+        look->color = (const float(*)[4])strands->color;
+        look->color_rate = USD_VERTEX;
+    }
+    writer->half_width = largest_width(look, strands) / 2;
+    Result result = outfile_open(&writer->file, path, error);
+    if (result != RESULT_OK) return result;
+    FILE *stream = writer->file.stream;
+    put_layer(stream, &writer->options);
+    fprintf(stream, "def BasisCurves \"Hair\"");
+    put_wishes(stream, strands);
+    fprintf(stream, "\n{\n    uniform token type = \"linear\"\n"
+                    "    uniform token wrap = \"nonperiodic\"\n");
+    put_attributes(writer);
+    return RESULT_OK;
+}
+
+// --- Frames.
+
+// The box of all points, wider by half a strand's width, as the schema wants it.
+static void find_extent(const UsdWriter *writer, const float (*positions)[3], float box[6])
+{
+    for (int axis = 0; axis < 3; ++axis) {
+        float low = INFINITY, high = -INFINITY;
+        for (uint32_t v = 0; v < writer->strands->vertex_count; ++v) {
+            low = fminf(low, positions[v][axis]);
+            high = fmaxf(high, positions[v][axis]);
+        }
+        box[axis] = low - writer->half_width;
+        box[3 + axis] = high + writer->half_width;
+    }
+}
+
+static bool make_room(UsdWriter *writer)
+{
+    if (writer->frame_count < writer->room) return true;
+    size_t room = 2 * writer->room + 64;
+    int *codes = realloc(writer->codes, room * sizeof *codes);
+    if (codes) writer->codes = codes;
+    float(*boxes)[6] = realloc(writer->boxes, room * sizeof *boxes);
+    if (boxes) writer->boxes = boxes;
+    if (codes && boxes) writer->room = room;
+    return codes && boxes;
+}
+
+Result usd_writer_add(UsdWriter *writer, int code, const float (*positions)[3], Error *error)
+{
+    FILE *stream = writer->file.stream;
+    if (!make_room(writer))
+        return error_set(error, RESULT_FAILED, "%s: no memory for a frame", writer->file.path);
+    size_t frame = writer->frame_count++;
+    writer->codes[frame] = code;
+    find_extent(writer, positions, writer->boxes[frame]);
+    if (frame == 0)
+        fputs(writer->options.animated ? "    point3f[] points.timeSamples = {\n"
+                                       : "    point3f[] points = ",
+              stream);
+    if (writer->options.animated) fprintf(stream, "        %d: ", code);
+    put_list(stream, positions[0], writer->strands->vertex_count, 3, 3);
+    fputs(writer->options.animated ? ",\n" : "\n", stream);
+    if (!ferror(stream)) return RESULT_OK;
+    return error_set(error, RESULT_FAILED, "%s: cannot write frame %d", writer->file.path, code);
+}
+
+static void put_extents(UsdWriter *writer)
+{
+    FILE *stream = writer->file.stream;
+    bool animated = writer->options.animated;
+    if (animated) fprintf(stream, "    }\n    float3[] extent.timeSamples = {\n");
+    for (size_t i = 0; i < writer->frame_count; ++i) {
+        if (animated)
+            fprintf(stream, "        %d: ", writer->codes[i]);
+        else
+            fprintf(stream, "    float3[] extent = ");
+        put_list(stream, writer->boxes[i], 2, 3, 3);
+        fputs(animated ? ",\n" : "\n", stream);
+    }
+    fputs(animated ? "    }\n}\n" : "}\n", stream);
+}
+
+Result usd_writer_finish(UsdWriter *writer, Error *error)
+{
+    if (writer->frame_count == 0) {
+        error_set(error, RESULT_FAILED, "%s: no frame to write", writer->file.path);
+        usd_writer_discard(writer);
+        return RESULT_FAILED;
+    }
+    put_extents(writer);
+    Result result = outfile_commit(&writer->file, error);
+    usd_writer_discard(writer);
+    return result;
+}
+
+void usd_writer_discard(UsdWriter *writer)
+{
+    outfile_discard(&writer->file);
+    free(writer->codes);
+    free(writer->boxes);
+    *writer = (UsdWriter){0};
+}
+
+Result usd_write_still(const char *path, const Strands *strands, const UsdOptions *options,
+                       Error *error)
+{
+    UsdWriter writer;
+    Result result = usd_writer_open(&writer, path, strands, options, error);
+    if (result != RESULT_OK) return result;
+    result = usd_writer_add(&writer, 0, (const float(*)[3])strands->position, error);
+    if (result == RESULT_OK) return usd_writer_finish(&writer, error);
+    usd_writer_discard(&writer);
+    return result;
+}

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+#include "strands/formats/usd_text.h"
+
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+
+char usd_text_here(const Reader *reader)
+{
+    return reader_ok(reader) ? (char)reader->data[reader->at] : 0;
+}
+
+void usd_text_step(Reader *reader)
+{
+    reader->line += usd_text_here(reader) == '\n';
+    reader->at += usd_text_here(reader) != 0;
+}
+
+char usd_text_peek(Reader *reader, bool line)
+{
+    for (;;) {
+        char c = usd_text_here(reader);
+        if (c == '#')
+            while (usd_text_here(reader) && usd_text_here(reader) != '\n') usd_text_step(reader);
+        else if (c == ' ' || c == '\t' || c == '\r' || c == ';' || (c == '\n' && !line))
+            usd_text_step(reader);
+        else
+            return c;
+    }
+}
+
+bool usd_text_take(Reader *reader, char wanted)
+{
+    if (usd_text_peek(reader, false) != wanted) return false;
+    usd_text_step(reader);
+    return true;
+}
+
+void usd_text_expect(Reader *reader, char wanted)
+{
+    if (!reader_ok(reader) || usd_text_take(reader, wanted)) return;
+    reader_fail(reader,
+                usd_text_here(reader) ? "expected '%c'" : "expected '%c', got the end of the file",
+                wanted);
+}
+
+bool usd_text_is_letter(char c)
+{
+    return isalnum((unsigned char)c) || (c && strchr("_:.+-", c)) || (c & 0x80);
+}
+
+static void read_text(Reader *reader, char word[USD_WORD_SIZE], bool brackets)
+{
+    size_t length = 0;
+    char c = usd_text_peek(reader, false);
+    for (; usd_text_is_letter(c) || (brackets && (c == '[' || c == ']'));
+         c = usd_text_here(reader)) {
+        if (length < USD_WORD_SIZE - 1) word[length++] = c;
+        usd_text_step(reader);
+    }
+    word[length] = 0;
+    if (length == 0 && reader_ok(reader))
+        reader_fail(reader, c ? "unexpected '%c'" : "the file ends within a prim", c);
+}
+
+void usd_text_read_word(Reader *reader, char word[USD_WORD_SIZE])
+{
+    read_text(reader, word, false);
+}
+
+void usd_text_read_type(Reader *reader, char word[USD_WORD_SIZE])
+{
+    read_text(reader, word, true);
+}
+
+void usd_text_read_string(Reader *reader, char text[USD_WORD_SIZE])
+{
+    char quote = usd_text_peek(reader, false);
+    text[0] = 0;
+    if (quote != '"' && quote != '\'') {
+        if (reader_ok(reader)) reader_fail(reader, "expected a string");
+        return;
+    }
+    const uint8_t *at = reader->data + reader->at;
+    int marks = at[1] == quote && at[2] == quote ? 3 : 1, found = 0;
+    size_t length = 0;
+    for (int i = 0; i < marks; ++i) usd_text_step(reader);
+    while (found < marks && usd_text_here(reader)) {
+        char c = usd_text_here(reader);
+        found = c == quote ? found + 1 : 0;
+        if (c == '\\') usd_text_step(reader);
+        if (found == 0 && length < USD_WORD_SIZE - 1) text[length++] = c;
+        usd_text_step(reader);
+    }
+    text[length] = 0;
+    if (found < marks) reader_fail(reader, "a string without an end");
+}
+
+void usd_text_skip_value(Reader *reader)
+{
+    char text[USD_WORD_SIZE], c = usd_text_peek(reader, false);
+    int depth = 0;
+    do {
+        c = usd_text_peek(reader, false);
+        char end = c == '<' ? '>' : c == '@' ? '@' : 0;
+        if (c == '"' || c == '\'') {
+            usd_text_read_string(reader, text);
+        } else if (end) {
+            do usd_text_step(reader);
+            while (usd_text_here(reader) && usd_text_here(reader) != end);
+            usd_text_step(reader);
+        } else if (c && strchr("([{", c)) {
+            ++depth, usd_text_step(reader);
+        } else if (c && strchr(")]}", c)) {
+            --depth, usd_text_step(reader);
+        } else if (c && depth > 0) {
+            usd_text_step(reader);
+        } else {
+            usd_text_read_word(reader, text);
+        }
+    } while (depth > 0 && reader_ok(reader) && usd_text_here(reader));
+    if (depth > 0) reader_fail(reader, "brackets without an end");
+}
+
+float usd_text_read_float(Reader *reader)
+{
+    char text[USD_WORD_SIZE], *end;
+    Reader before = *reader;
+    usd_text_read_word(reader, text);
+    if (!reader->locale) reader->locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    if (!reader->locale) return (float)reader_fail_memory(reader);
+    float value = strtof_l(text, &end, reader->locale);
+    before.locale = reader->locale;
+    if (!reader_ok(reader) || (end != text && !*end)) return value;
+    *reader = before;
+    reader_fail(reader, "expected a number, got '%.40s'", text);
+    return 0;
+}
+
+// --- Arrays.
+
+static bool add_value(Reader *reader, UsdValues *values, float value)
+{
+    if (values->count == values->room) {
+        size_t room = 2 * values->room + 1024;
+        float *more = realloc(values->value, room * sizeof *more);
+        if (!more) return reader_fail_memory(reader) == RESULT_OK;
+        values->value = more;
+        values->room = room;
+    }
+    values->value[values->count++] = value;
+    return true;
+}
+
+void usd_text_read_values(Reader *reader, UsdValues *values)
+{
+    values->count = 0;
+    if (usd_text_peek(reader, false) != '[') { // None
+        usd_text_skip_value(reader);
+        return;
+    }
+    usd_text_step(reader);
+    values->line = reader->line;
+    while (!usd_text_take(reader, ']') && reader_ok(reader)) {
+        char c = usd_text_here(reader);
+        if (c == '(' || c == ')' || c == ',')
+            usd_text_step(reader);
+        else
+            add_value(reader, values, usd_text_read_float(reader));
+    }
+}
+
+uint32_t usd_text_read_samples(Reader *reader, UsdValues *values)
+{
+    uint32_t count = 0;
+    usd_text_expect(reader, '{');
+    while (reader_ok(reader) && !usd_text_take(reader, '}')) {
+        while (usd_text_here(reader) && usd_text_here(reader) != ':' &&
+               usd_text_here(reader) != '\n')
+            usd_text_step(reader);
+        usd_text_expect(reader, ':');
+        if (count++ == 0)
+            usd_text_read_values(reader, values);
+        else
+            usd_text_skip_value(reader);
+        usd_text_take(reader, ',');
+    }
+    return count;
+}

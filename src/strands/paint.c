@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#include "strands/paint.h"
+
+#include "image/image.h"
+#include "image/png.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// By a unit of each pigment along the fibre's radius, red, green and blue.
+static const double EUMELANIN[] = {0.419, 0.697, 1.37}, PHEOMELANIN[] = {0.187, 0.4, 1.05};
+
+static void decode(const float srgb[3], float linear[3])
+{
+    for (int k = 0; k < 3; ++k) linear[k] = (float)image_linear_from_srgb((double)srgb[k]);
+}
+
+void hair_color(const SectionParams *params, float linear[3])
+{
+    double red = (double)params->melanin_redness, amount = (double)params->melanin.value;
+    decode(params->color, linear);
+    for (int k = 0; k < 3 && !params->melanin.automatic; ++k)
+        linear[k] = (float)exp(-2 * amount * ((1 - red) * EUMELANIN[k] + red * PHEOMELANIN[k]));
+}
+
+static double texel(const Image *map, int64_t x, int64_t y, int channel)
+{
+    int64_t w = map->width, h = map->height;
+    x = (x % w + w) % w, y = (y % h + h) % h;
+    uint8_t level = map->pixels[(y * w + x) * map->channels + channel];
+    return image_linear_from_srgb(level / 255.0);
+}
+
+// Texels have their colour in their middles.
+static void sample(const Image *map, const float uv[2], float linear[3])
+{
+    double u = (double)uv[0], v = (double)uv[1];
+    double x = (u - floor(u)) * map->width - 0.5, y = (1 - (v - floor(v))) * map->height - 0.5;
+    double left = floor(x), top = floor(y), s = x - left, t = y - top;
+    int64_t i = (int64_t)left, j = (int64_t)top;
+    for (int k = 0; k < 3; ++k) {
+        double above = (1 - s) * texel(map, i, j, k) + s * texel(map, i + 1, j, k),
+               below = (1 - s) * texel(map, i, j + 1, k) + s * texel(map, i + 1, j + 1, k);
+        linear[k] = (float)((1 - t) * above + t * below);
+    }
+}
+
+static Result paint_by_map(Paint *paint, const Strands *strands, const char *path, Error *error)
+{
+    if (!strands->strand_uv && !strands->vertex_uv)
+        return error_set(error, RESULT_USAGE, "--color-map: the file has no texture coordinates");
+    Image map;
+    Result result = png_read(&map, path, error);
+    for (uint32_t s = 0; result == RESULT_OK && s < strands->strand_count; ++s) {
+        uint32_t root = strands->first[s];
+        float color[3];
+        sample(&map, strands->strand_uv ? strands->strand_uv[s] : strands->vertex_uv[root], color);
+        for (uint32_t v = root; v < strands->first[s + 1]; ++v)
+            memcpy(paint->color[v], color, sizeof color);
+    }
+    image_destroy(&map);
+    return result;
+}
+
+static float clamp_share(float x)
+{
+    return fminf(fmaxf(x, 0), 1);
+}
+
+static void paint_by_file(Paint *paint, const Strands *strands)
+{
+    for (uint32_t v = 0; v < strands->vertex_count; ++v)
+        for (int k = 0; k < 3; ++k) paint->color[v][k] = clamp_share(strands->color[v][k]);
+}
+
+static void paint_evenly(Paint *paint, const float color[3])
+{
+    for (uint32_t v = 0; v < paint->vertex_count; ++v)
+        memcpy(paint->color[v], color, 3 * sizeof *color);
+}
+
+// Of vertex j among n, what is the tip's: a share that grows along the last `length` of the strand.
+static float tip_share(float length, uint32_t j, uint32_t n)
+{
+    float from_tip = 1 - (float)j / (float)(n - 1);
+    return length > 0 ? clamp_share(1 - from_tip / length) : 0;
+}
+
+static void paint_strand(Paint *paint, const Strands *strands, const SectionParams *params,
+                         uint32_t s)
+{
+    uint32_t first = strands->first[s], n = strands_size(strands, s);
+    bool from_file = strands->color && params->file_colors;
+    double opacity = 0;
+    float tip[3];
+    decode(params->tip_color, tip);
+    for (uint32_t v = first; from_file && v < first + n; ++v)
+        opacity += (double)clamp_share(strands->color[v][3]) / n;
+    for (uint32_t j = 0; j < n; ++j) {
+        float *color = paint->color[first + j], share = tip_share(params->tip_length, j, n);
+        for (int k = 0; k < 3; ++k) color[k] += share * (tip[k] - color[k]);
+        color[3] = from_file ? (float)opacity : 1;
+    }
+}
+
+// The file's thickness at vertex v of strand s; 1 where it has none.
+static double file_thickness(const Strands *strands, uint32_t s, uint32_t v)
+{
+    if (strands->vertex_thickness) return fabs((double)strands->vertex_thickness[v]);
+    return strands->strand_thickness ? fabs((double)strands->strand_thickness[s]) : 1;
+}
+
+static void set_thickness(Paint *paint, const Strands *strands, const SectionParams *params)
+{
+    bool from_file = params->file_thickness, tapers = from_file && strands->vertex_thickness;
+    double mean = 0;
+    for (uint32_t s = 0; s < strands->strand_count; ++s)
+        for (uint32_t v = strands->first[s]; v < strands->first[s + 1]; ++v)
+            mean += file_thickness(strands, s, v) / strands->vertex_count;
+    if (!(mean > 0)) from_file = tapers = false;
+    for (uint32_t s = 0; s < strands->strand_count; ++s) {
+        uint32_t first = strands->first[s], n = strands_size(strands, s);
+        for (uint32_t j = 0; j < n; ++j) {
+            double factor = from_file ? file_thickness(strands, s, first + j) / mean : 1;
+            if (!tapers) factor *= 1 - (1 - (double)params->tip_ratio) * j / (n - 1);
+            paint->thickness[first + j] = (float)factor;
+        }
+    }
+}
+
+static bool is_wanted(const Strands *strands, const SectionParams *params)
+{
+    bool thickness = strands->vertex_thickness || strands->strand_thickness;
+    return *params->color_map || params->tip_length > 0 ||
+           (strands->color && params->file_colors) || (thickness && params->file_thickness);
+}
+
+Result paint_create(Paint *paint, const Strands *strands, const SectionParams *params, Error *error)
+{
+    *paint = (Paint){0};
+    if (!is_wanted(strands, params)) return RESULT_OK;
+    uint32_t count = strands->vertex_count;
+    *paint = (Paint){.vertex_count = count,
+                     .color = malloc(((size_t)count + 1) * sizeof *paint->color),
+                     .thickness = malloc(((size_t)count + 1) * sizeof *paint->thickness)};
+    Result result = RESULT_OK;
+    float own[3];
+    hair_color(params, own);
+    if (!paint->color || !paint->thickness)
+        result = error_set(error, RESULT_FAILED, "no memory for the colours of %u vertices", count);
+    else if (*params->color_map)
+        result = paint_by_map(paint, strands, params->color_map, error);
+    else if (strands->color && params->file_colors)
+        paint_by_file(paint, strands), paint->colors_from_file = true;
+    else
+        paint_evenly(paint, own);
+    for (uint32_t s = 0; result == RESULT_OK && s < strands->strand_count; ++s)
+        paint_strand(paint, strands, params, s);
+    if (result == RESULT_OK) set_thickness(paint, strands, params);
+    if (result != RESULT_OK) paint_destroy(paint);
+    return result;
+}
+
+void paint_destroy(Paint *paint)
+{
+    free(paint->color);
+    free(paint->thickness);
+    *paint = (Paint){0};
+}

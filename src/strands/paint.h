@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// What hair looks like where it is not the same all over a section: colours and thickness that a
+// file has, a picture that colours the strands by their roots, tips of another colour.
+#pragma once
+
+#include "base/params.h"
+#include "strands/strands.h"
+
+// A zeroed struct paints nothing: the section's own values hold.
+typedef struct Paint {
+    float (*color)[4];     // [vertex_count], linear RGB and opacity (a factor), 0..1; owned
+    float *thickness;      // [vertex_count], radius over the section's, tips included; owned
+    bool colors_from_file; // they are kept as they are, strands do not differ by chance
+    uint32_t vertex_count;
+} Paint;
+
+// Paints the strands as the parameters say:
+//   color       that of color_map at the strand's root (bilinear; u to the right, v up from the
+//               lowest row, both wrap around), else the file's with file_colors, else hair_color
+//   tip         from 1 - tip_length of the way along (by vertices) colours run to tip_color
+//   opacity     the file's with file_colors, its mean over the strand
+//   thickness   the file's with file_thickness over its mean of all vertices; where it is by
+//   vertex,
+//               tip_ratio is not applied
+// Nothing of all that leaves the paint zeroed. RESULT_BAD_INPUT if the picture can't be read,
+// RESULT_USAGE if there is one but no texture coordinates; RESULT_FAILED when memory is short.
+Result paint_create(Paint *paint, const Strands *strands, const SectionParams *params,
+                    Error *error);
+void paint_destroy(Paint *paint);
+
+// The section's colour, linear RGB: `color`, or what `melanin` absorbs: of white light that
+// crosses a fibre along its diameter, exp(-2 sigma) is left, sigma the absorption by radius of so
+// much eumelanin and pheomelanin (d'Eon et al. 2011).
+void hair_color(const SectionParams *params, float linear[3]);

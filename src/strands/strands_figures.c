@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+#include "strands/strands_figures.h"
+
+#include "base/double3.h"
+#include "base/nearest.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *figure_name(FigureKind kind)
+{
+    static const char *const names[FIGURE_KINDS] = {
+        "vertices", "length", "reach", "segment", "turn", "curvature", "root_spacing"};
+    return names[kind];
+}
+
+const char *figure_unit(FigureKind kind)
+{
+    static const char *const units[FIGURE_KINDS] = {"", "m", "", "m", "deg", "1/m", "m"};
+    return units[kind];
+}
+
+// --- Quantities.
+
+static void subtract(const float a[3], const float b[3], Double3 d)
+{
+    for (int k = 0; k < 3; k++) d[k] = (double)b[k] - (double)a[k];
+}
+
+// The angle between two directions, radians, by arctangent: exact for small ones, too.
+static double angle(const Double3 a, const Double3 b)
+{
+    Double3 c;
+    double3_cross(a, b, c);
+    return atan2(double3_length(c), double3_dot(a, b));
+}
+
+static size_t collect_strands(const Strands *strands, FigureKind kind, double *values)
+{
+    for (uint32_t s = 0; s < strands->strand_count; s++) {
+        Double3 reach;
+        double length = strands_length(strands, s);
+        subtract(strands->position[strands->first[s]], strands->position[strands->first[s + 1] - 1],
+                 reach);
+        values[s] = kind == FIGURE_SIZE     ? strands_size(strands, s)
+                    : kind == FIGURE_LENGTH ? length
+                                            : double3_length(reach) / length;
+    }
+    return strands->strand_count;
+}
+
+static size_t collect_vertices(const Strands *strands, FigureKind kind, double *values)
+{
+    static const double deg = 57.29577951308232;
+    size_t count = 0;
+    for (uint32_t s = 0; s < strands->strand_count; s++)
+        for (uint32_t v = strands->first[s]; v + 1 < strands->first[s + 1]; v++) {
+            Double3 before, after;
+            subtract(strands->position[v], strands->position[v + 1], after);
+            if (kind == FIGURE_SEGMENT) {
+                values[count++] = double3_length(after);
+            } else if (v > strands->first[s]) {
+                subtract(strands->position[v - 1], strands->position[v], before);
+                double turn = angle(before, after),
+                       mean = (double3_length(before) + double3_length(after)) / 2;
+                values[count++] = kind == FIGURE_TURN ? deg * turn : turn / mean;
+            }
+        }
+    return count;
+}
+
+static Result collect_roots(const Strands *strands, double *values, size_t *count, Error *error)
+{
+    float(*roots)[3] = malloc(strands->strand_count * sizeof *roots + 1);
+    Nearest nearest = {0};
+    *count = 0;
+    if (!roots) return error_set(error, RESULT_FAILED, "no memory to measure roots");
+    for (uint32_t s = 0; s < strands->strand_count; s++)
+        memcpy(roots[s], strands->position[strands->first[s]], sizeof *roots);
+    Result result =
+        nearest_create(&nearest, (const float(*)[3])roots, strands->strand_count, error);
+    for (uint32_t s = 0; s < strands->strand_count && result == RESULT_OK; s++) {
+        Neighbour found = {0};
+        if (nearest_find(&nearest, s, &found, 1) == 1) values[(*count)++] = sqrt(found.square);
+    }
+    nearest_destroy(&nearest);
+    free(roots);
+    return result;
+}
+
+// --- Their distribution.
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// Sorts the values.
+static Figure summarise(double *values, size_t count)
+{
+    if (count == 0) return (Figure){0};
+    double sum = 0;
+    qsort(values, count, sizeof *values, compare_doubles);
+    for (size_t i = 0; i < count; i++) sum += values[i];
+    return (Figure){.count = count,
+                    .min = values[0],
+                    .low = values[(count - 1) / 20],
+                    .median = values[(count - 1) / 2],
+                    .high = values[(count - 1) * 19 / 20],
+                    .max = values[count - 1],
+                    .mean = sum / (double)count};
+}
+
+// From sorted sizes.
+static Result count_sizes(StrandsFigures *figures, const double *sizes, size_t count, Error *error)
+{
+    figures->sizes = malloc(count * sizeof *figures->sizes + 1);
+    if (!figures->sizes) return error_set(error, RESULT_FAILED, "no memory to count vertices");
+    for (size_t i = 0; i < count; i++) {
+        SizeCount *last = figures->sizes + figures->size_count;
+        if (i > 0 && sizes[i] == sizes[i - 1])
+            last[-1].strands++;
+        else
+            *last = (SizeCount){(uint32_t)sizes[i], 1}, figures->size_count++;
+    }
+    return RESULT_OK;
+}
+
+static Result measure_kind(StrandsFigures *figures, const Strands *strands, FigureKind kind,
+                           double *values, Error *error)
+{
+    size_t count = 0;
+    Result result = RESULT_OK;
+    if (kind <= FIGURE_REACH)
+        count = collect_strands(strands, kind, values);
+    else if (kind == FIGURE_ROOTS)
+        result = collect_roots(strands, values, &count, error);
+    else
+        count = collect_vertices(strands, kind, values);
+    figures->figures[kind] = summarise(values, count);
+    if (kind == FIGURE_SIZE) result = count_sizes(figures, values, count, error);
+    return result;
+}
+
+Result strands_figures_measure(StrandsFigures *figures, const Strands *strands, Error *error)
+{
+    *figures =
+        (StrandsFigures){.strands = strands->strand_count, .vertices = strands->vertex_count};
+    strands_bounds(strands, figures->low, figures->high);
+    double *values = malloc(((size_t)strands->vertex_count + 1) * sizeof *values);
+    Result result = values ? RESULT_OK
+                           : error_set(error, RESULT_FAILED, "no memory to measure %u strands",
+                                       strands->strand_count);
+    for (int kind = 0; kind < FIGURE_KINDS && result == RESULT_OK; kind++)
+        result = measure_kind(figures, strands, (FigureKind)kind, values, error);
+    const Figure *length = &figures->figures[FIGURE_LENGTH];
+    figures->total_length = length->mean * (double)length->count;
+    free(values);
+    return result;
+}
+
+void strands_figures_destroy(StrandsFigures *figures)
+{
+    free(figures->sizes);
+    *figures = (StrandsFigures){0};
+}

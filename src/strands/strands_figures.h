@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// Statistics of strands.
+#pragma once
+
+#include "strands/strands.h"
+
+// Of one quantity over all strands, segments, ...; all 0 if there are none.
+typedef struct Figure {
+    uint64_t count;
+    double min, low, median, high, max; // low, high: 5 % and 95 % are not greater
+    double mean;
+} Figure;
+
+typedef enum FigureKind {
+    FIGURE_SIZE,      // vertices, of strands
+    FIGURE_LENGTH,    // m, of strands
+    FIGURE_REACH,     // from root to tip over the length, of strands: 1 is straight
+    FIGURE_SEGMENT,   // m, length of segments
+    FIGURE_TURN,      // degrees between a segment and the next, at inner vertices
+    FIGURE_CURVATURE, // 1/m, there: the turn in radians over the mean of the segments' lengths
+    FIGURE_ROOTS,     // m, from a root to the nearest other one
+    FIGURE_KINDS
+} FigureKind;
+
+// A number of vertices and how many strands have it.
+typedef struct SizeCount {
+    uint32_t size, strands;
+} SizeCount;
+
+typedef struct StrandsFigures {
+    uint32_t strands, vertices;
+    Figure figures[FIGURE_KINDS];
+    double total_length;   // m
+    float low[3], high[3]; // box of all vertices, m
+    SizeCount *sizes;      // [size_count], owned, by rising size
+    uint32_t size_count;
+} StrandsFigures;
+
+// RESULT_FAILED when memory is short. A zeroed struct may be destroyed.
+Result strands_figures_measure(StrandsFigures *figures, const Strands *strands, Error *error);
+void strands_figures_destroy(StrandsFigures *figures);
+
+// "length", and its unit: "m" or "" for a number without one.
+const char *figure_name(FigureKind kind);
+const char *figure_unit(FigureKind kind);

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// Reads hair of any known format. The content decides which, never the file's name.
+#pragma once
+
+#include "base/bytes.h"
+#include "strands/strands_report.h"
+
+// All zero: guess the unit, y is up, mend what can be mended.
+typedef struct StrandsReadOptions {
+    float unit;    // metres per unit of the file; 0: guess, see strands_read
+    bool up_z;     // the file's z is up
+    bool strict;   // refuse a file with any defect
+    uint32_t seed; // for the shuffle of a file that says `is sorted 0`
+} StrandsReadOptions;
+
+// Reads `path` and mends it: metres, y up, and every strand as strands_mend.h promises, at least
+// one of them. What was mended is in `report` (may be NULL); nothing is dropped, padded or cut
+// without being counted there. Strands come in the file's order unless the file asks for a shuffle.
+//
+// A unit of 0 is the one that the file tells (USD), or guessed. TressFX 2 text is in centimetres,
+// unless all of it lies within 5 units of the origin's box, which is metres, as this program writes
+// it. For the others it is the one of m, cm and mm that brings the diagonal of the vertices' box
+// nearest to 0.5 m by ratio: below 5 units m, below 158 cm, else mm.
+//
+// Fails with RESULT_BAD_INPUT (not a hair file, malformed, no usable strand, or defects and
+// `strict`) with one line that names the place, or RESULT_FAILED (memory); `strands` is empty then.
+// `report` is complete where the content was well formed, even on failure: kind is STRANDS_KINDS
+// where it was not.
+Result strands_read(Strands *strands, const char *path, const StrandsReadOptions *options,
+                    StrandsReport *report, Error *error);
+
+// The same for content that is in memory (with a zero behind it, as file.h says); `name` stands for
+// the path in messages.
+Result strands_read_bytes(Strands *strands, const char *name, const Bytes *bytes,
+                          const StrandsReadOptions *options, StrandsReport *report, Error *error);

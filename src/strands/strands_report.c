@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: MIT
+#include "strands/strands_report.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+const char *strands_kind_name(StrandsKind kind)
+{
+    static const char *const names[STRANDS_KINDS] = {
+        "TressFX 2 text",        "TressFX 3 binary", "TressFX 4 binary", "HAIR",
+        "USC-HairSalon (.data)", "CT2Hair (.bin)",   "Wavefront lines",  "USD (.usda)"};
+    return (unsigned)kind < STRANDS_KINDS ? names[kind] : "unknown";
+}
+
+// --- Measuring.
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static int compare_counts(const void *a, const void *b)
+{
+    uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+    return (x > y) - (x < y);
+}
+
+static uint32_t hash_root(const float root[3])
+{
+    uint32_t bits[3];
+    memcpy(bits, root, sizeof bits);
+    uint32_t hash = bits[0] * 0x9e3779b1u ^ bits[1] * 0x85ebca77u ^ bits[2] * 0xc2b2ae3du;
+    return (hash ^ (hash >> 15)) * 0x2c1b3c6du;
+}
+
+// Counts with a hash table of strand numbers (plus 1; 0: free) of `mask` + 1 places, all zero.
+static uint32_t count_shared_roots(const Strands *strands, uint32_t *table, size_t mask)
+{
+    uint32_t shared = 0;
+    for (uint32_t s = 0; s < strands->strand_count; s++) {
+        const float *root = strands->position[strands->first[s]];
+        size_t place = hash_root(root) & mask;
+        for (; table[place]; place = (place + 1) & mask)
+            if (memcmp(root, strands->position[strands->first[table[place] - 1]],
+                       sizeof(float[3])) == 0)
+                break;
+        if (table[place])
+            shared++;
+        else
+            table[place] = s + 1;
+    }
+    return shared;
+}
+
+static Result find_shared_roots(StrandsReport *report, const Strands *strands, Error *error)
+{
+    size_t places = 16;
+    while (places < 2 * (size_t)strands->strand_count) places *= 2;
+    uint32_t *table = calloc(places, sizeof *table);
+    if (!table) return error_set(error, RESULT_FAILED, "no memory to compare roots");
+    report->shared_roots = count_shared_roots(strands, table, places - 1);
+    free(table);
+    return RESULT_OK;
+}
+
+static void measure_each(StrandsReport *report, const Strands *strands, double *lengths,
+                         uint32_t *sizes)
+{
+    uint32_t count = strands->strand_count;
+    report->length_total = 0.0;
+    for (uint32_t s = 0; s < count; s++) {
+        lengths[s] = strands_length(strands, s);
+        sizes[s] = strands_size(strands, s);
+        report->length_total += lengths[s];
+    }
+    qsort(lengths, count, sizeof *lengths, compare_doubles);
+    qsort(sizes, count, sizeof *sizes, compare_counts);
+    report->length_min = lengths[0];
+    report->length_median = lengths[count / 2];
+    report->length_max = lengths[count - 1];
+    report->size_min = sizes[0];
+    report->size_median = sizes[count / 2];
+    report->size_max = sizes[count - 1];
+}
+
+Result strands_report_measure(StrandsReport *report, const Strands *strands, Error *error)
+{
+    report->strands = strands->strand_count;
+    report->vertices = strands->vertex_count;
+    strands_bounds(strands, report->low, report->high);
+    if (strands->strand_count == 0) return RESULT_OK;
+    double *lengths = malloc(strands->strand_count * sizeof *lengths);
+    uint32_t *sizes = malloc(strands->strand_count * sizeof *sizes);
+    if (lengths && sizes) measure_each(report, strands, lengths, sizes);
+    Result result = lengths && sizes
+                        ? find_shared_roots(report, strands, error)
+                        : error_set(error, RESULT_FAILED, "no memory to measure %u strands",
+                                    strands->strand_count);
+    free(lengths);
+    free(sizes);
+    return result;
+}
+
+// --- Telling.
+
+bool strands_report_is_clean(const StrandsReport *report)
+{
+    for (int kind = 0; kind < DEFECT_KINDS; kind++)
+        if (report->defects[kind].count) return false;
+    return true;
+}
+
+void strands_report_describe(const StrandsReport *report, const char *path, DefectKind kind,
+                             bool mended, char *text, size_t size)
+{
+    static const struct {
+        const char *one, *many, *cure;
+    } words[DEFECT_KINDS] = {
+        [DEFECT_NOT_FINITE] = {"strand with a coordinate that is not finite or beyond 1000 km",
+                               "strands with a coordinate that is not finite or beyond 1000 km",
+                               "dropped"},
+        [DEFECT_TOO_SHORT] = {"strand of fewer than two distinct vertices",
+                              "strands of fewer than two distinct vertices", "dropped"},
+        [DEFECT_COINCIDENT] = {"vertex that coincides with the one before it",
+                               "vertices that coincide with the one before them", "merged"},
+        [DEFECT_ATTRIBUTE] = {"attribute value that is not a finite number",
+                              "attribute values that are not finite numbers", "replaced"},
+        [DEFECT_OVER_LIMIT] = {"strand of more than maxNumVerticesInStrand vertices",
+                               "strands of more than maxNumVerticesInStrand vertices",
+                               "kept whole"},
+        [DEFECT_UNREAD] = {"byte behind all known arrays", "bytes behind all known arrays",
+                           "not read"},
+    };
+    const Defect *defect = &report->defects[kind];
+    bool is_text = report->kind == STRANDS_TFX2_TEXT || report->kind == STRANDS_OBJ ||
+                   report->kind == STRANDS_USD;
+    snprintf(text, size, is_text ? "%s:%llu: %s%u %s%s%s" : "%s: byte %llu: %s%u %s%s%s", path,
+             (unsigned long long)defect->first_place, defect->count > 1 ? "first of " : "",
+             defect->count, defect->count == 1 ? words[kind].one : words[kind].many,
+             mended ? ": " : "", mended ? words[kind].cure : "");
+}
+
+uint32_t strands_report_print_mended(const StrandsReport *report, const char *path, FILE *stream)
+{
+    uint32_t lines = 0;
+    for (int kind = 0; kind < DEFECT_KINDS; kind++) {
+        if (report->defects[kind].count == 0) continue;
+        char text[1024];
+        strands_report_describe(report, path, (DefectKind)kind, true, text, sizeof text);
+        fprintf(stream, "%s\n", text);
+        lines++;
+    }
+    if (report->samples > 1) {
+        fprintf(stream, "%s: of %u time samples only the first is read\n", path, report->samples);
+        lines++;
+    }
+    return lines;
+}
+
+static void print_unit(const StrandsReport *report, FILE *stream)
+{
+    fprintf(stream, "  unit      %.6g m", (double)report->unit_used);
+    if (!report->unit_guessed)
+        fprintf(stream, " as told\n");
+    else if (report->kind == STRANDS_TFX2_TEXT && report->unit_used != 1.0f)
+        fprintf(stream, ", a guess: TressFX 2 assets are in centimetres (--unit says otherwise)\n");
+    else
+        fprintf(stream, ", a guess by the size of the box (--unit says otherwise)\n");
+}
+
+static void print_notes(const StrandsReport *report, FILE *stream)
+{
+    if (report->samples) fprintf(stream, "  times     the first of %u\n", report->samples);
+    if (report->shuffled) fprintf(stream, "  order     shuffled, the file says 'is sorted 0'\n");
+    if (report->rotation_was_deg)
+        fprintf(stream, "  rotation  taken to be in degrees: a value is beyond 2 pi\n");
+    if (report->empty_roots)
+        fprintf(stream, "  left out  %u roots without hair\n", report->empty_roots);
+    if (report->shared_roots)
+        fprintf(stream, "  roots     %u strands begin exactly where an earlier one does\n",
+                report->shared_roots);
+}
+
+void strands_report_print(const StrandsReport *report, const char *path, FILE *stream)
+{
+    fprintf(stream, "%s: %s", path, strands_kind_name(report->kind));
+    if (report->version > 0.0f) fprintf(stream, ", version %g", (double)report->version);
+    fprintf(stream, "\n  strands   %u usable of %u\n", report->strands, report->declared_strands);
+    fprintf(stream, "  vertices  %u usable of %u; per strand %u min, %u median, %u max\n",
+            report->vertices, report->declared_vertices, report->size_min, report->size_median,
+            report->size_max);
+    fprintf(stream, "  length    %.6g m min, %.6g m median, %.6g m max\n", report->length_min,
+            report->length_median, report->length_max);
+    for (int axis = 0; axis < 3; axis++)
+        fprintf(stream, "  %-8s  %c %.6g .. %.6g m\n", axis ? "" : "bounds", "xyz"[axis],
+                (double)report -> low[axis], (double)report -> high[axis]);
+    print_unit(report, stream);
+    print_notes(report, stream);
+    if (strands_report_is_clean(report)) fprintf(stream, "  defects   none\n");
+    for (int kind = 0; kind < DEFECT_KINDS; kind++) {
+        if (report->defects[kind].count == 0) continue;
+        char text[1024];
+        strands_report_describe(report, path, (DefectKind)kind, true, text, sizeof text);
+        fprintf(stream, "  defect    %s\n", text);
+    }
+}

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+// The line that tells how far a run is.
+#include "base/progress.h"
+
+#include <pty.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+// A terminal whose other end shows what was drawn.
+typedef struct Terminal {
+    int reader;
+    FILE *stream;
+} Terminal;
+
+static Terminal open_terminal(unsigned short columns)
+{
+    Terminal terminal;
+    int writer;
+    struct winsize size = {.ws_row = 24, .ws_col = columns};
+    assert_int_equal(openpty(&terminal.reader, &writer, NULL, NULL, &size), 0);
+    terminal.stream = fdopen(writer, "w");
+    assert_non_null(terminal.stream);
+    return terminal;
+}
+
+static void close_terminal(Terminal *terminal)
+{
+    fclose(terminal->stream);
+    close(terminal->reader);
+}
+
+// What has been drawn since the last call. The terminal passes it on in its own time: a mark shows
+// the end.
+static const char *read_terminal(const Terminal *terminal)
+{
+    static char text[4000];
+    size_t length = 0;
+    fputc('@', terminal->stream);
+    fflush(terminal->stream);
+    do {
+        ssize_t got = read(terminal->reader, text + length, sizeof text - length);
+        assert_true(got > 0);
+        length += (size_t)got;
+    } while (text[length - 1] != '@');
+    text[length - 1] = 0;
+    return text;
+}
+
+static int count_draws(const char *text)
+{
+    int count = 0;
+    for (; *text; text++) count += *text == '\r';
+    return count;
+}
+
+static void the_line_fits_any_width(void **state)
+{
+    (void)state;
+    char line[300];
+    for (int columns = 1; columns <= 250; columns++) {
+        int length = progress_format(line, sizeof line, columns, 99999, 100000, 12.3456);
+        assert_int_equal(length, strlen(line));
+        assert_true(length < (columns < 40 ? 40 : columns));
+        assert_non_null(strstr(line, "99999/100000"));
+    }
+    progress_format(line, sizeof line, 40, 2147483646, 2147483647, 1e-9);
+    assert_true(strlen(line) < 40);
+}
+
+static void the_line_says_count_rate_and_time_left(void **state)
+{
+    (void)state;
+    char line[300];
+    progress_format(line, sizeof line, 80, 30, 120, 12.0);
+    assert_string_equal(line, "30/120 [##########------------------------------] 12/s, 0:08 left");
+    progress_format(line, sizeof line, 80, 0, 7300, 1.0);
+    assert_non_null(strstr(line, "1/s, 2:01:40 left"));
+    progress_format(line, sizeof line, 80, 0, 120, 0.0);
+    assert_string_equal(line, "0/120 [----------------------------------------]");
+    progress_format(line, sizeof line, 80, 120, 120, 0.0);
+    assert_string_equal(line, "120/120 [########################################]");
+}
+
+static void nothing_is_drawn_where_no_terminal_is(void **state)
+{
+    (void)state;
+    FILE *file = tmpfile();
+    Progress progress;
+    progress_start(&progress, file, 10, false);
+    for (int done = 1; done <= 10; done++) progress_update(&progress, done);
+    progress_clear(&progress);
+    fflush(file);
+    assert_int_equal(ftell(file), 0);
+    fclose(file);
+}
+
+static void nothing_is_drawn_when_quiet_or_zeroed(void **state)
+{
+    (void)state;
+    Terminal terminal = open_terminal(80);
+    Progress quiet, zeroed = {0};
+    progress_start(&quiet, terminal.stream, 10, true);
+    progress_update(&quiet, 10);
+    progress_clear(&quiet);
+    progress_update(&zeroed, 10);
+    progress_clear(&zeroed);
+    assert_string_equal(read_terminal(&terminal), "");
+    close_terminal(&terminal);
+}
+
+static void it_draws_ten_times_a_second_and_the_last_frame(void **state)
+{
+    (void)state;
+    Terminal terminal = open_terminal(60);
+    Progress progress;
+    progress_start_at(&progress, terminal.stream, 1000, false, 5.0);
+    // 1000 frames within half a second: at the first frame, four times on the way, the last one.
+    for (int done = 1; done <= 1000; done++)
+        progress_update_at(&progress, done, 5.0 + done * 0.0005);
+    const char *text = read_terminal(&terminal);
+    assert_in_range(count_draws(text), 5, 7);
+    assert_non_null(strstr(text, "1000/1000"));
+    close_terminal(&terminal);
+}
+
+static void the_rate_settles_on_a_new_value(void **state)
+{
+    (void)state;
+    Terminal terminal = open_terminal(80);
+    Progress progress;
+    progress_start_at(&progress, terminal.stream, 100000, false, 0.0);
+    for (int i = 1; i <= 100; i++) progress_update_at(&progress, 10 * i, i);
+    assert_float_equal(progress.rate, 10.0, 1e-6);
+    // Ten times the smoothing time later e^-10 of the difference is left.
+    for (int i = 1; i <= 30; i++) progress_update_at(&progress, 1000 + 20 * i, 100 + i);
+    assert_float_equal(progress.rate, 20.0, 10.0 * 5e-5);
+    close_terminal(&terminal);
+}
+
+static void clearing_leaves_an_empty_line_and_drawing_goes_on(void **state)
+{
+    (void)state;
+    Terminal terminal = open_terminal(80);
+    Progress progress;
+    progress_start_at(&progress, terminal.stream, 10, false, 0.0);
+    progress_update_at(&progress, 1, 1.0);
+    size_t drawn = strlen(read_terminal(&terminal)) - 1;
+    progress_clear(&progress);
+    const char *text = read_terminal(&terminal);
+    assert_int_equal(strspn(text + 1, " "), drawn);
+    assert_string_equal(text + 1 + drawn, "\r");
+    progress_clear(&progress);
+    assert_string_equal(read_terminal(&terminal), "");
+    progress_update_at(&progress, 2, 1.01);
+    assert_non_null(strstr(read_terminal(&terminal), "2/10"));
+    close_terminal(&terminal);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_line_fits_any_width),
+        cmocka_unit_test(the_line_says_count_rate_and_time_left),
+        cmocka_unit_test(nothing_is_drawn_where_no_terminal_is),
+        cmocka_unit_test(nothing_is_drawn_when_quiet_or_zeroed),
+        cmocka_unit_test(it_draws_ten_times_a_second_and_the_last_frame),
+        cmocka_unit_test(the_rate_settles_on_a_new_value),
+        cmocka_unit_test(clearing_leaves_an_empty_line_and_drawing_goes_on),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

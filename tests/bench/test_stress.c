@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: MIT
+// The stress test in its short form, every case that once broke a rule, and the tool itself.
+#include "bench/bench_stress.h"
+#include "bench/stress_bound.h"
+#include "bench/stress_run.h"
+#include "support/hair_fixture.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+// --- Cases.
+
+static void a_case_is_its_text(void **state)
+{
+    (void)state;
+    Random random = random_create(7, 0);
+    for (int i = 0; i < 200; ++i) {
+        StressCase set = stress_case_random("rope", "xpbd", 16, &random),
+                   made = stress_case_random_strand(&set, i, &random),
+                   read = {.algo = "rope", .variant = "xpbd"};
+        char text[1024];
+        Error error = {{0}};
+        stress_case_write(&made, text, sizeof text);
+        if (stress_case_read(&read, text, &error) != RESULT_OK) fail_msg("%s", error.text);
+        assert_memory_equal(made.value, read.value, sizeof made.value);
+    }
+}
+
+static void a_wrong_word_is_refused(void **state)
+{
+    (void)state;
+    static const char *const wrong[][2] = {
+        {"dt=2", "--case: dt: expected 1e-06 to 1, got 'dt=2'"},
+        {"n=2.5", "--case: n: expected 2 to 64, got 'n=2.5'"},
+        {"dt=nan", "--case: dt: expected 1e-06 to 1, got 'dt=nan'"},
+        {"gravty=1", "--case: no 'gravty'; did you mean 'gravity'?"},
+        {"drag", "--case: drag: expected 0.001 to 10000, got 'drag'"},
+        {"spring_coil=5", "--case: spring_coil does not belong to hybrid "},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
+        StressCase read = {.algo = "hybrid", .variant = ""};
+        Error error = {{0}};
+        assert_int_equal(stress_case_read(&read, wrong[i][0], &error), RESULT_USAGE);
+        assert_string_equal(error.text, wrong[i][1]);
+    }
+}
+
+// Simpler and simpler, a case becomes the plain one of the fewest vertices.
+static void every_case_can_be_made_plain(void **state)
+{
+    (void)state;
+    Random random = random_create(3, 0);
+    StressCase stress = stress_case_random("tressfx", "steady", 64, &random), simpler;
+    for (int move = 0; stress_case_simplify(&stress, move, &simpler); ++move) stress = simpler;
+    char text[1024];
+    stress_case_write(&stress, text, sizeof text);
+    assert_string_equal(text, "n=2");
+}
+
+// Reading leaves a strand as it is that has no defects.
+static void strands_are_such_as_reading_leaves(void **state)
+{
+    (void)state;
+    Random random = random_create(5, 0);
+    for (int i = 0; i < 1000; ++i) {
+        StressCase set = stress_case_random("dftl", "", STRESS_VERTICES[i % 4], &random),
+                   stress = stress_case_random_strand(&set, i, &random);
+        int n = (int)stress.value[STRESS_n];
+        float points[64][3];
+        double largest = 0;
+        stress_case_make_strand(&stress, points);
+        for (int j = 0; j < n; ++j)
+            for (int k = 0; k < 3; ++k) largest = fmax(largest, fabs((double)points[j][k]));
+        for (int j = 1; j < n; ++j) {
+            double square = 0;
+            for (int k = 0; k < 3; ++k)
+                square += pow((double)points[j][k] - (double)points[j - 1][k], 2);
+            assert_true(sqrt(square) > 1e-9 && sqrt(square) > 1e-7 * largest);
+        }
+    }
+}
+
+// --- Rules.
+
+static StressVerdict verdict_of(const char *algo, const char *variant, const char *text, int steps)
+{
+    StressCase stress = {.algo = algo, .variant = variant};
+    StressVerdict verdict = {0};
+    Error error = {{0}};
+    if (stress_case_read(&stress, text, &error) != RESULT_OK ||
+        stress_run(&verdict, fixture_gpu(), &stress, 1, steps, 1, &error) != RESULT_OK)
+        fail_msg("%s", error.text);
+    return verdict;
+}
+
+// A pendulum without drag comes back to where it began: its energy is all that it may have, so that
+// a little more would be found.
+static void the_bound_is_as_tight_as_can_be(void **state)
+{
+    (void)state;
+    StressVerdict verdict = verdict_of("hybrid", "", "n=2 dt=0.001 style=0 drag=0", 2000);
+    assert_true(verdict.worst[STRESS_ENERGY] > 0.85 && verdict.worst[STRESS_ENERGY] < 1);
+    // What nothing moves has no energy to lose.
+    verdict = verdict_of("hybrid", "", "gravity=0", 200);
+    assert_true(verdict.worst[STRESS_ENERGY] < 1e-3);
+}
+
+// The bound lets a kick through, and no more than it.
+static void the_heads_motion_counts(void **state)
+{
+    (void)state;
+    const double still[3] = {0}, moved[3] = {0.5, 0, 0};
+    StressCase stress = stress_case_plain("hybrid", "");
+    SectionParams params;
+    StressParams out = {0};
+    stress.value[STRESS_drag] = 0;
+    assert_int_equal(stress_case_params(&stress, &params, NULL), RESULT_OK);
+    StressBound bound = stress_bound_create(&stress, &params, 100);
+    stress_bound_step(&bound, still, 0);
+    stress_bound_fill(&bound, false, &out);
+    assert_true(out.kicks == 0 && out.added == 0);
+    stress_bound_step(&bound, moved, 0);
+    stress_bound_step(&bound, still, 0);
+    stress_bound_fill(&bound, false, &out);
+    assert_true(fabs((double)out.kicks - 2 * 0.5 * 60) < 1e-3); // off at 30 m/s, and stopped
+    assert_true(out.added == 0);
+    section_params_destroy(&params);
+}
+
+// --- What broke once.
+
+static const struct {
+    const char *algo, *variant, *text;
+    int steps;
+    const char *why;
+} BROKEN[] = {
+    {"split", "ball",
+     "n=3 dt=0.090958 jump=0.81078 arm=0.02309 tilt=176.75 shape_seed=10510 strand=25 drag=3.1023 "
+     "style=0.51929",
+     100, "a drawn segment was longer by 1.2e-5, its style nearly opposite to where it is"},
+    {"chain", "", "n=2 dt=0.0017299 length=2.8807e-05 gravity=7558.6 tilt=4.976", 50,
+     "tension a hundred times stiffer than the step: swung up to the side"},
+    {"chain", "",
+     "n=64 dt=1.4744e-05 jump=5.1846 shape=4 shape_seed=56306 strand=16 drag=0 chain_bend=6.4677",
+     1000, "pushed exactly along segments: turned ones were shorter by half"},
+    {"chain", "", "n=3 shape=4 tilt=109.28 shape_seed=19935 chain_bend=1000", 50,
+     "a short segment that bends a long one is stiffer than its own length says"},
+    {"chain", "",
+     "n=64 dt=4.766e-06 gravity=49493 shake=0.23027 shape=3 shape_seed=25118 strand=15 "
+     "style=0.71576 chain_bend=22.504",
+     10000, "each fold of a crumpled strand handed on several times the twist that it was given"},
+    {"chain", "",
+     "n=64 dt=4.766e-06 gravity=49493 shake=0.23027 shape=3 shape_seed=1 strand=15 "
+     "style=0.71576 chain_bend=22.504",
+     4000, "so did those of another one"},
+    {"chain", "",
+     "n=64 gravity=33.92 wind_pitch=98.152 arm=0.0012246 tilt=57.309 shape_seed=64718 strand=17 "
+     "style=0",
+     100, "what its account found too much was still drawn, 1.2 times the energy in step 4"},
+    {"chain", "", "dt=0.1213 length=0.064838 jump=0.73531 tilt=8.8725 drag=0", 200,
+     "so was it after a jump, 2.2 times"},
+    {"spring", "explicit", "spin=0.1 shape=4 stretch_drawn=1", 400,
+     "sub-steps that suit even hair heated a strand of very uneven links"},
+    {"spring", "explicit", "shape=4 drag=0 stretch_drawn=1", 600,
+     "angular springs without a potential did work in every turn of short links"},
+    {"rope", "xpbd",
+     "n=3 wind=19.476 away=5.5659 arm=0.14315 shape=4 tilt=105.6 shape_seed=30697 strand=23 "
+     "style=0 "
+     "rope_iterations=81",
+     10000, "small steps differed coordinates in the world: their rounding shook it at rest"},
+    {"rope", "xpbd", "n=33 gravity=1.5 away=1000 drag=6 style=0 rope_iterations=20", 4000,
+     "so did those of strands too long for registers"},
+    {"emulation", "projected",
+     "n=64 dt=0.024926 length=0.65906 gravity=95093 gust=0.78189 arm=0.4083 tilt=2.4643 "
+     "shape_seed=17077 strand=12",
+     200, "another random order of pulls in every step let single steps gain energy"},
+    {"tressfx", "steady", "n=2 spin=0.79584 tilt=17.738 style=0", 1000,
+     "the bound left out that the head lifts the vertex that it carries"},
+    {"tressfx", "steady", "dt=0.0083333 shape=1", 2600, "curls fluttered, 4 times"},
+    {"tressfx", "steady", "dt=0.005 shape=1", 4200, "curls fluttered, 9 times what may move"},
+    {"tressfx", "steady", "dt=0.005 shape=2", 4200, "zigzags fluttered, 4 times"},
+    {"tressfx", "steady", "dt=0.0083333 shape=1 tilt=170", 2600,
+     "curls that droop fluttered, 21 times"},
+    {"tressfx", "steady", "dt=0.011263 length=2.3063 arm=0.51063 shape=1 tilt=170 style=0.26411",
+     7400, "long soft curls fluttered, 4 times"},
+    {"tressfx", "steady", "dt=0.005 length=1 shape=1", 1000, "long curls gained energy"},
+    {"tressfx", "steady", "style=0", 2600,
+     "tension along predicted segments turned loose hair to and fro, 1.4 times what may move"},
+    {"tressfx", "steady", "shape=2 style=0.1", 2600, "and soft zigzags, 1.5 times"},
+    {"tressfx", "steady", "n=64 dt=0.025 gravity=95000 tilt=3", 200,
+     "so did that of strands 10,000 times as heavy, with 2.5 times their energy"},
+};
+
+static void what_broke_once_holds(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof BROKEN / sizeof *BROKEN; ++i) {
+        StressVerdict verdict =
+            verdict_of(BROKEN[i].algo, BROKEN[i].variant, BROKEN[i].text, BROKEN[i].steps);
+        for (int rule = 0; rule < STRESS_RULES; ++rule)
+            if (verdict.first[rule])
+                fail_msg("%s %s, '%s': %s broken at step %d (%s)", BROKEN[i].algo,
+                         BROKEN[i].variant, BROKEN[i].text, STRESS_RULE_NAMES[rule],
+                         verdict.first[rule], BROKEN[i].why);
+    }
+}
+
+// A short segment's direction is uncertain by rounding, and a long one behind it is a lever: hair
+// that nothing moves went 0.4 m in a step.
+static void uneven_hair_stays_where_it_is(void **state)
+{
+    (void)state;
+    StressCase stress = {.algo = "tressfx", .variant = "steady"};
+    assert_int_equal(stress_case_read(&stress, "shape=4 tilt=132.72 shape_seed=42252", NULL), 0);
+    float points[16][3];
+    double start[16][3], most = 0;
+    stress_case_make_strand(&stress, points);
+    for (int i = 0; i < 16 * 3; ++i) start[i / 3][i % 3] = (double)points[i / 3][i % 3];
+    HairFixture fixture;
+    fixture_create(&fixture, (const double(*)[3])start, 1, 16, "tressfx", "", 0.999f, 1);
+    fixture.step.gravity[1] = 0;
+    for (int i = 0; i < 20; ++i) {
+        fixture_step(&fixture);
+        float(*now)[4] = fixture_positions(&fixture, 0);
+        for (uint32_t j = 0; j < 16; ++j)
+            for (int k = 0; k < 3; ++k) {
+                size_t at = hair_address(&fixture.hair.batches[0], 0, j);
+                most = fmax(most, fabs((double)now[at][k] - start[j][k]));
+            }
+        free(now);
+    }
+    fixture_destroy(&fixture);
+    printf("moves by %.2g m\n", most);
+    assert_true(most < 1e-3);
+}
+
+static void no_solver_breaks_a_rule_in_the_short_form(void **state)
+{
+    (void)state;
+    const StressOptions options = {.algo = getenv("TEST_ALGO"),
+                                   .cases = 256,
+                                   .steps = 200,
+                                   .seed = 1,
+                                   .allowed = 1,
+                                   .shrinks = true};
+    const BenchOutput nowhere = {0};
+    Error error = {{0}};
+    if (bench_stress(fixture_gpu(), &options, &nowhere, stdout, &error) != RESULT_OK)
+        fail_msg("%s", error.text);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_case_is_its_text),
+        cmocka_unit_test(a_wrong_word_is_refused),
+        cmocka_unit_test(every_case_can_be_made_plain),
+        cmocka_unit_test(strands_are_such_as_reading_leaves),
+        cmocka_unit_test(the_bound_is_as_tight_as_can_be),
+        cmocka_unit_test(the_heads_motion_counts),
+        cmocka_unit_test(what_broke_once_holds),
+        cmocka_unit_test(uneven_hair_stays_where_it_is),
+        cmocka_unit_test(no_solver_breaks_a_rule_in_the_short_form),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

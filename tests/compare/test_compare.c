@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: MIT
+// Limits, alpha, depths of files, and which pictures of two places belong together.
+#include "compare/pairs.h"
+#include "image/compare.h"
+#include "image/float_image.h"
+#include "image/pfm.h"
+#include "image/png.h"
+#include "support/temporary.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { W = 20, H = 10 };
+
+static Image make_image(int channels, const uint8_t color[4])
+{
+    Image image;
+    assert_int_equal(image_create(&image, W, H, channels, NULL), RESULT_OK);
+    for (int i = 0; i < W * H * channels; ++i) image.pixels[i] = color[i % channels];
+    return image;
+}
+
+// Compares and frees.
+static CompareResult compare(Image a, Image b, const CompareLimits *limits)
+{
+    CompareResult result;
+    assert_int_equal(compare_images(&result, NULL, &a, &b, limits, NULL), RESULT_OK);
+    image_destroy(&a);
+    image_destroy(&b);
+    return result;
+}
+
+static CompareResult compare_colors(int channels, const uint8_t a[4], const uint8_t b[4])
+{
+    CompareLimits limits = compare_limits_default();
+    return compare(make_image(channels, a), make_image(channels, b), &limits);
+}
+
+static void equal_pictures_score_exactly_0(void **state)
+{
+    (void)state;
+    static const uint8_t color[4] = {1, 100, 200, 50};
+    for (int channels = 3; channels <= 4; ++channels) {
+        CompareResult result = compare_colors(channels, color, color);
+        assert_true(result.same && result.failing == 0 && result.largest == 0);
+        assert_true(result.rmse == 0 && result.flip == 0 && result.flip_most == 0);
+        assert_true(result.ssim == 1 && isinf(result.psnr));
+    }
+}
+
+// Three pixels are off, by 5, 9 and 20 levels.
+static CompareResult compare_three(CompareLimits limits)
+{
+    static const uint8_t grey[4] = {100, 100, 100};
+    Image a = make_image(3, grey), b = make_image(3, grey);
+    b.pixels[3 * 7] = 105;
+    b.pixels[3 * (W + 3) + 1] = 91;
+    b.pixels[3 * (2 * W + 4) + 2] = 120;
+    return compare(a, b, &limits);
+}
+
+static void the_two_knobs_of_pixels_are_apart(void **state)
+{
+    (void)state;
+    static const struct {
+        double tolerance, failing;
+        bool percent;
+        uint64_t count;
+        bool same;
+    } cases[] = {
+        {0, 0, false, 3, false},   {0, 2, false, 3, false},  {0, 3, false, 3, true},
+        {4.5, 2, false, 3, false}, {5, 2, false, 2, true},   {9, 0, false, 1, false},
+        {20, 0, false, 0, true},   {0, 1.4, true, 3, false}, {0, 1.5, true, 3, true},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        CompareLimits limits = compare_limits_default();
+        limits.pixel_tolerance = cases[i].tolerance;
+        limits.max_failing = cases[i].failing;
+        limits.max_failing_percent = cases[i].percent;
+        CompareResult result = compare_three(limits);
+        assert_int_equal(result.failing, cases[i].count);
+        assert_int_equal(result.same, cases[i].same);
+        assert_true(result.largest == 20 && result.at[0] == 4 && result.at[1] == 2);
+        assert_true(fabs(result.rmse - sqrt((25 + 81 + 400) / (3.0 * W * H))) < 1e-12);
+    }
+}
+
+static void flip_is_a_limit_of_its_own(void **state)
+{
+    (void)state;
+    CompareLimits limits = compare_limits_default();
+    limits.pixels_matter = false;
+    limits.flip_matters = true;
+    limits.max_flip = 1;
+    double flip = compare_three(limits).flip;
+    assert_true(flip > 0 && compare_three(limits).same);
+    limits.max_flip = flip;
+    assert_true(compare_three(limits).same);
+    limits.max_flip = 0.99 * flip;
+    assert_false(compare_three(limits).same);
+    limits.max_flip = 1, limits.pixels_matter = true;
+    assert_false(compare_three(limits).same);
+}
+
+// By hand. Black of half the alpha is invisible over black and, over white, 128 levels from black
+// of none. The colour under alpha 0 shows nowhere.
+static void the_worse_of_two_backgrounds_counts(void **state)
+{
+    (void)state;
+    static const uint8_t none[4] = {0, 0, 0, 0}, half[4] = {0, 0, 0, 128}, red[4] = {255, 0, 0, 0};
+    static const uint8_t white_half[4] = {255, 255, 255, 128};
+    assert_true(compare_colors(4, none, half).largest == 128);
+    assert_true(compare_colors(4, none, white_half).largest == 128);
+    assert_true(compare_colors(4, half, none).flip > 0.1);
+    assert_true(compare_colors(4, none, red).largest == 0 && compare_colors(4, none, red).same);
+}
+
+static void a_picture_without_alpha_is_opaque(void **state)
+{
+    (void)state;
+    static const uint8_t color[4] = {10, 20, 30, 255}, clear[4] = {10, 20, 30, 254};
+    CompareLimits limits = compare_limits_default();
+    assert_true(compare(make_image(3, color), make_image(4, color), &limits).largest == 0);
+    CompareResult result = compare(make_image(3, color), make_image(4, clear), &limits);
+    assert_false(result.same);
+    // Over white the darkest channel moves by (255 - 10) / 255.
+    assert_true(fabs(result.largest - 245.0 / 255) < 1e-5);
+}
+
+// --- Files.
+
+static void write_image(const char *path, const Image *image)
+{
+    Bytes file;
+    Result result = image->kind == IMAGE_FLOAT ? pfm_encode(image, &file, NULL)
+                                               : png_encode(image, &file, NULL);
+    assert_int_equal(result, RESULT_OK);
+    assert_int_equal(bytes_write_file(&file, path, NULL), RESULT_OK);
+    bytes_destroy(&file);
+}
+
+// A file of each depth, of which 8 bits can't tell the first two levels' sixteenths apart.
+static void files_keep_their_depth(void **state)
+{
+    static const ImageKind kinds[] = {IMAGE_16, IMAGE_FLOAT};
+    for (int k = 0; k < 2; ++k) {
+        Image image, back;
+        const char *path = temporary_path(state, "deep");
+        assert_int_equal(image_create_kind(&image, W, H, 3, kinds[k], NULL), RESULT_OK);
+        for (int i = 0; i < W * H * 3; ++i) {
+            if (kinds[k] == IMAGE_16)
+                ((uint16_t *)(void *)image.pixels)[i] = (uint16_t)(i * 109);
+            else
+                ((float *)(void *)image.pixels)[i] = (float)i / 100 - 1;
+        }
+        write_image(path, &image);
+        assert_int_equal(float_image_read_image(&back, path, NULL), RESULT_OK);
+        assert_int_equal(back.kind, kinds[k]);
+        assert_memory_equal(back.pixels, image.pixels, image_size(&image));
+        image_destroy(&image);
+        image_destroy(&back);
+    }
+}
+
+static void levels_do_not_depend_on_the_depth(void **state)
+{
+    (void)state;
+    uint16_t deep = 200 * 257;
+    float linear = (float)image_linear_from_srgb(200 / 255.0), bright = 4;
+    uint16_t deeps[3] = {deep, deep, deep};
+    float floats[3] = {linear, linear, linear}, brights[3] = {bright, -bright, 0};
+    const Image images[] = {
+        {1, 1, 3, (uint8_t *)(void *)deeps, IMAGE_16},
+        {1, 1, 3, (uint8_t *)(void *)floats, IMAGE_FLOAT},
+        {1, 1, 3, (uint8_t *)(void *)brights, IMAGE_FLOAT},
+    };
+    FloatImage plate;
+    for (int i = 0; i < 2; ++i) {
+        float_image_create(&plate, &images[i], 0, NULL);
+        assert_true(fabs((double)plate.rgb[0] - 200) < 1e-4); // a float's last place there is 2e-5
+        float_image_destroy(&plate);
+    }
+    // What is brighter than white stays so.
+    float_image_create(&plate, &images[2], 0, NULL);
+    assert_true(plate.rgb[0] > 400 && plate.rgb[1] == -plate.rgb[0]);
+    float_image_destroy(&plate);
+}
+
+static void damaged_floats_are_bad_input(void **state)
+{
+    static const char *const texts[] = {
+        "PF",
+        "PF\n1 1\n-1.0\n",
+        "PF\n1 1\n-1.0\n0123456789a",
+        "PF\n1 1\n-1.0\n0123456789abc",
+        "PF\n0 1\n-1.0\n",
+        "PF\n1 1\n0\n0123456789ab",
+        "PF\n99999 99999\n-1\n",
+        "Pf\n1 1\n-1.0\n\xff\xff\xff\xff", // no number
+        "P6\n1 1\n255\nabc",
+    };
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; ++i) {
+        Image image;
+        Error error;
+        temporary_write(state, "bad.pfm", texts[i], 0644);
+        const char *path = temporary_path(state, "bad.pfm");
+        assert_int_equal(float_image_read_image(&image, path, &error), RESULT_BAD_INPUT);
+        assert_non_null(strstr(error.text, path));
+        assert_null(image.pixels);
+    }
+}
+
+static void grey_floats_of_either_byte_order_are_read(void **state)
+{
+    static const char *const texts[] = {"Pf\n1 1\n-1.0\nAAA?", "Pf\n1 1\n1.0\n?AAA"};
+    for (int i = 0; i < 2; ++i) {
+        Image image;
+        temporary_write(state, "grey.pfm", texts[i], 0644);
+        const char *path = temporary_path(state, "grey.pfm");
+        assert_int_equal(float_image_read_image(&image, path, NULL), RESULT_OK);
+        for (int k = 0; k < 3; ++k) // 0x3f414141
+            assert_true(((float *)(void *)image.pixels)[k] == 0x1.828282p-1F);
+        image_destroy(&image);
+    }
+}
+
+// --- Pairs.
+
+static void check_pairs(void **state, const char *a, const char *b, const char *expected)
+{
+    PairList list;
+    char text[500] = "", from[300], to[300];
+    snprintf(from, sizeof from, "%s", temporary_path(state, a));
+    snprintf(to, sizeof to, "%s", temporary_path(state, b));
+    assert_int_equal(pairs_find(&list, from, to, false, NULL), RESULT_OK);
+    for (size_t i = 0; i < list.count; ++i)
+        snprintf(text + strlen(text), sizeof text - strlen(text), "%s%s%s ", list.pairs[i].name,
+                 list.pairs[i].has_a ? "" : "<", list.pairs[i].has_b ? "" : ">");
+    assert_string_equal(text, expected);
+    pairs_destroy(&list);
+}
+
+static void pictures_go_by_name_or_number(void **state)
+{
+    static const char *const names[] = {"f_0001.png", "f_0009.png", "f_0010.png",
+                                        "f_1.png",    "g7.png",     "g9.png",
+                                        "g10.png",    "other.txt",  ".hidden.png"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; ++i)
+        temporary_write(state, names[i], "", 0644);
+    check_pairs(state, "f_%04d.png", "g%d.png", "f_0001.png> g7.png< f_0009.png f_0010.png ");
+    check_pairs(state, ".", ".", "f_0001.png f_0009.png f_0010.png f_1.png g7.png g9.png g10.png ");
+}
+
+static void two_kinds_of_places_do_not_go_together(void **state)
+{
+    PairList list;
+    Error error;
+    const char *folder = temporary_path(state, "."), *file = temporary_path(state, "a.png");
+    const char *pattern = temporary_path(state, "x%d.png");
+    temporary_write(state, "a.png", "", 0644);
+    assert_int_equal(pairs_find(&list, folder, file, false, &error), RESULT_USAGE);
+    assert_int_equal(pairs_find(&list, file, pattern, false, &error), RESULT_USAGE);
+    assert_int_equal(pairs_find(&list, pattern, pattern, false, &error), RESULT_BAD_INPUT);
+    assert_int_equal(pairs_find(&list, temporary_path(state, "no/"), folder, false, &error),
+                     RESULT_BAD_INPUT);
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, temporary_create, temporary_destroy)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(equal_pictures_score_exactly_0),
+        cmocka_unit_test(the_two_knobs_of_pixels_are_apart),
+        cmocka_unit_test(flip_is_a_limit_of_its_own),
+        cmocka_unit_test(the_worse_of_two_backgrounds_counts),
+        cmocka_unit_test(a_picture_without_alpha_is_opaque),
+        TEST(files_keep_their_depth),
+        cmocka_unit_test(levels_do_not_depend_on_the_depth),
+        TEST(damaged_floats_are_bad_input),
+        TEST(grey_floats_of_either_byte_order_are_read),
+        TEST(pictures_go_by_name_or_number),
+        TEST(two_kinds_of_places_do_not_go_together),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,117 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# The command line of tractrix-compare as CI meets it: every exit status, messages, files, and scripts/compare-goldens.
+. tests/support/claims.sh
+program=$bin/tractrix-compare
+golden=tests/golden
+
+a=$golden/curls_still.png b=$golden/curls_split.png other=$golden/fur_transparent.png
+
+claim "a picture is the same as itself"
+run 0 $a $a; says "same: RMSE 0, PSNR inf dB, SSIM 1, FLIP 0"; says "1 picture: 1 same"; silent err
+run 0 $other $other
+run 0 -q $a $a; silent out; silent err
+
+claim "different pictures are told with status 1"
+run 1 $a $b; says "different: RMSE"; says "1 different; largest FLIP"; silent err
+run 1 -q $a $b; silent out; silent err
+run 1 $a $other; says "sizes: 160 x 120 and 128 x 128 pixels"
+
+claim "each limit alone decides"
+run 0 $a $b --pixel-tolerance 255
+run 1 $a $b --pixel-tolerance 8
+run 0 $a $b --max-failing-pixels 100%
+run 0 $a $b --max-failing-pixels 19200
+run 1 $a $b --max-failing-pixels 1
+run 0 $a $b --max-flip 0.9
+run 1 $a $b --max-flip 0.01
+run 1 $a $b --max-flip 0.9 --max-failing-pixels 1
+
+claim "wrong usage is status 2 and one line"
+for words in "" "$a" "$a $b $other" "--max-flip 2 $a $b" "--max-flip x $a $b" "--max-failing-pixels 1.5 $a $b" "--max-failing-pixels 101% $a $b" \
+    "--max-failing-pixels -1 $a $b" "--pixel-tolerance 300 $a $b" "--ppd 0 $a $b" "-j 0 $a $b" "--jobs 1.5 $a $b" "--json= $a $b" "--bogus $a $b" \
+    "$a $b --max-flip" "$golden $a" "--help=html" "--pixel-tolerance nan $a $b"; do
+    # shellcheck disable=SC2086
+    run 2 $words; one_line; silent out
+done
+run 2 --heatmpa x $a $b; says "did you mean '--heatmap'?"
+
+claim "what can't be read is status 3, and named"
+echo "no picture" >"$work/text.png"
+head -c 3000 $a >"$work/cut.png"
+for file in "$work/text.png" "$work/cut.png" "$work/missing.png"; do
+    run 3 $a "$file"; says "$file"; one_line
+    run 3 "$file" $a; says "$file"; one_line
+done
+run 3 "$work/nothing/" $golden; says "nothing"
+mkdir "$work/empty"
+run 3 "$work/empty" "$work/empty"; says "no picture in either"
+
+claim "help and version are answered"
+run 0 --help; says "--max-failing-pixels N|P%"; run 0 --help=man; says ".TH TRACTRIX-COMPARE 1"; run 0 --version; says "tractrix-compare "
+"$program" --help >/dev/full 2>"$work/err"
+if [ $? = 1 ]; then good; else bad "status with a full disk"; fi
+
+claim "heat map and sheet are written, the same whatever else is asked"
+run 1 $a $b --heatmap "$work/heat.png" --sheet "$work/sheet.png"; is_png "$work/heat.png"; is_png "$work/sheet.png"
+run 1 "$work/heat.png" "$work/sheet.png"; says "160 x 120 and 488 x 120"
+run 0 $a $a --heatmap "$work/black.png"; is_png "$work/black.png"
+run 1 $a $b --heatmap "$work/none/heat.png"; says "none"; one_line
+
+claim "folders go frame by frame; what one lacks is missing"
+mkdir "$work/a" "$work/b"
+for i in 1 2 3 4; do cp $a "$work/a/f_$i.png"; cp $a "$work/b/f_$i.png"; done
+run 0 "$work/a" "$work/b"; says "f_1.png: same"; says "4 pictures: 4 same"
+cp $b "$work/b/f_2.png"; rm "$work/b/f_3.png"; cp $other "$work/b/f_4.png"; cp $b "$work/b/f_5.png"
+for jobs in 1 4; do
+    run 1 "$work/a" "$work/b" -j $jobs --heatmap "$work/heats$jobs" --sheet "$work/sheets" --json "$work/report.json" --junit "$work/report.xml"
+    says "f_2.png: different"; says "f_3.png: missing: no $work/b/f_3.png"; says "f_4.png: sizes"; says "f_5.png: missing: no $work/a/f_5.png"
+    says "5 pictures: 1 same, 1 different, 1 sizes, 2 missing"
+    is_png "$work/heats$jobs/f_2.png"; is_png "$work/sheets/f_2.png"; none "$work/heats$jobs/f_1.png"
+    mv "$work/out" "$work/out$jobs"; : >"$work/out"
+done
+equal "$work/out1" "$work/out4"; equal "$work/heats1/f_2.png" "$work/heats4/f_2.png"
+in_file "$work/report.json" '"outcome": "sizes"'; in_file "$work/report.json" '"missing": 2'; in_file "$work/report.json" '"psnr_db": null'
+in_file "$work/report.xml" 'tests="5" failures="4" errors="0"'; in_file "$work/report.xml" '<failure type="missing"'
+run 1 "$work/a/f_%d.png" "$work/b/f_%d.png"; says "5 pictures: 1 same, 1 different, 1 sizes, 2 missing"
+
+claim "one unreadable picture among others is status 3, and they are still compared"
+cp "$work/text.png" "$work/b/f_1.png"
+run 3 "$work/a" "$work/b" --junit "$work/report.xml"; says "f_1.png: unreadable"; says "f_2.png: different"; one_line
+in_file "$work/report.xml" 'errors="1"'; in_file "$work/report.xml" '<error type="unreadable"'
+
+claim "--update takes what is readable and differs, to the byte, and nothing else"
+cp "$work/text.png" "$work/a/f_6.png"; cp $b "$work/b/f_6.png"
+run 3 "$work/a" "$work/b" --update; says "f_2.png: different"; says "reference updated"; says "4 references updated"
+equal "$work/a/f_1.png" $a; equal "$work/a/f_2.png" $b; equal "$work/a/f_3.png" $a; equal "$work/a/f_4.png" $other; equal "$work/a/f_5.png" $b
+equal "$work/a/f_6.png" $b
+rm "$work/b/f_1.png" "$work/a/f_3.png" "$work/a/f_1.png"
+run 0 "$work/a" "$work/b"
+run 0 "$work/new/" "$work/b" --update; equal "$work/new/f_6.png" $b
+run 0 "$work/new.png" $b --update; equal "$work/new.png" $b
+run 1 "$work/none/new.png" $b --update; one_line; says "none/new.png"
+
+claim "a reference without a new picture is told and left"
+rm "$work/b/f_6.png"
+run 1 "$work/a" "$work/b" --update; says "f_6.png: missing"; equal "$work/a/f_6.png" $b
+
+claim "scripts/compare-goldens renders, updates, compares, and keeps what differs"
+small="assets/curls.tfx --algo none --size 48x36 --frames 1"
+printf '# a comment\nplain %s\ntwo_%%02d assets/fur.tfx --size 48x36 --frames 2\n' "$small" >"$work/list"
+TRACTRIX_BIN=$(realpath "$bin")
+export TRACTRIX_BIN
+goldens() {
+    expected=$1; shift
+    scripts/compare-goldens "$work/list" "$work/goldens" "$work/result" "$@" >"$work/out" 2>"$work/err"
+    status=$?
+    if [ $status = "$expected" ]; then good; else bad "exit status $status, expected $expected"; fi
+}
+goldens 0 --update; says "3 references updated"
+goldens 0; says "3 pictures: 3 same"; none "$work/result/sheets/plain.png"
+printf 'plain %s --color #ff0000\n' "$small" >"$work/list"
+goldens 1 --pixel-tolerance 8 --max-failing-pixels 1%; says "plain.png: different"; says "two_00.png: missing"
+is_png "$work/result/sheets/plain.png"; in_file "$work/result/report.xml" "plain.png"
+printf 'plain nowhere.tfx\n' >"$work/list"
+goldens 3; says "did not render"
+
+finish

@@ -1,0 +1,167 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# The command line of tractrix-convert: what it tells, what it writes and reads back, and how it fails.
+. tests/support/claims.sh
+program=$bin/tractrix-convert
+
+curls=assets/curls.tfx fur=assets/fur.tfx
+x=$work/x
+
+claim "without an order it tells what files are"
+run 0 $curls; says "TressFX 4 binary"; says "defects   none"; silent err
+run 0 $curls $fur; says "$curls:"; says "$fur:"
+
+claim "all that a format holds comes back, to the bit, through any other that holds it"
+for format in text tfx3 tfx4 hair data obj usda; do
+    run 0 $curls --unit m -q -o "$x.$format" --format $format; silent out; silent err
+    run 0 "$x.$format" --unit m -q -o "$work/again.data"
+    run 0 $curls --unit m -q -o "$work/direct.data"
+    equal "$work/again.data" "$work/direct.data"
+done
+run 0 "$x.tfx3" --unit m -q -o "$work/a.tfx" --format tfx4
+run 0 "$x.text" --unit m -q -o "$work/b.tfx" --format tfx4
+equal "$work/a.tfx" "$work/b.tfx" # with texture coordinates
+
+claim "what a format can't hold is told in one line"
+run 0 $curls -o "$x.obj"; says "x.obj: Wavefront lines leaves out: texture coordinates of strands"; one_line
+run 0 $curls -o "$x.usda"; silent err; says "x.usda: USD (.usda)"
+run 0 $curls -q -o "$x.obj"; silent err
+
+claim "the name decides the format, --format overrules it"
+run 0 $curls -o "$x.hair"; run 0 "$x.hair"; says "HAIR"
+run 0 $curls -o "$work/noname" --format hair; equal "$x.hair" "$work/noname"
+run 2 $curls -o "$work/noname2"; says ".usda, .tfx, .hair, .obj or .data"; one_line
+
+claim "units and axes of what is written are those that are asked for"
+run 0 $curls --unit m -q -o "$x.data" --to-unit 0.25 --to-up z
+run 0 "$x.data" -q --unit 0.25 --up z -o "$work/again.data"
+run 0 $curls --unit m -q -o "$work/direct.data"; equal "$work/again.data" "$work/direct.data"
+run 0 $curls -q -o "$x.usda" --to-unit cm --to-up z; in_file "$x.usda" "metersPerUnit = 0.01"; in_file "$x.usda" 'upAxis = "Z"'; run 0 "$x.usda"; says "unit      0.01 m as told"
+
+claim "steps are done in their order"
+run 0 $curls -q -o "$work/a.data" --translate 1,0,0 --rotate y,90 --scale 2
+run 0 $curls -q -o "$work/b.data" --scale 2 --rotate y,90 --translate 0,0,-2
+run 0 $curls -q -o "$work/c.data" --rotate y,90 --translate 1,0,0 --scale 2
+if cmp -s "$work/a.data" "$work/c.data"; then bad "the order makes no difference"; else good; fi
+run 0 "$work/a.data" --unit m --stats; sed -n 2,4p "$work/out" >"$work/a.box"
+run 0 "$work/b.data" --unit m --stats; sed -n 2,4p "$work/out" >"$work/b.box"; equal "$work/a.box" "$work/b.box"
+
+claim "strands and vertices become as many as asked for"
+run 0 $curls --nth 3 --resample 7 --stats; says "vertices                     7           7"
+strands=$(sed -n '1s/ .*//p' "$work/out")
+run 0 $curls --nth 3 -o "$x.tfx"; run 0 "$x.tfx"; says "strands   $strands usable of $strands"
+run 0 $curls --subsample 10% --seed 5 -q -o "$work/a.data"
+run 0 $curls --subsample 0.1 --seed 5 -q -o "$work/b.data"; equal "$work/a.data" "$work/b.data"
+run 0 $curls --subsample 0.1 --seed 6 -q -o "$work/b.data"
+if cmp -s "$work/a.data" "$work/b.data"; then bad "the seed makes no difference"; else good; fi
+run 0 $curls --reverse --reverse --unit m -q -o "$work/b.data"; equal "$work/b.data" "$work/direct.data"
+run 0 $curls --resample-spline 40 --smooth 3 --spacing 0.01 --min-length 0.001 -q -o "$x.hair"
+run 1 $curls --min-length 50 -o "$work/none.hair"; says "no strand is as long as 50 m"; one_line; none "$work/none.hair"
+run 1 $curls --min-length 0.0001 --spacing 0.000001 -o "$work/none.hair"; says "at most 65535"; one_line; none "$work/none.hair"
+
+claim "several files become one; what only some have is told"
+run 0 $curls $fur --unit m -o "$work/both.data"
+run 0 $curls -q -o "$x.tfx"; run 0 $fur -q -o "$work/y.hair"
+run 0 "$x.tfx" "$work/y.hair" -o "$work/z.usda"; says "leaves out: texture coordinates of strands"; one_line
+
+claim "dirty files are mended and that is told; --strict refuses them"
+cat >"$work/dirty.tfx" <<'END'
+numStrands 5
+is sorted 1
+strand 0 numVerts 3 texcoord 0 0
+0 0 0
+0 0 0
+0 1 0
+strand 1 numVerts 2 texcoord 0 0
+1 0 0
+1 -1.#INF 0
+strand 2 numVerts 2 texcoord 0 0
+2 0 0
+2 0 0
+strand 3 numVerts 2 texcoord nan 0
+3 0 0
+3 1 0
+strand 4 numVerts 2 texcoord 0 0
+4 0 0
+4 1 0
+END
+run 0 "$work/dirty.tfx" --unit m -o "$work/clean.tfx"
+says "dirty.tfx:9: 1 strand with a coordinate that is not finite"; says "dirty.tfx:10: 1 strand of fewer than two"
+says "dirty.tfx:5: 1 vertex that coincides"; says "1 attribute value that is not a finite number"
+run 0 "$work/clean.tfx" --strict; says "strands   3 usable of 3"; silent err
+run 3 "$work/dirty.tfx" --strict -o "$work/none.tfx"; says "refused: --strict"; one_line; none "$work/none.tfx"
+
+claim "figures go to JSON"
+run 0 "$work/dirty.tfx" --unit m --json "$work/x.json"; silent out
+for part in '"kind": "not_finite"' '"first_place": 9' '"curvature": {' '"root_spacing": {' '"sizes": [' '"unit_m": 1'; do
+    in_file "$work/x.json" "$part"
+done
+run 0 $curls --json "$work/x.json" -q -o "$x.obj"; in_file "$work/x.json" '"left_out": "texture coordinates of strands"'
+run 1 $curls --json "$work/none/x.json"; one_line
+
+claim "numbered files are frames"
+for i in 0 1 2 3; do run 0 $fur --unit m --subsample 1% -q --translate "0,$i,0" -o "$work/f_0$i.tfx"; done
+run 0 "$work/f_%02d.tfx" -o "$work/anim.usda" --fps 24; says "anim.usda: USD (.usda), 4 frames"
+in_file "$work/anim.usda" "endTimeCode = 3"; in_file "$work/anim.usda" "timeCodesPerSecond = 24"; in_file "$work/anim.usda" "        3: [("
+run 0 "$work/anim.usda" -o "$work/h.data"; says "anim.usda: of 4 time samples only the first is read"
+run 0 "$work/f_00.tfx" --unit m -q -o "$work/g_0.data"; equal "$work/h.data" "$work/g_0.data"; rm "$work/g_0.data"
+run 0 "$work/f_%02d.tfx"; says "frames    4, 0 to 3, 60 a second"
+run 0 "$work/f_%02d.tfx" --first 1 --every 2 -q -o "$work/g_%d.data"; none "$work/g_0.data"; none "$work/g_2.data"
+run 0 "$work/f_03.tfx" --unit m -q -o "$work/h.data"
+run 0 "$work/f_%02d.tfx" --unit m --first 3 -q -o "$work/g_%d.data"; equal "$work/g_3.data" "$work/h.data"
+run 2 "$work/f_%02d.tfx" -o "$work/one.data"; says "one name for 4 frames"; one_line; none "$work/one.data"
+run 3 "$work/f_%02d.tfx" --first 7; says "no file for frame 7"; one_line
+run 3 "$work/f_%02d.tfx" --last 4 -o "$work/none.usda"; says "f_04.tfx"; one_line; none "$work/none.usda"
+run 0 $curls --subsample 1% -q -o "$work/f_04.tfx"
+run 1 "$work/f_%02d.tfx" -o "$work/none.usda"; says "frame 4 has other strands than frame 0"; one_line; none "$work/none.usda"
+
+claim "a cache becomes a USD file with the points that tractrix-render writes"
+"$bin/tractrix-render" assets/curls.tfx assets/demo.tfx --frames 4 -q --cache "$work/a.cache" --export "$work/render.usda" || bad "tractrix-render fails"
+run 0 "$work/a.cache"; says "a cache"; says "of 2 sections"; says "frames    4, 0 to 3, 60 a second"
+run 0 "$work/a.cache" -o "$work/cache.usda"; says "4 frames"
+for file in render cache; do sed -n '/points.timeSamples/,/^    }/p' "$work/$file.usda" >"$work/$file.points"; done
+equal "$work/render.points" "$work/cache.points"; in_file "$work/cache.usda" "primvars:section"
+run 0 "$work/a.cache" --first 2 --last 2 --nth 10 -q -o "$work/frame.hair"; run 0 "$work/frame.hair"; says HAIR
+run 3 "$work/a.cache" --last 9 -o "$work/none.usda"; says "no frame 9"; one_line; none "$work/none.usda"
+head -c 300000 "$work/a.cache" >"$work/cut.cache"
+run 3 "$work/cut.cache" --last 3; says "no frame 3"; one_line
+head -c 40 "$work/a.cache" >"$work/cut.cache"; run 3 "$work/cut.cache"; one_line
+run 2 "$work/a.cache" $curls; says "can't be joined"; one_line
+
+claim "an interrupted export leaves no USD file, nor a part of one"
+mkdir "$work/broken"
+"$bin/tractrix-render" $curls --frames 1000000 -q --export "$work/broken/x.usda" >"$work/out" 2>"$work/err" &
+pid=$!
+for _ in $(seq 100); do [ -n "$(ls -A "$work/broken")" ] && break; sleep 0.1; done
+sleep 0.3; kill -INT $pid; wait $pid
+status=$?
+if [ $status = 130 ] && [ -z "$(ls -A "$work/broken")" ]; then good; else bad "status $status, $(ls -A "$work/broken")"; fi
+
+claim "what can't be read is status 3 and one line with the place"
+printf 'hello\n' >"$work/text"; : >"$work/empty"; head -c 5000 $curls >"$work/cut.tfx"; printf 'v 0 0 0\nl 1 2\n' >"$work/bad.obj"
+for file in "$work/text" "$work/empty" "$work/cut.tfx" "$work/bad.obj" "$work/missing.tfx" "$work" assets/head.obj; do
+    run 3 "$file" -o "$work/none.hair"; one_line; says "$file"; silent out; none "$work/none.hair"
+done
+
+claim "what can't be written is status 1"
+run 1 $curls -o /proc/x.hair; one_line
+run 1 $curls $fur --format tfx4 -o "$work/none.tfx"; says "needs equal numbers"; one_line; none "$work/none.tfx"
+
+claim "wrong usage is status 2 and one line"
+for words in "" "--nth 0 $curls --stats" "--nth 1.5 $curls --stats" "--subsample 0 $curls --stats" "--subsample 101% $curls --stats" \
+    "--resample 1 $curls --stats" "--resample 65536 $curls --stats" "--scale 0 $curls --stats" "--scale -1 $curls --stats" \
+    "--rotate w,9 $curls --stats" "--rotate y $curls --stats" "--rotate y,nan $curls --stats" "--translate 1,2 $curls --stats" \
+    "--translate 1,2,3,4 $curls --stats" "--smooth x $curls --stats" "--min-length 0 $curls --stats" "--format png $curls" \
+    "--unit furlong $curls" "--to-unit auto $curls -o $x.hair" "--up x $curls" "--to-up z $curls" "--first 1 $curls" "--fps 30 $curls" \
+    "--smooth 1 $curls" "--bogus $curls" "$curls -o" "-o $work/%s.tfx $curls" "-o $work/%d_%d.tfx $curls"; do
+    # shellcheck disable=SC2086
+    run 2 $words; one_line; silent out
+done
+run 2 --resampel 3 $curls; says "did you mean '--resample'?"
+
+claim "help and version are answered"
+run 0 --help; says "--resample-spline N"; run 0 --help=man; says ".TH TRACTRIX-CONVERT 1"; run 0 --version; says "tractrix-convert "
+"$program" --help >/dev/full 2>"$work/err"
+if [ $? = 1 ]; then good; else bad "status with a full disk"; fi
+
+finish

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// The levels of hide_levels.h, each against the one below it.
+#include "draw/hide_levels.h"
+
+#include "base/random.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { MOST = 41 * 23 };
+
+static float levels[HIDE_LEVEL_COUNT * MOST];
+
+// The least of all tiles (i, j) whose larger tile is (x, y) or beside it.
+static float expected(const float *nearest, int columns, int rows, int level, int x, int y)
+{
+    float least = INFINITY;
+    for (int j = 0; j < rows; ++j)
+        for (int i = 0; i < columns; ++i)
+            if (abs((i >> level) - x) <= 1 && abs((j >> level) - y) <= 1)
+                least = fminf(least, nearest[j * columns + i]);
+    return least;
+}
+
+static void each_level_has_the_least_around(void **state)
+{
+    (void)state;
+    static const int sizes[][2] = {{41, 23}, {16, 8}, {1, 1}, {1, 20}, {33, 2}};
+    Random random = random_create(1, 0);
+    for (size_t c = 0; c < sizeof sizes / sizeof *sizes; ++c) {
+        int columns = sizes[c][0], rows = sizes[c][1];
+        float nearest[MOST] = {0}, used[MOST];
+        for (int i = 0; i < columns * rows; ++i) nearest[i] = (float)random_real(&random);
+        memcpy(used, nearest, sizeof used);
+        hide_levels_make(used, columns, rows, levels);
+        for (int k = 0; k < HIDE_LEVEL_COUNT; ++k)
+            for (int y = 0; y <= (rows - 1) >> k; ++y)
+                for (int x = 0; x <= (columns - 1) >> k; ++x)
+                    assert_true(levels[(k * rows + y) * columns + x] ==
+                                expected(nearest, columns, rows, k, x, y));
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(each_level_has_the_least_around)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: MIT
+// Hair with a mesh and lights.
+#include "support/stage.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static void mesh_hides_the_hair_behind_it_only(void **state)
+{
+    (void)state;
+    Error error = {{0}};
+    Mesh mesh = make_square(50);
+    use(&BLACK);
+    const float green[3] = {0, 1, 0};
+    assert_int_equal(renderer_set_mesh(&studio.renderer, &mesh, green, &error), RESULT_OK);
+    mesh_destroy(&mesh);
+    add_line((float[3]){-90, 20, 10}, (float[3]){90, 20, 10}, 3, 1);     // before it
+    add_line((float[3]){-90, -20, -10}, (float[3]){90, -20, -10}, 3, 1); // behind it
+    studio_draw(&studio);
+    assert_int_equal(studio_pixel(&studio, SIDE / 2, SIDE / 2 - 20)[0], 255);
+    assert_int_equal(studio_pixel(&studio, SIDE / 2, SIDE / 2 + 20)[0], 0);
+    assert_true(studio_pixel(&studio, SIDE / 2, SIDE / 2 + 20)[1] > 50); // lit by what is ambient
+    assert_int_equal(studio_pixel(&studio, SIDE / 2 + 70, SIDE / 2 + 20)[0], 255);
+    assert_int_equal(studio_pixel(&studio, 5, 5)[1], 0);
+}
+
+// A leaning grey square before a strand that fills its surroundings, white: no pixel along the
+// edges is as dark as some share of the black background would make it, with either number of
+// samples.
+static void no_background_shows_between_a_silhouette_and_hair(void **state)
+{
+    (void)state;
+    Error error = {{0}};
+    RendererOptions options = BLACK;
+    Mesh mesh = make_square(30);
+    for (int v = 0; v < 4; ++v) mesh.position[v][0] += 0.3f * mesh.position[v][1];
+    for (options.samples = 1; options.samples <= 2; ++options.samples) {
+        use(&options);
+        assert_int_equal(renderer_set_mesh(&studio.renderer, &mesh, (float[3]){1, 1, 1}, &error),
+                         RESULT_OK);
+        add_line((float[3]){-90, 0, -10}, (float[3]){90, 0, -10}, 60, 1);
+        studio_draw(&studio);
+        int grey = studio_pixel(&studio, SIDE / 2, SIDE / 2)[0];
+        assert_true(grey > 50 && grey < 200); // the mesh
+        for (int y = SIDE / 2 - 45; y < SIDE / 2 + 45; ++y)
+            for (int x = SIDE / 2 - 45; x < SIDE / 2 + 45; ++x)
+                if (studio_pixel(&studio, x, y)[0] < grey - 1)
+                    fail_msg("%d, %d: %d, and the mesh is %d", x, y, studio_pixel(&studio, x, y)[0],
+                             grey);
+    }
+    mesh_destroy(&mesh);
+}
+
+// Hundreds of strands, wide ones too, on both sides of a mesh that fills a part of the picture:
+// what is seen through it is nothing, and beside it the picture is as without the mesh.
+static void a_mesh_hides_all_of_many_strands(void **state)
+{
+    (void)state;
+    Error error = {{0}};
+    Mesh mesh = make_square(50);
+    size_t size;
+    for (int wide = 0; wide < 2; ++wide) {
+        use(&BLACK);
+        add_tangle(200, wide ? 9 : 0.7f, 0.5f, NULL);
+        uint8_t *without = draw_copy(&size);
+        for (int v = 0; v < 4; ++v) mesh.position[v][2] = 300; // before all of them
+        assert_int_equal(renderer_set_mesh(&studio.renderer, &mesh, (float[3]){0}, &error),
+                         RESULT_OK);
+        studio_draw(&studio);
+        const int edge = (int)(50 * 1000 / 700.0); // px from the middle
+        for (int y = 0; y < SIDE; ++y)
+            for (int x = 0; x < SIDE; ++x) {
+                int far =
+                    abs(x - SIDE / 2) > abs(y - SIDE / 2) ? abs(x - SIDE / 2) : abs(y - SIDE / 2);
+                const uint8_t *pixel = studio_pixel(&studio, x, y);
+                const uint8_t black[3] = {0};
+                if (far < edge - 2) assert_memory_equal(pixel, black, 3);
+                if (far > edge + 2) assert_memory_equal(pixel, without + 3 * (y * SIDE + x), 3);
+            }
+        free(without);
+        studio_clear(&studio);
+    }
+    mesh_destroy(&mesh);
+}
+
+// Two strands 2 px before and behind a mesh that slopes away from the eye, by 1 px a pixel: depths
+// must be right in every pixel, not on the average of some.
+static void hair_close_to_a_sloping_mesh_is_all_seen_or_all_hidden(void **state)
+{
+    (void)state;
+    Error error = {{0}};
+    Mesh mesh = make_square(50);
+    for (int v = 0; v < 4; ++v) mesh.position[v][2] = mesh.position[v][0];
+    use(&BLACK);
+    const float green[3] = {0, 1, 0};
+    assert_int_equal(renderer_set_mesh(&studio.renderer, &mesh, green, &error), RESULT_OK);
+    mesh_destroy(&mesh);
+    add_line((float[3]){-40, 20, -38}, (float[3]){40, 20, 42}, 3, 1);
+    add_line((float[3]){-40, -20, -42}, (float[3]){40, -20, 38}, 3, 1);
+    studio_draw(&studio);
+    for (int x = -30; x <= 30; ++x) {
+        assert_int_equal(studio_pixel(&studio, SIDE / 2 + x, SIDE / 2 - 20)[0], 255);
+        assert_int_equal(studio_pixel(&studio, SIDE / 2 + x, SIDE / 2 + 20)[0], 0);
+    }
+}
+
+// A white strand along x that only the light shows, and what its middle looks like, 0..1.
+static double light_strand(const Light *light)
+{
+    studio.light = *light;
+    uint32_t i = add_line((float[3]){-60, 0, 0}, (float[3]){60, 0, 0}, 6, 1);
+    studio.material[i].ambient = 0;
+    studio.material[i].diffuse = 1;
+    studio_draw(&studio);
+    studio_clear(&studio);
+    double level = studio_pixel(&studio, SIDE / 2, SIDE / 2)[0] / 255.0;
+    return level <= 0.04045 ? level / 12.92 : pow((level + 0.055) / 1.055, 2.4);
+}
+
+// One level of 255 is up to 0.009 of the light there.
+static void light_falls_off_by_the_square_of_the_distance(void **state)
+{
+    (void)state;
+    use(&BLACK);
+    Light light = {.kind = LIGHT_POINT,
+                   .color = {1, 1, 1},
+                   .intensity = 0.8f,
+                   .position = {0, 300, 400},
+                   .distance = 500};
+    assert_true(fabs(light_strand(&light) - 0.8) < 0.01);
+    light.distance = 250;
+    assert_true(fabs(light_strand(&light) - 0.2) < 0.01);
+    light.position[0] = 1e6f; // along the strand, and far away
+    assert_true(light_strand(&light) < 0.001);
+}
+
+// Full up to the inner angle, half as much (squared) half-way by cosine, nothing beyond. The next
+// vertices, 30 px off, are darker, and a block shows its middle, up to 2 px off: a fifteenth.
+static void a_spot_shines_into_its_cone(void **state)
+{
+    (void)state;
+    use(&BLACK);
+    const double angles_deg[] = {0, 19.5, 30.5, 46},
+                 half = (cos(glm_rad(20)) + cos(glm_rad(30))) / 2;
+    const double expected[] = {0.8, 0.8, 0, 0, 0.2};
+    for (int i = 0; i < 5; ++i) {
+        double a = i < 4 ? angles_deg[i] * acos(-1) / 180 : acos(half);
+        Light spot = {.kind = LIGHT_SPOT,
+                      .color = {1, 1, 1},
+                      .intensity = 0.8f,
+                      .position = {0, 0, 100},
+                      .distance = 100,
+                      .direction = {0, (float)sin(a), (float)-cos(a)},
+                      .inner_deg = 20,
+                      .outer_deg = 30};
+        assert_true(fabs(light_strand(&spot) - expected[i]) < 0.01 + expected[i] / 15);
+    }
+}
+
+// The strand stands 60 px before the square, in light that comes 37 degrees from the right: its
+// shadow falls 45 px to its left. What the light brings there is less by the strand's opacity.
+static void a_strand_throws_its_shadow_on_the_mesh(void **state)
+{
+    (void)state;
+    RendererOptions options = BLACK;
+    options.shadow = (ShadowOptions){SHADOW_DOM, 256, 200};
+    Error error = {{0}};
+    const float white[3] = {1, 1, 1};
+    Mesh mesh = make_square(100);
+    use(&options);
+    assert_int_equal(renderer_set_mesh(&studio.renderer, &mesh, white, &error), RESULT_OK);
+    mesh_destroy(&mesh);
+    uint32_t item = add_line((float[3]){20, -60, 60}, (float[3]){20, 60, 60}, 6, 1);
+    studio.material[item].shadow_opacity = 0.8f;
+    studio.light = (Light){.direction = {0.6f, 0, 0.8f}, .color = {1, 1, 1}, .intensity = 0.5f};
+    const double ambient = 0.15, light = 0.5 * 0.8; // as in renderer.c; times the cosine
+    for (int shadow = 0; shadow < 2; ++shadow) {
+        studio.light.shadow = shadow;
+        studio_draw(&studio);
+        double there = ambient + light * (shadow ? 0.2 : 1);
+        assert_int_equal(studio.renderer.counts.shadow_maps, shadow);
+        assert_true(fabs(studio_pixel(&studio, SIDE / 2 - 25, SIDE / 2)[0] - srgb(there)) <= 4);
+        assert_true(
+            fabs(studio_pixel(&studio, SIDE / 2 - 50, SIDE / 2)[0] - srgb(ambient + light)) <= 1);
+    }
+}
+
+static void put_square(void)
+{
+    Error error = {{0}};
+    Mesh mesh = make_square(50);
+    assert_int_equal(
+        renderer_set_mesh(&studio.renderer, &mesh, (const float[3]){1, 0.5f, 0}, &error),
+        RESULT_OK);
+    mesh_destroy(&mesh);
+}
+
+// Hair moves before a still mesh (a studio's hair is another one in every picture), light and eye
+// do: pictures are those of a renderer that has drawn nothing before.
+static void a_mesh_is_drawn_again_where_it_looks_different(void **state)
+{
+    (void)state;
+    RendererOptions options = BLACK;
+    size_t size;
+    View view, turned;
+    studio_view(&view, options.width, options.height);
+    turned = view;
+    turned.view[3][0] += 20;
+    turned.eye[0] -= 20;
+    add_line((float[3]){20, -60, 60}, (float[3]){20, 60, 60}, 6, 0.8f);
+    const Light front = {.direction = {0, 0, 1}, .color = {1, 1, 1}, .intensity = 0.5f},
+                side = {.direction = {0.6f, 0, 0.8f}, .color = {1, 1, 1}, .intensity = 0.5f};
+    const struct {
+        Light light;
+        const View *view;
+        bool again;
+    } pictures[] = {
+        {front, &view, true}, {front, &view, false}, {side, &view, true}, {side, &turned, true}};
+    for (int shadow = 0; shadow < 2; ++shadow) {
+        options.shadow = (ShadowOptions){shadow ? SHADOW_DOM : SHADOW_NONE, 64, 200};
+        uint8_t *seen[4];
+        use(&options);
+        put_square();
+        for (int i = 0; i < 4; ++i) {
+            uint64_t version = studio.renderer.base.version;
+            studio.light = pictures[i].light;
+            studio.light.shadow = shadow;
+            studio_draw_view(&studio, pictures[i].view);
+            seen[i] = studio_copy(&studio, &size);
+            assert_int_equal(studio.renderer.base.version - version, pictures[i].again || shadow);
+        }
+        for (int i = 0; i < 4; ++i) {
+            use(&options);
+            put_square();
+            studio.light = pictures[i].light;
+            studio.light.shadow = shadow;
+            studio_draw_view(&studio, pictures[i].view);
+            uint8_t *fresh = studio_copy(&studio, &size);
+            assert_memory_equal(seen[i], fresh, size);
+            free(fresh);
+            free(seen[i]);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        CLAIM(mesh_hides_the_hair_behind_it_only),
+        CLAIM(no_background_shows_between_a_silhouette_and_hair),
+        CLAIM(a_mesh_hides_all_of_many_strands),
+        CLAIM(hair_close_to_a_sloping_mesh_is_all_seen_or_all_hidden),
+        CLAIM(light_falls_off_by_the_square_of_the_distance),
+        CLAIM(a_spot_shines_into_its_cone),
+        CLAIM(a_strand_throws_its_shadow_on_the_mesh),
+        CLAIM(a_mesh_is_drawn_again_where_it_looks_different),
+    };
+    return stage_run(tests);
+}

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+// Which rasteriser draws, and what quads do with the fragments of a pixel.
+#include "draw/render_uniforms.h"
+#include "support/stage.h"
+
+#include <math.h>
+#include <string.h>
+
+static void open_studio(Raster asked, Oit oit, int layers)
+{
+    RendererOptions options = BLACK;
+    options.raster = asked;
+    options.oit = oit;
+    options.oit_layers = layers;
+    studio_set_options(&studio, &options);
+}
+
+static void the_driver_chooses_the_rasteriser(void **state)
+{
+    (void)state;
+    open_studio(RASTER_AUTO, OIT_AUTO, 0);
+    assert_int_equal(studio.renderer.raster, studio.gpu.software ? RASTER_BLOCKS : RASTER_QUADS);
+    for (Raster asked = RASTER_QUADS; asked <= RASTER_BLOCKS; ++asked) {
+        open_studio(asked, OIT_AUTO, 0);
+        assert_int_equal(studio.renderer.raster, asked);
+    }
+    open_studio(RASTER_AUTO, OIT_NONE, 0); // blocks know one order only
+    assert_int_equal(studio.renderer.raster, RASTER_QUADS);
+    open_studio(RASTER_AUTO, OIT_ABUFFER, 0);
+    assert_int_equal(studio.renderer.raster, RASTER_QUADS);
+    open_studio(RASTER_AUTO, OIT_AUTO, 12);
+    assert_int_equal(studio.renderer.raster, RASTER_QUADS);
+}
+
+enum { STACK = 12, COLORS = 3 };
+static const double OPACITY = 0.2;
+static const float COLOR[COLORS][3] = {{0.9f, 0.2f, 0.1f}, {0.1f, 0.6f, 0.2f}, {0.2f, 0.1f, 0.8f}};
+
+// Wide bands one behind the other, a third of them of each colour.
+static void add_stack(void)
+{
+    enum { EACH = STACK / COLORS };
+    for (int c = 0; c < COLORS; ++c) {
+        float position[EACH][2][3];
+        for (int i = 0; i < EACH; ++i)
+            for (int j = 0; j < 2; ++j)
+                memcpy(position[i][j], (float[3]){j ? 60 : -60, 0, (float)-(c * EACH + i)},
+                       sizeof(float[3]));
+        Strands strands = studio_strands(EACH, 2, (const float(*)[3])position);
+        uint32_t item = studio_add(&studio, &strands, 6, (float)OPACITY);
+        memcpy(studio.material[item].color, COLOR[c], sizeof COLOR[c]);
+        strands_destroy(&strands);
+    }
+}
+
+// Channel k of the nearest `ordered` one over the other, under them all others as one of their mean
+// colour that lets through what they do together.
+static double expect(int ordered, int k)
+{
+    double sum = 0, rest = 0, through = 1, hidden = 1 - pow(1 - OPACITY, STACK - ordered);
+    for (int i = 0; i < STACK; ++i) {
+        double color = linear_from_srgb(COLOR[i * COLORS / STACK][k]);
+        if (i >= ordered) {
+            rest += color / (STACK - ordered);
+            continue;
+        }
+        sum += through * OPACITY * color;
+        through *= 1 - OPACITY;
+    }
+    return sum + through * hidden * rest;
+}
+
+// Fragments are halves: a level, rounding included.
+static void so_many_layers_are_in_order(void **state)
+{
+    (void)state;
+    static const int counts[] = {0, 1, 2, 4, 6, 8, 12, 64};
+    assert_true(fabs(srgb(expect(0, 0)) - srgb(expect(STACK, 0))) > 20); // order matters here
+    add_stack();
+    for (size_t c = 0; c < sizeof counts / sizeof *counts; ++c) {
+        open_studio(RASTER_QUADS, counts[c] ? OIT_ABUFFER : OIT_NONE, counts[c]);
+        studio_draw(&studio);
+        const uint8_t *pixel = studio_pixel(&studio, SIDE / 2, SIDE / 2);
+        for (int k = 0; k < 3; ++k) {
+            double expected = srgb(expect(counts[c] < STACK ? counts[c] : STACK, k));
+            if (fabs(pixel[k] - expected) > 1)
+                fail_msg("%d in order, channel %d: %d instead of %g", counts[c], k, pixel[k],
+                         expected);
+        }
+    }
+}
+
+static int open_stage(void **state)
+{
+    (void)state;
+    stage_open(&BLACK);
+    return 0;
+}
+
+static int close_stage(void **state)
+{
+    (void)state;
+    studio_close(&studio);
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        CLAIM(the_driver_chooses_the_rasteriser),
+        CLAIM(so_many_layers_are_in_order),
+    };
+    return cmocka_run_group_tests(tests, open_stage, close_stage);
+}

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: MIT
+// What a picture is drawn as: kinds of images, samples, what is drawn instead of light.
+#include "support/stage.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const RendererOptions SMALL = {
+    .width = 101, .height = 67, .background = {0.2f, 0.1f, 0.4f, 1}}; // px: no whole blocks
+
+// With these options and a mesh that slopes through the hair.
+static void use_with_mesh(const RendererOptions *options)
+{
+    const float green[3] = {0, 1, 0};
+    Error error = {{0}};
+    Mesh mesh = make_square(30);
+    for (int v = 0; v < 4; ++v) {
+        mesh.position[v][2] = 0.3f * mesh.position[v][0];
+        mesh.position[v][0] += 0.2f * mesh.position[v][1];
+    }
+    use(options);
+    assert_int_equal(renderer_set_mesh(&studio.renderer, &mesh, green, &error), RESULT_OK);
+    mesh_destroy(&mesh);
+}
+
+// Curved strands, and a wide one through the mesh.
+static void add_hair(void)
+{
+    add_tangle(300, 0.7f, 0.6f, NULL);
+    add_line((float[3]){-50, -35, -12}, (float[3]){50, 20, 12}, 7, 0.5f);
+}
+
+static Image take_image(void)
+{
+    size_t size;
+    Image image = studio.image;
+    image.pixels = studio_copy(&studio, &size);
+    return image;
+}
+
+static size_t count_values(const Image *image)
+{
+    return (size_t)image->width * (size_t)image->height * (size_t)image->channels;
+}
+
+static float float_at(const Image *image, size_t i)
+{
+    float value;
+    memcpy(&value, image->pixels + 4 * i, 4);
+    return value;
+}
+
+// A value of 255; light as sRGB.
+static double level_at(const Image *image, size_t i)
+{
+    uint16_t sixteen;
+    if (image->kind == IMAGE_8) return image->pixels[i];
+    if (image->kind == IMAGE_FLOAT) return srgb(fmin(float_at(image, i), 1));
+    memcpy(&sixteen, image->pixels + 2 * i, 2);
+    return sixteen / 257.0;
+}
+
+// Half a level of rounding; srgb.glsl is off by 0.012.
+static void every_kind_shows_the_same_picture(void **state)
+{
+    (void)state;
+    add_hair();
+    for (int samples = 1; samples <= 4; samples *= 2) {
+        RendererOptions options = SMALL;
+        options.samples = samples;
+        use_with_mesh(&options);
+        studio_draw(&studio);
+        Image expected = take_image();
+        for (options.kind = IMAGE_16; options.kind <= IMAGE_FLOAT; ++options.kind) {
+            use_with_mesh(&options);
+            studio_draw(&studio);
+            for (size_t i = 0; i < count_values(&expected); ++i)
+                assert_true(fabs(level_at(&studio.image, i) - expected.pixels[i]) <= 0.52);
+        }
+        image_destroy(&expected);
+    }
+}
+
+// A picture of s x s samples is one of s times its size, averaged in light. Blocks sum in floats of
+// 24 bits; quads' fragments are the same halves in both.
+static void check_samples(int side)
+{
+    View view;
+    RendererOptions options = SMALL;
+    options.kind = IMAGE_FLOAT;
+    options.background[3] = 0.25f;
+    studio_view(&view, options.width, options.height);
+    options.samples = side;
+    use_with_mesh(&options);
+    studio_draw(&studio);
+    Image mean = take_image();
+    options.samples = 1;
+    options.width *= side;
+    options.height *= side;
+    use_with_mesh(&options);
+    studio_draw_view(&studio, &view);
+    for (size_t i = 0; i < count_values(&mean); ++i) {
+        size_t s = (size_t)side, channel = i % 4, x = i / 4 % (size_t)mean.width,
+               y = i / 4 / (size_t)mean.width, row = 4 * s * (size_t)mean.width;
+        double sum = 0;
+        for (size_t k = 0; k < s * s; ++k)
+            sum += (double)float_at(&studio.image,
+                                    (y * s + k / s) * row + 4 * (x * s + k % s) + channel);
+        assert_true(fabs((double)float_at(&mean, i) - sum / (double)(s * s)) <= 1e-6);
+    }
+    image_destroy(&mean);
+}
+
+static void samples_are_the_pixels_of_a_larger_picture(void **state)
+{
+    (void)state;
+    add_hair();
+    check_samples(2);
+    check_samples(4);
+}
+
+static void three_samples_are_refused(void **state)
+{
+    (void)state;
+    Error error = {{0}};
+    Renderer renderer;
+    RendererOptions options = SMALL;
+    options.raster = raster;
+    options.samples = 3;
+    assert_int_equal(renderer_create(&renderer, &studio.gpu, &studio.timer, &options, &error),
+                     RESULT_USAGE);
+    assert_non_null(strstr(error.text, "expected 1, 2 or 4"));
+}
+
+// Levels of detail go by what is seen of a strand, not by how finely it is drawn.
+static void samples_leave_the_number_of_strands(void **state)
+{
+    (void)state;
+    uint64_t thinned[2];
+    add_tangle(1000, 0.1f, 0.2f, NULL);
+    for (int i = 0; i < 2; ++i) {
+        RendererOptions options = SMALL;
+        options.samples = i + 1;
+        options.lod = (LodOptions){.width = 0.5f, .least = 0.01f};
+        use(&options);
+        studio_draw(&studio);
+        thinned[i] = studio.renderer.counts.thinned;
+    }
+    assert_int_equal(thinned[0], thinned[1]);
+    assert_true(thinned[0] > 0);
+}
+
+static void what_is_nearest_has_one_sample(void **state)
+{
+    (void)state;
+    size_t size;
+    add_hair();
+    for (Aov aov = AOV_DEPTH; aov <= AOV_STRAND; ++aov) {
+        RendererOptions options = SMALL;
+        options.aov = aov;
+        options.depth_range[0] = 900;
+        options.depth_range[1] = 1100;
+        use_with_mesh(&options);
+        uint8_t *expected = draw_copy(&size);
+        options.samples = 2;
+        use_with_mesh(&options);
+        assert_draws_the_same(expected, size);
+        free(expected);
+    }
+}
+
+// Draws by the one rasteriser and by the other: the share of values that differ by more than
+// `tolerance`, among those that are not 0 with both.
+static double share_that_differs(const RendererOptions *options, double tolerance)
+{
+    size_t touched = 0, different = 0;
+    use_with_mesh(options);
+    studio_draw(&studio);
+    Image first = take_image();
+    raster = raster == RASTER_QUADS ? RASTER_BLOCKS : RASTER_QUADS;
+    use_with_mesh(options);
+    studio_draw(&studio);
+    raster = raster == RASTER_QUADS ? RASTER_BLOCKS : RASTER_QUADS;
+    assert_int_not_equal(studio.renderer.raster, raster);
+    for (size_t i = 0; i < count_values(&first); ++i) {
+        bool floats = first.kind == IMAGE_FLOAT;
+        double a = floats ? float_at(&first, i) : level_at(&first, i),
+               b = floats ? float_at(&studio.image, i) : level_at(&studio.image, i);
+        touched += a != 0 || b != 0;
+        different += fabs(a - b) > tolerance;
+    }
+    image_destroy(&first);
+    assert_true(touched > 1000);
+    return (double)different / (double)touched;
+}
+
+// Which strand covers a sixteenth of a pixel is a matter of rounding in few of them; elsewhere all
+// are equal: a hash to the byte, a tangent to a level, a depth to a thousandth, as straightened
+// ribbons are.
+static void rasterisers_agree_on_what_is_nearest(void **state)
+{
+    (void)state;
+    static const struct {
+        Aov aov;
+        ImageKind kind;
+        double tolerance;
+    } cases[] = {{AOV_STRAND, IMAGE_8, 0},
+                 {AOV_STRAND, IMAGE_16, 0},
+                 {AOV_TANGENT, IMAGE_8, 1},
+                 {AOV_DEPTH, IMAGE_FLOAT, 1}};
+    add_hair();
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        RendererOptions options = SMALL;
+        options.aov = cases[i].aov;
+        options.kind = cases[i].kind;
+        double share = share_that_differs(&options, cases[i].tolerance);
+        print_message("aov %d: %.2f%% differ\n", (int)cases[i].aov, 100 * share);
+        assert_true(share < 0.02);
+    }
+}
+
+// Quads keep halves (11 bits) and sum the rest in steps: a level, and half a level of rounding.
+static void rasterisers_agree_on_coverage(void **state)
+{
+    (void)state;
+    add_hair();
+    for (int samples = 1; samples <= 2; ++samples) {
+        RendererOptions options = SMALL;
+        options.aov = AOV_COVERAGE;
+        options.samples = samples;
+        double share = share_that_differs(&options, 1.5);
+        print_message("%d samples: %.2f%% differ\n", samples, 100 * share);
+        assert_true(share < 0.02);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        CLAIM(every_kind_shows_the_same_picture), CLAIM(samples_are_the_pixels_of_a_larger_picture),
+        CLAIM(three_samples_are_refused),         CLAIM(samples_leave_the_number_of_strands),
+        CLAIM(what_is_nearest_has_one_sample),    CLAIM(rasterisers_agree_on_what_is_nearest),
+        CLAIM(rasterisers_agree_on_coverage),
+    };
+    return stage_run(tests);
+}

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+// The A-buffer's pool: it grows as it must, and where it may not the picture is drawn in bands.
+#include "support/stage.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { SMALL_POOL = 1 << 17 }; // for a tangle
+
+static void a_pool_that_is_too_small_grows(void **state)
+{
+    (void)state;
+    const RendererOptions large = {.width = 1024, .height = 1024, .background = {0, 0, 0, 1}};
+    size_t size;
+    use(&large);
+    add_tangle(3000, 6, 0.4f, NULL);
+    uint8_t *first = draw_copy(&size);
+    assert_true(studio.renderer.counts.redraws > 0);
+    assert_int_equal(studio.renderer.counts.bands, 1);
+    assert_draws_the_same(first, size);
+    assert_int_equal(studio.renderer.counts.redraws, 0);
+    free(first);
+}
+
+static void bands_give_the_same_picture(void **state)
+{
+    (void)state;
+    RendererOptions small = BLACK;
+    small.pool_bytes = SMALL_POOL;
+    size_t size;
+    use(&BLACK);
+    add_tangle(1500, 2, 0.4f, NULL);
+    uint8_t *expected = draw_copy(&size);
+    uint64_t fragments = studio.renderer.counts.fragments;
+    assert_int_equal(studio.renderer.counts.bands, 1);
+    use(&small);
+    assert_draws_the_same(expected, size);
+    assert_true(studio.renderer.counts.bands > 4);
+    assert_int_equal(studio.renderer.counts.fragments, fragments);
+    assert_draws_the_same(expected, size);
+    free(expected);
+}
+
+static void bands_are_no_more_than_the_pool_asks_for(void **state)
+{
+    (void)state;
+    RendererOptions small = BLACK;
+    small.pool_bytes = SMALL_POOL;
+    size_t size;
+    use(&small);
+    add_tangle(1500, 2, 0.4f, NULL);
+    uint8_t *first = draw_copy(&size);
+    assert_draws_the_same(first, size);
+    free(first);
+    const RendererCounts *counts = &studio.renderer.counts;
+    uint64_t node_bytes = 16, least = counts->fragments * node_bytes / SMALL_POOL + 1;
+    assert_in_range(counts->bands, least, 3 * least);
+    assert_int_equal(counts->pool_bytes, small.pool_bytes);
+}
+
+// Its pixels are all of one 8x8 block, so of one shard.
+static void a_small_picture_uses_the_whole_pool(void **state)
+{
+    (void)state;
+    RendererOptions small = BLACK;
+    small.width = small.height = 8;
+    small.pool_bytes = 1 << 18;
+    use(&small);
+    add_tangle(20000, 2, 0.4f, NULL);
+    size_t size;
+    free(draw_copy(&size));
+    assert_true(studio.renderer.counts.fragments > 4096);
+    assert_int_equal(studio.renderer.counts.bands, 1);
+}
+
+// CPU drivers end loops silently after 65,535 turns: no picture is made without a word.
+static void more_layers_than_a_loop_can_visit_are_an_error(void **state)
+{
+    (void)state;
+    enum { COUNT = 66000 };
+    if (!studio.gpu.software) skip();
+    RendererOptions pixel = BLACK;
+    pixel.width = pixel.height = 1;
+    use(&pixel);
+    Strands strands = crowd(COUNT);
+    studio_add(&studio, &strands, 0.4f, 0.001f);
+    View view;
+    Error error = {{0}};
+    studio_view(&view, 1, 1);
+    RenderFrame frame = {.view = &view, .head_rotation = {0, 0, 0, 1}};
+    assert_int_equal(
+        renderer_draw(&studio.renderer, &frame, studio.items, studio.count, &studio.image, &error),
+        RESULT_FAILED);
+    assert_non_null(strstr(error.text, "a pixel has more than"));
+    strands_destroy(&strands);
+}
+
+static void a_row_that_no_pool_holds_is_an_error(void **state)
+{
+    (void)state;
+    RendererOptions tiny = BLACK;
+    tiny.pool_bytes = 1; // the least there can be
+    use(&tiny);
+    add_tangle(3000, 8, 0.4f, NULL);
+    View view;
+    Error error = {{0}};
+    studio_view(&view, SIDE, SIDE);
+    RenderFrame frame = {.view = &view, .head_rotation = {0, 0, 0, 1}};
+    assert_int_equal(
+        renderer_draw(&studio.renderer, &frame, studio.items, studio.count, &studio.image, &error),
+        RESULT_FAILED);
+    assert_non_null(strstr(error.text, "one row"));
+}
+
+// Where the pool is short of room, bands end between pixels, not in their midst.
+static void samples_do_not_depend_on_bands(void **state)
+{
+    (void)state;
+    size_t size;
+    RendererOptions options = BLACK;
+    options.samples = 2;
+    add_tangle(300, 0.7f, 0.6f, NULL);
+    use(&options);
+    uint8_t *expected = draw_copy(&size);
+    assert_int_equal(studio.renderer.counts.bands, 1);
+    options.pool_bytes = 1 << 16;
+    use(&options);
+    assert_draws_the_same(expected, size);
+    assert_true(studio.renderer.counts.bands > 1);
+    free(expected);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        CLAIM(a_pool_that_is_too_small_grows),
+        CLAIM(bands_give_the_same_picture),
+        CLAIM(bands_are_no_more_than_the_pool_asks_for),
+        CLAIM(a_small_picture_uses_the_whole_pool),
+        CLAIM(more_layers_than_a_loop_can_visit_are_an_error),
+        CLAIM(a_row_that_no_pool_holds_is_an_error),
+        CLAIM(samples_do_not_depend_on_bands),
+    };
+    return stage_run_quads(tests);
+}

@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: MIT
+#include "draw/hair_paint.h"
+#include "gen/strands_make.h"
+#include "strands/fibre.h"
+#include "support/shadow_stage.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool by_processor; // what makes the maps that are tested
+
+static int by_shaders(void **state)
+{
+    (void)state;
+    by_processor = false;
+    return 0;
+}
+
+static int by_c(void **state)
+{
+    (void)state;
+    by_processor = true;
+    return 0;
+}
+
+static void draw_maps(ShadowStage *stage, Shadow kind, int side, float spacing)
+{
+    shadow_stage_draw(stage, kind, side, spacing, by_processor);
+}
+
+static float light_at(ShadowStage *stage, float x, float y, float z)
+{
+    const float point[1][4] = {{x, y, z, 1}};
+    float *share = shadow_stage_light(stage, point, 1), value = *share;
+    free(share);
+    return value;
+}
+
+static void expect_light(ShadowStage *stage, float x, float y, float z, double expected,
+                         double tolerance)
+{
+    shadow_assert_near((double)light_at(stage, x, y, z), expected, tolerance);
+}
+
+// Strands much wider than a texel, so that what is smoothed is beside them. In each gap the layer
+// before lies wholly before the point, whatever the map's own layers are; the rest is the rounding
+// of sums to steps of 2^-16, some thousand of them, and points that share a texel.
+static void layers_of_hair_multiply(void **state)
+{
+    (void)state;
+    ShadowStage stage;
+    for (int lamp = 0; lamp < 2; ++lamp) {
+        shadow_stage_open(&stage, shadow_stage_layers(5), 0.06f, 0.3f, NULL,
+                          lamp ? &LIGHT_LAMP : &LIGHT_ABOVE);
+        draw_maps(&stage, SHADOW_DOM, 256, 1);
+        expect_light(&stage, 0.1f, 1, 0, 1, 1e-6);
+        for (int n = 1; n <= 5; ++n) {
+            float y = 0.05f - 0.1f * (float)n;
+            shadow_assert_near(shadow_stage_exact(&stage, 0.1, (double)y, 0), pow(0.7, n), 1e-6);
+            expect_light(&stage, 0.1f, y, 0, pow(0.7, n), 0.03);
+            expect_light(&stage, 0.1f, y, 0.2f, 1, 1e-6);
+        }
+        expect_light(&stage, 3, -2, 0, 1, 0); // beside the map
+        shadow_stage_close(&stage);
+    }
+}
+
+// The other scheme supposes fibres at even distances. Where they are, it has the exact light behind
+// n of them, within the steps of its depths.
+static void approximated_layers_multiply_at_even_distances(void **state)
+{
+    (void)state;
+    const float radius = 0.06f, distance = 0.1f;
+    ShadowStage stage;
+    shadow_stage_open(&stage, shadow_stage_layers(5), radius, 0.3f, NULL, &LIGHT_ABOVE);
+    draw_maps(&stage, SHADOW_APPROX, 256, distance / radius);
+    for (int n = 1; n <= 4; ++n) {
+        float y = 0.001f - distance * (float)n;
+        shadow_assert_near(shadow_stage_exact(&stage, 0.1, (double)y, 0), pow(0.7, n), 1e-6);
+        expect_light(&stage, 0.1f, y, 0, pow(0.7, n), 0.01);
+        expect_light(&stage, 0.1f, y, 0.2f, 1, 1e-6);
+    }
+    shadow_stage_close(&stage);
+}
+
+// Behind one fibre both schemes have its opacity, and before it all light.
+static void one_fibre_takes_its_opacity(void **state)
+{
+    (void)state;
+    for (Shadow kind = SHADOW_APPROX; kind <= SHADOW_DOM; ++kind) {
+        ShadowStage stage;
+        shadow_stage_open(&stage, shadow_stage_layers(1), 0.06f, 0.4f, NULL, &LIGHT_ABOVE);
+        draw_maps(&stage, kind, 256, 1e5f);
+        expect_light(&stage, 0.1f, 0.1f, 0, 1, 1e-6);
+        expect_light(&stage, 0.1f, -0.1f, 0, 0.6, 0.02);
+        expect_light(&stage, 0.1f, -0.1f, 0.3f, 1, 1e-6);
+        shadow_stage_close(&stage);
+    }
+}
+
+static void mesh_stands_in_the_light(void **state)
+{
+    (void)state;
+    Mesh mesh = shadow_stage_square(-0.05f, 0.3f);
+    for (int lamp = 0; lamp < 2; ++lamp) {
+        ShadowStage stage;
+        shadow_stage_open(&stage, shadow_stage_layers(2), 0.06f, 0.3f, &mesh,
+                          lamp ? &LIGHT_LAMP : &LIGHT_ABOVE);
+        draw_maps(&stage, SHADOW_DOM, 256, 1);
+        expect_light(&stage, 0.1f, -0.04f, 0, 0.7, 0.03); // before it
+        expect_light(&stage, 0.1f, -0.06f, 0, 0, 1e-6);   // behind it
+        expect_light(&stage, 0.1f, -0.08f, 0.25f, 0, 1e-6);
+        expect_light(&stage, 0.1f, -0.08f, 0.4f, 1, 1e-6); // beside it
+        shadow_stage_close(&stage);
+    }
+    mesh_destroy(&mesh);
+}
+
+// Thickness and opacity that a file has: the first strand grows from 1 to 3 radii, the second one
+// lets half as much through as the material says.
+static void shadows_are_as_wide_and_dark_as_the_paint(void **state)
+{
+    (void)state;
+    enum { VERTICES = 5 };
+    ShadowStage stage;
+    Strands strands = shadow_stage_layers(2);
+    for (int v = VERTICES; v < 2 * VERTICES; ++v) strands.position[v][2] = 0.5f;
+    shadow_stage_open(&stage, strands, 0.03f, 0.4f, NULL, &LIGHT_ABOVE);
+    float color[2 * VERTICES][4], thickness[2 * VERTICES];
+    for (int v = 0; v < 2 * VERTICES; ++v) {
+        for (int k = 0; k < 4; ++k) color[v][k] = k == 3 && v >= VERTICES ? 0.5f : 1;
+        thickness[v] = v < VERTICES ? 1 + 0.5f * (float)v : 2;
+    }
+    const Paint paint = {.color = color, .thickness = thickness, .vertex_count = 2 * VERTICES};
+    NEEDED(hair_paint(&stage.hair, &strands, &paint, &fixture_gpu()->limits, error));
+    stage.item.paint = &paint;
+    shadow_reference_destroy(&stage.reference);
+    NEEDED(shadow_reference_create(&stage.reference, &stage.reference_scene, &LIGHT_ABOVE,
+                                   (const float[3]){0}, error));
+    for (Shadow kind = SHADOW_APPROX; kind <= SHADOW_DOM; ++kind) {
+        draw_maps(&stage, kind, 256, 1e5f);
+        const float places[][2] = {{-0.4f, 0.015f}, {-0.4f, 0.06f}, {0.4f, 0.06f},
+                                   {0.4f, 0.12f},   {0, 0.48f},     {0, 0.6f}};
+        for (size_t i = 0; i < 6; ++i) {
+            float x = places[i][0], z = places[i][1];
+            if (kind == SHADOW_APPROX && z > 0.4f) continue; // it knows the mean opacity only
+            expect_light(&stage, x, -0.3f, z,
+                         shadow_stage_exact(&stage, (double)x, -0.3, (double)z), 0.02);
+        }
+    }
+    shadow_assert_near(shadow_stage_exact(&stage, 0, -0.3, 0.48), 0.8, 1e-6); // 1 - 0.5 * 0.4
+    shadow_stage_close(&stage);
+}
+
+// A bent strand of three particles as a B-spline, which passes its corner at two thirds of the way.
+static void smooth_strands_cast_the_shadow_of_their_curve(void **state)
+{
+    (void)state;
+    ShadowStage stage;
+    Strands strands;
+    NEEDED(strands_create(&strands, 1, 3, error));
+    strands.first[1] = 3;
+    const float corners[3][3] = {{-0.5f, 0, 0}, {0, 0, 0.5f}, {0.5f, 0, 0}};
+    memcpy(strands.position, corners, sizeof corners);
+    shadow_stage_open(&stage, strands, 0.03f, 0.4f, NULL, &LIGHT_ABOVE);
+    Look *look = &stage.casters[0].look;
+    for (Shadow kind = SHADOW_APPROX; kind <= SHADOW_DOM; ++kind)
+        for (uint parts = 1; parts <= 20; parts += 19) {
+            look->material.smooth_parts = parts;
+            look->material.smooth_curve = CURVE_BSPLINE;
+            look->features = parts > 1 ? LOOK_SMOOTH : 0;
+            draw_maps(&stage, kind, 256, 1e5f);
+            expect_light(&stage, 0, -0.1f, 1 / 3.0f, parts > 1 ? 0.6 : 1, 0.02);
+            expect_light(&stage, -0.1f, -0.1f, 0.4f, parts > 1 ? 1 : 0.6, 0.02);
+        }
+    shadow_stage_close(&stage);
+}
+
+// Three eighths of four strands side by side: one and a half, wider by the inverse share.
+static void strands_left_out_cast_no_shadow(void **state)
+{
+    (void)state;
+    ShadowStage stage;
+    Strands strands = shadow_stage_layers(4);
+    for (uint32_t v = 0; v < strands.vertex_count; ++v) {
+        strands.position[v][2] = -2 * strands.position[v][1];
+        strands.position[v][1] = 0;
+    }
+    shadow_stage_open(&stage, strands, 0.02f, 0.4f, NULL, &LIGHT_ABOVE);
+    Look *look = &stage.casters[0].look;
+    look->share = 0.375f; // one and a half
+    look->material.radius /= look->share;
+    for (Shadow kind = SHADOW_APPROX; kind <= SHADOW_DOM; ++kind) {
+        draw_maps(&stage, kind, 256, 1e5f);
+        expect_light(&stage, 0, -0.1f, 0.04f, 0.6, 0.02);         // 0.053 to each side
+        expect_light(&stage, 0, -0.1f, 0.015f + 0.2f, 0.6, 0.02); // 0.027 to each side
+        expect_light(&stage, 0, -0.1f, 0.04f + 0.2f, 1, 0.02);
+        expect_light(&stage, 0, -0.1f, 0.4f, 1, 0);
+    }
+    uint32_t drawn = stage.shadow.maps_drawn;
+    GpuTimer timer;
+    gpu_timer_create(&timer, false, true);
+    assert_int_equal(drawn, 1);
+    for (uint32_t pass = 0; pass < 2; ++pass) { // a share that changes makes them anew
+        NEEDED(render_shadow_draw(&stage.shadow, &stage.scene, &timer, error));
+        assert_int_equal(stage.shadow.maps_drawn, pass);
+        look->share = 0.5f;
+    }
+    gpu_timer_destroy(&timer);
+    shadow_stage_close(&stage);
+}
+
+static void maps_are_kept_while_nothing_changes(void **state)
+{
+    (void)state;
+    ShadowStage stage;
+    GpuTimer timer;
+    gpu_timer_create(&timer, false, true);
+    shadow_stage_open(&stage, shadow_stage_layers(2), 0.06f, 0.3f, NULL, &LIGHT_ABOVE);
+    draw_maps(&stage, SHADOW_DOM, 64, 1);
+    const struct {
+        uint64_t revision;
+        float way;
+        uint32_t drawn;
+    } pictures[] = {{1, 0, 0},    {2, 0, 1},    {2, 0, 0},   {2, 0.5f, 1},
+                    {2, 0.5f, 0}, {0, 0.5f, 1}, {0, 0.5f, 1}};
+    assert_int_equal(stage.shadow.maps_drawn, 1);
+    for (size_t i = 0; i < sizeof pictures / sizeof *pictures; ++i) {
+        stage.scene.revision = pictures[i].revision;
+        stage.light.direction[0] = pictures[i].way;
+        NEEDED(render_shadow_draw(&stage.shadow, &stage.scene, &timer, error));
+        assert_int_equal(stage.shadow.maps_drawn, pictures[i].drawn);
+    }
+    stage.light.shadow = false;
+    NEEDED(render_shadow_draw(&stage.shadow, &stage.scene, &timer, error));
+    assert_int_equal(stage.shadow.maps_drawn, 0);
+    expect_light(&stage, 0.1f, -0.5f, 0, 1, 0);
+    shadow_stage_close(&stage);
+    gpu_timer_destroy(&timer);
+}
+
+static void broken_positions_leave_the_rest_its_shadow(void **state)
+{
+    (void)state;
+    const float values[] = {NAN, INFINITY, -1e30f, 1e7f};
+    for (size_t i = 0; i < sizeof values / sizeof *values; ++i) {
+        ShadowStage stage;
+        Strands strands = shadow_stage_layers(2);
+        strands.position[7][i % 3] = values[i];
+        shadow_stage_open(&stage, strands, 0.06f, 0.4f, NULL, &LIGHT_ABOVE);
+        draw_maps(&stage, SHADOW_DOM, 256, 1);
+        expect_light(&stage, 0.1f, -0.05f, 0, 0.6, 0.02);
+        shadow_stage_close(&stage);
+    }
+}
+
+typedef struct Fit {
+    double rms, bias;
+} Fit;
+
+// Against the exact light at every 7th vertex. Most of the difference is the exact light's own
+// noise: it steps by the opacity at every fibre's edge, the maps average over texels.
+static Fit judge(ShadowStage *stage)
+{
+    const Strands *strands = &stage->strands;
+    uint32_t count = 0;
+    float(*points)[4] = malloc((strands->vertex_count / 7 + 1) * sizeof *points);
+    assert_non_null(points);
+    for (uint32_t v = 0; v < strands->vertex_count; v += 7, ++count)
+        memcpy(points[count], strands->position[v], 12);
+    stage->on_fibre = true;
+    float *shares = shadow_stage_light(stage, (const float(*)[4])points, count);
+    Fit fit = {0};
+    for (uint32_t i = 0; i < count; ++i) {
+        const double x[3] = {(double)points[i][0], (double)points[i][1], (double)points[i][2]};
+        double off = (double)shares[i] -
+                     shadow_reference_light(&stage->reference, x, (double)stage->item.radius);
+        fit.rms += off * off / count;
+        fit.bias += off / count;
+    }
+    fit.rms = sqrt(fit.rms);
+    free(points);
+    free(shares);
+    return fit;
+}
+
+// The bounds are the figures as measured (docs/renderer.md), and a little more.
+static void deep_maps_are_near_the_exact_light(void **state)
+{
+    (void)state;
+    const struct {
+        StrandsStyle style;
+        uint32_t count, vertices;
+        double rms;
+    } sets[] = {{STRANDS_STYLE_STRAIGHT, 10000, 32, 0.2},
+                {STRANDS_STYLE_CURLS, 10000, 32, 0.19},
+                {STRANDS_STYLE_FUR, 37747, 8, 0.22}};
+    Light light = LIGHT_ABOVE;
+    memcpy(light.direction, (float[3]){0.36f, 0.8f, 0.48f}, sizeof light.direction);
+    for (size_t i = 0; i < sizeof sets / sizeof *sets; ++i) {
+        StrandsRecipe recipe = strands_recipe_default(sets[i].style);
+        Strands strands;
+        ShadowStage stage;
+        recipe.count = sets[i].count, recipe.vertices = sets[i].vertices;
+        NEEDED(strands_make(&strands, &recipe, error));
+        shadow_stage_open(&stage, strands, fibre_auto_radius(&strands, 0), 0.33f, NULL, &light);
+        draw_maps(&stage, SHADOW_DOM, 256, 200);
+        Fit deep = judge(&stage);
+        draw_maps(&stage, SHADOW_APPROX, 256, 200);
+        Fit approximated = judge(&stage);
+        print_message("%u x %u: off by %.3f (mean %+.3f) dom, %.3f (%+.3f) approx\n", recipe.count,
+                      recipe.vertices, deep.rms, deep.bias, approximated.rms, approximated.bias);
+        assert_true(deep.rms < sets[i].rms && fabs(deep.bias) < 0.02);
+        assert_true(deep.rms < approximated.rms);
+        shadow_stage_close(&stage);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest maps[] = {
+        cmocka_unit_test(layers_of_hair_multiply),
+        cmocka_unit_test(approximated_layers_multiply_at_even_distances),
+        cmocka_unit_test(one_fibre_takes_its_opacity),
+        cmocka_unit_test(mesh_stands_in_the_light),
+        cmocka_unit_test(shadows_are_as_wide_and_dark_as_the_paint),
+        cmocka_unit_test(smooth_strands_cast_the_shadow_of_their_curve),
+        cmocka_unit_test(strands_left_out_cast_no_shadow),
+        cmocka_unit_test(maps_are_kept_while_nothing_changes),
+        cmocka_unit_test(broken_positions_leave_the_rest_its_shadow),
+        cmocka_unit_test(deep_maps_are_near_the_exact_light),
+    };
+    int failed = cmocka_run_group_tests_name("by shaders", maps, by_shaders, NULL);
+    return failed + cmocka_run_group_tests_name("by C", maps, by_c, NULL);
+}

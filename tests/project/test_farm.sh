@@ -1,0 +1,97 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Frames from many processes are those of one, to the byte: shares by --part, and scripts/farm with each of its runners; what is
+# lost on the way is found and drawn. `make check-farm` installs what the runners need.
+. tests/support/claims.sh
+program=$bin/tractrix-render
+scene="assets/gust.json --frames 7 --size 64x48"
+same() { if diff -r "$work/one" "$1" >"$work/out" 2>"$work/err"; then good; else bad "$1 differs from one process's"; fi; }
+# farm ARGUMENT...: with the tests' program.
+farm() {
+    if TRACTRIX_RENDER=$program scripts/farm "$@" >"$work/out" 2>"$work/err" </dev/null; then good; else bad "scripts/farm $*"; fi
+}
+
+# shellcheck disable=SC2086
+run 0 $scene -q -o "$work/one/"
+
+claim "shares are whole together, and none has another's frames"
+for part in 1/3 2/3 3/3; do
+    # shellcheck disable=SC2086
+    run 0 $scene -q --part $part -o "$work/shares/"
+done
+same "$work/shares"
+# shellcheck disable=SC2086
+run 0 $scene -q --first 1 --every 2 --part 2/2 -o "$work/second/"
+holds test "$(cd "$work/second" && echo *)" = frame_0003.png
+
+claim "a share of no frames is done at once"
+# shellcheck disable=SC2086
+run 0 $scene -q --part 9/9 -o "$work/nothing/"
+no_files "$work/nothing"
+
+claim "a share that cannot be is refused"
+for part in 0/2 3/2 2 1/0 x/2 1.5/2; do
+    # shellcheck disable=SC2086
+    run 2 $scene --part $part -o "$work/x/"; one_line; says "I/N"
+done
+# shellcheck disable=SC2086
+run 2 $scene --part 1/2 -o "$work/x.mp4"; one_line
+none "$work/x.mp4"
+# shellcheck disable=SC2086
+run 2 $scene --part 1/2 --export "$work/x.usda"; one_line
+
+claim "one process after the other"
+# shellcheck disable=SC2086
+farm -n 3 plain -o "$work/plain/" $scene
+same "$work/plain"
+
+claim "a frame that is missing and one that is cut off are found and drawn again"
+rm "$work/plain/frame_0002.png"
+head -c 500 "$work/one/frame_0004.png" >"$work/plain/frame_0004.png"
+# shellcheck disable=SC2086
+farm -n 3 plain -o "$work/plain/" $scene
+same "$work/plain"
+
+claim "a share that is lost is drawn at the end"
+cat >"$work/losing" <<END
+#!/bin/sh
+case "\$*" in *"--part 2/3"*) kill -9 \$\$ ;; esac
+exec "$program" "\$@"
+END
+chmod +x "$work/losing"
+# shellcheck disable=SC2086
+holds env TRACTRIX_RENDER="$work/losing" scripts/farm -n 3 -c "$work/l.cache" plain -o "$work/lost/%04d.png" $scene
+says "share 2 failed"; says "5 of 7 frames are there"
+for frame in 0 1 2 3 4 5 6; do equal "$work/one/frame_000$frame.png" "$work/lost/000$frame.png"; done
+
+claim "wrong usage is told"
+for words in "" "plain" "plain -o $work/x/" "cloud -o $work/x/ a.json" "-n 0 plain -o $work/x/ a.json" "-z plain -o $work/x/ a.json"; do
+    # shellcheck disable=SC2086
+    scripts/farm $words >"$work/out" 2>"$work/err"
+    if [ $? = 2 ]; then good; else bad "scripts/farm $words: not status 2"; fi
+done
+
+claim "GNU parallel"
+if command -v parallel >/dev/null; then
+    # shellcheck disable=SC2086
+    farm -n 4 parallel -o "$work/parallel/" $scene
+    same "$work/parallel"
+else
+    skip "no parallel"
+fi
+
+claim "Slurm"
+if ! PATH=$PATH:/usr/sbin command -v slurmctld >/dev/null; then
+    skip "no Slurm"
+elif [ "$(id -u)" != 0 ]; then
+    skip "not root"
+else
+    setting=$(scripts/slurm-here start "$work/slurm" 2>"$work/err") || bad "scripts/slurm-here start"
+    export "${setting:-SLURM_CONF=}"
+    # shellcheck disable=SC2086
+    farm -n 3 slurm -o "$work/jobs/" $scene
+    same "$work/jobs"
+    holds scripts/slurm-here stop "$work/slurm"
+fi
+
+finish

@@ -1,0 +1,108 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# What `make install` puts where, that the programs work from there with nothing of the checkout at hand, and the ways in which
+# they tell about themselves: manual pages, completion in bash, versions; and shaders read from a folder.
+. tests/support/claims.sh
+program=$bin/tractrix-render
+root=$work/root share=$work/root/usr/share
+
+# The programs are there, built by who runs the tests; told of the same flags, make takes them as they are.
+same="OUT=$(realpath --relative-to=. "$bin") CC=$(cut -d' ' -f1 "$bin/flags")"
+if grep -q fsanitize "$bin/flags"; then same="$same CONFIG=sanitize"; else same="$same CONFIG=release"; fi
+if grep -q -- -Werror "$bin/flags"; then same="$same WERROR=1"; else same="$same WERROR="; fi
+installs() {
+    # shellcheck disable=SC2086
+    holds make --no-print-directory "$1" $same DESTDIR="$root" PREFIX=/usr
+    if grep -qE '^  (CC|LINK) ' "$work/out"; then bad "built anew"; else good; fi
+}
+claim "make install puts everything under DESTDIR and PREFIX"
+installs install
+for name in "$bin"/tractrix-*.bash; do # one of each program
+    name=${name##*/}
+    name=${name%.bash}
+    is_file "$root/usr/bin/$name"; is_file "$share/man/man1/$name.1"; is_file "$share/bash-completion/completions/$name"
+done
+for file in man/man1/tractrix-gen-fur.1 doc/tractrix/LICENSE doc/tractrix/docs/renderer.md tractrix/demo.json; do is_file "$share/$file"; done
+
+claim "an installed program needs nothing of the checkout"
+program=$root/usr/bin/tractrix-render
+cd "$work" || exit 1
+run 0 "$share/tractrix/demo.json" --frames 1 --size 64x48 -q -o "$work/installed/"
+program=$root/usr/bin/tractrix-turntable
+export TURNTABLE_S=0.1 TURNTABLE_OUT="$work/turn"
+run 0 "$share/tractrix/fur.tfx" frames -- --size 48x32 -q
+unset TURNTABLE_S TURNTABLE_OUT
+program=$root/usr/bin/tractrix-render
+cd - >/dev/null || exit 1
+is_file "$work/installed/frame_0000.png"; is_file "$work/turn/fur/frame_0000.png"
+
+claim "manual pages are sound"
+for page in "$share"/man/man1/*; do
+    in_file "$page" '.SH "'
+    name=$(basename "$page" .1 | tr '[:lower:]' '[:upper:]')
+    in_file "$page" ".TH $name 1"
+    if command -v man >/dev/null; then
+        holds man -l -Tutf8 --warnings=w "$page"
+        silent err
+    else
+        skip "no man"
+    fi
+done
+
+claim "make uninstall leaves no file behind"
+installs uninstall
+holds test -z "$(find "$root" -type f)"
+
+# offers WORD... -- EXPECTED...: the command line so far makes bash offer these words and no others.
+offers() {
+    line='' expected=''
+    while [ "$1" != -- ]; do line="$line '$1'"; shift; done
+    shift
+    for word in "$@"; do expected="$expected$word "; done
+    offered=$(bash -c ". '$work/complete'; compopt() { :; }; COMP_WORDS=($line); COMP_CWORD=\$((\${#COMP_WORDS[@]} - 1))
+        _tractrix_render; printf '%s\n' \"\${COMPREPLY[@]}\"" 2>&1 | sort | tr '\n' ' ' | sed 's/^ //')
+    if [ "$offered" = "$expected" ]; then good; else bad "$line: offers '$offered', expected '$expected'"; fi
+}
+
+claim "bash completes flags, their words and files"
+program=$bin/tractrix-render
+run 0 --help=bash
+cp "$work/out" "$work/complete"
+offers tractrix-render --turn -- --turn-lights --turntable
+offers tractrix-render --raster '' -- auto blocks quads
+offers tractrix-render --raster = b -- blocks
+offers tractrix-render --algo e -- emulation
+offers tractrix-render --mesh assets/hea -- assets/head.obj
+offers tractrix-render assets/dem -- assets/demo.json assets/demo.tfx
+offers tractrix-render --frames 1 --
+offers tractrix-render -o asse -- assets
+run 2 --help=html; one_line
+
+claim "the version sorts as Debian's do"
+run 0 --version
+version=$(cut -d' ' -f2 "$work/out")
+if command -v dpkg >/dev/null; then
+    holds dpkg --validate-version "$version"
+    holds dpkg --compare-versions "$version" le "$(sed -n 's/^VERSION := //p' Makefile)"
+else
+    skip "no dpkg"
+fi
+
+claim "TRACTRIX_GLSL_DIR gives other shaders, and tells what is wrong with them"
+cp -r glsl "$work/glsl"
+run 0 assets/fur.tfx --frames 1 --size 64x48 -q -o "$work/own.png"
+TRACTRIX_GLSL_DIR=$work/glsl
+export TRACTRIX_GLSL_DIR
+run 0 assets/fur.tfx --frames 1 --size 64x48 -q --stats "$work/stats.json" -o "$work/same.png"
+equal "$work/own.png" "$work/same.png"
+in_file "$work/stats.json" "$TRACTRIX_GLSL_DIR"
+chmod u+w "$work/glsl/draw/block_project.comp"
+sed 's/^void main()/this is no GLSL\n&/' glsl/draw/block_project.comp >"$work/glsl/draw/block_project.comp"
+run 1 assets/fur.tfx --frames 1 --size 64x48 --raster blocks -q -o "$work/none.png"
+says "block_project.comp:$(grep -n '^this' "$work/glsl/draw/block_project.comp" | cut -d: -f1)"; one_line
+none "$work/none.png"
+rm "$work/glsl/draw/block_project.comp"
+run 3 assets/fur.tfx --frames 1 --size 64x48 --raster blocks -q -o "$work/none.png"; says "block_project.comp"; one_line
+none "$work/none.png"
+
+finish

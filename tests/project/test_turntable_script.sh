@@ -1,0 +1,36 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# scripts/turntable.sh as a user meets it: every format, options behind --, what it refuses.
+. tests/support/claims.sh
+program=scripts/turntable.sh
+turns=$work/turns
+export TRACTRIX_BIN="$bin" TURNTABLE_OUT="$turns" TURNTABLE_S=0.5
+small="--size 64x48 --quality draft --preroll 0.1"
+
+# stream FILE EXPECTED: codec, size, kind of pixels and frames as ffprobe has them.
+stream() {
+    got=$(ffprobe -v error -count_frames -of csv=p=0 -show_entries stream=codec_name,width,height,pix_fmt,nb_read_frames "$turns/$1")
+    if [ "$got" = "$2" ]; then good; else bad "$1: $got, expected $2"; fi
+}
+
+claim "a sheet and frames, and nothing else"
+# shellcheck disable=SC2086 # lists of words
+run 0 assets/fur.tfx sheet frames -- $small
+is_file "$turns/fur_sheet.png"
+if [ "$(find "$turns/fur" -name 'frame_*.png' | wc -l)" = 12 ]; then good; else bad "not 12 frames"; fi
+if [ "$(find "$turns" -name '*.cache*' | wc -l)" = 0 ]; then good; else bad "the cache was left behind"; fi
+
+claim "videos of each kind"
+if command -v ffprobe >/dev/null; then
+    # shellcheck disable=SC2086
+    run 0 assets/fur.tfx mp4 webm gif -- $small --size 65x49
+    stream fur.mp4 h264,66,50,yuv420p,12
+    stream fur.webm vp9,65,49,yuv420p,12
+    stream fur.gif gif,65,49,bgra,6
+else
+    skip "ffprobe is not installed"
+fi
+
+claim "what it can't do is refused"
+run 2; run 2 assets/fur.tfx avi; run 3 "$work/none.tfx" sheet; run 2 assets/fur.tfx sheet -- --no-such-flag
+finish

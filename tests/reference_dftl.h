@@ -1,9 +1,0 @@
-// SPDX-License-Identifier: MIT
-// Dynamic follow-the-leader in double precision, one strand on the CPU, as the paper states it.
-#pragma once
-
-#include "twin.h"
-
-// Mueller, Kim, Chentanez, "Fast Simulation of Inextensible Hair and Fur", VRIPHYS 2012, equations
-// 4 to 10.
-void reference_dftl_step(TwinStrand *strand, const TwinStep *step, const SectionParams *params);

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: MIT
+// A cache gives back every bit, whatever was cut off behind it, and tells what it cannot give.
+#include "run/cache.h"
+#include "run/frame_source.h"
+#include "support/hair_fixture.h"
+#include "support/simulation_fixture.h"
+#include "support/temporary.h"
+
+#include <fcntl.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+enum { FRAMES = 5 };
+
+// A run that writes a cache, and what it drew.
+typedef struct Recorded {
+    char path[300];
+    uint64_t hash[FRAMES];
+} Recorded;
+
+static void set_path(char **field, const char *path)
+{
+    free(*field);
+    *field = strdup(path);
+}
+
+static void start(SimulationFixture *fixture, const char *played)
+{
+    simulation_fixture_create(fixture, "chain", "");
+    fixture->scene.run.frames = FRAMES;
+    fixture->scene.run.sim_rate = 25; // frames between steps as well
+    if (!played) {
+        simulation_fixture_start(fixture);
+        return;
+    }
+    set_path(&fixture->scene.run.from_cache, played);
+    Error error;
+    if (simulation_create(&fixture->simulation, fixture_gpu(), &fixture->timer, &fixture->scene,
+                          &fixture->strands, NULL, &error) != RESULT_OK)
+        fail_msg("%s", error.text);
+}
+
+static void record(Recorded *recorded, void **state, const char *name, bool whole)
+{
+    SimulationFixture fixture;
+    CacheWriter writer;
+    snprintf(recorded->path, sizeof recorded->path, "%s", temporary_path(state, name));
+    start(&fixture, NULL);
+    assert_int_equal(
+        cache_writer_open(&writer, recorded->path, &fixture.simulation, &fixture.strands, NULL),
+        RESULT_OK);
+    for (int frame = 0; frame < FRAMES; ++frame) {
+        simulation_fixture_go(&fixture, frame);
+        recorded->hash[frame] = simulation_fixture_hash(&fixture);
+        assert_int_equal(cache_writer_add(&writer, &fixture.simulation, NULL), RESULT_OK);
+    }
+    if (whole) assert_int_equal(cache_writer_finish(&writer, NULL), RESULT_OK);
+    cache_writer_close(&writer);
+    simulation_fixture_destroy(&fixture);
+}
+
+// Plays frame by frame, last first; how many are there, or -1 if the file is refused. What is shown
+// must be what was recorded.
+static int play(SimulationFixture *fixture, const Recorded *recorded, const char *path)
+{
+    CacheReader reader;
+    Error error;
+    Result result =
+        cache_reader_open(&reader, path, &fixture->simulation, &fixture->strands, &error);
+    if (result != RESULT_OK) {
+        assert_int_equal(result, RESULT_BAD_INPUT);
+        assert_int_equal(strncmp(error.text, path, strlen(path)), 0);
+        return -1;
+    }
+    int count = 0;
+    for (int frame = FRAMES - 1; frame >= 0; --frame) {
+        result = cache_reader_show(&reader, &fixture->simulation, frame, &error);
+        if (result == RESULT_OK) {
+            assert_true(simulation_fixture_hash(fixture) == recorded->hash[frame]);
+            ++count;
+            continue;
+        }
+        char expected[32];
+        snprintf(expected, sizeof expected, "frame %d", frame);
+        assert_int_equal(result, RESULT_BAD_INPUT);
+        assert_int_equal(strncmp(error.text, path, strlen(path)), 0);
+        assert_non_null(strstr(error.text, expected));
+    }
+    cache_reader_close(&reader);
+    return count;
+}
+
+static void frames_come_back_bit_for_bit_in_any_order(void **state)
+{
+    Recorded recorded = {0};
+    SimulationFixture fixture;
+    for (int whole = 0; whole < 2; ++whole) {
+        record(&recorded, state, "frames.cache", whole);
+        start(&fixture, recorded.path);
+        assert_int_equal(play(&fixture, &recorded, recorded.path), FRAMES);
+        simulation_fixture_destroy(&fixture);
+    }
+}
+
+static void write_bytes(const char *path, const uint8_t *data, size_t size)
+{
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(data, 1, size, file), size);
+    fclose(file);
+}
+
+// A whole cache, its bytes, and a simulation of the same scene to play others with.
+typedef struct Original {
+    Recorded recorded;
+    SimulationFixture fixture;
+    Bytes file;
+} Original;
+
+static void original_create(Original *original, void **state)
+{
+    *original = (Original){0};
+    record(&original->recorded, state, "whole.cache", true);
+    assert_int_equal(bytes_read_file(&original->file, original->recorded.path, NULL), RESULT_OK);
+    start(&original->fixture, original->recorded.path);
+}
+
+static void original_destroy(Original *original)
+{
+    bytes_destroy(&original->file);
+    simulation_fixture_destroy(&original->fixture);
+}
+
+// Plays its first `size` bytes.
+static int original_play(Original *original, void **state, size_t size)
+{
+    const char *path = temporary_path(state, "other.cache");
+    write_bytes(path, original->file.data, size);
+    return play(&original->fixture, &original->recorded, path);
+}
+
+// Cut anywhere: the whole frames before the cut are there and right, the others are named.
+static void every_truncation_keeps_the_whole_frames(void **state)
+{
+    Original original;
+    original_create(&original, state);
+    const size_t all = original.file.size;
+    int before = -1;
+    for (size_t size = 0; size < all; size += size < 64 || size + 64 > all ? 1 : 23) {
+        int count = original_play(&original, state, size);
+        assert_true(count >= before);
+        before = count;
+    }
+    assert_int_equal(before, FRAMES);
+    original_destroy(&original);
+}
+
+// One bit wrong anywhere: never a wrong picture. All but one frame are there, or all (the index can
+// be done without), or the file is refused.
+static void every_flipped_bit_is_found(void **state)
+{
+    Original original;
+    original_create(&original, state);
+    const size_t all = original.file.size;
+    int refused = 0, damaged = 0, harmless = 0;
+    for (size_t at = 0; at < all; at += at < 64 || at + 300 > all ? 1 : 29) {
+        const uint8_t bit = (uint8_t)(1u << at % 8);
+        original.file.data[at] ^= bit;
+        int count = original_play(&original, state, all);
+        original.file.data[at] ^= bit;
+        refused += count < 0;
+        damaged += count >= 0 && count < FRAMES;
+        harmless += count == FRAMES;
+    }
+    assert_true(refused > 50 && damaged > 50);
+    assert_true(harmless > 0 && harmless < 200); // the unused header bytes, and the index
+    original_destroy(&original);
+}
+
+static void another_scene_is_refused_by_the_value_that_differs(void **state)
+{
+    Recorded recorded = {0};
+    SimulationFixture fixture;
+    CacheReader reader;
+    Error error;
+    record(&recorded, state, "a.cache", true);
+    start(&fixture, recorded.path);
+    fixture.scene.sections[0].params.style = 0.25f;
+    assert_int_equal(
+        cache_reader_open(&reader, recorded.path, &fixture.simulation, &fixture.strands, &error),
+        RESULT_BAD_INPUT);
+    assert_non_null(strstr(error.text, "sections[0].style 0.5, this scene has 0.25"));
+    fixture.scene.sections[0].params.style = 0.5f;
+    fixture.scene.sections[0].params.opacity = 0.9f; // looks do not matter
+    fixture.scene.run.frames = 3;
+    assert_int_equal(play(&fixture, &recorded, recorded.path), FRAMES);
+    fixture.strands.position[7][1] += 1e-6f;
+    assert_int_equal(
+        cache_reader_open(&reader, recorded.path, &fixture.simulation, &fixture.strands, &error),
+        RESULT_BAD_INPUT);
+    assert_non_null(strstr(error.text, "other hair than curls"));
+    simulation_fixture_destroy(&fixture);
+}
+
+// A source that stops after `count` frames, as after an interrupt, or that ends the cache.
+static void run_source(const char *path, bool resume, int count, Recorded *recorded)
+{
+    SimulationFixture fixture;
+    FrameSource source;
+    Error error;
+    start(&fixture, NULL);
+    set_path(&fixture.scene.run.cache, path);
+    fixture.scene.run.resume = resume;
+    if (frame_source_open(&source, &fixture.simulation, &fixture.strands, FRAMES - 1, NULL,
+                          &error) != RESULT_OK)
+        fail_msg("%s", error.text);
+    for (int frame = 0; frame < count; ++frame) {
+        if (frame_source_go(&source, frame, true, &error) != RESULT_OK) fail_msg("%s", error.text);
+        assert_true(simulation_fixture_hash(&fixture) == recorded->hash[frame]);
+    }
+    if (count == FRAMES && frame_source_finish(&source, &error) != RESULT_OK)
+        fail_msg("%s", error.text);
+    frame_source_close(&source);
+    simulation_fixture_destroy(&fixture);
+}
+
+static void assert_same_files(const char *a, const char *b)
+{
+    Bytes x, y;
+    assert_int_equal(bytes_read_file(&x, a, NULL), RESULT_OK);
+    assert_int_equal(bytes_read_file(&y, b, NULL), RESULT_OK);
+    assert_int_equal(x.size, y.size);
+    assert_memory_equal(x.data, y.data, x.size);
+    bytes_destroy(&x);
+    bytes_destroy(&y);
+}
+
+static void stopped_and_resumed_after_any_frame_is_the_same_file(void **state)
+{
+    Recorded recorded = {0};
+    record(&recorded, state, "whole.cache", true);
+    char path[300]; // temporary_path's results do not last
+    snprintf(path, sizeof path, "%s", temporary_path(state, "part.cache"));
+    for (int stop = 0; stop < FRAMES; ++stop) {
+        run_source(path, false, stop, &recorded);
+        assert_true(temporary_has(state, "part.cache.state") == (stop > 0));
+        run_source(path, true, FRAMES, &recorded);
+        assert_false(temporary_has(state, "part.cache.state"));
+        assert_same_files(path, recorded.path);
+    }
+    // More was written after the state was saved, the last frame only in part.
+    Bytes file;
+    run_source(path, false, 2, &recorded);
+    assert_int_equal(bytes_read_file(&file, recorded.path, NULL), RESULT_OK);
+    write_bytes(path, file.data, file.size * 9 / 10);
+    run_source(path, true, FRAMES, &recorded);
+    assert_same_files(path, recorded.path);
+    // The state is of a frame that the cache no longer has: from the start.
+    run_source(path, false, 3, &recorded);
+    write_bytes(path, file.data, file.size * 3 / 10);
+    run_source(path, true, FRAMES, &recorded);
+    assert_same_files(path, recorded.path);
+    bytes_destroy(&file);
+}
+
+static void two_do_not_write_the_same_file(void **state)
+{
+    SimulationFixture fixture;
+    CacheWriter one, other;
+    Error error;
+    start(&fixture, NULL);
+    const char *path = temporary_path(state, "one.cache");
+    assert_int_equal(cache_writer_open(&one, path, &fixture.simulation, &fixture.strands, &error),
+                     RESULT_OK);
+    assert_int_equal(cache_writer_open(&other, path, &fixture.simulation, &fixture.strands, &error),
+                     RESULT_FAILED);
+    assert_non_null(strstr(error.text, "another process"));
+    cache_writer_close(&one);
+    simulation_fixture_destroy(&fixture);
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, temporary_create, temporary_destroy)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(frames_come_back_bit_for_bit_in_any_order),
+        TEST(every_truncation_keeps_the_whole_frames),
+        TEST(every_flipped_bit_is_found),
+        TEST(another_scene_is_refused_by_the_value_that_differs),
+        TEST(stopped_and_resumed_after_any_frame_is_the_same_file),
+        TEST(two_do_not_write_the_same_file),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

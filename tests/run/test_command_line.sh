@@ -1,0 +1,268 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# The command line of tractrix-render as a user meets it: exit statuses, messages, files.
+. tests/support/claims.sh
+program=$bin/tractrix-render
+hair=assets/fur.tfx
+small="--frames 2 --size 32x24"
+
+claim "frames are written and told"
+# shellcheck disable=SC2086
+run 0 $hair $small -o "$work/a/"
+is_file "$work/a/frame_0000.png"; is_file "$work/a/frame_0001.png"; says "OpenGL"; says "2 frames in"
+
+claim "-q says nothing"
+# shellcheck disable=SC2086
+run 0 $hair $small -q -o "$work/q_%03d.png"
+is_file "$work/q_001.png"
+if [ -s "$work/err" ]; then bad "said something"; else good; fi
+
+claim "only the frames asked for are drawn, and they are the same as in the whole sequence"
+# shellcheck disable=SC2086
+run 0 $hair --frames 6 --size 32x24 -q -o "$work/whole/"
+run 0 $hair --frames 6 --size 32x24 -q --first 1 --last 5 --every 2 -o "$work/part/"
+if [ "$(cd "$work/part" && echo *)" = "frame_0001.png frame_0003.png frame_0005.png" ]; then good; else bad "wrong frames"; fi
+if cmp -s "$work/whole/frame_0005.png" "$work/part/frame_0005.png"; then good; else bad "frame 5 differs"; fi
+
+claim "the same command gives the same bytes, with any number of driver threads"
+run 0 assets/demo.json --frames 3 --size 320x240 -q -o "$work/r1/"
+run 0 assets/demo.json --frames 3 --size 320x240 -q -o "$work/r2/"
+if LP_NUM_THREADS=1 "$program" assets/demo.json --frames 3 --size 320x240 -q -o "$work/r3/" 2>"$work/err"; then good; else bad "one thread"; fi
+for other in r2 r3; do
+    if diff -r "$work/r1" "$work/$other" >"$work/err"; then good; else bad "$other differs"; fi
+done
+
+claim "what cannot be written to standard output is an error of one line"
+for words in --help "--algo list" "--check $hair"; do
+    # shellcheck disable=SC2086
+    "$program" $words >/dev/full 2>"$work/err"
+    if [ $? = 1 ]; then good; else bad "status of $words"; fi
+    one_line
+done
+"$bin/tractrix-bench" --help >/dev/full 2>"$work/err"
+if [ $? = 1 ]; then good; else bad "status of tractrix-bench --help"; fi
+one_line
+
+claim "a hidden section costs no drawing, casts no shadow and leaves the picture as it is without it, from a cache, too"
+sections() {
+    printf '{"frames": 2, "size": "80x60", "eye": [0, 0.1, 0.9], "target": [0, 0, 0], "mesh": "%s/assets/ball.obj", "shadow": "dom",\n' "$PWD"
+    printf '"sections": [{"file": "%s/assets/curls.tfx"}%s]}\n' "$PWD" "$1"
+}
+counts() { grep -E '"(segments|fragments|shadow_maps|strands_[a-z]*)":' "$1"; }
+sections "" >"$work/alone.json"
+sections ", {\"file\": \"$PWD/assets/fur.tfx\", \"hidden\": true, \"followers\": 1}" >"$work/hidden.json"
+sections ", {\"file\": \"$PWD/assets/fur.tfx\", \"followers\": 1}" >"$work/shown.json"
+for which in alone hidden shown; do
+    run 0 "$work/$which.json" -q -o "$work/$which/" --stats "$work/$which.stats" --export "$work/${which}_%d.tfx"
+    counts "$work/$which.stats" >"$work/$which.counts"
+done
+if diff -r "$work/alone" "$work/hidden" && diff "$work/alone.counts" "$work/hidden.counts"; then good; else bad "not as without it"; fi
+if cmp -s "$work/alone/frame_0001.png" "$work/shown/frame_0001.png"; then bad "not shown"; else good; fi
+if cmp -s "$work/hidden_1.tfx" "$work/shown_1.tfx"; then good; else bad "exported otherwise"; fi
+run 0 "$work/shown.json" -q --cache "$work/layers.cache"
+run 0 "$work/hidden.json" -q --from-cache "$work/layers.cache" -o "$work/layer/"
+if diff -r "$work/alone" "$work/layer"; then good; else bad "another picture from the cache"; fi
+for raster in blocks quads; do
+    for shadow in none approx dom; do run 0 $hair --hidden --frames 1 --raster $raster --shadow $shadow --size 32x24 -q -o "$work/nothing.png"; done
+done
+
+claim "usage errors name the nearest valid word and end with 2"
+run 2; one_line
+run 2 $hair; one_line; says "-o"
+run 2 $hair --farmes 3 -o "$work/x/"; one_line; says "frames"
+run 2 $hair --frames 0 -o "$work/x/"; one_line; says "frames"
+run 2 $hair --frames many -o "$work/x/"; one_line
+run 2 $hair --algo splitt -o "$work/x/"; one_line; says "did you mean 'split'"
+run 2 $hair --variant thesiss -o "$work/x/"; one_line; says "did you mean 'thesis'"
+run 2 $hair --software --require-hardware -o "$work/x/"; one_line
+run 2 $hair -o "$work/x_%d_%d.png"; one_line
+run 2 $hair -o "$work/x.avi"; one_line
+if [ -e "$work/x" ]; then bad "made a folder"; else good; fi
+
+claim "bad files end with 3 and one line with file and place"
+printf 'numStrands 1\nis sorted 1\nstrand 0 numVerts 2 texcoord 0 0\n1 2 3\n' >"$work/cut.tfx"
+printf 'not hair\n' >"$work/text.tfx"
+printf '{"frames": 3, "sectoins": []}\n' >"$work/key.json"
+printf '{"frames": \n' >"$work/cut.json"
+for file in missing.tfx cut.tfx text.tfx key.json cut.json; do
+    run 3 "$work/$file" -o "$work/x/"
+    one_line; says "$work/$file"
+done
+says "cut.json"
+run 3 $hair --mesh "$work/missing.obj" -o "$work/x/"; one_line; says "missing.obj"
+
+claim "dirty files are mended with a report, or refused with --strict"
+printf 'numStrands 2\nis sorted 1\nstrand 0 numVerts 3 texcoord 0 0\n0 100 0\n0 100 0\n0 120 0\nstrand 1 numVerts 2 texcoord 0 0\n1 2 -1.#INF\n1 2 3\n' >"$work/dirty.tfx"
+run 0 "$work/dirty.tfx" --frames 1 --size 16x16 -o "$work/d/"; says "dirty.tfx:"
+run 3 "$work/dirty.tfx" --strict --frames 1 --size 16x16 -o "$work/d/"; one_line
+run 1 --check "$work/dirty.tfx"; says "strands"
+run 0 --check $hair; says "TressFX 4"
+run 3 --check "$work/text.tfx"
+
+claim "no usable GL ends with 4 and says what was tried"
+__EGL_VENDOR_LIBRARY_FILENAMES=/dev/null
+export __EGL_VENDOR_LIBRARY_FILENAMES
+run 4 $hair --backend egl --frames 1 -o "$work/x/"; one_line; says "surfaceless"; says "libgl1-mesa-dri"
+unset __EGL_VENDOR_LIBRARY_FILENAMES
+run 4 $hair --device 31 --frames 1 -o "$work/x/"; one_line; says "--list-devices"
+
+claim "OSMesa is another way in"
+run 0 $hair --backend osmesa --frames 1 --size 32x24 -o "$work/osmesa/"
+says "OSMesa"; is_file "$work/osmesa/frame_0000.png"
+
+claim "an unwritable place fails with 1 before any work, and nothing is left"
+run 1 $hair --frames 1 -o "/proc/none/here/"; says "/proc/none"
+printf x >"$work/plain"
+run 1 $hair --frames 1 -o "$work/plain/sub/"; says "plain"
+
+claim "an interrupt ends with 130, one line and whole files"
+"$program" assets/demo.json --size 320x240 -o "$work/int/" >"$work/out" 2>"$work/err" &
+pid=$!
+while [ ! -e "$work/int/frame_0001.png" ] && kill -0 $pid 2>/dev/null; do sleep 0.05; done
+kill -INT $pid; kill -TERM $pid 2>/dev/null
+wait $pid
+status=$?
+# A second signal ends the program at once (128 + 15) if it comes before the first was looked at.
+if [ $status = 130 ] || [ $status = 143 ]; then good; else bad "exit status $status"; fi
+"$program" assets/demo.json --size 320x240 -o "$work/int2/" >"$work/out" 2>"$work/err" &
+pid=$!
+while [ ! -e "$work/int2/frame_0001.png" ] && kill -0 $pid 2>/dev/null; do sleep 0.05; done
+kill -TERM $pid
+wait $pid
+status=$?
+if [ $status = 130 ]; then good; else bad "exit status $status, expected 130"; fi
+says "interrupted after"
+mkdir "$work/clean"
+for file in "$work"/int2/* "$work"/int2/.[!.]*; do
+    case $file in
+    *frame_0[0-9][0-9][0-9].png) ;;
+    *'*'*) ;;
+    *) mv "$file" "$work/clean/" ;;
+    esac
+done
+no_files "$work/clean"
+
+claim "statistics hold device, passes, frames and parameters"
+# shellcheck disable=SC2086
+run 0 $hair $small -q --seed 7 -o "$work/s/" --stats "$work/stats.json"
+for word in '"renderer"' '"sim_split"' '"draw_composite"' '"frames_drawn": 2' '"seed": 7' '"peak_memory_kib"' '"commit"'; do
+    if grep -qF -- "$word" "$work/stats.json"; then good; else bad "no $word"; fi
+done
+
+claim "a still scene is drawn once"
+run 0 $hair --algo none --frames 5 --size 32x24 -q -o "$work/still/" --stats "$work/stats.json"
+if grep -qF '"frames_repeated": 4' "$work/stats.json"; then good; else bad "was drawn again"; fi
+if cmp -s "$work/still/frame_0000.png" "$work/still/frame_0004.png"; then good; else bad "frames differ"; fi
+
+claim "the same hair in metres and in centimetres gives the same picture"
+awk 'BEGIN { print "numStrands 40"; print "is sorted 1"; for (s = 0; s < 40; ++s) { print "strand", s, "numVerts 8 texcoord 0 0"
+    for (j = 0; j < 8; ++j) print s * 0.5 - 10, 100 - j * 2, j * j * 0.25 } }' >"$work/cm.tfx"
+awk 'NF == 3 && $1 ~ /^[-0-9]/ { print $1 * 4, $2 * 4, $3 * 4; next } { print }' "$work/cm.tfx" >"$work/other.tfx"
+run 0 "$work/cm.tfx" --unit 0.015625 --frames 3 --size 64x48 -q -o "$work/u1/"
+run 0 "$work/other.tfx" --unit 0.00390625 --frames 3 --size 64x48 -q -o "$work/u2/"
+if diff -r "$work/u1" "$work/u2" >"$work/err"; then good; else bad "pictures differ"; fi
+
+claim "a variant that may run away is told, unless quiet"
+run 0 $hair --algo emulation --variant thesis --frames 1 --size 16x16 -o "$work/e/"; says "gains energy"
+run 0 $hair --algo emulation --variant thesis --frames 1 --size 16x16 -q -o "$work/e/"
+if [ -s "$work/err" ]; then bad "said something"; else good; fi
+
+claim "a cache plays back what was simulated: any frames, the same pictures, in several processes at once"
+scene="assets/demo.json --size 48x32 --frames 12" # followers that keep out of the mesh, which a cache does not hold
+# shellcheck disable=SC2086
+{
+run 0 $scene -q --cache "$work/a.cache" -o "$work/direct/"
+run 0 $scene -q --from-cache "$work/a.cache" -o "$work/played/"
+"$program" $scene -q --from-cache "$work/a.cache" --first 6 -o "$work/farm/" 2>"$work/err" &
+pid=$!
+run 0 $scene -q --from-cache "$work/a.cache" --last 5 -o "$work/farm/"
+}
+wait $pid || bad "the other process"
+for other in played farm; do
+    if diff -r "$work/direct" "$work/$other" >"$work/err"; then good; else bad "$other differs"; fi
+done
+if [ -e "$work/a.cache.state" ]; then bad "a whole cache has a state"; else good; fi
+
+claim "a cache of another scene, or one that is damaged or cut off, is refused by one line that says where"
+# shellcheck disable=SC2086
+{
+run 3 $scene -q --from-cache "$work/a.cache" --style 0.3 -o "$work/x/"; one_line; says "sections[0].style"
+run 3 $hair -q --from-cache "$work/a.cache" --frames 2 -o "$work/x/"; one_line; says "a.cache: was simulated with"
+run 3 $scene -q --from-cache "$work/a.cache" --frames 13 -o "$work/x/"; one_line; says "no frame 12, whole ones: 0 to 11"
+run 3 $scene -q --from-cache "$work/none.cache" -o "$work/x/"; one_line; says "none.cache"
+run 3 $scene -q --from-cache "$hair" -o "$work/x/"; one_line; says "TRXCACHE"
+size=$(($(wc -c <"$work/a.cache") * 2 / 3))
+head -c $size "$work/a.cache" >"$work/cut.cache"
+run 3 $scene -q --from-cache "$work/cut.cache" -o "$work/x/"; one_line; says "whole ones: 0 to"; says "the file ends within"
+run 0 $scene -q --from-cache "$work/cut.cache" --last 6 -o "$work/whole6/"
+run 2 $scene --cache "$work/a.cache" --from-cache "$work/a.cache"; one_line
+cp "$work/a.cache" "$work/flip.cache"
+printf 'x' | dd of="$work/flip.cache" bs=1 seek=$size conv=notrunc 2>/dev/null
+run 3 $scene -q --from-cache "$work/flip.cache" -o "$work/flip/"; one_line; says "flip.cache: frame"; says "checksum"
+}
+if cmp -s "$work/whole6/frame_0006.png" "$work/direct/frame_0006.png"; then good; else bad "frame 6 differs"; fi
+
+claim "a run that was stopped goes on where it was, and only what is missing or broken is drawn"
+# shellcheck disable=SC2086
+{
+run 0 $scene -q --last 4 --cache "$work/r.cache" -o "$work/res/"
+is_file "$work/r.cache.state"
+run 0 $scene --resume --cache "$work/r.cache" -o "$work/res/"; says "5 of 12 frames are there"; says "7 frames in"
+if cmp -s "$work/a.cache" "$work/r.cache"; then good; else bad "the resumed cache differs"; fi
+rm "$work/res/frame_0003.png"
+head -c 900 "$work/direct/frame_0009.png" >"$work/res/frame_0009.png"
+run 0 $scene --resume --from-cache "$work/a.cache" -o "$work/res/"; says "10 of 12"; says "2 frames in"
+if diff -r "$work/direct" "$work/res" >"$work/err"; then good; else bad "resumed pictures differ"; fi
+rm "$work/res/frame_0011.png"
+run 0 $scene --resume -o "$work/res/"; says "1 frame in"
+if diff -r "$work/direct" "$work/res" >"$work/err"; then good; else bad "pictures drawn again differ"; fi
+head -c $size "$work/a.cache" >"$work/r.cache" # and no state: from the start
+run 0 $scene --resume --cache "$work/r.cache"; says "simulating again from the start"
+if cmp -s "$work/a.cache" "$work/r.cache"; then good; else bad "the cache made again differs"; fi
+run 3 $scene -q --resume --cache "$work/r.cache" --gravity 0,-1,0; one_line; says "gravity"
+run 2 $scene -q --resume -o "$work/v.mp4"; one_line; says "--cache"
+"$program" assets/demo.json --frames 5000 --cache "$work/i.cache" >"$work/out" 2>"$work/err" &
+pid=$!
+while [ ! -s "$work/i.cache" ] && kill -0 $pid 2>/dev/null; do sleep 0.05; done
+sleep 0.3; kill -INT $pid
+wait $pid
+status=$?
+}
+if [ $status = 130 ]; then good; else bad "exit status $status, expected 130"; fi
+is_file "$work/i.cache.state"
+
+claim "each frame as a hair file, which reads back"
+run 0 $hair --frames 3 -q --export "$work/hair/fur_%03d.tfx" -o "$work/hair/"
+run 0 --check "$work/hair/fur_002.tfx"; says "TressFX 4"
+run 0 assets/curls.tfx assets/demo.tfx --frames 1 -q --export "$work/hair/both.hair"
+run 0 --check "$work/hair/both.hair"
+run 2 $hair --frames 3 -q --export "$work/hair/one.tfx"; one_line
+run 0 assets/curls.tfx assets/demo.tfx --frames 3 --export "$work/hair/x.usda" --cache "$work/hair/cache"
+run 0 assets/curls.tfx assets/demo.tfx --frames 3 -q --export "$work/hair/y.usda" --from-cache "$work/hair/cache"
+if cmp -s "$work/hair/x.usda" "$work/hair/y.usda"; then good; else bad "the USD file from a cache differs"; fi
+run 0 $hair --frames 2 --export "$work/hair/x_%d.obj"; says "--export: Wavefront lines files leave out: texture coordinates of strands"
+run 0 --check --unit m "$work/hair/x_1.obj"; says "Wavefront lines"
+run 2 $hair --frames 3 -q --resume --export "$work/hair/x.usda"; says "written in one piece"; one_line
+run 2 $hair --frames 3 -q --export "$work/hair/"; one_line
+
+claim "slow motion, a rate of its own, and a warm-up"
+run 0 $hair --frames 2 --size 16x16 --speed 0.25 --sim-rate 100 --preroll 0.1 --substeps auto -v -o "$work/slow/"
+says "steps of 10 ms"; says "10 before the first"
+run 2 $hair --substeps 0 -o "$work/x/"; one_line; says "auto or a whole number"
+
+claim "help, version and lists"
+run 0 --help; says "--turntable"; says "Exit status"
+run 0 --version; says "tractrix-render"
+run 0 --algo list; says "thesis"
+run 0 --list-devices; says "OpenGL"
+
+claim "video through ffmpeg"
+if command -v ffmpeg >/dev/null; then
+    run 0 $hair --frames 4 --size 64x48 -o "$work/v.mp4"
+    is_file "$work/v.mp4"
+    run 1 $hair --frames 4 --size 64x48 -o "/proc/v.mp4"
+else
+    skip "no ffmpeg"
+fi
+
+finish

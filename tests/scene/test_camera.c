@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: MIT
+// Automatic cameras: hair stays in the picture, whatever it does, and fills it.
+#include "scene/camera.h"
+#include "strands/fibre.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cglm/cglm.h>
+#include <cmocka.h>
+
+enum { STRANDS = 40, VERTICES = 6 };
+
+// A tuft on a ball of 0.1 m, strands of 0.3 m, all scaled.
+static Strands make_tuft(float scale)
+{
+    Error error;
+    Strands strands;
+    assert_int_equal(strands_create(&strands, STRANDS, STRANDS * VERTICES, &error), RESULT_OK);
+    for (uint32_t s = 0; s < STRANDS; ++s) {
+        strands.first[s + 1] = (s + 1) * VERTICES;
+        float angle = 2.4f * (float)s, y = 1 - (float)s / STRANDS, r = sqrtf(1 - y * y);
+        for (uint32_t j = 0; j < VERTICES; ++j) {
+            float out = scale * (0.1f + 0.06f * (float)j);
+            float *x = strands.position[s * VERTICES + j];
+            x[0] = out * r * cosf(angle), x[1] = out * y, x[2] = out * r * sinf(angle);
+        }
+    }
+    return strands;
+}
+
+typedef struct Shot {
+    Scene scene;
+    Section section;
+    Strands strands;
+    Framing framing;
+} Shot;
+
+static void open_shot(Shot *shot, float scale)
+{
+    Error error;
+    memset(shot, 0, sizeof *shot);
+    assert_int_equal(run_params_create(&shot->scene.run, &error), RESULT_OK);
+    assert_int_equal(section_params_create(&shot->section.params, &error), RESULT_OK);
+    shot->scene.sections = &shot->section;
+    shot->scene.section_count = 1;
+    shot->strands = make_tuft(scale);
+}
+
+static void close_shot(Shot *shot)
+{
+    run_params_destroy(&shot->scene.run);
+    section_params_destroy(&shot->section.params);
+    rigid_track_destroy(&shot->scene.head);
+    keyframes_destroy(&shot->scene.eye);
+    strands_destroy(&shot->strands);
+}
+
+static void frame_shot(Shot *shot)
+{
+    outline_frame(&shot->framing, &shot->scene, &shot->strands, NULL);
+}
+
+static void view_of(Shot *shot, int frame, View *view)
+{
+    camera_view(view, &shot->scene, &shot->framing, frame);
+}
+
+// Largest |x/w| or |y/w| of the strands, carried by `translation`; all must be between the planes.
+static float extent_in_picture(const Shot *shot, const View *view, const float translation[3])
+{
+    float most = 0;
+    mat4 from_world;
+    glm_mat4_mul((vec4 *)view->projection, (vec4 *)view->view, from_world);
+    for (uint32_t v = 0; v < shot->strands.vertex_count; ++v) {
+        vec4 x = {0, 0, 0, 1}, clip;
+        for (int k = 0; k < 3; ++k) x[k] = shot->strands.position[v][k] + translation[k];
+        glm_mat4_mulv(from_world, x, clip);
+        assert_true(clip[3] > 0 && fabsf(clip[2]) < clip[3]);
+        most = fmaxf(most, fmaxf(fabsf(clip[0]), fabsf(clip[1])) / clip[3]);
+    }
+    return most;
+}
+
+static const float STILL[3] = {0, 0, 0};
+
+static void hair_stays_in_the_picture_and_fills_it(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < 3; ++kind) { // still, on a turntable, on a moving head
+        Shot shot;
+        Error error = {{0}};
+        open_shot(&shot, 1);
+        shot.section.params.style = 1;
+        if (kind == 1) shot.scene.run.turntable = 360;
+        if (kind == 2) {
+            Keyframes *track = &shot.scene.head.translation;
+            keyframes_append(track, 0, (float[3]){0, 0, 0}, 3, &error);
+            keyframes_append(track, 2, (float[3]){0.5f, 0.2f, -0.3f}, 3, &error);
+        }
+        frame_shot(&shot);
+        float most = 0;
+        for (int frame = 0; frame < shot.scene.run.frames; ++frame) {
+            View view;
+            float rotation[4], translation[3];
+            view_of(&shot, frame, &view);
+            rigid_track_evaluate(&shot.scene.head, frame / 60.0, rotation, translation);
+            float extent = extent_in_picture(&shot, &view, translation);
+            assert_true(extent <= 1);
+            most = fmaxf(most, extent);
+        }
+        assert_true(most > 0.8f);
+        close_shot(&shot);
+    }
+}
+
+// Loose hair falls out of its style: the camera leaves room below.
+static void room_is_left_for_hair_that_falls(void **state)
+{
+    (void)state;
+    Shot loose, rigid;
+    open_shot(&loose, 1);
+    open_shot(&rigid, 1);
+    loose.section.params.style = 0;
+    rigid.section.params.style = 1;
+    frame_shot(&loose);
+    frame_shot(&rigid);
+    assert_true(loose.framing.target[1] < rigid.framing.target[1] - 0.05f);
+    close_shot(&loose);
+    close_shot(&rigid);
+}
+
+static void turntable_keeps_its_distance_and_comes_round(void **state)
+{
+    (void)state;
+    Shot shot;
+    View first, view;
+    open_shot(&shot, 1);
+    shot.scene.run.turntable = 360;
+    frame_shot(&shot);
+    view_of(&shot, 0, &first);
+    float distance = glm_vec3_distance(first.eye, shot.framing.target);
+    for (int frame = 1; frame <= 120; ++frame) {
+        view_of(&shot, frame, &view);
+        assert_true(fabsf(glm_vec3_distance(view.eye, shot.framing.target) - distance) <
+                    1e-5f * distance);
+        assert_true(fabsf(view.eye[1] - first.eye[1]) < 1e-5f * distance);
+    }
+    assert_true(glm_vec3_distance(view.eye, first.eye) < 1e-5f * distance); // frame 120 is frame 0
+    view_of(&shot, 30, &view); // a quarter: from the front by way of +x
+    assert_true(view.eye[0] > shot.framing.target[0] && view.eye[2] < first.eye[2]);
+    close_shot(&shot);
+}
+
+static void frames_are_repeatable(void **state)
+{
+    (void)state;
+    Shot shot, again;
+    View a, b;
+    open_shot(&shot, 1);
+    open_shot(&again, 1);
+    frame_shot(&shot);
+    frame_shot(&again);
+    memset(&a, 0, sizeof a), memset(&b, 0, sizeof b);
+    view_of(&shot, 17, &a);
+    view_of(&again, 17, &b);
+    assert_memory_equal(&a, &b, sizeof a);
+    close_shot(&shot);
+    close_shot(&again);
+}
+
+static void the_unit_does_not_change_the_picture(void **state)
+{
+    (void)state;
+    Shot one, hundred;
+    View a, b;
+    open_shot(&one, 1);
+    open_shot(&hundred, 100);
+    frame_shot(&one);
+    frame_shot(&hundred);
+    view_of(&one, 0, &a);
+    view_of(&hundred, 0, &b);
+    assert_true(fabsf(extent_in_picture(&one, &a, STILL) - extent_in_picture(&hundred, &b, STILL)) <
+                1e-4f);
+    assert_true(
+        fabsf(100 * fibre_auto_radius(&one.strands, 0) / fibre_auto_radius(&hundred.strands, 0) -
+              1) < 1e-4f);
+    close_shot(&one);
+    close_shot(&hundred);
+}
+
+static void given_eye_and_target_are_taken(void **state)
+{
+    (void)state;
+    Shot shot;
+    View view;
+    vec3 seen;
+    Error error;
+    open_shot(&shot, 1);
+    shot.scene.run.eye = (AutoVec3){false, {1, 2, 3}};
+    shot.scene.run.target = (AutoVec3){false, {0, 1, 0}};
+    frame_shot(&shot);
+    view_of(&shot, 5, &view);
+    assert_memory_equal(view.eye, shot.scene.run.eye.value, sizeof(vec3));
+    glm_mat4_mulv3(view.view, (vec3){0, 1, 0}, 1, seen);
+    assert_true(fabsf(seen[0]) < 1e-6f && fabsf(seen[1]) < 1e-6f && seen[2] < 0);
+    keyframes_append(&shot.scene.eye, 0, (float[3]){0, 0, 5}, 3, &error);
+    keyframes_append(&shot.scene.eye, 1, (float[3]){0, 0, 9}, 3, &error);
+    view_of(&shot, 60, &view);
+    assert_true(fabsf(view.eye[2] - 9) < 1e-5f);
+    close_shot(&shot);
+}
+
+static void every_camera_is_finite(void **state)
+{
+    (void)state;
+    const float eyes[][3] = {{0, 0, 0}, {0, 5, 0}, {0, -5, 0}, {0, 0, -3}, {1e6f, 0, 0}};
+    const float ups[][3] = {{0, 1, 0}, {0, 0, 1}, {0, 0, 0}, {0, 0, -1}};
+    for (int e = -1; e < 5; ++e)
+        for (int u = 0; u < 4; ++u) {
+            Shot shot;
+            View view;
+            open_shot(&shot, 1);
+            if (e >= 0) memcpy(shot.scene.run.eye.value, eyes[e], sizeof eyes[e]);
+            shot.scene.run.eye.automatic = e < 0;
+            shot.scene.run.target.automatic = false; // the origin
+            memcpy(shot.scene.run.camera_up, ups[u], sizeof ups[u]);
+            shot.scene.run.turntable = 90;
+            frame_shot(&shot);
+            view_of(&shot, 40, &view);
+            for (int i = 0; i < 16; ++i) {
+                assert_true(isfinite(view.view[i / 4][i % 4]));
+                assert_true(isfinite(view.projection[i / 4][i % 4]));
+            }
+            mat3 turn, product; // the view is a rotation
+            glm_mat4_pick3(view.view, turn);
+            assert_true(fabsf(glm_mat3_det(turn) - 1) < 1e-4f);
+            glm_mat3_transpose_to(turn, product);
+            glm_mat3_mul(turn, product, product);
+            assert_true(fabsf(product[0][0] - 1) < 1e-4f && fabsf(product[1][0]) < 1e-4f);
+            assert_true(view.near_distance > 0 && view.far_distance > view.near_distance);
+            close_shot(&shot);
+        }
+}
+
+static void denser_hair_is_drawn_finer(void **state)
+{
+    (void)state;
+    Strands few = make_tuft(1), many;
+    Error error;
+    assert_int_equal(strands_create(&many, 800 * STRANDS, 800 * few.vertex_count, &error),
+                     RESULT_OK);
+    for (uint32_t s = 0; s <= 800 * STRANDS; ++s) many.first[s] = s * VERTICES;
+    for (uint32_t v = 0; v < many.vertex_count; ++v)
+        memcpy(many.position[v], few.position[v % few.vertex_count], sizeof(float[3]));
+    float coarse = fibre_auto_radius(&few, 0), fine = fibre_auto_radius(&many, 0);
+    assert_true(fine < coarse && fine > 0 && coarse <= 0.3f / 399);
+    Strands none = {0};
+    assert_true(fibre_auto_radius(&none, 0) > 0);
+    strands_destroy(&few);
+    strands_destroy(&many);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(hair_stays_in_the_picture_and_fills_it),
+        cmocka_unit_test(room_is_left_for_hair_that_falls),
+        cmocka_unit_test(turntable_keeps_its_distance_and_comes_round),
+        cmocka_unit_test(frames_are_repeatable),
+        cmocka_unit_test(the_unit_does_not_change_the_picture),
+        cmocka_unit_test(given_eye_and_target_are_taken),
+        cmocka_unit_test(every_camera_is_finite),
+        cmocka_unit_test(denser_hair_is_drawn_finer),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+// Gravity and wind at a time.
+#include "scene/forces.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static void make_scene(Scene *scene, float x, float y, float z)
+{
+    assert_int_equal(scene_create(scene, NULL), RESULT_OK);
+    scene->run.wind[0] = x, scene->run.wind[1] = y, scene->run.wind[2] = z;
+}
+
+static void without_wind_there_is_gravity_alone(void **state)
+{
+    (void)state;
+    Scene scene;
+    Forces forces;
+    make_scene(&scene, 0, 0, 0);
+    forces_evaluate(&forces, &scene, 1.5);
+    assert_true(forces.gravity[1] == -9.81f && forces.gravity[0] == 0 && forces.gravity[2] == 0);
+    for (int i = 0; i < 4; ++i)
+        for (int k = 0; k < 3; ++k) assert_true(forces.wind[i][k] == 0);
+    assert_true(forces_are_constant(&scene));
+    scene_destroy(&scene);
+}
+
+static void four_winds_turn_by_the_spread_and_keep_the_mean(void **state)
+{
+    (void)state;
+    Scene scene;
+    Forces forces;
+    make_scene(&scene, 3, 1, -2);
+    scene.run.gust = 0;
+    forces_evaluate(&forces, &scene, 7);
+    const double length = sqrt(14),
+                 expected = cos((double)scene.run.wind_spread * 3.14159265358979 / 180);
+    for (int k = 0; k < 3; ++k) {
+        double mean = 0;
+        for (int i = 0; i < 4; ++i) mean += (double)forces.wind[i][k] / 4;
+        assert_true(fabs(mean - (double)scene.run.wind[k]) < 1e-6);
+    }
+    for (int i = 0; i < 4; ++i) {
+        const float *w = forces.wind[i];
+        double size = sqrt((double)(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]));
+        assert_true(fabs((3 * (double)w[0] + (double)w[1] - 2 * (double)w[2]) / (length * size) -
+                         expected) < 1e-6);
+    }
+    scene_destroy(&scene);
+}
+
+// Whatever the period: it is changed to fit, by no more than half of one in the whole time.
+static void gusts_repeat_if_told(void **state)
+{
+    (void)state;
+    Scene scene;
+    make_scene(&scene, 3, 0, 0);
+    scene.run.gust_repeat = 4;
+    const float periods[] = {0.3f, 1.7f, 2, 100};
+    for (int p = 0; p < 4; ++p) {
+        float most = 0;
+        scene.run.gust_period = periods[p];
+        for (double time = -1; time < 3; time += 0.13) {
+            Forces now, later, middle;
+            forces_evaluate(&now, &scene, time);
+            forces_evaluate(&later, &scene, time + 4);
+            forces_evaluate(&middle, &scene, time + 1.9);
+            assert_true(fabsf(now.wind[0][0] - later.wind[0][0]) < 1e-5f);
+            most = fmaxf(most, fabsf(now.wind[0][0] - middle.wind[0][0]));
+        }
+        assert_true(most > 0.3f);
+    }
+    scene_destroy(&scene);
+}
+
+static void gusts_stay_within_their_share_and_vary(void **state)
+{
+    (void)state;
+    Scene scene;
+    Forces forces;
+    double low = 10, high = 0;
+    make_scene(&scene, 2, 0, 0);
+    scene.run.gust = 0.4f;
+    assert_false(forces_are_constant(&scene));
+    for (int i = 0; i < 4000; ++i) {
+        forces_evaluate(&forces, &scene, 0.01 * i);
+        double mean = 0;
+        for (int k = 0; k < 4; ++k) mean += (double)forces.wind[k][0] / 4;
+        low = fmin(low, mean), high = fmax(high, mean);
+    }
+    assert_true(low >= 2 * 0.6 - 1e-6 && high <= 2 * 1.4 + 1e-6);
+    assert_true(low < 2 * 0.8 && high > 2 * 1.2);
+    scene_destroy(&scene);
+}
+
+static void keyframes_win_over_constants(void **state)
+{
+    (void)state;
+    Scene scene;
+    Forces forces;
+    make_scene(&scene, 9, 9, 9);
+    scene.run.gust = 0;
+    scene.run.wind_spread = 0;
+    scene.wind.interpolation = INTERPOLATION_LINEAR;
+    assert_int_equal(keyframes_append(&scene.wind, 0, (const float[]){0, 0, 0}, 3, NULL),
+                     RESULT_OK);
+    assert_int_equal(keyframes_append(&scene.wind, 2, (const float[]){4, 0, 0}, 3, NULL),
+                     RESULT_OK);
+    assert_int_equal(keyframes_append(&scene.gravity, 0, (const float[]){0, 0, -3}, 3, NULL),
+                     RESULT_OK);
+    forces_evaluate(&forces, &scene, 1);
+    assert_true(fabsf(forces.wind[2][0] - 2) < 1e-6f && fabsf(forces.wind[2][1]) < 1e-6f);
+    assert_true(forces.gravity[2] == -3 && forces.gravity[1] == 0);
+    scene_destroy(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(without_wind_there_is_gravity_alone),
+        cmocka_unit_test(four_winds_turn_by_the_spread_and_keep_the_mean),
+        cmocka_unit_test(gusts_repeat_if_told),
+        cmocka_unit_test(gusts_stay_within_their_share_and_vary),
+        cmocka_unit_test(keyframes_win_over_constants),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

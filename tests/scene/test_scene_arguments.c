@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: MIT
+// Scenes from the command line; every parameter from both sources.
+#include "scene/scene_param.h"
+#include "support/scene_reader.h"
+#include "support/temporary.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static void *params_of(Scene *scene, const ParamInfo *info)
+{
+    return info->scope == SCOPE_RUN ? (void *)&scene->run : (void *)&scene->sections[0].params;
+}
+
+static void assert_prints(Scene *scene, const ParamInfo *info, const char *expected)
+{
+    char *text = param_format(info, params_of(scene, info));
+    if (!text || strcmp(text, expected) != 0)
+        fail_msg("%s is %s, expected %s", info->name, text, expected);
+    free(text);
+}
+
+// A valid value that is not the default and, alone, in no conflict with another.
+static const char *sample(const ParamInfo *info, char text[64])
+{
+    static const char *const TEXTS[] = {
+        [PARAM_BOOL] = "true",          [PARAM_VEC3] = "1,2,3",      [PARAM_COLOR] = "#010203",
+        [PARAM_BACKGROUND] = "#010203", [PARAM_AUTO_VEC3] = "1,2,3", [PARAM_UNIT] = "in",
+        [PARAM_SIZE] = "32x24",         [PARAM_PART] = "2/3",        [PARAM_TEXT] = "word",
+        [PARAM_PATH] = "/some/where/",
+    };
+    bool whole =
+        info->kind == PARAM_INT || info->kind == PARAM_UINT || info->kind == PARAM_AUTO_INT;
+    if (info->kind == PARAM_CHOICE) return info->choices[1];
+    if (strcmp(info->name, "colliders") == 0) return "ground:0;sphere:1,2,3,4";
+    if (!whole && info->kind != PARAM_FLOAT && info->kind != PARAM_AUTO_FLOAT)
+        return TEXTS[info->kind];
+    double least = fmax(info->minimum, -1);
+    if (whole)
+        snprintf(text, 64, "%.0f", fmin(least + 2, info->maximum));
+    else
+        param_format_float((float)(least + 0.375), text, 64);
+    return text;
+}
+
+static void every_row_is_set_by_its_flag_and_by_nothing_else(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < PARAM_COUNT; i++) {
+        const ParamInfo *info = &PARAM_TABLE[i];
+        char buffer[64], name[64], line[200];
+        const char *value = sample(info, buffer);
+        if (strcmp(info->name, "quality") == 0) continue; // which stands for several
+        snprintf(name, sizeof name, "%s", info->name);
+        for (char *at = name; *at; at++) *at = *at == '_' ? '-' : *at;
+        for (int form = 0; form < 2; form++) {
+            const char *between = form ? "=" : info->kind == PARAM_BOOL ? NULL : " ";
+            snprintf(line, sizeof line, "hair.tfx -o o/ --%s%s%s", name, between ? between : "",
+                     between ? value : "");
+            Scene scene;
+            assert_read(&scene, line);
+            for (size_t j = 0; j < PARAM_COUNT; j++) {
+                const ParamInfo *other = &PARAM_TABLE[j];
+                bool output = strcmp(other->name, "output") == 0;
+                assert_prints(&scene, other, j == i ? value : output ? "o/" : other->default_text);
+            }
+            scene_destroy(&scene);
+        }
+    }
+}
+
+static void every_row_is_set_by_its_key_in_a_scene_file(void **state)
+{
+    for (size_t i = 0; i < PARAM_COUNT; i++) {
+        const ParamInfo *info = &PARAM_TABLE[i];
+        char buffer[64];
+        const char *value = sample(info, buffer);
+        Scene scene = {0};
+        Error error = {{0}};
+        assert_int_equal(read_scene(state, &scene, "{\"sections\": [{\"file\": \"a\"}]}", &error),
+                         RESULT_OK);
+        assert_int_equal(param_parse(info, params_of(&scene, info), value, &error), RESULT_OK);
+        json_t *json = scene_write_param(info, params_of(&scene, info));
+        char *text = json_dumps(json, JSON_ENCODE_ANY | JSON_REAL_PRECISION(9));
+        json_decref(json);
+        scene_destroy(&scene);
+        char file[300];
+        snprintf(file, sizeof file, "{\"sections\": [{\"file\": \"a\"}], \"%s\": %s}", info->name,
+                 text);
+        free(text);
+        if (read_scene(state, &scene, file, &error) != RESULT_OK) fail_msg("%s", error.text);
+        assert_prints(&scene, info, value);
+        scene_destroy(&scene);
+    }
+}
+
+static void help_and_version_win_over_all_but_wrong_flags_before_them(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *line;
+        SceneRequest request;
+    } LINES[] = {{"--help", REQUEST_HELP},
+                 {"-h", REQUEST_HELP},
+                 {"-qh", REQUEST_HELP},
+                 {"--help=man", REQUEST_MAN},
+                 {"--help=markdown", REQUEST_MARKDOWN},
+                 {"--help=bash", REQUEST_BASH},
+                 {"--version", REQUEST_VERSION},
+                 {"missing.json --fps x --help", REQUEST_HELP}};
+    for (size_t i = 0; i < sizeof LINES / sizeof LINES[0]; i++) {
+        Scene scene;
+        assert_read(&scene, LINES[i].line);
+        assert_int_equal(scene.request, LINES[i].request);
+        scene_destroy(&scene);
+    }
+    assert_refused("--halp --help", RESULT_USAGE, "unknown flag --halp (nearest: --help");
+    assert_refused("--help=html", RESULT_USAGE, "--help: expected text, man, markdown or bash");
+}
+
+static void flags_may_stand_anywhere_and_values_may_look_like_flags(void **state)
+{
+    (void)state;
+    Scene scene;
+    assert_read(&scene, "a.tfx --gravity -1,-2,-3 -qo out/ b.hair --last=-1 --no-strict -- -c.tfx");
+    assert_int_equal(scene.request, REQUEST_RUN);
+    assert_int_equal(scene.section_count, 3);
+    assert_string_equal(scene.sections[0].file, "a.tfx");
+    assert_string_equal(scene.sections[1].file, "b.hair");
+    assert_string_equal(scene.sections[2].file, "-c.tfx");
+    assert_true(scene.run.gravity[0] == -1 && scene.run.gravity[2] == -3);
+    assert_true(scene.run.quiet);
+    assert_string_equal(scene.run.output, "out/");
+    scene_destroy(&scene);
+}
+
+static void the_last_of_equal_flags_counts_and_no_takes_back(void **state)
+{
+    (void)state;
+    Scene scene;
+    assert_read(&scene, "a.tfx -o x/ --fps 24 --software --fps=25 --no-software -oy/");
+    assert_true(scene.run.fps == 25);
+    assert_false(scene.run.software);
+    assert_string_equal(scene.run.output, "y/");
+    scene_destroy(&scene);
+}
+
+static void section_flags_reach_every_section(void **state)
+{
+    (void)state;
+    Scene scene;
+    assert_read(&scene, "a.tfx b.tfx -o x/ --drag 3 --algo none");
+    for (int i = 0; i < 2; i++) {
+        assert_true(scene.sections[i].params.drag == 3);
+        assert_string_equal(scene.sections[i].params.algo, "none");
+    }
+    scene_destroy(&scene);
+}
+
+static void output_is_needed_only_to_draw(void **state)
+{
+    (void)state;
+    Scene scene;
+    assert_read(&scene, "a.tfx --check");
+    scene_destroy(&scene);
+    assert_read(&scene, "--list-devices");
+    scene_destroy(&scene);
+    assert_refused("a.tfx", RESULT_USAGE, "no output");
+}
+
+static void wrong_command_lines_are_refused_with_the_nearest_name(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *line, *message;
+    } LINES[] = {
+        {"", "no hair"},
+        {"-o x/", "no hair"},
+        {"a.tfx -o x/ --algoo split", "unknown flag --algoo (nearest: --algo;"},
+        {"a.tfx -o x/ --camra-up 0,1,0", "(nearest: --camera-up;"},
+        {"a.tfx -o x/ --no-sofware", "(nearest: --software;"},
+        {"a.tfx -o x/ --no-fps", "--no-fps: only flags without a value"},
+        {"a.tfx -o x/ --no-quiet=true", "--no-quiet: takes no value"},
+        {"a.tfx -o x/ --quiet=maybe", "--quiet: got 'maybe', expected true or false"},
+        {"a.tfx -o x/ -x", "-x: unknown flag"},
+        {"a.tfx -o x/ -5", "-5: unknown flag"},
+        {"a.tfx -o", "-o: expected a value"},
+        {"a.tfx --fps", "--fps: expected a value"},
+        {"a.tfx --output --fps 30", "--output: expected a value before the next flag"},
+        {"a.tfx -o x/ --fps 0", "--fps: got '0', expected a number from 1 to 10000 (1/s)"},
+        {"a.tfx -o x/ --opacity nan", "--opacity: got 'nan'"},
+        {"a.tfx -o x/ --up w", "expected y or z"},
+        {"a.tfx -o x/ --backend elg", "(nearest: egl)"},
+        {"a.tfx -o x/ -q -v", "--quiet and --verbose exclude each other"},
+        {"a.tfx -o x/ --software --require-hardware", "exclude each other"},
+        {"a.tfx -o x/ --backend osmesa --device 1", "exclude each other"},
+        {"a.tfx -o x/ --backend osmesa --require-hardware", "exclude each other"},
+        {"a.tfx -o x/ --first 120", "--first 120: expected 0 to 119"},
+        {"a.tfx -o x/ --frames 10 --last 10", "--last 10: expected 0 to 9"},
+        {"a.tfx -o x/ --first 5 --last 4", "--last 4 is before --first 5"},
+        {"a.tfx -o x/ --camera-up 0,0,0", "--camera-up 0,0,0"},
+        {"a.tfx -o x/ --eye 1,2,3 --target 1,2,3", "--eye and --target are the same point"},
+        {"a.tfx -o x_%d_%d.png", "expected one %d"},
+        {"a.tfx -o x_%s.png", "expected one %d"},
+        {"a.tfx -o x_%5d.png", "expected one %d"},
+        {"a.tfx -o x_%004d.png", "expected one %d"},
+        {"a.tfx -o x_%d%%.png", "expected one %d"},
+        {"a.tfx -o x_%", "expected one %d"},
+    };
+    for (size_t i = 0; i < sizeof LINES / sizeof LINES[0]; i++)
+        assert_refused(LINES[i].line, RESULT_USAGE, LINES[i].message);
+    Scene scene;
+    assert_read(&scene, "a.tfx -o x_%04d.png --first 119 --last 119");
+    scene_destroy(&scene);
+    assert_read(&scene, "a.tfx -o 50%/");
+    scene_destroy(&scene);
+}
+
+static void flags_may_mend_a_combination_that_a_scene_file_has(void **state)
+{
+    char line[400];
+    snprintf(line, sizeof line, "%s -o x/",
+             write_scene(state, "{"
+                                "\"sections\": [{\"file\": \"a\"}]"
+                                ", \"frames\": 10, \"last\": 20}"));
+    assert_refused(line, RESULT_USAGE, "--last 20: expected 0 to 9 (or -1), since --frames is 10");
+    strcat(line, " --frames 30");
+    Scene scene;
+    assert_read(&scene, line);
+    assert_int_equal(scene.run.last, 20);
+    scene_destroy(&scene);
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, temporary_create, temporary_destroy)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_row_is_set_by_its_flag_and_by_nothing_else),
+        TEST(every_row_is_set_by_its_key_in_a_scene_file),
+        cmocka_unit_test(help_and_version_win_over_all_but_wrong_flags_before_them),
+        cmocka_unit_test(flags_may_stand_anywhere_and_values_may_look_like_flags),
+        cmocka_unit_test(the_last_of_equal_flags_counts_and_no_takes_back),
+        cmocka_unit_test(section_flags_reach_every_section),
+        cmocka_unit_test(output_is_needed_only_to_draw),
+        cmocka_unit_test(wrong_command_lines_are_refused_with_the_nearest_name),
+        TEST(flags_may_mend_a_combination_that_a_scene_file_has),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

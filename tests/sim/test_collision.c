@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+// Colliders: where they push a particle to, and the text that lists them. What they do to whole
+// strands is in test_solvers_collision.c.
+#include "sim/collision.h"
+#include "support/twin.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+// Stored positions of up to 0.5 m round by 3e-8 m each; a distance by a few of them.
+static const double ROUNDING = 2e-7;
+
+static const double MARGIN = 0.001; // the default of collision_margin
+
+// --- One particle on one link: where a push must put it.
+
+enum { PAIR = 2 };
+
+// The tip of a link from the origin to `tip`, at rest and without forces, after a step among the
+// shapes of `text`.
+static void push_pair(const Vec tip, const char *text, const char *algo, Vec pushed)
+{
+    Vec start[PAIR] = {{0, 0, 0}}, q[PAIR];
+    HairFixture fixture;
+    vec_copy(tip, start[1]);
+    fixture_create(&fixture, (const Vec *)start, 1, PAIR, algo, "", 0, 0);
+    fixture.step.gravity[1] = 0;
+    fixture_collide(&fixture, text);
+    fixture_step(&fixture);
+    twin_read_strand(&fixture, 0, q);
+    vec_copy(q[1], pushed);
+    fixture_destroy(&fixture);
+}
+
+static void assert_at(const Vec got, double x, double y, double z)
+{
+    const Vec expected = {x, y, z};
+    Vec off;
+    vec_add_scaled(got, -1, expected, off);
+    if (!(vec_norm(off) < ROUNDING)) fail_msg("got %g %g %g", got[0], got[1], got[2]);
+}
+
+// The link turns in the plane of sphere's centre and link until the tip is where both spheres, of
+// radius 0.1 about the root and 0.05 about (0.1, -0.03, 0), meet.
+static void a_sphere_pushes_to_its_surface(void **state)
+{
+    (void)state;
+    const double R = 0.05 + MARGIN, l = 0.1, cx = 0.1, cy = -0.03, cc = cx * cx + cy * cy;
+    const double along = (cc + l * l - R * R) / (2 * cc), across = sqrt(l * l / cc - along * along);
+    static const char *const algos[] = {"dftl", "chain", "split"};
+    for (size_t i = 0; i < sizeof algos / sizeof *algos; ++i) {
+        Vec pushed;
+        push_pair((const Vec){l, 0, 0}, "sphere:0.1,-0.03,0,0.05", algos[i], pushed);
+        assert_at(pushed, along * cx - across * cy, along * cy + across * cx, 0);
+    }
+}
+
+static void planes_push_to_their_height(void **state)
+{
+    (void)state;
+    const double up = 0.02 + MARGIN, side = sqrt(0.01 - up * up);
+    Vec pushed;
+    push_pair((const Vec){0.06, -0.08, 0}, "ground:0.02", "dftl", pushed);
+    assert_at(pushed, side, up, 0);
+    push_pair((const Vec){0, 0.08, -0.06}, "plane:0,-3,0,0.02", "dftl", pushed);
+    assert_at(pushed, 0, -up, -side);
+}
+
+// The rounded cone from (0.1, -0.1, 0) with radius 0.02 to (0.1, 0.1, 0) with radius 0.06: all
+// spheres between.
+static double cone_distance(const Vec p)
+{
+    double least = 1;
+    for (int i = 0; i <= 20000; ++i) {
+        double u = i / 20000.0;
+        const Vec from = {p[0] - 0.1, p[1] + 0.1 - 0.2 * u, p[2]};
+        least = fmin(least, vec_norm(from) - 0.02 - 0.04 * u);
+    }
+    return least;
+}
+
+// Side, both ends: the tip comes to the surface, and no farther than it must, in the plane of the
+// link and the axis. The sum over 20,000 spheres is off by 0.2/20000/2 times the slope at most.
+static void a_capsule_of_two_radii_pushes_to_its_surface(void **state)
+{
+    (void)state;
+    static const Vec tips[] = {
+        {0.07, 0, 0.005}, {0.07, 0.03, 0}, {0.08, -0.105, 0.002}, {0.07, 0.14, 0}};
+    for (size_t i = 0; i < sizeof tips / sizeof *tips; ++i) {
+        Vec pushed;
+        double inside = cone_distance(tips[i]);
+        push_pair(tips[i], "capsule:0.1,-0.1,0,0.02, 0.1,0.1,0,0.06", "dftl", pushed);
+        double length = vec_norm(pushed) - vec_norm(tips[i]);
+        assert_true(inside < MARGIN);
+        assert_true(fabs(length) < ROUNDING);
+        assert_true(fabs(cone_distance(pushed) - MARGIN) < 2e-6);
+    }
+}
+
+static void a_capsule_inside_its_larger_end_is_a_sphere(void **state)
+{
+    (void)state;
+    Vec a, b;
+    push_pair((const Vec){0.1, 0, 0}, "sphere:0.1,-0.03,0,0.05", "dftl", a);
+    push_pair((const Vec){0.1, 0, 0}, "capsule:0.1,-0.03,0,0.05, 0.1,-0.02,0,0.01", "dftl", b);
+    assert_memory_equal(a, b, sizeof a);
+}
+
+// The root goes up by 5 cm, and the sphere under the tip with it or not.
+static void a_world_collider_stays_where_it_is(void **state)
+{
+    (void)state;
+    Vec start[PAIR] = {{0, 0, 0}, {0.1, 0, 0}};
+    static const char *const texts[] = {"world:sphere:0.1,-0.08,0,0.05", "sphere:0.1,-0.08,0,0.05"};
+    for (int head = 0; head < 2; ++head) {
+        HairFixture fixture;
+        fixture_create(&fixture, (const Vec *)start, 1, PAIR, "dftl", "", 0, 0);
+        fixture_collide(&fixture, texts[head]);
+        fixture.step.gravity[1] = 0;
+        fixture.step.head.translation[1] = 0.05f;
+        fixture_step(&fixture);
+        SolverReport report = {0};
+        solver_report(&fixture.solver, &report);
+        assert_int_equal(report.contacts, head);
+        fixture_destroy(&fixture);
+    }
+}
+
+// --- The list.
+
+static void assert_refused(const char *text, const char *part)
+{
+    Colliders colliders = {0};
+    Error error = {{0}};
+    assert_int_equal(colliders_parse(&colliders, text, &error), RESULT_USAGE);
+    if (!strstr(error.text, part)) fail_msg("'%s' lacks '%s'", error.text, part);
+    colliders_destroy(&colliders);
+}
+
+static void a_text_lists_shapes(void **state)
+{
+    (void)state;
+    Colliders colliders = {0};
+    const char *text =
+        " sphere:1,2,3,4; world:capsule:0,0,0,1,0,2,0,.5;ground:-1.5 ; plane:0,0,2,1;";
+    assert_int_equal(colliders_parse(&colliders, text, &(Error){{0}}), RESULT_OK);
+    assert_int_equal(colliders.count, 4);
+    assert_true(colliders.list[0].kind == COLLIDER_SPHERE && !colliders.list[0].world);
+    assert_true(colliders.list[1].kind == COLLIDER_CAPSULE && colliders.list[1].world);
+    assert_true(colliders.list[1].numbers[7] == 0.5f);
+    assert_true(colliders.list[2].world && colliders.list[2].numbers[0] == -1.5f);
+    assert_true(colliders.list[3].numbers[2] == 1);
+    colliders_destroy(&colliders);
+    assert_refused("sphere:1,2,3", "sphere:x,y,z,radius");
+    assert_refused("sphere:1,2,3,-1", "radius");
+    assert_refused("sphere:1,2,3,1,", "sphere:x,y,z,radius");
+    assert_refused("sphere:1,2,3,1e9", "1e+06");
+    assert_refused("ball:1,2,3,4", "sphere:, capsule");
+    assert_refused("plane:0,0,0,1", "direction");
+    assert_refused("ground:0; ; ground:1", "expected");
+    assert_refused("ground:nan", "height");
+}
+
+static void the_uniform_block_lies_as_c_has_it(void **state)
+{
+    (void)state;
+    Vec start[PAIR] = {{0, 0, 0}, {0.1, 0, 0}};
+    HairFixture fixture;
+    Collision collision;
+    fixture_create(&fixture, (const Vec *)start, 1, PAIR, "none", "", 0, 0);
+    fixture_collide(&fixture, "ground:0; sphere:0,0,0,1");
+    const SolverSetup setup = {.gpu = fixture_gpu(),
+                               .hair = &fixture.hair,
+                               .params = &fixture.params,
+                               .colliders = &fixture.colliders};
+    assert_int_equal(collision_create(&collision, &setup, COLLISION_SEGMENTS, 1, &(Error){{0}}),
+                     RESULT_OK);
+#define ASSERT_OFFSET(member)                                                                      \
+    fixture_assert_offset(collision.program, "CollideParams." #member,                             \
+                          offsetof(CollideParams, member))
+    ASSERT_OFFSET(head_rotation);
+    ASSERT_OFFSET(head_translation_old);
+    ASSERT_OFFSET(head_turn_back);
+    ASSERT_OFFSET(field_low);
+    ASSERT_OFFSET(field_size);
+    ASSERT_OFFSET(dt);
+    ASSERT_OFFSET(margin);
+    ASSERT_OFFSET(stamp);
+    ASSERT_OFFSET(strand_count);
+    ASSERT_OFFSET(carried);
+    ASSERT_OFFSET(cones);
+    ASSERT_OFFSET(planes);
+    collision_destroy(&collision);
+    fixture_destroy(&fixture);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_text_lists_shapes),
+        cmocka_unit_test(the_uniform_block_lies_as_c_has_it),
+        cmocka_unit_test(a_sphere_pushes_to_its_surface),
+        cmocka_unit_test(planes_push_to_their_height),
+        cmocka_unit_test(a_capsule_of_two_radii_pushes_to_its_surface),
+        cmocka_unit_test(a_capsule_inside_its_larger_end_is_a_sphere),
+        cmocka_unit_test(a_world_collider_stays_where_it_is),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: MIT
+// Distance fields against exact distances.
+#include "mesh/bust.h"
+#include "mesh/scalp.h"
+#include "sim/field_cache.h"
+#include "support/hair_fixture.h"
+#include "support/shapes.h"
+#include "support/temporary.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+typedef double Point[3];
+
+static double dot(const Point a, const Point b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void minus(const Point a, const Point b, Point r)
+{
+    for (int k = 0; k < 3; ++k) r[k] = a[k] - b[k];
+}
+
+static double distance_to_segment(const Point p, const Point a, const Point b)
+{
+    Point e, r;
+    minus(b, a, e);
+    minus(p, a, r);
+    double t = fmin(fmax(dot(r, e) / fmax(dot(e, e), 1e-300), 0), 1);
+    for (int k = 0; k < 3; ++k) r[k] -= t * e[k];
+    return sqrt(dot(r, r));
+}
+
+// By barycentric coordinates, in double precision.
+static double distance_to_triangle(const Point p, const Point a, const Point b, const Point c)
+{
+    Point u, v, r;
+    minus(b, a, u);
+    minus(c, a, v);
+    minus(p, a, r);
+    double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), ru = dot(r, u), rv = dot(r, v);
+    double determinant = uu * vv - uv * uv;
+    double s = (vv * ru - uv * rv) / determinant, t = (uu * rv - uv * ru) / determinant;
+    if (determinant > 0 && s >= 0 && t >= 0 && s + t <= 1) {
+        for (int k = 0; k < 3; ++k) r[k] -= s * u[k] + t * v[k];
+        return sqrt(dot(r, r));
+    }
+    return fmin(distance_to_segment(p, a, b),
+                fmin(distance_to_segment(p, b, c), distance_to_segment(p, c, a)));
+}
+
+static void corner(const Mesh *mesh, uint32_t t, int i, Point r)
+{
+    for (int k = 0; k < 3; ++k) r[k] = (double)mesh->position[mesh->triangle[t][i]][k];
+}
+
+// The generalised winding number: the sum of solid angles over 4 pi (van Oosterom and Strackee).
+static double winding(const Mesh *mesh, const Point p)
+{
+    double sum = 0;
+    for (uint32_t t = 0; t < mesh->triangle_count; ++t) {
+        Point a, b, c;
+        corner(mesh, t, 0, a), corner(mesh, t, 1, b), corner(mesh, t, 2, c);
+        minus(a, p, a), minus(b, p, b), minus(c, p, c);
+        double la = sqrt(dot(a, a)), lb = sqrt(dot(b, b)), lc = sqrt(dot(c, c));
+        double volume = a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+                        a[2] * (b[0] * c[1] - b[1] * c[0]);
+        sum += atan2(volume, la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+    }
+    return sum / (2 * 3.14159265358979323846);
+}
+
+static double mesh_distance(const Mesh *mesh, const Point p)
+{
+    double least = 1e30;
+    for (uint32_t t = 0; t < mesh->triangle_count; ++t) {
+        Point a, b, c;
+        corner(mesh, t, 0, a), corner(mesh, t, 1, b), corner(mesh, t, 2, c);
+        least = fmin(least, distance_to_triangle(p, a, b, c));
+    }
+    return least;
+}
+
+static float *read_values(const DistanceField *field)
+{
+    size_t size = distance_field_count(field) * sizeof(float);
+    float *values = malloc(size);
+    assert_non_null(values);
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, field->values.buffer);
+    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, values);
+    return values;
+}
+
+static DistanceField compute(const Mesh *mesh, uint32_t resolution, float **values)
+{
+    DistanceField field;
+    Error error = {{0}};
+    if (distance_field_create(&field, fixture_gpu(), mesh, resolution, &error) != RESULT_OK)
+        fail_msg("%s", error.text);
+    *values = read_values(&field);
+    return field;
+}
+
+static void grid_point(const DistanceField *field, size_t i, Point p)
+{
+    const size_t at[3] = {i % field->size[0], i / field->size[0] % field->size[1],
+                          i / field->size[0] / field->size[1]};
+    for (int k = 0; k < 3; ++k)
+        p[k] = (double)field->low[k] + (double)at[k] * (double)field->spacing;
+}
+
+// A box of 12 triangles, outward.
+static void make_box(Mesh *mesh, const float half[3])
+{
+    static const uint32_t quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                         {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    assert_int_equal(mesh_create(mesh, 8, 12, NULL), RESULT_OK);
+    for (int i = 0; i < 8; ++i)
+        for (int k = 0; k < 3; ++k) mesh->position[i][k] = i >> k & 1 ? half[k] : -half[k];
+    for (int i = 0; i < 12; ++i)
+        for (int k = 0; k < 3; ++k) mesh->triangle[i][k] = quads[i / 2][k == 0 ? 0 : k + i % 2];
+}
+
+// Largest error of the samples in spacings, and how many have the wrong sign though they are
+// further than 1e-4 spacings from the surface. Every `stride`th sample.
+typedef struct Judgement {
+    double error;
+    size_t wrong;
+} Judgement;
+
+static Judgement judge(const DistanceField *field, const float *values, size_t stride,
+                       double (*exact)(const void *shape, const Point p), const void *shape)
+{
+    Judgement judgement = {0};
+    for (size_t i = 0; i < distance_field_count(field); i += stride) {
+        Point p;
+        grid_point(field, i, p);
+        double expected = exact(shape, p), got = (double)values[i];
+        double off = fabs(fabs(got) - fabs(expected)) / (double)field->spacing;
+        judgement.error = fmax(judgement.error, off);
+        judgement.wrong +=
+            (got < 0) != (expected < 0) && fabs(expected) > 1e-4 * (double)field->spacing;
+    }
+    return judgement;
+}
+
+static double exact_box(const void *shape, const Point p)
+{
+    const float *half = shape;
+    double inside = -1e30, outside = 0;
+    for (int k = 0; k < 3; ++k) {
+        double d = fabs(p[k]) - (double)half[k];
+        inside = fmax(inside, d);
+        outside += fmax(d, 0) * fmax(d, 0);
+    }
+    return inside < 0 ? inside : sqrt(outside);
+}
+
+static double exact_mesh(const void *shape, const Point p)
+{
+    double distance = mesh_distance(shape, p);
+    return fabs(winding(shape, p)) >= 0.5 ? -distance : distance;
+}
+
+static double exact_sphere(const void *shape, const Point p)
+{
+    return sqrt(dot(p, p)) - (double)*(const float *)shape;
+}
+
+// Its sides fall on no grid points; then, turned into a cube of 16 spacings, exactly on them.
+static void a_box_has_exact_distances_and_signs(void **state)
+{
+    (void)state;
+    static const float halves[2][3] = {{0.11f, 0.07f, 0.05f}, {0.5f, 0.5f, 0.5f}};
+    for (int i = 0; i < 2; ++i) {
+        Mesh box;
+        float *values;
+        make_box(&box, halves[i]);
+        DistanceField field = compute(&box, i ? 16 : 33, &values);
+        Judgement judgement = judge(&field, values, 1, exact_box, halves[i]);
+        assert_true(judgement.error < 1e-5); // rounding of positions up to 20 spacings
+        assert_int_equal(judgement.wrong, 0);
+        free(values);
+        distance_field_destroy(&field);
+        mesh_destroy(&box);
+    }
+}
+
+// 64 x 128 facets lie within 0.1 (1 - cos(pi/65)) = 1.2e-4 m of the sphere.
+static void a_sphere_has_its_distances(void **state)
+{
+    (void)state;
+    Mesh sphere;
+    float radius = 0.1f, *values;
+    shapes_make_sphere(&sphere, 64, 128, radius);
+    DistanceField field = compute(&sphere, 40, &values);
+    Judgement judgement = judge(&field, values, 1, exact_sphere, &radius);
+    assert_true(judgement.error < 1.2e-4 / 0.005 + 0.2);
+    judgement = judge(&field, values, 97, exact_mesh, &sphere);
+    assert_int_equal(judgement.wrong, 0);
+    free(values);
+    distance_field_destroy(&field);
+    mesh_destroy(&sphere);
+}
+
+static void read_head(Mesh *mesh)
+{
+    Error error = {{0}};
+    if (mesh_read_obj(mesh, "assets/head.obj", 1, false, &error) != RESULT_OK)
+        fail_msg("%s", error.text);
+}
+
+// Beyond two spacings distances are those to the nearest of many surface points: measured 0.09.
+// Against all triangles, and the generalised winding number, in double precision.
+static void the_bundled_head_has_exact_distances(void **state)
+{
+    (void)state;
+    Mesh head;
+    float *values;
+    read_head(&head);
+    DistanceField field = compute(&head, 64, &values);
+    Judgement judgement = judge(&field, values, 263, exact_mesh, &head);
+    assert_true(judgement.error < 0.2);
+    assert_int_equal(judgement.wrong, 0);
+    free(values);
+    distance_field_destroy(&field);
+    mesh_destroy(&head);
+}
+
+// Forty triangles in four places are missing: signs stay those of the whole head.
+static void holes_do_not_change_the_signs(void **state)
+{
+    (void)state;
+    Mesh head, open;
+    float *whole, *holed;
+    read_head(&head);
+    read_head(&open);
+    for (uint32_t hole = 0; hole < 4; ++hole) {
+        uint32_t at = (hole + 1) * open.triangle_count / 5;
+        memmove(open.triangle[at], open.triangle[at + 10],
+                (open.triangle_count - at - 10) * sizeof *open.triangle);
+        open.triangle_count -= 10;
+    }
+    DistanceField a = compute(&head, 48, &whole), b = compute(&open, 48, &holed);
+    size_t different = 0;
+    assert_int_equal(distance_field_count(&a), distance_field_count(&b));
+    for (size_t i = 0; i < distance_field_count(&a); ++i)
+        different += (whole[i] < 0) != (holed[i] < 0) && fabsf(whole[i]) > 0.5f * a.spacing;
+    assert_int_equal(different, 0);
+    free(whole);
+    free(holed);
+    distance_field_destroy(&a);
+    distance_field_destroy(&b);
+    mesh_destroy(&head);
+    mesh_destroy(&open);
+}
+
+static void a_mesh_turned_inside_out_is_the_same(void **state)
+{
+    (void)state;
+    const float half[3] = {0.11f, 0.07f, 0.05f};
+    Mesh box;
+    float *values;
+    make_box(&box, half);
+    for (uint32_t t = 0; t < box.triangle_count; ++t) {
+        uint32_t corner_0 = box.triangle[t][0];
+        box.triangle[t][0] = box.triangle[t][1];
+        box.triangle[t][1] = corner_0;
+    }
+    DistanceField field = compute(&box, 20, &values);
+    Judgement judgement = judge(&field, values, 1, exact_box, half);
+    assert_int_equal(judgement.wrong, 0);
+    free(values);
+    distance_field_destroy(&field);
+    mesh_destroy(&box);
+}
+
+// Closed surfaces have whole winding numbers everywhere: the head with shoulders, inside one of its
+// parts, inside two of them, outside.
+static void the_bust_is_closed(void **state)
+{
+    (void)state;
+    static const Point points[] = {
+        {0, 0, 0}, {0, -0.16, 0}, {0.2, -0.38, -0.02}, {0.168, -0.258, -0.03}, {0.3, 0, 0}};
+    Mesh bust;
+    double most = 0;
+    assert_int_equal(scalp_make_mesh(&bust, SCALP_HEAD, 12, NULL), RESULT_OK);
+    assert_int_equal(bust_append_shoulders(&bust, NULL), RESULT_OK);
+    for (size_t i = 0; i < sizeof points / sizeof *points; ++i) {
+        double w = winding(&bust, points[i]);
+        assert_true(fabs(w - round(w)) < 1e-6);
+        assert_true(i < 4 ? w > 0.5 : w < 0.5);
+        most = fmax(most, w);
+    }
+    assert_true(most > 1.5);
+    mesh_destroy(&bust);
+}
+
+// The second time it is read, to the same bits; a damaged file is as good as none.
+static void a_field_is_kept_on_disk(void **state)
+{
+    const float half[3] = {0.1f, 0.05f, 0.05f};
+    Mesh box;
+    float *values[3];
+    make_box(&box, half);
+    setenv("XDG_CACHE_HOME", temporary_path(state, "cache"), 1);
+    for (int i = 0; i < 3; ++i) {
+        DistanceField field;
+        Error error = {{0}};
+        bool read;
+        char *name = field_cache_name(&box, 24);
+        if (i == 2) {
+            FILE *file = fopen(name, "r+b");
+            assert_non_null(file);
+            fseek(file, -100, SEEK_END);
+            fputc(1, file);
+            fclose(file);
+        }
+        assert_int_equal(field_cache_create(&field, fixture_gpu(), &box, 24, &read, &error),
+                         RESULT_OK);
+        assert_int_equal(read, i == 1);
+        values[i] = read_values(&field);
+        assert_memory_equal(values[i], values[0], distance_field_count(&field) * sizeof(float));
+        distance_field_destroy(&field);
+        free(name);
+    }
+    char *other = field_cache_name(&box, 25), *same = field_cache_name(&box, 24);
+    assert_string_not_equal(other, same);
+    free(other);
+    free(same);
+    for (int i = 0; i < 3; ++i) free(values[i]);
+    mesh_destroy(&box);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_box_has_exact_distances_and_signs),
+        cmocka_unit_test(a_sphere_has_its_distances),
+        cmocka_unit_test(the_bundled_head_has_exact_distances),
+        cmocka_unit_test(holes_do_not_change_the_signs),
+        cmocka_unit_test(a_mesh_turned_inside_out_is_the_same),
+        cmocka_unit_test(the_bust_is_closed),
+        cmocka_unit_test_setup_teardown(a_field_is_kept_on_disk, temporary_create,
+                                        temporary_destroy),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

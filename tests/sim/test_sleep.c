@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: MIT
+// Sleep changes nothing by more than its tolerance, and everything that moves hair ends it.
+#include "gen/strands_make.h"
+#include "sim/simulation_state.h"
+#include "support/hair_fixture.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { FPS = 60, STRANDS = 16, VERTICES = 10 };
+
+// One section of long waves at 60 steps a second.
+typedef struct World {
+    Scene scene;
+    Strands strands;
+    GpuTimer timer;
+    Simulation simulation;
+} World;
+
+static void create_scene(World *world, const char *algo, float drag, float tolerance)
+{
+    SectionParams params;
+    *world = (World){0};
+    assert_int_equal(scene_create(&world->scene, NULL), RESULT_OK);
+    assert_int_equal(section_params_create(&params, NULL), RESULT_OK);
+    assert_int_equal(param_parse(param_find("algo"), &params, algo, NULL), RESULT_OK);
+    params.drag = drag;
+    params.sleep = tolerance;
+    assert_int_equal(scene_add_section(&world->scene, "waves", &params, NULL), RESULT_OK);
+    section_params_destroy(&params);
+}
+
+static void start(World *world)
+{
+    StrandsRecipe recipe = strands_recipe_default(STRANDS_STYLE_CURLS);
+    recipe.count = STRANDS, recipe.vertices = VERTICES;
+    assert_int_equal(strands_make(&world->strands, &recipe, NULL), RESULT_OK);
+    gpu_timer_create(&world->timer, false, true);
+    assert_int_equal(simulation_create(&world->simulation, fixture_gpu(), &world->timer,
+                                       &world->scene, &world->strands, NULL, NULL),
+                     RESULT_OK);
+}
+
+static void create(World *world, const char *algo, float drag, float tolerance)
+{
+    create_scene(world, algo, drag, tolerance);
+    start(world);
+}
+
+static void destroy(World *world)
+{
+    simulation_destroy(&world->simulation);
+    gpu_timer_destroy(&world->timer);
+    strands_destroy(&world->strands);
+    scene_destroy(&world->scene);
+}
+
+static bool is_asleep(const World *world)
+{
+    return world->simulation.sections[0].sleep.asleep;
+}
+
+static void advance(World *world, double seconds)
+{
+    for (int i = 0; i < (int)(seconds * FPS); ++i) simulation_advance(&world->simulation);
+}
+
+// Until it sleeps or the time has come (s); returns which.
+static bool falls_asleep(World *world, double latest)
+{
+    while (!is_asleep(world) && world->simulation.frame < latest * FPS)
+        simulation_advance(&world->simulation);
+    return is_asleep(world);
+}
+
+typedef float Float4[4];
+
+static Float4 *read_positions(World *world)
+{
+    const HairBatch *hair = &world->simulation.sections[0].hair.batches[0];
+    Float4 *positions = malloc((size_t)hair->position.size);
+    simulation_pose(&world->simulation);
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, hair->position.buffer);
+    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)hair->position.size, positions);
+    return positions;
+}
+
+// The largest distance between two worlds' particles over the length of the strand.
+static double distance_of(World *a, World *b)
+{
+    const Hair *hair = &a->simulation.sections[0].hair;
+    Float4 *x = read_positions(a), *y = read_positions(b);
+    double worst = 0;
+    for (uint32_t s = 0; s < STRANDS; ++s)
+        for (uint32_t j = 0; j < VERTICES; ++j) {
+            size_t at = hair_address(&hair->batches[0], s, j);
+            double square = 0;
+            for (int k = 0; k < 3; ++k) square += pow((double)x[at][k] - (double)y[at][k], 2);
+            worst = fmax(worst, sqrt(square) / strands_length(&a->strands, s));
+        }
+    free(x);
+    free(y);
+    return worst;
+}
+
+// The worst distance from what never sleeps, over a minute from when the hair falls asleep on, or
+// over the first 100 s if it does not.
+static double cost_of_sleep(const char *algo, float drag, float tolerance, bool *sleeps)
+{
+    World awake, sleeper;
+    double worst = 0;
+    create(&awake, algo, drag, 0);
+    create(&sleeper, algo, drag, tolerance);
+    *sleeps = falls_asleep(&sleeper, 100);
+    advance(&awake, sleeper.simulation.frame / (double)FPS);
+    for (int second = 0; second < (*sleeps ? 60 : 1); ++second) {
+        worst = fmax(worst, distance_of(&awake, &sleeper));
+        advance(&awake, 1);
+        advance(&sleeper, 1);
+    }
+    if (*sleeps) {
+        uint64_t made = sleeper.simulation.strand_steps,
+                 left_out = sleeper.simulation.strand_steps_asleep;
+        assert_true(left_out >= 60 * FPS * STRANDS);
+        assert_true(made + left_out == (uint64_t)sleeper.simulation.frame * STRANDS);
+    }
+    print_message("%s, drag %g, tolerance %g: %s, off by %.1e\n", algo, (double)drag,
+                  (double)tolerance, *sleeps ? "sleeps" : "awake", worst);
+    destroy(&awake);
+    destroy(&sleeper);
+    return worst;
+}
+
+static void sleeping_is_within_the_tolerance(void **state)
+{
+    static const struct {
+        const char *algo;
+        float drag, tolerance;
+    } cases[] = {{"chain", 100, 1e-5f}, {"chain", 5, 1e-4f},   {"tressfx", 20, 1e-5f},
+                 {"split", 1, 1e-4f},   {"spring", 20, 1e-5f}, {"dftl", 20, 1e-5f}};
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        bool sleeps;
+        double cost = cost_of_sleep(cases[i].algo, cases[i].drag, cases[i].tolerance, &sleeps);
+        assert_true(sleeps);
+        assert_true(cost < (double)cases[i].tolerance);
+    }
+}
+
+// In very thick air split creeps on for minutes. It may fall asleep as soon as what is left is
+// within the tolerance, not before; a rule that looked at the speed alone would fail here.
+static void creeping_hair_does_not_sleep(void **state)
+{
+    (void)state;
+    bool sleeps;
+    World world, later;
+    assert_true(cost_of_sleep("split", 200, 1e-3f, &sleeps) < 1e-3);
+    create(&world, "split", 200, 0);
+    create(&later, "split", 200, 0);
+    advance(&world, 20);
+    advance(&later, 80);
+    assert_true(distance_of(&world, &later) > 1e-2); // it does creep
+    destroy(&world);
+    destroy(&later);
+}
+
+// Gives the scene's force two keys: constant, and different from `time` on.
+static void change_at(Keyframes *keys, double time, const float before[3], const float after[3])
+{
+    keys->interpolation = INTERPOLATION_LINEAR;
+    assert_int_equal(keyframes_append(keys, 0, before, 3, NULL), RESULT_OK);
+    assert_int_equal(keyframes_append(keys, time, before, 3, NULL), RESULT_OK);
+    assert_int_equal(keyframes_append(keys, time + 0.1, after, 3, NULL), RESULT_OK);
+}
+
+enum { WOKEN_S = 60 };
+
+// That hair which sleeps before WOKEN_S is awake after it, moves, and sleeps again.
+static void check_wakes(World *world)
+{
+    start(world);
+    assert_true(falls_asleep(world, WOKEN_S - 1));
+    advance(world, WOKEN_S - 0.5 - world->simulation.frame / (double)FPS);
+    assert_true(is_asleep(world));
+    uint64_t changes;
+    free(read_positions(world));
+    changes = world->simulation.changes;
+    free(read_positions(world));
+    assert_true(world->simulation.changes == changes);
+    advance(world, 0.75);
+    assert_false(is_asleep(world));
+    free(read_positions(world));
+    assert_true(world->simulation.changes > changes);
+    assert_true(falls_asleep(world, 2 * WOKEN_S));
+    destroy(world);
+}
+
+static void gravity_wakes(void **state)
+{
+    (void)state;
+    World world;
+    create_scene(&world, "dftl", 20, 1e-5f);
+    change_at(&world.scene.gravity, WOKEN_S, (float[]){0, -9.81f, 0}, (float[]){0, -9.8f, 0});
+    check_wakes(&world);
+}
+
+static void wind_wakes(void **state)
+{
+    (void)state;
+    World world;
+    create_scene(&world, "dftl", 20, 1e-5f);
+    world.scene.run.gust = 0;
+    change_at(&world.scene.wind, WOKEN_S, (float[]){1, 0, 0}, (float[]){1.1f, 0, 0});
+    check_wakes(&world);
+}
+
+static void the_head_wakes(void **state)
+{
+    (void)state;
+    World world;
+    create_scene(&world, "dftl", 20, 1e-5f);
+    change_at(&world.scene.head.translation, WOKEN_S, (float[]){0, 0, 0}, (float[]){0, 0, 0.01f});
+    check_wakes(&world);
+}
+
+static void nobody_sleeps_in_gusts_or_without_tolerance(void **state)
+{
+    (void)state;
+    World world;
+    create_scene(&world, "dftl", 100, 1e-2f);
+    world.scene.run.wind[0] = 1e-4f;
+    start(&world);
+    assert_false(falls_asleep(&world, 30));
+    destroy(&world);
+    create(&world, "dftl", 100, 0);
+    assert_false(falls_asleep(&world, 30));
+    destroy(&world);
+    create(&world, "dftl", 100, 1e-2f);
+    assert_true(falls_asleep(&world, 30));
+    destroy(&world);
+}
+
+// Saved on the way to sleep or in it, the hair goes on to the same sleep in the same step.
+static void sleep_is_part_of_the_state(void **state)
+{
+    (void)state;
+    for (int second = 4; second <= 30; second += 26) {
+        World world, resumed;
+        Bytes saved;
+        create(&world, "dftl", 100, 1e-5f);
+        create(&resumed, "dftl", 100, 1e-5f);
+        advance(&world, second);
+        assert_int_equal(simulation_state_save(&world.simulation, &saved, NULL), RESULT_OK);
+        assert_int_equal(simulation_state_restore(&resumed.simulation, &saved, NULL), RESULT_OK);
+        assert_true(is_asleep(&world) == (second == 30));
+        assert_true(is_asleep(&resumed) == is_asleep(&world));
+        assert_true(falls_asleep(&world, 60) && falls_asleep(&resumed, 60));
+        assert_int_equal(world.simulation.frame, resumed.simulation.frame);
+        assert_true(distance_of(&world, &resumed) == 0);
+        bytes_destroy(&saved);
+        destroy(&world);
+        destroy(&resumed);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sleeping_is_within_the_tolerance),
+        cmocka_unit_test(creeping_hair_does_not_sleep),
+        cmocka_unit_test(gravity_wakes),
+        cmocka_unit_test(wind_wakes),
+        cmocka_unit_test(the_head_wakes),
+        cmocka_unit_test(nobody_sleeps_in_gusts_or_without_tolerance),
+        cmocka_unit_test(sleep_is_part_of_the_state),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

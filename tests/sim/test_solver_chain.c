@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: MIT
+// Chain on the GPU against its double-precision form and the reference traces; its bending. What it
+// shares with others that converge is in test_solvers_convergent.c.
+#include "support/reference_bend.h"
+#include "support/reference_chain.h"
+#include "support/reference_traces.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+static void bent(SectionParams *params)
+{
+    params->chain_bend = 20;
+}
+
+static void bent_alone(SectionParams *params)
+{
+    params->chain_bend = 50;
+    params->style_stiffness = 0;
+}
+
+static const TwinPair PAIR = {"chain", "", reference_chain_step, false};
+
+// Measured: 5e-7 to 1e-6 of the length where drag forgets what rounding adds, 1e-5 at 240 Hz, 6e-5
+// for 32 particles; strands without much drag are chaotic (a curl's start rounding grows to 1e-4
+// within 0.6 to 1.5 s), so those are compared while float32 can follow. 10 times what was measured.
+static void it_equals_its_double_precision_twin(void **state)
+{
+    (void)state;
+    static const TwinCase cases[] = {
+        {2, 60, 1, 0, 600, 1e-5, NULL},   {3, 60, 4, 0, 600, 1e-5, NULL},
+        {16, 60, 4, 0, 600, 1e-5, NULL},  {16, 240, 4, 0, 600, 1e-4, NULL},
+        {16, 60, 4, 0.5, 60, 1e-5, NULL}, {16, 60, 0, 0, 30, 1e-5, NULL},
+        {16, 60, 1, 0.5, 60, 1e-5, NULL},
+    };
+    twin_require(&PAIR, cases, sizeof cases / sizeof *cases);
+}
+
+static void strands_through_memory_equal_the_twin_too(void **state)
+{
+    (void)state;
+    static const TwinCase cases[] = {
+        {17, 60, 4, 0, 600, 1e-5, NULL},
+        {32, 60, 4, 0, 600, 6e-4, NULL},
+        {32, 60, 4, 0.5, 30, 1e-4, NULL},
+        {64, 60, 4, 0.5, 8, 6e-5, NULL},
+    };
+    twin_require(&PAIR, cases, sizeof cases / sizeof *cases);
+}
+
+static void it_equals_the_reference_traces(void **state)
+{
+    (void)state;
+    assert_int_equal(traces_compare("chain_step", "chain", "", NULL), 4);
+    assert_int_equal(traces_compare("chain_step_style", "chain", "", NULL), 4);
+}
+
+// --- Bending and twist.
+
+// Measured: 1e-6 to 4e-5 (n = 32) while the account takes nothing; then it passes rounding on.
+static void bending_equals_its_double_precision_twin(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; ++i) {
+        void (*tune)(SectionParams * params) = i ? bent_alone : bent;
+        const TwinCase cases[] = {
+            {8, 60, 1, 0.5, 5, 2e-5, tune},    {16, 60, 1, 0.5, 5, 2e-5, tune},
+            {16, 240, 1, 0.5, 10, 2e-5, tune}, {32, 60, 4, 0.5, 5, 2e-4, tune},
+            {16, 60, 4, 0.5, 60, 5e-3, tune},
+        };
+        twin_require(&PAIR, cases, sizeof cases / sizeof *cases);
+    }
+}
+
+// A helix that hangs, of radius 3 cm, 15 cm long.
+static void make_helix(Vec *q, int n, double turns)
+{
+    for (int j = 0; j < n; ++j) {
+        double u = (double)j / (n - 1), angle = 6.283185307 * turns * u;
+        q[j][0] = 0.03 * (cos(angle) - 1), q[j][2] = 0.03 * sin(angle), q[j][1] = -0.15 * u;
+    }
+}
+
+// The gradient is that of the energy, by differences.
+static void bending_forces_are_the_gradient_of_its_energy(void **state)
+{
+    (void)state;
+    enum { N = 9 };
+    const HeadPose head = {.rotation = {0.6f, 0, 0, 0.8f}};
+    const double step = 1e-6;
+    Vec q[N], r[N], gradient[N];
+    TwinStrand strand;
+    make_helix(q, N, 2);
+    twin_start(&strand, N, (const Vec *)q);
+    for (int j = 1; j < N; ++j)
+        for (int k = 0; k < 3; ++k) r[j][k] = q[j][k] - q[j - 1][k] + 0.01 * sin(7 * j + 3 * k);
+    for (int j = 1; j < N; ++j) { // the gradient is for segments of their lengths
+        double scale = strand.length[j] / vec_norm(r[j]);
+        for (int k = 0; k < 3; ++k) r[j][k] *= scale;
+    }
+    double size = fabs(reference_bend_energy(&strand, &head, (const Vec *)r, gradient));
+    for (int j = 1; j < N; ++j)
+        for (int k = 0; k < 3; ++k) {
+            double kept = r[j][k], energy[2];
+            for (int side = 0; side < 2; ++side) {
+                r[j][k] = kept + (side ? step : -step);
+                energy[side] = reference_bend_energy(&strand, &head, (const Vec *)r, NULL);
+            }
+            r[j][k] = kept;
+            double slope = (energy[1] - energy[0]) / (2 * step);
+            assert_true(fabs(slope - gradient[j][k]) < 1e-5 * size / 0.01);
+        }
+}
+
+static double helix_after(int n, double seconds, double gravity, double turn,
+                          void (*tune)(SectionParams *params), Vec *q)
+{
+    Vec start[64], wanted[64];
+    HairFixture fixture;
+    make_helix(start, n, 2);
+    fixture_create_tuned(&fixture, (const Vec *)start, 1, n, "chain", "", 0.5f, 1, tune);
+    fixture.step.dt = 1.0 / 240;
+    fixture.step.gravity[1] = (float)gravity;
+    for (int i = 1; i <= (int)(240 * seconds); ++i) {
+        double half = turn / 2 * fmin(i / 120.0, 1);
+        fixture.step.head.rotation[2] = (float)sin(half);
+        fixture.step.head.rotation[3] = (float)cos(half);
+        if (gravity != 0 && i > 240 * seconds / 2 && turn != 0) fixture.step.gravity[1] = 0;
+        fixture_step(&fixture);
+    }
+    twin_read_strand(&fixture, 0, q);
+    fixture_destroy(&fixture);
+    for (int j = 0; j < n; ++j) {
+        wanted[j][0] = cos(turn) * start[j][0] - sin(turn) * start[j][1];
+        wanted[j][1] = sin(turn) * start[j][0] + cos(turn) * start[j][1];
+        wanted[j][2] = start[j][2];
+    }
+    return twin_rms((const Vec *)q, (const Vec *)wanted, n, 0.4);
+}
+
+static void unpulled(SectionParams *params)
+{
+    params->style_stiffness = 0;
+}
+
+static void bends_rest_where_the_style_is_and_turn_with_their_root(void **state)
+{
+    (void)state;
+    Vec q[64];
+    for (int n = 16; n <= 32; n *= 2) {
+        double rest = helix_after(n, 2, 0, 0, bent_alone, q);
+        double turned = helix_after(n, 12, -9.81, 1.5, bent_alone, q);
+        double loose = helix_after(n, 12, -9.81, 1.5, unpulled, q);
+        printf(
+            "n = %d: at rest off by %.2g, after a turn of the root and a fall %.2g (loose: %.2g)\n",
+            n, rest, turned, loose);
+        assert_true(rest < 1e-5);
+        assert_true(turned < 0.02);
+        assert_true(loose > 0.2);
+    }
+}
+
+// How far the tip of a straight strand of n particles, 0.25 m long and held horizontally, hangs
+// below its root after `seconds`, over the length.
+static double drop_after(int n, double rate, double seconds, void (*tune)(SectionParams *params))
+{
+    Vec start[64] = {{0}}, q[64];
+    HairFixture fixture;
+    for (int j = 0; j < n; ++j) start[j][0] = 0.25 * j / (n - 1);
+    fixture_create_tuned(&fixture, (const Vec *)start, 1, n, "chain", "", 0.5f, 5, tune);
+    fixture.step.dt = 1 / rate;
+    for (int i = 0; i < (int)(rate * seconds); ++i) fixture_step(&fixture);
+    twin_read_strand(&fixture, 0, q);
+    fixture_destroy(&fixture);
+    return -q[n - 1][1] / 0.25;
+}
+
+// The exact rest of 15 and of 31 links with K = 50, K n^2 l sin(turn of a joint) = moment of all
+// that hangs beyond it, drops by 0.3983 and 0.5943 (tractrix-bench accuracy --part beam).
+static void rest_under_load_is_exact_at_any_step(void **state)
+{
+    (void)state;
+    for (double rate = 30; rate <= 240; rate *= 2) {
+        double few = drop_after(16, rate, 20, bent_alone);
+        double many = drop_after(32, rate, 20, bent_alone);
+        printf("%g steps a second: drops by %.4f and %.4f\n", rate, few, many);
+        assert_true(fabs(few / 0.3983 - 1) < 0.01);
+        assert_true(fabs(many / 0.5943 - 1) < 0.01);
+    }
+}
+
+// With the style's springs as well: none of the forces may weigh more than another at long steps.
+static void rest_under_load_and_springs_does_not_depend_on_the_step(void **state)
+{
+    (void)state;
+    double coarse = drop_after(16, 30, 20, bent), fine = drop_after(16, 240, 20, bent);
+    printf("drops by %.4f at 30 and %.4f at 240 steps a second\n", coarse, fine);
+    assert_true(fabs(coarse / fine - 1) < 0.01);
+}
+
+// Long steps, any stiffness, a head that jumps and turns: finite, of its lengths, and at rest in
+// the end where the style is.
+static void stiffest(SectionParams *params)
+{
+    params->chain_bend = 1e6f;
+    params->style_stiffness = 0;
+}
+
+static void soft(SectionParams *params)
+{
+    params->chain_bend = 2;
+    params->style_stiffness = 0;
+}
+
+static void bending_is_stable_at_any_stiffness(void **state)
+{
+    (void)state;
+    void (*const tunes[])(SectionParams *) = {soft, bent_alone, stiffest};
+    for (int i = 0; i < 3; ++i)
+        for (int n = 4; n <= 64; n *= 4) {
+            Vec start[64], q[64];
+            TwinStrand rest;
+            HairFixture fixture;
+            make_helix(start, n, 3);
+            twin_start(&rest, n, (const Vec *)start);
+            fixture_create_tuned(&fixture, (const Vec *)start, 1, n, "chain", "", 0.5f, 1,
+                                 tunes[i]);
+            fixture.step.dt = 1.0 / 30;
+            for (int frame = 0; frame < 600; ++frame) {
+                float half = frame < 100 ? 0.3f * (float)(frame % 9) : 0;
+                fixture.step.head.rotation[0] = sinf(half),
+                fixture.step.head.rotation[3] = cosf(half);
+                fixture.step.head.translation[1] = frame == 50 ? 10 : 0;
+                if (frame == 300) fixture.step.gravity[1] = 0;
+                fixture_step(&fixture);
+            }
+            twin_read_strand(&fixture, 0, q);
+            assert_true(twin_length_error(&rest, (const Vec *)q) < 1e-5);
+            assert_true(twin_rms((const Vec *)q, (const Vec *)start, n, 0.4) < 0.1);
+            printf("chain_bend %g, n = %d: %.2g off in the end\n",
+                   (double)fixture.params.chain_bend, n,
+                   twin_rms((const Vec *)q, (const Vec *)start, n, 0.4));
+            fixture_destroy(&fixture);
+        }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(it_equals_its_double_precision_twin),
+        cmocka_unit_test(it_equals_the_reference_traces),
+        cmocka_unit_test(strands_through_memory_equal_the_twin_too),
+        cmocka_unit_test(bending_equals_its_double_precision_twin),
+        cmocka_unit_test(bending_forces_are_the_gradient_of_its_energy),
+        cmocka_unit_test(bends_rest_where_the_style_is_and_turn_with_their_root),
+        cmocka_unit_test(rest_under_load_is_exact_at_any_step),
+        cmocka_unit_test(rest_under_load_and_springs_does_not_depend_on_the_step),
+        cmocka_unit_test(bending_is_stable_at_any_stiffness),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,389 @@
+// SPDX-License-Identifier: MIT
+// The split solver on the GPU against its double-precision form, the reference traces, and what
+// must hold for any hair.
+#include "sim/step_uniforms.h"
+#include "support/reference_split.h"
+#include "support/reference_traces.h"
+#include "support/twin.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { MOST = REFERENCE_MAX };
+
+static double total_length(const ReferenceStrand *strand)
+{
+    double sum = 0;
+    for (int j = 1; j < strand->n; ++j) sum += strand->length[j];
+    return sum;
+}
+
+// A step adds rounding of about 2^-24 a particle, which a strand of n sums up to sqrt(n) 2^-24 of
+// its length; drag c forgets it within 1/(c dt) steps, which add up as a random walk. A safety
+// factor of 8 covers that errors at kinks grow before they are forgotten.
+static double step_tolerance(int n, double c, double dt)
+{
+    return 2 * sqrt((double)n / (c * dt)) * 0x1p-24;
+}
+
+static void run_against_reference(int n, const char *variant, float style)
+{
+    enum { COUNT = 5, STEPS = 600 };
+    static Vec start[COUNT * MOST];
+    static ReferenceStrand twin[COUNT];
+    Vec directions[MOST], drawn[MOST], expected[MOST];
+    HairFixture fixture;
+    ReferenceStep step = *variant == 'b'   ? reference_ball_step
+                         : *variant == 'd' ? reference_dragged_step
+                                           : reference_thesis_step;
+    for (int s = 0; s < COUNT; ++s) twin_make_curl(&start[s * n], n, 0.01 * s, 1 + s);
+    fixture_create(&fixture, (const Vec *)start, COUNT, n, "split", variant, style, 1);
+    for (int s = 0; s < COUNT; ++s) reference_start(&twin[s], n, (const Vec *)&start[s * n]);
+    for (int i = 0; i < 4; ++i) fixture.step.wind[i][0] = 1.5f, fixture.step.wind[i][2] = 0.5f;
+
+    ReferenceForces forces = {.dt = fixture.step.dt,
+                              .drag = 1,
+                              .gravity = {0, (double)-9.81f, 0},
+                              .wind = {1.5, 0, 0.5},
+                              .first = true};
+    for (int i = 1; i <= STEPS; ++i) {
+        fixture.step.head.translation[0] = (float)(0.02 * (1 - cos(6.283185307 * 2 * i / 60)));
+        fixture_step(&fixture);
+        for (int s = 0; s < COUNT; ++s) {
+            Vec root = {start[s * n][0] + (double)fixture.step.head.translation[0], start[s * n][1],
+                        start[s * n][2]};
+            step(&twin[s], root, &forces);
+        }
+        forces.first = false;
+    }
+    double worst = 0;
+    for (int s = 0; s < COUNT; ++s) {
+        for (int j = 1; j < n; ++j)
+            for (int k = 0; k < 3; ++k)
+                directions[j][k] =
+                    (start[s * n + j][k] - start[s * n + j - 1][k]) / twin[s].length[j];
+        reference_pose(&twin[s], (const Vec *)directions, (double)style, expected);
+        twin_read_strand(&fixture, s, drawn);
+        double off = twin_rms((const Vec *)drawn, (const Vec *)expected, n, total_length(&twin[s]));
+        worst = fmax(worst, off);
+    }
+    printf("split %s, n = %d, style %g: RMS %.2g of the length from the double-precision twin "
+           "after %d steps\n",
+           variant, n, (double)style, worst, STEPS);
+    if (!(worst < step_tolerance(n, 1, forces.dt)))
+        fail_msg("%.3g exceeds %.3g", worst, step_tolerance(n, 1, forces.dt));
+    fixture_destroy(&fixture);
+}
+
+static void ball_equals_its_double_precision_twin(void **state)
+{
+    (void)state;
+    run_against_reference(16, "ball", 0);
+    run_against_reference(32, "ball", 0.5f);
+    run_against_reference(2, "ball", 0);
+    run_against_reference(16, "dragged", 0);
+}
+
+static void thesis_equals_its_double_precision_twin(void **state)
+{
+    (void)state;
+    run_against_reference(16, "thesis", 0);
+    run_against_reference(3, "thesis", 0.7f);
+}
+
+static void strands_through_memory_equal_the_twin_too(void **state)
+{
+    (void)state;
+    run_against_reference(64, "ball", 0);
+    run_against_reference(64, "thesis", 0);
+}
+
+static void dragged_equals_the_reference_traces(void **state)
+{
+    (void)state;
+    assert_int_equal(traces_compare("ball_split", "split", "dragged", NULL), 4);
+}
+
+static void thesis_equals_the_reference_traces(void **state)
+{
+    (void)state;
+    assert_int_equal(traces_compare("split", "split", "thesis", traces_imitate_explicit_drag), 4);
+}
+
+// Positions are float32: each coordinate is off by at most 2^-24 of its size, the difference of two
+// by twice that.
+static void segment_lengths_do_not_drift_in_10000_steps(void **state)
+{
+    (void)state;
+    enum { N = 32, COUNT = 16 };
+    static Vec start[COUNT * N];
+    Vec q[N];
+    HairFixture fixture;
+    for (int s = 0; s < COUNT; ++s) twin_make_curl(&start[s * N], N, 0.01 * s, 1 + s % 4);
+    fixture_create(&fixture, (const Vec *)start, COUNT, N, "split", "", 0, 0);
+    for (int i = 0; i < 10000; ++i) {
+        fixture.step.head.translation[0] = (float)(0.05 * sin(0.13 * i));
+        fixture_step(&fixture);
+    }
+    double worst = 0;
+    for (int s = 0; s < COUNT; ++s) {
+        ReferenceStrand rest;
+        reference_start(&rest, N, (const Vec *)&start[s * N]);
+        twin_read_strand(&fixture, s, q);
+        for (int j = 1; j < N; ++j) {
+            Vec r;
+            double size = 0;
+            for (int k = 0; k < 3; ++k)
+                r[k] = q[j][k] - q[j - 1][k], size = fmax(size, fabs(q[j][k]));
+            double length = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
+            // 4e-7: unit directions and the lengths themselves in float32
+            worst = fmax(worst, fabs(length / rest.length[j] - 1) /
+                                    (4e-7 + 2 * 1.8 * 0x1p-24 * size / rest.length[j]));
+        }
+    }
+    assert_true(worst < 1);
+    fixture_destroy(&fixture);
+}
+
+static void hanging_hair_stays_at_rest(void **state)
+{
+    (void)state;
+    Vec start[16], q[16];
+    HairFixture fixture;
+    for (int j = 0; j < 16; ++j) start[j][0] = 0.1, start[j][1] = 0.3 - 0.016 * j, start[j][2] = 0;
+    fixture_create(&fixture, (const Vec *)start, 1, 16, "split", "", 0, 0);
+    for (int i = 0; i < 600; ++i) fixture_step(&fixture);
+    twin_read_strand(&fixture, 0, q);
+    assert_true(twin_rms((const Vec *)q, (const Vec *)start, 16, 0.24) < 1e-6);
+    fixture_destroy(&fixture);
+}
+
+// The tip is a pendulum: against the exact (elliptic) swing it is of second order, 4e-4 of the
+// length at 60 Hz with c = 4. Here its period from 90 degrees, 1.183921 s for 0.25 m, which the
+// strand of 2 shows as the time of the fourth passage through the bottom.
+static void the_tip_swings_like_a_pendulum(void **state)
+{
+    (void)state;
+    Vec start[2] = {{0, 0, 0}, {0.25, 0, 0}}, q[2];
+    HairFixture fixture;
+    fixture_create(&fixture, (const Vec *)start, 1, 2, "split", "", 0, 0);
+    fixture.step.dt = 1.0 / 240;
+    double before = 0.25, passages[4], time = 0;
+    int count = 0;
+    for (int i = 1; i < 1000 && count < 4; ++i) {
+        fixture_step(&fixture);
+        time += fixture.step.dt;
+        twin_read_strand(&fixture, 0, q);
+        if (before * q[1][0] < 0)
+            passages[count++] = time - fixture.step.dt * q[1][0] / (q[1][0] - before);
+        before = q[1][0];
+    }
+    assert_int_equal(count, 4);
+    double period = passages[3] - passages[1];
+    printf("period %.6f s, exact 1.183921 s\n", period);
+    assert_true(
+        fabs(period / 1.183921 - 1) <
+        3e-4); // second order: (2 pi dt/period)^2/24 = 2e-5, with the passage times' rounding
+    fixture_destroy(&fixture);
+}
+
+// phi'' = g/L cos(phi) - c phi', phi downwards from the horizontal; over dt seconds by Runge and
+// Kutta's fourth order, in steps that are too short to matter (1e-4 s: 1e-12).
+static void swing(double *angle, double *rate, double drag, double dt)
+{
+    const double ratio = 9.81 / 0.25;
+    const int steps = 200;
+    const double h = dt / steps, share[4] = {0, 0.5, 0.5, 1}, weight[4] = {1, 2, 2, 1};
+    for (int i = 0; i < steps; ++i) {
+        double a = 0, b = 0, sum_a = 0, sum_b = 0;
+        for (int k = 0; k < 4; ++k) {
+            double turned = *angle + share[k] * h * a, speed = *rate + share[k] * h * b;
+            a = speed, b = ratio * cos(turned) - drag * speed;
+            sum_a += weight[k] * a / 6, sum_b += weight[k] * b / 6;
+        }
+        *angle += h * sum_a, *rate += h * sum_b;
+    }
+}
+
+// Released horizontally with a drag of 4/s, at 60 Hz for 2 s: 4e-4 of the length (RMS; by chords
+// 9e-4).
+static void the_tip_is_a_damped_pendulum(void **state)
+{
+    (void)state;
+    enum { FRAMES = 120 };
+    Vec start[2] = {{0, 0, 0}, {0.25, 0, 0}}, q[2];
+    HairFixture fixture;
+    double angle = 0, rate = 0, sum = 0;
+    fixture_create(&fixture, (const Vec *)start, 1, 2, "split", "", 0, 4);
+    for (int i = 0; i < FRAMES; ++i) {
+        fixture_step(&fixture);
+        swing(&angle, &rate, 4, fixture.step.dt);
+        twin_read_strand(&fixture, 0, q);
+        sum += pow(q[1][0] - 0.25 * cos(angle), 2) + pow(q[1][1] + 0.25 * sin(angle), 2);
+    }
+    double off = sqrt(sum / FRAMES) / 0.25;
+    printf("tip %.2g of the length from a pendulum with drag 4/s\n", off);
+    assert_true(off < 0.0008);
+    fixture_destroy(&fixture);
+}
+
+static void strands_do_not_depend_on_each_other(void **state)
+{
+    (void)state;
+    enum { N = 16, COUNT = 37 };
+    static Vec start[COUNT * N];
+    Vec together[N], alone[N];
+    HairFixture all, one;
+    for (int s = 0; s < COUNT; ++s) twin_make_curl(&start[s * N], N, 0.01 * s, 1 + s % 7);
+    fixture_create(&all, (const Vec *)start, COUNT, N, "split", "", 0.3f, 1);
+    fixture_create(&one, (const Vec *)&start[21 * N], 1, N, "split", "", 0.3f, 1);
+    for (int i = 0; i < 50; ++i) fixture_step(&all), fixture_step(&one);
+    twin_read_strand(&all, 21, together);
+    twin_read_strand(&one, 0, alone);
+    assert_memory_equal(together, alone, sizeof together);
+    fixture_destroy(&all);
+    fixture_destroy(&one);
+}
+
+// 30 degrees about z for everything: strand, gravity, wind. Float32 rounds both runs differently,
+// by the tolerance of a run twice.
+static void turning_the_whole_scene_turns_the_result(void **state)
+{
+    (void)state;
+    enum { N = 16 };
+    const double c = cos(0.5235987756), s = sin(0.5235987756);
+    Vec start[N], turned[N], a[N], b[N];
+    HairFixture plain, other;
+    twin_make_curl(start, N, 0, 2);
+    for (int j = 0; j < N; ++j)
+        turned[j][0] = c * start[j][0] - s * start[j][1],
+        turned[j][1] = s * start[j][0] + c * start[j][1], turned[j][2] = start[j][2];
+    fixture_create(&plain, (const Vec *)start, 1, N, "split", "", 0.4f, 1);
+    fixture_create(&other, (const Vec *)turned, 1, N, "split", "", 0.4f, 1);
+    other.step.gravity[0] = (float)(9.81 * s), other.step.gravity[1] = (float)(-9.81 * c);
+    for (int i = 0; i < 120; ++i) fixture_step(&plain), fixture_step(&other);
+    twin_read_strand(&plain, 0, a);
+    twin_read_strand(&other, 0, b);
+    for (int j = 0; j < N; ++j) {
+        Vec r = {c * a[j][0] - s * a[j][1], s * a[j][0] + c * a[j][1], a[j][2]};
+        memcpy(a[j], r, sizeof r);
+    }
+    assert_true(twin_rms((const Vec *)a, (const Vec *)b, N, 0.25) <
+                2 * step_tolerance(N, 1, 1.0 / 60));
+    fixture_destroy(&plain);
+    fixture_destroy(&other);
+}
+
+static void no_finite_input_gives_a_nan(void **state)
+{
+    (void)state;
+    const float violence[][4] = {
+        // gravity, wind, head jump (m), drag
+        {1e6f, 0, 0, 0},      {0, 1e6f, 0, 1e6f}, {-9.81f, 0, 1e3f, 0},
+        {-9.81f, 0, 1e8f, 1}, {0, 0, 1e-30f, 0},  {1e6f, 1e6f, 1e6f, 1e-6f},
+    };
+    enum { N = 24, COUNT = 8 };
+    static Vec start[COUNT * N];
+    for (int s = 0; s < COUNT; ++s) twin_make_curl(&start[s * N], N, 0.01 * s, s);
+    for (size_t v = 0; v < sizeof violence / sizeof *violence; ++v)
+        for (int thesis = 0; thesis < 2; ++thesis) {
+            HairFixture fixture;
+            fixture_create(&fixture, (const Vec *)start, COUNT, N, "split", thesis ? "thesis" : "",
+                           0.5f, violence[v][3]);
+            fixture.step.gravity[1] = violence[v][0];
+            for (int i = 0; i < 4; ++i) fixture.step.wind[i][0] = violence[v][1];
+            for (int i = 0; i < 30; ++i) {
+                fixture.step.head.translation[1] = i % 2 ? violence[v][2] : 0;
+                fixture_step(&fixture);
+            }
+            fixture_require_finite(&fixture);
+            fixture_destroy(&fixture);
+        }
+}
+
+static void a_flung_tip_is_cut_and_counted(void **state)
+{
+    (void)state;
+    Vec start[8];
+    HairFixture fixture;
+    twin_make_curl(start, 8, 0, 1);
+    fixture_create(&fixture, (const Vec *)start, 1, 8, "split", "", 0, 0);
+    SolverReport report = {0};
+    fixture_step(&fixture);
+    solver_report(&fixture.solver, &report);
+    assert_int_equal(report.moves_limited, 0);
+    fixture.step.gravity[1] = -1e6f; // 1e6 / 60^2 = 278 m in a step, of a strand of 0.2 m
+    fixture_step(&fixture);
+    report = (SolverReport){0};
+    solver_report(&fixture.solver, &report);
+    assert_int_equal(report.moves_limited, 1);
+    fixture_destroy(&fixture);
+}
+
+// Loops beyond 65,535 iterations end silently on CPU drivers: what would exceed them must not be
+// stepped at all.
+static void a_strand_beyond_the_drivers_loops_is_refused(void **state)
+{
+    (void)state;
+    const uint32_t counts[] = {10000, 10001};
+    for (int i = 0; i < 2; ++i) {
+        Strands strands;
+        Hair hair;
+        Solver solver;
+        Error error = {{0}};
+        SectionParams params = {.algo = "split", .variant = "", .style = 0.5f};
+        assert_int_equal(strands_create(&strands, 1, counts[i], NULL), RESULT_OK);
+        strands.first[1] = counts[i];
+        for (uint32_t j = 0; j < counts[i]; ++j) strands.position[j][0] = 0.001f * (float)j;
+        assert_int_equal(hair_create(&hair, &strands, 0, &fixture_gpu()->limits, NULL), RESULT_OK);
+        const SolverSetup setup = {.gpu = fixture_gpu(), .hair = &hair, .params = &params};
+        assert_int_equal(solver_create(&solver, &setup, &error), i == 0 ? RESULT_OK : RESULT_USAGE);
+        if (i == 1) assert_non_null(strstr(error.text, "10001 vertices"));
+        solver_destroy(&solver);
+        hair_destroy(&hair);
+        strands_destroy(&strands);
+    }
+}
+
+static void unknown_solvers_and_variants_name_the_nearest(void **state)
+{
+    (void)state;
+    Error error;
+    Solver solver;
+    SectionParams params = {.algo = "slpit", .variant = ""};
+    const Hair hair = {0};
+    const SolverSetup setup = {.gpu = fixture_gpu(), .hair = &hair, .params = &params};
+    assert_int_equal(solver_create(&solver, &setup, &error), RESULT_USAGE);
+    assert_non_null(strstr(error.text, "did you mean 'split'"));
+    params.algo = "split", params.variant = "bal";
+    assert_int_equal(solver_create(&solver, &setup, &error), RESULT_USAGE);
+    assert_non_null(strstr(error.text, "did you mean 'ball'"));
+    solver_destroy(&solver);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(ball_equals_its_double_precision_twin),
+        cmocka_unit_test(thesis_equals_its_double_precision_twin),
+        cmocka_unit_test(strands_through_memory_equal_the_twin_too),
+        cmocka_unit_test(dragged_equals_the_reference_traces),
+        cmocka_unit_test(thesis_equals_the_reference_traces),
+        cmocka_unit_test(segment_lengths_do_not_drift_in_10000_steps),
+        cmocka_unit_test(hanging_hair_stays_at_rest),
+        cmocka_unit_test(the_tip_swings_like_a_pendulum),
+        cmocka_unit_test(the_tip_is_a_damped_pendulum),
+        cmocka_unit_test(strands_do_not_depend_on_each_other),
+        cmocka_unit_test(turning_the_whole_scene_turns_the_result),
+        cmocka_unit_test(no_finite_input_gives_a_nan),
+        cmocka_unit_test(a_flung_tip_is_cut_and_counted),
+        cmocka_unit_test(a_strand_beyond_the_drivers_loops_is_refused),
+        cmocka_unit_test(unknown_solvers_and_variants_name_the_nearest),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

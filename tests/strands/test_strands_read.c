@@ -1,0 +1,379 @@
+// SPDX-License-Identifier: MIT
+// Text files, units and axes, real files; binary ones are in test_strands_read_binary.c.
+#include "support/reading.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#define STRAND "strand 0 numVerts 2 texcoord 0.5 0.25\n1 2 3\n1 3 3\n"
+
+// --- Text.
+
+static void both_dialects_and_line_ends_are_read(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {
+        "numStrands 1\nis sorted 1\n" STRAND,
+        "numStrands 1 is sorted 1\n" STRAND,
+        "numStrands 1\r\nis sorted 1\r\nstrand 0 numVerts 2 texcoord 0.5 0.25\r\n1 2 3\r\n1 3 "
+        "3\r\n",
+        "  numStrands\t1\n\nis  sorted 1\n\nstrand 7 numVerts 2\ttexcoord .5 25e-2\n"
+        " 1.0 +2 3.\n\n1 3 0.3e1",
+        "version 2.0\nscale 1.0\nrotation 0 0 0\ntranslation 0 0 0\nbothEndsImmovable 0\n"
+        "maxNumVerticesInStrand 16\nnumFollowHairsPerGuideHair 0\nmaxRadiusAroundGuideHair 0\n"
+        "numStrands 1\nis sorted 1\n" STRAND,
+    };
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        StrandsReport report;
+        Strands strands = reading_good(texts[i], &report);
+        assert_int_equal(report.kind, STRANDS_TFX2_TEXT);
+        assert_int_equal(strands.vertex_count, 2);
+        assert_memory_equal(strands.position[1], ((float[3]){1, 3, 3}), 12);
+        assert_memory_equal(strands.strand_uv[0], ((float[2]){0.5f, 0.25f}), 8);
+        assert_true(strands_report_is_clean(&report));
+        strands_destroy(&strands);
+    }
+}
+
+static void parameters_mean_what_they_say(void **state)
+{
+    (void)state;
+    StrandsReport report;
+    Strands strands =
+        reading_good("version 2.0\nscale 2\nrotation 0 90 0\ntranslation 10 0 0\n"
+                     "bothEndsImmovable 1\nnumFollowHairsPerGuideHair 4\n"
+                     "maxRadiusAroundGuideHair 0.5\nnumStrands 1\nis sorted 1\n" STRAND,
+                     &report);
+    // (1, 2, 3) twice as large is (2, 4, 6); a quarter turn about y makes (6, 4, -2) of it.
+    assert_true(fabsf(strands.position[0][0] - 16.0f) < 1e-5f);
+    assert_true(fabsf(strands.position[0][1] - 4.0f) < 1e-5f);
+    assert_true(fabsf(strands.position[0][2] + 2.0f) < 1e-5f);
+    assert_true(report.rotation_was_deg);
+    assert_true(strands.both_ends_fixed);
+    assert_int_equal(strands.followers, 4);
+    assert_true(strands.follower_radius == 1.0f);
+    strands_destroy(&strands);
+}
+
+static void numbers_are_rounded_as_strtof_does(void **state)
+{
+    (void)state;
+    // The middle ones lie half way between floats, or so near that a double cannot tell.
+    static const char *const numbers[] = {"0.1",
+                                          "-0",
+                                          "1e-45",
+                                          "1.17549435e-38",
+                                          "16777217",
+                                          "16777217.0000000000000001",
+                                          "1.00000017881393432617187499",
+                                          "1.00000017881393432617187501",
+                                          "0.000000000000000000001",
+                                          "123456789012345678901234",
+                                          "3.4028234e5",
+                                          "-4.80447",
+                                          "00012.5000",
+                                          "9007199254740993e-9"};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        char text[200];
+        snprintf(text, sizeof text,
+                 "numStrands 1\nis sorted 1\nstrand 0 numVerts 2 texcoord %s 0\n0 0 0\n0 1 0\n",
+                 numbers[i]);
+        Strands strands = reading_good(text, NULL);
+        float expected = strtof(numbers[i], NULL);
+        assert_memory_equal(&strands.strand_uv[0][0], &expected, 4);
+        strands_destroy(&strands);
+    }
+}
+
+static void malformed_text_is_refused_with_its_line(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *message;
+    } cases[] = {
+        {"", "FILE: byte 0: the file is empty"},
+        {"hello\n", "FILE: byte 0: not hair: neither TressFX 2, 3 or 4, HAIR or Wavefront lines, "
+                    "nor whole strands of "
+                    "USC-HairSalon or CT2Hair"},
+        {"numStrands", "FILE:1: expected the number of strands, got the end of the file"},
+        {"numStrands x\n", "FILE:1: expected the number of strands, got 'x'"},
+        {"numStrands -1\n", "FILE:1: expected the number of strands, got '-1'"},
+        {"numStrands 99999999999\n", "FILE:1: expected the number of strands, got '99999999999'"},
+        {"numStrands 0\nis sorted 1\n", "FILE:1: numStrands 0: expected at least 1"},
+        {"numStrands 4294967295\nis sorted 1\n" STRAND,
+         "FILE:1: numStrands 4294967295: the file has room for at most 3"},
+        {"numStrands 1\n" STRAND, "FILE:2: expected 'is sorted', got 'strand'"},
+        {"numStrands 1\nis sorted 2\n" STRAND, "FILE:2: expected 0 or 1 for is sorted, got '2'"},
+        {"numStrands 1\nis sorted 1 1\n" STRAND, "FILE:2: expected the end of the line, got '1'"},
+        {"numStrands 1\nis sorted 1\nhair 0 numVerts 2\n", "FILE:3: expected strand, got 'hair'"},
+        {"numStrands 1\nis sorted 1\nstrand 0 numVerts 4294967295\n0 0 0\n",
+         "FILE:3: numVerts 4294967295: the file has room for at most 1"},
+        {"numStrands 1\nis sorted 1\nstrand 0 numVerts 2\n0 0 0\n0 y 0\n",
+         "FILE:5: expected a vertex's y, got 'y'"},
+        {"numStrands 1\nis sorted 1\nstrand 0 numVerts 2\n0 0\n0 1 0\n",
+         "FILE:4: expected a vertex's z, got the end of the line"},
+        {"numStrands 1\nis sorted 1\nstrand 0 numVerts 2\n0 0 0x1\n0 1 0\n",
+         "FILE:4: expected a vertex's z, got '0x1'"},
+        {"numStrands 1\nis sorted 1\nstrand 0 numVerts 2\n0 0 0\n0 1 0 7\n",
+         "FILE:5: expected the end of the line, got '7'"},
+        {"numStrands 1\nis sorted 1\nstrand 0 numVerts 2\n0 0 0\n            \n",
+         "FILE:6: expected a vertex's x, got the end of the file"},
+        {"numStrands 2\nis sorted 1\n" STRAND, "FILE:6: the file ends after 1 of 2 strands"},
+        {"numStrands 1\nis sorted 1\n" STRAND STRAND,
+         "FILE:6: expected the end of the file behind the last strand, got 'strand'"},
+        {"version 2.0\nscale 0\n", "FILE:2: scale 0 leaves no hair"},
+        {"version 2.0\ncolour 1\n", "FILE:2: expected is, got 'colour'"},
+        {"scale 1.#INF\n", "FILE:1: expected the scale, got '1.#INF'"},
+        {"numStrands 1\nis sorted 1\nstrand 0 numVerts 2\n0 0 0\n0 0 0\n",
+         "FILE:3: 1 strand of fewer than two distinct vertices (no usable strand among 1)"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Strands strands;
+        StrandsReport report;
+        Error error = {""};
+        assert_int_equal(reading_text(&strands, cases[i].text, &METRES, &report, &error),
+                         RESULT_BAD_INPUT);
+        assert_string_equal(error.text, cases[i].message);
+        assert_null(strands.position);
+    }
+}
+
+static const char DIRTY[] = "numStrands 5\n"
+                            "is sorted 1\n"
+                            "strand 0 numVerts 3 texcoord 0 0\n" // merged: line 5
+                            "0 0 0\n0 0 0\n0 1 0\n"
+                            "strand 1 numVerts 2 texcoord 0.1 0\n" // dropped: line 9
+                            "0 0 0\n-1.#INF 1.#QNAN -1.#IND00\n"
+                            "strand 2 numVerts 1 texcoord 0.2 0\n" // too short: line 10
+                            "0 0 0\n"
+                            "strand 3 numVerts 2 texcoord 0.3 0\n" // too short
+                            "1 1 1\n1 1 1\n"
+                            "strand 4 numVerts 4 texcoord 0.4 1.#INF\n" // attribute: line 15
+                            "0 0 0\n0 1 0\n0 2 0\n0 2 0\n";
+
+static void dirty_strands_are_mended_and_counted(void **state)
+{
+    (void)state;
+    StrandsReport report;
+    Strands strands = reading_good(DIRTY, &report);
+    assert_int_equal(strands.strand_count, 2);
+    assert_int_equal(strands_size(&strands, 0), 2);
+    assert_int_equal(strands_size(&strands, 1), 3);
+    assert_true(strands.strand_uv[1][0] == 0.4f && strands.strand_uv[1][1] == 0.0f);
+    assert_int_equal(report.declared_strands, 5);
+    static const Defect expected[DEFECT_KINDS] = {{1, 9}, {2, 10}, {2, 5}, {1, 15}, {0, 0}, {0, 0}};
+    for (int kind = 0; kind < DEFECT_KINDS; kind++) {
+        assert_int_equal(report.defects[kind].count, expected[kind].count);
+        assert_int_equal(report.defects[kind].first_place, expected[kind].first_place);
+    }
+    assert_int_equal(report.shared_roots, 1);
+    strands_destroy(&strands);
+}
+
+static void each_kind_of_mending_is_told_in_one_line(void **state)
+{
+    (void)state;
+    StrandsReport report;
+    Strands strands = reading_good(DIRTY, &report);
+    strands_destroy(&strands);
+    char *text = NULL;
+    size_t size = 0;
+    FILE *stream = open_memstream(&text, &size);
+    assert_int_equal(strands_report_print_mended(&report, "FILE", stream), 4);
+    fclose(stream);
+    assert_string_equal(
+        text, "FILE:9: 1 strand with a coordinate that is not finite or beyond 1000 km: dropped\n"
+              "FILE:10: first of 2 strands of fewer than two distinct vertices: dropped\n"
+              "FILE:5: first of 2 vertices that coincide with the one before them: merged\n"
+              "FILE:15: 1 attribute value that is not a finite number: replaced\n");
+    free(text);
+}
+
+static void strict_refuses_what_would_be_mended(void **state)
+{
+    (void)state;
+    StrandsReadOptions strict = {.unit = 1.0f, .strict = true};
+    StrandsReport report;
+    Strands strands;
+    Error error = {""};
+    assert_int_equal(reading_text(&strands, DIRTY, &strict, &report, &error), RESULT_BAD_INPUT);
+    assert_string_equal(error.text,
+                        "FILE:9: 1 strand with a coordinate that is not finite or beyond 1000 km "
+                        "(refused: --strict)");
+    assert_false(strands_report_is_clean(&report));
+    assert_int_equal(
+        reading_text(&strands, "numStrands 1\nis sorted 1\n" STRAND, &strict, &report, &error),
+        RESULT_OK);
+    strands_destroy(&strands);
+}
+
+static void strands_over_the_files_own_limit_stay_whole(void **state)
+{
+    (void)state;
+    StrandsReport report;
+    Strands strands =
+        reading_good("maxNumVerticesInStrand 1\nnumStrands 1\nis sorted 1\n" STRAND, &report);
+    assert_int_equal(strands.vertex_count, 2);
+    assert_int_equal(report.defects[DEFECT_OVER_LIMIT].count, 1);
+    assert_int_equal(report.defects[DEFECT_OVER_LIMIT].first_place, 4);
+    strands_destroy(&strands);
+}
+
+// Strand s of n, each told by its u and by its height.
+static char *write_many(const char *sorted, int count)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *stream = open_memstream(&text, &size);
+    fprintf(stream, "numStrands %d\nis sorted %s\n", count, sorted);
+    for (int s = 0; s < count; s++)
+        fprintf(stream, "strand %d numVerts %d texcoord %d 0\n%d 0 0\n%d 1 0\n%s", s, 2 + s % 2, s,
+                s, s, s % 2 ? "0 2 0\n" : "");
+    fclose(stream);
+    return text;
+}
+
+static void unsorted_strands_are_shuffled_whole_and_repeatably(void **state)
+{
+    (void)state;
+    char *text = write_many("0", 100), *sorted_text = write_many("1", 100);
+    StrandsReport report;
+    Strands a = reading_good(text, &report), b = reading_good(text, NULL);
+    Strands sorted = reading_good(sorted_text, NULL);
+    assert_true(report.shuffled);
+    assert_memory_equal(a.position, b.position, 12 * a.vertex_count);
+    int moved = 0;
+    for (uint32_t s = 0; s < 100; s++) {
+        uint32_t was = (uint32_t)a.strand_uv[s][0];
+        moved += was != s;
+        assert_true(a.position[a.first[s]][0] == (float)was);
+        assert_int_equal(strands_size(&a, s), 2 + was % 2);
+        assert_true(sorted.strand_uv[s][0] == (float)s);
+    }
+    assert_true(moved > 80);
+    strands_destroy(&a);
+    strands_destroy(&b);
+    strands_destroy(&sorted);
+    free(text);
+    free(sorted_text);
+}
+
+// --- Units and axes.
+
+static void units_are_guessed_by_size_and_said_to_be_guesses(void **state)
+{
+    (void)state;
+    static const struct {
+        float height, unit;
+    } cases[] = {{0.87f, 1.0f}, {87.0f, 0.01f}, {870.0f, 0.001f}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct {
+            uint32_t strands, size;
+            float position[2][3];
+        } data = {1, 2, {{0, 0, 0}, {0, cases[i].height, 0}}};
+        Strands strands;
+        StrandsReport report;
+        assert_int_equal(reading_copy(&strands, &data, sizeof data, NULL, &report, NULL),
+                         RESULT_OK);
+        assert_true(report.unit_guessed);
+        assert_true(report.unit_used == cases[i].unit);
+        assert_true(fabs(report.length_max - 0.87) < 1e-6);
+        strands_destroy(&strands);
+    }
+    // Small, but far from the origin: text in centimetres.
+    Strands strands;
+    StrandsReport report;
+    const char *text =
+        "numStrands 1\nis sorted 1\nstrand 0 numVerts 2\n-4.80447 103.333 25.4651\n-5 104 26\n";
+    assert_int_equal(reading_text(&strands, text, NULL, &report, NULL), RESULT_OK);
+    assert_true(report.unit_used == 0.01f);
+    assert_true(fabsf(strands.position[0][1] - 1.03333f) < 1e-6f);
+    strands_destroy(&strands);
+}
+
+static void z_up_is_turned_to_y_up(void **state)
+{
+    (void)state;
+    StrandsReadOptions options = {.unit = 1.0f, .up_z = true};
+    Strands strands;
+    const char *text = "numStrands 1\nis sorted 1\n" STRAND;
+    assert_int_equal(reading_text(&strands, text, &options, NULL, NULL), RESULT_OK);
+    assert_memory_equal(strands.position[0], ((float[3]){1, 3, -2}), 12);
+    strands_destroy(&strands);
+}
+
+static void strands_beyond_the_longest_are_refused(void **state)
+{
+    (void)state;
+    char *text = NULL;
+    size_t size = 0;
+    FILE *stream = open_memstream(&text, &size);
+    fprintf(stream, "numStrands 1\nis sorted 1\nstrand 0 numVerts 65536\n");
+    for (int v = 0; v < 65536; v++) fprintf(stream, "%d 0 0\n", v);
+    fclose(stream);
+    Strands strands;
+    Error error;
+    assert_int_equal(reading_text(&strands, text, &METRES, NULL, &error), RESULT_BAD_INPUT);
+    assert_string_equal(error.text, "FILE:3: strand 0 has 65536 vertices, at most 65535 work");
+    free(text);
+}
+
+// --- Real files.
+
+static void real_assets_are_read_whole(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *path;
+        StrandsKind kind;
+        uint32_t strands, size;
+        float unit;
+    } files[] = {
+        {"../shared/assets/ratboy_mohawk.tfx", STRANDS_TFX4, 2228, 32, 1.0f},
+        {"../shared/assets/sintel_228x32.tfx", STRANDS_TFX4, 228, 32, 0.01f},
+        {"../shared/assets/ponytail_tail.tfx", STRANDS_TFX3, 255, 16, 0.01f},
+        {"../shared/assets/hair_front_16_guide.tfx", STRANDS_TFX2_TEXT, 93, 16, 0.01f},
+        {"../shared/assets/ruby_short_16_guide.tfx", STRANDS_TFX2_TEXT, 1867, 16, 0.01f},
+    };
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        if (access(files[i].path, R_OK) != 0) {
+            print_message("%s is not here: skipped\n", files[i].path);
+            skip();
+        }
+        Strands strands;
+        StrandsReport report;
+        assert_int_equal(strands_read(&strands, files[i].path, NULL, &report, NULL), RESULT_OK);
+        assert_int_equal(report.kind, files[i].kind);
+        assert_int_equal(strands.strand_count, files[i].strands);
+        assert_int_equal(report.size_min, files[i].size);
+        assert_int_equal(report.size_max, files[i].size);
+        assert_true(report.unit_used == files[i].unit);
+        strands_destroy(&strands);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(both_dialects_and_line_ends_are_read),
+        cmocka_unit_test(parameters_mean_what_they_say),
+        cmocka_unit_test(numbers_are_rounded_as_strtof_does),
+        cmocka_unit_test(malformed_text_is_refused_with_its_line),
+        cmocka_unit_test(dirty_strands_are_mended_and_counted),
+        cmocka_unit_test(each_kind_of_mending_is_told_in_one_line),
+        cmocka_unit_test(strict_refuses_what_would_be_mended),
+        cmocka_unit_test(strands_over_the_files_own_limit_stay_whole),
+        cmocka_unit_test(unsorted_strands_are_shuffled_whole_and_repeatably),
+        cmocka_unit_test(units_are_guessed_by_size_and_said_to_be_guesses),
+        cmocka_unit_test(z_up_is_turned_to_y_up),
+        cmocka_unit_test(strands_beyond_the_longest_are_refused),
+        cmocka_unit_test(real_assets_are_read_whole),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: MIT
+// Hair files: what is written reads back to the bit.
+#include "base/random.h"
+#include "gen/strands_make.h"
+#include "strands/strands_features.h"
+#include "strands/strands_read.h"
+#include "strands/strands_write.h"
+#include "support/temporary.h"
+
+#include <locale.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static const StrandsReadOptions METRES = {.unit = 1.0f};
+
+// Awkward numbers: any bits that are a float of ordinary size.
+static Strands make_awkward(void)
+{
+    StrandsRecipe recipe = strands_recipe_default(STRANDS_STYLE_CURLS);
+    recipe.count = 40;
+    recipe.vertices = 9;
+    Strands strands;
+    assert_int_equal(strands_make(&strands, &recipe, NULL), RESULT_OK);
+    Random random = random_create(1, 2);
+    for (uint32_t v = 0; v < strands.vertex_count; v++)
+        for (int i = 0; i < 3; i++)
+            strands.position[v][i] *= (float)(1.0 + 1e-3 * random_real(&random));
+    strands.position[0][0] = -0.0f;
+    return strands;
+}
+
+static Strands read_back(void **state, StrandsKind kind, const Strands *strands,
+                         const StrandsReadOptions *options)
+{
+    Error error = {""};
+    Strands back;
+    const char *path = temporary_path(state, "hair");
+    if (strands_write(path, kind, strands, &error) != RESULT_OK) fail_msg("%s", error.text);
+    if (strands_read(&back, path, options, NULL, &error) != RESULT_OK) fail_msg("%s", error.text);
+    assert_int_equal(back.strand_count, strands->strand_count);
+    assert_memory_equal(back.first, strands->first, 4 * (size_t)(strands->strand_count + 1));
+    return back;
+}
+
+static void reading_back_gives_the_same_bits(void **state)
+{
+    static const StrandsKind kinds[] = {STRANDS_TFX2_TEXT, STRANDS_TFX3,       STRANDS_TFX4,
+                                        STRANDS_HAIR,      STRANDS_SALON_DATA, STRANDS_OBJ};
+    Strands strands = make_awkward();
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        Strands back = read_back(state, kinds[i], &strands, &METRES);
+        assert_memory_equal(back.position, strands.position, 12 * (size_t)strands.vertex_count);
+        if (strands_kind_features(kinds[i]) & STRANDS_HAS_STRAND_UV)
+            assert_memory_equal(back.strand_uv, strands.strand_uv,
+                                8 * (size_t)strands.strand_count);
+        strands_destroy(&back);
+    }
+    strands_destroy(&strands);
+}
+
+static void what_was_written_in_metres_is_guessed_to_be_metres(void **state)
+{
+    static const StrandsKind kinds[] = {STRANDS_TFX2_TEXT, STRANDS_TFX3, STRANDS_TFX4,
+                                        STRANDS_HAIR};
+    Strands strands = make_awkward();
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        Strands back = read_back(state, kinds[i], &strands, NULL);
+        assert_memory_equal(back.position, strands.position, 12 * (size_t)strands.vertex_count);
+        strands_destroy(&back);
+    }
+    strands_destroy(&strands);
+}
+
+static void followers_and_fixed_ends_survive_where_the_kind_holds_them(void **state)
+{
+    Strands strands = make_awkward();
+    strands.followers = 3;
+    strands.both_ends_fixed = true;
+    strands.follower_radius = 0.0123f;
+    Strands text = read_back(state, STRANDS_TFX2_TEXT, &strands, &METRES);
+    assert_int_equal(text.followers, 3);
+    assert_true(text.both_ends_fixed);
+    assert_true(text.follower_radius == 0.0123f);
+    Strands tfx3 = read_back(state, STRANDS_TFX3, &strands, &METRES);
+    assert_int_equal(tfx3.followers, 3);
+    assert_true(tfx3.both_ends_fixed);
+    Strands tfx4 = read_back(state, STRANDS_TFX4, &strands, &METRES);
+    assert_true(tfx4.mobility[0] == 0.0f && tfx4.mobility[1] == 1.0f && tfx4.mobility[8] == 0.0f);
+    strands_destroy(&text);
+    strands_destroy(&tfx3);
+    strands_destroy(&tfx4);
+    strands_destroy(&strands);
+}
+
+// Strand 0 of 2 vertices, strand 1 of 3.
+static Strands make_uneven(void)
+{
+    Strands strands;
+    assert_int_equal(strands_create(&strands, 2, 5, NULL), RESULT_OK);
+    strands.first[1] = 2;
+    strands.first[2] = 5;
+    for (uint32_t v = 0; v < 5; v++) strands.position[v][1] = 0.1f * (float)v;
+    return strands;
+}
+
+static void uneven_strands_go_into_text_and_hair_only(void **state)
+{
+    Strands strands = make_uneven();
+    Error error;
+    for (StrandsKind kind = STRANDS_TFX3; kind <= STRANDS_TFX4; kind++) {
+        assert_int_equal(strands_write(temporary_path(state, "x"), kind, &strands, &error),
+                         RESULT_FAILED);
+        assert_non_null(strstr(error.text, "strand 1 has 3 vertices, strand 0 has 2"));
+        assert_false(temporary_has(state, "x"));
+    }
+    Strands text = read_back(state, STRANDS_TFX2_TEXT, &strands, &METRES);
+    Strands hair = read_back(state, STRANDS_HAIR, &strands, &METRES);
+    assert_memory_equal(hair.position, strands.position, 12 * 5);
+    strands_destroy(&text);
+    strands_destroy(&hair);
+    strands_destroy(&strands);
+}
+
+static Strands read_obj(void **state, const char *text, Result expected, Error *error)
+{
+    Strands strands;
+    temporary_write(state, "x.obj", text, 0644);
+    Result result = strands_read(&strands, temporary_path(state, "x.obj"), &METRES, NULL, error);
+    if (result != expected) fail_msg("%s: %d, %s", text, result, error->text);
+    return strands;
+}
+
+static void lines_of_obj_files_are_strands(void **state)
+{
+    Error error = {""};
+    Strands a = read_obj(state,
+                         "# a\nmtllib x\nv 0 0 0\nv 0 1 0 1 0 0\nv 0 2 0\nvt 0 0\nl 1 2/1 3\n"
+                         "v 5 0 0\nv 5 1 0\nl -2 -1 # b\nf 1 2 3\nl 3 \\\n2\n",
+                         RESULT_OK, &error);
+    assert_int_equal(a.strand_count, 3);
+    assert_int_equal(strands_size(&a, 0), 3);
+    assert_int_equal(strands_size(&a, 1), 2);
+    assert_true(a.position[3][0] == 5 && a.position[4][1] == 1 && a.position[6][1] == 1);
+    Strands edges = read_obj(state, "v 0 0 0\nv 0 1 0\nv 0 2 0\nl 1 2\nl 2 3\nl 1 3\n", RESULT_OK,
+                             &error); // two edges of one strand, and another
+    assert_int_equal(edges.strand_count, 2);
+    assert_int_equal(strands_size(&edges, 0), 3);
+    strands_destroy(&a);
+    strands_destroy(&edges);
+}
+
+static void broken_obj_files_are_refused_with_their_line(void **state)
+{
+    static const struct {
+        const char *text, *says;
+    } cases[] = {{"v 0 0 0\nv 0 1 0\nf 1 2 1\n", "without lines"},
+                 {"v 0 0 0\nv 0 1 0\nl 1 3\n", "x.obj:3: "},
+                 {"v 0 0 0\nl 1 0\n", "x.obj:2: "},
+                 {"v 0 0 0\nl 1 -2\n", "x.obj:2: "},
+                 {"v 0 0 0\nl 1 x\n", "x.obj:2: "},
+                 {"v 0 0 0\nv 0 1 0\nl 1/1 2/x\n", "x.obj:3: "},
+                 {"v 0 0 0\nl 1\n", "x.obj:2: a line of 1 vertices"},
+                 {"v 0 0 0\nl\n", "x.obj:2: "},
+                 {"l 1 2\nv 0 0 0\nv 0 1 0\n", "x.obj:1: "},
+                 {"v 0 0\nv 0 1 0\nl 1 2\n", "x.obj:1: "},
+                 {"v 0 a 0\nv 0 1 0\nl 1 2\n", "x.obj:1: "},
+                 {"v 0 0 0\nv 0 nan 0\nl 1 2\n", "x.obj:2: 1 strand"},
+                 {"#usda 1.0\n", "no BasisCurves"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Error error = {""};
+        read_obj(state, cases[i].text, RESULT_BAD_INPUT, &error);
+        if (!strstr(error.text, cases[i].says)) fail_msg("%s: %s", cases[i].text, error.text);
+    }
+}
+
+static void what_a_kind_cannot_hold_is_known(void **state)
+{
+    (void)state;
+    Strands strands = make_awkward();
+    char text[300];
+    assert_int_equal(strands_features(&strands), STRANDS_HAS_STRAND_UV);
+    strands.followers = 2;
+    strands.follower_radius = 0.01f;
+    strands.vertex_thickness = calloc(strands.vertex_count, sizeof(float));
+    uint32_t features = strands_features(&strands);
+    strands_features_describe(features & ~strands_kind_features(STRANDS_TFX3), text, sizeof text);
+    assert_string_equal(text, "thickness of vertices, radius of followers");
+    strands_features_describe(features & ~strands_kind_features(STRANDS_USD), text, sizeof text);
+    assert_string_equal(text, "");
+    strands_features_describe(UINT32_MAX, text, sizeof text);
+    assert_true(strlen(text) < sizeof text - 1);
+    strands_destroy(&strands);
+}
+
+static void other_kinds_can_only_be_read(void **state)
+{
+    Strands strands = make_uneven();
+    Error error;
+    const char *path = temporary_path(state, "x");
+    assert_int_equal(strands_write(path, STRANDS_SALON_BIN, &strands, &error), RESULT_FAILED);
+    assert_non_null(strstr(error.text, "can only be read"));
+    assert_int_equal(temporary_count_files(((Temporary *)*state)->folder), 0);
+    strands_destroy(&strands);
+}
+
+static void text_does_not_depend_on_the_locale(void **state)
+{
+    static const char *const names[] = {"de_DE.UTF-8", "fr_FR.UTF-8", "ru_RU.UTF-8"};
+    const char *found = NULL;
+    for (int i = 0; i < 3 && !found; i++) found = setlocale(LC_NUMERIC, names[i]);
+    if (!found) {
+        print_message("no locale with a decimal comma is installed: skipped\n");
+        skip();
+    }
+    Strands strands = make_awkward();
+    Strands back = read_back(state, STRANDS_TFX2_TEXT, &strands, &METRES);
+    setlocale(LC_NUMERIC, "C");
+    assert_memory_equal(back.position, strands.position, 12 * (size_t)strands.vertex_count);
+    strands_destroy(&back);
+    strands_destroy(&strands);
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, temporary_create, temporary_destroy)
+    const struct CMUnitTest tests[] = {
+        TEST(reading_back_gives_the_same_bits),
+        TEST(what_was_written_in_metres_is_guessed_to_be_metres),
+        TEST(followers_and_fixed_ends_survive_where_the_kind_holds_them),
+        TEST(uneven_strands_go_into_text_and_hair_only),
+        TEST(lines_of_obj_files_are_strands),
+        TEST(broken_obj_files_are_refused_with_their_line),
+        TEST(what_a_kind_cannot_hold_is_known),
+        TEST(other_kinds_can_only_be_read),
+        TEST(text_does_not_depend_on_the_locale),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

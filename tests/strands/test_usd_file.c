@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: MIT
+// USD's text form. The expected files are written out: such files have been read by TinyUSDZ and by
+// the parser of three.js, with the same numbers.
+#include "strands/formats/usd_file.h"
+#include "strands/strands_read.h"
+#include "strands/strands_write.h"
+#include "support/temporary.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+// Strand 0 of 2 vertices, strand 1 of 3.
+static void make_uneven(Strands *strands)
+{
+    static const float positions[5][3] = {
+        {0, 0, 0}, {0, 0.1f, 0}, {1, 0, 0}, {1, 1e-5f, 0}, {1.0000001f, 0.25f, -0.0f}};
+    assert_int_equal(strands_create(strands, 2, 5, NULL), RESULT_OK);
+    strands->first[1] = 2;
+    strands->first[2] = 5;
+    memcpy(strands->position, positions, sizeof positions);
+}
+
+static void assert_content(void **state, const char *name, const char *expected)
+{
+    Bytes bytes;
+    assert_int_equal(bytes_read_file(&bytes, temporary_path(state, name), NULL), RESULT_OK);
+    assert_string_equal((const char *)bytes.data, expected);
+    bytes_destroy(&bytes);
+}
+
+static void a_still_is_one_prim_with_its_points(void **state)
+{
+    Strands strands;
+    make_uneven(&strands);
+    assert_int_equal(strands_write(temporary_path(state, "x.usda"), STRANDS_USD, &strands, NULL),
+                     RESULT_OK);
+    assert_content(state, "x.usda",
+                   "#usda 1.0\n(\n    defaultPrim = \"Hair\"\n    doc = \"Tractrix\"\n"
+                   "    metersPerUnit = 1\n    upAxis = \"Y\"\n)\n\n"
+                   "def BasisCurves \"Hair\"\n{\n    uniform token type = \"linear\"\n"
+                   "    uniform token wrap = \"nonperiodic\"\n"
+                   "    int[] curveVertexCounts = [2, 3]\n"
+                   "    point3f[] points = [(0, 0, 0), (0, 0.1, 0), (1, 0, 0), (1, 1e-05, 0), "
+                   "(1.0000001, 0.25, -0)]\n"
+                   "    float3[] extent = [(0, 0, 0), (1.0000001, 0.25, 0)]\n}\n");
+    strands_destroy(&strands);
+}
+
+static void frames_are_time_samples(void **state)
+{
+    Strands strands;
+    UsdWriter writer;
+    make_uneven(&strands);
+    const float width = 0.5f, color[1][4] = {{0.25f, 0.5f, 1, 0.75f}};
+    const uint32_t section[] = {0, 3};
+    UsdOptions options = {.metres_per_unit = 0.01,
+                          .up_z = true,
+                          .animated = true,
+                          .fps = 29.97,
+                          .first = 7,
+                          .last = 9,
+                          .look = {.width = &width, .color = color, .section = section}};
+    strands.followers = 4;
+    strands.both_ends_fixed = true;
+    assert_int_equal(
+        usd_writer_open(&writer, temporary_path(state, "x.usda"), &strands, &options, NULL),
+        RESULT_OK);
+    assert_int_equal(usd_writer_add(&writer, 7, (const float(*)[3])strands.position, NULL),
+                     RESULT_OK);
+    strands.position[0][2] = 8;
+    assert_int_equal(usd_writer_add(&writer, 9, (const float(*)[3])strands.position, NULL),
+                     RESULT_OK);
+    assert_false(temporary_has(state, "x.usda")); // not before it is whole
+    assert_int_equal(usd_writer_finish(&writer, NULL), RESULT_OK);
+    assert_content(
+        state, "x.usda",
+        "#usda 1.0\n(\n    defaultPrim = \"Hair\"\n    doc = \"Tractrix\"\n"
+        "    metersPerUnit = 0.01\n    startTimeCode = 7\n    endTimeCode = 9\n"
+        "    timeCodesPerSecond = 29.97\n    framesPerSecond = 29.97\n    upAxis = \"Z\"\n)\n\n"
+        "def BasisCurves \"Hair\" (\n    customData = {\n        dictionary tractrix = {\n"
+        "            bool bothEndsFixed = 1\n            float followerRadius = 0\n"
+        "            int followers = 4\n        }\n    }\n)\n"
+        "{\n    uniform token type = \"linear\"\n    uniform token wrap = \"nonperiodic\"\n"
+        "    int[] curveVertexCounts = [2, 3]\n"
+        "    float[] widths = [0.5] (\n        interpolation = \"constant\"\n    )\n"
+        "    color3f[] primvars:displayColor = [(0.25, 0.5, 1)] (\n"
+        "        interpolation = \"constant\"\n    )\n"
+        "    float[] primvars:displayOpacity = [0.75] (\n"
+        "        interpolation = \"constant\"\n    )\n"
+        "    int[] primvars:section = [0, 3] (\n        interpolation = \"uniform\"\n    )\n"
+        "    point3f[] points.timeSamples = {\n"
+        "        7: [(0, 0, 0), (0, 0.1, 0), (1, 0, 0), (1, 1e-05, 0), (1.0000001, 0.25, -0)],\n"
+        "        9: [(0, 0, 8), (0, 0.1, 0), (1, 0, 0), (1, 1e-05, 0), (1.0000001, 0.25, -0)],\n"
+        "    }\n    float3[] extent.timeSamples = {\n"
+        "        7: [(-0.25, -0.25, -0.25), (1.2500001, 0.5, 0.25)],\n"
+        "        9: [(-0.25, -0.25, -0.25), (1.2500001, 0.5, 8.25)],\n    }\n}\n");
+    strands_destroy(&strands);
+}
+
+// The uneven strands with all that strands can have.
+static void make_rich(Strands *made)
+{
+    Strands strands;
+    make_uneven(&strands);
+    strands.strand_uv = calloc(2, sizeof *strands.strand_uv);
+    strands.vertex_uv = calloc(5, sizeof *strands.vertex_uv);
+    strands.strand_thickness = calloc(2, sizeof(float));
+    strands.vertex_thickness = calloc(5, sizeof(float));
+    strands.mobility = calloc(5, sizeof(float));
+    strands.color = calloc(5, sizeof *strands.color);
+    strands.strand_uv[1][0] = strands.vertex_uv[4][1] = 0.5f;
+    for (int v = 0; v < 5; ++v) strands.color[v][3] = 1, strands.color[v][0] = 0.1f * (float)v;
+    *made = strands;
+}
+
+static void everything_that_strands_have_is_written(void **state)
+{
+    Strands strands;
+    make_rich(&strands);
+    assert_int_equal(strands_write(temporary_path(state, "x.usda"), STRANDS_USD, &strands, NULL),
+                     RESULT_OK);
+    Bytes bytes;
+    assert_int_equal(bytes_read_file(&bytes, temporary_path(state, "x.usda"), NULL), RESULT_OK);
+    const char *text = (const char *)bytes.data;
+    static const char *const parts[] = {
+        "float[] widths = [0, 0, 0, 0, 0] (\n        interpolation = \"vertex\"",
+        "color3f[] primvars:displayColor = [(0, 0, 0), (0.1, 0, 0), (0.2, 0, 0), ",
+        "texCoord2f[] primvars:st = [(0, 0), (0.5, 0)] (\n        interpolation = \"uniform\"",
+        "texCoord2f[] primvars:st1 = [(0, 0), (0, 0), (0, 0), (0, 0), (0, 0.5)] (",
+        "float[] primvars:thickness = [0, 0] (\n        interpolation = \"uniform\"",
+        "float[] primvars:mobility = [0, 0, 0, 0, 0] (\n        interpolation = \"vertex\""};
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; ++i)
+        if (!strstr(text, parts[i])) fail_msg("no '%s' in\n%s", parts[i], text);
+    assert_null(strstr(text, "displayOpacity")); // all are opaque
+    bytes_destroy(&bytes);
+    strands_destroy(&strands);
+}
+
+static void a_file_that_is_not_finished_is_not_there(void **state)
+{
+    Strands strands;
+    UsdWriter writer;
+    Error error;
+    const UsdOptions options = {.metres_per_unit = 1, .animated = true, .fps = 30};
+    make_uneven(&strands);
+    const char *path = temporary_path(state, "x.usda");
+    assert_int_equal(usd_writer_open(&writer, path, &strands, &options, NULL), RESULT_OK);
+    assert_int_equal(usd_writer_add(&writer, 0, (const float(*)[3])strands.position, NULL),
+                     RESULT_OK);
+    usd_writer_discard(&writer);
+    usd_writer_discard(&writer);
+    assert_int_equal(usd_writer_open(&writer, path, &strands, &options, NULL), RESULT_OK);
+    assert_int_equal(usd_writer_finish(&writer, &error), RESULT_FAILED);
+    assert_non_null(strstr(error.text, "no frame"));
+    assert_int_equal(temporary_count_files(((Temporary *)*state)->folder), 0);
+    strands_destroy(&strands);
+}
+
+// --- Reading.
+
+static Strands read_text(const char *text, size_t size, StrandsReport *report, Result expected,
+                         Error *error)
+{
+    Strands strands;
+    Bytes bytes = {malloc(size + 1), size}; // of its exact size, for sanitizers
+    memcpy(bytes.data, text, size);
+    bytes.data[size] = 0;
+    Result result = strands_read_bytes(&strands, "FILE", &bytes, NULL, report, error);
+    bytes_destroy(&bytes);
+    if (result != expected) fail_msg("%.*s: %d, %s", (int)size, text, result, error->text);
+    return strands;
+}
+
+static void what_is_written_is_read_to_the_bit(void **state)
+{
+    Strands strands, back;
+    Error error = {""};
+    make_rich(&strands);
+    strands.followers = 7;
+    strands.follower_radius = 0.0123f;
+    strands.both_ends_fixed = true;
+    strands.color[2][3] = 0.25f;
+    strands.mobility[1] = 1; // and nothing else, which isn't usual
+    strands.strand_thickness[1] = 0.1f;
+    strands.vertex_thickness[3] = 1e-4f;
+    const char *path = temporary_path(state, "x.usda");
+    assert_int_equal(strands_write(path, STRANDS_USD, &strands, &error), RESULT_OK);
+    const StrandsReadOptions strict = {.strict = true};
+    if (strands_read(&back, path, &strict, NULL, &error) != RESULT_OK) fail_msg("%s", error.text);
+    assert_memory_equal(back.first, strands.first, 3 * sizeof(uint32_t));
+    assert_memory_equal(back.position, strands.position, 5 * sizeof *back.position);
+    assert_memory_equal(back.strand_uv, strands.strand_uv, 2 * sizeof *back.strand_uv);
+    assert_memory_equal(back.vertex_uv, strands.vertex_uv, 5 * sizeof *back.vertex_uv);
+    assert_memory_equal(back.strand_thickness, strands.strand_thickness, 2 * sizeof(float));
+    assert_memory_equal(back.vertex_thickness, strands.vertex_thickness, 5 * sizeof(float));
+    assert_memory_equal(back.mobility, strands.mobility, 5 * sizeof(float));
+    assert_memory_equal(back.color, strands.color, 5 * sizeof *back.color);
+    assert_int_equal(back.followers, 7);
+    assert_true(back.follower_radius == 0.0123f && back.both_ends_fixed);
+    strands_destroy(&strands);
+    strands_destroy(&back);
+}
+
+// As other programs write them: comments, parents, other prims, several curves, frames, z up.
+static const char FOREIGN[] =
+    "#usda 1.0\n(\n    \"a (comment) = {\"\n    doc = \"\"\"three\n \"quotes\" \"\"\"\n"
+    "    subLayers = [\n        @a(b.usd@\n    ]\n    metersPerUnit = 0.1\n    upAxis = \"Z\"\n)\n"
+    "def Xform \"World\" (\n    prepend apiSchemas = [\"X\"]\n    kind = \"group\"\n)\n{\n"
+    "    token visibility\n    def Mesh \"m\"\n    {\n        point3f[] points = [(9, 9, 9)]\n"
+    "        double3 xformOp:translate = (0, 1, 2)\n"
+    "        uniform token[] xformOpOrder = [\"xformOp:translate\"]\n    }\n"
+    "    def BasisCurves \"a\" (\n        variants = { string x = \"}\" }\n    )\n    {\n"
+    "        rel material:binding = </World/m> # of all\n"
+    "        uniform token type = \"linear\"\n        int[] curveVertexCounts = [2]\n"
+    "        float[] widths = [0.5] (\n            interpolation = \"constant\"\n        )\n"
+    "        point3f[] points.timeSamples = {\n            -1.5: [(0, 0, 0), (0, 0, 1)],\n"
+    "            2: [(5, 5, 5), (6, 6, 6)],\n        }\n    }\n"
+    "    def Scope \"s\" { def BasisCurves \"b\" {\n"
+    "        vector3f[] velocities = None; uniform token type = \"linear\"\n"
+    "        point3f[] points = [(1, 0, 0), (1, 2, 0), (1, 2, 4)]\n"
+    "        int[] curveVertexCounts = [3]\n        float[] widths = [1, 2, 3]\n    } }\n}\n";
+
+static void curves_of_other_programs_are_read(void **state)
+{
+    (void)state;
+    Error error = {""};
+    StrandsReport report;
+    Strands strands = read_text(FOREIGN, strlen(FOREIGN), &report, RESULT_OK, &error);
+    assert_int_equal(strands.strand_count, 2);
+    assert_int_equal(strands_size(&strands, 1), 3);
+    assert_false(report.unit_guessed);
+    assert_int_equal(report.samples, 2);
+    assert_true(strands.position[1][1] == 0.1f && strands.position[1][2] == 0); // z is up
+    assert_true(strands.position[4][1] == 0.4f && strands.position[4][2] == -0.2f);
+    assert_true(strands.vertex_thickness[0] == 0.05f && strands.vertex_thickness[1] == 0.05f);
+    assert_true(strands.vertex_thickness[4] == 0.3f);
+    strands_destroy(&strands);
+}
+
+#define CURVES(more)                                                                               \
+    "#usda 1.0\ndef BasisCurves \"x\"\n{\nuniform token type = \"linear\"\n"                       \
+    "int[] curveVertexCounts = [2]\npoint3f[] points = [(0, 0, 0), (0, 1, 0)]\n" more "}\n"
+
+static void what_would_give_other_hair_is_refused_with_its_line(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *says;
+    } cases[] = {
+        {"#usda 1.0\n", "FILE:2: no BasisCurves"},
+        {CURVES("double3 xformOp:translate = (1, 2, 3)\n"), "FILE:7: curves with a transform"},
+        {CURVES("uniform token type = \"cubic\"\n"), "FILE:2: curves of type cubic"},
+        {CURVES("uniform token wrap = \"periodic\"\n"), "FILE:2: periodic"},
+        {CURVES("float[] widths = [1, 2, 3]\n"), "FILE:7: widths: 3 numbers"},
+        {CURVES("int[] primvars:st:indices = [1]\n"), "FILE:7: primvars:st: indexed"},
+        {CURVES("int[] curveVertexCounts = [3]\n"), "FILE:7: curveVertexCounts: 1 numbers"},
+        {CURVES("int[] curveVertexCounts = [1]\n"), "FILE:6: points: 6 numbers"},
+        {CURVES("int[] curveVertexCounts = [1.5]\n"), "FILE:7: curveVertexCounts"},
+        {CURVES("int[] curveVertexCounts = [-1]\n"), "FILE:7: curveVertexCounts"},
+        {CURVES("point3f[] points = [(0, 0)]\n"), "FILE:7: points: 2 numbers"},
+        {CURVES("point3f[] points = [(0, x, 0)]\n"), "FILE:7: expected a number, got 'x'"},
+        {CURVES("= 3\n"), "FILE:7: unexpected '='"},
+        {"#usda 1.0\n(\nmetersPerUnit = 0\n)\n" CURVES(""), "metersPerUnit"},
+        {"#usda 1.0\ndef BasisCurves {}\n", "FILE:2: expected a prim's name"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        Error error = {""};
+        read_text(cases[i].text, strlen(cases[i].text), NULL, RESULT_BAD_INPUT, &error);
+        if (!strstr(error.text, cases[i].says)) fail_msg("%s: %s", cases[i].text, error.text);
+    }
+}
+
+static void every_truncation_and_damage_is_survived(void **state)
+{
+    (void)state;
+    size_t size = strlen(FOREIGN);
+    char *text = strdup(FOREIGN);
+    static const char marks[] = "\0(){}[]\"'=:,@<#9";
+    for (size_t cut = 5; cut + 2 < size; ++cut) {
+        Error error = {""};
+        read_text(FOREIGN, cut, NULL, RESULT_BAD_INPUT, &error);
+        assert_true(error.text[0] != 0);
+    }
+    for (size_t at = 5; at < size; ++at)
+        for (size_t mark = 0; mark < sizeof marks - 1; ++mark) {
+            Strands strands;
+            const Bytes bytes = {(uint8_t *)text, size};
+            text[at] = marks[mark];
+            strands_read_bytes(&strands, "FILE", &bytes, NULL, NULL, NULL);
+            strands_destroy(&strands);
+            text[at] = FOREIGN[at];
+        }
+    char *deep = malloc(100000), *end = deep + sprintf(deep, "#usda 1.0\n");
+    for (int i = 0; i < 5000; ++i) end += sprintf(end, "def X \"x\"\n{\n");
+    Error error = {""};
+    read_text(deep, strlen(deep), NULL, RESULT_BAD_INPUT, &error);
+    assert_non_null(strstr(error.text, "deep"));
+    free(deep);
+    free(text);
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, temporary_create, temporary_destroy)
+    const struct CMUnitTest tests[] = {
+        TEST(a_still_is_one_prim_with_its_points),
+        TEST(frames_are_time_samples),
+        TEST(everything_that_strands_have_is_written),
+        TEST(what_is_written_is_read_to_the_bit),
+        TEST(curves_of_other_programs_are_read),
+        TEST(what_would_give_other_hair_is_refused_with_its_line),
+        TEST(every_truncation_and_damage_is_survived),
+        TEST(a_file_that_is_not_finished_is_not_there),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,22 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# What the tests of documents have in common, whose commands run in a copy of what they need. They read it instead of claims.sh.
+. tests/support/claims.sh
+
+# make_checkout: makes $work/checkout, with a program `small` that is tractrix-render with smaller pictures and fewer frames.
+make_checkout() {
+    mkdir -p "$work/checkout/out"
+    cp -r assets scripts "$work/checkout/"
+    ln -s "$(realpath "$bin")" "$work/checkout/out/release"
+    printf 'all:\n' >"$work/checkout/Makefile"
+
+    # The last of equal flags counts.
+    cat >"$work/checkout/small" <<END
+#!/bin/sh
+case " \$* " in
+*" --frames 1 "*) exec "$(realpath "$bin")/tractrix-render" "\$@" --size 96x64 ;;
+*) exec "$(realpath "$bin")/tractrix-render" "\$@" --size 96x64 --frames 4 ;;
+esac
+END
+    chmod +x "$work/checkout/small"
+}

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+// Hybrid and emulation in double precision, one strand on the CPU.
+#pragma once
+
+#include "support/twin.h"
+
+// TwinFunctions: the rules in docs/solvers.md, and the published one of emulation.
+void reference_hybrid_step(TwinStrand *strand, const TwinStep *step, const SectionParams *params);
+void reference_emulation_step(TwinStrand *strand, const TwinStep *step,
+                              const SectionParams *params);
+void reference_thesis_emulation_step(TwinStrand *strand, const TwinStep *step,
+                                     const SectionParams *params);

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+// The fibre of glsl/draw/shade_marschner.glsl in double precision, from its definitions.
+#pragma once
+
+enum { LOBE_R, LOBE_TT, LOBE_TRT, LOBE_COUNT };
+
+// Of light that crosses a fibre of refractive index eta at the inclination theta_d (cos_d its
+// cosine, 0 < cos_d <= 1) and of which a path through the fibre's axis lets `color` through, the
+// density by azimuth (1/rad) at phi from the light's: by quadrature over the offset h with `steps`
+// points, the azimuth blurred by a wrapped Gaussian of `roughness` rad. The last lobe holds all
+// later ones, too.
+void marschner_azimuthal(double eta, double roughness, double cos_d, double color, double phi,
+                         int steps, double density[LOBE_COUNT]);
+
+// The longitudinal density of the lobe tilted by `tilt` (rad, of theta_h) and of the width `beta`
+// (rad, of theta_h): d'Eon et al. 2011. Its integral over cos(theta_i) d theta_i is 1.
+double marschner_longitudinal(double theta_i, double theta_r, double tilt, double beta);
+
+// Marschner's own, a Gaussian over theta_h, times cos(theta_i) / cos^2(theta_d).
+double marschner_gauss(double theta_i, double theta_r, double tilt, double beta);

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#include "support/reference_motion.h"
+#include "support/hair_fixture.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#define FOLDER "tests/data/motion"
+
+double motion_error(const char *scenario, const char *algo, const char *variant,
+                    int steps_per_frame, void (*tune)(SectionParams *params))
+{
+    Error error = {{0}};
+    Motion motion;
+    SectionParams params;
+    double off = NAN;
+    if (motion_read(&motion, FOLDER, scenario, &error) != RESULT_OK) fail_msg("%s", error.text);
+    assert_int_equal(section_params_create(&params, &error), RESULT_OK);
+    assert_int_equal(param_parse(param_find("algo"), &params, algo, &error), RESULT_OK);
+    assert_int_equal(param_parse(param_find("variant"), &params, variant, &error), RESULT_OK);
+    params.style = 0;
+    if (tune) tune(&params);
+    if (accuracy_measure(&off, fixture_gpu(), &motion, &params, 60.0 * steps_per_frame, &error) !=
+        RESULT_OK)
+        fail_msg("%s", error.text);
+    section_params_destroy(&params);
+    motion_destroy(&motion);
+    return off;
+}
+
+double motion_mean_error(const char *algo, const char *variant, int steps_per_frame,
+                         void (*tune)(SectionParams *params))
+{
+    char **names;
+    size_t count;
+    double sum = 0;
+    assert_int_equal(motion_list(&names, &count, FOLDER, NULL), RESULT_OK);
+    assert_int_equal(count, 13);
+    for (size_t i = 0; i < count; ++i)
+        sum += log(motion_error(names[i], algo, variant, steps_per_frame, tune));
+    motion_names_destroy(names, count);
+    double mean = exp(sum / (double)count);
+    printf("%s %s at %d Hz: error %.3g of the length, geometric mean of %zu scenarios\n", algo,
+           variant, 60 * steps_per_frame, mean, count);
+    return mean;
+}

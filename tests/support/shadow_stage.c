@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#include "support/shadow_stage.h"
+
+#include "draw/render_uniforms.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const Light LIGHT_ABOVE = {
+    .direction = {0, 1, 0}, .color = {1, 1, 1}, .intensity = 1, .shadow = true};
+
+const Light LIGHT_LAMP = {.kind = LIGHT_POINT,
+                          .position = {0.3f, 2, 0.1f},
+                          .color = {1, 1, 1},
+                          .intensity = 1,
+                          .distance = 1,
+                          .shadow = true};
+
+void shadow_stage_open(ShadowStage *stage, Strands strands, float radius, float opacity,
+                       const Mesh *mesh, const Light *light)
+{
+    *stage = (ShadowStage){.strands = strands, .light = *light};
+    const GpuLimits *limits = &fixture_gpu()->limits;
+    NEEDED(section_params_create(&stage->material, error));
+    stage->material.tip_ratio = 1;
+    stage->material.shadow_opacity = opacity;
+    NEEDED(hair_create(&stage->hair, &stage->strands, 0, limits, error));
+    stage->item =
+        (ReferenceItem){.strands = &stage->strands, .material = &stage->material, .radius = radius};
+    stage->reference_scene = (ReferenceScene){.items = &stage->item, .item_count = 1, .mesh = mesh};
+    NEEDED(shadow_reference_create(&stage->reference, &stage->reference_scene, light,
+                                   (const float[3]){0}, error));
+    stage->scene = (ShadowScene){.lights = &stage->light,
+                                 .light_count = 1,
+                                 .casters = {.list = stage->casters},
+                                 .mesh = {&stage->mesh, {0, 0, 0, 1}, {0}},
+                                 .revision = 1};
+    for (uint32_t b = 0; b < stage->hair.batch_count && b < 8; ++b)
+        stage->casters[stage->scene.casters.count++] =
+            (ShadowCaster){&stage->hair.batches[b],
+                           {.material = material_params(&stage->material, radius), .share = 1}};
+    if (mesh)
+        NEEDED(render_mesh_create(&stage->mesh, mesh, (const float[3]){1, 1, 1}, limits, error));
+}
+
+void shadow_stage_close(ShadowStage *stage)
+{
+    render_shadow_destroy(&stage->shadow);
+    render_mesh_destroy(&stage->mesh);
+    hair_destroy(&stage->hair);
+    shadow_reference_destroy(&stage->reference);
+    section_params_destroy(&stage->material);
+    strands_destroy(&stage->strands);
+}
+
+void shadow_stage_draw(ShadowStage *stage, Shadow kind, int side, float spacing, bool by_processor)
+{
+    GpuTimer timer;
+    GpuBuffer uniforms = {0};
+    gpu_timer_create(&timer, false, true);
+    DrawParams draw = {.head_rotation = {0, 0, 0, 1}};
+    gpu_uniforms_set(&uniforms, BIND_DRAW, &draw, sizeof draw);
+    render_shadow_destroy(&stage->shadow);
+    const ShadowOptions options = {kind, side, spacing};
+    NEEDED(render_shadow_create(&stage->shadow, &fixture_gpu()->limits, &options, by_processor,
+                                error));
+    NEEDED(render_shadow_draw(&stage->shadow, &stage->scene, &timer, error));
+    gpu_timer_destroy(&timer);
+    gpu_buffer_destroy(&uniforms);
+}
+
+float *shadow_stage_light(ShadowStage *stage, const float (*points)[4], uint32_t count)
+{
+    GLuint program;
+    GpuBuffer in, out;
+    const GpuLimits *limits = &fixture_gpu()->limits;
+    const ShaderDefine defines[] = {{"SHADOW", stage->shadow.options.kind},
+                                    {"SHADOW_BY_MESH", stage->mesh.triangle_count > 0},
+                                    {NULL, 0}};
+    uint32_t groups = (count + 7) / 8;
+    float *shares = malloc(groups * 8 * sizeof *shares);
+    float(*whole)[4] = calloc(groups * 8, sizeof *whole);
+    assert_true(shares && whole);
+    memcpy(whole, points, count * sizeof *points);
+    NEEDED(shader_build_compute(&program, "draw/check_shadow.comp", defines, error));
+    NEEDED(gpu_buffer_create(&in, limits, "points", groups * 8 * 16, whole, 0, error));
+    NEEDED(gpu_buffer_create(&out, limits, "shares", groups * 8 * 4, NULL, 0, error));
+    gpu_buffer_bind_storage(&in, 0);
+    gpu_buffer_bind_storage(&out, 1);
+    render_shadow_bind(&stage->shadow);
+    glUseProgram(program);
+    glUniform2f(0, stage->on_fibre ? 2 * stage->item.radius : 0, stage->material.shadow_opacity);
+    glDispatchCompute(groups, 1, 1);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, count * 4, shares);
+    gpu_buffer_destroy(&in);
+    gpu_buffer_destroy(&out);
+    glDeleteProgram(program);
+    free(whole);
+    return shares;
+}
+
+double shadow_stage_exact(const ShadowStage *stage, double x, double y, double z)
+{
+    return shadow_reference_light(&stage->reference, (const double[3]){x, y, z}, 0);
+}
+
+Strands shadow_stage_layers(uint32_t layers)
+{
+    enum { VERTICES = 5 };
+    Strands strands;
+    NEEDED(strands_create(&strands, layers, layers * VERTICES, error));
+    for (uint32_t s = 0; s <= layers; ++s) strands.first[s] = s * VERTICES;
+    for (uint32_t v = 0; v < strands.vertex_count; ++v) {
+        strands.position[v][0] = (float)(v % VERTICES) / (VERTICES - 1) - 0.5f;
+        strands.position[v][1] = -0.1f * (float)(v / VERTICES);
+    }
+    return strands;
+}
+
+Mesh shadow_stage_square(float y, float half)
+{
+    Mesh mesh;
+    NEEDED(mesh_create(&mesh, 4, 2, error));
+    for (int v = 0; v < 4; ++v) {
+        memcpy(mesh.position[v], (float[3]){v & 1 ? half : -half, y, v & 2 ? half : -half}, 12);
+        mesh.normal[v][1] = 1;
+    }
+    const uint32_t triangles[2][3] = {{0, 1, 2}, {2, 1, 3}};
+    memcpy(mesh.triangle, triangles, sizeof triangles);
+    return mesh;
+}
+
+void shadow_assert_near(double got, double expected, double tolerance)
+{
+    if (!(fabs(got - expected) <= tolerance)) fail_msg("got %.9g, expected %.9g", got, expected);
+}

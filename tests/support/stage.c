@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+#include "support/stage.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+const RendererOptions TRANSPARENT = {.width = SIDE, .height = SIDE};
+const RendererOptions BLACK = {.width = SIDE, .height = SIDE, .background = {0, 0, 0, 1}};
+
+Raster raster;
+Studio studio;
+
+void stage_open(const RendererOptions *options)
+{
+    RendererOptions mine = *options;
+    mine.raster = raster;
+    studio_open(&studio, &mine);
+}
+
+static int open_studio(void **state)
+{
+    (void)state;
+    stage_open(&TRANSPARENT);
+    print_message("drawing %s with %s\n", raster == RASTER_QUADS ? "quads" : "blocks",
+                  studio.gpu.renderer);
+    return 0;
+}
+
+static int close_studio(void **state)
+{
+    (void)state;
+    studio_close(&studio);
+    return 0;
+}
+
+int clear_studio(void **state)
+{
+    (void)state;
+    studio_clear(&studio);
+    studio.light = (Light){0};
+    return 0;
+}
+
+void use(const RendererOptions *options)
+{
+    RendererOptions mine = *options;
+    mine.raster = raster;
+    studio_set_options(&studio, &mine);
+}
+
+uint32_t add_line(const float from[3], const float to[3], float radius, float opacity)
+{
+    enum { VERTICES = 5 };
+    float position[VERTICES][3];
+    for (int j = 0; j < VERTICES; ++j)
+        for (int k = 0; k < 3; ++k)
+            position[j][k] = from[k] + (to[k] - from[k]) * (float)j / (VERTICES - 1);
+    Strands strands = studio_strands(1, VERTICES, (const float(*)[3])position);
+    uint32_t item = studio_add(&studio, &strands, radius, opacity);
+    strands_destroy(&strands);
+    return item;
+}
+
+void add_tangle(uint32_t count, float radius, float opacity, const uint32_t *order)
+{
+    Strands strands = studio_tangle(7, SIDE, count, 12, 8, 0.2, order);
+    uint32_t item = studio_add(&studio, &strands, radius, opacity);
+    studio.material[item].diffuse = 1; // colours that differ along every strand
+    studio.material[item].ambient = 0.1f;
+    studio.light = (Light){.direction = {0.6f, 0.8f, 0}, .color = {1, 0.8f, 0.5f}, .intensity = 1};
+    strands_destroy(&strands);
+}
+
+Strands crowd(uint32_t count)
+{
+    float(*position)[3] = malloc((size_t)count * 2 * sizeof *position);
+    assert_non_null(position);
+    for (uint32_t i = 0; i < 2 * count; ++i)
+        for (int k = 0; k < 3; ++k) position[i][k] = k ? 0 : i % 2 ? 4 : -4;
+    Strands strands = studio_strands(count, 2, (const float(*)[3])position);
+    free(position);
+    return strands;
+}
+
+uint8_t *draw_copy(size_t *size)
+{
+    studio_draw(&studio);
+    return studio_copy(&studio, size);
+}
+
+void assert_draws_the_same(const uint8_t *expected, size_t size)
+{
+    studio_draw(&studio);
+    assert_memory_equal(studio.image.pixels, expected, size);
+}
+
+double alpha_sum(void)
+{
+    double sum = 0;
+    for (int y = 0; y < SIDE; ++y)
+        for (int x = 0; x < SIDE; ++x) sum += studio_pixel(&studio, x, y)[3] / 255.0;
+    return sum;
+}
+
+double srgb(double linear)
+{
+    return 255 * (linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055);
+}
+
+Mesh make_square(float half)
+{
+    Error error = {{0}};
+    Mesh mesh;
+    assert_int_equal(mesh_create(&mesh, 4, 2, &error), RESULT_OK);
+    for (int v = 0; v < 4; ++v) {
+        memcpy(mesh.position[v], (float[3]){v & 1 ? half : -half, v & 2 ? half : -half, 0}, 12);
+        mesh.normal[v][2] = 1;
+    }
+    const uint32_t triangles[2][3] = {{0, 1, 2}, {2, 1, 3}};
+    memcpy(mesh.triangle, triangles, sizeof triangles);
+    return mesh;
+}
+
+int stage_run_count(const struct CMUnitTest *tests, size_t count, Raster last)
+{
+    int failed = 0;
+    for (raster = RASTER_QUADS; raster <= last; ++raster)
+        failed += _cmocka_run_group_tests("renderer", tests, count, open_studio, close_studio);
+    return failed;
+}

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// One studio for all tests of a program about the renderer; every claim is made of each rasteriser.
+#pragma once
+
+#include "support/studio.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+
+#include <cmocka.h>
+
+enum { SIDE = 256 }; // px, of the picture
+
+extern const RendererOptions TRANSPARENT, BLACK;
+extern Raster raster; // that draws now
+extern Studio studio; // each test leaves it without hair
+
+// A test that clears the studio behind it; runs all with each rasteriser, or with quads alone, and
+// gives how many failed.
+#define CLAIM(name)      cmocka_unit_test_teardown(name, clear_studio)
+#define stage_run(tests) stage_run_count(tests, sizeof(tests) / sizeof(tests)[0], RASTER_BLOCKS)
+#define stage_run_quads(tests)                                                                     \
+    stage_run_count(tests, sizeof(tests) / sizeof(tests)[0], RASTER_QUADS)
+int stage_run_count(const struct CMUnitTest *tests, size_t count, Raster last);
+int clear_studio(void **state);
+
+// Opens the studio anew, in a new context.
+void stage_open(const RendererOptions *options);
+
+// A new renderer with these options and the rasteriser in turn; hair stays.
+void use(const RendererOptions *options);
+
+// A white strand of 5 vertices from `from` to `to` (px), `radius` in px. Its item's number.
+uint32_t add_line(const float from[3], const float to[3], float radius, float opacity);
+
+// Curved strands all over the picture, lit. `order` gives the place of each, NULL: as they are
+// made.
+void add_tangle(uint32_t count, float radius, float opacity, const uint32_t *order);
+
+// So many strands through the middle, all in the same place.
+Strands crowd(uint32_t count);
+
+// Draws; a copy of the bytes, which the caller frees. Draws, and the bytes must be those.
+uint8_t *draw_copy(size_t *size);
+void assert_draws_the_same(const uint8_t *expected, size_t size);
+
+// Draws nothing: the sum of opacity over the pixels of the last picture.
+double alpha_sum(void);
+
+// 0..255 for linear light of 0..1 (IEC 61966-2-1).
+double srgb(double linear);
+
+// A mesh in the plane z = 0, `half` px to each side.
+Mesh make_square(float half);
