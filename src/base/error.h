@@ -29,3 +29,17 @@ Result error_set(Error *error, Result result, const char *format, ...)
 // Puts a prefix (printf style) before the text that is already there; returns `result`.
 Result error_prefix(Error *error, Result result, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+
+// Leaves the function with the call's result unless it is RESULT_OK. For functions that have
+// nothing to clean up on that way; those that have say THEN.
+#define TRY(call)                                                                                  \
+    do {                                                                                           \
+        Result try_result = (call);                                                                \
+        if (try_result != RESULT_OK) return try_result;                                            \
+    } while (0)
+
+// result = call, unless an earlier call of the chain has failed: what follows cleans up either way.
+#define THEN(result, call)                                                                         \
+    do {                                                                                           \
+        if ((result) == RESULT_OK) (result) = (call);                                              \
+    } while (0)

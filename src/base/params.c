@@ -8,12 +8,13 @@
 #define CHOICE_WORD(value, word) word,
 #define ROW_STRUCT_RUN           RunParams
 #define ROW_STRUCT_SECTION       SectionParams
-#define PARAM(scope_, KIND, GROUP, field, letter_, default_, minimum_, maximum_, unit_, CHOICES,   \
-              help_)                                                                               \
+#define PARAM(scope_, KIND, GROUP, owner_, field, letter_, default_, minimum_, maximum_, unit_,    \
+              CHOICES, help_)                                                                      \
     {.name = #field,                                                                               \
      .scope = SCOPE_##scope_,                                                                      \
      .kind = PARAM_##KIND,                                                                         \
      .group = GROUP_##GROUP,                                                                       \
+     .owner = owner_,                                                                              \
      .letter = letter_,                                                                            \
      .offset = offsetof(ROW_STRUCT_##scope_, field),                                               \
      .default_text = default_,                                                                     \
@@ -124,4 +125,13 @@ const ParamInfo *param_find_letter(char letter)
         if (PARAM_TABLE[i].letter == letter) return &PARAM_TABLE[i];
     }
     return NULL;
+}
+
+bool param_belongs(const ParamInfo *info, const char *solver)
+{
+    size_t length = strlen(solver);
+    if (!*info->owner) return true;
+    for (const char *at = info->owner; *at; at += strcspn(at, " "), at += *at == ' ')
+        if (strncmp(at, solver, length) == 0 && (!at[length] || at[length] == ' ')) return true;
+    return false;
 }

@@ -126,7 +126,7 @@ typedef enum ParamGroup { PARAM_GROUPS(GROUP_VALUE) GROUP_COUNT } ParamGroup;
 
 #define PARAM_IN_RUN(KIND, field) PARAM_FIELD_##KIND(field)
 #define PARAM_IN_SECTION(KIND, field)
-#define PARAM(scope, KIND, GROUP, field, ...) PARAM_IN_##scope(KIND, field)
+#define PARAM(scope, KIND, GROUP, owner, field, ...) PARAM_IN_##scope(KIND, field)
 typedef struct RunParams {
 #include "base/params.def"
 } RunParams;
@@ -150,8 +150,9 @@ typedef struct ParamInfo {
     ParamScope scope;
     ParamKind kind;
     ParamGroup group;
-    char letter;   // one-letter flag, or 0
-    size_t offset; // of the field in RunParams or SectionParams, bytes
+    const char *owner; // names of the solvers that have it, a space between; "": all have
+    char letter;       // one-letter flag, or 0
+    size_t offset;     // of the field in RunParams or SectionParams, bytes
     const char *default_text;
     double minimum, maximum;    // of each number, inclusive
     const char *unit;           // "" for a plain number
@@ -177,6 +178,9 @@ Result section_params_copy(SectionParams *to, const SectionParams *from, Error *
 // The row whose name is `name`, read with '-' and '_' as the same; NULL if there is none.
 const ParamInfo *param_find(const char *name);
 const ParamInfo *param_find_letter(char letter);
+
+// Whether the solver of this name (--algo) has the parameter.
+bool param_belongs(const ParamInfo *info, const char *solver);
 
 // Reads `text` into the row's field of `params`, a RunParams or SectionParams as the row's scope
 // says. RESULT_USAGE if it isn't a value of that kind or out of range: the field keeps its value

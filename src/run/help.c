@@ -180,8 +180,8 @@ static void write_group(FILE *stream, int group,
         char flag[160], brackets[160], text[TEXT_SIZE];
         write_flag(info, flag, sizeof flag);
         write_brackets(info, brackets, sizeof brackets);
-        snprintf(text, sizeof text, "%s%s%s", info->scope == SCOPE_SECTION ? "* " : "", info->help,
-                 brackets);
+        snprintf(text, sizeof text, "%s%s%s%s%s", info->scope == SCOPE_SECTION ? "* " : "",
+                 info->owner, *info->owner ? ": " : "", info->help, brackets);
         write(stream, flag, text);
     }
 }
@@ -266,7 +266,8 @@ static void write_markdown_row(FILE *stream, const ParamInfo *info)
     write_cell(stream, info->default_text);
     fprintf(stream, "%s | ", info->default_text[0] ? "`" : "");
     write_cell(stream, range);
-    fprintf(stream, " | %s%s |\n", info->scope == SCOPE_SECTION ? "\\* " : "", info->help);
+    fprintf(stream, " | %s%s%s%s |\n", info->scope == SCOPE_SECTION ? "\\* " : "", info->owner,
+            *info->owner ? ": " : "", info->help);
 }
 
 void help_write_markdown(FILE *stream)

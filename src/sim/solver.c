@@ -109,20 +109,10 @@ int solver_variant(const SolverType *type, const char *variant)
     return 0;
 }
 
-// Whether a parameter's help says that it is this solver's: "chain, hybrid: ...".
-static bool is_own(const ParamInfo *info, const char *name)
-{
-    const char *end = strchr(info->help, ':'), *found = strstr(info->help, name);
-    size_t length = strlen(name);
-    return end && found && found < end &&
-           (found == info->help || (found[-1] == ' ' && found[-2] == ',')) &&
-           (found[length] == ',' || found[length] == ':');
-}
-
 static void print_flags(FILE *stream, const char *name)
 {
     for (size_t i = 0; i < PARAM_COUNT; ++i) {
-        if (!is_own(&PARAM_TABLE[i], name)) continue;
+        if (!*PARAM_TABLE[i].owner || !param_belongs(&PARAM_TABLE[i], name)) continue;
         fputs("           --", stream);
         for (const char *c = PARAM_TABLE[i].name; *c; ++c) fputc(*c == '_' ? '-' : *c, stream);
         fprintf(stream, " (%s)\n", PARAM_TABLE[i].default_text);

@@ -152,6 +152,6 @@ bool solver_is_static(const Solver *solver);
 // Which of the type's variants the parameters name: 0, the default, for "".
 int solver_variant(const SolverType *type, const char *variant);
 
-// Prints the table: name, summary, what it keeps, variants, and the flags whose help begins with
-// the name ("chain, hybrid: ...").
+// Prints the table: name, summary, what it keeps, variants, and the flags that it owns (the owner
+// column of params.def).
 void solver_print_list(FILE *stream);
