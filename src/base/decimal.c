@@ -86,3 +86,16 @@ void decimal_put(FILE *stream, const char *before, float value)
     else if (!put_fast(stream, value))
         put_slowly(stream, value);
 }
+
+void decimal_format(float value, char *text, size_t size)
+{
+    // %g would write 60 as 6e+01.
+    if (fabsf(value) < 1e7f && truncf(value) == value) {
+        snprintf(text, size, "%.0f", (double)value);
+        return;
+    }
+    for (int digits = 1; digits <= 9; digits++) {
+        snprintf(text, size, "%.*g", digits, (double)value);
+        if (strtof(text, NULL) == value) return;
+    }
+}

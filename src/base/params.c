@@ -47,7 +47,7 @@ static Result create_defaults(ParamScope scope, void *params, Error *error)
 {
     for (size_t i = 0; i < PARAM_COUNT; i++) {
         if (PARAM_TABLE[i].scope != scope) continue;
-        Result result = param_parse(&PARAM_TABLE[i], params, PARAM_TABLE[i].default_text, error);
+        Result result = params_parse(&PARAM_TABLE[i], params, PARAM_TABLE[i].default_text, error);
         assert(result != RESULT_USAGE);
         if (result != RESULT_OK) return result;
     }
@@ -62,31 +62,31 @@ static void free_texts(ParamScope scope, void *params)
     }
 }
 
-Result run_params_create(RunParams *params, Error *error)
+Result params_create_run(RunParams *params, Error *error)
 {
     *params = (RunParams){0};
     return create_defaults(SCOPE_RUN, params, error);
 }
 
-Result section_params_create(SectionParams *params, Error *error)
+Result params_create_section(SectionParams *params, Error *error)
 {
     *params = (SectionParams){0};
     return create_defaults(SCOPE_SECTION, params, error);
 }
 
-void run_params_destroy(RunParams *params)
+void params_destroy_run(RunParams *params)
 {
     free_texts(SCOPE_RUN, params);
     *params = (RunParams){0};
 }
 
-void section_params_destroy(SectionParams *params)
+void params_destroy_section(SectionParams *params)
 {
     free_texts(SCOPE_SECTION, params);
     *params = (SectionParams){0};
 }
 
-Result section_params_copy(SectionParams *to, const SectionParams *from, Error *error)
+Result params_copy_section(SectionParams *to, const SectionParams *from, Error *error)
 {
     *to = *from;
     bool copied = true;
@@ -99,7 +99,7 @@ Result section_params_copy(SectionParams *to, const SectionParams *from, Error *
         copied = *text != NULL;
     }
     if (copied) return RESULT_OK;
-    section_params_destroy(to);
+    params_destroy_section(to);
     return error_set(error, RESULT_FAILED, "out of memory");
 }
 
@@ -111,7 +111,7 @@ static bool names_equal(const char *a, const char *b)
     return *a == *b;
 }
 
-const ParamInfo *param_find(const char *name)
+const ParamInfo *params_find(const char *name)
 {
     for (size_t i = 0; i < PARAM_COUNT; i++) {
         if (names_equal(PARAM_TABLE[i].name, name)) return &PARAM_TABLE[i];
@@ -119,7 +119,7 @@ const ParamInfo *param_find(const char *name)
     return NULL;
 }
 
-const ParamInfo *param_find_letter(char letter)
+const ParamInfo *params_find_letter(char letter)
 {
     for (size_t i = 0; letter && i < PARAM_COUNT; i++) {
         if (PARAM_TABLE[i].letter == letter) return &PARAM_TABLE[i];
@@ -127,7 +127,7 @@ const ParamInfo *param_find_letter(char letter)
     return NULL;
 }
 
-bool param_belongs(const ParamInfo *info, const char *solver)
+bool params_owned_by(const ParamInfo *info, const char *solver)
 {
     size_t length = strlen(solver);
     if (!*info->owner) return true;

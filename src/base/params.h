@@ -165,35 +165,32 @@ extern const size_t PARAM_COUNT;
 extern const char *const GROUP_TITLES[GROUP_COUNT];
 
 // The defaults. RESULT_FAILED when memory is short; the struct may be destroyed in either case.
-Result run_params_create(RunParams *params, Error *error);
-Result section_params_create(SectionParams *params, Error *error);
+Result params_create_run(RunParams *params, Error *error);
+Result params_create_section(SectionParams *params, Error *error);
 
 // Free what the struct owns and zero it; a zeroed struct is fine.
-void run_params_destroy(RunParams *params);
-void section_params_destroy(SectionParams *params);
+void params_destroy_run(RunParams *params);
+void params_destroy_section(SectionParams *params);
 
 // A deep copy into `to`, which must not own anything. RESULT_FAILED when memory is short.
-Result section_params_copy(SectionParams *to, const SectionParams *from, Error *error);
+Result params_copy_section(SectionParams *to, const SectionParams *from, Error *error);
 
 // The row whose name is `name`, read with '-' and '_' as the same; NULL if there is none.
-const ParamInfo *param_find(const char *name);
-const ParamInfo *param_find_letter(char letter);
+const ParamInfo *params_find(const char *name);
+const ParamInfo *params_find_letter(char letter);
 
 // Whether the solver of this name (--algo) has the parameter.
-bool param_belongs(const ParamInfo *info, const char *solver);
+bool params_owned_by(const ParamInfo *info, const char *solver);
 
 // Reads `text` into the row's field of `params`, a RunParams or SectionParams as the row's scope
 // says. RESULT_USAGE if it isn't a value of that kind or out of range: the field keeps its value
 // and the error says what was got and what was expected, but not the parameter's name, which the
 // caller puts before it as its user wrote it. RESULT_FAILED when memory is short.
-Result param_parse(const ParamInfo *info, void *params, const char *text, Error *error);
+Result params_parse(const ParamInfo *info, void *params, const char *text, Error *error);
 
-// The field's value as text that param_parse reads back to the same bits, in its shortest form.
+// The field's value as text that params_parse reads back to the same bits, in its shortest form.
 // The caller frees it; NULL when memory is short.
-char *param_format(const ParamInfo *info, const void *params);
+char *params_format(const ParamInfo *info, const void *params);
 
-// What param_parse takes, in words: "a number from 1 to 10000 (1/s)". Cut at `size`.
-void param_describe(const ParamInfo *info, char *text, size_t size);
-
-// The shortest decimal number that reads back as `value` (finite), cut at `size`; 16 suffice.
-void param_format_float(float value, char *text, size_t size);
+// What params_parse takes, in words: "a number from 1 to 10000 (1/s)". Cut at `size`.
+void params_describe(const ParamInfo *info, char *text, size_t size);

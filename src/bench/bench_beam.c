@@ -129,7 +129,7 @@ static Result use_beam(Accuracy *accuracy, const Method *method, const Beam *bea
         accuracy_add(accuracy, &row);
     }
     trial_destroy(&trial);
-    section_params_destroy(&params);
+    params_destroy_section(&params);
     return result;
 }
 

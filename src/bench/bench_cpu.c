@@ -174,7 +174,7 @@ static Result compare(const Speed *speed, const SpeedSubject *subject, CpuSplit 
         for (int k = 0; k < 3; ++k) sum += pow((double)own[i][k] - (double)trial.points[i][k], 2);
     *off = sqrt(sum / (double)(count - trial.hair.strand_count)) / length;
     trial_destroy(&trial);
-    section_params_destroy(&params);
+    params_destroy_section(&params);
     free(own);
     return result;
 }

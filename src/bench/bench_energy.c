@@ -245,7 +245,7 @@ static Result use_fall(Accuracy *accuracy, const Method *method, double rate, in
         if (drag == 0 && !styled) accuracy_add(accuracy, &row);
     }
     fall_destroy(&fall);
-    section_params_destroy(&params);
+    params_destroy_section(&params);
     return result;
 }
 
@@ -318,7 +318,7 @@ static Result add_stretch(Accuracy *accuracy, const Method *method, double rate,
         result = interrupt_requested() ? error_set(error, RESULT_INTERRUPTED, "interrupted")
                                        : stretch_in(accuracy, &accuracy->motions[m], &params, rate,
                                                     &row.value, error);
-    section_params_destroy(&params);
+    params_destroy_section(&params);
     if (result != RESULT_OK) return result;
     bool stated = !*method->variant && !*method->settings && !simulated;
     row.bound = stated ? STATED_LENGTH : NAN;

@@ -46,9 +46,9 @@ Result image_hair_create(ImageHair *hair, const Gpu *gpu, const char *set, const
     *hair = (ImageHair){.set = set, .file = file};
     snprintf(hair->name, sizeof hair->name, "%s", slash ? slash + 1 : name);
     Result result = scene_create(&hair->scene, error);
-    if (result == RESULT_OK) result = section_params_create(&params, error);
+    if (result == RESULT_OK) result = params_create_section(&params, error);
     if (result == RESULT_OK) result = scene_add_section(&hair->scene, name, &params, error);
-    section_params_destroy(&params);
+    params_destroy_section(&params);
     if (result == RESULT_OK) result = image_hair_read(&hair->strands, set, file, error);
     if (result == RESULT_OK)
         result = hair_create(&hair->hair, &hair->strands, 0, &gpu->limits, error);

@@ -67,7 +67,7 @@ enum { COLUMN_COUNT = sizeof COLUMNS / sizeof *COLUMNS };
 
 static const char *word_of(const char *param, int value)
 {
-    return param_find(param)->choices[value];
+    return params_find(param)->choices[value];
 }
 
 // "quads, k = 8, 2 x 2, dom"; a preset by its word.

@@ -58,7 +58,7 @@ static Result compare_rates(Accuracy *accuracy, const Method *method, const Moti
                                     (const float(*)[MOST][3])finest, motion);
         if (result == RESULT_OK) accuracy_add(accuracy, &row);
     }
-    section_params_destroy(&params);
+    params_destroy_section(&params);
     return result;
 }
 
@@ -122,7 +122,7 @@ static Result run_scaled(Accuracy *accuracy, const Method *method, double rate, 
         points[i / 3][i % 3] = (float)((double)trial.points[i / 3][i % 3] / scale);
     trial_destroy(&trial);
     strands_destroy(&strands);
-    section_params_destroy(&params);
+    params_destroy_section(&params);
     return result;
 }
 

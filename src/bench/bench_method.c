@@ -16,9 +16,9 @@ bool method_takes(const ParamInfo *info)
 
 static Result set(SectionParams *params, const char *name, const char *text, Error *error)
 {
-    const ParamInfo *info = param_find(name);
+    const ParamInfo *info = params_find(name);
     if (!info) return error_set(error, RESULT_USAGE, "--%s: no such parameter", name);
-    Result result = param_parse(info, params, text, error);
+    Result result = params_parse(info, params, text, error);
     return result == RESULT_OK ? result : error_prefix(error, result, "--%s: ", name);
 }
 
@@ -40,7 +40,7 @@ static Result apply(SectionParams *params, char *words, Error *error)
 Result method_params(SectionParams *params, const Method *method, Error *error)
 {
     char *words = strdup(method->settings);
-    Result result = section_params_create(params, error);
+    Result result = params_create_section(params, error);
     if (!words) result = error_set(error, RESULT_FAILED, "no memory for settings");
     if (result == RESULT_OK) result = set(params, "algo", method->algo, error);
     if (result == RESULT_OK) result = set(params, "variant", method->variant, error);

@@ -179,7 +179,7 @@ static Result measure_method(Accuracy *accuracy, const Method *method, Error *er
         for (int r = 0; r < count && counts(accuracy, m); ++r) logs[r] += log(errors[r]);
         counted += counts(accuracy, m);
     }
-    section_params_destroy(&params);
+    params_destroy_section(&params);
     if (result != RESULT_OK) return result;
     for (int r = 0; r < count; ++r) errors[r] = exp(logs[r] / counted);
     add_rows(accuracy, method, accuracy->whole ? "mean" : "mean of these", rates, errors, count);
@@ -199,7 +199,7 @@ Result motions_mean(Accuracy *accuracy, const Method *method, double rate, doubl
         result = measure_rates(accuracy, &accuracy->motions[m], &params, &rate, 1, &off, error);
         logs += log(off), ++counted;
     }
-    section_params_destroy(&params);
+    params_destroy_section(&params);
     *mean = exp(logs / counted);
     return result;
 }

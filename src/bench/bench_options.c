@@ -146,7 +146,7 @@ static Result check_settings(const BenchOptions *options, Error *error)
         return error_set(error, RESULT_USAGE, "--variant '%s' needs --algo", method.variant);
     if (!method.algo) method.algo = "split";
     Result result = method_params(&params, &method, error);
-    section_params_destroy(&params);
+    params_destroy_section(&params);
     return result;
 }
 
@@ -182,7 +182,7 @@ static Result read_size(const char *text, int size[2], Error *error)
 static Result read_choice(const char *name, const char *text, int *value, Error *error)
 {
     RunParams run = {0};
-    Result result = param_parse(param_find(name), &run, text, error);
+    Result result = params_parse(params_find(name), &run, text, error);
     if (result != RESULT_OK) return error_prefix(error, result, "--%s: ", name);
     *value = strcmp(name, "raster") == 0    ? run.raster
              : strcmp(name, "shadow") == 0  ? run.shadow

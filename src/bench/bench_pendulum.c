@@ -122,7 +122,7 @@ static Result measure(Accuracy *accuracy, const Method *method, const Pendulum *
         result = follow(&trial, pendulum, rate, rms, error);
     trial_destroy(&trial);
     strands_destroy(&strands);
-    section_params_destroy(&params);
+    params_destroy_section(&params);
     return result;
 }
 

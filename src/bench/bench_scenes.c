@@ -80,7 +80,7 @@ static Result add_section(World *world, const Row *row, int i, const BenchOption
     params.follow = (int)row->mode;
     if (result == RESULT_OK) result = strands_make_set(&world->strands[i], set, 1, error);
     if (result == RESULT_OK) result = scene_add_section(&world->scene, set, &params, error);
-    section_params_destroy(&params);
+    params_destroy_section(&params);
     return result;
 }
 

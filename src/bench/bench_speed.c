@@ -42,7 +42,7 @@ static Result bench_create(Bench *bench, const Gpu *gpu, const SpeedSubject *sub
     params.followers = 0;
     if (result == RESULT_OK)
         result = scene_add_section(&bench->scene, subject->name, &params, error);
-    section_params_destroy(&params);
+    params_destroy_section(&params);
     if (result == RESULT_OK)
         result = simulation_create(&bench->simulation, gpu, &bench->timer, &bench->scene,
                                    subject->strands, NULL, error);

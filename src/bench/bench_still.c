@@ -77,7 +77,7 @@ static Result settle(const Accuracy *accuracy, const Method *method, const Still
     if (result == RESULT_OK) result = trial_read(&trial, error);
     if (result == RESULT_OK) *off = distance(trial.points, still->to, still->n);
     trial_destroy(&trial);
-    section_params_destroy(&params);
+    params_destroy_section(&params);
     return result;
 }
 
@@ -181,7 +181,7 @@ static Result use_helix(Accuracy *accuracy, const Method *method, int n, double 
     if (result == RESULT_OK)
         result = watch(&trial, n, accuracy->options->seconds, rate, &drift, &tremor, error);
     trial_destroy(&trial);
-    section_params_destroy(&params);
+    params_destroy_section(&params);
     if (result != RESULT_OK) return result;
     snprintf(row.scenario, sizeof row.scenario, "helix of %d, %g s", n, accuracy->options->seconds);
     row.what = "drift", row.value = drift;

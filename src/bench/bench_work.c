@@ -120,7 +120,7 @@ static Result time_point(Work *work, Point *point, const Strands *strands, Error
         result = trial_create(&trial, work->accuracy->gpu, strands, &params, point->rate, error);
     if (result == RESULT_OK) time_frames(&trial, point, MOST_SAMPLES);
     trial_destroy(&trial);
-    section_params_destroy(&params);
+    params_destroy_section(&params);
     return result;
 }
 

@@ -232,20 +232,21 @@ bool stress_case_simplify(const StressCase *stress, int move, StressCase *simple
 
 Result stress_case_params(const StressCase *stress, SectionParams *params, Error *error)
 {
-    Result result = section_params_create(params, error);
-    if (result == RESULT_OK) result = param_parse(param_find("algo"), params, stress->algo, error);
+    Result result = params_create_section(params, error);
     if (result == RESULT_OK)
-        result = param_parse(param_find("variant"), params, stress->variant, error);
+        result = params_parse(params_find("algo"), params, stress->algo, error);
+    if (result == RESULT_OK)
+        result = params_parse(params_find("variant"), params, stress->variant, error);
     for (int i = 0; i < STRESS_FIELD_COUNT && result == RESULT_OK; ++i) {
-        const ParamInfo *info = FIELDS[i].algo ? param_find(FIELDS[i].name) : NULL;
+        const ParamInfo *info = FIELDS[i].algo ? params_find(FIELDS[i].name) : NULL;
         if (!info || !applies(i, stress)) continue;
         char text[32];
         snprintf(text, sizeof text, "%.5g", stress->value[i]);
         if (info->kind == PARAM_BOOL)
             snprintf(text, sizeof text, stress->value[i] > 0 ? "true" : "false");
-        result = param_parse(info, params, text, error);
+        result = params_parse(info, params, text, error);
         if (result != RESULT_OK) error_prefix(error, result, "--case: %s: ", FIELDS[i].name);
     }
-    if (result != RESULT_OK) section_params_destroy(params);
+    if (result != RESULT_OK) params_destroy_section(params);
     return result;
 }

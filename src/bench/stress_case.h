@@ -115,7 +115,7 @@ void stress_case_write(const StressCase *stress, char *text, size_t size);
 // the plain value, half the way there (in the logarithm where it has one); fewer vertices.
 bool stress_case_simplify(const StressCase *stress, int move, StressCase *simpler);
 
-// The solver's parameters; free with section_params_destroy.
+// The solver's parameters; free with params_destroy_section.
 Result stress_case_params(const StressCase *stress, SectionParams *params, Error *error);
 
 // The strand: `points` [n], metres in the head's frame.

@@ -44,7 +44,7 @@ static void run_destroy(Run *run)
 {
     solver_destroy(&run->solver);
     hair_destroy(&run->hair);
-    section_params_destroy(&run->params);
+    params_destroy_section(&run->params);
     gpu_timer_destroy(&run->timer);
     if (run->program) glDeleteProgram(run->program);
     gpu_buffer_destroy(&run->before);

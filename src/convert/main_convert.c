@@ -133,7 +133,7 @@ static Result parse_unit(const char *name, const char *text, float *metres, Erro
 {
     SectionParams params = {0};
     if (!text) return RESULT_OK;
-    Result result = param_parse(param_find("unit"), &params, text, error);
+    Result result = params_parse(params_find("unit"), &params, text, error);
     *metres = params.unit.automatic ? 0 : params.unit.value;
     return result == RESULT_OK ? result : error_prefix(error, result, "--%s: ", name);
 }

@@ -15,17 +15,17 @@ Result scene_create(Scene *scene, Error *error)
 {
     *scene = (Scene){.light_count = sizeof DEFAULT_LIGHTS / sizeof DEFAULT_LIGHTS[0]};
     memcpy(scene->lights, DEFAULT_LIGHTS, sizeof DEFAULT_LIGHTS);
-    return run_params_create(&scene->run, error);
+    return params_create_run(&scene->run, error);
 }
 
 void scene_destroy(Scene *scene)
 {
     for (uint32_t i = 0; i < scene->section_count; i++) {
         free(scene->sections[i].file);
-        section_params_destroy(&scene->sections[i].params);
+        params_destroy_section(&scene->sections[i].params);
     }
     free(scene->sections);
-    run_params_destroy(&scene->run);
+    params_destroy_run(&scene->run);
     rigid_track_destroy(&scene->head);
     keyframes_destroy(&scene->gravity);
     keyframes_destroy(&scene->wind);
@@ -48,7 +48,7 @@ Result scene_add_section(Scene *scene, const char *file, const SectionParams *pa
         free(section.file);
         return error_set(error, RESULT_FAILED, "out of memory");
     }
-    Result result = section_params_copy(&section.params, params, error);
+    Result result = params_copy_section(&section.params, params, error);
     if (result != RESULT_OK) {
         free(section.file);
         return result;

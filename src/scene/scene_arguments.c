@@ -79,7 +79,7 @@ static StepResult step_letter(Walk *walk, Argument *argument, Error *error)
 {
     char letter = *walk->letters++;
     if (letter == 'h') return take_help(walk, "text", error);
-    argument->info = param_find_letter(letter);
+    argument->info = params_find_letter(letter);
     snprintf(argument->name, sizeof argument->name, "-%c", letter);
     if (!argument->info) return fail(error, argument->name, "unknown flag (--help lists all)");
     argument->value = "true";
@@ -102,13 +102,13 @@ static StepResult step_flag(Walk *walk, const char *flag, Argument *argument, Er
         walk->request = REQUEST_VERSION;
         return STEP_REQUEST;
     }
-    argument->info = param_find(name);
+    argument->info = params_find(name);
     if (argument->info) {
         argument->value = value ? value : "true";
         return value || argument->info->kind == PARAM_BOOL ? STEP_TAKEN
                                                            : take_value(walk, argument, error);
     }
-    argument->info = strncmp(name, "no-", 3) == 0 ? param_find(name + 3) : NULL;
+    argument->info = strncmp(name, "no-", 3) == 0 ? params_find(name + 3) : NULL;
     if (!argument->info) return refuse_unknown(flag, length, error);
     if (argument->info->kind != PARAM_BOOL)
         return fail(error, argument->name, "only flags without a value can be negated");
@@ -174,7 +174,7 @@ static Result add_sections(Scene *scene, const char *const *files, size_t count,
 {
     SectionParams defaults;
     Quality preset = QUALITY_NORMAL;
-    Result result = section_params_create(&defaults, error);
+    Result result = params_create_section(&defaults, error);
     if (result == RESULT_OK && quality) {
         result = quality_parse(&preset, quality, error);
         if (result != RESULT_OK) error_prefix(error, result, "--quality: ");
@@ -183,7 +183,7 @@ static Result add_sections(Scene *scene, const char *const *files, size_t count,
     if (result == RESULT_OK) result = quality_apply(preset, SCOPE_SECTION, &defaults, error);
     for (size_t i = 0; result == RESULT_OK && i < count; i++)
         result = scene_add_section(scene, files[i], &defaults, error);
-    section_params_destroy(&defaults);
+    params_destroy_section(&defaults);
     return result;
 }
 
@@ -226,14 +226,14 @@ static Result apply_flag(Scene *scene, const Argument *argument, Error *error)
     Result result = RESULT_OK;
     if (argument->info->scope == SCOPE_RUN) {
         drop_keyframes(scene, argument->info->name);
-        result = param_parse(argument->info, &scene->run, argument->value, error);
+        result = params_parse(argument->info, &scene->run, argument->value, error);
         if (result == RESULT_OK && strcmp(argument->info->name, "colliders") == 0) {
             colliders_destroy(&scene->colliders);
             result = colliders_parse(&scene->colliders, scene->run.colliders, error);
         }
     }
     for (uint32_t i = 0; argument->info->scope == SCOPE_SECTION && i < scene->section_count; i++) {
-        result = param_parse(argument->info, &scene->sections[i].params, argument->value, error);
+        result = params_parse(argument->info, &scene->sections[i].params, argument->value, error);
         if (result != RESULT_OK) break;
     }
     return result == RESULT_OK ? result : error_prefix(error, result, "%s: ", argument->name);

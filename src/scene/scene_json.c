@@ -121,7 +121,7 @@ static Result read_sections(Scene *scene, const Document *document, Error *error
     if (!json_is_array(array) || count == 0 || count > SCENE_MAX_SECTIONS)
         return place_refuse(&place, array, "an array of 1 to 1024 sections", error);
     SectionParams defaults;
-    Result result = section_params_create(&defaults, error);
+    Result result = params_create_section(&defaults, error);
     if (result == RESULT_OK)
         result = quality_apply((Quality)scene->run.quality, SCOPE_SECTION, &defaults, error);
     if (result == RESULT_OK)
@@ -132,7 +132,7 @@ static Result read_sections(Scene *scene, const Document *document, Error *error
         result =
             read_section(scene, document, &defaults, &element, json_array_get(array, i), error);
     }
-    section_params_destroy(&defaults);
+    params_destroy_section(&defaults);
     return result;
 }
 
@@ -142,7 +142,7 @@ static Result read_force(Keyframes *keys, const char *name, const Document *docu
     const json_t *value = json_object_get(document->json, name);
     if (!json_is_object(value)) return RESULT_OK;
     Place place = {.parent = &document->root, .key = name};
-    return scene_read_vector_keys(keys, param_find(name), &place, value, error);
+    return scene_read_vector_keys(keys, params_find(name), &place, value, error);
 }
 
 static Result refuse_both(const Document *document, const char *name, const Keyframes *keys,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "scene/scene_param.h"
 
+#include "base/decimal.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -70,11 +72,11 @@ static const char *value_to_text(ParamKind kind, const json_t *value, char buffe
     return form->numbers && array_to_text(value, form->numbers, separator, buffer) ? buffer : NULL;
 }
 
-// As param_describe has it, where JSON differs from a flag's value.
+// As params_describe has it, where JSON differs from a flag's value.
 static void describe_value(const ParamInfo *info, char *text, size_t size)
 {
     char flag[160];
-    param_describe(info, flag, sizeof flag);
+    params_describe(info, flag, sizeof flag);
     const Form *form = &FORMS[info->kind];
     bool vector = form->numbers == 3 && info->kind != PARAM_COLOR && info->kind != PARAM_BACKGROUND;
     snprintf(text, size, "%s%s%s",
@@ -105,7 +107,7 @@ Result scene_read_param(const ParamInfo *info, void *params, const char *folder,
         if (!path) return error_set(error, RESULT_FAILED, "out of memory");
     }
     Error why = {{0}};
-    Result result = param_parse(info, params, path ? path : text, &why);
+    Result result = params_parse(info, params, path ? path : text, &why);
     free(path);
     if (result == RESULT_USAGE) return place_fail(place, error, "%s", why.text);
     return result == RESULT_OK ? result : error_set(error, result, "%s", why.text);
@@ -114,7 +116,7 @@ Result scene_read_param(const ParamInfo *info, void *params, const char *folder,
 json_t *scene_write_float(float value)
 {
     char text[32];
-    param_format_float(value, text, sizeof text);
+    decimal_format(value, text, sizeof text);
     return json_real(strtod(text, NULL));
 }
 
@@ -178,7 +180,7 @@ json_t *scene_write_param(const ParamInfo *info, const void *params)
     case PARAM_PATH:
         break;
     }
-    char *text = param_format(info, params);
+    char *text = params_format(info, params);
     json_t *value = text ? scene_write_text(text) : NULL;
     free(text);
     return value;

@@ -17,10 +17,10 @@ Result quality_apply(Quality quality, ParamScope scope, void *params, Error *err
 {
     Result result = RESULT_OK;
     for (size_t i = 0; i < sizeof PRESETS / sizeof *PRESETS && result == RESULT_OK; ++i) {
-        const ParamInfo *info = param_find(PRESETS[i].name);
+        const ParamInfo *info = params_find(PRESETS[i].name);
         assert(info);
         if (PRESETS[i].quality == quality && info->scope == scope)
-            result = param_parse(info, params, PRESETS[i].value, error);
+            result = params_parse(info, params, PRESETS[i].value, error);
     }
     return result;
 }
@@ -28,7 +28,7 @@ Result quality_apply(Quality quality, ParamScope scope, void *params, Error *err
 Result quality_parse(Quality *quality, const char *word, Error *error)
 {
     RunParams holder = {0};
-    Result result = param_parse(param_find("quality"), &holder, word, error);
+    Result result = params_parse(params_find("quality"), &holder, word, error);
     *quality = (Quality)holder.quality;
     return result;
 }

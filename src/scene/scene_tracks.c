@@ -178,7 +178,7 @@ Result scene_read_head(Scene *scene, const Place *place, const json_t *value, Er
 Result scene_read_camera(Scene *scene, const Place *place, const json_t *value, Error *error)
 {
     static const char *const NAMES[] = {"keys", "interpolation", NULL};
-    const ParamInfo *eye = param_find("eye"), *fov = param_find("fov");
+    const ParamInfo *eye = params_find("eye"), *fov = params_find("fov");
     const Member members[] = {
         {"eye", &scene->eye, 3, eye->minimum, eye->maximum, 1.0},
         {"target", &scene->target, 3, eye->minimum, eye->maximum, 1.0},
@@ -220,7 +220,7 @@ static Result read_light_color(Light *light, const Place *parent, const json_t *
     if (!value) return RESULT_OK;
     Place place = {.parent = parent, .key = "color"};
     SectionParams holder = {0};
-    Result result = scene_read_param(param_find("color"), &holder, NULL, &place, value, error);
+    Result result = scene_read_param(params_find("color"), &holder, NULL, &place, value, error);
     for (int i = 0; i < 3; i++) light->color[i] = linear_from_srgb(holder.color[i]);
     return result;
 }

@@ -112,7 +112,7 @@ int solver_variant(const SolverType *type, const char *variant)
 static void print_flags(FILE *stream, const char *name)
 {
     for (size_t i = 0; i < PARAM_COUNT; ++i) {
-        if (!*PARAM_TABLE[i].owner || !param_belongs(&PARAM_TABLE[i], name)) continue;
+        if (!*PARAM_TABLE[i].owner || !params_owned_by(&PARAM_TABLE[i], name)) continue;
         fputs("           --", stream);
         for (const char *c = PARAM_TABLE[i].name; *c; ++c) fputc(*c == '_' ? '-' : *c, stream);
         fprintf(stream, " (%s)\n", PARAM_TABLE[i].default_text);

@@ -39,7 +39,7 @@ double stability_acceleration(const Scene *scene, const SectionParams *params)
 Result stability_choose_substeps(int *substeps, const Scene *scene, const Strands *strands,
                                  Error *error)
 {
-    const double most_steps = param_find("substeps")->maximum;
+    const double most_steps = params_find("substeps")->maximum;
     *substeps = 1;
     for (uint32_t i = 0; i < scene->section_count; ++i) {
         const Section *section = &scene->sections[i];

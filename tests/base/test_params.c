@@ -25,19 +25,19 @@ static void *params_of(Params *params, const ParamInfo *info)
 static void create(Params *params)
 {
     Error error = {{0}};
-    assert_int_equal(run_params_create(&params->run, &error), RESULT_OK);
-    assert_int_equal(section_params_create(&params->section, &error), RESULT_OK);
+    assert_int_equal(params_create_run(&params->run, &error), RESULT_OK);
+    assert_int_equal(params_create_section(&params->section, &error), RESULT_OK);
 }
 
 static void destroy(Params *params)
 {
-    run_params_destroy(&params->run);
-    section_params_destroy(&params->section);
+    params_destroy_run(&params->run);
+    params_destroy_section(&params->section);
 }
 
 static void assert_prints(const ParamInfo *info, const void *params, const char *expected)
 {
-    char *text = param_format(info, params);
+    char *text = params_format(info, params);
     assert_non_null(text);
     assert_string_equal(text, expected);
     free(text);
@@ -65,14 +65,14 @@ static void rows_are_found_by_field_flag_and_letter_and_names_are_unique(void **
     (void)state;
     for (size_t i = 0; i < PARAM_COUNT; i++) {
         const ParamInfo *info = &PARAM_TABLE[i];
-        assert_ptr_equal(param_find(info->name), info);
-        if (info->letter) assert_ptr_equal(param_find_letter(info->letter), info);
+        assert_ptr_equal(params_find(info->name), info);
+        if (info->letter) assert_ptr_equal(params_find_letter(info->letter), info);
     }
-    assert_ptr_equal(param_find("camera-up"), param_find("camera_up"));
-    assert_null(param_find("camera"));
-    assert_null(param_find(""));
-    assert_null(param_find_letter('?'));
-    assert_null(param_find_letter(0));
+    assert_ptr_equal(params_find("camera-up"), params_find("camera_up"));
+    assert_null(params_find("camera"));
+    assert_null(params_find(""));
+    assert_null(params_find_letter('?'));
+    assert_null(params_find_letter(0));
 }
 
 static void groups_stand_together_and_texts_fit_their_place(void **state)
@@ -133,15 +133,15 @@ static void values_print_in_their_shortest_form_and_read_back(void **state)
 {
     (void)state;
     for (size_t i = 0; i < sizeof VALID / sizeof VALID[0]; i++) {
-        const ParamInfo *info = param_find(VALID[i].name);
+        const ParamInfo *info = params_find(VALID[i].name);
         Params params, again;
         create(&params);
         create(&again);
         Error error = {{0}};
-        assert_int_equal(param_parse(info, params_of(&params, info), VALID[i].text, &error),
+        assert_int_equal(params_parse(info, params_of(&params, info), VALID[i].text, &error),
                          RESULT_OK);
         assert_prints(info, params_of(&params, info), VALID[i].printed);
-        assert_int_equal(param_parse(info, params_of(&again, info), VALID[i].printed, &error),
+        assert_int_equal(params_parse(info, params_of(&again, info), VALID[i].printed, &error),
                          RESULT_OK);
         assert_prints(info, params_of(&again, info), VALID[i].printed);
         destroy(&params);
@@ -152,13 +152,13 @@ static void values_print_in_their_shortest_form_and_read_back(void **state)
 static void floats_read_back_to_the_same_bits(void **state)
 {
     (void)state;
-    const ParamInfo *info = param_find("drag");
+    const ParamInfo *info = params_find("drag");
     Error error = {{0}};
     for (uint32_t bits = 1; bits < 0x49742400; bits += 99991 * 13) { // up to 1e6
         SectionParams params = {0}, again = {0};
         memcpy(&params.drag, &bits, sizeof bits);
-        char *text = param_format(info, &params);
-        assert_int_equal(param_parse(info, &again, text, &error), RESULT_OK);
+        char *text = params_format(info, &params);
+        assert_int_equal(params_parse(info, &again, text, &error), RESULT_OK);
         assert_memory_equal(&params.drag, &again.drag, sizeof again.drag);
         free(text);
     }
@@ -215,11 +215,11 @@ static void wrong_values_are_refused_by_name_and_change_nothing(void **state)
 {
     (void)state;
     for (size_t i = 0; i < sizeof INVALID / sizeof INVALID[0]; i++) {
-        const ParamInfo *info = param_find(INVALID[i].name);
+        const ParamInfo *info = params_find(INVALID[i].name);
         Params params;
         create(&params);
         Error error = {{0}};
-        assert_int_equal(param_parse(info, params_of(&params, info), INVALID[i].text, &error),
+        assert_int_equal(params_parse(info, params_of(&params, info), INVALID[i].text, &error),
                          RESULT_USAGE);
         if (!strstr(error.text, INVALID[i].expected))
             fail_msg("%s: '%s' lacks '%s'", INVALID[i].name, error.text, INVALID[i].expected);
@@ -236,10 +236,10 @@ static void a_long_wrong_value_is_cut_in_the_message(void **state)
     text[sizeof text - 1] = 0;
     RunParams params = {0};
     Error error = {{0}};
-    assert_int_equal(param_parse(param_find("fps"), &params, text, &error), RESULT_USAGE);
+    assert_int_equal(params_parse(params_find("fps"), &params, text, &error), RESULT_USAGE);
     assert_true(strlen(error.text) < 200);
     assert_non_null(strstr(error.text, "aaa...', expected"));
-    assert_int_equal(param_parse(param_find("backend"), &params, text, &error), RESULT_USAGE);
+    assert_int_equal(params_parse(params_find("backend"), &params, text, &error), RESULT_USAGE);
 }
 
 static void a_copy_owns_its_texts(void **state)
@@ -247,14 +247,14 @@ static void a_copy_owns_its_texts(void **state)
     (void)state;
     SectionParams params, copy;
     Error error = {{0}};
-    assert_int_equal(section_params_create(&params, &error), RESULT_OK);
+    assert_int_equal(params_create_section(&params, &error), RESULT_OK);
     params.style = 0.25f;
-    assert_int_equal(section_params_copy(&copy, &params, &error), RESULT_OK);
-    section_params_destroy(&params);
+    assert_int_equal(params_copy_section(&copy, &params, &error), RESULT_OK);
+    params_destroy_section(&params);
     assert_string_equal(copy.algo, "split");
     assert_true(copy.style == 0.25f);
-    section_params_destroy(&copy);
-    section_params_destroy(&copy);
+    params_destroy_section(&copy);
+    params_destroy_section(&copy);
 }
 
 static void the_nearest_name_is_the_one_with_fewest_edits(void **state)

@@ -42,7 +42,7 @@ static void sitting_close(Sitting *sitting)
 {
     for (uint32_t i = 0; i < sitting->scene.item_count; ++i) {
         strands_destroy(&sitting->strands[i]);
-        section_params_destroy(&sitting->material[i]);
+        params_destroy_section(&sitting->material[i]);
     }
     image_destroy(&sitting->image);
 }
@@ -54,7 +54,7 @@ static SectionParams *sitting_add(Sitting *sitting, Strands strands, float radiu
     uint32_t i = sitting->scene.item_count++;
     assert_true(i < MOST_ITEMS);
     SectionParams *material = &sitting->material[i];
-    assert_int_equal(section_params_create(material, &error), RESULT_OK);
+    assert_int_equal(params_create_section(material, &error), RESULT_OK);
     studio_make_plain(material, opacity);
     sitting->strands[i] = strands;
     sitting->items[i] =
@@ -288,11 +288,11 @@ static void dress(SectionParams *material, float tip_ratio)
     const SectionParams worn = *material;
     *material = (SectionParams){0};
     Error error = {{0}};
-    assert_int_equal(section_params_create(material, &error), RESULT_OK);
+    assert_int_equal(params_create_section(material, &error), RESULT_OK);
     material->opacity = worn.opacity;
     material->tip_ratio = tip_ratio;
     SectionParams old = worn;
-    section_params_destroy(&old);
+    params_destroy_section(&old);
 }
 
 // RMS over the pixels that differ from `background` in either picture: of colours, or of opacity

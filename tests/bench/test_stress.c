@@ -129,7 +129,7 @@ static void the_heads_motion_counts(void **state)
     stress_bound_fill(&bound, false, &out);
     assert_true(fabs((double)out.kicks - 2 * 0.5 * 60) < 1e-3); // off at 30 m/s, and stopped
     assert_true(out.added == 0);
-    section_params_destroy(&params);
+    params_destroy_section(&params);
 }
 
 // --- What broke once.

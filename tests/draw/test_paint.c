@@ -38,7 +38,7 @@ static Strands make_strands(void)
 static SectionParams make_params(void)
 {
     SectionParams params;
-    NEEDED(section_params_create(&params, error));
+    NEEDED(params_create_section(&params, error));
     studio_make_plain(&params, 1);
     return params;
 }
@@ -52,7 +52,7 @@ static void nothing_to_paint_costs_nothing(void **state)
     NEEDED(paint_create(&paint, &strands, &params, error));
     assert_null(paint.color);
     assert_null(paint.thickness);
-    section_params_destroy(&params);
+    params_destroy_section(&params);
     strands_destroy(&strands);
 }
 
@@ -71,7 +71,7 @@ static void tips_have_their_color(void **state)
         assert_true(paint.color[SIZE + j][1] == 1 && paint.color[SIZE + j][3] == 1);
     }
     paint_destroy(&paint);
-    section_params_destroy(&params);
+    params_destroy_section(&params);
     strands_destroy(&strands);
 }
 
@@ -103,7 +103,7 @@ static void what_the_file_has_is_used_unless_refused(void **state)
     params.file_thickness = false;
     NEEDED(paint_create(&paint, &strands, &params, error));
     assert_null(paint.color);
-    section_params_destroy(&params);
+    params_destroy_section(&params);
     strands_destroy(&strands);
 }
 
@@ -136,7 +136,7 @@ static void a_picture_colors_strands_by_their_roots(void **state)
     free(params.color_map);
     params.color_map = strdup("missing.png");
     assert_int_equal(paint_create(&paint, &strands, &params, &why), RESULT_BAD_INPUT);
-    section_params_destroy(&params);
+    params_destroy_section(&params);
     strands_destroy(&strands);
 }
 
@@ -157,7 +157,7 @@ static void melanin_gives_the_colors_of_hair(void **state)
     params.melanin_redness = 1;
     hair_color(&params, color);
     assert_true(fabsf(color[1] - expf(-0.4f)) < 1e-6f);
-    section_params_destroy(&params);
+    params_destroy_section(&params);
 }
 
 // Painted red, green and half transparent, twice as thick: by both rasterisers.

@@ -50,7 +50,7 @@ static int close_gpu(void **state)
 static SectionParams make_fibre(float color)
 {
     SectionParams params;
-    NEEDED(section_params_create(&params, error));
+    NEEDED(params_create_section(&params, error));
     params.diffuse = 0;
     for (int k = 0; k < 3; ++k) params.color[k] = color;
     return params;
@@ -198,7 +198,7 @@ static void compare_with_reference(Lobes lobes)
                      (double)f[i][0], sum);
     }
     print_message("off by %.2g of the bound at most\n", worst);
-    section_params_destroy(&params);
+    params_destroy_section(&params);
 }
 
 static void energy_lobes_are_the_reference(void **state)
@@ -255,7 +255,7 @@ static void a_white_furnace_is_white(void **state)
             worst = fmax(worst, fabs(sum - 1));
             if (fabs(sum - 1) > 0.01) fail_msg("fibre %zu at %g degrees shows %g", m, deg, sum);
         }
-        section_params_destroy(&params);
+        params_destroy_section(&params);
     }
     print_message("off by %.2g at most\n", worst);
 }
@@ -271,7 +271,7 @@ static void pigment_takes_light_away(void **state)
     for (int i = 0; i < THETAS * PHIS; ++i)
         for (int k = 0; k < 3; ++k) sum[k] += cell(i) * (double)from_around[i][k];
     assert_true(1 > sum[0] && sum[0] > sum[1] && sum[1] > sum[2] && sum[2] > 0.04); // F alone: 0.06
-    section_params_destroy(&params);
+    params_destroy_section(&params);
 }
 
 // S = f / cos(theta_i) is the same for light that goes the other way, scales or not. Rounding:
@@ -300,7 +300,7 @@ static void light_goes_either_way_alike(void **state)
         if (fabs(there - back) > 1e-4 * (there + back) + 1e-6)
             fail_msg("pair %d: %g there, %g back", i, there, back);
     }
-    section_params_destroy(&params);
+    params_destroy_section(&params);
 }
 
 // Poles, equal and opposite directions included, for thin and thick pigment.
@@ -327,7 +327,7 @@ static void no_direction_gives_nonsense(void **state)
             for (int k = 0; k < 3; ++k)
                 if (!(f[i][k] >= 0 && f[i][k] < 1e6))
                     fail_msg("colour %g, pair %d: %g", (double)colors[c], i, (double)f[i][k]);
-        section_params_destroy(&params);
+        params_destroy_section(&params);
     }
 }
 

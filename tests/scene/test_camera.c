@@ -43,8 +43,8 @@ static void open_shot(Shot *shot, float scale)
 {
     Error error;
     memset(shot, 0, sizeof *shot);
-    assert_int_equal(run_params_create(&shot->scene.run, &error), RESULT_OK);
-    assert_int_equal(section_params_create(&shot->section.params, &error), RESULT_OK);
+    assert_int_equal(params_create_run(&shot->scene.run, &error), RESULT_OK);
+    assert_int_equal(params_create_section(&shot->section.params, &error), RESULT_OK);
     shot->scene.sections = &shot->section;
     shot->scene.section_count = 1;
     shot->strands = make_tuft(scale);
@@ -52,8 +52,8 @@ static void open_shot(Shot *shot, float scale)
 
 static void close_shot(Shot *shot)
 {
-    run_params_destroy(&shot->scene.run);
-    section_params_destroy(&shot->section.params);
+    params_destroy_run(&shot->scene.run);
+    params_destroy_section(&shot->section.params);
     rigid_track_destroy(&shot->scene.head);
     keyframes_destroy(&shot->scene.eye);
     strands_destroy(&shot->strands);

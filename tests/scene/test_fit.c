@@ -39,7 +39,7 @@ static void open_shot(Shot *shot)
 {
     Error error;
     memset(shot, 0, sizeof *shot);
-    assert_int_equal(run_params_create(&shot->scene.run, &error), RESULT_OK);
+    assert_int_equal(params_create_run(&shot->scene.run, &error), RESULT_OK);
     shot->scene.run.frames = FRAMES;
     shot->scene.run.turntable = 360;
     // As outline_frame leaves it, but with an eye that is far too near.
@@ -56,7 +56,7 @@ static void open_shot(Shot *shot)
 
 static void close_shot(Shot *shot)
 {
-    run_params_destroy(&shot->scene.run);
+    params_destroy_run(&shot->scene.run);
     keyframes_destroy(&shot->scene.fov);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Scenes from the command line; every parameter from both sources.
+#include "base/decimal.h"
 #include "scene/scene_param.h"
 #include "support/scene_reader.h"
 #include "support/temporary.h"
@@ -20,7 +21,7 @@ static void *params_of(Scene *scene, const ParamInfo *info)
 
 static void assert_prints(Scene *scene, const ParamInfo *info, const char *expected)
 {
-    char *text = param_format(info, params_of(scene, info));
+    char *text = params_format(info, params_of(scene, info));
     if (!text || strcmp(text, expected) != 0)
         fail_msg("%s is %s, expected %s", info->name, text, expected);
     free(text);
@@ -45,7 +46,7 @@ static const char *sample(const ParamInfo *info, char text[64])
     if (whole)
         snprintf(text, 64, "%.0f", fmin(least + 2, info->maximum));
     else
-        param_format_float((float)(least + 0.375), text, 64);
+        decimal_format((float)(least + 0.375), text, 64);
     return text;
 }
 
@@ -85,7 +86,7 @@ static void every_row_is_set_by_its_key_in_a_scene_file(void **state)
         Error error = {{0}};
         assert_int_equal(read_scene(state, &scene, "{\"sections\": [{\"file\": \"a\"}]}", &error),
                          RESULT_OK);
-        assert_int_equal(param_parse(info, params_of(&scene, info), value, &error), RESULT_OK);
+        assert_int_equal(params_parse(info, params_of(&scene, info), value, &error), RESULT_OK);
         json_t *json = scene_write_param(info, params_of(&scene, info));
         char *text = json_dumps(json, JSON_ENCODE_ANY | JSON_REAL_PRECISION(9));
         json_decref(json);

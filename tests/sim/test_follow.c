@@ -229,7 +229,7 @@ static void test_the_file_says_how_many_unless_the_user_does(void **state)
     (void)state;
     Strands strands = make_lawn(20, upright);
     SectionParams params;
-    assert_int_equal(section_params_create(&params, NULL), RESULT_OK);
+    assert_int_equal(params_create_section(&params, NULL), RESULT_OK);
     assert_int_equal(follow_options(&params, &strands, 0).per_guide, 0);
     assert_true(follow_reach(&params, &strands) == 0);
     strands.followers = 6;
@@ -241,7 +241,7 @@ static void test_the_file_says_how_many_unless_the_user_does(void **state)
     assert_true(follow_reach(&params, &strands) == 0.75f);
     params.followers = 0;
     assert_int_equal(follow_options(&params, &strands, 0).per_guide, 0);
-    section_params_destroy(&params);
+    params_destroy_section(&params);
     strands_destroy(&strands);
 }
 

@@ -35,14 +35,14 @@ static void add_section(World *world, const Kind *kind)
     recipe.count = kind->strands, recipe.vertices = kind->vertices;
     assert_int_equal(strands_make(&world->strands[world->scene.section_count], &recipe, NULL),
                      RESULT_OK);
-    assert_int_equal(section_params_create(&params, NULL), RESULT_OK);
-    assert_int_equal(param_parse(param_find("algo"), &params, kind->algo, NULL), RESULT_OK);
+    assert_int_equal(params_create_section(&params, NULL), RESULT_OK);
+    assert_int_equal(params_parse(params_find("algo"), &params, kind->algo, NULL), RESULT_OK);
     params.style = kind->style;
     params.drag = kind->drag;
     params.followers = kind->followers;
     params.sleep = 1e-4f;
     assert_int_equal(scene_add_section(&world->scene, kind->algo, &params, NULL), RESULT_OK);
-    section_params_destroy(&params);
+    params_destroy_section(&params);
 }
 
 // Wind in gusts and a head that moves: everything that could tell one strand from another.

@@ -27,12 +27,12 @@ static void create_scene(World *world, const char *algo, float drag, float toler
     SectionParams params;
     *world = (World){0};
     assert_int_equal(scene_create(&world->scene, NULL), RESULT_OK);
-    assert_int_equal(section_params_create(&params, NULL), RESULT_OK);
-    assert_int_equal(param_parse(param_find("algo"), &params, algo, NULL), RESULT_OK);
+    assert_int_equal(params_create_section(&params, NULL), RESULT_OK);
+    assert_int_equal(params_parse(params_find("algo"), &params, algo, NULL), RESULT_OK);
     params.drag = drag;
     params.sleep = tolerance;
     assert_int_equal(scene_add_section(&world->scene, "waves", &params, NULL), RESULT_OK);
-    section_params_destroy(&params);
+    params_destroy_section(&params);
 }
 
 static void start(World *world)

@@ -66,7 +66,7 @@ static void long_strands_are_refused(void **state)
     SectionParams params;
     Error error = {{0}};
     for (int j = 0; j < 5001; ++j) position[j][1] = -0.0001f * (float)j;
-    assert_int_equal(section_params_create(&params, &error), RESULT_OK);
+    assert_int_equal(params_create_section(&params, &error), RESULT_OK);
     free(params.algo);
     params.algo = strdup("emulation");
     assert_int_equal(hair_create(&hair, &strands, 0, &fixture_gpu()->limits, &error), RESULT_OK);
@@ -74,7 +74,7 @@ static void long_strands_are_refused(void **state)
     assert_int_equal(solver_create(&solver, &setup, &error), RESULT_USAGE);
     assert_non_null(strstr(error.text, "at most 5000 vertices, got 5001"));
     hair_destroy(&hair);
-    section_params_destroy(&params);
+    params_destroy_section(&params);
 }
 
 int main(void)

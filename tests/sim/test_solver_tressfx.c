@@ -166,13 +166,13 @@ static void too_long_strands_are_refused_on_cpu_drivers(void **state)
     HairBatch batch = {.vertex_count = 20000, .strand_count = 1};
     const Hair hair = {.batches = &batch, .batch_count = 1};
     SectionParams params;
-    assert_int_equal(section_params_create(&params, &error), RESULT_OK);
+    assert_int_equal(params_create_section(&params, &error), RESULT_OK);
     free(params.algo);
     params.algo = strdup("tressfx");
     const SolverSetup setup = {.gpu = fixture_gpu(), .hair = &hair, .params = &params};
     assert_int_equal(solver_create(&solver, &setup, &error), RESULT_USAGE);
     assert_non_null(strstr(error.text, "20000"));
-    section_params_destroy(&params);
+    params_destroy_section(&params);
 }
 
 int main(void)

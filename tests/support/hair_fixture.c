@@ -51,7 +51,7 @@ static void create(HairFixture *fixture, const Strands *strands, const char *alg
         .step = {.dt = 1.0 / 60, .first = true, .gravity = {0, -9.81f, 0}},
     };
     fixture->step.head.rotation[3] = fixture->step.head_old.rotation[3] = 1;
-    assert_int_equal(section_params_create(&fixture->params, &error), RESULT_OK);
+    assert_int_equal(params_create_section(&fixture->params, &error), RESULT_OK);
     free(fixture->params.algo);
     free(fixture->params.variant);
     fixture->params.algo = strdup(algo);
@@ -104,7 +104,7 @@ void fixture_destroy(HairFixture *fixture)
     solver_destroy(&fixture->solver);
     hair_destroy(&fixture->hair);
     gpu_timer_destroy(&fixture->timer);
-    section_params_destroy(&fixture->params);
+    params_destroy_section(&fixture->params);
     colliders_destroy(&fixture->colliders);
 }
 

@@ -20,15 +20,15 @@ double motion_error(const char *scenario, const char *algo, const char *variant,
     SectionParams params;
     double off = NAN;
     if (motion_read(&motion, FOLDER, scenario, &error) != RESULT_OK) fail_msg("%s", error.text);
-    assert_int_equal(section_params_create(&params, &error), RESULT_OK);
-    assert_int_equal(param_parse(param_find("algo"), &params, algo, &error), RESULT_OK);
-    assert_int_equal(param_parse(param_find("variant"), &params, variant, &error), RESULT_OK);
+    assert_int_equal(params_create_section(&params, &error), RESULT_OK);
+    assert_int_equal(params_parse(params_find("algo"), &params, algo, &error), RESULT_OK);
+    assert_int_equal(params_parse(params_find("variant"), &params, variant, &error), RESULT_OK);
     params.style = 0;
     if (tune) tune(&params);
     if (accuracy_measure(&off, fixture_gpu(), &motion, &params, 60.0 * steps_per_frame, &error) !=
         RESULT_OK)
         fail_msg("%s", error.text);
-    section_params_destroy(&params);
+    params_destroy_section(&params);
     motion_destroy(&motion);
     return off;
 }

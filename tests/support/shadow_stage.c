@@ -22,7 +22,7 @@ void shadow_stage_open(ShadowStage *stage, Strands strands, float radius, float 
 {
     *stage = (ShadowStage){.strands = strands, .light = *light};
     const GpuLimits *limits = &fixture_gpu()->limits;
-    NEEDED(section_params_create(&stage->material, error));
+    NEEDED(params_create_section(&stage->material, error));
     stage->material.tip_ratio = 1;
     stage->material.shadow_opacity = opacity;
     NEEDED(hair_create(&stage->hair, &stage->strands, 0, limits, error));
@@ -50,7 +50,7 @@ void shadow_stage_close(ShadowStage *stage)
     render_mesh_destroy(&stage->mesh);
     hair_destroy(&stage->hair);
     shadow_reference_destroy(&stage->reference);
-    section_params_destroy(&stage->material);
+    params_destroy_section(&stage->material);
     strands_destroy(&stage->strands);
 }
 

@@ -35,11 +35,11 @@ void simulation_fixture_create(SimulationFixture *fixture, const char *algo, con
     SectionParams params;
     *fixture = (SimulationFixture){0};
     assert_int_equal(scene_create(scene, NULL), RESULT_OK);
-    assert_int_equal(section_params_create(&params, NULL), RESULT_OK);
-    assert_int_equal(param_parse(param_find("algo"), &params, algo, NULL), RESULT_OK);
-    assert_int_equal(param_parse(param_find("variant"), &params, variant, NULL), RESULT_OK);
+    assert_int_equal(params_create_section(&params, NULL), RESULT_OK);
+    assert_int_equal(params_parse(params_find("algo"), &params, algo, NULL), RESULT_OK);
+    assert_int_equal(params_parse(params_find("variant"), &params, variant, NULL), RESULT_OK);
     assert_int_equal(scene_add_section(scene, "curls", &params, NULL), RESULT_OK);
-    section_params_destroy(&params);
+    params_destroy_section(&params);
     scene->run.wind[0] = 0.5f;
     const float poses[][3] = {{0, 0, 0}, {0.02f, 0, 0.01f}, {-0.01f, 0, 0}},
                 turns[][3] = {{0, 0, 0}, {0, 0.3f, 0}, {0, -0.2f, 0.1f}};

@@ -34,7 +34,7 @@ void studio_clear(Studio *studio)
 {
     for (uint32_t i = 0; i < studio->count; ++i) {
         hair_destroy(&studio->hair[i]);
-        section_params_destroy(&studio->material[i]);
+        params_destroy_section(&studio->material[i]);
     }
     studio->count = 0;
 }
@@ -64,7 +64,7 @@ uint32_t studio_add(Studio *studio, const Strands *strands, float radius, float 
     assert_true(i < STUDIO_MAX_ITEMS);
     for (uint32_t k = 0; k < i; ++k) first_id += studio->hair[k].strand_count;
     SectionParams *material = &studio->material[i];
-    NEEDED(section_params_create(material, error));
+    NEEDED(params_create_section(material, error));
     studio_make_plain(material, opacity);
     NEEDED(hair_create(&studio->hair[i], strands, first_id, &studio->gpu.limits, error));
     studio->items[i] = (RenderItem){&studio->hair[i], material, radius};

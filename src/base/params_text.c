@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The half of params.h that turns values into text and back.
 #include "base/params.h"
+
+#include "base/decimal.h"
 #include "base/suggest.h"
 
 #include <math.h>
@@ -25,7 +27,7 @@ typedef struct Input {
 static Result refuse(const Input *input, const char *nearest)
 {
     char expected[200];
-    param_describe(input->info, expected, sizeof expected);
+    params_describe(input->info, expected, sizeof expected);
     char got[64];
     snprintf(got, sizeof got, "%s", input->text);
     for (char *at = got; *at; at++) {
@@ -202,7 +204,7 @@ static Result parse_text(const Input *input, char **value)
     return RESULT_OK;
 }
 
-Result param_parse(const ParamInfo *info, void *params, const char *text, Error *error)
+Result params_parse(const ParamInfo *info, void *params, const char *text, Error *error)
 {
     void *field = (char *)params + info->offset;
     Input input = {info, text, error};
@@ -242,23 +244,10 @@ Result param_parse(const ParamInfo *info, void *params, const char *text, Error 
     return error_set(error, RESULT_FAILED, "parameter %s is of no kind", info->name);
 }
 
-void param_format_float(float value, char *text, size_t size)
-{
-    // %g would write 60 as 6e+01.
-    if (fabsf(value) < 1e7f && truncf(value) == value) {
-        snprintf(text, size, "%.0f", (double)value);
-        return;
-    }
-    for (int digits = 1; digits <= 9; digits++) {
-        snprintf(text, size, "%.*g", digits, (double)value);
-        if (strtof(text, NULL) == value) return;
-    }
-}
-
 static char *format_floats(const float *value, int count)
 {
     char number[3][24];
-    for (int i = 0; i < count; i++) param_format_float(value[i], number[i], sizeof number[i]);
+    for (int i = 0; i < count; i++) decimal_format(value[i], number[i], sizeof number[i]);
     if (count == 1) return strdup(number[0]);
     char *text = NULL;
     return asprintf(&text, "%s,%s,%s", number[0], number[1], number[2]) < 0 ? NULL : text;
@@ -295,7 +284,7 @@ static char *format_whole(long long value)
     return asprintf(&text, "%lld", value) < 0 ? NULL : text;
 }
 
-char *param_format(const ParamInfo *info, const void *params)
+char *params_format(const ParamInfo *info, const void *params)
 {
     const void *field = (const char *)params + info->offset;
     const AutoInt *whole = field;
@@ -367,7 +356,7 @@ static const char *const FORMS[][2] = {
     [PARAM_PATH] = {"a path", NULL},
 };
 
-void param_describe(const ParamInfo *info, char *text, size_t size)
+void params_describe(const ParamInfo *info, char *text, size_t size)
 {
     if (info->kind == PARAM_CHOICE) {
         describe_choices(info, text, size);
