@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "bench/cpu_split.h"
 
-#include "base/lanes.h"
+#include "base/simd.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -86,27 +86,27 @@ typedef struct Float3 {
     float x, y, z;
 } Float3;
 
-INLINE float dot(Float3 a, Float3 b)
+SIMD_INLINE float dot(Float3 a, Float3 b)
 {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
-INLINE Float3 add(Float3 a, float s, Float3 b)
+SIMD_INLINE Float3 add(Float3 a, float s, Float3 b)
 {
     return (Float3){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
 }
-INLINE Float3 scale(float s, Float3 a)
+SIMD_INLINE Float3 scale(float s, Float3 a)
 {
     return (Float3){s * a.x, s * a.y, s * a.z};
 }
 
 // Comparisons that are one instruction: fmaxf must look for NaNs.
-INLINE Float3 turn(Float3 d, float l, Float3 *move, bool inlined)
+SIMD_INLINE Float3 turn(Float3 d, float l, Float3 *move, bool inlined)
 {
-    float ss = larger(dot(*move, *move), 1e-36f);
+    float ss = simd_max(dot(*move, *move), 1e-36f);
     float inverse = 1 / sqrtf(ss);
     Float3 e = scale(inverse, *move);
-    float x = -smaller(ss * inverse * (LOG2_E / l), MAX_EXPONENT);
-    float E = inlined ? exp2_of(x) : exp2f(x);
+    float x = -simd_min(ss * inverse * (LOG2_E / l), MAX_EXPONENT);
+    float E = inlined ? simd_exp2(x) : exp2f(x);
     Float3 m = add(d, -1, e);
     float M = dot(m, m), A = 4 * E - M * (1 + E), B = A + 2 * M, D = M + E * E * (4 - M);
     Float3 change = scale((1 - E) / D, add(scale(A, d), -B, e));
@@ -116,7 +116,8 @@ INLINE Float3 turn(Float3 d, float l, Float3 *move, bool inlined)
 
 // Where the tip is drawn to, and its new velocity: a mass on a string of length R.
 // `push`: what forces have changed that velocity by.
-INLINE Float3 tip_target(Float3 tip, Float3 *velocity, Float3 push, Float3 root, float R, float dt)
+SIMD_INLINE Float3 tip_target(Float3 tip, Float3 *velocity, Float3 push, Float3 root, float R,
+                              float dt)
 {
     Float3 target = add(tip, dt, *velocity), s = add(target, -1, root), r = add(tip, -1, root);
     float ss = dot(s, s), rr = dot(r, r), sr = dot(s, r), excess = ss - R * R;
@@ -130,25 +131,25 @@ INLINE Float3 tip_target(Float3 tip, Float3 *velocity, Float3 push, Float3 root,
     ss = dot(s, s), sr = dot(s, r), excess = ss - R * R;
     float disc = sr * sr - rr * excess;
     bool taut = rr > 0.99f * R * R && sr > 0 && disc > 0.1f * sr * sr;
-    float along = taut ? excess / (sr + sqrtf(larger(disc, 0))) : 0;
+    float along = taut ? excess / (sr + sqrtf(simd_max(disc, 0))) : 0;
     Float3 slid = add(s, -along, r);
-    slid = scale(R / sqrtf(larger(dot(slid, slid), 1e-36f)), slid);
+    slid = scale(R / sqrtf(simd_max(dot(slid, slid), 1e-36f)), slid);
     if (excess > 0) target = add(root, 1, slid);
     *velocity = scale(1 / dt, add(target, -1, tip));
     return target;
 }
 
-INLINE Float3 load(const float *row)
+SIMD_INLINE Float3 load(const float *row)
 {
     return (Float3){row[0], row[W], row[2 * W]};
 }
-INLINE void store(float *row, Float3 a)
+SIMD_INLINE void store(float *row, Float3 a)
 {
     row[0] = a.x, row[W] = a.y, row[2 * W] = a.z;
 }
 
 // Kicks the tip and moves it; gives how far the strand's end is from there.
-INLINE Float3 begin_strand(const CpuSplit *split, float *end, Float3 span)
+SIMD_INLINE Float3 begin_strand(const CpuSplit *split, float *end, Float3 span)
 {
     Float3 g = {split->gravity[0], split->gravity[1], split->gravity[2]};
     Float3 root = load(end + ROOT * W), tip = load(end + TIP * W);
@@ -160,13 +161,13 @@ INLINE Float3 begin_strand(const CpuSplit *split, float *end, Float3 span)
 }
 
 // Pulls a link: sign -1 from its end, 1 from its beginning.
-INLINE void pull_link(float *row, float sign, Float3 *move, bool inlined)
+SIMD_INLINE void pull_link(float *row, float sign, Float3 *move, bool inlined)
 {
     store(row, scale(sign, turn(scale(sign, load(row)), row[3 * W], move, inlined)));
 }
 
 // One Newton step towards length 1, for a direction that is off by rounding only.
-INLINE void renormalise(float *row)
+SIMD_INLINE void renormalise(float *row)
 {
     Float3 d = load(row);
     store(row, scale(1.5f - 0.5f * dot(d, d), d));
@@ -191,7 +192,7 @@ static void step_strand(const CpuSplit *split, float *links, float *end)
 
 // --- Strands side by side: the same, with the loop over them innermost.
 
-INLINE void step_tile(const CpuSplit *split, float *links, float *ends)
+SIMD_INLINE void step_tile(const CpuSplit *split, float *links, float *ends)
 {
     int n = (int)split->link_count;
     float x[W] = {0}, y[W] = {0}, z[W] = {0};
@@ -221,19 +222,19 @@ INLINE void step_tile(const CpuSplit *split, float *links, float *ends)
         for (int k = 0; k < W; ++k) renormalise(links + j * LINK_ROWS * W + k);
 }
 
-FOR_ANY static void step_tile_baseline(const CpuSplit *split, float *links, float *ends)
+SIMD_FOR_ANY static void step_tile_baseline(const CpuSplit *split, float *links, float *ends)
 {
     step_tile(split, links, ends);
 }
 
-FOR_AVX2 static void step_tile_avx2(const CpuSplit *split, float *links, float *ends)
+SIMD_FOR_AVX2 static void step_tile_avx2(const CpuSplit *split, float *links, float *ends)
 {
     step_tile(split, links, ends);
 }
 
 static bool has_avx2(void)
 {
-    return processor_kind() >= PROCESSOR_AVX2;
+    return simd_level() >= SIMD_AVX2;
 }
 
 const char *cpu_split_lanes(void)

@@ -4,7 +4,7 @@
 // vector. Compilers make the vectors; what they may make of them is said at the end of this file.
 #include "draw/block_composite.h"
 
-#include "base/lanes.h"
+#include "base/simd.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -71,41 +71,41 @@ typedef struct Touch {
     uint16_t ribbon, cell;
 } Touch;
 
-INLINE float clamp_share(float x)
+SIMD_INLINE float clamp_share(float x)
 {
-    return smaller(larger(x, 0), 1);
+    return simd_min(simd_max(x, 0), 1);
 }
 
 // --- Records, packed as in block.glsl.
 
-INLINE float low_level(uint32_t word)
+SIMD_INLINE float low_level(uint32_t word)
 {
-    return float_of(((word & 0xffff) << 13) + LEAST_LEVEL);
+    return simd_float_of(((word & 0xffff) << 13) + LEAST_LEVEL);
 }
 
-INLINE float high_level(uint32_t word)
+SIMD_INLINE float high_level(uint32_t word)
 {
-    return float_of((word >> 16 << 13) + LEAST_LEVEL);
+    return simd_float_of((word >> 16 << 13) + LEAST_LEVEL);
 }
 
-INLINE float low_short(uint32_t word)
+SIMD_INLINE float low_short(uint32_t word)
 {
-    return float_of(word << 16);
+    return simd_float_of(word << 16);
 }
 
-INLINE float high_short(uint32_t word)
+SIMD_INLINE float high_short(uint32_t word)
 {
-    return float_of(word & 0xffff0000u);
+    return simd_float_of(word & 0xffff0000u);
 }
 
 // The share beyond an end is clamp_share(distance along its bound + this).
-INLINE float bound_offset(float x, float y)
+SIMD_INLINE float bound_offset(float x, float y)
 {
     return x * x + y * y < 4 ? 0.5f : 1;
 }
 
-INLINE void fetch(const RibbonRecord *records, const uint64_t *order, int count,
-                  uint32_t words[WORDS][BATCH])
+SIMD_INLINE void fetch(const RibbonRecord *records, const uint64_t *order, int count,
+                       uint32_t words[WORDS][BATCH])
 {
     for (int i = 0; i < BATCH; ++i) {
         uint32_t record[WORDS];
@@ -114,17 +114,19 @@ INLINE void fetch(const RibbonRecord *records, const uint64_t *order, int count,
     }
 }
 
-INLINE void set_linear(Linear *l, int i, float at, float by_x, float by_y)
+SIMD_INLINE void set_linear(Linear *l, int i, float at, float by_x, float by_y)
 {
     l->at[i] = at, l->by_x[i] = by_x, l->by_y[i] = by_y;
 }
 
 // x, y: the middle of the block's first pixel.
-INLINE void find_line(uint32_t words[WORDS][BATCH], int i, float x, float y, bool solid, Batch *b)
+SIMD_INLINE void find_line(uint32_t words[WORDS][BATCH], int i, float x, float y, bool solid,
+                           Batch *b)
 {
-    float ax = x - float_of(words[FIRST_X][i]), ay = y - float_of(words[FIRST_Y][i]),
-          bx = x - float_of(words[LAST_X][i]), by = y - float_of(words[LAST_Y][i]), way_x = ax - bx,
-          way_y = ay - by, inverse = 1 / sqrtf(larger(way_x * way_x + way_y * way_y, 1e-20f)),
+    float ax = x - simd_float_of(words[FIRST_X][i]), ay = y - simd_float_of(words[FIRST_Y][i]),
+          bx = x - simd_float_of(words[LAST_X][i]), by = y - simd_float_of(words[LAST_Y][i]),
+          way_x = ax - bx, way_y = ay - by,
+          inverse = 1 / sqrtf(simd_max(way_x * way_x + way_y * way_y, 1e-20f)),
           dx = way_x * inverse, dy = way_y * inverse;
     set_linear(&b->across, i, ay * dx - ax * dy, -dy, dx);
     set_linear(&b->along, i, (ax * dx + ay * dy) * inverse, dx * inverse, dy * inverse);
@@ -133,12 +135,13 @@ INLINE void find_line(uint32_t words[WORDS][BATCH], int i, float x, float y, boo
     set_linear(&b->first_share, i, ax * fx + ay * fy + bound_offset(fx, fy), fx, fy);
     set_linear(&b->last_share, i, 1 - bx * lx - by * ly - bound_offset(lx, ly), -lx, -ly);
     float opacity = solid ? 1 : (float)(int)(words[OPACITY][i] & 0xfff) * (1.0f / 4095),
-          steep = larger(fabsf(dx), fabsf(dy)), flat = larger(smaller(fabsf(dx), fabsf(dy)), 1e-3f);
+          steep = simd_max(fabsf(dx), fabsf(dy)),
+          flat = simd_max(simd_min(fabsf(dx), fabsf(dy)), 1e-3f);
     b->inner[i] = 0.5f * (steep - flat), b->outer[i] = 0.5f * (steep + flat);
     b->factor[i] = opacity / steep, b->curve[i] = 0.5f / flat;
 }
 
-INLINE void find_change(uint32_t words[WORDS][BATCH], int i, Batch *b)
+SIMD_INLINE void find_change(uint32_t words[WORDS][BATCH], int i, Batch *b)
 {
     b->half_width[i] = low_level(words[WIDTHS][i]);
     b->widening[i] = high_level(words[WIDTHS][i]) - b->half_width[i];
@@ -148,11 +151,12 @@ INLINE void find_change(uint32_t words[WORDS][BATCH], int i, Batch *b)
     b->change[1][i] = low_level(words[LAST_GB][i]) - b->first[1][i];
     b->first[2][i] = low_level(words[FIRST_B_LAST_R][i]),
     b->change[2][i] = high_level(words[LAST_GB][i]) - b->first[2][i];
-    float change = float_of(words[OPACITY][i] & 0xfffff000u), mean = float_of(words[DEPTH][i]);
+    float change = simd_float_of(words[OPACITY][i] & 0xfffff000u),
+          mean = simd_float_of(words[DEPTH][i]);
     b->near[i] = mean * (1 - 0.5f * change), b->near_change[i] = mean * change;
 }
 
-INLINE int cell_of(uint32_t px, int begin, int size, int cell)
+SIMD_INLINE int cell_of(uint32_t px, int begin, int size, int cell)
 {
     int at = (int)px - begin;
     return (at < 0 ? 0 : at < size ? at : size - 1) / cell;
@@ -161,14 +165,14 @@ INLINE int cell_of(uint32_t px, int begin, int size, int cell)
 // In row r of cells the strip's middle is at the column middle + r * slope, counted so that column
 // c has its pixels' middle at c, and it touches columns whose middles lie within `reach` of that.
 // x, y: the block's corner.
-INLINE void find_strip(uint32_t words[WORDS][BATCH], int i, int x, int y, Batch *b)
+SIMD_INLINE void find_strip(uint32_t words[WORDS][BATCH], int i, int x, int y, Batch *b)
 {
     const float WIDE = 1.0f / CELL_WIDTH;
-    float slope = float_of(words[SLOPE][i]), a_x = float_of(words[FIRST_X][i]) - (float)x,
-          a_y = float_of(words[FIRST_Y][i]) - (float)y;
+    float slope = simd_float_of(words[SLOPE][i]), a_x = simd_float_of(words[FIRST_X][i]) - (float)x,
+          a_y = simd_float_of(words[FIRST_Y][i]) - (float)y;
     b->middle[i] = (a_x + (0.5f * CELL_HEIGHT - a_y) * slope) * WIDE - 0.5f;
     b->slope[i] = slope * (CELL_HEIGHT * WIDE);
-    b->reach[i] = WIDE * (float_of(words[REACH][i]) + 0.5f * (CELL_HEIGHT - 1) * fabsf(slope) +
+    b->reach[i] = WIDE * (simd_float_of(words[REACH][i]) + 0.5f * (CELL_HEIGHT - 1) * fabsf(slope) +
                           0.5f * (CELL_WIDTH - 1));
     b->top[i] = cell_of(words[ROWS][i] & 0xffff, y, BLOCK_HEIGHT, CELL_HEIGHT);
     b->bottom[i] = cell_of(words[ROWS][i] >> 16, y, BLOCK_HEIGHT, CELL_HEIGHT);
@@ -176,7 +180,8 @@ INLINE void find_strip(uint32_t words[WORDS][BATCH], int i, int x, int y, Batch 
     b->right[i] = cell_of(words[COLUMNS][i] >> 16, x, BLOCK_WIDTH, CELL_WIDTH);
 }
 
-INLINE void unpack(uint32_t words[WORDS][BATCH], const Block *block, bool solid, Batch *restrict b)
+SIMD_INLINE void unpack(uint32_t words[WORDS][BATCH], const Block *block, bool solid,
+                        Batch *restrict b)
 {
     for (int i = 0; i < BATCH; ++i) {
         find_line(words, i, (float)block->x + 0.5f, (float)block->y + 0.5f, solid, b);
@@ -189,13 +194,14 @@ INLINE void unpack(uint32_t words[WORDS][BATCH], const Block *block, bool solid,
 
 // Lists the ribbon's touches of cells that are open; returns how many are listed then. Adds without
 // branches, which would be foreseen badly, up to USUAL a row.
-INLINE int list_touches(const Batch *b, int i, const uint8_t *open, Touch *touches, int count)
+SIMD_INLINE int list_touches(const Batch *b, int i, const uint8_t *open, Touch *touches, int count)
 {
     float middle = b->middle[i], slope = b->slope[i], reach = b->reach[i];
     float left = (float)b->left[i], right = (float)b->right[i];
     for (int row = b->top[i]; row <= b->bottom[i]; ++row) {
-        float at = middle + (float)row * slope, low = smaller(larger(at - reach, left), right + 1),
-              high = larger(smaller(at + reach, right), left - 1);
+        float at = middle + (float)row * slope,
+              low = simd_min(simd_max(at - reach, left), right + 1),
+              high = simd_max(simd_min(at + reach, right), left - 1);
         int column = (int)low;
         column += (float)column < low;
         column = column < b->left[i] ? b->left[i] : column; // of what is no number
@@ -212,14 +218,14 @@ INLINE int list_touches(const Batch *b, int i, const uint8_t *open, Touch *touch
     return count;
 }
 
-INLINE float linear(const Linear *l, int i, float x, float y)
+SIMD_INLINE float linear(const Linear *l, int i, float x, float y)
 {
     return l->at[i] + x * l->by_x[i] + y * l->by_y[i];
 }
 
-INLINE float profile_area(const Batch *b, int i, float t)
+SIMD_INLINE float profile_area(const Batch *b, int i, float t)
 {
-    float m = smaller(t, b->outer[i]), u = larger(m - b->inner[i], 0);
+    float m = simd_min(t, b->outer[i]), u = simd_max(m - b->inner[i], 0);
     return m - b->curve[i] * (u * u);
 }
 
@@ -228,24 +234,24 @@ INLINE float profile_area(const Batch *b, int i, float t)
 // of the direction spread by one as wide as the smaller, b, a trapezoid. With its area between the
 // middle and t >= 0, A(t) = (m - max(m - (a - b)/2, 0)^2 / (2 b)) / a where m = min(t, (a + b)/2),
 // the ribbon |across| < h covers A(d + h) - sign(d - h) A(|d - h|) at the distance d.
-INLINE float coverage(const Batch *b, int i, float x, float y, float along)
+SIMD_INLINE float coverage(const Batch *b, int i, float x, float y, float along)
 {
     float across = fabsf(linear(&b->across, i, x, y)),
           half_width = b->half_width[i] + along * b->widening[i], beyond = across - half_width,
           before = profile_area(b, i, fabsf(beyond)),
           covered = profile_area(b, i, across + half_width) - copysignf(before, beyond);
     float first = linear(&b->first_share, i, x, y), last = linear(&b->last_share, i, x, y);
-    return b->factor[i] * covered * clamp_share(smaller(first, last));
+    return b->factor[i] * covered * clamp_share(simd_min(first, last));
 }
 
-INLINE float color(const Batch *b, int i, int channel, float along)
+SIMD_INLINE float color(const Batch *b, int i, int channel, float along)
 {
     return b->first[channel][i] + along * b->change[channel][i];
 }
 
 // x, y: of the cell's first pixel in the block.
-INLINE void lay_under(const Batch *restrict b, int i, float x, float y, BlockForm form,
-                      Cell *restrict cell, const float *restrict hidden)
+SIMD_INLINE void lay_under(const Batch *restrict b, int i, float x, float y, BlockForm form,
+                           Cell *restrict cell, const float *restrict hidden)
 {
     for (int k = 0; k < CELL_PIXELS; ++k) {
         float along = clamp_share(linear(&b->along, i, x + LANE_X[k], y + LANE_Y[k]));
@@ -260,8 +266,8 @@ INLINE void lay_under(const Batch *restrict b, int i, float x, float y, BlockFor
     }
 }
 
-INLINE void keep_nearest(const Batch *restrict b, int i, float x, float y, Cell *restrict cell,
-                         float *restrict hidden)
+SIMD_INLINE void keep_nearest(const Batch *restrict b, int i, float x, float y, Cell *restrict cell,
+                              float *restrict hidden)
 {
     for (int k = 0; k < CELL_PIXELS; ++k) {
         float along = clamp_share(linear(&b->along, i, x + LANE_X[k], y + LANE_Y[k]));
@@ -276,8 +282,8 @@ INLINE void keep_nearest(const Batch *restrict b, int i, float x, float y, Cell 
     }
 }
 
-INLINE void draw(const Block *block, BlockForm form, const Batch *batch, const Touch *touches,
-                 int count)
+SIMD_INLINE void draw(const Block *block, BlockForm form, const Batch *batch, const Touch *touches,
+                      int count)
 {
     for (int t = 0; t < count; ++t) {
         int i = touches[t].ribbon, c = touches[t].cell;
@@ -291,20 +297,21 @@ INLINE void draw(const Block *block, BlockForm form, const Batch *batch, const T
 }
 
 // Finds the cells that something can still be seen through; whether there are any.
-INLINE bool look_through(const Block *block, uint8_t *open)
+SIMD_INLINE bool look_through(const Block *block, uint8_t *open)
 {
     bool any = false;
     for (int c = 0; c < BLOCK_CELLS; ++c) {
         float through = 0;
-        for (int k = 0; k < CELL_PIXELS; ++k) through = larger(through, block->cells[c].through[k]);
+        for (int k = 0; k < CELL_PIXELS; ++k)
+            through = simd_max(through, block->cells[c].through[k]);
         open[c] = through > LEAST;
         any |= open[c];
     }
     return any;
 }
 
-INLINE void composite(const Block *block, BlockForm form, const RibbonRecord *records,
-                      const uint64_t *order, size_t count)
+SIMD_INLINE void composite(const Block *block, BlockForm form, const RibbonRecord *records,
+                           const uint64_t *order, size_t count)
 {
     uint8_t open[BLOCK_CELLS + USUAL];
     uint32_t words[WORDS][BATCH];
@@ -346,19 +353,19 @@ typedef void Composite(const Block *block, BlockForm form, const RibbonRecord *r
     COMPOSITE(name##_nearest, BLOCK_NEAREST, target)                                               \
     static Composite *const name[BLOCK_FORMS] = {name##_open, name##_over_mesh, name##_nearest};
 
-COMPOSITES(any, FOR_ANY)
-COMPOSITES(avx2, FOR_AVX2)
-COMPOSITES(avx512, FOR_AVX512)
+COMPOSITES(any, SIMD_FOR_ANY)
+COMPOSITES(avx2, SIMD_FOR_AVX2)
+COMPOSITES(avx512, SIMD_FOR_AVX512)
 
-void block_composite_on(Processor processor, const Block *block, BlockForm form,
+void block_composite_on(SimdLevel level, const Block *block, BlockForm form,
                         const RibbonRecord *records, const uint64_t *order, size_t count)
 {
-    static Composite *const *const versions[PROCESSOR_KINDS] = {any, avx2, avx512};
-    versions[processor][form](block, form, records, order, count);
+    static Composite *const *const versions[SIMD_LEVELS] = {any, avx2, avx512};
+    versions[level][form](block, form, records, order, count);
 }
 
 void block_composite(const Block *block, BlockForm form, const RibbonRecord *records,
                      const uint64_t *order, size_t count)
 {
-    block_composite_on(processor_kind(), block, form, records, order, count);
+    block_composite_on(simd_level(), block, form, records, order, count);
 }

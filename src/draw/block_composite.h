@@ -3,7 +3,7 @@
 // premultiplied and in linear light.
 #pragma once
 
-#include "base/processor.h"
+#include "base/simd.h"
 #include "draw/ribbon_record.h"
 #include "glsl/draw/draw.h"
 
@@ -40,5 +40,5 @@ void block_composite(const Block *block, BlockForm form, const RibbonRecord *rec
                      const uint64_t *order, size_t count);
 
 // The same as a processor would that is no better than this one: the same bits.
-void block_composite_on(Processor processor, const Block *block, BlockForm form,
+void block_composite_on(SimdLevel level, const Block *block, BlockForm form,
                         const RibbonRecord *records, const uint64_t *order, size_t count);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "draw/block_pixels.h"
 
-#include "base/lanes.h"
+#include "base/simd.h"
 #include "image/tone.h"
 
 #include <math.h>
@@ -20,9 +20,9 @@ static int least_int(int a, int b)
 }
 
 // A half that is finite and not negative.
-INLINE float float_of_half(uint16_t half)
+SIMD_INLINE float float_of_half(uint16_t half)
 {
-    return float_of((uint32_t)(half & 0x7fff) << 13) * 0x1p112f;
+    return simd_float_of((uint32_t)(half & 0x7fff) << 13) * 0x1p112f;
 }
 
 bool block_has_base(const BlockBase *base, int x, int y)
@@ -32,7 +32,7 @@ bool block_has_base(const BlockBase *base, int x, int y)
 }
 
 // The sample's place in the base; -1 outside.
-INLINE int base_at(const BlockBase *base, int x, int y)
+SIMD_INLINE int base_at(const BlockBase *base, int x, int y)
 {
     x -= base->x, y -= base->y;
     return x >= 0 && x < base->width && y >= 0 && y < base->height ? y * base->width + x : -1;
@@ -73,7 +73,7 @@ static void fill_behind(const Block *block, const BlockBase *base, const PixelSt
     }
 }
 
-INLINE void lay_over(const Cell *restrict cell, float light[restrict CHANNELS][CELL_PIXELS])
+SIMD_INLINE void lay_over(const Cell *restrict cell, float light[restrict CHANNELS][CELL_PIXELS])
 {
     for (int k = 0; k < CELL_PIXELS; ++k) {
         float through = cell->through[k];
@@ -88,9 +88,9 @@ INLINE void lay_over(const Cell *restrict cell, float light[restrict CHANNELS][C
 // display.glsl.
 static float depth_shown(const PixelStyle *style, float near)
 {
-    float distance = 1 / larger(near, 1e-20f), from = style->depth_range[0],
+    float distance = 1 / simd_max(near, 1e-20f), from = style->depth_range[0],
           to = style->depth_range[1],
-          share = to > from ? smaller(larger((to - distance) / (to - from), 0), 1) : distance;
+          share = to > from ? simd_min(simd_max((to - distance) / (to - from), 0), 1) : distance;
     return near > 0 ? share : 0;
 }
 
@@ -121,7 +121,7 @@ static void fill_strip(const Block *block, const BlockBase *base, const PixelSty
 }
 
 // Pixels are the means of side x side samples.
-INLINE void average_squares(Strip *strip, int side)
+SIMD_INLINE void average_squares(Strip *strip, int side)
 {
     for (int c = 0; c < CHANNELS; ++c)
         for (int y = 0; y < CELL_HEIGHT / side; ++y)
@@ -141,22 +141,22 @@ static void average(Strip *strip, int side)
 
 // --- Colours, as display.glsl and srgb.glsl have them.
 
-INLINE float tone_mapped(int tone, float c)
+SIMD_INLINE float tone_mapped(int tone, float c)
 {
     if (tone == TONE_REINHARD) {
-        c = larger(c, 0);
+        c = simd_max(c, 0);
         return c * (1 + c / 16) / (1 + c);
     }
     if (tone == TONE_FILMIC) {
-        c = larger(c, 0);
+        c = simd_max(c, 0);
         return c * (2.51f * c + 0.03f) / (c * (2.43f * c + 0.59f) + 0.14f);
     }
     return c;
 }
 
-INLINE float srgb_from_linear(float c)
+SIMD_INLINE float srgb_from_linear(float c)
 {
-    c = smaller(larger(c, 0), 1);
+    c = simd_min(simd_max(c, 0), 1);
     float root2 = sqrtf(c), root4 = sqrtf(root2), root8 = sqrtf(root4);
     float curve =
         0.64236677f * root2 + 0.71210915f * root4 - 0.33686939f * root8 - 0.017563495f * c;
@@ -164,10 +164,10 @@ INLINE float srgb_from_linear(float c)
 }
 
 // Straight alpha, and colours of that tone.
-INLINE void display_as(Strip *restrict strip, int y, int kind)
+SIMD_INLINE void display_as(Strip *restrict strip, int y, int kind)
 {
     for (int x = 0; x < BLOCK_WIDTH; ++x) {
-        float straight = 1 / larger(strip->light[3][y][x], 1e-6f);
+        float straight = 1 / simd_max(strip->light[3][y][x], 1e-6f);
         for (int c = 0; c < 3; ++c) {
             float light = strip->light[c][y][x] * straight;
             strip->light[c][y][x] =
@@ -188,7 +188,7 @@ static void find_levels(const float light[BLOCK_WIDTH], float most_level,
                         int32_t levels[BLOCK_WIDTH])
 {
     for (int x = 0; x < BLOCK_WIDTH; ++x)
-        levels[x] = (int32_t)(smaller(larger(light[x], 0), 1) * most_level + 0.5f);
+        levels[x] = (int32_t)(simd_min(simd_max(light[x], 0), 1) * most_level + 0.5f);
 }
 
 static void store_8(const Strip *strip, int y, int channels, int width, uint8_t *to)
@@ -233,7 +233,7 @@ static bool is_row_clear(const Block *block, int row)
     for (int c = 0; c < BLOCK_CELLS_ACROSS; ++c)
         for (int k = 0; k < CELL_PIXELS; ++k)
             least_through =
-                smaller(least_through, block->cells[row * BLOCK_CELLS_ACROSS + c].through[k]);
+                simd_min(least_through, block->cells[row * BLOCK_CELLS_ACROSS + c].through[k]);
     return least_through == 1;
 }
 

@@ -78,7 +78,7 @@ void cpu_shadow_destroy(CpuShadow *shadow)
 // --- The box.
 
 // Of what is within reach only: other positions are broken.
-INLINE void widen_box(const Cast *cast, const Tile *tile, int j, float box[6][W])
+SIMD_INLINE void widen_box(const Cast *cast, const Tile *tile, int j, float box[6][W])
 {
     const CastParams *params = cast->params;
     const float(*x)[4] = tile->caster->position + tile->at + (size_t)j * W;
@@ -95,12 +95,12 @@ INLINE void widen_box(const Cast *cast, const Tile *tile, int j, float box[6][W]
     }
     for (int i = 0; i < 3; ++i)
         for (int k = 0; k < W; ++k) {
-            box[i][k] = smaller(place[i][k], box[i][k]);
-            box[i + 3][k] = larger(place[i][k], box[i + 3][k]);
+            box[i][k] = simd_min(place[i][k], box[i][k]);
+            box[i + 3][k] = simd_max(place[i][k], box[i + 3][k]);
         }
 }
 
-INLINE void find_box(const Cast *cast, int part)
+SIMD_INLINE void find_box(const Cast *cast, int part)
 {
     float box[6][W];
     int range[2];
@@ -119,8 +119,8 @@ INLINE void find_box(const Cast *cast, int part)
     for (int i = 0; i < 6; ++i) whole[i] = box[i][0];
     for (int k = 1; k < W; ++k)
         for (int i = 0; i < 3; ++i) {
-            whole[i] = smaller(box[i][k], whole[i]);
-            whole[i + 3] = larger(box[i + 3][k], whole[i + 3]);
+            whole[i] = simd_min(box[i][k], whole[i]);
+            whole[i + 3] = simd_max(box[i + 3][k], whole[i + 3]);
         }
 }
 
@@ -128,7 +128,7 @@ INLINE void find_box(const Cast *cast, int part)
 
 // -ln x for 1e-3 <= x <= 1: ln(2^e m) = e ln 2 + 2 artanh((m - 1) / (m + 1)), with m within
 // sqrt(1/2) .. sqrt(2) by the series to the ninth power (1e-9 off).
-INLINE float minus_log(float x)
+SIMD_INLINE float minus_log(float x)
 {
     union {
         float value;
@@ -142,17 +142,17 @@ INLINE float minus_log(float x)
 }
 
 // The optical depth of a segment, in the steps of sums, that each of its points has.
-INLINE uint32_t find_part(float opacity, float width, float size, float unit, float points)
+SIMD_INLINE uint32_t find_part(float opacity, float width, float size, float unit, float points)
 {
-    float covered = smaller(width, 1);
-    float depth = minus_log(larger(1 - opacity * covered, LEAST_LEFT)) / larger(covered, 1e-9f) *
-                  width * size;
-    return (uint32_t)(int)(smaller(larger(depth * unit, 0) / points, 2e9f) + 0.5f);
+    float covered = simd_min(width, 1);
+    float depth = minus_log(simd_max(1 - opacity * covered, LEAST_LEFT)) /
+                  simd_max(covered, 1e-9f) * width * size;
+    return (uint32_t)(int)(simd_min(simd_max(depth * unit, 0) / points, 2e9f) + 0.5f);
 }
 
 // How a ribbon is laid down: points along it, and for wide ones beside each other.
-INLINE void lay_points(const Cast *cast, const Tile *tile, const Places *a, const Places *b,
-                       Points *points)
+SIMD_INLINE void lay_points(const Cast *cast, const Tile *tile, const Places *a, const Places *b,
+                            Points *points)
 {
     float texels = cast->params->texels, unit = cast->params->unit;
     Density density = cast->density;
@@ -162,8 +162,8 @@ INLINE void lay_points(const Cast *cast, const Tile *tile, const Places *a, cons
         float u = b->u[k] - a->u[k], v = b->v[k] - a->v[k], z = b->z[k] - a->z[k];
         float size = sqrtf(u * u + v * v),
               width = 2 * texels * (a->radius[k] + b->radius[k]) / (a->w[k] + b->w[k]);
-        float dense = smaller(size * (width > WIDE ? density.wide : density.thin), MOST_ALONG);
-        float along = larger(ceiling(dense - density.slack), 1), inverse = 1 / along;
+        float dense = simd_min(size * (width > WIDE ? density.wide : density.thin), MOST_ALONG);
+        float along = simd_max(simd_ceil(dense - density.slack), 1), inverse = 1 / along;
         points->step_u[k] = u * inverse;
         points->step_v[k] = v * inverse;
         points->step_z[k] = z * inverse;
@@ -177,15 +177,15 @@ INLINE void lay_points(const Cast *cast, const Tile *tile, const Places *a, cons
         points->count[k] = thin ? (int)along : 0;
     }
     for (int k = 0; k < W; ++k) most = points->count[k] > most ? points->count[k] : most;
-    for (int k = 0; k < W; ++k) widest = larger(points->width[k], widest);
+    for (int k = 0; k < W; ++k) widest = simd_max(points->width[k], widest);
     points->most = most;
     points->wide = widest > WIDE;
 }
 
 // Depths are 0 .. 1, what is not a number 0. One layer is LAYERS sqrt(behind).
-INLINE int layer_of(float behind)
+SIMD_INLINE int layer_of(float behind)
 {
-    return (int)smaller((float)LAYERS * sqrtf(larger(behind, 0)), (float)LAYERS - 1e-3f);
+    return (int)simd_min((float)LAYERS * sqrtf(simd_max(behind, 0)), (float)LAYERS - 1e-3f);
 }
 
 // Where a turn's point of strand k lies: at the edge with nothing to add if beside the map.
@@ -195,19 +195,19 @@ typedef struct Spot {
     bool inside;
 } Spot;
 
-INLINE Spot find_spot(const Points *points, int k, int turn, float edge)
+SIMD_INLINE Spot find_spot(const Points *points, int k, int turn, float edge)
 {
     float u = points->u[k] + (float)turn * points->step_u[k],
           v = points->v[k] + (float)turn * points->step_v[k],
           z = points->z[k] + (float)turn * points->step_z[k];
-    float x = smaller(larger(u, 0), edge), y = smaller(larger(v, 0), edge);
+    float x = simd_min(simd_max(u, 0), edge), y = simd_min(simd_max(v, 0), edge);
     return (Spot){.z = z,
                   .row = (int)y,
                   .column = (int)x,
                   .inside = (u == x) & (v == y) & (turn < points->count[k])};
 }
 
-INLINE void add_points(const Cast *cast, const Points *points, uint32_t *sums)
+SIMD_INLINE void add_points(const Cast *cast, const Points *points, uint32_t *sums)
 {
     const float *depths = cast->shadow->depths;
     int side = cast->shadow->side;
@@ -225,7 +225,7 @@ INLINE void add_points(const Cast *cast, const Points *points, uint32_t *sums)
     }
 }
 
-INLINE void keep_firsts(const Cast *cast, const Points *points, float *first)
+SIMD_INLINE void keep_firsts(const Cast *cast, const Points *points, float *first)
 {
     int side = cast->shadow->coarse;
     float edge = (float)side - 0.5f;
@@ -235,9 +235,9 @@ INLINE void keep_firsts(const Cast *cast, const Points *points, float *first)
         for (int k = 0; k < W; ++k) {
             Spot spot = find_spot(points, k, turn, edge);
             place[k] = spot.row * side + spot.column;
-            depth[k] = spot.inside ? larger(spot.z, 0) : 1;
+            depth[k] = spot.inside ? simd_max(spot.z, 0) : 1;
         }
-        for (int k = 0; k < W; ++k) first[place[k]] = smaller(depth[k], first[place[k]]);
+        for (int k = 0; k < W; ++k) first[place[k]] = simd_min(depth[k], first[place[k]]);
     }
 }
 
@@ -247,9 +247,10 @@ static void lay_wide(const Cast *cast, const Tile *tile, const Points *p, int k,
 {
     const CpuShadow *shadow = cast->shadow;
     int side = cast->deep ? shadow->side : shadow->coarse, along = (int)p->along[k];
-    float across = smaller(ceiling(p->width[k] * cast->density.wide), floorf(MOST / p->along[k])),
+    float across =
+              simd_min(simd_ceil(p->width[k] * cast->density.wide), floorf(MOST / p->along[k])),
           size = p->along[k] * sqrtf(p->step_u[k] * p->step_u[k] + p->step_v[k] * p->step_v[k]),
-          beside = p->width[k] / (larger(size, 1e-9f) * across) * p->along[k];
+          beside = p->width[k] / (simd_max(size, 1e-9f) * across) * p->along[k];
     float step_u = -p->step_v[k] * beside, step_v = p->step_u[k] * beside;
     uint32_t part =
         find_part(tile->opacity[k], p->width[k], size, cast->params->unit, across * p->along[k]);
@@ -264,11 +265,12 @@ static void lay_wide(const Cast *cast, const Tile *tile, const Points *p, int k,
         if (cast->deep)
             sums[(row * LAYERS + layer_of(z - shadow->depths[texel])) * side + (int)u] += part;
         else
-            first[texel] = smaller(larger(z, 0), first[texel]);
+            first[texel] = simd_min(simd_max(z, 0), first[texel]);
     }
 }
 
-INLINE void lay_tile(const Cast *cast, const Tile *tile, bool deep, uint32_t *sums, float *first)
+SIMD_INLINE void lay_tile(const Cast *cast, const Tile *tile, bool deep, uint32_t *sums,
+                          float *first)
 {
     Places ends[2];
     Points points;
@@ -285,7 +287,7 @@ INLINE void lay_tile(const Cast *cast, const Tile *tile, bool deep, uint32_t *su
     }
 }
 
-INLINE void lay_hair(const Cast *cast, int part, bool deep)
+SIMD_INLINE void lay_hair(const Cast *cast, int part, bool deep)
 {
     const CpuShadow *shadow = cast->shadow;
     size_t texels = (size_t)shadow->side * (size_t)shadow->side,
@@ -305,7 +307,7 @@ INLINE void lay_hair(const Cast *cast, int part, bool deep)
     }
 }
 
-INLINE void splat(const Cast *cast, int part)
+SIMD_INLINE void splat(const Cast *cast, int part)
 {
     if (cast->deep)
         lay_hair(cast, part, true);
@@ -313,8 +315,8 @@ INLINE void splat(const Cast *cast, int part)
         lay_hair(cast, part, false);
 }
 
-STAGE(find_box, Cast)
-STAGE(splat, Cast)
+SIMD_STAGE(find_box, Cast)
+SIMD_STAGE(splat, Cast)
 
 bool cpu_shadow_find_box(const CpuShadow *shadow, const CastParams *params, CpuCasters casters,
                          double box[6])

@@ -13,14 +13,14 @@ typedef struct Search {
     float last; // LAYERS - 1e-3: a bound that compilers know makes them jump
 } Search;
 
-INLINE float mix4(float a, float b, float c, float d, float u, float v)
+SIMD_INLINE float mix4(float a, float b, float c, float d, float u, float v)
 {
     float above = a + u * (b - a), below = c + u * (d - c);
     return above + v * (below - above);
 }
 
 // Optical depth before a layer and of its own by share (unpack_layer).
-INLINE float texel_depth(uint32_t bits, float share)
+SIMD_INLINE float texel_depth(uint32_t bits, float share)
 {
     return ((float)(int)(bits & 0xffff) + share * (float)(int)(bits >> 16)) * (1.f / 4096);
 }
@@ -31,14 +31,14 @@ typedef struct Looks {
     int texel[W], layer[W];
 } Looks;
 
-INLINE void find_looks(const Search *search, const Places *places, Looks *looks)
+SIMD_INLINE void find_looks(const Search *search, const Places *places, Looks *looks)
 {
     const float *depths = search->shadow->depths;
     int side = search->shadow->side;
     float edge = (float)side - 1.01f, last = search->last, begin[W];
     for (int k = 0; k < W; ++k) {
-        float u = smaller(larger(places->u[k] - 0.5f, 0), edge),
-              v = smaller(larger(places->v[k] - 0.5f, 0), edge);
+        float u = simd_min(simd_max(places->u[k] - 0.5f, 0), edge),
+              v = simd_min(simd_max(places->v[k] - 0.5f, 0), edge);
         looks->texel[k] = (int)v * side + (int)u;
         looks->u[k] = u - (float)(int)u;
         looks->v[k] = v - (float)(int)v;
@@ -49,21 +49,22 @@ INLINE void find_looks(const Search *search, const Places *places, Looks *looks)
                         looks->v[k]);
     }
     for (int k = 0; k < W; ++k) {
-        float root = sqrtf(positive(places->z[k] - begin[k])),
-              layer = smaller((float)LAYERS * root, last);
+        float root = sqrtf(simd_positive(places->z[k] - begin[k])),
+              layer = simd_min((float)LAYERS * root, last);
         looks->layer[k] = (int)layer;
         looks->share[k] = layer - (float)(int)layer;
     }
 }
 
 // What of its own optical depth a fibre finds in its layer (OWN_SHARE of shadow.glsl).
-INLINE float own_depth(float width, float opacity, float share)
+SIMD_INLINE float own_depth(float width, float opacity, float share)
 {
-    float kept = opacity * smaller(width, 1), beyond = smaller(larger(width - 1, 0), 1);
+    float kept = opacity * simd_min(width, 1), beyond = simd_min(simd_max(width - 1, 0), 1);
     return share * 0.5f * (1 + beyond) * kept * (1 + 0.5f * kept);
 }
 
-INLINE void find_lights(const Search *search, const Tile *tile, const Places *places, float *left)
+SIMD_INLINE void find_lights(const Search *search, const Tile *tile, const Places *places,
+                             float *left)
 {
     const uint32_t *layers = search->layers;
     int side = search->shadow->side, squares = side * side;
@@ -86,10 +87,10 @@ INLINE void find_lights(const Search *search, const Tile *tile, const Places *pl
                       (places->v[k] <= most);
         sum[k] *= inside ? 1.f : 0.f;
     }
-    for (int k = 0; k < W; ++k) left[k] = exp2_of(-1.44269504f * positive(sum[k]));
+    for (int k = 0; k < W; ++k) left[k] = simd_exp2(-1.44269504f * simd_positive(sum[k]));
 }
 
-INLINE void find_light(const Search *search, int part)
+SIMD_INLINE void find_light(const Search *search, int part)
 {
     const CpuCaster *caster = search->caster;
     Places places;
@@ -104,7 +105,7 @@ INLINE void find_light(const Search *search, int part)
     }
 }
 
-STAGE(find_light, Search)
+SIMD_STAGE(find_light, Search)
 
 void cpu_shadow_find_light(CpuShadow *shadow, const CastParams *params, const CpuCaster *caster,
                            float across, const uint32_t *layers, float *left)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "draw/cpu_shadow_maps.h"
 
-#include "base/lanes.h"
+#include "base/simd.h"
 
 enum { LAYERS = SHADOW_LAYERS };
 
@@ -13,7 +13,7 @@ typedef struct Maps {
 
 // A row's sums of all threads, smoothed with their neighbours (1 2 1); beyond the edges stand the
 // outermost again.
-INLINE void gather_row(const CpuShadow *shadow, int row, float *line, float *smooth)
+SIMD_INLINE void gather_row(const CpuShadow *shadow, int row, float *line, float *smooth)
 {
     int side = shadow->side;
     row = row < 0 ? 0 : row >= side ? side - 1 : row;
@@ -32,15 +32,15 @@ INLINE void gather_row(const CpuShadow *shadow, int row, float *line, float *smo
 }
 
 // As pack_layer of shadow_layer.glsl.
-INLINE uint32_t pack_layer(float before, float own)
+SIMD_INLINE uint32_t pack_layer(float before, float own)
 {
     const float steps = 4096, most = 65535;
-    return (uint32_t)(int)smaller(before * steps + 0.5f, most) |
-           (uint32_t)(int)smaller(own * steps + 0.5f, most) << 16;
+    return (uint32_t)(int)simd_min(before * steps + 0.5f, most) |
+           (uint32_t)(int)simd_min(own * steps + 0.5f, most) << 16;
 }
 
 // Smooths the other way and adds up, layer by layer: three rows of all layers to one.
-INLINE void finish_row(const Maps *maps, int row, float *const rows[3], float *before)
+SIMD_INLINE void finish_row(const Maps *maps, int row, float *const rows[3], float *before)
 {
     size_t side = (size_t)maps->shadow->side;
     float scale = 1 / (16 * maps->unit);
@@ -57,7 +57,7 @@ INLINE void finish_row(const Maps *maps, int row, float *const rows[3], float *b
     }
 }
 
-INLINE void finish(const Maps *maps, int part)
+SIMD_INLINE void finish(const Maps *maps, int part)
 {
     const CpuShadow *shadow = maps->shadow;
     size_t side = (size_t)shadow->side;
@@ -75,7 +75,7 @@ INLINE void finish(const Maps *maps, int part)
     }
 }
 
-STAGE(finish, Maps)
+SIMD_STAGE(finish, Maps)
 
 void cpu_shadow_finish(CpuShadow *shadow, float unit, uint32_t *layers)
 {
@@ -88,7 +88,7 @@ void cpu_shadow_merge_firsts(CpuShadow *shadow)
     size_t texels = (size_t)shadow->coarse * (size_t)shadow->coarse;
     for (size_t part = 1; part < (size_t)shadow->parts; ++part)
         for (size_t i = 0; i < texels; ++i)
-            shadow->first[i] = smaller(shadow->first[part * texels + i], shadow->first[i]);
+            shadow->first[i] = simd_min(shadow->first[part * texels + i], shadow->first[i]);
 }
 
 static int within(int i, int count)
@@ -102,8 +102,8 @@ static void find_least(const float *in, float *out, int count, size_t stride)
 {
     for (int i = -1; i <= count; ++i) {
         float here = in[(size_t)within(i, count) * stride];
-        here = smaller(in[(size_t)within(i - 1, count) * stride], here);
-        out[(size_t)(i + 1) * stride] = smaller(in[(size_t)within(i + 1, count) * stride], here);
+        here = simd_min(in[(size_t)within(i - 1, count) * stride], here);
+        out[(size_t)(i + 1) * stride] = simd_min(in[(size_t)within(i + 1, count) * stride], here);
     }
 }
 

@@ -2,7 +2,7 @@
 // Tiles of strands that stand in the light, one strand in each lane, for cpu_shadow*.c alone.
 #pragma once
 
-#include "base/lanes.h"
+#include "base/simd.h"
 #include "draw/cpu_shadow.h"
 
 #include <string.h>
@@ -23,7 +23,7 @@ typedef struct Tile {
 } Tile;
 
 // The radius that the paint of a particle has, as a share of the material's.
-INLINE float share_of(const CpuCaster *caster, size_t at)
+SIMD_INLINE float share_of(const CpuCaster *caster, size_t at)
 {
     float share;
     memcpy(&share, &caster->paint[at][2], sizeof share);
@@ -31,7 +31,7 @@ INLINE float share_of(const CpuCaster *caster, size_t at)
 }
 
 // Particle j of the tile's strands. What lies beside a lamp or behind it goes far away.
-INLINE void find_places(const CastParams *params, const Tile *tile, int j, Places *places)
+SIMD_INLINE void find_places(const CastParams *params, const Tile *tile, int j, Places *places)
 {
     const float(*rows)[4] = (const float(*)[4])params->from_world;
     const CpuCaster *caster = tile->caster;
@@ -43,17 +43,17 @@ INLINE void find_places(const CastParams *params, const Tile *tile, int j, Place
     for (int k = 0; k < W; ++k) {
         float p = x[k][0], q = x[k][1], r = x[k][2], one = x[k][3];
         float w = rows[3][0] * p + rows[3][1] * q + rows[3][2] * r + rows[3][3] * one,
-              inverse = 1 / larger(w, 1e-6f);
+              inverse = 1 / simd_max(w, 1e-6f);
         float u = rows[0][0] * p + rows[0][1] * q + rows[0][2] * r + rows[0][3] * one,
               v = rows[1][0] * p + rows[1][1] * q + rows[1][2] * r + rows[1][3] * one;
         places->u[k] = w > 0 ? u * inverse : -1e6f;
         places->v[k] = w > 0 ? v * inverse : -1e6f;
         places->z[k] = rows[2][0] * p + rows[2][1] * q + rows[2][2] * r + rows[2][3] * one;
-        places->w[k] = larger(w, 1e-6f);
+        places->w[k] = simd_max(w, 1e-6f);
     }
-    for (int k = 0; k < W; ++k) places->radius[k] = larger(tile->radius[k] * share, 1e-9f);
+    for (int k = 0; k < W; ++k) places->radius[k] = simd_max(tile->radius[k] * share, 1e-9f);
     for (int k = 0; caster->paint && k < W; ++k)
-        places->radius[k] = larger(tile->radius[k] * share_of(caster, at + (size_t)k), 1e-9f);
+        places->radius[k] = simd_max(tile->radius[k] * share_of(caster, at + (size_t)k), 1e-9f);
 }
 
 // Tile `number` of a caster.

@@ -259,9 +259,9 @@ static void every_processor_gives_the_same_bits(void **state)
     static Cell expected[BLOCK_CELLS];
     make_ribbons(6, MOST, 1, 0.5);
     for (int form = 0; form < BLOCK_FORMS; ++form)
-        for (int p = 0; p <= (int)processor_kind(); ++p) {
+        for (int p = 0; p <= (int)simd_level(); ++p) {
             clear_block(form == BLOCK_OPEN ? 0 : 0.5f);
-            block_composite_on((Processor)p, &BLOCK, (BlockForm)form, records, order, MOST);
+            block_composite_on((SimdLevel)p, &BLOCK, (BlockForm)form, records, order, MOST);
             if (p == 0) memcpy(expected, cells, sizeof cells);
             assert_memory_equal(cells, expected, sizeof cells);
         }

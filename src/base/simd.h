@@ -1,36 +1,55 @@
 // SPDX-License-Identifier: MIT
-// Arithmetic for loops over lanes that compilers turn into vector instructions, and the same loops
-// for wider vectors. For cpu_*.c and block_*.c; such loops are innermost and have no
-// branches. -ffp-contract=off and no function of libm keep the bits the same whatever the vectors
-// are.
+// Loops over lanes that compilers turn into vector instructions: arithmetic for them, and the same
+// loops built once for each kind of vectors. Such loops are innermost and have no branches.
+// -ffp-contract=off and no function of libm keep the bits the same whatever the vectors are.
 #pragma once
 
 #include "base/parallel.h"
-#include "base/processor.h"
 
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
 
-#define INLINE static inline __attribute__((always_inline))
+// The vectors that a processor has.
+typedef enum SimdLevel {
+    SIMD_ANY,    // what every processor of its family has
+    SIMD_AVX2,   // 8 floats, fused multiplication and addition
+    SIMD_AVX512, // the same with twice as many registers
+    SIMD_LEVELS
+} SimdLevel;
 
-// run_NAME(data, parts): NAME(const TYPE *data, int part), an INLINE function, for each part on
-// threads (see parallel.h), by the best vectors that the processor has.
-#define STAGE(name, type)                                                                          \
-    FOR_ANY static void name##_any(void *data, int part)                                           \
+// The best level of this processor.
+SimdLevel simd_level(void);
+
+// Attributes of a function for each level; elsewhere than on x86 they say nothing.
+#define SIMD_FOR_ANY
+#if defined __x86_64__
+#define SIMD_FOR_AVX2   __attribute__((target("avx2,fma")))
+#define SIMD_FOR_AVX512 __attribute__((target("avx2,fma,avx512vl,avx512dq,avx512bw")))
+#else
+#define SIMD_FOR_AVX2
+#define SIMD_FOR_AVX512
+#endif
+
+#define SIMD_INLINE static inline __attribute__((always_inline))
+
+// run_NAME(data, parts): NAME(const TYPE *data, int part), a SIMD_INLINE function, for each part
+// on threads (see parallel.h), by the best vectors that the processor has.
+#define SIMD_STAGE(name, type)                                                                     \
+    SIMD_FOR_ANY static void name##_any(void *data, int part)                                      \
     {                                                                                              \
         name((const type *)data, part);                                                            \
     }                                                                                              \
-    FOR_AVX2 static void name##_avx2(void *data, int part)                                         \
+    SIMD_FOR_AVX2 static void name##_avx2(void *data, int part)                                    \
     {                                                                                              \
         name((const type *)data, part);                                                            \
     }                                                                                              \
     static void run_##name(type *data, int parts)                                                  \
     {                                                                                              \
-        parallel_run(parts, processor_kind() >= PROCESSOR_AVX2 ? name##_avx2 : name##_any, data);  \
+        parallel_run(parts, simd_level() >= SIMD_AVX2 ? name##_avx2 : name##_any, data);           \
     }
 
-INLINE float float_of(uint32_t bits)
+SIMD_INLINE float simd_float_of(uint32_t bits)
 {
     float value;
     memcpy(&value, &bits, sizeof value);
@@ -38,24 +57,24 @@ INLINE float float_of(uint32_t bits)
 }
 
 // The larger, the smaller: one instruction; an a that is not a number becomes the bound.
-INLINE float larger(float a, float least)
+SIMD_INLINE float simd_max(float a, float least)
 {
     return a > least ? a : least;
 }
-INLINE float smaller(float a, float most)
+SIMD_INLINE float simd_min(float a, float most)
 {
     return a < most ? a : most;
 }
 
 // The larger of x and 0, without a comparison: one whose outcome tells that of the next becomes a
 // jump, and its loop does not become vector instructions.
-INLINE float positive(float x)
+SIMD_INLINE float simd_positive(float x)
 {
     return 0.5f * (x + fabsf(x));
 }
 
 // The least whole number that isn't less, of those that an int holds.
-INLINE float ceiling(float x)
+SIMD_INLINE float simd_ceil(float x)
 {
     float whole = (float)(int)x;
     return whole < x ? whole + 1 : whole;
@@ -63,7 +82,7 @@ INLINE float ceiling(float x)
 
 // 2^x for -60 <= x <= 0: of the fraction -1/2 .. 1/2 the Taylor series to the sixth power (1.2e-7
 // off), the rest as exponent bits.
-INLINE float exp2_of(float x)
+SIMD_INLINE float simd_exp2(float x)
 {
     int whole = (int)(x - 0.5f);
     float f = (x - (float)whole) * 0.693147181f;
