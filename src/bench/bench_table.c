@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "bench/bench_table.h"
 #include "base/bytes.h"
-#include "base/json_write.h"
+#include "base/json.h"
 
 #include "version.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "bench/motion.h"
 #include "base/csv.h"
-#include "base/json_place.h"
+#include "base/json.h"
 
 #include <glob.h>
 #include <math.h>
@@ -26,27 +26,27 @@ double motion_root(const Motion *motion, double t)
     return motion->root_amplitude * (1 - cos(turn * motion->root_frequency * t));
 }
 
-static Result read_number(const Place *place, const json_t *object, const char *key, double least,
-                          double most, double *value, Error *error)
+static Result read_number(const JsonPlace *place, const json_t *object, const char *key,
+                          double least, double most, double *value, Error *error)
 {
-    const Place member = {place, key, 0};
-    return place_read_number(&member, json_object_get(object, key), least, most, "a number", value,
-                             error);
+    const JsonPlace member = {place, key, 0};
+    return json_read_number(&member, json_object_get(object, key), least, most, "a number", value,
+                            error);
 }
 
-static Result read_vector(const Place *place, const json_t *object, const char *key, float *value,
-                          Error *error)
+static Result read_vector(const JsonPlace *place, const json_t *object, const char *key,
+                          float *value, Error *error)
 {
-    const Place member = {place, key, 0};
-    return place_read_vector(&member, json_object_get(object, key), 3, -1e6, 1e6, "a vector", value,
-                             error);
+    const JsonPlace member = {place, key, 0};
+    return json_read_vector(&member, json_object_get(object, key), 3, -1e6, 1e6, "a vector", value,
+                            error);
 }
 
-static Result read_description(Motion *motion, const Place *place, const json_t *object,
+static Result read_description(Motion *motion, const JsonPlace *place, const json_t *object,
                                Error *error)
 {
     const json_t *root = json_object_get(object, "root_motion");
-    const Place root_place = {place, "root_motion", 0};
+    const JsonPlace root_place = {place, "root_motion", 0};
     double n = 0;
     Result result = read_number(place, object, "n", 2, MOST_PARTICLES, &n, error);
     motion->n = (int)n;
@@ -120,7 +120,7 @@ Result motion_read(Motion *motion, const char *folder, const char *name, Error *
         return error_set(error, RESULT_BAD_INPUT, "%s:%d: %s", path, problem.line, problem.text);
     motion->name = strdup(name);
     Result result = motion->name
-                        ? read_description(motion, &(Place){.key = path}, object, error)
+                        ? read_description(motion, &(JsonPlace){.key = path}, object, error)
                         : error_set(error, RESULT_FAILED, "%s: no memory for its name", path);
     snprintf(path, sizeof path, "%s/%s.csv", folder, name);
     if (result == RESULT_OK)

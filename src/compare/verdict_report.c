@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "compare/verdict_report.h"
 
-#include "base/json_write.h"
+#include "base/json.h"
 #include "base/outfile.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "convert/convert_report.h"
 
-#include "base/json_write.h"
+#include "base/json.h"
 #include "strands/strands_features.h"
 
 // --- Text.

@@ -3,7 +3,7 @@
 // all guides, and which strands of which files they are.
 #pragma once
 
-#include "base/chunk_file.h"
+#include "base/chunk.h"
 
 #include <stdbool.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "run/snapshot.h"
-#include "base/chunk_file.h"
+#include "base/chunk.h"
 #include "base/outfile.h"
 #include "run/cache_scene.h"
 #include "sim/simulation_state.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "run/stats.h"
 
-#include "base/json_write.h"
+#include "base/json.h"
 #include "gpu/shader.h"
 
 #include "version.h"

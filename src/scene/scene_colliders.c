@@ -17,64 +17,64 @@ static ColliderKind find_kind(const json_t *value)
     return count == 1 ? found : COLLIDER_KINDS;
 }
 
-static Result read_frame(Collider *collider, const Place *parent, const json_t *object,
+static Result read_frame(Collider *collider, const JsonPlace *parent, const json_t *object,
                          Error *error)
 {
     const json_t *value = json_object_get(object, "frame");
     if (!value) return RESULT_OK;
-    Place place = {.parent = parent, .key = "frame"};
+    JsonPlace place = {.parent = parent, .key = "frame"};
     int index = 0;
     if (collider->kind == COLLIDER_GROUND || collider->kind == COLLIDER_PLANE)
-        return place_fail(&place, error, "a %s always stands in the world",
-                          collider_word(collider->kind));
-    Result result = place_read_choice(&place, value, FRAME_WORDS, &index, error);
+        return json_fail(&place, error, "a %s always stands in the world",
+                         collider_word(collider->kind));
+    Result result = json_read_choice(&place, value, FRAME_WORDS, &index, error);
     collider->world = index == 1;
     return result;
 }
 
-static Result read_collider(Scene *scene, const Place *place, const json_t *value, Error *error)
+static Result read_collider(Scene *scene, const JsonPlace *place, const json_t *value, Error *error)
 {
     const char *names[COLLIDER_KINDS + 2] = {0};
     for (ColliderKind kind = 0; kind < COLLIDER_KINDS; ++kind) names[kind] = collider_word(kind);
     names[COLLIDER_KINDS] = "frame";
-    Result result = place_check_object(place, value, names, error);
+    Result result = json_check_object(place, value, names, error);
     if (result != RESULT_OK) return result;
     Collider collider = {.kind = find_kind(value)};
     if (collider.kind == COLLIDER_KINDS)
-        return place_fail(place, error, "expected one key of sphere, capsule, ground and plane");
+        return json_fail(place, error, "expected one key of sphere, capsule, ground and plane");
     const char *word = collider_word(collider.kind);
-    Place numbers = {.parent = place, .key = word};
+    JsonPlace numbers = {.parent = place, .key = word};
     const json_t *at = json_object_get(value, word);
     uint32_t count = collider_numbers(collider.kind);
     char expected[48];
     snprintf(expected, sizeof expected, "an array of %u numbers", count);
     double number = 0;
-    result = count == 1 ? place_read_number(&numbers, at, -NUMBER_MAX, NUMBER_MAX, "a height",
-                                            &number, error)
-                        : place_read_vector(&numbers, at, count, -NUMBER_MAX, NUMBER_MAX, expected,
-                                            collider.numbers, error);
+    result = count == 1 ? json_read_number(&numbers, at, -NUMBER_MAX, NUMBER_MAX, "a height",
+                                           &number, error)
+                        : json_read_vector(&numbers, at, count, -NUMBER_MAX, NUMBER_MAX, expected,
+                                           collider.numbers, error);
     if (count == 1) collider.numbers[0] = (float)number;
     if (result == RESULT_OK) result = read_frame(&collider, place, value, error);
     if (result != RESULT_OK) return result;
     Error why = {{0}};
     result = colliders_add(&scene->colliders, &collider, &why);
     if (result == RESULT_OK) return result;
-    return result == RESULT_USAGE ? place_fail(place, error, "%s", why.text)
+    return result == RESULT_USAGE ? json_fail(place, error, "%s", why.text)
                                   : error_set(error, result, "%s", why.text);
 }
 
-Result scene_read_colliders(Scene *scene, const Place *place, const json_t *value, Error *error)
+Result scene_read_colliders(Scene *scene, const JsonPlace *place, const json_t *value, Error *error)
 {
     if (json_is_string(value)) {
         Error why = {{0}};
         Result result = colliders_parse(&scene->colliders, json_string_value(value), &why);
-        if (result == RESULT_USAGE) return place_fail(place, error, "%s", why.text);
+        if (result == RESULT_USAGE) return json_fail(place, error, "%s", why.text);
         return result == RESULT_OK ? result : error_set(error, result, "%s", why.text);
     }
-    if (!json_is_array(value)) return place_refuse(place, value, "an array of shapes", error);
+    if (!json_is_array(value)) return json_refuse(place, value, "an array of shapes", error);
     Result result = RESULT_OK;
     for (size_t i = 0; i < json_array_size(value) && result == RESULT_OK; ++i) {
-        Place element = {.parent = place, .index = i};
+        JsonPlace element = {.parent = place, .index = i};
         result = read_collider(scene, &element, json_array_get(value, i), error);
     }
     return result;

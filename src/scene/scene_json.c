@@ -12,7 +12,7 @@
 // A member of the file that is no parameter.
 typedef struct Part {
     const char *key;
-    Result (*read)(Scene *scene, const Place *place, const json_t *value, Error *error);
+    Result (*read)(Scene *scene, const JsonPlace *place, const json_t *value, Error *error);
 } Part;
 
 static const Part PARTS[] = {{"head", scene_read_head},
@@ -24,7 +24,7 @@ enum { PART_COUNT = sizeof PARTS / sizeof PARTS[0] };
 // The file being read. `root` is its place, `folder` what stands before the last '/' in its path
 // and that '/', or "".
 typedef struct Document {
-    Place root;
+    JsonPlace root;
     char *folder;
     const json_t *json;
 } Document;
@@ -59,17 +59,17 @@ static const char **list_keys(bool top)
     return names;
 }
 
-static Result check_keys(bool top, const Place *place, const json_t *object, Error *error)
+static Result check_keys(bool top, const JsonPlace *place, const json_t *object, Error *error)
 {
     for (size_t i = 0; !top && i < PARAM_COUNT; i++) {
         const ParamInfo *info = &PARAM_TABLE[i];
         if (info->scope == SCOPE_RUN && json_object_get(object, info->name))
-            return place_fail(place, error, "'%s' belongs to the top level, not to a section",
-                              info->name);
+            return json_fail(place, error, "'%s' belongs to the top level, not to a section",
+                             info->name);
     }
     const char **names = list_keys(top);
     if (!names) return error_set(error, RESULT_FAILED, "out of memory");
-    Result result = place_check_object(place, object, names, error);
+    Result result = json_check_object(place, object, names, error);
     free(names);
     return result;
 }
@@ -77,7 +77,7 @@ static Result check_keys(bool top, const Place *place, const json_t *object, Err
 // The parameters of one scope among the members of `object`. Keyframes of forces and the list of
 // colliders are for the caller.
 static Result read_params(const Document *document, ParamScope scope, void *params,
-                          const Place *parent, const json_t *object, Error *error)
+                          const JsonPlace *parent, const json_t *object, Error *error)
 {
     for (size_t i = 0; i < PARAM_COUNT; i++) {
         const ParamInfo *info = &PARAM_TABLE[i];
@@ -85,7 +85,7 @@ static Result read_params(const Document *document, ParamScope scope, void *para
         bool keys = json_is_object(value) && info->kind == PARAM_VEC3;
         bool list = json_is_array(value) && info->kind == PARAM_TEXT;
         if (info->scope != scope || !value || keys || list) continue;
-        Place place = {.parent = parent, .key = info->name};
+        JsonPlace place = {.parent = parent, .key = info->name};
         Result result = scene_read_param(info, params, document->folder, &place, value, error);
         if (result != RESULT_OK) return result;
     }
@@ -93,15 +93,15 @@ static Result read_params(const Document *document, ParamScope scope, void *para
 }
 
 static Result read_section(Scene *scene, const Document *document, const SectionParams *defaults,
-                           const Place *place, const json_t *object, Error *error)
+                           const JsonPlace *place, const json_t *object, Error *error)
 {
     Result result = check_keys(false, place, object, error);
     if (result != RESULT_OK) return result;
     const json_t *file = json_object_get(object, "file");
-    if (!file) return place_fail(place, error, "expected a key 'file'");
-    Place file_place = {.parent = place, .key = "file"};
+    if (!file) return json_fail(place, error, "expected a key 'file'");
+    JsonPlace file_place = {.parent = place, .key = "file"};
     if (!json_is_string(file) || json_string_length(file) == 0)
-        return place_refuse(&file_place, file, "the path of a hair file", error);
+        return json_refuse(&file_place, file, "the path of a hair file", error);
     char *path = scene_join_path(document->folder, json_string_value(file));
     if (!path) return error_set(error, RESULT_FAILED, "out of memory");
     result = scene_add_section(scene, path, defaults, error);
@@ -115,11 +115,11 @@ static Result read_section(Scene *scene, const Document *document, const Section
 static Result read_sections(Scene *scene, const Document *document, Error *error)
 {
     const json_t *array = json_object_get(document->json, "sections");
-    if (!array) return place_fail(&document->root, error, "expected a key 'sections'");
-    Place place = {.parent = &document->root, .key = "sections"};
+    if (!array) return json_fail(&document->root, error, "expected a key 'sections'");
+    JsonPlace place = {.parent = &document->root, .key = "sections"};
     size_t count = json_array_size(array);
     if (!json_is_array(array) || count == 0 || count > SCENE_MAX_SECTIONS)
-        return place_refuse(&place, array, "an array of 1 to 1024 sections", error);
+        return json_refuse(&place, array, "an array of 1 to 1024 sections", error);
     SectionParams defaults;
     Result result = params_create_section(&defaults, error);
     if (result == RESULT_OK)
@@ -128,7 +128,7 @@ static Result read_sections(Scene *scene, const Document *document, Error *error
         result =
             read_params(document, SCOPE_SECTION, &defaults, &document->root, document->json, error);
     for (size_t i = 0; result == RESULT_OK && i < count; i++) {
-        Place element = {.parent = &place, .index = i};
+        JsonPlace element = {.parent = &place, .index = i};
         result =
             read_section(scene, document, &defaults, &element, json_array_get(array, i), error);
     }
@@ -141,7 +141,7 @@ static Result read_force(Keyframes *keys, const char *name, const Document *docu
 {
     const json_t *value = json_object_get(document->json, name);
     if (!json_is_object(value)) return RESULT_OK;
-    Place place = {.parent = &document->root, .key = name};
+    JsonPlace place = {.parent = &document->root, .key = name};
     return scene_read_vector_keys(keys, params_find(name), &place, value, error);
 }
 
@@ -149,8 +149,8 @@ static Result refuse_both(const Document *document, const char *name, const Keyf
                           Error *error)
 {
     if (keys->count == 0 || !json_object_get(document->json, name)) return RESULT_OK;
-    Place place = {.parent = &document->root, .key = name};
-    return place_fail(&place, error, "given here and by the keys of 'camera'");
+    JsonPlace place = {.parent = &document->root, .key = name};
+    return json_fail(&place, error, "given here and by the keys of 'camera'");
 }
 
 static Result read_parts(Scene *scene, const Document *document, Error *error)
@@ -159,7 +159,7 @@ static Result read_parts(Scene *scene, const Document *document, Error *error)
     if (result == RESULT_OK) result = read_force(&scene->wind, "wind", document, error);
     for (size_t i = 0; result == RESULT_OK && i < PART_COUNT; i++) {
         const json_t *value = json_object_get(document->json, PARTS[i].key);
-        Place place = {.parent = &document->root, .key = PARTS[i].key};
+        JsonPlace place = {.parent = &document->root, .key = PARTS[i].key};
         if (value) result = PARTS[i].read(scene, &place, value, error);
     }
     if (result == RESULT_OK) result = refuse_both(document, "eye", &scene->eye, error);

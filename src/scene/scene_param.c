@@ -91,15 +91,15 @@ char *scene_join_path(const char *folder, const char *path)
     return asprintf(&joined, "%s%s", folder, path) < 0 ? NULL : joined;
 }
 
-Result scene_read_param(const ParamInfo *info, void *params, const char *folder, const Place *place,
-                        const json_t *value, Error *error)
+Result scene_read_param(const ParamInfo *info, void *params, const char *folder,
+                        const JsonPlace *place, const json_t *value, Error *error)
 {
     char buffer[TEXT_SIZE];
     const char *text = value_to_text(info->kind, value, buffer);
     if (!text) {
         char expected[200];
         describe_value(info, expected, sizeof expected);
-        return place_refuse(place, value, expected, error);
+        return json_refuse(place, value, expected, error);
     }
     char *path = NULL;
     if (info->kind == PARAM_PATH) {
@@ -109,7 +109,7 @@ Result scene_read_param(const ParamInfo *info, void *params, const char *folder,
     Error why = {{0}};
     Result result = params_parse(info, params, path ? path : text, &why);
     free(path);
-    if (result == RESULT_USAGE) return place_fail(place, error, "%s", why.text);
+    if (result == RESULT_USAGE) return json_fail(place, error, "%s", why.text);
     return result == RESULT_OK ? result : error_set(error, result, "%s", why.text);
 }
 

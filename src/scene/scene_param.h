@@ -5,14 +5,14 @@
 // another form as a flag (a color, auto, a unit, a word, WxH) is a string of that form.
 #pragma once
 
-#include "base/json_place.h"
+#include "base/json.h"
 #include "base/params.h"
 
 // Reads `value` into the row's field of `params`. A path that is not absolute is put behind
 // `folder` ("" or ended by '/'; NULL leaves paths as they are). RESULT_BAD_INPUT with the place if
 // the value has the wrong type or is out of range, RESULT_FAILED when memory is short.
-Result scene_read_param(const ParamInfo *info, void *params, const char *folder, const Place *place,
-                        const json_t *value, Error *error);
+Result scene_read_param(const ParamInfo *info, void *params, const char *folder,
+                        const JsonPlace *place, const json_t *value, Error *error);
 
 // `path` behind `folder`, as above; the caller frees it. NULL when memory is short.
 char *scene_join_path(const char *folder, const char *path);

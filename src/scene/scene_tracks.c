@@ -25,18 +25,18 @@ typedef struct Member {
     double scale;            // from the file's unit to the struct's
 } Member;
 
-static Result read_member(const Member *member, const Place *parent, const json_t *value,
+static Result read_member(const Member *member, const JsonPlace *parent, const json_t *value,
                           double time, Error *error)
 {
-    Place place = {.parent = parent, .key = member->name};
+    JsonPlace place = {.parent = parent, .key = member->name};
     float numbers[KEYFRAMES_MAX_WIDTH] = {0};
     double number = 0;
     Result result =
         member->width == 1
-            ? place_read_number(&place, value, member->minimum, member->maximum, "a number",
-                                &number, error)
-            : place_read_vector(&place, value, member->width, member->minimum, member->maximum,
-                                "an array of three numbers", numbers, error);
+            ? json_read_number(&place, value, member->minimum, member->maximum, "a number", &number,
+                               error)
+            : json_read_vector(&place, value, member->width, member->minimum, member->maximum,
+                               "an array of three numbers", numbers, error);
     if (result != RESULT_OK) return result;
     if (member->width == 1) numbers[0] = (float)number;
     for (uint32_t i = 0; i < member->width; i++)
@@ -46,26 +46,26 @@ static Result read_member(const Member *member, const Place *parent, const json_
 
 // One key: its time, later than `*time`, which it replaces, and at least one member. A member that
 // a key leaves out runs on between the keys that have it.
-static Result read_key(const Member *members, size_t count, const Place *place, const json_t *key,
-                       double *time, Error *error)
+static Result read_key(const Member *members, size_t count, const JsonPlace *place,
+                       const json_t *key, double *time, Error *error)
 {
     const char *names[MEMBERS_MAX + 2] = {"time"};
     for (size_t i = 0; i < count; i++) names[1 + i] = members[i].name;
-    Result result = place_check_object(place, key, names, error);
+    Result result = json_check_object(place, key, names, error);
     if (result != RESULT_OK) return result;
 
     const json_t *time_value = json_object_get(key, "time");
-    if (!time_value) return place_fail(place, error, "expected a key 'time' (s)");
-    Place time_place = {.parent = place, .key = "time"};
+    if (!time_value) return json_fail(place, error, "expected a key 'time' (s)");
+    JsonPlace time_place = {.parent = place, .key = "time"};
     double before = *time;
     result =
-        place_read_number(&time_place, time_value, -TIME_MAX_S, TIME_MAX_S, "seconds", time, error);
+        json_read_number(&time_place, time_value, -TIME_MAX_S, TIME_MAX_S, "seconds", time, error);
     if (result != RESULT_OK) return result;
     if (*time <= before)
-        return place_fail(&time_place, error, "got %.9g, expected more than %.9g, the key before",
-                          *time, before);
+        return json_fail(&time_place, error, "got %.9g, expected more than %.9g, the key before",
+                         *time, before);
     if (json_object_size(key) == 1)
-        return place_fail(place, error, "expected a key '%s' beside 'time'", members[0].name);
+        return json_fail(place, error, "expected a key '%s' beside 'time'", members[0].name);
 
     for (size_t i = 0; i < count; i++) {
         const json_t *value = json_object_get(key, members[i].name);
@@ -75,33 +75,33 @@ static Result read_key(const Member *members, size_t count, const Place *place, 
     return RESULT_OK;
 }
 
-static Result read_interpolation(const Place *parent, const json_t *track, Interpolation *read,
+static Result read_interpolation(const JsonPlace *parent, const json_t *track, Interpolation *read,
                                  Error *error)
 {
     const json_t *value = json_object_get(track, "interpolation");
     if (!value) return RESULT_OK;
-    Place place = {.parent = parent, .key = "interpolation"};
+    JsonPlace place = {.parent = parent, .key = "interpolation"};
     int index = 0;
-    Result result = place_read_choice(&place, value, INTERPOLATION_WORDS, &index, error);
+    Result result = json_read_choice(&place, value, INTERPOLATION_WORDS, &index, error);
     *read = (Interpolation)index;
     return result;
 }
 
 // "keys" and "interpolation" of a track; other members of `track` are left to the caller.
-static Result read_track(const Member *members, size_t count, const Place *place,
+static Result read_track(const Member *members, size_t count, const JsonPlace *place,
                          const json_t *track, Error *error)
 {
     Interpolation interpolation = INTERPOLATION_SMOOTH;
     Result result = read_interpolation(place, track, &interpolation, error);
     if (result != RESULT_OK) return result;
     const json_t *keys = json_object_get(track, "keys");
-    if (!keys) return place_fail(place, error, "expected a key 'keys'");
-    Place keys_place = {.parent = place, .key = "keys"};
+    if (!keys) return json_fail(place, error, "expected a key 'keys'");
+    JsonPlace keys_place = {.parent = place, .key = "keys"};
     if (!json_is_array(keys) || json_array_size(keys) == 0)
-        return place_refuse(&keys_place, keys, "an array of one or more keys", error);
+        return json_refuse(&keys_place, keys, "an array of one or more keys", error);
     double time = -INFINITY;
     for (size_t i = 0; i < json_array_size(keys); i++) {
-        Place key_place = {.parent = &keys_place, .index = i};
+        JsonPlace key_place = {.parent = &keys_place, .index = i};
         result = read_key(members, count, &key_place, json_array_get(keys, i), &time, error);
         if (result != RESULT_OK) return result;
     }
@@ -109,41 +109,42 @@ static Result read_track(const Member *members, size_t count, const Place *place
     return RESULT_OK;
 }
 
-Result scene_read_vector_keys(Keyframes *keys, const ParamInfo *info, const Place *place,
+Result scene_read_vector_keys(Keyframes *keys, const ParamInfo *info, const JsonPlace *place,
                               const json_t *value, Error *error)
 {
     static const char *const NAMES[] = {"keys", "interpolation", NULL};
     Member member = {"value", keys, 3, info->minimum, info->maximum, 1.0};
-    Result result = place_check_object(place, value, NAMES, error);
+    Result result = json_check_object(place, value, NAMES, error);
     return result == RESULT_OK ? read_track(&member, 1, place, value, error) : result;
 }
 
 // Three formulas of time; a number stands for itself.
 static Result read_formulas(Formula formulas[3], const char *name, const Keyframes *keys,
-                            const Place *parent, const json_t *object, Error *error)
+                            const JsonPlace *parent, const json_t *object, Error *error)
 {
     const json_t *array = json_object_get(object, name);
     if (!array) return RESULT_OK;
-    Place place = {.parent = parent, .key = name};
-    if (keys->count > 0) return place_fail(&place, error, "given here and by 'keys'");
+    JsonPlace place = {.parent = parent, .key = name};
+    if (keys->count > 0) return json_fail(&place, error, "given here and by 'keys'");
     if (!json_is_array(array) || json_array_size(array) != 3)
-        return place_refuse(&place, array, "an array of three numbers or formulas of t", error);
+        return json_refuse(&place, array, "an array of three numbers or formulas of t", error);
     for (size_t i = 0; i < 3; i++) {
         const json_t *value = json_array_get(array, i);
-        Place element = {.parent = &place, .index = i};
+        JsonPlace element = {.parent = &place, .index = i};
         char number[32];
         snprintf(number, sizeof number, "%.9g", json_number_value(value));
         if (!json_is_number(value) && !json_is_string(value))
-            return place_refuse(&element, value, "a number or a formula of t", error);
+            return json_refuse(&element, value, "a number or a formula of t", error);
         Error why;
         Result result = formula_create(
             &formulas[i], json_is_string(value) ? json_string_value(value) : number, &why);
-        if (result != RESULT_OK) return place_fail(&element, error, "%s", why.text);
+        if (result != RESULT_OK) return json_fail(&element, error, "%s", why.text);
     }
     return RESULT_OK;
 }
 
-static Result read_head_keys(Scene *scene, const Place *place, const json_t *value, Error *error)
+static Result read_head_keys(Scene *scene, const JsonPlace *place, const json_t *value,
+                             Error *error)
 {
     const Member members[] = {
         {"translate", &scene->head.translation, 3, -OFFSET_MAX, OFFSET_MAX, 1.0},
@@ -154,17 +155,17 @@ static Result read_head_keys(Scene *scene, const Place *place, const json_t *val
     return read_track(members, 2, place, value, error);
 }
 
-Result scene_read_head(Scene *scene, const Place *place, const json_t *value, Error *error)
+Result scene_read_head(Scene *scene, const JsonPlace *place, const json_t *value, Error *error)
 {
     static const char *const NAMES[] = {"keys",      "interpolation", "pivot",
                                         "translate", "rotate",        NULL};
     RigidTrack *head = &scene->head;
-    Result result = place_check_object(place, value, NAMES, error);
+    Result result = json_check_object(place, value, NAMES, error);
     const json_t *pivot = json_object_get(value, "pivot");
-    Place pivot_place = {.parent = place, .key = "pivot"};
+    JsonPlace pivot_place = {.parent = place, .key = "pivot"};
     if (result == RESULT_OK && pivot)
-        result = place_read_vector(&pivot_place, pivot, 3, -OFFSET_MAX, OFFSET_MAX,
-                                   "an array of three numbers", head->pivot, error);
+        result = json_read_vector(&pivot_place, pivot, 3, -OFFSET_MAX, OFFSET_MAX,
+                                  "an array of three numbers", head->pivot, error);
     if (result == RESULT_OK) result = read_head_keys(scene, place, value, error);
     if (result == RESULT_OK)
         result = read_formulas(head->translation_formula, "translate", &head->translation, place,
@@ -175,7 +176,7 @@ Result scene_read_head(Scene *scene, const Place *place, const json_t *value, Er
     return result;
 }
 
-Result scene_read_camera(Scene *scene, const Place *place, const json_t *value, Error *error)
+Result scene_read_camera(Scene *scene, const JsonPlace *place, const json_t *value, Error *error)
 {
     static const char *const NAMES[] = {"keys", "interpolation", NULL};
     const ParamInfo *eye = params_find("eye"), *fov = params_find("fov");
@@ -184,22 +185,23 @@ Result scene_read_camera(Scene *scene, const Place *place, const json_t *value, 
         {"target", &scene->target, 3, eye->minimum, eye->maximum, 1.0},
         {"fov", &scene->fov, 1, fov->minimum, fov->maximum, 1.0},
     };
-    Result result = place_check_object(place, value, NAMES, error);
+    Result result = json_check_object(place, value, NAMES, error);
     return result == RESULT_OK ? read_track(members, 3, place, value, error) : result;
 }
 
 // A unit vector: against the way that a directional light travels, along that of a spot.
-static Result read_direction(Light *light, const Place *parent, const json_t *object, Error *error)
+static Result read_direction(Light *light, const JsonPlace *parent, const json_t *object,
+                             Error *error)
 {
     const json_t *value = json_object_get(object, "direction");
-    if (!value) return place_fail(parent, error, "expected a key 'direction'");
-    Place place = {.parent = parent, .key = "direction"};
+    if (!value) return json_fail(parent, error, "expected a key 'direction'");
+    JsonPlace place = {.parent = parent, .key = "direction"};
     float way[3];
-    Result result = place_read_vector(&place, value, 3, -OFFSET_MAX, OFFSET_MAX,
-                                      "an array of three numbers", way, error);
+    Result result = json_read_vector(&place, value, 3, -OFFSET_MAX, OFFSET_MAX,
+                                     "an array of three numbers", way, error);
     if (result != RESULT_OK) return result;
     double length = hypot(hypot((double)way[0], (double)way[1]), (double)way[2]);
-    if (length == 0) return place_refuse(&place, value, "a direction", error);
+    if (length == 0) return json_refuse(&place, value, "a direction", error);
     double sign = light->kind == LIGHT_SPOT ? 1 : -1;
     for (int i = 0; i < 3; i++) light->direction[i] = (float)(sign * (double)way[i] / length + 0.0);
     return RESULT_OK;
@@ -213,66 +215,66 @@ static float linear_from_srgb(float srgb)
 }
 
 // A color as the parameter `color` takes it, made linear.
-static Result read_light_color(Light *light, const Place *parent, const json_t *object,
+static Result read_light_color(Light *light, const JsonPlace *parent, const json_t *object,
                                Error *error)
 {
     const json_t *value = json_object_get(object, "color");
     if (!value) return RESULT_OK;
-    Place place = {.parent = parent, .key = "color"};
+    JsonPlace place = {.parent = parent, .key = "color"};
     SectionParams holder = {0};
     Result result = scene_read_param(params_find("color"), &holder, NULL, &place, value, error);
     for (int i = 0; i < 3; i++) light->color[i] = linear_from_srgb(holder.color[i]);
     return result;
 }
 
-static Result read_position(Light *light, const Place *parent, const json_t *object, Error *error)
+static Result read_position(Light *light, const JsonPlace *parent, const json_t *object,
+                            Error *error)
 {
     const json_t *value = json_object_get(object, "position");
-    if (!value) return place_fail(parent, error, "expected a key 'position'");
-    Place place = {.parent = parent, .key = "position"};
-    return place_read_vector(&place, value, 3, -OFFSET_MAX, OFFSET_MAX, "an array of three numbers",
-                             light->position, error);
+    if (!value) return json_fail(parent, error, "expected a key 'position'");
+    JsonPlace place = {.parent = parent, .key = "position"};
+    return json_read_vector(&place, value, 3, -OFFSET_MAX, OFFSET_MAX, "an array of three numbers",
+                            light->position, error);
 }
 
 // A number that may be left out.
-static Result read_quantity(float *quantity, const Place *parent, const json_t *object,
+static Result read_quantity(float *quantity, const JsonPlace *parent, const json_t *object,
                             const char *key, double minimum, double maximum, const char *expected,
                             Error *error)
 {
     const json_t *value = json_object_get(object, key);
-    Place place = {.parent = parent, .key = key};
+    JsonPlace place = {.parent = parent, .key = key};
     double number = (double)*quantity;
     if (!value) return RESULT_OK;
-    Result result = place_read_number(&place, value, minimum, maximum, expected, &number, error);
+    Result result = json_read_number(&place, value, minimum, maximum, expected, &number, error);
     *quantity = (float)number;
     return result;
 }
 
-static Result read_cone(Light *light, const Place *place, const json_t *value, Error *error)
+static Result read_cone(Light *light, const JsonPlace *place, const json_t *value, Error *error)
 {
     Result result =
         read_quantity(&light->outer_deg, place, value, "outer", 0.1, 90, "degrees", error);
     if (result == RESULT_OK)
         result = read_quantity(&light->inner_deg, place, value, "inner", 0, 90, "degrees", error);
     if (result == RESULT_OK && light->inner_deg >= light->outer_deg)
-        return place_fail(place, error, "'inner' is %.9g deg, expected less than 'outer', %.9g deg",
-                          (double)light->inner_deg, (double)light->outer_deg);
+        return json_fail(place, error, "'inner' is %.9g deg, expected less than 'outer', %.9g deg",
+                         (double)light->inner_deg, (double)light->outer_deg);
     return result;
 }
 
-static Result read_light_shadow(Light *light, const Place *parent, const json_t *object,
+static Result read_light_shadow(Light *light, const JsonPlace *parent, const json_t *object,
                                 Error *error)
 {
     const json_t *value = json_object_get(object, "shadow");
-    const Place place = {.parent = parent, .key = "shadow"};
-    if (value && !json_is_boolean(value))
-        return place_refuse(&place, value, "true or false", error);
+    const JsonPlace place = {.parent = parent, .key = "shadow"};
+    if (value && !json_is_boolean(value)) return json_refuse(&place, value, "true or false", error);
     if (value) light->shadow = json_is_true(value);
     return RESULT_OK;
 }
 
 // `light` has its defaults.
-static Result read_light(Light *light, const Place *place, const json_t *value, Error *error)
+static Result read_light(Light *light, const JsonPlace *place, const json_t *value, Error *error)
 {
     static const char *const DIRECTIONAL[] = {"type",      "direction", "color",
                                               "intensity", "shadow",    NULL};
@@ -283,12 +285,12 @@ static Result read_light(Light *light, const Place *place, const json_t *value, 
     static const char *const *const NAMES[] = {
         [LIGHT_DIRECTIONAL] = DIRECTIONAL, [LIGHT_POINT] = POINT, [LIGHT_SPOT] = SPOT};
     const json_t *type = json_object_get(value, "type");
-    Place type_place = {.parent = place, .key = "type"};
+    JsonPlace type_place = {.parent = place, .key = "type"};
     int kind = LIGHT_DIRECTIONAL;
     Result result =
-        type ? place_read_choice(&type_place, type, LIGHT_KIND_WORDS, &kind, error) : RESULT_OK;
+        type ? json_read_choice(&type_place, type, LIGHT_KIND_WORDS, &kind, error) : RESULT_OK;
     light->kind = (LightKind)kind;
-    if (result == RESULT_OK) result = place_check_object(place, value, NAMES[kind], error);
+    if (result == RESULT_OK) result = json_check_object(place, value, NAMES[kind], error);
     if (result == RESULT_OK)
         result = read_quantity(&light->intensity, place, value, "intensity", 0, INTENSITY_MAX,
                                "a factor", error);
@@ -305,16 +307,16 @@ static Result read_light(Light *light, const Place *place, const json_t *value, 
     return result;
 }
 
-Result scene_read_lights(Scene *scene, const Place *place, const json_t *value, Error *error)
+Result scene_read_lights(Scene *scene, const JsonPlace *place, const json_t *value, Error *error)
 {
     size_t count = json_array_size(value);
-    if (!json_is_array(value)) return place_refuse(place, value, "an array of lights", error);
+    if (!json_is_array(value)) return json_refuse(place, value, "an array of lights", error);
     if (count > SCENE_MAX_LIGHTS)
-        return place_fail(place, error, "got %zu lights, expected %d at most", count,
-                          SCENE_MAX_LIGHTS);
+        return json_fail(place, error, "got %zu lights, expected %d at most", count,
+                         SCENE_MAX_LIGHTS);
     scene->light_count = 0;
     for (size_t i = 0; i < count; i++) {
-        Place light_place = {.parent = place, .index = i};
+        JsonPlace light_place = {.parent = place, .index = i};
         scene->lights[i] = (Light){
             .color = {1, 1, 1}, .intensity = 1, .distance = 1, .outer_deg = 45, .shadow = i == 0};
         Result result =

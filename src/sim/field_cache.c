@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "sim/field_cache.h"
-#include "base/chunk_file.h"
+#include "base/chunk.h"
 #include "base/outfile.h"
 
 #include <stdio.h>

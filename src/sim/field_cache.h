@@ -5,7 +5,7 @@
 #include "sim/distance_field.h"
 
 // As distance_field_create, but by the file tractrix/HASH.field in the folder $XDG_CACHE_HOME, else
-// ~/.cache, if that is there and whole (chunk_file.h); else computes the field and tries to write
+// ~/.cache, if that is there and whole (chunk.h); else computes the field and tries to write
 // that file. HASH is of the mesh and the resolution. Files are safe to delete; one that is damaged
 // or cannot be written changes nothing but the time. `read` says which way it was; may be NULL.
 Result field_cache_create(DistanceField *field, const Gpu *gpu, const Mesh *mesh,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "base/chunk_file.h"
+#include "base/chunk.h"
 
 #include <endian.h>
 #include <errno.h>

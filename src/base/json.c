@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: MIT
-#include "base/json_place.h"
+#include "base/json.h"
+#include "base/outfile.h"
 #include "base/suggest.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { EXCERPT_SIZE = 64 };
 
 // Writes the place's name from the root on; returns its length, cut at `size` - 1.
-static size_t name_place(const Place *place, char *text, size_t size)
+static size_t name_place(const JsonPlace *place, char *text, size_t size)
 {
     size_t length = place->parent ? name_place(place->parent, text, size) : 0;
     const char *between = !place->parent ? "" : place->parent->parent ? "." : ": ";
@@ -29,7 +31,7 @@ static void replace_controls(char *text)
     }
 }
 
-Result place_fail(const Place *place, Error *error, const char *format, ...)
+Result json_fail(const JsonPlace *place, Error *error, const char *format, ...)
 {
     char name[512], rest[400];
     name_place(place, name, sizeof name);
@@ -73,13 +75,13 @@ static Excerpt excerpt_value(const json_t *value)
     return excerpt;
 }
 
-Result place_refuse(const Place *place, const json_t *value, const char *expected, Error *error)
+Result json_refuse(const JsonPlace *place, const json_t *value, const char *expected, Error *error)
 {
-    return place_fail(place, error, "got %s, expected %s", excerpt_value(value).text, expected);
+    return json_fail(place, error, "got %s, expected %s", excerpt_value(value).text, expected);
 }
 
-Result place_read_number(const Place *place, const json_t *value, double minimum, double maximum,
-                         const char *expected, double *number, Error *error)
+Result json_read_number(const JsonPlace *place, const json_t *value, double minimum, double maximum,
+                        const char *expected, double *number, Error *error)
 {
     double read = json_number_value(value);
     double inside = fmin(fmax(read, minimum), maximum);
@@ -92,19 +94,19 @@ Result place_read_number(const Place *place, const json_t *value, double minimum
     }
     if (json_is_number(value))
         snprintf(words + length, sizeof words - (size_t)length, " (nearest: %.10g)", inside);
-    return place_refuse(place, value, words, error);
+    return json_refuse(place, value, words, error);
 }
 
-Result place_read_vector(const Place *place, const json_t *value, size_t count, double minimum,
-                         double maximum, const char *expected, float *numbers, Error *error)
+Result json_read_vector(const JsonPlace *place, const json_t *value, size_t count, double minimum,
+                        double maximum, const char *expected, float *numbers, Error *error)
 {
     if (!json_is_array(value) || json_array_size(value) != count)
-        return place_refuse(place, value, expected, error);
+        return json_refuse(place, value, expected, error);
     for (size_t i = 0; i < count; i++) {
-        Place element = {.parent = place, .index = i};
+        JsonPlace element = {.parent = place, .index = i};
         double number;
-        Result result = place_read_number(&element, json_array_get(value, i), minimum, maximum,
-                                          "a number", &number, error);
+        Result result = json_read_number(&element, json_array_get(value, i), minimum, maximum,
+                                         "a number", &number, error);
         if (result != RESULT_OK) return result;
         numbers[i] = (float)number;
     }
@@ -118,8 +120,8 @@ static size_t count_words(const char *const *words)
     return count;
 }
 
-Result place_read_choice(const Place *place, const json_t *value, const char *const *words,
-                         int *index, Error *error)
+Result json_read_choice(const JsonPlace *place, const json_t *value, const char *const *words,
+                        int *index, Error *error)
 {
     char expected[160] = "one of";
     size_t length = strlen(expected), count = count_words(words);
@@ -135,13 +137,13 @@ Result place_read_choice(const Place *place, const json_t *value, const char *co
     if (json_is_string(value) && length < sizeof expected)
         snprintf(expected + length, sizeof expected - length, " (nearest: \"%s\")",
                  suggest_nearest(json_string_value(value), words, count));
-    return place_refuse(place, value, expected, error);
+    return json_refuse(place, value, expected, error);
 }
 
-Result place_check_object(const Place *place, const json_t *value, const char *const *names,
-                          Error *error)
+Result json_check_object(const JsonPlace *place, const json_t *value, const char *const *names,
+                         Error *error)
 {
-    if (!json_is_object(value)) return place_refuse(place, value, "an object", error);
+    if (!json_is_object(value)) return json_refuse(place, value, "an object", error);
     size_t count = count_words(names);
     const char *key;
     json_t *member;
@@ -150,8 +152,22 @@ Result place_check_object(const Place *place, const json_t *value, const char *c
         size_t i = 0;
         while (i < count && strcmp(key, names[i]) != 0) i++;
         if (i == count)
-            return place_fail(place, error, "unknown key '%.60s' (nearest: '%s')", key,
-                              suggest_nearest(key, names, count));
+            return json_fail(place, error, "unknown key '%.60s' (nearest: '%s')", key,
+                             suggest_nearest(key, names, count));
     }
     return RESULT_OK;
+}
+
+Result json_write_file(const json_t *value, const char *path, Error *error)
+{
+    char *text = value ? json_dumps(value, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
+    if (!text) return error_set(error, RESULT_FAILED, "%s: no memory for the result", path);
+    OutFile file;
+    Result result = outfile_open(&file, path, error);
+    if (result == RESULT_OK) {
+        fprintf(file.stream, "%s\n", text);
+        result = outfile_commit(&file, error);
+    }
+    free(text);
+    return result;
 }

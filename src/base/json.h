@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// Reads values of a JSON document with errors that name the place in the document; writes
+// documents.
+#pragma once
+
+#include "base/error.h"
+
+#include <jansson.h>
+#include <stddef.h>
+
+// A place in a document, for messages such as "scene.json: sections[2].drag: got ...". The root has
+// the file's name as `key` and no parent; a member has its key; an element has `key` NULL and its
+// index. Places live on the stack of whoever descends.
+typedef struct JsonPlace {
+    const struct JsonPlace *parent;
+    const char *key;
+    size_t index;
+} JsonPlace;
+
+// Sets `error` to the place and the printf-style rest; returns RESULT_BAD_INPUT.
+Result json_fail(const JsonPlace *place, Error *error, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+// RESULT_BAD_INPUT with the place, "got" and the value, cut to some 60 characters, and what was
+// `expected`.
+Result json_refuse(const JsonPlace *place, const json_t *value, const char *expected, Error *error);
+
+// Reads a number, or an array of `count` numbers, each from `minimum` to `maximum`. `expected` says
+// what it should be, in words and without the range.
+Result json_read_number(const JsonPlace *place, const json_t *value, double minimum, double maximum,
+                        const char *expected, double *number, Error *error);
+Result json_read_vector(const JsonPlace *place, const json_t *value, size_t count, double minimum,
+                        double maximum, const char *expected, float *numbers, Error *error);
+
+// Reads a string that is one of `words` (ended by NULL) as its index.
+Result json_read_choice(const JsonPlace *place, const json_t *value, const char *const *words,
+                        int *index, Error *error);
+
+// Whether `value` is an object with no other keys than `names` (ended by NULL). An unknown key's
+// message names the nearest of them.
+Result json_check_object(const JsonPlace *place, const json_t *value, const char *const *names,
+                         Error *error);
+
+// Writes `value` as an indented file that appears complete or not at all; floats are as short as
+// float32 allows. Takes no reference. RESULT_FAILED with path and reason, also for a NULL value
+// (memory was short when it was made).
+Result json_write_file(const json_t *value, const char *path, Error *error);
