@@ -242,7 +242,7 @@ void help_write_man(FILE *stream, const char *version)
 
 static void write_markdown_scene(FILE *stream)
 {
-    fprintf(stream, "\n**Scene files**\n\n%s\n\n| key | value | what |\n| --- | --- | --- |\n",
+    fprintf(stream, "\n## Scene files\n\n%s\n\n| key | value | what |\n| --- | --- | --- |\n",
             SCENE_RULES);
     for (int i = 0; i < SCENE_KEY_COUNT; i++)
         fprintf(stream, "| `%s` | `%s` | %s |\n", SCENE_KEYS[i].key, SCENE_KEYS[i].example,
@@ -272,8 +272,11 @@ static void write_markdown_row(FILE *stream, const ParamInfo *info)
 
 void help_write_markdown(FILE *stream)
 {
+    fprintf(stream, "# Options of tractrix-render\n\n"
+                    "Made by scripts/update-options from `tractrix-render --help=markdown`. A "
+                    "value marked \\* holds for every section.\n\n");
     for (int group = 0; group < GROUP_COUNT; group++) {
-        fprintf(stream, "%s**%s**\n\n", group ? "\n" : "", GROUP_TITLES[group]);
+        fprintf(stream, "%s## %s\n\n", group ? "\n" : "", GROUP_TITLES[group]);
         fprintf(stream, "| flag | default | values | what |\n| --- | --- | --- | --- |\n");
         for (size_t i = 0; i < PARAM_COUNT; i++) {
             if ((int)PARAM_TABLE[i].group == group) write_markdown_row(stream, &PARAM_TABLE[i]);

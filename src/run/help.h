@@ -10,7 +10,7 @@ void help_write_text(FILE *stream);
 // The man page, section 1, in roff; `version` is the program's.
 void help_write_man(FILE *stream, const char *version);
 
-// The tables for README.md in Markdown: flags, one table per group, and what else a scene file has.
+// docs/options.md in Markdown: flags, one table per group, and what else a scene file has.
 void help_write_markdown(FILE *stream);
 
 // Completion of the flags and their values in bash.

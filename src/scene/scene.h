@@ -44,7 +44,7 @@ typedef enum SceneRequest {
     REQUEST_VERSION,  // --version
     REQUEST_HELP,     // -h, --help
     REQUEST_MAN,      // --help=man: the man page in roff
-    REQUEST_MARKDOWN, // --help=markdown: the tables of README.md
+    REQUEST_MARKDOWN, // --help=markdown: docs/options.md
     REQUEST_BASH,     // --help=bash: completion of the command line
 } SceneRequest;
 
