@@ -45,11 +45,12 @@ SOURCES   := $(filter-out $(MAINS),$(wildcard src/*/*.c src/*/*/*.c))
 SHADERS   := $(wildcard glsl/*/*)
 TESTS     := $(wildcard tests/*/test_*.c)
 KEEP      := tests/support/keep_drivers.c
+TEST_SHADERS := $(wildcard tests/glsl/*)
 SUPPORT   := $(filter-out $(KEEP),$(wildcard tests/support/*.c))
 OBJECTS   := $(SOURCES:src/%.c=$(OUT)/%.o) $(if $(SHADERS),$(OUT)/glsl_sources.o)
 PROGRAMS  := $(foreach main,$(MAINS),$(OUT)/$(patsubst main_%.c,tractrix-%,$(notdir $(main))))
 TEST_PROGRAMS := $(TESTS:%.c=$(OUT)/%)
-SUPPORT_OBJECTS := $(SUPPORT:%.c=$(OUT)/%.o)
+SUPPORT_OBJECTS := $(SUPPORT:%.c=$(OUT)/%.o) $(OUT)/tests/glsl_sources.o
 KEEP_sanitize := $(KEEP:%.c=$(OUT)/%.o)
 MANUALS   := $(PROGRAMS:%=%.1) $(OUT)/tractrix-gen-fur.1
 COMPLETIONS := $(PROGRAMS:%=%.bash)
@@ -76,8 +77,10 @@ endif
 $(OUT)/draw/cpu_shadow.o $(OUT)/draw/cpu_shadow_maps.o $(OUT)/draw/cpu_shadow_light.o: C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math
 $(OUT)/draw/block_composite.o $(OUT)/draw/block_pixels.o: C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math -ffinite-math-only -fno-signed-zeros
 $(OUT)/glsl_sources.c: scripts/embed-glsl $(SHADERS) $(OUT)/files
-	$(call run,EMBED,scripts/embed-glsl $(SHADERS) >$@.tmp && mv $@.tmp $@)
-$(OUT)/glsl_sources.o: $(OUT)/glsl_sources.c $(OUT)/flags # C promises only 4095 characters a string; every compiler takes more
+	$(call run,EMBED,scripts/embed-glsl GLSL_SOURCES $(SHADERS) >$@.tmp && mv $@.tmp $@)
+$(OUT)/tests/glsl_sources.c: scripts/embed-glsl $(TEST_SHADERS) $(OUT)/files
+	$(call run,EMBED,scripts/embed-glsl TEST_GLSL_SOURCES $(TEST_SHADERS) >$@.tmp && mv $@.tmp $@)
+$(OUT)/glsl_sources.o $(OUT)/tests/glsl_sources.o: %.o: %.c $(OUT)/flags # C promises only 4095 characters a string; every compiler takes more
 	$(call run,CC,$(CC) $(C_FLAGS) -Wno-overlength-strings -MMD -MP -c -o $@ $<)
 $(OUT)/libtractrix.a: $(OBJECTS) $(OUT)/files
 	$(call run,AR,rm -f $@ && $(AR) qcs $@ $(OBJECTS))
@@ -108,7 +111,7 @@ $(OUT)/flags: FORCE | $(FOLDERS)
 	$(if $(MISSING),$(error missing: $(MISSING). Run scripts/setup, which installs what is needed on Debian and Ubuntu and lists it elsewhere))
 	@$(call write_if_changed,$(CC) $(C_FLAGS) $(LD_FLAGS) $(LD_LIBS))
 $(OUT)/files: FORCE | $(FOLDERS)
-	@$(call write_if_changed,$(SOURCES) $(SHADERS) $(SUPPORT))
+	@$(call write_if_changed,$(SOURCES) $(SHADERS) $(SUPPORT) $(TEST_SHADERS))
 $(OUT)/version.h: FORCE | $(FOLDERS)
 	@scripts/write-version $(VERSION) $@
 $(FOLDERS):

@@ -236,16 +236,15 @@ static void try_renderers(const Gpu *gpu, Result *worst, FILE *stream, Error *er
 
 Result bench_shaders(const Gpu *gpu, FILE *stream, Error *error)
 {
-    static const ShaderDefine energy[] = {{"MARSCHNER", 1}, {NULL, 0}},
-                              gauss[] = {{"MARSCHNER", 2}, {NULL, 0}},
-                              strand[] = {{"GROUP_SIZE", 8}, {"TIP", 0}, {NULL, 0}},
+    static const ShaderDefine strand[] = {{"GROUP_SIZE", 8}, {"TIP", 0}, {NULL, 0}},
                               tip[] = {{"GROUP_SIZE", 8}, {"TIP", 1}, {NULL, 0}};
     static const struct {
         const char *file;
         const ShaderDefine *defines;
-    } checks[] = {{"bench/check_step.comp", NULL},   {"bench/check_chain.comp", NULL},
-                  {"draw/check_shade.comp", energy}, {"draw/check_shade.comp", gauss},
-                  {"bench/stress.comp", strand},     {"bench/stress.comp", tip}};
+    } checks[] = {{"bench/check_step.comp", NULL},
+                  {"bench/check_chain.comp", NULL},
+                  {"bench/stress.comp", strand},
+                  {"bench/stress.comp", tip}};
     Result worst = RESULT_OK;
     Error why = {{0}};
     shader_treat_warnings_as_errors(true);

@@ -10,7 +10,14 @@
 
 enum { MAX_FILES = 32, MAX_LOG = 4096 };
 
+static const GlslSource NONE[] = {{NULL, NULL}};
+static const GlslSource *added_sources = NONE;
 static bool warnings_are_errors;
+
+void shader_add_sources(const GlslSource *sources)
+{
+    added_sources = sources;
+}
 
 void shader_treat_warnings_as_errors(bool on)
 {
@@ -76,9 +83,9 @@ static Result append_line(Composition *c, const char *line, size_t length, int f
     return RESULT_OK;
 }
 
-static const GlslSource *find_source(const char *name, size_t length)
+static const GlslSource *find_source(const GlslSource *sources, const char *name, size_t length)
 {
-    for (const GlslSource *source = GLSL_SOURCES; source->name; ++source)
+    for (const GlslSource *source = sources; source->name; ++source)
         if (strlen(source->name) == length && memcmp(source->name, name, length) == 0)
             return source;
     return NULL;
@@ -117,7 +124,9 @@ static Result read_file(struct File *file, Error *error)
 
 static Result append_file(Composition *c, const char *name, size_t length, Error *error)
 {
-    const GlslSource *source = find_source(name, length);
+    const GlslSource *source = find_source(GLSL_SOURCES, name, length),
+                     *added = source ? NULL : find_source(added_sources, name, length);
+    if (!source) source = added;
     if (!source)
         return error_set(error, RESULT_FAILED, "glsl/%.*s: no such shader file", (int)length, name);
     if (taken(c, source)) return RESULT_OK;
@@ -125,7 +134,7 @@ static Result append_file(Composition *c, const char *name, size_t length, Error
         return error_set(error, RESULT_FAILED, "glsl/%s: too many includes", source->name);
     int file = c->file_count++, number = 1;
     c->files[file] = (struct File){.source = source};
-    Result result = read_file(&c->files[file], error);
+    Result result = added ? RESULT_OK : read_file(&c->files[file], error);
     const char *line = c->files[file].text.data ? (char *)c->files[file].text.data : source->text;
     for (; result == RESULT_OK && *line; ++number) {
         size_t end = strcspn(line, "\n");

@@ -3,7 +3,9 @@
 #include "draw/render_scatter.h"
 #include "draw/render_uniforms.h"
 #include "gpu/gpu_buffer.h"
+#include "support/needed.h"
 #include "support/reference_marschner.h"
+#include "support/test_glsl.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -16,23 +18,19 @@
 
 #define PI 3.14159265358979323846
 
-#define NEEDED(call)                                                                               \
-    do {                                                                                           \
-        Error error_ = {{0}}, *error = &error_;                                                    \
-        if ((call) != RESULT_OK) fail_msg("%s", error_.text);                                      \
-    } while (0)
-
 static Gpu gpu;
 static ScatterTables tables;
-static GLuint programs[2]; // check_shade.comp, by Lobes
+static GLuint programs[2]; // probe_shade.comp, by Lobes
 
 static int open_gpu(void **state)
 {
     (void)state;
     NEEDED(gpu_create(&gpu, &(GpuOptions){.device = -1}, error));
+    shader_add_sources(TEST_GLSL_SOURCES);
+    shader_treat_warnings_as_errors(true);
     for (int lobes = LOBES_ENERGY; lobes <= LOBES_GAUSS; ++lobes) {
         const ShaderDefine defines[] = {{"MARSCHNER", 1 + lobes}, {NULL, 0}};
-        NEEDED(shader_build_compute(&programs[lobes], "draw/check_shade.comp", defines, error));
+        NEEDED(shader_build_compute(&programs[lobes], "probe_shade.comp", defines, error));
     }
     return 0;
 }

@@ -2,6 +2,7 @@
 #include "support/shadow_stage.h"
 
 #include "draw/render_uniforms.h"
+#include "support/test_glsl.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -83,7 +84,9 @@ float *shadow_stage_light(ShadowStage *stage, const float (*points)[4], uint32_t
     float(*whole)[4] = calloc(groups * 8, sizeof *whole);
     assert_true(shares && whole);
     memcpy(whole, points, count * sizeof *points);
-    NEEDED(shader_build_compute(&program, "draw/check_shadow.comp", defines, error));
+    shader_add_sources(TEST_GLSL_SOURCES);
+    shader_treat_warnings_as_errors(true);
+    NEEDED(shader_build_compute(&program, "probe_shadow.comp", defines, error));
     NEEDED(gpu_buffer_create(&in, limits, "points", groups * 8 * 16, whole, 0, error));
     NEEDED(gpu_buffer_create(&out, limits, "shares", groups * 8 * 4, NULL, 0, error));
     gpu_buffer_bind_storage(&in, 0);
