@@ -1,0 +1,20 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Runs the examples of the pages in docs/, the blocks marked sh, with smaller images and fewer frames. The tutorial has
+# a test of its own.
+. tests/support/checkout.sh
+
+make_checkout
+cp -r docs tests "$work/checkout/"
+PATH=$(realpath "$bin"):$PATH
+export PATH
+
+for page in docs/*.md; do
+    [ "$page" != docs/tutorial.md ] || continue
+    claim "the examples of $page run"
+    awk '/^```sh$/ { inside = 1; print "# line " NR; next } /^```$/ { inside = 0 } inside' "$page" |
+        sed 's/^tractrix-render /.\/small /; s/--contact-sheet [0-9x]*/--contact-sheet 2x2/' >"$work/checkout/commands"
+    if grep -q ffmpeg "$page" && ! command -v ffmpeg >/dev/null; then skip "no ffmpeg"; continue; fi
+    if (cd "$work/checkout" && sh -eu commands) >"$work/out" 2>"$work/err" </dev/null; then good; else bad "see above"; fi
+done
+finish
