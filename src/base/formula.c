@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "base/formula.h"
 
-#include "base/noise.h"
+#include "base/portable.h"
 
 #include <muParserDLL.h>
 
@@ -65,7 +65,7 @@ Result formula_create_named(Formula *formula, const char *text, const char *cons
     for (int i = 0; i < count; i++) mupDefineVar(parser, names[i], &formula->value[i]);
     mupDefineConst(parser, "pi", 3.14159265358979323846);
     mupDefineFun3(parser, "smoothstep", smoothstep, 1);
-    mupDefineFun3(parser, "noise", noise_at, 1);
+    mupDefineFun3(parser, "noise", portable_noise, 1);
     mupSetExpr(parser, text);
     const char *fault = find_fault(formula);
     return fault ? fail(formula, names, fault, error) : RESULT_OK;

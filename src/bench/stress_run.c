@@ -170,7 +170,7 @@ static void look(Run *run, int i)
     stress_bound_fill(&run->bound, i == run->steps, &params);
     solver_pose(&run->solver, &run->step.head);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
-    gpu_uniforms_set(&run->uniforms, BIND_STEP, &params, sizeof params);
+    gpu_buffer_set_uniforms(&run->uniforms, BIND_STEP, &params, sizeof params);
     gpu_buffer_bind_texture(&batch->position, BIND_POSITION);
     gpu_buffer_bind_texture(&run->before, BIND_STRESS_BEFORE);
     gpu_buffer_bind_texture(&batch->rest, BIND_REST);

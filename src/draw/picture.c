@@ -206,7 +206,7 @@ void picture_destroy(Picture *picture)
 
 void picture_upload(Picture *picture)
 {
-    gpu_uniforms_set(&picture->uniforms, BIND_DRAW, &picture->draw, sizeof picture->draw);
+    gpu_buffer_set_uniforms(&picture->uniforms, BIND_DRAW, &picture->draw, sizeof picture->draw);
 }
 
 uint64_t picture_count_segments(const Picture *picture)

@@ -122,7 +122,7 @@ static Result project_part(RenderBlocks *blocks, const HairBatch *batch, const L
 {
     int64_t first = (int64_t)blocks->slots, begin = first / ALIGNED_RIBBONS * ALIGNED_RIBBONS;
     uint32_t count = part->drawn_strands;
-    gpu_uniforms_set(&blocks->material, BIND_MATERIAL, part, sizeof *part);
+    gpu_buffer_set_uniforms(&blocks->material, BIND_MATERIAL, part, sizeof *part);
     Result result = RESULT_OK;
     if (blocks->cull.tries) result = render_cull_list(&blocks->cull, batch, part, &count, error);
     if (result == RESULT_OK) result = look_programs_use(&blocks->project, look, batch, error);

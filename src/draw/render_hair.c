@@ -67,7 +67,7 @@ static Result project(RenderHair *hair, const HairBatch *batch, const Look *look
     const MaterialParams *material = &look->material;
     const GLuint command[COMMAND_WORDS] = {[COMMAND_INSTANCE_COUNT] = 1};
     *strands = material->drawn_strands;
-    gpu_uniforms_set(&hair->material, BIND_MATERIAL, material, sizeof *material);
+    gpu_buffer_set_uniforms(&hair->material, BIND_MATERIAL, material, sizeof *material);
     gpu_buffer_bind_texture(&batch->position, BIND_POSITION);
     Result result = RESULT_OK;
     if (cull->tries) result = render_cull_list(cull, batch, material, strands, error);

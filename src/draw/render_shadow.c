@@ -94,7 +94,7 @@ static void draw_map(RenderShadow *shadow, const ShadowScene *scene, int light)
         shadow_mesh_add_box(&scene->mesh, &view, box);
         ShadowMeshFrame mesh = shadow_mesh_frame(&view, box);
         set_mesh_frame(params, map, &mesh);
-        gpu_uniforms_set(&shadow->uniforms, BIND_SHADOW, params, sizeof *params);
+        gpu_buffer_set_uniforms(&shadow->uniforms, BIND_SHADOW, params, sizeof *params);
         render_shadow_mesh_draw(&shadow->mesh, scene->mesh.mesh, map);
     }
     ++params->maps;
@@ -191,7 +191,7 @@ Result render_shadow_draw(RenderShadow *shadow, const ShadowScene *scene, GpuTim
 
 void render_shadow_bind(RenderShadow *shadow)
 {
-    gpu_uniforms_set(&shadow->uniforms, BIND_SHADOW, &shadow->params, sizeof shadow->params);
+    gpu_buffer_set_uniforms(&shadow->uniforms, BIND_SHADOW, &shadow->params, sizeof shadow->params);
     render_shadow_hair_bind(&shadow->hair);
     glActiveTexture(GL_TEXTURE0 + BIND_SHADOW_MESH);
     glBindTexture(GL_TEXTURE_2D, shadow->mesh.depth);

@@ -169,14 +169,14 @@ void render_shadow_hair_end(RenderShadowHair *hair)
 static void cast(RenderShadowHair *hair, ShadowCasters casters, const CastParams *params,
                  const GLuint programs[CAST_VARIANTS], uint32_t part)
 {
-    gpu_uniforms_set(&hair->cast_uniforms, BIND_CAST, params, sizeof *params);
+    gpu_buffer_set_uniforms(&hair->cast_uniforms, BIND_CAST, params, sizeof *params);
     for (uint32_t i = 0; i < casters.count; ++i) {
         const ShadowCaster *caster = &casters.list[i];
         const HairBatch *batch = caster->batch;
         MaterialParams material = look_material(&caster->look, batch);
         uint32_t points = (batch->vertex_count - 1) * material.smooth_parts + 1;
         glUseProgram(programs[variant_of(caster)]);
-        gpu_uniforms_set(&hair->material, BIND_MATERIAL, &material, sizeof material);
+        gpu_buffer_set_uniforms(&hair->material, BIND_MATERIAL, &material, sizeof material);
         gpu_buffer_bind_texture(&batch->position, BIND_POSITION);
         if (batch->paint.buffer) gpu_buffer_bind_texture(&batch->paint, BIND_PAINT);
         glDispatchCompute((material.drawn_strands + GROUP - 1) / GROUP, (points + part - 1) / part,

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gen/fur_guides.h"
 
-#include "base/noise.h"
-#include "base/portable_sine.h"
+#include "base/portable.h"
 #include "base/random.h"
 
 #include <stdlib.h>
@@ -55,7 +54,7 @@ static void add_noise(const Shoot *shoot, const Double3 at, Double3 change)
     for (int i = 0; i < 3; i++) p[i] = at[i] / recipe->noise_size + 1000.0 * recipe->seed;
     for (int i = 0; i < 3; i++)
         change[i] += recipe->noise / recipe->noise_size * shoot->step *
-                     noise_at(p[0] + 37.0 * i, p[1], p[2]);
+                     portable_noise(p[0] + 37.0 * i, p[1], p[2]);
 }
 
 static void turn(Shoot *shoot, const Double3 at, double s)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gen/fur_weave.h"
 
-#include "base/portable_sine.h"
+#include "base/portable.h"
 
 static double smooth(double low, double high, double x)
 {

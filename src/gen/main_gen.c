@@ -4,7 +4,8 @@
 #include "gen/fur.h"
 #include "gen/fur_options.h"
 #include "gen/strands_make.h"
-#include "mesh/bust.h"
+#include "mesh/obj.h"
+#include "mesh/scalp.h"
 
 #include <math.h>
 #include <string.h>
@@ -193,8 +194,8 @@ static Result write_mesh(const Command *command, ScalpShape shape, const char *f
 {
     Mesh mesh;
     Result result = scalp_make_mesh(&mesh, shape, 36, error);
-    if (result == RESULT_OK && shoulders) result = bust_append_shoulders(&mesh, error);
-    if (result == RESULT_OK) result = mesh_write_obj(file, &mesh, error);
+    if (result == RESULT_OK && shoulders) result = scalp_append_shoulders(&mesh, error);
+    if (result == RESULT_OK) result = obj_write_mesh(file, &mesh, error);
     if (result == RESULT_OK && !command->output.quiet)
         printf("%s: %u vertices, %u triangles\n", file, mesh.vertex_count, mesh.triangle_count);
     mesh_destroy(&mesh);
@@ -239,7 +240,7 @@ static Result grow_fur(int argc, char **argv, Error *error)
     bool done;
     Result result = fur_options_read(&options, argc, argv, &done, error);
     if (result != RESULT_OK || done) return result;
-    result = mesh_read_obj(&mesh, options.mesh, (float)options.unit, options.up_z, error);
+    result = obj_read_mesh(&mesh, options.mesh, (float)options.unit, options.up_z, error);
     if (result != RESULT_OK) return result;
     result = write_fur(&options, &mesh, error);
     mesh_destroy(&mesh);

@@ -76,7 +76,7 @@ void gpu_buffer_bind_texture(const GpuBuffer *buffer, GLuint unit)
     glBindTexture(GL_TEXTURE_BUFFER, buffer->texture);
 }
 
-void gpu_uniforms_set(GpuBuffer *buffer, GLuint binding, const void *data, size_t size)
+void gpu_buffer_set_uniforms(GpuBuffer *buffer, GLuint binding, const void *data, size_t size)
 {
     if (!buffer->buffer) glGenBuffers(1, &buffer->buffer);
     buffer->size = (int64_t)size;

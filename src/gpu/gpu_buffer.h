@@ -32,4 +32,4 @@ void gpu_buffer_bind_storage(const GpuBuffer *buffer, GLuint binding);
 void gpu_buffer_bind_texture(const GpuBuffer *buffer, GLuint unit);
 
 // A uniform block: `set` replaces its content and binds it. The buffer is made at first use.
-void gpu_uniforms_set(GpuBuffer *buffer, GLuint binding, const void *data, size_t size);
+void gpu_buffer_set_uniforms(GpuBuffer *buffer, GLuint binding, const void *data, size_t size);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "mesh/mesh.h"
 
+#include <cglm/cglm.h>
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -50,32 +52,92 @@ void mesh_bounds(const Mesh *mesh, float low[3], float high[3])
     }
 }
 
-// Adds the cross product of two edges, whose length is twice the area, to its three vertices.
-static void add_triangle_normal(Mesh *mesh, const uint32_t corner[3])
-{
-    const float *a = mesh->position[corner[0]], *b = mesh->position[corner[1]];
-    const float *c = mesh->position[corner[2]];
-    float u[3], w[3];
-    for (int i = 0; i < 3; i++) {
-        u[i] = b[i] - a[i];
-        w[i] = c[i] - a[i];
-    }
-    for (int i = 0; i < 3; i++) {
-        int j = (i + 1) % 3, k = (i + 2) % 3;
-        float normal = u[j] * w[k] - u[k] * w[j];
-        for (int v = 0; v < 3; v++) mesh->normal[corner[v]][i] += normal;
-    }
-}
-
+// The cross product of two edges is as long as twice the triangle's area.
 void mesh_compute_normals(Mesh *mesh)
 {
     memset(mesh->normal, 0, mesh->vertex_count * sizeof *mesh->normal);
-    for (uint32_t t = 0; t < mesh->triangle_count; t++)
-        add_triangle_normal(mesh, mesh->triangle[t]);
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        const uint32_t *corner = mesh->triangle[t];
+        const float *a = mesh->position[corner[0]], *b = mesh->position[corner[1]];
+        const float *c = mesh->position[corner[2]];
+        float u[3], w[3];
+        for (int i = 0; i < 3; i++) {
+            u[i] = b[i] - a[i];
+            w[i] = c[i] - a[i];
+        }
+        for (int i = 0; i < 3; i++) {
+            int j = (i + 1) % 3, k = (i + 2) % 3;
+            float normal = u[j] * w[k] - u[k] * w[j];
+            for (int v = 0; v < 3; v++) mesh->normal[corner[v]][i] += normal;
+        }
+    }
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         float *n = mesh->normal[v];
         double length = sqrt((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2]);
         bool usable = length > 0.0 && isfinite(length);
         for (int i = 0; i < 3; i++) n[i] = usable ? (float)(n[i] / length) : i == 1;
     }
+}
+
+// --- Cones.
+
+static Result grow(Mesh *mesh, uint32_t vertices, uint32_t triangles, Error *error)
+{
+    Mesh larger;
+    TRY(mesh_create(&larger, mesh->vertex_count + vertices, mesh->triangle_count + triangles,
+                    error));
+    memcpy(larger.position, mesh->position, mesh->vertex_count * sizeof *mesh->position);
+    memcpy(larger.triangle, mesh->triangle, mesh->triangle_count * sizeof *mesh->triangle);
+    if (mesh->uv && mesh_create_uv(&larger, mesh->uv_count, error) != RESULT_OK) {
+        mesh_destroy(&larger);
+        return RESULT_FAILED;
+    }
+    if (mesh->uv) {
+        memcpy(larger.uv, mesh->uv, mesh->uv_count * sizeof *mesh->uv);
+        memcpy(larger.triangle_uv, mesh->triangle_uv,
+               mesh->triangle_count * sizeof *mesh->triangle_uv);
+    }
+    mesh_destroy(mesh);
+    *mesh = larger;
+    return RESULT_OK;
+}
+
+// The normal of ring `ring` (0 .. rings) makes an angle of pi ring/rings with the axis from b to a:
+// its vertices belong to the sphere about a where that cosine is above the slope of the cone's
+// side, (rb - ra)/length, else to that about b. The poles are rings of equal vertices.
+Result mesh_append_cone(Mesh *mesh, const float a[4], const float b[4], uint32_t rings,
+                        Error *error)
+{
+    const double pi = 3.14159265358979323846;
+    uint32_t sectors = 2 * rings, first = mesh->vertex_count, t = mesh->triangle_count;
+    TRY(grow(mesh, (rings + 1) * sectors, 2 * (rings - 1) * sectors, error));
+    vec3 frame[3]; // the axis first
+    glm_vec3_sub((float *)a, (float *)b, frame[0]);
+    double length = (double)glm_vec3_norm(frame[0]);
+    glm_vec3_normalize(frame[0]);
+    glm_vec3_ortho(frame[0], frame[1]);
+    glm_vec3_normalize(frame[1]);
+    glm_vec3_cross(frame[0], frame[1], frame[2]);
+    double slope = length > 0 ? (double)(b[3] - a[3]) / length : 0;
+    for (uint32_t ring = 0; ring <= rings; ++ring)
+        for (uint32_t s = 0; s < sectors; ++s) {
+            double angle = pi * ring / rings, turn = 2 * pi * s / sectors;
+            const float *end = cos(angle) > slope ? a : b;
+            vec3 normal = {0};
+            glm_vec3_muladds(frame[0], (float)cos(angle), normal);
+            glm_vec3_muladds(frame[1], (float)(sin(angle) * cos(turn)), normal);
+            glm_vec3_muladds(frame[2], (float)(sin(angle) * sin(turn)), normal);
+            float *at = mesh->position[first + ring * sectors + s];
+            for (int k = 0; k < 3; ++k) at[k] = end[k] + end[3] * normal[k];
+        }
+    for (uint32_t ring = 0; ring < rings; ++ring)
+        for (uint32_t s = 0; s < sectors; ++s) {
+            uint32_t p = first + ring * sectors + s, q = first + ring * sectors + (s + 1) % sectors;
+            uint32_t below_p = p + sectors, below_q = q + sectors;
+            if (ring > 0) memcpy(mesh->triangle[t++], (uint32_t[]){p, below_p, q}, 12);
+            if (ring + 1 < rings)
+                memcpy(mesh->triangle[t++], (uint32_t[]){q, below_p, below_q}, 12);
+        }
+    mesh_compute_normals(mesh);
+    return RESULT_OK;
 }

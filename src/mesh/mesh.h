@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: MIT
-// A triangle mesh on the CPU: a head or a body, from Wavefront OBJ.
+// The room mesh: triangle meshes on the CPU. It takes Wavefront OBJ files (obj.h) or shapes of its
+// own (scalp.h), and hands on meshes, and surfaces that say where a point of a mesh is, how it lies
+// and how far away it is (surface.h).
+//
+// This file: a triangle mesh, of a head or a body.
 #pragma once
 
 #include "base/error.h"
@@ -28,22 +32,15 @@ void mesh_destroy(Mesh *mesh);
 // short.
 Result mesh_create_uv(Mesh *mesh, uint32_t uv_count, Error *error);
 
-// Reads `v`, `vt`, `vn` and `f` statements of Wavefront OBJ and passes over all others: corners v,
-// v/t, v//n or v/t/n, indices from 1 or negative from the last; polygons become fans around their
-// first corner. Texture coordinates that no corner names are left out. A vertex has one normal: the
-// sum of all normals that its corners name, or, where they name none, of the normals of its
-// triangles by area. `unit` is metres per unit of the file, > 0; `up_z`: (x, y, z) -> (x, z, -y).
-// RESULT_BAD_INPUT with "FILE:LINE: ..." for anything malformed, a number that is not finite, an
-// index out of range, or a file without faces.
-Result mesh_read_obj(Mesh *mesh, const char *path, float unit, bool up_z, Error *error);
-
-// Writes positions, texture coordinates and faces (no normals: reading computes them), numbers as
-// the shortest of %.6g .. %.9g that reads back. RESULT_FAILED with the reason.
-Result mesh_write_obj(const char *path, const Mesh *mesh, Error *error);
-
 // Smooth normals: the normalised sum of the normals of a vertex's triangles, weighted by area;
 // (0, 1, 0) where they cancel out or there are none.
 void mesh_compute_normals(Mesh *mesh);
 
 // Axis-aligned box around all vertices; {0,0,0} twice for an empty mesh.
 void mesh_bounds(const Mesh *mesh, float low[3], float high[3]);
+
+// Appends a rounded cone: a closed surface of its own, outward, with its vertices on the cone of
+// the spheres about `a` and `b` with radii a[3] and b[3] (neither inside the other), in `rings`
+// bands and 2 * rings sectors. Computes all normals anew. RESULT_FAILED when memory is short.
+Result mesh_append_cone(Mesh *mesh, const float a[4], const float b[4], uint32_t rings,
+                        Error *error);

@@ -230,9 +230,8 @@ static double ring_angle(ScalpShape shape, uint32_t ring, uint32_t rings, double
 Result scalp_make_mesh(Mesh *mesh, ScalpShape shape, uint32_t rings, Error *error)
 {
     uint32_t around = 2 * rings;
-    Result result = mesh_create(mesh, 2 + (rings - 1) * around, 2 * (rings - 1) * around, error);
-    if (result == RESULT_OK) result = mesh_create_uv(mesh, (rings + 1) * (around + 1), error);
-    if (result != RESULT_OK) return result;
+    TRY(mesh_create(mesh, 2 + (rings - 1) * around, 2 * (rings - 1) * around, error));
+    TRY(mesh_create_uv(mesh, (rings + 1) * (around + 1), error));
     for (uint32_t i = 0; i < mesh->uv_count; i++) {
         mesh->uv[i][0] = (float)(i % (around + 1)) / (float)around;
         mesh->uv[i][1] = 1.0f - (float)(i / (around + 1)) / (float)rings;
@@ -247,5 +246,20 @@ Result scalp_make_mesh(Mesh *mesh, ScalpShape shape, uint32_t rings, Error *erro
     }
     for (uint32_t ring = 0; ring < rings; ring++) add_ring_triangles(mesh, ring, rings);
     mesh_compute_normals(mesh);
+    return RESULT_OK;
+}
+
+Result scalp_append_shoulders(Mesh *mesh, Error *error)
+{
+    static const float cones[][2][4] = {
+        {{0, -0.15f, -0.02f, 0.05f}, {0, -0.26f, -0.03f, 0.075f}},
+        {{0.03f, -0.225f, -0.03f, 0.055f}, {0.165f, -0.255f, -0.03f, 0.052f}},
+        {{-0.03f, -0.225f, -0.03f, 0.055f}, {-0.165f, -0.255f, -0.03f, 0.052f}},
+        {{0.172f, -0.262f, -0.03f, 0.05f}, {0.2f, -0.4f, -0.02f, 0.042f}},
+        {{-0.172f, -0.262f, -0.03f, 0.05f}, {-0.2f, -0.4f, -0.02f, 0.042f}},
+        {{0.065f, -0.33f, -0.02f, 0.095f}, {-0.065f, -0.33f, -0.02f, 0.095f}},
+    };
+    for (size_t i = 0; i < sizeof cones / sizeof *cones; ++i)
+        TRY(mesh_append_cone(mesh, cones[i][0], cones[i][1], 12, error));
     return RESULT_OK;
 }

@@ -43,3 +43,7 @@ void scalp_roots_next(ScalpRoots *roots, Double3 direction);
 // (rings - 1) triangles; 3 <= rings <= 4096. Its vertices lie on the surface.
 // Texture coordinates are longitude (0.5 in front, the seam at the back) and latitude (1 on top).
 Result scalp_make_mesh(Mesh *mesh, ScalpShape shape, uint32_t rings, Error *error);
+
+// Appends neck, shoulders, upper arms and chest under the head, for hair to fall on; they overlap
+// each other and the head's neck. RESULT_FAILED when memory is short.
+Result scalp_append_shoulders(Mesh *mesh, Error *error);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "scene/assets.h"
 
+#include "mesh/obj.h"
+
 #include <stdlib.h>
 
 static StrandsReadOptions read_options(const Scene *scene, const Section *section)
@@ -42,7 +44,7 @@ static Result load_mesh(Assets *assets, const Scene *scene, Error *error)
     if (scene->run.mesh_unit.automatic)
         unit = assets->section_count ? assets->reports[0].unit_used : 1;
     assets->has_mesh = true;
-    return mesh_read_obj(&assets->mesh, scene->run.mesh, unit, scene->run.mesh_up == UP_Z, error);
+    return obj_read_mesh(&assets->mesh, scene->run.mesh, unit, scene->run.mesh_up == UP_Z, error);
 }
 
 Result assets_load(Assets *assets, const Scene *scene, FILE *messages, bool verbose, Error *error)

@@ -28,7 +28,7 @@ static void dispatch(Carry *carry, CarryParams *params, const GpuBuffer *points,
                      const GpuBuffer *vectors)
 {
     params->count = (uint)(vectors->size / (int64_t)sizeof(vec4)) / params->stride;
-    gpu_uniforms_set(&carry->uniforms, BIND_STEP, params, sizeof *params);
+    gpu_buffer_set_uniforms(&carry->uniforms, BIND_STEP, params, sizeof *params);
     gpu_buffer_bind_storage(points, BIND_POSITION_OUT);
     gpu_buffer_bind_storage(vectors, BIND_STATE_OUT);
     GLuint groups = (params->count + GROUP - 1) / GROUP;

@@ -153,7 +153,7 @@ static void add_columns(Items *items, const DistanceField *field, const Extent *
 
 static void set_params(Work *work)
 {
-    gpu_uniforms_set(&work->uniforms, BIND_STEP, &work->params, sizeof work->params);
+    gpu_buffer_set_uniforms(&work->uniforms, BIND_STEP, &work->params, sizeof work->params);
 }
 
 static void dispatch_grid(Work *work)

@@ -183,7 +183,7 @@ static void write_batch(Follow *follow, uint32_t i, FollowParams *params)
     params->strand_count = hair->strand_count;
     params->vertex_count = hair->vertex_count;
     params->first_guide = batch->first_guide;
-    gpu_uniforms_set(&follow->uniforms, BIND_STEP, params, sizeof *params);
+    gpu_buffer_set_uniforms(&follow->uniforms, BIND_STEP, params, sizeof *params);
     gpu_buffer_bind_texture(&follow->guides->batches[batch->guide_batch].position, BIND_POSITION);
     gpu_buffer_bind_texture(&batch->offsets, BIND_FOLLOW_OFFSETS);
     gpu_buffer_bind_texture(&batch->guides, BIND_FOLLOW_GUIDES);

@@ -82,7 +82,7 @@ void inbetween_mix(Inbetween *inbetween, float share, const HeadPose *earlier,
         const HairBatch *batch = &inbetween->hair->batches[i];
         params.strand_count = batch->strand_count;
         params.vertex_count = batch->vertex_count;
-        gpu_uniforms_set(&inbetween->uniforms, BIND_STEP, &params, sizeof params);
+        gpu_buffer_set_uniforms(&inbetween->uniforms, BIND_STEP, &params, sizeof params);
         gpu_buffer_bind_texture(&inbetween->earlier[i], BIND_POSITION);
         gpu_buffer_bind_texture(&inbetween->later[i], BIND_STATE);
         gpu_buffer_bind_storage(&batch->position, BIND_POSITION_OUT);

@@ -156,7 +156,7 @@ static void dispatch(ParticleState *state, uint32_t i, StepParams *uniforms)
     const ParticleBatch *batch = &state->batches[i];
     uniforms->strand_count = hair->strand_count;
     uniforms->vertex_count = hair->vertex_count - state->programs.leads[i];
-    gpu_uniforms_set(&state->uniforms, BIND_STEP, uniforms, sizeof *uniforms);
+    gpu_buffer_set_uniforms(&state->uniforms, BIND_STEP, uniforms, sizeof *uniforms);
     gpu_buffer_bind_texture(&hair->position, BIND_POSITION);
     gpu_buffer_bind_texture(&hair->rest, BIND_REST);
     gpu_buffer_bind_texture(&hair->strand_id, BIND_STRAND_ID);

@@ -72,7 +72,7 @@ void pose_write(Pose *pose, const HairBatch *batch, const GpuBuffer *segments, c
     memcpy(params.head_translation, head->translation, sizeof head->translation);
     memcpy(params.turn_cos, pose->turn_cos, sizeof pose->turn_cos);
     memcpy(params.turn_sin, pose->turn_sin, sizeof pose->turn_sin);
-    gpu_uniforms_set(&pose->uniforms, BIND_STEP, &params, sizeof params);
+    gpu_buffer_set_uniforms(&pose->uniforms, BIND_STEP, &params, sizeof params);
     gpu_buffer_bind_texture(&batch->rest, BIND_REST);
     if (segments) gpu_buffer_bind_texture(segments, BIND_STATE);
     gpu_buffer_bind_storage(&batch->position, BIND_POSITION_OUT);

@@ -129,7 +129,7 @@ static void look(Sleep *sleep)
         const HairBatch *hair = &sleep->hair->batches[i];
         params.strand_count = hair->strand_count;
         params.vertex_count = hair->vertex_count;
-        gpu_uniforms_set(&sleep->uniforms, BIND_STEP, &params, sizeof params);
+        gpu_buffer_set_uniforms(&sleep->uniforms, BIND_STEP, &params, sizeof params);
         gpu_buffer_bind_texture(&hair->position, BIND_POSITION);
         gpu_buffer_bind_texture(&hair->rest, BIND_REST);
         gpu_buffer_bind_storage(&sleep->batches[i].anchors, BIND_ANCHORS_OUT);

@@ -184,7 +184,7 @@ static void step(void *pointer, const SolverStep *solver_step)
         const SplitBatch *batch = &state->batches[i];
         uniforms.strand_count = hair->strand_count;
         uniforms.vertex_count = hair->vertex_count - state->programs.leads[i];
-        gpu_uniforms_set(&state->uniforms, BIND_STEP, &uniforms, sizeof uniforms);
+        gpu_buffer_set_uniforms(&state->uniforms, BIND_STEP, &uniforms, sizeof uniforms);
         gpu_buffer_bind_texture(&hair->rest, BIND_REST);
         gpu_buffer_bind_texture(&hair->strand_id, BIND_STRAND_ID);
         gpu_buffer_bind_texture(&batch->segments, BIND_STATE);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "strands/strands_read.h"
 
-#include "mesh/obj_text.h"
+#include "mesh/obj.h"
 #include "strands/formats/hair_file.h"
 #include "strands/formats/obj_file.h"
 #include "strands/formats/salon_file.h"
@@ -21,7 +21,7 @@ static StrandsKind detect(const Bytes *bytes)
     if (hair_file_matches(bytes)) return STRANDS_HAIR;
     if (tfx_text_matches(bytes)) return STRANDS_TFX2_TEXT;
     if (usd_reader_matches(bytes)) return STRANDS_USD;
-    if (obj_text_matches(bytes)) return STRANDS_OBJ;
+    if (obj_matches(bytes)) return STRANDS_OBJ;
     float version = tfx_binary_version(bytes);
     if (version > 0.0f) return version < 4.0f ? STRANDS_TFX3 : STRANDS_TFX4;
     int floats = salon_file_match(bytes);

@@ -77,8 +77,8 @@ static void scatter(const SectionParams *params, int count, Direction (*pairs)[2
                              error));
     NEEDED(gpu_buffer_create(&out, &gpu.limits, "answers", count * (int64_t)sizeof *f, NULL, 0,
                              error));
-    gpu_uniforms_set(&draw, BIND_DRAW, &draw_params, sizeof draw_params);
-    gpu_uniforms_set(&material, BIND_MATERIAL, &look, sizeof look);
+    gpu_buffer_set_uniforms(&draw, BIND_DRAW, &draw_params, sizeof draw_params);
+    gpu_buffer_set_uniforms(&material, BIND_MATERIAL, &look, sizeof look);
     gpu_buffer_bind_storage(&in, 0);
     gpu_buffer_bind_storage(&out, 1);
     glActiveTexture(GL_TEXTURE0 + BIND_SCATTER);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A mesh as a surface: distances, normals, texture coordinates; noise, sine and cosine for it.
-#include "base/noise.h"
-#include "base/portable_sine.h"
+#include "base/portable.h"
 #include "base/random.h"
 #include "mesh/scalp.h"
 #include "mesh/surface.h"
@@ -31,11 +30,11 @@ static void noise_is_even_and_smooth(void **state)
 {
     (void)state;
     double sum = 0;
-    for (int i = 0; i < 8000; i++) sum += noise_at(i % 20, i / 20 % 20, i / 400);
+    for (int i = 0; i < 8000; i++) sum += portable_noise(i % 20, i / 20 % 20, i / 400);
     assert_true(fabs(sum / 8000) < 5 / sqrt(3.0 * 8000));
     for (int i = 0; i < 1000; i++) {
-        double x = i * 0.0137, here = noise_at(x, 2 * x, -x);
-        assert_true(fabs(here) <= 1 && fabs(noise_at(x + 1e-4, 2 * x, -x) - here) <= 3.001e-4);
+        double x = i * 0.0137, here = portable_noise(x, 2 * x, -x);
+        assert_true(fabs(here) <= 1 && fabs(portable_noise(x + 1e-4, 2 * x, -x) - here) <= 3.001e-4);
     }
 }
 

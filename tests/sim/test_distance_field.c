@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Distance fields against exact distances.
-#include "mesh/bust.h"
+#include "mesh/obj.h"
 #include "mesh/scalp.h"
 #include "sim/field_cache.h"
 #include "support/hair_fixture.h"
@@ -212,7 +212,7 @@ static void a_sphere_has_its_distances(void **state)
 static void read_head(Mesh *mesh)
 {
     Error error = {{0}};
-    if (mesh_read_obj(mesh, "assets/head.obj", 1, false, &error) != RESULT_OK)
+    if (obj_read_mesh(mesh, "assets/head.obj", 1, false, &error) != RESULT_OK)
         fail_msg("%s", error.text);
 }
 
@@ -291,7 +291,7 @@ static void the_bust_is_closed(void **state)
     Mesh bust;
     double most = 0;
     assert_int_equal(scalp_make_mesh(&bust, SCALP_HEAD, 12, NULL), RESULT_OK);
-    assert_int_equal(bust_append_shoulders(&bust, NULL), RESULT_OK);
+    assert_int_equal(scalp_append_shoulders(&bust, NULL), RESULT_OK);
     for (size_t i = 0; i < sizeof points / sizeof *points; ++i) {
         double w = winding(&bust, points[i]);
         assert_true(fabs(w - round(w)) < 1e-6);

@@ -61,7 +61,7 @@ void shadow_stage_draw(ShadowStage *stage, Shadow kind, int side, float spacing,
     GpuBuffer uniforms = {0};
     gpu_timer_create(&timer, false, true);
     DrawParams draw = {.head_rotation = {0, 0, 0, 1}};
-    gpu_uniforms_set(&uniforms, BIND_DRAW, &draw, sizeof draw);
+    gpu_buffer_set_uniforms(&uniforms, BIND_DRAW, &draw, sizeof draw);
     render_shadow_destroy(&stage->shadow);
     const ShadowOptions options = {kind, side, spacing};
     NEEDED(render_shadow_create(&stage->shadow, &fixture_gpu()->limits, &options, by_processor,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "strands/formats/obj_file.h"
 
-#include "mesh/obj_text.h"
+#include "mesh/obj.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -24,10 +24,10 @@ static void count_statements(Obj *obj)
     Reader counter = *obj->reader;
     ObjStatement statement;
     char word[256];
-    while (obj_text_next(&counter, &statement)) {
+    while (obj_next_statement(&counter, &statement)) {
         obj->vertices += statement == OBJ_VERTEX;
         obj->lines += statement == OBJ_LINE;
-        while (statement == OBJ_LINE && obj_text_goes_on(&counter) &&
+        while (statement == OBJ_LINE && obj_goes_on(&counter) &&
                reader_read_word(&counter, word, sizeof word))
             obj->corners++;
         reader_skip_line(&counter);
@@ -50,7 +50,7 @@ static uint32_t read_corner(Obj *obj)
     Reader *reader = obj->reader, before = *reader;
     ObjCorner corner = {0};
     if (!reader_ok(reader)) return 0;
-    if (obj_text_take_corner(reader, &corner)) {
+    if (obj_take_corner(reader, &corner)) {
         int64_t index = corner.vertex + (corner.vertex < 0 ? (int64_t)obj->read + 1 : 0);
         if (index >= 1 && index <= obj->read) return (uint32_t)index - 1;
     }
@@ -69,7 +69,7 @@ static void read_line(Obj *obj)
 {
     Strands *strands = &obj->source->strands;
     uint32_t corners = 0, line = obj->reader->line;
-    while (obj_text_goes_on(obj->reader)) {
+    while (obj_goes_on(obj->reader)) {
         uint32_t vertex = read_corner(obj);
         if (!reader_ok(obj->reader)) return;
         if (corners++ == 0) {
@@ -87,7 +87,7 @@ static void read_line(Obj *obj)
 static void read_statements(Obj *obj)
 {
     ObjStatement statement;
-    while (obj_text_next(obj->reader, &statement)) {
+    while (obj_next_statement(obj->reader, &statement)) {
         if (statement == OBJ_VERTEX) read_vertex(obj);
         if (statement == OBJ_LINE) read_line(obj);
         reader_skip_line(obj->reader);
@@ -131,7 +131,7 @@ void obj_file_write(FILE *stream, const Strands *strands)
     fprintf(stream, "# %u strands, %u vertices\no hair\n", strands->strand_count,
             strands->vertex_count);
     for (uint32_t v = 0; v < strands->vertex_count; v++)
-        obj_text_put(stream, "v", strands->position[v], 3);
+        obj_put_line(stream, "v", strands->position[v], 3);
     for (uint32_t s = 0; s < strands->strand_count; s++) {
         fputc('l', stream);
         for (uint32_t v = strands->first[s]; v < strands->first[s + 1]; v++)
