@@ -200,7 +200,7 @@ install: all $(MANUALS) $(COMPLETIONS) ## programs, manuals, bash completion, do
 	install -m 644 $(MANUALS) $(MAN_DIR)
 	for file in $(COMPLETIONS); do install -m 644 $$file $(BASH_DIR)/$$(basename $$file .bash) || exit 1; done
 	$(if $(wildcard assets/*),install -m 644 $(wildcard assets/*) $(DATA_DIR))
-	install -m 644 LICENSE README.md $(DOC_DIR)
+	install -m 644 LICENSE README.md CHANGELOG.md CONTRIBUTING.md CITATION.cff $(DOC_DIR)
 	install -m 644 $(wildcard docs/*.*) $(DOC_DIR)/docs
 
 uninstall: ## remove what install put there

@@ -10,11 +10,11 @@ make_checkout() {
     ln -s "$(realpath "$bin")" "$work/checkout/out/release"
     printf 'all:\n' >"$work/checkout/Makefile"
 
-    # The last of equal flags counts.
+    # The last of equal flags counts. Scenes of docs/ have one frame.
     cat >"$work/checkout/small" <<END
 #!/bin/sh
 case " \$* " in
-*" --frames 1 "*) exec "$(realpath "$bin")/tractrix-render" "\$@" --size 96x64 ;;
+*" --frames 1 "* | " docs/"*) exec "$(realpath "$bin")/tractrix-render" "\$@" --size 96x64 ;;
 *) exec "$(realpath "$bin")/tractrix-render" "\$@" --size 96x64 --frames 4 ;;
 esac
 END
