@@ -119,23 +119,6 @@ Result target_parse(Target *target, const char *text, Error *error)
     return result;
 }
 
-Result target_parse_hair(Target *target, const char *text, Error *error)
-{
-    *target = (Target){.kind = TARGET_FRAMES};
-    Result result = RESULT_USAGE;
-    bool usd = has_suffix(text, ".usda");
-    if (usd || has_suffix(text, ".tfx") || has_suffix(text, ".hair") || has_suffix(text, ".obj") ||
-        has_suffix(text, ".data"))
-        result = take_pattern(target, text, error);
-    else
-        error_set(error, RESULT_USAGE,
-                  "%s: expected a name ending in .usda, .tfx, .hair, .obj or .data",
-                  *text ? text : "the hair file's name is empty");
-    if (usd && target->kind == TARGET_STILL) target->kind = TARGET_VIDEO;
-    if (result != RESULT_OK) target_destroy(target);
-    return result;
-}
-
 Result target_parse_any(Target *target, const char *text, Error *error)
 {
     *target = (Target){.kind = TARGET_FRAMES};

@@ -26,11 +26,6 @@ typedef struct Target {
 // anything else, RESULT_FAILED when memory is short.
 Result target_parse(Target *target, const char *text, Error *error);
 
-// Takes the name of hair files: one ending in .usda, .tfx, .hair, .obj or .data, with a number like
-// those of pictures or without one. A .usda without a number holds all frames (TARGET_VIDEO).
-// Errors as above.
-Result target_parse_hair(Target *target, const char *text, Error *error);
-
 // Takes any name, with a number or without one (TARGET_STILL), whatever it ends in. Errors as
 // above.
 Result target_parse_any(Target *target, const char *text, Error *error);

@@ -2,7 +2,7 @@
 #include "bench/bench_image_hair.h"
 #include "gen/strands_make.h"
 #include "scene/outline.h"
-#include "strands/fibre.h"
+#include "strands/paint.h"
 #include "strands/strands_read.h"
 
 #include <stdio.h>
@@ -53,7 +53,7 @@ Result image_hair_create(ImageHair *hair, const Gpu *gpu, const char *set, const
     if (result == RESULT_OK)
         result = hair_create(&hair->hair, &hair->strands, 0, &gpu->limits, error);
     if (result != RESULT_OK) return result;
-    hair->radius = fibre_auto_radius(&hair->strands, 0);
+    hair->radius = paint_auto_radius(&hair->strands, 0);
     memcpy(hair->scene.run.size, size, sizeof hair->scene.run.size);
     outline_frame(&framing, &hair->scene, &hair->strands, NULL);
     camera_view(&hair->view, &hair->scene, &framing, 0);

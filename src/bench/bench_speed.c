@@ -8,7 +8,7 @@
 #include "gen/strands_make.h"
 #include "run/stats.h"
 #include "sim/simulation.h"
-#include "strands/fibre.h"
+#include "strands/paint.h"
 #include "strands/strands_read.h"
 
 #include <math.h>
@@ -107,7 +107,7 @@ static Result draw_frames(SpeedResult *result, Renderer *renderer, Bench *bench,
     View view;
     outline_frame(&framing, &bench->scene, strands, NULL);
     const RenderItem item = {&bench->simulation.sections[0].hair, &bench->scene.sections[0].params,
-                             fibre_auto_radius(strands, 0)};
+                             paint_auto_radius(strands, 0)};
     const RenderFrame frame = {.view = &view,
                                .lights = bench->scene.lights,
                                .light_count = bench->scene.light_count,

@@ -330,7 +330,7 @@ Result shapes_create(Shapes *shapes, const ReferenceScene *scene, int width, int
     for (uint32_t i = 0; i < scene->item_count; ++i) {
         p.item = &scene->items[i];
         float base[3];
-        hair_color(p.item->material, base);
+        paint_color(p.item->material, base);
         for (int k = 0; k < 3; ++k) p.base[k] = base[k];
         for (uint32_t s = 0; s < p.item->strands->strand_count; ++s) add_strand(shapes, &p, s);
     }

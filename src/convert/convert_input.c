@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "convert/convert_input.h"
 
-#include "strands/strands_features.h"
-#include "strands/strands_join.h"
+#include "strands/strands.h"
+#include "strands/strands_edit.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -67,7 +67,7 @@ Result convert_input_open(ConvertInput *input, Error *error)
     input->reports = calloc((size_t)input->path_count + 1, sizeof *input->reports);
     if (!input->reports) return error_set(error, RESULT_FAILED, "no memory for reports");
     if (input->cached) result = cache_strands_open(&input->cache, input->paths[0], error);
-    if (input->numbered) result = target_parse_hair(&input->pattern, input->paths[0], error);
+    if (input->numbered) result = format_target(&input->pattern, input->paths[0], error);
     return result == RESULT_OK ? choose_frames(input, error) : result;
 }
 

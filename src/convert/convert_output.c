@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "convert/convert_output.h"
 
-#include "strands/fibre.h"
+#include "strands/formats/format.h"
+#include "strands/paint.h"
+#include "strands/strands.h"
 #include "strands/strands_edit.h"
-#include "strands/strands_features.h"
-#include "strands/strands_write.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-// As CONVERT_FORMATS has them.
-static const StrandsKind FORMATS[] = {STRANDS_KINDS, STRANDS_TFX2_TEXT,  STRANDS_TFX3, STRANDS_TFX4,
-                                      STRANDS_HAIR,  STRANDS_SALON_DATA, STRANDS_OBJ,  STRANDS_USD};
 
 // --- The name.
 
@@ -24,11 +20,11 @@ static const char *suffix_of(const char *path)
 // With --format any name will do.
 static Result parse_target(ConvertOutput *output, Error *error)
 {
-    if (!output->format) return target_parse_hair(&output->target, output->path, error);
-    Result result = target_parse_any(&output->target, output->path, error);
-    if (FORMATS[output->format] == STRANDS_USD && output->target.kind == TARGET_STILL)
+    if (!output->format) return format_target(&output->target, output->path, error);
+    TRY(target_parse_any(&output->target, output->path, error));
+    if (FORMAT_TABLE[output->format - 1]->animated && output->target.kind == TARGET_STILL)
         output->target.kind = TARGET_VIDEO;
-    return result;
+    return RESULT_OK;
 }
 
 Result convert_output_open(ConvertOutput *output, int frame_count, Error *error)
@@ -59,7 +55,7 @@ static Result find_widths(ConvertOutput *output, const Strands *strands, UsdLook
                           Error *error)
 {
     double width = output->width > 0 ? output->width / output->unit
-                                     : 2 * (double)fibre_auto_radius(strands, 0);
+                                     : 2 * (double)paint_auto_radius(strands, 0);
     const float *thickness = strands->strand_thickness;
     uint32_t count = thickness ? strands->strand_count : 1;
     double mean = 0;
@@ -129,11 +125,11 @@ static Result write_file(ConvertOutput *output, int frame, const Strands *strand
     char *name = target_name_frame(&output->target, frame);
     Result result =
         name ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for the name of a frame");
-    if (result == RESULT_OK && output->kind == STRANDS_USD) {
+    if (result == RESULT_OK && output->kind == FORMAT_USD) {
         result = describe_usd(output, strands, false, &options, error);
         if (result == RESULT_OK) result = usd_write_still(name, strands, &options, error);
     } else if (result == RESULT_OK) {
-        result = strands_write(name, output->kind, strands, error);
+        result = format_write(name, output->kind, strands, error);
     }
     output->files += result == RESULT_OK;
     free(name);
@@ -145,9 +141,9 @@ Result convert_output_add(ConvertOutput *output, int frame, Strands *strands, Er
     if (strands->strand_count == 0)
         return error_set(error, RESULT_FAILED, "%s: no strands to write", output->path);
     strands_to_unit(strands, output->unit, output->up_z);
-    output->kind = output->format ? FORMATS[output->format]
-                                  : strands_choose_kind(suffix_of(output->path), strands);
-    output->lost |= strands_features(strands) & ~strands_kind_features(output->kind);
+    output->kind =
+        output->format ? (FormatKind)output->format - 1 : format_choose(output->path, strands);
+    output->lost |= strands_features(strands) & ~FORMAT_TABLE[output->kind]->features;
     if (output->target.kind == TARGET_VIDEO) return add_usd(output, frame, strands, error);
     return write_file(output, frame, strands, error);
 }

@@ -3,12 +3,12 @@
 #pragma once
 
 #include "base/target.h"
-#include "strands/formats/usd_file.h"
+#include "strands/formats/usd_write.h"
 #include "strands/strands_report.h"
 
 typedef struct ConvertOutput {
     const char *path;
-    int format;      // 0: by the name, else CONVERT_FORMATS' index
+    int format;      // 0: by the name, else 1 + a FormatKind
     double unit;     // metres per unit of the file
     bool up_z;       // z is up in it
     double width;    // m, of USD's curves; 0: by the number and size of the strands
@@ -17,16 +17,13 @@ typedef struct ConvertOutput {
     double fps;
     const uint32_t *section; // NULL, or [strand_count] for USD
     Target target;
-    StrandsKind kind;
+    FormatKind kind;
     Strands still; // of the first frame, if all go into one file
     float *widths;
     UsdWriter usd;
     uint32_t lost; // features that the files do not have
     int files;     // written
 } ConvertOutput;
-
-// The words of --format.
-#define CONVERT_FORMATS "auto|text|tfx3|tfx4|hair|data|obj|usda"
 
 // Checks the name and makes its folder; everything up to `section` is set. `frame_count`: how many
 // will come. RESULT_USAGE for the name, RESULT_FAILED if no file can be made there.

@@ -2,7 +2,7 @@
 #include "convert/convert_report.h"
 
 #include "base/json.h"
-#include "strands/strands_features.h"
+#include "strands/strands.h"
 
 // --- Text.
 
@@ -95,7 +95,7 @@ static json_t *defects_to_json(const StrandsReport *report, const char *path)
 static json_t *report_to_json(const StrandsReport *report, const char *path)
 {
     return json_pack("{ss ss sf si si si si sf sb sb si si so}", "file", path, "kind",
-                     strands_kind_name(report->kind), "version", (double)report->version,
+                     FORMAT_TABLE[report->kind]->name, "version", (double)report->version,
                      "declared_strands", report->declared_strands, "declared_vertices",
                      report->declared_vertices, "strands", report->strands, "vertices",
                      report->vertices, "unit_m", (double)report->unit_used, "unit_guessed",
@@ -141,8 +141,8 @@ static json_t *output_to_json(const ConvertOutput *output)
 {
     char lost[300];
     strands_features_describe(output->lost, lost, sizeof lost);
-    return json_pack("{ss ss si ss}", "file", output->path, "kind", strands_kind_name(output->kind),
-                     "files", output->files, "left_out", lost);
+    return json_pack("{ss ss si ss}", "file", output->path, "kind",
+                     FORMAT_TABLE[output->kind]->name, "files", output->files, "left_out", lost);
 }
 
 Result convert_write_json(const char *path, const ConvertInput *input,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "convert/convert_steps.h"
 
-#include "strands/strands_mend.h"
-#include "strands/strands_order.h"
+#include "strands/strands.h"
+#include "strands/strands_edit.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -9,7 +9,7 @@
 #include "convert/convert_output.h"
 #include "convert/convert_report.h"
 #include "convert/convert_steps.h"
-#include "strands/strands_features.h"
+#include "strands/strands.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -27,9 +27,9 @@ static const char AXES[] = "y|z", UNITS[] = "m|cm|mm|in|NUMBER";
 
 static const Option OPTIONS[] = {
     {"output", 'o', OPTION_STRING, AT(output), "FILE", 0, 0,
-     "what is written: .usda, .tfx, .hair, .obj or .data; with one %d or %04d a file for each "
-     "frame"},
-    {"format", 0, OPTION_WORD, AT(format), CONVERT_FORMATS, 0, 0,
+     "what is written, in the format that the suffix names (below); with one %d or %04d a file for "
+     "each frame"},
+    {"format", 0, OPTION_WORD, AT(format), "auto" FORMAT_WORDS, 0, 0,
      "format of FILE, whatever its name; auto goes by the name, .tfx is tfx4, or text where "
      "strands differ in their number of vertices [default auto]"},
     {"stats", 0, OPTION_SWITCH, AT(stats), NULL, 0, 0,
@@ -77,18 +77,15 @@ static const Option OPTIONS[] = {
      "of --subsample, and of the shuffle that some files ask for [default 1]"},
 };
 
-static const char *const NOTES[] = {
-    "FILE is a hair file (TressFX 2, 3 or 4, HAIR, USC-HairSalon, CT2Hair, Wavefront lines, USD "
-    "curves), a name with %d or %04d that stands for numbered ones, or a cache of "
-    "tractrix-render. Several hair files become one. Without -o, --stats and --json it is only "
-    "told what they are.",
-    "Steps are done in the order in which they stand. Lengths are metres with y up, whatever the "
-    "file has.",
-    "Defects are mended when a file is read, as tractrix-render does, with a line for each kind: "
-    "strands with coordinates that are no numbers and strands without length are dropped, "
-    "coincident vertices merged, bad attributes replaced. What the written format can't hold is "
-    "told, too.",
-    NULL};
+// Behind a paragraph about the formats.
+#define OTHER_NOTES                                                                                \
+    "Steps are done in the order in which they stand. Lengths are metres with y up, whatever the " \
+    "file has.",                                                                                   \
+        "Defects are mended when a file is read, as tractrix-render does, with a line for each "   \
+        "kind: strands with coordinates that are no numbers and strands without length are "       \
+        "dropped, coincident vertices merged, bad attributes replaced. Data that the written "     \
+        "format cannot store is dropped, with one warning.",                                       \
+        NULL
 
 static const char *const STATUS[][2] = {
     {"0", "done"},          {"1", "a file can't be written"},
@@ -114,7 +111,6 @@ static const OptionsProgram PROGRAM = {
         "it in other formats, also animated.",
     .options = OPTIONS,
     .option_count = sizeof OPTIONS / sizeof *OPTIONS,
-    .notes = NOTES,
     .status = STATUS,
     .examples = EXAMPLES,
 };
@@ -151,13 +147,30 @@ static Result check_sense(const Command *command, int files, Error *error)
     return RESULT_OK;
 }
 
+static void describe_formats(char *text, size_t size)
+{
+    char names[300], suffixes[200];
+    format_list_names(names, sizeof names);
+    format_list_suffixes(suffixes, sizeof suffixes);
+    snprintf(text, size,
+             "FILE is a hair file (%s), a name with %%d or %%04d that stands for numbered ones, or "
+             "a cache of tractrix-render. Several hair files become one. Without -o, --stats and "
+             "--json the program only reports what they are. The suffix of what is written is %s.",
+             names, suffixes);
+}
+
 static Result parse(Job *job, int argc, char **argv, bool *done, Error *error)
 {
     Command *command = &job->command;
     int first;
     float unit = 0, to_unit = 1;
+    char formats[1024];
+    const char *const notes[] = {formats, OTHER_NOTES};
+    OptionsProgram program = PROGRAM;
+    program.notes = notes;
+    describe_formats(formats, sizeof formats);
     *command = (Command){.last = -1, .every = 1, .seed = 1};
-    Result result = options_parse(&PROGRAM, command, argc, argv, &first, done, error);
+    Result result = options_parse(&program, command, argc, argv, &first, done, error);
     if (result != RESULT_OK || *done) return result;
     result = check_sense(command, argc - first, error);
     if (result == RESULT_OK) result = parse_unit("unit", command->unit, &unit, error);
@@ -243,7 +256,7 @@ static Result do_frames(Job *job, Error *error)
 static void tell_output(const Job *job)
 {
     const ConvertOutput *output = &job->output;
-    const char *kind = strands_kind_name(output->kind);
+    const char *kind = FORMAT_TABLE[output->kind]->name;
     char lost[300];
     strands_features_describe(output->lost, lost, sizeof lost);
     if (*lost) fprintf(stderr, "%s: %s leaves out: %s\n", output->path, kind, lost);

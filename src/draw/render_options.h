@@ -42,7 +42,7 @@ typedef struct RendererOptions {
 } RendererOptions;
 
 // Hair to be drawn. The material is that of its section; `radius` is the fibre radius at the root
-// in metres (fibre_auto_radius where the section has none).
+// in metres (paint_auto_radius where the section has none).
 typedef struct RenderItem {
     const Hair *hair;
     const SectionParams *material;

@@ -107,7 +107,7 @@ MaterialParams material_params(const SectionParams *params, float radius)
         .shift2_cos = cosf(-3 * cone),
         .shift2_sin = sinf(-3 * cone),
     };
-    hair_color(params, material.color);
+    paint_color(params, material.color);
     set_lobes(params, &material);
     return material;
 }

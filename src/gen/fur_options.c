@@ -78,9 +78,9 @@ static const Option OPTIONS[] = {
      "of the strands that hardly clump and have three times as much frizz [default 0]"},
     // Besides.
     {"followers", 0, OPTION_WHOLE, AT(followers), "N", 1, 1000,
-     "that the file asks the renderer to draw with each strand; --format text or tfx3"},
+     "that the file asks the renderer to draw with each strand, where the format holds it"},
     {"thickness", 0, OPTION_REAL, AT(thickness), "M", 1e-7, 1,
-     "of hair at the root, written by vertex; --format hair"},
+     "of hair at the root, written by vertex, where the format holds it"},
     {"tip-thickness", 0, OPTION_REAL, AT(tip_thickness), "SHARE", 0, 1,
      "of that at the tip [default 0.3]"},
 };
@@ -123,22 +123,30 @@ static const OptionsProgram PROGRAM = {
     .examples = EXAMPLES,
 };
 
+// An option whose values only some formats hold.
+static Result check_holds(const Command *command, const char *option, uint32_t features,
+                          Error *error)
+{
+    char words[200];
+    if (!(features & ~FORMAT_TABLE[command->output.format]->features)) return RESULT_OK;
+    format_list_holding(features, words, sizeof words);
+    return error_set(error, RESULT_USAGE, "--%s needs --format %s", option, words);
+}
+
 static Result check(const Command *command, Error *error)
 {
-    StrandsKind kind = gen_output_kind(&command->output);
     if (!command->output.path)
         return error_set(error, RESULT_USAGE, "nothing to write: expected -o FILE");
-    if (command->recipe.followers > 0 && kind != STRANDS_TFX2_TEXT && kind != STRANDS_TFX3)
-        return error_set(error, RESULT_USAGE, "--followers needs --format text or tfx3");
-    if (command->recipe.thickness > 0.0 && kind != STRANDS_HAIR)
-        return error_set(error, RESULT_USAGE, "--thickness needs --format hair");
+    if (command->recipe.followers > 0)
+        TRY(check_holds(command, "followers", STRANDS_HAS_FOLLOWERS, error));
+    if (command->recipe.thickness > 0.0)
+        TRY(check_holds(command, "thickness", STRANDS_HAS_VERTEX_THICKNESS, error));
     return fur_recipe_check(&command->recipe, error);
 }
 
 Result fur_options_read(FurOptions *options, int argc, char **argv, bool *done, Error *error)
 {
-    Command command = {
-        .recipe = fur_recipe_default(), .output.format = GEN_OUTPUT_TFX4, .unit = 1.0};
+    Command command = {.recipe = fur_recipe_default(), .output.format = FORMAT_TFX4, .unit = 1.0};
     int first;
     Result result = options_parse(&PROGRAM, &command, argc, argv, &first, done, error);
     if (result != RESULT_OK || *done) return result;

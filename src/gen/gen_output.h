@@ -3,15 +3,13 @@
 #pragma once
 
 #include "base/options.h"
-#include "strands/strands_write.h"
+#include "strands/formats/format.h"
 
 typedef struct GenOutput {
     const char *path; // NULL: not given
-    int format;       // as --format counts them
+    int format;       // a FormatKind
     bool quiet;
 } GenOutput;
-
-enum { GEN_OUTPUT_TFX4 = 2 }; // the default format
 
 // Rows of an option table; `at` is the offset of a GenOutput's member, or of an int, in the
 // command's struct.
@@ -21,8 +19,8 @@ enum { GEN_OUTPUT_TFX4 = 2 }; // the default format
     }
 #define GEN_OPTION_FORMAT(at)                                                                      \
     {                                                                                              \
-        "format", 0, OPTION_WORD, at, "text|tfx3|tfx4|hair", 0, 0,                                 \
-            "TressFX 2 text, TressFX binary or HAIR [default tfx4]"                                \
+        "format", 0, OPTION_WORD, at, &(FORMAT_WORDS)[1], 0, 0,                                    \
+            "format of FILE, whatever its name [default tfx4]"                                     \
     }
 #define GEN_OPTION_SEED(at)                                                                        \
     {                                                                                              \
@@ -33,10 +31,7 @@ enum { GEN_OUTPUT_TFX4 = 2 }; // the default format
         "quiet", 'q', OPTION_SWITCH, at, NULL, 0, 0, "print nothing"                               \
     }
 
-// What --format asks for.
-StrandsKind gen_output_kind(const GenOutput *output);
-
 // Writes strands of one size to output->path and, unless quiet, tells so on the standard output;
-// `guides` of them are guides, 0: none to speak of. Errors of strands_write.
+// `guides` of them are guides, 0: none to speak of. Errors as format_write.
 Result gen_output_write(const GenOutput *output, const Strands *strands, uint32_t guides,
                         Error *error);

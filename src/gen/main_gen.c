@@ -140,7 +140,7 @@ static Result parse(Command *command, int argc, char **argv, bool *done, Error *
                          .count = -1,
                          .vertices = -1,
                          .set = -1,
-                         .output.format = GEN_OUTPUT_TFX4,
+                         .output.format = FORMAT_TFX4,
                          .seed = 1,
                          .length = NAN,
                          .length_variation = NAN,

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "run/export.h"
-#include "strands/strands_features.h"
-#include "strands/strands_join.h"
-#include "strands/strands_order.h"
-#include "strands/strands_write.h"
+#include "strands/formats/format.h"
+#include "strands/strands.h"
+#include "strands/strands_edit.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -15,13 +14,6 @@ static Result check_name(const Target *target, const char *text, int frame_count
     return error_set(error, RESULT_USAGE,
                      "%s: one name for several frames, put the frame number into it: frame_%%04d%s",
                      text, strrchr(text, '.'));
-}
-
-static const char *target_suffix(const Target *target)
-{
-    const char *name = target->after && *target->after ? target->after : target->before;
-    const char *dot = strrchr(name, '.');
-    return dot ? dot : "";
 }
 
 // The options of a USD file for frames first, first + every, ...
@@ -49,7 +41,7 @@ static void find_lost(Exporter *exporter, const Strands *sections, uint32_t coun
     uint32_t features = 0;
     for (uint32_t i = 0; i < count; ++i) features |= strands_features(&sections[i]);
     exporter->lost =
-        features & ~(strands_features(&exporter->strands) & strands_kind_features(exporter->kind));
+        features & ~(strands_features(&exporter->strands) & FORMAT_TABLE[exporter->kind]->features);
 }
 
 // A section's guides and, behind them in the order of their batches, its followers, which have
@@ -75,19 +67,19 @@ static Result add_followers(Strands *all, const Strands *guides, const Hair *fol
     return result;
 }
 
-static Result prepare(Exporter *exporter, const Strands *sections, uint32_t count, int frame_count,
-                      Error *error)
+static Result prepare(Exporter *exporter, const char *text, const Strands *sections, uint32_t count,
+                      int frame_count, Error *error)
 {
     Result result = strands_join(&exporter->strands, sections, count, error);
     if (result != RESULT_OK) return result;
-    exporter->kind = strands_choose_kind(target_suffix(&exporter->target), &exporter->strands);
+    exporter->kind = format_choose(text, &exporter->strands);
     find_lost(exporter, sections, count);
-    if (exporter->kind != STRANDS_USD) return RESULT_OK;
+    if (exporter->kind != FORMAT_USD) return RESULT_OK;
     return describe_usd(exporter, sections, frame_count, error);
 }
 
-static Result prepare_with_followers(Exporter *exporter, const Strands *strands, uint32_t count,
-                                     int frame_count, Error *error)
+static Result prepare_with_followers(Exporter *exporter, const char *text, const Strands *strands,
+                                     uint32_t count, int frame_count, Error *error)
 {
     Strands *sections = calloc((size_t)count + 1, sizeof *sections);
     Result result =
@@ -95,7 +87,7 @@ static Result prepare_with_followers(Exporter *exporter, const Strands *strands,
     for (uint32_t i = 0; i < count && result == RESULT_OK; ++i)
         result = add_followers(&sections[i], &strands[i],
                                &exporter->simulation->sections[i].follow.hair, error);
-    if (result == RESULT_OK) result = prepare(exporter, sections, count, frame_count, error);
+    if (result == RESULT_OK) result = prepare(exporter, text, sections, count, frame_count, error);
     for (uint32_t i = 0; sections && i < count; ++i) strands_destroy(&sections[i]);
     free(sections);
     return result;
@@ -107,12 +99,12 @@ Result exporter_create(Exporter *exporter, const char *text, int frame_count,
     *exporter =
         (Exporter){.simulation = simulation, .followers = simulation->scene->run.export_followers};
     uint32_t count = simulation->scene->section_count;
-    Result result = target_parse_hair(&exporter->target, text, error);
+    Result result = format_target(&exporter->target, text, error);
     if (result == RESULT_OK) result = check_name(&exporter->target, text, frame_count, error);
     if (result == RESULT_OK) result = target_prepare(&exporter->target, error);
     if (result == RESULT_OK)
-        result = (exporter->followers ? prepare_with_followers : prepare)(exporter, strands, count,
-                                                                          frame_count, error);
+        result = (exporter->followers ? prepare_with_followers : prepare)(
+            exporter, text, strands, count, frame_count, error);
     if (result != RESULT_OK) exporter_destroy(exporter);
     return result;
 }
@@ -176,9 +168,9 @@ static Result write_file(const Exporter *exporter, int frame, Error *error)
 {
     char *name = target_name_frame(&exporter->target, frame);
     if (!name) return error_set(error, RESULT_FAILED, "no memory for the name of frame %d", frame);
-    Result result = exporter->kind == STRANDS_USD
+    Result result = exporter->kind == FORMAT_USD
                         ? usd_write_still(name, &exporter->strands, &exporter->options, error)
-                        : strands_write(name, exporter->kind, &exporter->strands, error);
+                        : format_write(name, exporter->kind, &exporter->strands, error);
     free(name);
     return result;
 }

@@ -9,7 +9,7 @@
 
 typedef struct Exporter {
     Target target;
-    StrandsKind kind;
+    FormatKind kind;
     const Simulation *simulation;
     Strands strands; // of all sections, one behind the other
     bool followers;  // they are among them, behind the guides of their section
@@ -20,7 +20,7 @@ typedef struct Exporter {
     int files;     // written so far
 } Exporter;
 
-// `text`: as target_parse_hair takes it; strands_choose_kind has the kinds. Files have the guides
+// `text`: as format_target takes it. Files have the guides
 // (with export_followers: and the followers) of all sections in the order in which they were read,
 // in metres with y up, and of texture coordinates, colours and so on what all sections have. USD
 // also has the sections' widths and colours (usd_look.h), and frames as time codes. `frame_count`:

@@ -14,8 +14,8 @@ enum { TEXT_SIZE = 600 };
 static const char SUMMARY[] = "simulate hair and render it, without a window";
 
 static const char DESCRIPTION[] =
-    "Reads hair strands (.tfx, .hair; the kind is found by content), steps them by the solver of "
-    "--algo and draws them to pictures or a video. Each hair file is a section of its own; a scene "
+    "Reads hair strands (any format that tractrix-convert knows; the content decides which), steps "
+    "them by the solver of --algo and draws them to pictures or a video. Each hair file is a section of its own; a scene "
     "file in JSON can give sections their own values, keyframes and lights. Flags override the "
     "scene file: those marked * its value for every section, the others its value for the run.";
 

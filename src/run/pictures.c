@@ -3,7 +3,7 @@
 #include "base/target.h"
 #include "draw/hair_paint.h"
 #include "scene/camera.h"
-#include "strands/fibre.h"
+#include "strands/paint.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -36,7 +36,7 @@ static Result create_items(Pictures *pictures, Error *error)
         const SectionParams *params = &pictures->scene->sections[i].params;
         if (params->hidden) continue;
         float radius =
-            fibre_radius(params, &pictures->assets->strands[i], section->follow.per_guide);
+            paint_radius(params, &pictures->assets->strands[i], section->follow.per_guide);
         Result result = paint_section(pictures, i, error);
         if (result != RESULT_OK) return result;
         pictures->items[pictures->item_count++] = (RenderItem){&section->hair, params, radius};

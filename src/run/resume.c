@@ -44,7 +44,7 @@ Result resume_find(Resume *resume, const RunParams *run, int last, Error *error)
     Target pictures = {0}, hair = {0};
     *resume = (Resume){0};
     Result result = *run->output ? target_parse(&pictures, run->output, error) : RESULT_OK;
-    if (result == RESULT_OK && *run->export) result = target_parse_hair(&hair, run->export, error);
+    if (result == RESULT_OK && *run->export) result = format_target(&hair, run->export, error);
     bool video = result == RESULT_OK && *run->output && pictures.kind == TARGET_VIDEO;
     bool whole = video || (result == RESULT_OK && *run->export && hair.kind == TARGET_VIDEO);
     if (whole && !*run->cache)

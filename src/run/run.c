@@ -5,7 +5,7 @@
 #include "run/caption.h"
 #include "run/survey.h"
 #include "scene/fit.h"
-#include "strands/strands_features.h"
+#include "strands/strands.h"
 
 #include <string.h>
 
@@ -93,7 +93,7 @@ static Result check_words(const Scene *scene, Error *error)
 {
     const RunParams *run = &scene->run;
     Result result = check_target(run, run->output, target_parse, error);
-    if (result == RESULT_OK) result = check_target(run, run->export, target_parse_hair, error);
+    if (result == RESULT_OK) result = check_target(run, run->export, format_target, error);
     if (result == RESULT_OK) result = check_sheet(run, error);
     if (result == RESULT_OK) result = caption_check(run->caption, error);
     if (result == RESULT_OK && run->collide_mesh && !*run->mesh)
@@ -128,7 +128,7 @@ static void tell_lost(const Exporter *exporter)
     char lost[300];
     strands_features_describe(exporter->lost, lost, sizeof lost);
     if (*lost)
-        fprintf(stderr, "--export: %s files leave out: %s\n", strands_kind_name(exporter->kind),
+        fprintf(stderr, "--export: %s files leave out: %s\n", FORMAT_TABLE[exporter->kind]->name,
                 lost);
 }
 

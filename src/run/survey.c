@@ -4,7 +4,7 @@
 #include "run/frame_source.h"
 #include "run/stats.h"
 #include "scene/fit.h"
-#include "strands/fibre.h"
+#include "strands/paint.h"
 
 #include <cglm/cglm.h>
 
@@ -51,7 +51,7 @@ static Result make_room(Survey *survey, Error *error)
     survey->groups = calloc(2 * (size_t)scene->section_count + 1, sizeof *survey->groups);
     for (uint32_t i = 0; survey->groups && i < scene->section_count; ++i) {
         const SimulationSection *section = &survey->simulation.sections[i];
-        float radius = fibre_radius(&scene->sections[i].params, &survey->assets->strands[i],
+        float radius = paint_radius(&scene->sections[i].params, &survey->assets->strands[i],
                                     section->follow.per_guide);
         add_group(survey, section->hair.particle_count, radius);
         add_group(survey, section->follow.hair.particle_count, radius);

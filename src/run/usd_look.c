@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "run/usd_look.h"
 
-#include "strands/fibre.h"
 #include "strands/paint.h"
 
 #include <stdlib.h>
@@ -10,7 +9,7 @@
 static void set_widths(float *width, const Strands *strands, const SectionParams *params,
                        const Paint *paint)
 {
-    float radius = params->radius.automatic ? fibre_auto_radius(strands, 0) : params->radius.value;
+    float radius = params->radius.automatic ? paint_auto_radius(strands, 0) : params->radius.value;
     for (uint32_t s = 0; s < strands->strand_count; ++s)
         for (uint32_t first = strands->first[s], j = 0; j < strands_size(strands, s); ++j) {
             float taper =
@@ -24,7 +23,7 @@ static void set_colors(float (*color)[4], const Strands *strands, const SectionP
                        const Paint *paint)
 {
     float own[4] = {0, 0, 0, 1};
-    hair_color(params, own);
+    paint_color(params, own);
     for (uint32_t v = 0; v < strands->vertex_count; ++v)
         memcpy(color[v], paint->color ? paint->color[v] : own, sizeof own);
 }

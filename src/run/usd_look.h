@@ -3,7 +3,7 @@
 #pragma once
 
 #include "scene/scene.h"
-#include "strands/formats/usd_file.h"
+#include "strands/formats/usd_write.h"
 
 // Arrays are owned; a zeroed struct is empty.
 typedef struct SceneLook {

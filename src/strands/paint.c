@@ -16,7 +16,7 @@ static void decode(const float srgb[3], float linear[3])
     for (int k = 0; k < 3; ++k) linear[k] = (float)image_linear_from_srgb((double)srgb[k]);
 }
 
-void hair_color(const SectionParams *params, float linear[3])
+void paint_color(const SectionParams *params, float linear[3])
 {
     double red = (double)params->melanin_redness, amount = (double)params->melanin.value;
     decode(params->color, linear);
@@ -146,7 +146,7 @@ Result paint_create(Paint *paint, const Strands *strands, const SectionParams *p
                      .thickness = malloc(((size_t)count + 1) * sizeof *paint->thickness)};
     Result result = RESULT_OK;
     float own[3];
-    hair_color(params, own);
+    paint_color(params, own);
     if (!paint->color || !paint->thickness)
         result = error_set(error, RESULT_FAILED, "no memory for the colours of %u vertices", count);
     else if (*params->color_map)
@@ -167,4 +167,31 @@ void paint_destroy(Paint *paint)
     free(paint->color);
     free(paint->thickness);
     *paint = (Paint){0};
+}
+
+// --- Thickness where nobody says.
+
+static const double FIBRE_LAYERS = 3;
+static const double THINNEST = 1.0 / 5000, THICKEST = 1.0 / 400;
+
+float paint_auto_radius(const Strands *strands, uint32_t followers)
+{
+    float low[3], high[3];
+    strands_bounds(strands, low, high);
+    double x = (double)high[0] - low[0], y = (double)high[1] - low[1], z = (double)high[2] - low[2];
+    double silhouette = (x * y + y * z + z * x) / 2, total = 0, longest = 0;
+    for (uint32_t s = 0; s < strands->strand_count; ++s) {
+        double length = strands_length(strands, s);
+        total += length;
+        longest = fmax(longest, length);
+    }
+    total *= 1 + (double)followers;
+    if (!(total > 0)) return 1e-4f; // nothing to draw
+    double radius = FIBRE_LAYERS * silhouette / (2 * total);
+    return (float)fmin(fmax(radius, longest * THINNEST), longest * THICKEST);
+}
+
+float paint_radius(const SectionParams *params, const Strands *strands, uint32_t followers)
+{
+    return params->radius.automatic ? paint_auto_radius(strands, followers) : params->radius.value;
 }

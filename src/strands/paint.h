@@ -16,7 +16,7 @@ typedef struct Paint {
 
 // Paints the strands as the parameters say:
 //   color       that of color_map at the strand's root (bilinear; u to the right, v up from the
-//               lowest row, both wrap around), else the file's with file_colors, else hair_color
+//               lowest row, both wrap around), else the file's with file_colors, else paint_color
 //   tip         from 1 - tip_length of the way along (by vertices) colours run to tip_color
 //   opacity     the file's with file_colors, its mean over the strand
 //   thickness   the file's with file_thickness over its mean of all vertices; where it is by
@@ -31,4 +31,16 @@ void paint_destroy(Paint *paint);
 // The section's colour, linear RGB: `color`, or what `melanin` absorbs: of white light that
 // crosses a fibre along its diameter, exp(-2 sigma) is left, sigma the absorption by radius of so
 // much eumelanin and pheomelanin (d'Eon et al. 2011).
-void hair_color(const SectionParams *params, float linear[3]);
+void paint_color(const SectionParams *params, float linear[3]);
+
+// Fibre radius at the root, metres, > 0, for drawing these strands with so many followers each.
+//
+// A head carries 100,000 hairs of about 40 um; files hold a few thousand, each of which stands for
+// many. So the strands share out the picture instead: laid side by side they would cover the mean
+// silhouette of the hair's box (a quarter of its surface, Cauchy) FIBRE_LAYERS times. Twice as many
+// strands are drawn half as thick; the same hair in another unit looks the same. Kept between
+// 1/5000 and 1/400 of the longest strand, for single strands and very dense fur.
+float paint_auto_radius(const Strands *strands, uint32_t followers);
+
+// The section's radius if it says one, else that.
+float paint_radius(const SectionParams *params, const Strands *strands, uint32_t followers);

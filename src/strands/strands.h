@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Hair strands on the CPU, as files describe them: polylines from root to tip.
+//
+// This room reads and writes hair files (strands_read.h, formats/format.h), mends what is wrong
+// with them and reports it, measures and edits strands, and says how they are coloured and how
+// thick they are (paint.h) and where their followers lie (follow_plan.h). It takes in files and
+// SectionParams; it hands on Strands in metres, y up, which `sim` puts on the GPU.
 #pragma once
 
 #include "base/error.h"
@@ -33,6 +38,8 @@ typedef struct Strands {
     X(mobility, 1, 1) X(vertex_uv, 2, 0) X(vertex_thickness, 1, 1) X(color, 4, 1)
 #define STRANDS_ARRAYS_OF_STRANDS(X) X(strand_uv, 2, 0) X(strand_thickness, 1, 1)
 
+enum { STRANDS_MAX_SIZE = 65535 }; // vertices of one strand that is simulated or drawn
+
 // Makes room: `first` (all zero), `position` (all zero), no optional array. RESULT_FAILED when
 // memory is short or a count is beyond what 32-bit indices hold.
 Result strands_create(Strands *strands, uint32_t strand_count, uint32_t vertex_count, Error *error);
@@ -49,3 +56,23 @@ double strands_length(const Strands *strands, uint32_t s);
 
 // Axis-aligned box around all vertices, metres; {0,0,0} twice for an empty set.
 void strands_bounds(const Strands *strands, float low[3], float high[3]);
+
+// What strands have besides positions. Only what says something counts: no texture coordinates that
+// are all zero, no mobility of 0 at roots and 1 elsewhere.
+enum {
+    STRANDS_HAS_MOBILITY = 1,
+    STRANDS_HAS_STRAND_UV = 2,
+    STRANDS_HAS_VERTEX_UV = 4,
+    STRANDS_HAS_STRAND_THICKNESS = 8,
+    STRANDS_HAS_VERTEX_THICKNESS = 16,
+    STRANDS_HAS_COLOR = 32,
+    STRANDS_HAS_FOLLOWERS = 64,
+    STRANDS_HAS_FOLLOWER_RADIUS = 128,
+    STRANDS_HAS_FIXED_ENDS = 256,
+};
+
+// Those of the bits above that the strands have.
+uint32_t strands_features(const Strands *strands);
+
+// Their names with commas between them, "" for none.
+void strands_features_describe(uint32_t features, char *text, size_t size);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Changes of strands that keep their number and that of their vertices.
+// Changes of strands: which ones and in what order, several sets as one, shape and place.
 #pragma once
 
 #include "strands/strands.h"
+
+// --- Shape and place: the numbers of strands and vertices stay.
 
 // The root becomes the tip, with what belongs to each vertex; mobility stays at its place, since it
 // is the root that is fixed.
@@ -33,3 +35,25 @@ void strands_move(Strands *strands, const StrandsMove *move);
 // To another unit and axis for writing: positions in units of so many metres, with z up (x, -z, y)
 // or y up. The inverse of what reading with that unit and axis does.
 void strands_to_unit(Strands *strands, double metres, bool up_z);
+
+// --- Which strands, and in what order.
+
+// Strand i becomes what strand order[i] was, with all its attributes; `order` is a permutation of
+// 0 .. strand_count - 1. RESULT_FAILED when memory is short; then nothing has changed.
+Result strands_reorder(Strands *strands, const uint32_t *order, Error *error);
+
+// Strand i < count becomes what strand which[i] was; those that are not named are gone. Errors as
+// above.
+Result strands_pick(Strands *strands, const uint32_t *which, uint32_t count, Error *error);
+
+// Keeps a random share (0 .. 1) of the strands, at least one, in their order; the same ones for the
+// same seed and number of strands. Errors as above.
+Result strands_thin(Strands *strands, double share, uint32_t seed, Error *error);
+
+// Puts the strands in an order that depends on `seed` and their number only.
+Result strands_shuffle(Strands *strands, uint32_t seed, Error *error);
+
+// One set behind the other. Optional arrays and what a file asks for of followers are kept if all
+// sets have them (followers: the same ones). RESULT_FAILED when memory is short or 32-bit indices
+// are.
+Result strands_join(Strands *all, const Strands *sets, uint32_t count, Error *error);

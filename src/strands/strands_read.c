@@ -1,66 +1,41 @@
 // SPDX-License-Identifier: MIT
 #include "strands/strands_read.h"
 
-#include "mesh/obj.h"
-#include "strands/formats/hair_file.h"
-#include "strands/formats/obj_file.h"
-#include "strands/formats/salon_file.h"
-#include "strands/formats/tfx_binary.h"
-#include "strands/formats/tfx_text.h"
-#include "strands/formats/usd_reader.h"
-#include "strands/strands_mend.h"
-#include "strands/strands_order.h"
+#include "strands/strands_edit.h"
 
 #include <math.h>
 #include <string.h>
 
 // --- Detection.
 
-static StrandsKind detect(const Bytes *bytes)
-{
-    if (hair_file_matches(bytes)) return STRANDS_HAIR;
-    if (tfx_text_matches(bytes)) return STRANDS_TFX2_TEXT;
-    if (usd_reader_matches(bytes)) return STRANDS_USD;
-    if (obj_matches(bytes)) return STRANDS_OBJ;
-    float version = tfx_binary_version(bytes);
-    if (version > 0.0f) return version < 4.0f ? STRANDS_TFX3 : STRANDS_TFX4;
-    int floats = salon_file_match(bytes);
-    if (floats == SALON_DATA_FLOATS) return STRANDS_SALON_DATA;
-    return floats == SALON_BIN_FLOATS ? STRANDS_SALON_BIN : STRANDS_KINDS;
-}
+// Files that are often taken for hair and how to make hair of them, by their first bytes.
+static const struct {
+    const char *begin, *name, *advice;
+} FOREIGN[] = {
+    {"Ogawa", "Alembic", "export USD (.usda)"},
+    {"\x89HDF", "HDF5 (old Alembic)", "export USD (.usda)"},
+    {"PXR-USDC", "binary USD", "convert it with usdcat -o FILE.usda"},
+    {"PK\x03\x04", "a zip archive (.usdz, .npz)", "unpack it"},
+    {"\x1f\x8b", "compressed by gzip", "unpack it"},
+    {"Kaydara FBX", "FBX", "export USD (.usda) or Wavefront lines"},
+    {"glTF", "glTF", "export USD (.usda) or Wavefront lines"},
+};
 
-static Result parse(StrandsSource *source, Reader *reader, StrandsKind kind)
+static Result refuse_unknown(Reader *reader)
 {
-    switch (kind) {
-    case STRANDS_TFX2_TEXT:
-        return tfx_text_read(source, reader);
-    case STRANDS_TFX3:
-        return tfx3_read(source, reader);
-    case STRANDS_TFX4:
-        return tfx4_read(source, reader);
-    case STRANDS_HAIR:
-        return hair_file_read(source, reader);
-    case STRANDS_SALON_DATA:
-        return salon_file_read(source, reader, SALON_DATA_FLOATS);
-    case STRANDS_SALON_BIN:
-        return salon_file_read(source, reader, SALON_BIN_FLOATS);
-    case STRANDS_OBJ:
-        return obj_file_read(source, reader);
-    case STRANDS_USD:
-        return usd_reader_read(source, reader);
-    case STRANDS_KINDS:
-        break;
-    }
+    char names[300];
     if (reader->size == 0) return reader_fail(reader, "the file is empty");
-    return reader_fail(reader,
-                       "not hair: neither TressFX 2, 3 or 4, HAIR or Wavefront lines, nor whole "
-                       "strands of USC-HairSalon or CT2Hair");
+    for (size_t i = 0; i < sizeof FOREIGN / sizeof *FOREIGN; i++)
+        if (strncmp((const char *)reader->data, FOREIGN[i].begin, strlen(FOREIGN[i].begin)) == 0)
+            return reader_fail(reader, "not supported: %s: %s", FOREIGN[i].name, FOREIGN[i].advice);
+    format_list_names(names, sizeof names);
+    return reader_fail(reader, "not a hair file: expected %s", names);
 }
 
 // --- Unit.
 
 // Diagonal of the box around all usable vertices and, if told, the origin, in the file's unit.
-static double measure_diagonal(const StrandsSource *source, bool with_origin)
+static double measure_diagonal(const FormatSource *source, bool with_origin)
 {
     double scale = source->scale != 0.0 ? fabs(source->scale) : 1.0, square = 0.0;
     for (int axis = 0; axis < 3; axis++) {
@@ -76,17 +51,228 @@ static double measure_diagonal(const StrandsSource *source, bool with_origin)
     return scale * sqrt(square);
 }
 
-static float guess_unit(const StrandsSource *source, StrandsKind kind)
+static float guess_unit(const FormatSource *source, FormatKind kind)
 {
-    if (kind == STRANDS_TFX2_TEXT) return measure_diagonal(source, true) < 5.0 ? 1.0f : 0.01f;
+    if (FORMAT_TABLE[kind]->centimetres) return measure_diagonal(source, true) < 5.0 ? 1.0f : 0.01f;
     double diagonal = measure_diagonal(source, false);
     // Where the ratios of two units to 0.5 m are equal: d / 0.5 = 0.5 / (0.01 d), and so on.
     return diagonal < 5.0 ? 1.0f : diagonal < 158.0 ? 0.01f : 0.001f;
 }
 
+static const double FARTHEST = 1e6;       // metres; squares of it are far from float32's limits
+static const double NEAREST_SHARE = 1e-7; // of the strand's largest coordinate
+static const double NEAREST = 1e-9;       // metres; its square is far above float32's smallest
+
+// --- Conversion.
+
+// DirectX's XMMatrixRotationRollPitchYaw(x, y, z), which AMD's loader uses: about z, then x, then
+// y.
+static void make_rotation(const double angle[3], double r[3][3])
+{
+    double cx = cos(angle[0]), sx = sin(angle[0]), cy = cos(angle[1]), sy = sin(angle[1]);
+    double cz = cos(angle[2]), sz = sin(angle[2]);
+    double rotation[3][3] = {
+        {cy * cz + sy * sx * sz, sy * sx * cz - cy * sz, sy * cx},
+        {cx * sz, cx * cz, -sx},
+        {cy * sx * sz - sy * cz, sy * sz + cy * sx * cz, cy * cx},
+    };
+    memcpy(r, rotation, sizeof rotation);
+}
+
+// To metres, y up: p' = unit * (translation + rotation * (scale * p)), then (x, y, z) -> (x, z, -y)
+// if `up_z`. Computed in double and rounded once; with unit 1 and none of the others, bits stay.
+static void convert(FormatSource *source, double unit, bool up_z)
+{
+    Strands *strands = &source->strands;
+    double rotation[3][3], scale = source->scale != 0.0 ? source->scale : 1.0;
+    make_rotation(source->rotation, rotation);
+    bool rotated =
+        source->rotation[0] != 0.0 || source->rotation[1] != 0.0 || source->rotation[2] != 0.0;
+    for (uint32_t v = 0; v < strands->vertex_count; v++) {
+        float *position = strands->position[v];
+        double p[3] = {position[0] * scale, position[1] * scale, position[2] * scale};
+        double q[3] = {p[0], p[1], p[2]};
+        for (int i = 0; i < 3 && rotated; i++)
+            q[i] = rotation[i][0] * p[0] + rotation[i][1] * p[1] + rotation[i][2] * p[2];
+        // Adding 0 would turn -0 into 0.
+        for (int i = 0; i < 3; i++)
+            if (source->translation[i] != 0.0) q[i] += source->translation[i];
+        position[0] = (float)(q[0] * unit);
+        position[1] = (float)((up_z ? q[2] : q[1]) * unit);
+        position[2] = (float)((up_z ? -q[1] : q[2]) * unit);
+    }
+    for (uint32_t v = 0; strands->vertex_thickness && v < strands->vertex_count; v++)
+        strands->vertex_thickness[v] = (float)(strands->vertex_thickness[v] * unit * fabs(scale));
+    strands->follower_radius = (float)(strands->follower_radius * unit * fabs(scale));
+}
+
+// --- Mending.
+
+static void note(StrandsReport *report, DefectKind kind, uint64_t place)
+{
+    Defect *defect = &report->defects[kind];
+    if (defect->count == 0 || place < defect->first_place) defect->first_place = place;
+    if (defect->count < UINT32_MAX) defect->count++;
+}
+
+static uint64_t vertex_place(const FormatSource *source, uint32_t s, uint32_t v)
+{
+    if (source->vertex_line) return source->vertex_line[v];
+    return source->place[s] + (uint64_t)(v - source->strands.first[s]) * source->vertex_stride;
+}
+
+static bool is_usable(const float position[3])
+{
+    for (int i = 0; i < 3; i++)
+        if (!(fabs((double)position[i]) <= FARTHEST)) return false;
+    return true;
+}
+
+// Distance below which neighbours among the vertices begin .. end - 1 count as one.
+static double nearest_apart(const Strands *strands, uint32_t begin, uint32_t end)
+{
+    double largest = 0.0;
+    for (uint32_t v = begin; v < end; v++)
+        for (int i = 0; i < 3; i++) largest = fmax(largest, fabs((double)strands->position[v][i]));
+    return fmax(NEAREST, NEAREST_SHARE * largest);
+}
+
+static bool coincide(const float a[3], const float b[3], double nearest)
+{
+    double x = (double)b[0] - a[0], y = (double)b[1] - a[1], z = (double)b[2] - a[2];
+    return x * x + y * y + z * z <= nearest * nearest;
+}
+
+#define MOVE(array, width, mended)                                                                 \
+    if (strands->array) memcpy(&strands->array[to], &strands->array[from], sizeof *strands->array);
+
+static void move_vertex(Strands *strands, uint32_t to, uint32_t from)
+{
+    if (to == from) return;
+    memcpy(strands->position[to], strands->position[from], sizeof *strands->position);
+    STRANDS_ARRAYS_OF_VERTICES(MOVE)
+}
+
+static void move_strand(Strands *strands, uint32_t to, uint32_t from)
+{
+    if (to == from) return;
+    STRANDS_ARRAYS_OF_STRANDS(MOVE)
+}
+#undef MOVE
+
+// Whether every coordinate of strand s is usable; notes the defect if not.
+static bool check_coordinates(const FormatSource *source, uint32_t s, uint32_t end,
+                              StrandsReport *report)
+{
+    for (uint32_t v = source->strands.first[s]; v < end; v++) {
+        if (is_usable(source->strands.position[v])) continue;
+        note(report, DEFECT_NOT_FINITE, vertex_place(source, s, v));
+        return false;
+    }
+    return true;
+}
+
+// Moves the vertices of strand s that are to stay to `to` and on. Returns how many they are, 0 for
+// a strand to drop.
+static uint32_t mend_strand(FormatSource *source, uint32_t s, uint32_t end, uint32_t to,
+                            StrandsReport *report)
+{
+    Strands *strands = &source->strands;
+    uint32_t begin = strands->first[s], kept = 1;
+    if (source->roots_only && end - begin <= 1) {
+        report->empty_roots++;
+        return 0;
+    }
+    if (!check_coordinates(source, s, end, report)) return 0;
+    double nearest = nearest_apart(strands, begin, end);
+    uint32_t distinct = end > begin, last = begin;
+    for (uint32_t v = begin + 1; v < end; v++)
+        if (!coincide(strands->position[last], strands->position[v], nearest)) {
+            distinct++;
+            last = v;
+        }
+    if (distinct < 2) {
+        note(report, DEFECT_TOO_SHORT, source->place[s]);
+        return 0;
+    }
+    move_vertex(strands, to, begin);
+    for (uint32_t v = begin + 1; v < end; v++) {
+        if (coincide(strands->position[to + kept - 1], strands->position[v], nearest))
+            note(report, DEFECT_COINCIDENT, vertex_place(source, s, v));
+        else
+            move_vertex(strands, to + kept++, v);
+    }
+    return kept;
+}
+
+// Values of an optional array that are not finite; `width` floats for each of `count` records.
+static void mend_values(float *values, size_t count, int width, float replacement,
+                        StrandsReport *report, uint64_t place)
+{
+    for (size_t i = 0; values && i < count * (size_t)width; i++) {
+        if (isfinite(values[i])) continue;
+        values[i] = replacement;
+        note(report, DEFECT_ATTRIBUTE, place);
+    }
+}
+
+// The place is that of the strand: an attribute's own is not kept.
+static void mend_attributes(FormatSource *source, uint32_t s, StrandsReport *report)
+{
+    Strands *strands = &source->strands;
+    uint32_t v = strands->first[s], size = strands->first[s + 1] - v;
+    uint64_t place = source->place[s];
+#define OF_VERTICES(array, width, mended)                                                          \
+    if (strands->array)                                                                            \
+        mend_values((float *)&strands->array[v], size, width, mended, report, place);
+#define OF_STRANDS(array, width, mended)                                                           \
+    if (strands->array) mend_values((float *)&strands->array[s], 1, width, mended, report, place);
+    STRANDS_ARRAYS_OF_VERTICES(OF_VERTICES)
+    STRANDS_ARRAYS_OF_STRANDS(OF_STRANDS)
+#undef OF_VERTICES
+#undef OF_STRANDS
+}
+
+static Result fail_too_long(const FormatSource *source, uint32_t s, uint32_t size, const char *path,
+                            Error *error)
+{
+    return error_set(error, RESULT_BAD_INPUT,
+                     "%s%s%llu: strand %u has %u vertices, at most %d work", path,
+                     source->vertex_line ? ":" : ": byte ", (unsigned long long)source->place[s], s,
+                     size, STRANDS_MAX_SIZE);
+}
+
+// Mends positions that are in metres, in place, to what strands_read promises. Counts what it does
+// in `report`. Fails (RESULT_BAD_INPUT) only for a strand that is longer than the maximum.
+static Result mend(FormatSource *source, const char *path, StrandsReport *report, Error *error)
+{
+    Strands *strands = &source->strands;
+    report->defects[DEFECT_OVER_LIMIT] = (Defect){source->over_limit, source->over_limit_line};
+    uint64_t unread = source->unread_bytes < UINT32_MAX ? source->unread_bytes : UINT32_MAX;
+    report->defects[DEFECT_UNREAD] = (Defect){(uint32_t)unread, source->unread_at};
+    uint32_t kept_strands = 0, kept_vertices = 0, begin = 0;
+    for (uint32_t s = 0; s < strands->strand_count; s++) {
+        // Mending goes in place: first[s + 1] is still the file's when strand s has been moved.
+        uint32_t end = strands->first[s + 1];
+        strands->first[s] = begin;
+        begin = end;
+        mend_attributes(source, s, report);
+        uint32_t size = mend_strand(source, s, end, kept_vertices, report);
+        if (size > STRANDS_MAX_SIZE) return fail_too_long(source, s, size, path, error);
+        if (size == 0) continue;
+        move_strand(strands, kept_strands, s);
+        strands->first[kept_strands++] = kept_vertices;
+        kept_vertices += size;
+    }
+    strands->first[kept_strands] = kept_vertices;
+    strands->strand_count = kept_strands;
+    strands->vertex_count = kept_vertices;
+    return RESULT_OK;
+}
+
 // --- Reading.
 
-static void report_source(StrandsReport *report, const StrandsSource *source, StrandsKind kind)
+static void report_source(StrandsReport *report, const FormatSource *source, FormatKind kind)
 {
     report->kind = kind;
     report->version = source->version;
@@ -125,14 +311,14 @@ static Result refuse_empty(const StrandsReport *report, const char *name, Error 
                      report->declared_strands);
 }
 
-static Result finish(StrandsSource *source, const char *name, const StrandsReadOptions *options,
+static Result finish(FormatSource *source, const char *name, const StrandsReadOptions *options,
                      StrandsReport *report, Error *error)
 {
     float told = options->unit != 0.0f ? options->unit : source->unit;
     report->unit_guessed = told == 0.0f;
     report->unit_used = report->unit_guessed ? guess_unit(source, report->kind) : told;
-    strands_convert(source, (double)report->unit_used, options->up_z || source->up_z);
-    Result result = strands_mend(source, name, report, error);
+    convert(source, (double)report->unit_used, options->up_z || source->up_z);
+    Result result = mend(source, name, report, error);
     Strands *strands = &source->strands;
     if (result == RESULT_OK && source->shuffle && strands->strand_count > 1)
         result = strands_shuffle(strands, options->seed, error);
@@ -151,13 +337,13 @@ Result strands_read_bytes(Strands *strands, const char *name, const Bytes *bytes
     if (!options) options = &defaults;
     if (!report) report = &unwanted;
     *strands = (Strands){0};
-    *report = (StrandsReport){.kind = STRANDS_KINDS};
-    StrandsKind kind = detect(bytes);
-    bool is_text = kind == STRANDS_TFX2_TEXT || kind == STRANDS_OBJ || kind == STRANDS_USD;
-    Reader reader =
-        is_text ? reader_begin_text(name, bytes, error) : reader_begin_binary(name, bytes, error);
-    StrandsSource source = {0};
-    Result result = parse(&source, &reader, kind);
+    *report = (StrandsReport){.kind = FORMAT_KINDS};
+    FormatKind kind = format_detect(bytes);
+    const Format *format = kind < FORMAT_KINDS ? FORMAT_TABLE[kind] : NULL;
+    Reader reader = format && format->text ? reader_begin_text(name, bytes, error)
+                                           : reader_begin_binary(name, bytes, error);
+    FormatSource source = {0};
+    Result result = format ? format->read(&source, &reader) : refuse_unknown(&reader);
     reader_end(&reader);
     if (result == RESULT_OK) {
         report_source(report, &source, kind);
@@ -167,7 +353,7 @@ Result strands_read_bytes(Strands *strands, const char *name, const Bytes *bytes
         *strands = source.strands;
         source.strands = (Strands){0};
     }
-    strands_source_destroy(&source);
+    format_source_destroy(&source);
     return result;
 }
 
@@ -175,7 +361,7 @@ Result strands_read(Strands *strands, const char *path, const StrandsReadOptions
                     StrandsReport *report, Error *error)
 {
     *strands = (Strands){0};
-    if (report) *report = (StrandsReport){.kind = STRANDS_KINDS};
+    if (report) *report = (StrandsReport){.kind = FORMAT_KINDS};
     Bytes bytes;
     Result result = bytes_read_file(&bytes, path, error);
     if (result != RESULT_OK) return result;

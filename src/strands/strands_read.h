@@ -13,9 +13,12 @@ typedef struct StrandsReadOptions {
     uint32_t seed; // for the shuffle of a file that says `is sorted 0`
 } StrandsReadOptions;
 
-// Reads `path` and mends it: metres, y up, and every strand as strands_mend.h promises, at least
-// one of them. What was mended is in `report` (may be NULL); nothing is dropped, padded or cut
-// without being counted there. Strands come in the file's order unless the file asks for a shuffle.
+// Reads `path` and mends it: metres, y up, and at least one strand. Every strand has 2 ..
+// STRANDS_MAX_SIZE vertices, coordinates are finite and at most 1e6 m, and neighbours lie further
+// apart than 1e-7 of the strand's largest coordinate and than 1e-9 m, so that float32 gives their
+// difference a direction. A merged vertex takes its attributes along. What was mended is in
+// `report` (may be NULL); nothing is dropped, padded or cut without being counted there. Strands
+// come in the file's order unless the file asks for a shuffle.
 //
 // A unit of 0 is the one that the file tells (USD), or guessed. TressFX 2 text is in centimetres,
 // unless all of it lies within 5 units of the origin's box, which is metres, as this program writes
@@ -24,12 +27,12 @@ typedef struct StrandsReadOptions {
 //
 // Fails with RESULT_BAD_INPUT (not a hair file, malformed, no usable strand, or defects and
 // `strict`) with one line that names the place, or RESULT_FAILED (memory); `strands` is empty then.
-// `report` is complete where the content was well formed, even on failure: kind is STRANDS_KINDS
+// `report` is complete where the content was well formed, even on failure: kind is FORMAT_KINDS
 // where it was not.
 Result strands_read(Strands *strands, const char *path, const StrandsReadOptions *options,
                     StrandsReport *report, Error *error);
 
-// The same for content that is in memory (with a zero behind it, as file.h says); `name` stands for
-// the path in messages.
+// The same for content that is in memory (with a zero behind it, as bytes.h says); `name` stands
+// for the path in messages.
 Result strands_read_bytes(Strands *strands, const char *name, const Bytes *bytes,
                           const StrandsReadOptions *options, StrandsReport *report, Error *error);

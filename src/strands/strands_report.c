@@ -4,14 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *strands_kind_name(StrandsKind kind)
-{
-    static const char *const names[STRANDS_KINDS] = {
-        "TressFX 2 text",        "TressFX 3 binary", "TressFX 4 binary", "HAIR",
-        "USC-HairSalon (.data)", "CT2Hair (.bin)",   "Wavefront lines",  "USD (.usda)"};
-    return (unsigned)kind < STRANDS_KINDS ? names[kind] : "unknown";
-}
-
 // --- Measuring.
 
 static int compare_doubles(const void *a, const void *b)
@@ -133,10 +125,10 @@ void strands_report_describe(const StrandsReport *report, const char *path, Defe
                            "not read"},
     };
     const Defect *defect = &report->defects[kind];
-    bool is_text = report->kind == STRANDS_TFX2_TEXT || report->kind == STRANDS_OBJ ||
-                   report->kind == STRANDS_USD;
-    snprintf(text, size, is_text ? "%s:%llu: %s%u %s%s%s" : "%s: byte %llu: %s%u %s%s%s", path,
-             (unsigned long long)defect->first_place, defect->count > 1 ? "first of " : "",
+    snprintf(text, size,
+             FORMAT_TABLE[report->kind]->text ? "%s:%llu: %s%u %s%s%s"
+                                              : "%s: byte %llu: %s%u %s%s%s",
+             path, (unsigned long long)defect->first_place, defect->count > 1 ? "first of " : "",
              defect->count, defect->count == 1 ? words[kind].one : words[kind].many,
              mended ? ": " : "", mended ? words[kind].cure : "");
 }
@@ -163,7 +155,7 @@ static void print_unit(const StrandsReport *report, FILE *stream)
     fprintf(stream, "  unit      %.6g m", (double)report->unit_used);
     if (!report->unit_guessed)
         fprintf(stream, " as told\n");
-    else if (report->kind == STRANDS_TFX2_TEXT && report->unit_used != 1.0f)
+    else if (FORMAT_TABLE[report->kind]->centimetres && report->unit_used != 1.0f)
         fprintf(stream, ", a guess: TressFX 2 assets are in centimetres (--unit says otherwise)\n");
     else
         fprintf(stream, ", a guess by the size of the box (--unit says otherwise)\n");
@@ -184,7 +176,7 @@ static void print_notes(const StrandsReport *report, FILE *stream)
 
 void strands_report_print(const StrandsReport *report, const char *path, FILE *stream)
 {
-    fprintf(stream, "%s: %s", path, strands_kind_name(report->kind));
+    fprintf(stream, "%s: %s", path, FORMAT_TABLE[report->kind]->name);
     if (report->version > 0.0f) fprintf(stream, ", version %g", (double)report->version);
     fprintf(stream, "\n  strands   %u usable of %u\n", report->strands, report->declared_strands);
     fprintf(stream, "  vertices  %u usable of %u; per strand %u min, %u median, %u max\n",

@@ -2,24 +2,9 @@
 // What was found in a file of strands, and how that is told.
 #pragma once
 
-#include "strands/strands.h"
+#include "strands/formats/format.h"
 
 #include <stdio.h>
-
-typedef enum StrandsKind {
-    STRANDS_TFX2_TEXT,
-    STRANDS_TFX3,
-    STRANDS_TFX4,
-    STRANDS_HAIR,
-    STRANDS_SALON_DATA,
-    STRANDS_SALON_BIN,
-    STRANDS_OBJ,
-    STRANDS_USD,
-    STRANDS_KINDS
-} StrandsKind;
-
-// "TressFX 4 binary" and so on.
-const char *strands_kind_name(StrandsKind kind);
 
 // What can be wrong with content that is well formed, and how it is mended.
 typedef enum DefectKind {
@@ -39,7 +24,7 @@ typedef struct Defect {
 } Defect;
 
 typedef struct StrandsReport {
-    StrandsKind kind;
+    FormatKind kind;
     float version;                                // 0 where the format has none
     uint32_t declared_strands, declared_vertices; // in the file
     uint32_t strands, vertices;                   // after mending

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "strands/strands_resample.h"
 
-#include "strands/strands_mend.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

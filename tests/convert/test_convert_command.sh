@@ -30,7 +30,7 @@ run 0 $curls -q -o "$x.obj"; silent err
 claim "the name decides the format, --format overrules it"
 run 0 $curls -o "$x.hair"; run 0 "$x.hair"; says "HAIR"
 run 0 $curls -o "$work/noname" --format hair; equal "$x.hair" "$work/noname"
-run 2 $curls -o "$work/noname2"; says ".usda, .tfx, .hair, .obj or .data"; one_line
+run 2 $curls -o "$work/noname2"; says ".usda, .hair, .obj, .tfx or .data"; one_line
 
 claim "units and axes of what is written are those that are asked for"
 run 0 $curls --unit m -q -o "$x.data" --to-unit 0.25 --to-up z

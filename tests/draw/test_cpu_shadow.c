@@ -3,7 +3,7 @@
 
 #include "base/random.h"
 #include "gen/strands_make.h"
-#include "strands/fibre.h"
+#include "strands/paint.h"
 #include "support/shadow_stage.h"
 
 #include <math.h>
@@ -56,7 +56,7 @@ static void c_and_shaders_are_alike(void **state)
         ShadowStage stage;
         recipe.count = 1001, recipe.vertices = 16; // the last tile is not full
         NEEDED(strands_make(&strands, &recipe, error));
-        float radius = (i & 2 ? 8 : 1) * fibre_auto_radius(&strands, 0);
+        float radius = (i & 2 ? 8 : 1) * paint_auto_radius(&strands, 0);
         shadow_stage_open(&stage, strands, radius, 0.33f, NULL, &lights[i / 4]);
         stage.on_fibre = true;
         uint32_t count = strands.vertex_count;

@@ -145,17 +145,17 @@ static void melanin_gives_the_colors_of_hair(void **state)
     (void)state;
     SectionParams params = make_params();
     float color[3];
-    hair_color(&params, color);
+    paint_color(&params, color);
     assert_true(color[0] == 1);
     params.melanin = (AutoFloat){.value = 1.3f}; // brown; exp(-2 * 1.3 * 0.419) and so on
-    hair_color(&params, color);
+    paint_color(&params, color);
     assert_true(fabsf(color[0] - 0.3364f) < 1e-4f && fabsf(color[2] - 0.02838f) < 1e-4f);
     params.melanin.value = 0;
-    hair_color(&params, color);
+    paint_color(&params, color);
     assert_true(color[0] == 1 && color[2] == 1);
     params.melanin.value = 0.5f;
     params.melanin_redness = 1;
-    hair_color(&params, color);
+    paint_color(&params, color);
     assert_true(fabsf(color[1] - expf(-0.4f)) < 1e-6f);
     params_destroy_section(&params);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "draw/hair_paint.h"
 #include "gen/strands_make.h"
-#include "strands/fibre.h"
+#include "strands/paint.h"
 #include "support/shadow_stage.h"
 
 #include <math.h>
@@ -304,7 +304,7 @@ static void deep_maps_are_near_the_exact_light(void **state)
         ShadowStage stage;
         recipe.count = sets[i].count, recipe.vertices = sets[i].vertices;
         NEEDED(strands_make(&strands, &recipe, error));
-        shadow_stage_open(&stage, strands, fibre_auto_radius(&strands, 0), 0.33f, NULL, &light);
+        shadow_stage_open(&stage, strands, paint_auto_radius(&strands, 0), 0.33f, NULL, &light);
         draw_maps(&stage, SHADOW_DOM, 256, 200);
         Fit deep = judge(&stage);
         draw_maps(&stage, SHADOW_APPROX, 256, 200);

@@ -28,7 +28,7 @@ static void read_drawn(const SimulationFixture *fixture, uint32_t s, float (*pos
     free(all);
 }
 
-static void check(void **state, const char *pattern, const char *name, StrandsKind kind)
+static void check(void **state, const char *pattern, const char *name, FormatKind kind)
 {
     SimulationFixture fixture;
     Exporter exporter;
@@ -64,10 +64,10 @@ static void check(void **state, const char *pattern, const char *name, StrandsKi
 
 static void files_hold_what_is_drawn_bit_for_bit(void **state)
 {
-    check(state, "x_%02d.tfx", "x_04.tfx", STRANDS_TFX2_TEXT); // 8 and 12 vertices
-    check(state, "x_%d.hair", "x_4.hair", STRANDS_HAIR);
-    check(state, "x_%d.obj", "x_4.obj", STRANDS_OBJ);
-    check(state, "x_%d.data", "x_4.data", STRANDS_SALON_DATA);
+    check(state, "x_%02d.tfx", "x_04.tfx", FORMAT_TFX2); // 8 and 12 vertices
+    check(state, "x_%d.hair", "x_4.hair", FORMAT_HAIR);
+    check(state, "x_%d.obj", "x_4.obj", FORMAT_OBJ);
+    check(state, "x_%d.data", "x_4.data", FORMAT_SALON_DATA);
 }
 
 // The numbers of the next list behind `key`, which has `count`.

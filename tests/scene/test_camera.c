@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Automatic cameras: hair stays in the picture, whatever it does, and fills it.
 #include "scene/camera.h"
-#include "strands/fibre.h"
+#include "strands/paint.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -186,7 +186,7 @@ static void the_unit_does_not_change_the_picture(void **state)
     assert_true(fabsf(extent_in_picture(&one, &a, STILL) - extent_in_picture(&hundred, &b, STILL)) <
                 1e-4f);
     assert_true(
-        fabsf(100 * fibre_auto_radius(&one.strands, 0) / fibre_auto_radius(&hundred.strands, 0) -
+        fabsf(100 * paint_auto_radius(&one.strands, 0) / paint_auto_radius(&hundred.strands, 0) -
               1) < 1e-4f);
     close_shot(&one);
     close_shot(&hundred);
@@ -256,10 +256,10 @@ static void denser_hair_is_drawn_finer(void **state)
     for (uint32_t s = 0; s <= 800 * STRANDS; ++s) many.first[s] = s * VERTICES;
     for (uint32_t v = 0; v < many.vertex_count; ++v)
         memcpy(many.position[v], few.position[v % few.vertex_count], sizeof(float[3]));
-    float coarse = fibre_auto_radius(&few, 0), fine = fibre_auto_radius(&many, 0);
+    float coarse = paint_auto_radius(&few, 0), fine = paint_auto_radius(&many, 0);
     assert_true(fine < coarse && fine > 0 && coarse <= 0.3f / 399);
     Strands none = {0};
-    assert_true(fibre_auto_radius(&none, 0) > 0);
+    assert_true(paint_auto_radius(&none, 0) > 0);
     strands_destroy(&few);
     strands_destroy(&many);
 }

@@ -4,7 +4,7 @@
 #include "base/random.h"
 #include "gen/strands_make.h"
 #include "sim/follow.h"
-#include "strands/strands_order.h"
+#include "strands/strands_edit.h"
 #include "support/hair_fixture.h"
 
 #include <cglm/cglm.h>

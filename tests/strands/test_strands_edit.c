@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Changes and figures of strands.
 #include "gen/strands_make.h"
+#include "strands/strands.h"
 #include "strands/strands_edit.h"
 #include "strands/strands_figures.h"
-#include "strands/strands_mend.h"
-#include "strands/strands_order.h"
+#include "strands/strands_read.h"
 #include "strands/strands_resample.h"
+#include "support/temporary.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -117,15 +118,17 @@ static void moves_are_what_they_say(void **state)
 // What is written with another unit and axis is read as what it was; powers of two are exact.
 static void units_of_output_are_those_of_input(void **state)
 {
-    (void)state;
-    Strands a = make_curls();
-    StrandsSource source = {.strands = make_curls()};
-    strands_to_unit(&source.strands, 0.25, true);
-    assert_true(source.strands.position[3][2] == 4 * a.position[3][1]);
-    strands_convert(&source, 0.25, true);
-    assert_true(same_positions(&a, &source.strands));
+    Strands a = make_curls(), b = make_curls(), back;
+    const char *path = temporary_path(state, "x.hair");
+    strands_to_unit(&b, 0.25, true);
+    assert_true(b.position[3][2] == 4 * a.position[3][1]);
+    assert_int_equal(format_write(path, FORMAT_HAIR, &b, NULL), RESULT_OK);
+    const StrandsReadOptions options = {.unit = 0.25f, .up_z = true};
+    assert_int_equal(strands_read(&back, path, &options, NULL, NULL), RESULT_OK);
+    assert_true(same_positions(&a, &back));
     strands_destroy(&a);
-    strands_destroy(&source.strands);
+    strands_destroy(&b);
+    strands_destroy(&back);
 }
 
 static void resampling_makes_equal_distances_and_keeps_ends(void **state)
@@ -273,7 +276,8 @@ int main(void)
         cmocka_unit_test(turning_around_twice_changes_nothing),
         cmocka_unit_test(smoothing_keeps_ends_and_straight_lines_and_calms_zigzags),
         cmocka_unit_test(moves_are_what_they_say),
-        cmocka_unit_test(units_of_output_are_those_of_input),
+        cmocka_unit_test_setup_teardown(units_of_output_are_those_of_input, temporary_create,
+                                        temporary_destroy),
         cmocka_unit_test(resampling_makes_equal_distances_and_keeps_ends),
         cmocka_unit_test(the_spline_is_rounder_than_the_vertices),
         cmocka_unit_test(spacing_makes_as_many_vertices_as_needed),

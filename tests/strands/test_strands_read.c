@@ -32,7 +32,7 @@ static void both_dialects_and_line_ends_are_read(void **state)
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         StrandsReport report;
         Strands strands = reading_good(texts[i], &report);
-        assert_int_equal(report.kind, STRANDS_TFX2_TEXT);
+        assert_int_equal(report.kind, FORMAT_TFX2);
         assert_int_equal(strands.vertex_count, 2);
         assert_memory_equal(strands.position[1], ((float[3]){1, 3, 3}), 12);
         assert_memory_equal(strands.strand_uv[0], ((float[2]){0.5f, 0.25f}), 8);
@@ -98,9 +98,11 @@ static void malformed_text_is_refused_with_its_line(void **state)
         const char *text, *message;
     } cases[] = {
         {"", "FILE: byte 0: the file is empty"},
-        {"hello\n", "FILE: byte 0: not hair: neither TressFX 2, 3 or 4, HAIR or Wavefront lines, "
-                    "nor whole strands of "
-                    "USC-HairSalon or CT2Hair"},
+        {"hello\n", "FILE: byte 0: not a hair file: expected USD (.usda), HAIR, Wavefront lines, "
+                    "TressFX 4 binary, TressFX 3 binary, TressFX 2 text, USC-HairSalon (.data) or "
+                    "CT2Hair (.bin)"},
+        {"PXR-USDC",
+         "FILE: byte 0: not supported: binary USD: convert it with usdcat -o FILE.usda"},
         {"numStrands", "FILE:1: expected the number of strands, got the end of the file"},
         {"numStrands x\n", "FILE:1: expected the number of strands, got 'x'"},
         {"numStrands -1\n", "FILE:1: expected the number of strands, got '-1'"},
@@ -331,15 +333,15 @@ static void real_assets_are_read_whole(void **state)
     (void)state;
     static const struct {
         const char *path;
-        StrandsKind kind;
+        FormatKind kind;
         uint32_t strands, size;
         float unit;
     } files[] = {
-        {"../shared/assets/ratboy_mohawk.tfx", STRANDS_TFX4, 2228, 32, 1.0f},
-        {"../shared/assets/sintel_228x32.tfx", STRANDS_TFX4, 228, 32, 0.01f},
-        {"../shared/assets/ponytail_tail.tfx", STRANDS_TFX3, 255, 16, 0.01f},
-        {"../shared/assets/hair_front_16_guide.tfx", STRANDS_TFX2_TEXT, 93, 16, 0.01f},
-        {"../shared/assets/ruby_short_16_guide.tfx", STRANDS_TFX2_TEXT, 1867, 16, 0.01f},
+        {"../shared/assets/ratboy_mohawk.tfx", FORMAT_TFX4, 2228, 32, 1.0f},
+        {"../shared/assets/sintel_228x32.tfx", FORMAT_TFX4, 228, 32, 0.01f},
+        {"../shared/assets/ponytail_tail.tfx", FORMAT_TFX3, 255, 16, 0.01f},
+        {"../shared/assets/hair_front_16_guide.tfx", FORMAT_TFX2, 93, 16, 0.01f},
+        {"../shared/assets/ruby_short_16_guide.tfx", FORMAT_TFX2, 1867, 16, 0.01f},
     };
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
         if (access(files[i].path, R_OK) != 0) {

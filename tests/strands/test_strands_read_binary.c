@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Binary hair files, whole, cut off and damaged.
-#include "strands/strands_write.h"
+#include "strands/formats/format.h"
 #include "support/reading.h"
 #include "support/temporary.h"
 
@@ -38,12 +38,12 @@ static Strands make_sample(void)
     return strands;
 }
 
-static Bytes make_file(void **state, StrandsKind kind)
+static Bytes make_file(void **state, FormatKind kind)
 {
     Strands strands = make_sample();
     Bytes bytes = {0};
     const char *path = temporary_path(state, "sample");
-    assert_int_equal(strands_write(path, kind, &strands, NULL), RESULT_OK);
+    assert_int_equal(format_write(path, kind, &strands, NULL), RESULT_OK);
     assert_int_equal(bytes_read_file(&bytes, path, NULL), RESULT_OK);
     strands_destroy(&strands);
     return bytes;
@@ -75,8 +75,7 @@ static void check_truncations(const uint8_t *data, size_t size)
 
 static void every_truncation_is_read_or_refused(void **state)
 {
-    static const StrandsKind kinds[] = {STRANDS_TFX2_TEXT, STRANDS_TFX3, STRANDS_TFX4,
-                                        STRANDS_HAIR};
+    static const FormatKind kinds[] = {FORMAT_TFX2, FORMAT_TFX3, FORMAT_TFX4, FORMAT_HAIR};
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         Bytes bytes = make_file(state, kinds[i]);
         check_truncations(bytes.data, bytes.size);
@@ -98,9 +97,9 @@ static void every_truncation_is_read_or_refused(void **state)
 static void any_damage_to_a_header_is_survived(void **state)
 {
     static const struct {
-        StrandsKind kind;
+        FormatKind kind;
         size_t header;
-    } cases[] = {{STRANDS_TFX3, 296}, {STRANDS_TFX4, 160}, {STRANDS_HAIR, 136}};
+    } cases[] = {{FORMAT_TFX3, 296}, {FORMAT_TFX4, 160}, {FORMAT_HAIR, 136}};
     static const uint32_t words[] = {0,          1,          3,   0x7fffffff, 0x80000000,
                                      0xffffffff, 0xfffffffe, 161, 500};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -124,30 +123,30 @@ static void any_damage_to_a_header_is_survived(void **state)
 static void malformed_binaries_are_refused_with_their_byte(void **state)
 {
     static const struct {
-        StrandsKind kind;
+        FormatKind kind;
         size_t at;
         uint32_t value;
         const char *message;
     } cases[] = {
-        {STRANDS_TFX4, 4, 0, "FILE: byte 4: 0 strands: expected at least 1"},
-        {STRANDS_TFX4, 8, 0, "FILE: byte 8: 0 vertices per strand: expected at least 2"},
-        {STRANDS_TFX4, 4, 0xffffffff,
+        {FORMAT_TFX4, 4, 0, "FILE: byte 4: 0 strands: expected at least 1"},
+        {FORMAT_TFX4, 8, 0, "FILE: byte 8: 0 vertices per strand: expected at least 2"},
+        {FORMAT_TFX4, 4, 0xffffffff,
          "FILE: byte 12: positions need 17179869180 times 16 bytes from byte 160 on, the file has "
          "516"},
-        {STRANDS_TFX4, 12, 0, "FILE: byte 12: the file has no positions"},
-        {STRANDS_TFX4, 12, 4000,
+        {FORMAT_TFX4, 12, 0, "FILE: byte 12: the file has no positions"},
+        {FORMAT_TFX4, 12, 4000,
          "FILE: byte 12: positions start at byte 4000, the file ends at byte 676"},
-        {STRANDS_TFX4, 16, 12,
+        {FORMAT_TFX4, 16, 12,
          "FILE: byte 16: strand UVs start at byte 12, within the header of 160 bytes"},
-        {STRANDS_TFX4, 28, 600,
+        {FORMAT_TFX4, 28, 600,
          "FILE: byte 28: colours need 12 times 16 bytes from byte 600 on, the file has 76"},
-        {STRANDS_TFX3, 144, 100,
+        {FORMAT_TFX3, 144, 100,
          "FILE: byte 144: positions start at byte 100, within the header of 296 bytes"},
-        {STRANDS_HAIR, 4, 0, "FILE: byte 4: 0 strands: expected at least 1"},
-        {STRANDS_HAIR, 12, 1, "FILE: byte 12: the file has no points"},
-        {STRANDS_HAIR, 8, 1000000,
+        {FORMAT_HAIR, 4, 0, "FILE: byte 4: 0 strands: expected at least 1"},
+        {FORMAT_HAIR, 12, 1, "FILE: byte 12: the file has no points"},
+        {FORMAT_HAIR, 8, 1000000,
          "FILE: byte 128: points need 1000000 times 12 bytes from byte 128 on, the file has 384"},
-        {STRANDS_HAIR, 16, 2,
+        {FORMAT_HAIR, 16, 2,
          "FILE: byte 16: 3 strands of 2 segments each have 9 points, the header says 12"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -164,7 +163,7 @@ static void malformed_binaries_are_refused_with_their_byte(void **state)
 
 static void bytes_behind_the_arrays_are_told(void **state)
 {
-    Bytes bytes = make_file(state, STRANDS_TFX4);
+    Bytes bytes = make_file(state, FORMAT_TFX4);
     bytes.data = realloc(bytes.data, bytes.size + 8);
     memset(bytes.data + bytes.size, 1, 8);
     Strands strands;
@@ -179,7 +178,7 @@ static void bytes_behind_the_arrays_are_told(void **state)
 
 static void merged_vertices_take_their_attributes_along(void **state)
 {
-    Bytes bytes = make_file(state, STRANDS_TFX4);
+    Bytes bytes = make_file(state, FORMAT_TFX4);
     memcpy(bytes.data + 160 + 16 * 5, bytes.data + 160 + 16 * 4, 12); // strand 1: 1 onto 0
     Strands strands, whole = make_sample();
     StrandsReport report;
@@ -207,7 +206,7 @@ static void empty_roots_of_salon_files_are_left_out_and_counted(void **state)
     Strands strands;
     StrandsReport report;
     assert_int_equal(reading_copy(&strands, &data, sizeof data, &METRES, &report, NULL), RESULT_OK);
-    assert_int_equal(report.kind, STRANDS_SALON_DATA);
+    assert_int_equal(report.kind, FORMAT_SALON_DATA);
     assert_int_equal(strands.strand_count, 1);
     assert_int_equal(report.empty_roots, 1);
     assert_true(strands_report_is_clean(&report));

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // USD's text form. The expected files are written out: such files have been read by TinyUSDZ and by
 // the parser of three.js, with the same numbers.
-#include "strands/formats/usd_file.h"
+#include "strands/formats/format.h"
+#include "strands/formats/usd_write.h"
 #include "strands/strands_read.h"
-#include "strands/strands_write.h"
 #include "support/temporary.h"
 
 #include <setjmp.h>
@@ -36,7 +36,7 @@ static void a_still_is_one_prim_with_its_points(void **state)
 {
     Strands strands;
     make_uneven(&strands);
-    assert_int_equal(strands_write(temporary_path(state, "x.usda"), STRANDS_USD, &strands, NULL),
+    assert_int_equal(format_write(temporary_path(state, "x.usda"), FORMAT_USD, &strands, NULL),
                      RESULT_OK);
     assert_content(state, "x.usda",
                    "#usda 1.0\n(\n    defaultPrim = \"Hair\"\n    doc = \"Tractrix\"\n"
@@ -121,7 +121,7 @@ static void everything_that_strands_have_is_written(void **state)
 {
     Strands strands;
     make_rich(&strands);
-    assert_int_equal(strands_write(temporary_path(state, "x.usda"), STRANDS_USD, &strands, NULL),
+    assert_int_equal(format_write(temporary_path(state, "x.usda"), FORMAT_USD, &strands, NULL),
                      RESULT_OK);
     Bytes bytes;
     assert_int_equal(bytes_read_file(&bytes, temporary_path(state, "x.usda"), NULL), RESULT_OK);
@@ -188,7 +188,7 @@ static void what_is_written_is_read_to_the_bit(void **state)
     strands.strand_thickness[1] = 0.1f;
     strands.vertex_thickness[3] = 1e-4f;
     const char *path = temporary_path(state, "x.usda");
-    assert_int_equal(strands_write(path, STRANDS_USD, &strands, &error), RESULT_OK);
+    assert_int_equal(format_write(path, FORMAT_USD, &strands, &error), RESULT_OK);
     const StrandsReadOptions strict = {.strict = true};
     if (strands_read(&back, path, &strict, NULL, &error) != RESULT_OK) fail_msg("%s", error.text);
     assert_memory_equal(back.first, strands.first, 3 * sizeof(uint32_t));

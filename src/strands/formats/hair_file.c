@@ -1,15 +1,29 @@
 // SPDX-License-Identifier: MIT
-#include "strands/formats/hair_file.h"
+// `.hair`, Cem Yuksel's HAIR files: a header of 128 bytes, then the arrays that its bit field
+// names.
+#include "strands/formats/format.h"
 
+#include <endian.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum {
+    HAIR_HEADER_BYTES = 128,
+    HAIR_HAS_SEGMENTS = 1,
+    HAIR_HAS_POINTS = 2,
+    HAIR_HAS_THICKNESS = 4,
+    HAIR_HAS_TRANSPARENCY = 8,
+    HAIR_HAS_COLOR = 16,
+};
+
+// --- Reading.
 
 typedef struct Header {
     uint32_t strands, points, arrays, default_segments;
     float default_transparency, default_color[3];
 } Header;
 
-bool hair_file_matches(const Bytes *bytes)
+static bool match(const Bytes *bytes)
 {
     return bytes->size >= 4 && memcmp(bytes->data, "HAIR", 4) == 0;
 }
@@ -84,7 +98,7 @@ static void check_default_segments(Reader *reader, const Header *header)
                 header->points);
 }
 
-static void read_sizes(StrandsSource *source, Reader *reader, const Header *header,
+static void read_sizes(FormatSource *source, Reader *reader, const Header *header,
                        const Layout *layout)
 {
     uint64_t first = 0;
@@ -129,13 +143,15 @@ static void read_colors(Strands *strands, Reader *reader, const Header *header,
     }
 }
 
-Result hair_file_read(StrandsSource *source, Reader *reader)
+// Where only one of colour and transparency is an array, the header's default stands in for the
+// other; where neither is, and for thickness, defaults are left out.
+static Result read(FormatSource *source, Reader *reader)
 {
     Header header = read_header(reader);
     Layout layout = lay_out(reader, &header);
     check_default_segments(reader, &header);
     if (!reader_ok(reader)) return reader->result;
-    if (strands_source_create(source, reader, header.strands, header.points) != RESULT_OK)
+    if (format_source_create(source, reader, header.strands, header.points) != RESULT_OK)
         return reader->result;
     source->vertex_stride = 12;
     source->unread_at = layout.end;
@@ -145,7 +161,69 @@ Result hair_file_read(StrandsSource *source, Reader *reader)
     if (!reader_ok(reader)) return reader->result;
     reader_copy_floats(reader, layout.points, strands->position[0], 3 * (size_t)header.points);
     if (header.arrays & HAIR_HAS_THICKNESS)
-        strands_source_copy(reader, &strands->vertex_thickness, layout.thickness, header.points, 1);
+        format_source_copy(reader, &strands->vertex_thickness, layout.thickness, header.points, 1);
     read_colors(strands, reader, &header, &layout);
     return reader->result;
 }
+
+// --- Writing.
+
+static bool has_transparency(const Strands *strands)
+{
+    for (uint32_t v = 0; strands->color && v < strands->vertex_count; v++)
+        if (strands->color[v][3] != 1.0f) return true;
+    return false;
+}
+
+static void put_hair_header(FILE *stream, const Strands *strands, bool transparent, bool uneven)
+{
+    uint32_t arrays = HAIR_HAS_POINTS | (uneven ? HAIR_HAS_SEGMENTS : 0u) |
+                      (strands->vertex_thickness ? HAIR_HAS_THICKNESS : 0u) |
+                      (transparent ? HAIR_HAS_TRANSPARENCY : 0u) |
+                      (strands->color ? HAIR_HAS_COLOR : 0u);
+    const float defaults[5] = {1.0f, 0.0f, 1.0f, 1.0f, 1.0f}; // thickness, transparency, colour
+    char info[88] = "Tractrix";
+    fwrite("HAIR", 1, 4, stream);
+    format_put_u32(stream, strands->strand_count);
+    format_put_u32(stream, strands->vertex_count);
+    format_put_u32(stream, arrays);
+    format_put_u32(stream, uneven ? 0 : strands_size(strands, 0) - 1);
+    format_put_floats(stream, defaults, 5);
+    fwrite(info, 1, sizeof info, stream);
+}
+
+static Result write(OutFile *file, const Strands *strands, Error *error)
+{
+    FILE *stream = file->stream;
+    bool uneven = false, transparent = has_transparency(strands);
+    for (uint32_t s = 0; s < strands->strand_count; s++) {
+        uneven = uneven || strands_size(strands, s) != strands_size(strands, 0);
+        if (strands_size(strands, s) - 1 > UINT16_MAX)
+            return error_set(error, RESULT_FAILED,
+                             "%s: strand %u has %u vertices, HAIR takes 65536", file->path, s,
+                             strands_size(strands, s));
+    }
+    put_hair_header(stream, strands, transparent, uneven);
+    for (uint32_t s = 0; uneven && s < strands->strand_count; s++) {
+        uint16_t segments = htole16((uint16_t)(strands_size(strands, s) - 1));
+        fwrite(&segments, 2, 1, stream);
+    }
+    format_put_floats(stream, strands->position[0], 3 * (size_t)strands->vertex_count);
+    format_put_floats(stream, strands->vertex_thickness, strands->vertex_count);
+    for (uint32_t v = 0; transparent && v < strands->vertex_count; v++) {
+        float transparency = 1.0f - strands->color[v][3];
+        format_put_floats(stream, &transparency, 1);
+    }
+    for (uint32_t v = 0; strands->color && v < strands->vertex_count; v++)
+        format_put_floats(stream, strands->color[v], 3);
+    return RESULT_OK;
+}
+
+const Format hair_format = {
+    .name = "HAIR",
+    .suffix = ".hair",
+    .features = STRANDS_HAS_VERTEX_THICKNESS | STRANDS_HAS_COLOR, // opacity within 2^-25
+    .match = match,
+    .read = read,
+    .write = write,
+};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "strands/formats/obj_file.h"
+// Wavefront OBJ with lines: `v` vertices and `l` elements, each a strand from root to tip.
+#include "strands/formats/format.h"
 
 #include "mesh/obj.h"
 
@@ -10,7 +11,7 @@
 
 typedef struct Obj {
     Reader *reader;
-    StrandsSource *source;
+    FormatSource *source;
     float (*position)[3];              // [vertices]
     uint32_t *line;                    // [vertices] where it stands
     uint64_t vertices, lines, corners; // in the file
@@ -100,7 +101,7 @@ static Result make_room(Obj *obj)
     if (obj->lines == 0) return reader_fail(reader, "a Wavefront file without lines (l)");
     if (obj->vertices >= UINT32_MAX || obj->lines >= UINT32_MAX)
         return reader_fail(reader, "more vertices or lines than 32-bit indices hold");
-    Result result = strands_source_create(obj->source, reader, (uint32_t)obj->lines, obj->corners);
+    Result result = format_source_create(obj->source, reader, (uint32_t)obj->lines, obj->corners);
     if (result != RESULT_OK) return result;
     obj->position = malloc(obj->vertices * sizeof *obj->position + 1);
     obj->line = malloc(obj->vertices * sizeof *obj->line + 1);
@@ -109,7 +110,11 @@ static Result make_room(Obj *obj)
     return good ? RESULT_OK : reader_fail_memory(reader);
 }
 
-Result obj_file_read(StrandsSource *source, Reader *reader)
+// Reads `v` and `l` statements and passes over all others. Indices are from 1 or negative from the
+// last vertex; corners may be v or v/t. An `l` that begins at the vertex at which the one before it
+// ended goes on with that strand, as programs that write each edge for itself have it. Vertices
+// that no line uses are passed over.
+static Result read(FormatSource *source, Reader *reader)
 {
     Obj obj = {.reader = reader, .source = source, .last = -1};
     reader->continuation = true;
@@ -126,8 +131,10 @@ Result obj_file_read(StrandsSource *source, Reader *reader)
 
 // --- Writing.
 
-void obj_file_write(FILE *stream, const Strands *strands)
+static Result write(OutFile *file, const Strands *strands, Error *error)
 {
+    (void)error;
+    FILE *stream = file->stream;
     fprintf(stream, "# %u strands, %u vertices\no hair\n", strands->strand_count,
             strands->vertex_count);
     for (uint32_t v = 0; v < strands->vertex_count; v++)
@@ -138,4 +145,14 @@ void obj_file_write(FILE *stream, const Strands *strands)
             fprintf(stream, " %u", v + 1);
         fputc('\n', stream);
     }
+    return RESULT_OK;
 }
+
+const Format obj_format = {
+    .name = "Wavefront lines",
+    .suffix = ".obj",
+    .text = true,
+    .match = obj_matches,
+    .read = read,
+    .write = write,
+};

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "strands/formats/salon_file.h"
+// `.data` (USC-HairSalon) and `.bin` (CT2Hair): a count of strands, then each strand's count of
+// vertices with the vertices behind it, 3 or 7 floats each. Nothing but their counts marks these
+// files, so a file is one of them if its strands end where the file does.
+#include "strands/formats/format.h"
+
+enum { DATA_FLOATS = 3, BIN_FLOATS = 7 };
 
 // Steps over all strands; returns the vertices in all, or 0 where the file ends before them or
 // goes on behind them.
@@ -18,19 +23,23 @@ static uint64_t count_vertices(const Bytes *bytes, int floats)
     return reader_ok(&reader) && reader_left(&reader) == 0 ? vertices : 0;
 }
 
-int salon_file_match(const Bytes *bytes)
+static bool match_data(const Bytes *bytes)
 {
-    if (count_vertices(bytes, SALON_DATA_FLOATS)) return SALON_DATA_FLOATS;
-    return count_vertices(bytes, SALON_BIN_FLOATS) ? SALON_BIN_FLOATS : 0;
+    return count_vertices(bytes, DATA_FLOATS) > 0;
 }
 
-Result salon_file_read(StrandsSource *source, Reader *reader, int floats)
+static bool match_bin(const Bytes *bytes)
+{
+    return count_vertices(bytes, BIN_FLOATS) > 0;
+}
+
+// Only the first 3 floats of a vertex are used.
+static Result read_floats(FormatSource *source, Reader *reader, int floats)
 {
     Bytes bytes = {(uint8_t *)(uintptr_t)reader->data, reader->size};
     uint64_t vertices = count_vertices(&bytes, floats);
     uint32_t strands = reader_read_u32(reader, "the number of strands");
-    if (strands_source_create(source, reader, strands, vertices) != RESULT_OK)
-        return reader->result;
+    if (format_source_create(source, reader, strands, vertices) != RESULT_OK) return reader->result;
     source->vertex_stride = 4u * (uint32_t)floats;
     source->roots_only = true;
     uint32_t v = 0;
@@ -43,3 +52,41 @@ Result salon_file_read(StrandsSource *source, Reader *reader, int floats)
     }
     return reader->result;
 }
+
+static Result read_data(FormatSource *source, Reader *reader)
+{
+    return read_floats(source, reader, DATA_FLOATS);
+}
+
+static Result read_bin(FormatSource *source, Reader *reader)
+{
+    return read_floats(source, reader, BIN_FLOATS);
+}
+
+static Result write_data(OutFile *file, const Strands *strands, Error *error)
+{
+    (void)error;
+    FILE *stream = file->stream;
+    format_put_u32(stream, strands->strand_count);
+    for (uint32_t s = 0; s < strands->strand_count; s++) {
+        format_put_u32(stream, strands_size(strands, s));
+        format_put_floats(stream, strands->position[strands->first[s]],
+                          3 * (size_t)strands_size(strands, s));
+    }
+    return RESULT_OK;
+}
+
+const Format salon_data_format = {
+    .name = "USC-HairSalon (.data)",
+    .suffix = ".data",
+    .match = match_data,
+    .read = read_data,
+    .write = write_data,
+};
+
+const Format salon_bin_format = {
+    .name = "CT2Hair (.bin)",
+    .suffix = ".bin",
+    .match = match_bin,
+    .read = read_bin,
+};

@@ -1,14 +1,30 @@
 // SPDX-License-Identifier: MIT
-#include "strands/formats/tfx_binary.h"
+// TressFX 3 and 4 binary, after AMD's TressFXFileFormat.h: a header with offsets, then arrays of
+// float32.
+#include "strands/formats/format.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-float tfx_binary_version(const Bytes *bytes)
+enum { TFX3_HEADER_BYTES = 296, TFX4_HEADER_BYTES = 160 };
+
+// --- Reading.
+
+static bool has_version(const Bytes *bytes, float least, float below)
 {
     Reader reader = reader_begin_binary("", bytes, NULL);
     float version = reader_read_f32(&reader, "");
-    return version >= 3.0f && version < 5.0f ? version : 0.0f;
+    return version >= least && version < below;
+}
+
+static bool match3(const Bytes *bytes)
+{
+    return has_version(bytes, 3, 4);
+}
+
+static bool match4(const Bytes *bytes)
+{
+    return has_version(bytes, 4, 5);
 }
 
 // An array that the header speaks of.
@@ -63,7 +79,7 @@ static bool check_array(Reader *reader, Header *header, Array array, uint64_t co
 
 // Positions are the one array that must be there, and checking them bounds both counts by the
 // file's size. Their floats are left to the caller.
-static Result begin_arrays(StrandsSource *source, Reader *reader, Header *header, Array positions,
+static Result begin_arrays(FormatSource *source, Reader *reader, Header *header, Array positions,
                            uint32_t stride)
 {
     if (!reader_ok(reader)) return reader->result;
@@ -71,9 +87,13 @@ static Result begin_arrays(StrandsSource *source, Reader *reader, Header *header
     if (positions.start == 0) return reader_fail(reader, "the file has no positions");
     uint64_t count = (uint64_t)header->strands * header->size;
     if (!check_array(reader, header, positions, count, stride, "positions")) return reader->result;
-    if (strands_source_create(source, reader, header->strands, count) != RESULT_OK)
+    if (format_source_create(source, reader, header->strands, count) != RESULT_OK)
         return reader->result;
-    strands_source_lay_out(source, header->size, positions.start, stride);
+    source->vertex_stride = stride;
+    for (uint32_t s = 0; s < header->strands; s++) {
+        source->place[s] = positions.start + (uint64_t)s * header->size * stride;
+        source->strands.first[s + 1] = (s + 1) * header->size;
+    }
     return RESULT_OK;
 }
 
@@ -82,10 +102,10 @@ static void read_array(Reader *reader, Header *header, Array array, uint64_t cou
                        const char *what, void *to)
 {
     if (check_array(reader, header, array, count, 4 * width, what))
-        strands_source_copy(reader, to, array.start, count, width);
+        format_source_copy(reader, to, array.start, count, width);
 }
 
-static void note_unread(StrandsSource *source, const Reader *reader, const Header *header)
+static void note_unread(FormatSource *source, const Reader *reader, const Header *header)
 {
     source->unread_at = header->end;
     source->unread_bytes = reader->size - header->end;
@@ -101,7 +121,8 @@ static Result skip_to_offsets(Reader *reader, const Header *header, size_t offse
     return reader->result;
 }
 
-Result tfx3_read(StrandsSource *source, Reader *reader)
+// Arrays that the header gives no offset are left NULL.
+static Result read3(FormatSource *source, Reader *reader)
 {
     Header header = {.bytes = TFX3_HEADER_BYTES};
     float version = reader_read_f32(reader, "the version");
@@ -145,7 +166,7 @@ static Result copy_positions4(Strands *strands, Reader *reader, uint64_t start)
     return RESULT_OK;
 }
 
-Result tfx4_read(StrandsSource *source, Reader *reader)
+static Result read4(FormatSource *source, Reader *reader)
 {
     Header header = {.bytes = TFX4_HEADER_BYTES};
     float version = reader_read_f32(reader, "the version");
@@ -167,3 +188,141 @@ Result tfx4_read(StrandsSource *source, Reader *reader)
     note_unread(source, reader, &header);
     return reader->result;
 }
+
+// --- Writing.
+
+static void put_zeros(FILE *stream, size_t bytes)
+{
+    while (bytes--) fputc(0, stream);
+}
+
+// The common number of vertices, or 0 with an error.
+static uint32_t find_common_size(const Strands *strands, const char *path, Error *error)
+{
+    uint32_t size = strands->strand_count ? strands_size(strands, 0) : 0;
+    for (uint32_t s = 1; s < strands->strand_count; s++) {
+        if (strands_size(strands, s) == size) continue;
+        error_set(error, RESULT_FAILED,
+                  "%s: strand %u has %u vertices, strand 0 has %u; binary TressFX needs equal "
+                  "numbers (text or HAIR take any)",
+                  path, s, strands_size(strands, s), size);
+        return 0;
+    }
+    return size;
+}
+
+// Steps `end` over an array of `count` times `floats` and returns where it starts; 0 if absent.
+static uint32_t place_array(uint64_t *end, const void *array, uint64_t count, uint32_t floats)
+{
+    if (!array) return 0;
+    uint64_t start = *end;
+    *end += count * floats * 4;
+    return (uint32_t)start;
+}
+
+static Result fail_too_large(const char *path, Error *error)
+{
+    return error_set(error, RESULT_FAILED, "%s: more than the 4 GiB that TressFX's offsets reach",
+                     path);
+}
+
+static void put_counts(FILE *stream, float version, const Strands *strands, uint32_t size)
+{
+    format_put_floats(stream, &version, 1);
+    format_put_u32(stream, strands->strand_count);
+    format_put_u32(stream, size);
+}
+
+static Result write3(OutFile *file, const Strands *strands, Error *error)
+{
+    FILE *stream = file->stream;
+    uint32_t size = find_common_size(strands, file->path, error);
+    if (size == 0) return RESULT_FAILED;
+    uint64_t count = strands->vertex_count, lines = strands->strand_count, end = TFX3_HEADER_BYTES;
+    uint32_t position = place_array(&end, strands->position, count, 3);
+    uint32_t thickness = place_array(&end, strands->strand_thickness, lines, 1);
+    uint32_t strand_uv = place_array(&end, strands->strand_uv, lines, 2);
+    uint32_t color = place_array(&end, strands->color, count, 4);
+    uint32_t vertex_uv = place_array(&end, strands->vertex_uv, count, 2);
+    if (end > UINT32_MAX) return fail_too_large(file->path, error);
+    put_counts(stream, 3.0f, strands, size);
+    format_put_u32(stream, strands->followers);
+    format_put_u32(stream, strands->both_ends_fixed);
+    put_zeros(stream, 31 * 4);
+    format_put_u32(stream, position);
+    format_put_u32(stream, thickness);
+    format_put_u32(stream, strand_uv);
+    format_put_u32(stream, color);
+    format_put_u32(stream, 0); // guide indices: all are guides
+    format_put_u32(stream, vertex_uv);
+    put_zeros(stream, 32 * 4);
+    format_put_floats(stream, strands->position[0], 3 * count);
+    format_put_floats(stream, strands->strand_thickness, lines);
+    format_put_floats(stream, strands->strand_uv, 2 * lines);
+    format_put_floats(stream, strands->color, 4 * count);
+    format_put_floats(stream, strands->vertex_uv, 2 * count);
+    return RESULT_OK;
+}
+
+static void put_positions4(FILE *stream, const Strands *strands)
+{
+    for (uint32_t s = 0; s < strands->strand_count; s++) {
+        uint32_t root = strands->first[s], tip = strands->first[s + 1] - 1;
+        for (uint32_t v = root; v <= tip; v++) {
+            float mobility = v != root && !(strands->both_ends_fixed && v == tip) ? 1.0f : 0.0f;
+            format_put_floats(stream, strands->position[v], 3);
+            format_put_floats(stream, strands->mobility ? &strands->mobility[v] : &mobility, 1);
+        }
+    }
+}
+
+static Result write4(OutFile *file, const Strands *strands, Error *error)
+{
+    FILE *stream = file->stream;
+    uint32_t size = find_common_size(strands, file->path, error);
+    if (size == 0) return RESULT_FAILED;
+    uint64_t count = strands->vertex_count, lines = strands->strand_count, end = TFX4_HEADER_BYTES;
+    uint32_t position = place_array(&end, strands->position, count, 4);
+    uint32_t strand_uv = place_array(&end, strands->strand_uv, lines, 2);
+    uint32_t vertex_uv = place_array(&end, strands->vertex_uv, count, 2);
+    uint32_t thickness = place_array(&end, strands->strand_thickness, lines, 1);
+    uint32_t color = place_array(&end, strands->color, count, 4);
+    if (end > UINT32_MAX) return fail_too_large(file->path, error);
+    put_counts(stream, 4.0f, strands, size);
+    format_put_u32(stream, position);
+    format_put_u32(stream, strand_uv);
+    format_put_u32(stream, vertex_uv);
+    format_put_u32(stream, thickness);
+    format_put_u32(stream, color);
+    put_zeros(stream, 32 * 4);
+    put_positions4(stream, strands);
+    format_put_floats(stream, strands->strand_uv, 2 * lines);
+    format_put_floats(stream, strands->vertex_uv, 2 * count);
+    format_put_floats(stream, strands->strand_thickness, lines);
+    format_put_floats(stream, strands->color, 4 * count);
+    return RESULT_OK;
+}
+
+const Format tfx3_format = {
+    .name = "TressFX 3 binary",
+    .suffix = ".tfx",
+    .features = STRANDS_HAS_STRAND_UV | STRANDS_HAS_VERTEX_UV | STRANDS_HAS_STRAND_THICKNESS |
+                STRANDS_HAS_COLOR | STRANDS_HAS_FOLLOWERS | STRANDS_HAS_FIXED_ENDS,
+    .equal_sizes = true,
+    .match = match3,
+    .read = read3,
+    .write = write3,
+};
+
+// Where strands have no mobility, 0 is written for the root (and the tip if both ends are fixed)
+// and 1 for the rest: so fixed ends are held, too.
+const Format tfx4_format = {
+    .name = "TressFX 4 binary",
+    .suffix = ".tfx",
+    .features = STRANDS_HAS_MOBILITY | STRANDS_HAS_STRAND_UV | STRANDS_HAS_VERTEX_UV |
+                STRANDS_HAS_STRAND_THICKNESS | STRANDS_HAS_COLOR | STRANDS_HAS_FIXED_ENDS,
+    .equal_sizes = true,
+    .match = match4,
+    .read = read4,
+    .write = write4,
+};

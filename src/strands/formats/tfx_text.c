@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "strands/formats/tfx_text.h"
+// TressFX 2 text: `numStrands`, `is sorted`, then each strand's vertices, with or without a block
+// of parameters in front.
+#include "strands/formats/format.h"
+
+#include "base/decimal.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+// --- Reading.
 
 // The shortest legal forms: "strand 0 numVerts 0" with its newline, and "0 0 0" likewise.
 enum { BYTES_PER_STRAND = 20, BYTES_PER_VERTEX = 6 };
@@ -23,7 +29,7 @@ static bool begins_with(const uint8_t *text, const char *word)
     return strncmp((const char *)text, word, length) == 0 && strchr(" \t\r\n", text[length]);
 }
 
-bool tfx_text_matches(const Bytes *bytes)
+static bool match(const Bytes *bytes)
 {
     static const char *const words[] = {"numStrands",
                                         "is",
@@ -127,7 +133,7 @@ static Head read_head(Reader *reader)
     return head;
 }
 
-static void keep_head(StrandsSource *source, const Head *head)
+static void keep_head(FormatSource *source, const Head *head)
 {
     source->version = head->version > 0.0f ? head->version : 2.0f;
     source->shuffle = !head->sorted;
@@ -147,7 +153,7 @@ static void keep_head(StrandsSource *source, const Head *head)
 
 // "strand 3 numVerts 16 texcoord 0.5 0.25"; the number is a name and the texture coordinate may be
 // missing.
-static uint32_t read_strand_head(Reader *reader, StrandsSource *source, uint32_t s)
+static uint32_t read_strand_head(Reader *reader, FormatSource *source, uint32_t s)
 {
     source->place[s] = reader->line;
     reader_expect(reader, "strand");
@@ -166,7 +172,7 @@ static uint32_t read_strand_head(Reader *reader, StrandsSource *source, uint32_t
     return reader_ok(reader) ? size : 0;
 }
 
-static void read_strand(Reader *reader, StrandsSource *source, uint32_t s, uint32_t max_vertices)
+static void read_strand(Reader *reader, FormatSource *source, uint32_t s, uint32_t max_vertices)
 {
     Strands *strands = &source->strands;
     uint32_t v = strands->first[s];
@@ -184,7 +190,7 @@ static void read_strand(Reader *reader, StrandsSource *source, uint32_t s, uint3
     strands->first[s + 1] = v;
 }
 
-static void read_strands(Reader *reader, StrandsSource *source, const Head *head)
+static void read_strands(Reader *reader, FormatSource *source, const Head *head)
 {
     for (uint32_t s = 0; s < head->strands && reader_ok(reader); s++) {
         if (reader_ended(reader) && reader_ok(reader))
@@ -195,13 +201,15 @@ static void read_strands(Reader *reader, StrandsSource *source, const Head *head
         reader_fail_expected(reader, "the end of the file behind the last strand");
 }
 
-Result tfx_text_read(StrandsSource *source, Reader *reader)
+// Numbers of a rotation are radians, as AMD's loader takes them, unless one is beyond a full turn
+// (2 pi): then all three are degrees.
+static Result read(FormatSource *source, Reader *reader)
 {
     Head head = read_head(reader);
     if (!reader_ok(reader)) return reader->result;
     // Vertices are not counted beforehand: room for as many as the file could hold.
     uint64_t room = ((uint64_t)reader_left(reader) + 1) / BYTES_PER_VERTEX;
-    if (strands_source_create(source, reader, head.strands, room) != RESULT_OK)
+    if (format_source_create(source, reader, head.strands, room) != RESULT_OK)
         return reader->result;
     keep_head(source, &head);
     source->strands.strand_uv = calloc(head.strands, sizeof *source->strands.strand_uv);
@@ -211,3 +219,52 @@ Result tfx_text_read(StrandsSource *source, Reader *reader)
     source->strands.vertex_count = source->strands.first[head.strands];
     return reader->result;
 }
+
+// --- Writing: the shortest decimals that read back.
+
+static void put_parameters(FILE *stream, const Strands *strands)
+{
+    uint32_t longest = 0;
+    for (uint32_t s = 0; s < strands->strand_count; s++)
+        if (strands_size(strands, s) > longest) longest = strands_size(strands, s);
+    fprintf(stream, "version 2.0\nscale 1.0\nrotation 0 0 0\ntranslation 0 0 0\n");
+    fprintf(stream, "bothEndsImmovable %d\nmaxNumVerticesInStrand %u\n", strands->both_ends_fixed,
+            longest);
+    fprintf(stream, "numFollowHairsPerGuideHair %u\n", strands->followers);
+    decimal_put(stream, "maxRadiusAroundGuideHair ", strands->follower_radius);
+    fputc('\n', stream);
+}
+
+static Result write(OutFile *file, const Strands *strands, Error *error)
+{
+    (void)error;
+    FILE *stream = file->stream;
+    if (strands->followers || strands->follower_radius != 0.0f || strands->both_ends_fixed)
+        put_parameters(stream, strands);
+    fprintf(stream, "numStrands %u\nis sorted 1\n", strands->strand_count);
+    for (uint32_t s = 0; s < strands->strand_count; s++) {
+        fprintf(stream, "strand %u numVerts %u texcoord", s, strands_size(strands, s));
+        decimal_put(stream, " ", strands->strand_uv ? strands->strand_uv[s][0] : 0.0f);
+        decimal_put(stream, " ", strands->strand_uv ? strands->strand_uv[s][1] : 0.0f);
+        fputc('\n', stream);
+        for (uint32_t v = strands->first[s]; v < strands->first[s + 1]; v++) {
+            decimal_put(stream, "", strands->position[v][0]);
+            decimal_put(stream, " ", strands->position[v][1]);
+            decimal_put(stream, " ", strands->position[v][2]);
+            fputc('\n', stream);
+        }
+    }
+    return RESULT_OK;
+}
+
+const Format tfx2_format = {
+    .name = "TressFX 2 text",
+    .suffix = ".tfx",
+    .features = STRANDS_HAS_STRAND_UV | STRANDS_HAS_FOLLOWERS | STRANDS_HAS_FOLLOWER_RADIUS |
+                STRANDS_HAS_FIXED_ENDS,
+    .text = true,
+    .centimetres = true,
+    .match = match,
+    .read = read,
+    .write = write,
+};

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Hair files: what is written reads back to the bit.
+// The table of hair file formats: what is written reads back to the bit.
 #include "base/random.h"
 #include "gen/strands_make.h"
-#include "strands/strands_features.h"
+#include "strands/formats/format.h"
+#include "strands/strands.h"
 #include "strands/strands_read.h"
-#include "strands/strands_write.h"
 #include "support/temporary.h"
 
 #include <locale.h>
@@ -33,28 +33,45 @@ static Strands make_awkward(void)
     return strands;
 }
 
-static Strands read_back(void **state, StrandsKind kind, const Strands *strands,
+static Strands read_back(void **state, FormatKind kind, const Strands *strands,
                          const StrandsReadOptions *options)
 {
     Error error = {""};
     Strands back;
     const char *path = temporary_path(state, "hair");
-    if (strands_write(path, kind, strands, &error) != RESULT_OK) fail_msg("%s", error.text);
+    if (format_write(path, kind, strands, &error) != RESULT_OK) fail_msg("%s", error.text);
     if (strands_read(&back, path, options, NULL, &error) != RESULT_OK) fail_msg("%s", error.text);
     assert_int_equal(back.strand_count, strands->strand_count);
     assert_memory_equal(back.first, strands->first, 4 * (size_t)(strands->strand_count + 1));
     return back;
 }
 
+static void rows_of_the_table_are_complete(void **state)
+{
+    (void)state;
+    char words[] = FORMAT_WORDS, text[400];
+    int written = 0, word_count = 0;
+    for (char *at = words; *at; at++) word_count += *at == '|';
+    for (FormatKind kind = 0; kind < FORMAT_KINDS; kind++) {
+        const Format *format = FORMAT_TABLE[kind];
+        assert_true(format && format->match && format->read && format->suffix[0] == '.');
+        if (format->write) assert_int_equal(kind, written++); // the n-th word is the n-th kind
+        format_list_names(text, sizeof text);
+        assert_non_null(strstr(text, format->name));
+        format_list_suffixes(text, sizeof text);
+        assert_true(!format->write || strstr(text, format->suffix));
+    }
+    assert_int_equal(written, word_count);
+}
+
 static void reading_back_gives_the_same_bits(void **state)
 {
-    static const StrandsKind kinds[] = {STRANDS_TFX2_TEXT, STRANDS_TFX3,       STRANDS_TFX4,
-                                        STRANDS_HAIR,      STRANDS_SALON_DATA, STRANDS_OBJ};
     Strands strands = make_awkward();
-    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
-        Strands back = read_back(state, kinds[i], &strands, &METRES);
+    for (FormatKind kind = 0; kind < FORMAT_KINDS; kind++) {
+        if (!FORMAT_TABLE[kind]->write) continue;
+        Strands back = read_back(state, kind, &strands, &METRES);
         assert_memory_equal(back.position, strands.position, 12 * (size_t)strands.vertex_count);
-        if (strands_kind_features(kinds[i]) & STRANDS_HAS_STRAND_UV)
+        if (FORMAT_TABLE[kind]->features & STRANDS_HAS_STRAND_UV)
             assert_memory_equal(back.strand_uv, strands.strand_uv,
                                 8 * (size_t)strands.strand_count);
         strands_destroy(&back);
@@ -64,8 +81,7 @@ static void reading_back_gives_the_same_bits(void **state)
 
 static void what_was_written_in_metres_is_guessed_to_be_metres(void **state)
 {
-    static const StrandsKind kinds[] = {STRANDS_TFX2_TEXT, STRANDS_TFX3, STRANDS_TFX4,
-                                        STRANDS_HAIR};
+    static const FormatKind kinds[] = {FORMAT_TFX2, FORMAT_TFX3, FORMAT_TFX4, FORMAT_HAIR};
     Strands strands = make_awkward();
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         Strands back = read_back(state, kinds[i], &strands, NULL);
@@ -81,14 +97,14 @@ static void followers_and_fixed_ends_survive_where_the_kind_holds_them(void **st
     strands.followers = 3;
     strands.both_ends_fixed = true;
     strands.follower_radius = 0.0123f;
-    Strands text = read_back(state, STRANDS_TFX2_TEXT, &strands, &METRES);
+    Strands text = read_back(state, FORMAT_TFX2, &strands, &METRES);
     assert_int_equal(text.followers, 3);
     assert_true(text.both_ends_fixed);
     assert_true(text.follower_radius == 0.0123f);
-    Strands tfx3 = read_back(state, STRANDS_TFX3, &strands, &METRES);
+    Strands tfx3 = read_back(state, FORMAT_TFX3, &strands, &METRES);
     assert_int_equal(tfx3.followers, 3);
     assert_true(tfx3.both_ends_fixed);
-    Strands tfx4 = read_back(state, STRANDS_TFX4, &strands, &METRES);
+    Strands tfx4 = read_back(state, FORMAT_TFX4, &strands, &METRES);
     assert_true(tfx4.mobility[0] == 0.0f && tfx4.mobility[1] == 1.0f && tfx4.mobility[8] == 0.0f);
     strands_destroy(&text);
     strands_destroy(&tfx3);
@@ -111,14 +127,14 @@ static void uneven_strands_go_into_text_and_hair_only(void **state)
 {
     Strands strands = make_uneven();
     Error error;
-    for (StrandsKind kind = STRANDS_TFX3; kind <= STRANDS_TFX4; kind++) {
-        assert_int_equal(strands_write(temporary_path(state, "x"), kind, &strands, &error),
+    for (FormatKind kind = FORMAT_TFX4; kind <= FORMAT_TFX3; kind++) {
+        assert_int_equal(format_write(temporary_path(state, "x"), kind, &strands, &error),
                          RESULT_FAILED);
         assert_non_null(strstr(error.text, "strand 1 has 3 vertices, strand 0 has 2"));
         assert_false(temporary_has(state, "x"));
     }
-    Strands text = read_back(state, STRANDS_TFX2_TEXT, &strands, &METRES);
-    Strands hair = read_back(state, STRANDS_HAIR, &strands, &METRES);
+    Strands text = read_back(state, FORMAT_TFX2, &strands, &METRES);
+    Strands hair = read_back(state, FORMAT_HAIR, &strands, &METRES);
     assert_memory_equal(hair.position, strands.position, 12 * 5);
     strands_destroy(&text);
     strands_destroy(&hair);
@@ -187,9 +203,9 @@ static void what_a_kind_cannot_hold_is_known(void **state)
     strands.follower_radius = 0.01f;
     strands.vertex_thickness = calloc(strands.vertex_count, sizeof(float));
     uint32_t features = strands_features(&strands);
-    strands_features_describe(features & ~strands_kind_features(STRANDS_TFX3), text, sizeof text);
+    strands_features_describe(features & ~FORMAT_TABLE[FORMAT_TFX3]->features, text, sizeof text);
     assert_string_equal(text, "thickness of vertices, radius of followers");
-    strands_features_describe(features & ~strands_kind_features(STRANDS_USD), text, sizeof text);
+    strands_features_describe(features & ~FORMAT_TABLE[FORMAT_USD]->features, text, sizeof text);
     assert_string_equal(text, "");
     strands_features_describe(UINT32_MAX, text, sizeof text);
     assert_true(strlen(text) < sizeof text - 1);
@@ -201,7 +217,7 @@ static void other_kinds_can_only_be_read(void **state)
     Strands strands = make_uneven();
     Error error;
     const char *path = temporary_path(state, "x");
-    assert_int_equal(strands_write(path, STRANDS_SALON_BIN, &strands, &error), RESULT_FAILED);
+    assert_int_equal(format_write(path, FORMAT_SALON_BIN, &strands, &error), RESULT_FAILED);
     assert_non_null(strstr(error.text, "can only be read"));
     assert_int_equal(temporary_count_files(((Temporary *)*state)->folder), 0);
     strands_destroy(&strands);
@@ -217,7 +233,7 @@ static void text_does_not_depend_on_the_locale(void **state)
         skip();
     }
     Strands strands = make_awkward();
-    Strands back = read_back(state, STRANDS_TFX2_TEXT, &strands, &METRES);
+    Strands back = read_back(state, FORMAT_TFX2, &strands, &METRES);
     setlocale(LC_NUMERIC, "C");
     assert_memory_equal(back.position, strands.position, 12 * (size_t)strands.vertex_count);
     strands_destroy(&back);
@@ -228,6 +244,7 @@ int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, temporary_create, temporary_destroy)
     const struct CMUnitTest tests[] = {
+        TEST(rows_of_the_table_are_complete),
         TEST(reading_back_gives_the_same_bits),
         TEST(what_was_written_in_metres_is_guessed_to_be_metres),
         TEST(followers_and_fixed_ends_survive_where_the_kind_holds_them),

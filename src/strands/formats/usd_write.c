@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "strands/formats/usd_file.h"
+#include "strands/formats/usd_write.h"
 
 #include "base/decimal.h"
-#include "strands/strands_features.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -119,19 +118,13 @@ static void put_attributes(UsdWriter *writer)
     put_sections(writer->file.stream, look->section, strands->strand_count);
 }
 
-static float largest_width(const UsdLook *look, const Strands *strands)
+// Writes all that does not move to the file, which goes over to the writer.
+static void begin(UsdWriter *writer, const OutFile *file, const Strands *strands,
+                  const UsdOptions *options)
 {
-    float largest = 0;
-    for (size_t i = 0; look->width && i < count_values(strands, look->width_rate); ++i)
-        largest = fmaxf(largest, look->width[i]);
-    return largest;
-}
-
-Result usd_writer_open(UsdWriter *writer, const char *path, const Strands *strands,
-                       const UsdOptions *options, Error *error)
-{
-    *writer = (UsdWriter){.strands = strands, .options = *options};
+    *writer = (UsdWriter){.file = *file, .strands = strands, .options = *options};
     UsdLook *look = &writer->options.look;
+    FILE *stream = writer->file.stream;
     if (!look->width && strands->vertex_thickness) {
         look->width = strands->vertex_thickness;
         look->width_rate = USD_VERTEX;
@@ -140,16 +133,23 @@ Result usd_writer_open(UsdWriter *writer, const char *path, const Strands *stran
         look->color = (const float(*)[4])strands->color;
         look->color_rate = USD_VERTEX;
     }
-    writer->half_width = largest_width(look, strands) / 2;
-    Result result = outfile_open(&writer->file, path, error);
-    if (result != RESULT_OK) return result;
-    FILE *stream = writer->file.stream;
+    for (size_t i = 0; look->width && i < count_values(strands, look->width_rate); ++i)
+        writer->half_width = fmaxf(writer->half_width, look->width[i] / 2);
     put_layer(stream, &writer->options);
     fprintf(stream, "def BasisCurves \"Hair\"");
     put_wishes(stream, strands);
     fprintf(stream, "\n{\n    uniform token type = \"linear\"\n"
                     "    uniform token wrap = \"nonperiodic\"\n");
     put_attributes(writer);
+}
+
+Result usd_writer_open(UsdWriter *writer, const char *path, const Strands *strands,
+                       const UsdOptions *options, Error *error)
+{
+    OutFile file;
+    *writer = (UsdWriter){0};
+    TRY(outfile_open(&file, path, error));
+    begin(writer, &file, strands, options);
     return RESULT_OK;
 }
 
@@ -241,10 +241,20 @@ Result usd_write_still(const char *path, const Strands *strands, const UsdOption
                        Error *error)
 {
     UsdWriter writer;
-    Result result = usd_writer_open(&writer, path, strands, options, error);
-    if (result != RESULT_OK) return result;
-    result = usd_writer_add(&writer, 0, (const float(*)[3])strands->position, error);
+    TRY(usd_writer_open(&writer, path, strands, options, error));
+    Result result = usd_writer_add(&writer, 0, (const float(*)[3])strands->position, error);
     if (result == RESULT_OK) return usd_writer_finish(&writer, error);
+    usd_writer_discard(&writer);
+    return result;
+}
+
+Result usd_write_strands(OutFile *file, const Strands *strands, Error *error)
+{
+    UsdWriter writer;
+    begin(&writer, file, strands, &(UsdOptions){.metres_per_unit = 1});
+    Result result = usd_writer_add(&writer, 0, (const float(*)[3])strands->position, error);
+    if (result == RESULT_OK) put_extents(&writer);
+    writer.file = (OutFile){0}; // the caller's
     usd_writer_discard(&writer);
     return result;
 }

@@ -43,7 +43,7 @@ typedef struct UsdWriter {
 } UsdWriter;
 
 // Opens the file and writes all that does not move; the strands outlive the writer, and their
-// positions are not looked at. Everything that they have (strands_features.h) is written: texture
+// positions are not looked at. Everything that they have (strands_features) is written: texture
 // coordinates as primvars:st (of strands) and primvars:st1 (of vertices), thickness as widths if
 // the look has none and as primvars:thickness, colours as displayColor likewise, mobility as
 // primvars:mobility, followers and fixed ends as customData. RESULT_FAILED with path and reason.
@@ -66,3 +66,6 @@ void usd_writer_discard(UsdWriter *writer);
 // theirs.
 Result usd_write_still(const char *path, const Strands *strands, const UsdOptions *options,
                        Error *error);
+
+// The same in metres, y up, to a file that is open and stays so (Format.write).
+Result usd_write_strands(OutFile *file, const Strands *strands, Error *error);
