@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "bench/bench_cpu.h"
-#include "bench/bench_trial.h"
 #include "bench/cpu_split.h"
+#include "bench/trial.h"
 #include "run/stats.h"
 
 #include <math.h>
@@ -87,7 +87,7 @@ Result cpu_run_memory(Speed *speed, Error *error)
             run_team(processors(), add_arrays, &arrays);
             samples[i] = stats_clock_ms() - begin;
         }
-        row.result.step = bench_times_of(samples, RUNS);
+        row.result.step = table_times(samples, RUNS);
         speed->bandwidth = 3.0 * (double)size / row.result.step.minimum * 1e-6;
         row.gigabytes_s = speed->bandwidth;
         row.threads = processors();
@@ -131,7 +131,7 @@ static void march(void *data, int number, int count)
     }
 }
 
-static Result measure_march(BenchTimes *times, CpuSplit *split, CpuSplitForm form, int threads,
+static Result measure_march(Times *times, CpuSplit *split, CpuSplitForm form, int threads,
                             const BenchOptions *options, Error *error)
 {
     March m = {.split = split,
@@ -144,7 +144,7 @@ static Result measure_march(BenchTimes *times, CpuSplit *split, CpuSplitForm for
     pthread_barrier_init(&m.barrier, NULL, (unsigned)threads);
     run_team(threads, march, &m);
     pthread_barrier_destroy(&m.barrier);
-    *times = bench_times_of(m.samples, options->steps);
+    *times = table_times(m.samples, options->steps);
     free(m.samples);
     return RESULT_OK;
 }
@@ -158,10 +158,10 @@ static Result compare(const Speed *speed, const SpeedSubject *subject, CpuSplit 
     Trial trial = {0};
     float(*own)[3] = calloc(subject->strands->vertex_count, sizeof *own);
     double sum = 0, length = (double)split->ends[9 * CPU_SPLIT_WIDTH];
-    Result result = own ? method_params(&params, &method, error)
+    Result result = own ? method_params(&params, &method, "", error)
                         : error_set(error, RESULT_FAILED, "no memory for positions");
     if (result == RESULT_OK)
-        result = trial_create(&trial, speed->gpu, subject->strands, &params, RATE, error);
+        result = trial_create(&trial, speed->gpu, subject->strands, 0, &params, RATE, error);
     for (int i = 0; i < SECONDS * (int)RATE && result == RESULT_OK; ++i) {
         trial_step(&trial);
         cpu_split_time(split, 1 / RATE, DRAG, i == 0);

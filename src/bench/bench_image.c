@@ -88,8 +88,8 @@ static Result draw_frames(ImageBench *bench, const ImageManner *manner, Renderer
         processor[i] = stats_processor_ms() - begin_processor;
     }
     if (outcome == RESULT_OK) {
-        result->wall = bench_times_of(wall, frames);
-        result->processor = bench_times_of(processor, frames);
+        result->wall = table_times(wall, frames);
+        result->processor = table_times(processor, frames);
     }
     free(wall);
     free(processor);

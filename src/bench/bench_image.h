@@ -3,7 +3,7 @@
 #pragma once
 
 #include "bench/bench_image_exact.h"
-#include "bench/bench_times.h"
+#include "bench/table.h"
 #include "draw/renderer.h"
 
 // A way to draw.
@@ -26,7 +26,7 @@ typedef struct ImageOptions {
 } ImageOptions;
 
 typedef struct ImageResult {
-    BenchTimes wall, processor; // drawing and reading back; by the clock and as
+    Times wall, processor; // drawing and reading back; by the clock and as
     // processor time of all threads, which a busy machine lengthens less
     ImageDistance distance; // from the exact picture; NaN: not measured
     double reference_s;     // that the exact picture took; NaN: none

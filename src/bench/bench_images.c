@@ -103,7 +103,7 @@ static void write_command(const ImageBench *bench, const ImageOptions *options, 
              line->quality, line->width, line->height, options->frames);
 }
 
-static void add_row(BenchTable *table, const ImageBench *bench, const ImageOptions *options,
+static void add_row(Table *table, const ImageBench *bench, const ImageOptions *options,
                     const ImageResult *result)
 {
     const ImageScheme *scheme = &options->scheme;
@@ -124,13 +124,13 @@ static void add_row(BenchTable *table, const ImageBench *bench, const ImageOptio
     snprintf(line.set, sizeof line.set, "%s", bench->hair.name);
     name_scheme(scheme, line.scheme, sizeof line.scheme);
     write_command(bench, options, &line);
-    bench_table_add(table, &line);
+    table_add(table, &line);
 }
 
 // --- The commands.
 
 // The schemes in turn, for one set or file.
-static Result add_images(BenchTable *table, const ImageOptions *options, const ImageScheme *schemes,
+static Result add_images(Table *table, const ImageOptions *options, const ImageScheme *schemes,
                          size_t count, Error *error)
 {
     ImageBench bench;
@@ -156,26 +156,25 @@ static ImageOptions read_options(const BenchOptions *arguments)
 
 Result images_run_one(const BenchOptions *arguments, const Gpu *gpu, Error *error)
 {
-    BenchTable table;
+    Table table;
     ImageOptions options = read_options(arguments);
     options.set = arguments->set, options.file = arguments->tfx;
     options.scheme.raster = arguments->raster;
     if (!options.set == !options.file)
         return error_set(error, RESULT_USAGE, "image: one of --set NAME and --tfx FILE is needed");
     Result result =
-        bench_table_open(&table, COLUMNS, COLUMN_COUNT, gpu, &arguments->output, stdout, error);
+        table_open(&table, COLUMNS, COLUMN_COUNT, gpu, &arguments->output, stdout, error);
     if (result == RESULT_OK) result = add_images(&table, &options, &options.scheme, 1, error);
-    return bench_table_close(&table, result, error);
+    return table_close(&table, result, error);
 }
 
 Result images_run(const BenchOptions *arguments, const Gpu *gpu, Error *error)
 {
-    BenchTable table;
+    Table table;
     ImageOptions options = read_options(arguments);
     Result result = bench_options_check_parts(arguments, SETS, error);
     if (result != RESULT_OK) return result;
-    result =
-        bench_table_open(&table, COLUMNS, COLUMN_COUNT, gpu, &arguments->output, stdout, error);
+    result = table_open(&table, COLUMNS, COLUMN_COUNT, gpu, &arguments->output, stdout, error);
     for (int i = 0; SETS[i] && result == RESULT_OK; ++i) {
         options.set = SETS[i];
         if (strcmp(options.set, "files") != 0 && bench_options_part(arguments, options.set))
@@ -187,5 +186,5 @@ Result images_run(const BenchOptions *arguments, const Gpu *gpu, Error *error)
         options.file = arguments->files[i];
         result = add_images(&table, &options, SCHEMES, SCHEME_COUNT, error);
     }
-    return bench_table_close(&table, result, error);
+    return table_close(&table, result, error);
 }

@@ -145,7 +145,7 @@ static Result check_settings(const BenchOptions *options, Error *error)
     if (!method.algo && *method.variant)
         return error_set(error, RESULT_USAGE, "--variant '%s' needs --algo", method.variant);
     if (!method.algo) method.algo = "split";
-    Result result = method_params(&params, &method, error);
+    Result result = method_params(&params, &method, "", error);
     params_destroy_section(&params);
     return result;
 }

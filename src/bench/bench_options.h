@@ -3,9 +3,9 @@
 #pragma once
 
 #include "bench/bench_image.h"
-#include "bench/bench_method.h"
 #include "bench/bench_stress.h"
-#include "bench/bench_table.h"
+#include "bench/method.h"
+#include "bench/table.h"
 #include "gpu/gpu.h"
 
 enum { BENCH_MOST_RATES = 8, BENCH_MOST_PARAMS = 64 };
@@ -25,7 +25,7 @@ typedef struct BenchOptions {
     Raster raster;                   // how hair is drawn
     ImageOptions image;              // but for what is above
     GpuOptions gpu;
-    BenchOutput output;
+    TableOutput output;
     char **files; // what is no option: the command and hair files
     int file_count;
     bool done;      // --help or --version was answered

@@ -3,7 +3,6 @@
 #include "base/interrupt.h"
 #include "base/outfile.h"
 #include "bench/bench_child.h"
-#include "bench/bench_fit.h"
 #include "gen/strands_make.h"
 
 #include <ftw.h>
@@ -70,7 +69,7 @@ static void add_exponents(Speed *speed, const Growth *growth)
         SpeedRow row = speed_row(growth->part, NULL);
         snprintf(row.hair, sizeof row.hair, "all of these");
         row.method = speed->methods[m];
-        row.exponent = fit_exponent(growth->sizes, growth->least[m], growth->count, &row.spread);
+        row.exponent = table_slope(growth->sizes, growth->least[m], growth->count, &row.spread);
         speed_add(speed, &row);
     }
 }
@@ -116,8 +115,8 @@ static void take_times(SpeedRow *row, const json_t *from)
     row->vertices = (long)number(from, "vertices");
     row->particles = (long)number(from, "particles");
     row->result.first_step_ms = number(from, "first_ms");
-    row->result.step = (BenchTimes){number(from, "ms_min"), number(from, "ms_q1"),
-                                    number(from, "ms_median"), number(from, "ms_q3")};
+    row->result.step = (Times){number(from, "ms_min"), number(from, "ms_q1"),
+                               number(from, "ms_median"), number(from, "ms_q3")};
 }
 
 static SpeedRow child_row(const Speed *speed, const char *part, const char *set, int method)
@@ -164,7 +163,7 @@ Result scaling_run_threads(Speed *speed, Error *error)
                          ? error_set(error, RESULT_INTERRUPTED, "interrupted")
                          : measure_threads(speed, m, (int)threads[i], &least[i], error);
         SpeedRow row = child_row(speed, "threads", "10k32", m);
-        row.exponent = fit_exponent(threads, least, 2, &row.spread);
+        row.exponent = table_slope(threads, least, 2, &row.spread);
         if (result == RESULT_OK) speed_add(speed, &row);
     }
     if (kept)
@@ -190,7 +189,7 @@ static Result measure_start(Speed *speed, int method, const char *cache, const c
     Result result = child_measure(speed->options, &row.method, row.set, row.file, 1, 0, &variable,
                                   1, &from, &row.process_ms, error);
     if (result != RESULT_OK) return result;
-    const BenchTimes none = row.result.step;
+    const Times none = row.result.step;
     take_times(&row, from);
     row.result.step = none; // of one step: says nothing
     row.remark = remark;

@@ -74,7 +74,7 @@ static Result add_section(World *world, const Row *row, int i, const BenchOption
     Method method = {"none", "", ""};
     if (row->rest[i] != STATIC)
         method = (Method){algo_of(options), options->method.variant, options->method.settings};
-    Result result = method_params(&params, &method, error);
+    Result result = method_params(&params, &method, "", error);
     params.sleep = row->rest[i] == SLEEPS ? 1 : 0;
     params.followers = row->followers;
     params.follow = (int)row->mode;
@@ -126,7 +126,7 @@ static Result wait_for_sleep(Simulation *simulation, const Row *row, Error *erro
     return RESULT_OK;
 }
 
-static Result measure_frames(BenchTimes *times, Simulation *simulation, const Row *row,
+static Result measure_frames(Times *times, Simulation *simulation, const Row *row,
                              const BenchOptions *options, Error *error)
 {
     double *samples = calloc((size_t)options->steps, sizeof *samples);
@@ -137,7 +137,7 @@ static Result measure_frames(BenchTimes *times, Simulation *simulation, const Ro
         double ms = frame_ms(simulation);
         if (i >= 0) samples[i] = ms;
     }
-    *times = bench_times_of(samples, result == RESULT_OK ? options->steps : 0);
+    *times = table_times(samples, result == RESULT_OK ? options->steps : 0);
     free(samples);
     return result;
 }
@@ -147,7 +147,7 @@ static Result measure_frames(BenchTimes *times, Simulation *simulation, const Ro
 typedef struct Line {
     const char *scene, *algo, *variant, *set;
     long guides, followers;
-    BenchTimes times;
+    Times times;
     char command[256];
 } Line;
 
@@ -166,8 +166,8 @@ static const Column COLUMNS[] = {
     {"command", COLUMN_CHARS, AT(command), 0},
 };
 
-static void add_line(BenchTable *table, const Row *row, const BenchOptions *options,
-                     const World *world, const BenchTimes *times)
+static void add_line(Table *table, const Row *row, const BenchOptions *options, const World *world,
+                     const Times *times)
 {
     const Method method = {algo_of(options), options->method.variant, options->method.settings};
     char words[160];
@@ -183,14 +183,14 @@ static void add_line(BenchTable *table, const Row *row, const BenchOptions *opti
     method_format(&method, words, sizeof words);
     snprintf(line.command, sizeof line.command, "tractrix-bench scenes %s --set %s", words,
              line.set);
-    bench_table_add(table, &line);
+    table_add(table, &line);
 }
 
-static Result measure_row(const Gpu *gpu, const Row *row, const BenchOptions *options,
-                          BenchTable *table, Error *error)
+static Result measure_row(const Gpu *gpu, const Row *row, const BenchOptions *options, Table *table,
+                          Error *error)
 {
     World world;
-    BenchTimes times = {0};
+    Times times = {0};
     Result result = world_create(&world, gpu, row, options, error);
     if (result == RESULT_OK)
         result = measure_frames(&times, &world.simulation, row, options, error);
@@ -201,10 +201,10 @@ static Result measure_row(const Gpu *gpu, const Row *row, const BenchOptions *op
 
 Result scenes_run(const BenchOptions *options, const Gpu *gpu, Error *error)
 {
-    BenchTable table;
-    Result result = bench_table_open(&table, COLUMNS, sizeof COLUMNS / sizeof *COLUMNS, gpu,
-                                     &options->output, stdout, error);
+    Table table;
+    Result result = table_open(&table, COLUMNS, sizeof COLUMNS / sizeof *COLUMNS, gpu,
+                               &options->output, stdout, error);
     for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS && result == RESULT_OK; ++i)
         result = measure_row(gpu, &ROWS[i], options, &table, error);
-    return bench_table_close(&table, result, error);
+    return table_close(&table, result, error);
 }

@@ -37,7 +37,7 @@ static Result bench_create(Bench *bench, const Gpu *gpu, const SpeedSubject *sub
     gpu_timer_create(&bench->timer, false, true);
     Result result = scene_create(&bench->scene, error);
     if (result != RESULT_OK) return result;
-    result = method_params(&params, &subject->method, error);
+    result = method_params(&params, &subject->method, "", error);
     params.sleep = 0; // every step is one
     params.followers = 0;
     if (result == RESULT_OK)
@@ -86,8 +86,8 @@ static Result measure_steps(SpeedResult *result, Bench *bench, const BenchOption
             if (i == -options->warm_up - 1) result->first_step_ms = end - begin;
             if (i >= 0) step[i] = end - begin, solve[i] = solved - begin;
         }
-        result->step = bench_times_of(step, options->steps);
-        result->solve = bench_times_of(solve, options->steps);
+        result->step = table_times(step, options->steps);
+        result->solve = table_times(solve, options->steps);
         result->bytes = count_bytes(bench);
     }
     bool good = step && solve;
@@ -122,7 +122,7 @@ static Result draw_frames(SpeedResult *result, Renderer *renderer, Bench *bench,
         outcome = renderer_draw(renderer, &frame, &item, 1, image, error);
         if (i >= 0) samples[i] = stats_clock_ms() - begin;
     }
-    result->draw = bench_times_of(samples, outcome == RESULT_OK ? DRAWN_FRAMES : 0);
+    result->draw = table_times(samples, outcome == RESULT_OK ? DRAWN_FRAMES : 0);
     result->fragments = renderer->counts.fragments;
     return outcome;
 }
@@ -152,7 +152,7 @@ Result speed_measure(SpeedResult *result, const Gpu *gpu, const SpeedSubject *su
                      const BenchOptions *options, Error *error)
 {
     Bench bench;
-    *result = (SpeedResult){.draw = bench_times_of(NULL, 0)};
+    *result = (SpeedResult){.draw = table_times(NULL, 0)};
     Result outcome = bench_create(&bench, gpu, subject, error);
     if (outcome == RESULT_OK) outcome = measure_steps(result, &bench, options, error);
     if (outcome == RESULT_OK) outcome = gpu_check("steps", error);
@@ -211,7 +211,7 @@ static const Column COLUMNS[] = {
 
 SpeedRow speed_row(const char *part, const SpeedSubject *subject)
 {
-    const BenchTimes none = bench_times_of(NULL, 0);
+    const Times none = table_times(NULL, 0);
     SpeedRow row = {.part = part,
                     .method = {"", "", ""},
                     .result = {.step = none, .solve = none, .draw = none, .first_step_ms = NAN},
@@ -263,13 +263,13 @@ void speed_add(Speed *speed, const SpeedRow *row)
                  .draw_median = result->draw.median};
     if (result->bytes) line.gigabytes_s = (double)result->bytes / least * 1e-6;
     line.share = speed->bandwidth > 0 ? line.gigabytes_s / speed->bandwidth : NAN;
-    line.verdict = bench_table_check(&speed->table, least, row->bound_ms, "%s, %s: least ms a step",
-                                     row->hair, row->method.algo);
+    line.verdict = table_check(&speed->table, least, row->bound_ms, "%s, %s: least ms a step",
+                               row->hair, row->method.algo);
     if (!isnan(row->off_bound))
-        line.verdict = bench_table_check(&speed->table, row->off, row->off_bound,
-                                         "%s, %s: off the GPU's strands", row->hair, row->remark);
+        line.verdict = table_check(&speed->table, row->off, row->off_bound,
+                                   "%s, %s: off the GPU's strands", row->hair, row->remark);
     write_command(speed, &line);
-    bench_table_add(&speed->table, &line);
+    table_add(&speed->table, &line);
 }
 
 // --- The hair.
@@ -352,9 +352,9 @@ Result speed_run(const BenchOptions *options, const Gpu *gpu, Error *error)
     Result result = bench_options_check_parts(options, names, error);
     if (result != RESULT_OK) return result;
     speed.method_count = method_list(&options->method, speed.methods);
-    result = bench_table_open(&speed.table, COLUMNS, sizeof COLUMNS / sizeof *COLUMNS, gpu,
-                              &options->output, stdout, error);
+    result = table_open(&speed.table, COLUMNS, sizeof COLUMNS / sizeof *COLUMNS, gpu,
+                        &options->output, stdout, error);
     for (int i = 0; i < PART_COUNT && result == RESULT_OK; ++i)
         if (is_asked(options, PARTS[i].name)) result = PARTS[i].run(&speed, error);
-    return bench_table_close(&speed.table, result, error);
+    return table_close(&speed.table, result, error);
 }

@@ -4,7 +4,6 @@
 #pragma once
 
 #include "bench/bench_options.h"
-#include "bench/bench_times.h"
 #include "strands/strands.h"
 
 // What is measured: hair and a solver.
@@ -18,9 +17,9 @@ typedef struct SpeedSubject {
 typedef struct SpeedResult {
     uint64_t bytes;       // of the buffers that a step and its pose use, each once a way
     double first_step_ms; // with shader compilation, unless the driver's cache has it
-    BenchTimes step; // what moves the hair one step further and writes the positions that are drawn
-    BenchTimes solve;   // its part without the positions
-    BenchTimes draw;    // drawing and reading back; NaN without
+    Times step;  // what moves the hair one step further and writes the positions that are drawn
+    Times solve; // its part without the positions
+    Times draw;  // drawing and reading back; NaN without
     uint64_t fragments; // of the last picture
 } SpeedResult;
 
@@ -48,7 +47,7 @@ typedef struct SpeedRow {
 typedef struct Speed {
     const Gpu *gpu;
     const BenchOptions *options;
-    BenchTable table;
+    Table table;
     Method methods[METHODS_MOST];
     int method_count;
     double bandwidth; // of the memory, GB/s; measured once

@@ -36,7 +36,7 @@ typedef struct Check {
     bool stated; // the mark is a bound
 } Check;
 
-static void add_category(BenchTable *table, const Check *check, const TestVectorsCategory *category,
+static void add_category(Table *table, const Check *check, const TestVectorsCategory *category,
                          double bound)
 {
     Row row = {.rule = check->rule,
@@ -49,14 +49,14 @@ static void add_category(BenchTable *table, const Check *check, const TestVector
                .median = category->median,
                .worst = category->worst,
                .mark = check->mark};
-    row.verdict = bench_table_check(table, row.worst, bound, "%s, row %ld, in %s", row.category,
-                                    row.worst_row, row.unit);
+    row.verdict = table_check(table, row.worst, bound, "%s, row %ld, in %s", row.category,
+                              row.worst_row, row.unit);
     snprintf(row.command, sizeof row.command, "tractrix-bench %s --vectors %s", check->command,
              check->path);
-    bench_table_add(table, &row);
+    table_add(table, &row);
 }
 
-static void add_report(BenchTable *table, const Check *check, const TestVectorsReport *report)
+static void add_report(Table *table, const Check *check, const TestVectorsReport *report)
 {
     TestVectorsCategory all = {.name = "all", .worst = -1, .median = NAN};
     for (size_t i = 0; i < report->category_count; ++i) {
@@ -68,18 +68,17 @@ static void add_report(BenchTable *table, const Check *check, const TestVectorsR
     add_category(table, check, &all, NAN); // its categories have been checked
 }
 
-static Result open_table(BenchTable *table, const BenchOptions *options, const Gpu *gpu,
-                         Error *error)
+static Result open_table(Table *table, const BenchOptions *options, const Gpu *gpu, Error *error)
 {
-    return bench_table_open(table, COLUMNS, sizeof COLUMNS / sizeof *COLUMNS, gpu, &options->output,
-                            stdout, error);
+    return table_open(table, COLUMNS, sizeof COLUMNS / sizeof *COLUMNS, gpu, &options->output,
+                      stdout, error);
 }
 
 Result bench_step(const BenchOptions *options, const Gpu *gpu, Error *error)
 {
     static const char *const rules[] = {"ours", "thesis"};
     const char *path = options->vectors ? options->vectors : "tests/data/tractrix_steps.csv";
-    BenchTable table = {0};
+    Table table = {0};
     Result result = open_table(&table, options, gpu, error);
     for (TestVectorsRule rule = VECTORS_OURS; rule <= VECTORS_PUBLISHED && result == RESULT_OK;
          ++rule) {
@@ -89,17 +88,17 @@ Result bench_step(const BenchOptions *options, const Gpu *gpu, Error *error)
         result = test_vectors_check_steps(&report, gpu, rule, path, error);
         if (result == RESULT_OK) add_report(&table, &check, &report);
     }
-    return bench_table_close(&table, result, error);
+    return table_close(&table, result, error);
 }
 
 Result bench_chain(const BenchOptions *options, const Gpu *gpu, Error *error)
 {
     const char *path = options->vectors ? options->vectors : "tests/data/chain_pulls.csv";
     const Check check = {"ours", "sens32", "chain", path, VECTORS_CHAIN_MARK, true};
-    BenchTable table = {0};
+    Table table = {0};
     TestVectorsReport report;
     Result result = open_table(&table, options, gpu, error);
     if (result == RESULT_OK) result = test_vectors_check_chains(&report, gpu, path, error);
     if (result == RESULT_OK) add_report(&table, &check, &report);
-    return bench_table_close(&table, result, error);
+    return table_close(&table, result, error);
 }

@@ -68,7 +68,7 @@ typedef struct Bench {
     const Gpu *gpu;
     const StressOptions *options;
     FILE *stream;
-    BenchTable table; // of the files
+    Table table; // of the files
     Progress progress;
     int sets_done, cases_done;
 } Bench;
@@ -168,7 +168,7 @@ static void print_case(Bench *bench, const StressCase *stress, const StressVerdi
     fprintf(bench->stream, "  %s broken at step %ld (%.3g of what is allowed):\n    %s\n",
             line.rule, line.at, line.of_allowed, line.command);
     fflush(bench->stream);
-    bench_table_add(&bench->table, &line);
+    table_add(&bench->table, &line);
 }
 
 static void tell_failure(Bench *bench, const StressCase *stress, const StressVerdict *found)
@@ -201,7 +201,7 @@ static void name_failure(Bench *bench, const Tally *tally, const StressCase *str
     progress_clear(&bench->progress);
     fprintf(bench->stream, "  set %d, strand %d: %s at step %ld (%.3g): '%s'\n", tally->sets,
             strand, line.rule, line.at, line.of_allowed, line.text);
-    bench_table_add(&bench->table, &line);
+    table_add(&bench->table, &line);
 }
 
 // Whether a breaks the rule worse than b: by more, or else sooner.
@@ -306,7 +306,7 @@ static void print_tally(Bench *bench, const Tally *tally)
                        .worst_length = worst[STRESS_LENGTHS],
                        .worst_energy = worst[STRESS_ENERGY],
                        .worst_rest = worst[STRESS_REST]};
-    bench_table_add(&bench->table, &line);
+    table_add(&bench->table, &line);
 }
 
 static Result run_form(Bench *bench, const char *algo, const char *variant, int *failures,
@@ -357,21 +357,21 @@ static Result check_words(const StressOptions *options, Error *error)
 }
 
 // The files have what was done until an interruption, too.
-static Result close_table(BenchTable *table, Result result, Error *error)
+static Result close_table(Table *table, Result result, Error *error)
 {
     Error unwritten;
-    Result closed = bench_table_close(table, RESULT_OK, &unwritten);
+    Result closed = table_close(table, RESULT_OK, &unwritten);
     return closed == RESULT_OK ? result : error_set(error, closed, "%s", unwritten.text);
 }
 
-Result bench_stress(const Gpu *gpu, const StressOptions *options, const BenchOutput *output,
+Result bench_stress(const Gpu *gpu, const StressOptions *options, const TableOutput *output,
                     FILE *stream, Error *error)
 {
     Bench bench = {.gpu = gpu, .options = options, .stream = stream};
     int forms = 0, failures = 0, unused = 0;
     Result result = check_words(options, error);
     if (result == RESULT_OK)
-        result = bench_table_open(&bench.table, COLUMNS, COLUMN_COUNT, gpu, output, NULL, error);
+        result = table_open(&bench.table, COLUMNS, COLUMN_COUNT, gpu, output, NULL, error);
     if (result != RESULT_OK) return result;
     for_forms(NULL, options, &failures, &forms, error);
     int sets = options->text ? 1 : (options->cases + STRESS_STRANDS - 1) / STRESS_STRANDS;

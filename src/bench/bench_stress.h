@@ -4,7 +4,7 @@
 // repeats it.
 #pragma once
 
-#include "bench/bench_table.h"
+#include "bench/table.h"
 #include "gpu/gpu.h"
 
 #include <stdbool.h>
@@ -29,5 +29,5 @@ StressOptions stress_options_default(void);
 // "smallest"). RESULT_FAILED if a case failed, RESULT_INTERRUPTED after what was done until then
 // has been printed and written.
 enum { STRESS_STRANDS = 32 };
-Result bench_stress(const Gpu *gpu, const StressOptions *options, const BenchOutput *output,
+Result bench_stress(const Gpu *gpu, const StressOptions *options, const TableOutput *output,
                     FILE *stream, Error *error);

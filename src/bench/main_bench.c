@@ -4,7 +4,7 @@
 #include "base/interrupt.h"
 #include "base/program.h"
 #include "base/suggest.h"
-#include "bench/bench_accuracy.h"
+#include "bench/accuracy.h"
 #include "bench/bench_images.h"
 #include "bench/bench_scenes.h"
 #include "bench/bench_shaders.h"

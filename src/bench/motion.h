@@ -9,10 +9,10 @@
 // float32 moves the exact strand, RMS over its length.
 #pragma once
 
-#include "base/error.h"
+#include "base/csv.h"
+#include "bench/trial.h"
 
-#include <stdbool.h>
-#include <stddef.h>
+#include <jansson.h>
 
 typedef struct MotionFrame {
     double time;         // s
@@ -39,11 +39,41 @@ typedef struct Motion {
 Result motion_read(Motion *motion, const char *folder, const char *name, Error *error);
 void motion_destroy(Motion *motion);
 
+// A folder of references: motions in alphabetical order, those JSON files that have a "root_motion"
+// and a CSV file of the same name beside them; and what else is known exactly.
+typedef struct MotionFolder {
+    const char *path;
+    Motion *motions;
+    size_t count;
+    bool whole;        // all motions that the mean is stated for are there
+    json_t *styles;    // static_style.json, styled strands at rest; NULL: there is none
+    Csv pendulums[2];  // e_pendulum_planar.csv and e_pendulum_3d.csv; empty: there is none
+    json_t *starts[2]; // the JSON files beside them; NULL: there is none
+} MotionFolder;
+
+// RESULT_BAD_INPUT if it has no motions or a file is wrong. It may be destroyed in either case.
+Result motion_read_folder(MotionFolder *folder, const char *path, Error *error);
+void motion_destroy_folder(MotionFolder *folder);
+
+// Whether a motion counts for the mean: those that it is stated for where a folder has all of
+// them, else all.
+bool motion_in_mean(const MotionFolder *folder, const Motion *motion);
+
 // Displacement of the root along x, t seconds after the start.
 double motion_root(const Motion *motion, double t);
 
-// The names of all motions of a folder in alphabetical order: those JSON files beside which there
-// is a CSV file of the same name and that have a "root_motion". RESULT_FAILED if it cannot be read;
-// RESULT_BAD_INPUT if there are none. Free by motion_names_destroy.
-Result motion_list(char ***names, size_t *count, const char *folder, Error *error);
-void motion_names_destroy(char **names, size_t count);
+// A strand at rest in the motion's start, with its drag, gravity and wind, which blows evenly.
+Result motion_start(Trial *trial, const Gpu *gpu, const Motion *motion, const SectionParams *params,
+                    double rate, Error *error);
+
+// Steps up to `time` (s), the root where the motion has it. `motion` NULL: the root rests.
+void motion_advance(Trial *trial, const Motion *motion, double time);
+
+// RMS of |x - exact| over the strand's length, over particles 1 .. n-1 and those frames that
+// float32 can follow and that steps of 1/rate s meet; NaN if no frame is met. `params` give the
+// solver and its parameters, but for the drag. Errors as solver_create.
+Result motion_error(double *error_over_length, const Gpu *gpu, const Motion *motion,
+                    const SectionParams *params, double rate, Error *error);
+
+// The same for a trial that motion_start has started.
+Result motion_follow(Trial *trial, const Motion *motion, double *error_over_length, Error *error);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The reader of exact motions, the measure of errors against them, and what solvers that converge
 // are stated to keep.
+#include "bench/table.h"
 #include "support/reference_motion.h"
 
 #include <math.h>
@@ -13,7 +14,7 @@
 
 static double released(const char *algo, int steps_per_frame)
 {
-    return motion_error("a_horizontal_n16_c4", algo, "", steps_per_frame, NULL);
+    return reference_error("a_horizontal_n16_c4", algo, "", steps_per_frame, NULL);
 }
 
 static void chain_is_of_second_order(void **state)
@@ -40,15 +41,14 @@ static void the_order_is_the_slope_of_a_line(void **state)
     (void)state;
     const double rates[] = {30, 60, 120}, errors[] = {0.16, 0.04, 0.01};
     double spread;
-    assert_true(fabs(accuracy_order(rates, errors, 3, &spread) - 2) < 1e-12);
+    assert_true(fabs(table_slope(rates, errors, 3, &spread) + 2) < 1e-12);
     assert_true(spread < 1e-6); // the root of what rounding leaves
-    assert_true(accuracy_order(rates, errors, 1, &spread) == 0);
+    assert_true(table_slope(rates, errors, 1, &spread) == 0);
     assert_true(isnan(spread));
     // Off a line by 1 at one end of three points a unit apart: the residuals' standard deviation is
     // 1/sqrt(6), over the spread of x, sqrt(2).
     const double units[] = {1, exp(1), exp(2)};
-    assert_true(fabs(accuracy_order(units, (const double[]){exp(1), 1, 1}, 3, &spread) - 0.5) <
-                1e-12);
+    assert_true(fabs(table_slope(units, (const double[]){exp(1), 1, 1}, 3, &spread) + 0.5) < 1e-12);
     assert_true(fabs(spread - sqrt(1.0 / 6 / 2)) < 1e-12);
 }
 
@@ -69,7 +69,7 @@ static void hair_that_stays_is_as_far_off_as_the_motion_goes(void **state)
                 double r = motion.frames[f].points[j][k] - motion.frames[0].points[j][k] - root;
                 sum += r * r / 15;
             }
-    double still = motion_error("c_root2Hz_n16_c4", "none", "", 1, NULL);
+    double still = reference_error("c_root2Hz_n16_c4", "none", "", 1, NULL);
     assert_true(fabs(still / (sqrt(sum / counted) / motion.length) - 1) < 1e-5);
     motion_destroy(&motion);
 }
@@ -79,12 +79,12 @@ static void bad_motions_are_refused(void **state)
     (void)state;
     Error error;
     Motion motion;
-    char **names;
-    size_t count;
+    MotionFolder folder;
     assert_int_equal(motion_read(&motion, "tests/data", "scene_full", &error), RESULT_BAD_INPUT);
     assert_non_null(strstr(error.text, "scene_full.json: n: "));
     assert_int_equal(motion_read(&motion, "tests/data", "nothing", &error), RESULT_BAD_INPUT);
-    assert_int_equal(motion_list(&names, &count, "tests/golden", &error), RESULT_BAD_INPUT);
+    assert_int_equal(motion_read_folder(&folder, "tests/golden", &error), RESULT_BAD_INPUT);
+    motion_destroy_folder(&folder);
 }
 
 int main(void)

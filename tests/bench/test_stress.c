@@ -248,7 +248,7 @@ static void no_solver_breaks_a_rule_in_the_short_form(void **state)
                                    .seed = 1,
                                    .allowed = 1,
                                    .shrinks = true};
-    const BenchOutput nowhere = {0};
+    const TableOutput nowhere = {0};
     Error error = {{0}};
     if (bench_stress(fixture_gpu(), &options, &nowhere, stdout, &error) != RESULT_OK)
         fail_msg("%s", error.text);

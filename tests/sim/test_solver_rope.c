@@ -86,18 +86,18 @@ static void xpbd_equals_its_double_precision_twin(void **state)
 static void bullets_rope_errs_no_more_than_the_reference_implementation(void **state)
 {
     (void)state;
-    assert_true(motion_mean_error("rope", "bullet", 1, two_sweeps) < 0.65);
-    assert_true(motion_mean_error("rope", "bullet", 1, stretched) < 0.18);
-    assert_true(motion_mean_error("rope", "bullet", 1, NULL) < 0.1);
+    assert_true(reference_mean_error("rope", "bullet", 1, two_sweeps) < 0.65);
+    assert_true(reference_mean_error("rope", "bullet", 1, stretched) < 0.18);
+    assert_true(reference_mean_error("rope", "bullet", 1, NULL) < 0.1);
 }
 
 // 0.040, 0.020 and 0.012 in the reference implementation's table of 10 small steps.
 static void xpbd_errs_as_the_reference_implementation(void **state)
 {
     (void)state;
-    assert_true(fabs(motion_mean_error("rope", "xpbd", 1, stretched) - 0.040) < 0.001);
-    assert_true(fabs(motion_mean_error("rope", "xpbd", 2, stretched) - 0.020) < 0.001);
-    assert_true(fabs(motion_mean_error("rope", "xpbd", 4, stretched) - 0.012) < 0.0005);
+    assert_true(fabs(reference_mean_error("rope", "xpbd", 1, stretched) - 0.040) < 0.001);
+    assert_true(fabs(reference_mean_error("rope", "xpbd", 2, stretched) - 0.020) < 0.001);
+    assert_true(fabs(reference_mean_error("rope", "xpbd", 4, stretched) - 0.012) < 0.0005);
 }
 
 // A hanging rope of two links with compliance alpha: the upper carries 2 g, the lower 1 g, so they

@@ -63,15 +63,15 @@ static void explicit_equals_its_double_precision_twin(void **state)
 static void stiff_explicit_springs_follow_the_exact_motion(void **state)
 {
     (void)state;
-    assert_true(motion_mean_error("spring", "explicit", 1, NULL) < 0.012);
-    assert_true(motion_mean_error("spring", "explicit", 1, rigid) < 0.001);
+    assert_true(reference_mean_error("spring", "explicit", 1, NULL) < 0.012);
+    assert_true(reference_mean_error("spring", "explicit", 1, rigid) < 0.001);
 }
 
 static void implicit_springs_come_nearer_with_smaller_steps(void **state)
 {
     (void)state;
-    double coarse = motion_mean_error("spring", "implicit", 1, NULL),
-           fine = motion_mean_error("spring", "implicit", 4, NULL);
+    double coarse = reference_mean_error("spring", "implicit", 1, NULL),
+           fine = reference_mean_error("spring", "implicit", 4, NULL);
     assert_true(coarse < 0.09);
     assert_true(fine < 0.6 * coarse);
 }

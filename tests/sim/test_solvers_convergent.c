@@ -38,9 +38,9 @@ static void errors_fall_with_the_step(void **state)
     static const char scenario[] = "a_horizontal_n16_c4";
     for (int i = 0; i < SOLVER_COUNT; ++i) {
         const char *algo = SOLVERS[i].algo;
-        double at_60 = motion_error(scenario, algo, "", 1, NULL);
-        double coarse = motion_error(scenario, algo, "", 2, NULL);
-        double fine = motion_error(scenario, algo, "", 8, NULL);
+        double at_60 = reference_error(scenario, algo, "", 1, NULL);
+        double coarse = reference_error(scenario, algo, "", 2, NULL);
+        double fine = reference_error(scenario, algo, "", 8, NULL);
         printf("%s %s: %.3g at 60 Hz, %.3g at 120 Hz, %.3g at 480 Hz\n", algo, scenario, at_60,
                coarse, fine);
         require(coarse < SOLVERS[i].released, i, "error at 120 Hz of", coarse);
@@ -53,7 +53,7 @@ static void mean_errors_fall_with_the_step(void **state)
     (void)state;
     for (int i = 0; i < SOLVER_COUNT; ++i)
         for (int k = 0; k < 3; ++k) {
-            double error = motion_mean_error(SOLVERS[i].algo, "", 1 << k, NULL);
+            double error = reference_mean_error(SOLVERS[i].algo, "", 1 << k, NULL);
             require(error < SOLVERS[i].mean[k], i, "mean error of", error);
         }
 }

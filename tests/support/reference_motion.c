@@ -12,8 +12,8 @@
 
 #define FOLDER "tests/data/motion"
 
-double motion_error(const char *scenario, const char *algo, const char *variant,
-                    int steps_per_frame, void (*tune)(SectionParams *params))
+double reference_error(const char *scenario, const char *algo, const char *variant,
+                       int steps_per_frame, void (*tune)(SectionParams *params))
 {
     Error error = {{0}};
     Motion motion;
@@ -25,7 +25,7 @@ double motion_error(const char *scenario, const char *algo, const char *variant,
     assert_int_equal(params_parse(params_find("variant"), &params, variant, &error), RESULT_OK);
     params.style = 0;
     if (tune) tune(&params);
-    if (accuracy_measure(&off, fixture_gpu(), &motion, &params, 60.0 * steps_per_frame, &error) !=
+    if (motion_error(&off, fixture_gpu(), &motion, &params, 60.0 * steps_per_frame, &error) !=
         RESULT_OK)
         fail_msg("%s", error.text);
     params_destroy_section(&params);
@@ -33,17 +33,17 @@ double motion_error(const char *scenario, const char *algo, const char *variant,
     return off;
 }
 
-double motion_mean_error(const char *algo, const char *variant, int steps_per_frame,
-                         void (*tune)(SectionParams *params))
+double reference_mean_error(const char *algo, const char *variant, int steps_per_frame,
+                            void (*tune)(SectionParams *params))
 {
-    char **names;
-    size_t count;
+    MotionFolder folder;
     double sum = 0;
-    assert_int_equal(motion_list(&names, &count, FOLDER, NULL), RESULT_OK);
-    assert_int_equal(count, 13);
-    for (size_t i = 0; i < count; ++i)
-        sum += log(motion_error(names[i], algo, variant, steps_per_frame, tune));
-    motion_names_destroy(names, count);
+    assert_int_equal(motion_read_folder(&folder, FOLDER, NULL), RESULT_OK);
+    assert_int_equal(folder.count, 13);
+    for (size_t i = 0; i < folder.count; ++i)
+        sum += log(reference_error(folder.motions[i].name, algo, variant, steps_per_frame, tune));
+    size_t count = folder.count;
+    motion_destroy_folder(&folder);
     double mean = exp(sum / (double)count);
     printf("%s %s at %d Hz: error %.3g of the length, geometric mean of %zu scenarios\n", algo,
            variant, 60 * steps_per_frame, mean, count);

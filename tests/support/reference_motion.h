@@ -3,13 +3,13 @@
 // fourth frame of 1/60 s of 13 scenarios, computed for this project to 4e-10 m).
 #pragma once
 
-#include "bench/bench_motions.h"
+#include "bench/motion.h"
 
-// accuracy_measure of a scenario such as "a_horizontal_n16_c4" without style, in steps of
+// motion_error of a scenario such as "a_horizontal_n16_c4" without style, in steps of
 // 1/(60 steps_per_frame) s. `tune`, which may be NULL, changes parameters.
-double motion_error(const char *scenario, const char *algo, const char *variant,
-                    int steps_per_frame, void (*tune)(SectionParams *params));
+double reference_error(const char *scenario, const char *algo, const char *variant,
+                       int steps_per_frame, void (*tune)(SectionParams *params));
 
 // Its geometric mean over the 13 scenarios.
-double motion_mean_error(const char *algo, const char *variant, int steps_per_frame,
-                         void (*tune)(SectionParams *params));
+double reference_mean_error(const char *algo, const char *variant, int steps_per_frame,
+                            void (*tune)(SectionParams *params));

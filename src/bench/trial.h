@@ -11,13 +11,14 @@ typedef struct Trial {
     GpuTimer timer;
     SectionParams params; // strings are borrowed
     SolverStep step;      // gravity (0, -9.81, 0), no wind, the head at the origin; may be changed
+    double rate;          // steps a second
     long steps;           // made so far
     float (*points)[3];   // [hair.particle_count]: what trial_read has read
 } Trial;
 
-// The strands at rest; steps of 1/rate s. The strings of `params` outlive the trial, which may be
-// destroyed when creation has failed or when it is zeroed.
-Result trial_create(Trial *trial, const Gpu *gpu, const Strands *strands,
+// The strands at rest, with numbers from `first_id` on; steps of 1/rate s. The strings of `params`
+// outlive the trial, which may be destroyed when creation has failed or when it is zeroed.
+Result trial_create(Trial *trial, const Gpu *gpu, const Strands *strands, uint32_t first_id,
                     const SectionParams *params, double rate, Error *error);
 void trial_destroy(Trial *trial);
 
@@ -27,8 +28,17 @@ void trial_step(Trial *trial);
 // The drawn positions, by strands from root to tip (hair_read_positions).
 Result trial_read(Trial *trial, Error *error);
 
-// A strand of `n` particles on `points` (m) alone. Free with strands_destroy.
-Result trial_make_strand(Strands *strands, const double (*points)[3], int n, Error *error);
+// The solver's buffer of that kind for a batch of the hair, NULL: there is none.
+const GpuBuffer *trial_buffer(const Trial *trial, uint32_t batch, SolverBufferKind kind);
+
+// The simulated tip of a strand (position and velocity) where a solver has one beside the drawn
+// strand; false if it has none. Waits for the GPU.
+bool trial_read_tip(const Trial *trial, uint32_t batch, uint32_t strand, float tip[2][4]);
+
+// `count` strands, each of `n` particles on its own of `points` [count][n] (m). Free with
+// strands_destroy.
+Result trial_make_strands(Strands *strands, const double (*points)[3], uint32_t count, int n,
+                          Error *error);
 
 // A helix of `n` particles, `length` metres along its segments, `turns` turns of 2 cm around an
 // axis that leads aside and down from the root at the origin.
@@ -36,7 +46,3 @@ void trial_make_helix(double (*points)[3], int n, double length, double turns);
 
 // A straight one, held horizontally along x.
 void trial_make_beam(double (*points)[3], int n, double length);
-
-// The simulated tip of a strand (position and velocity) where a solver has one beside the drawn
-// strand; false if it has none. Waits for the GPU.
-bool trial_read_tip(const Trial *trial, uint32_t batch, uint32_t strand, float tip[2][4]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "bench/bench_table.h"
+#include "bench/table.h"
 #include "base/bytes.h"
 #include "base/json.h"
 
@@ -40,7 +40,7 @@ static void list_device(const Gpu *gpu, Device device[DEVICE_COUNT])
     device[4] = (Device){"commit", TRACTRIX_COMMIT};
 }
 
-// --- One value.
+// --- One value. The kinds' types are what Column says.
 
 static const char *text_at(const Column *column, const void *row)
 {
@@ -50,23 +50,21 @@ static const char *text_at(const Column *column, const void *row)
 
 static double real_at(const Column *column, const void *row)
 {
-    double value;
-    memcpy(&value, (const char *)row + column->place, sizeof value);
-    return value;
+    return *(const double *)(const void *)((const char *)row + column->place);
 }
 
 static long whole_at(const Column *column, const void *row)
 {
-    long value;
-    memcpy(&value, (const char *)row + column->place, sizeof value);
-    return value;
+    return *(const long *)(const void *)((const char *)row + column->place);
 }
 
-// As it is on the screen (`precise` false) and in CSV.
+// As on the screen (`precise` false) and in CSV; the column's name for a row of NULL.
 static void format_value(const Column *column, const void *row, bool precise, char *text,
                          size_t size)
 {
-    if (column->kind == COLUMN_WHOLE)
+    if (!row)
+        snprintf(text, size, "%s", column->name);
+    else if (column->kind == COLUMN_WHOLE)
         snprintf(text, size, "%ld", whole_at(column, row));
     else if (column->kind == COLUMN_REAL && isnan(real_at(column, row)))
         *text = 0;
@@ -76,7 +74,7 @@ static void format_value(const Column *column, const void *row, bool precise, ch
         snprintf(text, size, "%s", text_at(column, row));
 }
 
-static void write_screen(const BenchTable *table, const void *row)
+static void write_screen(const Table *table, const void *row)
 {
     if (!table->screen) return;
     for (size_t i = 0; i < table->column_count; ++i) {
@@ -84,8 +82,7 @@ static void write_screen(const BenchTable *table, const void *row)
         char text[512];
         bool left = column->kind == COLUMN_TEXT || column->kind == COLUMN_CHARS;
         if (column->width == 0) continue;
-        snprintf(text, sizeof text, "%s", column->name);
-        if (row) format_value(column, row, false, text, sizeof text);
+        format_value(column, row, false, text, sizeof text);
         fprintf(table->screen, left ? "%s%-*s" : "%s%*s", i ? " " : "", column->width,
                 *text ? text : "-");
     }
@@ -93,24 +90,20 @@ static void write_screen(const BenchTable *table, const void *row)
     fflush(table->screen);
 }
 
-static void write_field(FILE *stream, const char *text, bool first)
-{
-    if (!first) putc(',', stream);
-    for (; *text; ++text) putc(*text == ',' ? ';' : *text, stream);
-}
-
-static void write_csv(BenchTable *table, const void *row)
+static void write_csv(Table *table, const void *row)
 {
     Device device[DEVICE_COUNT];
     list_device(table->gpu, device);
-    for (size_t i = 0; i < table->column_count; ++i) {
+    for (size_t i = 0; i < table->column_count + DEVICE_COUNT; ++i) {
         char text[1024];
-        snprintf(text, sizeof text, "%s", table->columns[i].name);
-        if (row) format_value(&table->columns[i], row, true, text, sizeof text);
-        write_field(table->csv_stream, text, i == 0);
+        const Device *own = i < table->column_count ? NULL : &device[i - table->column_count];
+        if (own)
+            snprintf(text, sizeof text, "%s", row ? own->value : own->name);
+        else
+            format_value(&table->columns[i], row, true, text, sizeof text);
+        if (i) putc(',', table->csv_stream);
+        for (const char *at = text; *at; ++at) putc(*at == ',' ? ';' : *at, table->csv_stream);
     }
-    for (int i = 0; i < DEVICE_COUNT; ++i)
-        write_field(table->csv_stream, row ? device[i].value : device[i].name, false);
     putc('\n', table->csv_stream);
 }
 
@@ -126,29 +119,14 @@ static json_t *value_to_json(const Column *column, const void *row)
     }
 }
 
-static json_t *row_to_json(const BenchTable *table, const void *row)
-{
-    json_t *object = json_object();
-    Device device[DEVICE_COUNT];
-    list_device(table->gpu, device);
-    for (size_t i = 0; i < table->column_count; ++i)
-        json_object_set_new(object, table->columns[i].name, value_to_json(&table->columns[i], row));
-    for (int i = 0; i < DEVICE_COUNT; ++i)
-        json_object_set_new(object, device[i].name, json_string(device[i].value));
-    return object;
-}
-
 // --- The table.
 
-Result bench_table_open(BenchTable *table, const Column *columns, size_t column_count,
-                        const Gpu *gpu, const BenchOutput *output, FILE *screen, Error *error)
+Result table_open(Table *table, const Column *columns, size_t column_count, const Gpu *gpu,
+                  const TableOutput *output, FILE *screen, Error *error)
 {
-    *table = (BenchTable){.columns = columns,
-                          .column_count = column_count,
-                          .gpu = gpu,
-                          .output = *output,
-                          .screen = screen,
-                          .rows = json_array()};
+    *table = (Table){.columns = columns, .column_count = column_count, .gpu = gpu};
+    table->output = *output, table->screen = screen;
+    table->rows = json_array();
     table->csv_stream = open_memstream(&table->csv, &table->csv_size);
     if (!table->rows || !table->csv_stream)
         return error_set(error, RESULT_FAILED, "no memory for a table");
@@ -157,14 +135,21 @@ Result bench_table_open(BenchTable *table, const Column *columns, size_t column_
     return RESULT_OK;
 }
 
-void bench_table_add(BenchTable *table, const void *row)
+void table_add(Table *table, const void *row)
 {
+    json_t *object = json_object();
+    Device device[DEVICE_COUNT];
     write_screen(table, row);
     write_csv(table, row);
-    json_array_append_new(table->rows, row_to_json(table, row));
+    list_device(table->gpu, device);
+    for (size_t i = 0; i < table->column_count; ++i)
+        json_object_set_new(object, table->columns[i].name, value_to_json(&table->columns[i], row));
+    for (int i = 0; i < DEVICE_COUNT; ++i)
+        json_object_set_new(object, device[i].name, json_string(device[i].value));
+    json_array_append_new(table->rows, object);
 }
 
-const char *bench_table_check(BenchTable *table, double value, double most, const char *format, ...)
+const char *table_check(Table *table, double value, double most, const char *format, ...)
 {
     if (isnan(most)) return "";
     ++table->bounds;
@@ -181,31 +166,57 @@ const char *bench_table_check(BenchTable *table, double value, double most, cons
     return "broken";
 }
 
-static Result write_files(BenchTable *table, Error *error)
+static Result write_files(Table *table, Error *error)
 {
-    Result result = RESULT_OK;
     const Bytes bytes = {.data = (uint8_t *)table->csv, .size = table->csv_size};
-    if (table->output.csv) result = bytes_write_file(&bytes, table->output.csv, error);
-    if (result == RESULT_OK && table->output.json)
-        result = json_write_file(table->rows, table->output.json, error);
-    return result;
+    if (table->output.csv) TRY(bytes_write_file(&bytes, table->output.csv, error));
+    return table->output.json ? json_write_file(table->rows, table->output.json, error) : RESULT_OK;
 }
 
-Result bench_table_close(BenchTable *table, Result result, Error *error)
+Result table_close(Table *table, Result result, Error *error)
 {
     bool whole = table->csv_stream && fclose(table->csv_stream) == 0;
-    if (result == RESULT_OK && !whole)
-        result = error_set(error, RESULT_FAILED, "no memory for the table");
+    if (!whole) THEN(result, error_set(error, RESULT_FAILED, "no memory for the table"));
     if ((result == RESULT_OK || result == RESULT_FAILED) && whole) {
         Error unwritten;
         Result written = write_files(table, &unwritten);
         if (written != RESULT_OK) result = error_set(error, written, "%s", unwritten.text);
     }
-    if (result == RESULT_OK && table->broken)
-        result = error_set(error, RESULT_FAILED, "%ld of %ld bounds are broken; the first: %s",
-                           table->broken, table->bounds, table->first_broken);
+    if (table->broken)
+        THEN(result, error_set(error, RESULT_FAILED, "%ld of %ld bounds are broken; the first: %s",
+                               table->broken, table->bounds, table->first_broken));
     free(table->csv);
     json_decref(table->rows);
-    *table = (BenchTable){0};
+    *table = (Table){0};
     return result;
+}
+
+// --- Samples.
+
+static int compare(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+Times table_times(double *samples, int count)
+{
+    if (count == 0) return (Times){NAN, NAN, NAN, NAN};
+    qsort(samples, (size_t)count, sizeof *samples, compare);
+    return (Times){samples[0], samples[count / 4], samples[count / 2], samples[3 * count / 4]};
+}
+
+double table_slope(const double *x, const double *y, int count, double *spread)
+{
+    double u = 0, w = 0, uu = 0, uw = 0, ww = 0;
+    for (int i = 0; i < count; ++i) {
+        double a = log(x[i]), b = log(y[i]);
+        u += a, w += b, uu += a * a, uw += a * b, ww += b * b;
+    }
+    *spread = NAN;
+    if (count < 2) return 0;
+    uu -= u * u / count, uw -= u * w / count, ww -= w * w / count;
+    if (!(uu > 0)) return 0;
+    if (count > 2) *spread = sqrt(fmax(ww - uw * uw / uu, 0) / (count - 2) / uu);
+    return uw / uu;
 }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "bench/bench_method.h"
+#include "bench/method.h"
 #include "sim/solver.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 bool method_takes(const ParamInfo *info)
@@ -12,6 +11,16 @@ bool method_takes(const ParamInfo *info)
     for (size_t i = 0; i < sizeof other / sizeof *other; ++i)
         if (strcmp(info->name, other[i]) == 0) return false;
     return info->scope == SCOPE_SECTION && info->group == GROUP_SIMULATION;
+}
+
+bool method_has(const Method *method, const char *param)
+{
+    return params_owned_by(params_find(param), method->algo);
+}
+
+bool method_is_default(const Method *method)
+{
+    return !*method->variant && !*method->settings;
 }
 
 static Result set(SectionParams *params, const char *name, const char *text, Error *error)
@@ -31,23 +40,22 @@ static Result apply(SectionParams *params, char *words, Error *error)
         if (strncmp(flag, "--", 2) != 0 || !value)
             return error_set(error, RESULT_USAGE, "settings: expected --flag value, got '%s'",
                              flag);
-        Result result = set(params, flag + 2, value, error);
-        if (result != RESULT_OK) return result;
+        TRY(set(params, flag + 2, value, error));
     }
     return RESULT_OK;
 }
 
-Result method_params(SectionParams *params, const Method *method, Error *error)
+Result method_params(SectionParams *params, const Method *method, const char *before, Error *error)
 {
-    char *words = strdup(method->settings);
-    Result result = params_create_section(params, error);
-    if (!words) result = error_set(error, RESULT_FAILED, "no memory for settings");
-    if (result == RESULT_OK) result = set(params, "algo", method->algo, error);
-    if (result == RESULT_OK) result = set(params, "variant", method->variant, error);
-    if (result == RESULT_OK) result = apply(params, words, error);
-    if (result == RESULT_OK) result = solver_check(params, error);
-    free(words);
-    return result;
+    char words[4096];
+    *params = (SectionParams){0};
+    if (snprintf(words, sizeof words, "%s %s", before, method->settings) >= (int)sizeof words)
+        return error_set(error, RESULT_USAGE, "settings: longer than %zu bytes", sizeof words);
+    TRY(params_create_section(params, error));
+    TRY(set(params, "algo", method->algo, error));
+    TRY(set(params, "variant", method->variant, error));
+    TRY(apply(params, words, error));
+    return solver_check(params, error);
 }
 
 const char *method_variant(const Method *method)

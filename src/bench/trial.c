@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
-#include "bench/bench_trial.h"
+#include "bench/trial.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-Result trial_create(Trial *trial, const Gpu *gpu, const Strands *strands,
+Result trial_create(Trial *trial, const Gpu *gpu, const Strands *strands, uint32_t first_id,
                     const SectionParams *params, double rate, Error *error)
 {
     *trial = (Trial){.params = *params,
+                     .rate = rate,
                      .step = {.dt = 1 / rate, .first = true, .gravity = {0, -9.81f, 0}}};
     trial->step.head.rotation[3] = trial->step.head_old.rotation[3] = 1;
     gpu_timer_create(&trial->timer, false, true);
-    Result result = hair_create(&trial->hair, strands, 0, &gpu->limits, error);
-    if (result != RESULT_OK) return result;
+    TRY(hair_create(&trial->hair, strands, first_id, &gpu->limits, error));
     trial->points = calloc(trial->hair.particle_count, sizeof *trial->points);
     if (!trial->points) return error_set(error, RESULT_FAILED, "no memory for positions");
     const SolverSetup setup = {
@@ -44,12 +44,33 @@ Result trial_read(Trial *trial, Error *error)
     return hair_read_positions(&trial->hair, trial->points, error);
 }
 
-Result trial_make_strand(Strands *strands, const double (*points)[3], int n, Error *error)
+const GpuBuffer *trial_buffer(const Trial *trial, uint32_t batch, SolverBufferKind kind)
 {
-    Result result = strands_create(strands, 1, (uint32_t)n, error);
-    if (result != RESULT_OK) return result;
-    strands->first[1] = (uint32_t)n;
-    for (int i = 0; i < 3 * n; ++i) strands->position[i / 3][i % 3] = (float)points[i / 3][i % 3];
+    SolverBuffer buffers[SOLVER_MAX_BUFFERS];
+    int count = solver_buffers(&trial->solver, batch, buffers);
+    for (int i = 0; i < count; ++i)
+        if (buffers[i].kind == kind) return buffers[i].buffer;
+    return NULL;
+}
+
+bool trial_read_tip(const Trial *trial, uint32_t batch, uint32_t strand, float tip[2][4])
+{
+    const GpuBuffer *tips = trial_buffer(trial, batch, SOLVER_TIPS);
+    if (!tips) return false;
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, tips->buffer);
+    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(strand * sizeof(float[2][4])),
+                       sizeof(float[2][4]), tip);
+    return true;
+}
+
+Result trial_make_strands(Strands *strands, const double (*points)[3], uint32_t count, int n,
+                          Error *error)
+{
+    uint32_t total = count * (uint32_t)n;
+    TRY(strands_create(strands, count, total, error));
+    for (uint32_t s = 0; s <= count; ++s) strands->first[s] = s * (uint32_t)n;
+    for (uint32_t i = 0; i < 3 * total; ++i)
+        strands->position[i / 3][i % 3] = (float)points[i / 3][i % 3];
     return RESULT_OK;
 }
 
@@ -70,18 +91,4 @@ void trial_make_helix(double (*points)[3], int n, double length, double turns)
         double x = rise * j, y = radius * (cos(angle * j) - 1), z = radius * sin(angle * j);
         for (int k = 0; k < 3; ++k) points[j][k] = x * along[k] + y * up[k] + (k == 2 ? z : 0);
     }
-}
-
-bool trial_read_tip(const Trial *trial, uint32_t batch, uint32_t strand, float tip[2][4])
-{
-    SolverBuffer buffers[SOLVER_MAX_BUFFERS];
-    int count = solver_buffers(&trial->solver, batch, buffers);
-    for (int i = 0; i < count; ++i) {
-        if (buffers[i].kind != SOLVER_TIPS) continue;
-        glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffers[i].buffer->buffer);
-        glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(strand * sizeof(float[2][4])),
-                           sizeof(float[2][4]), tip);
-        return true;
-    }
-    return false;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Rows of results: one description of the columns makes the lines on the screen, the CSV file and
-// the JSON file.
+// the JSON file. Beside it what sums up samples: quartiles of times, slopes of logarithms.
 #pragma once
 
 #include "base/error.h"
@@ -25,40 +25,52 @@ typedef struct Column {
 } Column;
 
 // Where rows go. A zeroed one goes nowhere but the screen.
-typedef struct BenchOutput {
+typedef struct TableOutput {
     const char *json, *csv; // files; NULL: none
-} BenchOutput;
+} TableOutput;
 
-// Zeroed but for what bench_table_open fills.
-typedef struct BenchTable {
+// Zeroed but for what table_open fills.
+typedef struct Table {
     const Column *columns;
     size_t column_count;
     const Gpu *gpu;
-    BenchOutput output;
+    TableOutput output;
     FILE *screen;
     json_t *rows;
     char *csv; // its text, made by open_memstream
     size_t csv_size;
     FILE *csv_stream;
-    long bounds, broken; // checked by bench_table_check, and how many of them did not hold
+    long bounds, broken; // checked by table_check, and how many of them did not hold
     char first_broken[512];
-} BenchTable;
+} Table;
 
 // Prints the head. `columns` and `gpu` outlive the table. `screen` NULL: the caller prints in its
 // own way. RESULT_FAILED when memory is short.
-Result bench_table_open(BenchTable *table, const Column *columns, size_t column_count,
-                        const Gpu *gpu, const BenchOutput *output, FILE *screen, Error *error);
+Result table_open(Table *table, const Column *columns, size_t column_count, const Gpu *gpu,
+                  const TableOutput *output, FILE *screen, Error *error);
 
 // Prints a row at once and keeps it for the files, where it also has the device's columns:
 // renderer, gl_version, cpu, version and commit. (CSV fields have no quotes: a comma in a text
 // becomes a semicolon.)
-void bench_table_add(BenchTable *table, const void *row);
+void table_add(Table *table, const void *row);
 
 // Whether `value` is at most `most` (a NaN is not), counted; the message names the first that is
-// not. The words are for a column of verdicts: "holds", "broken", and "" where `most` is NaN.
-const char *bench_table_check(BenchTable *table, double value, double most, const char *format, ...)
+// not. Returns the word for a column of verdicts: "holds", "broken", and "" where `most` is NaN.
+const char *table_check(Table *table, double value, double most, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
-// Writes the files unless `result`, what the measuring came to, is a failure other than
+// Writes the files unless `result`, that of the measurements, is a failure other than
 // RESULT_FAILED; frees all. RESULT_FAILED if a bound is broken or a file cannot be written.
-Result bench_table_close(BenchTable *table, Result result, Error *error);
+Result table_close(Table *table, Result result, Error *error);
+
+// Of some samples, ms.
+typedef struct Times {
+    double minimum, lower_quartile, median, upper_quartile;
+} Times;
+
+// Sorts `count` samples in place; NaN for none.
+Times table_times(double *samples, int count);
+
+// The slope of log(y) against log(x), least squares, of `count` points with positive numbers; 0 for
+// less than two different x. *spread: its standard error; NaN for less than three points.
+double table_slope(const double *x, const double *y, int count, double *spread);

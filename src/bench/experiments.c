@@ -1,0 +1,635 @@
+// SPDX-License-Identifier: MIT
+#include "bench/experiments.h"
+#include "base/interrupt.h"
+#include "sim/particle_solver.h"
+
+#include <math.h>
+#include <string.h>
+
+#define LENGTH 0.25 // of strands that are no motion's, m
+#define G      9.81
+
+// --- What measurements share.
+
+static void add_value(Run *run, const char *what, double value)
+{
+    run->values[run->value_count].what = what;
+    run->values[run->value_count++].value = value;
+}
+
+static double square_distance(const float a[3], const double b[3])
+{
+    double sum = 0;
+    for (int k = 0; k < 3; ++k) sum += pow((double)a[k] - b[k], 2);
+    return sum;
+}
+
+// RMS over particles 1 .. n-1, over the length.
+static double rms_distance(float (*const a)[3], const double (*b)[3], int n)
+{
+    double sum = 0;
+    for (int j = 1; j < n; ++j) sum += square_distance(a[j], b[j]);
+    return sqrt(sum / (n - 1)) / LENGTH;
+}
+
+// --- motions: RMS distance from exact motions, without style.
+
+static bool motions_set_up(const MotionFolder *folder, const Method *method, int number,
+                           Setup *setup)
+{
+    (void)method;
+    if ((size_t)number >= folder->count) return false;
+    setup->motion = &folder->motions[number];
+    setup->in_all = motion_in_mean(folder, setup->motion);
+    snprintf(setup->scenario, sizeof setup->scenario, "%s", setup->motion->name);
+    snprintf(setup->settings, sizeof setup->settings, "--style 0");
+    return true;
+}
+
+static Result motions_measure(Run *run, Error *error)
+{
+    double off = NAN;
+    TRY(motion_follow(&run->trial, run->setup->motion, &off, error));
+    add_value(run, "error", off);
+    return RESULT_OK;
+}
+
+// --- pendulum: RMS distance of a heavy tip over its length, for each pendulum of the CSV files
+// (columns x_NAME, y_NAME, perhaps z_NAME) with the start velocity and drag that JSON has of NAME.
+// split: the tip of a straight strand of 16; other solvers: a strand of 2.
+
+static double pendulum_at(const Setup *setup, size_t row, int axis)
+{
+    double value = 0;
+    if (axis < setup->axes) csv_number(setup->csv, row, setup->column + (size_t)axis, &value, NULL);
+    return value;
+}
+
+static bool pendulum_set_up(const MotionFolder *folder, const Method *method, int number,
+                            Setup *setup)
+{
+    for (int file = 0; file < 2; ++file) {
+        const Csv *csv = &folder->pendulums[file];
+        for (size_t i = 2; i < csv->column_count; ++i) {
+            if (strncmp(csv->column[i], "x_", 2) != 0 || number-- > 0) continue;
+            setup->csv = csv, setup->column = i;
+            setup->axes = i + 2 < csv->column_count && csv->column[i + 2][0] == 'z' ? 3 : 2;
+            snprintf(setup->scenario, sizeof setup->scenario, "%s", csv->column[i] + 2);
+            snprintf(setup->settings, sizeof setup->settings, "--style 0");
+            const json_t *start = json_object_get(folder->starts[file], setup->scenario);
+            const json_t *velocity = json_object_get(start, "velocity");
+            setup->drag = json_number_value(json_object_get(start, "drag_c"));
+            setup->n = strcmp(method->algo, "split") == 0 ? 16 : 2;
+            for (int k = 0; k < 3; ++k) {
+                setup->velocity[k] = json_number_value(json_array_get(velocity, (size_t)k));
+                for (int j = 0; j < setup->n; ++j)
+                    setup->points[j][k] = pendulum_at(setup, 0, k) * j / (setup->n - 1);
+            }
+            return true;
+        }
+    }
+    return false;
+}
+
+// False if the solver cannot be given the start velocity.
+static bool set_velocity(const Run *run)
+{
+    const double *v = run->setup->velocity;
+    const HairBatch *batch = &run->trial.hair.batches[0];
+    const float velocity[4] = {(float)v[0], (float)v[1], (float)v[2], 0};
+    size_t offset = sizeof velocity; // behind the tip's point
+    if (v[0] == 0 && v[1] == 0 && v[2] == 0) return true;
+    const GpuBuffer *buffer = trial_buffer(&run->trial, 0, SOLVER_TIPS);
+    if (!buffer) {
+        buffer = trial_buffer(&run->trial, 0, SOLVER_VELOCITIES);
+        offset = hair_address(batch, 0, batch->vertex_count - 1) * sizeof velocity;
+    }
+    if (!buffer) return false;
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
+    glBufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)offset, sizeof velocity, velocity);
+    return true;
+}
+
+static Result pendulum_measure(Run *run, Error *error)
+{
+    Trial *trial = &run->trial;
+    double sum = 0;
+    long counted = 0;
+    if (!set_velocity(run)) return RESULT_OK;
+    for (size_t row = 1; row < run->setup->csv->row_count; ++row) {
+        double time = 0;
+        float tip[2][4];
+        const float *end = tip[0];
+        csv_number(run->setup->csv, row, 1, &time, NULL);
+        motion_advance(trial, NULL, time);
+        if (fabs((double)trial->steps - time * trial->rate) > 0.01) continue;
+        if (!trial_read_tip(trial, 0, 0, tip)) {
+            TRY(trial_read(trial, error));
+            end = trial->points[run->setup->n - 1];
+        }
+        for (int k = 0; k < 3; ++k) sum += pow((double)end[k] - pendulum_at(run->setup, row, k), 2);
+        ++counted;
+    }
+    if (counted) add_value(run, "error", sqrt(sum / (double)counted) / LENGTH);
+    return RESULT_OK;
+}
+
+// --- static: RMS distance, after 20 s with drag, from the exact minimum of the energy of strands
+// in their style's position springs (cases of static_style.json).
+
+enum { REST_S = 20, REST_STEPS = 1200 };
+
+static bool static_set_up(const MotionFolder *folder, const Method *method, int number,
+                          Setup *setup)
+{
+    const json_t *cases = json_object_get(folder->styles, "cases"), *entry;
+    (void)method;
+    for (size_t i = 0; (entry = json_array_get(cases, i)) != NULL; ++i) {
+        setup->n = (int)json_integer_value(json_object_get(entry, "n"));
+        if (setup->n < 2 || setup->n > EXPERIMENT_POINTS || number-- > 0) continue;
+        double stiffness = json_number_value(json_object_get(entry, "k_style"));
+        const json_t *from = json_object_get(entry, "style_positions"),
+                     *to = json_object_get(entry, "positions");
+        for (size_t j = 0; j < (size_t)setup->n; ++j)
+            for (size_t k = 0; k < 3; ++k) {
+                setup->points[j][k] = json_number_value(json_array_get(json_array_get(from, j), k));
+                setup->exact[j][k] = json_number_value(json_array_get(json_array_get(to, j), k));
+            }
+        snprintf(setup->scenario, sizeof setup->scenario, "%s, k = %g/s2",
+                 json_string_value(json_object_get(entry, "style")), stiffness);
+        snprintf(setup->settings, sizeof setup->settings,
+                 "--style 0.5 --style-stiffness %g --drag 5", stiffness);
+        return true;
+    }
+    return false;
+}
+
+static Result rest_measure(Run *run, Error *error)
+{
+    const Setup *setup = run->setup;
+    motion_advance(&run->trial, NULL, fmax(REST_S, REST_STEPS / run->trial.rate));
+    TRY(trial_read(&run->trial, error));
+    add_value(run, "error", rms_distance(run->trial.points, setup->exact, setup->n));
+    return RESULT_OK;
+}
+
+// --- drift: a helix at default parameters, settled for 10 s (or half the time): how far it goes
+// from there in what is left ("drift", RMS at the end), and the farthest that a particle goes from
+// frame to frame ("tremor"), both over the length.
+
+enum { SETTLE_S = 10, FPS = 60 };
+
+static bool drift_set_up(const MotionFolder *folder, const Method *method, int number, Setup *setup)
+{
+    (void)folder, (void)method;
+    setup->n = number ? 48 : 16;
+    trial_make_helix(setup->points, setup->n, LENGTH, number ? 4 : 2);
+    snprintf(setup->scenario, sizeof setup->scenario, "helix of %d, %g s", setup->n,
+             setup->seconds);
+    return number < 2;
+}
+
+// The farthest that a particle has gone since `before`, over the length; `before` becomes now.
+static double farthest(float (*const now)[3], double (*before)[3], int n)
+{
+    double most = 0;
+    for (int j = 0; j < n; ++j) {
+        most = fmax(most, sqrt(square_distance(now[j], before[j])));
+        for (int k = 0; k < 3; ++k) before[j][k] = (double)now[j][k];
+    }
+    return most / LENGTH;
+}
+
+static Result drift_measure(Run *run, Error *error)
+{
+    Trial *trial = &run->trial;
+    double settled[EXPERIMENT_POINTS][3] = {{0}}, before[EXPERIMENT_POINTS][3] = {{0}}, tremor = 0;
+    double end = run->setup->seconds, frame = trial->rate > FPS ? round(trial->rate / FPS) : 1;
+    int n = run->setup->n;
+    motion_advance(trial, NULL, fmin(SETTLE_S, end / 2));
+    TRY(trial_read(trial, error));
+    farthest(trial->points, settled, n);
+    farthest(trial->points, before, n);
+    while ((double)trial->steps < end * trial->rate) {
+        motion_advance(trial, NULL, ((double)trial->steps + frame) / trial->rate);
+        TRY(trial_read(trial, error));
+        tremor = fmax(tremor, farthest(trial->points, before, n));
+    }
+    add_value(run, "drift", rms_distance(trial->points, (const double(*)[3])settled, n));
+    add_value(run, "tremor", tremor);
+    return RESULT_OK;
+}
+
+// --- beam: strands that bend under their own weight, held horizontally at the root: RMS distance
+// at rest from the exact shape of the same chain, and the tip's drop.
+//
+// Angles a_j below the horizontal of segments j = 1 .. n, of length l; particles of mass 1.
+//
+// chain: joint j turns by d_j = a_j - a_(j-1) (a_0 = 0) against the weight of all that hangs
+// beyond:
+//     K n^2 l sin(d_j) = sum over i >= j of g (x_i - x_(j-1)),
+// the exact minimum of the discrete rod's energy (glsl/sim/bend.glsl). Relaxed, because x depends
+// on a.
+static void solve_joints(double stiffness, int n, double *angle)
+{
+    for (int j = 1; j <= n; ++j) angle[j] = 0;
+    for (int round = 0; round < 2000; ++round) {
+        double moment = 0, hanging = 0, turn[EXPERIMENT_POINTS] = {0};
+        for (int j = n; j >= 1; --j) {
+            hanging += 1;
+            moment += G * hanging * cos(angle[j]);
+            turn[j] = asin(fmin(1, moment / (stiffness * n * n)));
+        }
+        for (int j = 1; j <= n; ++j) {
+            double a = turn[j] + (j > 1 ? angle[j - 1] : 0);
+            angle[j] += 0.2 * (a - angle[j]);
+        }
+    }
+}
+
+// spring: each link is drawn to its own horizontal, against the weight that hangs at its end:
+//     n b a_j = (n - j + 1) g cos(a_j),
+// the balance of forces across link j (glsl/sim/spring.comp), with b at most an eighth of the
+// coil's stiffness (the default of --spring-coil, 1e4/s2) times the length. By Newton's method.
+static void solve_links(double stiffness, int n, double *angle)
+{
+    for (int j = 1; j <= n; ++j) {
+        double weight = (n - j + 1) * G, b = n * fmin(stiffness, 1e4 * LENGTH / 8), a = 0;
+        for (int round = 0; round < 50; ++round)
+            a -= (b * a - weight * cos(a)) / (b + weight * sin(a));
+        angle[j] = a;
+    }
+}
+
+static const struct {
+    const char *algo, *flag;
+    double stiffness;
+    void (*solve)(double stiffness, int n, double *angle);
+    // Small drop of a continuous beam's tip over its length: q L^4/(8 E I) of a cantilever under
+    // its own weight q (Gere and Timoshenko, Mechanics of Materials), with E I = K L^2 and
+    // q = n g/L: n g/(8 K). False: no such formula.
+    bool continuous;
+} BEAMS[] = {
+    {"chain", "--chain-bend", 5, solve_joints, false},
+    {"chain", "--chain-bend", 50, solve_joints, false},
+    {"chain", "--chain-bend", 500, solve_joints, true},
+    {"spring", "--spring-angular", 5, solve_links, false},
+    {"spring", "--spring-angular", 50, solve_links, false},
+    {"spring", "--spring-angular", 500, solve_links, false},
+};
+
+static bool beam_set_up(const MotionFolder *folder, const Method *method, int number, Setup *setup)
+{
+    (void)folder;
+    for (size_t b = 0; b < sizeof BEAMS / sizeof *BEAMS; ++b)
+        for (int n = 15; n <= 31; n += 16) {
+            double angle[EXPERIMENT_POINTS], l = LENGTH / n;
+            if (strcmp(BEAMS[b].algo, method->algo) != 0 || number-- > 0) continue;
+            setup->n = n + 1;
+            trial_make_beam(setup->points, n + 1, LENGTH);
+            BEAMS[b].solve(BEAMS[b].stiffness, n, angle);
+            for (int j = 1; j <= n; ++j) {
+                setup->exact[j][0] = setup->exact[j - 1][0] + l * cos(angle[j]);
+                setup->exact[j][1] = setup->exact[j - 1][1] - l * sin(angle[j]);
+            }
+            if (BEAMS[b].continuous) setup->beam_drop = n * G / (8 * BEAMS[b].stiffness);
+            snprintf(setup->scenario, sizeof setup->scenario, "%s %g, %d links", BEAMS[b].flag + 2,
+                     BEAMS[b].stiffness, n);
+            snprintf(setup->settings, sizeof setup->settings, "--style 0.5%s --drag 5 %s %g",
+                     method_has(method, "style_stiffness") ? " --style-stiffness 0" : "",
+                     BEAMS[b].flag, BEAMS[b].stiffness);
+            return true;
+        }
+    return false;
+}
+
+static Result beam_measure(Run *run, Error *error)
+{
+    const Setup *setup = run->setup;
+    TRY(rest_measure(run, error));
+    double drop = -(double)run->trial.points[setup->n - 1][1] / LENGTH;
+    add_value(run, "drop", drop);
+    if (!isnan(setup->beam_drop)) add_value(run, "drop over beam's", drop / setup->beam_drop);
+    return RESULT_OK;
+}
+
+// --- stretch: the greatest | |x_j - x_(j-1)| / l_j - 1 | over all links and frames of the exact
+// motions, as drawn and, of solvers that stretch, as simulated.
+
+static bool stretch_set_up(const MotionFolder *folder, const Method *method, int number,
+                           Setup *setup)
+{
+    bool found = motions_set_up(folder, method, number, setup);
+    setup->in_all = true;
+    return found;
+}
+
+static bool simulated_set_up(const MotionFolder *folder, const Method *method, int number,
+                             Setup *setup)
+{
+    bool found = stretch_set_up(folder, method, number, setup);
+    snprintf(setup->settings, sizeof setup->settings, "--style 0 --stretch-drawn true");
+    return found;
+}
+
+static double greatest_stretch(const Trial *trial, const Motion *motion)
+{
+    double most = 0, size = 0;
+    for (int j = 1; j < motion->n; ++j) {
+        double now = 0, rest = 0;
+        for (int k = 0; k < 3; ++k) {
+            now += pow((double)trial->points[j][k] - (double)trial->points[j - 1][k], 2);
+            rest += pow(
+                (double)(float)motion->points[j][k] - (double)(float)motion->points[j - 1][k], 2);
+            size = fmax(size, fabs((double)trial->points[j][k]));
+        }
+        // less what the rounding of stored positions explains: 2^-24 of a coordinate for either end
+        double rounding = 2 * 1.8 * 0x1p-24 * size;
+        double off = fabs(sqrt(now) - sqrt(rest));
+        most = fmax(most, (off - rounding) / sqrt(rest));
+        if (isnan(off)) most = NAN;
+    }
+    return most;
+}
+
+static Result stretch_measure(Run *run, Error *error)
+{
+    const Motion *motion = run->setup->motion;
+    double most = 0;
+    for (size_t f = 1; f < motion->frame_count; ++f) {
+        motion_advance(&run->trial, motion, motion->frames[f].time);
+        TRY(trial_read(&run->trial, error));
+        double now = greatest_stretch(&run->trial, motion);
+        if (!(now <= most)) most = now;
+    }
+    add_value(run, run->trial.params.stretch_drawn ? "as simulated" : "as drawn", most);
+    return RESULT_OK;
+}
+
+// --- energy: a straight strand held horizontally and a helix fall. The greatest rise of energy
+// above the start's in what a strand could lose by falling ("rise") and, without drag and style,
+// the change over the whole run ("change"). Kinetic energy is that of the solver's own velocities;
+// "rise as drawn" has it from the drawn motion from step to step, and potential energy from the
+// middle of that. Of dftl, whose velocities also hold the corrections that are to come, there is
+// only the latter; of split, whose tip alone has mass, that of the tip.
+
+static bool energy_set_up(const MotionFolder *folder, const Method *method, int number,
+                          Setup *setup)
+{
+    static const int sizes[] = {4, 16, 64};
+    int n = sizes[number % 3], drag = number / 3 % 2;
+    bool styled = number / 6 == 1;
+    (void)folder;
+    setup->n = n, setup->strand_count = 2, setup->first_id = 2 * (uint32_t)(number % 3);
+    trial_make_beam(setup->points, n, LENGTH);
+    trial_make_helix(setup->points + n, n, LENGTH, 1);
+    snprintf(setup->scenario, sizeof setup->scenario, "n = %d, drag %d, %s", n, drag,
+             styled ? "styled" : "loose");
+    snprintf(setup->settings, sizeof setup->settings, "--style %s --drag %d%s",
+             styled ? "0.5" : "0", drag,
+             method_has(method, "stretch_drawn") ? " --stretch-drawn true" : "");
+    return number < 12;
+}
+
+// The drawn positions; split's tips in place of the strands' ends.
+static Result read_masses(Trial *trial, int n, double (*points)[3], Error *error)
+{
+    TRY(trial_read(trial, error));
+    for (int i = 0; i < 2 * n; ++i)
+        for (int k = 0; k < 3; ++k) points[i][k] = (double)trial->points[i][k];
+    for (uint32_t s = 0; s < 2; ++s) {
+        float tip[2][4];
+        if (!trial_read_tip(trial, 0, s, tip)) return RESULT_OK;
+        for (int k = 0; k < 3; ++k) points[(int)(s + 1) * n - 1][k] = (double)tip[0][k];
+    }
+    return RESULT_OK;
+}
+
+// Of the motion from a to b in dt, less that of the start, over what falling can give. Particles
+// from `from` on have mass.
+static double energy(const double (*start)[3], const double (*a)[3], const double (*b)[3], int from,
+                     int n, double dt)
+{
+    double sum = 0, budget = 0;
+    for (int j = from; j < n; ++j) {
+        double square = 0;
+        for (int k = 0; k < 3; ++k) square += pow((b[j][k] - a[j][k]) / dt, 2);
+        sum += square / 2 + G * ((a[j][1] + b[j][1]) / 2 - start[j][1]);
+        budget += G * (start[j][1] - start[0][1] + LENGTH * j / (n - 1));
+    }
+    return sum / budget;
+}
+
+// The same by the solver's own velocities: with `now` at the end of a way of h seconds or, where
+// they are those at a step's end, in its middle. h: of the steps that the solver really takes.
+static double own_energy(const Run *run, uint32_t s, const double (*start)[3],
+                         const double (*now)[3])
+{
+    const Trial *trial = &run->trial;
+    const ParticleRecipe *recipe = trial->solver.type->recipes[0];
+    const GpuBuffer *velocities = trial_buffer(trial, 0, SOLVER_VELOCITIES);
+    bool at_end =
+        strcmp(run->method->algo, "hybrid") == 0 || strcmp(run->method->algo, "emulation") == 0;
+    double a[EXPERIMENT_POINTS][3] = {{0}}, b[EXPERIMENT_POINTS][3] = {{0}}, h = trial->step.dt;
+    if (recipe && recipe->substeps)
+        h /= recipe->substeps(&trial->step, &trial->params, &trial->hair);
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, velocities->buffer);
+    for (int j = 0; j < run->setup->n; ++j) {
+        float v[4];
+        size_t at = hair_address(&trial->hair.batches[0], s, (uint32_t)j);
+        glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(at * sizeof v), sizeof v, v);
+        for (int k = 0; k < 3; ++k) {
+            b[j][k] = now[j][k] + (at_end ? h / 2 * (double)v[k] : 0);
+            a[j][k] = b[j][k] - h * (double)v[k];
+        }
+    }
+    return energy(start, (const double(*)[3])a, (const double(*)[3])b, 1, run->setup->n, h);
+}
+
+static void raise_most(double *most, double e)
+{
+    if (!(e <= *most)) *most = e; // a NaN stays
+}
+
+// Looks at every step in the first second, when hair falls, and 4 times a second then.
+static Result energy_measure(Run *run, Error *error)
+{
+    Trial *trial = &run->trial;
+    const Setup *setup = run->setup;
+    double start[EXPERIMENT_POINTS][3], before[EXPERIMENT_POINTS][3], now[EXPERIMENT_POINTS][3];
+    double drawn = 0, own = 0, change = 0;
+    bool tips = strcmp(run->method->algo, "split") == 0;
+    bool has_own = !tips && strcmp(run->method->algo, "dftl") != 0;
+    long steps = (long)(setup->seconds * trial->rate + 0.5);
+    long sparse = (long)fmax(trial->rate / 4, 1);
+    TRY(read_masses(trial, setup->n, start, error));
+    memcpy(before, start, sizeof start);
+    for (long i = 1; i <= steps; ++i) {
+        bool look = i <= (long)trial->rate || i % sparse == 0 || i == steps;
+        if (interrupt_requested()) return error_set(error, RESULT_INTERRUPTED, "interrupted");
+        if (look && i > 1) TRY(read_masses(trial, setup->n, before, error));
+        trial_step(trial);
+        if (!look) continue;
+        TRY(read_masses(trial, setup->n, now, error));
+        for (uint32_t s = 0; s < 2; ++s) {
+            int n = setup->n, at = (int)s * n;
+            const double(*from)[3] = (const double(*)[3])start + at;
+            const double(*to)[3] = (const double(*)[3])now + at;
+            double e = energy(from, (const double(*)[3])before + at, to, tips ? n - 1 : 1, n,
+                              trial->step.dt);
+            raise_most(&drawn, e);
+            change = s ? fmax(change, e) : e;
+            if (has_own) raise_most(&own, own_energy(run, s, from, to));
+        }
+    }
+    if (has_own) add_value(run, "rise as drawn", drawn);
+    add_value(run, "rise", has_own ? own : drawn);
+    if (strstr(setup->scenario, "drag 0, loose")) add_value(run, "change", change);
+    return RESULT_OK;
+}
+
+// --- rate: two exact motions' starts and heads, hair with the solver's default style; RMS distance
+// over the length, over 2 s, from that at the finest rate.
+
+enum { RATE_FPS = 30, RATE_FRAMES = 2 * RATE_FPS, RATE_POINTS = 128 };
+
+static bool rate_set_up(const MotionFolder *folder, const Method *method, int number, Setup *setup)
+{
+    static const char *const names[] = {"c_root2Hz_n16_c1", "bd_curly_wind_n16_c4"};
+    (void)method;
+    for (size_t m = 0; m < folder->count; ++m) {
+        const Motion *motion = &folder->motions[m];
+        if (strcmp(motion->name, names[0]) != 0 && strcmp(motion->name, names[1]) != 0) continue;
+        if (motion->n > RATE_POINTS || number-- > 0) continue;
+        setup->motion = motion;
+        snprintf(setup->scenario, sizeof setup->scenario, "%s", motion->name);
+        return true;
+    }
+    return false;
+}
+
+static Result rate_measure(Run *run, Error *error)
+{
+    static float finest[RATE_FRAMES][RATE_POINTS][3]; // large
+    const Motion *motion = run->setup->motion;
+    double sum = 0;
+    for (int f = 0; f < RATE_FRAMES; ++f) {
+        motion_advance(&run->trial, motion, (f + 1.0) / RATE_FPS);
+        TRY(trial_read(&run->trial, error));
+        if (run->finest) memcpy(finest[f], run->trial.points, (size_t)motion->n * sizeof **finest);
+        for (int j = 1; j < motion->n; ++j)
+            for (int k = 0; k < 3; ++k)
+                sum += pow((double)run->trial.points[j][k] - (double)finest[f][j][k], 2);
+    }
+    if (!run->finest)
+        add_value(run, "from finest", sqrt(sum / (RATE_FRAMES * (motion->n - 1))) / motion->length);
+    return RESULT_OK;
+}
+
+// --- scale: the same hair in a world of centimetres: RMS distance over the length after 30 steps.
+
+enum { SCALE_N = 16, SCALE_STEPS = 30 };
+
+static bool scale_set_up(const MotionFolder *folder, const Method *method, int number, Setup *setup)
+{
+    (void)folder, (void)method;
+    setup->n = SCALE_N;
+    setup->units = number ? 100 : 1;
+    trial_make_helix(setup->points, SCALE_N, LENGTH, 2);
+    snprintf(setup->scenario, sizeof setup->scenario, "helix of %d in cm", SCALE_N);
+    return number < 2;
+}
+
+static Result scale_measure(Run *run, Error *error)
+{
+    static float metres[EXPERIMENT_RATES][SCALE_N][3];
+    double sum = 0;
+    motion_advance(&run->trial, NULL, SCALE_STEPS / run->trial.rate);
+    TRY(trial_read(&run->trial, error));
+    for (int i = 0; i < 3 * SCALE_N; ++i) {
+        float x = (float)((double)run->trial.points[i / 3][i % 3] / run->setup->units);
+        if (run->setup->units == 1) metres[run->rate][i / 3][i % 3] = x;
+        if (i >= 3) sum += pow((double)metres[run->rate][i / 3][i % 3] - (double)x, 2);
+    }
+    if (run->setup->units != 1) add_value(run, "from metres", sqrt(sum / (SCALE_N - 1)) / LENGTH);
+    return RESULT_OK;
+}
+
+// --- The table.
+
+const Experiment EXPERIMENTS[] = {
+    {"motions", {60, 120, 240}, NULL, true, false, FOLD_MEAN, motions_set_up, motions_measure},
+    {"pendulum", {60, 120, 240}, NULL, true, false, FOLD_NONE, pendulum_set_up, pendulum_measure},
+    {"static", {60}, "style_stiffness", false, false, FOLD_NONE, static_set_up, rest_measure},
+    {"drift", {60}, NULL, false, false, FOLD_NONE, drift_set_up, drift_measure},
+    {"beam", {30, 240}, NULL, false, false, FOLD_NONE, beam_set_up, beam_measure},
+    {"stretch", {60, 240}, NULL, false, false, FOLD_MOST, stretch_set_up, stretch_measure},
+    {"stretch",
+     {60, 240},
+     "stretch_drawn",
+     false,
+     false,
+     FOLD_MOST,
+     simulated_set_up,
+     stretch_measure},
+    {"energy", {30, 60, 120, 240}, NULL, false, false, FOLD_NONE, energy_set_up, energy_measure},
+    {"rate", {30, 60, 120, 240}, NULL, false, true, FOLD_NONE, rate_set_up, rate_measure},
+    {"scale", {60}, NULL, false, false, FOLD_NONE, scale_set_up, scale_measure},
+};
+const int EXPERIMENT_COUNT = sizeof EXPERIMENTS / sizeof *EXPERIMENTS;
+
+bool experiments_set_up(const Experiment *experiment, const MotionFolder *folder,
+                        const Method *method, double seconds, int number, Setup *setup)
+{
+    if (experiment->param && !method_has(method, experiment->param)) return false;
+    *setup = (Setup){.strand_count = 1, .drag = NAN, .units = 1, .beam_drop = NAN};
+    setup->seconds = seconds;
+    return experiment->set_up(folder, method, number, setup);
+}
+
+// All parameters of solvers that are lengths, or accelerations of them.
+static void scale_params(SectionParams *params, double units)
+{
+    for (size_t i = 0; i < PARAM_COUNT; ++i) {
+        const ParamInfo *info = &PARAM_TABLE[i];
+        bool length = strcmp(info->unit, "m") == 0 || strcmp(info->unit, "cm") == 0 ||
+                      strcmp(info->unit, "m/s2") == 0;
+        if (!length || !method_takes(info) || info->kind != PARAM_FLOAT) continue;
+        float *value = (float *)(void *)((char *)params + info->offset);
+        *value *= (float)units;
+    }
+}
+
+static Result start(Run *run, const Gpu *gpu, const SectionParams *params, double rate,
+                    Error *error)
+{
+    const Setup *setup = run->setup;
+    double points[EXPERIMENT_POINTS][3];
+    Strands strands = {0};
+    if (setup->motion) return motion_start(&run->trial, gpu, setup->motion, params, rate, error);
+    for (int i = 0; i < 3 * EXPERIMENT_POINTS; ++i)
+        points[i / 3][i % 3] = setup->units * setup->points[i / 3][i % 3];
+    TRY(trial_make_strands(&strands, (const double(*)[3])points, setup->strand_count, setup->n,
+                           error));
+    Result result = trial_create(&run->trial, gpu, &strands, setup->first_id, params, rate, error);
+    run->trial.step.gravity[1] *= (float)setup->units;
+    strands_destroy(&strands);
+    return result;
+}
+
+Result experiments_run(const Experiment *experiment, Run *run, const Gpu *gpu, double rate,
+                       Error *error)
+{
+    SectionParams params;
+    run->trial = (Trial){0};
+    run->value_count = 0;
+    if (interrupt_requested()) return error_set(error, RESULT_INTERRUPTED, "interrupted");
+    Result result = method_params(&params, run->method, run->setup->settings, error);
+    if (!isnan(run->setup->drag)) params.drag = (float)run->setup->drag;
+    scale_params(&params, run->setup->units);
+    THEN(result, start(run, gpu, &params, rate, error));
+    THEN(result, experiment->measure(run, error));
+    trial_destroy(&run->trial);
+    params_destroy_section(&params);
+    return result;
+}
