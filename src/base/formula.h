@@ -18,8 +18,8 @@ typedef struct Formula {
 // Reads `text`: numbers, t, pi, + - * / ^ ( ), comparisons, && || and a ? b : c, and the functions
 // of muParser (sin, cos, tan, asin, acos, atan, atan2, exp, ln, sqrt, abs, sign, rint, min, max
 // ...), smoothstep(a, b, x), which rises from 0 at x = a to 1 at x = b, and noise(x, y, z)
-// (portable.h). RESULT_BAD_INPUT saying what is wrong and where in the text, RESULT_FAILED when memory
-// is short.
+// (portable.h). RESULT_BAD_INPUT saying what is wrong and where in the text, RESULT_FAILED when
+// memory is short.
 Result formula_create(Formula *formula, const char *text, Error *error);
 
 // The same of `count` variables instead of t, 1 to 16.

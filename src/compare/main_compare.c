@@ -6,7 +6,6 @@
 #include "base/progress.h"
 #include "compare/pairs.h"
 #include "compare/verdict.h"
-#include "compare/verdict_report.h"
 #include "image/compare.h"
 
 #include <errno.h>
@@ -235,66 +234,52 @@ static Result run_threads(Work *work, Error *error)
 
 static Result make_folder(const char *path, Error *error)
 {
-    if (mkdir(path, 0777) == 0 || errno == EEXIST) return RESULT_OK;
+    if (!path || mkdir(path, 0777) == 0 || errno == EEXIST) return RESULT_OK;
     return error_set(error, RESULT_FAILED, "%s: %s", path, strerror(errno));
 }
 
 static Result make_folders(const Command *command, const PairList *list, Error *error)
 {
-    const char *const folders[] = {command->heat_map, command->sheet};
-    Result result = RESULT_OK;
-    for (int i = 0; i < 2 && list->many && result == RESULT_OK; ++i)
-        if (folders[i]) result = make_folder(folders[i], error);
-    if (result == RESULT_OK && list->many && command->update && !strchr(command->a, '%'))
-        result = make_folder(command->a, error);
-    return result;
+    if (!list->many) return RESULT_OK;
+    TRY(make_folder(command->heat_map, error));
+    TRY(make_folder(command->sheet, error));
+    bool new_references = command->update && !strchr(command->a, '%');
+    return make_folder(new_references ? command->a : NULL, error);
 }
 
-// Status 3 names the first culprit on stderr as well, where the other programs name theirs.
+// Reports, the closing line and the exit status. Status 3 names the first culprit on stderr as
+// well, where the other programs name theirs.
 static Result conclude(const Work *work, Error *error)
 {
-    size_t count = work->list->count;
-    Tally tally = verdict_count(work->verdicts, count);
-    Result result = verdict_status(work->verdicts, count);
-    if (!work->command->quiet) verdict_print_tally(&tally, work->list, stdout);
-    for (size_t i = 0; i < count && result != RESULT_OK; ++i) {
+    const Command *command = work->command;
+    if (command->json)
+        TRY(verdict_write_json(command->json, work->list, work->verdicts, &command->limits, error));
+    if (command->junit) TRY(verdict_write_junit(command->junit, work->list, work->verdicts, error));
+    if (!command->quiet) verdict_print_tally(work->list, work->verdicts, stdout);
+    Result result = verdict_status(work->list, work->verdicts);
+    for (size_t i = 0; i < work->list->count && result != RESULT_OK; ++i) {
         const Verdict *verdict = &work->verdicts[i];
-        bool told = verdict->outcome == OUTCOME_UNREADABLE || verdict->outcome == OUTCOME_FAILED;
-        if (!told || verdict->updated) continue;
-        return error_set(error, result, "%s", verdict->text);
+        bool stops = verdict->outcome == OUTCOME_UNREADABLE || verdict->outcome == OUTCOME_FAILED;
+        if (stops && !verdict->updated) return error_set(error, result, "%s", verdict->text);
     }
     error->text[0] = 0;
-    return result;
-}
-
-static Result write_reports(const Work *work, Error *error)
-{
-    const Command *command = work->command;
-    Result result = RESULT_OK;
-    if (command->json)
-        result =
-            verdict_write_json(command->json, work->list, work->verdicts, &command->limits, error);
-    if (result == RESULT_OK && command->junit)
-        result = verdict_write_junit(command->junit, work->list, work->verdicts, error);
     return result;
 }
 
 static Result run(const Command *command, Error *error)
 {
     PairList list;
-    Result result = pairs_find(&list, command->a, command->b, command->update, error);
-    if (result != RESULT_OK) return result;
+    TRY(pairs_find(&list, command->a, command->b, command->update, error));
     Work work = {.command = command,
                  .list = &list,
                  .verdicts = calloc(list.count, sizeof *work.verdicts),
                  .ready = calloc(list.count, sizeof *work.ready),
                  .lock = PTHREAD_MUTEX_INITIALIZER,
                  .changed = PTHREAD_COND_INITIALIZER};
-    result = work.verdicts && work.ready ? make_folders(command, &list, error)
-                                         : error_set(error, RESULT_FAILED, "no memory");
-    if (result == RESULT_OK) result = run_threads(&work, error);
-    if (result == RESULT_OK) result = write_reports(&work, error);
-    if (result == RESULT_OK) result = conclude(&work, error);
+    Result result = work.verdicts && work.ready ? make_folders(command, &list, error)
+                                                : error_set(error, RESULT_FAILED, "no memory");
+    THEN(result, run_threads(&work, error));
+    THEN(result, conclude(&work, error));
     free(work.verdicts);
     free(work.ready);
     pairs_destroy(&list);

@@ -22,12 +22,12 @@ typedef struct Side {
     Kind kind;
     bool missing; // and that is legal
     Target target;
-    size_t count; // pictures found, of the first side only
+    size_t count; // images found, of the first side only
 } Side;
 
 static Result fail_memory(Error *error)
 {
-    return error_set(error, RESULT_FAILED, "no memory for the list of pictures");
+    return error_set(error, RESULT_FAILED, "no memory for the list of images");
 }
 
 static void find_kind(Side *side)
@@ -44,9 +44,9 @@ static void find_kind(Side *side)
     side->missing = !exists;
 }
 
-// --- A picture's name at each side.
+// --- An image's name at each side.
 
-// Where the picture is: `name` in a folder, or number `frame` of a pattern.
+// Where the image is: `name` in a folder, or number `frame` of a pattern.
 static char *place_of(const Side *side, const char *name, int frame)
 {
     char *path;
@@ -56,7 +56,7 @@ static char *place_of(const Side *side, const char *name, int frame)
     return asprintf(&path, "%s%s%s", side->text, slash, name) < 0 ? NULL : path;
 }
 
-static bool is_picture(const char *name)
+static bool is_image(const char *name)
 {
     const char *dot = strrchr(name, '.');
     return name[0] != '.' && dot && (strcasecmp(dot, ".png") == 0 || strcasecmp(dot, ".pfm") == 0);
@@ -142,7 +142,7 @@ static Result list_side(PairList *list, const Side sides[2], int from, Error *er
     const struct dirent *entry;
     while (result == RESULT_OK && (entry = readdir(directory))) {
         int frame = 0;
-        if (side->kind == KIND_FOLDER ? is_picture(entry->d_name)
+        if (side->kind == KIND_FOLDER ? is_image(entry->d_name)
                                       : read_number(side, entry->d_name, &frame))
             result = add_pair(list, sides, entry->d_name, frame, from, error);
     }
@@ -162,30 +162,19 @@ static Result pair_files(PairList *list, const Side sides[2], Error *error)
 
 static Result pair_many(PairList *list, Side sides[2], Error *error)
 {
-    Result result = RESULT_OK;
     list->many = true;
-    for (int i = 0; i < 2 && result == RESULT_OK; ++i)
+    for (int i = 0; i < 2; ++i)
         if (sides[i].kind == KIND_PATTERN)
-            result = target_parse(&sides[i].target, sides[i].text, error);
-    if (result == RESULT_OK) result = list_side(list, sides, 0, error);
+            TRY(target_parse(&sides[i].target, sides[i].text, error));
+    TRY(list_side(list, sides, 0, error));
     sides[0].count = list->count;
     if (list->count) qsort(list->pairs, list->count, sizeof *list->pairs, order);
-    if (result == RESULT_OK) result = list_side(list, sides, 1, error);
-    if (result == RESULT_OK && list->count == 0)
-        return error_set(error, RESULT_BAD_INPUT, "%s and %s: no picture in either", sides[0].text,
+    TRY(list_side(list, sides, 1, error));
+    if (list->count == 0)
+        return error_set(error, RESULT_BAD_INPUT, "%s and %s: no image in either", sides[0].text,
                          sides[1].text);
-    if (result == RESULT_OK) qsort(list->pairs, list->count, sizeof *list->pairs, order);
-    return result;
-}
-
-static Result pair_sides(PairList *list, Side sides[2], Error *error)
-{
-    if (sides[0].kind != sides[1].kind)
-        return error_set(error, RESULT_USAGE, "%s is %s, but %s is %s: expected two of a kind",
-                         sides[0].text, KIND_NAMES[sides[0].kind], sides[1].text,
-                         KIND_NAMES[sides[1].kind]);
-    return sides[0].kind == KIND_FILE ? pair_files(list, sides, error)
-                                      : pair_many(list, sides, error);
+    qsort(list->pairs, list->count, sizeof *list->pairs, order);
+    return RESULT_OK;
 }
 
 Result pairs_find(PairList *list, const char *a, const char *b, bool create, Error *error)
@@ -195,7 +184,14 @@ Result pairs_find(PairList *list, const char *a, const char *b, bool create, Err
     for (int i = 0; i < 2; ++i) find_kind(&sides[i]);
     if (create && sides[0].missing && sides[0].kind != KIND_PATTERN) sides[0].kind = sides[1].kind;
     if (!create) sides[0].missing = false;
-    Result result = pair_sides(list, sides, error);
+    Result result;
+    if (sides[0].kind != sides[1].kind)
+        result = error_set(error, RESULT_USAGE, "%s is %s, but %s is %s: expected two of a kind", a,
+                           KIND_NAMES[sides[0].kind], b, KIND_NAMES[sides[1].kind]);
+    else if (sides[0].kind == KIND_FILE)
+        result = pair_files(list, sides, error);
+    else
+        result = pair_many(list, sides, error);
     for (int i = 0; i < 2; ++i) target_destroy(&sides[i].target);
     if (result != RESULT_OK) pairs_destroy(list);
     return result;

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Which pictures belong together: two files, or those of two folders or of two numbered sequences.
+// The room compare: tractrix-compare. It takes images or sequences of them, pairs them (this file),
+// judges each pair (verdict.h), and hands on lines, reports and an exit status (main_compare.c).
+//
+// This file: which images belong together: two files, or those of two folders or of two numbered
+// sequences.
 #pragma once
 
 #include "base/error.h"
@@ -23,6 +27,6 @@ typedef struct PairList {
 // go by name; or both patterns with %d or %04d in the file's name, as tractrix-render -o takes
 // them, whose files go by number. What only one has is a pair with the other missing. With `create`
 // `a` need not exist: it is what `b` is, and empty. RESULT_USAGE for mixed kinds, RESULT_BAD_INPUT
-// if a folder can't be read or there is no picture at all. Files are not opened.
+// if a folder can't be read or there is no image at all. Files are not opened.
 Result pairs_find(PairList *list, const char *a, const char *b, bool create, Error *error);
 void pairs_destroy(PairList *list);

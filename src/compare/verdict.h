@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One pair of pictures: read, compared, drawn, and the reference replaced if that is wanted.
+// One pair of images: read, compared, drawn, and the reference replaced if that is wanted; and what
+// the verdicts on all pairs come to.
 #pragma once
 
 #include "compare/pairs.h"
@@ -17,15 +18,12 @@ typedef enum Outcome {
     OUTCOME_COUNT
 } Outcome;
 
-// "same", "different", "sizes", "missing", "unreadable", "failed".
-extern const char *const OUTCOME_NAMES[OUTCOME_COUNT];
-
 typedef struct Verdict {
     Outcome outcome;
     bool measured; // SAME and DIFFERENT: the figures hold
     CompareResult figures;
     bool updated;    // B took A's place: all is well now
-    char text[1024]; // what else there is to say: why it is not the same
+    char text[1024]; // why it is not the same, if the outcome needs more words
 } Verdict;
 
 typedef struct VerdictOptions {
@@ -36,12 +34,27 @@ typedef struct VerdictOptions {
 } VerdictOptions;
 
 // Never fails: what goes wrong is an outcome. B is copied byte for byte, complete or not at all,
-// and only if it can be read as a picture; a reference without a new picture is left. Several
-// threads may be in here at once.
+// and only if it can be read as an image; a reference without a new image is left. May be called
+// from several threads at once.
 void verdict_find(Verdict *verdict, const Pair *pair, const VerdictOptions *options);
-
-// The verdict without "updated" is one that a test should fail for.
-bool verdict_is_good(const Verdict *verdict);
 
 // "NAME: same: RMSE ..." with an end of line.
 void verdict_print(const Verdict *verdict, const Pair *pair, FILE *stream);
+
+// --- Of all pairs: verdicts [list->count].
+
+// RESULT_OK if all are the same or updated; RESULT_BAD_INPUT if an image could not be read and is
+// not replaced; else RESULT_FAILED.
+Result verdict_status(const PairList *list, const Verdict *verdicts);
+
+// The closing line: counts, and the largest mean of FLIP.
+void verdict_print_tally(const PairList *list, const Verdict *verdicts, FILE *stream);
+
+// A JSON object: limits, counts, and an object for each pair. RESULT_FAILED with path and reason.
+Result verdict_write_json(const char *path, const PairList *list, const Verdict *verdicts,
+                          const CompareLimits *limits, Error *error);
+
+// JUnit's XML, a test case for each pair, as GitLab, Jenkins and others read it: unreadable images
+// are errors, other bad verdicts failures. RESULT_FAILED with path and reason.
+Result verdict_write_junit(const char *path, const PairList *list, const Verdict *verdicts,
+                           Error *error);

@@ -168,7 +168,7 @@ static void make_filters(Filters *filters, double ppd)
     convolve_make_derivative(&filters->point, 2, radius, sigma);
 }
 
-// --- A picture: what of it is compared.
+// --- An image: what of it is compared.
 
 enum { YCC = 0, SEEN = 3, EDGE = 6, POINT, SCRATCH, PLANES = SCRATCH + 2 };
 
@@ -182,15 +182,15 @@ static float *plane_of(const Percept *percept, int plane)
     return percept->planes + (size_t)plane * (size_t)percept->width * (size_t)percept->height;
 }
 
-static void split_opponents(Percept *percept, const FloatImage *plate)
+static void split_opponents(Percept *percept, const FloatImage *image)
 {
     double table[256];
-    size_t count = (size_t)plate->width * (size_t)plate->height;
+    size_t count = (size_t)image->width * (size_t)image->height;
     for (int i = 0; i < 256; ++i) table[i] = float_image_linear((float)i);
     for (size_t i = 0; i < count; ++i) {
         double rgb[3], ycc[3];
         for (int k = 0; k < 3; ++k) {
-            float level = fminf(fmaxf(plate->rgb[3 * i + (size_t)k], 0), 255);
+            float level = fminf(fmaxf(image->rgb[3 * i + (size_t)k], 0), 255);
             rgb[k] = level == truncf(level) ? table[(int)level] : float_image_linear(level);
         }
         flip_opponent(ycc, rgb);
@@ -238,16 +238,16 @@ static void find_feature(const Percept *percept, int out, const ConvolveKernel *
     for (size_t i = 0; i < count; ++i) x[i] = sqrtf(x[i] * x[i] + y[i] * y[i]) / 116;
 }
 
-static Result percept_create(Percept *percept, const FloatImage *plate, const Filters *filters,
+static Result percept_create(Percept *percept, const FloatImage *image, const Filters *filters,
                              Error *error)
 {
-    size_t count = (size_t)plate->width * (size_t)plate->height;
-    *percept = (Percept){.width = plate->width, .height = plate->height};
+    size_t count = (size_t)image->width * (size_t)image->height;
+    *percept = (Percept){.width = image->width, .height = image->height};
     percept->planes = malloc(count * PLANES * sizeof *percept->planes);
     if (!percept->planes)
-        return error_set(error, RESULT_FAILED, "no memory for FLIP of pictures of %d x %d",
-                         plate->width, plate->height);
-    split_opponents(percept, plate);
+        return error_set(error, RESULT_FAILED, "no memory for FLIP of images of %d x %d",
+                         image->width, image->height);
+    split_opponents(percept, image);
     see_colors(percept, filters);
     find_feature(percept, EDGE, &filters->edge, &filters->gauss);
     find_feature(percept, POINT, &filters->point, &filters->gauss);
@@ -280,7 +280,7 @@ Result flip_compare(float *map, double *mean, const FloatImage *a, const FloatIm
     size_t count = (size_t)a->width * (size_t)a->height;
     make_filters(&filters, pixels_per_degree);
     Result result = percept_create(&p, a, &filters, error);
-    if (result == RESULT_OK) result = percept_create(&q, b, &filters, error);
+    THEN(result, percept_create(&q, b, &filters, error));
     if (result == RESULT_OK) {
         double most = largest_power(), sum = 0;
         for (size_t i = 0; i < count; ++i) {

@@ -2,7 +2,7 @@
 // FLIP for low dynamic range: P. Andersson, J. Nilsson, T. Akenine-Moeller, M. Oskarsson,
 // K. Astroem, M. D. Fairchild, "FLIP: A Difference Evaluator for Alternating Images", Proceedings
 // of the ACM on Computer Graphics and Interactive Techniques 3 (2), 2020. How different two
-// pictures look, from 0 to 1, when one flips between them at a given distance.
+// images look, from 0 to 1, when one flips between them at a given distance.
 #pragma once
 
 #include "image/float_image.h"
@@ -11,8 +11,8 @@
 static const double FLIP_PIXELS_PER_DEGREE = 67;
 
 // Writes the error of each pixel to `map` [height][width], 0 to 1, and their mean to `mean`. The
-// plates have one size; levels beyond 0..255 are clamped. `pixels_per_degree`: 1 to 1000. Equal
-// plates give exactly 0. RESULT_FAILED when memory is short.
+// images have one size; levels beyond 0..255 are clamped. `pixels_per_degree`: 1 to 1000. Equal
+// images give exactly 0. RESULT_FAILED when memory is short.
 Result flip_compare(float *map, double *mean, const FloatImage *a, const FloatImage *b,
                     double pixels_per_degree, Error *error);
 

@@ -12,59 +12,48 @@ Result float_image_read_image(Image *image, const char *path, Error *error)
 {
     Bytes file;
     *image = (Image){0};
-    Result result = bytes_read_file(&file, path, error);
-    if (result != RESULT_OK) return result;
-    bool floats = file.size > 1 && file.data[0] == 'P' && (file.data[1] | 0x20) == 'f';
-    result =
-        floats ? pfm_decode(image, &file, path, error) : png_decode_deep(image, &file, path, error);
+    TRY(bytes_read_file(&file, path, error));
+    bool is_pfm = file.size > 1 && file.data[0] == 'P' && (file.data[1] | 0x20) == 'f';
+    Result result =
+        is_pfm ? pfm_decode(image, &file, path, error) : png_decode_deep(image, &file, path, error);
     bytes_destroy(&file);
     return result;
 }
 
-// image_srgb_from_linear, but beyond 0..1 as well.
-static double extend_srgb(double linear)
-{
-    double size = fabs(linear);
-    double value = size <= 0.0031308 ? 12.92 * size : 1.055 * pow(size, 1 / 2.4) - 0.055;
-    return copysign(value, linear);
-}
-
-// Sample `i` in levels, alpha (one of four) too.
+// Sample `i` in levels, alpha (one of four) too. As image_srgb_from_linear, but beyond 0..1 as
+// well.
 static double read_level(const Image *image, size_t i)
 {
-    switch (image->kind) {
-    case IMAGE_8:
-        return image->pixels[i];
-    case IMAGE_16:
-        return ((const uint16_t *)(const void *)image->pixels)[i] / 257.0;
-    default:
-        return 255 * extend_srgb((double)((const float *)(const void *)image->pixels)[i]);
-    }
+    if (image->kind == IMAGE_8) return image->pixels[i];
+    if (image->kind == IMAGE_16) return ((const uint16_t *)(const void *)image->pixels)[i] / 257.0;
+    double linear = (double)((const float *)(const void *)image->pixels)[i], size = fabs(linear);
+    double value = size <= 0.0031308 ? 12.92 * size : 1.055 * pow(size, 1 / 2.4) - 0.055;
+    return 255 * copysign(value, linear);
 }
 
-Result float_image_create(FloatImage *plate, const Image *image, float level, Error *error)
+Result float_image_create(FloatImage *floats, const Image *image, float level, Error *error)
 {
     size_t count = (size_t)image->width * (size_t)image->height, step = (size_t)image->channels;
-    *plate = (FloatImage){.width = image->width, .height = image->height};
-    plate->rgb = malloc(count * 3 * sizeof *plate->rgb);
-    if (!plate->rgb) {
-        *plate = (FloatImage){0};
-        return error_set(error, RESULT_FAILED, "no memory to compare pictures of %d x %d",
+    *floats = (FloatImage){.width = image->width, .height = image->height};
+    floats->rgb = malloc(count * 3 * sizeof *floats->rgb);
+    if (!floats->rgb) {
+        *floats = (FloatImage){0};
+        return error_set(error, RESULT_FAILED, "no memory to compare images of %d x %d",
                          image->width, image->height);
     }
     for (size_t i = 0; i < count; ++i) {
         double alpha = step == 4 ? read_level(image, 4 * i + 3) / 255 : 1;
         for (size_t k = 0; k < 3; ++k)
-            plate->rgb[3 * i + k] =
+            floats->rgb[3 * i + k] =
                 (float)(read_level(image, step * i + k) * alpha + (double)level * (1 - alpha));
     }
     return RESULT_OK;
 }
 
-void float_image_destroy(FloatImage *plate)
+void float_image_destroy(FloatImage *floats)
 {
-    free(plate->rgb);
-    *plate = (FloatImage){0};
+    free(floats->rgb);
+    *floats = (FloatImage){0};
 }
 
 double float_image_linear(float level)

@@ -23,31 +23,25 @@ void heat_map_color(uint8_t rgb[3], float error)
 
 Result heat_map_create(Image *image, const float *errors, int width, int height, Error *error)
 {
-    Result result = image_create(image, width, height, 3, error);
-    size_t count = (size_t)width * (size_t)height;
-    for (size_t i = 0; i < count && result == RESULT_OK; ++i)
+    TRY(image_create(image, width, height, 3, error));
+    for (size_t i = 0; i < (size_t)width * (size_t)height; ++i)
         heat_map_color(image->pixels + 3 * i, errors[i]);
-    return result;
+    return RESULT_OK;
 }
 
 // --- The sheet.
 
-static uint8_t *pixel_at(const Image *image, int x, int y)
-{
-    return image->pixels + 3 * ((size_t)y * (size_t)image->width + (size_t)x);
-}
-
 // Over light and dark grey in squares.
-static Result put_picture(Image *sheet, int left, const Image *image, Error *error)
+static Result put_image(Image *sheet, int left, const Image *image, Error *error)
 {
     FloatImage dark = {0}, light = {0};
     Result result = float_image_create(&dark, image, 102, error);
-    if (result == RESULT_OK) result = float_image_create(&light, image, 153, error);
-    for (int y = 0; y < image->height && result == RESULT_OK; ++y)
-        for (int x = 0; x < image->width; ++x) {
-            const FloatImage *plate = (x / CHECK_PX + y / CHECK_PX) % 2 ? &light : &dark;
-            const float *from = plate->rgb + 3 * ((size_t)y * (size_t)image->width + (size_t)x);
-            uint8_t *to = pixel_at(sheet, left + x, y);
+    THEN(result, float_image_create(&light, image, 153, error));
+    for (size_t y = 0; y < (size_t)image->height && result == RESULT_OK; ++y)
+        for (size_t x = 0; x < (size_t)image->width; ++x) {
+            const FloatImage *ground = (x / CHECK_PX + y / CHECK_PX) % 2 ? &light : &dark;
+            const float *from = ground->rgb + 3 * (y * (size_t)image->width + x);
+            uint8_t *to = sheet->pixels + 3 * (y * (size_t)sheet->width + (size_t)left + x);
             for (int k = 0; k < 3; ++k) to[k] = (uint8_t)lrintf(fminf(fmaxf(from[k], 0), 255));
         }
     float_image_destroy(&dark);
@@ -59,19 +53,18 @@ Result heat_map_create_sheet(Image *sheet, const Image *a, const Image *b, const
                              Error *error)
 {
     int width = a->width, height = a->height, step = width + GAP_PX;
+    Image map = {0};
     *sheet = (Image){0};
     if (width > (INT_MAX - 2 * GAP_PX) / 3)
-        return error_set(error, RESULT_FAILED, "pictures of %d pixels are too wide for a sheet",
+        return error_set(error, RESULT_FAILED, "images of %d pixels are too wide for a sheet",
                          width);
-    Result result = image_create(sheet, 3 * width + 2 * GAP_PX, height, 3, error);
-    if (result != RESULT_OK) return result;
+    TRY(image_create(sheet, 3 * width + 2 * GAP_PX, height, 3, error));
     memset(sheet->pixels, 255, image_size(sheet));
-    result = put_picture(sheet, 0, a, error);
-    if (result == RESULT_OK) result = put_picture(sheet, step, b, error);
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
-            heat_map_color(pixel_at(sheet, 2 * step + x, y),
-                           errors[(size_t)y * (size_t)width + (size_t)x]);
+    Result result = put_image(sheet, 0, a, error);
+    THEN(result, put_image(sheet, step, b, error));
+    THEN(result, heat_map_create(&map, errors, width, height, error));
+    THEN(result, put_image(sheet, 2 * step, &map, error));
+    image_destroy(&map);
     if (result != RESULT_OK) image_destroy(sheet);
     return result;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pictures that show where two others differ.
+// Images that show where two others differ.
 #pragma once
 
 #include "base/error.h"
@@ -13,8 +13,8 @@ void heat_map_color(uint8_t rgb[3], float error);
 // is short.
 Result heat_map_create(Image *image, const float *errors, int width, int height, Error *error);
 
-// A, B and the heat map of their errors side by side, with a gap between; what is transparent shows
-// a chequered ground, floats are clamped. `a` and `b` have one size. RESULT_FAILED when memory is
-// short or the sheet is larger than pictures may be.
+// A, B and the heat map of their errors side by side, with a gap between. Transparent parts show
+// grey squares, floats are clamped. `a` and `b` have one size. RESULT_FAILED when memory is short
+// or the sheet is larger than an image can be.
 Result heat_map_create_sheet(Image *sheet, const Image *a, const Image *b, const float *errors,
                              Error *error);

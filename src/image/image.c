@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "image/image.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 Result image_create(Image *image, int width, int height, int channels, Error *error)
 {
@@ -45,4 +47,41 @@ double image_srgb_from_linear(double value)
 {
     value = fmin(fmax(value, 0), 1);
     return value <= 0.0031308 ? 12.92 * value : 1.055 * pow(value, 1 / 2.4) - 0.055;
+}
+
+// --- Contact sheets.
+
+static const double SHEET_MAX_BYTES = 1 << 30; // what the PNG writer takes
+
+Result image_sheet_create(ImageSheet *sheet, int columns, int rows, const Image *tile, Error *error)
+{
+    *sheet = (ImageSheet){.columns = columns, .rows = rows};
+    double size = (double)image_size(tile) * columns * rows;
+    if (size >= SHEET_MAX_BYTES)
+        return error_set(error, RESULT_USAGE,
+                         "a sheet of %d x %d tiles of %d x %d pixels has %.3g bytes, expected "
+                         "less than 1 GiB",
+                         columns, rows, tile->width, tile->height, size);
+    TRY(image_create_kind(&sheet->image, columns * tile->width, rows * tile->height, tile->channels,
+                          tile->kind, error));
+    memset(sheet->image.pixels, 0, image_size(&sheet->image));
+    return RESULT_OK;
+}
+
+void image_sheet_destroy(ImageSheet *sheet)
+{
+    image_destroy(&sheet->image);
+    *sheet = (ImageSheet){0};
+}
+
+void image_sheet_add(ImageSheet *sheet, const Image *tile)
+{
+    assert(sheet->count < sheet->columns * sheet->rows);
+    size_t line = image_size(tile) / (size_t)tile->height;
+    size_t row = (size_t)(sheet->count / sheet->columns) * (size_t)tile->height;
+    size_t column = (size_t)(sheet->count % sheet->columns);
+    for (size_t y = 0; y < (size_t)tile->height; ++y)
+        memcpy(sheet->image.pixels + ((row + y) * (size_t)sheet->columns + column) * line,
+               tile->pixels + y * line, line);
+    ++sheet->count;
 }

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A picture in memory, top row first, no padding between rows.
+// The room image: images on the CPU. It takes pixels or files (PNG, PFM), and hands on files,
+// contact sheets, and how much two images differ (compare.h, flip.h).
+//
+// This file: an image in memory, top row first, no padding between rows.
 #pragma once
 
 #include "base/error.h"
@@ -30,3 +33,20 @@ size_t image_size(const Image *image);
 // IEC 61966-2-1, between 0..1 and 0..1; what is linear is clamped to that first.
 double image_linear_from_srgb(double value);
 double image_srgb_from_linear(double value);
+
+// A contact sheet: images of one size side by side, row by row, without gaps.
+typedef struct ImageSheet {
+    Image image;
+    int columns, rows;
+    int count; // tiles that are filled
+} ImageSheet;
+
+// Room for columns x rows tiles of this size and kind; those that are never filled are black, or
+// transparent. RESULT_USAGE if the sheet has 1 GiB or more, RESULT_FAILED when memory is short.
+// Destroying a zeroed struct is legal.
+Result image_sheet_create(ImageSheet *sheet, int columns, int rows, const Image *tile,
+                          Error *error);
+void image_sheet_destroy(ImageSheet *sheet);
+
+// Fills the next tile, left to right and top to bottom. There must be one left.
+void image_sheet_add(ImageSheet *sheet, const Image *tile);

@@ -8,13 +8,10 @@
 
 #include <stdbool.h>
 
-// Encodes an image of 3 (RGB) or 4 (RGBA) channels. Made for speed: deflate level 1, filter 'up' in
-// every row. The same image gives the same bytes. May be called from several threads at once.
-// RESULT_FAILED when memory is short or the image has 1 GiB or more. Free `png` with bytes_destroy.
+// Encodes an IMAGE_8 or IMAGE_16. Made for speed: deflate level 1, filter 'up' in every row. The
+// same image gives the same bytes. May be called from several threads at once. RESULT_FAILED when
+// memory is short or the image has 1 GiB or more. Free `png` with bytes_destroy.
 Result png_encode(const Image *image, Bytes *png, Error *error);
-
-// The same for an IMAGE_16, which png_encode passes on here.
-Result png_encode16(const Image *image, Bytes *png, Error *error);
 
 // Encodes and writes; the file appears complete or not at all. RESULT_FAILED with path and reason.
 Result png_write(const char *path, const Image *image, Error *error);

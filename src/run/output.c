@@ -6,7 +6,6 @@
 #include "base/target.h"
 #include "image/pfm.h"
 #include "image/png.h"
-#include "image/sheet.h"
 #include "run/video.h"
 
 #include <assert.h>
@@ -35,8 +34,8 @@ typedef struct Slot {
 
 struct Output {
     Target target;
-    Video *video; // NULL unless a video is written
-    Sheet sheet;  // empty unless a contact sheet is; the worker's
+    Video *video;     // NULL unless a video is written
+    ImageSheet sheet; // empty unless a contact sheet is; the worker's
     Slot *slots;
     Slot **queue; // ring of `slot_count`, so there is always room
     int slot_count;
@@ -85,7 +84,7 @@ static Result take_frame(Output *output, const Slot *slot, uint64_t *bytes, Erro
 {
     if (output->video) return video_write(output->video, &slot->image, error);
     if (!output->sheet.columns) return write_image(output, &slot->image, slot->frame, bytes, error);
-    sheet_add(&output->sheet, &slot->image);
+    image_sheet_add(&output->sheet, &slot->image);
     return RESULT_OK;
 }
 
@@ -236,8 +235,8 @@ static Result start_worker(Output *output, Error *error)
 static Result start_sheet(Output *output, const OutputOptions *options, Error *error)
 {
     if (!is_sheet(options)) return RESULT_OK;
-    Result result = sheet_create(&output->sheet, options->columns, options->rows,
-                                 &output->slots[0].image, error);
+    Result result = image_sheet_create(&output->sheet, options->columns, options->rows,
+                                       &output->slots[0].image, error);
     return result == RESULT_USAGE ? error_prefix(error, result, "%s: ", options->target) : result;
 }
 
@@ -362,7 +361,7 @@ void output_destroy(Output *output)
     if (!output) return;
     if (output->has_worker) stop_worker(output);
     video_destroy(output->video);
-    sheet_destroy(&output->sheet);
+    image_sheet_destroy(&output->sheet);
     for (int i = 0; i < output->slot_count; i++) image_destroy(&output->slots[i].image);
     free(output->slots);
     free(output->queue);

@@ -7,15 +7,15 @@ golden=tests/golden
 
 a=$golden/curls_still.png b=$golden/curls_split.png other=$golden/fur_transparent.png
 
-claim "a picture is the same as itself"
-run 0 $a $a; says "same: RMSE 0, PSNR inf dB, SSIM 1, FLIP 0"; says "1 picture: 1 same"; silent err
+claim "an image is the same as itself"
+run 0 $a $a; says "same: RMSE 0, PSNR inf dB, SSIM 1, FLIP 0"; says "1 image: 1 same"; silent err
 run 0 $other $other
 run 0 -q $a $a; silent out; silent err
 
-claim "different pictures are told with status 1"
+claim "different images give status 1"
 run 1 $a $b; says "different: RMSE"; says "1 different; largest FLIP"; silent err
 run 1 -q $a $b; silent out; silent err
-run 1 $a $other; says "sizes: 160 x 120 and 128 x 128 pixels"
+run 1 $a $other; says "size mismatch: 160 x 120 and 128 x 128 pixels"
 
 claim "each limit alone decides"
 run 0 $a $b --pixel-tolerance 255
@@ -45,7 +45,7 @@ for file in "$work/text.png" "$work/cut.png" "$work/missing.png"; do
 done
 run 3 "$work/nothing/" $golden; says "nothing"
 mkdir "$work/empty"
-run 3 "$work/empty" "$work/empty"; says "no picture in either"
+run 3 "$work/empty" "$work/empty"; says "no image in either"
 
 claim "help and version are answered"
 run 0 --help; says "--max-failing-pixels N|P%"; run 0 --help=man; says ".TH TRACTRIX-COMPARE 1"; run 0 --version; says "tractrix-compare "
@@ -61,21 +61,21 @@ run 1 $a $b --heatmap "$work/none/heat.png"; says "none"; one_line
 claim "folders go frame by frame; what one lacks is missing"
 mkdir "$work/a" "$work/b"
 for i in 1 2 3 4; do cp $a "$work/a/f_$i.png"; cp $a "$work/b/f_$i.png"; done
-run 0 "$work/a" "$work/b"; says "f_1.png: same"; says "4 pictures: 4 same"
+run 0 "$work/a" "$work/b"; says "f_1.png: same"; says "4 images: 4 same"
 cp $b "$work/b/f_2.png"; rm "$work/b/f_3.png"; cp $other "$work/b/f_4.png"; cp $b "$work/b/f_5.png"
 for jobs in 1 4; do
     run 1 "$work/a" "$work/b" -j $jobs --heatmap "$work/heats$jobs" --sheet "$work/sheets" --json "$work/report.json" --junit "$work/report.xml"
-    says "f_2.png: different"; says "f_3.png: missing: no $work/b/f_3.png"; says "f_4.png: sizes"; says "f_5.png: missing: no $work/a/f_5.png"
-    says "5 pictures: 1 same, 1 different, 1 sizes, 2 missing"
+    says "f_2.png: different"; says "f_3.png: missing: no $work/b/f_3.png"; says "f_4.png: size mismatch"; says "f_5.png: missing: no $work/a/f_5.png"
+    says "5 images: 1 same, 1 different, 1 size mismatch, 2 missing"
     is_png "$work/heats$jobs/f_2.png"; is_png "$work/sheets/f_2.png"; none "$work/heats$jobs/f_1.png"
     mv "$work/out" "$work/out$jobs"; : >"$work/out"
 done
 equal "$work/out1" "$work/out4"; equal "$work/heats1/f_2.png" "$work/heats4/f_2.png"
-in_file "$work/report.json" '"outcome": "sizes"'; in_file "$work/report.json" '"missing": 2'; in_file "$work/report.json" '"psnr_db": null'
+in_file "$work/report.json" '"outcome": "size mismatch"'; in_file "$work/report.json" '"missing": 2'; in_file "$work/report.json" '"psnr_db": null'
 in_file "$work/report.xml" 'tests="5" failures="4" errors="0"'; in_file "$work/report.xml" '<failure type="missing"'
-run 1 "$work/a/f_%d.png" "$work/b/f_%d.png"; says "5 pictures: 1 same, 1 different, 1 sizes, 2 missing"
+run 1 "$work/a/f_%d.png" "$work/b/f_%d.png"; says "5 images: 1 same, 1 different, 1 size mismatch, 2 missing"
 
-claim "one unreadable picture among others is status 3, and they are still compared"
+claim "one unreadable image among others is status 3, and they are still compared"
 cp "$work/text.png" "$work/b/f_1.png"
 run 3 "$work/a" "$work/b" --junit "$work/report.xml"; says "f_1.png: unreadable"; says "f_2.png: different"; one_line
 in_file "$work/report.xml" 'errors="1"'; in_file "$work/report.xml" '<error type="unreadable"'
@@ -91,7 +91,7 @@ run 0 "$work/new/" "$work/b" --update; equal "$work/new/f_6.png" $b
 run 0 "$work/new.png" $b --update; equal "$work/new.png" $b
 run 1 "$work/none/new.png" $b --update; one_line; says "none/new.png"
 
-claim "a reference without a new picture is told and left"
+claim "a reference without a new image is reported and left"
 rm "$work/b/f_6.png"
 run 1 "$work/a" "$work/b" --update; says "f_6.png: missing"; equal "$work/a/f_6.png" $b
 
@@ -107,7 +107,7 @@ goldens() {
     if [ $status = "$expected" ]; then good; else bad "exit status $status, expected $expected"; fi
 }
 goldens 0 --update; says "3 references updated"
-goldens 0; says "3 pictures: 3 same"; none "$work/result/sheets/plain.png"
+goldens 0; says "3 images: 3 same"; none "$work/result/sheets/plain.png"
 printf 'plain %s --color #ff0000\n' "$small" >"$work/list"
 goldens 1 --pixel-tolerance 8 --max-failing-pixels 1%; says "plain.png: different"; says "two_00.png: missing"
 is_png "$work/result/sheets/plain.png"; in_file "$work/result/report.xml" "plain.png"

@@ -5,7 +5,6 @@
 #include "image/flip.h"
 #include "image/float_image.h"
 #include "image/heat_map.h"
-#include "image/ssim.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -158,7 +157,7 @@ static void equal_plates_score_exactly_nothing(void **state)
         float map[W * H];
         double mean = 1, ssim = 0;
         assert_int_equal(flip_compare(map, &mean, &a, &b, 67, NULL), RESULT_OK);
-        assert_int_equal(ssim_compare(&ssim, &a, &b, NULL), RESULT_OK);
+        assert_int_equal(compare_ssim(&ssim, &a, &b, NULL), RESULT_OK);
         assert_true(mean == 0 && ssim == 1);
         for (int p = 0; p < W * H; ++p) assert_true(map[p] == 0);
         float_image_destroy(&a);
@@ -175,7 +174,7 @@ static void the_order_of_pictures_does_not_matter(void **state)
     double flip[2], ssim[2];
     for (int i = 0; i < 2; ++i) {
         flip_compare(map, &flip[i], i ? &a : &b, i ? &b : &a, 67, NULL);
-        ssim_compare(&ssim[i], i ? &a : &b, i ? &b : &a, NULL);
+        compare_ssim(&ssim[i], i ? &a : &b, i ? &b : &a, NULL);
     }
     assert_true(flip[0] == flip[1] && fabs(ssim[0] - ssim[1]) < 1e-12);
     float_image_destroy(&a);
@@ -193,7 +192,7 @@ static void a_single_pixel_can_be_compared(void **state)
         FloatImage a = {1, 1, white}, b = {1, 1, black};
         double flip, ssim;
         assert_int_equal(flip_compare(&map, &flip, &a, &b, ppds[i], NULL), RESULT_OK);
-        assert_int_equal(ssim_compare(&ssim, &a, &b, NULL), RESULT_OK);
+        assert_int_equal(compare_ssim(&ssim, &a, &b, NULL), RESULT_OK);
         assert_true(fabs(flip - 0.967379762) < FLIP_TOLERANCE);
         assert_true(fabs(ssim - 6.5025 / (65025 + 6.5025)) < 1e-12);
     }
