@@ -9,7 +9,7 @@
 typedef uint32_t uint;
 typedef uint uvec4[4] __attribute__((aligned(16)));
 #define UNIFORM_BLOCK(type, instance, at) typedef struct type
-#define END_BLOCK(type, instance)         type
+#define END_BLOCK(type, instance)         __attribute__((aligned(16))) type
 #else
 #define UNIFORM_BLOCK(type, instance, at) layout(std140, binding = at) uniform type
 #define END_BLOCK(type, instance)         instance
@@ -23,6 +23,7 @@ typedef uint uvec4[4] __attribute__((aligned(16)));
 #define BIND_STEP     0
 #define BIND_DRAW     1
 #define BIND_MATERIAL 2
+#define BIND_SOLVER   3 // a solver's own parameters
 
 // Shader storage.
 #define BIND_POSITION_OUT   0 // vec4 a particle: where a solver puts the strand that is drawn

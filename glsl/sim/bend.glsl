@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Bending and twist towards the style: a rod without a twist of its own (after Bergou et al.: Discrete Elastic Rods, SIGGRAPH 2008) whose
-// frames are turned as little as possible from segment to segment. Needs keep.glsl, lane.glsl.
+// frames are turned as little as possible from segment to segment. Needs chain_params.h, keep.glsl, strand.glsl.
 //
 // The head's rotation is the frame Q_0. Segment j of direction t_j would go on as the style does along a_j = Q_{j-1} (the style's
 // direction j); Q_j is Q_{j-1} turned by the smallest rotation from a_j to t_j. Energy: E = sum beta_j (1 - t_j.a_j), beta_j = K (n-1)^2 l_j: the
@@ -30,8 +30,6 @@
 // that is above 1.
 const float MASS = 3.0;
 
-#define BEND step_params.own[0].y // K
-
 #if IN_REGISTERS
 vec3 kept_goal[VERTICES];
 void keep_goal(int j, vec3 a) { kept_goal[j] = a; }
@@ -47,9 +45,9 @@ float recall_carried(int j) { return scratch[keep_base + (2 * j + 1) * STRAND_TI
 // (goals are no longer needed where tensions to carry on are kept)
 
 // What an acceleration moves particles by in a step, with the implicit style spring as it does gravity.
-float bend_acts(Lane lane) { return lane.dt * step_params.gain * (1.0 - lane.pull); }
+float bend_acts(Strand strand) { return strand.dt * step_params.gain * (1.0 - strand.spring.pull); }
 
-float bend_stiffness(int last) { return BEND * float(last) * float(last); } // K (n-1)^2
+float bend_stiffness(int last) { return chain_params.bend * float(last) * float(last); } // K (n-1)^2
 
 // From root to tip.
 struct Frames {
@@ -57,7 +55,7 @@ struct Frames {
     float energy;  // over K (n-1)^2
 };
 
-Frames frames_open(Lane lane) { return Frames(lane.rotation, 0.0); }
+Frames frames_open(Strand strand) { return Frames(strand.rotation, 0.0); }
 
 // Goes on to the segment of direction t; gives its a.
 vec3 frames_advance(inout Frames frames, vec3 t, vec4 rest)

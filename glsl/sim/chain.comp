@@ -15,9 +15,10 @@
 // steps would gain energy from either: energy_account.glsl. BENDS 1: bend.glsl's forces and masses enter the second system.
 //
 // The sweeps run along the strand to and fro; each undoes one elimination and does the next. Positions are relative to the new root.
+#include "sim/chain_params.h"
 #include "sim/particles.glsl"
 #include "sim/keep.glsl"
-#include "sim/lane.glsl"
+#include "sim/strand.glsl"
 #include "sim/tractrix.glsl"
 #include "sim/tridiagonal.glsl"
 #if BENDS
@@ -30,31 +31,31 @@ const float STIFF = 8.0; // the tension beyond which theta grows
 const float MOST_OFF = 0.5; // of a length, before tractrices take over
 
 // Where particle j would go without constraints, relative to the new root.
-vec3 predicted(Lane lane, int j, inout vec3 style)
+vec3 predicted(Strand strand, int j, inout vec3 style)
 {
-    vec3 q = fetch_position(lane, j);
-    return (q - lane.root) + predicted_move(lane, j, q, style);
+    vec3 q = fetch_position(strand, j);
+    return (q - strand.root) + predicted_move(strand, j, q, style);
 }
 
 // Root to tip: predictions; the tensions' rows. Gives the bending energy.
-float predict(Lane lane)
+float predict(Strand strand)
 {
     int last = LAST;
-    vec3 q_before = lane.root_old, p_before = vec3(0.0), r_before = vec3(0.0), style = vec3(0.0);
+    vec3 q_before = strand.root_old, p_before = vec3(0.0), r_before = vec3(0.0), style = vec3(0.0);
     Row row = NO_ROW;
     keep(0, vec4(0.0));
     keep_beside(0, 0.0);
 #if BENDS
-    Frames frames = frames_open(lane);
+    Frames frames = frames_open(strand);
 #endif
     for (int j = 1; j <= last; ++j) {
-        vec3 q = fetch_position(lane, j), p = predicted(lane, j, style), r = q - q_before, s = p - p_before;
-        float l = fetch_rest(lane, j).w, factor;
+        vec3 q = fetch_position(strand, j), p = predicted(strand, j, style), r = q - q_before, s = p - p_before;
+        float l = fetch_rest(strand, j).w, factor;
         row = eliminate(row, -dot(r, r_before), (j == 1 ? 1.0 : 2.0) * dot(r, r), l * (sqrt(dot(s, s)) - l), factor);
         keep(j, vec4(p, row.value));
         keep_beside(j, factor);
 #if BENDS
-        keep_goal(j, frames_advance(frames, r / l, fetch_rest(lane, j)));
+        keep_goal(j, frames_advance(frames, r / l, fetch_rest(strand, j)));
 #endif
         q_before = q, p_before = p, r_before = r;
     }
@@ -66,20 +67,20 @@ float predict(Lane lane)
 }
 
 // What corrections before this step have found missing in the tension of segment j (bend.glsl).
-float carried_tension(Lane lane, int j)
+float carried_tension(Strand strand, int j)
 {
 #if BENDS
-    return bend_acts(lane) * texelFetch(velocity_before, lane.address + j * STRAND_TILE).w;
+    return bend_acts(strand) * texelFetch(velocity_before, strand.address + j * STRAND_TILE).w;
 #else
     return 0.0;
 #endif
 }
 
 // At rest neither the tension nor what step 1 takes for it is more than the forces on all that is beyond.
-float limit_carried(Lane lane, int j, float carried)
+float limit_carried(Strand strand, int j, float carried)
 {
-    float move = lane.dt * length(lane.push) * (1.0 - lane.pull) + 2.0 * lane.length * lane.pull;
-    float most = 2.0 * float(LAST + 1 - j) * move / fetch_rest(lane, max(j, 1)).w;
+    float move = strand.dt * length(strand.push) * (1.0 - strand.spring.pull) + 2.0 * strand.length * strand.spring.pull;
+    float most = 2.0 * float(LAST + 1 - j) * move / fetch_rest(strand, max(j, 1)).w;
     return clamp(carried, -most, most);
 }
 
@@ -90,29 +91,29 @@ float implicit_share(float tension)
 }
 
 // Tip to root: tensions; rows of the positions.
-void pull_implicitly(Lane lane)
+void pull_implicitly(Strand strand)
 {
     float lambda = 0.0, factor_beyond = 0.0, implicit_beyond = 0.0;
-    vec3 g_beyond = vec3(0.0), q = fetch_position(lane, LAST), v = fetch_velocity(lane, LAST);
+    vec3 g_beyond = vec3(0.0), q = fetch_position(strand, LAST), v = fetch_velocity(strand, LAST);
     Row3 row = NO_ROW3;
 #if BENDS
-    float acts = bend_acts(lane), stiffness = acts * bend_stiffness(LAST), mass_beyond = 0.0, l_beyond = 0.0;
+    float acts = bend_acts(strand), stiffness = acts * bend_stiffness(LAST), mass_beyond = 0.0, l_beyond = 0.0;
     vec3 h_beyond = vec3(0.0);
     Moment moment = NO_MOMENT;
-    float kept = max(lane.decay, 1.0 - 0.9 / float(LAST));
+    float kept = max(strand.decay, 1.0 - 0.9 / float(LAST));
 #endif
     for (int j = LAST; j >= 1; --j) {
-        vec3 q_before = j == 1 ? lane.root_old : fetch_position(lane, j - 1), v_before = fetch_velocity(lane, j - 1);
+        vec3 q_before = j == 1 ? strand.root_old : fetch_position(strand, j - 1), v_before = fetch_velocity(strand, j - 1);
         vec4 k = recall(j);
         lambda = k.w - factor_beyond * lambda;
         factor_beyond = recall_beside(j);
-        float along = lambda + carried_tension(lane, j), tension = max(along, 0.0), theta = implicit_share(tension), factor;
-        vec3 r = q - q_before, r_old = r - lane.dt * (v - v_before);
+        float along = lambda + carried_tension(strand, j), tension = max(along, 0.0), theta = implicit_share(tension), factor;
+        vec3 r = q - q_before, r_old = r - strand.dt * (v - v_before);
         vec3 g = (along - tension) * r + tension * ((1.0 - 2.0 * theta) * r + theta * r_old);
         float off = implicit_beyond, diagonal = 1.0 + (theta * tension + implicit_beyond);
         vec3 y = k.xyz - g + g_beyond;
 #if BENDS
-        float l = fetch_rest(lane, j).w, mass = MASS * stiffness / l * max(1.0, 0.5 * l_beyond / l);
+        float l = fetch_rest(strand, j).w, mass = MASS * stiffness / l * max(1.0, 0.5 * l_beyond / l);
         vec3 h = mass * (r + kept * (r - r_old)) - stiffness * bend_gradient(r, l, recall_goal(j), moment);
         off += mass_beyond, diagonal += mass + mass_beyond, y += h - h_beyond;
         mass_beyond = mass, h_beyond = h, l_beyond = l;
@@ -124,7 +125,7 @@ void pull_implicitly(Lane lane)
 }
 
 // Root to tip: positions, of which only the segments are needed on; rows of the first correction.
-void correct(Lane lane)
+void correct(Strand strand)
 {
     int last = LAST;
     vec3 x_before = vec3(0.0), s_before = vec3(0.0);
@@ -135,7 +136,7 @@ void correct(Lane lane)
         vec3 x = k.xyz - factor_before * x_before, s = x - x_before;
         factor_before = k.w;
         float ss = dot(s, s), size = sqrt(ss);
-        row = eliminate(row, -dot(s, s_before), (j == 1 ? 1.0 : 2.0) * ss, ss - size * fetch_rest(lane, j).w, factor);
+        row = eliminate(row, -dot(s, s_before), (j == 1 ? 1.0 : 2.0) * ss, ss - size * fetch_rest(strand, j).w, factor);
         keep(j, vec4(s, row.value));
         keep_beside(j, factor);
         x_before = x, s_before = s;
@@ -149,7 +150,7 @@ struct Corrected {
 };
 
 // Tip to root: the first correction is applied; rows of the second.
-void correct_again(Lane lane)
+void correct_again(Strand strand)
 {
     float lambda = 0.0, factor_beyond = 0.0, factor;
     Corrected here = Corrected(vec3(0.0), vec3(0.0));
@@ -160,13 +161,13 @@ void correct_again(Lane lane)
         lambda = k.w - factor_beyond * lambda;
         factor_beyond = recall_beside(j);
 #if BENDS
-        keep_carried(j, limit_carried(lane, j, carried_tension(lane, j) + lambda));
+        keep_carried(j, limit_carried(strand, j, carried_tension(strand, j) + lambda));
 #endif
         vec3 t = lambda * k.xyz;
         if (j < LAST) {
             vec3 s = here.s + t + t_beyond - (j == 0 ? 1.0 : 2.0) * here.t;
             float ss = dot(s, s), size = sqrt(ss);
-            row = eliminate(row, -dot(s, s_beyond), (j == 0 ? 1.0 : 2.0) * ss, ss - size * fetch_rest(lane, j + 1).w, factor);
+            row = eliminate(row, -dot(s, s_beyond), (j == 0 ? 1.0 : 2.0) * ss, ss - size * fetch_rest(strand, j + 1).w, factor);
             keep(j + 1, vec4(s, row.value));
             keep_beside(j + 1, factor);
             s_beyond = s;
@@ -184,7 +185,7 @@ int finish_segment(int j, vec3 s, float l)
 }
 
 // Root to tip: the second correction is applied. Gives how far the worst segment is off.
-int finish(Lane lane)
+int finish(Strand strand)
 {
     int last = LAST, worst = 0;
     float lambda = 0.0, factor_before = 0.0;
@@ -197,38 +198,38 @@ int finish(Lane lane)
         vec3 t = lambda * k.xyz;
         if (j > 1) {
             vec3 s = here.s + t + t_before - (j == 2 ? 1.0 : 2.0) * here.t;
-            worst = max(worst, finish_segment(j - 1, s, fetch_rest(lane, j - 1).w));
+            worst = max(worst, finish_segment(j - 1, s, fetch_rest(strand, j - 1).w));
         }
         t_before = here.t, here = Corrected(k.xyz, t);
     }
-    return max(worst, finish_segment(last, here.s + t_before - (last == 1 ? 1.0 : 2.0) * here.t, fetch_rest(lane, last).w));
+    return max(worst, finish_segment(last, here.s + t_before - (last == 1 ? 1.0 : 2.0) * here.t, fetch_rest(strand, last).w));
 }
 
 // The velocity first: compilers may delay the fetch of q up to its use, beyond a store to the buffer that it comes from.
-void put(Lane lane, int j, vec3 x, vec3 q, float carried)
+void put(Strand strand, int j, vec3 x, vec3 q, float carried)
 {
-    velocities[lane.address + j * STRAND_TILE] = vec4((x - q) / lane.dt, carried);
-    positions[lane.address + j * STRAND_TILE] = vec4(x, 1.0);
+    velocities[strand.address + j * STRAND_TILE] = vec4((x - q) / strand.dt, carried);
+    positions[strand.address + j * STRAND_TILE] = vec4(x, 1.0);
 }
 
 // Root to tip: the strand is rebuilt and written.
-void write(Lane lane, inout Account account)
+void write(Strand strand, inout Account account)
 {
     int last = LAST;
-    vec3 x = lane.root, style = vec3(0.0);
+    vec3 x = strand.root, style = vec3(0.0);
 #if BENDS
-    Frames frames = frames_open(lane);
+    Frames frames = frames_open(strand);
 #endif
     for (int j = 1; j <= last; ++j) {
-        vec3 q = fetch_position(lane, j), v = fetch_velocity(lane, j), free = predicted_move(lane, j, q, style), s = recall(j).xyz;
+        vec3 q = fetch_position(strand, j), v = fetch_velocity(strand, j), free = predicted_move(strand, j, q, style), s = recall(j).xyz;
         x += s;
-        account_add(account, lane, x - q, free, v);
+        account_add(account, strand, x - q, free, v);
 #if BENDS
-        put(lane, j, x, q, recall_carried(j) / bend_acts(lane));
-        vec4 segment = fetch_rest(lane, j);
+        put(strand, j, x, q, recall_carried(j) / bend_acts(strand));
+        vec4 segment = fetch_rest(strand, j);
         frames_advance(frames, s / segment.w, segment);
 #else
-        put(lane, j, x, q, 0.0);
+        put(strand, j, x, q, 0.0);
 #endif
     }
 #if BENDS
@@ -238,50 +239,50 @@ void write(Lane lane, inout Account account)
 
 // Two passes of tractrices (those of hybrid.comp) instead. Rolled loops, so that a CPU driver, where all lanes go through every branch,
 // leaves them after a round where no strand needs them. What is kept on the way lies where the velocities will.
-void rescue(Lane lane, inout Account account)
+void rescue(Strand strand, inout Account account)
 {
     int last = int(step_params.vertex_count - 1u);
     vec3 style = vec3(0.0), sum = vec3(0.0), sum_before = vec3(0.0);
     float squares = 0.0, squares_before = 0.0;
     for (int j = 1; j <= last; ++j) {
-        vec3 before = fetch_velocity(lane, j) * lane.dt - account.moved_before;
+        vec3 before = fetch_velocity(strand, j) * strand.dt - account.moved_before;
         sum_before += before;
         squares_before += dot(before, before);
-        velocities[lane.address + j * STRAND_TILE] = vec4(predicted(lane, j, style), 0.0);
+        velocities[strand.address + j * STRAND_TILE] = vec4(predicted(strand, j, style), 0.0);
     }
-    vec3 y = velocities[lane.address + last * STRAND_TILE].xyz, q = fetch_position(lane, last);
+    vec3 y = velocities[strand.address + last * STRAND_TILE].xyz, q = fetch_position(strand, last);
     for (int j = last; j >= 1; --j) {
-        vec3 q_before = fetch_position(lane, j - 1), p = lane.root_old - lane.root;
-        if (j > 1) p = velocities[lane.address + (j - 1) * STRAND_TILE].xyz;
-        float l = fetch_rest(lane, j).w;
+        vec3 q_before = fetch_position(strand, j - 1), p = strand.root_old - strand.root;
+        if (j > 1) p = velocities[strand.address + (j - 1) * STRAND_TILE].xyz;
+        float l = fetch_rest(strand, j).w;
         vec3 d = direction(q_before - q), move = limit_move(y - (q + p - q_before));
         d = direction(tractrix_turn(d, l, move)); // far off where the move pushes exactly along the segment
         y += l * d;
-        velocities[lane.address + j * STRAND_TILE] = vec4(-d, 0.0);
+        velocities[strand.address + j * STRAND_TILE] = vec4(-d, 0.0);
         q = q_before;
     }
-    vec3 move = limit_move(-y), x = lane.root;
+    vec3 move = limit_move(-y), x = strand.root;
 #if BENDS
-    Frames frames = frames_open(lane);
+    Frames frames = frames_open(strand);
 #endif
     for (int j = 1; j <= last; ++j) {
-        float l = fetch_rest(lane, j).w;
-        vec3 d = tractrix_turn(tractrix_renormalise(velocities[lane.address + j * STRAND_TILE].xyz), l, move);
-        q = fetch_position(lane, j);
+        float l = fetch_rest(strand, j).w;
+        vec3 d = tractrix_turn(tractrix_renormalise(velocities[strand.address + j * STRAND_TILE].xyz), l, move);
+        q = fetch_position(strand, j);
         d = direction(d);
         x += l * d;
 #if BENDS
-        frames_advance(frames, d, fetch_rest(lane, j));
+        frames_advance(frames, d, fetch_rest(strand, j));
 #endif
         vec3 now = x - q - account.moved;
         sum += now;
         squares += dot(now, now);
-        put(lane, j, x, q, 0.0);
+        put(strand, j, x, q, 0.0);
     }
 #if BENDS
     account.stored = bend_stiffness(last) * frames.energy;
 #endif
-    account_add_sums(account, lane.dt * lane.push, sum, sum_before, squares, squares_before);
+    account_add_sums(account, strand.dt * strand.push, sum, sum_before, squares, squares_before);
 }
 
 void main()
@@ -289,17 +290,17 @@ void main()
     int s = first_strand();
     if (s >= int(step_params.strand_count)) return;
     keep_open(s);
-    Lane lane = lane_open(s);
-    float bent = predict(lane);
-    pull_implicitly(lane);
-    correct(lane);
-    correct_again(lane);
-    bool violent = finish(lane) > floatBitsToInt(MOST_OFF);
-    Account account = account_open(lane, bent);
+    Strand strand = strand_open(s, chain_params.spring);
+    float bent = predict(strand);
+    pull_implicitly(strand);
+    correct(strand);
+    correct_again(strand);
+    bool violent = finish(strand) > floatBitsToInt(MOST_OFF);
+    Account account = account_open(strand, bent);
     if (violent)
-        rescue(lane, account);
+        rescue(strand, account);
     else
-        write(lane, account);
-    positions[lane.address] = vec4(lane.root, 1.0);
-    account_close(account, lane, int(step_params.vertex_count - 1u));
+        write(strand, account);
+    positions[strand.address] = vec4(strand.root, 1.0);
+    account_close(account, strand, int(step_params.vertex_count - 1u));
 }

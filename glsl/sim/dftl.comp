@@ -5,11 +5,9 @@
 // leader|. That alone acts as if all mass sat at the leader; so the velocity gets back what the follower's correction d' took:
 //     v_i = (x'_i - x_i)/dt - s d'_{i+1}/dt,      s: ftl_damping
 //
-// STYLED 1: before that, p is drawn to the style (style_spring.glsl).
+// STYLED 1: before that, p is drawn to the style (style_spring.h).
+#include "sim/dftl_params.h"
 #include "sim/particles.glsl"
-#include "sim/style_spring.glsl"
-
-#define FTL_DAMPING step_params.own[0].y
 
 void main()
 {
@@ -17,11 +15,11 @@ void main()
     if (s >= int(step_params.strand_count)) return;
     int a = strand_base(s);
     vec3 wind = strand_wind(texelFetch(strand_id, s).x, root_position(strand_root(a)));
-    float dt = step_params.dt, per_second = 1.0 / step_params.dt, damping = FTL_DAMPING;
+    float dt = step_params.dt, per_second = 1.0 / step_params.dt, damping = dftl_params.damping;
     vec3 leader = root_position(strand_root(a)), leader_velocity = vec3(0.0);
     vec4 rotation = step_params.head_rotation;
     vec3 root = leader, style = vec3(0.0), along = rotate(rotation, texelFetch(rest, a + STRAND_TILE).xyz);
-    float pull = STYLE_PULL;
+    float pull = dftl_params.spring.pull;
     carry_lead(a);
     positions[a] = vec4(leader, 1.0);
     for (int j = 1; j < n; ++j, a += STRAND_TILE) {

@@ -6,71 +6,69 @@
 //      first of them every segment follows as seen from its tail's own p, which moves along (as in hybrid.comp), so that the others have
 //      little left to go and it hardly matters in which order
 //   3. pull the root to where the head carries it
-//   4. velocities: projected on what the new shape allows, energy balanced (project.glsl). Second order
+//   4. velocities: projected on what the new shape allows, energy balanced (constrain.glsl). Second order
 // THESIS: order from root to tip, predictions by a kick alone, and as published v = (x - q)/dt + k (style - x) dt. That is unstable: hair
 // without drag speeds up to 3 .. 14 m/s by itself.
 //
 // State of the pulls: unit directions d (j - 1 to j) with lengths. Where the particle that is pulled next has come to is summed up on the way.
 // A step of long strands takes several dispatches (step_params.phase), each with MOST_LINKS links to turn.
+#include "sim/emulation_params.h"
 #include "sim/particles.glsl"
 #include "sim/keep.glsl"
-#include "sim/lane.glsl"
+#include "sim/strand.glsl"
 #include "sim/shuffle.glsl"
 #include "sim/tractrix.glsl"
 #include "sim/tridiagonal.glsl"
 #if !THESIS
 #include "sim/midpoint.glsl"
-#include "sim/project.glsl"
+#include "sim/constrain.glsl"
 #endif
-
-#define EXPLICIT_STIFFNESS step_params.own[0].y // thesis: k, 1/s^2
-#define SHUFFLE            step_params.passes
 
 const uint MOST_LINKS = 40000u; // as in solver_emulation.c
 
-vec4 link_at(Lane lane, int j, vec3 q, vec3 q_before) { return vec4(direction(q - q_before), fetch_rest(lane, j).w); }
+vec4 link_at(Strand strand, int j, vec3 q, vec3 q_before) { return vec4(direction(q - q_before), fetch_rest(strand, j).w); }
 
 // Where particles want to go, and the links at the step's start. The root stands at 0; thesis: the new root.
 #if THESIS
-void predict(Lane lane)
+void predict(Strand strand)
 {
     int last = int(step_params.vertex_count - 1u);
-    vec3 q_before = lane.root_old, style = vec3(0.0);
+    vec3 q_before = strand.root_old, style = vec3(0.0);
     for (int j = 1; j <= last; ++j) {
-        vec3 q = fetch_position(lane, j), p = (q - lane.root) + predicted_move(lane, j, q, style);
-        keep(j, link_at(lane, j, q, q_before));
-        keep_velocity(lane.address + j * STRAND_TILE, j, vec4(p, 0.0));
+        vec3 q = fetch_position(strand, j), p = (q - strand.root) + predicted_move(strand, j, q, style);
+        keep(j, link_at(strand, j, q, q_before));
+        keep_velocity(strand.address + j * STRAND_TILE, j, vec4(p, 0.0));
         q_before = q;
     }
-    keep(0, vec4(lane.root_old - lane.root, 0.0));
+    keep(0, vec4(strand.root_old - strand.root, 0.0));
 }
 
-vec3 aim_of(Lane lane, int j) { return recall_velocity(lane.address + j * STRAND_TILE, j).xyz; }
+vec3 aim_of(Strand strand, int j) { return recall_velocity(strand.address + j * STRAND_TILE, j).xyz; }
 #else
-void predict(Lane lane)
+void predict(Strand strand)
 {
-    Middle middle = middle_open(lane);
-    vec3 q = fetch_position(lane, LAST);
+    Middle middle = middle_open(strand);
+    vec3 q = fetch_position(strand, LAST);
     for (int j = LAST; j >= 1; --j) {
-        vec3 q_before = j == 1 ? lane.root_old : fetch_position(lane, j - 1);
-        middle_place(middle, lane, j, q);
-        keep(j, link_at(lane, j, q, q_before));
+        vec3 q_before = j == 1 ? strand.root_old : fetch_position(strand, j - 1);
+        middle_place(middle, strand, j, q);
+        keep(j, link_at(strand, j, q, q_before));
         q = q_before;
     }
     keep(0, vec4(vec3(0.0), middle.gained));
 }
 
-vec3 aim_of(Lane lane, int j) { return j == 0 ? vec3(0.0) : recall_aim(lane.address + j * STRAND_TILE, j); }
+vec3 aim_of(Strand strand, int j) { return j == 0 ? vec3(0.0) : recall_aim(strand.address + j * STRAND_TILE, j); }
 
 // Pulls particle i to where it wants to go, and lets the others follow as seen from where they want to go. Gives where particle `next` is
 // then, as pull does.
-vec3 pull_along(Lane lane, int i, int next)
+vec3 pull_along(Strand strand, int i, int next)
 {
     int last = int(step_params.vertex_count - 1u);
-    vec3 target = aim_of(lane, i), at = target, x = target;
+    vec3 target = aim_of(strand, i), at = target, x = target;
     for (int j = i + 1; j <= last; ++j) {
         vec4 link = recall(j);
-        vec3 move = limit_move(x + link.w * link.xyz - aim_of(lane, j));
+        vec3 move = limit_move(x + link.w * link.xyz - aim_of(strand, j));
         vec3 d = tractrix_turn(link.xyz, link.w, move);
         keep(j, vec4(d, link.w));
         x += link.w * d;
@@ -79,7 +77,7 @@ vec3 pull_along(Lane lane, int i, int next)
     x = target;
     for (int j = i; j >= 1; --j) {
         vec4 link = recall(j);
-        vec3 move = limit_move(x - link.w * link.xyz - aim_of(lane, j - 1));
+        vec3 move = limit_move(x - link.w * link.xyz - aim_of(strand, j - 1));
         vec3 d = -tractrix_turn(-link.xyz, link.w, move);
         keep(j, vec4(d, link.w));
         x -= link.w * d;
@@ -90,10 +88,10 @@ vec3 pull_along(Lane lane, int i, int next)
 #endif
 
 // Pulls particle i, now at x, to where it wants to go. Gives where particle `next` is then.
-vec3 pull(Lane lane, int i, int next, vec3 x)
+vec3 pull(Strand strand, int i, int next, vec3 x)
 {
     int last = int(step_params.vertex_count - 1u);
-    vec3 target = aim_of(lane, i), at = target;
+    vec3 target = aim_of(strand, i), at = target;
     vec3 move = limit_move(target - x);
     for (int j = i + 1; j <= last; ++j) {
         vec4 link = recall(j);
@@ -122,11 +120,11 @@ int next_mover(inout Shuffle order, uint end)
 }
 
 // The moves of this phase; whether they were the last. Place 0 has where the root is by then, and what the step's middle has gained.
-bool pull_all(Lane lane)
+bool pull_all(Strand strand)
 {
     uint count = step_params.vertex_count - 1u, phase = step_params.phase;
     uint most = IN_REGISTERS == 1 ? 2u * count : MOST_LINKS / count, start = phase * most;
-    Shuffle order = shuffle_open(SHUFFLE, count, start);
+    Shuffle order = shuffle_open(emulation_params.order_seed, count, start);
     if (start >= order.size) return false; // longer strands need more phases
     uint end = min(start + most, order.size);
     Shuffle counted = order;
@@ -142,13 +140,13 @@ bool pull_all(Lane lane)
 #if !THESIS
     if (phase == 0u) {
         int next = next_mover(order, end);
-        x = pull_along(lane, i, next);
+        x = pull_along(strand, i, next);
         i = next, --moves;
     }
 #endif
     for (int k = 0; k < moves; ++k) {
         int next = next_mover(order, end);
-        x = pull(lane, i, next, x);
+        x = pull(strand, i, next, x);
         i = next;
     }
     keep(0, vec4(x, root.w));
@@ -162,32 +160,32 @@ vec3 home(inout vec3 move, int j)
     return tractrix_renormalise(tractrix_turn(tractrix_renormalise(link.xyz), link.w, move));
 }
 
-void finish(Lane lane)
+void finish(Strand strand)
 {
     int last = int(step_params.vertex_count - 1u);
     vec4 root = recall(0);
     vec3 move = limit_move(-root.xyz), x = vec3(0.0);
 #if THESIS
     vec3 style = vec3(0.0);
-    velocities[lane.address] = vec4(lane.root_velocity, 0.0);
-    positions[lane.address] = vec4(lane.root, 1.0);
+    velocities[strand.address] = vec4(strand.root_velocity, 0.0);
+    positions[strand.address] = vec4(strand.root, 1.0);
     for (int j = 1; j <= last; ++j) {
-        int a = lane.address + j * STRAND_TILE;
-        vec4 r = fetch_rest(lane, j);
-        vec3 q = fetch_position(lane, j);
+        int a = strand.address + j * STRAND_TILE;
+        vec4 r = fetch_rest(strand, j);
+        vec3 q = fetch_position(strand, j);
         x += r.w * home(move, j);
-        style = next_style(style, r, lane.rotation);
-        velocities[a] = vec4((x - (q - lane.root)) / lane.dt + EXPLICIT_STIFFNESS * lane.dt * (style - x), 0.0);
-        positions[a] = vec4(lane.root + x, 1.0);
+        style = next_style(style, r, strand.rotation);
+        velocities[a] = vec4((x - (q - strand.root)) / strand.dt + strand.spring.stiffness * strand.dt * (style - x), 0.0);
+        positions[a] = vec4(strand.root + x, 1.0);
     }
 #else
-    Projection projection = project_open(lane);
+    Constraint constraint = constrain_open(strand);
     for (int j = 1; j <= last; ++j) {
         vec3 d = home(move, j);
-        x += fetch_rest(lane, j).w * d;
-        project_add(projection, lane, j, d, x);
+        x += fetch_rest(strand, j).w * d;
+        constrain_add(constraint, strand, j, d, x);
     }
-    project_finish(projection, lane, root.w);
+    constrain_finish(constraint, strand, root.w);
 #endif
 }
 
@@ -196,7 +194,7 @@ void main()
     int s = first_strand();
     if (s >= int(step_params.strand_count)) return;
     keep_open(s);
-    Lane lane = lane_open(s);
-    if (step_params.phase == 0u) predict(lane);
-    if (pull_all(lane)) finish(lane);
+    Strand strand = strand_open(s, emulation_params.spring);
+    if (step_params.phase == 0u) predict(strand);
+    if (pull_all(strand)) finish(strand);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // An account of the energy that constraints give to a strand, which is none if they are kept exactly, and a guard against more than a
-// little of it (needs particles.glsl, lane.glsl). Seen from the root, whose acceleration then acts like a force on all particles, particle j
+// little of it (needs particles.glsl, strand.glsl). Seen from the root, whose acceleration then acts like a force on all particles, particle j
 // of mass 1 goes by m_j in a step, after u_j dt in the one before; without constraints it would go by f_j. Then
 //
 //     K' - K = sum (m - u dt).(m + u dt)/2/dt^2 = work of the forces + X,      X = sum (m - f).(m + u dt)/2/dt^2
@@ -18,16 +18,16 @@ struct Account {
     float stored_before, stored; // in springs that count as constraints
 };
 
-Account account_open(Lane lane, float stored)
+Account account_open(Strand strand, float stored)
 {
-    vec3 before = texelFetch(velocity_before, lane.address).xyz * lane.dt;
-    return Account(lane.root - lane.root_old, before, 0.0, 0.0, 0.0, stored, stored);
+    vec3 before = texelFetch(velocity_before, strand.address).xyz * strand.dt;
+    return Account(strand.root - strand.root_old, before, 0.0, 0.0, 0.0, stored, stored);
 }
 
 // A particle that has gone by `move`, would have gone by `free` without constraints, and had the velocity v.
-void account_add(inout Account account, Lane lane, vec3 move, vec3 free, vec3 v)
+void account_add(inout Account account, Strand strand, vec3 move, vec3 free, vec3 v)
 {
-    vec3 now = move - account.moved, before = v * lane.dt - account.moved_before, forced = free - account.moved;
+    vec3 now = move - account.moved, before = v * strand.dt - account.moved_before, forced = free - account.moved;
     account.squares += dot(now, now);
     account.linear += dot(now, before - forced);
     account.constant -= dot(forced, before);
@@ -52,25 +52,25 @@ float share_within(float a, float b, float c)
 }
 
 // Scales the strand's move by `share` and its velocities by `kept` besides. Gives what springs store then.
-float account_slow(inout Account account, Lane lane, int last, float share, float kept)
+float account_slow(inout Account account, Strand strand, int last, float share, float kept)
 {
 #if BENDS
-    Frames frames = frames_open(lane);
+    Frames frames = frames_open(strand);
 #endif
     float squares = 0.0;
-    vec3 x = lane.root, x_full = lane.root, q = lane.root_old, root = account.moved / lane.dt;
+    vec3 x = strand.root, x_full = strand.root, q = strand.root_old, root = account.moved / strand.dt;
     for (int j = 1; j <= last; ++j) {
-        int a = lane.address + j * STRAND_TILE;
+        int a = strand.address + j * STRAND_TILE;
         vec4 v = velocities[a];
-        vec3 full = positions[a].xyz, from = full - lane.dt * v.xyz;
-        vec4 segment = fetch_rest(lane, j);
+        vec3 full = positions[a].xyz, from = full - strand.dt * v.xyz;
+        vec4 segment = fetch_rest(strand, j);
         vec3 d = direction(mix(from - q, full - x_full, share));
         x += segment.w * d;
         x_full = full, q = from;
 #if BENDS
         frames_advance(frames, d, segment);
 #endif
-        velocities[a] = vec4(root + kept * ((x - from) / lane.dt - root), v.w);
+        velocities[a] = vec4(root + kept * ((x - from) / strand.dt - root), v.w);
         positions[a] = vec4(x, 1.0);
         vec3 now = x - from - account.moved;
         squares += dot(now, now);
@@ -85,11 +85,11 @@ float account_slow(inout Account account, Lane lane, int last, float share, floa
 
 // Writes the root's velocity with the account, and slows the strand down if need be. Its loop is rolled, so that a CPU driver leaves it
 // after a round where no strand needs it.
-void account_close(Account account, Lane lane, int last)
+void account_close(Account account, Strand strand, int last)
 {
-    float per_square = 0.5 / (lane.dt * lane.dt), kinetic = per_square * account.squares, linear = per_square * account.linear + (account.stored - account.stored_before);
-    float constant = texelFetch(velocity_before, lane.address).w + per_square * account.constant;
-    float fall = ALLOWED * 0.5 * float(last) * lane.length * length(lane.push) / step_params.gain;
+    float per_square = 0.5 / (strand.dt * strand.dt), kinetic = per_square * account.squares, linear = per_square * account.linear + (account.stored - account.stored_before);
+    float constant = texelFetch(velocity_before, strand.address).w + per_square * account.constant;
+    float fall = ALLOWED * 0.5 * float(last) * strand.length * length(strand.push) / step_params.gain;
     float gained = kinetic + linear + constant, over = max(gained, 0.0) - (fall + ALLOWED * kinetic), share = 1.0, kept = 1.0;
     bool guards = over > 0.0 && kinetic > 0.0 && over < 1e30;
     if (guards) {
@@ -98,8 +98,8 @@ void account_close(Account account, Lane lane, int last)
         gained = kinetic + share * linear + constant;
         over = clamp(gained - (fall + ALLOWED * kinetic), 0.0, kinetic);
         kept = kinetic > 0.0 ? sqrt(1.0 - over / kinetic) : 1.0;
-        gained += account_slow(account, lane, last, share, kept) - mix(account.stored_before, account.stored, share) - over;
+        gained += account_slow(account, strand, last, share, kept) - mix(account.stored_before, account.stored, share) - over;
         gained += kept * kept * (per_square * account.squares - kinetic);
     }
-    velocities[lane.address] = vec4(account.moved / lane.dt, gained > 0.0 && gained < 1e30 ? gained : 0.0); // 0 for a NaN
+    velocities[strand.address] = vec4(account.moved / strand.dt, gained > 0.0 && gained < 1e30 ? gained : 0.0); // 0 for a NaN
 }

@@ -4,44 +4,45 @@
 //   1. where particles want to go, p: midpoint.glsl
 //   2. tip to root: every segment follows its tip's new place as a tractrix, seen from its root end's own p, which moves along
 //   3. root to tip: the root is pulled home, the strand follows
-//   4. velocities: projected on what the new shape allows, energy balanced (project.glsl)
+//   4. velocities: projected on what the new shape allows, energy balanced (constrain.glsl)
 //
 // It is the tractrices that make long steps calm: with directions of p alone, or with one pass, the energy of loose strands rises without end.
+#include "sim/hybrid_params.h"
 #include "sim/particles.glsl"
 #include "sim/keep.glsl"
-#include "sim/lane.glsl"
+#include "sim/strand.glsl"
 #include "sim/tractrix.glsl"
 #include "sim/tridiagonal.glsl"
 #include "sim/midpoint.glsl"
-#include "sim/project.glsl"
+#include "sim/constrain.glsl"
 
 // Tip to root. Keeps the segments' directions; gives where the root ends, relative to where it must go.
-vec3 pull_tip(Lane lane, inout Middle middle)
+vec3 pull_tip(Strand strand, inout Middle middle)
 {
-    vec3 q = fetch_position(lane, LAST), y = middle_place(middle, lane, LAST, q);
+    vec3 q = fetch_position(strand, LAST), y = middle_place(middle, strand, LAST, q);
     for (int j = LAST; j >= 1; --j) {
-        vec3 q_before = j == 1 ? lane.root_old : fetch_position(lane, j - 1);
-        vec3 move = limit_move(y - (q - lane.root_old) - lane.dt * middle.w);
-        float l = fetch_rest(lane, j).w;
+        vec3 q_before = j == 1 ? strand.root_old : fetch_position(strand, j - 1);
+        vec3 move = limit_move(y - (q - strand.root_old) - strand.dt * middle.w);
+        float l = fetch_rest(strand, j).w;
         vec3 d = tractrix_turn(direction(q_before - q), l, move);
         y += l * d;
         keep(j, vec4(-d, 0.0));
-        if (j > 1) middle_place(middle, lane, j - 1, q_before);
+        if (j > 1) middle_place(middle, strand, j - 1, q_before);
         q = q_before;
     }
     return y;
 }
 
-void pull_root(inout Projection projection, Lane lane, vec3 move)
+void pull_root(inout Constraint constraint, Strand strand, vec3 move)
 {
     int last = LAST;
     vec3 x = vec3(0.0);
     for (int j = 1; j <= last; ++j) {
-        float l = fetch_rest(lane, j).w;
+        float l = fetch_rest(strand, j).w;
         vec3 d = tractrix_renormalise(recall(j).xyz);
         d = tractrix_renormalise(tractrix_turn(d, l, move));
         x += l * d;
-        project_add(projection, lane, j, d, x);
+        constrain_add(constraint, strand, j, d, x);
     }
 }
 
@@ -50,10 +51,10 @@ void main()
     int s = first_strand();
     if (s >= int(step_params.strand_count)) return;
     keep_open(s);
-    Lane lane = lane_open(s);
-    Middle middle = middle_open(lane);
-    vec3 root_off = pull_tip(lane, middle);
-    Projection projection = project_open(lane);
-    pull_root(projection, lane, limit_move(-root_off));
-    project_finish(projection, lane, middle.gained);
+    Strand strand = strand_open(s, hybrid_params.spring);
+    Middle middle = middle_open(strand);
+    vec3 root_off = pull_tip(strand, middle);
+    Constraint constraint = constrain_open(strand);
+    pull_root(constraint, strand, limit_move(-root_off));
+    constrain_finish(constraint, strand, middle.gained);
 }

@@ -7,48 +7,45 @@
 //   3. velocities in the middle, w = vs - J^T lambda, where pushing (lambda-) acts along d, and pulling along the directions that w itself
 //      leads to, d = (r + h (w_j - w_{j-1}))/l: with T = lambda+/l a tridiagonal system again, (I + h Laplacian(T)) w = vs - J^T lambda- -
 //      Laplacian(T) q. No tension is too stiff for it.
-// From there particles want to go to p = q + dt w, and have u = 2w - v+ (project.glsl goes on from there): as w.(w - v+) = 0 for rigid
+// From there particles want to go to p = q + dt w, and have u = 2w - v+ (constrain.glsl goes on from there): as w.(w - v+) = 0 for rigid
 // segments, |u| = |v+|, and the kicks add what gravity does along dt w. Second order, and energy neither comes nor goes, but for what
-// tractrices change about p (see project.glsl).
+// tractrices change about p (see constrain.glsl).
 //
 // The springs' end that counts is q + theta dt w, theta = 1/2 .. 1 as k h^2 grows: second order for soft ones, damped for stiff ones;
-//     keep = 1/(1 + z + z^2/(1 + z)),  draw = keep z/h,  z = k h^2 (step_midpoint in step_uniforms.c).
-// The sweeps run to and fro. Needs lane.glsl, tridiagonal.glsl, and keep, recall (vec4 a particle), keep_beside, recall_beside.
-#define SPRING_KEEP      step_params.own[1].x
-#define SPRING_DRAW      step_params.own[1].y // 1/s
-#define SPRING_STIFFNESS step_params.own[1].z // k, 1/s^2
+//     keep = 1/(1 + z + z^2/(1 + z)),  draw = keep z/h,  z = k h^2 (step_style_spring in step.c).
+// The sweeps run to and fro. Needs strand.glsl, tridiagonal.glsl, and keep, recall (vec4 a particle), keep_beside, recall_beside.
 
 // K(v) relative to the root: forces and drag for half a step.
-vec3 kicked(Lane lane, vec3 v) { return lane.decay * v + lane.push - lane.root_velocity; }
+vec3 kicked(Strand strand, vec3 v) { return strand.decay * v + strand.push - strand.root_velocity; }
 
 // vs of a particle that is `offset` from its place in the style; of two particles' difference as well.
-vec3 sprung(vec3 kick, vec3 offset)
+vec3 sprung(Strand strand, vec3 kick, vec3 offset)
 {
 #if STYLED
-    return SPRING_KEEP * kick - SPRING_DRAW * offset;
+    return strand.spring.keep * kick - strand.spring.draw * offset;
 #else
     return kick;
 #endif
 }
 
 // Tip to root: rows of the tensions. Only differences along the strand count.
-void find_directions(Lane lane)
+void find_directions(Strand strand)
 {
-    float h = 0.5 * lane.dt;
-    vec3 q = fetch_position(lane, LAST), v = fetch_velocity(lane, LAST), kick = kicked(lane, v), d_beyond = vec3(0.0);
+    float h = 0.5 * strand.dt;
+    vec3 q = fetch_position(strand, LAST), v = fetch_velocity(strand, LAST), kick = kicked(strand, v), d_beyond = vec3(0.0);
     Row row = NO_ROW;
     for (int j = LAST; j >= 1; --j) {
-        vec3 q_before = lane.root_old, v_before = lane.root_velocity, kick_before = vec3(0.0);
+        vec3 q_before = strand.root_old, v_before = strand.root_velocity, kick_before = vec3(0.0);
         if (j > 1) {
-            q_before = fetch_position(lane, j - 1), v_before = fetch_velocity(lane, j - 1);
-            kick_before = kicked(lane, v_before);
+            q_before = fetch_position(strand, j - 1), v_before = fetch_velocity(strand, j - 1);
+            kick_before = kicked(strand, v_before);
         }
         vec3 r = q - q_before, d = direction(r + h * (v - v_before)), offset = r;
 #if STYLED
-        offset -= next_style(vec3(0.0), fetch_rest(lane, j), lane.rotation);
+        offset -= next_style(vec3(0.0), fetch_rest(strand, j), strand.rotation);
 #endif
         float factor;
-        row = eliminate(row, -dot(d, d_beyond), j == 1 ? 1.0 : 2.0, dot(d, sprung(kick - kick_before, offset)), factor);
+        row = eliminate(row, -dot(d, d_beyond), j == 1 ? 1.0 : 2.0, dot(d, sprung(strand, kick - kick_before, offset)), factor);
         keep(j, vec4(d, row.value));
         keep_beside(j, factor);
         q = q_before, v = v_before, kick = kick_before, d_beyond = d;
@@ -56,15 +53,15 @@ void find_directions(Lane lane)
 }
 
 // Root to tip: tensions; rows of w, each known one segment later. Gives where the style's tip is, relative to the root.
-vec3 find_tensions(Lane lane)
+vec3 find_tensions(Strand strand)
 {
     int last = LAST;
-    float h = 0.5 * lane.dt, lambda = 0.0, factor_before = 0.0, t_before = 0.0, factor;
-    vec3 q_before = lane.root_old, g_before = vec3(0.0), vs_before = vec3(0.0), style = vec3(0.0);
+    float h = 0.5 * strand.dt, lambda = 0.0, factor_before = 0.0, t_before = 0.0, factor;
+    vec3 q_before = strand.root_old, g_before = vec3(0.0), vs_before = vec3(0.0), style = vec3(0.0);
     Row3 row = NO_ROW3;
     for (int j = 1; j <= last; ++j) {
-        vec4 k = recall(j), r = fetch_rest(lane, j);
-        vec3 q = fetch_position(lane, j);
+        vec4 k = recall(j), r = fetch_rest(strand, j);
+        vec3 q = fetch_position(strand, j);
         lambda = k.w - factor_before * lambda;
         factor_before = recall_beside(j);
         float pull = max(lambda, 0.0), t = pull / r.w;
@@ -74,9 +71,9 @@ vec3 find_tensions(Lane lane)
             keep(j - 1, vec4(row.value, factor));
         }
 #if STYLED
-        style = next_style(style, r, lane.rotation);
+        style = next_style(style, r, strand.rotation);
 #endif
-        vs_before = sprung(kicked(lane, fetch_velocity(lane, j)), q - lane.root_old - style);
+        vs_before = sprung(strand, kicked(strand, fetch_velocity(strand, j)), q - strand.root_old - style);
         q_before = q, g_before = g, t_before = t;
     }
     row = eliminate(row, -h * t_before, 1.0 + h * t_before, vs_before - g_before, factor);
@@ -93,24 +90,24 @@ struct Middle {
 };
 
 // Steps 1 to 3; the tip's turn.
-Middle middle_open(Lane lane)
+Middle middle_open(Strand strand)
 {
-    find_directions(lane);
-    vec3 style = find_tensions(lane);
+    find_directions(strand);
+    vec3 style = find_tensions(strand);
     vec4 k = recall(LAST);
     return Middle(k.xyz, style, k.w, 0.0);
 }
 
 // Particle j, at q: writes p where its position will be, u where its velocity will be. Then j - 1 has its turn. Gives p.
-vec3 middle_place(inout Middle m, Lane lane, int j, vec3 q)
+vec3 middle_place(inout Middle m, Strand strand, int j, vec3 q)
 {
-    int a = lane.address + j * STRAND_TILE;
-    vec3 offset = q - lane.root_old, kick = kicked(lane, fetch_velocity(lane, j)), p = offset + lane.dt * m.w;
-    m.gained += 2.0 * dot(m.w, m.w - sprung(kick, offset - m.style));
+    int a = strand.address + j * STRAND_TILE;
+    vec3 offset = q - strand.root_old, kick = kicked(strand, fetch_velocity(strand, j)), p = offset + strand.dt * m.w;
+    m.gained += 2.0 * dot(m.w, m.w - sprung(strand, kick, offset - m.style));
     keep_aim(a, j, p);
     keep_velocity(a, j, vec4(2.0 * m.w - kick, 0.0));
 #if STYLED
-    m.style -= next_style(vec3(0.0), fetch_rest(lane, j), lane.rotation);
+    m.style -= next_style(vec3(0.0), fetch_rest(strand, j), strand.rotation);
 #endif
     if (j > 1) {
         vec4 k = recall(j - 1);

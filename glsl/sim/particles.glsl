@@ -5,7 +5,7 @@
 // Macros: GROUP_SIZE lanes a group; STRANDS strands a lane, GROUP_SIZE apart; IN_REGISTERS and VERTICES: the strand has VERTICES
 // vertices and may be held in arrays, whose loops unroll; else any length, step_params.vertex_count. LEAD: vertices before the solver's
 // root, which the head carries (0 or 1).
-#include "sim/step.h"
+#include "sim/step_params.h"
 #include "sim/forces.glsl"
 #include "common/hair_address.glsl"
 #include "common/rigid.glsl"
@@ -34,6 +34,9 @@ int strand_base(int strand)
 
 // Where the head has carried the root (a texel of `rest` with j = 0) at the step's end.
 vec3 root_position(vec4 root) { return rotate(step_params.head_rotation, root.xyz) + step_params.head_translation.xyz; }
+
+// A particle of the style after another, from the root on: where the head carries it, relative to the root.
+vec3 next_style(vec3 before, vec4 rest, vec4 rotation) { return before + rest.w * rotate(rotation, rest.xyz); }
 
 // Writes what is before the solver's root.
 void carry_lead(int base)

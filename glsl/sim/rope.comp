@@ -17,20 +17,10 @@
 // For the same reason coordinates are from where the root was at the step's start: sweeps see the rounding of x.
 // (Five metres off the origin, 81 small steps of 1/60 s trembled by 0.0045 of their length a step.)
 //
-// STYLED 1: after each flight particles are drawn to the style (style_spring.glsl). A rope stretches; see stretch.glsl for what is drawn.
+// STYLED 1: after each flight particles are drawn to the style (style_spring.h). A rope stretches; see stretch.glsl for what is drawn.
 #include "sim/particles.glsl"
+#include "sim/rope_params.h"
 #include "sim/stretch.glsl"
-#include "sim/style_spring.glsl"
-
-#define SMALL_STEPS   int(step_params.own[0].x)
-#define SWEEPS        int(step_params.own[0].y) // of each small step
-#define KEPT          step_params.own[0].z      // 1 - damping, of a small step
-#define SOFTNESS      step_params.own[0].w      // alpha/h^2
-#define FIRST_DECAY   step_params.own[1].x      // drag in the first small step: see forces.glsl
-#define FIRST_GAIN    step_params.own[1].y
-#define STRETCH_DRAWN step_params.own[1].z      // 1: links are drawn as long as they are
-#define FIRST_PULL    step_params.own[1].w      // towards the style, in the first small step and in later ones
-#define LATER_PULL    step_params.own[2].x
 
 vec3 mended(vec3 r, float l, float weights)
 {
@@ -39,7 +29,7 @@ vec3 mended(vec3 r, float l, float weights)
     return r * ((ll - rr) / (weights * (ll + rr)));
 #else
     float inverse = inversesqrt(max(dot(r, r), 1e-36));
-    return r * ((l * inverse - 1.0) / (weights + SOFTNESS));
+    return r * ((l * inverse - 1.0) / (weights + rope_params.softness));
 #endif
 }
 
@@ -53,19 +43,19 @@ vec3 root_move(vec4 root)
 // Where the root is after `step` of the small steps.
 vec3 root_at(vec3 root_move, int step, int small_steps) { return root_move * (float(step) / float(small_steps)); }
 
-// The flight in later small steps is by CARRIED m + fall, Verlet's form with drag; the first starts from a velocity.
-#define CARRIED (KEPT * step_params.decay)
+// The flight in later small steps is by carried_share() m + fall, Verlet's form with drag; the first starts from a velocity.
+float carried_share() { return rope_params.kept * step_params.decay; }
 
 vec3 fall_of(vec3 wind) { return step_params.dt * kick(vec3(0.0), wind); }
 
 vec3 first_flight(vec3 v, vec3 wind)
 {
-    return step_params.dt * (v * FIRST_DECAY + (step_params.gravity.xyz + step_params.drag * wind) * FIRST_GAIN);
+    return step_params.dt * (v * rope_params.first_decay + (step_params.gravity.xyz + step_params.drag * wind) * rope_params.first_gain);
 }
 
 void finish(int a, vec3 r, float l, vec3 moved, inout vec3 drawn, inout vec3 along)
 {
-    draw_link(a, r, l, moved * (KEPT / step_params.dt), STRETCH_DRAWN != 0.0, drawn, along);
+    draw_link(a, r, l, moved * (rope_params.kept / step_params.dt), rope_params.stretch_drawn != 0u, drawn, along);
 }
 
 #if IN_REGISTERS
@@ -76,7 +66,7 @@ void main()
     int base = strand_base(s);
     vec3 x[VERTICES], m[VERTICES], wind = strand_wind(texelFetch(strand_id, s).x, root_position(strand_root(base)));
     float l[VERTICES];
-    int small_steps = SMALL_STEPS, sweeps = SWEEPS;
+    int small_steps = rope_params.small_steps, sweeps = rope_params.sweeps;
     vec4 root = strand_root(base), rotation = step_params.head_rotation;
     vec3 drawn = texelFetch(position_before, base).xyz, at = vec3(0.0), carry = root_move(root);
     x[0] = root_at(carry, 1, small_steps);
@@ -96,7 +86,7 @@ void main()
         m[j] = first_flight(v.xyz, wind);
 #if STYLED
         style[j] = next_style(style[j - 1], segment, rotation);
-        m[j] += FIRST_PULL * (x[0] + style[j] - (x[j] + m[j]));
+        m[j] += rope_params.first_spring.pull * (x[0] + style[j] - (x[j] + m[j]));
 #endif
     }
 
@@ -131,7 +121,7 @@ void main()
             from = to + push, gone = move + push;
         }
         x[VERTICES - 1] = from, m[VERTICES - 1] = gone;
-        carried = CARRIED, pull = LATER_PULL, fall = fall_of(wind);
+        carried = carried_share(), pull = rope_params.spring.pull, fall = fall_of(wind);
     }
 #endif
 
@@ -151,14 +141,14 @@ void main()
 {
     int s = first_strand(), n = int(step_params.vertex_count);
     if (s >= int(step_params.strand_count)) return;
-    int phase = int(step_params.phase), step = phase / SWEEPS, a = strand_base(s);
-    bool loads = phase == 0, flies = phase == step * SWEEPS, draws = phase + 1 == SMALL_STEPS * SWEEPS;
+    int phase = int(step_params.phase), step = phase / rope_params.sweeps, a = strand_base(s);
+    bool loads = phase == 0, flies = phase == step * rope_params.sweeps, draws = phase + 1 == rope_params.small_steps * rope_params.sweeps;
     vec3 wind = strand_wind(texelFetch(strand_id, s).x, root_position(strand_root(a))), fall = fall_of(wind);
     vec4 root = strand_root(a);
     vec3 drawn_before = texelFetch(position_before, a).xyz, at = vec3(0.0);
-    vec3 x = root_at(root_move(root), step + 1, SMALL_STEPS), m = vec3(0.0), style_at = x;
+    vec3 x = root_at(root_move(root), step + 1, rope_params.small_steps), m = vec3(0.0), style_at = x;
     vec4 rotation = step_params.head_rotation;
-    float pull = loads ? FIRST_PULL : LATER_PULL;
+    float pull = loads ? rope_params.first_spring.pull : rope_params.spring.pull;
     vec3 before = x, drawn = root_position(root), along = rotate(rotation, texelFetch(rest, a + STRAND_TILE).xyz);
     float weights = 1.0, l = 0.0, l_before = 0.0;
     if (draws) {
@@ -181,7 +171,7 @@ void main()
         } else {
             next = scratch[2 * b].xyz;
             next_m = scratch[2 * b + 1].xyz;
-            if (flies) next_m = CARRIED * next_m + fall;
+            if (flies) next_m = carried_share() * next_m + fall;
         }
 #if STYLED
         style_at = next_style(style_at, segment, rotation);

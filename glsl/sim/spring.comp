@@ -29,11 +29,8 @@
 // for stiff springs: M S^{-1} H = q M A^{-1} + tau a a^T, M S^{-1} u = a/(1 + sigma u.g), M S^{-1} y = M A^{-1} y - tau a (g.y);
 // S^{-1} is the same without the M, g for a. So x_j = C x_{j-1} + S^{-1} (z + d), C = q A^{-1} + tau g a^T.
 #include "sim/particles.glsl"
+#include "sim/spring_params.h"
 #include "sim/stretch.glsl"
-
-#define COIL          step_params.own[0].x // K, 1/s^2
-#define ANGULAR       step_params.own[0].y // B, m/s^2
-#define STRETCH_DRAWN step_params.own[0].z
 
 const float PI       = 3.14159265;
 const float SHORT    = 0.25; // of an average link; solver_spring.c knows it
@@ -45,7 +42,7 @@ struct Springs {
 
 Springs springs_of(int links)
 {
-    return Springs(COIL * float(links) * float(links), ANGULAR * float(links));
+    return Springs(spring_params.coil * float(links) * float(links), spring_params.angular * float(links));
 }
 
 // The angular spring's force on a link of direction u; none where u is opposite to the style's direction t.
@@ -140,7 +137,7 @@ void substitute(int base, int n, vec3 wind, vec3 root_velocity, vec3 root)
         vec3 s = link_before(drawn_before, was, l, v.w) + dt * (flying - flying_before);
         vec4 before = vec4(x_before, 1.0);
         vec3 x = vec3(dot(scratch[3 * a], before), dot(scratch[3 * a + 1], before), dot(scratch[3 * a + 2], before));
-        draw_link(a, s + (x - x_before), l, flying + per_second * x, STRETCH_DRAWN != 0.0, drawn, along);
+        draw_link(a, s + (x - x_before), l, flying + per_second * x, spring_params.stretch_drawn != 0u, drawn, along);
         drawn_before = was;
         flying_before = flying;
         x_before = x;
@@ -210,7 +207,7 @@ void main()
         }
         if (j > 1) {
             vec3 now = v.xyz * decay + fall + gain * (force - next_force);
-            draw_link(a, r + (dt * now - moved), l, now, STRETCH_DRAWN != 0.0, drawn, along);
+            draw_link(a, r + (dt * now - moved), l, now, spring_params.stretch_drawn != 0u, drawn, along);
             moved = dt * now;
         }
         r = next_r;

@@ -20,18 +20,10 @@
 // Where segment j+1 should be follows segment j, which takes no reaction: these forces have no potential, K of x'' = -K x is not symmetric,
 // and eigenvalues w^2 (1 + i e) of it gain about e w/2 per second. A long step damps that by w^2 dt/2. So that a short one does not flutter
 // either, neighbours exchange a share X of what their velocities differ by before they fly, v_j += X u, v_{j+1} -= X u, u = v_{j+1} - v_j:
-// momentum stays, energy falls for any X < 1. A joint alone would oscillate by W^2 = 2 passes LOCAL_SHARE/dt^2; X = W dt damps it critically.
+// momentum stays, energy falls for any X < 1. A joint alone would oscillate by W^2 = 2 passes local_share/dt^2; X = W dt damps it critically.
 #include "sim/particles.glsl"
+#include "sim/tressfx_params.h"
 
-#define LOCAL_SHARE step_params.own[0].x
-#define GLOBAL_SHARE step_params.own[0].y
-#define GLOBAL_RANGE step_params.own[0].z
-#define SHOCK step_params.own[0].w
-#define SHOCK_THRESHOLD step_params.own[1].x // m: second difference of vertex 1 over steps
-#define CLAMP step_params.own[1].y           // m a step
-#define LOCAL_PASSES int(step_params.own[1].z)
-#define LENGTH_PASSES int(step_params.own[1].w) // TRESSFX4
-#define EXCHANGED step_params.own[2].x // share of the difference of two neighbours' velocities; 0 for TRESSFX4
 
 // The strand is corrected in the head's frame with its root at the origin, where the style needs no turning: REST(j) is the direction and
 // length of its segment j, X(j) the vertex. Everything stays in memory: loops of few accesses run as fast there as unrolled ones in
@@ -74,8 +66,8 @@ Carried carried_by_head()
     carried.first_old = rotate(conjugate(step_params.head_rotation), first_old);
     vec3 moved = carried.root - carried.root_old + first.w * (first_new - first_old);
     vec3 jerk = moved - step_params.dt * texelFetch(velocity_before, address(1)).xyz;
-    float threshold = SHOCK_THRESHOLD;
-    carried.share = dot(jerk, jerk) > threshold * threshold ? 1.0 : SHOCK;
+    float threshold = tressfx_params.shock_threshold;
+    carried.share = dot(jerk, jerk) > threshold * threshold ? 1.0 : tressfx_params.shock;
     velocities[address(1)] = vec4(moved / step_params.dt, 0.0); // for the next step's jerk
     return carried;
 }
@@ -90,12 +82,12 @@ void predict(Carried carried)
     vec3 wind = strand_wind(texelFetch(strand_id, strand).x, carried.root), root_old = carried.root_old, home = carried.root - carried.root_old;
     vec3 style = vec3(0.0), first = REST(1).xyz, first_old = carried.first_old;
     vec4 to_head = conjugate(step_params.head_rotation);
-    float dt = step_params.dt, global = GLOBAL_SHARE, last_global = GLOBAL_RANGE * float(n), share = carried.share;
+    float dt = step_params.dt, global = tressfx_params.global_share, last_global = tressfx_params.global_range * float(n), share = carried.share;
     home = rotate(to_head, home);
 #if !TRESSFX4
     // The others' velocities are relative to the motion that the whole strand takes part in.
     vec3 ahead = (1.0 - share) * texelFetch(velocity_before, address(1)).xyz;
-    float exchanged = EXCHANGED;
+    float exchanged = tressfx_params.exchanged;
 #endif
     for (int j = 1; j < n; ++j) {
         int a = address(j);
@@ -127,7 +119,7 @@ void predict(Carried carried)
 
 void keep_local_shape()
 {
-    float share = LOCAL_SHARE;
+    float share = tressfx_params.local_share;
     vec3 before = X(0), x = X(1);
     vec4 rest_here = REST(1);
     for (int j = 1; j < n - 1; ++j) {
@@ -150,7 +142,7 @@ void keep_local_shape()
 void blow()
 {
     vec3 wind = rotate(conjugate(step_params.head_rotation), strand_wind(texelFetch(strand_id, strand).x, root_position(texelFetch(rest, address(0)))));
-    float strength = 1e4 * step_params.dt * step_params.dt, most = CLAMP;
+    float strength = 1e4 * step_params.dt * step_params.dt, most = tressfx_params.most_move;
     if (dot(wind, wind) == 0.0) return;
     for (int j = 2; j < n - 1; ++j) {
         vec3 t = X(j + 1) - X(j), blown = strength * cross(cross(t, wind), t);
@@ -248,7 +240,7 @@ void keep_lengths()
 void finish(Carried carried)
 {
     vec4 to_world = step_params.head_rotation;
-    float dt = step_params.dt, most = CLAMP;
+    float dt = step_params.dt, most = tressfx_params.most_move;
     vec3 x = vec3(0.0), before = vec3(0.0), along = vec3(0.0);
     positions[address(0)] = vec4(carried.root, 1.0);
     velocities[address(0)] = vec4(0.0);
@@ -283,11 +275,11 @@ void main()
     n = int(step_params.vertex_count);
     Carried carried = carried_by_head();
     predict(carried);
-    int local_passes = n > 2 ? LOCAL_PASSES : 0;
+    int local_passes = n > 2 ? tressfx_params.local_passes : 0;
     for (int i = 0; i < local_passes; ++i) keep_local_shape();
 #if TRESSFX4
     blow();
-    int length_passes = LENGTH_PASSES;
+    int length_passes = tressfx_params.length_passes;
     for (int i = 0; i < length_passes; ++i) keep_lengths();
 #else
     keep_lengths();

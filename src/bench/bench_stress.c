@@ -327,7 +327,7 @@ static Result run_form(Bench *bench, const char *algo, const char *variant, int 
 static bool is_asked(const StressOptions *options, const SolverType *type, const char *variant)
 {
     bool named = !options->algo || strcmp(options->algo, type->name) == 0;
-    return type->calls->step && named &&
+    return !solver_is_static(type) && named &&
            (!options->variant || strcmp(options->variant, variant) == 0);
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "bench/experiments.h"
 #include "base/interrupt.h"
-#include "sim/particle_solver.h"
 
 #include <math.h>
 #include <string.h>
@@ -426,13 +425,11 @@ static double own_energy(const Run *run, uint32_t s, const double (*start)[3],
                          const double (*now)[3])
 {
     const Trial *trial = &run->trial;
-    const ParticleRecipe *recipe = trial->solver.type->recipes[0];
     const GpuBuffer *velocities = trial_buffer(trial, 0, SOLVER_VELOCITIES);
     bool at_end =
         strcmp(run->method->algo, "hybrid") == 0 || strcmp(run->method->algo, "emulation") == 0;
-    double a[EXPERIMENT_POINTS][3] = {{0}}, b[EXPERIMENT_POINTS][3] = {{0}}, h = trial->step.dt;
-    if (recipe && recipe->substeps)
-        h /= recipe->substeps(&trial->step, &trial->params, &trial->hair);
+    double a[EXPERIMENT_POINTS][3] = {{0}}, b[EXPERIMENT_POINTS][3] = {{0}};
+    double h = trial->step.dt / solver_substeps(&trial->solver, &trial->step);
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, velocities->buffer);
     for (int j = 0; j < run->setup->n; ++j) {
         float v[4];

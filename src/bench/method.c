@@ -82,6 +82,7 @@ int method_list(const Method *asked, Method methods[METHODS_MOST])
         return 1;
     }
     for (const SolverType *const *type = SOLVER_TYPES; *type && count < METHODS_MOST; ++type)
-        if ((*type)->calls->step) methods[count++] = (Method){(*type)->name, "", asked->settings};
+        if (!solver_is_static(*type))
+            methods[count++] = (Method){(*type)->name, "", asked->settings};
     return count;
 }

@@ -32,7 +32,7 @@ static const double REST_MOVE =
     3e-3; // of the length in a step: the tremor that docs/solvers.md has
 
 static const double PATIENCE = 30; // of each time constant, until a strand must lie still
-static const double CALM = 2; // stability number (stability.h) up to which solvers come to rest
+static const double CALM = 2; // stability number (simulation.h) up to which solvers come to rest
 
 static const double NOISE_STEPS = 8; // steps whose rounding may add up, beside a random walk's
 

@@ -5,7 +5,7 @@
 #include "gpu/shader.h"
 #include "scene/forces.h"
 #include "sim/solver.h"
-#include "sim/step_uniforms.h"
+#include "sim/step.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -136,7 +136,7 @@ static Result run_create(Run *run, const Gpu *gpu, const StressCase *strands, in
     Result result = stress_case_params(strands, &run->params, error);
     if (result != RESULT_OK) return result;
     run->bound = stress_bound_create(strands, &run->params, steps);
-    run->step = (SolverStep){.dt = value[STRESS_dt], .first = true, .shuffle = 1};
+    run->step = (SolverStep){.dt = value[STRESS_dt], .first = true, .number = 1};
     run->step.head = run->step.head_old = pose_at(run, 0);
     result = upload(run, gpu, strands, count, error);
     const SolverSetup setup = {.gpu = gpu,
@@ -207,7 +207,7 @@ static void take_step(Run *run, int i)
     if (looked_at) look(run, i);
     step->head_old = step->head;
     step->first = false;
-    ++step->shuffle;
+    ++step->number;
 }
 
 static void read_verdicts(const Run *run, StressVerdict *verdicts, float (*worst)[4],

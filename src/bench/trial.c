@@ -34,7 +34,7 @@ void trial_step(Trial *trial)
     solver_step(&trial->solver, &trial->step);
     trial->step.head_old = trial->step.head;
     trial->step.first = false;
-    ++trial->step.shuffle;
+    ++trial->step.number;
     ++trial->steps;
 }
 

@@ -29,7 +29,7 @@ double schedule_frame_time(const RunParams *run, double frame);
 // frames'; where the scene stands still (speed 0), the video's, for the warm-up.
 double schedule_period_rate(const RunParams *run);
 
-// `substeps`: what --substeps says or, if that is auto, what has been found (stability.h).
+// `substeps`: what --substeps says or, if that is auto, what has been found (simulation.h).
 Schedule schedule_create(const RunParams *run, int substeps);
 
 // Where a frame, from 0, falls among the steps.

@@ -3,8 +3,6 @@
 
 #include "glsl/sim/carry_params.h"
 
-#include <cglm/cglm.h>
-
 #include <string.h>
 
 // Lanes of a group; groups in a row, which every driver allows.
@@ -46,7 +44,7 @@ static void carry_buffer(Carry *carry, CarryParams params, const SolverBuffer *b
     dispatch(carry, &params, points->buffer, buffer->buffer);
 }
 
-void carry_apply(Carry *carry, const Solver *solver, const Hair *hair, const CarryMotion *motion)
+void carry_apply(Carry *carry, const Solver *solver, const Hair *hair, const HeadMotion *motion)
 {
     CarryParams params = {0};
     memcpy(params.rotation, motion->rotation, sizeof motion->rotation);
@@ -60,17 +58,4 @@ void carry_apply(Carry *carry, const Solver *solver, const Hair *hair, const Car
         for (int i = 0; i < count; ++i) carry_buffer(carry, params, &buffers[i]);
     }
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
-}
-
-CarryMotion carry_between(const HeadPose *from, const HeadPose *to)
-{
-    CarryMotion motion = {0};
-    versor back;
-    vec3 moved;
-    glm_quat_inv((float *)from->rotation, back);
-    glm_quat_mul((float *)to->rotation, back, motion.rotation);
-    glm_quat_normalize(motion.rotation);
-    glm_quat_rotatev(motion.rotation, (float *)from->translation, moved);
-    glm_vec3_sub((float *)to->translation, moved, motion.translation);
-    return motion;
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "sim/collision.h"
-#include "sim/step_uniforms.h"
 
 #include <cglm/cglm.h>
 
@@ -258,8 +257,7 @@ static CollideParams step_params(const Collision *collision, const SolverStep *s
     versor inverse;
     glm_quat_conjugate((float *)step->head.rotation, inverse);
     glm_quat_mul((float *)step->head_old.rotation, inverse, params.head_turn_back);
-    memcpy(params.head_rotation, step->head.rotation, sizeof step->head.rotation);
-    memcpy(params.head_translation, step->head.translation, sizeof step->head.translation);
+    head_put(params.head_rotation, params.head_translation, &step->head);
     memcpy(params.head_translation_old, step->head_old.translation,
            sizeof step->head_old.translation);
     return params;
@@ -285,9 +283,9 @@ bool collision_begin(Collision *collision, const SolverStep *step, int part, int
                         (GLsizeiptr)(collision->colliders->count * sizeof *shapes), shapes);
         collision->step = step_params(collision, step);
     }
-    collision->step.stamp = stamp_of(step->shuffle, part, parts);
-    collision->step.stamp_before = part > 1 ? stamp_of(step->shuffle, part - 1, parts)
-                                            : stamp_of(step->shuffle - 1, parts, parts);
+    collision->step.stamp = stamp_of(step->number, part, parts);
+    collision->step.stamp_before = part > 1 ? stamp_of(step->number, part - 1, parts)
+                                            : stamp_of(step->number - 1, parts, parts);
     free(shapes);
     return any;
 }

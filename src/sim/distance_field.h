@@ -25,6 +25,16 @@ Result distance_field_create(DistanceField *field, const Gpu *gpu, const Mesh *m
                              uint32_t resolution, Error *error);
 void distance_field_destroy(DistanceField *field);
 
+// As distance_field_create, but by the file tractrix/HASH.field in the folder $XDG_CACHE_HOME, else
+// ~/.cache, if that is there and whole (chunk_file.h); else computes the field and tries to write
+// that file. HASH is of the mesh and the resolution. Files are safe to delete; one that is damaged
+// or cannot be written changes nothing but the time. `read` says which way it was; may be NULL.
+Result distance_field_create_cached(DistanceField *field, const Gpu *gpu, const Mesh *mesh,
+                                    uint32_t resolution, bool *read, Error *error);
+
+// The file's name, to be freed; NULL if neither variable is set or memory is short.
+char *distance_field_cache_name(const Mesh *mesh, uint32_t resolution);
+
 // Grid points.
 static inline size_t distance_field_count(const DistanceField *field)
 {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "sim/follow.h"
-#include "sim/step_uniforms.h"
 
 #include "glsl/sim/follow_params.h"
 

@@ -32,7 +32,7 @@ typedef struct HairBatch {
 // strands than a dispatch of such groups, GpuLimits.work_groups.
 enum { HAIR_LEAST_GROUP = 8 };
 
-// The most vec4 a particle that a solver keeps in one buffer (ParticleRecipe.scratch): no batch has
+// The most vec4 a particle that a solver keeps in one buffer (SolverRecipe.scratch): no batch has
 // more particles than such a buffer can hold.
 enum { HAIR_MOST_SCRATCH = 3 };
 

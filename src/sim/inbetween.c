@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "sim/inbetween.h"
-#include "sim/step_uniforms.h"
 
 #include "glsl/sim/inbetween_params.h"
 
@@ -65,19 +64,13 @@ void inbetween_keep_later(Inbetween *inbetween)
         copy(&inbetween->hair->batches[i].position, &inbetween->later[i]);
 }
 
-static void set_pose(vec4 rotation, vec4 translation, const HeadPose *pose)
-{
-    memcpy(rotation, pose->rotation, sizeof pose->rotation);
-    memcpy(translation, pose->translation, sizeof pose->translation);
-}
-
 void inbetween_mix(Inbetween *inbetween, float share, const HeadPose *earlier,
                    const HeadPose *later, const HeadPose *now)
 {
     InbetweenParams params = {.share = share};
-    set_pose(params.earlier_rotation, params.earlier_translation, earlier);
-    set_pose(params.later_rotation, params.later_translation, later);
-    set_pose(params.now_rotation, params.now_translation, now);
+    head_put(params.earlier_rotation, params.earlier_translation, earlier);
+    head_put(params.later_rotation, params.later_translation, later);
+    head_put(params.now_rotation, params.now_translation, now);
     for (uint32_t i = 0; i < inbetween->hair->batch_count; ++i) {
         const HairBatch *batch = &inbetween->hair->batches[i];
         params.strand_count = batch->strand_count;

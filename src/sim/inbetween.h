@@ -4,9 +4,7 @@
 // every particle have their state in it.
 #pragma once
 
-#include "gpu/shader.h"
-#include "sim/hair.h"
-#include "sim/solver.h"
+#include "sim/step.h"
 
 // A zeroed struct may be destroyed.
 typedef struct Inbetween {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "sim/pose.h"
-#include "sim/step_uniforms.h"
 
 #include "glsl/sim/pose_params.h"
 
@@ -68,8 +67,7 @@ void pose_destroy(Pose *pose)
 void pose_write(Pose *pose, const HairBatch *batch, const GpuBuffer *segments, const HeadPose *head)
 {
     PoseParams params = {.strand_count = batch->strand_count, .vertex_count = batch->vertex_count};
-    memcpy(params.head_rotation, head->rotation, sizeof head->rotation);
-    memcpy(params.head_translation, head->translation, sizeof head->translation);
+    head_put(params.head_rotation, params.head_translation, head);
     memcpy(params.turn_cos, pose->turn_cos, sizeof pose->turn_cos);
     memcpy(params.turn_sin, pose->turn_sin, sizeof pose->turn_sin);
     gpu_buffer_set_uniforms(&pose->uniforms, BIND_STEP, &params, sizeof params);

@@ -3,8 +3,7 @@
 // (glsl/sim/pose.comp).
 #pragma once
 
-#include "gpu/shader.h"
-#include "sim/solver.h"
+#include "sim/step.h"
 
 // What the drawn directions are made of; the values are those of MIX in pose.comp.
 typedef enum PoseMix { POSE_STYLE, POSE_PHYSICAL, POSE_NEAR_PHYSICAL, POSE_NEAR_STYLE } PoseMix;

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "sim/simulation.h"
 #include "scene/forces.h"
-#include "sim/field_cache.h"
-#include "sim/head_motion.h"
-#include "sim/shelter.h"
-#include "sim/stability.h"
 
 #include <libdeflate.h>
 
@@ -12,18 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool same_pose(const HeadPose *a, const HeadPose *b)
-{
-    return memcmp(a->rotation, b->rotation, sizeof a->rotation) == 0 &&
-           memcmp(a->translation, b->translation, sizeof a->translation) == 0;
-}
-
 // Frames fall between steps if a frame is no whole number of steps; what does not step is drawn as
 // the head stands at any time.
 static bool needs_inbetween(const Simulation *simulation, const Solver *solver)
 {
     double steps = simulation->schedule.steps_per_frame;
-    return steps != floor(steps) && !solver_is_static(solver);
+    return steps != floor(steps) && !solver_is_static(solver->type);
 }
 
 // Followers of hair that moves keep out of what their guides keep out of.
@@ -108,25 +98,77 @@ static Result create_field(Simulation *simulation, const Gpu *gpu, const Strands
     simulation->mesh_checksum =
         libdeflate_crc32(sum, mesh->triangle, mesh->triangle_count * sizeof *mesh->triangle);
     if (!needs_field(simulation->scene, strands)) return RESULT_OK;
-    return run->sdf_cache ? field_cache_create(field, gpu, mesh, resolution, NULL, error)
+    return run->sdf_cache ? distance_field_create_cached(field, gpu, mesh, resolution, NULL, error)
                           : distance_field_create(field, gpu, mesh, resolution, error);
+}
+
+double simulation_stability(const Strands *strands, double g, double dt)
+{
+    double most = 0; // of (n - 1)^2 / L
+    for (uint32_t s = 0; s < strands->strand_count; ++s) {
+        double links = strands_size(strands, s) - 1.0, length = strands_length(strands, s);
+        if (length > 0) most = fmax(most, links * links / length);
+    }
+    return dt * sqrt(g * most);
+}
+
+static double norm(const float v[3])
+{
+    return sqrt((double)v[0] * (double)v[0] + (double)v[1] * (double)v[1] +
+                (double)v[2] * (double)v[2]);
+}
+
+// Between its keys no number of a track overshoots.
+static double greatest(const Keyframes *keys, const float constant[3])
+{
+    double most = keys->count ? 0 : norm(constant);
+    for (uint32_t i = 0; i < keys->count; ++i) most = fmax(most, norm(&keys->value[3 * (size_t)i]));
+    return most;
+}
+
+double simulation_acceleration(const Scene *scene, const SectionParams *params)
+{
+    return greatest(&scene->gravity, scene->run.gravity) +
+           (double)params->drag * (1 + (double)scene->run.gust) *
+               greatest(&scene->wind, scene->run.wind);
+}
+
+Result simulation_choose_substeps(int *substeps, const Scene *scene, const Strands *strands,
+                                  Error *error)
+{
+    const double most_steps = params_find("substeps")->maximum;
+    *substeps = 1;
+    for (uint32_t i = 0; i < scene->section_count; ++i) {
+        const Section *section = &scene->sections[i];
+        double limit = solver_most_stability(&section->params);
+        if (!(limit > 0)) continue;
+        double sigma =
+            simulation_stability(&strands[i], simulation_acceleration(scene, &section->params),
+                                 1 / schedule_period_rate(&scene->run));
+        double steps = ceil(sigma / limit);
+        if (steps > most_steps)
+            return error_set(error, RESULT_USAGE,
+                             "%s: --substeps auto comes to %.6g, at most %.0f are taken: raise "
+                             "--sim-rate or --fps, or give fewer",
+                             section->file, steps, most_steps);
+        if ((int)steps > *substeps) *substeps = (int)steps;
+    }
+    return RESULT_OK;
 }
 
 Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer,
                          const Scene *scene, const Strands *strands, const Mesh *mesh, Error *error)
 {
     const RunParams *run = &scene->run;
-    *simulation = (Simulation){.scene = scene,
-                               .timer = timer,
-                               .head = head_motion_pose(scene, 0),
-                               .substeps = run->substeps.value};
+    *simulation = (Simulation){
+        .scene = scene, .timer = timer, .head = head_at(scene, 0), .substeps = run->substeps.value};
     simulation->step_head = simulation->step_head_before = simulation->head;
-    shelter_middle(simulation->middle, scene, strands);
+    head_middle(simulation->middle, scene, strands);
     Result result = RESULT_OK;
     for (uint32_t i = 0; i < scene->section_count && result == RESULT_OK; ++i)
         result = solver_check(&scene->sections[i].params, error);
     if (result == RESULT_OK && run->substeps.automatic)
-        result = stability_choose_substeps(&simulation->substeps, scene, strands, error);
+        result = simulation_choose_substeps(&simulation->substeps, scene, strands, error);
     simulation->schedule = schedule_create(run, simulation->substeps);
     simulation->step = -simulation->schedule.settling;
     if (result == RESULT_OK) result = create_field(simulation, gpu, strands, mesh, error);
@@ -163,9 +205,9 @@ static SolverStep next_step(const Simulation *simulation)
     SolverStep step = {
         .dt = 1 / rate,
         .first = simulation->step == -simulation->schedule.settling,
-        .shuffle = scene->run.seed + (uint32_t)simulation->step,
+        .number = scene->run.seed + (uint32_t)simulation->step,
         .head_old = simulation->step_head,
-        .head = head_motion_pose(scene, fmax(0, (double)(simulation->step + 1) / rate)),
+        .head = head_at(scene, fmax(0, (double)(simulation->step + 1) / rate)),
     };
     memcpy(step.gravity, forces.gravity, sizeof step.gravity);
     memcpy(step.wind, forces.wind, sizeof step.wind);
@@ -175,7 +217,7 @@ static SolverStep next_step(const Simulation *simulation)
 static void step_section(Simulation *simulation, SimulationSection *section, const SolverStep *step)
 {
     uint64_t strands = section->hair.strand_count;
-    if (solver_is_static(&section->solver)) return;
+    if (solver_is_static(section->solver.type)) return;
     if (sleep_skips(&section->sleep, step)) {
         simulation->strand_steps_asleep += strands;
         return;
@@ -188,11 +230,11 @@ static void step_section(Simulation *simulation, SimulationSection *section, con
     ++simulation->steps;
 }
 
-static void carry_sections(Simulation *simulation, const CarryMotion *motion)
+static void carry_sections(Simulation *simulation, const HeadMotion *motion)
 {
     for (uint32_t i = 0; i < simulation->scene->section_count; ++i) {
         SimulationSection *section = &simulation->sections[i];
-        if (solver_is_static(&section->solver)) continue;
+        if (solver_is_static(section->solver.type)) continue;
         inbetween_restore(&section->inbetween);
         solver_pose(&section->solver, &simulation->step_head);
         carry_apply(&simulation->carry, &section->solver, &section->hair, motion);
@@ -202,12 +244,12 @@ static void carry_sections(Simulation *simulation, const CarryMotion *motion)
 // What the head does at the step's start: it sets out, or jumps.
 static void carry_along(Simulation *simulation, SolverStep *step)
 {
-    CarryMotion motion;
+    HeadMotion motion;
     HeadPose carried;
-    if (simulation->step == 0 && head_motion_start(simulation->scene, &motion))
+    if (simulation->step == 0 && head_starts_moving(simulation->scene, &motion))
         carry_sections(simulation, &motion);
-    if (!head_motion_jumps(simulation->scene, &step->head_old, &step->head, &carried)) return;
-    motion = carry_between(&step->head_old, &carried);
+    if (!head_jumps(simulation->scene, &step->head_old, &step->head, &carried)) return;
+    motion = head_motion_between(&step->head_old, &carried);
     carry_sections(simulation, &motion);
     step->head_old = carried;
     ++simulation->jumps;
@@ -217,7 +259,7 @@ static void take_step(Simulation *simulation)
 {
     SolverStep step = next_step(simulation);
     if (simulation->carry.program) carry_along(simulation, &step);
-    shelter_fill(&step, simulation->middle, simulation->scene->run.wind_shelter);
+    step_shelter(&step, simulation->middle, simulation->scene->run.wind_shelter);
     for (uint32_t i = 0; i < simulation->scene->section_count; ++i)
         step_section(simulation, &simulation->sections[i], &step);
     simulation->step_head_before = simulation->step_head;
@@ -270,7 +312,7 @@ void simulation_advance(Simulation *simulation)
     }
     simulation->share = next.share;
     simulation->head =
-        next.share > 0 ? head_motion_pose(simulation->scene, next.time) : simulation->step_head;
+        next.share > 0 ? head_at(simulation->scene, next.time) : simulation->step_head;
 }
 
 static void pose_between(Simulation *simulation, SimulationSection *section)
@@ -284,10 +326,10 @@ static void pose_between(Simulation *simulation, SimulationSection *section)
 
 void simulation_pose(Simulation *simulation)
 {
-    bool moved = !same_pose(&simulation->posed_at, &simulation->head);
+    bool moved = !head_is_same(&simulation->posed_at, &simulation->head);
     for (uint32_t i = 0; i < simulation->scene->section_count; ++i) {
         SimulationSection *section = &simulation->sections[i];
-        bool same_head = same_pose(&section->posed_at, &simulation->head);
+        bool same_head = head_is_same(&section->posed_at, &simulation->head);
         if (section->posed && same_head && !moves(section)) {
             ++simulation->poses_skipped;
             continue;

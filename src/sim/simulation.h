@@ -49,11 +49,26 @@ typedef struct Simulation {
     uint64_t jumps;                             // of the head, by the rule of --teleport
 } Simulation;
 
+// The stability number of a step: sigma = dt (n - 1) sqrt(g / L), the greatest among the strands of
+// n vertices and length L (m). It counts how much a link can turn within a step of dt s under an
+// acceleration of g m/s2 along the strand. 0 without strands or acceleration.
+double simulation_stability(const Strands *strands, double g, double dt);
+
+// The greatest acceleration by gravity and wind that the scene will have, m/s2: keyed values, and
+// wind at the height of a gust through the section's drag. The head's own motion isn't in it.
+double simulation_acceleration(const Scene *scene, const SectionParams *params);
+
+// The fewest steps a period (schedule_period_rate) with which the stability number of each section
+// stays within what its solver takes (SolverType.most_stability). `strands`: one for each section.
+// RESULT_USAGE with the section's file if that is more than --substeps may be.
+Result simulation_choose_substeps(int *substeps, const Scene *scene, const Strands *strands,
+                                  Error *error);
+
 // Uploads strands[section] and makes the solvers, unless scene->run.from_cache is set: then there
 // is nothing but simulation_show. `mesh` may be NULL where the scene says nothing of collide_mesh;
 // it is not needed afterwards. `gpu`, `timer`, `scene` outlive the simulation. Errors of
 // hair_create and solver_create, prefixed with the section's file, and of
-// stability_choose_substeps.
+// simulation_choose_substeps.
 Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer,
                          const Scene *scene, const Strands *strands, const Mesh *mesh,
                          Error *error);

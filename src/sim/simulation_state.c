@@ -48,7 +48,7 @@ static Result list_buffers(BufferList *list, const Simulation *simulation, Error
     *list = (BufferList){0};
     for (uint32_t i = 0; i < simulation->scene->section_count; ++i) {
         const SimulationSection *section = &simulation->sections[i];
-        if (solver_is_static(&section->solver)) continue;
+        if (solver_is_static(section->solver.type)) continue;
         for (uint32_t b = 0; b < section->hair.batch_count; ++b) {
             add_buffer(list, &section->hair.batches[b].position);
             if (section->inbetween.hair) add_buffer(list, &section->inbetween.earlier[b]);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "sim/sleep.h"
-#include "sim/step_uniforms.h"
 
 #include "glsl/sim/sleep_params.h"
 
@@ -32,7 +31,7 @@ Result sleep_create(Sleep *sleep, const Gpu *gpu, GpuTimer *timer, const Hair *h
                     const Solver *solver, const SectionParams *params, Error *error)
 {
     *sleep = (Sleep){0};
-    if (params->sleep == 0 || solver_is_static(solver)) return RESULT_OK;
+    if (params->sleep == 0 || solver_is_static(solver->type)) return RESULT_OK;
     *sleep = (Sleep){.hair = hair,
                      .timer = timer,
                      .tolerance = params->sleep,
@@ -62,17 +61,11 @@ void sleep_destroy(Sleep *sleep)
     *sleep = (Sleep){0};
 }
 
-static bool same_head(const HeadPose *a, const HeadPose *b)
-{
-    return memcmp(a->rotation, b->rotation, sizeof a->rotation) == 0 &&
-           memcmp(a->translation, b->translation, sizeof a->translation) == 0;
-}
-
 // Whether nothing that moves hair differs between two steps, nor within them.
 static bool same_forces(const SolverStep *a, const SolverStep *b)
 {
-    return a->dt == b->dt && !a->first && !b->first && same_head(&a->head, &b->head) &&
-           same_head(&b->head_old, &b->head) &&
+    return a->dt == b->dt && !a->first && !b->first && head_is_same(&a->head, &b->head) &&
+           head_is_same(&b->head_old, &b->head) &&
            memcmp(a->gravity, b->gravity, sizeof a->gravity) == 0 &&
            memcmp(a->wind, b->wind, sizeof a->wind) == 0;
 }

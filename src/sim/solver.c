@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "sim/solver.h"
 #include "base/suggest.h"
+#include "sim/collision.h"
+#include "sim/pose.h"
+#include "sim/recipe.h"
 
+#include <cglm/cglm.h>
+
+#include <assert.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define POINT_TO_SOLVER(name) &SOLVER_##name,
@@ -46,6 +53,14 @@ Result solver_check(const SectionParams *params, Error *error)
     return type ? check_variant(type, params->variant, error) : refuse_type(params->algo, error);
 }
 
+Result solver_check_parameter(const SectionParams *params, const ParamInfo *info, const char *place,
+                              Error *error)
+{
+    if (params_owned_by(info, params->algo)) return RESULT_OK;
+    return error_set(error, RESULT_USAGE, "%s: --algo %s has no such parameter", place,
+                     params->algo);
+}
+
 const char *solver_caution(const SectionParams *params)
 {
     const SolverType *type = find_type(params->algo);
@@ -57,56 +72,316 @@ float solver_most_stability(const SectionParams *params)
     return find_type(params->algo)->most_stability;
 }
 
+// Which of the type's variants the parameters name: 0, the default, for "".
+static int find_variant(const SolverType *type, const char *variant)
+{
+    for (int i = 0; i < SOLVER_MAX_VARIANTS && type->variants[i]; ++i)
+        if (strcmp(type->variants[i], variant) == 0) return i;
+    return 0;
+}
+
+typedef struct SolverState SolverState;
+
+typedef struct SolverBatch {
+    GpuBuffer state;   // vec4 a particle: velocities or segments, as SolverStateKind has it
+    GpuBuffer tips;    // SOLVER_SEGMENTS: two vec4 a strand
+    GpuBuffer scratch; // SolverRecipe.scratch
+} SolverBatch;
+
+struct SolverState {
+    const SolverRecipe *recipe; // NULL: static
+    const Hair *hair;
+    const SectionParams *params;
+    GpuTimer *timer;
+    GpuBuffer uniforms, own_uniforms;
+    void *own; // the solver's own block
+    StepPrograms programs;
+    SolverBatch *batches; // one for each of the hair
+    Pose pose;           // of segments; else of the style: particles start so, static hair stays so
+    Collision collision; // of the state
+    Collision drawn;     // of what is drawn, where the state is another
+    bool posed;          // particles have started
+};
+
+static bool has_particles(const SolverState *state)
+{
+    return state->recipe && state->recipe->state == SOLVER_PARTICLES;
+}
+
+static bool has_segments(const SolverState *state)
+{
+    return state->recipe && state->recipe->state == SOLVER_SEGMENTS;
+}
+
+static void destroy(SolverState *state)
+{
+    for (uint32_t i = 0; state->batches && i < state->hair->batch_count; ++i) {
+        gpu_buffer_destroy(&state->batches[i].state);
+        gpu_buffer_destroy(&state->batches[i].tips);
+        gpu_buffer_destroy(&state->batches[i].scratch);
+    }
+    free(state->batches);
+    free(state->own);
+    step_programs_destroy(&state->programs);
+    gpu_buffer_destroy(&state->uniforms);
+    gpu_buffer_destroy(&state->own_uniforms);
+    pose_destroy(&state->pose);
+    collision_destroy(&state->collision);
+    collision_destroy(&state->drawn);
+    free(state);
+}
+
+static Result check_vertices(const SolverType *type, const SolverRecipe *recipe, const Hair *hair,
+                             Error *error)
+{
+    for (uint32_t i = 0; i < hair->batch_count; ++i)
+        if (recipe->most_vertices && hair->batches[i].vertex_count > recipe->most_vertices)
+            return error_set(error, RESULT_USAGE,
+                             "%s: a strand of %u vertices: expected at most %u (longer ones exceed "
+                             "the loops of a CPU driver; rope, spring and dftl take more)",
+                             type->name, hair->batches[i].vertex_count, recipe->most_vertices);
+    return RESULT_OK;
+}
+
+static Result build_programs(SolverState *state, const SolverSetup *setup, Error *error)
+{
+    const SolverRecipe *recipe = state->recipe;
+    ShaderDefine defines[STEP_OWN_DEFINES + 1] = {0};
+    if (recipe->define) recipe->define(defines, state->params);
+    const StepProgramsOptions options = {
+        .shader = recipe->shader,
+        .most_in_registers = recipe->most_in_registers,
+        .strands_on_cpu = recipe->strands_on_cpu ? recipe->strands_on_cpu : 1,
+        .lead = recipe->carried < 2 && state->params->clamped > 1,
+        .sheltered = setup->sheltered,
+        .defines = defines,
+    };
+    return step_programs_create(&state->programs, setup->gpu, state->hair, &options, error);
+}
+
+typedef float Float4[4];
+
+// The strand's texels of `rest` become directions in the world; the tip is at their end.
+static void place_strand(const HairBatch *hair, uint32_t slot, const HeadPose *head, Float4 *rest,
+                         Float4 tip)
+{
+    for (uint32_t j = 0; j < hair->vertex_count; ++j) {
+        float *at = rest[hair_address(hair, slot, j)];
+        if (head) glm_quat_rotatev((float *)head->rotation, at, at);
+        if (head && j == 0) glm_vec3_add((float *)head->translation, at, at);
+        for (int k = 0; k < 3; ++k) tip[k] += j == 0 ? at[k] : at[3] * at[k];
+    }
+}
+
+// Velocities of 0; or segments and tips at rest in the style where the head is.
+static Result create_batch(SolverState *state, uint32_t i, const SolverSetup *setup, Error *error)
+{
+    const HairBatch *hair = &state->hair->batches[i];
+    const GpuLimits *limits = &setup->gpu->limits;
+    SolverBatch *batch = &state->batches[i];
+    uint32_t slots = hair_slots(hair), scratch = state->recipe->scratch;
+    size_t particles = (size_t)hair->vertex_count * slots;
+    int64_t size = (int64_t)(particles * sizeof(Float4));
+    bool segments = has_segments(state);
+    Float4 *start = calloc(particles, sizeof *start),
+           *tips = calloc(2 * (size_t)slots, sizeof *tips);
+    Result result = RESULT_OK;
+    assert(scratch <= HAIR_MOST_SCRATCH);
+    if (!start || !tips)
+        result = error_set(error, RESULT_FAILED, "no memory for %zu particles", particles);
+    if (result == RESULT_OK && segments) {
+        glBindBuffer(GL_SHADER_STORAGE_BUFFER, hair->rest.buffer);
+        glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, start);
+        for (uint32_t slot = 0; slot < slots; ++slot)
+            place_strand(hair, slot, setup->head, start, tips[2 * slot]);
+        result = gpu_buffer_create(&batch->tips, limits, "strands' tips",
+                                   2 * (int64_t)(slots * sizeof *tips), tips, 0, error);
+    }
+    THEN(result, gpu_buffer_create(&batch->state, limits, segments ? "segments" : "velocities",
+                                   size, start, GL_RGBA32F, error));
+    if (scratch && !state->programs.in_registers)
+        THEN(result, gpu_buffer_create(&batch->scratch, limits, "a solver's scratch memory",
+                                       size * scratch, NULL, 0, error));
+    free(start);
+    free(tips);
+    return result;
+}
+
+static Result build(SolverState *state, const SolverSetup *setup, Error *error)
+{
+    const SolverRecipe *recipe = state->recipe;
+    bool segments = has_segments(state);
+    TRY(pose_create(&state->pose, setup->gpu, segments ? setup->params->style : 1, error));
+    if (!recipe) return RESULT_OK;
+    state->batches = calloc(state->hair->batch_count + 1, sizeof *state->batches);
+    state->own = calloc(1, recipe->params_size + 1);
+    if (!state->batches || !state->own)
+        return error_set(error, RESULT_FAILED, "no memory for a solver");
+    TRY(build_programs(state, setup, error));
+    uint32_t carried = setup->params->clamped > 1 ? 2 : recipe->carried;
+    TRY(collision_create(&state->collision, setup,
+                         segments ? COLLISION_SEGMENTS : COLLISION_PARTICLES, carried, error));
+    if (segments) TRY(collision_create(&state->drawn, setup, COLLISION_DRAWN, carried, error));
+    for (uint32_t i = 0; i < state->hair->batch_count; ++i)
+        TRY(create_batch(state, i, setup, error));
+    return RESULT_OK;
+}
+
 Result solver_create(Solver *solver, const SolverSetup *setup, Error *error)
 {
     *solver = (Solver){0};
-    Result result = solver_check(setup->params, error);
-    if (result != RESULT_OK) return result;
-    solver->type = find_type(setup->params->algo);
-    SolverSetup typed = *setup;
-    typed.type = solver->type;
-    result = solver->type->calls->create(&solver->state, &typed, error);
-    if (result != RESULT_OK) *solver = (Solver){0};
+    TRY(solver_check(setup->params, error));
+    const SolverType *type = find_type(setup->params->algo);
+    const SolverRecipe *own = type->recipes[find_variant(type, setup->params->variant)];
+    const SolverRecipe *recipe = own ? own : type->recipes[0];
+    if (recipe) TRY(check_vertices(type, recipe, setup->hair, error));
+    if (recipe && recipe->check) TRY(recipe->check(setup, error));
+    SolverState *state = calloc(1, sizeof *state);
+    if (!state) return error_set(error, RESULT_FAILED, "no memory for a solver");
+    state->recipe = recipe;
+    state->hair = setup->hair;
+    state->params = setup->params;
+    state->timer = setup->timer;
+    Result result = build(state, setup, error);
+    if (result == RESULT_OK)
+        *solver = (Solver){type, state};
+    else
+        destroy(state);
     return result;
 }
 
 void solver_destroy(Solver *solver)
 {
-    if (solver->type) solver->type->calls->destroy(solver->state);
+    if (solver->state) destroy(solver->state);
     *solver = (Solver){0};
 }
 
 int solver_buffers(const Solver *solver, uint32_t batch, SolverBuffer buffers[SOLVER_MAX_BUFFERS])
 {
-    const SolverCalls *calls = solver->type->calls;
-    return calls->buffers ? calls->buffers(solver->state, batch, buffers) : 0;
+    const SolverState *state = solver->state;
+    if (!state->recipe) return 0;
+    const SolverBatch *own = &state->batches[batch];
+    if (has_segments(state)) {
+        buffers[0] = (SolverBuffer){&own->state, SOLVER_DIRECTIONS};
+        buffers[1] = (SolverBuffer){&own->tips, SOLVER_TIPS};
+    } else {
+        buffers[0] = (SolverBuffer){&state->hair->batches[batch].position, SOLVER_POINTS};
+        buffers[1] = (SolverBuffer){&own->state, SOLVER_VELOCITIES};
+    }
+    const GpuBuffer *contacts = collision_memory(&state->collision, batch);
+    if (contacts) buffers[2] = (SolverBuffer){contacts, SOLVER_POINTS};
+    return contacts ? 3 : 2;
 }
 
-void solver_step(const Solver *solver, const SolverStep *step)
+static void write_pose(SolverState *state, const HeadPose *head)
 {
-    if (solver->type->calls->step) solver->type->calls->step(solver->state, step);
+    for (uint32_t i = 0; i < state->hair->batch_count; ++i)
+        pose_write(&state->pose, &state->hair->batches[i],
+                   has_segments(state) ? &state->batches[i].state : NULL, head);
 }
 
 void solver_pose(const Solver *solver, const HeadPose *head)
 {
-    solver->type->calls->pose(solver->state, head);
+    SolverState *state = solver->state;
+    if (has_particles(state)) {
+        if (!state->posed) write_pose(state, head);
+        state->posed = true;
+        return;
+    }
+    gpu_timer_begin(state->timer, "pose");
+    write_pose(state, head);
+    collision_push_drawn(&state->drawn, head);
+    gpu_timer_end(state->timer);
+}
+
+static void dispatch(SolverState *state, uint32_t i, StepParams *uniforms)
+{
+    const HairBatch *hair = &state->hair->batches[i];
+    const SolverBatch *batch = &state->batches[i];
+    uniforms->strand_count = hair->strand_count;
+    uniforms->vertex_count = hair->vertex_count - state->programs.leads[i];
+    gpu_buffer_set_uniforms(&state->uniforms, BIND_STEP, uniforms, sizeof *uniforms);
+    gpu_buffer_bind_texture(&hair->position, BIND_POSITION);
+    gpu_buffer_bind_texture(&hair->rest, BIND_REST);
+    gpu_buffer_bind_texture(&hair->strand_id, BIND_STRAND_ID);
+    gpu_buffer_bind_texture(&batch->state, BIND_STATE);
+    gpu_buffer_bind_storage(&hair->position, BIND_POSITION_OUT);
+    gpu_buffer_bind_storage(&batch->state, BIND_STATE_OUT);
+    if (batch->tips.buffer) gpu_buffer_bind_storage(&batch->tips, BIND_TIPS);
+    if (batch->scratch.buffer) gpu_buffer_bind_storage(&batch->scratch, BIND_SCRATCH);
+    step_programs_dispatch(&state->programs, i, hair->strand_count);
+}
+
+// One of `count` equal parts of a step.
+static void step_part(SolverState *state, const SolverStep *step, int part, int count)
+{
+    const SolverRecipe *recipe = state->recipe;
+    StepParams uniforms = step_uniforms(step, state->params);
+    if (recipe->fill) {
+        memset(state->own, 0, recipe->params_size);
+        recipe->fill(state->own, &uniforms, step, state->params);
+        gpu_buffer_set_uniforms(&state->own_uniforms, BIND_SOLVER, state->own, recipe->params_size);
+    }
+    int phases = recipe->phases && !state->programs.in_registers
+                     ? recipe->phases(state->params, state->hair)
+                     : 1;
+    for (int phase = 0; phase < phases; ++phase) {
+        uniforms.phase = (uint32_t)phase;
+        for (uint32_t i = 0; i < state->hair->batch_count; ++i) dispatch(state, i, &uniforms);
+        glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+    }
+    if (!collision_begin(&state->collision, step, part, count)) return;
+    for (uint32_t i = 0; i < state->hair->batch_count; ++i) {
+        SolverBatch *batch = &state->batches[i];
+        collision_push(&state->collision, i, &batch->state,
+                       batch->tips.buffer ? &batch->tips : NULL);
+    }
+}
+
+void solver_step(const Solver *solver, const SolverStep *whole)
+{
+    SolverState *state = solver->state;
+    if (!state->recipe) return;
+    if (has_particles(state)) solver_pose(solver, &whole->head_old);
+    gpu_timer_begin(state->timer, state->recipe->label);
+    SolverStep step = *whole;
+    int count = solver_substeps(solver, whole);
+    step.dt = whole->dt / count;
+    for (int part = 1; part <= count; ++part) {
+        step.head = head_between(&whole->head_old, &whole->head, (float)part / (float)count);
+        step_part(state, &step, part, count);
+        step.head_old = step.head;
+        step.first = false;
+    }
+    gpu_timer_end(state->timer);
 }
 
 void solver_report(const Solver *solver, SolverReport *report)
 {
-    if (solver->type->calls->report) solver->type->calls->report(solver->state, report);
+    const SolverState *state = solver->state;
+    collision_report(&state->collision, report);
+    for (uint32_t i = 0; has_segments(state) && i < state->hair->batch_count; ++i) {
+        uint32_t count = state->hair->batches[i].strand_count;
+        Float4 *tips = malloc(2 * (size_t)count * sizeof *tips);
+        if (!tips) return;
+        glBindBuffer(GL_SHADER_STORAGE_BUFFER, state->batches[i].tips.buffer);
+        glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0,
+                           (GLsizeiptr)(2 * (size_t)count * sizeof *tips), tips);
+        for (uint32_t s = 0; s < count; ++s) report->moves_limited += (uint64_t)tips[2 * s][3];
+        free(tips);
+    }
 }
 
-bool solver_is_static(const Solver *solver)
+int solver_substeps(const Solver *solver, const SolverStep *step)
 {
-    return !solver->type->calls->step;
+    const SolverState *state = solver->state;
+    if (!state->recipe || !state->recipe->substeps) return 1;
+    return state->recipe->substeps(step, state->params, state->hair);
 }
 
-int solver_variant(const SolverType *type, const char *variant)
+bool solver_is_static(const SolverType *type)
 {
-    for (int i = 0; i < SOLVER_MAX_VARIANTS && type->variants[i]; ++i)
-        if (strcmp(type->variants[i], variant) == 0) return i;
-    return 0;
+    return !type->recipes[0];
 }
 
 static void print_flags(FILE *stream, const char *name)

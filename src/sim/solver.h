@@ -1,34 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Solvers: what moves the hair. One interface, one table; adding a solver is one C file, one GLSL
-// file and one line of SOLVERS.
+// The room src/sim moves hair on the GPU. It takes strands, a scene (head, forces, colliders) and
+// parameters; simulation.h advances them frame by frame, and hands on positions in Hair's buffers
+// (hair.h), which the renderer reads. This file is the solvers, what moves the hair: one interface,
+// one table. What each is made of stands in recipe.h.
 #pragma once
 
-#include "base/params.h"
 #include "gpu/gpu_timer.h"
 #include "scene/colliders.h"
 #include "sim/distance_field.h"
-#include "sim/hair.h"
-
-#include <cglm/types.h>
-
-// The head's rigid frame: x_world = rotation x_head + translation.
-typedef struct HeadPose {
-    versor rotation;  // unit quaternion x y z w
-    vec3 translation; // metres
-} HeadPose;
-
-// One step of time, the same for all sections.
-typedef struct SolverStep {
-    double dt;  // s
-    bool first; // the first step from rest: forces act for dt/2 (leapfrog start, which second order
-                // needs)
-    uint32_t shuffle;        // random number of this step, the same for all strands
-    HeadPose head_old, head; // at the step's start and end
-    float gravity[3];        // m/s^2
-    float wind[4][3];        // m/s: mixed by strand
-    float shelter[4];        // m: the middle of the head; share of the wind kept off behind it
-    float head_velocity[3];  // m/s, of that middle
-} SolverStep;
+#include "sim/step.h"
 
 typedef struct SolverType SolverType;
 
@@ -42,7 +22,6 @@ typedef struct SolverSetup {
     const Colliders *colliders; // shapes that hair must not cross; NULL: none
     const DistanceField *field; // a mesh that it must not cross; NULL: none
     bool sheltered;             // SolverStep.shelter counts
-    const SolverType *type;     // solver_create sets it
 } SolverSetup;
 
 // What the vec4s of a buffer are; w is the solver's own.
@@ -66,40 +45,26 @@ enum { SOLVER_MAX_BUFFERS = 4 };
 typedef struct SolverReport {
     uint64_t moves_limited; // moves cut because a particle was flung beyond what float32 can follow
     uint64_t contacts;      // particles that touched a collider in the last step
-    float deepest_found, deepest_left; // m: deepest that a particle was in a collider, with its
-                                       // margin, before it was pushed out, and after
+    // m: deepest that a particle was in a collider, with its margin, before it was pushed out, and
+    // after.
+    float deepest_found, deepest_left;
 } SolverReport;
-
-// How a solver's state comes, moves and goes. Every function is called with the context current;
-// all but create and report only queue GPU work.
-typedef struct SolverCalls {
-    Result (*create)(void **state, const SolverSetup *setup,
-                     Error *error); // hair at rest in its style
-    int (*buffers)(const void *state, uint32_t batch,
-                   SolverBuffer buffers[SOLVER_MAX_BUFFERS]); // lists the state, gives its count;
-                                                              // NULL: there is none
-    void (*step)(void *state, const SolverStep *step); // advances the physical state; may be NULL
-    void (*pose)(void *state, const HeadPose *head);   // writes Hair's positions for drawing
-    void (*report)(void *state, SolverReport *report); // waits for the GPU; may be NULL
-    void (*destroy)(void *state);                      // NULL state is legal
-} SolverCalls;
 
 enum { SOLVER_MAX_VARIANTS = 4 };
 
 struct SolverType {
-    const char *name;                                    // the word of --algo
-    const char *summary;                                 // one line for --algo list
-    const char *(*caution)(const SectionParams *params); // what its user should know, one line;
-                                                         // NULL or giving NULL: nothing
-    const char *lengths;  // how well segments keep theirs, for --algo list; may be NULL
-    const char *style;    // what brings the style back, for --algo list; NULL: nothing does
-    float most_stability; // greatest stability number of a step (stability.h) at which it is calm,
-                          // for
-                          // --substeps auto; 0: any
+    const char *name;    // the word of --algo
+    const char *summary; // one line for --algo list
+    // What its user should know, one line; NULL or giving NULL: nothing.
+    const char *(*caution)(const SectionParams *params);
+    const char *lengths; // how well segments keep theirs, for --algo list; may be NULL
+    const char *style;   // what brings the style back, for --algo list; NULL: nothing does
+    // Greatest stability number of a step (simulation_stability) at which it is calm, for
+    // --substeps auto; 0: any.
+    float most_stability;
     const char *variants[SOLVER_MAX_VARIANTS]; // words of --variant, the default first; NULL ends
-    const SolverCalls *calls;                  // &PARTICLE_SOLVER, or its own
-    const struct ParticleRecipe
-        *recipes[SOLVER_MAX_VARIANTS]; // with PARTICLE_SOLVER: a variant's, or one for all
+    // A variant's, or one for all; none: it steps nothing, hair is carried stiff in its style.
+    const struct SolverRecipe *recipes[SOLVER_MAX_VARIANTS];
 };
 
 // The table, in the order of --algo list.
@@ -123,12 +88,17 @@ extern const SolverType *const SOLVER_TYPES[];
 
 typedef struct Solver {
     const SolverType *type;
-    void *state;
+    struct SolverState *state;
 } Solver;
 
 // Whether params->algo and params->variant exist; RESULT_USAGE naming the nearest valid word. Needs
 // no context.
 Result solver_check(const SectionParams *params, Error *error);
+
+// RESULT_USAGE "PLACE: --algo ALGO has no such parameter" if `info` belongs to other solvers than
+// params->algo, which has been checked. `place`: the parameter as its user wrote it.
+Result solver_check_parameter(const SectionParams *params, const ParamInfo *info, const char *place,
+                              Error *error);
 
 // What the user of this algo and variant should know, or NULL. The words have been checked.
 const char *solver_caution(const SectionParams *params);
@@ -136,21 +106,27 @@ const char *solver_caution(const SectionParams *params);
 // Its type's most_stability. The words have been checked.
 float solver_most_stability(const SectionParams *params);
 
-// Checks as above and creates.
+// Hair at rest in its style where the head is. Errors of solver_check and of the recipe's check;
+// RESULT_USAGE for strands of more vertices than it takes; of shaders and buffers.
 Result solver_create(Solver *solver, const SolverSetup *setup, Error *error);
 void solver_destroy(Solver *solver);
 
-// The calls of its type, on its state. The buffers' content is there once the solver has posed.
+// Lists the state of batch `batch` and gives its count, 0 for a static solver. The buffers' content
+// is there once the solver has posed.
 int solver_buffers(const Solver *solver, uint32_t batch, SolverBuffer buffers[SOLVER_MAX_BUFFERS]);
+
+// Advances the physical state; writes Hair's positions for drawing. Both only queue GPU work.
 void solver_step(const Solver *solver, const SolverStep *step);
 void solver_pose(const Solver *solver, const HeadPose *head);
+
+// Adds what happened. Waits for the GPU.
 void solver_report(const Solver *solver, SolverReport *report);
 
-// True if stepping changes nothing: the pose depends on the head alone.
-bool solver_is_static(const Solver *solver);
+// How many equal sub-steps the solver will make of this step, >= 1.
+int solver_substeps(const Solver *solver, const SolverStep *step);
 
-// Which of the type's variants the parameters name: 0, the default, for "".
-int solver_variant(const SolverType *type, const char *variant);
+// True if stepping changes nothing: the pose depends on the head alone.
+bool solver_is_static(const SolverType *type);
 
 // Prints the table: name, summary, what it keeps, variants, and the flags that it owns (the owner
 // column of params.def).

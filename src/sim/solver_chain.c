@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include "sim/particle_solver.h"
+#include "sim/recipe.h"
 
-#include <math.h>
+#include "glsl/sim/chain_params.h"
 
-static void fill(StepParams *uniforms, const SolverStep *step, const SectionParams *params)
+static void fill(void *block, StepParams *uniforms, const SolverStep *step,
+                 const SectionParams *params)
 {
     (void)step;
-    uniforms->own[0][0] = step_style_pull(uniforms, params);
-    uniforms->own[0][1] = params->chain_bend * params->style / fmaxf(1 - params->style, 1e-6f);
+    *(ChainParams *)block = (ChainParams){
+        .spring = step_style_spring(uniforms, (double)uniforms->dt, params),
+        .bend = params->chain_bend * step_style_odds(params),
+    };
 }
 
 static void define(ShaderDefine *defines, const SectionParams *params)
@@ -16,12 +19,13 @@ static void define(ShaderDefine *defines, const SectionParams *params)
     defines[1] = (ShaderDefine){"BENDS", params->style > 0 && params->chain_bend > 0};
 }
 
-static const ParticleRecipe RECIPE = {
+static const SolverRecipe RECIPE = {
     .label = "sim_chain",
     .shader = "sim/chain.comp",
     .most_in_registers = 16,
     .scratch = 2,
     .most_vertices = 7000, // nine sweeps
+    .params_size = sizeof(ChainParams),
     .fill = fill,
     .define = define,
 };
@@ -34,6 +38,5 @@ const SolverType SOLVER_CHAIN = {
     .lengths = "exact",
     .style = "position springs, bending: --style, --style-stiffness, --chain-bend",
     .most_stability = 3.2f,
-    .calls = &PARTICLE_SOLVER,
     .recipes = {&RECIPE},
 };

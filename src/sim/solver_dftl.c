@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include "sim/particle_solver.h"
+#include "sim/recipe.h"
 
-static void fill(StepParams *uniforms, const SolverStep *step, const SectionParams *params)
+#include "glsl/sim/dftl_params.h"
+
+static void fill(void *block, StepParams *uniforms, const SolverStep *step,
+                 const SectionParams *params)
 {
     (void)step;
-    uniforms->own[0][0] = step_style_pull(uniforms, params);
-    uniforms->own[0][1] = params->ftl_damping;
+    *(DftlParams *)block = (DftlParams){
+        .spring = step_style_spring(uniforms, (double)uniforms->dt, params),
+        .damping = params->ftl_damping,
+    };
 }
 
 static void define(ShaderDefine *defines, const SectionParams *params)
@@ -13,9 +18,10 @@ static void define(ShaderDefine *defines, const SectionParams *params)
     defines[0] = (ShaderDefine){"STYLED", params->style > 0};
 }
 
-static const ParticleRecipe RECIPE = {
+static const SolverRecipe RECIPE = {
     .label = "sim_dftl",
     .shader = "sim/dftl.comp",
+    .params_size = sizeof(DftlParams),
     .fill = fill,
     .define = define,
 };
@@ -26,6 +32,5 @@ const SolverType SOLVER_DFTL = {
                "strongly damped",
     .lengths = "exact",
     .style = "position springs, --style, --style-stiffness",
-    .calls = &PARTICLE_SOLVER,
     .recipes = {&RECIPE},
 };

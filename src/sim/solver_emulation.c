@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "sim/particle_solver.h"
+#include "sim/recipe.h"
 
-#include <stdio.h>
+#include "glsl/sim/emulation_params.h"
+
 #include <string.h>
 
 static bool is_thesis(const SectionParams *params)
@@ -9,13 +10,14 @@ static bool is_thesis(const SectionParams *params)
     return strcmp(params->variant, "thesis") == 0;
 }
 
-static void fill(StepParams *uniforms, const SolverStep *step, const SectionParams *params)
+static void fill(void *block, StepParams *uniforms, const SolverStep *step,
+                 const SectionParams *params)
 {
-    float style = params->style < 1 ? params->style : 0.999999f;
-    bool thesis = is_thesis(params);
-    if (!thesis) step_midpoint(uniforms, step, params);
-    uniforms->own[0][1] = thesis ? params->style_stiffness * style / (1 - style) : 0;
-    uniforms->passes = 1; // the order of every step: with a new one each, hair on a sphere trembles
+    *(EmulationParams *)block = (EmulationParams){
+        .spring = is_thesis(params) ? step_style_spring(uniforms, step->dt, params)
+                                    : step_midpoint(uniforms, step, params),
+        .order_seed = 1, // of every step: with a new one each, hair on a sphere trembles
+    };
 }
 
 static void define(ShaderDefine *defines, const SectionParams *params)
@@ -40,12 +42,13 @@ static int phases(const SectionParams *params, const Hair *hair)
     return most;
 }
 
-static const ParticleRecipe RECIPE = {
+static const SolverRecipe RECIPE = {
     .label = "sim_emulation",
     .shader = "sim/emulation.comp",
     .most_in_registers = 32,
     .scratch = 2,
     .most_vertices = 5000, // four sweeps beside a dispatch's links
+    .params_size = sizeof(EmulationParams),
     .fill = fill,
     .define = define,
     .phases = phases,
@@ -66,6 +69,5 @@ const SolverType SOLVER_EMULATION = {
     .variants = {"projected", "thesis"},
     .caution = caution,
     .most_stability = 1.6f, // as hybrid's
-    .calls = &PARTICLE_SOLVER,
     .recipes = {&RECIPE},
 };

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "sim/particle_solver.h"
+#include "sim/recipe.h"
+
+#include "glsl/sim/rope_params.h"
 
 #include <math.h>
 #include <string.h>
-
-// A strand of at most this many vertices stays in registers for a whole step.
-enum { MOST_IN_REGISTERS = 32 };
 
 static bool is_bullet(const SectionParams *params)
 {
@@ -17,22 +16,24 @@ static int small_steps(const SectionParams *params)
     return is_bullet(params) ? 1 : params->rope_iterations;
 }
 
-static void fill(StepParams *uniforms, const SolverStep *step, const SectionParams *params)
+static void fill(void *block, StepParams *uniforms, const SolverStep *step,
+                 const SectionParams *params)
 {
     int count = small_steps(params);
     double h = step->dt * (double)params->rope_time_scale / count, c = (double)params->drag;
+    RopeParams *rope = block;
     uniforms->dt = (float)h;
-    uniforms->own[0][0] = (float)count;
-    uniforms->own[0][1] = (float)params->rope_iterations / (float)count;
-    uniforms->own[0][2] = (float)pow(1 - (double)params->rope_damping, 1.0 / count);
-    uniforms->own[0][3] = (float)((double)params->rope_compliance / (h * h));
+    rope->small_steps = count;
+    rope->sweeps = params->rope_iterations / count;
+    rope->kept = (float)pow(1 - (double)params->rope_damping, 1.0 / count);
+    rope->softness = (float)((double)params->rope_compliance / (h * h));
+    rope->stretch_drawn = params->stretch_drawn;
     step_drag_factors(c, step->first ? h / 2 : h, &uniforms->decay, &uniforms->gain);
-    uniforms->own[1][0] = uniforms->decay;
-    uniforms->own[1][1] = uniforms->gain;
-    uniforms->own[1][3] = step_style_pull(uniforms, params);
+    rope->first_decay = uniforms->decay;
+    rope->first_gain = uniforms->gain;
+    rope->first_spring = step_style_spring(uniforms, (double)uniforms->dt, params);
     step_drag_factors(c, h, &uniforms->decay, &uniforms->gain);
-    uniforms->own[2][0] = step_style_pull(uniforms, params);
-    uniforms->own[1][2] = params->stretch_drawn;
+    rope->spring = step_style_spring(uniforms, (double)uniforms->dt, params);
 }
 
 static void define(ShaderDefine *defines, const SectionParams *params)
@@ -56,12 +57,13 @@ static Result check(const SolverSetup *setup, Error *error)
     return RESULT_OK;
 }
 
-static const ParticleRecipe RECIPE = {
+static const SolverRecipe RECIPE = {
     .label = "sim_rope",
     .shader = "sim/rope.comp",
-    .most_in_registers = MOST_IN_REGISTERS,
+    .most_in_registers = 32,
     .scratch = 2,
     .check = check,
+    .params_size = sizeof(RopeParams),
     .fill = fill,
     .define = define,
     .phases = phases,
@@ -73,6 +75,5 @@ const SolverType SOLVER_ROPE = {
     .lengths = "within what its iterations allow; drawn exactly",
     .style = "position springs, --style, --style-stiffness",
     .variants = {"bullet", "xpbd"},
-    .calls = &PARTICLE_SOLVER,
     .recipes = {&RECIPE},
 };

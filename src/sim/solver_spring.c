@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: MIT
-#include "sim/particle_solver.h"
+#include "sim/recipe.h"
+
+#include "glsl/sim/spring_params.h"
 
 #include <cglm/cglm.h>
 
 #include <math.h>
 #include <string.h>
 
-static void fill(StepParams *uniforms, const SolverStep *step, const SectionParams *params)
+static void fill(void *block, StepParams *uniforms, const SolverStep *step,
+                 const SectionParams *params)
 {
+    (void)uniforms;
     (void)step;
-    float odds = params->style / fmaxf(1 - params->style, 1e-6f);
-    uniforms->own[0][0] = params->spring_coil;
-    uniforms->own[0][1] = params->spring_angular * odds;
-    uniforms->own[0][2] = params->stretch_drawn;
+    *(SpringParams *)block = (SpringParams){
+        .coil = params->spring_coil,
+        .angular = params->spring_angular * step_style_odds(params),
+        .stretch_drawn = params->stretch_drawn,
+    };
 }
 
 static void define(ShaderDefine *defines, const SectionParams *params)
@@ -47,10 +52,11 @@ static int calm_substeps(const SolverStep *step, const SectionParams *params, co
     return (int)fmax(1, fmin(ceil(step->dt * fall / limit), 1e3));
 }
 
-static const ParticleRecipe IMPLICIT = {
+static const SolverRecipe IMPLICIT = {
     .label = "sim_spring",
     .shader = "sim/spring.comp",
     .scratch = 3,
+    .params_size = sizeof(SpringParams),
     .fill = fill,
     .define = define,
     .substeps = calm_substeps,
@@ -73,9 +79,10 @@ static int stable_substeps(const SolverStep *step, const SectionParams *params, 
     return (int)fmin(ceil(step->dt * omega / limit), 1e9);
 }
 
-static const ParticleRecipe EXPLICIT = {
+static const SolverRecipe EXPLICIT = {
     .label = "sim_spring",
     .shader = "sim/spring.comp",
+    .params_size = sizeof(SpringParams),
     .fill = fill,
     .define = define,
     .substeps = stable_substeps,
@@ -87,6 +94,5 @@ const SolverType SOLVER_SPRING = {
     .lengths = "within what its stiffness allows; drawn exactly",
     .style = "angular springs, --style, --spring-angular",
     .variants = {"implicit", "explicit"},
-    .calls = &PARTICLE_SOLVER,
     .recipes = {&IMPLICIT, &EXPLICIT},
 };

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "sim/particle_solver.h"
+#include "sim/recipe.h"
+
+#include "glsl/sim/tressfx_params.h"
 
 #include <math.h>
 #include <string.h>
-
-enum { SCRATCH = 2, MOST_IN_REGISTERS = 4 };
 
 // llvmpipe ends all loops of an invocation after so many iterations, without a word.
 enum { MOST_ITERATIONS_ON_CPU = 65535 };
@@ -52,13 +52,8 @@ static float exchanged(const SectionParams *params, float frames, float share)
     return fminf(critical, 0.5f) / (longer * longer * longer);
 }
 
-// As with the other solvers' springs, style 0.5 means the stiffness as given.
-static float style_odds(const SectionParams *params)
-{
-    return params->style / fmaxf(1 - params->style, 1e-6f);
-}
-
-static void fill(StepParams *uniforms, const SolverStep *step, const SectionParams *params)
+static void fill(void *block, StepParams *uniforms, const SolverStep *step,
+                 const SectionParams *params)
 {
     bool faithful = is_faithful(params);
     double rate = (double)params->drag +
@@ -68,22 +63,23 @@ static void fill(StepParams *uniforms, const SolverStep *step, const SectionPara
     // TressFX counts in frames; what it gives per frame is meant for one of 1/60 s.
     float frames = (float)(step->dt * (double)params->tressfx_damping_rate);
     float per_frame = faithful ? 1 : frames, per_frame2 = per_frame * per_frame;
-    float odds = style_odds(params), most = params->tressfx_local_max;
+    float odds = step_style_odds(params), most = params->tressfx_local_max;
     float local = share_times(fminf(params->tressfx_local_constraint_stiffness, most), odds, most);
     float global = params->tressfx_global_constraint_stiffness;
     float spring = global / fmaxf(1 - global, 1e-6f) * odds * per_frame2;
     float share =
         params->tressfx_local_share * (faithful ? local : steady_share(params, per_frame, local));
-    const float own[3][4] = {
-        {share, spring / (1 + spring), params->tressfx_global_constraints_range,
-         params->tressfx_vsp_coeff},
-        {0.01f * params->tressfx_vsp_accel_threshold * per_frame2,
-         0.01f * params->tressfx_clamp_position_delta * per_frame,
-         (float)params->tressfx_local_constraints_iterations,
-         (float)params->tressfx_length_constraints_iterations},
-        {faithful ? 0 : exchanged(params, per_frame, share)},
+    *(TressfxParams *)block = (TressfxParams){
+        .local_share = share,
+        .global_share = spring / (1 + spring),
+        .global_range = params->tressfx_global_constraints_range,
+        .shock = params->tressfx_vsp_coeff,
+        .shock_threshold = 0.01f * params->tressfx_vsp_accel_threshold * per_frame2,
+        .most_move = 0.01f * params->tressfx_clamp_position_delta * per_frame,
+        .exchanged = faithful ? 0 : exchanged(params, per_frame, share),
+        .local_passes = params->tressfx_local_constraints_iterations,
+        .length_passes = params->tressfx_length_constraints_iterations,
     };
-    memcpy(uniforms->own, own, sizeof own);
 }
 
 static void define(ShaderDefine *defines, const SectionParams *params)
@@ -116,11 +112,12 @@ static Result check_loops(const SolverSetup *setup, Error *error)
     return RESULT_OK;
 }
 
-static const ParticleRecipe RECIPE = {
+static const SolverRecipe RECIPE = {
     .label = "sim_tressfx",
     .shader = "sim/tressfx.comp",
     .carried = 2,
     .check = check_loops,
+    .params_size = sizeof(TressfxParams),
     .fill = fill,
     .define = define,
 };
@@ -131,6 +128,5 @@ const SolverType SOLVER_TRESSFX = {
     .lengths = "exact; tressfx4: stretch",
     .style = "local and global shape, --style, its own flags",
     .variants = {"steady", "tressfx4"},
-    .calls = &PARTICLE_SOLVER,
     .recipes = {&RECIPE},
 };

@@ -2,7 +2,6 @@
 // Distance fields against exact distances.
 #include "mesh/obj.h"
 #include "mesh/scalp.h"
-#include "sim/field_cache.h"
 #include "support/hair_fixture.h"
 #include "support/shapes.h"
 #include "support/temporary.h"
@@ -314,7 +313,7 @@ static void a_field_is_kept_on_disk(void **state)
         DistanceField field;
         Error error = {{0}};
         bool read;
-        char *name = field_cache_name(&box, 24);
+        char *name = distance_field_cache_name(&box, 24);
         if (i == 2) {
             FILE *file = fopen(name, "r+b");
             assert_non_null(file);
@@ -322,15 +321,16 @@ static void a_field_is_kept_on_disk(void **state)
             fputc(1, file);
             fclose(file);
         }
-        assert_int_equal(field_cache_create(&field, fixture_gpu(), &box, 24, &read, &error),
-                         RESULT_OK);
+        assert_int_equal(
+            distance_field_create_cached(&field, fixture_gpu(), &box, 24, &read, &error),
+            RESULT_OK);
         assert_int_equal(read, i == 1);
         values[i] = read_values(&field);
         assert_memory_equal(values[i], values[0], distance_field_count(&field) * sizeof(float));
         distance_field_destroy(&field);
         free(name);
     }
-    char *other = field_cache_name(&box, 25), *same = field_cache_name(&box, 24);
+    char *other = distance_field_cache_name(&box, 25), *same = distance_field_cache_name(&box, 24);
     assert_string_not_equal(other, same);
     free(other);
     free(same);

@@ -2,12 +2,20 @@
 // Hair on the GPU: batches by vertex count and by the driver's limits, the rest shape, and the
 // blocks shared with shaders.
 #include "gpu/shader.h"
-#include "sim/step_uniforms.h"
+#include "sim/step.h"
 #include "support/hair_fixture.h"
 
+#include "glsl/sim/chain_params.h"
+#include "glsl/sim/dftl_params.h"
+#include "glsl/sim/emulation_params.h"
 #include "glsl/sim/follow_params.h"
+#include "glsl/sim/hybrid_params.h"
 #include "glsl/sim/inbetween_params.h"
 #include "glsl/sim/pose_params.h"
+#include "glsl/sim/rope_params.h"
+#include "glsl/sim/split_params.h"
+#include "glsl/sim/spring_params.h"
+#include "glsl/sim/tressfx_params.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -120,21 +128,83 @@ static void no_batch_has_more_strands_than_a_dispatch_takes(void **state)
     strands_destroy(&strands);
 }
 
+static GLuint build(const char *shader)
+{
+    GLuint program;
+    const ShaderDefine defines[] = {{"GROUP_SIZE", 8},   {"STRANDS", 1},
+                                    {"IN_REGISTERS", 0}, {"VERTICES", 4},
+                                    {"SHELTER", 0},      {"LEAD", 0},
+                                    {"THESIS", 0},       {"DRAGGED", 0},
+                                    {"STYLED", 1},       {"BENDS", 1},
+                                    {"BULLET", 0},       {"IMPLICIT", 1},
+                                    {"TRESSFX4", 0},     {0}};
+    assert_int_equal(shader_build_compute(&program, shader, defines, NULL), RESULT_OK);
+    return program;
+}
+
+// The buffer must not be smaller than the block.
+static void assert_size(GLuint program, const char *block, size_t size)
+{
+    const GLenum property = GL_BUFFER_DATA_SIZE;
+    GLint wanted = -1;
+    GLuint index = glGetProgramResourceIndex(program, GL_UNIFORM_BLOCK, block);
+    if (index == GL_INVALID_INDEX) fail_msg("the driver knows no %s", block);
+    glGetProgramResourceiv(program, GL_UNIFORM_BLOCK, index, 1, &property, 1, NULL, &wanted);
+    if ((size_t)wanted > size)
+        fail_msg("%s has %d bytes for the driver, %zu in C", block, wanted, size);
+}
+
+#define SIZE(type)      assert_size(program, #type, sizeof(type))
+#define AT(type, field) fixture_assert_offset(program, #type "." #field, offsetof(type, field))
+#define SPRING_AT(type, spring)                                                                    \
+    AT(type, spring.stiffness), AT(type, spring.pull), AT(type, spring.keep), AT(type, spring.draw)
+
+static void own_blocks_of_solvers_lie_alike_in_c_and_glsl(void **state)
+{
+    (void)state;
+    GLuint program = build("sim/split.comp");
+    SIZE(SplitParams), AT(SplitParams, pulls);
+    glDeleteProgram(program);
+    program = build("sim/emulation.comp");
+    SIZE(EmulationParams), SPRING_AT(EmulationParams, spring), AT(EmulationParams, order_seed);
+    glDeleteProgram(program);
+    program = build("sim/hybrid.comp");
+    SIZE(HybridParams), SPRING_AT(HybridParams, spring);
+    glDeleteProgram(program);
+    program = build("sim/chain.comp");
+    SIZE(ChainParams), SPRING_AT(ChainParams, spring), AT(ChainParams, bend);
+    glDeleteProgram(program);
+    program = build("sim/tressfx.comp");
+    SIZE(TressfxParams), AT(TressfxParams, local_share), AT(TressfxParams, global_share);
+    AT(TressfxParams, global_range), AT(TressfxParams, shock), AT(TressfxParams, shock_threshold);
+    AT(TressfxParams, most_move), AT(TressfxParams, exchanged), AT(TressfxParams, local_passes);
+    AT(TressfxParams, length_passes);
+    glDeleteProgram(program);
+    program = build("sim/spring.comp");
+    SIZE(SpringParams), AT(SpringParams, coil), AT(SpringParams, angular);
+    AT(SpringParams, stretch_drawn);
+    glDeleteProgram(program);
+    program = build("sim/rope.comp");
+    SIZE(RopeParams), SPRING_AT(RopeParams, first_spring), SPRING_AT(RopeParams, spring);
+    AT(RopeParams, first_decay), AT(RopeParams, first_gain), AT(RopeParams, kept);
+    AT(RopeParams, softness), AT(RopeParams, small_steps), AT(RopeParams, sweeps);
+    AT(RopeParams, stretch_drawn);
+    glDeleteProgram(program);
+    program = build("sim/dftl.comp");
+    SIZE(DftlParams), SPRING_AT(DftlParams, spring), AT(DftlParams, damping);
+    glDeleteProgram(program);
+}
+
 static void blocks_lie_alike_in_c_and_glsl(void **state)
 {
     (void)state;
-    GLuint program;
-    const ShaderDefine split[] = {{"GROUP_SIZE", 8}, {"STRANDS", 1}, {"IN_REGISTERS", 0},
-                                  {"VERTICES", 4},   {"THESIS", 0},  {"DRAGGED", 0},
-                                  {"SHELTER", 0},    {"LEAD", 0},    {0}};
-    assert_int_equal(shader_build_compute(&program, "sim/split.comp", split, NULL), RESULT_OK);
+    GLuint program = build("sim/split.comp");
 #define STEP(field, suffix)                                                                        \
     fixture_assert_offset(program, "StepParams." #field suffix, offsetof(StepParams, field))
-    STEP(head_rotation_old, ""), STEP(head_translation_old, ""), STEP(head_rotation, ""),
-        STEP(head_translation, "");
-    STEP(gravity, ""), STEP(wind, "[0]"), STEP(shelter, ""), STEP(head_velocity, ""),
-        STEP(own, "[0]"), STEP(dt, ""), STEP(decay, ""), STEP(gain, ""), STEP(drag, "");
-    STEP(strand_count, ""), STEP(vertex_count, ""), STEP(passes, "");
+    SIZE(StepParams), STEP(head_rotation_old, ""), STEP(head_translation_old, "");
+    STEP(head_rotation, ""), STEP(head_translation, ""), STEP(gravity, ""), STEP(wind, "[0]");
+    STEP(shelter, ""), STEP(head_velocity, ""), STEP(dt, ""), STEP(decay, ""), STEP(gain, "");
+    STEP(drag, ""), STEP(strand_count, ""), STEP(vertex_count, ""), STEP(phase, "");
     glDeleteProgram(program);
     const ShaderDefine pose[] = {{"GROUP_SIZE", 8}, {"MIX", 2}, {0}};
     assert_int_equal(shader_build_compute(&program, "sim/pose.comp", pose, NULL), RESULT_OK);
@@ -184,6 +254,7 @@ int main(void)
         cmocka_unit_test(hair_larger_than_a_buffer_is_split_never_cut),
         cmocka_unit_test(no_batch_has_more_strands_than_a_dispatch_takes),
         cmocka_unit_test(blocks_lie_alike_in_c_and_glsl),
+        cmocka_unit_test(own_blocks_of_solvers_lie_alike_in_c_and_glsl),
         cmocka_unit_test(shader_errors_name_file_and_line),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // From steps to frames: the clocks, frames between steps, the warm-up, sub-steps by themselves.
-#include "sim/stability.h"
 #include "support/simulation_fixture.h"
 
 #include <math.h>
@@ -210,13 +209,13 @@ static void automatic_substeps_are_the_fewest_stable_ones(void **state)
     run->substeps = (AutoInt){.automatic = true};
     run->fps = 24;
     run->gravity[1] = -200;
-    double g = stability_acceleration(&fixture.scene, &fixture.scene.sections[0].params);
+    double g = simulation_acceleration(&fixture.scene, &fixture.scene.sections[0].params);
     assert_true(fabs(g - (200 + 0.5 * 1.5)) < 1e-6); // drag 1/s, wind 0.5 m/s, half of it gusts
     simulation_fixture_start(&fixture);
     int chosen = fixture.simulation.substeps;
     assert_true(chosen > 1);
-    assert_true(stability_number(&fixture.strands, g, 1.0 / 24 / chosen) <= 1.6f);
-    assert_true(stability_number(&fixture.strands, g, 1.0 / 24 / (chosen - 1)) > 1.6f);
+    assert_true(simulation_stability(&fixture.strands, g, 1.0 / 24 / chosen) <= 1.6f);
+    assert_true(simulation_stability(&fixture.strands, g, 1.0 / 24 / (chosen - 1)) > 1.6f);
     simulation_fixture_destroy(&fixture);
     // Who is stable at any step gets one; impossible numbers are refused.
     simulation_fixture_create(&fixture, "split", "");
@@ -229,8 +228,9 @@ static void automatic_substeps_are_the_fewest_stable_ones(void **state)
     fixture.scene.run.fps = 1;
     int substeps;
     Error error;
-    assert_int_equal(stability_choose_substeps(&substeps, &fixture.scene, &fixture.strands, &error),
-                     RESULT_USAGE);
+    assert_int_equal(
+        simulation_choose_substeps(&substeps, &fixture.scene, &fixture.strands, &error),
+        RESULT_USAGE);
     assert_true(strncmp(error.text, "curls: --substeps auto comes to ", 32) == 0);
     simulation_fixture_destroy(&fixture);
 }
@@ -243,8 +243,9 @@ static void a_strand_of_n_has_the_stability_number_of_its_links(void **state)
     assert_int_equal(strands_create(&strands, 1, 16, NULL), RESULT_OK);
     for (int j = 0; j < 16; ++j) strands.position[j][1] = -0.016f * (float)j;
     strands.first[1] = 16;
-    assert_true(fabs(stability_number(&strands, 9.81, 1.0 / 60) - 0.25 * sqrt(9.81 / 0.24)) < 1e-5);
-    assert_true(stability_number(&strands, 0, 1.0 / 60) == 0);
+    assert_true(fabs(simulation_stability(&strands, 9.81, 1.0 / 60) - 0.25 * sqrt(9.81 / 0.24)) <
+                1e-5);
+    assert_true(simulation_stability(&strands, 0, 1.0 / 60) == 0);
     strands_destroy(&strands);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The split solver on the GPU against its double-precision form, the reference traces, and what
 // must hold for any hair.
-#include "sim/step_uniforms.h"
+#include "sim/step.h"
 #include "support/reference_split.h"
 #include "support/reference_traces.h"
 #include "support/twin.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Energy and lengths of every solver in a long run without anything that moves the hair but
 // gravity.
-#include "sim/particle_solver.h"
 #include "support/every_solver.h"
 
 #include <math.h>
@@ -87,17 +86,14 @@ static void long_run_read(LongRun *run, Vec positions[LONG_SIZES][LONG_KINDS][LO
 // corrections that are to come: at 60 Hz and at rest 3 m/s in a strand of 64.
 static bool has_velocities(const SolverType *type)
 {
-    return type->calls == &PARTICLE_SOLVER && strcmp(type->name, "dftl") != 0;
+    return !solver_is_static(type) && strcmp(type->name, "split") != 0 &&
+           strcmp(type->name, "dftl") != 0;
 }
 
 // Seconds of the steps that the solver really takes.
 static double small_step(const HairFixture *fixture)
 {
-    const ParticleRecipe *recipe = fixture->solver.type->recipes[0];
-    int count = recipe && recipe->substeps
-                    ? recipe->substeps(&fixture->step, &fixture->params, &fixture->hair)
-                    : 1;
-    return fixture->step.dt / count;
+    return fixture->step.dt / solver_substeps(&fixture->solver, &fixture->step);
 }
 
 // The velocities that a step has led to: the solver's own where it keeps them.
@@ -108,7 +104,10 @@ static void long_run_velocities(LongRun *run, Vec now[LONG_SIZES][LONG_KINDS][LO
         const HairBatch *batch = &run->fixture.hair.batches[i];
         float(*own)[4] = NULL;
         if (has_velocities(solver->type)) {
-            const GpuBuffer *buffer = particle_solver_velocities(solver->state, i);
+            SolverBuffer buffers[SOLVER_MAX_BUFFERS];
+            solver_buffers(solver, i, buffers);
+            assert_int_equal(buffers[1].kind, SOLVER_VELOCITIES);
+            const GpuBuffer *buffer = buffers[1].buffer;
             own = malloc((size_t)buffer->size);
             assert_non_null(own);
             glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);

@@ -125,7 +125,7 @@ void fixture_step(HairFixture *fixture)
     solver_step(&fixture->solver, &fixture->step);
     fixture->step.head_old = fixture->step.head;
     fixture->step.first = false;
-    ++fixture->step.shuffle;
+    ++fixture->step.number;
 }
 
 float (*fixture_positions(HairFixture *fixture, uint32_t batch))[4]

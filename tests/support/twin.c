@@ -145,7 +145,6 @@ static TwinStep twin_step(const HairFixture *fixture)
     TwinStep step = {.dt = fixture->step.dt,
                      .drag = (double)fixture->params.drag,
                      .first = fixture->step.first,
-                     .shuffle = fixture->step.shuffle,
                      .head_old = fixture->step.head_old,
                      .head = fixture->step.head};
     for (int k = 0; k < 3; ++k) {

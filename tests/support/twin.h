@@ -22,7 +22,6 @@ typedef struct TwinStrand {
 typedef struct TwinStep {
     double dt, drag;
     bool first;       // forces act for dt/2
-    uint32_t shuffle; // the step's random number
     Vec gravity, wind;
     HeadPose head_old, head; // at the step's start and end
 } TwinStep;

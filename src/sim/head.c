@@ -1,16 +1,50 @@
 // SPDX-License-Identifier: MIT
-#include "sim/head_motion.h"
+#include "sim/head.h"
 
 #include <cglm/cglm.h>
 
 #include <math.h>
 #include <string.h>
 
-HeadPose head_motion_pose(const Scene *scene, double time)
+HeadPose head_at(const Scene *scene, double time)
 {
     HeadPose pose = {0};
     rigid_track_evaluate(&scene->head, time, pose.rotation, pose.translation);
     return pose;
+}
+
+bool head_is_same(const HeadPose *a, const HeadPose *b)
+{
+    return memcmp(a->rotation, b->rotation, sizeof a->rotation) == 0 &&
+           memcmp(a->translation, b->translation, sizeof a->translation) == 0;
+}
+
+HeadPose head_between(const HeadPose *a, const HeadPose *b, float t)
+{
+    HeadPose pose = {0};
+    if (t >= 1) return *b;
+    glm_quat_slerp((float *)a->rotation, (float *)b->rotation, t, pose.rotation);
+    glm_vec3_lerp((float *)a->translation, (float *)b->translation, t, pose.translation);
+    return pose;
+}
+
+void head_put(vec4 rotation, vec4 translation, const HeadPose *pose)
+{
+    memcpy(rotation, pose->rotation, sizeof pose->rotation);
+    memcpy(translation, pose->translation, sizeof pose->translation);
+}
+
+HeadMotion head_motion_between(const HeadPose *from, const HeadPose *to)
+{
+    HeadMotion motion = {0};
+    versor back;
+    vec3 moved;
+    glm_quat_inv((float *)from->rotation, back);
+    glm_quat_mul((float *)to->rotation, back, motion.rotation);
+    glm_quat_normalize(motion.rotation);
+    glm_quat_rotatev(motion.rotation, (float *)from->translation, moved);
+    glm_vec3_sub((float *)to->translation, moved, motion.translation);
+    return motion;
 }
 
 // The turn from one pose to the other: axis times angle, rad.
@@ -26,15 +60,15 @@ static void rotation_between(const HeadPose *from, const HeadPose *to, vec3 vect
 
 // One-sided differences of second order, (4 f(h) - f(2h) - 3 f(0))/(2h): a track may begin with a
 // jump of its velocity at 0.
-bool head_motion_start(const Scene *scene, CarryMotion *motion)
+bool head_starts_moving(const Scene *scene, HeadMotion *motion)
 {
     const double h = 1e-3;
     HeadPose at[3];
     vec3 near = {0}, far = {0}, moved = {0};
-    for (int i = 0; i < 3; ++i) at[i] = head_motion_pose(scene, i * h);
+    for (int i = 0; i < 3; ++i) at[i] = head_at(scene, i * h);
     rotation_between(&at[0], &at[1], near);
     rotation_between(&at[0], &at[2], far);
-    *motion = (CarryMotion){.rotation = {0, 0, 0, 1}};
+    *motion = (HeadMotion){.rotation = {0, 0, 0, 1}};
     for (int k = 0; k < 3; ++k) {
         double step = (double)at[1].translation[k] - (double)at[0].translation[k],
                two_steps = (double)at[2].translation[k] - (double)at[0].translation[k];
@@ -68,8 +102,7 @@ static HeadPose pose_on_the_way(const Scene *scene, const HeadPose *from, const 
     return pose;
 }
 
-bool head_motion_jumps(const Scene *scene, const HeadPose *from, const HeadPose *to,
-                       HeadPose *carried)
+bool head_jumps(const Scene *scene, const HeadPose *from, const HeadPose *to, HeadPose *carried)
 {
     const RunParams *run = &scene->run;
     vec3 begin = {0}, end = {0}, turn = {0};
@@ -82,4 +115,17 @@ bool head_motion_jumps(const Scene *scene, const HeadPose *from, const HeadPose 
     if (felt >= 1 || run->teleport == TELEPORT_NONE) return false;
     *carried = run->teleport == TELEPORT_CARRY ? *to : pose_on_the_way(scene, from, to, 1 - felt);
     return true;
+}
+
+void head_middle(float middle[3], const Scene *scene, const Strands *strands)
+{
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (uint32_t i = 0; i < scene->section_count; ++i)
+        for (uint32_t s = 0; s < strands[i].strand_count; ++s)
+            for (int k = 0; k < 3; ++k) {
+                float at = strands[i].position[strands[i].first[s]][k];
+                low[k] = fminf(low[k], at);
+                high[k] = fmaxf(high[k], at);
+            }
+    for (int k = 0; k < 3; ++k) middle[k] = high[k] >= low[k] ? 0.5f * (low[k] + high[k]) : 0;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a step of any solver is given, for one batch of strands. SI units.
+// What a step of any solver is given, for one batch of strands. SI units. A solver's own parameters
+// stand in a block of their own (BIND_SOLVER), such as chain_params.h.
 #include "common/shared.h"
 
 UNIFORM_BLOCK(StepParams, step_params, BIND_STEP)
@@ -10,17 +11,15 @@ UNIFORM_BLOCK(StepParams, step_params, BIND_STEP)
     vec4 head_translation;
     vec4 gravity; // xyz, m/s^2
     vec4 wind[4]; // xyz, m/s: four directions around the main one, mixed for each strand
-    vec4
-        shelter; // xyz, m: the middle of the head; w: share of the wind that it keeps off behind it
+    // xyz, m: the middle of the head; w: share of the wind that it keeps off behind it
+    vec4 shelter;
     vec4 head_velocity; // xyz, m/s, of that middle
-    vec4 own[4];        // a solver's own parameters, named by macros in its shader
     float dt;           // s
     float decay;        // e^{-c h}: what drag leaves of a velocity
     float gain;         // h f: seconds that an acceleration acts
     float drag;         // c, 1/s
     uint strand_count;
     uint vertex_count;
-    uint passes; // split: pulls along the strand; emulation: seed of the step's order
-    uint phase;  // which dispatch of a step this is
+    uint phase; // which dispatch of a step this is
 }
 END_BLOCK(StepParams, step_params);

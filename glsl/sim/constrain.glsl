@@ -17,7 +17,7 @@
 //
 // All in the frame that moves with the root. Needs midpoint.glsl, tridiagonal.glsl.
 
-struct Projection {
+struct Constraint {
     Row row;
     vec3 d_before, u_before, style;
     float kinetic; // twice, of the u so far
@@ -25,21 +25,21 @@ struct Projection {
     float worked;  // by the forces from p to x
 };
 
-Projection project_open(Lane lane)
+Constraint constrain_open(Strand strand)
 {
-    velocities[lane.address] = vec4(lane.root_velocity, 0.0);
-    positions[lane.address] = vec4(lane.root, 1.0);
-    return Projection(NO_ROW, vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0);
+    velocities[strand.address] = vec4(strand.root_velocity, 0.0);
+    positions[strand.address] = vec4(strand.root, 1.0);
+    return Constraint(NO_ROW, vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0);
 }
 
 // Root to tip: segment j points along d and ends at x, relative to the root.
-void project_add(inout Projection p, Lane lane, int j, vec3 d, vec3 x)
+void constrain_add(inout Constraint p, Strand strand, int j, vec3 d, vec3 x)
 {
-    int a = lane.address + j * STRAND_TILE;
-    vec3 aim = recall_aim(a, j), u = kicked(lane, recall_velocity(a, j).xyz + lane.root_velocity), force = lane.push / step_params.gain;
+    int a = strand.address + j * STRAND_TILE;
+    vec3 aim = recall_aim(a, j), u = kicked(strand, recall_velocity(a, j).xyz + strand.root_velocity), force = strand.push / step_params.gain;
 #if STYLED
-    p.style = next_style(p.style, fetch_rest(lane, j), lane.rotation);
-    force += SPRING_STIFFNESS * (p.style - 0.5 * (x + aim));
+    p.style = next_style(p.style, fetch_rest(strand, j), strand.rotation);
+    force += strand.spring.stiffness * (p.style - 0.5 * (x + aim));
 #endif
     float factor, off = -dot(d, p.d_before), right = dot(d, u - p.u_before), right_left = right - off * p.row.value;
     p.row = eliminate(p.row, off, j == 1 ? 1.0 : 2.0, right, factor);
@@ -47,30 +47,30 @@ void project_add(inout Projection p, Lane lane, int j, vec3 d, vec3 x)
     p.kinetic += dot(u, u);
     p.worked += dot(force, x - aim);
     keep_velocity(a, j, vec4(u, factor));
-    positions[a] = vec4(lane.root + x, 1.0);
+    positions[a] = vec4(strand.root + x, 1.0);
     keep(j, vec4(d, p.row.value));
     p.d_before = d, p.u_before = u;
 }
 
 // The scale of velocities that pays for the energy which the step has gained.
-float pay(Projection p, float gained)
+float pay(Constraint p, float gained)
 {
     float has = p.kinetic - p.lost, may = p.kinetic + 2.0 * (p.worked - gained);
     return has > may ? sqrt(max(may, 0.0) / max(has, LEAST_PIVOT)) : 1.0; // never 0/0
 }
 
 // Tip to root: the impulses, and the velocities that they leave.
-void project_finish(Projection p, Lane lane, float gained)
+void constrain_finish(Constraint p, Strand strand, float gained)
 {
     float lambda = 0.0, factor_beyond = 0.0, scale = pay(p, gained);
     vec3 t_beyond = vec3(0.0);
     for (int j = LAST; j >= 1; --j) {
-        int a = lane.address + j * STRAND_TILE;
+        int a = strand.address + j * STRAND_TILE;
         vec4 k = recall(j), u = recall_velocity(a, j);
         lambda = k.w - factor_beyond * lambda;
         factor_beyond = u.w;
         vec3 t = lambda * k.xyz;
-        velocities[a] = vec4(lane.root_velocity + scale * (u.xyz - t + t_beyond), 0.0);
+        velocities[a] = vec4(strand.root_velocity + scale * (u.xyz - t + t_beyond), 0.0);
         t_beyond = t;
     }
 }

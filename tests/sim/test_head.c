@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A head that sets out at speed, and one that jumps, through a whole simulation.
-#include "sim/head_motion.h"
+#include "sim/head.h"
 #include "support/simulation_fixture.h"
 
 #include <cglm/cglm.h>
@@ -55,10 +55,10 @@ static void the_start_has_the_heads_velocity(void **state)
 {
     (void)state;
     SimulationFixture fixture;
-    CarryMotion motion;
+    HeadMotion motion;
     create(&fixture, "chain", "3*t + 5*t^2", "90*t");
     fixture.scene.head.pivot[0] = 0.5f;
-    assert_true(head_motion_start(&fixture.scene, &motion));
+    assert_true(head_starts_moving(&fixture.scene, &motion));
     // The differences have float32's rounding, 2e-7 rad or m in 1e-3 s.
     assert_true(fabsf(motion.spin[1] - 1.5707963f) < 1e-3f);
     // The point at the origin goes round the pivot 0.5 m away, and along with it.
@@ -66,7 +66,7 @@ static void the_start_has_the_heads_velocity(void **state)
     assert_true(fabsf(motion.velocity[2] - 0.5f * 1.5707963f) < 1e-3f);
     simulation_fixture_destroy(&fixture);
     simulation_fixture_create(&fixture, "chain", ""); // smooth keys begin at rest
-    head_motion_start(&fixture.scene, &motion);
+    head_starts_moving(&fixture.scene, &motion);
     assert_true(glm_vec3_norm(motion.velocity) < 1e-3f && glm_vec3_norm(motion.spin) < 1e-2f);
     simulation_fixture_destroy(&fixture);
 }
@@ -146,16 +146,16 @@ static void what_is_carried_leaves_the_limit(void **state)
     scene->run.teleport = TELEPORT_LIMIT;
     HeadPose from = {.rotation = {0, 0, 0, 1}}, to = {.translation = {2, 0, 0}}, carried;
     glm_quatv(to.rotation, glm_rad(60), (vec3){0, 1, 0}); // leaves the pivot's x and z
-    assert_true(head_motion_jumps(scene, &from, &to, &carried));
+    assert_true(head_jumps(scene, &from, &to, &carried));
     // A quarter of 2 m is 0.5 m, of 60 degrees 15.
     assert_true(fabsf(carried.translation[0] - 1.5f) < 1e-6f);
     assert_true(fabsf(2 * acosf(carried.rotation[3]) - glm_rad(45)) < 1e-5f);
     to.translation[0] = 0.4f;
-    assert_false(head_motion_jumps(scene, &from, &to, &carried));
+    assert_false(head_jumps(scene, &from, &to, &carried));
     glm_quatv(to.rotation, glm_rad(100), (vec3){0, 1, 0});
-    assert_true(head_motion_jumps(scene, &from, &to, &carried));
+    assert_true(head_jumps(scene, &from, &to, &carried));
     scene->run.teleport = TELEPORT_NONE;
-    assert_false(head_motion_jumps(scene, &from, &to, &carried));
+    assert_false(head_jumps(scene, &from, &to, &carried));
     simulation_fixture_destroy(&fixture);
 }
 

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+// Parameters of chain.comp.
+#include "common/shared.h"
+#include "sim/style_spring.h"
+
+UNIFORM_BLOCK(ChainParams, chain_params, BIND_SOLVER)
+{
+    StyleSpring spring;
+    float bend; // K of bend.glsl, m/s^2
+}
+END_BLOCK(ChainParams, chain_params);

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// The links of a lane's strands, and pulls along them (needs tractrix.glsl, hair_address.glsl).
+// IN_REGISTERS 1: the strand has VERTICES vertices, and stays in registers for the whole step, whose
+// loops unroll. 0: any length, in memory.
+layout(binding = BIND_STATE) uniform samplerBuffer segments_before; // the buffer at the step's start
+layout(std430, binding = BIND_STATE_OUT) buffer Segments { vec4 segments[]; };
+
+const float SAFE_MOVE = 1e15; // metres: keeps squares finite whatever the head does
+
+#if IN_REGISTERS
+const int LINKS = VERTICES - 1;
+vec4 links[STRANDS][LINKS]; // the one that is pulled first is 0: direction head -> tail, length
+#else
+#define LINKS int(step_params.vertex_count - 1u)
+#endif
+
+// Fetches those of strand k, whose root is at `address`. Gives the way from the root to its end.
+vec3 open_links(int k, int address)
+{
+    vec3 span = vec3(0.0);
+    for (int i = 0; i < LINKS; ++i) {
+        vec4 segment = texelFetch(segments_before, address + (LINKS - i) * STRAND_TILE);
+        span += segment.w * segment.xyz;
+#if IN_REGISTERS
+        links[k][i] = vec4(-segment.xyz, segment.w);
+#endif
+    }
+    return span;
+}
+
+// Pulls one end of each strand by `move`, which becomes the other end's displacement. The next pull
+// begins there: it is the same loop over the strand turned round, order reversed, directions negated.
+void pull_links(int address[STRANDS], inout vec3 move[STRANDS], bool from_tip)
+{
+    for (int k = 0; k < STRANDS; ++k) move[k] = clamp(move[k], -SAFE_MOVE, SAFE_MOVE);
+#if IN_REGISTERS
+    vec4 turned[STRANDS][LINKS];
+    for (int i = 0; i < LINKS; ++i)
+        for (int k = 0; k < STRANDS; ++k) {
+            vec4 link = links[k][i];
+            turned[k][LINKS - 1 - i] = vec4(-tractrix_turn(link.xyz, link.w, move[k]), link.w);
+        }
+    links = turned;
+#else
+    for (int i = 0; i < LINKS; ++i)
+        for (int k = 0; k < STRANDS; ++k) {
+            int a = address[k] + (from_tip ? LINKS - i : 1 + i) * STRAND_TILE;
+            vec4 segment = segments[a];
+            vec3 d = tractrix_turn(from_tip ? -segment.xyz : segment.xyz, segment.w, move[k]);
+            segments[a] = vec4(from_tip ? -d : d, segment.w);
+        }
+#endif
+}
+
+// Stores those of strand k with directions of length 1, after an even number of pulls.
+void close_links(int k, int address)
+{
+    for (int i = 0; i < LINKS; ++i) {
+        int a = address + (LINKS - i) * STRAND_TILE;
+#if IN_REGISTERS
+        vec4 segment = vec4(-links[k][i].xyz, links[k][i].w);
+#else
+        vec4 segment = segments[a];
+#endif
+        segments[a] = vec4(tractrix_renormalise(segment.xyz), segment.w);
+    }
+}

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// A strand on its way through a step: what solvers of particles with an implicit style spring begin with (needs particles.glsl).
+// Macros: STYLED, whether there is a style spring.
+#include "sim/style_spring.h"
+
+const float SAFE_MOVE = 1e15; // metres: keeps squares finite whatever the head does
+
+struct Strand {
+    int address; // of the root
+    vec3 root, root_old, root_velocity;
+    float length;  // of the strand
+    vec3 push;     // what forces add to a velocity
+    vec4 rotation; // of the head
+    float dt, decay;
+    StyleSpring spring;
+};
+
+Strand strand_open(int number, StyleSpring spring)
+{
+    Strand strand;
+    strand.address = strand_base(number);
+    vec4 root_rest = strand_root(strand.address);
+    strand.root = root_position(root_rest);
+    strand.root_old = texelFetch(position_before, strand.address).xyz;
+    strand.root_velocity = (strand.root - strand.root_old) / step_params.dt;
+    strand.length = root_rest.w;
+    strand.push = kick(vec3(0.0), strand_wind(texelFetch(strand_id, number).x, strand.root));
+    strand.rotation = step_params.head_rotation;
+    strand.dt = step_params.dt;
+    strand.decay = step_params.decay;
+    strand.spring = spring;
+    carry_lead(strand.address);
+    return strand;
+}
+
+vec3 fetch_position(Strand strand, int j) { return texelFetch(position_before, strand.address + j * STRAND_TILE).xyz; }
+vec3 fetch_velocity(Strand strand, int j) { return texelFetch(velocity_before, strand.address + j * STRAND_TILE).xyz; }
+vec4 fetch_rest(Strand strand, int j) { return texelFetch(rest, strand.address + j * STRAND_TILE); }
+
+// How far particle j, now at q, would go without constraints. `style` goes from particle to particle, 0 at the root.
+vec3 predicted_move(Strand strand, int j, vec3 q, inout vec3 style)
+{
+    vec3 move = strand.dt * (strand.decay * fetch_velocity(strand, j) + strand.push);
+#if STYLED
+    style = next_style(style, fetch_rest(strand, j), strand.rotation);
+    move += strand.spring.pull * (style - (q - strand.root) - move);
+#endif
+    return move;
+}
+
+vec3 limit_move(vec3 move) { return clamp(move, -SAFE_MOVE, SAFE_MOVE); }
+
+vec3 direction(vec3 v)
+{
+    float vv = dot(v, v);
+    return vv > 0.0 ? v * inversesqrt(vv) : vec3(0.0, 1.0, 0.0);
+}

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// What a solver is made of: its state, its shader, its parameters. A new solver is a GLSL file, a C
+// file with a SolverRecipe and a SolverType (solver_dftl.c is the smallest), and a line of SOLVERS.
+#pragma once
+
+#include "gpu/shader.h"
+#include "sim/solver.h"
+
+// What a strand hands on from one step to the next. Hair starts at rest.
+typedef enum SolverStateKind {
+    // Positions and velocities (vec4 a particle). Positions live in Hair's own buffer, so that a
+    // pose costs nothing. glsl/sim/particles.glsl has what the shader is given.
+    SOLVER_PARTICLES,
+    // Unit directions with rest lengths (vec4 a particle, j = 0 unused), and tips (two vec4 a
+    // strand: position, times limited; velocity). The pose mixes the style into what is drawn.
+    SOLVER_SEGMENTS,
+} SolverStateKind;
+
+typedef struct SolverRecipe {
+    const char *label;  // of the timer: "sim_<name>"
+    const char *shader; // glsl file
+    SolverStateKind state;
+    // Strands of at most this many vertices get IN_REGISTERS 1 and VERTICES; 0: never.
+    uint32_t most_in_registers;
+    // Strands of a lane on a CPU driver, in registers: two hide each other's latency; 0: 1.
+    uint32_t strands_on_cpu;
+    // vec4 a particle of scratch memory (BIND_SCRATCH) where the strand is not in registers.
+    uint32_t scratch;
+    // Longer strands are refused: their loops would take more than the 65,535 iterations that CPU
+    // drivers allow an invocation, after which they end them silently; 0: any length.
+    uint32_t most_vertices;
+    // Vertices, from the root, that the head carries; colliders leave them where they are. The root
+    // always is.
+    uint32_t carried;
+    size_t params_size; // of its uniform block (BIND_SOLVER), bytes; 0: it has none
+    // Refuses what it cannot do by construction, RESULT_USAGE with the reason; NULL: nothing.
+    Result (*check)(const SolverSetup *setup, Error *error);
+    // Fills its block, params_size zero bytes, for a step; may change `uniforms`. NULL: nothing.
+    void (*fill)(void *block, StepParams *uniforms, const SolverStep *step,
+                 const SectionParams *params);
+    // Sets the variant's own macros, at most STEP_OWN_DEFINES; {0} ends them. NULL: none.
+    void (*define)(ShaderDefine *defines, const SectionParams *params);
+    // How many equal sub-steps a step needs for the longest strand; NULL: 1.
+    int (*substeps)(const SolverStep *step, const SectionParams *params, const Hair *hair);
+    // How many dispatches (StepParams.phase) a (sub-)step takes where strands are not in registers;
+    // NULL: 1.
+    int (*phases)(const SectionParams *params, const Hair *hair);
+} SolverRecipe;

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+#include "sim/step.h"
+
+#include <cglm/cglm.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void carry(const HeadPose *head, const float point[3], vec3 carried)
+{
+    glm_quat_rotatev((float *)head->rotation, (float *)point, carried);
+    glm_vec3_add((float *)head->translation, carried, carried);
+}
+
+void step_shelter(SolverStep *step, const float middle[3], float share)
+{
+    vec3 old = {0};
+    carry(&step->head_old, middle, old);
+    carry(&step->head, middle, step->shelter);
+    step->shelter[3] = share;
+    for (int k = 0; k < 3; ++k)
+        step->head_velocity[k] = (float)((double)(step->shelter[k] - old[k]) / step->dt);
+}
+
+void step_drag_factors(double c, double h, float *decay, float *gain)
+{
+    *decay = (float)exp(-c * h);
+    *gain = c > 0 ? (float)(-expm1(-c * h) / c) : (float)h;
+}
+
+StepParams step_uniforms(const SolverStep *step, const SectionParams *params)
+{
+    StepParams uniforms = {.dt = (float)step->dt, .drag = params->drag};
+    head_put(uniforms.head_rotation_old, uniforms.head_translation_old, &step->head_old);
+    head_put(uniforms.head_rotation, uniforms.head_translation, &step->head);
+    memcpy(uniforms.gravity, step->gravity, sizeof step->gravity);
+    for (int i = 0; i < 4; ++i) memcpy(uniforms.wind[i], step->wind[i], sizeof step->wind[i]);
+    memcpy(uniforms.shelter, step->shelter, sizeof step->shelter);
+    memcpy(uniforms.head_velocity, step->head_velocity, sizeof step->head_velocity);
+    step_drag_factors((double)params->drag, step->first ? step->dt / 2 : step->dt, &uniforms.decay,
+                      &uniforms.gain);
+    return uniforms;
+}
+
+StyleSpring step_style_spring(const StepParams *uniforms, double h, const SectionParams *params)
+{
+    const double most_style = 0.999999; // springs of 1 would be infinitely stiff
+    double style = (double)params->style, stiffness = (double)params->style_stiffness;
+    double decay = (double)uniforms->decay, gain = (double)uniforms->gain;
+    double w = style * stiffness * h * gain;
+    double finite = fmin(style, most_style), k = stiffness * finite / (1 - finite);
+    // Two half kicks about a spring at rest add (1 + e^{-ch})/(1 + e^{-2ch}) gain each: as much of
+    // the spring keeps the balance exact.
+    double z = k * h * gain * (1 + decay) / (1 + decay * decay);
+    double keep = 1 / (1 + z + z * z / (1 + z));
+    return (StyleSpring){.stiffness = (float)k,
+                         .pull = w > 0 ? (float)(w / (1 - style + w)) : 0,
+                         .keep = (float)keep,
+                         .draw = (float)(keep * z / h)};
+}
+
+StyleSpring step_midpoint(StepParams *uniforms, const SolverStep *step, const SectionParams *params)
+{
+    double h = step->dt / 2;
+    step_drag_factors((double)params->drag, h, &uniforms->decay, &uniforms->gain);
+    return step_style_spring(uniforms, h, params);
+}
+
+float step_style_odds(const SectionParams *params)
+{
+    return params->style / fmaxf(1 - params->style, 1e-6f);
+}
+
+uint32_t step_group_size(const Gpu *gpu)
+{
+    return gpu->software ? 8 : 64;
+}
+
+uint32_t step_group_count(uint32_t count, uint32_t group_size, uint32_t strands_per_lane)
+{
+    uint32_t strands = group_size * strands_per_lane;
+    return (count + strands - 1) / strands;
+}
+
+// Whether the hair's strands may stay in registers for a step: all have at most `most` vertices,
+// and of few different counts, since each costs a compilation (0.2 to 0.7 s on a CPU driver).
+static bool fits_registers(const Hair *hair, uint32_t most)
+{
+    enum { MOST_COUNTS = 2 };
+    uint32_t counts = 0, last = 0;
+    for (uint32_t i = 0; i < hair->batch_count; ++i) {
+        if (hair->batches[i].vertex_count > most) return false;
+        counts += hair->batches[i].vertex_count != last;
+        last = hair->batches[i].vertex_count;
+    }
+    return counts <= MOST_COUNTS;
+}
+
+static Result build(StepPrograms *programs, uint32_t batch, uint32_t vertices,
+                    const StepProgramsOptions *options, Error *error)
+{
+    ShaderDefine defines[7 + STEP_OWN_DEFINES] = {
+        {"GROUP_SIZE", (int)programs->group_size},
+        {"STRANDS", (int)programs->strands_per_lane},
+        {"IN_REGISTERS", programs->in_registers},
+        {"VERTICES", (int)(vertices - programs->leads[batch])},
+        {"LEAD", (int)programs->leads[batch]},
+        {"SHELTER", options->sheltered},
+    };
+    for (int i = 0; options->defines && options->defines[i].name; ++i)
+        defines[6 + i] = options->defines[i];
+    return shader_build_compute(&programs->programs[batch], options->shader, defines, error);
+}
+
+// Batches of equal vertex count, and all of them if strands go through memory, share a program.
+static bool is_shared(const StepPrograms *programs, const Hair *hair, uint32_t i)
+{
+    return i > 0 && programs->leads[i] == programs->leads[i - 1] &&
+           (!programs->in_registers ||
+            hair->batches[i].vertex_count == hair->batches[i - 1].vertex_count);
+}
+
+Result step_programs_create(StepPrograms *programs, const Gpu *gpu, const Hair *hair,
+                            const StepProgramsOptions *options, Error *error)
+{
+    bool in_registers = fits_registers(hair, options->most_in_registers);
+    *programs = (StepPrograms){
+        .programs = calloc(hair->batch_count + 1, sizeof *programs->programs),
+        .leads = calloc(hair->batch_count + 1, sizeof *programs->leads),
+        .batch_count = hair->batch_count,
+        .group_size = step_group_size(gpu),
+        .strands_per_lane = in_registers && gpu->software ? options->strands_on_cpu : 1,
+        .in_registers = in_registers,
+    };
+    Result result = RESULT_OK;
+    if (!programs->programs || !programs->leads)
+        result = error_set(error, RESULT_FAILED, "no memory for a solver");
+    for (uint32_t i = 0; i < hair->batch_count && result == RESULT_OK; ++i) {
+        // At least the tip is free.
+        programs->leads[i] = hair->batches[i].vertex_count > 2 ? options->lead : 0;
+        if (is_shared(programs, hair, i))
+            programs->programs[i] = programs->programs[i - 1];
+        else
+            result = build(programs, i, hair->batches[i].vertex_count, options, error);
+    }
+    if (result != RESULT_OK) step_programs_destroy(programs);
+    return result;
+}
+
+void step_programs_destroy(StepPrograms *programs)
+{
+    for (uint32_t i = 0; programs->programs && i < programs->batch_count; ++i)
+        if (programs->programs[i] && (i == 0 || programs->programs[i] != programs->programs[i - 1]))
+            glDeleteProgram(programs->programs[i]);
+    free(programs->programs);
+    free(programs->leads);
+    *programs = (StepPrograms){0};
+}
+
+void step_programs_dispatch(const StepPrograms *programs, uint32_t batch, uint32_t strand_count)
+{
+    glUseProgram(programs->programs[batch]);
+    glDispatchCompute(
+        step_group_count(strand_count, programs->group_size, programs->strands_per_lane), 1, 1);
+}

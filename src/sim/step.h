@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// One step of time: what it gives to all solvers (glsl/sim/step_params.h), and the compute programs
+// that take it.
+#pragma once
+
+#include "base/params.h"
+#include "gpu/shader.h"
+#include "sim/hair.h"
+#include "sim/head.h"
+
+#include "glsl/sim/step_params.h"
+#include "glsl/sim/style_spring.h"
+
+// A step, the same for all sections.
+typedef struct SolverStep {
+    double dt; // s
+    // The first step from rest: forces act for dt/2 (leapfrog start, which second order needs).
+    bool first;
+    uint32_t number;         // counts up by 1 from step to step, from any start
+    HeadPose head_old, head; // at the step's start and end
+    float gravity[3];        // m/s^2
+    float wind[4][3];        // m/s: mixed by strand
+    float shelter[4];        // m: the middle of the head; share of the wind kept off behind it
+    float head_velocity[3];  // m/s, of that middle
+} SolverStep;
+
+// Fills the step's shelter and head_velocity from its heads and dt: the lee of the head, whose
+// middle in its own frame is `middle` (m, head_middle), keeps off `share` of the wind.
+void step_shelter(SolverStep *step, const float middle[3], float share);
+
+// The factors of exact drag c (1/s) over h seconds: *decay = e^{-ch}, *gain = (1 - e^{-ch})/c = h f
+// (h at c = 0).
+void step_drag_factors(double c, double h, float *decay, float *gain);
+
+// What a step gives to each batch; `strand_count`, `vertex_count` and `phase` are left 0.
+StepParams step_uniforms(const SolverStep *step, const SectionParams *params);
+
+// The spring towards the style over h seconds (glsl/sim/style_spring.h), under the drag of
+// `uniforms`.
+StyleSpring step_style_spring(const StepParams *uniforms, double h, const SectionParams *params);
+
+// For solvers by the midpoint rule (glsl/sim/midpoint.glsl): `decay` and `gain` become those of
+// dt/2, for which the spring is. They start from rest like any other step: `first` does not matter.
+StyleSpring step_midpoint(StepParams *uniforms, const SolverStep *step,
+                          const SectionParams *params);
+
+// style/(1 - style): 1, a stiffness as given, for style 0.5.
+float step_style_odds(const SectionParams *params);
+
+// Lanes of a work group: on a CPU driver one SIMD register, so that there are many groups to share
+// out among the cores; on a GPU whole warps. Both are such that a group's strands are whole tiles,
+// or the tile whole groups.
+uint32_t step_group_size(const Gpu *gpu);
+
+// Work groups of `group_size` lanes that cover `count` strands with `strands_per_lane` strands a
+// lane.
+uint32_t step_group_count(uint32_t count, uint32_t group_size, uint32_t strands_per_lane);
+
+// What decides how many programs a solver has and how strands go to lanes.
+typedef struct StepProgramsOptions {
+    const char *shader; // glsl file
+    // Strands of at most this many vertices get IN_REGISTERS 1, which costs a compilation for each
+    // vertex count; 0: never.
+    uint32_t most_in_registers;
+    // Strands of a lane on CPU drivers where they are in registers: two hide each other's latency,
+    // a GPU has other lanes for that.
+    uint32_t strands_on_cpu;
+    uint32_t lead;  // vertices that the head carries beside the root, where a strand has enough
+    bool sheltered; // the head keeps wind off (forces.glsl)
+    const ShaderDefine *defines; // the variant's own, at most STEP_OWN_DEFINES
+} StepProgramsOptions;
+
+enum { STEP_OWN_DEFINES = 8 };
+
+// The programs of a solver: one for each of a hair's batches, shared where batches are alike.
+typedef struct StepPrograms {
+    GLuint *programs; // [batch_count]; equal ones may be the same
+    uint32_t *leads;  // [batch_count]: of the batch's strands
+    uint32_t batch_count, group_size, strands_per_lane;
+    bool in_registers;
+} StepPrograms;
+
+// Compiles with the macros GROUP_SIZE (lanes), STRANDS (a lane's), IN_REGISTERS, VERTICES (but for
+// the lead), LEAD, SHELTER and the own ones. Strands are in registers if all are short enough and
+// of few different counts. Errors of shader_build_compute; RESULT_FAILED without memory.
+Result step_programs_create(StepPrograms *programs, const Gpu *gpu, const Hair *hair,
+                            const StepProgramsOptions *options, Error *error);
+void step_programs_destroy(StepPrograms *programs);
+
+// Runs batch `batch` of `strand_count` strands; the buffers are bound.
+void step_programs_dispatch(const StepPrograms *programs, uint32_t batch, uint32_t strand_count);
