@@ -12,26 +12,32 @@ if [ -x "$here/tractrix-render" ]; then beside=$here; else beside=$here/../out/r
 programs=${TRACTRIX_BIN:-$beside}
 out=${TURNTABLE_OUT:-out/turntable}
 seconds=${TURNTABLE_S:-4}
-fail() { echo "turntable.sh: $*" >&2; exit 2; }
+name=$(basename "$0")
+fail() { echo "$name: $*" >&2; exit 2; }
 
-[ $# -gt 0 ] || fail "usage: turntable.sh ASSET [mp4|webm|gif|sheet|frames ...] [-- OPTION...]"
+case ${1-} in
+-h | --help) sed -n "s/turntable.sh/$name/; 3,8s/^# //p" "$0"; exit ;;
+--version) "$programs/tractrix-render" --version | sed "s/^[^ ]*/$name/"; exit ;;
+-*) fail "$1: no such option: expected $name ASSET [FORMAT...] [-- OPTION...]" ;;
+'') fail "no asset: expected $name ASSET [mp4|webm|gif|sheet|frames ...] [-- OPTION...]" ;;
+esac
 asset=$1
 shift
 formats=
 while [ $# -gt 0 ] && [ "$1" != -- ]; do
     case $1 in mp4 | webm | gif | sheet | frames) formats="$formats $1" ;;
-    *) fail "$1: expected mp4, webm, gif, sheet or frames, or -- before options" ;; esac
+    *) fail "$1: no such format: expected mp4, webm, gif, sheet or frames, and -- before options" ;; esac
     shift
 done
 [ $# -eq 0 ] || shift
 if [ -z "$formats" ]; then
     formats=sheet
-    if command -v ffmpeg >/dev/null; then formats="mp4 sheet"; else echo "turntable.sh: no ffmpeg here: no video" >&2; fi
+    if command -v ffmpeg >/dev/null; then formats="mp4 sheet"; else echo "$name: no ffmpeg: writes no video" >&2; fi
 fi
-name=$(basename "$asset")
-name=${name%.*}
+hair=$(basename "$asset")
+hair=${hair%.*}
 mkdir -p "$out"
-cache=$(mktemp "$out/$name.XXXXXX.cache")
+cache=$(mktemp "$out/$hair.XXXXXX.cache")
 trap 'rm -f "$cache" "$cache.state"' EXIT
 trap 'exit 130' INT TERM
 
@@ -39,7 +45,10 @@ trap 'exit 130' INT TERM
 frames=$(awk "BEGIN { print int(24 * $seconds + 0.5) }")
 [ "$frames" -gt 0 ] || fail "TURNTABLE_S=$seconds: expected seconds"
 turn_s=$(awk "BEGIN { print $frames / 24 }")
-moves="--frames $frames --fps 24 --sim-rate 120 --gust-repeat $turn_s --preroll $(awk "BEGIN { print 2 * $turn_s }")"
+moves="--frames $frames --fps 24 --sim-rate 120 --preroll $(awk "BEGIN { print 2 * $turn_s }")"
+case "$* $(grep -ao '"wind"' "$asset" 2>/dev/null || true)" in # without wind there are no gusts
+*--wind* | *'"wind"'*) moves="$moves --gust-repeat $turn_s" ;;
+esac
 
 # The picture: a neutral ground, light that stays with the camera, shadows.
 looks="--turntable 360 --quality final --background #8a8d91 --turn-lights"
@@ -49,12 +58,12 @@ run() { "$programs/tractrix-render" "$asset" $moves $looks "$@"; }
 run --quiet --cache "$cache" "$@"
 for format in $formats; do
     case $format in
-    mp4 | webm) run --from-cache "$cache" --size 1280x720 -o "$out/$name.$format" "$@" ;;
-    gif) run --from-cache "$cache" --size 480x360 --every 2 -o "$out/$name.gif" "$@" ;;
-    sheet) run --from-cache "$cache" --size 320x320 --contact-sheet 6x4 -o "$out/${name}_sheet.png" "$@" ;;
+    mp4 | webm) run --from-cache "$cache" --size 1280x720 -o "$out/$hair.$format" "$@" ;;
+    gif) run --from-cache "$cache" --size 480x360 --every 2 -o "$out/$hair.gif" "$@" ;;
+    sheet) run --from-cache "$cache" --size 320x320 --contact-sheet 6x4 -o "$out/${hair}_sheet.png" "$@" ;;
     frames)
-        rm -f "$out/$name"/frame_*.png
-        run --from-cache "$cache" --size 1280x720 -o "$out/$name/" "$@"
+        rm -f "$out/$hair"/frame_*.png
+        run --from-cache "$cache" --size 1280x720 -o "$out/$hair/" "$@"
         ;;
     esac
 done

@@ -134,9 +134,10 @@ Result json_read_choice(const JsonPlace *place, const json_t *value, const char 
             length +=
                 (size_t)snprintf(expected + length, sizeof expected - length, " \"%s\"", words[i]);
     }
-    if (json_is_string(value) && length < sizeof expected)
-        snprintf(expected + length, sizeof expected - length, " (nearest: \"%s\")",
-                 suggest_nearest(json_string_value(value), words, count));
+    const char *nearest =
+        json_is_string(value) ? suggest_nearest(json_string_value(value), words, count) : NULL;
+    if (nearest && length < sizeof expected)
+        snprintf(expected + length, sizeof expected - length, " (nearest: \"%s\")", nearest);
     return json_refuse(place, value, expected, error);
 }
 
@@ -151,9 +152,11 @@ Result json_check_object(const JsonPlace *place, const json_t *value, const char
     {
         size_t i = 0;
         while (i < count && strcmp(key, names[i]) != 0) i++;
+        char words[160];
         if (i == count)
-            return json_fail(place, error, "unknown key '%.60s' (nearest: '%s')", key,
-                             suggest_nearest(key, names, count));
+            return json_fail(place, error, "unknown key '%.60s'%s%s", key,
+                             *suggest_words(words, sizeof words, key, names, count) ? ": " : "",
+                             words);
     }
     return RESULT_OK;
 }

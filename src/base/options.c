@@ -1,260 +1,277 @@
 // SPDX-License-Identifier: MIT
 #include "base/options.h"
 
-#include "base/completion.h"
-#include "base/prose.h"
+#include "base/params.h"
 #include "base/suggest.h"
 
 #include "version.h"
 
-#include <ctype.h>
-#include <getopt.h>
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_OPTIONS = 128, MOST_WORDS = 16, FIRST_CODE = 256 };
-enum { CODE_HELP = FIRST_CODE + MOST_OPTIONS, CODE_VERSION };
+enum { MOST_WORDS = 16, NAME_SIZE = 80 };
 
-static const Option COMMON[] = {
-    {"help", 'h', OPTION_SWITCH, 0, NULL, 0, 0,
-     "print this and stop; --help=man: in roff; --help=bash: completion"},
-    {"version", 0, OPTION_SWITCH, 0, NULL, 0, 0, "print the version and stop"},
+// --- The parameters as options.
+
+#define BAR_WORD(value, word)     "|" word
+#define VALUE_BOOL(CHOICES)       NULL
+#define VALUE_INT(CHOICES)        "N"
+#define VALUE_UINT(CHOICES)       "N"
+#define VALUE_FLOAT(CHOICES)      "X"
+#define VALUE_VEC3(CHOICES)       "X,Y,Z"
+#define VALUE_COLOR(CHOICES)      "COLOR"
+#define VALUE_BACKGROUND(CHOICES) "COLOR"
+#define VALUE_AUTO_INT(CHOICES)   "N|auto"
+#define VALUE_AUTO_FLOAT(CHOICES) "X|auto"
+#define VALUE_AUTO_VEC3(CHOICES)  "X,Y,Z|auto"
+#define VALUE_UNIT(CHOICES)       "UNIT"
+#define VALUE_SIZE(CHOICES)       "WxH"
+#define VALUE_PART(CHOICES)       "I/N"
+#define VALUE_CHOICE(CHOICES)     &(CHOICES(BAR_WORD))[1]
+#define VALUE_TEXT(CHOICES)       "NAME"
+#define VALUE_PATH(CHOICES)       "PATH"
+
+#define PARAM(scope, KIND, GROUP, owner, field, letter_, default_, minimum, maximum, unit,         \
+              CHOICES, help_)                                                                      \
+    {.name = #field,                                                                               \
+     .letter = letter_,                                                                            \
+     .kind = PARAM_##KIND == PARAM_BOOL ? OPTION_SWITCH : OPTION_STRING,                           \
+     .value = VALUE_##KIND(CHOICES),                                                               \
+     .help = help_},
+const Option OPTIONS_OF_PARAMS[] = {
+#include "base/params.def"
 };
-enum { COMMON_COUNT = sizeof COMMON / sizeof *COMMON };
+#undef PARAM
 
-static const Option *option_at(const OptionsProgram *program, size_t i)
+// --- Walking.
+
+static bool names_equal(const char *a, const char *b)
 {
-    return i < program->option_count ? &program->options[i] : &COMMON[i - program->option_count];
+    for (; *a && *b; a++, b++)
+        if ((*a == '_' ? '-' : *a) != (*b == '_' ? '-' : *b)) return false;
+    return *a == *b;
 }
 
-// "-j, --jobs N"
-static void write_flag(const Option *option, char *text, size_t size)
+const Option *options_find(const Option *options, size_t count, const char *name)
 {
-    char letter[8] = "";
-    if (option->letter) snprintf(letter, sizeof letter, "-%c, ", option->letter);
-    snprintf(text, size, "%s--%s%s%s", letter, option->name, option->value ? " " : "",
-             option->value ? option->value : "");
+    bool letter = name[0] == '-' && name[1] && name[1] != '-' && !name[2];
+    if (strncmp(name, "--", 2) == 0) name += 2;
+    for (size_t i = 0; i < count; ++i)
+        if (letter ? options[i].letter == name[1] : names_equal(options[i].name, name))
+            return &options[i];
+    return NULL;
 }
 
-// --- The text.
-
-static void write_text(const OptionsProgram *program)
+static Result fail_unknown(const OptionsWalk *walk, const char *flag, Error *error)
 {
-    printf("Usage: %s %s\n\n", program->name, program->synopsis);
-    prose_write_wrapped(stdout, program->description, 0, 0);
-    if (program->commands) printf("\nCommands:\n");
-    for (const char *const(*c)[2] = program->commands; c && (*c)[0]; ++c)
-        prose_write_entry(stdout, (*c)[0], (*c)[1]);
-    printf("\nOptions:\n");
-    for (size_t i = 0; i < program->option_count + COMMON_COUNT; ++i) {
-        char flag[96];
-        write_flag(option_at(program, i), flag, sizeof flag);
-        prose_write_entry(stdout, flag, option_at(program, i)->help);
+    const char *names[OPTIONS_MOST + 2] = {"help", "version"};
+    const char *word = flag + 2;
+    assert(walk->option_count <= OPTIONS_MOST);
+    bool long_name = strncmp(flag, "--", 2) == 0, negated = long_name && !strncmp(word, "no-", 3);
+    for (size_t i = 0; i < walk->option_count; ++i) names[i + 2] = walk->options[i].name;
+    const char *nearest =
+        long_name ? suggest_nearest(word + 3 * negated, names, walk->option_count + 2) : NULL;
+    if (!nearest)
+        return error_set(error, RESULT_USAGE, "%s: no such option: --help lists them", flag);
+    char name[NAME_SIZE];
+    snprintf(name, sizeof name, "%s%s", negated ? "no-" : "", nearest);
+    for (char *at = name; *at; ++at)
+        if (*at == '_') *at = '-';
+    return error_set(error, RESULT_USAGE, "%s: no such option: did you mean '--%s'?", flag, name);
+}
+
+// The next argument, for an option that has no value of its own.
+static Result take_value(OptionsWalk *walk, OptionsArgument *argument, Error *error)
+{
+    const char *next = walk->taken + 1 < walk->argc ? walk->argv[walk->taken + 1] : NULL;
+    if (!next || strncmp(next, "--", 2) == 0)
+        return error_set(error, RESULT_USAGE, "%s: no value: expected %s", argument->flag,
+                         argument->option->value);
+    argument->text = next;
+    ++walk->taken;
+    return RESULT_OK;
+}
+
+static void take_topic(OptionsWalk *walk, OptionsArgument *argument)
+{
+    argument->found = OPTIONS_HELP;
+    if (!argument->text && walk->taken + 1 < walk->argc) argument->text = walk->argv[++walk->taken];
+}
+
+static Result take_letter(OptionsWalk *walk, OptionsArgument *argument, Error *error)
+{
+    const char flag[] = {'-', *walk->letters++, 0};
+    snprintf(argument->flag, sizeof argument->flag, "%s", flag);
+    if (flag[1] == 'h') {
+        take_topic(walk, argument);
+        return RESULT_OK;
     }
-    for (const char *const *note = program->notes; *note; ++note) {
-        printf("\n");
-        prose_write_wrapped(stdout, *note, 0, 0);
+    argument->option = options_find(walk->options, walk->option_count, flag);
+    if (!argument->option) return fail_unknown(walk, flag, error);
+    if (!argument->option->value) {
+        argument->text = argument->option->kind == OPTION_SWITCH ? "true" : NULL;
+        return RESULT_OK;
     }
-    printf("\nExit status:\n");
-    for (const char *const(*s)[2] = program->status; (*s)[0]; ++s)
-        printf("  %3s  %s\n", (*s)[0], (*s)[1]);
-    printf("\nExamples:\n");
-    for (const char *const *e = program->examples; *e; ++e) printf("  %s\n", *e);
+    argument->text = *walk->letters ? walk->letters : NULL;
+    walk->letters = NULL;
+    return argument->text ? RESULT_OK : take_value(walk, argument, error);
 }
 
-// --- The manual page.
-
-static void write_man(const OptionsProgram *program)
+static Result take_flag(OptionsWalk *walk, const char *word, OptionsArgument *argument,
+                        Error *error)
 {
-    const char *page = program->page ? program->page : program->name;
-    printf(".TH ");
-    for (const char *at = page; *at; ++at) putchar(toupper((unsigned char)*at));
-    printf(" 1 \"\" \"Tractrix %s\"\n.SH NAME\n", TRACTRIX_VERSION);
-    printf("%s \\- ", page);
-    prose_write_roff(stdout, program->summary);
-    printf(".SH SYNOPSIS\n.B %s\n", program->name);
-    prose_write_roff(stdout, program->synopsis);
-    printf(".SH DESCRIPTION\n");
-    prose_write_roff(stdout, program->description);
-    if (program->commands) printf(".SH COMMANDS\n");
-    for (const char *const(*c)[2] = program->commands; c && (*c)[0]; ++c)
-        prose_write_roff_entry(stdout, (*c)[0], (*c)[1]);
-    printf(".SH OPTIONS\n");
-    for (size_t i = 0; i < program->option_count + COMMON_COUNT; ++i) {
-        char flag[96];
-        write_flag(option_at(program, i), flag, sizeof flag);
-        prose_write_roff_entry(stdout, flag, option_at(program, i)->help);
+    const char *equals = strchr(word, '='), *name = argument->flag + 2;
+    snprintf(argument->flag, sizeof argument->flag, "%.*s",
+             equals ? (int)(equals - word) : (int)strlen(word), word);
+    argument->text = equals ? equals + 1 : NULL;
+    if (strcmp(name, "help") == 0) {
+        take_topic(walk, argument);
+        return RESULT_OK;
     }
-    printf(".SH NOTES\n");
-    for (const char *const *note = program->notes; *note; ++note) {
-        printf(".PP\n");
-        prose_write_roff(stdout, *note);
-    }
-    printf(".SH \"EXIT STATUS\"\n");
-    for (const char *const(*s)[2] = program->status; (*s)[0]; ++s)
-        prose_write_roff_entry(stdout, (*s)[0], (*s)[1]);
-    printf(".SH EXAMPLES\n.nf\n");
-    for (const char *const *e = program->examples; *e; ++e) prose_write_roff(stdout, *e);
-    printf(".fi\n");
+    bool version = strcmp(name, "version") == 0;
+    argument->option = options_find(walk->options, walk->option_count, argument->flag);
+    bool negated = !argument->option && strncmp(name, "no-", 3) == 0;
+    if (negated) argument->option = options_find(walk->options, walk->option_count, name + 3);
+    if (!argument->option && !version) return fail_unknown(walk, argument->flag, error);
+    bool is_switch = argument->option && argument->option->kind == OPTION_SWITCH;
+    if (negated && !is_switch)
+        return error_set(error, RESULT_USAGE, "%s: --%s takes a value: only switches have --no-",
+                         argument->flag, name + 3);
+    if (equals && (version || negated || (!argument->option->value && !is_switch)))
+        return error_set(error, RESULT_USAGE, "%s: got '%s', takes no value", argument->flag,
+                         equals + 1);
+    if (version) argument->found = OPTIONS_VERSION;
+    if (is_switch && !equals) argument->text = negated ? "false" : "true";
+    bool missing = !version && argument->option->value && !equals;
+    return missing ? take_value(walk, argument, error) : RESULT_OK;
 }
 
-static void write_bash(const OptionsProgram *program)
+Result options_next(OptionsWalk *walk, OptionsArgument *argument, Error *error)
 {
-    char texts[MOST_OPTIONS + COMMON_COUNT][96];
-    const char *flags[MOST_OPTIONS + COMMON_COUNT];
-    size_t count = program->option_count + COMMON_COUNT;
-    for (size_t i = 0; i < count; ++i) {
-        write_flag(option_at(program, i), texts[i], sizeof *texts);
-        flags[i] = texts[i];
+    *argument = (OptionsArgument){.found = OPTIONS_OPTION};
+    if (walk->letters && *walk->letters) return take_letter(walk, argument, error);
+    if (walk->taken + 1 >= walk->argc) {
+        argument->found = OPTIONS_END;
+        return RESULT_OK;
     }
-    completion_write_bash(stdout, program->name, flags, count);
+    const char *word = walk->argv[++walk->taken];
+    if (walk->ended || word[0] != '-' || !word[1]) {
+        argument->found = OPTIONS_OPERAND;
+        argument->text = word;
+        return RESULT_OK;
+    }
+    walk->letters = word[1] == '-' ? NULL : word + 1;
+    if (walk->letters) return take_letter(walk, argument, error);
+    if (word[2]) return take_flag(walk, word, argument, error);
+    walk->ended = true;
+    return options_next(walk, argument, error);
 }
 
-// --- Parsing.
+// --- Setting values.
 
-static Result fail_unknown(const OptionsProgram *program, const char *flag, Error *error)
+static Result refuse(const OptionsArgument *argument, const char *expected, const char *nearest,
+                     Error *error)
 {
-    const char *names[MOST_OPTIONS + COMMON_COUNT];
-    char word[64];
-    size_t count = program->option_count + COMMON_COUNT, length = strcspn(flag, "=");
-    for (size_t i = 0; i < count; ++i) names[i] = option_at(program, i)->name;
-    snprintf(word, sizeof word, "%s", flag + strspn(flag, "-"));
-    word[strcspn(word, "=")] = 0;
-    return error_set(error, RESULT_USAGE, "no option '%.*s': did you mean '--%s'?", (int)length,
-                     flag, suggest_nearest(word, names, count));
+    return error_set(error, RESULT_USAGE, "%s: got '%.200s', expected %s%s%s%s", argument->flag,
+                     argument->text, expected, nearest ? " (nearest: " : "", nearest ? nearest : "",
+                     nearest ? ")" : "");
 }
 
-static Result set_number(const Option *option, char *at, const char *text, Error *error)
+static Result set_number(const OptionsArgument *argument, char *at, Error *error)
 {
-    char *end;
-    double number = strtod(text, &end);
+    const Option *option = argument->option;
+    char *end, expected[80];
+    double number = strtod(argument->text, &end);
     bool whole = option->kind == OPTION_WHOLE;
-    if (end == text || *end || !(number >= option->least && number <= option->most) ||
+    snprintf(expected, sizeof expected, "a %snumber from %.10g to %.10g", whole ? "whole " : "",
+             option->least, option->most);
+    if (end == argument->text || *end || !(number >= option->least && number <= option->most) ||
         (whole && number != (int)number))
-        return error_set(error, RESULT_USAGE, "--%s: expected %s from %.10g to %.10g, got '%s'",
-                         option->name, whole ? "a whole number" : "a number", option->least,
-                         option->most, text);
+        return refuse(argument, expected, NULL, error);
     int count = (int)number;
     memcpy(at, whole ? (void *)&count : (void *)&number, whole ? sizeof count : sizeof number);
     return RESULT_OK;
 }
 
 // Which of the words in "one|two|three" the text is.
-static Result set_word(const Option *option, char *at, const char *text, Error *error)
+static Result set_word(const OptionsArgument *argument, char *at, Error *error)
 {
-    char words[MOST_WORDS * 32];
+    char words[MOST_WORDS * 32], expected[MOST_WORDS * 32] = "";
     const char *names[MOST_WORDS];
     int count = 0;
-    snprintf(words, sizeof words, "%s", option->value);
+    size_t length = 0;
+    snprintf(words, sizeof words, "%s", argument->option->value);
     for (char *rest = words, *word; count < MOST_WORDS && (word = strsep(&rest, "|"));) {
-        if (strcmp(word, text) == 0) {
+        if (strcmp(word, argument->text) == 0) {
             memcpy(at, &count, sizeof count);
             return RESULT_OK;
         }
+        if (length < sizeof expected)
+            length += (size_t)snprintf(expected + length, sizeof expected - length, "%s%s",
+                                       count == 0 ? ""
+                                       : rest     ? ", "
+                                                  : " or ",
+                                       word);
         names[count++] = word;
     }
-    return error_set(error, RESULT_USAGE, "--%s: expected %s, got '%s': did you mean '%s'?",
-                     option->name, option->value, text,
-                     suggest_nearest(text, names, (size_t)count));
+    return refuse(argument, expected, suggest_nearest(argument->text, names, (size_t)count), error);
 }
 
-static Result append_step(const Option *option, OptionSteps *steps, const char *text, Error *error)
+static Result set_option(const OptionsArgument *argument, char *values, Error *error)
 {
-    if (steps->count == OPTION_MOST_STEPS)
-        return error_set(error, RESULT_USAGE, "--%s: more than %d steps", option->name,
-                         OPTION_MOST_STEPS);
-    steps->step[steps->count].option = option;
-    steps->step[steps->count++].text = text;
-    return RESULT_OK;
-}
-
-static Result set_option(const Option *option, char *values, const char *text, Error *error)
-{
+    const Option *option = argument->option;
     char *at = values + option->place;
-    const bool on = true;
+    OptionSteps *steps = (OptionSteps *)(void *)at;
+    bool on = option->kind == OPTION_SWITCH && strcmp(argument->text, "true") == 0;
     switch (option->kind) {
     case OPTION_SWITCH:
+        if (!on && strcmp(argument->text, "false") != 0)
+            return refuse(argument, "true or false", NULL, error);
         memcpy(at, &on, sizeof on);
         return RESULT_OK;
     case OPTION_STRING:
-        if (!*text)
-            return error_set(error, RESULT_USAGE, "--%s: expected %s, got nothing", option->name,
-                             option->value);
-        memcpy(at, &text, sizeof text);
+        if (!*argument->text) return refuse(argument, option->value, NULL, error);
+        memcpy(at, &argument->text, sizeof argument->text);
         return RESULT_OK;
     case OPTION_WORD:
-        return set_word(option, at, text, error);
+        return set_word(argument, at, error);
     case OPTION_STEP:
-        return append_step(option, (OptionSteps *)(void *)at, text, error);
+        if (steps->count == OPTION_MOST_STEPS)
+            return error_set(error, RESULT_USAGE, "%s: too many steps: expected %d at most",
+                             argument->flag, OPTION_MOST_STEPS);
+        steps->step[steps->count].option = option;
+        steps->step[steps->count++].text = argument->text;
+        return RESULT_OK;
     default:
-        return set_number(option, at, text, error);
+        return set_number(argument, at, error);
     }
-}
-
-static void make_tables(const OptionsProgram *program, struct option *table, char *letters)
-{
-    *letters++ = ':'; // tell a missing value from an unknown option
-    for (size_t i = 0; i < program->option_count; ++i) {
-        const Option *option = &program->options[i];
-        table[i] = (struct option){option->name, option->value != NULL, NULL, FIRST_CODE + (int)i};
-        if (!option->letter) continue;
-        *letters++ = option->letter;
-        if (option->value) *letters++ = ':';
-    }
-    table += program->option_count;
-    table[0] = (struct option){"help", optional_argument, NULL, CODE_HELP};
-    table[1] = (struct option){"version", no_argument, NULL, CODE_VERSION};
-    table[2] = (struct option){0};
-    *letters++ = 'h';
-    *letters = 0;
-}
-
-static Result answer(const OptionsProgram *program, int code, Error *error)
-{
-    if (code == CODE_VERSION)
-        printf("%s %s\n", program->name, TRACTRIX_VERSION);
-    else if (code == 'h' || !optarg)
-        write_text(program);
-    else if (strcmp(optarg, "man") == 0)
-        write_man(program);
-    else if (strcmp(optarg, "bash") == 0)
-        write_bash(program);
-    else
-        return error_set(error, RESULT_USAGE, "--help: expected man, bash or nothing, got '%s'",
-                         optarg);
-    return RESULT_OK;
-}
-
-static const Option *find_option(const OptionsProgram *program, int code)
-{
-    if (code >= FIRST_CODE) return &program->options[code - FIRST_CODE];
-    for (size_t i = 0; i < program->option_count; ++i)
-        if (program->options[i].letter == code) return &program->options[i];
-    return NULL;
 }
 
 Result options_parse(const OptionsProgram *program, void *values, int argc, char **argv, int *first,
                      bool *done, Error *error)
 {
-    struct option table[MOST_OPTIONS + COMMON_COUNT + 1];
-    char letters[2 * MOST_OPTIONS + 4];
-    int code;
-    make_tables(program, table, letters);
-    opterr = 0;
-    optind = 0;
+    OptionsWalk walk = {program->options, program->option_count, argc, argv, 0, NULL, false};
+    OptionsArgument argument;
+    int operands = 0;
     *done = false;
-    while ((code = getopt_long(argc, argv, letters, table, NULL)) != -1) {
-        if (code == ':')
-            return error_set(error, RESULT_USAGE, "'%s' needs a value", argv[optind - 1]);
-        if (code == CODE_HELP || code == CODE_VERSION || code == 'h') {
-            *done = true;
-            return answer(program, code, error);
+    for (;;) {
+        TRY(options_next(&walk, &argument, error));
+        if (argument.found == OPTIONS_END) break;
+        *done = argument.found == OPTIONS_HELP || argument.found == OPTIONS_VERSION;
+        if (argument.found == OPTIONS_HELP)
+            return options_help(program, argument.text, stdout, error);
+        if (argument.found == OPTIONS_VERSION) {
+            printf("%s %s\n", program->name, TRACTRIX_VERSION);
+            return RESULT_OK;
         }
-        const Option *option = code == '?' ? NULL : find_option(program, code);
-        if (!option) return fail_unknown(program, argv[optind - 1], error);
-        Result result = set_option(option, values, optarg, error);
-        if (result != RESULT_OK) return result;
+        // Never ahead of what has been read.
+        if (argument.found == OPTIONS_OPERAND)
+            argv[1 + operands++] = argv[walk.taken];
+        else
+            TRY(set_option(&argument, values, error));
     }
-    *first = optind;
+    *first = argc - operands;
+    memmove(argv + *first, argv + 1, (size_t)operands * sizeof *argv);
     return RESULT_OK;
 }

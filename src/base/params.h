@@ -99,7 +99,9 @@ typedef enum Shading { CHOICES_SHADING(CHOICE_VALUE) } Shading;
     X(FORCES, "Forces")                                                                            \
     X(COLLISION, "Collisions")                                                                     \
     X(CAMERA, "Camera")                                                                            \
-    X(SHADING, "Shading")                                                                          \
+    X(HAIR, "Hair")                                                                                \
+    X(LIGHT, "Light")                                                                              \
+    X(QUALITY, "Quality")                                                                          \
     X(DEVICE, "Device")
 
 #define GROUP_VALUE(group, title) GROUP_##group,

@@ -1,17 +1,24 @@
 // SPDX-License-Identifier: MIT
 #include "base/program.h"
 
+#include <poll.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <unistd.h>
+
+// Whether standard output is a pipe whose reader has gone, as `head` does when it has enough.
+static bool reader_left(void)
+{
+    struct pollfd output = {.fd = STDOUT_FILENO, .events = POLLOUT};
+    return poll(&output, 1, 0) > 0 && (output.revents & POLLERR);
+}
 
 int program_end(const char *name, Result result, Error *error)
 {
-    bool told = result != RESULT_OK && error->text[0];
+    bool reported = result != RESULT_OK && error->text[0];
     bool lost = fflush(stdout) != 0 || ferror(stdout);
-    if (lost && !told) result = error_set(error, RESULT_FAILED, "cannot write to standard output");
-    if (result == RESULT_BAD_INPUT && error->text[0])
-        fprintf(stderr, "%s\n", error->text);
-    else if (result != RESULT_OK && error->text[0])
-        fprintf(stderr, "%s: %s\n", name, error->text);
+    if (lost && !reported && !reader_left())
+        result = error_set(error, RESULT_FAILED, "cannot write to standard output");
+    if (result != RESULT_OK && error->text[0]) fprintf(stderr, "%s: %s\n", name, error->text);
     return result;
 }

@@ -4,9 +4,12 @@
 #include <ctype.h>
 #include <limits.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <string.h>
 
-enum { LONGEST = 63 };
+// A name is near if the word differs from it by one edit for each three letters, by three at most,
+// or is its beginning.
+enum { LONGEST = 63, LETTERS_AN_EDIT = 3, MOST_EDITS = 3, SHORTEST_BEGINNING = 3 };
 
 static int fold(char character)
 {
@@ -49,13 +52,32 @@ static int distance(const char *a, const char *b)
 const char *suggest_nearest(const char *word, const char *const *names, size_t count)
 {
     const char *nearest = NULL;
-    int lowest = INT_MAX;
+    int lowest = INT_MAX, length = (int)strnlen(word, LONGEST);
+    int most = least(length / LETTERS_AN_EDIT, MOST_EDITS);
     for (size_t i = 0; i < count; i++) {
+        int edits = distance(word, names[i]);
+        bool cut_short = length >= SHORTEST_BEGINNING && begins(names[i], word);
         // Of two that are as near, the one that was cut short is meant.
-        int rank = 2 * distance(word, names[i]) - begins(names[i], word);
-        if (rank >= lowest) continue;
+        int rank = 2 * edits - cut_short;
+        if ((edits > most && !cut_short) || rank >= lowest) continue;
         lowest = rank;
         nearest = names[i];
     }
     return nearest;
+}
+
+const char *suggest_words(char *text, size_t size, const char *word, const char *const *names,
+                          size_t count)
+{
+    const char *nearest = suggest_nearest(word, names, count);
+    size_t length = (size_t)snprintf(text, size, nearest ? "did you mean '%s'?" : "expected ",
+                                     nearest ? nearest : "");
+    for (size_t i = 0; !nearest && i < count && length < size; i++)
+        length += (size_t)snprintf(text + length, size - length, "%s%s",
+                                   i == 0          ? ""
+                                   : i + 1 < count ? ", "
+                                                   : " or ",
+                                   names[i]);
+    if (length >= size) text[0] = 0;
+    return text;
 }

@@ -67,8 +67,9 @@ static Result find_command(const char *word, size_t *command, Error *error)
         *command = i;
         if (strcmp(names[i], word) == 0) return RESULT_OK;
     }
-    return error_set(error, RESULT_USAGE, "no command '%s'; did you mean '%s'?", word,
-                     suggest_nearest(word, names, COMMAND_COUNT));
+    char words[200];
+    return error_set(error, RESULT_USAGE, "no command '%s': %s", word,
+                     suggest_words(words, sizeof words, word, names, COMMAND_COUNT));
 }
 
 static Result run_command(BenchOptions *options, Error *error)

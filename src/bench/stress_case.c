@@ -151,8 +151,9 @@ static Result read_word(StressCase *stress, const char *word, size_t length, Err
         stress->value[i] = value;
         return RESULT_OK;
     }
-    return error_set(error, RESULT_USAGE, "--case: no '%s'; did you mean '%s'?", text,
-                     suggest_nearest(text, names, STRESS_FIELD_COUNT));
+    char words[800];
+    return error_set(error, RESULT_USAGE, "--case: no '%s': %s", text,
+                     suggest_words(words, sizeof words, text, names, STRESS_FIELD_COUNT));
 }
 
 Result stress_case_read(StressCase *stress, const char *text, Error *error)

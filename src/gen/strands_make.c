@@ -315,7 +315,7 @@ Result strands_make_set(Strands *strands, const char *name, uint32_t seed, Error
         return strands_make(strands, &recipe, error);
     }
     *strands = (Strands){0};
-    return error_set(error, RESULT_USAGE,
-                     "no test set '%s': did you mean '%s'? (1k16, 1k32, 10k16, 10k32)", name,
-                     suggest_nearest(name, names, 4));
+    char words[64];
+    return error_set(error, RESULT_USAGE, "no test set '%s': %s", name,
+                     suggest_words(words, sizeof words, name, names, 4));
 }

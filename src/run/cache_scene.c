@@ -19,15 +19,17 @@ static bool moves_hair(const ParamInfo *info)
 {
     for (size_t i = 0; i < sizeof HARMLESS / sizeof *HARMLESS; ++i)
         if (strcmp(info->name, HARMLESS[i]) == 0) return false;
-    return info->group != GROUP_INPUT && info->group != GROUP_OUTPUT &&
-           info->group != GROUP_CAMERA && info->group != GROUP_SHADING &&
-           info->group != GROUP_DEVICE;
+    return info->group == GROUP_SIMULATION || info->group == GROUP_FORCES ||
+           info->group == GROUP_COLLISION;
 }
 
+// `object`: a scene or a section.
 static void keep_what_moves(json_t *object)
 {
+    const char *algo = json_string_value(json_object_get(object, "algo"));
     for (size_t i = 0; i < PARAM_COUNT; ++i)
-        if (!moves_hair(&PARAM_TABLE[i])) json_object_del(object, PARAM_TABLE[i].name);
+        if (!moves_hair(&PARAM_TABLE[i]) || (algo && !params_owned_by(&PARAM_TABLE[i], algo)))
+            json_object_del(object, PARAM_TABLE[i].name);
     for (size_t i = 0; i < sizeof DRAWN / sizeof *DRAWN; ++i) json_object_del(object, DRAWN[i]);
 }
 

@@ -2,7 +2,7 @@
 // tractrix-render: from hair files and a scene to pictures.
 #include "base/interrupt.h"
 #include "base/program.h"
-#include "run/help.h"
+#include "run/render_help.h"
 #include "run/run.h"
 
 #include "version.h"
@@ -12,24 +12,10 @@
 static Result answer(Run *run, Error *error)
 {
     const RunParams *params = &run->scene.run;
-    switch (run->scene.request) {
-    case REQUEST_HELP:
-        help_write_text(stdout);
-        return RESULT_OK;
-    case REQUEST_MAN:
-        help_write_man(stdout, TRACTRIX_VERSION);
-        return RESULT_OK;
-    case REQUEST_MARKDOWN:
-        help_write_markdown(stdout);
-        return RESULT_OK;
-    case REQUEST_BASH:
-        help_write_bash(stdout);
-        return RESULT_OK;
-    case REQUEST_VERSION:
+    if (run->scene.request == REQUEST_HELP) return render_help(run->scene.topic, stdout, error);
+    if (run->scene.request == REQUEST_VERSION) {
         printf("tractrix-render %s\n", TRACTRIX_VERSION);
         return RESULT_OK;
-    case REQUEST_RUN:
-        break;
     }
     if (params->list_devices) return gpu_list_devices(stdout, error);
     if (params->check) {

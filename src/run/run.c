@@ -4,6 +4,7 @@
 #include "base/target.h"
 #include "run/caption.h"
 #include "run/survey.h"
+#include "scene/effects.h"
 #include "scene/fit.h"
 #include "strands/strands.h"
 
@@ -41,8 +42,9 @@ static GpuOptions gpu_options(const RunParams *params)
     return options;
 }
 
-static void tell_cautions(const Scene *scene)
+static void warn_all(const Scene *scene)
 {
+    effects_warn(scene, stderr);
     for (uint32_t i = 0; i < scene->section_count; ++i) {
         const Section *section = &scene->sections[i];
         const char *caution = solver_caution(&section->params);
@@ -96,11 +98,6 @@ static Result check_words(const Scene *scene, Error *error)
     if (result == RESULT_OK) result = check_target(run, run->export, format_target, error);
     if (result == RESULT_OK) result = check_sheet(run, error);
     if (result == RESULT_OK) result = caption_check(run->caption, error);
-    if (result == RESULT_OK && run->collide_mesh && !*run->mesh)
-        result = error_set(error, RESULT_USAGE, "--collide-mesh: expected a mesh, --mesh");
-    if (result == RESULT_OK && run->turntable == 0 && (run->ease_in > 0 || run->ease_out > 0))
-        result = error_set(error, RESULT_USAGE, "%s: expected a turntable, --turntable",
-                           run->ease_in > 0 ? "--ease-in" : "--ease-out");
     bool fits = run->framing == FRAMING_HAIR || run->framing == FRAMING_ALL;
     if (result == RESULT_OK && fits && !fit_is_free(scene))
         result =
@@ -191,7 +188,7 @@ static Result prepare(Run *run, Error *error)
         result = assets_load(&run->assets, &run->scene, params->quiet ? NULL : stderr,
                              params->verbose, error);
     run->loaded_ms = stats_clock_ms();
-    if (result == RESULT_OK && !params->quiet) tell_cautions(&run->scene);
+    if (result == RESULT_OK && !params->quiet) warn_all(&run->scene);
     if (result == RESULT_OK) result = open_gpu(run, error);
     if (result == RESULT_OK && draws) result = aim(run, error);
     if (result == RESULT_OK)

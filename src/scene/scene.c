@@ -25,6 +25,7 @@ void scene_destroy(Scene *scene)
         params_destroy_section(&scene->sections[i].params);
     }
     free(scene->sections);
+    free(scene->file);
     params_destroy_run(&scene->run);
     rigid_track_destroy(&scene->head);
     keyframes_destroy(&scene->gravity);

@@ -12,10 +12,26 @@
 #include <jansson.h>
 #include <stdint.h>
 
+#define PARAM(...) +1
+enum {
+    SCENE_PARAMS = 0 // PARAM_COUNT
+#include "base/params.def"
+};
+#undef PARAM
+
+// Where a parameter's value comes from.
+typedef enum Origin {
+    ORIGIN_DEFAULT,    // the table or --quality
+    ORIGIN_SHARED_KEY, // of the scene file: the run's, or for all sections
+    ORIGIN_KEY,        // the section's own
+    ORIGIN_FLAG,       // the command line
+} Origin;
+
 // One hair file and how it behaves and looks.
 typedef struct Section {
     char *file; // owned; relative to the working folder
     SectionParams params;
+    uint8_t origin[SCENE_PARAMS]; // an Origin for each row of the table that is a section's
 } Section;
 
 typedef enum LightKind { LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_SPOT } LightKind;
@@ -38,20 +54,20 @@ typedef struct Light {
 enum { SCENE_MAX_LIGHTS = 8, SCENE_MAX_SECTIONS = 1024 };
 
 // What the command line asks for. Anything but REQUEST_RUN leaves the rest of the scene unfinished:
-// print that (help.h) and stop.
+// print that and stop.
 typedef enum SceneRequest {
     REQUEST_RUN,
-    REQUEST_VERSION,  // --version
-    REQUEST_HELP,     // -h, --help
-    REQUEST_MAN,      // --help=man: the man page in roff
-    REQUEST_MARKDOWN, // --help=markdown: docs/options.md
-    REQUEST_BASH,     // --help=bash: completion of the command line
+    REQUEST_VERSION, // --version
+    REQUEST_HELP,    // -h, --help
 } SceneRequest;
 
 // A zeroed scene is empty and may be destroyed.
 typedef struct Scene {
     SceneRequest request;
+    const char *topic; // of REQUEST_HELP, in argv; NULL: none
+    char *file;        // owned; the scene file, NULL: none
     RunParams run;
+    uint8_t origin[SCENE_PARAMS]; // an Origin for each row of the table that is the run's
     Section *sections; // [section_count], owned
     uint32_t section_count;
     RigidTrack head;                // moves the roots and the mesh
@@ -68,8 +84,9 @@ typedef struct Scene {
 // hair files, each a section, or one scene file, which is known by the end ".json" or by its
 // content. Flags override the scene file: those of a run its values (--gravity, --wind, --eye,
 // --target and --fov also replace keyframes), those of a section the values of all sections.
-// RESULT_USAGE for wrong flags, values or combinations; RESULT_BAD_INPUT for the scene file's
-// content; RESULT_FAILED when memory is short. The scene may be destroyed in each case.
+// RESULT_USAGE for wrong flags, values or combinations, and flags without effect (effects_check);
+// RESULT_BAD_INPUT for the scene file's content; RESULT_FAILED when memory is short. The scene may
+// be destroyed in each case.
 Result scene_from_arguments(Scene *scene, int argc, char **argv, Error *error);
 
 // Reads a scene file and checks the combination of values as scene_check does. RESULT_BAD_INPUT

@@ -27,6 +27,7 @@ typedef struct Document {
     JsonPlace root;
     char *folder;
     const json_t *json;
+    const SceneOverrides *overrides;
 } Document;
 
 // Reads the bytes as JSON; the caller owns the reference. Errors have file, line and column.
@@ -74,9 +75,16 @@ static Result check_keys(bool top, const JsonPlace *place, const json_t *object,
     return result;
 }
 
+// Where parameters of one scope go, and the Origin of each row.
+typedef struct Sink {
+    ParamScope scope;
+    void *params;
+    uint8_t *origin; // [SCENE_PARAMS]
+} Sink;
+
 // The parameters of one scope among the members of `object`. Keyframes of forces and the list of
 // colliders are for the caller.
-static Result read_params(const Document *document, ParamScope scope, void *params,
+static Result read_params(const Document *document, const Sink *sink, Origin origin,
                           const JsonPlace *parent, const json_t *object, Error *error)
 {
     for (size_t i = 0; i < PARAM_COUNT; i++) {
@@ -84,19 +92,19 @@ static Result read_params(const Document *document, ParamScope scope, void *para
         const json_t *value = json_object_get(object, info->name);
         bool keys = json_is_object(value) && info->kind == PARAM_VEC3;
         bool list = json_is_array(value) && info->kind == PARAM_TEXT;
-        if (info->scope != scope || !value || keys || list) continue;
+        if (info->scope != sink->scope || !value) continue;
+        sink->origin[i] = (uint8_t)origin;
         JsonPlace place = {.parent = parent, .key = info->name};
-        Result result = scene_read_param(info, params, document->folder, &place, value, error);
-        if (result != RESULT_OK) return result;
+        if (!keys && !list)
+            TRY(scene_read_param(info, sink->params, document->folder, &place, value, error));
     }
     return RESULT_OK;
 }
 
-static Result read_section(Scene *scene, const Document *document, const SectionParams *defaults,
+static Result read_section(Scene *scene, const Document *document, const Section *defaults,
                            const JsonPlace *place, const json_t *object, Error *error)
 {
-    Result result = check_keys(false, place, object, error);
-    if (result != RESULT_OK) return result;
+    TRY(check_keys(false, place, object, error));
     const json_t *file = json_object_get(object, "file");
     if (!file) return json_fail(place, error, "expected a key 'file'");
     JsonPlace file_place = {.parent = place, .key = "file"};
@@ -104,11 +112,43 @@ static Result read_section(Scene *scene, const Document *document, const Section
         return json_refuse(&file_place, file, "the path of a hair file", error);
     char *path = scene_join_path(document->folder, json_string_value(file));
     if (!path) return error_set(error, RESULT_FAILED, "out of memory");
-    result = scene_add_section(scene, path, defaults, error);
+    Result result = scene_add_section(scene, path, &defaults->params, error);
     free(path);
     if (result != RESULT_OK) return result;
-    SectionParams *params = &scene->sections[scene->section_count - 1].params;
-    return read_params(document, SCOPE_SECTION, params, place, object, error);
+    Section *section = &scene->sections[scene->section_count - 1];
+    const Sink sink = {SCOPE_SECTION, &section->params, section->origin};
+    memcpy(section->origin, defaults->origin, sizeof section->origin);
+    return read_params(document, &sink, ORIGIN_KEY, place, object, error);
+}
+
+// Whether the parameter is of the section's solver, or of the one that the command line puts there.
+static bool is_owned(const ParamInfo *info, const Section *section, const char *asked)
+{
+    return params_owned_by(info, section->params.algo) || (asked && params_owned_by(info, asked));
+}
+
+static Result check_owner(const Scene *scene, const Document *document, size_t row,
+                          const JsonPlace *sections, Error *error)
+{
+    const ParamInfo *info = &PARAM_TABLE[row];
+    const char *asked = document->overrides->algo;
+    bool shared = false, owned = false;
+    JsonPlace place = {.parent = &document->root, .key = info->name}, element;
+    for (uint32_t i = 0; i < scene->section_count; i++) {
+        const Section *section = &scene->sections[i];
+        bool own = is_owned(info, section, asked);
+        element = (JsonPlace){.parent = sections, .index = i};
+        shared = shared || section->origin[row] == ORIGIN_SHARED_KEY;
+        owned = owned || own;
+        if (own || section->origin[row] != ORIGIN_KEY) continue;
+        place.parent = &element;
+        json_fail(&place, error, "algo '%.60s' has no such parameter: it is of %s",
+                  section->params.algo, info->owner);
+        return RESULT_USAGE;
+    }
+    if (!shared || owned) return RESULT_OK;
+    json_fail(&place, error, "no section's algo has such a parameter: it is of %s", info->owner);
+    return RESULT_USAGE;
 }
 
 // Section parameters at the top level are the defaults of every section.
@@ -120,19 +160,21 @@ static Result read_sections(Scene *scene, const Document *document, Error *error
     size_t count = json_array_size(array);
     if (!json_is_array(array) || count == 0 || count > SCENE_MAX_SECTIONS)
         return json_refuse(&place, array, "an array of 1 to 1024 sections", error);
-    SectionParams defaults;
-    Result result = params_create_section(&defaults, error);
-    if (result == RESULT_OK)
-        result = quality_apply((Quality)scene->run.quality, SCOPE_SECTION, &defaults, error);
-    if (result == RESULT_OK)
-        result =
-            read_params(document, SCOPE_SECTION, &defaults, &document->root, document->json, error);
-    for (size_t i = 0; result == RESULT_OK && i < count; i++) {
+    Section defaults = {0};
+    const Sink sink = {SCOPE_SECTION, &defaults.params, defaults.origin};
+    Quality quality = (Quality)scene->run.quality;
+    Result result = params_create_section(&defaults.params, error);
+    THEN(result, quality_apply(quality, SCOPE_SECTION, &defaults.params, error));
+    THEN(result,
+         read_params(document, &sink, ORIGIN_SHARED_KEY, &document->root, document->json, error));
+    for (size_t i = 0; i < count; i++) {
         JsonPlace element = {.parent = &place, .index = i};
-        result =
-            read_section(scene, document, &defaults, &element, json_array_get(array, i), error);
+        THEN(result,
+             read_section(scene, document, &defaults, &element, json_array_get(array, i), error));
     }
-    params_destroy_section(&defaults);
+    for (size_t i = 0; i < PARAM_COUNT; i++)
+        THEN(result, check_owner(scene, document, i, &place, error));
+    params_destroy_section(&defaults.params);
     return result;
 }
 
@@ -169,8 +211,9 @@ static Result read_parts(Scene *scene, const Document *document, Error *error)
 }
 
 // The preset that the command line names, or else the file, becomes the run's defaults.
-static Result read_quality(Scene *scene, const Document *document, const char *asked, Error *error)
+static Result read_quality(Scene *scene, const Document *document, Error *error)
 {
+    const char *asked = document->overrides->quality;
     const json_t *value = json_object_get(document->json, "quality");
     Quality quality = QUALITY_NORMAL;
     Error unused = {{0}}; // what is wrong with the file's value is told when it is read
@@ -184,38 +227,35 @@ static Result read_quality(Scene *scene, const Document *document, const char *a
     return result;
 }
 
-static Result read_document(Scene *scene, const Document *document, const char *quality,
-                            Error *error)
+static Result read_document(Scene *scene, const Document *document, Error *error)
 {
-    Result result = check_keys(true, &document->root, document->json, error);
-    if (result == RESULT_OK) result = read_quality(scene, document, quality, error);
-    int asked = scene->run.quality;
-    if (result == RESULT_OK)
-        result =
-            read_params(document, SCOPE_RUN, &scene->run, &document->root, document->json, error);
-    if (quality) scene->run.quality = asked;
-    if (result == RESULT_OK) result = read_sections(scene, document, error);
-    if (result == RESULT_OK) result = read_parts(scene, document, error);
-    return result;
+    TRY(check_keys(true, &document->root, document->json, error));
+    TRY(read_quality(scene, document, error));
+    const Sink sink = {SCOPE_RUN, &scene->run, scene->origin};
+    int quality = scene->run.quality;
+    TRY(read_params(document, &sink, ORIGIN_SHARED_KEY, &document->root, document->json, error));
+    if (document->overrides->quality) scene->run.quality = quality;
+    TRY(read_sections(scene, document, error));
+    return read_parts(scene, document, error);
 }
 
-Result scene_read_unchecked(Scene *scene, const char *path, const char *quality, Error *error)
+Result scene_read_unchecked(Scene *scene, const char *path, const SceneOverrides *overrides,
+                            Error *error)
 {
-    Result result = scene_create(scene, error);
-    if (result != RESULT_OK) return result;
     Bytes bytes;
-    result = bytes_read_file(&bytes, path, error);
-    if (result != RESULT_OK) return result;
     json_t *json;
-    result = parse_document(&json, path, &bytes, error);
+    TRY(scene_create(scene, error));
+    TRY(bytes_read_file(&bytes, path, error));
+    Result result = parse_document(&json, path, &bytes, error);
     bytes_destroy(&bytes);
     if (result != RESULT_OK) return result;
 
     const char *slash = strrchr(path, '/');
-    Document document = {.root = {.key = path}, .json = json};
+    Document document = {.root = {.key = path}, .json = json, .overrides = overrides};
     document.folder = strndup(path, slash ? (size_t)(slash + 1 - path) : 0);
-    result = document.folder ? read_document(scene, &document, quality, error)
-                             : error_set(error, RESULT_FAILED, "out of memory");
+    scene->file = strdup(path);
+    result = document.folder && scene->file ? read_document(scene, &document, error)
+                                            : error_set(error, RESULT_FAILED, "out of memory");
     free(document.folder);
     json_decref(json);
     return result;
@@ -223,9 +263,9 @@ Result scene_read_unchecked(Scene *scene, const char *path, const char *quality,
 
 Result scene_read(Scene *scene, const char *path, Error *error)
 {
-    Result result = scene_read_unchecked(scene, path, NULL, error);
-    if (result != RESULT_OK) return result;
-    result = scene_check(scene, error);
+    const SceneOverrides none = {0};
+    TRY(scene_read_unchecked(scene, path, &none, error));
+    Result result = scene_check(scene, error);
     if (result != RESULT_USAGE && result != RESULT_BAD_INPUT) return result;
     return error_prefix(error, RESULT_BAD_INPUT, "%.300s: ", path);
 }

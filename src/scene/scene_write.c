@@ -163,12 +163,13 @@ static bool write_lights(json_t *object, const Scene *scene)
     return put(object, "lights", array) && good;
 }
 
-static bool write_params(json_t *object, ParamScope scope, const void *params)
+// `algo`: of the section, whose parameters are written.
+static bool write_params(json_t *object, ParamScope scope, const void *params, const char *algo)
 {
     bool good = true;
     for (size_t i = 0; i < PARAM_COUNT; i++) {
         const ParamInfo *info = &PARAM_TABLE[i];
-        if (info->scope == scope)
+        if (info->scope == scope && params_owned_by(info, algo))
             good = put(object, info->name, scene_write_param(info, params)) && good;
     }
     return good;
@@ -181,7 +182,8 @@ static bool write_sections(json_t *object, const Scene *scene)
     for (uint32_t i = 0; i < scene->section_count; i++) {
         json_t *section = json_object();
         good = put(section, "file", scene_write_text(scene->sections[i].file)) && good;
-        good = write_params(section, SCOPE_SECTION, &scene->sections[i].params) && good;
+        const SectionParams *params = &scene->sections[i].params;
+        good = write_params(section, SCOPE_SECTION, params, params->algo) && good;
         good = json_array_append_new(array, section) == 0 && good;
     }
     return put(object, "sections", array) && good;
@@ -190,7 +192,7 @@ static bool write_sections(json_t *object, const Scene *scene)
 json_t *scene_to_json(const Scene *scene)
 {
     json_t *object = json_object();
-    bool good = write_params(object, SCOPE_RUN, &scene->run);
+    bool good = write_params(object, SCOPE_RUN, &scene->run, "");
     good = write_force(object, "gravity", &scene->gravity) && good;
     good = write_force(object, "wind", &scene->wind) && good;
     good = write_head(object, scene) && good;

@@ -29,9 +29,9 @@ static Result refuse_type(const char *name, Error *error)
     size_t count = 0;
     for (const SolverType *const *type = SOLVER_TYPES; *type && count < MAX_WORDS; ++type)
         names[count++] = (*type)->name;
-    return error_set(error, RESULT_USAGE,
-                     "algo: no solver '%s'; did you mean '%s'? (--algo list shows all)", name,
-                     suggest_nearest(name, names, count));
+    char words[200];
+    return error_set(error, RESULT_USAGE, "--algo: no solver '%s': %s", name,
+                     suggest_words(words, sizeof words, name, names, count));
 }
 
 static Result check_variant(const SolverType *type, const char *variant, Error *error)
@@ -41,10 +41,12 @@ static Result check_variant(const SolverType *type, const char *variant, Error *
     for (; type->variants[count]; ++count)
         if (strcmp(type->variants[count], variant) == 0) return RESULT_OK;
     if (count == 0)
-        return error_set(error, RESULT_USAGE, "variant: '%s' has none, got '%s'", type->name,
-                         variant);
-    return error_set(error, RESULT_USAGE, "variant: '%s' has no '%s'; did you mean '%s'?",
-                     type->name, variant, suggest_nearest(variant, type->variants, count));
+        return error_set(error, RESULT_USAGE, "--variant: got '%s', --algo %s has no variants",
+                         variant, type->name);
+    char words[200];
+    return error_set(error, RESULT_USAGE, "--variant: --algo %s has no variant '%s': %s",
+                     type->name, variant,
+                     suggest_words(words, sizeof words, variant, type->variants, count));
 }
 
 Result solver_check(const SectionParams *params, Error *error)

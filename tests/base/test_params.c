@@ -206,7 +206,7 @@ static const struct {
     {"size", "0x480", "WxH"},
     {"size", "20000x480", "(nearest: 16384)"},
     {"size", "640.5x480", "WxH"},
-    {"up", "x", "got 'x', expected y or z (nearest: y)"},
+    {"up", "x", "got 'x', expected y or z"},
     {"backend", "elg", "expected auto, egl or osmesa (nearest: egl)"},
     {"fps", "two\nlines\x7f", "got 'two?lines?'"},
 };
@@ -257,7 +257,7 @@ static void a_copy_owns_its_texts(void **state)
     params_destroy_section(&copy);
 }
 
-static void the_nearest_name_is_the_one_with_fewest_edits(void **state)
+static void the_nearest_name_is_suggested_if_it_is_near(void **state)
 {
     (void)state;
     static const char *const NAMES[] = {"drag", "gust", "gust_period", "wind_spread", "fps"};
@@ -266,14 +266,33 @@ static void the_nearest_name_is_the_one_with_fewest_edits(void **state)
     assert_string_equal(suggest_nearest("gust-perod", NAMES, 5), "gust_period");
     assert_string_equal(suggest_nearest("windspread", NAMES, 5), "wind_spread");
     assert_string_equal(suggest_nearest("gus", NAMES, 5), "gust");
-    assert_string_equal(suggest_nearest("", NAMES, 5), "fps");
+    assert_null(suggest_nearest("", NAMES, 5));
+    assert_null(suggest_nearest("gu", NAMES, 5));
+    assert_null(suggest_nearest("wind", NAMES, 2));
+    assert_null(suggest_nearest("fpx5", NAMES, 5));
+    static const char *const SOLVERS[] = {"split", "spring", "none"};
+    assert_null(suggest_nearest("verlet", SOLVERS, 3));
+    assert_string_equal(suggest_nearest("spilt", SOLVERS, 3), "split");
     static const char *const FRAMES[] = {"drag", "frames"};
     assert_string_equal(suggest_nearest("fram", FRAMES, 2), "frames");
     assert_null(suggest_nearest("drag", NAMES, 0));
     char word[1000];
     memset(word, 'w', sizeof word);
     word[sizeof word - 1] = 0;
-    assert_non_null(suggest_nearest(word, NAMES, 5));
+    assert_null(suggest_nearest(word, NAMES, 5));
+}
+
+static void words_that_are_near_nothing_get_the_list(void **state)
+{
+    (void)state;
+    static const char *const NAMES[] = {"drag", "gust", "fps"};
+    char text[32];
+    assert_string_equal(suggest_words(text, sizeof text, "dragg", NAMES, 3),
+                        "did you mean 'drag'?");
+    assert_string_equal(suggest_words(text, sizeof text, "wind", NAMES, 3),
+                        "expected drag, gust or fps");
+    assert_string_equal(suggest_words(text, 20, "wind", NAMES, 3), "");
+    assert_string_equal(suggest_words(text, sizeof text, "wind", NAMES, 1), "expected drag");
 }
 
 int main(void)
@@ -287,7 +306,8 @@ int main(void)
         cmocka_unit_test(wrong_values_are_refused_by_name_and_change_nothing),
         cmocka_unit_test(a_long_wrong_value_is_cut_in_the_message),
         cmocka_unit_test(a_copy_owns_its_texts),
-        cmocka_unit_test(the_nearest_name_is_the_one_with_fewest_edits),
+        cmocka_unit_test(the_nearest_name_is_suggested_if_it_is_near),
+        cmocka_unit_test(words_that_are_near_nothing_get_the_list),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -38,7 +38,7 @@ static void a_wrong_word_is_refused(void **state)
         {"dt=2", "--case: dt: expected 1e-06 to 1, got 'dt=2'"},
         {"n=2.5", "--case: n: expected 2 to 64, got 'n=2.5'"},
         {"dt=nan", "--case: dt: expected 1e-06 to 1, got 'dt=nan'"},
-        {"gravty=1", "--case: no 'gravty'; did you mean 'gravity'?"},
+        {"gravty=1", "--case: no 'gravty': did you mean 'gravity'?"},
         {"drag", "--case: drag: expected 0.001 to 10000, got 'drag'"},
         {"spring_coil=5", "--case: spring_coil does not belong to hybrid "},
     };

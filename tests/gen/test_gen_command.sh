@@ -19,9 +19,9 @@ for file in assets/*.tfx assets/*.obj; do
 done
 
 claim "values are judged, and no option is passed over"
-refused 2 "expected random|straight|curls|fur, got 'crls': did you mean 'curls'?" --kind crls
-refused 2 "no option '--knid': did you mean '--kind'?" --knid curls
-refused 2 "--count: expected a whole number from 1 to 10000000, got '0'" --count 0
+refused 2 "--kind: got 'crls', expected random, straight, curls or fur (nearest: curls)" --kind crls
+refused 2 "--knid: no such option: did you mean '--kind'?" --knid curls
+refused 2 "--count: got '0', expected a whole number from 1 to 10000000" --count 0
 refused 2 "--curl-radius is for --kind curls, not fur" --kind fur --curl-radius 0.01
 refused 2 "--set 1k16 and --count exclude each other" --set 1k16 --count 5
 refused 2 "'x' is no option" x

@@ -31,6 +31,11 @@ else
     skip "ffprobe is not installed"
 fi
 
+claim "--help and --version are answered, wherever it stands and whatever may be written"
+run 0 --help; says "usage: turntable.sh ASSET"; silent err
+run 0 --version; says "turntable.sh "
+none out/turntable/--help
+
 claim "what it can't do is refused"
-run 2; run 2 assets/fur.tfx avi; run 3 "$work/none.tfx" sheet; run 2 assets/fur.tfx sheet -- --no-such-flag
+run 2; one_line; says "no asset"; run 2 --no-such-option; one_line; run 2 assets/fur.tfx avi; one_line; run 3 "$work/none.tfx" sheet; run 2 assets/fur.tfx sheet -- --no-such-flag
 finish

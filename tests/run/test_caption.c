@@ -26,7 +26,8 @@ static void every_word_says_its_part(void **state)
     (void)state;
     char solver[] = "split", caption[] = "frame,time,file,solver", none[] = "";
     char head[] = "a/b/head.tfx", beard[] = "b\xc3\xa4rt.hair";
-    Section sections[] = {{head, {.algo = solver}}, {beard, {.algo = solver}}};
+    Section sections[] = {{.file = head, .params = {.algo = solver}},
+                          {.file = beard, .params = {.algo = solver}}};
     Scene scene = {.sections = sections, .section_count = 2};
     scene.run.fps = 24, scene.run.speed = 0.5f;
     scene.run.caption = caption;

@@ -43,6 +43,32 @@ done
 if [ $? = 1 ]; then good; else bad "status of tractrix-bench --help"; fi
 one_line
 
+claim "a closed pipe ends a program quietly"
+pipe() {
+    { "$@" 2>"$work/err"; echo $? >"$work/status"; } | head -1 >"$work/out"
+    if grep -qE '^(0|141)$' "$work/status"; then good; else bad "status $(cat "$work/status") of $*"; fi
+    silent err
+}
+for words in "render --help all" "render --help man" "render --help bash" "gen --help man" "gen fur --help" "convert --help man" \
+    "compare --help man" "bench --help man"; do
+    # shellcheck disable=SC2086
+    pipe "$bin"/tractrix-$words
+done
+
+claim "every program answers --help TOPIC and refuses a topic that there is not"
+for name in render gen convert compare bench; do
+    program=$bin/tractrix-$name
+    run 0 --help help; says "--help [TOPIC]"; silent err
+    run 0 --help=all; says "Usage: tractrix-$name"
+    run 2 --help wibble; one_line; says "tractrix-$name: --help: no topic 'wibble': expected"
+    run 2 --wibble; one_line; says "tractrix-$name: --wibble: no such option: --help lists them"
+    run 2 --verison; one_line; says "tractrix-$name: --verison: no such option: did you mean '--version'?"
+done
+program=$bin/tractrix-render
+run 0 --help color; says "--color COLOR"
+if [ "$(grep -c '^  -' "$work/out")" = 1 ]; then good; else bad "more than one entry"; fi
+run 0 --help chain; says "--chain-bend"
+
 claim "a hidden section costs no drawing, casts no shadow and leaves the picture as it is without it, from a cache, too"
 sections() {
     printf '{"frames": 2, "size": "80x60", "eye": [0, 0.1, 0.9], "target": [0, 0, 0], "mesh": "%s/assets/ball.obj", "shadow": "dom",\n' "$PWD"
@@ -73,6 +99,14 @@ run 2 $hair --farmes 3 -o "$work/x/"; one_line; says "frames"
 run 2 $hair --frames 0 -o "$work/x/"; one_line; says "frames"
 run 2 $hair --frames many -o "$work/x/"; one_line
 run 2 $hair --algo splitt -o "$work/x/"; one_line; says "did you mean 'split'"
+run 2 $hair --algo verlet -o "$work/x/"; one_line; says "no solver 'verlet': expected split, emulation"
+run 2 $hair --rope-iterations 5 -o "$work/x/"; one_line; says "--rope-iterations: --algo split has no such parameter"
+run 2 $hair --shadow-size 64 -o "$work/x/"; one_line; says "--shadow-size: it has no effect: --shadow is none"
+printf '{"frames": 1, "size": "16x16", "shadow_size": 99, "sections": [{"file": "%s/%s"}]}\n' "$PWD" "$hair" >"$work/idle.json"
+run 0 "$work/idle.json" -o "$work/idle/"; says "idle.json: shadow_size: it has no effect: --shadow is none"
+run 0 "$work/idle.json" -o "$work/idle/" -q; silent err
+printf '{"sections": [{"file": "%s/%s", "chain_bend": 9}]}\n' "$PWD" "$hair" >"$work/owner.json"
+run 2 "$work/owner.json" -o "$work/x/"; one_line; says "owner.json: sections[0].chain_bend: algo 'split' has no such parameter"
 run 2 $hair --variant thesiss -o "$work/x/"; one_line; says "did you mean 'thesis'"
 run 2 $hair --software --require-hardware -o "$work/x/"; one_line
 run 2 $hair -o "$work/x_%d_%d.png"; one_line
@@ -251,7 +285,8 @@ says "steps of 10 ms"; says "10 before the first"
 run 2 $hair --substeps 0 -o "$work/x/"; one_line; says "auto or a whole number"
 
 claim "help, version and lists"
-run 0 --help; says "--turntable"; says "Exit status"
+run 0 --help; says "--turntable"
+run 0 --help all; says "--lod-width"; says "Exit status"
 run 0 --version; says "tractrix-render"
 run 0 --algo list; says "thesis"
 run 0 --list-devices; says "OpenGL"

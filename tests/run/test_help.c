@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // What --help and the manual page say.
 #include "base/params.h"
-#include "run/help.h"
+#include "run/render_help.h"
+
+#include "version.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,20 +13,16 @@
 
 #include <cmocka.h>
 
-// All that `write` prints; the caller frees it.
-static char *capture(void (*write)(FILE *stream))
+// What --help TOPIC prints; the caller frees it.
+static char *capture(const char *topic)
 {
     char *text = NULL;
     size_t size = 0;
+    Error error;
     FILE *stream = open_memstream(&text, &size);
-    write(stream);
+    assert_int_equal(render_help(topic, stream, &error), RESULT_OK);
     fclose(stream);
     return text;
-}
-
-static void write_man(FILE *stream)
-{
-    help_write_man(stream, "1.2.3");
 }
 
 // Where the help describes the flag: at the begin of a line, or behind the letter that stands for
@@ -41,7 +39,7 @@ static const char *find_entry(const char *help, const char *flag)
 static void help_names_every_flag_with_its_default(void **state)
 {
     (void)state;
-    char *help = capture(help_write_text), *table = capture(help_write_markdown);
+    char *help = capture("all"), *table = capture("markdown");
     for (size_t i = 0; i < PARAM_COUNT; i++) {
         const ParamInfo *info = &PARAM_TABLE[i];
         char flag[64], shown[80];
@@ -54,6 +52,10 @@ static void help_names_every_flag_with_its_default(void **state)
         const char *next = strstr(entry, "\n  --"), *found = strstr(entry, shown);
         if (info->default_text[0] && info->kind != PARAM_BOOL) assert_non_null(found);
         if (info->default_text[0] && info->kind != PARAM_BOOL && next) assert_true(found < next);
+        char *one = capture(flag);
+        assert_true(find_entry(one, flag) || strncmp(one + 2, flag, strlen(flag)) == 0);
+        assert_null(strstr(one, "\n  -"));
+        free(one);
     }
     free(help);
     free(table);
@@ -62,7 +64,7 @@ static void help_names_every_flag_with_its_default(void **state)
 static void help_is_at_most_96_columns_wide(void **state)
 {
     (void)state;
-    char *help = capture(help_write_text);
+    char *help = capture("all");
     for (char *line = help; *line; line += strcspn(line, "\n") + 1)
         assert_true(strcspn(line, "\n") <= 96);
     free(help);
@@ -71,11 +73,49 @@ static void help_is_at_most_96_columns_wide(void **state)
 static void the_man_page_has_no_bare_hyphen_and_names_the_version(void **state)
 {
     (void)state;
-    char *page = capture(write_man);
-    assert_non_null(strstr(page, "1.2.3"));
+    char *page = capture("man");
+    assert_non_null(strstr(page, TRACTRIX_VERSION));
     assert_non_null(strstr(page, "\\-\\-camera\\-up"));
     assert_null(strstr(page, "--"));
     free(page);
+}
+
+static size_t count_lines(const char *text)
+{
+    size_t lines = 0;
+    for (; *text; text++) lines += *text == '\n';
+    return lines;
+}
+
+static void plain_help_fits_a_screen_and_names_the_topics(void **state)
+{
+    (void)state;
+    char *help = capture(NULL);
+    assert_true(count_lines(help) <= 66);
+    assert_non_null(find_entry(help, "--algo"));
+    assert_null(find_entry(help, "--lod-width"));
+    assert_non_null(strstr(help, "scene, all, man"));
+    free(help);
+}
+
+static void topics_list_groups_and_solvers(void **state)
+{
+    (void)state;
+    Error error;
+    char *light = capture("light"), *rope = capture("rope"), *scene = capture("scene");
+    assert_non_null(find_entry(light, "--shadow-size"));
+    assert_null(find_entry(light, "--algo"));
+    assert_non_null(strstr(rope, "Simulation: rope:"));
+    assert_non_null(find_entry(rope, "--rope-iterations"));
+    assert_non_null(find_entry(rope, "--style-stiffness"));
+    assert_null(find_entry(rope, "--chain-bend"));
+    assert_non_null(strstr(scene, "\"lights\": "));
+    free(light);
+    free(rope);
+    free(scene);
+    assert_int_equal(render_help("lite", stdout, &error), RESULT_USAGE);
+    assert_non_null(strstr(error.text, "--help: no topic 'lite': expected input, output, "));
+    assert_non_null(strstr(error.text, "or an option's name"));
 }
 
 int main(void)
@@ -83,6 +123,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(help_names_every_flag_with_its_default),
         cmocka_unit_test(help_is_at_most_96_columns_wide),
+        cmocka_unit_test(plain_help_fits_a_screen_and_names_the_topics),
+        cmocka_unit_test(topics_list_groups_and_solvers),
         cmocka_unit_test(the_man_page_has_no_bare_hyphen_and_names_the_version),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Scenes from the command line; every parameter from both sources.
 #include "base/decimal.h"
+#include "scene/effects.h"
 #include "scene/scene_param.h"
 #include "support/scene_reader.h"
 #include "support/temporary.h"
@@ -50,26 +51,65 @@ static const char *sample(const ParamInfo *info, char text[64])
     return text;
 }
 
+// Options without which some others have no effect, which is an error.
+static const char *find_condition(const ParamInfo *info)
+{
+    static const struct {
+        const char *names, *condition;
+    } CONDITIONS[] = {
+        {" collide friction collision_margin ", "--colliders ground:0"},
+        {" collide_mesh mesh_unit mesh_up mesh_color ", "--mesh /m.obj"},
+        {" sdf_resolution sdf_cache ", "--mesh /m.obj --collide-mesh"},
+        {" gust gust_period gust_repeat wind_spread wind_shelter ", "--wind 1,0,0"},
+        {" export_followers ", "--export x.usda"},
+        {" turn_lights ease_in ease_out ", "--turntable 360"},
+        {" shadow_size shadow_opacity ", "--shadow dom"},
+        {" shadow_spacing ", "--shadow approx"},
+        {" floor_height floor_color ", "--floor plane"},
+        {" refraction roughness lobes azimuthal_roughness ", "--shading marschner"},
+        {" tip_color ", "--tip-length 1"},
+        {" melanin_redness ", "--melanin 1"},
+        {" curve ", "--smooth 2"},
+        {" lod_start lod_min ", "--lod-end 5"},
+    };
+    char name[64];
+    snprintf(name, sizeof name, " %s ", info->name);
+    for (size_t i = 0; i < sizeof CONDITIONS / sizeof *CONDITIONS; i++)
+        if (strstr(CONDITIONS[i].names, name)) return CONDITIONS[i].condition;
+    return "";
+}
+
+// A flag of the condition, or of the line that all have.
+static bool is_said(const ParamInfo *info, const char *line)
+{
+    char flag[64];
+    snprintf(flag, sizeof flag, " --%s ", info->name);
+    for (char *at = flag + 3; *at; at++) *at = *at == '_' ? '-' : *at;
+    return strstr(line, flag) || strcmp(info->name, "output") == 0;
+}
+
 static void every_row_is_set_by_its_flag_and_by_nothing_else(void **state)
 {
     (void)state;
     for (size_t i = 0; i < PARAM_COUNT; i++) {
         const ParamInfo *info = &PARAM_TABLE[i];
-        char buffer[64], name[64], line[200];
+        char buffer[64], name[64], line[300], said[100];
         const char *value = sample(info, buffer);
         if (strcmp(info->name, "quality") == 0) continue; // which stands for several
         snprintf(name, sizeof name, "%s", info->name);
         for (char *at = name; *at; at++) *at = *at == '_' ? '-' : *at;
         for (int form = 0; form < 2; form++) {
             const char *between = form ? "=" : info->kind == PARAM_BOOL ? NULL : " ";
-            snprintf(line, sizeof line, "hair.tfx -o o/ --%s%s%s", name, between ? between : "",
-                     between ? value : "");
+            snprintf(said, sizeof said, " %s%s%.*s ", find_condition(info),
+                     *info->owner ? " --algo " : "", (int)strcspn(info->owner, " "), info->owner);
+            snprintf(line, sizeof line, "hair.tfx -o o/%s--%s%s%s", said, name,
+                     between ? between : "", between ? value : "");
             Scene scene;
             assert_read(&scene, line);
             for (size_t j = 0; j < PARAM_COUNT; j++) {
                 const ParamInfo *other = &PARAM_TABLE[j];
-                bool output = strcmp(other->name, "output") == 0;
-                assert_prints(&scene, other, j == i ? value : output ? "o/" : other->default_text);
+                if (j == i || !is_said(other, said))
+                    assert_prints(&scene, other, j == i ? value : other->default_text);
             }
             scene_destroy(&scene);
         }
@@ -92,11 +132,13 @@ static void every_row_is_set_by_its_key_in_a_scene_file(void **state)
         json_decref(json);
         scene_destroy(&scene);
         char file[300];
-        snprintf(file, sizeof file, "{\"sections\": [{\"file\": \"a\"}], \"%s\": %s}", info->name,
-                 text);
+        const char *algo = *info->owner ? info->owner : "split";
+        snprintf(file, sizeof file,
+                 "{\"sections\": [{\"file\": \"a\", \"algo\": \"%.*s\"}], \"%s\": %s}",
+                 (int)strcspn(algo, " "), algo, info->name, text);
         free(text);
         if (read_scene(state, &scene, file, &error) != RESULT_OK) fail_msg("%s", error.text);
-        assert_prints(&scene, info, value);
+        if (strcmp(info->name, "algo") != 0) assert_prints(&scene, info, value);
         scene_destroy(&scene);
     }
 }
@@ -107,22 +149,24 @@ static void help_and_version_win_over_all_but_wrong_flags_before_them(void **sta
     static const struct {
         const char *line;
         SceneRequest request;
-    } LINES[] = {{"--help", REQUEST_HELP},
-                 {"-h", REQUEST_HELP},
-                 {"-qh", REQUEST_HELP},
-                 {"--help=man", REQUEST_MAN},
-                 {"--help=markdown", REQUEST_MARKDOWN},
-                 {"--help=bash", REQUEST_BASH},
-                 {"--version", REQUEST_VERSION},
-                 {"missing.json --fps x --help", REQUEST_HELP}};
+        const char *topic;
+    } LINES[] = {{"--help", REQUEST_HELP, NULL},
+                 {"-h", REQUEST_HELP, NULL},
+                 {"-qh", REQUEST_HELP, NULL},
+                 {"--help=man", REQUEST_HELP, "man"},
+                 {"--help color", REQUEST_HELP, "color"},
+                 {"-h all", REQUEST_HELP, "all"},
+                 {"--version", REQUEST_VERSION, NULL},
+                 {"missing.json --fps x --help", REQUEST_HELP, NULL}};
     for (size_t i = 0; i < sizeof LINES / sizeof LINES[0]; i++) {
         Scene scene;
         assert_read(&scene, LINES[i].line);
         assert_int_equal(scene.request, LINES[i].request);
+        if (LINES[i].topic) assert_non_null(scene.topic);
+        if (!LINES[i].topic) assert_null(scene.topic);
         scene_destroy(&scene);
     }
-    assert_refused("--halp --help", RESULT_USAGE, "unknown flag --halp (nearest: --help");
-    assert_refused("--help=html", RESULT_USAGE, "--help: expected text, man, markdown or bash");
+    assert_refused("--halp --help", RESULT_USAGE, "--halp: no such option: did you mean '--help'?");
 }
 
 static void flags_may_stand_anywhere_and_values_may_look_like_flags(void **state)
@@ -183,17 +227,18 @@ static void wrong_command_lines_are_refused_with_the_nearest_name(void **state)
     } LINES[] = {
         {"", "no hair"},
         {"-o x/", "no hair"},
-        {"a.tfx -o x/ --algoo split", "unknown flag --algoo (nearest: --algo;"},
-        {"a.tfx -o x/ --camra-up 0,1,0", "(nearest: --camera-up;"},
-        {"a.tfx -o x/ --no-sofware", "(nearest: --software;"},
-        {"a.tfx -o x/ --no-fps", "--no-fps: only flags without a value"},
-        {"a.tfx -o x/ --no-quiet=true", "--no-quiet: takes no value"},
+        {"a.tfx -o x/ --algoo split", "--algoo: no such option: did you mean '--algo'?"},
+        {"a.tfx -o x/ --camra-up 0,1,0", "did you mean '--camera-up'?"},
+        {"a.tfx -o x/ --no-sofware", "--no-sofware: no such option: did you mean '--no-software'?"},
+        {"a.tfx -o x/ --wibble 3", "--wibble: no such option: --help lists them"},
+        {"a.tfx -o x/ --no-fps", "--no-fps: --fps takes a value"},
+        {"a.tfx -o x/ --no-quiet=true", "--no-quiet: got 'true', takes no value"},
         {"a.tfx -o x/ --quiet=maybe", "--quiet: got 'maybe', expected true or false"},
-        {"a.tfx -o x/ -x", "-x: unknown flag"},
-        {"a.tfx -o x/ -5", "-5: unknown flag"},
-        {"a.tfx -o", "-o: expected a value"},
-        {"a.tfx --fps", "--fps: expected a value"},
-        {"a.tfx --output --fps 30", "--output: expected a value before the next flag"},
+        {"a.tfx -o x/ -x", "-x: no such option: --help lists them"},
+        {"a.tfx -o x/ -5", "-5: no such option"},
+        {"a.tfx -o", "-o: no value: expected PATH"},
+        {"a.tfx --fps", "--fps: no value: expected X"},
+        {"a.tfx --output --fps 30", "--output: no value: expected PATH"},
         {"a.tfx -o x/ --fps 0", "--fps: got '0', expected a number from 1 to 10000 (1/s)"},
         {"a.tfx -o x/ --opacity nan", "--opacity: got 'nan'"},
         {"a.tfx -o x/ --up w", "expected y or z"},
@@ -220,6 +265,90 @@ static void wrong_command_lines_are_refused_with_the_nearest_name(void **state)
     assert_read(&scene, "a.tfx -o x_%04d.png --first 119 --last 119");
     scene_destroy(&scene);
     assert_read(&scene, "a.tfx -o 50%/");
+    scene_destroy(&scene);
+}
+
+static void flags_without_effect_are_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *line, *message;
+    } LINES[] = {
+        {"a.tfx -o x/ --rope-iterations 5",
+         "--rope-iterations: --algo split has no such parameter"},
+        {"a.tfx b.tfx -o x/ --algo chain --rope-damping 0", "--rope-damping: --algo chain has no"},
+        {"a.tfx -o x/ --collide", "--collide: it has no effect: there are neither --colliders"},
+        {"a.tfx -o x/ --friction 1 --colliders ground:0 --no-collide", "effect: --no-collide"},
+        {"a.tfx -o x/ --collide-mesh", "--collide-mesh: it has no effect: there is no --mesh"},
+        {"a.tfx -o x/ --sdf-resolution 99 --mesh m.obj", "there is no --collide-mesh"},
+        {"a.tfx -o x/ --gust 1", "--gust: it has no effect: there is no --wind"},
+        {"a.tfx -o x/ --wind 1,0,0 --gust 0 --gust-period 3", "--gust is 0"},
+        {"a.tfx -o x/ --shadow-size 99", "--shadow-size: it has no effect: --shadow is none"},
+        {"a.tfx -o x/ --shadow dom --shadow-spacing 9", "only --shadow approx uses it"},
+        {"a.tfx -o x/ --raster quads --oit none --oit-layers 9", "--oit is none"},
+        {"a.tfx -o x/ --floor-color 0,0,0", "--floor-color: it has no effect"},
+        {"a.tfx -o x/ --ease-in 0.5", "there is no --turntable"},
+        {"a.tfx -o x/ --no-turn-lights", "--turn-lights: it has no effect"},
+        {"a.tfx -o x/ --followers 0 --follow interpolate", "--followers is 0"},
+        {"a.tfx -o x/ --roughness 9", "only --shading marschner uses it"},
+        {"a.tfx -o x/ --shading marschner --exponent2 9", "only --shading kajiya uses it"},
+    };
+    for (size_t i = 0; i < sizeof LINES / sizeof LINES[0]; i++)
+        assert_refused(LINES[i].line, RESULT_USAGE, LINES[i].message);
+}
+
+static void one_section_that_has_the_parameter_is_enough(void **state)
+{
+    char line[600];
+    snprintf(line, sizeof line, "%s -o x/ --rope-iterations 7",
+             write_scene(state, "{\"sections\": [{\"file\": \"a\"}, "
+                                "{\"file\": \"b\", \"algo\": \"rope\"}]}"));
+    Scene scene;
+    assert_read(&scene, line);
+    assert_int_equal(scene.sections[1].params.rope_iterations, 7);
+    scene_destroy(&scene);
+    strcat(line, " --algo split");
+    assert_refused(line, RESULT_USAGE, "--rope-iterations: --algo split has no such parameter");
+}
+
+static void keys_of_another_solver_are_refused_unless_the_command_line_has_it(void **state)
+{
+    static const char ONE[] = "{\"sections\": [{\"file\": \"a\"}, "
+                              "{\"file\": \"b\", \"rope_iterations\": 7}]}";
+    static const char SHARED[] = "{\"rope_iterations\": 7, \"sections\": [{\"file\": \"a\"}, "
+                                 "{\"file\": \"b\", \"algo\": \"chain\"}]}";
+    char line[600];
+    snprintf(line, sizeof line, "%s -o x/", write_scene(state, ONE));
+    assert_refused(line, RESULT_USAGE,
+                   "scene.json: sections[1].rope_iterations: algo 'split' has no such parameter");
+    strcat(line, " --algo rope");
+    Scene scene;
+    assert_read(&scene, line);
+    scene_destroy(&scene);
+    snprintf(line, sizeof line, "%s -o x/", write_scene(state, SHARED));
+    assert_refused(line, RESULT_USAGE, "scene.json: rope_iterations: no section's algo has");
+}
+
+static void keys_without_effect_are_a_warning_of_one_line(void **state)
+{
+    static const char TEXT[] =
+        "{\"shadow_size\": 99, \"friction\": 0.1, \"gust\": 0.5, \"sections\": "
+        "[{\"file\": \"a\"}, {\"file\": \"b\", \"roughness\": 9, \"collide\": true}]}";
+    Scene scene = {0};
+    Error error = {{0}};
+    char *said = NULL;
+    size_t size = 0;
+    FILE *stream = open_memstream(&said, &size);
+    assert_int_equal(read_scene(state, &scene, TEXT, &error), RESULT_OK);
+    effects_warn(&scene, stream);
+    fclose(stream);
+    assert_non_null(strstr(said, "scene.json: friction: it has no effect: there are neither"));
+    assert_non_null(strstr(said, "scene.json: shadow_size: it has no effect: --shadow is none\n"));
+    assert_non_null(strstr(said, "scene.json: sections[1].roughness: it has no effect: only "));
+    size_t lines = 0;
+    for (const char *at = said; *at; at++) lines += *at == '\n';
+    assert_int_equal(lines, 3);
+    free(said);
     scene_destroy(&scene);
 }
 
@@ -252,6 +381,10 @@ int main(void)
         cmocka_unit_test(output_is_needed_only_to_draw),
         cmocka_unit_test(wrong_command_lines_are_refused_with_the_nearest_name),
         TEST(flags_may_mend_a_combination_that_a_scene_file_has),
+        cmocka_unit_test(flags_without_effect_are_refused),
+        TEST(one_section_that_has_the_parameter_is_enough),
+        TEST(keys_of_another_solver_are_refused_unless_the_command_line_has_it),
+        TEST(keys_without_effect_are_a_warning_of_one_line),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,429 @@
+// SPDX-License-Identifier: MIT
+// What programs say about themselves: on a terminal, as a manual page, in Markdown, and the
+// completion of their command lines.
+#include "base/options.h"
+
+#include "version.h"
+
+#include <assert.h>
+#include <ctype.h>
+#include <string.h>
+
+enum { WIDTH = 96, COLUMN = 30, FLAG_SIZE = 400, LIST_SIZE = 800 };
+
+static const Option COMMON[] = {
+    {"help", 'h', OPTION_STRING, 0, "[TOPIC]", 0, 0,
+     "print help and stop; TOPIC: all, man, markdown, bash (completion), or an option's name"},
+    {"version", 0, OPTION_SWITCH, 0, NULL, 0, 0, "print the version and stop"},
+};
+enum { COMMON_COUNT = sizeof COMMON / sizeof *COMMON };
+
+static size_t count_options(const OptionsProgram *program)
+{
+    return program->option_count + COMMON_COUNT;
+}
+
+static const Option *option_at(const OptionsProgram *program, size_t i)
+{
+    return i < program->option_count ? &program->options[i] : &COMMON[i - program->option_count];
+}
+
+static const char *heading_of(const OptionsProgram *program, size_t i)
+{
+    if (!program->headings) return "Options";
+    return i < program->option_count ? program->headings[i] : "Other";
+}
+
+// "--camera-up" of camera_up.
+static void write_name(char *text, size_t size, const char *name)
+{
+    snprintf(text, size, "--%s", name);
+    for (char *at = text; *at; ++at)
+        if (*at == '_') *at = '-';
+}
+
+// "-j, --jobs N"
+static void write_flag(const Option *option, char *text, size_t size)
+{
+    char letter[8] = "", name[80];
+    write_name(name, sizeof name, option->name);
+    if (option->letter) snprintf(letter, sizeof letter, "-%c, ", option->letter);
+    snprintf(text, size, "%s%s%s%s", letter, name, option->value ? " " : "",
+             option->value ? option->value : "");
+}
+
+// --- Layout.
+
+// Words of `text` from `column` on, wrapped at WIDTH; lines but the first are indented. What stands
+// in [brackets] stays on one line.
+static void put_wrapped(FILE *stream, const char *text, size_t column, size_t indent)
+{
+    bool first = true;
+    while (*text) {
+        size_t length = *text == '[' ? strcspn(text, "]") + 1 : strcspn(text, " ");
+        if (!first && column + 1 + length > WIDTH) {
+            fprintf(stream, "\n%*s", (int)indent, "");
+            column = indent;
+            first = true;
+        }
+        fprintf(stream, "%s%.*s", first ? "" : " ", (int)length, text);
+        column += length + (first ? 0 : 1);
+        first = false;
+        text += length;
+        text += strspn(text, " ");
+    }
+    fputc('\n', stream);
+}
+
+static void put_entry(FILE *stream, const char *left, const char *text)
+{
+    int used = fprintf(stream, "  %s", left);
+    if (used > COLUMN - 2) {
+        fputc('\n', stream);
+        used = 0;
+    }
+    fprintf(stream, "%*s", COLUMN - used, "");
+    put_wrapped(stream, text, COLUMN, COLUMN);
+}
+
+static void put_heading(FILE *stream, const char *heading)
+{
+    fprintf(stream, "\n%s:\n", heading);
+}
+
+// With what roff would take for its own escaped.
+static void put_roff(FILE *stream, const char *text)
+{
+    if (*text == '.' || *text == '\'') fputs("\\&", stream);
+    for (; *text; text++) {
+        if (*text == '\\')
+            fputs("\\e", stream);
+        else if (*text == '-')
+            fputs("\\-", stream);
+        else
+            fputc(*text, stream);
+    }
+    fputc('\n', stream);
+}
+
+static void put_roff_entry(FILE *stream, const char *tag, const char *text)
+{
+    fprintf(stream, ".TP\n.B ");
+    put_roff(stream, tag);
+    put_roff(stream, text);
+}
+
+static void put_roff_heading(FILE *stream, const char *heading)
+{
+    fprintf(stream, ".SS %s\n", heading);
+}
+
+static void put_roff_section(FILE *stream, const char *title)
+{
+    fprintf(stream, ".SH \"");
+    for (; *title; title++) fputc(toupper((unsigned char)*title), stream);
+    fprintf(stream, "\"\n");
+}
+
+// A cell's text; '|' would end the cell.
+static void put_cell(FILE *stream, const char *text)
+{
+    for (; *text; text++) fprintf(stream, *text == '|' || *text == '*' ? "\\%c" : "%c", *text);
+}
+
+static void put_row(FILE *stream, const char *flag, const char *text)
+{
+    fprintf(stream, "| `");
+    for (; *flag; flag++) fprintf(stream, *flag == '|' ? "\\%c" : "%c", *flag);
+    fprintf(stream, "` | ");
+    put_cell(stream, text);
+    fprintf(stream, " |\n");
+}
+
+static void put_table_heading(FILE *stream, const char *heading)
+{
+    fprintf(stream, "\n## %s\n\n| option | what it does |\n| --- | --- |\n", heading);
+}
+
+// --- Options.
+
+// Which options are listed: of a topic, the brief ones, or all.
+typedef struct Selection {
+    const char *topic;
+    bool brief;
+} Selection;
+
+static bool selects(const OptionsProgram *program, Selection selection, size_t i)
+{
+    bool common = i >= program->option_count, listed = false;
+    if (selection.topic) return !common && program->is_of(selection.topic, i);
+    if (!selection.brief || !program->brief || common) return true;
+    for (const char *const *name = program->brief; *name && !listed; ++name)
+        listed = strcmp(*name, program->options[i].name) == 0;
+    return listed;
+}
+
+// Each heading once, with the options that stand under it.
+static void list_options(FILE *stream, const OptionsProgram *program, Selection selection,
+                         void (*heading)(FILE *stream, const char *heading),
+                         void (*entry)(FILE *stream, const char *flag, const char *text))
+{
+    size_t count = count_options(program);
+    bool done[OPTIONS_MOST + COMMON_COUNT] = {false};
+    assert(program->option_count <= OPTIONS_MOST);
+    for (size_t i = 0; i < count; ++i) {
+        if (done[i] || !selects(program, selection, i)) continue;
+        const char *title = heading_of(program, i);
+        heading(stream, selection.brief && program->brief ? "Options" : title);
+        for (size_t j = i; j < count; ++j) {
+            bool same = strcmp(heading_of(program, j), title) == 0;
+            if (!(same || (selection.brief && program->brief)) || done[j] ||
+                !selects(program, selection, j))
+                continue;
+            char flag[FLAG_SIZE];
+            write_flag(option_at(program, j), flag, sizeof flag);
+            entry(stream, flag, option_at(program, j)->help);
+            done[j] = true;
+        }
+    }
+}
+
+// --- The forms of help.
+
+static void put_usage(FILE *stream, const OptionsProgram *program)
+{
+    const char *line = program->synopsis;
+    for (const char *before = "Usage:"; line; before = "      ") {
+        int length = (int)strcspn(line, "\n");
+        fprintf(stream, "%s %s %.*s\n", before, program->name, length, line);
+        line = line[length] ? line + length + 1 : NULL;
+    }
+}
+
+// "input (hair files), output (images), ..., all", cut at `size`.
+static void list_topics(const OptionsProgram *program, bool explained, char *text, size_t size)
+{
+    size_t length = 0;
+    text[0] = 0;
+    for (const char *const(*topic)[2] = program->topics; topic && (*topic)[0]; ++topic) {
+        bool why = explained && (*topic)[1];
+        if (length < size)
+            length += (size_t)snprintf(text + length, size - length, "%s%s%s%s, ", (*topic)[0],
+                                       why ? " (" : "", why ? (*topic)[1] : "", why ? ")" : "");
+    }
+    if (program->chapter && length < size)
+        length += (size_t)snprintf(text + length, size - length, "%s, ", program->chapter->topic);
+    if (length < size)
+        snprintf(text + length, size - length, "all, man, markdown, bash or an option's name");
+}
+
+static void put_text(FILE *stream, const OptionsProgram *program, bool brief)
+{
+    put_usage(stream, program);
+    fputc('\n', stream);
+    put_wrapped(stream, program->description, 0, 0);
+    if (program->commands) put_heading(stream, "Commands");
+    for (const char *const(*c)[2] = program->commands; c && (*c)[0]; ++c)
+        put_entry(stream, (*c)[0], (*c)[1]);
+    list_options(stream, program, (Selection){.brief = brief}, put_heading, put_entry);
+    brief = brief && program->brief;
+    if (brief) {
+        char topics[LIST_SIZE];
+        list_topics(program, true, topics, sizeof topics);
+        fprintf(stream, "\nMore: --help TOPIC, with TOPIC one of\n");
+        put_wrapped(stream, topics, 0, 0);
+    }
+    for (const char *const *note = brief ? NULL : program->notes; note && *note; ++note) {
+        fputc('\n', stream);
+        put_wrapped(stream, *note, 0, 0);
+    }
+    if (!brief) put_heading(stream, "Exit status");
+    for (const char *const(*s)[2] = program->status; !brief && (*s)[0]; ++s)
+        fprintf(stream, "  %3s  %s\n", (*s)[0], (*s)[1]);
+    put_heading(stream, "Examples");
+    for (const char *const *e = program->examples; *e; ++e) fprintf(stream, "  %s\n", *e);
+}
+
+static void put_chapter(FILE *stream, const OptionsChapter *chapter)
+{
+    put_wrapped(stream, chapter->text, 0, 0);
+    for (const char *const(*entry)[3] = chapter->entries; (*entry)[0]; ++entry) {
+        fprintf(stream, "\n\"%s\": ", (*entry)[0]);
+        put_wrapped(stream, (*entry)[1], strlen((*entry)[0]) + 4, 2);
+        fprintf(stream, "    ");
+        put_wrapped(stream, (*entry)[2], 4, 4);
+    }
+}
+
+static void put_man(FILE *stream, const OptionsProgram *program)
+{
+    const char *page = program->page ? program->page : program->name, *line = program->synopsis;
+    fprintf(stream, ".TH ");
+    for (const char *at = page; *at; ++at) fputc(toupper((unsigned char)*at), stream);
+    fprintf(stream, " 1 \"\" \"Tractrix %s\"\n", TRACTRIX_VERSION);
+    put_roff_section(stream, "Name");
+    for (const char *at = page; *at; ++at) fprintf(stream, *at == '-' ? "\\-" : "%c", *at);
+    fprintf(stream, " \\- ");
+    put_roff(stream, program->summary);
+    put_roff_section(stream, "Synopsis");
+    for (char copy[200]; line;) {
+        int length = (int)strcspn(line, "\n");
+        fprintf(stream, ".B ");
+        put_roff(stream, program->name);
+        snprintf(copy, sizeof copy, "%.*s", length, line);
+        put_roff(stream, copy);
+        line = line[length] ? line + length + 1 : NULL;
+        if (line) fprintf(stream, ".br\n");
+    }
+    put_roff_section(stream, "Description");
+    put_roff(stream, program->description);
+    if (program->commands) put_roff_section(stream, "Commands");
+    for (const char *const(*c)[2] = program->commands; c && (*c)[0]; ++c)
+        put_roff_entry(stream, (*c)[0], (*c)[1]);
+    put_roff_section(stream, "Options");
+    list_options(stream, program, (Selection){0}, put_roff_heading, put_roff_entry);
+    const OptionsChapter *chapter = program->chapter;
+    if (chapter) {
+        put_roff_section(stream, chapter->title);
+        put_roff(stream, chapter->text);
+        for (const char *const(*entry)[3] = chapter->entries; (*entry)[0]; ++entry) {
+            put_roff_entry(stream, (*entry)[0], (*entry)[2]);
+            fprintf(stream, ".br\n");
+            put_roff(stream, (*entry)[1]);
+        }
+    }
+    if (program->notes) put_roff_section(stream, "Notes");
+    for (const char *const *note = program->notes; note && *note; ++note) {
+        fprintf(stream, ".PP\n");
+        put_roff(stream, *note);
+    }
+    put_roff_section(stream, "Exit status");
+    for (const char *const(*s)[2] = program->status; (*s)[0]; ++s)
+        put_roff_entry(stream, (*s)[0], (*s)[1]);
+    put_roff_section(stream, "Examples");
+    fprintf(stream, ".nf\n");
+    for (const char *const *e = program->examples; *e; ++e) put_roff(stream, *e);
+    fprintf(stream, ".fi\n");
+}
+
+static void put_markdown(FILE *stream, const OptionsProgram *program)
+{
+    fprintf(stream, "# Options of %s\n", program->name);
+    for (const char *const *note = program->notes; note && *note; ++note)
+        fprintf(stream, "\n%s\n", *note);
+    list_options(stream, program, (Selection){0}, put_table_heading, put_row);
+    const OptionsChapter *chapter = program->chapter;
+    if (!chapter) return;
+    fprintf(stream, "\n## %s\n\n%s\n\n| key | value | what it is |\n| --- | --- | --- |\n",
+            chapter->title, chapter->text);
+    for (const char *const(*entry)[3] = chapter->entries; (*entry)[0]; ++entry)
+        fprintf(stream, "| `%s` | `%s` | %s |\n", (*entry)[0], (*entry)[1], (*entry)[2]);
+}
+
+// --- Completion in bash.
+
+// The small words among a value's alternatives, with blanks between them; whether there are any.
+static bool put_words(FILE *stream, const char *value)
+{
+    bool any = false;
+    for (size_t length; *value; value += length + (value[length] == '|')) {
+        length = strcspn(value, "|");
+        bool small = length > 0;
+        for (size_t i = 0; i < length; ++i)
+            small = small && !isupper((unsigned char)value[i]) &&
+                    (isalnum((unsigned char)value[i]) || value[i] == '-');
+        if (!small) continue;
+        if (stream) fprintf(stream, "%s%.*s", any ? " " : "", (int)length, value);
+        any = true;
+    }
+    return any;
+}
+
+// The completion of an option's value: small words between bars, or files' names for FILE, DIR and
+// PATH (whole or as a part), nothing for others.
+static void put_completion(FILE *stream, const Option *option)
+{
+    char name[80];
+    const char *value = option->value;
+    if (!value) return;
+    write_name(name, sizeof name, option->name);
+    fprintf(stream, "    ");
+    if (option->letter) fprintf(stream, "-%c|", option->letter);
+    fprintf(stream, "%s) ", name);
+    if (put_words(NULL, value)) {
+        fprintf(stream, "mapfile -t COMPREPLY < <(compgen -W '");
+        put_words(stream, value);
+        fprintf(stream, "' -- \"$word\") ;;\n");
+    } else {
+        bool path = strstr(value, "FILE") || strstr(value, "DIR") || strstr(value, "PATH");
+        fprintf(stream, path ? "files ;;\n" : ";;\n");
+    }
+}
+
+static void put_bash(FILE *stream, const OptionsProgram *program)
+{
+    char function[80];
+    snprintf(function, sizeof function, "_%s", program->name);
+    for (char *at = function; *at; ++at)
+        if (*at == '-') *at = '_';
+    fprintf(stream, "# Completion of %s in bash, made by %s --help=bash.\n", program->name,
+            program->name);
+    // bash ends words at '=': --flag=value comes as three.
+    fprintf(stream,
+            "%s() {\n"
+            "    local word=${COMP_WORDS[COMP_CWORD]} flag=${COMP_WORDS[COMP_CWORD - 1]}\n"
+            "    [[ $word == = ]] && word=\n"
+            "    [[ $flag == = ]] && flag=${COMP_WORDS[COMP_CWORD - 2]}\n"
+            "    files() { compopt -o filenames; mapfile -t COMPREPLY < <(compgen -f -- "
+            "\"$word\"); }\n"
+            "    COMPREPLY=()\n"
+            "    case $flag in\n",
+            function);
+    for (size_t i = 0; i < program->option_count; ++i) put_completion(stream, &program->options[i]);
+    fprintf(stream, "    *) if [[ $word == -* ]]; then mapfile -t COMPREPLY < <(compgen -W '");
+    for (size_t i = 0; i < count_options(program); ++i) {
+        const Option *option = option_at(program, i);
+        char name[80];
+        write_name(name, sizeof name, option->name);
+        if (option->letter) fprintf(stream, "%s-%c", i ? " " : "", option->letter);
+        fprintf(stream, "%s%s", i || option->letter ? " " : "", name);
+    }
+    fprintf(stream, "' -- \"$word\"); else files; fi ;;\n    esac\n}\ncomplete -F %s %s\n",
+            function, program->name);
+}
+
+// --- Topics.
+
+Result options_help(const OptionsProgram *program, const char *topic, FILE *stream, Error *error)
+{
+    const OptionsChapter *chapter = program->chapter;
+    const char *const(*listed)[2] = program->topics;
+    while (topic && listed && (*listed)[0] && strcmp((*listed)[0], topic) != 0) ++listed;
+    if (!topic)
+        put_text(stream, program, true);
+    else if (strcmp(topic, "all") == 0)
+        put_text(stream, program, false);
+    else if (strcmp(topic, "man") == 0)
+        put_man(stream, program);
+    else if (strcmp(topic, "markdown") == 0)
+        put_markdown(stream, program);
+    else if (strcmp(topic, "bash") == 0)
+        put_bash(stream, program);
+    else if (listed && (*listed)[0])
+        list_options(stream, program, (Selection){.topic = topic}, put_heading, put_entry);
+    else if (chapter && strcmp(chapter->topic, topic) == 0)
+        put_chapter(stream, chapter);
+    else {
+        const Option *option = options_find(program->options, program->option_count, topic);
+        char flag[FLAG_SIZE];
+        if (!option) option = options_find(COMMON, COMMON_COUNT, topic);
+        char list[LIST_SIZE];
+        list_topics(program, false, list, sizeof list);
+        if (!option)
+            return error_set(error, RESULT_USAGE, "--help: no topic '%.80s': expected %s", topic,
+                             list);
+        write_flag(option, flag, sizeof flag);
+        put_entry(stream, flag, option->help);
+    }
+    return RESULT_OK;
+}

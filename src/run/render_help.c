@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: MIT
+#include "run/render_help.h"
+
+#include "base/params.h"
+#include "scene/scene.h"
+#include "sim/solver.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { TEXT_SIZE = 600, MOST_TOPICS = 32 };
+
+static const char DESCRIPTION[] =
+    "Simulates the hair of one or more hair files (formats as for tractrix-convert) and draws it "
+    "to images or a video. A scene file "
+    "(JSON) can give each hair file its own values, and add keyframes and lights. Options override "
+    "the scene file.";
+
+static const char *const NOTES[] = {
+    "Options marked * set the value of every hair file; a scene file can give each its own.",
+    "--option VALUE and --option=VALUE are the same. --no-option switches an option without value "
+    "off. If an option is given twice, the last one counts. -- ends the options.",
+    NULL};
+
+// What --help alone lists.
+static const char *const BRIEF[] = {
+    "mesh",       "fps",       "output", "size",   "first",     "last",       "cache",
+    "from_cache", "quiet",     "algo",   "style",  "followers", "frames",     "wind",
+    "colliders",  "turntable", "color",  "shadow", "quality",   "background", NULL};
+
+static const struct {
+    ParamGroup group;
+    const char *topic[2];
+} GROUP_TOPICS[] = {
+    {GROUP_INPUT, {"input", "hair files and the mesh"}},
+    {GROUP_OUTPUT, {"output", "images, videos, caches, exported hair, messages"}},
+    {GROUP_SIMULATION, {"sim", "solver, followers, time"}},
+    {GROUP_FORCES, {"forces", "gravity and wind"}},
+    {GROUP_COLLISION, {"collision", "shapes that hair must not cross"}},
+    {GROUP_CAMERA, {"camera", "camera, framing, turntable"}},
+    {GROUP_HAIR, {"hair", "color, fibres and highlights"}},
+    {GROUP_LIGHT, {"light", "ambient light, shadows, floor, tone, background"}},
+    {GROUP_QUALITY, {"quality", "presets, anti-aliasing, smooth curves, level of detail"}},
+    {GROUP_DEVICE, {"device", "rasteriser and OpenGL device"}},
+};
+
+static const char *const SCENE_KEYS[][3] = {
+    {"sections", "[{\"file\": \"hair.tfx\", \"style\": 0.8}, ...]",
+     "the hair files, each with its own values"},
+    {"head",
+     "{\"pivot\": [0, 1.5, 0], \"keys\": [{\"time\": 1, \"translate\": [0, 0, 0.1], "
+     "\"rotate\": [0, 90, 0]}, ...]}",
+     "rigid motion of the roots and the mesh: time in s, translation in m, rotation as axis times "
+     "angle in degrees about the pivot"},
+    {"head", "{\"translate\": [\"0.02*sin(2*pi*t)\", 0, 0], \"rotate\": [0, \"30*sin(6*t)\", 0]}",
+     "the same by formulas of the time t in s: + - * / ^, a ? b : c, pi, sin, exp, min, abs ... "
+     "(those of muParser), smoothstep(a, b, x)"},
+    {"gravity, wind", "{\"keys\": [{\"time\": 0, \"value\": [0, 0, 2]}, ...]}",
+     "a force that changes; a constant force is an array of three numbers"},
+    {"camera",
+     "{\"keys\": [{\"time\": 0, \"eye\": [0, 1.6, 2], \"target\": [0, 1.5, 0], "
+     "\"fov\": 30}, ...]}",
+     "path of the camera; values that no key has come from the option of that name"},
+    {"colliders",
+     "[{\"capsule\": [0, 1, 0, 0.08, 0, 1.4, 0, 0.05], \"frame\": \"head\"}, {\"ground\": 0}, ...]",
+     "shapes that hair must not cross: sphere, capsule, ground or plane, with the numbers of "
+     "--colliders (m); frame: head or world"},
+    {"lights",
+     "[{\"type\": \"directional\", \"direction\": [0, -1, 0], \"color\": \"#ffffff\", "
+     "\"intensity\": 1}, {\"type\": \"spot\", \"position\": [0, 3, 1], \"distance\": 1, "
+     "\"direction\": [0, -1, 0], \"inner\": 0, \"outer\": 45}, ...]",
+     "up to 8 lights: directional, point or spot; direction is the way the light travels. A point "
+     "or spot light has its intensity at `distance` (m) and falls off with the square of the "
+     "distance. A spot is full up to `inner` degrees off its axis and dark beyond `outer`. With "
+     "--shadow the first light casts shadows, and others with \"shadow\": true. Without this key "
+     "there are two lights; an empty list leaves ambient light only"},
+    {NULL, NULL, NULL}};
+
+static const OptionsChapter SCENE_FILES = {
+    .topic = "scene",
+    .title = "Scene files",
+    .text =
+        "A scene file is a JSON object. Its keys are the options with '_' for '-': numbers, "
+        "true and false as such, X,Y,Z and WxH as arrays, the rest as strings. Options marked * "
+        "may stand in a section, or beside the sections for all of them. Paths are relative to "
+        "the file's folder. Values between keyframes are interpolated smoothly (monotone "
+        "cubic) or, with \"interpolation\": \"linear\", linearly. They are constant before the "
+        "first and after the last keyframe; a value that a keyframe leaves out is interpolated "
+        "between those that have it. Times are the scene's: 0 at frame 0, --speed times as "
+        "fast as the video.",
+    .entries = SCENE_KEYS,
+};
+
+static const char *const STATUS[][2] = {
+    {"0", "done"},
+    {"1", "failed while running (disk full, out of memory, ...), or --check found defects"},
+    {"2", "an option or a combination of values is wrong"},
+    {"3", "a hair, mesh, scene or cache file is wrong, or the cache is of another scene"},
+    {"4", "no usable OpenGL (4.3 core or better)"},
+    {"130", "interrupted"},
+    {NULL, NULL}};
+
+static const char *const EXAMPLES[] = {
+    "tractrix-render hair.tfx --frames 120 -o frames/",
+    "tractrix-render hair.tfx --turntable 360 --wind 2,0,0 -o hair.mp4",
+    "tractrix-render scene.json --cache sim.cache",
+    "tractrix-render scene.json --from-cache sim.cache --first 60 --last 119 -o frames/",
+    "tractrix-render scene.json --size 1920x1080 -o frames/hair_%04d.png",
+    NULL};
+
+// Bounds from here on only keep numbers sane: help does not name them.
+static const double WIDE = 1e6;
+
+// The values' range and unit, "" where there is nothing to say: "0 to 90 deg".
+static void write_range(const ParamInfo *info, char *text, size_t size)
+{
+    static const char *const FORMS[] = {[PARAM_COLOR] = "#rrggbb or r,g,b from 0 to 1",
+                                        [PARAM_BACKGROUND] =
+                                            "#rrggbb, r,g,b from 0 to 1, or transparent",
+                                        [PARAM_UNIT] = "m, cm, mm, in, auto, or a number of metres",
+                                        [PARAM_PATH] = ""};
+    const char *between = info->unit[0] ? " " : "";
+    if (FORMS[info->kind])
+        snprintf(text, size, "%s", FORMS[info->kind]);
+    else if (info->minimum == info->maximum)
+        snprintf(text, size, "%s", info->unit);
+    else if (info->maximum < WIDE)
+        snprintf(text, size, "%.10g to %.10g%s%s", info->minimum, info->maximum, between,
+                 info->unit);
+    else if (info->minimum > -WIDE)
+        snprintf(text, size, "at least %.10g%s%s", info->minimum, between, info->unit);
+    else
+        snprintf(text, size, "%s", info->unit);
+}
+
+// "* angle [0 to 90 deg; default 15]", without what there is not.
+static void write_text(const ParamInfo *info, char *text, size_t size)
+{
+    char range[100];
+    write_range(info, range, sizeof range);
+    bool on = info->kind == PARAM_BOOL && strcmp(info->default_text, "true") == 0;
+    bool shown = info->default_text[0] && (info->kind != PARAM_BOOL || on);
+    bool any = range[0] || shown;
+    snprintf(text, size, "%s%s%s%s%s%s%s%s", info->scope == SCOPE_SECTION ? "* " : "", info->help,
+             any ? " [" : "", range, range[0] && shown ? "; " : "", shown ? "default " : "",
+             !shown ? ""
+             : on   ? "on"
+                    : info->default_text,
+             any ? "]" : "");
+}
+
+// "Simulation: chain, hybrid"
+static void write_heading(const ParamInfo *info, char *text, size_t size)
+{
+    size_t length =
+        (size_t)snprintf(text, size, "%s%s", GROUP_TITLES[info->group], *info->owner ? ": " : "");
+    for (const char *at = info->owner; *at && length + 2 < size; ++at) {
+        if (*at == ' ') text[length++] = ',';
+        text[length++] = *at;
+        text[length] = 0;
+    }
+}
+
+// The solvers, or all their variants, with bars between them.
+static void write_solvers(char *text, size_t size, bool variants)
+{
+    size_t length = 0;
+    for (const SolverType *const *type = SOLVER_TYPES; *type; ++type) {
+        const char *const *words = variants ? (*type)->variants : &(*type)->name;
+        for (int i = 0; i < (variants ? SOLVER_MAX_VARIANTS : 1) && words[i]; ++i)
+            if (length < size)
+                length += (size_t)snprintf(text + length, size - length, "%s%s", length ? "|" : "",
+                                           words[i]);
+    }
+}
+
+static bool is_of(const char *topic, size_t option)
+{
+    const ParamInfo *info = &PARAM_TABLE[option];
+    for (size_t i = 0; i < sizeof GROUP_TOPICS / sizeof *GROUP_TOPICS; ++i)
+        if (strcmp(GROUP_TOPICS[i].topic[0], topic) == 0)
+            return GROUP_TOPICS[i].group == info->group;
+    return *info->owner && params_owned_by(info, topic);
+}
+
+// Strings of the rows that are made here.
+typedef struct Texts {
+    char help[SCENE_PARAMS][TEXT_SIZE], heading[SCENE_PARAMS][80], solvers[2][TEXT_SIZE];
+    Option options[SCENE_PARAMS];
+    const char *headings[SCENE_PARAMS], *topics[MOST_TOPICS][2];
+} Texts;
+
+static void make_texts(Texts *texts)
+{
+    size_t count = 0;
+    write_solvers(texts->solvers[0], TEXT_SIZE, false);
+    write_solvers(texts->solvers[1], TEXT_SIZE, true);
+    for (size_t i = 0; i < PARAM_COUNT; ++i) {
+        const ParamInfo *info = &PARAM_TABLE[i];
+        texts->options[i] = OPTIONS_OF_PARAMS[i];
+        texts->options[i].help = texts->help[i];
+        texts->headings[i] = texts->heading[i];
+        write_text(info, texts->help[i], TEXT_SIZE);
+        write_heading(info, texts->heading[i], sizeof texts->heading[i]);
+        if (strcmp(info->name, "algo") == 0) texts->options[i].value = texts->solvers[0];
+        if (strcmp(info->name, "variant") == 0) texts->options[i].value = texts->solvers[1];
+    }
+    for (; count < sizeof GROUP_TOPICS / sizeof *GROUP_TOPICS; ++count)
+        memcpy(texts->topics[count], GROUP_TOPICS[count].topic, sizeof texts->topics[count]);
+    for (const SolverType *const *type = SOLVER_TYPES; *type; ++type) {
+        bool any = false;
+        for (size_t i = 0; i < PARAM_COUNT; ++i) any = any || is_of((*type)->name, i);
+        if (!any || count + 1 == MOST_TOPICS) continue;
+        texts->topics[count++][0] = (*type)->name;
+    }
+}
+
+Result render_help(const char *topic, FILE *stream, Error *error)
+{
+    Texts *texts = calloc(1, sizeof *texts);
+    if (!texts) return error_set(error, RESULT_FAILED, "no memory for the help");
+    make_texts(texts);
+    const OptionsProgram program = {
+        .name = "tractrix-render",
+        .summary = "simulate and render hair, without a window",
+        .description = DESCRIPTION,
+        .synopsis = "[OPTION]... HAIR_FILE...\n[OPTION]... SCENE.json",
+        .options = texts->options,
+        .option_count = PARAM_COUNT,
+        .headings = texts->headings,
+        .brief = BRIEF,
+        .topics = (const char *const(*)[2])texts->topics,
+        .is_of = is_of,
+        .chapter = &SCENE_FILES,
+        .notes = NOTES,
+        .status = STATUS,
+        .examples = EXAMPLES,
+    };
+    Result result = options_help(&program, topic, stream, error);
+    free(texts);
+    return result;
+}

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include "scene/effects.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// --- Conditions. `section` is NULL for parameters of the run.
+
+#define CONDITION(name, holds)                                                                     \
+    static bool name(const Scene *scene, const SectionParams *section)                             \
+    {                                                                                              \
+        (void)scene, (void)section;                                                                \
+        return holds;                                                                              \
+    }
+CONDITION(has_colliders, scene->colliders.count > 0 || scene->run.collide_mesh)
+CONDITION(collides, section->collide)
+CONDITION(collides_mesh, scene->run.collide_mesh)
+CONDITION(has_mesh, *scene->run.mesh)
+CONDITION(has_wind, scene->wind.count > 0 || scene->run.wind[0] != 0 || scene->run.wind[1] != 0 ||
+                        scene->run.wind[2] != 0)
+CONDITION(has_gusts, scene->run.gust > 0)
+CONDITION(has_shadows, scene->run.shadow != SHADOW_NONE)
+CONDITION(guesses_shadows, scene->run.shadow == SHADOW_APPROX)
+CONDITION(has_floor, scene->run.floor != FLOOR_NONE)
+CONDITION(has_matt_floor, scene->run.floor == FLOOR_PLANE)
+CONDITION(turns, scene->run.turntable != 0)
+CONDITION(frames_hair, scene->run.eye.automatic && scene->eye.count == 0)
+CONDITION(knows_jumps, scene->run.teleport != TELEPORT_NONE)
+CONDITION(exports, *scene->run.export)
+CONDITION(sorts, scene->run.oit != OIT_NONE)
+CONDITION(has_far_end, scene->run.lod_end > 0)
+CONDITION(thins, scene->run.lod_end > 0 || scene->run.lod_width > 0)
+CONDITION(follows, section->followers != 0)
+CONDITION(is_marschner, section->shading == SHADING_MARSCHNER)
+CONDITION(is_kajiya, section->shading == SHADING_KAJIYA)
+CONDITION(has_tips, section->tip_length > 0)
+CONDITION(has_pigment, !section->melanin.automatic)
+CONDITION(is_smooth, section->smooth > 1)
+
+// Each parameter's condition, and why it has no effect where that does not hold.
+static const struct {
+    const char *names; // a blank between them
+    bool (*holds)(const Scene *scene, const SectionParams *section);
+    const char *why;
+} EFFECTS[] = {
+    {"collide friction collision_margin", has_colliders,
+     "there are neither --colliders nor --collide-mesh"},
+    {"friction collision_margin", collides, "--no-collide"},
+    {"collide_mesh mesh_unit mesh_up mesh_color", has_mesh, "there is no --mesh"},
+    {"sdf_resolution sdf_cache", collides_mesh, "there is no --collide-mesh"},
+    {"gust gust_period gust_repeat wind_spread wind_shelter", has_wind, "there is no --wind"},
+    {"gust_period gust_repeat", has_gusts, "--gust is 0"},
+    {"teleport_distance teleport_angle", knows_jumps, "--teleport is none"},
+    {"follow follower_radius tip_separation", follows, "--followers is 0"},
+    {"export_followers", exports, "there is no --export"},
+    {"margin", frames_hair, "--eye is given"},
+    {"turn_lights ease_in ease_out", turns, "there is no --turntable"},
+    {"shadow_size shadow_opacity", has_shadows, "--shadow is none"},
+    {"shadow_spacing", guesses_shadows, "only --shadow approx uses it"},
+    {"floor_height", has_floor, "--floor is none"},
+    {"floor_color", has_matt_floor, "only --floor plane uses it"},
+    {"refraction roughness lobes azimuthal_roughness", is_marschner,
+     "only --shading marschner uses it"},
+    {"specular1 exponent1 specular2 exponent2", is_kajiya, "only --shading kajiya uses it"},
+    {"tip_color", has_tips, "--tip-length is 0"},
+    {"melanin_redness", has_pigment, "--melanin is auto"},
+    {"curve", is_smooth, "--smooth is 1"},
+    {"lod_start", has_far_end, "--lod-end is 0"},
+    {"lod_min", thins, "--lod-end and --lod-width are 0"},
+    {"oit_layers", sorts, "--oit is none"},
+};
+
+static bool lists(const char *names, const char *name)
+{
+    size_t length = strlen(name);
+    for (const char *at = names; (at = strstr(at, name)); ++at)
+        if ((at == names || at[-1] == ' ') && (!at[length] || at[length] == ' ')) return true;
+    return false;
+}
+
+// Why the parameter has no effect in the section, or in the run if that is NULL; NULL: it has one.
+static const char *find_reason(const ParamInfo *info, const Scene *scene, const Section *section,
+                               char text[80])
+{
+    if (section && !params_owned_by(info, section->params.algo)) {
+        snprintf(text, 80, "--algo %.40s has no such parameter", section->params.algo);
+        return text;
+    }
+    for (size_t i = 0; i < sizeof EFFECTS / sizeof *EFFECTS; ++i)
+        if (lists(EFFECTS[i].names, info->name) &&
+            !EFFECTS[i].holds(scene, section ? &section->params : NULL)) {
+            snprintf(text, 80, "it has no effect: %s", EFFECTS[i].why);
+            return text;
+        }
+    return NULL;
+}
+
+// The same for all sections whose value has this origin; NULL if it has an effect in one of them or
+// none has that origin.
+static const char *find_shared_reason(const ParamInfo *info, const Scene *scene, Origin origin,
+                                      char text[80])
+{
+    size_t row = (size_t)(info - PARAM_TABLE);
+    const char *reason = NULL;
+    if (info->scope == SCOPE_RUN)
+        return scene->origin[row] == origin ? find_reason(info, scene, NULL, text) : NULL;
+    for (uint32_t i = 0; i < scene->section_count; ++i) {
+        if (scene->sections[i].origin[row] != origin) continue;
+        reason = find_reason(info, scene, &scene->sections[i], text);
+        if (!reason) return NULL;
+    }
+    return reason;
+}
+
+Result effects_check(const Scene *scene, Error *error)
+{
+    char reason[80], flag[80];
+    for (size_t i = 0; i < PARAM_COUNT; ++i) {
+        const ParamInfo *info = &PARAM_TABLE[i];
+        if (!find_shared_reason(info, scene, ORIGIN_FLAG, reason)) continue;
+        snprintf(flag, sizeof flag, "--%s", info->name);
+        for (char *at = flag; *at; ++at)
+            if (*at == '_') *at = '-';
+        return error_set(error, RESULT_USAGE, "%s: %s", flag, reason);
+    }
+    return RESULT_OK;
+}
+
+static bool is_default(const ParamInfo *info, const void *params)
+{
+    char *text = params_format(info, params);
+    bool same = text && strcmp(text, info->default_text) == 0;
+    free(text);
+    return same;
+}
+
+void effects_warn(const Scene *scene, FILE *stream)
+{
+    char reason[80];
+    for (size_t i = 0; i < PARAM_COUNT; ++i) {
+        const ParamInfo *info = &PARAM_TABLE[i];
+        const void *first = info->scope == SCOPE_RUN ? (const void *)&scene->run
+                            : scene->section_count   ? (const void *)&scene->sections[0].params
+                                                     : NULL;
+        if (first && !is_default(info, first) &&
+            find_shared_reason(info, scene, ORIGIN_SHARED_KEY, reason))
+            fprintf(stream, "%s: %s: %s\n", scene->file, info->name, reason);
+        for (uint32_t s = 0; info->scope == SCOPE_SECTION && s < scene->section_count; ++s) {
+            const Section *section = &scene->sections[s];
+            if (section->origin[i] == ORIGIN_KEY && !is_default(info, &section->params) &&
+                find_reason(info, scene, section, reason))
+                fprintf(stream, "%s: sections[%u].%s: %s\n", scene->file, s, info->name, reason);
+        }
+    }
+}
