@@ -1,26 +1,92 @@
 // SPDX-License-Identifier: MIT
 #include "gpu/gpu.h"
 #include "gpu/gpu_egl.h"
-#include "gpu/gpu_osmesa.h"
 
 #include <epoxy/gl.h>
 
+#include <dlfcn.h>
 #include <stdlib.h>
 #include <string.h>
 
-// What was tried so far and why it failed, for the one line that the user gets if nothing works.
-typedef struct Attempts {
-    Error reasons;
-} Attempts;
+// --- OSMesa: Mesa's llvmpipe without EGL, loaded at run time.
 
-static void note_failure(Attempts *attempts, const char *path, const Error *why)
+// The few names of <GL/osmesa.h> that are needed, so that building does not need its package.
+enum {
+    OSMESA_FORMAT = 0x22,
+    OSMESA_DEPTH_BITS = 0x30,
+    OSMESA_PROFILE = 0x33,
+    OSMESA_CORE_PROFILE = 0x34,
+    OSMESA_CONTEXT_MAJOR_VERSION = 0x36,
+    OSMESA_CONTEXT_MINOR_VERSION = 0x37,
+};
+
+typedef void (*AnyFunction)(void);
+typedef struct GpuOsMesa OsMesa;
+
+struct GpuOsMesa {
+    void *context;
+    uint32_t pixel; // the default framebuffer, which nothing draws to
+    void *(*create)(const int *attributes, void *share);
+    void (*destroy)(void *context);
+    GLboolean (*make_current)(void *context, void *buffer, GLenum type, GLsizei width,
+                              GLsizei height);
+    AnyFunction (*get_function)(const char *name);
+};
+
+// POSIX promises that dlsym gives functions, too; ISO C has no cast that says so, a copy of the
+// bytes does.
+static void load(void *library, const char *name, void *function)
 {
-    size_t used = strlen(attempts->reasons.text), room = sizeof attempts->reasons.text - used;
-    int length = snprintf(attempts->reasons.text + used, room, "%s%s: %s", used ? "; " : "", path,
-                          why->text);
-    if (length < 0 || (size_t)length >= room)
-        attempts->reasons.text[used] = 0; // no room for this one
+    void *address = dlsym(library, name);
+    memcpy(function, &address, sizeof address);
 }
+
+// libepoxy resolves a name when it is first called and insists on EGL or GLX for that; its names
+// are plain pointers, though.
+static bool fill_functions(const OsMesa *mesa)
+{
+    bool complete = true;
+    AnyFunction function;
+#define GL_FUNCTION(name)                                                                          \
+    function = mesa->get_function(#name);                                                          \
+    memcpy(&epoxy_##name, &function, sizeof function);                                             \
+    complete = complete && function;
+#include "gpu/gl_functions.def"
+#undef GL_FUNCTION
+    return complete;
+}
+
+static Result open_osmesa(OsMesa *mesa, Error *error)
+{
+    static const int attributes[] = {OSMESA_FORMAT,
+                                     GL_RGBA,
+                                     OSMESA_DEPTH_BITS,
+                                     0,
+                                     OSMESA_PROFILE,
+                                     OSMESA_CORE_PROFILE,
+                                     OSMESA_CONTEXT_MAJOR_VERSION,
+                                     4,
+                                     OSMESA_CONTEXT_MINOR_VERSION,
+                                     3,
+                                     0};
+    void *library = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
+    if (!library) return error_set(error, RESULT_NO_GL, "libOSMesa.so.8 is not installed");
+    load(library, "OSMesaCreateContextAttribs", &mesa->create);
+    load(library, "OSMesaDestroyContext", &mesa->destroy);
+    load(library, "OSMesaMakeCurrent", &mesa->make_current);
+    load(library, "OSMesaGetProcAddress", &mesa->get_function);
+    if (!mesa->create || !mesa->destroy || !mesa->make_current || !mesa->get_function)
+        return error_set(error, RESULT_NO_GL, "libOSMesa.so.8 lacks OSMesaCreateContextAttribs");
+    mesa->context = mesa->create(attributes, NULL);
+    if (!mesa->context) return error_set(error, RESULT_NO_GL, "OSMesa has no OpenGL 4.3 core");
+    if (!mesa->make_current(mesa->context, &mesa->pixel, GL_UNSIGNED_BYTE, 1, 1))
+        return error_set(error, RESULT_NO_GL, "OSMesa can't make its context current");
+    if (!fill_functions(mesa))
+        return error_set(error, RESULT_NO_GL, "OSMesa lacks an OpenGL 4.3 function");
+    return RESULT_OK; // cppcheck-suppress resourceLeak // LLVM's handlers must outlive the library
+}
+
+// --- What a context offers.
 
 static void copy_string(char *to, size_t size, GLenum name)
 {
@@ -74,8 +140,7 @@ static Result read_limits(Gpu *gpu, Error *error)
 static Result accept(Gpu *gpu, const GpuOptions *options, const char *path, Error *error)
 {
     snprintf(gpu->path, sizeof gpu->path, "%s", path);
-    Result result = read_limits(gpu, error);
-    if (result != RESULT_OK) return result;
+    TRY(read_limits(gpu, error));
     if (options->require_hardware && gpu->software)
         return error_set(error, RESULT_NO_GL, "%s is a CPU driver", gpu->renderer);
     if (options->software && !gpu->software)
@@ -83,15 +148,13 @@ static Result accept(Gpu *gpu, const GpuOptions *options, const char *path, Erro
     return RESULT_OK;
 }
 
+// --- The ways to a context.
+
 static Result try_egl(Gpu *gpu, const GpuOptions *options, void *device, const char *path,
                       Error *error)
 {
-    EglContext egl;
-    Result result = gpu_egl_create(&egl, device, options->debug, error);
-    if (result != RESULT_OK) return result;
-    gpu->display = egl.display;
-    gpu->context = egl.context;
-    result = accept(gpu, options, path, error);
+    TRY(gpu_egl_create(&gpu->egl, device, options->debug, error));
+    Result result = accept(gpu, options, path, error);
     if (result != RESULT_OK) gpu_destroy(gpu);
     return result;
 }
@@ -99,14 +162,25 @@ static Result try_egl(Gpu *gpu, const GpuOptions *options, void *device, const c
 static Result try_osmesa(Gpu *gpu, const GpuOptions *options, Error *error)
 {
     if (options->require_hardware) return error_set(error, RESULT_NO_GL, "OSMesa draws on the CPU");
-    Result result = gpu_osmesa_create(&gpu->osmesa, error);
-    if (result == RESULT_OK) result = accept(gpu, options, "OSMesa", error);
+    gpu->osmesa = calloc(1, sizeof *gpu->osmesa);
+    if (!gpu->osmesa) return error_set(error, RESULT_FAILED, "no memory for a context");
+    Result result = open_osmesa(gpu->osmesa, error);
+    THEN(result, accept(gpu, options, "OSMesa", error));
     if (result != RESULT_OK) gpu_destroy(gpu);
     return result;
 }
 
+// Adds to the one line that the user gets if nothing works, as long as there is room.
+static void note_failure(Error *attempts, const char *path, const Error *why)
+{
+    size_t used = strlen(attempts->text), room = sizeof attempts->text - used;
+    int length =
+        snprintf(attempts->text + used, room, "%s%s: %s", used ? "; " : "", path, why->text);
+    if (length < 0 || (size_t)length >= room) attempts->text[used] = 0;
+}
+
 // Hardware devices first, so that the fastest is taken where both are there.
-static Result try_devices(Gpu *gpu, const GpuOptions *options, Attempts *attempts)
+static Result try_devices(Gpu *gpu, const GpuOptions *options, Error *attempts)
 {
     Error why;
     EglDevices devices;
@@ -130,7 +204,7 @@ static Result try_devices(Gpu *gpu, const GpuOptions *options, Attempts *attempt
     return RESULT_NO_GL;
 }
 
-static Result try_all(Gpu *gpu, const GpuOptions *options, Attempts *attempts)
+static Result try_all(Gpu *gpu, const GpuOptions *options, Error *attempts)
 {
     Error why;
     bool any_path = options->device < 0;
@@ -158,14 +232,13 @@ static void APIENTRY print_message(GLenum source, GLenum type, GLuint id, GLenum
 Result gpu_create(Gpu *gpu, const GpuOptions *options, Error *error)
 {
     *gpu = (Gpu){0};
-    Attempts attempts = {0};
+    Error attempts = {{0}};
     if (try_all(gpu, options, &attempts) != RESULT_OK)
-        return error_set(
-            error, RESULT_NO_GL,
-            "no usable OpenGL 4.3 (%s); on Debian the packages libegl1 and libgl1-mesa-dri give a "
-            "CPU "
-            "driver, in a container on NVIDIA the 'graphics' driver capability is needed",
-            attempts.reasons.text);
+        return error_set(error, RESULT_NO_GL,
+                         "no usable OpenGL 4.3 (%s); on Debian the packages libegl1 and "
+                         "libgl1-mesa-dri give a CPU driver, in a container on NVIDIA the "
+                         "'graphics' driver capability is needed",
+                         attempts.text);
     if (options->debug) {
         glEnable(GL_DEBUG_OUTPUT);
         glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
@@ -176,8 +249,9 @@ Result gpu_create(Gpu *gpu, const GpuOptions *options, Error *error)
 
 void gpu_destroy(Gpu *gpu)
 {
-    gpu_egl_destroy(&(EglContext){gpu->display, gpu->context});
-    gpu_osmesa_destroy(gpu->osmesa);
+    gpu_egl_destroy(&gpu->egl);
+    if (gpu->osmesa && gpu->osmesa->context) gpu->osmesa->destroy(gpu->osmesa->context);
+    free(gpu->osmesa);
     *gpu = (Gpu){0};
 }
 

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The OpenGL context: headless, 4.3 core or better, by EGL without a window system or by OSMesa.
+// The room gpu: OpenGL without windows. It takes a driver (EGL or OSMesa) and the shaders of glsl/,
+// and hands on a context (this file), buffers, timers and built programs (shader.h).
+//
+// This file: the context, 4.3 core or better, by EGL without a window system or by OSMesa.
 #pragma once
 
 #include "base/error.h"
+#include "gpu/gpu_egl.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -30,13 +34,13 @@ typedef struct GpuLimits {
 // that made it.
 typedef struct Gpu {
     GpuLimits limits;
-    bool software;           // a CPU driver, judged by GL_RENDERER
-    char renderer[256];      // GL_RENDERER
-    char version[256];       // GL_VERSION
-    char vendor[128];        // GL_VENDOR
-    char path[64];           // the way in: "EGL device 0", "EGL surfaceless", "OSMesa"
-    void *display, *context; // EGL
-    void *osmesa;            // OSMesa's state
+    bool software;            // a CPU driver, judged by GL_RENDERER
+    char renderer[256];       // GL_RENDERER
+    char version[256];        // GL_VERSION
+    char vendor[128];         // GL_VENDOR
+    char path[64];            // the way in: "EGL device 0", "EGL surfaceless", "OSMesa"
+    EglContext egl;           // zeroed: not by EGL
+    struct GpuOsMesa *osmesa; // NULL: not by OSMesa
 } Gpu;
 
 // Makes a context and makes it current. Order: EGL devices, hardware before software; EGL

@@ -46,16 +46,16 @@ Result gpu_buffer_create(GpuBuffer *buffer, const GpuLimits *limits, const char 
                          const void *data, GLenum texel_format, Error *error)
 {
     *buffer = (GpuBuffer){.size = size};
-    Result result = check_size(limits->storage_block, limits, what, size, texel_format, error);
-    return result == RESULT_OK ? fill(buffer, what, data, texel_format, error) : result;
+    TRY(check_size(limits->storage_block, limits, what, size, texel_format, error));
+    return fill(buffer, what, data, texel_format, error);
 }
 
 Result gpu_buffer_create_pieces(GpuBuffer *buffer, const GpuLimits *limits, const char *what,
                                 int64_t size, GLenum texel_format, Error *error)
 {
     *buffer = (GpuBuffer){.size = size};
-    Result result = check_size(INT64_MAX, limits, what, size, texel_format, error);
-    return result == RESULT_OK ? fill(buffer, what, NULL, texel_format, error) : result;
+    TRY(check_size(INT64_MAX, limits, what, size, texel_format, error));
+    return fill(buffer, what, NULL, texel_format, error);
 }
 
 void gpu_buffer_destroy(GpuBuffer *buffer)

@@ -7,8 +7,8 @@
 
 #include <epoxy/gl.h>
 
-// A buffer. `texture` shows it as a buffer texture: CPU drivers fetch a vec4 from one in a quarter
-// of the time of a storage buffer's load. 0 where there is none.
+// `texture` shows the buffer as a buffer texture, 0: there is none. CPU drivers fetch a vec4 from
+// one in a quarter of the time that a load from a storage buffer takes.
 typedef struct GpuBuffer {
     GLuint buffer, texture;
     int64_t size; // bytes
@@ -31,5 +31,5 @@ void gpu_buffer_destroy(GpuBuffer *buffer);
 void gpu_buffer_bind_storage(const GpuBuffer *buffer, GLuint binding);
 void gpu_buffer_bind_texture(const GpuBuffer *buffer, GLuint unit);
 
-// A uniform block: `set` replaces its content and binds it. The buffer is made at first use.
+// Replaces the content of a uniform block and binds it. The buffer is made at first use.
 void gpu_buffer_set_uniforms(GpuBuffer *buffer, GLuint binding, const void *data, size_t size);

@@ -6,39 +6,29 @@
 #include <dlfcn.h>
 #include <string.h>
 
-static const char *error_words(EGLint code)
-{
-    switch (code) {
-    case EGL_NOT_INITIALIZED:
-        return "the driver can't be initialised";
-    case EGL_BAD_ACCESS:
-        return "no access to the device";
-    case EGL_BAD_ALLOC:
-        return "out of memory";
-    case EGL_BAD_ATTRIBUTE:
-        return "an attribute is not known";
-    case EGL_BAD_CONFIG:
-        return "no usable configuration";
-    case EGL_BAD_DISPLAY:
-        return "no such display";
-    case EGL_BAD_MATCH:
-        return "OpenGL 4.3 core is not offered";
-    case EGL_BAD_PARAMETER:
-        return "a parameter is not known";
-    case EGL_BAD_DEVICE_EXT:
-        return "no such device";
-    case EGL_SUCCESS:
-        return "no reason given";
-    default:
-        return "unknown error";
-    }
-}
+static const struct {
+    EGLint code;
+    const char *words;
+} ERRORS[] = {
+    {EGL_NOT_INITIALIZED, "the driver can't be initialised"},
+    {EGL_BAD_ACCESS, "no access to the device"},
+    {EGL_BAD_ALLOC, "out of memory"},
+    {EGL_BAD_ATTRIBUTE, "an attribute is not known"},
+    {EGL_BAD_CONFIG, "no usable configuration"},
+    {EGL_BAD_DISPLAY, "no such display"},
+    {EGL_BAD_MATCH, "OpenGL 4.3 core is not offered"},
+    {EGL_BAD_PARAMETER, "a parameter is not known"},
+    {EGL_BAD_DEVICE_EXT, "no such device"},
+    {EGL_SUCCESS, "no reason given"},
+};
 
 static Result fail(const char *call, Error *error)
 {
     EGLint code = eglGetError();
-    return error_set(error, RESULT_NO_GL, "%s: %s (0x%04x)", call, error_words(code),
-                     (unsigned)code);
+    const char *words = "unknown error";
+    for (size_t i = 0; i < sizeof ERRORS / sizeof *ERRORS; ++i)
+        if (ERRORS[i].code == code) words = ERRORS[i].words;
+    return error_set(error, RESULT_NO_GL, "%s: %s (0x%04x)", call, words, (unsigned)code);
 }
 
 // libepoxy ends the program if it can't load libEGL, so that is tried before its first EGL call.
@@ -52,8 +42,7 @@ static Result require_library(Error *error)
 Result gpu_egl_find_devices(EglDevices *devices, Error *error)
 {
     *devices = (EglDevices){0};
-    Result result = require_library(error);
-    if (result != RESULT_OK) return result;
+    TRY(require_library(error));
     if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device") ||
         !epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration"))
         return error_set(error, RESULT_NO_GL, "EGL can't enumerate devices");
@@ -117,8 +106,8 @@ Result gpu_egl_create(EglContext *egl, void *device, bool debug, Error *error)
 {
     *egl = (EglContext){0};
     Result result = require_library(error);
-    if (result == RESULT_OK) result = open_display(egl, device, error);
-    if (result == RESULT_OK) result = open_context(egl, debug, error);
+    THEN(result, open_display(egl, device, error));
+    THEN(result, open_context(egl, debug, error));
     if (result != RESULT_OK) gpu_egl_destroy(egl);
     return result;
 }

@@ -30,8 +30,8 @@ const char *shader_folder(void)
     return folder && *folder ? folder : NULL;
 }
 
-// The joined text of a stage. `line_file` and `line_number` tell for each of its lines where it
-// comes from: Mesa loses the string number of `#line` in semantic errors, so the map is ours.
+// The joined text of a stage. `origins` says where each of its lines comes from: Mesa loses the
+// string number of `#line` in semantic errors, so the map is ours.
 typedef struct Composition {
     char *text;
     size_t length, capacity;
@@ -91,27 +91,6 @@ static const GlslSource *find_source(const GlslSource *sources, const char *name
     return NULL;
 }
 
-static bool taken(const Composition *c, const GlslSource *source)
-{
-    for (int i = 0; i < c->file_count; ++i)
-        if (c->files[i].source == source) return true;
-    return false;
-}
-
-static Result append_file(Composition *c, const char *name, size_t length, Error *error);
-
-// `#include "name"` alone is ours; every other line goes to the driver as it is.
-static Result append_source_line(Composition *c, const char *line, size_t length, int file,
-                                 int number, Error *error)
-{
-    static const char include[] = "#include \"";
-    size_t prefix = sizeof include - 1;
-    if (length <= prefix || memcmp(line, include, prefix) != 0)
-        return append_line(c, line, length, file, number, error);
-    const char *name = line + prefix, *quote = memchr(name, '"', length - prefix);
-    return append_file(c, name, quote ? (size_t)(quote - name) : 0, error);
-}
-
 static Result read_file(struct File *file, Error *error)
 {
     const char *folder = shader_folder();
@@ -122,38 +101,46 @@ static Result read_file(struct File *file, Error *error)
     return bytes_read_file(&file->text, path, error);
 }
 
+// A line `#include "name"` alone takes in that file; every other one goes to the driver as it is.
 static Result append_file(Composition *c, const char *name, size_t length, Error *error)
 {
+    static const char include[] = "#include \"";
+    size_t prefix = sizeof include - 1;
     const GlslSource *source = find_source(GLSL_SOURCES, name, length),
                      *added = source ? NULL : find_source(added_sources, name, length);
     if (!source) source = added;
     if (!source)
         return error_set(error, RESULT_FAILED, "glsl/%.*s: no such shader file", (int)length, name);
-    if (taken(c, source)) return RESULT_OK;
+    for (int i = 0; i < c->file_count; ++i)
+        if (c->files[i].source == source) return RESULT_OK;
     if (c->file_count == MAX_FILES)
         return error_set(error, RESULT_FAILED, "glsl/%s: too many includes", source->name);
     int file = c->file_count++, number = 1;
     c->files[file] = (struct File){.source = source};
-    Result result = added ? RESULT_OK : read_file(&c->files[file], error);
+    if (!added) TRY(read_file(&c->files[file], error));
     const char *line = c->files[file].text.data ? (char *)c->files[file].text.data : source->text;
-    for (; result == RESULT_OK && *line; ++number) {
+    for (; *line; ++number) {
         size_t end = strcspn(line, "\n");
-        result = append_source_line(c, line, end, file, number, error);
+        if (end > prefix && memcmp(line, include, prefix) == 0) {
+            const char *inner = line + prefix, *quote = memchr(inner, '"', end - prefix);
+            TRY(append_file(c, inner, quote ? (size_t)(quote - inner) : 0, error));
+        } else {
+            TRY(append_line(c, line, end, file, number, error));
+        }
         line += end + (line[end] == '\n');
     }
-    return result;
+    return RESULT_OK;
 }
 
 static Result compose(Composition *c, const char *file, const ShaderDefine *defines, Error *error)
 {
-    Result result = append_line(c, "#version 430 core", 17, -1, 0, error);
-    for (const ShaderDefine *define = defines; result == RESULT_OK && define && define->name;
-         ++define) {
+    TRY(append_line(c, "#version 430 core", 17, -1, 0, error));
+    for (const ShaderDefine *define = defines; define && define->name; ++define) {
         char line[128];
         int length = snprintf(line, sizeof line, "#define %s %d", define->name, define->value);
-        result = append_line(c, line, (size_t)length, -1, 0, error);
+        TRY(append_line(c, line, (size_t)length, -1, 0, error));
     }
-    return result == RESULT_OK ? append_file(c, file, strlen(file), error) : result;
+    return append_file(c, file, strlen(file), error);
 }
 
 char *shader_compose(const char *file, const ShaderDefine *defines, Error *error)
@@ -170,7 +157,7 @@ char *shader_compose(const char *file, const ShaderDefine *defines, Error *error
 
 // The first line of a driver's log as "glsl/FILE:LINE: message". Mesa writes "0:12(5): error: ...",
 // NVIDIA "0(12) : ...".
-static Result tell_log(const Composition *c, const char *file, char *log, Error *error)
+static Result report_log(const Composition *c, const char *file, char *log, Error *error)
 {
     int line = 0, ends = 0;
     log[strcspn(log, "\n")] = 0;
@@ -196,7 +183,7 @@ static Result compile(GLuint shader, const char *file, const ShaderDefine *defin
         glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
         glGetShaderInfoLog(shader, sizeof log, NULL, log);
         if (!good || (warnings_are_errors && *log))
-            result = tell_log(&composition, file, log, error);
+            result = report_log(&composition, file, log, error);
     }
     composition_destroy(&composition);
     return result;
@@ -230,7 +217,7 @@ static Result build(GLuint *program, const Stage *stages, int count, const Shade
         if (result == RESULT_OK) glAttachShader(*program, shader);
         glDeleteShader(shader); // lives on while it is attached
     }
-    if (result == RESULT_OK) result = link_program(*program, stages[count - 1].file, error);
+    THEN(result, link_program(*program, stages[count - 1].file, error));
     if (result != RESULT_OK) {
         glDeleteProgram(*program);
         *program = 0;

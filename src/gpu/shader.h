@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // From GLSL files to programs: joins included files, puts the variant's defines in front, compiles,
-// and tells errors by file and line.
+// and reports errors by file and line.
 #pragma once
 
 #include "base/error.h"
@@ -30,9 +30,8 @@ typedef struct ShaderDefine {
 } ShaderDefine;
 
 // Builds a program from a compute shader, or from a vertex and a fragment shader. `defines` may be
-// NULL. A file may
-// `#include "other.glsl"`; each file is taken once. On failure *program is 0 and the line is
-// "glsl/FILE:LINE: compiler's message" (RESULT_FAILED). Programs are freed with glDeleteProgram.
+// NULL. A file may `#include "other.glsl"`; each file is taken once. On failure *program is 0 and
+// the line is "glsl/FILE:LINE: compiler's message" (RESULT_FAILED). Free it with glDeleteProgram.
 Result shader_build_compute(GLuint *program, const char *file, const ShaderDefine *defines,
                             Error *error);
 Result shader_build_draw(GLuint *program, const char *vertex_file, const char *fragment_file,
