@@ -85,7 +85,7 @@ Result child_measure(const BenchOptions *options, const Method *method, const ch
     add_pair(&words, "--json", path);
     if (options->gpu.device >= 0) add_pair(&words, "--device", counts[2]);
     if (options->gpu.software) add(&words, "--software");
-    if (options->gpu.backend == GPU_BACKEND_OSMESA) add(&words, "--osmesa");
+    if (options->gpu.backend == BACKEND_OSMESA) add(&words, "--osmesa");
     for (int i = 0; i < variable_count; ++i) setenv(variables[i].name, variables[i].value, 1);
     Result result = run(&words, wall_ms, error);
     json_t *rows = result == RESULT_OK ? json_load_file(path, 0, NULL) : NULL;

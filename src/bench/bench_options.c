@@ -213,7 +213,7 @@ static Result read_words(Values *values, Error *error)
     if (options->steps) options->stress.steps = options->steps;
     if (!options->steps) options->steps = 200;
     options->gpu.software = values->software;
-    if (values->osmesa) options->gpu.backend = GPU_BACKEND_OSMESA;
+    if (values->osmesa) options->gpu.backend = BACKEND_OSMESA;
     return result;
 }
 

@@ -208,13 +208,13 @@ static Result try_all(Gpu *gpu, const GpuOptions *options, Error *attempts)
 {
     Error why;
     bool any_path = options->device < 0;
-    if (options->backend != GPU_BACKEND_OSMESA) {
+    if (options->backend != BACKEND_OSMESA) {
         if (try_devices(gpu, options, attempts) == RESULT_OK) return RESULT_OK;
         if (any_path && try_egl(gpu, options, NULL, "EGL surfaceless", &why) == RESULT_OK)
             return RESULT_OK;
         if (any_path) note_failure(attempts, "EGL surfaceless", &why);
     }
-    if (options->backend != GPU_BACKEND_EGL && any_path) {
+    if (options->backend != BACKEND_EGL && any_path) {
         if (try_osmesa(gpu, options, &why) == RESULT_OK) return RESULT_OK;
         note_failure(attempts, "OSMesa", &why);
     }

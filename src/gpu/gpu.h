@@ -6,16 +6,15 @@
 #pragma once
 
 #include "base/error.h"
+#include "base/params.h"
 #include "gpu/gpu_egl.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 
-typedef enum GpuBackend { GPU_BACKEND_AUTO, GPU_BACKEND_EGL, GPU_BACKEND_OSMESA } GpuBackend;
-
 typedef struct GpuOptions {
-    GpuBackend backend;
+    Backend backend;
     int device;            // index as `gpu_list_devices` prints it; -1: the best one
     bool software;         // only CPU drivers
     bool require_hardware; // no CPU driver

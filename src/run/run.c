@@ -29,9 +29,7 @@ void run_destroy(Run *run)
 static GpuOptions gpu_options(const RunParams *params)
 {
     GpuOptions options = {
-        .backend = params->backend == BACKEND_EGL      ? GPU_BACKEND_EGL
-                   : params->backend == BACKEND_OSMESA ? GPU_BACKEND_OSMESA
-                                                       : GPU_BACKEND_AUTO,
+        .backend = (Backend)params->backend,
         .device = params->device,
         .software = params->software,
         .require_hardware = params->require_hardware,

@@ -296,7 +296,8 @@ void collision_push(Collision *collision, uint32_t batch, const GpuBuffer *state
     const HairBatch *hair = &collision->hair->batches[batch];
     collision->step.strand_count = hair->strand_count;
     collision->step.vertex_count = hair->vertex_count;
-    gpu_buffer_set_uniforms(&collision->uniforms, BIND_STEP, &collision->step, sizeof collision->step);
+    gpu_buffer_set_uniforms(&collision->uniforms, BIND_STEP, &collision->step,
+                            sizeof collision->step);
     if (hair->rest.texture) gpu_buffer_bind_texture(&hair->rest, BIND_REST);
     gpu_buffer_bind_texture(&hair->position, BIND_POSITION);
     gpu_buffer_bind_storage(&hair->position, BIND_POSITION_OUT);
