@@ -89,6 +89,9 @@ void main()
 
     Curve curve = curve_open(root, n);
     int points = curve.segments * curve.parts + 1;
+#if SHADOW
+    int lit = particle_address(s, 0, points); // where light at the strand's points has been found
+#endif
     vec3 here = curve_point(curve, 0), before = here;
     vec4 here_clip = clip_from_world * vec4(here, 1.0), before_clip = here_clip;
     vec4 box = vec4(1e6);
@@ -107,7 +110,7 @@ void main()
         p.at = project(clip_near(here_clip, before_clip, after_clip), radius);
 #if SHADOW
         shadow_fibre = vec2(2.0 * radius, shadow_opacity);
-        shadow_find(at, here);
+        shadow_find(lit + j * STRAND_TILE, here);
 #endif
         p.color = shade_particle(fibre, painter, at, here, unit(after - before), unit(eye - here));
         float reach = MITRE_MAX * (p.at.w + 1.0);

@@ -2,7 +2,7 @@
 // How much of a light reaches a point (needs shadow.h).
 //   SHADOW 0: all   1: approximated deep shadow map, as TressFX has it   2: deep opacity map
 //   SHADOW_BY_MESH 1: the mesh throws shadows, too
-//   SHADOW_FOUND 1: what hair leaves at each particle has been found before (cpu_shadow_light.h)
+//   SHADOW_FOUND 1: what hair leaves at each point of a strand has been found before (shadow_light.h)
 //   LIGHT_COUNT, SHADOW_MAPS: how many lights and maps, so that loops over them are unrolled; 0: any number
 #ifndef LIGHT_COUNT
 #define LIGHT_COUNT 0
@@ -17,7 +17,7 @@
 #if SHADOW
 #if SHADOW_FOUND
 layout(binding = BIND_SHADOW_LEFT) uniform samplerBuffer shadow_found;
-layout(location = SHADOW_PARTICLES_AT) uniform int shadow_particles;
+layout(location = SHADOW_POINTS_AT) uniform int shadow_points;
 #else
 layout(binding = BIND_DEPTHS) uniform samplerBuffer shadow_depths;
 #if SHADOW == 1
@@ -145,14 +145,14 @@ void shadow_keep(int light, float left)
 #endif
 }
 
-// Finds what is left of all lights at x, where the particle lies, a turn for each map: CPU drivers run both sides of every `if`,
-// so that lights without a map would cost as much as those with one.
-void shadow_find(int particle, vec3 x)
+// Finds what is left of all lights at x, where point `point` of a batch lies, a turn for each map: CPU drivers run both
+// sides of every `if`, so that lights without a map would cost as much as those with one.
+void shadow_find(int point, vec3 x)
 {
     for (int map = 0; map < shadow_maps; ++map) {
         vec4 of_light = shadow_params.place[map];
 #if SHADOW_FOUND
-        float left = texelFetch(shadow_found, map * shadow_particles + particle).x;
+        float left = texelFetch(shadow_found, map * shadow_points + point).x;
 #else
         vec4 place = vec4(x, 1.0) * shadow_params.from_world[map];
         vec2 texel = place.xy / place.w;

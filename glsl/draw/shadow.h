@@ -26,9 +26,9 @@
 #define BIND_LAYERS      11
 #define BIND_DEPTHS      12
 #define BIND_SHADOW_MESH 13
-#define BIND_SHADOW_LEFT 14 // float a map and particle, see shadow.glsl
+#define BIND_SHADOW_LEFT 14 // float a map and point of a strand, see shadow.glsl
 
-#define SHADOW_PARTICLES_AT 4 // location of a uniform: particles of a batch
+#define SHADOW_POINTS_AT 4 // location of a uniform: points of a batch
 
 // Of each map the light's view, by the rows of a matrix that a point (x, y, z, 1) is multiplied
 // with.

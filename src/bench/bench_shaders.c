@@ -157,9 +157,9 @@ static Result try_shadows(Renderer *renderer, Error *error)
     for (unsigned variant = 0;
          variant < CAST_VARIANTS && options->shadow.kind != SHADOW_NONE && result == RESULT_OK;
          ++variant)
-        result = render_shadow_hair_build(&renderer->shadow.hair, variant, error);
+        result = hair_shadow_build(&renderer->shadow.hair, variant, error);
     if (result == RESULT_OK && options->shadow.kind != SHADOW_NONE)
-        result = render_shadow_mesh_reserve(&renderer->shadow.mesh, 1, error);
+        result = shadows_reserve_mesh(&renderer->shadow, 1, error);
     if (result == RESULT_OK) result = render_floor_build(&renderer->base.floor, error);
     for (int count = 0; count <= 2; count += 2) {
         render_base_count(&renderer->base, count, options->shadow.kind != SHADOW_NONE ? count : 0);

@@ -73,7 +73,7 @@ static void add_ribbon(ShadowReference *reference, const Place *a, const Place *
 
 static bool find_point(const ShadowReference *reference, const float x[3], double at[3])
 {
-    bool seen = light_view_place(&reference->view, (double[3]){x[0], x[1], x[2]}, at);
+    bool seen = light_frame_place(&reference->view, (double[3]){x[0], x[1], x[2]}, at);
     if (reference->view.perspective) at[2] = seen ? -1 / at[2] : -1;
     return seen;
 }
@@ -206,7 +206,7 @@ Result shadow_reference_create(ShadowReference *reference, const ReferenceScene 
 {
     size_t most = scene->mesh ? scene->mesh->triangle_count : 0;
     for (uint32_t i = 0; i < scene->item_count; ++i) most += scene->items[i].strands->vertex_count;
-    *reference = (ShadowReference){.view = light_view(light, middle)};
+    *reference = (ShadowReference){.view = light_frame_view(light, middle)};
     reference->shapes = malloc((most + 1) * sizeof *reference->shapes);
     if (!reference->shapes)
         return error_set(error, RESULT_FAILED, "no memory for %zu shapes", most);
@@ -248,7 +248,7 @@ double shadow_reference_light(const ShadowReference *reference, const double poi
                               double clearance)
 {
     double place[3], light = 1;
-    if (!light_view_place(&reference->view, point, place)) return 1;
+    if (!light_frame_place(&reference->view, point, place)) return 1;
     for (int k = 0; k < 2; ++k) {
         double cell = (place[k] - reference->low[k]) / reference->step[k];
         if (!(cell >= 0 && cell <= reference->side)) return 1;

@@ -9,7 +9,7 @@
 #pragma once
 
 #include "bench/image_reference.h"
-#include "draw/light_view.h"
+#include "draw/light_frame.h"
 
 // A zeroed struct is empty.
 typedef struct ShadowReference {

@@ -3,7 +3,27 @@
 // it.
 #pragma once
 
-#include "draw/light_view.h"
+#include "scene/scene.h"
+
+#include <stdbool.h>
+
+// A point's place before the light: (u, v) across and the depth along the way of the light. Three
+// axes at right angles; u, v and depth are metres along them for a directional light. Before a lamp
+// depth is metres from its plane, and u and v are metres for each metre of depth.
+typedef struct LightView {
+    double axis[3][3]; // unit: of u, of v, of depth
+    double origin[3];  // m
+    bool perspective;
+} LightView;
+
+// A lamp looks at `middle` (world, m).
+LightView light_frame_view(const Light *light, const float middle[3]);
+
+// Row k of the matrix by which (x, y, z, 1) becomes (u w, v w, depth, w).
+void light_frame_row(const LightView *view, int k, double row[4]);
+
+// place: u, v, depth. `x`: world, m. False if it does not lie before the light.
+bool light_frame_place(const LightView *view, const double x[3], double place[3]);
 
 // Beyond these, u and v before a light do not count: a lamp sees no farther than 75 degrees off its
 // axis, and what lies 1,000 km away is broken.

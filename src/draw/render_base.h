@@ -8,7 +8,7 @@
 
 #include "draw/render_floor.h"
 #include "draw/render_mesh.h"
-#include "draw/render_shadow.h"
+#include "draw/shadows.h"
 #include "gpu/gpu_timer.h"
 
 // A part of a picture: in one without a mesh; beside the mesh, whose shadow may be there; or where
@@ -24,7 +24,7 @@ typedef struct RenderBase {
     int light_count, map_count; // that these are for
     GLuint vertex_array;        // without attributes
     DrawParams drawn;           // what the target's surface and base show
-    uint64_t shadowed;          // RenderShadow.version of it
+    uint64_t shadowed;          // Shadows.version of it
     bool any;
     uint64_t version;       // counts the times that anything was drawn
     uint64_t depth_version; // counts the times that the target's depth was
@@ -33,9 +33,9 @@ typedef struct RenderBase {
 // A picture of it. Boxes in samples: x, y lowest, highest; outside of them is background.
 typedef struct BaseScene {
     const Floor *floor;
-    const RenderShadow *shadow; // what mesh and floor receive, which is bound
-    const DrawParams *draw;     // uploaded
-    const int *mesh_box, *box;  // [4]: of the mesh, of mesh and floor
+    const Shadows *shadow;     // what mesh and floor receive, which is bound
+    const DrawParams *draw;    // uploaded
+    const int *mesh_box, *box; // [4]: of the mesh, of mesh and floor
 } BaseScene;
 
 // Whether there is more than background.

@@ -25,6 +25,11 @@ MaterialParams look_material(const Look *look, const HairBatch *batch)
     return material;
 }
 
+uint32_t look_points(const Look *look, const HairBatch *batch)
+{
+    return (batch->vertex_count - 1) * look_material(look, batch).smooth_parts + 1;
+}
+
 // A light that is read at a number known when compiling costs a fifth of one in a loop.
 int look_unrolled(int light_count)
 {
@@ -75,7 +80,7 @@ static void use_lights(const Look *look, const HairBatch *batch)
     uint32_t i = 0;
     while (i + 1 < look->batches && look->lights[i].batch != batch) ++i;
     gpu_buffer_bind_texture(&look->lights[i].left, BIND_SHADOW_LEFT);
-    glUniform1i(SHADOW_PARTICLES_AT, (GLint)(hair_slots(batch) * batch->vertex_count));
+    glUniform1i(SHADOW_POINTS_AT, (GLint)(hair_slots(batch) * look_points(look, batch)));
 }
 
 Result look_programs_use(LookPrograms *programs, const Look *look, const HairBatch *batch,

@@ -27,10 +27,10 @@ typedef enum LookFeature {
 
 enum { LOOK_SHADED = 512, LOOK_VARIANTS = 4 * LOOK_SHADED };
 
-// What hair leaves of light at the particles of a batch.
+// What hair leaves of light at the points of a batch (look_points), laid out as its particles are.
 typedef struct ParticleLight {
     const HairBatch *batch;
-    GpuBuffer left; // float a shadow map and particle, 0..1
+    GpuBuffer left; // float a shadow map and point, 0..1
 } ParticleLight;
 
 typedef struct Look {
@@ -49,6 +49,9 @@ typedef struct Look {
 // grows and falls with it without a step; and the parts of a segment, of which a strand has no more
 // than CPU drivers' loops can visit.
 MaterialParams look_material(const Look *look, const HairBatch *batch);
+
+// Points of each of the batch's strands: its particles, or those of its curve.
+uint32_t look_points(const Look *look, const HairBatch *batch);
 
 // The variants of one compute shader, for so many lights and shadow maps; a zeroed struct with a
 // file and a group size has none yet.

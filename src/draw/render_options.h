@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/params.h"
-#include "draw/render_shadow.h"
+#include "draw/shadows.h"
 #include "image/image.h"
 #include "scene/camera.h"
 #include "scene/floor.h"

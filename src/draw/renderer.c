@@ -74,8 +74,8 @@ Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
     if (result == RESULT_OK) result = RASTERS[renderer->raster].create(renderer, error);
     if (result == RESULT_OK) result = make_base(renderer, error);
     if (result == RESULT_OK && options->shadow.kind != SHADOW_NONE)
-        result = render_shadow_create(&renderer->shadow, &gpu->limits, &options->shadow,
-                                      gpu->software, error);
+        result =
+            shadows_create(&renderer->shadow, &gpu->limits, &options->shadow, gpu->software, error);
     if (result != RESULT_OK) renderer_destroy(renderer);
     return result;
 }
@@ -86,7 +86,7 @@ void renderer_destroy(Renderer *renderer)
     render_quads_destroy(&renderer->quads);
     render_blocks_destroy(&renderer->blocks);
     render_base_destroy(&renderer->base);
-    render_shadow_destroy(&renderer->shadow);
+    shadows_destroy(&renderer->shadow);
     free(renderer->casters);
     picture_destroy(&renderer->picture);
     *renderer = (Renderer){0};
@@ -158,13 +158,13 @@ static Result draw_shadow(Renderer *renderer, const RenderFrame *frame, Error *e
     if (picture->item_count) picture_find_middle(picture, picture->items[0].hair, scene.middle);
     Result result = list_casters(renderer, &scene, error);
     if (result == RESULT_OK)
-        result = render_shadow_draw(&renderer->shadow, &scene, renderer->timer, error);
+        result = shadows_draw(&renderer->shadow, &scene, renderer->timer, error);
     if (result != RESULT_OK) return result;
-    render_shadow_bind(&renderer->shadow);
+    shadows_bind(&renderer->shadow);
     for (uint32_t i = 0; i < picture->item_count; ++i) {
         Look *look = &picture->looks[i];
         look->map_count = renderer->shadow.params.maps;
-        if (render_shadow_hair_lights(&renderer->shadow.hair, &look->lights, &look->batches))
+        if (hair_shadow_lights(&renderer->shadow.hair, &look->lights, &look->batches))
             look->features |= LOOK_SHADOW_FOUND;
     }
     return RESULT_OK;

@@ -17,7 +17,7 @@ typedef struct Renderer {
     RenderQuads quads;
     RenderBlocks blocks;
     RenderBase base;
-    RenderShadow shadow;
+    Shadows shadow;
     ShadowCaster *casters; // [caster_room], owned
     uint32_t caster_room;
     Picture picture; // the last one

@@ -203,7 +203,7 @@ static void strands_left_out_cast_no_shadow(void **state)
     gpu_timer_create(&timer, false, true);
     assert_int_equal(drawn, 1);
     for (uint32_t pass = 0; pass < 2; ++pass) { // a share that changes makes them anew
-        NEEDED(render_shadow_draw(&stage.shadow, &stage.scene, &timer, error));
+        NEEDED(shadows_draw(&stage.shadow, &stage.scene, &timer, error));
         assert_int_equal(stage.shadow.maps_drawn, pass);
         look->share = 0.5f;
     }
@@ -229,11 +229,11 @@ static void maps_are_kept_while_nothing_changes(void **state)
     for (size_t i = 0; i < sizeof pictures / sizeof *pictures; ++i) {
         stage.scene.revision = pictures[i].revision;
         stage.light.direction[0] = pictures[i].way;
-        NEEDED(render_shadow_draw(&stage.shadow, &stage.scene, &timer, error));
+        NEEDED(shadows_draw(&stage.shadow, &stage.scene, &timer, error));
         assert_int_equal(stage.shadow.maps_drawn, pictures[i].drawn);
     }
     stage.light.shadow = false;
-    NEEDED(render_shadow_draw(&stage.shadow, &stage.scene, &timer, error));
+    NEEDED(shadows_draw(&stage.shadow, &stage.scene, &timer, error));
     assert_int_equal(stage.shadow.maps_drawn, 0);
     expect_light(&stage, 0.1f, -0.5f, 0, 1, 0);
     shadow_stage_close(&stage);

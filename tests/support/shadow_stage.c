@@ -47,7 +47,7 @@ void shadow_stage_open(ShadowStage *stage, Strands strands, float radius, float 
 
 void shadow_stage_close(ShadowStage *stage)
 {
-    render_shadow_destroy(&stage->shadow);
+    shadows_destroy(&stage->shadow);
     render_mesh_destroy(&stage->mesh);
     hair_destroy(&stage->hair);
     shadow_reference_destroy(&stage->reference);
@@ -62,11 +62,10 @@ void shadow_stage_draw(ShadowStage *stage, Shadow kind, int side, float spacing,
     gpu_timer_create(&timer, false, true);
     DrawParams draw = {.head_rotation = {0, 0, 0, 1}};
     gpu_buffer_set_uniforms(&uniforms, BIND_DRAW, &draw, sizeof draw);
-    render_shadow_destroy(&stage->shadow);
+    shadows_destroy(&stage->shadow);
     const ShadowOptions options = {kind, side, spacing};
-    NEEDED(render_shadow_create(&stage->shadow, &fixture_gpu()->limits, &options, by_processor,
-                                error));
-    NEEDED(render_shadow_draw(&stage->shadow, &stage->scene, &timer, error));
+    NEEDED(shadows_create(&stage->shadow, &fixture_gpu()->limits, &options, by_processor, error));
+    NEEDED(shadows_draw(&stage->shadow, &stage->scene, &timer, error));
     gpu_timer_destroy(&timer);
     gpu_buffer_destroy(&uniforms);
 }
@@ -91,7 +90,7 @@ float *shadow_stage_light(ShadowStage *stage, const float (*points)[4], uint32_t
     NEEDED(gpu_buffer_create(&out, limits, "shares", groups * 8 * 4, NULL, 0, error));
     gpu_buffer_bind_storage(&in, 0);
     gpu_buffer_bind_storage(&out, 1);
-    render_shadow_bind(&stage->shadow);
+    shadows_bind(&stage->shadow);
     glUseProgram(program);
     glUniform2f(0, stage->on_fibre ? 2 * stage->item.radius : 0, stage->material.shadow_opacity);
     glDispatchCompute(groups, 1, 1);

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "bench/shadow_reference.h"
-#include "draw/render_shadow.h"
+#include "draw/shadows.h"
 #include "support/hair_fixture.h"
 #include "support/needed.h"
 
@@ -27,7 +27,7 @@ typedef struct ShadowStage {
     ShadowCaster casters[8];
     ShadowScene scene;
     RenderMesh mesh;
-    RenderShadow shadow;
+    Shadows shadow;
     bool on_fibre; // points that are asked for lie in the middle of fibres
     Light light;
 } ShadowStage;

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "draw/cpu_shadow.h"
+#include "draw/shadow_map.h"
 
-#include "draw/cpu_shadow_maps.h"
-#include "draw/cpu_tile.h"
+#include "draw/shadow_tile.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+// Lines of each thread's part of `rows`: three rows of all layers, and two more.
+enum { LINES = 3 * LAYERS + 2 };
 
 // As in shadow_splat.comp.
 static const float MOST_ALONG = 512, MOST = 7500, LEAST_LEFT = 1e-3f, WIDE = 1.5f;
@@ -29,9 +31,9 @@ typedef struct Points {
 } Points;
 
 typedef struct Cast {
-    CpuShadow *shadow;
+    ShadowMap *shadow;
     const CastParams *params;
-    CpuCasters casters;
+    MappedCasters casters;
     Density density;
     bool deep;
     float (*box)[6]; // [parts]
@@ -45,34 +47,34 @@ static size_t count_parts(size_t map_bytes)
     return parts <= most ? parts : most ? most : 1;
 }
 
-Result cpu_shadow_create(CpuShadow *shadow, int side, bool deep, Error *error)
+Result shadow_map_create(ShadowMap *shadow, int side, bool deep, Error *error)
 {
     size_t texels = (size_t)side * (size_t)side,
            parts = count_parts((deep ? LAYERS : 1) * texels * sizeof *shadow->sums),
            coarse = (size_t)(deep ? side / SHADOW_COARSE : side);
-    *shadow = (CpuShadow){.side = side, .coarse = (int)coarse, .deep = deep, .parts = (int)parts};
+    *shadow = (ShadowMap){.side = side, .coarse = (int)coarse, .deep = deep, .parts = (int)parts};
     shadow->first = malloc(parts * coarse * coarse * sizeof *shadow->first);
     if (deep) {
         shadow->least = malloc(2 * (coarse + 2) * (coarse + 2) * sizeof *shadow->least);
         shadow->depths = malloc(texels * sizeof *shadow->depths);
         shadow->sums = malloc(parts * LAYERS * texels * sizeof *shadow->sums);
-        shadow->rows = malloc(parts * CPU_SHADOW_LINES * ((size_t)side + 2) * sizeof *shadow->rows);
+        shadow->rows = malloc(parts * LINES * ((size_t)side + 2) * sizeof *shadow->rows);
     }
     if (shadow->first &&
         (!deep || (shadow->least && shadow->depths && shadow->sums && shadow->rows)))
         return RESULT_OK;
-    cpu_shadow_destroy(shadow);
+    shadow_map_destroy(shadow);
     return error_set(error, RESULT_FAILED, "no memory for shadow maps of %d texels", side);
 }
 
-void cpu_shadow_destroy(CpuShadow *shadow)
+void shadow_map_destroy(ShadowMap *shadow)
 {
     free(shadow->first);
     free(shadow->least);
     free(shadow->depths);
     free(shadow->sums);
     free(shadow->rows);
-    *shadow = (CpuShadow){0};
+    *shadow = (ShadowMap){0};
 }
 
 // --- The box.
@@ -81,10 +83,10 @@ void cpu_shadow_destroy(CpuShadow *shadow)
 SIMD_INLINE void widen_box(const Cast *cast, const Tile *tile, int j, float box[6][W])
 {
     const CastParams *params = cast->params;
-    const float(*x)[4] = tile->caster->position + tile->at + (size_t)j * W;
-    float limit = params->limit, reach = params->reach;
+    float curve[W][4], limit = params->limit, reach = params->reach;
+    const float(*x)[4] = find_points(tile, j, curve);
     Places p;
-    find_places(params, tile, j, &p);
+    project_points(params, x, &p);
     float place[3][W];
     for (int k = 0; k < W; ++k) {
         bool sound = (k < tile->strands) & (fabsf(x[k][0]) < limit) & (fabsf(x[k][1]) < limit) &
@@ -107,12 +109,11 @@ SIMD_INLINE void find_box(const Cast *cast, int part)
     for (int k = 0; k < W; ++k)
         for (int i = 0; i < 6; ++i) box[i][k] = i < 3 ? INFINITY : -INFINITY;
     for (uint32_t c = 0; c < cast->casters.count; ++c) {
-        const CpuCaster *caster = &cast->casters.list[c];
+        const MappedCaster *caster = &cast->casters.list[c];
         find_range(caster, part, cast->shadow->parts, range);
         for (int t = range[0]; t < range[1]; ++t) {
             Tile tile = open_tile(caster, t);
-            for (int j = 0; j < (int)caster->material.vertex_count; ++j)
-                widen_box(cast, &tile, j, box);
+            for (int j = 0; j < mapped_caster_points(caster); ++j) widen_box(cast, &tile, j, box);
         }
     }
     float *whole = cast->box[part];
@@ -245,7 +246,7 @@ SIMD_INLINE void keep_firsts(const Cast *cast, const Points *points, float *firs
 static void lay_wide(const Cast *cast, const Tile *tile, const Points *p, int k, uint32_t *sums,
                      float *first)
 {
-    const CpuShadow *shadow = cast->shadow;
+    const ShadowMap *shadow = cast->shadow;
     int side = cast->deep ? shadow->side : shadow->coarse, along = (int)p->along[k];
     float across =
               simd_min(simd_ceil(p->width[k] * cast->density.wide), floorf(MOST / p->along[k])),
@@ -275,7 +276,7 @@ SIMD_INLINE void lay_tile(const Cast *cast, const Tile *tile, bool deep, uint32_
     Places ends[2];
     Points points;
     find_places(cast->params, tile, 0, &ends[0]);
-    for (int j = 1; j < (int)tile->caster->material.vertex_count; ++j) {
+    for (int j = 1; j < mapped_caster_points(tile->caster); ++j) {
         find_places(cast->params, tile, j, &ends[j % 2]);
         lay_points(cast, tile, &ends[(j + 1) % 2], &ends[j % 2], &points);
         if (deep)
@@ -289,7 +290,7 @@ SIMD_INLINE void lay_tile(const Cast *cast, const Tile *tile, bool deep, uint32_
 
 SIMD_INLINE void lay_hair(const Cast *cast, int part, bool deep)
 {
-    const CpuShadow *shadow = cast->shadow;
+    const ShadowMap *shadow = cast->shadow;
     size_t texels = (size_t)shadow->side * (size_t)shadow->side,
            coarse = (size_t)shadow->coarse * (size_t)shadow->coarse;
     uint32_t *sums = deep ? shadow->sums + (size_t)part * LAYERS * texels : NULL;
@@ -298,7 +299,7 @@ SIMD_INLINE void lay_hair(const Cast *cast, int part, bool deep)
     if (deep) memset(sums, 0, LAYERS * texels * sizeof *sums);
     for (size_t i = 0; !deep && i < coarse; ++i) first[i] = 1;
     for (uint32_t c = 0; c < cast->casters.count; ++c) {
-        const CpuCaster *caster = &cast->casters.list[c];
+        const MappedCaster *caster = &cast->casters.list[c];
         find_range(caster, part, cast->shadow->parts, range);
         for (int t = range[0]; t < range[1]; ++t) {
             Tile tile = open_tile(caster, t);
@@ -318,11 +319,136 @@ SIMD_INLINE void splat(const Cast *cast, int part)
 SIMD_STAGE(find_box, Cast)
 SIMD_STAGE(splat, Cast)
 
-bool cpu_shadow_find_box(const CpuShadow *shadow, const CastParams *params, CpuCasters casters,
+// --- From the points that threads have laid down in maps of their own to one map.
+
+typedef struct Finish {
+    const ShadowMap *shadow;
+    float unit;
+    uint32_t *layers; // [LAYERS][side][side]
+} Finish;
+
+// A row's sums of all threads, smoothed with their neighbours (1 2 1); beyond the edges stand the
+// outermost again.
+SIMD_INLINE void gather_row(const ShadowMap *shadow, int row, float *line, float *smooth)
+{
+    int side = shadow->side;
+    row = row < 0 ? 0 : row >= side ? side - 1 : row;
+    size_t width = (size_t)side, map = width * LAYERS * width;
+    for (size_t layer = 0; layer < LAYERS; ++layer, smooth += side) {
+        const uint32_t *sums = shadow->sums + ((size_t)row * LAYERS + layer) * width;
+        for (int x = 0; x < side; ++x) line[x + 1] = (float)(int)sums[x];
+        for (int part = 1; part < shadow->parts; ++part) {
+            sums += map;
+            for (int x = 0; x < side; ++x) line[x + 1] += (float)(int)sums[x];
+        }
+        line[0] = line[1];
+        line[side + 1] = line[side];
+        for (int x = 0; x < side; ++x) smooth[x] = line[x] + 2 * line[x + 1] + line[x + 2];
+    }
+}
+
+// As pack_layer of shadow_layer.glsl.
+SIMD_INLINE uint32_t pack_layer(float before, float own)
+{
+    const float steps = 4096, most = 65535;
+    return (uint32_t)(int)simd_min(before * steps + 0.5f, most) |
+           (uint32_t)(int)simd_min(own * steps + 0.5f, most) << 16;
+}
+
+// Smooths the other way and adds up, layer by layer: three rows of all layers to one.
+SIMD_INLINE void finish_row(const Finish *maps, int row, float *const rows[3], float *before)
+{
+    size_t side = (size_t)maps->shadow->side;
+    float scale = 1 / (16 * maps->unit);
+    for (size_t x = 0; x < side; ++x) before[x] = 0;
+    for (size_t layer = 0; layer < LAYERS; ++layer) {
+        const float *a = rows[0] + layer * side, *b = rows[1] + layer * side,
+                    *c = rows[2] + layer * side;
+        uint32_t *out = maps->layers + (layer * side + (size_t)row) * side;
+        for (size_t x = 0; x < side; ++x) {
+            float own = scale * (a[x] + 2 * b[x] + c[x]);
+            out[x] = pack_layer(before[x], own);
+            before[x] += own;
+        }
+    }
+}
+
+SIMD_INLINE void finish(const Finish *maps, int part)
+{
+    const ShadowMap *shadow = maps->shadow;
+    size_t side = (size_t)shadow->side;
+    int row = shadow->side * part / shadow->parts, end = shadow->side * (part + 1) / shadow->parts;
+    float *line = shadow->rows + (size_t)part * LINES * (side + 2), *before = line + side + 2,
+          *rows[3];
+    for (int i = 0; i < 3; ++i) rows[i] = before + side + 2 + (size_t)i * LAYERS * side;
+    gather_row(shadow, row - 1, line, rows[0]);
+    gather_row(shadow, row, line, rows[1]);
+    for (; row < end; ++row) {
+        gather_row(shadow, row + 1, line, rows[2]);
+        finish_row(maps, row, rows, before);
+        float *above = rows[0];
+        rows[0] = rows[1], rows[1] = rows[2], rows[2] = above;
+    }
+}
+
+SIMD_STAGE(finish, Finish)
+
+// The least of all threads' first depths, in those of the first.
+static void merge_firsts(ShadowMap *shadow)
+{
+    size_t texels = (size_t)shadow->coarse * (size_t)shadow->coarse;
+    for (size_t part = 1; part < (size_t)shadow->parts; ++part)
+        for (size_t i = 0; i < texels; ++i)
+            shadow->first[i] = simd_min(shadow->first[part * texels + i], shadow->first[i]);
+}
+
+static int within(int i, int count)
+{
+    return i < 0 ? 0 : i >= count ? count - 1 : i;
+}
+
+// Of `count` values the least of three neighbours, from the place before the first to the one
+// behind the last; strides are those of in and out.
+static void find_least(const float *in, float *out, int count, size_t stride)
+{
+    for (int i = -1; i <= count; ++i) {
+        float here = in[(size_t)within(i, count) * stride];
+        here = simd_min(in[(size_t)within(i - 1, count) * stride], here);
+        out[(size_t)(i + 1) * stride] = simd_min(in[(size_t)within(i + 1, count) * stride], here);
+    }
+}
+
+// Merged first depths to `depths`, as shadow_spread.comp: the least of 3 x 3 coarse texels, then
+// linear between them.
+static void spread(ShadowMap *shadow)
+{
+    enum { C = SHADOW_COARSE };
+    int side = shadow->side, coarse = shadow->coarse, wide = coarse + 2;
+    float *least = shadow->least, *line = least + wide * wide;
+    for (int x = 0; x < coarse; ++x) // down each column, at its place in rows of `wide`
+        for (int y = 0; y < coarse; ++y) line[y * wide + x] = shadow->first[y * coarse + x];
+    for (int x = 0; x < coarse; ++x) find_least(line + x, least + x, coarse, (size_t)wide);
+    for (int y = 0; y < wide; ++y) find_least(least + y * wide, line + y * wide, coarse, 1);
+    for (int y = 0; y < side; ++y) {
+        const float *above = line + (y + C / 2) / C * wide, *below = above + wide;
+        float share = ((float)((y + C / 2) % C) + 0.5f) / C, *out = shadow->depths + y * side;
+        for (int x = 0; x < side; ++x) {
+            int i = (x + C / 2) / C;
+            float along = ((float)((x + C / 2) % C) + 0.5f) / C;
+            float left = above[i] + share * (below[i] - above[i]),
+                  right = above[i + 1] + share * (below[i + 1] - above[i + 1]);
+            out[x] = left + along * (right - left);
+        }
+    }
+}
+
+// --- Whole maps.
+
+bool shadow_map_find_box(const ShadowMap *shadow, const CastParams *params, MappedCasters casters,
                          double box[6])
 {
     float boxes[PARALLEL_MOST][6];
-    CpuShadow drawn = *shadow;
+    ShadowMap drawn = *shadow;
     Cast cast = {.shadow = &drawn, .params = params, .casters = casters, .box = boxes};
     run_find_box(&cast, shadow->parts);
     for (int i = 0; i < 6; ++i) {
@@ -335,8 +461,8 @@ bool cpu_shadow_find_box(const CpuShadow *shadow, const CastParams *params, CpuC
 }
 
 // `coarse`: how many of the map's texels one of the first depths is wide.
-static void find_firsts(CpuShadow *shadow, const CastParams *params, CpuCasters casters, int coarse,
-                        Density density)
+static void find_firsts(ShadowMap *shadow, const CastParams *params, MappedCasters casters,
+                        int coarse, Density density)
 {
     CastParams wide = *params;
     wide.texels /= (float)coarse;
@@ -344,10 +470,10 @@ static void find_firsts(CpuShadow *shadow, const CastParams *params, CpuCasters 
         for (int i = 0; i < 4; ++i) wide.from_world[k][i] /= (float)coarse;
     Cast cast = {.shadow = shadow, .params = &wide, .casters = casters, .density = density};
     run_splat(&cast, shadow->parts);
-    cpu_shadow_merge_firsts(shadow);
+    merge_firsts(shadow);
 }
 
-void cpu_shadow_draw_deep(CpuShadow *shadow, const CastParams *params, CpuCasters casters,
+void shadow_map_draw_deep(ShadowMap *shadow, const CastParams *params, MappedCasters casters,
                           float *depths, uint32_t *layers)
 {
     Cast cast = {.shadow = shadow,
@@ -356,13 +482,13 @@ void cpu_shadow_draw_deep(CpuShadow *shadow, const CastParams *params, CpuCaster
                  .density = DEEP_POINTS,
                  .deep = true};
     find_firsts(shadow, params, casters, SHADOW_COARSE, COARSE_POINTS);
-    cpu_shadow_spread(shadow);
+    spread(shadow);
     run_splat(&cast, shadow->parts);
-    cpu_shadow_finish(shadow, params->unit, layers);
+    run_finish(&(Finish){shadow, params->unit, layers}, shadow->parts);
     memcpy(depths, shadow->depths, (size_t)shadow->side * (size_t)shadow->side * sizeof *depths);
 }
 
-void cpu_shadow_draw_firsts(CpuShadow *shadow, const CastParams *params, CpuCasters casters,
+void shadow_map_draw_firsts(ShadowMap *shadow, const CastParams *params, MappedCasters casters,
                             uint32_t *firsts)
 {
     size_t texels = (size_t)shadow->side * (size_t)shadow->side;

@@ -4,10 +4,23 @@
 // (glsl/draw/shadow.glsl).
 #pragma once
 
-#include "draw/render_shadow_hair.h"
-#include "draw/render_shadow_mesh.h"
+#include "draw/hair_shadow.h"
+#include "draw/render_mesh.h"
 #include "gpu/gpu_timer.h"
 #include "scene/scene.h"
+
+// How far each light sees before the mesh stands in its way: plain depth maps.
+typedef struct MeshShadow {
+    GLuint program;
+    GLuint depth, frame; // a square for each map, one below the other
+    int maps;            // there is room for
+} MeshShadow;
+
+// The mesh where the head has carried it.
+typedef struct ShadowMesh {
+    const RenderMesh *mesh;
+    float rotation[4], translation[3]; // m; as the DrawParams block has them
+} ShadowMesh;
 
 typedef struct ShadowOptions {
     Shadow kind;   // not none
@@ -25,10 +38,10 @@ typedef struct ShadowScene {
     uint64_t revision; // another one wherever positions differ; 0: never the same
 } ShadowScene;
 
-typedef struct RenderShadow {
+typedef struct Shadows {
     ShadowOptions options;
-    RenderShadowHair hair;
-    RenderShadowMesh mesh;
+    HairShadow hair;
+    MeshShadow mesh;
     GpuBuffer uniforms;
     ShadowParams params;
     ShadowScene drawn; // what the maps show; pointers are not followed
@@ -37,19 +50,21 @@ typedef struct RenderShadow {
     uint32_t caster_room;
     bool any;
     uint64_t version;    // counts the times that they were made
-    uint32_t maps_drawn; // in the last render_shadow_draw
-} RenderShadow;
+    uint32_t maps_drawn; // in the last shadows_draw
+} Shadows;
 
-// `by_processor`: C makes the maps where it can, for CPU drivers, which share its memory.
-Result render_shadow_create(RenderShadow *shadow, const GpuLimits *limits,
-                            const ShadowOptions *options, bool by_processor, Error *error);
-void render_shadow_destroy(RenderShadow *shadow);
+// `by_processor`: C makes the maps, for CPU drivers, which share its memory.
+Result shadows_create(Shadows *shadow, const GpuLimits *limits, const ShadowOptions *options,
+                      bool by_processor, Error *error);
+void shadows_destroy(Shadows *shadow);
+
+// Room for so many maps of a mesh, and their shader. RESULT_FAILED if memory is short.
+Result shadows_reserve_mesh(Shadows *shadow, int maps, Error *error);
 
 // Makes the map of each light that casts shadows, unless they show this scene already. Waits for
 // the GPU, changes framebuffer and viewport. Needs the DrawParams block. RESULT_FAILED if memory is
 // short.
-Result render_shadow_draw(RenderShadow *shadow, const ShadowScene *scene, GpuTimer *timer,
-                          Error *error);
+Result shadows_draw(Shadows *shadow, const ShadowScene *scene, GpuTimer *timer, Error *error);
 
 // Binds what glsl/draw/shadow.glsl reads.
-void render_shadow_bind(RenderShadow *shadow);
+void shadows_bind(Shadows *shadow);

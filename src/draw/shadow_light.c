@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "draw/cpu_shadow_light.h"
+#include "draw/shadow_light.h"
 
-#include "draw/cpu_tile.h"
+#include "draw/shadow_tile.h"
 
 // As light_through_hair of shadow.glsl finds it.
 typedef struct Search {
-    const CpuShadow *shadow;
+    const ShadowMap *shadow;
     const CastParams *params;
-    const CpuCaster *caster;
+    const MappedCaster *caster;
     const uint32_t *layers; // [LAYERS][side][side]
     float across, *left;
     float last; // LAYERS - 1e-3: a bound that compilers know makes them jump
@@ -92,23 +92,25 @@ SIMD_INLINE void find_lights(const Search *search, const Tile *tile, const Place
 
 SIMD_INLINE void find_light(const Search *search, int part)
 {
-    const CpuCaster *caster = search->caster;
+    const MappedCaster *caster = search->caster;
     Places places;
     int range[2];
     find_range(caster, part, search->shadow->parts, range);
     for (int t = range[0]; t < range[1]; ++t) {
         Tile tile = open_tile(caster, t);
-        for (int j = 0; j < (int)caster->material.vertex_count; ++j) {
+        for (int j = 0; j < mapped_caster_points(caster); ++j) {
             find_places(search->params, &tile, j, &places);
-            find_lights(search, &tile, &places, search->left + tile.at + (size_t)j * W);
+            find_lights(search, &tile, &places,
+                        search->left +
+                            ((size_t)t * (size_t)mapped_caster_points(caster) + (size_t)j) * W);
         }
     }
 }
 
 SIMD_STAGE(find_light, Search)
 
-void cpu_shadow_find_light(CpuShadow *shadow, const CastParams *params, const CpuCaster *caster,
-                           float across, const uint32_t *layers, float *left)
+void shadow_light_find(ShadowMap *shadow, const CastParams *params, const MappedCaster *caster,
+                       float across, const uint32_t *layers, float *left)
 {
     Search search = {.shadow = shadow,
                      .params = params,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "draw/render_shadow_hair.h"
+#include "draw/hair_shadow.h"
 
 #include <math.h>
 #include <string.h>
@@ -42,7 +42,7 @@ static unsigned variant_of(const ShadowCaster *caster)
            (caster->look.features & LOOK_SMOOTH ? CAST_SMOOTH : 0);
 }
 
-Result render_shadow_hair_build(RenderShadowHair *hair, unsigned variant, Error *error)
+Result hair_shadow_build(HairShadow *hair, unsigned variant, Error *error)
 {
     Result result =
         build(&hair->bounds[variant], "draw/shadow_bounds.comp", GROUP, FIRSTS, variant, error);
@@ -59,15 +59,15 @@ Result render_shadow_hair_build(RenderShadowHair *hair, unsigned variant, Error 
     return result;
 }
 
-Result render_shadow_hair_create(RenderShadowHair *hair, const GpuLimits *limits, bool deep,
-                                 int side, bool by_processor, Error *error)
+Result hair_shadow_create(HairShadow *hair, const GpuLimits *limits, bool deep, int side,
+                          bool by_processor, Error *error)
 {
-    *hair = (RenderShadowHair){
-        .deep = deep, .by_processor = by_processor, .side = side, .limits = limits};
-    return by_processor ? render_shadow_cpu_create(&hair->cpu, side, deep, error) : RESULT_OK;
+    *hair =
+        (HairShadow){.deep = deep, .by_processor = by_processor, .side = side, .limits = limits};
+    return by_processor ? hair_shadow_cpu_create(&hair->cpu, side, deep, error) : RESULT_OK;
 }
 
-static void destroy_maps(RenderShadowHair *hair)
+static void destroy_maps(HairShadow *hair)
 {
     gpu_buffer_destroy(&hair->firsts);
     gpu_buffer_destroy(&hair->depths);
@@ -82,7 +82,7 @@ static void destroy_programs(const GLuint *programs, int count)
         if (programs[i]) glDeleteProgram(programs[i]);
 }
 
-void render_shadow_hair_destroy(RenderShadowHair *hair)
+void hair_shadow_destroy(HairShadow *hair)
 {
     destroy_programs(hair->bounds, CAST_VARIANTS);
     destroy_programs(hair->first, CAST_VARIANTS);
@@ -90,14 +90,14 @@ void render_shadow_hair_destroy(RenderShadowHair *hair)
     destroy_programs(&hair->spread, 1);
     destroy_programs(&hair->finish, 1);
     destroy_maps(hair);
-    render_shadow_cpu_destroy(&hair->cpu);
+    hair_shadow_cpu_destroy(&hair->cpu);
     gpu_buffer_destroy(&hair->box);
     gpu_buffer_destroy(&hair->cast_uniforms);
     gpu_buffer_destroy(&hair->material);
-    *hair = (RenderShadowHair){0};
+    *hair = (HairShadow){0};
 }
 
-static Result make_buffer(GpuBuffer *buffer, const RenderShadowHair *hair, const char *what,
+static Result make_buffer(GpuBuffer *buffer, const HairShadow *hair, const char *what,
                           int64_t words, GLenum format, Error *error)
 {
     if (buffer->buffer) return RESULT_OK;
@@ -105,7 +105,7 @@ static Result make_buffer(GpuBuffer *buffer, const RenderShadowHair *hair, const
 }
 
 // What is read later.
-static Result make_maps(RenderShadowHair *hair, int maps, Error *error)
+static Result make_maps(HairShadow *hair, int maps, Error *error)
 {
     if (hair->maps < maps) {
         destroy_maps(hair);
@@ -122,7 +122,7 @@ static Result make_maps(RenderShadowHair *hair, int maps, Error *error)
 }
 
 // What shaders make them with.
-static Result make_scratch(RenderShadowHair *hair, ShadowCasters casters, Error *error)
+static Result make_scratch(HairShadow *hair, ShadowCasters casters, Error *error)
 {
     int64_t texels = (int64_t)hair->maps * hair->side * hair->side;
     Result result = make_buffer(&hair->box, hair, "light's box", BOX_WORDS, 0, error);
@@ -133,7 +133,7 @@ static Result make_scratch(RenderShadowHair *hair, ShadowCasters casters, Error 
         result = make_buffer(&hair->sums, hair, "shadow's sums", texels * SHADOW_LAYERS, GL_R32UI,
                              error);
     for (uint32_t i = 0; i < casters.count && result == RESULT_OK; ++i)
-        result = render_shadow_hair_build(hair, variant_of(&casters.list[i]), error);
+        result = hair_shadow_build(hair, variant_of(&casters.list[i]), error);
     return result;
 }
 
@@ -144,14 +144,12 @@ static void fill(const GpuBuffer *buffer, GLuint value)
                          GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
 }
 
-Result render_shadow_hair_begin(RenderShadowHair *hair, int maps, ShadowCasters casters,
-                                Error *error)
+Result hair_shadow_begin(HairShadow *hair, int maps, ShadowCasters casters, Error *error)
 {
-    hair->in_c = hair->by_processor && render_shadow_cpu_can(casters);
     Result result = make_maps(hair, maps, error);
-    if (result == RESULT_OK && hair->in_c)
-        return render_shadow_cpu_begin(&hair->cpu, hair->limits, maps, casters, &hair->depths,
-                                       hair->deep ? &hair->layers : &hair->firsts, error);
+    if (result == RESULT_OK && hair->by_processor)
+        return hair_shadow_cpu_begin(&hair->cpu, hair->limits, maps, casters, &hair->depths,
+                                     hair->deep ? &hair->layers : &hair->firsts, error);
     if (result == RESULT_OK) result = make_scratch(hair, casters, error);
     if (result != RESULT_OK) return result;
     fill(&hair->firsts, SHADOW_DEPTHS);
@@ -159,14 +157,14 @@ Result render_shadow_hair_begin(RenderShadowHair *hair, int maps, ShadowCasters 
     return result;
 }
 
-void render_shadow_hair_end(RenderShadowHair *hair)
+void hair_shadow_end(HairShadow *hair)
 {
-    if (hair->in_c) render_shadow_cpu_end(&hair->cpu);
+    if (hair->by_processor) hair_shadow_cpu_end(&hair->cpu);
 }
 
 // Runs a pass, which has a program for each variant, over all ribbons, in parts of `part` of a
 // strand's points.
-static void cast(RenderShadowHair *hair, ShadowCasters casters, const CastParams *params,
+static void cast(HairShadow *hair, ShadowCasters casters, const CastParams *params,
                  const GLuint programs[CAST_VARIANTS], uint32_t part)
 {
     gpu_buffer_set_uniforms(&hair->cast_uniforms, BIND_CAST, params, sizeof *params);
@@ -200,8 +198,8 @@ static void set_rows(CastParams *params, double rows[4][4])
         for (int i = 0; i < 4; ++i) params->from_world[k][i] = (float)rows[k][i];
 }
 
-bool render_shadow_hair_find_box(RenderShadowHair *hair, const LightView *view,
-                                 ShadowCasters casters, double box[6])
+bool hair_shadow_find_box(HairShadow *hair, const LightView *view, ShadowCasters casters,
+                          double box[6])
 {
     double rows[4][4];
     const GLint none[BOX_WORDS] = {INT32_MAX, INT32_MAX, INT32_MAX,
@@ -211,9 +209,9 @@ bool render_shadow_hair_find_box(RenderShadowHair *hair, const LightView *view,
         .limit = (float)LIGHT_FRAME_FAR,
         .reach = (float)(view->perspective ? LIGHT_FRAME_WIDE : LIGHT_FRAME_FAR),
     };
-    for (int k = 0; k < 4; ++k) light_view_row(view, k, rows[k]);
+    for (int k = 0; k < 4; ++k) light_frame_row(view, k, rows[k]);
     set_rows(&params, rows);
-    if (hair->in_c) return render_shadow_cpu_find_box(&hair->cpu, &params, box);
+    if (hair->by_processor) return hair_shadow_cpu_find_box(&hair->cpu, &params, box);
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, hair->box.buffer);
     glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof none, none);
     gpu_buffer_bind_storage(&hair->box, BIND_BOUNDS_OUT);
@@ -225,8 +223,7 @@ bool render_shadow_hair_find_box(RenderShadowHair *hair, const LightView *view,
     return true;
 }
 
-LightFrame render_shadow_hair_frame(const RenderShadowHair *hair, const LightView *view,
-                                    const double box[6])
+LightFrame hair_shadow_frame(const HairShadow *hair, const LightView *view, const double box[6])
 {
     return light_frame_steady(view, box, hair->side, MARGIN);
 }
@@ -248,7 +245,7 @@ static float find_unit(ShadowCasters casters, bool perspective, double texels)
 }
 
 // First depths, in texels that are `coarse` of the map's wide.
-static void draw_firsts(RenderShadowHair *hair, ShadowCasters casters, const CastParams *params,
+static void draw_firsts(HairShadow *hair, ShadowCasters casters, const CastParams *params,
                         int coarse)
 {
     CastParams wide = *params;
@@ -268,20 +265,20 @@ static void run_texels(const CastParams *params, GLuint program, int lanes)
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
-static void spread(const RenderShadowHair *hair, const CastParams *params)
+static void spread(const HairShadow *hair, const CastParams *params)
 {
     int corners = params->side / SHADOW_COARSE + 1;
     run_texels(params, hair->spread, corners * corners);
 }
 
-static void finish(const RenderShadowHair *hair, const CastParams *params)
+static void finish(const HairShadow *hair, const CastParams *params)
 {
     glUseProgram(hair->finish);
     glUniform1f(1, params->unit);
     run_texels(params, hair->finish, params->side * params->side / STRIP);
 }
 
-static void draw_deep(RenderShadowHair *hair, ShadowCasters casters, CastParams *params)
+static void draw_deep(HairShadow *hair, ShadowCasters casters, CastParams *params)
 {
     draw_firsts(hair, casters, params, SHADOW_COARSE);
     gpu_buffer_bind_texture(&hair->firsts, BIND_FIRST);
@@ -295,14 +292,14 @@ static void draw_deep(RenderShadowHair *hair, ShadowCasters casters, CastParams 
     finish(hair, params);
 }
 
-float render_shadow_hair_scale(const LightView *view, const LightFrame *frame)
+float hair_shadow_scale(const LightView *view, const LightFrame *frame)
 {
     double distance = view->perspective ? 0.5 * (frame->depth[0] + frame->depth[1]) : 1;
     return (float)(1 / (frame->texel * distance));
 }
 
-void render_shadow_hair_draw(RenderShadowHair *hair, const LightView *view, const LightFrame *frame,
-                             int map, ShadowCasters casters)
+void hair_shadow_draw(HairShadow *hair, const LightView *view, const LightFrame *frame, int map,
+                      ShadowCasters casters)
 {
     double rows[4][4];
     memcpy(rows, frame->rows, sizeof rows);
@@ -315,24 +312,23 @@ void render_shadow_hair_draw(RenderShadowHair *hair, const LightView *view, cons
         .limit = (float)LIGHT_FRAME_FAR,
     };
     set_rows(&params, rows);
-    if (hair->in_c)
-        render_shadow_cpu_draw(&hair->cpu, &params, render_shadow_hair_scale(view, frame));
+    if (hair->by_processor)
+        hair_shadow_cpu_draw(&hair->cpu, &params, hair_shadow_scale(view, frame));
     else if (hair->deep)
         draw_deep(hair, casters, &params);
     else
         draw_firsts(hair, casters, &params, 1);
 }
 
-void render_shadow_hair_bind(const RenderShadowHair *hair)
+void hair_shadow_bind(const HairShadow *hair)
 {
     if (hair->deep) gpu_buffer_bind_texture(&hair->depths, BIND_DEPTHS);
     gpu_buffer_bind_texture(hair->deep ? &hair->layers : &hair->firsts, BIND_LAYERS);
 }
 
-bool render_shadow_hair_lights(const RenderShadowHair *hair, const ParticleLight **lights,
-                               uint32_t *count)
+bool hair_shadow_lights(const HairShadow *hair, const ParticleLight **lights, uint32_t *count)
 {
     *lights = hair->cpu.lights;
     *count = hair->cpu.lit;
-    return hair->in_c && hair->cpu.lit > 0;
+    return hair->by_processor && hair->cpu.lit > 0;
 }

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+#include "draw/hair_shadow_cpu.h"
+
+#include "draw/shadow_light.h"
+
+#include <stdlib.h>
+
+static const GLbitfield WRITTEN = GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT;
+
+Result hair_shadow_cpu_create(HairShadowCpu *cpu, int side, bool deep, Error *error)
+{
+    *cpu = (HairShadowCpu){0};
+    return shadow_map_create(&cpu->map, side, deep, error);
+}
+
+static void forget_room(HairShadowCpu *cpu)
+{
+    for (uint32_t i = 0; i < cpu->room; ++i) gpu_buffer_destroy(&cpu->lights[i].left);
+    free(cpu->casters);
+    free(cpu->lights);
+    free(cpu->left);
+    free(cpu->mapped);
+    *cpu = (HairShadowCpu){.map = cpu->map};
+}
+
+void hair_shadow_cpu_destroy(HairShadowCpu *cpu)
+{
+    shadow_map_destroy(&cpu->map);
+    forget_room(cpu);
+}
+
+static Result make_room(HairShadowCpu *cpu, uint32_t count, Error *error)
+{
+    if (cpu->mapped && count <= cpu->room) return RESULT_OK;
+    forget_room(cpu);
+    cpu->casters = malloc((count + 1) * sizeof *cpu->casters);
+    cpu->lights = calloc(count + 1, sizeof *cpu->lights);
+    cpu->left = malloc((count + 1) * sizeof *cpu->left);
+    cpu->mapped = malloc((3 * (size_t)count + 2) * sizeof *cpu->mapped);
+    if (!cpu->casters || !cpu->lights || !cpu->left || !cpu->mapped)
+        return error_set(error, RESULT_FAILED, "no memory for %u batches", count);
+    cpu->room = count;
+    return RESULT_OK;
+}
+
+static int64_t count_floats(const ShadowCaster *caster)
+{
+    return (int64_t)hair_slots(caster->batch) * look_points(&caster->look, caster->batch);
+}
+
+// Room for what is left at each point, if a shader can see so much.
+static Result make_lights(HairShadowCpu *cpu, const GpuLimits *limits, int maps,
+                          ShadowCasters casters, Error *error)
+{
+    cpu->lit = 0;
+    for (uint32_t i = 0; i < casters.count && cpu->map.deep; ++i) {
+        int64_t floats = maps * count_floats(&casters.list[i]);
+        if (floats > limits->texture_texels || floats * 4 > limits->storage_block) return RESULT_OK;
+    }
+    for (uint32_t i = 0; i < casters.count && cpu->map.deep; ++i) {
+        GpuBuffer *left = &cpu->lights[i].left;
+        int64_t size = maps * count_floats(&casters.list[i]) * 4;
+        cpu->lights[i].batch = casters.list[i].batch;
+        if (left->size == size) continue;
+        gpu_buffer_destroy(left);
+        TRY(gpu_buffer_create(left, limits, "light on hair", size, NULL, GL_R32F, error));
+    }
+    if (cpu->map.deep) cpu->lit = casters.count;
+    return RESULT_OK;
+}
+
+// NULL on failure.
+static void *map(HairShadowCpu *cpu, const GpuBuffer *buffer, GLbitfield access)
+{
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
+    void *data = glMapBufferRange(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)buffer->size, access);
+    if (data) cpu->mapped[cpu->mapped_count++] = buffer->buffer;
+    return data;
+}
+
+static bool map_caster(HairShadowCpu *cpu, const ShadowCaster *caster, uint32_t i)
+{
+    const HairBatch *batch = caster->batch;
+    MappedCaster *mine = &cpu->casters[cpu->count++];
+    *mine = (MappedCaster){.material = look_material(&caster->look, batch),
+                           .position = map(cpu, &batch->position, GL_MAP_READ_BIT)};
+    if (batch->paint.buffer) mine->paint = map(cpu, &batch->paint, GL_MAP_READ_BIT);
+    if (i < cpu->lit) cpu->left[i] = map(cpu, &cpu->lights[i].left, WRITTEN);
+    return mine->position && (mine->paint || !batch->paint.buffer) &&
+           (i >= cpu->lit || cpu->left[i]);
+}
+
+static bool map_all(HairShadowCpu *cpu, ShadowCasters casters, const GpuBuffer *depths,
+                    const GpuBuffer *texels)
+{
+    bool good = true;
+    cpu->count = cpu->mapped_count = 0;
+    for (uint32_t i = 0; i < casters.count && good; ++i)
+        good = map_caster(cpu, &casters.list[i], i);
+    if (good && cpu->map.deep) good = (cpu->depths = map(cpu, depths, WRITTEN)) != NULL;
+    // Layers are read where light is found at points.
+    if (good) cpu->texels = map(cpu, texels, GL_MAP_READ_BIT | GL_MAP_WRITE_BIT);
+    return good && cpu->texels;
+}
+
+Result hair_shadow_cpu_begin(HairShadowCpu *cpu, const GpuLimits *limits, int maps,
+                             ShadowCasters casters, const GpuBuffer *depths,
+                             const GpuBuffer *texels, Error *error)
+{
+    TRY(make_room(cpu, casters.count, error));
+    TRY(make_lights(cpu, limits, maps, casters, error));
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    if (map_all(cpu, casters, depths, texels)) return RESULT_OK;
+    hair_shadow_cpu_end(cpu);
+    return error_set(error, RESULT_FAILED, "cannot read hair's positions for its shadows");
+}
+
+void hair_shadow_cpu_end(HairShadowCpu *cpu)
+{
+    while (cpu->mapped_count) {
+        glBindBuffer(GL_SHADER_STORAGE_BUFFER, cpu->mapped[--cpu->mapped_count]);
+        glUnmapBuffer(GL_SHADER_STORAGE_BUFFER);
+    }
+}
+
+static MappedCasters casters_of(const HairShadowCpu *cpu)
+{
+    return (MappedCasters){cpu->casters, cpu->count};
+}
+
+bool hair_shadow_cpu_find_box(HairShadowCpu *cpu, const CastParams *params, double box[6])
+{
+    return shadow_map_find_box(&cpu->map, params, casters_of(cpu), box);
+}
+
+void hair_shadow_cpu_draw(HairShadowCpu *cpu, const CastParams *params, float across)
+{
+    size_t texels = (size_t)cpu->map.side * (size_t)cpu->map.side, number = (size_t)params->map;
+    uint32_t *layers = cpu->texels + number * (cpu->map.deep ? SHADOW_LAYERS : 1) * texels;
+    if (!cpu->map.deep) {
+        shadow_map_draw_firsts(&cpu->map, params, casters_of(cpu), layers);
+        return;
+    }
+    shadow_map_draw_deep(&cpu->map, params, casters_of(cpu), cpu->depths + number * texels, layers);
+    for (uint32_t i = 0; i < cpu->lit; ++i) {
+        size_t points =
+            hair_slots(cpu->lights[i].batch) * (size_t)mapped_caster_points(&cpu->casters[i]);
+        shadow_light_find(&cpu->map, params, &cpu->casters[i], across, layers,
+                          cpu->left[i] + number * points);
+    }
+}

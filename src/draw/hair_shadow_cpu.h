@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// Lets the processor make shadow maps of hair (shadow_map.h) where OpenGL's buffers lie in its own
+// memory: maps those of the hair and of the maps while they are drawn.
+#pragma once
+
+#include "draw/render_look.h"
+#include "draw/shadow_map.h"
+
+// Hair that stands in the light: the ribbons that are drawn, with the material's shadow_opacity.
+typedef struct ShadowCaster {
+    const HairBatch *batch;
+    Look look;
+} ShadowCaster;
+
+typedef struct ShadowCasters {
+    const ShadowCaster *list;
+    uint32_t count;
+} ShadowCasters;
+
+typedef struct HairShadowCpu {
+    ShadowMap map;
+    MappedCaster *casters; // [room], owned
+    uint32_t count, room;
+    ParticleLight *lights; // [room], owned
+    float **left;          // [room], owned: theirs, while maps are drawn
+    uint32_t lit;          // of them there are; 0: none (they would not fit into a buffer)
+    GLuint *mapped;        // [3 room + 2], owned: buffers
+    uint32_t mapped_count;
+    float *depths; // of all maps, while they are drawn; deep
+    uint32_t *texels;
+} HairShadowCpu;
+
+// `side`, `deep`: see shadow_map_create. Destroying a zeroed struct is legal.
+Result hair_shadow_cpu_create(HairShadowCpu *cpu, int side, bool deep, Error *error);
+void hair_shadow_cpu_destroy(HairShadowCpu *cpu);
+
+// Maps all that is read and written, and waits for the GPU. `depths` (deep) and `texels` are what
+// shaders read later, the first depths or the layers of all `maps`. After RESULT_FAILED (memory is
+// short, a buffer cannot be mapped) nothing is.
+Result hair_shadow_cpu_begin(HairShadowCpu *cpu, const GpuLimits *limits, int maps,
+                             ShadowCasters casters, const GpuBuffer *depths,
+                             const GpuBuffer *texels, Error *error);
+void hair_shadow_cpu_end(HairShadowCpu *cpu);
+
+// Between the two: see shadow_map.h; map params->map. What is drawn of a deep map leaves its light
+// in `lights`, too; `across`: ShadowParams.place[map].w.
+bool hair_shadow_cpu_find_box(HairShadowCpu *cpu, const CastParams *params, double box[6]);
+void hair_shadow_cpu_draw(HairShadowCpu *cpu, const CastParams *params, float across);

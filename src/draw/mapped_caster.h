@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// A batch of hair that stands in the light, in the processor's memory.
+#pragma once
+
+#include "glsl/draw/material.h"
+#include "glsl/draw/shadow.h"
+
+// Laid out as in HairBatch.
+typedef struct MappedCaster {
+    const float (*position)[4];
+    const uint32_t (*paint)[4]; // see hair_paint; NULL: none
+    MaterialParams material;    // smooth_parts at least 1
+} MappedCaster;
+
+typedef struct MappedCasters {
+    const MappedCaster *list;
+    uint32_t count;
+} MappedCasters;
+
+// Points of a strand: its particles, or those of its curve.
+static inline int mapped_caster_points(const MappedCaster *caster)
+{
+    return (int)((caster->material.vertex_count - 1) * caster->material.smooth_parts + 1);
+}

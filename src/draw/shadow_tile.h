@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+// Tiles of strands that stand in a light, one strand a lane, for shadow_map.c and shadow_light.c.
+#pragma once
+
+#include "base/simd.h"
+#include "draw/mapped_caster.h"
+
+enum { W = STRAND_TILE, LAYERS = SHADOW_LAYERS };
+
+// Where a point of each strand lies before the light, and its radius (m).
+typedef struct Places {
+    float u[W], v[W], z[W], w[W], radius[W];
+} Places;
+
+// One tile of one caster.
+typedef struct Tile {
+    const MappedCaster *caster;
+    size_t number;
+    int strands; // that are drawn
+    float radius[W], opacity[W];
+} Tile;
+
+// Particle j of a tile's first strand; the others' follow.
+static inline size_t tile_particle(const Tile *tile, int j)
+{
+    return (tile->number * tile->caster->material.vertex_count + (size_t)j) * W;
+}
+
+// How far centripetal knots lie apart: the root of their particles' distance.
+SIMD_INLINE float knot_after(float way[3][W], int i)
+{
+    float square = way[0][i] * way[0][i] + way[1][i] * way[1][i] + way[2][i] * way[2][i];
+    return simd_max(sqrtf(sqrtf(square)), 1e-9f);
+}
+
+// The ways from particle j of the tile's strands to the next, metres.
+SIMD_INLINE void find_ways(const Tile *tile, int j, float ways[3][W])
+{
+    const float(*from)[4] = tile->caster->position + tile_particle(tile, j), (*to)[4] = from + W;
+    for (int c = 0; c < 3; ++c)
+        for (int i = 0; i < W; ++i) ways[c][i] = to[i][c] - from[i][c];
+}
+
+// Point k of the curves through a tile's strands, as curve_point of glsl/draw/curve.glsl: the first
+// end of its segment and a weighted sum of three ways, the segment's own, the one before and the
+// one after. Before the root and behind the tip stands the neighbour's mirror image, so that the
+// missing way is the segment's own.
+SIMD_INLINE void find_curve(const Tile *tile, int k, float x[W][4])
+{
+    const MaterialParams *material = &tile->caster->material;
+    int parts = (int)material->smooth_parts, last = (int)material->vertex_count - 2,
+        j = k / parts < last ? k / parts : last;
+    float t = (float)(k - j * parts) / (float)parts, s = 1 - t, ways[3][3][W], weight[3][W];
+    for (int n = 0; n < 3; ++n) {
+        int from = j - 1 + n;
+        find_ways(tile, from < 0 || from > last ? j : from, ways[n]);
+    }
+    if (material->smooth_curve) { // the B-spline's basis, its four weights' sum taken out
+        float before = -s * s * s / 6, after = t * t * t / 6,
+              own = ((3 * s - 6) * s * s + 4) / 6 + after;
+        for (int i = 0; i < W; ++i) weight[0][i] = before, weight[1][i] = own, weight[2][i] = after;
+    } else { // Hermite's, of tangents as curve_tangents has them
+        float end = (3 - 2 * t) * t * t, tangent_from = t * s * s, tangent_to = -t * t * s;
+        for (int i = 0; i < W; ++i) {
+            float before = knot_after(ways[0], i), own = knot_after(ways[1], i),
+                  after = knot_after(ways[2], i), from = own / (before + own),
+                  to = own / (own + after);
+            weight[0][i] = tangent_from * (own / before - from);
+            weight[1][i] = end + tangent_from * (1 - from) + tangent_to * (1 - to);
+            weight[2][i] = tangent_to * (own / after - to);
+        }
+    }
+    const float(*start)[4] = tile->caster->position + tile_particle(tile, j);
+    for (int c = 0; c < 3; ++c)
+        for (int i = 0; i < W; ++i)
+            x[i][c] = start[i][c] + weight[0][i] * ways[0][c][i] + weight[1][i] * ways[1][c][i] +
+                      weight[2][i] * ways[2][c][i];
+    for (int i = 0; i < W; ++i) x[i][3] = 1;
+}
+
+// Point k of each strand in the world (x, y, z, 1): `curve` where it is none of the particles.
+SIMD_INLINE const float (*find_points(const Tile *tile, int k, float curve[W][4]))[4]
+{
+    if (tile->caster->material.smooth_parts == 1)
+        return tile->caster->position + tile_particle(tile, k);
+    find_curve(tile, k, curve);
+    return (const float(*)[4])curve;
+}
+
+// The radius that the paint of a particle has, as a share of the material's.
+SIMD_INLINE float share_of(const Tile *tile, size_t particle)
+{
+    return simd_float_of(tile->caster->paint[particle][2]);
+}
+
+SIMD_INLINE void find_radii(const Tile *tile, int k, float radius[W])
+{
+    const MaterialParams *material = &tile->caster->material;
+    int parts = (int)material->smooth_parts;
+    float thinning = (1 - material->tip_ratio) / (float)(material->vertex_count - 1),
+          share = 1 - thinning * ((float)k / (float)parts), on = (float)(k % parts) / (float)parts;
+    size_t at = tile_particle(tile, k / parts), next = on > 0 ? at + W : at;
+    for (int i = 0; i < W; ++i) radius[i] = simd_max(tile->radius[i] * share, 1e-9f);
+    for (int i = 0; tile->caster->paint && i < W; ++i) {
+        float here = share_of(tile, at + (size_t)i), there = share_of(tile, next + (size_t)i);
+        radius[i] = simd_max(tile->radius[i] * (here + on * (there - here)), 1e-9f);
+    }
+}
+
+// Points x of the tile's strands as the light sees them. What lies beside a lamp or behind it goes
+// far away.
+SIMD_INLINE void project_points(const CastParams *params, const float x[W][4], Places *places)
+{
+    const float(*rows)[4] = (const float(*)[4])params->from_world;
+    for (int k = 0; k < W; ++k) {
+        float p = x[k][0], q = x[k][1], r = x[k][2], one = x[k][3];
+        float w = rows[3][0] * p + rows[3][1] * q + rows[3][2] * r + rows[3][3] * one,
+              inverse = 1 / simd_max(w, 1e-6f);
+        float u = rows[0][0] * p + rows[0][1] * q + rows[0][2] * r + rows[0][3] * one,
+              v = rows[1][0] * p + rows[1][1] * q + rows[1][2] * r + rows[1][3] * one;
+        places->u[k] = w > 0 ? u * inverse : -1e6f;
+        places->v[k] = w > 0 ? v * inverse : -1e6f;
+        places->z[k] = rows[2][0] * p + rows[2][1] * q + rows[2][2] * r + rows[2][3] * one;
+        places->w[k] = simd_max(w, 1e-6f);
+    }
+}
+
+// Point k of the tile's strands.
+SIMD_INLINE void find_places(const CastParams *params, const Tile *tile, int k, Places *places)
+{
+    float curve[W][4];
+    project_points(params, find_points(tile, k, curve), places);
+    find_radii(tile, k, places->radius);
+}
+
+// Tile `number` of a caster.
+static inline Tile open_tile(const MappedCaster *caster, int number)
+{
+    const MaterialParams *material = &caster->material;
+    int first = number * W, left = (int)material->drawn_strands - first;
+    Tile tile = {.caster = caster, .number = (size_t)number, .strands = left < W ? left : W};
+    for (int k = 0; k < W; ++k) {
+        bool last = first + k == (int)material->last_strand;
+        tile.radius[k] = material->radius * (last ? material->last_share : 1);
+        uint32_t bits =
+            caster->paint ? caster->paint[tile_particle(&tile, 0) + (size_t)k][1] >> 16 : 0xffff;
+        tile.opacity[k] = material->shadow_opacity * (float)bits / 65535;
+    }
+    return tile;
+}
+
+// The tiles of a caster, from range[0] to before range[1], that one of `parts` threads works on.
+static inline void find_range(const MappedCaster *caster, int part, int parts, int range[2])
+{
+    int64_t tiles = ((int64_t)caster->material.drawn_strands + W - 1) / W;
+    range[0] = (int)(tiles * part / parts);
+    range[1] = (int)(tiles * (part + 1) / parts);
+}

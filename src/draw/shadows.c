@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: MIT
+#include "draw/shadows.h"
+
+#include <cglm/cglm.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double LEAST_LEFT = 1e-3; // of the light behind one fibre
+
+// --- The maps of the mesh.
+
+enum {
+    MESH_SIDE = 1024, // texels of a map
+    MARGIN = 6,       // at its edges stay empty: all that a point beside it looks at
+};
+
+// A map's square, and how a point is moved before it looks at the map.
+typedef struct MeshFrame {
+    LightFrame frame;
+    double depth_shift; // of the map's depths
+    double lift;        // m, along the normal of the mesh
+} MeshFrame;
+
+static void destroy_mesh(MeshShadow *shadow)
+{
+    if (shadow->program) glDeleteProgram(shadow->program);
+    if (shadow->depth) glDeleteTextures(1, &shadow->depth);
+    if (shadow->frame) glDeleteFramebuffers(1, &shadow->frame);
+    *shadow = (MeshShadow){0};
+}
+
+Result shadows_reserve_mesh(Shadows *shadows, int maps, Error *error)
+{
+    MeshShadow *shadow = &shadows->mesh;
+    if (shadow->maps >= maps) return RESULT_OK;
+    destroy_mesh(shadow);
+    glGenTextures(1, &shadow->depth);
+    glBindTexture(GL_TEXTURE_2D, shadow->depth);
+    glTexStorage2D(GL_TEXTURE_2D, 1, GL_DEPTH_COMPONENT32F, MESH_SIDE, MESH_SIDE * maps);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glGenFramebuffers(1, &shadow->frame);
+    glBindFramebuffer(GL_FRAMEBUFFER, shadow->frame);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, shadow->depth, 0);
+    glDrawBuffer(GL_NONE);
+    Result result = shader_build_draw(&shadow->program, "draw/shadow_mesh.vert", "draw/depth.frag",
+                                      NULL, error);
+    THEN(result, gpu_check("the mesh's shadow map", error));
+    shadow->maps = maps;
+    if (result != RESULT_OK) destroy_mesh(shadow);
+    return result;
+}
+
+// Widens the box (see light_frame.h) to the mesh's.
+static void add_mesh_box(const ShadowMesh *mesh, const LightView *view, double box[6])
+{
+    for (int corner = 0; corner < 8; ++corner) {
+        vec3 x;
+        versor turn = {0};
+        double world[3], place[3];
+        memcpy(turn, mesh->rotation, sizeof turn);
+        for (int k = 0; k < 3; ++k)
+            x[k] = (corner >> k & 1 ? mesh->mesh->high : mesh->mesh->low)[k];
+        glm_quat_rotatev(turn, x, x);
+        for (int k = 0; k < 3; ++k) world[k] = (double)(x[k] + mesh->translation[k]);
+        if (!light_frame_place(view, world, place)) continue;
+        for (int k = 0; k < 3; ++k) {
+            double bound = k < 2 && view->perspective ? LIGHT_FRAME_WIDE : LIGHT_FRAME_FAR;
+            double value = fmin(fmax(place[k], -bound), bound);
+            box[k] = fmin(box[k], value);
+            box[k + 3] = fmax(box[k + 3], value);
+        }
+    }
+}
+
+// A texel's depth is that of its middle: on a surface that the light meets at 45 degrees it is off
+// by a texel. Two of them by depth, and as much as a texel and a half along the normal. Before a
+// lamp a texel is as wide as half-way, and its depth as steep as at the far end: less elsewhere.
+static MeshFrame frame_mesh(const LightView *view, const double box[6])
+{
+    MeshFrame mesh = {.frame = light_frame_drawn(view, box, MESH_SIDE, MARGIN)};
+    double near = mesh.frame.depth[0], far = mesh.frame.depth[1], texel = mesh.frame.texel;
+    if (view->perspective) {
+        texel *= 0.5 * (near + far);
+        mesh.depth_shift = 2 * texel * near / (far * (far - near));
+    } else {
+        mesh.depth_shift = 2 * texel / (far - near);
+    }
+    mesh.lift = 1.5 * texel;
+    return mesh;
+}
+
+// Draws map `map`, of which the ShadowParams block tells the frame. The first one empties all.
+static void draw_mesh(const MeshShadow *shadow, const RenderMesh *mesh, int map)
+{
+    const float farthest = 1;
+    glBindFramebuffer(GL_FRAMEBUFFER, shadow->frame);
+    glDisable(GL_SCISSOR_TEST);
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_TRUE);
+    if (map == 0) glClearBufferfv(GL_DEPTH, 0, &farthest);
+    glViewport(0, map * MESH_SIDE, MESH_SIDE, MESH_SIDE);
+    glUseProgram(shadow->program);
+    glUniform1i(1, map);
+    glBindVertexArray(mesh->vertex_array);
+    glDrawElements(GL_TRIANGLES, (GLsizei)(3 * mesh->triangle_count), GL_UNSIGNED_INT, NULL);
+    glDisable(GL_DEPTH_TEST);
+}
+
+// --- All maps.
+
+Result shadows_create(Shadows *shadow, const GpuLimits *limits, const ShadowOptions *options,
+                      bool by_processor, Error *error)
+{
+    *shadow = (Shadows){.options = *options};
+    shadow->options.side = (options->side + 7) / 8 * 8;
+    return hair_shadow_create(&shadow->hair, limits, options->kind == SHADOW_DOM,
+                              shadow->options.side, by_processor, error);
+}
+
+void shadows_destroy(Shadows *shadow)
+{
+    hair_shadow_destroy(&shadow->hair);
+    destroy_mesh(&shadow->mesh);
+    free(shadow->casters);
+    gpu_buffer_destroy(&shadow->uniforms);
+    *shadow = (Shadows){0};
+}
+
+static bool casts(const Light *light)
+{
+    return light->shadow && light->intensity > 0;
+}
+
+static bool has_mesh(const ShadowScene *scene)
+{
+    return scene->mesh.mesh && scene->mesh.mesh->triangle_count > 0;
+}
+
+// What approximated maps take for the mean fibre.
+static void find_mean_fibre(const Shadows *shadow, const ShadowScene *scene, ShadowParams *params)
+{
+    double radius = 0, opacity = 0, weight = 0;
+    for (uint32_t i = 0; i < scene->casters.count; ++i) {
+        const ShadowCaster *caster = &scene->casters.list[i];
+        double share = (double)caster->batch->strand_count * caster->batch->vertex_count;
+        radius += share * (double)caster->look.material.radius;
+        opacity += share * (double)caster->look.material.shadow_opacity;
+        weight += share;
+    }
+    if (weight == 0) weight = 1, radius = 1;
+    params->fibres = (float)(weight / (radius * (double)shadow->options.spacing));
+    params->passed = (float)log2(fmax(1 - opacity / weight, LEAST_LEFT));
+}
+
+static void set_rows(mat4 matrix, const LightFrame *frame)
+{
+    for (int k = 0; k < 4; ++k)
+        for (int i = 0; i < 4; ++i) matrix[k][i] = (float)frame->rows[k][i];
+}
+
+static void set_hair_frame(ShadowParams *params, int map, int light, const LightView *view,
+                           const LightFrame *frame)
+{
+    set_rows(params->from_world[map], frame);
+    params->place[map][0] = (float)light;
+    params->place[map][1] = (float)(frame->depth[1] - frame->depth[0]);
+    params->place[map][3] = hair_shadow_scale(view, frame);
+}
+
+static void set_mesh_frame(ShadowParams *params, int map, const MeshFrame *mesh)
+{
+    set_rows(params->mesh_from_world[map], &mesh->frame);
+    params->place[map][2] = (float)mesh->depth_shift;
+    params->mesh_lift = fmaxf(params->mesh_lift, (float)mesh->lift);
+}
+
+// The next map, of light `light`; none if nothing is in its sight.
+static void draw_map(Shadows *shadow, const ShadowScene *scene, int light)
+{
+    LightView view = light_frame_view(&scene->lights[light], scene->middle);
+    ShadowParams *params = &shadow->params;
+    int map = params->maps;
+    double box[6];
+    bool by_mesh = has_mesh(scene);
+    if (!hair_shadow_find_box(&shadow->hair, &view, scene->casters, box)) {
+        if (!by_mesh) return;
+        for (int k = 0; k < 3; ++k) box[k] = LIGHT_FRAME_FAR, box[k + 3] = -LIGHT_FRAME_FAR;
+        add_mesh_box(&scene->mesh, &view, box);
+    }
+    LightFrame frame = hair_shadow_frame(&shadow->hair, &view, box);
+    set_hair_frame(params, map, light, &view, &frame);
+    hair_shadow_draw(&shadow->hair, &view, &frame, map, scene->casters);
+    if (by_mesh) {
+        add_mesh_box(&scene->mesh, &view, box);
+        MeshFrame mesh = frame_mesh(&view, box);
+        set_mesh_frame(params, map, &mesh);
+        gpu_buffer_set_uniforms(&shadow->uniforms, BIND_SHADOW, params, sizeof *params);
+        draw_mesh(&shadow->mesh, scene->mesh.mesh, map);
+    }
+    ++params->maps;
+}
+
+static bool same_ribbons(const ShadowCaster *a, const ShadowCaster *b)
+{
+    const MaterialParams *p = &a->look.material, *q = &b->look.material;
+    return a->batch == b->batch && a->look.share == b->look.share &&
+           a->look.features == b->look.features && p->radius == q->radius &&
+           p->tip_ratio == q->tip_ratio && p->shadow_opacity == q->shadow_opacity &&
+           p->smooth_parts == q->smooth_parts && p->smooth_curve == q->smooth_curve;
+}
+
+static bool same_casters(const Shadows *shadow, ShadowCasters casters)
+{
+    bool same = casters.count == shadow->drawn.casters.count;
+    for (uint32_t i = 0; i < casters.count && same; ++i)
+        same = same_ribbons(&casters.list[i], &shadow->casters[i]);
+    return same;
+}
+
+static bool is_drawn(const Shadows *shadow, const ShadowScene *scene)
+{
+    const ShadowScene *drawn = &shadow->drawn;
+    return shadow->any && scene->revision && scene->revision == drawn->revision &&
+           scene->light_count == drawn->light_count && scene->mesh.mesh == drawn->mesh.mesh &&
+           memcmp(scene->mesh.rotation, drawn->mesh.rotation, sizeof drawn->mesh.rotation) == 0 &&
+           memcmp(scene->mesh.translation, drawn->mesh.translation,
+                  sizeof drawn->mesh.translation) == 0 &&
+           memcmp(scene->lights, shadow->lights, scene->light_count * sizeof(Light)) == 0 &&
+           same_casters(shadow, scene->casters);
+}
+
+static int count_maps(const ShadowScene *scene)
+{
+    int maps = 0;
+    for (uint32_t i = 0; i < scene->light_count; ++i) maps += casts(&scene->lights[i]);
+    return maps ? maps : 1;
+}
+
+static Result reserve(Shadows *shadow, const ShadowScene *scene, Error *error)
+{
+    shadow->any = false;
+    ShadowCasters casters = scene->casters;
+    if (casters.count > shadow->caster_room) {
+        ShadowCaster *room = realloc(shadow->casters, casters.count * sizeof *room);
+        if (!room)
+            return error_set(error, RESULT_FAILED, "no memory for %u batches", casters.count);
+        shadow->casters = room;
+        shadow->caster_room = casters.count;
+    }
+    return has_mesh(scene) ? shadows_reserve_mesh(shadow, count_maps(scene), error) : RESULT_OK;
+}
+
+static Result draw_maps(Shadows *shadow, const ShadowScene *scene, Error *error)
+{
+    ShadowParams *params = &shadow->params;
+    memset(params, 0, sizeof *params);
+    params->side = shadow->options.side;
+    params->mesh_side = MESH_SIDE;
+    find_mean_fibre(shadow, scene, params);
+    Result result = hair_shadow_begin(&shadow->hair, count_maps(scene), scene->casters, error);
+    if (result != RESULT_OK) return result;
+    for (uint32_t i = 0; i < scene->light_count; ++i)
+        if (casts(&scene->lights[i])) draw_map(shadow, scene, (int)i);
+    hair_shadow_end(&shadow->hair);
+    shadow->maps_drawn = (uint32_t)params->maps;
+    ++shadow->version;
+    return result;
+}
+
+Result shadows_draw(Shadows *shadow, const ShadowScene *scene, GpuTimer *timer, Error *error)
+{
+    shadow->maps_drawn = 0;
+    if (is_drawn(shadow, scene)) return RESULT_OK;
+    Result result = reserve(shadow, scene, error);
+    if (result != RESULT_OK) return result;
+    gpu_timer_begin(timer, "draw_shadow");
+    result = draw_maps(shadow, scene, error);
+    gpu_timer_end(timer);
+    if (result != RESULT_OK) return result;
+    shadow->drawn = *scene;
+    memcpy(shadow->lights, scene->lights, scene->light_count * sizeof(Light));
+    if (scene->casters.count)
+        memcpy(shadow->casters, scene->casters.list,
+               scene->casters.count * sizeof *shadow->casters);
+    shadow->any = true;
+    return gpu_check("shadow maps", error);
+}
+
+void shadows_bind(Shadows *shadow)
+{
+    gpu_buffer_set_uniforms(&shadow->uniforms, BIND_SHADOW, &shadow->params, sizeof shadow->params);
+    hair_shadow_bind(&shadow->hair);
+    glActiveTexture(GL_TEXTURE0 + BIND_SHADOW_MESH);
+    glBindTexture(GL_TEXTURE_2D, shadow->mesh.depth);
+}
