@@ -54,7 +54,7 @@ layout(std430, binding = BIND_CONTACT_COUNTS) buffer Counts { uvec4 counts[]; };
 const int ROUNDS = 3;
 const float LEAVING = 0.5; // way out of a collider for each way along the strand: a root's depth is left after twice that length
 
-int n, cones, cones_moved, planes;
+int n;
 float margin, friction;
 
 vec3 particle_before(int address, vec3 from)
@@ -66,8 +66,6 @@ vec3 particle_before(int address, vec3 from)
     return texelFetch(position_before, address).xyz;
 #endif
 }
-
-Nearest nearest_to(vec3 p) { return nearest_surface(p, cones, cones_moved, planes); }
 
 // How far a particle is allowed to be deeper than the margin, arc m behind a root that lies `inside` deep.
 float allowed(float inside, float arc) { return max(inside - LEAVING * arc, 0.0); }
@@ -136,11 +134,14 @@ bool touches(Strand strand, out float inside)
     vec3 tip = texelFetch(position_before, strand.first + (n - 1) * STRAND_TILE).xyz;
 #endif
     inside = 0.0;
+    int group = 1;
+    ivec3 range;
     for (int i = 0; i < CONES_IN_ALL; ++i) {
         Cone cone = CONE(i);
         PROBE(cone_distance(cone, p, unused))
     }
-    for (int i = cones; i < cones + planes; ++i) PROBE(plane_distance(i, p, unused))
+#define PROBE_OTHER(kind, name, numbers, frame) LOOP_OTHER(kind, name, PROBE(name##_distance(i, p, normal)))
+    COLLIDERS(COLLIDER_NONE, PROBE_OTHER)
 #if FIELD
     PROBE(field_distance(p, unused))
 #endif
@@ -155,7 +156,7 @@ struct Tally {
 // of what is remembered of it.
 void push_out(inout vec3 at, inout vec3 v, vec3 p, float l, float need, int address, inout Tally tally)
 {
-    Nearest nearest = nearest_to(at);
+    Nearest nearest = nearest_surface(at);
     float depth = need - nearest.distance;
     bool contact = depth > 0.0;
     tally.contacts += contact ? 1.0 : 0.0;
@@ -171,7 +172,7 @@ void push_out(inout vec3 at, inout vec3 v, vec3 p, float l, float need, int addr
     for (int round = 0; round < ROUNDS && contact && abs(depth) > 1e-6 * l; ++round) {
         d = turned(d, nearest.normal, depth, l);
         at = p + l * d;
-        nearest = nearest_to(at);
+        nearest = nearest_surface(at);
         depth = need - nearest.distance;
     }
     tally.left = max(tally.left, contact ? depth : 0.0);
@@ -239,9 +240,6 @@ void main()
     int s = int(gl_GlobalInvocationID.x);
     n = int(collide_params.vertex_count);
     if (s >= int(collide_params.strand_count)) return;
-    cones = int(collide_params.cones);
-    cones_moved = int(collide_params.cones_moved);
-    planes = int(collide_params.planes);
     margin = collide_params.margin;
     friction = collide_params.friction;
     open_cones();

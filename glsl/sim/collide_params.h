@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What collide.comp is given, for one batch of strands. SI units.
+#include "common/collider_table.h"
 #include "common/shared.h"
 
 UNIFORM_BLOCK(CollideParams, collide_params, BIND_STEP)
@@ -10,20 +11,17 @@ UNIFORM_BLOCK(CollideParams, collide_params, BIND_STEP)
     vec4 head_turn_back; // quaternion: from the head's rotation at the end to that at the start
     vec4 field_low;      // a mesh's grid of distances: first point in the head's frame, spacing
     vec4 field_size;     // points along x y z
-    float dt;            // s
-    float margin;        // colliders are this much larger, m
-    float longest;       // length of a strand at most, m
-    float friction;      // Coulomb's coefficient
-    float stamp;         // number of this step ...
-    float stamp_before;  // ... and of the one before
+    // Of each group (collider_table.h): its first shape, the end of those that move with the head,
+    // its end.
+    uvec4 shapes[COLLIDER_GROUPS];
+    float dt;           // s
+    float margin;       // colliders are this much larger, m
+    float longest;      // length of a strand at most, m
+    float friction;     // Coulomb's coefficient
+    float stamp;        // number of this step ...
+    float stamp_before; // ... and of the one before
     uint strand_count;
     uint vertex_count;
-    uint carried;     // vertices, from the root, that the head carries
-    uint cones;       // rounded cones in `colliders` ...
-    uint cones_moved; // ... of which the first so many move with the head
-    uint planes;      // planes, behind the cones
+    uint carried; // vertices, from the root, that the head carries
 }
 END_BLOCK(CollideParams, collide_params);
-
-// Texels of a collider.
-#define COLLIDER_TEXELS 3

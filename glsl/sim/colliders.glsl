@@ -5,7 +5,7 @@
 // |p - a - s e| - r - g s; with y along and h across the axis, the derivative vanishes where s = y + g h/sqrt(1 - g^2), and the
 // function is convex, so s is clamped to the axis. L = 0 is a sphere.
 
-layout(binding = BIND_COLLIDERS) uniform samplerBuffer colliders; // see collision.c
+layout(binding = BIND_COLLIDERS) uniform samplerBuffer colliders; // see scene/colliders.c
 
 struct Cone {
     vec4 first; // a, r
@@ -34,7 +34,7 @@ void open_cones()
 void open_cones() {}
 
 #define CONE(i)      fetch_cone(i)
-#define CONES_IN_ALL cones
+#define CONES_IN_ALL int(collide_params.shapes[0].z)
 #endif
 
 float cone_distance(Cone cone, vec3 p, out vec3 normal)
@@ -55,6 +55,8 @@ float plane_distance(int i, vec3 p, out vec3 normal)
     return dot(plane.xyz, p) - plane.w;
 }
 
+float ground_distance(int i, vec3 p, out vec3 normal) { return plane_distance(i, p, normal); }
+
 struct Nearest {
     float distance;
     vec3 normal;
@@ -69,20 +71,30 @@ void take_nearer(inout Nearest nearest, float distance, vec3 normal, float moved
     nearest.distance = min(distance, nearest.distance);
 }
 
+// A loop over the shapes of each OTHER row of the table (collider_table.h): `body` has i, distance, normal and moved. HAS_KIND 0 (the scene has
+// none) leaves no code.
+#define LOOP_OTHER(kind, name, body)                                                                                  \
+    range = ivec3(collide_params.shapes[group++].xyz);                                                                \
+    for (int i = range.x; HAS_##kind != 0 && i < range.z; ++i) {                                                      \
+        vec3 normal;                                                                                                  \
+        body                                                                                                          \
+    }
+
 // The surface that is nearest to p, or that p is deepest inside.
-Nearest nearest_surface(vec3 p, int cones, int cones_moved, int planes)
+Nearest nearest_surface(vec3 p)
 {
     Nearest nearest = Nearest(1e30, vec3(0.0), 0.0);
+    int cones_moved = int(collide_params.shapes[0].y), group = 1;
+    ivec3 range;
     for (int i = 0; i < CONES_IN_ALL; ++i) {
         vec3 normal;
         float distance = cone_distance(CONE(i), p, normal);
         take_nearer(nearest, distance, normal, i < cones_moved ? 1.0 : 0.0);
     }
-    for (int i = cones; i < cones + planes; ++i) {
-        vec3 normal;
-        float distance = plane_distance(i, p, normal);
-        take_nearer(nearest, distance, normal, 0.0);
-    }
+#define TAKE_OTHER(kind, name, numbers, frame)                                                                        \
+    LOOP_OTHER(kind, name, float distance = name##_distance(i, p, normal);                                            \
+               take_nearer(nearest, distance, normal, i < range.y ? 1.0 : 0.0);)
+    COLLIDERS(COLLIDER_NONE, TAKE_OTHER)
 #if FIELD
     vec3 normal;
     float distance = field_distance(p, normal);

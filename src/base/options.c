@@ -4,6 +4,8 @@
 #include "base/params.h"
 #include "base/suggest.h"
 
+#include "glsl/common/collider_table.h"
+
 #include "version.h"
 
 #include <assert.h>

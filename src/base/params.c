@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "base/params.h"
 
+#include "glsl/common/collider_table.h"
+
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>

@@ -63,8 +63,8 @@ static const char *const SCENE_KEYS[][3] = {
      "path of the camera; values that no key has come from the option of that name"},
     {"colliders",
      "[{\"capsule\": [0, 1, 0, 0.08, 0, 1.4, 0, 0.05], \"frame\": \"head\"}, {\"ground\": 0}, ...]",
-     "shapes that hair must not cross: sphere, capsule, ground or plane, with the numbers of "
-     "--colliders (m); frame: head or world"},
+     "shapes that hair must not cross: those of --colliders with their numbers (m); frame: head or "
+     "world"},
     {"lights",
      "[{\"type\": \"directional\", \"direction\": [0, -1, 0], \"color\": \"#ffffff\", "
      "\"intensity\": 1}, {\"type\": \"spot\", \"position\": [0, 3, 1], \"distance\": 1, "

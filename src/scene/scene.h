@@ -68,7 +68,7 @@ typedef struct Scene {
     char *file;        // owned; the scene file, NULL: none
     RunParams run;
     uint8_t origin[SCENE_PARAMS]; // an Origin for each row of the table that is the run's
-    Section *sections; // [section_count], owned
+    Section *sections;            // [section_count], owned
     uint32_t section_count;
     RigidTrack head;                // moves the roots and the mesh
     Keyframes gravity;              // width 3, m/s2; without keys run.gravity holds

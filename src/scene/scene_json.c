@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "scene/scene_json.h"
 #include "base/bytes.h"
-#include "scene/scene_colliders.h"
 #include "scene/scene_param.h"
 #include "scene/scene_quality.h"
 #include "scene/scene_tracks.h"
@@ -15,10 +14,16 @@ typedef struct Part {
     Result (*read)(Scene *scene, const JsonPlace *place, const json_t *value, Error *error);
 } Part;
 
+static Result read_colliders(Scene *scene, const JsonPlace *place, const json_t *value,
+                             Error *error)
+{
+    return colliders_from_json(&scene->colliders, place, value, error);
+}
+
 static const Part PARTS[] = {{"head", scene_read_head},
                              {"camera", scene_read_camera},
                              {"lights", scene_read_lights},
-                             {"colliders", scene_read_colliders}};
+                             {"colliders", read_colliders}};
 enum { PART_COUNT = sizeof PARTS / sizeof PARTS[0] };
 
 // The file being read. `root` is its place, `folder` what stands before the last '/' in its path

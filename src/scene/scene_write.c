@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A scene as JSON. jansson's functions take NULL for a value and then fail, so that memory running
 // out is found once, where the value is put into its parent.
-#include "scene/scene_colliders.h"
 #include "scene/scene_param.h"
 #include "scene/scene_tracks.h"
 
@@ -199,7 +198,7 @@ json_t *scene_to_json(const Scene *scene)
     good = write_camera(object, scene) && good;
     good = write_lights(object, scene) && good;
     if (scene->colliders.count)
-        good = put(object, "colliders", scene_write_colliders(&scene->colliders)) && good;
+        good = put(object, "colliders", colliders_to_json(&scene->colliders)) && good;
     good = write_sections(object, scene) && good;
     return finish(object, good);
 }

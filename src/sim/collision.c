@@ -7,8 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// What a shader reads of a shape. Cones: first point and radius there; unit axis and length L;
-// g = growth of the radius a metre, g/sqrt(1 - g^2). Planes: unit normal and height; 0; 0.
+// A shape in memory.
 typedef struct Shape {
     float texel[COLLIDER_TEXELS][4];
 } Shape;
@@ -19,26 +18,11 @@ enum { MOST_ITERATIONS_ON_CPU = 65535, ROUNDS = 3 };
 // So many cones a shader is compiled for.
 enum { MOST_IN_REGISTERS = 8 };
 
-// What a scene has: cones that move with the head, all cones, planes.
-typedef struct ShapeCounts {
-    uint32_t moved, cones, planes;
-} ShapeCounts;
-
-static bool is_flat(const Collider *collider)
+static int count_kind(const Colliders *colliders, ColliderKind kind)
 {
-    return collider->kind == COLLIDER_PLANE || collider->kind == COLLIDER_GROUND;
-}
-
-static ShapeCounts count_shapes(const Colliders *colliders)
-{
-    ShapeCounts counts = {0};
-    for (uint32_t i = 0; i < colliders->count; ++i) {
-        bool flat = is_flat(&colliders->list[i]);
-        counts.planes += flat;
-        counts.cones += !flat;
-        counts.moved += !flat && !colliders->list[i].world;
-    }
-    return counts;
+    int count = 0;
+    for (uint32_t i = 0; i < colliders->count; ++i) count += colliders->list[i].kind == kind;
+    return count;
 }
 
 void collision_destroy(Collision *collision)
@@ -115,13 +99,15 @@ Result collision_create(Collision *collision, const SolverSetup *setup, Collisio
         .carried = carried,
         .group_size = step_group_size(setup->gpu),
     };
-    const ShapeCounts counts = count_shapes(colliders);
-    const ShaderDefine defines[] = {
-        {"GROUP_SIZE", (int)collision->group_size},
-        {"MODE", (int)mode},
-        {"CONES", counts.cones <= MOST_IN_REGISTERS ? (int)counts.cones : 0},
-        {"FIELD", setup->field != NULL},
-        {0}};
+    int cones = 0;
+#define ADD_CONE(kind, name, numbers, frame) cones += count_kind(colliders, COLLIDER_##kind);
+    COLLIDERS(ADD_CONE, COLLIDER_NONE)
+#define HAS(kind, name, numbers, frame) {"HAS_" #kind, count_kind(colliders, COLLIDER_##kind) > 0},
+    const ShaderDefine defines[] = {{"GROUP_SIZE", (int)collision->group_size},
+                                    {"MODE", (int)mode},
+                                    {"CONES", cones <= MOST_IN_REGISTERS ? cones : 0},
+                                    {"FIELD", setup->field != NULL},
+                                    COLLIDERS(COLLIDER_NONE, HAS){0}};
     Result result = check_loops(collision, setup->gpu->software, error);
     if (result == RESULT_OK)
         result = shader_build_compute(&collision->program, "sim/collide.comp", defines, error);
@@ -135,119 +121,58 @@ Result collision_create(Collision *collision, const SolverSetup *setup, Collisio
     return result;
 }
 
-static void place(const HeadPose *frame, const float at[3], vec3 placed)
-{
-    glm_quat_rotatev((float *)frame->rotation, (float *)at, placed);
-    glm_vec3_add(placed, (float *)frame->translation, placed);
-}
-
-// A cone one of whose ends lies in the other is that other's sphere.
-static void set_cone(Shape *shape, const Collider *collider, const HeadPose *frame)
-{
-    const float *a = collider->numbers;
-    const float *b = collider->kind == COLLIDER_CAPSULE ? a + 4 : a;
-    vec3 axis;
-    glm_vec3_sub((float *)b, (float *)a, axis);
-    float length = glm_vec3_norm(axis), more = b[3] - a[3];
-    if (length <= fabsf(more)) {
-        if (more > 0) a = b;
-        length = 0;
-    }
-    *shape = (Shape){0};
-    place(frame, a, shape->texel[0]);
-    shape->texel[0][3] = a[3];
-    if (!(length > 0)) return;
-    glm_vec3_scale(axis, 1 / length, axis);
-    glm_quat_rotatev((float *)frame->rotation, axis, shape->texel[1]);
-    shape->texel[1][3] = length;
-    double grow = (double)more / (double)length;
-    shape->texel[2][0] = (float)grow;
-    shape->texel[2][1] = (float)(grow / sqrt(1 - grow * grow));
-}
-
-static void set_plane(Shape *shape, const Collider *collider)
-{
-    const float *numbers = collider->numbers, ground[4] = {0, 1, 0, numbers[0]};
-    *shape = (Shape){0};
-    memcpy(shape->texel[0], collider->kind == COLLIDER_GROUND ? ground : numbers,
-           sizeof shape->texel[0]);
-}
-
 // A ball that all hair stays in, whatever the solver does to it.
 static float hair_ball(const Hair *hair, const HeadPose *head, vec3 centre)
 {
     vec3 middle, size;
     glm_vec3_center((float *)hair->low, (float *)hair->high, middle);
     glm_vec3_sub((float *)hair->high, (float *)hair->low, size);
-    place(head, middle, centre);
+    glm_quat_rotatev((float *)head->rotation, middle, centre);
+    glm_vec3_add(centre, (float *)head->translation, centre);
     return 0.5f * glm_vec3_norm(size) + 2 * hair->longest;
 }
 
-static bool cone_reaches(const Shape *shape, const vec3 centre, float radius)
-{
-    vec3 middle;
-    glm_vec3_copy((float *)shape->texel[0], middle);
-    glm_vec3_muladds((float *)shape->texel[1], 0.5f * shape->texel[1][3], middle);
-    float largest =
-        fmaxf(shape->texel[0][3], shape->texel[0][3] + shape->texel[2][0] * shape->texel[1][3]);
-    return glm_vec3_distance(middle, (float *)centre) <
-           radius + largest + 0.5f * shape->texel[1][3];
-}
-
-static bool plane_reaches(const Shape *shape, const vec3 centre, float radius)
-{
-    return glm_vec3_dot((float *)shape->texel[0], (float *)centre) - shape->texel[0][3] < radius;
-}
-
-// Where the next shape of a kind goes: cones that move, other cones, planes.
-static Shape *next_shape(Shape *shapes, const Collider *collider, const ShapeCounts *counts,
-                         ShapeCounts *placed)
-{
-    if (is_flat(collider)) return &shapes[counts->cones + placed->planes++];
-    if (collider->world) return &shapes[counts->moved + placed->cones++];
-    return &shapes[placed->moved++];
-}
-
-// At what distance everything is from a shape that hair cannot reach.
+// At what distance everything is from a cone that hair cannot reach.
 static const float NEVER = 1e30f;
 
-// Returns how many of them the hair can reach.
-static uint32_t place_shapes(const Collision *collision, const HeadPose *head, Shape *shapes)
+// Writes the shapes by groups, in each those that move with the head first. Cones that the hair
+// cannot reach keep their places, other such shapes are left out. Returns how many it can reach.
+static uint32_t place_shapes(const Collision *collision, const HeadPose *head,
+                             CollideParams *params, Shape *shapes)
 {
     static const HeadPose world = {.rotation = {0, 0, 0, 1}};
     const Colliders *colliders = collision->colliders;
-    const ShapeCounts counts = count_shapes(colliders);
-    ShapeCounts placed = {0};
-    uint32_t reached = 0;
+    uint32_t reached = 0, at = 0;
     vec3 centre = {0};
     float radius = hair_ball(collision->bounds, head, centre) + collision->params->collision_margin;
-    for (uint32_t i = 0; i < colliders->count; ++i) {
-        const Collider *collider = &colliders->list[i];
-        Shape *shape = next_shape(shapes, collider, &counts, &placed);
-        if (is_flat(collider))
-            set_plane(shape, collider);
-        else
-            set_cone(shape, collider, collider->world ? &world : head);
-        bool reaches = is_flat(collider) ? plane_reaches(shape, centre, radius)
-                                         : cone_reaches(shape, centre, radius);
-        reached += reaches;
-        if (!reaches) *shape = (Shape){.texel = {{0, 0, 0, -NEVER}}};
+    for (uint32_t group = 0; group < COLLIDER_GROUPS; ++group) {
+        params->shapes[group][0] = at;
+        for (int fixed = 0; fixed < 2; ++fixed) {
+            for (uint32_t i = 0; i < colliders->count; ++i) {
+                const Collider *collider = &colliders->list[i];
+                const HeadPose *frame = fixed ? &world : head;
+                if (colliders_group(collider->kind) != group || collider->world != fixed) continue;
+                colliders_pack(collider, frame->rotation, frame->translation, shapes[at].texel);
+                bool reaches =
+                    colliders_reach(collider, (const float(*)[4])shapes[at].texel, centre, radius);
+                reached += reaches;
+                if (!reaches && group == 0) shapes[at] = (Shape){.texel = {{0, 0, 0, -NEVER}}};
+                at += reaches || group == 0;
+            }
+            params->shapes[group][1 + fixed] = at;
+        }
     }
     return reached;
 }
 
 static CollideParams step_params(const Collision *collision, const SolverStep *step)
 {
-    const ShapeCounts counts = count_shapes(collision->colliders);
     CollideParams params = {
         .dt = (float)step->dt,
         .margin = collision->params->collision_margin,
         .friction = collision->params->friction,
         .longest = collision->bounds->longest,
         .carried = collision->carried,
-        .cones = counts.cones,
-        .cones_moved = counts.moved,
-        .planes = counts.planes,
     };
     if (collision->field) {
         memcpy(params.field_low, collision->field->low, sizeof collision->field->low);
@@ -274,14 +199,15 @@ static float stamp_of(uint32_t step, int part, int parts)
 bool collision_begin(Collision *collision, const SolverStep *step, int part, int parts)
 {
     if (!collision->program) return false;
-    Shape *shapes = malloc((collision->colliders->count + (size_t)1) * sizeof *shapes);
+    Shape *shapes = calloc(collision->colliders->count + (size_t)1, sizeof *shapes);
     if (!shapes) return false;
-    bool any = place_shapes(collision, &step->head, shapes) > 0 || collision->field;
+    CollideParams params = step_params(collision, step);
+    bool any = place_shapes(collision, &step->head, &params, shapes) > 0 || collision->field;
     if (any) {
         glBindBuffer(GL_SHADER_STORAGE_BUFFER, collision->shapes.buffer);
         glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0,
                         (GLsizeiptr)(collision->colliders->count * sizeof *shapes), shapes);
-        collision->step = step_params(collision, step);
+        collision->step = params;
     }
     collision->step.stamp = stamp_of(step->number, part, parts);
     collision->step.stamp_before = part > 1 ? stamp_of(step->number, part - 1, parts)

@@ -34,7 +34,8 @@ static void noise_is_even_and_smooth(void **state)
     assert_true(fabs(sum / 8000) < 5 / sqrt(3.0 * 8000));
     for (int i = 0; i < 1000; i++) {
         double x = i * 0.0137, here = portable_noise(x, 2 * x, -x);
-        assert_true(fabs(here) <= 1 && fabs(portable_noise(x + 1e-4, 2 * x, -x) - here) <= 3.001e-4);
+        assert_true(fabs(here) <= 1 &&
+                    fabs(portable_noise(x + 1e-4, 2 * x, -x) - here) <= 3.001e-4);
     }
 }
 

@@ -21,7 +21,7 @@ typedef struct TwinStrand {
 
 typedef struct TwinStep {
     double dt, drag;
-    bool first;       // forces act for dt/2
+    bool first; // forces act for dt/2
     Vec gravity, wind;
     HeadPose head_old, head; // at the step's start and end
 } TwinStep;
