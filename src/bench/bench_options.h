@@ -3,7 +3,7 @@
 #pragma once
 
 #include "bench/bench_image.h"
-#include "bench/bench_stress.h"
+#include "bench/stress.h"
 #include "bench/method.h"
 #include "bench/table.h"
 #include "gpu/gpu.h"

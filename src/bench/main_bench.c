@@ -10,7 +10,7 @@
 #include "bench/bench_shaders.h"
 #include "bench/bench_speed.h"
 #include "bench/bench_step.h"
-#include "bench/bench_stress.h"
+#include "bench/stress.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -23,7 +23,7 @@ static Result run_stress(const BenchOptions *arguments, const Gpu *gpu, Error *e
     if (*arguments->method.settings)
         return error_set(error, RESULT_USAGE, "stress: draws %s itself, or takes it from --case",
                          arguments->method.settings);
-    return bench_stress(gpu, &options, &arguments->output, stdout, error);
+    return stress_search(gpu, &options, &arguments->output, stdout, error);
 }
 
 static Result run_shaders(const BenchOptions *arguments, const Gpu *gpu, Error *error)

@@ -1,50 +1,139 @@
 // SPDX-License-Identifier: MIT
 #include "bench/stress_case.h"
+#include "base/double3.h"
 #include "base/suggest.h"
+#include "bench/method.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#define PI 3.14159265358979323846
+
+// --- Fields.
+
+// The last two are of parameters: WHOLE_LOG: evenly in the logarithm of 1 + a whole number; STYLE:
+// 0, 0.5 and 1 often.
 typedef enum Spread { EVEN, LOG, ZERO, WHOLE, WHOLE_LOG, STYLE } Spread;
 
-static const struct {
+typedef struct Field {
     const char *name;
     double plain, low, high;
     Spread spread;
     double likely;
-    const char *algo; // "": of all; NULL: no parameter of the solver's
-} FIELDS[] = {
-#define STRESS_ROW(name, plain, low, high, spread, likely, algo)                                   \
-    {#name, plain, low, high, spread, likely, algo},
+    const ParamInfo *info; // NULL: a circumstance
+} Field;
+
+static const Field CIRCUMSTANCES[] = {
+#define STRESS_ROW(name, plain, low, high, spread, likely)                                         \
+    {#name, plain, low, high, spread, likely, NULL},
     STRESS_FIELDS(STRESS_ROW)
 #undef STRESS_ROW
 };
 
-const int STRESS_VERTICES[STRESS_VERTEX_COUNTS] = {2, 3, 16, 64};
+// Parameters that are tried in another way than what find_param makes of their kind and range.
+static const struct {
+    const char *name;
+    double low, high;
+    Spread spread;
+    double likely;
+} SPECIAL[] = {
+    {"drag", 1e-3, 1e4, ZERO, 0.5}, // beyond, hair is the air's
+    {"style", 0, 1, STYLE, 0.5},
+    {"style_stiffness", 1, 1e9, ZERO, 0.3}, // softer ones are as none
+    {"chain_bend", 1, 1e6, ZERO, 0.4},
+    {"rope_iterations", 1, 100, WHOLE_LOG, 0.3}, // each costs as much as the first
+    {"rope_compliance", 1e-9, 1e6, ZERO, 0.3},   // what is stiff is small
+    {"stretch_drawn", 0, 1, WHOLE, 1},
+};
 
-// Whether the solver has the field: the list names it, or it with the variant as "rope/xpbd".
-static bool applies(int field, const StressCase *stress)
+static double default_of(const ParamInfo *info)
 {
-    const char *list = FIELDS[field].algo;
-    if (!list || !*list) return true;
-    size_t length = strlen(stress->algo);
-    const char *at = strstr(list, stress->algo);
-    if (!at) return false;
-    return at[length] != '/' || strcmp(at + length + 1, stress->variant) == 0;
+    if (info->kind == PARAM_BOOL) return strcmp(info->default_text, "true") == 0;
+    for (int i = 0; info->kind == PARAM_CHOICE && info->choices[i]; ++i)
+        if (strcmp(info->choices[i], info->default_text) == 0) return i;
+    return strtod(info->default_text, NULL);
 }
+
+// How a parameter is tried: within its documented range, whose low end is a billionth of the high
+// one where that is 0.
+static Field find_param(const ParamInfo *info)
+{
+    Field field = {info->name, default_of(info), info->minimum, info->maximum, EVEN, 0.2, info};
+    if (info->kind == PARAM_BOOL) field.high = 1;
+    for (; info->kind == PARAM_CHOICE && info->choices[(int)field.high + 1];) ++field.high;
+    if (info->kind != PARAM_FLOAT)
+        field.spread = field.high > 3 ? WHOLE_LOG : WHOLE;
+    else if (field.low > 0)
+        field.spread = LOG;
+    else if (field.high > 1)
+        field.spread = ZERO, field.low = 1e-9 * field.high;
+    for (size_t i = 0; i < sizeof SPECIAL / sizeof *SPECIAL; ++i)
+        if (strcmp(SPECIAL[i].name, info->name) == 0) {
+            field.low = SPECIAL[i].low, field.high = SPECIAL[i].high;
+            field.spread = SPECIAL[i].spread, field.likely = SPECIAL[i].likely;
+        }
+    return field;
+}
+
+// All fields; params.def in the form that is needed here, made once.
+static const Field *list_fields(int *count)
+{
+    static Field fields[STRESS_MOST_FIELDS];
+    static int made = 0;
+    if (!made) {
+        memcpy(fields, CIRCUMSTANCES, sizeof CIRCUMSTANCES);
+        made = STRESS_PARAMS;
+        for (size_t i = 0; i < PARAM_COUNT && made < STRESS_MOST_FIELDS; ++i) {
+            ParamKind kind = PARAM_TABLE[i].kind;
+            if (method_takes(&PARAM_TABLE[i]) && (kind == PARAM_FLOAT || kind == PARAM_INT ||
+                                                  kind == PARAM_BOOL || kind == PARAM_CHOICE))
+                fields[made++] = find_param(&PARAM_TABLE[i]);
+        }
+    }
+    *count = made;
+    return fields;
+}
+
+static bool applies(const Field *field, const StressCase *stress)
+{
+    if (!field->info) return true;
+    bool refused = strcmp(field->name, "rope_compliance") == 0 &&
+                   strcmp(stress->variant, "xpbd") != 0; // by the other form of rope
+    return !refused && params_owned_by(field->info, stress->algo);
+}
+
+static double param_value(const StressCase *stress, const char *name)
+{
+    int count;
+    const Field *fields = list_fields(&count);
+    for (int i = STRESS_PARAMS; i < count; ++i)
+        if (strcmp(fields[i].name, name) == 0) return stress->value[i];
+    return NAN;
+}
+
+static bool is_whole(const Field *field)
+{
+    return field->spread == WHOLE || field->spread == WHOLE_LOG;
+}
+
+static bool is_in_range(const Field *field, double value)
+{
+    return (field->spread == ZERO && value == 0) || (value >= field->low && value <= field->high);
+}
+
+// --- Making cases.
+
+const int STRESS_VERTICES[STRESS_VERTEX_COUNTS] = {2, 3, 16, 64};
 
 StressCase stress_case_plain(const char *algo, const char *variant)
 {
+    int count;
+    const Field *fields = list_fields(&count);
     StressCase stress = {.algo = algo, .variant = variant};
-    for (int i = 0; i < STRESS_FIELD_COUNT; ++i) stress.value[i] = FIELDS[i].plain;
+    for (int i = 0; i < count; ++i) stress.value[i] = fields[i].plain;
     return stress;
-}
-
-static bool is_of_strand(int field)
-{
-    return field == STRESS_shape || field == STRESS_tilt || field == STRESS_shape_seed;
 }
 
 // To five digits, so that the text is the case.
@@ -55,26 +144,22 @@ static double rounded(double value)
     return strtod(text, NULL);
 }
 
-static double between(int field, bool by_log, double share)
+static double random_value(const Field *field, Random *random)
 {
-    double low = FIELDS[field].low, high = FIELDS[field].high;
-    return by_log ? low * pow(high / low, share) : low + share * (high - low);
-}
-
-static double random_value(int field, Random *random)
-{
-    double share = random_real(random), choice = random_real(random);
-    switch (FIELDS[field].spread) {
+    double share = random_real(random), choice = random_real(random), low = field->low,
+           high = field->high;
+    switch (field->spread) {
     case EVEN:
-        return between(field, false, share);
-    case LOG:
-        return between(field, true, share);
+        return low + share * (high - low);
     case ZERO:
-        return choice < 0.25 ? 0 : between(field, true, share);
+        if (choice < 0.25) return 0;
+        return low * pow(high / low, share);
+    case LOG:
+        return low * pow(high / low, share);
     case WHOLE:
-        return floor(FIELDS[field].low + share * (FIELDS[field].high - FIELDS[field].low + 1));
+        return floor(low + share * (high - low + 1));
     case WHOLE_LOG:
-        return floor(pow(FIELDS[field].high + 1, share));
+        return fmax(floor(pow(high + 1, share)), low);
     case STYLE:
     default:
         return choice < 0.5 ? 0.5 * floor(6 * choice) : share;
@@ -83,10 +168,14 @@ static double random_value(int field, Random *random)
 
 static void draw(StressCase *stress, bool of_strand, Random *random)
 {
-    for (int i = 0; i < STRESS_FIELD_COUNT; ++i)
-        if (is_of_strand(i) == of_strand && applies(i, stress) &&
-            random_real(random) < FIELDS[i].likely)
-            stress->value[i] = rounded(random_value(i, random));
+    int count;
+    const Field *fields = list_fields(&count);
+    for (int i = 0; i < count; ++i) {
+        bool own = i == STRESS_shape || i == STRESS_tilt || i == STRESS_shape_seed;
+        if (own == of_strand && applies(&fields[i], stress) &&
+            random_real(random) < fields[i].likely)
+            stress->value[i] = rounded(random_value(&fields[i], random));
+    }
 }
 
 // Roots are where float32 still tells a strand's particles apart: reading merges those that are
@@ -104,7 +193,7 @@ static void keep_affordable(StressCase *stress)
     double links = value[STRESS_n] - 1, most = STRESS_MOST_SMALL_STEPS;
     if (strcmp(stress->algo, "spring") != 0) return;
     most *= strcmp(stress->variant, "explicit") == 0
-                ? 1.6 / (links * sqrt(2.5 * value[STRESS_spring_coil]))
+                ? 1.6 / (links * sqrt(2.5 * param_value(stress, "spring_coil")))
                 : 10 / (links * sqrt(fmax(value[STRESS_gravity], 1e-9) / value[STRESS_length]));
     stress->value[STRESS_dt] = rounded(fmax(fmin(value[STRESS_dt], most), 1e-6));
 }
@@ -131,99 +220,92 @@ StressCase stress_case_random_strand(const StressCase *set, int strand, Random *
 
 static Result read_word(StressCase *stress, const char *word, size_t length, Error *error)
 {
-    const char *equals = memchr(word, '=', length), *names[STRESS_FIELD_COUNT];
+    int count;
+    const Field *fields = list_fields(&count);
+    const char *equals = memchr(word, '=', length), *names[STRESS_MOST_FIELDS];
     size_t name = equals ? (size_t)(equals - word) : length;
     char text[64], *end = NULL;
     snprintf(text, sizeof text, "%.*s", (int)name, word);
-    for (int i = 0; i < STRESS_FIELD_COUNT; ++i) {
-        names[i] = FIELDS[i].name;
-        if (strcmp(FIELDS[i].name, text) != 0) continue;
-        if (!applies(i, stress))
+    for (int i = 0; i < count; ++i) {
+        const Field *field = &fields[i];
+        names[i] = field->name;
+        if (strcmp(field->name, text) != 0) continue;
+        if (!applies(field, stress))
             return error_set(error, RESULT_USAGE, "--case: %s does not belong to %s %s", text,
                              stress->algo, stress->variant);
         double value = equals ? strtod(equals + 1, &end) : NAN;
-        bool whole = FIELDS[i].spread == WHOLE || FIELDS[i].spread == WHOLE_LOG;
-        bool zero = FIELDS[i].spread == ZERO && value == 0;
-        if (!equals || end != word + length || (whole && value != floor(value)) ||
-            (!zero && !(value >= FIELDS[i].low && value <= FIELDS[i].high)))
+        if (!equals || end != word + length || (is_whole(field) && value != floor(value)) ||
+            !is_in_range(field, value))
             return error_set(error, RESULT_USAGE, "--case: %s: expected %g to %g, got '%.*s'", text,
-                             FIELDS[i].low, FIELDS[i].high, (int)length, word);
+                             field->low, field->high, (int)length, word);
         stress->value[i] = value;
         return RESULT_OK;
     }
     char words[800];
     return error_set(error, RESULT_USAGE, "--case: no '%s': %s", text,
-                     suggest_words(words, sizeof words, text, names, STRESS_FIELD_COUNT));
+                     suggest_words(words, sizeof words, text, names, (size_t)count));
 }
 
 Result stress_case_read(StressCase *stress, const char *text, Error *error)
 {
     *stress = stress_case_plain(stress->algo, stress->variant);
-    Result result = RESULT_OK;
     if (strcmp(text, "plain") == 0) text = "";
-    for (const char *at = text + strspn(text, " "); *at && result == RESULT_OK;) {
-        size_t length = strcspn(at, " ");
-        result = read_word(stress, at, length, error);
-        at += length;
-        at += strspn(at, " ");
+    for (size_t length; *(text += strspn(text, " ")); text += length) {
+        length = strcspn(text, " ");
+        TRY(read_word(stress, text, length, error));
     }
     keep_apart(stress);
-    return result;
+    return RESULT_OK;
 }
 
 void stress_case_write(const StressCase *stress, char *text, size_t size)
 {
+    int count;
+    const Field *fields = list_fields(&count);
     size_t used = 0;
     snprintf(text, size, "plain");
-    for (int i = 0; i < STRESS_FIELD_COUNT && used < size; ++i)
-        if (applies(i, stress) && stress->value[i] != FIELDS[i].plain)
+    for (int i = 0; i < count && used < size; ++i)
+        if (applies(&fields[i], stress) && stress->value[i] != fields[i].plain)
             used += (size_t)snprintf(text + used, size - used, "%s%s=%.5g", used ? " " : "",
-                                     FIELDS[i].name, stress->value[i]);
+                                     fields[i].name, stress->value[i]);
 }
 
 // --- Simpler cases.
 
 // Half the way to the plain value, in the logarithm if both have one; the plain one from near by.
-static double halved(int field, double value)
+static double halved(const Field *field, double value)
 {
-    double plain = FIELDS[field].plain;
-    bool whole = FIELDS[field].spread == WHOLE || FIELDS[field].spread == WHOLE_LOG;
+    double plain = field->plain;
     double half = value > 0 && plain > 0 ? sqrt(value * plain) : 0.5 * (value + plain);
-    half = whole ? floor(half) : half;
+    half = is_whole(field) ? floor(half) : half;
     return fabs(half - plain) < 0.05 * fabs(plain) || half == value ? plain : half;
 }
 
-// To one digit, as people write numbers; back to five where that changes nothing.
-static double round_number(double value)
-{
-    char text[32];
-    snprintf(text, sizeof text, "%.0e", value);
-    return strtod(text, NULL);
-}
-
+// The plain value, half the way there, to one digit as people write numbers: in turn.
 enum { MOVES_A_FIELD = 3, VERTEX_MOVES = 5 };
 
-static double simpler_value(int field, int way, double value)
+static double simpler_value(const Field *field, int way, double value)
 {
-    if (way == 0 || value == FIELDS[field].plain) return FIELDS[field].plain;
-    double simpler = way == 1 ? rounded(halved(field, value)) : round_number(value);
-    bool zero = FIELDS[field].spread == ZERO && simpler == 0;
-    return zero || (simpler >= FIELDS[field].low && simpler <= FIELDS[field].high) ? simpler
-                                                                                   : value;
+    if (way == 0 || value == field->plain) return field->plain;
+    char text[32];
+    snprintf(text, sizeof text, "%.0e", value);
+    double simpler = way == 1 ? rounded(halved(field, value)) : strtod(text, NULL);
+    return is_in_range(field, simpler) ? simpler : value;
 }
 
 bool stress_case_simplify(const StressCase *stress, int move, StressCase *simpler)
 {
     static const int fewer[VERTEX_MOVES] = {2, 3, 4, 8, 16};
+    int count;
+    const Field *fields = list_fields(&count);
     *simpler = *stress;
     if (move < VERTEX_MOVES) {
         if (fewer[move] < stress->value[STRESS_n]) simpler->value[STRESS_n] = fewer[move];
     } else {
-        int field = (move - VERTEX_MOVES) % STRESS_FIELD_COUNT;
-        int way = (move - VERTEX_MOVES) / STRESS_FIELD_COUNT;
+        int at = (move - VERTEX_MOVES) % count, way = (move - VERTEX_MOVES) / count;
         if (way >= MOVES_A_FIELD) return false;
-        if (field != STRESS_n && applies(field, stress))
-            simpler->value[field] = simpler_value(field, way, stress->value[field]);
+        if (at != STRESS_n && applies(&fields[at], stress))
+            simpler->value[at] = simpler_value(&fields[at], way, stress->value[at]);
     }
     keep_apart(simpler);
     return true;
@@ -233,21 +315,76 @@ bool stress_case_simplify(const StressCase *stress, int move, StressCase *simple
 
 Result stress_case_params(const StressCase *stress, SectionParams *params, Error *error)
 {
+    int count;
+    const Field *fields = list_fields(&count);
     Result result = params_create_section(params, error);
-    if (result == RESULT_OK)
-        result = params_parse(params_find("algo"), params, stress->algo, error);
-    if (result == RESULT_OK)
-        result = params_parse(params_find("variant"), params, stress->variant, error);
-    for (int i = 0; i < STRESS_FIELD_COUNT && result == RESULT_OK; ++i) {
-        const ParamInfo *info = FIELDS[i].algo ? params_find(FIELDS[i].name) : NULL;
-        if (!info || !applies(i, stress)) continue;
+    THEN(result, params_parse(params_find("algo"), params, stress->algo, error));
+    THEN(result, params_parse(params_find("variant"), params, stress->variant, error));
+    for (int i = STRESS_PARAMS; i < count && result == RESULT_OK; ++i) {
+        const ParamInfo *info = fields[i].info;
         char text[32];
+        if (!applies(&fields[i], stress)) continue;
         snprintf(text, sizeof text, "%.5g", stress->value[i]);
         if (info->kind == PARAM_BOOL)
             snprintf(text, sizeof text, stress->value[i] > 0 ? "true" : "false");
+        if (info->kind == PARAM_CHOICE)
+            snprintf(text, sizeof text, "%s", info->choices[(int)stress->value[i]]);
         result = params_parse(info, params, text, error);
-        if (result != RESULT_OK) error_prefix(error, result, "--case: %s: ", FIELDS[i].name);
+        if (result != RESULT_OK) error_prefix(error, result, "--case: %s: ", info->name);
     }
     if (result != RESULT_OK) params_destroy_section(params);
     return result;
+}
+
+// --- The strand.
+
+// The way from particle j - 1 to j along the strand, before it is made `length` long; `main` is a
+// unit vector, `side` one across it.
+static void link_of(const StressCase *stress, int j, const double main[3], const double side[3],
+                    Random *random, double link[3])
+{
+    double turn = 2 * PI * 3 * j / stress->value[STRESS_n], along = 1, across = 0, over = 0;
+    switch ((enum StressShape)stress->value[STRESS_shape]) {
+    case STRESS_CURL:
+        along = 0.5, across = cos(turn), over = sin(turn);
+        break;
+    case STRESS_ZIGZAG:
+        along = j % 2 ? 1 : -1;
+        break;
+    case STRESS_UNEVEN:
+        along = pow(1e4, random_real(random));
+        break;
+    case STRESS_WALK:
+    case STRESS_NEARLY_ZERO:
+        random_direction(random, link);
+        for (int k = 0; k < 3 && stress->value[STRESS_shape] == STRESS_NEARLY_ZERO; ++k)
+            link[k] *= j % 2 ? 1 : 1e-12;
+        return;
+    case STRESS_STRAIGHT:
+        break;
+    }
+    Double3 third;
+    double3_cross(main, side, third);
+    for (int k = 0; k < 3; ++k) link[k] = along * main[k] + across * side[k] + over * third[k];
+}
+
+void stress_case_make_strand(const StressCase *stress, float (*points)[3])
+{
+    enum { MOST = 64 };
+    int n = (int)stress->value[STRESS_n];
+    double tilt = stress->value[STRESS_tilt] * PI / 180, length = stress->value[STRESS_length],
+           arm = stress->value[STRESS_arm], total = 0, links[MOST][3], x[3] = {0, arm, 0};
+    const double main[3] = {sin(tilt), -cos(tilt), 0}, side[3] = {cos(tilt), sin(tilt), 0};
+    Random random = random_create((uint64_t)stress->value[STRESS_shape_seed], 0);
+    for (int j = 1; j < n; ++j) {
+        link_of(stress, j, main, side, &random, links[j]);
+        total += double3_length(links[j]);
+    }
+    // Reading leaves apart what is by more than 1e-7 of the largest coordinate, after rounding.
+    double least = fmax(1.1e-9, 4e-7 * (arm + length));
+    for (int j = 0; j < n; ++j) {
+        double size = j ? double3_length(links[j]) : 1,
+               scaled = j ? fmax(size * length / total, least) / size : 0;
+        for (int k = 0; k < 3; ++k) points[j][k] = (float)(x[k] += j ? scaled * links[j][k] : 0);
+    }
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What `tractrix-bench stress` tries: a strand under circumstances, as numbers with names. A case
 // differs from the plain one (a straight strand of 16 vertices that falls on a resting head) in
-// some of them; these are its text, "dt=0.5 wind=1e4 shape=curl".
+// some of them; these are its text, "dt=0.5 wind=1e4 shape=curl". Behind the circumstances come the
+// parameters of the case's solver, with the names, owners, defaults and ranges of params.def.
 //
 // Most are the same for all strands that are stepped together, a set; shape, tilt and shape_seed
 // are each strand's own.
@@ -13,62 +14,36 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-// STRESS_FIELD(name, plain, low, high, spread, likely, algo)
+// STRESS_FIELD(name, plain, low, high, spread, likely)
 // spread  how random values lie: EVEN; LOG: evenly in the logarithm; ZERO: as LOG, but 0 in one of
-//         four; WHOLE: evenly among whole numbers; WHOLE_LOG; STYLE: 0, 0.5 and 1 often
+//         four; WHOLE: evenly among whole numbers
 // likely  how often a random case differs in it
-// algo    solvers that it belongs to, NULL: all; then it is the parameter of this name (params.def)
-//         within the range documented there, or what is said below
 #define STRESS_FIELDS(STRESS_FIELD)                                                                \
-    STRESS_FIELD(n, 16, 2, 64, WHOLE, 0, NULL)            /* random: 2, 3, 16 or 64 */             \
-    STRESS_FIELD(dt, 1.0 / 60, 1e-6, 1, LOG, 0.6, NULL)   /* s */                                  \
-    STRESS_FIELD(length, 0.25, 1e-6, 1e4, LOG, 0.4, NULL) /* m */                                  \
-    STRESS_FIELD(gravity, 9.81, 1e-3, 1e5, ZERO, 0.4, NULL)                                        \
-    STRESS_FIELD(wind, 0, 1e-2, 1e4, ZERO, 0.4, NULL)     /* m/s */                                \
-    STRESS_FIELD(wind_pitch, 90, 0, 180, EVEN, 0.3, NULL) /* degrees from straight down */         \
-    STRESS_FIELD(gust, 0, 0, 1, EVEN, 0.3, NULL)                                                   \
-    STRESS_FIELD(wind_spread, 0, 0, 90, EVEN, 0.3, NULL)                                           \
-    STRESS_FIELD(jump, 0, 1e-3, 100, ZERO, 0.25, NULL)     /* m, to and fro every 64 steps */      \
-    STRESS_FIELD(shake, 0, 1e-3, 10, ZERO, 0.15, NULL)     /* m, amplitude */                      \
-    STRESS_FIELD(shake_rate, 1, 0.1, 100, LOG, 0.15, NULL) /* Hz */                                \
-    STRESS_FIELD(spin, 0, 0.1, 1e3, ZERO, 0.2, NULL)       /* rad/s */                             \
-    STRESS_FIELD(away, 0, 1, 1e3, ZERO, 0.2, NULL)         /* m from the origin */                 \
-    STRESS_FIELD(arm, 0.1, 1e-3, 1, LOG, 0.2, NULL)        /* m from the head's pivot to roots */  \
-    STRESS_FIELD(shape, 0, 0, 5, WHOLE, 0.7, NULL)         /* STRESS_SHAPES */                     \
-    STRESS_FIELD(tilt, 90, 0, 180, EVEN, 0.6, NULL)        /* degrees from straight down */        \
-    STRESS_FIELD(shape_seed, 0, 0, 65535, WHOLE, 1, NULL)                                          \
-    STRESS_FIELD(strand, 0, 0, 65535, WHOLE, 0, NULL) /* its number: winds mix by it */            \
-    STRESS_FIELD(drag, 1, 1e-3, 1e4, ZERO, 0.5, "")                                                \
-    STRESS_FIELD(style, 0.5, 0, 1, STYLE, 0.5, "")                                                 \
-    STRESS_FIELD(clamped, 1, 1, 2, WHOLE, 0.2, "")                                                 \
-    STRESS_FIELD(style_stiffness, 100, 1, 1e9, ZERO, 0.3, "chain hybrid emulation rope dftl")      \
-    STRESS_FIELD(chain_bend, 0, 1, 1e6, ZERO, 0.4, "chain")                                        \
-    STRESS_FIELD(ftl_damping, 0.98, 0, 1, EVEN, 0.4, "dftl")                                       \
-    STRESS_FIELD(rope_iterations, 10, 1, 100, WHOLE_LOG, 0.3, "rope")                              \
-    STRESS_FIELD(rope_damping, 0, 0, 1, EVEN, 0.3, "rope")                                         \
-    STRESS_FIELD(rope_time_scale, 1, 1e-3, 1e3, LOG, 0.2, "rope")                                  \
-    STRESS_FIELD(rope_compliance, 0, 1e-9, 1e6, ZERO, 0.3, "rope/xpbd")                            \
-    STRESS_FIELD(spring_coil, 1e4, 1, 1e8, LOG, 0.4, "spring")                                     \
-    STRESS_FIELD(spring_angular, 10, 1e-2, 1e6, ZERO, 0.4, "spring")                               \
-    STRESS_FIELD(stretch_drawn, 0, 0, 1, WHOLE, 1, "spring rope")                                  \
-    STRESS_FIELD(tressfx_vsp_coeff, 0.8, 0, 1, EVEN, 0.3, "tressfx")                               \
-    STRESS_FIELD(tressfx_vsp_accel_threshold, 1.4, 1e-3, 1e6, ZERO, 0.2, "tressfx")                \
-    STRESS_FIELD(tressfx_local_constraint_stiffness, 0.9, 0, 1, EVEN, 0.3, "tressfx")              \
-    STRESS_FIELD(tressfx_local_constraints_iterations, 2, 0, 100, WHOLE_LOG, 0.3, "tressfx")       \
-    STRESS_FIELD(tressfx_global_constraint_stiffness, 0, 0, 1, EVEN, 0.3, "tressfx")               \
-    STRESS_FIELD(tressfx_global_constraints_range, 0, 0, 1, EVEN, 0.3, "tressfx")                  \
-    STRESS_FIELD(tressfx_length_constraints_iterations, 2, 0, 100, WHOLE_LOG, 0.3, "tressfx")      \
-    STRESS_FIELD(tressfx_damping, 0.08, 0, 1, EVEN, 0.3, "tressfx")                                \
-    STRESS_FIELD(tressfx_damping_rate, 60, 1e-2, 1e4, ZERO, 0.2, "tressfx")                        \
-    STRESS_FIELD(tressfx_local_share, 0.5, 0, 1, EVEN, 0.2, "tressfx")                             \
-    STRESS_FIELD(tressfx_local_max, 0.95, 0, 1, EVEN, 0.2, "tressfx")                              \
-    STRESS_FIELD(tressfx_clamp_position_delta, 20, 1e-3, 1e6, LOG, 0.2, "tressfx")
+    STRESS_FIELD(n, 16, 2, 64, WHOLE, 0)              /* random: 2, 3, 16 or 64 */                 \
+    STRESS_FIELD(dt, 1.0 / 60, 1e-6, 1, LOG, 0.6)     /* s */                                      \
+    STRESS_FIELD(length, 0.25, 1e-6, 1e4, LOG, 0.4)   /* m */                                      \
+    STRESS_FIELD(gravity, 9.81, 1e-3, 1e5, ZERO, 0.4) /* m/s2 */                                   \
+    STRESS_FIELD(wind, 0, 1e-2, 1e4, ZERO, 0.4)       /* m/s */                                    \
+    STRESS_FIELD(wind_pitch, 90, 0, 180, EVEN, 0.3)   /* degrees from straight down */             \
+    STRESS_FIELD(gust, 0, 0, 1, EVEN, 0.3)            /* as --gust */                              \
+    STRESS_FIELD(wind_spread, 0, 0, 90, EVEN, 0.3)    /* degrees */                                \
+    STRESS_FIELD(jump, 0, 1e-3, 100, ZERO, 0.25)      /* m, to and fro every 64 steps */           \
+    STRESS_FIELD(shake, 0, 1e-3, 10, ZERO, 0.15)      /* m, amplitude */                           \
+    STRESS_FIELD(shake_rate, 1, 0.1, 100, LOG, 0.15)  /* Hz */                                     \
+    STRESS_FIELD(spin, 0, 0.1, 1e3, ZERO, 0.2)        /* rad/s */                                  \
+    STRESS_FIELD(away, 0, 1, 1e3, ZERO, 0.2)          /* m from the origin */                      \
+    STRESS_FIELD(arm, 0.1, 1e-3, 1, LOG, 0.2)         /* m from the head's pivot to roots */       \
+    STRESS_FIELD(shape, 0, 0, 5, WHOLE, 0.7)          /* StressShape */                            \
+    STRESS_FIELD(tilt, 90, 0, 180, EVEN, 0.6)         /* degrees from straight down */             \
+    STRESS_FIELD(shape_seed, 0, 0, 65535, WHOLE, 1)   /* of random shapes */                       \
+    STRESS_FIELD(strand, 0, 0, 65535, WHOLE, 0)       /* its number: winds mix by it */
 
 enum StressField {
-#define STRESS_NAME(name, plain, low, high, spread, likely, algo) STRESS_##name,
+#define STRESS_NAME(name, ...) STRESS_##name,
     STRESS_FIELDS(STRESS_NAME)
 #undef STRESS_NAME
-        STRESS_FIELD_COUNT
+        STRESS_PARAMS, // where the solver's parameters begin
+    STRESS_MOST_FIELDS = 64
 };
 
 // Shapes, all of the case's length (but for the shortest segments that reading leaves,
@@ -80,12 +55,11 @@ enum StressShape {
     STRESS_WALK,        // every segment in a direction of its own
     STRESS_UNEVEN,      // straight, of segments whose lengths differ by up to 1e4
     STRESS_NEARLY_ZERO, // walk, but every other segment is the shortest that reading leaves
-    STRESS_SHAPES
 };
 
 typedef struct StressCase {
     const char *algo, *variant; // variant: "" for a solver without
-    double value[STRESS_FIELD_COUNT];
+    double value[STRESS_MOST_FIELDS];
 } StressCase;
 
 // The plain case of a solver.
@@ -102,7 +76,7 @@ StressCase stress_case_random(const char *algo, const char *variant, int vertice
 // The set with a strand of its own, of number `strand`.
 StressCase stress_case_random_strand(const StressCase *set, int strand, Random *random);
 
-// Reads what stress_case_write has written, words in any order, into a plain case. RESULT_USAGE
+// Reads the output of stress_case_write, words in any order, into a plain case. RESULT_USAGE
 // naming the word.
 Result stress_case_read(StressCase *stress, const char *text, Error *error);
 

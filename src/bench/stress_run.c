@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "bench/stress_run.h"
 #include "base/interrupt.h"
-#include "bench/stress_bound.h"
 #include "gpu/shader.h"
 #include "scene/forces.h"
 #include "sim/solver.h"
@@ -12,6 +11,199 @@
 #include <string.h>
 
 #define PI 3.14159265358979323846
+
+// --- Bounds.
+
+enum { LENGTHS = 1, ENERGY = 2, REST = 4 };
+
+// What a solver does not promise, and why; by how much of S^2 its energy may rise otherwise.
+static const struct {
+    const char *algo, *variant; // variant NULL: all
+    unsigned lacks;
+    double rise;
+    const char *why;
+} EXCEPTIONS[] = {
+    {"split", NULL, 0, 0.3, "its tip goes by chords of the ball that it is in"},
+    {"split", "thesis", ENERGY, 0, "its tip's velocity is what the pulls of the root leave"},
+    {"emulation", "thesis", ENERGY | REST, 0, "gains energy, as published"},
+    {"tressfx", "tressfx4", LENGTHS | ENERGY | REST, 0, "its passes leave it stretched"},
+    {"chain", "", 0, 0.03, "its account leaves out what stiff springs of the style give"},
+    {"hybrid", "", 0, 0.03, "its balance takes a gain out of velocities, after the step's move"},
+    {"emulation", "projected", 0, 0.06, "so does its balance"},
+    {"dftl", "", 0, 0.15, "its corrections go into velocities, not into what is drawn"},
+};
+static const double USUAL_RISE = 0.02;
+
+static const double LENGTH_ERROR = 1e-5;
+static const double REST_MOVE =
+    3e-3; // of the length in a step: the tremor that docs/solvers.md has
+
+static const double PATIENCE = 30; // of each time constant, until a strand must lie still
+static const double CALM = 2; // stability number (simulation.h) up to which solvers come to rest
+
+static const double NOISE_STEPS = 8; // steps whose rounding may add up, beside a random walk's
+
+static bool is(const StressCase *stress, const char *algo)
+{
+    return strcmp(stress->algo, algo) == 0;
+}
+
+// What a jerk of the root gives to a strand, over its change of velocity: where it is by tens of
+// links, chain's corrections of the lengths overshoot, for that step only; those of dftl are
+// velocities, which it takes a dozen steps to lose.
+static double jerk_of(const StressCase *stress)
+{
+    bool overshoots = is(stress, "chain") || is(stress, "dftl");
+    return overshoots ? 1.5 : 1;
+}
+
+static bool head_carries(const StressCase *stress, const SectionParams *params)
+{
+    return is(stress, "tressfx") || (params->clamped > 1 && stress->value[STRESS_n] > 2);
+}
+
+static double odds_of(const SectionParams *params)
+{
+    return (double)params->style / fmax(1 - (double)params->style, 1e-6);
+}
+
+// Springs towards the style: 4 k L^2 and 2 pi b L for each radian.
+static double turned_springs(const StressCase *stress, const SectionParams *params)
+{
+    double odds = odds_of(params), length = stress->value[STRESS_length],
+           square = 4 * length * length;
+    double bend = 2 * PI * length * odds;
+    if (is(stress, "split")) return 0; // its style is drawn only
+    if (is(stress, "spring")) return bend * (double)params->spring_angular;
+    if (is(stress, "tressfx")) {
+        double passes = (double)params->tressfx_local_constraints_iterations / 2;
+        return square * fmax(passes, 1) * 4e4 * odds;
+    }
+    double springs = square * (double)params->style_stiffness * odds;
+    return springs + (is(stress, "chain") ? bend * (double)params->chain_bend : 0);
+}
+
+// All that makes hair go with the air, 1/s.
+static double all_drag(const StressCase *stress, const SectionParams *params)
+{
+    if (is(stress, "tressfx"))
+        return (double)params->drag +
+               (double)params->tressfx_damping * (double)params->tressfx_damping_rate;
+    return (double)params->drag;
+}
+
+// The range that docs/solvers.md states for its energy, with what is fixed in TressFX as it is.
+static bool is_stable_tressfx(const StressCase *stress, const SectionParams *params)
+{
+    double dt = stress->value[STRESS_dt];
+    return dt > 1.0 / 241 && dt < 1.0 / 29 && params->tressfx_damping_rate == 60 &&
+           params->tressfx_local_constraints_iterations <= 8 &&
+           params->tressfx_local_share <= 0.5f && params->tressfx_local_max <= 0.95f;
+}
+
+static void apply_promises(StressBound *bound, const StressCase *stress,
+                           const SectionParams *params, bool rests)
+{
+    unsigned lacks = 0;
+    bound->rise = USUAL_RISE;
+    // Shorter segments have no certain direction; TressFX's levers make much of that.
+    bound->resolved = is(stress, "tressfx") ? 4096 : 64;
+    for (size_t i = 0; i < sizeof EXCEPTIONS / sizeof *EXCEPTIONS; ++i)
+        if (strcmp(EXCEPTIONS[i].algo, stress->algo) == 0 &&
+            (!EXCEPTIONS[i].variant || strcmp(EXCEPTIONS[i].variant, stress->variant) == 0)) {
+            lacks |= EXCEPTIONS[i].lacks;
+            if (EXCEPTIONS[i].rise > 0) bound->rise = EXCEPTIONS[i].rise;
+        }
+    bool elastic = is(stress, "spring") || is(stress, "rope");
+    if (elastic) lacks |= params->stretch_drawn ? LENGTHS : ENERGY; // which it draws
+    // The lower, the more it whips, and the more the shorter the steps (docs/solvers.md).
+    if (is(stress, "dftl") && params->ftl_damping < 0.98f) lacks |= ENERGY;
+    if (is(stress, "tressfx") && !is_stable_tressfx(stress, params)) lacks |= ENERGY | REST;
+    if (lacks & ENERGY) bound->rise = -1;
+    bound->length_error = lacks & LENGTHS ? 0 : LENGTH_ERROR;
+    bound->rest_move = rests && !(lacks & REST) ? REST_MOVE * bound->length : 0;
+}
+
+// Whether what drag takes must have ended in the half of the steps in which the head rests.
+static bool must_rest(const StressCase *stress, const StressBound *bound, double g, int steps)
+{
+    double time = bound->step_s * steps / 2;
+    if (stress->value[STRESS_gust] > 0 && bound->wind > 0) return false;
+    if (!(bound->drag > 0 && g > 0)) return false;
+    return time > PATIENCE * fmax(2 / bound->drag, bound->drag * bound->length / g);
+}
+
+StressBound stress_run_bound(const StressCase *stress, const SectionParams *params, int steps)
+{
+    double spread = fmin(stress->value[STRESS_wind_spread], 89) * PI / 180;
+    StressBound bound = {
+        .step_s =
+            stress->value[STRESS_dt] * (is(stress, "rope") ? (double)params->rope_time_scale : 1),
+        .drag = all_drag(stress, params),
+        .wind = stress->value[STRESS_wind] * (1 + stress->value[STRESS_gust]) / cos(spread),
+        .g = stress->value[STRESS_gravity],
+        .length = stress->value[STRESS_length],
+        .stiffness = turned_springs(stress, params),
+        .jerk = jerk_of(stress),
+        .jerk_stays = is(stress, "dftl"),
+        .carries = head_carries(stress, params),
+        .bends = 16 * (is(stress, "chain") ? (double)params->chain_bend : 0) * odds_of(params) *
+                 (stress->value[STRESS_n] - 1) * stress->value[STRESS_length],
+        .small_steps = strcmp(stress->variant, "xpbd") == 0       ? params->rope_iterations
+                       : strcmp(stress->variant, "explicit") == 0 ? STRESS_MOST_SMALL_STEPS
+                                                                  : 1,
+    };
+    double g = bound.g + bound.drag * bound.wind, links = stress->value[STRESS_n] - 1;
+    bound.rest_shortest = bound.step_s * bound.step_s * g * links / (CALM * CALM);
+    apply_promises(&bound, stress, params, must_rest(stress, &bound, g, steps));
+    // Damping by a share in each step is drag of some strength.
+    if (is(stress, "rope") && params->rope_damping > 0) bound.drag = INFINITY;
+    return bound;
+}
+
+void stress_run_bound_step(StressBound *bound, const double moved[3], double angle)
+{
+    double change = 0, speed = 0, rate = fabs(angle) / bound->step_s;
+    for (int k = 0; k < 3; ++k) {
+        double u = moved[k] / bound->step_s;
+        change += (u - bound->root_velocity[k]) * (u - bound->root_velocity[k]);
+        speed += u * u;
+        bound->root_velocity[k] = u;
+    }
+    double air = bound->wind + sqrt(speed);
+    bound->kicks += bound->changed = sqrt(change);
+    bound->steps += 1;
+    bound->turned += bound->stiffness * fabs(angle);
+    bound->turning = fmax(bound->turning, rate * bound->length);
+    bound->spun += fabs(rate - bound->rate) + rate * fmin(fabs(angle), 2);
+    bound->rate = rate;
+    if (!(bound->drag > 0)) return;
+    bound->cap = fmax(bound->cap, air * air + 4 * bound->g * bound->length);
+    if (air > 0)
+        bound->blown = fmin(bound->blown + bound->drag * air * air / 2 * bound->step_s, bound->cap);
+}
+
+void stress_run_bound_fill(const StressBound *bound, bool last, StressParams *params)
+{
+    const double most = 1e18; // float32 squares it
+    double overshoot = (bound->jerk - 1) * (bound->jerk_stays ? bound->kicks : bound->changed);
+    params->per_dt = (float)(1 / bound->step_s);
+    params->kicks = (float)fmin(bound->kicks + overshoot + bound->turning, most);
+    params->spun = bound->carries ? (float)fmin(bound->spun, most) : 0;
+    params->carried = bound->carries;
+    params->added = (float)fmin(bound->blown + bound->turned, most * most);
+    params->rise = (float)bound->rise;
+    params->energy = bound->rise >= 0;
+    params->resolved = (float)bound->resolved;
+    params->rounding = 12 * 0x1p-24f;
+    params->bends = (float)fmin(bound->bends, most * most);
+    params->noise_steps = (float)(bound->small_steps * (NOISE_STEPS + sqrt(bound->steps)));
+    params->length_error = (float)bound->length_error;
+    params->rest_shortest = (float)bound->rest_shortest;
+    params->rest_move = last ? (float)bound->rest_move : 0;
+}
+
+// --- Running.
 
 enum { JUMP_PERIOD = 64 };
 
@@ -33,13 +225,6 @@ typedef struct Run {
     GpuBuffer before, worst, first, uniforms;
 } Run;
 
-bool stress_verdict_fails(const StressVerdict *verdict)
-{
-    for (int i = 0; i < STRESS_RULES; ++i)
-        if (verdict->first[i]) return true;
-    return false;
-}
-
 static void run_destroy(Run *run)
 {
     solver_destroy(&run->solver);
@@ -57,14 +242,13 @@ static Result upload(Run *run, const Gpu *gpu, const StressCase *strands, int co
 {
     uint32_t n = (uint32_t)run->set->value[STRESS_n];
     Strands made;
-    Result result = strands_create(&made, (uint32_t)count, (uint32_t)count * n, error);
-    if (result != RESULT_OK) return result;
+    TRY(strands_create(&made, (uint32_t)count, (uint32_t)count * n, error));
     for (uint32_t s = 0; s < (uint32_t)count; ++s) {
         made.first[s + 1] = (s + 1) * n;
         stress_case_make_strand(&strands[s], &made.position[s * n]);
     }
-    result = hair_create(&run->hair, &made, (uint32_t)run->set->value[STRESS_strand], &gpu->limits,
-                         error);
+    Result result = hair_create(&run->hair, &made, (uint32_t)run->set->value[STRESS_strand],
+                                &gpu->limits, error);
     strands_destroy(&made);
     return result;
 }
@@ -74,18 +258,15 @@ static Result create_check(Run *run, const Gpu *gpu, Error *error)
     const HairBatch *batch = &run->hair.batches[0];
     run->group_size = step_group_size(gpu);
     const ShaderDefine defines[] = {
-        {"GROUP_SIZE", (int)run->group_size}, {"TIP", stress_bound_tip_only(run->set)}, {0}};
+        {"GROUP_SIZE", (int)run->group_size}, {"TIP", is(run->set, "split")}, {0}};
     int64_t size = (int64_t)hair_slots(batch) * 16;
     void *zero = calloc((size_t)size, 1);
     if (!zero) return error_set(error, RESULT_FAILED, "no memory for verdicts");
     Result result = shader_build_compute(&run->program, "bench/stress.comp", defines, error);
-    if (result == RESULT_OK)
-        result = gpu_buffer_create(&run->before, &gpu->limits, "positions before a step",
-                                   batch->position.size, NULL, GL_RGBA32F, error);
-    if (result == RESULT_OK)
-        result = gpu_buffer_create(&run->worst, &gpu->limits, "verdicts", size, zero, 0, error);
-    if (result == RESULT_OK)
-        result = gpu_buffer_create(&run->first, &gpu->limits, "verdicts", size, zero, 0, error);
+    THEN(result, gpu_buffer_create(&run->before, &gpu->limits, "positions before a step",
+                                   batch->position.size, NULL, GL_RGBA32F, error));
+    THEN(result, gpu_buffer_create(&run->worst, &gpu->limits, "verdicts", size, zero, 0, error));
+    THEN(result, gpu_buffer_create(&run->first, &gpu->limits, "verdicts", size, zero, 0, error));
     free(zero);
     return result;
 }
@@ -133,19 +314,18 @@ static Result run_create(Run *run, const Gpu *gpu, const StressCase *strands, in
     forces->gust_period = 2;
     forces->wind_spread = (float)value[STRESS_wind_spread];
     gpu_timer_create(&run->timer, false, true);
-    Result result = stress_case_params(strands, &run->params, error);
-    if (result != RESULT_OK) return result;
-    run->bound = stress_bound_create(strands, &run->params, steps);
+    TRY(stress_case_params(strands, &run->params, error));
+    run->bound = stress_run_bound(strands, &run->params, steps);
     run->step = (SolverStep){.dt = value[STRESS_dt], .first = true, .number = 1};
     run->step.head = run->step.head_old = pose_at(run, 0);
-    result = upload(run, gpu, strands, count, error);
+    TRY(upload(run, gpu, strands, count, error));
     const SolverSetup setup = {.gpu = gpu,
                                .timer = &run->timer,
                                .hair = &run->hair,
                                .params = &run->params,
                                .head = &run->step.head};
-    if (result == RESULT_OK) result = solver_create(&run->solver, &setup, error);
-    return result == RESULT_OK ? create_check(run, gpu, error) : result;
+    TRY(solver_create(&run->solver, &setup, error));
+    return create_check(run, gpu, error);
 }
 
 static void keep_positions(Run *run)
@@ -167,7 +347,7 @@ static void look(Run *run, int i)
                            .strand_count = batch->strand_count,
                            .vertex_count = batch->vertex_count};
     memcpy(params.gravity, run->step.gravity, sizeof run->step.gravity);
-    stress_bound_fill(&run->bound, i == run->steps, &params);
+    stress_run_bound_fill(&run->bound, i == run->steps, &params);
     solver_pose(&run->solver, &run->step.head);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
     gpu_buffer_set_uniforms(&run->uniforms, BIND_STEP, &params, sizeof params);
@@ -176,7 +356,7 @@ static void look(Run *run, int i)
     gpu_buffer_bind_texture(&batch->rest, BIND_REST);
     gpu_buffer_bind_storage(&run->worst, BIND_STRESS_WORST);
     gpu_buffer_bind_storage(&run->first, BIND_STRESS_FIRST);
-    if (stress_bound_tip_only(run->set)) {
+    if (is(run->set, "split")) {
         SolverBuffer buffers[SOLVER_MAX_BUFFERS];
         solver_buffers(&run->solver, 0, buffers);
         gpu_buffer_bind_storage(buffers[1].buffer, BIND_TIPS);
@@ -199,8 +379,8 @@ static void take_step(Run *run, int i)
     root_at(run, &step->head, now);
     for (int k = 0; k < 3; ++k) moved[k] = now[k] - before[k];
     bool turns = i <= run->steps / 2;
-    stress_bound_step(&run->bound, moved,
-                      turns ? fmin(run->set->value[STRESS_spin] * step->dt, PI) : 0);
+    stress_run_bound_step(&run->bound, moved,
+                          turns ? fmin(run->set->value[STRESS_spin] * step->dt, PI) : 0);
     bool looked_at = is_looked_at(run, i);
     if (looked_at) keep_positions(run);
     solver_step(&run->solver, step);
@@ -210,22 +390,25 @@ static void take_step(Run *run, int i)
     ++step->number;
 }
 
-static void read_verdicts(const Run *run, StressVerdict *verdicts, float (*worst)[4],
-                          uint32_t (*first)[4], int count)
+static void read_verdicts(const Run *run, StressVerdict *verdicts, int count)
 {
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    glBindBuffer(GL_COPY_READ_BUFFER, run->worst.buffer);
-    glGetBufferSubData(GL_COPY_READ_BUFFER, 0, count * (GLsizeiptr)sizeof *worst, worst);
-    glBindBuffer(GL_COPY_READ_BUFFER, run->first.buffer);
-    glGetBufferSubData(GL_COPY_READ_BUFFER, 0, count * (GLsizeiptr)sizeof *first, first);
-    for (int s = 0; s < count; ++s)
+    for (int s = 0; s < count; ++s) {
+        float worst[4];
+        uint32_t first[4];
+        GLintptr at = s * (GLintptr)sizeof worst;
+        glBindBuffer(GL_COPY_READ_BUFFER, run->worst.buffer);
+        glGetBufferSubData(GL_COPY_READ_BUFFER, at, sizeof worst, worst);
+        glBindBuffer(GL_COPY_READ_BUFFER, run->first.buffer);
+        glGetBufferSubData(GL_COPY_READ_BUFFER, at, sizeof first, first);
         for (int i = 0; i < STRESS_RULES; ++i) {
-            verdicts[s].first[i] = (int)first[s][i];
-            verdicts[s].worst[i] = i == 0 ? 0 : (double)worst[s][i - 1];
+            verdicts[s].first[i] = (int)first[i];
+            verdicts[s].worst[i] = i == 0 ? 0 : (double)worst[i - 1];
         }
+    }
 }
 
-static Result take_steps(Run *run, StressVerdict *verdicts, int count, Error *error)
+static Result take_steps(Run *run, Error *error)
 {
     enum { STEPS_IN_FLIGHT = 256 }; // on a GPU, so that it can be interrupted
     for (int i = 1; i <= run->steps; ++i) {
@@ -233,13 +416,7 @@ static Result take_steps(Run *run, StressVerdict *verdicts, int count, Error *er
         if (i % STEPS_IN_FLIGHT == 0) glFinish();
         if (interrupt_requested()) return error_set(error, RESULT_INTERRUPTED, "interrupted");
     }
-    float(*worst)[4] = malloc((size_t)count * sizeof *worst);
-    uint32_t(*first)[4] = malloc((size_t)count * sizeof *first);
-    bool good = worst && first;
-    if (good) read_verdicts(run, verdicts, worst, first, count);
-    free(worst);
-    free(first);
-    return good ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for verdicts");
+    return RESULT_OK;
 }
 
 Result stress_run(StressVerdict *verdicts, const Gpu *gpu, const StressCase *strands, int count,
@@ -247,7 +424,8 @@ Result stress_run(StressVerdict *verdicts, const Gpu *gpu, const StressCase *str
 {
     Run run;
     Result result = run_create(&run, gpu, strands, count, steps, allowed, error);
-    if (result == RESULT_OK) result = take_steps(&run, verdicts, count, error);
+    THEN(result, take_steps(&run, error));
+    if (result == RESULT_OK) read_verdicts(&run, verdicts, count);
     run_destroy(&run);
     return result;
 }

@@ -1,9 +1,43 @@
 // SPDX-License-Identifier: MIT
-// Steps strands of stress_case.h and looks whether they keep the bounds of stress_bound.h.
+// Steps strands of stress_case.h and checks whether they keep the bounds below: what a strand may
+// do, whatever its solver, and what each solver says of itself.
+//
+// Energy. Let E be the mean over a strand's particles, mass 1, of v^2/2 - g.(x - s), seen from the
+// root without turning with it; s is where a particle was at the start, at rest in the style. The
+// springs of the style and of links store what is never negative, and nothing at the start. So
+//     dE/dt <= V |a| + c V (W - V) + P
+// with the root's acceleration a, the speed W of the air as seen from the root, drag c, the root
+// mean square speed V, and the power P by which a turning style stretches its springs. As
+// g.(x - s) <= B = mean(|g| l - g.s) at the distance l along the strand, V^2/2 <= E + B =: S^2/2.
+//   - Nothing but gravity: S^2 stays at 2B. What falls cannot be faster than its fall.
+//   - The root's motion: dS/dt <= |a|. S grows by no more than all changes of the root's velocity.
+//   - Wind: S^2 grows by c W^2/2 per second at most, and not at all where V > W; the energy beside
+//     V^2/2 varies by 4 |g| L/2 at most, so not above S^2 = W^2 + 4 |g| L.
+//   - A style of stiffness k that is turned by an angle does (2 l)(l) k per radian: S^2 grows by
+//     4 k L^2 per radian; angular springs b (m/s^2) give 2 pi b L.
+//   - What the head carries beside the root, or takes along rigidly, has the speed of its turning.
+//   - Vertex 1, where the head carries it: nothing bounds what the head does to lift it, by at most
+//     |g| l_1 + g.s_1, and all that hangs from it as much. Seen from there, the bound above holds
+//     with the changes of its velocity for those of the root's: those about the root, w l_1 by
+//     which a turn at the rate w begins or ends, and w l_1 per radian, are added.
+// Taken together in any order, S <= sqrt(2B + wind + style) + kicks, for sqrt((S + d)^2 + w) <=
+// sqrt(S^2 + w) + d. All terms scale alike, so the bound does not depend on units. It needs no
+// solver's own quantities: v is how far what is drawn goes in a step, by the step.
+//
+// Rounding. Positions are float32, off by 2^-24 of their size X: v is off by 2^-23 X/dt, and a
+// solver that takes velocities from positions hands that on: in N steps, small ones counted, as far
+// as a random walk. Directions are off by the rounding over the shortest segment: what stiff bends
+// store by that is there from the start.
+//
+// Rest. With the head at rest and steady forces, drag takes all energy. A swing dies like e^{-c
+// t/2}, what is overdamped creeps like e^{-t g/(c L)}; where both have passed for 30 times, the
+// strand must lie still.
 #pragma once
 
 #include "bench/stress_case.h"
 #include "gpu/gpu.h"
+
+#include "glsl/bench/stress_params.h"
 
 // What may break, in the order of stress_params.h.
 typedef enum StressRule { STRESS_FINITE, STRESS_LENGTHS, STRESS_ENERGY, STRESS_REST } StressRule;
@@ -15,12 +49,44 @@ typedef struct StressVerdict {
     double worst[STRESS_RULES]; // length error, energy and move over what is allowed
 } StressVerdict;
 
-// Whether any rule is broken.
-bool stress_verdict_fails(const StressVerdict *verdict);
-
 // Steps `count` strands of one set, `steps` steps. `strands` differ in what is a strand's own, and
 // have consecutive numbers. Using more than the share `allowed` (0 to 1] of a bound breaks it.
 // Looks at each of the first 64 steps, at eight after each jump of the head, at every sixteenth of
 // the others and at the last. RESULT_INTERRUPTED if one was asked for; errors of solver_create.
 Result stress_run(StressVerdict *verdicts, const Gpu *gpu, const StressCase *strands, int count,
                   int steps, double allowed, Error *error);
+
+// --- The bounds, for tests.
+
+typedef struct StressBound {
+    double small_steps, steps; // that the solver makes of one, at most; so far
+    double step_s;             // of the solver's own time
+    double drag, wind, g, length;
+    double stiffness;         // added to S^2 for each radian that the head turns, m^2/s^2
+    double kicks, blown, cap; // m/s; m^2/s^2
+    double turning;           // m/s: of a strand that goes rigidly with the head
+    double turned;            // m^2/s^2
+    bool carries;             // vertex 1 is the head's
+    double rate, spun;        // 1/s: the head's turning; its changes, and its own direction's
+    double root_velocity[3];
+    double rise;     // share by which the solver lets energy rise; < 0: no bound
+    double jerk;     // times the root's changes of velocity,
+    bool jerk_stays; // of all so far; else of the last step's only
+    double changed;  // m/s: the last of them
+    double bends;    // m^2/s^2: what bends by a radian would store, 16 times: twice the energy, and
+                     // both segments' directions off by as much again
+    double resolved; // roundings that segments must be long for energy to be looked at
+    double length_error;  // of segments; 0: it does not keep them
+    double rest_move;     // m a step, at the end; 0: it need not rest
+    double rest_shortest; // m: nor with a segment as short as this
+} StressBound;
+
+// `params` are the case's. `steps` that there will be, the head at rest in the second half of them.
+StressBound stress_run_bound(const StressCase *stress, const SectionParams *params, int steps);
+
+// Takes a step into account in which the root has gone by `moved` (m) and the head has turned by
+// `angle` (rad).
+void stress_run_bound_step(StressBound *bound, const double moved[3], double angle);
+
+// Fills in what stress.comp compares with, but for steps and counts. `last`: the run's last step.
+void stress_run_bound_fill(const StressBound *bound, bool last, StressParams *params);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The stress test in its short form, every case that once broke a rule, and the tool itself.
-#include "bench/bench_stress.h"
-#include "bench/stress_bound.h"
+#include "bench/stress.h"
 #include "bench/stress_run.h"
 #include "support/hair_fixture.h"
 
@@ -118,15 +117,15 @@ static void the_heads_motion_counts(void **state)
     StressCase stress = stress_case_plain("hybrid", "");
     SectionParams params;
     StressParams out = {0};
-    stress.value[STRESS_drag] = 0;
+    assert_int_equal(stress_case_read(&stress, "drag=0", NULL), RESULT_OK);
     assert_int_equal(stress_case_params(&stress, &params, NULL), RESULT_OK);
-    StressBound bound = stress_bound_create(&stress, &params, 100);
-    stress_bound_step(&bound, still, 0);
-    stress_bound_fill(&bound, false, &out);
+    StressBound bound = stress_run_bound(&stress, &params, 100);
+    stress_run_bound_step(&bound, still, 0);
+    stress_run_bound_fill(&bound, false, &out);
     assert_true(out.kicks == 0 && out.added == 0);
-    stress_bound_step(&bound, moved, 0);
-    stress_bound_step(&bound, still, 0);
-    stress_bound_fill(&bound, false, &out);
+    stress_run_bound_step(&bound, moved, 0);
+    stress_run_bound_step(&bound, still, 0);
+    stress_run_bound_fill(&bound, false, &out);
     assert_true(fabs((double)out.kicks - 2 * 0.5 * 60) < 1e-3); // off at 30 m/s, and stopped
     assert_true(out.added == 0);
     params_destroy_section(&params);
@@ -250,7 +249,7 @@ static void no_solver_breaks_a_rule_in_the_short_form(void **state)
                                    .shrinks = true};
     const TableOutput nowhere = {0};
     Error error = {{0}};
-    if (bench_stress(fixture_gpu(), &options, &nowhere, stdout, &error) != RESULT_OK)
+    if (stress_search(fixture_gpu(), &options, &nowhere, stdout, &error) != RESULT_OK)
         fail_msg("%s", error.text);
 }
 

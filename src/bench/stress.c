@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "bench/bench_stress.h"
+#include "bench/stress.h"
 #include "base/interrupt.h"
 #include "base/progress.h"
 #include "bench/stress_run.h"
+#include "run/stats.h"
 #include "sim/solver.h"
 
 #include <math.h>
 #include <string.h>
-#include <time.h>
 
 enum { TEXT_SIZE = 1024 };
 
@@ -19,7 +19,7 @@ typedef struct Line {
     const char *rule; // that was broken
     long set, strand; // -1: it is no strand of a set
     long steps, at;   // of the case; the first that broke it
-    double of_allowed, worst_length, worst_energy, worst_rest;
+    double of_allowed, worst[STRESS_RULES];
     char text[TEXT_SIZE], command[TEXT_SIZE + 128];
 } Line;
 
@@ -38,17 +38,15 @@ static const Column COLUMNS[] = {
     {"steps", COLUMN_WHOLE, AT(steps), 0},
     {"at", COLUMN_WHOLE, AT(at), 0},
     {"of_allowed", COLUMN_REAL, AT(of_allowed), 0},
-    {"worst_length", COLUMN_REAL, AT(worst_length), 0},
-    {"worst_energy", COLUMN_REAL, AT(worst_energy), 0},
-    {"worst_rest", COLUMN_REAL, AT(worst_rest), 0},
+    {"worst_length", COLUMN_REAL, AT(worst[STRESS_LENGTHS]), 0},
+    {"worst_energy", COLUMN_REAL, AT(worst[STRESS_ENERGY]), 0},
+    {"worst_rest", COLUMN_REAL, AT(worst[STRESS_REST]), 0},
     {"case", COLUMN_CHARS, AT(text), 0},
     {"command", COLUMN_CHARS, AT(command), 0},
 };
-enum { COLUMN_COUNT = sizeof COLUMNS / sizeof *COLUMNS };
-
 // Of the failures of a set only the worst of each rule is made smaller, and so many of a form; all
 // are named.
-enum { MOST_SHRUNK = 8 };
+enum { MOST_SHRUNK = 8, MOST_FORMS = 64 };
 
 StressOptions stress_options_default(void)
 {
@@ -70,15 +68,8 @@ typedef struct Bench {
     FILE *stream;
     Table table; // of the files
     Progress progress;
-    int sets_done, cases_done;
+    int sets_done, cases_done, failures;
 } Bench;
-
-static double now_s(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
 
 static int first_step(const StressVerdict *verdict, StressRule *rule)
 {
@@ -126,38 +117,25 @@ static void shrink(Bench *bench, StressCase *stress, StressRule rule, int *steps
     }
 }
 
-// The command that repeats a case, of the line's form and steps.
-static void write_command(const Bench *bench, Line *line)
-{
-    char allow[32] = "";
-    if (bench->options->allowed < 1)
-        snprintf(allow, sizeof allow, " --allow %.9g", bench->options->allowed);
-    snprintf(line->command, sizeof line->command,
-             "tractrix-bench stress --algo %s%s%s --steps %ld%s --case '%s'", line->algo,
-             *line->variant ? " --variant " : "", line->variant, line->steps, allow, line->text);
-}
-
+// The row of a case, with the command that repeats it.
 static Line line_of_case(const Bench *bench, const char *what, const StressCase *stress,
                          const StressVerdict *verdict, StressRule rule, int steps)
 {
-    Line line = {.what = what,
-                 .algo = stress->algo,
-                 .variant = stress->variant,
-                 .cases = 1,
-                 .sets = 1,
-                 .failures = 1,
-                 .seconds = NAN,
-                 .rule = STRESS_RULE_NAMES[rule],
-                 .set = -1,
-                 .strand = -1,
-                 .steps = steps,
-                 .at = verdict->first[rule],
-                 .of_allowed = verdict->worst[rule],
-                 .worst_length = verdict->worst[STRESS_LENGTHS],
-                 .worst_energy = verdict->worst[STRESS_ENERGY],
-                 .worst_rest = verdict->worst[STRESS_REST]};
+    Line line = {.what = what, .algo = stress->algo, .variant = stress->variant};
+    char allow[32] = "";
+    line.cases = line.sets = line.failures = 1;
+    line.set = line.strand = -1;
+    line.steps = steps, line.at = verdict->first[rule];
+    line.seconds = NAN;
+    line.rule = STRESS_RULE_NAMES[rule];
+    line.of_allowed = verdict->worst[rule];
+    memcpy(line.worst, verdict->worst, sizeof line.worst);
     stress_case_write(stress, line.text, sizeof line.text);
-    write_command(bench, &line);
+    if (bench->options->allowed < 1)
+        snprintf(allow, sizeof allow, " --allow %.9g", bench->options->allowed);
+    snprintf(line.command, sizeof line.command,
+             "tractrix-bench stress --algo %s%s%s --steps %ld%s --case '%s'", line.algo,
+             *line.variant ? " --variant " : "", line.variant, line.steps, allow, line.text);
     return line;
 }
 
@@ -171,13 +149,15 @@ static void print_case(Bench *bench, const StressCase *stress, const StressVerdi
     table_add(&bench->table, &line);
 }
 
-static void tell_failure(Bench *bench, const StressCase *stress, const StressVerdict *found)
+// Makes a case that failed smaller as long as it breaks its first broken rule, alone.
+static void report_smallest(Bench *bench, const StressCase *stress, const StressVerdict *found)
 {
     StressRule rule = STRESS_FINITE;
     StressCase smallest = *stress;
     StressVerdict verdict = *found;
     Error unused;
-    int steps = bench->options->steps, at = first_step(found, &rule);
+    int steps = bench->options->steps;
+    first_step(found, &rule);
     progress_clear(&bench->progress);
     if (!breaks(bench, &smallest, rule, &steps)) {
         fprintf(bench->stream, "  not when it is alone:\n");
@@ -188,13 +168,12 @@ static void tell_failure(Bench *bench, const StressCase *stress, const StressVer
     if (stress_run(&verdict, bench->gpu, &smallest, 1, steps, bench->options->allowed, &unused) !=
         RESULT_OK)
         verdict = *found;
-    (void)at;
     print_case(bench, &smallest, &verdict, rule, steps);
 }
 
 // Names a case as it was found.
-static void name_failure(Bench *bench, const Tally *tally, const StressCase *stress, int strand,
-                         const StressVerdict *verdict, StressRule rule)
+static void report_failure(Bench *bench, const Tally *tally, const StressCase *stress, int strand,
+                           const StressVerdict *verdict, StressRule rule)
 {
     Line line = line_of_case(bench, "failed", stress, verdict, rule, bench->options->steps);
     line.set = tally->sets, line.strand = strand;
@@ -224,13 +203,13 @@ static void count(Bench *bench, Tally *tally, const StressCase *strands,
         StressRule rule = STRESS_FINITE;
         if (!first_step(&verdicts[s], &rule)) continue;
         ++tally->failures;
-        if (!bench->options->text) name_failure(bench, tally, &strands[s], s, &verdicts[s], rule);
+        if (!bench->options->text) report_failure(bench, tally, &strands[s], s, &verdicts[s], rule);
         if (worst[rule] < 0 || is_worse(&verdicts[s], &verdicts[worst[rule]], rule))
             worst[rule] = s;
     }
     for (int i = 0; i < STRESS_RULES; ++i)
         if (worst[i] >= 0 && !interrupt_requested() && tally->shrunk++ < MOST_SHRUNK)
-            tell_failure(bench, &strands[worst[i]], &verdicts[worst[i]]);
+            report_smallest(bench, &strands[worst[i]], &verdicts[worst[i]]);
     ++tally->sets;
     tally->cases += strand_count;
 }
@@ -245,40 +224,30 @@ static Result run_set(Bench *bench, Tally *tally, int set, int strand_count, Err
                                           STRESS_VERTICES[set % STRESS_VERTEX_COUNTS], &random);
     for (int s = 0; s < strand_count; ++s)
         strands[s] = stress_case_random_strand(&plain, s, &random);
-    Result result = stress_run(verdicts, bench->gpu, strands, strand_count, bench->options->steps,
-                               bench->options->allowed, error);
-    if (result == RESULT_OK) count(bench, tally, strands, verdicts, strand_count);
-    return result;
+    TRY(stress_run(verdicts, bench->gpu, strands, strand_count, bench->options->steps,
+                   bench->options->allowed, error));
+    count(bench, tally, strands, verdicts, strand_count);
+    return RESULT_OK;
 }
 
 static Result run_text(Bench *bench, Tally *tally, Error *error)
 {
     StressCase stress = {.algo = tally->algo, .variant = tally->variant};
     StressVerdict verdict;
-    Result result = stress_case_read(&stress, bench->options->text, error);
-    if (result == RESULT_OK)
-        result = stress_run(&verdict, bench->gpu, &stress, 1, bench->options->steps,
-                            bench->options->allowed, error);
-    if (result == RESULT_OK) count(bench, tally, &stress, &verdict, 1);
-    return result;
+    TRY(stress_case_read(&stress, bench->options->text, error));
+    TRY(stress_run(&verdict, bench->gpu, &stress, 1, bench->options->steps, bench->options->allowed,
+                   error));
+    count(bench, tally, &stress, &verdict, 1);
+    return RESULT_OK;
 }
 
 static Result run_sets(Bench *bench, Tally *tally, Error *error)
 {
-    Result result = RESULT_OK;
-    for (int set = 0, left = bench->options->cases; left > 0 && result == RESULT_OK;
-         ++set, left -= STRESS_STRANDS) {
-        result = run_set(bench, tally, set, left < STRESS_STRANDS ? left : STRESS_STRANDS, error);
+    for (int set = 0, left = bench->options->cases; left > 0; ++set, left -= STRESS_STRANDS) {
+        TRY(run_set(bench, tally, set, left < STRESS_STRANDS ? left : STRESS_STRANDS, error));
         progress_update(&bench->progress, ++bench->sets_done);
     }
-    return result;
-}
-
-static void print_head(FILE *stream)
-{
-    fprintf(stream, "%-10s %-10s %8s %6s %8s %8s  %-28s %s\n", "solver", "form", "cases", "sets",
-            "failures", "seconds", "failures by rule (f/l/e/r)", "worst of allowed (l/e/r)");
-    fflush(stream);
+    return RESULT_OK;
 }
 
 static void print_tally(Bench *bench, const Tally *tally)
@@ -291,98 +260,73 @@ static void print_tally(Bench *bench, const Tally *tally)
             tally->failures, tally->seconds, broken[0], broken[1], broken[2], broken[3], worst[1],
             worst[2], worst[3]);
     fflush(bench->stream);
-    const Line line = {.what = "form",
-                       .algo = tally->algo,
-                       .variant = tally->variant,
-                       .cases = tally->cases,
-                       .sets = tally->sets,
-                       .failures = tally->failures,
-                       .seconds = tally->seconds,
-                       .rule = "",
-                       .set = -1,
-                       .strand = -1,
-                       .steps = bench->options->steps,
-                       .of_allowed = NAN,
-                       .worst_length = worst[STRESS_LENGTHS],
-                       .worst_energy = worst[STRESS_ENERGY],
-                       .worst_rest = worst[STRESS_REST]};
+    Line line = {.what = "form", .algo = tally->algo, .variant = tally->variant, .rule = ""};
+    line.cases = tally->cases, line.sets = tally->sets, line.failures = tally->failures;
+    line.set = line.strand = -1;
+    line.steps = bench->options->steps;
+    line.seconds = tally->seconds;
+    line.of_allowed = NAN;
+    memcpy(line.worst, worst, sizeof line.worst);
     table_add(&bench->table, &line);
 }
 
-static Result run_form(Bench *bench, const char *algo, const char *variant, int *failures,
-                       Error *error)
+static Result run_form(Bench *bench, const char *algo, const char *variant, Error *error)
 {
     Tally tally = {.algo = algo, .variant = variant};
-    double begun = now_s();
+    double begun = stats_clock_ms();
     Result result =
         bench->options->text ? run_text(bench, &tally, error) : run_sets(bench, &tally, error);
-    tally.seconds = now_s() - begun;
+    tally.seconds = (stats_clock_ms() - begun) / 1000;
     if (tally.cases) print_tally(bench, &tally);
-    *failures += tally.failures;
+    bench->failures += tally.failures;
     bench->cases_done += tally.cases;
     return result;
 }
 
-// Whether the options ask for it.
-static bool is_asked(const StressOptions *options, const SolverType *type, const char *variant)
+// The forms of solvers that are asked for: [count] of algo and variant.
+static int list_forms(const StressOptions *options, const char *forms[MOST_FORMS][2])
 {
-    bool named = !options->algo || strcmp(options->algo, type->name) == 0;
-    return !solver_is_static(type) && named &&
-           (!options->variant || strcmp(options->variant, variant) == 0);
-}
-
-// Calls `each` for the forms that are asked for, or counts them if there is no bench.
-static Result for_forms(Bench *bench, const StressOptions *options, int *failures, int *forms,
-                        Error *error)
-{
-    Result result = RESULT_OK;
+    int count = 0;
     for (const SolverType *const *type = SOLVER_TYPES; *type; ++type)
-        for (int v = 0; v == 0 || (*type)->variants[v]; ++v) {
+        for (int v = 0; (v == 0 || (*type)->variants[v]) && count < MOST_FORMS; ++v) {
             const char *variant = (*type)->variants[v] ? (*type)->variants[v] : "";
-            if (!is_asked(options, *type, variant)) continue;
-            ++*forms;
-            if (bench && result == RESULT_OK)
-                result = run_form(bench, (*type)->name, variant, failures, error);
+            if (solver_is_static(*type)) continue;
+            if (options->algo && strcmp(options->algo, (*type)->name) != 0) continue;
+            if (options->variant && strcmp(options->variant, variant) != 0) continue;
+            forms[count][0] = (*type)->name, forms[count++][1] = variant;
         }
-    return result;
+    return count;
 }
 
-static Result check_words(const StressOptions *options, Error *error)
-{
-    const SectionParams params = {.algo = (char *)(options->algo ? options->algo : "split"),
-                                  .variant = (char *)(options->variant ? options->variant : "")};
-    if (options->text && !options->algo)
-        return error_set(error, RESULT_USAGE, "stress: --case needs --algo");
-    return solver_check(&params, error);
-}
-
-// The files have what was done until an interruption, too.
-static Result close_table(Table *table, Result result, Error *error)
-{
-    Error unwritten;
-    Result closed = table_close(table, RESULT_OK, &unwritten);
-    return closed == RESULT_OK ? result : error_set(error, closed, "%s", unwritten.text);
-}
-
-Result bench_stress(const Gpu *gpu, const StressOptions *options, const TableOutput *output,
-                    FILE *stream, Error *error)
+Result stress_search(const Gpu *gpu, const StressOptions *options, const TableOutput *output,
+                     FILE *stream, Error *error)
 {
     Bench bench = {.gpu = gpu, .options = options, .stream = stream};
-    int forms = 0, failures = 0, unused = 0;
-    Result result = check_words(options, error);
-    if (result == RESULT_OK)
-        result = table_open(&bench.table, COLUMNS, COLUMN_COUNT, gpu, output, NULL, error);
-    if (result != RESULT_OK) return result;
-    for_forms(NULL, options, &failures, &forms, error);
+    const SectionParams words = {.algo = (char *)(options->algo ? options->algo : "split"),
+                                 .variant = (char *)(options->variant ? options->variant : "")};
+    const char *forms[MOST_FORMS][2];
+    int count = list_forms(options, forms);
     int sets = options->text ? 1 : (options->cases + STRESS_STRANDS - 1) / STRESS_STRANDS;
-    progress_start(&bench.progress, stderr, forms ? forms * sets : 1, false);
-    print_head(stream);
-    double begun = now_s();
-    result = for_forms(&bench, options, &failures, &unused, error);
+    if (options->text && !options->algo)
+        return error_set(error, RESULT_USAGE, "stress: --case needs --algo");
+    TRY(solver_check(&words, error));
+    TRY(table_open(&bench.table, COLUMNS, sizeof COLUMNS / sizeof *COLUMNS, gpu, output, NULL,
+                   error));
+    progress_start(&bench.progress, stderr, count ? count * sets : 1, false);
+    fprintf(stream, "%-10s %-10s %8s %6s %8s %8s  %-28s %s\n", "solver", "form", "cases", "sets",
+            "failures", "seconds", "failures by rule (f/l/e/r)", "worst of allowed (l/e/r)");
+    fflush(stream);
+    double begun = stats_clock_ms();
+    Result result = RESULT_OK;
+    for (int i = 0; i < count; ++i) THEN(result, run_form(&bench, forms[i][0], forms[i][1], error));
     progress_clear(&bench.progress);
     fprintf(stream, "%d cases, %d steps each, of %d forms of solvers in %.0f s: %d failed\n",
-            bench.cases_done, options->steps, forms, now_s() - begun, failures);
-    if (result == RESULT_OK && failures)
-        result = error_set(error, RESULT_FAILED, "%d cases failed", failures);
-    return close_table(&bench.table, result, error);
+            bench.cases_done, options->steps, count, (stats_clock_ms() - begun) / 1000,
+            bench.failures);
+    if (bench.failures)
+        THEN(result, error_set(error, RESULT_FAILED, "%d cases failed", bench.failures));
+    // The files have what was done until an interruption, too.
+    Error unwritten;
+    Result closed = table_close(&bench.table, RESULT_OK, &unwritten);
+    return closed == RESULT_OK ? result : error_set(error, closed, "%s", unwritten.text);
 }

@@ -20,7 +20,7 @@ typedef struct StressOptions {
     bool shrinks;   // failures are made smaller before they are printed
 } StressOptions;
 
-// What tractrix-bench stress does without options.
+// The defaults.
 StressOptions stress_options_default(void);
 
 // Prints a line for each solver's form, those of failures between, and a sum. A case is a strand
@@ -29,5 +29,5 @@ StressOptions stress_options_default(void);
 // "smallest"). RESULT_FAILED if a case failed, RESULT_INTERRUPTED after what was done until then
 // has been printed and written.
 enum { STRESS_STRANDS = 32 };
-Result bench_stress(const Gpu *gpu, const StressOptions *options, const TableOutput *output,
-                    FILE *stream, Error *error);
+Result stress_search(const Gpu *gpu, const StressOptions *options, const TableOutput *output,
+                     FILE *stream, Error *error);
