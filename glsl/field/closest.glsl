@@ -13,12 +13,15 @@ vec3 closer(vec3 p, vec3 a, vec3 b)
     return dot(to_a, to_a) <= dot(to_b, to_b) ? a : b;
 }
 
-// Over the triangle it is the foot of the perpendicular, elsewhere on an edge. cross(edge, normal) points outward.
+// Over the triangle it is the foot of the perpendicular, elsewhere on an edge. cross(edge, normal)
+// points outward.
 vec3 closest_on_triangle(vec3 p, vec3 a, vec3 b, vec3 c)
 {
     vec3 n = cross(b - a, c - a);
     float nn = dot(n, n);
-    bool over = dot(cross(b - a, n), p - a) <= 0.0 && dot(cross(c - b, n), p - b) <= 0.0 && dot(cross(a - c, n), p - c) <= 0.0;
-    vec3 edge = closer(p, closest_on_edge(p, a, b), closer(p, closest_on_edge(p, b, c), closest_on_edge(p, c, a)));
+    bool over = dot(cross(b - a, n), p - a) <= 0.0 && dot(cross(c - b, n), p - b) <= 0.0 &&
+                dot(cross(a - c, n), p - c) <= 0.0;
+    vec3 edge = closer(p, closest_on_edge(p, a, b),
+                       closer(p, closest_on_edge(p, b, c), closest_on_edge(p, c, a)));
     return over && nn > 0.0 ? p - n * (dot(n, p - a) / nn) : edge;
 }

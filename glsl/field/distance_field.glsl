@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The distance to a mesh that moves with the head, from samples on a grid in the head's frame: trilinear, with the gradient of just that
-// (needs collide_params.h, rigid.glsl). Beyond the grid, which the mesh does not reach, the distance is from the grid's nearest point on.
+// The distance to a mesh that moves with the head, from samples on a grid in the head's frame:
+// trilinear, with the gradient of just that (needs collide_params.h, rigid.glsl). Beyond the grid,
+// which the mesh does not reach, the distance is from the grid's nearest point on.
 
 layout(binding = BIND_FIELD) uniform samplerBuffer field;
 
@@ -9,17 +10,24 @@ float field_distance(vec3 p, out vec3 normal)
     vec4 to_world = collide_params.head_rotation, to_head = vec4(-to_world.xyz, to_world.w);
     float spacing = collide_params.field_low.w;
     vec3 size = collide_params.field_size.xyz;
-    vec3 g = (rotate(to_head, p - collide_params.head_translation.xyz) - collide_params.field_low.xyz) / spacing;
-    vec3 in_grid = clamp(g, vec3(0.0), size - 1.0), cell = min(floor(in_grid), size - 2.0), f = in_grid - cell;
-    int row = int(size.x), slice = row * int(size.y), at = int(cell.z) * slice + int(cell.y) * row + int(cell.x);
+    vec3 g =
+        (rotate(to_head, p - collide_params.head_translation.xyz) - collide_params.field_low.xyz) /
+        spacing;
+    vec3 in_grid = clamp(g, vec3(0.0), size - 1.0), cell = min(floor(in_grid), size - 2.0),
+         f = in_grid - cell;
+    int row = int(size.x), slice = row * int(size.y),
+        at = int(cell.z) * slice + int(cell.y) * row + int(cell.x);
     // Samples of the cell's corners, x from left to right, in rows of y and z.
-    vec4 left = vec4(texelFetch(field, at).x, texelFetch(field, at + row).x, texelFetch(field, at + slice).x,
-        texelFetch(field, at + slice + row).x);
-    vec4 right = vec4(texelFetch(field, at + 1).x, texelFetch(field, at + row + 1).x, texelFetch(field, at + slice + 1).x,
-        texelFetch(field, at + slice + row + 1).x);
+    vec4 left = vec4(texelFetch(field, at).x, texelFetch(field, at + row).x,
+                     texelFetch(field, at + slice).x, texelFetch(field, at + slice + row).x);
+    vec4 right =
+        vec4(texelFetch(field, at + 1).x, texelFetch(field, at + row + 1).x,
+             texelFetch(field, at + slice + 1).x, texelFetch(field, at + slice + row + 1).x);
     vec4 rise = right - left, rows = left + f.x * rise;
-    vec2 slices = mix(rows.xz, rows.yw, f.y), rise_x = mix(rise.xz, rise.yw, f.y), rise_y = rows.yw - rows.xz;
-    vec3 gradient = vec3(mix(rise_x.x, rise_x.y, f.z), mix(rise_y.x, rise_y.y, f.z), slices.y - slices.x);
+    vec2 slices = mix(rows.xz, rows.yw, f.y), rise_x = mix(rise.xz, rise.yw, f.y),
+         rise_y = rows.yw - rows.xz;
+    vec3 gradient =
+        vec3(mix(rise_x.x, rise_x.y, f.z), mix(rise_y.x, rise_y.y, f.z), slices.y - slices.x);
     float square = dot(gradient, gradient), inside = mix(slices.x, slices.y, f.z);
     normal = rotate(to_world, square > 0.0 ? gradient * inversesqrt(square) : vec3(0.0, 1.0, 0.0));
     vec3 beyond = spacing * (g - in_grid);

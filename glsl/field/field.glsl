@@ -3,13 +3,21 @@
 #include "field/field_params.h"
 
 layout(local_size_x = FIELD_GROUP) in;
-layout(binding = BIND_POSITION) uniform samplerBuffer triangles; // 3 texels each: its corners, m, from grid point 0 0 0
+// 3 texels each: its corners, m, from grid point 0 0 0
+layout(binding = BIND_POSITION) uniform samplerBuffer triangles;
 
 ivec3 grid_size() { return ivec3(field_params.size_x, field_params.size_y, field_params.size_z); }
-int grid_address(ivec3 at) { return (at.z * int(field_params.size_y) + at.y) * int(field_params.size_x) + at.x; }
+int grid_address(ivec3 at)
+{
+    return (at.z * int(field_params.size_y) + at.y) * int(field_params.size_x) + at.x;
+}
 
-// The item of a lane in a dispatch of work items; the lane's grid point in a dispatch of the grid (a row of x each).
-uint item() { return (gl_WorkGroupID.y * FIELD_ROW + gl_WorkGroupID.x) * FIELD_GROUP + gl_LocalInvocationID.x; }
+// The item of a lane in a dispatch of work items; the lane's grid point in a dispatch of the grid
+// (a row of x each).
+uint item()
+{
+    return (gl_WorkGroupID.y * FIELD_ROW + gl_WorkGroupID.x) * FIELD_GROUP + gl_LocalInvocationID.x;
+}
 ivec3 grid_point() { return ivec3(gl_GlobalInvocationID.x, gl_WorkGroupID.yz); }
 
 vec3 corner(uint triangle, int i) { return texelFetch(triangles, int(triangle) * 3 + i).xyz; }

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Where columns of grid points along an axis cross the surface: +1 at the first point behind a crossing into the mesh, -1 behind one out
-// of it. A work item is a triangle and a square of columns.
+// Where columns of grid points along an axis cross the surface: +1 at the first point behind a
+// crossing into the mesh, -1 behind one out of it. A work item is a triangle and a square of
+// columns.
 //
-// Whether a column passes a triangle is decided by the side of its three edges. Each edge is evaluated from its lexically first end, so that
-// the two triangles at it get the same number, and a column exactly on it counts as on its left: that is as if all columns were moved
-// by (-e^2, e), e -> 0, and no column slips between triangles or counts twice.
+// Whether a column passes a triangle is decided by the side of its three edges. Each edge is
+// evaluated from its lexically first end, so that the two triangles at it get the same number, and
+// a column exactly on it counts as on its left: that is as if all columns were moved by (-e^2, e),
+// e -> 0, and no column slips between triangles or counts twice.
 #include "field/field.glsl"
 
-layout(std430, binding = 0) readonly buffer Items { uvec4 items[]; }; // triangle, axis, first column
+// triangle, axis, first column
+layout(std430, binding = 0) readonly buffer Items { uvec4 items[]; };
 layout(std430, binding = 1) buffer Crossings { int crossings[]; };
 
 // +1 if p is on the left of the way from a to b, else -1.
@@ -25,9 +28,11 @@ void main()
     if (i >= field_params.count) return;
     uvec4 work = items[i];
     int axis = int(work.y), u = (axis + 1) % 3, v = (axis + 2) % 3;
-    vec3 a = corner(work.x, 0), b = corner(work.x, 1), c = corner(work.x, 2), n = cross(b - a, c - a);
+    vec3 a = corner(work.x, 0), b = corner(work.x, 1), c = corner(work.x, 2),
+         n = cross(b - a, c - a);
     vec2 a2 = vec2(a[u], a[v]), b2 = vec2(b[u], b[v]), c2 = vec2(c[u], c[v]);
-    float lowest = min(a[axis], min(b[axis], c[axis])), highest = max(a[axis], max(b[axis], c[axis]));
+    float lowest = min(a[axis], min(b[axis], c[axis])),
+          highest = max(a[axis], max(b[axis], c[axis]));
     float spacing = field_params.low.w;
     ivec3 size = grid_size();
     for (int k = 0; k < FIELD_COLUMNS * FIELD_COLUMNS; ++k) {
@@ -37,7 +42,8 @@ void main()
         int sides = side(a2, b2, p) + side(b2, c2, p) + side(c2, a2, p);
         if (abs(sides) != 3) continue;
         vec2 from = p - a2;
-        float height = a[axis] - (n[u] * from.x + n[v] * from.y) / (n[axis] != 0.0 ? n[axis] : 1e-30);
+        float height =
+            a[axis] - (n[u] * from.x + n[v] * from.y) / (n[axis] != 0.0 ? n[axis] : 1e-30);
         ivec3 at = ivec3(0);
         at[u] = column.x;
         at[v] = column.y;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A pass of jump flooding (Rong, Tan: Jump Flooding in GPU with Applications to Voronoi Diagram and Distance Transform, I3D 2006): each grid
-// point takes over the closest surface point of the 26 points around it, `stride` away, if that is nearer.
+// A pass of jump flooding (Rong, Tan: Jump Flooding in GPU with Applications to Voronoi Diagram and
+// Distance Transform, I3D 2006): each grid point takes over the closest surface point of the 26
+// points around it, `stride` away, if that is nearer.
 #include "field/field.glsl"
 
 layout(binding = BIND_REST) uniform samplerBuffer closest_before;

@@ -14,6 +14,7 @@ void main()
     uint triangle = nearest[address];
     bool near = triangle != 0xffffffffu;
     uint which = near ? triangle : 0u;
-    vec3 p = closest_on_triangle(field_params.low.w * vec3(at), corner(which, 0), corner(which, 1), corner(which, 2));
+    vec3 p = closest_on_triangle(field_params.low.w * vec3(at), corner(which, 0), corner(which, 1),
+                                 corner(which, 2));
     closest[address] = vec4(p, near ? 1.0 : 0.0);
 }

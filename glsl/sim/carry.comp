@@ -10,7 +10,8 @@ layout(std430, binding = BIND_STATE_OUT) buffer Vectors { vec4 vectors[]; };
 
 void main()
 {
-    int i = int((gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * uint(GROUP_SIZE) + gl_LocalInvocationID.x);
+    int i = int((gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * uint(GROUP_SIZE) +
+                gl_LocalInvocationID.x);
     if (i >= int(carry_params.count)) return;
     int p = i * int(carry_params.stride), v = p + int(carry_params.beside);
     vec4 R = carry_params.rotation, vector = vectors[v];

@@ -1,20 +1,27 @@
 // SPDX-License-Identifier: MIT
 // A step of `chain`: rigid segments by direct solves, second order in dt.
 //
-// Segments r_j = q_j - q_{j-1} at the step's start with lengths l_j; predicted positions p_j (kicked, drawn to the style), s_j = p_j - p_{j-1}.
-//   1. Tensions: lambda_j from the constraint linearised about the old directions (Han, Harada: Tridiagonal Matrix Formulation for
-//      Inextensible Hair Strand Simulation, VRIPHYS 2013), J J^T lambda = l (|s| - l) with J J^T = tridiag(-r_j.r_{j-1}, 2 |r_j|^2; |r_1|^2).
-//   2. Positions: x = p - g_j + g_{j+1}, where pushing (lambda-) acts along r, and pulling (lambda+) along directions taken implicitly as
-//      in Newmark's method with theta = 1/4, 1/4 new + 1/2 now + 1/4 before: second order, and no tension is too stiff. That is
-//      (I + theta Laplacian(lambda+)) x = y, again tridiagonal. What is much stiffer than the step would swing to -3, 5, -7 .. of where
-//      it was, which only small swings survive: theta grows to 1/2 with tensions above STIFF, where it stays at plus or minus.
-//   3. Twice: what lengths are still off is taken out along the current directions, J J^T lambda = |s| (|s| - l), x_j -= lambda_j s_j,
-//      x_{j-1} += lambda_j s_j, done on the segments themselves.
+// Segments r_j = q_j - q_{j-1} at the step's start with lengths l_j; predicted positions p_j
+// (kicked, drawn to the style), s_j = p_j - p_{j-1}.
+//   1. Tensions: lambda_j from the constraint linearised about the old directions (Han, Harada:
+//      Tridiagonal Matrix Formulation for Inextensible Hair Strand Simulation, VRIPHYS 2013), J J^T
+//      lambda = l (|s| - l) with J J^T = tridiag(-r_j.r_{j-1}, 2 |r_j|^2; |r_1|^2).
+//   2. Positions: x = p - g_j + g_{j+1}, where pushing (lambda-) acts along r, and pulling
+//      (lambda+) along directions taken implicitly as in Newmark's method with theta = 1/4, 1/4 new
+//      + 1/2 now + 1/4 before: second order, and no tension is too stiff. That is (I + theta
+//      Laplacian(lambda+)) x = y, again tridiagonal. What is much stiffer than the step would swing
+//      to -3, 5, -7 .. of where it was, which only small swings survive: theta grows to 1/2 with
+//      tensions above STIFF, where it stays at plus or minus.
+//   3. Twice: what lengths are still off is taken out along the current directions, J J^T lambda =
+//      |s| (|s| - l), x_j -= lambda_j s_j, x_{j-1} += lambda_j s_j, done on the segments
+//      themselves.
 //   4. Rebuild from the root with exact lengths.
-// Where a violent step leaves a segment off by more than half its length, two passes of tractrices take over (rescue). Long strands at long
-// steps would gain energy from either: energy_account.glsl. BENDS 1: bend.glsl's forces and masses enter the second system.
+// Where a violent step leaves a segment off by more than half its length, two passes of tractrices
+// take over (rescue). Long strands at long steps would gain energy from either:
+// energy_account.glsl. BENDS 1: bend.glsl's forces and masses enter the second system.
 //
-// The sweeps run along the strand to and fro; each undoes one elimination and does the next. Positions are relative to the new root.
+// The sweeps run along the strand to and fro; each undoes one elimination and does the next.
+// Positions are relative to the new root.
 #include "sim/chain_params.h"
 #include "sim/particles.glsl"
 #include "sim/keep.glsl"
@@ -27,7 +34,7 @@
 #include "sim/energy_account.glsl"
 
 const float THETA = 0.25;
-const float STIFF = 8.0; // the tension beyond which theta grows
+const float STIFF = 8.0;    // the tension beyond which theta grows
 const float MOST_OFF = 0.5; // of a length, before tractrices take over
 
 // Where particle j would go without constraints, relative to the new root.
@@ -49,9 +56,11 @@ float predict(Strand strand)
     Frames frames = frames_open(strand);
 #endif
     for (int j = 1; j <= last; ++j) {
-        vec3 q = fetch_position(strand, j), p = predicted(strand, j, style), r = q - q_before, s = p - p_before;
+        vec3 q = fetch_position(strand, j), p = predicted(strand, j, style), r = q - q_before,
+             s = p - p_before;
         float l = fetch_rest(strand, j).w, factor;
-        row = eliminate(row, -dot(r, r_before), (j == 1 ? 1.0 : 2.0) * dot(r, r), l * (sqrt(dot(s, s)) - l), factor);
+        row = eliminate(row, -dot(r, r_before), (j == 1 ? 1.0 : 2.0) * dot(r, r),
+                        l * (sqrt(dot(s, s)) - l), factor);
         keep(j, vec4(p, row.value));
         keep_beside(j, factor);
 #if BENDS
@@ -76,10 +85,12 @@ float carried_tension(Strand strand, int j)
 #endif
 }
 
-// At rest neither the tension nor what step 1 takes for it is more than the forces on all that is beyond.
+// At rest neither the tension nor what step 1 takes for it is more than the forces on all that is
+// beyond.
 float limit_carried(Strand strand, int j, float carried)
 {
-    float move = strand.dt * length(strand.push) * (1.0 - strand.spring.pull) + 2.0 * strand.length * strand.spring.pull;
+    float move = strand.dt * length(strand.push) * (1.0 - strand.spring.pull) +
+                 2.0 * strand.length * strand.spring.pull;
     float most = 2.0 * float(LAST + 1 - j) * move / fetch_rest(strand, max(j, 1)).w;
     return clamp(carried, -most, most);
 }
@@ -97,24 +108,29 @@ void pull_implicitly(Strand strand)
     vec3 g_beyond = vec3(0.0), q = fetch_position(strand, LAST), v = fetch_velocity(strand, LAST);
     Row3 row = NO_ROW3;
 #if BENDS
-    float acts = bend_acts(strand), stiffness = acts * bend_stiffness(LAST), mass_beyond = 0.0, l_beyond = 0.0;
+    float acts = bend_acts(strand), stiffness = acts * bend_stiffness(LAST), mass_beyond = 0.0,
+          l_beyond = 0.0;
     vec3 h_beyond = vec3(0.0);
     Moment moment = NO_MOMENT;
     float kept = max(strand.decay, 1.0 - 0.9 / float(LAST));
 #endif
     for (int j = LAST; j >= 1; --j) {
-        vec3 q_before = j == 1 ? strand.root_old : fetch_position(strand, j - 1), v_before = fetch_velocity(strand, j - 1);
+        vec3 q_before = j == 1 ? strand.root_old : fetch_position(strand, j - 1),
+             v_before = fetch_velocity(strand, j - 1);
         vec4 k = recall(j);
         lambda = k.w - factor_beyond * lambda;
         factor_beyond = recall_beside(j);
-        float along = lambda + carried_tension(strand, j), tension = max(along, 0.0), theta = implicit_share(tension), factor;
+        float along = lambda + carried_tension(strand, j), tension = max(along, 0.0),
+              theta = implicit_share(tension), factor;
         vec3 r = q - q_before, r_old = r - strand.dt * (v - v_before);
         vec3 g = (along - tension) * r + tension * ((1.0 - 2.0 * theta) * r + theta * r_old);
         float off = implicit_beyond, diagonal = 1.0 + (theta * tension + implicit_beyond);
         vec3 y = k.xyz - g + g_beyond;
 #if BENDS
-        float l = fetch_rest(strand, j).w, mass = MASS * stiffness / l * max(1.0, 0.5 * l_beyond / l);
-        vec3 h = mass * (r + kept * (r - r_old)) - stiffness * bend_gradient(r, l, recall_goal(j), moment);
+        float l = fetch_rest(strand, j).w,
+              mass = MASS * stiffness / l * max(1.0, 0.5 * l_beyond / l);
+        vec3 h = mass * (r + kept * (r - r_old)) -
+                 stiffness * bend_gradient(r, l, recall_goal(j), moment);
         off += mass_beyond, diagonal += mass + mass_beyond, y += h - h_beyond;
         mass_beyond = mass, h_beyond = h, l_beyond = l;
 #endif
@@ -136,15 +152,17 @@ void correct(Strand strand)
         vec3 x = k.xyz - factor_before * x_before, s = x - x_before;
         factor_before = k.w;
         float ss = dot(s, s), size = sqrt(ss);
-        row = eliminate(row, -dot(s, s_before), (j == 1 ? 1.0 : 2.0) * ss, ss - size * fetch_rest(strand, j).w, factor);
+        row = eliminate(row, -dot(s, s_before), (j == 1 ? 1.0 : 2.0) * ss,
+                        ss - size * fetch_rest(strand, j).w, factor);
         keep(j, vec4(s, row.value));
         keep_beside(j, factor);
         x_before = x, s_before = s;
     }
 }
 
-// A correction takes t_j = lambda_j s_j out of segment j, and gives it to both neighbours (the root does not move): s_j += t_{j-1} - 2 t_j +
-// t_{j+1}, which is known one segment later. In the two sweeps that apply one, `here` is segment j's neighbour.
+// A correction takes t_j = lambda_j s_j out of segment j, and gives it to both neighbours (the root
+// does not move): s_j += t_{j-1} - 2 t_j + t_{j+1}, which is known one segment later. In the two
+// sweeps that apply one, `here` is segment j's neighbour.
 struct Corrected {
     vec3 s, t;
 };
@@ -167,7 +185,8 @@ void correct_again(Strand strand)
         if (j < LAST) {
             vec3 s = here.s + t + t_beyond - (j == 0 ? 1.0 : 2.0) * here.t;
             float ss = dot(s, s), size = sqrt(ss);
-            row = eliminate(row, -dot(s, s_beyond), (j == 0 ? 1.0 : 2.0) * ss, ss - size * fetch_rest(strand, j + 1).w, factor);
+            row = eliminate(row, -dot(s, s_beyond), (j == 0 ? 1.0 : 2.0) * ss,
+                            ss - size * fetch_rest(strand, j + 1).w, factor);
             keep(j + 1, vec4(s, row.value));
             keep_beside(j + 1, factor);
             s_beyond = s;
@@ -176,7 +195,8 @@ void correct_again(Strand strand)
     }
 }
 
-// Keeps segment j scaled to its length l. Gives how far it is off, as bits that order like the number: above all of them a NaN.
+// Keeps segment j scaled to its length l. Gives how far it is off, as bits that order like the
+// number: above all of them a NaN.
 int finish_segment(int j, vec3 s, float l)
 {
     float ss = dot(s, s), inverse = l * inversesqrt(ss);
@@ -202,10 +222,12 @@ int finish(Strand strand)
         }
         t_before = here.t, here = Corrected(k.xyz, t);
     }
-    return max(worst, finish_segment(last, here.s + t_before - (last == 1 ? 1.0 : 2.0) * here.t, fetch_rest(strand, last).w));
+    return max(worst, finish_segment(last, here.s + t_before - (last == 1 ? 1.0 : 2.0) * here.t,
+                                     fetch_rest(strand, last).w));
 }
 
-// The velocity first: compilers may delay the fetch of q up to its use, beyond a store to the buffer that it comes from.
+// The velocity first: compilers may delay the fetch of q up to its use, beyond a store to the
+// buffer that it comes from.
 void put(Strand strand, int j, vec3 x, vec3 q, float carried)
 {
     velocities[strand.address + j * STRAND_TILE] = vec4((x - q) / strand.dt, carried);
@@ -221,7 +243,8 @@ void write(Strand strand, inout Account account)
     Frames frames = frames_open(strand);
 #endif
     for (int j = 1; j <= last; ++j) {
-        vec3 q = fetch_position(strand, j), v = fetch_velocity(strand, j), free = predicted_move(strand, j, q, style), s = recall(j).xyz;
+        vec3 q = fetch_position(strand, j), v = fetch_velocity(strand, j),
+             free = predicted_move(strand, j, q, style), s = recall(j).xyz;
         x += s;
         account_add(account, strand, x - q, free, v);
 #if BENDS
@@ -237,8 +260,9 @@ void write(Strand strand, inout Account account)
 #endif
 }
 
-// Two passes of tractrices (those of hybrid.comp) instead. Rolled loops, so that a CPU driver, where all lanes go through every branch,
-// leaves them after a round where no strand needs them. What is kept on the way lies where the velocities will.
+// Two passes of tractrices (those of hybrid.comp) instead. Rolled loops, so that a CPU driver,
+// where all lanes go through every branch, leaves them after a round where no strand needs them.
+// What is kept on the way lies where the velocities will.
 void rescue(Strand strand, inout Account account)
 {
     int last = int(step_params.vertex_count - 1u);
@@ -256,7 +280,8 @@ void rescue(Strand strand, inout Account account)
         if (j > 1) p = velocities[strand.address + (j - 1) * STRAND_TILE].xyz;
         float l = fetch_rest(strand, j).w;
         vec3 d = direction(q_before - q), move = limit_move(y - (q + p - q_before));
-        d = direction(tractrix_turn(d, l, move)); // far off where the move pushes exactly along the segment
+        // far off where the move pushes exactly along the segment
+        d = direction(tractrix_turn(d, l, move));
         y += l * d;
         velocities[strand.address + j * STRAND_TILE] = vec4(-d, 0.0);
         q = q_before;
@@ -267,7 +292,8 @@ void rescue(Strand strand, inout Account account)
 #endif
     for (int j = 1; j <= last; ++j) {
         float l = fetch_rest(strand, j).w;
-        vec3 d = tractrix_turn(tractrix_renormalise(velocities[strand.address + j * STRAND_TILE].xyz), l, move);
+        vec3 d = tractrix_turn(
+            tractrix_renormalise(velocities[strand.address + j * STRAND_TILE].xyz), l, move);
         q = fetch_position(strand, j);
         d = direction(d);
         x += l * d;

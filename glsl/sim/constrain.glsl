@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: MIT
-// The end of a step whose middle is midpoint.glsl's, and whose positions x are as far as tractrices would let them from p.
+// The end of a step whose middle is midpoint.glsl's, and whose positions x are as far as tractrices
+// would let them from p.
 //
-// Velocities: another half kick, u = K(u), projected orthogonally on those that the new shape, with unit directions d, allows: the impulses
-// lambda solve J J^T lambda = J u,
+// Velocities: another half kick, u = K(u), projected orthogonally on those that the new shape, with
+// unit directions d, allows: the impulses lambda solve J J^T lambda = J u,
 //
-//     -d_j.d_{j-1} lambda_{j-1} + 2 lambda_j - d_j.d_{j+1} lambda_{j+1} = d_j.(u_j - u_{j-1})    (1 lambda_1 in the first row)
-//     v_j = u_j - lambda_j d_j + lambda_{j+1} d_{j+1},
+//     -d_j.d_{j-1} lambda_{j-1} + 2 lambda_j - d_j.d_{j+1} lambda_{j+1} = d_j.(u_j - u_{j-1})
+//     v_j = u_j - lambda_j d_j + lambda_{j+1} d_{j+1}    (1 lambda_1 in the first row),
 //
-// which takes sum lambda_j (J u)_j / 2 = sum pivot value^2 / 2 of kinetic energy and never adds any. (An oblique projection, as velocity =
-// displacement / dt is after pulls along the strand, has a norm of 2.6 for 16 and 3.8 for 32 particles.)
+// which takes sum lambda_j (J u)_j / 2 = sum pivot value^2 / 2 of kinetic energy and never adds
+// any. (An oblique projection, as velocity = displacement / dt is after pulls along the strand, has
+// a norm of 2.6 for 16 and 3.8 for 32 particles.)
 //
-// Energy: the tensions of the middle are off by second order, and so is x from p, which is work of gravity and springs. Together they could
-// feed a motion for ever where steps are long. So where the sum is a gain, velocities are scaled until they have paid for it:
+// Energy: the tensions of the middle are off by second order, and so is x from p, which is work of
+// gravity and springs. Together they could feed a motion for ever where steps are long. So where
+// the sum is a gain, velocities are scaled until they have paid for it:
 //
 //     |v|^2/2 <= |u|^2/2 - gained + sum (a + k (style - (x + p)/2)).(x - p)
 //
@@ -36,12 +39,15 @@ Constraint constrain_open(Strand strand)
 void constrain_add(inout Constraint p, Strand strand, int j, vec3 d, vec3 x)
 {
     int a = strand.address + j * STRAND_TILE;
-    vec3 aim = recall_aim(a, j), u = kicked(strand, recall_velocity(a, j).xyz + strand.root_velocity), force = strand.push / step_params.gain;
+    vec3 aim = recall_aim(a, j),
+         u = kicked(strand, recall_velocity(a, j).xyz + strand.root_velocity),
+         force = strand.push / step_params.gain;
 #if STYLED
     p.style = next_style(p.style, fetch_rest(strand, j), strand.rotation);
     force += strand.spring.stiffness * (p.style - 0.5 * (x + aim));
 #endif
-    float factor, off = -dot(d, p.d_before), right = dot(d, u - p.u_before), right_left = right - off * p.row.value;
+    float factor, off = -dot(d, p.d_before), right = dot(d, u - p.u_before),
+                  right_left = right - off * p.row.value;
     p.row = eliminate(p.row, off, j == 1 ? 1.0 : 2.0, right, factor);
     p.lost += p.row.value * right_left;
     p.kinetic += dot(u, u);

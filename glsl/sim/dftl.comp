@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Dynamic follow-the-leader (Mueller, Kim, Chentanez: Fast Simulation of Inextensible Hair and Fur, VRIPHYS 2012).
+// Dynamic follow-the-leader (Mueller, Kim, Chentanez: Fast Simulation of Inextensible Hair and Fur,
+// VRIPHYS 2012).
 //
-// From the root on, every particle is predicted, p = x + v dt, and put at its length from its leader, x' = leader + l (p - leader)/|p -
-// leader|. That alone acts as if all mass sat at the leader; so the velocity gets back what the follower's correction d' took:
+// From the root on, every particle is predicted, p = x + v dt, and put at its length from its
+// leader, x' = leader + l (p - leader)/|p - leader|. That alone acts as if all mass sat at the
+// leader; so the velocity gets back what the follower's correction d' took:
 //     v_i = (x'_i - x_i)/dt - s d'_{i+1}/dt,      s: ftl_damping
 //
 // STYLED 1: before that, p is drawn to the style (style_spring.h).
@@ -18,7 +20,8 @@ void main()
     float dt = step_params.dt, per_second = 1.0 / step_params.dt, damping = dftl_params.damping;
     vec3 leader = root_position(strand_root(a)), leader_velocity = vec3(0.0);
     vec4 rotation = step_params.head_rotation;
-    vec3 root = leader, style = vec3(0.0), along = rotate(rotation, texelFetch(rest, a + STRAND_TILE).xyz);
+    vec3 root = leader, style = vec3(0.0),
+         along = rotate(rotation, texelFetch(rest, a + STRAND_TILE).xyz);
     float pull = dftl_params.spring.pull;
     carry_lead(a);
     positions[a] = vec4(leader, 1.0);
@@ -32,7 +35,8 @@ void main()
 #endif
         vec3 reach = predicted - leader;
         float square = dot(reach, reach);
-        along = square > 1e-24 ? reach * inversesqrt(square) : along; // on its leader: the last direction (first the style's) goes on
+        // on its leader: the last direction (first the style's) goes on
+        along = square > 1e-24 ? reach * inversesqrt(square) : along;
         vec3 follower = leader + segment.w * along;
         velocities[a] = vec4(leader_velocity - damping * per_second * (follower - predicted), 0.0);
         positions[a + STRAND_TILE] = vec4(follower, 1.0);

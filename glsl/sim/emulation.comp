@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: MIT
-// A step of `emulation`: every particle is pulled to where it wants to go, and both sides of the strand follow as tractrices. O(n^2).
+// A step of `emulation`: every particle is pulled to where it wants to go, and both sides of the
+// strand follow as tractrices. O(n^2).
 //
 //   1. where particles want to go, p: midpoint.glsl
-//   2. in a random order, the same for all strands and steps: pull particle i to p_i, tip's side and root's side follow. With the
-//      first of them every segment follows as seen from its tail's own p, which moves along (as in hybrid.comp), so that the others have
-//      little left to go and it hardly matters in which order
+//   2. in a random order, the same for all strands and steps: pull particle i to p_i, tip's side
+//      and root's side follow. With the first of them every segment follows as seen from its tail's
+//      own p, which moves along (as in hybrid.comp), so that the others have little left to go and
+//      it hardly matters in which order
 //   3. pull the root to where the head carries it
-//   4. velocities: projected on what the new shape allows, energy balanced (constrain.glsl). Second order
-// THESIS: order from root to tip, predictions by a kick alone, and as published v = (x - q)/dt + k (style - x) dt. That is unstable: hair
-// without drag speeds up to 3 .. 14 m/s by itself.
+//   4. velocities: projected on what the new shape allows, energy balanced (constrain.glsl). Second
+//      order
+// THESIS: order from root to tip, predictions by a kick alone, and as published v = (x - q)/dt + k
+// (style - x) dt. That is unstable: hair without drag speeds up to 3 .. 14 m/s by itself.
 //
-// State of the pulls: unit directions d (j - 1 to j) with lengths. Where the particle that is pulled next has come to is summed up on the way.
-// A step of long strands takes several dispatches (step_params.phase), each with MOST_LINKS links to turn.
+// State of the pulls: unit directions d (j - 1 to j) with lengths. Where the particle that is
+// pulled next has come to is summed up on the way. A step of long strands takes several dispatches
+// (step_params.phase), each with MOST_LINKS links to turn.
 #include "sim/emulation_params.h"
 #include "sim/particles.glsl"
 #include "sim/keep.glsl"
@@ -26,16 +30,21 @@
 
 const uint MOST_LINKS = 40000u; // as in solver_emulation.c
 
-vec4 link_at(Strand strand, int j, vec3 q, vec3 q_before) { return vec4(direction(q - q_before), fetch_rest(strand, j).w); }
+vec4 link_at(Strand strand, int j, vec3 q, vec3 q_before)
+{
+    return vec4(direction(q - q_before), fetch_rest(strand, j).w);
+}
 
-// Where particles want to go, and the links at the step's start. The root stands at 0; thesis: the new root.
+// Where particles want to go, and the links at the step's start. The root stands at 0; thesis: the
+// new root.
 #if THESIS
 void predict(Strand strand)
 {
     int last = int(step_params.vertex_count - 1u);
     vec3 q_before = strand.root_old, style = vec3(0.0);
     for (int j = 1; j <= last; ++j) {
-        vec3 q = fetch_position(strand, j), p = (q - strand.root) + predicted_move(strand, j, q, style);
+        vec3 q = fetch_position(strand, j),
+             p = (q - strand.root) + predicted_move(strand, j, q, style);
         keep(j, link_at(strand, j, q, q_before));
         keep_velocity(strand.address + j * STRAND_TILE, j, vec4(p, 0.0));
         q_before = q;
@@ -43,7 +52,10 @@ void predict(Strand strand)
     keep(0, vec4(strand.root_old - strand.root, 0.0));
 }
 
-vec3 aim_of(Strand strand, int j) { return recall_velocity(strand.address + j * STRAND_TILE, j).xyz; }
+vec3 aim_of(Strand strand, int j)
+{
+    return recall_velocity(strand.address + j * STRAND_TILE, j).xyz;
+}
 #else
 void predict(Strand strand)
 {
@@ -58,10 +70,13 @@ void predict(Strand strand)
     keep(0, vec4(vec3(0.0), middle.gained));
 }
 
-vec3 aim_of(Strand strand, int j) { return j == 0 ? vec3(0.0) : recall_aim(strand.address + j * STRAND_TILE, j); }
+vec3 aim_of(Strand strand, int j)
+{
+    return j == 0 ? vec3(0.0) : recall_aim(strand.address + j * STRAND_TILE, j);
+}
 
-// Pulls particle i to where it wants to go, and lets the others follow as seen from where they want to go. Gives where particle `next` is
-// then, as pull does.
+// Pulls particle i to where it wants to go, and lets the others follow as seen from where they want
+// to go. Gives where particle `next` is then, as pull does.
 vec3 pull_along(Strand strand, int i, int next)
 {
     int last = int(step_params.vertex_count - 1u);
@@ -119,7 +134,8 @@ int next_mover(inout Shuffle order, uint end)
 #endif
 }
 
-// The moves of this phase; whether they were the last. Place 0 has where the root is by then, and what the step's middle has gained.
+// The moves of this phase; whether they were the last. Place 0 has where the root is by then, and
+// what the step's middle has gained.
 bool pull_all(Strand strand)
 {
     uint count = step_params.vertex_count - 1u, phase = step_params.phase;
@@ -175,7 +191,9 @@ void finish(Strand strand)
         vec3 q = fetch_position(strand, j);
         x += r.w * home(move, j);
         style = next_style(style, r, strand.rotation);
-        velocities[a] = vec4((x - (q - strand.root)) / strand.dt + strand.spring.stiffness * strand.dt * (style - x), 0.0);
+        velocities[a] = vec4((x - (q - strand.root)) / strand.dt +
+                                 strand.spring.stiffness * strand.dt * (style - x),
+                             0.0);
         positions[a] = vec4(strand.root + x, 1.0);
     }
 #else

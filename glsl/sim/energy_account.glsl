@@ -1,21 +1,26 @@
 // SPDX-License-Identifier: MIT
-// An account of the energy that constraints give to a strand, which is none if they are kept exactly, and a guard against more than a
-// little of it (needs particles.glsl, strand.glsl). Seen from the root, whose acceleration then acts like a force on all particles, particle j
-// of mass 1 goes by m_j in a step, after u_j dt in the one before; without constraints it would go by f_j. Then
+// An account of the energy that constraints give to a strand, which is none if they are kept
+// exactly, and a guard against more than a little of it (needs particles.glsl, strand.glsl). Seen
+// from the root, whose acceleration then acts like a force on all particles, particle j of mass 1
+// goes by m_j in a step, after u_j dt in the one before; without constraints it would go by f_j.
+// Then
 //
-//     K' - K = sum (m - u dt).(m + u dt)/2/dt^2 = work of the forces + X,      X = sum (m - f).(m + u dt)/2/dt^2
+//     K' - K = sum (m - u dt).(m + u dt)/2/dt^2 = work of the forces + X,
+//     X = sum (m - f).(m + u dt)/2/dt^2
 //
-// (leapfrog's energy: velocities between steps, work over the mean of two steps). The strand carries a = max(a + X, 0), what it has gained
-// since it last had least, in the fourth component of the root's velocity. Above ALLOWED of what gravity could give to it, and of what it
-// has, it goes by the share k of its way only, each segment from where it was towards where it went. For moves k m, X = A k^2 + B k + C
-// (springs give what they give along the way: to B), of which the greatest k that keeps within ALLOWED is known at once. Segments that turn
-// far go by more than k; that goes into the account. Should no k do, the velocities of the one that gains least pay for the rest.
+// (leapfrog's energy: velocities between steps, work over the mean of two steps). The strand
+// carries a = max(a + X, 0), what it has gained since it last had least, in the fourth component of
+// the root's velocity. Above ALLOWED of what gravity could give to it, and of what it has, it goes
+// by the share k of its way only, each segment from where it was towards where it went. For moves k
+// m, X = A k^2 + B k + C (springs give what they give along the way: to B), of which the greatest k
+// that keeps within ALLOWED is known at once. Segments that turn far go by more than k; that goes
+// into the account. Should no k do, the velocities of the one that gains least pay for the rest.
 const float ALLOWED = 0.005;
 
 struct Account {
-    vec3 moved, moved_before; // of the root, in this step and in the one before
+    vec3 moved, moved_before;        // of the root, in this step and in the one before
     float squares, linear, constant; // times dt^2/2
-    float stored_before, stored; // in springs that count as constraints
+    float stored_before, stored;     // in springs that count as constraints
 };
 
 Account account_open(Strand strand, float stored)
@@ -24,17 +29,21 @@ Account account_open(Strand strand, float stored)
     return Account(strand.root - strand.root_old, before, 0.0, 0.0, 0.0, stored, stored);
 }
 
-// A particle that has gone by `move`, would have gone by `free` without constraints, and had the velocity v.
+// A particle that has gone by `move`, would have gone by `free` without constraints, and had the
+// velocity v.
 void account_add(inout Account account, Strand strand, vec3 move, vec3 free, vec3 v)
 {
-    vec3 now = move - account.moved, before = v * strand.dt - account.moved_before, forced = free - account.moved;
+    vec3 now = move - account.moved, before = v * strand.dt - account.moved_before,
+         forced = free - account.moved;
     account.squares += dot(now, now);
     account.linear += dot(now, before - forced);
     account.constant -= dot(forced, before);
 }
 
-// A whole step in sums, for want of each particle's f: uniform forces that move particles by `fall`.
-void account_add_sums(inout Account account, vec3 fall, vec3 sum_now, vec3 sum_before, float squares_now, float squares_before)
+// A whole step in sums, for want of each particle's f: uniform forces that move particles by
+// `fall`.
+void account_add_sums(inout Account account, vec3 fall, vec3 sum_now, vec3 sum_before,
+                      float squares_now, float squares_before)
 {
     vec3 forced = fall - (account.moved - account.moved_before);
     account.squares += squares_now;
@@ -51,14 +60,16 @@ float share_within(float a, float b, float c)
     return clamp(b > 0.0 ? -c / q : q / a, 0.0, 1.0);
 }
 
-// Scales the strand's move by `share` and its velocities by `kept` besides. Gives what springs store then.
+// Scales the strand's move by `share` and its velocities by `kept` besides. Gives what springs
+// store then.
 float account_slow(inout Account account, Strand strand, int last, float share, float kept)
 {
 #if BENDS
     Frames frames = frames_open(strand);
 #endif
     float squares = 0.0;
-    vec3 x = strand.root, x_full = strand.root, q = strand.root_old, root = account.moved / strand.dt;
+    vec3 x = strand.root, x_full = strand.root, q = strand.root_old,
+         root = account.moved / strand.dt;
     for (int j = 1; j <= last; ++j) {
         int a = strand.address + j * STRAND_TILE;
         vec4 v = velocities[a];
@@ -83,14 +94,17 @@ float account_slow(inout Account account, Strand strand, int last, float share, 
 #endif
 }
 
-// Writes the root's velocity with the account, and slows the strand down if need be. Its loop is rolled, so that a CPU driver leaves it
-// after a round where no strand needs it.
+// Writes the root's velocity with the account, and slows the strand down if need be. Its loop is
+// rolled, so that a CPU driver leaves it after a round where no strand needs it.
 void account_close(Account account, Strand strand, int last)
 {
-    float per_square = 0.5 / (strand.dt * strand.dt), kinetic = per_square * account.squares, linear = per_square * account.linear + (account.stored - account.stored_before);
+    float per_square = 0.5 / (strand.dt * strand.dt), kinetic = per_square * account.squares,
+          linear = per_square * account.linear + (account.stored - account.stored_before);
     float constant = texelFetch(velocity_before, strand.address).w + per_square * account.constant;
-    float fall = ALLOWED * 0.5 * float(last) * strand.length * length(strand.push) / step_params.gain;
-    float gained = kinetic + linear + constant, over = max(gained, 0.0) - (fall + ALLOWED * kinetic), share = 1.0, kept = 1.0;
+    float fall =
+        ALLOWED * 0.5 * float(last) * strand.length * length(strand.push) / step_params.gain;
+    float gained = kinetic + linear + constant,
+          over = max(gained, 0.0) - (fall + ALLOWED * kinetic), share = 1.0, kept = 1.0;
     bool guards = over > 0.0 && kinetic > 0.0 && over < 1e30;
     if (guards) {
         share = share_within((1.0 - ALLOWED) * kinetic, linear, constant - fall);
@@ -98,8 +112,10 @@ void account_close(Account account, Strand strand, int last)
         gained = kinetic + share * linear + constant;
         over = clamp(gained - (fall + ALLOWED * kinetic), 0.0, kinetic);
         kept = kinetic > 0.0 ? sqrt(1.0 - over / kinetic) : 1.0;
-        gained += account_slow(account, strand, last, share, kept) - mix(account.stored_before, account.stored, share) - over;
+        gained += account_slow(account, strand, last, share, kept) -
+                  mix(account.stored_before, account.stored, share) - over;
         gained += kept * kept * (per_square * account.squares - kinetic);
     }
-    velocities[strand.address] = vec4(account.moved / strand.dt, gained > 0.0 && gained < 1e30 ? gained : 0.0); // 0 for a NaN
+    float kept_gain = gained > 0.0 && gained < 1e30 ? gained : 0.0; // 0 for a NaN
+    velocities[strand.address] = vec4(account.moved / strand.dt, kept_gain);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Where followers are (follow_plan.h): beside their guide, or between three of them. A strand a lane; those of a guide lie side by side.
+// Where followers are (follow_plan.h): beside their guide, or between three of them. A strand a
+// lane; those of a guide lie side by side.
 #include "sim/follow_params.h"
 #include "common/hair_address.glsl"
 #include "common/rigid.glsl"
@@ -15,8 +16,11 @@ void main()
     int s = int(gl_GlobalInvocationID.x), n = int(follow_params.vertex_count);
     if (s >= int(follow_params.strand_count)) return;
     vec4 own = texelFetch(offsets, s);
-    vec3 offset = rotate(follow_params.head_rotation, own.xyz), spread = offset * (follow_params.tip_separation / float(n - 1));
-    int a = particle_address(int(follow_params.first_guide) + s / int(follow_params.per_guide), 0, n), to = particle_address(s, 0, n);
+    vec3 offset = rotate(follow_params.head_rotation, own.xyz),
+         spread = offset * (follow_params.tip_separation / float(n - 1));
+    int a = particle_address(int(follow_params.first_guide) + s / int(follow_params.per_guide), 0,
+                             n),
+        to = particle_address(s, 0, n);
 #if INTERPOLATE
     uvec4 other = texelFetch(others, s);
     int b = particle_address(int(other.x), 0, n), c = particle_address(int(other.y), 0, n);
@@ -26,7 +30,8 @@ void main()
         int at = j * STRAND_TILE;
         vec3 x = texelFetch(guides, a + at).xyz;
 #if INTERPOLATE
-        x += share_b * (texelFetch(guides, b + at).xyz - x) + share_c * (texelFetch(guides, c + at).xyz - x);
+        x += share_b * (texelFetch(guides, b + at).xyz - x) +
+             share_c * (texelFetch(guides, c + at).xyz - x);
 #endif
         positions[to + at] = vec4(x + offset + float(j) * spread, 1.0);
     }

@@ -3,17 +3,19 @@
 
 #include "common/hash.glsl"
 
-// What the head leaves of the wind behind it (SHELTER): seen from its middle, roots on the lee side feel air that more and more goes with
-// the head. Only velocities relative to the head count, so that wind at rest feels the same as a head in motion.
+// What the head leaves of the wind behind it (SHELTER): seen from its middle, roots on the lee side
+// feel air that more and more goes with the head. Only velocities relative to the head count, so
+// that wind at rest feels the same as a head in motion.
 vec3 sheltered(vec3 wind, vec3 root)
 {
     vec3 blows = wind - step_params.head_velocity.xyz, out_of_head = root - step_params.shelter.xyz;
-    float cosine = dot(blows, out_of_head) * inversesqrt(max(dot(blows, blows) * dot(out_of_head, out_of_head), 1e-30));
+    float cosine = dot(blows, out_of_head) *
+                   inversesqrt(max(dot(blows, blows) * dot(out_of_head, out_of_head), 1e-30));
     return wind - step_params.shelter.w * smoothstep(0.0, 1.0, cosine) * blows;
 }
 
-// The wind at the strand of number `id` whose root the head has carried to `root`: the four directions mixed with weights from the number,
-// so that neighbours do not move in step.
+// The wind at the strand of number `id` whose root the head has carried to `root`: the four
+// directions mixed with weights from the number, so that neighbours do not move in step.
 vec3 strand_wind(uint id, vec3 root)
 {
     uint h = hash_bits(id);
@@ -27,8 +29,10 @@ vec3 strand_wind(uint id, vec3 root)
     return wind;
 }
 
-// Constant acceleration and drag c relative to the wind w, exact for any step: v e^{-ch} + (g + c w) h (1 - e^{-ch})/(ch).
+// Constant acceleration and drag c relative to the wind w, exact for any step: v e^{-ch} + (g + c
+// w) h (1 - e^{-ch})/(ch).
 vec3 kick(vec3 v, vec3 wind)
 {
-    return v * step_params.decay + (step_params.gravity.xyz + step_params.drag * wind) * step_params.gain;
+    return v * step_params.decay +
+           (step_params.gravity.xyz + step_params.drag * wind) * step_params.gain;
 }

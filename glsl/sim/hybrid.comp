@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
-// A step of `hybrid`: tractrices as the length constraint, in two passes instead of the emulation's n. Second order.
+// A step of `hybrid`: tractrices as the length constraint, in two passes instead of the emulation's
+// n. Second order.
 //
 //   1. where particles want to go, p: midpoint.glsl
-//   2. tip to root: every segment follows its tip's new place as a tractrix, seen from its root end's own p, which moves along
+//   2. tip to root: every segment follows its tip's new place as a tractrix, seen from its root
+//      end's own p, which moves along
 //   3. root to tip: the root is pulled home, the strand follows
 //   4. velocities: projected on what the new shape allows, energy balanced (constrain.glsl)
 //
-// It is the tractrices that make long steps calm: with directions of p alone, or with one pass, the energy of loose strands rises without end.
+// It is the tractrices that make long steps calm: with directions of p alone, or with one pass, the
+// energy of loose strands rises without end.
 #include "sim/hybrid_params.h"
 #include "sim/particles.glsl"
 #include "sim/keep.glsl"
@@ -16,7 +19,8 @@
 #include "sim/midpoint.glsl"
 #include "sim/constrain.glsl"
 
-// Tip to root. Keeps the segments' directions; gives where the root ends, relative to where it must go.
+// Tip to root. Keeps the segments' directions; gives where the root ends, relative to where it must
+// go.
 vec3 pull_tip(Strand strand, inout Middle middle)
 {
     vec3 q = fetch_position(strand, LAST), y = middle_place(middle, strand, LAST, q);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The strand between two steps: straight lines in the head's frame, so that roots stay where the head has them. A segment that turns by
-// an angle a from step to step is drawn shorter by a^2/8 at most: 1 % at 16 degrees.
+// The strand between two steps: straight lines in the head's frame, so that roots stay where the
+// head has them. A segment that turns by an angle a from step to step is drawn shorter by a^2/8 at
+// most: 1 % at 16 degrees.
 #include "sim/inbetween_params.h"
 #include "common/hair_address.glsl"
 #include "common/rigid.glsl"
@@ -10,18 +11,17 @@ layout(binding = BIND_POSITION) uniform samplerBuffer earlier;
 layout(binding = BIND_STATE) uniform samplerBuffer later;
 layout(std430, binding = BIND_POSITION_OUT) writeonly buffer Positions { vec4 positions[]; };
 
-vec4 conjugate(vec4 q)
-{
-    return vec4(-q.xyz, q.w);
-}
+vec4 conjugate(vec4 q) { return vec4(-q.xyz, q.w); }
 
 void main()
 {
     int s = int(gl_GlobalInvocationID.x), n = int(inbetween_params.vertex_count);
     if (s >= int(inbetween_params.strand_count)) return;
-    vec4 from_earlier = conjugate(inbetween_params.earlier_rotation), from_later = conjugate(inbetween_params.later_rotation);
+    vec4 from_earlier = conjugate(inbetween_params.earlier_rotation),
+         from_later = conjugate(inbetween_params.later_rotation);
     vec4 to_now = inbetween_params.now_rotation;
-    vec3 at_earlier = inbetween_params.earlier_translation.xyz, at_later = inbetween_params.later_translation.xyz;
+    vec3 at_earlier = inbetween_params.earlier_translation.xyz,
+         at_later = inbetween_params.later_translation.xyz;
     vec3 at_now = inbetween_params.now_translation.xyz;
     float share = inbetween_params.share;
     int first = particle_address(s, 0, n);

@@ -1,24 +1,32 @@
 // SPDX-License-Identifier: MIT
-// Velocities in the middle of a step, of a strand of rigid segments: the implicit midpoint rule, linearised once.
+// Velocities in the middle of a step, of a strand of rigid segments: the implicit midpoint rule,
+// linearised once.
 //
 // In the frame that moves with the root (q, v at the step's start, h = dt/2, p_0 = w_0 = 0):
-//   1. half a kick, v+ = K(v), and half of what the style springs do, vs = keep v+ + draw (style - q), implicitly
-//   2. tensions, from the segments' directions d in the middle, those of q + h v:  J J^T lambda = J vs, J J^T = tridiag(-d_j.d_{j-1}, 2; 1)
-//   3. velocities in the middle, w = vs - J^T lambda, where pushing (lambda-) acts along d, and pulling along the directions that w itself
-//      leads to, d = (r + h (w_j - w_{j-1}))/l: with T = lambda+/l a tridiagonal system again, (I + h Laplacian(T)) w = vs - J^T lambda- -
+//   1. half a kick, v+ = K(v), and half of what the style springs do, vs = keep v+ + draw (style -
+//      q), implicitly
+//   2. tensions, from the segments' directions d in the middle, those of q + h v:  J J^T lambda = J
+//      vs, J J^T = tridiag(-d_j.d_{j-1}, 2; 1)
+//   3. velocities in the middle, w = vs - J^T lambda, where pushing (lambda-) acts along d, and
+//      pulling along the directions that w itself leads to, d = (r + h (w_j - w_{j-1}))/l: with T =
+//      lambda+/l a tridiagonal system again, (I + h Laplacian(T)) w = vs - J^T lambda- -
 //      Laplacian(T) q. No tension is too stiff for it.
-// From there particles want to go to p = q + dt w, and have u = 2w - v+ (constrain.glsl goes on from there): as w.(w - v+) = 0 for rigid
-// segments, |u| = |v+|, and the kicks add what gravity does along dt w. Second order, and energy neither comes nor goes, but for what
-// tractrices change about p (see constrain.glsl).
+// From there particles want to go to p = q + dt w, and have u = 2w - v+ (constrain.glsl goes on
+// from there): as w.(w - v+) = 0 for rigid segments, |u| = |v+|, and the kicks add what gravity
+// does along dt w. Second order, and energy neither comes nor goes, but for what tractrices change
+// about p (see constrain.glsl).
 //
-// The springs' end that counts is q + theta dt w, theta = 1/2 .. 1 as k h^2 grows: second order for soft ones, damped for stiff ones;
+// The springs' end that counts is q + theta dt w, theta = 1/2 .. 1 as k h^2 grows: second order for
+// soft ones, damped for stiff ones;
 //     keep = 1/(1 + z + z^2/(1 + z)),  draw = keep z/h,  z = k h^2 (step_style_spring in step.c).
-// The sweeps run to and fro. Needs strand.glsl, tridiagonal.glsl, and keep, recall (vec4 a particle), keep_beside, recall_beside.
+// The sweeps run to and fro. Needs strand.glsl, tridiagonal.glsl, and keep, recall (vec4 a
+// particle), keep_beside, recall_beside.
 
 // K(v) relative to the root: forces and drag for half a step.
 vec3 kicked(Strand strand, vec3 v) { return strand.decay * v + strand.push - strand.root_velocity; }
 
-// vs of a particle that is `offset` from its place in the style; of two particles' difference as well.
+// vs of a particle that is `offset` from its place in the style; of two particles' difference as
+// well.
 vec3 sprung(Strand strand, vec3 kick, vec3 offset)
 {
 #if STYLED
@@ -32,7 +40,8 @@ vec3 sprung(Strand strand, vec3 kick, vec3 offset)
 void find_directions(Strand strand)
 {
     float h = 0.5 * strand.dt;
-    vec3 q = fetch_position(strand, LAST), v = fetch_velocity(strand, LAST), kick = kicked(strand, v), d_beyond = vec3(0.0);
+    vec3 q = fetch_position(strand, LAST), v = fetch_velocity(strand, LAST),
+         kick = kicked(strand, v), d_beyond = vec3(0.0);
     Row row = NO_ROW;
     for (int j = LAST; j >= 1; --j) {
         vec3 q_before = strand.root_old, v_before = strand.root_velocity, kick_before = vec3(0.0);
@@ -45,14 +54,16 @@ void find_directions(Strand strand)
         offset -= next_style(vec3(0.0), fetch_rest(strand, j), strand.rotation);
 #endif
         float factor;
-        row = eliminate(row, -dot(d, d_beyond), j == 1 ? 1.0 : 2.0, dot(d, sprung(strand, kick - kick_before, offset)), factor);
+        row = eliminate(row, -dot(d, d_beyond), j == 1 ? 1.0 : 2.0,
+                        dot(d, sprung(strand, kick - kick_before, offset)), factor);
         keep(j, vec4(d, row.value));
         keep_beside(j, factor);
         q = q_before, v = v_before, kick = kick_before, d_beyond = d;
     }
 }
 
-// Root to tip: tensions; rows of w, each known one segment later. Gives where the style's tip is, relative to the root.
+// Root to tip: tensions; rows of w, each known one segment later. Gives where the style's tip is,
+// relative to the root.
 vec3 find_tensions(Strand strand)
 {
     int last = LAST;
@@ -67,13 +78,15 @@ vec3 find_tensions(Strand strand)
         float pull = max(lambda, 0.0), t = pull / r.w;
         vec3 g = (lambda - pull) * k.xyz + t * (q - q_before);
         if (j > 1) {
-            row = eliminate(row, -h * t_before, 1.0 + h * (t_before + t), vs_before - g_before + g, factor);
+            row = eliminate(row, -h * t_before, 1.0 + h * (t_before + t), vs_before - g_before + g,
+                            factor);
             keep(j - 1, vec4(row.value, factor));
         }
 #if STYLED
         style = next_style(style, r, strand.rotation);
 #endif
-        vs_before = sprung(strand, kicked(strand, fetch_velocity(strand, j)), q - strand.root_old - style);
+        vs_before =
+            sprung(strand, kicked(strand, fetch_velocity(strand, j)), q - strand.root_old - style);
         q_before = q, g_before = g, t_before = t;
     }
     row = eliminate(row, -h * t_before, 1.0 + h * t_before, vs_before - g_before, factor);
@@ -98,11 +111,13 @@ Middle middle_open(Strand strand)
     return Middle(k.xyz, style, k.w, 0.0);
 }
 
-// Particle j, at q: writes p where its position will be, u where its velocity will be. Then j - 1 has its turn. Gives p.
+// Particle j, at q: writes p where its position will be, u where its velocity will be. Then j - 1
+// has its turn. Gives p.
 vec3 middle_place(inout Middle m, Strand strand, int j, vec3 q)
 {
     int a = strand.address + j * STRAND_TILE;
-    vec3 offset = q - strand.root_old, kick = kicked(strand, fetch_velocity(strand, j)), p = offset + strand.dt * m.w;
+    vec3 offset = q - strand.root_old, kick = kicked(strand, fetch_velocity(strand, j)),
+         p = offset + strand.dt * m.w;
     m.gained += 2.0 * dot(m.w, m.w - sprung(strand, kick, offset - m.style));
     keep_aim(a, j, p);
     keep_velocity(a, j, vec4(2.0 * m.w - kick, 0.0));

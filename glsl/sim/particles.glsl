@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// What a solver of particles (particle_solver.h) is given: positions and velocities of the step before by texture, both to be
-// written to the same places, the style, and where the head carries the root.
+// What a solver of particles (particle_solver.h) is given: positions and velocities of the step
+// before by texture, both to be written to the same places, the style, and where the head carries
+// the root.
 //
-// Macros: GROUP_SIZE lanes a group; STRANDS strands a lane, GROUP_SIZE apart; IN_REGISTERS and VERTICES: the strand has VERTICES
-// vertices and may be held in arrays, whose loops unroll; else any length, step_params.vertex_count. LEAD: vertices before the solver's
-// root, which the head carries (0 or 1).
+// Macros: GROUP_SIZE lanes a group; STRANDS strands a lane, GROUP_SIZE apart; IN_REGISTERS and
+// VERTICES: the strand has VERTICES vertices and may be held in arrays, whose loops unroll; else
+// any length, step_params.vertex_count. LEAD: vertices before the solver's root, which the head
+// carries (0 or 1).
 #include "sim/step_params.h"
 #include "sim/forces.glsl"
 #include "common/hair_address.glsl"
@@ -20,9 +22,13 @@ layout(std430, binding = BIND_POSITION_OUT) buffer Positions { vec4 positions[];
 layout(std430, binding = BIND_STATE_OUT) buffer Velocities { vec4 velocities[]; };
 
 // The first of the lane's strands. Lanes beyond the last strand have nothing to do.
-int first_strand() { return int(gl_WorkGroupID.x) * GROUP_SIZE * STRANDS + int(gl_LocalInvocationID.x); }
+int first_strand()
+{
+    return int(gl_WorkGroupID.x) * GROUP_SIZE * STRANDS + int(gl_LocalInvocationID.x);
+}
 
-// With LEAD 1 the head carries vertex 1 too, and that is the solver's root: it sees vertices 0 .. vertex_count - 1 from strand_base on.
+// With LEAD 1 the head carries vertex 1 too, and that is the solver's root: it sees vertices 0 ..
+// vertex_count - 1 from strand_base on.
 int strand_base(int strand)
 {
 #if IN_REGISTERS
@@ -33,10 +39,25 @@ int strand_base(int strand)
 }
 
 // Where the head has carried the root (a texel of `rest` with j = 0) at the step's end.
-vec3 root_position(vec4 root) { return rotate(step_params.head_rotation, root.xyz) + step_params.head_translation.xyz; }
+vec3 root_position(vec4 root)
+{
+    return rotate(step_params.head_rotation, root.xyz) + step_params.head_translation.xyz;
+}
 
-// A particle of the style after another, from the root on: where the head carries it, relative to the root.
-vec3 next_style(vec3 before, vec4 rest, vec4 rotation) { return before + rest.w * rotate(rotation, rest.xyz); }
+// By how much the head carries the root in the step.
+vec3 root_move(vec4 root)
+{
+    vec3 old =
+        rotate(step_params.head_rotation_old, root.xyz) + step_params.head_translation_old.xyz;
+    return root_position(root) - old;
+}
+
+// A particle of the style after another, from the root on: where the head carries it, relative to
+// the root.
+vec3 next_style(vec3 before, vec4 rest, vec4 rotation)
+{
+    return before + rest.w * rotate(rotation, rest.xyz);
+}
 
 // Writes what is before the solver's root.
 void carry_lead(int base)

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The strand that is drawn: rebuilt from the root, every direction turned by a share of the angle from the physical one to the style's.
-//   MIX 0: the style alone   1: the physical strand alone   2: nearer to the physical strand   3: nearer to the style
+// The strand that is drawn: rebuilt from the root, every direction turned by a share of the angle
+// from the physical one to the style's.
+//   MIX 0: the style alone
+//   MIX 1: the physical strand alone
+//   MIX 2: nearer to the physical strand
+//   MIX 3: nearer to the style
 #include "sim/pose_params.h"
 #include "common/hair_address.glsl"
 #include "common/rigid.glsl"
@@ -10,21 +14,25 @@ layout(binding = BIND_REST) uniform samplerBuffer rest;
 layout(binding = BIND_STATE) uniform samplerBuffer segments; // unit direction, rest length
 layout(std430, binding = BIND_POSITION_OUT) writeonly buffer Positions { vec4 positions[]; };
 
-// The polynomials of a turn. Uniforms cost a load wherever they are named, so they are read once, into this.
+// The polynomials of a turn. Uniforms cost a load wherever they are named, so they are read once,
+// into this.
 struct Turn {
     vec4 cos_low, cos_high, sin_low, sin_high;
 };
 
 float polynomial(vec4 low, vec4 high, float x)
 {
-    float a = low.x + x * low.y, b = low.z + x * low.w, c = high.x + x * high.y, d = high.z + x * high.w, xx = x * x;
+    float a = low.x + x * low.y, b = low.z + x * low.w, c = high.x + x * high.y,
+          d = high.z + x * high.w, xx = x * x;
     return a + xx * b + xx * xx * (c + xx * d);
 }
 
-// Slerp from the unit vector a towards the unit vector b by a share w <= 1/2 of their angle. With the bisector h this is a turn towards
-// h by v = 2w of the half angle p <= 90 deg: cos(v p) a + sin(v p)/sin(p) (h - cos(p) a). Both factors are smooth functions of
-// x = sin^2(p/2) <= 1/2, given as polynomials, so that no angle is needed. Antiparallel vectors have no bisector: a stays. Where the sum is
-// short, what rounding leaves of it is not quite across, and the result not quite of length 1.
+// Slerp from the unit vector a towards the unit vector b by a share w <= 1/2 of their angle. With
+// the bisector h this is a turn towards h by v = 2w of the half angle p <= 90 deg: cos(v p) a +
+// sin(v p)/sin(p) (h - cos(p) a). Both factors are smooth functions of x = sin^2(p/2) <= 1/2, given
+// as polynomials, so that no angle is needed. Antiparallel vectors have no bisector: a stays. Where
+// the sum is short, what rounding leaves of it is not quite across, and the result not quite of
+// length 1.
 vec3 turn(vec3 a, vec3 b, Turn by)
 {
     vec3 sum = a + b;
@@ -32,7 +40,8 @@ vec3 turn(vec3 a, vec3 b, Turn by)
     float inverse = inversesqrt(max(ss, 1e-12));
     float cos_p = 0.5 * ss * inverse;
     float x = 0.5 - 0.5 * cos_p;
-    vec3 turned = polynomial(by.cos_low, by.cos_high, x) * a + polynomial(by.sin_low, by.sin_high, x) * (sum * inverse - cos_p * a);
+    vec3 turned = polynomial(by.cos_low, by.cos_high, x) * a +
+                  polynomial(by.sin_low, by.sin_high, x) * (sum * inverse - cos_p * a);
     turned *= ss < 1e-2 ? inversesqrt(dot(turned, turned)) : 1.0;
     return ss > 1e-12 ? turned : a;
 }
@@ -43,7 +52,8 @@ void main()
     if (s >= int(pose_params.strand_count)) return;
     int first = particle_address(s, 0, n);
     vec4 root = texelFetch(rest, first), rotation = pose_params.head_rotation;
-    Turn by = Turn(pose_params.turn_cos[0], pose_params.turn_cos[1], pose_params.turn_sin[0], pose_params.turn_sin[1]);
+    Turn by = Turn(pose_params.turn_cos[0], pose_params.turn_cos[1], pose_params.turn_sin[0],
+                   pose_params.turn_sin[1]);
 
     vec3 x = rotate(rotation, root.xyz) + pose_params.head_translation.xyz;
     positions[first] = vec4(x, 1.0);

@@ -1,23 +1,31 @@
 // SPDX-License-Identifier: MIT
-// Position-based rope: particles fly, then sweeps over the links from root to tip move the two ends of each towards its length.
+// Position-based rope: particles fly, then sweeps over the links from root to tip move the two ends
+// of each towards its length.
 //
-// BULLET 1: as btSoftBody::PSolve_Links (Bullet 2 and 3) does it, with all sweeps at the end of one step. A link with ends a, b
-// of weights w (the root's is 0, the others' 1), r = b - a and rest length l:
+// BULLET 1: as btSoftBody::PSolve_Links (Bullet 2 and 3) does it, with all sweeps at the end of one
+// step. A link with ends a, b of weights w (the root's is 0, the others' 1), r = b - a and rest
+// length l:
 //     k = (l^2 - r.r) / ((w_a + w_b) (l^2 + r.r)),    a -= w_a k r,  b += w_b k r
-// To first order in the stretch that is the usual projection, without a root; far off it overshoots.
+// To first order in the stretch that is the usual projection, without a root; far off it
+// overshoots.
 //
-// BULLET 0: XPBD by small steps (Macklin, Mueller, Chentanez: XPBD, MIG 2016; Macklin et al.: Small Steps in Physics Simulation, SCA
-// 2019): each sweep ends a step of its own, so that the multiplier starts at 0. With the compliance alpha and the small step h,
+// BULLET 0: XPBD by small steps (Macklin, Mueller, Chentanez: XPBD, MIG 2016; Macklin et al.: Small
+// Steps in Physics Simulation, SCA 2019): each sweep ends a step of its own, so that the multiplier
+// starts at 0. With the compliance alpha and the small step h,
 //     lambda = (l - |r|) / (w_a + w_b + alpha/h^2),   a -= w_a lambda r/|r|,  b += w_b lambda r/|r|
 //
-// Then v = (1 - damping) m/h, m: all that the particle has gone by in the small step, flight and sweeps. To take m for x - q, q the position
-// before the flight, would round it like x, by the size X of coordinates: 2^-24 X, in each of small steps in which gravity gives g h^2. So
-// each move is added to m as well as to x. (Of 1 m/s2 drag, 12,000 small steps a second were off by 0.015 of the length after 2 s, now 4e-6.)
+// Then v = (1 - damping) m/h, m: all that the particle has gone by in the small step, flight and
+// sweeps. To take m for x - q, q the position before the flight, would round it like x, by the size
+// X of coordinates: 2^-24 X, in each of small steps in which gravity gives g h^2. So each move is
+// added to m as well as to x. (Of 1 m/s2 drag, 12,000 small steps a second were off by 0.015 of the
+// length after 2 s, now 4e-6.)
 //
-// For the same reason coordinates are from where the root was at the step's start: sweeps see the rounding of x.
-// (Five metres off the origin, 81 small steps of 1/60 s trembled by 0.0045 of their length a step.)
+// For the same reason coordinates are from where the root was at the step's start: sweeps see the
+// rounding of x. (Five metres off the origin, 81 small steps of 1/60 s trembled by 0.0045 of their
+// length a step.)
 //
-// STYLED 1: after each flight particles are drawn to the style (style_spring.h). A rope stretches; see stretch.glsl for what is drawn.
+// STYLED 1: after each flight particles are drawn to the style (style_spring.h). A rope stretches;
+// see stretch.glsl for what is drawn.
 #include "sim/particles.glsl"
 #include "sim/rope_params.h"
 #include "sim/stretch.glsl"
@@ -33,29 +41,29 @@ vec3 mended(vec3 r, float l, float weights)
 #endif
 }
 
-// By how much the head carries the root in the step.
-vec3 root_move(vec4 root)
+// Where the root is after `step` of the small steps.
+vec3 root_at(vec3 root_move, int step, int small_steps)
 {
-    vec3 old = rotate(step_params.head_rotation_old, root.xyz) + step_params.head_translation_old.xyz;
-    return root_position(root) - old;
+    return root_move * (float(step) / float(small_steps));
 }
 
-// Where the root is after `step` of the small steps.
-vec3 root_at(vec3 root_move, int step, int small_steps) { return root_move * (float(step) / float(small_steps)); }
-
-// The flight in later small steps is by carried_share() m + fall, Verlet's form with drag; the first starts from a velocity.
+// The flight in later small steps is by carried_share() m + fall, Verlet's form with drag; the
+// first starts from a velocity.
 float carried_share() { return rope_params.kept * step_params.decay; }
 
 vec3 fall_of(vec3 wind) { return step_params.dt * kick(vec3(0.0), wind); }
 
 vec3 first_flight(vec3 v, vec3 wind)
 {
-    return step_params.dt * (v * rope_params.first_decay + (step_params.gravity.xyz + step_params.drag * wind) * rope_params.first_gain);
+    return step_params.dt *
+           (v * rope_params.first_decay +
+            (step_params.gravity.xyz + step_params.drag * wind) * rope_params.first_gain);
 }
 
 void finish(int a, vec3 r, float l, vec3 moved, inout vec3 drawn, inout vec3 along)
 {
-    draw_link(a, r, l, moved * (rope_params.kept / step_params.dt), rope_params.stretch_drawn != 0u, drawn, along);
+    draw_link(a, r, l, moved * (rope_params.kept / step_params.dt), rope_params.stretch_drawn != 0u,
+              drawn, along);
 }
 
 #if IN_REGISTERS
@@ -64,7 +72,8 @@ void main()
     int s = first_strand();
     if (s >= int(step_params.strand_count)) return;
     int base = strand_base(s);
-    vec3 x[VERTICES], m[VERTICES], wind = strand_wind(texelFetch(strand_id, s).x, root_position(strand_root(base)));
+    vec3 x[VERTICES], m[VERTICES],
+        wind = strand_wind(texelFetch(strand_id, s).x, root_position(strand_root(base)));
     float l[VERTICES];
     int small_steps = rope_params.small_steps, sweeps = rope_params.sweeps;
     vec4 root = strand_root(base), rotation = step_params.head_rotation;
@@ -104,7 +113,8 @@ void main()
     }
     for (int j = 1; j < VERTICES; ++j) m[j] = x[j] - q[j];
 #else
-    // The first small step's flight is known; a particle flies just before its first link is mended.
+    // The first small step's flight is known; a particle flies just before its first link is
+    // mended.
     float carried = 1.0, pull = 0.0;
     vec3 fall = vec3(0.0);
     for (int step = 0; step < small_steps; ++step) {
@@ -133,8 +143,8 @@ void main()
         finish(base + j * STRAND_TILE, x[j] - x[j - 1], l[j], m[j], drawn, along);
 }
 #else
-// Any length: a dispatch (phase) is one sweep along the strand in scratch memory. A particle flies just before its first link is mended
-// in a small step; behind the last sweep of all it is drawn.
+// Any length: a dispatch (phase) is one sweep along the strand in scratch memory. A particle flies
+// just before its first link is mended in a small step; behind the last sweep of all it is drawn.
 layout(std430, binding = BIND_SCRATCH) buffer Scratch { vec4 scratch[]; }; // a particle: x; m
 
 void main()
@@ -142,14 +152,18 @@ void main()
     int s = first_strand(), n = int(step_params.vertex_count);
     if (s >= int(step_params.strand_count)) return;
     int phase = int(step_params.phase), step = phase / rope_params.sweeps, a = strand_base(s);
-    bool loads = phase == 0, flies = phase == step * rope_params.sweeps, draws = phase + 1 == rope_params.small_steps * rope_params.sweeps;
-    vec3 wind = strand_wind(texelFetch(strand_id, s).x, root_position(strand_root(a))), fall = fall_of(wind);
+    bool loads = phase == 0, flies = phase == step * rope_params.sweeps,
+         draws = phase + 1 == rope_params.small_steps * rope_params.sweeps;
+    vec3 wind = strand_wind(texelFetch(strand_id, s).x, root_position(strand_root(a))),
+         fall = fall_of(wind);
     vec4 root = strand_root(a);
     vec3 drawn_before = texelFetch(position_before, a).xyz, at = vec3(0.0);
-    vec3 x = root_at(root_move(root), step + 1, rope_params.small_steps), m = vec3(0.0), style_at = x;
+    vec3 x = root_at(root_move(root), step + 1, rope_params.small_steps), m = vec3(0.0),
+         style_at = x;
     vec4 rotation = step_params.head_rotation;
     float pull = loads ? rope_params.first_spring.pull : rope_params.spring.pull;
-    vec3 before = x, drawn = root_position(root), along = rotate(rotation, texelFetch(rest, a + STRAND_TILE).xyz);
+    vec3 before = x, drawn = root_position(root),
+         along = rotate(rotation, texelFetch(rest, a + STRAND_TILE).xyz);
     float weights = 1.0, l = 0.0, l_before = 0.0;
     if (draws) {
         carry_lead(a);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Looks whether strands are calm (sleep.h): each particle within `leave` of its anchor, and no farther from it than it has been before.
-// If not, they begin anew, those that have left their anchor with another one. A strand a lane.
+// Looks whether strands are calm (sleep.h): each particle within `leave` of its anchor, and no
+// farther from it than it has been before. If not, they begin anew, those that have left their
+// anchor with another one. A strand a lane.
 #include "sim/sleep_params.h"
 #include "common/hair_address.glsl"
 
@@ -26,7 +27,8 @@ void main()
         growth = max(growth, way - anchor.w);
     }
     bool was_ready = (calm[s] & SLEEP_READY) != 0u;
-    bool keeps_anchor = sleep_params.anchor == SLEEP_ANCHOR_LEFT || (sleep_params.anchor == SLEEP_ANCHOR_UNREADY && was_ready);
+    bool keeps_anchor = sleep_params.anchor == SLEEP_ANCHOR_LEFT ||
+                        (sleep_params.anchor == SLEEP_ANCHOR_UNREADY && was_ready);
     // Written so that a position that is no number is never calm.
     bool stays = farthest <= leave && keeps_anchor, is_calm = stays && growth <= grow;
     float reach = 0.0;
@@ -40,6 +42,8 @@ void main()
         reach = max(reach, anchor.w);
     }
     uint looks = is_calm ? (calm[s] & ~SLEEP_READY) + 1u : 0u;
-    bool ready = stays && was_ready || float(looks) >= sleep_params.looks + sleep_params.looks_reach * reach / strand_length;
+    bool ready =
+        stays && was_ready ||
+        float(looks) >= sleep_params.looks + sleep_params.looks_reach * reach / strand_length;
     calm[s] = ready ? looks | SLEEP_READY : looks;
 }

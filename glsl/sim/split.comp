@@ -29,12 +29,12 @@ layout(std430, binding = BIND_TIPS) buffer Tips { vec4 tips[]; }; // see open_st
 const float MOVE_LIMIT = 100.0;
 
 struct Strand {
-    int number, address;    // address: of its root
-    float length;           // R, m
-    vec3 root_old, root;    // at the step's start and end
-    vec3 push;              // what forces add to a velocity in this step, m/s
+    int number, address;     // address: of its root
+    float length;            // R, m
+    vec3 root_old, root;     // at the step's start and end
+    vec3 push;               // what forces add to a velocity in this step, m/s
     vec3 position, velocity; // of the tip
-    float limited;          // how often its velocity was cut
+    float limited;           // how often its velocity was cut
 };
 
 // Its root as the head moves it, and its tip, kicked.
@@ -45,8 +45,8 @@ Strand open_strand(int number)
     strand.address = particle_address(number, LEAD, LINKS + 1 + LEAD);
     vec4 root = strand_root(strand.address), tip = tips[2 * number], v = tips[2 * number + 1];
     strand.length = root.w;
-    strand.root_old = rotate(step_params.head_rotation_old, root.xyz) +
-                      step_params.head_translation_old.xyz;
+    strand.root_old =
+        rotate(step_params.head_rotation_old, root.xyz) + step_params.head_translation_old.xyz;
     strand.root = rotate(step_params.head_rotation, root.xyz) + step_params.head_translation.xyz;
     vec3 wind = strand_wind(texelFetch(strand_id, number).x, strand.root);
     strand.push = kick(vec3(0.0), wind);
@@ -54,7 +54,8 @@ Strand open_strand(int number)
     strand.velocity = kick(v.xyz, wind);
     strand.limited = tip.w;
     float most = MOVE_LIMIT * strand.length / step_params.dt;
-    float fastest = max(abs(strand.velocity.x), max(abs(strand.velocity.y), abs(strand.velocity.z)));
+    float fastest =
+        max(abs(strand.velocity.x), max(abs(strand.velocity.y), abs(strand.velocity.z)));
     if (fastest > most) {
         vec3 u = strand.velocity / fastest;
         strand.velocity = u * (most * inversesqrt(dot(u, u)));
@@ -68,9 +69,9 @@ Strand open_strand(int number)
 }
 
 // The tip is on an inextensible string of length R from the root. A tip that flies to `target`, s
-// from the root, out of the ball that the string allows, lands on the sphere: displaced along the old
-// string (the direction of the constraint's force, which makes it second order) if that was taut
-// and the step is not too long for it, else radially.
+// from the root, out of the ball that the string allows, lands on the sphere: displaced along the
+// old string (the direction of the constraint's force, which makes it second order) if that was
+// taut and the step is not too long for it, else radially.
 vec3 land(inout Strand strand, vec3 target, vec3 s)
 {
     vec3 r = strand.position - strand.root_old;
@@ -88,12 +89,12 @@ vec3 land(inout Strand strand, vec3 target, vec3 s)
 #if DRAGGED
 #include "sim/split_published.glsl"
 #else
-// Where the tip flies to. Landed as above, what goes on from step to step is R sin(delta), delta the
-// angle that the string turns in a step, where the arc R delta should: energy at the bottom of a
-// swing would be too large by its share delta^2/4 (0.028 m g L at 30 Hz). Forces across the string
-// that push by k in a step shall turn it by k/R, so that their push along the motion acts by
-// cos(delta) and across it by sin(delta)/delta, to fourth order k - k delta^2/6 - (k.m) m/3 with
-// m = delta along the motion, in the step's middle.
+// Where the tip flies to. Landed as above, what goes on from step to step is R sin(delta), delta
+// the angle that the string turns in a step, where the arc R delta should: energy at the bottom of
+// a swing would be too large by its share delta^2/4 (0.028 m g L at 30 Hz). Forces across the
+// string that push by k in a step shall turn it by k/R, so that their push along the motion acts by
+// cos(delta) and across it by sin(delta)/delta, to fourth order k - k delta^2/6 - (k.m) m/3 with m
+// = delta along the motion, in the step's middle.
 vec3 fly(inout Strand strand)
 {
     vec3 target = strand.position + strand.velocity * step_params.dt, s = target - strand.root;

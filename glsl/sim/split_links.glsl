@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The links of a lane's strands, and pulls along them (needs tractrix.glsl, hair_address.glsl).
-// IN_REGISTERS 1: the strand has VERTICES vertices, and stays in registers for the whole step, whose
-// loops unroll. 0: any length, in memory.
-layout(binding = BIND_STATE) uniform samplerBuffer segments_before; // the buffer at the step's start
+// IN_REGISTERS 1: the strand has VERTICES vertices, and stays in registers for the whole step,
+// whose loops unroll. 0: any length, in memory.
+// the buffer at the step's start
+layout(binding = BIND_STATE) uniform samplerBuffer segments_before;
 layout(std430, binding = BIND_STATE_OUT) buffer Segments { vec4 segments[]; };
 
 const float SAFE_MOVE = 1e15; // metres: keeps squares finite whatever the head does
@@ -29,7 +30,8 @@ vec3 open_links(int k, int address)
 }
 
 // Pulls one end of each strand by `move`, which becomes the other end's displacement. The next pull
-// begins there: it is the same loop over the strand turned round, order reversed, directions negated.
+// begins there: it is the same loop over the strand turned round, order reversed, directions
+// negated.
 void pull_links(int address[STRANDS], inout vec3 move[STRANDS], bool from_tip)
 {
     for (int k = 0; k < STRANDS; ++k) move[k] = clamp(move[k], -SAFE_MOVE, SAFE_MOVE);

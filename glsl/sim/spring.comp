@@ -1,39 +1,50 @@
 // SPDX-License-Identifier: MIT
-// Mass-spring strand: particles of mass 1, coil springs along the links, angular springs across them.
+// Mass-spring strand: particles of mass 1, coil springs along the links, angular springs across
+// them.
 //
-// A link r = x_j - x_{j-1} = m u (m = |r|) with rest length l pulls at the particle at its end, and the other way at the one before, by
-//     F = -k/2 (m - l) u + b theta e,    theta: angle from u to the style's direction t,  e: perpendicular to u, towards t
-// Hooke's law with half the coil's force for either end (k), and for the angle (b). Springs in a row: K = k/(n-1)^2 is the stiffness of a
-// strand of n - 1 links, B = b/(n-1) what its weight works against, so that K and B mean the same for any n. b <= k l/8: a
-// short link shall not be stiffer across than along.
+// A link r = x_j - x_{j-1} = m u (m = |r|) with rest length l pulls at the particle at its end, and
+// the other way at the one before, by
+//     F = -k/2 (m - l) u + b theta e
+// with theta the angle from u to the style's direction t, e perpendicular to u, towards t: Hooke's
+// law with half the coil's force for either end (k), and for the angle (b). Springs in a row: K =
+// k/(n-1)^2 is the stiffness of a strand of n - 1 links, B = b/(n-1) what its weight works against,
+// so that K and B mean the same for any n. b <= k l/8: a short link shall not be stiffer across
+// than along.
 //
-// IMPLICIT 0, symplectic Euler: v' = e^{-ch} v + (g + c w + F_j - F_{j+1}) h f (forces.glsl), then r' = r + h (v'_j - v'_{j-1}).
-// Nothing damps it, so F must have a potential, and one that is smooth on the scale that a link moves on in a sub-step. That above is and
-// has neither: of a link that stretches and shrinks at different angles the angular force takes work again and again; near m = 0 the coil's
-// force turns over with u, and at theta = pi the angular one. With e = SHORT L/(n-1), l' = max(l, e) and phi = theta^2/2 therefore
-//     U = k/4 (M - l')^2 + b' m^2/(m^2 + e^2) phi,    M^2 = m^2 + l'^2 - l^2,    b' = min(b, k l^3/8/(l^2 + e^2)) (l^2 + e^2)/l
+// IMPLICIT 0, symplectic Euler: v' = e^{-ch} v + (g + c w + F_j - F_{j+1}) h f (forces.glsl), then
+// r' = r + h (v'_j - v'_{j-1}). Nothing damps it, so F must have a potential, and one that is
+// smooth on the scale that a link moves on in a sub-step. That above is and has neither: of a link
+// that stretches and shrinks at different angles the angular force takes work again and again; near
+// m = 0 the coil's force turns over with u, and at theta = pi the angular one. With e = SHORT
+// L/(n-1), l' = max(l, e) and phi = theta^2/2 therefore
+//     U = k/4 (M - l')^2 + b' m^2/(m^2 + e^2) phi,
+//     M^2 = m^2 + l'^2 - l^2,    b' = min(b, k l^3/8/(l^2 + e^2)) (l^2 + e^2)/l
 //     F = -dU/dr = -k/2 (1 - l'/M) r - 2 b' phi m e^2/(m^2 + e^2)^2 u + b' phi' m/(m^2 + e^2) e
-// which is the same at m = l, but for the second term (there b theta^2 e^2/(l^2 + e^2), 0.06 b theta^2 in an average link), for links below e,
-// which are softer, and for angles above 135 degrees, where phi' = 3 (pi - theta). No derivative of the coil's part is beyond k/2.
+// which is the same at m = l, but for the second term (there b theta^2 e^2/(l^2 + e^2), 0.06 b
+// theta^2 in an average link), for links below e, which are softer, and for angles above 135
+// degrees, where phi' = 3 (pi - theta). No derivative of the coil's part is beyond k/2.
 //
-// IMPLICIT 1, backward Euler, linearised at the step's start (Baraff, Witkin: Large Steps in Cloth Simulation, SIGGRAPH 1998), so that rest
-// states are exact at any step. Without springs the particles would fly at v* (forces.glsl) and the link become r + w, w = h (v*_j -
-// v*_{j-1}). With the stiffness matrices H = h^2 f (k/2 u u^T + (k/2 |1 - l/m| + b/l) (1 - u u^T)) = q + sigma u u^T they are displaced from
-// there by x, x_0 = 0:
+// IMPLICIT 1, backward Euler, linearised at the step's start (Baraff, Witkin: Large Steps in Cloth
+// Simulation, SIGGRAPH 1998), so that rest states are exact at any step. Without springs the
+// particles would fly at v* (forces.glsl) and the link become r + w, w = h (v*_j - v*_{j-1}). With
+// the stiffness matrices H = h^2 f (k/2 u u^T + (k/2 |1 - l/m| + b/l) (1 - u u^T)) = q + sigma u
+// u^T they are displaced from there by x, x_0 = 0:
 //     x_j + H_j (x_j - x_{j-1}) - H_{j+1} (x_{j+1} - x_j) = z_j - z_{j+1},    z = h^2 f F(r) - H w
-// (Across a link shorter than l a coil's stiffness is negative, k/2 (1 - l/m). Its absolute value, at most k/2, keeps the matrix positive.)
-// From the tip on eliminate x_j = S^{-1} (z + d + H x_{j-1}), S = M + H: what is beyond the link acts on its end as M and d,
-// M = 1, d = 0 at the tip, and then
+// (Across a link shorter than l a coil's stiffness is negative, k/2 (1 - l/m). Its absolute value,
+// at most k/2, keeps the matrix positive.) From the tip on eliminate x_j = S^{-1} (z + d + H
+// x_{j-1}), S = M + H: what is beyond the link acts on its end as M and d, M = 1, d = 0 at the tip,
+// and then
 //     M <- 1 + M S^{-1} H,    d <- d - M S^{-1} (z + d)
-// With A = M + q, g = A^{-1} u, a = M g, tau = sigma/(1 + sigma u.g), Sherman's and Morrison's formula gives forms that do not cancel
-// for stiff springs: M S^{-1} H = q M A^{-1} + tau a a^T, M S^{-1} u = a/(1 + sigma u.g), M S^{-1} y = M A^{-1} y - tau a (g.y);
-// S^{-1} is the same without the M, g for a. So x_j = C x_{j-1} + S^{-1} (z + d), C = q A^{-1} + tau g a^T.
+// With A = M + q, g = A^{-1} u, a = M g, tau = sigma/(1 + sigma u.g), Sherman's and Morrison's
+// formula gives forms that do not cancel for stiff springs: M S^{-1} H = q M A^{-1} + tau a a^T, M
+// S^{-1} u = a/(1 + sigma u.g), M S^{-1} y = M A^{-1} y - tau a (g.y); S^{-1} is the same without
+// the M, g for a. So x_j = C x_{j-1} + S^{-1} (z + d), C = q A^{-1} + tau g a^T.
 #include "sim/particles.glsl"
 #include "sim/spring_params.h"
 #include "sim/stretch.glsl"
 
-const float PI       = 3.14159265;
-const float SHORT    = 0.25; // of an average link; solver_spring.c knows it
+const float PI = 3.14159265;
+const float SHORT = 0.25;   // of an average link; solver_spring.c knows it
 const float STIFFEST = 1e9; // h^2 f k/2: beyond what float32 tells from rigid
 
 struct Springs {
@@ -42,10 +53,12 @@ struct Springs {
 
 Springs springs_of(int links)
 {
-    return Springs(spring_params.coil * float(links) * float(links), spring_params.angular * float(links));
+    return Springs(spring_params.coil * float(links) * float(links),
+                   spring_params.angular * float(links));
 }
 
-// The angular spring's force on a link of direction u; none where u is opposite to the style's direction t.
+// The angular spring's force on a link of direction u; none where u is opposite to the style's
+// direction t.
 vec3 angular_force(vec3 u, vec3 t, float b)
 {
     float cosine = dot(u, t);
@@ -63,14 +76,9 @@ vec3 direction_of(vec3 r, vec3 t, out float m)
     return rr > 1e-36 ? r * inverse : t;
 }
 
-vec3 root_move(vec4 root)
-{
-    vec3 old = rotate(step_params.head_rotation_old, root.xyz) + step_params.head_translation_old.xyz;
-    return root_position(root) - old;
-}
-
 #if IMPLICIT
-layout(std430, binding = BIND_SCRATCH) buffer Scratch { vec4 scratch[]; }; // a particle: the rows of C, each with a component of S^{-1} (z + d)
+// a particle: the rows of C, each with a component of S^{-1} (z + d)
+layout(std430, binding = BIND_SCRATCH) buffer Scratch { vec4 scratch[]; };
 
 mat3 inverse_of_symmetric(mat3 m)
 {
@@ -124,8 +132,10 @@ void eliminate(int base, int n, vec3 wind, vec3 root_velocity)
 void substitute(int base, int n, vec3 wind, vec3 root_velocity, vec3 root)
 {
     float dt = step_params.dt, per_second = 1.0 / step_params.dt;
-    vec3 drawn_before = texelFetch(position_before, base).xyz, flying_before = root_velocity, x_before = vec3(0.0);
-    vec3 drawn = root, along = rotate(step_params.head_rotation, texelFetch(rest, base + STRAND_TILE).xyz);
+    vec3 drawn_before = texelFetch(position_before, base).xyz, flying_before = root_velocity,
+         x_before = vec3(0.0);
+    vec3 drawn = root,
+         along = rotate(step_params.head_rotation, texelFetch(rest, base + STRAND_TILE).xyz);
     carry_lead(base);
     positions[base] = vec4(root, 1.0);
     for (int j = 1; j < n; ++j) {
@@ -136,8 +146,10 @@ void substitute(int base, int n, vec3 wind, vec3 root_velocity, vec3 root)
         vec3 flying = kick(v.xyz, wind);
         vec3 s = link_before(drawn_before, was, l, v.w) + dt * (flying - flying_before);
         vec4 before = vec4(x_before, 1.0);
-        vec3 x = vec3(dot(scratch[3 * a], before), dot(scratch[3 * a + 1], before), dot(scratch[3 * a + 2], before));
-        draw_link(a, s + (x - x_before), l, flying + per_second * x, spring_params.stretch_drawn != 0u, drawn, along);
+        vec3 x = vec3(dot(scratch[3 * a], before), dot(scratch[3 * a + 1], before),
+                      dot(scratch[3 * a + 2], before));
+        draw_link(a, s + (x - x_before), l, flying + per_second * x,
+                  spring_params.stretch_drawn != 0u, drawn, along);
         drawn_before = was;
         flying_before = flying;
         x_before = x;
@@ -163,29 +175,37 @@ void main()
 vec3 link_force(vec3 r, vec3 u, vec3 t, float m, float l, Springs springs, float softness)
 {
     float ee = softness * softness, both = l * l + ee, mm = m * m + ee, longer = max(l, softness);
-    float b = min(springs.b, 0.125 * springs.k * l * (l * l / both)), part = b * both / l * (m / mm);
-    float coil = 0.5 * springs.k * (1.0 - longer * inversesqrt(max(m * m + (longer * longer - l * l), 1e-36)));
+    float b = min(springs.b, 0.125 * springs.k * l * (l * l / both)),
+          part = b * both / l * (m / mm);
+    float coil = 0.5 * springs.k *
+                 (1.0 - longer * inversesqrt(max(m * m + (longer * longer - l * l), 1e-36)));
     float cosine = dot(u, t);
     vec3 across = t - cosine * u;
-    float sine = length(across), theta = atan(sine, cosine), back = PI - theta, turning = min(theta, 3.0 * back);
-    float stored = theta < 0.75 * PI ? 0.5 * theta * theta : 0.375 * PI * PI - 1.5 * back * back; // phi
+    float sine = length(across), theta = atan(sine, cosine), back = PI - theta,
+          turning = min(theta, 3.0 * back);
+    // phi
+    float stored = theta < 0.75 * PI ? 0.5 * theta * theta : 0.375 * PI * PI - 1.5 * back * back;
     float ratio = sine > 1e-6 ? turning / sine : (cosine > 0.0 ? 1.0 : 3.0);
     return -coil * r - (part * 2.0 * stored * ee / mm) * u + (part * ratio) * across;
 }
 
-// The links' lengths come from their own stretch, not from differences of positions, which would shake stiff springs by rounding.
+// The links' lengths come from their own stretch, not from differences of positions, which would
+// shake stiff springs by rounding.
 void main()
 {
     int strand = first_strand(), n = int(step_params.vertex_count);
     if (strand >= int(step_params.strand_count)) return;
     int a = strand_base(strand);
     vec4 rotation = step_params.head_rotation, root = strand_root(a);
-    vec3 wind = strand_wind(texelFetch(strand_id, strand).x, root_position(root)), fall = kick(vec3(0.0), wind);
+    vec3 wind = strand_wind(texelFetch(strand_id, strand).x, root_position(root)),
+         fall = kick(vec3(0.0), wind);
     float dt = step_params.dt, gain = step_params.gain, decay = step_params.decay;
     Springs springs = springs_of(n - 1);
     float softness = SHORT * root.w / float(n - 1); // e
-    vec3 was = texelFetch(position_before, a).xyz, moved = root_move(root); // by the particle before
-    vec3 drawn = root_position(root), along = rotate(rotation, texelFetch(rest, a + STRAND_TILE).xyz);
+    vec3 was = texelFetch(position_before, a).xyz;
+    vec3 moved = root_move(root); // by the particle before
+    vec3 drawn = root_position(root),
+         along = rotate(rotation, texelFetch(rest, a + STRAND_TILE).xyz);
     vec3 r = vec3(0.0), force = vec3(0.0); // of the link before
     vec4 v = vec4(0.0);
     float l = 0.0;
@@ -198,7 +218,8 @@ void main()
         if (j < n) {
             style = texelFetch(rest, a + STRAND_TILE);
             next_v = texelFetch(velocity_before, a + STRAND_TILE);
-            vec3 to = texelFetch(position_before, a + STRAND_TILE).xyz, t = rotate(rotation, style.xyz);
+            vec3 to = texelFetch(position_before, a + STRAND_TILE).xyz,
+                 t = rotate(rotation, style.xyz);
             float m;
             next_r = link_before(was, to, style.w, next_v.w);
             vec3 u = direction_of(next_r, t, m);
@@ -207,7 +228,8 @@ void main()
         }
         if (j > 1) {
             vec3 now = v.xyz * decay + fall + gain * (force - next_force);
-            draw_link(a, r + (dt * now - moved), l, now, spring_params.stretch_drawn != 0u, drawn, along);
+            draw_link(a, r + (dt * now - moved), l, now, spring_params.stretch_drawn != 0u, drawn,
+                      along);
             moved = dt * now;
         }
         r = next_r;

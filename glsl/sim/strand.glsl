@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A strand on its way through a step: what solvers of particles with an implicit style spring begin with (needs particles.glsl).
-// Macros: STYLED, whether there is a style spring.
+// A strand on its way through a step: what solvers of particles with an implicit style spring begin
+// with (needs particles.glsl). Macros: STYLED, whether there is a style spring.
 #include "sim/style_spring.h"
 
 const float SAFE_MOVE = 1e15; // metres: keeps squares finite whatever the head does
@@ -33,11 +33,18 @@ Strand strand_open(int number, StyleSpring spring)
     return strand;
 }
 
-vec3 fetch_position(Strand strand, int j) { return texelFetch(position_before, strand.address + j * STRAND_TILE).xyz; }
-vec3 fetch_velocity(Strand strand, int j) { return texelFetch(velocity_before, strand.address + j * STRAND_TILE).xyz; }
+vec3 fetch_position(Strand strand, int j)
+{
+    return texelFetch(position_before, strand.address + j * STRAND_TILE).xyz;
+}
+vec3 fetch_velocity(Strand strand, int j)
+{
+    return texelFetch(velocity_before, strand.address + j * STRAND_TILE).xyz;
+}
 vec4 fetch_rest(Strand strand, int j) { return texelFetch(rest, strand.address + j * STRAND_TILE); }
 
-// How far particle j, now at q, would go without constraints. `style` goes from particle to particle, 0 at the root.
+// How far particle j, now at q, would go without constraints. `style` goes from particle to
+// particle, 0 at the root.
 vec3 predicted_move(Strand strand, int j, vec3 q, inout vec3 style)
 {
     vec3 move = strand.dt * (strand.decay * fetch_velocity(strand, j) + strand.push);

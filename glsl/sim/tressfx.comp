@@ -1,37 +1,47 @@
 // SPDX-License-Identifier: MIT
-// TressFX's constraints (AMD TressFX 4; Han, Harada: Real-time Hair Simulation with Efficient Hair Style Preservation, VRIPHYS 2012).
+// TressFX's constraints (AMD TressFX 4; Han, Harada: Real-time Hair Simulation with Efficient Hair
+// Style Preservation, VRIPHYS 2012).
 //
-// The head carries vertices 0 and 1; the others are predicted, x* = x + dt (v decay + g gain), and corrected:
-//   shock    a share of the rigid motion of the root's segment moves the whole strand (all of it where the root is jerked)
+// The head carries vertices 0 and 1; the others are predicted, x* = x + dt (v decay + g gain), and
+// corrected:
+//   shock    a share of the rigid motion of the root's segment moves the whole strand (all of it
+//            where the root is jerked)
 //   global   towards the style's position, the first `range` of the vertices
-//   local    with R_j, the smallest rotation from the style's segment j to the strand's, segment j+1 should be b_{j+1} = R_j r_{j+1}
+//   local    with R_j, the smallest rotation from the style's segment j to the strand's, segment
+//            j+1 should be b_{j+1} = R_j r_{j+1}
 //   lengths
 //
-// TRESSFX4 1: as published. Each local pass moves, from the root on, both ends of a segment by a share of the gap b - s; each pass of the
-// lengths moves both ends of every second edge, then of the others. What a stiffness does depends on passes and dt.
+// TRESSFX4 1: as published. Each local pass moves, from the root on, both ends of a segment by a
+// share of the gap b - s; each pass of the lengths moves both ends of every second edge, then of
+// the others. What a stiffness does depends on passes and dt.
 //
-// TRESSFX4 0 (`steady`): the same local passes; their share is chosen such that the stiffness does not (solver_tressfx.c). Lengths: Newton's
-// method, J J^T lambda = |s| (|s| - l), tridiagonal, tells by how much of itself each segment s must draw its ends together. Along s as it
-// is that would be y_j = x_j - lambda_j s_j + lambda_{j+1} s_{j+1}: under the strand's weight lambda is up to n g dt^2/l, and a segment turns
-// by 4 lambda times what it is off from where the tension turns it to, to and fro in each step where that is much more than 1. So tension
-// draws along the segments that it leaves: (I + K) y = x, (K y)_j = lambda_j (y_j - y_{j-1}) - lambda_{j+1} (y_{j+1} - y_j), tridiagonal and
-// positive definite, which turns nothing beyond that for any lambda. Where lambda is negative it pushes, along s. All that twice; a second
-// step along s would let long loose strands gain half of what they can fall. Then each segment gets its length. v = (x - x_before)/dt.
-// Where segment j+1 should be follows segment j, which takes no reaction: these forces have no potential, K of x'' = -K x is not symmetric,
-// and eigenvalues w^2 (1 + i e) of it gain about e w/2 per second. A long step damps that by w^2 dt/2. So that a short one does not flutter
-// either, neighbours exchange a share X of what their velocities differ by before they fly, v_j += X u, v_{j+1} -= X u, u = v_{j+1} - v_j:
-// momentum stays, energy falls for any X < 1. A joint alone would oscillate by W^2 = 2 passes local_share/dt^2; X = W dt damps it critically.
+// TRESSFX4 0 (`steady`): the same local passes; their share is chosen such that the stiffness does
+// not (solver_tressfx.c). Lengths: Newton's method, J J^T lambda = |s| (|s| - l), tridiagonal,
+// tells by how much of itself each segment s must draw its ends together. Along s as it is that
+// would be y_j = x_j - lambda_j s_j + lambda_{j+1} s_{j+1}: under the strand's weight lambda is up
+// to n g dt^2/l, and a segment turns by 4 lambda times what it is off from where the tension turns
+// it to, to and fro in each step where that is much more than 1. So tension draws along the
+// segments that it leaves: (I + K) y = x, (K y)_j = lambda_j (y_j - y_{j-1}) - lambda_{j+1}
+// (y_{j+1} - y_j), tridiagonal and positive definite, which turns nothing beyond that for any
+// lambda. Where lambda is negative it pushes, along s. All that twice; a second step along s would
+// let long loose strands gain half of what they can fall. Then each segment gets its length. v = (x
+// - x_before)/dt. Where segment j+1 should be follows segment j, which takes no reaction: these
+// forces have no potential, K of x'' = -K x is not symmetric, and eigenvalues w^2 (1 + i e) of it
+// gain about e w/2 per second. A long step damps that by w^2 dt/2. So that a short one does not
+// flutter either, neighbours exchange a share X of what their velocities differ by before they fly,
+// v_j += X u, v_{j+1} -= X u, u = v_{j+1} - v_j: momentum stays, energy falls for any X < 1. A
+// joint alone would oscillate by W^2 = 2 passes local_share/dt^2; X = W dt damps it critically.
 #include "sim/particles.glsl"
 #include "sim/tressfx_params.h"
 
-
-// The strand is corrected in the head's frame with its root at the origin, where the style needs no turning: REST(j) is the direction and
-// length of its segment j, X(j) the vertex. Everything stays in memory: loops of few accesses run as fast there as unrolled ones in
-// registers, and compile in a sixth of the time.
+// The strand is corrected in the head's frame with its root at the origin, where the style needs no
+// turning: REST(j) is the direction and length of its segment j, X(j) the vertex. Everything stays
+// in memory: loops of few accesses run as fast there as unrolled ones in registers, and compile in
+// a sixth of the time.
 int strand = 0, n = 0; // of the lane, set in main
 int address(int j) { return particle_address(strand, j, n); }
 #define REST(j) texelFetch(rest, address(j))
-#define X(j) positions[address(j)].xyz
+#define X(j)    positions[address(j)].xyz
 
 // x turned by the smallest rotation from the unit vector a to the unit vector b.
 vec3 turn_between(vec3 a, vec3 b, vec3 x)
@@ -62,7 +72,8 @@ Carried carried_by_head()
     Carried carried;
     carried.root_old = rotate(old, root.xyz) + step_params.head_translation_old.xyz;
     carried.root = root_position(root);
-    vec3 first_old = rotate(old, first.xyz), first_new = rotate(step_params.head_rotation, first.xyz);
+    vec3 first_old = rotate(old, first.xyz),
+         first_new = rotate(step_params.head_rotation, first.xyz);
     carried.first_old = rotate(conjugate(step_params.head_rotation), first_old);
     vec3 moved = carried.root - carried.root_old + first.w * (first_new - first_old);
     vec3 jerk = moved - step_params.dt * texelFetch(velocity_before, address(1)).xyz;
@@ -72,17 +83,21 @@ Carried carried_by_head()
     return carried;
 }
 
-// A vertex between a short segment and one more than MOST_LEVER times as long gives way by less than its share, and exchanges less: it would
-// turn the short segment, and with it the frame that the long one is held in, by more than it mends.
+// A vertex between a short segment and one more than MOST_LEVER times as long gives way by less
+// than its share, and exchanges less: it would turn the short segment, and with it the frame that
+// the long one is held in, by more than it mends.
 const float MOST_LEVER = 2.0;
 
-// Leaves the predicted vertices in `positions` and where they came from in `velocities`, both in the head's frame.
+// Leaves the predicted vertices in `positions` and where they came from in `velocities`, both in
+// the head's frame.
 void predict(Carried carried)
 {
-    vec3 wind = strand_wind(texelFetch(strand_id, strand).x, carried.root), root_old = carried.root_old, home = carried.root - carried.root_old;
+    vec3 wind = strand_wind(texelFetch(strand_id, strand).x, carried.root),
+         root_old = carried.root_old, home = carried.root - carried.root_old;
     vec3 style = vec3(0.0), first = REST(1).xyz, first_old = carried.first_old;
     vec4 to_head = conjugate(step_params.head_rotation);
-    float dt = step_params.dt, global = tressfx_params.global_share, last_global = tressfx_params.global_range * float(n), share = carried.share;
+    float dt = step_params.dt, global = tressfx_params.global_share,
+          last_global = tressfx_params.global_range * float(n), share = carried.share;
     home = rotate(to_head, home);
 #if !TRESSFX4
     // The others' velocities are relative to the motion that the whole strand takes part in.
@@ -124,7 +139,8 @@ void keep_local_shape()
     vec4 rest_here = REST(1);
     for (int j = 1; j < n - 1; ++j) {
         vec4 rest_next = REST(j + 1);
-        vec3 wanted = rest_next.w * turn_between(rest_here.xyz, unit(x - before, rest_here.xyz), rest_next.xyz);
+        vec3 wanted = rest_next.w *
+                      turn_between(rest_here.xyz, unit(x - before, rest_here.xyz), rest_next.xyz);
         vec3 next = X(j + 1), gap = share * (x + wanted - next);
         x = j > 1 ? x - gap * min(1.0, MOST_LEVER * rest_here.w / rest_next.w) : x;
         X(j) = x;
@@ -137,11 +153,14 @@ void keep_local_shape()
 
 #if TRESSFX4
 
-// The force -(t x w) x t of the air on a segment t, towards where the air goes. It has TressFX's unit of length, the centimetre, built in,
-// and grows with the square of a stretched segment: the clamp keeps a storm finite.
+// The force -(t x w) x t of the air on a segment t, towards where the air goes. It has TressFX's
+// unit of length, the centimetre, built in, and grows with the square of a stretched segment: the
+// clamp keeps a storm finite.
 void blow()
 {
-    vec3 wind = rotate(conjugate(step_params.head_rotation), strand_wind(texelFetch(strand_id, strand).x, root_position(texelFetch(rest, address(0)))));
+    vec3 wind = rotate(
+        conjugate(step_params.head_rotation),
+        strand_wind(texelFetch(strand_id, strand).x, root_position(texelFetch(rest, address(0)))));
     float strength = 1e4 * step_params.dt * step_params.dt, most = tressfx_params.most_move;
     if (dot(wind, wind) == 0.0) return;
     for (int j = 2; j < n - 1; ++j) {
@@ -159,8 +178,8 @@ void keep_edge(inout vec3 a, inout vec3 b, float rest_length, float share_a, flo
     b -= share_b * excess;
 }
 
-// The even edges (0 1), (2 3) .. and the odd ones (1 2), (3 4) .. in one sweep: an odd edge has its turn as soon as the even edges on both
-// sides have had theirs. The head holds vertices 0 and 1.
+// The even edges (0 1), (2 3) .. and the odd ones (1 2), (3 4) .. in one sweep: an odd edge has its
+// turn as soon as the even edges on both sides have had theirs. The head holds vertices 0 and 1.
 void keep_lengths()
 {
     vec3 b = X(1); // the end of the even edge before
@@ -185,8 +204,9 @@ struct Rows {
 
 Rows open_rows() { return Rows(X(1), vec3(0.0), 0.0, 0.0); }
 
-// What elimination leaves of the right side of the row of the segment that ends in vertex j at x: it waits in the fourth component of
-// `positions`, the factor that brings the row before to this one in that of `velocities`.
+// What elimination leaves of the right side of the row of the segment that ends in vertex j at x:
+// it waits in the fourth component of `positions`, the factor that brings the row before to this
+// one in that of `velocities`.
 float add_row(inout Rows rows, int j, vec3 x)
 {
     vec3 s = x - rows.before;
@@ -200,9 +220,10 @@ float add_row(inout Rows rows, int j, vec3 x)
     return right;
 }
 
-// From the tip on, lambda of each segment out of its row, and with it the row of (I + K) y = x, eliminated in turn: as resistors in a
-// ladder, one to the ground at each vertex, are taken together, own_j = 1 + own_{j+1} lambda_{j+1}/(own_{j+1} + lambda_{j+1}), which needs
-// no difference. Leaves y_j = xyz + w y_{j-1}.
+// From the tip on, lambda of each segment out of its row, and with it the row of (I + K) y = x,
+// eliminated in turn: as resistors in a ladder, one to the ground at each vertex, are taken
+// together, own_j = 1 + own_{j+1} lambda_{j+1}/(own_{j+1} + lambda_{j+1}), which needs no
+// difference. Leaves y_j = xyz + w y_{j-1}.
 void pull_together()
 {
     float lambda = 0.0, factor = 0.0, own = 0.0, share = 0.0;
