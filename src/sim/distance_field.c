@@ -177,9 +177,9 @@ static void dispatch_items(Work *work)
 
 static Result use(GLuint *program, const char *file, Error *error)
 {
-    Result result = shader_build_compute(program, file, NULL, error);
-    if (result == RESULT_OK) glUseProgram(*program);
-    return result;
+    TRY(shader_build_compute(program, file, NULL, error));
+    glUseProgram(*program);
+    return RESULT_OK;
 }
 
 // Uploads the items and frees them.
@@ -189,9 +189,8 @@ static Result take_items(Work *work, Items *items, Error *error)
     Result result = RESULT_OK;
     if (items->failed || items->count > UINT32_MAX / 2)
         result = error_set(error, RESULT_FAILED, "no memory for a distance field");
-    if (result == RESULT_OK)
-        result = gpu_buffer_create(&work->items, &work->gpu->limits, "a distance field's work",
-                                   (int64_t)(items->count * sizeof(Item)), items->list, 0, error);
+    THEN(result, gpu_buffer_create(&work->items, &work->gpu->limits, "a distance field's work",
+                                   (int64_t)(items->count * sizeof(Item)), items->list, 0, error));
     work->params.count = (uint32_t)items->count;
     free(items->list);
     return result;
@@ -235,11 +234,11 @@ static Result create_buffers(Work *work, Error *error)
         {&work->closest[1], 16, GL_RGBA32F},
         {&work->field->values, 4, GL_R32F},
     };
-    Result result = upload_triangles(work, error);
-    for (size_t i = 0; i < sizeof buffers / sizeof *buffers && result == RESULT_OK; ++i)
-        result = gpu_buffer_create(buffers[i].buffer, limits, "a distance field (--sdf-resolution)",
-                                   count * buffers[i].size, NULL, buffers[i].format, error);
-    return result;
+    TRY(upload_triangles(work, error));
+    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; ++i)
+        TRY(gpu_buffer_create(buffers[i].buffer, limits, "a distance field (--sdf-resolution)",
+                              count * buffers[i].size, NULL, buffers[i].format, error));
+    return RESULT_OK;
 }
 
 static Result find_near(Work *work, Error *error)
@@ -250,9 +249,8 @@ static Result find_near(Work *work, Error *error)
         Extent extent = extent_of(work->field, work->mesh, t);
         add_blocks(&items, work->field, &extent, t);
     }
-    Result result = take_items(work, &items, error);
-    if (result == RESULT_OK) result = use(&program, "field/field_near.comp", error);
-    if (result != RESULT_OK) return result;
+    TRY(take_items(work, &items, error));
+    TRY(use(&program, "field/field_near.comp", error));
     fill_bits(&work->squares, 0x7f7fffff); // the largest float
     fill_bits(&work->nearest, 0xffffffff);
     gpu_buffer_bind_texture(&work->triangles, BIND_POSITION);
@@ -267,8 +265,7 @@ static Result find_near(Work *work, Error *error)
 static Result seed(Work *work, Error *error)
 {
     GLuint program;
-    Result result = use(&program, "field/field_seed.comp", error);
-    if (result != RESULT_OK) return result;
+    TRY(use(&program, "field/field_seed.comp", error));
     gpu_buffer_bind_storage(&work->nearest, 0);
     gpu_buffer_bind_storage(&work->closest[0], 1);
     dispatch_grid(work);
@@ -283,8 +280,7 @@ static Result flood(Work *work, Error *error)
     const uint32_t *size = work->field->size;
     uint32_t longest = size[0] > size[1] ? size[0] : size[1], stride = 1;
     if (size[2] > longest) longest = size[2];
-    Result result = use(&program, "field/field_flood.comp", error);
-    if (result != RESULT_OK) return result;
+    TRY(use(&program, "field/field_flood.comp", error));
     while (2 * stride < longest) stride *= 2;
     for (int ones = 0; ones<2; stride = stride> 1 ? stride / 2 : 1) {
         ones += stride == 1;
@@ -306,9 +302,8 @@ static Result cross(Work *work, uint32_t axis, Error *error)
         Extent extent = extent_of(work->field, work->mesh, t);
         add_columns(&items, work->field, &extent, t, axis);
     }
-    Result result = take_items(work, &items, error);
-    if (result == RESULT_OK) result = use(&program, "field/field_cross.comp", error);
-    if (result != RESULT_OK) return result;
+    TRY(take_items(work, &items, error));
+    TRY(use(&program, "field/field_cross.comp", error));
     gpu_buffer_bind_storage(&work->items, 0);
     gpu_buffer_bind_storage(&work->squares, 1); // now the crossings
     dispatch_items(work);
@@ -320,8 +315,7 @@ static Result sign(Work *work, uint32_t axis, Error *error)
 {
     GLuint program;
     const uint32_t *size = work->field->size;
-    Result result = use(&program, "field/field_sign.comp", error);
-    if (result != RESULT_OK) return result;
+    TRY(use(&program, "field/field_sign.comp", error));
     work->params.axis = axis;
     set_params(work);
     gpu_buffer_bind_storage(&work->squares, 0);
@@ -337,18 +331,17 @@ static Result sign(Work *work, uint32_t axis, Error *error)
 
 static Result compute(Work *work, Error *error)
 {
-    Result result = create_buffers(work, error);
-    if (result == RESULT_OK) result = find_near(work, error);
-    if (result == RESULT_OK) result = seed(work, error);
-    if (result == RESULT_OK) result = flood(work, error);
-    if (result != RESULT_OK) return result;
+    TRY(create_buffers(work, error));
+    TRY(find_near(work, error));
+    TRY(seed(work, error));
+    TRY(flood(work, error));
     fill_bits(&work->squares, 0);
     fill_bits(&work->winding, 0);
-    for (uint32_t axis = 0; axis < 3 && result == RESULT_OK; ++axis) {
-        result = cross(work, axis, error);
-        if (result == RESULT_OK) result = sign(work, axis, error);
+    for (uint32_t axis = 0; axis < 3; ++axis) {
+        TRY(cross(work, axis, error));
+        TRY(sign(work, axis, error));
     }
-    return result == RESULT_OK ? gpu_check("a distance field", error) : result;
+    return gpu_check("a distance field", error);
 }
 
 Result distance_field_create(DistanceField *field, const Gpu *gpu, const Mesh *mesh,
@@ -410,8 +403,7 @@ static Result read_chunk(ChunkFile *file, uint64_t at, const char *tag, size_t s
                          uint64_t *end, Error *error)
 {
     Chunk chunk;
-    Result result = chunk_find(file, at, &chunk, error);
-    if (result != RESULT_OK) return result;
+    TRY(chunk_find(file, at, &chunk, error));
     if (strcmp(chunk.tag, tag) != 0 || chunk.size != size)
         return error_set(error, RESULT_BAD_INPUT, "%s: another kind of field", file->path);
     *end = chunk_end(&chunk);
@@ -432,9 +424,8 @@ static Result read_field(DistanceField *field, ChunkFile *file, const Gpu *gpu, 
         result = read_chunk(file, at, "DIST", distance_field_count(field) * sizeof(float), &values,
                             &at, error);
     }
-    if (result == RESULT_OK)
-        result = gpu_buffer_create(&field->values, &gpu->limits, "a distance field",
-                                   (int64_t)values.size, values.data, GL_R32F, error);
+    THEN(result, gpu_buffer_create(&field->values, &gpu->limits, "a distance field",
+                                   (int64_t)values.size, values.data, GL_R32F, error));
     bytes_destroy(&grid);
     bytes_destroy(&values);
     return result;

@@ -44,18 +44,14 @@ static Result create_buffers(HairBatch *hair, FollowBatch *batch, const Upload *
                              const GpuLimits *limits, Error *error)
 {
     int64_t slots = hair_slots(hair);
-    Result result = gpu_buffer_create(&hair->position, limits, "followers' positions",
-                                      slots * hair->vertex_count * 16, NULL, GL_RGBA32F, error);
-    if (result == RESULT_OK)
-        result = gpu_buffer_create(&hair->strand_id, limits, "followers' numbers", slots * 4,
-                                   upload->ids, GL_R32UI, error);
-    if (result == RESULT_OK)
-        result = gpu_buffer_create(&batch->offsets, limits, "followers' offsets", slots * 16,
-                                   upload->offsets, GL_RGBA32F, error);
-    if (result == RESULT_OK)
-        result = gpu_buffer_create(&batch->guides, limits, "followers' guides", slots * 16,
-                                   upload->guides, GL_RGBA32UI, error);
-    return result;
+    TRY(gpu_buffer_create(&hair->position, limits, "followers' positions",
+                          slots * hair->vertex_count * 16, NULL, GL_RGBA32F, error));
+    TRY(gpu_buffer_create(&hair->strand_id, limits, "followers' numbers", slots * 4, upload->ids,
+                          GL_R32UI, error));
+    TRY(gpu_buffer_create(&batch->offsets, limits, "followers' offsets", slots * 16,
+                          upload->offsets, GL_RGBA32F, error));
+    return gpu_buffer_create(&batch->guides, limits, "followers' guides", slots * 16,
+                             upload->guides, GL_RGBA32UI, error);
 }
 
 static Result upload_batch(HairBatch *hair, FollowBatch *batch, const Follower *follower,
@@ -113,10 +109,8 @@ static Result create_batches(Follow *follow, uint32_t guide_batch, const FollowP
             hair->strand[i] = guides->strand[first + i / follow->per_guide];
         follow->batches[last].guide_batch = guide_batch;
         follow->batches[last].first_guide = first;
-        Result result =
-            upload_batch(hair, &follow->batches[last],
-                         &plan->follower[(size_t)first * follow->per_guide], limits, error);
-        if (result != RESULT_OK) return result;
+        TRY(upload_batch(hair, &follow->batches[last],
+                         &plan->follower[(size_t)first * follow->per_guide], limits, error));
     }
     return RESULT_OK;
 }
@@ -132,7 +126,7 @@ static Result build(Follow *follow, const Gpu *gpu, const Strands *strands,
         FollowPlan plan;
         result = follow_plan_create(&plan, strands, guides->strand, guides->strand_count, options,
                                     error);
-        if (result == RESULT_OK) result = create_batches(follow, i, &plan, &gpu->limits, error);
+        THEN(result, create_batches(follow, i, &plan, &gpu->limits, error));
         follow_plan_destroy(&plan);
     }
     return result;

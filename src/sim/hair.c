@@ -81,15 +81,11 @@ static Result upload(HairBatch *batch, const GpuLimits *limits, const void *rest
                      const void *position, const uint32_t *ids, Error *error)
 {
     int64_t size = (int64_t)batch->vertex_count * hair_slots(batch) * (int64_t)sizeof(Float4);
-    Result result = gpu_buffer_create(&batch->position, limits, "hair positions", size, position,
-                                      GL_RGBA32F, error);
-    if (result == RESULT_OK)
-        result =
-            gpu_buffer_create(&batch->rest, limits, "hair style", size, rest, GL_RGBA32F, error);
-    if (result == RESULT_OK)
-        result = gpu_buffer_create(&batch->strand_id, limits, "strand numbers",
-                                   (int64_t)hair_slots(batch) * 4, ids, GL_R32UI, error);
-    return result;
+    TRY(gpu_buffer_create(&batch->position, limits, "hair positions", size, position, GL_RGBA32F,
+                          error));
+    TRY(gpu_buffer_create(&batch->rest, limits, "hair style", size, rest, GL_RGBA32F, error));
+    return gpu_buffer_create(&batch->strand_id, limits, "strand numbers",
+                             (int64_t)hair_slots(batch) * 4, ids, GL_R32UI, error);
 }
 
 static Result create_batch(HairBatch *batch, const Strands *strands, uint32_t first_id,
@@ -135,8 +131,7 @@ static Result create_batches(Hair *hair, const Strands *strands, const Order *or
                              .strand = malloc((end - begin) * sizeof *batch->strand)};
         if (!batch->strand) return error_set(error, RESULT_FAILED, "no memory for a batch");
         memcpy(batch->strand, &order->strand[begin], (end - begin) * sizeof *batch->strand);
-        Result result = create_batch(batch, strands, first_id, limits, error);
-        if (result != RESULT_OK) return result;
+        TRY(create_batch(batch, strands, first_id, limits, error));
         begin = end;
     }
     return RESULT_OK;
@@ -176,8 +171,7 @@ Result hair_create(Hair *hair, const Strands *strands, uint32_t first_id, const 
     measure_lengths(hair, strands);
     Order order = {0};
     Result result = order_by_size(&order, strands, error);
-    if (result == RESULT_OK)
-        result = create_batches(hair, strands, &order, first_id, limits, error);
+    THEN(result, create_batches(hair, strands, &order, first_id, limits, error));
     free(order.strand);
     if (result != RESULT_OK) hair_destroy(hair);
     return result;

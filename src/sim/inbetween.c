@@ -11,11 +11,10 @@ static Result create_copies(GpuBuffer **copies, const Hair *hair, const GpuLimit
 {
     *copies = calloc((size_t)hair->batch_count + 1, sizeof **copies);
     if (!*copies) return error_set(error, RESULT_FAILED, "no memory for frames between steps");
-    Result result = RESULT_OK;
-    for (uint32_t i = 0; i < hair->batch_count && result == RESULT_OK; ++i)
-        result = gpu_buffer_create(&(*copies)[i], limits, "hair positions between steps",
-                                   hair->batches[i].position.size, NULL, GL_RGBA32F, error);
-    return result;
+    for (uint32_t i = 0; i < hair->batch_count; ++i)
+        TRY(gpu_buffer_create(&(*copies)[i], limits, "hair positions between steps",
+                              hair->batches[i].position.size, NULL, GL_RGBA32F, error));
+    return RESULT_OK;
 }
 
 Result inbetween_create(Inbetween *inbetween, const Gpu *gpu, const Hair *hair, Error *error)
@@ -23,8 +22,8 @@ Result inbetween_create(Inbetween *inbetween, const Gpu *gpu, const Hair *hair, 
     *inbetween = (Inbetween){.hair = hair, .group_size = step_group_size(gpu)};
     const ShaderDefine defines[] = {{"GROUP_SIZE", (int)inbetween->group_size}, {0}};
     Result result = shader_build_compute(&inbetween->program, "sim/inbetween.comp", defines, error);
-    if (result == RESULT_OK) result = create_copies(&inbetween->earlier, hair, &gpu->limits, error);
-    if (result == RESULT_OK) result = create_copies(&inbetween->later, hair, &gpu->limits, error);
+    THEN(result, create_copies(&inbetween->earlier, hair, &gpu->limits, error));
+    THEN(result, create_copies(&inbetween->later, hair, &gpu->limits, error));
     if (result != RESULT_OK) inbetween_destroy(inbetween);
     return result;
 }

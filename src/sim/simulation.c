@@ -38,28 +38,27 @@ static Result create_section(Simulation *simulation, uint32_t i, const Gpu *gpu,
                              const Strands *strands, Error *error)
 {
     SimulationSection *section = &simulation->sections[i];
-    const Section *description = &simulation->scene->sections[i];
-    Result result = hair_create(&section->hair, strands, 0, &gpu->limits, error);
-    bool simulated = !*simulation->scene->run.from_cache;
+    const SectionParams *params = &simulation->scene->sections[i].params;
+    const RunParams *run = &simulation->scene->run;
     const SolverSetup setup = {.gpu = gpu,
                                .timer = simulation->timer,
                                .hair = &section->hair,
-                               .params = &description->params,
+                               .params = params,
                                .colliders = &simulation->scene->colliders,
                                .field = simulation->field.spacing > 0 ? &simulation->field : NULL,
-                               .sheltered = simulation->scene->run.wind_shelter > 0,
+                               .sheltered = run->wind_shelter > 0,
                                .head = &simulation->head};
-    if (result == RESULT_OK && simulated) result = solver_create(&section->solver, &setup, error);
-    if (result == RESULT_OK && simulated)
-        result = sleep_create(&section->sleep, gpu, simulation->timer, &section->hair,
-                              &section->solver, &description->params, error);
-    if (result == RESULT_OK)
-        result = follow_create(&section->follow, gpu, simulation->timer, &section->hair, strands,
-                               &description->params, simulation->scene->run.seed, error);
-    if (result == RESULT_OK) result = create_follow_collision(section, &setup, error);
-    if (result == RESULT_OK && simulated && needs_inbetween(simulation, &section->solver))
-        result = inbetween_create(&section->inbetween, gpu, &section->hair, error);
-    return result == RESULT_OK ? RESULT_OK : error_prefix(error, result, "%s: ", description->file);
+    TRY(hair_create(&section->hair, strands, 0, &gpu->limits, error));
+    TRY(follow_create(&section->follow, gpu, simulation->timer, &section->hair, strands, params,
+                      run->seed, error));
+    TRY(create_follow_collision(section, &setup, error));
+    if (*run->from_cache) return RESULT_OK;
+    TRY(solver_create(&section->solver, &setup, error));
+    TRY(sleep_create(&section->sleep, gpu, simulation->timer, &section->hair, &section->solver,
+                     params, error));
+    if (needs_inbetween(simulation, &section->solver))
+        TRY(inbetween_create(&section->inbetween, gpu, &section->hair, error));
+    return RESULT_OK;
 }
 
 static Result create_sections(Simulation *simulation, const Gpu *gpu, const Strands *strands,
@@ -69,10 +68,12 @@ static Result create_sections(Simulation *simulation, const Gpu *gpu, const Stra
     simulation->sections = calloc((size_t)scene->section_count + 1, sizeof *simulation->sections);
     if (!simulation->sections)
         return error_set(error, RESULT_FAILED, "no memory for %u sections", scene->section_count);
-    Result result = RESULT_OK;
-    for (uint32_t i = 0; i < scene->section_count && result == RESULT_OK; ++i)
-        result = create_section(simulation, i, gpu, &strands[i], error);
-    return result;
+    for (uint32_t i = 0; i < scene->section_count; ++i) {
+        Result result = create_section(simulation, i, gpu, &strands[i], error);
+        if (result != RESULT_OK)
+            return error_prefix(error, result, "%s: ", scene->sections[i].file);
+    }
+    return RESULT_OK;
 }
 
 // What a cache holds is out of the mesh already; its guides' followers are not.
@@ -167,14 +168,13 @@ Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer
     Result result = RESULT_OK;
     for (uint32_t i = 0; i < scene->section_count && result == RESULT_OK; ++i)
         result = solver_check(&scene->sections[i].params, error);
-    if (result == RESULT_OK && run->substeps.automatic)
-        result = simulation_choose_substeps(&simulation->substeps, scene, strands, error);
+    if (run->substeps.automatic)
+        THEN(result, simulation_choose_substeps(&simulation->substeps, scene, strands, error));
     simulation->schedule = schedule_create(run, simulation->substeps);
     simulation->step = -simulation->schedule.settling;
-    if (result == RESULT_OK) result = create_field(simulation, gpu, strands, mesh, error);
-    if (result == RESULT_OK) result = create_sections(simulation, gpu, strands, error);
-    if (result == RESULT_OK && !rigid_track_is_still(&scene->head))
-        result = carry_create(&simulation->carry, error);
+    THEN(result, create_field(simulation, gpu, strands, mesh, error));
+    THEN(result, create_sections(simulation, gpu, strands, error));
+    if (!rigid_track_is_still(&scene->head)) THEN(result, carry_create(&simulation->carry, error));
     if (result != RESULT_OK) simulation_destroy(simulation);
     return result;
 }

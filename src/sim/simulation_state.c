@@ -11,8 +11,6 @@
 // Particles follow each other in a strand at this distance (hair.h).
 enum { STRIDE = 4 * STRAND_TILE };
 
-// --- The buffers that are the state.
-
 typedef struct BufferList {
     const GpuBuffer **buffers;
     uint32_t count, room;
@@ -34,15 +32,6 @@ static void add_buffer(BufferList *list, const GpuBuffer *buffer)
     list->buffers[list->count++] = buffer;
 }
 
-static void add_solver_buffers(BufferList *list, const SimulationSection *section, uint32_t batch)
-{
-    SolverBuffer buffers[SOLVER_MAX_BUFFERS];
-    int count = solver_buffers(&section->solver, batch, buffers);
-    for (int i = 0; i < count; ++i)
-        if (buffers[i].buffer != &section->hair.batches[batch].position)
-            add_buffer(list, buffers[i].buffer);
-}
-
 static Result list_buffers(BufferList *list, const Simulation *simulation, Error *error)
 {
     *list = (BufferList){0};
@@ -53,8 +42,13 @@ static Result list_buffers(BufferList *list, const Simulation *simulation, Error
             add_buffer(list, &section->hair.batches[b].position);
             if (section->inbetween.hair) add_buffer(list, &section->inbetween.earlier[b]);
         }
-        for (uint32_t b = 0; b < section->hair.batch_count; ++b)
-            add_solver_buffers(list, section, b);
+        for (uint32_t b = 0; b < section->hair.batch_count; ++b) {
+            SolverBuffer buffers[SOLVER_MAX_BUFFERS];
+            int count = solver_buffers(&section->solver, b, buffers);
+            for (int k = 0; k < count; ++k)
+                if (buffers[k].buffer != &section->hair.batches[b].position)
+                    add_buffer(list, buffers[k].buffer);
+        }
         for (uint32_t b = 0; section->sleep.hair && b < section->hair.batch_count; ++b) {
             add_buffer(list, &section->sleep.batches[b].anchors);
             add_buffer(list, &section->sleep.batches[b].calm);
@@ -65,171 +59,138 @@ static Result list_buffers(BufferList *list, const Simulation *simulation, Error
     return error_set(error, RESULT_FAILED, "no memory for the simulation's state");
 }
 
-// --- Little-endian values one behind the other. Reading beyond the end gives zeros and is found by
+// --- The state in bytes: little-endian values one behind the other.
+
+// Written to `stream` or, where that is NULL, read. Reading beyond the end gives zeros and
 // `failed`.
-
-static void put_u64(FILE *stream, uint64_t value)
-{
-    value = htole64(value);
-    fwrite(&value, sizeof value, 1, stream);
-}
-
-static void put_u32(FILE *stream, uint32_t value)
-{
-    value = htole32(value);
-    fwrite(&value, sizeof value, 1, stream);
-}
-
-static void put_float(FILE *stream, float value)
-{
-    uint32_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    put_u32(stream, bits);
-}
-
-static void put_pose(FILE *stream, const HeadPose *pose)
-{
-    for (int i = 0; i < 4; ++i) put_float(stream, pose->rotation[i]);
-    for (int i = 0; i < 3; ++i) put_float(stream, pose->translation[i]);
-}
-
-// What of a step tells whether the next one is like it.
-static void put_last_step(FILE *stream, const SolverStep *step)
-{
-    uint64_t bits;
-    memcpy(&bits, &step->dt, sizeof bits);
-    put_u64(stream, bits);
-    put_u32(stream, step->first);
-    put_pose(stream, &step->head_old);
-    put_pose(stream, &step->head);
-    for (int i = 0; i < 3; ++i) put_float(stream, step->gravity[i]);
-    for (int i = 0; i < 12; ++i) put_float(stream, step->wind[i / 3][i % 3]);
-}
-
-static void put_sleep(FILE *stream, const Sleep *sleep)
-{
-    const int32_t numbers[] = {sleep->steps, sleep->due, sleep->looks, sleep->asleep};
-    for (int i = 0; i < 4; ++i) put_u32(stream, (uint32_t)numbers[i]);
-    put_last_step(stream, &sleep->last);
-}
-
-typedef struct Cursor {
+typedef struct Archive {
+    FILE *stream;
     const uint8_t *at;
     size_t left;
     bool failed;
-} Cursor;
+} Archive;
 
-static const uint8_t *take(Cursor *cursor, size_t size)
+static void pass_bytes(Archive *archive, void *bytes, size_t size)
 {
-    static const uint8_t zeros[8];
-    if (size > cursor->left) cursor->failed = true;
-    if (cursor->failed) return zeros;
-    const uint8_t *at = cursor->at;
-    cursor->at += size;
-    cursor->left -= size;
-    return at;
+    if (archive->stream) {
+        fwrite(bytes, 1, size, archive->stream);
+        return;
+    }
+    if (size > archive->left) archive->failed = true;
+    if (archive->failed) {
+        memset(bytes, 0, size);
+        return;
+    }
+    memcpy(bytes, archive->at, size);
+    archive->at += size;
+    archive->left -= size;
 }
 
-static uint64_t take_u64(Cursor *cursor)
+// Numbers of 4 bytes: integers or floats.
+static void pass_words(Archive *archive, void *words, size_t count)
 {
-    uint64_t value;
-    memcpy(&value, take(cursor, sizeof value), sizeof value);
-    return le64toh(value);
+    for (size_t i = 0; i < count; ++i) {
+        uint32_t word;
+        memcpy(&word, (char *)words + 4 * i, 4);
+        word = htole32(word);
+        pass_bytes(archive, &word, 4);
+        word = le32toh(word);
+        memcpy((char *)words + 4 * i, &word, 4);
+    }
 }
 
-static uint32_t take_u32(Cursor *cursor)
+// An integer or a double.
+static void pass_long(Archive *archive, void *number)
 {
-    uint32_t value;
-    memcpy(&value, take(cursor, sizeof value), sizeof value);
-    return le32toh(value);
+    uint64_t bits;
+    memcpy(&bits, number, 8);
+    bits = htole64(bits);
+    pass_bytes(archive, &bits, 8);
+    bits = le64toh(bits);
+    memcpy(number, &bits, 8);
 }
 
-static float take_float(Cursor *cursor)
+static void pass_flag(Archive *archive, bool *flag)
 {
-    uint32_t bits = take_u32(cursor);
-    float value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
+    uint32_t word = *flag;
+    pass_words(archive, &word, 1);
+    *flag = word != 0;
 }
 
-static HeadPose take_pose(Cursor *cursor)
+static void pass_pose(Archive *archive, HeadPose *pose)
 {
-    HeadPose pose = {0};
-    for (int i = 0; i < 4; ++i) pose.rotation[i] = take_float(cursor);
-    for (int i = 0; i < 3; ++i) pose.translation[i] = take_float(cursor);
-    return pose;
+    pass_words(archive, pose->rotation, 4);
+    pass_words(archive, pose->translation, 3);
 }
 
-static SolverStep take_last_step(Cursor *cursor)
+static void pass_sleep(Archive *archive, Sleep *sleep)
 {
-    SolverStep step = {0};
-    uint64_t bits = take_u64(cursor);
-    memcpy(&step.dt, &bits, sizeof bits);
-    step.first = take_u32(cursor) != 0;
-    step.head_old = take_pose(cursor);
-    step.head = take_pose(cursor);
-    for (int i = 0; i < 3; ++i) step.gravity[i] = take_float(cursor);
-    for (int i = 0; i < 12; ++i) step.wind[i / 3][i % 3] = take_float(cursor);
-    return step;
+    SolverStep *last = &sleep->last;
+    pass_words(archive, &sleep->steps, 1);
+    pass_words(archive, &sleep->due, 1);
+    pass_words(archive, &sleep->looks, 1);
+    pass_flag(archive, &sleep->asleep);
+    if (!archive->stream) *last = (SolverStep){0};
+    // What of a step says whether the next one is like it.
+    pass_long(archive, &last->dt);
+    pass_flag(archive, &last->first);
+    pass_pose(archive, &last->head_old);
+    pass_pose(archive, &last->head);
+    pass_words(archive, last->gravity, 3);
+    pass_words(archive, last->wind, 12);
 }
 
-static void take_sleep(Cursor *cursor, Sleep *sleep)
+// All but the buffers' content. False if another count of buffers is read.
+static bool pass_numbers(Archive *archive, Simulation *simulation, const BufferList *list)
 {
-    sleep->steps = (int)take_u32(cursor);
-    sleep->due = (int)take_u32(cursor);
-    sleep->looks = (int)take_u32(cursor);
-    sleep->asleep = take_u32(cursor) != 0;
-    sleep->last = take_last_step(cursor);
+    int64_t frame = simulation->frame;
+    uint32_t count = list->count;
+    pass_long(archive, &simulation->step);
+    pass_long(archive, &frame);
+    simulation->frame = (int)frame;
+    pass_words(archive, &simulation->share, 1);
+    pass_pose(archive, &simulation->head);
+    pass_pose(archive, &simulation->step_head);
+    pass_pose(archive, &simulation->step_head_before);
+    for (uint32_t i = 0; i < simulation->scene->section_count; ++i)
+        pass_sleep(archive, &simulation->sections[i].sleep);
+    pass_words(archive, &count, 1);
+    return count == list->count && !archive->failed;
 }
 
-// ---
-
-static bool put_buffer(FILE *stream, const GpuBuffer *buffer)
+static bool write_buffer(Archive *archive, const GpuBuffer *buffer)
 {
-    size_t count = (size_t)buffer->size / sizeof(float), packed_size = 0;
+    size_t count = (size_t)buffer->size / sizeof(float);
+    uint64_t size = (uint64_t)buffer->size, packed_size = 0;
     float *values = malloc((size_t)buffer->size + 1);
     uint8_t *packed = malloc(float_planes_bound(count));
     if (values && packed) {
         glBindBuffer(GL_COPY_READ_BUFFER, buffer->buffer);
         glGetBufferSubData(GL_COPY_READ_BUFFER, 0, (GLsizeiptr)buffer->size, values);
         packed_size = float_planes_pack(values, count, STRIDE, packed);
-        put_u64(stream, (uint64_t)buffer->size);
-        put_u64(stream, packed_size);
-        fwrite(packed, 1, packed_size, stream);
+        pass_long(archive, &size);
+        pass_long(archive, &packed_size);
+        pass_bytes(archive, packed, (size_t)packed_size);
     }
     free(values);
     free(packed);
     return packed_size > 0;
 }
 
-static bool put_state(FILE *stream, const Simulation *simulation, const BufferList *list)
-{
-    put_u64(stream, (uint64_t)simulation->step);
-    put_u64(stream, (uint64_t)simulation->frame);
-    put_float(stream, simulation->share);
-    put_pose(stream, &simulation->head);
-    put_pose(stream, &simulation->step_head);
-    put_pose(stream, &simulation->step_head_before);
-    for (uint32_t i = 0; i < simulation->scene->section_count; ++i)
-        put_sleep(stream, &simulation->sections[i].sleep);
-    put_u32(stream, list->count);
-    bool good = true;
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    for (uint32_t i = 0; i < list->count && good; ++i) good = put_buffer(stream, list->buffers[i]);
-    return good;
-}
-
 Result simulation_state_save(Simulation *simulation, Bytes *state, Error *error)
 {
     BufferList list;
     *state = (Bytes){0};
-    if (list_buffers(&list, simulation, error) != RESULT_OK) return RESULT_FAILED;
+    TRY(list_buffers(&list, simulation, error));
     for (uint32_t i = 0; i < simulation->scene->section_count; ++i)
         inbetween_restore(&simulation->sections[i].inbetween);
     char *data = NULL;
-    FILE *stream = open_memstream(&data, &state->size);
-    bool good = stream && put_state(stream, simulation, &list);
-    if (stream && fclose(stream) != 0) good = false;
+    Archive archive = {.stream = open_memstream(&data, &state->size)};
+    bool good = archive.stream && pass_numbers(&archive, simulation, &list);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    for (uint32_t i = 0; i < list.count && good; ++i)
+        good = write_buffer(&archive, list.buffers[i]);
+    if (archive.stream && fclose(archive.stream) != 0) good = false;
     state->data = (uint8_t *)data;
     free(list.buffers);
     if (good) return RESULT_OK;
@@ -237,16 +198,19 @@ Result simulation_state_save(Simulation *simulation, Bytes *state, Error *error)
     return error_set(error, RESULT_FAILED, "no memory for the simulation's state");
 }
 
-static bool take_buffer(Cursor *cursor, const GpuBuffer *buffer)
+static bool read_buffer(Archive *archive, const GpuBuffer *buffer)
 {
     size_t count = (size_t)buffer->size / sizeof(float);
-    if (take_u64(cursor) != (uint64_t)buffer->size) return false;
-    uint64_t packed_size = take_u64(cursor);
-    if (packed_size > cursor->left) return false;
-    const uint8_t *packed = take(cursor, (size_t)packed_size);
+    uint64_t size = 0, packed_size = 0;
+    pass_long(archive, &size);
+    pass_long(archive, &packed_size);
+    if (archive->failed || size != (uint64_t)buffer->size || packed_size > archive->left)
+        return false;
     float *values = malloc((size_t)buffer->size + 1);
-    bool good = values && !cursor->failed &&
-                float_planes_unpack(values, count, STRIDE, packed, (size_t)packed_size);
+    bool good =
+        values && float_planes_unpack(values, count, STRIDE, archive->at, (size_t)packed_size);
+    archive->at += packed_size;
+    archive->left -= (size_t)packed_size;
     if (good) {
         glBindBuffer(GL_COPY_WRITE_BUFFER, buffer->buffer);
         glBufferSubData(GL_COPY_WRITE_BUFFER, 0, (GLsizeiptr)buffer->size, values);
@@ -271,23 +235,15 @@ static void begin_sections(Simulation *simulation)
 Result simulation_state_restore(Simulation *simulation, const Bytes *state, Error *error)
 {
     BufferList list;
-    if (list_buffers(&list, simulation, error) != RESULT_OK) return RESULT_FAILED;
-    Cursor cursor = {.at = state->data, .left = state->size};
-    simulation->step = (int64_t)take_u64(&cursor);
-    simulation->frame = (int)take_u64(&cursor);
-    simulation->share = take_float(&cursor);
-    simulation->head = take_pose(&cursor);
-    simulation->step_head = take_pose(&cursor);
-    simulation->step_head_before = take_pose(&cursor);
-    for (uint32_t i = 0; i < simulation->scene->section_count; ++i)
-        take_sleep(&cursor, &simulation->sections[i].sleep);
-    bool good = take_u32(&cursor) == list.count && !cursor.failed;
+    TRY(list_buffers(&list, simulation, error));
+    Archive archive = {.at = state->data, .left = state->size};
+    bool good = pass_numbers(&archive, simulation, &list);
     if (good) begin_sections(simulation);
-    for (uint32_t i = 0; i < list.count && good; ++i) good = take_buffer(&cursor, list.buffers[i]);
+    for (uint32_t i = 0; i < list.count && good; ++i) good = read_buffer(&archive, list.buffers[i]);
     for (uint32_t i = 0; i < simulation->scene->section_count && good; ++i)
         if (simulation->sections[i].inbetween.hair)
             inbetween_keep_later(&simulation->sections[i].inbetween);
     free(list.buffers);
-    if (good && cursor.left == 0) return RESULT_OK;
+    if (good && archive.left == 0) return RESULT_OK;
     return error_set(error, RESULT_BAD_INPUT, "the state is not of this simulation");
 }

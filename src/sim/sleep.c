@@ -20,9 +20,8 @@ static Result create_batch(SleepBatch *batch, const HairBatch *hair, const GpuLi
     if (!zero) return error_set(error, RESULT_FAILED, "no memory for %zu particles", particles);
     Result result = gpu_buffer_create(&batch->anchors, limits, "hair's anchors",
                                       (int64_t)particles * 16, zero, 0, error);
-    if (result == RESULT_OK)
-        result = gpu_buffer_create(&batch->calm, limits, "hair's calm", (int64_t)slots * 4, zero, 0,
-                                   error);
+    THEN(result, gpu_buffer_create(&batch->calm, limits, "hair's calm", (int64_t)slots * 4, zero, 0,
+                                   error));
     free(zero);
     return result;
 }
@@ -41,8 +40,7 @@ Result sleep_create(Sleep *sleep, const Gpu *gpu, GpuTimer *timer, const Hair *h
     Result result = sleep->batches ? RESULT_OK
                                    : error_set(error, RESULT_FAILED, "no memory for %u batches",
                                                hair->batch_count);
-    if (result == RESULT_OK)
-        result = shader_build_compute(&sleep->program, "sim/sleep.comp", defines, error);
+    THEN(result, shader_build_compute(&sleep->program, "sim/sleep.comp", defines, error));
     for (uint32_t i = 0; i < hair->batch_count && result == RESULT_OK; ++i)
         result = create_batch(&sleep->batches[i], &hair->batches[i], &gpu->limits, error);
     if (result != RESULT_OK) sleep_destroy(sleep);
