@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a solver is made of: its state, its shader, its parameters. A new solver is a GLSL file, a C
-// file with a SolverRecipe and a SolverType (solver_dftl.c is the smallest), and a line of SOLVERS.
+// file with a SolverRecipe and a SolverType, and a line of SOLVERS.
 #pragma once
 
 #include "gpu/shader.h"

@@ -140,7 +140,7 @@ static Result check_vertices(const SolverType *type, const SolverRecipe *recipe,
         if (recipe->most_vertices && hair->batches[i].vertex_count > recipe->most_vertices)
             return error_set(error, RESULT_USAGE,
                              "%s: a strand of %u vertices: expected at most %u (longer ones exceed "
-                             "the loops of a CPU driver; rope, spring and dftl take more)",
+                             "the loops of a CPU driver; rope takes more)",
                              type->name, hair->batches[i].vertex_count, recipe->most_vertices);
     return RESULT_OK;
 }
