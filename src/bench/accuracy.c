@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "bench/accuracy.h"
+#include "base/clock.h"
 #include "base/interrupt.h"
 #include "bench/experiments.h"
 #include "gen/strands_make.h"
-#include "run/stats.h"
 #include "strands/strands_read.h"
 
 #include <math.h>
@@ -316,14 +316,14 @@ static Result find_error(const Accuracy *accuracy, Point *point, Error *error)
 static void time_frames(Trial *trial, Point *point)
 {
     int steps = point->rate > FPS ? (int)(point->rate / FPS + 0.5) : 1;
-    double per_second = point->rate / steps, begun = stats_clock_ms();
+    double per_second = point->rate / steps, begun = clock_ms();
     for (int i = -WARM_UP; i < MOST_SAMPLES; ++i) {
-        double begin = stats_clock_ms();
+        double begin = clock_ms();
         if (i < 0 && begin - begun > ENOUGH_MS) i = 0; // warm enough
         for (int step = 0; step < steps; ++step) trial_step(trial);
         solver_pose(&trial->solver, &trial->step.head);
         glFinish();
-        double end = stats_clock_ms();
+        double end = clock_ms();
         if (i == -1) begun = end;
         if (i < 0) continue;
         point->samples[point->count++] = (end - begin) * per_second;

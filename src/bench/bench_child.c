@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "bench/bench_child.h"
+#include "base/clock.h"
 #include "base/outfile.h"
-#include "run/stats.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -42,11 +42,11 @@ static void become(const Words *words, int nowhere)
 static Result run(const Words *words, double *wall_ms, Error *error)
 {
     int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC), status = 0;
-    double begin = stats_clock_ms();
+    double begin = clock_ms();
     pid_t child = fork();
     if (child == 0) become(words, nowhere);
     while (child > 0 && waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
-    *wall_ms = stats_clock_ms() - begin;
+    *wall_ms = clock_ms() - begin;
     if (nowhere >= 0) close(nowhere);
     // 1: a bound is broken, which is this process's to tell
     if (child > 0 && WIFEXITED(status) && WEXITSTATUS(status) <= 1) return RESULT_OK;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "bench/bench_cpu.h"
+#include "base/clock.h"
 #include "bench/cpu_split.h"
 #include "bench/trial.h"
-#include "run/stats.h"
 
 #include <math.h>
 #include <pthread.h>
@@ -83,9 +83,9 @@ Result cpu_run_memory(Speed *speed, Error *error)
         SpeedRow row = speed_row("memory", NULL);
         run_team(processors(), fill_arrays, &arrays);
         for (int i = 0; i < RUNS; ++i) {
-            double begin = stats_clock_ms();
+            double begin = clock_ms();
             run_team(processors(), add_arrays, &arrays);
-            samples[i] = stats_clock_ms() - begin;
+            samples[i] = clock_ms() - begin;
         }
         row.result.step = table_times(samples, RUNS);
         speed->bandwidth = 3.0 * (double)size / row.result.step.minimum * 1e-6;
@@ -123,11 +123,11 @@ static void march(void *data, int number, int count)
     uint32_t first = (uint32_t)(tiles * (uint64_t)number / (uint64_t)count),
              last = (uint32_t)(tiles * (uint64_t)(number + 1) / (uint64_t)count);
     for (int i = -m->warm_up; i < m->steps; ++i) {
-        double begin = stats_clock_ms();
+        double begin = clock_ms();
         pthread_barrier_wait(&m->barrier);
         cpu_split_step(m->split, m->form, first, last);
         pthread_barrier_wait(&m->barrier);
-        if (i >= 0 && number == 0) m->samples[i] = stats_clock_ms() - begin;
+        if (i >= 0 && number == 0) m->samples[i] = clock_ms() - begin;
     }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "bench/bench_image.h"
-#include "run/stats.h"
+#include "base/clock.h"
 #include "scene/scene_quality.h"
 
 #include <math.h>
@@ -81,11 +81,11 @@ static Result draw_frames(ImageBench *bench, const ImageManner *manner, Renderer
     if (!wall || !processor) outcome = error_set(error, RESULT_FAILED, "no memory for samples");
     for (int i = -WARM_UP; i < frames && outcome == RESULT_OK; ++i) {
         glFinish();
-        double begin = stats_clock_ms(), begin_processor = stats_processor_ms();
+        double begin = clock_ms(), begin_processor = clock_processor_ms();
         outcome = renderer_draw(renderer, &frame, &item, 1, image, error);
         if (i < 0) continue;
-        wall[i] = stats_clock_ms() - begin;
-        processor[i] = stats_processor_ms() - begin_processor;
+        wall[i] = clock_ms() - begin;
+        processor[i] = clock_processor_ms() - begin_processor;
     }
     if (outcome == RESULT_OK) {
         result->wall = table_times(wall, frames);

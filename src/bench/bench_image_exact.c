@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "bench/bench_image_exact.h"
+#include "base/clock.h"
 #include "bench/image_reference.h"
 #include "bench/shadow_reference.h"
-#include "run/stats.h"
 #include "strands/strands_resample.h"
 
 #include <math.h>
@@ -77,12 +77,12 @@ Result image_exact_find(ImageExact *exact, const ImageHair *hair, const ImageMan
     *found = picture;
     if (picture->image.pixels) return RESULT_OK;
     Strands strands = {0};
-    double begin = stats_clock_ms();
+    double begin = clock_ms();
     Result result = image_hair_read(&strands, hair->set, hair->file, error);
     if (result == RESULT_OK) result = smooth_strands(manner, &strands, error);
     if (result == RESULT_OK) result = draw(hair, manner, &strands, &picture->image, error);
     strands_destroy(&strands);
-    picture->seconds = (stats_clock_ms() - begin) / 1000;
+    picture->seconds = (clock_ms() - begin) / 1000;
     return result;
 }
 

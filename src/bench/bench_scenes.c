@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "bench/bench_scenes.h"
+#include "base/clock.h"
 #include "bench/bench_speed.h"
 #include "gen/strands_make.h"
-#include "run/stats.h"
 #include "sim/simulation.h"
 
 #include <stdlib.h>
@@ -106,11 +106,11 @@ static Result world_create(World *world, const Gpu *gpu, const Row *row,
 
 static double frame_ms(Simulation *simulation)
 {
-    double begin = stats_clock_ms();
+    double begin = clock_ms();
     simulation_advance(simulation);
     simulation_pose(simulation);
     glFinish();
-    return stats_clock_ms() - begin;
+    return clock_ms() - begin;
 }
 
 // Until all that may sleep does.

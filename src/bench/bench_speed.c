@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "bench/bench_speed.h"
+#include "base/clock.h"
 #include "base/interrupt.h"
 #include "bench/bench_cpu.h"
 #include "bench/bench_scaling.h"
 #include "bench/bench_sets.h"
 #include "draw/renderer.h"
 #include "gen/strands_make.h"
-#include "run/stats.h"
 #include "sim/simulation.h"
 #include "strands/paint.h"
 #include "strands/strands_read.h"
@@ -76,13 +76,13 @@ static Result measure_steps(SpeedResult *result, Bench *bench, const BenchOption
            *solve = calloc((size_t)options->steps + 1, sizeof *solve);
     if (step && solve) {
         for (int i = -options->warm_up - 1; i < options->steps; ++i) {
-            double begin = stats_clock_ms();
+            double begin = clock_ms();
             simulation_advance(&bench->simulation);
             glFinish();
-            double solved = stats_clock_ms();
+            double solved = clock_ms();
             simulation_pose(&bench->simulation);
             glFinish();
-            double end = stats_clock_ms();
+            double end = clock_ms();
             if (i == -options->warm_up - 1) result->first_step_ms = end - begin;
             if (i >= 0) step[i] = end - begin, solve[i] = solved - begin;
         }
@@ -118,9 +118,9 @@ static Result draw_frames(SpeedResult *result, Renderer *renderer, Bench *bench,
         simulation_advance(&bench->simulation);
         simulation_pose(&bench->simulation);
         glFinish();
-        double begin = stats_clock_ms();
+        double begin = clock_ms();
         outcome = renderer_draw(renderer, &frame, &item, 1, image, error);
-        if (i >= 0) samples[i] = stats_clock_ms() - begin;
+        if (i >= 0) samples[i] = clock_ms() - begin;
     }
     result->draw = table_times(samples, outcome == RESULT_OK ? DRAWN_FRAMES : 0);
     result->fragments = renderer->counts.fragments;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "bench/stress.h"
+#include "base/clock.h"
 #include "base/interrupt.h"
 #include "base/progress.h"
 #include "bench/stress_run.h"
-#include "run/stats.h"
 #include "sim/solver.h"
 
 #include <math.h>
@@ -273,10 +273,10 @@ static void print_tally(Bench *bench, const Tally *tally)
 static Result run_form(Bench *bench, const char *algo, const char *variant, Error *error)
 {
     Tally tally = {.algo = algo, .variant = variant};
-    double begun = stats_clock_ms();
+    double begun = clock_ms();
     Result result =
         bench->options->text ? run_text(bench, &tally, error) : run_sets(bench, &tally, error);
-    tally.seconds = (stats_clock_ms() - begun) / 1000;
+    tally.seconds = (clock_ms() - begun) / 1000;
     if (tally.cases) print_tally(bench, &tally);
     bench->failures += tally.failures;
     bench->cases_done += tally.cases;
@@ -316,12 +316,12 @@ Result stress_search(const Gpu *gpu, const StressOptions *options, const TableOu
     fprintf(stream, "%-10s %-10s %8s %6s %8s %8s  %-28s %s\n", "solver", "form", "cases", "sets",
             "failures", "seconds", "failures by rule (f/l/e/r)", "worst of allowed (l/e/r)");
     fflush(stream);
-    double begun = stats_clock_ms();
+    double begun = clock_ms();
     Result result = RESULT_OK;
     for (int i = 0; i < count; ++i) THEN(result, run_form(&bench, forms[i][0], forms[i][1], error));
     progress_clear(&bench.progress);
     fprintf(stream, "%d cases, %d steps each, of %d forms of solvers in %.0f s: %d failed\n",
-            bench.cases_done, options->steps, count, (stats_clock_ms() - begun) / 1000,
+            bench.cases_done, options->steps, count, (clock_ms() - begun) / 1000,
             bench.failures);
     if (bench.failures)
         THEN(result, error_set(error, RESULT_FAILED, "%d cases failed", bench.failures));

@@ -2,7 +2,7 @@
 // Frames of a cache as strands, in the order of the files that were simulated.
 #pragma once
 
-#include "run/cache_file.h"
+#include "run/cache.h"
 #include "strands/strands.h"
 
 typedef struct CacheStrands {

@@ -173,11 +173,11 @@ static Result parse(Job *job, int argc, char **argv, bool *done, Error *error)
     Result result = options_parse(&program, command, argc, argv, &first, done, error);
     if (result != RESULT_OK || *done) return result;
     result = check_sense(command, argc - first, error);
-    if (result == RESULT_OK) result = parse_unit("unit", command->unit, &unit, error);
-    if (result == RESULT_OK) result = parse_unit("to-unit", command->to_unit, &to_unit, error);
+    THEN(result, parse_unit("unit", command->unit, &unit, error));
+    THEN(result, parse_unit("to-unit", command->to_unit, &to_unit, error));
     if (result == RESULT_OK && to_unit == 0)
         result = error_set(error, RESULT_USAGE, "--to-unit: got 'auto', expected a unit");
-    if (result == RESULT_OK) result = convert_steps_parse(&job->steps, &command->steps, error);
+    THEN(result, convert_steps_parse(&job->steps, &command->steps, error));
     job->steps.seed = (uint32_t)command->seed;
     job->input = (ConvertInput){.paths = argv + first,
                                 .path_count = argc - first,
@@ -225,7 +225,7 @@ static Result do_frame(Job *job, int frame, Error *error)
     Result result = convert_input_read(&job->input, frame, &strands, error);
     if (result == RESULT_OK && first)
         job->output.lost = job->input.features & ~strands_features(&strands);
-    if (result == RESULT_OK) result = convert_steps_apply(&job->steps, &strands, error);
+    THEN(result, convert_steps_apply(&job->steps, &strands, error));
     if (result == RESULT_OK && first && (command->stats || command->json))
         result = strands_figures_measure(&job->figures, &strands, error);
     if (result == RESULT_OK && command->output)
@@ -270,7 +270,7 @@ static Result run(Job *job, Error *error)
 {
     const Command *command = &job->command;
     Result result = open_files(job, error);
-    if (result == RESULT_OK) result = do_frames(job, error);
+    THEN(result, do_frames(job, error));
     if (result == RESULT_OK && !command->quiet && !command->output && !command->stats &&
         !command->json)
         convert_print_input(&job->input, stdout);

@@ -180,11 +180,9 @@ static StrandsRecipe make_recipe(const Command *command)
 static Result write_hair(const Command *command, const StrandsRecipe *recipe, Error *error)
 {
     Strands strands;
-    Result result = command->set >= 0
-                        ? strands_make_set(&strands, SET_NAMES[command->set], recipe->seed, error)
-                        : strands_make(&strands, recipe, error);
-    if (result != RESULT_OK) return result;
-    result = gen_output_write(&command->output, &strands, 0, error);
+    TRY(command->set >= 0 ? strands_make_set(&strands, SET_NAMES[command->set], recipe->seed, error)
+                          : strands_make(&strands, recipe, error));
+    Result result = gen_output_write(&command->output, &strands, 0, error);
     strands_destroy(&strands);
     return result;
 }
@@ -195,7 +193,7 @@ static Result write_mesh(const Command *command, ScalpShape shape, const char *f
     Mesh mesh;
     Result result = scalp_make_mesh(&mesh, shape, 36, error);
     if (result == RESULT_OK && shoulders) result = scalp_append_shoulders(&mesh, error);
-    if (result == RESULT_OK) result = obj_write_mesh(file, &mesh, error);
+    THEN(result, obj_write_mesh(file, &mesh, error));
     if (result == RESULT_OK && !command->output.quiet)
         printf("%s: %u vertices, %u triangles\n", file, mesh.vertex_count, mesh.triangle_count);
     mesh_destroy(&mesh);
@@ -220,15 +218,14 @@ static Result write_fur(const FurOptions *options, const Mesh *mesh, Error *erro
 {
     Strands strands;
     FurReport report;
-    Result result = fur_grow(&strands, &options->recipe, mesh, options->mesh, &report, error);
-    if (result != RESULT_OK) return result;
+    TRY(fur_grow(&strands, &options->recipe, mesh, options->mesh, &report, error));
     if (report.flat_triangles)
         fprintf(stderr, "%s: %u triangles without an area are passed over\n", options->mesh,
                 report.flat_triangles);
     if (report.stuck)
         fprintf(stderr, "%s: %llu segments could not be kept outside the mesh\n",
                 options->output.path, (unsigned long long)report.stuck);
-    result = gen_output_write(&options->output, &strands, report.guides, error);
+    Result result = gen_output_write(&options->output, &strands, report.guides, error);
     strands_destroy(&strands);
     return result;
 }
@@ -240,8 +237,7 @@ static Result grow_fur(int argc, char **argv, Error *error)
     bool done;
     Result result = fur_options_read(&options, argc, argv, &done, error);
     if (result != RESULT_OK || done) return result;
-    result = obj_read_mesh(&mesh, options.mesh, (float)options.unit, options.up_z, error);
-    if (result != RESULT_OK) return result;
+    TRY(obj_read_mesh(&mesh, options.mesh, (float)options.unit, options.up_z, error));
     result = write_fur(&options, &mesh, error);
     mesh_destroy(&mesh);
     return result;

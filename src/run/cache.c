@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "run/cache.h"
+#include "base/clock.h"
 #include "base/float_planes.h"
 #include "run/cache_scene.h"
 
@@ -14,6 +15,161 @@
 
 enum { HEAD_BYTES = 4 * CACHE_HEAD_FLOATS };
 
+// --- The file, without the scene that it is of.
+
+static bool add_offset(uint64_t **offsets, uint32_t *count, uint32_t *room, uint64_t offset)
+{
+    if (*count == *room) {
+        uint32_t larger = 2 * *room + 64;
+        uint64_t *more = realloc(*offsets, larger * sizeof *more);
+        if (!more) return false;
+        *offsets = more;
+        *room = larger;
+    }
+    (*offsets)[(*count)++] = offset;
+    return true;
+}
+
+// The chunk at `at`, which must have this tag. *end: where the next one begins.
+static Result read_part(CacheFile *cache, uint64_t at, const char *tag, Bytes *payload,
+                        uint64_t *end, Error *error)
+{
+    Chunk chunk;
+    TRY(chunk_find(&cache->file, at, &chunk, error));
+    if (strcmp(chunk.tag, tag) != 0)
+        return error_set(error, RESULT_BAD_INPUT, "%s: byte %llu: expected %s", cache->file.path,
+                         (unsigned long long)at, tag);
+    *end = chunk_end(&chunk);
+    return chunk_read(&cache->file, &chunk, payload, error);
+}
+
+// By the index at the end; false if there is none that is whole.
+static bool read_index(CacheFile *cache)
+{
+    struct {
+        uint64_t at;
+        char magic[8];
+    } trailer;
+    _Static_assert(sizeof trailer == CACHE_TRAILER_BYTES, "a trailer has no holes");
+    uint64_t size = cache->file.size, end;
+    Bytes index = {0};
+    if (size < CACHE_TRAILER_BYTES ||
+        !chunk_file_read_raw(&cache->file, size - CACHE_TRAILER_BYTES, &trailer, sizeof trailer) ||
+        memcmp(trailer.magic, CACHE_TRAILER, sizeof trailer.magic) != 0 ||
+        read_part(cache, le64toh(trailer.at), "INDX", &index, &end, NULL) != RESULT_OK)
+        return false;
+    bool good = true;
+    for (size_t i = 0; i < index.size / sizeof(uint64_t) && good; ++i) {
+        uint64_t offset;
+        memcpy(&offset, index.data + i * sizeof offset, sizeof offset);
+        good = add_offset(&cache->offsets, &cache->frame_count, &cache->room, le64toh(offset));
+    }
+    bytes_destroy(&index);
+    return good;
+}
+
+// Chunk by chunk from `at`, as far as they are whole and in order.
+static Result scan(CacheFile *cache, uint64_t at, Error *error)
+{
+    cache->frame_count = 0;
+    while (at < cache->file.size) {
+        Chunk chunk;
+        if (chunk_find(&cache->file, at, &chunk, &cache->end) != RESULT_OK) return RESULT_OK;
+        if (strcmp(chunk.tag, "INDX") == 0) return RESULT_OK;
+        if (strcmp(chunk.tag, "FRAM") != 0 || chunk.number != cache->frame_count) {
+            error_set(&cache->end, RESULT_BAD_INPUT, "%s: byte %llu: not frame %u",
+                      cache->file.path, (unsigned long long)at, cache->frame_count);
+            return RESULT_OK;
+        }
+        if (!add_offset(&cache->offsets, &cache->frame_count, &cache->room, at))
+            return error_set(error, RESULT_FAILED, "%s: no memory for an index", cache->file.path);
+        at = chunk_end(&chunk);
+    }
+    return RESULT_OK;
+}
+
+bool cache_file_matches(const char *path)
+{
+    char magic[sizeof CACHE_MAGIC - 1];
+    FILE *stream = fopen(path, "rb");
+    bool same = stream && fread(magic, sizeof magic, 1, stream) == 1 &&
+                memcmp(magic, CACHE_MAGIC, sizeof magic) == 0;
+    if (stream) fclose(stream);
+    return same;
+}
+
+Result cache_file_open(CacheFile *cache, const char *path, Error *error)
+{
+    uint64_t at = CHUNK_FILE_HEADER_BYTES;
+    *cache = (CacheFile){0};
+    TRY(chunk_file_open(&cache->file, path, CACHE_MAGIC, error));
+    Result result = read_part(cache, at, "SCEN", &cache->scene, &at, error);
+    THEN(result, read_part(cache, at, "HAIR", &cache->hair, &at, error));
+    if (result == RESULT_OK && !read_index(cache)) result = scan(cache, at, error);
+    if (result != RESULT_OK) cache_file_close(cache);
+    return result;
+}
+
+void cache_file_close(CacheFile *cache)
+{
+    if (cache->file.path) chunk_file_close(&cache->file);
+    bytes_destroy(&cache->scene);
+    bytes_destroy(&cache->hair);
+    free(cache->offsets);
+    *cache = (CacheFile){0};
+}
+
+// What follows the file's name in a message about it.
+static const char *without_path(const CacheFile *cache, const Error *why)
+{
+    size_t length = strlen(cache->file.path) + strlen(": ");
+    return strlen(why->text) > length ? why->text + length : why->text;
+}
+
+Result cache_file_check(const CacheFile *cache, int last, Error *error)
+{
+    if (last < (int)cache->frame_count) return RESULT_OK;
+    char range[32] = "none";
+    if (cache->frame_count) snprintf(range, sizeof range, "0 to %u", cache->frame_count - 1);
+    bool ended = cache->end.text[0] == 0;
+    return error_set(error, RESULT_BAD_INPUT, "%s: no frame %d, whole ones: %s%s%s",
+                     cache->file.path, last, range, ended ? "" : "; ",
+                     ended ? "" : without_path(cache, &cache->end));
+}
+
+static float take_float(const uint8_t *bytes)
+{
+    uint32_t bits;
+    float value;
+    memcpy(&bits, bytes, sizeof bits);
+    bits = le32toh(bits);
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+Result cache_file_read(CacheFile *cache, int frame, float head[CACHE_HEAD_FLOATS],
+                       float (*positions)[3], uint64_t vertex_count, Error *error)
+{
+    Bytes payload = {0};
+    uint64_t end;
+    Error why;
+    TRY(cache_file_check(cache, frame, error));
+    Result result = read_part(cache, cache->offsets[frame], "FRAM", &payload, &end, &why);
+    if (result != RESULT_OK)
+        return error_set(error, result, "%s: frame %d, %s", cache->file.path, frame,
+                         without_path(cache, &why));
+    bool good = payload.size >= HEAD_BYTES &&
+                float_planes_unpack((float *)positions, (size_t)(3 * vertex_count), CACHE_STRIDE,
+                                    payload.data + HEAD_BYTES, payload.size - HEAD_BYTES);
+    for (int i = 0; i < CACHE_HEAD_FLOATS && good; ++i) head[i] = take_float(payload.data + 4 * i);
+    bytes_destroy(&payload);
+    if (good) return RESULT_OK;
+    return error_set(error, RESULT_BAD_INPUT, "%s: frame %d at byte %llu is no frame of this hair",
+                     cache->file.path, frame, (unsigned long long)cache->offsets[frame]);
+}
+
+// --- Writing.
+
 static uint64_t count_particles(const Simulation *simulation)
 {
     uint64_t count = 0;
@@ -21,15 +177,6 @@ static uint64_t count_particles(const Simulation *simulation)
         count += simulation->sections[i].hair.particle_count;
     return count;
 }
-
-static double now_ms(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return 1e3 * (double)time.tv_sec + 1e-6 * (double)time.tv_nsec;
-}
-
-// --- Writing.
 
 static Result fail_to_write(const CacheWriter *writer, int reason, Error *error)
 {
@@ -86,7 +233,7 @@ static Result write_beginning(CacheWriter *writer, const Simulation *simulation,
 {
     Bytes scene = {0}, hair = {0};
     Result result = cache_scene_describe(&scene, simulation, error);
-    if (result == RESULT_OK) result = cache_hair_describe(&hair, simulation, strands, error);
+    THEN(result, cache_hair_describe(&hair, simulation, strands, error));
     if (result == RESULT_OK) {
         chunk_file_begin(writer->stream, CACHE_MAGIC);
         writer->at += CHUNK_FILE_HEADER_BYTES;
@@ -103,8 +250,8 @@ Result cache_writer_open(CacheWriter *writer, const char *path, const Simulation
                          const Strands *strands, Error *error)
 {
     Result result = open_stream(writer, path, simulation, error);
-    if (result == RESULT_OK) result = cut(writer, 0, error);
-    if (result == RESULT_OK) result = write_beginning(writer, simulation, strands, error);
+    THEN(result, cut(writer, 0, error));
+    THEN(result, write_beginning(writer, simulation, strands, error));
     if (result != RESULT_OK) cache_writer_close(writer);
     return result;
 }
@@ -113,15 +260,14 @@ Result cache_writer_continue(CacheWriter *writer, const CacheReader *reader, uin
                              const Simulation *simulation, Error *error)
 {
     Chunk last;
-    Result result = chunk_find((ChunkFile *)&reader->cache.file,
-                               reader->cache.offsets[frame_count - 1], &last, error);
-    if (result != RESULT_OK) return result;
-    result = open_stream(writer, reader->cache.file.path, simulation, error);
+    TRY(chunk_find((ChunkFile *)&reader->cache.file, reader->cache.offsets[frame_count - 1], &last,
+                   error));
+    Result result = open_stream(writer, reader->cache.file.path, simulation, error);
     for (uint32_t i = 0; i < frame_count && result == RESULT_OK; ++i)
-        if (!cache_add_offset(&writer->offsets, &writer->frame_count, &writer->room,
-                              reader->cache.offsets[i]))
+        if (!add_offset(&writer->offsets, &writer->frame_count, &writer->room,
+                        reader->cache.offsets[i]))
             result = error_set(error, RESULT_FAILED, "no memory for an index");
-    if (result == RESULT_OK) result = cut(writer, chunk_end(&last), error);
+    THEN(result, cut(writer, chunk_end(&last), error));
     if (result != RESULT_OK) cache_writer_close(writer);
     return result;
 }
@@ -154,18 +300,16 @@ static Result read_positions(CacheWriter *writer, const Simulation *simulation, 
 Result cache_writer_add(CacheWriter *writer, const Simulation *simulation, Error *error)
 {
     size_t count = (size_t)(3 * count_particles(simulation));
-    Result result = read_positions(writer, simulation, error);
-    if (result != RESULT_OK) return result;
-    double begin_ms = now_ms();
+    TRY(read_positions(writer, simulation, error));
+    double begin_ms = clock_ms();
     put_head(writer->payload, &simulation->head);
     size_t size = float_planes_pack((const float *)writer->positions, count, CACHE_STRIDE,
                                     writer->payload + HEAD_BYTES);
-    if (size == 0 ||
-        !cache_add_offset(&writer->offsets, &writer->frame_count, &writer->room, writer->at))
+    if (size == 0 || !add_offset(&writer->offsets, &writer->frame_count, &writer->room, writer->at))
         return error_set(error, RESULT_FAILED, "%s: no memory for a frame", writer->path);
     append(writer, "FRAM", writer->frame_count - 1, writer->payload, HEAD_BYTES + size);
-    result = flush(writer, error);
-    writer->write_ms += now_ms() - begin_ms;
+    Result result = flush(writer, error);
+    writer->write_ms += clock_ms() - begin_ms;
     return result;
 }
 
@@ -203,8 +347,7 @@ static Result compare(const CacheReader *reader, const Simulation *simulation,
 {
     const CacheFile *cache = &reader->cache;
     const char *path = cache->file.path;
-    Result result = cache_scene_compare(&cache->scene, simulation, path, error);
-    if (result != RESULT_OK) return result;
+    TRY(cache_scene_compare(&cache->scene, simulation, path, error));
     return cache_hair_compare(&cache->hair, simulation, strands, path, error);
 }
 
@@ -217,7 +360,7 @@ Result cache_reader_open(CacheReader *reader, const char *path, const Simulation
     reader->positions = malloc(reader->particle_count * sizeof *reader->positions + 1);
     if (!reader->positions)
         result = error_set(error, RESULT_FAILED, "%s: no memory for a frame", path);
-    if (result == RESULT_OK) result = compare(reader, simulation, strands, error);
+    THEN(result, compare(reader, simulation, strands, error));
     if (result != RESULT_OK) cache_reader_close(reader);
     return result;
 }
@@ -238,9 +381,8 @@ Result cache_reader_show(CacheReader *reader, Simulation *simulation, int frame,
 {
     float pose[CACHE_HEAD_FLOATS];
     HeadPose head = {0};
-    Result result = cache_file_read(&reader->cache, frame, pose, reader->positions,
-                                    reader->particle_count, error);
-    if (result != RESULT_OK) return result;
+    TRY(cache_file_read(&reader->cache, frame, pose, reader->positions, reader->particle_count,
+                        error));
     memcpy(head.rotation, pose, sizeof head.rotation);
     memcpy(head.translation, pose + 4, sizeof head.translation);
     return simulation_show(simulation, frame, &head, (const float(*)[3])reader->positions, error);

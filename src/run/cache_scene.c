@@ -33,22 +33,21 @@ static void keep_what_moves(json_t *object)
     for (size_t i = 0; i < sizeof DRAWN / sizeof *DRAWN; ++i) json_object_del(object, DRAWN[i]);
 }
 
-static json_t *describe_values(const Simulation *simulation)
+// The same for a scene and its sections.
+static void keep_values(json_t *scene)
 {
-    json_t *object = scene_to_json(simulation->scene);
-    if (!object) return NULL;
-    keep_what_moves(object);
-    if (simulation->mesh_checksum)
-        json_object_set_new(object, "mesh_checksum", json_integer(simulation->mesh_checksum));
-    json_t *sections = json_object_get(object, "sections");
+    const json_t *sections = json_object_get(scene, "sections");
+    keep_what_moves(scene);
     for (size_t i = 0; i < json_array_size(sections); ++i)
         keep_what_moves(json_array_get(sections, i));
-    return object;
 }
 
 Result cache_scene_describe(Bytes *text, const Simulation *simulation, Error *error)
 {
-    json_t *object = describe_values(simulation);
+    json_t *object = scene_to_json(simulation->scene);
+    keep_values(object);
+    if (simulation->mesh_checksum)
+        json_object_set_new(object, "mesh_checksum", json_integer(simulation->mesh_checksum));
     // 17 digits: key times are doubles.
     char *dump = json_dumps(object, JSON_COMPACT | JSON_SORT_KEYS | JSON_REAL_PRECISION(17));
     json_decref(object);
@@ -115,6 +114,7 @@ Result cache_scene_compare(const Bytes *text, const Simulation *simulation, cons
     json_t *was = json_loadb((const char *)text->data, text->size, 0, NULL);
     Bytes now = {0};
     if (!was) return error_set(error, RESULT_BAD_INPUT, "%s: its scene is no JSON object", path);
+    keep_values(was); // of earlier versions, which wrote other solvers' parameters, too
     Result result = cache_scene_describe(&now, simulation, error);
     if (result == RESULT_OK) {
         // Read back, so that numbers are of the same kinds on both sides.

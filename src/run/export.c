@@ -1,11 +1,101 @@
 // SPDX-License-Identifier: MIT
 #include "run/export.h"
 #include "strands/formats/format.h"
+#include "strands/paint.h"
 #include "strands/strands.h"
 #include "strands/strands_edit.h"
 
 #include <stdlib.h>
 #include <string.h>
+
+// --- Widths and colors of USD curves.
+
+static void set_widths(float *width, const Strands *strands, const SectionParams *params,
+                       const Paint *paint)
+{
+    float radius = params->radius.automatic ? paint_auto_radius(strands, 0) : params->radius.value;
+    for (uint32_t s = 0; s < strands->strand_count; ++s)
+        for (uint32_t first = strands->first[s], j = 0; j < strands_size(strands, s); ++j) {
+            float taper =
+                1 - (1 - params->tip_ratio) * (float)j / (float)(strands_size(strands, s) - 1);
+            width[first + j] =
+                2 * radius * (paint->thickness ? paint->thickness[first + j] : taper);
+        }
+}
+
+static void set_colors(float (*color)[4], const Strands *strands, const SectionParams *params,
+                       const Paint *paint)
+{
+    float own[4] = {0, 0, 0, 1};
+    paint_color(params, own);
+    for (uint32_t v = 0; v < strands->vertex_count; ++v)
+        memcpy(color[v], paint->color ? paint->color[v] : own, sizeof own);
+}
+
+// From a value each vertex to one each strand, where vertices do not differ, or to just one.
+static UsdRate simplify(float (*color)[4], const Strands *all)
+{
+    bool constant = true, uniform = true;
+    for (uint32_t s = 0; s < all->strand_count; ++s)
+        for (uint32_t root = all->first[s], v = root; v < all->first[s + 1]; ++v) {
+            uniform = uniform && memcmp(color[v], color[root], sizeof *color) == 0;
+            constant = constant && memcmp(color[v], color[0], sizeof *color) == 0;
+        }
+    if (constant) return USD_CONSTANT;
+    if (!uniform) return USD_VERTEX;
+    for (uint32_t s = 0; s < all->strand_count; ++s)
+        memmove(color[s], color[all->first[s]], sizeof *color);
+    return USD_UNIFORM;
+}
+
+static Result look_at_section(SceneLook *look, const Section *section, const Strands *strands,
+                              size_t first, Error *error)
+{
+    Paint paint;
+    Result result = paint_create(&paint, strands, &section->params, error);
+    if (result != RESULT_OK) return error_prefix(error, result, "%s: ", section->file);
+    set_widths(look->width + first, strands, &section->params, &paint);
+    set_colors(look->color + first, strands, &section->params, &paint);
+    paint_destroy(&paint);
+    return RESULT_OK;
+}
+
+static void destroy_look(SceneLook *look)
+{
+    free(look->width);
+    free(look->color);
+    free(look->section);
+    *look = (SceneLook){0};
+}
+
+static Result create_look(SceneLook *look, const Scene *scene, const Strands *sections,
+                          const Strands *all, Error *error)
+{
+    size_t vertex = 0, strand = 0;
+    *look = (SceneLook){.width = malloc(all->vertex_count * sizeof *look->width + 1),
+                        .color = malloc(all->vertex_count * sizeof *look->color + 1),
+                        .section = malloc(all->strand_count * sizeof *look->section + 1)};
+    Result result = look->width && look->color && look->section
+                        ? RESULT_OK
+                        : error_set(error, RESULT_FAILED, "no memory for the curves' widths");
+    for (uint32_t i = 0; i < scene->section_count && result == RESULT_OK; ++i) {
+        result = look_at_section(look, &scene->sections[i], &sections[i], vertex, error);
+        for (uint32_t s = 0; s < sections[i].strand_count; ++s) look->section[strand++] = i;
+        vertex += sections[i].vertex_count;
+    }
+    if (result != RESULT_OK) {
+        destroy_look(look);
+        return result;
+    }
+    look->usd = (UsdLook){.width = look->width,
+                          .width_rate = USD_VERTEX,
+                          .color = (const float(*)[4])look->color,
+                          .color_rate = simplify(look->color, all),
+                          .section = scene->section_count > 1 ? look->section : NULL};
+    return RESULT_OK;
+}
+
+// --- Opening.
 
 // Where `frame_count` frames of one name would overwrite each other.
 static Result check_name(const Target *target, const char *text, int frame_count, Error *error)
@@ -22,8 +112,7 @@ static Result describe_usd(Exporter *exporter, const Strands *sections, int fram
 {
     const Scene *scene = exporter->simulation->scene;
     const RunParams *run = &scene->run;
-    Result result = scene_look_create(&exporter->look, scene, sections, &exporter->strands, error);
-    if (result != RESULT_OK) return result;
+    TRY(create_look(&exporter->look, scene, sections, &exporter->strands, error));
     exporter->options = (UsdOptions){.metres_per_unit = 1,
                                      .animated = exporter->target.kind == TARGET_VIDEO,
                                      .fps = (double)run->fps,
@@ -70,8 +159,7 @@ static Result add_followers(Strands *all, const Strands *guides, const Hair *fol
 static Result prepare(Exporter *exporter, const char *text, const Strands *sections, uint32_t count,
                       int frame_count, Error *error)
 {
-    Result result = strands_join(&exporter->strands, sections, count, error);
-    if (result != RESULT_OK) return result;
+    TRY(strands_join(&exporter->strands, sections, count, error));
     exporter->kind = format_choose(text, &exporter->strands);
     find_lost(exporter, sections, count);
     if (exporter->kind != FORMAT_USD) return RESULT_OK;
@@ -87,7 +175,7 @@ static Result prepare_with_followers(Exporter *exporter, const char *text, const
     for (uint32_t i = 0; i < count && result == RESULT_OK; ++i)
         result = add_followers(&sections[i], &strands[i],
                                &exporter->simulation->sections[i].follow.hair, error);
-    if (result == RESULT_OK) result = prepare(exporter, text, sections, count, frame_count, error);
+    THEN(result, prepare(exporter, text, sections, count, frame_count, error));
     for (uint32_t i = 0; sections && i < count; ++i) strands_destroy(&sections[i]);
     free(sections);
     return result;
@@ -100,11 +188,10 @@ Result exporter_create(Exporter *exporter, const char *text, int frame_count,
         (Exporter){.simulation = simulation, .followers = simulation->scene->run.export_followers};
     uint32_t count = simulation->scene->section_count;
     Result result = format_target(&exporter->target, text, error);
-    if (result == RESULT_OK) result = check_name(&exporter->target, text, frame_count, error);
-    if (result == RESULT_OK) result = target_prepare(&exporter->target, error);
-    if (result == RESULT_OK)
-        result = (exporter->followers ? prepare_with_followers : prepare)(
-            exporter, text, strands, count, frame_count, error);
+    THEN(result, check_name(&exporter->target, text, frame_count, error));
+    THEN(result, target_prepare(&exporter->target, error));
+    THEN(result, (exporter->followers ? prepare_with_followers : prepare)(
+                     exporter, text, strands, count, frame_count, error));
     if (result != RESULT_OK) exporter_destroy(exporter);
     return result;
 }
@@ -112,7 +199,7 @@ Result exporter_create(Exporter *exporter, const char *text, int frame_count,
 void exporter_destroy(Exporter *exporter)
 {
     usd_writer_discard(&exporter->usd);
-    scene_look_destroy(&exporter->look);
+    destroy_look(&exporter->look);
     target_destroy(&exporter->target);
     strands_destroy(&exporter->strands);
     *exporter = (Exporter){0};
@@ -177,12 +264,11 @@ static Result write_file(const Exporter *exporter, int frame, Error *error)
 
 Result exporter_write(Exporter *exporter, int frame, Error *error)
 {
-    Result result = read_positions(exporter, error);
-    if (result != RESULT_OK) return result;
+    TRY(read_positions(exporter, error));
     if (exporter->options.animated)
         return usd_writer_add(&exporter->usd, frame, (const float(*)[3])exporter->strands.position,
                               error);
-    result = write_file(exporter, frame, error);
+    Result result = write_file(exporter, frame, error);
     exporter->files += result == RESULT_OK;
     return result;
 }

@@ -3,9 +3,17 @@
 #pragma once
 
 #include "base/target.h"
-#include "run/usd_look.h"
 #include "sim/simulation.h"
+#include "strands/formats/usd_write.h"
 #include "strands/strands_report.h"
+
+// Arrays are owned; a zeroed struct is empty.
+typedef struct SceneLook {
+    UsdLook usd; // points into the rest
+    float *width;
+    float (*color)[4];
+    uint32_t *section;
+} SceneLook;
 
 typedef struct Exporter {
     Target target;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "run/frame_source.h"
+#include "base/chunk.h"
+#include "base/clock.h"
 #include "base/interrupt.h"
-#include "run/snapshot.h"
+#include "base/outfile.h"
+#include "run/cache_scene.h"
 #include "sim/simulation_state.h"
 
 #include <errno.h>
@@ -14,11 +17,71 @@
 // vertices.
 static const double SAVE_EVERY_MS = 5000;
 
-static double now_ms(void)
+// --- The state of an unfinished simulation in a file, so that another run continues it.
+
+static const char STATE_MAGIC[] = "TRXSTATE";
+
+static Result write_chunks(const char *path, int frame, const Bytes *scene, const Bytes *hair,
+                           const Bytes *state, Error *error)
 {
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return 1e3 * (double)time.tv_sec + 1e-6 * (double)time.tv_nsec;
+    OutFile file;
+    TRY(outfile_open(&file, path, error));
+    chunk_file_begin(file.stream, STATE_MAGIC);
+    chunk_write(file.stream, "SCEN", 0, scene->data, scene->size);
+    chunk_write(file.stream, "HAIR", 0, hair->data, hair->size);
+    chunk_write(file.stream, "STAT", (uint32_t)frame, state->data, state->size);
+    return outfile_commit(&file, error);
+}
+
+// Writes the state after the present frame; the file appears whole or not at all.
+static Result write_state(const char *path, Simulation *simulation, const Strands *strands,
+                          Error *error)
+{
+    Bytes scene = {0}, hair = {0}, state = {0};
+    Result result = cache_scene_describe(&scene, simulation, error);
+    THEN(result, cache_hair_describe(&hair, simulation, strands, error));
+    THEN(result, simulation_state_save(simulation, &state, error));
+    THEN(result, write_chunks(path, simulation->frame, &scene, &hair, &state, error));
+    bytes_destroy(&scene);
+    bytes_destroy(&hair);
+    bytes_destroy(&state);
+    return result;
+}
+
+// The chunk at *at, which must have this tag; *at moves behind it.
+static Result read_part(ChunkFile *file, uint64_t *at, const char *tag, Chunk *chunk,
+                        Bytes *payload, Error *error)
+{
+    Result result = chunk_find(file, *at, chunk, error);
+    if (result == RESULT_OK && strcmp(chunk->tag, tag) != 0)
+        result = error_set(error, RESULT_BAD_INPUT, "%s: byte %llu: expected %s", file->path,
+                           (unsigned long long)*at, tag);
+    THEN(result, chunk_read(file, chunk, payload, error));
+    *at = chunk_end(chunk);
+    return result;
+}
+
+// Reads a state of this very simulation for simulation_state_restore, and of which frame it is.
+// RESULT_BAD_INPUT if there is none or it is of another one. Free with bytes_destroy.
+static Result read_state(Bytes *state, int *frame, const char *path, const Simulation *simulation,
+                         const Strands *strands, Error *error)
+{
+    ChunkFile file;
+    Chunk chunk = {0};
+    Bytes scene = {0}, hair = {0};
+    uint64_t at = CHUNK_FILE_HEADER_BYTES;
+    *state = (Bytes){0};
+    TRY(chunk_file_open(&file, path, STATE_MAGIC, error));
+    Result result = read_part(&file, &at, "SCEN", &chunk, &scene, error);
+    THEN(result, cache_scene_compare(&scene, simulation, path, error));
+    THEN(result, read_part(&file, &at, "HAIR", &chunk, &hair, error));
+    THEN(result, cache_hair_compare(&hair, simulation, strands, path, error));
+    THEN(result, read_part(&file, &at, "STAT", &chunk, state, error));
+    *frame = (int)chunk.number;
+    bytes_destroy(&scene);
+    bytes_destroy(&hair);
+    chunk_file_close(&file);
+    return result;
 }
 
 // --- Opening.
@@ -37,8 +100,8 @@ static Result begin_cache(FrameSource *source, const char *path, Error *error)
 static bool find_state(FrameSource *source, FILE *messages, Error *error)
 {
     int frame = 0;
-    Result result = snapshot_read(&source->state, &frame, source->state_path, source->simulation,
-                                  source->strands, error);
+    Result result = read_state(&source->state, &frame, source->state_path, source->simulation,
+                               source->strands, error);
     if (result == RESULT_OK && frame < (int)source->reader.cache.frame_count) {
         source->played = frame + 1;
         return true;
@@ -55,8 +118,7 @@ static Result resume_cache(FrameSource *source, const char *path, int last, FILE
                            Error *error)
 {
     CacheReader *reader = &source->reader;
-    Result result = cache_reader_open(reader, path, source->simulation, source->strands, error);
-    if (result != RESULT_OK) return result;
+    TRY(cache_reader_open(reader, path, source->simulation, source->strands, error));
     source->reads = true;
     if (messages) fprintf(messages, "%s: %u frames are there\n", path, reader->cache.frame_count);
     if ((int)reader->cache.frame_count > last) {
@@ -64,17 +126,15 @@ static Result resume_cache(FrameSource *source, const char *path, int last, FILE
         return RESULT_OK;
     }
     if (!find_state(source, messages, error)) return begin_cache(source, path, error);
-    result = cache_writer_continue(&source->writer, reader, (uint32_t)source->played,
-                                   source->simulation, error);
+    Result result = cache_writer_continue(&source->writer, reader, (uint32_t)source->played,
+                                          source->simulation, error);
     source->writes = result == RESULT_OK;
     return result;
 }
 
 static Result play_cache(FrameSource *source, const char *path, int last, Error *error)
 {
-    Result result =
-        cache_reader_open(&source->reader, path, source->simulation, source->strands, error);
-    if (result != RESULT_OK) return result;
+    TRY(cache_reader_open(&source->reader, path, source->simulation, source->strands, error));
     source->reads = true;
     source->played = last + 1;
     return cache_reader_check(&source->reader, last, error);
@@ -84,7 +144,7 @@ Result frame_source_look(FrameSource *source, Simulation *simulation, const Stra
                          int last, Error *error)
 {
     const char *from = simulation->scene->run.from_cache;
-    *source = (FrameSource){.simulation = simulation, .strands = strands, .written_ms = now_ms()};
+    *source = (FrameSource){.simulation = simulation, .strands = strands, .written_ms = clock_ms()};
     return *from ? play_cache(source, from, last, error) : RESULT_OK;
 }
 
@@ -134,10 +194,10 @@ static Result simulate(FrameSource *source, int frame, Error *error)
 static Result record(FrameSource *source, Error *error)
 {
     Result result = cache_writer_add(&source->writer, source->simulation, error);
-    if (result != RESULT_OK || now_ms() - source->written_ms < SAVE_EVERY_MS) return result;
-    result = snapshot_write(source->state_path, source->simulation, source->strands, error);
+    if (result != RESULT_OK || clock_ms() - source->written_ms < SAVE_EVERY_MS) return result;
+    result = write_state(source->state_path, source->simulation, source->strands, error);
     simulation_pose(source->simulation); // as drawn: saving shows the last step's positions
-    source->written_ms = now_ms();
+    source->written_ms = clock_ms();
     return result;
 }
 
@@ -146,8 +206,7 @@ Result frame_source_go(FrameSource *source, int frame, bool drawn, Error *error)
     if (frame < source->played)
         return drawn ? cache_reader_show(&source->reader, source->simulation, frame, error)
                      : RESULT_OK;
-    Result result = simulate(source, frame, error);
-    if (result != RESULT_OK) return result;
+    TRY(simulate(source, frame, error));
     if (drawn || source->writes) simulation_pose(source->simulation);
     return source->writes ? record(source, error) : RESULT_OK;
 }
@@ -158,10 +217,9 @@ Result frame_source_finish(FrameSource *source, Error *error)
 {
     if (!source->writes) return RESULT_OK;
     source->writes = false;
-    Result result = cache_writer_finish(&source->writer, error);
-    if (result != RESULT_OK) return result;
+    TRY(cache_writer_finish(&source->writer, error));
     if (source->simulation->frame + 1 < source->simulation->scene->run.frames)
-        return snapshot_write(source->state_path, source->simulation, source->strands, error);
+        return write_state(source->state_path, source->simulation, source->strands, error);
     if (unlink(source->state_path) != 0 && errno != ENOENT)
         return error_set(error, RESULT_FAILED, "%s: cannot remove it: %s", source->state_path,
                          strerror(errno));
@@ -173,7 +231,7 @@ void frame_source_close(FrameSource *source)
     bool begun = source->writes && source->writer.frame_count > 0 &&
                  source->simulation->frame == (int)source->writer.frame_count - 1;
     if (begun && !source->state.data)
-        snapshot_write(source->state_path, source->simulation, source->strands, NULL);
+        write_state(source->state_path, source->simulation, source->strands, NULL);
     if (source->writer.path) cache_writer_close(&source->writer);
     if (source->reads) cache_reader_close(&source->reader);
     bytes_destroy(&source->state);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// tractrix-render: from hair files and a scene to pictures.
+// tractrix-render: from hair files and a scene to images.
+#include "base/clock.h"
 #include "base/interrupt.h"
 #include "base/program.h"
 #include "run/render_help.h"
@@ -43,9 +44,9 @@ int main(int argc, char **argv)
         solver_print_list(stdout);
         return program_end("tractrix-render", RESULT_OK, &error);
     }
-    Run run = {.begin_ms = stats_clock_ms()};
+    Run run = {.begin_ms = clock_ms()};
     Result result = scene_from_arguments(&run.scene, argc, argv, &error);
-    if (result == RESULT_OK) result = answer(&run, &error);
+    THEN(result, answer(&run, &error));
     run_destroy(&run);
     return program_end("tractrix-render", result, &error);
 }

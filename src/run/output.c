@@ -2,6 +2,7 @@
 #include "run/output.h"
 
 #include "base/bytes.h"
+#include "base/clock.h"
 #include "base/interrupt.h"
 #include "base/target.h"
 #include "image/pfm.h"
@@ -55,13 +56,6 @@ struct Output {
     OutputCounters counters;
 };
 
-static double now_ms(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return 1e3 * (double)time.tv_sec + 1e-6 * (double)time.tv_nsec;
-}
-
 static Result write_image(const Output *output, const Image *image, int frame, uint64_t *bytes,
                           Error *error)
 {
@@ -95,11 +89,11 @@ static Result encode_next(Output *output)
     output->queue_first = (output->queue_first + 1) % output->slot_count;
     output->queued--;
     pthread_mutex_unlock(&output->mutex);
-    double start_ms = now_ms();
+    double start_ms = clock_ms();
     uint64_t bytes = 0;
     Error error;
     Result result = take_frame(output, slot, &bytes, &error);
-    double encode_ms = now_ms() - start_ms;
+    double encode_ms = clock_ms() - start_ms;
     pthread_mutex_lock(&output->mutex);
     slot->state = SLOT_FREE;
     output->counters.encode_ms += encode_ms;
@@ -117,12 +111,12 @@ static Result end_file(Output *output)
 {
     if (!output->video && !output->sheet.columns) return RESULT_OK;
     pthread_mutex_unlock(&output->mutex);
-    double start_ms = now_ms();
+    double start_ms = clock_ms();
     uint64_t bytes = 0;
     Error error;
     Result result = output->video ? video_finish(output->video, &bytes, &error)
                                   : write_image(output, &output->sheet.image, 0, &bytes, &error);
-    double encode_ms = now_ms() - start_ms;
+    double encode_ms = clock_ms() - start_ms;
     pthread_mutex_lock(&output->mutex);
     output->counters.encode_ms += encode_ms;
     output->counters.bytes += bytes;
@@ -269,13 +263,13 @@ Result output_create(Output **output, const OutputOptions *options, Error *error
     if (!created) return error_set(error, RESULT_FAILED, "no memory for the output");
     create_lock(created);
     Result result = target_parse(&created->target, options->target, error);
-    if (result == RESULT_OK) result = check_options(options, &created->target, error);
-    if (result == RESULT_OK) result = create_slots(created, options, error);
-    if (result == RESULT_OK) result = start_sheet(created, options, error);
-    if (result == RESULT_OK) result = target_prepare(&created->target, error);
+    THEN(result, check_options(options, &created->target, error));
+    THEN(result, create_slots(created, options, error));
+    THEN(result, start_sheet(created, options, error));
+    THEN(result, target_prepare(&created->target, error));
     if (result == RESULT_OK && created->target.kind == TARGET_VIDEO)
         result = start_video(created, options, error);
-    if (result == RESULT_OK) result = start_worker(created, error);
+    THEN(result, start_worker(created, error));
     if (result == RESULT_OK)
         *output = created;
     else
@@ -298,7 +292,7 @@ Result output_acquire(Output *output, Image **image, Error *error)
     Result result = report_failure(output, error);
     while (result == RESULT_OK && !(slot = find_free_slot(output))) {
         result = wait_changed(output, error);
-        if (result == RESULT_OK) result = report_failure(output, error);
+        THEN(result, report_failure(output, error));
     }
     if (slot) {
         slot->state = SLOT_LENT;
@@ -339,7 +333,7 @@ Result output_finish(Output *output, Error *error)
     output->closing = result == RESULT_OK;
     pthread_cond_broadcast(&output->changed);
     while (result == RESULT_OK && !output->ended) result = wait_changed(output, error);
-    if (result == RESULT_OK) result = report_failure(output, error);
+    THEN(result, report_failure(output, error));
     pthread_mutex_unlock(&output->mutex);
     return result;
 }

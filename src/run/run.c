@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "run/run.h"
+#include "base/clock.h"
 #include "base/interrupt.h"
 #include "base/target.h"
 #include "run/caption.h"
@@ -13,10 +14,10 @@
 void run_destroy(Run *run)
 {
     if (run->exports) exporter_destroy(&run->exporter);
-    resume_destroy(&run->resume);
+    sequence_destroy_done(&run->done);
     if (run->has_gpu) {
         frame_source_close(&run->source);
-        pictures_destroy(&run->pictures);
+        images_destroy(&run->images);
         simulation_destroy(&run->simulation);
         gpu_timer_destroy(&run->timer);
         gpu_destroy(&run->gpu);
@@ -55,8 +56,7 @@ static Result open_gpu(Run *run, Error *error)
 {
     const RunParams *params = &run->scene.run;
     const GpuOptions options = gpu_options(params);
-    Result result = gpu_create(&run->gpu, &options, error);
-    if (result != RESULT_OK) return result;
+    TRY(gpu_create(&run->gpu, &options, error));
     run->has_gpu = true;
     gpu_timer_create(&run->timer, *params->stats != 0, run->gpu.software);
     if (!params->quiet)
@@ -88,37 +88,37 @@ static Result check_sheet(const RunParams *run, Error *error)
                      sheet[0], sheet[1]);
 }
 
-// What can be said before any file is opened.
-static Result check_words(const Scene *scene, Error *error)
+// Everything that can be checked before a file is opened.
+static Result check_values(const Scene *scene, Error *error)
 {
     const RunParams *run = &scene->run;
-    Result result = check_target(run, run->output, target_parse, error);
-    if (result == RESULT_OK) result = check_target(run, run->export, format_target, error);
-    if (result == RESULT_OK) result = check_sheet(run, error);
-    if (result == RESULT_OK) result = caption_check(run->caption, error);
+    TRY(check_target(run, run->output, target_parse, error));
+    TRY(check_target(run, run->export, format_target, error));
+    TRY(check_sheet(run, error));
+    TRY(caption_check(run->caption, error));
     bool fits = run->framing == FRAMING_HAIR || run->framing == FRAMING_ALL;
-    if (result == RESULT_OK && fits && !fit_is_free(scene))
-        result =
-            error_set(error, RESULT_USAGE,
-                      "--framing %s: expected an automatic --eye, and no keys of eye or target",
-                      run->framing == FRAMING_ALL ? "all" : "hair");
-    for (uint32_t i = 0; i < scene->section_count && result == RESULT_OK; ++i)
-        result = solver_check(&scene->sections[i].params, error);
-    return result;
+    if (fits && !fit_is_free(scene))
+        return error_set(error, RESULT_USAGE,
+                         "--framing %s: expected an automatic --eye, and no keys of eye or target",
+                         run->framing == FRAMING_ALL ? "all" : "hair");
+    for (uint32_t i = 0; i < scene->section_count; ++i)
+        TRY(solver_check(&scene->sections[i].params, error));
+    return RESULT_OK;
 }
 
+// Finds what an interrupted run has left.
 static Result find_done(Run *run, Error *error)
 {
     const RunParams *params = &run->scene.run;
     if (!params->resume) return RESULT_OK;
-    Result result = resume_find(&run->resume, params, sequence_last_frame(params), error);
-    if (run->resume.count && !params->quiet)
-        fprintf(stderr, "%d of %d frames are there\n", run->resume.count,
+    Result result = sequence_find_done(&run->done, params, sequence_last_frame(params), error);
+    if (run->done.count && !params->quiet)
+        fprintf(stderr, "%d of %d frames are there\n", run->done.count,
                 sequence_count_drawn(params));
     return result;
 }
 
-static void tell_lost(const Exporter *exporter)
+static void warn_lost(const Exporter *exporter)
 {
     char lost[300];
     strands_features_describe(exporter->lost, lost, sizeof lost);
@@ -130,19 +130,18 @@ static void tell_lost(const Exporter *exporter)
 static Result open_source(Run *run, Error *error)
 {
     const RunParams *params = &run->scene.run;
-    Result result =
-        frame_source_open(&run->source, &run->simulation, run->assets.strands,
-                          sequence_last_frame(params), params->quiet ? NULL : stderr, error);
-    if (result == RESULT_OK && *params->export) {
-        result = exporter_create(&run->exporter, params->export, sequence_count_drawn(params),
-                                 &run->simulation, run->assets.strands, error);
-        run->exports = result == RESULT_OK;
-        if (run->exports && !params->quiet) tell_lost(&run->exporter);
-    }
-    return result;
+    FILE *messages = params->quiet ? NULL : stderr;
+    TRY(frame_source_open(&run->source, &run->simulation, run->assets.strands,
+                          sequence_last_frame(params), messages, error));
+    if (!*params->export) return RESULT_OK;
+    TRY(exporter_create(&run->exporter, params->export, sequence_count_drawn(params),
+                        &run->simulation, run->assets.strands, error));
+    run->exports = true;
+    if (!params->quiet) warn_lost(&run->exporter);
+    return RESULT_OK;
 }
 
-static void tell_steps(const Simulation *simulation)
+static void report_steps(const Simulation *simulation)
 {
     const Schedule *schedule = &simulation->schedule;
     fprintf(stderr, "steps of %.6g ms, %d a %s, %.6g a frame", 1e3 / schedule->steps_per_s,
@@ -174,42 +173,40 @@ static Result aim(Run *run, Error *error)
     return result;
 }
 
-// Files first: what is wrong with them is told before a driver is started. The output's folder is
-// made last but before any work.
+// Files first: their errors are reported before a driver is started. The output's folder is made
+// last but before any work.
 static Result prepare(Run *run, Error *error)
 {
     const RunParams *params = &run->scene.run;
     bool draws = *params->output != 0;
-    Result result = check_words(&run->scene, error);
-    if (result == RESULT_OK) result = find_done(run, error);
-    if (result == RESULT_OK)
-        result = assets_load(&run->assets, &run->scene, params->quiet ? NULL : stderr,
-                             params->verbose, error);
-    run->loaded_ms = stats_clock_ms();
-    if (result == RESULT_OK && !params->quiet) warn_all(&run->scene);
-    if (result == RESULT_OK) result = open_gpu(run, error);
-    if (result == RESULT_OK && draws) result = aim(run, error);
-    if (result == RESULT_OK)
-        result = simulation_create(&run->simulation, &run->gpu, &run->timer, &run->scene,
-                                   run->assets.strands, &run->assets.mesh, error);
-    if (result == RESULT_OK) result = open_source(run, error);
-    if (result == RESULT_OK && draws)
-        result = pictures_create(&run->pictures, &run->scene, &run->assets, &run->simulation,
-                                 &run->framing, &run->gpu, &run->timer,
-                                 sequence_count_drawn(params) - run->resume.count, error);
-    if (result == RESULT_OK && *params->stats) {
-        result = stats_create(&run->stats, error);
+    TRY(check_values(&run->scene, error));
+    TRY(find_done(run, error));
+    TRY(assets_load(&run->assets, &run->scene, params->quiet ? NULL : stderr, params->verbose,
+                    error));
+    run->loaded_ms = clock_ms();
+    if (!params->quiet) warn_all(&run->scene);
+    TRY(open_gpu(run, error));
+    if (draws) TRY(aim(run, error));
+    TRY(simulation_create(&run->simulation, &run->gpu, &run->timer, &run->scene,
+                          run->assets.strands, &run->assets.mesh, error));
+    TRY(open_source(run, error));
+    if (draws)
+        TRY(images_create(&run->images, &run->scene, &run->assets, &run->simulation, &run->framing,
+                          &run->gpu, &run->timer, sequence_count_drawn(params) - run->done.count,
+                          error));
+    if (*params->stats) {
+        TRY(stats_create(&run->stats, error));
         stats_describe(&run->stats, &run->gpu, &run->scene, &run->assets, &run->simulation);
     }
-    if (result == RESULT_OK && params->verbose) tell_steps(&run->simulation);
-    run->ready_ms = stats_clock_ms();
-    return result;
+    if (params->verbose) report_steps(&run->simulation);
+    run->ready_ms = clock_ms();
+    return RESULT_OK;
 }
 
-static void tell_result(const Run *run, const Sequence *sequence, double ms)
+static void report_result(const Run *run, const Sequence *sequence, double ms)
 {
-    int frames = run->pictures.output ? sequence->frames_drawn + sequence->frames_repeated
-                                      : run->simulation.frame + 1;
+    int frames = run->images.output ? sequence->frames_drawn + sequence->frames_repeated
+                                    : run->simulation.frame + 1;
     SolverReport report = simulation_report(&run->simulation);
     if (report.moves_limited && run->scene.run.verbose)
         fprintf(stderr, "%llu moves of more than 100 strand lengths a step were cut\n",
@@ -220,9 +217,9 @@ static void tell_result(const Run *run, const Sequence *sequence, double ms)
                 cache->frame_count, (double)cache->at * 1e-6, cache->write_ms / cache->frame_count);
     fprintf(stderr, "%d frame%s in %.1f s, %.3g a second", frames, frames == 1 ? "" : "s", ms / 1e3,
             frames * 1e3 / ms);
-    bool described = run->pictures.output && frames > 0;
+    bool described = run->images.output && frames > 0;
     fprintf(stderr, described ? ": %s\n" : "%s\n",
-            described ? output_describe(run->pictures.output) : "");
+            described ? output_describe(run->images.output) : "");
 }
 
 static Result write_stats(Run *run, const Sequence *sequence, Error *error)
@@ -230,37 +227,34 @@ static Result write_stats(Run *run, const Sequence *sequence, Error *error)
     const RunParams *params = &run->scene.run;
     if (!*params->stats) return RESULT_OK;
     OutputCounters counters = {0};
-    if (run->pictures.output) counters = output_count(run->pictures.output);
+    if (run->images.output) counters = output_count(run->images.output);
     stats_add_wall(&run->stats, "load_ms", run->loaded_ms - run->begin_ms);
     stats_add_wall(&run->stats, "set_up_ms", run->ready_ms - run->loaded_ms);
-    stats_add_wall(&run->stats, "frames_ms", stats_clock_ms() - run->ready_ms);
-    stats_add_wall(&run->stats, "total_ms", stats_clock_ms() - run->begin_ms);
+    stats_add_wall(&run->stats, "frames_ms", clock_ms() - run->ready_ms);
+    stats_add_wall(&run->stats, "total_ms", clock_ms() - run->begin_ms);
     stats_finish(&run->stats, &run->timer, &run->simulation, sequence->frames_drawn,
-                 sequence->frames_repeated, run->pictures.output ? &counters : NULL);
+                 sequence->frames_repeated, run->images.output ? &counters : NULL);
     return stats_write(&run->stats, params->stats, error);
 }
 
 Result run_go(Run *run, Error *error)
 {
-    Result result = prepare(run, error);
-    if (result != RESULT_OK) return result;
+    TRY(prepare(run, error));
     Sequence sequence = {
         .scene = &run->scene,
         .source = &run->source,
-        .pictures = &run->pictures,
+        .images = &run->images,
         .exporter = run->exports ? &run->exporter : NULL,
-        .done = run->resume.done,
+        .done = run->done.done,
         .timer = &run->timer,
         .stats = &run->stats,
     };
-    result = sequence_run(&sequence, error);
-    if (result == RESULT_OK && run->pictures.output &&
-        run->resume.count < sequence_count_drawn(&run->scene.run))
-        result = output_finish(run->pictures.output, error);
-    if (result == RESULT_OK && run->exports) result = exporter_finish(&run->exporter, error);
-    if (result == RESULT_OK) result = frame_source_finish(&run->source, error);
-    if (result == RESULT_OK) result = write_stats(run, &sequence, error);
-    if (result == RESULT_OK && !run->scene.run.quiet)
-        tell_result(run, &sequence, stats_clock_ms() - run->begin_ms);
-    return result;
+    TRY(sequence_run(&sequence, error));
+    if (run->images.output && run->done.count < sequence_count_drawn(&run->scene.run))
+        TRY(output_finish(run->images.output, error));
+    if (run->exports) TRY(exporter_finish(&run->exporter, error));
+    TRY(frame_source_finish(&run->source, error));
+    TRY(write_stats(run, &sequence, error));
+    if (!run->scene.run.quiet) report_result(run, &sequence, clock_ms() - run->begin_ms);
+    return RESULT_OK;
 }

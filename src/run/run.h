@@ -2,8 +2,7 @@
 // A run of tractrix-render: from a scene to pictures, a cache, hair files and statistics.
 #pragma once
 
-#include "run/pictures.h"
-#include "run/resume.h"
+#include "run/images.h"
 #include "run/sequence.h"
 
 // All that a run makes, so that one function can destroy it in whatever state it is. The caller
@@ -16,13 +15,13 @@ typedef struct Run {
     GpuTimer timer;
     Framing framing;
     Simulation simulation;
-    Pictures pictures; // empty unless the scene has an output
+    Images images; // empty unless the scene has an output
     FrameSource source;
     Exporter exporter;
     bool exports;
-    Resume resume;
+    FramesDone done;
     Stats stats;
-    double begin_ms, loaded_ms, ready_ms; // stats_clock_ms
+    double begin_ms, loaded_ms, ready_ms; // clock_ms
 } Run;
 
 // Opens everything, goes through the frames and finishes what is written. What goes on is told on

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "run/sequence.h"
+#include "base/clock.h"
 #include "base/interrupt.h"
 #include "base/progress.h"
+#include "base/target.h"
+#include "image/png.h"
 #include "run/caption.h"
+#include "strands/formats/format.h"
 
 #include <malloc.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 int sequence_last_frame(const RunParams *run)
 {
@@ -53,6 +59,68 @@ int sequence_count_drawn(const RunParams *run)
     return all <= before ? 0 : (all - before - 1) / parts + 1;
 }
 
+// --- What an interrupted run has left (--resume).
+
+static bool image_is_complete(const Target *target, int frame, const RunParams *run)
+{
+    char *name = target_name_frame(target, frame);
+    bool whole =
+        name && png_is_whole(name, run->size[0], run->size[1], run->background[3] < 1 ? 4 : 3);
+    free(name);
+    return whole;
+}
+
+static bool file_exists(const Target *target, int frame)
+{
+    char *name = target_name_frame(target, frame);
+    bool there = name && access(name, R_OK) == 0;
+    free(name);
+    return there;
+}
+
+static Result find_files(FramesDone *done, const RunParams *run, int last, const Target *images,
+                         const Target *hair, Error *error)
+{
+    bool draws = *run->output != 0, exports = *run->export != 0;
+    if (!draws && !exports) return RESULT_OK; // a cache alone knows itself
+    done->done = calloc((size_t)last + 1, sizeof *done->done);
+    if (!done->done) return error_set(error, RESULT_FAILED, "no memory for %d frames", last);
+    for (int frame = run->first; frame <= last; frame += run->every) {
+        if (!sequence_draws_frame(run, frame)) continue;
+        done->done[frame] = (!draws || image_is_complete(images, frame, run)) &&
+                            (!exports || file_exists(hair, frame));
+        done->count += done->done[frame];
+    }
+    return RESULT_OK;
+}
+
+Result sequence_find_done(FramesDone *done, const RunParams *run, int last, Error *error)
+{
+    Target images = {0}, hair = {0};
+    *done = (FramesDone){0};
+    Result result = *run->output ? target_parse(&images, run->output, error) : RESULT_OK;
+    if (result == RESULT_OK && *run->export) result = format_target(&hair, run->export, error);
+    bool video = result == RESULT_OK && *run->output && images.kind == TARGET_VIDEO;
+    bool whole = video || (result == RESULT_OK && *run->export && hair.kind == TARGET_VIDEO);
+    if (whole && !*run->cache)
+        result = error_set(error, RESULT_USAGE,
+                           "--resume: %s: it is written in one piece; with --cache at least its "
+                           "simulation can be resumed",
+                           video ? run->output : run->export);
+    if (result == RESULT_OK && !whole) result = find_files(done, run, last, &images, &hair, error);
+    target_destroy(&images);
+    target_destroy(&hair);
+    return result;
+}
+
+void sequence_destroy_done(FramesDone *done)
+{
+    free(done->done);
+    *done = (FramesDone){0};
+}
+
+// --- The loop.
+
 // What the loop keeps from one drawn frame to the next. If nothing has moved, and the camera
 // neither, the picture before is the picture. It is kept where that may be so: in the first frame,
 // and in every one that moved nothing.
@@ -72,9 +140,8 @@ static bool same_view(const View *a, const View *b)
 static Result remember(Previous *previous, const View *view, const Image *image, Error *error)
 {
     if (!previous->image.pixels) {
-        Result result = image_create_kind(&previous->image, image->width, image->height,
-                                          image->channels, image->kind, error);
-        if (result != RESULT_OK) return result;
+        TRY(image_create_kind(&previous->image, image->width, image->height, image->channels,
+                              image->kind, error));
     }
     memcpy(previous->image.pixels, image->pixels, image_size(image));
     previous->view = *view;
@@ -94,7 +161,7 @@ static Result draw(Sequence *sequence, Previous *previous, int number, const Vie
                    Image *image, Error *error)
 {
     const Scene *scene = sequence->scene;
-    Pictures *pictures = sequence->pictures;
+    Images *images = sequence->images;
     const Simulation *simulation = sequence->source->simulation;
     bool still = simulation->changes == previous->changes || sequence->frames_drawn == 0;
     previous->changes = simulation->changes;
@@ -106,7 +173,7 @@ static Result draw(Sequence *sequence, Previous *previous, int number, const Vie
     }
     Ambient ambient;
     Light lights[SCENE_MAX_LIGHTS];
-    camera_lights(lights, scene, pictures->framing, number);
+    camera_lights(lights, scene, images->framing, number);
     RenderFrame frame = {
         .view = view, .lights = lights, .light_count = scene->light_count, .ambient = &ambient};
     memcpy(ambient.sky, scene->run.sky, sizeof ambient.sky);
@@ -115,8 +182,8 @@ static Result draw(Sequence *sequence, Previous *previous, int number, const Vie
     memcpy(frame.head_translation, simulation->head.translation, sizeof frame.head_translation);
     frame.revision = 1 + simulation->changes;
     if (sequence->frames_drawn == 0) give_back_memory();
-    Result result = renderer_draw(&pictures->renderer, &frame, pictures->items,
-                                  pictures->item_count, image, error);
+    Result result =
+        renderer_draw(&images->renderer, &frame, images->items, images->item_count, image, error);
     if (result == RESULT_OK && still) result = remember(previous, view, image, error);
     sequence->frames_drawn += result == RESULT_OK;
     return result;
@@ -125,22 +192,22 @@ static Result draw(Sequence *sequence, Previous *previous, int number, const Vie
 static Result output_frame(Sequence *sequence, Previous *previous, int frame, FrameTimes *times,
                            Error *error)
 {
-    Output *output = sequence->pictures->output;
+    Output *output = sequence->images->output;
     View view;
     Image *image;
-    double begin = stats_clock_ms();
+    double begin = clock_ms();
     Result result = output_acquire(output, &image, error);
-    double acquired = stats_clock_ms();
+    double acquired = clock_ms();
     times->wait_ms = acquired - begin;
     if (result != RESULT_OK) return result;
-    camera_view(&view, sequence->scene, sequence->pictures->framing, frame);
+    camera_view(&view, sequence->scene, sequence->images->framing, frame);
     result = draw(sequence, previous, frame, &view, image, error);
     if (result == RESULT_OK && *sequence->scene->run.caption) {
         char text[CAPTION_BYTES];
         caption_write(text, sequence->scene, frame);
         caption_draw(image, text);
     }
-    times->draw_ms = stats_clock_ms() - acquired;
+    times->draw_ms = clock_ms() - acquired;
     return result == RESULT_OK ? output_submit(output, frame, image, error) : result;
 }
 
@@ -153,16 +220,16 @@ static bool wants(const Sequence *sequence, int frame)
 static Result run_frame(Sequence *sequence, Previous *previous, int frame, Error *error)
 {
     FrameTimes times = {.frame = frame};
-    double begin = stats_clock_ms();
-    bool wanted = wants(sequence, frame), draws = sequence->pictures->output != NULL;
+    double begin = clock_ms();
+    bool wanted = wants(sequence, frame), draws = sequence->images->output != NULL;
     Result result =
         frame_source_go(sequence->source, frame, wanted && (draws || sequence->exporter), error);
-    times.simulate_ms = stats_clock_ms() - begin;
+    times.simulate_ms = clock_ms() - begin;
     if (result == RESULT_OK && wanted && sequence->exporter)
         result = exporter_write(sequence->exporter, frame, error);
     if (result == RESULT_OK && wanted && draws)
         result = output_frame(sequence, previous, frame, &times, error);
-    stats_add_frame(sequence->stats, sequence->timer, &times, &sequence->pictures->renderer.counts);
+    stats_add_frame(sequence->stats, sequence->timer, &times, &sequence->images->renderer.counts);
     return result;
 }
 

@@ -5,13 +5,27 @@
 
 #include "run/export.h"
 #include "run/frame_source.h"
-#include "run/pictures.h"
+#include "run/images.h"
 #include "run/stats.h"
+
+// What an interrupted run has left: which of its files are complete (--resume).
+typedef struct FramesDone {
+    bool *done; // [frames]: all files of the frame are whole; NULL: none is
+    int count;  // how many
+} FramesDone;
+
+// Looks at each frame first .. last by steps of `every`. A picture is whole if it is a PNG file of
+// the run's size and channels whose chunks are complete with right checksums; a hair file if it is
+// there, since those appear complete or not at all. RESULT_USAGE for a video, or a USD file of all
+// frames, without --cache: it cannot be continued, only the simulation behind it can. RESULT_FAILED
+// when memory is short. A zeroed struct may be destroyed.
+Result sequence_find_done(FramesDone *done, const RunParams *run, int last, Error *error);
+void sequence_destroy_done(FramesDone *done);
 
 typedef struct Sequence {
     const Scene *scene;
     FrameSource *source; // moves its simulation
-    Pictures *pictures;  // empty: nothing is drawn
+    Images *images;      // empty: nothing is drawn
     Exporter *exporter;  // NULL: no hair files
     const bool *done;    // [frames] those that need not be drawn again; NULL: none
     GpuTimer *timer;

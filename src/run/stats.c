@@ -7,24 +7,6 @@
 #include "version.h"
 
 #include <sys/resource.h>
-#include <time.h>
-
-static double read_clock_ms(clockid_t clock)
-{
-    struct timespec now;
-    clock_gettime(clock, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
-}
-
-double stats_clock_ms(void)
-{
-    return read_clock_ms(CLOCK_MONOTONIC);
-}
-
-double stats_processor_ms(void)
-{
-    return read_clock_ms(CLOCK_PROCESS_CPUTIME_ID);
-}
 
 // Times to a microsecond: more digits would be noise.
 static json_t *milliseconds(double ms)

@@ -48,10 +48,3 @@ void stats_finish(Stats *stats, const GpuTimer *timer, const Simulation *simulat
 
 // Writes the file. RESULT_FAILED with path and reason.
 Result stats_write(const Stats *stats, const char *path, Error *error);
-
-// Milliseconds on the steady clock.
-double stats_clock_ms(void);
-
-// Milliseconds of processor time that all threads of the process have used, the driver's among
-// them.
-double stats_processor_ms(void);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "run/survey.h"
+#include "base/clock.h"
 #include "base/interrupt.h"
 #include "run/frame_source.h"
 #include "run/stats.h"
@@ -117,8 +118,7 @@ static Result follow_points(Survey *survey, SurveyReport *report, Error *error)
     float(*before)[3] = survey->points;
     survey->points = survey->before;
     survey->before = before;
-    Result result = read_points(survey, error);
-    if (result != RESULT_OK) return result;
+    TRY(read_points(survey, error));
     if (survey->any) {
         SurveyMove step = move_between((const float(*)[3])survey->points,
                                        (const float(*)[3])survey->before, survey->point_count);
@@ -135,7 +135,7 @@ static Result follow_points(Survey *survey, SurveyReport *report, Error *error)
 static Result look_at_frame(Survey *survey, SurveyReport *report, int frame, Error *error)
 {
     Result result = frame_source_go(&survey->source, frame, true, error);
-    if (result == RESULT_OK) result = follow_points(survey, report, error);
+    THEN(result, follow_points(survey, report, error));
     for (uint32_t i = 0; i < survey->group_count && result == RESULT_OK; ++i) {
         const Group *group = &survey->groups[i];
         fit_add(&survey->fit, frame, (const float(*)[3])survey->points + group->first, group->count,
@@ -176,18 +176,17 @@ Result survey_fit_camera(Framing *framing, SurveyReport *report, const Scene *sc
 {
     Survey survey = {.scene = scene, .assets = assets};
     *report = (SurveyReport){0};
-    double begin = stats_clock_ms();
+    double begin = clock_ms();
     gpu_timer_create(&survey.timer, false, gpu->software);
     Result result = simulation_create(&survey.simulation, gpu, &survey.timer, scene,
                                       assets->strands, &assets->mesh, error);
-    if (result == RESULT_OK)
-        result = frame_source_look(&survey.source, &survey.simulation, assets->strands,
-                                   scene->run.frames - 1, error);
-    if (result == RESULT_OK) result = fit_create(&survey.fit, scene, framing, error);
-    if (result == RESULT_OK) result = make_room(&survey, error);
-    if (result == RESULT_OK) result = look(&survey, report, error);
+    THEN(result, frame_source_look(&survey.source, &survey.simulation, assets->strands,
+                                   scene->run.frames - 1, error));
+    THEN(result, fit_create(&survey.fit, scene, framing, error));
+    THEN(result, make_room(&survey, error));
+    THEN(result, look(&survey, report, error));
     if (result == RESULT_OK) fit_solve(&survey.fit, scene, framing);
     close_survey(&survey);
-    report->ms = stats_clock_ms() - begin;
+    report->ms = clock_ms() - begin;
     return result;
 }

@@ -224,13 +224,12 @@ static Result start_ffmpeg(Video *video, const VideoOptions *options, Error *err
 Result video_create(Video **video, const VideoOptions *options, Error *error)
 {
     *video = NULL;
-    Result result = check_options(options, find_format(options->path), error);
-    if (result != RESULT_OK) return result;
+    TRY(check_options(options, find_format(options->path), error));
     Video *created = calloc(1, sizeof *created);
     if (!created) return error_set(error, RESULT_FAILED, "%s: no memory", options->path);
     created->input = created->messages = -1;
-    result = outfile_open(&created->file, options->path, error);
-    if (result == RESULT_OK) result = start_ffmpeg(created, options, error);
+    Result result = outfile_open(&created->file, options->path, error);
+    THEN(result, start_ffmpeg(created, options, error));
     if (result == RESULT_OK)
         *video = created;
     else
@@ -301,8 +300,7 @@ Result video_write(Video *video, const Image *image, Error *error)
 Result video_finish(Video *video, uint64_t *bytes, Error *error)
 {
     *bytes = 0;
-    Result result = wait_end(video, error);
-    if (result != RESULT_OK) return result;
+    TRY(wait_end(video, error));
     struct stat status;
     if (fstat(fileno(video->file.stream), &status) == 0) *bytes = (uint64_t)status.st_size;
     return outfile_commit(&video->file, error);

@@ -9,7 +9,7 @@
 #include "sim/simulation.h"
 
 // A zeroed struct draws nothing and may be destroyed.
-typedef struct Pictures {
+typedef struct Images {
     const Scene *scene;
     const Assets *assets;
     Simulation *simulation;
@@ -19,12 +19,12 @@ typedef struct Pictures {
     RenderItem *items; // of each section, unless hidden, its guides and followers if there are any
     uint32_t item_count;
     Output *output;
-} Pictures;
+} Images;
 
 // `frame_count`: how many frames will be drawn. The arguments outlive the pictures, which may be
 // destroyed (while the context is current) in each case. Errors of renderer_create, paint_create
 // and output_create.
-Result pictures_create(Pictures *pictures, const Scene *scene, const Assets *assets,
-                       Simulation *simulation, const Framing *framing, const Gpu *gpu,
-                       GpuTimer *timer, int frame_count, Error *error);
-void pictures_destroy(Pictures *pictures);
+Result images_create(Images *images, const Scene *scene, const Assets *assets,
+                     Simulation *simulation, const Framing *framing, const Gpu *gpu,
+                     GpuTimer *timer, int frame_count, Error *error);
+void images_destroy(Images *images);

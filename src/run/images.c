@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+#include "run/images.h"
+#include "base/target.h"
+#include "draw/hair_paint.h"
+#include "scene/camera.h"
+#include "strands/paint.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static Result paint_section(Images *images, uint32_t i, Error *error)
+{
+    SimulationSection *section = &images->simulation->sections[i];
+    const Strands *strands = &images->assets->strands[i];
+    const GpuLimits *limits = &images->gpu->limits;
+    Paint paint;
+    Result result = paint_create(&paint, strands, &images->scene->sections[i].params, error);
+    THEN(result, hair_paint(&section->hair, strands, &paint, limits, error));
+    if (result == RESULT_OK && section->follow.per_guide)
+        result = hair_paint(&section->follow.hair, strands, &paint, limits, error);
+    paint_destroy(&paint);
+    return result == RESULT_USAGE
+               ? error_prefix(error, result, "%s: ", images->scene->sections[i].file)
+               : result;
+}
+
+static Result create_items(Images *images, Error *error)
+{
+    images->items = calloc(2 * (size_t)images->scene->section_count + 1, sizeof *images->items);
+    if (!images->items)
+        return error_set(error, RESULT_FAILED, "no memory for %u sections",
+                         images->scene->section_count);
+    for (uint32_t i = 0; i < images->scene->section_count; ++i) {
+        const SimulationSection *section = &images->simulation->sections[i];
+        const SectionParams *params = &images->scene->sections[i].params;
+        if (params->hidden) continue;
+        float radius = paint_radius(params, &images->assets->strands[i], section->follow.per_guide);
+        TRY(paint_section(images, i, error));
+        images->items[images->item_count++] = (RenderItem){&section->hair, params, radius};
+        if (section->follow.per_guide)
+            images->items[images->item_count++] =
+                (RenderItem){&section->follow.hair, params, radius};
+    }
+    return RESULT_OK;
+}
+
+// Floats tell the depth in metres; PNG files from what the camera sees nearest to what is farthest,
+// as the first picture has it.
+static void set_depth_range(const Images *images, RendererOptions *options)
+{
+    View view;
+    if (options->aov != AOV_DEPTH || options->kind == IMAGE_FLOAT) return;
+    camera_view(&view, images->scene, images->framing, images->scene->run.first);
+    options->depth_range[0] = view.near_distance;
+    options->depth_range[1] = view.far_distance;
+    if (!images->scene->run.quiet)
+        fprintf(stderr, "depth: white is %.6g m before the eye, black %.6g m\n",
+                (double)view.near_distance, (double)view.far_distance);
+}
+
+static Result describe_images(const Images *images, RendererOptions *options, Error *error)
+{
+    const RunParams *run = &images->scene->run;
+    Target target;
+    Result result = target_parse(&target, run->output, error);
+    *options = (RendererOptions){
+        .raster = (Raster)run->raster,
+        .oit = (Oit)run->oit,
+        .oit_layers = run->oit_layers,
+        .width = run->size[0],
+        .height = run->size[1],
+        .exposure = run->exposure,
+        .tone = (Tone)run->tone_map,
+        .kind = run->depth == DEPTH_16 ? IMAGE_16 : IMAGE_8,
+        .aov = (Aov)run->aov,
+        .samples = run->samples,
+        .seed = run->seed,
+        .floor = floor_find(images->scene, images->framing),
+        .lod = {run->lod_start, run->lod_end, run->lod_min, run->lod_width},
+        .shadow = {
+            .kind = (Shadow)run->shadow, .side = run->shadow_size, .spacing = run->shadow_spacing}};
+    memcpy(options->background, run->background, sizeof options->background);
+    if (result != RESULT_OK) return result;
+    if (target.floats) options->kind = IMAGE_FLOAT;
+    set_depth_range(images, options);
+    target_destroy(&target);
+    return RESULT_OK;
+}
+
+static Result open_renderer(Images *images, GpuTimer *timer, Error *error)
+{
+    const Assets *assets = images->assets;
+    RendererOptions options;
+    Result result = describe_images(images, &options, error);
+    THEN(result, renderer_create(&images->renderer, images->gpu, timer, &options, error));
+    if (result == RESULT_OK && assets->has_mesh)
+        result = renderer_set_mesh(&images->renderer, &assets->mesh, images->scene->run.mesh_color,
+                                   error);
+    THEN(result, create_items(images, error));
+    return result;
+}
+
+static Result open_output(Images *images, int frame_count, Error *error)
+{
+    const RunParams *run = &images->scene->run;
+    const OutputOptions options = {
+        .target = run->output,
+        .width = run->size[0],
+        .height = run->size[1],
+        .channels = renderer_channels(&images->renderer),
+        .kind = images->renderer.options.kind,
+        .fps = (double)run->fps / run->every,
+        .frame_count = frame_count,
+        .columns = run->contact_sheet[0],
+        .rows = run->contact_sheet[1],
+    };
+    return output_create(&images->output, &options, error);
+}
+
+Result images_create(Images *images, const Scene *scene, const Assets *assets,
+                     Simulation *simulation, const Framing *framing, const Gpu *gpu,
+                     GpuTimer *timer, int frame_count, Error *error)
+{
+    *images = (Images){
+        .scene = scene, .assets = assets, .simulation = simulation, .framing = framing, .gpu = gpu};
+    Result result = open_renderer(images, timer, error);
+    return result == RESULT_OK ? open_output(images, frame_count, error) : result;
+}
+
+void images_destroy(Images *images)
+{
+    output_destroy(images->output);
+    renderer_destroy(&images->renderer);
+    free(images->items);
+    *images = (Images){0};
+}
