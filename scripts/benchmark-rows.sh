@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # shellcheck shell=sh disable=SC2016,SC2154 # sourced; awk programs
-# What benchmark-tables and benchmark-words share: rows of tractrix-bench read by awk, columns by name.
+# Reads rows of tractrix-bench with awk, columns by name; for benchmark-tables and benchmark-words.
 # With `rows` the folder of NAME.csv: defines rows_of NAME PROGRAM.
 
 # c["algo"] is the number of that column; a scenario's commas are semicolons in CSV.

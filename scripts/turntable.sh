@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Hair file or scene -> turntable, in every format that is asked for. Simulates once.
+# Makes a turntable of a hair file or scene, in every format asked for. Simulates once.
 # usage: turntable.sh ASSET [FORMAT...] [-- OPTION...]
 #   FORMAT   mp4 webm gif sheet frames; default: mp4 sheet (without ffmpeg: sheet)
 #   OPTION   of tractrix-render, for all of them, over what is set below: -- --mesh head.obj --wind 2,0,0

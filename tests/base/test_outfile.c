@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whole files in and out: nothing half-written is ever seen.
+// Files appear complete or not at all.
 #include "base/bytes.h"
 #include "base/outfile.h"
 #include "support/temporary.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The line that tells how far a run is.
+// The progress line.
 #include "base/progress.h"
 
 #include <pty.h>

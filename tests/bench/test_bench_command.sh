@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# tractrix-bench as a user meets it: its rows in all three forms, bounds as exit statuses, messages. No timings.
+# The command line of tractrix-bench: rows in all three forms, bounds as exit statuses, messages. No timings.
 . tests/support/claims.sh
 program=$bin/tractrix-bench
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The exact picture against areas and opacities that can be computed by hand, and what rasterisers
-// make of the same hair against it.
+// The exact image against areas and opacities computed by hand, and the error of the rasterisers
+// against it.
 #include "bench/image_reference.h"
 #include "strands/strands_read.h"
 #include "support/studio.h"

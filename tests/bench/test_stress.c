@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The stress test in its short form, every case that once broke a rule, and the tool itself.
+// The stress test in its short form, every case that once broke an invariant, and the tool itself.
 #include "bench/stress.h"
 #include "bench/stress_run.h"
 #include "support/hair_fixture.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Limits, alpha, depths of files, and which pictures of two places belong together.
+// Limits, alpha, bit depths, and the pairing of images by name or number.
 #include "compare/pairs.h"
 #include "image/compare.h"
 #include "image/float_image.h"

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# The command line of tractrix-convert: what it tells, what it writes and reads back, and how it fails.
+# The command line of tractrix-convert: reports, files written and read back, errors.
 . tests/support/claims.sh
 program=$bin/tractrix-convert
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What becomes of light behind the renderer: tones, floats, PFM files, auxiliary pictures.
+// From linear light to output: tone curves, floats, PFM files, auxiliary images.
 #include "image/pfm.h"
 #include "image/png.h"
 #include "image/tone.h"

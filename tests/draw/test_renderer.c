@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What pictures promise whatever is drawn: order, memory, bounds, threads.
+// Invariants of all images: order, memory, bounds, threads.
 #include "base/random.h"
 #include "draw/render_uniforms.h"
 #include "support/hair_fixture.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What strands cover of the picture: areas, layers, few for many.
+// Coverage of strands: areas, layers, level of detail.
 #include "base/random.h"
 #include "support/stage.h"
 

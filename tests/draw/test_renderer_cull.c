@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Strands that cannot be seen are left out before they are projected, without a trace in the
-// picture; the counts tell how many and why.
+// Invisible strands are culled before projection, without a change of the image; the counts say how
+// many and why.
 #include "base/random.h"
 #include "draw/hair_paint.h"
 #include "support/stage.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a picture is drawn as: kinds of images, samples, what is drawn instead of light.
+// Kinds of output: bit depths, samples, auxiliary images.
 #include "support/stage.h"
 
 #include <math.h>

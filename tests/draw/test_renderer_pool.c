@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The A-buffer's pool: it grows as it must, and where it may not the picture is drawn in bands.
+// The A-buffer's pool grows as needed; where it may not, the image is drawn in bands.
 #include "support/stage.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Strands of fur: lengths, form, and what they keep out of. Where roots are is in test_fur_roots.c.
+// Strands of fur: lengths, form, distance from the mesh. test_fur_roots.c tests roots.
 #include "gen/fur.h"
 #include "image/png.h"
 #include "support/shapes.h"

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Frames from many processes are those of one, to the byte: shares by --part, and scripts/farm with each of its runners; what is
-# lost on the way is found and drawn. `make check-farm` installs what the runners need.
+# Frames from many processes equal those of one, to the byte: shares by --part, and scripts/farm with each of its runners.
+# Lost frames are found and drawn. `make check-farm` installs what the runners need.
 . tests/support/claims.sh
 program=$bin/tractrix-render
 scene="assets/gust.json --frames 7 --size 64x48"

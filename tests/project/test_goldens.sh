@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Small pictures against tests/golden/. On the driver that made them (tests/golden/renderer) they are equal to the byte or nearly so; other
-# CPUs and drivers round differently, which moves few pixels far (a hair's edge in a neighbouring pixel) and most not at all.
+# Compares small images with tests/golden/. On the driver that made them (tests/golden/renderer) they are equal to the byte or nearly so.
+# Other CPUs and drivers round differently: few pixels differ much (a hair's edge in a neighbouring pixel), most not at all.
 #
 #   pixel tolerance 8      of 255 levels: a pixel that differs by no more counts as equal
 #   max failing pixels 2%  of the pixels may differ by more

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# What `make install` puts where, that the programs work from there with nothing of the checkout at hand, and the ways in which
-# they tell about themselves: manual pages, completion in bash, versions; and shaders read from a folder.
+# Tests `make install`: files in their places, programs that work without the checkout, manual pages, completion in bash,
+# versions, and shaders read from a folder.
 . tests/support/claims.sh
 program=$bin/tractrix-render
 root=$work/root share=$work/root/usr/share

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# scripts/turntable.sh as a user meets it: every format, options behind --, what it refuses.
+# The command line of scripts/turntable.sh: every format, options behind --, errors.
 . tests/support/claims.sh
 program=scripts/turntable.sh
 turns=$work/turns

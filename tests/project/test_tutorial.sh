@@ -1,7 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# The commands of docs/tutorial.md work as they stand there, one after the other. They run in a copy of what they need, with
-# smaller pictures and fewer frames.
+# Runs the commands of docs/tutorial.md in order, in a copy of what they need, with smaller images and fewer frames.
 . tests/support/checkout.sh
 
 command -v ffmpeg >/dev/null || { echo "skipped: no ffmpeg"; exit 77; }

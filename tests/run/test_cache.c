@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A cache gives back every bit, whatever was cut off behind it, and tells what it cannot give.
+// A cache gives back every bit, truncated or not, and reports what it cannot give.
 #include "run/cache.h"
 #include "run/frame_source.h"
 #include "support/hair_fixture.h"

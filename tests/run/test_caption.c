@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What captions say, and that they stay in their corner.
+// The text of captions, and their place in the corner.
 #include "run/caption.h"
 
 #include <setjmp.h>

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# The command line of tractrix-render as a user meets it: exit statuses, messages, files.
+# The command line of tractrix-render: exit statuses, messages, files.
 . tests/support/claims.sh
 program=$bin/tractrix-render
 hair=assets/fur.tfx

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Hair files of frames: what is drawn, bit for bit, in the order of the file that was read.
+// Exported hair files: the drawn positions, bit for bit, in the order of the input.
 #include "run/export.h"
 #include "strands/strands_read.h"
 #include "support/simulation_fixture.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What --help and the manual page say.
+// The text of --help and the manual page.
 #include "base/params.h"
 #include "run/render_help.h"
 

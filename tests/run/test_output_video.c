@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Videos by way of ffmpeg, with scripts in its place, and interrupts while they are written.
+// Videos with scripts in place of ffmpeg, and interrupts while they are written.
 #include "base/interrupt.h"
 #include "support/grey_frames.h"
 #include "support/temporary.h"

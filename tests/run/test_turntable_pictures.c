@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Turntables as they are seen: how far hair and mesh reach in the pictures, and that they loop.
+// Images of turntables: hair and mesh reach the margin, and the turn loops.
 #include "image/png.h"
 #include "support/temporary.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scene files: what they can say, what is written, what is refused.
+// Scene files: every key read and written, errors.
 #include "support/scene_reader.h"
 #include "support/temporary.h"
 

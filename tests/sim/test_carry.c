@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Hair and its head moved as one: what a solver does next must not depend on where, and how fast at
-// a constant speed, that is.
+// Hair and its head moved as one body: a solver's result depends neither on the place nor on a
+// constant speed.
 #include "sim/carry.h"
 #include "support/twin.h"
 

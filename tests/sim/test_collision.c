@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Colliders: where they push a particle to, and the text that lists them. What they do to whole
-// strands is in test_solvers_collision.c.
+// Colliders: where they push a particle, and the text that lists them. test_solvers_collision.c has
+// whole strands.
 #include "sim/collision.h"
 #include "support/twin.h"
 

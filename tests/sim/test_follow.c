@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Followers: where the plan puts them, and that the GPU does what the plan says.
+// Followers: their places in the plan, and the GPU's against the plan's.
 #include "base/nearest.h"
 #include "base/random.h"
 #include "gen/strands_make.h"

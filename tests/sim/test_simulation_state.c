@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A simulation that is saved and goes on elsewhere is the simulation that never stopped.
+// A saved and restored simulation equals one that never stopped, to the bit.
 #include "sim/simulation_state.h"
 #include "support/simulation_fixture.h"
 

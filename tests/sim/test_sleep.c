@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Sleep changes nothing by more than its tolerance, and everything that moves hair ends it.
+// Sleep changes positions by at most its tolerance; everything that moves hair ends it.
 #include "gen/strands_make.h"
 #include "sim/simulation_state.h"
 #include "support/hair_fixture.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Dynamic follow-the-leader on the GPU against its double-precision form, against the exact motion,
-// and where its rule has no direction to go on.
+// and where its rule has no direction.
 #include "support/reference_dftl.h"
 #include "support/reference_motion.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The split solver on the GPU against its double-precision form, the reference traces, and what
-// must hold for any hair.
+// The split solver on the GPU against its double-precision form, the reference traces, and
+// invariants for any hair.
 #include "sim/step.h"
 #include "support/reference_split.h"
 #include "support/reference_traces.h"

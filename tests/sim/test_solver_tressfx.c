@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// TressFX's constraints on the GPU against their double-precision form, and what sets `steady`
-// apart: a stiffness that only the stiffness sets.
+// TressFX's constraints on the GPU against their double-precision form, and the stiffness
+// of `steady`, which depends on its parameter alone.
 #include "support/reference_tressfx.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What must hold for every solver that is in the table, whatever its method. A solver's own tests
+// Invariants of every solver in the table. A solver's own tests
 // are in test_solver_<name>.c, energy in test_solvers_energy.c, convergence in
 // test_solvers_convergent.c.
 #include "strands/strands_read.h"

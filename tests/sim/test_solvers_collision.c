@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What must hold for hair and colliders, for every solver that is in the table. Where one particle
-// is pushed to is in test_collision.c.
+// Invariants of hair and colliders, for every solver in the table. test_collision.c tests single
+// particles.
 #include "support/every_solver.h"
 #include "support/shapes.h"
 

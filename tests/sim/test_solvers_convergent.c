@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What must hold for the solvers that converge to the motion of rigid chains. How close each is to
-// its double-precision form is in test_solver_<name>.c.
+// Invariants of the solvers that converge to the motion of rigid chains. test_solver_<name>.c
+// compares each with its double-precision form.
 #include "support/reference_motion.h"
 #include "support/twin.h"
 

@@ -1,9 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# What the tests of documents have in common, whose commands run in a copy of what they need. They read it instead of claims.sh.
+# Shared by the tests of documents, whose commands run in a copy of what they need. They source it instead of claims.sh.
 . tests/support/claims.sh
 
-# make_checkout: makes $work/checkout, with a program `small` that is tractrix-render with smaller pictures and fewer frames.
+# make_checkout: makes $work/checkout, with a program `small` that is tractrix-render with smaller images and fewer frames.
 make_checkout() {
     mkdir -p "$work/checkout/out"
     cp -r assets scripts "$work/checkout/"

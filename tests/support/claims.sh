@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# What the tests of command lines have in common; they read it with `. tests/support/claims.sh` and set `program` to what `run` runs.
+# Shared by the tests of command lines: they source it with `. tests/support/claims.sh` and set `program` to what `run` runs.
 # They end with `finish`.
 set -u
 # shellcheck disable=SC2034 # they use it

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Claims about every solver that is in the table, and who is excepted from which.
+// Claims about every solver in the table, and the exceptions.
 #pragma once
 
 #include "sim/solver.h"

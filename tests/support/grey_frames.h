@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Frames for tests of the output: each of one grey, which tells its number; a real encoder changes
-// it by less than half a step.
+// Frames for tests of the output: each of one grey level, its number; a real encoder changes it
+// by less than half a step.
 #pragma once
 
 #include "run/output.h"

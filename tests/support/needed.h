@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A fallible call, whose last argument is `error`: the test fails with its message.
+// Runs a call whose last argument is `error`; the test fails with its message.
 #pragma once
 
 #include "base/error.h"

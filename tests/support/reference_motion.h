@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How far a solver is from the exact motions that ship with the tests (tests/data/motion: every
+// Error of a solver against the exact motions that ship with the tests (tests/data/motion: every
 // fourth frame of 1/60 s of 13 scenarios, computed for this project to 4e-10 m).
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Hair and mesh before a light, for tests of the light that hair leaves at a point.
+// Hair and mesh before a light, for tests of the light that reaches a point.
 #pragma once
 
 #include "bench/shadow_reference.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A place to draw hair in tests: strands are given in pixels of the picture.
+// Draws hair in tests: strands are given in pixels of the image.
 #pragma once
 
 #include "draw/renderer.h"

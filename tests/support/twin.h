@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the double-precision twins of the particle solvers share, and the comparison of a solver
-// with its twin: both step the same curls under the same wind and the same moving head.
+// Shared by the double-precision twins of the particle solvers, and the comparison of a solver with
+// its twin: both step the same curls under the same wind and head motion.
 #pragma once
 
 #include "support/hair_fixture.h"
