@@ -161,7 +161,7 @@ static bool draws_floats(const RunParams *run)
     return ends_with(run->output, ".pfm");
 }
 
-// Light as it is, and what is no light, cannot be toned; and only quads draw deeper than 8 bits.
+// Light as it is, and what is no light, cannot be toned.
 static Result check_depth(const RunParams *run, Error *error)
 {
     bool video = ends_with(run->output, ".mp4") || ends_with(run->output, ".webm") ||
@@ -173,11 +173,6 @@ static Result check_depth(const RunParams *run, Error *error)
     if (run->tone_map != TONE_NONE && run->aov != AOV_NONE) pair = "--tone-map and --aov";
     if (*run->caption && draws_floats(run)) pair = "--caption and .pfm files";
     if (*run->caption && run->aov != AOV_NONE) pair = "--caption and --aov";
-    if (run->raster == RASTER_BLOCKS) {
-        if (run->depth == DEPTH_16) pair = "--raster blocks and --depth 16";
-        if (draws_floats(run)) pair = "--raster blocks and .pfm files";
-        if (run->aov != AOV_NONE) pair = "--raster blocks and --aov";
-    }
     if (pair) return error_set(error, RESULT_USAGE, "%s exclude each other", pair);
     return RESULT_OK;
 }

@@ -32,6 +32,16 @@ for other in r2 r3; do
     if diff -r "$work/r1" "$work/$other" >"$work/err"; then good; else bad "$other differs"; fi
 done
 
+claim "--raster blocks draws deep images, floats and AOVs as --raster auto does on a CPU driver"
+for what in "--depth 16" "--aov depth" "--aov coverage" "--aov tangent" "--aov strand"; do
+    # shellcheck disable=SC2086
+    for raster in auto blocks; do run 0 $hair $small --software $what --raster $raster -q -o "$work/${raster}_%d.png"; done
+    if cmp -s "$work/auto_1.png" "$work/blocks_1.png"; then good; else bad "$what differs"; fi
+done
+# shellcheck disable=SC2086
+for raster in auto blocks; do run 0 $hair $small --software --raster $raster -q -o "$work/${raster}_%d.pfm"; done
+if cmp -s "$work/auto_1.pfm" "$work/blocks_1.pfm"; then good; else bad ".pfm differs"; fi
+
 claim "what cannot be written to standard output is an error of one line"
 for words in --help "--algo list" "--check $hair"; do
     # shellcheck disable=SC2086
