@@ -18,19 +18,14 @@
 // a strand folds back, the bound is the ribbon's own direction, and the share is exact for ribbons
 // along an axis: it grows evenly over the pixel's width. The bound's length tells which it is.
 
-// Two numbers are packed into a word so that a CPU unpacks them in a few operations: a half takes it a dozen and a
-// half.
-//   levels: not negative; six bits of a float's exponent, from 2^-40 (which is 0, too), and ten of its mantissa, as
-//      many as a half has
-//   shorts: any; a float's upper half
+// Two numbers share a word: levels, which are not negative (shared_math.h), or shorts, a float's upper half.
+#include "common/shared_math.h"
 
 const float JOINT = 512.0; // length of a joint's bound, times 2 at most
-const uint LEAST_LEVEL = (127u - 40u) << 23; // as float bits
 
 uint pack_levels(vec2 v)
 {
-    uvec2 bits = (floatBitsToUint(clamp(v, uintBitsToFloat(LEAST_LEVEL), 65504.0)) - LEAST_LEVEL + 0x1000u) >> 13;
-    return bits.x | (bits.y << 16);
+    return pack_level(v.x) | (pack_level(v.y) << 16);
 }
 
 uint pack_shorts(vec2 v)

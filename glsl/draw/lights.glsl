@@ -3,6 +3,7 @@
 //   SHADOW, SHADOW_BY_MESH, LIGHT_COUNT: see shadow.glsl
 //   LIGHTS 0: directional lights, and the same from everywhere else   1: also points, spots, a sky
 
+#include "common/shared_math.h"
 #if SHADOW
 #include "draw/shadow.h"
 #endif
@@ -55,7 +56,7 @@ vec3 light_around_fibre(vec3 tangent, vec3 to_eye, float eye)
 {
 #if LIGHTS
     vec3 side = to_eye - eye * tangent;
-    return light_around(side * inversesqrt(max(dot(side, side), 1e-12)), 0.25 * 3.14159265);
+    return light_around(side * inversesqrt(max(dot(side, side), 1e-12)), 0.25 * PI);
 #else
     return draw_params.sky.rgb;
 #endif

@@ -17,13 +17,13 @@
 // G a Gaussian (d'Eon et al. 2011): no two beams ever meet in a line of infinite brightness, as they
 // do without it. All that leaves after more than two reflections inside, (1-F)^2 F^2 T^3 / (1 - F T),
 // has lost its direction and goes everywhere alike, so that no light is lost.
+#include "common/shared_math.h"
 #include "draw/draw.h"
 
 layout(local_size_x = GROUP_SIZE) in;
 layout(location = 0) uniform vec2 fibre; // eta, standard deviation of G in rad (< pi / 2)
 layout(binding = 0, rgba16f) writeonly uniform image3D table; // R, TT, TRT and what comes later
 
-const float PI = 3.14159265;
 const int STEPS = 64; // by gamma_i, in which all is smooth: dh = cos(gamma_i) d gamma_i
 
 float fresnel(float eta, float cosine)

@@ -18,9 +18,10 @@
 //     inclination has another width.)
 // Light scattered on from fibre to fibre is not followed; `diffuse`, as Kajiya and Kay have it, stands
 // for it.
+#include "common/shared_math.h"
+
 layout(binding = BIND_SCATTER) uniform sampler3D scatter_table;
 
-const float PI = 3.14159265;
 
 // Read once: a uniform costs a load wherever it is named.
 struct Fibre {

@@ -30,8 +30,6 @@ layout(binding = BIND_LAYERS) uniform usamplerBuffer shadow_layers;
 layout(binding = BIND_SHADOW_MESH) uniform sampler2D shadow_mesh;
 #endif
 
-#include "draw/shadow_layer.glsl"
-
 int shadow_side = shadow_params.side;
 
 // Of the fibre that is asked for: diameter (m) and opacity to light; 0 for the mesh.
@@ -44,17 +42,10 @@ float mix4(float a, float b, float c, float d, vec2 share)
     return mix(mix(a, b, share.x), mix(c, d, share.x), share.y);
 }
 
-// Optical depth of all layers before one, and its own by share.
 float texel_depth(int texel, float share)
 {
-    vec2 layer = unpack_layer(texelFetch(shadow_layers, texel).x);
-    return layer.x + share * layer.y;
+    return layer_depth(texelFetch(shadow_layers, texel).x, share);
 }
-
-// A fibre is in the map itself, smeared over the texels beside it and its layer's depth: where it lies
-// it finds OWN_SHARE of its own optical depth -ln(1 - kept) (the middle of a box spread by 1 2 1; all of
-// it where the fibre is wide), by the share of the layer before it.
-const float OWN_SHARE = 0.5;
 
 float light_through_hair(int map, vec2 place, float depth, vec4 of_light)
 {
@@ -67,9 +58,8 @@ float light_through_hair(int map, vec2 place, float depth, vec4 of_light)
     at = (map * SHADOW_LAYERS + int(which)) * squares + row;
     next = at + shadow_side;
     float sum = mix4(texel_depth(at, own), texel_depth(at + 1, own), texel_depth(next, own), texel_depth(next + 1, own), share);
-    float width = shadow_fibre.x * of_light.w, kept = shadow_fibre.y * min(width, 1.0);
-    sum -= own * OWN_SHARE * clamp(width, 1.0, 2.0) * kept * (1.0 + 0.5 * kept);
-    return exp2(-1.44269504 * max(sum, 0.0));
+    sum -= own_layer_depth(shadow_fibre.x * of_light.w, shadow_fibre.y, own);
+    return exp2(-LOG2E * max(sum, 0.0));
 }
 #else
 // Fibres stand at even distances behind the first, each letting the same share through; 5 x 5 texels

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // What shadow maps are made of and read by. A light's map has SHADOW_SIDE x SHADOW_SIDE texels
 // across its light.
+#include "common/shared_math.h"
 #include "draw/draw.h"
 #ifdef __STDC__
 #pragma once
 #endif
 
-#define SHADOW_LAYERS 8        // of a deep opacity map
 #define SHADOW_COARSE 4        // texels: side of a texel of the map of first depths
 #define SHADOW_DEPTHS 16777215 // steps from the first depth that there can be to the last
 

@@ -2,7 +2,6 @@
 // Smooths each layer's sums with the neighbours' (1 2 1 each way), and adds them up. A lane goes down a column of STRIP
 // texels, so that what a row adds is read once for three.
 #include "draw/shadow.h"
-#include "draw/shadow_layer.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 layout(location = 0) uniform ivec2 map; // side, number
@@ -40,7 +39,7 @@ void main()
         float before = 0.0;
         for (int k = 0; k < SHADOW_LAYERS; ++k) {
             float own = scale * (above.sum[k] + 2.0 * here.sum[k] + below.sum[k]);
-            layers[first + (k * side + row) * side + column] = pack_layer(vec2(before, own));
+            layers[first + (k * side + row) * side + column] = pack_layer(before, own);
             before += own;
         }
         above = here;

@@ -3,9 +3,8 @@
 //   DEEP 0: the map keeps first depths   1: sums of optical depth by layers
 //   COARSE 1: first depths of a coarse map
 //
-// A texel that a fibre of opacity a crosses, covering the share c of its width, loses the share a c
-// of its light: an optical depth of -ln(1 - a c), or -ln(1 - a) where it is covered whole. Fibres at
-// random places multiply, so that optical depths add up. Sums are integers: their order does not matter.
+// Fibres at random places multiply, so that their optical depths (light_behind_fibre) add up. Sums
+// are integers: their order does not matter.
 // The ribbons are those that are drawn: curves, thickness and opacity, the share of strands (material.h).
 #include "draw/shadow.h"
 #include "draw/material.h"
@@ -14,7 +13,6 @@
 #include "draw/curve.glsl"
 #include "draw/paint.glsl"
 #include "draw/shadow_cast.glsl"
-#include "draw/shadow_layer.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 #if DEEP
@@ -68,8 +66,7 @@ void main()
         float along = clamp(ceil(size * density - SLACK), 1.0, MOST_ALONG);
         float across = width > 1.5 ? clamp(ceil(width * density), 1.0, floor(MOST / along)) : 1.0;
 #if DEEP
-        float covered = min(width, 1.0);
-        float depth_sum = -log(max(1.0 - opacity * covered, 1e-3)) / covered * width * size;
+        float depth_sum = -log(light_behind_fibre(opacity, width)) / min(width, 1.0) * width * size;
         uint part = uint(int(depth_sum * unit / (along * across) + 0.5));
 #endif
         vec2 beside = vec2(-way.y, way.x) * (width / max(size, 1e-9)) / across;

@@ -39,11 +39,11 @@
 // formula gives forms that do not cancel for stiff springs: M S^{-1} H = q M A^{-1} + tau a a^T, M
 // S^{-1} u = a/(1 + sigma u.g), M S^{-1} y = M A^{-1} y - tau a (g.y); S^{-1} is the same without
 // the M, g for a. So x_j = C x_{j-1} + S^{-1} (z + d), C = q A^{-1} + tau g a^T.
+#include "common/shared_math.h"
 #include "sim/particles.glsl"
 #include "sim/spring_params.h"
 #include "sim/stretch.glsl"
 
-const float PI = 3.14159265;
 const float SHORT = 0.25;   // of an average link; solver_spring.c knows it
 const float STIFFEST = 1e9; // h^2 f k/2: beyond what float32 tells from rigid
 

@@ -6,6 +6,8 @@
 
 #include "base/simd.h"
 
+#include "glsl/common/shared_math.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
@@ -38,8 +40,6 @@ enum {
 };
 
 _Static_assert(WORDS * sizeof(uint32_t) == sizeof(RibbonRecord), "words make a record");
-
-#define LEAST_LEVEL ((127u - 40u) << 23) // as in block.glsl
 
 static const float LEAST = 1.0f / 1024;        // share of what is behind that still counts
 static const float LEAST_COVERAGE = 1.0f / 16; // as in hair.frag
@@ -77,16 +77,6 @@ SIMD_INLINE float clamp_share(float x)
 }
 
 // --- Records, packed as in block.glsl.
-
-SIMD_INLINE float low_level(uint32_t word)
-{
-    return simd_float_of(((word & 0xffff) << 13) + LEAST_LEVEL);
-}
-
-SIMD_INLINE float high_level(uint32_t word)
-{
-    return simd_float_of((word >> 16 << 13) + LEAST_LEVEL);
-}
 
 SIMD_INLINE float low_short(uint32_t word)
 {

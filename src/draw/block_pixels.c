@@ -4,6 +4,8 @@
 #include "base/simd.h"
 #include "image/tone.h"
 
+#include "glsl/common/shared_math.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -139,28 +141,11 @@ static void average(Strip *strip, int side)
     if (side == 4) average_squares(strip, 4);
 }
 
-// --- Colours, as display.glsl and srgb.glsl have them.
+// --- Colours, as display.glsl has them.
 
 SIMD_INLINE float tone_mapped(int tone, float c)
 {
-    if (tone == TONE_REINHARD) {
-        c = simd_max(c, 0);
-        return c * (1 + c / 16) / (1 + c);
-    }
-    if (tone == TONE_FILMIC) {
-        c = simd_max(c, 0);
-        return c * (2.51f * c + 0.03f) / (c * (2.43f * c + 0.59f) + 0.14f);
-    }
-    return c;
-}
-
-SIMD_INLINE float srgb_from_linear(float c)
-{
-    c = simd_min(simd_max(c, 0), 1);
-    float root2 = sqrtf(c), root4 = sqrtf(root2), root8 = sqrtf(root4);
-    float curve =
-        0.64236677f * root2 + 0.71210915f * root4 - 0.33686939f * root8 - 0.017563495f * c;
-    return c <= 0.0031308f ? 12.92f * c : curve;
+    return tone == TONE_REINHARD ? tone_reinhard(c) : tone == TONE_FILMIC ? tone_filmic(c) : c;
 }
 
 // Straight alpha, and colours of that tone.

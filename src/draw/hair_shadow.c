@@ -14,9 +14,8 @@ enum {
     BOX_WORDS = 6
 };
 
-static const double UNIT = 1 << 16;    // steps for an optical depth of 1
-static const double SUM_MAX = 2e9;     // of those steps: sums do not overflow
-static const double LEAST_LEFT = 1e-3; // of the light behind one fibre, as in shadow_splat.comp
+static const double UNIT = 1 << 16; // steps for an optical depth of 1
+static const double SUM_MAX = 2e9;  // of those steps: sums do not overflow
 
 // What a program of the deep maps or of the first depths is built for.
 enum { FIRSTS = 0, DEEP = 1, COARSE_FIRSTS = 2 };

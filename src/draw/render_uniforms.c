@@ -3,17 +3,14 @@
 
 #include "strands/paint.h"
 
+#include "glsl/common/shared_math.h"
+
 #include <assert.h>
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
 _Static_assert(MAX_LIGHTS == SCENE_MAX_LIGHTS, "one limit");
-
-float linear_from_srgb(float value)
-{
-    return value <= 0.04045f ? value / 12.92f : powf((value + 0.055f) / 1.055f, 2.4f);
-}
 
 void linear_from_srgb_color(const float srgb[3], float linear[3])
 {

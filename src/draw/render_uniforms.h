@@ -10,7 +10,6 @@
 #include "glsl/draw/material.h"
 
 // sRGB 0..1 to linear.
-float linear_from_srgb(float value);
 void linear_from_srgb_color(const float srgb[3], float linear[3]);
 
 // Camera and lights for a picture of this size; the rest is left 0.

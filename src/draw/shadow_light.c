@@ -10,19 +10,13 @@ typedef struct Search {
     const MappedCaster *caster;
     const uint32_t *layers; // [LAYERS][side][side]
     float across, *left;
-    float last; // LAYERS - 1e-3: a bound that compilers know makes them jump
+    float last; // LAYER_END: a bound that compilers know makes them jump
 } Search;
 
 SIMD_INLINE float mix4(float a, float b, float c, float d, float u, float v)
 {
     float above = a + u * (b - a), below = c + u * (d - c);
     return above + v * (below - above);
-}
-
-// Optical depth before a layer and of its own by share (unpack_layer).
-SIMD_INLINE float texel_depth(uint32_t bits, float share)
-{
-    return ((float)(int)(bits & 0xffff) + share * (float)(int)(bits >> 16)) * (1.f / 4096);
 }
 
 // Where a tile's particles look: the texel before them, what they are beyond it, and their layer.
@@ -56,13 +50,6 @@ SIMD_INLINE void find_looks(const Search *search, const Places *places, Looks *l
     }
 }
 
-// What of its own optical depth a fibre finds in its layer (OWN_SHARE of shadow.glsl).
-SIMD_INLINE float own_depth(float width, float opacity, float share)
-{
-    float kept = opacity * simd_min(width, 1), beyond = simd_min(simd_max(width - 1, 0), 1);
-    return share * 0.5f * (1 + beyond) * kept * (1 + 0.5f * kept);
-}
-
 SIMD_INLINE void find_lights(const Search *search, const Tile *tile, const Places *places,
                              float *left)
 {
@@ -74,20 +61,20 @@ SIMD_INLINE void find_lights(const Search *search, const Tile *tile, const Place
     for (int k = 0; k < W; ++k) {
         int at = looks.texel[k] + looks.layer[k] * squares, below = at + side;
         float share = looks.share[k];
-        sum[k] = mix4(texel_depth(layers[at], share), texel_depth(layers[at + 1], share),
-                      texel_depth(layers[below], share), texel_depth(layers[below + 1], share),
+        sum[k] = mix4(layer_depth(layers[at], share), layer_depth(layers[at + 1], share),
+                      layer_depth(layers[below], share), layer_depth(layers[below + 1], share),
                       looks.u[k], looks.v[k]);
     }
     for (int k = 0; k < W; ++k)
-        sum[k] -=
-            own_depth(2 * places->radius[k] * search->across, tile->opacity[k], looks.share[k]);
+        sum[k] -= own_layer_depth(2 * places->radius[k] * search->across, tile->opacity[k],
+                                  looks.share[k]);
     // Beside the map no hair stands in the light, nor behind a lamp.
     for (int k = 0; k < W; ++k) {
         bool inside = (places->u[k] >= 0) & (places->v[k] >= 0) & (places->u[k] <= most) &
                       (places->v[k] <= most);
         sum[k] *= inside ? 1.f : 0.f;
     }
-    for (int k = 0; k < W; ++k) left[k] = simd_exp2(-1.44269504f * simd_positive(sum[k]));
+    for (int k = 0; k < W; ++k) left[k] = simd_exp2(-(float)LOG2E * simd_positive(sum[k]));
 }
 
 SIMD_INLINE void find_light(const Search *search, int part)
@@ -118,6 +105,6 @@ void shadow_light_find(ShadowMap *shadow, const CastParams *params, const Mapped
                      .layers = layers,
                      .across = across,
                      .left = left,
-                     .last = (float)LAYERS - 1e-3f};
+                     .last = LAYER_END};
     run_find_light(&search, shadow->parts);
 }

@@ -11,7 +11,7 @@
 enum { LINES = 3 * LAYERS + 2 };
 
 // As in shadow_splat.comp.
-static const float MOST_ALONG = 512, MOST = 7500, LEAST_LEFT = 1e-3f, WIDE = 1.5f;
+static const float MOST_ALONG = 512, MOST = 7500, WIDE = 1.5f;
 
 // How close points lie, in texels of the map that they go to (see shadow_splat.comp).
 typedef struct Density {
@@ -146,8 +146,8 @@ SIMD_INLINE float minus_log(float x)
 SIMD_INLINE uint32_t find_part(float opacity, float width, float size, float unit, float points)
 {
     float covered = simd_min(width, 1);
-    float depth = minus_log(simd_max(1 - opacity * covered, LEAST_LEFT)) /
-                  simd_max(covered, 1e-9f) * width * size;
+    float depth =
+        minus_log(light_behind_fibre(opacity, width)) / simd_max(covered, 1e-9f) * width * size;
     return (uint32_t)(int)(simd_min(simd_max(depth * unit, 0) / points, 2e9f) + 0.5f);
 }
 
@@ -183,12 +183,6 @@ SIMD_INLINE void lay_points(const Cast *cast, const Tile *tile, const Places *a,
     points->wide = widest > WIDE;
 }
 
-// Depths are 0 .. 1, what is not a number 0. One layer is LAYERS sqrt(behind).
-SIMD_INLINE int layer_of(float behind)
-{
-    return (int)simd_min((float)LAYERS * sqrtf(simd_max(behind, 0)), (float)LAYERS - 1e-3f);
-}
-
 // Where a turn's point of strand k lies: at the edge with nothing to add if beside the map.
 typedef struct Spot {
     float z;
@@ -218,7 +212,7 @@ SIMD_INLINE void add_points(const Cast *cast, const Points *points, uint32_t *su
         uint32_t part[W];
         for (int k = 0; k < W; ++k) {
             Spot spot = find_spot(points, k, turn, edge);
-            int layer = layer_of(spot.z - depths[spot.row * side + spot.column]);
+            int layer = (int)layer_of(spot.z - depths[spot.row * side + spot.column]);
             place[k] = (spot.row * LAYERS + layer) * side + spot.column;
             part[k] = spot.inside ? points->part[k] : 0;
         }
@@ -264,7 +258,7 @@ static void lay_wide(const Cast *cast, const Tile *tile, const Points *p, int k,
         if (!(u >= 0 && v >= 0 && u <= (float)side - 0.5f && v <= (float)side - 0.5f)) continue;
         int row = (int)v, texel = row * side + (int)u;
         if (cast->deep)
-            sums[(row * LAYERS + layer_of(z - shadow->depths[texel])) * side + (int)u] += part;
+            sums[(row * LAYERS + (int)layer_of(z - shadow->depths[texel])) * side + (int)u] += part;
         else
             first[texel] = simd_min(simd_max(z, 0), first[texel]);
     }
@@ -345,14 +339,6 @@ SIMD_INLINE void gather_row(const ShadowMap *shadow, int row, float *line, float
         line[side + 1] = line[side];
         for (int x = 0; x < side; ++x) smooth[x] = line[x] + 2 * line[x + 1] + line[x + 2];
     }
-}
-
-// As pack_layer of shadow_layer.glsl.
-SIMD_INLINE uint32_t pack_layer(float before, float own)
-{
-    const float steps = 4096, most = 65535;
-    return (uint32_t)(int)simd_min(before * steps + 0.5f, most) |
-           (uint32_t)(int)simd_min(own * steps + 0.5f, most) << 16;
 }
 
 // Smooths the other way and adds up, layer by layer: three rows of all layers to one.

@@ -7,8 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double LEAST_LEFT = 1e-3; // of the light behind one fibre
-
 // --- The maps of the mesh.
 
 enum {

@@ -6,10 +6,10 @@
 
 #include "image/convolve.h"
 
+#include "glsl/common/shared_math.h"
+
 #include <math.h>
 #include <stdlib.h>
-
-static const double PI = 3.14159265358979323846;
 
 // --- Colours.
 

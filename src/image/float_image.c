@@ -5,6 +5,8 @@
 #include "image/pfm.h"
 #include "image/png.h"
 
+#include "glsl/common/shared_math.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -27,8 +29,7 @@ static double read_level(const Image *image, size_t i)
     if (image->kind == IMAGE_8) return image->pixels[i];
     if (image->kind == IMAGE_16) return ((const uint16_t *)(const void *)image->pixels)[i] / 257.0;
     double linear = (double)((const float *)(const void *)image->pixels)[i], size = fabs(linear);
-    double value = size <= 0.0031308 ? 12.92 * size : 1.055 * pow(size, 1 / 2.4) - 0.055;
-    return 255 * copysign(value, linear);
+    return 255 * copysign(srgb_encode(size), linear);
 }
 
 Result float_image_create(FloatImage *floats, const Image *image, float level, Error *error)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "image/image.h"
 
+#include "glsl/common/shared_math.h"
+
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -40,13 +42,12 @@ void image_destroy(Image *image)
 
 double image_linear_from_srgb(double value)
 {
-    return value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4);
+    return srgb_decode(value);
 }
 
 double image_srgb_from_linear(double value)
 {
-    value = fmin(fmax(value, 0), 1);
-    return value <= 0.0031308 ? 12.92 * value : 1.055 * pow(value, 1 / 2.4) - 0.055;
+    return srgb_encode(fmin(fmax(value, 0), 1));
 }
 
 // --- Contact sheets.

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "image/tone.h"
 
-#include <math.h>
+#include "glsl/common/shared_math.h"
 
-static const double WHITE = 4; // reinhard's: light of this becomes 1
+#include <math.h>
 
 double tone_map(Tone tone, double light)
 {
     switch (tone) {
     case TONE_REINHARD:
-        return light * (1 + light / (WHITE * WHITE)) / (1 + light);
+        return light * (1 + light / (TONE_WHITE * TONE_WHITE)) / (1 + light);
     case TONE_FILMIC:
-        return light * (2.51 * light + 0.03) / (light * (2.43 * light + 0.59) + 0.14);
+        return light * (FILMIC_A * light + FILMIC_B) /
+               (light * (FILMIC_C * light + FILMIC_D) + FILMIC_E);
     case TONE_NONE:
         break;
     }
@@ -25,10 +26,10 @@ double tone_unmap(Tone tone, double value)
     double a, b, c;
     switch (tone) {
     case TONE_REINHARD:
-        a = 1 / (WHITE * WHITE), b = 1 - value, c = -value;
+        a = 1 / (TONE_WHITE * TONE_WHITE), b = 1 - value, c = -value;
         break;
     case TONE_FILMIC:
-        a = 2.51 - 2.43 * value, b = 0.03 - 0.59 * value, c = -0.14 * value;
+        a = FILMIC_A - FILMIC_C * value, b = FILMIC_B - FILMIC_D * value, c = -FILMIC_E * value;
         break;
     default:
         return value;

@@ -2,6 +2,8 @@
 #include "scene/scene_tracks.h"
 #include "scene/scene_param.h"
 
+#include "glsl/common/shared_math.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -207,13 +209,6 @@ static Result read_direction(Light *light, const JsonPlace *parent, const json_t
     return RESULT_OK;
 }
 
-// IEC 61966-2-1.
-static float linear_from_srgb(float srgb)
-{
-    double level = (double)srgb;
-    return (float)(level <= 0.04045 ? level / 12.92 : pow((level + 0.055) / 1.055, 2.4));
-}
-
 // A color as the parameter `color` takes it, made linear.
 static Result read_light_color(Light *light, const JsonPlace *parent, const json_t *object,
                                Error *error)
@@ -223,7 +218,7 @@ static Result read_light_color(Light *light, const JsonPlace *parent, const json
     JsonPlace place = {.parent = parent, .key = "color"};
     SectionParams holder = {0};
     Result result = scene_read_param(params_find("color"), &holder, NULL, &place, value, error);
-    for (int i = 0; i < 3; i++) light->color[i] = linear_from_srgb(holder.color[i]);
+    for (int i = 0; i < 3; i++) light->color[i] = (float)srgb_decode((double)holder.color[i]);
     return result;
 }
 

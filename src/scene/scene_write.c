@@ -4,6 +4,8 @@
 #include "scene/scene_param.h"
 #include "scene/scene_tracks.h"
 
+#include "glsl/common/shared_math.h"
+
 #include <math.h>
 
 // Puts `value` into `object` and takes its reference; false if either is NULL or memory is short.
@@ -121,19 +123,13 @@ static bool write_head(json_t *object, const Scene *scene)
     return put(object, "head", head) && good;
 }
 
-static float srgb_from_linear(float linear)
-{
-    double level = (double)linear;
-    return (float)(level <= 0.04045 / 12.92 ? level * 12.92 : 1.055 * pow(level, 1 / 2.4) - 0.055);
-}
-
 static json_t *write_light(const Light *light)
 {
     bool far = light->kind == LIGHT_DIRECTIONAL;
     float way[3], color[3];
     for (int i = 0; i < 3; i++) {
         way[i] = (far ? -light->direction[i] : light->direction[i]) + 0.0f;
-        color[i] = fminf(srgb_from_linear(light->color[i]), 1.0f);
+        color[i] = fminf((float)srgb_encode((double)light->color[i]), 1.0f);
     }
     json_t *object = json_object();
     bool good = put(object, "type", json_string(LIGHT_KIND_WORDS[light->kind]));

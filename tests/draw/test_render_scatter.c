@@ -7,6 +7,8 @@
 #include "support/reference_marschner.h"
 #include "support/test_glsl.h"
 
+#include "glsl/common/shared_math.h"
+
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,8 +17,6 @@
 #include <string.h>
 
 #include <cmocka.h>
-
-#define PI 3.14159265358979323846
 
 static Gpu gpu;
 static ScatterTables tables;

@@ -3,6 +3,8 @@
 #include "draw/render_uniforms.h"
 #include "support/stage.h"
 
+#include "glsl/common/shared_math.h"
+
 #include <math.h>
 #include <string.h>
 

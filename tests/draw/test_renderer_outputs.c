@@ -61,7 +61,7 @@ static double level_at(const Image *image, size_t i)
     return sixteen / 257.0;
 }
 
-// Half a level of rounding; srgb.glsl is off by 0.012.
+// Half a level of rounding; srgb_from_linear is off by 0.012.
 static void every_kind_shows_the_same_picture(void **state)
 {
     (void)state;

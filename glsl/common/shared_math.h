@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: MIT
+// Arithmetic that C and GLSL both do: each formula and constant stands here once, in what both
+// languages understand. Literals of functions end in f; constants are double in C, for references.
+// In C functions are inlined into loops over lanes, which become vector instructions: no branches.
+#ifdef __STDC__
+#pragma once
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+typedef uint32_t uint;
+#define SHARED_FUNCTION static inline __attribute__((always_inline))
+#define FLOAT(x)        ((float)(x))
+#define INT(x)          ((int)(x))
+#define UINT(x)         ((uint)(x))
+#define SHARED_SQRT     sqrtf
+SHARED_FUNCTION float SHARED_MAX(float a, float least) // `least` if a is not a number
+{
+    return a > least ? a : least;
+}
+SHARED_FUNCTION float SHARED_MIN(float a, float most) { return a < most ? a : most; }
+SHARED_FUNCTION float FLOAT_OF_BITS(uint bits)
+{
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+SHARED_FUNCTION uint BITS_OF_FLOAT(float value)
+{
+    uint bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+#else
+#define SHARED_FUNCTION
+#define FLOAT(x)      float(x)
+#define INT(x)        int(x)
+#define UINT(x)       uint(x)
+#define SHARED_SQRT   sqrt
+#define SHARED_MAX    max
+#define SHARED_MIN    min
+#define FLOAT_OF_BITS uintBitsToFloat
+#define BITS_OF_FLOAT floatBitsToUint
+#endif
+
+#define PI    3.14159265358979323846
+#define LOG2E 1.44269504 // exp(x) = exp2(LOG2E * x)
+
+// --- Tone curves, from light >= 0 of one channel to a linear colour value.
+
+// Reinhard et al. 2002, equation 4: light of TONE_WHITE becomes 1.
+#define TONE_WHITE 4.0
+
+SHARED_FUNCTION float tone_reinhard(float c)
+{
+    c = SHARED_MAX(c, 0.0f);
+    return c * (1.0f + c / FLOAT(TONE_WHITE * TONE_WHITE)) / (1.0f + c);
+}
+
+// K. Narkowicz's fit (2015) of the Academy's filmic curve, (A c^2 + B c) / (C c^2 + D c + E).
+#define FILMIC_A 2.51
+#define FILMIC_B 0.03
+#define FILMIC_C 2.43
+#define FILMIC_D 0.59
+#define FILMIC_E 0.14
+
+SHARED_FUNCTION float tone_filmic(float c)
+{
+    c = SHARED_MAX(c, 0.0f);
+    return c * (FLOAT(FILMIC_A) * c + FLOAT(FILMIC_B)) /
+           (c * (FLOAT(FILMIC_C) * c + FLOAT(FILMIC_D)) + FLOAT(FILMIC_E));
+}
+
+// --- sRGB (IEC 61966-2-1): value = SRGB_SLOPE linear up to SRGB_KNEE, then
+// (1 + SRGB_OFFSET) linear^(1 / SRGB_POWER) - SRGB_OFFSET.
+#define SRGB_KNEE     0.0031308 // linear
+#define SRGB_KNEE_OUT 0.04045   // the same in sRGB
+#define SRGB_SLOPE    12.92
+#define SRGB_OFFSET   0.055
+#define SRGB_POWER    2.4
+
+#ifdef __STDC__
+static inline double srgb_decode(double value)
+{
+    return value <= SRGB_KNEE_OUT ? value / SRGB_SLOPE
+                                  : pow((value + SRGB_OFFSET) / (1 + SRGB_OFFSET), SRGB_POWER);
+}
+
+static inline double srgb_encode(double linear)
+{
+    return linear <= SRGB_KNEE ? SRGB_SLOPE * linear
+                               : (1 + SRGB_OFFSET) * pow(linear, 1 / SRGB_POWER) - SRGB_OFFSET;
+}
+
+// In float arithmetic, as colours of scenes have been since they were first drawn.
+static inline float linear_from_srgb(float value)
+{
+    return value <= FLOAT(SRGB_KNEE_OUT)
+               ? value / FLOAT(SRGB_SLOPE)
+               : powf((value + FLOAT(SRGB_OFFSET)) / FLOAT(1 + SRGB_OFFSET), FLOAT(SRGB_POWER));
+}
+#endif
+
+// Not the driver's own conversion: some approximate it. Nor pow, which costs CPU drivers as much as
+// a dozen ribbons: the curve from SRGB_KNEE to 1 as a sum of c and three roots, by Remez' exchange;
+// it is off by 0.012 of one of 255 levels at most.
+SHARED_FUNCTION float srgb_from_linear(float c)
+{
+    c = SHARED_MIN(SHARED_MAX(c, 0.0f), 1.0f);
+    float root2 = SHARED_SQRT(c), root4 = SHARED_SQRT(root2), root8 = SHARED_SQRT(root4);
+    float curve =
+        0.64236677f * root2 + 0.71210915f * root4 - 0.33686939f * root8 - 0.017563495f * c;
+    return c <= FLOAT(SRGB_KNEE) ? FLOAT(SRGB_SLOPE) * c : curve;
+}
+
+// --- Levels: numbers >= 0 in 16 bits, two a word. Six bits of a float's exponent, from 2^-40
+// (which is 0, too), and ten of its mantissa, as many as a half has; a CPU unpacks them in a few
+// operations, a half takes it a dozen and a half.
+#define LEVEL_LEAST ((127u - 40u) << 23) // as float bits
+
+SHARED_FUNCTION uint pack_level(float value)
+{
+    value = SHARED_MIN(SHARED_MAX(value, FLOAT_OF_BITS(LEVEL_LEAST)), 65504.0f);
+    return (BITS_OF_FLOAT(value) - LEVEL_LEAST + 0x1000u) >> 13;
+}
+
+SHARED_FUNCTION float low_level(uint word)
+{
+    return FLOAT_OF_BITS(((word & 0xffffu) << 13) + LEVEL_LEAST);
+}
+
+SHARED_FUNCTION float high_level(uint word)
+{
+    return FLOAT_OF_BITS(((word >> 16) << 13) + LEVEL_LEAST);
+}
+
+// --- Deep opacity maps (Yuksel and Keyser 2008). Layers follow the first depth and grow thicker
+// behind it, since light changes most where it comes in.
+#define SHADOW_LAYERS 8
+#define LAYER_END     (FLOAT(SHADOW_LAYERS) - 1e-3f) // the last place among them
+
+// Place among the layers, 0 .. LAYER_END, at the depth `behind` (share of all depth) the first.
+SHARED_FUNCTION float layer_of(float behind)
+{
+    return SHARED_MIN(FLOAT(SHADOW_LAYERS) * SHARED_SQRT(SHARED_MAX(behind, 0.0f)), LAYER_END);
+}
+
+// Optical depth before a layer and its own, in 16 bits each: steps of 2^-12, which no light differs
+// by more than 1e-4 in, up to 16, behind which it is dark. (Halves take CPU drivers longer.)
+#define LAYER_STEPS 4096.0f
+
+SHARED_FUNCTION uint pack_layer(float before, float own)
+{
+    return UINT(INT(SHARED_MIN(before * LAYER_STEPS + 0.5f, 65535.0f))) |
+           (UINT(INT(SHARED_MIN(own * LAYER_STEPS + 0.5f, 65535.0f))) << 16);
+}
+
+// The optical depth before a place in a packed layer, `share` of which lies before it.
+SHARED_FUNCTION float layer_depth(uint bits, float share)
+{
+    return (FLOAT(INT(bits & 0xffffu)) + share * FLOAT(INT(bits >> 16))) * (1.0f / LAYER_STEPS);
+}
+
+// A fibre is in the map itself, smeared over the texels beside it and its layer's depth: where it
+// lies it finds half of its own optical depth -ln(1 - kept) (the middle of a box spread by 1 2 1;
+// all of it where the fibre is wide), by the share of the layer before it. `width`: texels.
+SHARED_FUNCTION float own_layer_depth(float width, float opacity, float share)
+{
+    float kept = opacity * SHARED_MIN(width, 1.0f),
+          beyond = SHARED_MIN(SHARED_MAX(width - 1.0f, 0.0f), 1.0f);
+    return share * 0.5f * (1.0f + beyond) * kept * (1.0f + 0.5f * kept);
+}
+
+// A texel that a fibre of opacity a crosses, covering the share c of its width, loses the share a c
+// of its light: an optical depth of -ln(1 - a c), or -ln(1 - a) where it is covered whole. No fibre
+// leaves less than this of the light.
+#define LEAST_LEFT 1e-3
+
+SHARED_FUNCTION float light_behind_fibre(float opacity, float width)
+{
+    return SHARED_MAX(1.0f - opacity * SHARED_MIN(width, 1.0f), FLOAT(LEAST_LEFT));
+}
