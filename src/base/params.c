@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "base/params.h"
 
+#include "base/decimal.h"
+#include "base/suggest.h"
 #include "glsl/common/collider_table.h"
 
 #include <assert.h>
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,9 +39,11 @@ const size_t PARAM_COUNT = sizeof PARAM_TABLE / sizeof PARAM_TABLE[0];
 #define GROUP_TITLE(group, title) title,
 const char *const GROUP_TITLES[GROUP_COUNT] = {PARAM_GROUPS(GROUP_TITLE)};
 
-static bool owns_text(const ParamInfo *info)
+// --- The structs.
+
+static bool owns_text(const ParamInfo *info, ParamScope scope)
 {
-    return info->kind == PARAM_TEXT || info->kind == PARAM_PATH;
+    return info->scope == scope && (info->kind == PARAM_TEXT || info->kind == PARAM_PATH);
 }
 
 static char **text_field(const ParamInfo *info, void *params)
@@ -45,7 +51,7 @@ static char **text_field(const ParamInfo *info, void *params)
     return (char **)(void *)((char *)params + info->offset);
 }
 
-static Result create_defaults(ParamScope scope, void *params, Error *error)
+static Result set_defaults(ParamScope scope, void *params, Error *error)
 {
     for (size_t i = 0; i < PARAM_COUNT; i++) {
         if (PARAM_TABLE[i].scope != scope) continue;
@@ -58,22 +64,20 @@ static Result create_defaults(ParamScope scope, void *params, Error *error)
 
 static void free_texts(ParamScope scope, void *params)
 {
-    for (size_t i = 0; i < PARAM_COUNT; i++) {
-        const ParamInfo *info = &PARAM_TABLE[i];
-        if (info->scope == scope && owns_text(info)) free(*text_field(info, params));
-    }
+    for (size_t i = 0; i < PARAM_COUNT; i++)
+        if (owns_text(&PARAM_TABLE[i], scope)) free(*text_field(&PARAM_TABLE[i], params));
 }
 
 Result params_create_run(RunParams *params, Error *error)
 {
     *params = (RunParams){0};
-    return create_defaults(SCOPE_RUN, params, error);
+    return set_defaults(SCOPE_RUN, params, error);
 }
 
 Result params_create_section(SectionParams *params, Error *error)
 {
     *params = (SectionParams){0};
-    return create_defaults(SCOPE_SECTION, params, error);
+    return set_defaults(SCOPE_SECTION, params, error);
 }
 
 void params_destroy_run(RunParams *params)
@@ -93,9 +97,8 @@ Result params_copy_section(SectionParams *to, const SectionParams *from, Error *
     *to = *from;
     bool copied = true;
     for (size_t i = 0; i < PARAM_COUNT; i++) {
-        const ParamInfo *info = &PARAM_TABLE[i];
-        if (info->scope != SCOPE_SECTION || !owns_text(info)) continue;
-        char **text = text_field(info, to);
+        if (!owns_text(&PARAM_TABLE[i], SCOPE_SECTION)) continue;
+        char **text = text_field(&PARAM_TABLE[i], to);
         // Once one copy has failed the others become NULL, so that nothing is shared with `from`.
         *text = copied ? strdup(*text) : NULL;
         copied = *text != NULL;
@@ -104,6 +107,8 @@ Result params_copy_section(SectionParams *to, const SectionParams *from, Error *
     params_destroy_section(to);
     return error_set(error, RESULT_FAILED, "out of memory");
 }
+
+// --- Finding rows.
 
 static bool names_equal(const char *a, const char *b)
 {
@@ -136,4 +141,263 @@ bool params_owned_by(const ParamInfo *info, const char *solver)
     for (const char *at = info->owner; *at; at += strcspn(at, " "), at += *at == ' ')
         if (strncmp(at, solver, length) == 0 && (!at[length] || at[length] == ' ')) return true;
     return false;
+}
+
+// --- Values as text and back.
+
+// The units that have a name, in metres.
+static const struct {
+    const char *word;
+    float metres;
+} LENGTH_UNITS[] = {{"m", 1.0f}, {"cm", 0.01f}, {"mm", 0.001f}, {"in", 0.0254f}};
+enum { LENGTH_UNIT_COUNT = sizeof LENGTH_UNITS / sizeof LENGTH_UNITS[0] };
+
+// What the text of each kind is: `count` numbers of a type with `separator` between them, or one of
+// its own. A description has `before` and `behind` around the range; NULL: there is no range.
+typedef enum NumberType { NO_NUMBER, NUMBER_INT, NUMBER_UINT, NUMBER_FLOAT } NumberType;
+static const struct Form {
+    const char *before, *behind;
+    NumberType type;
+    int count;
+    char separator;
+    bool automatic; // or "auto"
+} FORMS[] = {
+    [PARAM_BOOL] = {"true or false", NULL},
+    [PARAM_INT] = {"a whole number ", "", NUMBER_INT, 1},
+    [PARAM_UINT] = {"a whole number ", "", NUMBER_UINT, 1},
+    [PARAM_FLOAT] = {"a number ", "", NUMBER_FLOAT, 1},
+    [PARAM_VEC3] = {"three numbers x,y,z ", "", NUMBER_FLOAT, 3, ','},
+    [PARAM_COLOR] = {"#rrggbb or r,g,b ", "", NUMBER_FLOAT, 3, ','},
+    [PARAM_BACKGROUND] = {"#rrggbb, r,g,b ", ", or transparent", NUMBER_FLOAT, 3, ','},
+    [PARAM_AUTO_INT] = {"auto or a whole number ", "", NUMBER_INT, 1, 0, true},
+    [PARAM_AUTO_FLOAT] = {"auto or a number ", "", NUMBER_FLOAT, 1, 0, true},
+    [PARAM_AUTO_VEC3] = {"auto or three numbers x,y,z ", "", NUMBER_FLOAT, 3, ',', true},
+    [PARAM_UNIT] = {"auto, m, cm, mm, in or a number ", "", NUMBER_FLOAT, 1, 0, true},
+    [PARAM_SIZE] = {"WxH, each ", "", NUMBER_INT, 2, 'x'},
+    [PARAM_PART] = {"I/N, each ", " and I at most N", NUMBER_INT, 2, '/'},
+    [PARAM_TEXT] = {"a name", NULL},
+    [PARAM_PATH] = {"a path", NULL},
+};
+
+// Where the numbers of a field begin: behind `automatic` if it has that.
+enum { AUTO_OFFSET = offsetof(AutoFloat, value) };
+_Static_assert(offsetof(AutoInt, value) == AUTO_OFFSET && offsetof(AutoVec3, value) == AUTO_OFFSET,
+               "all Auto structs begin alike");
+
+// A value on its way in: what the user wrote, and what it should have been.
+typedef struct Input {
+    const ParamInfo *info;
+    const char *text;
+    Error *error;
+} Input;
+
+static Result refuse(const Input *input, const char *nearest)
+{
+    char expected[200];
+    params_describe(input->info, expected, sizeof expected);
+    char got[64];
+    snprintf(got, sizeof got, "%s", input->text);
+    for (char *at = got; *at; at++) {
+        if ((unsigned char)*at < ' ' || *at == 127) *at = '?';
+    }
+    const char *dots = strlen(input->text) >= sizeof got ? "..." : "";
+    if (!nearest)
+        return error_set(input->error, RESULT_USAGE, "got '%s%s', expected %s", got, dots,
+                         expected);
+    return error_set(input->error, RESULT_USAGE, "got '%s%s', expected %s (nearest: %s)", got, dots,
+                     expected, nearest);
+}
+
+static const char *skip_blanks(const char *text)
+{
+    return text + strspn(text, " \t");
+}
+
+// A decimal number with blanks around it; returns what follows, or NULL if there is none. strtod
+// alone would also take hexadecimal, infinity and NaN.
+static const char *read_number(const char *text, double *number)
+{
+    text = skip_blanks(text);
+    size_t length = strspn(text, "0123456789+-.eE");
+    char *end;
+    *number = strtod(text, &end);
+    if (end == text || end > text + length) return NULL;
+    return skip_blanks(end);
+}
+
+// Integers, too, go through double, which holds all of those that any range allows.
+static Result read_numbers(const Input *input, const struct Form *form, double *numbers)
+{
+    const ParamInfo *info = input->info;
+    const char *at = input->text;
+    if (form->type != NUMBER_FLOAT && strpbrk(at, ".eE")) return refuse(input, NULL);
+    for (int i = 0; i < form->count; i++) {
+        if (i > 0 && *at++ != form->separator) return refuse(input, NULL);
+        at = read_number(at, &numbers[i]);
+        if (!at) return refuse(input, NULL);
+    }
+    if (*at) return refuse(input, NULL);
+    for (int i = 0; i < form->count; i++) {
+        double inside = fmin(fmax(numbers[i], info->minimum), info->maximum);
+        if (numbers[i] == inside) continue;
+        char nearest[32];
+        snprintf(nearest, sizeof nearest, "%.10g", inside);
+        return refuse(input, nearest);
+    }
+    if (info->kind == PARAM_PART && numbers[0] > numbers[1]) return refuse(input, NULL);
+    return RESULT_OK;
+}
+
+static Result parse_numbers(const Input *input, void *field)
+{
+    const struct Form *form = &FORMS[input->info->kind];
+    double numbers[3] = {0};
+    bool automatic = form->automatic && strcmp(input->text, "auto") == 0;
+    if (!automatic) TRY(read_numbers(input, form, numbers));
+    if (form->automatic) *(bool *)field = automatic;
+    char *at = (char *)field + (form->automatic ? AUTO_OFFSET : 0);
+    for (int i = 0; i < form->count; i++, at += 4) {
+        if (form->type == NUMBER_INT) *(int *)(void *)at = (int)numbers[i];
+        if (form->type == NUMBER_UINT) *(uint32_t *)(void *)at = (uint32_t)numbers[i];
+        if (form->type == NUMBER_FLOAT) *(float *)(void *)at = (float)numbers[i];
+    }
+    return RESULT_OK;
+}
+
+static Result parse_color(const Input *input, float value[3])
+{
+    if (input->text[0] != '#') return parse_numbers(input, value);
+    const char *digits = input->text + 1;
+    if (strlen(digits) != 6 || strspn(digits, "0123456789abcdefABCDEF") != 6)
+        return refuse(input, NULL);
+    unsigned long rgb = strtoul(digits, NULL, 16);
+    for (int i = 0; i < 3; i++) value[i] = (float)(rgb >> (16 - 8 * i) & 255) / 255.0f;
+    return RESULT_OK;
+}
+
+static Result parse_choice(const Input *input, int *value)
+{
+    const char *const *choices = input->info->choices;
+    int count = 0;
+    for (; choices[count]; count++) {
+        if (strcmp(input->text, choices[count]) != 0) continue;
+        *value = count;
+        return RESULT_OK;
+    }
+    return refuse(input, suggest_nearest(input->text, choices, (size_t)count));
+}
+
+Result params_parse(const ParamInfo *info, void *params, const char *text, Error *error)
+{
+    void *field = (char *)params + info->offset;
+    float *floats = field;
+    Input input = {info, text, error};
+    switch (info->kind) {
+    case PARAM_BOOL:
+        if (strcmp(text, "true") != 0 && strcmp(text, "false") != 0) return refuse(&input, NULL);
+        *(bool *)field = *text == 't';
+        return RESULT_OK;
+    case PARAM_COLOR:
+        return parse_color(&input, floats);
+    case PARAM_BACKGROUND:
+        if (strcmp(text, "transparent") == 0) {
+            memset(floats, 0, 4 * sizeof *floats);
+            return RESULT_OK;
+        }
+        TRY(parse_color(&input, floats));
+        floats[3] = 1.0f;
+        return RESULT_OK;
+    case PARAM_UNIT:
+        for (int i = 0; i < LENGTH_UNIT_COUNT; i++) {
+            if (strcmp(text, LENGTH_UNITS[i].word) != 0) continue;
+            *(AutoFloat *)field = (AutoFloat){.value = LENGTH_UNITS[i].metres};
+            return RESULT_OK;
+        }
+        return parse_numbers(&input, field);
+    case PARAM_CHOICE:
+        return parse_choice(&input, field);
+    case PARAM_TEXT:
+    case PARAM_PATH: {
+        char *copy = strdup(text);
+        if (!copy) return error_set(error, RESULT_FAILED, "out of memory");
+        free(*(char **)field);
+        *(char **)field = copy;
+        return RESULT_OK;
+    }
+    default:
+        return parse_numbers(&input, field);
+    }
+}
+
+static char *format_numbers(const struct Form *form, const void *field)
+{
+    char text[3 * 24] = "";
+    if (form->automatic && *(const bool *)field) return strdup("auto");
+    const char *at = (const char *)field + (form->automatic ? AUTO_OFFSET : 0);
+    for (int i = 0; i < form->count; i++, at += 4) {
+        size_t length = strlen(text);
+        if (i > 0) text[length++] = form->separator;
+        if (form->type == NUMBER_FLOAT)
+            decimal_format(*(const float *)(const void *)at, text + length, sizeof text - length);
+        else
+            snprintf(text + length, sizeof text - length, "%lld",
+                     form->type == NUMBER_INT ? (long long)*(const int *)(const void *)at
+                                              : (long long)*(const uint32_t *)(const void *)at);
+    }
+    return strdup(text);
+}
+
+static char *format_color(const struct Form *form, const float value[3])
+{
+    unsigned level[3];
+    for (int i = 0; i < 3; i++) {
+        level[i] = (unsigned)lroundf(value[i] * 255.0f);
+        if ((float)level[i] / 255.0f != value[i]) return format_numbers(form, value);
+    }
+    char *text = NULL;
+    return asprintf(&text, "#%02x%02x%02x", level[0], level[1], level[2]) < 0 ? NULL : text;
+}
+
+char *params_format(const ParamInfo *info, const void *params)
+{
+    const void *field = (const char *)params + info->offset;
+    const struct Form *form = &FORMS[info->kind];
+    const float *floats = field;
+    switch (info->kind) {
+    case PARAM_BOOL:
+        return strdup(*(const bool *)field ? "true" : "false");
+    case PARAM_COLOR:
+        return format_color(form, floats);
+    case PARAM_BACKGROUND:
+        return floats[3] == 0 ? strdup("transparent") : format_color(form, floats);
+    case PARAM_UNIT:
+        for (int i = 0; i < LENGTH_UNIT_COUNT; i++)
+            if (((const AutoFloat *)field)->value == LENGTH_UNITS[i].metres)
+                return strdup(LENGTH_UNITS[i].word);
+        return format_numbers(form, field);
+    case PARAM_CHOICE:
+        return strdup(info->choices[*(const int *)field]);
+    case PARAM_TEXT:
+    case PARAM_PATH:
+        return strdup(*(char *const *)field);
+    default:
+        return format_numbers(form, field);
+    }
+}
+
+void params_describe(const ParamInfo *info, char *text, size_t size)
+{
+    const struct Form *form = &FORMS[info->kind];
+    const char *open = info->unit[0] ? " (" : "", *close = info->unit[0] ? ")" : "";
+    size_t length = 0;
+    for (int i = 0; info->choices[i] && length < size; i++) {
+        const char *between = i == 0 ? "" : info->choices[i + 1] ? ", " : " or ";
+        length += (size_t)snprintf(text + length, size - length, "%s%s", between, info->choices[i]);
+    }
+    if (info->kind == PARAM_CHOICE) return;
+    if (!form->behind)
+        snprintf(text, size, "%s", form->before);
+    else
+        snprintf(text, size, "%sfrom %.10g to %.10g%s%s%s%s", form->before, info->minimum,
+                 info->maximum, open, info->unit, close, form->behind);
 }
