@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "base/progress.h"
 
+#include "base/clock.h"
+
 #include <math.h>
 #include <sys/ioctl.h>
-#include <time.h>
 #include <unistd.h>
 
 #define DRAW_INTERVAL_S 0.1
@@ -13,13 +14,6 @@
 #define COLUMNS_MIN     40
 #define COLUMNS_MAX     200
 #define BAR_MAX         40
-
-static double now(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
 
 static int count_columns(FILE *stream)
 {
@@ -41,7 +35,7 @@ void progress_start_at(Progress *progress, FILE *stream, int total, bool quiet, 
 
 void progress_start(Progress *progress, FILE *stream, int total, bool quiet)
 {
-    progress_start_at(progress, stream, total, quiet, now());
+    progress_start_at(progress, stream, total, quiet, 1e-3 * clock_ms());
 }
 
 // "h:mm:ss" or "m:ss".
@@ -108,7 +102,7 @@ void progress_update_at(Progress *progress, int done, double now_s)
 void progress_update(Progress *progress, int done)
 {
     // Not even the clock is read in vain.
-    if (progress->stream) progress_update_at(progress, done, now());
+    if (progress->stream) progress_update_at(progress, done, 1e-3 * clock_ms());
 }
 
 void progress_clear(Progress *progress)

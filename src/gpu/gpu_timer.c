@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "gpu/gpu_timer.h"
 
+#include "base/clock.h"
+
 #include <assert.h>
 #include <string.h>
-#include <time.h>
 
 void gpu_timer_create(GpuTimer *timer, bool enabled, bool software)
 {
@@ -31,13 +32,6 @@ static void read_oldest(TimerLabel *label)
     GLuint64 ns = 0;
     glGetQueryObjectui64v(label->query[label->read++ % TIMER_RING], GL_QUERY_RESULT, &ns);
     label->total_ms += (double)ns * 1e-6;
-}
-
-static double clock_ms(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
 }
 
 void gpu_timer_begin(GpuTimer *timer, const char *name)
