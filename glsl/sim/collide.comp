@@ -1,22 +1,31 @@
 // SPDX-License-Identifier: MIT
-// Pushes hair out of the colliders, a strand from root to tip, behind whatever a solver has done in a step.
+// Pushes hair out of the colliders, a strand from root to tip, behind whatever a solver has done in
+// a step.
 //
-// Particle j of a strand, where the solver has put it at x, follows the one before, which this pass may have moved to p, by reaching from
-// there to x at the same length l. No particle moves further than the one before it. If it is deeper than it may be (`need` is
-// the distance it should have), the link turns about p: with the surface's normal n, the direction d' with n.d' = n.d + depth/l and the
-// rest along the tangent of d puts a particle on a plane exactly, on a curved surface after a few rounds (Newton's method). So lengths
-// stay as they are, and hair at rest comes back to the same place in every step.
+// Particle j of a strand, where the solver has put it at x, follows the one before, which this pass
+// may have moved to p, by reaching from there to x at the same length l. No particle moves further
+// than the one before it. If it is deeper than it may be (`need` is the distance it should have),
+// the link turns about p: with the surface's normal n, the direction d' with n.d' = n.d + depth/l
+// and the rest along the tangent of d puts a particle on a plane exactly, on a curved surface after
+// a few rounds (Newton's method). So lengths stay as they are, and hair at rest comes back to the
+// same place in every step.
 //
-// Friction is Coulomb's. In a position: of the way that the particle has come along the surface since the step before, as much is
-// undone as friction times the depth that is pushed out, at most all of it; what rests would otherwise creep by g dt^2 a step. In a
-// velocity: the part that goes into the surface is taken out, and along the surface at most friction times as much, both relative to the
-// surface: nothing gains speed but by what pushes it. Particles that only follow keep their velocity. (Giving them the displacement
-// over dt, all or what stops them, made styled strands that lie on a sphere flutter for ever.)
+// Friction is Coulomb's. In a position: of the way that the particle has come along the surface
+// since the step before, as much is undone as friction times the depth that is pushed out, at most
+// all of it; what rests would otherwise creep by g dt^2 a step. In a velocity: the part that goes
+// into the surface is taken out, and along the surface at most friction times as much, both
+// relative to the surface: nothing gains speed but by what pushes it. Particles that only follow
+// keep their velocity. (Giving them the displacement over dt, all or what stops them, made styled
+// strands that lie on a sphere flutter for ever.)
 //
-// Roots may lie inside. A root that does stays there, and the distance that is needed grows with the arc length from the root.
+// Roots may lie inside. A root that does stays there, and the distance that is needed grows with
+// the arc length from the root.
 //
-// MODE 0: positions and velocities   1: unit directions and the tip (split)   2: positions that are drawn, neither velocity nor friction
-// CONES: how many cones there are, or 0: any number   FIELD 1: one more collider, a mesh (distance_field.glsl)
+// MODE 0: positions and velocities
+// MODE 1: unit directions and the tip (split)
+// MODE 2: positions that are drawn, neither velocity nor friction
+// CONES: how many cones there are, or 0: any number
+// FIELD 1: one more collider, a mesh (distance_field.glsl)
 #include "sim/collide_params.h"
 #include "common/hair_address.glsl"
 #include "common/rigid.glsl"
@@ -33,7 +42,8 @@ layout(local_size_x = GROUP_SIZE) in;
 #if MODE == SEGMENTS
 layout(binding = BIND_STATE) uniform samplerBuffer segments_before; // unit direction, length
 layout(std430, binding = BIND_STATE_OUT) buffer Segments { vec4 segments[]; };
-layout(std430, binding = BIND_TIPS) buffer Tips { vec4 tips[]; }; // a strand: position, times limited; velocity
+// a strand: position, times limited; velocity
+layout(std430, binding = BIND_TIPS) buffer Tips { vec4 tips[]; };
 #else
 layout(binding = BIND_POSITION) uniform samplerBuffer position_before;
 layout(std430, binding = BIND_POSITION_OUT) buffer Positions { vec4 positions[]; };
@@ -47,12 +57,15 @@ layout(binding = BIND_REST) uniform samplerBuffer rest;
 // A particle: where it was at the end of step w. In the root's place: split's tip.
 layout(std430, binding = BIND_CONTACTS) writeonly buffer Contacts { vec4 contacts[]; };
 layout(binding = BIND_CONTACTS_BEFORE) uniform samplerBuffer contacts_before;
-// A strand, of its last step with contacts: their number, the step; of all steps, as bits of floats: deepest before and after the push.
+// A strand, of its last step with contacts: their number, the step; of all steps, as bits of
+// floats: deepest before and after the push.
 layout(std430, binding = BIND_CONTACT_COUNTS) buffer Counts { uvec4 counts[]; };
 #endif
 
 const int ROUNDS = 3;
-const float LEAVING = 0.5; // way out of a collider for each way along the strand: a root's depth is left after twice that length
+// way out of a collider for each way along the strand: a root's depth is left after twice that
+// length
+const float LEAVING = 0.5;
 
 int n;
 float margin, friction;
@@ -67,7 +80,8 @@ vec3 particle_before(int address, vec3 from)
 #endif
 }
 
-// How far a particle is allowed to be deeper than the margin, arc m behind a root that lies `inside` deep.
+// How far a particle is allowed to be deeper than the margin, arc m behind a root that lies
+// `inside` deep.
 float allowed(float inside, float arc) { return max(inside - LEAVING * arc, 0.0); }
 
 vec3 normalise_or(vec3 v, vec3 otherwise)
@@ -78,14 +92,16 @@ vec3 normalise_or(vec3 v, vec3 otherwise)
 
 vec3 perpendicular(vec3 unit)
 {
-    return normalize(abs(unit.y) < 0.9 ? cross(unit, vec3(0.0, 1.0, 0.0)) : cross(unit, vec3(1.0, 0.0, 0.0)));
+    return normalize(abs(unit.y) < 0.9 ? cross(unit, vec3(0.0, 1.0, 0.0))
+                                       : cross(unit, vec3(1.0, 0.0, 0.0)));
 }
 
 // The direction of a link of length l that is to rise by `depth` along n.
 vec3 turned(vec3 d, vec3 normal, float depth, float l)
 {
     float along = dot(normal, d), up = clamp(along + depth / l, -1.0, 1.0);
-    return up * normal + sqrt(1.0 - up * up) * normalise_or(d - along * normal, perpendicular(normal));
+    return up * normal +
+           sqrt(1.0 - up * up) * normalise_or(d - along * normal, perpendicular(normal));
 }
 
 // What friction leaves of a motion along the surface that is pressed on it by `pressed`.
@@ -109,19 +125,20 @@ struct Strand {
     float longest; // m
 };
 
-// How deep any of its particles is in the collider that a call of DISTANCE gives, beyond what the root's own depth allows.
-#define PROBE(DISTANCE)                                                                        \
-    {                                                                                          \
-        vec3 p = strand.root, unused;                                                          \
-        float at_root = DISTANCE, own = max(margin - at_root, 0.0);                            \
-        inside = max(inside, own);                                                             \
-        int last = at_root < margin + 2.0 * strand.longest ? n : 1;                            \
-        for (int j = 1; j < last; ++j) {                                                       \
-            p = particle_before(strand.first + j * STRAND_TILE, p);                            \
-            deepest = max(deepest, margin - DISTANCE - allowed(own, float(j) * spacing));      \
-        }                                                                                      \
-        p = tip;                                                                               \
-        deepest = max(deepest, margin - DISTANCE - allowed(own, strand.longest));              \
+// How deep any of its particles is in the collider that a call of DISTANCE gives, beyond what the
+// root's own depth allows.
+#define PROBE(DISTANCE)                                                                            \
+    {                                                                                              \
+        vec3 p = strand.root, unused;                                                              \
+        float at_root = DISTANCE, own = max(margin - at_root, 0.0);                                \
+        inside = max(inside, own);                                                                 \
+        int last = at_root < margin + 2.0 * strand.longest ? n : 1;                                \
+        for (int j = 1; j < last; ++j) {                                                           \
+            p = particle_before(strand.first + j * STRAND_TILE, p);                                \
+            deepest = max(deepest, margin - DISTANCE - allowed(own, float(j) * spacing));          \
+        }                                                                                          \
+        p = tip;                                                                                   \
+        deepest = max(deepest, margin - DISTANCE - allowed(own, strand.longest));                  \
     }
 
 // Whether the strand touches anything. `inside`: how deep its root lies.
@@ -140,7 +157,8 @@ bool touches(Strand strand, out float inside)
         Cone cone = CONE(i);
         PROBE(cone_distance(cone, p, unused))
     }
-#define PROBE_OTHER(kind, name, numbers, frame) LOOP_OTHER(kind, name, PROBE(name##_distance(i, p, normal)))
+#define PROBE_OTHER(kind, name, numbers, frame)                                                    \
+    LOOP_OTHER(kind, name, PROBE(name##_distance(i, p, normal)))
     COLLIDERS(COLLIDER_NONE, PROBE_OTHER)
 #if FIELD
     PROBE(field_distance(p, unused))
@@ -152,9 +170,10 @@ struct Tally {
     float contacts, found, left;
 };
 
-// Puts a particle that hangs on p by a link of length l, and is at `at`, where it has at least the distance `need`. Its address is that
-// of what is remembered of it.
-void push_out(inout vec3 at, inout vec3 v, vec3 p, float l, float need, int address, inout Tally tally)
+// Puts a particle that hangs on p by a link of length l, and is at `at`, where it has at least the
+// distance `need`. Its address is that of what is remembered of it.
+void push_out(inout vec3 at, inout vec3 v, vec3 p, float l, float need, int address,
+              inout Tally tally)
 {
     Nearest nearest = nearest_surface(at);
     float depth = need - nearest.distance;
@@ -165,7 +184,9 @@ void push_out(inout vec3 at, inout vec3 v, vec3 p, float l, float need, int addr
 #if MODE != DRAWN
     vec4 before = texelFetch(contacts_before, address);
     vec3 surface = nearest.moved * head_displacement(at), slip = at - before.xyz - surface;
-    aim -= before.w == collide_params.stamp_before ? held_back(slip, nearest.normal, max(depth, 0.0)) : vec3(0.0);
+    aim -= before.w == collide_params.stamp_before
+               ? held_back(slip, nearest.normal, max(depth, 0.0))
+               : vec3(0.0);
 #endif
     vec3 d = normalise_or(aim - p, nearest.normal);
     depth -= contact ? dot(p + l * d - at, nearest.normal) : 0.0;
@@ -197,13 +218,13 @@ void walk(Strand strand, float inside, bool touched)
 #endif
         if (p != p_before) {
             at = p + l * normalise_or(x - p, link / l);
-
         }
         arc += l;
         float need = j < int(collide_params.carried) ? -1e30 : margin - allowed(inside, arc);
         push_out(at, v, p, l, need, a, tally);
 #if MODE == SEGMENTS
-        segments[a] = at == x && p == p_before ? texelFetch(segments_before, a) : vec4((at - p) / l, l);
+        segments[a] =
+            at == x && p == p_before ? texelFetch(segments_before, a) : vec4((at - p) / l, l);
 #else
         positions[a] = vec4(at, 1.0);
 #endif
@@ -229,7 +250,8 @@ void walk(Strand strand, float inside, bool touched)
 #if MODE != DRAWN
         uvec4 count = counts[strand.number];
         count.zw = floatBitsToUint(max(uintBitsToFloat(count.zw), vec2(tally.found, tally.left)));
-        if (tally.contacts > 0.0) count.xy = uvec2(uint(tally.contacts), uint(collide_params.stamp));
+        if (tally.contacts > 0.0)
+            count.xy = uvec2(uint(tally.contacts), uint(collide_params.stamp));
         counts[strand.number] = count;
 #endif
     }

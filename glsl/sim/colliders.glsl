@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The surfaces that hair must not cross, as they are at the step's end: distances (negative inside), normals, motion.
+// The surfaces that hair must not cross, as they are at the step's end: distances (negative
+// inside), normals, motion.
 //
-// A rounded cone is all spheres with centres a + s e, 0 <= s <= L, and radii r + g s. The distance from p to it is the least of
-// |p - a - s e| - r - g s; with y along and h across the axis, the derivative vanishes where s = y + g h/sqrt(1 - g^2), and the
-// function is convex, so s is clamped to the axis. L = 0 is a sphere.
+// A rounded cone is all spheres with centres a + s e, 0 <= s <= L, and radii r + g s. The distance
+// from p to it is the least of |p - a - s e| - r - g s; with y along and h across the axis, the
+// derivative vanishes where s = y + g h/sqrt(1 - g^2), and the function is convex, so s is clamped
+// to the axis. L = 0 is a sphere.
 
 layout(binding = BIND_COLLIDERS) uniform samplerBuffer colliders; // see scene/colliders.c
 
@@ -16,10 +18,12 @@ struct Cone {
 Cone fetch_cone(int i)
 {
     int at = i * COLLIDER_TEXELS;
-    return Cone(texelFetch(colliders, at), texelFetch(colliders, at + 1), texelFetch(colliders, at + 2).xy);
+    return Cone(texelFetch(colliders, at), texelFetch(colliders, at + 1),
+                texelFetch(colliders, at + 2).xy);
 }
 
-// Few cones (CONES > 0) are fetched once and stay in registers; loops over them unroll. A fetch costs a CPU driver as much as a distance.
+// Few cones (CONES > 0) are fetched once and stay in registers; loops over them unroll. A fetch
+// costs a CPU driver as much as a distance.
 #if CONES > 0
 Cone few_cones[CONES];
 
@@ -71,13 +75,13 @@ void take_nearer(inout Nearest nearest, float distance, vec3 normal, float moved
     nearest.distance = min(distance, nearest.distance);
 }
 
-// A loop over the shapes of each OTHER row of the table (collider_table.h): `body` has i, distance, normal and moved. HAS_KIND 0 (the scene has
-// none) leaves no code.
-#define LOOP_OTHER(kind, name, body)                                                                                  \
-    range = ivec3(collide_params.shapes[group++].xyz);                                                                \
-    for (int i = range.x; HAS_##kind != 0 && i < range.z; ++i) {                                                      \
-        vec3 normal;                                                                                                  \
-        body                                                                                                          \
+// A loop over the shapes of each OTHER row of the table (collider_table.h): `body` has i, distance,
+// normal and moved. HAS_KIND 0 (the scene has none) leaves no code.
+#define LOOP_OTHER(kind, name, body)                                                               \
+    range = ivec3(collide_params.shapes[group++].xyz);                                             \
+    for (int i = range.x; HAS_##kind != 0 && i < range.z; ++i) {                                   \
+        vec3 normal;                                                                               \
+        body                                                                                       \
     }
 
 // The surface that is nearest to p, or that p is deepest inside.
@@ -91,8 +95,8 @@ Nearest nearest_surface(vec3 p)
         float distance = cone_distance(CONE(i), p, normal);
         take_nearer(nearest, distance, normal, i < cones_moved ? 1.0 : 0.0);
     }
-#define TAKE_OTHER(kind, name, numbers, frame)                                                                        \
-    LOOP_OTHER(kind, name, float distance = name##_distance(i, p, normal);                                            \
+#define TAKE_OTHER(kind, name, numbers, frame)                                                     \
+    LOOP_OTHER(kind, name, float distance = name##_distance(i, p, normal);                         \
                take_nearer(nearest, distance, normal, i < range.y ? 1.0 : 0.0);)
     COLLIDERS(COLLIDER_NONE, TAKE_OTHER)
 #if FIELD
@@ -108,5 +112,6 @@ vec3 head_displacement(vec3 p)
 {
     vec4 q = collide_params.head_turn_back;
     vec3 y = p - collide_params.head_translation.xyz, t = 2.0 * cross(q.xyz, y);
-    return collide_params.head_translation.xyz - collide_params.head_translation_old.xyz - (q.w * t + cross(q.xyz, t));
+    return collide_params.head_translation.xyz - collide_params.head_translation_old.xyz -
+           (q.w * t + cross(q.xyz, t));
 }

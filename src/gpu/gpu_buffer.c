@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gpu/gpu_buffer.h"
 
+#include <stdlib.h>
+
 static int64_t texel_size(GLenum format)
 {
     switch (format) {
@@ -63,6 +65,22 @@ void gpu_buffer_destroy(GpuBuffer *buffer)
     if (buffer->texture) glDeleteTextures(1, &buffer->texture);
     if (buffer->buffer) glDeleteBuffers(1, &buffer->buffer);
     *buffer = (GpuBuffer){0};
+}
+
+void gpu_buffer_clear(const GpuBuffer *buffer, uint32_t word)
+{
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
+    glClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, 0, (GLsizeiptr)buffer->size,
+                         GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
+}
+
+void *gpu_buffer_read(const GpuBuffer *buffer)
+{
+    void *content = malloc((size_t)buffer->size + 1);
+    if (!content) return NULL;
+    glBindBuffer(GL_COPY_READ_BUFFER, buffer->buffer);
+    glGetBufferSubData(GL_COPY_READ_BUFFER, 0, (GLsizeiptr)buffer->size, content);
+    return content;
 }
 
 void gpu_buffer_bind_storage(const GpuBuffer *buffer, GLuint binding)

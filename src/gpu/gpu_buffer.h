@@ -26,6 +26,12 @@ Result gpu_buffer_create_pieces(GpuBuffer *buffer, const GpuLimits *limits, cons
                                 int64_t size, GLenum texel_format, Error *error);
 void gpu_buffer_destroy(GpuBuffer *buffer);
 
+// Sets every 4 bytes to `word`. Only queues GPU work.
+void gpu_buffer_clear(const GpuBuffer *buffer, uint32_t word);
+
+// A copy of the content, to be freed; NULL when memory is short. Waits for the GPU.
+void *gpu_buffer_read(const GpuBuffer *buffer);
+
 // Binds as storage at a BIND_..._OUT point, or the texture at a BIND_ texture unit
 // (glsl/common/shared.h).
 void gpu_buffer_bind_storage(const GpuBuffer *buffer, GLuint binding);

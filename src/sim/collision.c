@@ -32,8 +32,7 @@ void collision_destroy(Collision *collision)
         gpu_buffer_destroy(&collision->batches[i].counts);
     }
     free(collision->batches);
-    if (collision->program) glDeleteProgram(collision->program);
-    gpu_buffer_destroy(&collision->uniforms);
+    step_pass_destroy(&collision->pass);
     gpu_buffer_destroy(&collision->shapes);
     *collision = (Collision){0};
 }
@@ -54,32 +53,22 @@ static Result check_loops(const Collision *collision, bool software, Error *erro
     return RESULT_OK;
 }
 
-static Result create_batch(CollisionBatch *batch, const HairBatch *hair, const GpuLimits *limits,
-                           Error *error)
-{
-    uint32_t slots = hair_slots(hair);
-    size_t particles = (size_t)hair->vertex_count * slots;
-    float *zero = calloc(particles, 4 * sizeof *zero);
-    if (!zero) return error_set(error, RESULT_FAILED, "no memory for %zu particles", particles);
-    Result result =
-        gpu_buffer_create(&batch->contacts, limits, "contacts",
-                          (int64_t)(particles * 4 * sizeof *zero), zero, GL_RGBA32F, error);
-    if (result == RESULT_OK)
-        result = gpu_buffer_create(&batch->counts, limits, "counts of contacts",
-                                   16 * (int64_t)slots, zero, 0, error);
-    free(zero);
-    return result;
-}
-
 static Result create_batches(Collision *collision, const GpuLimits *limits, Error *error)
 {
     const Hair *hair = collision->hair;
     collision->batches = calloc((size_t)hair->batch_count + 1, sizeof *collision->batches);
     if (!collision->batches) return error_set(error, RESULT_FAILED, "no memory for collisions");
-    Result result = RESULT_OK;
-    for (uint32_t i = 0; i < hair->batch_count && result == RESULT_OK; ++i)
-        result = create_batch(&collision->batches[i], &hair->batches[i], limits, error);
-    return result;
+    for (uint32_t i = 0; i < hair->batch_count; ++i) {
+        CollisionBatch *batch = &collision->batches[i];
+        int64_t slots = hair_slots(&hair->batches[i]);
+        TRY(gpu_buffer_create(&batch->contacts, limits, "contacts",
+                              slots * hair->batches[i].vertex_count * 16, NULL, GL_RGBA32F, error));
+        TRY(gpu_buffer_create(&batch->counts, limits, "counts of contacts", 16 * slots, NULL, 0,
+                              error));
+        gpu_buffer_clear(&batch->contacts, 0);
+        gpu_buffer_clear(&batch->counts, 0);
+    }
+    return RESULT_OK;
 }
 
 Result collision_create(Collision *collision, const SolverSetup *setup, CollisionMode mode,
@@ -97,26 +86,23 @@ Result collision_create(Collision *collision, const SolverSetup *setup, Collisio
         .field = setup->field,
         .mode = mode,
         .carried = carried,
-        .group_size = step_group_size(setup->gpu),
     };
     int cones = 0;
 #define ADD_CONE(kind, name, numbers, frame) cones += count_kind(colliders, COLLIDER_##kind);
     COLLIDERS(ADD_CONE, COLLIDER_NONE)
 #define HAS(kind, name, numbers, frame) {"HAS_" #kind, count_kind(colliders, COLLIDER_##kind) > 0},
-    const ShaderDefine defines[] = {{"GROUP_SIZE", (int)collision->group_size},
-                                    {"MODE", (int)mode},
+    const ShaderDefine defines[] = {{"MODE", (int)mode},
                                     {"CONES", cones <= MOST_IN_REGISTERS ? cones : 0},
                                     {"FIELD", setup->field != NULL},
                                     COLLIDERS(COLLIDER_NONE, HAS){0}};
     Result result = check_loops(collision, setup->gpu->software, error);
-    if (result == RESULT_OK)
-        result = shader_build_compute(&collision->program, "sim/collide.comp", defines, error);
-    if (result == RESULT_OK)
-        result =
-            gpu_buffer_create(&collision->shapes, &setup->gpu->limits, "colliders",
-                              (int64_t)(colliders->count * sizeof(Shape)), NULL, GL_RGBA32F, error);
-    if (result == RESULT_OK && mode != COLLISION_DRAWN)
-        result = create_batches(collision, &setup->gpu->limits, error);
+    THEN(result,
+         step_pass_create(&collision->pass, setup->gpu, "sim/collide.comp", defines, error));
+    THEN(result,
+         gpu_buffer_create(&collision->shapes, &setup->gpu->limits, "colliders",
+                           (int64_t)(colliders->count * sizeof(Shape)), NULL, GL_RGBA32F, error));
+    if (mode != COLLISION_DRAWN)
+        THEN(result, create_batches(collision, &setup->gpu->limits, error));
     if (result != RESULT_OK) collision_destroy(collision);
     return result;
 }
@@ -198,7 +184,7 @@ static float stamp_of(uint32_t step, int part, int parts)
 
 bool collision_begin(Collision *collision, const SolverStep *step, int part, int parts)
 {
-    if (!collision->program) return false;
+    if (!collision->pass.program) return false;
     Shape *shapes = calloc(collision->colliders->count + (size_t)1, sizeof *shapes);
     if (!shapes) return false;
     CollideParams params = step_params(collision, step);
@@ -222,8 +208,6 @@ void collision_push(Collision *collision, uint32_t batch, const GpuBuffer *state
     const HairBatch *hair = &collision->hair->batches[batch];
     collision->step.strand_count = hair->strand_count;
     collision->step.vertex_count = hair->vertex_count;
-    gpu_buffer_set_uniforms(&collision->uniforms, BIND_STEP, &collision->step,
-                            sizeof collision->step);
     if (hair->rest.texture) gpu_buffer_bind_texture(&hair->rest, BIND_REST);
     gpu_buffer_bind_texture(&hair->position, BIND_POSITION);
     gpu_buffer_bind_storage(&hair->position, BIND_POSITION_OUT);
@@ -239,8 +223,7 @@ void collision_push(Collision *collision, uint32_t batch, const GpuBuffer *state
         gpu_buffer_bind_storage(&collision->batches[batch].contacts, BIND_CONTACTS);
         gpu_buffer_bind_storage(&collision->batches[batch].counts, BIND_CONTACT_COUNTS);
     }
-    glUseProgram(collision->program);
-    glDispatchCompute(step_group_count(hair->strand_count, collision->group_size, 1), 1, 1);
+    step_pass_run(&collision->pass, &collision->step, sizeof collision->step, hair->strand_count);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
@@ -268,11 +251,8 @@ void collision_report(const Collision *collision, SolverReport *report)
 {
     for (uint32_t i = 0; collision->batches && i < collision->hair->batch_count; ++i) {
         uint32_t strands = collision->hair->batches[i].strand_count;
-        uint32_t(*counts)[4] = malloc(strands * sizeof *counts);
+        uint32_t(*counts)[4] = gpu_buffer_read(&collision->batches[i].counts);
         if (!counts) return;
-        glBindBuffer(GL_SHADER_STORAGE_BUFFER, collision->batches[i].counts.buffer);
-        glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(strands * sizeof *counts),
-                           counts);
         for (uint32_t s = 0; s < strands; ++s) {
             if (counts[s][1] == (uint32_t)collision->step.stamp) report->contacts += counts[s][0];
             report->deepest_found = fmaxf(report->deepest_found, float_of_bits(counts[s][2]));

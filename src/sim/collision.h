@@ -28,9 +28,8 @@ typedef struct Collision {
     const DistanceField *field; // may be NULL
     CollisionMode mode;
     uint32_t carried; // vertices, from the root, that the head carries
-    GLuint program;
-    uint32_t group_size;
-    GpuBuffer uniforms, shapes;
+    StepPass pass;
+    GpuBuffer shapes;
     CollisionBatch *batches; // [hair->batch_count]; NULL with COLLISION_DRAWN
     CollideParams step;      // the present one's
 } Collision;

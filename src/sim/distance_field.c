@@ -196,13 +196,6 @@ static Result take_items(Work *work, Items *items, Error *error)
     return result;
 }
 
-static void fill_bits(const GpuBuffer *buffer, uint32_t bits)
-{
-    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
-    glClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, 0, (GLsizeiptr)buffer->size,
-                         GL_RED_INTEGER, GL_UNSIGNED_INT, &bits);
-}
-
 static Result upload_triangles(Work *work, Error *error)
 {
     const Mesh *mesh = work->mesh;
@@ -251,8 +244,8 @@ static Result find_near(Work *work, Error *error)
     }
     TRY(take_items(work, &items, error));
     TRY(use(&program, "field/field_near.comp", error));
-    fill_bits(&work->squares, 0x7f7fffff); // the largest float
-    fill_bits(&work->nearest, 0xffffffff);
+    gpu_buffer_clear(&work->squares, 0x7f7fffff); // the largest float
+    gpu_buffer_clear(&work->nearest, 0xffffffff);
     gpu_buffer_bind_texture(&work->triangles, BIND_POSITION);
     gpu_buffer_bind_storage(&work->items, 0);
     gpu_buffer_bind_storage(&work->squares, 1);
@@ -335,8 +328,8 @@ static Result compute(Work *work, Error *error)
     TRY(find_near(work, error));
     TRY(seed(work, error));
     TRY(flood(work, error));
-    fill_bits(&work->squares, 0);
-    fill_bits(&work->winding, 0);
+    gpu_buffer_clear(&work->squares, 0);
+    gpu_buffer_clear(&work->winding, 0);
     for (uint32_t axis = 0; axis < 3; ++axis) {
         TRY(cross(work, axis, error));
         TRY(sign(work, axis, error));
@@ -460,10 +453,8 @@ static void make_folders(char *name)
 static Result write_cached(const DistanceField *field, char *name, Error *error)
 {
     size_t size = distance_field_count(field) * sizeof(float);
-    void *values = malloc(size);
+    void *values = gpu_buffer_read(&field->values);
     if (!values) return error_set(error, RESULT_FAILED, "no memory for a distance field");
-    glBindBuffer(GL_SHADER_STORAGE_BUFFER, field->values.buffer);
-    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, values);
     GridRecord record = {.spacing = field->spacing};
     memcpy(record.size, field->size, sizeof record.size);
     memcpy(record.low, field->low, sizeof record.low);

@@ -21,55 +21,36 @@ typedef float Float4[4];
 typedef uint32_t Uint4[4];
 
 // What the GPU is given of the batch's followers; the last one's copies fill the tile.
-typedef struct Upload {
-    Float4 *offsets;
-    Uint4 *guides;
-    uint32_t *ids;
-} Upload;
-
-static void fill(Upload *upload, const HairBatch *hair, const Follower *follower)
-{
-    for (uint32_t slot = 0; slot < hair_slots(hair); ++slot) {
-        const Follower *of = &follower[slot < hair->strand_count ? slot : hair->strand_count - 1];
-        Uint4 guides = {of->guide[1], of->guide[2], 0, 0};
-        memcpy(&guides[2], &of->weight[2], sizeof of->weight[2]);
-        memcpy(upload->guides[slot], guides, sizeof guides);
-        memcpy(upload->offsets[slot], of->offset, sizeof of->offset);
-        upload->offsets[slot][3] = of->weight[1];
-        upload->ids[slot] = of->id;
-    }
-}
-
-static Result create_buffers(HairBatch *hair, FollowBatch *batch, const Upload *upload,
-                             const GpuLimits *limits, Error *error)
-{
-    int64_t slots = hair_slots(hair);
-    TRY(gpu_buffer_create(&hair->position, limits, "followers' positions",
-                          slots * hair->vertex_count * 16, NULL, GL_RGBA32F, error));
-    TRY(gpu_buffer_create(&hair->strand_id, limits, "followers' numbers", slots * 4, upload->ids,
-                          GL_R32UI, error));
-    TRY(gpu_buffer_create(&batch->offsets, limits, "followers' offsets", slots * 16,
-                          upload->offsets, GL_RGBA32F, error));
-    return gpu_buffer_create(&batch->guides, limits, "followers' guides", slots * 16,
-                             upload->guides, GL_RGBA32UI, error);
-}
-
 static Result upload_batch(HairBatch *hair, FollowBatch *batch, const Follower *follower,
                            const GpuLimits *limits, Error *error)
 {
     size_t slots = hair_slots(hair);
-    Upload upload = {malloc(slots * sizeof *upload.offsets), malloc(slots * sizeof *upload.guides),
-                     malloc(slots * sizeof *upload.ids)};
-    Result result = RESULT_FAILED;
-    if (upload.offsets && upload.guides && upload.ids) {
-        fill(&upload, hair, follower);
-        result = create_buffers(hair, batch, &upload, limits, error);
-    } else {
-        error_set(error, RESULT_FAILED, "no memory for %zu followers", slots);
+    Float4 *offsets = malloc(slots * sizeof *offsets);
+    Uint4 *guides = calloc(slots, sizeof *guides);
+    uint32_t *ids = malloc(slots * sizeof *ids);
+    Result result = RESULT_OK;
+    if (!offsets || !guides || !ids)
+        result = error_set(error, RESULT_FAILED, "no memory for %zu followers", slots);
+    for (uint32_t slot = 0; slot < slots && result == RESULT_OK; ++slot) {
+        const Follower *of = &follower[slot < hair->strand_count ? slot : hair->strand_count - 1];
+        memcpy(guides[slot], &of->guide[1], 2 * sizeof of->guide[1]);
+        memcpy(&guides[slot][2], &of->weight[2], sizeof of->weight[2]);
+        memcpy(offsets[slot], of->offset, sizeof of->offset);
+        offsets[slot][3] = of->weight[1];
+        ids[slot] = of->id;
     }
-    free(upload.offsets);
-    free(upload.guides);
-    free(upload.ids);
+    int64_t count = (int64_t)slots;
+    THEN(result, gpu_buffer_create(&hair->position, limits, "followers' positions",
+                                   count * hair->vertex_count * 16, NULL, GL_RGBA32F, error));
+    THEN(result, gpu_buffer_create(&hair->strand_id, limits, "followers' numbers", count * 4, ids,
+                                   GL_R32UI, error));
+    THEN(result, gpu_buffer_create(&batch->offsets, limits, "followers' offsets", count * 16,
+                                   offsets, GL_RGBA32F, error));
+    THEN(result, gpu_buffer_create(&batch->guides, limits, "followers' guides", count * 16, guides,
+                                   GL_RGBA32UI, error));
+    free(offsets);
+    free(guides);
+    free(ids);
     return result;
 }
 
@@ -118,9 +99,8 @@ static Result create_batches(Follow *follow, uint32_t guide_batch, const FollowP
 static Result build(Follow *follow, const Gpu *gpu, const Strands *strands,
                     const FollowOptions *options, Error *error)
 {
-    const ShaderDefine defines[] = {
-        {"GROUP_SIZE", (int)follow->group_size}, {"INTERPOLATE", options->interpolate}, {0}};
-    Result result = shader_build_compute(&follow->program, "sim/follow.comp", defines, error);
+    const ShaderDefine defines[] = {{"INTERPOLATE", options->interpolate}, {0}};
+    Result result = step_pass_create(&follow->pass, gpu, "sim/follow.comp", defines, error);
     for (uint32_t i = 0; i < follow->guides->batch_count && result == RESULT_OK; ++i) {
         const HairBatch *guides = &follow->guides->batches[i];
         FollowPlan plan;
@@ -146,7 +126,6 @@ Result follow_create(Follow *follow, const Gpu *gpu, GpuTimer *timer, const Hair
     *follow = (Follow){.guides = guides,
                        .timer = timer,
                        .per_guide = options.per_guide,
-                       .group_size = step_group_size(gpu),
                        .tip_separation = params->tip_separation};
     follow->hair.strand_count = options.per_guide * guides->strand_count;
     follow->hair.particle_count = options.per_guide * guides->particle_count;
@@ -164,8 +143,7 @@ void follow_destroy(Follow *follow)
     }
     free(follow->batches);
     hair_destroy(&follow->hair);
-    if (follow->program) glDeleteProgram(follow->program);
-    gpu_buffer_destroy(&follow->uniforms);
+    step_pass_destroy(&follow->pass);
     *follow = (Follow){0};
 }
 
@@ -176,12 +154,11 @@ static void write_batch(Follow *follow, uint32_t i, FollowParams *params)
     params->strand_count = hair->strand_count;
     params->vertex_count = hair->vertex_count;
     params->first_guide = batch->first_guide;
-    gpu_buffer_set_uniforms(&follow->uniforms, BIND_STEP, params, sizeof *params);
     gpu_buffer_bind_texture(&follow->guides->batches[batch->guide_batch].position, BIND_POSITION);
     gpu_buffer_bind_texture(&batch->offsets, BIND_FOLLOW_OFFSETS);
     gpu_buffer_bind_texture(&batch->guides, BIND_FOLLOW_GUIDES);
     gpu_buffer_bind_storage(&hair->position, BIND_POSITION_OUT);
-    glDispatchCompute(step_group_count(hair->strand_count, follow->group_size, 1), 1, 1);
+    step_pass_run(&follow->pass, params, sizeof *params, hair->strand_count);
 }
 
 void follow_write(Follow *follow, const HeadPose *head)
@@ -191,7 +168,6 @@ void follow_write(Follow *follow, const HeadPose *head)
                            .per_guide = follow->per_guide};
     memcpy(params.head_rotation, head->rotation, sizeof head->rotation);
     gpu_timer_begin(follow->timer, "follow");
-    glUseProgram(follow->program);
     for (uint32_t i = 0; i < follow->hair.batch_count; ++i) write_batch(follow, i, &params);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
     gpu_timer_end(follow->timer);

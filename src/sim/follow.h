@@ -19,9 +19,8 @@ typedef struct Follow {
     FollowBatch *batches; // [hair.batch_count]
     const Hair *guides;
     GpuTimer *timer;
-    GLuint program;
-    GpuBuffer uniforms;
-    uint32_t per_guide, group_size;
+    StepPass pass;
+    uint32_t per_guide;
     float tip_separation;
 } Follow;
 

@@ -190,13 +190,10 @@ void hair_destroy(Hair *hair)
     *hair = (Hair){0};
 }
 
-static Float4 *allocate_batch(const HairBatch *batch, Error *error)
+static Result refuse_memory(const HairBatch *batch, Error *error)
 {
-    Float4 *position = malloc((size_t)batch->position.size + 1);
-    if (!position)
-        error_set(error, RESULT_FAILED, "no memory for the positions of %u strands",
-                  batch->strand_count);
-    return position;
+    return error_set(error, RESULT_FAILED, "no memory for the positions of %u strands",
+                     batch->strand_count);
 }
 
 Result hair_read_positions(const Hair *hair, float (*positions)[3], Error *error)
@@ -204,10 +201,8 @@ Result hair_read_positions(const Hair *hair, float (*positions)[3], Error *error
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     for (uint32_t i = 0; i < hair->batch_count; ++i) {
         const HairBatch *batch = &hair->batches[i];
-        Float4 *read = allocate_batch(batch, error);
-        if (!read) return RESULT_FAILED;
-        glBindBuffer(GL_COPY_READ_BUFFER, batch->position.buffer);
-        glGetBufferSubData(GL_COPY_READ_BUFFER, 0, (GLsizeiptr)batch->position.size, read);
+        Float4 *read = gpu_buffer_read(&batch->position);
+        if (!read) return refuse_memory(batch, error);
         for (uint32_t s = 0; s < batch->strand_count; ++s)
             for (uint32_t j = 0; j < batch->vertex_count; ++j)
                 memcpy(*positions++, read[hair_address(batch, s, j)], sizeof *positions);
@@ -221,8 +216,8 @@ Result hair_write_positions(const Hair *hair, const float (*positions)[3], Error
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     for (uint32_t i = 0; i < hair->batch_count; ++i) {
         const HairBatch *batch = &hair->batches[i];
-        Float4 *written = allocate_batch(batch, error);
-        if (!written) return RESULT_FAILED;
+        Float4 *written = malloc((size_t)batch->position.size + 1);
+        if (!written) return refuse_memory(batch, error);
         for (uint32_t slot = 0; slot < hair_slots(batch); ++slot) {
             uint32_t s = slot < batch->strand_count ? slot : batch->strand_count - 1;
             for (uint32_t j = 0; j < batch->vertex_count; ++j) {

@@ -19,9 +19,8 @@ static Result create_copies(GpuBuffer **copies, const Hair *hair, const GpuLimit
 
 Result inbetween_create(Inbetween *inbetween, const Gpu *gpu, const Hair *hair, Error *error)
 {
-    *inbetween = (Inbetween){.hair = hair, .group_size = step_group_size(gpu)};
-    const ShaderDefine defines[] = {{"GROUP_SIZE", (int)inbetween->group_size}, {0}};
-    Result result = shader_build_compute(&inbetween->program, "sim/inbetween.comp", defines, error);
+    *inbetween = (Inbetween){.hair = hair};
+    Result result = step_pass_create(&inbetween->pass, gpu, "sim/inbetween.comp", NULL, error);
     THEN(result, create_copies(&inbetween->earlier, hair, &gpu->limits, error));
     THEN(result, create_copies(&inbetween->later, hair, &gpu->limits, error));
     if (result != RESULT_OK) inbetween_destroy(inbetween);
@@ -38,8 +37,7 @@ void inbetween_destroy(Inbetween *inbetween)
 {
     destroy_copies(inbetween->earlier, inbetween->hair);
     destroy_copies(inbetween->later, inbetween->hair);
-    if (inbetween->program) glDeleteProgram(inbetween->program);
-    gpu_buffer_destroy(&inbetween->uniforms);
+    step_pass_destroy(&inbetween->pass);
     *inbetween = (Inbetween){0};
 }
 
@@ -74,12 +72,10 @@ void inbetween_mix(Inbetween *inbetween, float share, const HeadPose *earlier,
         const HairBatch *batch = &inbetween->hair->batches[i];
         params.strand_count = batch->strand_count;
         params.vertex_count = batch->vertex_count;
-        gpu_buffer_set_uniforms(&inbetween->uniforms, BIND_STEP, &params, sizeof params);
         gpu_buffer_bind_texture(&inbetween->earlier[i], BIND_POSITION);
         gpu_buffer_bind_texture(&inbetween->later[i], BIND_STATE);
         gpu_buffer_bind_storage(&batch->position, BIND_POSITION_OUT);
-        glUseProgram(inbetween->program);
-        glDispatchCompute(step_group_count(batch->strand_count, inbetween->group_size, 1), 1, 1);
+        step_pass_run(&inbetween->pass, &params, sizeof params, batch->strand_count);
     }
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
     inbetween->mixed = true;

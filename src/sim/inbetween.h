@@ -10,9 +10,7 @@
 typedef struct Inbetween {
     const Hair *hair;
     GpuBuffer *earlier, *later; // [hair->batch_count], vec4 a particle as in HairBatch.position
-    GLuint program;
-    uint32_t group_size;
-    GpuBuffer uniforms;
+    StepPass pass;
     bool mixed; // Hair's positions are not `later` now
 } Inbetween;
 

@@ -48,20 +48,16 @@ static void interpolate(double (*function)(double, double), double v, float coef
 
 Result pose_create(Pose *pose, const Gpu *gpu, float style, Error *error)
 {
-    *pose = (Pose){.group_size = step_group_size(gpu)};
     double v = 2 * fmin((double)style, 1 - (double)style);
     interpolate(turn_cos, v, pose->turn_cos);
     interpolate(turn_sin, v, pose->turn_sin);
-    const ShaderDefine defines[] = {
-        {"GROUP_SIZE", (int)pose->group_size}, {"MIX", (int)mix_of_style(style)}, {0}};
-    return shader_build_compute(&pose->program, "sim/pose.comp", defines, error);
+    const ShaderDefine defines[] = {{"MIX", (int)mix_of_style(style)}, {0}};
+    return step_pass_create(&pose->pass, gpu, "sim/pose.comp", defines, error);
 }
 
 void pose_destroy(Pose *pose)
 {
-    if (pose->program) glDeleteProgram(pose->program);
-    gpu_buffer_destroy(&pose->uniforms);
-    *pose = (Pose){0};
+    step_pass_destroy(&pose->pass);
 }
 
 void pose_write(Pose *pose, const HairBatch *batch, const GpuBuffer *segments, const HeadPose *head)
@@ -70,11 +66,9 @@ void pose_write(Pose *pose, const HairBatch *batch, const GpuBuffer *segments, c
     head_put(params.head_rotation, params.head_translation, head);
     memcpy(params.turn_cos, pose->turn_cos, sizeof pose->turn_cos);
     memcpy(params.turn_sin, pose->turn_sin, sizeof pose->turn_sin);
-    gpu_buffer_set_uniforms(&pose->uniforms, BIND_STEP, &params, sizeof params);
     gpu_buffer_bind_texture(&batch->rest, BIND_REST);
     if (segments) gpu_buffer_bind_texture(segments, BIND_STATE);
     gpu_buffer_bind_storage(&batch->position, BIND_POSITION_OUT);
-    glUseProgram(pose->program);
-    glDispatchCompute(step_group_count(batch->strand_count, pose->group_size, 1), 1, 1);
+    step_pass_run(&pose->pass, &params, sizeof params, batch->strand_count);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
 }

@@ -9,9 +9,7 @@
 typedef enum PoseMix { POSE_STYLE, POSE_PHYSICAL, POSE_NEAR_PHYSICAL, POSE_NEAR_STYLE } PoseMix;
 
 typedef struct Pose {
-    GLuint program;
-    uint32_t group_size;
-    GpuBuffer uniforms;
+    StepPass pass;
     float turn_cos[8], turn_sin[8]; // see pose.c
 } Pose;
 

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
-// A scene in motion: each section's hair with its solver, advanced frame by frame. A section moves
-// as it would if it were alone, to the bit: strands have their numbers within it, so that what
-// varies by strand does not depend on other sections. (Only --substeps auto looks at all of them.)
+// The room src/sim moves hair on the GPU. It takes strands and a scene (head, forces, colliders,
+// parameters), and hands on the positions in Hair's buffers (hair.h) that the renderer draws.
+//
+// A simulation is a scene in motion: each section's hair with its solver (solver.h), followers,
+// collisions and sleep, advanced frame by frame. A section moves as it would alone, to the bit:
+// strands have their numbers within it, so that what varies by strand does not depend on other
+// sections. (Only --substeps auto looks at all of them.)
 #pragma once
 
 #include "scene/scene.h"

@@ -162,11 +162,9 @@ static bool write_buffer(Archive *archive, const GpuBuffer *buffer)
 {
     size_t count = (size_t)buffer->size / sizeof(float);
     uint64_t size = (uint64_t)buffer->size, packed_size = 0;
-    float *values = malloc((size_t)buffer->size + 1);
+    float *values = gpu_buffer_read(buffer);
     uint8_t *packed = malloc(float_planes_bound(count));
     if (values && packed) {
-        glBindBuffer(GL_COPY_READ_BUFFER, buffer->buffer);
-        glGetBufferSubData(GL_COPY_READ_BUFFER, 0, (GLsizeiptr)buffer->size, values);
         packed_size = float_planes_pack(values, count, STRIDE, packed);
         pass_long(archive, &size);
         pass_long(archive, &packed_size);

@@ -15,15 +15,13 @@ static const float LEAVE = 1.0f / 4, GROW = 1.0f / 60;
 static Result create_batch(SleepBatch *batch, const HairBatch *hair, const GpuLimits *limits,
                            Error *error)
 {
-    size_t slots = hair_slots(hair), particles = slots * hair->vertex_count;
-    void *zero = calloc(particles, 16);
-    if (!zero) return error_set(error, RESULT_FAILED, "no memory for %zu particles", particles);
-    Result result = gpu_buffer_create(&batch->anchors, limits, "hair's anchors",
-                                      (int64_t)particles * 16, zero, 0, error);
-    THEN(result, gpu_buffer_create(&batch->calm, limits, "hair's calm", (int64_t)slots * 4, zero, 0,
-                                   error));
-    free(zero);
-    return result;
+    int64_t slots = hair_slots(hair);
+    TRY(gpu_buffer_create(&batch->anchors, limits, "hair's anchors",
+                          slots * hair->vertex_count * 16, NULL, 0, error));
+    TRY(gpu_buffer_create(&batch->calm, limits, "hair's calm", slots * 4, NULL, 0, error));
+    gpu_buffer_clear(&batch->anchors, 0);
+    gpu_buffer_clear(&batch->calm, 0);
+    return RESULT_OK;
 }
 
 Result sleep_create(Sleep *sleep, const Gpu *gpu, GpuTimer *timer, const Hair *hair,
@@ -34,15 +32,12 @@ Result sleep_create(Sleep *sleep, const Gpu *gpu, GpuTimer *timer, const Hair *h
     *sleep = (Sleep){.hair = hair,
                      .timer = timer,
                      .tolerance = params->sleep,
-                     .group_size = step_group_size(gpu),
                      .batches = calloc(hair->batch_count + 1, sizeof *sleep->batches)};
-    const ShaderDefine defines[] = {{"GROUP_SIZE", (int)sleep->group_size}, {0}};
-    Result result = sleep->batches ? RESULT_OK
-                                   : error_set(error, RESULT_FAILED, "no memory for %u batches",
-                                               hair->batch_count);
-    THEN(result, shader_build_compute(&sleep->program, "sim/sleep.comp", defines, error));
-    for (uint32_t i = 0; i < hair->batch_count && result == RESULT_OK; ++i)
-        result = create_batch(&sleep->batches[i], &hair->batches[i], &gpu->limits, error);
+    Result result = step_pass_create(&sleep->pass, gpu, "sim/sleep.comp", NULL, error);
+    if (!sleep->batches)
+        result = error_set(error, RESULT_FAILED, "no memory for %u batches", hair->batch_count);
+    for (uint32_t i = 0; i < hair->batch_count; ++i)
+        THEN(result, create_batch(&sleep->batches[i], &hair->batches[i], &gpu->limits, error));
     if (result != RESULT_OK) sleep_destroy(sleep);
     return result;
 }
@@ -54,8 +49,7 @@ void sleep_destroy(Sleep *sleep)
         gpu_buffer_destroy(&sleep->batches[i].calm);
     }
     free(sleep->batches);
-    if (sleep->program) glDeleteProgram(sleep->program);
-    gpu_buffer_destroy(&sleep->uniforms);
+    step_pass_destroy(&sleep->pass);
     *sleep = (Sleep){0};
 }
 
@@ -92,10 +86,9 @@ static bool all_ready(const Sleep *sleep)
 {
     uint32_t all = SLEEP_READY;
     for (uint32_t i = 0; i < sleep->hair->batch_count; ++i) {
-        uint32_t count = sleep->hair->batches[i].strand_count, *calm = malloc(count * sizeof *calm);
+        uint32_t count = sleep->hair->batches[i].strand_count;
+        uint32_t *calm = gpu_buffer_read(&sleep->batches[i].calm);
         if (!calm) return false;
-        glBindBuffer(GL_SHADER_STORAGE_BUFFER, sleep->batches[i].calm.buffer);
-        glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(count * sizeof *calm), calm);
         for (uint32_t s = 0; s < count; ++s) all &= calm[s];
         free(calm);
     }
@@ -115,17 +108,15 @@ static void look(Sleep *sleep)
     params.anchor = sleep->looks == 0 ? SLEEP_ANCHOR_ALL
                     : again           ? SLEEP_ANCHOR_UNREADY
                                       : SLEEP_ANCHOR_LEFT;
-    glUseProgram(sleep->program);
     for (uint32_t i = 0; i < sleep->hair->batch_count; ++i) {
         const HairBatch *hair = &sleep->hair->batches[i];
         params.strand_count = hair->strand_count;
         params.vertex_count = hair->vertex_count;
-        gpu_buffer_set_uniforms(&sleep->uniforms, BIND_STEP, &params, sizeof params);
         gpu_buffer_bind_texture(&hair->position, BIND_POSITION);
         gpu_buffer_bind_texture(&hair->rest, BIND_REST);
         gpu_buffer_bind_storage(&sleep->batches[i].anchors, BIND_ANCHORS_OUT);
         gpu_buffer_bind_storage(&sleep->batches[i].calm, BIND_CALM_OUT);
-        glDispatchCompute(step_group_count(hair->strand_count, sleep->group_size, 1), 1, 1);
+        step_pass_run(&sleep->pass, &params, sizeof params, hair->strand_count);
     }
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }

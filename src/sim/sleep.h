@@ -32,9 +32,7 @@ typedef struct Sleep {
     const Hair *hair; // NULL: never sleeps
     GpuTimer *timer;
     float tolerance;
-    GLuint program;
-    uint32_t group_size;
-    GpuBuffer uniforms;
+    StepPass pass;
     SleepBatch *batches; // [hair->batch_count]
     SolverStep last;     // the last step, asleep or not
     int steps, due;      // under unchanging forces; number at which the next look is due

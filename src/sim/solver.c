@@ -175,38 +175,42 @@ static void place_strand(const HairBatch *hair, uint32_t slot, const HeadPose *h
     }
 }
 
-// Velocities of 0; or segments and tips at rest in the style where the head is.
-static Result create_batch(SolverState *state, uint32_t i, const SolverSetup *setup, Error *error)
+// Segments and tips at rest in the style where the head is.
+static Result create_segments(SolverBatch *batch, const HairBatch *hair, const SolverSetup *setup,
+                              Error *error)
 {
-    const HairBatch *hair = &state->hair->batches[i];
     const GpuLimits *limits = &setup->gpu->limits;
-    SolverBatch *batch = &state->batches[i];
-    uint32_t slots = hair_slots(hair), scratch = state->recipe->scratch;
-    size_t particles = (size_t)hair->vertex_count * slots;
-    int64_t size = (int64_t)(particles * sizeof(Float4));
-    bool segments = has_segments(state);
-    Float4 *start = calloc(particles, sizeof *start),
+    uint32_t slots = hair_slots(hair);
+    Float4 *segments = gpu_buffer_read(&hair->rest),
            *tips = calloc(2 * (size_t)slots, sizeof *tips);
     Result result = RESULT_OK;
-    assert(scratch <= HAIR_MOST_SCRATCH);
-    if (!start || !tips)
-        result = error_set(error, RESULT_FAILED, "no memory for %zu particles", particles);
-    if (result == RESULT_OK && segments) {
-        glBindBuffer(GL_SHADER_STORAGE_BUFFER, hair->rest.buffer);
-        glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, start);
-        for (uint32_t slot = 0; slot < slots; ++slot)
-            place_strand(hair, slot, setup->head, start, tips[2 * slot]);
-        result = gpu_buffer_create(&batch->tips, limits, "strands' tips",
-                                   2 * (int64_t)(slots * sizeof *tips), tips, 0, error);
-    }
-    THEN(result, gpu_buffer_create(&batch->state, limits, segments ? "segments" : "velocities",
-                                   size, start, GL_RGBA32F, error));
-    if (scratch && !state->programs.in_registers)
-        THEN(result, gpu_buffer_create(&batch->scratch, limits, "a solver's scratch memory",
-                                       size * scratch, NULL, 0, error));
-    free(start);
+    if (!segments || !tips)
+        result = error_set(error, RESULT_FAILED, "no memory for %u strands", slots);
+    for (uint32_t slot = 0; slot < slots && result == RESULT_OK; ++slot)
+        place_strand(hair, slot, setup->head, segments, tips[2 * slot]);
+    THEN(result, gpu_buffer_create(&batch->state, limits, "segments", hair->rest.size, segments,
+                                   GL_RGBA32F, error));
+    THEN(result, gpu_buffer_create(&batch->tips, limits, "tips",
+                                   2 * (int64_t)(slots * sizeof *tips), tips, 0, error));
+    free(segments);
     free(tips);
     return result;
+}
+
+static Result create_batch(SolverState *state, uint32_t i, const SolverSetup *setup, Error *error)
+{
+    const GpuLimits *limits = &setup->gpu->limits;
+    const HairBatch *hair = &state->hair->batches[i];
+    SolverBatch *batch = &state->batches[i];
+    uint32_t scratch = state->recipe->scratch;
+    assert(scratch <= HAIR_MOST_SCRATCH);
+    if (has_segments(state)) return create_segments(batch, hair, setup, error);
+    TRY(gpu_buffer_create(&batch->state, limits, "velocities", hair->rest.size, NULL, GL_RGBA32F,
+                          error));
+    gpu_buffer_clear(&batch->state, 0);
+    if (!scratch || state->programs.in_registers) return RESULT_OK;
+    return gpu_buffer_create(&batch->scratch, limits, "a solver's scratch memory",
+                             hair->rest.size * scratch, NULL, 0, error);
 }
 
 static Result build(SolverState *state, const SolverSetup *setup, Error *error)
@@ -364,11 +368,8 @@ void solver_report(const Solver *solver, SolverReport *report)
     collision_report(&state->collision, report);
     for (uint32_t i = 0; has_segments(state) && i < state->hair->batch_count; ++i) {
         uint32_t count = state->hair->batches[i].strand_count;
-        Float4 *tips = malloc(2 * (size_t)count * sizeof *tips);
+        Float4 *tips = gpu_buffer_read(&state->batches[i].tips);
         if (!tips) return;
-        glBindBuffer(GL_SHADER_STORAGE_BUFFER, state->batches[i].tips.buffer);
-        glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0,
-                           (GLsizeiptr)(2 * (size_t)count * sizeof *tips), tips);
         for (uint32_t s = 0; s < count; ++s) report->moves_limited += (uint64_t)tips[2 * s][3];
         free(tips);
     }

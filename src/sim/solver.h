@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The room src/sim moves hair on the GPU. It takes strands, a scene (head, forces, colliders) and
-// parameters; simulation.h advances them frame by frame, and hands on positions in Hair's buffers
-// (hair.h), which the renderer reads. This file is the solvers, what moves the hair: one interface,
-// one table. What each is made of stands in recipe.h.
+// Solvers: what moves the hair. One interface, one table; what each is made of stands in recipe.h.
 #pragma once
 
 #include "gpu/gpu_timer.h"

@@ -83,6 +83,29 @@ uint32_t step_group_count(uint32_t count, uint32_t group_size, uint32_t strands_
     return (count + strands - 1) / strands;
 }
 
+Result step_pass_create(StepPass *pass, const Gpu *gpu, const char *shader,
+                        const ShaderDefine *defines, Error *error)
+{
+    *pass = (StepPass){.group_size = step_group_size(gpu)};
+    ShaderDefine all[2 + STEP_OWN_DEFINES] = {{"GROUP_SIZE", (int)pass->group_size}};
+    for (int i = 0; defines && defines[i].name; ++i) all[1 + i] = defines[i];
+    return shader_build_compute(&pass->program, shader, all, error);
+}
+
+void step_pass_destroy(StepPass *pass)
+{
+    if (pass->program) glDeleteProgram(pass->program);
+    gpu_buffer_destroy(&pass->uniforms);
+    *pass = (StepPass){0};
+}
+
+void step_pass_run(StepPass *pass, const void *params, size_t size, uint32_t strand_count)
+{
+    gpu_buffer_set_uniforms(&pass->uniforms, BIND_STEP, params, size);
+    glUseProgram(pass->program);
+    glDispatchCompute(step_group_count(strand_count, pass->group_size, 1), 1, 1);
+}
+
 // Whether the hair's strands may stay in registers for a step: all have at most `most` vertices,
 // and of few different counts, since each costs a compilation (0.2 to 0.7 s on a CPU driver).
 static bool fits_registers(const Hair *hair, uint32_t most)

@@ -56,6 +56,25 @@ uint32_t step_group_size(const Gpu *gpu);
 // lane.
 uint32_t step_group_count(uint32_t count, uint32_t group_size, uint32_t strands_per_lane);
 
+enum { STEP_OWN_DEFINES = 8 };
+
+// A program that works on strands, a lane each, and its parameters. A zeroed one may be destroyed.
+typedef struct StepPass {
+    GLuint program;
+    uint32_t group_size;
+    GpuBuffer uniforms;
+} StepPass;
+
+// `defines`: all macros but GROUP_SIZE, STEP_OWN_DEFINES at most, ended by {0}; NULL: none. Errors
+// of shader_build_compute.
+Result step_pass_create(StepPass *pass, const Gpu *gpu, const char *shader,
+                        const ShaderDefine *defines, Error *error);
+void step_pass_destroy(StepPass *pass);
+
+// Runs it on `strand_count` strands with the block `params` of `size` bytes at BIND_STEP; the other
+// buffers are bound.
+void step_pass_run(StepPass *pass, const void *params, size_t size, uint32_t strand_count);
+
 // What decides how many programs a solver has and how strands go to lanes.
 typedef struct StepProgramsOptions {
     const char *shader; // glsl file
@@ -69,8 +88,6 @@ typedef struct StepProgramsOptions {
     bool sheltered; // the head keeps wind off (forces.glsl)
     const ShaderDefine *defines; // the variant's own, at most STEP_OWN_DEFINES
 } StepProgramsOptions;
-
-enum { STEP_OWN_DEFINES = 8 };
 
 // The programs of a solver: one for each of a hair's batches, shared where batches are alike.
 typedef struct StepPrograms {

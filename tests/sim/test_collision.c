@@ -181,7 +181,7 @@ static void the_uniform_block_lies_as_c_has_it(void **state)
     assert_int_equal(collision_create(&collision, &setup, COLLISION_SEGMENTS, 1, &(Error){{0}}),
                      RESULT_OK);
 #define ASSERT_OFFSET(member)                                                                      \
-    fixture_assert_offset(collision.program, "CollideParams." #member,                             \
+    fixture_assert_offset(collision.pass.program, "CollideParams." #member,                        \
                           offsetof(CollideParams, member))
     ASSERT_OFFSET(head_rotation);
     ASSERT_OFFSET(head_translation_old);
