@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// tractrix-compare: how much pictures differ, frame by frame, and whether that is too much.
+// tractrix-compare: measures how much images differ, frame by frame, and compares that with limits.
 #include "base/interrupt.h"
 #include "base/options.h"
 #include "base/program.h"
@@ -28,41 +28,41 @@ typedef struct Command {
 
 static const Option OPTIONS[] = {
     {"pixel-tolerance", 0, OPTION_REAL, AT(pixel_tolerance), "LEVELS", 0, 255,
-     "a pixel passes if no channel is off by more, of 255 levels [default 0]"},
+     "a pixel passes if no channel differs by more, in levels of 255 [default 0]"},
     {"max-failing-pixels", 0, OPTION_STRING, AT(max_failing), "N|P%", 0, 0,
-     "pixels of a picture that may be off by more: a number, or a percentage [default 0]"},
+     "how many pixels of an image may differ by more: a number or a percentage [default 0]"},
     {"max-flip", 0, OPTION_REAL, AT(max_flip), "X", 0, 1,
-     "largest mean of FLIP; without the two options above it is the only limit"},
+     "maximum mean FLIP error; without the two options above it is the only limit"},
     {"ppd", 0, OPTION_REAL, AT(ppd), "X", 1, 1000,
-     "pixels that fill a degree of view, for FLIP [default 67]"},
+     "pixels per degree of view, for FLIP [default 67]"},
     {"heatmap", 0, OPTION_STRING, AT(heat_map), "PATH", 0, 0,
-     "PNG file of FLIP's error per pixel, black to yellow; for folders and patterns a folder, "
-     "where only pictures that differ get one"},
+     "PNG file of the FLIP error per pixel, black to yellow; a folder for folders and patterns, "
+     "with a file for each image that differs"},
     {"sheet", 0, OPTION_STRING, AT(sheet), "PATH", 0, 0,
      "the same with A, B and the heat map side by side"},
     {"json", 0, OPTION_STRING, AT(json), "FILE", 0, 0, "write all figures as JSON"},
-    {"junit", 0, OPTION_STRING, AT(junit), "FILE", 0, 0, "write the outcomes as JUnit XML, for CI"},
+    {"junit", 0, OPTION_STRING, AT(junit), "FILE", 0, 0, "write the results as JUnit XML, for CI"},
     {"update", 0, OPTION_SWITCH, AT(update), NULL, 0, 0,
-     "accept B: copy it over A wherever they differ or A has none"},
+     "accept B: copy it over A where they differ or A has none"},
     {"jobs", 'j', OPTION_WHOLE, AT(jobs), "N", 1, 1024,
-     "pictures compared at a time [default: as many as there are processors]"},
+     "images compared in parallel [default: the number of processors]"},
     {"quiet", 'q', OPTION_SWITCH, AT(quiet), NULL, 0, 0, "print errors only"},
 };
 
 static const char *const NOTES[] = {
-    "A and B are two pictures (PNG of 8 or 16 bits, PFM), two folders, whose .png and .pfm files "
-    "go by name, or two patterns with %d or %04d, whose files go by number. Pictures of two sizes "
-    "and pictures that only one side has are different.",
-    "RMSE and PSNR are over red, green and blue in sRGB levels of 0 to 255; SSIM is that of Wang "
-    "et al. 2004 on luma; FLIP that of Andersson et al. 2020, 0: looks the same, 1: cannot differ "
-    "more. Equal pictures score exactly 0 (SSIM 1). Pictures with alpha are compared over black "
-    "and over white, and the worse counts.",
+    "A and B are two images (PNG of 8 or 16 bits, PFM), two folders, whose .png and .pfm files are "
+    "paired by name, or two patterns with %d or %04d, paired by number. Images of different sizes "
+    "and images without a partner count as different.",
+    "RMSE and PSNR are of red, green and blue in sRGB levels of 0 to 255. SSIM is that of Wang et "
+    "al. 2004 on luma. FLIP is that of Andersson et al. 2020: 0 looks the same, 1 is the largest "
+    "difference. Equal images score exactly 0 (SSIM 1). Images with alpha are compared over black "
+    "and over white, and the worse result counts.",
     NULL};
 
-static const char *const STATUS[][2] = {{"0", "the same, within the limits"},
+static const char *const STATUS[][2] = {{"0", "equal within the limits"},
                                         {"1", "different or missing; or a file can't be written"},
                                         {"2", "wrong usage"},
-                                        {"3", "a picture or folder can't be read"},
+                                        {"3", "an image or folder can't be read"},
                                         {"130", "interrupted"},
                                         {NULL, NULL}};
 
@@ -74,11 +74,11 @@ static const char *const EXAMPLES[] = {
 
 static const OptionsProgram PROGRAM = {
     .name = "tractrix-compare",
-    .summary = "compare rendered pictures, frame by frame",
+    .summary = "compare rendered images, frame by frame",
     .synopsis = "[OPTION]... A B",
     .description =
-        "Measures how much the pictures B differ from the references A, a line for each, "
-        "and tells by its exit status whether that is too much.",
+        "Measures how much the images B differ from the references A and prints a line for "
+        "each. The exit status is 1 if any differs by more than the limits.",
     .options = OPTIONS,
     .option_count = sizeof OPTIONS / sizeof *OPTIONS,
     .notes = NOTES,
@@ -86,7 +86,7 @@ static const OptionsProgram PROGRAM = {
     .examples = EXAMPLES,
 };
 
-// --- What is asked.
+// --- The command line.
 
 static Result read_failing(CompareLimits *limits, const char *text, Error *error)
 {
@@ -98,7 +98,7 @@ static Result read_failing(CompareLimits *limits, const char *text, Error *error
     limits->max_failing_percent = percent;
     if (number >= 0 && ((percent && number <= 100) || whole)) return RESULT_OK;
     return error_set(error, RESULT_USAGE,
-                     "--max-failing-pixels: expected a whole number, or 0%% to 100%%, got '%s'",
+                     "--max-failing-pixels: got '%s', expected a whole number, or 0%% to 100%%",
                      text);
 }
 
@@ -129,8 +129,8 @@ static Result parse(Command *command, int argc, char **argv, bool *done, Error *
     Result result = options_parse(&PROGRAM, command, argc, argv, &first, done, error);
     if (result != RESULT_OK || *done) return result;
     if (argc - first != 2)
-        return error_set(error, RESULT_USAGE, "expected two files, folders or patterns, got %d",
-                         argc - first);
+        return error_set(error, RESULT_USAGE,
+                         "got %d names, expected two files, folders or patterns", argc - first);
     command->a = argv[first], command->b = argv[first + 1];
     return read_limits(command, error);
 }

@@ -21,7 +21,7 @@ static const char *scan_number(const char *text, double *number)
 
 static Result refuse(const char *name, const char *text, const char *expected, Error *error)
 {
-    return error_set(error, RESULT_USAGE, "--%s: expected %s, got '%s'", name, expected, text);
+    return error_set(error, RESULT_USAGE, "--%s: got '%s', expected %s", name, text, expected);
 }
 
 static Result parse_share(ConvertStep *step, const char *name, const char *text, Error *error)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// tractrix-convert: tells what hair files are, changes hair, and writes it in other formats.
+// tractrix-convert: describes hair files, edits hair, and writes it in other formats.
 #include "base/interrupt.h"
 #include "base/options.h"
 #include "base/params.h"
@@ -27,41 +27,40 @@ static const char AXES[] = "y|z", UNITS[] = "m|cm|mm|in|NUMBER";
 
 static const Option OPTIONS[] = {
     {"output", 'o', OPTION_STRING, AT(output), "FILE", 0, 0,
-     "what is written, in the format that the suffix names (below); with one %d or %04d a file for "
-     "each frame"},
+     "file to write, in the format of its suffix (below); with one %d or %04d, a file per frame"},
     {"format", 0, OPTION_WORD, AT(format), "auto" FORMAT_WORDS, 0, 0,
-     "format of FILE, whatever its name; auto goes by the name, .tfx is tfx4, or text where "
-     "strands differ in their number of vertices [default auto]"},
+     "format of FILE, whatever its name; auto uses the suffix, .tfx is tfx4, or text if strands "
+     "differ in their number of vertices [default auto]"},
     {"stats", 0, OPTION_SWITCH, AT(stats), NULL, 0, 0,
-     "print counts, lengths, curvature, spacing and a histogram of vertices of the hair as it is "
-     "after all steps"},
-    {"json", 0, OPTION_STRING, AT(json), "FILE", 0, 0, "write all that is known as JSON"},
+     "print counts, lengths, curvature, spacing and a histogram of vertices, after all steps"},
+    {"json", 0, OPTION_STRING, AT(json), "FILE", 0, 0, "write all figures as JSON"},
     {"quiet", 'q', OPTION_SWITCH, AT(quiet), NULL, 0, 0, "print errors only"},
 
     {"unit", 0, OPTION_STRING, AT(unit), UNITS, 0, 0,
-     "what one unit of the hair files is [default: a guess by their size]"},
+     "length of one unit of the hair files [default: guessed from their size]"},
     {"up", 0, OPTION_WORD, AT(up), AXES, 0, 0, "axis of the hair files that points up [default y]"},
     {"strict", 0, OPTION_SWITCH, AT(strict), NULL, 0, 0,
-     "refuse files with defects instead of mending them"},
-    {"to-unit", 0, OPTION_STRING, AT(to_unit), UNITS, 0, 0, "unit of what is written [default m]"},
-    {"to-up", 0, OPTION_WORD, AT(to_up), AXES, 0, 0, "its axis that points up [default y]"},
+     "reject files with defects instead of repairing them"},
+    {"to-unit", 0, OPTION_STRING, AT(to_unit), UNITS, 0, 0, "unit of the written file [default m]"},
+    {"to-up", 0, OPTION_WORD, AT(to_up), AXES, 0, 0,
+     "axis of the written file that points up [default y]"},
     {"width", 0, OPTION_REAL, AT(width), "M", 1e-7, 1,
-     "diameter of the strands in .usda, metres [default: the file's, or by their number and size]"},
+     "diameter of the strands in .usda, metres [default: the file's, or estimated from their "
+     "number and size]"},
 
     {"first", 0, OPTION_WHOLE, AT(first), "N", 0, 9999999, "first frame [default 0]"},
-    {"last", 0, OPTION_WHOLE, AT(last), "N", 0, 9999999,
-     "last frame [default: as many as are there]"},
-    {"every", 0, OPTION_WHOLE, AT(every), "N", 1, 9999999, "each so many-th frame [default 1]"},
+    {"last", 0, OPTION_WHOLE, AT(last), "N", 0, 9999999, "last frame [default: the last there is]"},
+    {"every", 0, OPTION_WHOLE, AT(every), "N", 1, 9999999, "every Nth frame [default 1]"},
     {"fps", 0, OPTION_REAL, AT(fps), "X", 1, 10000,
-     "frames a second, of .usda [default: the cache's, of numbered files 60]"},
+     "frames per second of .usda [default: the cache's; 60 for numbered files]"},
 
     {"subsample", 0, OPTION_STEP, AT(steps), "SHARE", 0, 0,
      "step: keep a random share of the strands, 0.1 or 10%"},
-    {"nth", 0, OPTION_STEP, AT(steps), "N", 0, 0, "step: keep each N-th strand"},
+    {"nth", 0, OPTION_STEP, AT(steps), "N", 0, 0, "step: keep every Nth strand"},
     {"min-length", 0, OPTION_STEP, AT(steps), "M", 0, 0,
-     "step: drop strands that are shorter, metres"},
+     "step: drop strands shorter than this, metres"},
     {"resample", 0, OPTION_STEP, AT(steps), "N", 0, 0,
-     "step: N vertices at equal distances on every strand"},
+     "step: N vertices at equal distances along each strand"},
     {"resample-spline", 0, OPTION_STEP, AT(steps), "N", 0, 0,
      "step: the same along a spline through the vertices (Catmull-Rom, centripetal)"},
     {"spacing", 0, OPTION_STEP, AT(steps), "M", 0, 0,
@@ -70,26 +69,27 @@ static const Option OPTIONS[] = {
      "step: N passes of a binomial filter over the vertices between root and tip"},
     {"scale", 0, OPTION_STEP, AT(steps), "X", 0, 0, "step: scale about the origin"},
     {"rotate", 0, OPTION_STEP, AT(steps), "AXIS,DEG", 0, 0,
-     "step: turn about x, y or z, such as y,90"},
+     "step: rotate about x, y or z, such as y,90"},
     {"translate", 0, OPTION_STEP, AT(steps), "X,Y,Z", 0, 0, "step: move, metres"},
-    {"reverse", 0, OPTION_STEP, AT(steps), NULL, 0, 0, "step: make roots of tips"},
+    {"reverse", 0, OPTION_STEP, AT(steps), NULL, 0, 0, "step: swap roots and tips"},
     {"seed", 0, OPTION_WHOLE, AT(seed), "N", 0, 2147483647,
-     "of --subsample, and of the shuffle that some files ask for [default 1]"},
+     "start of the random numbers of --subsample, and of the shuffle that some formats need "
+     "[default 1]"},
 };
 
 // Behind a paragraph about the formats.
 #define OTHER_NOTES                                                                                \
-    "Steps are done in the order in which they stand. Lengths are metres with y up, whatever the " \
-    "file has.",                                                                                   \
-        "Defects are mended when a file is read, as tractrix-render does, with a line for each "   \
-        "kind: strands with coordinates that are no numbers and strands without length are "       \
-        "dropped, coincident vertices merged, bad attributes replaced. Data that the written "     \
-        "format cannot store is dropped, with one warning.",                                       \
+    "Steps run in the order of the command line. Lengths are metres with y up, whatever the file " \
+    "uses.",                                                                                       \
+        "Defects are repaired when a file is read, as in tractrix-render, with a line for each "   \
+        "kind: strands without length or with coordinates that are not numbers are dropped, "      \
+        "coincident vertices merged, bad attributes replaced. Data that the written format "       \
+        "cannot store is dropped, with one warning.",                                              \
         NULL
 
 static const char *const STATUS[][2] = {
     {"0", "done"},          {"1", "a file can't be written"},
-    {"2", "wrong usage"},   {"3", "a file can't be read or is refused"},
+    {"2", "wrong usage"},   {"3", "a file can't be read or is rejected"},
     {"130", "interrupted"}, {NULL, NULL}};
 
 static const char *const EXAMPLES[] = {
@@ -107,15 +107,15 @@ static const OptionsProgram PROGRAM = {
     .summary = "convert, change and measure hair files",
     .synopsis = "[OPTION]... FILE...",
     .description =
-        "Tells what hair files are, thins, resamples, smooths and moves hair, and writes "
-        "it in other formats, also animated.",
+        "Describes hair files; thins, resamples, smooths and moves hair; and writes it in "
+        "other formats, also animated.",
     .options = OPTIONS,
     .option_count = sizeof OPTIONS / sizeof *OPTIONS,
     .status = STATUS,
     .examples = EXAMPLES,
 };
 
-// --- What is asked.
+// --- The command line.
 
 typedef struct Job {
     Command command;
@@ -137,12 +137,14 @@ static Result parse_unit(const char *name, const char *text, float *metres, Erro
 static Result check_sense(const Command *command, int files, Error *error)
 {
     bool to = command->to_unit || command->to_up || command->format || command->width > 0;
-    if (files == 0) return error_set(error, RESULT_USAGE, "expected a hair file or a cache");
+    if (files == 0)
+        return error_set(error, RESULT_USAGE, "no input: expected a hair file or a cache");
     if (!command->output && to)
         return error_set(error, RESULT_USAGE,
-                         "--to-unit, --to-up, --format and --width are for what -o writes");
+                         "--to-unit, --to-up, --format and --width have no effect: there is no -o");
     if (!command->output && !command->stats && !command->json && command->steps.count)
-        return error_set(error, RESULT_USAGE, "--%s: nothing comes of it without -o or --stats",
+        return error_set(error, RESULT_USAGE,
+                         "--%s: it has no effect: there is neither -o, --stats nor --json",
                          command->steps.step[0].option->name);
     return RESULT_OK;
 }
@@ -253,7 +255,7 @@ static Result do_frames(Job *job, Error *error)
     return result;
 }
 
-static void tell_output(const Job *job)
+static void report_output(const Job *job)
 {
     const ConvertOutput *output = &job->output;
     const char *kind = FORMAT_TABLE[output->kind]->name;
@@ -274,7 +276,7 @@ static Result run(Job *job, Error *error)
     if (result == RESULT_OK && !command->quiet && !command->output && !command->stats &&
         !command->json)
         convert_print_input(&job->input, stdout);
-    if (result == RESULT_OK && !command->quiet && command->output) tell_output(job);
+    if (result == RESULT_OK && !command->quiet && command->output) report_output(job);
     if (result == RESULT_OK && command->stats) convert_print_figures(&job->figures, stdout);
     if (result == RESULT_OK && command->json)
         result = convert_write_json(command->json, &job->input, &job->figures,

@@ -15,7 +15,7 @@ typedef struct GenOutput {
 // command's struct.
 #define GEN_OPTION_OUTPUT(at)                                                                      \
     {                                                                                              \
-        "output", 'o', OPTION_STRING, at, "FILE", 0, 0, "the hair"                                 \
+        "output", 'o', OPTION_STRING, at, "FILE", 0, 0, "hair file to write"                       \
     }
 #define GEN_OPTION_FORMAT(at)                                                                      \
     {                                                                                              \
@@ -24,7 +24,7 @@ typedef struct GenOutput {
     }
 #define GEN_OPTION_SEED(at)                                                                        \
     {                                                                                              \
-        "seed", 0, OPTION_WHOLE, at, "N", 0, 2147483647, "of all that is random [default 1]"       \
+        "seed", 0, OPTION_WHOLE, at, "N", 0, 2147483647, "start of all random numbers [default 1]" \
     }
 #define GEN_OPTION_QUIET(at)                                                                       \
     {                                                                                              \

@@ -26,28 +26,28 @@ static const char *const SET_NAMES[] = {"1k16", "1k32", "10k16", "10k32"};
 
 static const Option OPTIONS[] = {
     {"kind", 0, OPTION_WORD, AT(kind), KINDS, 0, 0,
-     "segments in random directions, or hair of some sort [default curls]"},
+     "random: segments in random directions; others: hair of that kind [default curls]"},
     {"shape", 0, OPTION_WORD, AT(shape), "sphere|head", 0, 0,
-     "what it grows on: a sphere (radius 0.1 m) or a head"},
-    {"count", 'n', OPTION_WHOLE, AT(count), "N", 1, 1e7, "strands"},
-    {"vertices", 0, OPTION_WHOLE, AT(vertices), "N", 2, 65535, "per strand"},
-    {"length", 0, OPTION_REAL, AT(length), "M", 1e-3, 100, "of the longest strand, metres"},
+     "what hair grows on: a sphere (radius 0.1 m) or a head"},
+    {"count", 'n', OPTION_WHOLE, AT(count), "N", 1, 1e7, "number of strands"},
+    {"vertices", 0, OPTION_WHOLE, AT(vertices), "N", 2, 65535, "vertices per strand"},
+    {"length", 0, OPTION_REAL, AT(length), "M", 1e-3, 100, "length of the longest strand, metres"},
     {"length-variation", 0, OPTION_REAL, AT(length_variation), "SHARE", 0, 1,
-     "strands are up to this share shorter"},
+     "strands are randomly shorter, by up to this share"},
     {"curl-radius", 0, OPTION_REAL, AT(curl_radius), "M", 0, 1,
-     "of the curls at the tip, metres; --kind curls"},
+     "radius of curls at the tip, metres; --kind curls"},
     {"curl-turns", 0, OPTION_REAL, AT(curl_turns), "N", 0, 1000,
-     "of the curls over a strand; --kind curls"},
+     "turns of curls per strand; --kind curls"},
     {"curl-disorder", 0, OPTION_REAL, AT(curl_disorder), "SHARE", 0, 1,
-     "0: neighbours wind in step, 1: each for itself; --kind curls"},
+     "0: neighbours wind in phase, 1: each has its own phase; --kind curls"},
     GEN_OPTION_SEED(AT(seed)),
     {"set", 0, OPTION_WORD, AT(set), "1k16|1k32|10k16|10k32", 0, 0,
-     "a test set of the thesis instead: thousands of strands x vertices"},
+     "make this test set of the thesis: thousands of strands x vertices"},
     GEN_OPTION_FORMAT(AT(output.format)),
     GEN_OPTION_OUTPUT(AT(output.path)),
     {"mesh", 0, OPTION_STRING, AT(mesh), "FILE", 0, 0, "also write the shape, as Wavefront OBJ"},
     {"bust", 0, OPTION_STRING, AT(bust), "FILE", 0, 0,
-     "also write the head with shoulders below it, as Wavefront OBJ"},
+     "also write the head with shoulders, as Wavefront OBJ"},
     GEN_OPTION_QUIET(AT(output.quiet)),
 };
 
@@ -71,9 +71,9 @@ static const OptionsProgram PROGRAM = {
     .examples = EXAMPLES,
 };
 
-// --- What is asked.
+// --- The command line.
 
-// What each kind has where nothing is said: a paragraph of the help.
+// The defaults of each kind: a paragraph of the help.
 static void write_defaults(char *text, size_t size)
 {
     size_t at = (size_t)snprintf(text, size, "Defaults.");
@@ -92,7 +92,7 @@ static void write_defaults(char *text, size_t size)
     }
 }
 
-// The first of `names` that was given a value; NULL: none.
+// The first of `names` that was given; NULL: none.
 static const char *find_given(const Command *command, const char *const *names)
 {
     for (; *names; ++names) {
@@ -108,7 +108,7 @@ static const char *find_given(const Command *command, const char *const *names)
     return NULL;
 }
 
-// No option is passed over without a word.
+// An option without effect is an error.
 static Result check_effect(const Command *command, Error *error)
 {
     static const char *const CURLS[] = {"curl-radius", "curl-turns", "curl-disorder", NULL};
@@ -117,13 +117,13 @@ static Result check_effect(const Command *command, Error *error)
         "curl-radius", "curl-turns", "curl-disorder", NULL};
     const char *curl = find_given(command, CURLS), *shaping = find_given(command, SHAPING);
     if (curl && command->kind >= 0 && command->kind != STRANDS_STYLE_CURLS)
-        return error_set(error, RESULT_USAGE, "--%s is for --kind curls, not %s", curl,
+        return error_set(error, RESULT_USAGE, "--%s: it has no effect: --kind is %s", curl,
                          KIND_NAMES[command->kind]);
     if (command->set >= 0 && shaping)
         return error_set(error, RESULT_USAGE, "--set %s and --%s exclude each other",
                          SET_NAMES[command->set], shaping);
     if (!command->output.path && !command->mesh && !command->bust)
-        return error_set(error, RESULT_USAGE, "nothing to write: expected -o FILE");
+        return error_set(error, RESULT_USAGE, "no output: expected -o FILE");
     return RESULT_OK;
 }
 
@@ -150,7 +150,7 @@ static Result parse(Command *command, int argc, char **argv, bool *done, Error *
     Result result = options_parse(&program, command, argc, argv, &first, done, error);
     if (result != RESULT_OK || *done) return result;
     if (first < argc)
-        return error_set(error, RESULT_USAGE, "'%s' is no option: expected -o FILE", argv[first]);
+        return error_set(error, RESULT_USAGE, "%s: got a file, expected only options and -o FILE", argv[first]);
     return check_effect(command, error);
 }
 

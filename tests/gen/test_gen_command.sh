@@ -22,10 +22,10 @@ claim "values are judged, and no option is passed over"
 refused 2 "--kind: got 'crls', expected random, straight, curls or fur (nearest: curls)" --kind crls
 refused 2 "--knid: no such option: did you mean '--kind'?" --knid curls
 refused 2 "--count: got '0', expected a whole number from 1 to 10000000" --count 0
-refused 2 "--curl-radius is for --kind curls, not fur" --kind fur --curl-radius 0.01
+refused 2 "--curl-radius: it has no effect: --kind is fur" --kind fur --curl-radius 0.01
 refused 2 "--set 1k16 and --count exclude each other" --set 1k16 --count 5
-refused 2 "'x' is no option" x
-run 2; says "nothing to write"
+refused 2 "x: got a file, expected only options" x
+run 2; says "no output: expected -o FILE"
 
 claim "help and manual page"
 run 0 --help; says "Usage: tractrix-gen"; says "Defaults. random: --shape sphere --count 1000"
@@ -47,8 +47,8 @@ if [ "$count" -gt 615 ] && [ "$count" -lt 641 ]; then good; else bad "$count str
 claim "followers and thickness go where the format holds them"
 run 0 fur assets/ball.obj -n 9 --followers 16 --format tfx3 -o "$work/f.tfx"
 run 0 fur assets/ball.obj -n 9 --thickness 1e-4 --tip-thickness 0.1 --format hair -o "$work/f.hair"
-refused 2 "--followers needs --format usda, tfx3 or text" fur assets/ball.obj --followers 3
-refused 2 "--thickness needs --format usda or hair" fur assets/ball.obj --thickness 1e-4
+refused 2 "--followers: expected --format usda, tfx3 or text" fur assets/ball.obj --followers 3
+refused 2 "--thickness: expected --format usda or hair" fur assets/ball.obj --thickness 1e-4
 
 claim "the unit and the axis of the mesh count"
 printf 'v 0 0 0\nv 100 0 0\nv 0 100 0\nf 1 2 3\n' >"$work/flat.obj"
@@ -68,8 +68,8 @@ refused 2 "a picture needs texture coordinates, which the mesh lacks" fur "$work
 refused 3 "--density: " fur assets/ball.obj --density "$work/none.png"
 refused 2 "--density is nowhere above 0" fur assets/ball.obj --density 0
 refused 2 "--comb: expected X,Y,Z" fur assets/ball.obj --comb 1,2
-refused 2 "expected one mesh, got 0" fur
-refused 2 "expected one mesh, got 2" fur assets/ball.obj assets/head.obj
+refused 2 "fur: got 0 files, expected one mesh" fur
+refused 2 "fur: got 2 files, expected one mesh" fur assets/ball.obj assets/head.obj
 refused 2 "need" fur assets/ball.obj --curl-radius 0.01 --length 1
 refused 2 "--clump needs --guides or --clumps" fur assets/ball.obj --clump 0.5
 refused 3 "$work/none.obj: " fur "$work/none.obj"
