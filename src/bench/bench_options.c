@@ -11,7 +11,7 @@ typedef struct Values {
     BenchOptions bench;
     const char *rates, *size, *raster, *oit, *shadow, *quality;
     const char *param[BENCH_MOST_PARAMS]; // of the row of that number below
-    bool software, osmesa, no_error, no_shrink;
+    bool software, osmesa, no_shrink;
 } Values;
 
 #define AT(member) offsetof(Values, member)
@@ -41,17 +41,17 @@ static const Option OPTIONS[] = {
      "how hair is drawn: auto, quads or blocks (default auto)"},
     {"oit", 0, OPTION_STRING, AT(oit), "WORD", 0, 0,
      "image, quads: abuffer or none (default auto: abuffer)"},
-    {"layers", 0, OPTION_WHOLE, AT(bench.image.scheme.layers), "K", 0, 64,
+    {"layers", 0, OPTION_WHOLE, AT(bench.scheme.layers), "K", 0, 64,
      "image, quads: fragments of a pixel in order, 1 to 64 (default 0: 8)"},
-    {"samples", 0, OPTION_WHOLE, AT(bench.image.scheme.samples), "N", 1, 4,
+    {"samples", 0, OPTION_WHOLE, AT(bench.scheme.samples), "N", 1, 4,
      "image: 2, 4: 2 x 2 or 4 x 4 samples a pixel (default 1)"},
     {"shadow", 0, OPTION_STRING, AT(shadow), "WORD", 0, 0,
      "image: none, approx or dom (default none)"},
     {"quality", 0, OPTION_STRING, AT(quality), "WORD", 0, 0,
      "image: a preset, normal, draft or final, for what is not said (default normal)"},
-    {"frames", 0, OPTION_WHOLE, AT(bench.image.frames), "N", 1, 1e6,
+    {"frames", 0, OPTION_WHOLE, AT(bench.frames), "N", 1, 1e6,
      "image: measured pictures (default 15)"},
-    {"no-error", 0, OPTION_SWITCH, AT(no_error), NULL, 0, 0, "image: times only"},
+    {"no-error", 0, OPTION_SWITCH, AT(bench.no_error), NULL, 0, 0, "image: times only"},
     {"cases", 0, OPTION_WHOLE, AT(bench.stress.cases), "N", 1, 1e6,
      "stress: random cases of each form of a solver (default 5000)"},
     {"seed", 0, OPTION_WHOLE, AT(bench.stress.seed), "N", 0, 2e9,
@@ -179,42 +179,31 @@ static Result read_size(const char *text, int size[2], Error *error)
     return error_set(error, RESULT_USAGE, "--size: expected WxH, each 1 to 16384, got '%s'", text);
 }
 
-static Result read_choice(const char *name, const char *text, int *value, Error *error)
-{
-    RunParams run = {0};
-    Result result = params_parse(params_find(name), &run, text, error);
-    if (result != RESULT_OK) return error_prefix(error, result, "--%s: ", name);
-    *value = strcmp(name, "raster") == 0    ? run.raster
-             : strcmp(name, "shadow") == 0  ? run.shadow
-             : strcmp(name, "quality") == 0 ? run.quality
-                                            : run.oit;
-    return RESULT_OK;
-}
-
 static Result read_words(Values *values, Error *error)
 {
     BenchOptions *options = &values->bench;
-    int raster = 0, oit = 0, shadow = 0, quality = 0;
-    Result result = values->rates ? read_rates(values->rates, options, error) : RESULT_OK;
-    if (result == RESULT_OK && values->size) result = read_size(values->size, options->size, error);
-    if (result == RESULT_OK && values->raster)
-        result = read_choice("raster", values->raster, &raster, error);
-    if (result == RESULT_OK && values->oit) result = read_choice("oit", values->oit, &oit, error);
-    if (result == RESULT_OK && values->shadow)
-        result = read_choice("shadow", values->shadow, &shadow, error);
-    if (result == RESULT_OK && values->quality)
-        result = read_choice("quality", values->quality, &quality, error);
-    options->raster = (Raster)raster;
-    options->image.scheme.shadow = (Shadow)shadow;
-    options->image.scheme.quality = (Quality)quality;
-    options->image.scheme.oit = (Oit)oit;
-    options->image.no_error = values->no_error;
+    RunParams run = {0};
+    const char *const words[][2] = {{"raster", values->raster},
+                                    {"oit", values->oit},
+                                    {"shadow", values->shadow},
+                                    {"quality", values->quality}};
+    if (values->rates) TRY(read_rates(values->rates, options, error));
+    if (values->size) TRY(read_size(values->size, options->size, error));
+    for (size_t i = 0; i < sizeof words / sizeof *words; ++i) {
+        if (!words[i][1]) continue;
+        Result result = params_parse(params_find(words[i][0]), &run, words[i][1], error);
+        if (result != RESULT_OK) return error_prefix(error, result, "--%s: ", words[i][0]);
+    }
+    options->scheme.raster = (Raster)run.raster;
+    options->scheme.oit = (Oit)run.oit;
+    options->scheme.shadow = (Shadow)run.shadow;
+    options->scheme.quality = (Quality)run.quality;
     options->stress.shrinks = !values->no_shrink;
     if (options->steps) options->stress.steps = options->steps;
     if (!options->steps) options->steps = 200;
     options->gpu.software = values->software;
     if (values->osmesa) options->gpu.backend = BACKEND_OSMESA;
-    return result;
+    return RESULT_OK;
 }
 
 // --- All of it.
@@ -227,7 +216,7 @@ Result bench_options_read(BenchOptions *options, int argc, char **argv,
                                .seconds = 60,
                                .warm_up = 20,
                                .stress = stress_options_default(),
-                               .image = image_options_default(),
+                               .frames = 15,
                                .gpu = {.device = -1}}};
     int first = 0;
     list_rows(&rows);
@@ -244,12 +233,12 @@ Result bench_options_read(BenchOptions *options, int argc, char **argv,
                                     .status = STATUS,
                                     .examples = EXAMPLES};
     Result result = options_parse(&program, &values, argc, argv, &first, &values.bench.done, error);
-    if (result == RESULT_OK && !values.bench.done) result = read_words(&values, error);
-    if (result == RESULT_OK && !values.bench.done) result = join_settings(&values, &rows, error);
+    if (!values.bench.done) THEN(result, read_words(&values, error));
+    if (!values.bench.done) THEN(result, join_settings(&values, &rows, error));
     values.bench.files = argv + first;
     values.bench.file_count = argc - first;
     *options = values.bench;
-    if (result == RESULT_OK && !options->done) result = check_settings(options, error);
+    if (!options->done) THEN(result, check_settings(options, error));
     return result;
 }
 

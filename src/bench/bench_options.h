@@ -2,13 +2,22 @@
 // The command line of tractrix-bench: all that its commands are asked.
 #pragma once
 
-#include "bench/bench_image.h"
-#include "bench/stress.h"
 #include "bench/method.h"
+#include "bench/stress.h"
 #include "bench/table.h"
 #include "gpu/gpu.h"
 
 enum { BENCH_MOST_RATES = 8, BENCH_MOST_PARAMS = 64 };
+
+// A way to draw.
+typedef struct BenchScheme {
+    Raster raster;
+    Oit oit;
+    int layers;      // of abuffer that are sorted
+    int samples;     // across a pixel; 0: as the quality says
+    Shadow shadow;   // none: as the quality says
+    Quality quality; // the defaults of all else
+} BenchScheme;
 
 typedef struct BenchOptions {
     const char *set, *tfx;           // a set's name; a hair file; NULL: neither
@@ -21,9 +30,10 @@ typedef struct BenchOptions {
     double seconds;                  // of long runs
     int steps, warm_up;              // measured, and not measured before that
     StressOptions stress;            // but for its method
-    int size[2];                     // picture to draw in px; 0: no drawing
-    Raster raster;                   // how hair is drawn
-    ImageOptions image;              // but for what is above
+    int size[2];                     // image to draw in px; 0: none, or the usual size
+    BenchScheme scheme;              // how hair is drawn
+    int frames;                      // images, >= 1, after two that are not measured
+    bool no_error;                   // no exact image, which takes many seconds
     GpuOptions gpu;
     TableOutput output;
     char **files; // what is no option: the command and hair files

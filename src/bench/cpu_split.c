@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "bench/cpu_split.h"
-
+#include "base/clock.h"
+#include "base/parallel.h"
 #include "base/simd.h"
 
 #include <math.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -254,4 +256,89 @@ void cpu_split_step(CpuSplit *split, CpuSplitForm form, uint32_t first, uint32_t
         else
             for (int k = 0; k < W; ++k) step_strand(split, links + k, ends + k);
     }
+}
+
+double cpu_split_length(const CpuSplit *split)
+{
+    return (double)split->ends[REACH * W];
+}
+
+// --- Times.
+
+// Steps by threads that stay together: one clock, a barrier before and after each.
+typedef struct March {
+    CpuSplit *split;
+    CpuSplitForm form;
+    int threads, steps, warm_up;
+    double *samples;
+    pthread_barrier_t barrier;
+} March;
+
+static void march(void *data, int part)
+{
+    March *m = data;
+    uint32_t tiles = m->split->tile_count, threads = (uint32_t)m->threads, t = (uint32_t)part;
+    for (int i = -m->warm_up; i < m->steps; ++i) {
+        double begin = clock_ms();
+        pthread_barrier_wait(&m->barrier);
+        cpu_split_step(m->split, m->form, tiles * t / threads, tiles * (t + 1) / threads);
+        pthread_barrier_wait(&m->barrier);
+        if (i >= 0 && part == 0) m->samples[i] = clock_ms() - begin;
+    }
+}
+
+Result cpu_split_time_steps(Times *times, CpuSplit *split, CpuSplitForm form, int threads,
+                            int steps, int warm_up, Error *error)
+{
+    March m = {
+        .split = split, .form = form, .threads = threads, .steps = steps, .warm_up = warm_up};
+    m.samples = calloc((size_t)steps, sizeof *m.samples);
+    if (!m.samples) return error_set(error, RESULT_FAILED, "no memory for samples");
+    pthread_barrier_init(&m.barrier, NULL, (unsigned)threads);
+    parallel_run(threads, march, &m);
+    pthread_barrier_destroy(&m.barrier);
+    *times = table_times(m.samples, steps);
+    free(m.samples);
+    return RESULT_OK;
+}
+
+enum { ELEMENTS = 16 << 20, RUNS = 12 }; // 64 MiB an array
+
+typedef struct Arrays {
+    float *a, *b, *c;
+    int parts;
+    bool filled;
+} Arrays;
+
+static void add_arrays(void *data, int part)
+{
+    const Arrays *arrays = data;
+    size_t first = (size_t)part * ELEMENTS / (size_t)arrays->parts,
+           last = (size_t)(part + 1) * ELEMENTS / (size_t)arrays->parts;
+    for (size_t i = first; i < last && !arrays->filled; ++i)
+        arrays->b[i] = (float)i, arrays->c[i] = 1;
+    for (size_t i = first; i < last; ++i) arrays->a[i] = arrays->b[i] + 3 * arrays->c[i];
+}
+
+Result cpu_split_time_memory(Times *times, double *bytes, int *threads, Error *error)
+{
+    size_t size = ELEMENTS * sizeof(float);
+    double samples[RUNS];
+    Arrays arrays = {malloc(size), malloc(size), malloc(size), parallel_threads(), false};
+    bool good = arrays.a && arrays.b && arrays.c;
+    if (good) {
+        parallel_run(arrays.parts, add_arrays, &arrays);
+        arrays.filled = true;
+        for (int i = 0; i < RUNS; ++i) {
+            double begin = clock_ms();
+            parallel_run(arrays.parts, add_arrays, &arrays);
+            samples[i] = clock_ms() - begin;
+        }
+        *times = table_times(samples, RUNS);
+    }
+    *bytes = 3.0 * (double)size, *threads = arrays.parts;
+    free(arrays.a);
+    free(arrays.b);
+    free(arrays.c);
+    return good ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory to measure it");
 }

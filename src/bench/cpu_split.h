@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// A step of `split` in plain C, as a yardstick for the driver that runs it on a CPU: the same rule
+// What the processor could do, as a yardstick for the driver that runs on it: the memory's
+// bandwidth, and a step of `split` in plain C: the same rule
 // as glsl/sim/split.comp (its default form, a head that stays, no wind), a strand after another or
 // several side by side for the compiler to vectorise, on any number of threads.
 #pragma once
 
 #include "base/error.h"
+#include "bench/table.h"
 #include "strands/strands.h"
 
 typedef enum CpuSplitForm {
@@ -28,7 +30,7 @@ typedef struct CpuSplit {
 Result cpu_split_create(CpuSplit *split, const Strands *strands, Error *error);
 void cpu_split_destroy(CpuSplit *split);
 
-// The next steps' length, drag (1/s) and whether they are the first from rest, for dt/2.
+// Sets the next steps' length, drag (1/s) and whether they are the first from rest, for dt/2.
 void cpu_split_time(CpuSplit *split, double dt, double drag, bool first);
 
 // A step of the tiles from `first` to before `last`.
@@ -39,3 +41,15 @@ void cpu_split_read(const CpuSplit *split, float (*positions)[3]);
 
 // What the lanes were compiled for: "AVX2" or "baseline".
 const char *cpu_split_lanes(void);
+
+// The strands' length, m.
+double cpu_split_length(const CpuSplit *split);
+
+// Times `steps` steps after `warm_up` on up to PARALLEL_MOST threads. RESULT_FAILED when memory is
+// short.
+Result cpu_split_time_steps(Times *times, CpuSplit *split, CpuSplitForm form, int threads,
+                            int steps, int warm_up, Error *error);
+
+// Times a[i] = b[i] + 3 c[i] over three arrays of 64 MiB, *bytes together, on all processors,
+// *threads of them. RESULT_FAILED when memory is short.
+Result cpu_split_time_memory(Times *times, double *bytes, int *threads, Error *error);

@@ -16,6 +16,7 @@
 // Kay's with two highlights, or what `shade` says.
 #pragma once
 
+#include "draw/light_frame.h"
 #include "image/image.h"
 #include "mesh/mesh.h"
 #include "scene/camera.h"
@@ -68,3 +69,40 @@ enum { REFERENCE_SIDE = 16 };
 // one thread, and memory with those of one row of pixels for each thread. RESULT_FAILED when memory
 // is short.
 Result image_reference_draw(Image *image, const ReferenceScene *scene, int side, Error *error);
+
+// --- The shapes of a scene, which the shadows' judge (shadow_reference.h) uses as well.
+
+// A quantity that is linear on the screen, kept between its values at the corners.
+typedef struct ShapePlane {
+    double base, dx, dy; // base + dx x + dy y, in px
+    double low, high;
+} ShapePlane;
+
+typedef struct Shape {
+    double corner[4][2]; // px, in turn
+    int corners;         // 3 or 4
+    double top, bottom;  // px, lowest and highest y
+    double opacity;
+    ShapePlane inverse_w; // 1/m
+    ShapePlane color[3];  // linear
+} Shape;
+
+typedef struct Shapes {
+    Shape *shapes; // [count], owned
+    uint32_t count;
+} Shapes;
+
+// All ribbons and triangles as a light sees them, in its u and v (light_frame.h) in place of px,
+// with the material's shadow_opacity and without colours. inverse_w is 1/m before a lamp, else the
+// distance along the light, negative: what is nearer is greater. What lies behind a lamp is left
+// out. RESULT_FAILED when memory is short.
+Result image_reference_shapes(Shapes *shapes, const ReferenceScene *scene, const LightView *light,
+                              Error *error);
+void image_reference_destroy_shapes(Shapes *shapes);
+
+// A plane's value there.
+double image_reference_plane(const ShapePlane *plane, double x, double y);
+
+// Where the shape's outline crosses the horizontal line at y, ascending; gives their count. An edge
+// takes its lower end but not its upper one, so that shapes with a common edge share the line.
+int image_reference_cross(const Shape *shape, double y, double crossing[4]);

@@ -5,12 +5,12 @@
 #include "base/program.h"
 #include "base/suggest.h"
 #include "bench/accuracy.h"
-#include "bench/bench_images.h"
-#include "bench/bench_scenes.h"
-#include "bench/bench_shaders.h"
-#include "bench/bench_speed.h"
-#include "bench/bench_step.h"
+#include "bench/images.h"
+#include "bench/scenes.h"
+#include "bench/shaders.h"
+#include "bench/speed.h"
 #include "bench/stress.h"
+#include "bench/test_vectors.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -29,7 +29,7 @@ static Result run_stress(const BenchOptions *arguments, const Gpu *gpu, Error *e
 static Result run_shaders(const BenchOptions *arguments, const Gpu *gpu, Error *error)
 {
     (void)arguments;
-    return bench_shaders(gpu, stdout, error);
+    return shaders_check(gpu, stdout, error);
 }
 
 static const struct {
@@ -37,9 +37,9 @@ static const struct {
     Result (*run)(const BenchOptions *options, const Gpu *gpu, Error *error);
     const char *help;
 } COMMANDS[] = {
-    {"step", bench_step,
+    {"step", test_vectors_run_steps,
      "tractrix steps of --vectors against their exact results, by our rule and by the thesis's"},
-    {"chain", bench_chain,
+    {"chain", test_vectors_run_chains,
      "chain pulls of --vectors FILE.csv (FILE_cases.csv beside it) against theirs"},
     {"accuracy", accuracy_run,
      "solvers against what is known exactly. Parts: motions, work (time beside error), pendulum, "
@@ -77,15 +77,13 @@ static Result run_command(BenchOptions *options, Error *error)
     size_t command = 0;
     Gpu gpu;
     if (options->file_count == 0) return error_set(error, RESULT_USAGE, "no command; see --help");
-    Result result = find_command(*options->files++, &command, error);
+    TRY(find_command(*options->files++, &command, error));
     --options->file_count;
     // What Mesa finds in its cache it does not compile, and warns of nothing.
-    if (result == RESULT_OK && COMMANDS[command].run == run_shaders)
-        setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
-    if (result == RESULT_OK) result = gpu_create(&gpu, &options->gpu, error);
-    if (result != RESULT_OK) return result;
+    if (COMMANDS[command].run == run_shaders) setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
+    TRY(gpu_create(&gpu, &options->gpu, error));
     fprintf(stderr, "%s, OpenGL %s (%s)\n", gpu.renderer, gpu.version, gpu.path);
-    result = COMMANDS[command].run(options, &gpu, error);
+    Result result = COMMANDS[command].run(options, &gpu, error);
     gpu_destroy(&gpu);
     return result;
 }
@@ -97,7 +95,7 @@ static Result run(int argc, char **argv, Error *error)
     for (size_t i = 0; i < COMMAND_COUNT; ++i)
         help[i][0] = COMMANDS[i].name, help[i][1] = COMMANDS[i].help;
     Result result = bench_options_read(&options, argc, argv, (const char *const(*)[2])help, error);
-    if (result == RESULT_OK && !options.done) result = run_command(&options, error);
+    if (!options.done) THEN(result, run_command(&options, error));
     bench_options_destroy(&options);
     return result;
 }

@@ -9,15 +9,14 @@
 #pragma once
 
 #include "bench/image_reference.h"
-#include "draw/light_frame.h"
 
 // A zeroed struct is empty.
 typedef struct ShadowReference {
     LightView view;
-    struct ShadowShape *shapes; // [count], owned
-    uint32_t *cell_first;       // [side * side + 1], owned: a grid across the light ...
-    uint32_t *cell_shapes;      // ... and the shapes that touch each cell, owned
-    uint32_t count, side;
+    Shapes shapes;
+    uint32_t *cell_first;  // [side * side + 1], owned: a grid across the light ...
+    uint32_t *cell_shapes; // ... and the shapes that touch each cell, owned
+    uint32_t side;
     double low[2], step[2]; // of the grid
 } ShadowReference;
 

@@ -321,8 +321,7 @@ Result stress_search(const Gpu *gpu, const StressOptions *options, const TableOu
     for (int i = 0; i < count; ++i) THEN(result, run_form(&bench, forms[i][0], forms[i][1], error));
     progress_clear(&bench.progress);
     fprintf(stream, "%d cases, %d steps each, of %d forms of solvers in %.0f s: %d failed\n",
-            bench.cases_done, options->steps, count, (clock_ms() - begun) / 1000,
-            bench.failures);
+            bench.cases_done, options->steps, count, (clock_ms() - begun) / 1000, bench.failures);
     if (bench.failures)
         THEN(result, error_set(error, RESULT_FAILED, "%d cases failed", bench.failures));
     // The files have what was done until an interruption, too.

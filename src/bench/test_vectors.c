@@ -55,23 +55,34 @@ static void sum_up(TestVectorsReport *report)
     }
 }
 
-// Three numbers of a row in consecutive named columns.
-static Result numbers(const Csv *csv, size_t row, const size_t column[3], double value[3],
-                      Error *error)
+// --- Reading.
+
+static Result read_number(const Csv *csv, size_t row, const char *name, double *value, Error *error)
 {
-    Result result = RESULT_OK;
-    for (int k = 0; k < 3 && result == RESULT_OK; ++k)
-        result = csv_number(csv, row, column[k], &value[k], error);
-    return result;
+    size_t column;
+    TRY(csv_find(csv, name, &column, error));
+    return csv_number(csv, row, column, value, error);
 }
 
-static Result find_columns(const Csv *csv, const char *const *names, size_t count, size_t *columns,
-                           Error *error)
+// The columns BEFOREx_AFTER, BEFOREy_AFTER and BEFOREz_AFTER.
+static Result read_vector(const Csv *csv, size_t row, const char *before, const char *after,
+                          double value[3], Error *error)
 {
-    Result result = RESULT_OK;
-    for (size_t i = 0; i < count && result == RESULT_OK; ++i)
-        result = csv_find(csv, names[i], &columns[i], error);
-    return result;
+    for (int k = 0; k < 3; ++k) {
+        char name[32];
+        snprintf(name, sizeof name, "%s%c%s", before, "xyz"[k], after);
+        TRY(read_number(csv, row, name, &value[k], error));
+    }
+    return RESULT_OK;
+}
+
+static Result read_text(const Csv *csv, size_t row, const char *name, const char **text,
+                        Error *error)
+{
+    size_t column;
+    TRY(csv_find(csv, name, &column, error));
+    *text = csv_text(csv, row, column);
+    return RESULT_OK;
 }
 
 static double distance(const double a[3], const float b[3])
@@ -113,74 +124,52 @@ static Result run_check(const Gpu *gpu, const char *file, const ShaderDefine *de
     return result;
 }
 
-enum {
-    STEP_ID,
-    STEP_CATEGORY,
-    STEP_H,
-    STEP_T = 5,
-    STEP_P = 8,
-    STEP_FLOOR = 11,
-    STEP_TAIL,
-    STEP_COLUMNS = 15
-};
-static const char *const STEP_NAMES[STEP_COLUMNS] = {
-    "id",     "category", "hx_hex", "hy_hex",  "hz_hex", "tx_hex", "ty_hex", "tz_hex",
-    "px_hex", "py_hex",   "pz_hex", "floor32", "tnx",    "tny",    "tnz"};
+// --- Steps.
 
-static Result read_step_cases(const Csv *csv, const size_t *columns, Float4 *cases, Error *error)
+static Result read_steps(const Csv *csv, Float4 *cases, Error *error)
 {
-    for (size_t row = 0; row < csv->row_count; ++row)
-        for (size_t point = 0; point < 3; ++point) {
-            double value[3];
-            Result result = numbers(csv, row, &columns[STEP_H + 3 * point], value, error);
-            if (result != RESULT_OK) return result;
-            for (int k = 0; k < 3; ++k) cases[3 * row + point][k] = (float)value[k];
-        }
+    static const char *const points[] = {"h", "t", "p"};
+    for (size_t i = 0; i < 3 * csv->row_count; ++i) {
+        double value[3];
+        TRY(read_vector(csv, i / 3, points[i % 3], "_hex", value, error));
+        for (int k = 0; k < 3; ++k) cases[i][k] = (float)value[k];
+    }
     return RESULT_OK;
 }
 
-static Result judge_steps(TestVectorsReport *report, const Csv *csv, const size_t *columns,
-                          const Float4 *tails, Error *error)
+static Result judge_steps(TestVectorsReport *report, const Csv *csv, const Float4 *tails,
+                          Error *error)
 {
-    Result result = RESULT_OK;
-    for (size_t row = 0; row < csv->row_count && result == RESULT_OK; ++row) {
+    for (size_t row = 0; row < csv->row_count; ++row) {
         double exact[3], floor32 = 0, id = 0;
-        result = numbers(csv, row, &columns[STEP_TAIL], exact, error);
-        if (result == RESULT_OK)
-            result = csv_number(csv, row, columns[STEP_FLOOR], &floor32, error);
-        if (result == RESULT_OK) result = csv_number(csv, row, columns[STEP_ID], &id, error);
-        if (result != RESULT_OK) break;
+        const char *category;
+        TRY(read_vector(csv, row, "tn", "", exact, error));
+        TRY(read_number(csv, row, "floor32", &floor32, error));
+        TRY(read_number(csv, row, "id", &id, error));
+        TRY(read_text(csv, row, "category", &category, error));
         double wrong = distance(exact, tails[row]);
-        result = judge(report, csv_text(csv, row, columns[STEP_CATEGORY]), (long)id,
-                       wrong == 0 ? 0 : wrong / floor32, VECTORS_STEP_MARK, error);
+        TRY(judge(report, category, (long)id, wrong == 0 ? 0 : wrong / floor32, VECTORS_STEP_MARK,
+                  error));
     }
-    return result;
+    return RESULT_OK;
 }
 
 Result test_vectors_check_steps(TestVectorsReport *report, const Gpu *gpu, TestVectorsRule rule,
                                 const char *path, Error *error)
 {
     const ShaderDefine defines[] = {{"PUBLISHED", rule == VECTORS_PUBLISHED}, {0}};
-    *report = (TestVectorsReport){0};
     Csv csv;
-    size_t columns[STEP_COLUMNS];
-    Float4 *cases = NULL, *tails = NULL;
-    Result result = csv_read(&csv, path, error);
-    if (result == RESULT_OK) result = find_columns(&csv, STEP_NAMES, STEP_COLUMNS, columns, error);
-    if (result == RESULT_OK) {
-        cases = calloc(3 * csv.row_count, sizeof *cases);
-        tails = calloc(csv.row_count, sizeof *tails);
-        if (!cases || !tails) result = error_set(error, RESULT_FAILED, "%s: no memory", path);
-    }
-    if (result == RESULT_OK) result = read_step_cases(&csv, columns, cases, error);
-    if (result == RESULT_OK) {
-        const CheckBuffer buffers[] = {{BIND_POSITION_OUT, tails, csv.row_count * sizeof *tails},
-                                       {BIND_STATE_OUT, cases, 3 * csv.row_count * sizeof *cases}};
-        result = run_check(gpu, "bench/check_step.comp", defines, buffers, 2, csv.row_count, tails,
-                           buffers[0].size, error);
-    }
-    if (result == RESULT_OK)
-        result = judge_steps(report, &csv, columns, (const Float4 *)tails, error);
+    *report = (TestVectorsReport){0};
+    TRY(csv_read(&csv, path, error));
+    size_t size = csv.row_count * sizeof(Float4);
+    Float4 *cases = calloc(3, size + 1), *tails = calloc(1, size + 1);
+    Result result = cases && tails ? read_steps(&csv, cases, error)
+                                   : error_set(error, RESULT_FAILED, "%s: no memory", path);
+    const CheckBuffer buffers[] = {{BIND_POSITION_OUT, tails, size},
+                                   {BIND_STATE_OUT, cases, 3 * size}};
+    THEN(result, run_check(gpu, "bench/check_step.comp", defines, buffers, 2, csv.row_count, tails,
+                           size, error));
+    THEN(result, judge_steps(report, &csv, (const Float4 *)tails, error));
     sum_up(report);
     free(cases);
     free(tails);
@@ -188,21 +177,14 @@ Result test_vectors_check_steps(TestVectorsReport *report, const Gpu *gpu, TestV
     return result;
 }
 
+// --- Chains. Start points and results share their numbering, waypoints have their own.
+
 typedef struct Span {
     uint32_t first_point, segments, first_waypoint, waypoints;
 } Span;
 
-enum { CASE_ID, CASE_SEGMENTS, CASE_MOVES, CASE_SHAPE, CASE_PATH, CASE_SENS, CASE_COLUMNS };
-static const char *const CASE_NAMES[CASE_COLUMNS] = {"case",  "segments", "moves",
-                                                     "shape", "path",     "sens32"};
-enum { POINT_CASE, POINT_KIND, POINT_INDEX, POINT_HEX, POINT_EXACT = 6, POINT_COLUMNS = 9 };
-static const char *const POINT_NAMES[POINT_COLUMNS] = {"case",  "kind", "index", "x_hex", "y_hex",
-                                                       "z_hex", "x",    "y",     "z"};
-
-// The chains of a file: start points and results share their numbering, waypoints have their own.
 typedef struct Chains {
     Csv cases, points;
-    size_t case_column[CASE_COLUMNS], point_column[POINT_COLUMNS];
     Span *spans;
     size_t point_count, waypoint_count;
     Float4 *start, *waypoint, *result;
@@ -220,41 +202,21 @@ static void chains_destroy(Chains *chains)
     csv_destroy(&chains->points);
 }
 
-static Result open_chains(Chains *chains, const char *path, Error *error)
-{
-    char cases_path[4096];
-    size_t stem = strlen(path);
-    if (stem > 4 && strcmp(path + stem - 4, ".csv") == 0) stem -= 4;
-    snprintf(cases_path, sizeof cases_path, "%.*s_cases.csv", (int)stem, path);
-    Result result = csv_read(&chains->points, path, error);
-    if (result == RESULT_OK) result = csv_read(&chains->cases, cases_path, error);
-    if (result == RESULT_OK)
-        result = find_columns(&chains->cases, CASE_NAMES, CASE_COLUMNS, chains->case_column, error);
-    if (result == RESULT_OK)
-        result =
-            find_columns(&chains->points, POINT_NAMES, POINT_COLUMNS, chains->point_column, error);
-    return result;
-}
-
 static Result read_spans(Chains *chains, Error *error)
 {
-    chains->spans = calloc(chains->cases.row_count, sizeof *chains->spans);
+    const Csv *csv = &chains->cases;
+    chains->spans = calloc(csv->row_count, sizeof *chains->spans);
     if (!chains->spans) return error_set(error, RESULT_FAILED, "no memory for chains");
-    for (size_t row = 0; row < chains->cases.row_count; ++row) {
+    for (size_t row = 0; row < csv->row_count; ++row) {
         double id, segments, moves;
-        Result result = csv_number(&chains->cases, row, chains->case_column[CASE_ID], &id, error);
-        if (result == RESULT_OK)
-            result = csv_number(&chains->cases, row, chains->case_column[CASE_SEGMENTS], &segments,
-                                error);
-        if (result == RESULT_OK)
-            result =
-                csv_number(&chains->cases, row, chains->case_column[CASE_MOVES], &moves, error);
-        if (result != RESULT_OK) return result;
+        TRY(read_number(csv, row, "case", &id, error));
+        TRY(read_number(csv, row, "segments", &segments, error));
+        TRY(read_number(csv, row, "moves", &moves, error));
         if (!(id == (double)row && segments >= 1 && segments <= 65535 && moves >= 0 &&
               moves <= 1e6))
             return error_set(error, RESULT_BAD_INPUT,
-                             "%s:%zu: expected case %zu with 1 to 65535 segments",
-                             chains->cases.path, row + 2, row);
+                             "%s:%zu: expected case %zu with 1 to 65535 segments", csv->path,
+                             row + 2, row);
         chains->spans[row] = (Span){(uint32_t)chains->point_count, (uint32_t)segments,
                                     (uint32_t)chains->waypoint_count, (uint32_t)moves};
         chains->point_count += (size_t)segments + 1;
@@ -263,30 +225,24 @@ static Result read_spans(Chains *chains, Error *error)
     return RESULT_OK;
 }
 
-static Result refuse_point(const Chains *chains, size_t row, Error *error)
-{
-    return error_set(error, RESULT_BAD_INPUT, "%s:%zu: no such case, kind or index",
-                     chains->points.path, row + 2);
-}
-
+// A start point (P), waypoint (M) or result (R).
 static Result read_point(Chains *chains, size_t row, Error *error)
 {
     const Csv *csv = &chains->points;
     double id, index, value[3];
-    const char *kind = csv_text(csv, row, chains->point_column[POINT_KIND]);
-    const size_t *columns = &chains->point_column[*kind == 'R' ? POINT_EXACT : POINT_HEX];
-    Result result = csv_number(csv, row, chains->point_column[POINT_CASE], &id, error);
-    if (result == RESULT_OK)
-        result = csv_number(csv, row, chains->point_column[POINT_INDEX], &index, error);
-    if (result == RESULT_OK) result = numbers(csv, row, columns, value, error);
-    if (result != RESULT_OK) return result;
-    if (!(id >= 0 && id < (double)chains->cases.row_count && index >= 0))
-        return refuse_point(chains, row, error);
-    Span span = chains->spans[(size_t)id];
+    const char *kind;
+    TRY(read_text(csv, row, "kind", &kind, error));
+    TRY(read_number(csv, row, "case", &id, error));
+    TRY(read_number(csv, row, "index", &index, error));
+    TRY(read_vector(csv, row, "", *kind == 'R' ? "" : "_hex", value, error));
+    bool known = id >= 0 && id < (double)chains->cases.row_count && index >= 0;
+    const Span *span = &chains->spans[known ? (size_t)id : 0];
     bool waypoint = *kind == 'M';
-    if (index >= (waypoint ? span.waypoints : span.segments + 1) || !strchr("PMR", *kind))
-        return refuse_point(chains, row, error);
-    size_t at = (waypoint ? span.first_waypoint : span.first_point) + (size_t)index;
+    if (!known || index >= (waypoint ? span->waypoints : span->segments + 1) ||
+        !strchr("PMR", *kind))
+        return error_set(error, RESULT_BAD_INPUT, "%s:%zu: no such case, kind or index", csv->path,
+                         row + 2);
+    size_t at = (waypoint ? span->first_waypoint : span->first_point) + (size_t)index;
     for (int k = 0; k < 3; ++k) {
         if (*kind == 'R')
             chains->exact[at][k] = value[k];
@@ -298,50 +254,47 @@ static Result read_point(Chains *chains, size_t row, Error *error)
 
 static Result read_chains(Chains *chains, const char *path, Error *error)
 {
-    Result result = open_chains(chains, path, error);
-    if (result == RESULT_OK) result = read_spans(chains, error);
-    if (result != RESULT_OK) return result;
+    char cases_path[4096];
+    size_t stem = strlen(path);
+    if (stem > 4 && strcmp(path + stem - 4, ".csv") == 0) stem -= 4;
+    snprintf(cases_path, sizeof cases_path, "%.*s_cases.csv", (int)stem, path);
+    TRY(csv_read(&chains->points, path, error));
+    TRY(csv_read(&chains->cases, cases_path, error));
+    TRY(read_spans(chains, error));
     chains->start = calloc(chains->point_count, sizeof(Float4));
     chains->result = calloc(chains->point_count, sizeof(Float4));
     chains->waypoint = calloc(chains->waypoint_count + 1, sizeof(Float4));
     chains->exact = calloc(chains->point_count, sizeof *chains->exact);
     if (!chains->start || !chains->result || !chains->waypoint || !chains->exact)
         return error_set(error, RESULT_FAILED, "%s: no memory", path);
-    for (size_t row = 0; row < chains->points.row_count && result == RESULT_OK; ++row)
-        result = read_point(chains, row, error);
-    return result;
+    for (size_t row = 0; row < chains->points.row_count; ++row) TRY(read_point(chains, row, error));
+    return RESULT_OK;
 }
 
-static double mean_segment(const Chains *chains, const Span *span)
-{
-    double total = 0;
-    for (uint32_t j = span->first_point + 1; j <= span->first_point + span->segments; ++j) {
-        const float *a = chains->start[j - 1], *b = chains->start[j];
-        total += distance((double[3]){(double)a[0], (double)a[1], (double)a[2]}, b);
-    }
-    return total / span->segments;
-}
-
+// The farthest point of each chain, over its mean segment.
 static Result judge_chains(TestVectorsReport *report, const Chains *chains, Error *error)
 {
-    Result result = RESULT_OK;
-    for (size_t row = 0; row < chains->cases.row_count && result == RESULT_OK; ++row) {
+    for (size_t row = 0; row < chains->cases.row_count; ++row) {
         const Span *span = &chains->spans[row];
-        double sens32, worst = 0;
+        double sens32, worst = 0, length = 0;
         char category[32];
-        result = csv_number(&chains->cases, row, chains->case_column[CASE_SENS], &sens32, error);
-        if (result != RESULT_OK) break;
+        const char *shape, *path;
+        TRY(read_number(&chains->cases, row, "sens32", &sens32, error));
+        TRY(read_text(&chains->cases, row, "shape", &shape, error));
+        TRY(read_text(&chains->cases, row, "path", &path, error));
         for (uint32_t j = span->first_point; j <= span->first_point + span->segments; ++j) {
+            const float *x = chains->start[j];
             double wrong = distance(chains->exact[j], chains->result[j]);
             if (!(wrong <= worst)) worst = wrong;
+            if (j > span->first_point)
+                length += distance((double[3]){(double)x[0], (double)x[1], (double)x[2]},
+                                   chains->start[j - 1]);
         }
-        snprintf(category, sizeof category, "%.14s %.14s",
-                 csv_text(&chains->cases, row, chains->case_column[CASE_SHAPE]),
-                 csv_text(&chains->cases, row, chains->case_column[CASE_PATH]));
-        result = judge(report, category, (long)row, worst / mean_segment(chains, span) / sens32,
-                       VECTORS_CHAIN_MARK, error);
+        snprintf(category, sizeof category, "%.14s %.14s", shape, path);
+        TRY(judge(report, category, (long)row, worst / (length / span->segments) / sens32,
+                  VECTORS_CHAIN_MARK, error));
     }
-    return result;
+    return RESULT_OK;
 }
 
 Result test_vectors_check_chains(TestVectorsReport *report, const Gpu *gpu, const char *path,
@@ -360,8 +313,107 @@ Result test_vectors_check_chains(TestVectorsReport *report, const Gpu *gpu, cons
         result = run_check(gpu, "bench/check_chain.comp", NULL, buffers, 3, chains.cases.row_count,
                            chains.result, size, error);
     }
-    if (result == RESULT_OK) result = judge_chains(report, &chains, error);
+    THEN(result, judge_chains(report, &chains, error));
     sum_up(report);
     chains_destroy(&chains);
     return result;
+}
+
+// --- The commands.
+
+typedef struct Row {
+    const char *rule, *category, *unit, *verdict;
+    long rows, above, not_finite, worst_row;
+    double median, worst, mark;
+    char command[512];
+} Row;
+
+#define AT(member) offsetof(Row, member)
+static const Column COLUMNS[] = {
+    {"rule", COLUMN_TEXT, AT(rule), 7},
+    {"category", COLUMN_TEXT, AT(category), 20},
+    {"rows", COLUMN_WHOLE, AT(rows), 5},
+    {"above_mark", COLUMN_WHOLE, AT(above), 10},
+    {"not_finite", COLUMN_WHOLE, AT(not_finite), 10},
+    {"worst_row", COLUMN_WHOLE, AT(worst_row), 9},
+    {"median", COLUMN_REAL, AT(median), 9},
+    {"worst", COLUMN_REAL, AT(worst), 9},
+    {"unit", COLUMN_TEXT, AT(unit), 7},
+    {"mark", COLUMN_REAL, AT(mark), 5},
+    {"verdict", COLUMN_TEXT, AT(verdict), 7},
+    {"command", COLUMN_CHARS, AT(command), 0},
+};
+
+// What is checked: its rule, and what it is measured by.
+typedef struct Check {
+    const char *rule, *unit;
+    const char *command, *path;
+    double mark;
+    bool stated; // the mark is a bound
+} Check;
+
+static void add_category(Table *table, const Check *check, const TestVectorsCategory *category,
+                         double bound)
+{
+    Row row = {.rule = check->rule,
+               .category = category->name,
+               .unit = check->unit,
+               .rows = (long)category->rows,
+               .above = (long)category->failed,
+               .not_finite = (long)category->not_finite,
+               .worst_row = category->worst_id,
+               .median = category->median,
+               .worst = category->worst,
+               .mark = check->mark};
+    row.verdict = table_check(table, row.worst, bound, "%s, row %ld, in %s", row.category,
+                              row.worst_row, row.unit);
+    snprintf(row.command, sizeof row.command, "tractrix-bench %s --vectors %s", check->command,
+             check->path);
+    table_add(table, &row);
+}
+
+static void add_report(Table *table, const Check *check, const TestVectorsReport *report)
+{
+    TestVectorsCategory all = {.name = "all", .worst = -1, .median = NAN};
+    for (size_t i = 0; i < report->category_count; ++i) {
+        const TestVectorsCategory *at = &report->categories[i];
+        add_category(table, check, at, check->stated ? check->mark : NAN);
+        if (at->worst > all.worst) all.worst = at->worst, all.worst_id = at->worst_id;
+    }
+    all.rows = report->rows, all.failed = report->failed, all.not_finite = report->not_finite;
+    add_category(table, check, &all, NAN); // its categories have been checked
+}
+
+static Result open_table(Table *table, const BenchOptions *options, const Gpu *gpu, Error *error)
+{
+    return table_open(table, COLUMNS, sizeof COLUMNS / sizeof *COLUMNS, gpu, &options->output,
+                      stdout, error);
+}
+
+Result test_vectors_run_steps(const BenchOptions *options, const Gpu *gpu, Error *error)
+{
+    static const char *const rules[] = {"ours", "thesis"};
+    const char *path = options->vectors ? options->vectors : "tests/data/tractrix_steps.csv";
+    Table table = {0};
+    Result result = open_table(&table, options, gpu, error);
+    for (TestVectorsRule rule = VECTORS_OURS; rule <= VECTORS_PUBLISHED; ++rule) {
+        const Check check = {rules[rule], "floor32",         "step",
+                             path,        VECTORS_STEP_MARK, rule == VECTORS_OURS};
+        TestVectorsReport report;
+        THEN(result, test_vectors_check_steps(&report, gpu, rule, path, error));
+        if (result == RESULT_OK) add_report(&table, &check, &report);
+    }
+    return table_close(&table, result, error);
+}
+
+Result test_vectors_run_chains(const BenchOptions *options, const Gpu *gpu, Error *error)
+{
+    const char *path = options->vectors ? options->vectors : "tests/data/chain_pulls.csv";
+    const Check check = {"ours", "sens32", "chain", path, VECTORS_CHAIN_MARK, true};
+    Table table = {0};
+    TestVectorsReport report;
+    Result result = open_table(&table, options, gpu, error);
+    THEN(result, test_vectors_check_chains(&report, gpu, path, error));
+    if (result == RESULT_OK) add_report(&table, &check, &report);
+    return table_close(&table, result, error);
 }

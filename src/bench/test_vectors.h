@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Runs the GLSL tractrix on high-precision test vectors and judges each row by its own attainable
-// accuracy.
+// The commands `tractrix-bench step` and `chain`: the GLSL tractrix on high-precision test vectors,
+// each row judged by its own attainable accuracy.
 #pragma once
 
-#include "base/error.h"
-#include "gpu/gpu.h"
-
-#include <stddef.h>
+#include "bench/bench_options.h"
 
 // Pass marks: a step's error in units of `floor32` (the error that no float32 evaluation can be
 // asked to beat), a chain's in units of `sens32` (what rounding all inputs to float32 does to the
@@ -42,3 +39,8 @@ Result test_vectors_check_steps(TestVectorsReport *report, const Gpu *gpu, TestV
                                 const char *path, Error *error);
 Result test_vectors_check_chains(TestVectorsReport *report, const Gpu *gpu, const char *path,
                                  Error *error);
+
+// The commands: a row for each category and one for all; steps by our rule and by the thesis's.
+// RESULT_FAILED if a row of our rule is farther off than its mark, after all rows.
+Result test_vectors_run_steps(const BenchOptions *options, const Gpu *gpu, Error *error);
+Result test_vectors_run_chains(const BenchOptions *options, const Gpu *gpu, Error *error);

@@ -6,4 +6,4 @@
 
 // Prints a line a program on `stream`; RESULT_FAILED with the first message if any does not compile
 // cleanly (all are tried).
-Result bench_shaders(const Gpu *gpu, FILE *stream, Error *error);
+Result shaders_check(const Gpu *gpu, FILE *stream, Error *error);

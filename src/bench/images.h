@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The commands `tractrix-bench image` and `images`: rows of what drawing takes and how far it is
-// from the exact picture.
+// The commands `tractrix-bench image` and `images`: how long drawing hair takes, and how far the
+// image is from the exact one (image_reference.h), with the exact light at the vertices
+// (shadow_reference.h) for schemes with shadows.
 #pragma once
 
 #include "bench/bench_options.h"
 
-// --set or --tfx as the options say.
+// options->scheme on --set or --tfx. RESULT_USAGE unless there is one of both.
 Result images_run_one(const BenchOptions *options, const Gpu *gpu, Error *error);
 
 // The schemes and presets that are worth comparing, for sets that look like hair and the files

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "bench/bench_shaders.h"
+#include "bench/shaders.h"
 #include "draw/renderer.h"
 #include "gen/strands_make.h"
 #include "sim/follow.h"
@@ -9,8 +9,8 @@
 
 #include <string.h>
 
-static void tell(const char *what, Result result, const Error *why, Result *worst, FILE *stream,
-                 Error *error)
+static void report(const char *what, Result result, const Error *why, Result *worst, FILE *stream,
+                   Error *error)
 {
     fprintf(stream, "%-40s %s\n", what, result == RESULT_OK ? "ok" : why->text);
     if (result == RESULT_OK || *worst != RESULT_OK) return;
@@ -21,9 +21,9 @@ static void tell(const char *what, Result result, const Error *why, Result *wors
 static Result try_program(const char *file, const ShaderDefine *defines, Error *error)
 {
     GLuint program;
-    Result result = shader_build_compute(&program, file, defines, error);
-    if (result == RESULT_OK) glDeleteProgram(program);
-    return result;
+    TRY(shader_build_compute(&program, file, defines, error));
+    glDeleteProgram(program);
+    return RESULT_OK;
 }
 
 static Result try_solver(const Gpu *gpu, const SolverType *type, const char *variant,
@@ -42,10 +42,10 @@ static Result try_solver(const Gpu *gpu, const SolverType *type, const char *var
                                   // Springs with bending and without.
                                   .chain_bend = style < 1 ? 10 : 0};
     Result result = strands_make(&strands, &recipe, error);
-    if (result == RESULT_OK) result = hair_create(&hair, &strands, 0, &gpu->limits, error);
+    THEN(result, hair_create(&hair, &strands, 0, &gpu->limits, error));
     const SolverSetup setup = {
         .gpu = gpu, .hair = &hair, .params = &params, .sheltered = style == 1};
-    if (result == RESULT_OK) result = solver_create(&solver, &setup, error);
+    THEN(result, solver_create(&solver, &setup, error));
     solver_destroy(&solver);
     hair_destroy(&hair);
     strands_destroy(&strands);
@@ -76,9 +76,9 @@ static void try_solvers(const Gpu *gpu, Result *worst, FILE *stream, Error *erro
                 Error why = {{0}};
                 snprintf(what, sizeof what, "%s %s, %u vertices, style %g", (*type)->name, variant,
                          shapes[i].vertices, (double)shapes[i].style);
-                tell(what,
-                     try_solver(gpu, *type, variant, shapes[i].vertices, shapes[i].style, &why),
-                     &why, worst, stream, error);
+                report(what,
+                       try_solver(gpu, *type, variant, shapes[i].vertices, shapes[i].style, &why),
+                       &why, worst, stream, error);
             }
 }
 
@@ -91,9 +91,8 @@ static Result try_follow(const Gpu *gpu, FollowMode mode, Error *error)
     recipe.count = 4;
     const SectionParams params = {.followers = 1, .follow = (int)mode};
     Result result = strands_make(&strands, &recipe, error);
-    if (result == RESULT_OK) result = hair_create(&hair, &strands, 0, &gpu->limits, error);
-    if (result == RESULT_OK)
-        result = follow_create(&follow, gpu, NULL, &hair, &strands, &params, 1, error);
+    THEN(result, hair_create(&hair, &strands, 0, &gpu->limits, error));
+    THEN(result, follow_create(&follow, gpu, NULL, &hair, &strands, &params, 1, error));
     follow_destroy(&follow);
     hair_destroy(&hair);
     strands_destroy(&strands);
@@ -109,15 +108,14 @@ static Result try_light_counts(LookPrograms *programs, Error *error)
     static const unsigned features[] = {0, LOOK_SHADOW_DOM,
                                         LOOK_SHADOW_DOM | LOOK_SHADOW_BY_MESH | LOOK_LIGHTS,
                                         LOOK_MARSCHNER | LOOK_SHADOW_APPROX};
-    Result result = RESULT_OK;
     for (size_t i = 0; i < sizeof counts / sizeof *counts; ++i) {
         look_programs_count(programs, counts[i].lights, counts[i].maps);
-        for (size_t k = 0; k < sizeof features / sizeof *features && result == RESULT_OK; ++k)
+        for (size_t k = 0; k < sizeof features / sizeof *features; ++k)
             if (counts[i].maps || !(features[k] & (LOOK_SHADOW_DOM | LOOK_SHADOW_APPROX)))
-                result = look_programs_build(programs, features[k], error);
+                TRY(look_programs_build(programs, features[k], error));
     }
     look_programs_count(programs, 0, 0);
-    return result;
+    return RESULT_OK;
 }
 
 // The table of marschner shading, and every way that hair can look.
@@ -126,7 +124,6 @@ static Result try_looks(Renderer *renderer, Error *error)
     LookPrograms *programs = renderer->raster == RASTER_QUADS ? &renderer->quads.hair.project
                                                               : &renderer->blocks.project;
     GLuint texture;
-    Result result = scatter_tables_find(&renderer->picture.scatter, 1.5f, 0.2f, &texture, error);
     static const unsigned others[] = {LOOK_SHADOW_APPROX,
                                       LOOK_SHADOW_DOM,
                                       LOOK_SHADOW_DOM | LOOK_SHADOW_FOUND,
@@ -139,45 +136,36 @@ static Result try_looks(Renderer *renderer, Error *error)
                                       LOOK_STRAND,
                                       LOOK_SMOOTH,
                                       LOOK_SMOOTH | LOOK_PAINT};
-    for (unsigned features = 0; features < LOOK_SHADOW_APPROX && result == RESULT_OK; ++features)
+    TRY(scatter_tables_find(&renderer->picture.scatter, 1.5f, 0.2f, &texture, error));
+    for (unsigned features = 0; features < LOOK_SHADOW_APPROX; ++features)
         if ((features & (LOOK_MARSCHNER | LOOK_GAUSS)) != LOOK_GAUSS) // which does not count alone
-            result = look_programs_build(programs, features, error);
-    for (size_t i = 0; i < sizeof others / sizeof *others && result == RESULT_OK; ++i)
-        result = look_programs_build(programs, others[i], error);
-    if (renderer->options.shadow.kind != SHADOW_NONE && result == RESULT_OK)
-        result = try_light_counts(programs, error);
-    return result;
+            TRY(look_programs_build(programs, features, error));
+    for (size_t i = 0; i < sizeof others / sizeof *others; ++i)
+        TRY(look_programs_build(programs, others[i], error));
+    if (renderer->options.shadow.kind == SHADOW_NONE) return RESULT_OK;
+    return try_light_counts(programs, error);
 }
 
-// What the options' shadows and floor are drawn by.
+// What the options' shadows and floor are drawn by, and culling.
 static Result try_shadows(Renderer *renderer, Error *error)
 {
     const RendererOptions *options = &renderer->options;
-    Result result = RESULT_OK;
-    for (unsigned variant = 0;
-         variant < CAST_VARIANTS && options->shadow.kind != SHADOW_NONE && result == RESULT_OK;
-         ++variant)
-        result = hair_shadow_build(&renderer->shadow.hair, variant, error);
-    if (result == RESULT_OK && options->shadow.kind != SHADOW_NONE)
-        result = shadows_reserve_mesh(&renderer->shadow, 1, error);
-    if (result == RESULT_OK) result = render_floor_build(&renderer->base.floor, error);
+    bool shadows = options->shadow.kind != SHADOW_NONE;
+    for (unsigned variant = 0; variant < CAST_VARIANTS && shadows; ++variant)
+        TRY(hair_shadow_build(&renderer->shadow.hair, variant, error));
+    if (shadows) TRY(shadows_reserve_mesh(&renderer->shadow, 1, error));
+    TRY(render_floor_build(&renderer->base.floor, error));
     for (int count = 0; count <= 2; count += 2) {
-        render_base_count(&renderer->base, count, options->shadow.kind != SHADOW_NONE ? count : 0);
-        if (result == RESULT_OK)
-            result = render_base_build_light(&renderer->base, options->shadow.kind, error);
-        for (int area = 0; area < 3 && result == RESULT_OK; ++area)
-            result = render_base_build(&renderer->base, (BaseArea)area, options->floor.kind,
-                                       options->shadow.kind, error);
+        render_base_count(&renderer->base, count, shadows ? count : 0);
+        TRY(render_base_build_light(&renderer->base, options->shadow.kind, error));
+        for (int area = 0; area < 3; ++area)
+            TRY(render_base_build(&renderer->base, (BaseArea)area, options->floor.kind,
+                                  options->shadow.kind, error));
     }
-    return result;
-}
-
-static Result try_culling(Renderer *renderer, Error *error)
-{
-    Result result = RESULT_OK;
-    for (unsigned variant = 0; variant < CULL_VARIANTS && result == RESULT_OK; ++variant)
-        result = render_cull_build(&renderer->blocks.cull, variant, error);
-    return result;
+    for (unsigned variant = 0; variant < CULL_VARIANTS && renderer->raster == RASTER_BLOCKS;
+         ++variant)
+        TRY(render_cull_build(&renderer->blocks.cull, variant, error));
+    return RESULT_OK;
 }
 
 static Result try_renderer(const Gpu *gpu, Raster raster, const RendererOptions *pictures,
@@ -197,12 +185,10 @@ static Result try_renderer(const Gpu *gpu, Raster raster, const RendererOptions 
     options.raster = raster;
     options.width = options.height = 16;
     gpu_timer_create(&timer, false, true);
-    Result result = renderer_create(&renderer, gpu, &timer, &options, error);
-    if (result != RESULT_OK) return result;
-    result = renderer_set_mesh(&renderer, &mesh, (const float[3]){1, 1, 1}, error);
-    if (result == RESULT_OK) result = try_looks(&renderer, error);
-    if (result == RESULT_OK) result = try_shadows(&renderer, error);
-    if (result == RESULT_OK && raster == RASTER_BLOCKS) result = try_culling(&renderer, error);
+    TRY(renderer_create(&renderer, gpu, &timer, &options, error));
+    Result result = renderer_set_mesh(&renderer, &mesh, (const float[3]){1, 1, 1}, error);
+    THEN(result, try_looks(&renderer, error));
+    THEN(result, try_shadows(&renderer, error));
     renderer_destroy(&renderer);
     return result;
 }
@@ -229,12 +215,12 @@ static void try_renderers(const Gpu *gpu, Result *worst, FILE *stream, Error *er
             Error why = {{0}};
             snprintf(what, sizeof what, "renderer, %s, %s",
                      raster == RASTER_QUADS ? "quads" : "blocks", pictures[i].name);
-            tell(what, try_renderer(gpu, raster, &pictures[i].options, &why), &why, worst, stream,
-                 error);
+            report(what, try_renderer(gpu, raster, &pictures[i].options, &why), &why, worst, stream,
+                   error);
         }
 }
 
-Result bench_shaders(const Gpu *gpu, FILE *stream, Error *error)
+Result shaders_check(const Gpu *gpu, FILE *stream, Error *error)
 {
     static const ShaderDefine strand[] = {{"GROUP_SIZE", 8}, {"TIP", 0}, {NULL, 0}},
                               tip[] = {{"GROUP_SIZE", 8}, {"TIP", 1}, {NULL, 0}};
@@ -249,13 +235,13 @@ Result bench_shaders(const Gpu *gpu, FILE *stream, Error *error)
     Error why = {{0}};
     shader_treat_warnings_as_errors(true);
     for (size_t i = 0; i < sizeof checks / sizeof *checks; ++i)
-        tell(checks[i].file, try_program(checks[i].file, checks[i].defines, &why), &why, &worst,
-             stream, error);
-    tell("sim/inbetween.comp", try_inbetween(gpu, &why), &why, &worst, stream, error);
+        report(checks[i].file, try_program(checks[i].file, checks[i].defines, &why), &why, &worst,
+               stream, error);
+    report("sim/inbetween.comp", try_inbetween(gpu, &why), &why, &worst, stream, error);
     try_solvers(gpu, &worst, stream, error);
     for (FollowMode mode = FOLLOW_OFFSET; mode <= FOLLOW_INTERPOLATE; ++mode)
-        tell(mode == FOLLOW_OFFSET ? "followers, offset" : "followers, interpolated",
-             try_follow(gpu, mode, &why), &why, &worst, stream, error);
+        report(mode == FOLLOW_OFFSET ? "followers, offset" : "followers, interpolated",
+               try_follow(gpu, mode, &why), &why, &worst, stream, error);
     try_renderers(gpu, &worst, stream, error);
     shader_treat_warnings_as_errors(false);
     return worst;

@@ -1,0 +1,590 @@
+// SPDX-License-Identifier: MIT
+#include "bench/speed.h"
+#include "base/clock.h"
+#include "base/interrupt.h"
+#include "base/outfile.h"
+#include "bench/child.h"
+#include "bench/cpu_split.h"
+#include "bench/trial.h"
+#include "draw/renderer.h"
+#include "gen/strands_make.h"
+#include "sim/simulation.h"
+#include "strands/paint.h"
+#include "strands/strands_read.h"
+
+#include <ftw.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+typedef struct Row {
+    const char *part;
+    char hair[64];          // without folders
+    const char *set, *file; // where it comes from; both NULL: made by the part itself
+    Method method;
+    const char *variant;
+    long strands, vertices, particles; // vertices: of the first strand
+    long threads;                      // of the driver or the program; 0: as many as it likes
+    Times step;      // what moves the hair one step further and writes the positions that are drawn
+    Times solve;     // its part without the positions
+    Times draw;      // drawing and reading back
+    long bytes;      // of the buffers that a step and its pose use, each once a way
+    long fragments;  // of the last image
+    double first_ms; // of the first step: with shader compilation, unless the driver caches it
+    double ns_particle, gigabytes_s, share; // share: of the memory's bandwidth
+    double thesis_ms, bound_ms;             // what the thesis states for its GPU, what we state
+    const char *verdict;
+    double exponent, spread; // of a fit over a part's rows, its standard error
+    double process_ms;       // wall time of a process of its own
+    double off, off_bound;   // from the GPU's strands, RMS over the length; what is stated
+    const char *remark;
+    char command[512];
+} Row;
+
+#define AT(member) offsetof(Row, member)
+static const Column COLUMNS[] = {
+    {"part", COLUMN_TEXT, AT(part), 8},
+    {"hair", COLUMN_CHARS, AT(hair), 20},
+    {"algo", COLUMN_TEXT, AT(method.algo), 9},
+    {"variant", COLUMN_TEXT, AT(variant), 9},
+    {"settings", COLUMN_TEXT, AT(method.settings), 0},
+    {"strands", COLUMN_WHOLE, AT(strands), 8},
+    {"vertices", COLUMN_WHOLE, AT(vertices), 8},
+    {"particles", COLUMN_WHOLE, AT(particles), 9},
+    {"threads", COLUMN_WHOLE, AT(threads), 7},
+    {"ms_min", COLUMN_REAL, AT(step.minimum), 8},
+    {"ms_q1", COLUMN_REAL, AT(step.lower_quartile), 8},
+    {"ms_median", COLUMN_REAL, AT(step.median), 9},
+    {"ms_q3", COLUMN_REAL, AT(step.upper_quartile), 8},
+    {"solve_ms_min", COLUMN_REAL, AT(solve.minimum), 0},
+    {"solve_ms_median", COLUMN_REAL, AT(solve.median), 0},
+    {"ns_particle", COLUMN_REAL, AT(ns_particle), 11},
+    {"thesis_ms", COLUMN_REAL, AT(thesis_ms), 9},
+    {"bound_ms", COLUMN_REAL, AT(bound_ms), 8},
+    {"verdict", COLUMN_TEXT, AT(verdict), 7},
+    {"bytes", COLUMN_WHOLE, AT(bytes), 10},
+    {"gb_s", COLUMN_REAL, AT(gigabytes_s), 7},
+    {"bandwidth_share", COLUMN_REAL, AT(share), 15},
+    {"exponent", COLUMN_REAL, AT(exponent), 8},
+    {"spread", COLUMN_REAL, AT(spread), 8},
+    {"first_ms", COLUMN_REAL, AT(first_ms), 8},
+    {"process_ms", COLUMN_REAL, AT(process_ms), 10},
+    {"draw_ms_min", COLUMN_REAL, AT(draw.minimum), 11},
+    {"draw_ms_median", COLUMN_REAL, AT(draw.median), 0},
+    {"fragments", COLUMN_WHOLE, AT(fragments), 0},
+    {"off", COLUMN_REAL, AT(off), 9},
+    {"remark", COLUMN_TEXT, AT(remark), 1},
+    {"command", COLUMN_CHARS, AT(command), 0},
+};
+
+typedef struct Speed {
+    const Gpu *gpu;
+    const BenchOptions *options;
+    Table table;
+    Method methods[METHODS_MOST];
+    int method_count;
+    double bandwidth; // of the memory, GB/s; measured once
+} Speed;
+
+// --- Rows.
+
+// Of a part and, unless NULL, of hair from a set or a file, or of its own name.
+static Row row_of(const char *part, const char *set, const char *file, const char *name)
+{
+    const Times none = table_times(NULL, 0);
+    Row row = {.part = part, .set = set, .file = file, .method = {"", "", ""}, .remark = ""};
+    row.step = row.solve = row.draw = none;
+    row.first_ms = row.gigabytes_s = row.thesis_ms = row.bound_ms = NAN;
+    row.exponent = row.spread = row.process_ms = row.off = row.off_bound = NAN;
+    if (!name) name = set ? set : file ? file : "";
+    const char *slash = strrchr(name, '/');
+    snprintf(row.hair, sizeof row.hair, "%s", slash ? slash + 1 : name);
+    return row;
+}
+
+static void count_strands(Row *row, const Strands *strands)
+{
+    row->strands = strands->strand_count;
+    row->particles = strands->vertex_count;
+    row->vertices = strands->first[1];
+}
+
+// Checks the bound, and adds the row with what follows from it and the command that repeats it.
+static void add_row(Speed *speed, Row *row)
+{
+    char method[256] = "", hair[128] = "", size[64] = "";
+    double least = row->step.minimum;
+    row->variant = *row->method.algo ? method_variant(&row->method) : "";
+    row->ns_particle = row->particles ? least * 1e6 / (double)row->particles : NAN;
+    if (row->bytes) row->gigabytes_s = (double)row->bytes / least * 1e-6;
+    row->share = speed->bandwidth > 0 ? row->gigabytes_s / speed->bandwidth : NAN;
+    row->verdict = isnan(row->off_bound)
+                       ? table_check(&speed->table, least, row->bound_ms, "%s, %s: least ms a step",
+                                     row->hair, row->method.algo)
+                       : table_check(&speed->table, row->off, row->off_bound,
+                                     "%s, %s: off the GPU's strands", row->hair, row->remark);
+    if (*row->method.algo) method_format(&row->method, method, sizeof method);
+    if (row->set) snprintf(hair, sizeof hair, " --set %s", row->set);
+    if (row->file) snprintf(hair, sizeof hair, " --tfx %s", row->file);
+    if (!isnan(row->draw.minimum))
+        snprintf(size, sizeof size, " --size %dx%d", speed->options->size[0],
+                 speed->options->size[1]);
+    snprintf(row->command, sizeof row->command, "tractrix-bench speed --part %s %s%s%s", row->part,
+             method, hair, size);
+    table_add(&speed->table, row);
+}
+
+// --- A step, in a scene of one section as the command line would make it.
+
+// Each buffer of the solver's state is read and written; so are the drawn positions, unless they
+// are such a buffer; the style is read. What a solver touches more often, or beside, is not in it.
+static long count_bytes(const SimulationSection *section)
+{
+    long bytes = 0;
+    for (uint32_t i = 0; i < section->hair.batch_count; ++i) {
+        const HairBatch *batch = &section->hair.batches[i];
+        SolverBuffer buffers[SOLVER_MAX_BUFFERS];
+        int count = solver_buffers(&section->solver, i, buffers);
+        bool drawn = false;
+        for (int b = 0; b < count; ++b) {
+            bytes += 2 * (long)buffers[b].buffer->size;
+            drawn = drawn || buffers[b].buffer == &batch->position;
+        }
+        bytes += (long)batch->rest.size + (drawn ? 0 : (long)batch->position.size);
+    }
+    return bytes;
+}
+
+static Result measure_steps(Row *row, Simulation *simulation, const BenchOptions *options,
+                            Error *error)
+{
+    double *step = calloc(2 * (size_t)options->steps, sizeof *step), *solve = step + options->steps;
+    if (!step) return error_set(error, RESULT_FAILED, "no memory for %d samples", options->steps);
+    for (int i = -options->warm_up - 1; i < options->steps; ++i) {
+        double begin = clock_ms();
+        simulation_advance(simulation);
+        glFinish();
+        double solved = clock_ms();
+        simulation_pose(simulation);
+        glFinish();
+        double end = clock_ms();
+        if (i == -options->warm_up - 1) row->first_ms = end - begin;
+        if (i >= 0) step[i] = end - begin, solve[i] = solved - begin;
+    }
+    row->step = table_times(step, options->steps);
+    row->solve = table_times(solve, options->steps);
+    row->bytes = count_bytes(&simulation->sections[0]);
+    free(step);
+    return gpu_check("steps", error);
+}
+
+enum { DRAWN_FRAMES = 20, DRAWN_WARM_UP = 3 };
+
+static Result draw_frames(Row *row, Renderer *renderer, Simulation *simulation, const Scene *scene,
+                          const Strands *strands, Image *image, Error *error)
+{
+    double samples[DRAWN_FRAMES] = {0};
+    Framing framing;
+    View view;
+    outline_frame(&framing, scene, strands, NULL);
+    const RenderItem item = {&simulation->sections[0].hair, &scene->sections[0].params,
+                             paint_auto_radius(strands, 0)};
+    const RenderFrame frame = {.view = &view,
+                               .lights = scene->lights,
+                               .light_count = scene->light_count,
+                               .head_rotation = {0, 0, 0, 1}};
+    for (int i = -DRAWN_WARM_UP; i < DRAWN_FRAMES; ++i) {
+        camera_view(&view, scene, &framing, 0);
+        simulation_advance(simulation);
+        simulation_pose(simulation);
+        glFinish();
+        double begin = clock_ms();
+        TRY(renderer_draw(renderer, &frame, &item, 1, image, error));
+        if (i >= 0) samples[i] = clock_ms() - begin;
+    }
+    row->draw = table_times(samples, DRAWN_FRAMES);
+    row->fragments = (long)renderer->counts.fragments;
+    return RESULT_OK;
+}
+
+static Result measure_drawing(Row *row, Simulation *simulation, Scene *scene,
+                              const Strands *strands, const Gpu *gpu, const BenchOptions *options,
+                              Error *error)
+{
+    Renderer renderer;
+    Image image = {0};
+    const int *size = options->size;
+    const RendererOptions how = {.raster = options->scheme.raster,
+                                 .width = size[0],
+                                 .height = size[1],
+                                 .background = {0.2f, 0.2f, 0.2f, 1}};
+    if (size[0] == 0) return RESULT_OK;
+    memcpy(scene->run.size, size, sizeof scene->run.size);
+    TRY(renderer_create(&renderer, gpu, simulation->timer, &how, error));
+    Result result = image_create(&image, size[0], size[1], renderer_channels(&renderer), error);
+    THEN(result, draw_frames(row, &renderer, simulation, scene, strands, &image, error));
+    image_destroy(&image);
+    renderer_destroy(&renderer);
+    return result;
+}
+
+// Steps and, with a size, images of row->method on the strands.
+static Result measure(Row *row, const Gpu *gpu, const Strands *strands, const BenchOptions *options,
+                      Error *error)
+{
+    Scene scene;
+    GpuTimer timer;
+    SectionParams params;
+    Simulation simulation = {0};
+    count_strands(row, strands);
+    gpu_timer_create(&timer, false, true);
+    Result result = method_params(&params, &row->method, "", error);
+    THEN(result, scene_create(&scene, error));
+    params.sleep = 0; // every step is one
+    params.followers = 0;
+    THEN(result, scene_add_section(&scene, row->hair, &params, error));
+    params_destroy_section(&params);
+    THEN(result, simulation_create(&simulation, gpu, &timer, &scene, strands, NULL, error));
+    THEN(result, measure_steps(row, &simulation, options, error));
+    THEN(result, measure_drawing(row, &simulation, &scene, strands, gpu, options, error));
+    if (simulation.scene) simulation_destroy(&simulation);
+    gpu_timer_destroy(&timer);
+    scene_destroy(&scene);
+    return result;
+}
+
+// --- The hair that is asked for.
+
+typedef Result UseHair(Speed *speed, Row *row, const Strands *strands, Error *error);
+
+static Result use_methods(Speed *speed, const char *part, const char *set, const char *file,
+                          UseHair *use, Error *error)
+{
+    Strands strands = {0};
+    Result result = set ? strands_make_set(&strands, set, 1, error)
+                        : strands_read(&strands, file, &(StrandsReadOptions){0}, NULL, error);
+    for (int i = 0; i < speed->method_count && result == RESULT_OK; ++i) {
+        Row row = row_of(part, set, file, NULL);
+        row.method = speed->methods[i];
+        result = interrupt_requested() ? error_set(error, RESULT_INTERRUPTED, "interrupted")
+                                       : use(speed, &row, &strands, error);
+    }
+    strands_destroy(&strands);
+    return result;
+}
+
+// --set, --tfx, or all of the thesis's sets; and the files that are named.
+static Result for_each(Speed *speed, const char *part, UseHair *use, Error *error)
+{
+    static const char *const sets[] = {"1k16", "1k32", "10k16", "10k32"};
+    const BenchOptions *options = speed->options;
+    bool chosen = options->set || options->tfx;
+    if (options->set) TRY(use_methods(speed, part, options->set, NULL, use, error));
+    if (options->tfx) TRY(use_methods(speed, part, NULL, options->tfx, use, error));
+    for (size_t i = 0; i < sizeof sets / sizeof *sets && !chosen; ++i)
+        TRY(use_methods(speed, part, sets[i], NULL, use, error));
+    for (int i = 0; i < options->file_count; ++i)
+        TRY(use_methods(speed, part, NULL, options->files[i], use, error));
+    return RESULT_OK;
+}
+
+// Table 4.2 of the thesis: ms a step on a GTX 1080 Ti. Its Mohawk and Short are one scene, which is
+// not among these sets. And what is stated for the solvers' default forms on llvmpipe with two
+// cores, of the least ms, since what else runs on the machine only adds.
+static const struct {
+    const char *set, *algo;
+    double thesis_ms, bound_ms; // 0: nothing
+} STATED[] = {
+    {"1k16", "emulation", 3.5, 1.5}, {"1k16", "split", 0.4, 0},     {"1k32", "emulation", 42.5, 0},
+    {"1k32", "split", 0.75, 0},      {"10k16", "emulation", 31, 0}, {"10k16", "split", 1.4, 0},
+    {"10k32", "emulation", 410, 60}, {"10k32", "split", 5.9, 0},    {"10k32", "hybrid", 0, 12},
+    {"10k32", "chain", 0, 15},       {"10k32", "tressfx", 0, 15},
+};
+
+static Result measure_set(Speed *speed, Row *row, const Strands *strands, Error *error)
+{
+    bool plain = method_is_default(&row->method);
+    bool thesis = plain || strcmp(row->method.variant, "thesis") == 0;
+    TRY(measure(row, speed->gpu, strands, speed->options, error));
+    for (size_t i = 0; i < sizeof STATED / sizeof *STATED && row->set; ++i) {
+        if (strcmp(STATED[i].set, row->set) != 0 || strcmp(STATED[i].algo, row->method.algo) != 0)
+            continue;
+        if (thesis && STATED[i].thesis_ms > 0) row->thesis_ms = STATED[i].thesis_ms;
+        if (plain && STATED[i].bound_ms > 0 && strstr(speed->gpu->renderer, "llvmpipe"))
+            row->bound_ms = STATED[i].bound_ms;
+    }
+    add_row(speed, row);
+    return RESULT_OK;
+}
+
+static Result run_sets(Speed *speed, Error *error)
+{
+    return for_each(speed, "sets", measure_set, error);
+}
+
+// --- What the processor could do: memory, and split in C.
+
+static Result run_memory(Speed *speed, Error *error)
+{
+    Row row = row_of("memory", NULL, NULL, NULL);
+    double bytes;
+    int threads;
+    TRY(cpu_split_time_memory(&row.step, &bytes, &threads, error));
+    speed->bandwidth = row.gigabytes_s = bytes / row.step.minimum * 1e-6;
+    row.threads = threads;
+    row.remark = "a = b + 3 c, 3 x 64 MiB";
+    add_row(speed, &row);
+    return RESULT_OK;
+}
+
+#define RATE 60.0
+
+// Steps both for a second from rest: RMS over the length, of all particles but roots.
+static Result compare_split(const Gpu *gpu, const Strands *strands, CpuSplit *split,
+                            CpuSplitForm form, double *off, Error *error)
+{
+    const Method method = {"split", "", "--style 0 --drag 1"};
+    SectionParams params = {0};
+    Trial trial = {0};
+    float(*own)[3] = calloc(strands->vertex_count, sizeof *own);
+    double sum = 0, length = cpu_split_length(split);
+    Result result = own ? method_params(&params, &method, "", error)
+                        : error_set(error, RESULT_FAILED, "no memory for positions");
+    THEN(result, trial_create(&trial, gpu, strands, 0, &params, RATE, error));
+    for (int i = 0; i < (int)RATE && result == RESULT_OK; ++i) {
+        trial_step(&trial);
+        cpu_split_time(split, 1 / RATE, 1, i == 0);
+        cpu_split_step(split, form, 0, split->tile_count);
+    }
+    THEN(result, trial_read(&trial, error));
+    if (result == RESULT_OK) cpu_split_read(split, own);
+    uint32_t count = result == RESULT_OK ? strands->vertex_count : 0;
+    for (uint32_t i = 0; i < count; ++i)
+        for (int k = 0; k < 3; ++k) sum += pow((double)own[i][k] - (double)trial.points[i][k], 2);
+    *off = sqrt(sum / (double)(count - strands->strand_count)) / length;
+    trial_destroy(&trial);
+    params_destroy_section(&params);
+    free(own);
+    return result;
+}
+
+static Result measure_form(Speed *speed, Row *row, const Strands *strands, CpuSplitForm form,
+                           Error *error)
+{
+    const BenchOptions *options = speed->options;
+    char lanes[64];
+    CpuSplit split;
+    snprintf(lanes, sizeof lanes, "plain C, %d strands side by side, %s", CPU_SPLIT_WIDTH,
+             cpu_split_lanes());
+    row->remark = form == CPU_SPLIT_LANES ? lanes : "plain C, scalar";
+    row->off_bound = 1e-4;
+    count_strands(row, strands);
+    Result result = cpu_split_create(&split, strands, error);
+    THEN(result, compare_split(speed->gpu, strands, &split, form, &row->off, error));
+    cpu_split_time(&split, 1 / RATE, 1, false);
+    for (int threads = 1; threads <= 2 && result == RESULT_OK; ++threads) {
+        row->threads = threads;
+        row->bytes = 8 * (long)split.tile_count * CPU_SPLIT_WIDTH * 4 * (long)split.link_count;
+        result = cpu_split_time_steps(&row->step, &split, form, threads, options->steps,
+                                      options->warm_up, error);
+        if (result == RESULT_OK) add_row(speed, row);
+    }
+    cpu_split_destroy(&split);
+    return result;
+}
+
+static Result measure_split(Speed *speed, Row *row, const Strands *strands, Error *error)
+{
+    bool alike = true;
+    for (uint32_t s = 0; s < strands->strand_count; ++s)
+        alike = alike && strands->first[s + 1] - strands->first[s] == strands->first[1];
+    if (strcmp(row->method.algo, "split") != 0 || !method_is_default(&row->method) || !alike)
+        return RESULT_OK;
+    TRY(measure_form(speed, row, strands, CPU_SPLIT_SCALAR, error));
+    return measure_form(speed, row, strands, CPU_SPLIT_LANES, error);
+}
+
+static Result run_c(Speed *speed, Error *error)
+{
+    return for_each(speed, "c", measure_split, error);
+}
+
+// --- How times grow.
+
+enum { MOST_SIZES = 8 };
+
+// As many steps as take half a second or so, by what a particle costs; at least 3.
+static BenchOptions fewer_steps(const Speed *speed, uint64_t particles)
+{
+    BenchOptions options = *speed->options;
+    double most = fmax(3, 1e7 / (double)particles);
+    if (options.steps > most) options.steps = (int)most;
+    if (options.warm_up > options.steps / 3) options.warm_up = options.steps / 3;
+    options.size[0] = 0;
+    return options;
+}
+
+// A row for each size and method, then the exponent of least time by size for each method.
+// counts[i]: strands; vertices[i]: of each.
+static Result measure_growth(Speed *speed, const char *part, const uint32_t *counts,
+                             const uint32_t *vertices, const uint32_t *sizes, int size_count,
+                             Error *error)
+{
+    double least[METHODS_MOST][MOST_SIZES], size[MOST_SIZES];
+    for (int i = 0; i < size_count; ++i) {
+        char name[64];
+        Strands strands = {0};
+        StrandsRecipe recipe = strands_recipe_default(STRANDS_STYLE_RANDOM);
+        recipe.count = counts[i], recipe.vertices = vertices[i], size[i] = sizes[i];
+        snprintf(name, sizeof name, "%u x %u", recipe.count, recipe.vertices);
+        Result result = strands_make(&strands, &recipe, error);
+        for (int m = 0; m < speed->method_count && result == RESULT_OK; ++m) {
+            const BenchOptions options = fewer_steps(speed, strands.vertex_count);
+            Row row = row_of(part, NULL, NULL, name);
+            row.method = speed->methods[m];
+            if (interrupt_requested()) result = error_set(error, RESULT_INTERRUPTED, "interrupted");
+            THEN(result, measure(&row, speed->gpu, &strands, &options, error));
+            least[m][i] = row.step.minimum;
+            if (result == RESULT_OK) add_row(speed, &row);
+        }
+        strands_destroy(&strands);
+        TRY(result);
+    }
+    for (int m = 0; m < speed->method_count; ++m) {
+        Row row = row_of(part, NULL, NULL, "all of these");
+        row.method = speed->methods[m];
+        row.exponent = table_slope(size, least[m], size_count, &row.spread);
+        add_row(speed, &row);
+    }
+    return RESULT_OK;
+}
+
+static Result run_strands(Speed *speed, Error *error)
+{
+    static const uint32_t counts[] = {1000, 10000, 100000, 1000000}, vertices[] = {16, 16, 16, 16};
+    return measure_growth(speed, "strands", counts, vertices, counts, 4, error);
+}
+
+static Result run_vertices(Speed *speed, Error *error)
+{
+    static const uint32_t counts[] = {10000, 10000, 10000, 10000, 10000},
+                          vertices[] = {4, 8, 16, 32, 64};
+    return measure_growth(speed, "vertices", counts, vertices, vertices, 5, error);
+}
+
+// --- In processes of their own.
+
+static Row child_row(const Speed *speed, const char *part, const char *set, int method)
+{
+    const BenchOptions *options = speed->options;
+    const char *own = options->set ? options->set : set;
+    Row row = row_of(part, options->tfx ? NULL : own, options->tfx, NULL);
+    row.method = speed->methods[method];
+    return row;
+}
+
+// Runs part "sets" for the row's method and hair with the variable set, and takes its times over.
+static Result measure_child(Row *row, const BenchOptions *options, int steps, int warm_up,
+                            const char *variable, const char *value, Error *error)
+{
+    const ChildRun run = {.method = &row->method,
+                          .set = row->set,
+                          .file = row->file,
+                          .steps = steps,
+                          .warm_up = warm_up,
+                          .gpu = &options->gpu,
+                          .variable = variable,
+                          .value = value};
+    json_t *from = NULL;
+    if (interrupt_requested()) return error_set(error, RESULT_INTERRUPTED, "interrupted");
+    TRY(child_run(&run, &from, &row->process_ms, error));
+    row->strands = (long)child_number(from, "strands");
+    row->vertices = (long)child_number(from, "vertices");
+    row->particles = (long)child_number(from, "particles");
+    row->first_ms = child_number(from, "first_ms");
+    row->step = (Times){child_number(from, "ms_min"), child_number(from, "ms_q1"),
+                        child_number(from, "ms_median"), child_number(from, "ms_q3")};
+    json_decref(from);
+    return RESULT_OK;
+}
+
+static Result run_threads(Speed *speed, Error *error)
+{
+    static const double threads[] = {1, 2};
+    const BenchOptions options = fewer_steps(speed, 320000);
+    bool known = strstr(speed->gpu->renderer, "llvmpipe") != NULL;
+    for (int m = 0; m < speed->method_count && known; ++m) {
+        double least[2] = {NAN, NAN};
+        for (int i = 0; i < 2; ++i) {
+            Row row = child_row(speed, "threads", "10k32", m);
+            row.threads = i + 1;
+            TRY(measure_child(&row, &options, options.steps, options.warm_up, "LP_NUM_THREADS",
+                              i ? "2" : "1", error));
+            least[i] = row.step.minimum;
+            add_row(speed, &row);
+        }
+        Row row = child_row(speed, "threads", "10k32", m);
+        row.exponent = table_slope(threads, least, 2, &row.spread);
+        add_row(speed, &row);
+    }
+    return RESULT_OK;
+}
+
+static int remove_entry(const char *path, const struct stat *status, int kind, struct FTW *walk)
+{
+    (void)status, (void)kind, (void)walk;
+    return remove(path);
+}
+
+static Result run_start(Speed *speed, Error *error)
+{
+    for (int m = 0; m < speed->method_count; ++m) {
+        char cache[PATH_MAX];
+        Result result = RESULT_OK;
+        outfile_scratch_name(cache, "tractrix-cache");
+        if (!mkdtemp(cache)) return error_set(error, RESULT_FAILED, "%s: cannot be made", cache);
+        for (int warm = 0; warm < 2 && result == RESULT_OK; ++warm) {
+            Row row = child_row(speed, "start", "1k16", m);
+            const Times none = row.step;
+            result =
+                measure_child(&row, speed->options, 1, 0, "MESA_SHADER_CACHE_DIR", cache, error);
+            row.step = none; // of one step: says nothing
+            row.remark = warm ? "warm" : "cold";
+            if (result == RESULT_OK) add_row(speed, &row);
+        }
+        nftw(cache, remove_entry, 16, FTW_DEPTH | FTW_PHYS);
+        TRY(result);
+    }
+    return RESULT_OK;
+}
+
+// --- The command.
+
+static const struct {
+    const char *name;
+    Result (*run)(Speed *speed, Error *error);
+} PARTS[] = {
+    {"memory", run_memory}, // first: the others have shares of its bandwidth
+    {"sets", run_sets},       {"c", run_c},
+    {"strands", run_strands}, {"vertices", run_vertices},
+    {"threads", run_threads}, {"start", run_start},
+};
+enum { PART_COUNT = sizeof PARTS / sizeof *PARTS };
+
+Result speed_run(const BenchOptions *options, const Gpu *gpu, Error *error)
+{
+    Speed speed = {.gpu = gpu, .options = options};
+    const char *names[PART_COUNT + 1] = {NULL};
+    // Hair that is named without a part is only measured itself.
+    bool sets = !options->parts && (options->set || options->tfx);
+    for (int i = 0; i < PART_COUNT; ++i) names[i] = PARTS[i].name;
+    TRY(bench_options_check_parts(options, names, error));
+    speed.method_count = method_list(&options->method, speed.methods);
+    Result result = table_open(&speed.table, COLUMNS, sizeof COLUMNS / sizeof *COLUMNS, gpu,
+                               &options->output, stdout, error);
+    for (int i = 0; i < PART_COUNT; ++i)
+        if (sets ? PARTS[i].run == run_sets : bench_options_part(options, PARTS[i].name))
+            THEN(result, PARTS[i].run(&speed, error));
+    return table_close(&speed.table, result, error);
+}
