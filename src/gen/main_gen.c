@@ -150,7 +150,8 @@ static Result parse(Command *command, int argc, char **argv, bool *done, Error *
     Result result = options_parse(&program, command, argc, argv, &first, done, error);
     if (result != RESULT_OK || *done) return result;
     if (first < argc)
-        return error_set(error, RESULT_USAGE, "%s: got a file, expected only options and -o FILE", argv[first]);
+        return error_set(error, RESULT_USAGE, "%s: got a file, expected only options and -o FILE",
+                         argv[first]);
     return check_effect(command, error);
 }
 
