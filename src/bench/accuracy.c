@@ -10,46 +10,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-// A result. Errors are shares of the strand's length unless `what` says otherwise.
-typedef struct Row {
-    const char *part;
-    Method method;
-    const char *variant;
-    char scenario[80]; // what the hair does
-    const char *set;   // the hair that ms were measured on, or ""
-    double rate;       // steps a second
-    const char *what;  // the quantity
-    double value;
-    double spread; // standard error of a fit
-    double bound;  // what is stated at most; NaN: nothing is
-    const char *verdict;
-    Times times;                // of a simulated second of that set
-    const char *front, *remark; // "front" if nothing is both faster and closer; no remark yet
-    char command[1024];
-} Row;
+// A result. `set`: the hair that ms were measured on, of a simulated second; `value`: a share of
+// the strand's length unless `what` says otherwise; `spread`: standard error of a fit; `bound`:
+// what is stated at most; `front`: "front" if nothing is both faster and closer; `remark`: none
+// yet.
+// clang-format off
+#define ROW(X)                                                                                     \
+    X(TEXT, part, 9) X(TEXT, algo, 9) X(TEXT, variant, 9) X(TEXT, settings, 22)                    \
+    X(CHARS, scenario, 28) X(TEXT, set, 5) X(REAL, rate_hz, 7) X(TEXT, what, 18)                   \
+    X(REAL, value, 10) X(REAL, spread, 8) X(REAL, bound, 7) X(TEXT, verdict, 7)                    \
+    X(REAL, ms_min, 8) X(REAL, ms_q1, 0) X(REAL, ms_median, 9) X(REAL, ms_q3, 0)                   \
+    X(TEXT, front, 5) X(TEXT, remark, 1) X(CHARS, command, 0)
+// clang-format on
 
-#define AT(member) offsetof(Row, member)
-static const Column COLUMNS[] = {
-    {"part", COLUMN_TEXT, AT(part), 9},
-    {"algo", COLUMN_TEXT, AT(method.algo), 9},
-    {"variant", COLUMN_TEXT, AT(variant), 9},
-    {"settings", COLUMN_TEXT, AT(method.settings), 22},
-    {"scenario", COLUMN_CHARS, AT(scenario), 28},
-    {"set", COLUMN_TEXT, AT(set), 5},
-    {"rate_hz", COLUMN_REAL, AT(rate), 7},
-    {"what", COLUMN_TEXT, AT(what), 18},
-    {"value", COLUMN_REAL, AT(value), 10},
-    {"spread", COLUMN_REAL, AT(spread), 8},
-    {"bound", COLUMN_REAL, AT(bound), 7},
-    {"verdict", COLUMN_TEXT, AT(verdict), 7},
-    {"ms_min", COLUMN_REAL, AT(times.minimum), 8},
-    {"ms_q1", COLUMN_REAL, AT(times.lower_quartile), 0},
-    {"ms_median", COLUMN_REAL, AT(times.median), 9},
-    {"ms_q3", COLUMN_REAL, AT(times.upper_quartile), 0},
-    {"front", COLUMN_TEXT, AT(front), 5},
-    {"remark", COLUMN_TEXT, AT(remark), 1},
-    {"command", COLUMN_CHARS, AT(command), 0},
-};
+typedef struct Row {
+    ROW(TABLE_FIELD)
+    Method method;
+} Row;
+static const Column COLUMNS[] = {ROW(TABLE_COLUMN)};
 
 _Static_assert((int)EXPERIMENT_RATES >= (int)BENCH_MOST_RATES, "rates of a command line");
 
@@ -107,11 +85,10 @@ static double stated_bound(const char *part, const Method *method, const char *s
 static Row row_of(const char *part, const Method *method, double rate, const char *scenario,
                   const char *what, double value)
 {
-    Row row = {.part = part, .method = *method, .rate = rate, .what = what, .value = value};
-    row.variant = method_variant(method);
+    Row row = {.part = part, .method = *method, .rate_hz = rate, .what = what, .value = value};
+    row.algo = method->algo, row.variant = method_variant(method), row.settings = method->settings;
     row.set = row.front = row.remark = "";
-    row.spread = NAN;
-    row.times = table_times(NULL, 0);
+    row.spread = row.ms_min = row.ms_q1 = row.ms_median = row.ms_q3 = NAN;
     snprintf(row.scenario, sizeof row.scenario, "%s", scenario);
     return row;
 }
@@ -123,14 +100,15 @@ static void add_row(Accuracy *accuracy, Row *row)
     const BenchOptions *options = accuracy->options;
     char method[256], rate[32] = "", set[256] = "", reference[128] = "";
     double known;
-    row->bound = stated_bound(row->part, &row->method, row->scenario, row->what, row->rate, &known);
+    row->bound =
+        stated_bound(row->part, &row->method, row->scenario, row->what, row->rate_hz, &known);
     row->verdict =
         row->value > row->bound && row->value <= known
             ? "short"
             : table_check(&accuracy->table, row->value, row->bound, "%s, %s, %s at %g Hz, %s",
-                          row->part, row->method.algo, row->scenario, row->rate, row->what);
+                          row->part, row->algo, row->scenario, row->rate_hz, row->what);
     method_format(&row->method, method, sizeof method);
-    if (!isnan(row->rate)) snprintf(rate, sizeof rate, " --rates %g", row->rate);
+    if (!isnan(row->rate_hz)) snprintf(rate, sizeof rate, " --rates %g", row->rate_hz);
     if (*row->set)
         snprintf(set, sizeof set, " --%s %s", strchr(row->set, '.') ? "tfx" : "set", row->set);
     if (options->reference)
@@ -174,7 +152,7 @@ static Result run_case(Accuracy *accuracy, const Experiment *experiment, const M
     double rates[EXPERIMENT_RATES], first[EXPERIMENT_RATES];
     int count = list_rates(accuracy->options, experiment->rates, rates), values = 0;
     for (int i = 0; i < count; ++i) {
-        int r = experiment->finest_first ? (i + count - 1) % count : i;
+        int r = experiment->flags & FINEST_FIRST ? (i + count - 1) % count : i;
         Run run = {.setup = setup, .method = method, .rate = r, .finest = r == count - 1};
         TRY(experiments_run(experiment, &run, accuracy->gpu, rates[r], error));
         for (int v = 0; v < run.value_count && experiment->fold != FOLD_MOST; ++v) {
@@ -191,7 +169,7 @@ static Result run_case(Accuracy *accuracy, const Experiment *experiment, const M
         if (!(first[r] <= all->most[r])) all->most[r] = first[r]; // a NaN stays
     }
     all->count += setup->in_all;
-    if (experiment->order && values == count)
+    if (experiment->flags & ORDER && values == count)
         add_order(accuracy, experiment->part, method, setup->scenario, rates, first, count);
     return RESULT_OK;
 }
@@ -216,7 +194,7 @@ static Result run_method(Accuracy *accuracy, const Experiment *experiment, const
         Row row = row_of(experiment->part, method, rates[r], scenario, all.what, values[r]);
         add_row(accuracy, &row);
     }
-    if (experiment->order)
+    if (experiment->flags & ORDER)
         add_order(accuracy, experiment->part, method, scenario, rates, values, count);
     return RESULT_OK;
 }
@@ -369,7 +347,10 @@ static void add_point(Work *work, const Point *point, const char *set, const cha
                       const char *what)
 {
     Row row = row_of("work", &point->method, point->rate, scenario, what, point->error);
-    row.set = set, row.times = point->times;
+    const Times *times = &point->times;
+    row.set = set;
+    row.ms_min = times->minimum, row.ms_median = times->median;
+    row.ms_q1 = times->lower_quartile, row.ms_q3 = times->upper_quartile;
     row.front = is_on_front(work, point) ? "front" : "";
     add_row(work->accuracy, &row);
 }

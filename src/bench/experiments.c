@@ -33,15 +33,12 @@ static double rms_distance(float (*const a)[3], const double (*b)[3], int n)
 
 // --- motions: RMS distance from exact motions, without style.
 
-static bool motions_set_up(const MotionFolder *folder, const Method *method, int number,
-                           Setup *setup)
+static bool motions_set_up(Setup *setup)
 {
-    (void)method;
-    if ((size_t)number >= folder->count) return false;
-    setup->motion = &folder->motions[number];
-    setup->in_all = motion_in_mean(folder, setup->motion);
+    if ((size_t)setup->number >= setup->folder->count) return false;
+    setup->motion = &setup->folder->motions[setup->number];
+    setup->in_all = motion_in_mean(setup->folder, setup->motion);
     snprintf(setup->scenario, sizeof setup->scenario, "%s", setup->motion->name);
-    snprintf(setup->settings, sizeof setup->settings, "--style 0");
     return true;
 }
 
@@ -64,21 +61,20 @@ static double pendulum_at(const Setup *setup, size_t row, int axis)
     return value;
 }
 
-static bool pendulum_set_up(const MotionFolder *folder, const Method *method, int number,
-                            Setup *setup)
+static bool pendulum_set_up(Setup *setup)
 {
+    int number = setup->number;
     for (int file = 0; file < 2; ++file) {
-        const Csv *csv = &folder->pendulums[file];
+        const Csv *csv = &setup->folder->pendulums[file];
         for (size_t i = 2; i < csv->column_count; ++i) {
             if (strncmp(csv->column[i], "x_", 2) != 0 || number-- > 0) continue;
             setup->csv = csv, setup->column = i;
             setup->axes = i + 2 < csv->column_count && csv->column[i + 2][0] == 'z' ? 3 : 2;
             snprintf(setup->scenario, sizeof setup->scenario, "%s", csv->column[i] + 2);
-            snprintf(setup->settings, sizeof setup->settings, "--style 0");
-            const json_t *start = json_object_get(folder->starts[file], setup->scenario);
+            const json_t *start = json_object_get(setup->folder->starts[file], setup->scenario);
             const json_t *velocity = json_object_get(start, "velocity");
             setup->drag = json_number_value(json_object_get(start, "drag_c"));
-            setup->n = strcmp(method->algo, "split") == 0 ? 16 : 2;
+            setup->n = strcmp(setup->method->algo, "split") == 0 ? 16 : 2;
             for (int k = 0; k < 3; ++k) {
                 setup->velocity[k] = json_number_value(json_array_get(velocity, (size_t)k));
                 for (int j = 0; j < setup->n; ++j)
@@ -138,11 +134,10 @@ static Result pendulum_measure(Run *run, Error *error)
 
 enum { REST_S = 20, REST_STEPS = 1200 };
 
-static bool static_set_up(const MotionFolder *folder, const Method *method, int number,
-                          Setup *setup)
+static bool static_set_up(Setup *setup)
 {
-    const json_t *cases = json_object_get(folder->styles, "cases"), *entry;
-    (void)method;
+    int number = setup->number;
+    const json_t *cases = json_object_get(setup->folder->styles, "cases"), *entry;
     for (size_t i = 0; (entry = json_array_get(cases, i)) != NULL; ++i) {
         setup->n = (int)json_integer_value(json_object_get(entry, "n"));
         if (setup->n < 2 || setup->n > EXPERIMENT_POINTS || number-- > 0) continue;
@@ -178,14 +173,13 @@ static Result rest_measure(Run *run, Error *error)
 
 enum { SETTLE_S = 10, FPS = 60 };
 
-static bool drift_set_up(const MotionFolder *folder, const Method *method, int number, Setup *setup)
+static bool drift_set_up(Setup *setup)
 {
-    (void)folder, (void)method;
-    setup->n = number ? 48 : 16;
-    trial_make_helix(setup->points, setup->n, LENGTH, number ? 4 : 2);
+    setup->n = setup->number ? 48 : 16;
+    trial_make_helix(setup->points, setup->n, LENGTH, setup->number ? 4 : 2);
     snprintf(setup->scenario, sizeof setup->scenario, "helix of %d, %g s", setup->n,
              setup->seconds);
-    return number < 2;
+    return setup->number < 2;
 }
 
 // The farthest that a particle has gone since `before`, over the length; `before` becomes now.
@@ -277,13 +271,13 @@ static const struct {
     {"spring", "--spring-angular", 500, solve_links, false},
 };
 
-static bool beam_set_up(const MotionFolder *folder, const Method *method, int number, Setup *setup)
+static bool beam_set_up(Setup *setup)
 {
-    (void)folder;
+    int number = setup->number;
     for (size_t b = 0; b < sizeof BEAMS / sizeof *BEAMS; ++b)
         for (int n = 15; n <= 31; n += 16) {
             double angle[EXPERIMENT_POINTS], l = LENGTH / n;
-            if (strcmp(BEAMS[b].algo, method->algo) != 0 || number-- > 0) continue;
+            if (strcmp(BEAMS[b].algo, setup->method->algo) != 0 || number-- > 0) continue;
             setup->n = n + 1;
             trial_make_beam(setup->points, n + 1, LENGTH);
             BEAMS[b].solve(BEAMS[b].stiffness, n, angle);
@@ -295,7 +289,7 @@ static bool beam_set_up(const MotionFolder *folder, const Method *method, int nu
             snprintf(setup->scenario, sizeof setup->scenario, "%s %g, %d links", BEAMS[b].flag + 2,
                      BEAMS[b].stiffness, n);
             snprintf(setup->settings, sizeof setup->settings, "--style 0.5%s --drag 5 %s %g",
-                     method_has(method, "style_stiffness") ? " --style-stiffness 0" : "",
+                     method_has(setup->method, "style_stiffness") ? " --style-stiffness 0" : "",
                      BEAMS[b].flag, BEAMS[b].stiffness);
             return true;
         }
@@ -315,19 +309,10 @@ static Result beam_measure(Run *run, Error *error)
 // --- stretch: the greatest | |x_j - x_(j-1)| / l_j - 1 | over all links and frames of the exact
 // motions, as drawn and, of solvers that stretch, as simulated.
 
-static bool stretch_set_up(const MotionFolder *folder, const Method *method, int number,
-                           Setup *setup)
+static bool stretch_set_up(Setup *setup)
 {
-    bool found = motions_set_up(folder, method, number, setup);
+    bool found = motions_set_up(setup);
     setup->in_all = true;
-    return found;
-}
-
-static bool simulated_set_up(const MotionFolder *folder, const Method *method, int number,
-                             Setup *setup)
-{
-    bool found = stretch_set_up(folder, method, number, setup);
-    snprintf(setup->settings, sizeof setup->settings, "--style 0 --stretch-drawn true");
     return found;
 }
 
@@ -372,22 +357,20 @@ static Result stretch_measure(Run *run, Error *error)
 // middle of that. Of dftl, whose velocities also hold the corrections that are to come, there is
 // only the latter; of split, whose tip alone has mass, that of the tip.
 
-static bool energy_set_up(const MotionFolder *folder, const Method *method, int number,
-                          Setup *setup)
+static bool energy_set_up(Setup *setup)
 {
     static const int sizes[] = {4, 16, 64};
-    int n = sizes[number % 3], drag = number / 3 % 2;
-    bool styled = number / 6 == 1;
-    (void)folder;
-    setup->n = n, setup->strand_count = 2, setup->first_id = 2 * (uint32_t)(number % 3);
+    int n = sizes[setup->number % 3], drag = setup->number / 3 % 2;
+    bool styled = setup->number / 6 == 1;
+    setup->n = n, setup->strand_count = 2, setup->first_id = 2 * (uint32_t)(setup->number % 3);
     trial_make_beam(setup->points, n, LENGTH);
     trial_make_helix(setup->points + n, n, LENGTH, 1);
     snprintf(setup->scenario, sizeof setup->scenario, "n = %d, drag %d, %s", n, drag,
              styled ? "styled" : "loose");
     snprintf(setup->settings, sizeof setup->settings, "--style %s --drag %d%s",
              styled ? "0.5" : "0", drag,
-             method_has(method, "stretch_drawn") ? " --stretch-drawn true" : "");
-    return number < 12;
+             method_has(setup->method, "stretch_drawn") ? " --stretch-drawn true" : "");
+    return setup->number < 12;
 }
 
 // The drawn positions; split's tips in place of the strands' ends.
@@ -490,12 +473,12 @@ static Result energy_measure(Run *run, Error *error)
 
 enum { RATE_FPS = 30, RATE_FRAMES = 2 * RATE_FPS, RATE_POINTS = 128 };
 
-static bool rate_set_up(const MotionFolder *folder, const Method *method, int number, Setup *setup)
+static bool rate_set_up(Setup *setup)
 {
+    int number = setup->number;
     static const char *const names[] = {"c_root2Hz_n16_c1", "bd_curly_wind_n16_c4"};
-    (void)method;
-    for (size_t m = 0; m < folder->count; ++m) {
-        const Motion *motion = &folder->motions[m];
+    for (size_t m = 0; m < setup->folder->count; ++m) {
+        const Motion *motion = &setup->folder->motions[m];
         if (strcmp(motion->name, names[0]) != 0 && strcmp(motion->name, names[1]) != 0) continue;
         if (motion->n > RATE_POINTS || number-- > 0) continue;
         setup->motion = motion;
@@ -527,14 +510,13 @@ static Result rate_measure(Run *run, Error *error)
 
 enum { SCALE_N = 16, SCALE_STEPS = 30 };
 
-static bool scale_set_up(const MotionFolder *folder, const Method *method, int number, Setup *setup)
+static bool scale_set_up(Setup *setup)
 {
-    (void)folder, (void)method;
     setup->n = SCALE_N;
-    setup->units = number ? 100 : 1;
+    setup->units = setup->number ? 100 : 1;
     trial_make_helix(setup->points, SCALE_N, LENGTH, 2);
     snprintf(setup->scenario, sizeof setup->scenario, "helix of %d in cm", SCALE_N);
-    return number < 2;
+    return setup->number < 2;
 }
 
 static Result scale_measure(Run *run, Error *error)
@@ -554,24 +536,26 @@ static Result scale_measure(Run *run, Error *error)
 
 // --- The table.
 
+#define LOOSE     "--style 0"
+#define SIMULATED "--style 0 --stretch-drawn true"
 const Experiment EXPERIMENTS[] = {
-    {"motions", {60, 120, 240}, NULL, true, false, FOLD_MEAN, motions_set_up, motions_measure},
-    {"pendulum", {60, 120, 240}, NULL, true, false, FOLD_NONE, pendulum_set_up, pendulum_measure},
-    {"static", {60}, "style_stiffness", false, false, FOLD_NONE, static_set_up, rest_measure},
-    {"drift", {60}, NULL, false, false, FOLD_NONE, drift_set_up, drift_measure},
-    {"beam", {30, 240}, NULL, false, false, FOLD_NONE, beam_set_up, beam_measure},
-    {"stretch", {60, 240}, NULL, false, false, FOLD_MOST, stretch_set_up, stretch_measure},
+    {"motions", {60, 120, 240}, NULL, LOOSE, ORDER, FOLD_MEAN, motions_set_up, motions_measure},
+    {"pendulum", {60, 120, 240}, NULL, LOOSE, ORDER, 0, pendulum_set_up, pendulum_measure},
+    {"static", {60}, "style_stiffness", "", 0, 0, static_set_up, rest_measure},
+    {"drift", {60}, NULL, "", 0, 0, drift_set_up, drift_measure},
+    {"beam", {30, 240}, NULL, "", 0, 0, beam_set_up, beam_measure},
+    {"stretch", {60, 240}, NULL, LOOSE, 0, FOLD_MOST, stretch_set_up, stretch_measure},
     {"stretch",
      {60, 240},
      "stretch_drawn",
-     false,
-     false,
+     SIMULATED,
+     0,
      FOLD_MOST,
-     simulated_set_up,
+     stretch_set_up,
      stretch_measure},
-    {"energy", {30, 60, 120, 240}, NULL, false, false, FOLD_NONE, energy_set_up, energy_measure},
-    {"rate", {30, 60, 120, 240}, NULL, false, true, FOLD_NONE, rate_set_up, rate_measure},
-    {"scale", {60}, NULL, false, false, FOLD_NONE, scale_set_up, scale_measure},
+    {"energy", {30, 60, 120, 240}, NULL, "", 0, 0, energy_set_up, energy_measure},
+    {"rate", {30, 60, 120, 240}, NULL, "", FINEST_FIRST, 0, rate_set_up, rate_measure},
+    {"scale", {60}, NULL, "", 0, 0, scale_set_up, scale_measure},
 };
 const int EXPERIMENT_COUNT = sizeof EXPERIMENTS / sizeof *EXPERIMENTS;
 
@@ -581,7 +565,9 @@ bool experiments_set_up(const Experiment *experiment, const MotionFolder *folder
     if (experiment->param && !method_has(method, experiment->param)) return false;
     *setup = (Setup){.strand_count = 1, .drag = NAN, .units = 1, .beam_drop = NAN};
     setup->seconds = seconds;
-    return experiment->set_up(folder, method, number, setup);
+    setup->folder = folder, setup->method = method, setup->number = number;
+    snprintf(setup->settings, sizeof setup->settings, "%s", experiment->settings);
+    return experiment->set_up(setup);
 }
 
 // All parameters of solvers that are lengths, or accelerations of them.

@@ -15,6 +15,9 @@ enum {
 
 // A case of an experiment: how strands start, and what moves them.
 typedef struct Setup {
+    const MotionFolder *folder;
+    const Method *method;
+    int number;
     char scenario[80];                   // in words, as in the rows
     char settings[128];                  // flags, before the method's
     double points[EXPERIMENT_POINTS][3]; // m, at rest: `strand_count` strands of n particles
@@ -51,13 +54,16 @@ typedef struct Run {
 typedef enum Fold { FOLD_NONE, FOLD_MEAN, FOLD_MOST } Fold;
 
 typedef struct Experiment {
-    const char *part;  // as --part names it; rows of one part share the name
-    double rates[5];   // steps a second, 0 behind the last
-    const char *param; // only for solvers that have this parameter; NULL: for all
-    bool order;        // adds the order of convergence
-    bool finest_first; // the finest rate is what the others are compared with
-    Fold fold;         // adds a row of all cases; FOLD_MOST: that alone
-    bool (*set_up)(const MotionFolder *folder, const Method *method, int number, Setup *setup);
+    const char *part;     // as --part names it; rows of one part share the name
+    double rates[5];      // steps a second, 0 behind the last
+    const char *param;    // only for solvers that have this parameter; NULL: for all
+    const char *settings; // flags before the method's, unless the set-up has its own
+    enum {
+        ORDER = 1,        // adds the order of convergence
+        FINEST_FIRST = 2, // the finest rate is what the others are compared with
+    } flags;
+    Fold fold;                    // adds a row of all cases; FOLD_MOST: that alone
+    bool (*set_up)(Setup *setup); // for setup->number and method; false: there are no more
     Result (*measure)(Run *run, Error *error);
 } Experiment;
 

@@ -58,44 +58,24 @@ typedef struct Manner {
     SectionParams material;
 } Manner;
 
-typedef struct Row {
-    char set[64], scheme[64], command[512];
-    long strands, particles, width, height, layers, samples, segments, fragments;
-    const char *raster, *oit, *shadow, *quality;
-    Times wall, processor; // drawing and reading back; by the clock and as processor time of all
-                           // threads, which a busy machine lengthens less
-    double rms;            // levels of 255 over the pixels that differ from the background in
-    double covered;        // either image; their share of all
-    double reference_s;    // that the exact image took; NaN: none
-    char spans[256];       // passes and their least ms, with waits between them
-} Row;
+// ms: drawing and reading back; cpu_ms: the same as processor time of all threads, which a busy
+// machine lengthens less. `rms`: levels of 255 over the pixels that differ from the background in
+// either image, `covered` of all; `passes`: their least ms, with waits between them; `reference_s`:
+// that the exact image took, NaN: none.
+// clang-format off
+#define ROW(X)                                                                                     \
+    X(CHARS, set, 19) X(CHARS, scheme, 23) X(REAL, ms_min, 7) X(REAL, ms_median, 9)                \
+    X(REAL, cpu_ms_min, 10) X(REAL, cpu_ms_median, 13) X(REAL, rms, 6) X(REAL, covered, 7)         \
+    X(CHARS, passes, 1) X(WHOLE, strands, 0) X(WHOLE, particles, 0) X(WHOLE, width, 0)             \
+    X(WHOLE, height, 0) X(TEXT, raster, 0) X(TEXT, oit, 0) X(WHOLE, layers, 0)                     \
+    X(WHOLE, samples, 0) X(TEXT, shadow, 0) X(TEXT, quality, 0) X(WHOLE, segments, 0)              \
+    X(WHOLE, fragments, 0) X(REAL, reference_s, 0) X(CHARS, command, 0)
+// clang-format on
 
-#define AT(member) offsetof(Row, member)
-static const Column COLUMNS[] = {
-    {"set", COLUMN_CHARS, AT(set), 19},
-    {"scheme", COLUMN_CHARS, AT(scheme), 23},
-    {"ms_min", COLUMN_REAL, AT(wall.minimum), 7},
-    {"ms_median", COLUMN_REAL, AT(wall.median), 9},
-    {"cpu_ms_min", COLUMN_REAL, AT(processor.minimum), 10},
-    {"cpu_ms_median", COLUMN_REAL, AT(processor.median), 13},
-    {"rms", COLUMN_REAL, AT(rms), 6},
-    {"covered", COLUMN_REAL, AT(covered), 7},
-    {"passes", COLUMN_CHARS, AT(spans), 1},
-    {"strands", COLUMN_WHOLE, AT(strands), 0},
-    {"particles", COLUMN_WHOLE, AT(particles), 0},
-    {"width", COLUMN_WHOLE, AT(width), 0},
-    {"height", COLUMN_WHOLE, AT(height), 0},
-    {"raster", COLUMN_TEXT, AT(raster), 0},
-    {"oit", COLUMN_TEXT, AT(oit), 0},
-    {"layers", COLUMN_WHOLE, AT(layers), 0},
-    {"samples", COLUMN_WHOLE, AT(samples), 0},
-    {"shadow", COLUMN_TEXT, AT(shadow), 0},
-    {"quality", COLUMN_TEXT, AT(quality), 0},
-    {"segments", COLUMN_WHOLE, AT(segments), 0},
-    {"fragments", COLUMN_WHOLE, AT(fragments), 0},
-    {"reference_s", COLUMN_REAL, AT(reference_s), 0},
-    {"command", COLUMN_CHARS, AT(command), 0},
-};
+typedef struct Row {
+    ROW(TABLE_FIELD)
+} Row;
+static const Column COLUMNS[] = {ROW(TABLE_COLUMN)};
 
 // --- The stage.
 
@@ -271,9 +251,9 @@ static Result time_passes(Renderer *renderer, const RenderFrame *frame, const Re
         }
     }
     size_t at = 0;
-    for (int k = 0; k < timer->count && at < sizeof row->spans; ++k)
-        at += (size_t)snprintf(row->spans + at, sizeof row->spans - at, "%s%s %.1f", k ? ", " : "",
-                               timer->labels[k].name, least[k]);
+    for (int k = 0; k < timer->count && at < sizeof row->passes; ++k)
+        at += (size_t)snprintf(row->passes + at, sizeof row->passes - at, "%s%s %.1f",
+                               k ? ", " : "", timer->labels[k].name, least[k]);
     return RESULT_OK;
 }
 
@@ -294,8 +274,9 @@ static Result draw_frames(const Stage *stage, const Manner *manner, Renderer *re
         wall[i] = clock_ms() - begin;
         processor[i] = clock_processor_ms() - begin_processor;
     }
-    row->wall = table_times(wall, frames);
-    row->processor = table_times(processor, frames);
+    Times by_clock = table_times(wall, frames), by_processor = table_times(processor, frames);
+    row->ms_min = by_clock.minimum, row->ms_median = by_clock.median;
+    row->cpu_ms_min = by_processor.minimum, row->cpu_ms_median = by_processor.median;
     row->segments = (long)renderer->counts.segments;
     row->fragments = (long)renderer->counts.fragments;
     return time_passes(renderer, &frame, &item, image, row, error);

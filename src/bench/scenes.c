@@ -43,28 +43,18 @@ static const SceneKind SCENES[] = {
     {.name = "moving + static", .sections = 2, .rest = {MOVES, STATIC}},
 };
 
-typedef struct Row {
-    const char *scene, *set, *variant;
-    Method method;
-    long guides, followers;
-    Times times;
-    char command[256];
-} Row;
+// clang-format off
+#define ROW(X)                                                                                     \
+    X(TEXT, scene, 16) X(TEXT, algo, 9) X(TEXT, variant, 9) X(TEXT, set, 5) X(WHOLE, guides, 7)    \
+    X(WHOLE, followers, 9) X(REAL, ms_min, 9) X(REAL, ms_q1, 9) X(REAL, ms_median, 9)              \
+    X(REAL, ms_q3, 9) X(CHARS, command, 0)
+// clang-format on
 
-#define AT(member) offsetof(Row, member)
-static const Column COLUMNS[] = {
-    {"scene", COLUMN_TEXT, AT(scene), 16},
-    {"algo", COLUMN_TEXT, AT(method.algo), 9},
-    {"variant", COLUMN_TEXT, AT(variant), 9},
-    {"set", COLUMN_TEXT, AT(set), 5},
-    {"guides", COLUMN_WHOLE, AT(guides), 7},
-    {"followers", COLUMN_WHOLE, AT(followers), 9},
-    {"ms_min", COLUMN_REAL, AT(times.minimum), 9},
-    {"ms_q1", COLUMN_REAL, AT(times.lower_quartile), 9},
-    {"ms_median", COLUMN_REAL, AT(times.median), 9},
-    {"ms_q3", COLUMN_REAL, AT(times.upper_quartile), 9},
-    {"command", COLUMN_CHARS, AT(command), 0},
-};
+typedef struct Row {
+    ROW(TABLE_FIELD)
+    Method method;
+} Row;
+static const Column COLUMNS[] = {ROW(TABLE_COLUMN)};
 
 static Result add_section(Scene *scene, Strands *strands, const SceneKind *kind, int i,
                           const Row *row, Error *error)
@@ -109,7 +99,9 @@ static Result measure_frames(Row *row, Simulation *simulation, const SceneKind *
         double ms = frame_ms(simulation);
         if (i >= 0) samples[i] = ms;
     }
-    row->times = table_times(samples, options->steps);
+    Times times = table_times(samples, options->steps);
+    row->ms_min = times.minimum, row->ms_median = times.median;
+    row->ms_q1 = times.lower_quartile, row->ms_q3 = times.upper_quartile;
     free(samples);
     for (int i = 0; i < kind->sections; ++i) {
         row->guides += simulation->sections[i].hair.strand_count;
@@ -155,6 +147,7 @@ Result scenes_run(const BenchOptions *options, const Gpu *gpu, Error *error)
                                &options->output, stdout, error);
     for (size_t i = 0; i < sizeof SCENES / sizeof *SCENES && result == RESULT_OK; ++i) {
         Row row = {.scene = SCENES[i].name, .variant = method_variant(&method), .method = method};
+        row.algo = method.algo;
         row.set = options->set ? options->set : "10k16";
         snprintf(row.command, sizeof row.command, "tractrix-bench scenes %s --set %s", words,
                  row.set);

@@ -18,65 +18,33 @@
 #include <string.h>
 #include <unistd.h>
 
-typedef struct Row {
-    const char *part;
-    char hair[64];          // without folders
-    const char *set, *file; // where it comes from; both NULL: made by the part itself
-    Method method;
-    const char *variant;
-    long strands, vertices, particles; // vertices: of the first strand
-    long threads;                      // of the driver or the program; 0: as many as it likes
-    Times step;      // what moves the hair one step further and writes the positions that are drawn
-    Times solve;     // its part without the positions
-    Times draw;      // drawing and reading back
-    long bytes;      // of the buffers that a step and its pose use, each once a way
-    long fragments;  // of the last image
-    double first_ms; // of the first step: with shader compilation, unless the driver caches it
-    double ns_particle, gigabytes_s, share; // share: of the memory's bandwidth
-    double thesis_ms, bound_ms;             // what the thesis states for its GPU, what we state
-    const char *verdict;
-    double exponent, spread; // of a fit over a part's rows, its standard error
-    double process_ms;       // wall time of a process of its own
-    double off, off_bound;   // from the GPU's strands, RMS over the length; what is stated
-    const char *remark;
-    char command[512];
-} Row;
+// ms: of what moves the hair one step further and writes the positions that are drawn; solve_ms: of
+// its part without the positions; draw_ms: drawing and reading back. `hair`: without folders;
+// `vertices`: of the first strand; `threads`: of the driver or the program, 0: as many as it likes;
+// `thesis_ms`, `bound_ms`: what the thesis states for its GPU, what we state; `bytes`: of the
+// buffers that a step and its pose use, each once a way; `exponent`: of a fit over a part's rows;
+// `first_ms`: of the first step, with shader compilation unless the driver caches it; `process_ms`:
+// wall time of a process of its own; `off`: from the GPU's strands, RMS over the length.
+// clang-format off
+#define ROW(X)                                                                                     \
+    X(TEXT, part, 8) X(CHARS, hair, 20) X(TEXT, algo, 9) X(TEXT, variant, 9) X(TEXT, settings, 0)  \
+    X(WHOLE, strands, 8) X(WHOLE, vertices, 8) X(WHOLE, particles, 9) X(WHOLE, threads, 7)         \
+    X(REAL, ms_min, 8) X(REAL, ms_q1, 8) X(REAL, ms_median, 9) X(REAL, ms_q3, 8)                   \
+    X(REAL, solve_ms_min, 0) X(REAL, solve_ms_median, 0) X(REAL, ns_particle, 11)                  \
+    X(REAL, thesis_ms, 9) X(REAL, bound_ms, 8) X(TEXT, verdict, 7) X(WHOLE, bytes, 10)             \
+    X(REAL, gb_s, 7) X(REAL, bandwidth_share, 15) X(REAL, exponent, 8) X(REAL, spread, 8)          \
+    X(REAL, first_ms, 8) X(REAL, process_ms, 10) X(REAL, draw_ms_min, 11)                          \
+    X(REAL, draw_ms_median, 0) X(WHOLE, fragments, 0) X(REAL, off, 9) X(TEXT, remark, 1)           \
+    X(CHARS, command, 0)
+// clang-format on
 
-#define AT(member) offsetof(Row, member)
-static const Column COLUMNS[] = {
-    {"part", COLUMN_TEXT, AT(part), 8},
-    {"hair", COLUMN_CHARS, AT(hair), 20},
-    {"algo", COLUMN_TEXT, AT(method.algo), 9},
-    {"variant", COLUMN_TEXT, AT(variant), 9},
-    {"settings", COLUMN_TEXT, AT(method.settings), 0},
-    {"strands", COLUMN_WHOLE, AT(strands), 8},
-    {"vertices", COLUMN_WHOLE, AT(vertices), 8},
-    {"particles", COLUMN_WHOLE, AT(particles), 9},
-    {"threads", COLUMN_WHOLE, AT(threads), 7},
-    {"ms_min", COLUMN_REAL, AT(step.minimum), 8},
-    {"ms_q1", COLUMN_REAL, AT(step.lower_quartile), 8},
-    {"ms_median", COLUMN_REAL, AT(step.median), 9},
-    {"ms_q3", COLUMN_REAL, AT(step.upper_quartile), 8},
-    {"solve_ms_min", COLUMN_REAL, AT(solve.minimum), 0},
-    {"solve_ms_median", COLUMN_REAL, AT(solve.median), 0},
-    {"ns_particle", COLUMN_REAL, AT(ns_particle), 11},
-    {"thesis_ms", COLUMN_REAL, AT(thesis_ms), 9},
-    {"bound_ms", COLUMN_REAL, AT(bound_ms), 8},
-    {"verdict", COLUMN_TEXT, AT(verdict), 7},
-    {"bytes", COLUMN_WHOLE, AT(bytes), 10},
-    {"gb_s", COLUMN_REAL, AT(gigabytes_s), 7},
-    {"bandwidth_share", COLUMN_REAL, AT(share), 15},
-    {"exponent", COLUMN_REAL, AT(exponent), 8},
-    {"spread", COLUMN_REAL, AT(spread), 8},
-    {"first_ms", COLUMN_REAL, AT(first_ms), 8},
-    {"process_ms", COLUMN_REAL, AT(process_ms), 10},
-    {"draw_ms_min", COLUMN_REAL, AT(draw.minimum), 11},
-    {"draw_ms_median", COLUMN_REAL, AT(draw.median), 0},
-    {"fragments", COLUMN_WHOLE, AT(fragments), 0},
-    {"off", COLUMN_REAL, AT(off), 9},
-    {"remark", COLUMN_TEXT, AT(remark), 1},
-    {"command", COLUMN_CHARS, AT(command), 0},
-};
+typedef struct Row {
+    ROW(TABLE_FIELD)
+    const char *set, *file; // where the hair comes from; both NULL: made by the part itself
+    Method method;
+    double off_bound; // what is stated of `off`
+} Row;
+static const Column COLUMNS[] = {ROW(TABLE_COLUMN)};
 
 typedef struct Speed {
     const Gpu *gpu;
@@ -92,15 +60,22 @@ typedef struct Speed {
 // Of a part and, unless NULL, of hair from a set or a file, or of its own name.
 static Row row_of(const char *part, const char *set, const char *file, const char *name)
 {
-    const Times none = table_times(NULL, 0);
     Row row = {.part = part, .set = set, .file = file, .method = {"", "", ""}, .remark = ""};
-    row.step = row.solve = row.draw = none;
-    row.first_ms = row.gigabytes_s = row.thesis_ms = row.bound_ms = NAN;
+    row.ms_min = row.ms_q1 = row.ms_median = row.ms_q3 = row.solve_ms_min = row.solve_ms_median =
+        NAN;
+    row.draw_ms_min = row.draw_ms_median = row.first_ms = row.gb_s = NAN;
+    row.thesis_ms = row.bound_ms = NAN;
     row.exponent = row.spread = row.process_ms = row.off = row.off_bound = NAN;
     if (!name) name = set ? set : file ? file : "";
     const char *slash = strrchr(name, '/');
     snprintf(row.hair, sizeof row.hair, "%s", slash ? slash + 1 : name);
     return row;
+}
+
+static void set_times(Row *row, Times times)
+{
+    row->ms_min = times.minimum, row->ms_median = times.median;
+    row->ms_q1 = times.lower_quartile, row->ms_q3 = times.upper_quartile;
 }
 
 static void count_strands(Row *row, const Strands *strands)
@@ -114,11 +89,12 @@ static void count_strands(Row *row, const Strands *strands)
 static void add_row(Speed *speed, Row *row)
 {
     char method[256] = "", hair[128] = "", size[64] = "";
-    double least = row->step.minimum;
+    double least = row->ms_min;
+    row->algo = row->method.algo, row->settings = row->method.settings;
     row->variant = *row->method.algo ? method_variant(&row->method) : "";
     row->ns_particle = row->particles ? least * 1e6 / (double)row->particles : NAN;
-    if (row->bytes) row->gigabytes_s = (double)row->bytes / least * 1e-6;
-    row->share = speed->bandwidth > 0 ? row->gigabytes_s / speed->bandwidth : NAN;
+    if (row->bytes) row->gb_s = (double)row->bytes / least * 1e-6;
+    row->bandwidth_share = speed->bandwidth > 0 ? row->gb_s / speed->bandwidth : NAN;
     row->verdict = isnan(row->off_bound)
                        ? table_check(&speed->table, least, row->bound_ms, "%s, %s: least ms a step",
                                      row->hair, row->method.algo)
@@ -127,7 +103,7 @@ static void add_row(Speed *speed, Row *row)
     if (*row->method.algo) method_format(&row->method, method, sizeof method);
     if (row->set) snprintf(hair, sizeof hair, " --set %s", row->set);
     if (row->file) snprintf(hair, sizeof hair, " --tfx %s", row->file);
-    if (!isnan(row->draw.minimum))
+    if (!isnan(row->draw_ms_min))
         snprintf(size, sizeof size, " --size %dx%d", speed->options->size[0],
                  speed->options->size[1]);
     snprintf(row->command, sizeof row->command, "tractrix-bench speed --part %s %s%s%s", row->part,
@@ -172,8 +148,9 @@ static Result measure_steps(Row *row, Simulation *simulation, const BenchOptions
         if (i == -options->warm_up - 1) row->first_ms = end - begin;
         if (i >= 0) step[i] = end - begin, solve[i] = solved - begin;
     }
-    row->step = table_times(step, options->steps);
-    row->solve = table_times(solve, options->steps);
+    set_times(row, table_times(step, options->steps));
+    Times solved = table_times(solve, options->steps);
+    row->solve_ms_min = solved.minimum, row->solve_ms_median = solved.median;
     row->bytes = count_bytes(&simulation->sections[0]);
     free(step);
     return gpu_check("steps", error);
@@ -203,7 +180,8 @@ static Result draw_frames(Row *row, Renderer *renderer, Simulation *simulation, 
         TRY(renderer_draw(renderer, &frame, &item, 1, image, error));
         if (i >= 0) samples[i] = clock_ms() - begin;
     }
-    row->draw = table_times(samples, DRAWN_FRAMES);
+    Times drawn = table_times(samples, DRAWN_FRAMES);
+    row->draw_ms_min = drawn.minimum, row->draw_ms_median = drawn.median;
     row->fragments = (long)renderer->counts.fragments;
     return RESULT_OK;
 }
@@ -328,10 +306,12 @@ static Result run_sets(Speed *speed, Error *error)
 static Result run_memory(Speed *speed, Error *error)
 {
     Row row = row_of("memory", NULL, NULL, NULL);
+    Times times;
     double bytes;
     int threads;
-    TRY(cpu_split_time_memory(&row.step, &bytes, &threads, error));
-    speed->bandwidth = row.gigabytes_s = bytes / row.step.minimum * 1e-6;
+    TRY(cpu_split_time_memory(&times, &bytes, &threads, error));
+    set_times(&row, times);
+    speed->bandwidth = row.gb_s = bytes / times.minimum * 1e-6;
     row.threads = threads;
     row.remark = "a = b + 3 c, 3 x 64 MiB";
     add_row(speed, &row);
@@ -386,8 +366,10 @@ static Result measure_form(Speed *speed, Row *row, const Strands *strands, CpuSp
     for (int threads = 1; threads <= 2 && result == RESULT_OK; ++threads) {
         row->threads = threads;
         row->bytes = 8 * (long)split.tile_count * CPU_SPLIT_WIDTH * 4 * (long)split.link_count;
-        result = cpu_split_time_steps(&row->step, &split, form, threads, options->steps,
+        Times times = {0};
+        result = cpu_split_time_steps(&times, &split, form, threads, options->steps,
                                       options->warm_up, error);
+        set_times(row, times);
         if (result == RESULT_OK) add_row(speed, row);
     }
     cpu_split_destroy(&split);
@@ -445,7 +427,7 @@ static Result measure_growth(Speed *speed, const char *part, const uint32_t *cou
             row.method = speed->methods[m];
             if (interrupt_requested()) result = error_set(error, RESULT_INTERRUPTED, "interrupted");
             THEN(result, measure(&row, speed->gpu, &strands, &options, error));
-            least[m][i] = row.step.minimum;
+            least[m][i] = row.ms_min;
             if (result == RESULT_OK) add_row(speed, &row);
         }
         strands_destroy(&strands);
@@ -503,8 +485,8 @@ static Result measure_child(Row *row, const BenchOptions *options, int steps, in
     row->vertices = (long)child_number(from, "vertices");
     row->particles = (long)child_number(from, "particles");
     row->first_ms = child_number(from, "first_ms");
-    row->step = (Times){child_number(from, "ms_min"), child_number(from, "ms_q1"),
-                        child_number(from, "ms_median"), child_number(from, "ms_q3")};
+    row->ms_min = child_number(from, "ms_min"), row->ms_median = child_number(from, "ms_median");
+    row->ms_q1 = child_number(from, "ms_q1"), row->ms_q3 = child_number(from, "ms_q3");
     json_decref(from);
     return RESULT_OK;
 }
@@ -521,7 +503,7 @@ static Result run_threads(Speed *speed, Error *error)
             row.threads = i + 1;
             TRY(measure_child(&row, &options, options.steps, options.warm_up, "LP_NUM_THREADS",
                               i ? "2" : "1", error));
-            least[i] = row.step.minimum;
+            least[i] = row.ms_min;
             add_row(speed, &row);
         }
         Row row = child_row(speed, "threads", "10k32", m);
@@ -546,10 +528,9 @@ static Result run_start(Speed *speed, Error *error)
         if (!mkdtemp(cache)) return error_set(error, RESULT_FAILED, "%s: cannot be made", cache);
         for (int warm = 0; warm < 2 && result == RESULT_OK; ++warm) {
             Row row = child_row(speed, "start", "1k16", m);
-            const Times none = row.step;
             result =
                 measure_child(&row, speed->options, 1, 0, "MESA_SHADER_CACHE_DIR", cache, error);
-            row.step = none; // of one step: says nothing
+            set_times(&row, table_times(NULL, 0)); // of one step: says nothing
             row.remark = warm ? "warm" : "cold";
             if (result == RESULT_OK) add_row(speed, &row);
         }

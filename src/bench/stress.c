@@ -9,41 +9,24 @@
 #include <math.h>
 #include <string.h>
 
-enum { TEXT_SIZE = 1024 };
+// A form's sum, a case that failed, or the smallest that such a one was made to. `rule`: that was
+// broken; `set`, `strand`: -1: it is no strand of a set; `steps`: of the case; `at`: the first that
+// broke it.
+// clang-format off
+#define ROW(X)                                                                                     \
+    X(TEXT, what, 0) X(TEXT, algo, 0) X(TEXT, variant, 0) X(WHOLE, cases, 0) X(WHOLE, sets, 0)     \
+    X(WHOLE, failures, 0) X(REAL, seconds, 0) X(TEXT, rule, 0) X(WHOLE, set, 0)                    \
+    X(WHOLE, strand, 0) X(WHOLE, steps, 0) X(WHOLE, at, 0) X(REAL, of_allowed, 0)                  \
+    X(REAL, worst_length, 0) X(REAL, worst_energy, 0) X(REAL, worst_rest, 0)
+// clang-format on
 
-// A form's sum, a case that failed, or the smallest that such a one was made to.
-typedef struct Line {
-    const char *what, *algo, *variant;
-    long cases, sets, failures;
-    double seconds;
-    const char *rule; // that was broken
-    long set, strand; // -1: it is no strand of a set
-    long steps, at;   // of the case; the first that broke it
-    double of_allowed, worst[STRESS_RULES];
-    char text[TEXT_SIZE], command[TEXT_SIZE + 128];
-} Line;
+typedef struct Row {
+    ROW(TABLE_FIELD)
+    char text[TABLE_CHARS - 128], command[TABLE_CHARS];
+} Row;
+static const Column COLUMNS[] = {ROW(TABLE_COLUMN){"case", COLUMN_CHARS, offsetof(Row, text), 0},
+                                 TABLE_COLUMN(CHARS, command, 0)};
 
-#define AT(member) offsetof(Line, member)
-static const Column COLUMNS[] = {
-    {"what", COLUMN_TEXT, AT(what), 0},
-    {"algo", COLUMN_TEXT, AT(algo), 0},
-    {"variant", COLUMN_TEXT, AT(variant), 0},
-    {"cases", COLUMN_WHOLE, AT(cases), 0},
-    {"sets", COLUMN_WHOLE, AT(sets), 0},
-    {"failures", COLUMN_WHOLE, AT(failures), 0},
-    {"seconds", COLUMN_REAL, AT(seconds), 0},
-    {"rule", COLUMN_TEXT, AT(rule), 0},
-    {"set", COLUMN_WHOLE, AT(set), 0},
-    {"strand", COLUMN_WHOLE, AT(strand), 0},
-    {"steps", COLUMN_WHOLE, AT(steps), 0},
-    {"at", COLUMN_WHOLE, AT(at), 0},
-    {"of_allowed", COLUMN_REAL, AT(of_allowed), 0},
-    {"worst_length", COLUMN_REAL, AT(worst[STRESS_LENGTHS]), 0},
-    {"worst_energy", COLUMN_REAL, AT(worst[STRESS_ENERGY]), 0},
-    {"worst_rest", COLUMN_REAL, AT(worst[STRESS_REST]), 0},
-    {"case", COLUMN_CHARS, AT(text), 0},
-    {"command", COLUMN_CHARS, AT(command), 0},
-};
 // Of the failures of a set only the worst of each rule is made smaller, and so many of a form; all
 // are named.
 enum { MOST_SHRUNK = 8, MOST_FORMS = 64 };
@@ -117,11 +100,18 @@ static void shrink(Bench *bench, StressCase *stress, StressRule rule, int *steps
     }
 }
 
-// The row of a case, with the command that repeats it.
-static Line line_of_case(const Bench *bench, const char *what, const StressCase *stress,
-                         const StressVerdict *verdict, StressRule rule, int steps)
+static void set_worst(Row *row, const double worst[STRESS_RULES])
 {
-    Line line = {.what = what, .algo = stress->algo, .variant = stress->variant};
+    row->worst_length = worst[STRESS_LENGTHS];
+    row->worst_energy = worst[STRESS_ENERGY];
+    row->worst_rest = worst[STRESS_REST];
+}
+
+// The row of a case, with the command that repeats it.
+static Row line_of_case(const Bench *bench, const char *what, const StressCase *stress,
+                        const StressVerdict *verdict, StressRule rule, int steps)
+{
+    Row line = {.what = what, .algo = stress->algo, .variant = stress->variant};
     char allow[32] = "";
     line.cases = line.sets = line.failures = 1;
     line.set = line.strand = -1;
@@ -129,7 +119,7 @@ static Line line_of_case(const Bench *bench, const char *what, const StressCase 
     line.seconds = NAN;
     line.rule = STRESS_RULE_NAMES[rule];
     line.of_allowed = verdict->worst[rule];
-    memcpy(line.worst, verdict->worst, sizeof line.worst);
+    set_worst(&line, verdict->worst);
     stress_case_write(stress, line.text, sizeof line.text);
     if (bench->options->allowed < 1)
         snprintf(allow, sizeof allow, " --allow %.9g", bench->options->allowed);
@@ -142,7 +132,7 @@ static Line line_of_case(const Bench *bench, const char *what, const StressCase 
 static void print_case(Bench *bench, const StressCase *stress, const StressVerdict *verdict,
                        StressRule rule, int steps)
 {
-    const Line line = line_of_case(bench, "smallest", stress, verdict, rule, steps);
+    const Row line = line_of_case(bench, "smallest", stress, verdict, rule, steps);
     fprintf(bench->stream, "  %s broken at step %ld (%.3g of what is allowed):\n    %s\n",
             line.rule, line.at, line.of_allowed, line.command);
     fflush(bench->stream);
@@ -175,7 +165,7 @@ static void report_smallest(Bench *bench, const StressCase *stress, const Stress
 static void report_failure(Bench *bench, const Tally *tally, const StressCase *stress, int strand,
                            const StressVerdict *verdict, StressRule rule)
 {
-    Line line = line_of_case(bench, "failed", stress, verdict, rule, bench->options->steps);
+    Row line = line_of_case(bench, "failed", stress, verdict, rule, bench->options->steps);
     line.set = tally->sets, line.strand = strand;
     progress_clear(&bench->progress);
     fprintf(bench->stream, "  set %d, strand %d: %s at step %ld (%.3g): '%s'\n", tally->sets,
@@ -260,13 +250,13 @@ static void print_tally(Bench *bench, const Tally *tally)
             tally->failures, tally->seconds, broken[0], broken[1], broken[2], broken[3], worst[1],
             worst[2], worst[3]);
     fflush(bench->stream);
-    Line line = {.what = "form", .algo = tally->algo, .variant = tally->variant, .rule = ""};
+    Row line = {.what = "form", .algo = tally->algo, .variant = tally->variant, .rule = ""};
     line.cases = tally->cases, line.sets = tally->sets, line.failures = tally->failures;
     line.set = line.strand = -1;
     line.steps = bench->options->steps;
     line.seconds = tally->seconds;
     line.of_allowed = NAN;
-    memcpy(line.worst, worst, sizeof line.worst);
+    set_worst(&line, worst);
     table_add(&bench->table, &line);
 }
 

@@ -24,6 +24,17 @@ typedef struct Column {
     int width;    // on the screen, in characters; 0: not shown there
 } Column;
 
+// A row's struct and its columns from one list, ROW(X) with X(KIND, name, width) for each column:
+//     typedef struct Row { ROW(TABLE_FIELD) } Row;
+//     static const Column COLUMNS[] = {ROW(TABLE_COLUMN)};
+#define TABLE_FIELD(kind, name, width)  TABLE_FIELD_##kind(name)
+#define TABLE_FIELD_TEXT(name)          const char *name;
+#define TABLE_FIELD_CHARS(name)         char name[TABLE_CHARS];
+#define TABLE_FIELD_WHOLE(name)         long name;
+#define TABLE_FIELD_REAL(name)          double name;
+#define TABLE_COLUMN(kind, name, width) {#name, COLUMN_##kind, offsetof(Row, name), width},
+enum { TABLE_CHARS = 1152 };
+
 // Where rows go. A zeroed one goes nowhere but the screen.
 typedef struct TableOutput {
     const char *json, *csv; // files; NULL: none

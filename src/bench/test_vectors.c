@@ -38,18 +38,11 @@ static Result judge(TestVectorsReport *report, const char *category, long id, do
     return RESULT_OK;
 }
 
-static int compare_ratios(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static void sum_up(TestVectorsReport *report)
 {
     for (size_t i = 0; i < report->category_count; ++i) {
         TestVectorsCategory *at = &report->categories[i];
-        qsort(at->ratios, at->rows, sizeof *at->ratios, compare_ratios);
-        at->median = at->rows ? at->ratios[at->rows / 2] : 0;
+        at->median = table_times(at->ratios, (int)at->rows).median;
         free(at->ratios);
         at->ratios = NULL;
     }
@@ -321,28 +314,17 @@ Result test_vectors_check_chains(TestVectorsReport *report, const Gpu *gpu, cons
 
 // --- The commands.
 
-typedef struct Row {
-    const char *rule, *category, *unit, *verdict;
-    long rows, above, not_finite, worst_row;
-    double median, worst, mark;
-    char command[512];
-} Row;
+// clang-format off
+#define ROW(X)                                                                                     \
+    X(TEXT, rule, 7) X(TEXT, category, 20) X(WHOLE, rows, 5) X(WHOLE, above_mark, 10)              \
+    X(WHOLE, not_finite, 10) X(WHOLE, worst_row, 9) X(REAL, median, 9) X(REAL, worst, 9)           \
+    X(TEXT, unit, 7) X(REAL, mark, 5) X(TEXT, verdict, 7) X(CHARS, command, 0)
+// clang-format on
 
-#define AT(member) offsetof(Row, member)
-static const Column COLUMNS[] = {
-    {"rule", COLUMN_TEXT, AT(rule), 7},
-    {"category", COLUMN_TEXT, AT(category), 20},
-    {"rows", COLUMN_WHOLE, AT(rows), 5},
-    {"above_mark", COLUMN_WHOLE, AT(above), 10},
-    {"not_finite", COLUMN_WHOLE, AT(not_finite), 10},
-    {"worst_row", COLUMN_WHOLE, AT(worst_row), 9},
-    {"median", COLUMN_REAL, AT(median), 9},
-    {"worst", COLUMN_REAL, AT(worst), 9},
-    {"unit", COLUMN_TEXT, AT(unit), 7},
-    {"mark", COLUMN_REAL, AT(mark), 5},
-    {"verdict", COLUMN_TEXT, AT(verdict), 7},
-    {"command", COLUMN_CHARS, AT(command), 0},
-};
+typedef struct Row {
+    ROW(TABLE_FIELD)
+} Row;
+static const Column COLUMNS[] = {ROW(TABLE_COLUMN)};
 
 // What is checked: its rule, and what it is measured by.
 typedef struct Check {
@@ -359,7 +341,7 @@ static void add_category(Table *table, const Check *check, const TestVectorsCate
                .category = category->name,
                .unit = check->unit,
                .rows = (long)category->rows,
-               .above = (long)category->failed,
+               .above_mark = (long)category->failed,
                .not_finite = (long)category->not_finite,
                .worst_row = category->worst_id,
                .median = category->median,
