@@ -10,7 +10,4 @@ uint hash_bits(uint id)
 }
 
 // Uniform in -1 .. 1.
-float hash_signed(uint id)
-{
-    return float(int(hash_bits(id) >> 8)) * (2.0 / 16777215.0) - 1.0;
-}
+float hash_signed(uint id) { return float(int(hash_bits(id) >> 8)) * (2.0 / 16777215.0) - 1.0; }

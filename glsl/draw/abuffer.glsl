@@ -10,7 +10,8 @@
 ivec3 abuffer_pack(float inverse_w, vec3 color, float alpha)
 {
     vec4 premultiplied = vec4(color * alpha, alpha);
-    return ivec3(floatBitsToInt(inverse_w), packHalf2x16(premultiplied.rg), packHalf2x16(premultiplied.ba));
+    return ivec3(floatBitsToInt(inverse_w), packHalf2x16(premultiplied.rg),
+                 packHalf2x16(premultiplied.ba));
 }
 
 vec4 abuffer_color(ivec3 node)

@@ -3,12 +3,13 @@
 //   MESH 1: there may be mesh in the pixel   EDGE_SAMPLES: samples of its depth
 //   FLOOR: see floor_light.glsl; 0: none
 //
-// Only middles of pixels are lit. A sample at an edge, whose depth is not that of its pixel's middle, shows what the
-// middle nearest to it in depth does among the nine around it.
+// Only middles of pixels are lit. A sample at an edge, whose depth is not that of its pixel's
+// middle, shows what the middle nearest to it in depth does among the nine around it.
 //
-// The depth left behind hides hair. Beside an edge that is the farthest of the pixel's samples: where background, or
-// something farther, shows between them, hair that stands before that must hide it. (The nearest, or the middle's,
-// would leave a fringe of background along a silhouette before hair.)
+// The depth left behind hides hair. Beside an edge that is the farthest of the pixel's samples:
+// where background, or something farther, shows between them, hair that stands before that must
+// hide it. (The nearest, or the middle's, would leave a fringe of background along a silhouette
+// before hair.)
 #include "draw/draw.h"
 #include "draw/ray.glsl"
 #if FLOOR
@@ -27,7 +28,8 @@ layout(location = 4) uniform ivec2 mesh_high;
 #endif
 layout(location = 0) out vec4 base; // linear, premultiplied
 
-// px of depth that neighbouring samples of one surface may differ by before they are looked at closely
+// px of depth that neighbouring samples of one surface may differ by before they are looked at
+// closely
 const float STEEP = 4.0;
 const float NOWHERE = 1.0; // the depth of what is not there
 
@@ -89,7 +91,8 @@ void main()
     float along = (floor_middle.y - draw_params.eye.y) / way.y;
     vec3 x = draw_params.eye.xyz + along * way;
     float there = along > 0.0 ? floor_there(x) : 0.0;
-    floor_depth = there > 0.0 ? 0.5 + 0.5 * (draw_params.depth.x + draw_params.depth.y / along) : NOWHERE;
+    floor_depth =
+        there > 0.0 ? 0.5 + 0.5 * (draw_params.depth.x + draw_params.depth.y / along) : NOWHERE;
 #endif
 #if MESH
     add_samples(ivec2(gl_FragCoord.xy), draw_params.background);

@@ -1,32 +1,32 @@
 // SPDX-License-Identifier: MIT
 // The block rasteriser's record of a ribbon: RIBBON_TEXELS uvec4, that is one line of a CPU's cache
-// (RibbonRecord of ribbon_record.h; src/block_composite.c unpacks it).
+// (RibbonRecord of ribbon_record.h; src/draw/block_composite.c unpacks it).
 //
 //   line: x, y of its ends, px, as float bits
-//   shape: half-widths at its ends (px, levels); bound at the first end, bound at the last (two shorts
-//      each); opacity (12 bits), and 1/w at the last end less that at the first, over the mean (a float's
-//      upper 20 bits)
+//   shape: half-widths at its ends (px, levels); bound at the first end, bound at the last (two
+//      shorts each); opacity (12 bits), and 1/w at the last end less that at the first, over the
+//      mean (a float's upper 20 bits)
 //   tint: colour at the first end and at the last, linear (six levels); 1/w, the mean
-//   span: which pixels it may touch: slope and reach (float bits), rows, columns (first | last << 16), px; the
-//      strip's middle moves by `slope` from row to row and it reaches so far to either side
+//   span: which pixels it may touch: slope and reach (float bits), rows, columns
+//      (first | last << 16), px; the strip's middle moves by `slope` from row to row and it reaches
+//      so far to either side
 //
 // Along the strand a ribbon has the share of a pixel that lies beyond its first end less the share
 // beyond its last one. At a joint both ribbons have the same share, so that they cover all of the
 // pixel together: beyond the joint lies what is on the positive side of its bound, the sum of both
 // ribbons' directions, which is square to the mitre; a whole pixel by its middle, since two halves
-// of a pixel that are laid over each other would cover less than the pixel. At a free end, and where
-// a strand folds back, the bound is the ribbon's own direction, and the share is exact for ribbons
-// along an axis: it grows evenly over the pixel's width. The bound's length tells which it is.
+// of a pixel that are laid over each other would cover less than the pixel. At a free end, and
+// where a strand folds back, the bound is the ribbon's own direction, and the share is exact for
+// ribbons along an axis: it grows evenly over the pixel's width. The bound's length tells which it
+// is.
 
-// Two numbers share a word: levels, which are not negative (shared_math.h), or shorts, a float's upper half.
+// Two numbers share a word: levels, which are not negative (shared_math.h), or shorts, a float's
+// upper half.
 #include "common/shared_math.h"
 
 const float JOINT = 512.0; // length of a joint's bound, times 2 at most
 
-uint pack_levels(vec2 v)
-{
-    return pack_level(v.x) | (pack_level(v.y) << 16);
-}
+uint pack_levels(vec2 v) { return pack_level(v.x) | (pack_level(v.y) << 16); }
 
 uint pack_shorts(vec2 v)
 {
@@ -37,7 +37,8 @@ uint pack_shorts(vec2 v)
 // How opacity and the change of 1/w share a word.
 uint pack_depth(float opacity, float change)
 {
-    return uint(int(clamp(opacity, 0.0, 1.0) * 4095.0 + 0.5)) | ((floatBitsToUint(change) + 0x800u) & 0xfffff000u);
+    return uint(int(clamp(opacity, 0.0, 1.0) * 4095.0 + 0.5)) |
+           ((floatBitsToUint(change) + 0x800u) & 0xfffff000u);
 }
 
 bool bound_is_free(vec2 bound) { return dot(bound, bound) < 4.0; }

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Lists the strands that may be in the picture, before anything is projected or shaded. Their order in the list is
-// left to chance: a strand's ribbons have places of their own.
+// Lists the strands that may be in the picture, before anything is projected or shaded. Their order
+// in the list is left to chance: a strand's ribbons have places of their own.
 //   HIDING 1: something opaque stands before or among the hair
 //
-// A strand is left out if all of it lies beyond one of the picture's four sides, or before the near plane: between two
-// of its points it does, too, since the sides are planes in clip space.
+// A strand is left out if all of it lies beyond one of the picture's four sides, or before the near
+// plane: between two of its points it does, too, since the sides are planes in clip space.
 //
-// It is left out, too, if it is hidden: each of its segments lies in a box of the picture, no part of it is nearer
-// than its nearest end, and all that is opaque around the box is nearer than that. One look tells: `hiding` has, for
-// tiles of HIDE_TILE px and for those of each level, which are twice as wide as the one before, 1/w of the farthest of
-// what is opaque in the tile and the eight around it, where all lies that is no farther from a point of the tile than
-// its width.
+// It is left out, too, if it is hidden: each of its segments lies in a box of the picture, no part
+// of it is nearer than its nearest end, and all that is opaque around the box is nearer than that.
+// One look tells: `hiding` has, for tiles of HIDE_TILE px and for those of each level, which are
+// twice as wide as the one before, 1/w of the farthest of what is opaque in the tile and the eight
+// around it, where all lies that is no farther from a point of the tile than its width.
 #include "draw/draw.h"
 #include "draw/material.h"
 #include "common/hair_address.glsl"
@@ -19,26 +19,28 @@
 #include "draw/paint.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
-layout(std430, binding = BIND_LISTED_OUT) buffer Listed { uint listed[]; }; // how many, how many hidden, then rows
+// How many, how many hidden, then rows.
+layout(std430, binding = BIND_LISTED_OUT) buffer Listed { uint listed[]; };
 #if HIDING
 layout(location = 0) uniform ivec2 tiles; // of level 0: columns, rows
 layout(binding = BIND_HIDING) uniform samplerBuffer hiding;
 #endif
 
-// Beyond its middle line a ribbon reaches by its half-width and half a pixel's diagonal, and so far times 3 along a joint
-// (find_span of block_project.comp), together sqrt(10) times as far; off the picture's middle a cylinder's outline is
-// wider than its radius (outline_half_width).
+// Beyond its middle line a ribbon reaches by its half-width and half a pixel's diagonal, and so far
+// times 3 along a joint (find_span of block_project.comp), together sqrt(10) times as far; off the
+// picture's middle a cylinder's outline is wider than its radius (outline_half_width).
 const float MITRE = 3.5, PIXEL = 0.75;
 
-// Where a ribbon runs straight from a to b its 1/w is off by 1e-3 at most (bend of ribbon.glsl), and by 2^-10 for its half
-// of a change (block.glsl): twice that.
+// Where a ribbon runs straight from a to b its 1/w is off by 1e-3 at most (bend of ribbon.glsl),
+// and by 2^-10 for its half of a change (block.glsl): twice that.
 const float NEARER = 1.0 + 1.0 / 256.0;
 
 mat4 clip_from_world = draw_params.clip_from_world;
 vec2 size = vec2(draw_params.width, draw_params.height);
 float focal = draw_params.focal, near_distance = draw_params.near_distance;
 vec2 pad = 1.0 + 2.0 * MITRE * PIXEL / size;
-vec2 wide = 2.0 * MITRE * focal * sqrt(1.0 + dot(size, size) / (focal * focal)) / size; // a metre of radius
+// A metre of radius.
+vec2 wide = 2.0 * MITRE * focal * sqrt(1.0 + dot(size, size) / (focal * focal)) / size;
 
 // What is known of a strand so far, in clip space.
 vec4 least = vec4(1e30); // distance beyond: left, top, right, bottom
@@ -57,27 +59,28 @@ Box see(vec3 x, float radius)
     least = min(least, vec4(-clip.xy - side, clip.xy - side));
     farthest = max(farthest, clip.w);
 #if HIDING
-    float near = 1.0 / max(clip.w, near_distance); // nothing opaque is so near that it could hide what is nearer still
-    vec2 at = (0.5 * clip.xy * near + 0.5) * size, reach = 0.5 * size * (pad - 1.0 + wide * radius * near);
+    // Nothing opaque is so near that it could hide what is nearer still.
+    float near = 1.0 / max(clip.w, near_distance);
+    vec2 at = (0.5 * clip.xy * near + 0.5) * size,
+         reach = 0.5 * size * (pad - 1.0 + wide * radius * near);
     return Box(at - reach, at + reach, near);
 #else
     return Box(vec2(0.0), vec2(0.0), 0.0);
 #endif
 }
 
-Box both(Box a, Box b)
-{
-    return Box(min(a.low, b.low), max(a.high, b.high), max(a.near, b.near));
-}
+Box both(Box a, Box b) { return Box(min(a.low, b.low), max(a.high, b.high), max(a.near, b.near)); }
 
 // Whether all of it lies behind what is opaque.
 bool is_hidden(Box box)
 {
 #if HIDING
     const float MOST = float(HIDE_TILE << (HIDE_LEVELS - 1));
-    vec2 half_side = 0.5 * (box.high - box.low), middle = clamp(0.5 * (box.low + box.high), vec2(0.0), size - 1.0);
+    vec2 half_side = 0.5 * (box.high - box.low),
+         middle = clamp(0.5 * (box.low + box.high), vec2(0.0), size - 1.0);
     float reach = max(half_side.x, half_side.y);
-    int level = clamp((floatBitsToInt(reach / float(HIDE_TILE)) >> 23) - 126, 0, HIDE_LEVELS - 1); // the exponent, and one more
+    // The exponent, and one more.
+    int level = clamp((floatBitsToInt(reach / float(HIDE_TILE)) >> 23) - 126, 0, HIDE_LEVELS - 1);
     ivec2 tile = ivec2(middle) / HIDE_TILE >> level;
     float farthest_opaque = texelFetch(hiding, (level * tiles.y + tile.y) * tiles.x + tile.x).x;
     return box.near * NEARER < farthest_opaque && reach < MOST;
@@ -88,7 +91,8 @@ bool is_hidden(Box box)
 
 void main()
 {
-    int n = int(material.vertex_count), row = int(gl_GlobalInvocationID.x), s = int(material.first_strand) + row;
+    int n = int(material.vertex_count), row = int(gl_GlobalInvocationID.x),
+        s = int(material.first_strand) + row;
     if (row >= int(material.drawn_strands)) return;
     int root = particle_address(s, 0, n), j = 1;
     Painter painter = paint_strand(0u, n);
@@ -103,7 +107,8 @@ void main()
 #if SMOOTH
         vec3 hull[4] = curve_hull(curve, j - 1);
         float widest = max(radius, own);
-        Box box = both(both(see(hull[0], widest), see(hull[1], widest)), both(see(hull[2], widest), see(hull[3], widest)));
+        Box box = both(both(see(hull[0], widest), see(hull[1], widest)),
+                       both(see(hull[2], widest), see(hull[3], widest)));
 #else
         Box here = see(particle(curve, j), own), box = both(before, here);
         before = here;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How far away hair may be and still be seen, by tiles of the picture: 1/w of the farthest of what is opaque in each,
-// 0 where the background shows.
+// How far away hair may be and still be seen, by tiles of the picture: 1/w of the farthest of what
+// is opaque in each, 0 where the background shows.
 #include "draw/draw.h"
 
 layout(local_size_x = GROUP_SIZE) in;
@@ -18,6 +18,7 @@ void main()
     for (int y = 0; y < HIDE_TILE; ++y)
         for (int x = 0; x < HIDE_TILE; ++x)
             farthest = max(farthest, texelFetch(mesh_depth, min(corner + ivec2(x, y), edge), 0).x);
-    // As src/block_pixels.c has it, so that the two agree to the bit.
-    hiding[tile] = farthest < 1.0 ? (2.0 * farthest - 1.0 - draw_params.depth.x) / draw_params.depth.y : 0.0;
+    // As src/draw/block_pixels.c has it, so that the two agree to the bit.
+    hiding[tile] =
+        farthest < 1.0 ? (2.0 * farthest - 1.0 - draw_params.depth.x) / draw_params.depth.y : 0.0;
 }

@@ -4,23 +4,20 @@
 // Particles are left out where the ribbon is straight, ribbons where they miss the picture. A
 // ribbon's slot is fixed by its strand, so that nothing depends on the order of lanes; slots
 // without a ribbon keep the key 0.
-#include "draw/draw.h"
-#include "draw/material.h"
-#include "common/hair_address.glsl"
-#include "common/hash.glsl"
-#include "draw/curve.glsl"
-#include "draw/paint.glsl"
-#include "draw/shade.glsl"
-#include "draw/ribbon.glsl"
+#define WALK_BEYOND 2 // they end the tip's ribbon
+#include "draw/ribbon_walk.glsl"
 #include "draw/block.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
-layout(location = 0) uniform int first_slot; // of this part of a batch, in what is bound of the buffers
-layout(location = 1) uniform ivec2 strands;    // how many; 1: they are those of the list (block_cull.comp)
+// Of this part of a batch, in what is bound of the buffers.
+layout(location = 0) uniform int first_slot;
+// How many; 1: they are those of the list (block_cull.comp)
+layout(location = 1) uniform ivec2 strands;
 layout(binding = BIND_LISTED) uniform usamplerBuffer listed;
 layout(binding = BIND_STRAND_ID) uniform usamplerBuffer strand_id;
 layout(std430, binding = BIND_RIBBONS_OUT) writeonly buffer Ribbons { uvec4 ribbons[]; };
-layout(std430, binding = BIND_KEYS_OUT) writeonly buffer Keys { uvec2 keys[]; }; // RibbonKey of ribbon_record.h
+// RibbonKey of ribbon_record.h.
+layout(std430, binding = BIND_KEYS_OUT) writeonly buffer Keys { uvec2 keys[]; };
 layout(std430, binding = BIND_BLOCK_COUNTS_OUT) buffer Counts { uint counts[]; };
 
 const float LEAST_OPACITY = 1.0 / 4096.0;
@@ -40,7 +37,8 @@ End make_end(Particle p, vec2 d0, vec2 d1)
     if (d0 == vec2(0.0)) d0 = d1;
     if (d1 == vec2(0.0)) d1 = d0;
     vec2 sum = d0 + d1, joint = JOINT * sum;
-    return End(p.at.xy, p.at.z, outline_half_width(p, vec2(-sum.y, sum.x)), free ? d1 : joint, free ? d0 : joint, p.color);
+    return End(p.at.xy, p.at.z, outline_half_width(p, vec2(-sum.y, sum.x)), free ? d1 : joint,
+               free ? d0 : joint, p.color);
 }
 
 // How far beyond an end along d its bound lets pixels be, for a ribbon that reaches so far across.
@@ -53,9 +51,11 @@ float overhang(vec2 bound, vec2 d, float reach)
 // Which pixels' middles are in reach.
 Span find_span(End a, End b, vec2 d, float reach, out bool seen)
 {
-    vec2 p = a.at - d * overhang(a.bound, d, reach), q = b.at + d * overhang(b.bound_before, d, reach);
+    vec2 p = a.at - d * overhang(a.bound, d, reach),
+         q = b.at + d * overhang(b.bound_before, d, reach);
     vec2 across = reach * abs(d.yx);
-    vec2 low = max(ceil(min(p, q) - across - 0.5), 0.0), high = min(floor(max(p, q) + across - 0.5), size - 1.0);
+    vec2 low = max(ceil(min(p, q) - across - 0.5), 0.0),
+         high = min(floor(max(p, q) + across - 0.5), size - 1.0);
     seen = all(lessThanEqual(low, high));
     float rows = 1.0 / max(abs(d.y), 1e-5);
     return Span(d.x * (d.y < 0.0 ? -rows : rows), reach * rows, ivec4(low, max(high, 0.0)));
@@ -66,7 +66,8 @@ uint pack_blocks(ivec4 box)
 {
     const int WIDTH = BLOCK_WIDTH, HEIGHT = BLOCK_HEIGHT; // powers of two
     ivec4 at = box / ivec4(WIDTH, HEIGHT, WIDTH, HEIGHT);
-    return max(at.z, at.w) < 256 ? uint(at.x | (at.y << 8) | (at.z << 16) | (at.w << 24)) : MANY_BLOCKS;
+    return max(at.z, at.w) < 256 ? uint(at.x | (at.y << 8) | (at.z << 16) | (at.w << 24))
+                                 : MANY_BLOCKS;
 }
 
 // Whether the ribbon was kept.
@@ -75,8 +76,10 @@ bool store(int slot, End a, End b, float opacity)
     vec2 way = b.at - a.at;
     vec2 d = way * inversesqrt(max(dot(way, way), 1e-20));
     bool seen;
-    Span span = find_span(a, b, d, max(a.half_width, b.half_width) + 0.5 * (abs(d.x) + abs(d.y)), seen);
-    seen = seen && opacity >= LEAST_OPACITY && a.inverse_w > 0.0 && b.inverse_w > 0.0 && a.at != b.at;
+    Span span =
+        find_span(a, b, d, max(a.half_width, b.half_width) + 0.5 * (abs(d.x) + abs(d.y)), seen);
+    seen =
+        seen && opacity >= LEAST_OPACITY && a.inverse_w > 0.0 && b.inverse_w > 0.0 && a.at != b.at;
     if (seen) {
         float depth = 0.5 * (a.inverse_w + b.inverse_w);
         int at = slot * RIBBON_TEXELS;
@@ -92,71 +95,33 @@ bool store(int slot, End a, End b, float opacity)
     return seen;
 }
 
+int slot;  // of the strand's first ribbon
+int count; // of its ribbons so far
+// Of the ribbon that is not stored yet.
+End end = End(vec2(0.0), 0.0, 0.0, vec2(0.0), vec2(0.0), vec3(0.0));
+bool begun = false;
+
+void see_point(Particle p) {}
+
+bool ends_ribbon(Walk w, int j) { return w.bent > 1.0 || j >= w.points; }
+
+void put_joint(Walk w, int j, vec2 next)
+{
+    End b = make_end(w.kept, w.way, next);
+    if (begun && store(slot + count, end, b, w.opacity)) ++count;
+    end = b;
+    begun = j > 1;
+}
+
 void main()
 {
-    int n = int(material.vertex_count), row = int(gl_GlobalInvocationID.x);
+    int row = int(gl_GlobalInvocationID.x);
     if (row >= strands.x) return;
     if (strands.y != 0) row = int(texelFetch(listed, row + 2).x);
     int s = int(material.first_strand) + row;
-#if SMOOTH
-    int slot = first_slot + row * (n - 1) * int(material.smooth_parts);
-#else
-    int slot = first_slot + row * (n - 1);
-#endif
-    int root = particle_address(s, 0, n);
-    Painter painter = paint_strand(texelFetch(strand_id, s).x, n);
-    if (s == int(material.last_strand)) painter.radius *= material.last_share;
-    float opacity = paint_opacity(root);
-    vec3 eye = draw_params.eye.xyz;
-    Fibre fibre = fibre_material();
-#if SHADOW
-    float shadow_opacity = material.shadow_opacity * paint_opacity_share(root);
-#endif
-
-    Curve curve = curve_open(root, n);
-    int points = curve.segments * curve.parts + 1;
-#if SHADOW
-    int lit = particle_address(s, 0, points); // where light at the strand's points has been found
-#endif
-    vec3 here = curve_point(curve, 0), before = here;
-    vec4 here_clip = clip_from_world * vec4(here, 1.0), before_clip = here_clip;
-    Particle kept = Particle(vec4(0.0), vec3(0.0)), last = kept; // the last one not left out; the one before this one
-    End end = make_end(kept, vec2(0.0), vec2(0.0)); // of the ribbon that is not stored yet
-    vec2 way = vec2(0.0); // the ribbon's direction before `kept`
-    float bent = 0.0;     // of all that was left out since `kept`
-    int count = 0;
-    bool begun = false;
-    // Two turns more than points: the tip stands in for those beyond it, which end its ribbon.
-    for (int j = 0; j < points + 2; ++j) {
-        float place = curve_place(curve, min(j, points - 1));
-        int at = root + int(place) * STRAND_TILE;
-        vec3 after = curve_point(curve, j + 1);
-        vec4 after_clip = clip_from_world * vec4(after, 1.0);
-        Particle p;
-        float radius = paint_radius(painter, at, place);
-        p.at = project(clip_near(here_clip, before_clip, after_clip), radius);
-#if SHADOW
-        shadow_fibre = vec2(2.0 * radius, shadow_opacity);
-        shadow_find(lit + min(j, points - 1) * STRAND_TILE, here);
-#endif
-        p.color = shade_particle(fibre, painter, at, here, unit(after - before), unit(eye - here));
-        if (j > 1) bent += bend(kept, last, p);
-        if (j == 1 || bent > 1.0 || j >= points) {
-            vec2 next = direction(kept, last);
-            End b = make_end(kept, way, next);
-            if (begun && store(slot + count, end, b, opacity)) ++count;
-            end = b;
-            begun = j > 1;
-            way = next;
-            kept = last;
-            bent = 0.0;
-        }
-        last = p;
-        before = here;
-        before_clip = here_clip;
-        here = after;
-        here_clip = after_clip;
-    }
+    slot = first_slot + row * (count_points() - 1);
+    count = 0;
+    walk_strand(s, texelFetch(strand_id, s).x);
     uint group = gl_WorkGroupID.x % 64u * 16u;
     atomicAdd(counts[group], uint(count));
     if (count == 0) atomicAdd(counts[group + 1u], 1u);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The exact share of a square pixel that a straight ribbon covers (src/block_composite.c has it for many pixels at
-// once).
+// The exact share of a square pixel that a straight ribbon covers (src/draw/block_composite.c has
+// it for many pixels at once).
 
 // Share of the pixel on the positive side of a line at the signed distance t from its middle. `a`
 // >= `b` > 0 are the sides of the pixel as the distance sees them, that is the absolute components
@@ -14,12 +14,15 @@ float share_above(float t, float a, float b, float scale)
     return t < 0.0 ? 1.0 - share : share;
 }
 
-// Coverage of the pixel by |across| < half_width, with the gradient of `across` by pixel. That is near
-// 1, but where hundreds of particles share a pixel slivers of triangles have any, even infinite.
+// Coverage of the pixel by |across| < half_width, with the gradient of `across` by pixel. That is
+// near 1, but where hundreds of particles share a pixel slivers of triangles have any, even
+// infinite.
 float ribbon_coverage(float across, float half_width, vec2 gradient)
 {
     gradient = min(abs(gradient), 1e6);
-    float a = max(max(gradient.x, gradient.y), 1e-3), b = clamp(min(gradient.x, gradient.y), 1e-3 * a, a);
+    float a = max(max(gradient.x, gradient.y), 1e-3),
+          b = clamp(min(gradient.x, gradient.y), 1e-3 * a, a);
     float scale = 0.5 / (a * b);
-    return share_above(across - half_width, a, b, scale) - share_above(across + half_width, a, b, scale);
+    return share_above(across - half_width, a, b, scale) -
+           share_above(across + half_width, a, b, scale);
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Strands on the way from their particles to the screen (needs material.h, hair_address.glsl).
-//   SMOOTH 0: from particle to particle   1: smooth curves by the particles, in material.smooth_parts parts a
-//   segment: Catmull-Rom with centripetal knots (through all particles) or the uniform cubic B-spline
+//   SMOOTH 0: from particle to particle
+//   SMOOTH 1: smooth curves, in material.smooth_parts parts a segment: Catmull-Rom with centripetal
+//      knots (through all particles) or the uniform cubic B-spline
 //
-// Before the root and behind the tip stands the neighbour's mirror image: so the B-spline, too, begins and
-// ends at the strand's ends.
+// Before the root and behind the tip stands the neighbour's mirror image: so the B-spline, too,
+// begins and ends at the strand's ends.
 layout(binding = BIND_POSITION) uniform samplerBuffer position;
 
 struct Curve {
@@ -20,10 +21,7 @@ Curve curve_open(int root, int n)
 #endif
 }
 
-vec3 particle(Curve c, int j)
-{
-    return texelFetch(position, c.root + j * STRAND_TILE).xyz;
-}
+vec3 particle(Curve c, int j) { return texelFetch(position, c.root + j * STRAND_TILE).xyz; }
 
 #if SMOOTH
 // A segment's ends b and d, and their neighbours.
@@ -34,7 +32,8 @@ struct Around {
 Around curve_around(Curve c, int j)
 {
     vec3 b = particle(c, j), d = particle(c, j + 1);
-    vec3 a = j > 0 ? particle(c, j - 1) : 2.0 * b - d, e = j + 2 <= c.segments ? particle(c, j + 2) : 2.0 * d - b;
+    vec3 a = j > 0 ? particle(c, j - 1) : 2.0 * b - d,
+         e = j + 2 <= c.segments ? particle(c, j + 2) : 2.0 * d - b;
     return Around(a, b, d, e);
 }
 
@@ -56,7 +55,8 @@ vec3[4] curve_hull(Curve c, int j)
     vec3 from, to;
     curve_tangents(o, from, to);
     bool spline = material.smooth_curve != 0u;
-    return vec3[4](spline ? o.a : o.b, spline ? o.b : o.b + from / 3.0, spline ? o.d : o.d - to / 3.0, spline ? o.e : o.d);
+    return vec3[4](spline ? o.a : o.b, spline ? o.b : o.b + from / 3.0,
+                   spline ? o.d : o.d - to / 3.0, spline ? o.e : o.d);
 }
 #endif
 
@@ -70,8 +70,9 @@ vec3 curve_point(Curve c, int k)
     Around o = curve_around(c, j);
     if (material.smooth_curve != 0u) {
         float s = 1.0 - t;
-        return (s * s * s * o.a + (3.0 * t * t * t - 6.0 * t * t + 4.0) * o.b + (3.0 * s * s * s - 6.0 * s * s + 4.0) * o.d +
-                t * t * t * o.e) * (1.0 / 6.0);
+        return (s * s * s * o.a + (3.0 * t * t * t - 6.0 * t * t + 4.0) * o.b +
+                (3.0 * s * s * s - 6.0 * s * s + 4.0) * o.d + t * t * t * o.e) *
+               (1.0 / 6.0);
     }
     vec3 way = o.d - o.b, from, to;
     curve_tangents(o, from, to);
@@ -82,7 +83,4 @@ vec3 curve_point(Curve c, int k)
 }
 
 // Where point k lies among the particles.
-float curve_place(Curve c, int k)
-{
-    return float(k) / float(c.parts);
-}
+float curve_place(Curve c, int k) { return float(k) / float(c.parts); }

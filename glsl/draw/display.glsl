@@ -17,16 +17,14 @@ float display_of(float c)
 #endif
 }
 
-vec3 display_from_linear(vec3 c)
-{
-    return vec3(display_of(c.r), display_of(c.g), display_of(c.b));
-}
+vec3 display_from_linear(vec3 c) { return vec3(display_of(c.r), display_of(c.g), display_of(c.b)); }
 
 // What --aov depth shows of a ribbon at the inverse distance `near`, 0: of nothing (needs draw.h).
 float depth_shown(float near)
 {
     float distance = 1.0 / max(near, 1e-20);
     vec2 range = draw_params.depth_range.xy;
-    float share = range.y > range.x ? clamp((range.y - distance) / (range.y - range.x), 0.0, 1.0) : distance;
+    float share =
+        range.y > range.x ? clamp((range.y - distance) / (range.y - range.x), 0.0, 1.0) : distance;
     return near > 0.0 ? share : 0.0;
 }

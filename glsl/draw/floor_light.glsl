@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT
-// A matt plane, lit as the mesh is, that fades away from its middle (needs lights.glsl, shadow_surface.glsl).
-//   FLOOR 1: it is seen   2: only the light that it lacks where there is shadow: black that covers so much
+// A matt plane, lit as the mesh is, that fades away from its middle (needs lights.glsl,
+// shadow_surface.glsl).
+//   FLOOR 1: it is seen   2: only the light that it lacks where there is shadow: black that covers
+//       so much
 #include "draw/floor.glsl"
 
 layout(location = 2) uniform vec3 floor_color; // linear RGB
 
 const vec3 FLOOR_UP = vec3(0.0, 1.0, 0.0);
 
-float luminance(vec3 light)
-{
-    return dot(light, vec3(0.2126, 0.7152, 0.0722));
-}
+float luminance(vec3 light) { return dot(light, vec3(0.2126, 0.7152, 0.0722)); }
 
 // How much of the floor is left at x.
 float floor_there(vec3 x)
@@ -21,7 +20,8 @@ float floor_there(vec3 x)
 // Linear, premultiplied.
 vec4 floor_shown(vec3 x, float there)
 {
-    vec3 around = draw_params.mesh_color.a * light_around(FLOOR_UP, 1.0), light = around, sent = around;
+    vec3 around = draw_params.mesh_color.a * light_around(FLOOR_UP, 1.0), light = around,
+         sent = around;
 #if SHADOW
     shadow_find_on(x, FLOOR_UP);
 #endif

@@ -21,7 +21,8 @@ const float LEAST_COVERAGE = 1.0 / 16.0; // of a pixel whose nearest ribbon is a
 
 void main()
 {
-    // Of the pixel, as if it lay along the strand, what is beyond the root less what is beyond the tip.
+    // Of the pixel, as if it lay along the strand, what is beyond the root less what is beyond the
+    // tip.
     vec2 beyond = clamp(ends + 0.5, 0.0, 1.0);
     float share = max(beyond.x + beyond.y - 1.0, 0.0);
     float coverage = share * ribbon_coverage(across, half_width, vec2(dFdx(across), dFdy(across)));
@@ -35,7 +36,8 @@ void main()
     uvec4 band = draw_params.band; // read once: a uniform costs a load wherever it is named
     uint shards = draw_params.shards;
     uint shard = uint((pixel.x >> 3) + (pixel.y & 56)) & (shards - 1u);
-    uint slot = atomicAdd(counters[shard * SHARD_RUN], 1u); // counts on past the end: so the pool learns its size
+    // Counts on past the end: so the pool learns its size.
+    uint slot = atomicAdd(counters[shard * SHARD_RUN], 1u);
     if (slot >= band.w) return;
     uint index = (slot / SHARD_RUN * shards + shard) * SHARD_RUN + slot % SHARD_RUN;
     int at = (pixel.y - int(band.y)) * int(band.x) + pixel.x;

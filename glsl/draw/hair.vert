@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: MIT
 // The hair's ribbons: two vertices a particle, shared by the segments that meet there, as
-// hair_project.comp has found them. Nothing is left to be divided by w: all is linear on the screen, and
-// Mesa's clipping loses pieces of triangles that leave the picture by a corner if their w differ.
+// hair_project.comp has found them. Nothing is left to be divided by w: all is linear on the
+// screen, and Mesa's clipping loses pieces of triangles that leave the picture by a corner if their
+// w differ.
 #include "draw/draw.h"
 
-layout(binding = BIND_EDGES) uniform usamplerBuffer edges;  // px: middle, halves: half of the way across, distances from both ends
-layout(binding = BIND_SHADES) uniform usamplerBuffer shades; // 1/w, half-width, four halves: linear RGB, opacity
+// px: middle, halves: half of the way across, distances from both ends.
+layout(binding = BIND_EDGES) uniform usamplerBuffer edges;
+// 1/w, half-width, four halves: linear RGB, opacity.
+layout(binding = BIND_SHADES) uniform usamplerBuffer shades;
 
 noperspective out float across;     // px from the ribbon's middle, signed
 noperspective out float half_width; // px
-noperspective out vec2 ends;       // px: distances from the strand's ends, negative beyond them
+noperspective out vec2 ends;        // px: distances from the strand's ends, negative beyond them
 noperspective out vec4 color;       // linear RGB, opacity
 noperspective out float inverse_w;
 
@@ -27,6 +30,8 @@ void main()
     vec2 px = uintBitsToFloat(edge.xy) + side * unpackHalf2x16(edge.z);
     vec2 corner = px * (2.0 / vec2(draw_params.width, draw_params.height)) - 1.0;
     ends = unpackHalf2x16(edge.w);
-    gl_Position = shade.x == 0u ? OUTSIDE : vec4(corner, draw_params.depth.x + draw_params.depth.y * inverse_w, 1.0);
+    gl_Position = shade.x == 0u
+                      ? OUTSIDE
+                      : vec4(corner, draw_params.depth.x + draw_params.depth.y * inverse_w, 1.0);
     color = vec4(unpackHalf2x16(shade.z), unpackHalf2x16(shade.w));
 }

@@ -23,7 +23,8 @@ vec3 light_sent(int i, vec3 x, out vec3 to_light)
     // A directional light's place is its direction, with w = 0. The square of the reference
     // distance over that of the distance: 1 where the light has its intensity. A cap keeps it
     // finite. The cone's edge as glTF's KHR_lights_punctual has it.
-    vec4 place = draw_params.light_place[i], axis = draw_params.light_axis[i], cone = draw_params.light_cone[i];
+    vec4 place = draw_params.light_place[i], axis = draw_params.light_axis[i],
+         cone = draw_params.light_cone[i];
     vec3 way = place.xyz - place.w * x;
     float square = max(dot(way, way), 1e-12);
     to_light = way * inversesqrt(square);
@@ -49,9 +50,9 @@ vec3 light_around(vec3 n, float share)
     return mix(draw_params.ground.rgb, draw_params.sky.rgb, 0.5 + 0.5 * share * n.y);
 }
 
-// The same on the side of a fibre that is seen, whose unit tangent has the cosine `eye` with the unit
-// vector to the eye: a normal at the angle a off the middle is seen by cos a, so that PI/4 of the
-// middle one counts.
+// The same on the side of a fibre that is seen, whose unit tangent has the cosine `eye` with the
+// unit vector to the eye: a normal at the angle a off the middle is seen by cos a, so that PI/4 of
+// the middle one counts.
 vec3 light_around_fibre(vec3 tangent, vec3 to_eye, float eye)
 {
 #if LIGHTS

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Lambert's plain matt surface, in linear light, for each pixel whose middle shows the mesh. Surfaces seen from behind
-// are lit as from in front.
+// Lambert's plain matt surface, in linear light, for each pixel whose middle shows the mesh.
+// Surfaces seen from behind are lit as from in front.
 #include "draw/draw.h"
 #define MESH_TAPS 4 // of its own map, whose texels are seen where light grazes it
 #include "draw/lights.glsl"
@@ -27,7 +27,8 @@ vec3 light_on(vec3 x, vec3 n)
 void main()
 {
     vec4 seen = texelFetch(surface, ivec2(gl_FragCoord.xy), 0);
-    vec3 way = ray_through(gl_FragCoord.xy), n = seen.xyz * inversesqrt(max(dot(seen.xyz, seen.xyz), 1e-20));
+    vec3 way = ray_through(gl_FragCoord.xy),
+         n = seen.xyz * inversesqrt(max(dot(seen.xyz, seen.xyz), 1e-20));
     vec3 light = light_on(draw_params.eye.xyz + seen.w * way, dot(n, way) > 0.0 ? -n : n);
     color = vec4(draw_params.mesh_color.rgb * light, 1.0);
 }

@@ -41,7 +41,8 @@ float paint_radius(Painter p, int at, float j)
 #if PAINT
     float share = uintBitsToFloat(texelFetch(paint, at).z);
 #if SMOOTH
-    if (fract(j) > 0.0) share = mix(share, uintBitsToFloat(texelFetch(paint, at + STRAND_TILE).z), fract(j));
+    if (fract(j) > 0.0)
+        share = mix(share, uintBitsToFloat(texelFetch(paint, at + STRAND_TILE).z), fract(j));
 #endif
 #else
     float share = 1.0 - p.thinning * j;
@@ -59,7 +60,4 @@ float paint_opacity_share(int root)
 #endif
 }
 
-float paint_opacity(int root)
-{
-    return material.opacity * paint_opacity_share(root);
-}
+float paint_opacity(int root) { return material.opacity * paint_opacity_share(root); }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A pixel's fragments become its colour: the LAYERS nearest in order, the rest blended out of order
 // under them, all over what stands behind, premultiplied and in linear light.
-//   BASE 0: the background alone stands behind   1: the mesh does   DEPTH 1: the nearest fragment's distance instead
+//   BASE 0: the background alone stands behind   1: the mesh does
+//   DEPTH 1: the nearest fragment's distance instead
 //   SAMPLES: the picture has the mean of SAMPLES x SAMPLES pixels of the lists
 //   MOST_TURNS: fragments that the driver lets all loops visit
 //
@@ -28,10 +29,7 @@ const int DEPTH_MAX = 1 << 24;
 const int CARRY_EVERY = 8192;
 const int CARRY_BITS = 16;
 
-vec4 over(vec4 front, vec4 behind)
-{
-    return front + (1.0 - front.a) * behind;
-}
+vec4 over(vec4 front, vec4 behind) { return front + (1.0 - front.a) * behind; }
 
 void carry(inout ivec4 high, inout ivec4 low)
 {
@@ -53,7 +51,9 @@ int count = 0; // of all fragments visited
 // A pixel of the lists: light, premultiplied.
 vec4 blend(ivec2 pixel)
 {
-    int link = int(texelFetch(heads, (pixel.y - int(draw_params.band.y)) * int(draw_params.band.x) + pixel.x).x);
+    int link = int(
+        texelFetch(heads, (pixel.y - int(draw_params.band.y)) * int(draw_params.band.x) + pixel.x)
+            .x);
 #if LAYERS
     ivec3 layer[LAYERS];
     for (int i = 0; i < LAYERS; ++i) layer[i] = ivec3(0);
@@ -99,7 +99,8 @@ void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy) * SAMPLES;
     vec4 color = vec4(0.0);
-    for (int i = 0; i < SAMPLES * SAMPLES; ++i) color += blend(pixel + ivec2(i % SAMPLES, i / SAMPLES));
+    for (int i = 0; i < SAMPLES * SAMPLES; ++i)
+        color += blend(pixel + ivec2(i % SAMPLES, i / SAMPLES));
     color *= 1.0 / float(SAMPLES * SAMPLES);
 #if TONE == 3
     pixel_out = color;

@@ -10,7 +10,8 @@ void main()
     bool empty = texelFetch(extent, 0).x > texelFetch(extent, 2).x;
     vec2 px = vec2(texelFetch(extent, corner.x).x, texelFetch(extent, corner.y + 1).x);
     vec2 pixels = px / float(SAMPLES);
-    px = float(SAMPLES) * vec2(corner.x == 0 ? floor(pixels.x) : ceil(pixels.x), corner.y == 0 ? floor(pixels.y) : ceil(pixels.y));
+    px = float(SAMPLES) * vec2(corner.x == 0 ? floor(pixels.x) : ceil(pixels.x),
+                               corner.y == 0 ? floor(pixels.y) : ceil(pixels.y));
     vec2 size = vec2(draw_params.width, draw_params.height);
     gl_Position = vec4(clamp(empty ? vec2(0.0) : px, vec2(0.0), size) / size * 2.0 - 1.0, 0.0, 1.0);
 }

@@ -2,17 +2,17 @@
 // Strands on the screen, before they are drawn in whatever way: where their particles lie, how wide
 // they are, and which of them may be left out (needs draw.h).
 
-const float PAD = 0.71;        // px; the corner of a pixel is sqrt(1/2) from its middle
+const float PAD = 0.71;          // px; the corner of a pixel is sqrt(1/2) from its middle
 const float LEAST_COSINE = 0.25; // of the joints' 1 + n0.n1
-const float MITRE_MAX = 2.9;   // bound of |m|: sqrt(2 x) / max(x, LEAST_COSINE) over all x
+const float MITRE_MAX = 2.9;     // bound of |m|: sqrt(2 x) / max(x, LEAST_COSINE) over all x
 
 // Read once: a uniform costs a load wherever it is named.
 mat4 clip_from_world = draw_params.clip_from_world;
 vec2 size = vec2(draw_params.width, draw_params.height); // of the picture, px
 float near_distance = draw_params.near_distance, focal = draw_params.focal;
 
-// Where the strand is drawn instead, all in clip space, when `x` lies behind the near plane: on that
-// plane, towards the neighbour that is in sight.
+// Where the strand is drawn instead, all in clip space, when `x` lies behind the near plane: on
+// that plane, towards the neighbour that is in sight.
 vec4 clip_near(vec4 x, vec4 before, vec4 after)
 {
     vec4 other = after.w >= near_distance ? after : before;
@@ -57,7 +57,8 @@ float bend(Particle a, Particle p, Particle b)
 {
     vec2 chord = b.at.xy - a.at.xy, arm = p.at.xy - a.at.xy;
     float t = clamp(dot(arm, chord) / max(dot(chord, chord), 1e-12), 0.0, 1.0);
-    vec4 off = abs(p.at - mix(a.at, b.at, t)) / vec4(STRAIGHT, STRAIGHT, 0.001 * p.at.z + 1e-20, 0.05 * p.at.w);
+    vec4 off = abs(p.at - mix(a.at, b.at, t)) /
+               vec4(STRAIGHT, STRAIGHT, 0.001 * p.at.z + 1e-20, 0.05 * p.at.w);
     vec3 shift = abs(p.color - mix(a.color, b.color, t)) / (0.02 * p.color + 0.002);
     return max(max(max(off.x, off.y), max(off.z, off.w)), max(max(shift.r, shift.g), shift.b));
 }
@@ -67,6 +68,7 @@ float bend(Particle a, Particle p, Particle b)
 // lies across the ribbon.
 float outline_half_width(Particle p, vec2 normal)
 {
-    float q = dot(normal, p.at.xy - 0.5 * size) * inversesqrt(max(dot(normal, normal), 1e-12)) / focal;
+    float q =
+        dot(normal, p.at.xy - 0.5 * size) * inversesqrt(max(dot(normal, normal), 1e-12)) / focal;
     return p.at.w * sqrt(1.0 + q * q);
 }

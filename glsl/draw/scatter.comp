@@ -3,20 +3,22 @@
 //
 // Seen along its axis the fibre is a disc of radius 1. Light at the inclination theta_d comes in
 // beside the middle at h = sin(gamma_i), goes on at gamma_t with sin(gamma_t) = h / eta', where by
-// Bravais' law eta' = sqrt(eta^2 - sin^2 theta_d) / cos theta_d, and after p chords leaves turned by
+// Bravais' law eta' = sqrt(eta^2 - sin^2 theta_d) / cos theta_d, and after p chords leaves turned
+// by
 //
 //   Phi(p, h) = 2 p gamma_t - 2 gamma_i + p pi
 //
 // with the share A(0) = F, A(p) = (1 - F)^2 F^(p-1) T^p of its power (Marschner et al. 2003): F
 // Fresnel's reflectance at the true angle, whose cosine is cos theta_d cos gamma_i, T what a chord
-// lets through. A chord is 2 cos(gamma_t) / cos(theta_t) long; by Beer and Lambert's law a fibre whose
-// diameter lets `color` through has T = color^(cos gamma_t / cos theta_t). The density by azimuth is
+// lets through. A chord is 2 cos(gamma_t) / cos(theta_t) long; by Beer and Lambert's law a fibre
+// whose diameter lets `color` through has T = color^(cos gamma_t / cos theta_t). The density by
+// azimuth is
 //
 //   N(p, phi) = 1/2 integral over h from -1 to 1 of A(p, h) G(phi - Phi(p, h))
 //
-// G a Gaussian (d'Eon et al. 2011): no two beams ever meet in a line of infinite brightness, as they
-// do without it. All that leaves after more than two reflections inside, (1-F)^2 F^2 T^3 / (1 - F T),
-// has lost its direction and goes everywhere alike, so that no light is lost.
+// G a Gaussian (d'Eon et al. 2011): no two beams ever meet in a line of infinite brightness, as
+// they do without it. All that leaves after more than two reflections inside, (1-F)^2 F^2 T^3 / (1
+// - F T), has lost its direction and goes everywhere alike, so that no light is lost.
 #include "common/shared_math.h"
 #include "draw/draw.h"
 
@@ -29,7 +31,8 @@ const int STEPS = 64; // by gamma_i, in which all is smooth: dh = cos(gamma_i) d
 float fresnel(float eta, float cosine)
 {
     float inside = sqrt(1.0 - (1.0 - cosine * cosine) / (eta * eta));
-    float s = (cosine - eta * inside) / (cosine + eta * inside), p = (eta * cosine - inside) / (eta * cosine + inside);
+    float s = (cosine - eta * inside) / (cosine + eta * inside),
+          p = (eta * cosine - inside) / (eta * cosine + inside);
     return 0.5 * (s * s + p * p);
 }
 
@@ -46,19 +49,22 @@ void main()
     ivec3 node = ivec3(gl_GlobalInvocationID) * ivec3(1, 1, 4);
     if (node.x >= SCATTER_AZIMUTHS) return;
     float eta = fibre.x, width = fibre.y, phi = PI * float(node.x) / float(SCATTER_AZIMUTHS - 1);
-    float cos_d = max(float(node.y) / float(SCATTER_INCLINATIONS - 1), 1e-3), sin2_d = 1.0 - cos_d * cos_d;
+    float cos_d = max(float(node.y) / float(SCATTER_INCLINATIONS - 1), 1e-3),
+          sin2_d = 1.0 - cos_d * cos_d;
     float eta_d = sqrt(eta * eta - sin2_d) / cos_d, cos_t = sqrt(1.0 - sin2_d / (eta * eta));
     vec4 depth = log2(max((vec4(node.z) + vec4(0, 1, 2, 3)) / float(SCATTER_COLORS - 1), 1e-30));
     float reflected = 0.0;
     vec4 through = vec4(0.0), inside = vec4(0.0);
     for (int i = 0; i < STEPS; ++i) {
-        float gamma_i = (float(i) + 0.5) * (PI / float(STEPS)) - 0.5 * PI, gamma_t = asin(sin(gamma_i) / eta_d);
+        float gamma_i = (float(i) + 0.5) * (PI / float(STEPS)) - 0.5 * PI,
+              gamma_t = asin(sin(gamma_i) / eta_d);
         float cos_i = cos(gamma_i), share = cos_i * (0.5 * PI / float(STEPS));
         float f = fresnel(eta, cos_d * cos_i), in_and_out = share * (1.0 - f) * (1.0 - f);
         vec4 t = exp2(depth * (cos(gamma_t) / cos_t));
         reflected += share * f * blur(phi + 2.0 * gamma_i, width);
         through += in_and_out * blur(phi - 2.0 * gamma_t + 2.0 * gamma_i - PI, width) * t;
-        inside += in_and_out * f * blur(phi - 4.0 * gamma_t + 2.0 * gamma_i - 2.0 * PI, width) * t * t;
+        inside +=
+            in_and_out * f * blur(phi - 4.0 * gamma_t + 2.0 * gamma_i - 2.0 * PI, width) * t * t;
         inside += in_and_out * f * f * t * t * t / (1.0 - f * t) / (2.0 * PI);
     }
     for (int k = 0; k < 4; ++k)

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Light on a fibre, by one of the models (needs draw.h, material.h, paint.glsl). Each gives Fibre, what it knows of
-// the material, and shade_fibre.
+// Light on a fibre, by one of the models (needs draw.h, material.h, paint.glsl). Each gives Fibre,
+// what it knows of the material, and shade_fibre.
 //   AOV 0: light   1: white   2: the tangent   3: a colour of the strand's own
 //   MARSCHNER 0: Kajiya and Kay's   1, 2: Marschner's, see there
 
 // Of the sine the cosine or the other way round, where it is not negative.
-float sine_of(float cosine)
-{
-    return sqrt(max(1.0 - cosine * cosine, 0.0));
-}
+float sine_of(float cosine) { return sqrt(max(1.0 - cosine * cosine, 0.0)); }
 
 #include "draw/lights.glsl"
 #if MARSCHNER

@@ -14,8 +14,9 @@ struct Fibre {
 
 Fibre fibre_material()
 {
-    return Fibre(material.ambient, material.diffuse, material.specular1, material.exponent1, material.specular2,
-                 material.exponent2, vec2(material.shift1_cos, material.shift1_sin),
+    return Fibre(material.ambient, material.diffuse, material.specular1, material.exponent1,
+                 material.specular2, material.exponent2,
+                 vec2(material.shift1_cos, material.shift1_sin),
                  vec2(material.shift2_cos, material.shift2_sin));
 }
 

@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: MIT
 // Marschner et al.'s fibre (SIGGRAPH 2003): a rough glass cylinder with pigment inside (needs
-// material.h, lights.glsl). Three beams leave it: R, reflected outside; TT, gone through; TRT, reflected
-// inside. Of light from wi it sends towards wr, as the mean radiance over its width,
+// material.h, lights.glsl). Three beams leave it: R, reflected outside; TT, gone through; TRT,
+// reflected inside. Of light from wi it sends towards wr, as the mean radiance over its width,
 //
 //   f = sum over p of M_p(theta_i, theta_r) N_p(theta_d, phi)
 //
 // per unit of solid angle; theta is the inclination against the plane across the fibre, towards the
 // tip, phi the azimuth between both. N is tabulated (scatter.comp).
-//   MARSCHNER 1: energy   M is d'Eon et al.'s (2011) lobe of the variance v, with t = theta_r - 2 alpha
-//     for scales that tilt the lobe by alpha,
+//   MARSCHNER 1: energy   M is d'Eon et al.'s (2011) lobe of the variance v, with
+//     t = theta_r - 2 alpha for scales that tilt the lobe by alpha,
 //       M = exp(-sin(theta_i) sin(t) / v) I0(cos(theta_i) cos(t) / v) / (2 v sinh(1 / v)),
-//     whose integral over cos(theta_i) d theta_i is 1, and theta_d = theta_r: a fibre without pigment
-//     under light L from everywhere shows L.
-//   MARSCHNER 2: gauss   M is Marschner's Gaussian, g(theta_i + theta_r - 2 alpha) cos(theta_i) / cos^2(theta_d)
-//     with the variance v, and theta_d = (theta_r - theta_i) / 2: light goes either way alike, but some
-//     is lost or made at grazing angles. (No tilted lobe can do both: a beam that leaves at another
-//     inclination has another width.)
-// Light scattered on from fibre to fibre is not followed; `diffuse`, as Kajiya and Kay have it, stands
-// for it.
+//     whose integral over cos(theta_i) d theta_i is 1, and theta_d = theta_r: a fibre without
+//     pigment under light L from everywhere shows L.
+//   MARSCHNER 2: gauss   M is Marschner's Gaussian with the variance v,
+//       M = g(theta_i + theta_r - 2 alpha) cos(theta_i) / cos^2(theta_d),
+//     and theta_d = (theta_r - theta_i) / 2: light goes either way alike, but some is lost or made
+//     at grazing angles. (No tilted lobe can do both: a beam that leaves at another inclination has
+//     another width.)
+// Light scattered on from fibre to fibre is not followed; `diffuse`, as Kajiya and Kay have it,
+// stands for it.
 #include "common/shared_math.h"
 
 layout(binding = BIND_SCATTER) uniform sampler3D scatter_table;
-
 
 // Read once: a uniform costs a load wherever it is named.
 struct Fibre {
@@ -31,21 +31,25 @@ struct Fibre {
 
 Fibre fibre_material()
 {
-    return Fibre(material.ambient, material.diffuse, material.lobe_sharpness.xyz, material.lobe_scale.xyz,
-                 material.lobe_tilt_cos.xyz, material.lobe_tilt_sin.xyz);
+    return Fibre(material.ambient, material.diffuse, material.lobe_sharpness.xyz,
+                 material.lobe_scale.xyz, material.lobe_tilt_cos.xyz, material.lobe_tilt_sin.xyz);
 }
 
-// exp(-x) I0(x) for x >= 0 within 0.06 % (Olivares, Martin and Valero, J. Phys. Conf. Ser. 1043, 2018).
+// exp(-x) I0(x) for x >= 0 within 0.06 % (Olivares, Martin and Valero, J. Phys. Conf. Ser. 1043,
+// 2018).
 vec3 bessel_i0_scaled(vec3 x)
 {
     vec3 square = x * x;
-    return (0.5 + 0.5 * exp(-2.0 * x)) * inversesqrt(sqrt(1.0 + 0.25 * square)) * (1.0 + 0.24273 * square) /
-           (1.0 + 0.43023 * square);
+    return (0.5 + 0.5 * exp(-2.0 * x)) * inversesqrt(sqrt(1.0 + 0.25 * square)) *
+           (1.0 + 0.24273 * square) / (1.0 + 0.43023 * square);
 }
 
 // M of R, TT and TRT; `to` is the tilted theta_r as the model has it, found once for all lights.
 #if MARSCHNER == 2
-struct Outgoing { vec3 angle; float theta; };
+struct Outgoing {
+    vec3 angle;
+    float theta;
+};
 
 Outgoing outgoing(Fibre m, float sin_r, float cos_r)
 {
@@ -56,14 +60,18 @@ Outgoing outgoing(Fibre m, float sin_r, float cos_r)
 vec3 longitudinal(Fibre m, Outgoing to, float sin_i, float cos_i, float cos_d)
 {
     vec3 off = asin(sin_i) + to.angle;
-    return sqrt(m.sharpness / (2.0 * PI)) * exp(-0.5 * off * off * m.sharpness) * (cos_i / max(cos_d * cos_d, 1e-6));
+    return sqrt(m.sharpness / (2.0 * PI)) * exp(-0.5 * off * off * m.sharpness) *
+           (cos_i / max(cos_d * cos_d, 1e-6));
 }
 #else
-struct Outgoing { vec3 sine, cosine; };
+struct Outgoing {
+    vec3 sine, cosine;
+};
 
 Outgoing outgoing(Fibre m, float sin_r, float cos_r)
 {
-    return Outgoing(sin_r * m.tilt_cos - cos_r * m.tilt_sin, cos_r * m.tilt_cos + sin_r * m.tilt_sin);
+    return Outgoing(sin_r * m.tilt_cos - cos_r * m.tilt_sin,
+                    cos_r * m.tilt_cos + sin_r * m.tilt_sin);
 }
 
 vec3 longitudinal(Fibre m, Outgoing to, float sin_i, float cos_i, float cos_d)
@@ -77,11 +85,12 @@ vec3 longitudinal(Fibre m, Outgoing to, float sin_i, float cos_i, float cos_d)
 vec3 azimuthal(vec2 at, float color)
 {
     const vec3 nodes = vec3(SCATTER_AZIMUTHS, SCATTER_INCLINATIONS, SCATTER_COLORS);
-    return textureLod(scatter_table, (vec3(at, min(color, 1.0)) * (nodes - 1.0) + 0.5) / nodes, 0.0).rgb;
+    return textureLod(scatter_table, (vec3(at, min(color, 1.0)) * (nodes - 1.0) + 0.5) / nodes, 0.0)
+        .rgb;
 }
 
-// Linear RGB of a fibre at x whose diameter lets `base` of white light through, along the unit tangent
-// (root to tip), seen along the unit vector to the eye.
+// Linear RGB of a fibre at x whose diameter lets `base` of white light through, along the unit
+// tangent (root to tip), seen along the unit vector to the eye.
 vec3 shade_fibre(Fibre m, vec3 base, vec3 x, vec3 tangent, vec3 to_eye)
 {
     float sin_r = clamp(dot(tangent, to_eye), -1.0, 1.0), cos_r = sine_of(sin_r);
@@ -89,8 +98,10 @@ vec3 shade_fibre(Fibre m, vec3 base, vec3 x, vec3 tangent, vec3 to_eye)
     vec3 color = m.ambient * base * light_around_fibre(tangent, to_eye, sin_r);
     for (int i = 0; i < light_count; ++i) {
         vec3 to_light, reaching = light_reaching(i, x, to_light);
-        float sin_i = clamp(dot(tangent, to_light), -1.0, 1.0), cos_i = sine_of(sin_i), across = cos_i * cos_r;
-        float cos_phi = clamp((dot(to_eye, to_light) - sin_i * sin_r) / max(across, 1e-6), -1.0, 1.0);
+        float sin_i = clamp(dot(tangent, to_light), -1.0, 1.0), cos_i = sine_of(sin_i),
+              across = cos_i * cos_r;
+        float cos_phi =
+            clamp((dot(to_eye, to_light) - sin_i * sin_r) / max(across, 1e-6), -1.0, 1.0);
 #if MARSCHNER == 2
         float cos_d = sqrt(clamp(0.5 + 0.5 * (across + sin_i * sin_r), 0.0, 1.0));
 #else

@@ -2,8 +2,10 @@
 // How much of a light reaches a point (needs shadow.h).
 //   SHADOW 0: all   1: approximated deep shadow map, as TressFX has it   2: deep opacity map
 //   SHADOW_BY_MESH 1: the mesh throws shadows, too
-//   SHADOW_FOUND 1: what hair leaves at each point of a strand has been found before (shadow_light.h)
-//   LIGHT_COUNT, SHADOW_MAPS: how many lights and maps, so that loops over them are unrolled; 0: any number
+//   SHADOW_FOUND 1: what hair leaves at each point of a strand has been found before
+//       (shadow_light.h)
+//   LIGHT_COUNT, SHADOW_MAPS: how many lights and maps, so that loops over them are unrolled; 0:
+//       any number
 #ifndef LIGHT_COUNT
 #define LIGHT_COUNT 0
 #endif
@@ -49,35 +51,42 @@ float texel_depth(int texel, float share)
 
 float light_through_hair(int map, vec2 place, float depth, vec4 of_light)
 {
-    vec2 from = clamp(place - 0.5, 0.0, float(shadow_side) - 1.01), whole = floor(from), share = from - whole;
+    vec2 from = clamp(place - 0.5, 0.0, float(shadow_side) - 1.01), whole = floor(from),
+         share = from - whole;
     int row = int(whole.y) * shadow_side + int(whole.x), squares = shadow_side * shadow_side;
     int at = map * squares + row, next = at + shadow_side;
-    float layer = layer_of(depth - mix4(texelFetch(shadow_depths, at).x, texelFetch(shadow_depths, at + 1).x,
-                                        texelFetch(shadow_depths, next).x, texelFetch(shadow_depths, next + 1).x, share));
+    float layer =
+        layer_of(depth - mix4(texelFetch(shadow_depths, at).x, texelFetch(shadow_depths, at + 1).x,
+                              texelFetch(shadow_depths, next).x,
+                              texelFetch(shadow_depths, next + 1).x, share));
     float which = floor(layer), own = layer - which;
     at = (map * SHADOW_LAYERS + int(which)) * squares + row;
     next = at + shadow_side;
-    float sum = mix4(texel_depth(at, own), texel_depth(at + 1, own), texel_depth(next, own), texel_depth(next + 1, own), share);
+    float sum = mix4(texel_depth(at, own), texel_depth(at + 1, own), texel_depth(next, own),
+                     texel_depth(next + 1, own), share);
     sum -= own_layer_depth(shadow_fibre.x * of_light.w, shadow_fibre.y, own);
     return exp2(-LOG2E * max(sum, 0.0));
 }
 #else
-// Fibres stand at even distances behind the first, each letting the same share through; 5 x 5 texels
-// with the weights of a cone.
+// Fibres stand at even distances behind the first, each letting the same share through; 5 x 5
+// texels with the weights of a cone.
 float light_through_hair(int map, vec2 place, float depth, vec4 of_light)
 {
-    float fibres = shadow_params.fibres * of_light.y, passed = shadow_params.passed, sum = 0.0, weights = 0.0;
+    float fibres = shadow_params.fibres * of_light.y, passed = shadow_params.passed, sum = 0.0,
+          weights = 0.0;
     ivec2 middle = ivec2(place);
     depth = min(depth, 1.01); // farther off there is no hair
     vec2 off = place - vec2(middle) - 0.5;
     for (int y = -2; y <= 2; ++y)
         for (int x = -2; x <= 2; ++x) {
             ivec2 texel = clamp(middle + ivec2(x, y), ivec2(0), ivec2(shadow_side - 1));
-            uint first = min(texelFetch(shadow_first, (map * shadow_side + texel.y) * shadow_side + texel.x).x,
-                             uint(SHADOW_DEPTHS));
+            uint first = min(
+                texelFetch(shadow_first, (map * shadow_side + texel.y) * shadow_side + texel.x).x,
+                uint(SHADOW_DEPTHS));
             float behind = depth - float(int(first)) * (1.0 / float(SHADOW_DEPTHS));
             float weight = max(3.0 - length(vec2(x, y) - off), 0.0);
-            float count = behind > 1e-4 && first < uint(SHADOW_DEPTHS) ? max(behind * fibres, 1.0) : 0.0;
+            float count =
+                behind > 1e-4 && first < uint(SHADOW_DEPTHS) ? max(behind * fibres, 1.0) : 0.0;
             sum += weight * exp2(passed * count);
             weights += weight;
         }
@@ -91,15 +100,17 @@ float light_through_hair(int map, vec2 place, float depth, vec4 of_light)
 #define MESH_TAPS 2
 #endif
 
-// The share of a square of MESH_TAPS - 1 texels around the point that the mesh does not stand before: texels at its edge
-// count by how much of them is inside, so that it changes evenly as the point moves. At the map's edges nothing stands.
+// The share of a square of MESH_TAPS - 1 texels around the point that the mesh does not stand
+// before: texels at its edge count by how much of them is inside, so that it changes evenly as the
+// point moves. At the map's edges nothing stands.
 float light_past_mesh(int map, vec3 x)
 {
     vec4 place = vec4(x, 1.0) * shadow_params.mesh_from_world[map];
     float side = float(shadow_params.mesh_side), reach = 0.5 * float(MESH_TAPS - 1);
     place.xyz /= place.w;
     float depth = min(place.z - shadow_params.place[map].z, 1.0); // what lies behind all of the map
-    vec2 from = clamp(place.xy - reach, 0.0, side - float(MESH_TAPS)), first = floor(from), share = from - first;
+    vec2 from = clamp(place.xy - reach, 0.0, side - float(MESH_TAPS)), first = floor(from),
+         share = from - first;
     vec2 texel = 1.0 / vec2(textureSize(shadow_mesh, 0));
     first += vec2(1.0, float(map) * side + 1.0); // the corner that four texels share
     float sum = 0.0;
@@ -135,8 +146,9 @@ void shadow_keep(int light, float left)
 #endif
 }
 
-// Finds what is left of all lights at x, where point `point` of a batch lies, a turn for each map: CPU drivers run both
-// sides of every `if`, so that lights without a map would cost as much as those with one.
+// Finds what is left of all lights at x, where point `point` of a batch lies, a turn for each map:
+// CPU drivers run both sides of every `if`, so that lights without a map would cost as much as
+// those with one.
 void shadow_find(int point, vec3 x)
 {
     for (int map = 0; map < shadow_maps; ++map) {

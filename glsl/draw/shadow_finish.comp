@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Smooths each layer's sums with the neighbours' (1 2 1 each way), and adds them up. A lane goes down a column of STRIP
-// texels, so that what a row adds is read once for three.
+// Smooths each layer's sums with the neighbours' (1 2 1 each way), and adds them up. A lane goes
+// down a column of STRIP texels, so that what a row adds is read once for three.
 #include "draw/shadow.h"
 
 layout(local_size_x = GROUP_SIZE) in;
-layout(location = 0) uniform ivec2 map; // side, number
+layout(location = 0) uniform ivec2 map;  // side, number
 layout(location = 1) uniform float unit; // steps for an optical depth of 1
 layout(binding = BIND_SUMS) uniform usamplerBuffer sums;
 layout(std430, binding = BIND_LAYERS_OUT) writeonly buffer Layers { uint layers[]; };
@@ -20,7 +20,8 @@ Row read_row(int row, ivec3 columns)
     Row line;
     ivec3 at = first + clamp(row, 0, side - 1) * side + columns;
     for (int k = 0; k < SHADOW_LAYERS; ++k) {
-        line.sum[k] = float(int(texelFetch(sums, at.x).x)) + 2.0 * float(int(texelFetch(sums, at.y).x)) +
+        line.sum[k] = float(int(texelFetch(sums, at.x).x)) +
+                      2.0 * float(int(texelFetch(sums, at.y).x)) +
                       float(int(texelFetch(sums, at.z).x));
         at += side * side;
     }

@@ -5,7 +5,8 @@
 //
 // Fibres at random places multiply, so that their optical depths (light_behind_fibre) add up. Sums
 // are integers: their order does not matter.
-// The ribbons are those that are drawn: curves, thickness and opacity, the share of strands (material.h).
+// The ribbons are those that are drawn: curves, thickness and opacity, the share of strands
+// (material.h).
 #include "draw/shadow.h"
 #include "draw/material.h"
 #include "common/hair_address.glsl"
@@ -23,9 +24,9 @@ layout(std430, binding = BIND_FIRST_OUT) buffer First { uint first[]; };
 #endif
 
 // Points in a texel: sums are smoothed afterwards, but where ribbons are wide their pattern would
-// show; of first depths none may be far from a point, and within a wide ribbon every texel must have
-// one: its inner circle does if they are no more than sqrt(1/2) apart. Those of a coarse map are
-// spread to a texel or two around each point afterwards, so that fewer will do.
+// show; of first depths none may be far from a point, and within a wide ribbon every texel must
+// have one: its inner circle does if they are no more than sqrt(1/2) apart. Those of a coarse map
+// are spread to a texel or two around each point afterwards, so that fewer will do.
 #if DEEP
 const float DENSITY = 0.5, WIDE_DENSITY = 2.0, SLACK = 0.0;
 #elif COARSE
@@ -83,7 +84,8 @@ void main()
             if (inside) atomicAdd(sums[map * SHADOW_LAYERS + layer * side * side + place], part);
 #else
             uint depth = uint(int(clamp(at.z, 0.0, 1.0) * float(SHADOW_DEPTHS)));
-            if (inside && depth < first[map + place]) atomicMin(first[map + place], depth); // a load costs a quarter
+            // A load costs a quarter.
+            if (inside && depth < first[map + place]) atomicMin(first[map + place], depth);
 #endif
             ++column;
             if (column == columns) {

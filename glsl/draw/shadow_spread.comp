@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Where the layers of each texel begin: a smooth bound of the first depths. Of the coarse map, the
 // least of 3 x 3 texels, then linear between them: nothing begins before it, since a texel lies
-// among four coarse ones whose squares of three all contain its own. A lane has the texels among four.
+// among four coarse ones whose squares of three all contain its own. A lane has the texels among
+// four.
 #include "draw/shadow.h"
 
 layout(local_size_x = GROUP_SIZE) in;
@@ -14,14 +15,16 @@ int side = map.x, coarse = map.x / SHADOW_COARSE;
 float first_at(ivec2 texel)
 {
     texel = clamp(texel, ivec2(0), ivec2(coarse - 1));
-    return float(int(min(texelFetch(first, map.y * coarse * coarse + texel.y * coarse + texel.x).x, uint(SHADOW_DEPTHS)))) *
+    return float(int(min(texelFetch(first, map.y * coarse * coarse + texel.y * coarse + texel.x).x,
+                         uint(SHADOW_DEPTHS)))) *
            (1.0 / float(SHADOW_DEPTHS));
 }
 
 void main()
 {
     int at = int(gl_GlobalInvocationID.x);
-    ivec2 corner = ivec2(at % (coarse + 1), at / (coarse + 1)) - 1; // the lower left one of the four
+    // The lower left one of the four.
+    ivec2 corner = ivec2(at % (coarse + 1), at / (coarse + 1)) - 1;
     if (corner.y >= coarse) return;
     float least[4] = float[4](1.0, 1.0, 1.0, 1.0);
     for (int y = -1; y <= 2; ++y)
@@ -39,7 +42,7 @@ void main()
             vec2 share = (vec2(x, y) + 0.5) * (1.0 / float(SHADOW_COARSE));
             bool inside = texel == clamp(texel, ivec2(0), ivec2(side - 1));
             if (inside)
-                depths[(map.y * side + texel.y) * side + texel.x] =
-                    mix(mix(least[0], least[1], share.x), mix(least[2], least[3], share.x), share.y);
+                depths[(map.y * side + texel.y) * side + texel.x] = mix(
+                    mix(least[0], least[1], share.x), mix(least[2], least[3], share.x), share.y);
         }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Shadows on surfaces: each map is read only where its light could shine, and can be in something's way (needs
-// lights.glsl). CPU drivers run both sides of an `if`, but a loop ends when no lane needs another turn: so
-// these loops of one turn or none are questions.
+// Shadows on surfaces: each map is read only where its light could shine, and can be in something's
+// way (needs lights.glsl). CPU drivers run both sides of an `if`, but a loop ends when no lane
+// needs another turn: so these loops of one turn or none are questions.
 
 #if SHADOW
 bool shadow_covers(vec2 texel, int side)
@@ -13,17 +13,20 @@ bool shadow_covers(vec2 texel, int side)
 void shadow_find_on(vec3 x, vec3 n)
 {
     for (int map = 0; map < shadow_maps; ++map) {
-        vec4 of_light = shadow_params.place[map], place = vec4(x, 1.0) * shadow_params.from_world[map];
+        vec4 of_light = shadow_params.place[map],
+             place = vec4(x, 1.0) * shadow_params.from_world[map];
         vec4 at = draw_params.light_place[int(of_light.x)];
         // A lamp has no map behind it.
         bool shone = dot(at.xyz - at.w * x, n) > 0.0 && place.w > 0.0;
         float left = 1.0;
         vec2 texel = place.xy / place.w;
         int turns = shone && place.z > 0.0 && shadow_covers(texel, shadow_side) ? 1 : 0;
-        for (int turn = 0; turn < turns; ++turn) left = light_through_hair(map, texel, place.z, of_light);
+        for (int turn = 0; turn < turns; ++turn)
+            left = light_through_hair(map, texel, place.z, of_light);
 #if SHADOW_BY_MESH
         vec4 mesh_place = vec4(x, 1.0) * shadow_params.mesh_from_world[map];
-        turns = shone && shadow_covers(mesh_place.xy / mesh_place.w, shadow_params.mesh_side) ? 1 : 0;
+        turns =
+            shone && shadow_covers(mesh_place.xy / mesh_place.w, shadow_params.mesh_side) ? 1 : 0;
         for (int turn = 0; turn < turns; ++turn) left *= light_past_mesh(map, x);
 #endif
         shadow_keep(int(of_light.x), left);

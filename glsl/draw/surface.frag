@@ -4,7 +4,4 @@
 in vec3 world_normal;
 layout(location = 0) out vec4 surface; // normal, of any length; distance before the eye's plane, m
 
-void main()
-{
-    surface = vec4(world_normal, 1.0 / gl_FragCoord.w);
-}
+void main() { surface = vec4(world_normal, 1.0 / gl_FragCoord.w); }

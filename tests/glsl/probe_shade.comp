@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What shade_marschner.glsl gives, for tests: a pair of directions a lane, under a light of 1/PI, so that
-// the answer is the density f itself. The fibre runs along y.
+// What shade_marschner.glsl gives, for tests: a pair of directions a lane, under a light of 1/PI,
+// so that the answer is the density f itself. The fibre runs along y.
 #include "draw/draw.h"
 #include "draw/material.h"
 
@@ -26,8 +26,14 @@ vec3 light_around_fibre(vec3 tangent, vec3 to_eye, float eye)
 #include "draw/shade_marschner.glsl"
 
 layout(local_size_x = 32) in;
-layout(std430, binding = 0) readonly buffer Directions { vec4 directions[]; }; // to the light, to the eye
-layout(std430, binding = 1) writeonly buffer Colors { vec4 colors[]; };
+layout(std430, binding = 0) readonly buffer Directions
+{
+    vec4 directions[];
+}; // to the light, to the eye
+layout(std430, binding = 1) writeonly buffer Colors
+{
+    vec4 colors[];
+};
 
 void main()
 {
@@ -35,5 +41,6 @@ void main()
     if (i >= directions.length() / 2) return;
     lit_from = directions[2 * i].xyz;
     vec3 to_eye = directions[2 * i + 1].xyz;
-    colors[i] = vec4(shade_fibre(fibre_material(), material.color.rgb, vec3(0.0), vec3(0, 1, 0), to_eye), 1.0);
+    colors[i] = vec4(
+        shade_fibre(fibre_material(), material.color.rgb, vec3(0.0), vec3(0, 1, 0), to_eye), 1.0);
 }

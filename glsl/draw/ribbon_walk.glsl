@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// The way along a strand that both rasterisers take: projects and shades its points, and leaves out
+// those where the ribbon is straight. What becomes of the ribbons says the file that includes this
+// one, with WALK_BEYOND, how many turns more than points there are, in which the tip stands in for
+// what lies beyond it, and three functions.
+#include "draw/draw.h"
+#include "draw/material.h"
+#include "common/hair_address.glsl"
+#include "common/hash.glsl"
+#include "draw/curve.glsl"
+#include "draw/paint.glsl"
+#include "draw/shade.glsl"
+#include "draw/ribbon.glsl"
+
+struct Walk {
+    int points;          // of the strand: particles, or those of its curve
+    float opacity;       // of the strand
+    Particle kept, last; // the last one not left out; the one before this one
+    vec2 way;            // the ribbon's direction before `kept`
+    float bent;          // of all that was left out since `kept`
+};
+
+void see_point(Particle p);               // each of them
+bool ends_ribbon(Walk w, int j);          // whether `last` is not left out, in the turn of point j
+void put_joint(Walk w, int j, vec2 next); // `kept` lies between the directions `way` and `next`
+
+int count_points()
+{
+    Curve curve = curve_open(0, int(material.vertex_count));
+    return curve.segments * curve.parts + 1;
+}
+
+Walk walk_strand(int s, uint id)
+{
+    int n = int(material.vertex_count), root = particle_address(s, 0, n);
+    Painter painter = paint_strand(id, n);
+    if (s == int(material.last_strand)) painter.radius *= material.last_share;
+    vec3 eye = draw_params.eye.xyz;
+    Fibre fibre = fibre_material();
+    Curve curve = curve_open(root, n);
+    vec3 here = curve_point(curve, 0), before = here;
+    vec4 here_clip = clip_from_world * vec4(here, 1.0), before_clip = here_clip;
+    Particle none = Particle(vec4(0.0), vec3(0.0));
+    Walk w = Walk(count_points(), paint_opacity(root), none, none, vec2(0.0), 0.0);
+#if SHADOW
+    float shadow_opacity = material.shadow_opacity * paint_opacity_share(root);
+    int lit = particle_address(s, 0, w.points); // where light at the strand's points has been found
+#endif
+    for (int j = 0; j < w.points + WALK_BEYOND; ++j) {
+        int k = WALK_BEYOND > 0 ? min(j, w.points - 1) : j;
+        float place = curve_place(curve, k);
+        int at = root + int(place) * STRAND_TILE;
+        vec3 after = curve_point(curve, j + 1);
+        vec4 after_clip = clip_from_world * vec4(after, 1.0);
+        Particle p;
+        float radius = paint_radius(painter, at, place);
+        p.at = project(clip_near(here_clip, before_clip, after_clip), radius);
+#if SHADOW
+        shadow_fibre = vec2(2.0 * radius, shadow_opacity);
+        shadow_find(lit + k * STRAND_TILE, here);
+#endif
+        p.color = shade_particle(fibre, painter, at, here, unit(after - before), unit(eye - here));
+        see_point(p);
+        if (j > 1) w.bent += bend(w.kept, w.last, p);
+        if (j == 1 || ends_ribbon(w, j)) {
+            vec2 next = direction(w.kept, w.last);
+            put_joint(w, j, next);
+            w.way = next;
+            w.kept = w.last;
+            w.bent = 0.0;
+        }
+        w.last = p;
+        before = here;
+        before_clip = here_clip;
+        here = after;
+        here_clip = after_clip;
+    }
+    return w;
+}
