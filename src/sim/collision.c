@@ -45,8 +45,8 @@ static Result check_loops(const Collision *collision, bool software, Error *erro
         uint64_t most = MOST_ITERATIONS_ON_CPU / n / (ROUNDS + 3);
         if (collision->colliders->count + (collision->field != NULL) > most)
             return error_set(error, RESULT_USAGE,
-                             "%u colliders: strands of %u vertices take at most %llu of them on "
-                             "this CPU driver",
+                             "collider: %u of them for strands of %u vertices: expected at most "
+                             "%llu (more exceed the loops of a CPU driver)",
                              collision->colliders->count, collision->hair->batches[i].vertex_count,
                              (unsigned long long)most);
     }

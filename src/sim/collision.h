@@ -19,7 +19,7 @@ typedef struct CollisionBatch {
     GpuBuffer counts;   // uvec4 a strand: see collide.comp
 } CollisionBatch;
 
-// A zeroed struct is a pass that does nothing and has nothing.
+// A zeroed struct is a pass that does nothing.
 typedef struct Collision {
     const Hair *hair;
     const Hair *bounds; // whose bounds and greatest length hold for `hair`
@@ -34,15 +34,14 @@ typedef struct Collision {
     CollideParams step;      // the present one's
 } Collision;
 
-// Makes nothing where the scene has no colliders. Velocities and friction need a mode other than
+// Empty if the scene has no colliders. Velocities and friction need a mode other than
 // COLLISION_DRAWN. RESULT_USAGE for more colliders than the loops of a CPU driver can take.
 Result collision_create(Collision *collision, const SolverSetup *setup, CollisionMode mode,
                         uint32_t carried, Error *error);
 void collision_destroy(Collision *collision);
 
-// The colliders of a (sub-)step: where the head has them at its end. It is number `part` (1 ..
-// `parts`) of those that the step has; step->head is that at its end. False if the hair can't reach
-// any.
+// Places the colliders as the head has them at the end of a (sub-)step, number `part` (1 ..
+// `parts`) of the step; step->head is the head at that time. False if the hair cannot reach any.
 bool collision_begin(Collision *collision, const SolverStep *step, int part, int parts);
 
 // Pushes out batch `batch`; `state` are its velocities or segments, `tips` those of split, else
@@ -53,8 +52,8 @@ void collision_push(Collision *collision, uint32_t batch, const GpuBuffer *state
 // Both for all batches of hair that is drawn as it is (COLLISION_DRAWN).
 void collision_push_drawn(Collision *collision, const HeadPose *head);
 
-// What a batch hands on to the next step: SOLVER_POINTS. NULL: nothing.
+// The contacts that batch `batch` hands on to the next step (SOLVER_POINTS); NULL: none.
 const GpuBuffer *collision_memory(const Collision *collision, uint32_t batch);
 
-// Adds what happened. Waits for the GPU.
+// Adds contacts and depths to `report`. Waits for the GPU.
 void collision_report(const Collision *collision, SolverReport *report);

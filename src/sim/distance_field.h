@@ -25,10 +25,10 @@ Result distance_field_create(DistanceField *field, const Gpu *gpu, const Mesh *m
                              uint32_t resolution, Error *error);
 void distance_field_destroy(DistanceField *field);
 
-// As distance_field_create, but by the file tractrix/HASH.field in the folder $XDG_CACHE_HOME, else
-// ~/.cache, if that is there and whole (chunk_file.h); else computes the field and tries to write
-// that file. HASH is of the mesh and the resolution. Files are safe to delete; one that is damaged
-// or cannot be written changes nothing but the time. `read` says which way it was; may be NULL.
+// As distance_field_create, but reads tractrix/HASH.field in the folder $XDG_CACHE_HOME, else
+// ~/.cache, if that file is complete (chunk.h); else computes the field and tries to write the
+// file. HASH is of the mesh and the resolution. Files are safe to delete; a damaged or unwritable
+// one only costs time. `read` (may be NULL): whether the file was used.
 Result distance_field_create_cached(DistanceField *field, const Gpu *gpu, const Mesh *mesh,
                                     uint32_t resolution, bool *read, Error *error);
 

@@ -121,7 +121,7 @@ Result follow_create(Follow *follow, const Gpu *gpu, GpuTimer *timer, const Hair
     if (options.per_guide == 0 || guides->strand_count == 0) return RESULT_OK;
     if (guides->particle_count > UINT32_MAX / options.per_guide)
         return error_set(error, RESULT_USAGE,
-                         "followers: %u for each of %u guides have 2^32 vertices or more",
+                         "followers: %u for each of %u guides: expected fewer than 2^32 vertices",
                          options.per_guide, guides->strand_count);
     *follow = (Follow){.guides = guides,
                        .timer = timer,

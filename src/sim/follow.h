@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Followers on the GPU: hair that is drawn like any other and takes its positions from the guides
-// that a solver steps (glsl/sim/follow.comp).
+// Followers on the GPU: hair that is drawn but not stepped. Its positions follow from guides, which
+// a solver steps (glsl/sim/follow.comp).
 #pragma once
 
 #include "gpu/shader.h"
@@ -14,8 +14,8 @@ typedef struct FollowBatch {
 } FollowBatch;
 
 typedef struct Follow {
-    Hair hair; // the followers; no style. Follower i of guide g is strand g * per_guide + i of its
-               // batch.
+    // The followers, without style. Follower i of guide g is strand g * per_guide + i of its batch.
+    Hair hair;
     FollowBatch *batches; // [hair.batch_count]
     const Hair *guides;
     GpuTimer *timer;

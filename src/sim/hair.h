@@ -8,24 +8,25 @@
 
 #include "glsl/common/shared.h"
 
-// Strands of equal vertex count, no more than one buffer holds. Strands lie in tiles of STRAND_TILE
+// Strands of equal vertex count, no more than one buffer holds, in tiles of STRAND_TILE
 // (glsl/common/shared.h): particle 0 of a tile's strands side by side, then particle 1 and so on,
-// so that a group of lanes reads one piece of memory from its beginning to its end. (With a row of
-// all strands for each particle, CPUs lose up to a factor of two to far jumps.) The last tile is
-// filled up with copies of the last strand, which may be stepped like any other and are never
-// drawn.
+// so that a group of lanes reads memory in sequence. (With a row of all strands for each particle,
+// CPUs lose up to a factor of two.) Copies of the last strand fill the last tile; they are stepped
+// but never drawn.
 typedef struct HairBatch {
     uint32_t vertex_count; // of each strand, >= 2
     uint32_t strand_count;
-    uint32_t *strand; // [strand_count], owned: which of the file's strands each is, or follows; may
-                      // be NULL
-    GpuBuffer position; // vec4 a particle: xyz in metres in the world, w = 1. Drawn.
-    GpuBuffer rest;     // vec4 a particle, the style in the head's frame. j = 0: root (m) and the
-                    // strand's length (m); j > 0: unit direction of the segment from j - 1 to j and
-                    // its rest length (m)
-    GpuBuffer strand_id; // uint a strand (and copy): its number in its section, seed of all that
-                         // varies by strand
-    GpuBuffer paint; // uvec4 a particle, see hair_paint.c; no buffer where the section says it all
+    // [strand_count], owned: which of the file's strands each is, or follows; may be NULL.
+    uint32_t *strand;
+    // vec4 a particle: xyz in metres in the world, w = 1. Drawn.
+    GpuBuffer position;
+    // vec4 a particle, the style in the head's frame. j = 0: root and the strand's length (m);
+    // j > 0: unit direction of the segment from j - 1 to j and its rest length (m).
+    GpuBuffer rest;
+    // uint a strand (and copy): its number in its section, seed of all that varies by strand.
+    GpuBuffer strand_id;
+    // uvec4 a particle, see hair_paint.c; no buffer if the section has one look.
+    GpuBuffer paint;
 } HairBatch;
 
 // The fewest strands that a work group of any shader takes (step_group_size): no batch has more

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Frames that fall between two steps of the simulation (glsl/sim/inbetween.comp). Keeps what is
-// drawn after both steps, and puts the later one back before the next step, since solvers that move
-// every particle have their state in it.
+// Frames between two steps of the simulation (glsl/sim/inbetween.comp). Keeps the drawn positions
+// after both steps, and restores the later ones before the next step: they are a part of the state
+// of solvers that move every particle.
 #pragma once
 
 #include "sim/step.h"
@@ -27,5 +27,5 @@ void inbetween_keep_later(Inbetween *inbetween);
 void inbetween_mix(Inbetween *inbetween, float share, const HeadPose *earlier,
                    const HeadPose *later, const HeadPose *now);
 
-// Puts the later positions back if they were mixed. To be called before a step.
+// Restores the later positions if they were mixed. Call before a step.
 void inbetween_restore(Inbetween *inbetween);

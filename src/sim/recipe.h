@@ -38,7 +38,8 @@ typedef struct SolverRecipe {
     // Fills its block, params_size zero bytes, for a step; may change `uniforms`. NULL: nothing.
     void (*fill)(void *block, StepParams *uniforms, const SolverStep *step,
                  const SectionParams *params);
-    // Sets the variant's own macros, at most STEP_OWN_DEFINES; {0} ends them. NULL: none.
+    // Sets the variant's own macros beside those of step_programs_create, at most STEP_OWN_DEFINES;
+    // {0} ends them. NULL: none.
     void (*define)(ShaderDefine *defines, const SectionParams *params);
     // How many equal sub-steps a step needs for the longest strand; NULL: 1.
     int (*substeps)(const SolverStep *step, const SectionParams *params, const Hair *hair);

@@ -149,8 +149,8 @@ Result simulation_choose_substeps(int *substeps, const Scene *scene, const Stran
         double steps = ceil(sigma / limit);
         if (steps > most_steps)
             return error_set(error, RESULT_USAGE,
-                             "%s: --substeps auto comes to %.6g, at most %.0f are taken: raise "
-                             "--sim-rate or --fps, or give fewer",
+                             "%s: --substeps auto comes to %.6g: expected at most %.0f (raise "
+                             "--sim-rate or --fps, or give a number)",
                              section->file, steps, most_steps);
         if ((int)steps > *substeps) *substeps = (int)steps;
     }

@@ -156,6 +156,7 @@ static Result build_programs(SolverState *state, const SolverSetup *setup, Error
         .strands_on_cpu = recipe->strands_on_cpu ? recipe->strands_on_cpu : 1,
         .lead = recipe->carried < 2 && state->params->clamped > 1,
         .sheltered = setup->sheltered,
+        .styled = state->params->style > 0 && state->params->style_stiffness > 0,
         .defines = defines,
     };
     return step_programs_create(&state->programs, setup->gpu, state->hair, &options, error);

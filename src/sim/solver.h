@@ -38,7 +38,7 @@ typedef struct SolverBuffer {
 
 enum { SOLVER_MAX_BUFFERS = 4 };
 
-// What happened so far, for the statistics.
+// Events so far, for the statistics.
 typedef struct SolverReport {
     uint64_t moves_limited; // moves cut because a particle was flung beyond what float32 can follow
     uint64_t contacts;      // particles that touched a collider in the last step
@@ -52,7 +52,7 @@ enum { SOLVER_MAX_VARIANTS = 4 };
 struct SolverType {
     const char *name;    // the word of --algo
     const char *summary; // one line for --algo list
-    // What its user should know, one line; NULL or giving NULL: nothing.
+    // A warning for its user, one line; NULL or giving NULL: none.
     const char *(*caution)(const SectionParams *params);
     const char *lengths; // how well segments keep theirs, for --algo list; may be NULL
     const char *style;   // what brings the style back, for --algo list; NULL: nothing does
@@ -97,7 +97,7 @@ Result solver_check(const SectionParams *params, Error *error);
 Result solver_check_parameter(const SectionParams *params, const ParamInfo *info, const char *place,
                               Error *error);
 
-// What the user of this algo and variant should know, or NULL. The words have been checked.
+// The warning for users of this algo and variant, or NULL. The words have been checked.
 const char *solver_caution(const SectionParams *params);
 
 // Its type's most_stability. The words have been checked.
@@ -116,7 +116,7 @@ int solver_buffers(const Solver *solver, uint32_t batch, SolverBuffer buffers[SO
 void solver_step(const Solver *solver, const SolverStep *step);
 void solver_pose(const Solver *solver, const HeadPose *head);
 
-// Adds what happened. Waits for the GPU.
+// Adds limited moves, contacts and depths to `report`. Waits for the GPU.
 void solver_report(const Solver *solver, SolverReport *report);
 
 // How many equal sub-steps the solver will make of this step, >= 1.

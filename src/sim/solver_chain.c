@@ -15,8 +15,7 @@ static void fill(void *block, StepParams *uniforms, const SolverStep *step,
 
 static void define(ShaderDefine *defines, const SectionParams *params)
 {
-    defines[0] = (ShaderDefine){"STYLED", params->style > 0 && params->style_stiffness > 0};
-    defines[1] = (ShaderDefine){"BENDS", params->style > 0 && params->chain_bend > 0};
+    defines[0] = (ShaderDefine){"BENDS", params->style > 0 && params->chain_bend > 0};
 }
 
 static const SolverRecipe RECIPE = {

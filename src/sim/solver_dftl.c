@@ -13,17 +13,11 @@ static void fill(void *block, StepParams *uniforms, const SolverStep *step,
     };
 }
 
-static void define(ShaderDefine *defines, const SectionParams *params)
-{
-    defines[0] = (ShaderDefine){"STYLED", params->style > 0};
-}
-
 static const SolverRecipe RECIPE = {
     .label = "sim_dftl",
     .shader = "sim/dftl.comp",
     .params_size = sizeof(DftlParams),
     .fill = fill,
-    .define = define,
 };
 
 const SolverType SOLVER_DFTL = {

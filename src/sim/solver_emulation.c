@@ -13,17 +13,17 @@ static bool is_thesis(const SectionParams *params)
 static void fill(void *block, StepParams *uniforms, const SolverStep *step,
                  const SectionParams *params)
 {
-    *(EmulationParams *)block = (EmulationParams){
-        .spring = is_thesis(params) ? step_style_spring(uniforms, step->dt, params)
-                                    : step_midpoint(uniforms, step, params),
-        .order_seed = 1, // of every step: with a new one each, hair on a sphere trembles
-    };
+    EmulationParams *emulation = block;
+    emulation->order_seed = 1; // of every step: with a new one each, hair on a sphere trembles
+    if (is_thesis(params))     // an explicit spring
+        emulation->spring.stiffness = step_style_spring(uniforms, step->dt, params).stiffness;
+    else
+        emulation->spring = step_midpoint(uniforms, step, params);
 }
 
 static void define(ShaderDefine *defines, const SectionParams *params)
 {
-    defines[0] = (ShaderDefine){"STYLED", params->style > 0 && !is_thesis(params)};
-    defines[1] = (ShaderDefine){"THESIS", is_thesis(params)};
+    defines[0] = (ShaderDefine){"THESIS", is_thesis(params)};
 }
 
 // As many dispatches as let each turn MOST_LINKS links (emulation.comp), of the places in a random

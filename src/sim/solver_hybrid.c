@@ -9,11 +9,6 @@ static void fill(void *block, StepParams *uniforms, const SolverStep *step,
     *(HybridParams *)block = (HybridParams){.spring = step_midpoint(uniforms, step, params)};
 }
 
-static void define(ShaderDefine *defines, const SectionParams *params)
-{
-    defines[0] = (ShaderDefine){"STYLED", params->style > 0};
-}
-
 static const SolverRecipe RECIPE = {
     .label = "sim_hybrid",
     .shader = "sim/hybrid.comp",
@@ -22,7 +17,6 @@ static const SolverRecipe RECIPE = {
     .most_vertices = 12000, // five sweeps
     .params_size = sizeof(HybridParams),
     .fill = fill,
-    .define = define,
 };
 
 const SolverType SOLVER_HYBRID = {

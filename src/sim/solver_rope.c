@@ -39,7 +39,6 @@ static void fill(void *block, StepParams *uniforms, const SolverStep *step,
 static void define(ShaderDefine *defines, const SectionParams *params)
 {
     defines[0] = (ShaderDefine){"BULLET", is_bullet(params)};
-    defines[1] = (ShaderDefine){"STYLED", params->style > 0};
 }
 
 static int phases(const SectionParams *params, const Hair *hair)
@@ -52,8 +51,8 @@ static Result check(const SolverSetup *setup, Error *error)
 {
     if (is_bullet(setup->params) && setup->params->rope_compliance > 0)
         return error_set(error, RESULT_USAGE,
-                         "rope_compliance: the rope as in Bullet has links of no compliance; "
-                         "--variant xpbd has it");
+                         "rope_compliance: links of --variant bullet have none: expected "
+                         "--variant xpbd");
     return RESULT_OK;
 }
 

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-// llvmpipe ends all loops of an invocation after so many iterations, without a word.
+// llvmpipe silently ends all loops of an invocation after this many iterations.
 enum { MOST_ITERATIONS_ON_CPU = 65535 };
 
 // Newton's steps towards the lengths of `steady`; the rebuilding does the rest.
@@ -103,11 +103,9 @@ static Result check_loops(const SolverSetup *setup, Error *error)
         uint32_t n = setup->hair->batches[i].vertex_count;
         if (n * passes > MOST_ITERATIONS_ON_CPU)
             return error_set(error, RESULT_USAGE,
-                             "tressfx: a strand of %u vertices is too long for this CPU driver, "
-                             "which ends loops after %d iterations; at most %lld with these "
-                             "iterations",
-                             n, MOST_ITERATIONS_ON_CPU,
-                             (long long)(MOST_ITERATIONS_ON_CPU / passes));
+                             "tressfx: a strand of %u vertices: expected at most %lld with these "
+                             "iterations (longer ones exceed the loops of a CPU driver)",
+                             n, (long long)(MOST_ITERATIONS_ON_CPU / passes));
     }
     return RESULT_OK;
 }

@@ -123,16 +123,17 @@ static bool fits_registers(const Hair *hair, uint32_t most)
 static Result build(StepPrograms *programs, uint32_t batch, uint32_t vertices,
                     const StepProgramsOptions *options, Error *error)
 {
-    ShaderDefine defines[7 + STEP_OWN_DEFINES] = {
+    ShaderDefine defines[8 + STEP_OWN_DEFINES] = {
         {"GROUP_SIZE", (int)programs->group_size},
         {"STRANDS", (int)programs->strands_per_lane},
         {"IN_REGISTERS", programs->in_registers},
         {"VERTICES", (int)(vertices - programs->leads[batch])},
         {"LEAD", (int)programs->leads[batch]},
         {"SHELTER", options->sheltered},
+        {"STYLED", options->styled},
     };
     for (int i = 0; options->defines && options->defines[i].name; ++i)
-        defines[6 + i] = options->defines[i];
+        defines[7 + i] = options->defines[i];
     return shader_build_compute(&programs->programs[batch], options->shader, defines, error);
 }
 

@@ -86,6 +86,7 @@ typedef struct StepProgramsOptions {
     uint32_t strands_on_cpu;
     uint32_t lead;  // vertices that the head carries beside the root, where a strand has enough
     bool sheltered; // the head keeps wind off (forces.glsl)
+    bool styled;    // there is a spring towards the style
     const ShaderDefine *defines; // the variant's own, at most STEP_OWN_DEFINES
 } StepProgramsOptions;
 
@@ -98,8 +99,8 @@ typedef struct StepPrograms {
 } StepPrograms;
 
 // Compiles with the macros GROUP_SIZE (lanes), STRANDS (a lane's), IN_REGISTERS, VERTICES (but for
-// the lead), LEAD, SHELTER and the own ones. Strands are in registers if all are short enough and
-// of few different counts. Errors of shader_build_compute; RESULT_FAILED without memory.
+// the lead), LEAD, SHELTER, STYLED and the own ones. Strands are in registers if all are short
+// enough and of few different counts. Errors of shader_build_compute; RESULT_FAILED without memory.
 Result step_programs_create(StepPrograms *programs, const Gpu *gpu, const Hair *hair,
                             const StepProgramsOptions *options, Error *error);
 void step_programs_destroy(StepPrograms *programs);
