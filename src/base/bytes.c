@@ -65,8 +65,7 @@ void bytes_destroy(Bytes *bytes)
 Result bytes_write_file(const Bytes *bytes, const char *path, Error *error)
 {
     OutFile file;
-    Result result = outfile_open(&file, path, error);
-    if (result != RESULT_OK) return result;
+    TRY(outfile_open(&file, path, error));
     fwrite(bytes->data, 1, bytes->size, file.stream);
     return outfile_commit(&file, error);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The bytes of a whole file, read or written at once.
+// A whole file, read or written at once.
 #pragma once
 
 #include "base/error.h"
@@ -7,8 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// The bytes of a file. `data` has one more byte, zero, behind `size`, so that text may be read as a
-// string.
+// `data` has one more byte, zero, behind `size`, so that text can be read as a string.
 typedef struct Bytes {
     uint8_t *data;
     size_t size;

@@ -79,7 +79,7 @@ Result chunk_file_open(ChunkFile *file, const char *path, const char *magic, Err
         result = error_set(error, RESULT_BAD_INPUT, "%s: not a plain file", path);
     else
         file->size = (uint64_t)status.st_size;
-    if (result == RESULT_OK) result = check_header(file, magic, error);
+    THEN(result, check_header(file, magic, error));
     if (result != RESULT_OK) chunk_file_close(file);
     return result;
 }
@@ -91,24 +91,27 @@ void chunk_file_close(ChunkFile *file)
     *file = (ChunkFile){.descriptor = -1};
 }
 
+static Result fail_at(const ChunkFile *file, uint64_t at, const char *what, Error *error)
+{
+    return error_set(error, RESULT_BAD_INPUT, "%s: byte %llu: %s", file->path,
+                     (unsigned long long)at, what);
+}
+
 Result chunk_find(ChunkFile *file, uint64_t at, Chunk *chunk, Error *error)
 {
     Header header;
     if (!chunk_file_read_raw(file, at, &header, sizeof header))
-        return error_set(error, RESULT_BAD_INPUT, "%s: byte %llu: the file ends", file->path,
-                         (unsigned long long)at);
+        return fail_at(file, at, "the file ends", error);
     if (le32toh(header.header_checksum) !=
         libdeflate_crc32(0, &header, offsetof(Header, header_checksum)))
-        return error_set(error, RESULT_BAD_INPUT, "%s: byte %llu: damaged, no chunk begins here",
-                         file->path, (unsigned long long)at);
+        return fail_at(file, at, "damaged, no chunk begins here", error);
     *chunk = (Chunk){.number = le32toh(header.number),
                      .at = at,
                      .size = le64toh(header.size),
                      .checksum = le32toh(header.checksum)};
     memcpy(chunk->tag, header.tag, TAG_BYTES);
     if (chunk->size <= file->size && chunk_end(chunk) <= file->size) return RESULT_OK;
-    return error_set(error, RESULT_BAD_INPUT, "%s: byte %llu: the file ends within this chunk",
-                     file->path, (unsigned long long)at);
+    return fail_at(file, at, "the file ends within this chunk", error);
 }
 
 Result chunk_read(ChunkFile *file, const Chunk *chunk, Bytes *payload, Error *error)
@@ -124,6 +127,5 @@ Result chunk_read(ChunkFile *file, const Chunk *chunk, Bytes *payload, Error *er
         libdeflate_crc32(0, payload->data, payload->size) == chunk->checksum)
         return RESULT_OK;
     bytes_destroy(payload);
-    return error_set(error, RESULT_BAD_INPUT, "%s: byte %llu: damaged, the checksum differs",
-                     file->path, (unsigned long long)chunk->at);
+    return fail_at(file, chunk->at, "damaged, the checksum differs", error);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Files made of checksummed chunks, which can be appended one by one and read in any order
+// Files made of checksummed chunks, which are appended one by one and read in any order
 // (docs/cache.md). A file cut off anywhere keeps the chunks before that place.
 #pragma once
 

@@ -4,25 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-static size_t count_of(const char *text, char wanted)
+static size_t count_of(const char *text, const char *end, char wanted)
 {
     size_t count = 0;
-    for (; *text; ++text) count += *text == wanted;
+    for (; text < end; ++text) count += *text == wanted;
     return count;
 }
 
-// Cuts one line into fields in place; gives how many there were.
-static size_t cut_line(char *line, char **fields, size_t most)
-{
-    size_t count = 0;
-    for (char *rest = line; rest;) {
-        char *field = strsep(&rest, ",");
-        if (count < most) fields[count] = field;
-        ++count;
-    }
-    return count;
-}
-
+// Cuts lines into fields in place.
 static Result cut_lines(Csv *csv, Error *error)
 {
     char *rest = (char *)csv->bytes.data;
@@ -30,7 +19,12 @@ static Result cut_lines(Csv *csv, Error *error)
         char *line = strsep(&rest, "\n");
         line[strcspn(line, "\r")] = 0;
         char **fields = number == 1 ? csv->column : &csv->field[csv->row_count * csv->column_count];
-        size_t count = cut_line(line, fields, csv->column_count);
+        size_t count = 0;
+        while (line) {
+            char *field = strsep(&line, ",");
+            if (count < csv->column_count) fields[count] = field;
+            ++count;
+        }
         if (count != csv->column_count)
             return error_set(error, RESULT_BAD_INPUT, "%s:%zu: %zu fields, the header has %zu",
                              csv->path, number, count, csv->column_count);
@@ -42,12 +36,10 @@ static Result cut_lines(Csv *csv, Error *error)
 Result csv_read(Csv *csv, const char *path, Error *error)
 {
     *csv = (Csv){.path = strdup(path)};
-    Result result = bytes_read_file(&csv->bytes, path, error);
-    if (result != RESULT_OK) return result;
-    const char *text = (const char *)csv->bytes.data;
-    size_t header = strcspn(text, "\n"), lines = count_of(text, '\n') + 1;
-    csv->column_count = 1;
-    for (size_t i = 0; i < header; ++i) csv->column_count += text[i] == ',';
+    TRY(bytes_read_file(&csv->bytes, path, error));
+    const char *text = (const char *)csv->bytes.data, *end = text + csv->bytes.size;
+    csv->column_count = count_of(text, text + strcspn(text, "\n"), ',') + 1;
+    size_t lines = count_of(text, end, '\n') + 1;
     csv->column = calloc(csv->column_count, sizeof *csv->column);
     csv->field = calloc(lines * csv->column_count, sizeof *csv->field);
     if (!csv->path || !csv->column || !csv->field)

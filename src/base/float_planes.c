@@ -91,8 +91,8 @@ static size_t pack_plane(struct libdeflate_compressor *compressor, const uint8_t
         size = count;
         memcpy(packed + SIZE_BYTES, plane, count);
     }
-    uint64_t told = htole64(size);
-    memcpy(packed, &told, SIZE_BYTES);
+    uint64_t stored = htole64(size);
+    memcpy(packed, &stored, SIZE_BYTES);
     return SIZE_BYTES + size;
 }
 
@@ -115,12 +115,12 @@ size_t float_planes_pack(const float *values, size_t count, size_t stride, uint8
 static size_t unpack_plane(struct libdeflate_decompressor *decompressor, uint8_t *plane,
                            size_t count, const uint8_t *packed, size_t left)
 {
-    uint64_t told;
+    uint64_t stored;
     if (left < SIZE_BYTES) return 0;
-    memcpy(&told, packed, SIZE_BYTES);
-    told = le64toh(told);
-    if (told > count || told > left - SIZE_BYTES) return 0;
-    size_t size = (size_t)told;
+    memcpy(&stored, packed, SIZE_BYTES);
+    stored = le64toh(stored);
+    if (stored > count || stored > left - SIZE_BYTES) return 0;
+    size_t size = (size_t)stored;
     if (size == count)
         memcpy(plane, packed + SIZE_BYTES, count);
     else if (libdeflate_deflate_decompress(decompressor, packed + SIZE_BYTES, size, plane, count,

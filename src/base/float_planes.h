@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Floats in fewer bytes, without loss: each is told as its distance in units of the last place from
-// the one `stride` before, and the distances are stored byte by byte, all lowest bytes first, each
-// of these four planes deflated if that makes it smaller. docs/cache.md has the format.
+// Packs floats without loss: each becomes its distance in units of the last place from the one
+// `stride` before. The distances are stored byte by byte, all lowest bytes first; each of these
+// four planes is deflated if that makes it smaller. docs/cache.md has the format.
 #pragma once
 
 #include "base/error.h"

@@ -105,9 +105,8 @@ Result json_read_vector(const JsonPlace *place, const json_t *value, size_t coun
     for (size_t i = 0; i < count; i++) {
         JsonPlace element = {.parent = place, .index = i};
         double number;
-        Result result = json_read_number(&element, json_array_get(value, i), minimum, maximum,
-                                         "a number", &number, error);
-        if (result != RESULT_OK) return result;
+        TRY(json_read_number(&element, json_array_get(value, i), minimum, maximum, "a number",
+                             &number, error));
         numbers[i] = (float)number;
     }
     return RESULT_OK;
@@ -167,10 +166,8 @@ Result json_write_file(const json_t *value, const char *path, Error *error)
     if (!text) return error_set(error, RESULT_FAILED, "%s: no memory for the result", path);
     OutFile file;
     Result result = outfile_open(&file, path, error);
-    if (result == RESULT_OK) {
-        fprintf(file.stream, "%s\n", text);
-        result = outfile_commit(&file, error);
-    }
+    if (result == RESULT_OK) fprintf(file.stream, "%s\n", text);
+    THEN(result, outfile_commit(&file, error));
     free(text);
     return result;
 }

@@ -97,7 +97,7 @@ Result outfile_commit(OutFile *file, Error *error)
     file->stream = NULL;
     if (reason == 0 && file->temporary && rename(file->temporary, file->path) != 0) reason = errno;
     Result result = reason ? fail_to_write(file->path, reason, error) : RESULT_OK;
-    if (result == RESULT_OK) {
+    if (!reason) {
         free(file->temporary);
         file->temporary = NULL;
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The parameters of a run: two structs, and a table by which they are read, written and explained.
-// Names, defaults, ranges and texts stand in params.def, nowhere else.
+// Names, defaults, ranges and texts stand in params.def only.
 #pragma once
 
 #include "base/error.h"

@@ -56,8 +56,8 @@ int progress_format(char *line, size_t size, int columns, int done, int total, d
         format_duration(left, sizeof left, (total - done) / rate);
         tail_length = snprintf(tail, sizeof tail, "%.3g/s, %s left", rate, left);
     }
-    // What the bar may take: the rest but for its brackets, two spaces and the last column, where
-    // terminals wrap.
+    // The bar takes the rest but for its brackets, two spaces and the last column, where terminals
+    // wrap.
     int bar = columns - 1 - count_length - tail_length - 4;
     if (bar > BAR_MAX) bar = BAR_MAX;
     if (bar < 4) return snprintf(line, size, "%.*s", columns - 1, count);
@@ -73,8 +73,7 @@ static void draw(Progress *progress)
     char line[COLUMNS_MAX + 1];
     int length = progress_format(line, sizeof line, count_columns(progress->stream), progress->done,
                                  progress->total, progress->rate);
-    // Blanks cover what a longer line left; every terminal knows them, not every one the codes to
-    // erase.
+    // Blanks cover what a longer line left: not every terminal knows the codes to erase.
     int blanks = progress->shown > length ? progress->shown - length : 0;
     fprintf(progress->stream, "\r%s%*s", line, blanks, "");
     fflush(progress->stream);
@@ -101,7 +100,6 @@ void progress_update_at(Progress *progress, int done, double now_s)
 
 void progress_update(Progress *progress, int done)
 {
-    // Not even the clock is read in vain.
     if (progress->stream) progress_update_at(progress, done, 1e-3 * clock_ms());
 }
 

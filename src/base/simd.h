@@ -56,7 +56,7 @@ SIMD_INLINE float simd_float_of(uint32_t bits)
     return value;
 }
 
-// The larger, the smaller: one instruction; an a that is not a number becomes the bound.
+// One instruction each; an a that is not a number becomes the bound.
 SIMD_INLINE float simd_max(float a, float least)
 {
     return a > least ? a : least;
@@ -66,8 +66,8 @@ SIMD_INLINE float simd_min(float a, float most)
     return a < most ? a : most;
 }
 
-// The larger of x and 0, without a comparison: one whose outcome tells that of the next becomes a
-// jump, and its loop does not become vector instructions.
+// The larger of x and 0, without a comparison: compilers turn one whose outcome decides the next
+// into a jump, and do not vectorise its loop.
 SIMD_INLINE float simd_positive(float x)
 {
     return 0.5f * (x + fabsf(x));

@@ -38,13 +38,6 @@ static Result take_folder(Target *target, const char *text, Error *error)
     return target->before && target->after ? RESULT_OK : fail_memory(error);
 }
 
-static Result take_name(Target *target, TargetKind kind, const char *text, Error *error)
-{
-    target->kind = kind;
-    target->before = strdup(text);
-    return target->before ? RESULT_OK : fail_memory(error);
-}
-
 // Reads "d" or "0Nd" behind a percent sign. Returns how many characters, 0 if it is something else.
 static int read_conversion(const char *at, int *digits)
 {
@@ -55,8 +48,8 @@ static int read_conversion(const char *at, int *digits)
     return 3;
 }
 
-// `before` and `after` have room for the whole text; "%%" comes out as "%". Returns how many
-// numbers were met, -1 for a percent sign that starts no number.
+// `before` and `after` have room for the whole text; "%%" comes out as "%". Returns the count of
+// numbers, -1 for a percent sign that starts no number.
 static int split_pattern(Target *target, const char *text)
 {
     int numbers = 0;
@@ -97,24 +90,28 @@ static Result take_pattern(Target *target, const char *text, Error *error)
     return RESULT_OK;
 }
 
-Result target_parse(Target *target, const char *text, Error *error)
+static Result take_image(Target *target, const char *text, Error *error)
 {
     static const char *const videos[] = {".mp4", ".webm", ".gif"};
-    *target = (Target){.kind = TARGET_FRAMES};
-    Result result = RESULT_USAGE;
-    if (is_folder(text)) {
-        result = take_folder(target, text, error);
-    } else if (has_suffix(text, ".png") || has_suffix(text, ".pfm")) {
-        target->floats = has_suffix(text, ".pfm");
-        result = take_pattern(target, text, error);
-    } else {
-        error_set(error, RESULT_USAGE,
-                  "%s: expected a folder with a slash at its end, or a name ending in .png, .pfm, "
-                  ".mp4, .webm or .gif",
-                  *text ? text : "output name is empty");
-        for (size_t i = 0; i < sizeof videos / sizeof *videos && result == RESULT_USAGE; i++)
-            if (has_suffix(text, videos[i])) result = take_name(target, TARGET_VIDEO, text, error);
+    if (is_folder(text)) return take_folder(target, text, error);
+    target->floats = has_suffix(text, ".pfm");
+    if (target->floats || has_suffix(text, ".png")) return take_pattern(target, text, error);
+    for (size_t i = 0; i < sizeof videos / sizeof *videos; i++) {
+        if (!has_suffix(text, videos[i])) continue;
+        target->kind = TARGET_VIDEO;
+        target->before = strdup(text);
+        return target->before ? RESULT_OK : fail_memory(error);
     }
+    return error_set(error, RESULT_USAGE,
+                     "%s: expected a folder with a slash at its end, or a name ending in .png, "
+                     ".pfm, .mp4, .webm or .gif",
+                     *text ? text : "output name is empty");
+}
+
+Result target_parse(Target *target, const char *text, Error *error)
+{
+    *target = (Target){.kind = TARGET_FRAMES};
+    Result result = take_image(target, text, error);
     if (result != RESULT_OK) target_destroy(target);
     return result;
 }
@@ -151,8 +148,8 @@ static Result make_folders(char *name, Error *error)
         struct stat status;
         int reason = mkdir(name, 0777) == 0 || errno == EEXIST ? 0 : errno;
         if (reason == 0 && stat(name, &status) == 0 && !S_ISDIR(status.st_mode)) reason = ENOTDIR;
-        // "No permission" may be said of a folder that is there: what counts is whether a file can
-        // be made in it.
+        // mkdir can say "no permission" of a folder that is there: what counts is whether a file
+        // can be made in it.
         if (reason != 0 && reason != ENOTDIR && stat(name, &status) == 0) reason = 0;
         if (reason != 0)
             error_set(error, RESULT_FAILED, "%s: cannot make this folder: %s", name,
@@ -167,12 +164,10 @@ Result target_prepare(const Target *target, Error *error)
 {
     char *name = target_name_frame(target, 0);
     if (!name) return fail_memory(error);
+    OutFile probe = {0};
     Result result = make_folders(name, error);
-    if (result == RESULT_OK) {
-        OutFile probe;
-        result = outfile_open(&probe, name, error);
-        outfile_discard(&probe);
-    }
+    THEN(result, outfile_open(&probe, name, error));
+    outfile_discard(&probe);
     free(name);
     return result;
 }
