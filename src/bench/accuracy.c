@@ -73,7 +73,7 @@ static double stated_bound(const char *part, const Method *method, const char *s
                        (scenario[length] && scenario[length] != ',')))
             continue;
         if (STATED[i].rate > 0 && STATED[i].rate != rate) continue;
-        if (!STATED[i].any && !method_is_default(method)) continue;
+        if (!STATED[i].any && !trial_is_default(method)) continue;
         *known = STATED[i].known;
         return STATED[i].bound;
     }
@@ -86,7 +86,7 @@ static Row row_of(const char *part, const Method *method, double rate, const cha
                   const char *what, double value)
 {
     Row row = {.part = part, .method = *method, .rate_hz = rate, .what = what, .value = value};
-    row.algo = method->algo, row.variant = method_variant(method), row.settings = method->settings;
+    row.algo = method->algo, row.variant = trial_variant(method), row.settings = method->settings;
     row.set = row.front = row.remark = "";
     row.spread = row.ms_min = row.ms_q1 = row.ms_median = row.ms_q3 = NAN;
     snprintf(row.scenario, sizeof row.scenario, "%s", scenario);
@@ -107,7 +107,7 @@ static void add_row(Accuracy *accuracy, Row *row)
             ? "short"
             : table_check(&accuracy->table, row->value, row->bound, "%s, %s, %s at %g Hz, %s",
                           row->part, row->algo, row->scenario, row->rate_hz, row->what);
-    method_format(&row->method, method, sizeof method);
+    trial_format(&row->method, method, sizeof method);
     if (!isnan(row->rate_hz)) snprintf(rate, sizeof rate, " --rates %g", row->rate_hz);
     if (*row->set)
         snprintf(set, sizeof set, " --%s %s", strchr(row->set, '.') ? "tfx" : "set", row->set);
@@ -256,7 +256,7 @@ static Result list_points(Work *work, Error *error)
     static const double own[] = {60, 120, 240, 480, 0};
     const BenchOptions *options = work->accuracy->options;
     const Method *asked = &options->method;
-    bool one = asked->algo && !method_is_default(asked);
+    bool one = asked->algo && !trial_is_default(asked);
     double rates[EXPERIMENT_RATES];
     int count = list_rates(options, own, rates);
     work->points = calloc((size_t)(WORTH_COUNT * count), sizeof *work->points);
@@ -277,13 +277,13 @@ static Result find_error(const Accuracy *accuracy, Point *point, Error *error)
     SectionParams params;
     double logs = 0;
     int counted = 0;
-    Result result = method_params(&params, &point->method, "--style 0", error);
+    Result result = trial_params(&params, &point->method, "--style 0", error);
     for (size_t m = 0; m < folder->count && result == RESULT_OK; ++m) {
         double off = NAN;
-        if (!motion_in_mean(folder, &folder->motions[m])) continue;
+        if (!trial_in_mean(folder, &folder->motions[m])) continue;
         if (interrupt_requested()) result = error_set(error, RESULT_INTERRUPTED, "interrupted");
         THEN(result,
-             motion_error(&off, accuracy->gpu, &folder->motions[m], &params, point->rate, error));
+             trial_error(&off, accuracy->gpu, &folder->motions[m], &params, point->rate, error));
         logs += log(off), ++counted;
     }
     params_destroy_section(&params);
@@ -318,7 +318,7 @@ static Result time_points(Work *work, const Strands *strands, Error *error)
             SectionParams params;
             Trial trial = {0};
             if (interrupt_requested()) return error_set(error, RESULT_INTERRUPTED, "interrupted");
-            Result result = method_params(&params, &point->method, "--style 0", error);
+            Result result = trial_params(&params, &point->method, "--style 0", error);
             THEN(result, trial_create(&trial, work->accuracy->gpu, strands, 0, &params, point->rate,
                                       error));
             if (result == RESULT_OK) time_frames(&trial, point);
@@ -404,7 +404,7 @@ static Result run_parts(Accuracy *accuracy, Error *error)
 {
     const BenchOptions *options = accuracy->options;
     Method methods[METHODS_MOST];
-    int method_count = method_list(&options->method, methods);
+    int method_count = trial_list(&options->method, methods);
     for (int i = 0; i < EXPERIMENT_COUNT; ++i)
         for (int m = 0; m < method_count && bench_options_part(options, EXPERIMENTS[i].part); ++m)
             TRY(run_method(accuracy, &EXPERIMENTS[i], &methods[m], error));
@@ -424,9 +424,9 @@ Result accuracy_run(const BenchOptions *options, const Gpu *gpu, Error *error)
     Result result = table_open(&accuracy.table, COLUMNS, sizeof COLUMNS / sizeof *COLUMNS, gpu,
                                &options->output, stdout, error);
     THEN(result,
-         motion_read_folder(&accuracy.folder,
-                            options->reference ? options->reference : "tests/data/motion", error));
+         trial_read_folder(&accuracy.folder,
+                           options->reference ? options->reference : "tests/data/motion", error));
     THEN(result, run_parts(&accuracy, error));
-    motion_destroy_folder(&accuracy.folder);
+    trial_destroy_folder(&accuracy.folder);
     return table_close(&accuracy.table, result, error);
 }

@@ -105,7 +105,7 @@ static void list_rows(Rows *rows)
     for (size_t i = 0; i < PARAM_COUNT && rows->params < BENCH_MOST_PARAMS; ++i) {
         const ParamInfo *info = &PARAM_TABLE[i];
         size_t row = rows->params;
-        if (!method_takes(info)) continue;
+        if (!trial_takes(info)) continue;
         snprintf(rows->name[row], NAME_SIZE, "%s", info->name);
         for (char *at = rows->name[row]; *at; ++at)
             if (*at == '_') *at = '-';
@@ -145,7 +145,7 @@ static Result check_settings(const BenchOptions *options, Error *error)
     if (!method.algo && *method.variant)
         return error_set(error, RESULT_USAGE, "--variant '%s' needs --algo", method.variant);
     if (!method.algo) method.algo = "split";
-    Result result = method_params(&params, &method, "", error);
+    Result result = trial_params(&params, &method, "", error);
     params_destroy_section(&params);
     return result;
 }

@@ -2,9 +2,9 @@
 // The command line of tractrix-bench: all that its commands are asked.
 #pragma once
 
-#include "bench/method.h"
 #include "bench/stress.h"
 #include "bench/table.h"
+#include "bench/trial.h"
 #include "gpu/gpu.h"
 
 enum { BENCH_MOST_RATES = 8, BENCH_MOST_PARAMS = 64 };

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "base/error.h"
-#include "bench/method.h"
+#include "bench/trial.h"
 #include "gpu/gpu.h"
 
 #include <jansson.h>

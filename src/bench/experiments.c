@@ -37,7 +37,7 @@ static bool motions_set_up(Setup *setup)
 {
     if ((size_t)setup->number >= setup->folder->count) return false;
     setup->motion = &setup->folder->motions[setup->number];
-    setup->in_all = motion_in_mean(setup->folder, setup->motion);
+    setup->in_all = trial_in_mean(setup->folder, setup->motion);
     snprintf(setup->scenario, sizeof setup->scenario, "%s", setup->motion->name);
     return true;
 }
@@ -45,7 +45,7 @@ static bool motions_set_up(Setup *setup)
 static Result motions_measure(Run *run, Error *error)
 {
     double off = NAN;
-    TRY(motion_follow(&run->trial, run->setup->motion, &off, error));
+    TRY(trial_follow(&run->trial, run->setup->motion, &off, error));
     add_value(run, "error", off);
     return RESULT_OK;
 }
@@ -116,7 +116,7 @@ static Result pendulum_measure(Run *run, Error *error)
         float tip[2][4];
         const float *end = tip[0];
         csv_number(run->setup->csv, row, 1, &time, NULL);
-        motion_advance(trial, NULL, time);
+        trial_advance(trial, NULL, time);
         if (fabs((double)trial->steps - time * trial->rate) > 0.01) continue;
         if (!trial_read_tip(trial, 0, 0, tip)) {
             TRY(trial_read(trial, error));
@@ -161,7 +161,7 @@ static bool static_set_up(Setup *setup)
 static Result rest_measure(Run *run, Error *error)
 {
     const Setup *setup = run->setup;
-    motion_advance(&run->trial, NULL, fmax(REST_S, REST_STEPS / run->trial.rate));
+    trial_advance(&run->trial, NULL, fmax(REST_S, REST_STEPS / run->trial.rate));
     TRY(trial_read(&run->trial, error));
     add_value(run, "error", rms_distance(run->trial.points, setup->exact, setup->n));
     return RESULT_OK;
@@ -199,12 +199,12 @@ static Result drift_measure(Run *run, Error *error)
     double settled[EXPERIMENT_POINTS][3] = {{0}}, before[EXPERIMENT_POINTS][3] = {{0}}, tremor = 0;
     double end = run->setup->seconds, frame = trial->rate > FPS ? round(trial->rate / FPS) : 1;
     int n = run->setup->n;
-    motion_advance(trial, NULL, fmin(SETTLE_S, end / 2));
+    trial_advance(trial, NULL, fmin(SETTLE_S, end / 2));
     TRY(trial_read(trial, error));
     farthest(trial->points, settled, n);
     farthest(trial->points, before, n);
     while ((double)trial->steps < end * trial->rate) {
-        motion_advance(trial, NULL, ((double)trial->steps + frame) / trial->rate);
+        trial_advance(trial, NULL, ((double)trial->steps + frame) / trial->rate);
         TRY(trial_read(trial, error));
         tremor = fmax(tremor, farthest(trial->points, before, n));
     }
@@ -289,7 +289,7 @@ static bool beam_set_up(Setup *setup)
             snprintf(setup->scenario, sizeof setup->scenario, "%s %g, %d links", BEAMS[b].flag + 2,
                      BEAMS[b].stiffness, n);
             snprintf(setup->settings, sizeof setup->settings, "--style 0.5%s --drag 5 %s %g",
-                     method_has(setup->method, "style_stiffness") ? " --style-stiffness 0" : "",
+                     trial_has(setup->method, "style_stiffness") ? " --style-stiffness 0" : "",
                      BEAMS[b].flag, BEAMS[b].stiffness);
             return true;
         }
@@ -341,7 +341,7 @@ static Result stretch_measure(Run *run, Error *error)
     const Motion *motion = run->setup->motion;
     double most = 0;
     for (size_t f = 1; f < motion->frame_count; ++f) {
-        motion_advance(&run->trial, motion, motion->frames[f].time);
+        trial_advance(&run->trial, motion, motion->frames[f].time);
         TRY(trial_read(&run->trial, error));
         double now = greatest_stretch(&run->trial, motion);
         if (!(now <= most)) most = now;
@@ -369,7 +369,7 @@ static bool energy_set_up(Setup *setup)
              styled ? "styled" : "loose");
     snprintf(setup->settings, sizeof setup->settings, "--style %s --drag %d%s",
              styled ? "0.5" : "0", drag,
-             method_has(setup->method, "stretch_drawn") ? " --stretch-drawn true" : "");
+             trial_has(setup->method, "stretch_drawn") ? " --stretch-drawn true" : "");
     return setup->number < 12;
 }
 
@@ -494,7 +494,7 @@ static Result rate_measure(Run *run, Error *error)
     const Motion *motion = run->setup->motion;
     double sum = 0;
     for (int f = 0; f < RATE_FRAMES; ++f) {
-        motion_advance(&run->trial, motion, (f + 1.0) / RATE_FPS);
+        trial_advance(&run->trial, motion, (f + 1.0) / RATE_FPS);
         TRY(trial_read(&run->trial, error));
         if (run->finest) memcpy(finest[f], run->trial.points, (size_t)motion->n * sizeof **finest);
         for (int j = 1; j < motion->n; ++j)
@@ -523,7 +523,7 @@ static Result scale_measure(Run *run, Error *error)
 {
     static float metres[EXPERIMENT_RATES][SCALE_N][3];
     double sum = 0;
-    motion_advance(&run->trial, NULL, SCALE_STEPS / run->trial.rate);
+    trial_advance(&run->trial, NULL, SCALE_STEPS / run->trial.rate);
     TRY(trial_read(&run->trial, error));
     for (int i = 0; i < 3 * SCALE_N; ++i) {
         float x = (float)((double)run->trial.points[i / 3][i % 3] / run->setup->units);
@@ -562,7 +562,7 @@ const int EXPERIMENT_COUNT = sizeof EXPERIMENTS / sizeof *EXPERIMENTS;
 bool experiments_set_up(const Experiment *experiment, const MotionFolder *folder,
                         const Method *method, double seconds, int number, Setup *setup)
 {
-    if (experiment->param && !method_has(method, experiment->param)) return false;
+    if (experiment->param && !trial_has(method, experiment->param)) return false;
     *setup = (Setup){.strand_count = 1, .drag = NAN, .units = 1, .beam_drop = NAN};
     setup->seconds = seconds;
     setup->folder = folder, setup->method = method, setup->number = number;
@@ -577,7 +577,7 @@ static void scale_params(SectionParams *params, double units)
         const ParamInfo *info = &PARAM_TABLE[i];
         bool length = strcmp(info->unit, "m") == 0 || strcmp(info->unit, "cm") == 0 ||
                       strcmp(info->unit, "m/s2") == 0;
-        if (!length || !method_takes(info) || info->kind != PARAM_FLOAT) continue;
+        if (!length || !trial_takes(info) || info->kind != PARAM_FLOAT) continue;
         float *value = (float *)(void *)((char *)params + info->offset);
         *value *= (float)units;
     }
@@ -589,7 +589,7 @@ static Result start(Run *run, const Gpu *gpu, const SectionParams *params, doubl
     const Setup *setup = run->setup;
     double points[EXPERIMENT_POINTS][3];
     Strands strands = {0};
-    if (setup->motion) return motion_start(&run->trial, gpu, setup->motion, params, rate, error);
+    if (setup->motion) return trial_start(&run->trial, gpu, setup->motion, params, rate, error);
     for (int i = 0; i < 3 * EXPERIMENT_POINTS; ++i)
         points[i / 3][i % 3] = setup->units * setup->points[i / 3][i % 3];
     TRY(trial_make_strands(&strands, (const double(*)[3])points, setup->strand_count, setup->n,
@@ -607,7 +607,7 @@ Result experiments_run(const Experiment *experiment, Run *run, const Gpu *gpu, d
     run->trial = (Trial){0};
     run->value_count = 0;
     if (interrupt_requested()) return error_set(error, RESULT_INTERRUPTED, "interrupted");
-    Result result = method_params(&params, run->method, run->setup->settings, error);
+    Result result = trial_params(&params, run->method, run->setup->settings, error);
     if (!isnan(run->setup->drag)) params.drag = (float)run->setup->drag;
     scale_params(&params, run->setup->units);
     THEN(result, start(run, gpu, &params, rate, error));

@@ -3,8 +3,7 @@
 // known exactly, in one table. accuracy.h runs them with every solver.
 #pragma once
 
-#include "bench/method.h"
-#include "bench/motion.h"
+#include "bench/trial.h"
 
 enum {
     EXPERIMENT_POINTS = 256,

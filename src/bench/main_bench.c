@@ -7,10 +7,15 @@
 #include "bench/accuracy.h"
 #include "bench/images.h"
 #include "bench/scenes.h"
-#include "bench/shaders.h"
 #include "bench/speed.h"
 #include "bench/stress.h"
 #include "bench/test_vectors.h"
+#include "draw/renderer.h"
+#include "gen/strands_make.h"
+#include "sim/follow.h"
+#include "sim/inbetween.h"
+#include "sim/pose.h"
+#include "sim/simulation.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -26,11 +31,250 @@ static Result run_stress(const BenchOptions *arguments, const Gpu *gpu, Error *e
     return stress_search(gpu, &options, &arguments->output, stdout, error);
 }
 
+// --- Compiles every shader variant that the programs can ask for, with warnings as errors: a line
+// each; RESULT_FAILED with the first message if one fails, after all.
+
+static void report(const char *what, Result result, const Error *why, Result *worst, FILE *stream,
+                   Error *error)
+{
+    fprintf(stream, "%-40s %s\n", what, result == RESULT_OK ? "ok" : why->text);
+    if (result == RESULT_OK || *worst != RESULT_OK) return;
+    *worst = result;
+    *error = *why;
+}
+
+static Result try_program(const char *file, const ShaderDefine *defines, Error *error)
+{
+    GLuint program;
+    TRY(shader_build_compute(&program, file, defines, error));
+    glDeleteProgram(program);
+    return RESULT_OK;
+}
+
+static Result try_solver(const Gpu *gpu, const SolverType *type, const char *variant,
+                         uint32_t vertices, float style, Error *error)
+{
+    Strands strands = {0};
+    Hair hair = {0};
+    Solver solver = {0};
+    StrandsRecipe recipe = strands_recipe_default(STRANDS_STYLE_RANDOM);
+    recipe.count = 4, recipe.vertices = vertices;
+    const SectionParams params = {.algo = (char *)type->name,
+                                  .variant = (char *)variant,
+                                  .style = style,
+                                  .style_stiffness = 100,
+                                  .clamped = style < 1 ? 1 : 2,
+                                  // Springs with bending and without.
+                                  .chain_bend = style < 1 ? 10 : 0};
+    Result result = strands_make(&strands, &recipe, error);
+    THEN(result, hair_create(&hair, &strands, 0, &gpu->limits, error));
+    const SolverSetup setup = {
+        .gpu = gpu, .hair = &hair, .params = &params, .sheltered = style == 1};
+    THEN(result, solver_create(&solver, &setup, error));
+    solver_destroy(&solver);
+    hair_destroy(&hair);
+    strands_destroy(&strands);
+    return result;
+}
+
+static Result try_inbetween(const Gpu *gpu, Error *error)
+{
+    const Hair bald = {0};
+    Inbetween inbetween;
+    Result result = inbetween_create(&inbetween, gpu, &bald, error);
+    inbetween_destroy(&inbetween);
+    return result;
+}
+
+static void try_solvers(const Gpu *gpu, Result *worst, FILE *stream, Error *error)
+{
+    static const struct {
+        uint32_t vertices;
+        float style;
+    } shapes[] = {
+        {8, 0.5f}, {8, 0}, {8, 1}, {64, 0.5f}}; // in registers and not, each mix of the style
+    for (const SolverType *const *type = SOLVER_TYPES; *type; ++type)
+        for (int v = 0; v == 0 || (*type)->variants[v]; ++v)
+            for (size_t i = 0; i < sizeof shapes / sizeof *shapes; ++i) {
+                const char *variant = (*type)->variants[v] ? (*type)->variants[v] : "";
+                char what[64];
+                Error why = {{0}};
+                snprintf(what, sizeof what, "%s %s, %u vertices, style %g", (*type)->name, variant,
+                         shapes[i].vertices, (double)shapes[i].style);
+                report(what,
+                       try_solver(gpu, *type, variant, shapes[i].vertices, shapes[i].style, &why),
+                       &why, worst, stream, error);
+            }
+}
+
+static Result try_follow(const Gpu *gpu, FollowMode mode, Error *error)
+{
+    Strands strands = {0};
+    Hair hair = {0};
+    Follow follow = {0};
+    StrandsRecipe recipe = strands_recipe_default(STRANDS_STYLE_FUR);
+    recipe.count = 4;
+    const SectionParams params = {.followers = 1, .follow = (int)mode};
+    Result result = strands_make(&strands, &recipe, error);
+    THEN(result, hair_create(&hair, &strands, 0, &gpu->limits, error));
+    THEN(result, follow_create(&follow, gpu, NULL, &hair, &strands, &params, 1, error));
+    follow_destroy(&follow);
+    hair_destroy(&hair);
+    strands_destroy(&strands);
+    return result;
+}
+
+// Loops over lights and shadow maps unrolled, for as many as scenes often have and for the most.
+static Result try_light_counts(LookPrograms *programs, Error *error)
+{
+    static const struct {
+        int lights, maps;
+    } counts[] = {{1, 0}, {2, 0}, {2, 1}, {4, 4}};
+    static const unsigned features[] = {0, LOOK_SHADOW_DOM,
+                                        LOOK_SHADOW_DOM | LOOK_SHADOW_BY_MESH | LOOK_LIGHTS,
+                                        LOOK_MARSCHNER | LOOK_SHADOW_APPROX};
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; ++i) {
+        look_programs_count(programs, counts[i].lights, counts[i].maps);
+        for (size_t k = 0; k < sizeof features / sizeof *features; ++k)
+            if (counts[i].maps || !(features[k] & (LOOK_SHADOW_DOM | LOOK_SHADOW_APPROX)))
+                TRY(look_programs_build(programs, features[k], error));
+    }
+    look_programs_count(programs, 0, 0);
+    return RESULT_OK;
+}
+
+// The table of marschner shading, and every way that hair can look.
+static Result try_looks(Renderer *renderer, Error *error)
+{
+    LookPrograms *programs = renderer->raster == RASTER_QUADS ? &renderer->quads.hair.project
+                                                              : &renderer->blocks.project;
+    GLuint texture;
+    static const unsigned others[] = {LOOK_SHADOW_APPROX,
+                                      LOOK_SHADOW_DOM,
+                                      LOOK_SHADOW_DOM | LOOK_SHADOW_FOUND,
+                                      LOOK_SHADOW_DOM | LOOK_SHADOW_FOUND | LOOK_SHADOW_BY_MESH,
+                                      LOOK_SHADOW_APPROX | LOOK_SHADOW_BY_MESH,
+                                      LOOK_SHADOW_DOM | LOOK_SHADOW_BY_MESH | LOOK_LIGHTS,
+                                      LOOK_WHITE,
+                                      LOOK_WHITE | LOOK_PAINT,
+                                      LOOK_TANGENT,
+                                      LOOK_STRAND,
+                                      LOOK_SMOOTH,
+                                      LOOK_SMOOTH | LOOK_PAINT};
+    TRY(scatter_tables_find(&renderer->picture.scatter, 1.5f, 0.2f, &texture, error));
+    for (unsigned features = 0; features < LOOK_SHADOW_APPROX; ++features)
+        if ((features & (LOOK_MARSCHNER | LOOK_GAUSS)) != LOOK_GAUSS) // which does not count alone
+            TRY(look_programs_build(programs, features, error));
+    for (size_t i = 0; i < sizeof others / sizeof *others; ++i)
+        TRY(look_programs_build(programs, others[i], error));
+    if (renderer->options.shadow.kind == SHADOW_NONE) return RESULT_OK;
+    return try_light_counts(programs, error);
+}
+
+// What the options' shadows and floor are drawn by, and culling.
+static Result try_shadows(Renderer *renderer, Error *error)
+{
+    const RendererOptions *options = &renderer->options;
+    bool shadows = options->shadow.kind != SHADOW_NONE;
+    for (unsigned variant = 0; variant < CAST_VARIANTS && shadows; ++variant)
+        TRY(hair_shadow_build(&renderer->shadow.hair, variant, error));
+    if (shadows) TRY(shadows_reserve_mesh(&renderer->shadow, 1, error));
+    TRY(render_floor_build(&renderer->base.floor, error));
+    for (int count = 0; count <= 2; count += 2) {
+        render_base_count(&renderer->base, count, shadows ? count : 0);
+        TRY(render_base_build_light(&renderer->base, options->shadow.kind, error));
+        for (int area = 0; area < 3; ++area)
+            TRY(render_base_build(&renderer->base, (BaseArea)area, options->floor.kind,
+                                  options->shadow.kind, error));
+    }
+    for (unsigned variant = 0; variant < CULL_VARIANTS && renderer->raster == RASTER_BLOCKS;
+         ++variant)
+        TRY(render_cull_build(&renderer->blocks.cull, variant, error));
+    return RESULT_OK;
+}
+
+static Result try_renderer(const Gpu *gpu, Raster raster, const RendererOptions *pictures,
+                           Error *error)
+{
+    Renderer renderer;
+    GpuTimer timer;
+    float corners[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+          normals[3][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+    uint32_t triangle[1][3] = {{0, 1, 2}};
+    const Mesh mesh = {.vertex_count = 3,
+                       .triangle_count = 1,
+                       .position = corners,
+                       .normal = normals,
+                       .triangle = triangle};
+    RendererOptions options = *pictures;
+    options.raster = raster;
+    options.width = options.height = 16;
+    gpu_timer_create(&timer, false, true);
+    TRY(renderer_create(&renderer, gpu, &timer, &options, error));
+    Result result = renderer_set_mesh(&renderer, &mesh, (const float[3]){1, 1, 1}, error);
+    THEN(result, try_looks(&renderer, error));
+    THEN(result, try_shadows(&renderer, error));
+    renderer_destroy(&renderer);
+    return result;
+}
+
+static void try_renderers(const Gpu *gpu, Result *worst, FILE *stream, Error *error)
+{
+    static const struct {
+        const char *name;
+        RendererOptions options;
+    } pictures[] = {
+        {"opaque", {.background = {0, 0, 0, 1}, .tone = TONE_FILMIC}},
+        {"transparent, 2 x 2", {.tone = TONE_REINHARD, .samples = 2}},
+        {"16 bits", {.kind = IMAGE_16}},
+        {"floats, 2 x 2", {.kind = IMAGE_FLOAT, .samples = 2}},
+        {"floor", {.floor = {.kind = FLOOR_PLANE}}},
+        {"floor, dom", {.shadow = {SHADOW_DOM, 64, 200}, .floor = {.kind = FLOOR_PLANE}}},
+        {"catcher, approx", {.shadow = {SHADOW_APPROX, 64, 200}, .floor = {.kind = FLOOR_SHADOW}}},
+        {"coverage", {.aov = AOV_COVERAGE}},
+        {"depth", {.aov = AOV_DEPTH, .kind = IMAGE_FLOAT}},
+        {"tangent", {.aov = AOV_TANGENT, .kind = IMAGE_16}}};
+    for (size_t i = 0; i < sizeof pictures / sizeof *pictures; ++i)
+        for (Raster raster = RASTER_QUADS; raster <= RASTER_BLOCKS; ++raster) {
+            char what[64];
+            Error why = {{0}};
+            snprintf(what, sizeof what, "renderer, %s, %s",
+                     raster == RASTER_QUADS ? "quads" : "blocks", pictures[i].name);
+            report(what, try_renderer(gpu, raster, &pictures[i].options, &why), &why, worst, stream,
+                   error);
+        }
+}
+
 static Result run_shaders(const BenchOptions *arguments, const Gpu *gpu, Error *error)
 {
+    FILE *stream = stdout;
     (void)arguments;
-    return shaders_check(gpu, stdout, error);
+    static const ShaderDefine strand[] = {{"GROUP_SIZE", 8}, {"TIP", 0}, {NULL, 0}},
+                              tip[] = {{"GROUP_SIZE", 8}, {"TIP", 1}, {NULL, 0}};
+    static const struct {
+        const char *file;
+        const ShaderDefine *defines;
+    } checks[] = {{"bench/check_step.comp", NULL},
+                  {"bench/check_chain.comp", NULL},
+                  {"bench/stress.comp", strand},
+                  {"bench/stress.comp", tip}};
+    Result worst = RESULT_OK;
+    Error why = {{0}};
+    shader_treat_warnings_as_errors(true);
+    for (size_t i = 0; i < sizeof checks / sizeof *checks; ++i)
+        report(checks[i].file, try_program(checks[i].file, checks[i].defines, &why), &why, &worst,
+               stream, error);
+    report("sim/inbetween.comp", try_inbetween(gpu, &why), &why, &worst, stream, error);
+    try_solvers(gpu, &worst, stream, error);
+    for (FollowMode mode = FOLLOW_OFFSET; mode <= FOLLOW_INTERPOLATE; ++mode)
+        report(mode == FOLLOW_OFFSET ? "followers, offset" : "followers, interpolated",
+               try_follow(gpu, mode, &why), &why, &worst, stream, error);
+    try_renderers(gpu, &worst, stream, error);
+    shader_treat_warnings_as_errors(false);
+    return worst;
 }
+
+// --- The commands.
 
 static const struct {
     const char *name;

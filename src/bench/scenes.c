@@ -62,7 +62,7 @@ static Result add_section(Scene *scene, Strands *strands, const SceneKind *kind,
     const Method still = {"none", "", ""};
     SectionParams params;
     Result result =
-        method_params(&params, kind->rest[i] == STATIC ? &still : &row->method, "", error);
+        trial_params(&params, kind->rest[i] == STATIC ? &still : &row->method, "", error);
     params.sleep = kind->rest[i] == SLEEPS ? 1 : 0;
     params.followers = kind->followers;
     params.follow = (int)kind->mode;
@@ -142,11 +142,11 @@ Result scenes_run(const BenchOptions *options, const Gpu *gpu, Error *error)
     Method method = options->method;
     char words[160];
     if (!method.algo) method.algo = "split";
-    method_format(&method, words, sizeof words);
+    trial_format(&method, words, sizeof words);
     Result result = table_open(&table, COLUMNS, sizeof COLUMNS / sizeof *COLUMNS, gpu,
                                &options->output, stdout, error);
     for (size_t i = 0; i < sizeof SCENES / sizeof *SCENES && result == RESULT_OK; ++i) {
-        Row row = {.scene = SCENES[i].name, .variant = method_variant(&method), .method = method};
+        Row row = {.scene = SCENES[i].name, .variant = trial_variant(&method), .method = method};
         row.algo = method.algo;
         row.set = options->set ? options->set : "10k16";
         snprintf(row.command, sizeof row.command, "tractrix-bench scenes %s --set %s", words,

@@ -91,7 +91,7 @@ static void add_row(Speed *speed, Row *row)
     char method[256] = "", hair[128] = "", size[64] = "";
     double least = row->ms_min;
     row->algo = row->method.algo, row->settings = row->method.settings;
-    row->variant = *row->method.algo ? method_variant(&row->method) : "";
+    row->variant = *row->method.algo ? trial_variant(&row->method) : "";
     row->ns_particle = row->particles ? least * 1e6 / (double)row->particles : NAN;
     if (row->bytes) row->gb_s = (double)row->bytes / least * 1e-6;
     row->bandwidth_share = speed->bandwidth > 0 ? row->gb_s / speed->bandwidth : NAN;
@@ -100,7 +100,7 @@ static void add_row(Speed *speed, Row *row)
                                      row->hair, row->method.algo)
                        : table_check(&speed->table, row->off, row->off_bound,
                                      "%s, %s: off the GPU's strands", row->hair, row->remark);
-    if (*row->method.algo) method_format(&row->method, method, sizeof method);
+    if (*row->method.algo) trial_format(&row->method, method, sizeof method);
     if (row->set) snprintf(hair, sizeof hair, " --set %s", row->set);
     if (row->file) snprintf(hair, sizeof hair, " --tfx %s", row->file);
     if (!isnan(row->draw_ms_min))
@@ -217,7 +217,7 @@ static Result measure(Row *row, const Gpu *gpu, const Strands *strands, const Be
     Simulation simulation = {0};
     count_strands(row, strands);
     gpu_timer_create(&timer, false, true);
-    Result result = method_params(&params, &row->method, "", error);
+    Result result = trial_params(&params, &row->method, "", error);
     THEN(result, scene_create(&scene, error));
     params.sleep = 0; // every step is one
     params.followers = 0;
@@ -282,7 +282,7 @@ static const struct {
 
 static Result measure_set(Speed *speed, Row *row, const Strands *strands, Error *error)
 {
-    bool plain = method_is_default(&row->method);
+    bool plain = trial_is_default(&row->method);
     bool thesis = plain || strcmp(row->method.variant, "thesis") == 0;
     TRY(measure(row, speed->gpu, strands, speed->options, error));
     for (size_t i = 0; i < sizeof STATED / sizeof *STATED && row->set; ++i) {
@@ -329,7 +329,7 @@ static Result compare_split(const Gpu *gpu, const Strands *strands, CpuSplit *sp
     Trial trial = {0};
     float(*own)[3] = calloc(strands->vertex_count, sizeof *own);
     double sum = 0, length = cpu_split_length(split);
-    Result result = own ? method_params(&params, &method, "", error)
+    Result result = own ? trial_params(&params, &method, "", error)
                         : error_set(error, RESULT_FAILED, "no memory for positions");
     THEN(result, trial_create(&trial, gpu, strands, 0, &params, RATE, error));
     for (int i = 0; i < (int)RATE && result == RESULT_OK; ++i) {
@@ -381,7 +381,7 @@ static Result measure_split(Speed *speed, Row *row, const Strands *strands, Erro
     bool alike = true;
     for (uint32_t s = 0; s < strands->strand_count; ++s)
         alike = alike && strands->first[s + 1] - strands->first[s] == strands->first[1];
-    if (strcmp(row->method.algo, "split") != 0 || !method_is_default(&row->method) || !alike)
+    if (strcmp(row->method.algo, "split") != 0 || !trial_is_default(&row->method) || !alike)
         return RESULT_OK;
     TRY(measure_form(speed, row, strands, CPU_SPLIT_SCALAR, error));
     return measure_form(speed, row, strands, CPU_SPLIT_LANES, error);
@@ -561,7 +561,7 @@ Result speed_run(const BenchOptions *options, const Gpu *gpu, Error *error)
     bool sets = !options->parts && (options->set || options->tfx);
     for (int i = 0; i < PART_COUNT; ++i) names[i] = PARTS[i].name;
     TRY(bench_options_check_parts(options, names, error));
-    speed.method_count = method_list(&options->method, speed.methods);
+    speed.method_count = trial_list(&options->method, speed.methods);
     Result result = table_open(&speed.table, COLUMNS, sizeof COLUMNS / sizeof *COLUMNS, gpu,
                                &options->output, stdout, error);
     for (int i = 0; i < PART_COUNT; ++i)

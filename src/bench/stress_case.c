@@ -2,7 +2,7 @@
 #include "bench/stress_case.h"
 #include "base/double3.h"
 #include "base/suggest.h"
-#include "bench/method.h"
+#include "bench/trial.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -87,8 +87,8 @@ static const Field *list_fields(int *count)
         made = STRESS_PARAMS;
         for (size_t i = 0; i < PARAM_COUNT && made < STRESS_MOST_FIELDS; ++i) {
             ParamKind kind = PARAM_TABLE[i].kind;
-            if (method_takes(&PARAM_TABLE[i]) && (kind == PARAM_FLOAT || kind == PARAM_INT ||
-                                                  kind == PARAM_BOOL || kind == PARAM_CHOICE))
+            if (trial_takes(&PARAM_TABLE[i]) && (kind == PARAM_FLOAT || kind == PARAM_INT ||
+                                                 kind == PARAM_BOOL || kind == PARAM_CHOICE))
                 fields[made++] = find_param(&PARAM_TABLE[i]);
         }
     }

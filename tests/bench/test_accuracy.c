@@ -59,19 +59,20 @@ static void hair_that_stays_is_as_far_off_as_the_motion_goes(void **state)
     Error error;
     Motion motion;
     double sum = 0, counted = 0;
-    assert_int_equal(motion_read(&motion, "tests/data/motion", "c_root2Hz_n16_c4", &error), 0);
+    assert_int_equal(trial_read_motion(&motion, "tests/data/motion", "c_root2Hz_n16_c4", &error),
+                     0);
     assert_int_equal(motion.n, 16);
-    assert_true(fabs(motion_root(&motion, 0.25) - 0.04) < 1e-12);
+    assert_true(fabs(trial_root(&motion, 0.25) - 0.04) < 1e-12);
     for (size_t f = 1; f < motion.frame_count; ++f)
         for (int j = 1; motion.frames[f].followed && j < motion.n; ++j, counted += 1.0 / 15)
             for (int k = 0; k < 3; ++k) {
-                double root = k == 0 ? motion_root(&motion, motion.frames[f].time) : 0;
+                double root = k == 0 ? trial_root(&motion, motion.frames[f].time) : 0;
                 double r = motion.frames[f].points[j][k] - motion.frames[0].points[j][k] - root;
                 sum += r * r / 15;
             }
     double still = reference_error("c_root2Hz_n16_c4", "none", "", 1, NULL);
     assert_true(fabs(still / (sqrt(sum / counted) / motion.length) - 1) < 1e-5);
-    motion_destroy(&motion);
+    trial_destroy_motion(&motion);
 }
 
 static void bad_motions_are_refused(void **state)
@@ -80,11 +81,12 @@ static void bad_motions_are_refused(void **state)
     Error error;
     Motion motion;
     MotionFolder folder;
-    assert_int_equal(motion_read(&motion, "tests/data", "scene_full", &error), RESULT_BAD_INPUT);
+    assert_int_equal(trial_read_motion(&motion, "tests/data", "scene_full", &error),
+                     RESULT_BAD_INPUT);
     assert_non_null(strstr(error.text, "scene_full.json: n: "));
-    assert_int_equal(motion_read(&motion, "tests/data", "nothing", &error), RESULT_BAD_INPUT);
-    assert_int_equal(motion_read_folder(&folder, "tests/golden", &error), RESULT_BAD_INPUT);
-    motion_destroy_folder(&folder);
+    assert_int_equal(trial_read_motion(&motion, "tests/data", "nothing", &error), RESULT_BAD_INPUT);
+    assert_int_equal(trial_read_folder(&folder, "tests/golden", &error), RESULT_BAD_INPUT);
+    trial_destroy_folder(&folder);
 }
 
 int main(void)
