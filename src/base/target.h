@@ -14,7 +14,7 @@ typedef enum TargetKind {
 
 typedef struct Target {
     TargetKind kind;
-    char *before; // the name up to the frame number; the whole name of a still or a video
+    char *before; // the name up to the frame number; the full name of a still or a video
     char *after;  // the name behind the number, with the suffix
     bool floats;  // the files are PFM, not PNG
     int digits;   // the number is padded with zeros to this length

@@ -30,7 +30,7 @@ static bool add_offset(uint64_t **offsets, uint32_t *count, uint32_t *room, uint
     return true;
 }
 
-// The chunk at `at`, which must have this tag. *end: where the next one begins.
+// Reads the chunk at `at`, which must have this tag. *end: offset of the next one.
 static Result read_part(CacheFile *cache, uint64_t at, const char *tag, Bytes *payload,
                         uint64_t *end, Error *error)
 {
@@ -43,7 +43,7 @@ static Result read_part(CacheFile *cache, uint64_t at, const char *tag, Bytes *p
     return chunk_read(&cache->file, &chunk, payload, error);
 }
 
-// By the index at the end; false if there is none that is whole.
+// Reads the index at the end; false if there is none or it is damaged.
 static bool read_index(CacheFile *cache)
 {
     struct {
@@ -68,7 +68,7 @@ static bool read_index(CacheFile *cache)
     return good;
 }
 
-// Chunk by chunk from `at`, as far as they are whole and in order.
+// Finds the frames chunk by chunk from `at`, as far as they are complete and in order.
 static Result scan(CacheFile *cache, uint64_t at, Error *error)
 {
     cache->frame_count = 0;
@@ -183,7 +183,7 @@ static Result fail_to_write(const CacheWriter *writer, int reason, Error *error)
     return error_set(error, RESULT_FAILED, "%s: cannot write: %s", writer->path, strerror(reason));
 }
 
-// Puts what was written before the file's eyes; the reason if some of it could not be.
+// Flushes; the error gives the reason.
 static Result flush(CacheWriter *writer, Error *error)
 {
     errno = 0;

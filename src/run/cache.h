@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A simulation's frames in a file: what is drawn of the guides, and where the head is, bit for bit
+// A simulation's frames in a file: drawn positions of the guides and the head's pose, bit for bit
 // (docs/cache.md). One process writes, any number reads, any frame without the others.
 #pragma once
 
@@ -26,21 +26,21 @@ typedef struct CacheFile {
     Error end; // why there are no more, if that is not the file's proper end
 } CacheFile;
 
-// Whether the file begins like a cache; false, too, if it can't be read.
+// Whether the file begins like a cache; false also if it can't be read.
 bool cache_file_matches(const char *path);
 
-// Opens a cache, finished or not. RESULT_BAD_INPUT with one line about what is wrong with the file,
+// Opens a cache, finished or not. RESULT_BAD_INPUT with one line about the file's defect,
 // RESULT_FAILED when memory is short. A zeroed struct may be closed.
 Result cache_file_open(CacheFile *cache, const char *path, Error *error);
 void cache_file_close(CacheFile *cache);
 
-// Whether the frames 0 .. last are there (they may yet turn out to be damaged); RESULT_BAD_INPUT
-// with the number of whole frames and where and why they end.
+// Checks that the file has frames 0 .. last (without reading them). RESULT_BAD_INPUT with the
+// complete frames and where and why they end.
 Result cache_file_check(const CacheFile *cache, int last, Error *error);
 
-// The head's rotation (unit quaternion x, y, z, w) and translation, and the positions of so many
-// vertices in the order of `hair`. RESULT_BAD_INPUT with frame and place if it is missing or
-// damaged.
+// The head's rotation (unit quaternion x, y, z, w) and translation, and the positions of
+// `vertex_count` vertices in the order of `hair`. RESULT_BAD_INPUT with frame and place if it is
+// missing or damaged.
 Result cache_file_read(CacheFile *cache, int frame, float head[CACHE_HEAD_FLOATS],
                        float (*positions)[3], uint64_t vertex_count, Error *error);
 
@@ -91,8 +91,8 @@ Result cache_reader_open(CacheReader *reader, const char *path, const Simulation
                          const Strands *strands, Error *error);
 void cache_reader_close(CacheReader *reader);
 
-// Whether the frames 0 .. last are there (they may yet turn out to be damaged); RESULT_BAD_INPUT
-// with the number of whole frames and where and why they end.
+// Checks that the file has frames 0 .. last (without reading them). RESULT_BAD_INPUT with the
+// complete frames and where and why they end.
 Result cache_reader_check(const CacheReader *reader, int last, Error *error);
 
 // Shows the frame: simulation_show. RESULT_BAD_INPUT with frame and place if it is missing or

@@ -8,7 +8,7 @@
 
 // --- Values.
 
-// Parameters of the groups that count which yet change nothing of the guides' motion.
+// Parameters of the groups below that do not change the guides' motion.
 static const char *const HARMLESS[] = {"frames",          "followers", "follow",
                                        "follower_radius", "sdf_cache", "tip_separation"};
 

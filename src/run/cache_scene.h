@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a simulation depends on, as it is told in caches and saved states, so that none is used with
-// another scene. docs/cache.md has the formats.
+// What a simulation depends on, as caches and saved states record it, so that none is used with
+// another scene. Formats: docs/cache.md.
 #pragma once
 
 #include "base/bytes.h"
@@ -8,7 +8,7 @@
 
 // The scene's values that move the guides, as JSON: those of the groups Simulation and Forces, the
 // head, keyed forces, colliders, a checksum of the mesh that hair collides with. Not files (their
-// content is told below), the camera, looks, followers and the length of the sequence.
+// content is recorded below), the camera, looks, followers and the length of the sequence.
 // RESULT_FAILED when memory is short.
 Result cache_scene_describe(Bytes *text, const Simulation *simulation, Error *error);
 

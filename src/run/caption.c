@@ -13,7 +13,7 @@ static const char *const WORDS[WORD_COUNT] = {"frame", "time", "file", "solver"}
 // Lines of stb_easy_font are 12 units high.
 enum { LINE_UNITS = 12, QUADS_MAX = 12 * CAPTION_BYTES };
 
-// The word at the beginning of `text`; WORD_COUNT for something else. `length`: up to the comma.
+// The word at the beginning of `text`; WORD_COUNT if unknown. `length`: up to the comma.
 static Word find_word(const char *text, size_t *length)
 {
     *length = strcspn(text, ",");

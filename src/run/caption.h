@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A line of text in the lower left corner of a picture: what frame it is, of what.
+// A line of text in the lower left corner of an image: frame, time, file, solver.
 #pragma once
 
 #include "image/image.h"
@@ -15,6 +15,6 @@ Result caption_check(const char *words, Error *error);
 // cut at CAPTION_BYTES. Empty if there is none.
 void caption_write(char text[CAPTION_BYTES], const Scene *scene, int frame);
 
-// Draws ASCII text, white with a black edge, as high as a twentieth of the picture or, in small
+// Draws ASCII text, white with a black edge, as high as a twentieth of the image or, in small
 // ones, 12 pixels; what does not fit is cut off. Of 8 or 16 bits.
 void caption_draw(Image *image, const char *text);

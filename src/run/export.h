@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Hair files of what is drawn: one for each frame, or one USD file for all of them (--export).
+// Hair files of the drawn frames: one per frame, or one USD file for all of them (--export).
 #pragma once
 
 #include "base/target.h"
@@ -39,7 +39,7 @@ Result exporter_create(Exporter *exporter, const char *text, int frame_count,
                        const Simulation *simulation, const Strands *strands, Error *error);
 void exporter_destroy(Exporter *exporter);
 
-// Writes the positions that are drawn now. Files appear whole or not at all.
+// Writes the positions of the current frame. Files appear complete or not at all.
 Result exporter_write(Exporter *exporter, int frame, Error *error);
 
 // After the last frame.

@@ -33,7 +33,7 @@ static Result write_chunks(const char *path, int frame, const Bytes *scene, cons
     return outfile_commit(&file, error);
 }
 
-// Writes the state after the present frame; the file appears whole or not at all.
+// Writes the state after the current frame; the file appears complete or not at all.
 static Result write_state(const char *path, Simulation *simulation, const Strands *strands,
                           Error *error)
 {
@@ -88,14 +88,14 @@ static Result read_state(Bytes *state, int *frame, const char *path, const Simul
 
 static Result begin_cache(FrameSource *source, const char *path, Error *error)
 {
-    unlink(source->state_path); // of what was there before
+    unlink(source->state_path); // that of an older cache
     Result result =
         cache_writer_open(&source->writer, path, source->simulation, source->strands, error);
     source->writes = result == RESULT_OK;
     return result;
 }
 
-// The state after a frame that the cache holds. If there is none that fits, the simulation begins
+// Finds the state after a frame of the cache. If there is none that fits, the simulation starts
 // again, with the same result.
 static bool find_state(FrameSource *source, FILE *messages, Error *error)
 {

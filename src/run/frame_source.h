@@ -18,7 +18,8 @@ typedef struct FrameSource {
 } FrameSource;
 
 // As the run's parameters cache, from_cache and resume say. `last`: the last frame that will be
-// asked for. What is found and not found of an unfinished cache is told on `messages` (NULL: not).
+// asked for. Reports on `messages` (NULL: none) which part of an unfinished cache
+// is used.
 // All arguments outlive the source. RESULT_BAD_INPUT with one line about a cache that is damaged,
 // too short or of another scene; RESULT_FAILED if it cannot be written.
 Result frame_source_open(FrameSource *source, Simulation *simulation, const Strands *strands,
@@ -29,12 +30,12 @@ Result frame_source_open(FrameSource *source, Simulation *simulation, const Stra
 Result frame_source_look(FrameSource *source, Simulation *simulation, const Strands *strands,
                          int last, Error *error);
 
-// Makes `frame` the present one; frames are asked for in rising order. Those that are `drawn` have
-// their positions written. Frames between, which nobody asks for, are simulated if they have to be.
+// Makes `frame` the current one; frames must be requested in ascending order. Those that are
+// `drawn` have their positions written. Frames between them are simulated if needed.
 // RESULT_INTERRUPTED if the warm-up before frame 0 was; errors as above.
 Result frame_source_go(FrameSource *source, int frame, bool drawn, Error *error);
 
-// Whether `frame` must be asked for, drawn or not, because it has to be simulated.
+// Whether `frame` must be requested, drawn or not, because it has to be simulated.
 bool frame_source_needs(const FrameSource *source, int frame);
 
 // After the last frame: ends the cache, and removes the saved state if the sequence is complete.

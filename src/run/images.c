@@ -44,8 +44,7 @@ static Result create_items(Images *images, Error *error)
     return RESULT_OK;
 }
 
-// Floats tell the depth in metres; PNG files from what the camera sees nearest to what is farthest,
-// as the first picture has it.
+// --aov depth: floats hold metres; PNG files map the first frame's nearest to farthest distance.
 static void set_depth_range(const Images *images, RendererOptions *options)
 {
     View view;
@@ -54,7 +53,7 @@ static void set_depth_range(const Images *images, RendererOptions *options)
     options->depth_range[0] = view.near_distance;
     options->depth_range[1] = view.far_distance;
     if (!images->scene->run.quiet)
-        fprintf(stderr, "depth: white is %.6g m before the eye, black %.6g m\n",
+        fprintf(stderr, "depth: white is %.6g m from the eye, black %.6g m\n",
                 (double)view.near_distance, (double)view.far_distance);
 }
 

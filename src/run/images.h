@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What draws a run's frames, and where they go: renderer and output, as the scene says.
+// Draws a run's frames: the renderer and the output that the scene asks for.
 #pragma once
 
 #include "draw/renderer.h"
@@ -21,7 +21,7 @@ typedef struct Images {
     Output *output;
 } Images;
 
-// `frame_count`: how many frames will be drawn. The arguments outlive the pictures, which may be
+// `frame_count`: how many frames will be drawn. The arguments outlive the images, which may be
 // destroyed (while the context is current) in each case. Errors of renderer_create, paint_create
 // and output_create.
 Result images_create(Images *images, const Scene *scene, const Assets *assets,

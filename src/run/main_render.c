@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// tractrix-render: from hair files and a scene to images.
+// tractrix-render: simulates the hair of files or scenes and draws it.
 #include "base/clock.h"
 #include "base/interrupt.h"
 #include "base/program.h"

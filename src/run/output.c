@@ -175,7 +175,7 @@ static Result check_options(const OutputOptions *options, const Target *target, 
     bool sheet = is_sheet(options);
     if (sheet && target->kind != TARGET_STILL)
         return error_set(error, RESULT_USAGE,
-                         "%s: a contact sheet is one picture: expected a name ending in .png or "
+                         "%s: a contact sheet is one image: expected a name ending in .png or "
                          ".pfm, without a number",
                          options->target);
     if (target->kind == TARGET_STILL && !sheet && options->frame_count > 1)
@@ -185,7 +185,7 @@ static Result check_options(const OutputOptions *options, const Target *target, 
             options->target);
     if (target->floats != (options->kind == IMAGE_FLOAT) ||
         (target->kind == TARGET_VIDEO && options->kind != IMAGE_8))
-        return error_set(error, RESULT_USAGE, "%s: cannot hold pictures of this depth",
+        return error_set(error, RESULT_USAGE, "%s: cannot store images of this depth",
                          options->target);
     if (options->channels != 3 && options->channels != 4)
         return error_set(error, RESULT_USAGE, "%s: frames of %d channels, expected 3 or 4",

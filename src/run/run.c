@@ -64,7 +64,7 @@ static Result open_gpu(Run *run, Error *error)
     return RESULT_OK;
 }
 
-// A name of files is one of its kind, and holds a share of the frames if no more is asked for.
+// The name must be of a known kind, and with --part stand for a file per frame.
 static Result check_target(const RunParams *run, const char *path,
                            Result (*parse)(Target *target, const char *text, Error *error),
                            Error *error)

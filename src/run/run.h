@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A run of tractrix-render: from a scene to pictures, a cache, hair files and statistics.
+// A run of tractrix-render. This room takes a scene, simulates and draws its frames one after the
+// other, and hands on images or a video, a cache, hair files and statistics: run (set-up and
+// order), sequence (the loop over frames), frame_source (simulation or cache), images and output
+// (drawing and encoding), survey (a look at all frames for the camera), export, stats, help.
 #pragma once
 
 #include "run/images.h"
@@ -24,9 +27,9 @@ typedef struct Run {
     double begin_ms, loaded_ms, ready_ms; // clock_ms
 } Run;
 
-// Opens everything, goes through the frames and finishes what is written. What goes on is told on
-// the standard error, unless the scene says --quiet. Errors of every part; to be called once.
+// Opens everything, goes through the frames and finishes the files. Reports on standard error
+// unless --quiet. Errors of every part; to be called once.
 Result run_go(Run *run, Error *error);
 
-// Without a successful run_go, what was begun is dropped: no half-written file remains.
+// Without a successful run_go, unfinished files are removed.
 void run_destroy(Run *run);

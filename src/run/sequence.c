@@ -34,8 +34,8 @@ static int count_tiles(const RunParams *run)
 }
 
 // A contact sheet of T tiles shows the frames at places floor(i n / T) of n, i = 0 .. T - 1: evenly
-// spaced and, of a whole turn, without its start again at the end. Only the first i with i n / T at
-// or behind a place can lead there.
+// spaced and, of a full turn, without repeating its start at the end. Only the first i with i n / T
+// at or behind a place can lead there.
 static bool is_on_sheet(const RunParams *run, int place)
 {
     int64_t named = count_named(run), tiles = count_tiles(run);
@@ -121,9 +121,8 @@ void sequence_destroy_done(FramesDone *done)
 
 // --- The loop.
 
-// What the loop keeps from one drawn frame to the next. If nothing has moved, and the camera
-// neither, the picture before is the picture. It is kept where that may be so: in the first frame,
-// and in every one that moved nothing.
+// The previous image, which is repeated if neither hair nor camera has moved. It is kept only where
+// that may happen: in the first frame and in frames that moved nothing.
 typedef struct Previous {
     bool any;
     uint64_t changes; // of the simulation, when it was drawn
@@ -149,8 +148,8 @@ static Result remember(Previous *previous, const View *view, const Image *image,
     return RESULT_OK;
 }
 
-// What compiling the solver's shaders has left behind goes back before the first picture needs
-// memory of its own: the peak is 10 MB lower on a CPU driver.
+// Returns memory of shader compilation before the first image is drawn: the peak is 10 MB lower on
+// a CPU driver.
 static void give_back_memory(void)
 {
     glReleaseShaderCompiler();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The main loop: goes through a scene's frames, draws those that are asked for, and hands them to
-// the output.
+// The main loop: goes through a scene's frames, draws the requested ones, and hands them to the
+// output.
 #pragma once
 
 #include "run/export.h"
@@ -10,15 +10,14 @@
 
 // What an interrupted run has left: which of its files are complete (--resume).
 typedef struct FramesDone {
-    bool *done; // [frames]: all files of the frame are whole; NULL: none is
+    bool *done; // [frames]: all files of the frame are complete; NULL: none
     int count;  // how many
 } FramesDone;
 
-// Looks at each frame first .. last by steps of `every`. A picture is whole if it is a PNG file of
-// the run's size and channels whose chunks are complete with right checksums; a hair file if it is
-// there, since those appear complete or not at all. RESULT_USAGE for a video, or a USD file of all
-// frames, without --cache: it cannot be continued, only the simulation behind it can. RESULT_FAILED
-// when memory is short. A zeroed struct may be destroyed.
+// Looks at each frame that the run draws. An image is complete if it is a PNG file of the run's
+// size and channels whose chunks have correct checksums; a hair file if it exists. RESULT_USAGE for
+// a video, or a USD file of all frames, without --cache: only its simulation can be continued.
+// RESULT_FAILED when memory is short. A zeroed struct may be destroyed.
 Result sequence_find_done(FramesDone *done, const RunParams *run, int last, Error *error);
 void sequence_destroy_done(FramesDone *done);
 

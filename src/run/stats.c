@@ -29,7 +29,7 @@ void stats_destroy(Stats *stats)
     *stats = (Stats){0};
 }
 
-// The CPU's name: pictures and times of a CPU driver depend on it.
+// The CPU's name: images and times of a CPU driver depend on it.
 static json_t *processor(void)
 {
     char line[512], name[256] = "unknown";

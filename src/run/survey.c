@@ -30,8 +30,8 @@ typedef struct Survey {
     uint32_t group_count;
     size_t point_count;
     float (*points)[3], (*before)[3], (*first)[3];
-    bool any;         // points are those of some frame ...
-    uint64_t changes; // ... of which the simulation had made so many
+    bool any;         // points were read
+    uint64_t changes; // of the simulation when they were
 } Survey;
 
 bool survey_is_wanted(const Scene *scene)
@@ -149,7 +149,7 @@ static Result look(Survey *survey, SurveyReport *report, Error *error)
     Result result = RESULT_OK;
     for (int frame = 0; frame < survey->scene->run.frames && result == RESULT_OK; ++frame) {
         if (interrupt_requested())
-            return error_set(error, RESULT_INTERRUPTED, "interrupted before the first picture");
+            return error_set(error, RESULT_INTERRUPTED, "interrupted before the first frame");
         result = look_at_frame(survey, report, frame, error);
         ++report->frames;
     }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// A look at everything that a scene will show, before any of it is drawn: for the camera that fits
-// all frames, and to tell how well a turntable closes.
+// Simulates all frames before any is drawn: to fit the camera to them, and to report how well a
+// loop closes.
 #pragma once
 
 #include "gpu/gpu.h"
 #include "scene/assets.h"
 #include "scene/outline.h"
 
-// How far points of hair and mesh move from one picture to another, m.
+// How far points of hair and mesh move from one frame to another, m.
 typedef struct SurveyMove {
     float most, rms;
 } SurveyMove;

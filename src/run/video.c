@@ -33,12 +33,12 @@ struct Video {
 typedef struct Format {
     const char *suffix;
     bool has_alpha, is_even;
-    double fps_shown; // frames beyond so many a second are left out; 0: none are
+    double fps_shown; // maximum frames per second; 0: all
     const char *filter, *filter_alpha;
     const char *arguments[FORMAT_ARGUMENTS];
 } Format;
 
-// Players take BT.709 for granted in videos of this size, ffmpeg makes BT.601 of RGB unless told.
+// Players assume BT.709 for videos of this size; by default ffmpeg converts RGB to BT.601.
 // The bitexact flag keeps out of the conversion what depends on the processor.
 #define TO_YUV                                                                                     \
     "scale=out_color_matrix=bt709:out_range=tv:flags=bicubic+accurate_rnd+bitexact,format="

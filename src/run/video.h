@@ -34,5 +34,5 @@ Result video_finish(Video *video, uint64_t *bytes, Error *error);
 // that is under way in another one then fails.
 void video_kill(Video *video);
 
-// Kills ffmpeg if it still runs and removes what is unfinished. NULL is legal.
+// Kills ffmpeg if it still runs and removes the unfinished file. NULL is legal.
 void video_destroy(Video *video);
