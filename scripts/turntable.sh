@@ -50,7 +50,7 @@ case "$* $(grep -ao '"wind"' "$asset" 2>/dev/null || true)" in # without wind th
 *--wind* | *'"wind"'*) moves="$moves --gust-repeat $turn_s" ;;
 esac
 
-# The picture: a neutral ground, light that stays with the camera, shadows.
+# The image: a neutral background, light that stays with the camera, shadows.
 looks="--turntable 360 --quality final --background #8a8d91 --turn-lights"
 
 # shellcheck disable=SC2086 # lists of words

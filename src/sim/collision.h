@@ -3,7 +3,7 @@
 #pragma once
 
 #include "gpu/shader.h"
-#include "sim/solver.h"
+#include "sim/recipe.h"
 
 #include "glsl/sim/collide_params.h"
 

@@ -3,8 +3,32 @@
 // file with a SolverRecipe and a SolverType, and a line of SOLVERS.
 #pragma once
 
+#include "gpu/gpu_timer.h"
 #include "gpu/shader.h"
-#include "sim/solver.h"
+#include "scene/colliders.h"
+#include "sim/distance_field.h"
+#include "sim/step.h"
+
+// What a solver works on. All of it outlives the solver.
+typedef struct SolverSetup {
+    const Gpu *gpu;
+    GpuTimer *timer; // spans "sim_<name>" and "pose"
+    const Hair *hair;
+    const SectionParams *params;
+    const HeadPose *head;       // at the start; NULL: where the style is
+    const Colliders *colliders; // shapes that hair must not cross; NULL: none
+    const DistanceField *field; // a mesh that it must not cross; NULL: none
+    bool sheltered;             // SolverStep.shelter counts
+} SolverSetup;
+
+// What happened so far, for the statistics.
+typedef struct SolverReport {
+    uint64_t moves_limited; // moves cut because a particle was flung beyond what float32 can follow
+    uint64_t contacts;      // particles that touched a collider in the last step
+    // m: deepest that a particle was in a collider, with its margin, before it was pushed out, and
+    // after.
+    float deepest_found, deepest_left;
+} SolverReport;
 
 // What a strand hands on from one step to the next. Hair starts at rest.
 typedef enum SolverStateKind {

@@ -55,14 +55,6 @@ Result solver_check(const SectionParams *params, Error *error)
     return type ? check_variant(type, params->variant, error) : refuse_type(params->algo, error);
 }
 
-Result solver_check_parameter(const SectionParams *params, const ParamInfo *info, const char *place,
-                              Error *error)
-{
-    if (params_owned_by(info, params->algo)) return RESULT_OK;
-    return error_set(error, RESULT_USAGE, "%s: --algo %s has no such parameter", place,
-                     params->algo);
-}
-
 const char *solver_caution(const SectionParams *params)
 {
     const SolverType *type = find_type(params->algo);

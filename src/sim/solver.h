@@ -2,24 +2,9 @@
 // Solvers: what moves the hair. One interface, one table; what each is made of stands in recipe.h.
 #pragma once
 
-#include "gpu/gpu_timer.h"
-#include "scene/colliders.h"
-#include "sim/distance_field.h"
-#include "sim/step.h"
+#include "sim/recipe.h"
 
 typedef struct SolverType SolverType;
-
-// What a solver works on. All of it outlives the solver.
-typedef struct SolverSetup {
-    const Gpu *gpu;
-    GpuTimer *timer; // spans "sim_<name>" and "pose"
-    const Hair *hair;
-    const SectionParams *params;
-    const HeadPose *head;       // at the start; NULL: where the style is
-    const Colliders *colliders; // shapes that hair must not cross; NULL: none
-    const DistanceField *field; // a mesh that it must not cross; NULL: none
-    bool sheltered;             // SolverStep.shelter counts
-} SolverSetup;
 
 // What the vec4s of a buffer are; w is the solver's own.
 typedef enum SolverBufferKind {
@@ -37,15 +22,6 @@ typedef struct SolverBuffer {
 } SolverBuffer;
 
 enum { SOLVER_MAX_BUFFERS = 4 };
-
-// Events so far, for the statistics.
-typedef struct SolverReport {
-    uint64_t moves_limited; // moves cut because a particle was flung beyond what float32 can follow
-    uint64_t contacts;      // particles that touched a collider in the last step
-    // m: deepest that a particle was in a collider, with its margin, before it was pushed out, and
-    // after.
-    float deepest_found, deepest_left;
-} SolverReport;
 
 enum { SOLVER_MAX_VARIANTS = 4 };
 

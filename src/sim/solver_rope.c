@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sim/recipe.h"
+#include "sim/solver.h"
 
 #include "glsl/sim/rope_params.h"
 

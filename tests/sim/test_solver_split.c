@@ -366,18 +366,6 @@ static void unknown_solvers_and_variants_name_the_nearest(void **state)
     solver_destroy(&solver);
 }
 
-static void parameters_of_other_solvers_are_refused(void **state)
-{
-    (void)state;
-    Error error;
-    const SectionParams params = {.algo = "split", .variant = ""};
-    const ParamInfo *rope = params_find("rope_iterations"), *drag = params_find("drag");
-    assert_int_equal(solver_check_parameter(&params, rope, "--rope-iterations", &error),
-                     RESULT_USAGE);
-    assert_string_equal(error.text, "--rope-iterations: --algo split has no such parameter");
-    assert_int_equal(solver_check_parameter(&params, drag, "--drag", &error), RESULT_OK);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -396,7 +384,6 @@ int main(void)
         cmocka_unit_test(a_flung_tip_is_cut_and_counted),
         cmocka_unit_test(a_strand_beyond_the_drivers_loops_is_refused),
         cmocka_unit_test(unknown_solvers_and_variants_name_the_nearest),
-        cmocka_unit_test(parameters_of_other_solvers_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
