@@ -94,6 +94,16 @@ Result scene_from_arguments(Scene *scene, int argc, char **argv, Error *error);
 // file's folder; in the struct, to the working folder. Hair files are not opened.
 Result scene_read(Scene *scene, const char *path, Error *error);
 
+// What the command line says of values that others depend on; NULL: nothing.
+typedef struct SceneOverrides {
+    const char *quality; // counts instead of the file's
+    const char *algo;    // whose parameters are right in any section
+} SceneOverrides;
+
+// As scene_read, but without scene_check, so that flags may still mend a combination.
+Result scene_read_unchecked(Scene *scene, const char *path, const SceneOverrides *overrides,
+                            Error *error);
+
 // Whether the values fit together: frame range, camera, message flags, device flags, the '%' in an
 // output pattern, names of files. RESULT_USAGE naming the flags in conflict.
 Result scene_check(const Scene *scene, Error *error);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "base/options.h"
 #include "scene/effects.h"
-#include "scene/scene_json.h"
 #include "scene/scene_quality.h"
 
 #include <stdio.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "scene/scene_json.h"
 #include "base/bytes.h"
+#include "scene/scene.h"
 #include "scene/scene_param.h"
 #include "scene/scene_quality.h"
 #include "scene/scene_tracks.h"

@@ -14,6 +14,9 @@ farm() {
 # shellcheck disable=SC2086
 run 0 $scene -q -o "$work/one/"
 
+claim "--help is answered"
+farm --help; says "usage: farm"
+
 claim "shares are whole together, and none has another's frames"
 for part in 1/3 2/3 3/3; do
     # shellcheck disable=SC2086
