@@ -21,7 +21,7 @@ typedef struct SolverSetup {
     bool sheltered;             // SolverStep.shelter counts
 } SolverSetup;
 
-// What happened so far, for the statistics.
+// Events so far, for the statistics.
 typedef struct SolverReport {
     uint64_t moves_limited; // moves cut because a particle was flung beyond what float32 can follow
     uint64_t contacts;      // particles that touched a collider in the last step
