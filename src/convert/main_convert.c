@@ -172,14 +172,14 @@ static Result parse(Job *job, int argc, char **argv, bool *done, Error *error)
     program.notes = notes;
     describe_formats(formats, sizeof formats);
     *command = (Command){.last = -1, .every = 1, .seed = 1};
-    Result result = options_parse(&program, command, argc, argv, &first, done, error);
-    if (result != RESULT_OK || *done) return result;
-    result = check_sense(command, argc - first, error);
-    THEN(result, parse_unit("unit", command->unit, &unit, error));
-    THEN(result, parse_unit("to-unit", command->to_unit, &to_unit, error));
-    if (result == RESULT_OK && to_unit == 0)
-        result = error_set(error, RESULT_USAGE, "--to-unit: got 'auto', expected a unit");
-    THEN(result, convert_steps_parse(&job->steps, &command->steps, error));
+    TRY(options_parse(&program, command, argc, argv, &first, done, error));
+    if (*done) return RESULT_OK;
+    TRY(check_sense(command, argc - first, error));
+    TRY(parse_unit("unit", command->unit, &unit, error));
+    TRY(parse_unit("to-unit", command->to_unit, &to_unit, error));
+    if (to_unit == 0)
+        return error_set(error, RESULT_USAGE, "--to-unit: got 'auto', expected a unit");
+    TRY(convert_steps_parse(&job->steps, &command->steps, error));
     job->steps.seed = (uint32_t)command->seed;
     job->input = (ConvertInput){.paths = argv + first,
                                 .path_count = argc - first,
@@ -197,7 +197,7 @@ static Result parse(Job *job, int argc, char **argv, bool *done, Error *error)
                                   .unit = (double)to_unit,
                                   .up_z = command->to_up == 1,
                                   .width = command->width};
-    return result;
+    return RESULT_OK;
 }
 
 // --- The work.
@@ -206,8 +206,8 @@ static Result open_files(Job *job, Error *error)
 {
     ConvertInput *input = &job->input;
     ConvertOutput *output = &job->output;
-    Result result = convert_input_open(input, error);
-    if (result != RESULT_OK || !output->path) return result;
+    TRY(convert_input_open(input, error));
+    if (!output->path) return RESULT_OK;
     int count = convert_input_count(input);
     output->animated = convert_input_moves(input);
     output->first = input->first;
@@ -271,17 +271,15 @@ static void report_output(const Job *job)
 static Result run(Job *job, Error *error)
 {
     const Command *command = &job->command;
-    Result result = open_files(job, error);
-    THEN(result, do_frames(job, error));
-    if (result == RESULT_OK && !command->quiet && !command->output && !command->stats &&
-        !command->json)
+    TRY(open_files(job, error));
+    TRY(do_frames(job, error));
+    if (!command->quiet && !command->output && !command->stats && !command->json)
         convert_print_input(&job->input, stdout);
-    if (result == RESULT_OK && !command->quiet && command->output) report_output(job);
-    if (result == RESULT_OK && command->stats) convert_print_figures(&job->figures, stdout);
-    if (result == RESULT_OK && command->json)
-        result = convert_write_json(command->json, &job->input, &job->figures,
-                                    command->output ? &job->output : NULL, error);
-    return result;
+    if (!command->quiet && command->output) report_output(job);
+    if (command->stats) convert_print_figures(&job->figures, stdout);
+    if (!command->json) return RESULT_OK;
+    return convert_write_json(command->json, &job->input, &job->figures,
+                              command->output ? &job->output : NULL, error);
 }
 
 int main(int argc, char **argv)

@@ -205,12 +205,10 @@ static Result write_all(const Command *command, Error *error)
 {
     StrandsRecipe recipe = make_recipe(command);
     ScalpShape shape = command->set >= 0 ? SCALP_SPHERE : recipe.shape;
-    Result result = command->output.path ? write_hair(command, &recipe, error) : RESULT_OK;
-    if (result == RESULT_OK && command->mesh)
-        result = write_mesh(command, shape, command->mesh, false, error);
-    if (result == RESULT_OK && command->bust)
-        result = write_mesh(command, SCALP_HEAD, command->bust, true, error);
-    return result;
+    if (command->output.path) TRY(write_hair(command, &recipe, error));
+    if (command->mesh) TRY(write_mesh(command, shape, command->mesh, false, error));
+    if (command->bust) TRY(write_mesh(command, SCALP_HEAD, command->bust, true, error));
+    return RESULT_OK;
 }
 
 // --- tractrix-gen fur.
@@ -221,7 +219,7 @@ static Result write_fur(const FurOptions *options, const Mesh *mesh, Error *erro
     FurReport report;
     TRY(fur_grow(&strands, &options->recipe, mesh, options->mesh, &report, error));
     if (report.flat_triangles)
-        fprintf(stderr, "%s: %u triangles without an area are passed over\n", options->mesh,
+        fprintf(stderr, "%s: %u triangles without area are ignored\n", options->mesh,
                 report.flat_triangles);
     if (report.stuck)
         fprintf(stderr, "%s: %llu segments could not be kept outside the mesh\n",
@@ -236,10 +234,10 @@ static Result grow_fur(int argc, char **argv, Error *error)
     FurOptions options;
     Mesh mesh;
     bool done;
-    Result result = fur_options_read(&options, argc, argv, &done, error);
-    if (result != RESULT_OK || done) return result;
+    TRY(fur_options_read(&options, argc, argv, &done, error));
+    if (done) return RESULT_OK;
     TRY(obj_read_mesh(&mesh, options.mesh, (float)options.unit, options.up_z, error));
-    result = write_fur(&options, &mesh, error);
+    Result result = write_fur(&options, &mesh, error);
     mesh_destroy(&mesh);
     return result;
 }

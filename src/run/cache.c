@@ -233,7 +233,7 @@ static Result write_beginning(CacheWriter *writer, const Simulation *simulation,
 {
     Bytes scene = {0}, hair = {0};
     Result result = cache_scene_describe(&scene, simulation, error);
-    THEN(result, cache_hair_describe(&hair, simulation, strands, error));
+    THEN(result, cache_scene_describe_hair(&hair, simulation, strands, error));
     if (result == RESULT_OK) {
         chunk_file_begin(writer->stream, CACHE_MAGIC);
         writer->at += CHUNK_FILE_HEADER_BYTES;
@@ -342,25 +342,17 @@ void cache_writer_close(CacheWriter *writer)
 
 // --- Reading.
 
-static Result compare(const CacheReader *reader, const Simulation *simulation,
-                      const Strands *strands, Error *error)
-{
-    const CacheFile *cache = &reader->cache;
-    const char *path = cache->file.path;
-    TRY(cache_scene_compare(&cache->scene, simulation, path, error));
-    return cache_hair_compare(&cache->hair, simulation, strands, path, error);
-}
-
 Result cache_reader_open(CacheReader *reader, const char *path, const Simulation *simulation,
                          const Strands *strands, Error *error)
 {
     *reader = (CacheReader){.particle_count = count_particles(simulation)};
-    Result result = cache_file_open(&reader->cache, path, error);
-    if (result != RESULT_OK) return result;
+    TRY(cache_file_open(&reader->cache, path, error));
+    Result result = RESULT_OK;
     reader->positions = malloc(reader->particle_count * sizeof *reader->positions + 1);
     if (!reader->positions)
         result = error_set(error, RESULT_FAILED, "%s: no memory for a frame", path);
-    THEN(result, compare(reader, simulation, strands, error));
+    THEN(result, cache_scene_compare(&reader->cache.scene, simulation, path, error));
+    THEN(result, cache_scene_compare_hair(&reader->cache.hair, simulation, strands, path, error));
     if (result != RESULT_OK) cache_reader_close(reader);
     return result;
 }

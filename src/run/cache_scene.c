@@ -195,14 +195,14 @@ static Result describe_hair(Bytes *bytes, size_t *ends, const Simulation *simula
     return error_set(error, RESULT_FAILED, "no memory for the numbers of the strands");
 }
 
-Result cache_hair_describe(Bytes *bytes, const Simulation *simulation, const Strands *strands,
-                           Error *error)
+Result cache_scene_describe_hair(Bytes *bytes, const Simulation *simulation, const Strands *strands,
+                                 Error *error)
 {
     return describe_hair(bytes, NULL, simulation, strands, error);
 }
 
-Result cache_hair_compare(const Bytes *bytes, const Simulation *simulation, const Strands *strands,
-                          const char *path, Error *error)
+Result cache_scene_compare_hair(const Bytes *bytes, const Simulation *simulation,
+                                const Strands *strands, const char *path, Error *error)
 {
     uint32_t count = simulation->scene->section_count, i = 0;
     Bytes now = {0};

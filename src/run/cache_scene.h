@@ -20,10 +20,10 @@ Result cache_scene_compare(const Bytes *text, const Simulation *simulation, cons
 // Of each section: strands, a checksum of their vertices as they were loaded, runs of equal vertex
 // counts, and the strands' numbers in their file, in the order in which frames hold them. Free with
 // bytes_destroy. RESULT_FAILED when memory is short.
-Result cache_hair_describe(Bytes *bytes, const Simulation *simulation, const Strands *strands,
-                           Error *error);
+Result cache_scene_describe_hair(Bytes *bytes, const Simulation *simulation, const Strands *strands,
+                                 Error *error);
 
 // Compares such bytes with the simulation's hair: RESULT_BAD_INPUT with `path` and the first
 // section's file that differs.
-Result cache_hair_compare(const Bytes *bytes, const Simulation *simulation, const Strands *strands,
-                          const char *path, Error *error);
+Result cache_scene_compare_hair(const Bytes *bytes, const Simulation *simulation,
+                                const Strands *strands, const char *path, Error *error);

@@ -39,7 +39,7 @@ static Result write_state(const char *path, Simulation *simulation, const Strand
 {
     Bytes scene = {0}, hair = {0}, state = {0};
     Result result = cache_scene_describe(&scene, simulation, error);
-    THEN(result, cache_hair_describe(&hair, simulation, strands, error));
+    THEN(result, cache_scene_describe_hair(&hair, simulation, strands, error));
     THEN(result, simulation_state_save(simulation, &state, error));
     THEN(result, write_chunks(path, simulation->frame, &scene, &hair, &state, error));
     bytes_destroy(&scene);
@@ -75,7 +75,7 @@ static Result read_state(Bytes *state, int *frame, const char *path, const Simul
     Result result = read_part(&file, &at, "SCEN", &chunk, &scene, error);
     THEN(result, cache_scene_compare(&scene, simulation, path, error));
     THEN(result, read_part(&file, &at, "HAIR", &chunk, &hair, error));
-    THEN(result, cache_hair_compare(&hair, simulation, strands, path, error));
+    THEN(result, cache_scene_compare_hair(&hair, simulation, strands, path, error));
     THEN(result, read_part(&file, &at, "STAT", &chunk, state, error));
     *frame = (int)chunk.number;
     bytes_destroy(&scene);

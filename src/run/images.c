@@ -61,7 +61,7 @@ static Result describe_images(const Images *images, RendererOptions *options, Er
 {
     const RunParams *run = &images->scene->run;
     Target target;
-    Result result = target_parse(&target, run->output, error);
+    TRY(target_parse(&target, run->output, error));
     *options = (RendererOptions){
         .raster = (Raster)run->raster,
         .oit = (Oit)run->oit,
@@ -79,7 +79,6 @@ static Result describe_images(const Images *images, RendererOptions *options, Er
         .shadow = {
             .kind = (Shadow)run->shadow, .side = run->shadow_size, .spacing = run->shadow_spacing}};
     memcpy(options->background, run->background, sizeof options->background);
-    if (result != RESULT_OK) return result;
     if (target.floats) options->kind = IMAGE_FLOAT;
     set_depth_range(images, options);
     target_destroy(&target);
@@ -90,13 +89,12 @@ static Result open_renderer(Images *images, GpuTimer *timer, Error *error)
 {
     const Assets *assets = images->assets;
     RendererOptions options;
-    Result result = describe_images(images, &options, error);
-    THEN(result, renderer_create(&images->renderer, images->gpu, timer, &options, error));
-    if (result == RESULT_OK && assets->has_mesh)
-        result = renderer_set_mesh(&images->renderer, &assets->mesh, images->scene->run.mesh_color,
-                                   error);
-    THEN(result, create_items(images, error));
-    return result;
+    TRY(describe_images(images, &options, error));
+    TRY(renderer_create(&images->renderer, images->gpu, timer, &options, error));
+    if (assets->has_mesh)
+        TRY(renderer_set_mesh(&images->renderer, &assets->mesh, images->scene->run.mesh_color,
+                              error));
+    return create_items(images, error);
 }
 
 static Result open_output(Images *images, int frame_count, Error *error)
@@ -122,8 +120,8 @@ Result images_create(Images *images, const Scene *scene, const Assets *assets,
 {
     *images = (Images){
         .scene = scene, .assets = assets, .simulation = simulation, .framing = framing, .gpu = gpu};
-    Result result = open_renderer(images, timer, error);
-    return result == RESULT_OK ? open_output(images, frame_count, error) : result;
+    TRY(open_renderer(images, timer, error));
+    return open_output(images, frame_count, error);
 }
 
 void images_destroy(Images *images)

@@ -151,7 +151,7 @@ static void report_steps(const Simulation *simulation)
             (long long)schedule->settling);
 }
 
-// Where the camera stands, unless the scene says it.
+// Fits the camera to the hair, unless the scene gives it.
 static Result aim(Run *run, Error *error)
 {
     const RunParams *params = &run->scene.run;
@@ -159,18 +159,17 @@ static Result aim(Run *run, Error *error)
     outline_frame(&run->framing, &run->scene, run->assets.strands,
                   run->assets.has_mesh ? &run->assets.mesh : NULL);
     if (!survey_is_wanted(&run->scene)) return RESULT_OK;
-    Result result =
-        survey_fit_camera(&run->framing, &report, &run->scene, &run->assets, &run->gpu, error);
-    if (result == RESULT_OK && params->verbose)
-        fprintf(stderr, "camera: fits %d frames, looked at in %.2g s\n", report.frames,
+    TRY(survey_fit_camera(&run->framing, &report, &run->scene, &run->assets, &run->gpu, error));
+    if (params->verbose)
+        fprintf(stderr, "camera: fits %d frames, simulated in %.2g s\n", report.frames,
                 report.ms / 1e3);
-    if (result == RESULT_OK && !params->quiet && report.step.most > 0)
+    if (!params->quiet && report.step.most > 0)
         fprintf(stderr,
-                "loop: from the last frame to the first hair moves by %.3g mm at most (RMS %.3g), "
-                "from others to the next by %.3g mm (%.3g)\n",
+                "loop: hair moves by at most %.3g mm (RMS %.3g) from the last frame to the first, "
+                "%.3g mm (%.3g) between other frames\n",
                 1e3 * (double)report.seam.most, 1e3 * (double)report.seam.rms,
                 1e3 * (double)report.step.most, 1e3 * (double)report.step.rms);
-    return result;
+    return RESULT_OK;
 }
 
 // Files first: their errors are reported before a driver is started. The output's folder is made

@@ -76,6 +76,6 @@ refused 3 "$work/none.obj: " fur "$work/none.obj"
 "$program" fur --help >/dev/full 2>"$work/err"
 if [ $? = 1 ]; then good; else bad "status with a full disk"; fi
 one_line
-run 0 fur "$work/part.obj" -n 9 -o "$work/part.tfx"; says "1 triangles without an area are passed over"; one_line
+run 0 fur "$work/part.obj" -n 9 -o "$work/part.tfx"; says "1 triangles without area are ignored"; one_line
 
 finish
