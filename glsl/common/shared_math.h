@@ -98,6 +98,11 @@ static inline float linear_from_srgb(float value)
                ? value / FLOAT(SRGB_SLOPE)
                : powf((value + FLOAT(SRGB_OFFSET)) / FLOAT(1 + SRGB_OFFSET), FLOAT(SRGB_POWER));
 }
+
+static inline void linear_from_srgb_color(const float srgb[3], float linear[3])
+{
+    for (int k = 0; k < 3; ++k) linear[k] = linear_from_srgb(srgb[k]);
+}
 #endif
 
 // Not the driver's own conversion: some approximate it. Nor pow, which costs CPU drivers as much as

@@ -34,7 +34,7 @@
 #define BIND_MIDDLE_DEPTH 6 // the mesh's
 #define BIND_EDGE_DEPTH   7 // the same of some samples a pixel
 
-#define BIND_PAINT   8  // uvec4 a particle, see hair_paint.c; beside what shadows are read from
+#define BIND_PAINT   8  // uvec4 a particle, see look_paint; beside what shadows are read from
 #define BIND_SCATTER 10 // marschner's table, see scatter.comp
 
 // Nodes of that table by azimuth (0 to pi), cosine of theta_d and colour (both 0 to 1).

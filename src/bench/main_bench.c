@@ -161,7 +161,7 @@ static Result try_looks(Renderer *renderer, Error *error)
                                       LOOK_STRAND,
                                       LOOK_SMOOTH,
                                       LOOK_SMOOTH | LOOK_PAINT};
-    TRY(scatter_tables_find(&renderer->picture.scatter, 1.5f, 0.2f, &texture, error));
+    TRY(scatter_tables_find(&renderer->drawing.scatter, 1.5f, 0.2f, &texture, error));
     for (unsigned features = 0; features < LOOK_SHADOW_APPROX; ++features)
         if ((features & (LOOK_MARSCHNER | LOOK_GAUSS)) != LOOK_GAUSS) // which does not count alone
             TRY(look_programs_build(programs, features, error));
@@ -179,17 +179,17 @@ static Result try_shadows(Renderer *renderer, Error *error)
     for (unsigned variant = 0; variant < CAST_VARIANTS && shadows; ++variant)
         TRY(hair_shadow_build(&renderer->shadow.hair, variant, error));
     if (shadows) TRY(shadows_reserve_mesh(&renderer->shadow, 1, error));
-    TRY(render_floor_build(&renderer->base.floor, error));
+    TRY(base_layer_build_floor(&renderer->base.floor, error));
     for (int count = 0; count <= 2; count += 2) {
-        render_base_count(&renderer->base, count, shadows ? count : 0);
-        TRY(render_base_build_light(&renderer->base, options->shadow.kind, error));
+        base_layer_count(&renderer->base, count, shadows ? count : 0);
+        TRY(base_layer_build_light(&renderer->base, options->shadow.kind, error));
         for (int area = 0; area < 3; ++area)
-            TRY(render_base_build(&renderer->base, (BaseArea)area, options->floor.kind,
+            TRY(base_layer_build(&renderer->base, (BaseArea)area, options->floor.kind,
                                   options->shadow.kind, error));
     }
     for (unsigned variant = 0; variant < CULL_VARIANTS && renderer->raster == RASTER_BLOCKS;
          ++variant)
-        TRY(render_cull_build(&renderer->blocks.cull, variant, error));
+        TRY(cull_build(&renderer->blocks.cull, variant, error));
     return RESULT_OK;
 }
 

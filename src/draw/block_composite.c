@@ -48,7 +48,7 @@ static const float LEAST_COVERAGE = 1.0f / 16; // as in hair.frag
 static const float LANE_X[CELL_PIXELS] = {0, 1, 0, 1, 0, 1, 0, 1},
                    LANE_Y[CELL_PIXELS] = {0, 0, 1, 1, 2, 2, 3, 3};
 
-// What is linear in the picture: in the block's first pixel, by column and by row.
+// What is linear in the image: in the block's first pixel, by column and by row.
 typedef struct Linear {
     float at[BATCH], by_x[BATCH], by_y[BATCH];
 } Linear;

@@ -27,7 +27,7 @@ SIMD_INLINE float float_of_half(uint16_t half)
     return simd_float_of((uint32_t)(half & 0x7fff) << 13) * 0x1p112f;
 }
 
-bool block_has_base(const BlockBase *base, int x, int y)
+bool block_pixels_have_base(const BlockBase *base, int x, int y)
 {
     return base && x < base->x + base->width && x + BLOCK_WIDTH > base->x &&
            y < base->y + base->height && y + BLOCK_HEIGHT > base->y;
@@ -51,7 +51,7 @@ static void hide(const Block *block, const BlockBase *base, const PixelStyle *st
         }
 }
 
-void block_clear(const Block *block, const BlockBase *base, const PixelStyle *style)
+void block_pixels_clear(const Block *block, const BlockBase *base, const PixelStyle *style)
 {
     memset(block->cells, 0, BLOCK_CELLS * sizeof *block->cells);
     memset(block->hidden, 0, BLOCK_CELLS * sizeof *block->hidden);
@@ -222,8 +222,8 @@ static bool is_row_clear(const Block *block, int row)
     return least_through == 1;
 }
 
-void block_store(const Block *block, const BlockBase *base, const PixelStyle *style,
-                 const Image *image)
+void block_pixels_store(const Block *block, const BlockBase *base, const PixelStyle *style,
+                        const Image *image)
 {
     int s = style->samples, left = block->x / s, top = block->y / s,
         width = least_int(BLOCK_WIDTH / s, image->width - left),

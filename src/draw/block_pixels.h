@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A block's pixels between the picture and what ribbons are composited in.
+// A block's pixels between the image and what ribbons are composited in.
 #pragma once
 
 #include "draw/block_composite.h"
@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-// What stands behind the hair, in a box of the picture: samples x, y and how many of them.
+// What stands behind the hair, in a box of the image: samples x, y and how many of them.
 typedef struct BlockBase {
     int x, y, width, height;
     const uint16_t (*light)[4]; // [height][width] halves, linear, premultiplied
@@ -26,12 +26,12 @@ typedef struct PixelStyle {
 } PixelStyle;
 
 // Nothing before the base, nor anything of it hidden; NULL: there is none in this block.
-void block_clear(const Block *block, const BlockBase *base, const PixelStyle *style);
+void block_pixels_clear(const Block *block, const BlockBase *base, const PixelStyle *style);
 
 // Whether some of the base lies in the block that begins at x, y.
-bool block_has_base(const BlockBase *base, int x, int y);
+bool block_pixels_have_base(const BlockBase *base, int x, int y);
 
 // Writes the block's pixels to the image of 3 or 4 channels, as far as they lie in it. NULL base:
 // none in this block.
-void block_store(const Block *block, const BlockBase *base, const PixelStyle *style,
-                 const Image *image);
+void block_pixels_store(const Block *block, const BlockBase *base, const PixelStyle *style,
+                        const Image *image);

@@ -9,15 +9,15 @@
 // What threads share.
 typedef struct Work {
     const BlockRaster *raster;
-    const BlockPicture *picture;
+    const BlockScene *scene;
     atomic_int next; // block that nobody has begun
 } Work;
 
 Result block_raster_create(BlockRaster *raster, int width, int height, Error *error)
 {
     *raster = (BlockRaster){0};
-    Result result = block_lists_create(&raster->lists, (width + BLOCK_WIDTH - 1) / BLOCK_WIDTH,
-                                       (height + BLOCK_HEIGHT - 1) / BLOCK_HEIGHT, error);
+    Result result = block_bins_create(&raster->lists, (width + BLOCK_WIDTH - 1) / BLOCK_WIDTH,
+                                      (height + BLOCK_HEIGHT - 1) / BLOCK_HEIGHT, error);
     for (int i = 0; i < raster->lists.parts && result == RESULT_OK; ++i) {
         raster->cells[i] = aligned_alloc(
             _Alignof(Cell), BLOCK_CELLS * (sizeof(Cell) + CELL_PIXELS * sizeof(float)));
@@ -30,7 +30,7 @@ Result block_raster_create(BlockRaster *raster, int width, int height, Error *er
 
 void block_raster_destroy(BlockRaster *raster)
 {
-    block_lists_destroy(&raster->lists);
+    block_bins_destroy(&raster->lists);
     for (int i = 0; i < PARALLEL_MOST; ++i) {
         free(raster->sorting[i]);
         free(raster->cells[i]);
@@ -63,28 +63,29 @@ static Result make_room(BlockRaster *raster, Error *error)
     return RESULT_OK;
 }
 
-Result block_raster_deal(BlockRaster *raster, const BlockPicture *picture, uint64_t *touched,
-                         Error *error)
+Result block_raster_bin(BlockRaster *raster, const BlockScene *scene, uint64_t *touched,
+                        Error *error)
 {
     Result result =
-        block_lists_fill(&raster->lists, picture->keys, picture->records, picture->slots, error);
+        block_bins_fill(&raster->lists, scene->keys, scene->records, scene->slots, error);
     *touched = result == RESULT_OK ? raster->lists.begins[block_count(raster)] : 0;
     return result == RESULT_OK ? make_room(raster, error) : result;
 }
 
 static void draw_block(const Work *work, int b, uint64_t *sorting, Cell *cells)
 {
-    const BlockLists *lists = &work->raster->lists;
-    const BlockPicture *picture = work->picture;
+    const BlockBins *lists = &work->raster->lists;
+    const BlockScene *scene = work->scene;
     Block block = {cells, (float(*)[CELL_PIXELS])(cells + BLOCK_CELLS),
                    b % lists->columns * BLOCK_WIDTH, b / lists->columns * BLOCK_HEIGHT};
     size_t count = lists->begins[b + 1] - lists->begins[b];
-    const BlockBase *base = block_has_base(picture->base, block.x, block.y) ? picture->base : NULL;
-    BlockForm form = picture->nearest ? BLOCK_NEAREST : base ? BLOCK_OVER_MESH : BLOCK_OPEN;
-    block_clear(&block, base, &picture->style);
+    const BlockBase *base =
+        block_pixels_have_base(scene->base, block.x, block.y) ? scene->base : NULL;
+    BlockForm form = scene->nearest ? BLOCK_NEAREST : base ? BLOCK_OVER_MESH : BLOCK_OPEN;
+    block_pixels_clear(&block, base, &scene->style);
     const uint64_t *order = radix_sort(lists->pairs + lists->begins[b], sorting, count);
-    block_composite(&block, form, picture->records, order, count);
-    block_store(&block, base, &picture->style, picture->image);
+    block_composite(&block, form, scene->records, order, count);
+    block_pixels_store(&block, base, &scene->style, scene->image);
 }
 
 static void draw_blocks(void *data, int part)
@@ -95,8 +96,8 @@ static void draw_blocks(void *data, int part)
         draw_block(work, b, raster->sorting[part], raster->cells[part]);
 }
 
-void block_raster_composite(BlockRaster *raster, const BlockPicture *picture)
+void block_raster_composite(BlockRaster *raster, const BlockScene *scene)
 {
-    Work work = {raster, picture, 0};
+    Work work = {raster, scene, 0};
     parallel_run(raster->lists.parts, draw_blocks, &work);
 }

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: MIT
-// From ribbons to a picture, block by block, on all threads.
+// From ribbons to a image, block by block, on all threads.
 #pragma once
 
 #include "base/parallel.h"
-#include "draw/block_lists.h"
+#include "draw/block_bins.h"
 #include "draw/block_pixels.h"
 
 // A zeroed struct is empty.
 typedef struct BlockRaster {
-    BlockLists lists;
+    BlockBins lists;
     uint64_t *sorting[PARALLEL_MOST]; // [sorting_room], owned: each thread's
     Cell *cells[PARALLEL_MOST];       // [BLOCK_CELLS], owned: each thread's
     size_t sorting_room;
 } BlockRaster;
 
-// A picture: its ribbons, and what they are composited with.
-typedef struct BlockPicture {
+// A image: its ribbons, and what they are composited with.
+typedef struct BlockScene {
     const RibbonKey *keys;       // [slots]
     const RibbonRecord *records; // [slots]
     size_t slots;
@@ -23,7 +23,7 @@ typedef struct BlockPicture {
     PixelStyle style;
     bool nearest; // ribbons hide what is behind them, see BlockForm
     Image *image;
-} BlockPicture;
+} BlockScene;
 
 // Of width x height samples. RESULT_FAILED when memory is short.
 Result block_raster_create(BlockRaster *raster, int width, int height, Error *error);
@@ -31,8 +31,8 @@ void block_raster_destroy(BlockRaster *raster);
 
 // Deals the ribbons out to blocks. Returns in *touched how many blocks they touch, each counted.
 // RESULT_FAILED when memory is short.
-Result block_raster_deal(BlockRaster *raster, const BlockPicture *picture, uint64_t *touched,
-                         Error *error);
+Result block_raster_bin(BlockRaster *raster, const BlockScene *scene, uint64_t *touched,
+                        Error *error);
 
 // Composites what was dealt out and writes all pixels of the image.
-void block_raster_composite(BlockRaster *raster, const BlockPicture *picture);
+void block_raster_composite(BlockRaster *raster, const BlockScene *scene);

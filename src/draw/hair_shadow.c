@@ -45,16 +45,15 @@ Result hair_shadow_build(HairShadow *hair, unsigned variant, Error *error)
 {
     Result result =
         build(&hair->bounds[variant], "draw/shadow_bounds.comp", GROUP, FIRSTS, variant, error);
-    if (result == RESULT_OK)
-        result = build(&hair->first[variant], "draw/shadow_splat.comp", GROUP,
-                       hair->deep ? COARSE_FIRSTS : FIRSTS, variant, error);
-    if (result == RESULT_OK && hair->deep)
-        result =
-            build(&hair->splat[variant], "draw/shadow_splat.comp", GROUP, DEEP, variant, error);
-    if (result == RESULT_OK && hair->deep)
-        result = build(&hair->spread, "draw/shadow_spread.comp", TEXEL_GROUP, DEEP, 0, error);
-    if (result == RESULT_OK && hair->deep)
-        result = build(&hair->finish, "draw/shadow_finish.comp", TEXEL_GROUP, DEEP, 0, error);
+    THEN(result, build(&hair->first[variant], "draw/shadow_splat.comp", GROUP,
+                       hair->deep ? COARSE_FIRSTS : FIRSTS, variant, error));
+    if (hair->deep)
+        THEN(result,
+             build(&hair->splat[variant], "draw/shadow_splat.comp", GROUP, DEEP, variant, error));
+    if (hair->deep)
+        THEN(result, build(&hair->spread, "draw/shadow_spread.comp", TEXEL_GROUP, DEEP, 0, error));
+    if (hair->deep)
+        THEN(result, build(&hair->finish, "draw/shadow_finish.comp", TEXEL_GROUP, DEEP, 0, error));
     return result;
 }
 
@@ -96,13 +95,6 @@ void hair_shadow_destroy(HairShadow *hair)
     *hair = (HairShadow){0};
 }
 
-static Result make_buffer(GpuBuffer *buffer, const HairShadow *hair, const char *what,
-                          int64_t words, GLenum format, Error *error)
-{
-    if (buffer->buffer) return RESULT_OK;
-    return gpu_buffer_create(buffer, hair->limits, what, words * 4, NULL, format, error);
-}
-
 // What is read later.
 static Result make_maps(HairShadow *hair, int maps, Error *error)
 {
@@ -112,25 +104,27 @@ static Result make_maps(HairShadow *hair, int maps, Error *error)
     }
     int64_t texels = (int64_t)hair->maps * hair->side * hair->side;
     if (!hair->deep)
-        return make_buffer(&hair->firsts, hair, "shadow's depths", texels, GL_R32UI, error);
-    Result result = make_buffer(&hair->depths, hair, "shadow's beginnings", texels, GL_R32F, error);
-    if (result == RESULT_OK)
-        result = make_buffer(&hair->layers, hair, "shadow's layers", texels * SHADOW_LAYERS,
-                             GL_R32UI, error);
-    return result;
+        return gpu_buffer_reserve(&hair->firsts, hair->limits, "shadow's depths", 4 * texels,
+                                  GL_R32UI, error);
+    TRY(gpu_buffer_reserve(&hair->depths, hair->limits, "shadow's beginnings", 4 * texels, GL_R32F,
+                           error));
+    return gpu_buffer_reserve(&hair->layers, hair->limits, "shadow's layers",
+                              4 * texels * SHADOW_LAYERS, GL_R32UI, error);
 }
 
 // What shaders make them with.
 static Result make_scratch(HairShadow *hair, ShadowCasters casters, Error *error)
 {
     int64_t texels = (int64_t)hair->maps * hair->side * hair->side;
-    Result result = make_buffer(&hair->box, hair, "light's box", BOX_WORDS, 0, error);
-    if (result == RESULT_OK && hair->deep)
-        result = make_buffer(&hair->firsts, hair, "shadow's depths",
-                             texels / (SHADOW_COARSE * SHADOW_COARSE), GL_R32UI, error);
-    if (result == RESULT_OK && hair->deep)
-        result = make_buffer(&hair->sums, hair, "shadow's sums", texels * SHADOW_LAYERS, GL_R32UI,
-                             error);
+    Result result =
+        gpu_buffer_reserve(&hair->box, hair->limits, "light's box", 4 * BOX_WORDS, 0, error);
+    if (hair->deep)
+        THEN(result,
+             gpu_buffer_reserve(&hair->firsts, hair->limits, "shadow's depths",
+                                4 * texels / (SHADOW_COARSE * SHADOW_COARSE), GL_R32UI, error));
+    if (hair->deep)
+        THEN(result, gpu_buffer_reserve(&hair->sums, hair->limits, "shadow's sums",
+                                        4 * texels * SHADOW_LAYERS, GL_R32UI, error));
     for (uint32_t i = 0; i < casters.count && result == RESULT_OK; ++i)
         result = hair_shadow_build(hair, variant_of(&casters.list[i]), error);
     return result;
@@ -149,7 +143,7 @@ Result hair_shadow_begin(HairShadow *hair, int maps, ShadowCasters casters, Erro
     if (result == RESULT_OK && hair->by_processor)
         return hair_shadow_cpu_begin(&hair->cpu, hair->limits, maps, casters, &hair->depths,
                                      hair->deep ? &hair->layers : &hair->firsts, error);
-    if (result == RESULT_OK) result = make_scratch(hair, casters, error);
+    THEN(result, make_scratch(hair, casters, error));
     if (result != RESULT_OK) return result;
     fill(&hair->firsts, SHADOW_DEPTHS);
     if (hair->deep) fill(&hair->sums, 0);

@@ -3,7 +3,7 @@
 // memory: maps those of the hair and of the maps while they are drawn.
 #pragma once
 
-#include "draw/render_look.h"
+#include "draw/look.h"
 #include "draw/shadow_map.h"
 
 // Hair that stands in the light: the ribbons that are drawn, with the material's shadow_opacity.

@@ -8,7 +8,7 @@
 // Laid out as in HairBatch.
 typedef struct MappedCaster {
     const float (*position)[4];
-    const uint32_t (*paint)[4]; // see hair_paint; NULL: none
+    const uint32_t (*paint)[4]; // see look_paint; NULL: none
     MaterialParams material;    // smooth_parts at least 1
 } MappedCaster;
 

@@ -17,16 +17,11 @@ static void find_bounds(RenderMesh *mesh, const Mesh *source)
 static Result upload(RenderMesh *mesh, const Mesh *source, const GpuLimits *limits, Error *error)
 {
     int64_t size = (int64_t)source->vertex_count * 12;
-    Result result = gpu_buffer_create(&mesh->position, limits, "mesh positions", size,
-                                      source->position, 0, error);
-    if (result == RESULT_OK)
-        result = gpu_buffer_create(&mesh->normal, limits, "mesh normals", size, source->normal, 0,
-                                   error);
-    if (result == RESULT_OK)
-        result =
-            gpu_buffer_create(&mesh->triangle, limits, "mesh triangles",
-                              (int64_t)source->triangle_count * 12, source->triangle, 0, error);
-    return result;
+    TRY(gpu_buffer_create(&mesh->position, limits, "mesh positions", size, source->position, 0,
+                          error));
+    TRY(gpu_buffer_create(&mesh->normal, limits, "mesh normals", size, source->normal, 0, error));
+    return gpu_buffer_create(&mesh->triangle, limits, "mesh triangles",
+                             (int64_t)source->triangle_count * 12, source->triangle, 0, error);
 }
 
 static void describe_vertices(RenderMesh *mesh)
@@ -50,11 +45,9 @@ Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const float colo
     if (source->triangle_count == 0) return RESULT_OK;
     find_bounds(mesh, source);
     Result result = upload(mesh, source, limits, error);
-    if (result == RESULT_OK)
-        result =
-            shader_build_draw(&mesh->surface, "draw/mesh.vert", "draw/surface.frag", NULL, error);
-    if (result == RESULT_OK)
-        result = shader_build_draw(&mesh->edges, "draw/mesh.vert", "draw/depth.frag", NULL, error);
+    THEN(result,
+         shader_build_draw(&mesh->surface, "draw/mesh.vert", "draw/surface.frag", NULL, error));
+    THEN(result, shader_build_draw(&mesh->edges, "draw/mesh.vert", "draw/depth.frag", NULL, error));
     if (result != RESULT_OK) {
         render_mesh_destroy(mesh);
         return result;

@@ -58,7 +58,7 @@ Result render_target_create(RenderTarget *target, const GpuLimits *limits, int w
     int side = limits->framebuffer_side_px / samples;
     if (width > side || height > side)
         return error_set(error, RESULT_FAILED,
-                         "a picture of %d x %d px%s: this driver draws at most %d x %d", width,
+                         "an image of %d x %d px%s: this driver draws at most %d x %d", width,
                          height,
                          samples == 4   ? " of 4 x 4 samples"
                          : samples == 2 ? " of 2 x 2 samples"
@@ -66,16 +66,16 @@ Result render_target_create(RenderTarget *target, const GpuLimits *limits, int w
                          side, side);
     target->rgba = malloc((size_t)width * (size_t)height * 4 * image_channel_size(kind));
     if (!target->rgba)
-        return error_set(error, RESULT_FAILED, "no memory for a picture of %d x %d px", width,
+        return error_set(error, RESULT_FAILED, "no memory for an image of %d x %d px", width,
                          height);
-    target->picture = create_texture(formats[kind], width, height);
-    target->picture_frame = create_color_frame(target->picture, 0);
+    target->image = create_texture(formats[kind], width, height);
+    target->image_frame = create_color_frame(target->image, 0);
     target->hair_frame = create_frame();
     glFramebufferParameteri(GL_FRAMEBUFFER, GL_FRAMEBUFFER_DEFAULT_WIDTH, width * samples);
     glFramebufferParameteri(GL_FRAMEBUFFER, GL_FRAMEBUFFER_DEFAULT_HEIGHT, height * samples);
     glDrawBuffer(GL_NONE);
     Result result = check_frame(target->hair_frame, "hair target", error);
-    if (result == RESULT_OK) result = check_frame(target->picture_frame, "picture", error);
+    THEN(result, check_frame(target->image_frame, "image", error));
     if (result != RESULT_OK) render_target_destroy(target);
     return result;
 }
@@ -104,22 +104,21 @@ Result render_target_add_base(RenderTarget *target, Error *error)
     target->lit_frame = create_color_frame(target->lit, target->middle_depth);
     target->surface = create_texture(GL_RGBA32F, width, height);
     target->surface_frame = create_color_frame(target->surface, target->middle_depth);
-    Result result = check_frame(target->hair_frame, "hair target", error);
-    if (result == RESULT_OK) result = check_frame(target->base_frame, "mesh target", error);
-    if (result == RESULT_OK) result = check_frame(target->lit_frame, "mesh light", error);
-    if (result == RESULT_OK) result = check_frame(target->surface_frame, "mesh surface", error);
-    if (result == RESULT_OK) result = add_edges(target, width, height, error);
-    return result;
+    TRY(check_frame(target->hair_frame, "hair target", error));
+    TRY(check_frame(target->base_frame, "mesh target", error));
+    TRY(check_frame(target->lit_frame, "mesh light", error));
+    TRY(check_frame(target->surface_frame, "mesh surface", error));
+    return add_edges(target, width, height, error);
 }
 
 void render_target_destroy(RenderTarget *target)
 {
-    const GLuint frames[] = {target->picture_frame, target->hair_frame,    target->base_frame,
-                             target->lit_frame,     target->surface_frame, target->edge_frame};
-    const GLuint textures[] = {target->picture,     target->depth,   target->base,
+    const GLuint frames[] = {target->image_frame, target->hair_frame,    target->base_frame,
+                             target->lit_frame,   target->surface_frame, target->edge_frame};
+    const GLuint textures[] = {target->image,       target->depth,   target->base,
                                target->lit,         target->surface, target->edge_depth,
                                target->middle_depth};
-    if (target->picture) { // names of 0 are ignored, but without a context nothing may be called
+    if (target->image) { // names of 0 are ignored, but without a context nothing may be called
         glDeleteFramebuffers(6, frames);
         glDeleteTextures(7, textures);
     }
@@ -133,7 +132,7 @@ void render_target_read(RenderTarget *target, Image *image)
     size_t count = (size_t)target->width * (size_t)target->height,
            rgb = 3 * image_channel_size(target->kind), step = rgb / 3 * 4;
     uint8_t *rgba = image->channels == 4 ? image->pixels : target->rgba;
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, target->picture_frame);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, target->image_frame);
     glReadPixels(0, 0, target->width, target->height, GL_RGBA, types[target->kind], rgba);
     if (image->channels == 4) return;
     if (target->kind != IMAGE_8) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The textures that a picture is drawn to, and its way back to memory. Row 0 is the picture's top.
+// The textures that a image is drawn to, and its way back to memory. Row 0 is the image's top.
 #pragma once
 
 #include "gpu/gpu_buffer.h"
@@ -8,18 +8,18 @@
 enum { EDGE_SAMPLES = 4 }; // of the mesh's depth where the hair has one; CPU drivers have no more
 
 typedef struct RenderTarget {
-    int width, height; // px of the picture; all else is drawn in samples, which are smaller
-    int samples;       // across a pixel
-    GLuint picture, picture_frame; // RGBA8, RGBA16 or RGBA32F as the image's kind
-    GLuint hair_frame;             // no colour; `depth` if there is a mesh
-    GLuint depth;                  // that hides hair: at edges the farthest of all samples'
-    GLuint base, base_frame;       // RGBA16F: mesh over background, linear, premultiplied; `depth`
-    GLuint middle_depth;           // the mesh's in the middles of pixels
+    int width, height;         // px of the image; all else is drawn in samples, which are smaller
+    int samples;               // across a pixel
+    GLuint image, image_frame; // RGBA8, RGBA16 or RGBA32F as the image's kind
+    GLuint hair_frame;         // no colour; `depth` if there is a mesh
+    GLuint depth;              // that hides hair: at edges the farthest of all samples'
+    GLuint base, base_frame;   // RGBA16F: mesh over background, linear, premultiplied; `depth`
+    GLuint middle_depth;       // the mesh's in the middles of pixels
     GLuint surface, surface_frame; // RGBA32F, glsl/draw/surface.frag; with `middle_depth`
     GLuint lit, lit_frame;         // RGBA16F, light of that surface; with `middle_depth`
     GLuint edge_depth, edge_frame; // the mesh's, EDGE_SAMPLES a sample
     ImageKind kind;
-    uint8_t *rgba; // [height][width][4], for pictures without alpha
+    uint8_t *rgba; // [height][width][4], for images without alpha
 } RenderTarget;
 
 // A pixel has `samples` x `samples` samples. RESULT_FAILED if the size is more than the driver
@@ -31,5 +31,5 @@ void render_target_destroy(RenderTarget *target);
 // Adds what a mesh or a floor needs; nothing if it is there.
 Result render_target_add_base(RenderTarget *target, Error *error);
 
-// Copies the picture into `image` of 3 or 4 channels; waits for it.
+// Copies the image into `image` of 3 or 4 channels; waits for it.
 void render_target_read(RenderTarget *target, Image *image);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "draw/renderer.h"
 
-#include "draw/render_uniforms.h"
+#include "draw/drawing.h"
+
+#include "glsl/common/shared_math.h"
 
 #include <assert.h>
 #include <math.h>
@@ -18,13 +20,12 @@ static const RasterType RASTERS[3];
 
 static Result create_quads(Renderer *renderer, Error *error)
 {
-    return render_quads_create(&renderer->quads, renderer->gpu, &renderer->options, error);
+    return quads_create(&renderer->quads, renderer->gpu, &renderer->options, error);
 }
 
 static Result create_blocks(Renderer *renderer, Error *error)
 {
-    return render_blocks_create(&renderer->blocks, &renderer->gpu->limits, &renderer->options,
-                                error);
+    return blocks_create(&renderer->blocks, &renderer->gpu->limits, &renderer->options, error);
 }
 
 // The options as they are drawn by: with what an AOV asks for.
@@ -49,7 +50,7 @@ static Raster choose_raster(const Gpu *gpu, const RendererOptions *options)
 
 static bool has_base(const Renderer *renderer)
 {
-    return render_base_is_needed(&renderer->base, &renderer->options.floor);
+    return base_layer_is_needed(&renderer->base, &renderer->options.floor);
 }
 
 // What drawing over mesh or floor needs, if there is any.
@@ -71,11 +72,11 @@ Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
     renderer->raster = choose_raster(gpu, options);
     Result result = render_target_create(&renderer->target, &gpu->limits, options->width,
                                          options->height, options->samples, options->kind, error);
-    if (result == RESULT_OK) result = RASTERS[renderer->raster].create(renderer, error);
-    if (result == RESULT_OK) result = make_base(renderer, error);
-    if (result == RESULT_OK && options->shadow.kind != SHADOW_NONE)
-        result =
-            shadows_create(&renderer->shadow, &gpu->limits, &options->shadow, gpu->software, error);
+    THEN(result, RASTERS[renderer->raster].create(renderer, error));
+    THEN(result, make_base(renderer, error));
+    if (options->shadow.kind != SHADOW_NONE)
+        THEN(result, shadows_create(&renderer->shadow, &gpu->limits, &options->shadow,
+                                    gpu->software, error));
     if (result != RESULT_OK) renderer_destroy(renderer);
     return result;
 }
@@ -83,12 +84,12 @@ Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
 void renderer_destroy(Renderer *renderer)
 {
     render_target_destroy(&renderer->target);
-    render_quads_destroy(&renderer->quads);
-    render_blocks_destroy(&renderer->blocks);
-    render_base_destroy(&renderer->base);
+    quads_destroy(&renderer->quads);
+    blocks_destroy(&renderer->blocks);
+    base_layer_destroy(&renderer->base);
     shadows_destroy(&renderer->shadow);
     free(renderer->casters);
-    picture_destroy(&renderer->picture);
+    drawing_destroy(&renderer->drawing);
     *renderer = (Renderer){0};
 }
 
@@ -117,7 +118,7 @@ static void set_state(const Renderer *renderer, const float background[4])
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_SCISSOR_TEST);
     glDepthFunc(GL_LESS);
-    glBindFramebuffer(GL_FRAMEBUFFER, renderer->target.picture_frame);
+    glBindFramebuffer(GL_FRAMEBUFFER, renderer->target.image_frame);
     if (options->kind == IMAGE_FLOAT)
         glClearBufferfv(GL_COLOR, 0, background);
     else
@@ -126,20 +127,20 @@ static void set_state(const Renderer *renderer, const float background[4])
 
 static Result list_casters(Renderer *renderer, ShadowScene *scene, Error *error)
 {
-    const Picture *picture = &renderer->picture;
+    const Drawing *drawing = &renderer->drawing;
     uint32_t count = 0;
-    for (uint32_t i = 0; i < picture->item_count; ++i) count += picture->items[i].hair->batch_count;
+    for (uint32_t i = 0; i < drawing->item_count; ++i) count += drawing->items[i].hair->batch_count;
     if (renderer->caster_room < count) {
         ShadowCaster *casters = realloc(renderer->casters, count * sizeof *casters);
         if (!casters) return error_set(error, RESULT_FAILED, "no memory for %u batches", count);
         renderer->casters = casters;
         renderer->caster_room = count;
     }
-    for (uint32_t i = 0; i < picture->item_count; ++i) {
-        const RenderItem *item = &picture->items[i];
+    for (uint32_t i = 0; i < drawing->item_count; ++i) {
+        const RenderItem *item = &drawing->items[i];
         for (uint32_t b = 0; b < item->hair->batch_count; ++b)
             renderer->casters[scene->casters.count++] =
-                (ShadowCaster){&item->hair->batches[b], picture->looks[i]};
+                (ShadowCaster){&item->hair->batches[b], drawing->looks[i]};
     }
     scene->casters.list = renderer->casters;
     return RESULT_OK;
@@ -147,7 +148,7 @@ static Result list_casters(Renderer *renderer, ShadowScene *scene, Error *error)
 
 static Result draw_shadow(Renderer *renderer, const RenderFrame *frame, Error *error)
 {
-    Picture *picture = &renderer->picture;
+    Drawing *drawing = &renderer->drawing;
     ShadowScene scene = {.lights = frame->lights,
                          .light_count = frame->light_count,
                          .mesh = {.mesh = &renderer->base.mesh},
@@ -155,14 +156,13 @@ static Result draw_shadow(Renderer *renderer, const RenderFrame *frame, Error *e
     if (renderer->options.shadow.kind == SHADOW_NONE) return RESULT_OK;
     memcpy(scene.mesh.rotation, frame->head_rotation, sizeof scene.mesh.rotation);
     memcpy(scene.mesh.translation, frame->head_translation, sizeof scene.mesh.translation);
-    if (picture->item_count) picture_find_middle(picture, picture->items[0].hair, scene.middle);
+    if (drawing->item_count) drawing_find_middle(drawing, drawing->items[0].hair, scene.middle);
     Result result = list_casters(renderer, &scene, error);
-    if (result == RESULT_OK)
-        result = shadows_draw(&renderer->shadow, &scene, renderer->timer, error);
+    THEN(result, shadows_draw(&renderer->shadow, &scene, renderer->timer, error));
     if (result != RESULT_OK) return result;
     shadows_bind(&renderer->shadow);
-    for (uint32_t i = 0; i < picture->item_count; ++i) {
-        Look *look = &picture->looks[i];
+    for (uint32_t i = 0; i < drawing->item_count; ++i) {
+        Look *look = &drawing->looks[i];
         look->map_count = renderer->shadow.params.maps;
         if (hair_shadow_lights(&renderer->shadow.hair, &look->lights, &look->batches))
             look->features |= LOOK_SHADOW_FOUND;
@@ -172,20 +172,20 @@ static Result draw_shadow(Renderer *renderer, const RenderFrame *frame, Error *e
 
 static Result add_base_to_quads(Renderer *renderer, Error *error)
 {
-    return render_quads_add_base(&renderer->quads, error);
+    return quads_add_base(&renderer->quads, error);
 }
 
 static Result draw_quads(Renderer *renderer, Image *image, Error *error)
 {
     const CullBase base = {has_base(renderer) ? &renderer->target : NULL,
                            renderer->base.depth_version};
-    return render_quads_draw(&renderer->quads, &renderer->picture, &renderer->target, &base,
-                             renderer->timer, image, &renderer->counts, error);
+    return quads_draw(&renderer->quads, &renderer->drawing, &renderer->target, &base,
+                      renderer->timer, image, &renderer->counts, error);
 }
 
 static void count_blocks(Renderer *renderer)
 {
-    const RenderBlocks *blocks = &renderer->blocks;
+    const Blocks *blocks = &renderer->blocks;
     renderer->counts =
         (RendererCounts){.segments = blocks->segments,
                          .culled = blocks->culled,
@@ -197,14 +197,13 @@ static void count_blocks(Renderer *renderer)
 
 static Result project_items(Renderer *renderer, Error *error)
 {
-    const Picture *picture = &renderer->picture;
+    const Drawing *drawing = &renderer->drawing;
     Result result = RESULT_OK;
     gpu_timer_begin(renderer->timer, "draw_project");
-    for (uint32_t i = 0; i < picture->item_count; ++i) {
-        const Hair *hair = picture->items[i].hair;
+    for (uint32_t i = 0; i < drawing->item_count; ++i) {
+        const Hair *hair = drawing->items[i].hair;
         for (uint32_t b = 0; b < hair->batch_count && result == RESULT_OK; ++b)
-            result =
-                render_blocks_add(&renderer->blocks, &hair->batches[b], &picture->looks[i], error);
+            result = blocks_add(&renderer->blocks, &hair->batches[b], &drawing->looks[i], error);
     }
     gpu_timer_end(renderer->timer);
     return result;
@@ -212,16 +211,16 @@ static Result project_items(Renderer *renderer, Error *error)
 
 static Result draw_blocks(Renderer *renderer, Image *image, Error *error)
 {
-    RenderBlocks *blocks = &renderer->blocks;
-    const Picture *picture = &renderer->picture;
+    Blocks *blocks = &renderer->blocks;
+    const Drawing *drawing = &renderer->drawing;
     const BlocksBase base = {
         .cull = {has_base(renderer) ? &renderer->target : NULL, renderer->base.depth_version},
         .version = renderer->base.version,
-        .box = picture->base_box,
-        .depth = {picture->draw.depth[0], picture->draw.depth[1]}};
-    Result result = render_blocks_begin(blocks, picture_count_segments(picture), &base, error);
-    if (result == RESULT_OK) result = project_items(renderer, error);
-    if (result == RESULT_OK) result = render_blocks_draw(blocks, renderer->timer, image, error);
+        .box = drawing->base_box,
+        .depth = {drawing->draw.depth[0], drawing->draw.depth[1]}};
+    Result result = blocks_begin(blocks, drawing_count_segments(drawing), &base, error);
+    THEN(result, project_items(renderer, error));
+    THEN(result, blocks_draw(blocks, renderer->timer, image, error));
     if (result == RESULT_OK) count_blocks(renderer);
     return result;
 }
@@ -233,13 +232,13 @@ static const RasterType RASTERS[] = {
 
 static Result draw_base(Renderer *renderer, Error *error)
 {
-    const Picture *picture = &renderer->picture;
+    const Drawing *drawing = &renderer->drawing;
     const BaseScene scene = {.floor = &renderer->options.floor,
                              .shadow = &renderer->shadow,
-                             .draw = &picture->draw,
-                             .mesh_box = picture->mesh_box,
-                             .box = picture->base_box};
-    return render_base_draw(&renderer->base, &scene, &renderer->target, renderer->timer, error);
+                             .draw = &drawing->draw,
+                             .mesh_box = drawing->mesh_box,
+                             .box = drawing->base_box};
+    return base_layer_draw(&renderer->base, &scene, &renderer->target, renderer->timer, error);
 }
 
 Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderItem *items,
@@ -247,20 +246,16 @@ Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderI
 {
     assert(image->width == renderer->options.width && image->height == renderer->options.height);
     assert(image->channels == renderer_channels(renderer));
-    const DrawParams *draw = &renderer->picture.draw;
-    Result result = picture_begin(&renderer->picture, &renderer->options, &renderer->base.mesh,
-                                  frame, items, item_count, error);
-    if (result != RESULT_OK) return result;
+    const DrawParams *draw = &renderer->drawing.draw;
+    TRY(drawing_begin(&renderer->drawing, &renderer->options, &renderer->base.mesh, frame, items,
+                      item_count, error));
     renderer->counts = (RendererCounts){0};
-    picture_upload(&renderer->picture);
-    result = draw_shadow(renderer, frame, error);
-    if (result != RESULT_OK) return result;
+    drawing_upload(&renderer->drawing);
+    TRY(draw_shadow(renderer, frame, error));
     set_state(renderer, draw->background);
-    result = draw_base(renderer, error);
-    if (result != RESULT_OK) return result;
-    result = RASTERS[renderer->raster].draw(renderer, image, error);
-    if (result != RESULT_OK) return result;
-    renderer->counts.thinned = picture_count_thinned(&renderer->picture);
+    TRY(draw_base(renderer, error));
+    TRY(RASTERS[renderer->raster].draw(renderer, image, error));
+    renderer->counts.thinned = drawing_count_thinned(&renderer->drawing);
     renderer->counts.shadow_maps = renderer->shadow.maps_drawn;
     return gpu_check("drawing", error);
 }

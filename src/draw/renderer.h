@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// From hair on the GPU to a picture: mesh, hair ribbons into an A-buffer, and its resolution.
+// From hair on the GPU to a image: mesh, hair ribbons into an A-buffer, and its resolution.
 #pragma once
 
-#include "draw/picture.h"
-#include "draw/render_base.h"
-#include "draw/render_blocks.h"
-#include "draw/render_options.h"
-#include "draw/render_quads.h"
+#include "draw/base_layer.h"
+#include "draw/blocks.h"
+#include "draw/drawing.h"
+#include "draw/quads.h"
+#include "draw/renderer_options.h"
 
 typedef struct Renderer {
     RendererOptions options;
@@ -14,18 +14,18 @@ typedef struct Renderer {
     GpuTimer *timer;
     RenderTarget target;
     Raster raster; // auto is decided
-    RenderQuads quads;
-    RenderBlocks blocks;
-    RenderBase base;
+    Quads quads;
+    Blocks blocks;
+    BaseLayer base;
     Shadows shadow;
     ShadowCaster *casters; // [caster_room], owned
     uint32_t caster_room;
-    Picture picture; // the last one
+    Drawing drawing; // the last one
     RendererCounts counts;
 } Renderer;
 
 // Makes targets and shaders. `gpu` and `timer` outlive the renderer; spans "draw_mesh",
-// "draw_project", and of quads "draw_hair", "draw_resolve" and "draw_read" (of the picture), of
+// "draw_project", and of quads "draw_hair", "draw_resolve" and "draw_read" (of the image), of
 // blocks "draw_read" (of mesh and floor), "draw_bin" and "draw_composite". RESULT_FAILED if the
 // size exceeds the driver's or memory is short.
 Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
@@ -38,9 +38,9 @@ Result renderer_set_mesh(Renderer *renderer, const Mesh *mesh, const float color
 // 3, or 4 where the background is not opaque: what image_create must be given.
 int renderer_channels(const Renderer *renderer);
 
-// Draws one picture into `image`, which has the renderer's size and channels, and waits for it. The
+// Draws one image into `image`, which has the renderer's size and channels, and waits for it. The
 // order of items and of strands does not matter, and every run gives the same bytes. No fragment is
-// lost: an A-buffer that is too small grows and the band is drawn again; at its largest the picture
+// lost: an A-buffer that is too small grows and the band is drawn again; at its largest the image
 // is drawn in more bands. RESULT_FAILED if memory is short or, with quads, a single row needs more
 // than there can be or a pixel has more fragments than a CPU driver's loops can visit.
 Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderItem *items,

@@ -258,24 +258,22 @@ static Result draw_maps(Shadows *shadow, const ShadowScene *scene, Error *error)
     params->side = shadow->options.side;
     params->mesh_side = MESH_SIDE;
     find_mean_fibre(shadow, scene, params);
-    Result result = hair_shadow_begin(&shadow->hair, count_maps(scene), scene->casters, error);
-    if (result != RESULT_OK) return result;
+    TRY(hair_shadow_begin(&shadow->hair, count_maps(scene), scene->casters, error));
     for (uint32_t i = 0; i < scene->light_count; ++i)
         if (casts(&scene->lights[i])) draw_map(shadow, scene, (int)i);
     hair_shadow_end(&shadow->hair);
     shadow->maps_drawn = (uint32_t)params->maps;
     ++shadow->version;
-    return result;
+    return RESULT_OK;
 }
 
 Result shadows_draw(Shadows *shadow, const ShadowScene *scene, GpuTimer *timer, Error *error)
 {
     shadow->maps_drawn = 0;
     if (is_drawn(shadow, scene)) return RESULT_OK;
-    Result result = reserve(shadow, scene, error);
-    if (result != RESULT_OK) return result;
+    TRY(reserve(shadow, scene, error));
     gpu_timer_begin(timer, "draw_shadow");
-    result = draw_maps(shadow, scene, error);
+    Result result = draw_maps(shadow, scene, error);
     gpu_timer_end(timer);
     if (result != RESULT_OK) return result;
     shadow->drawn = *scene;

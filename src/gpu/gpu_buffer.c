@@ -60,6 +60,14 @@ Result gpu_buffer_create_pieces(GpuBuffer *buffer, const GpuLimits *limits, cons
     return fill(buffer, what, NULL, texel_format, error);
 }
 
+Result gpu_buffer_reserve(GpuBuffer *buffer, const GpuLimits *limits, const char *what,
+                          int64_t size, GLenum texel_format, Error *error)
+{
+    if (buffer->size >= size) return RESULT_OK;
+    gpu_buffer_destroy(buffer);
+    return gpu_buffer_create(buffer, limits, what, size, NULL, texel_format, error);
+}
+
 void gpu_buffer_destroy(GpuBuffer *buffer)
 {
     if (buffer->texture) glDeleteTextures(1, &buffer->texture);

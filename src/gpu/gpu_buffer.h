@@ -24,6 +24,11 @@ Result gpu_buffer_create(GpuBuffer *buffer, const GpuLimits *limits, const char 
 // driver allows, and read as a texture.
 Result gpu_buffer_create_pieces(GpuBuffer *buffer, const GpuLimits *limits, const char *what,
                                 int64_t size, GLenum texel_format, Error *error);
+
+// A buffer of at least `size` bytes: a smaller one is made anew, its content undefined. Otherwise
+// as gpu_buffer_create.
+Result gpu_buffer_reserve(GpuBuffer *buffer, const GpuLimits *limits, const char *what,
+                          int64_t size, GLenum texel_format, Error *error);
 void gpu_buffer_destroy(GpuBuffer *buffer);
 
 // Sets every 4 bytes to `word`. Only queues GPU work.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "run/images.h"
 #include "base/target.h"
-#include "draw/hair_paint.h"
+#include "draw/look.h"
 #include "scene/camera.h"
 #include "strands/paint.h"
 
@@ -15,9 +15,9 @@ static Result paint_section(Images *images, uint32_t i, Error *error)
     const GpuLimits *limits = &images->gpu->limits;
     Paint paint;
     Result result = paint_create(&paint, strands, &images->scene->sections[i].params, error);
-    THEN(result, hair_paint(&section->hair, strands, &paint, limits, error));
+    THEN(result, look_paint(&section->hair, strands, &paint, limits, error));
     if (result == RESULT_OK && section->follow.per_guide)
-        result = hair_paint(&section->follow.hair, strands, &paint, limits, error);
+        result = look_paint(&section->follow.hair, strands, &paint, limits, error);
     paint_destroy(&paint);
     return result == RESULT_USAGE
                ? error_prefix(error, result, "%s: ", images->scene->sections[i].file)

@@ -25,7 +25,7 @@ typedef struct HairBatch {
     GpuBuffer rest;
     // uint a strand (and copy): its number in its section, seed of all that varies by strand.
     GpuBuffer strand_id;
-    // uvec4 a particle, see hair_paint.c; no buffer if the section has one look.
+    // uvec4 a particle, see look_paint; no buffer if the section has one look.
     GpuBuffer paint;
 } HairBatch;
 

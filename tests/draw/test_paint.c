@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Colours and thickness that differ over a section.
-#include "draw/hair_paint.h"
+#include "draw/look.h"
 #include "image/image.h"
 #include "image/png.h"
 #include "support/studio.h"
@@ -181,7 +181,7 @@ static void hair_shows_its_paint(void **state)
         const Paint paint = {
             .color = color, .thickness = thickness, .vertex_count = STRANDS * SIZE};
         studio_add(&studio, &strands, 2, 1);
-        NEEDED(hair_paint(&studio.hair[0], &strands, &paint, &studio.gpu.limits, error));
+        NEEDED(look_paint(&studio.hair[0], &strands, &paint, &studio.gpu.limits, error));
         studio_draw(&studio);
         assert_int_equal(studio_pixel(&studio, 64 - 30, 64)[0], 255);
         assert_int_equal(studio_pixel(&studio, 64 - 30, 64)[1], 0);
@@ -224,7 +224,7 @@ static void painted_hair_lies_in_shadow(void **state)
         uint8_t *plain = studio_copy(&studio, &size);
         assert_true(studio_pixel(&studio, 64 + 30, 64)[0] > 250);
         assert_true(studio_pixel(&studio, 64 - 10, 64)[0] < 60);
-        NEEDED(hair_paint(&studio.hair[0], &strands, &paint, &studio.gpu.limits, error));
+        NEEDED(look_paint(&studio.hair[0], &strands, &paint, &studio.gpu.limits, error));
         studio_draw(&studio);
         assert_memory_equal(plain, studio.image.pixels, size);
         free(plain);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Invariants of all images: order, memory, bounds, threads.
 #include "base/random.h"
-#include "draw/render_uniforms.h"
+#include "draw/drawing.h"
 #include "support/hair_fixture.h"
 #include "support/stage.h"
 

@@ -2,7 +2,7 @@
 // Invisible strands are culled before projection, without a change of the image; the counts say how
 // many and why.
 #include "base/random.h"
-#include "draw/hair_paint.h"
+#include "draw/look.h"
 #include "support/stage.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 
 enum { COUNT = 1500, VERTICES = 6, HEAD = 70 };
 
-static RenderCull *cull(void)
+static Cull *cull(void)
 {
     Renderer *renderer = &studio.renderer;
     return raster == RASTER_QUADS ? &renderer->quads.cull : &renderer->blocks.cull;
@@ -82,7 +82,7 @@ static void paint_hair(uint32_t item, const Strands *strands)
     }
     Error error = {{0}};
     const Paint paint = {color, thickness, true, strands->vertex_count};
-    assert_int_equal(hair_paint(&studio.hair[item], strands, &paint, &studio.gpu.limits, &error),
+    assert_int_equal(look_paint(&studio.hair[item], strands, &paint, &studio.gpu.limits, &error),
                      RESULT_OK);
     free(color);
     free(thickness);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Which rasteriser draws, and what quads do with the fragments of a pixel.
-#include "draw/render_uniforms.h"
+#include "draw/drawing.h"
 #include "support/stage.h"
 
 #include "glsl/common/shared_math.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "draw/hair_paint.h"
+#include "draw/look.h"
 #include "gen/strands_make.h"
 #include "strands/paint.h"
 #include "support/shadow_stage.h"
@@ -133,7 +133,7 @@ static void shadows_are_as_wide_and_dark_as_the_paint(void **state)
         thickness[v] = v < VERTICES ? 1 + 0.5f * (float)v : 2;
     }
     const Paint paint = {.color = color, .thickness = thickness, .vertex_count = 2 * VERTICES};
-    NEEDED(hair_paint(&stage.hair, &strands, &paint, &fixture_gpu()->limits, error));
+    NEEDED(look_paint(&stage.hair, &strands, &paint, &fixture_gpu()->limits, error));
     stage.item.paint = &paint;
     shadow_reference_destroy(&stage.reference);
     NEEDED(shadow_reference_create(&stage.reference, &stage.reference_scene, &LIGHT_ABOVE,

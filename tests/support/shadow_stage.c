@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "support/shadow_stage.h"
 
-#include "draw/render_uniforms.h"
+#include "draw/drawing.h"
 #include "support/test_glsl.h"
 
 #include <math.h>
@@ -40,7 +40,7 @@ void shadow_stage_open(ShadowStage *stage, Strands strands, float radius, float 
     for (uint32_t b = 0; b < stage->hair.batch_count && b < 8; ++b)
         stage->casters[stage->scene.casters.count++] =
             (ShadowCaster){&stage->hair.batches[b],
-                           {.material = material_params(&stage->material, radius), .share = 1}};
+                           {.material = drawing_material(&stage->material, radius), .share = 1}};
     if (mesh)
         NEEDED(render_mesh_create(&stage->mesh, mesh, (const float[3]){1, 1, 1}, limits, error));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is asked of a renderer, and what a picture came to.
+// What is asked of a renderer, and what a image came to.
 #pragma once
 
 #include "base/params.h"
@@ -22,10 +22,10 @@ typedef struct LodOptions {
 typedef struct RendererOptions {
     Raster raster;        // how hair becomes pixels; auto: blocks on CPU drivers, else quads
     int width, height;    // px, each 1 .. the driver's limits.framebuffer_side_px
-    float background[4];  // sRGB and opacity 0..1; below 1 the pictures have an alpha channel
+    float background[4];  // sRGB and opacity 0..1; below 1 the images have an alpha channel
     float exposure;       // all light but the background's is this many times doubled
     Tone tone;            // how light becomes colour; the background's does not change
-    ImageKind kind;       // of the pictures
+    ImageKind kind;       // of the images
     Aov aov;              // what is drawn instead of light, on black (docs/renderer.md)
     float depth_range[2]; // AOV_DEPTH: m that are shown as 1 and as 0; alike: m themselves
     int samples;   // 1, 2 or 4: a pixel is the mean of samples x samples, each with lists of its
@@ -54,7 +54,7 @@ typedef struct Ambient {
     float sky[3], ground[3];
 } Ambient;
 
-// What all items of a picture have in common.
+// What all items of a image have in common.
 typedef struct RenderFrame {
     const View *view; // made for the renderer's width and height
     const Light *lights;
@@ -65,15 +65,15 @@ typedef struct RenderFrame {
     uint64_t revision; // another one wherever hair has moved, so that shadows are kept; 0: it has
 } RenderFrame;
 
-// Of the last picture, for the statistics.
+// Of the last image, for the statistics.
 typedef struct RendererCounts {
     uint64_t segments;    // sent to the rasteriser; straight runs count as one
-    uint64_t culled;      // strands outside the picture, which cost no drawing
+    uint64_t culled;      // strands outside the image, which cost no drawing
     uint64_t hidden;      // strands behind mesh or floor that were not even projected (blocks)
     uint64_t fragments;   // stored and blended: pixels of a ribbon, or with blocks blocks of it
     uint64_t pool_bytes;  // of the A-buffer or the block lists now
     uint32_t redraws;     // bands that were drawn again because the A-buffer was too small
-    uint32_t bands;       // horizontal bands that the picture was drawn in
+    uint32_t bands;       // horizontal bands that the image was drawn in
     uint64_t thinned;     // strands that others stand for, at their distance
-    uint32_t shadow_maps; // that were made; those of the picture before may have done
+    uint32_t shadow_maps; // that were made; those of the image before may have done
 } RendererCounts;

@@ -2,23 +2,32 @@
 // What stands behind and among the hair: mesh and floor over the background.
 //
 // The mesh's surface and the depth of samples at its edges are drawn first, each pixel is lit once
-// by that, and then all is put together. None of this is done again for a picture in which neither
+// by that, and then all is put together. None of this is done again for a image in which neither
 // camera, head, lights nor shadows have changed.
 #pragma once
 
-#include "draw/render_floor.h"
 #include "draw/render_mesh.h"
 #include "draw/shadows.h"
 #include "gpu/gpu_timer.h"
+#include "gpu/shader.h"
+#include "scene/floor.h"
 
-// A part of a picture: in one without a mesh; beside the mesh, whose shadow may be there; or where
+#include "glsl/draw/draw.h"
+
+// The floor: a disc that is seen from above and receives shadows, but casts none.
+typedef struct BaseFloor {
+    GLuint depth;        // program
+    GLuint vertex_array; // without attributes
+} BaseFloor;
+
+// A part of a image: in one without a mesh; beside the mesh, whose shadow may be there; or where
 // it may be itself.
 typedef enum BaseArea { BASE_WITHOUT_MESH, BASE_BESIDE_MESH, BASE_OVER_MESH } BaseArea;
 
 // A zeroed struct has no mesh.
-typedef struct RenderBase {
+typedef struct BaseLayer {
     RenderMesh mesh;
-    RenderFloor floor;
+    BaseFloor floor;
     GLuint light;               // program of the mesh
     GLuint finish[3][3];        // programs, by BaseArea and FloorKind
     int light_count, map_count; // that these are for
@@ -28,9 +37,9 @@ typedef struct RenderBase {
     bool any;
     uint64_t version;       // counts the times that anything was drawn
     uint64_t depth_version; // counts the times that the target's depth was
-} RenderBase;
+} BaseLayer;
 
-// A picture of it. Boxes in samples: x, y lowest, highest; outside of them is background.
+// A image of it. Boxes in samples: x, y lowest, highest; outside of them is background.
 typedef struct BaseScene {
     const Floor *floor;
     const Shadows *shadow;     // what mesh and floor receive, which is bound
@@ -39,22 +48,23 @@ typedef struct BaseScene {
 } BaseScene;
 
 // Whether there is more than background.
-bool render_base_is_needed(const RenderBase *base, const Floor *floor);
+bool base_layer_is_needed(const BaseLayer *base, const Floor *floor);
 
 // Says for how many lights and shadow maps programs are; those for others are forgotten.
-void render_base_count(RenderBase *base, int light_count, int map_count);
+void base_layer_count(BaseLayer *base, int light_count, int map_count);
 
 // Compiles what lights the mesh, and what puts all together there with the floor that is seen and
-// what it receives, unless it is there. The shadow stays the same for a RenderBase.
-Result render_base_build_light(RenderBase *base, Shadow shadow, Error *error);
-Result render_base_build(RenderBase *base, BaseArea area, FloorKind floor, Shadow shadow,
-                         Error *error);
+// what it receives, unless it is there. The shadow stays the same for a BaseLayer.
+Result base_layer_build_floor(BaseFloor *floor, Error *error);
+Result base_layer_build_light(BaseLayer *base, Shadow shadow, Error *error);
+Result base_layer_build(BaseLayer *base, BaseArea area, FloorKind floor, Shadow shadow,
+                        Error *error);
 
 // Fills the target's depth and its `base`, unless they show this scene already. Spans "draw_mesh"
 // and "draw_floor"; where a floor is seen, the latter has what puts mesh, floor and background
 // together. Leaves scissor and writing of depth off.
 // RESULT_FAILED if a shader does not compile.
-Result render_base_draw(RenderBase *base, const BaseScene *scene, const RenderTarget *target,
-                        GpuTimer *timer, Error *error);
+Result base_layer_draw(BaseLayer *base, const BaseScene *scene, const RenderTarget *target,
+                       GpuTimer *timer, Error *error);
 
-void render_base_destroy(RenderBase *base);
+void base_layer_destroy(BaseLayer *base);

@@ -5,6 +5,7 @@
 
 #include "gpu/shader.h"
 #include "sim/hair.h"
+#include "strands/paint.h"
 
 #include "glsl/draw/material.h"
 
@@ -38,7 +39,7 @@ typedef struct Look {
     unsigned features;           // LookFeature bits
     int light_count;             // of the scene
     int map_count;               // lights that have a shadow map
-    GLuint scatter;              // LOOK_MARSCHNER: the 3D texture of render_scatter.h
+    GLuint scatter;              // LOOK_MARSCHNER: the 3D texture of scatter_tables.h
     const ParticleLight *lights; // [batches], LOOK_SHADOW_FOUND
     uint32_t batches;
     float share; // of the strands is drawn, 0 .. 1; the material's radius makes up for it
@@ -76,3 +77,8 @@ int look_unrolled(int light_count);
 // Compiles the variant of these features if it is not there.
 Result look_programs_build(LookPrograms *programs, unsigned features, Error *error);
 void look_programs_destroy(LookPrograms *programs);
+
+// Gives every batch the paint of its strands, which `paint` has for all of the file's. Nothing for
+// a paint that is zeroed. RESULT_FAILED if memory is short.
+Result look_paint(Hair *hair, const Strands *strands, const Paint *paint, const GpuLimits *limits,
+                  Error *error);

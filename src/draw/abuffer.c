@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "draw/render_abuffer.h"
+#include "draw/abuffer.h"
 
 #include "glsl/draw/draw.h"
 
@@ -16,14 +16,14 @@ static int64_t round_up_nodes(int64_t nodes)
     return (nodes + SHARD_STEP - 1) / SHARD_STEP * SHARD_STEP;
 }
 
-static Result create_pool(RenderABuffer *abuffer, int64_t nodes, Error *error)
+static Result create_pool(ABuffer *abuffer, int64_t nodes, Error *error)
 {
     gpu_buffer_destroy(&abuffer->nodes);
     return gpu_buffer_create(&abuffer->nodes, abuffer->limits, "A-buffer", nodes * NODE_BYTES, NULL,
                              GL_RGBA32UI, error);
 }
 
-static Result build_resolve(RenderABuffer *abuffer, int over_mesh, Error *error)
+static Result build_resolve(ABuffer *abuffer, int over_mesh, Error *error)
 {
     const ShaderDefine defines[] = {{"LAYERS", abuffer->layers},
                                     {"BASE", over_mesh},
@@ -36,44 +36,40 @@ static Result build_resolve(RenderABuffer *abuffer, int over_mesh, Error *error)
                              defines, error);
 }
 
-Result render_abuffer_create(RenderABuffer *abuffer, const GpuLimits *limits, int width,
-                             int samples, int layers, int tone, bool depth, bool software,
-                             int64_t pool_bytes, Error *error)
+Result abuffer_create(ABuffer *abuffer, const GpuLimits *limits, int width, int samples, int layers,
+                      int tone, bool depth, bool software, int64_t pool_bytes, Error *error)
 {
-    *abuffer = (RenderABuffer){.limits = limits,
-                               .shards = SHARD_COUNT,
-                               .layers = layers,
-                               .width = width * samples,
-                               .samples = samples,
-                               .tone = tone,
-                               .depth = depth,
-                               .most_turns = software ? ABUFFER_MOST_TURNS : INT32_MAX};
+    *abuffer = (ABuffer){.limits = limits,
+                         .shards = SHARD_COUNT,
+                         .layers = layers,
+                         .width = width * samples,
+                         .samples = samples,
+                         .tone = tone,
+                         .depth = depth,
+                         .most_turns = software ? ABUFFER_MOST_TURNS : INT32_MAX};
     int64_t bytes = pool_bytes ? smaller(pool_bytes, limits->storage_block) : limits->storage_block;
     int64_t most = smaller(smaller(bytes / NODE_BYTES, limits->texture_texels), INT32_MAX);
     abuffer->most_nodes = most < SHARD_STEP ? SHARD_STEP : most / SHARD_STEP * SHARD_STEP;
     glGenVertexArrays(1, &abuffer->vertex_array);
     Result result = create_pool(abuffer, smaller(FIRST_NODES, abuffer->most_nodes), error);
-    if (result == RESULT_OK)
-        result = gpu_buffer_create(&abuffer->counters, limits, "A-buffer counters",
-                                   COUNTER_WORDS * 4, NULL, 0, error);
-    if (result == RESULT_OK)
-        result = gpu_buffer_create(&abuffer->extent, limits, "hair's screen box", 16, NULL, GL_R32I,
-                                   error);
+    THEN(result, gpu_buffer_create(&abuffer->counters, limits, "A-buffer counters",
+                                   COUNTER_WORDS * 4, NULL, 0, error));
+    THEN(result, gpu_buffer_create(&abuffer->extent, limits, "hair's screen box", 16, NULL, GL_R32I,
+                                   error));
     const GLuint none = 0;
-    if (result == RESULT_OK)
-        result =
-            gpu_buffer_create(&abuffer->shortage, limits, "A-buffer's flag", 4, &none, 0, error);
-    if (result == RESULT_OK) result = build_resolve(abuffer, 0, error);
-    if (result != RESULT_OK) render_abuffer_destroy(abuffer);
+    THEN(result,
+         gpu_buffer_create(&abuffer->shortage, limits, "A-buffer's flag", 4, &none, 0, error));
+    THEN(result, build_resolve(abuffer, 0, error));
+    if (result != RESULT_OK) abuffer_destroy(abuffer);
     return result;
 }
 
-Result render_abuffer_add_base(RenderABuffer *abuffer, Error *error)
+Result abuffer_add_base(ABuffer *abuffer, Error *error)
 {
     return abuffer->resolve[1] ? RESULT_OK : build_resolve(abuffer, 1, error);
 }
 
-void render_abuffer_destroy(RenderABuffer *abuffer)
+void abuffer_destroy(ABuffer *abuffer)
 {
     for (int i = 0; i < 2; ++i)
         if (abuffer->resolve[i]) glDeleteProgram(abuffer->resolve[i]);
@@ -83,16 +79,16 @@ void render_abuffer_destroy(RenderABuffer *abuffer)
     gpu_buffer_destroy(&abuffer->counters);
     gpu_buffer_destroy(&abuffer->extent);
     gpu_buffer_destroy(&abuffer->shortage);
-    *abuffer = (RenderABuffer){0};
+    *abuffer = (ABuffer){0};
 }
 
-int render_abuffer_most_rows(const RenderABuffer *abuffer, int height)
+int abuffer_most_rows(const ABuffer *abuffer, int height)
 {
     int64_t pixels = smaller(abuffer->limits->storage_block / 4, abuffer->limits->texture_texels);
     return (int)smaller(height, pixels / abuffer->width / abuffer->samples);
 }
 
-int render_abuffer_shard_nodes(const RenderABuffer *abuffer)
+int abuffer_shard_nodes(const ABuffer *abuffer)
 {
     return (int)(abuffer->nodes.size / NODE_BYTES / abuffer->shards);
 }
@@ -105,15 +101,11 @@ static void clear(const GpuBuffer *buffer, int64_t size)
                          GL_UNSIGNED_INT, &zero);
 }
 
-Result render_abuffer_begin(RenderABuffer *abuffer, int rows, const int box[4], Error *error)
+Result abuffer_begin(ABuffer *abuffer, int rows, const int box[4], Error *error)
 {
     int64_t size = (int64_t)rows * abuffer->samples * abuffer->width * 4;
-    if (abuffer->heads.size < size) {
-        gpu_buffer_destroy(&abuffer->heads);
-        Result result = gpu_buffer_create(&abuffer->heads, abuffer->limits, "A-buffer heads", size,
-                                          NULL, GL_R32UI, error);
-        if (result != RESULT_OK) return result;
-    }
+    TRY(gpu_buffer_reserve(&abuffer->heads, abuffer->limits, "A-buffer heads", size, GL_R32UI,
+                           error));
     clear(&abuffer->heads, size);
     clear(&abuffer->counters, abuffer->counters.size);
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, abuffer->extent.buffer);
@@ -125,7 +117,7 @@ Result render_abuffer_begin(RenderABuffer *abuffer, int rows, const int box[4], 
     return RESULT_OK;
 }
 
-void render_abuffer_measure(const RenderABuffer *abuffer, ABufferUse *use)
+void abuffer_measure(const ABuffer *abuffer, ABufferUse *use)
 {
     GLuint counters[COUNTER_WORDS];
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -139,12 +131,12 @@ void render_abuffer_measure(const RenderABuffer *abuffer, ABufferUse *use)
     }
 }
 
-bool render_abuffer_holds(const RenderABuffer *abuffer, const ABufferUse *use)
+bool abuffer_holds(const ABuffer *abuffer, const ABufferUse *use)
 {
-    return use->fullest <= (uint32_t)render_abuffer_shard_nodes(abuffer);
+    return use->fullest <= (uint32_t)abuffer_shard_nodes(abuffer);
 }
 
-Result render_abuffer_grow(RenderABuffer *abuffer, const ABufferUse *use, bool *grown, Error *error)
+Result abuffer_grow(ABuffer *abuffer, const ABufferUse *use, bool *grown, Error *error)
 {
     int64_t needed = round_up_nodes((int64_t)use->fullest * abuffer->shards);
     if (needed > abuffer->most_nodes && (int64_t)use->fragments <= abuffer->most_nodes) {
@@ -157,8 +149,7 @@ Result render_abuffer_grow(RenderABuffer *abuffer, const ABufferUse *use, bool *
                                                     : RESULT_OK;
 }
 
-void render_abuffer_resolve(const RenderABuffer *abuffer, const RenderTarget *target,
-                            bool over_mesh)
+void abuffer_resolve(const ABuffer *abuffer, const RenderTarget *target, bool over_mesh)
 {
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     gpu_buffer_bind_texture(&abuffer->nodes, BIND_NODES);
@@ -167,13 +158,13 @@ void render_abuffer_resolve(const RenderABuffer *abuffer, const RenderTarget *ta
     gpu_buffer_bind_storage(&abuffer->shortage, BIND_SHORTAGE_OUT);
     glActiveTexture(GL_TEXTURE0 + BIND_BASE);
     glBindTexture(GL_TEXTURE_2D, target->base);
-    glBindFramebuffer(GL_FRAMEBUFFER, target->picture_frame);
+    glBindFramebuffer(GL_FRAMEBUFFER, target->image_frame);
     glUseProgram(abuffer->resolve[over_mesh]);
     glBindVertexArray(abuffer->vertex_array);
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
-bool render_abuffer_fell_short(const RenderABuffer *abuffer)
+bool abuffer_fell_short(const ABuffer *abuffer)
 {
     GLuint flag;
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Marschner's table against the reference, and what holds for all light.
-#include "draw/render_scatter.h"
-#include "draw/render_uniforms.h"
+#include "draw/drawing.h"
+#include "draw/scatter_tables.h"
 #include "gpu/gpu_buffer.h"
 #include "support/needed.h"
 #include "support/reference_marschner.h"
@@ -69,7 +69,7 @@ static void scatter(const SectionParams *params, int count, Direction (*pairs)[2
 {
     GpuBuffer draw = {0}, material = {0}, in, out;
     DrawParams draw_params = {.light_count = 1};
-    MaterialParams look = material_params(params, 1);
+    MaterialParams look = drawing_material(params, 1);
     GLuint texture;
     NEEDED(scatter_tables_find(&tables, params->refraction, glm_rad(params->azimuthal_roughness),
                                &texture, error));

@@ -1,9 +1,69 @@
 // SPDX-License-Identifier: MIT
-#include "draw/render_blocks.h"
+#include "draw/blocks.h"
 
 #include "glsl/draw/draw.h"
 
+#include <stdlib.h>
 #include <string.h>
+
+// --- Mesh and floor, read back.
+
+static int clamp(int x, int most)
+{
+    return x < 0 ? 0 : x > most ? most : x;
+}
+
+static void destroy_behind(BlocksBehind *behind)
+{
+    free(behind->light);
+    free(behind->depth);
+    *behind = (BlocksBehind){0};
+}
+
+// The part of the box that lies in the image.
+static BlockBase find_part(const RenderTarget *target, const int box[4])
+{
+    int width = target->width * target->samples, height = target->height * target->samples,
+        x = clamp(box[0], width), y = clamp(box[1], height),
+        right = clamp(box[2] < width ? box[2] + 1 : width, width),
+        bottom = clamp(box[3] < height ? box[3] + 1 : height, height);
+    return (BlockBase){
+        .x = x, .y = y, .width = right > x ? right - x : 0, .height = bottom > y ? bottom - y : 0};
+}
+
+static Result make_room_behind(BlocksBehind *behind, size_t count, Error *error)
+{
+    if (behind->room >= count) return RESULT_OK;
+    destroy_behind(behind);
+    behind->light = malloc(count * sizeof *behind->light);
+    behind->depth = malloc(count * sizeof *behind->depth);
+    if (behind->light && behind->depth) {
+        behind->room = count;
+        return RESULT_OK;
+    }
+    destroy_behind(behind);
+    return error_set(error, RESULT_FAILED, "no memory to read %zu px of mesh and floor", count);
+}
+
+static Result read_back(BlocksBehind *behind, const RenderTarget *target, const int box[4],
+                        uint64_t version, Error *error)
+{
+    if (behind->version == version) return RESULT_OK;
+    BlockBase part = find_part(target, box);
+    TRY(make_room_behind(behind, (size_t)part.width * (size_t)part.height, error));
+    part.light = (const uint16_t(*)[4])(void *)behind->light;
+    part.depth = behind->depth;
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, target->base_frame);
+    glReadPixels(part.x, part.y, part.width, part.height, GL_RGBA, GL_HALF_FLOAT, behind->light);
+    glReadPixels(part.x, part.y, part.width, part.height, GL_DEPTH_COMPONENT, GL_FLOAT,
+                 behind->depth);
+    behind->base = part;
+    Result result = gpu_check("reading mesh and floor back", error);
+    behind->version = result == RESULT_OK ? version : 0;
+    return result;
+}
+
+// --- Blocks.
 
 enum {
     PROJECT_GROUP = 8,
@@ -47,42 +107,40 @@ static void unmap(const GpuBuffer *buffer)
     glUnmapBuffer(GL_SHADER_STORAGE_BUFFER);
 }
 
-Result render_blocks_create(RenderBlocks *blocks, const GpuLimits *limits,
-                            const RendererOptions *options, Error *error)
+Result blocks_create(Blocks *blocks, const GpuLimits *limits, const RendererOptions *options,
+                     Error *error)
 {
-    *blocks = (RenderBlocks){
-        .project = {.file = "draw/block_project.comp", .group_size = PROJECT_GROUP},
-        .limits = limits,
-        .skips = true,
-        .nearest = options->aov > AOV_COVERAGE,
-        .style = {.samples = options->samples,
-                  .tone = picture_display(options),
-                  .shows_depth = options->aov == AOV_DEPTH,
-                  .depth_range = {options->depth_range[0], options->depth_range[1]}}};
-    picture_background(options, blocks->style.background);
+    *blocks =
+        (Blocks){.project = {.file = "draw/block_project.comp", .group_size = PROJECT_GROUP},
+                 .limits = limits,
+                 .skips = true,
+                 .nearest = options->aov > AOV_COVERAGE,
+                 .style = {.samples = options->samples,
+                           .tone = drawing_display(options),
+                           .shows_depth = options->aov == AOV_DEPTH,
+                           .depth_range = {options->depth_range[0], options->depth_range[1]}}};
+    drawing_background(options, blocks->style.background);
     Result result = block_raster_create(&blocks->raster, options->width * options->samples,
                                         options->height * options->samples, error);
-    if (result == RESULT_OK)
-        result = gpu_buffer_create(&blocks->counts, limits, "counts", BLOCK_COUNT_WORDS * 4, NULL,
-                                   0, error);
-    if (result != RESULT_OK) render_blocks_destroy(blocks);
+    THEN(result, gpu_buffer_create(&blocks->counts, limits, "counts", BLOCK_COUNT_WORDS * 4, NULL,
+                                   0, error));
+    if (result != RESULT_OK) blocks_destroy(blocks);
     return result;
 }
 
-void render_blocks_destroy(RenderBlocks *blocks)
+void blocks_destroy(Blocks *blocks)
 {
     GpuBuffer *const buffers[] = {&blocks->ribbons, &blocks->keys, &blocks->counts,
                                   &blocks->material};
     look_programs_destroy(&blocks->project);
-    render_cull_destroy(&blocks->cull);
+    cull_destroy(&blocks->cull);
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; ++i) gpu_buffer_destroy(buffers[i]);
     block_raster_destroy(&blocks->raster);
-    render_behind_destroy(&blocks->behind);
-    *blocks = (RenderBlocks){0};
+    destroy_behind(&blocks->behind);
+    *blocks = (Blocks){0};
 }
 
-Result render_blocks_begin(RenderBlocks *blocks, uint64_t segments, const BlocksBase *base,
-                           Error *error)
+Result blocks_begin(Blocks *blocks, uint64_t segments, const BlocksBase *base, Error *error)
 {
     if (segments >= UINT32_MAX)
         return error_set(error, RESULT_FAILED,
@@ -90,14 +148,10 @@ Result render_blocks_begin(RenderBlocks *blocks, uint64_t segments, const Blocks
                          (unsigned long long)segments, UINT32_MAX - 1);
     int64_t count = (int64_t)segments + 1;
     const GpuLimits *limits = blocks->limits;
-    Result result = make_room(&blocks->ribbons, limits, "ribbons",
-                              count * (int64_t)sizeof(RibbonRecord), error);
-    if (result == RESULT_OK)
-        result =
-            make_room(&blocks->keys, limits, "depths", count * (int64_t)sizeof(RibbonKey), error);
-    if (result == RESULT_OK)
-        result = render_cull_begin(&blocks->cull, limits, &base->cull, blocks->skips, error);
-    if (result != RESULT_OK) return result;
+    TRY(make_room(&blocks->ribbons, limits, "ribbons", count * (int64_t)sizeof(RibbonRecord),
+                  error));
+    TRY(make_room(&blocks->keys, limits, "depths", count * (int64_t)sizeof(RibbonKey), error));
+    TRY(cull_begin(&blocks->cull, limits, &base->cull, blocks->skips, error));
     clear(&blocks->keys, count * (int64_t)sizeof(RibbonKey));
     clear(&blocks->counts, blocks->counts.size);
     blocks->base = *base;
@@ -117,16 +171,14 @@ static void bind_range(const GpuBuffer *buffer, GLuint binding, int64_t begin, i
 
 // Projects part.drawn_strands strands from part.first_strand on, whose ribbons a shader can see at
 // once.
-static Result project_part(RenderBlocks *blocks, const HairBatch *batch, const Look *look,
+static Result project_part(Blocks *blocks, const HairBatch *batch, const Look *look,
                            const MaterialParams *part, int64_t slots, Error *error)
 {
     int64_t first = (int64_t)blocks->slots, begin = first / ALIGNED_RIBBONS * ALIGNED_RIBBONS;
     uint32_t count = part->drawn_strands;
     gpu_buffer_set_uniforms(&blocks->material, BIND_MATERIAL, part, sizeof *part);
-    Result result = RESULT_OK;
-    if (blocks->cull.tries) result = render_cull_list(&blocks->cull, batch, part, &count, error);
-    if (result == RESULT_OK) result = look_programs_use(&blocks->project, look, batch, error);
-    if (result != RESULT_OK) return result;
+    if (blocks->cull.tries) TRY(cull_list(&blocks->cull, batch, part, &count, error));
+    TRY(look_programs_use(&blocks->project, look, batch, error));
     bind_range(&blocks->ribbons, BIND_RIBBONS_OUT, begin, first + slots, sizeof(RibbonRecord));
     bind_range(&blocks->keys, BIND_KEYS_OUT, begin, first + slots, sizeof(RibbonKey));
     glUniform1i(0, (GLint)(first - begin));
@@ -137,12 +189,10 @@ static Result project_part(RenderBlocks *blocks, const HairBatch *batch, const L
     return RESULT_OK;
 }
 
-Result render_blocks_add(RenderBlocks *blocks, const HairBatch *batch, const Look *look,
-                         Error *error)
+Result blocks_add(Blocks *blocks, const HairBatch *batch, const Look *look, Error *error)
 {
     MaterialParams part = look_material(look, batch);
-    Result result = render_cull_make_room(&blocks->cull, blocks->limits, part.drawn_strands, error);
-    if (result != RESULT_OK) return result;
+    TRY(cull_make_room(&blocks->cull, blocks->limits, part.drawn_strands, error));
     int64_t of_strand = (int64_t)(batch->vertex_count - 1) * part.smooth_parts,
             most =
                 (blocks->limits->storage_block / (int64_t)sizeof(RibbonRecord) - ALIGNED_RIBBONS) /
@@ -151,15 +201,15 @@ Result render_blocks_add(RenderBlocks *blocks, const HairBatch *batch, const Loo
     gpu_buffer_bind_texture(&batch->position, BIND_POSITION);
     gpu_buffer_bind_texture(&batch->strand_id, BIND_STRAND_ID);
     gpu_buffer_bind_storage(&blocks->counts, BIND_BLOCK_COUNTS_OUT);
-    for (uint first = 0; first < strands && result == RESULT_OK; first += part.drawn_strands) {
+    for (uint first = 0; first < strands; first += part.drawn_strands) {
         part.first_strand = first;
         part.drawn_strands = (uint)smaller(strands - first, most);
-        result = project_part(blocks, batch, look, &part, part.drawn_strands * of_strand, error);
+        TRY(project_part(blocks, batch, look, &part, part.drawn_strands * of_strand, error));
     }
-    return result;
+    return RESULT_OK;
 }
 
-static Result read_counts(RenderBlocks *blocks, Error *error)
+static Result read_counts(Blocks *blocks, Error *error)
 {
     const GLuint *counts = map(&blocks->counts, blocks->counts.size);
     if (!counts) return error_set(error, RESULT_FAILED, "hair's counts cannot be read");
@@ -170,50 +220,46 @@ static Result read_counts(RenderBlocks *blocks, Error *error)
     }
     unmap(&blocks->counts);
     blocks->culled += blocks->cull.outside;
-    blocks->skips = blocks->culled + blocks->cull.hidden > blocks->strands / RENDER_CULL_SHARE;
+    blocks->skips = blocks->culled + blocks->cull.hidden > blocks->strands / CULL_SHARE;
     return RESULT_OK;
 }
 
-static Result draw_mapped(RenderBlocks *blocks, BlockPicture *picture, GpuTimer *timer,
-                          Error *error)
+static Result draw_mapped(Blocks *blocks, BlockScene *scene, GpuTimer *timer, Error *error)
 {
-    picture->keys = map(&blocks->keys, blocks->keys.size);
-    picture->records = map(&blocks->ribbons, blocks->ribbons.size);
-    Result result = picture->keys && picture->records
+    scene->keys = map(&blocks->keys, blocks->keys.size);
+    scene->records = map(&blocks->ribbons, blocks->ribbons.size);
+    Result result = scene->keys && scene->records
                         ? RESULT_OK
                         : error_set(error, RESULT_FAILED, "hair's ribbons cannot be read");
     gpu_timer_begin(timer, "draw_bin");
-    if (result == RESULT_OK)
-        result = block_raster_deal(&blocks->raster, picture, &blocks->touched, error);
+    THEN(result, block_raster_bin(&blocks->raster, scene, &blocks->touched, error));
     gpu_timer_end(timer);
     gpu_timer_begin(timer, "draw_composite");
-    if (result == RESULT_OK) block_raster_composite(&blocks->raster, picture);
+    if (result == RESULT_OK) block_raster_composite(&blocks->raster, scene);
     gpu_timer_end(timer);
-    if (picture->keys) unmap(&blocks->keys);
-    if (picture->records) unmap(&blocks->ribbons);
+    if (scene->keys) unmap(&blocks->keys);
+    if (scene->records) unmap(&blocks->ribbons);
     return result;
 }
 
-static Result read_behind(RenderBlocks *blocks, BlockPicture *picture, GpuTimer *timer,
-                          Error *error)
+static Result read_behind(Blocks *blocks, BlockScene *scene, GpuTimer *timer, Error *error)
 {
     const BlocksBase *base = &blocks->base;
     if (!base->cull.target) return RESULT_OK;
-    memcpy(picture->style.depth, base->depth, sizeof picture->style.depth);
+    memcpy(scene->style.depth, base->depth, sizeof scene->style.depth);
     gpu_timer_begin(timer, "draw_read");
-    Result result =
-        render_behind_read(&blocks->behind, base->cull.target, base->box, base->version, error);
+    Result result = read_back(&blocks->behind, base->cull.target, base->box, base->version, error);
     gpu_timer_end(timer);
-    picture->base = &blocks->behind.base;
+    scene->base = &blocks->behind.base;
     return result;
 }
 
-Result render_blocks_draw(RenderBlocks *blocks, GpuTimer *timer, Image *image, Error *error)
+Result blocks_draw(Blocks *blocks, GpuTimer *timer, Image *image, Error *error)
 {
-    BlockPicture picture = {
+    BlockScene scene = {
         .slots = blocks->slots, .style = blocks->style, .nearest = blocks->nearest, .image = image};
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     Result result = read_counts(blocks, error);
-    if (result == RESULT_OK) result = read_behind(blocks, &picture, timer, error);
-    return result == RESULT_OK ? draw_mapped(blocks, &picture, timer, error) : result;
+    THEN(result, read_behind(blocks, &scene, timer, error));
+    return result == RESULT_OK ? draw_mapped(blocks, &scene, timer, error) : result;
 }

@@ -1,21 +1,73 @@
 // SPDX-License-Identifier: MIT
-#include "draw/render_cull.h"
-
-#include "draw/hide_levels.h"
+#include "draw/cull.h"
 
 #include "glsl/draw/draw.h"
 
+#include <stddef.h>
+
+// --- Tiles of what hides.
+
+typedef struct Tiles {
+    float *tile; // [rows][stride]
+    int columns, rows, stride;
+} Tiles;
+
+static float least(float a, float b)
+{
+    return b < a ? b : a;
+}
+
+static int at_most(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+// The least of the tiles in columns x .. end_x - 1 and rows y .. end_y - 1.
+static float least_of(const Tiles *tiles, int x, int y, int end_x, int end_y)
+{
+    const float *row = tiles->tile + (ptrdiff_t)y * tiles->stride;
+    float found = row[x];
+    for (; y < end_y; ++y, row += tiles->stride)
+        for (int i = x; i < end_x; ++i) found = least(found, row[i]);
+    return found;
+}
+
+static void spread_tiles(const Tiles *tiles, float *level)
+{
+    for (int y = 0; y < tiles->rows; ++y)
+        for (int x = 0; x < tiles->columns; ++x)
+            level[(ptrdiff_t)y * tiles->stride + x] =
+                least_of(tiles, x ? x - 1 : 0, y ? y - 1 : 0, at_most(x + 2, tiles->columns),
+                         at_most(y + 2, tiles->rows));
+}
+
+// In place: a tile is written when all that lie there have been read.
+static void halve(Tiles *tiles)
+{
+    int columns = (tiles->columns + 1) / 2, rows = (tiles->rows + 1) / 2;
+    for (int y = 0; y < rows; ++y)
+        for (int x = 0; x < columns; ++x)
+            tiles->tile[(ptrdiff_t)y * tiles->stride + x] =
+                least_of(tiles, 2 * x, 2 * y, at_most(2 * x + 2, tiles->columns),
+                         at_most(2 * y + 2, tiles->rows));
+    tiles->columns = columns;
+    tiles->rows = rows;
+}
+
+void cull_make_levels(float *nearest, int columns, int rows, float *levels)
+{
+    Tiles tiles = {nearest, columns, rows, columns};
+    for (int k = 0; k < HIDE_LEVELS; ++k, levels += (ptrdiff_t)rows * columns) {
+        spread_tiles(&tiles, levels);
+        halve(&tiles);
+    }
+}
+
+// --- Strands that are out of sight.
+
 enum { GROUP = 8, HEAD_WORDS = 2 }; // of `listed`, before the rows
 
-_Static_assert((int)HIDE_LEVEL_COUNT == HIDE_LEVELS, "levels");
-
-static Result make_room(GpuBuffer *buffer, const GpuLimits *limits, const char *what, int64_t size,
-                        GLenum format, Error *error)
-{
-    if (buffer->size >= size) return RESULT_OK;
-    gpu_buffer_destroy(buffer);
-    return gpu_buffer_create(buffer, limits, what, size, NULL, format, error);
-}
+_Static_assert((int)HIDE_LEVELS == HIDE_LEVELS, "levels");
 
 static void *map(const GpuBuffer *buffer, GLbitfield access)
 {
@@ -29,14 +81,14 @@ static void unmap(const GpuBuffer *buffer)
     glUnmapBuffer(GL_SHADER_STORAGE_BUFFER);
 }
 
-static Result build_hide(RenderCull *cull, Error *error)
+static Result build_hide(Cull *cull, Error *error)
 {
     const ShaderDefine defines[] = {{"GROUP_SIZE", GROUP}, {NULL, 0}};
     return cull->hide ? RESULT_OK
                       : shader_build_compute(&cull->hide, "draw/block_hide.comp", defines, error);
 }
 
-static void find_nearest(RenderCull *cull, const RenderTarget *target)
+static void find_nearest(Cull *cull, const RenderTarget *target)
 {
     GLuint count = (GLuint)(cull->tiles[0] * cull->tiles[1]);
     glActiveTexture(GL_TEXTURE0 + BIND_MESH_DEPTH);
@@ -48,36 +100,34 @@ static void find_nearest(RenderCull *cull, const RenderTarget *target)
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-static Result spread(RenderCull *cull, Error *error)
+static Result spread(Cull *cull, Error *error)
 {
     float *levels = map(&cull->levels, GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT);
     float *nearest = map(&cull->nearest, GL_MAP_READ_BIT | GL_MAP_WRITE_BIT);
-    if (nearest && levels) hide_levels_make(nearest, cull->tiles[0], cull->tiles[1], levels);
+    if (nearest && levels) cull_make_levels(nearest, cull->tiles[0], cull->tiles[1], levels);
     if (nearest) unmap(&cull->nearest);
     if (levels) unmap(&cull->levels);
     return nearest && levels ? RESULT_OK
                              : error_set(error, RESULT_FAILED, "what is hidden cannot be found");
 }
 
-static Result measure_base(RenderCull *cull, const GpuLimits *limits, const RenderTarget *target,
+static Result measure_base(Cull *cull, const GpuLimits *limits, const RenderTarget *target,
                            Error *error)
 {
     cull->tiles[0] = (target->width * target->samples + HIDE_TILE - 1) / HIDE_TILE;
     cull->tiles[1] = (target->height * target->samples + HIDE_TILE - 1) / HIDE_TILE;
     int64_t size = (int64_t)cull->tiles[0] * cull->tiles[1] * (int64_t)sizeof(float);
     Result result = build_hide(cull, error);
-    if (result == RESULT_OK)
-        result = make_room(&cull->nearest, limits, "hidden tiles", size, 0, error);
-    if (result == RESULT_OK)
-        result =
-            make_room(&cull->levels, limits, "hidden levels", size * HIDE_LEVELS, GL_R32F, error);
+    THEN(result, gpu_buffer_reserve(&cull->nearest, limits, "hidden tiles", size, 0, error));
+    THEN(result, gpu_buffer_reserve(&cull->levels, limits, "hidden levels", size * HIDE_LEVELS,
+                                    GL_R32F, error));
     if (result != RESULT_OK) return result;
     find_nearest(cull, target);
     return spread(cull, error);
 }
 
-Result render_cull_begin(RenderCull *cull, const GpuLimits *limits, const CullBase *base, bool many,
-                         Error *error)
+Result cull_begin(Cull *cull, const GpuLimits *limits, const CullBase *base, bool many,
+                  Error *error)
 {
     cull->covered = base->target != NULL;
     cull->tries = !cull->off && (many || (cull->covered && base->version != cull->base));
@@ -89,7 +139,7 @@ Result render_cull_begin(RenderCull *cull, const GpuLimits *limits, const CullBa
     return result;
 }
 
-static Result build_list(RenderCull *cull, unsigned variant, Error *error)
+static Result build_list(Cull *cull, unsigned variant, Error *error)
 {
     const ShaderDefine defines[] = {{"GROUP_SIZE", GROUP},
                                     {"HIDING", (variant & CULL_HIDING) != 0},
@@ -100,19 +150,18 @@ static Result build_list(RenderCull *cull, unsigned variant, Error *error)
     return *list ? RESULT_OK : shader_build_compute(list, "draw/block_cull.comp", defines, error);
 }
 
-Result render_cull_build(RenderCull *cull, unsigned variant, Error *error)
+Result cull_build(Cull *cull, unsigned variant, Error *error)
 {
     Result result = variant & CULL_HIDING ? build_hide(cull, error) : RESULT_OK;
     return result == RESULT_OK ? build_list(cull, variant, error) : result;
 }
 
-static Result use(RenderCull *cull, const HairBatch *batch, bool smooth, Error *error)
+static Result use(Cull *cull, const HairBatch *batch, bool smooth, Error *error)
 {
     bool painted = batch->paint.buffer != 0;
     unsigned variant =
         (cull->covered ? CULL_HIDING : 0) | (painted ? CULL_PAINT : 0) | (smooth ? CULL_SMOOTH : 0);
-    Result result = build_list(cull, variant, error);
-    if (result != RESULT_OK) return result;
+    TRY(build_list(cull, variant, error));
     glUseProgram(cull->list[variant]);
     if (painted) gpu_buffer_bind_texture(&batch->paint, BIND_PAINT);
     if (!cull->covered) return RESULT_OK;
@@ -121,19 +170,17 @@ static Result use(RenderCull *cull, const HairBatch *batch, bool smooth, Error *
     return RESULT_OK;
 }
 
-Result render_cull_make_room(RenderCull *cull, const GpuLimits *limits, uint32_t strands,
-                             Error *error)
+Result cull_make_room(Cull *cull, const GpuLimits *limits, uint32_t strands, Error *error)
 {
-    return make_room(&cull->listed, limits, "strands", ((int64_t)strands + HEAD_WORDS) * 4,
-                     GL_R32UI, error);
+    return gpu_buffer_reserve(&cull->listed, limits, "strands", ((int64_t)strands + HEAD_WORDS) * 4,
+                              GL_R32UI, error);
 }
 
-Result render_cull_list(RenderCull *cull, const HairBatch *batch, const MaterialParams *part,
-                        uint32_t *count, Error *error)
+Result cull_list(Cull *cull, const HairBatch *batch, const MaterialParams *part, uint32_t *count,
+                 Error *error)
 {
     GLuint found[HEAD_WORDS] = {0};
-    Result result = use(cull, batch, part->smooth_parts > 1, error);
-    if (result != RESULT_OK) return result;
+    TRY(use(cull, batch, part->smooth_parts > 1, error));
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, cull->listed.buffer);
     glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof found, found);
     gpu_buffer_bind_storage(&cull->listed, BIND_LISTED_OUT);
@@ -147,12 +194,12 @@ Result render_cull_list(RenderCull *cull, const HairBatch *batch, const Material
     return RESULT_OK;
 }
 
-void render_cull_destroy(RenderCull *cull)
+void cull_destroy(Cull *cull)
 {
     GpuBuffer *const buffers[] = {&cull->listed, &cull->nearest, &cull->levels};
     for (int i = 0; i < CULL_VARIANTS; ++i)
         if (cull->list[i]) glDeleteProgram(cull->list[i]);
     if (cull->hide) glDeleteProgram(cull->hide);
     for (int i = 0; i < 3; ++i) gpu_buffer_destroy(buffers[i]);
-    *cull = (RenderCull){0};
+    *cull = (Cull){0};
 }

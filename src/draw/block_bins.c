@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "draw/block_lists.h"
+#include "draw/block_bins.h"
 
 #include "base/parallel.h"
 #include "glsl/draw/draw.h"
@@ -10,37 +10,37 @@
 
 // All slots on the way to their blocks.
 typedef struct Dealing {
-    BlockLists *lists;
+    BlockBins *lists;
     const RibbonKey *keys;
     const RibbonRecord *records;
     size_t count;
 } Dealing;
 
-static size_t block_count(const BlockLists *lists)
+static size_t block_count(const BlockBins *lists)
 {
     return (size_t)lists->columns * (size_t)lists->rows;
 }
 
-Result block_lists_create(BlockLists *lists, int columns, int rows, Error *error)
+Result block_bins_create(BlockBins *lists, int columns, int rows, Error *error)
 {
-    *lists = (BlockLists){columns, rows, .parts = parallel_threads()};
+    *lists = (BlockBins){columns, rows, .parts = parallel_threads()};
     size_t blocks = block_count(lists);
     lists->places = malloc((size_t)lists->parts * blocks * sizeof *lists->places);
     lists->begins = malloc((blocks + 1) * sizeof *lists->begins);
     if (lists->places && lists->begins) return RESULT_OK;
-    block_lists_destroy(lists);
+    block_bins_destroy(lists);
     return error_set(error, RESULT_FAILED, "no memory for lists of %zu blocks", blocks);
 }
 
-void block_lists_destroy(BlockLists *lists)
+void block_bins_destroy(BlockBins *lists)
 {
     free(lists->places);
     free(lists->begins);
     free(lists->pairs);
-    *lists = (BlockLists){0};
+    *lists = (BlockBins){0};
 }
 
-static uint32_t *places_of(const BlockLists *lists, int part)
+static uint32_t *places_of(const BlockBins *lists, int part)
 {
     return lists->places + (size_t)part * block_count(lists);
 }
@@ -55,7 +55,7 @@ static inline void put(uint64_t *pairs, const size_t *begins, uint32_t *places, 
 
 // Visits the blocks of a ribbon: in every row of them those between the outermost pixels' middles
 // that its strip reaches.
-static void put_in_several(const BlockLists *lists, const RibbonRecord *r, uint64_t *pairs,
+static void put_in_several(const BlockBins *lists, const RibbonRecord *r, uint64_t *pairs,
                            uint32_t *places, uint64_t pair)
 {
     int first = (int)(r->rows & 0xffff), last = (int)(r->rows >> 16);
@@ -78,7 +78,7 @@ static void put_in_several(const BlockLists *lists, const RibbonRecord *r, uint6
 
 static void deal(const Dealing *dealing, int part, uint64_t *pairs)
 {
-    const BlockLists *lists = dealing->lists;
+    const BlockBins *lists = dealing->lists;
     uint32_t *places = places_of(lists, part);
     size_t parts = (size_t)lists->parts, end = dealing->count * ((size_t)part + 1) / parts;
     for (size_t i = dealing->count * (size_t)part / parts; i < end; ++i) {
@@ -111,7 +111,7 @@ static void fill_part(void *data, int part)
 }
 
 // From counts to places: in each list the first part's ribbons come first.
-static void find_places(BlockLists *lists)
+static void find_places(BlockBins *lists)
 {
     size_t blocks = block_count(lists), at = 0;
     for (size_t b = 0; b < blocks; ++b) {
@@ -127,7 +127,7 @@ static void find_places(BlockLists *lists)
     lists->begins[blocks] = at;
 }
 
-static Result make_room(BlockLists *lists, size_t count, Error *error)
+static Result make_room(BlockBins *lists, size_t count, Error *error)
 {
     if (lists->pair_room >= count) return RESULT_OK;
     free(lists->pairs);
@@ -138,8 +138,8 @@ static Result make_room(BlockLists *lists, size_t count, Error *error)
     return error_set(error, RESULT_FAILED, "no memory to list %zu ribbons", count);
 }
 
-Result block_lists_fill(BlockLists *lists, const RibbonKey *keys, const RibbonRecord *records,
-                        size_t count, Error *error)
+Result block_bins_fill(BlockBins *lists, const RibbonKey *keys, const RibbonRecord *records,
+                       size_t count, Error *error)
 {
     Dealing dealing = {lists, keys, records, count};
     parallel_run(lists->parts, count_part, &dealing);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The levels of hide_levels.h, each against the one below it.
-#include "draw/hide_levels.h"
+#include "draw/cull.h"
+
+#include "glsl/draw/draw.h"
 
 #include "base/random.h"
 
@@ -15,7 +17,7 @@
 
 enum { MOST = 41 * 23 };
 
-static float levels[HIDE_LEVEL_COUNT * MOST];
+static float levels[HIDE_LEVELS * MOST];
 
 // The least of all tiles (i, j) whose larger tile is (x, y) or beside it.
 static float expected(const float *nearest, int columns, int rows, int level, int x, int y)
@@ -38,8 +40,8 @@ static void each_level_has_the_least_around(void **state)
         float nearest[MOST] = {0}, used[MOST];
         for (int i = 0; i < columns * rows; ++i) nearest[i] = (float)random_real(&random);
         memcpy(used, nearest, sizeof used);
-        hide_levels_make(used, columns, rows, levels);
-        for (int k = 0; k < HIDE_LEVEL_COUNT; ++k)
+        cull_make_levels(used, columns, rows, levels);
+        for (int k = 0; k < HIDE_LEVELS; ++k)
             for (int y = 0; y <= (rows - 1) >> k; ++y)
                 for (int x = 0; x <= (columns - 1) >> k; ++x)
                     assert_true(levels[(k * rows + y) * columns + x] ==

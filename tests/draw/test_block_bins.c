@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "base/random.h"
-#include "draw/block_lists.h"
+#include "draw/block_bins.h"
 #include "glsl/draw/draw.h"
 
 #include <math.h>
@@ -64,30 +64,30 @@ static bool touches(const RibbonRecord *r, int column, int row)
     return false;
 }
 
-static BlockLists make_lists(int parts)
+static BlockBins make_lists(int parts)
 {
-    BlockLists lists;
+    BlockBins lists;
     Error error = {{0}};
-    assert_int_equal(block_lists_create(&lists, COLUMNS, ROWS, &error), RESULT_OK);
+    assert_int_equal(block_bins_create(&lists, COLUMNS, ROWS, &error), RESULT_OK);
     free(lists.places);
     lists.places = malloc((size_t)parts * BLOCKS * sizeof *lists.places);
     assert_non_null(lists.places);
     lists.parts = parts;
-    assert_int_equal(block_lists_fill(&lists, keys, records, COUNT, &error), RESULT_OK);
+    assert_int_equal(block_bins_fill(&lists, keys, records, COUNT, &error), RESULT_OK);
     return lists;
 }
 
-static bool lists_slot(const BlockLists *lists, int block, int slot)
+static bool lists_slot(const BlockBins *lists, int block, int slot)
 {
     for (size_t i = lists->begins[block]; i < lists->begins[block + 1]; ++i)
         if ((uint32_t)lists->pairs[i] == (uint32_t)slot) return true;
     return false;
 }
 
-static void a_block_lists_all_that_touch_it(void **state)
+static void a_block_bins_all_that_touch_it(void **state)
 {
     (void)state;
-    BlockLists lists = make_lists(1);
+    BlockBins lists = make_lists(1);
     int found = 0;
     for (int i = 0; i < COUNT; ++i)
         for (int b = 0; b < BLOCKS && keys[i].depth; ++b) {
@@ -96,15 +96,15 @@ static void a_block_lists_all_that_touch_it(void **state)
             ++found;
         }
     assert_true(found > COUNT);
-    block_lists_destroy(&lists);
+    block_bins_destroy(&lists);
 }
 
 // In a box of several rows and columns of blocks, no more than what a strip reaches between a row's
 // outer pixels' middles.
-static void a_block_lists_little_else(void **state)
+static void a_block_bins_little_else(void **state)
 {
     (void)state;
-    BlockLists lists = make_lists(1);
+    BlockBins lists = make_lists(1);
     size_t more = 0, all = 0;
     for (int b = 0; b < BLOCKS; ++b)
         for (size_t i = lists.begins[b]; i < lists.begins[b + 1]; ++i) {
@@ -115,40 +115,40 @@ static void a_block_lists_little_else(void **state)
             more += !touches(r, b % COLUMNS, b / COLUMNS);
         }
     assert_true(all > COUNT / 2 && more < all / 50);
-    block_lists_destroy(&lists);
+    block_bins_destroy(&lists);
 }
 
 static void a_list_goes_by_slots_and_sorts_near_to_far(void **state)
 {
     (void)state;
-    BlockLists lists = make_lists(1);
+    BlockBins lists = make_lists(1);
     for (int b = 0; b < BLOCKS; ++b)
         for (size_t i = lists.begins[b]; i < lists.begins[b + 1]; ++i) {
             uint64_t pair = lists.pairs[i];
             assert_int_equal(pair >> 32, ~keys[(uint32_t)pair].depth);
             if (i > lists.begins[b]) assert_true((uint32_t)lists.pairs[i - 1] < (uint32_t)pair);
         }
-    block_lists_destroy(&lists);
+    block_bins_destroy(&lists);
 }
 
 static void lists_do_not_depend_on_how_many_make_them(void **state)
 {
     (void)state;
-    BlockLists one = make_lists(1);
+    BlockBins one = make_lists(1);
     for (int parts = 2; parts <= 16; parts *= 2) {
-        BlockLists lists = make_lists(parts);
+        BlockBins lists = make_lists(parts);
         assert_memory_equal(lists.begins, one.begins, (BLOCKS + 1) * sizeof *one.begins);
         assert_memory_equal(lists.pairs, one.pairs, one.begins[BLOCKS] * sizeof *one.pairs);
-        block_lists_destroy(&lists);
+        block_bins_destroy(&lists);
     }
-    block_lists_destroy(&one);
+    block_bins_destroy(&one);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_block_lists_all_that_touch_it),
-        cmocka_unit_test(a_block_lists_little_else),
+        cmocka_unit_test(a_block_bins_all_that_touch_it),
+        cmocka_unit_test(a_block_bins_little_else),
         cmocka_unit_test(a_list_goes_by_slots_and_sorts_near_to_far),
         cmocka_unit_test(lists_do_not_depend_on_how_many_make_them),
     };

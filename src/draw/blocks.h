@@ -5,9 +5,8 @@
 #pragma once
 
 #include "draw/block_raster.h"
-#include "draw/picture.h"
-#include "draw/render_behind.h"
-#include "draw/render_cull.h"
+#include "draw/cull.h"
+#include "draw/drawing.h"
 #include "gpu/gpu_timer.h"
 #include "sim/hair.h"
 
@@ -21,38 +20,45 @@ typedef struct BlocksBase {
     float depth[2];   // clip z = x * w + y
 } BlocksBase;
 
-typedef struct RenderBlocks {
+// What stands behind and among the hair, read back from the driver.
+typedef struct BlocksBehind {
+    BlockBase base;
+    uint16_t (*light)[4]; // [room], owned
+    float *depth;         // [room], owned
+    size_t room;
+    uint64_t version; // of what was read; 0: nothing was
+} BlocksBehind;
+
+typedef struct Blocks {
     LookPrograms project;
-    RenderCull cull;
-    RenderBehind behind;
+    Cull cull;
+    BlocksBehind behind;
     BlockRaster raster;
     PixelStyle style;
     bool nearest;            // ribbons hide what is behind them
     GpuBuffer ribbons, keys; // RibbonRecord, RibbonKey: one a slot
     GpuBuffer counts, material;
     const GpuLimits *limits;
-    BlocksBase base;                    // of the picture
-    size_t slots;                       // of the picture
-    bool skips;                         // many strands of the last picture could be left out
-    uint64_t strands;                   // of the picture
+    BlocksBase base;                    // of the image
+    size_t slots;                       // of the image
+    bool skips;                         // many strands of the last image could be left out
+    uint64_t strands;                   // of the image
     uint64_t touched, segments, culled; // blocks that ribbons touch, each counted
-} RenderBlocks;
+} Blocks;
 
 // `limits` outlives the blocks.
-Result render_blocks_create(RenderBlocks *blocks, const GpuLimits *limits,
-                            const RendererOptions *options, Error *error);
-void render_blocks_destroy(RenderBlocks *blocks);
+Result blocks_create(Blocks *blocks, const GpuLimits *limits, const RendererOptions *options,
+                     Error *error);
+void blocks_destroy(Blocks *blocks);
 
-// Begins a picture of at most `segments` ribbons with `base` before and among them, which must stay
+// Begins a image of at most `segments` ribbons with `base` before and among them, which must stay
 // until it is drawn. Needs the DrawParams block. RESULT_FAILED if memory is short or there are 2^32
 // segments.
-Result render_blocks_begin(RenderBlocks *blocks, uint64_t segments, const BlocksBase *base,
-                           Error *error);
+Result blocks_begin(Blocks *blocks, uint64_t segments, const BlocksBase *base, Error *error);
 
 // Adds a batch. Needs the DrawParams block. RESULT_FAILED if the look's shader does not compile.
-Result render_blocks_add(RenderBlocks *blocks, const HairBatch *batch, const Look *look,
-                         Error *error);
+Result blocks_add(Blocks *blocks, const HairBatch *batch, const Look *look, Error *error);
 
 // Draws all that was added into `image`. No ribbon is lost: lists are counted before they are made.
 // RESULT_FAILED if memory is short.
-Result render_blocks_draw(RenderBlocks *blocks, GpuTimer *timer, Image *image, Error *error);
+Result blocks_draw(Blocks *blocks, GpuTimer *timer, Image *image, Error *error);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The A-buffer: the pool of all fragments of a band of the picture, and its resolution to colours.
+// The A-buffer: the pool of all fragments of a band of the image, and its resolution to colours.
 #pragma once
 
 #include "draw/render_target.h"
@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-typedef struct RenderABuffer {
+typedef struct ABuffer {
     GLuint resolve[2];   // programs: over the background alone, over a mesh
     GLuint vertex_array; // without attributes
     GpuBuffer nodes;     // uvec4, see abuffer.glsl
@@ -19,11 +19,11 @@ typedef struct RenderABuffer {
     int64_t most_nodes; // that the pool can grow to
     int shards;         // that the pool is dealt out in: SHARD_COUNT or 1
     int layers, width;  // of the samples
-    int samples;        // across a pixel of the picture, which has their mean
+    int samples;        // across a pixel of the image, which has their mean
     int tone;           // display.glsl's macro
     bool depth;         // pixels show their nearest fragment's depth
     int most_turns;     // fragments of a pixel that can be visited
-} RenderABuffer;
+} ABuffer;
 
 // What drawing a band has stored.
 typedef struct ABufferUse {
@@ -35,44 +35,41 @@ typedef struct ABufferUse {
 // CPU drivers end loops silently after 65,535 turns.
 enum { ABUFFER_MOST_TURNS = 65000 };
 
-// `width`: of the picture, px, whose pixels are the means of `samples` x `samples`. `layers`
+// `width`: of the image, px, whose pixels are the means of `samples` x `samples`. `layers`
 // fragments of a sample are blended in order, >= 0, with `depth` >= 1. `tone`: a Tone, or
 // TONE_LIGHT for premultiplied light as it is. `depth`: pixels show their nearest fragment's
 // distance before the eye instead. `software`: by a CPU driver. `pool_bytes`: the pool's largest
 // size, 0 for the driver's limit.
-Result render_abuffer_create(RenderABuffer *abuffer, const GpuLimits *limits, int width,
-                             int samples, int layers, int tone, bool depth, bool software,
-                             int64_t pool_bytes, Error *error);
-void render_abuffer_destroy(RenderABuffer *abuffer);
+Result abuffer_create(ABuffer *abuffer, const GpuLimits *limits, int width, int samples, int layers,
+                      int tone, bool depth, bool software, int64_t pool_bytes, Error *error);
+void abuffer_destroy(ABuffer *abuffer);
 
 // Makes what resolving over a mesh needs; nothing if it is there.
-Result render_abuffer_add_base(RenderABuffer *abuffer, Error *error);
+Result abuffer_add_base(ABuffer *abuffer, Error *error);
 
-// Rows that one band can have at most; >= 1 for every picture that can be drawn.
-int render_abuffer_most_rows(const RenderABuffer *abuffer, int height);
+// Rows that one band can have at most; >= 1 for every image that can be drawn.
+int abuffer_most_rows(const ABuffer *abuffer, int height);
 
 // Fragments that a shard can hold.
-int render_abuffer_shard_nodes(const RenderABuffer *abuffer);
+int abuffer_shard_nodes(const ABuffer *abuffer);
 
 // Empties the lists for a band of `rows` rows, sets the extent to box[4], and binds all to the
 // storage points of draw.h.
-Result render_abuffer_begin(RenderABuffer *abuffer, int rows, const int box[4], Error *error);
+Result abuffer_begin(ABuffer *abuffer, int rows, const int box[4], Error *error);
 
-// Waits for what has been drawn since. All is stored if render_abuffer_holds says so.
-void render_abuffer_measure(const RenderABuffer *abuffer, ABufferUse *use);
-bool render_abuffer_holds(const RenderABuffer *abuffer, const ABufferUse *use);
+// Waits for what has been drawn since. All is stored if abuffer_holds says so.
+void abuffer_measure(const ABuffer *abuffer, ABufferUse *use);
+bool abuffer_holds(const ABuffer *abuffer, const ABufferUse *use);
 
 // Makes the pool large enough for `use` and some more, if need be by having one shard from now on,
 // which wastes nothing. *grown is false, and the pool as large as it can be, where that is too
 // small.
-Result render_abuffer_grow(RenderABuffer *abuffer, const ABufferUse *use, bool *grown,
-                           Error *error);
+Result abuffer_grow(ABuffer *abuffer, const ABufferUse *use, bool *grown, Error *error);
 
-// Writes the pixels within the extent and the scissor to the target's picture, over its base if
-// `over_mesh` (after render_abuffer_add_base). Needs the DrawParams block.
-void render_abuffer_resolve(const RenderABuffer *abuffer, const RenderTarget *target,
-                            bool over_mesh);
+// Writes the pixels within the extent and the scissor to the target's image, over its base if
+// `over_mesh` (after abuffer_add_base). Needs the DrawParams block.
+void abuffer_resolve(const ABuffer *abuffer, const RenderTarget *target, bool over_mesh);
 
-// Whether a pixel that was resolved since render_abuffer_create had more fragments than a CPU
+// Whether a pixel that was resolved since abuffer_create had more fragments than a CPU
 // driver's loops can visit. Waits.
-bool render_abuffer_fell_short(const RenderABuffer *abuffer);
+bool abuffer_fell_short(const ABuffer *abuffer);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "draw/render_scatter.h"
+#include "draw/scatter_tables.h"
 #include "gpu/gpu.h"
 
 #include "glsl/draw/draw.h"
@@ -39,8 +39,7 @@ static Result add(ScatterTables *tables, float refraction, float roughness, Erro
 {
     const ShaderDefine defines[] = {{"GROUP_SIZE", GROUP_SIZE}, {NULL, 0}};
     if (!tables->program) {
-        Result result = shader_build_compute(&tables->program, "draw/scatter.comp", defines, error);
-        if (result != RESULT_OK) return result;
+        TRY(shader_build_compute(&tables->program, "draw/scatter.comp", defines, error));
     }
     ScatterTable *more = realloc(tables->tables, (tables->count + 1) * sizeof *more);
     if (!more) return error_set(error, RESULT_FAILED, "no memory for a table of marschner shading");

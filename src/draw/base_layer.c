@@ -1,20 +1,75 @@
 // SPDX-License-Identifier: MIT
-#include "draw/render_base.h"
+#include "draw/base_layer.h"
 
-#include "draw/render_look.h"
+#include "draw/drawing.h"
+#include "draw/look.h"
 
 #include <string.h>
+
+// --- The floor.
+
+enum { CORNERS = 64 };
+
+static bool floor_is_seen(const Floor *floor, const DrawParams *draw)
+{
+    return floor->kind != FLOOR_NONE && draw->eye[1] > floor->middle[1];
+}
+
+Result base_layer_build_floor(BaseFloor *render, Error *error)
+{
+    const ShaderDefine defines[] = {{"FLOOR_CORNERS", CORNERS}, {NULL, 0}};
+    if (render->depth) return RESULT_OK;
+    glGenVertexArrays(1, &render->vertex_array);
+    return shader_build_draw(&render->depth, "draw/floor.vert", "draw/depth.frag", defines, error);
+}
+
+static void set_place(const Floor *floor, float radius)
+{
+    glUniform3fv(0, 1, floor->middle);
+    glUniform3f(1, floor->whole, floor->faded, radius);
+}
+
+static void set_floor(const Floor *floor)
+{
+    float color[3];
+    linear_from_srgb_color(floor->color, color);
+    set_place(floor, floor->faded);
+    glUniform3fv(2, 1, color);
+}
+
+// What lies before or behind all that the camera frames stays in the image: its depth is cut.
+static Result draw_floor_depth(BaseFloor *render, const Floor *floor, Error *error)
+{
+    if (floor->kind != FLOOR_PLANE) return RESULT_OK;
+    TRY(base_layer_build_floor(render, error));
+    glUseProgram(render->depth);
+    set_place(floor, 0.5f * (floor->whole + floor->faded));
+    glEnable(GL_DEPTH_CLAMP);
+    glBindVertexArray(render->vertex_array);
+    glDrawArrays(GL_TRIANGLE_FAN, 0, CORNERS + 2);
+    glDisable(GL_DEPTH_CLAMP);
+    return RESULT_OK;
+}
+
+static void destroy_floor(BaseFloor *render)
+{
+    if (render->depth) glDeleteProgram(render->depth);
+    if (render->vertex_array) glDeleteVertexArrays(1, &render->vertex_array);
+    *render = (BaseFloor){0};
+}
+
+// --- Mesh and floor.
 
 typedef struct Box {
     int low[2], high[2]; // samples, from and before
 } Box;
 
-bool render_base_is_needed(const RenderBase *base, const Floor *floor)
+bool base_layer_is_needed(const BaseLayer *base, const Floor *floor)
 {
     return base->mesh.triangle_count > 0 || floor->kind != FLOOR_NONE;
 }
 
-static void forget(RenderBase *base)
+static void forget(BaseLayer *base)
 {
     GLuint *finish = &base->finish[0][0];
     if (base->light) glDeleteProgram(base->light);
@@ -25,7 +80,7 @@ static void forget(RenderBase *base)
     }
 }
 
-void render_base_count(RenderBase *base, int light_count, int map_count)
+void base_layer_count(BaseLayer *base, int light_count, int map_count)
 {
     if (base->light_count == light_count && base->map_count == map_count) return;
     forget(base);
@@ -33,7 +88,7 @@ void render_base_count(RenderBase *base, int light_count, int map_count)
     base->map_count = map_count;
 }
 
-Result render_base_build_light(RenderBase *base, Shadow shadow, Error *error)
+Result base_layer_build_light(BaseLayer *base, Shadow shadow, Error *error)
 {
     int unrolled = look_unrolled(base->light_count);
     const ShaderDefine defines[] = {{"LIGHTS", 1},
@@ -47,8 +102,8 @@ Result render_base_build_light(RenderBase *base, Shadow shadow, Error *error)
                                            defines, error);
 }
 
-Result render_base_build(RenderBase *base, BaseArea area, FloorKind floor, Shadow shadow,
-                         Error *error)
+Result base_layer_build(BaseLayer *base, BaseArea area, FloorKind floor, Shadow shadow,
+                        Error *error)
 {
     int unrolled = look_unrolled(base->light_count);
     const ShaderDefine defines[] = {{"LIGHTS", 1},
@@ -95,8 +150,7 @@ static void bind_texture(GLenum unit, GLenum kind, GLuint texture)
     glBindTexture(kind, texture);
 }
 
-static void draw_surfaces(const RenderBase *base, const BaseScene *scene,
-                          const RenderTarget *target)
+static void draw_surfaces(const BaseLayer *base, const BaseScene *scene, const RenderTarget *target)
 {
     const float farthest = 1;
     glDisable(GL_SCISSOR_TEST);
@@ -110,7 +164,7 @@ static void draw_surfaces(const RenderBase *base, const BaseScene *scene,
 }
 
 // Only where there is mesh: a triangle behind everything is before nothing else.
-static void light_mesh(const RenderBase *base, const BaseScene *scene, const RenderTarget *target)
+static void light_mesh(const BaseLayer *base, const BaseScene *scene, const RenderTarget *target)
 {
     if (!base->mesh.triangle_count) return;
     scissor(find_box(target, scene->mesh_box));
@@ -127,7 +181,7 @@ static void light_mesh(const RenderBase *base, const BaseScene *scene, const Ren
 }
 
 // Its depth, too: what hides hair.
-static void finish_over_mesh(const RenderBase *base, FloorKind floor, const RenderTarget *target,
+static void finish_over_mesh(const BaseLayer *base, FloorKind floor, const RenderTarget *target,
                              Box box)
 {
     bind_texture(BIND_MIDDLE_DEPTH, GL_TEXTURE_2D, target->middle_depth);
@@ -145,7 +199,7 @@ static void finish_over_mesh(const RenderBase *base, FloorKind floor, const Rend
 }
 
 // The rest of `all`: whole rows above and below the box, and what is left and right of it.
-static void finish_beside(const RenderBase *base, BaseArea area, FloorKind floor, Box all, Box box)
+static void finish_beside(const BaseLayer *base, BaseArea area, FloorKind floor, Box all, Box box)
 {
     const Box sides[] = {{{all.low[0], all.low[1]}, {all.high[0], box.low[1]}},
                          {{all.low[0], box.high[1]}, {all.high[0], all.high[1]}},
@@ -160,7 +214,7 @@ static void finish_beside(const RenderBase *base, BaseArea area, FloorKind floor
 }
 
 // The background, and over it mesh and floor.
-static void finish(const RenderBase *base, const BaseScene *scene, FloorKind floor,
+static void finish(const BaseLayer *base, const BaseScene *scene, FloorKind floor,
                    const RenderTarget *target)
 {
     bool by_mesh = base->mesh.triangle_count > 0;
@@ -179,58 +233,57 @@ static void finish(const RenderBase *base, const BaseScene *scene, FloorKind flo
     glDisable(GL_SCISSOR_TEST);
 }
 
-static Result draw_floor(RenderBase *base, const BaseScene *scene, const RenderTarget *target,
+static Result draw_floor(BaseLayer *base, const BaseScene *scene, const RenderTarget *target,
                          Error *error)
 {
     FloorKind kind = scene->floor->kind;
     for (int area = 0; area < 3; ++area) {
         if (!base->finish[area][kind]) continue;
         glUseProgram(base->finish[area][kind]);
-        render_floor_set(scene->floor);
+        set_floor(scene->floor);
     }
     finish(base, scene, kind, target);
     glEnable(GL_DEPTH_TEST);
     glDepthMask(GL_TRUE);
     glBindFramebuffer(GL_FRAMEBUFFER, target->hair_frame);
-    return render_floor_draw_depth(&base->floor, scene->floor, error);
+    return draw_floor_depth(&base->floor, scene->floor, error);
 }
 
-static Result build(RenderBase *base, FloorKind floor, Shadow shadow, Error *error)
+static Result build(BaseLayer *base, FloorKind floor, Shadow shadow, Error *error)
 {
     if (base->mesh.triangle_count == 0)
-        return render_base_build(base, BASE_WITHOUT_MESH, floor, shadow, error);
-    Result result = render_base_build_light(base, shadow, error);
-    if (result == RESULT_OK) result = render_base_build(base, BASE_OVER_MESH, floor, shadow, error);
-    if (result == RESULT_OK && floor != FLOOR_NONE)
-        result = render_base_build(base, BASE_BESIDE_MESH, floor, shadow, error);
+        return base_layer_build(base, BASE_WITHOUT_MESH, floor, shadow, error);
+    Result result = base_layer_build_light(base, shadow, error);
+    THEN(result, base_layer_build(base, BASE_OVER_MESH, floor, shadow, error));
+    if (floor != FLOOR_NONE)
+        THEN(result, base_layer_build(base, BASE_BESIDE_MESH, floor, shadow, error));
     return result;
 }
 
-static Result draw_all(RenderBase *base, const BaseScene *scene, const RenderTarget *target,
+static Result draw_all(BaseLayer *base, const BaseScene *scene, const RenderTarget *target,
                        bool moved, GpuTimer *timer, Error *error)
 {
-    bool seen = render_floor_is_seen(scene->floor, scene->draw);
+    bool seen = floor_is_seen(scene->floor, scene->draw);
     FloorKind floor = seen ? scene->floor->kind : FLOOR_NONE;
-    render_base_count(base, scene->draw->light_count, scene->shadow->params.maps);
-    Result result = build(base, floor, scene->shadow->options.kind, error);
-    if (result != RESULT_OK) return result;
+    base_layer_count(base, scene->draw->light_count, scene->shadow->params.maps);
+    TRY(build(base, floor, scene->shadow->options.kind, error));
     gpu_timer_begin(timer, "draw_mesh");
     if (moved) draw_surfaces(base, scene, target);
     light_mesh(base, scene, target);
     if (!seen) finish(base, scene, floor, target);
     gpu_timer_end(timer);
-    if (!seen) return result;
+    if (!seen) return RESULT_OK;
     gpu_timer_begin(timer, "draw_floor");
-    result = draw_floor(base, scene, target, error);
+    Result result = draw_floor(base, scene, target, error);
     gpu_timer_end(timer);
     return result;
 }
 
-Result render_base_draw(RenderBase *base, const BaseScene *scene, const RenderTarget *target,
-                        GpuTimer *timer, Error *error)
+Result base_layer_draw(BaseLayer *base, const BaseScene *scene, const RenderTarget *target,
+                       GpuTimer *timer, Error *error)
 {
     Result result = RESULT_OK;
-    if (!render_base_is_needed(base, scene->floor)) return result;
+    if (!base_layer_is_needed(base, scene->floor)) return result;
     bool moved = !base->any || memcmp(&base->drawn, scene->draw, sizeof base->drawn) != 0;
     if (moved || base->shadowed != scene->shadow->version) {
         base->any = false;
@@ -246,11 +299,11 @@ Result render_base_draw(RenderBase *base, const BaseScene *scene, const RenderTa
     return result;
 }
 
-void render_base_destroy(RenderBase *base)
+void base_layer_destroy(BaseLayer *base)
 {
     render_mesh_destroy(&base->mesh);
-    render_floor_destroy(&base->floor);
+    destroy_floor(&base->floor);
     forget(base);
     if (base->vertex_array) glDeleteVertexArrays(1, &base->vertex_array);
-    *base = (RenderBase){0};
+    *base = (BaseLayer){0};
 }

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// Which strands need not be projected: those outside the image, and those
+// that lie wholly behind the mesh or the floor. Either way the image is the same to the byte.
+#pragma once
+
+#include "draw/look.h"
+#include "draw/render_target.h"
+#include "sim/hair.h"
+
+#include <stdbool.h>
+
+// Of the strands of a image, left out: looking for them in the next one pays.
+enum { CULL_SHARE = 16 };
+
+// What the shader that lists strands needs: something opaque is there, painted, smooth.
+enum { CULL_HIDING = 1, CULL_PAINT = 2, CULL_SMOOTH = 4, CULL_VARIANTS = 8 };
+
+// A zeroed struct is empty.
+typedef struct Cull {
+    GLuint list[CULL_VARIANTS]; // programs
+    GLuint hide;                // program
+    GpuBuffer listed;           // how many, how many hidden, rows: see block_cull.comp
+    GpuBuffer nearest;          // by tile, see block_hide.comp
+    GpuBuffer levels;           // see cull_make_levels
+    int tiles[2];               // columns, rows
+    uint64_t base;              // BaseLayer.depth_version that `levels` were made for; 0: none
+    bool covered;               // something opaque is in this image
+    bool tries;               // this image: many were left out of the last one, or the base is new
+    bool off;                 // never try, so that tests can tell
+    uint64_t outside, hidden; // strands of this image that were left out
+} Cull;
+
+// What is opaque in a image: its depth, of a size in samples, and a number that is another one
+// whenever it has changed, from 1 on. NULL target: nothing.
+typedef struct CullBase {
+    const RenderTarget *target;
+    uint64_t version;
+} CullBase;
+
+// Compiles the shaders for hair that needs CULL_ bits `variant`, unless they are there.
+Result cull_build(Cull *cull, unsigned variant, Error *error);
+
+// Begins a image. `many`: of the last one so many strands were left out, here or later, that it
+// is worth trying. Needs the DrawParams block. RESULT_FAILED if memory is short.
+Result cull_begin(Cull *cull, const GpuLimits *limits, const CullBase *base, bool many,
+                  Error *error);
+
+// Makes room for a list of so many strands; texture units may change. RESULT_FAILED if memory is
+// short.
+Result cull_make_room(Cull *cull, const GpuLimits *limits, uint32_t strands, Error *error);
+
+// Lists the part's strands that may be seen in BIND_LISTED, and how many they are. Only if `tries`.
+// Needs room, the uniforms of image and part, positions bound. Waits.
+Result cull_list(Cull *cull, const HairBatch *batch, const MaterialParams *part, uint32_t *count,
+                 Error *error);
+
+void cull_destroy(Cull *cull);
+
+// How far away something may be and still be seen, by tiles of the image and by larger ones.
+// `nearest` [rows][columns]: a figure for each tile; it is used up. `levels`
+// [HIDE_LEVELS][rows][columns]: at level k, tile (x, y), which has 2^k x 2^k of the first, the
+// least of all that lie in it and in the eight around it. Where a level has no such tile nothing is
+// written. Both counts >= 1.
+void cull_make_levels(float *nearest, int columns, int rows, float *levels);

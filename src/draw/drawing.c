@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: MIT
+#include "draw/drawing.h"
+
+#include "image/tone.h"
+#include "strands/paint.h"
+
+#include "glsl/common/shared_math.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+// --- Camera, lights and materials for shaders.
+
+_Static_assert(MAX_LIGHTS == SCENE_MAX_LIGHTS, "one limit");
+
+void drawing_set_view(DrawParams *draw, const View *view, int width, int height)
+{
+    mat4 projection = {0}, from_world = {0};
+    memcpy(projection, view->projection, sizeof projection);
+    memcpy(from_world, view->view, sizeof from_world);
+    projection[1][1] = -projection[1][1]; // the image's first row is its top
+    glm_mat4_mul(projection, from_world, draw->clip_from_world);
+    memcpy(draw->eye, view->eye, sizeof(vec3));
+    draw->width = (float)width;
+    draw->height = (float)height;
+    draw->band[0] = (uint32_t)width;
+    draw->focal = 0.5f * draw->height * view->projection[1][1];
+    draw->near_distance = view->near_distance;
+    // Clip z = z22 z + z32 with the distance before the eye w = -z.
+    draw->depth[0] = -view->projection[2][2];
+    draw->depth[1] = view->projection[3][2];
+}
+
+// t = clamp((cos a - cos outer) / (cos inner - cos outer), 0, 1) with a the angle off the axis; the
+// shader knows the cosine off the way to the light, which is -cos a. Everything is inside for y =
+// 0.
+static void set_cone(const Light *light, float cone[4])
+{
+    cone[0] = 1;
+    if (light->kind != LIGHT_SPOT) return;
+    float outer = cosf(glm_rad(light->outer_deg)), inner = cosf(glm_rad(light->inner_deg));
+    cone[1] = 1 / fmaxf(inner - outer, 1e-6f);
+    cone[0] = -outer * cone[1];
+}
+
+void drawing_set_lights(DrawParams *draw, const Light *lights, uint32_t count)
+{
+    assert(count <= MAX_LIGHTS);
+    draw->light_count = (int)count;
+    for (uint32_t i = 0; i < count; ++i) {
+        const Light *light = &lights[i];
+        bool far = light->kind == LIGHT_DIRECTIONAL;
+        for (int k = 0; k < 3; ++k) {
+            draw->light_place[i][k] = far ? light->direction[k] : light->position[k];
+            draw->light_color[i][k] = light->intensity * light->color[k];
+            draw->light_axis[i][k] = far ? 0 : light->direction[k];
+        }
+        draw->light_place[i][3] = !far;
+        draw->light_axis[i][3] = light->distance * light->distance;
+        set_cone(light, draw->light_cone[i]);
+    }
+}
+
+// beta and alpha are of theta_h = (theta_i + theta_r) / 2: the lobe in theta_r is twice as wide and
+// tilted by twice as much. Scales tilt R to the root; TT and TRT follow from R (Marschner et al.
+// 2003, table 1).
+static void set_lobes(const SectionParams *params, MaterialParams *material)
+{
+    static const float WIDTH[] = {1, 0.5f, 2}, TILT[] = {-1, 0.5f, 1.5f};
+    for (int p = 0; p < 3; ++p) {
+        float width = 2 * WIDTH[p] * glm_rad(params->roughness), v = width * width,
+              tilt = 2 * TILT[p] * glm_rad(params->cone_angle);
+        material->lobe_sharpness[p] = 1 / v;
+        material->lobe_scale[p] = 1 / (v * (1 - expf(-2 / v)));
+        material->lobe_tilt_cos[p] = cosf(tilt);
+        material->lobe_tilt_sin[p] = sinf(tilt);
+    }
+}
+
+MaterialParams drawing_material(const SectionParams *params, float radius)
+{
+    float cone = glm_rad(params->cone_angle);
+    MaterialParams material = {
+        .color_variation = params->color_variation,
+        .warmth_variation = params->warmth_variation,
+        .radius = radius,
+        .tip_ratio = params->tip_ratio,
+        .opacity = params->opacity,
+        .shadow_opacity = params->shadow_opacity,
+        .smooth_parts = (uint)params->smooth,
+        .smooth_curve = (uint)params->curve,
+        .ambient = params->ambient,
+        .diffuse = params->diffuse,
+        .specular1 = params->specular1,
+        .exponent1 = params->exponent1,
+        .specular2 = params->specular2,
+        .exponent2 = params->exponent2,
+        .shift1_cos = cosf(2 * cone),
+        .shift1_sin = sinf(2 * cone),
+        .shift2_cos = cosf(-3 * cone),
+        .shift2_sin = sinf(-3 * cone),
+    };
+    paint_color(params, material.color);
+    set_lobes(params, &material);
+    return material;
+}
+
+// --- A drawing.
+
+// Light on the mesh that comes from everywhere.
+static const float MESH_AMBIENT = 0.15f;
+
+int drawing_display(const RendererOptions *options)
+{
+    bool light = options->kind == IMAGE_FLOAT || options->aov != AOV_NONE;
+    return light ? TONE_LIGHT : (int)options->tone;
+}
+
+void drawing_background(const RendererOptions *options, float light[4])
+{
+    linear_from_srgb_color(options->background, light);
+    for (int k = 0; k < 3; ++k)
+        light[k] = options->background[3] * (float)tone_unmap(options->tone, (double)light[k]);
+    light[3] = options->background[3];
+}
+
+// The image without the band's values.
+static void fill_draw_params(const RendererOptions *options, const RenderMesh *mesh,
+                             const RenderFrame *frame, DrawParams *draw)
+{
+    memset(draw, 0, sizeof *draw);
+    drawing_set_view(draw, frame->view, options->width * options->samples,
+                     options->height * options->samples);
+    float light = exp2f(options->exposure);
+    drawing_set_lights(draw, frame->lights, frame->light_count);
+    for (int k = 0; k < 3; ++k) {
+        draw->sky[k] = light * (frame->ambient ? linear_from_srgb(frame->ambient->sky[k]) : 1);
+        draw->ground[k] =
+            light * (frame->ambient ? linear_from_srgb(frame->ambient->ground[k]) : 1);
+        for (uint32_t i = 0; i < frame->light_count; ++i) draw->light_color[i][k] *= light;
+    }
+    memcpy(draw->depth_range, options->depth_range, sizeof options->depth_range);
+    drawing_background(options, draw->background);
+    memcpy(draw->head_rotation, frame->head_rotation, sizeof draw->head_rotation);
+    memcpy(draw->head_translation, frame->head_translation, sizeof frame->head_translation);
+    if (options->aov == AOV_NONE) memcpy(draw->mesh_color, mesh->color, sizeof mesh->color);
+    draw->mesh_color[3] = MESH_AMBIENT;
+    draw->seed = options->seed;
+}
+
+// Widens a box of the image by a point of the world; a point before the near plane makes it as
+// wide as can be.
+static void add_to_box(DrawParams *draw, vec3 x, int box[4])
+{
+    vec4 clip;
+    const int far = 1 << 20;
+    glm_mat4_mulv(draw->clip_from_world, (vec4){x[0], x[1], x[2], 1}, clip);
+    if (clip[3] < draw->near_distance) { // crosses the eye's plane: anywhere
+        box[0] = box[1] = 0, box[2] = box[3] = far;
+        return;
+    }
+    for (int k = 0; k < 2; ++k) {
+        float size = k ? draw->height : draw->width, px = (clip[k] / clip[3] + 1) * size / 2;
+        px = fmaxf(fminf(px, (float)far - 2), 2 - (float)far);
+        box[k] = (int)fminf((float)box[k], floorf(px) - 1);
+        box[k + 2] = (int)fmaxf((float)box[k + 2], ceilf(px) + 1);
+    }
+}
+
+static void find_mesh_box(const RenderMesh *mesh, DrawParams *draw, int box[4])
+{
+    const int far = 1 << 20;
+    vec3 x;
+    box[0] = box[1] = far, box[2] = box[3] = -far;
+    for (int corner = 0; corner < 8 && mesh->triangle_count; ++corner) {
+        for (int k = 0; k < 3; ++k) x[k] = (corner >> k & 1 ? mesh->high : mesh->low)[k];
+        glm_quat_rotatev(draw->head_rotation, x, x);
+        glm_vec3_add(x, draw->head_translation, x);
+        add_to_box(draw, x, box);
+    }
+}
+
+static void add_floor_to_box(const Floor *floor, DrawParams *draw, int box[4])
+{
+    vec3 x;
+    for (int corner = 0; corner < 4 && floor->kind != FLOOR_NONE; ++corner) {
+        for (int k = 0; k < 3; ++k) x[k] = floor->middle[k];
+        x[0] += corner & 1 ? floor->faded : -floor->faded;
+        x[2] += corner & 2 ? floor->faded : -floor->faded;
+        add_to_box(draw, x, box);
+    }
+}
+
+// Whether the lights ask for more than directions and one ambient colour.
+static bool lights_are_simple(const RenderFrame *frame)
+{
+    for (uint32_t i = 0; i < frame->light_count; ++i)
+        if (frame->lights[i].kind != LIGHT_DIRECTIONAL) return false;
+    const Ambient *ambient = frame->ambient;
+    return !ambient || memcmp(ambient->sky, ambient->ground, sizeof ambient->sky) == 0;
+}
+
+void drawing_find_middle(const Drawing *drawing, const Hair *hair, vec3 middle)
+{
+    versor turn = {0};
+    memcpy(turn, drawing->draw.head_rotation, sizeof turn);
+    for (int k = 0; k < 3; ++k) middle[k] = 0.5f * (hair->low[k] + hair->high[k]);
+    glm_quat_rotatev(turn, middle, middle);
+    for (int k = 0; k < 3; ++k) middle[k] += drawing->draw.head_translation[k];
+}
+
+static bool uses_lod(const LodOptions *lod)
+{
+    return lod->end > lod->start || lod->width > 0;
+}
+
+// Share of an item's strands that is drawn.
+static float find_share(const RendererOptions *options, const Drawing *drawing,
+                        const RenderItem *item)
+{
+    const LodOptions *lod = &options->lod;
+    const DrawParams *draw = &drawing->draw;
+    vec3 middle = {0}, eye = {draw->eye[0], draw->eye[1], draw->eye[2]};
+    drawing_find_middle(drawing, item->hair, middle);
+    float distance = fmaxf(glm_vec3_distance(middle, eye), draw->near_distance), share = 1;
+    if (lod->end > lod->start)
+        share -= (1 - lod->least) *
+                 fminf(fmaxf((distance - lod->start) / (lod->end - lod->start), 0), 1);
+    if (lod->width > 0)
+        share = fminf(share, 2 * item->radius * draw->focal /
+                                 (distance * lod->width * (float)options->samples));
+    return fmaxf(share, lod->least);
+}
+
+static unsigned shadow_features(const RendererOptions *options, const RenderMesh *mesh)
+{
+    unsigned by_mesh = mesh->triangle_count ? LOOK_SHADOW_BY_MESH : 0;
+    switch (options->shadow.kind) {
+    case SHADOW_APPROX:
+        return LOOK_SHADOW_APPROX | by_mesh;
+    case SHADOW_DOM:
+        return LOOK_SHADOW_DOM | by_mesh;
+    default:
+        return 0;
+    }
+}
+
+static Result make_room(Drawing *drawing, Error *error)
+{
+    if (drawing->look_room >= drawing->item_count) return RESULT_OK;
+    Look *looks = realloc(drawing->looks, drawing->item_count * sizeof *looks);
+    if (!looks)
+        return error_set(error, RESULT_FAILED, "no memory for %u sections", drawing->item_count);
+    drawing->looks = looks;
+    drawing->look_room = drawing->item_count;
+    return RESULT_OK;
+}
+
+// `features`: those that do not depend on the item.
+static Result make_look(Drawing *drawing, const RendererOptions *options, const RenderItem *item,
+                        unsigned features, Look *look, Error *error)
+{
+    *look = (Look){.material = drawing_material(item->material, item->radius),
+                   .features = features,
+                   .light_count = drawing->draw.light_count,
+                   .share = 1};
+    if (uses_lod(&options->lod)) look->share = find_share(options, drawing, item);
+    look->material.radius /= look->share;
+    if (item->material->smooth > 1) look->features |= LOOK_SMOOTH;
+    if (item->hair->alike) look->material.color_variation = look->material.warmth_variation = 0;
+    if (options->aov != AOV_NONE || item->material->shading != SHADING_MARSCHNER) return RESULT_OK;
+    look->features |= LOOK_MARSCHNER;
+    if (item->material->lobes == LOBES_GAUSS) look->features |= LOOK_GAUSS;
+    return scatter_tables_find(&drawing->scatter, item->material->refraction,
+                               glm_rad(item->material->azimuthal_roughness), &look->scatter, error);
+}
+
+Result drawing_begin(Drawing *drawing, const RendererOptions *options, const RenderMesh *mesh,
+                     const RenderFrame *frame, const RenderItem *items, uint32_t item_count,
+                     Error *error)
+{
+    static const unsigned aovs[] = {0, LOOK_WHITE, LOOK_WHITE, LOOK_TANGENT, LOOK_STRAND}; // by Aov
+    unsigned features = aovs[options->aov];
+    if (options->aov == AOV_NONE)
+        features = (lights_are_simple(frame) ? 0 : LOOK_LIGHTS) | shadow_features(options, mesh);
+    drawing->items = items;
+    drawing->item_count = item_count;
+    fill_draw_params(options, mesh, frame, &drawing->draw);
+    find_mesh_box(mesh, &drawing->draw, drawing->mesh_box);
+    memcpy(drawing->base_box, drawing->mesh_box, sizeof drawing->base_box);
+    add_floor_to_box(&options->floor, &drawing->draw, drawing->base_box);
+    Result result = make_room(drawing, error);
+    for (uint32_t i = 0; i < item_count && result == RESULT_OK; ++i)
+        result = make_look(drawing, options, &items[i], features, &drawing->looks[i], error);
+    return result;
+}
+
+void drawing_destroy(Drawing *drawing)
+{
+    scatter_tables_destroy(&drawing->scatter);
+    gpu_buffer_destroy(&drawing->uniforms);
+    free(drawing->looks);
+    *drawing = (Drawing){0};
+}
+
+void drawing_upload(Drawing *drawing)
+{
+    gpu_buffer_set_uniforms(&drawing->uniforms, BIND_DRAW, &drawing->draw, sizeof drawing->draw);
+}
+
+uint64_t drawing_count_segments(const Drawing *drawing)
+{
+    uint64_t count = 0;
+    for (uint32_t i = 0; i < drawing->item_count; ++i)
+        count +=
+            drawing->items[i].hair->segment_count * (uint64_t)drawing->items[i].material->smooth;
+    return count;
+}
+
+uint64_t drawing_count_thinned(const Drawing *drawing)
+{
+    uint64_t count = 0;
+    for (uint32_t i = 0; i < drawing->item_count; ++i)
+        for (uint32_t b = 0; b < drawing->items[i].hair->batch_count; ++b) {
+            const HairBatch *batch = &drawing->items[i].hair->batches[b];
+            count += batch->strand_count - look_material(&drawing->looks[i], batch).drawn_strands;
+        }
+    return count;
+}
