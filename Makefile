@@ -149,7 +149,7 @@ stress: all ## random circumstances for every solver until a rule breaks, an hou
 
 # --- Static checks and the sanitizers; all of them run, then the failures are named. One alone: make check-format.
 CHECKS := format scripts warnings clang cppcheck shaders farm sanitize
-C_FILES = $(wildcard src/*/*.[ch] src/*/*/*.[ch] tests/*/*.[ch] glsl/*/*.h)
+C_FILES = $(wildcard src/*/*.[ch] src/*/*/*.[ch] tests/*/*.[ch] glsl/*/* tests/glsl/*)
 SIDE   := $(if $(filter command line,$(origin OUT)),$(OUT)/,out/)
 QUIET   = $(AGAIN) $(JOBS) --silent
 
@@ -183,7 +183,7 @@ check-sanitize: # but for scripts that run the programs as others do, many times
 	$(QUIET) CONFIG=sanitize OUT=$(SIDE)sanitize all tests
 	@tests/runner $(SIDE)sanitize test_ '^test_(farm|readme|tutorial)'
 
-format: ## clang-format all C files
+format: ## clang-format all C and GLSL files
 	clang-format -i $(C_FILES)
 
 # --- Installation.

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Pulls chains along waypoints as the solvers do: unit directions and lengths are the state, positions are summed up at the end.
-// A lane takes a case; `spans` holds for each its first point, segments, first waypoint, waypoints.
+// Pulls chains along waypoints as the solvers do: unit directions and lengths are the state,
+// positions are summed up at the end. A lane takes a case; `spans` holds for each its first point,
+// segments, first waypoint, waypoints.
 #include "common/shared.h"
 #include "sim/tractrix.glsl"
 
 layout(local_size_x = 8) in;
 layout(std430, binding = BIND_STATE_OUT) readonly buffer Spans { uvec4 spans[]; };
 layout(std430, binding = BIND_TIPS) readonly buffer Waypoints { vec4 waypoints[]; };
-layout(std430, binding = BIND_POSITION_OUT) buffer Points { vec4 points[]; }; // in: start, out: result
+// In: start, out: result.
+layout(std430, binding = BIND_POSITION_OUT) buffer Points { vec4 points[]; };
 
 void main()
 {

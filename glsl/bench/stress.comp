@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Whether strands still behave after a step (stress_bound.h has the rules and their derivation). A strand a lane.
+// Whether strands still behave after a step (stress_bound.h has the rules and their derivation). A
+// strand a lane.
 //
-// Energy is a particle's mean, mass 1, in the frame that goes with the root without turning; x and v belong to the middle of the step:
-//     E = mean(v.v/2 - g.(x - s)),   s: where it began, in the style.   B = mean(|g| l - g.s) bounds g.(x - s) at l along the strand.
+// Energy is a particle's mean, mass 1, in the frame that goes with the root without turning; x and
+// v belong to the middle of the step:
+//     E = mean(v.v/2 - g.(x - s)),   s: where it began, in the style.   B = mean(|g| l - g.s)
+//         bounds g.(x - s) at l along the strand.
 // TIP 1: the strand is one particle, its tip, with a velocity of its own (split).
 #include "bench/stress_params.h"
 #include "common/hair_address.glsl"
@@ -29,17 +32,20 @@ void main()
     int s = int(gl_GlobalInvocationID.x), n = int(stress_params.vertex_count);
     if (s >= int(stress_params.strand_count)) return;
     int base = particle_address(s, 0, n);
-    vec3 g = stress_params.gravity.xyz, root = texelFetch(position, base).xyz, root_move = root - texelFetch(before, base).xyz;
+    vec3 g = stress_params.gravity.xyz, root = texelFetch(position, base).xyz,
+         root_move = root - texelFetch(before, base).xyz;
     float strength = length(g), per_dt = stress_params.per_dt, rounding = stress_params.rounding;
     vec3 last = root, style = vec3(0.0);
-    float along = 0.0, short_by = 0.0, lifted = 0.0, shortest = HUGE, highest = 0.0, kinetic = 0.0, potential = 0.0, budget = 0.0, size = largest(root), off = 0.0, move = 0.0;
+    float along = 0.0, short_by = 0.0, lifted = 0.0, shortest = HUGE, highest = 0.0, kinetic = 0.0,
+          potential = 0.0, budget = 0.0, size = largest(root), off = 0.0, move = 0.0;
     bool finite = size < HUGE;
     vec4 lead = texelFetch(rest, base + STRAND_TILE); // what the head carries, if it does
     float raised = stress_params.carried * (strength * lead.w + lead.w * dot(g, lead.xyz));
     for (int j = 1; j < n; ++j) {
         int a = base + j * STRAND_TILE;
         vec4 segment = texelFetch(rest, a);
-        vec3 x = texelFetch(position, a).xyz, moved = x - texelFetch(before, a).xyz - root_move, v = per_dt * moved;
+        vec3 x = texelFetch(position, a).xyz, moved = x - texelFetch(before, a).xyz - root_move,
+             v = per_dt * moved;
         float here = largest(x);
         finite = finite && here < HUGE;
         size = max(size, here);
@@ -66,15 +72,23 @@ void main()
     float mean = 1.0 / float(n - 1);
     kinetic *= mean, potential *= mean, budget *= mean, highest *= mean, lifted *= mean;
 #endif
-    float noise = rounding * size, bent = stress_params.bends * noise * noise / (shortest * shortest), noise_speed = stress_params.noise_steps * noise * per_dt;
-    float speed = sqrt(2.0 * (budget + strength * noise) + stress_params.added + bent) + stress_params.kicks + stress_params.spun * lead.w + noise_speed;
-    float allowed = 0.5 * speed * speed * (1.0 + stress_params.rise) + stress_params.rise * highest + lifted;
+    float noise = rounding * size,
+          bent = stress_params.bends * noise * noise / (shortest * shortest),
+          noise_speed = stress_params.noise_steps * noise * per_dt;
+    float speed = sqrt(2.0 * (budget + strength * noise) + stress_params.added + bent) +
+                  stress_params.kicks + stress_params.spun * lead.w + noise_speed;
+    float allowed =
+        0.5 * speed * speed * (1.0 + stress_params.rise) + stress_params.rise * highest + lifted;
     vec4 value = vec4(0.0);
     if (stress_params.length_error > 0.0) value.x = off / stress_params.length_error;
-    if (stress_params.energy != 0u && shortest > stress_params.resolved * noise && allowed < HUGE && allowed > 0.0) value.y = (kinetic - potential + budget) / allowed;
-    if (stress_params.rest_move > 0.0 && shortest > stress_params.rest_shortest) value.z = move / (stress_params.rest_move + noise);
+    if (stress_params.energy != 0u && shortest > stress_params.resolved * noise && allowed < HUGE &&
+        allowed > 0.0)
+        value.y = (kinetic - potential + budget) / allowed;
+    if (stress_params.rest_move > 0.0 && shortest > stress_params.rest_shortest)
+        value.z = move / (stress_params.rest_move + noise);
     uvec4 broken = uvec4(!finite, !passes(value.x), !passes(value.y), !passes(value.z));
     uvec4 was = first[s];
-    for (int i = 0; i < 4; ++i) first[s][i] = was[i] == 0u && broken[i] != 0u ? stress_params.step : was[i];
+    for (int i = 0; i < 4; ++i)
+        first[s][i] = was[i] == 0u && broken[i] != 0u ? stress_params.step : was[i];
     worst[s] = max(worst[s], value);
 }

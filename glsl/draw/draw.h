@@ -61,7 +61,7 @@
 #define BLOCK_COUNT_WORDS (64 * 16)
 #define MANY_BLOCKS       0xffffffffu
 
-// The A-buffer's pool is dealt out in shards, each with a counter of its own: pixels of different
+// The A-buffer's pool is split into shards, each with a counter of its own: pixels of different
 // 8x8 blocks then rarely wait for each other's atomics. A small picture full of hair would fill few
 // of them: it uses one.
 #define SHARD_COUNT 64

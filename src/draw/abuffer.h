@@ -17,7 +17,7 @@ typedef struct ABuffer {
     GpuBuffer extent;    // int[4]: screen box of what has to be resolved: x, y lowest, highest, px
     const GpuLimits *limits;
     int64_t most_nodes; // that the pool can grow to
-    int shards;         // that the pool is dealt out in: SHARD_COUNT or 1
+    int shards;         // that the pool is split into: SHARD_COUNT or 1
     int layers, width;  // of the samples
     int samples;        // across a pixel of the image, which has their mean
     int tone;           // display.glsl's macro

@@ -253,11 +253,10 @@ static Result build(BaseLayer *base, FloorKind floor, Shadow shadow, Error *erro
 {
     if (base->mesh.triangle_count == 0)
         return base_layer_build(base, BASE_WITHOUT_MESH, floor, shadow, error);
-    Result result = base_layer_build_light(base, shadow, error);
-    THEN(result, base_layer_build(base, BASE_OVER_MESH, floor, shadow, error));
-    if (floor != FLOOR_NONE)
-        THEN(result, base_layer_build(base, BASE_BESIDE_MESH, floor, shadow, error));
-    return result;
+    TRY(base_layer_build_light(base, shadow, error));
+    TRY(base_layer_build(base, BASE_OVER_MESH, floor, shadow, error));
+    if (floor != FLOOR_NONE) TRY(base_layer_build(base, BASE_BESIDE_MESH, floor, shadow, error));
+    return RESULT_OK;
 }
 
 static Result draw_all(BaseLayer *base, const BaseScene *scene, const RenderTarget *target,

@@ -2,7 +2,7 @@
 // What stands behind and among the hair: mesh and floor over the background.
 //
 // The mesh's surface and the depth of samples at its edges are drawn first, each pixel is lit once
-// by that, and then all is put together. None of this is done again for a image in which neither
+// by that, and then all is put together. None of this is done again for an image in which neither
 // camera, head, lights nor shadows have changed.
 #pragma once
 
@@ -20,7 +20,7 @@ typedef struct BaseFloor {
     GLuint vertex_array; // without attributes
 } BaseFloor;
 
-// A part of a image: in one without a mesh; beside the mesh, whose shadow may be there; or where
+// A part of an image: in one without a mesh; beside the mesh, whose shadow may be there; or where
 // it may be itself.
 typedef enum BaseArea { BASE_WITHOUT_MESH, BASE_BESIDE_MESH, BASE_OVER_MESH } BaseArea;
 
@@ -39,7 +39,7 @@ typedef struct BaseLayer {
     uint64_t depth_version; // counts the times that the target's depth was
 } BaseLayer;
 
-// A image of it. Boxes in samples: x, y lowest, highest; outside of them is background.
+// An image of it. Boxes in samples: x, y lowest, highest; outside of them is background.
 typedef struct BaseScene {
     const Floor *floor;
     const Shadows *shadow;     // what mesh and floor receive, which is bound

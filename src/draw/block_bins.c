@@ -9,12 +9,12 @@
 #include <string.h>
 
 // All slots on the way to their blocks.
-typedef struct Dealing {
+typedef struct Binning {
     BlockBins *lists;
     const RibbonKey *keys;
     const RibbonRecord *records;
     size_t count;
-} Dealing;
+} Binning;
 
 static size_t block_count(const BlockBins *lists)
 {
@@ -76,19 +76,19 @@ static void put_in_several(const BlockBins *lists, const RibbonRecord *r, uint64
     }
 }
 
-static void deal(const Dealing *dealing, int part, uint64_t *pairs)
+static void bin_ribbons(const Binning *binning, int part, uint64_t *pairs)
 {
-    const BlockBins *lists = dealing->lists;
+    const BlockBins *lists = binning->lists;
     uint32_t *places = places_of(lists, part);
-    size_t parts = (size_t)lists->parts, end = dealing->count * ((size_t)part + 1) / parts;
-    for (size_t i = dealing->count * (size_t)part / parts; i < end; ++i) {
-        RibbonKey key = dealing->keys[i];
+    size_t parts = (size_t)lists->parts, end = binning->count * ((size_t)part + 1) / parts;
+    for (size_t i = binning->count * (size_t)part / parts; i < end; ++i) {
+        RibbonKey key = binning->keys[i];
         if (!key.depth) continue;
         uint64_t pair = (uint64_t)~key.depth << 32 | i;
         uint32_t left = key.blocks & 255, top = key.blocks >> 8 & 255,
                  right = key.blocks >> 16 & 255, bottom = key.blocks >> 24;
         if (key.blocks == MANY_BLOCKS || (left < right && top < bottom))
-            put_in_several(lists, &dealing->records[i], pairs, places, pair);
+            put_in_several(lists, &binning->records[i], pairs, places, pair);
         else
             for (uint32_t row = top; row <= bottom; ++row)
                 for (uint32_t column = left; column <= right; ++column)
@@ -99,15 +99,15 @@ static void deal(const Dealing *dealing, int part, uint64_t *pairs)
 
 static void count_part(void *data, int part)
 {
-    const Dealing *dealing = data;
-    memset(places_of(dealing->lists, part), 0, block_count(dealing->lists) * sizeof(uint32_t));
-    deal(dealing, part, NULL);
+    const Binning *binning = data;
+    memset(places_of(binning->lists, part), 0, block_count(binning->lists) * sizeof(uint32_t));
+    bin_ribbons(binning, part, NULL);
 }
 
 static void fill_part(void *data, int part)
 {
-    const Dealing *dealing = data;
-    deal(dealing, part, dealing->lists->pairs);
+    const Binning *binning = data;
+    bin_ribbons(binning, part, binning->lists->pairs);
 }
 
 // From counts to places: in each list the first part's ribbons come first.
@@ -141,10 +141,10 @@ static Result make_room(BlockBins *lists, size_t count, Error *error)
 Result block_bins_fill(BlockBins *lists, const RibbonKey *keys, const RibbonRecord *records,
                        size_t count, Error *error)
 {
-    Dealing dealing = {lists, keys, records, count};
-    parallel_run(lists->parts, count_part, &dealing);
+    Binning binning = {lists, keys, records, count};
+    parallel_run(lists->parts, count_part, &binning);
     find_places(lists);
-    Result result = make_room(lists, lists->begins[block_count(lists)], error);
-    if (result == RESULT_OK) parallel_run(lists->parts, fill_part, &dealing);
-    return result;
+    TRY(make_room(lists, lists->begins[block_count(lists)], error));
+    parallel_run(lists->parts, fill_part, &binning);
+    return RESULT_OK;
 }

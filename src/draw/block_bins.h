@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Deals ribbons out to the blocks of pixels that they touch: a list a block.
+// Bins ribbons into the blocks of pixels that they touch: a list a block.
 #pragma once
 
 #include "base/error.h"
@@ -8,10 +8,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// Lists of a image of columns x rows blocks of BLOCK_WIDTH x BLOCK_HEIGHT px (draw.h).
+// Lists of an image of columns x rows blocks of BLOCK_WIDTH x BLOCK_HEIGHT px (draw.h).
 typedef struct BlockBins {
     int columns, rows;
-    int parts; // ranges of ribbons that are dealt out at once, each by a thread
+    int parts; // ranges of ribbons that are binned at once, each by a thread
     uint32_t *
         places; // [parts][rows * columns], owned: ribbons in a block, later where the next one goes
     size_t *begins;  // [rows * columns + 1], owned: where a block's list begins

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From ribbons to a image, block by block, on all threads.
+// From ribbons to an image, block by block, on all threads.
 #pragma once
 
 #include "base/parallel.h"
@@ -14,7 +14,7 @@ typedef struct BlockRaster {
     size_t sorting_room;
 } BlockRaster;
 
-// A image: its ribbons, and what they are composited with.
+// An image: its ribbons, and what they are composited with.
 typedef struct BlockScene {
     const RibbonKey *keys;       // [slots]
     const RibbonRecord *records; // [slots]
@@ -29,10 +29,10 @@ typedef struct BlockScene {
 Result block_raster_create(BlockRaster *raster, int width, int height, Error *error);
 void block_raster_destroy(BlockRaster *raster);
 
-// Deals the ribbons out to blocks. Returns in *touched how many blocks they touch, each counted.
+// Bins the ribbons into blocks. Returns in *touched how many blocks they touch, each counted.
 // RESULT_FAILED when memory is short.
 Result block_raster_bin(BlockRaster *raster, const BlockScene *scene, uint64_t *touched,
                         Error *error);
 
-// Composites what was dealt out and writes all pixels of the image.
+// Composites what was binned and writes all pixels of the image.
 void block_raster_composite(BlockRaster *raster, const BlockScene *scene);

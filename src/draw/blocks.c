@@ -259,7 +259,7 @@ Result blocks_draw(Blocks *blocks, GpuTimer *timer, Image *image, Error *error)
     BlockScene scene = {
         .slots = blocks->slots, .style = blocks->style, .nearest = blocks->nearest, .image = image};
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    Result result = read_counts(blocks, error);
-    THEN(result, read_behind(blocks, &scene, timer, error));
-    return result == RESULT_OK ? draw_mapped(blocks, &scene, timer, error) : result;
+    TRY(read_counts(blocks, error));
+    TRY(read_behind(blocks, &scene, timer, error));
+    return draw_mapped(blocks, &scene, timer, error);
 }

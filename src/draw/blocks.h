@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The block rasteriser: strands are projected and shaded in compute, and what becomes of them is
-// dealt out to blocks of pixels and composited there by the program's own threads. For drivers on
+// The block rasteriser: strands are projected and shaded in compute, and their ribbons are binned
+// into blocks of pixels and composited there by the program's own threads. For drivers on
 // CPUs, where it is several times as fast as ribbons that are drawn as triangles into an A-buffer.
 #pragma once
 
@@ -51,7 +51,7 @@ Result blocks_create(Blocks *blocks, const GpuLimits *limits, const RendererOpti
                      Error *error);
 void blocks_destroy(Blocks *blocks);
 
-// Begins a image of at most `segments` ribbons with `base` before and among them, which must stay
+// Begins an image of at most `segments` ribbons with `base` before and among them, which must stay
 // until it is drawn. Needs the DrawParams block. RESULT_FAILED if memory is short or there are 2^32
 // segments.
 Result blocks_begin(Blocks *blocks, uint64_t segments, const BlocksBase *base, Error *error);

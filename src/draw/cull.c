@@ -117,11 +117,10 @@ static Result measure_base(Cull *cull, const GpuLimits *limits, const RenderTarg
     cull->tiles[0] = (target->width * target->samples + HIDE_TILE - 1) / HIDE_TILE;
     cull->tiles[1] = (target->height * target->samples + HIDE_TILE - 1) / HIDE_TILE;
     int64_t size = (int64_t)cull->tiles[0] * cull->tiles[1] * (int64_t)sizeof(float);
-    Result result = build_hide(cull, error);
-    THEN(result, gpu_buffer_reserve(&cull->nearest, limits, "hidden tiles", size, 0, error));
-    THEN(result, gpu_buffer_reserve(&cull->levels, limits, "hidden levels", size * HIDE_LEVELS,
-                                    GL_R32F, error));
-    if (result != RESULT_OK) return result;
+    TRY(build_hide(cull, error));
+    TRY(gpu_buffer_reserve(&cull->nearest, limits, "hidden tiles", size, 0, error));
+    TRY(gpu_buffer_reserve(&cull->levels, limits, "hidden levels", size * HIDE_LEVELS, GL_R32F,
+                           error));
     find_nearest(cull, target);
     return spread(cull, error);
 }
@@ -134,9 +133,9 @@ Result cull_begin(Cull *cull, const GpuLimits *limits, const CullBase *base, boo
     cull->outside = cull->hidden = 0;
     if (!cull->tries || !cull->covered || base->version == cull->base) return RESULT_OK;
     cull->base = 0;
-    Result result = measure_base(cull, limits, base->target, error);
-    if (result == RESULT_OK) cull->base = base->version;
-    return result;
+    TRY(measure_base(cull, limits, base->target, error));
+    cull->base = base->version;
+    return RESULT_OK;
 }
 
 static Result build_list(Cull *cull, unsigned variant, Error *error)
@@ -152,8 +151,8 @@ static Result build_list(Cull *cull, unsigned variant, Error *error)
 
 Result cull_build(Cull *cull, unsigned variant, Error *error)
 {
-    Result result = variant & CULL_HIDING ? build_hide(cull, error) : RESULT_OK;
-    return result == RESULT_OK ? build_list(cull, variant, error) : result;
+    TRY(variant & CULL_HIDING ? build_hide(cull, error) : RESULT_OK);
+    return build_list(cull, variant, error);
 }
 
 static Result use(Cull *cull, const HairBatch *batch, bool smooth, Error *error)

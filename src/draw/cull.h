@@ -9,7 +9,7 @@
 
 #include <stdbool.h>
 
-// Of the strands of a image, left out: looking for them in the next one pays.
+// Of the strands of an image, left out: looking for them in the next one pays.
 enum { CULL_SHARE = 16 };
 
 // What the shader that lists strands needs: something opaque is there, painted, smooth.
@@ -30,7 +30,7 @@ typedef struct Cull {
     uint64_t outside, hidden; // strands of this image that were left out
 } Cull;
 
-// What is opaque in a image: its depth, of a size in samples, and a number that is another one
+// What is opaque in an image: its depth, of a size in samples, and a number that is another one
 // whenever it has changed, from 1 on. NULL target: nothing.
 typedef struct CullBase {
     const RenderTarget *target;
@@ -40,7 +40,7 @@ typedef struct CullBase {
 // Compiles the shaders for hair that needs CULL_ bits `variant`, unless they are there.
 Result cull_build(Cull *cull, unsigned variant, Error *error);
 
-// Begins a image. `many`: of the last one so many strands were left out, here or later, that it
+// Begins an image. `many`: of the last one so many strands were left out, here or later, that it
 // is worth trying. Needs the DrawParams block. RESULT_FAILED if memory is short.
 Result cull_begin(Cull *cull, const GpuLimits *limits, const CullBase *base, bool many,
                   Error *error);

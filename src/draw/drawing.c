@@ -292,10 +292,10 @@ Result drawing_begin(Drawing *drawing, const RendererOptions *options, const Ren
     find_mesh_box(mesh, &drawing->draw, drawing->mesh_box);
     memcpy(drawing->base_box, drawing->mesh_box, sizeof drawing->base_box);
     add_floor_to_box(&options->floor, &drawing->draw, drawing->base_box);
-    Result result = make_room(drawing, error);
-    for (uint32_t i = 0; i < item_count && result == RESULT_OK; ++i)
-        result = make_look(drawing, options, &items[i], features, &drawing->looks[i], error);
-    return result;
+    TRY(make_room(drawing, error));
+    for (uint32_t i = 0; i < item_count; ++i)
+        TRY(make_look(drawing, options, &items[i], features, &drawing->looks[i], error));
+    return RESULT_OK;
 }
 
 void drawing_destroy(Drawing *drawing)

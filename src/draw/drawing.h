@@ -46,7 +46,7 @@ void drawing_find_middle(const Drawing *drawing, const Hair *hair, vec3 middle);
 uint64_t drawing_count_segments(const Drawing *drawing);
 uint64_t drawing_count_thinned(const Drawing *drawing);
 
-// Camera and lights for a image of this size; the rest is left 0.
+// Camera and lights for an image of this size; the rest is left 0.
 void drawing_set_view(DrawParams *draw, const View *view, int width, int height);
 void drawing_set_lights(DrawParams *draw, const Light *lights, uint32_t count);
 

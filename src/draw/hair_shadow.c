@@ -43,18 +43,16 @@ static unsigned variant_of(const ShadowCaster *caster)
 
 Result hair_shadow_build(HairShadow *hair, unsigned variant, Error *error)
 {
-    Result result =
-        build(&hair->bounds[variant], "draw/shadow_bounds.comp", GROUP, FIRSTS, variant, error);
-    THEN(result, build(&hair->first[variant], "draw/shadow_splat.comp", GROUP,
-                       hair->deep ? COARSE_FIRSTS : FIRSTS, variant, error));
+    TRY(build(&hair->bounds[variant], "draw/shadow_bounds.comp", GROUP, FIRSTS, variant, error));
+    TRY(build(&hair->first[variant], "draw/shadow_splat.comp", GROUP,
+              hair->deep ? COARSE_FIRSTS : FIRSTS, variant, error));
     if (hair->deep)
-        THEN(result,
-             build(&hair->splat[variant], "draw/shadow_splat.comp", GROUP, DEEP, variant, error));
+        TRY(build(&hair->splat[variant], "draw/shadow_splat.comp", GROUP, DEEP, variant, error));
     if (hair->deep)
-        THEN(result, build(&hair->spread, "draw/shadow_spread.comp", TEXEL_GROUP, DEEP, 0, error));
+        TRY(build(&hair->spread, "draw/shadow_spread.comp", TEXEL_GROUP, DEEP, 0, error));
     if (hair->deep)
-        THEN(result, build(&hair->finish, "draw/shadow_finish.comp", TEXEL_GROUP, DEEP, 0, error));
-    return result;
+        TRY(build(&hair->finish, "draw/shadow_finish.comp", TEXEL_GROUP, DEEP, 0, error));
+    return RESULT_OK;
 }
 
 Result hair_shadow_create(HairShadow *hair, const GpuLimits *limits, bool deep, int side,
@@ -116,18 +114,16 @@ static Result make_maps(HairShadow *hair, int maps, Error *error)
 static Result make_scratch(HairShadow *hair, ShadowCasters casters, Error *error)
 {
     int64_t texels = (int64_t)hair->maps * hair->side * hair->side;
-    Result result =
-        gpu_buffer_reserve(&hair->box, hair->limits, "light's box", 4 * BOX_WORDS, 0, error);
+    TRY(gpu_buffer_reserve(&hair->box, hair->limits, "light's box", 4 * BOX_WORDS, 0, error));
     if (hair->deep)
-        THEN(result,
-             gpu_buffer_reserve(&hair->firsts, hair->limits, "shadow's depths",
-                                4 * texels / (SHADOW_COARSE * SHADOW_COARSE), GL_R32UI, error));
+        TRY(gpu_buffer_reserve(&hair->firsts, hair->limits, "shadow's depths",
+                               4 * texels / (SHADOW_COARSE * SHADOW_COARSE), GL_R32UI, error));
     if (hair->deep)
-        THEN(result, gpu_buffer_reserve(&hair->sums, hair->limits, "shadow's sums",
-                                        4 * texels * SHADOW_LAYERS, GL_R32UI, error));
-    for (uint32_t i = 0; i < casters.count && result == RESULT_OK; ++i)
-        result = hair_shadow_build(hair, variant_of(&casters.list[i]), error);
-    return result;
+        TRY(gpu_buffer_reserve(&hair->sums, hair->limits, "shadow's sums",
+                               4 * texels * SHADOW_LAYERS, GL_R32UI, error));
+    for (uint32_t i = 0; i < casters.count; ++i)
+        TRY(hair_shadow_build(hair, variant_of(&casters.list[i]), error));
+    return RESULT_OK;
 }
 
 static void fill(const GpuBuffer *buffer, GLuint value)
@@ -139,15 +135,14 @@ static void fill(const GpuBuffer *buffer, GLuint value)
 
 Result hair_shadow_begin(HairShadow *hair, int maps, ShadowCasters casters, Error *error)
 {
-    Result result = make_maps(hair, maps, error);
-    if (result == RESULT_OK && hair->by_processor)
+    TRY(make_maps(hair, maps, error));
+    if (hair->by_processor)
         return hair_shadow_cpu_begin(&hair->cpu, hair->limits, maps, casters, &hair->depths,
                                      hair->deep ? &hair->layers : &hair->firsts, error);
-    THEN(result, make_scratch(hair, casters, error));
-    if (result != RESULT_OK) return result;
+    TRY(make_scratch(hair, casters, error));
     fill(&hair->firsts, SHADOW_DEPTHS);
     if (hair->deep) fill(&hair->sums, 0);
-    return result;
+    return RESULT_OK;
 }
 
 void hair_shadow_end(HairShadow *hair)

@@ -136,12 +136,12 @@ Result quads_create(Quads *quads, const Gpu *gpu, const RendererOptions *options
                      .height = options->height,
                      .samples = options->samples,
                      .skips = true};
-    Result result = create_ribbons(&quads->hair, nearest, error);
-    THEN(result, abuffer_create(&quads->abuffer, &gpu->limits, options->width, options->samples,
-                                layers, drawing_display(options), options->aov == AOV_DEPTH,
-                                gpu->software, options->pool_bytes, error));
-    if (result == RESULT_OK) quads->band_rows = abuffer_most_rows(&quads->abuffer, options->height);
-    return result;
+    TRY(create_ribbons(&quads->hair, nearest, error));
+    TRY(abuffer_create(&quads->abuffer, &gpu->limits, options->width, options->samples, layers,
+                       drawing_display(options), options->aov == AOV_DEPTH, gpu->software,
+                       options->pool_bytes, error));
+    quads->band_rows = abuffer_most_rows(&quads->abuffer, options->height);
+    return RESULT_OK;
 }
 
 void quads_destroy(Quads *quads)

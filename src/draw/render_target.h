@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The textures that a image is drawn to, and its way back to memory. Row 0 is the image's top.
+// The textures that an image is drawn to, and its way back to memory. Row 0 is the image's top.
 #pragma once
 
 #include "gpu/gpu_buffer.h"

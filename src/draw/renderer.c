@@ -100,8 +100,8 @@ Result renderer_set_mesh(Renderer *renderer, const Mesh *mesh, const float color
     RenderMesh *mine = &renderer->base.mesh;
     renderer->base.any = false;
     render_mesh_destroy(mine);
-    Result result = render_mesh_create(mine, mesh, linear, &renderer->gpu->limits, error);
-    return result == RESULT_OK ? make_base(renderer, error) : result;
+    TRY(render_mesh_create(mine, mesh, linear, &renderer->gpu->limits, error));
+    return make_base(renderer, error);
 }
 
 int renderer_channels(const Renderer *renderer)
@@ -157,9 +157,8 @@ static Result draw_shadow(Renderer *renderer, const RenderFrame *frame, Error *e
     memcpy(scene.mesh.rotation, frame->head_rotation, sizeof scene.mesh.rotation);
     memcpy(scene.mesh.translation, frame->head_translation, sizeof scene.mesh.translation);
     if (drawing->item_count) drawing_find_middle(drawing, drawing->items[0].hair, scene.middle);
-    Result result = list_casters(renderer, &scene, error);
-    THEN(result, shadows_draw(&renderer->shadow, &scene, renderer->timer, error));
-    if (result != RESULT_OK) return result;
+    TRY(list_casters(renderer, &scene, error));
+    TRY(shadows_draw(&renderer->shadow, &scene, renderer->timer, error));
     shadows_bind(&renderer->shadow);
     for (uint32_t i = 0; i < drawing->item_count; ++i) {
         Look *look = &drawing->looks[i];
@@ -218,11 +217,11 @@ static Result draw_blocks(Renderer *renderer, Image *image, Error *error)
         .version = renderer->base.version,
         .box = drawing->base_box,
         .depth = {drawing->draw.depth[0], drawing->draw.depth[1]}};
-    Result result = blocks_begin(blocks, drawing_count_segments(drawing), &base, error);
-    THEN(result, project_items(renderer, error));
-    THEN(result, blocks_draw(blocks, renderer->timer, image, error));
-    if (result == RESULT_OK) count_blocks(renderer);
-    return result;
+    TRY(blocks_begin(blocks, drawing_count_segments(drawing), &base, error));
+    TRY(project_items(renderer, error));
+    TRY(blocks_draw(blocks, renderer->timer, image, error));
+    count_blocks(renderer);
+    return RESULT_OK;
 }
 
 static const RasterType RASTERS[] = {

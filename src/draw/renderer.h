@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: MIT
-// From hair on the GPU to a image: mesh, hair ribbons into an A-buffer, and its resolution.
+// The room draw turns hair into images. It takes hair on the GPU (sim/hair.h), the view, lights and
+// materials of a frame, and a mesh; it hands on an Image. First come shadow maps (shadows.h), then
+// mesh and floor (base_layer.h), then the hair by one of two rasterisers: blocks.h composites on
+// the CPU, quads.h sends triangles into an A-buffer. drawing.h has what the passes of an image
+// share.
 #pragma once
 
 #include "draw/base_layer.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is asked of a renderer, and what a image came to.
+// What is asked of a renderer, and what an image came to.
 #pragma once
 
 #include "base/params.h"
@@ -54,7 +54,7 @@ typedef struct Ambient {
     float sky[3], ground[3];
 } Ambient;
 
-// What all items of a image have in common.
+// What all items of an image have in common.
 typedef struct RenderFrame {
     const View *view; // made for the renderer's width and height
     const Light *lights;

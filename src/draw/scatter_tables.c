@@ -58,9 +58,9 @@ Result scatter_tables_find(ScatterTables *tables, float refraction, float roughn
         if (tables->tables[i].refraction == refraction && tables->tables[i].roughness == roughness)
             return RESULT_OK;
     }
-    Result result = add(tables, refraction, roughness, error);
-    if (result == RESULT_OK) *texture = tables->tables[tables->count - 1].texture;
-    return result;
+    TRY(add(tables, refraction, roughness, error));
+    *texture = tables->tables[tables->count - 1].texture;
+    return RESULT_OK;
 }
 
 void scatter_tables_destroy(ScatterTables *tables)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tables of marschner shading, made on the GPU when a image first needs them
+// Tables of marschner shading, made on the GPU when an image first needs them
 // (glsl/draw/scatter.comp).
 #pragma once
 
