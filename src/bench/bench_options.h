@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The command line of tractrix-bench: all that its commands are asked.
+// The room of measurements, the program tractrix-bench: accuracy, speed, stress and image error of
+// what the rooms below it do. It takes hair, solvers, simulation and renderer as they are, steps
+// and draws them itself, and hands on rows (table.h) on the screen, as CSV and as JSON, with stated
+// bounds checked. accuracy.h, speed.h, scenes.h, stress.h, images.h and test_vectors.h are its
+// commands; image_reference.h and shadow_reference.h are judges that tests use as well.
+//
+// This header: the command line.
 #pragma once
 
 #include "bench/stress.h"

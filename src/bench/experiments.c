@@ -254,46 +254,29 @@ static void solve_links(double stiffness, int n, double *angle)
     }
 }
 
-static const struct {
-    const char *algo, *flag;
-    double stiffness;
-    void (*solve)(double stiffness, int n, double *angle);
-    // Small drop of a continuous beam's tip over its length: q L^4/(8 E I) of a cantilever under
-    // its own weight q (Gere and Timoshenko, Mechanics of Materials), with E I = K L^2 and
-    // q = n g/L: n g/(8 K). False: no such formula.
-    bool continuous;
-} BEAMS[] = {
-    {"chain", "--chain-bend", 5, solve_joints, false},
-    {"chain", "--chain-bend", 50, solve_joints, false},
-    {"chain", "--chain-bend", 500, solve_joints, true},
-    {"spring", "--spring-angular", 5, solve_links, false},
-    {"spring", "--spring-angular", 50, solve_links, false},
-    {"spring", "--spring-angular", 500, solve_links, false},
-};
-
+// The small drop of a continuous beam's tip over its length: q L^4/(8 E I) of a cantilever under
+// its own weight q (Gere and Timoshenko, Mechanics of Materials), with E I = K L^2 and q = n g/L:
+// n g/(8 K). For stiff rods; a spring's links are no beam.
 static bool beam_set_up(Setup *setup)
 {
-    int number = setup->number;
-    for (size_t b = 0; b < sizeof BEAMS / sizeof *BEAMS; ++b)
-        for (int n = 15; n <= 31; n += 16) {
-            double angle[EXPERIMENT_POINTS], l = LENGTH / n;
-            if (strcmp(BEAMS[b].algo, setup->method->algo) != 0 || number-- > 0) continue;
-            setup->n = n + 1;
-            trial_make_beam(setup->points, n + 1, LENGTH);
-            BEAMS[b].solve(BEAMS[b].stiffness, n, angle);
-            for (int j = 1; j <= n; ++j) {
-                setup->exact[j][0] = setup->exact[j - 1][0] + l * cos(angle[j]);
-                setup->exact[j][1] = setup->exact[j - 1][1] - l * sin(angle[j]);
-            }
-            if (BEAMS[b].continuous) setup->beam_drop = n * G / (8 * BEAMS[b].stiffness);
-            snprintf(setup->scenario, sizeof setup->scenario, "%s %g, %d links", BEAMS[b].flag + 2,
-                     BEAMS[b].stiffness, n);
-            snprintf(setup->settings, sizeof setup->settings, "--style 0.5%s --drag 5 %s %g",
-                     trial_has(setup->method, "style_stiffness") ? " --style-stiffness 0" : "",
-                     BEAMS[b].flag, BEAMS[b].stiffness);
-            return true;
-        }
-    return false;
+    static const double stiffnesses[] = {5, 50, 500};
+    bool chain = strcmp(setup->method->algo, "chain") == 0;
+    if (setup->number >= 6 || (!chain && strcmp(setup->method->algo, "spring") != 0)) return false;
+    const char *flag = chain ? "chain-bend" : "spring-angular";
+    double stiffness = stiffnesses[setup->number / 2], angle[EXPERIMENT_POINTS];
+    int n = setup->number % 2 ? 31 : 15;
+    setup->n = n + 1;
+    trial_make_beam(setup->points, n + 1, LENGTH);
+    (chain ? solve_joints : solve_links)(stiffness, n, angle);
+    for (int j = 1; j <= n; ++j) {
+        setup->exact[j][0] = setup->exact[j - 1][0] + LENGTH / n * cos(angle[j]);
+        setup->exact[j][1] = setup->exact[j - 1][1] - LENGTH / n * sin(angle[j]);
+    }
+    if (chain && stiffness == 500) setup->beam_drop = n * G / (8 * stiffness);
+    snprintf(setup->scenario, sizeof setup->scenario, "%s %g, %d links", flag, stiffness, n);
+    snprintf(setup->settings, sizeof setup->settings, "--style 0.5%s --drag 5 --%s %g",
+             chain ? " --style-stiffness 0" : "", flag, stiffness);
+    return true;
 }
 
 static Result beam_measure(Run *run, Error *error)
@@ -316,35 +299,27 @@ static bool stretch_set_up(Setup *setup)
     return found;
 }
 
-static double greatest_stretch(const Trial *trial, const Motion *motion)
-{
-    double most = 0, size = 0;
-    for (int j = 1; j < motion->n; ++j) {
-        double now = 0, rest = 0;
-        for (int k = 0; k < 3; ++k) {
-            now += pow((double)trial->points[j][k] - (double)trial->points[j - 1][k], 2);
-            rest += pow(
-                (double)(float)motion->points[j][k] - (double)(float)motion->points[j - 1][k], 2);
-            size = fmax(size, fabs((double)trial->points[j][k]));
-        }
-        // less what the rounding of stored positions explains: 2^-24 of a coordinate for either end
-        double rounding = 2 * 1.8 * 0x1p-24 * size;
-        double off = fabs(sqrt(now) - sqrt(rest));
-        most = fmax(most, (off - rounding) / sqrt(rest));
-        if (isnan(off)) most = NAN;
-    }
-    return most;
-}
-
 static Result stretch_measure(Run *run, Error *error)
 {
     const Motion *motion = run->setup->motion;
+    float(*const x)[3] = run->trial.points;
     double most = 0;
     for (size_t f = 1; f < motion->frame_count; ++f) {
+        double size = 0;
         trial_advance(&run->trial, motion, motion->frames[f].time);
         TRY(trial_read(&run->trial, error));
-        double now = greatest_stretch(&run->trial, motion);
-        if (!(now <= most)) most = now;
+        for (int j = 1; j < motion->n; ++j) {
+            double now = 0, rest = 0;
+            for (int k = 0; k < 3; ++k) {
+                const double *from = motion->points[j - 1], *to = motion->points[j];
+                now += pow((double)x[j][k] - (double)x[j - 1][k], 2);
+                rest += pow((double)(float)to[k] - (double)(float)from[k], 2);
+                size = fmax(size, fabs((double)x[j][k]));
+            }
+            // Less what the rounding of stored positions explains: 2^-24 of a coordinate, twice.
+            double off = fabs(sqrt(now) - sqrt(rest)), rounding = 2 * 1.8 * 0x1p-24 * size;
+            if (!((off - rounding) / sqrt(rest) <= most)) most = (off - rounding) / sqrt(rest);
+        }
     }
     add_value(run, run->trial.params.stretch_drawn ? "as simulated" : "as drawn", most);
     return RESULT_OK;

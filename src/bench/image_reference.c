@@ -499,7 +499,7 @@ static void write_row(const Row *row, const double background[4], Image *image)
     }
 }
 
-// A picture that is being drawn: rows of pixels are dealt out to the threads in turn, and no row
+// An image that is being drawn: threads take rows of pixels in turn, and no row
 // knows of another.
 typedef struct Drawing {
     const Shapes *shapes;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The picture that a renderer should have made, by brute force on the CPU in double precision: the
+// The image that a renderer should have made, by brute force on the CPU in double precision: the
 // judge of every scheme that draws hair faster.
 //
 // A pixel is the mean over its square of side x side sub-samples in a regular grid. At each of them
@@ -49,7 +49,7 @@ typedef void ReferenceShade(const struct ReferenceScene *scene, const SectionPar
 typedef struct ReferenceScene {
     ReferenceShade *shade; // NULL: Kajiya's and Kay's
 
-    const View *view; // made for the picture's size
+    const View *view; // made for the image's size
     const Light *lights;
     uint32_t light_count;
     const float *sky, *ground; // [3] linear: ambient light from above and below; NULL: white
@@ -59,7 +59,7 @@ typedef struct ReferenceScene {
     float mesh_color[4]; // drawn in one linear colour, premultiplied
     float background[4]; // sRGB and opacity 0..1
     uint32_t seed;       // of what varies by strand
-    int threads;         // up to PARALLEL_MOST, the picture is the same; 0: as processors are there
+    int threads;         // up to PARALLEL_MOST, the image is the same; 0: as processors are there
 } ReferenceScene;
 
 enum { REFERENCE_SIDE = 16 };

@@ -318,7 +318,7 @@ static Result measure(Stage *stage, const BenchScheme *scheme, Row *row, Error *
     if (!samples) return error_set(error, RESULT_FAILED, "no memory for samples");
     gpu_timer_create(&timer, false, stage->gpu->software);
     Result result = renderer_create(&renderer, stage->gpu, &timer, &how, error);
-    row->raster = word_of("raster", (int)renderer.raster);
+    if (result == RESULT_OK) row->raster = word_of("raster", (int)renderer.raster);
     THEN(result, image_create(&image, how.width, how.height, 3, error));
     THEN(result,
          draw_frames(stage, &manner, &renderer, samples, samples + frames, &image, row, error));

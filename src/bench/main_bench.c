@@ -193,7 +193,7 @@ static Result try_shadows(Renderer *renderer, Error *error)
     return RESULT_OK;
 }
 
-static Result try_renderer(const Gpu *gpu, Raster raster, const RendererOptions *pictures,
+static Result try_renderer(const Gpu *gpu, Raster raster, const RendererOptions *images,
                            Error *error)
 {
     Renderer renderer;
@@ -206,7 +206,7 @@ static Result try_renderer(const Gpu *gpu, Raster raster, const RendererOptions 
                        .position = corners,
                        .normal = normals,
                        .triangle = triangle};
-    RendererOptions options = *pictures;
+    RendererOptions options = *images;
     options.raster = raster;
     options.width = options.height = 16;
     gpu_timer_create(&timer, false, true);
@@ -223,7 +223,7 @@ static void try_renderers(const Gpu *gpu, Result *worst, FILE *stream, Error *er
     static const struct {
         const char *name;
         RendererOptions options;
-    } pictures[] = {
+    } images[] = {
         {"opaque", {.background = {0, 0, 0, 1}, .tone = TONE_FILMIC}},
         {"transparent, 2 x 2", {.tone = TONE_REINHARD, .samples = 2}},
         {"16 bits", {.kind = IMAGE_16}},
@@ -234,13 +234,13 @@ static void try_renderers(const Gpu *gpu, Result *worst, FILE *stream, Error *er
         {"coverage", {.aov = AOV_COVERAGE}},
         {"depth", {.aov = AOV_DEPTH, .kind = IMAGE_FLOAT}},
         {"tangent", {.aov = AOV_TANGENT, .kind = IMAGE_16}}};
-    for (size_t i = 0; i < sizeof pictures / sizeof *pictures; ++i)
+    for (size_t i = 0; i < sizeof images / sizeof *images; ++i)
         for (Raster raster = RASTER_QUADS; raster <= RASTER_BLOCKS; ++raster) {
             char what[64];
             Error why = {{0}};
             snprintf(what, sizeof what, "renderer, %s, %s",
-                     raster == RASTER_QUADS ? "quads" : "blocks", pictures[i].name);
-            report(what, try_renderer(gpu, raster, &pictures[i].options, &why), &why, worst, stream,
+                     raster == RASTER_QUADS ? "quads" : "blocks", images[i].name);
+            report(what, try_renderer(gpu, raster, &images[i].options, &why), &why, worst, stream,
                    error);
         }
 }
@@ -296,7 +296,7 @@ static const struct {
     {"stress", run_stress,
      "random circumstances for every solver; the smallest case that breaks a rule, if one does"},
     {"image", images_run_one,
-     "drawing --set NAME or --tfx FILE: its time, and its error against the exact picture"},
+     "drawing --set NAME or --tfx FILE: its time, and its error against the exact image"},
     {"images", images_run,
      "the same for every scheme and preset; parts: straight, curls, fur, files (those named)"},
     {"shaders", run_shaders, "compiles every shader variant with warnings as errors"},

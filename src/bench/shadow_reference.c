@@ -115,7 +115,7 @@ double shadow_reference_light(const ShadowReference *reference, const double poi
     return light;
 }
 
-// The vertices whose light is sought, dealt out to the threads by strands.
+// The vertices whose light is sought: threads take strands in turn.
 typedef struct Filling {
     const ShadowReference *reference;
     const ReferenceItem *item;

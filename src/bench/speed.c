@@ -211,7 +211,7 @@ static Result measure_drawing(Row *row, Simulation *simulation, Scene *scene,
 static Result measure(Row *row, const Gpu *gpu, const Strands *strands, const BenchOptions *options,
                       Error *error)
 {
-    Scene scene;
+    Scene scene = {0};
     GpuTimer timer;
     SectionParams params;
     Simulation simulation = {0};

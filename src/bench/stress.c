@@ -180,7 +180,7 @@ static bool is_worse(const StressVerdict *a, const StressVerdict *b, StressRule 
     return a->worst[rule] == b->worst[rule] && a->first[rule] < b->first[rule];
 }
 
-// Counts a set's strands, names all that failed, and tells the worst by each rule.
+// Counts a set's strands, names all that failed, and reports the worst by each rule.
 static void count(Bench *bench, Tally *tally, const StressCase *strands,
                   const StressVerdict *verdicts, int strand_count)
 {

@@ -17,7 +17,7 @@
 
 enum { SIDE = 128, MOST_ITEMS = 2 };
 
-// A scene of the studio (world and picture agree in the plane z = 0) for the reference.
+// A scene of the studio (world and image agree in the plane z = 0) for the reference.
 typedef struct Sitting {
     View view;
     Strands strands[MOST_ITEMS];
@@ -85,7 +85,7 @@ static Strands make_line(const float from[3], const float to[3])
     return studio_strands(1, 2, (const float(*)[3])position);
 }
 
-// Strands along the picture's middle row, one behind the other, 1 apart.
+// Strands along the image's middle row, one behind the other, 1 apart.
 static Strands make_stack(uint32_t count)
 {
     float position[32][2][3];
@@ -258,7 +258,7 @@ enum { MOST_CASES = 4 };
 
 typedef struct Case {
     const char *name;
-    const char *file;  // hair that fills the picture; NULL: a tangle
+    const char *file;  // hair that fills the image; NULL: a tangle
     uint32_t count;    // of its strands
     double step, turn; // px from vertex to vertex, and by how much each changes its direction
     float radius, opacity, tip_ratio;
@@ -267,7 +267,7 @@ typedef struct Case {
                            // pixel, of 2 x 2 and of 4 x 4
 } Case;
 
-// A file's hair, from the front, in the middle of the picture.
+// A file's hair, from the front, in the middle of the image.
 static Strands read_hair(const char *file)
 {
     Error error = {{0}};
@@ -295,7 +295,7 @@ static void dress(SectionParams *material, float tip_ratio)
     params_destroy_section(&old);
 }
 
-// RMS over the pixels that differ from `background` in either picture: of colours, or of opacity
+// RMS over the pixels that differ from `background` in either image: of colours, or of opacity
 // where that is a channel.
 static double rms_difference(const Image *a, const Image *b, const uint8_t background[4])
 {
@@ -318,7 +318,7 @@ static const float DARK[4] = {0.125f, 0.14f, 0.17f, 1};
 static const uint8_t DARK_BYTES[4] = {32, 36, 43};
 static const Light LIGHT = {.direction = {0.6f, 0.8f, 0}, .color = {1, 0.9f, 0.8f}, .intensity = 2};
 
-// The exact picture of a scene before a dark background and, for its opacity, without any.
+// The exact image of a scene before a dark background and, for its opacity, without any.
 static void sitting_draw_case(Sitting exact[2], const Case *c)
 {
     for (int clear = 0; clear < 2; ++clear) {
