@@ -5,6 +5,7 @@
 #include "base/program.h"
 #include "base/suggest.h"
 #include "bench/accuracy.h"
+#include "bench/bench_glsl.h"
 #include "bench/images.h"
 #include "bench/scenes.h"
 #include "bench/speed.h"
@@ -260,6 +261,7 @@ static Result run_shaders(const BenchOptions *arguments, const Gpu *gpu, Error *
                   {"bench/stress.comp", tip}};
     Result worst = RESULT_OK;
     Error why = {{0}};
+    shader_add_sources(BENCH_GLSL_SOURCES);
     shader_treat_warnings_as_errors(true);
     for (size_t i = 0; i < sizeof checks / sizeof *checks; ++i)
         report(checks[i].file, try_program(checks[i].file, checks[i].defines, &why), &why, &worst,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "bench/stress_run.h"
 #include "base/interrupt.h"
-#include "gpu/shader.h"
+#include "bench/bench_glsl.h"
 #include "scene/forces.h"
 #include "sim/solver.h"
 #include "sim/step.h"
@@ -262,6 +262,7 @@ static Result create_check(Run *run, const Gpu *gpu, Error *error)
     int64_t size = (int64_t)hair_slots(batch) * 16;
     void *zero = calloc((size_t)size, 1);
     if (!zero) return error_set(error, RESULT_FAILED, "no memory for verdicts");
+    shader_add_sources(BENCH_GLSL_SOURCES);
     Result result = shader_build_compute(&run->program, "bench/stress.comp", defines, error);
     THEN(result, gpu_buffer_create(&run->before, &gpu->limits, "positions before a step",
                                    batch->position.size, NULL, GL_RGBA32F, error));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "bench/test_vectors.h"
 #include "base/csv.h"
+#include "bench/bench_glsl.h"
 #include "gpu/gpu_buffer.h"
-#include "gpu/shader.h"
 
 #include "glsl/common/shared.h"
 
@@ -98,6 +98,7 @@ static Result run_check(const Gpu *gpu, const char *file, const ShaderDefine *de
 {
     GLuint program = 0;
     GpuBuffer buffers[4] = {{0}};
+    shader_add_sources(BENCH_GLSL_SOURCES);
     Result result = shader_build_compute(&program, file, defines, error);
     for (int i = 0; i < count && result == RESULT_OK; ++i) {
         result = gpu_buffer_create(&buffers[i], &gpu->limits, file, (int64_t)inputs[i].size,

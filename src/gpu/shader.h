@@ -18,8 +18,9 @@ typedef struct GlslSource {
 } GlslSource;
 extern const GlslSource GLSL_SOURCES[];
 
-// Adds a table of shaders that programs do not carry, for tests; the latest call's is used, by
-// pointer. Its files may include those of GLSL_SOURCES, and are never read from TRACTRIX_GLSL_DIR.
+// Adds a table of shaders that not all programs carry, for benchmarks and tests; the latest call's
+// is used, by pointer. Its files may include those of GLSL_SOURCES, and are never read from
+// TRACTRIX_GLSL_DIR.
 void shader_add_sources(const GlslSource *sources);
 
 // A macro of a shader variant. Lists end with {NULL, 0}. Every macro that a shader tests must be
