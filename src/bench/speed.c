@@ -296,11 +296,6 @@ static Result measure_set(Speed *speed, Row *row, const Strands *strands, Error 
     return RESULT_OK;
 }
 
-static Result run_sets(Speed *speed, Error *error)
-{
-    return for_each(speed, "sets", measure_set, error);
-}
-
 // --- What the processor could do: memory, and split in C.
 
 static Result run_memory(Speed *speed, Error *error)
@@ -385,11 +380,6 @@ static Result measure_split(Speed *speed, Row *row, const Strands *strands, Erro
         return RESULT_OK;
     TRY(measure_form(speed, row, strands, CPU_SPLIT_SCALAR, error));
     return measure_form(speed, row, strands, CPU_SPLIT_LANES, error);
-}
-
-static Result run_c(Speed *speed, Error *error)
-{
-    return for_each(speed, "c", measure_split, error);
 }
 
 // --- How times grow.
@@ -545,11 +535,12 @@ static Result run_start(Speed *speed, Error *error)
 static const struct {
     const char *name;
     Result (*run)(Speed *speed, Error *error);
+    UseHair *use; // of all hair, in place of `run`
 } PARTS[] = {
-    {"memory", run_memory}, // first: the others have shares of its bandwidth
-    {"sets", run_sets},       {"c", run_c},
-    {"strands", run_strands}, {"vertices", run_vertices},
-    {"threads", run_threads}, {"start", run_start},
+    {"memory", run_memory, NULL}, // first: the others have shares of its bandwidth
+    {"sets", NULL, measure_set},    {"c", NULL, measure_split},
+    {"strands", run_strands, NULL}, {"vertices", run_vertices, NULL},
+    {"threads", run_threads, NULL}, {"start", run_start, NULL},
 };
 enum { PART_COUNT = sizeof PARTS / sizeof *PARTS };
 
@@ -564,8 +555,11 @@ Result speed_run(const BenchOptions *options, const Gpu *gpu, Error *error)
     speed.method_count = trial_list(&options->method, speed.methods);
     Result result = table_open(&speed.table, COLUMNS, sizeof COLUMNS / sizeof *COLUMNS, gpu,
                                &options->output, stdout, error);
-    for (int i = 0; i < PART_COUNT; ++i)
-        if (sets ? PARTS[i].run == run_sets : bench_options_part(options, PARTS[i].name))
-            THEN(result, PARTS[i].run(&speed, error));
+    for (int i = 0; i < PART_COUNT; ++i) {
+        bool asked = sets ? PARTS[i].use == measure_set : bench_options_part(options, names[i]);
+        if (!asked) continue;
+        if (PARTS[i].use) THEN(result, for_each(&speed, names[i], PARTS[i].use, error));
+        if (PARTS[i].run) THEN(result, PARTS[i].run(&speed, error));
+    }
     return table_close(&speed.table, result, error);
 }
