@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a solver of particles (particle_solver.h) is given: positions and velocities of the step
+// What a solver of particles (recipe.h) is given: positions and velocities of the step
 // before by texture, both to be written to the same places, the style, and where the head carries
 // the root.
 //

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Looks whether strands are calm (sleep.h): each particle within `leave` of its anchor, and no
+// Checks whether strands are calm (sleep.h): each particle within `leave` of its anchor, and no
 // farther from it than it has been before. If not, they begin anew, those that have left their
 // anchor with another one. A strand a lane.
 #include "sim/sleep_params.h"
@@ -41,9 +41,9 @@ void main()
         anchors[a] = stays ? anchor : vec4(x, 0.0);
         reach = max(reach, anchor.w);
     }
-    uint looks = is_calm ? (calm[s] & ~SLEEP_READY) + 1u : 0u;
+    uint checks = is_calm ? (calm[s] & ~SLEEP_READY) + 1u : 0u;
     bool ready =
         stays && was_ready ||
-        float(looks) >= sleep_params.looks + sleep_params.looks_reach * reach / strand_length;
-    calm[s] = ready ? looks | SLEEP_READY : looks;
+        float(checks) >= sleep_params.checks + sleep_params.checks_reach * reach / strand_length;
+    calm[s] = ready ? checks | SLEEP_READY : checks;
 }

@@ -22,26 +22,20 @@ void carry_destroy(Carry *carry)
     *carry = (Carry){0};
 }
 
-static void dispatch(Carry *carry, CarryParams *params, const GpuBuffer *points,
-                     const GpuBuffer *vectors)
-{
-    params->count = (uint)(vectors->size / (int64_t)sizeof(vec4)) / params->stride;
-    gpu_buffer_set_uniforms(&carry->uniforms, BIND_STEP, params, sizeof *params);
-    gpu_buffer_bind_storage(points, BIND_POSITION_OUT);
-    gpu_buffer_bind_storage(vectors, BIND_STATE_OUT);
-    GLuint groups = (params->count + GROUP - 1) / GROUP;
-    glUseProgram(carry->program);
-    glDispatchCompute(groups < ROW ? groups : ROW, (groups + ROW - 1) / ROW, 1);
-}
-
 static void carry_buffer(Carry *carry, CarryParams params, const SolverBuffer *buffer)
 {
+    if (buffer->kind == SOLVER_POINTS) return; // with their velocities, which follow
+    const SolverBuffer *points = buffer->kind == SOLVER_VELOCITIES ? buffer - 1 : buffer;
     params.stride = buffer->kind == SOLVER_TIPS ? 2 : 1;
     params.beside = buffer->kind == SOLVER_TIPS;
     params.directions = buffer->kind == SOLVER_DIRECTIONS;
-    if (buffer->kind == SOLVER_POINTS) return; // with their velocities, which follow
-    const SolverBuffer *points = buffer->kind == SOLVER_VELOCITIES ? buffer - 1 : buffer;
-    dispatch(carry, &params, points->buffer, buffer->buffer);
+    params.count = (uint)(buffer->buffer->size / (int64_t)sizeof(vec4)) / params.stride;
+    gpu_buffer_set_uniforms(&carry->uniforms, BIND_STEP, &params, sizeof params);
+    gpu_buffer_bind_storage(points->buffer, BIND_POSITION_OUT);
+    gpu_buffer_bind_storage(buffer->buffer, BIND_STATE_OUT);
+    GLuint groups = (params.count + GROUP - 1) / GROUP;
+    glUseProgram(carry->program);
+    glDispatchCompute(groups < ROW ? groups : ROW, (groups + ROW - 1) / ROW, 1);
 }
 
 void carry_apply(Carry *carry, const Solver *solver, const Hair *hair, const HeadMotion *motion)

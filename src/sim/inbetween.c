@@ -49,16 +49,11 @@ static void copy(const GpuBuffer *from, const GpuBuffer *to)
     glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, (GLsizeiptr)from->size);
 }
 
-void inbetween_keep_earlier(Inbetween *inbetween)
+void inbetween_keep(Inbetween *inbetween, bool later)
 {
     for (uint32_t i = 0; i < inbetween->hair->batch_count; ++i)
-        copy(&inbetween->hair->batches[i].position, &inbetween->earlier[i]);
-}
-
-void inbetween_keep_later(Inbetween *inbetween)
-{
-    for (uint32_t i = 0; i < inbetween->hair->batch_count; ++i)
-        copy(&inbetween->hair->batches[i].position, &inbetween->later[i]);
+        copy(&inbetween->hair->batches[i].position,
+             later ? &inbetween->later[i] : &inbetween->earlier[i]);
 }
 
 void inbetween_mix(Inbetween *inbetween, float share, const HeadPose *earlier,

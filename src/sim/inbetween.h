@@ -18,9 +18,9 @@ typedef struct Inbetween {
 Result inbetween_create(Inbetween *inbetween, const Gpu *gpu, const Hair *hair, Error *error);
 void inbetween_destroy(Inbetween *inbetween);
 
-// Copies the positions that are drawn now. All of these only queue GPU work.
-void inbetween_keep_earlier(Inbetween *inbetween);
-void inbetween_keep_later(Inbetween *inbetween);
+// Copies the positions that are drawn now to the earlier or the later ones. All of these only queue
+// GPU work.
+void inbetween_keep(Inbetween *inbetween, bool later);
 
 // Writes Hair's positions: `share` (0 .. 1) of the way from the earlier to the later ones. Heads
 // are those of both steps, and the one to draw.

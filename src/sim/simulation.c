@@ -224,7 +224,7 @@ static void step_section(Simulation *simulation, SimulationSection *section, con
     }
     inbetween_restore(&section->inbetween);
     solver_step(&section->solver, step);
-    sleep_look(&section->sleep, &section->solver);
+    sleep_check(&section->sleep, &section->solver);
     section->stepped = true;
     simulation->strand_steps += strands;
     ++simulation->steps;
@@ -290,13 +290,13 @@ static void pose_section(Simulation *simulation, SimulationSection *section, con
 }
 
 // Poses every section that moves as it is after the last step, and keeps that.
-static void keep(Simulation *simulation, void (*keep_positions)(Inbetween *inbetween))
+static void keep(Simulation *simulation, bool later)
 {
     for (uint32_t i = 0; i < simulation->scene->section_count; ++i) {
         SimulationSection *section = &simulation->sections[i];
         if (!section->inbetween.hair || !moves(section)) continue;
         pose_section(simulation, section, &simulation->step_head);
-        keep_positions(&section->inbetween);
+        inbetween_keep(&section->inbetween, later);
     }
 }
 
@@ -306,9 +306,9 @@ void simulation_advance(Simulation *simulation)
     ScheduledFrame next = schedule_frame(&simulation->schedule, run, ++simulation->frame);
     while (simulation->step < next.step) take_step(simulation);
     if (next.share > 0 && simulation->step == next.step) {
-        keep(simulation, inbetween_keep_earlier);
+        keep(simulation, false);
         take_step(simulation);
-        keep(simulation, inbetween_keep_later);
+        keep(simulation, true);
     }
     simulation->share = next.share;
     simulation->head =

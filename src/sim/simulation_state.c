@@ -128,7 +128,7 @@ static void pass_sleep(Archive *archive, Sleep *sleep)
     SolverStep *last = &sleep->last;
     pass_words(archive, &sleep->steps, 1);
     pass_words(archive, &sleep->due, 1);
-    pass_words(archive, &sleep->looks, 1);
+    pass_words(archive, &sleep->checks, 1);
     pass_flag(archive, &sleep->asleep);
     if (!archive->stream) *last = (SolverStep){0};
     // What of a step says whether the next one is like it.
@@ -240,7 +240,7 @@ Result simulation_state_restore(Simulation *simulation, const Bytes *state, Erro
     for (uint32_t i = 0; i < list.count && good; ++i) good = read_buffer(&archive, list.buffers[i]);
     for (uint32_t i = 0; i < simulation->scene->section_count && good; ++i)
         if (simulation->sections[i].inbetween.hair)
-            inbetween_keep_later(&simulation->sections[i].inbetween);
+            inbetween_keep(&simulation->sections[i].inbetween, true);
     free(list.buffers);
     if (good && archive.left == 0) return RESULT_OK;
     return error_set(error, RESULT_BAD_INPUT, "the state is not of this simulation");

@@ -8,7 +8,7 @@
 #include <string.h>
 
 // The rule of sleep.h.
-static const double LOOKS_A_SECOND = 4, CALM_S = 2, REACH_S = 120;
+static const double CHECKS_A_SECOND = 4, CALM_S = 2, REACH_S = 120;
 enum { MOST_AGAIN = 64 };
 static const float LEAVE = 1.0f / 4, GROW = 1.0f / 60;
 
@@ -62,11 +62,11 @@ static bool same_forces(const SolverStep *a, const SolverStep *b)
            memcmp(a->wind, b->wind, sizeof a->wind) == 0;
 }
 
-// Steps to the next look: three quarters and five quarters of the mean, in turn.
+// Steps to the next check: three quarters and five quarters of the mean, in turn.
 static int interval(const Sleep *sleep)
 {
-    double mean = 1 / (LOOKS_A_SECOND * sleep->last.dt);
-    return (int)fmax(1, mean * (sleep->looks % 2 ? 1.25 : 0.75));
+    double mean = 1 / (CHECKS_A_SECOND * sleep->last.dt);
+    return (int)fmax(1, mean * (sleep->checks % 2 ? 1.25 : 0.75));
 }
 
 bool sleep_skips(Sleep *sleep, const SolverStep *step)
@@ -75,13 +75,13 @@ bool sleep_skips(Sleep *sleep, const SolverStep *step)
     bool same = same_forces(&sleep->last, step);
     sleep->last = *step;
     if (!same) {
-        sleep->steps = sleep->looks = sleep->due = 0;
+        sleep->steps = sleep->checks = sleep->due = 0;
         sleep->asleep = false;
     }
     return sleep->asleep;
 }
 
-// Whether every strand was ready at the last look.
+// Whether every strand was ready at the last check.
 static bool all_ready(const Sleep *sleep)
 {
     uint32_t all = SLEEP_READY;
@@ -95,19 +95,19 @@ static bool all_ready(const Sleep *sleep)
     return all != 0;
 }
 
-static void look(Sleep *sleep)
+static void check(Sleep *sleep)
 {
-    bool again = sleep->looks <= MOST_AGAIN && (sleep->looks & (sleep->looks - 1)) == 0;
-    double looks_a_second = fmin(LOOKS_A_SECOND, 1 / sleep->last.dt);
+    bool again = sleep->checks <= MOST_AGAIN && (sleep->checks & (sleep->checks - 1)) == 0;
+    double checks_a_second = fmin(CHECKS_A_SECOND, 1 / sleep->last.dt);
     SleepParams params = {
         .leave = sleep->tolerance * LEAVE,
         .grow = sleep->tolerance * GROW,
-        .looks = (float)fmax(2, CALM_S * looks_a_second),
-        .looks_reach = (float)(REACH_S * looks_a_second / (double)sleep->tolerance),
+        .checks = (float)fmax(2, CALM_S * checks_a_second),
+        .checks_reach = (float)(REACH_S * checks_a_second / (double)sleep->tolerance),
     };
-    params.anchor = sleep->looks == 0 ? SLEEP_ANCHOR_ALL
-                    : again           ? SLEEP_ANCHOR_UNREADY
-                                      : SLEEP_ANCHOR_LEFT;
+    params.anchor = sleep->checks == 0 ? SLEEP_ANCHOR_ALL
+                    : again            ? SLEEP_ANCHOR_UNREADY
+                                       : SLEEP_ANCHOR_LEFT;
     for (uint32_t i = 0; i < sleep->hair->batch_count; ++i) {
         const HairBatch *hair = &sleep->hair->batches[i];
         params.strand_count = hair->strand_count;
@@ -121,17 +121,17 @@ static void look(Sleep *sleep)
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-void sleep_look(Sleep *sleep, const Solver *solver)
+void sleep_check(Sleep *sleep, const Solver *solver)
 {
     if (!sleep->hair || ++sleep->steps < sleep->due) return;
-    if (sleep->looks > 1 && all_ready(sleep)) {
+    if (sleep->checks > 1 && all_ready(sleep)) {
         sleep->asleep = true;
         return;
     }
     solver_pose(solver, &sleep->last.head);
     gpu_timer_begin(sleep->timer, "sleep");
-    look(sleep);
+    check(sleep);
     gpu_timer_end(sleep->timer);
     sleep->due = sleep->steps + interval(sleep);
-    ++sleep->looks;
+    ++sleep->checks;
 }

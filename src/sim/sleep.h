@@ -33,7 +33,7 @@ typedef struct Sleep {
     SleepBatch *batches; // [hair->batch_count]
     SolverStep last;     // the last step, asleep or not
     int steps, due;      // under unchanging forces; number at which the next check is due
-    int looks;           // checks so far
+    int checks;          // checks so far
     bool asleep;
 } Sleep;
 
@@ -48,4 +48,4 @@ void sleep_destroy(Sleep *sleep);
 bool sleep_skips(Sleep *sleep, const SolverStep *step);
 
 // Call after each step that was made: checks the hair if that is due, after the solver's pose.
-void sleep_look(Sleep *sleep, const Solver *solver);
+void sleep_check(Sleep *sleep, const Solver *solver);
