@@ -18,40 +18,22 @@ size_t float_planes_bound(size_t count)
     return PLANES * (count + SIZE_BYTES);
 }
 
-// Bits as integers in the order of the numbers: neighbouring floats differ by 1.
-static uint32_t to_order(uint32_t bits)
-{
-    return bits >> 31 ? ~bits : bits | 0x80000000u;
-}
-
-static uint32_t from_order(uint32_t order)
-{
-    return order >> 31 ? order & 0x7fffffffu : ~order;
-}
-
-// 0, -1, 1, -2, ... as 0, 1, 2, 3, ...: small distances either way have zeros above.
-static uint32_t fold(uint32_t difference)
-{
-    return difference << 1 ^ (difference >> 31 ? UINT32_MAX : 0);
-}
-
-static uint32_t unfold(uint32_t folded)
-{
-    return folded >> 1 ^ (folded & 1 ? UINT32_MAX : 0);
-}
-
+// A float's bits as an integer in the order of the numbers: neighbouring floats differ by 1.
 static uint32_t order_of(float value)
 {
     uint32_t bits;
     memcpy(&bits, &value, sizeof bits);
-    return to_order(bits);
+    return bits >> 31 ? ~bits : bits | 0x80000000u;
 }
 
+// Folded, the distances 0, -1, 1, -2, ... are 0, 1, 2, 3, ...: small ones either way have zeros
+// above.
 static void split(const float *values, size_t count, size_t stride, uint8_t *planes)
 {
     for (size_t i = 0; i < count; ++i) {
         uint32_t before = i < stride ? 0x80000000u : order_of(values[i - stride]);
-        uint32_t folded = fold(order_of(values[i]) - before);
+        uint32_t distance = order_of(values[i]) - before;
+        uint32_t folded = distance << 1 ^ (distance >> 31 ? UINT32_MAX : 0);
         for (int plane = 0; plane < PLANES; ++plane)
             planes[(size_t)plane * count + i] = (uint8_t)(folded >> 8 * plane);
     }
@@ -64,7 +46,8 @@ static void join(float *values, size_t count, size_t stride, const uint8_t *plan
         for (int plane = 0; plane < PLANES; ++plane)
             folded |= (uint32_t)planes[(size_t)plane * count + i] << 8 * plane;
         uint32_t before = i < stride ? 0x80000000u : order_of(values[i - stride]);
-        uint32_t bits = from_order(before + unfold(folded));
+        uint32_t order = before + (folded >> 1 ^ (folded & 1 ? UINT32_MAX : 0));
+        uint32_t bits = order >> 31 ? order & 0x7fffffffu : ~order;
         memcpy(&values[i], &bits, sizeof bits);
     }
 }

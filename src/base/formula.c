@@ -63,7 +63,7 @@ Result formula_create_named(Formula *formula, const char *text, const char *cons
     muParserHandle_t parser = formula->parser;
     mupSetErrorHandler(parser, stay_silent);
     for (int i = 0; i < count; i++) mupDefineVar(parser, names[i], &formula->value[i]);
-    mupDefineConst(parser, "pi", 3.14159265358979323846);
+    mupDefineConst(parser, "pi", M_PI);
     mupDefineFun3(parser, "smoothstep", smoothstep, 1);
     mupDefineFun3(parser, "noise", portable_noise, 1);
     mupSetExpr(parser, text);

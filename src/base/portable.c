@@ -32,19 +32,6 @@ double portable_cosine(double turns)
     return portable_sine(turns + 0.25);
 }
 
-static double at_corner(double x, double y, double z)
-{
-    uint64_t key = (uint64_t)(int64_t)x * 0x8da6b343u ^ (uint64_t)(int64_t)y * 0xd8163841u ^
-                   (uint64_t)(int64_t)z * 0xcb1ab31fu;
-    Random random = random_create(key, 0x6e6f697365); // "noise"
-    return 2.0 * random_real(&random) - 1.0;
-}
-
-static double smooth(double t)
-{
-    return t * t * (3.0 - 2.0 * t);
-}
-
 double portable_noise(double x, double y, double z)
 {
     const double p[3] = {x, y, z};
@@ -52,16 +39,20 @@ double portable_noise(double x, double y, double z)
     for (int i = 0; i < 3; i++) {
         if (!(fabs(p[i]) < 1e15)) return 0.0;
         low[i] = floor(p[i]);
-        share[i] = smooth(p[i] - low[i]);
+        double t = p[i] - low[i];
+        share[i] = t * t * (3.0 - 2.0 * t);
     }
     for (int corner = 0; corner < 8; corner++) {
-        double weight = 1.0, at[3];
+        static const uint64_t factors[3] = {0x8da6b343u, 0xd8163841u, 0xcb1ab31fu};
+        double weight = 1.0;
+        uint64_t key = 0;
         for (int i = 0; i < 3; i++) {
             int upper = corner >> i & 1;
-            at[i] = low[i] + upper;
+            key ^= (uint64_t)(int64_t)(low[i] + upper) * factors[i];
             weight *= upper ? share[i] : 1.0 - share[i];
         }
-        sum += weight * at_corner(at[0], at[1], at[2]);
+        Random random = random_create(key, 0x6e6f697365); // "noise"
+        sum += weight * (2.0 * random_real(&random) - 1.0);
     }
     return sum;
 }

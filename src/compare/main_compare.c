@@ -102,7 +102,7 @@ static Result read_failing(CompareLimits *limits, const char *text, Error *error
                      text);
 }
 
-// Limits that are named count; if none is, only equal pictures pass.
+// Limits that are named count; if none is, only equal images pass.
 static Result read_limits(Command *command, Error *error)
 {
     CompareLimits *limits = &command->limits;

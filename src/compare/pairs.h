@@ -20,7 +20,7 @@ typedef struct Pair {
 typedef struct PairList {
     Pair *pairs; // in the order of names or numbers
     size_t count;
-    bool many; // folders or sequences, though they may have one picture
+    bool many; // folders or sequences, though they may have one image
 } PairList;
 
 // `a` and `b` are both files; or both folders, whose files ending in .png or .pfm (not hidden ones)

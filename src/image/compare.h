@@ -10,7 +10,7 @@
 #include <stdint.h>
 
 // How far a pixel may be off, how many pixels may be off further, and how different the whole may
-// look. Hair is all edges, so nothing here tries to tell edges from the rest.
+// look. Hair is all edges, so edges are not treated apart.
 typedef struct CompareLimits {
     bool pixels_matter;     // the next three count
     double pixel_tolerance; // 0 .. 255 levels: largest difference of a pixel's channel that passes

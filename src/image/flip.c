@@ -146,13 +146,13 @@ typedef struct Filters {
 // dimensions, its factor times the square of its sum, becomes a share.
 static void make_blurs(Filters *filters, double ppd)
 {
-    int radius = (int)ceil(3 * sqrt(SENSITIVITY_WIDEST / (2 * PI * PI)) * ppd);
+    int radius = (int)ceil(3 * sqrt(SENSITIVITY_WIDEST / (2 * M_PI * M_PI)) * ppd);
     double totals[3] = {0};
     for (int i = 0; i < SENSITIVITIES; ++i) {
-        double sigma = sqrt(SENSITIVITY[i].b / (2 * PI * PI)) * ppd;
+        double sigma = sqrt(SENSITIVITY[i].b / (2 * M_PI * M_PI)) * ppd;
         convolve_make_gauss(&filters->blur[i], radius, sigma);
         double sum = 1 / filters->blur[i].weights[radius]; // as exp(0) = 1
-        filters->shares[i] = SENSITIVITY[i].a * sqrt(PI / SENSITIVITY[i].b) * sum * sum;
+        filters->shares[i] = SENSITIVITY[i].a * sqrt(M_PI / SENSITIVITY[i].b) * sum * sum;
         totals[SENSITIVITY[i].channel] += filters->shares[i];
     }
     for (int i = 0; i < SENSITIVITIES; ++i) filters->shares[i] /= totals[SENSITIVITY[i].channel];

@@ -2,18 +2,12 @@
 #include "image/pfm.h"
 
 #include <assert.h>
+#include <endian.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static void put_little_endian(uint8_t *to, const uint8_t *from)
-{
-    uint32_t bits;
-    memcpy(&bits, from, sizeof bits);
-    for (int k = 0; k < 4; ++k) to[k] = (uint8_t)(bits >> 8 * k);
-}
 
 Result pfm_encode(const Image *image, Bytes *pfm, Error *error)
 {
@@ -34,8 +28,12 @@ Result pfm_encode(const Image *image, Bytes *pfm, Error *error)
     for (int y = 0; y < image->height; ++y) {
         const uint8_t *from = image->pixels + (size_t)(image->height - 1 - y) * pitch;
         uint8_t *to = pfm->data + head + (size_t)y * row;
-        for (size_t i = 0; i < 3 * width; ++i)
-            put_little_endian(to + 4 * i, from + 4 * (i / 3 * (size_t)image->channels + i % 3));
+        for (size_t i = 0; i < 3 * width; ++i) {
+            uint32_t bits;
+            memcpy(&bits, from + 4 * (i / 3 * (size_t)image->channels + i % 3), sizeof bits);
+            bits = htole32(bits);
+            memcpy(to + 4 * i, &bits, sizeof bits);
+        }
     }
     pfm->data[pfm->size] = 0;
     return RESULT_OK;
@@ -65,15 +63,6 @@ static bool read_header(Header *header, const Bytes *file)
     return header->width > 0 && header->height > 0 && isfinite(scale) && scale != 0;
 }
 
-static float take_float(const uint8_t *from, bool big_endian)
-{
-    uint32_t bits = 0;
-    for (int k = 0; k < 4; ++k) bits |= (uint32_t)from[k] << 8 * (big_endian ? 3 - k : k);
-    float value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
 // The pixels of a file whose size has been checked. Whether all are finite.
 static bool take_pixels(Image *image, const Header *header, const uint8_t *from)
 {
@@ -83,8 +72,11 @@ static bool take_pixels(Image *image, const Header *header, const uint8_t *from)
     for (size_t y = 0; y < (size_t)header->height; ++y) {
         float *to = pixels + ((size_t)header->height - 1 - y) * width * 3;
         for (size_t i = 0; i < width * 3; ++i) {
+            uint32_t bits;
             size_t at = channels == 3 ? i : i / 3;
-            to[i] = take_float(from + 4 * (y * width * channels + at), header->big_endian);
+            memcpy(&bits, from + 4 * (y * width * channels + at), sizeof bits);
+            bits = header->big_endian ? be32toh(bits) : le32toh(bits);
+            memcpy(&to[i], &bits, sizeof bits);
             finite = finite && isfinite(to[i]);
         }
     }

@@ -102,13 +102,12 @@ static Result grow(Mesh *mesh, uint32_t vertices, uint32_t triangles, Error *err
     return RESULT_OK;
 }
 
-// The normal of ring `ring` (0 .. rings) makes an angle of pi ring/rings with the axis from b to a:
-// its vertices belong to the sphere about a where that cosine is above the slope of the cone's
+// The normal of ring `ring` (0 .. rings) makes an angle of pi ring/rings with the axis from b to
+// a: its vertices belong to the sphere about a where that cosine is above the slope of the cone's
 // side, (rb - ra)/length, else to that about b. The poles are rings of equal vertices.
 Result mesh_append_cone(Mesh *mesh, const float a[4], const float b[4], uint32_t rings,
                         Error *error)
 {
-    const double pi = 3.14159265358979323846;
     uint32_t sectors = 2 * rings, first = mesh->vertex_count, t = mesh->triangle_count;
     TRY(grow(mesh, (rings + 1) * sectors, 2 * (rings - 1) * sectors, error));
     vec3 frame[3]; // the axis first
@@ -121,7 +120,7 @@ Result mesh_append_cone(Mesh *mesh, const float a[4], const float b[4], uint32_t
     double slope = length > 0 ? (double)(b[3] - a[3]) / length : 0;
     for (uint32_t ring = 0; ring <= rings; ++ring)
         for (uint32_t s = 0; s < sectors; ++s) {
-            double angle = pi * ring / rings, turn = 2 * pi * s / sectors;
+            double angle = M_PI * ring / rings, turn = 2 * M_PI * s / sectors;
             const float *end = cos(angle) > slope ? a : b;
             vec3 normal = {0};
             glm_vec3_muladds(frame[0], (float)cos(angle), normal);

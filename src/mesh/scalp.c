@@ -6,9 +6,8 @@
 #include <math.h>
 #include <stddef.h>
 
-static const double PI = 3.14159265358979323846;
 static const double SPHERE_RADIUS = 0.1;
-static const double NECK_DEPTH = 0.19, NECK_BEGIN = 0.7 * 3.14159265358979323846;
+static const double NECK_DEPTH = 0.19, NECK_BEGIN = 0.7 * M_PI;
 
 // An axis-aligned ellipsoid around the origin, which need not be its centre.
 typedef struct Ellipsoid {
@@ -29,22 +28,6 @@ static double ellipsoid_radius(const Ellipsoid *ellipsoid, const Double3 directi
     return (b + sqrt(b * b - a * c)) / a;
 }
 
-// A swelling of the surface around a direction.
-typedef struct Bump {
-    Double3 direction;    // unit length
-    double height, width; // metres; radians or so
-} Bump;
-
-static double bump_height(const Bump *bump, const Double3 direction)
-{
-    double square = 0.0;
-    for (int i = 0; i < 3; i++) {
-        double difference = direction[i] - bump->direction[i];
-        square += difference * difference;
-    }
-    return bump->height * exp(-square / (bump->width * bump->width));
-}
-
 // Skull, face with jaw, and a neck without end, joined softly: the 14-norm of three radii is a
 // smooth maximum.
 static double endless_head_radius(const Double3 direction)
@@ -54,7 +37,10 @@ static double endless_head_radius(const Double3 direction)
         {{0.0, -0.045, 0.030}, {0.056, 0.078, 0.062}},
         {{0.0, -0.150, -0.022}, {0.054, 0.210, 0.056}},
     };
-    static const Bump bumps[] = {
+    static const struct {
+        Double3 direction;    // unit length
+        double height, width; // metres; radians or so
+    } bumps[] = {
         {{0.0, -0.259, 0.966}, 0.016, 0.13},     // nose
         {{0.0, -0.556, 0.831}, 0.005, 0.14},     // lips
         {{0.0, -0.755, 0.656}, 0.006, 0.16},     // chin
@@ -66,21 +52,20 @@ static double endless_head_radius(const Double3 direction)
     double sum = 0.0, bump = 0.0;
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
         sum += pow(ellipsoid_radius(&parts[i], direction), 14.0);
-    for (size_t i = 0; i < sizeof bumps / sizeof *bumps; i++)
-        bump += bump_height(&bumps[i], direction);
+    for (size_t i = 0; i < sizeof bumps / sizeof *bumps; i++) {
+        Double3 off;
+        double3_subtract(direction, bumps[i].direction, off);
+        bump += bumps[i].height * exp(-double3_dot(off, off) / (bumps[i].width * bumps[i].width));
+    }
     return pow(sum, 1.0 / 14.0) + bump;
 }
 
 // The neck ends in a plane.
-static double head_radius(const Double3 direction)
-{
-    double radius = endless_head_radius(direction);
-    return direction[1] < 0.0 ? fmin(radius, NECK_DEPTH / -direction[1]) : radius;
-}
-
 double scalp_radius(ScalpShape shape, const Double3 direction)
 {
-    return shape == SCALP_SPHERE ? SPHERE_RADIUS : head_radius(direction);
+    if (shape == SCALP_SPHERE) return SPHERE_RADIUS;
+    double radius = endless_head_radius(direction);
+    return direction[1] < 0.0 ? fmin(radius, NECK_DEPTH / -direction[1]) : radius;
 }
 
 // For r(d), with r extended to all p as r(p / |p|), F(p) = |p| - r is 0 on the surface and its
@@ -125,9 +110,9 @@ static double area_ratio(ScalpShape shape, const Double3 direction)
 static void map_to_sphere(double u, double v, Double3 direction)
 {
     double y = 1.0 - 2.0 * u, flat = sqrt(fmax(0.0, 1.0 - y * y));
-    direction[0] = flat * sin(2.0 * PI * v);
+    direction[0] = flat * sin(2.0 * M_PI * v);
     direction[1] = y;
-    direction[2] = flat * cos(2.0 * PI * v);
+    direction[2] = flat * cos(2.0 * M_PI * v);
 }
 
 ScalpRoots scalp_roots_begin(ScalpShape shape, bool everywhere, uint32_t seed)
@@ -202,7 +187,7 @@ static void direction_at(double angle, double turn, Double3 direction)
 // The angle from the top at which the neck comes to the plane where it ends.
 static double neck_edge(double turn)
 {
-    double inside = NECK_BEGIN, outside = PI;
+    double inside = NECK_BEGIN, outside = M_PI;
     for (int i = 0; i < 50; i++) {
         double angle = 0.5 * (inside + outside);
         Double3 direction;
@@ -219,12 +204,12 @@ static double neck_edge(double turn)
 // runs along its edge, which would be ragged else.
 static double ring_angle(ScalpShape shape, uint32_t ring, uint32_t rings, double turn)
 {
-    double even = PI * ring / rings;
+    double even = M_PI * ring / rings;
     if (shape == SCALP_SPHERE || even <= NECK_BEGIN) return even;
-    double edge = neck_edge(turn), edge_ring = round(rings * neck_edge(0.0) / PI);
-    double first = floor(rings * NECK_BEGIN / PI), begin = PI * first / rings;
+    double edge = neck_edge(turn), edge_ring = round(rings * neck_edge(0.0) / M_PI);
+    double first = floor(rings * NECK_BEGIN / M_PI), begin = M_PI * first / rings;
     if (ring <= edge_ring) return begin + (edge - begin) * (ring - first) / (edge_ring - first);
-    return edge + (PI - edge) * (ring - edge_ring) / (rings - edge_ring);
+    return edge + (M_PI - edge) * (ring - edge_ring) / (rings - edge_ring);
 }
 
 Result scalp_make_mesh(Mesh *mesh, ScalpShape shape, uint32_t rings, Error *error)
@@ -238,7 +223,7 @@ Result scalp_make_mesh(Mesh *mesh, ScalpShape shape, uint32_t rings, Error *erro
     }
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         uint32_t ring = v == 0 ? 0 : 1 + (v - 1) / around;
-        double turn = 2.0 * PI * ((v - 1) % around) / around;
+        double turn = 2.0 * M_PI * ((v - 1) % around) / around;
         Double3 direction;
         direction_at(ring_angle(shape, ring, rings, turn), turn, direction);
         double radius = scalp_radius(shape, direction);

@@ -148,14 +148,14 @@ static uint32_t build(Surface *surface, uint32_t at, uint32_t begin, uint32_t en
     return build(surface, node->right, middle, end);
 }
 
-// --- Normals of edges and corners, which tell inside from outside.
+// --- Normals of edges and corners, by which a point is inside or outside.
 
 // An angle's size from its cosine, within 7e-5 (Abramowitz and Stegun 4.4.45).
 static double angle_of(double cosine)
 {
     double x = fmin(fabs(cosine), 1.0);
     double angle = sqrt(1.0 - x) * (1.5707288 + x * (-0.2121144 + x * (0.0742610 - 0.0187293 * x)));
-    return cosine < 0 ? 3.14159265358979323846 - angle : angle;
+    return cosine < 0 ? M_PI - angle : angle;
 }
 
 typedef struct Spot {
@@ -368,8 +368,8 @@ static void try_triangle(const Surface *surface, uint32_t triangle, const Double
     double3_copy(weight, nearest->weight);
 }
 
-// The normal that tells inside from outside: of the face, or of the edge or corner where weights
-// are 0.
+// The normal that separates inside from outside: of the face, or of the edge or corner where
+// weights are 0.
 static const double *find_side(const Surface *surface, const SurfacePoint *point, Double3 face)
 {
     int zeros = 0, zero = 0, full = 0;
