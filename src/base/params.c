@@ -126,14 +126,6 @@ const ParamInfo *params_find(const char *name)
     return NULL;
 }
 
-const ParamInfo *params_find_letter(char letter)
-{
-    for (size_t i = 0; letter && i < PARAM_COUNT; i++) {
-        if (PARAM_TABLE[i].letter == letter) return &PARAM_TABLE[i];
-    }
-    return NULL;
-}
-
 bool params_owned_by(const ParamInfo *info, const char *solver)
 {
     size_t length = strlen(solver);

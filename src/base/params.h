@@ -179,7 +179,6 @@ Result params_copy_section(SectionParams *to, const SectionParams *from, Error *
 
 // The row whose name is `name`, read with '-' and '_' as the same; NULL if there is none.
 const ParamInfo *params_find(const char *name);
-const ParamInfo *params_find_letter(char letter);
 
 // Whether the solver of this name (--algo) has the parameter.
 bool params_owned_by(const ParamInfo *info, const char *solver);

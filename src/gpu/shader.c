@@ -143,18 +143,6 @@ static Result compose(Composition *c, const char *file, const ShaderDefine *defi
     return append_file(c, file, strlen(file), error);
 }
 
-char *shader_compose(const char *file, const ShaderDefine *defines, Error *error)
-{
-    Composition composition = {0};
-    char *text = NULL;
-    if (compose(&composition, file, defines, error) == RESULT_OK) {
-        text = composition.text;
-        composition.text = NULL;
-    }
-    composition_destroy(&composition);
-    return text;
-}
-
 // The first line of a driver's log as "glsl/FILE:LINE: message". Mesa writes "0:12(5): error: ...",
 // NVIDIA "0(12) : ...".
 static Result report_log(const Composition *c, const char *file, char *log, Error *error)

@@ -41,10 +41,6 @@ Result shader_build_draw(GLuint *program, const char *vertex_file, const char *f
 // The folder of TRACTRIX_GLSL_DIR; NULL: the shaders are the program's own.
 const char *shader_folder(void);
 
-// The complete text of one stage as the driver gets it (malloc'ed; NULL if a file is missing, with
-// the error set). For tests and for checks by other compilers.
-char *shader_compose(const char *file, const ShaderDefine *defines, Error *error);
-
 // Compiler warnings of all programs built so far count as failures if this is on (the shader check
 // of `make check`).
 void shader_treat_warnings_as_errors(bool on);

@@ -88,7 +88,7 @@ void scalp_normal(ScalpShape shape, const Double3 direction, Double3 normal)
     double3_normalize(normal);
 }
 
-bool scalp_has_hair(ScalpShape shape, const Double3 direction, bool everywhere)
+static bool has_hair(ScalpShape shape, const Double3 direction, bool everywhere)
 {
     if (shape == SCALP_SPHERE) return everywhere || direction[1] > 0.2;
     // The hair line, from the nape past the ears to the forehead.
@@ -124,7 +124,7 @@ ScalpRoots scalp_roots_begin(ScalpShape shape, bool everywhere, uint32_t seed)
     for (int i = 0; i < GRID * GRID; i++) {
         Double3 direction;
         map_to_sphere((i / GRID + 0.5) / GRID, (i % GRID + 0.5) / GRID, direction);
-        if (scalp_has_hair(shape, direction, everywhere))
+        if (has_hair(shape, direction, everywhere))
             roots.heaviest = fmax(roots.heaviest, area_ratio(shape, direction));
     }
     roots.heaviest *= 1.05; // the grid may have missed the very top
@@ -145,7 +145,7 @@ void scalp_roots_next(ScalpRoots *roots, Double3 direction)
         }
         roots->next++;
         map_to_sphere(point[0], point[1], direction);
-        if (!scalp_has_hair(roots->shape, direction, roots->everywhere)) continue;
+        if (!has_hair(roots->shape, direction, roots->everywhere)) continue;
         if (point[2] * roots->heaviest <= area_ratio(roots->shape, direction)) return;
     }
 }

@@ -20,10 +20,6 @@ double scalp_radius(ScalpShape shape, const Double3 direction);
 // Normal of unit length, outwards, of the surface in a direction of unit length.
 void scalp_normal(ScalpShape shape, const Double3 direction, Double3 normal);
 
-// Where hair grows in a direction of unit length: the sphere's upper part (y > 0.2 of the radius)
-// or all of it (`everywhere`), the head above its hair line.
-bool scalp_has_hair(ScalpShape shape, const Double3 direction, bool everywhere);
-
 // Directions of roots, one after the other: even over the area, and so is any number of them from
 // the first on.
 typedef struct ScalpRoots {
@@ -34,7 +30,8 @@ typedef struct ScalpRoots {
     uint64_t next;
 } ScalpRoots;
 
-// `everywhere` as in scalp_has_hair. The same seed gives the same roots.
+// Hair grows on the sphere's upper part (y > 0.2 of the radius) or all of it (`everywhere`), and on
+// the head above its hair line. The same seed gives the same roots.
 ScalpRoots scalp_roots_begin(ScalpShape shape, bool everywhere, uint32_t seed);
 // The next root's direction, of unit length.
 void scalp_roots_next(ScalpRoots *roots, Double3 direction);

@@ -14,7 +14,8 @@ struct SurfaceNode {
 
 // --- Triangles.
 
-void surface_corners(const Mesh *mesh, uint32_t triangle, Double3 corner[3])
+// The places of a triangle's corners.
+static void find_corners(const Mesh *mesh, uint32_t triangle, Double3 corner[3])
 {
     for (int k = 0; k < 3; k++)
         double3_from_float(mesh->position[mesh->triangle[triangle][k]], corner[k]);
@@ -23,7 +24,7 @@ void surface_corners(const Mesh *mesh, uint32_t triangle, Double3 corner[3])
 double surface_triangle(const Mesh *mesh, uint32_t triangle, Double3 normal)
 {
     Double3 corner[3], u, v;
-    surface_corners(mesh, triangle, corner);
+    find_corners(mesh, triangle, corner);
     double3_subtract(corner[1], corner[0], u);
     double3_subtract(corner[2], corner[0], v);
     double3_cross(u, v, normal);
@@ -34,7 +35,7 @@ SurfacePoint surface_at(const Surface *surface, uint32_t triangle, const Double3
 {
     SurfacePoint point = {.triangle = triangle};
     Double3 corner[3];
-    surface_corners(surface->mesh, triangle, corner);
+    find_corners(surface->mesh, triangle, corner);
     double3_copy(weight, point.weight);
     for (int k = 0; k < 3; k++) double3_add_scaled(point.place, weight[k], corner[k]);
     return point;
@@ -72,7 +73,7 @@ bool surface_uv_axes(const Surface *surface, const SurfacePoint *point, Double3 
     Double3 corner[3], edge[2];
     double f[2][2], uv[2];
     if (!surface_uv(surface, point, uv)) return false;
-    surface_corners(mesh, point->triangle, corner);
+    find_corners(mesh, point->triangle, corner);
     const uint32_t *index = mesh->triangle_uv[point->triangle];
     for (int k = 0; k < 2; k++) {
         double3_subtract(corner[k + 1], corner[0], edge[k]);
@@ -124,7 +125,7 @@ static void set_box(const Surface *surface, SurfaceNode *node)
     }
     for (uint32_t i = node->begin; i < node->end; i++) {
         Double3 corner[3];
-        surface_corners(surface->mesh, surface->triangle[i], corner);
+        find_corners(surface->mesh, surface->triangle[i], corner);
         for (int k = 0; k < 9; k++) {
             node->low[k % 3] = fmin(node->low[k % 3], corner[k / 3][k % 3]);
             node->high[k % 3] = fmax(node->high[k % 3], corner[k / 3][k % 3]);
@@ -224,7 +225,7 @@ static void join_edges(Surface *surface, Edge *edges, uint32_t count)
 static void add_corners(Surface *surface, const uint32_t *same, uint32_t t)
 {
     Double3 corner[3], normal, a, b;
-    surface_corners(surface->mesh, t, corner);
+    find_corners(surface->mesh, t, corner);
     surface_triangle(surface->mesh, t, normal);
     for (int k = 0; k < 3; k++) {
         double3_subtract(corner[(k + 1) % 3], corner[k], a);
@@ -319,7 +320,7 @@ static double nearest_on_triangle(const Mesh *mesh, uint32_t triangle, const Dou
                                   Double3 weight)
 {
     Double3 corner[3], u, v, w, n, cross;
-    surface_corners(mesh, triangle, corner);
+    find_corners(mesh, triangle, corner);
     double3_subtract(corner[1], corner[0], u);
     double3_subtract(corner[2], corner[0], v);
     double3_subtract(p, corner[0], w);

@@ -33,9 +33,6 @@ typedef struct SurfacePoint {
 Result surface_create(Surface *surface, const Mesh *mesh, const char *name, Error *error);
 void surface_destroy(Surface *surface);
 
-// The places of a triangle's corners.
-void surface_corners(const Mesh *mesh, uint32_t triangle, Double3 corner[3]);
-
 // Twice the area of a triangle of the mesh, and its unit normal ({0, 0, 0} where that is 0).
 double surface_triangle(const Mesh *mesh, uint32_t triangle, Double3 normal);
 

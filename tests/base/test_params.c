@@ -60,19 +60,16 @@ static void every_default_is_valid_and_prints_as_the_table_has_it(void **state)
     destroy(&params);
 }
 
-static void rows_are_found_by_field_flag_and_letter_and_names_are_unique(void **state)
+static void rows_are_found_by_field_and_flag_and_names_are_unique(void **state)
 {
     (void)state;
     for (size_t i = 0; i < PARAM_COUNT; i++) {
         const ParamInfo *info = &PARAM_TABLE[i];
         assert_ptr_equal(params_find(info->name), info);
-        if (info->letter) assert_ptr_equal(params_find_letter(info->letter), info);
     }
     assert_ptr_equal(params_find("camera-up"), params_find("camera_up"));
     assert_null(params_find("camera"));
     assert_null(params_find(""));
-    assert_null(params_find_letter('?'));
-    assert_null(params_find_letter(0));
 }
 
 static void groups_stand_together_and_texts_fit_their_place(void **state)
@@ -299,7 +296,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_default_is_valid_and_prints_as_the_table_has_it),
-        cmocka_unit_test(rows_are_found_by_field_flag_and_letter_and_names_are_unique),
+        cmocka_unit_test(rows_are_found_by_field_and_flag_and_names_are_unique),
         cmocka_unit_test(groups_stand_together_and_texts_fit_their_place),
         cmocka_unit_test(values_print_in_their_shortest_form_and_read_back),
         cmocka_unit_test(floats_read_back_to_the_same_bits),
