@@ -186,7 +186,7 @@ static Result try_shadows(Renderer *renderer, Error *error)
         TRY(base_layer_build_light(&renderer->base, options->shadow.kind, error));
         for (int area = 0; area < 3; ++area)
             TRY(base_layer_build(&renderer->base, (BaseArea)area, options->floor.kind,
-                                  options->shadow.kind, error));
+                                 options->shadow.kind, error));
     }
     for (unsigned variant = 0; variant < CULL_VARIANTS && renderer->raster == RASTER_BLOCKS;
          ++variant)
