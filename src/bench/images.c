@@ -6,7 +6,7 @@
 #include "draw/renderer.h"
 #include "gen/strands_make.h"
 #include "scene/outline.h"
-#include "scene/scene_quality.h"
+#include "scene/scene.h"
 #include "strands/paint.h"
 #include "strands/strands_read.h"
 #include "strands/strands_resample.h"
@@ -134,8 +134,8 @@ static Result find_manner(const Stage *stage, const BenchScheme *scheme, Manner 
                           Error *error)
 {
     *manner = (Manner){stage->scene.run, stage->scene.sections[0].params};
-    TRY(quality_apply(scheme->quality, SCOPE_RUN, &manner->run, error));
-    TRY(quality_apply(scheme->quality, SCOPE_SECTION, &manner->material, error));
+    TRY(scene_apply_quality(scheme->quality, SCOPE_RUN, &manner->run, error));
+    TRY(scene_apply_quality(scheme->quality, SCOPE_SECTION, &manner->material, error));
     manner->run.raster = scheme->raster;
     if (scheme->oit != OIT_AUTO) manner->run.oit = scheme->oit;
     if (scheme->layers) manner->run.oit_layers = scheme->layers;

@@ -1,14 +1,158 @@
 // SPDX-License-Identifier: MIT
 #include "convert/convert_input.h"
 
+#include "base/reader.h"
 #include "strands/strands.h"
 #include "strands/strands_edit.h"
 
+#include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 enum { USUAL_FPS = 60 };
+
+// --- Caches.
+
+static Result refuse_cache(const CacheStrands *strands, const char *what, Error *error)
+{
+    return error_set(error, RESULT_BAD_INPUT, "%s: %s", strands->cache.file.path, what);
+}
+
+static Result read_fps(CacheStrands *strands, Error *error)
+{
+    const Bytes *text = &strands->cache.scene;
+    json_t *scene = json_loadb((const char *)text->data, text->size, 0, NULL);
+    strands->fps = json_number_value(json_object_get(scene, "fps"));
+    json_decref(scene);
+    return strands->fps > 0 ? RESULT_OK : refuse_cache(strands, "its scene has no fps", error);
+}
+
+// --- The hair: of each section runs of strands of equal vertex counts, then the strands' numbers
+// in their file, in the order of the runs. A first pass counts, a second one places.
+
+typedef struct Counts {
+    uint64_t strands, vertices;
+    bool good;
+} Counts;
+
+static void count_section(Reader *reader, Counts *counts)
+{
+    uint32_t strands = reader_read_u32(reader, "strands"), in_runs = 0;
+    reader_read_u32(reader, "a checksum");
+    uint32_t runs = reader_read_u32(reader, "runs");
+    for (uint32_t i = 0; i < runs && reader_ok(reader); ++i) {
+        uint32_t size = reader_read_u32(reader, "vertices"), count = reader_read_u32(reader, "");
+        counts->vertices += (uint64_t)size * count;
+        counts->good = counts->good && size >= 2 && count <= strands - in_runs;
+        in_runs += count;
+    }
+    counts->strands += strands;
+    counts->good = counts->good && in_runs == strands &&
+                   reader_check_array(reader, reader->at, strands, 4, "numbers");
+    if (counts->good) reader->at += 4 * (size_t)strands;
+}
+
+static Counts count_all(const Bytes *hair, uint32_t *sections)
+{
+    Reader reader = reader_begin_binary("", hair, NULL);
+    Counts counts = {.good = true};
+    *sections = reader_read_u32(&reader, "sections");
+    for (uint32_t i = 0; i < *sections && counts.good && reader_ok(&reader); ++i)
+        count_section(&reader, &counts);
+    counts.good = counts.good && reader_ok(&reader) && reader_left(&reader) == 0 &&
+                  counts.strands > 0 && counts.strands < UINT32_MAX && counts.vertices < UINT32_MAX;
+    return counts;
+}
+
+// `sizes` takes each strand's vertices at its place + 1, 0 where there is none yet. The section's
+// strands are first_strand and following.
+static bool place_section(CacheStrands *to, Reader *reader, uint32_t section,
+                          uint32_t *first_strand, uint32_t *sizes)
+{
+    uint32_t strands = reader_read_u32(reader, ""), place = *first_strand;
+    reader_read_u32(reader, "");
+    uint32_t runs = reader_read_u32(reader, "");
+    size_t numbers_at = reader->at + 8 * (size_t)runs;
+    for (uint32_t i = 0; i < runs; ++i) {
+        uint32_t size = reader_read_u32(reader, ""), count = reader_read_u32(reader, "");
+        Reader numbers = *reader;
+        numbers.at = numbers_at + 4 * (size_t)(place - *first_strand);
+        for (uint32_t k = 0; k < count; ++k, ++place) {
+            uint32_t number = reader_read_u32(&numbers, "");
+            if (number >= strands || sizes[*first_strand + number + 1]) return false;
+            to->order[place] = *first_strand + number;
+            to->section[place] = section;
+            sizes[*first_strand + number + 1] = size;
+        }
+    }
+    reader->at = numbers_at + 4 * (size_t)strands;
+    *first_strand += strands;
+    return true;
+}
+
+static Result place_all(CacheStrands *strands, Error *error)
+{
+    Reader reader = reader_begin_binary("", &strands->cache.hair, NULL);
+    uint32_t *first = strands->layout.first, strand = 0;
+    reader_read_u32(&reader, "");
+    for (uint32_t i = 0; i < strands->section_count; ++i)
+        if (!place_section(strands, &reader, i, &strand, first))
+            return refuse_cache(strands, "its hair has a strand twice", error);
+    for (uint32_t s = 0; s < strands->layout.strand_count; ++s) first[s + 1] += first[s];
+    return RESULT_OK;
+}
+
+static Result read_hair(CacheStrands *strands, Error *error)
+{
+    Counts counts = count_all(&strands->cache.hair, &strands->section_count);
+    if (!counts.good)
+        return refuse_cache(strands, "its hair is not what docs/cache.md says", error);
+    TRY(strands_create(&strands->layout, (uint32_t)counts.strands, (uint32_t)counts.vertices,
+                       error));
+    strands->order = malloc(counts.strands * sizeof *strands->order);
+    strands->section = malloc(counts.strands * sizeof *strands->section);
+    strands->positions = malloc(counts.vertices * sizeof *strands->positions);
+    if (strands->order && strands->section && strands->positions) return place_all(strands, error);
+    return error_set(error, RESULT_FAILED, "%s: no memory for a frame", strands->cache.file.path);
+}
+
+static void close_cache(CacheStrands *strands)
+{
+    cache_file_close(&strands->cache);
+    strands_destroy(&strands->layout);
+    free(strands->order);
+    free(strands->section);
+    free(strands->positions);
+    *strands = (CacheStrands){0};
+}
+
+static Result open_cache(CacheStrands *strands, const char *path, Error *error)
+{
+    *strands = (CacheStrands){0};
+    Result result = cache_file_open(&strands->cache, path, error);
+    THEN(result, read_fps(strands, error));
+    THEN(result, read_hair(strands, error));
+    if (result != RESULT_OK) close_cache(strands);
+    return result;
+}
+
+static Result read_cache(CacheStrands *strands, int frame, Strands *read, Error *error)
+{
+    const Strands *layout = &strands->layout;
+    float head[CACHE_HEAD_FLOATS], (*at)[3] = strands->positions;
+    *read = (Strands){0};
+    Result result = cache_file_read(&strands->cache, frame, head, at, layout->vertex_count, error);
+    THEN(result, strands_create(read, layout->strand_count, layout->vertex_count, error));
+    if (result != RESULT_OK) return result;
+    memcpy(read->first, layout->first, ((size_t)layout->strand_count + 1) * sizeof *read->first);
+    for (uint32_t i = 0; i < layout->strand_count; ++i) {
+        uint32_t s = strands->order[i], size = strands_size(layout, s);
+        memcpy(read->position[layout->first[s]], at, size * sizeof *at);
+        at += size;
+    }
+    return RESULT_OK;
+}
 
 // --- Frames.
 
@@ -66,14 +210,14 @@ Result convert_input_open(ConvertInput *input, Error *error)
     }
     input->reports = calloc((size_t)input->path_count + 1, sizeof *input->reports);
     if (!input->reports) return error_set(error, RESULT_FAILED, "no memory for reports");
-    if (input->cached) result = cache_strands_open(&input->cache, input->paths[0], error);
+    if (input->cached) result = open_cache(&input->cache, input->paths[0], error);
     if (input->numbered) result = format_target(&input->pattern, input->paths[0], error);
     return result == RESULT_OK ? choose_frames(input, error) : result;
 }
 
 void convert_input_close(ConvertInput *input)
 {
-    cache_strands_close(&input->cache);
+    close_cache(&input->cache);
     target_destroy(&input->pattern);
     free(input->reports);
     *input = (ConvertInput){0};
@@ -81,7 +225,7 @@ void convert_input_close(ConvertInput *input)
 
 // --- Reading.
 
-static void tell(const ConvertInput *input, const StrandsReport *report, const char *path)
+static void report_mended(const ConvertInput *input, const StrandsReport *report, const char *path)
 {
     if (!input->messages) return;
     strands_report_print_mended(report, path, input->messages);
@@ -93,9 +237,8 @@ static Result read_file(ConvertInput *input, const char *path, int file, Strands
                         Error *error)
 {
     StrandsReport report;
-    Result result = strands_read(strands, path, &input->options, &report, error);
-    if (result != RESULT_OK) return result;
-    tell(input, &report, path);
+    TRY(strands_read(strands, path, &input->options, &report, error));
+    report_mended(input, &report, path);
     input->features |= strands_features(strands);
     if (input->reports[file].strands == 0) input->reports[file] = report;
     return RESULT_OK;
@@ -121,8 +264,7 @@ static Result read_files(ConvertInput *input, Strands *strands, Error *error)
              : error_set(error, RESULT_FAILED, "no memory for %d files", input->path_count);
     for (int i = 0; i < input->path_count && result == RESULT_OK; ++i)
         result = read_file(input, input->paths[i], i, &sets[i], error);
-    if (result == RESULT_OK)
-        result = strands_join(strands, sets, (uint32_t)input->path_count, error);
+    THEN(result, strands_join(strands, sets, (uint32_t)input->path_count, error));
     for (int i = 0; sets && i < input->path_count; ++i) strands_destroy(&sets[i]);
     free(sets);
     return result;
@@ -131,7 +273,70 @@ static Result read_files(ConvertInput *input, Strands *strands, Error *error)
 Result convert_input_read(ConvertInput *input, int frame, Strands *strands, Error *error)
 {
     *strands = (Strands){0};
-    if (input->cached) return cache_strands_read(&input->cache, frame, strands, error);
+    if (input->cached) return read_cache(&input->cache, frame, strands, error);
     if (input->numbered) return read_numbered(input, frame, strands, error);
     return read_files(input, strands, error);
+}
+
+// --- Text and JSON.
+
+static void print_frames(const ConvertInput *input, FILE *stream)
+{
+    int count = convert_input_count(input);
+    fprintf(stream, "  frames    %d, %d to %d", count, input->first, input->last);
+    if (input->every > 1) fprintf(stream, " by %d", input->every);
+    fprintf(stream, ", %g a second\n", input->fps);
+}
+
+void convert_input_print(const ConvertInput *input, FILE *stream)
+{
+    const Strands *layout = &input->cache.layout;
+    if (input->cached) {
+        fprintf(stream, "%s: a cache\n  strands   %u of %u section%s\n  vertices  %u\n",
+                input->paths[0], layout->strand_count, input->cache.section_count,
+                input->cache.section_count == 1 ? "" : "s", layout->vertex_count);
+    }
+    for (int i = 0; i < input->path_count && !input->cached; ++i)
+        strands_report_print(&input->reports[i], input->paths[i], stream);
+    if (convert_input_moves(input)) print_frames(input, stream);
+}
+
+static json_t *defects_to_json(const StrandsReport *report, const char *path)
+{
+    static const char *const names[DEFECT_KINDS] = {"not_finite", "too_short",  "coincident",
+                                                    "attribute",  "over_limit", "unread"};
+    json_t *list = json_array();
+    for (int kind = 0; kind < DEFECT_KINDS; ++kind) {
+        const Defect *defect = &report->defects[kind];
+        char text[1024];
+        if (!defect->count) continue;
+        strands_report_describe(report, path, (DefectKind)kind, true, text, sizeof text);
+        json_array_append_new(list, json_pack("{ss si sI ss}", "kind", names[kind], "count",
+                                              defect->count, "first_place",
+                                              (json_int_t)defect->first_place, "text", text));
+    }
+    return list;
+}
+
+static json_t *report_to_json(const StrandsReport *report, const char *path)
+{
+    return json_pack("{ss ss sf si si si si sf sb sb si si so}", "file", path, "kind",
+                     FORMAT_TABLE[report->kind]->name, "version", (double)report->version,
+                     "declared_strands", report->declared_strands, "declared_vertices",
+                     report->declared_vertices, "strands", report->strands, "vertices",
+                     report->vertices, "unit_m", (double)report->unit_used, "unit_guessed",
+                     report->unit_guessed, "shuffled", report->shuffled, "empty_roots",
+                     report->empty_roots, "shared_roots", report->shared_roots, "defects",
+                     defects_to_json(report, path));
+}
+
+json_t *convert_input_to_json(const ConvertInput *input)
+{
+    json_t *list = json_array();
+    if (input->cached)
+        json_array_append_new(list, json_pack("{ss ss si}", "file", input->paths[0], "kind",
+                                              "cache", "sections", input->cache.section_count));
+    for (int i = 0; i < input->path_count && !input->cached; ++i)
+        json_array_append_new(list, report_to_json(&input->reports[i], input->paths[i]));
+    return list;
 }

@@ -1,18 +1,34 @@
 // SPDX-License-Identifier: MIT
 // What tractrix-convert reads: hair files side by side, numbered files as frames, or a cache.
+//
+// This room is tractrix-convert: it takes in hair files and caches (here), edits the strands in the
+// order of the command line (convert_steps.h), measures them (figures.h) and writes them in any
+// format of the table, still or animated (convert_output.h).
 #pragma once
 
 #include "base/target.h"
-#include "convert/cache_strands.h"
+#include "run/cache.h"
 #include "strands/strands_read.h"
 
+#include <jansson.h>
 #include <stdio.h>
+
+// Frames of a cache as strands, in the order of the files that were simulated.
+typedef struct CacheStrands {
+    CacheFile cache;
+    Strands layout;    // counts and `first`, of all sections one behind the other
+    uint32_t *order;   // [strand_count] which strand each of the cache is
+    uint32_t *section; // [strand_count] which section each strand is of
+    uint32_t section_count;
+    double fps;            // frames a second
+    float (*positions)[3]; // of a frame, in the cache's order
+} CacheStrands;
 
 typedef struct ConvertInput {
     char **paths; // not owned
     int path_count;
     StrandsReadOptions options;
-    FILE *messages;        // what was mended and so on; NULL: not told
+    FILE *messages;        // reports what was mended; NULL: nowhere
     bool cached, numbered; // else the files are one frame
     CacheStrands cache;
     Target pattern;
@@ -40,5 +56,11 @@ static inline int convert_input_count(const ConvertInput *input)
 }
 
 // A frame's strands, of all files one behind the other. Errors as strands_read and
-// cache_strands_read; free the strands in any case.
+// cache_file_read; free the strands in any case.
 Result convert_input_read(ConvertInput *input, int frame, Strands *strands, Error *error);
+
+// Prints what the input is: the report of each file, or the cache's frames.
+void convert_input_print(const ConvertInput *input, FILE *stream);
+
+// The same as JSON; NULL when memory is short.
+json_t *convert_input_to_json(const ConvertInput *input);

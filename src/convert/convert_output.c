@@ -29,14 +29,13 @@ static Result parse_target(ConvertOutput *output, Error *error)
 
 Result convert_output_open(ConvertOutput *output, int frame_count, Error *error)
 {
-    Result result = parse_target(output, error);
-    if (result == RESULT_OK && output->target.kind == TARGET_STILL && frame_count > 1)
-        result = error_set(error, RESULT_USAGE,
-                           "%s: one name for %d frames, put the frame number into it, x_%%04d%s, "
-                           "or write .usda",
-                           output->path, frame_count, suffix_of(output->path));
-    if (result == RESULT_OK) result = target_prepare(&output->target, error);
-    return result;
+    TRY(parse_target(output, error));
+    if (output->target.kind == TARGET_STILL && frame_count > 1)
+        return error_set(error, RESULT_USAGE,
+                         "%s: one name for %d frames, put the frame number into it, x_%%04d%s, "
+                         "or write .usda",
+                         output->path, frame_count, suffix_of(output->path));
+    return target_prepare(&output->target, error);
 }
 
 void convert_output_close(ConvertOutput *output)
@@ -90,8 +89,7 @@ static Result open_usd(ConvertOutput *output, Strands *strands, Error *error)
     UsdOptions options;
     output->still = *strands;
     *strands = (Strands){0};
-    Result result = describe_usd(output, &output->still, output->animated, &options, error);
-    if (result != RESULT_OK) return result;
+    TRY(describe_usd(output, &output->still, output->animated, &options, error));
     return usd_writer_open(&output->usd, output->target.before, &output->still, &options, error);
 }
 
@@ -105,8 +103,7 @@ static Result add_usd(ConvertOutput *output, int frame, Strands *strands, Error 
 {
     bool begins = !output->usd.strands;
     if (begins) {
-        Result result = open_usd(output, strands, error);
-        if (result != RESULT_OK) return result;
+        TRY(open_usd(output, strands, error));
     } else if (!same_strands(&output->still, strands)) {
         return error_set(error, RESULT_FAILED,
                          "%s: frame %d has other strands than frame %d; in one file they must be "
@@ -123,12 +120,12 @@ static Result write_file(ConvertOutput *output, int frame, const Strands *strand
 {
     UsdOptions options;
     char *name = target_name_frame(&output->target, frame);
-    Result result =
-        name ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for the name of a frame");
-    if (result == RESULT_OK && output->kind == FORMAT_USD) {
+    if (!name) return error_set(error, RESULT_FAILED, "no memory for the name of a frame");
+    Result result = RESULT_OK;
+    if (output->kind == FORMAT_USD) {
         result = describe_usd(output, strands, false, &options, error);
-        if (result == RESULT_OK) result = usd_write_still(name, strands, &options, error);
-    } else if (result == RESULT_OK) {
+        THEN(result, usd_write_still(name, strands, &options, error));
+    } else {
         result = format_write(name, output->kind, strands, error);
     }
     output->files += result == RESULT_OK;

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 // tractrix-convert: describes hair files, edits hair, and writes it in other formats.
 #include "base/interrupt.h"
+#include "base/json.h"
 #include "base/options.h"
 #include "base/params.h"
 #include "base/program.h"
 #include "base/progress.h"
 #include "convert/convert_input.h"
 #include "convert/convert_output.h"
-#include "convert/convert_report.h"
 #include "convert/convert_steps.h"
+#include "convert/figures.h"
 #include "strands/strands.h"
 
 #include <stdlib.h>
@@ -122,7 +123,7 @@ typedef struct Job {
     ConvertSteps steps;
     ConvertInput input;
     ConvertOutput output;
-    StrandsFigures figures;
+    Figures figures;
 } Job;
 
 static Result parse_unit(const char *name, const char *text, float *metres, Error *error)
@@ -228,10 +229,9 @@ static Result do_frame(Job *job, int frame, Error *error)
     if (result == RESULT_OK && first)
         job->output.lost = job->input.features & ~strands_features(&strands);
     THEN(result, convert_steps_apply(&job->steps, &strands, error));
-    if (result == RESULT_OK && first && (command->stats || command->json))
-        result = strands_figures_measure(&job->figures, &strands, error);
-    if (result == RESULT_OK && command->output)
-        result = convert_output_add(&job->output, frame, &strands, error);
+    if (first && (command->stats || command->json))
+        THEN(result, figures_measure(&job->figures, &strands, error));
+    if (command->output) THEN(result, convert_output_add(&job->output, frame, &strands, error));
     strands_destroy(&strands);
     return result;
 }
@@ -250,12 +250,11 @@ static Result do_frames(Job *job, Error *error)
         progress_update(&progress, done + 1);
     }
     progress_clear(&progress);
-    if (result == RESULT_OK && job->command.output)
-        result = convert_output_finish(&job->output, error);
+    if (job->command.output) THEN(result, convert_output_finish(&job->output, error));
     return result;
 }
 
-static void report_output(const Job *job)
+static void print_output(const Job *job)
 {
     const ConvertOutput *output = &job->output;
     const char *kind = FORMAT_TABLE[output->kind]->name;
@@ -268,18 +267,42 @@ static void report_output(const Job *job)
         printf("%s: %s\n", output->path, kind);
 }
 
+static json_t *output_to_json(const ConvertOutput *output)
+{
+    char lost[300];
+    strands_features_describe(output->lost, lost, sizeof lost);
+    return json_pack("{ss ss si ss}", "file", output->path, "kind",
+                     FORMAT_TABLE[output->kind]->name, "files", output->files, "left_out", lost);
+}
+
+// `output`: NULL if none is written.
+static Result write_json(const char *path, const ConvertInput *input, const Figures *figures,
+                         const ConvertOutput *output, Error *error)
+{
+    json_t *root = json_pack("{so so}", "input", convert_input_to_json(input), "hair",
+                             figures_to_json(figures));
+    if (convert_input_moves(input))
+        json_object_set_new(root, "frames",
+                            json_pack("{si si si sf}", "first", input->first, "last", input->last,
+                                      "every", input->every, "fps", input->fps));
+    if (output) json_object_set_new(root, "output", output_to_json(output));
+    Result result = json_write_file(root, path, error);
+    json_decref(root);
+    return result;
+}
+
 static Result run(Job *job, Error *error)
 {
     const Command *command = &job->command;
+    bool only_reports = !command->output && !command->stats && !command->json;
     TRY(open_files(job, error));
     TRY(do_frames(job, error));
-    if (!command->quiet && !command->output && !command->stats && !command->json)
-        convert_print_input(&job->input, stdout);
-    if (!command->quiet && command->output) report_output(job);
-    if (command->stats) convert_print_figures(&job->figures, stdout);
+    if (!command->quiet && only_reports) convert_input_print(&job->input, stdout);
+    if (!command->quiet && command->output) print_output(job);
+    if (command->stats) figures_print(&job->figures, stdout);
     if (!command->json) return RESULT_OK;
-    return convert_write_json(command->json, &job->input, &job->figures,
-                              command->output ? &job->output : NULL, error);
+    return write_json(command->json, &job->input, &job->figures,
+                      command->output ? &job->output : NULL, error);
 }
 
 int main(int argc, char **argv)
@@ -292,6 +315,6 @@ int main(int argc, char **argv)
     if (result == RESULT_OK && !done) result = run(&job, &error);
     convert_output_close(&job.output);
     convert_input_close(&job.input);
-    strands_figures_destroy(&job.figures);
+    figures_destroy(&job.figures);
     return program_end("tractrix-convert", result, &error);
 }

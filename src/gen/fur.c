@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gen/fur.h"
 
-#include "gen/fur_cut.h"
 #include "gen/fur_roots.h"
+#include "gen/fur_weave.h"
 
 #include <stdlib.h>
 
@@ -23,7 +23,7 @@ static void farm_destroy(Farm *farm)
     surface_destroy(&farm->surface);
     fur_map_destroy(&farm->density);
     fur_map_destroy(&farm->length);
-    fur_comb_destroy(&farm->comb);
+    fur_map_destroy_comb(&farm->comb);
     fur_guides_destroy(&farm->guides);
     free(farm->roots);
     free(farm->vertices);
@@ -33,14 +33,12 @@ static Result read_maps(Farm *farm, const Mesh *mesh, Error *error)
 {
     const FurRecipe *recipe = farm->recipe;
     farm->density.number = farm->length.number = 1.0;
-    Result result = RESULT_OK;
     if (recipe->density)
-        result = fur_map_create(&farm->density, "--density", recipe->density, mesh, error);
-    if (result == RESULT_OK && recipe->length_map)
-        result = fur_map_create(&farm->length, "--length-map", recipe->length_map, mesh, error);
-    if (result == RESULT_OK && recipe->comb)
-        result = fur_comb_create(&farm->comb, "--comb", recipe->comb, mesh, error);
-    return result;
+        TRY(fur_map_create(&farm->density, "--density", recipe->density, mesh, error));
+    if (recipe->length_map)
+        TRY(fur_map_create(&farm->length, "--length-map", recipe->length_map, mesh, error));
+    if (recipe->comb) TRY(fur_map_create_comb(&farm->comb, "--comb", recipe->comb, mesh, error));
+    return RESULT_OK;
 }
 
 static Result count_strands(Farm *farm, Error *error)
@@ -49,9 +47,7 @@ static Result count_strands(Farm *farm, Error *error)
     const uint32_t seed = (uint32_t)recipe->seed;
     double area, count = recipe->count;
     if (recipe->per_cm2 > 0.0) {
-        Result result =
-            fur_roots_measure(&farm->surface, &farm->density, seed, farm->name, &area, error);
-        if (result != RESULT_OK) return result;
+        TRY(fur_roots_measure(&farm->surface, &farm->density, seed, farm->name, &area, error));
         count = floor(recipe->per_cm2 * area * 1e4 + 0.5);
     }
     if (!(count >= 1.0 && count <= 2e6 && count * recipe->vertices < (double)(1u << 30)))
@@ -72,25 +68,20 @@ static Result plant(Farm *farm, Error *error)
     farm->vertices = malloc((size_t)recipe->vertices * sizeof *farm->vertices);
     if (!farm->roots || !farm->vertices)
         return error_set(error, RESULT_FAILED, "no memory for %u roots", farm->count);
-    Result result = fur_roots_make(farm->roots, farm->count, &farm->surface, &farm->density, seed,
-                                   farm->name, error);
-    if (result == RESULT_OK)
-        result = fur_roots_order(farm->roots, farm->count, guides, seed, error);
     uint32_t clumps = recipe->clumps > 0 ? (uint32_t)recipe->clumps : guides;
-    if (result == RESULT_OK && clumps < guides)
-        result = fur_roots_order(farm->roots, guides, clumps, seed, error);
-    if (result == RESULT_OK)
-        result = fur_guides_create(&farm->guides, recipe, &farm->surface, &farm->comb, farm->roots,
-                                   guides, error);
-    return result;
+    TRY(fur_roots_make(farm->roots, farm->count, &farm->surface, &farm->density, seed, farm->name,
+                       error));
+    TRY(fur_roots_order(farm->roots, farm->count, guides, seed, error));
+    if (clumps < guides) TRY(fur_roots_order(farm->roots, guides, clumps, seed, error));
+    return fur_guides_create(&farm->guides, recipe, &farm->surface, &farm->comb, farm->roots,
+                             guides, error);
 }
 
 static Result make_room(Farm *farm, Strands *strands, Error *error)
 {
     const FurRecipe *recipe = farm->recipe;
     uint32_t vertices = (uint32_t)recipe->vertices;
-    Result result = strands_create(strands, farm->count, farm->count * vertices, error);
-    if (result != RESULT_OK) return result;
+    TRY(strands_create(strands, farm->count, farm->count * vertices, error));
     if (farm->surface.mesh->uv)
         strands->strand_uv = calloc(farm->count, sizeof *strands->strand_uv);
     if (recipe->thickness > 0.0)
@@ -146,8 +137,8 @@ static Result grow_all(Farm *farm, Strands *strands, FurReport *report, Error *e
         surface_normal(&farm->surface, root, normal);
         fur_weave_create(&weave, recipe, &farm->guides, s < farm->guides.count ? s : FUR_NO_GUIDE,
                          root, normal, length, &random);
-        report->stuck += fur_cut(&weave, &farm->surface, root, recipe->root_lift, length,
-                                 farm->vertices, (uint32_t)recipe->vertices);
+        report->stuck += fur_weave_cut(&weave, &farm->surface, root, recipe->root_lift, length,
+                                       farm->vertices, (uint32_t)recipe->vertices);
         store(farm, strands, grown++, root);
     }
     strands->strand_count = grown;
@@ -163,12 +154,12 @@ Result fur_grow(Strands *strands, const FurRecipe *recipe, const Mesh *mesh, con
     *strands = (Strands){0};
     *report = (FurReport){0};
     Result result = fur_recipe_check(recipe, error);
-    if (result == RESULT_OK) result = surface_create(&farm.surface, mesh, name, error);
-    if (result == RESULT_OK) result = read_maps(&farm, mesh, error);
-    if (result == RESULT_OK) result = count_strands(&farm, error);
-    if (result == RESULT_OK) result = plant(&farm, error);
-    if (result == RESULT_OK) result = make_room(&farm, strands, error);
-    if (result == RESULT_OK) result = grow_all(&farm, strands, report, error);
+    THEN(result, surface_create(&farm.surface, mesh, name, error));
+    THEN(result, read_maps(&farm, mesh, error));
+    THEN(result, count_strands(&farm, error));
+    THEN(result, plant(&farm, error));
+    THEN(result, make_room(&farm, strands, error));
+    THEN(result, grow_all(&farm, strands, report, error));
     report->guides = farm.guides.count;
     report->flat_triangles = farm.surface.flat_count;
     if (result != RESULT_OK) strands_destroy(strands);

@@ -31,7 +31,7 @@ typedef struct Shoot {
 static void set_first_direction(Shoot *shoot, const Double3 normal)
 {
     Double3 combed, direction = {0};
-    fur_comb_at(shoot->comb, shoot->surface, &shoot->under, normal, combed);
+    fur_map_comb_at(shoot->comb, shoot->surface, &shoot->under, normal, combed);
     double turns = shoot->recipe->lift_deg / 360.0;
     double3_add_scaled(direction, portable_sine(turns), normal);
     double3_add_scaled(direction, portable_cosine(turns), combed);
@@ -64,7 +64,7 @@ static void turn(Shoot *shoot, const Double3 at, double s)
     Double3 normal, combed, change = {0}, down = {0.0, -1.0, 0.0};
     surface_normal(shoot->surface, &shoot->under, normal);
     if (recipe->lie > 0.0) {
-        fur_comb_at(shoot->comb, shoot->surface, &shoot->under, normal, combed);
+        fur_map_comb_at(shoot->comb, shoot->surface, &shoot->under, normal, combed);
         double share = comb_share(recipe, s) * double3_length(combed);
         double high = fmax(shoot->height - shoot->goal, 0.0);
         double3_add_scaled(combed, -fmin(high / (2.0 * recipe->lie), 1.0), normal);

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/nearest.h"
-#include "gen/fur_comb.h"
+#include "gen/fur_map.h"
 #include "gen/fur_recipe.h"
 
 enum { FUR_STEPS = 72 }; // of a guide's line

@@ -12,7 +12,7 @@ static Result read_image(FurMap *map, const char *name, const char *path, const 
         for (int k = 0; k < 3; k++)
             if (!mesh->uv || mesh->triangle_uv[t][k] == MESH_NO_UV)
                 return error_set(error, RESULT_USAGE,
-                                 "%s %s: a picture needs texture coordinates, %s", name, path,
+                                 "%s %s: an image needs texture coordinates, %s", name, path,
                                  mesh->uv ? "which some of the mesh's triangles lack"
                                           : "which the mesh lacks");
     Bytes bytes;
@@ -81,8 +81,10 @@ static double evaluate(const FurMap *map, const Surface *surface, const SurfaceP
     return formula_evaluate_named(&map->formula, values);
 }
 
-double fur_map_channel(const FurMap *map, const Surface *surface, const SurfacePoint *point,
-                       int channel)
+// Of an image: a channel, 0 to 2, between 0 and 1, bilinear, as it stands in the file (sRGB or
+// not).
+static double read_channel(const FurMap *map, const Surface *surface, const SurfacePoint *point,
+                           int channel)
 {
     double uv[2];
     if (map->formula.text) return evaluate(map, surface, point);
@@ -93,9 +95,83 @@ double fur_map_channel(const FurMap *map, const Surface *surface, const SurfaceP
 
 double fur_map_at(const FurMap *map, const Surface *surface, const SurfacePoint *point)
 {
-    if (!map->image.pixels) return fur_map_channel(map, surface, point, 0);
+    if (!map->image.pixels) return read_channel(map, surface, point, 0);
     double sum = 0.0;
-    for (int channel = 0; channel < 3; channel++)
-        sum += fur_map_channel(map, surface, point, channel);
+    for (int channel = 0; channel < 3; channel++) sum += read_channel(map, surface, point, channel);
     return sum / 3.0;
+}
+
+// --- Combs.
+
+// Cuts the text at commas outside of parentheses; returns the number of parts.
+static int cut_text(char *text, char *part[3])
+{
+    int depth = 0, count = 1;
+    part[0] = text;
+    for (char *at = text; *at; at++) {
+        depth += (*at == '(') - (*at == ')');
+        if (*at != ',' || depth != 0) continue;
+        *at = 0;
+        if (count < 3) part[count] = at + 1;
+        count++;
+    }
+    return count;
+}
+
+Result fur_map_create_comb(FurComb *comb, const char *name, const char *text, const Mesh *mesh,
+                           Error *error)
+{
+    size_t length = strlen(text);
+    *comb = (FurComb){.combs = true};
+    comb->is_image = length > 4 && strcmp(text + length - 4, ".png") == 0;
+    if (comb->is_image) return fur_map_create(&comb->axis[0], name, text, mesh, error);
+    char *copy = strdup(text), *part[3];
+    Result result = copy ? RESULT_OK : error_set(error, RESULT_FAILED, "out of memory");
+    int count = copy ? cut_text(copy, part) : 0;
+    if (copy && count != 3)
+        result = error_set(error, RESULT_USAGE,
+                           "%s: expected X,Y,Z, each a number or a formula, or a .png, got '%s'",
+                           name, text);
+    for (int i = 0; i < 3 && result == RESULT_OK; i++)
+        result = fur_map_create(&comb->axis[i], name, part[i], mesh, error);
+    free(copy);
+    if (result != RESULT_OK) fur_map_destroy_comb(comb);
+    return result;
+}
+
+void fur_map_destroy_comb(FurComb *comb)
+{
+    for (int i = 0; i < 3; i++) fur_map_destroy(&comb->axis[i]);
+    *comb = (FurComb){0};
+}
+
+static void read_image_comb(const FurComb *comb, const Surface *surface, const SurfacePoint *point,
+                            Double3 vector)
+{
+    Double3 axis[2];
+    if (!surface_uv_axes(surface, point, axis[0], axis[1])) return;
+    for (int i = 0; i < 2; i++) {
+        double level = read_channel(&comb->axis[0], surface, point, i);
+        double share = 2.0 * level - 1.0;
+        // No level of 8 bits is a half: the two beside it are none.
+        double small = comb->axis[0].image.kind == IMAGE_8 ? 0.004 : 2e-5;
+        if (fabs(share) > small) double3_add_scaled(vector, share, axis[i]);
+    }
+}
+
+void fur_map_comb_at(const FurComb *comb, const Surface *surface, const SurfacePoint *point,
+                     const Double3 normal, Double3 direction)
+{
+    Double3 vector = {0};
+    if (comb->is_image)
+        read_image_comb(comb, surface, point, vector);
+    else
+        for (int i = 0; i < 3 && comb->combs; i++)
+            vector[i] = fur_map_at(&comb->axis[i], surface, point);
+    double length = double3_length(vector);
+    if (!isfinite(length)) memset(vector, 0, sizeof vector);
+    if (length > 1.0) double3_normalize(vector);
+    double3_flatten(vector, normal);
+    length = 4.0 * double3_length(vector);
+    for (int i = 0; i < 3; i++) direction[i] = 4.0 * vector[i] / fmax(length, 1.0);
 }

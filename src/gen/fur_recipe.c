@@ -40,3 +40,168 @@ Result fur_recipe_check(const FurRecipe *recipe, Error *error)
                          recipe->count, recipe->vertices);
     return RESULT_OK;
 }
+
+// --- The command line.
+
+// 0 or NULL where not given.
+typedef struct Command {
+    FurRecipe recipe;
+    GenOutput output;
+    double unit;
+    int up;
+} Command;
+
+#define AT(member)         offsetof(Command, recipe.member)
+#define AT_COMMAND(member) offsetof(Command, member)
+
+static const Option OPTIONS[] = {
+    GEN_OPTION_OUTPUT(AT_COMMAND(output.path)),
+    GEN_OPTION_FORMAT(AT_COMMAND(output.format)),
+    {"unit", 0, OPTION_REAL, AT_COMMAND(unit), "M", 1e-6, 1e6,
+     "metres per unit of the mesh [default 1]"},
+    {"up", 0, OPTION_WORD, AT_COMMAND(up), "y|z", 0, 0,
+     "axis of the mesh that points up [default y]"},
+    GEN_OPTION_SEED(AT(seed)),
+    GEN_OPTION_QUIET(AT_COMMAND(output.quiet)),
+    // Roots.
+    {"count", 'n', OPTION_WHOLE, AT(count), "N", 1, 2e6, "number of strands [default 4000]"},
+    {"per-cm2", 0, OPTION_REAL, AT(per_cm2), "N", 1e-6, 1e6,
+     "strands per square centimetre where the density is 1, instead of --count"},
+    {"density", 0, OPTION_STRING, AT(density), "MAP", 0, 0,
+     "relative density of the strands; 0: none"},
+    {"root-lift", 0, OPTION_REAL, AT(root_lift), "M", 1e-6, 1,
+     "height of the roots above the surface, and minimum height of all other vertices [default "
+     "0.0001]"},
+    {"vertices", 0, OPTION_WHOLE, AT(vertices), "N", 2, 1024, "vertices per strand [default 16]"},
+    // Form.
+    {"length", 0, OPTION_REAL, AT(length), "M", 1e-4, 100,
+     "length of the longest strand [default 0.03]"},
+    {"length-variation", 0, OPTION_REAL, AT(length_variation), "SHARE", 0, 0.99,
+     "strands are randomly shorter, by up to this share [default 0.3]"},
+    {"length-map", 0, OPTION_STRING, AT(length_map), "MAP", 0, 0, "factor of the length, 0 to 1"},
+    {"comb", 0, OPTION_STRING, AT(comb), "X,Y,Z|PNG", 0, 0,
+     "direction in which hair is combed, each coordinate a number or a formula; it is projected "
+     "onto the surface. Of an image, red is the direction along u, green along v"},
+    {"lift", 0, OPTION_REAL, AT(lift_deg), "DEG", 0, 90,
+     "angle between combed hair and the surface at the root [default 45]"},
+    {"lie", 0, OPTION_REAL, AT(lie), "M", 0, 100,
+     "distance over which hair bends down to lie on the surface, following the combed direction of "
+     "each place; 0: it keeps its direction [default 0]"},
+    {"comb-reach", 0, OPTION_REAL, AT(comb_reach), "M", 0, 100,
+     "distance from the root over which --lie acts; 0: the whole strand [default 0]"},
+    {"gravity-bend", 0, OPTION_REAL, AT(gravity_bend), "RAD/M", 0, 10000,
+     "bend of horizontal hair by its weight [default 10]"},
+    {"volume", 0, OPTION_REAL, AT(volume), "M", 0, 1,
+     "distance that hair keeps from the surface, far from its root [default 0]"},
+    {"noise", 0, OPTION_REAL, AT(noise), "X", 0, 10,
+     "how much the direction varies along the strand, alike for neighbours: 0.3 a little, 1 "
+     "strongly [default 0]"},
+    {"noise-size", 0, OPTION_REAL, AT(noise_size), "M", 1e-4, 10,
+     "size of the regions that --noise moves alike [default 0.02]"},
+    {"scatter", 0, OPTION_REAL, AT(scatter), "X", 0, 10,
+     "random variation of each strand's direction at the root [default 0]"},
+    // Guides.
+    {"guides", 0, OPTION_WHOLE, AT(guides), "N", 1, 2e6,
+     "grow only this many strands and interpolate the others between them, which is faster and "
+     "smoother; without it all are grown"},
+    {"clumps", 0, OPTION_WHOLE, AT(clumps), "N", 1, 2e6,
+     "number of guides that the other strands gather around [default: all]"},
+    {"clump", 0, OPTION_REAL, AT(clump), "SHARE", 0, 1,
+     "share of the way to its guide that a tip is pulled [default 0]"},
+    {"clump-root", 0, OPTION_REAL, AT(clump_root), "SHARE", 0, 1, "the same for roots [default 0]"},
+    {"clump-profile", 0, OPTION_REAL, AT(clump_profile), "X", 0.01, 0.99,
+     "where between root and tip strands come together: below 0.5 late, above early [default 0.5]"},
+    // Curls, disorder.
+    {"curl-radius", 0, OPTION_REAL, AT(curl_radius), "M", 0, 1, "radius of curls [default 0]"},
+    {"curl-frequency", 0, OPTION_REAL, AT(curl_frequency), "N", 0.01, 100000,
+     "turns of curls per metre [default 40]"},
+    {"curl-disorder", 0, OPTION_REAL, AT(curl_disorder), "SHARE", 0, 1,
+     "0: strands of a clump wind in phase, 1: each has its own phase [default 0.2]"},
+    {"frizz", 0, OPTION_REAL, AT(frizz), "M", 0, 1,
+     "amplitude of each strand's own waves, at the tip [default 0]"},
+    {"frizz-frequency", 0, OPTION_REAL, AT(frizz_frequency), "N", 0.01, 100000,
+     "waves of --frizz per metre [default 60]"},
+    {"flyaways", 0, OPTION_REAL, AT(flyaways), "SHARE", 0, 1,
+     "share of strands that hardly clump and have three times as much frizz [default 0]"},
+    // Besides.
+    {"followers", 0, OPTION_WHOLE, AT(followers), "N", 1, 1000,
+     "followers per strand that the file asks the renderer to draw, in formats that store it"},
+    {"thickness", 0, OPTION_REAL, AT(thickness), "M", 1e-7, 1,
+     "thickness of hair at the root, written per vertex, in formats that store it"},
+    {"tip-thickness", 0, OPTION_REAL, AT(tip_thickness), "SHARE", 0, 1,
+     "thickness at the tip, as a share of that at the root [default 0.3]"},
+};
+
+static const char *const NOTES[] = {
+    "Lengths are metres. A MAP is a number, a PNG file, or a formula. A PNG file is placed by the "
+    "mesh's texture coordinates; black is 0, white 1. A formula is of the position x, y, z, the "
+    "normal nx, ny, nz and the texture coordinates u, v: + - * / ^, comparisons, a ? b : c, the "
+    "functions of muParser (sqrt, abs, min, max, sin ...), smoothstep(a, b, x) and noise(x, y, z), "
+    "which is between -1 and 1 and changes over distances of 1.",
+    "Hair that would grow through the mesh is bent out of it. Where parts of the mesh overlap, use "
+    "--density to grow hair on one of them, or roots lie inside the other part.",
+    "The same seed gives the same bytes on every machine, unless formulas use functions of "
+    "muParser other than sqrt, abs, min and max.",
+    NULL};
+
+static const char *const STATUS[][2] = {{"0", "done"},
+                                        {"1", "failed: disk full, no memory, ..."},
+                                        {"2", "wrong usage"},
+                                        {"3", "the mesh or a map can't be read"},
+                                        {NULL, NULL}};
+
+static const char *const EXAMPLES[] = {
+    "tractrix-gen fur ball.obj --comb 0,-1,0 --count 20000 -o fur.tfx",
+    "tractrix-gen fur head.obj --density scalp.png --comb 0,-0.3,-1 --lie 0.02 --length 0.25 "
+    "--guides 400 --clump 0.6 -o hair.tfx",
+    NULL};
+
+static const OptionsProgram PROGRAM = {
+    .name = "tractrix-gen",
+    .page = "tractrix-gen-fur",
+    .summary = "grow fur or hair on a mesh",
+    .synopsis = "fur [OPTION]... MESH.obj -o FILE",
+    .description = "Grows fur or hair on a mesh (Wavefront OBJ): evenly spread strands, combed and "
+                   "bent by their weight, with clumps and curls.",
+    .options = OPTIONS,
+    .option_count = sizeof OPTIONS / sizeof *OPTIONS,
+    .notes = NOTES,
+    .status = STATUS,
+    .examples = EXAMPLES,
+};
+
+// An option whose values only some formats hold.
+static Result check_holds(const Command *command, const char *option, uint32_t features,
+                          Error *error)
+{
+    char words[200];
+    if (!(features & ~FORMAT_TABLE[command->output.format]->features)) return RESULT_OK;
+    format_list_holding(features, words, sizeof words);
+    return error_set(error, RESULT_USAGE, "--%s: expected --format %s", option, words);
+}
+
+static Result check(const Command *command, Error *error)
+{
+    if (!command->output.path) return error_set(error, RESULT_USAGE, "no output: expected -o FILE");
+    if (command->recipe.followers > 0)
+        TRY(check_holds(command, "followers", STRANDS_HAS_FOLLOWERS, error));
+    if (command->recipe.thickness > 0.0)
+        TRY(check_holds(command, "thickness", STRANDS_HAS_VERTEX_THICKNESS, error));
+    return fur_recipe_check(&command->recipe, error);
+}
+
+Result fur_recipe_parse(FurOptions *options, int argc, char **argv, bool *done, Error *error)
+{
+    Command command = {.recipe = fur_recipe_default(), .output.format = FORMAT_TFX4, .unit = 1.0};
+    int first;
+    Result result = options_parse(&PROGRAM, &command, argc, argv, &first, done, error);
+    if (result != RESULT_OK || *done) return result;
+    if (argc - first != 1)
+        return error_set(error, RESULT_USAGE, "fur: got %d files, expected one mesh", argc - first);
+    *options = (FurOptions){.recipe = command.recipe,
+                            .output = command.output,
+                            .mesh = argv[first],
+                            .unit = command.unit,
+                            .up_z = command.up == 1};
+    return check(&command, error);
+}

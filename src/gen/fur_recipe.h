@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What fur is grown by.
+// What fur is grown by, and the command line of tractrix-gen fur.
 #pragma once
 
-#include "base/error.h"
+#include "gen/gen_output.h"
 
 typedef struct FurRecipe {
     int seed;
@@ -16,7 +16,7 @@ typedef struct FurRecipe {
     double length;           // m: of the longest strand
     double length_variation; // 0 .. 1: strands are up to this share shorter, at random
     const char *length_map;  // a map of factors, cut to 0 .. 1; NULL: 1
-    const char *comb;        // a comb (fur_comb.h); NULL: hair stands up
+    const char *comb;        // a comb (fur_map.h); NULL: hair stands up
     double lift_deg;         // between hair and surface at the root where it is combed, 0 .. 90
     double lie;              // m: over about so much hair comes to lie as it is combed; 0: never
     double comb_reach;       // m: so far from the root the comb reaches; 0: all along
@@ -50,3 +50,14 @@ FurRecipe fur_recipe_default(void);
 
 // RESULT_USAGE for what does not go together; single values are in range.
 Result fur_recipe_check(const FurRecipe *recipe, Error *error);
+
+typedef struct FurOptions {
+    FurRecipe recipe;
+    GenOutput output;
+    const char *mesh;
+    double unit; // metres per unit of the mesh's file
+    bool up_z;
+} FurOptions;
+
+// argv[0] is the word fur. Errors as options_parse gives them, and for what does not go together.
+Result fur_recipe_parse(FurOptions *options, int argc, char **argv, bool *done, Error *error);

@@ -281,10 +281,9 @@ Result fur_roots_make(SurfacePoint *roots, uint32_t count, const Surface *surfac
     Result result = RESULT_OK;
     if (!begin_dice(&dice, surface, seed) || !points || !value)
         result = error_set(error, RESULT_FAILED, "no memory for %u roots", count);
-    if (result == RESULT_OK) result = find_densest(&dice, density, name, &most, &mean, error);
-    if (result == RESULT_OK)
-        result = pick(points, value, CANDIDATES * count, &dice, density, most, name, error);
-    if (result == RESULT_OK) result = thin(points, value, count, surface->area * mean, error);
+    THEN(result, find_densest(&dice, density, name, &most, &mean, error));
+    THEN(result, pick(points, value, CANDIDATES * count, &dice, density, most, name, error));
+    THEN(result, thin(points, value, count, surface->area * mean, error));
     if (result == RESULT_OK) memcpy(roots, points, count * sizeof *roots);
     free(dice.sum);
     free(value);

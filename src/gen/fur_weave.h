@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The way of a strand between its guides: gathered in clumps, wound into curls, frizzy.
+// The way of a strand between its guides: gathered in clumps, wound into curls,
+// frizzy; and its vertices, equal segments outside the surface.
 #pragma once
 
 #include "base/random.h"
@@ -26,3 +27,11 @@ void fur_weave_create(FurWeave *weave, const FurRecipe *recipe, const FurGuides 
 
 // The curve's place; behind the line's end it goes on straight.
 void fur_weave_at(const FurWeave *weave, double s, Double3 place);
+
+// Walks along the curve with steps of `length` / (count - 1), as with dividers, so that the
+// vertices' polyline has that length within rounding. A step that would end nearer to the surface
+// than `gap` (m), or whose middle would be inside, is turned away from it; then the strand comes
+// back to its curve. The first vertex is the curve's beginning. Returns how many steps no turning
+// brought outside.
+uint32_t fur_weave_cut(const FurWeave *weave, const Surface *surface, const SurfacePoint *root,
+                       double gap, double length, Double3 *vertex, uint32_t count);

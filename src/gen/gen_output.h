@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Where the hair that tractrix-gen makes goes: what its commands share of options and words.
+// What the commands of tractrix-gen share: options, and where the hair goes.
+//
+// This room makes hair: styles and test sets on a sphere or a head (strands_make.h), fur on any
+// mesh (fur.h: roots, guides that grow over the surface, strands woven between them). It takes in
+// the command line, meshes and maps, and hands on Strands, which it writes by the table of formats.
 #pragma once
 
 #include "base/options.h"
@@ -30,8 +34,3 @@ typedef struct GenOutput {
     {                                                                                              \
         "quiet", 'q', OPTION_SWITCH, at, NULL, 0, 0, "print nothing"                               \
     }
-
-// Writes strands of one size to output->path and, unless quiet, tells so on the standard output;
-// `guides` of them are guides, 0: none to speak of. Errors as format_write.
-Result gen_output_write(const GenOutput *output, const Strands *strands, uint32_t guides,
-                        Error *error);

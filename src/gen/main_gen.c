@@ -2,7 +2,6 @@
 // tractrix-gen: makes hair and the mesh it grows on.
 #include "base/program.h"
 #include "gen/fur.h"
-#include "gen/fur_options.h"
 #include "gen/strands_make.h"
 #include "mesh/obj.h"
 #include "mesh/scalp.h"
@@ -178,12 +177,26 @@ static StrandsRecipe make_recipe(const Command *command)
 
 // --- The work.
 
+// Writes strands of one size to output->path and reports it unless quiet; `guides` of them are
+// guides, 0: none to speak of.
+static Result write_strands(const GenOutput *output, const Strands *strands, uint32_t guides,
+                            Error *error)
+{
+    TRY(format_write(output->path, (FormatKind)output->format, strands, error));
+    if (output->quiet) return RESULT_OK;
+    printf("%s: %u strands of %u vertices, ", output->path, strands->strand_count,
+           strands_size(strands, 0));
+    if (guides) printf("%u of them guides, ", guides);
+    printf("%s\n", FORMAT_TABLE[output->format]->name);
+    return RESULT_OK;
+}
+
 static Result write_hair(const Command *command, const StrandsRecipe *recipe, Error *error)
 {
     Strands strands;
     TRY(command->set >= 0 ? strands_make_set(&strands, SET_NAMES[command->set], recipe->seed, error)
                           : strands_make(&strands, recipe, error));
-    Result result = gen_output_write(&command->output, &strands, 0, error);
+    Result result = write_strands(&command->output, &strands, 0, error);
     strands_destroy(&strands);
     return result;
 }
@@ -224,7 +237,7 @@ static Result write_fur(const FurOptions *options, const Mesh *mesh, Error *erro
     if (report.stuck)
         fprintf(stderr, "%s: %llu segments could not be kept outside the mesh\n",
                 options->output.path, (unsigned long long)report.stuck);
-    Result result = gen_output_write(&options->output, &strands, report.guides, error);
+    Result result = write_strands(&options->output, &strands, report.guides, error);
     strands_destroy(&strands);
     return result;
 }
@@ -234,7 +247,7 @@ static Result grow_fur(int argc, char **argv, Error *error)
     FurOptions options;
     Mesh mesh;
     bool done;
-    TRY(fur_options_read(&options, argc, argv, &done, error));
+    TRY(fur_recipe_parse(&options, argc, argv, &done, error));
     if (done) return RESULT_OK;
     TRY(obj_read_mesh(&mesh, options.mesh, (float)options.unit, options.up_z, error));
     Result result = write_fur(&options, &mesh, error);

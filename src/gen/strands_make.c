@@ -288,9 +288,8 @@ static Result check_recipe(const StrandsRecipe *recipe, Error *error)
 Result strands_make(Strands *strands, const StrandsRecipe *recipe, Error *error)
 {
     *strands = (Strands){0};
-    Result result = check_recipe(recipe, error);
-    if (result != RESULT_OK) return result;
-    result = strands_create(strands, recipe->count, recipe->count * recipe->vertices, error);
+    TRY(check_recipe(recipe, error));
+    Result result = strands_create(strands, recipe->count, recipe->count * recipe->vertices, error);
     if (result != RESULT_OK) return result;
     strands->strand_uv = calloc(recipe->count, sizeof *strands->strand_uv);
     Double3 *points = malloc(recipe->vertices * sizeof *points);

@@ -15,8 +15,8 @@ static StrandsReadOptions read_options(const Scene *scene, const Section *sectio
     };
 }
 
-// What a file asks for and this program does not do yet is said, not passed over.
-static void tell_unheeded(const Strands *strands, const char *file, FILE *messages)
+// What a file asks for and this program does not do.
+static void warn_ignored(const Strands *strands, const char *file, FILE *messages)
 {
     if (strands->both_ends_fixed)
         fprintf(messages, "%s: the file fixes both ends of its strands; here the tips move\n",
@@ -32,7 +32,7 @@ static Result load_section(Assets *assets, const Scene *scene, uint32_t i, FILE 
         strands_read(&assets->strands[i], section->file, &options, &assets->reports[i], error);
     if (result != RESULT_OK || !messages) return result;
     strands_report_print_mended(&assets->reports[i], section->file, messages);
-    tell_unheeded(&assets->strands[i], section->file, messages);
+    warn_ignored(&assets->strands[i], section->file, messages);
     if (verbose) strands_report_print(&assets->reports[i], section->file, messages);
     return RESULT_OK;
 }
@@ -54,10 +54,9 @@ Result assets_load(Assets *assets, const Scene *scene, FILE *messages, bool verb
     assets->reports = calloc((size_t)scene->section_count + 1, sizeof *assets->reports);
     if (!assets->strands || !assets->reports)
         return error_set(error, RESULT_FAILED, "no memory for %u sections", scene->section_count);
-    Result result = RESULT_OK;
-    for (uint32_t i = 0; i < scene->section_count && result == RESULT_OK; ++i)
-        result = load_section(assets, scene, i, messages, verbose, error);
-    return result == RESULT_OK ? load_mesh(assets, scene, error) : result;
+    for (uint32_t i = 0; i < scene->section_count; ++i)
+        TRY(load_section(assets, scene, i, messages, verbose, error));
+    return load_mesh(assets, scene, error);
 }
 
 void assets_destroy(Assets *assets)
@@ -79,7 +78,7 @@ Result assets_check(const Scene *scene, FILE *stream)
         Strands strands;
         StrandsReport report;
         Error error;
-        options.strict = false; // everything is to be told
+        options.strict = false; // everything is reported
         Result result = strands_read(&strands, section->file, &options, &report, &error);
         if (result == RESULT_OK) {
             strands_report_print(&report, section->file, stream);

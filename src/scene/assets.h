@@ -15,7 +15,7 @@ typedef struct Assets {
 } Assets;
 
 // Reads everything that the scene names. What was mended, and units that were guessed (if
-// `verbose`), are told on `messages` (NULL: not). Errors as strands_read and obj_read_mesh give
+// `verbose`), are printed on `messages` (NULL: not). Errors as strands_read and obj_read_mesh give
 // them; the assets may be destroyed in each case.
 Result assets_load(Assets *assets, const Scene *scene, FILE *messages, bool verbose, Error *error);
 void assets_destroy(Assets *assets);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where the picture is taken from in each frame.
+// The camera and the lights of each frame.
 #pragma once
 
 #include "scene/outline.h"
@@ -16,13 +16,20 @@ typedef struct View {
     float near_distance, far_distance; // m, > 0
 } View;
 
-// The camera of frame `frame` (0 .. run.frames - 1) for a picture of run.size. Keyframes of eye,
+// The camera of frame `frame` (0 .. run.frames - 1) for an image of run.size. Keyframes of eye,
 // target and fov win over the parameters; what is automatic comes from the framing. The turntable
 // turns the eye about the axis through the target along camera_up, counter-clockwise seen from its
-// tip, by turntable_angle_deg. Any finite input gives a finite camera: an eye on the
+// tip, by camera_turntable_deg. Any finite input gives a finite camera: an eye on the
 // target looks along -z, an up direction along the line of sight is replaced.
 void camera_view(View *view, const Scene *scene, const Framing *framing, int frame);
 
 // The lights of frame `frame`: the scene's, or with run.turn_lights turned with the eye.
 void camera_lights(Light lights[SCENE_MAX_LIGHTS], const Scene *scene, const Framing *framing,
                    int frame);
+
+// The turntable's angle at frame `frame` (>= 0; run.frames is the end of the first round), degrees,
+// as far as a camera can tell: 0 at frames 0 and run.frames of whole turns, exactly.
+//
+// The speed rises from 0 over the first run.ease_in of the sequence, is constant, and falls to 0
+// over its last run.ease_out, as 3 s^2 - 2 s^3, so that the acceleration is continuous, too.
+double camera_turntable_deg(const RunParams *run, int frame);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The camera that fills its pictures: the nearest one that sees all points of all frames, found
+// The camera that fills its frames: the nearest one that sees all points of all frames, found
 // from the points themselves.
 //
 // A camera at target + d back looks along -back and sees a point p within `scale` (above 1) times
-// the slope s of a side of its picture, given by the vector `side` (right, left, top or bottom), if
+// the slope s of a side of its frame, given by the vector `side` (right, left, top or bottom), if
 //     scale side . (p - target) <= s (d - back . (p - target)),
 // so if d >= n . (p - target) with n = back + scale / s side. Four such n belong to a frame, and
 // of all its points only the greatest n . p counts: d is the largest of greatest - n . target.

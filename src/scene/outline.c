@@ -98,7 +98,7 @@ static void carry(const Moment *moment, const float point[3], float carried[3])
     for (int k = 0; k < 3; ++k) carried[k] += moment->translation[k];
 }
 
-// Every how manieth strand is looked at, for `times` looks at each.
+// Every Nth strand is looked at, if each is looked at `times` times.
 static uint32_t strand_stride(const Strands *strands, uint32_t times)
 {
     return 1 + (uint32_t)((uint64_t)strands->vertex_count * times / VERTICES);
@@ -201,7 +201,7 @@ static void find_axes(Axes *axes, const float camera_up[3])
     glm_vec3_cross(axes->back, axes->right, axes->top);
 }
 
-// How far from the target the eye must be to see all of `outline` in a picture that is larger by
+// How far from the target the eye must be to see all of `outline` in a frame that is larger by
 // `scale`, tangents of the half angles given.
 static float distance_to_see(const Outline *outline, const Axes *axes, const float target[3],
                              float tan_x, float tan_y, float scale)

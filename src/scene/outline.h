@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the camera is to keep in sight: the hair over the whole sequence, so that the picture does
+// What the camera is to keep in sight: the hair over the whole sequence, so that the camera does
 // not move with it.
 #pragma once
 
@@ -12,7 +12,7 @@
 enum { OUTLINE_DIRECTIONS = 96 };
 
 // The points of a set that lie farthest in each direction (the support of a k-DOP), and its box:
-// they fill the picture more tightly than the corners of the box alone would. A zeroed struct is an
+// they fill the frame more tightly than the corners of the box alone would. A zeroed struct is an
 // empty set.
 typedef struct Outline {
     bool any;
@@ -40,7 +40,7 @@ void outline_corner(const Outline *outline, int which, float corner[3]);
 // that of gravity + drag * wind and the style's, by the section's share of style, and around all of
 // it as much room as followers need. Motions are sampled at 16 times. `strands`: one for each of
 // the scene's sections, metres. `mesh`: NULL for none. The eye stands in front (+z), 25 degrees to
-// the side and 10 degrees above, just so far away that everything stays in the picture with a
+// the side and 10 degrees above, just so far away that everything stays in the frame with a
 // margin (run.margin), at all angles of the turntable. With a floor "everything" is the mesh, too,
 // which stands on it.
 void outline_frame(Framing *framing, const Scene *scene, const Strands *strands, const Mesh *mesh);

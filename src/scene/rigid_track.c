@@ -77,9 +77,8 @@ static Result check_formulas(const Formula *formulas, const char *name, double t
 
 Result rigid_track_check(const RigidTrack *track, double time, Error *error)
 {
-    Result result = check_formulas(track->translation_formula, "translate", time, error);
-    return result == RESULT_OK ? check_formulas(track->rotation_formula, "rotate", time, error)
-                               : result;
+    TRY(check_formulas(track->translation_formula, "translate", time, error));
+    return check_formulas(track->rotation_formula, "rotate", time, error);
 }
 
 void rigid_track_destroy(RigidTrack *track)

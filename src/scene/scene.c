@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scene/scene.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -144,7 +145,8 @@ static Result check_output(const char *output, Error *error)
         "--output '%.200s': expected one %%d or %%04d (1 to 9 digits) and no other '%%'", output);
 }
 
-// A formula that fails somewhere is told before anything runs; of very long sequences the begin.
+// A formula that fails somewhere is reported before anything runs; of very long sequences only the
+// first million frames are checked.
 static Result check_head(const Scene *scene, Error *error)
 {
     const int most = 1000000;
@@ -189,12 +191,42 @@ Result scene_check(const Scene *scene, Error *error)
     const RunParams *run = &scene->run;
     if (scene->section_count == 0 && !run->list_devices)
         return error_set(error, RESULT_USAGE, "no hair: expected a hair file or a scene file");
-    Result result = check_frames(run, error);
-    if (result == RESULT_OK) result = check_camera(scene, error);
-    if (result == RESULT_OK) result = check_conflicts(run, error);
-    if (result == RESULT_OK) result = check_output(run->output, error);
-    if (result == RESULT_OK) result = check_depth(run, error);
-    if (result == RESULT_OK) result = check_floor(run, error);
-    if (result == RESULT_OK) result = check_head(scene, error);
+    TRY(check_frames(run, error));
+    TRY(check_camera(scene, error));
+    TRY(check_conflicts(run, error));
+    TRY(check_output(run->output, error));
+    TRY(check_depth(run, error));
+    TRY(check_floor(run, error));
+    return check_head(scene, error);
+}
+
+// --- Quality.
+
+static const struct {
+    Quality quality;
+    const char *name, *value;
+} PRESETS[] = {
+    {QUALITY_DRAFT, "lod_width", "1"},     {QUALITY_FINAL, "shadow", "dom"},
+    {QUALITY_FINAL, "shadow_size", "512"}, {QUALITY_FINAL, "samples", "2"},
+    {QUALITY_FINAL, "smooth", "3"},
+};
+
+Result scene_apply_quality(Quality quality, ParamScope scope, void *params, Error *error)
+{
+    Result result = RESULT_OK;
+    for (size_t i = 0; i < sizeof PRESETS / sizeof *PRESETS && result == RESULT_OK; ++i) {
+        const ParamInfo *info = params_find(PRESETS[i].name);
+        assert(info);
+        if (PRESETS[i].quality == quality && info->scope == scope)
+            result = params_parse(info, params, PRESETS[i].value, error);
+    }
+    return result;
+}
+
+Result scene_parse_quality(Quality *quality, const char *word, Error *error)
+{
+    RunParams holder = {0};
+    Result result = params_parse(params_find("quality"), &holder, word, error);
+    *quality = (Quality)holder.quality;
     return result;
 }

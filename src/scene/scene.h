@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Everything that a run needs to know: parameters, hair sections, head motion, forces, camera path
-// and lights, from the command line, a scene file or both.
+// Everything that a run needs to know: parameters, hair sections, head motion, forces, colliders,
+// camera path and lights, from the command line, a scene file or both.
+//
+// This room takes in arguments and scene files (scene_json.c, scene_tracks.c; scene_write.c writes
+// them), reads the files that they name (assets.h), and says what holds at a time: head
+// (rigid_track.h), forces, camera and lights (camera.h), and which step is which frame
+// (schedule.h). The camera's automatic framing is in outline.h, which estimates what will be seen,
+// and fit.h, which finds the nearest camera for what is seen. It hands all this on to `sim` and
+// `draw`.
 #pragma once
 
 #include "base/error.h"
@@ -121,3 +128,11 @@ void scene_destroy(Scene *scene);
 // Appends a section with copies of `file` and `params`. RESULT_USAGE beyond SCENE_MAX_SECTIONS,
 // RESULT_FAILED when memory is short.
 Result scene_add_section(Scene *scene, const char *file, const SectionParams *params, Error *error);
+
+// --quality: other defaults for several parameters at once. What a flag or a scene file says of a
+// parameter wins, whatever the order. Gives the fields of `params`, a RunParams or SectionParams as
+// the scope says, the preset's defaults. RESULT_FAILED when memory is short.
+Result scene_apply_quality(Quality quality, ParamScope scope, void *params, Error *error);
+
+// Reads a word of --quality. RESULT_USAGE for another one.
+Result scene_parse_quality(Quality *quality, const char *word, Error *error);

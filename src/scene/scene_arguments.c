@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "base/options.h"
 #include "scene/effects.h"
-#include "scene/scene_quality.h"
+#include "scene/scene.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -68,11 +68,11 @@ static Result add_sections(Scene *scene, const Found *found, Error *error)
     Quality preset = QUALITY_NORMAL;
     Result result = params_create_section(&defaults, error);
     if (result == RESULT_OK && found->quality) {
-        result = quality_parse(&preset, found->quality, error);
+        result = scene_parse_quality(&preset, found->quality, error);
         if (result != RESULT_OK) error_prefix(error, result, "--quality: ");
     }
-    THEN(result, quality_apply(preset, SCOPE_RUN, &scene->run, error));
-    THEN(result, quality_apply(preset, SCOPE_SECTION, &defaults, error));
+    THEN(result, scene_apply_quality(preset, SCOPE_RUN, &scene->run, error));
+    THEN(result, scene_apply_quality(preset, SCOPE_SECTION, &defaults, error));
     for (size_t i = 0; i < found->file_count; i++)
         THEN(result, scene_add_section(scene, found->files[i], &defaults, error));
     params_destroy_section(&defaults);

@@ -2,7 +2,6 @@
 #include "base/bytes.h"
 #include "scene/scene.h"
 #include "scene/scene_param.h"
-#include "scene/scene_quality.h"
 #include "scene/scene_tracks.h"
 
 #include <stdlib.h>
@@ -169,7 +168,7 @@ static Result read_sections(Scene *scene, const Document *document, Error *error
     const Sink sink = {SCOPE_SECTION, &defaults.params, defaults.origin};
     Quality quality = (Quality)scene->run.quality;
     Result result = params_create_section(&defaults.params, error);
-    THEN(result, quality_apply(quality, SCOPE_SECTION, &defaults.params, error));
+    THEN(result, scene_apply_quality(quality, SCOPE_SECTION, &defaults.params, error));
     THEN(result,
          read_params(document, &sink, ORIGIN_SHARED_KEY, &document->root, document->json, error));
     for (size_t i = 0; i < count; i++) {
@@ -202,17 +201,16 @@ static Result refuse_both(const Document *document, const char *name, const Keyf
 
 static Result read_parts(Scene *scene, const Document *document, Error *error)
 {
-    Result result = read_force(&scene->gravity, "gravity", document, error);
-    if (result == RESULT_OK) result = read_force(&scene->wind, "wind", document, error);
-    for (size_t i = 0; result == RESULT_OK && i < PART_COUNT; i++) {
+    TRY(read_force(&scene->gravity, "gravity", document, error));
+    TRY(read_force(&scene->wind, "wind", document, error));
+    for (size_t i = 0; i < PART_COUNT; i++) {
         const json_t *value = json_object_get(document->json, PARTS[i].key);
         JsonPlace place = {.parent = &document->root, .key = PARTS[i].key};
-        if (value) result = PARTS[i].read(scene, &place, value, error);
+        if (value) TRY(PARTS[i].read(scene, &place, value, error));
     }
-    if (result == RESULT_OK) result = refuse_both(document, "eye", &scene->eye, error);
-    if (result == RESULT_OK) result = refuse_both(document, "target", &scene->target, error);
-    if (result == RESULT_OK) result = refuse_both(document, "fov", &scene->fov, error);
-    return result;
+    TRY(refuse_both(document, "eye", &scene->eye, error));
+    TRY(refuse_both(document, "target", &scene->target, error));
+    return refuse_both(document, "fov", &scene->fov, error);
 }
 
 // The preset that the command line names, or else the file, becomes the run's defaults.
@@ -221,15 +219,14 @@ static Result read_quality(Scene *scene, const Document *document, Error *error)
     const char *asked = document->overrides->quality;
     const json_t *value = json_object_get(document->json, "quality");
     Quality quality = QUALITY_NORMAL;
-    Error unused = {{0}}; // what is wrong with the file's value is told when it is read
-    Result result = RESULT_OK;
+    Error unused = {{0}}; // what is wrong with the file's value is reported when it is read
     if (asked)
-        result = quality_parse(&quality, asked, error);
+        TRY(scene_parse_quality(&quality, asked, error));
     else if (json_is_string(value))
-        quality_parse(&quality, json_string_value(value), &unused);
-    if (result == RESULT_OK) result = quality_apply(quality, SCOPE_RUN, &scene->run, error);
-    if (result == RESULT_OK) scene->run.quality = quality;
-    return result;
+        scene_parse_quality(&quality, json_string_value(value), &unused);
+    TRY(scene_apply_quality(quality, SCOPE_RUN, &scene->run, error));
+    scene->run.quality = quality;
+    return RESULT_OK;
 }
 
 static Result read_document(Scene *scene, const Document *document, Error *error)

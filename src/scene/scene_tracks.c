@@ -33,13 +33,11 @@ static Result read_member(const Member *member, const JsonPlace *parent, const j
     JsonPlace place = {.parent = parent, .key = member->name};
     float numbers[KEYFRAMES_MAX_WIDTH] = {0};
     double number = 0;
-    Result result =
-        member->width == 1
+    TRY(member->width == 1
             ? json_read_number(&place, value, member->minimum, member->maximum, "a number", &number,
                                error)
             : json_read_vector(&place, value, member->width, member->minimum, member->maximum,
-                               "an array of three numbers", numbers, error);
-    if (result != RESULT_OK) return result;
+                               "an array of three numbers", numbers, error));
     if (member->width == 1) numbers[0] = (float)number;
     for (uint32_t i = 0; i < member->width; i++)
         numbers[i] = (float)((double)numbers[i] * member->scale);
@@ -53,16 +51,12 @@ static Result read_key(const Member *members, size_t count, const JsonPlace *pla
 {
     const char *names[MEMBERS_MAX + 2] = {"time"};
     for (size_t i = 0; i < count; i++) names[1 + i] = members[i].name;
-    Result result = json_check_object(place, key, names, error);
-    if (result != RESULT_OK) return result;
-
+    TRY(json_check_object(place, key, names, error));
     const json_t *time_value = json_object_get(key, "time");
     if (!time_value) return json_fail(place, error, "expected a key 'time' (s)");
     JsonPlace time_place = {.parent = place, .key = "time"};
     double before = *time;
-    result =
-        json_read_number(&time_place, time_value, -TIME_MAX_S, TIME_MAX_S, "seconds", time, error);
-    if (result != RESULT_OK) return result;
+    TRY(json_read_number(&time_place, time_value, -TIME_MAX_S, TIME_MAX_S, "seconds", time, error));
     if (*time <= before)
         return json_fail(&time_place, error, "got %.9g, expected more than %.9g, the key before",
                          *time, before);
@@ -71,8 +65,7 @@ static Result read_key(const Member *members, size_t count, const JsonPlace *pla
 
     for (size_t i = 0; i < count; i++) {
         const json_t *value = json_object_get(key, members[i].name);
-        if (value) result = read_member(&members[i], place, value, *time, error);
-        if (result != RESULT_OK) return result;
+        if (value) TRY(read_member(&members[i], place, value, *time, error));
     }
     return RESULT_OK;
 }
@@ -94,8 +87,7 @@ static Result read_track(const Member *members, size_t count, const JsonPlace *p
                          const json_t *track, Error *error)
 {
     Interpolation interpolation = INTERPOLATION_SMOOTH;
-    Result result = read_interpolation(place, track, &interpolation, error);
-    if (result != RESULT_OK) return result;
+    TRY(read_interpolation(place, track, &interpolation, error));
     const json_t *keys = json_object_get(track, "keys");
     if (!keys) return json_fail(place, error, "expected a key 'keys'");
     JsonPlace keys_place = {.parent = place, .key = "keys"};
@@ -104,8 +96,7 @@ static Result read_track(const Member *members, size_t count, const JsonPlace *p
     double time = -INFINITY;
     for (size_t i = 0; i < json_array_size(keys); i++) {
         JsonPlace key_place = {.parent = &keys_place, .index = i};
-        result = read_key(members, count, &key_place, json_array_get(keys, i), &time, error);
-        if (result != RESULT_OK) return result;
+        TRY(read_key(members, count, &key_place, json_array_get(keys, i), &time, error));
     }
     for (size_t i = 0; i < count; i++) members[i].keys->interpolation = interpolation;
     return RESULT_OK;
@@ -116,8 +107,20 @@ Result scene_read_vector_keys(Keyframes *keys, const ParamInfo *info, const Json
 {
     static const char *const NAMES[] = {"keys", "interpolation", NULL};
     Member member = {"value", keys, 3, info->minimum, info->maximum, 1.0};
-    Result result = json_check_object(place, value, NAMES, error);
-    return result == RESULT_OK ? read_track(&member, 1, place, value, error) : result;
+    TRY(json_check_object(place, value, NAMES, error));
+    return read_track(&member, 1, place, value, error);
+}
+
+// A point or a direction; keeps what is there if it is left out.
+static Result read_vector(float to[3], const JsonPlace *parent, const json_t *object,
+                          const char *key, bool needed, Error *error)
+{
+    const json_t *value = json_object_get(object, key);
+    JsonPlace place = {.parent = parent, .key = key};
+    if (!value && needed) return json_fail(parent, error, "expected a key '%s'", key);
+    if (!value) return RESULT_OK;
+    return json_read_vector(&place, value, 3, -OFFSET_MAX, OFFSET_MAX, "an array of three numbers",
+                            to, error);
 }
 
 // Three formulas of time; a number stands for itself.
@@ -162,20 +165,12 @@ Result scene_read_head(Scene *scene, const JsonPlace *place, const json_t *value
     static const char *const NAMES[] = {"keys",      "interpolation", "pivot",
                                         "translate", "rotate",        NULL};
     RigidTrack *head = &scene->head;
-    Result result = json_check_object(place, value, NAMES, error);
-    const json_t *pivot = json_object_get(value, "pivot");
-    JsonPlace pivot_place = {.parent = place, .key = "pivot"};
-    if (result == RESULT_OK && pivot)
-        result = json_read_vector(&pivot_place, pivot, 3, -OFFSET_MAX, OFFSET_MAX,
-                                  "an array of three numbers", head->pivot, error);
-    if (result == RESULT_OK) result = read_head_keys(scene, place, value, error);
-    if (result == RESULT_OK)
-        result = read_formulas(head->translation_formula, "translate", &head->translation, place,
-                               value, error);
-    if (result == RESULT_OK)
-        result =
-            read_formulas(head->rotation_formula, "rotate", &head->rotation, place, value, error);
-    return result;
+    TRY(json_check_object(place, value, NAMES, error));
+    TRY(read_vector(head->pivot, place, value, "pivot", false, error));
+    TRY(read_head_keys(scene, place, value, error));
+    TRY(read_formulas(head->translation_formula, "translate", &head->translation, place, value,
+                      error));
+    return read_formulas(head->rotation_formula, "rotate", &head->rotation, place, value, error);
 }
 
 Result scene_read_camera(Scene *scene, const JsonPlace *place, const json_t *value, Error *error)
@@ -187,23 +182,20 @@ Result scene_read_camera(Scene *scene, const JsonPlace *place, const json_t *val
         {"target", &scene->target, 3, eye->minimum, eye->maximum, 1.0},
         {"fov", &scene->fov, 1, fov->minimum, fov->maximum, 1.0},
     };
-    Result result = json_check_object(place, value, NAMES, error);
-    return result == RESULT_OK ? read_track(members, 3, place, value, error) : result;
+    TRY(json_check_object(place, value, NAMES, error));
+    return read_track(members, 3, place, value, error);
 }
 
 // A unit vector: against the way that a directional light travels, along that of a spot.
 static Result read_direction(Light *light, const JsonPlace *parent, const json_t *object,
                              Error *error)
 {
-    const json_t *value = json_object_get(object, "direction");
-    if (!value) return json_fail(parent, error, "expected a key 'direction'");
-    JsonPlace place = {.parent = parent, .key = "direction"};
     float way[3];
-    Result result = json_read_vector(&place, value, 3, -OFFSET_MAX, OFFSET_MAX,
-                                     "an array of three numbers", way, error);
-    if (result != RESULT_OK) return result;
+    TRY(read_vector(way, parent, object, "direction", true, error));
     double length = hypot(hypot((double)way[0], (double)way[1]), (double)way[2]);
-    if (length == 0) return json_refuse(&place, value, "a direction", error);
+    JsonPlace place = {.parent = parent, .key = "direction"};
+    if (length == 0)
+        return json_refuse(&place, json_object_get(object, "direction"), "a direction", error);
     double sign = light->kind == LIGHT_SPOT ? 1 : -1;
     for (int i = 0; i < 3; i++) light->direction[i] = (float)(sign * (double)way[i] / length + 0.0);
     return RESULT_OK;
@@ -222,16 +214,6 @@ static Result read_light_color(Light *light, const JsonPlace *parent, const json
     return result;
 }
 
-static Result read_position(Light *light, const JsonPlace *parent, const json_t *object,
-                            Error *error)
-{
-    const json_t *value = json_object_get(object, "position");
-    if (!value) return json_fail(parent, error, "expected a key 'position'");
-    JsonPlace place = {.parent = parent, .key = "position"};
-    return json_read_vector(&place, value, 3, -OFFSET_MAX, OFFSET_MAX, "an array of three numbers",
-                            light->position, error);
-}
-
 // A number that may be left out.
 static Result read_quantity(float *quantity, const JsonPlace *parent, const json_t *object,
                             const char *key, double minimum, double maximum, const char *expected,
@@ -248,14 +230,11 @@ static Result read_quantity(float *quantity, const JsonPlace *parent, const json
 
 static Result read_cone(Light *light, const JsonPlace *place, const json_t *value, Error *error)
 {
-    Result result =
-        read_quantity(&light->outer_deg, place, value, "outer", 0.1, 90, "degrees", error);
-    if (result == RESULT_OK)
-        result = read_quantity(&light->inner_deg, place, value, "inner", 0, 90, "degrees", error);
-    if (result == RESULT_OK && light->inner_deg >= light->outer_deg)
-        return json_fail(place, error, "'inner' is %.9g deg, expected less than 'outer', %.9g deg",
-                         (double)light->inner_deg, (double)light->outer_deg);
-    return result;
+    TRY(read_quantity(&light->outer_deg, place, value, "outer", 0.1, 90, "degrees", error));
+    TRY(read_quantity(&light->inner_deg, place, value, "inner", 0, 90, "degrees", error));
+    if (light->inner_deg < light->outer_deg) return RESULT_OK;
+    return json_fail(place, error, "'inner' is %.9g deg, expected less than 'outer', %.9g deg",
+                     (double)light->inner_deg, (double)light->outer_deg);
 }
 
 static Result read_light_shadow(Light *light, const JsonPlace *parent, const json_t *object,
@@ -282,24 +261,20 @@ static Result read_light(Light *light, const JsonPlace *place, const json_t *val
     const json_t *type = json_object_get(value, "type");
     JsonPlace type_place = {.parent = place, .key = "type"};
     int kind = LIGHT_DIRECTIONAL;
-    Result result =
-        type ? json_read_choice(&type_place, type, LIGHT_KIND_WORDS, &kind, error) : RESULT_OK;
+    if (type) TRY(json_read_choice(&type_place, type, LIGHT_KIND_WORDS, &kind, error));
     light->kind = (LightKind)kind;
-    if (result == RESULT_OK) result = json_check_object(place, value, NAMES[kind], error);
-    if (result == RESULT_OK)
-        result = read_quantity(&light->intensity, place, value, "intensity", 0, INTENSITY_MAX,
-                               "a factor", error);
-    if (result == RESULT_OK && kind != LIGHT_POINT)
-        result = read_direction(light, place, value, error);
-    if (result == RESULT_OK && kind != LIGHT_DIRECTIONAL)
-        result = read_position(light, place, value, error);
-    if (result == RESULT_OK && kind != LIGHT_DIRECTIONAL)
-        result = read_quantity(&light->distance, place, value, "distance", 1e-3, OFFSET_MAX,
-                               "metres", error);
-    if (result == RESULT_OK && kind == LIGHT_SPOT) result = read_cone(light, place, value, error);
-    if (result == RESULT_OK) result = read_light_color(light, place, value, error);
-    if (result == RESULT_OK) result = read_light_shadow(light, place, value, error);
-    return result;
+    TRY(json_check_object(place, value, NAMES[kind], error));
+    TRY(read_quantity(&light->intensity, place, value, "intensity", 0, INTENSITY_MAX, "a factor",
+                      error));
+    if (kind != LIGHT_POINT) TRY(read_direction(light, place, value, error));
+    if (kind != LIGHT_DIRECTIONAL) {
+        TRY(read_vector(light->position, place, value, "position", true, error));
+        TRY(read_quantity(&light->distance, place, value, "distance", 1e-3, OFFSET_MAX, "metres",
+                          error));
+    }
+    if (kind == LIGHT_SPOT) TRY(read_cone(light, place, value, error));
+    TRY(read_light_color(light, place, value, error));
+    return read_light_shadow(light, place, value, error);
 }
 
 Result scene_read_lights(Scene *scene, const JsonPlace *place, const json_t *value, Error *error)
@@ -314,9 +289,7 @@ Result scene_read_lights(Scene *scene, const JsonPlace *place, const json_t *val
         JsonPlace light_place = {.parent = place, .index = i};
         scene->lights[i] = (Light){
             .color = {1, 1, 1}, .intensity = 1, .distance = 1, .outer_deg = 45, .shadow = i == 0};
-        Result result =
-            read_light(&scene->lights[i], &light_place, json_array_get(value, i), error);
-        if (result != RESULT_OK) return result;
+        TRY(read_light(&scene->lights[i], &light_place, json_array_get(value, i), error));
         scene->light_count++;
     }
     return RESULT_OK;

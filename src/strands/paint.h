@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What hair looks like where it is not the same all over a section: colours and thickness that a
-// file has, a picture that colours the strands by their roots, tips of another colour.
+// file has, an image that colours the strands by their roots, tips of another colour.
 #pragma once
 
 #include "base/params.h"
@@ -22,7 +22,7 @@ typedef struct Paint {
 //   thickness   the file's with file_thickness over its mean of all vertices; where it is by
 //   vertex,
 //               tip_ratio is not applied
-// Nothing of all that leaves the paint zeroed. RESULT_BAD_INPUT if the picture can't be read,
+// Nothing of all that leaves the paint zeroed. RESULT_BAD_INPUT if the image can't be read,
 // RESULT_USAGE if there is one but no texture coordinates; RESULT_FAILED when memory is short.
 Result paint_create(Paint *paint, const Strands *strands, const SectionParams *params,
                     Error *error);
@@ -33,10 +33,10 @@ void paint_destroy(Paint *paint);
 // much eumelanin and pheomelanin (d'Eon et al. 2011).
 void paint_color(const SectionParams *params, float linear[3]);
 
-// Fibre radius at the root, metres, > 0, for drawing these strands with so many followers each.
+// Fibre radius at the root, metres, > 0, for drawing these strands with this many followers each.
 //
 // A head carries 100,000 hairs of about 40 um; files hold a few thousand, each of which stands for
-// many. So the strands share out the picture instead: laid side by side they would cover the mean
+// many. So the strands share the image instead: laid side by side they would cover the mean
 // silhouette of the hair's box (a quarter of its surface, Cauchy) FIBRE_LAYERS times. Twice as many
 // strands are drawn half as thick; the same hair in another unit looks the same. Kept between
 // 1/5000 and 1/400 of the longest strand, for single strands and very dense fur.

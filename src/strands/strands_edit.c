@@ -113,15 +113,16 @@ void strands_to_unit(Strands *strands, double metres, bool up_z)
 
 // --- Which strands, and in what order.
 
-// Makes room in `to`, whose counts are set, for the optional arrays that `from` has.
-static bool allocate_like(Strands *to, const Strands *from)
+// Makes room in `to`, whose counts are set, for the optional arrays that all of the sets have.
+static bool allocate_arrays(Strands *to, const Strands *sets, uint32_t count)
 {
-    size_t strands = (size_t)to->strand_count + 1, vertices = (size_t)to->vertex_count + 1;
-    bool good = true;
-#define ALLOCATE(array, count)                                                                     \
-    if (from->array) good = (to->array = malloc((count) * sizeof *to->array)) != NULL && good;
-#define OF_VERTICES(array, width, mended) ALLOCATE(array, vertices)
-#define OF_STRANDS(array, width, mended)  ALLOCATE(array, strands)
+    bool good = true, all;
+#define ALLOCATE(array, room)                                                                      \
+    all = count > 0;                                                                               \
+    for (uint32_t i = 0; i < count; ++i) all = all && sets[i].array;                               \
+    if (all) good = (to->array = malloc(((size_t)(room) + 1) * sizeof *to->array)) && good;
+#define OF_VERTICES(array, width, mended) ALLOCATE(array, to->vertex_count)
+#define OF_STRANDS(array, width, mended)  ALLOCATE(array, to->strand_count)
     STRANDS_ARRAYS_OF_VERTICES(OF_VERTICES)
     STRANDS_ARRAYS_OF_STRANDS(OF_STRANDS)
 #undef OF_VERTICES
@@ -130,14 +131,15 @@ static bool allocate_like(Strands *to, const Strands *from)
     return good;
 }
 
-// Copies strand s of `from` to be strand t of `to`, whose first[t] is set.
+// Copies strand s of `from` to be strand t of `to`, whose first[t] is set; `from` has all arrays
+// that `to` has.
 static void copy_strand(Strands *to, uint32_t t, const Strands *from, uint32_t s)
 {
     uint32_t a = to->first[t], b = from->first[s], size = strands_size(from, s);
     to->first[t + 1] = a + size;
     memcpy(to->position + a, from->position + b, size * sizeof *to->position);
 #define COPY(array, at, source, count)                                                             \
-    if (from->array) memcpy(&to->array[at], &from->array[source], (count) * sizeof *to->array);
+    if (to->array) memcpy(&to->array[at], &from->array[source], (count) * sizeof *to->array);
 #define OF_VERTICES(array, width, mended) COPY(array, a, b, size)
 #define OF_STRANDS(array, width, mended)  COPY(array, t, s, 1)
     STRANDS_ARRAYS_OF_VERTICES(OF_VERTICES)
@@ -154,9 +156,8 @@ Result strands_pick(Strands *strands, const uint32_t *which, uint32_t count, Err
     for (uint32_t i = 0; i < count; i++) vertices += strands_size(strands, which[i]);
     if (vertices >= UINT32_MAX)
         return error_set(error, RESULT_FAILED, "more vertices than 32-bit indices hold");
-    Result result = strands_create(&other, count, (uint32_t)vertices, error);
-    if (result != RESULT_OK) return result;
-    if (!allocate_like(&other, strands)) {
+    TRY(strands_create(&other, count, (uint32_t)vertices, error));
+    if (!allocate_arrays(&other, strands, 1)) {
         strands_destroy(&other);
         return error_set(error, RESULT_FAILED, "no memory to pick %u strands", count);
     }
@@ -167,11 +168,6 @@ Result strands_pick(Strands *strands, const uint32_t *which, uint32_t count, Err
     strands_destroy(strands);
     *strands = other;
     return RESULT_OK;
-}
-
-Result strands_reorder(Strands *strands, const uint32_t *order, Error *error)
-{
-    return strands_pick(strands, order, strands->strand_count, error);
 }
 
 static int compare_numbers(const void *a, const void *b)
@@ -204,89 +200,37 @@ Result strands_shuffle(Strands *strands, uint32_t seed, Error *error)
                          strands->strand_count);
     Random random = random_create(seed, 0x73687566666c65); // "shuffle"
     random_permutation(&random, order, strands->strand_count);
-    Result result = strands_reorder(strands, order, error);
+    Result result = strands_pick(strands, order, strands->strand_count, error);
     free(order);
     return result;
 }
 
 // --- Several sets as one.
 
-// The arrays that a set may have or not.
-static const struct {
-    size_t offset, element;
-    bool of_strands; // else of vertices
-} OPTIONAL[] = {
-#define OF_VERTICES(array, width, mended) {offsetof(Strands, array), sizeof(float[width]), false},
-#define OF_STRANDS(array, width, mended)  {offsetof(Strands, array), sizeof(float[width]), true},
-    STRANDS_ARRAYS_OF_VERTICES(OF_VERTICES) STRANDS_ARRAYS_OF_STRANDS(OF_STRANDS)
-#undef OF_VERTICES
-#undef OF_STRANDS
-};
-
-static char **array_at(const Strands *strands, size_t offset)
-{
-    return (char **)(void *)((char *)strands + offset);
-}
-
-static bool join_array(Strands *all, const Strands *sets, uint32_t count, size_t which)
-{
-    size_t offset = OPTIONAL[which].offset, element = OPTIONAL[which].element;
-    bool of_strands = OPTIONAL[which].of_strands;
-    for (uint32_t i = 0; i < count; ++i)
-        if (!*array_at(&sets[i], offset)) return true;
-    char *joined = malloc((of_strands ? all->strand_count : all->vertex_count) * element + 1);
-    *array_at(all, offset) = joined;
-    for (uint32_t i = 0; joined && i < count; ++i) {
-        size_t size = (of_strands ? sets[i].strand_count : sets[i].vertex_count) * element;
-        memcpy(joined, *array_at(&sets[i], offset), size);
-        joined += size;
-    }
-    return *array_at(all, offset) != NULL;
-}
-
-static void join_positions(Strands *all, const Strands *sets, uint32_t count)
-{
-    uint32_t s = 0, v = 0;
-    for (uint32_t i = 0; i < count; ++i) {
-        for (uint32_t k = 0; k < sets[i].strand_count; ++k) all->first[s++] = v + sets[i].first[k];
-        memcpy(all->position + v, sets[i].position, sets[i].vertex_count * sizeof *all->position);
-        v += sets[i].vertex_count;
-    }
-    all->first[s] = v;
-}
-
-static void join_wishes(Strands *all, const Strands *sets, uint32_t count)
-{
-    bool same = count > 0, fixed = count > 0;
-    for (uint32_t i = 0; i < count; ++i) {
-        same = same && sets[i].followers == sets[0].followers &&
-               sets[i].follower_radius == sets[0].follower_radius;
-        fixed = fixed && sets[i].both_ends_fixed;
-    }
-    all->followers = same ? sets[0].followers : 0;
-    all->follower_radius = same ? sets[0].follower_radius : 0.0f;
-    all->both_ends_fixed = fixed;
-}
-
 Result strands_join(Strands *all, const Strands *sets, uint32_t count, Error *error)
 {
     uint64_t strands = 0, vertices = 0;
+    bool same = count > 0, fixed = count > 0;
     *all = (Strands){0};
     for (uint32_t i = 0; i < count; ++i) {
         strands += sets[i].strand_count;
         vertices += sets[i].vertex_count;
+        same = same && sets[i].followers == sets[0].followers &&
+               sets[i].follower_radius == sets[0].follower_radius;
+        fixed = fixed && sets[i].both_ends_fixed;
     }
     if (strands >= UINT32_MAX || vertices >= UINT32_MAX)
         return error_set(error, RESULT_FAILED, "more vertices than a hair file holds");
-    Result result = strands_create(all, (uint32_t)strands, (uint32_t)vertices, error);
-    if (result != RESULT_OK) return result;
-    join_positions(all, sets, count);
-    join_wishes(all, sets, count);
-    bool good = true;
-    for (size_t i = 0; i < sizeof OPTIONAL / sizeof *OPTIONAL && good; ++i)
-        good = join_array(all, sets, count, i);
-    if (good) return RESULT_OK;
-    strands_destroy(all);
-    return error_set(error, RESULT_FAILED, "no memory for %llu strands",
-                     (unsigned long long)strands);
+    TRY(strands_create(all, (uint32_t)strands, (uint32_t)vertices, error));
+    if (!allocate_arrays(all, sets, count)) {
+        strands_destroy(all);
+        return error_set(error, RESULT_FAILED, "no memory for %llu strands",
+                         (unsigned long long)strands);
+    }
+    for (uint32_t i = 0, to = 0; i < count; ++i)
+        for (uint32_t s = 0; s < sets[i].strand_count; ++s) copy_strand(all, to++, &sets[i], s);
+    all->followers = same ? sets[0].followers : 0;
+    all->follower_radius = same ? sets[0].follower_radius : 0.0f;
+    all->both_ends_fixed = fixed;
+    return RESULT_OK;
 }

@@ -10,7 +10,7 @@
 // is the root that is fixed.
 void strands_reverse(Strands *strands);
 
-// So many passes in which every vertex but root and tip goes half-way to the middle between its
+// Smoothing passes: in each, every vertex but root and tip goes half-way to the middle between its
 // neighbours: a binomial filter (1/4, 1/2, 1/4), after n passes close to a Gaussian of variance
 // n / 2 vertices squared. Strands become shorter by what is smoothed away.
 void strands_smooth(Strands *strands, uint32_t passes);
@@ -32,18 +32,14 @@ StrandsMove strands_move_rotation(int axis, double angle_deg);
 // followers' radius are scaled, too.
 void strands_move(Strands *strands, const StrandsMove *move);
 
-// To another unit and axis for writing: positions in units of so many metres, with z up (x, -z, y)
+// To another unit and axis for writing: positions in units of `metres`, with z up (x, -z, y)
 // or y up. The inverse of what reading with that unit and axis does.
 void strands_to_unit(Strands *strands, double metres, bool up_z);
 
 // --- Which strands, and in what order.
 
-// Strand i becomes what strand order[i] was, with all its attributes; `order` is a permutation of
-// 0 .. strand_count - 1. RESULT_FAILED when memory is short; then nothing has changed.
-Result strands_reorder(Strands *strands, const uint32_t *order, Error *error);
-
-// Strand i < count becomes what strand which[i] was; those that are not named are gone. Errors as
-// above.
+// Strand i < count becomes what strand which[i] was; those that are not named are gone.
+// RESULT_FAILED when memory is short; then nothing has changed.
 Result strands_pick(Strands *strands, const uint32_t *which, uint32_t count, Error *error);
 
 // Keeps a random share (0 .. 1) of the strands, at least one, in their order; the same ones for the

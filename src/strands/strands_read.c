@@ -34,7 +34,8 @@ static Result refuse_unknown(Reader *reader)
 
 // --- Unit.
 
-// Diagonal of the box around all usable vertices and, if told, the origin, in the file's unit.
+// Diagonal of the box around all usable vertices and, if `with_origin`, the origin, in the file's
+// unit.
 static double measure_diagonal(const FormatSource *source, bool with_origin)
 {
     double scale = source->scale != 0.0 ? fabs(source->scale) : 1.0, square = 0.0;
@@ -301,7 +302,7 @@ static Result refuse_defects(const StrandsReport *report, const char *name, Erro
     return error_set(error, RESULT_BAD_INPUT, "%s (refused: --strict)", text);
 }
 
-// The report is not printed for a file that leaves nothing, so its first defect is told here.
+// The report is not printed for a file that leaves nothing, so its first defect is named here.
 static Result refuse_empty(const StrandsReport *report, const char *name, Error *error)
 {
     char text[900];
@@ -314,19 +315,17 @@ static Result refuse_empty(const StrandsReport *report, const char *name, Error 
 static Result finish(FormatSource *source, const char *name, const StrandsReadOptions *options,
                      StrandsReport *report, Error *error)
 {
-    float told = options->unit != 0.0f ? options->unit : source->unit;
-    report->unit_guessed = told == 0.0f;
-    report->unit_used = report->unit_guessed ? guess_unit(source, report->kind) : told;
+    float known = options->unit != 0.0f ? options->unit : source->unit;
+    report->unit_guessed = known == 0.0f;
+    report->unit_used = report->unit_guessed ? guess_unit(source, report->kind) : known;
     convert(source, (double)report->unit_used, options->up_z || source->up_z);
-    Result result = mend(source, name, report, error);
-    Strands *strands = &source->strands;
-    if (result == RESULT_OK && source->shuffle && strands->strand_count > 1)
-        result = strands_shuffle(strands, options->seed, error);
-    if (result == RESULT_OK) result = strands_report_measure(report, strands, error);
-    if (result == RESULT_OK && options->strict) result = refuse_defects(report, name, error);
-    if (result == RESULT_OK && strands->strand_count == 0)
-        result = refuse_empty(report, name, error);
-    return result;
+    TRY(mend(source, name, report, error));
+    const Strands *strands = &source->strands;
+    if (source->shuffle && strands->strand_count > 1)
+        TRY(strands_shuffle(&source->strands, options->seed, error));
+    TRY(strands_report_measure(report, strands, error));
+    if (options->strict) TRY(refuse_defects(report, name, error));
+    return strands->strand_count ? RESULT_OK : refuse_empty(report, name, error);
 }
 
 Result strands_read_bytes(Strands *strands, const char *name, const Bytes *bytes,
@@ -363,9 +362,8 @@ Result strands_read(Strands *strands, const char *path, const StrandsReadOptions
     *strands = (Strands){0};
     if (report) *report = (StrandsReport){.kind = FORMAT_KINDS};
     Bytes bytes;
-    Result result = bytes_read_file(&bytes, path, error);
-    if (result != RESULT_OK) return result;
-    result = strands_read_bytes(strands, path, &bytes, options, report, error);
+    TRY(bytes_read_file(&bytes, path, error));
+    Result result = strands_read_bytes(strands, path, &bytes, options, report, error);
     bytes_destroy(&bytes);
     return result;
 }

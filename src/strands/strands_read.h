@@ -20,7 +20,7 @@ typedef struct StrandsReadOptions {
 // `report` (may be NULL); nothing is dropped, padded or cut without being counted there. Strands
 // come in the file's order unless the file asks for a shuffle.
 //
-// A unit of 0 is the one that the file tells (USD), or guessed. TressFX 2 text is in centimetres,
+// A unit of 0 is the one that the file states (USD), or guessed. TressFX 2 text is in centimetres,
 // unless all of it lies within 5 units of the origin's box, which is metres, as this program writes
 // it. For the others it is the one of m, cm and mm that brings the diagonal of the vertices' box
 // nearest to 0.5 m by ratio: below 5 units m, below 158 cm, else mm.

@@ -94,7 +94,7 @@ Result strands_report_measure(StrandsReport *report, const Strands *strands, Err
     return result;
 }
 
-// --- Telling.
+// --- Printing.
 
 bool strands_report_is_clean(const StrandsReport *report)
 {
@@ -154,7 +154,7 @@ static void print_unit(const StrandsReport *report, FILE *stream)
 {
     fprintf(stream, "  unit      %.6g m", (double)report->unit_used);
     if (!report->unit_guessed)
-        fprintf(stream, " as told\n");
+        fprintf(stream, " as given\n");
     else if (FORMAT_TABLE[report->kind]->centimetres && report->unit_used != 1.0f)
         fprintf(stream, ", a guess: TressFX 2 assets are in centimetres (--unit says otherwise)\n");
     else

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What was found in a file of strands, and how that is told.
+// What was found in a file of strands, and how it is printed.
 #pragma once
 
 #include "strands/formats/format.h"
@@ -41,7 +41,7 @@ typedef struct StrandsReport {
     float low[3], high[3];                                      // box of all vertices, metres
 } StrandsReport;
 
-// Fills what the mended strands tell: counts, sizes, lengths, box, shared roots.
+// Fills what the mended strands have: counts, sizes, lengths, box, shared roots.
 Result strands_report_measure(StrandsReport *report, const Strands *strands, Error *error);
 
 // No defects at all.

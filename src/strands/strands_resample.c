@@ -164,8 +164,7 @@ static Result make_room(Strands *to, const Strands *from, const ResampleOptions 
     if (all >= UINT32_MAX)
         return error_set(error, RESULT_FAILED, "%.0f vertices are more than 32-bit indices hold",
                          all);
-    Result result = strands_create(to, from->strand_count, (uint32_t)all, error);
-    if (result != RESULT_OK) return result;
+    TRY(strands_create(to, from->strand_count, (uint32_t)all, error));
     for (uint32_t s = 0; s < from->strand_count; s++)
         to->first[s + 1] = to->first[s] + (uint32_t)count_wanted(from, s, options);
     bool good = true;

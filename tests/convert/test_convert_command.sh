@@ -7,7 +7,7 @@ program=$bin/tractrix-convert
 curls=assets/curls.tfx fur=assets/fur.tfx
 x=$work/x
 
-claim "without an order it tells what files are"
+claim "without an order it reports what files are"
 run 0 $curls; says "TressFX 4 binary"; says "defects   none"; silent err
 run 0 $curls $fur; says "$curls:"; says "$fur:"
 
@@ -22,7 +22,7 @@ run 0 "$x.tfx3" --unit m -q -o "$work/a.tfx" --format tfx4
 run 0 "$x.text" --unit m -q -o "$work/b.tfx" --format tfx4
 equal "$work/a.tfx" "$work/b.tfx" # with texture coordinates
 
-claim "what a format can't hold is told in one line"
+claim "what a format can't hold is reported in one line"
 run 0 $curls -o "$x.obj"; says "x.obj: Wavefront lines leaves out: texture coordinates of strands"; one_line
 run 0 $curls -o "$x.usda"; silent err; says "x.usda: USD (.usda)"
 run 0 $curls -q -o "$x.obj"; silent err
@@ -36,7 +36,7 @@ claim "units and axes of what is written are those that are asked for"
 run 0 $curls --unit m -q -o "$x.data" --to-unit 0.25 --to-up z
 run 0 "$x.data" -q --unit 0.25 --up z -o "$work/again.data"
 run 0 $curls --unit m -q -o "$work/direct.data"; equal "$work/again.data" "$work/direct.data"
-run 0 $curls -q -o "$x.usda" --to-unit cm --to-up z; in_file "$x.usda" "metersPerUnit = 0.01"; in_file "$x.usda" 'upAxis = "Z"'; run 0 "$x.usda"; says "unit      0.01 m as told"
+run 0 $curls -q -o "$x.usda" --to-unit cm --to-up z; in_file "$x.usda" "metersPerUnit = 0.01"; in_file "$x.usda" 'upAxis = "Z"'; run 0 "$x.usda"; says "unit      0.01 m as given"
 
 claim "steps are done in their order"
 run 0 $curls -q -o "$work/a.data" --translate 1,0,0 --rotate y,90 --scale 2
@@ -59,12 +59,12 @@ run 0 $curls --resample-spline 40 --smooth 3 --spacing 0.01 --min-length 0.001 -
 run 1 $curls --min-length 50 -o "$work/none.hair"; says "no strand is as long as 50 m"; one_line; none "$work/none.hair"
 run 1 $curls --min-length 0.0001 --spacing 0.000001 -o "$work/none.hair"; says "at most 65535"; one_line; none "$work/none.hair"
 
-claim "several files become one; what only some have is told"
+claim "several files become one; what only some have is reported"
 run 0 $curls $fur --unit m -o "$work/both.data"
 run 0 $curls -q -o "$x.tfx"; run 0 $fur -q -o "$work/y.hair"
 run 0 "$x.tfx" "$work/y.hair" -o "$work/z.usda"; says "leaves out: texture coordinates of strands"; one_line
 
-claim "dirty files are mended and that is told; --strict refuses them"
+claim "dirty files are mended and reported; --strict refuses them"
 cat >"$work/dirty.tfx" <<'END'
 numStrands 5
 is sorted 1

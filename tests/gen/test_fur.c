@@ -186,7 +186,7 @@ static void clumps_gather_tips(void **state)
 // degrees it is along the normal. Normals of the mesh are means of facets', whose normals are
 // within half of their diagonal, 2.5 sqrt(2) degrees = 0.062, of the sphere's. Facets lie up to 0.1
 // (1 - cos 2.5 deg) m = 0.1 mm below it: an edge in the way turns a segment of 2 mm up by 0.1, and
-// 2 % more (fur_cut).
+// 2 % more (fur_weave_cut).
 static void hair_leaves_as_it_is_combed(void **state)
 {
     (void)state;
@@ -219,9 +219,9 @@ static void hair_leaves_as_it_is_combed(void **state)
     shapes_destroy_scalp(&scalp);
 }
 
-// A picture that says u everywhere: along the circles of latitude, turned up by at most 0.1 as
+// An image that says u everywhere: along the circles of latitude, turned up by at most 0.1 as
 // above.
-static void pictures_comb_along_texture_coordinates(void **state)
+static void images_comb_along_texture_coordinates(void **state)
 {
     Scalp scalp;
     Image image;
@@ -327,7 +327,7 @@ int main(void)
         cmocka_unit_test(equal_seeds_give_equal_hair),
         cmocka_unit_test(clumps_gather_tips),
         cmocka_unit_test(hair_leaves_as_it_is_combed),
-        WITH_FILES(pictures_comb_along_texture_coordinates),
+        WITH_FILES(images_comb_along_texture_coordinates),
         cmocka_unit_test(curls_wind),
         cmocka_unit_test(what_does_not_go_together_is_named),
     };

@@ -126,7 +126,7 @@ static void roots_are_as_dense_as_the_map_says(void **state)
 
 // White where u is between 0.25 and 0.75: the front half of the sphere. A texel's value reaches
 // into its neighbours.
-static void pictures_lie_on_texture_coordinates(void **state)
+static void images_lie_on_texture_coordinates(void **state)
 {
     enum { SIZE = 64, COUNT = 500 };
     static SurfacePoint roots[COUNT];
@@ -159,7 +159,7 @@ int main(void)
         cmocka_unit_test(roots_are_even_within_a_triangle),
         cmocka_unit_test(roots_keep_away_from_each_other),
         cmocka_unit_test(roots_are_as_dense_as_the_map_says),
-        WITH_FILES(pictures_lie_on_texture_coordinates),
+        WITH_FILES(images_lie_on_texture_coordinates),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

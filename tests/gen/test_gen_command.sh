@@ -18,7 +18,7 @@ for file in assets/*.tfx assets/*.obj; do
     if [ -e "$work/${file#assets/}" ]; then equal "$file" "$work/${file#assets/}"; else bad "does not make $file"; fi
 done
 
-claim "values are judged, and no option is passed over"
+claim "values are checked, and no option is ignored"
 refused 2 "--kind: got 'crls', expected random, straight, curls or fur (nearest: curls)" --kind crls
 refused 2 "--knid: no such option: did you mean '--kind'?" --knid curls
 refused 2 "--count: got '0', expected a whole number from 1 to 10000000" --count 0
@@ -64,7 +64,7 @@ printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 2\n' >"$work/part.obj"
 refused 3 "line.obj: no triangle has an area" fur "$work/line.obj"
 refused 3 "empty.obj:2: no faces" fur "$work/empty.obj"
 refused 3 "none.obj" fur "$work/none.obj"
-refused 2 "a picture needs texture coordinates, which the mesh lacks" fur "$work/part.obj" --density "$work/none.png"
+refused 2 "an image needs texture coordinates, which the mesh lacks" fur "$work/part.obj" --density "$work/none.png"
 refused 3 "--density: " fur assets/ball.obj --density "$work/none.png"
 refused 2 "--density is nowhere above 0" fur assets/ball.obj --density 0
 refused 2 "--comb: expected X,Y,Z" fur assets/ball.obj --comb 1,2

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Automatic cameras: hair stays in the picture, whatever it does, and fills it.
+// Automatic cameras: hair stays in the frame, whatever it does, and fills it.
 #include "scene/camera.h"
 #include "strands/paint.h"
 
@@ -70,7 +70,7 @@ static void view_of(Shot *shot, int frame, View *view)
 }
 
 // Largest |x/w| or |y/w| of the strands, carried by `translation`; all must be between the planes.
-static float extent_in_picture(const Shot *shot, const View *view, const float translation[3])
+static float extent_in_frame(const Shot *shot, const View *view, const float translation[3])
 {
     float most = 0;
     mat4 from_world;
@@ -87,7 +87,7 @@ static float extent_in_picture(const Shot *shot, const View *view, const float t
 
 static const float STILL[3] = {0, 0, 0};
 
-static void hair_stays_in_the_picture_and_fills_it(void **state)
+static void hair_stays_in_the_frame_and_fills_it(void **state)
 {
     (void)state;
     for (int kind = 0; kind < 3; ++kind) { // still, on a turntable, on a moving head
@@ -108,7 +108,7 @@ static void hair_stays_in_the_picture_and_fills_it(void **state)
             float rotation[4], translation[3];
             view_of(&shot, frame, &view);
             rigid_track_evaluate(&shot.scene.head, frame / 60.0, rotation, translation);
-            float extent = extent_in_picture(&shot, &view, translation);
+            float extent = extent_in_frame(&shot, &view, translation);
             assert_true(extent <= 1);
             most = fmaxf(most, extent);
         }
@@ -183,7 +183,7 @@ static void the_unit_does_not_change_the_picture(void **state)
     frame_shot(&hundred);
     view_of(&one, 0, &a);
     view_of(&hundred, 0, &b);
-    assert_true(fabsf(extent_in_picture(&one, &a, STILL) - extent_in_picture(&hundred, &b, STILL)) <
+    assert_true(fabsf(extent_in_frame(&one, &a, STILL) - extent_in_frame(&hundred, &b, STILL)) <
                 1e-4f);
     assert_true(
         fabsf(100 * paint_auto_radius(&one.strands, 0) / paint_auto_radius(&hundred.strands, 0) -
@@ -267,7 +267,7 @@ static void denser_hair_is_drawn_finer(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(hair_stays_in_the_picture_and_fills_it),
+        cmocka_unit_test(hair_stays_in_the_frame_and_fills_it),
         cmocka_unit_test(room_is_left_for_hair_that_falls),
         cmocka_unit_test(turntable_keeps_its_distance_and_comes_round),
         cmocka_unit_test(frames_are_repeatable),

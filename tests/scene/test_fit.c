@@ -74,7 +74,7 @@ static void fit(Shot *shot, float radius)
     fit_destroy(&fit);
 }
 
-// The largest |x| and |y| in the pictures of all frames, 1 at their edges, of points that are moved
+// The largest |x| and |y| in all frames, 1 at their edges, of points that are moved
 // by `radius` to each side.
 static void find_extent(const Shot *shot, float radius, float most[2])
 {
@@ -143,7 +143,7 @@ static float distance_of(const Shot *shot)
 }
 
 // No target nearby lets the camera come nearer: none higher or lower, and where only the sides
-// count, in a narrow picture taken from the height of the target, none beside it. The target is
+// count, in a narrow frame taken from the height of the target, none beside it. The target is
 // found to 1e-5 of the search's range, here 4 m, and the distance changes by at most 40 times as
 // much (scale / slope).
 static void of_whole_turns_the_target_is_the_best_one(void **state)

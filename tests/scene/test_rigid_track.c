@@ -123,7 +123,7 @@ static void formulas_move_in_metres_and_turn_in_degrees(void **state)
     rigid_track_destroy(&track);
 }
 
-static void a_formula_that_fails_somewhere_is_told_and_cut(void **state)
+static void a_formula_that_fails_somewhere_is_reported_and_cut(void **state)
 {
     (void)state;
     RigidTrack track = {0};
@@ -164,7 +164,7 @@ int main(void)
         cmocka_unit_test(translation_comes_after_the_turn),
         cmocka_unit_test(turns_of_more_than_half_a_circle_are_made_as_written),
         cmocka_unit_test(formulas_move_in_metres_and_turn_in_degrees),
-        cmocka_unit_test(a_formula_that_fails_somewhere_is_told_and_cut),
+        cmocka_unit_test(a_formula_that_fails_somewhere_is_reported_and_cut),
         cmocka_unit_test(what_is_no_formula_of_t_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // How a turntable turns.
 #include "scene/camera.h"
-#include "scene/turntable.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -24,7 +23,7 @@ static RunParams table(float turn, float ease_in, float ease_out)
 // Degrees from frame to frame + 1; a whole turn may lie between them.
 static double step_at(const RunParams *run, int frame)
 {
-    return remainder(turntable_angle_deg(run, frame + 1) - turntable_angle_deg(run, frame), 360);
+    return remainder(camera_turntable_deg(run, frame + 1) - camera_turntable_deg(run, frame), 360);
 }
 
 static const float EASES[][2] = {{0, 0}, {0.3f, 0}, {0, 0.3f}, {0.25f, 0.5f}, {1, 0}, {0.5f, 0.5f}};
@@ -36,8 +35,8 @@ static void whole_turns_come_back_to_the_bit(void **state)
     for (int i = 0; i < EASE_COUNT; ++i)
         for (int turns = -2; turns <= 2; ++turns) {
             RunParams run = table(360.0f * (float)turns, EASES[i][0], EASES[i][1]);
-            assert_true(turntable_angle_deg(&run, 0) == 0);
-            assert_true(turntable_angle_deg(&run, FRAMES) == 0);
+            assert_true(camera_turntable_deg(&run, 0) == 0);
+            assert_true(camera_turntable_deg(&run, FRAMES) == 0);
         }
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Changes and figures of strands.
+#include "convert/figures.h"
 #include "gen/strands_make.h"
 #include "strands/strands.h"
 #include "strands/strands_edit.h"
-#include "strands/strands_figures.h"
 #include "strands/strands_read.h"
 #include "strands/strands_resample.h"
 #include "support/temporary.h"
@@ -230,8 +230,8 @@ static void figures_of_a_circle_are_known(void **state)
 {
     (void)state;
     Strands strands = make_strand(91, quarter_circle); // a degree each
-    StrandsFigures figures;
-    assert_int_equal(strands_figures_measure(&figures, &strands, NULL), RESULT_OK);
+    Figures figures;
+    assert_int_equal(figures_measure(&figures, &strands, NULL), RESULT_OK);
     const Figure *turn = &figures.figures[FIGURE_TURN];
     double w = 3.141592653589793 / 180, chord = 2 * sin(w / 2);
     // Vertices are rounded by 6e-8, and a chord is 0.017: a turn is off by up to 2e-5.
@@ -243,7 +243,7 @@ static void figures_of_a_circle_are_known(void **state)
     assert_int_equal(figures.figures[FIGURE_ROOTS].count, 0); // there is no other root
     assert_int_equal(figures.size_count, 1);
     assert_int_equal(figures.sizes[0].size, 91);
-    strands_figures_destroy(&figures);
+    figures_destroy(&figures);
     strands_destroy(&strands);
 }
 
@@ -258,15 +258,15 @@ static void figures_count_vertices_and_find_roots(void **state)
         strands.position[v][0] = (float)(v / 2 < 3 ? v / 2 : 3) * (float)(v / 2 < 3 ? v / 2 : 3);
         strands.position[v][1] = (float)(v == 1 || v == 3 || v == 5 ? 1 : v > 6 ? v - 6 : 0);
     }
-    StrandsFigures figures;
-    assert_int_equal(strands_figures_measure(&figures, &strands, NULL), RESULT_OK);
+    Figures figures;
+    assert_int_equal(figures_measure(&figures, &strands, NULL), RESULT_OK);
     assert_int_equal(figures.size_count, 2);
     assert_int_equal(figures.sizes[0].strands, 3);
     assert_int_equal(figures.sizes[1].size, 3);
     const Figure *roots = &figures.figures[FIGURE_ROOTS]; // at 0, 1, 4, 9
     assert_true(roots->min == 1 && roots->max == 5 && roots->mean == 2.5);
     assert_true(figures.figures[FIGURE_SIZE].mean == 2.25 && figures.total_length == 5);
-    strands_figures_destroy(&figures);
+    figures_destroy(&figures);
     strands_destroy(&strands);
 }
 

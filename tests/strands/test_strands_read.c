@@ -178,7 +178,7 @@ static void dirty_strands_are_mended_and_counted(void **state)
     strands_destroy(&strands);
 }
 
-static void each_kind_of_mending_is_told_in_one_line(void **state)
+static void each_kind_of_mending_is_reported_in_one_line(void **state)
 {
     (void)state;
     StrandsReport report;
@@ -368,7 +368,7 @@ int main(void)
         cmocka_unit_test(numbers_are_rounded_as_strtof_does),
         cmocka_unit_test(malformed_text_is_refused_with_its_line),
         cmocka_unit_test(dirty_strands_are_mended_and_counted),
-        cmocka_unit_test(each_kind_of_mending_is_told_in_one_line),
+        cmocka_unit_test(each_kind_of_mending_is_reported_in_one_line),
         cmocka_unit_test(strict_refuses_what_would_be_mended),
         cmocka_unit_test(strands_over_the_files_own_limit_stay_whole),
         cmocka_unit_test(unsorted_strands_are_shuffled_whole_and_repeatably),

@@ -161,7 +161,7 @@ static void malformed_binaries_are_refused_with_their_byte(void **state)
     }
 }
 
-static void bytes_behind_the_arrays_are_told(void **state)
+static void bytes_behind_the_arrays_are_reported(void **state)
 {
     Bytes bytes = make_file(state, FORMAT_TFX4);
     bytes.data = realloc(bytes.data, bytes.size + 8);
@@ -222,7 +222,7 @@ int main(void)
                                         temporary_destroy),
         cmocka_unit_test_setup_teardown(malformed_binaries_are_refused_with_their_byte,
                                         temporary_create, temporary_destroy),
-        cmocka_unit_test_setup_teardown(bytes_behind_the_arrays_are_told, temporary_create,
+        cmocka_unit_test_setup_teardown(bytes_behind_the_arrays_are_reported, temporary_create,
                                         temporary_destroy),
         cmocka_unit_test_setup_teardown(merged_vertices_take_their_attributes_along,
                                         temporary_create, temporary_destroy),

@@ -94,7 +94,7 @@ FormatKind format_choose(const char *name, const Strands *strands);
 Result format_target(Target *target, const char *text, Error *error);
 
 // Writes a file, complete or not at all; coordinates are metres, y up. What the format can't hold
-// is left out (`features` tells). RESULT_FAILED for no strands, strands that it can't hold, a
+// is left out (see `features`). RESULT_FAILED for no strands, strands that it can't hold, a
 // format that is only read, and with the reason if writing fails.
 Result format_write(const char *path, FormatKind kind, const Strands *strands, Error *error);
 

@@ -101,8 +101,7 @@ static Result make_room(Obj *obj)
     if (obj->lines == 0) return reader_fail(reader, "a Wavefront file without lines (l)");
     if (obj->vertices >= UINT32_MAX || obj->lines >= UINT32_MAX)
         return reader_fail(reader, "more vertices or lines than 32-bit indices hold");
-    Result result = format_source_create(obj->source, reader, (uint32_t)obj->lines, obj->corners);
-    if (result != RESULT_OK) return result;
+    TRY(format_source_create(obj->source, reader, (uint32_t)obj->lines, obj->corners));
     obj->position = malloc(obj->vertices * sizeof *obj->position + 1);
     obj->line = malloc(obj->vertices * sizeof *obj->line + 1);
     obj->source->vertex_line = calloc(obj->corners + 1, sizeof *obj->source->vertex_line);
@@ -110,10 +109,10 @@ static Result make_room(Obj *obj)
     return good ? RESULT_OK : reader_fail_memory(reader);
 }
 
-// Reads `v` and `l` statements and passes over all others. Indices are from 1 or negative from the
+// Reads `v` and `l` statements and ignores all others. Indices are from 1 or negative from the
 // last vertex; corners may be v or v/t. An `l` that begins at the vertex at which the one before it
 // ended goes on with that strand, as programs that write each edge for itself have it. Vertices
-// that no line uses are passed over.
+// that no line uses are ignored.
 static Result read(FormatSource *source, Reader *reader)
 {
     Obj obj = {.reader = reader, .source = source, .last = -1};

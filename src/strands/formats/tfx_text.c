@@ -19,7 +19,7 @@ typedef struct Head {
     uint32_t max_vertices;
     uint32_t followers;
     float follower_radius;
-    bool counted, sorted, sorting_told, ends_fixed;
+    bool counted, sorted, sorting_given, ends_fixed;
     float version, scale, rotation[3], translation[3];
 } Head;
 
@@ -109,14 +109,14 @@ static void read_parameter(Reader *reader, Head *head)
         reader_expect(reader, "is");
         reader_expect(reader, "sorted");
         head->sorted = read_flag(reader, "0 or 1 for is sorted");
-        head->sorting_told = true;
+        head->sorting_given = true;
     }
 }
 
 static Head read_head(Reader *reader)
 {
     Head head = {.scale = 1.0f};
-    while (reader_ok(reader) && !(head.counted && head.sorting_told)) {
+    while (reader_ok(reader) && !(head.counted && head.sorting_given)) {
         if (reader_ended(reader) || reader_line_ended(reader)) {
             reader_fail_expected(reader, head.counted ? "'is sorted'" : "'numStrands'");
             break;

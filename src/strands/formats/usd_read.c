@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Reads `.usda`: all BasisCurves prims of type linear, by their points' value or first time sample.
-// Layers, prims and properties of other kinds are passed over. Attributes have one value, or one
-// for each strand or vertex, which their number tells; of several prims those are kept that all
+// Layers, prims and properties of other kinds are ignored. Attributes have one value, or one
+// for each strand or vertex, as their number shows; of several prims those are kept that all
 // have. Fails at a transform of curves or above them, at cubic or periodic curves and at indexed
 // primvars, since passing over these would give other hair.
 #include "strands/formats/format.h"
@@ -73,7 +73,7 @@ static float *spread(Reader *reader, const UsdCurves *curves, int array, const S
     return spread;
 }
 
-// The values themselves, of which there must be so many.
+// The values themselves, of which there must be `count`.
 static void *keep(Reader *reader, UsdCurves *curves, int array, size_t count)
 {
     UsdValues *values = &curves->array[array];
@@ -227,7 +227,7 @@ static bool read_property(Usd *usd, UsdCurves *curves, char name[USD_WORD_SIZE])
     return strncmp(name, "xformOp:", 8) == 0;
 }
 
-// What tractrix itself puts into customData; the rest is passed over.
+// What tractrix itself puts into customData; the rest is ignored.
 static void read_metadata(Reader *reader, UsdCurves *curves)
 {
     char word[USD_WORD_SIZE];

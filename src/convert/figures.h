@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Statistics of strands.
+// Statistics of strands: measured, printed and as JSON.
 #pragma once
 
 #include "strands/strands.h"
+
+#include <jansson.h>
+#include <stdio.h>
 
 // Of one quantity over all strands, segments, ...; all 0 if there are none.
 typedef struct Figure {
@@ -27,19 +30,21 @@ typedef struct SizeCount {
     uint32_t size, strands;
 } SizeCount;
 
-typedef struct StrandsFigures {
+typedef struct Figures {
     uint32_t strands, vertices;
     Figure figures[FIGURE_KINDS];
     double total_length;   // m
     float low[3], high[3]; // box of all vertices, m
     SizeCount *sizes;      // [size_count], owned, by rising size
     uint32_t size_count;
-} StrandsFigures;
+} Figures;
 
 // RESULT_FAILED when memory is short. A zeroed struct may be destroyed.
-Result strands_figures_measure(StrandsFigures *figures, const Strands *strands, Error *error);
-void strands_figures_destroy(StrandsFigures *figures);
+Result figures_measure(Figures *figures, const Strands *strands, Error *error);
+void figures_destroy(Figures *figures);
 
-// "length", and its unit: "m" or "" for a number without one.
-const char *figure_name(FigureKind kind);
-const char *figure_unit(FigureKind kind);
+// Prints a table of them, and how many strands have how many vertices.
+void figures_print(const Figures *figures, FILE *stream);
+
+// NULL when memory is short.
+json_t *figures_to_json(const Figures *figures);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "strands/strands_figures.h"
+#include "convert/figures.h"
 
 #include "base/double3.h"
 #include "base/nearest.h"
@@ -8,18 +8,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *figure_name(FigureKind kind)
-{
-    static const char *const names[FIGURE_KINDS] = {
-        "vertices", "length", "reach", "segment", "turn", "curvature", "root_spacing"};
-    return names[kind];
-}
-
-const char *figure_unit(FigureKind kind)
-{
-    static const char *const units[FIGURE_KINDS] = {"", "m", "", "m", "deg", "1/m", "m"};
-    return units[kind];
-}
+static const struct {
+    const char *name, *unit, *title;
+} KINDS[FIGURE_KINDS] = {
+    {"vertices", "", "vertices"},
+    {"length", "m", "length, m"},
+    {"reach", "", "reach"},
+    {"segment", "m", "segment, m"},
+    {"turn", "deg", "turn, deg"},
+    {"curvature", "1/m", "curvature, 1/m"},
+    {"root_spacing", "m", "root_spacing, m"},
+};
 
 // --- Quantities.
 
@@ -114,7 +113,7 @@ static Figure summarise(double *values, size_t count)
 }
 
 // From sorted sizes.
-static Result count_sizes(StrandsFigures *figures, const double *sizes, size_t count, Error *error)
+static Result count_sizes(Figures *figures, const double *sizes, size_t count, Error *error)
 {
     figures->sizes = malloc(count * sizeof *figures->sizes + 1);
     if (!figures->sizes) return error_set(error, RESULT_FAILED, "no memory to count vertices");
@@ -128,7 +127,7 @@ static Result count_sizes(StrandsFigures *figures, const double *sizes, size_t c
     return RESULT_OK;
 }
 
-static Result measure_kind(StrandsFigures *figures, const Strands *strands, FigureKind kind,
+static Result measure_kind(Figures *figures, const Strands *strands, FigureKind kind,
                            double *values, Error *error)
 {
     size_t count = 0;
@@ -144,10 +143,9 @@ static Result measure_kind(StrandsFigures *figures, const Strands *strands, Figu
     return result;
 }
 
-Result strands_figures_measure(StrandsFigures *figures, const Strands *strands, Error *error)
+Result figures_measure(Figures *figures, const Strands *strands, Error *error)
 {
-    *figures =
-        (StrandsFigures){.strands = strands->strand_count, .vertices = strands->vertex_count};
+    *figures = (Figures){.strands = strands->strand_count, .vertices = strands->vertex_count};
     strands_bounds(strands, figures->low, figures->high);
     double *values = malloc(((size_t)strands->vertex_count + 1) * sizeof *values);
     Result result = values ? RESULT_OK
@@ -161,8 +159,75 @@ Result strands_figures_measure(StrandsFigures *figures, const Strands *strands, 
     return result;
 }
 
-void strands_figures_destroy(StrandsFigures *figures)
+void figures_destroy(Figures *figures)
 {
     free(figures->sizes);
-    *figures = (StrandsFigures){0};
+    *figures = (Figures){0};
+}
+
+// --- Text and JSON.
+
+// Few rows for many sizes: equal ranges, of whole numbers.
+static void print_sizes(const Figures *figures, FILE *stream)
+{
+    enum { MOST_ROWS = 12, WIDEST = 40 };
+    uint32_t low = figures->sizes[0].size, high = figures->sizes[figures->size_count - 1].size;
+    uint32_t step = figures->size_count <= MOST_ROWS ? 1 : (high - low) / MOST_ROWS + 1;
+    fprintf(stream, "\nvertices      strands\n");
+    for (uint32_t i = 0; i < figures->size_count;) {
+        uint32_t from =
+            step == 1 ? figures->sizes[i].size : low + (figures->sizes[i].size - low) / step * step;
+        uint32_t to = from + step - 1 < high ? from + step - 1 : high, strands = 0;
+        for (; i < figures->size_count && figures->sizes[i].size <= to; ++i)
+            strands += figures->sizes[i].strands;
+        int bar = (int)((double)WIDEST * strands / figures->strands + 0.5);
+        char range[32];
+        snprintf(range, sizeof range, from == to ? "%u" : "%u-%u", from, to);
+        fprintf(stream, "%-11s %9u %.*s\n", range, strands, bar,
+                "########################################");
+    }
+}
+
+void figures_print(const Figures *figures, FILE *stream)
+{
+    fprintf(stream, "%u strands, %u vertices, %.6g m of hair\n", figures->strands,
+            figures->vertices, figures->total_length);
+    for (int axis = 0; axis < 3; ++axis)
+        fprintf(stream, "%c  %.6g .. %.6g m\n", "xyz"[axis], (double)figures -> low[axis],
+                (double)figures -> high[axis]);
+    fprintf(stream, "\n%-18s %11s %11s %11s %11s %11s %11s\n", "", "min", "5 %", "median", "95 %",
+            "max", "mean");
+    for (int kind = 0; kind < FIGURE_KINDS; ++kind) {
+        const Figure *f = &figures->figures[kind];
+        fprintf(stream, "%-18s %11.5g %11.5g %11.5g %11.5g %11.5g %11.5g\n", KINDS[kind].title,
+                f->min, f->low, f->median, f->high, f->max, f->mean);
+    }
+    if (figures->size_count) print_sizes(figures, stream);
+}
+
+static json_t *vector_to_json(const float vector[3])
+{
+    return json_pack("[fff]", (double)vector[0], (double)vector[1], (double)vector[2]);
+}
+
+json_t *figures_to_json(const Figures *figures)
+{
+    json_t *object =
+        json_pack("{si si sf so so}", "strands", figures->strands, "vertices", figures->vertices,
+                  "total_length_m", figures->total_length, "low_m", vector_to_json(figures->low),
+                  "high_m", vector_to_json(figures->high));
+    for (int kind = 0; kind < FIGURE_KINDS; ++kind) {
+        const Figure *f = &figures->figures[kind];
+        json_object_set_new(object, KINDS[kind].name,
+                            json_pack("{ss sI sf sf sf sf sf sf}", "unit", KINDS[kind].unit,
+                                      "count", (json_int_t)f->count, "min", f->min, "p5", f->low,
+                                      "median", f->median, "p95", f->high, "max", f->max, "mean",
+                                      f->mean));
+    }
+    json_t *sizes = json_array();
+    for (uint32_t i = 0; i < figures->size_count; ++i)
+        json_array_append_new(sizes, json_pack("{si si}", "vertices", figures->sizes[i].size,
+                                               "strands", figures->sizes[i].strands));
+    json_object_set_new(object, "sizes", sizes);
+    return object;
 }
