@@ -92,7 +92,8 @@ static double all_drag(const StressCase *stress, const SectionParams *params)
     return (double)params->drag;
 }
 
-// The range that docs/solvers.md states for its energy, with what is fixed in TressFX as it is.
+// The range that docs/solvers_rigid.md states for its energy, with what is fixed in TressFX as it
+// is.
 static bool is_stable_tressfx(const StressCase *stress, const SectionParams *params)
 {
     double dt = stress->value[STRESS_dt];
@@ -116,7 +117,7 @@ static void apply_promises(StressBound *bound, const StressCase *stress,
         }
     bool elastic = is(stress, "spring") || is(stress, "rope");
     if (elastic) lacks |= params->stretch_drawn ? LENGTHS : ENERGY; // which it draws
-    // The lower, the more it whips, and the more the shorter the steps (docs/solvers.md).
+    // The lower, the more it whips, and the more the shorter the steps (docs/solvers_rigid.md).
     if (is(stress, "dftl") && params->ftl_damping < 0.98f) lacks |= ENERGY;
     if (is(stress, "tressfx") && !is_stable_tressfx(stress, params)) lacks |= ENERGY | REST;
     if (lacks & ENERGY) bound->rise = -1;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // TressFX's solver in double precision, one strand on the CPU, written from the definitions
-// (docs/solvers.md) and not from the shader: in world coordinates, rotations by axis and angle,
-// linear systems by dense elimination.
+// (docs/solvers_rigid.md) and not from the shader: in world coordinates, rotations by axis and
+// angle, linear systems by dense elimination.
 #pragma once
 
 #include "support/twin.h"
