@@ -4,10 +4,7 @@
 #include "draw/draw.h"
 #include "draw/material.h"
 
-float sine_of(float cosine)
-{
-    return sqrt(max(1.0 - cosine * cosine, 0.0));
-}
+float sine_of(float cosine) { return sqrt(max(1.0 - cosine * cosine, 0.0)); }
 
 const int light_count = 1;
 vec3 lit_from = vec3(0.0);
@@ -18,10 +15,7 @@ vec3 light_reaching(int i, vec3 x, out vec3 to_light)
     return vec3(1.0 / 3.14159265);
 }
 
-vec3 light_around_fibre(vec3 tangent, vec3 to_eye, float eye)
-{
-    return vec3(0.0);
-}
+vec3 light_around_fibre(vec3 tangent, vec3 to_eye, float eye) { return vec3(0.0); }
 
 #include "draw/shade_marschner.glsl"
 
@@ -30,10 +24,7 @@ layout(std430, binding = 0) readonly buffer Directions
 {
     vec4 directions[];
 }; // to the light, to the eye
-layout(std430, binding = 1) writeonly buffer Colors
-{
-    vec4 colors[];
-};
+layout(std430, binding = 1) writeonly buffer Colors { vec4 colors[]; };
 
 void main()
 {

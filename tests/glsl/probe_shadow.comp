@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: MIT
 // For the tests: how much of light 0 reaches some points.
-#include "draw/shadow.glsl"
 #include "draw/shadow.h"
+#include "draw/shadow.glsl"
 
 layout(local_size_x = 8) in;
 layout(location = 0) uniform vec2 fibre; // that the points lie on
-layout(std430, binding = 0) readonly buffer Points
-{
-    vec4 points[];
-};
-layout(std430, binding = 1) writeonly buffer Shares
-{
-    float shares[];
-};
+layout(std430, binding = 0) readonly buffer Points { vec4 points[]; };
+layout(std430, binding = 1) writeonly buffer Shares { float shares[]; };
 
 void main()
 {
