@@ -95,8 +95,8 @@ bool store(int slot, End a, End b, float opacity)
     return seen;
 }
 
-int slot;  // of the strand's first ribbon
-int count; // of its ribbons so far
+int slot = 0;  // of the strand's first ribbon
+int count = 0; // of its ribbons so far
 // Of the ribbon that is not stored yet.
 End end = End(vec2(0.0), 0.0, 0.0, vec2(0.0), vec2(0.0), vec3(0.0));
 bool begun = false;
@@ -120,7 +120,6 @@ void main()
     if (strands.y != 0) row = int(texelFetch(listed, row + 2).x);
     int s = int(material.first_strand) + row;
     slot = first_slot + row * (count_points() - 1);
-    count = 0;
     walk_strand(s, texelFetch(strand_id, s).x);
     uint group = gl_WorkGroupID.x % 64u * 16u;
     atomicAdd(counts[group], uint(count));

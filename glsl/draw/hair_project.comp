@@ -61,8 +61,8 @@ void emit_segments(int first, int count)
     }
 }
 
-int first;              // place of the strand's root
-int count;              // of its points that are kept
+int first = 0;          // place of the strand's root
+int count = 0;          // of its points that are kept
 float from_root = -PAD; // of the walk's `kept`, px
 vec4 box = vec4(1e6);   // px: least x, y and what is least of -x, -y
 
@@ -92,7 +92,6 @@ void main()
     int s =
         int(material.first_strand) + (strands.y != 0 ? int(texelFetch(listed, row + 2).x) : row);
     first = row * count_points();
-    count = 0;
     Walk w = walk_strand(s, texelFetch(strand_id, s).x);
     vec2 next = direction(w.kept, w.last);
     float left = min(distance(w.kept.at.xy, w.last.at.xy), FAR);
