@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Shadows on the floor.
-#include "bench/shadow_reference.h"
+#include "reference/shadow_reference.h"
 #include "support/stage.h"
 
 #include <math.h>

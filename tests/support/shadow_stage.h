@@ -2,8 +2,8 @@
 // Hair and mesh before a light, for tests of the light that reaches a point.
 #pragma once
 
-#include "bench/shadow_reference.h"
 #include "draw/shadows.h"
+#include "reference/shadow_reference.h"
 #include "support/hair_fixture.h"
 #include "support/needed.h"
 

@@ -8,7 +8,7 @@
 // beside a fibre's edge the light is whole.
 #pragma once
 
-#include "bench/image_reference.h"
+#include "reference/image_reference.h"
 
 // A zeroed struct is empty.
 typedef struct ShadowReference {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "bench/shadow_reference.h"
+#include "reference/shadow_reference.h"
 #include "base/parallel.h"
 
 #include <math.h>

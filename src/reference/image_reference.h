@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: MIT
+// The room `reference`: what hair should look like, exactly and slowly, in double precision on the
+// CPU. It takes strands and a scene and gives an image (here) and the light that reaches a point
+// (shadow_reference.h). Rasterisers and shadow maps are judged by it, in tests and benchmarks.
+//
 // The image that a renderer should have made, by brute force on the CPU in double precision: the
 // judge of every scheme that draws hair faster.
 //

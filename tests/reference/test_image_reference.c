@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The exact image against areas and opacities computed by hand, and the error of the rasterisers
 // against it.
-#include "bench/image_reference.h"
+#include "reference/image_reference.h"
 #include "strands/strands_read.h"
 #include "support/studio.h"
 

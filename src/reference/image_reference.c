@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "bench/image_reference.h"
+#include "reference/image_reference.h"
 #include "base/double3.h"
 #include "base/parallel.h"
 
