@@ -93,7 +93,7 @@ static Result read_hair(const Stage *stage, Strands *strands, Error *error)
         return strands_read(strands, stage->file, &(StrandsReadOptions){0}, NULL, error);
     for (size_t i = 0; i < sizeof sets / sizeof *sets; ++i) {
         if (strcmp(stage->set, sets[i].name) != 0) continue;
-        StrandsRecipe recipe = strands_recipe_default(sets[i].style);
+        StrandsRecipe recipe = strands_make_recipe(sets[i].style);
         recipe.count = sets[i].count, recipe.vertices = sets[i].vertices;
         return strands_make(strands, &recipe, error);
     }

@@ -58,7 +58,7 @@ static Result try_solver(const Gpu *gpu, const SolverType *type, const char *var
     Strands strands = {0};
     Hair hair = {0};
     Solver solver = {0};
-    StrandsRecipe recipe = strands_recipe_default(STRANDS_STYLE_RANDOM);
+    StrandsRecipe recipe = strands_make_recipe(STRANDS_STYLE_RANDOM);
     recipe.count = 4, recipe.vertices = vertices;
     const SectionParams params = {.algo = (char *)type->name,
                                   .variant = (char *)variant,
@@ -113,7 +113,7 @@ static Result try_follow(const Gpu *gpu, FollowMode mode, Error *error)
     Strands strands = {0};
     Hair hair = {0};
     Follow follow = {0};
-    StrandsRecipe recipe = strands_recipe_default(STRANDS_STYLE_FUR);
+    StrandsRecipe recipe = strands_make_recipe(STRANDS_STYLE_FUR);
     recipe.count = 4;
     const SectionParams params = {.followers = 1, .follow = (int)mode};
     Result result = strands_make(&strands, &recipe, error);

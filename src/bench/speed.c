@@ -407,7 +407,7 @@ static Result measure_growth(Speed *speed, const char *part, const uint32_t *cou
     for (int i = 0; i < size_count; ++i) {
         char name[64];
         Strands strands = {0};
-        StrandsRecipe recipe = strands_recipe_default(STRANDS_STYLE_RANDOM);
+        StrandsRecipe recipe = strands_make_recipe(STRANDS_STYLE_RANDOM);
         recipe.count = counts[i], recipe.vertices = vertices[i], size[i] = sizes[i];
         snprintf(name, sizeof name, "%u x %u", recipe.count, recipe.vertices);
         Result result = strands_make(&strands, &recipe, error);

@@ -9,7 +9,7 @@
 static const double EXTRA = 1.2;
 static const double RISE = 100.0; // rad/m: how fast hair turns up that lies too low
 
-void fur_line_at(const Double3 *line, double step, double s, Double3 place)
+void fur_guides_line_at(const Double3 *line, double step, double s, Double3 place)
 {
     double at = s / step;
     int i = (int)fmin(fmax(floor(at), 0.0), FUR_STEPS - 1);

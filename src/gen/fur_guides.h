@@ -39,4 +39,4 @@ Result fur_guides_create(FurGuides *guides, const FurRecipe *recipe, const Surfa
 void fur_guides_destroy(FurGuides *guides);
 
 // A line's place at arc length `s` (m); before and behind it goes on straight.
-void fur_line_at(const Double3 *line, double step, double s, Double3 place);
+void fur_guides_line_at(const Double3 *line, double step, double s, Double3 place);

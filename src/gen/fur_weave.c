@@ -165,15 +165,15 @@ void fur_weave_create(FurWeave *weave, const FurRecipe *recipe, const FurGuides 
 void fur_weave_at(const FurWeave *weave, double s, Double3 place)
 {
     Double3 side, other, behind, ahead, tangent;
-    fur_line_at(weave->line, weave->step, s, place);
+    fur_guides_line_at(weave->line, weave->step, s, place);
     double share = s / weave->length;
     double radius = weave->radius * smooth(0.0, 0.5, share);
     double frizz = weave->frizz * smooth(0.0, 1.0, share);
     if (radius <= 0.0 && frizz <= 0.0) return;
     double at = fmin(s, FUR_STEPS * weave->step);
-    fur_line_at(weave->side, weave->step, at, side);
-    fur_line_at(weave->line, weave->step, s - 0.5 * weave->step, behind);
-    fur_line_at(weave->line, weave->step, s + 0.5 * weave->step, ahead);
+    fur_guides_line_at(weave->side, weave->step, at, side);
+    fur_guides_line_at(weave->line, weave->step, s - 0.5 * weave->step, behind);
+    fur_guides_line_at(weave->line, weave->step, s + 0.5 * weave->step, ahead);
     double3_subtract(ahead, behind, tangent);
     double3_normalize(tangent);
     double3_cross(tangent, side, other);

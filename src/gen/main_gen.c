@@ -77,7 +77,7 @@ static void write_defaults(char *text, size_t size)
 {
     size_t at = (size_t)snprintf(text, size, "Defaults.");
     for (int style = 0; style < STRANDS_STYLES && at < size; ++style) {
-        StrandsRecipe r = strands_recipe_default((StrandsStyle)style);
+        StrandsRecipe r = strands_make_recipe((StrandsStyle)style);
         at += (size_t)snprintf(
             text + at, size - at,
             " %s: --shape %s --count %u --vertices %u --length %g --length-variation %g",
@@ -162,7 +162,7 @@ static void set_real(float *to, double value)
 static StrandsRecipe make_recipe(const Command *command)
 {
     StrandsStyle style = command->kind < 0 ? STRANDS_STYLE_CURLS : (StrandsStyle)command->kind;
-    StrandsRecipe recipe = strands_recipe_default(style);
+    StrandsRecipe recipe = strands_make_recipe(style);
     if (command->shape >= 0) recipe.shape = (ScalpShape)command->shape;
     if (command->count >= 0) recipe.count = (uint32_t)command->count;
     if (command->vertices >= 0) recipe.vertices = (uint32_t)command->vertices;

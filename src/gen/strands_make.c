@@ -217,7 +217,7 @@ static void make_all(Strands *strands, const StrandsRecipe *recipe, Double3 *poi
     }
 }
 
-StrandsRecipe strands_recipe_default(StrandsStyle style)
+StrandsRecipe strands_make_recipe(StrandsStyle style)
 {
     StrandsRecipe recipe = {.style = style,
                             .shape = SCALP_HEAD,
@@ -305,7 +305,7 @@ Result strands_make(Strands *strands, const StrandsRecipe *recipe, Error *error)
 Result strands_make_set(Strands *strands, const char *name, uint32_t seed, Error *error)
 {
     static const char *const names[] = {"1k16", "1k32", "10k16", "10k32"};
-    StrandsRecipe recipe = strands_recipe_default(STRANDS_STYLE_RANDOM);
+    StrandsRecipe recipe = strands_make_recipe(STRANDS_STYLE_RANDOM);
     recipe.seed = seed;
     for (int i = 0; i < 4; i++) {
         if (strcmp(name, names[i]) != 0) continue;

@@ -28,7 +28,7 @@ typedef struct StrandsRecipe {
 } StrandsRecipe;
 
 // A recipe that looks good for the style.
-StrandsRecipe strands_recipe_default(StrandsStyle style);
+StrandsRecipe strands_make_recipe(StrandsStyle style);
 
 // Makes the strands; equal recipes give equal strands. Roots lie evenly on the surface (scalp.h),
 // and so do those of any number of strands from the first on. Every strand has a texture

@@ -222,8 +222,8 @@ json_t *colliders_to_json(const Colliders *colliders)
         const Collider *collider = &colliders->list[i];
         json_t *object = json_object();
         uint32_t count = count_numbers(collider->kind);
-        json_t *numbers = count == 1 ? scene_write_float(collider->numbers[0])
-                                     : scene_write_floats(collider->numbers, count);
+        json_t *numbers = count == 1 ? scene_param_write_float(collider->numbers[0])
+                                     : scene_param_write_floats(collider->numbers, count);
         good = json_object_set_new(object, TABLE[collider->kind].name, numbers) == 0 && good;
         if (!TABLE[collider->kind].world)
             good = json_object_set_new(object, "frame",

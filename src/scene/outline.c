@@ -156,7 +156,7 @@ static float farthest_follower(const Scene *scene, const Strands *strands)
 {
     float farthest = 0;
     for (uint32_t i = 0; i < scene->section_count; ++i)
-        farthest = fmaxf(farthest, follow_reach(&scene->sections[i].params, &strands[i]));
+        farthest = fmaxf(farthest, follow_plan_reach(&scene->sections[i].params, &strands[i]));
     return farthest;
 }
 

@@ -19,9 +19,9 @@ static Result read_colliders(Scene *scene, const JsonPlace *place, const json_t 
     return colliders_from_json(&scene->colliders, place, value, error);
 }
 
-static const Part PARTS[] = {{"head", scene_read_head},
-                             {"camera", scene_read_camera},
-                             {"lights", scene_read_lights},
+static const Part PARTS[] = {{"head", scene_tracks_read_head},
+                             {"camera", scene_tracks_read_camera},
+                             {"lights", scene_tracks_read_lights},
                              {"colliders", read_colliders}};
 enum { PART_COUNT = sizeof PARTS / sizeof PARTS[0] };
 
@@ -100,7 +100,7 @@ static Result read_params(const Document *document, const Sink *sink, Origin ori
         sink->origin[i] = (uint8_t)origin;
         JsonPlace place = {.parent = parent, .key = info->name};
         if (!keys && !list)
-            TRY(scene_read_param(info, sink->params, document->folder, &place, value, error));
+            TRY(scene_param_read(info, sink->params, document->folder, &place, value, error));
     }
     return RESULT_OK;
 }
@@ -114,7 +114,7 @@ static Result read_section(Scene *scene, const Document *document, const Section
     JsonPlace file_place = {.parent = place, .key = "file"};
     if (!json_is_string(file) || json_string_length(file) == 0)
         return json_refuse(&file_place, file, "the path of a hair file", error);
-    char *path = scene_join_path(document->folder, json_string_value(file));
+    char *path = scene_param_join_path(document->folder, json_string_value(file));
     if (!path) return error_set(error, RESULT_FAILED, "out of memory");
     Result result = scene_add_section(scene, path, &defaults->params, error);
     free(path);
@@ -188,7 +188,7 @@ static Result read_force(Keyframes *keys, const char *name, const Document *docu
     const json_t *value = json_object_get(document->json, name);
     if (!json_is_object(value)) return RESULT_OK;
     JsonPlace place = {.parent = &document->root, .key = name};
-    return scene_read_vector_keys(keys, params_find(name), &place, value, error);
+    return scene_tracks_read_keys(keys, params_find(name), &place, value, error);
 }
 
 static Result refuse_both(const Document *document, const char *name, const Keyframes *keys,

@@ -84,14 +84,14 @@ static void describe_value(const ParamInfo *info, char *text, size_t size)
              vector ? ", as an array" : "");
 }
 
-char *scene_join_path(const char *folder, const char *path)
+char *scene_param_join_path(const char *folder, const char *path)
 {
     if (!folder || path[0] == '/' || !path[0]) return strdup(path);
     char *joined = NULL;
     return asprintf(&joined, "%s%s", folder, path) < 0 ? NULL : joined;
 }
 
-Result scene_read_param(const ParamInfo *info, void *params, const char *folder,
+Result scene_param_read(const ParamInfo *info, void *params, const char *folder,
                         const JsonPlace *place, const json_t *value, Error *error)
 {
     char buffer[TEXT_SIZE];
@@ -103,7 +103,7 @@ Result scene_read_param(const ParamInfo *info, void *params, const char *folder,
     }
     char *path = NULL;
     if (info->kind == PARAM_PATH) {
-        path = scene_join_path(folder, text);
+        path = scene_param_join_path(folder, text);
         if (!path) return error_set(error, RESULT_FAILED, "out of memory");
     }
     Error why = {{0}};
@@ -113,25 +113,25 @@ Result scene_read_param(const ParamInfo *info, void *params, const char *folder,
     return result == RESULT_OK ? result : error_set(error, result, "%s", why.text);
 }
 
-json_t *scene_write_float(float value)
+json_t *scene_param_write_float(float value)
 {
     char text[32];
     decimal_format(value, text, sizeof text);
     return json_real(strtod(text, NULL));
 }
 
-json_t *scene_write_floats(const float *values, size_t count)
+json_t *scene_param_write_floats(const float *values, size_t count)
 {
     json_t *array = json_array();
     for (size_t i = 0; i < count; i++) {
-        if (json_array_append_new(array, scene_write_float(values[i])) == 0) continue;
+        if (json_array_append_new(array, scene_param_write_float(values[i])) == 0) continue;
         json_decref(array);
         return NULL;
     }
     return array;
 }
 
-json_t *scene_write_text(const char *text)
+json_t *scene_param_write_text(const char *text)
 {
     json_t *string = json_string(text);
     if (string) return string;
@@ -144,7 +144,7 @@ json_t *scene_write_text(const char *text)
     return string;
 }
 
-json_t *scene_write_param(const ParamInfo *info, const void *params)
+json_t *scene_param_write(const ParamInfo *info, const void *params)
 {
     const void *field = (const char *)params + info->offset;
     const AutoInt *whole = field;
@@ -159,16 +159,16 @@ json_t *scene_write_param(const ParamInfo *info, const void *params)
     case PARAM_UINT:
         return json_integer(*(const uint32_t *)field);
     case PARAM_FLOAT:
-        return scene_write_float(*(const float *)field);
+        return scene_param_write_float(*(const float *)field);
     case PARAM_VEC3:
-        return scene_write_floats(field, 3);
+        return scene_param_write_floats(field, 3);
     case PARAM_AUTO_INT:
         return whole->automatic ? json_string("auto") : json_integer(whole->value);
     case PARAM_AUTO_FLOAT:
     case PARAM_UNIT:
-        return number->automatic ? json_string("auto") : scene_write_float(number->value);
+        return number->automatic ? json_string("auto") : scene_param_write_float(number->value);
     case PARAM_AUTO_VEC3:
-        return vector->automatic ? json_string("auto") : scene_write_floats(vector->value, 3);
+        return vector->automatic ? json_string("auto") : scene_param_write_floats(vector->value, 3);
     case PARAM_SIZE:
         return json_pack("[i, i]", size[0], size[1]);
     // As flags have them; a color of no whole levels is "r,g,b".
@@ -181,7 +181,7 @@ json_t *scene_write_param(const ParamInfo *info, const void *params)
         break;
     }
     char *text = params_format(info, params);
-    json_t *value = text ? scene_write_text(text) : NULL;
+    json_t *value = text ? scene_param_write_text(text) : NULL;
     free(text);
     return value;
 }

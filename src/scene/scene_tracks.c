@@ -102,7 +102,7 @@ static Result read_track(const Member *members, size_t count, const JsonPlace *p
     return RESULT_OK;
 }
 
-Result scene_read_vector_keys(Keyframes *keys, const ParamInfo *info, const JsonPlace *place,
+Result scene_tracks_read_keys(Keyframes *keys, const ParamInfo *info, const JsonPlace *place,
                               const json_t *value, Error *error)
 {
     static const char *const NAMES[] = {"keys", "interpolation", NULL};
@@ -160,7 +160,8 @@ static Result read_head_keys(Scene *scene, const JsonPlace *place, const json_t 
     return read_track(members, 2, place, value, error);
 }
 
-Result scene_read_head(Scene *scene, const JsonPlace *place, const json_t *value, Error *error)
+Result scene_tracks_read_head(Scene *scene, const JsonPlace *place, const json_t *value,
+                              Error *error)
 {
     static const char *const NAMES[] = {"keys",      "interpolation", "pivot",
                                         "translate", "rotate",        NULL};
@@ -173,7 +174,8 @@ Result scene_read_head(Scene *scene, const JsonPlace *place, const json_t *value
     return read_formulas(head->rotation_formula, "rotate", &head->rotation, place, value, error);
 }
 
-Result scene_read_camera(Scene *scene, const JsonPlace *place, const json_t *value, Error *error)
+Result scene_tracks_read_camera(Scene *scene, const JsonPlace *place, const json_t *value,
+                                Error *error)
 {
     static const char *const NAMES[] = {"keys", "interpolation", NULL};
     const ParamInfo *eye = params_find("eye"), *fov = params_find("fov");
@@ -209,7 +211,7 @@ static Result read_light_color(Light *light, const JsonPlace *parent, const json
     if (!value) return RESULT_OK;
     JsonPlace place = {.parent = parent, .key = "color"};
     SectionParams holder = {0};
-    Result result = scene_read_param(params_find("color"), &holder, NULL, &place, value, error);
+    Result result = scene_param_read(params_find("color"), &holder, NULL, &place, value, error);
     for (int i = 0; i < 3; i++) light->color[i] = (float)srgb_decode((double)holder.color[i]);
     return result;
 }
@@ -277,7 +279,8 @@ static Result read_light(Light *light, const JsonPlace *place, const json_t *val
     return read_light_shadow(light, place, value, error);
 }
 
-Result scene_read_lights(Scene *scene, const JsonPlace *place, const json_t *value, Error *error)
+Result scene_tracks_read_lights(Scene *scene, const JsonPlace *place, const json_t *value,
+                                Error *error)
 {
     size_t count = json_array_size(value);
     if (!json_is_array(value)) return json_refuse(place, value, "an array of lights", error);

@@ -7,13 +7,16 @@
 
 // Each reads the value of the key that its name has in the scene file; help.c explains them to
 // users. RESULT_BAD_INPUT with the place, RESULT_FAILED when memory is short.
-Result scene_read_head(Scene *scene, const JsonPlace *place, const json_t *value, Error *error);
-Result scene_read_camera(Scene *scene, const JsonPlace *place, const json_t *value, Error *error);
-Result scene_read_lights(Scene *scene, const JsonPlace *place, const json_t *value, Error *error);
+Result scene_tracks_read_head(Scene *scene, const JsonPlace *place, const json_t *value,
+                              Error *error);
+Result scene_tracks_read_camera(Scene *scene, const JsonPlace *place, const json_t *value,
+                                Error *error);
+Result scene_tracks_read_lights(Scene *scene, const JsonPlace *place, const json_t *value,
+                                Error *error);
 
 // {"keys": [{"time": s, "value": [x, y, z]}, ...], "interpolation": "smooth" | "linear"} into
 // `keys`, whose numbers have the range of the constant parameter `info`.
-Result scene_read_vector_keys(Keyframes *keys, const ParamInfo *info, const JsonPlace *place,
+Result scene_tracks_read_keys(Keyframes *keys, const ParamInfo *info, const JsonPlace *place,
                               const json_t *value, Error *error);
 
 // The words of "interpolation" and of a light's "type", by enumerator, ended by NULL.

@@ -27,8 +27,8 @@ static json_t *write_value(const Keyframes *keys, uint32_t key, double scale)
     float scaled[KEYFRAMES_MAX_WIDTH];
     for (uint32_t i = 0; i < keys->width; i++)
         scaled[i] = (float)((double)keys->value[(size_t)key * keys->width + i] * scale);
-    return keys->width == 1 ? scene_write_float(scaled[0])
-                            : scene_write_floats(scaled, keys->width);
+    return keys->width == 1 ? scene_param_write_float(scaled[0])
+                            : scene_param_write_floats(scaled, keys->width);
 }
 
 // A track that goes under `name` into keys, in the unit of the file.
@@ -102,7 +102,7 @@ static json_t *write_formulas(const Formula *formulas)
     json_t *array = json_array();
     bool good = true;
     for (int i = 0; i < 3; i++)
-        good = json_array_append_new(array, scene_write_text(formulas[i].text)) == 0 && good;
+        good = json_array_append_new(array, scene_param_write_text(formulas[i].text)) == 0 && good;
     return finish(array, good);
 }
 
@@ -117,7 +117,7 @@ static bool write_head(json_t *object, const Scene *scene)
          turned = track->rotation_formula[0].text;
     if (!keyed && !moved && !turned) return true;
     json_t *head = keyed ? write_tracks(tracks, 2) : json_object();
-    bool good = put(head, "pivot", scene_write_floats(track->pivot, 3));
+    bool good = put(head, "pivot", scene_param_write_floats(track->pivot, 3));
     if (moved) good = put(head, "translate", write_formulas(track->translation_formula)) && good;
     if (turned) good = put(head, "rotate", write_formulas(track->rotation_formula)) && good;
     return put(object, "head", head) && good;
@@ -134,17 +134,17 @@ static json_t *write_light(const Light *light)
     json_t *object = json_object();
     bool good = put(object, "type", json_string(LIGHT_KIND_WORDS[light->kind]));
     if (!far) {
-        good = put(object, "position", scene_write_floats(light->position, 3)) && good;
-        good = put(object, "distance", scene_write_float(light->distance)) && good;
+        good = put(object, "position", scene_param_write_floats(light->position, 3)) && good;
+        good = put(object, "distance", scene_param_write_float(light->distance)) && good;
     }
     if (light->kind != LIGHT_POINT)
-        good = put(object, "direction", scene_write_floats(way, 3)) && good;
+        good = put(object, "direction", scene_param_write_floats(way, 3)) && good;
     if (light->kind == LIGHT_SPOT) {
-        good = put(object, "inner", scene_write_float(light->inner_deg)) && good;
-        good = put(object, "outer", scene_write_float(light->outer_deg)) && good;
+        good = put(object, "inner", scene_param_write_float(light->inner_deg)) && good;
+        good = put(object, "outer", scene_param_write_float(light->outer_deg)) && good;
     }
-    good = put(object, "color", scene_write_floats(color, 3)) && good;
-    good = put(object, "intensity", scene_write_float(light->intensity)) && good;
+    good = put(object, "color", scene_param_write_floats(color, 3)) && good;
+    good = put(object, "intensity", scene_param_write_float(light->intensity)) && good;
     good = put(object, "shadow", json_boolean(light->shadow)) && good;
     return finish(object, good);
 }
@@ -165,7 +165,7 @@ static bool write_params(json_t *object, ParamScope scope, const void *params, c
     for (size_t i = 0; i < PARAM_COUNT; i++) {
         const ParamInfo *info = &PARAM_TABLE[i];
         if (info->scope == scope && params_owned_by(info, algo))
-            good = put(object, info->name, scene_write_param(info, params)) && good;
+            good = put(object, info->name, scene_param_write(info, params)) && good;
     }
     return good;
 }
@@ -176,7 +176,7 @@ static bool write_sections(json_t *object, const Scene *scene)
     bool good = true;
     for (uint32_t i = 0; i < scene->section_count; i++) {
         json_t *section = json_object();
-        good = put(section, "file", scene_write_text(scene->sections[i].file)) && good;
+        good = put(section, "file", scene_param_write_text(scene->sections[i].file)) && good;
         const SectionParams *params = &scene->sections[i].params;
         good = write_params(section, SCOPE_SECTION, params, params->algo) && good;
         good = json_array_append_new(array, section) == 0 && good;

@@ -116,7 +116,7 @@ Result follow_create(Follow *follow, const Gpu *gpu, GpuTimer *timer, const Hair
                      const Strands *strands, const SectionParams *params, uint32_t seed,
                      Error *error)
 {
-    const FollowOptions options = follow_options(params, strands, seed);
+    const FollowOptions options = follow_plan_options(params, strands, seed);
     *follow = (Follow){0};
     if (options.per_guide == 0 || guides->strand_count == 0) return RESULT_OK;
     if (guides->particle_count > UINT32_MAX / options.per_guide)

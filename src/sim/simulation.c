@@ -83,7 +83,7 @@ static bool needs_field(const Scene *scene, const Strands *strands)
     for (uint32_t i = 0; i < scene->section_count; ++i) {
         const SectionParams *params = &scene->sections[i].params;
         bool moves = strcmp(params->algo, "none") != 0;
-        if (moves && follow_options(params, &strands[i], 0).per_guide > 0) return true;
+        if (moves && follow_plan_options(params, &strands[i], 0).per_guide > 0) return true;
     }
     return false;
 }

@@ -21,10 +21,12 @@ static const double LEAST_COSINE = 0.5;
 static float find_radius(const SectionParams *params, const Strands *strands)
 {
     if (!params->follower_radius.automatic) return params->follower_radius.value;
-    return strands->follower_radius > 0 ? strands->follower_radius : follow_auto_radius(strands);
+    return strands->follower_radius > 0 ? strands->follower_radius
+                                        : follow_plan_auto_radius(strands);
 }
 
-FollowOptions follow_options(const SectionParams *params, const Strands *strands, uint32_t seed)
+FollowOptions follow_plan_options(const SectionParams *params, const Strands *strands,
+                                  uint32_t seed)
 {
     FollowOptions options = {.interpolate = params->follow == FOLLOW_INTERPOLATE, .seed = seed};
     options.per_guide = params->followers < 0 ? strands->followers : (uint32_t)params->followers;
@@ -32,9 +34,9 @@ FollowOptions follow_options(const SectionParams *params, const Strands *strands
     return options;
 }
 
-float follow_reach(const SectionParams *params, const Strands *strands)
+float follow_plan_reach(const SectionParams *params, const Strands *strands)
 {
-    FollowOptions options = follow_options(params, strands, 0);
+    FollowOptions options = follow_plan_options(params, strands, 0);
     return options.radius * fmaxf(1, 1 + params->tip_separation);
 }
 
@@ -312,7 +314,7 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-float follow_auto_radius(const Strands *strands)
+float follow_plan_auto_radius(const Strands *strands)
 {
     double distance[RADIUS_SAMPLES], longest = 0;
     uint32_t stride = strands->strand_count / RADIUS_SAMPLES + 1, count = 0;

@@ -24,12 +24,13 @@ typedef struct FollowOptions {
 } FollowOptions;
 
 // What the parameters say of the followers of these strands, or else what their file says, or else
-// no followers, and follow_auto_radius.
-FollowOptions follow_options(const SectionParams *params, const Strands *strands, uint32_t seed);
+// no followers, and follow_plan_auto_radius.
+FollowOptions follow_plan_options(const SectionParams *params, const Strands *strands,
+                                  uint32_t seed);
 
 // How far from its guide a follower may be, m; 0 if there are none. (Between three, it is within
 // their hull.)
-float follow_reach(const SectionParams *params, const Strands *strands);
+float follow_plan_reach(const SectionParams *params, const Strands *strands);
 
 // follower[g * per_guide + i] is guide g's follower i.
 typedef struct FollowPlan {
@@ -59,4 +60,4 @@ void follow_plan_destroy(FollowPlan *plan);
 // A radius (m, > 0) for which discs around the roots about cover the scalp: that of a disc as large
 // as a root's share of the scalp, by the distance to its 16th neighbour in another place; the
 // median of at most 256 roots. 1/50 of the longest strand where no two roots differ.
-float follow_auto_radius(const Strands *strands);
+float follow_plan_auto_radius(const Strands *strands);

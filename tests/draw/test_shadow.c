@@ -299,7 +299,7 @@ static void deep_maps_are_near_the_exact_light(void **state)
     Light light = LIGHT_ABOVE;
     memcpy(light.direction, (float[3]){0.36f, 0.8f, 0.48f}, sizeof light.direction);
     for (size_t i = 0; i < sizeof sets / sizeof *sets; ++i) {
-        StrandsRecipe recipe = strands_recipe_default(sets[i].style);
+        StrandsRecipe recipe = strands_make_recipe(sets[i].style);
         Strands strands;
         ShadowStage stage;
         recipe.count = sets[i].count, recipe.vertices = sets[i].vertices;

@@ -54,8 +54,7 @@ static void c_and_shaders_are_alike(void **state)
     const Light lights[] = {LIGHT_ABOVE, LIGHT_LAMP};
     const uint parts[] = {1, 3, 4};
     for (int i = 0; i < 24; ++i) {
-        StrandsRecipe recipe =
-            strands_recipe_default(i & 1 ? STRANDS_STYLE_CURLS : STRANDS_STYLE_FUR);
+        StrandsRecipe recipe = strands_make_recipe(i & 1 ? STRANDS_STYLE_CURLS : STRANDS_STYLE_FUR);
         Strands strands;
         ShadowStage stage;
         recipe.count = 1001, recipe.vertices = 16; // the last tile is not full

@@ -90,7 +90,7 @@ static void equal_seeds_give_equal_strands_and_others_do_not(void **state)
 {
     (void)state;
     for (int style = 0; style < STRANDS_STYLES; style++) {
-        StrandsRecipe recipe = strands_recipe_default((StrandsStyle)style);
+        StrandsRecipe recipe = strands_make_recipe((StrandsStyle)style);
         recipe.count = 50;
         Strands a, b, c;
         assert_int_equal(strands_make(&a, &recipe, NULL), RESULT_OK);
@@ -120,7 +120,7 @@ static void every_style_grows_from_the_surface_to_its_length(void **state)
     (void)state;
     for (int style = 0; style < STRANDS_STYLES; style++) {
         for (int shape = 0; shape < 2; shape++) {
-            StrandsRecipe recipe = strands_recipe_default((StrandsStyle)style);
+            StrandsRecipe recipe = strands_make_recipe((StrandsStyle)style);
             recipe.shape = (ScalpShape)shape;
             recipe.count = 300;
             Strands strands;
@@ -144,7 +144,7 @@ static void hair_stays_out_of_the_head(void **state)
 {
     (void)state;
     for (int style = STRANDS_STYLE_STRAIGHT; style <= STRANDS_STYLE_FUR; style++) {
-        StrandsRecipe recipe = strands_recipe_default((StrandsStyle)style);
+        StrandsRecipe recipe = strands_make_recipe((StrandsStyle)style);
         Strands strands;
         assert_int_equal(strands_make(&strands, &recipe, NULL), RESULT_OK);
         for (uint32_t v = 0; v < strands.vertex_count; v++)
@@ -158,7 +158,7 @@ static void hair_stays_out_of_the_head(void **state)
 static void roots_are_even_from_the_first_on(void **state)
 {
     (void)state;
-    StrandsRecipe recipe = strands_recipe_default(STRANDS_STYLE_FUR);
+    StrandsRecipe recipe = strands_make_recipe(STRANDS_STYLE_FUR);
     recipe.count = 8000;
     Strands strands;
     assert_int_equal(strands_make(&strands, &recipe, NULL), RESULT_OK);
@@ -178,7 +178,7 @@ static void values_out_of_range_are_named(void **state)
     (void)state;
     Strands strands;
     Error error;
-    StrandsRecipe recipe = strands_recipe_default(STRANDS_STYLE_CURLS);
+    StrandsRecipe recipe = strands_make_recipe(STRANDS_STYLE_CURLS);
     recipe.vertices = 1;
     assert_int_equal(strands_make(&strands, &recipe, &error), RESULT_USAGE);
     assert_string_equal(error.text, "vertices 1: expected 2 to 65535");

@@ -127,7 +127,7 @@ static void every_row_is_set_by_its_key_in_a_scene_file(void **state)
         assert_int_equal(read_scene(state, &scene, "{\"sections\": [{\"file\": \"a\"}]}", &error),
                          RESULT_OK);
         assert_int_equal(params_parse(info, params_of(&scene, info), value, &error), RESULT_OK);
-        json_t *json = scene_write_param(info, params_of(&scene, info));
+        json_t *json = scene_param_write(info, params_of(&scene, info));
         char *text = json_dumps(json, JSON_ENCODE_ANY | JSON_REAL_PRECISION(9));
         json_decref(json);
         scene_destroy(&scene);

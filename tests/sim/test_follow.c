@@ -20,7 +20,7 @@
 static Strands make_curls(uint32_t count)
 {
     Strands strands;
-    StrandsRecipe recipe = strands_recipe_default(STRANDS_STYLE_CURLS);
+    StrandsRecipe recipe = strands_make_recipe(STRANDS_STYLE_CURLS);
     recipe.count = count, recipe.vertices = 12;
     assert_int_equal(strands_make(&strands, &recipe, NULL), RESULT_OK);
     return strands;
@@ -230,17 +230,17 @@ static void test_the_file_says_how_many_unless_the_user_does(void **state)
     Strands strands = make_lawn(20, upright);
     SectionParams params;
     assert_int_equal(params_create_section(&params, NULL), RESULT_OK);
-    assert_int_equal(follow_options(&params, &strands, 0).per_guide, 0);
-    assert_true(follow_reach(&params, &strands) == 0);
+    assert_int_equal(follow_plan_options(&params, &strands, 0).per_guide, 0);
+    assert_true(follow_plan_reach(&params, &strands) == 0);
     strands.followers = 6;
-    assert_int_equal(follow_options(&params, &strands, 0).per_guide, 6);
+    assert_int_equal(follow_plan_options(&params, &strands, 0).per_guide, 6);
     // A root's share of the lawn is a square metre, a disc of 0.56 m; less is seen at the rim.
-    assert_true(fabsf(follow_options(&params, &strands, 0).radius - 0.56f) < 0.1f);
+    assert_true(fabsf(follow_plan_options(&params, &strands, 0).radius - 0.56f) < 0.1f);
     strands.follower_radius = 0.25f;
     params.tip_separation = 2;
-    assert_true(follow_reach(&params, &strands) == 0.75f);
+    assert_true(follow_plan_reach(&params, &strands) == 0.75f);
     params.followers = 0;
-    assert_int_equal(follow_options(&params, &strands, 0).per_guide, 0);
+    assert_int_equal(follow_plan_options(&params, &strands, 0).per_guide, 0);
     params_destroy_section(&params);
     strands_destroy(&strands);
 }
@@ -320,7 +320,7 @@ static void check_gpu(int mode)
     for (uint32_t b = 0; b < 2; ++b) {
         FollowPlan plan;
         const HairBatch *guides = &fixture.hair.batches[b];
-        FollowOptions options = follow_options(&fixture.params, &strands, 4);
+        FollowOptions options = follow_plan_options(&fixture.params, &strands, 4);
         assert_int_equal(follow_plan_create(&plan, &strands, guides->strand, guides->strand_count,
                                             &options, NULL),
                          RESULT_OK);

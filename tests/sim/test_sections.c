@@ -31,7 +31,7 @@ typedef struct World {
 static void add_section(World *world, const Kind *kind)
 {
     SectionParams params;
-    StrandsRecipe recipe = strands_recipe_default(STRANDS_STYLE_CURLS);
+    StrandsRecipe recipe = strands_make_recipe(STRANDS_STYLE_CURLS);
     recipe.count = kind->strands, recipe.vertices = kind->vertices;
     assert_int_equal(strands_make(&world->strands[world->scene.section_count], &recipe, NULL),
                      RESULT_OK);

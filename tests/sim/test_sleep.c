@@ -37,7 +37,7 @@ static void create_scene(World *world, const char *algo, float drag, float toler
 
 static void start(World *world)
 {
-    StrandsRecipe recipe = strands_recipe_default(STRANDS_STYLE_CURLS);
+    StrandsRecipe recipe = strands_make_recipe(STRANDS_STYLE_CURLS);
     recipe.count = STRANDS, recipe.vertices = VERTICES;
     assert_int_equal(strands_make(&world->strands, &recipe, NULL), RESULT_OK);
     gpu_timer_create(&world->timer, false, true);

@@ -20,7 +20,7 @@ static const StrandsReadOptions METRES = {.unit = 1.0f};
 // Awkward numbers: any bits that are a float of ordinary size.
 static Strands make_awkward(void)
 {
-    StrandsRecipe recipe = strands_recipe_default(STRANDS_STYLE_CURLS);
+    StrandsRecipe recipe = strands_make_recipe(STRANDS_STYLE_CURLS);
     recipe.count = 40;
     recipe.vertices = 9;
     Strands strands;

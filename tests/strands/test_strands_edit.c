@@ -18,7 +18,7 @@
 
 static Strands make_curls(void)
 {
-    StrandsRecipe recipe = strands_recipe_default(STRANDS_STYLE_CURLS);
+    StrandsRecipe recipe = strands_make_recipe(STRANDS_STYLE_CURLS);
     recipe.count = 50;
     recipe.vertices = 12;
     Strands strands;
