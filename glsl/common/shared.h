@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Read by C and by GLSL: what both sides must agree on. Blocks use only float, int, uint, vec4,
-// uvec4 and mat4, which both lay out alike without padding by hand (tests/test_hair.c,
-// test_renderer.c and test_collision.c compare offsets with the driver's).
+// uvec4 and mat4, which both lay out alike without padding by hand (tests/sim/test_hair.c,
+// draw/test_renderer.c and sim/test_collision.c compare offsets with the driver's).
 #ifdef __STDC__
 #pragma once
 #include <cglm/cglm.h>

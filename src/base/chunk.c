@@ -59,7 +59,7 @@ static Result check_header(ChunkFile *file, const char *magic, Error *error)
     uint32_t version;
     if (!chunk_file_read_raw(file, 0, header, sizeof header) ||
         memcmp(header, magic, MAGIC_BYTES) != 0)
-        return error_set(error, RESULT_BAD_INPUT, "%s: does not begin with %s", file->path, magic);
+        return error_set(error, RESULT_BAD_INPUT, "%s: byte 0: expected %s", file->path, magic);
     memcpy(&version, header + MAGIC_BYTES, sizeof version);
     if (le32toh(version) == VERSION) return RESULT_OK;
     return error_set(error, RESULT_BAD_INPUT, "%s: version %u, this program reads %d", file->path,

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What tractrix-convert reads: hair files side by side, numbered files as frames, or a cache.
+// The room convert, the program tractrix-convert. It takes hair files and caches (this file), edits
+// the strands in the order of the command line (convert_steps.h), measures them (figures.h) and
+// writes them in any format of the table, still or animated (convert_output.h).
 //
-// This room is tractrix-convert: it takes in hair files and caches (here), edits the strands in the
-// order of the command line (convert_steps.h), measures them (figures.h) and writes them in any
-// format of the table, still or animated (convert_output.h).
+// This file: what it reads: hair files side by side, numbered files as frames, or a cache.
 #pragma once
 
 #include "base/target.h"
@@ -35,7 +35,7 @@ typedef struct ConvertInput {
     int first, last, every; // frames that are wanted
     double fps;
     StrandsReport *reports; // [path_count] of the first frame's files; none for a cache
-    uint32_t features;      // strands_features.h: of any of the first frame's files
+    uint32_t features;      // STRANDS_HAS_...: of any of the first frame's files
 } ConvertInput;
 
 // What the paths are: one cache, one name with %d or %04d, or hair files. `first`, `every`: as

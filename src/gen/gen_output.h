@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What the commands of tractrix-gen share: options, and where the hair goes.
+// The room gen, the program tractrix-gen, makes hair: styles and test sets on a sphere or a head
+// (strands_make.h), fur on any mesh (fur.h: roots, guides that grow over the surface, strands woven
+// between them). It takes the command line, meshes and maps, and hands on Strands, which it writes
+// by the table of formats.
 //
-// This room makes hair: styles and test sets on a sphere or a head (strands_make.h), fur on any
-// mesh (fur.h: roots, guides that grow over the surface, strands woven between them). It takes in
-// the command line, meshes and maps, and hands on Strands, which it writes by the table of formats.
+// This file: what the commands of tractrix-gen share: options, and where the hair goes.
 #pragma once
 
 #include "base/options.h"
@@ -32,5 +33,5 @@ typedef struct GenOutput {
     }
 #define GEN_OPTION_QUIET(at)                                                                       \
     {                                                                                              \
-        "quiet", 'q', OPTION_SWITCH, at, NULL, 0, 0, "print nothing"                               \
+        "quiet", 'q', OPTION_SWITCH, at, NULL, 0, 0, "print errors only"                           \
     }

@@ -21,7 +21,7 @@ typedef struct Exporter {
     const Simulation *simulation;
     Strands strands; // of all sections, one behind the other
     bool followers;  // they are among them, behind the guides of their section
-    uint32_t lost;   // features (strands_features.h) of the sections that the files do not have
+    uint32_t lost;   // features (STRANDS_HAS_...) of the sections that the files do not have
     SceneLook look;  // USD only, like the rest
     UsdOptions options;
     UsdWriter usd; // open if one file takes all frames

@@ -161,14 +161,23 @@ static void write_heading(const ParamInfo *info, char *text, size_t size)
     }
 }
 
-// The solvers, or all their variants, with bars between them.
+// Whether a list with bars between its words has this one.
+static bool lists_word(const char *list, const char *word)
+{
+    size_t length = strlen(word);
+    for (const char *at = list; (at = strstr(at, word)); at += length)
+        if ((at == list || at[-1] == '|') && (!at[length] || at[length] == '|')) return true;
+    return false;
+}
+
+// The solvers, or all their variants (those of two solvers once), with bars between them.
 static void write_solvers(char *text, size_t size, bool variants)
 {
     size_t length = 0;
     for (const SolverType *const *type = SOLVER_TYPES; *type; ++type) {
         const char *const *words = variants ? (*type)->variants : &(*type)->name;
         for (int i = 0; i < (variants ? SOLVER_MAX_VARIANTS : 1) && words[i]; ++i)
-            if (length < size)
+            if (length < size && !lists_word(text, words[i]))
                 length += (size_t)snprintf(text + length, size - length, "%s%s", length ? "|" : "",
                                            words[i]);
     }

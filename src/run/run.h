@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A run of tractrix-render. This room takes a scene, simulates and draws its frames one after the
-// other, and hands on images or a video, a cache, hair files and statistics: run (set-up and
-// order), sequence (the loop over frames), frame_source (simulation or cache), images and output
-// (drawing and encoding), survey (a look at all frames for the camera), export, stats, help.
+// The room run: a run of tractrix-render. It takes a scene, simulates and draws its frames one
+// after the other, and hands on images or a video, a cache, hair files and statistics: run (set-up
+// and order), sequence (the loop over frames), frame_source (simulation or cache), images and
+// output (drawing and encoding), survey (a look at all frames for the camera), export, stats, help.
 #pragma once
 
 #include "run/images.h"

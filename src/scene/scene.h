@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Everything that a run needs to know: parameters, hair sections, head motion, forces, colliders,
-// camera path and lights, from the command line, a scene file or both.
+// The room scene: everything that a run needs to know: parameters, hair sections, head motion,
+// forces, colliders, camera path and lights, from the command line, a scene file or both.
 //
-// This room takes in arguments and scene files (scene_json.c, scene_tracks.c; scene_write.c writes
+// It takes in arguments and scene files (scene_json.c, scene_tracks.c; scene_write.c writes
 // them), reads the files that they name (assets.h), and says what holds at a time: head
 // (rigid_track.h), forces, camera and lights (camera.h), and which step is which frame
 // (schedule.h). The camera's automatic framing is in outline.h, which estimates what will be seen,

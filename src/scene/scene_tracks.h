@@ -5,8 +5,8 @@
 #include "base/json.h"
 #include "scene/scene.h"
 
-// Each reads the value of the key that its name has in the scene file; help.c explains them to
-// users. RESULT_BAD_INPUT with the place, RESULT_FAILED when memory is short.
+// Each reads the value of the key that its name has in the scene file; run/render_help.c
+// explains them to users. RESULT_BAD_INPUT with the place, RESULT_FAILED when memory is short.
 Result scene_tracks_read_head(Scene *scene, const JsonPlace *place, const json_t *value,
                               Error *error);
 Result scene_tracks_read_camera(Scene *scene, const JsonPlace *place, const json_t *value,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The room src/sim moves hair on the GPU. It takes strands and a scene (head, forces, colliders,
+// The room sim moves hair on the GPU. It takes strands and a scene (head, forces, colliders,
 // parameters), and hands on the positions in Hair's buffers (hair.h) that the renderer draws.
 //
 // A simulation is a scene in motion: each section's hair with its solver (solver.h), followers,

@@ -40,8 +40,7 @@ static const SolverRecipe RECIPE = {
 
 const SolverType SOLVER_SPLIT = {
     .name = "split",
-    .summary =
-        "the tip is simulated, the strand follows it as tractrices, the style is mixed back in",
+    .summary = "the tip is simulated, the strand follows it as tractrices, the style is blended in",
     .lengths = "exact",
     .style = "mixed into what is drawn, --style",
     .variants = {"ball", "dragged", "thesis"},

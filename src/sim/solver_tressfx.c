@@ -122,7 +122,8 @@ static const SolverRecipe RECIPE = {
 
 const SolverType SOLVER_TRESSFX = {
     .name = "tressfx",
-    .summary = "TressFX's constraints: keeps the style by local and global shape, hides fast heads",
+    .summary = "TressFX's constraints: local and global shape keep the style; fast moves of "
+               "the head carry whole strands along",
     .lengths = "exact; tressfx4: stretch",
     .style = "local and global shape, --style, its own flags",
     .variants = {"steady", "tressfx4"},

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Hair strands on the CPU, as files describe them: polylines from root to tip.
+// The room strands: hair strands on the CPU, as files describe them: polylines from root to tip.
 //
-// This room reads and writes hair files (strands_read.h, formats/format.h), mends what is wrong
+// It reads and writes hair files (strands_read.h, formats/format.h), mends what is wrong
 // with them and reports it, measures and edits strands, and says how they are coloured and how
 // thick they are (paint.h) and where their followers lie (follow_plan.h). It takes in files and
 // SectionParams; it hands on Strands in metres, y up, which `sim` puts on the GPU.

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The figures that tests/test_metrics.c expects, computed in another way than src/flip.c and src/ssim.c do: double
+"""The figures that tests/image/test_metrics.c expects, computed in another way than src/image/flip.c and src/image/compare.c do: double
 precision throughout, full two-dimensional kernels, statistics in two passes. Needs nothing but Python.
 usage: tests/data/image_figures.py        prints the table of the test
 """
@@ -10,7 +10,7 @@ WIDTH, HEIGHT = 37, 29
 
 
 def picture(kind):
-    """The same formulas as make_picture in tests/test_metrics.c: whole levels."""
+    """The same formulas as make_picture in tests/image/test_metrics.c: whole levels."""
     rows = []
     for y in range(HEIGHT):
         row = []

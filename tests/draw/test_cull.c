@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The levels of hide_levels.h, each against the one below it.
+// The levels of cull.h, each against the one below it.
 #include "draw/cull.h"
 
 #include "glsl/draw/draw.h"
