@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "bench/accuracy.h"
 #include "base/clock.h"
 #include "base/interrupt.h"
+#include "bench/bench_commands.h"
 #include "bench/experiments.h"
 #include "gen/strands_make.h"
 #include "strands/strands_read.h"
@@ -421,8 +421,8 @@ Result accuracy_run(const BenchOptions *options, const Gpu *gpu, Error *error)
             names[count++] = EXPERIMENTS[i].part;
     names[count] = "work";
     TRY(bench_options_check_parts(options, names, error));
-    Result result = table_open(&accuracy.table, COLUMNS, sizeof COLUMNS / sizeof *COLUMNS, gpu,
-                               &options->output, stdout, error);
+    Result result =
+        table_open(&accuracy.table, TABLE_COLUMNS, gpu, &options->output, stdout, error);
     THEN(result,
          trial_read_folder(&accuracy.folder,
                            options->reference ? options->reference : "tests/data/motion", error));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The experiments of `tractrix-bench accuracy`: strands whose motion, shape at rest or balance is
-// known exactly, in one table. accuracy.h runs them with every solver.
+// known exactly, in one table. accuracy.c runs them with every solver.
 #pragma once
 
 #include "bench/trial.h"

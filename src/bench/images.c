@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "bench/images.h"
 #include "base/clock.h"
 #include "base/interrupt.h"
+#include "bench/bench_commands.h"
 #include "draw/renderer.h"
 #include "gen/strands_make.h"
 #include "reference/shadow_reference.h"
@@ -400,18 +400,12 @@ static Result add_rows(Table *table, const BenchOptions *options, const char *se
     return result;
 }
 
-static Result open_table(Table *table, const BenchOptions *options, const Gpu *gpu, Error *error)
-{
-    return table_open(table, COLUMNS, sizeof COLUMNS / sizeof *COLUMNS, gpu, &options->output,
-                      stdout, error);
-}
-
 Result images_run_one(const BenchOptions *options, const Gpu *gpu, Error *error)
 {
     Table table;
     if (!options->set == !options->tfx)
         return error_set(error, RESULT_USAGE, "image: one of --set NAME and --tfx FILE is needed");
-    Result result = open_table(&table, options, gpu, error);
+    Result result = table_open(&table, TABLE_COLUMNS, gpu, &options->output, stdout, error);
     THEN(result, add_rows(&table, options, options->set, options->tfx, &options->scheme, 1, error));
     return table_close(&table, result, error);
 }
@@ -420,7 +414,7 @@ Result images_run(const BenchOptions *options, const Gpu *gpu, Error *error)
 {
     Table table;
     TRY(bench_options_check_parts(options, SETS, error));
-    Result result = open_table(&table, options, gpu, error);
+    Result result = table_open(&table, TABLE_COLUMNS, gpu, &options->output, stdout, error);
     for (int i = 0; SETS[i]; ++i)
         if (strcmp(SETS[i], "files") != 0 && bench_options_part(options, SETS[i]))
             THEN(result, add_rows(&table, options, SETS[i], NULL, SCHEMES, SCHEME_COUNT, error));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "bench/scenes.h"
 #include "base/clock.h"
+#include "bench/bench_commands.h"
 #include "gen/strands_make.h"
 #include "sim/simulation.h"
 
@@ -143,8 +143,7 @@ Result scenes_run(const BenchOptions *options, const Gpu *gpu, Error *error)
     char words[160];
     if (!method.algo) method.algo = "split";
     trial_format(&method, words, sizeof words);
-    Result result = table_open(&table, COLUMNS, sizeof COLUMNS / sizeof *COLUMNS, gpu,
-                               &options->output, stdout, error);
+    Result result = table_open(&table, TABLE_COLUMNS, gpu, &options->output, stdout, error);
     for (size_t i = 0; i < sizeof SCENES / sizeof *SCENES && result == RESULT_OK; ++i) {
         Row row = {.scene = SCENES[i].name, .variant = trial_variant(&method), .method = method};
         row.algo = method.algo;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "bench/speed.h"
 #include "base/clock.h"
 #include "base/interrupt.h"
 #include "base/outfile.h"
+#include "bench/bench_commands.h"
 #include "bench/child.h"
 #include "bench/cpu_split.h"
 #include "bench/trial.h"
@@ -397,18 +397,17 @@ static BenchOptions fewer_steps(const Speed *speed, uint64_t particles)
     return options;
 }
 
-// A row for each size and method, then the exponent of least time by size for each method.
-// counts[i]: strands; vertices[i]: of each.
-static Result measure_growth(Speed *speed, const char *part, const uint32_t *counts,
-                             const uint32_t *vertices, const uint32_t *sizes, int size_count,
-                             Error *error)
+// A row for each size {strands, vertices of each} and method, then the exponent of least time by
+// the size's number `by` for each method.
+static Result measure_growth(Speed *speed, const char *part, const uint32_t (*sizes)[2],
+                             int size_count, int by, Error *error)
 {
     double least[METHODS_MOST][MOST_SIZES], size[MOST_SIZES];
     for (int i = 0; i < size_count; ++i) {
         char name[64];
         Strands strands = {0};
         StrandsRecipe recipe = strands_make_recipe(STRANDS_STYLE_RANDOM);
-        recipe.count = counts[i], recipe.vertices = vertices[i], size[i] = sizes[i];
+        recipe.count = sizes[i][0], recipe.vertices = sizes[i][1], size[i] = sizes[i][by];
         snprintf(name, sizeof name, "%u x %u", recipe.count, recipe.vertices);
         Result result = strands_make(&strands, &recipe, error);
         for (int m = 0; m < speed->method_count && result == RESULT_OK; ++m) {
@@ -434,15 +433,15 @@ static Result measure_growth(Speed *speed, const char *part, const uint32_t *cou
 
 static Result run_strands(Speed *speed, Error *error)
 {
-    static const uint32_t counts[] = {1000, 10000, 100000, 1000000}, vertices[] = {16, 16, 16, 16};
-    return measure_growth(speed, "strands", counts, vertices, counts, 4, error);
+    static const uint32_t sizes[][2] = {{1000, 16}, {10000, 16}, {100000, 16}, {1000000, 16}};
+    return measure_growth(speed, "strands", sizes, 4, 0, error);
 }
 
 static Result run_vertices(Speed *speed, Error *error)
 {
-    static const uint32_t counts[] = {10000, 10000, 10000, 10000, 10000},
-                          vertices[] = {4, 8, 16, 32, 64};
-    return measure_growth(speed, "vertices", counts, vertices, vertices, 5, error);
+    static const uint32_t sizes[][2] = {
+        {10000, 4}, {10000, 8}, {10000, 16}, {10000, 32}, {10000, 64}};
+    return measure_growth(speed, "vertices", sizes, 5, 1, error);
 }
 
 // --- In processes of their own.
@@ -553,8 +552,7 @@ Result speed_run(const BenchOptions *options, const Gpu *gpu, Error *error)
     for (int i = 0; i < PART_COUNT; ++i) names[i] = PARTS[i].name;
     TRY(bench_options_check_parts(options, names, error));
     speed.method_count = trial_list(&options->method, speed.methods);
-    Result result = table_open(&speed.table, COLUMNS, sizeof COLUMNS / sizeof *COLUMNS, gpu,
-                               &options->output, stdout, error);
+    Result result = table_open(&speed.table, TABLE_COLUMNS, gpu, &options->output, stdout, error);
     for (int i = 0; i < PART_COUNT; ++i) {
         bool asked = sets ? PARTS[i].use == measure_set : bench_options_part(options, names[i]);
         if (!asked) continue;

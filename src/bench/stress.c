@@ -51,6 +51,7 @@ typedef struct Bench {
     FILE *stream;
     Table table; // of the files
     Progress progress;
+    int sets; // of each form
     int sets_done, cases_done, failures;
 } Bench;
 
@@ -161,25 +162,6 @@ static void report_smallest(Bench *bench, const StressCase *stress, const Stress
     print_case(bench, &smallest, &verdict, rule, steps);
 }
 
-// Names a case as it was found.
-static void report_failure(Bench *bench, const Tally *tally, const StressCase *stress, int strand,
-                           const StressVerdict *verdict, StressRule rule)
-{
-    Row line = line_of_case(bench, "failed", stress, verdict, rule, bench->options->steps);
-    line.set = tally->sets, line.strand = strand;
-    progress_clear(&bench->progress);
-    fprintf(bench->stream, "  set %d, strand %d: %s at step %ld (%.3g): '%s'\n", tally->sets,
-            strand, line.rule, line.at, line.of_allowed, line.text);
-    table_add(&bench->table, &line);
-}
-
-// Whether a breaks the rule worse than b: by more, or else sooner.
-static bool is_worse(const StressVerdict *a, const StressVerdict *b, StressRule rule)
-{
-    if (a->worst[rule] > b->worst[rule]) return true;
-    return a->worst[rule] == b->worst[rule] && a->first[rule] < b->first[rule];
-}
-
 // Counts a set's strands, names all that failed, and reports the worst by each rule.
 static void count(Bench *bench, Tally *tally, const StressCase *strands,
                   const StressVerdict *verdicts, int strand_count)
@@ -193,8 +175,20 @@ static void count(Bench *bench, Tally *tally, const StressCase *strands,
         StressRule rule = STRESS_FINITE;
         if (!first_step(&verdicts[s], &rule)) continue;
         ++tally->failures;
-        if (!bench->options->text) report_failure(bench, tally, &strands[s], s, &verdicts[s], rule);
-        if (worst[rule] < 0 || is_worse(&verdicts[s], &verdicts[worst[rule]], rule))
+        const StressVerdict *found = &verdicts[s],
+                            *most = &verdicts[worst[rule] < 0 ? s : worst[rule]];
+        if (!bench->options->text) {
+            Row line =
+                line_of_case(bench, "failed", &strands[s], found, rule, bench->options->steps);
+            line.set = tally->sets, line.strand = s;
+            progress_clear(&bench->progress);
+            fprintf(bench->stream, "  set %d, strand %d: %s at step %ld (%.3g): '%s'\n",
+                    tally->sets, s, line.rule, line.at, line.of_allowed, line.text);
+            table_add(&bench->table, &line);
+        }
+        // The worst breaks the rule by more than others, or else sooner.
+        if (worst[rule] < 0 || found->worst[rule] > most->worst[rule] ||
+            (found->worst[rule] == most->worst[rule] && found->first[rule] < most->first[rule]))
             worst[rule] = s;
     }
     for (int i = 0; i < STRESS_RULES; ++i)
@@ -204,39 +198,27 @@ static void count(Bench *bench, Tally *tally, const StressCase *strands,
     tally->cases += strand_count;
 }
 
-// One set, its circumstances from the seed and its number.
-static Result run_set(Bench *bench, Tally *tally, int set, int strand_count, Error *error)
+// One set: its circumstances from the seed and its number, or the case that is asked for alone.
+static Result run_set(Bench *bench, Tally *tally, int set, Error *error)
 {
-    StressCase strands[STRESS_STRANDS];
+    const StressOptions *options = bench->options;
+    StressCase strands[STRESS_STRANDS] = {{.algo = tally->algo, .variant = tally->variant}};
     StressVerdict verdicts[STRESS_STRANDS];
-    Random random = random_create((uint64_t)bench->options->seed, (uint64_t)set);
-    StressCase plain = stress_case_random(tally->algo, tally->variant,
-                                          STRESS_VERTICES[set % STRESS_VERTEX_COUNTS], &random);
-    for (int s = 0; s < strand_count; ++s)
-        strands[s] = stress_case_random_strand(&plain, s, &random);
-    TRY(stress_run(verdicts, bench->gpu, strands, strand_count, bench->options->steps,
-                   bench->options->allowed, error));
-    count(bench, tally, strands, verdicts, strand_count);
-    return RESULT_OK;
-}
-
-static Result run_text(Bench *bench, Tally *tally, Error *error)
-{
-    StressCase stress = {.algo = tally->algo, .variant = tally->variant};
-    StressVerdict verdict;
-    TRY(stress_case_read(&stress, bench->options->text, error));
-    TRY(stress_run(&verdict, bench->gpu, &stress, 1, bench->options->steps, bench->options->allowed,
-                   error));
-    count(bench, tally, &stress, &verdict, 1);
-    return RESULT_OK;
-}
-
-static Result run_sets(Bench *bench, Tally *tally, Error *error)
-{
-    for (int set = 0, left = bench->options->cases; left > 0; ++set, left -= STRESS_STRANDS) {
-        TRY(run_set(bench, tally, set, left < STRESS_STRANDS ? left : STRESS_STRANDS, error));
-        progress_update(&bench->progress, ++bench->sets_done);
+    int left = options->cases - set * STRESS_STRANDS;
+    int strand_count = left < STRESS_STRANDS ? left : STRESS_STRANDS;
+    if (options->text) {
+        strand_count = 1;
+        TRY(stress_case_read(strands, options->text, error));
+    } else {
+        Random random = random_create((uint64_t)options->seed, (uint64_t)set);
+        StressCase plain = stress_case_random(tally->algo, tally->variant,
+                                              STRESS_VERTICES[set % STRESS_VERTEX_COUNTS], &random);
+        for (int s = 0; s < strand_count; ++s)
+            strands[s] = stress_case_random_strand(&plain, s, &random);
     }
+    TRY(stress_run(verdicts, bench->gpu, strands, strand_count, options->steps, options->allowed,
+                   error));
+    count(bench, tally, strands, verdicts, strand_count);
     return RESULT_OK;
 }
 
@@ -264,8 +246,11 @@ static Result run_form(Bench *bench, const char *algo, const char *variant, Erro
 {
     Tally tally = {.algo = algo, .variant = variant};
     double begun = clock_ms();
-    Result result =
-        bench->options->text ? run_text(bench, &tally, error) : run_sets(bench, &tally, error);
+    Result result = RESULT_OK;
+    for (int set = 0; set < bench->sets; ++set) {
+        THEN(result, run_set(bench, &tally, set, error));
+        if (result == RESULT_OK) progress_update(&bench->progress, ++bench->sets_done);
+    }
     tally.seconds = (clock_ms() - begun) / 1000;
     if (tally.cases) print_tally(bench, &tally);
     bench->failures += tally.failures;
@@ -291,18 +276,17 @@ static int list_forms(const StressOptions *options, const char *forms[MOST_FORMS
 Result stress_search(const Gpu *gpu, const StressOptions *options, const TableOutput *output,
                      FILE *stream, Error *error)
 {
-    Bench bench = {.gpu = gpu, .options = options, .stream = stream};
+    Bench bench = {.gpu = gpu, .options = options, .stream = stream, .sets = 1};
+    if (!options->text) bench.sets = (options->cases + STRESS_STRANDS - 1) / STRESS_STRANDS;
     const SectionParams words = {.algo = (char *)(options->algo ? options->algo : "split"),
                                  .variant = (char *)(options->variant ? options->variant : "")};
     const char *forms[MOST_FORMS][2];
     int count = list_forms(options, forms);
-    int sets = options->text ? 1 : (options->cases + STRESS_STRANDS - 1) / STRESS_STRANDS;
     if (options->text && !options->algo)
         return error_set(error, RESULT_USAGE, "stress: --case needs --algo");
     TRY(solver_check(&words, error));
-    TRY(table_open(&bench.table, COLUMNS, sizeof COLUMNS / sizeof *COLUMNS, gpu, output, NULL,
-                   error));
-    progress_start(&bench.progress, stderr, count ? count * sets : 1, false);
+    TRY(table_open(&bench.table, TABLE_COLUMNS, gpu, output, NULL, error));
+    progress_start(&bench.progress, stderr, count ? count * bench.sets : 1, false);
     fprintf(stream, "%-10s %-10s %8s %6s %8s %8s  %-28s %s\n", "solver", "form", "cases", "sets",
             "failures", "seconds", "failures by rule (f/l/e/r)", "worst of allowed (l/e/r)");
     fflush(stream);

@@ -272,24 +272,20 @@ void stress_case_write(const StressCase *stress, char *text, size_t size)
 
 // --- Simpler cases.
 
-// Half the way to the plain value, in the logarithm if both have one; the plain one from near by.
-static double halved(const Field *field, double value)
-{
-    double plain = field->plain;
-    double half = value > 0 && plain > 0 ? sqrt(value * plain) : 0.5 * (value + plain);
-    half = is_whole(field) ? floor(half) : half;
-    return fabs(half - plain) < 0.05 * fabs(plain) || half == value ? plain : half;
-}
-
-// The plain value, half the way there, to one digit as people write numbers: in turn.
+// In turn the plain value; half the way there, in the logarithm if both have one, or the plain one
+// from near by; to one digit as people write numbers.
 enum { MOVES_A_FIELD = 3, VERTEX_MOVES = 5 };
 
 static double simpler_value(const Field *field, int way, double value)
 {
-    if (way == 0 || value == field->plain) return field->plain;
     char text[32];
+    double plain = field->plain;
+    if (way == 0 || value == plain) return plain;
+    double half = value > 0 && plain > 0 ? sqrt(value * plain) : 0.5 * (value + plain);
+    if (is_whole(field)) half = floor(half);
+    if (fabs(half - plain) < 0.05 * fabs(plain) || half == value) half = plain;
     snprintf(text, sizeof text, "%.0e", value);
-    double simpler = way == 1 ? rounded(halved(field, value)) : strtod(text, NULL);
+    double simpler = way == 1 ? rounded(half) : strtod(text, NULL);
     return is_in_range(field, simpler) ? simpler : value;
 }
 

@@ -48,20 +48,6 @@ static bool is(const StressCase *stress, const char *algo)
     return strcmp(stress->algo, algo) == 0;
 }
 
-// What a jerk of the root gives to a strand, over its change of velocity: where it is by tens of
-// links, chain's corrections of the lengths overshoot, for that step only; those of dftl are
-// velocities, which it takes a dozen steps to lose.
-static double jerk_of(const StressCase *stress)
-{
-    bool overshoots = is(stress, "chain") || is(stress, "dftl");
-    return overshoots ? 1.5 : 1;
-}
-
-static bool head_carries(const StressCase *stress, const SectionParams *params)
-{
-    return is(stress, "tressfx") || (params->clamped > 1 && stress->value[STRESS_n] > 2);
-}
-
 static double odds_of(const SectionParams *params)
 {
     return (double)params->style / fmax(1 - (double)params->style, 1e-6);
@@ -81,15 +67,6 @@ static double turned_springs(const StressCase *stress, const SectionParams *para
     }
     double springs = square * (double)params->style_stiffness * odds;
     return springs + (is(stress, "chain") ? bend * (double)params->chain_bend : 0);
-}
-
-// All that makes hair go with the air, 1/s.
-static double all_drag(const StressCase *stress, const SectionParams *params)
-{
-    if (is(stress, "tressfx"))
-        return (double)params->drag +
-               (double)params->tressfx_damping * (double)params->tressfx_damping_rate;
-    return (double)params->drag;
 }
 
 // The range that docs/solvers_rigid.md states for its energy, with what is fixed in TressFX as it
@@ -140,20 +117,25 @@ StressBound stress_run_bound(const StressCase *stress, const SectionParams *para
     StressBound bound = {
         .step_s =
             stress->value[STRESS_dt] * (is(stress, "rope") ? (double)params->rope_time_scale : 1),
-        .drag = all_drag(stress, params),
+        .drag = (double)params->drag,
         .wind = stress->value[STRESS_wind] * (1 + stress->value[STRESS_gust]) / cos(spread),
         .g = stress->value[STRESS_gravity],
         .length = stress->value[STRESS_length],
         .stiffness = turned_springs(stress, params),
-        .jerk = jerk_of(stress),
+        // What a jerk of the root gives to a strand, over its change of velocity: where it is by
+        // tens of links, chain's corrections of the lengths overshoot, for that step only; those of
+        // dftl are velocities, which it takes a dozen steps to lose.
+        .jerk = is(stress, "chain") || is(stress, "dftl") ? 1.5 : 1,
         .jerk_stays = is(stress, "dftl"),
-        .carries = head_carries(stress, params),
+        .carries = is(stress, "tressfx") || (params->clamped > 1 && stress->value[STRESS_n] > 2),
         .bends = 16 * (is(stress, "chain") ? (double)params->chain_bend : 0) * odds_of(params) *
                  (stress->value[STRESS_n] - 1) * stress->value[STRESS_length],
         .small_steps = strcmp(stress->variant, "xpbd") == 0       ? params->rope_iterations
                        : strcmp(stress->variant, "explicit") == 0 ? STRESS_MOST_SMALL_STEPS
                                                                   : 1,
     };
+    if (is(stress, "tressfx")) // which has more that makes hair go with the air
+        bound.drag += (double)params->tressfx_damping * (double)params->tressfx_damping_rate;
     double g = bound.g + bound.drag * bound.wind, links = stress->value[STRESS_n] - 1;
     bound.rest_shortest = bound.step_s * bound.step_s * g * links / (CALM * CALM);
     apply_promises(&bound, stress, params, must_rest(stress, &bound, g, steps));
@@ -410,23 +392,17 @@ static void read_verdicts(const Run *run, StressVerdict *verdicts, int count)
     }
 }
 
-static Result take_steps(Run *run, Error *error)
-{
-    enum { STEPS_IN_FLIGHT = 256 }; // on a GPU, so that it can be interrupted
-    for (int i = 1; i <= run->steps; ++i) {
-        take_step(run, i);
-        if (i % STEPS_IN_FLIGHT == 0) glFinish();
-        if (interrupt_requested()) return error_set(error, RESULT_INTERRUPTED, "interrupted");
-    }
-    return RESULT_OK;
-}
-
 Result stress_run(StressVerdict *verdicts, const Gpu *gpu, const StressCase *strands, int count,
                   int steps, double allowed, Error *error)
 {
+    enum { STEPS_IN_FLIGHT = 256 }; // on a GPU, so that it can be interrupted
     Run run;
     Result result = run_create(&run, gpu, strands, count, steps, allowed, error);
-    THEN(result, take_steps(&run, error));
+    for (int i = 1; i <= steps && result == RESULT_OK; ++i) {
+        take_step(&run, i);
+        if (i % STEPS_IN_FLIGHT == 0) glFinish();
+        if (interrupt_requested()) result = error_set(error, RESULT_INTERRUPTED, "interrupted");
+    }
     if (result == RESULT_OK) read_verdicts(&run, verdicts, count);
     run_destroy(&run);
     return result;

@@ -33,6 +33,8 @@ typedef struct Column {
 #define TABLE_FIELD_WHOLE(name)         long name;
 #define TABLE_FIELD_REAL(name)          double name;
 #define TABLE_COLUMN(kind, name, width) {#name, COLUMN_##kind, offsetof(Row, name), width},
+// What table_open takes of them.
+#define TABLE_COLUMNS COLUMNS, sizeof COLUMNS / sizeof *COLUMNS
 enum { TABLE_CHARS = 1152 };
 
 // Where rows go. A zeroed one goes nowhere but the screen.

@@ -367,18 +367,12 @@ static void add_report(Table *table, const Check *check, const TestVectorsReport
     add_category(table, check, &all, NAN); // its categories have been checked
 }
 
-static Result open_table(Table *table, const BenchOptions *options, const Gpu *gpu, Error *error)
-{
-    return table_open(table, COLUMNS, sizeof COLUMNS / sizeof *COLUMNS, gpu, &options->output,
-                      stdout, error);
-}
-
 Result test_vectors_run_steps(const BenchOptions *options, const Gpu *gpu, Error *error)
 {
     static const char *const rules[] = {"ours", "thesis"};
     const char *path = options->vectors ? options->vectors : "tests/data/tractrix_steps.csv";
     Table table = {0};
-    Result result = open_table(&table, options, gpu, error);
+    Result result = table_open(&table, TABLE_COLUMNS, gpu, &options->output, stdout, error);
     for (TestVectorsRule rule = VECTORS_OURS; rule <= VECTORS_PUBLISHED; ++rule) {
         const Check check = {rules[rule], "floor32",         "step",
                              path,        VECTORS_STEP_MARK, rule == VECTORS_OURS};
@@ -395,7 +389,7 @@ Result test_vectors_run_chains(const BenchOptions *options, const Gpu *gpu, Erro
     const Check check = {"ours", "sens32", "chain", path, VECTORS_CHAIN_MARK, true};
     Table table = {0};
     TestVectorsReport report;
-    Result result = open_table(&table, options, gpu, error);
+    Result result = table_open(&table, TABLE_COLUMNS, gpu, &options->output, stdout, error);
     THEN(result, test_vectors_check_chains(&report, gpu, path, error));
     if (result == RESULT_OK) add_report(&table, &check, &report);
     return table_close(&table, result, error);
