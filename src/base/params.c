@@ -154,21 +154,21 @@ static const struct Form {
     char separator;
     bool automatic; // or "auto"
 } FORMS[] = {
-    [PARAM_BOOL] = {"true or false", NULL},
-    [PARAM_INT] = {"a whole number ", "", NUMBER_INT, 1},
-    [PARAM_UINT] = {"a whole number ", "", NUMBER_UINT, 1},
-    [PARAM_FLOAT] = {"a number ", "", NUMBER_FLOAT, 1},
-    [PARAM_VEC3] = {"three numbers x,y,z ", "", NUMBER_FLOAT, 3, ','},
-    [PARAM_COLOR] = {"#rrggbb or r,g,b ", "", NUMBER_FLOAT, 3, ','},
-    [PARAM_BACKGROUND] = {"#rrggbb, r,g,b ", ", or transparent", NUMBER_FLOAT, 3, ','},
+    [PARAM_BOOL] = {"true or false", NULL, NO_NUMBER, 0, 0, false},
+    [PARAM_INT] = {"a whole number ", "", NUMBER_INT, 1, 0, false},
+    [PARAM_UINT] = {"a whole number ", "", NUMBER_UINT, 1, 0, false},
+    [PARAM_FLOAT] = {"a number ", "", NUMBER_FLOAT, 1, 0, false},
+    [PARAM_VEC3] = {"three numbers x,y,z ", "", NUMBER_FLOAT, 3, ',', false},
+    [PARAM_COLOR] = {"#rrggbb or r,g,b ", "", NUMBER_FLOAT, 3, ',', false},
+    [PARAM_BACKGROUND] = {"#rrggbb, r,g,b ", ", or transparent", NUMBER_FLOAT, 3, ',', false},
     [PARAM_AUTO_INT] = {"auto or a whole number ", "", NUMBER_INT, 1, 0, true},
     [PARAM_AUTO_FLOAT] = {"auto or a number ", "", NUMBER_FLOAT, 1, 0, true},
     [PARAM_AUTO_VEC3] = {"auto or three numbers x,y,z ", "", NUMBER_FLOAT, 3, ',', true},
     [PARAM_UNIT] = {"auto, m, cm, mm, in or a number ", "", NUMBER_FLOAT, 1, 0, true},
-    [PARAM_SIZE] = {"WxH, each ", "", NUMBER_INT, 2, 'x'},
-    [PARAM_PART] = {"I/N, each ", " and I at most N", NUMBER_INT, 2, '/'},
-    [PARAM_TEXT] = {"a name", NULL},
-    [PARAM_PATH] = {"a path", NULL},
+    [PARAM_SIZE] = {"WxH, each ", "", NUMBER_INT, 2, 'x', false},
+    [PARAM_PART] = {"I/N, each ", " and I at most N", NUMBER_INT, 2, '/', false},
+    [PARAM_TEXT] = {"a name", NULL, NO_NUMBER, 0, 0, false},
+    [PARAM_PATH] = {"a path", NULL, NO_NUMBER, 0, 0, false},
 };
 
 // Where the numbers of a field begin: behind `automatic` if it has that.

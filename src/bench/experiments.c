@@ -263,7 +263,7 @@ static bool beam_set_up(Setup *setup)
     bool chain = strcmp(setup->method->algo, "chain") == 0;
     if (setup->number >= 6 || (!chain && strcmp(setup->method->algo, "spring") != 0)) return false;
     const char *flag = chain ? "chain-bend" : "spring-angular";
-    double stiffness = stiffnesses[setup->number / 2], angle[EXPERIMENT_POINTS];
+    double stiffness = stiffnesses[setup->number / 2], angle[EXPERIMENT_POINTS] = {0};
     int n = setup->number % 2 ? 31 : 15;
     setup->n = n + 1;
     trial_make_beam(setup->points, n + 1, LENGTH);

@@ -135,8 +135,9 @@ static long count_bytes(const SimulationSection *section)
 static Result measure_steps(Row *row, Simulation *simulation, const BenchOptions *options,
                             Error *error)
 {
-    double *step = calloc(2 * (size_t)options->steps, sizeof *step), *solve = step + options->steps;
+    double *step = calloc(2 * (size_t)options->steps, sizeof *step);
     if (!step) return error_set(error, RESULT_FAILED, "no memory for %d samples", options->steps);
+    double *solve = step + options->steps;
     for (int i = -options->warm_up - 1; i < options->steps; ++i) {
         double begin = clock_ms();
         simulation_advance(simulation);

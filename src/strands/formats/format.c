@@ -105,7 +105,7 @@ static void join(const char *const *words, int count, char *text, size_t size)
 
 void format_list_suffixes(char *text, size_t size)
 {
-    const char *suffixes[FORMAT_KINDS];
+    const char *suffixes[FORMAT_KINDS] = {0};
     int count = 0;
     for (FormatKind kind = 0; kind < FORMAT_KINDS; ++kind) {
         bool known = !FORMAT_TABLE[kind]->write;
