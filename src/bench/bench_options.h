@@ -2,8 +2,7 @@
 // The room of measurements, the program tractrix-bench: accuracy, speed, stress and image error of
 // what the rooms below it do. It takes hair, solvers, simulation and renderer as they are, steps
 // and draws them itself, and hands on rows (table.h) on the screen, as CSV and as JSON, with stated
-// bounds checked. bench_commands.h, stress.h and test_vectors.h have its commands;
-// image_reference.h and shadow_reference.h are judges that tests use as well.
+// bounds checked. bench_commands.h, stress.h and test_vectors.h have its commands.
 //
 // This header: the command line.
 #pragma once

@@ -19,22 +19,6 @@ double child_number(const json_t *row, const char *name)
     return json_is_number(value) ? json_number_value(value) : NAN;
 }
 
-static void add(char **words, const char *text)
-{
-    for (int i = 0; i < MOST_WORDS; ++i)
-        if (!words[i]) {
-            words[i] = (char *)text;
-            return;
-        }
-}
-
-static void add_pair(char **words, const char *flag, const char *value)
-{
-    if (!value || !*value) return;
-    add(words, flag);
-    add(words, value);
-}
-
 // Runs the words with the variable set, its output thrown away.
 static Result execute(char **words, const ChildRun *run, double *wall_ms, Error *error)
 {
@@ -66,7 +50,9 @@ static Result execute(char **words, const ChildRun *run, double *wall_ms, Error 
 Result child_run(const ChildRun *run, json_t **row, double *wall_ms, Error *error)
 {
     char path[PATH_MAX], steps[16], warm_up[16], device[16], *rest = NULL;
-    char *words[MOST_WORDS + 1] = {NULL}, *settings = strdup(run->method->settings);
+    char *words[MOST_WORDS + 1] = {"tractrix-bench", "speed"},
+                             *settings = strdup(run->method->settings);
+    int count = 2;
     outfile_scratch_name(path, "tractrix-bench");
     int temporary = mkstemp(path);
     *row = NULL;
@@ -78,21 +64,25 @@ Result child_run(const ChildRun *run, json_t **row, double *wall_ms, Error *erro
     snprintf(steps, sizeof steps, "%d", run->steps);
     snprintf(warm_up, sizeof warm_up, "%d", run->warm_up);
     snprintf(device, sizeof device, "%d", run->gpu->device);
-    add(words, "tractrix-bench");
-    add(words, "speed");
-    add_pair(words, "--part", "sets");
-    add_pair(words, "--algo", run->method->algo);
-    add_pair(words, "--variant", run->method->variant);
-    for (char *word = strtok_r(settings, " ", &rest); word; word = strtok_r(NULL, " ", &rest))
-        add(words, word);
-    add_pair(words, "--set", run->set);
-    add_pair(words, "--tfx", run->file);
-    add_pair(words, "--steps", steps);
-    add_pair(words, "--warm-up", warm_up);
-    add_pair(words, "--json", path);
-    if (run->gpu->device >= 0) add_pair(words, "--device", device);
-    if (run->gpu->software) add(words, "--software");
-    if (run->gpu->backend == BACKEND_OSMESA) add(words, "--osmesa");
+    const char *const pairs[][2] = {{"--part", "sets"},
+                                    {"--algo", run->method->algo},
+                                    {"--variant", run->method->variant},
+                                    {"--set", run->set},
+                                    {"--tfx", run->file},
+                                    {"--steps", steps},
+                                    {"--warm-up", warm_up},
+                                    {"--json", path},
+                                    {"--device", run->gpu->device >= 0 ? device : NULL}};
+    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; ++i) {
+        if (!pairs[i][1] || !*pairs[i][1]) continue;
+        words[count++] = (char *)pairs[i][0];
+        words[count++] = (char *)pairs[i][1];
+    }
+    if (run->gpu->software) words[count++] = "--software";
+    if (run->gpu->backend == BACKEND_OSMESA) words[count++] = "--osmesa";
+    for (char *word = strtok_r(settings, " ", &rest); word && count < MOST_WORDS;
+         word = strtok_r(NULL, " ", &rest))
+        words[count++] = word;
     Result result = execute(words, run, wall_ms, error);
     json_t *rows = result == RESULT_OK ? json_load_file(path, 0, NULL) : NULL;
     *row = json_incref(json_array_get(rows, 0));

@@ -511,8 +511,8 @@ static Result scale_measure(Run *run, Error *error)
 
 // --- The table.
 
-#define LOOSE     "--style 0"
-#define SIMULATED "--style 0 --stretch-drawn true"
+#define LOOSE "--style 0"
+#define DRAWN "--style 0 --stretch-drawn true"
 const Experiment EXPERIMENTS[] = {
     {"motions", {60, 120, 240}, NULL, LOOSE, ORDER, FOLD_MEAN, motions_set_up, motions_measure},
     {"pendulum", {60, 120, 240}, NULL, LOOSE, ORDER, 0, pendulum_set_up, pendulum_measure},
@@ -520,14 +520,7 @@ const Experiment EXPERIMENTS[] = {
     {"drift", {60}, NULL, "", 0, 0, drift_set_up, drift_measure},
     {"beam", {30, 240}, NULL, "", 0, 0, beam_set_up, beam_measure},
     {"stretch", {60, 240}, NULL, LOOSE, 0, FOLD_MOST, stretch_set_up, stretch_measure},
-    {"stretch",
-     {60, 240},
-     "stretch_drawn",
-     SIMULATED,
-     0,
-     FOLD_MOST,
-     stretch_set_up,
-     stretch_measure},
+    {"stretch", {60, 240}, "stretch_drawn", DRAWN, 0, FOLD_MOST, stretch_set_up, stretch_measure},
     {"energy", {30, 60, 120, 240}, NULL, "", 0, 0, energy_set_up, energy_measure},
     {"rate", {30, 60, 120, 240}, NULL, "", FINEST_FIRST, 0, rate_set_up, rate_measure},
     {"scale", {60}, NULL, "", 0, 0, scale_set_up, scale_measure},

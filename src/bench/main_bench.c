@@ -49,12 +49,31 @@ static Result try_program(const char *file, const ShaderDefine *defines, Error *
     return RESULT_OK;
 }
 
-static Result try_solver(const Gpu *gpu, const SolverType *type, const char *variant,
-                         uint32_t vertices, float style, Error *error)
+// A solver on four strands or, with params->followers, followers of them.
+static Result try_hair(const Gpu *gpu, const SectionParams *params, const StrandsRecipe *recipe,
+                       Error *error)
 {
     Strands strands = {0};
     Hair hair = {0};
     Solver solver = {0};
+    Follow follow = {0};
+    const SolverSetup setup = {
+        .gpu = gpu, .hair = &hair, .params = params, .sheltered = params->style == 1};
+    Result result = strands_make(&strands, recipe, error);
+    THEN(result, hair_create(&hair, &strands, 0, &gpu->limits, error));
+    THEN(result, params->followers
+                     ? follow_create(&follow, gpu, NULL, &hair, &strands, params, 1, error)
+                     : solver_create(&solver, &setup, error));
+    follow_destroy(&follow);
+    solver_destroy(&solver);
+    hair_destroy(&hair);
+    strands_destroy(&strands);
+    return result;
+}
+
+static Result try_solver(const Gpu *gpu, const SolverType *type, const char *variant,
+                         uint32_t vertices, float style, Error *error)
+{
     StrandsRecipe recipe = strands_make_recipe(STRANDS_STYLE_RANDOM);
     recipe.count = 4, recipe.vertices = vertices;
     const SectionParams params = {.algo = (char *)type->name,
@@ -64,15 +83,15 @@ static Result try_solver(const Gpu *gpu, const SolverType *type, const char *var
                                   .clamped = style < 1 ? 1 : 2,
                                   // Springs with bending and without.
                                   .chain_bend = style < 1 ? 10 : 0};
-    Result result = strands_make(&strands, &recipe, error);
-    THEN(result, hair_create(&hair, &strands, 0, &gpu->limits, error));
-    const SolverSetup setup = {
-        .gpu = gpu, .hair = &hair, .params = &params, .sheltered = style == 1};
-    THEN(result, solver_create(&solver, &setup, error));
-    solver_destroy(&solver);
-    hair_destroy(&hair);
-    strands_destroy(&strands);
-    return result;
+    return try_hair(gpu, &params, &recipe, error);
+}
+
+static Result try_follow(const Gpu *gpu, FollowMode mode, Error *error)
+{
+    StrandsRecipe recipe = strands_make_recipe(STRANDS_STYLE_FUR);
+    const SectionParams params = {.followers = 1, .follow = (int)mode};
+    recipe.count = 4;
+    return try_hair(gpu, &params, &recipe, error);
 }
 
 static Result try_inbetween(const Gpu *gpu, Error *error)
@@ -103,23 +122,6 @@ static void try_solvers(const Gpu *gpu, Result *worst, FILE *stream, Error *erro
                        try_solver(gpu, *type, variant, shapes[i].vertices, shapes[i].style, &why),
                        &why, worst, stream, error);
             }
-}
-
-static Result try_follow(const Gpu *gpu, FollowMode mode, Error *error)
-{
-    Strands strands = {0};
-    Hair hair = {0};
-    Follow follow = {0};
-    StrandsRecipe recipe = strands_make_recipe(STRANDS_STYLE_FUR);
-    recipe.count = 4;
-    const SectionParams params = {.followers = 1, .follow = (int)mode};
-    Result result = strands_make(&strands, &recipe, error);
-    THEN(result, hair_create(&hair, &strands, 0, &gpu->limits, error));
-    THEN(result, follow_create(&follow, gpu, NULL, &hair, &strands, &params, 1, error));
-    follow_destroy(&follow);
-    hair_destroy(&hair);
-    strands_destroy(&strands);
-    return result;
 }
 
 // Loops over lights and shadow maps unrolled, for as many as scenes often have and for the most.
@@ -302,26 +304,21 @@ static const struct {
 };
 enum { COMMAND_COUNT = sizeof COMMANDS / sizeof *COMMANDS };
 
-static Result find_command(const char *word, size_t *command, Error *error)
-{
-    const char *names[COMMAND_COUNT];
-    for (size_t i = 0; i < COMMAND_COUNT; ++i) {
-        names[i] = COMMANDS[i].name;
-        *command = i;
-        if (strcmp(names[i], word) == 0) return RESULT_OK;
-    }
-    char words[200];
-    return error_set(error, RESULT_USAGE, "no command '%s': %s", word,
-                     suggest_words(words, sizeof words, word, names, COMMAND_COUNT));
-}
-
 static Result run_command(BenchOptions *options, Error *error)
 {
+    const char *names[COMMAND_COUNT];
     size_t command = 0;
     Gpu gpu;
     if (options->file_count == 0) return error_set(error, RESULT_USAGE, "no command; see --help");
-    TRY(find_command(*options->files++, &command, error));
+    const char *word = *options->files++;
     --options->file_count;
+    for (size_t i = 0; i < COMMAND_COUNT; ++i) names[i] = COMMANDS[i].name;
+    while (command < COMMAND_COUNT && strcmp(names[command], word) != 0) ++command;
+    if (command == COMMAND_COUNT) {
+        char words[200];
+        return error_set(error, RESULT_USAGE, "no command '%s': %s", word,
+                         suggest_words(words, sizeof words, word, names, COMMAND_COUNT));
+    }
     // What Mesa finds in its cache it does not compile, and warns of nothing.
     if (COMMANDS[command].run == run_shaders) setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
     TRY(gpu_create(&gpu, &options->gpu, error));

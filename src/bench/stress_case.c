@@ -77,23 +77,25 @@ static Field find_param(const ParamInfo *info)
     return field;
 }
 
+typedef struct Fields {
+    Field field[STRESS_MOST_FIELDS];
+    int count;
+} Fields;
+
 // All fields; params.def in the form that is needed here, made once.
-static const Field *list_fields(int *count)
+static const Fields *list_fields(void)
 {
-    static Field fields[STRESS_MOST_FIELDS];
-    static int made = 0;
-    if (!made) {
-        memcpy(fields, CIRCUMSTANCES, sizeof CIRCUMSTANCES);
-        made = STRESS_PARAMS;
-        for (size_t i = 0; i < PARAM_COUNT && made < STRESS_MOST_FIELDS; ++i) {
-            ParamKind kind = PARAM_TABLE[i].kind;
-            if (trial_takes(&PARAM_TABLE[i]) && (kind == PARAM_FLOAT || kind == PARAM_INT ||
-                                                 kind == PARAM_BOOL || kind == PARAM_CHOICE))
-                fields[made++] = find_param(&PARAM_TABLE[i]);
-        }
+    static Fields all;
+    if (all.count) return &all;
+    memcpy(all.field, CIRCUMSTANCES, sizeof CIRCUMSTANCES);
+    all.count = STRESS_PARAMS;
+    for (size_t i = 0; i < PARAM_COUNT && all.count < STRESS_MOST_FIELDS; ++i) {
+        ParamKind kind = PARAM_TABLE[i].kind;
+        if (trial_takes(&PARAM_TABLE[i]) && (kind == PARAM_FLOAT || kind == PARAM_INT ||
+                                             kind == PARAM_BOOL || kind == PARAM_CHOICE))
+            all.field[all.count++] = find_param(&PARAM_TABLE[i]);
     }
-    *count = made;
-    return fields;
+    return &all;
 }
 
 static bool applies(const Field *field, const StressCase *stress)
@@ -106,10 +108,9 @@ static bool applies(const Field *field, const StressCase *stress)
 
 static double param_value(const StressCase *stress, const char *name)
 {
-    int count;
-    const Field *fields = list_fields(&count);
-    for (int i = STRESS_PARAMS; i < count; ++i)
-        if (strcmp(fields[i].name, name) == 0) return stress->value[i];
+    const Fields *all = list_fields();
+    for (int i = STRESS_PARAMS; i < all->count; ++i)
+        if (strcmp(all->field[i].name, name) == 0) return stress->value[i];
     return NAN;
 }
 
@@ -129,10 +130,9 @@ const int STRESS_VERTICES[STRESS_VERTEX_COUNTS] = {2, 3, 16, 64};
 
 StressCase stress_case_plain(const char *algo, const char *variant)
 {
-    int count;
-    const Field *fields = list_fields(&count);
+    const Fields *all = list_fields();
     StressCase stress = {.algo = algo, .variant = variant};
-    for (int i = 0; i < count; ++i) stress.value[i] = fields[i].plain;
+    for (int i = 0; i < all->count; ++i) stress.value[i] = all->field[i].plain;
     return stress;
 }
 
@@ -168,13 +168,12 @@ static double random_value(const Field *field, Random *random)
 
 static void draw(StressCase *stress, bool of_strand, Random *random)
 {
-    int count;
-    const Field *fields = list_fields(&count);
-    for (int i = 0; i < count; ++i) {
+    const Fields *all = list_fields();
+    for (int i = 0; i < all->count; ++i) {
         bool own = i == STRESS_shape || i == STRESS_tilt || i == STRESS_shape_seed;
-        if (own == of_strand && applies(&fields[i], stress) &&
-            random_real(random) < fields[i].likely)
-            stress->value[i] = rounded(random_value(&fields[i], random));
+        if (own == of_strand && applies(&all->field[i], stress) &&
+            random_real(random) < all->field[i].likely)
+            stress->value[i] = rounded(random_value(&all->field[i], random));
     }
 }
 
@@ -220,14 +219,13 @@ StressCase stress_case_random_strand(const StressCase *set, int strand, Random *
 
 static Result read_word(StressCase *stress, const char *word, size_t length, Error *error)
 {
-    int count;
-    const Field *fields = list_fields(&count);
+    const Fields *all = list_fields();
     const char *equals = memchr(word, '=', length), *names[STRESS_MOST_FIELDS];
     size_t name = equals ? (size_t)(equals - word) : length;
     char text[64], *end = NULL;
     snprintf(text, sizeof text, "%.*s", (int)name, word);
-    for (int i = 0; i < count; ++i) {
-        const Field *field = &fields[i];
+    for (int i = 0; i < all->count; ++i) {
+        const Field *field = &all->field[i];
         names[i] = field->name;
         if (strcmp(field->name, text) != 0) continue;
         if (!applies(field, stress))
@@ -243,7 +241,7 @@ static Result read_word(StressCase *stress, const char *word, size_t length, Err
     }
     char words[800];
     return error_set(error, RESULT_USAGE, "--case: no '%s': %s", text,
-                     suggest_words(words, sizeof words, text, names, (size_t)count));
+                     suggest_words(words, sizeof words, text, names, (size_t)all->count));
 }
 
 Result stress_case_read(StressCase *stress, const char *text, Error *error)
@@ -260,14 +258,13 @@ Result stress_case_read(StressCase *stress, const char *text, Error *error)
 
 void stress_case_write(const StressCase *stress, char *text, size_t size)
 {
-    int count;
-    const Field *fields = list_fields(&count);
+    const Fields *all = list_fields();
     size_t used = 0;
     snprintf(text, size, "plain");
-    for (int i = 0; i < count && used < size; ++i)
-        if (applies(&fields[i], stress) && stress->value[i] != fields[i].plain)
+    for (int i = 0; i < all->count && used < size; ++i)
+        if (applies(&all->field[i], stress) && stress->value[i] != all->field[i].plain)
             used += (size_t)snprintf(text + used, size - used, "%s%s=%.5g", used ? " " : "",
-                                     fields[i].name, stress->value[i]);
+                                     all->field[i].name, stress->value[i]);
 }
 
 // --- Simpler cases.
@@ -292,16 +289,15 @@ static double simpler_value(const Field *field, int way, double value)
 bool stress_case_simplify(const StressCase *stress, int move, StressCase *simpler)
 {
     static const int fewer[VERTEX_MOVES] = {2, 3, 4, 8, 16};
-    int count;
-    const Field *fields = list_fields(&count);
+    const Fields *all = list_fields();
     *simpler = *stress;
     if (move < VERTEX_MOVES) {
         if (fewer[move] < stress->value[STRESS_n]) simpler->value[STRESS_n] = fewer[move];
     } else {
-        int at = (move - VERTEX_MOVES) % count, way = (move - VERTEX_MOVES) / count;
+        int at = (move - VERTEX_MOVES) % all->count, way = (move - VERTEX_MOVES) / all->count;
         if (way >= MOVES_A_FIELD) return false;
-        if (at != STRESS_n && applies(&fields[at], stress))
-            simpler->value[at] = simpler_value(&fields[at], way, stress->value[at]);
+        if (at != STRESS_n && applies(&all->field[at], stress))
+            simpler->value[at] = simpler_value(&all->field[at], way, stress->value[at]);
     }
     keep_apart(simpler);
     return true;
@@ -311,15 +307,14 @@ bool stress_case_simplify(const StressCase *stress, int move, StressCase *simple
 
 Result stress_case_params(const StressCase *stress, SectionParams *params, Error *error)
 {
-    int count;
-    const Field *fields = list_fields(&count);
+    const Fields *all = list_fields();
     Result result = params_create_section(params, error);
     THEN(result, params_parse(params_find("algo"), params, stress->algo, error));
     THEN(result, params_parse(params_find("variant"), params, stress->variant, error));
-    for (int i = STRESS_PARAMS; i < count && result == RESULT_OK; ++i) {
-        const ParamInfo *info = fields[i].info;
+    for (int i = STRESS_PARAMS; i < all->count && result == RESULT_OK; ++i) {
+        const ParamInfo *info = all->field[i].info;
         char text[32];
-        if (!applies(&fields[i], stress)) continue;
+        if (!applies(&all->field[i], stress)) continue;
         snprintf(text, sizeof text, "%.5g", stress->value[i]);
         if (info->kind == PARAM_BOOL)
             snprintf(text, sizeof text, stress->value[i] > 0 ? "true" : "false");

@@ -374,24 +374,6 @@ static void take_step(Run *run, int i)
     ++step->number;
 }
 
-static void read_verdicts(const Run *run, StressVerdict *verdicts, int count)
-{
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    for (int s = 0; s < count; ++s) {
-        float worst[4];
-        uint32_t first[4];
-        GLintptr at = s * (GLintptr)sizeof worst;
-        glBindBuffer(GL_COPY_READ_BUFFER, run->worst.buffer);
-        glGetBufferSubData(GL_COPY_READ_BUFFER, at, sizeof worst, worst);
-        glBindBuffer(GL_COPY_READ_BUFFER, run->first.buffer);
-        glGetBufferSubData(GL_COPY_READ_BUFFER, at, sizeof first, first);
-        for (int i = 0; i < STRESS_RULES; ++i) {
-            verdicts[s].first[i] = (int)first[i];
-            verdicts[s].worst[i] = i == 0 ? 0 : (double)worst[i - 1];
-        }
-    }
-}
-
 Result stress_run(StressVerdict *verdicts, const Gpu *gpu, const StressCase *strands, int count,
                   int steps, double allowed, Error *error)
 {
@@ -403,7 +385,20 @@ Result stress_run(StressVerdict *verdicts, const Gpu *gpu, const StressCase *str
         if (i % STEPS_IN_FLIGHT == 0) glFinish();
         if (interrupt_requested()) result = error_set(error, RESULT_INTERRUPTED, "interrupted");
     }
-    if (result == RESULT_OK) read_verdicts(&run, verdicts, count);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    for (int s = 0; s < count && result == RESULT_OK; ++s) {
+        float worst[4];
+        uint32_t first[4];
+        GLintptr at = s * (GLintptr)sizeof worst;
+        glBindBuffer(GL_COPY_READ_BUFFER, run.worst.buffer);
+        glGetBufferSubData(GL_COPY_READ_BUFFER, at, sizeof worst, worst);
+        glBindBuffer(GL_COPY_READ_BUFFER, run.first.buffer);
+        glGetBufferSubData(GL_COPY_READ_BUFFER, at, sizeof first, first);
+        for (int i = 0; i < STRESS_RULES; ++i) {
+            verdicts[s].first[i] = (int)first[i];
+            verdicts[s].worst[i] = i == 0 ? 0 : (double)worst[i - 1];
+        }
+    }
     run_destroy(&run);
     return result;
 }
