@@ -234,20 +234,15 @@ SIMD_FOR_AVX2 static void step_tile_avx2(const CpuSplit *split, float *links, fl
     step_tile(split, links, ends);
 }
 
-static bool has_avx2(void)
-{
-    return simd_level() >= SIMD_AVX2;
-}
-
 const char *cpu_split_lanes(void)
 {
-    return has_avx2() ? "AVX2" : "baseline";
+    return simd_level() >= SIMD_AVX2 ? "AVX2" : "baseline";
 }
 
 void cpu_split_step(CpuSplit *split, CpuSplitForm form, uint32_t first, uint32_t last)
 {
     void (*tile)(const CpuSplit *, float *, float *) =
-        has_avx2() ? step_tile_avx2 : step_tile_baseline;
+        simd_level() >= SIMD_AVX2 ? step_tile_avx2 : step_tile_baseline;
     for (uint32_t t = first; t < last; ++t) {
         float *links = split->links + (size_t)t * split->link_count * LINK_ROWS * W;
         float *ends = split->ends + (size_t)t * END_ROWS * W;

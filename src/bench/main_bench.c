@@ -41,14 +41,6 @@ static void report(const char *what, Result result, const Error *why, Result *wo
     *error = *why;
 }
 
-static Result try_program(const char *file, const ShaderDefine *defines, Error *error)
-{
-    GLuint program;
-    TRY(shader_build_compute(&program, file, defines, error));
-    glDeleteProgram(program);
-    return RESULT_OK;
-}
-
 // A solver on four strands or, with params->followers, followers of them.
 static Result try_hair(const Gpu *gpu, const SectionParams *params, const StrandsRecipe *recipe,
                        Error *error)
@@ -262,9 +254,12 @@ static Result run_shaders(const BenchOptions *arguments, const Gpu *gpu, Error *
     Error why = {{0}};
     shader_add_sources(BENCH_GLSL_SOURCES);
     shader_treat_warnings_as_errors(true);
-    for (size_t i = 0; i < sizeof checks / sizeof *checks; ++i)
-        report(checks[i].file, try_program(checks[i].file, checks[i].defines, &why), &why, &worst,
-               stream, error);
+    for (size_t i = 0; i < sizeof checks / sizeof *checks; ++i) {
+        GLuint program = 0;
+        Result built = shader_build_compute(&program, checks[i].file, checks[i].defines, &why);
+        if (built == RESULT_OK) glDeleteProgram(program);
+        report(checks[i].file, built, &why, &worst, stream, error);
+    }
     report("sim/inbetween.comp", try_inbetween(gpu, &why), &why, &worst, stream, error);
     try_solvers(gpu, &worst, stream, error);
     for (FollowMode mode = FOLLOW_OFFSET; mode <= FOLLOW_INTERPOLATE; ++mode)
