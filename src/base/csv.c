@@ -33,7 +33,7 @@ static Result cut_lines(Csv *csv, Error *error)
     return RESULT_OK;
 }
 
-Result csv_read(Csv *csv, const char *path, Error *error)
+static Result read_file(Csv *csv, const char *path, Error *error)
 {
     *csv = (Csv){.path = strdup(path)};
     TRY(bytes_read_file(&csv->bytes, path, error));
@@ -45,6 +45,13 @@ Result csv_read(Csv *csv, const char *path, Error *error)
     if (!csv->path || !csv->column || !csv->field)
         return error_set(error, RESULT_FAILED, "%s: no memory", path);
     return cut_lines(csv, error);
+}
+
+Result csv_read(Csv *csv, const char *path, Error *error)
+{
+    Result result = read_file(csv, path, error);
+    if (result != RESULT_OK) csv_destroy(csv);
+    return result;
 }
 
 void csv_destroy(Csv *csv)

@@ -18,7 +18,7 @@ typedef struct Csv {
 } Csv;
 
 // Reads the file. RESULT_BAD_INPUT with "FILE:LINE: ..." if a row has not as many fields as the
-// header.
+// header. After a failure *csv is zero.
 Result csv_read(Csv *csv, const char *path, Error *error);
 void csv_destroy(Csv *csv);
 
