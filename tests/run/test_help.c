@@ -30,7 +30,8 @@ static char *capture(const char *topic)
 static const char *find_entry(const char *help, const char *flag)
 {
     for (const char *at = help; (at = strstr(at, flag)); ++at) {
-        bool first = strncmp(at - 3, "\n  ", 3) == 0, behind_letter = strncmp(at - 2, ", ", 2) == 0;
+        bool first = at - help >= 3 && strncmp(at - 3, "\n  ", 3) == 0;
+        bool behind_letter = at - help >= 2 && strncmp(at - 2, ", ", 2) == 0;
         if ((first || behind_letter) && strchr(" \n", at[strlen(flag)])) return at;
     }
     return NULL;
