@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Pushes hair out of the colliders, a strand from root to tip, behind whatever a solver has done in
-// a step.
+// Pushes hair out of the colliders, a strand from root to tip, after the solver's
+// step.
 //
 // Particle j of a strand, where the solver has put it at x, follows the one before, which this pass
 // may have moved to p, by reaching from there to x at the same length l. No particle moves further

@@ -47,7 +47,7 @@ enum StressField {
 };
 
 // Shapes, all of the case's length (but for the shortest segments that reading leaves,
-// strands_mend.h, which none goes below).
+// strands_read.h, which none goes below).
 enum StressShape {
     STRESS_STRAIGHT,    // collinear
     STRESS_CURL,        // a helix of three turns about the straight one

@@ -84,7 +84,7 @@ extern const Format *const FORMAT_TABLE[FORMAT_KINDS];
 // The kind of a file with this content; FORMAT_KINDS if it is none.
 FormatKind format_detect(const Bytes *bytes);
 
-// The kind to write for a name with this suffix, whatever its case; FORMAT_KINDS if there is none.
+// The kind to write for a name with this suffix, in any case; FORMAT_KINDS if there is none.
 FormatKind format_choose(const char *name, const Strands *strands);
 
 // Takes the name of hair files: one with the suffix of a format that is written, with a frame
