@@ -114,13 +114,19 @@ static Result open_output(Images *images, int frame_count, Error *error)
     return output_create(&images->output, &options, error);
 }
 
+Result images_open(Images *images, const Scene *scene, const Assets *assets, Simulation *simulation,
+                   const Framing *framing, const Gpu *gpu, GpuTimer *timer, Error *error)
+{
+    *images = (Images){
+        .scene = scene, .assets = assets, .simulation = simulation, .framing = framing, .gpu = gpu};
+    return open_renderer(images, timer, error);
+}
+
 Result images_create(Images *images, const Scene *scene, const Assets *assets,
                      Simulation *simulation, const Framing *framing, const Gpu *gpu,
                      GpuTimer *timer, int frame_count, Error *error)
 {
-    *images = (Images){
-        .scene = scene, .assets = assets, .simulation = simulation, .framing = framing, .gpu = gpu};
-    TRY(open_renderer(images, timer, error));
+    TRY(images_open(images, scene, assets, simulation, framing, gpu, timer, error));
     return open_output(images, frame_count, error);
 }
 
@@ -130,4 +136,24 @@ void images_destroy(Images *images)
     renderer_destroy(&images->renderer);
     free(images->items);
     *images = (Images){0};
+}
+
+Result images_draw(Images *images, int frame, const View *view, Image *image, Error *error)
+{
+    const Scene *scene = images->scene;
+    const Simulation *simulation = images->simulation;
+    Ambient ambient;
+    Light lights[SCENE_MAX_LIGHTS];
+    camera_lights(lights, scene, images->framing, frame);
+    RenderFrame drawn = {.view = view,
+                         .lights = lights,
+                         .light_count = scene->light_count,
+                         .ambient = &ambient,
+                         .revision = 1 + simulation->changes};
+    memcpy(ambient.sky, scene->run.sky, sizeof ambient.sky);
+    memcpy(ambient.ground, scene->run.ground, sizeof ambient.ground);
+    memcpy(drawn.head_rotation, simulation->head.rotation, sizeof drawn.head_rotation);
+    memcpy(drawn.head_translation, simulation->head.translation, sizeof drawn.head_translation);
+    return renderer_draw(&images->renderer, &drawn, images->items, images->item_count, image,
+                         error);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Draws a run's frames: the renderer and the output that the scene asks for.
+// Draws a run's frames: the renderer and the output that the scene asks for, or the renderer alone
+// for those who look at the pixels themselves.
 #pragma once
 
 #include "draw/renderer.h"
@@ -27,4 +28,13 @@ typedef struct Images {
 Result images_create(Images *images, const Scene *scene, const Assets *assets,
                      Simulation *simulation, const Framing *framing, const Gpu *gpu,
                      GpuTimer *timer, int frame_count, Error *error);
+
+// The same without an output: for images_draw alone.
+Result images_open(Images *images, const Scene *scene, const Assets *assets, Simulation *simulation,
+                   const Framing *framing, const Gpu *gpu, GpuTimer *timer, Error *error);
 void images_destroy(Images *images);
+
+// Draws the hair as the simulation has it now, with the lights of frame `frame`. `image` has the
+// size of the run, the channels of renderer_channels and the kind of renderer.options. Errors of
+// renderer_draw.
+Result images_draw(Images *images, int frame, const View *view, Image *image, Error *error);

@@ -160,7 +160,6 @@ static Result draw(Sequence *sequence, Previous *previous, int number, const Vie
                    Image *image, Error *error)
 {
     const Scene *scene = sequence->scene;
-    Images *images = sequence->images;
     const Simulation *simulation = sequence->source->simulation;
     bool still = simulation->changes == previous->changes || sequence->frames_drawn == 0;
     previous->changes = simulation->changes;
@@ -170,19 +169,8 @@ static Result draw(Sequence *sequence, Previous *previous, int number, const Vie
         ++sequence->frames_repeated;
         return RESULT_OK;
     }
-    Ambient ambient;
-    Light lights[SCENE_MAX_LIGHTS];
-    camera_lights(lights, scene, images->framing, number);
-    RenderFrame frame = {
-        .view = view, .lights = lights, .light_count = scene->light_count, .ambient = &ambient};
-    memcpy(ambient.sky, scene->run.sky, sizeof ambient.sky);
-    memcpy(ambient.ground, scene->run.ground, sizeof ambient.ground);
-    memcpy(frame.head_rotation, simulation->head.rotation, sizeof frame.head_rotation);
-    memcpy(frame.head_translation, simulation->head.translation, sizeof frame.head_translation);
-    frame.revision = 1 + simulation->changes;
     if (sequence->frames_drawn == 0) give_back_memory();
-    Result result =
-        renderer_draw(&images->renderer, &frame, images->items, images->item_count, image, error);
+    Result result = images_draw(sequence->images, number, view, image, error);
     if (result == RESULT_OK && still) result = remember(previous, view, image, error);
     sequence->frames_drawn += result == RESULT_OK;
     return result;
