@@ -5,13 +5,13 @@
 #   FORMAT   mp4 webm gif sheet frames; default: mp4 sheet (without ffmpeg: sheet)
 #   OPTION   of tractrix-render, for all of them, over what is set below: -- --mesh head.obj --wind 2,0,0
 # Environment: TRACTRIX_BIN folder of the programs (this one's, or out/release), TURNTABLE_OUT where files go (out/turntable),
-# TURNTABLE_S seconds of a turn (4).
+# TURNTABLE_S seconds of a turn (6).
 set -eu
 here=$(dirname "$0")
 if [ -x "$here/tractrix-render" ]; then beside=$here; else beside=$here/../out/release; fi # installed as tractrix-turntable, or not
 programs=${TRACTRIX_BIN:-$beside}
 out=${TURNTABLE_OUT:-out/turntable}
-seconds=${TURNTABLE_S:-4}
+seconds=${TURNTABLE_S:-6}
 name=$(basename "$0")
 fail() { echo "$name: $*" >&2; exit 2; }
 
@@ -41,17 +41,17 @@ cache=$(mktemp "$out/$hair.XXXXXX.cache")
 trap 'rm -f "$cache" "$cache.state"' EXIT
 trap 'exit 130' INT TERM
 
-# What moves: 24 frames a second, forces that repeat with the turn, hair that has settled for two turns before.
-frames=$(awk "BEGIN { print int(24 * $seconds + 0.5) }")
+# What moves: 30 frames a second, forces that repeat with the turn, hair that has settled for two turns before.
+frames=$(awk "BEGIN { print int(30 * $seconds + 0.5) }")
 [ "$frames" -gt 0 ] || fail "TURNTABLE_S=$seconds: expected seconds"
-turn_s=$(awk "BEGIN { print $frames / 24 }")
-moves="--frames $frames --fps 24 --sim-rate 120 --preroll $(awk "BEGIN { print 2 * $turn_s }")"
+turn_s=$(awk "BEGIN { print $frames / 30 }")
+moves="--frames $frames --fps 30 --sim-rate 120 --preroll $(awk "BEGIN { print 2 * $turn_s }")"
 case "$* $(grep -ao '"wind"' "$asset" 2>/dev/null || true)" in # without wind there are no gusts
 *--wind* | *'"wind"'*) moves="$moves --gust-repeat $turn_s" ;;
 esac
 
 # The image: a neutral background, light that stays with the camera, shadows.
-looks="--turntable 360 --quality final --background #8a8d91 --turn-lights"
+looks="--turntable --quality final --background #8a8d91 --turn-lights"
 
 # shellcheck disable=SC2086 # lists of words
 run() { "$programs/tractrix-render" "$asset" $moves $looks "$@"; }

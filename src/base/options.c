@@ -24,6 +24,7 @@ enum { MOST_WORDS = 16, NAME_SIZE = 80 };
 #define VALUE_VEC3(CHOICES)       "X,Y,Z"
 #define VALUE_COLOR(CHOICES)      "COLOR"
 #define VALUE_BACKGROUND(CHOICES) "COLOR"
+#define VALUE_TURN(CHOICES)       "[X]"
 #define VALUE_AUTO_INT(CHOICES)   "N|auto"
 #define VALUE_AUTO_FLOAT(CHOICES) "X|auto"
 #define VALUE_AUTO_VEC3(CHOICES)  "X,Y,Z|auto"
@@ -38,7 +39,9 @@ enum { MOST_WORDS = 16, NAME_SIZE = 80 };
               CHOICES, help_)                                                                      \
     {.name = #field,                                                                               \
      .letter = letter_,                                                                            \
-     .kind = PARAM_##KIND == PARAM_BOOL ? OPTION_SWITCH : OPTION_STRING,                           \
+     .kind = PARAM_##KIND == PARAM_BOOL   ? OPTION_SWITCH                                          \
+             : PARAM_##KIND == PARAM_TURN ? OPTION_MAYBE                                           \
+                                          : OPTION_STRING,                                         \
      .value = VALUE_##KIND(CHOICES),                                                               \
      .help = help_},
 const Option OPTIONS_OF_PARAMS[] = {
@@ -83,10 +86,21 @@ static Result fail_unknown(const OptionsWalk *walk, const char *flag, Error *err
     return error_set(error, RESULT_USAGE, "%s: no such option: did you mean '--%s'?", flag, name);
 }
 
+static bool is_number(const char *text)
+{
+    char *end;
+    strtod(text, &end);
+    return end != text && !*end;
+}
+
 // The next argument, for an option that has no value of its own.
 static Result take_value(OptionsWalk *walk, OptionsArgument *argument, Error *error)
 {
     const char *next = walk->taken + 1 < walk->argc ? walk->argv[walk->taken + 1] : NULL;
+    if (argument->option->kind == OPTION_MAYBE && !(next && is_number(next))) {
+        argument->text = "";
+        return RESULT_OK;
+    }
     if (!next || strncmp(next, "--", 2) == 0)
         return error_set(error, RESULT_USAGE, "%s: no value: expected %s", argument->flag,
                          argument->option->value);
@@ -231,6 +245,9 @@ static Result set_option(const OptionsArgument *argument, char *values, Error *e
         if (!on && strcmp(argument->text, "false") != 0)
             return refuse(argument, "true or false", NULL, error);
         memcpy(at, &on, sizeof on);
+        return RESULT_OK;
+    case OPTION_MAYBE:
+        memcpy(at, &argument->text, sizeof argument->text);
         return RESULT_OK;
     case OPTION_STRING:
         if (!*argument->text) return refuse(argument, option->value, NULL, error);

@@ -4,7 +4,8 @@
 //
 // --flag VALUE and --flag=VALUE are the same; a switch is set by --flag and unset by --no-flag, a
 // letter is -l VALUE or -lVALUE, switches' letters may stand together (-qv), -- ends the options.
-// The last of equal options counts. In names '_' is '-'.
+// The last of equal options counts. In names '_' is '-'. An OPTION_MAYBE takes the next argument
+// only if that is a number: --turntable hair.tfx names a file.
 #pragma once
 
 #include "base/error.h"
@@ -19,6 +20,7 @@ typedef enum OptionKind {
     OPTION_REAL,   // sets a double between least and most
     OPTION_WHOLE,  // sets an int between least and most
     OPTION_WORD,   // sets an int: which of the words in `value`, "one|two|three", from 0
+    OPTION_MAYBE,  // sets a const char *: a number, or "" where none follows
     OPTION_STEP,   // appends itself and its text, if it has one, to an OptionSteps
 } OptionKind;
 

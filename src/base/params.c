@@ -158,6 +158,7 @@ static const struct Form {
     [PARAM_INT] = {"a whole number ", "", NUMBER_INT, 1, 0, false},
     [PARAM_UINT] = {"a whole number ", "", NUMBER_UINT, 1, 0, false},
     [PARAM_FLOAT] = {"a number ", "", NUMBER_FLOAT, 1, 0, false},
+    [PARAM_TURN] = {"a number ", "", NUMBER_FLOAT, 1, 0, false},
     [PARAM_VEC3] = {"three numbers x,y,z ", "", NUMBER_FLOAT, 3, ',', false},
     [PARAM_COLOR] = {"#rrggbb or r,g,b ", "", NUMBER_FLOAT, 3, ',', false},
     [PARAM_BACKGROUND] = {"#rrggbb, r,g,b ", ", or transparent", NUMBER_FLOAT, 3, ',', false},
@@ -316,6 +317,9 @@ Result params_parse(const ParamInfo *info, void *params, const char *text, Error
         *(char **)field = copy;
         return RESULT_OK;
     }
+    case PARAM_TURN:
+        if (!*text) input.text = "360";
+        return parse_numbers(&input, field);
     default:
         return parse_numbers(&input, field);
     }

@@ -31,6 +31,7 @@ typedef enum ParamKind {
     PARAM_INT,        // int: decimal
     PARAM_UINT,       // uint32_t: decimal
     PARAM_FLOAT,      // float: decimal, with or without exponent
+    PARAM_TURN,       // float: decimal; "" (an option without a number) is 360
     PARAM_VEC3,       // float[3]: x,y,z
     PARAM_COLOR,      // float[3], sRGB 0..1: #rrggbb or r,g,b
     PARAM_BACKGROUND, // float[4], sRGB and opacity 0..1: a color (opacity 1), or transparent (0)
@@ -113,6 +114,7 @@ typedef enum ParamGroup { PARAM_GROUPS(GROUP_VALUE) GROUP_COUNT } ParamGroup;
 #define PARAM_FIELD_INT(field)        int field;
 #define PARAM_FIELD_UINT(field)       uint32_t field;
 #define PARAM_FIELD_FLOAT(field)      float field;
+#define PARAM_FIELD_TURN(field)       float field;
 #define PARAM_FIELD_VEC3(field)       float field[3];
 #define PARAM_FIELD_COLOR(field)      float field[3];
 #define PARAM_FIELD_BACKGROUND(field) float field[4];

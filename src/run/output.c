@@ -181,8 +181,8 @@ static Result check_options(const OutputOptions *options, const Target *target, 
     if (target->kind == TARGET_STILL && !sheet && options->frame_count > 1)
         return error_set(
             error, RESULT_USAGE,
-            "%s: one name for several frames, put the frame number into it: frame_%%04d.png",
-            options->target);
+            "%s: one name for %d frames: expected a number in it (frame_%%04d.png), or --frames 1",
+            options->target, options->frame_count);
     if (target->floats != (options->kind == IMAGE_FLOAT) ||
         (target->kind == TARGET_VIDEO && options->kind != IMAGE_8))
         return error_set(error, RESULT_USAGE, "%s: cannot store images of this depth",

@@ -101,11 +101,11 @@ static const char *const STATUS[][2] = {
     {NULL, NULL}};
 
 static const char *const EXAMPLES[] = {
-    "tractrix-render hair.tfx --frames 120 -o frames/",
-    "tractrix-render hair.tfx --turntable 360 --wind 2,0,0 -o hair.mp4",
+    "tractrix-render hair.tfx -o hair.png",
+    "tractrix-render hair.tfx --turntable --wind 2,0,0 -o hair.mp4",
     "tractrix-render scene.json --cache sim.cache",
     "tractrix-render scene.json --from-cache sim.cache --first 60 --last 119 -o frames/",
-    "tractrix-render scene.json --size 1920x1080 -o frames/hair_%04d.png",
+    "tractrix-render scene.json --frames 120 -o frames/hair_%04d.png",
     NULL};
 
 // Bounds from here on only keep numbers sane: help does not name them.

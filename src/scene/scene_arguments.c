@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "base/options.h"
+#include "base/target.h"
 #include "scene/effects.h"
 #include "scene/scene.h"
 
@@ -7,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+
+enum { TURN_SECONDS = 6, TURN_FPS = 30 };
 
 static const ParamInfo *info_of(const OptionsArgument *argument)
 {
@@ -145,6 +148,47 @@ static Result apply_flags(Scene *scene, OptionsWalk walk, Error *error)
     }
 }
 
+static bool is_default(const Scene *scene, const char *name)
+{
+    return scene->origin[params_find(name) - PARAM_TABLE] == ORIGIN_DEFAULT;
+}
+
+// A turntable lasts 6 s at 30 frames a second where nothing is said of either, with the step that
+// other sequences have.
+static Result choose_turn(Scene *scene, Error *error)
+{
+    RunParams *run = &scene->run;
+    if (run->turntable == 0 || !is_default(scene, "frames") || !is_default(scene, "fps"))
+        return RESULT_OK;
+    if (is_default(scene, "sim_rate") && is_default(scene, "speed"))
+        TRY(params_parse(params_find("sim_rate"), run, params_find("fps")->default_text, error));
+    run->frames = TURN_SECONDS * TURN_FPS;
+    run->fps = TURN_FPS;
+    return RESULT_OK;
+}
+
+// One name without a number (x.png) holds one frame, --first, unless the command line says how many
+// frames there are or something else than images needs all of them.
+static Result choose_still(Scene *scene, Error *error)
+{
+    RunParams *run = &scene->run;
+    Target target;
+    bool sheet = run->contact_sheet[0] > 1 || run->contact_sheet[1] > 1;
+    bool counted = scene->origin[params_find("frames") - PARAM_TABLE] == ORIGIN_FLAG;
+    if (counted || sheet || run->part[1] > 1 || !is_default(scene, "last") || *run->cache ||
+        *run->export)
+        return RESULT_OK;
+    Error unused = {{0}}; // a wrong name is reported by what opens it
+    Result result = target_parse(&target, run->output, &unused);
+    if (result == RESULT_FAILED) return error_set(error, result, "%s", unused.text);
+    if (result == RESULT_OK && target.kind == TARGET_STILL) {
+        run->last = run->first;
+        if (run->frames <= run->first && is_default(scene, "frames")) run->frames = run->first + 1;
+    }
+    target_destroy(&target);
+    return RESULT_OK;
+}
+
 static Result check_arguments(const Scene *scene, Error *error)
 {
     const RunParams *run = &scene->run;
@@ -167,6 +211,8 @@ Result scene_from_arguments(Scene *scene, int argc, char **argv, Error *error)
     if (run) THEN(result, open_files(scene, &found, error));
     free(found.files);
     if (run) THEN(result, apply_flags(scene, walk, error));
+    if (run) THEN(result, choose_turn(scene, error));
+    if (run) THEN(result, choose_still(scene, error));
     if (run) THEN(result, check_arguments(scene, error));
     return result;
 }

@@ -20,6 +20,7 @@ static const Form FORMS[] = {
     [PARAM_INT] = {.number = true},
     [PARAM_UINT] = {.number = true},
     [PARAM_FLOAT] = {.number = true},
+    [PARAM_TURN] = {.number = true},
     [PARAM_VEC3] = {.numbers = 3},
     [PARAM_COLOR] = {.string = true, .numbers = 3},
     [PARAM_BACKGROUND] = {.string = true, .numbers = 3},
@@ -159,6 +160,7 @@ json_t *scene_param_write(const ParamInfo *info, const void *params)
     case PARAM_UINT:
         return json_integer(*(const uint32_t *)field);
     case PARAM_FLOAT:
+    case PARAM_TURN:
         return scene_param_write_float(*(const float *)field);
     case PARAM_VEC3:
         return scene_param_write_floats(field, 3);

@@ -17,16 +17,16 @@ claim "a sheet and frames, and nothing else"
 # shellcheck disable=SC2086 # lists of words
 run 0 assets/fur.tfx sheet frames -- $small
 is_file "$turns/fur_sheet.png"
-if [ "$(find "$turns/fur" -name 'frame_*.png' | wc -l)" = 12 ]; then good; else bad "not 12 frames"; fi
+if [ "$(find "$turns/fur" -name 'frame_*.png' | wc -l)" = 15 ]; then good; else bad "not 15 frames"; fi
 if [ "$(find "$turns" -name '*.cache*' | wc -l)" = 0 ]; then good; else bad "the cache was left behind"; fi
 
 claim "videos of each kind"
 if command -v ffprobe >/dev/null; then
     # shellcheck disable=SC2086
     run 0 assets/fur.tfx mp4 webm gif -- $small --size 65x49
-    stream fur.mp4 h264,66,50,yuv420p,12
-    stream fur.webm vp9,65,49,yuv420p,12
-    stream fur.gif gif,65,49,bgra,6
+    stream fur.mp4 h264,66,50,yuv420p,15
+    stream fur.webm vp9,65,49,yuv420p,15
+    stream fur.gif gif,65,49,bgra,8
 else
     skip "ffprobe is not installed"
 fi

@@ -41,7 +41,8 @@ static const char *sample(const ParamInfo *info, char text[64])
         info->kind == PARAM_INT || info->kind == PARAM_UINT || info->kind == PARAM_AUTO_INT;
     if (info->kind == PARAM_CHOICE) return info->choices[1];
     if (strcmp(info->name, "colliders") == 0) return "ground:0;sphere:1,2,3,4";
-    if (!whole && info->kind != PARAM_FLOAT && info->kind != PARAM_AUTO_FLOAT)
+    if (!whole && info->kind != PARAM_FLOAT && info->kind != PARAM_TURN &&
+        info->kind != PARAM_AUTO_FLOAT)
         return TEXTS[info->kind];
     double least = fmax(info->minimum, -1);
     if (whole)
@@ -62,7 +63,8 @@ static const char *find_condition(const ParamInfo *info)
         {" sdf_resolution sdf_cache ", "--mesh /m.obj --collide-mesh"},
         {" gust gust_period gust_repeat wind_spread wind_shelter ", "--wind 1,0,0"},
         {" export_followers ", "--export x.usda"},
-        {" turn_lights ease_in ease_out ", "--turntable 360"},
+        {" turn_lights ease_in ease_out ", "--turntable 360 --frames 120"},
+        {" turntable ", "--frames 120"},
         {" shadow_size shadow_opacity ", "--shadow dom"},
         {" shadow_spacing ", "--shadow approx"},
         {" floor_height floor_color ", "--floor plane"},
@@ -196,6 +198,67 @@ static void the_last_of_equal_flags_counts_and_no_takes_back(void **state)
     scene_destroy(&scene);
 }
 
+static void a_turntable_needs_no_angle(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *line;
+        float angle, fps, sim_rate;
+        int frames;
+        uint32_t files;
+    } LINES[] = {
+        {"a.tfx -o x/ --turntable", 360, 30, 60, 180, 1},
+        {"--turntable a.tfx -o x/", 360, 30, 60, 180, 1},
+        {"--turntable b.tfx a.tfx -o x/", 360, 30, 60, 180, 2},
+        {"a.tfx --turntable -o x/", 360, 30, 60, 180, 1},
+        {"a.tfx -o x/ --turntable 90", 90, 30, 60, 180, 1},
+        {"a.tfx -o x/ --turntable -45.5", -45.5f, 30, 60, 180, 1},
+        {"a.tfx -o x/ --turntable=90", 90, 30, 60, 180, 1},
+        {"a.tfx -o x/ --turntable 0", 0, 60, 0, 120, 1},
+        {"a.tfx -o x/ --turntable --fps 24", 360, 24, 0, 120, 1},
+        {"a.tfx -o x/ --turntable --frames 48", 360, 60, 0, 48, 1},
+        {"a.tfx -o x/ --turntable --speed 0.5", 360, 30, 0, 180, 1},
+        {"a.tfx -o x/ --turntable --sim-rate 120", 360, 30, 120, 180, 1},
+    };
+    for (size_t i = 0; i < sizeof LINES / sizeof *LINES; i++) {
+        Scene scene;
+        assert_read(&scene, LINES[i].line);
+        assert_true(scene.run.turntable == LINES[i].angle && scene.run.fps == LINES[i].fps);
+        assert_true(scene.run.sim_rate == LINES[i].sim_rate);
+        assert_int_equal(scene.run.frames, LINES[i].frames);
+        assert_int_equal(scene.section_count, LINES[i].files);
+        scene_destroy(&scene);
+    }
+}
+
+static void one_name_is_one_frame(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *line;
+        int first, last, frames;
+    } LINES[] = {
+        {"a.tfx -o x.png", 0, 0, 120},
+        {"a.tfx -o x.pfm --first 30", 30, 30, 120},
+        {"a.tfx -o x.png --first 300", 300, 300, 301},
+        {"a.tfx -o x.png --turntable --first 45", 45, 45, 180},
+        {"a.tfx -o x.png --last 3", 0, 3, 120},         // one name for several, refused later
+        {"a.tfx -o x.png --frames 20", 0, -1, 20},      // the same
+        {"a.tfx -o x.png --cache y.cache", 0, -1, 120}, // the cache holds all frames
+        {"a.tfx -o x.png --contact-sheet 3x2", 0, -1, 120},
+        {"a.tfx -o x_%d.png", 0, -1, 120},
+        {"a.tfx -o x.mp4", 0, -1, 120},
+    };
+    for (size_t i = 0; i < sizeof LINES / sizeof *LINES; i++) {
+        Scene scene;
+        assert_read(&scene, LINES[i].line);
+        assert_int_equal(scene.run.first, LINES[i].first);
+        assert_int_equal(scene.run.last, LINES[i].last);
+        assert_int_equal(scene.run.frames, LINES[i].frames);
+        scene_destroy(&scene);
+    }
+}
+
 static void section_flags_reach_every_section(void **state)
 {
     (void)state;
@@ -247,6 +310,7 @@ static void wrong_command_lines_are_refused_with_the_nearest_name(void **state)
         {"a.tfx -o x/ --software --require-hardware", "exclude each other"},
         {"a.tfx -o x/ --backend osmesa --device 1", "exclude each other"},
         {"a.tfx -o x/ --backend osmesa --require-hardware", "exclude each other"},
+        {"a.tfx -o x/ --turntable=9x", "--turntable: got '9x', expected a number from"},
         {"a.tfx -o x/ --first 120", "--first 120: expected 0 to 119"},
         {"a.tfx -o x/ --frames 10 --last 10", "--last 10: expected 0 to 9"},
         {"a.tfx -o x/ --first 5 --last 4", "--last 4 is before --first 5"},
@@ -377,6 +441,8 @@ int main(void)
         cmocka_unit_test(help_and_version_win_over_all_but_wrong_flags_before_them),
         cmocka_unit_test(flags_may_stand_anywhere_and_values_may_look_like_flags),
         cmocka_unit_test(the_last_of_equal_flags_counts_and_no_takes_back),
+        cmocka_unit_test(a_turntable_needs_no_angle),
+        cmocka_unit_test(one_name_is_one_frame),
         cmocka_unit_test(section_flags_reach_every_section),
         cmocka_unit_test(output_is_needed_only_to_draw),
         cmocka_unit_test(wrong_command_lines_are_refused_with_the_nearest_name),
