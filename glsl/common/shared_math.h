@@ -140,7 +140,7 @@ SHARED_FUNCTION float high_level(uint word)
 
 // --- Deep opacity maps (Yuksel and Keyser 2008). Layers follow the first depth and grow thicker
 // behind it, since light changes most where it comes in.
-#define SHADOW_LAYERS 8
+#define SHADOW_LAYERS 16
 #define LAYER_END     (FLOAT(SHADOW_LAYERS) - 1e-3f) // the last place among them
 
 // Place among the layers, 0 .. LAYER_END, at the depth `behind` (share of all depth) the first.
@@ -149,8 +149,8 @@ SHARED_FUNCTION float layer_of(float behind)
     return SHARED_MIN(FLOAT(SHADOW_LAYERS) * SHARED_SQRT(SHARED_MAX(behind, 0.0f)), LAYER_END);
 }
 
-// Optical depth before a layer and its own, in 16 bits each: steps of 2^-12, which no light differs
-// by more than 1e-4 in, up to 16, behind which it is dark. (Halves take CPU drivers longer.)
+// Mean number of fibres that block light before a layer and in it, in 16 bits each: steps of 2^-12,
+// which no light differs by more than 1e-4 in, up to 16, behind which it is dark. (Halves take CPU drivers longer.)
 #define LAYER_STEPS 4096.0f
 
 SHARED_FUNCTION uint pack_layer(float before, float own)
@@ -159,28 +159,24 @@ SHARED_FUNCTION uint pack_layer(float before, float own)
            (UINT(INT(SHARED_MIN(own * LAYER_STEPS + 0.5f, 65535.0f))) << 16);
 }
 
-// The optical depth before a place in a packed layer, `share` of which lies before it.
+// The same before a place in a packed layer, `share` of which lies before it.
 SHARED_FUNCTION float layer_depth(uint bits, float share)
 {
     return (FLOAT(INT(bits & 0xffffu)) + share * FLOAT(INT(bits >> 16))) * (1.0f / LAYER_STEPS);
 }
 
-// A fibre is in the map itself, smeared over the texels beside it and its layer's depth: where it
-// lies it finds half of its own optical depth -ln(1 - kept) (the middle of a box spread by 1 2 1;
-// all of it where the fibre is wide), by the share of the layer before it. `width`: texels.
+// A texel holds the mean number of fibres that light meets on its way through it: each fibre adds
+// its opacity times the share of the texel that it covers. Fibres at random places leave
+// exp(-number) of the light (Poisson). (Not the logarithm of what a texel's own fibres leave: a
+// fibre as wide as a texel would darken all of its neighbours.)
+//
+// A fibre is in the map itself, smeared over the texels beside it and its layer's depth. Where it
+// lies it finds OWN_SHARE of a thin one of its width (texels): the middle of a line that is laid
+// into texels, smoothed by 1 2 1 and read between four of them, in the mean over where it crosses
+// them; of a wide one all. `share`: of the layer before the fibre.
+#define OWN_SHARE 0.4375f
+
 SHARED_FUNCTION float own_layer_depth(float width, float opacity, float share)
 {
-    float kept = opacity * SHARED_MIN(width, 1.0f),
-          beyond = SHARED_MIN(SHARED_MAX(width - 1.0f, 0.0f), 1.0f);
-    return share * 0.5f * (1.0f + beyond) * kept * (1.0f + 0.5f * kept);
-}
-
-// A texel that a fibre of opacity a crosses, covering the share c of its width, loses the share a c
-// of its light: an optical depth of -ln(1 - a c), or -ln(1 - a) where it is covered whole. No fibre
-// leaves less than this of the light.
-#define LEAST_LEFT 1e-3
-
-SHARED_FUNCTION float light_behind_fibre(float opacity, float width)
-{
-    return SHARED_MAX(1.0f - opacity * SHARED_MIN(width, 1.0f), FLOAT(LEAST_LEFT));
+    return share * opacity * SHARED_MIN(OWN_SHARE * width, 1.0f);
 }

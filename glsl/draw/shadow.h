@@ -52,7 +52,7 @@ UNIFORM_BLOCK(CastParams, cast_params, BIND_CAST)
     mat4 from_world; // see above, of the light in turn
     int side;        // texels
     int map;         // number
-    float unit;      // of sums: steps for an optical depth of 1
+    float unit;      // of sums: steps for one fibre
     float texels;    // in a metre across the light (a perspective one: at w = 1)
     float reach;     // greatest u and v that a bound may have
     float limit;     // no coordinate in the world is beyond this, m: others are broken

@@ -5,7 +5,7 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 layout(location = 0) uniform ivec2 map;  // side, number
-layout(location = 1) uniform float unit; // steps for an optical depth of 1
+layout(location = 1) uniform float unit; // steps for one fibre
 layout(binding = BIND_SUMS) uniform usamplerBuffer sums;
 layout(std430, binding = BIND_LAYERS_OUT) writeonly buffer Layers { uint layers[]; };
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Strands into a shadow map, by points along their segments and, where they are wide, across them.
-//   DEEP 0: the map keeps first depths   1: sums of optical depth by layers
+//   DEEP 0: the map keeps first depths   1: mean numbers of fibres by layers
 //   COARSE 1: first depths of a coarse map
 //
-// Fibres at random places multiply, so that their optical depths (light_behind_fibre) add up. Sums
-// are integers: their order does not matter.
+// A point has its part of the ribbon's area times its opacity (own_layer_depth in shared_math.h
+// says why). Sums are integers: their order does not matter.
 // The ribbons are those that are drawn: curves, thickness and opacity, the share of strands
 // (material.h).
 #include "draw/shadow.h"
@@ -67,8 +67,7 @@ void main()
         float along = clamp(ceil(size * density - SLACK), 1.0, MOST_ALONG);
         float across = width > 1.5 ? clamp(ceil(width * density), 1.0, floor(MOST / along)) : 1.0;
 #if DEEP
-        float depth_sum = -log(light_behind_fibre(opacity, width)) / min(width, 1.0) * width * size;
-        uint part = uint(int(depth_sum * unit / (along * across) + 0.5));
+        uint part = uint(int(opacity * width * size * unit / (along * across) + 0.5));
 #endif
         vec2 beside = vec2(-way.y, way.x) * (width / max(size, 1e-9)) / across;
         vec3 step = vec3(way, b.z - a.z) / along, at = a.xyz + 0.5 * step;

@@ -14,7 +14,7 @@ enum {
     BOX_WORDS = 6
 };
 
-static const double UNIT = 1 << 16; // steps for an optical depth of 1
+static const double UNIT = 1 << 16; // steps for one fibre
 static const double SUM_MAX = 2e9;  // of those steps: sums do not overflow
 
 // What a program of the deep maps or of the first depths is built for.
@@ -211,9 +211,13 @@ bool hair_shadow_find_box(HairShadow *hair, const LightView *view, ShadowCasters
     return true;
 }
 
-LightFrame hair_shadow_frame(const HairShadow *hair, const LightView *view, const double box[6])
+LightFrame hair_shadow_frame(const HairShadow *hair, const LightView *view, const double box[6],
+                             ShadowCasters casters)
 {
-    return light_frame_steady(view, box, hair->side, MARGIN);
+    double diameter = 0, distance = view->perspective ? fmax(0.5 * (box[2] + box[5]), 1e-6) : 1;
+    for (uint32_t i = 0; i < casters.count; ++i)
+        diameter = fmax(diameter, 2 * (double)casters.list[i].look.material.radius);
+    return light_frame_steady(view, box, hair->side, MARGIN, diameter / distance);
 }
 
 // The smallest step of sums that cannot overflow, were all segments in one texel.
@@ -225,9 +229,8 @@ static float find_unit(ShadowCasters casters, bool perspective, double texels)
         const MaterialParams *material = &caster->look.material;
         bool any_width = perspective || caster->batch->paint.buffer;
         double width = any_width ? 1 : fmin(2.0 * (double)material->radius * texels, 1);
-        double left = fmax(1 - (double)material->shadow_opacity * width, LEAST_LEFT);
-        most -= log(left) * caster->batch->strand_count * (caster->batch->vertex_count - 1) *
-                material->smooth_parts;
+        most += (double)material->shadow_opacity * width * caster->batch->strand_count *
+                (caster->batch->vertex_count - 1) * material->smooth_parts;
     }
     return (float)fmin(UNIT, SUM_MAX / most);
 }

@@ -24,7 +24,7 @@ static const Density DEEP_POINTS = {0.5f, 2, 0}, COARSE_POINTS = {0.5f, 1.42f, 0
 typedef struct Points {
     float u[W], v[W], z[W], step_u[W], step_v[W], step_z[W];
     float along[W], width[W];
-    uint32_t part[W]; // of the optical depth
+    uint32_t part[W]; // see find_part
     int count[W];     // of thin ribbons
     int most;         // the largest
     bool wide;        // a ribbon has points beside each other, too
@@ -127,27 +127,11 @@ SIMD_INLINE void find_box(const Cast *cast, int part)
 
 // --- Points.
 
-// -ln x for 1e-3 <= x <= 1: ln(2^e m) = e ln 2 + 2 artanh((m - 1) / (m + 1)), with m within
-// sqrt(1/2) .. sqrt(2) by the series to the ninth power (1e-9 off).
-SIMD_INLINE float minus_log(float x)
-{
-    union {
-        float value;
-        int bits;
-    } mantissa = {.value = x};
-    int exponent = (mantissa.bits - 0x3f3504f3) >> 23;
-    mantissa.bits -= exponent * (1 << 23);
-    float t = (mantissa.value - 1) / (mantissa.value + 1), s = t * t;
-    float series = 1 + s * (1.f / 3 + s * (0.2f + s * (1.f / 7 + s / 9)));
-    return -((float)exponent * 0.693147181f + 2 * t * series);
-}
-
-// The optical depth of a segment, in the steps of sums, that each of its points has.
+// What each point of a segment adds to a texel, in the steps of sums: the segment's area is
+// `width` times `size` texels.
 SIMD_INLINE uint32_t find_part(float opacity, float width, float size, float unit, float points)
 {
-    float covered = simd_min(width, 1);
-    float depth =
-        minus_log(light_behind_fibre(opacity, width)) / simd_max(covered, 1e-9f) * width * size;
+    float depth = opacity * width * size;
     return (uint32_t)(int)(simd_min(simd_max(depth * unit, 0) / points, 2e9f) + 0.5f);
 }
 

@@ -137,9 +137,10 @@ static bool has_mesh(const ShadowScene *scene)
     return scene->mesh.mesh && scene->mesh.mesh->triangle_count > 0;
 }
 
-// What approximated maps take for the mean fibre.
+// What approximated maps take for the mean fibre, which lets a little through.
 static void find_mean_fibre(const Shadows *shadow, const ShadowScene *scene, ShadowParams *params)
 {
+    const double least_left = 1e-3;
     double radius = 0, opacity = 0, weight = 0;
     for (uint32_t i = 0; i < scene->casters.count; ++i) {
         const ShadowCaster *caster = &scene->casters.list[i];
@@ -150,7 +151,7 @@ static void find_mean_fibre(const Shadows *shadow, const ShadowScene *scene, Sha
     }
     if (weight == 0) weight = 1, radius = 1;
     params->fibres = (float)(weight / (radius * (double)shadow->options.spacing));
-    params->passed = (float)log2(fmax(1 - opacity / weight, LEAST_LEFT));
+    params->passed = (float)log2(fmax(1 - opacity / weight, least_left));
 }
 
 static void set_rows(mat4 matrix, const LightFrame *frame)
@@ -188,7 +189,7 @@ static void draw_map(Shadows *shadow, const ShadowScene *scene, int light)
         for (int k = 0; k < 3; ++k) box[k] = LIGHT_FRAME_FAR, box[k + 3] = -LIGHT_FRAME_FAR;
         add_mesh_box(&scene->mesh, &view, box);
     }
-    LightFrame frame = hair_shadow_frame(&shadow->hair, &view, box);
+    LightFrame frame = hair_shadow_frame(&shadow->hair, &view, box, scene->casters);
     set_hair_frame(params, map, light, &view, &frame);
     hair_shadow_draw(&shadow->hair, &view, &frame, map, scene->casters);
     if (by_mesh) {
