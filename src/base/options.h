@@ -48,7 +48,7 @@ typedef struct OptionSteps {
 // A part of the manual page and a topic of --help that is not about options.
 typedef struct OptionsChapter {
     const char *topic, *title, *text;
-    const char *const (*entries)[3]; // key, example, meaning; {NULL} behind the last
+    const char *const (*entries)[3]; // key, example, meaning or ""; {NULL} behind the last
 } OptionsChapter;
 
 // What --help and the manual page say. Lists end with NULL; a list that is NULL is empty.
@@ -63,7 +63,7 @@ typedef struct OptionsProgram {
     const char *const *brief;    // names of the options that --help alone lists; NULL: all
     const char *const (*topics)[2]; // --help TOPIC: words, and what they list or NULL
     bool (*is_of)(const char *topic, size_t option); // for each word of `topics`
-    const OptionsChapter *chapter;                   // NULL: none
+    const OptionsChapter *const *chapters;
     const char *const *notes;                        // paragraphs below the options
     const char *const (*status)[2];                  // number and meaning
     const char *const *examples;

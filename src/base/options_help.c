@@ -211,8 +211,8 @@ static void list_topics(const OptionsProgram *program, bool explained, char *tex
             length += (size_t)snprintf(text + length, size - length, "%s%s%s%s, ", (*topic)[0],
                                        why ? " (" : "", why ? (*topic)[1] : "", why ? ")" : "");
     }
-    if (program->chapter && length < size)
-        length += (size_t)snprintf(text + length, size - length, "%s, ", program->chapter->topic);
+    for (const OptionsChapter *const *c = program->chapters; c && *c && length < size; ++c)
+        length += (size_t)snprintf(text + length, size - length, "%s, ", (*c)->topic);
     if (length < size)
         snprintf(text + length, size - length, "all, man, markdown, bash or an option's name");
 }
@@ -248,6 +248,10 @@ static void put_chapter(FILE *stream, const OptionsChapter *chapter)
 {
     put_wrapped(stream, chapter->text, 0, 0);
     for (const char *const(*entry)[3] = chapter->entries; (*entry)[0]; ++entry) {
+        if (!(*entry)[2][0]) {
+            put_entry(stream, (*entry)[0], (*entry)[1]);
+            continue;
+        }
         fprintf(stream, "\n\"%s\": ", (*entry)[0]);
         put_wrapped(stream, (*entry)[1], strlen((*entry)[0]) + 4, 2);
         fprintf(stream, "    ");
@@ -282,12 +286,13 @@ static void put_man(FILE *stream, const OptionsProgram *program)
         put_roff_entry(stream, (*c)[0], (*c)[1]);
     put_roff_section(stream, "Options");
     list_options(stream, program, (Selection){0}, put_roff_heading, put_roff_entry);
-    const OptionsChapter *chapter = program->chapter;
-    if (chapter) {
-        put_roff_section(stream, chapter->title);
-        put_roff(stream, chapter->text);
-        for (const char *const(*entry)[3] = chapter->entries; (*entry)[0]; ++entry) {
-            put_roff_entry(stream, (*entry)[0], (*entry)[2]);
+    for (const OptionsChapter *const *c = program->chapters; c && *c; ++c) {
+        put_roff_section(stream, (*c)->title);
+        put_roff(stream, (*c)->text);
+        for (const char *const(*entry)[3] = (*c)->entries; (*entry)[0]; ++entry) {
+            bool meant = (*entry)[2][0];
+            put_roff_entry(stream, (*entry)[0], (*entry)[meant ? 2 : 1]);
+            if (!meant) continue;
             fprintf(stream, ".br\n");
             put_roff(stream, (*entry)[1]);
         }
@@ -312,12 +317,15 @@ static void put_markdown(FILE *stream, const OptionsProgram *program)
     for (const char *const *note = program->notes; note && *note; ++note)
         fprintf(stream, "\n%s\n", *note);
     list_options(stream, program, (Selection){0}, put_table_heading, put_row);
-    const OptionsChapter *chapter = program->chapter;
-    if (!chapter) return;
-    fprintf(stream, "\n## %s\n\n%s\n\n| key | value | what it is |\n| --- | --- | --- |\n",
-            chapter->title, chapter->text);
-    for (const char *const(*entry)[3] = chapter->entries; (*entry)[0]; ++entry)
-        fprintf(stream, "| `%s` | `%s` | %s |\n", (*entry)[0], (*entry)[1], (*entry)[2]);
+    for (const OptionsChapter *const *c = program->chapters; c && *c; ++c) {
+        bool meant = (*c)->entries[0][2][0];
+        fprintf(stream, "\n## %s\n\n%s\n\n| %s\n", (*c)->title, (*c)->text,
+                meant ? "key | value | what it is |\n| --- | --- | --- |"
+                      : "name | value |\n| --- | --- |");
+        for (const char *const(*entry)[3] = (*c)->entries; (*entry)[0]; ++entry)
+            fprintf(stream, "| `%s` | `%s` |%s%s%s\n", (*entry)[0], (*entry)[1], meant ? " " : "",
+                    (*entry)[2], meant ? " |" : "");
+    }
 }
 
 // --- Completion in bash.
@@ -396,8 +404,9 @@ static void put_bash(FILE *stream, const OptionsProgram *program)
 
 Result options_help(const OptionsProgram *program, const char *topic, FILE *stream, Error *error)
 {
-    const OptionsChapter *chapter = program->chapter;
+    const OptionsChapter *const *chapter = program->chapters;
     const char *const(*listed)[2] = program->topics;
+    while (topic && chapter && *chapter && strcmp((*chapter)->topic, topic) != 0) ++chapter;
     while (topic && listed && (*listed)[0] && strcmp((*listed)[0], topic) != 0) ++listed;
     if (!topic)
         put_text(stream, program, true);
@@ -411,8 +420,8 @@ Result options_help(const OptionsProgram *program, const char *topic, FILE *stre
         put_bash(stream, program);
     else if (listed && (*listed)[0])
         list_options(stream, program, (Selection){.topic = topic}, put_heading, put_entry);
-    else if (chapter && strcmp(chapter->topic, topic) == 0)
-        put_chapter(stream, chapter);
+    else if (chapter && *chapter)
+        put_chapter(stream, *chapter);
     else {
         const Option *option = options_find(program->options, program->option_count, topic);
         char flag[FLAG_SIZE];

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "base/params.h"
 
+#include "base/colors.h"
 #include "base/decimal.h"
 #include "base/suggest.h"
 #include "glsl/common/collider_table.h"
 
 #include <assert.h>
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -160,8 +162,9 @@ static const struct Form {
     [PARAM_FLOAT] = {"a number ", "", NUMBER_FLOAT, 1, 0, false},
     [PARAM_TURN] = {"a number ", "", NUMBER_FLOAT, 1, 0, false},
     [PARAM_VEC3] = {"three numbers x,y,z ", "", NUMBER_FLOAT, 3, ',', false},
-    [PARAM_COLOR] = {"#rrggbb or r,g,b ", "", NUMBER_FLOAT, 3, ',', false},
-    [PARAM_BACKGROUND] = {"#rrggbb, r,g,b ", ", or transparent", NUMBER_FLOAT, 3, ',', false},
+    [PARAM_COLOR] = {"a name (--help colors), #rrggbb or r,g,b ", "", NUMBER_FLOAT, 3, ',', false},
+    [PARAM_BACKGROUND] = {"a name (--help colors), #rrggbb, r,g,b ", ", or transparent",
+                          NUMBER_FLOAT, 3, ',', false},
     [PARAM_AUTO_INT] = {"auto or a whole number ", "", NUMBER_INT, 1, 0, true},
     [PARAM_AUTO_FLOAT] = {"auto or a number ", "", NUMBER_FLOAT, 1, 0, true},
     [PARAM_AUTO_VEC3] = {"auto or three numbers x,y,z ", "", NUMBER_FLOAT, 3, ',', true},
@@ -259,8 +262,13 @@ static Result parse_numbers(const Input *input, void *field)
 
 static Result parse_color(const Input *input, float value[3])
 {
-    if (input->text[0] != '#') return parse_numbers(input, value);
-    const char *digits = input->text + 1;
+    const char *text = input->text, *nearest = NULL;
+    if (isalpha((unsigned char)text[0])) {
+        text = colors_find(text, &nearest);
+        if (!text) return refuse(input, nearest);
+    }
+    if (text[0] != '#') return parse_numbers(input, value);
+    const char *digits = text + 1;
     if (strlen(digits) != 6 || strspn(digits, "0123456789abcdefABCDEF") != 6)
         return refuse(input, NULL);
     unsigned long rgb = strtoul(digits, NULL, 16);

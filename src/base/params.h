@@ -33,7 +33,7 @@ typedef enum ParamKind {
     PARAM_FLOAT,      // float: decimal, with or without exponent
     PARAM_TURN,       // float: decimal; "" (an option without a number) is 360
     PARAM_VEC3,       // float[3]: x,y,z
-    PARAM_COLOR,      // float[3], sRGB 0..1: #rrggbb or r,g,b
+    PARAM_COLOR,      // float[3], sRGB 0..1: #rrggbb, r,g,b or a name (colors.h)
     PARAM_BACKGROUND, // float[4], sRGB and opacity 0..1: a color (opacity 1), or transparent (0)
     PARAM_AUTO_INT,   // AutoInt: auto, or a decimal
     PARAM_AUTO_FLOAT, // AutoFloat: auto, or a number

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "run/render_help.h"
 
+#include "base/colors.h"
 #include "base/params.h"
 #include "scene/scene.h"
 #include "sim/solver.h"
@@ -114,9 +115,8 @@ static const double WIDE = 1e6;
 // The values' range and unit, "" where there is nothing to say: "0 to 90 deg".
 static void write_range(const ParamInfo *info, char *text, size_t size)
 {
-    static const char *const FORMS[] = {[PARAM_COLOR] = "#rrggbb or r,g,b from 0 to 1",
-                                        [PARAM_BACKGROUND] =
-                                            "#rrggbb, r,g,b from 0 to 1, or transparent",
+    static const char *const FORMS[] = {[PARAM_COLOR] = "name, #rrggbb or r,g,b",
+                                        [PARAM_BACKGROUND] = "name, #rrggbb, r,g,b or transparent",
                                         [PARAM_UNIT] = "m, cm, mm, in, auto, or a number of metres",
                                         [PARAM_PATH] = ""};
     const char *between = info->unit[0] ? " " : "";
@@ -196,7 +196,7 @@ static bool is_of(const char *topic, size_t option)
 typedef struct Texts {
     char help[SCENE_PARAMS][TEXT_SIZE], heading[SCENE_PARAMS][80], solvers[2][TEXT_SIZE];
     Option options[SCENE_PARAMS];
-    const char *headings[SCENE_PARAMS], *topics[MOST_TOPICS][2];
+    const char *headings[SCENE_PARAMS], *topics[MOST_TOPICS][2], *colors[COLOR_NAME_COUNT + 1][3];
 } Texts;
 
 static void make_texts(Texts *texts)
@@ -214,6 +214,9 @@ static void make_texts(Texts *texts)
         if (strcmp(info->name, "algo") == 0) texts->options[i].value = texts->solvers[0];
         if (strcmp(info->name, "variant") == 0) texts->options[i].value = texts->solvers[1];
     }
+    for (size_t i = 0; i < COLOR_NAME_COUNT; ++i)
+        memcpy(texts->colors[i], (const char *[]){COLOR_NAMES[i].name, COLOR_NAMES[i].value, ""},
+               sizeof texts->colors[i]);
     for (; count < sizeof GROUP_TOPICS / sizeof *GROUP_TOPICS; ++count)
         memcpy(texts->topics[count], GROUP_TOPICS[count].topic, sizeof texts->topics[count]);
     for (const SolverType *const *type = SOLVER_TYPES; *type; ++type) {
@@ -229,6 +232,14 @@ Result render_help(const char *topic, FILE *stream, Error *error)
     Texts *texts = calloc(1, sizeof *texts);
     if (!texts) return error_set(error, RESULT_FAILED, "no memory for the help");
     make_texts(texts);
+    const OptionsChapter colors = {
+        .topic = "colors",
+        .title = "Colors",
+        .text =
+            "Options and keys that take a color also take these names, in sRGB: the basic colors "
+            "of CSS, and colors of hair.",
+        .entries = (const char *const(*)[3])texts->colors,
+    };
     const OptionsProgram program = {
         .name = "tractrix-render",
         .summary = "simulate and render hair, without a window",
@@ -240,7 +251,7 @@ Result render_help(const char *topic, FILE *stream, Error *error)
         .brief = BRIEF,
         .topics = (const char *const(*)[2])texts->topics,
         .is_of = is_of,
-        .chapter = &SCENE_FILES,
+        .chapters = (const OptionsChapter *const[]){&SCENE_FILES, &colors, NULL},
         .notes = NOTES,
         .status = STATUS,
         .examples = EXAMPLES,

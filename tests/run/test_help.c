@@ -95,7 +95,7 @@ static void plain_help_fits_a_screen_and_names_the_topics(void **state)
     assert_true(count_lines(help) <= 66);
     assert_non_null(find_entry(help, "--algo"));
     assert_null(find_entry(help, "--lod-width"));
-    assert_non_null(strstr(help, "scene, all, man"));
+    assert_non_null(strstr(help, "scene, colors, all, man"));
     free(help);
 }
 
@@ -103,7 +103,8 @@ static void topics_list_groups_and_solvers(void **state)
 {
     (void)state;
     Error error;
-    char *light = capture("light"), *rope = capture("rope"), *scene = capture("scene");
+    char *light = capture("light"), *rope = capture("rope"), *scene = capture("scene"),
+         *colors = capture("colors");
     assert_non_null(find_entry(light, "--shadow-size"));
     assert_null(find_entry(light, "--algo"));
     assert_non_null(strstr(rope, "Simulation: rope:"));
@@ -111,9 +112,11 @@ static void topics_list_groups_and_solvers(void **state)
     assert_non_null(find_entry(rope, "--style-stiffness"));
     assert_null(find_entry(rope, "--chain-bend"));
     assert_non_null(strstr(scene, "\"lights\": "));
+    assert_non_null(strstr(colors, "\n  dark-blond                  #a08257\n"));
     free(light);
     free(rope);
     free(scene);
+    free(colors);
     assert_int_equal(render_help("lite", stdout, &error), RESULT_USAGE);
     assert_non_null(strstr(error.text, "--help: no topic 'lite': expected input, output, "));
     assert_non_null(strstr(error.text, "or an option's name"));
