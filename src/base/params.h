@@ -66,6 +66,7 @@ typedef enum ParamKind {
 #define CHOICES_LOBES(X)   X(LOBES_ENERGY, "energy") X(LOBES_GAUSS, "gauss")
 #define CHOICES_QUALITY(X)                                                                         \
     X(QUALITY_NORMAL, "normal") X(QUALITY_DRAFT, "draft") X(QUALITY_FINAL, "final")
+#define CHOICES_LOOK(X)  X(LOOK_STUDIO, "studio") X(LOOK_PLAIN, "plain")
 #define CHOICES_CURVE(X) X(CURVE_CATMULL_ROM, "catmull-rom") X(CURVE_BSPLINE, "bspline")
 #define CHOICES_FRAMING(X)                                                                         \
     X(FRAMING_AUTO, "auto")                                                                        \
@@ -79,6 +80,7 @@ typedef enum FollowMode { CHOICES_FOLLOW(CHOICE_VALUE) } FollowMode;
 typedef enum TeleportRule { CHOICES_TELEPORT(CHOICE_VALUE) } TeleportRule;
 typedef enum Backend { CHOICES_BACKEND(CHOICE_VALUE) } Backend;
 typedef enum Quality { CHOICES_QUALITY(CHOICE_VALUE) } Quality;
+typedef enum LookKind { CHOICES_LOOK(CHOICE_VALUE) } LookKind;
 typedef enum CurveKind { CHOICES_CURVE(CHOICE_VALUE) } CurveKind;
 typedef enum FramingKind { CHOICES_FRAMING(CHOICE_VALUE) } FramingKind;
 typedef enum Shadow { CHOICES_SHADOW(CHOICE_VALUE) } Shadow;

@@ -108,7 +108,7 @@ static Result stage_create(Stage *stage, const BenchOptions *options, const Gpu 
     SectionParams params = {0};
     Framing framing;
     *stage = (Stage){.options = options, .gpu = gpu, .set = set, .file = file};
-    TRY(scene_create(&stage->scene, error));
+    TRY(scene_create_as(&stage->scene, &(Presets){.look = "plain"}, error));
     Result result = params_create_section(&params, error);
     THEN(result, scene_add_section(&stage->scene, set ? set : file, &params, error));
     params_destroy_section(&params);
@@ -130,12 +130,18 @@ static void stage_destroy(Stage *stage)
     scene_destroy(&stage->scene);
 }
 
+static const char *word_of(const char *param, int value)
+{
+    return params_find(param)->choices[value];
+}
+
 static Result find_manner(const Stage *stage, const BenchScheme *scheme, Manner *manner,
                           Error *error)
 {
     *manner = (Manner){stage->scene.run, stage->scene.sections[0].params};
-    TRY(scene_apply_quality(scheme->quality, SCOPE_RUN, &manner->run, error));
-    TRY(scene_apply_quality(scheme->quality, SCOPE_SECTION, &manner->material, error));
+    const Presets presets = {"plain", word_of("quality", (int)scheme->quality)};
+    TRY(scene_apply_presets(&presets, SCOPE_RUN, &manner->run, error));
+    TRY(scene_apply_presets(&presets, SCOPE_SECTION, &manner->material, error));
     manner->run.raster = scheme->raster;
     if (scheme->oit != OIT_AUTO) manner->run.oit = scheme->oit;
     if (scheme->layers) manner->run.oit_layers = scheme->layers;
@@ -297,11 +303,6 @@ static RendererOptions renderer_options(const Stage *stage, const RunParams *run
     memcpy(options.background, run->background, sizeof options.background);
     options.background[3] = 1;
     return options;
-}
-
-static const char *word_of(const char *param, int value)
-{
-    return params_find(param)->choices[value];
 }
 
 static Result measure(Stage *stage, const BenchScheme *scheme, Row *row, Error *error)

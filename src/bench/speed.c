@@ -219,7 +219,7 @@ static Result measure(Row *row, const Gpu *gpu, const Strands *strands, const Be
     count_strands(row, strands);
     gpu_timer_create(&timer, false, true);
     Result result = trial_params(&params, &row->method, "", error);
-    THEN(result, scene_create(&scene, error));
+    THEN(result, scene_create_as(&scene, &(Presets){.look = "plain"}, error));
     params.sleep = 0; // every step is one
     params.followers = 0;
     THEN(result, scene_add_section(&scene, row->hair, &params, error));

@@ -58,6 +58,7 @@ Result trial_params(SectionParams *params, const Method *method, const char *bef
     if (snprintf(words, sizeof words, "%s %s", before, method->settings) >= (int)sizeof words)
         return error_set(error, RESULT_USAGE, "settings: longer than %zu bytes", sizeof words);
     TRY(params_create_section(params, error));
+    TRY(scene_apply_presets(&(Presets){.look = "plain"}, SCOPE_SECTION, params, error));
     TRY(set_param(params, "algo", method->algo, error));
     TRY(set_param(params, "variant", method->variant, error));
     TRY(apply(params, words, error));

@@ -32,6 +32,7 @@ static Result create_blocks(Renderer *renderer, Error *error)
 static RendererOptions settle(const RendererOptions *asked)
 {
     RendererOptions options = *asked;
+    if (options.kind == IMAGE_FLOAT || options.aov != AOV_NONE) options.tone = TONE_NONE;
     if (options.samples == 0 || options.aov > AOV_COVERAGE) options.samples = 1;
     if (options.aov != AOV_NONE) { // on black, without light
         memcpy(options.background, (float[4]){0, 0, 0, 1}, 4 * sizeof(float));

@@ -68,7 +68,7 @@ static Result describe_images(const Images *images, RendererOptions *options, Er
         .oit_layers = run->oit_layers,
         .width = run->size[0],
         .height = run->size[1],
-        .exposure = run->exposure,
+        .exposure = run->exposure.value,
         .tone = (Tone)run->tone_map,
         .kind = run->depth == DEPTH_16 ? IMAGE_16 : IMAGE_8,
         .aov = (Aov)run->aov,

@@ -4,6 +4,7 @@
 #include "base/interrupt.h"
 #include "base/target.h"
 #include "run/caption.h"
+#include "run/exposure.h"
 #include "run/survey.h"
 #include "scene/effects.h"
 #include "scene/fit.h"
@@ -172,6 +173,18 @@ static Result aim(Run *run, Error *error)
     return RESULT_OK;
 }
 
+// Finds the exposure, unless the scene gives it. What is told is what is given to --exposure.
+static Result expose(Run *run, Error *error)
+{
+    const RunParams *params = &run->scene.run;
+    run->exposure = params->exposure.value;
+    if (!exposure_is_wanted(&run->scene)) return RESULT_OK;
+    TRY(exposure_find(&run->exposure, &run->scene, &run->assets, &run->framing, &run->gpu, error));
+    if (!params->quiet)
+        fprintf(stderr, "exposure: %+.4g EV (--exposure auto)\n", (double)run->exposure);
+    return RESULT_OK;
+}
+
 // Files first: their errors are reported before a driver is started. The output's folder is made
 // last but before any work.
 static Result prepare(Run *run, Error *error)
@@ -186,6 +199,7 @@ static Result prepare(Run *run, Error *error)
     if (!params->quiet) warn_all(&run->scene);
     TRY(open_gpu(run, error));
     if (draws) TRY(aim(run, error));
+    if (draws) TRY(expose(run, error));
     TRY(simulation_create(&run->simulation, &run->gpu, &run->timer, &run->scene,
                           run->assets.strands, &run->assets.mesh, error));
     TRY(open_source(run, error));
@@ -193,9 +207,11 @@ static Result prepare(Run *run, Error *error)
         TRY(images_create(&run->images, &run->scene, &run->assets, &run->simulation, &run->framing,
                           &run->gpu, &run->timer, sequence_count_drawn(params) - run->done.count,
                           error));
+    run->images.renderer.options.exposure = run->exposure;
     if (*params->stats) {
         TRY(stats_create(&run->stats, error));
         stats_describe(&run->stats, &run->gpu, &run->scene, &run->assets, &run->simulation);
+        if (draws) stats_add_exposure(&run->stats, run->exposure);
     }
     if (params->verbose) report_steps(&run->simulation);
     run->ready_ms = clock_ms();

@@ -2,7 +2,8 @@
 // The room run: a run of tractrix-render. It takes a scene, simulates and draws its frames one
 // after the other, and hands on images or a video, a cache, hair files and statistics: run (set-up
 // and order), sequence (the loop over frames), frame_source (simulation or cache), images and
-// output (drawing and encoding), survey (a look at all frames for the camera), export, stats, help.
+// output (drawing and encoding), survey (a look at all frames for the
+// camera), exposure (a look at the first), export, stats, help.
 #pragma once
 
 #include "run/images.h"
@@ -17,6 +18,7 @@ typedef struct Run {
     bool has_gpu;
     GpuTimer timer;
     Framing framing;
+    float exposure; // EV, of all images
     Simulation simulation;
     Images images; // empty unless the scene has an output
     FrameSource source;

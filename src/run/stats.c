@@ -86,6 +86,11 @@ void stats_describe(Stats *stats, const Gpu *gpu, const Scene *scene, const Asse
     json_object_set_new(stats->root, "parameters", scene_to_json(scene));
 }
 
+void stats_add_exposure(Stats *stats, float exposure)
+{
+    if (stats->root) json_object_set_new(stats->root, "exposure", json_real((double)exposure));
+}
+
 void stats_add_frame(Stats *stats, GpuTimer *timer, const FrameTimes *times,
                      const RendererCounts *counts)
 {

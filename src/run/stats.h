@@ -34,6 +34,9 @@ void stats_destroy(Stats *stats);
 void stats_describe(Stats *stats, const Gpu *gpu, const Scene *scene, const Assets *assets,
                     const Simulation *simulation);
 
+// The exposure of all images, EV: the given one, or the one that was found.
+void stats_add_exposure(Stats *stats, float exposure);
+
 // Appends a frame with the GPU time of every pass since the last one. Waits for the timer's
 // results.
 void stats_add_frame(Stats *stats, GpuTimer *timer, const FrameTimes *times,

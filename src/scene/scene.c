@@ -5,18 +5,34 @@
 #include <stdlib.h>
 #include <string.h>
 
-// From above the camera's left shoulder, and a weaker one from the right against black shadows, for
-// the automatic camera, which looks along -z. Unit vectors.
-static const Light DEFAULT_LIGHTS[] = {
-    {.direction = {-0.48f, 0.64f, 0.6f}, .color = {1, 1, 1}, .intensity = 1.0f, .shadow = true},
-    {.direction = {0.8f, 0.0f, 0.6f}, .color = {1, 1, 1}, .intensity = 0.35f},
+// --- Lights, for the automatic camera, which looks along -z. Unit vectors.
+
+typedef struct LightSet {
+    Light lights[3];
+    uint32_t count;
+} LightSet;
+
+static const LightSet LOOK_LIGHTS[] = {
+    // From above the camera's left shoulder, and a weaker one from the right against black shadows.
+    [LOOK_STUDIO] = {{{.direction = {-0.48f, 0.64f, 0.6f},
+                       .color = {1, 1, 1},
+                       .intensity = 1.0f,
+                       .shadow = true},
+                      {.direction = {0.8f, 0.0f, 0.6f}, .color = {1, 1, 1}, .intensity = 0.35f}},
+                     2},
+    [LOOK_PLAIN] = {{{.direction = {-0.48f, 0.64f, 0.6f},
+                      .color = {1, 1, 1},
+                      .intensity = 1.0f,
+                      .shadow = true},
+                     {.direction = {0.8f, 0.0f, 0.6f}, .color = {1, 1, 1}, .intensity = 0.35f}},
+                    2},
 };
 
-Result scene_create(Scene *scene, Error *error)
+void scene_set_lights(Scene *scene, LookKind look)
 {
-    *scene = (Scene){.light_count = sizeof DEFAULT_LIGHTS / sizeof DEFAULT_LIGHTS[0]};
-    memcpy(scene->lights, DEFAULT_LIGHTS, sizeof DEFAULT_LIGHTS);
-    return params_create_run(&scene->run, error);
+    const LightSet *set = &LOOK_LIGHTS[look];
+    scene->light_count = set->count;
+    memcpy(scene->lights, set->lights, sizeof set->lights);
 }
 
 void scene_destroy(Scene *scene)
@@ -158,22 +174,25 @@ static Result check_head(const Scene *scene, Error *error)
     return result == RESULT_OK ? RESULT_OK : error_prefix(error, result, "head.");
 }
 
-static bool draws_floats(const RunParams *run)
+bool scene_draws_floats(const RunParams *run)
 {
     return ends_with(run->output, ".pfm");
 }
 
 // Light as it is, and what is no light, cannot be toned.
-static Result check_depth(const RunParams *run, Error *error)
+static Result check_depth(const Scene *scene, Error *error)
 {
+    const RunParams *run = &scene->run;
+    size_t row = (size_t)(params_find("tone_map") - PARAM_TABLE);
+    bool tones = run->tone_map != TONE_NONE && scene->origin[row] == ORIGIN_FLAG;
     bool video = ends_with(run->output, ".mp4") || ends_with(run->output, ".webm") ||
                  ends_with(run->output, ".gif");
     const char *pair = NULL;
-    if (run->depth == DEPTH_16 && draws_floats(run)) pair = "--depth 16 and .pfm files";
+    if (run->depth == DEPTH_16 && scene_draws_floats(run)) pair = "--depth 16 and .pfm files";
     if (run->depth == DEPTH_16 && video) pair = "--depth 16 and a video";
-    if (run->tone_map != TONE_NONE && draws_floats(run)) pair = "--tone-map and .pfm files";
-    if (run->tone_map != TONE_NONE && run->aov != AOV_NONE) pair = "--tone-map and --aov";
-    if (*run->caption && draws_floats(run)) pair = "--caption and .pfm files";
+    if (tones && scene_draws_floats(run)) pair = "--tone-map and .pfm files";
+    if (tones && run->aov != AOV_NONE) pair = "--tone-map and --aov";
+    if (*run->caption && scene_draws_floats(run)) pair = "--caption and .pfm files";
     if (*run->caption && run->aov != AOV_NONE) pair = "--caption and --aov";
     if (pair) return error_set(error, RESULT_USAGE, "%s exclude each other", pair);
     return RESULT_OK;
@@ -195,38 +214,55 @@ Result scene_check(const Scene *scene, Error *error)
     TRY(check_camera(scene, error));
     TRY(check_conflicts(run, error));
     TRY(check_output(run->output, error));
-    TRY(check_depth(run, error));
+    TRY(check_depth(scene, error));
     TRY(check_floor(run, error));
     return check_head(scene, error);
 }
 
-// --- Quality.
+// --- Presets.
 
+// The table of parameters has the defaults of the studio and of normal quality.
 static const struct {
-    Quality quality;
-    const char *name, *value;
+    const char *preset, *word, *name, *value;
 } PRESETS[] = {
-    {QUALITY_DRAFT, "lod_width", "1"},     {QUALITY_FINAL, "shadow", "dom"},
-    {QUALITY_FINAL, "shadow_size", "512"}, {QUALITY_FINAL, "samples", "2"},
-    {QUALITY_FINAL, "smooth", "3"},
+    {"quality", "draft", "lod_width", "1"},     {"quality", "final", "shadow", "dom"},
+    {"quality", "final", "shadow_size", "512"}, {"quality", "final", "samples", "2"},
+    {"quality", "final", "smooth", "3"},
 };
 
-Result scene_apply_quality(Quality quality, ParamScope scope, void *params, Error *error)
+static Result apply_preset(const char *preset, const char *word, ParamScope scope, void *params,
+                           Error *error)
 {
-    Result result = RESULT_OK;
-    for (size_t i = 0; i < sizeof PRESETS / sizeof *PRESETS && result == RESULT_OK; ++i) {
+    RunParams unused = {0};
+    if (!word) return RESULT_OK;
+    Result result =
+        params_parse(params_find(preset), scope == SCOPE_RUN ? params : &unused, word, error);
+    if (result != RESULT_OK) return error_prefix(error, result, "--%s: ", preset);
+    for (size_t i = 0; i < sizeof PRESETS / sizeof *PRESETS; ++i) {
+        if (strcmp(PRESETS[i].preset, preset) != 0 || strcmp(PRESETS[i].word, word) != 0) continue;
         const ParamInfo *info = params_find(PRESETS[i].name);
         assert(info);
-        if (PRESETS[i].quality == quality && info->scope == scope)
-            result = params_parse(info, params, PRESETS[i].value, error);
+        if (info->scope == scope) TRY(params_parse(info, params, PRESETS[i].value, error));
     }
-    return result;
+    return RESULT_OK;
 }
 
-Result scene_parse_quality(Quality *quality, const char *word, Error *error)
+Result scene_apply_presets(const Presets *presets, ParamScope scope, void *params, Error *error)
 {
-    RunParams holder = {0};
-    Result result = params_parse(params_find("quality"), &holder, word, error);
-    *quality = (Quality)holder.quality;
-    return result;
+    TRY(apply_preset("look", presets->look, scope, params, error));
+    return apply_preset("quality", presets->quality, scope, params, error);
+}
+
+Result scene_create_as(Scene *scene, const Presets *presets, Error *error)
+{
+    *scene = (Scene){0};
+    TRY(params_create_run(&scene->run, error));
+    TRY(scene_apply_presets(presets, SCOPE_RUN, &scene->run, error));
+    scene_set_lights(scene, (LookKind)scene->run.look);
+    return RESULT_OK;
+}
+
+Result scene_create(Scene *scene, Error *error)
+{
+    return scene_create_as(scene, &(Presets){0}, error);
 }

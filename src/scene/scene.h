@@ -28,7 +28,7 @@ enum {
 
 // Where a parameter's value comes from.
 typedef enum Origin {
-    ORIGIN_DEFAULT,    // the table or --quality
+    ORIGIN_DEFAULT,    // the table, --look or --quality
     ORIGIN_SHARED_KEY, // of the scene file: the run's, or for all sections
     ORIGIN_KEY,        // the section's own
     ORIGIN_FLAG,       // the command line
@@ -82,7 +82,7 @@ typedef struct Scene {
     Keyframes wind;                 // width 3, m/s; without keys run.wind holds
     Keyframes eye, target;          // width 3, m; without keys run.eye, run.target hold
     Keyframes fov;                  // width 1, deg; without keys run.fov holds
-    Light lights[SCENE_MAX_LIGHTS]; // two if the user names none: a key and a weaker fill
+    Light lights[SCENE_MAX_LIGHTS]; // those of the look if the user names none
     Colliders colliders;            // shapes that hair must not cross
     uint32_t light_count;           // 0 if the user gives an empty list: ambient light only
 } Scene;
@@ -101,10 +101,16 @@ Result scene_from_arguments(Scene *scene, int argc, char **argv, Error *error);
 // file's folder; in the struct, to the working folder. Hair files are not opened.
 Result scene_read(Scene *scene, const char *path, Error *error);
 
+// What chooses defaults for several parameters at once: words of --look and --quality, NULL: the
+// table's.
+typedef struct Presets {
+    const char *look, *quality;
+} Presets;
+
 // What the command line says of values that others depend on; NULL: nothing.
 typedef struct SceneOverrides {
-    const char *quality; // counts instead of the file's
-    const char *algo;    // whose parameters are right in any section
+    Presets presets;  // their words count instead of the file's
+    const char *algo; // whose parameters are right in any section
 } SceneOverrides;
 
 // As scene_read, but without scene_check, so that flags may still mend a combination.
@@ -114,6 +120,9 @@ Result scene_read_unchecked(Scene *scene, const char *path, const SceneOverrides
 // Whether the values fit together: frame range, camera, message flags, device flags, the '%' in an
 // output pattern, names of files. RESULT_USAGE naming the flags in conflict.
 Result scene_check(const Scene *scene, Error *error);
+
+// Whether the images are light as it is (.pfm).
+bool scene_draws_floats(const RunParams *run);
 
 // Every effective value as an object that is a scene file again (paths are relative to the working
 // folder), for the stats file. Floats are as short as they can be if dumped with
@@ -129,10 +138,14 @@ void scene_destroy(Scene *scene);
 // RESULT_FAILED when memory is short.
 Result scene_add_section(Scene *scene, const char *file, const SectionParams *params, Error *error);
 
-// --quality: other defaults for several parameters at once. What a flag or a scene file says of a
-// parameter wins, whatever the order. Gives the fields of `params`, a RunParams or SectionParams as
-// the scope says, the preset's defaults. RESULT_FAILED when memory is short.
-Result scene_apply_quality(Quality quality, ParamScope scope, void *params, Error *error);
+// Gives the fields of `params`, a RunParams or SectionParams as the scope says, the presets'
+// defaults: first the look's, then the quality's, which win; a RunParams also their words. What a
+// flag or a scene file says of a parameter wins over both, whatever the order. RESULT_USAGE with
+// the flag's name for another word, RESULT_FAILED when memory is short.
+Result scene_apply_presets(const Presets *presets, ParamScope scope, void *params, Error *error);
 
-// Reads a word of --quality. RESULT_USAGE for another one.
-Result scene_parse_quality(Quality *quality, const char *word, Error *error);
+// scene_create with the presets' defaults and lights. Errors as above.
+Result scene_create_as(Scene *scene, const Presets *presets, Error *error);
+
+// The lights of a scene that names none, before a camera that looks along -z.
+void scene_set_lights(Scene *scene, LookKind look);

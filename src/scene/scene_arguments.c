@@ -37,8 +37,15 @@ static bool is_scene_file(const char *path)
 typedef struct Found {
     const char **files; // [file_count] owned; names of hair files or of the scene file
     size_t file_count;
-    const char *quality, *algo; // NULL: not given
+    SceneOverrides overrides;
 } Found;
+
+static void note(SceneOverrides *overrides, const char *name, const char *text)
+{
+    if (strcmp(name, "look") == 0) overrides->presets.look = text;
+    if (strcmp(name, "quality") == 0) overrides->presets.quality = text;
+    if (strcmp(name, "algo") == 0) overrides->algo = text;
+}
 
 // Finds unknown flags, requests and the files.
 static Result find_files(Scene *scene, OptionsWalk walk, Found *found, Error *error)
@@ -53,8 +60,7 @@ static Result find_files(Scene *scene, OptionsWalk walk, Found *found, Error *er
             found->files[found->file_count++] = argument.text;
             break;
         case OPTIONS_OPTION:
-            if (strcmp(argument.option->name, "quality") == 0) found->quality = argument.text;
-            if (strcmp(argument.option->name, "algo") == 0) found->algo = argument.text;
+            note(&found->overrides, argument.option->name, argument.text);
             break;
         case OPTIONS_HELP:
         case OPTIONS_VERSION:
@@ -68,14 +74,11 @@ static Result find_files(Scene *scene, OptionsWalk walk, Found *found, Error *er
 static Result add_sections(Scene *scene, const Found *found, Error *error)
 {
     SectionParams defaults;
-    Quality preset = QUALITY_NORMAL;
+    const Presets *presets = &found->overrides.presets;
     Result result = params_create_section(&defaults, error);
-    if (result == RESULT_OK && found->quality) {
-        result = scene_parse_quality(&preset, found->quality, error);
-        if (result != RESULT_OK) error_prefix(error, result, "--quality: ");
-    }
-    THEN(result, scene_apply_quality(preset, SCOPE_RUN, &scene->run, error));
-    THEN(result, scene_apply_quality(preset, SCOPE_SECTION, &defaults, error));
+    THEN(result, scene_apply_presets(presets, SCOPE_RUN, &scene->run, error));
+    THEN(result, scene_apply_presets(presets, SCOPE_SECTION, &defaults, error));
+    if (result == RESULT_OK) scene_set_lights(scene, (LookKind)scene->run.look);
     for (size_t i = 0; i < found->file_count; i++)
         THEN(result, scene_add_section(scene, found->files[i], &defaults, error));
     params_destroy_section(&defaults);
@@ -97,8 +100,7 @@ static Result open_files(Scene *scene, const Found *found, Error *error)
                          "(name hair in its 'sections')",
                          scene_file);
     scene_destroy(scene);
-    const SceneOverrides overrides = {found->quality, found->algo};
-    return scene_read_unchecked(scene, scene_file, &overrides, error);
+    return scene_read_unchecked(scene, scene_file, &found->overrides, error);
 }
 
 // A value given as a flag also replaces the scene file's keyframes of that name.

@@ -155,6 +155,24 @@ static Result check_owner(const Scene *scene, const Document *document, size_t r
     return RESULT_USAGE;
 }
 
+// The word that the command line gives, or else the file; NULL: neither, or no word of the
+// parameter, which is reported when the file's value is read.
+static const char *find_word(const Document *document, const char *name, const char *asked)
+{
+    RunParams unused = {0};
+    Error why = {{0}};
+    const char *word = json_string_value(json_object_get(document->json, name));
+    if (asked || !word) return asked;
+    return params_parse(params_find(name), &unused, word, &why) == RESULT_OK ? word : NULL;
+}
+
+static Presets find_presets(const Document *document)
+{
+    const Presets *asked = &document->overrides->presets;
+    return (Presets){find_word(document, "look", asked->look),
+                     find_word(document, "quality", asked->quality)};
+}
+
 // Section parameters at the top level are the defaults of every section.
 static Result read_sections(Scene *scene, const Document *document, Error *error)
 {
@@ -166,9 +184,9 @@ static Result read_sections(Scene *scene, const Document *document, Error *error
         return json_refuse(&place, array, "an array of 1 to 1024 sections", error);
     Section defaults = {0};
     const Sink sink = {SCOPE_SECTION, &defaults.params, defaults.origin};
-    Quality quality = (Quality)scene->run.quality;
+    const Presets presets = find_presets(document);
     Result result = params_create_section(&defaults.params, error);
-    THEN(result, scene_apply_quality(quality, SCOPE_SECTION, &defaults.params, error));
+    THEN(result, scene_apply_presets(&presets, SCOPE_SECTION, &defaults.params, error));
     THEN(result,
          read_params(document, &sink, ORIGIN_SHARED_KEY, &document->root, document->json, error));
     for (size_t i = 0; i < count; i++) {
@@ -213,30 +231,17 @@ static Result read_parts(Scene *scene, const Document *document, Error *error)
     return refuse_both(document, "fov", &scene->fov, error);
 }
 
-// The preset that the command line names, or else the file, becomes the run's defaults.
-static Result read_quality(Scene *scene, const Document *document, Error *error)
-{
-    const char *asked = document->overrides->quality;
-    const json_t *value = json_object_get(document->json, "quality");
-    Quality quality = QUALITY_NORMAL;
-    Error unused = {{0}}; // what is wrong with the file's value is reported when it is read
-    if (asked)
-        TRY(scene_parse_quality(&quality, asked, error));
-    else if (json_is_string(value))
-        scene_parse_quality(&quality, json_string_value(value), &unused);
-    TRY(scene_apply_quality(quality, SCOPE_RUN, &scene->run, error));
-    scene->run.quality = quality;
-    return RESULT_OK;
-}
-
 static Result read_document(Scene *scene, const Document *document, Error *error)
 {
+    const Presets presets = find_presets(document);
     TRY(check_keys(true, &document->root, document->json, error));
-    TRY(read_quality(scene, document, error));
+    TRY(scene_apply_presets(&presets, SCOPE_RUN, &scene->run, error));
     const Sink sink = {SCOPE_RUN, &scene->run, scene->origin};
-    int quality = scene->run.quality;
+    int look = scene->run.look, quality = scene->run.quality;
     TRY(read_params(document, &sink, ORIGIN_SHARED_KEY, &document->root, document->json, error));
-    if (document->overrides->quality) scene->run.quality = quality;
+    scene->run.look = look;
+    scene->run.quality = quality;
+    scene_set_lights(scene, (LookKind)look);
     TRY(read_sections(scene, document, error));
     return read_parts(scene, document, error);
 }

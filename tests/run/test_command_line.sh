@@ -42,6 +42,35 @@ done
 for raster in auto blocks; do run 0 $hair $small --software --raster $raster -q -o "$work/${raster}_%d.pfm"; done
 if cmp -s "$work/auto_1.pfm" "$work/blocks_1.pfm"; then good; else bad ".pfm differs"; fi
 
+claim "--exposure auto is one number for all parts, a cache, a still and a sequence, and all rasterisers; it is told"
+exposed="assets/demo.json --size 320x240 --exposure auto --frames 4"
+exposure_is() { # the last run's
+    found=$(sed -n 's/.*"exposure": \([-0-9.][-0-9.]*\).*/\1/p' "$work/stats.json")
+    if [ -n "$found" ] && [ "$found" != 0.0 ] && [ "$found" = "${first:=$found}" ]; then good; else bad "exposure '$found', not '$first'"; fi
+}
+# shellcheck disable=SC2086
+for words in "--cache $work/c.cache" "--part 2/3" "--first 3" "--frames 1" "--from-cache $work/c.cache --part 3/3" \
+    "--raster quads --frames 1" "--samples 2 --frames 1" "--depth 16 --frames 1" "--floor plane --frames 1"; do
+    run 0 $exposed $words --stats "$work/stats.json" -o "$work/exposed_%d.png"
+    exposure_is
+    says "exposure: +$first EV (--exposure auto)"
+done
+# shellcheck disable=SC2086
+run 0 $exposed --frames 1 -o "$work/auto.png" -q
+# shellcheck disable=SC2086
+run 0 $exposed --frames 1 -o "$work/given.png" -q --exposure "$first"
+if cmp -s "$work/auto.png" "$work/given.png"; then good; else bad "the given exposure draws another image"; fi
+
+claim "--exposure auto leaves floats and AOVs as they are"
+# shellcheck disable=SC2086
+run 0 $exposed --frames 1 -q -o "$work/auto.pfm"
+# shellcheck disable=SC2086
+run 0 $exposed --frames 1 -q --exposure 0 -o "$work/zero.pfm"
+if cmp -s "$work/auto.pfm" "$work/zero.pfm"; then good; else bad "floats are exposed"; fi
+# shellcheck disable=SC2086
+run 0 $exposed --frames 1 --aov coverage --stats "$work/stats.json" -o "$work/aov.png"
+if grep -q '"exposure": 0.0' "$work/stats.json"; then good; else bad "an AOV is exposed"; fi
+
 claim "what cannot be written to standard output is an error of one line"
 for words in --help "--algo list" "--check $hair"; do
     # shellcheck disable=SC2086

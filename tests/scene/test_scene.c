@@ -317,8 +317,6 @@ static const struct {
     {"{" HAIR ", \"lights\": [{\"direction\": [0, 0, 1], \"intensity\": -1}]}",
      "lights[0].intensity: got -1"},
     {"{" HAIR ", \"lights\": [1,2,3,4,5,6,7,8,9]}", "got 9 lights, expected 8 at most"},
-    {"{" HAIR ", \"output\": \"x.pfm\", \"tone_map\": \"filmic\"}",
-     "--tone-map and .pfm files exclude each other"},
     {"{" HAIR ", \"output\": \"x.mp4\", \"depth\": \"16\"}", "exclude each other"},
     {"{" HAIR ", \"first\": 9, \"last\": 3}", "scene.json: --last 3 is before --first 9"},
     {"{" HAIR ", \"software\": true, \"require_hardware\": true}", "exclude each other"},
