@@ -48,7 +48,7 @@ typedef enum ParamKind {
 
 // The words of each CHOICE and the values they stand for, counted from 0.
 #define CHOICES_NONE(X)
-#define CHOICES_UP(X)     X(UP_Y, "y") X(UP_Z, "z")
+#define CHOICES_UP(X)     X(UP_AUTO, "auto") X(UP_Y, "y") X(UP_Z, "z")
 #define CHOICES_FOLLOW(X) X(FOLLOW_OFFSET, "offset") X(FOLLOW_INTERPOLATE, "interpolate")
 #define CHOICES_TELEPORT(X)                                                                        \
     X(TELEPORT_CARRY, "carry") X(TELEPORT_LIMIT, "limit") X(TELEPORT_NONE, "none")

@@ -225,10 +225,13 @@ void convert_input_close(ConvertInput *input)
 
 // --- Reading.
 
-static void report_mended(const ConvertInput *input, const StrandsReport *report, const char *path)
+static void report_mended(const ConvertInput *input, const StrandsReport *report, int file,
+                          const char *path)
 {
     if (!input->messages) return;
     strands_report_print_mended(report, path, input->messages);
+    if (input->says_guess && input->reports[file].strands == 0)
+        strands_report_print_guess(report, path, input->messages);
     if (report->shuffled)
         fprintf(input->messages, "%s: strands are shuffled: the file says 'is sorted 0'\n", path);
 }
@@ -238,19 +241,22 @@ static Result read_file(ConvertInput *input, const char *path, int file, Strands
 {
     StrandsReport report;
     TRY(strands_read(strands, path, &input->options, &report, error));
-    report_mended(input, &report, path);
+    report_mended(input, &report, file, path);
     input->features |= strands_features(strands);
     if (input->reports[file].strands == 0) input->reports[file] = report;
     return RESULT_OK;
 }
 
-// The unit that is guessed for the first frame holds for all.
+// The unit and axis that are guessed for the first frame hold for all.
 static Result read_numbered(ConvertInput *input, int frame, Strands *strands, Error *error)
 {
     char *name = target_name_frame(&input->pattern, frame);
     if (!name) return error_set(error, RESULT_FAILED, "no memory for a name");
     Result result = read_file(input, name, 0, strands, error);
-    if (result == RESULT_OK) input->options.unit = input->reports[0].unit_used;
+    if (result == RESULT_OK) {
+        input->options.unit = input->reports[0].unit_used;
+        input->options.up = input->reports[0].up_z ? UP_Z : UP_Y;
+    }
     free(name);
     return result;
 }
@@ -320,14 +326,14 @@ static json_t *defects_to_json(const StrandsReport *report, const char *path)
 
 static json_t *report_to_json(const StrandsReport *report, const char *path)
 {
-    return json_pack("{ss ss sf si si si si sf sb sb si si so}", "file", path, "kind",
-                     FORMAT_TABLE[report->kind]->name, "version", (double)report->version,
-                     "declared_strands", report->declared_strands, "declared_vertices",
-                     report->declared_vertices, "strands", report->strands, "vertices",
-                     report->vertices, "unit_m", (double)report->unit_used, "unit_guessed",
-                     report->unit_guessed, "shuffled", report->shuffled, "empty_roots",
-                     report->empty_roots, "shared_roots", report->shared_roots, "defects",
-                     defects_to_json(report, path));
+    return json_pack(
+        "{ss ss sf si si si si sf sb ss sb sb si si so}", "file", path, "kind",
+        FORMAT_TABLE[report->kind]->name, "version", (double)report->version, "declared_strands",
+        report->declared_strands, "declared_vertices", report->declared_vertices, "strands",
+        report->strands, "vertices", report->vertices, "unit_m", (double)report->unit_used,
+        "unit_guessed", report->unit_guessed, "up", report->up_z ? "z" : "y", "up_guessed",
+        report->up_guessed, "shuffled", report->shuffled, "empty_roots", report->empty_roots,
+        "shared_roots", report->shared_roots, "defects", defects_to_json(report, path));
 }
 
 json_t *convert_input_to_json(const ConvertInput *input)

@@ -29,6 +29,7 @@ typedef struct ConvertInput {
     int path_count;
     StrandsReadOptions options;
     FILE *messages;        // reports what was mended; NULL: nowhere
+    bool says_guess;       // of unit and axis, among the messages
     bool cached, numbered; // else the files are one frame
     CacheStrands cache;
     Target pattern;

@@ -24,7 +24,7 @@ typedef struct Command {
 } Command;
 
 #define AT(member) offsetof(Command, member)
-static const char AXES[] = "y|z", UNITS[] = "m|cm|mm|in|NUMBER";
+static const char AXES[] = "y|z", FROM_AXES[] = "auto|y|z", UNITS[] = "m|cm|mm|in|NUMBER";
 
 static const Option OPTIONS[] = {
     {"output", 'o', OPTION_STRING, AT(output), "FILE", 0, 0,
@@ -38,8 +38,11 @@ static const Option OPTIONS[] = {
     {"quiet", 'q', OPTION_SWITCH, AT(quiet), NULL, 0, 0, "print errors only"},
 
     {"unit", 0, OPTION_STRING, AT(unit), UNITS, 0, 0,
-     "length of one unit of the hair files [default: guessed from their size]"},
-    {"up", 0, OPTION_WORD, AT(up), AXES, 0, 0, "axis of the hair files that points up [default y]"},
+     "length of one unit of the hair files [default: as the file says, or guessed from format and "
+     "size]"},
+    {"up", 0, OPTION_WORD, AT(up), FROM_AXES, 0, 0,
+     "axis of the hair files that points up; auto: as the file says, else z in Cem Yuksel's .hair "
+     "files, y in others [default auto]"},
     {"strict", 0, OPTION_SWITCH, AT(strict), NULL, 0, 0,
      "reject files with defects instead of repairing them"},
     {"to-unit", 0, OPTION_STRING, AT(to_unit), UNITS, 0, 0, "unit of the written file [default m]"},
@@ -185,10 +188,11 @@ static Result parse(Job *job, int argc, char **argv, bool *done, Error *error)
     job->input = (ConvertInput){.paths = argv + first,
                                 .path_count = argc - first,
                                 .options = {.unit = unit,
-                                            .up_z = command->up == 1,
+                                            .up = (UpAxis)command->up,
                                             .strict = command->strict,
                                             .seed = (uint32_t)command->seed},
                                 .messages = command->quiet ? NULL : stderr,
+                                .says_guess = command->output,
                                 .first = command->first,
                                 .last = command->last,
                                 .every = command->every,

@@ -60,6 +60,7 @@ static json_t *describe_section(const char *file, const StrandsReport *report,
     json_object_set_new(section, "file", json_string(file));
     json_object_set_new(section, "kind", json_string(FORMAT_TABLE[report->kind]->name));
     json_object_set_new(section, "metres_per_unit", json_real((double)report->unit_used));
+    json_object_set_new(section, "up", json_string(report->up_z ? "z" : "y"));
     json_object_set_new(section, "strands", json_integer(hair->strand_count));
     json_object_set_new(section, "followers", json_integer(simulated->follow.hair.strand_count));
     json_object_set_new(section, "strands_in_file", json_integer(report->declared_strands));

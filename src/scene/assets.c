@@ -9,7 +9,7 @@ static StrandsReadOptions read_options(const Scene *scene, const Section *sectio
 {
     return (StrandsReadOptions){
         .unit = section->params.unit.automatic ? 0 : section->params.unit.value,
-        .up_z = section->params.up == UP_Z,
+        .up = (UpAxis)section->params.up,
         .strict = scene->run.strict,
         .seed = scene->run.seed,
     };
@@ -33,6 +33,8 @@ static Result load_section(Assets *assets, const Scene *scene, uint32_t i, FILE 
     if (result != RESULT_OK || !messages) return result;
     strands_report_print_mended(&assets->reports[i], section->file, messages);
     warn_ignored(&assets->strands[i], section->file, messages);
+    if (!i || !strands_report_same_guess(&assets->reports[i - 1], &assets->reports[i]))
+        strands_report_print_guess(&assets->reports[i], section->file, messages);
     if (verbose) strands_report_print(&assets->reports[i], section->file, messages);
     return RESULT_OK;
 }
@@ -43,8 +45,10 @@ static Result load_mesh(Assets *assets, const Scene *scene, Error *error)
     float unit = scene->run.mesh_unit.value;
     if (scene->run.mesh_unit.automatic)
         unit = assets->section_count ? assets->reports[0].unit_used : 1;
+    bool up_z = scene->run.mesh_up == UP_Z;
+    if (scene->run.mesh_up == UP_AUTO) up_z = assets->section_count && assets->reports[0].up_z;
     assets->has_mesh = true;
-    return obj_read_mesh(&assets->mesh, scene->run.mesh, unit, scene->run.mesh_up == UP_Z, error);
+    return obj_read_mesh(&assets->mesh, scene->run.mesh, unit, up_z, error);
 }
 
 Result assets_load(Assets *assets, const Scene *scene, FILE *messages, bool verbose, Error *error)

@@ -30,6 +30,8 @@ typedef struct Strands {
     uint32_t followers;      // followers that the file asks for, per guide
     float follower_radius;   // metres: how far from their guide; 0: the file does not say
     bool both_ends_fixed;    // the tips do not move either
+    double unit;             // m, and axis of positions made ready for a file (strands_to_unit); 0:
+    bool up_z;               // metres, y up, which holds everywhere else
 } Strands;
 
 // The arrays that a set may have or not, of vertices and of whole strands: X(member, numbers in an

@@ -109,6 +109,8 @@ void strands_to_unit(Strands *strands, double metres, bool up_z)
         memcpy(strands->position[v], to, sizeof to);
     }
     scale_sizes(strands, 1 / metres);
+    strands->unit = metres;
+    strands->up_z = up_z;
 }
 
 // --- Which strands, and in what order.

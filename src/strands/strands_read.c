@@ -4,6 +4,7 @@
 #include "strands/strands_edit.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 // --- Detection.
@@ -34,6 +35,9 @@ static Result refuse_unknown(Reader *reader)
 
 // --- Unit.
 
+enum { LENGTH_SAMPLES = 1024 };
+static const double HEAD_SIZE = 0.35; // m, see strands_read
+
 // Diagonal of the box around all usable vertices and, if `with_origin`, the origin, in the file's
 // unit.
 static double measure_diagonal(const FormatSource *source, bool with_origin)
@@ -52,12 +56,43 @@ static double measure_diagonal(const FormatSource *source, bool with_origin)
     return scale * sqrt(square);
 }
 
-static float guess_unit(const FormatSource *source, FormatKind kind)
+static double source_length(const FormatSource *source, uint32_t s)
 {
-    if (FORMAT_TABLE[kind]->centimetres) return measure_diagonal(source, true) < 5.0 ? 1.0f : 0.01f;
-    double diagonal = measure_diagonal(source, false);
-    // Where the ratios of two units to 0.5 m are equal: d / 0.5 = 0.5 / (0.01 d), and so on.
-    return diagonal < 5.0 ? 1.0f : diagonal < 158.0 ? 0.01f : 0.001f;
+    const Strands *strands = &source->strands;
+    double length = 0;
+    for (uint32_t v = strands->first[s] + 1; v < strands->first[s + 1]; v++) {
+        const float *a = strands->position[v - 1], *b = strands->position[v];
+        double x = (double)b[0] - a[0], y = (double)b[1] - a[1], z = (double)b[2] - a[2];
+        double step = sqrt(x * x + y * y + z * z);
+        if (isfinite(step)) length += step;
+    }
+    return source->scale != 0.0 ? length * fabs(source->scale) : length;
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// Of at most LENGTH_SAMPLES strands, in the file's unit.
+static double median_length(const FormatSource *source)
+{
+    double length[LENGTH_SAMPLES];
+    uint32_t count = 0, stride = source->strands.strand_count / LENGTH_SAMPLES + 1;
+    for (uint32_t s = 0; s < source->strands.strand_count; s += stride)
+        length[count++] = source_length(source, s);
+    qsort(length, count, sizeof *length, compare_doubles);
+    return count ? length[count / 2] : 0;
+}
+
+static float guess_unit(const FormatSource *source, const Format *format)
+{
+    if (format->centimetres) return measure_diagonal(source, true) < 5.0 ? 1.0f : 0.01f;
+    double size = sqrt(measure_diagonal(source, false) * median_length(source));
+    // Where the ratios of two units to a head are equal: s / h = h / (0.01 s), and so on.
+    if (size < HEAD_SIZE * sqrt(100.0)) return 1.0f;
+    return size < HEAD_SIZE * sqrt(100.0 * 1000.0) || format->no_millimetres ? 0.01f : 0.001f;
 }
 
 static const double FARTHEST = 1e6;       // metres; squares of it are far from float32's limits
@@ -315,10 +350,14 @@ static Result refuse_empty(const StrandsReport *report, const char *name, Error 
 static Result finish(FormatSource *source, const char *name, const StrandsReadOptions *options,
                      StrandsReport *report, Error *error)
 {
+    const Format *format = FORMAT_TABLE[report->kind];
     float known = options->unit != 0.0f ? options->unit : source->unit;
+    UpAxis up = options->up != UP_AUTO ? options->up : source->up;
     report->unit_guessed = known == 0.0f;
-    report->unit_used = report->unit_guessed ? guess_unit(source, report->kind) : known;
-    convert(source, (double)report->unit_used, options->up_z || source->up_z);
+    report->unit_used = report->unit_guessed ? guess_unit(source, format) : known;
+    report->up_guessed = up == UP_AUTO;
+    report->up_z = report->up_guessed ? format->up_z : up == UP_Z;
+    convert(source, (double)report->unit_used, report->up_z);
     TRY(mend(source, name, report, error));
     const Strands *strands = &source->strands;
     if (source->shuffle && strands->strand_count > 1)

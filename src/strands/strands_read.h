@@ -3,12 +3,13 @@
 #pragma once
 
 #include "base/bytes.h"
+#include "base/params.h"
 #include "strands/strands_report.h"
 
-// All zero: guess the unit, y is up, mend what can be mended.
+// All zero: guess the unit and the axis, mend what can be mended.
 typedef struct StrandsReadOptions {
     float unit;    // metres per unit of the file; 0: guess, see strands_read
-    bool up_z;     // the file's z is up
+    UpAxis up;     // the file's axis that is up; UP_AUTO: as the file says or its format has it
     bool strict;   // refuse a file with any defect
     uint32_t seed; // for the shuffle of a file that says `is sorted 0`
 } StrandsReadOptions;
@@ -20,10 +21,16 @@ typedef struct StrandsReadOptions {
 // `report` (may be NULL); nothing is dropped, padded or cut without being counted there. Strands
 // come in the file's order unless the file asks for a shuffle.
 //
-// A unit of 0 is the one that the file states (USD), or guessed. TressFX 2 text is in centimetres,
-// unless all of it lies within 5 units of the origin's box, which is metres, as this program writes
-// it. For the others it is the one of m, cm and mm that brings the diagonal of the vertices' box
-// nearest to 0.5 m by ratio: below 5 units m, below 158 cm, else mm.
+// A unit of 0 is the one that the file states (USD, HAIR files of this program), or guessed.
+// TressFX 2 text is in centimetres, unless all of it lies within 5 units of the origin's box, which
+// is metres, as this program writes it. For the others it is the one of m, cm and mm (TressFX: of m
+// and cm) that brings the size nearest to that of a head of hair by ratio, 0.35 m, where the size
+// is the geometric mean of the diagonal of the vertices' box (0.5 m) and the median strand's length
+// (0.25 m): so fur on a large animal is not taken for a head in smaller units. Below 3.5 units that
+// is m, below 111 cm.
+//
+// UP_AUTO is the axis that the file states, or that of its format: z for HAIR files that this
+// program did not write (Cem Yuksel's have z up), else y.
 //
 // Fails with RESULT_BAD_INPUT (not a hair file, malformed, no usable strand, or defects and
 // `strict`) with one line that names the place, or RESULT_FAILED (memory); `strands` is empty then.

@@ -150,15 +150,49 @@ uint32_t strands_report_print_mended(const StrandsReport *report, const char *pa
     return lines;
 }
 
+// What the line says of the unit and the axis.
+static void find_guesses(const StrandsReport *report, bool *unit, bool *up)
+{
+    bool changes = report->unit_guessed && report->unit_used != 1.0f;
+    changes = changes || (report->up_guessed && report->up_z);
+    *unit = report->unit_guessed && changes;
+    *up = report->up_guessed && changes && (*unit || report->up_z);
+}
+
+void strands_report_print_guess(const StrandsReport *report, const char *path, FILE *stream)
+{
+    bool unit, up;
+    find_guesses(report, &unit, &up);
+    if (!unit && !up) return;
+    fprintf(stream, "%s: guessed ", path);
+    if (unit) fprintf(stream, "a unit of %g m", (double)report->unit_used);
+    fprintf(stream, "%s", unit && up ? " and " : "");
+    if (up) fprintf(stream, "%c up", report->up_z ? 'z' : 'y');
+    fprintf(stream, ": %s%s%s say otherwise\n", unit ? "--unit" : "", unit && up ? " and " : "",
+            up ? "--up" : "");
+}
+
+bool strands_report_same_guess(const StrandsReport *a, const StrandsReport *b)
+{
+    bool unit[2], up[2];
+    find_guesses(a, &unit[0], &up[0]);
+    find_guesses(b, &unit[1], &up[1]);
+    return unit[0] == unit[1] && up[0] == up[1] && (!unit[0] || a->unit_used == b->unit_used) &&
+           (!up[0] || a->up_z == b->up_z);
+}
+
 static void print_unit(const StrandsReport *report, FILE *stream)
 {
+    const Format *format = FORMAT_TABLE[report->kind];
     fprintf(stream, "  unit      %.6g m", (double)report->unit_used);
     if (!report->unit_guessed)
         fprintf(stream, " as given\n");
-    else if (FORMAT_TABLE[report->kind]->centimetres && report->unit_used != 1.0f)
+    else if (format->centimetres && report->unit_used != 1.0f)
         fprintf(stream, ", a guess: TressFX 2 assets are in centimetres (--unit says otherwise)\n");
     else
-        fprintf(stream, ", a guess by the size of the box (--unit says otherwise)\n");
+        fprintf(stream, ", a guess by the size (--unit says otherwise)\n");
+    fprintf(stream, "  up        %c%s\n", report->up_z ? 'z' : 'y',
+            report->up_guessed ? ", as such files have it (--up says otherwise)" : " as given");
 }
 
 static void print_notes(const StrandsReport *report, FILE *stream)

@@ -29,7 +29,8 @@ typedef struct StrandsReport {
     uint32_t declared_strands, declared_vertices; // in the file
     uint32_t strands, vertices;                   // after mending
     float unit_used;                              // metres per unit of the file
-    bool unit_guessed;
+    bool up_z;                                    // the file's z is up, else its y
+    bool unit_guessed, up_guessed;                // neither the caller nor the file says
     uint32_t samples;      // in time, of which the first was read; 0: the file has no time
     bool shuffled;         // the file said `is sorted 0`
     bool rotation_was_deg; // a `rotation` was taken to be in degrees
@@ -55,6 +56,13 @@ void strands_report_describe(const StrandsReport *report, const char *path, Defe
 // Prints one such line for each kind of defect that there is, and one if the file has more than one
 // time sample. Returns how many lines.
 uint32_t strands_report_print_mended(const StrandsReport *report, const char *path, FILE *stream);
+
+// Prints a line with what was guessed of the unit and the axis, and how to change it; nothing where
+// nothing was, and for metres with y up, which change no coordinate.
+void strands_report_print_guess(const StrandsReport *report, const char *path, FILE *stream);
+
+// Whether that line would say the same of both.
+bool strands_report_same_guess(const StrandsReport *a, const StrandsReport *b);
 
 // Prints everything: kind, version, counts, lengths, box, unit and, last, the defects.
 void strands_report_print(const StrandsReport *report, const char *path, FILE *stream);

@@ -209,7 +209,7 @@ static const struct {
     {"size", "0x480", "WxH"},
     {"size", "20000x480", "(nearest: 16384)"},
     {"size", "640.5x480", "WxH"},
-    {"up", "x", "got 'x', expected y or z"},
+    {"up", "x", "got 'x', expected auto, y or z"},
     {"backend", "elg", "expected auto, egl or osmesa (nearest: egl)"},
     {"fps", "two\nlines\x7f", "got 'two?lines?'"},
 };

@@ -36,6 +36,9 @@ claim "units and axes of what is written are those that are asked for"
 run 0 $curls --unit m -q -o "$x.data" --to-unit 0.25 --to-up z
 run 0 "$x.data" -q --unit 0.25 --up z -o "$work/again.data"
 run 0 $curls --unit m -q -o "$work/direct.data"; equal "$work/again.data" "$work/direct.data"
+run 0 $curls --unit m -q -o "$x.hair" --to-unit 0.25 --to-up z; run 0 "$x.hair" -o "$work/again.data" --format data; equal "$work/again.data" "$work/direct.data"
+run 0 $curls --unit m -q -o "$x.data" --to-unit cm; run 0 "$x.data" -o "$work/again.data"; says "x.data: guessed a unit of 0.01 m and y up: --unit and --up say otherwise"
+run 0 "$x.data" -q -o "$work/again.data"; silent err; run 0 $curls -o "$work/again.tfx"; silent err
 run 0 $curls -q -o "$x.usda" --to-unit cm --to-up z; in_file "$x.usda" "metersPerUnit = 0.01"; in_file "$x.usda" 'upAxis = "Z"'; run 0 "$x.usda"; says "unit      0.01 m as given"
 
 claim "steps are done in their order"

@@ -304,7 +304,7 @@ static void wrong_command_lines_are_refused_with_the_nearest_name(void **state)
         {"a.tfx --output --fps 30", "--output: no value: expected PATH"},
         {"a.tfx -o x/ --fps 0", "--fps: got '0', expected a number from 1 to 10000 (1/s)"},
         {"a.tfx -o x/ --opacity nan", "--opacity: got 'nan'"},
-        {"a.tfx -o x/ --up w", "expected y or z"},
+        {"a.tfx -o x/ --up w", "expected auto, y or z"},
         {"a.tfx -o x/ --backend elg", "(nearest: egl)"},
         {"a.tfx -o x/ -q -v", "--quiet and --verbose exclude each other"},
         {"a.tfx -o x/ --software --require-hardware", "exclude each other"},

@@ -123,7 +123,7 @@ static void units_of_output_are_those_of_input(void **state)
     strands_to_unit(&b, 0.25, true);
     assert_true(b.position[3][2] == 4 * a.position[3][1]);
     assert_int_equal(format_write(path, FORMAT_HAIR, &b, NULL), RESULT_OK);
-    const StrandsReadOptions options = {.unit = 0.25f, .up_z = true};
+    const StrandsReadOptions options = {.unit = 0.25f, .up = UP_Z};
     assert_int_equal(strands_read(&back, path, &options, NULL, NULL), RESULT_OK);
     assert_true(same_positions(&a, &back));
     strands_destroy(&a);

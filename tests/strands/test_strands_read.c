@@ -299,10 +299,121 @@ static void units_are_guessed_by_size_and_said_to_be_guesses(void **state)
     strands_destroy(&strands);
 }
 
+// One strand of two vertices, the second at `x`, 0, `z`, in a HAIR file with this text.
+static Result read_hair(Strands *strands, float x, float z, const char *info,
+                        const StrandsReadOptions *options, StrandsReport *report)
+{
+    struct {
+        char name[4];
+        uint32_t strands, points, arrays, segments;
+        float defaults[5];
+        char info[88];
+        float position[2][3];
+    } data = {"HAIR", 1, 2, 2, 1, {0}, "", {{0, 0, 0}, {x, 0, z}}};
+    memcpy(data.info, info, strnlen(info, sizeof data.info));
+    return reading_copy(strands, &data, sizeof data, options, report, NULL);
+}
+
+static void formats_have_their_own_units_and_axes(void **state)
+{
+    (void)state;
+    static const char LONG[] = "an info that is as long as its place in the header, which is 88 "
+                               "characters, and has no zero";
+    static const struct {
+        const char *info;
+        StrandsReadOptions options;
+        float length, unit;
+        bool up_z, unit_guessed, up_guessed;
+    } CASES[] = {
+        {"", {.unit = 0}, 40, 0.01f, true, true, true}, // Cem Yuksel's
+        {LONG, {.unit = 0}, 400, 0.001f, true, true, true},
+        {"", {.up = UP_Y}, 40, 0.01f, false, true, false},
+        {"", {.unit = 1}, 40, 1, true, false, true},
+        {"Tractrix", {.unit = 0}, 0.5f, 1, false, true, false}, // before 0.2
+        {"Tractrix: unit 0.25 m, y up", {.unit = 0}, 40, 0.25f, false, false, false},
+        {"Tractrix: unit 0.01 m, z up", {.unit = 0}, 4, 0.01f, true, false, false},
+        {"Tractrix: unit nan m, z up", {.unit = 0}, 40, 0.01f, true, true, false},
+    };
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        Strands strands;
+        StrandsReport report;
+        assert_int_equal(
+            read_hair(&strands, 0, CASES[i].length, CASES[i].info, &CASES[i].options, &report),
+            RESULT_OK);
+        assert_true(report.unit_used == CASES[i].unit && report.up_z == CASES[i].up_z);
+        assert_int_equal(report.unit_guessed, CASES[i].unit_guessed);
+        assert_int_equal(report.up_guessed, CASES[i].up_guessed);
+        float up = strands.position[1][1], expected = CASES[i].length * CASES[i].unit;
+        assert_true(fabsf(up - (CASES[i].up_z ? expected : 0)) < 1e-6f * expected);
+        strands_destroy(&strands);
+    }
+    // A large animal in TressFX: a box of 500 units, strands of 400.
+    Strands strands;
+    StrandsReport report;
+    struct {
+        uint32_t magic[2]; // of no format: USC-HairSalon's counts
+        float position[2][3];
+    } big = {{1, 2}, {{0, 0, 0}, {300, 400, 0}}};
+    assert_int_equal(reading_copy(&strands, &big, sizeof big, NULL, &report, NULL), RESULT_OK);
+    assert_true(report.unit_used == 0.001f);
+    strands_destroy(&strands);
+    const char *text = "numStrands 1\nis sorted 1\nstrand 0 numVerts 2\n0 0 0\n300 400 0\n";
+    assert_int_equal(reading_text(&strands, text, NULL, &report, NULL), RESULT_OK);
+    assert_true(report.unit_used == 0.01f && !report.up_z);
+    strands_destroy(&strands);
+}
+
+// Fur of 3 cm on an animal of 3 m is in centimetres; by the box alone it would be in millimetres.
+static void the_strands_length_counts_as_the_box_does(void **state)
+{
+    (void)state;
+    struct {
+        uint32_t strands, size0;
+        float strand0[2][3];
+        uint32_t size1;
+        float strand1[2][3];
+    } data = {2, 2, {{0, 0, 0}, {0, 3, 0}}, 2, {{300, 0, 0}, {300, 3, 0}}};
+    Strands strands;
+    StrandsReport report;
+    assert_int_equal(reading_copy(&strands, &data, sizeof data, NULL, &report, NULL), RESULT_OK);
+    assert_int_equal(report.kind, FORMAT_SALON_DATA);
+    assert_true(report.unit_used == 0.01f);
+    strands_destroy(&strands);
+}
+
+static void the_guess_is_one_line(void **state)
+{
+    (void)state;
+    static const struct {
+        StrandsReport report;
+        const char *line;
+    } CASES[] = {
+        {{.unit_used = 0.01f, .unit_guessed = true, .up_guessed = true, .up_z = true},
+         "a.hair: guessed a unit of 0.01 m and z up: --unit and --up say otherwise\n"},
+        {{.unit_used = 0.001f, .unit_guessed = true}, "a.hair: guessed a unit of 0.001 m: --unit "},
+        {{.unit_used = 1, .up_guessed = true, .up_z = true}, "a.hair: guessed z up: --up say"},
+        {{.unit_used = 1, .unit_guessed = true, .up_guessed = true}, ""}, // changes nothing
+        {{.unit_used = 1}, ""},
+    };
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        char *text = NULL;
+        size_t size = 0;
+        FILE *stream = open_memstream(&text, &size);
+        strands_report_print_guess(&CASES[i].report, "a.hair", stream);
+        fclose(stream);
+        assert_int_equal(strncmp(text, CASES[i].line, strlen(CASES[i].line)), 0);
+        if (!*CASES[i].line) assert_string_equal(text, "");
+        free(text);
+        for (size_t j = 0; j < sizeof CASES / sizeof *CASES; j++)
+            assert_int_equal(strands_report_same_guess(&CASES[i].report, &CASES[j].report),
+                             i == j || (i >= 3 && j >= 3));
+    }
+}
+
 static void z_up_is_turned_to_y_up(void **state)
 {
     (void)state;
-    StrandsReadOptions options = {.unit = 1.0f, .up_z = true};
+    StrandsReadOptions options = {.unit = 1.0f, .up = UP_Z};
     Strands strands;
     const char *text = "numStrands 1\nis sorted 1\n" STRAND;
     assert_int_equal(reading_text(&strands, text, &options, NULL, NULL), RESULT_OK);
@@ -373,6 +484,9 @@ int main(void)
         cmocka_unit_test(strands_over_the_files_own_limit_stay_whole),
         cmocka_unit_test(unsorted_strands_are_shuffled_whole_and_repeatably),
         cmocka_unit_test(units_are_guessed_by_size_and_said_to_be_guesses),
+        cmocka_unit_test(formats_have_their_own_units_and_axes),
+        cmocka_unit_test(the_strands_length_counts_as_the_box_does),
+        cmocka_unit_test(the_guess_is_one_line),
         cmocka_unit_test(z_up_is_turned_to_y_up),
         cmocka_unit_test(strands_beyond_the_longest_are_refused),
         cmocka_unit_test(real_assets_are_read_whole),

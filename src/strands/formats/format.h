@@ -7,6 +7,7 @@
 #pragma once
 
 #include "base/outfile.h"
+#include "base/params.h"
 #include "base/reader.h"
 #include "base/target.h"
 #include "strands/strands.h"
@@ -44,7 +45,7 @@ typedef struct FormatSource {
     float version;          // 0: the format has none
     bool shuffle;           // the order is by place on the head and has to be made random
     float unit;             // metres, as the file says; 0: it doesn't
-    bool up_z;              // the file says that z is up
+    UpAxis up;              // that the file says is up; UP_AUTO: it doesn't
     uint32_t samples;       // in time, of which the first is here; 0: the file has no time
     bool roots_only;        // strands of one vertex are meant: roots without hair (USC-HairSalon)
     double scale;           // p' = translation + rotation * (scale * p), in the file's unit; 0 = 1
@@ -59,13 +60,15 @@ typedef struct FormatSource {
 
 // A row of the table.
 typedef struct Format {
-    const char *name;   // "TressFX 4 binary"
-    const char *suffix; // ".tfx"
-    uint32_t features;  // STRANDS_HAS_...: what its files hold besides positions
-    bool text;          // places in a file are lines, else bytes
-    bool equal_sizes;   // all strands have equally many vertices
-    bool animated;      // a file can hold many frames
-    bool centimetres;   // files that do not say their unit are in centimetres, unless tiny
+    const char *name;    // "TressFX 4 binary"
+    const char *suffix;  // ".tfx"
+    uint32_t features;   // STRANDS_HAS_...: what its files hold besides positions
+    bool text;           // places in a file are lines, else bytes
+    bool equal_sizes;    // all strands have equally many vertices
+    bool animated;       // a file can hold many frames
+    bool centimetres;    // files that do not say their unit are in centimetres, unless tiny
+    bool no_millimetres; // or in metres, but never in millimetres
+    bool up_z;           // z is up in files that do not say
 
     // Whether the content (with a zero behind it) is, or may well be, of this format.
     bool (*match)(const Bytes *bytes);

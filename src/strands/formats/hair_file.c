@@ -4,11 +4,14 @@
 #include "strands/formats/format.h"
 
 #include <endian.h>
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum {
     HAIR_HEADER_BYTES = 128,
+    HAIR_INFO_BYTES = 88, // at the header's end: free text
     HAIR_HAS_SEGMENTS = 1,
     HAIR_HAS_POINTS = 2,
     HAIR_HAS_THICKNESS = 4,
@@ -16,11 +19,14 @@ enum {
     HAIR_HAS_COLOR = 16,
 };
 
+#define INFO_NAME "Tractrix"
+
 // --- Reading.
 
 typedef struct Header {
     uint32_t strands, points, arrays, default_segments;
     float default_transparency, default_color[3];
+    char info[HAIR_INFO_BYTES + 1];
 } Header;
 
 static bool match(const Bytes *bytes)
@@ -50,6 +56,8 @@ static Header read_header(Reader *reader)
         header.default_color[i] = reader_read_f32(reader, "the default colour");
     if (reader_ok(reader) && reader->size < HAIR_HEADER_BYTES)
         fail_at(reader, reader->size, "the file ends within the header of 128 bytes");
+    if (reader_ok(reader))
+        memcpy(header.info, reader->data + HAIR_HEADER_BYTES - HAIR_INFO_BYTES, HAIR_INFO_BYTES);
     reader->at = reader_ok(reader) ? HAIR_HEADER_BYTES : reader->at;
     if (header.strands == 0) fail_at(reader, 4, "0 strands: expected at least 1");
     if (header.points == 0) fail_at(reader, 8, "0 points: expected at least 2");
@@ -143,6 +151,18 @@ static void read_colors(Strands *strands, Reader *reader, const Header *header,
     }
 }
 
+// The format has no place for unit and axis; this program writes them into the header's text. Older
+// ones of its files have its name only, and y up.
+static void read_info(FormatSource *source, const char *info)
+{
+    float unit = 0;
+    char up = 'y';
+    if (strncmp(info, INFO_NAME, strlen(INFO_NAME)) != 0) return;
+    int found = sscanf(info + strlen(INFO_NAME), ": unit %f m, %c up", &unit, &up);
+    if (found == 2 && unit > 0 && isfinite(unit)) source->unit = unit;
+    source->up = up == 'z' ? UP_Z : UP_Y;
+}
+
 // Where only one of colour and transparency is an array, the header's default stands in for the
 // other; where neither is, and for thickness, defaults are left out.
 static Result read(FormatSource *source, Reader *reader)
@@ -154,6 +174,7 @@ static Result read(FormatSource *source, Reader *reader)
     if (format_source_create(source, reader, header.strands, header.points) != RESULT_OK)
         return reader->result;
     source->vertex_stride = 12;
+    read_info(source, header.info);
     source->unread_at = layout.end;
     source->unread_bytes = reader->size - layout.end;
     Strands *strands = &source->strands;
@@ -182,7 +203,9 @@ static void put_hair_header(FILE *stream, const Strands *strands, bool transpare
                       (transparent ? HAIR_HAS_TRANSPARENCY : 0u) |
                       (strands->color ? HAIR_HAS_COLOR : 0u);
     const float defaults[5] = {1.0f, 0.0f, 1.0f, 1.0f, 1.0f}; // thickness, transparency, colour
-    char info[88] = "Tractrix";
+    char info[HAIR_INFO_BYTES] = "";
+    snprintf(info, sizeof info, INFO_NAME ": unit %.9g m, %c up",
+             strands->unit > 0 ? strands->unit : 1.0, strands->up_z ? 'z' : 'y');
     fwrite("HAIR", 1, 4, stream);
     format_put_u32(stream, strands->strand_count);
     format_put_u32(stream, strands->vertex_count);
@@ -223,6 +246,7 @@ const Format hair_format = {
     .name = "HAIR",
     .suffix = ".hair",
     .features = STRANDS_HAS_VERTEX_THICKNESS | STRANDS_HAS_COLOR, // opacity within 2^-25
+    .up_z = true, // straight.hair and the others of cemyuksel.com/research/hairmodels
     .match = match,
     .read = read,
     .write = write,

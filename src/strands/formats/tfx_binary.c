@@ -309,6 +309,7 @@ const Format tfx3_format = {
     .features = STRANDS_HAS_STRAND_UV | STRANDS_HAS_VERTEX_UV | STRANDS_HAS_STRAND_THICKNESS |
                 STRANDS_HAS_COLOR | STRANDS_HAS_FOLLOWERS | STRANDS_HAS_FIXED_ENDS,
     .equal_sizes = true,
+    .no_millimetres = true,
     .match = match3,
     .read = read3,
     .write = write3,
@@ -322,6 +323,7 @@ const Format tfx4_format = {
     .features = STRANDS_HAS_MOBILITY | STRANDS_HAS_STRAND_UV | STRANDS_HAS_VERTEX_UV |
                 STRANDS_HAS_STRAND_THICKNESS | STRANDS_HAS_COLOR | STRANDS_HAS_FIXED_ENDS,
     .equal_sizes = true,
+    .no_millimetres = true,
     .match = match4,
     .read = read4,
     .write = write4,

@@ -264,6 +264,7 @@ const Format tfx2_format = {
                 STRANDS_HAS_FIXED_ENDS,
     .text = true,
     .centimetres = true,
+    .no_millimetres = true,
     .match = match,
     .read = read,
     .write = write,

@@ -381,7 +381,7 @@ static Result read(FormatSource *source, Reader *reader)
     if (reader_ok(reader) && !(usd.unit > 0)) reader_fail(reader, "metersPerUnit is not above 0");
     if (reader_ok(reader)) join(&usd, source);
     source->unit = usd.unit;
-    source->up_z = usd.up_z;
+    source->up = usd.up_z ? UP_Z : UP_Y;
     source->samples = usd.samples;
     for (uint32_t i = 0; i < usd.count; ++i) strands_destroy(&usd.sets[i]);
     free(usd.sets);
