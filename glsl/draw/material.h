@@ -20,6 +20,8 @@ UNIFORM_BLOCK(MaterialParams, material, BIND_MATERIAL)
     float shift2_cos, shift2_sin;    // towards the tip
     vec4 lobe_sharpness, lobe_scale; // marschner, x R, y TT, z TRT: 1/v, and 1/(v (1 - exp(-2/v)))
     vec4 lobe_tilt_cos, lobe_tilt_sin; // of twice their tilt
+    vec4 albedo;                       // marschner: x, y of fibre_lobes_fit_albedo
+    vec4 mean_albedo;                  // of the hair's mean colour, by it
     uint vertex_count;
     uint first_strand, drawn_strands; // of the part of the batch that is being drawn
     uint smooth_parts, smooth_curve;  // parts of a segment; 0 Catmull-Rom, 1 B-spline

@@ -42,9 +42,9 @@ Walk walk_strand(int s, uint id)
     vec4 here_clip = clip_from_world * vec4(here, 1.0), before_clip = here_clip;
     Particle none = Particle(vec4(0.0), vec3(0.0));
     Walk w = Walk(count_points(), paint_opacity(root), none, none, vec2(0.0), 0.0);
+    int lit = particle_address(s, 0, w.points); // where light at the strand's points has been found
 #if SHADOW
     float shadow_opacity = material.shadow_opacity * paint_opacity_share(root);
-    int lit = particle_address(s, 0, w.points); // where light at the strand's points has been found
 #endif
     for (int j = 0; j < w.points + WALK_BEYOND; ++j) {
         int k = WALK_BEYOND > 0 ? min(j, w.points - 1) : j;
@@ -59,7 +59,8 @@ Walk walk_strand(int s, uint id)
         shadow_fibre = vec2(2.0 * radius, shadow_opacity);
         shadow_find(lit + k * STRAND_TILE, here);
 #endif
-        p.color = shade_particle(fibre, painter, at, here, unit(after - before), unit(eye - here));
+        p.color = shade_particle(fibre, painter, at, lit + k * STRAND_TILE, here,
+                                 unit(after - before), unit(eye - here));
         see_point(p);
         if (j > 1) w.bent += bend(w.kept, w.last, p);
         if (j == 1 || ends_ribbon(w, j)) {

@@ -14,11 +14,12 @@ float sine_of(float cosine) { return sqrt(max(1.0 - cosine * cosine, 0.0)); }
 #include "draw/shade_kajiya.glsl"
 #endif
 
-// What particle at `at`, which lies at x, shows of itself.
-vec3 shade_particle(Fibre m, Painter painter, int at, vec3 x, vec3 tangent, vec3 to_eye)
+// What point `point` of a batch's curves, which lies at x, behind the particle at `at`, shows of
+// itself.
+vec3 shade_particle(Fibre m, Painter painter, int at, int point, vec3 x, vec3 tangent, vec3 to_eye)
 {
 #if AOV == 0
-    return shade_fibre(m, paint_color(painter, at), x, tangent, to_eye);
+    return shade_fibre(m, paint_color(painter, at), point, x, tangent, to_eye);
 #elif AOV == 1
     return vec3(1.0);
 #elif AOV == 2

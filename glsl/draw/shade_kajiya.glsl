@@ -31,7 +31,7 @@ float cone_highlight(float light, float light_sine, float eye, float eye_sine, v
 
 // Linear RGB of a fibre of colour `base` at x along the unit tangent (root to tip), seen along the
 // unit vector to the eye.
-vec3 shade_fibre(Fibre m, vec3 base, vec3 x, vec3 tangent, vec3 to_eye)
+vec3 shade_fibre(Fibre m, vec3 base, int point, vec3 x, vec3 tangent, vec3 to_eye)
 {
     float eye = clamp(dot(tangent, to_eye), -1.0, 1.0), eye_sine = sine_of(eye);
     vec3 color = m.ambient * base * light_around_fibre(tangent, to_eye, eye);

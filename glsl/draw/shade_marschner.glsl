@@ -17,21 +17,25 @@
 //     and theta_d = (theta_r - theta_i) / 2: light goes either way alike, but some is lost or made
 //     at grazing angles. (No tilted lobe can do both: a beam that leaves at another inclination has
 //     another width.)
-// Light scattered on from fibre to fibre is not followed; `diffuse`, as Kajiya and Kay have it,
-// stands for it.
+// Light that comes from other fibres and from the sky has been found before (light_grid.h) for the
+// hair's mean colour; what a strand's own colour scatters of it differs by its albedo.
+//   SCATTERED 1: so it is   0: nothing stands between the fibre and the sky
 #include "common/shared_math.h"
 
 layout(binding = BIND_SCATTER) uniform sampler3D scatter_table;
+#if SCATTERED
+layout(binding = BIND_SCATTERED) uniform samplerBuffer scattered_light;
+#endif
 
 // Read once: a uniform costs a load wherever it is named.
 struct Fibre {
-    float ambient, diffuse;
+    vec4 albedo, mean_albedo;                  // see material.h
     vec3 sharpness, scale, tilt_cos, tilt_sin; // of R, TT, TRT
 };
 
 Fibre fibre_material()
 {
-    return Fibre(material.ambient, material.diffuse, material.lobe_sharpness.xyz,
+    return Fibre(material.albedo, material.mean_albedo, material.lobe_sharpness.xyz,
                  material.lobe_scale.xyz, material.lobe_tilt_cos.xyz, material.lobe_tilt_sin.xyz);
 }
 
@@ -89,13 +93,24 @@ vec3 azimuthal(vec2 at, float color)
         .rgb;
 }
 
-// Linear RGB of a fibre at x whose diameter lets `base` of white light through, along the unit
-// tangent (root to tip), seen along the unit vector to the eye.
-vec3 shade_fibre(Fibre m, vec3 base, vec3 x, vec3 tangent, vec3 to_eye)
+// The share of light square to a fibre that it scatters, by what its diameter lets through.
+vec3 albedo_of(Fibre m, vec3 base)
+{
+    return mix(vec3(m.albedo.x), vec3(1.0), pow(min(base, 1.0), vec3(m.albedo.y)));
+}
+
+// Linear RGB of a fibre at x, where point `point` of a batch lies, whose diameter lets `base` of
+// white light through, along the unit tangent (root to tip), seen along the unit vector to the eye.
+vec3 shade_fibre(Fibre m, vec3 base, int point, vec3 x, vec3 tangent, vec3 to_eye)
 {
     float sin_r = clamp(dot(tangent, to_eye), -1.0, 1.0), cos_r = sine_of(sin_r);
     Outgoing to = outgoing(m, sin_r, cos_r);
-    vec3 color = m.ambient * base * light_around_fibre(tangent, to_eye, sin_r);
+    vec3 albedo = albedo_of(m, base);
+#if SCATTERED
+    vec3 color = texelFetch(scattered_light, point).rgb * albedo / m.mean_albedo.rgb;
+#else
+    vec3 color = albedo * light_around_fibre(tangent, to_eye, sin_r);
+#endif
     for (int i = 0; i < light_count; ++i) {
         vec3 to_light, reaching = light_reaching(i, x, to_light);
         float sin_i = clamp(dot(tangent, to_light), -1.0, 1.0), cos_i = sine_of(sin_i),
@@ -111,7 +126,7 @@ vec3 shade_fibre(Fibre m, vec3 base, vec3 x, vec3 tangent, vec3 to_eye)
         vec2 at = vec2(acos(cos_phi) * (1.0 / PI), cos_d);
         vec3 scattered = vec3(dot(along, azimuthal(at, base.r)), dot(along, azimuthal(at, base.g)),
                               dot(along, azimuthal(at, base.b)));
-        color += reaching * (PI * scattered + m.diffuse * cos_i * base);
+        color += reaching * PI * scattered;
     }
     return color;
 }

@@ -259,6 +259,18 @@ static Result make_room(Drawing *drawing, Error *error)
     return RESULT_OK;
 }
 
+static Result fit_albedo(Drawing *drawing, Look *look, Error *error)
+{
+    FibreTable table;
+    float *fit = look->material.albedo;
+    TRY(scatter_tables_read(&drawing->scatter, look->scatter, &table, error));
+    fibre_lobes_fit_albedo(table, fit);
+    for (int k = 0; k < 3; ++k)
+        look->material.mean_albedo[k] =
+            fit[0] + (1 - fit[0]) * powf(fminf(look->mean_color[k], 1), fit[1]);
+    return RESULT_OK;
+}
+
 // `features`: those that do not depend on the item.
 static Result make_look(Drawing *drawing, const RendererOptions *options, const RenderItem *item,
                         unsigned features, Look *look, Error *error)
@@ -273,9 +285,12 @@ static Result make_look(Drawing *drawing, const RendererOptions *options, const 
     if (item->hair->alike) look->material.color_variation = look->material.warmth_variation = 0;
     if (options->aov != AOV_NONE || item->material->shading != SHADING_MARSCHNER) return RESULT_OK;
     look->features |= LOOK_MARSCHNER;
+    const float *mean = item->hair->is_painted ? item->hair->paint_mean : look->material.color;
+    memcpy(look->mean_color, mean, sizeof look->mean_color);
     if (item->material->lobes == LOBES_GAUSS) look->features |= LOOK_GAUSS;
-    return scatter_tables_find(&drawing->scatter, item->material->refraction,
-                               glm_rad(item->material->azimuthal_roughness), &look->scatter, error);
+    TRY(scatter_tables_find(&drawing->scatter, item->material->refraction,
+                            glm_rad(item->material->azimuthal_roughness), &look->scatter, error));
+    return fit_albedo(drawing, look, error);
 }
 
 Result drawing_begin(Drawing *drawing, const RendererOptions *options, const RenderMesh *mesh,

@@ -50,11 +50,22 @@ static Result paint_batch(HairBatch *batch, const Strands *strands, const Paint 
     return result;
 }
 
+// The mean colour of all particles.
+static void find_mean(const Paint *paint, float mean[3])
+{
+    double sum[3] = {0};
+    for (uint32_t v = 0; v < paint->vertex_count; ++v)
+        for (int k = 0; k < 3; ++k) sum[k] += (double)paint->color[v][k];
+    for (int k = 0; k < 3; ++k) mean[k] = (float)(sum[k] / paint->vertex_count);
+}
+
 Result look_paint(Hair *hair, const Strands *strands, const Paint *paint, const GpuLimits *limits,
                   Error *error)
 {
     Result result = RESULT_OK;
     hair->alike = paint->colors_from_file;
+    hair->is_painted = paint->color && paint->vertex_count;
+    if (hair->is_painted) find_mean(paint, hair->paint_mean);
     for (uint32_t b = 0; paint->color && b < hair->batch_count && result == RESULT_OK; ++b) {
         assert(hair->batches[b].strand);
         result = paint_batch(&hair->batches[b], strands, paint, limits, error);
@@ -109,6 +120,8 @@ Result look_programs_build(LookPrograms *programs, unsigned features, Error *err
                                     {"SMOOTH", (features & LOOK_SMOOTH) != 0},
                                     {"SHADOW", shadow},
                                     {"SHADOW_FOUND", (features & LOOK_SHADOW_FOUND) != 0},
+                                    {"SCATTERED", (features & LOOK_SCATTERED) != 0},
+                                    {"DUAL", (features & LOOK_DUAL) != 0},
                                     {"SHADOW_BY_MESH", (features & LOOK_SHADOW_BY_MESH) != 0},
                                     {NULL, 0}};
     GLuint *program = &programs->program[features];
@@ -136,6 +149,8 @@ static void use_lights(const Look *look, const HairBatch *batch)
     uint32_t i = 0;
     while (i + 1 < look->batches && look->lights[i].batch != batch) ++i;
     gpu_buffer_bind_texture(&look->lights[i].left, BIND_SHADOW_LEFT);
+    if (look->features & LOOK_SCATTERED)
+        gpu_buffer_bind_texture(&look->scattered[i].left, BIND_SCATTERED);
     glUniform1i(SHADOW_POINTS_AT, (GLint)(hair_slots(batch) * look_points(look, batch)));
 }
 

@@ -20,13 +20,15 @@ typedef enum LookFeature {
     LOOK_SHADOW_BY_MESH = 64,
     LOOK_SMOOTH = 128,       // the material's smooth_parts are more than 1
     LOOK_SHADOW_FOUND = 256, // the look has a ParticleLight of each batch
+    LOOK_SCATTERED = 512,    // the look has the light among its hair
+    LOOK_DUAL = 1024,        // of marschner, --scatter dual
     // Instead of shading (with LOOK_PAINT alone): white, the tangent, the strand's own colour.
-    LOOK_WHITE = 512,
-    LOOK_TANGENT = 1024,
-    LOOK_STRAND = 1536,
+    LOOK_WHITE = 2048,
+    LOOK_TANGENT = 4096,
+    LOOK_STRAND = 6144,
 } LookFeature;
 
-enum { LOOK_SHADED = 512, LOOK_VARIANTS = 4 * LOOK_SHADED };
+enum { LOOK_SHADED = 2048, LOOK_VARIANTS = 4 * LOOK_SHADED };
 
 // What hair leaves of light at the points of a batch (look_points), laid out as its particles are.
 typedef struct ParticleLight {
@@ -35,12 +37,14 @@ typedef struct ParticleLight {
 } ParticleLight;
 
 typedef struct Look {
-    MaterialParams material;     // complete but for the batch's size
-    unsigned features;           // LookFeature bits
-    int light_count;             // of the scene
-    int map_count;               // lights that have a shadow map
-    GLuint scatter;              // LOOK_MARSCHNER: the 3D texture of scatter_tables.h
-    const ParticleLight *lights; // [batches], LOOK_SHADOW_FOUND
+    MaterialParams material;        // complete but for the batch's size
+    unsigned features;              // LookFeature bits
+    int light_count;                // of the scene
+    int map_count;                  // lights that have a shadow map
+    GLuint scatter;                 // LOOK_MARSCHNER: the 3D texture of scatter_tables.h
+    float mean_color[3];            // of the hair, linear RGB
+    const ParticleLight *lights;    // [batches], LOOK_SHADOW_FOUND
+    const ParticleLight *scattered; // [batches], LOOK_SCATTERED: linear RGB, see hair_scatter.h
     uint32_t batches;
     float share; // of the strands is drawn, 0 .. 1; the material's radius makes up for it
 } Look;

@@ -75,9 +75,13 @@ Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
                                          options->height, options->samples, options->kind, error);
     THEN(result, RASTERS[renderer->raster].create(renderer, error));
     THEN(result, make_base(renderer, error));
+    bool scatters = options->scatter != SCATTER_NONE || options->shadow.kind == SHADOW_DOM;
     if (options->shadow.kind != SHADOW_NONE)
         THEN(result, shadows_create(&renderer->shadow, &gpu->limits, &options->shadow,
-                                    gpu->software, error));
+                                    gpu->software || scatters, error));
+    const HairScatterOptions scatter = {options->scatter,
+                                        options->scatter_cells ? options->scatter_cells : 24, 3};
+    hair_scatter_create(&renderer->scatter, &gpu->limits, &scatter);
     if (result != RESULT_OK) renderer_destroy(renderer);
     return result;
 }
@@ -89,9 +93,22 @@ void renderer_destroy(Renderer *renderer)
     blocks_destroy(&renderer->blocks);
     base_layer_destroy(&renderer->base);
     shadows_destroy(&renderer->shadow);
+    hair_scatter_destroy(&renderer->scatter);
+    mesh_destroy(&renderer->mesh);
     free(renderer->casters);
     drawing_destroy(&renderer->drawing);
     *renderer = (Renderer){0};
+}
+
+static Result copy_mesh(Mesh *copy, const Mesh *mesh, Error *error)
+{
+    mesh_destroy(copy);
+    TRY(mesh_create(copy, mesh->vertex_count, mesh->triangle_count, error));
+    if (mesh->vertex_count)
+        memcpy(copy->position, mesh->position, mesh->vertex_count * sizeof *mesh->position);
+    if (mesh->triangle_count)
+        memcpy(copy->triangle, mesh->triangle, mesh->triangle_count * sizeof *mesh->triangle);
+    return RESULT_OK;
 }
 
 Result renderer_set_mesh(Renderer *renderer, const Mesh *mesh, const float color[3], Error *error)
@@ -101,6 +118,7 @@ Result renderer_set_mesh(Renderer *renderer, const Mesh *mesh, const float color
     RenderMesh *mine = &renderer->base.mesh;
     renderer->base.any = false;
     render_mesh_destroy(mine);
+    TRY(copy_mesh(&renderer->mesh, mesh, error));
     TRY(render_mesh_create(mine, mesh, linear, &renderer->gpu->limits, error));
     return make_base(renderer, error);
 }
@@ -147,6 +165,24 @@ static Result list_casters(Renderer *renderer, ShadowScene *scene, Error *error)
     return RESULT_OK;
 }
 
+static Result draw_scatter(Renderer *renderer, const RenderFrame *frame, const ShadowScene *shadow,
+                           Error *error)
+{
+    const Mesh *mesh = &renderer->mesh;
+    LightMesh among = {.vertices = (const float(*)[3])mesh->position,
+                       .triangles = (const uint32_t(*)[3])mesh->triangle,
+                       .vertex_count = mesh->vertex_count,
+                       .triangle_count = mesh->triangle_count};
+    memcpy(among.rotation, frame->head_rotation, sizeof among.rotation);
+    memcpy(among.translation, frame->head_translation, sizeof among.translation);
+    const HairScatterScene scene = {.shadow = shadow,
+                                    .view = frame->view,
+                                    .drawing = &renderer->drawing,
+                                    .casters = shadow->casters,
+                                    .mesh = mesh->triangle_count ? &among : NULL};
+    return hair_scatter_draw(&renderer->scatter, &renderer->shadow, &scene, renderer->timer, error);
+}
+
 static Result draw_shadow(Renderer *renderer, const RenderFrame *frame, Error *error)
 {
     Drawing *drawing = &renderer->drawing;
@@ -167,7 +203,9 @@ static Result draw_shadow(Renderer *renderer, const RenderFrame *frame, Error *e
         if (hair_shadow_lights(&renderer->shadow.hair, &look->lights, &look->batches))
             look->features |= LOOK_SHADOW_FOUND;
     }
-    return RESULT_OK;
+    return renderer->options.shadow.kind == SHADOW_DOM && renderer->options.aov == AOV_NONE
+               ? draw_scatter(renderer, frame, &scene, error)
+               : RESULT_OK;
 }
 
 static Result add_base_to_quads(Renderer *renderer, Error *error)

@@ -9,6 +9,7 @@
 #include "draw/base_layer.h"
 #include "draw/blocks.h"
 #include "draw/drawing.h"
+#include "draw/hair_scatter.h"
 #include "draw/quads.h"
 #include "draw/renderer_options.h"
 
@@ -22,6 +23,8 @@ typedef struct Renderer {
     Blocks blocks;
     BaseLayer base;
     Shadows shadow;
+    HairScatter scatter;
+    Mesh mesh;             // a copy of its positions and triangles, for the light among hair
     ShadowCaster *casters; // [caster_room], owned
     uint32_t caster_room;
     Drawing drawing; // the last one

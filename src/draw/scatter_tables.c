@@ -45,7 +45,7 @@ static Result add(ScatterTables *tables, float refraction, float roughness, Erro
     if (!more) return error_set(error, RESULT_FAILED, "no memory for a table of marschner shading");
     tables->tables = more;
     ScatterTable *table = &tables->tables[tables->count++];
-    *table = (ScatterTable){refraction, roughness, create_texture()};
+    *table = (ScatterTable){refraction, roughness, NULL, create_texture()};
     fill(tables->program, table);
     return gpu_check("the table of marschner shading", error);
 }
@@ -63,8 +63,26 @@ Result scatter_tables_find(ScatterTables *tables, float refraction, float roughn
     return RESULT_OK;
 }
 
+Result scatter_tables_read(ScatterTables *tables, GLuint texture, FibreTable *table, Error *error)
+{
+    const size_t count = (size_t)SCATTER_AZIMUTHS * SCATTER_INCLINATIONS * SCATTER_COLORS;
+    ScatterTable *mine = tables->tables;
+    while (mine->texture != texture) ++mine;
+    if (!mine->values) {
+        mine->values = malloc(count * sizeof *mine->values);
+        if (!mine->values)
+            return error_set(error, RESULT_FAILED, "no memory for a table of marschner shading");
+        glActiveTexture(GL_TEXTURE0 + BIND_SCATTER);
+        glBindTexture(GL_TEXTURE_3D, texture);
+        glGetTexImage(GL_TEXTURE_3D, 0, GL_RGBA, GL_FLOAT, mine->values);
+    }
+    table->values = (const float(*)[4])mine->values;
+    return gpu_check("the table of marschner shading", error);
+}
+
 void scatter_tables_destroy(ScatterTables *tables)
 {
+    for (uint32_t i = 0; i < tables->count; ++i) free(tables->tables[i].values);
     for (uint32_t i = 0; i < tables->count; ++i) glDeleteTextures(1, &tables->tables[i].texture);
     free(tables->tables);
     if (tables->program) glDeleteProgram(tables->program);

@@ -3,13 +3,15 @@
 // (glsl/draw/scatter.comp).
 #pragma once
 
+#include "draw/fibre_lobes.h"
 #include "gpu/shader.h"
 
 #include <stdint.h>
 
 typedef struct ScatterTable {
     float refraction, roughness;
-    GLuint texture; // 3D, RGBA16F: R, TT, TRT by azimuth, cosine of theta_d and colour (draw.h)
+    float (*values)[4]; // owned, as the texture has them; NULL: not read yet
+    GLuint texture;     // 3D, RGBA16F: R, TT, TRT by azimuth, cosine of theta_d and colour (draw.h)
 } ScatterTable;
 
 // One table for every pair of values; a zeroed struct has none.
@@ -23,4 +25,6 @@ typedef struct ScatterTables {
 // RESULT_FAILED if memory is short.
 Result scatter_tables_find(ScatterTables *tables, float refraction, float roughness,
                            GLuint *texture, Error *error);
+// The values of a table that was found before. Waits for the GPU. RESULT_FAILED if memory is short.
+Result scatter_tables_read(ScatterTables *tables, GLuint texture, FibreTable *table, Error *error);
 void scatter_tables_destroy(ScatterTables *tables);

@@ -76,6 +76,8 @@ static Result describe_images(const Images *images, RendererOptions *options, Er
         .seed = run->seed,
         .floor = floor_find(images->scene, images->framing),
         .lod = {run->lod_start, run->lod_end, run->lod_min, run->lod_width},
+        .scatter = (Scatter)run->scatter,
+        .scatter_cells = run->scatter_cells,
         .shadow = {
             .kind = (Shadow)run->shadow, .side = run->shadow_size, .spacing = run->shadow_spacing}};
     memcpy(options->background, run->background, sizeof options->background);

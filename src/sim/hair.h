@@ -59,6 +59,8 @@ typedef struct Hair {
     float longest;         // length of the longest strand, metres
     float evenness;        // the least share that a segment has of its strand's average one
     bool alike;            // strands do not differ by chance: their file says their colours
+    bool is_painted;       // its batches have paint ...
+    float paint_mean[3];   // ... of this mean colour, linear RGB
 } Hair;
 
 // Uploads strands (every one with at least 2 vertices and no segment of length 0, as strands_read

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: MIT
+#include "draw/hair_scatter.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void hair_scatter_create(HairScatter *scatter, const GpuLimits *limits,
+                         const HairScatterOptions *options)
+{
+    *scatter = (HairScatter){.options = *options, .limits = limits};
+}
+
+static void forget_room(HairScatter *scatter)
+{
+    for (uint32_t i = 0; i < scatter->room; ++i) gpu_buffer_destroy(&scatter->seen[i].left);
+    free(scatter->hair);
+    free(scatter->seen);
+    free(scatter->mapped);
+    scatter->hair = NULL, scatter->seen = NULL, scatter->mapped = NULL;
+    scatter->room = 0;
+}
+
+void hair_scatter_destroy(HairScatter *scatter)
+{
+    forget_room(scatter);
+    light_grid_destroy(&scatter->grid);
+    light_blocks_destroy(&scatter->blocks);
+    for (int k = 0; k < scatter->kind_count; ++k) fibre_lobes_destroy(&scatter->kinds[k]);
+    *scatter = (HairScatter){0};
+}
+
+static Result make_room(HairScatter *scatter, uint32_t count, Error *error)
+{
+    if (scatter->room >= count) return RESULT_OK;
+    forget_room(scatter);
+    scatter->hair = calloc(count, sizeof *scatter->hair);
+    scatter->seen = calloc(count, sizeof *scatter->seen);
+    scatter->mapped = calloc(4 * (size_t)count, sizeof *scatter->mapped);
+    scatter->room = scatter->hair && scatter->seen && scatter->mapped ? count : 0;
+    return scatter->room ? RESULT_OK
+                         : error_set(error, RESULT_FAILED, "no memory for %u batches", count);
+}
+
+// --- Kinds of fibres.
+
+// The kind of fibres of this look; those that are too many share the last one.
+static Result find_kind(HairScatter *scatter, Drawing *drawing, const Look *look, int *kind,
+                        Error *error)
+{
+    FibreTable table;
+    const float *color = look->mean_color;
+    for (*kind = 0; *kind < scatter->kind_count; ++*kind)
+        if (scatter->kind_table[*kind] == look->scatter &&
+            fibre_lobes_match(&scatter->kinds[*kind], &look->material, color))
+            return RESULT_OK;
+    if (*kind == LIGHT_GRID_KINDS) {
+        --*kind;
+        return RESULT_OK;
+    }
+    TRY(scatter_tables_read(&drawing->scatter, look->scatter, &table, error));
+    if (!fibre_lobes_create(&scatter->kinds[*kind], table, &look->material, color))
+        return error_set(error, RESULT_FAILED, "no memory for a table of marschner shading");
+    scatter->kind_table[*kind] = look->scatter;
+    ++scatter->kind_count;
+    return RESULT_OK;
+}
+
+// --- Buffers.
+
+static void *map(HairScatter *scatter, const GpuBuffer *buffer, GLbitfield access)
+{
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
+    void *data = glMapBufferRange(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)buffer->size, access);
+    if (data) scatter->mapped[scatter->mapped_count++] = buffer->buffer;
+    return data;
+}
+
+static void unmap_all(HairScatter *scatter)
+{
+    while (scatter->mapped_count) {
+        glBindBuffer(GL_SHADER_STORAGE_BUFFER, scatter->mapped[--scatter->mapped_count]);
+        glUnmapBuffer(GL_SHADER_STORAGE_BUFFER);
+    }
+}
+
+static Result reserve_seen(HairScatter *scatter, uint32_t i, const ShadowCaster *caster,
+                           size_t points, Error *error)
+{
+    GpuBuffer *seen = &scatter->seen[i].left;
+    scatter->seen[i].batch = caster->batch;
+    if (seen->size == (int64_t)points * 16) return RESULT_OK;
+    scatter->any = false;
+    gpu_buffer_destroy(seen);
+    return gpu_buffer_create(seen, scatter->limits, "light among hair", (int64_t)points * 16, NULL,
+                             GL_RGBA32F, error);
+}
+
+static Result map_hair(HairScatter *scatter, Drawing *drawing, const ShadowCaster *caster,
+                       const GpuBuffer *left, uint32_t i, Error *error)
+{
+    const HairBatch *batch = caster->batch;
+    GridHair *hair = &scatter->hair[i];
+    *hair = (GridHair){.points = (size_t)hair_slots(batch) * look_points(&caster->look, batch)};
+    hair->caster.material = look_material(&caster->look, batch);
+    TRY(find_kind(scatter, drawing, &caster->look, &hair->kind, error));
+    bool shows = caster->look.features & LOOK_MARSCHNER;
+    if (shows) TRY(reserve_seen(scatter, i, caster, hair->points, error));
+    hair->caster.position = map(scatter, &batch->position, GL_MAP_READ_BIT);
+    hair->left = map(scatter, left, GL_MAP_READ_BIT);
+    if (batch->paint.buffer) hair->caster.paint = map(scatter, &batch->paint, GL_MAP_READ_BIT);
+    if (shows)
+        hair->seen =
+            map(scatter, &scatter->seen[i].left, GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT);
+    if (!hair->caster.position || !hair->left || (batch->paint.buffer && !hair->caster.paint) ||
+        (shows && !hair->seen))
+        return error_set(error, RESULT_FAILED, "cannot read hair's positions for its light");
+    return RESULT_OK;
+}
+
+// --- What is asked for.
+
+static bool has_sky(const DrawParams *draw)
+{
+    for (int k = 0; k < 3; ++k)
+        if (draw->sky[k] > 0 || draw->ground[k] > 0) return true;
+    return false;
+}
+
+static bool is_wanted(const HairScatter *scatter, const HairScatterScene *scene)
+{
+    bool any = false;
+    for (uint32_t i = 0; i < scene->casters.count; ++i)
+        any |= (scene->casters.list[i].look.features & LOOK_MARSCHNER) != 0;
+    return any && (scatter->options.scatter == SCATTER_GRID || has_sky(&scene->drawing->draw));
+}
+
+static bool same_lights(const DrawParams *a, const DrawParams *b)
+{
+    return a->light_count == b->light_count &&
+           memcmp(a->light_place, b->light_place, sizeof a->light_place) == 0 &&
+           memcmp(a->light_color, b->light_color, sizeof a->light_color) == 0 &&
+           memcmp(a->light_axis, b->light_axis, sizeof a->light_axis) == 0 &&
+           memcmp(a->light_cone, b->light_cone, sizeof a->light_cone) == 0 &&
+           memcmp(a->sky, b->sky, sizeof a->sky) == 0 &&
+           memcmp(a->ground, b->ground, sizeof a->ground) == 0;
+}
+
+static GridScene make_scene(HairScatter *scatter, const Shadows *shadows,
+                            const HairScatterScene *scene)
+{
+    const HairScatterOptions *options = &scatter->options;
+    GridScene grid = {.hair = scatter->hair,
+                      .hair_count = scatter->count,
+                      .kinds = scatter->kinds,
+                      .kind_count = scatter->kind_count,
+                      .draw = &scene->drawing->draw,
+                      .cells = options->cells,
+                      .suns = options->scatter == SCATTER_GRID,
+                      .orders = options->scatter == SCATTER_NONE ? 0 : options->orders};
+    for (int k = 0; k < 3; ++k) grid.to_eye[k] = scene->view->view[k][2];
+    for (int l = 0; l < MAX_LIGHTS; ++l) grid.map_of[l] = -1;
+    for (int m = 0; m < shadows->params.maps; ++m)
+        grid.map_of[(int)shadows->params.place[m][0]] = m;
+    if (scene->mesh) {
+        scatter->blocks.mesh = *scene->mesh;
+        grid.blocks = &scatter->blocks;
+    }
+    return grid;
+}
+
+static void forget_kinds(HairScatter *scatter)
+{
+    for (int k = 0; k < scatter->kind_count; ++k) fibre_lobes_destroy(&scatter->kinds[k]);
+    scatter->kind_count = 0;
+}
+
+// Other looks than those of the last image.
+static bool kinds_changed(const HairScatter *scatter, const HairScatterScene *scene)
+{
+    for (uint32_t i = 0; i < scene->casters.count; ++i) {
+        const Look *look = &scene->casters.list[i].look;
+        bool known = false;
+        for (int k = 0; k < scatter->kind_count; ++k)
+            known |= scatter->kind_table[k] == look->scatter &&
+                     fibre_lobes_match(&scatter->kinds[k], &look->material, look->mean_color);
+        if (!known) return true;
+    }
+    return false;
+}
+
+static Result find_light(HairScatter *scatter, const Shadows *shadows,
+                         const HairScatterScene *scene, const ParticleLight *lights, Error *error)
+{
+    Result result = RESULT_OK;
+    if (kinds_changed(scatter, scene)) {
+        forget_kinds(scatter);
+        scatter->any = false;
+    }
+    scatter->mapped_count = 0;
+    scatter->count = scene->casters.count;
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    for (uint32_t i = 0; i < scatter->count && result == RESULT_OK; ++i)
+        result =
+            map_hair(scatter, scene->drawing, &scene->casters.list[i], &lights[i].left, i, error);
+    GridScene grid = make_scene(scatter, shadows, scene);
+    bool solved = scatter->any && scatter->shadow_version == shadows->version &&
+                  same_lights(&scatter->drawn, &scene->drawing->draw);
+    if (!solved) THEN(result, light_grid_solve(&scatter->grid, &grid, error));
+    THEN(result, light_grid_gather(&scatter->grid, &grid, error));
+    unmap_all(scatter);
+    scatter->any = result == RESULT_OK;
+    scatter->solved = !solved;
+    scatter->shadow_version = shadows->version;
+    scatter->drawn = scene->drawing->draw;
+    memcpy(scatter->to_eye, grid.to_eye, sizeof scatter->to_eye);
+    return result;
+}
+
+// Whether the light that the last image saw is that of this one.
+static bool is_seen(const HairScatter *scatter, const Shadows *shadows,
+                    const HairScatterScene *scene)
+{
+    const DrawParams *draw = &scene->drawing->draw;
+    for (int k = 0; k < 3; ++k)
+        if (scatter->to_eye[k] != scene->view->view[k][2]) return false;
+    return scatter->any && scatter->shadow_version == shadows->version &&
+           scatter->count == scene->casters.count && same_lights(&scatter->drawn, draw) &&
+           memcmp(scatter->drawn.eye, draw->eye, sizeof draw->eye) == 0 &&
+           !kinds_changed(scatter, scene);
+}
+
+Result hair_scatter_draw(HairScatter *scatter, Shadows *shadows, const HairScatterScene *scene,
+                         GpuTimer *timer, Error *error)
+{
+    const ParticleLight *lights;
+    uint32_t count;
+    scatter->solved = 0;
+    if (!is_wanted(scatter, scene) || !hair_shadow_lights(&shadows->hair, &lights, &count))
+        return RESULT_OK;
+    if (!is_seen(scatter, shadows, scene)) {
+        TRY(make_room(scatter, scene->casters.count, error));
+        gpu_timer_begin(timer, "draw_scatter");
+        Result result = find_light(scatter, shadows, scene, lights, error);
+        gpu_timer_end(timer);
+        TRY(result);
+    }
+    for (uint32_t i = 0; i < scene->drawing->item_count; ++i) {
+        Look *look = &scene->drawing->looks[i];
+        if (!(look->features & LOOK_MARSCHNER)) continue;
+        look->features |= LOOK_SCATTERED;
+        look->scattered = scatter->seen;
+    }
+    return RESULT_OK;
+}

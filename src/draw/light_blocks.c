@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+#include "draw/light_blocks.h"
+
+#include <cglm/cglm.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LINES = 2 }; // each way, for each row of cells
+
+// A triangle's corners in cells of the lattice, from its first corner.
+typedef struct Corners {
+    double at[3][3];
+} Corners;
+
+static void place_vertex(const LightMesh *mesh, const LightLattice *lattice, uint32_t v,
+                         double place[3])
+{
+    versor turn = {0};
+    vec3 x;
+    float turned[3];
+    memcpy(turn, mesh->rotation, sizeof turn);
+    memcpy(x, mesh->vertices[v], sizeof(float[3]));
+    glm_quat_rotatev(turn, x, x);
+    for (int k = 0; k < 3; ++k) x[k] += mesh->translation[k];
+    light_lattice_turn(lattice, x, turned);
+    for (int k = 0; k < 3; ++k)
+        place[k] = (double)(turned[k] - lattice->low[k]) / (double)lattice->side;
+}
+
+// Twice the area of (a, b, p) on the plane of axes u and v.
+static double side_of(const double a[3], const double b[3], double pu, double pv, int u, int v)
+{
+    return (b[u] - a[u]) * (pv - a[v]) - (b[v] - a[v]) * (pu - a[u]);
+}
+
+// Where the line through (pu, pv) along `axis` meets the triangle; false if it misses.
+static bool meet(const Corners *c, int axis, double pu, double pv, double *depth)
+{
+    int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    double w0 = side_of(c->at[1], c->at[2], pu, pv, u, v),
+           w1 = side_of(c->at[2], c->at[0], pu, pv, u, v),
+           w2 = side_of(c->at[0], c->at[1], pu, pv, u, v), sum = w0 + w1 + w2;
+    bool inside = (w0 >= 0 && w1 >= 0 && w2 >= 0) || (w0 <= 0 && w1 <= 0 && w2 <= 0);
+    if (!inside || sum == 0) return false;
+    *depth = (w0 * c->at[0][axis] + w1 * c->at[1][axis] + w2 * c->at[2][axis]) / sum;
+    return true;
+}
+
+static double least_of(const Corners *c, int k)
+{
+    return fmin(fmin(c->at[0][k], c->at[1][k]), c->at[2][k]);
+}
+
+static double most_of(const Corners *c, int k)
+{
+    return fmax(fmax(c->at[0][k], c->at[1][k]), c->at[2][k]);
+}
+
+// A bit of the line's for the way from the middle before to the middle of the cell that the
+// triangle crosses.
+static void close_way(uint8_t *closed, const LightLattice *lattice, int axis, const int line[3],
+                      double depth)
+{
+    int cell[3], u = (axis + 1) % 3, v = (axis + 2) % 3;
+    cell[axis] = (int)ceil(fmin(fmax(depth - 0.5, -2), lattice->count[axis] + 1));
+    cell[u] = line[0] / LINES;
+    cell[v] = line[1] / LINES;
+    if (cell[axis] < 0 || cell[axis] >= lattice->count[axis]) return;
+    size_t at = ((size_t)cell[2] * (size_t)lattice->count[1] + (size_t)cell[1]) *
+                    (size_t)lattice->count[0] +
+                (size_t)cell[0];
+    closed[at] |= (uint8_t)(1 << (line[0] % LINES * LINES + line[1] % LINES));
+}
+
+static void close_triangle(uint8_t *closed, const LightLattice *lattice, int axis, const Corners *c)
+{
+    int u = (axis + 1) % 3, v = (axis + 2) % 3, line[3];
+    double depth;
+    for (int k = 0; k < 3; ++k)
+        if (!(most_of(c, k) >= 0) || !(least_of(c, k) <= lattice->count[k])) return;
+    int first[2], end[2];
+    for (int k = 0; k < 2; ++k) {
+        int on = k ? v : u;
+        first[k] = (int)fmax(floor(least_of(c, on) * LINES), 0);
+        end[k] = (int)fmin(ceil(most_of(c, on) * LINES), lattice->count[on] * LINES);
+    }
+    for (line[0] = first[0]; line[0] < end[0]; ++line[0])
+        for (line[1] = first[1]; line[1] < end[1]; ++line[1])
+            if (meet(c, axis, (line[0] + 0.5) / LINES, (line[1] + 0.5) / LINES, &depth))
+                close_way(closed, lattice, axis, line, depth);
+}
+
+static Result make_room(LightBlocks *blocks, size_t count, Error *error)
+{
+    if (blocks->room >= count) return RESULT_OK;
+    free(blocks->open);
+    blocks->open = malloc(count * sizeof *blocks->open);
+    blocks->room = blocks->open ? count : 0;
+    return blocks->open ? RESULT_OK
+                        : error_set(error, RESULT_FAILED, "no memory for the mesh in the light");
+}
+
+Result light_blocks_find(LightBlocks *blocks, const LightLattice *lattice, Error *error)
+{
+    static const float PASSED[16] = {1,     0.75f, 0.75f, 0.5f,  0.75f, 0.5f,  0.5f,  0.25f,
+                                     0.75f, 0.5f,  0.5f,  0.25f, 0.5f,  0.25f, 0.25f, 0};
+    const LightMesh *mesh = &blocks->mesh;
+    size_t cells = light_lattice_cells(lattice);
+    TRY(make_room(blocks, 3 * cells, error));
+    uint8_t *closed = calloc(3 * cells, 1);
+    double(*places)[3] = malloc((mesh->vertex_count + 1) * sizeof *places);
+    if (!closed || !places) {
+        free(closed);
+        free(places);
+        return error_set(error, RESULT_FAILED, "no memory for the mesh in the light");
+    }
+    for (uint32_t i = 0; i < mesh->vertex_count; ++i) place_vertex(mesh, lattice, i, places[i]);
+    for (uint32_t i = 0; i < mesh->triangle_count; ++i) {
+        Corners c;
+        for (int k = 0; k < 3; ++k) memcpy(c.at[k], places[mesh->triangles[i][k]], sizeof c.at[k]);
+        for (int axis = 0; axis < 3; ++axis)
+            close_triangle(closed + (size_t)axis * cells, lattice, axis, &c);
+    }
+    for (size_t i = 0; i < 3 * cells; ++i) blocks->open[i] = PASSED[closed[i]];
+    free(closed);
+    free(places);
+    return RESULT_OK;
+}
+
+float light_blocks_march(const LightBlocks *blocks, const LightLattice *lattice, const int cell[3],
+                         const float way[3], float reach)
+{
+    size_t cells = light_lattice_cells(lattice);
+    int axis = 0, at[3], next[3];
+    for (int k = 1; k < 3; ++k)
+        if (fabsf(way[k]) > fabsf(way[axis])) axis = k;
+    float main = fabsf(way[axis]), passed = 1, limit = reach * main / lattice->side;
+    memcpy(at, cell, sizeof at);
+    for (int step = 1; (float)step <= limit + 0.5f; ++step) {
+        for (int k = 0; k < 3; ++k) next[k] = cell[k] + (int)lroundf((float)step * way[k] / main);
+        for (int n = 0; n < 3; ++n) {
+            int k = (axis + 1 + n) % 3; // across before along
+            if (next[k] == at[k]) continue;
+            int far = next[k] > at[k] ? next[k] : at[k];
+            if (next[k] < 0 || next[k] >= lattice->count[k]) return passed;
+            at[k] = next[k];
+            int face[3] = {at[0], at[1], at[2]};
+            face[k] = far;
+            passed *= blocks->open[(size_t)k * cells +
+                                   ((size_t)face[2] * (size_t)lattice->count[1] + (size_t)face[1]) *
+                                       (size_t)lattice->count[0] +
+                                   (size_t)face[0]];
+            if (passed == 0) return 0;
+        }
+    }
+    return passed;
+}
+
+void light_blocks_destroy(LightBlocks *blocks)
+{
+    free(blocks->open);
+    *blocks = (LightBlocks){0};
+}

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// What a mesh takes away of the light that goes from cell to cell of a light grid.
+#pragma once
+
+#include "base/error.h"
+#include "draw/light_lattice.h"
+
+#include <stdint.h>
+
+// A mesh where it stands: metres, world.
+typedef struct LightMesh {
+    const float (*vertices)[3];
+    const uint32_t (*triangles)[3];
+    uint32_t vertex_count, triangle_count;
+    float rotation[4], translation[3]; // its frame -> world
+} LightMesh;
+
+typedef struct LightBlocks {
+    LightMesh mesh;
+    // [3][cells], owned: share of the light that passes between the middle of the cell before (on
+    // each axis) and that of the cell
+    float *open;
+    size_t room;
+} LightBlocks;
+
+// Finds `open` for this lattice. Each way is tried on 2 x 2 lines beside the middle's.
+// RESULT_FAILED if memory is short.
+Result light_blocks_find(LightBlocks *blocks, const LightLattice *lattice, Error *error);
+
+// Share of light that the mesh lets through on the straight way from the middle of `cell` along the
+// unit vector `way` (of the lattice) out of the lattice, or as far as `reach` (m).
+float light_blocks_march(const LightBlocks *blocks, const LightLattice *lattice, const int cell[3],
+                         const float way[3], float reach);
+
+void light_blocks_destroy(LightBlocks *blocks);

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: MIT
+// What hair shows of the light among it: at each particle the radiance of the eight cells around it
+// (trilinear), weighted by what a fibre with its tangent sends from each direction to the eye.
+// Those weights are tabled for one way to the eye, by tangents on an octahedron (bilinear); a
+// particle's tangent is turned as its own way to the eye is.
+#include "draw/light_grid_state.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { W = STRAND_TILE, ROW = GATHER_SIDE + 1 };
+
+// --- The table.
+
+static void find_node_tangent(int node, float t[3])
+{
+    float u = 2 * (float)(node % ROW) / GATHER_SIDE - 1,
+          v = 2 * (float)(node / ROW) / GATHER_SIDE - 1, z = 1 - fabsf(u) - fabsf(v), length;
+    t[0] = u, t[1] = v, t[2] = z;
+    if (z < 0) {
+        t[0] = copysignf(1 - fabsf(v), u);
+        t[1] = copysignf(1 - fabsf(u), v);
+    }
+    length = sqrtf(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]);
+    for (int k = 0; k < 3; ++k) t[k] /= length;
+}
+
+// Scaled so that all directions together give the fibre's albedo.
+static void make_row(const GridKind *kind, int node, float row[GRID_WIDE])
+{
+    float t[3], sum[3] = {0}, along = 0, albedo[3];
+    Ways in, out;
+    find_node_tangent(node, t);
+    grid_same_ways(kind->gather_eye, 1, &out);
+    for (int g = 0; g < ORDINATE_GROUPS; ++g) {
+        float f[3][ORDINATE_LANES];
+        grid_group_ways(g, &in);
+        for (int k = 0; k < 3; ++k)
+            for (int l = 0; l < GRID_LANES; ++l) in.axis[k][l] = -in.axis[k][l];
+        fibre_lobes_scatter(&kind->lobes, t, &out, &in, GRID_BLUR, f);
+        for (int c = 0; c < 3; ++c)
+            for (int l = 0; l < GRID_LANES; ++l) {
+                row[(g * 3 + c) * GRID_LANES + l] = f[c][l];
+                sum[c] += f[c][l];
+            }
+    }
+    for (int k = 0; k < 3; ++k) along += t[k] * kind->gather_eye[k];
+    fibre_lobes_albedo(&kind->lobes, sqrtf(fmaxf(1 - along * along, 0)), albedo);
+    for (int g = 0; g < ORDINATE_GROUPS; ++g)
+        for (int c = 0; c < 3; ++c)
+            for (int l = 0; l < GRID_LANES; ++l)
+                row[(g * 3 + c) * GRID_LANES + l] *= albedo[c] / fmaxf(sum[c], 1e-12f);
+}
+
+typedef struct MakeGather {
+    GridKind *kind;
+    int parts;
+} MakeGather;
+
+static void make_rows(void *data, int part)
+{
+    const MakeGather *make = data;
+    for (int node = part; node < GATHER_NODES; node += make->parts)
+        make_row(make->kind, node, make->kind->gather[node]);
+}
+
+Result light_grid_make_gather(LightGridState *state, const GridScene *scene, Error *error)
+{
+    float eye[3];
+    light_lattice_turn(&state->lattice, scene->to_eye, eye);
+    for (int k = 0; k < scene->kind_count; ++k) {
+        GridKind *kind = &state->kinds[k];
+        if (!kind->gather) kind->gather = malloc(GATHER_NODES * sizeof *kind->gather);
+        if (!kind->gather) return error_set(error, RESULT_FAILED, "no memory for light among hair");
+        if (kind->has_gather && memcmp(kind->gather_eye, eye, sizeof eye) == 0) continue;
+        memcpy(kind->gather_eye, eye, sizeof eye);
+        MakeGather make = {kind, state->parts};
+        parallel_run(state->parts, make_rows, &make);
+        kind->has_gather = true;
+    }
+    return RESULT_OK;
+}
+
+// --- Particles.
+
+typedef struct Gather {
+    const LightGridState *state;
+    const GridScene *scene;
+    float eye[3]; // m, lattice's axes
+} Gather;
+
+// Places and tangents of one particle of each strand of a tile, along the lattice's axes.
+typedef struct Particles {
+    float x[3][W], t[3][W];
+    int node[W];
+    float share[2][W];
+} Particles;
+
+SIMD_INLINE void find_node(Particles *p)
+{
+    for (int i = 0; i < W; ++i) {
+        float x = p->t[0][i], y = p->t[1][i], z = p->t[2][i],
+              scale = 1 / simd_max(fabsf(x) + fabsf(y) + fabsf(z), 1e-12f);
+        float u = x * scale, v = y * scale, a = 1 - fabsf(v), b = 1 - fabsf(u);
+        float far_u = u < 0 ? -a : a, far_v = v < 0 ? -b : b;
+        u = z < 0 ? far_u : u;
+        v = z < 0 ? far_v : v;
+        u = simd_min(simd_max((u + 1) * (GATHER_SIDE * 0.5f), 0), GATHER_SIDE - 1e-3f);
+        v = simd_min(simd_max((v + 1) * (GATHER_SIDE * 0.5f), 0), GATHER_SIDE - 1e-3f);
+        p->node[i] = (int)v * ROW + (int)u;
+        p->share[0][i] = u - (float)(int)u;
+        p->share[1][i] = v - (float)(int)v;
+    }
+}
+
+// Turns tangents by the smallest rotation from the way to the eye to `axis`, which tables are for.
+SIMD_INLINE void turn_tangents(const float eye[3], const float axis[3], Particles *p)
+{
+    for (int i = 0; i < W; ++i) {
+        float x = eye[0] - p->x[0][i], y = eye[1] - p->x[1][i], z = eye[2] - p->x[2][i];
+        float scale = 1 / sqrtf(simd_max(x * x + y * y + z * z, 1e-20f));
+        x *= scale, y *= scale, z *= scale;
+        float a = x + axis[0], b = y + axis[1], c = z + axis[2];
+        float cosine = x * axis[0] + y * axis[1] + z * axis[2];
+        float t = p->t[0][i], u = p->t[1][i], v = p->t[2][i];
+        float between = (t * a + u * b + v * c) / simd_max(1 + cosine, 1e-3f),
+              twice = 2 * (t * x + u * y + v * z);
+        p->t[0][i] = t - between * a + twice * axis[0];
+        p->t[1][i] = u - between * b + twice * axis[1];
+        p->t[2][i] = v - between * c + twice * axis[2];
+    }
+}
+
+SIMD_INLINE void find_particles(const Gather *gather, const GridHair *hair, int tile, int j,
+                                Particles *p)
+{
+    const LightLattice *lattice = &gather->state->lattice;
+    int last = (int)hair->caster.material.vertex_count - 1;
+    const float(*x)[4] =
+        hair->caster.position + ((size_t)tile * hair->caster.material.vertex_count + (size_t)j) * W;
+    const float(*before)[4] = j > 0 ? x - W : x, (*after)[4] = j < last ? x + W : x;
+    for (int k = 0; k < 3; ++k) {
+        float a = lattice->turn[k][0], b = lattice->turn[k][1], c = lattice->turn[k][2];
+        for (int i = 0; i < W; ++i) {
+            p->x[k][i] = a * x[i][0] + b * x[i][1] + c * x[i][2];
+            p->t[k][i] = a * (after[i][0] - before[i][0]) + b * (after[i][1] - before[i][1]) +
+                         c * (after[i][2] - before[i][2]);
+        }
+    }
+    turn_tangents(gather->eye, gather->state->kinds[hair->kind].gather_eye, p);
+    find_node(p);
+}
+
+// The radiance around particle i.
+SIMD_INLINE void find_light(const LightGridState *state, const Particles *p, int i,
+                            float light[GRID_WIDE])
+{
+    const LightLattice *lattice = &state->lattice;
+    float inverse = 1 / lattice->side, share[3];
+    int low[3];
+    for (int k = 0; k < 3; ++k) {
+        float at = simd_min(simd_max((p->x[k][i] - lattice->low[k]) * inverse - 0.5f, -0.5f),
+                            (float)lattice->count[k] - 0.5f);
+        low[k] = (int)(at + 1) - 1;
+        share[k] = at - (float)low[k];
+    }
+    for (int n = 0; n < GRID_WIDE; ++n) light[n] = 0;
+    for (int q = 0; q < 8; ++q) {
+        float weight = 1;
+        int at[3];
+        for (int k = 0; k < 3; ++k) {
+            int up = q >> k & 1, last = lattice->count[k] - 1, c = low[k] + up;
+            weight *= up ? share[k] : 1 - share[k];
+            at[k] = c < 0 ? 0 : c > last ? last : c;
+        }
+        int slot = state->slot[(at[2] * lattice->count[1] + at[1]) * lattice->count[0] + at[0]];
+        if (slot < 0 || weight == 0) continue;
+        const float *cell = state->light + (size_t)slot * GRID_WIDE;
+        for (int n = 0; n < GRID_WIDE; ++n) light[n] += weight * cell[n];
+    }
+}
+
+SIMD_INLINE void show_light(const GridKind *kind, const Particles *p, int i,
+                            const float light[GRID_WIDE], float seen[4])
+{
+    const float(*rows)[GRID_WIDE] = (const float(*)[GRID_WIDE])kind->gather + p->node[i];
+    float u = p->share[0][i], v = p->share[1][i], a = (1 - u) * (1 - v), b = u * (1 - v),
+          c = (1 - u) * v, d = u * v, sum[3][GRID_LANES] = {{0}};
+    for (int g = 0; g < ORDINATE_GROUPS; ++g)
+        for (int n = 0; n < 3; ++n)
+            for (int l = 0; l < GRID_LANES; ++l) {
+                int at = (g * 3 + n) * GRID_LANES + l;
+                sum[n][l] += light[at] * (a * rows[0][at] + b * rows[1][at] + c * rows[ROW][at] +
+                                          d * rows[ROW + 1][at]);
+            }
+    for (int n = 0; n < 3; ++n) {
+        float all = 0;
+        for (int l = 0; l < GRID_LANES; ++l) all += sum[n][l];
+        seen[n] = all;
+    }
+    seen[3] = 1;
+}
+
+// What lies between particles j - 1 and j on smooth curves is interpolated.
+static void fill_between(const GridHair *hair, int tile, int j, int strands)
+{
+    size_t parts = hair->caster.material.smooth_parts,
+           points = (hair->caster.material.vertex_count - 1) * parts + 1,
+           to = ((size_t)tile * points + (size_t)j * parts) * W, from = to - parts * W;
+    for (size_t k = 1; k < parts; ++k)
+        for (size_t i = 0; i < (size_t)strands; ++i)
+            for (int n = 0; n < 4; ++n) {
+                float a = hair->seen[from + i][n], b = hair->seen[to + i][n];
+                hair->seen[from + k * W + i][n] = a + (b - a) * (float)k / (float)parts;
+            }
+}
+
+SIMD_INLINE void gather_tile(const Gather *gather, const GridHair *hair, int tile)
+{
+    const MaterialParams *m = &hair->caster.material;
+    const GridKind *kind = &gather->state->kinds[hair->kind];
+    size_t points = (size_t)(m->vertex_count - 1) * m->smooth_parts + 1;
+    int left = (int)m->drawn_strands - tile * W, strands = left < W ? left : W;
+    Particles p;
+    float light[GRID_WIDE];
+    for (int j = 0; j < (int)m->vertex_count; ++j) {
+        float(*seen)[4] = hair->seen + ((size_t)tile * points + (size_t)j * m->smooth_parts) * W;
+        find_particles(gather, hair, tile, j, &p);
+        for (int i = 0; i < strands; ++i) {
+            find_light(gather->state, &p, i, light);
+            show_light(kind, &p, i, light, seen[i]);
+        }
+        if (j > 0 && m->smooth_parts > 1) fill_between(hair, tile, j, strands);
+    }
+}
+
+SIMD_INLINE void gather_hair(const Gather *gather, int part)
+{
+    for (uint32_t h = 0; h < gather->scene->hair_count; ++h) {
+        const GridHair *hair = &gather->scene->hair[h];
+        int64_t tiles = ((int64_t)hair->caster.material.drawn_strands + W - 1) / W;
+        int first = (int)(tiles * part / gather->state->parts),
+            end = (int)(tiles * (part + 1) / gather->state->parts);
+        for (int tile = first; tile < end && hair->seen; ++tile) gather_tile(gather, hair, tile);
+    }
+}
+
+SIMD_STAGE(gather_hair, Gather)
+
+Result light_grid_gather(LightGrid *grid, const GridScene *scene, Error *error)
+{
+    LightGridState *state = grid->state;
+    if (!state->filled) return RESULT_OK;
+    Gather gather = {.state = state, .scene = scene};
+    light_lattice_turn(&state->lattice, scene->draw->eye, gather.eye);
+    TRY(light_grid_make_gather(state, scene, error));
+    run_gather_hair(&gather, state->parts);
+    return RESULT_OK;
+}

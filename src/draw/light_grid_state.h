@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// What the parts of the light grid share: light_grid.c, light_grid_fill.c, light_grid_sweep.c and
+// light_grid_gather.c.
+#pragma once
+
+#include "base/simd.h"
+#include "draw/light_grid.h"
+
+enum {
+    GRID_LANES = ORDINATE_LANES,
+    GRID_WIDE = 3 * ORDINATES, // floats of a cell: [group][channel][lane]
+    GRID_CLASSES = LIGHT_GRID_KINDS * TANGENTS,
+    GATHER_SIDE = 32, // squares across the octahedron of tangents
+    GATHER_NODES = (GATHER_SIDE + 1) * (GATHER_SIDE + 1),
+};
+
+// 4 pi / ORDINATES is the solid angle of a direction; a disc of it has this variance each way, by
+// three quarters: what agreed best with path-traced light.
+#define GRID_BLUR (0.75f / ORDINATES)
+
+// What one kind of fibre needs; `lobes` tells what it was made for.
+typedef struct GridKind {
+    FibreLobes lobes;                          // a copy: arrays are not owned
+    float (*scatter)[3][ORDINATES][ORDINATES]; // [TANGENTS][channel][in][out], owned
+    bool has_scatter[TANGENTS];
+    float (*first)[TANGENTS][GRID_WIDE]; // [lights], owned: of unit light
+    float first_way[MAX_LIGHTS][3];      // that `first` is for
+    bool has_first[MAX_LIGHTS];
+    float (*gather)[GRID_WIDE]; // [GATHER_NODES], owned
+    float gather_eye[3];
+    bool has_gather;
+} GridKind;
+
+// A part of a segment, in the order of cells: its class of tangent (and kind), its area over h^2,
+// and of that what each light meets, all in steps of 2^-16.
+typedef struct GridItem {
+    uint32_t class, area;
+    uint32_t lit[]; // [lights]
+} GridItem;
+
+typedef struct LightGridState {
+    int parts; // threads
+    LightLattice lattice;
+    LightBlocks blocks_drawn;
+    float longest; // m, segment
+    int pieces;    // of a segment
+    int lights;
+    float to_light[MAX_LIGHTS]
+                  [3]; // lattice's axes: unit, of lights afar and of lamps to the middle
+    size_t cell_room, item_room, slot_room, filled_room;
+
+    int *slot;            // [cells]: -1: nobody asks
+    uint32_t *first_item; // [parts][cells], then of the whole
+    uint32_t *items;      // words of GridItem
+    int *cell_of;         // [active]
+    uint32_t item_count;
+    int filled, active; // slots: those with hair come first
+
+    float *depth;                       // [filled][ORDINATES]: tau
+    float *left;                        // [filled][ORDINATES]: exp(-tau)
+    float *mean;                        // [filled][ORDINATES]: (1 - exp(-tau)) / tau
+    float *source;                      // [filled][GRID_WIDE]: S
+    float *order;                       // [active][GRID_WIDE]: L of the last order
+    float *light;                       // [active][GRID_WIDE]: L of all
+    float *tint;                        // [filled][3]: albedo over that of the kind
+    int *class;                         // [filled]: main tangent and kind
+    float *planes;                      // [groups][2][plane]
+    size_t plane;                       // floats
+    double sums[2][ORDINATE_GROUPS][3]; // of the last two orders, see light_grid_sweep
+
+    GridKind kinds[LIGHT_GRID_KINDS];
+} LightGridState;
+
+// --- The parts, in their order.
+
+// Lattice, items, what is in each cell. False if there is no hair.
+bool light_grid_fill(LightGridState *state, const GridScene *scene, Error *error, Result *result);
+
+// One order: sweeps `source` and, with `sky`, what comes from around; adds it to `light` (or
+// begins it: `fresh`). light_grid_scatter makes the next order's source.
+void light_grid_sweep(LightGridState *state, const GridScene *scene, bool sky, bool fresh,
+                      bool sourceless);
+void light_grid_scatter(LightGridState *state);
+// Adds what the orders after the last would.
+void light_grid_close(LightGridState *state);
+
+// Tables of kinds, made if they are not there.
+Result light_grid_make_first(LightGridState *state, const GridScene *scene, Error *error);
+Result light_grid_make_scatter(LightGridState *state, const GridScene *scene, Error *error);
+Result light_grid_make_gather(LightGridState *state, const GridScene *scene, Error *error);
+
+static inline void grid_group_ways(int group, Ways *ways)
+{
+    for (int k = 0; k < 3; ++k)
+        for (int l = 0; l < GRID_LANES; ++l) ways->axis[k][l] = ORDINATE[k][group * GRID_LANES + l];
+}
+
+static inline void grid_same_ways(const float way[3], float factor, Ways *ways)
+{
+    for (int k = 0; k < 3; ++k)
+        for (int l = 0; l < GRID_LANES; ++l) ways->axis[k][l] = factor * way[k];
+}

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: MIT
+// Light goes through the cells of a light grid: slice by slice along the main axis of its
+// direction, from between the cells of the slice before (bilinear), on each thread the directions
+// of some groups.
+#include "draw/light_grid_state.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { GROUP_WIDE = 3 * GRID_LANES, TAPS = 9 };
+
+typedef struct Sweep {
+    LightGridState *state;
+    const GridScene *scene;
+    bool sky, fresh, sourceless;
+    int parts;
+} Sweep;
+
+// What a group's directions have in common.
+typedef struct GroupWay {
+    int main, across[2]; // axes
+    bool forward;
+    float taps[TAPS][GRID_LANES]; // weights of the cells before and beside
+    float sky[GROUP_WIDE];
+} GroupWay;
+
+// From above (+y of the world) comes the sky, from below the ground, evenly between them.
+static void find_sky(const Sweep *sweep, int group, float sky[GROUP_WIDE])
+{
+    const DrawParams *draw = sweep->scene->draw;
+    const LightLattice *lattice = &sweep->state->lattice;
+    for (int l = 0; l < GRID_LANES; ++l) {
+        float up = 0;
+        for (int k = 0; k < 3; ++k) up -= lattice->turn[k][1] * ORDINATE[k][group * GRID_LANES + l];
+        for (int c = 0; c < 3; ++c)
+            sky[c * GRID_LANES + l] =
+                sweep->sky ? draw->ground[c] + (0.5f + 0.5f * up) * (draw->sky[c] - draw->ground[c])
+                           : 0;
+    }
+}
+
+static void find_way(const Sweep *sweep, int group, GroupWay *way)
+{
+    way->main = group / 2;
+    way->forward = group % 2;
+    way->across[0] = (way->main + 1) % 3;
+    way->across[1] = (way->main + 2) % 3;
+    for (int l = 0; l < GRID_LANES; ++l) {
+        int d = group * GRID_LANES + l;
+        float main = fabsf(ORDINATE[way->main][d]), weight[2][3];
+        for (int k = 0; k < 2; ++k) {
+            float shift = ORDINATE[way->across[k]][d] / main;
+            weight[k][0] = fmaxf(shift, 0);
+            weight[k][1] = 1 - fabsf(shift);
+            weight[k][2] = fmaxf(-shift, 0);
+        }
+        for (int t = 0; t < TAPS; ++t) way->taps[t][l] = weight[0][t % 3] * weight[1][t / 3];
+    }
+    find_sky(sweep, group, way->sky);
+}
+
+// Into the cell's radiance comes what the nine before it send on; what they get is at `before`.
+SIMD_INLINE void arrive(const GroupWay *way, const float *before, size_t row, float in[GROUP_WIDE])
+{
+    for (int i = 0; i < GROUP_WIDE; ++i) in[i] = 0;
+    for (int t = 0; t < TAPS; ++t) {
+        const float *from = before + (size_t)(t / 3) * row + (size_t)(t % 3) * GROUP_WIDE;
+        for (int c = 0; c < 3; ++c)
+            for (int l = 0; l < GRID_LANES; ++l)
+                in[c * GRID_LANES + l] += way->taps[t][l] * from[c * GRID_LANES + l];
+    }
+}
+
+// out = S + (in - S) exp(-tau), in the mean S + (in - S)(1 - exp(-tau)) / tau.
+SIMD_INLINE void pass_cell(const Sweep *sweep, int group, int slot, float io[GROUP_WIDE],
+                           float mean[GROUP_WIDE])
+{
+    const LightGridState *state = sweep->state;
+    size_t lane = (size_t)slot * ORDINATES + (size_t)group * GRID_LANES,
+           wide = (size_t)slot * GRID_WIDE + (size_t)group * GROUP_WIDE;
+    const float *left = state->left + lane, *share = state->mean + lane,
+                *source = state->source + wide;
+    for (int c = 0; c < 3; ++c)
+        for (int l = 0; l < GRID_LANES; ++l) {
+            int i = c * GRID_LANES + l;
+            float s = sweep->sourceless ? 0 : source[i], in = io[i] - s;
+            mean[i] = s + in * share[l];
+            io[i] = s + in * left[l];
+        }
+}
+
+SIMD_INLINE void keep(const Sweep *sweep, int group, int slot, const float mean[GROUP_WIDE],
+                      double sum[3])
+{
+    LightGridState *state = sweep->state;
+    size_t wide = (size_t)slot * GRID_WIDE + (size_t)group * GROUP_WIDE;
+    float *order = state->order + wide, *light = state->light + wide;
+    for (int i = 0; i < GROUP_WIDE; ++i) {
+        order[i] = mean[i];
+        light[i] = sweep->fresh ? mean[i] : light[i] + mean[i];
+    }
+    if (slot >= state->filled) return;
+    const float *depth = state->depth + (size_t)slot * ORDINATES + (size_t)group * GRID_LANES;
+    for (int c = 0; c < 3; ++c) {
+        float met = 0;
+        for (int l = 0; l < GRID_LANES; ++l) met += depth[l] * mean[c * GRID_LANES + l];
+        sum[c] += (double)met;
+    }
+}
+
+// Share that the mesh lets through to the cell on its main axis.
+static float passed_to(const Sweep *sweep, const GroupWay *way, const int at[3], size_t cell)
+{
+    const LightLattice *lattice = &sweep->state->lattice;
+    const size_t stride[3] = {1, (size_t)lattice->count[0],
+                              (size_t)lattice->count[0] * (size_t)lattice->count[1]};
+    const float *open =
+        sweep->scene->blocks->open + (size_t)way->main * light_lattice_cells(lattice);
+    if (way->forward) return open[cell];
+    return at[way->main] + 1 < lattice->count[way->main] ? open[cell + stride[way->main]] : 1;
+}
+
+SIMD_INLINE void sweep_slice(const Sweep *sweep, const GroupWay *way, int group, int slice,
+                             const float *before, float *after, double sum[3])
+{
+    const LightGridState *state = sweep->state;
+    const int *n = state->lattice.count;
+    int at[3], wide = n[way->across[0]], high = n[way->across[1]];
+    size_t row = ((size_t)wide + 2) * GROUP_WIDE;
+    at[way->main] = slice;
+    for (int y = 0; y < high; ++y)
+        for (int x = 0; x < wide; ++x) {
+            float in[GROUP_WIDE], mean[GROUP_WIDE];
+            at[way->across[0]] = x;
+            at[way->across[1]] = y;
+            size_t cell =
+                ((size_t)at[2] * (size_t)n[1] + (size_t)at[1]) * (size_t)n[0] + (size_t)at[0];
+            int slot = state->slot[cell];
+            arrive(way, before + (size_t)y * row + (size_t)x * GROUP_WIDE, row, in);
+            if (sweep->scene->blocks) {
+                float passed = passed_to(sweep, way, at, cell);
+                for (int i = 0; i < GROUP_WIDE; ++i) in[i] *= passed;
+            }
+            memcpy(mean, in, sizeof mean);
+            if (slot >= 0 && slot < state->filled) pass_cell(sweep, group, slot, in, mean);
+            if (slot >= 0) keep(sweep, group, slot, mean, sum);
+            memcpy(after + (size_t)(y + 1) * row + (size_t)(x + 1) * GROUP_WIDE, in, sizeof in);
+        }
+}
+
+static void fill_plane(float *plane, size_t floats, const float sky[GROUP_WIDE])
+{
+    for (size_t i = 0; i < floats; i += GROUP_WIDE)
+        memcpy(plane + i, sky, GROUP_WIDE * sizeof *sky);
+}
+
+SIMD_INLINE void sweep_group(const Sweep *sweep, int group)
+{
+    LightGridState *state = sweep->state;
+    GroupWay way;
+    find_way(sweep, group, &way);
+    int slices = state->lattice.count[way.main];
+    float *planes[2] = {state->planes + (size_t)(2 * group) * state->plane,
+                        state->planes + (size_t)(2 * group + 1) * state->plane};
+    double *sum = state->sums[1][group];
+    memset(sum, 0, sizeof state->sums[1][group]);
+    size_t used = ((size_t)state->lattice.count[way.across[0]] + 2) *
+                  ((size_t)state->lattice.count[way.across[1]] + 2) * GROUP_WIDE;
+    for (int k = 0; k < 2; ++k) fill_plane(planes[k], used, way.sky);
+    for (int i = 0; i < slices; ++i)
+        sweep_slice(sweep, &way, group, way.forward ? i : slices - 1 - i, planes[i % 2],
+                    planes[(i + 1) % 2], sum);
+}
+
+SIMD_INLINE void sweep_groups(const Sweep *sweep, int part)
+{
+    for (int group = part; group < ORDINATE_GROUPS; group += sweep->parts)
+        sweep_group(sweep, group);
+}
+
+SIMD_STAGE(sweep_groups, Sweep)
+
+void light_grid_sweep(LightGridState *state, const GridScene *scene, bool sky, bool fresh,
+                      bool sourceless)
+{
+    int parts = state->parts < ORDINATE_GROUPS ? state->parts : ORDINATE_GROUPS;
+    memcpy(state->sums[0], state->sums[1], sizeof state->sums[0]);
+    Sweep sweep = {state, scene, sky, fresh, sourceless, parts};
+    run_sweep_groups(&sweep, parts);
+}
+
+// --- Scattering.
+
+// The lanes of one channel, in the order of cells' floats.
+SIMD_INLINE void scatter_channel(const float (*rows)[ORDINATES], const float *in, int channel,
+                                 float tint, float *out)
+{
+    float sum[ORDINATES];
+    for (int d = 0; d < ORDINATES; ++d) sum[d] = 0;
+    for (int g = 0; g < ORDINATE_GROUPS; ++g)
+        for (int l = 0; l < GRID_LANES; ++l) {
+            float from = in[g * GROUP_WIDE + channel * GRID_LANES + l];
+            const float *row = rows[g * GRID_LANES + l];
+            for (int d = 0; d < ORDINATES; ++d) sum[d] += from * row[d];
+        }
+    for (int g = 0; g < ORDINATE_GROUPS; ++g)
+        for (int l = 0; l < GRID_LANES; ++l)
+            out[g * GROUP_WIDE + channel * GRID_LANES + l] = tint * sum[g * GRID_LANES + l];
+}
+
+SIMD_INLINE void scatter(const LightGridState *state, int part)
+{
+    int first = (int)((int64_t)state->filled * part / state->parts),
+        end = (int)((int64_t)state->filled * (part + 1) / state->parts);
+    for (int f = first; f < end; ++f) {
+        const GridKind *kind = &state->kinds[state->class[f] / TANGENTS];
+        const float *in = state->order + (size_t)f * GRID_WIDE;
+        float *out = state->source + (size_t)f * GRID_WIDE;
+        for (int c = 0; c < 3; ++c)
+            scatter_channel((const float(*)[ORDINATES])kind->scatter[state->class[f] % TANGENTS][c],
+                            in, c, state->tint[3 * f + c], out);
+    }
+}
+
+SIMD_STAGE(scatter, LightGridState)
+
+void light_grid_scatter(LightGridState *state)
+{
+    run_scatter(state, state->parts);
+}
+
+// --- The orders that are not swept.
+
+SIMD_INLINE void close_lights(const LightGridState *state, int part)
+{
+    // Of two orders after each other what hair meets falls by this factor.
+    float more[3];
+    for (int c = 0; c < 3; ++c) {
+        double before = 0, last = 0;
+        for (int g = 0; g < ORDINATE_GROUPS; ++g) {
+            before += state->sums[0][g][c];
+            last += state->sums[1][g][c];
+        }
+        double ratio = before > 0 ? fmin(last / before, 0.9) : 0;
+        more[c] = (float)(ratio / (1 - ratio));
+    }
+    int first = (int)((int64_t)state->active * part / state->parts),
+        end = (int)((int64_t)state->active * (part + 1) / state->parts);
+    for (size_t s = (size_t)first; s < (size_t)end; ++s)
+        for (int g = 0; g < ORDINATE_GROUPS; ++g)
+            for (int c = 0; c < 3; ++c) {
+                size_t at = s * GRID_WIDE + (size_t)(g * 3 + c) * GRID_LANES;
+                for (int l = 0; l < GRID_LANES; ++l)
+                    state->light[at + (size_t)l] += more[c] * state->order[at + (size_t)l];
+            }
+}
+
+SIMD_STAGE(close_lights, LightGridState)
+
+void light_grid_close(LightGridState *state)
+{
+    run_close_lights(state, state->parts);
+}

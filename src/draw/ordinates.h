@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// The directions in which the light grid follows light (discrete ordinates), and the classes of
+// tangents by which it sorts fibres.
+#pragma once
+
+// ORDINATE_LANES of each group have the same main axis and sign, so that they sweep the grid side
+// by side: groups -x, +x, -y, +y, -z, +z.
+enum { ORDINATES = 48, ORDINATE_LANES = 8, ORDINATE_GROUPS = ORDINATES / ORDINATE_LANES };
+
+// Unit vectors, the way that light goes: 48 charges that repel each other on a sphere, turned so
+// that eight have each main axis (neighbours are 29.7 to 30.1 degrees apart). [axis][ordinate].
+extern const float ORDINATE[3][ORDINATES];
+
+// The ordinate that the first light gets: downwards, as most key lights shine.
+enum { ORDINATE_OF_LIGHT = 21 };
+
+// Classes of tangents: points of a Fibonacci spiral over the whole sphere, for fibres' scales tell
+// the root's end from the tip's.
+enum { TANGENTS = 128 };
+
+// Unit vector of a class, 0 .. TANGENTS - 1.
+void ordinates_tangent(int class, float tangent[3]);
+
+// The nearest class of a unit vector, but for what lies within 2 degrees of another one's region.
+// Makes its table at first use: ordinates_prepare before threads ask.
+int ordinates_class(const float tangent[3]);
+void ordinates_prepare(void);
