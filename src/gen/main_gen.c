@@ -3,6 +3,7 @@
 #include "base/program.h"
 #include "gen/fur.h"
 #include "gen/strands_make.h"
+#include "mesh/head.h"
 #include "mesh/obj.h"
 #include "mesh/scalp.h"
 
@@ -14,7 +15,7 @@ typedef struct Command {
     int kind, shape, count, vertices, set, seed;
     double length, length_variation, curl_radius, curl_turns, curl_disorder;
     GenOutput output;
-    const char *mesh, *bust;
+    const char *mesh;
 } Command;
 
 static const char KINDS[] = "random|straight|curls|fur";
@@ -27,7 +28,7 @@ static const Option OPTIONS[] = {
     {"kind", 0, OPTION_WORD, AT(kind), KINDS, 0, 0,
      "random: segments in random directions; others: hair of that kind [default curls]"},
     {"shape", 0, OPTION_WORD, AT(shape), "sphere|head", 0, 0,
-     "what hair grows on: a sphere (radius 0.1 m) or a head"},
+     "what hair grows on: a sphere (radius 0.1 m) or a head with neck and shoulders"},
     {"count", 'n', OPTION_WHOLE, AT(count), "N", 1, 1e7, "number of strands"},
     {"vertices", 0, OPTION_WHOLE, AT(vertices), "N", 2, 65535, "vertices per strand"},
     {"length", 0, OPTION_REAL, AT(length), "M", 1e-3, 100, "length of the longest strand, metres"},
@@ -45,8 +46,6 @@ static const Option OPTIONS[] = {
     GEN_OPTION_FORMAT(AT(output.format)),
     GEN_OPTION_OUTPUT(AT(output.path)),
     {"mesh", 0, OPTION_STRING, AT(mesh), "FILE", 0, 0, "also write the shape, as Wavefront OBJ"},
-    {"bust", 0, OPTION_STRING, AT(bust), "FILE", 0, 0,
-     "also write the head with shoulders, as Wavefront OBJ"},
     GEN_OPTION_QUIET(AT(output.quiet)),
 };
 
@@ -121,7 +120,7 @@ static Result check_effect(const Command *command, Error *error)
     if (command->set >= 0 && shaping)
         return error_set(error, RESULT_USAGE, "--set %s and --%s exclude each other",
                          SET_NAMES[command->set], shaping);
-    if (!command->output.path && !command->mesh && !command->bust)
+    if (!command->output.path && !command->mesh)
         return error_set(error, RESULT_USAGE, "no output: expected -o FILE");
     return RESULT_OK;
 }
@@ -201,15 +200,16 @@ static Result write_hair(const Command *command, const StrandsRecipe *recipe, Er
     return result;
 }
 
-static Result write_mesh(const Command *command, ScalpShape shape, const char *file, bool shoulders,
-                         Error *error)
+static Result write_mesh(const Command *command, ScalpShape shape, Error *error)
 {
+    enum { SPHERE_RINGS = 36, HEAD_TRIANGLES = 12000 };
     Mesh mesh;
-    Result result = scalp_make_mesh(&mesh, shape, 36, error);
-    if (result == RESULT_OK && shoulders) result = scalp_append_shoulders(&mesh, error);
-    THEN(result, obj_write_mesh(file, &mesh, error));
+    Result result = shape == SCALP_SPHERE ? scalp_make_mesh(&mesh, shape, SPHERE_RINGS, error)
+                                          : head_make_mesh(&mesh, HEAD_TRIANGLES, error);
+    THEN(result, obj_write_mesh(command->mesh, &mesh, error));
     if (result == RESULT_OK && !command->output.quiet)
-        printf("%s: %u vertices, %u triangles\n", file, mesh.vertex_count, mesh.triangle_count);
+        printf("%s: %u vertices, %u triangles\n", command->mesh, mesh.vertex_count,
+               mesh.triangle_count);
     mesh_destroy(&mesh);
     return result;
 }
@@ -219,8 +219,7 @@ static Result write_all(const Command *command, Error *error)
     StrandsRecipe recipe = make_recipe(command);
     ScalpShape shape = command->set >= 0 ? SCALP_SPHERE : recipe.shape;
     if (command->output.path) TRY(write_hair(command, &recipe, error));
-    if (command->mesh) TRY(write_mesh(command, shape, command->mesh, false, error));
-    if (command->bust) TRY(write_mesh(command, SCALP_HEAD, command->bust, true, error));
+    if (command->mesh) TRY(write_mesh(command, shape, error));
     return RESULT_OK;
 }
 

@@ -70,17 +70,6 @@ static void comb(const Seedling *seedling, const Double3 at, double share, Doubl
     double3_normalize(pull);
 }
 
-// Lifts a point to at least `gap` over the surface.
-static void keep_outside(const Seedling *seedling, Double3 point, double gap)
-{
-    Double3 direction;
-    double3_copy(point, direction);
-    double distance = double3_normalize(direction);
-    double least = distance > 0.0 ? scalp_radius(seedling->recipe->shape, direction) + gap : 0.0;
-    if (distance >= least) return;
-    for (int i = 0; i < 3; i++) point[i] = least * direction[i];
-}
-
 // A segment of its length from `from` along `direction`, which becomes where it goes when its end
 // is kept outside by `gap`.
 static void grow_segment(const Seedling *seedling, const Double3 from, double segment, double gap,
@@ -88,7 +77,7 @@ static void grow_segment(const Seedling *seedling, const Double3 from, double se
 {
     double3_copy(from, to);
     double3_add_scaled(to, segment, direction);
-    keep_outside(seedling, to, gap);
+    scalp_lift(seedling->recipe->shape, to, gap);
     double3_subtract(to, from, direction);
     double3_normalize(direction);
     double3_copy(from, to);
@@ -141,7 +130,7 @@ static void wind(const Seedling *seedling, Double3 *points)
         double radius = recipe->curl_radius * ramp(0.0, 0.6, share);
         double3_add_scaled(points[v], radius * cos(angle), side);
         double3_add_scaled(points[v], radius * sin(angle), other);
-        keep_outside(seedling, points[v], 0.002 * ramp(0.0, 0.1, share));
+        scalp_lift(recipe->shape, points[v], 0.002 * ramp(0.0, 0.1, share));
     }
 }
 

@@ -38,9 +38,3 @@ void mesh_compute_normals(Mesh *mesh);
 
 // Axis-aligned box around all vertices; {0,0,0} twice for an empty mesh.
 void mesh_bounds(const Mesh *mesh, float low[3], float high[3]);
-
-// Appends a rounded cone: a closed surface of its own, outward, with its vertices on the cone of
-// the spheres about `a` and `b` with radii a[3] and b[3] (neither inside the other), in `rings`
-// bands and 2 * rings sectors. Computes all normals anew. RESULT_FAILED when memory is short.
-Result mesh_append_cone(Mesh *mesh, const float a[4], const float b[4], uint32_t rings,
-                        Error *error);

@@ -2,99 +2,94 @@
 #include "mesh/scalp.h"
 
 #include "base/random.h"
+#include "mesh/head.h"
 
 #include <math.h>
 #include <stddef.h>
 
 static const double SPHERE_RADIUS = 0.1;
-static const double NECK_DEPTH = 0.19, NECK_BEGIN = 0.7 * M_PI;
 
-// An axis-aligned ellipsoid around the origin, which need not be its centre.
-typedef struct Ellipsoid {
-    Double3 center, axis;
-} Ellipsoid;
-
-// Solves |(t d - c) / a| = 1 for the positive t.
-static double ellipsoid_radius(const Ellipsoid *ellipsoid, const Double3 direction)
+// The outermost point of the head in a direction, from outside in steps that cannot cross it, then
+// by halving.
+static double head_radius(const Double3 direction)
 {
-    double a = 0.0, b = 0.0, c = -1.0;
-    for (int i = 0; i < 3; i++) {
-        double d = direction[i] / ellipsoid->axis[i];
-        double m = ellipsoid->center[i] / ellipsoid->axis[i];
-        a += d * d;
-        b += d * m;
-        c += m * m;
+    double inside = 0.0, outside = 0.4;
+    Double3 at = {0};
+    for (int i = 0; i < 200; i++) {
+        for (int k = 0; k < 3; k++) at[k] = outside * direction[k];
+        double step = 0.5 * head_distance(at);
+        if (step < 1e-4) break;
+        outside -= step;
     }
-    return (b + sqrt(b * b - a * c)) / a;
+    inside = outside - 0.002;
+    for (int i = 0; i < 40; i++) {
+        double middle = 0.5 * (inside + outside);
+        for (int k = 0; k < 3; k++) at[k] = middle * direction[k];
+        *(head_distance(at) < 0.0 ? &inside : &outside) = middle;
+    }
+    return outside;
 }
 
-// Skull, face with jaw, and a neck without end, joined softly: the 14-norm of three radii is a
-// smooth maximum.
-static double endless_head_radius(const Double3 direction)
-{
-    static const Ellipsoid parts[] = {
-        {{0.0, 0.018, -0.008}, {0.074, 0.090, 0.096}},
-        {{0.0, -0.045, 0.030}, {0.056, 0.078, 0.062}},
-        {{0.0, -0.150, -0.022}, {0.054, 0.210, 0.056}},
-    };
-    static const struct {
-        Double3 direction;    // unit length
-        double height, width; // metres; radians or so
-    } bumps[] = {
-        {{0.0, -0.259, 0.966}, 0.016, 0.13},     // nose
-        {{0.0, -0.556, 0.831}, 0.005, 0.14},     // lips
-        {{0.0, -0.755, 0.656}, 0.006, 0.16},     // chin
-        {{0.314, -0.010, 0.949}, -0.006, 0.16},  // left eye
-        {{-0.314, -0.010, 0.949}, -0.006, 0.16}, // right eye
-        {{0.978, -0.130, -0.163}, 0.012, 0.15},  // left ear
-        {{-0.978, -0.130, -0.163}, 0.012, 0.15}, // right ear
-    };
-    double sum = 0.0, bump = 0.0;
-    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
-        sum += pow(ellipsoid_radius(&parts[i], direction), 14.0);
-    for (size_t i = 0; i < sizeof bumps / sizeof *bumps; i++) {
-        Double3 off;
-        double3_subtract(direction, bumps[i].direction, off);
-        bump += bumps[i].height * exp(-double3_dot(off, off) / (bumps[i].width * bumps[i].width));
-    }
-    return pow(sum, 1.0 / 14.0) + bump;
-}
-
-// The neck ends in a plane.
 double scalp_radius(ScalpShape shape, const Double3 direction)
 {
-    if (shape == SCALP_SPHERE) return SPHERE_RADIUS;
-    double radius = endless_head_radius(direction);
-    return direction[1] < 0.0 ? fmin(radius, NECK_DEPTH / -direction[1]) : radius;
+    return shape == SCALP_SPHERE ? SPHERE_RADIUS : head_radius(direction);
 }
 
-// For r(d), with r extended to all p as r(p / |p|), F(p) = |p| - r is 0 on the surface and its
-// gradient, d - grad r, points along the normal.
 void scalp_normal(ScalpShape shape, const Double3 direction, Double3 normal)
 {
-    const double step = 1e-4;
-    double radius = scalp_radius(shape, direction);
-    for (int i = 0; i < 3; i++) {
-        Double3 ahead, behind;
-        double3_copy(direction, ahead);
-        double3_copy(direction, behind);
-        ahead[i] += step;
-        behind[i] -= step;
-        double3_normalize(ahead);
-        double3_normalize(behind);
-        double slope = (scalp_radius(shape, ahead) - scalp_radius(shape, behind)) / (2.0 * step);
-        normal[i] = shape == SCALP_SPHERE ? direction[i] : direction[i] - slope / radius;
-    }
-    double3_normalize(normal);
+    double3_copy(direction, normal);
+    if (shape == SCALP_SPHERE) return;
+    Double3 at = {0};
+    double3_add_scaled(at, scalp_radius(shape, direction), direction);
+    head_normal(at, normal);
 }
 
+double scalp_distance(ScalpShape shape, const Double3 at)
+{
+    return shape == SCALP_SPHERE ? double3_length(at) - SPHERE_RADIUS : head_distance(at);
+}
+
+static void lift_off_sphere(Double3 point, double gap)
+{
+    Double3 direction;
+    double3_copy(point, direction);
+    double distance = double3_normalize(direction);
+    double least = distance > 0.0 ? SPHERE_RADIUS + gap : 0.0;
+    if (distance >= least) return;
+    for (int i = 0; i < 3; i++) point[i] = least * direction[i];
+}
+
+void scalp_lift(ScalpShape shape, Double3 point, double gap)
+{
+    enum { ROUNDS = 4 };
+    if (shape == SCALP_SPHERE) {
+        lift_off_sphere(point, gap);
+        return;
+    }
+    for (int i = 0; i < ROUNDS; i++) {
+        Double3 normal;
+        double lack = gap - head_distance(point);
+        if (lack <= 0.0) return;
+        head_normal(point, normal);
+        double3_add_scaled(point, lack, normal);
+    }
+}
+
+static double smooth(double low, double high, double x)
+{
+    double t = fmin(fmax((x - low) / (high - low), 0.0), 1.0);
+    return t * t * (3.0 - 2.0 * t);
+}
+
+// The head's hair line: from the nape, behind and over the ears, past the temples to the forehead.
+// docs/fur.md has it as a formula.
 static bool has_hair(ScalpShape shape, const Double3 direction, bool everywhere)
 {
     if (shape == SCALP_SPHERE) return everywhere || direction[1] > 0.2;
-    // The hair line, from the nape past the ears to the forehead.
-    double flat = sqrt(direction[0] * direction[0] + direction[2] * direction[2]);
-    double forward = flat > 1e-9 ? 0.5 + 0.5 * direction[2] / flat : 0.5;
-    return direction[1] > -0.42 + 1.04 * pow(forward, 1.2);
+    if (direction[1] < -0.8) return false;
+    double radius = scalp_radius(shape, direction), y = radius * direction[1];
+    double z = radius * direction[2];
+    return y > -0.085 + 0.099 * smooth(-0.06, -0.022, z) + 0.056 * smooth(0.015, 0.075, z);
 }
 
 // Area of the surface per area of the unit sphere.
@@ -103,7 +98,7 @@ static double area_ratio(ScalpShape shape, const Double3 direction)
     Double3 normal;
     double radius = scalp_radius(shape, direction);
     scalp_normal(shape, direction, normal);
-    return radius * radius / double3_dot(normal, direction);
+    return radius * radius / fmax(double3_dot(normal, direction), 0.2);
 }
 
 // Archimedes: even in y and in the angle about the y axis is even on the sphere.
@@ -184,37 +179,10 @@ static void direction_at(double angle, double turn, Double3 direction)
     direction[2] = sin(angle) * cos(turn);
 }
 
-// The angle from the top at which the neck comes to the plane where it ends.
-static double neck_edge(double turn)
-{
-    double inside = NECK_BEGIN, outside = M_PI;
-    for (int i = 0; i < 50; i++) {
-        double angle = 0.5 * (inside + outside);
-        Double3 direction;
-        direction_at(angle, turn, direction);
-        if (-direction[1] * endless_head_radius(direction) < NECK_DEPTH)
-            inside = angle;
-        else
-            outside = angle;
-    }
-    return outside;
-}
-
-// The angle of a ring from the top: even steps, but on the neck, where they are such that one ring
-// runs along its edge, which would be ragged else.
-static double ring_angle(ScalpShape shape, uint32_t ring, uint32_t rings, double turn)
-{
-    double even = M_PI * ring / rings;
-    if (shape == SCALP_SPHERE || even <= NECK_BEGIN) return even;
-    double edge = neck_edge(turn), edge_ring = round(rings * neck_edge(0.0) / M_PI);
-    double first = floor(rings * NECK_BEGIN / M_PI), begin = M_PI * first / rings;
-    if (ring <= edge_ring) return begin + (edge - begin) * (ring - first) / (edge_ring - first);
-    return edge + (M_PI - edge) * (ring - edge_ring) / (rings - edge_ring);
-}
-
 Result scalp_make_mesh(Mesh *mesh, ScalpShape shape, uint32_t rings, Error *error)
 {
     uint32_t around = 2 * rings;
+    if (shape == SCALP_HEAD) return head_make_mesh(mesh, 4 * rings * (rings - 1), error);
     TRY(mesh_create(mesh, 2 + (rings - 1) * around, 2 * (rings - 1) * around, error));
     TRY(mesh_create_uv(mesh, (rings + 1) * (around + 1), error));
     for (uint32_t i = 0; i < mesh->uv_count; i++) {
@@ -225,26 +193,11 @@ Result scalp_make_mesh(Mesh *mesh, ScalpShape shape, uint32_t rings, Error *erro
         uint32_t ring = v == 0 ? 0 : 1 + (v - 1) / around;
         double turn = 2.0 * M_PI * ((v - 1) % around) / around;
         Double3 direction;
-        direction_at(ring_angle(shape, ring, rings, turn), turn, direction);
+        direction_at(M_PI * ring / rings, turn, direction);
         double radius = scalp_radius(shape, direction);
         for (int i = 0; i < 3; i++) mesh->position[v][i] = (float)(radius * direction[i]);
     }
     for (uint32_t ring = 0; ring < rings; ring++) add_ring_triangles(mesh, ring, rings);
     mesh_compute_normals(mesh);
-    return RESULT_OK;
-}
-
-Result scalp_append_shoulders(Mesh *mesh, Error *error)
-{
-    static const float cones[][2][4] = {
-        {{0, -0.15f, -0.02f, 0.05f}, {0, -0.26f, -0.03f, 0.075f}},
-        {{0.03f, -0.225f, -0.03f, 0.055f}, {0.165f, -0.255f, -0.03f, 0.052f}},
-        {{-0.03f, -0.225f, -0.03f, 0.055f}, {-0.165f, -0.255f, -0.03f, 0.052f}},
-        {{0.172f, -0.262f, -0.03f, 0.05f}, {0.2f, -0.4f, -0.02f, 0.042f}},
-        {{-0.172f, -0.262f, -0.03f, 0.05f}, {-0.2f, -0.4f, -0.02f, 0.042f}},
-        {{0.065f, -0.33f, -0.02f, 0.095f}, {-0.065f, -0.33f, -0.02f, 0.095f}},
-    };
-    for (size_t i = 0; i < sizeof cones / sizeof *cones; ++i)
-        TRY(mesh_append_cone(mesh, cones[i][0], cones[i][1], 12, error));
     return RESULT_OK;
 }

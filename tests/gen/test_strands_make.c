@@ -108,11 +108,9 @@ static void equal_seeds_give_equal_strands_and_others_do_not(void **state)
 // How far a point is outside the surface, metres.
 static double height_over(ScalpShape shape, const float point[3])
 {
-    double direction[3] = {(double)point[0], (double)point[1], (double)point[2]};
-    double distance = sqrt(direction[0] * direction[0] + direction[1] * direction[1] +
-                           direction[2] * direction[2]);
-    for (int i = 0; i < 3; i++) direction[i] /= distance;
-    return distance - scalp_radius(shape, direction);
+    Double3 at;
+    double3_from_float(point, at);
+    return scalp_distance(shape, at);
 }
 
 static void every_style_grows_from_the_surface_to_its_length(void **state)

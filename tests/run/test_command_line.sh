@@ -294,7 +294,7 @@ run 0 $scene --resume --cache "$work/r.cache"; says "simulating again from the s
 if cmp -s "$work/a.cache" "$work/r.cache"; then good; else bad "the cache made again differs"; fi
 run 3 $scene -q --resume --cache "$work/r.cache" --gravity 0,-1,0; one_line; says "gravity"
 run 2 $scene -q --resume -o "$work/v.mp4"; one_line; says "--cache"
-"$program" assets/demo.json --frames 5000 --cache "$work/i.cache" >"$work/out" 2>"$work/err" &
+"$program" assets/demo.json --preroll 0 --frames 5000 --cache "$work/i.cache" >"$work/out" 2>"$work/err" &
 pid=$!
 while [ ! -s "$work/i.cache" ] && kill -0 $pid 2>/dev/null; do sleep 0.05; done
 sleep 0.3; kill -INT $pid

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: MIT
+#include "mesh/head.h"
+
+#include "mesh/simplify.h"
+#include "mesh/surface_net.h"
+
+#include <stddef.h>
+
+// --- Parts. Each joins what the parts before it have made.
+
+typedef enum PartKind {
+    ADD,  // smooth union
+    CUT,  // smooth difference
+    KEEP, // smooth intersection
+} PartKind;
+
+typedef enum PartForm {
+    EGG,  // an ellipsoid: a is the middle, b has the radii
+    CONE, // a round cone, the hull of two spheres: a and b are middles with radii
+} PartForm;
+
+typedef enum PartSides {
+    ONE,
+    BOTH, // with its mirror image at -x
+} PartSides;
+
+typedef struct Part {
+    PartKind kind;
+    PartForm form;
+    PartSides sides;
+    double blend; // m: width of the seam's rounding
+    double a[4], b[4];
+} Part;
+
+// The face is a head of 0.23 m by thirds: hairline 0.078, brow 0.012, base of the nose -0.054, chin
+// -0.12; eyes at half the height.
+// clang-format off
+static const Part PARTS[] = {
+    // Skull.
+    {ADD, EGG, ONE, 0.030, {0, 0.030, -0.025}, {0.078, 0.080, 0.082}},
+    {ADD, EGG, ONE, 0.030, {0, 0.026, 0.016}, {0.067, 0.076, 0.072}},
+    {ADD, EGG, ONE, 0.030, {0, -0.016, -0.052}, {0.060, 0.052, 0.047}},
+    // Face, cheekbones, cheeks, jaw, chin.
+    {ADD, EGG, ONE, 0.025, {0, -0.036, 0.026}, {0.060, 0.076, 0.051}},
+    {ADD, CONE, BOTH, 0.026, {0.039, -0.028, 0.055, 0.014}, {0.060, -0.018, 0.018, 0.012}},
+    {ADD, EGG, BOTH, 0.020, {0.032, -0.054, 0.040}, {0.026, 0.034, 0.030}},
+    {ADD, EGG, BOTH, 0.020, {0.046, -0.042, 0.014}, {0.018, 0.034, 0.024}},
+    {ADD, CONE, BOTH, 0.030, {0.043, -0.066, 0.006, 0.015}, {0.010, -0.104, 0.064, 0.013}},
+    {ADD, EGG, ONE, 0.016, {0, -0.104, 0.071}, {0.019, 0.016, 0.016}},
+    {ADD, EGG, ONE, 0.020, {0, -0.068, 0.0645}, {0.028, 0.034, 0.0275}},
+    // Brows, sockets, lids.
+    {ADD, CONE, BOTH, 0.020, {0.012, 0.013, 0.075, 0.0090}, {0.044, 0.015, 0.057, 0.007}},
+    {CUT, EGG, BOTH, 0.016, {0.0315, -0.006, 0.094}, {0.022, 0.0140, 0.0175}},
+    {ADD, EGG, BOTH, 0.004, {0.0325, -0.0045, 0.0615}, {0.0185, 0.0125, 0.0165}},
+    {ADD, EGG, BOTH, 0.0025, {0.0325, -0.0150, 0.0610}, {0.0165, 0.0070, 0.0135}},
+    // Nose: body, bridge, tip, wings, nostrils.
+    {ADD, EGG, ONE, 0.012, {0, -0.030, 0.079}, {0.0125, 0.026, 0.016}},
+    {ADD, CONE, ONE, 0.014, {0, 0.006, 0.077, 0.0060}, {0, -0.036, 0.098, 0.0075}},
+    {ADD, EGG, ONE, 0.010, {0, -0.0405, 0.0985}, {0.0095, 0.0085, 0.0115}},
+    {ADD, EGG, BOTH, 0.010, {0.0105, -0.0440, 0.0880}, {0.0065, 0.0080, 0.0120}},
+    {CUT, EGG, BOTH, 0.003, {0.0060, -0.0530, 0.0950}, {0.0030, 0.0036, 0.0055}},
+    // Lips.
+    {ADD, CONE, BOTH, 0.0060, {0.0035, -0.0727, 0.0868, 0.0062}, {0.0205, -0.0778, 0.0790, 0.0032}},
+    {ADD, CONE, BOTH, 0.0030, {0.0000, -0.0848, 0.0866, 0.0080}, {0.0195, -0.0800, 0.0788, 0.0036}},
+    {CUT, EGG, ONE, 0.012, {0, -0.0955, 0.0965}, {0.018, 0.005, 0.007}},
+    // Ears: shell, rim, lobe, hollow.
+    {ADD, EGG, BOTH, 0.010, {0.0640, -0.018, -0.008}, {0.0120, 0.0240, 0.0150}},
+    {ADD, EGG, BOTH, 0.008, {0.0715, -0.020, -0.010}, {0.0070, 0.0270, 0.0165}},
+    {ADD, CONE, BOTH, 0.006, {0.0730, -0.006, 0.002, 0.0035}, {0.0770, 0.006, -0.009, 0.0040}},
+    {ADD, CONE, BOTH, 0.006, {0.0770, 0.006, -0.009, 0.0040}, {0.0810, 0.000, -0.021, 0.0040}},
+    {ADD, CONE, BOTH, 0.006, {0.0810, 0.000, -0.021, 0.0040}, {0.0810, -0.018, -0.024, 0.0038}},
+    {ADD, CONE, BOTH, 0.006, {0.0810, -0.018, -0.024, 0.0038}, {0.0760, -0.036, -0.014, 0.0036}},
+    {ADD, EGG, BOTH, 0.006, {0.0735, -0.043, -0.006}, {0.0050, 0.0085, 0.0070}},
+    {CUT, EGG, BOTH, 0.005, {0.0830, -0.020, -0.007}, {0.0075, 0.0130, 0.0085}},
+    // Neck with its sternocleidomastoids, shoulders, collarbones, chest.
+    {ADD, CONE, ONE, 0.022, {0, -0.060, -0.024, 0.046}, {0, -0.210, -0.040, 0.052}},
+    {ADD, CONE, BOTH, 0.020, {0.046, -0.066, -0.022, 0.008}, {0.011, -0.216, 0.012, 0.006}},
+    {ADD, CONE, BOTH, 0.040, {0.014, -0.135, -0.052, 0.024}, {0.110, -0.236, -0.048, 0.026}},
+    {ADD, CONE, BOTH, 0.030, {0.050, -0.268, -0.040, 0.050}, {0.140, -0.266, -0.042, 0.046}},
+    {ADD, EGG, ONE, 0.040, {0, -0.325, -0.020}, {0.145, 0.110, 0.082}},
+    {ADD, CONE, BOTH, 0.014, {0.014, -0.220, 0.012, 0.006}, {0.130, -0.224, -0.030, 0.007}},
+    {KEEP, EGG, ONE, 0.030, {0, -0.080, -0.030}, {0.185, 0.225, 0.170}},
+};
+// clang-format on
+
+// Quilez's bound, exact in sign: (|p/r| - 1) |p/r| / |p/r^2|.
+static double egg_distance(const Part *part, const Double3 at)
+{
+    Double3 p, q;
+    for (int i = 0; i < 3; i++) {
+        p[i] = (at[i] - part->a[i]) / part->b[i];
+        q[i] = p[i] / part->b[i];
+    }
+    double k = double3_length(p), l = double3_length(q);
+    return l > 0.0 ? k * (k - 1.0) / l : -fmin(part->b[0], fmin(part->b[1], part->b[2]));
+}
+
+// In the plane of axis and point: beside the slanting side, or beyond one of the spheres' circles.
+static double cone_distance(const Part *part, const Double3 at)
+{
+    Double3 axis, p, across;
+    double3_subtract(part->b, part->a, axis);
+    double3_subtract(at, part->a, p);
+    double length = double3_normalize(axis), slant = (part->a[3] - part->b[3]) / length;
+    double along = double3_dot(p, axis);
+    double3_copy(p, across);
+    double3_flatten(across, axis);
+    double flat = double3_length(across), straight = sqrt(1.0 - slant * slant);
+    double foot = along + flat * slant / straight;
+    if (foot <= 0.0) return double3_length(p) - part->a[3];
+    if (foot >= length) return double3_distance(at, part->b) - part->b[3];
+    return flat * straight + along * slant - part->a[3];
+}
+
+// A minimum that rounds the seam over `blend`, with two derivatives; symmetric, to the bit.
+static double smooth_min(double a, double b, double blend)
+{
+    double least = a < b ? a : b, near = blend - fabs(a - b), h = near / blend;
+    return near > 0.0 ? least - h * h * h * blend / 6.0 : least;
+}
+
+static double part_distance(const Part *part, const Double3 at)
+{
+    double distance[2];
+    for (int side = 0; side < (part->sides == BOTH ? 2 : 1); side++) {
+        Double3 here = {side ? -at[0] : at[0], at[1], at[2]};
+        distance[side] = part->form == EGG ? egg_distance(part, here) : cone_distance(part, here);
+    }
+    return part->sides == BOTH ? smooth_min(distance[0], distance[1], part->blend) : distance[0];
+}
+
+static double greater(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+static double lesser(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+// Whether the part, and its mirror image, is farther away than `distance`: by the box around it. An
+// ellipsoid's bound is at least the distance times its shortest radius over its longest.
+static bool is_far(const Part *part, const Double3 at, double distance)
+{
+    const double *a = part->a, *b = part->b;
+    double gap = 0.0;
+    if (part->form == EGG) {
+        for (int i = 0; i < 3; i++)
+            gap = greater(gap, fabs((i == 0 ? fabs(at[0]) : at[i]) - a[i]) - b[i]);
+        gap *= lesser(b[0], lesser(b[1], b[2]));
+        return gap > distance * greater(b[0], greater(b[1], b[2]));
+    }
+    for (int i = 0; i < 3; i++) {
+        double p = i == 0 ? fabs(at[0]) : at[i];
+        gap = greater(gap, greater(lesser(a[i], b[i]) - p, p - greater(a[i], b[i])));
+    }
+    return gap - greater(a[3], b[3]) > distance;
+}
+
+// Parts that are too far away to change the sum are passed over.
+double head_distance(const Double3 at)
+{
+    double sum = 1.0;
+    for (size_t i = 0; i < sizeof PARTS / sizeof *PARTS; i++) {
+        const Part *part = &PARTS[i];
+        double sign = part->kind == ADD ? 1.0 : -1.0;
+        if (part->kind != KEEP && is_far(part, at, greater(sign * sum, 0.0) + 1.2 * part->blend))
+            continue;
+        double distance = part_distance(part, at);
+        if (part->kind == KEEP) distance = -distance;
+        sum = sign * smooth_min(sign * sum, distance, part->blend);
+    }
+    return sum;
+}
+
+void head_normal(const Double3 at, Double3 normal)
+{
+    const double step = 1e-5;
+    for (int i = 0; i < 3; i++) {
+        Double3 ahead, behind;
+        double3_copy(at, ahead);
+        double3_copy(at, behind);
+        ahead[i] += step;
+        behind[i] -= step;
+        normal[i] = head_distance(ahead) - head_distance(behind);
+    }
+    if (!(double3_normalize(normal) > 0.0)) normal[1] = 1.0;
+}
+
+// --- The mesh.
+
+// Edge length of the first, fine mesh along an axis: linear between the knots.
+typedef struct Spacing {
+    double place, edge; // m
+} Spacing;
+
+static const Spacing ACROSS[] = {{0.0, 0.0026}, {0.050, 0.0030}, {0.090, 0.0036}, {0.150, 0.0090}};
+static const Spacing UP[] = {{-0.320, 0.0060}, {-0.200, 0.0060}, {-0.120, 0.0032}, {-0.070, 0.0020},
+                             {-0.010, 0.0020}, {0.020, 0.0036},  {0.060, 0.0075},  {0.125, 0.0075}};
+static const Spacing AHEAD[] = {{-0.130, 0.0075}, {-0.040, 0.0040}, {0.010, 0.0036},
+                                {0.050, 0.0050},  {0.075, 0.0027},  {0.122, 0.0027}};
+
+static double edge_at(const Spacing *spacing, size_t count, double at)
+{
+    size_t i = 0;
+    while (i + 2 < count && spacing[i + 1].place < at) i++;
+    const Spacing *s = spacing + i;
+    double share = fmin(fmax((at - s[0].place) / (s[1].place - s[0].place), 0.0), 1.0);
+    return s[0].edge + share * (s[1].edge - s[0].edge);
+}
+
+enum { LINES = 256 }; // room for; the tables above need fewer
+
+// From the first knot to the last; `mirrored`: with their mirror images. Returns the number of
+// planes.
+static uint32_t place_lines(const Spacing *spacing, size_t count, bool mirrored, double line[LINES])
+{
+    uint32_t found = 0;
+    for (double at = spacing[0].place; at < spacing[count - 1].place && 2 * found < LINES;) {
+        line[found++] = at;
+        at += edge_at(spacing, count, at);
+    }
+    if (!mirrored) return found;
+    for (uint32_t i = found; i-- > 0;) line[found - 1 + i] = line[i];
+    for (uint32_t i = 0; i < found - 1; i++) line[i] = -line[2 * (found - 1) - i];
+    return 2 * found - 1;
+}
+
+// Files stay small: a hundredth of a millimetre, a ten thousandth of a turn.
+static void round_numbers(float *number, size_t count, double unit)
+{
+    for (size_t i = 0; i < count; i++)
+        number[i] = (float)(floor((double)number[i] / unit + 0.5) * unit);
+}
+
+// Longitude and latitude of a vertex, `turns` times around.
+static void set_uv(const Mesh *mesh, uint32_t vertex, int turns, float uv[2])
+{
+    Double3 p;
+    double3_from_float(mesh->position[vertex], p);
+    double3_normalize(p);
+    uv[0] = (float)(0.5 + atan2(p[0], p[2]) / (2.0 * M_PI) + turns);
+    uv[1] = (float)(0.5 + asin(p[1]) / M_PI);
+}
+
+// Whether the corner lies beyond the seam at the back, seen from others of its triangle.
+static bool is_beyond(const Mesh *mesh, const uint32_t triangle[3], int k)
+{
+    float most = 0.0f;
+    for (int i = 0; i < 3; i++) most = fmaxf(most, mesh->uv[triangle[i]][0]);
+    return most - mesh->uv[triangle[k]][0] > 0.5f;
+}
+
+// Corners beyond the seam have coordinates of their own, with u beyond 1.
+static Result add_uv(Mesh *mesh, Error *error)
+{
+    uint32_t count = mesh->vertex_count;
+    TRY(mesh_create_uv(mesh, count + 3 * mesh->triangle_count, error));
+    for (uint32_t v = 0; v < count; v++) set_uv(mesh, v, 0, mesh->uv[v]);
+    for (uint32_t t = 0; t < mesh->triangle_count; t++)
+        for (int k = 0; k < 3; k++) {
+            uint32_t vertex = mesh->triangle[t][k];
+            mesh->triangle_uv[t][k] = vertex;
+            if (!is_beyond(mesh, mesh->triangle[t], k)) continue;
+            mesh->triangle_uv[t][k] = count;
+            set_uv(mesh, vertex, 1, mesh->uv[count++]);
+        }
+    mesh->uv_count = count;
+    round_numbers(mesh->uv[0], 2 * (size_t)count, 1e-4);
+    return RESULT_OK;
+}
+
+// Eyes go to the face, then to the ears; shoulders are plain and the skull is under hair.
+static double look_at(const Double3 at)
+{
+    if (at[1] < -0.13) return 0.2;
+    if (at[2] > 0.03 && at[1] < 0.03) return at[1] > -0.095 && at[2] > 0.06 ? 30.0 : 6.0;
+    return at[1] < 0.02 && fabs(at[0]) > 0.068 ? 3.0 : 0.5;
+}
+
+Result head_make_mesh(Mesh *mesh, uint32_t triangle_count, Error *error)
+{
+    double x[LINES], y[LINES], z[LINES];
+    SurfaceNet net = {
+        .distance = head_distance, .normal = head_normal, .line = {x, y, z}, .smoothing = 3};
+    net.count[0] = place_lines(ACROSS, sizeof ACROSS / sizeof *ACROSS, true, x);
+    net.count[1] = place_lines(UP, sizeof UP / sizeof *UP, false, y);
+    net.count[2] = place_lines(AHEAD, sizeof AHEAD / sizeof *AHEAD, false, z);
+    TRY(surface_net_make(mesh, &net, error));
+    TRY(simplify_mesh(mesh, triangle_count, look_at, error));
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        Double3 place;
+        double3_from_float(mesh->position[v], place);
+        surface_net_project(&net, place);
+        for (int i = 0; i < 3; i++) mesh->position[v][i] = (float)place[i];
+    }
+    round_numbers(mesh->position[0], 3 * (size_t)mesh->vertex_count, 1e-5);
+    mesh_compute_normals(mesh);
+    return add_uv(mesh, error);
+}
