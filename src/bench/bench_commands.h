@@ -45,3 +45,8 @@ Result images_run_one(const BenchOptions *options, const Gpu *gpu, Error *error)
 // The schemes and presets that are worth comparing, for sets that look like hair and the files
 // that are named.
 Result images_run(const BenchOptions *options, const Gpu *gpu, Error *error);
+
+// Light in hair against path-traced cases (light_case.h) of options->reference, or of
+// tests/data/light, by each way to compute it: mean, rel and coverage over the tracer's, times of
+// images, and bounds; with options->picture images side by side.
+Result light_run(const BenchOptions *options, const Gpu *gpu, Error *error);

@@ -22,7 +22,8 @@ static const Option OPTIONS[] = {
     {"vectors", 0, OPTION_STRING, AT(bench.vectors), "FILE.csv", 0, 0,
      "step, chain: test vectors (default: those in tests/data)"},
     {"reference", 0, OPTION_STRING, AT(bench.reference), "DIR", 0, 0,
-     "accuracy: exact motions, NAME.csv with NAME.json (default tests/data/motion)"},
+     "accuracy: exact motions, NAME.csv with NAME.json (default tests/data/motion); light: "
+     "path-traced cases of the same form (default tests/data/light)"},
     {"part", 0, OPTION_STRING, AT(bench.parts), "LIST", 0, 0,
      "only these parts of the command, with commas between them (default all)"},
     {"algo", 0, OPTION_STRING, AT(bench.method.algo), "NAME", 0, 0,
@@ -50,14 +51,23 @@ static const Option OPTIONS[] = {
     {"quality", 0, OPTION_STRING, AT(quality), "WORD", 0, 0,
      "image: a preset, normal, draft or final, for what is not said (default normal)"},
     {"frames", 0, OPTION_WHOLE, AT(bench.frames), "N", 1, 1e6,
-     "image: measured images (default 15)"},
+     "image, light: measured images (default 15)"},
     {"no-error", 0, OPTION_SWITCH, AT(bench.no_error), NULL, 0, 0, "image: times only"},
     {"cases", 0, OPTION_WHOLE, AT(bench.stress.cases), "N", 1, 1e6,
      "stress: random cases of each form of a solver (default 5000)"},
     {"seed", 0, OPTION_WHOLE, AT(bench.stress.seed), "N", 0, 2e9,
      "stress: start of its random numbers (default 1)"},
-    {"case", 0, OPTION_STRING, AT(bench.stress.text), "TEXT", 0, 0,
-     "stress: this case of --algo, as one that failed was printed, or 'plain'"},
+    {"case", 0, OPTION_STRING, AT(bench.case_name), "TEXT", 0, 0,
+     "stress: this case of --algo, as one that failed was printed, or 'plain'; light: only these "
+     "cases, with commas between them"},
+    {"way", 0, OPTION_STRING, AT(bench.ways), "LIST", 0, 0,
+     "light: only these ways to compute it, or all (default those with bounds)"},
+    {"render", 0, OPTION_STRING, AT(bench.render), "TEXT", 0, 0,
+     "light: flags of tractrix-render for every image, as --render='--smooth 3'"},
+    {"picture", 0, OPTION_STRING, AT(bench.picture), "FILE.png", 0, 0,
+     "light: a row for each case: its image by each way, and the path tracer's"},
+    {"before", 0, OPTION_STRING, AT(bench.before), "DIR", 0, 0,
+     "light: NAME.pfm of each case by another version, first in --picture"},
     {"allow", 0, OPTION_REAL, AT(bench.stress.allowed), "X", 1e-3, 1,
      "stress: share of each bound that a case may use (default 1)"},
     {"no-shrink", 0, OPTION_SWITCH, AT(no_shrink), NULL, 0, 0,
@@ -198,6 +208,7 @@ static Result read_words(Values *values, Error *error)
     options->scheme.oit = (Oit)run.oit;
     options->scheme.shadow = (Shadow)run.shadow;
     options->scheme.quality = (Quality)run.quality;
+    options->stress.text = options->case_name;
     options->stress.shrinks = !values->no_shrink;
     if (options->steps) options->stress.steps = options->steps;
     if (!options->steps) options->steps = 200;
@@ -258,25 +269,35 @@ static bool lists(const char *text, const char *word, size_t length)
     return false;
 }
 
+bool bench_options_lists(const char *text, const char *word)
+{
+    return lists(text, word, strlen(word));
+}
+
 bool bench_options_part(const BenchOptions *options, const char *name)
 {
     return !options->parts || lists(options->parts, name, strlen(name));
 }
 
-Result bench_options_check_parts(const BenchOptions *options, const char *const *names,
-                                 Error *error)
+Result bench_options_check_list(const char *option, const char *text, const char *const *names,
+                                Error *error)
 {
     char all[256] = "";
     for (const char *const *name = names; *name; ++name) {
         size_t at = strlen(all);
         snprintf(all + at, sizeof all - at, "%s%s", at ? "," : "", *name);
     }
-    const char *text = options->parts ? options->parts : "";
-    for (size_t part; *text; text += part + (text[part] == ',')) {
+    for (size_t part; text && *text; text += part + (text[part] == ',')) {
         part = strcspn(text, ",");
         if (!lists(all, text, part))
-            return error_set(error, RESULT_USAGE, "--part: no part '%.*s'; there are %s", (int)part,
-                             text, all);
+            return error_set(error, RESULT_USAGE, "%s: no %s '%.*s'; there are %s", option,
+                             option + strspn(option, "-"), (int)part, text, all);
     }
     return RESULT_OK;
+}
+
+Result bench_options_check_parts(const BenchOptions *options, const char *const *names,
+                                 Error *error)
+{
+    return bench_options_check_list("--part", options->parts, names, error);
 }

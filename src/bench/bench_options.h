@@ -26,19 +26,23 @@ typedef struct BenchScheme {
 
 typedef struct BenchOptions {
     const char *set, *tfx;           // a set's name; a hair file; NULL: neither
-    const char *vectors, *reference; // file of test vectors, folder of exact motions; NULL: those
-                                     // that ship
+    const char *vectors, *reference; // file of test vectors; folder of exact motions or of
+                                     // path-traced light; NULL: those that ship
     const char *parts;               // "motions,work"; NULL: all of the command
-    Method method;                   // algo NULL: all
-    double rates[BENCH_MOST_RATES];  // steps a second
-    int rate_count;                  // 0: the part's own
-    double seconds;                  // of long runs
-    int steps, warm_up;              // measured, and not measured before that
-    StressOptions stress;            // but for its method
-    int size[2];                     // image to draw in px; 0: none, or the usual size
-    BenchScheme scheme;              // how hair is drawn
-    int frames;                      // images, >= 1, after two that are not measured
-    bool no_error;                   // no exact image, which takes many seconds
+    const char *case_name;          // "curls_blond_sky,fur_brown_side"; a case of stress; NULL: all
+    const char *ways;               // of light, "grid,dual"; NULL: those that have bounds
+    const char *render;             // flags of tractrix-render for every image; NULL: none
+    const char *picture, *before;   // PNG file; folder of PFM files by another version; NULL: none
+    Method method;                  // algo NULL: all
+    double rates[BENCH_MOST_RATES]; // steps a second
+    int rate_count;                 // 0: the part's own
+    double seconds;                 // of long runs
+    int steps, warm_up;             // measured, and not measured before that
+    StressOptions stress;           // but for its method
+    int size[2];                    // image to draw in px; 0: none, or the usual size
+    BenchScheme scheme;             // how hair is drawn
+    int frames;                     // images, >= 1, after two that are not measured
+    bool no_error;                  // no exact image, which takes many seconds
     GpuOptions gpu;
     TableOutput output;
     char **files; // what is no option: the command and hair files
@@ -57,7 +61,14 @@ void bench_options_destroy(BenchOptions *options);
 // Whether a command shall do its part `name`.
 bool bench_options_part(const BenchOptions *options, const char *name);
 
+// Whether a list of words with commas between them has `word`.
+bool bench_options_lists(const char *text, const char *word);
+
 // That every part which is asked for is one of `names`, which end with NULL; RESULT_USAGE naming
 // them.
 Result bench_options_check_parts(const BenchOptions *options, const char *const *names,
                                  Error *error);
+
+// The same for the list of another option; NULL is right.
+Result bench_options_check_list(const char *option, const char *text, const char *const *names,
+                                Error *error);

@@ -295,6 +295,8 @@ static const struct {
      "drawing --set NAME or --tfx FILE: its time, and its error against the exact image"},
     {"images", images_run,
      "the same for every scheme and preset; parts: straight, curls, fur, files (those named)"},
+    {"light", light_run,
+     "light in hair against a path tracer's, by each way to compute it: --way, --case, --picture"},
     {"shaders", run_shaders, "compiles every shader variant with warnings as errors"},
 };
 enum { COMMAND_COUNT = sizeof COMMANDS / sizeof *COMMANDS };

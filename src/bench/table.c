@@ -149,21 +149,43 @@ void table_add(Table *table, const void *row)
     json_array_append_new(table->rows, object);
 }
 
+// Counts a bound; `stated` says what it is.
+static const char *judge(Table *table, bool holds, double value, const char *stated,
+                         const char *format, va_list arguments)
+{
+    char what[384];
+    ++table->bounds;
+    if (holds) return "holds";
+    vsnprintf(what, sizeof what, format, arguments);
+    if (table->broken++ == 0)
+        snprintf(table->first_broken, sizeof table->first_broken, "%s: %.4g, stated is %s", what,
+                 value, stated);
+    return "broken";
+}
+
 const char *table_check(Table *table, double value, double most, const char *format, ...)
 {
+    char stated[64];
+    va_list arguments;
     if (isnan(most)) return "";
-    ++table->bounds;
-    if (value <= most) return "holds";
-    if (table->broken++ == 0) {
-        char what[384];
-        va_list arguments;
-        va_start(arguments, format);
-        vsnprintf(what, sizeof what, format, arguments);
-        va_end(arguments);
-        snprintf(table->first_broken, sizeof table->first_broken, "%s: %.4g, stated is at most %g",
-                 what, value, most);
-    }
-    return "broken";
+    snprintf(stated, sizeof stated, "at most %g", most);
+    va_start(arguments, format);
+    const char *verdict = judge(table, value <= most, value, stated, format, arguments);
+    va_end(arguments);
+    return verdict;
+}
+
+const char *table_check_within(Table *table, double value, double least, double most,
+                               const char *format, ...)
+{
+    char stated[64];
+    va_list arguments;
+    snprintf(stated, sizeof stated, "%g to %g", least, most);
+    va_start(arguments, format);
+    const char *verdict =
+        judge(table, value >= least && value <= most, value, stated, format, arguments);
+    va_end(arguments);
+    return verdict;
 }
 
 static Result write_files(Table *table, Error *error)

@@ -72,6 +72,10 @@ void table_add(Table *table, const void *row);
 const char *table_check(Table *table, double value, double most, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
+// The same for a value that must be at least `least` and at most `most`.
+const char *table_check_within(Table *table, double value, double least, double most,
+                               const char *format, ...) __attribute__((format(printf, 5, 6)));
+
 // Writes the files unless `result`, that of the measurements, is a failure other than
 // RESULT_FAILED; frees all. RESULT_FAILED if a bound is broken or a file cannot be written.
 Result table_close(Table *table, Result result, Error *error);

@@ -1,0 +1,78 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# tractrix-bench light: bounds against path-traced cases, and what it says of files that are wrong. No timings.
+. tests/support/claims.sh
+program=$bin/tractrix-bench
+
+# field FILE.csv NAME: the column's values, a line each.
+field() { awk -F, -v name="$2" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) at = i; next } { print $at }' "$1"; }
+# same A B WHAT
+same() { if [ "$1" = "$2" ]; then good; else bad "$3: got '$1', expected '$2'"; fi; }
+
+claim "single scattering and all light hold their bounds: fur in the sun, blond curls in sun and sky"
+run 0 light --case curls_blond_front,curls_blond_sky,fur_brown_side --way none,grid --frames 1 --csv "$work/a.csv" --json "$work/a.json"
+same "$(field "$work/a.csv" verdict | grep -c holds)" 6 "rows that hold"
+same "$(field "$work/a.csv" way | sort | uniq -c | tr -s ' \n' ' ')" " 4 grid 4 none " "rows, and a mean for each way"
+same "$(grep -c '"mean_r"' "$work/a.json")" 8 "rows of JSON"
+
+claim "both rasterisers cover the same"
+run 0 light --case fur_brown_side --way grid --raster quads --frames 1 --csv "$work/quads.csv"
+run 0 light --case fur_brown_side --way grid --raster blocks --frames 1 --csv "$work/blocks.csv"
+same "$(field "$work/quads.csv" raster | head -1) $(field "$work/blocks.csv" raster | head -1)" "quads blocks" "rasterisers"
+for name in coverage mean_r mean_g mean_b; do
+    same "$(field "$work/quads.csv" $name | head -1 | cut -c 1-3)" "$(field "$work/blocks.csv" $name | head -1 | cut -c 1-3)" "$name, two digits"
+done
+
+# A picture has two tiles of 16 x 16.
+claim "a folder of one's own, with a picture of it"
+mkdir "$work/own"
+printf '{"sections": [{"file": "hair.tfx", "unit": "m", "algo": "none", "shading": "marschner"}], "size": [16, 16], "shadow": "dom"}' >"$work/own/one.json"
+"$bin/tractrix-gen" --kind fur --count 40 --vertices 8 --seed 1 -q -o "$work/own/hair.tfx"
+table() {
+    echo column,row,one_r,one_g,one_b,all_r,all_g,all_b,coverage
+    for place in 0,0 1,0 0,1 1,1; do echo "$place,$1,0.2,0.3,0.1,0.2,0.3,0.5"; done
+}
+table 0.1 >"$work/own/one.csv"
+cp "$work/own/one.json" "$work/own/scene.json"
+run 1 light --reference "$work/own" --way none --frames 1 --picture "$work/own.png" --csv "$work/own_rows.csv"
+says "scene.json: no case"; says "bounds are broken"; is_png "$work/own.png"
+same "$(field "$work/own_rows.csv" scene | tr '\n' ' ')" "one mean " "cases"
+
+claim "an image that is the tracer's has a mean of 1 and a rel of 0"
+# The mean of the first run's image over the table's tells what the table must be for that; one block alone has no other shape.
+printf '{"sections": [{"file": "hair.tfx", "unit": "m", "algo": "none", "shading": "marschner"}], "size": [8, 8], "shadow": "dom"}' >"$work/own/one.json"
+table 0.1 | head -2 >"$work/own/one.csv"
+run 1 light --reference "$work/own" --case one --way none --frames 1 --csv "$work/first.csv"
+light() { field "$work/first.csv" "mean_$1" | head -1 | awk -v traced="$2" '{ printf "%.12g", $1 * traced }'; }
+{ table 0 | head -1; echo "0,0,$(light r 0.1),$(light g 0.2),$(light b 0.3),0.1,0.2,0.3,0.5"; } >"$work/own/one.csv"
+run 0 light --reference "$work/own" --case one --way none --frames 1 --csv "$work/second.csv"
+for channel in r g b; do
+    same "$(field "$work/second.csv" mean_$channel | head -1 | awk '{ print ($1 - 1) ^ 2 < 1e-12 }')" 1 "mean of $channel"
+    same "$(field "$work/second.csv" rel_$channel | head -1 | awk '{ print $1 < 1e-6 }')" 1 "rel of $channel"
+done
+
+claim "files that are wrong end with 3 and one line behind that of the device"
+says_once() { same "$(grep -vc 'OpenGL\|: no case, ' "$work/err")" 1 "lines"; }
+broken() { run 3 light --reference "$work/own" --case one --way none --frames 1; says "$1"; says_once; }
+table 0.1 | head -4 >"$work/own/one.csv"; broken "one.csv: got 3 lines"
+{ table 0.1 | head -4; echo 0,0,1,1,1,1,1,1,1; } >"$work/own/one.csv"; broken "one.csv:5: a second line for block 0, 0"
+table nan >"$work/own/one.csv"; broken "one.csv:2: one_r"
+table -1 >"$work/own/one.csv"; broken "one.csv:2: one_r: got -1"
+table 0 >"$work/own/one.csv"; broken "one_r is 0 in every block"
+table 0.1 | cut -d, -f 1-8 >"$work/own/one.csv"; broken "coverage"
+table 0.1 | sed 's/^1,1,/-1,1,/' >"$work/own/one.csv"; broken "one.csv:5: column: got -1"
+table 0.1 | sed '3s/,0.5$//' >"$work/own/one.csv"; broken "one.csv:3: 8 fields"
+table 0.1 >"$work/own/one.csv"; broken "one.csv: 2 x 2 blocks of 8 pixels"
+printf '{"sections": [' >"$work/own/one.json"; broken "one.json"
+printf '{"sections": [{"file": "none.tfx"}], "size": [16, 16]}' >"$work/own/one.json"; broken "none.tfx"
+
+claim "folders and names that there are not"
+run 3 light --reference "$work/nothing"; says "$work/nothing: no such folder"; says "--reference DIR"; says_once
+mkdir "$work/empty"
+run 3 light --reference "$work/empty"; says "no cases"; says_once
+run 2 light --case fur_brown_sid; says "no case 'fur_brown_sid'"; says_once
+run 2 light --way gird; says "no way 'gird'"; says "grid"; says_once
+run 2 light --case fur_brown_side --render=--no-such-flag; says "--no-such-flag"; says_once
+run 2 light --case fur_brown_side --before "$work"; says "--picture"; says_once
+
+finish
