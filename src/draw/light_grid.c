@@ -15,9 +15,8 @@ static const float SIDE_BLUR = GRID_BLUR;
 static void make_first_row(const FibreLobes *lobes, const float way[3], int class,
                            float row[GRID_WIDE])
 {
-    float t[3];
+    const float *t = TANGENT[class];
     Ways in, out;
-    ordinates_tangent(class, t);
     grid_same_ways(way, 1, &in);
     for (int g = 0; g < ORDINATE_GROUPS; ++g) {
         float f[3][ORDINATE_LANES];
@@ -68,9 +67,8 @@ Result light_grid_make_first(LightGridState *state, const GridScene *scene, Erro
 static void make_scatter_table(const FibreLobes *lobes, int class,
                                float (*table)[ORDINATES][ORDINATES])
 {
-    float t[3];
+    const float *t = TANGENT[class];
     Ways in, out;
-    ordinates_tangent(class, t);
     for (int g = 0; g < ORDINATE_GROUPS; ++g) {
         float sum[3][GRID_LANES] = {{0}};
         grid_group_ways(g, &out);
@@ -156,10 +154,10 @@ static Result make_planes(LightGridState *state, Error *error)
     const int *n = state->lattice.count;
     size_t most = (size_t)(n[0] > n[1] ? n[0] : n[1]);
     most = (most > (size_t)n[2] ? most : (size_t)n[2]) + 2;
-    size_t plane = most * most * 3 * GRID_LANES;
+    size_t plane = (most > 6 ? most : 6) * most * 3 * GRID_LANES;
     if (state->plane >= plane) return RESULT_OK;
     free(state->planes);
-    state->planes = malloc(2 * ORDINATE_GROUPS * plane * sizeof *state->planes);
+    state->planes = malloc(3 * ORDINATE_GROUPS * plane * sizeof *state->planes);
     state->plane = state->planes ? plane : 0;
     return state->planes ? RESULT_OK
                          : error_set(error, RESULT_FAILED, "no memory for light among hair");
@@ -213,6 +211,7 @@ void light_grid_destroy(LightGrid *grid)
     free(state->source);
     free(state->order);
     free(state->light);
+    free(state->hidden);
     free(state->tint);
     free(state->class);
     free(state->planes);

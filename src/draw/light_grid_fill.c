@@ -258,18 +258,37 @@ static float find_lamp(const GridScene *scene, const LightLattice *lattice, int 
     return most > 0 ? fminf(fmaxf(fmaxf(there[0], there[1]), there[2]) / most, 1e3f) : 0;
 }
 
+// Of a painted particle the area times the albedo over the kind's.
+static void put_tint(const GridHair *hair, size_t particle, float area, uint32_t tint[3])
+{
+    const MaterialParams *m = &hair->caster.material;
+    for (int k = 0; k < 3; ++k) {
+        float albedo = m->mean_albedo[k];
+        if (hair->caster.paint) {
+            uint32_t word = hair->caster.paint[particle][k / 2],
+                     bits = k == 1 ? word >> 16 : word & 0xffff;
+            albedo = m->albedo[0] + (1 - m->albedo[0]) * powf((float)bits / 65535, m->albedo[1]);
+        }
+        tint[k] = steps_of(area * albedo / fmaxf(m->mean_albedo[k], 1e-6f));
+    }
+}
+
 static void put_item(const Fill *fill, const GridHair *hair, const Segments *s, int tile, int j,
                      int i, float on, int cell, uint32_t *next)
 {
     LightGridState *state = fill->state;
-    size_t words = 2 + (size_t)state->lights;
-    GridItem *item = (GridItem *)(void *)(state->items + (size_t)next[cell]++ * words);
+    GridItem *item =
+        (GridItem *)(void *)(state->items + (size_t)next[cell]++ * (size_t)state->item_words);
     float area = s->area[i] / (float)state->pieces;
     item->class = s->class[i];
     item->area = steps_of(area);
     for (int l = 0; l < state->lights; ++l)
         item->lit[l] = steps_of(area * find_left(fill->scene, hair, l, tile, j, i, on) *
                                 find_lamp(fill->scene, &state->lattice, l, s, on, i));
+    if (state->tinted)
+        put_tint(hair,
+                 ((size_t)tile * hair->caster.material.vertex_count + (size_t)j) * W + (size_t)i,
+                 area, item->lit + state->lights);
 }
 
 SIMD_INLINE void place_segments(const Fill *fill, const GridHair *hair, int tile, int j,
@@ -352,7 +371,8 @@ static bool grow_slots(LightGridState *state)
                 grow(&state->tint, &of[4], filled, 3 * sizeof(float)) &
                 grow(&state->class, &of[5], filled, sizeof(int)) &
                 grow(&state->order, &of[6], active, GRID_WIDE * sizeof(float)) &
-                grow(&state->light, &of[7], active, GRID_WIDE * sizeof(float));
+                grow(&state->light, &of[7], active, GRID_WIDE * sizeof(float)) &
+                grow(&state->hidden, &of[8], active, 4 * sizeof(float));
     state->filled_room = good ? of[0] : 0;
     state->slot_room = good ? of[6] : 0;
     return good;
@@ -395,7 +415,7 @@ static void make_slots(LightGridState *state)
 
 // What a cell's items come to.
 typedef struct CellSum {
-    uint64_t area[GRID_CLASSES], lit[MAX_LIGHTS][GRID_CLASSES];
+    uint64_t area[GRID_CLASSES], lit[MAX_LIGHTS][GRID_CLASSES], whole, tint[3];
     uint16_t used[GRID_CLASSES];
     int count;
     bool is_used[GRID_CLASSES];
@@ -403,15 +423,17 @@ typedef struct CellSum {
 
 static void add_items(const LightGridState *state, uint32_t first, uint32_t end, CellSum *sum)
 {
-    size_t words = 2 + (size_t)state->lights;
     for (uint32_t n = first; n < end; ++n) {
-        const GridItem *item = (const GridItem *)(const void *)(state->items + n * words);
+        const GridItem *item =
+            (const GridItem *)(const void *)(state->items + n * (size_t)state->item_words);
         if (!sum->is_used[item->class]) {
             sum->is_used[item->class] = true;
             sum->used[sum->count++] = (uint16_t)item->class;
         }
         sum->area[item->class] += item->area;
         for (int l = 0; l < state->lights; ++l) sum->lit[l][item->class] += item->lit[l];
+        sum->whole += item->area;
+        for (int k = 0; k < 3 && state->tinted; ++k) sum->tint[k] += item->lit[state->lights + k];
     }
 }
 
@@ -423,23 +445,30 @@ static void clear_sum(const LightGridState *state, CellSum *sum)
         for (int l = 0; l < state->lights; ++l) sum->lit[l][sum->used[u]] = 0;
     }
     sum->count = 0;
+    sum->whole = 0;
+    memset(sum->tint, 0, sizeof sum->tint);
 }
 
 // Classes in their order, whatever thread met them first.
-static int compare_classes(const void *a, const void *b)
+static void sort_classes(CellSum *sum)
 {
-    return *(const uint16_t *)a - *(const uint16_t *)b;
+    for (int u = 1; u < sum->count; ++u) {
+        uint16_t class = sum->used[u];
+        int to = u;
+        for (; to > 0 && sum->used[to - 1] > class; --to) sum->used[to] = sum->used[to - 1];
+        sum->used[to] = class;
+    }
 }
 
 // The main tangent by power iteration on the sum of t t^T, on the side of most tips.
 static int find_main_class(const CellSum *sum)
 {
-    float tensor[3][3] = {{0}}, mean[3] = {0}, kind_area[LIGHT_GRID_KINDS] = {0}, t[3],
+    float tensor[3][3] = {{0}}, mean[3] = {0}, kind_area[LIGHT_GRID_KINDS] = {0},
           main[3] = {0.577f, 0.577f, 0.578f}, most = 0;
     int kind = 0;
     for (int u = 0; u < sum->count; ++u) {
         float w = (float)sum->area[sum->used[u]];
-        ordinates_tangent(sum->used[u] % TANGENTS, t);
+        const float *t = TANGENT[sum->used[u] % TANGENTS];
         kind_area[sum->used[u] / TANGENTS] += w;
         if (w > most) most = w, memcpy(main, t, sizeof main);
         for (int i = 0; i < 3; ++i) {
@@ -485,12 +514,12 @@ static float find_passed(const LightGridState *state, const GridScene *scene, in
 }
 
 // k h, then first(d) / k = S without scattering, of one cell.
-SIMD_INLINE void fill_depths(const CellSum *sum, const float (*sines)[ORDINATES], float depth[])
+SIMD_INLINE void fill_depths(const CellSum *sum, float depth[ORDINATES])
 {
     for (int d = 0; d < ORDINATES; ++d) depth[d] = 0;
     for (int u = 0; u < sum->count; ++u) {
         float w = (float)sum->area[sum->used[u]] * (1 / ITEM_STEPS);
-        const float *sine = sines[sum->used[u] % TANGENTS];
+        const float *sine = TANGENT_SINE[sum->used[u] % TANGENTS];
         for (int d = 0; d < ORDINATES; ++d) depth[d] += w * sine[d];
     }
 }
@@ -536,8 +565,7 @@ SIMD_INLINE void fill_passage(LightGridState *state, int f)
 typedef struct CellFill {
     LightGridState *state;
     const GridScene *scene;
-    const float (*sines)[ORDINATES]; // [TANGENTS]
-    CellSum *sums;                   // [parts]
+    CellSum *sums; // [parts]
 } CellFill;
 
 SIMD_INLINE void fill_cells(const CellFill *fill, int part)
@@ -553,9 +581,11 @@ SIMD_INLINE void fill_cells(const CellFill *fill, int part)
         uint32_t stop = state->first_item[(size_t)(state->parts - 1) * cells + c],
                  start = c ? state->first_item[(size_t)(state->parts - 1) * cells + c - 1] : 0;
         add_items(state, start, stop, sum);
-        qsort(sum->used, (size_t)sum->count, sizeof *sum->used, compare_classes);
-        fill_depths(sum, fill->sines, state->depth + (size_t)f * ORDINATES);
-        for (int k = 0; k < 3; ++k) state->tint[3 * f + k] = 1;
+        sort_classes(sum);
+        fill_depths(sum, state->depth + (size_t)f * ORDINATES);
+        for (int k = 0; k < 3; ++k)
+            state->tint[3 * f + k] =
+                state->tinted && sum->whole ? (float)sum->tint[k] / (float)sum->whole : 1;
         fill_source(state, fill->scene, sum, f, state->source + (size_t)f * GRID_WIDE);
         state->class[f] = find_main_class(sum);
         fill_passage(state, f);
@@ -565,23 +595,15 @@ SIMD_INLINE void fill_cells(const CellFill *fill, int part)
 
 SIMD_STAGE(fill_cells, CellFill)
 
-static void find_sines(float (*sines)[ORDINATES])
-{
-    for (int class = 0; class < TANGENTS; ++class) {
-        float t[3];
-        ordinates_tangent(class, t);
-        for (int d = 0; d < ORDINATES; ++d) {
-            float along = t[0] * ORDINATE[0][d] + t[1] * ORDINATE[1][d] + t[2] * ORDINATE[2][d];
-            sines[class][d] = sqrtf(fmaxf(1 - along * along, 0));
-        }
-    }
-}
-
 static void find_lights(LightGridState *state, const GridScene *scene)
 {
     const LightLattice *lattice = &state->lattice;
     float middle[3] = {0}, way[3], unused[3];
     state->lights = scene->suns ? scene->draw->light_count : 0;
+    state->tinted = false;
+    for (uint32_t h = 0; h < scene->hair_count; ++h)
+        state->tinted |= scene->hair[h].caster.paint != NULL;
+    state->item_words = 2 + state->lights + (state->tinted ? 3 : 0);
     for (int k = 0; k < 3; ++k)
         for (int n = 0; n < 3; ++n)
             middle[n] += lattice->turn[k][n] *
@@ -602,24 +624,19 @@ static Result fill_all(LightGridState *state, const GridScene *scene, Error *err
     run_place(&fill, state->parts);
     make_slots(state);
     if (!grow(&state->items, &state->item_room,
-              (size_t)state->item_count * (2 + (size_t)state->lights), sizeof *state->items) ||
+              (size_t)state->item_count * (size_t)state->item_words, sizeof *state->items) ||
         !grow_slots(state))
         return RESULT_FAILED;
     fill.emit = true;
     run_place(&fill, state->parts);
     THEN(result, light_grid_make_first(state, scene, error));
     if (result != RESULT_OK) return result;
-    float(*sines)[ORDINATES] = malloc(TANGENTS * sizeof *sines);
     CellSum *sums = calloc((size_t)state->parts, sizeof *sums);
-    if (sines && sums) {
-        CellFill cell_fill = {state, scene, (const float(*)[ORDINATES])sines, sums};
-        find_sines(sines);
-        run_fill_cells(&cell_fill, state->parts);
-    }
-    result = sines && sums ? RESULT_OK : RESULT_FAILED;
-    free(sines);
+    if (!sums) return RESULT_FAILED;
+    CellFill cell_fill = {state, scene, sums};
+    run_fill_cells(&cell_fill, state->parts);
     free(sums);
-    return result;
+    return RESULT_OK;
 }
 
 bool light_grid_fill(LightGridState *state, const GridScene *scene, Error *error, Result *result)

@@ -2,7 +2,8 @@
 // What hair shows of the light among it: at each particle the radiance of the eight cells around it
 // (trilinear), weighted by what a fibre with its tangent sends from each direction to the eye.
 // Those weights are tabled for one way to the eye, by tangents on an octahedron (bilinear); a
-// particle's tangent is turned as its own way to the eye is.
+// particle's tangent is turned as its own way to the eye is. Particles so deep in hair that they
+// can hardly be seen get the mean light of their cell.
 #include "draw/light_grid_state.h"
 
 #include <math.h>
@@ -82,13 +83,73 @@ Result light_grid_make_gather(LightGridState *state, const GridScene *scene, Err
     return RESULT_OK;
 }
 
-// --- Particles.
-
 typedef struct Gather {
-    const LightGridState *state;
+    LightGridState *state;
     const GridScene *scene;
-    float eye[3]; // m, lattice's axes
+    float eye[3];  // m, lattice's axes
+    int ordinate;  // the nearest to the way to the eye
+    float opacity; // of hair to the eye over that to light: the least of all hair
 } Gather;
+
+// --- Cells that are hidden.
+
+// Fibres between the eye and the cell, but for those of the cell and of its neighbours, beyond
+// which a share of 1e-3 of hair is seen.
+static const float HIDDEN_BEHIND = 7;
+
+static bool is_hidden(const Gather *gather, const int cell[3])
+{
+    const LightGridState *state = gather->state;
+    const LightLattice *lattice = &state->lattice;
+    float way[3], length = 0, depth = 0;
+    int axis = 0;
+    for (int k = 0; k < 3; ++k) {
+        way[k] = (gather->eye[k] - lattice->low[k]) / lattice->side - (float)cell[k] - 0.5f;
+        if (fabsf(way[k]) > fabsf(way[axis])) axis = k;
+        length += way[k] * way[k];
+    }
+    float main = fmaxf(fabsf(way[axis]), 1e-6f), step_length = sqrtf(length) / main;
+    for (int step = 2; (float)step < main; ++step) {
+        int at[3];
+        bool inside = true;
+        for (int k = 0; k < 3; ++k) {
+            at[k] = (int)floorf((float)cell[k] + 0.5f + (float)step * way[k] / main);
+            inside &= at[k] >= 0 && at[k] < lattice->count[k];
+        }
+        if (!inside) break;
+        int slot = state->slot[(at[2] * lattice->count[1] + at[1]) * lattice->count[0] + at[0]];
+        if (slot >= 0 && slot < state->filled)
+            depth +=
+                state->depth[(size_t)slot * ORDINATES + (size_t)gather->ordinate] * step_length;
+        if (depth * gather->opacity > HIDDEN_BEHIND) return true;
+    }
+    return false;
+}
+
+SIMD_INLINE void find_hidden(const Gather *gather, int part)
+{
+    LightGridState *state = gather->state;
+    const int *n = state->lattice.count;
+    int first = (int)((int64_t)state->active * part / state->parts),
+        end = (int)((int64_t)state->active * (part + 1) / state->parts);
+    for (int s = first; s < end; ++s) {
+        int c = state->cell_of[s], cell[3] = {c % n[0], c / n[0] % n[1], c / (n[0] * n[1])};
+        const float *light = state->light + (size_t)s * GRID_WIDE;
+        float *mean = state->hidden + (size_t)s * 4;
+        mean[3] = is_hidden(gather, cell) ? 1 : 0;
+        if (mean[3] == 0) continue;
+        for (int k = 0; k < 3; ++k) {
+            float sum = 0;
+            for (int g = 0; g < ORDINATE_GROUPS; ++g)
+                for (int l = 0; l < GRID_LANES; ++l) sum += light[(g * 3 + k) * GRID_LANES + l];
+            mean[k] = sum / ORDINATES;
+        }
+    }
+}
+
+SIMD_STAGE(find_hidden, Gather)
+
+// --- Particles.
 
 // Places and tangents of one particle of each strand of a tile, along the lattice's axes.
 typedef struct Particles {
@@ -152,9 +213,25 @@ SIMD_INLINE void find_particles(const Gather *gather, const GridHair *hair, int 
     find_node(p);
 }
 
-// The radiance around particle i.
-SIMD_INLINE void find_light(const LightGridState *state, const Particles *p, int i,
-                            float light[GRID_WIDE])
+// Slot of the cell that particle i lies in.
+SIMD_INLINE int find_slot(const LightGridState *state, const Particles *p, int i)
+{
+    const LightLattice *lattice = &state->lattice;
+    float inverse = 1 / lattice->side;
+    int at[3];
+    for (int k = 0; k < 3; ++k)
+        at[k] = (int)simd_min(simd_max((p->x[k][i] - lattice->low[k]) * inverse, 0),
+                              (float)(lattice->count[k] - 1));
+    return state->slot[(at[2] * lattice->count[1] + at[1]) * lattice->count[0] + at[0]];
+}
+
+// The eight cells around particle i and their shares.
+typedef struct Around {
+    const float *cell[8];
+    float weight[8];
+} Around;
+
+SIMD_INLINE void find_around(const LightGridState *state, const Particles *p, int i, Around *around)
 {
     const LightLattice *lattice = &state->lattice;
     float inverse = 1 / lattice->side, share[3];
@@ -165,7 +242,6 @@ SIMD_INLINE void find_light(const LightGridState *state, const Particles *p, int
         low[k] = (int)(at + 1) - 1;
         share[k] = at - (float)low[k];
     }
-    for (int n = 0; n < GRID_WIDE; ++n) light[n] = 0;
     for (int q = 0; q < 8; ++q) {
         float weight = 1;
         int at[3];
@@ -175,24 +251,30 @@ SIMD_INLINE void find_light(const LightGridState *state, const Particles *p, int
             at[k] = c < 0 ? 0 : c > last ? last : c;
         }
         int slot = state->slot[(at[2] * lattice->count[1] + at[1]) * lattice->count[0] + at[0]];
-        if (slot < 0 || weight == 0) continue;
-        const float *cell = state->light + (size_t)slot * GRID_WIDE;
-        for (int n = 0; n < GRID_WIDE; ++n) light[n] += weight * cell[n];
+        around->cell[q] = state->light + (size_t)(slot < 0 ? 0 : slot) * GRID_WIDE;
+        around->weight[q] = slot < 0 ? 0 : weight;
     }
 }
 
-SIMD_INLINE void show_light(const GridKind *kind, const Particles *p, int i,
-                            const float light[GRID_WIDE], float seen[4])
+// The radiance around a particle times what its fibre sends of it to the eye.
+SIMD_INLINE void show_light(const GridKind *kind, const Particles *p, int i, const Around *around,
+                            float seen[4])
 {
     const float(*rows)[GRID_WIDE] = (const float(*)[GRID_WIDE])kind->gather + p->node[i];
+    const float *const *cell = around->cell, *w = around->weight;
     float u = p->share[0][i], v = p->share[1][i], a = (1 - u) * (1 - v), b = u * (1 - v),
           c = (1 - u) * v, d = u * v, sum[3][GRID_LANES] = {{0}};
     for (int g = 0; g < ORDINATE_GROUPS; ++g)
         for (int n = 0; n < 3; ++n)
             for (int l = 0; l < GRID_LANES; ++l) {
                 int at = (g * 3 + n) * GRID_LANES + l;
-                sum[n][l] += light[at] * (a * rows[0][at] + b * rows[1][at] + c * rows[ROW][at] +
-                                          d * rows[ROW + 1][at]);
+                float light = (w[0] * cell[0][at] + w[1] * cell[1][at]) +
+                              (w[2] * cell[2][at] + w[3] * cell[3][at]) +
+                              ((w[4] * cell[4][at] + w[5] * cell[5][at]) +
+                               (w[6] * cell[6][at] + w[7] * cell[7][at]));
+                float sent = (a * rows[0][at] + b * rows[1][at]) +
+                             (c * rows[ROW][at] + d * rows[ROW + 1][at]);
+                sum[n][l] += light * sent;
             }
     for (int n = 0; n < 3; ++n) {
         float all = 0;
@@ -202,36 +284,82 @@ SIMD_INLINE void show_light(const GridKind *kind, const Particles *p, int i,
     seen[3] = 1;
 }
 
-// What lies between particles j - 1 and j on smooth curves is interpolated.
-static void fill_between(const GridHair *hair, int tile, int j, int strands)
+// Points of the curves between two particles of a tile's strands are interpolated.
+static void fill_between(const GridHair *hair, int tile, int from, int to, int strands)
 {
     size_t parts = hair->caster.material.smooth_parts,
            points = (hair->caster.material.vertex_count - 1) * parts + 1,
-           to = ((size_t)tile * points + (size_t)j * parts) * W, from = to - parts * W;
-    for (size_t k = 1; k < parts; ++k)
+           first = ((size_t)tile * points + (size_t)from * parts) * W,
+           between = (size_t)(to - from) * parts, last = first + between * W;
+    for (size_t k = 1; k < between; ++k)
         for (size_t i = 0; i < (size_t)strands; ++i)
             for (int n = 0; n < 4; ++n) {
-                float a = hair->seen[from + i][n], b = hair->seen[to + i][n];
-                hair->seen[from + k * W + i][n] = a + (b - a) * (float)k / (float)parts;
+                float a = hair->seen[first + i][n], b = hair->seen[last + i][n];
+                hair->seen[first + k * W + i][n] = a + (b - a) * ((float)k / (float)between);
             }
 }
 
-SIMD_INLINE void gather_tile(const Gather *gather, const GridHair *hair, int tile)
+SIMD_INLINE void gather_particles(const Gather *gather, const GridHair *hair, int tile, int j,
+                                  int strands, const Particles *p)
 {
     const MaterialParams *m = &hair->caster.material;
     const GridKind *kind = &gather->state->kinds[hair->kind];
     size_t points = (size_t)(m->vertex_count - 1) * m->smooth_parts + 1;
-    int left = (int)m->drawn_strands - tile * W, strands = left < W ? left : W;
-    Particles p;
-    float light[GRID_WIDE];
-    for (int j = 0; j < (int)m->vertex_count; ++j) {
-        float(*seen)[4] = hair->seen + ((size_t)tile * points + (size_t)j * m->smooth_parts) * W;
-        find_particles(gather, hair, tile, j, &p);
-        for (int i = 0; i < strands; ++i) {
-            find_light(gather->state, &p, i, light);
-            show_light(kind, &p, i, light, seen[i]);
+    Around around;
+    float(*seen)[4] = hair->seen + ((size_t)tile * points + (size_t)j * m->smooth_parts) * W;
+    for (int i = 0; i < strands; ++i) {
+        int slot = find_slot(gather->state, p, i);
+        const float *hidden = gather->state->hidden + 4 * (size_t)(slot < 0 ? 0 : slot);
+        if (slot >= 0 && hidden[3] > 0) {
+            for (int k = 0; k < 3; ++k)
+                seen[i][k] = hidden[k] * kind->lobes.albedo[SCATTER_INCLINATIONS - 1][k];
+            continue;
         }
-        if (j > 0 && m->smooth_parts > 1) fill_between(hair, tile, j, strands);
+        find_around(gather->state, p, i, &around);
+        show_light(kind, p, i, &around, seen[i]);
+    }
+}
+
+// Whether a tile's strands hardly turn between two particles.
+SIMD_INLINE bool is_straight(const Particles *a, const Particles *b)
+{
+    const float least = 0.985f;
+    float worst = 1;
+    for (int i = 0; i < W; ++i) {
+        float dot = 0, p = 1e-20f, q = 1e-20f;
+        for (int k = 0; k < 3; ++k) {
+            dot += a->t[k][i] * b->t[k][i];
+            p += a->t[k][i] * a->t[k][i];
+            q += b->t[k][i] * b->t[k][i];
+        }
+        worst = simd_min(dot / sqrtf(p * q), worst);
+    }
+    return worst > least;
+}
+
+// Light changes little within a cell, and what a fibre shows of it where it hardly turns: of such
+// particles each second or fourth is enough.
+SIMD_INLINE void gather_tile(const Gather *gather, const GridHair *hair, int tile)
+{
+    const MaterialParams *m = &hair->caster.material;
+    int left = (int)m->drawn_strands - tile * W, strands = left < W ? left : W,
+        last = (int)m->vertex_count - 1, from = 0;
+    float reach = 1.25f * gather->state->lattice.side / fmaxf(gather->state->longest, 1e-9f);
+    Particles p[2];
+    find_particles(gather, hair, tile, 0, &p[0]);
+    gather_particles(gather, hair, tile, 0, strands, &p[0]);
+    for (int turn = 1; from < last; ++turn) {
+        const Particles *before = &p[(turn + 1) % 2];
+        Particles *here = &p[turn % 2];
+        int step = reach >= 4 ? 4 : reach >= 2 ? 2 : 1, to;
+        for (;; step /= 2) {
+            to = from + step < last ? from + step : last;
+            find_particles(gather, hair, tile, to, here);
+            if (to == from + 1 || is_straight(before, here)) break;
+        }
+        gather_particles(gather, hair, tile, to, strands, here);
+        fill_between(hair, tile, from, to, strands);
+        from = to;
     }
 }
 
@@ -248,13 +376,38 @@ SIMD_INLINE void gather_hair(const Gather *gather, int part)
 
 SIMD_STAGE(gather_hair, Gather)
 
+static float find_opacity(const GridScene *scene)
+{
+    float least = 1;
+    for (uint32_t h = 0; h < scene->hair_count; ++h) {
+        const MaterialParams *m = &scene->hair[h].caster.material;
+        least = fminf(least, m->opacity / fmaxf(m->shadow_opacity, 1e-6f));
+    }
+    return least;
+}
+
+static int find_ordinate(const LightLattice *lattice, const float to_eye[3])
+{
+    float way[3], most = -2;
+    int best = 0;
+    light_lattice_turn(lattice, to_eye, way);
+    for (int d = 0; d < ORDINATES; ++d) {
+        float cosine = ORDINATE[0][d] * way[0] + ORDINATE[1][d] * way[1] + ORDINATE[2][d] * way[2];
+        if (cosine > most) most = cosine, best = d;
+    }
+    return best;
+}
+
 Result light_grid_gather(LightGrid *grid, const GridScene *scene, Error *error)
 {
     LightGridState *state = grid->state;
     if (!state->filled) return RESULT_OK;
     Gather gather = {.state = state, .scene = scene};
     light_lattice_turn(&state->lattice, scene->draw->eye, gather.eye);
+    gather.opacity = find_opacity(scene);
+    gather.ordinate = find_ordinate(&state->lattice, scene->to_eye);
     TRY(light_grid_make_gather(state, scene, error));
+    run_find_hidden(&gather, state->parts);
     run_gather_hair(&gather, state->parts);
     return RESULT_OK;
 }

@@ -35,7 +35,7 @@ typedef struct GridKind {
 // and of that what each light meets, all in steps of 2^-16.
 typedef struct GridItem {
     uint32_t class, area;
-    uint32_t lit[]; // [lights]
+    uint32_t lit[]; // [lights]; then, where hair is painted, the albedo over its kind's by channel
 } GridItem;
 
 typedef struct LightGridState {
@@ -45,6 +45,8 @@ typedef struct LightGridState {
     float longest; // m, segment
     int pieces;    // of a segment
     int lights;
+    int item_words;
+    bool tinted; // hair has paint
     float to_light[MAX_LIGHTS]
                   [3]; // lattice's axes: unit, of lights afar and of lamps to the middle
     size_t cell_room, item_room, slot_room, filled_room;
@@ -62,9 +64,10 @@ typedef struct LightGridState {
     float *source;                      // [filled][GRID_WIDE]: S
     float *order;                       // [active][GRID_WIDE]: L of the last order
     float *light;                       // [active][GRID_WIDE]: L of all
+    float *hidden;                      // [active][4]: mean light, and 1 where it will do
     float *tint;                        // [filled][3]: albedo over that of the kind
     int *class;                         // [filled]: main tangent and kind
-    float *planes;                      // [groups][2][plane]
+    float *planes;                      // [groups][3][plane]: two slices, and rows
     size_t plane;                       // floats
     double sums[2][ORDINATE_GROUPS][3]; // of the last two orders, see light_grid_sweep
 

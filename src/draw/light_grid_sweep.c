@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { GROUP_WIDE = 3 * GRID_LANES, TAPS = 9 };
+enum { GROUP_WIDE = 3 * GRID_LANES, TAPS = 3 };
 
 typedef struct Sweep {
     LightGridState *state;
@@ -20,7 +20,7 @@ typedef struct Sweep {
 typedef struct GroupWay {
     int main, across[2]; // axes
     bool forward;
-    float taps[TAPS][GRID_LANES]; // weights of the cells before and beside
+    float taps[2][TAPS][GRID_LANES]; // weights of the cells before, by the axes across
     float sky[GROUP_WIDE];
 } GroupWay;
 
@@ -47,28 +47,34 @@ static void find_way(const Sweep *sweep, int group, GroupWay *way)
     way->across[1] = (way->main + 2) % 3;
     for (int l = 0; l < GRID_LANES; ++l) {
         int d = group * GRID_LANES + l;
-        float main = fabsf(ORDINATE[way->main][d]), weight[2][3];
+        float main = fabsf(ORDINATE[way->main][d]);
         for (int k = 0; k < 2; ++k) {
             float shift = ORDINATE[way->across[k]][d] / main;
-            weight[k][0] = fmaxf(shift, 0);
-            weight[k][1] = 1 - fabsf(shift);
-            weight[k][2] = fmaxf(-shift, 0);
+            way->taps[k][0][l] = fmaxf(shift, 0);
+            way->taps[k][1][l] = 1 - fabsf(shift);
+            way->taps[k][2][l] = fmaxf(-shift, 0);
         }
-        for (int t = 0; t < TAPS; ++t) way->taps[t][l] = weight[0][t % 3] * weight[1][t / 3];
     }
     find_sky(sweep, group, way->sky);
 }
 
-// Into the cell's radiance comes what the nine before it send on; what they get is at `before`.
-SIMD_INLINE void arrive(const GroupWay *way, const float *before, size_t row, float in[GROUP_WIDE])
+// The weighted sum of three neighbours, `stride` floats apart.
+SIMD_INLINE void blend(const float taps[TAPS][GRID_LANES], const float *from, size_t stride,
+                       float out[GROUP_WIDE])
 {
-    for (int i = 0; i < GROUP_WIDE; ++i) in[i] = 0;
-    for (int t = 0; t < TAPS; ++t) {
-        const float *from = before + (size_t)(t / 3) * row + (size_t)(t % 3) * GROUP_WIDE;
-        for (int c = 0; c < 3; ++c)
-            for (int l = 0; l < GRID_LANES; ++l)
-                in[c * GRID_LANES + l] += way->taps[t][l] * from[c * GRID_LANES + l];
-    }
+    for (int c = 0; c < 3; ++c)
+        for (int l = 0; l < GRID_LANES; ++l) {
+            int i = c * GRID_LANES + l;
+            out[i] = taps[0][l] * from[i] + taps[1][l] * from[stride + (size_t)i] +
+                     taps[2][l] * from[2 * stride + (size_t)i];
+        }
+}
+
+// Of a row of the slice before, blended along the first axis across.
+SIMD_INLINE void blend_row(const GroupWay *way, const float *before, int wide, float *row)
+{
+    for (size_t x = 0; x < (size_t)wide; ++x)
+        blend(way->taps[0], before + x * GROUP_WIDE, GROUP_WIDE, row + x * GROUP_WIDE);
 }
 
 // out = S + (in - S) exp(-tau), in the mean S + (in - S)(1 - exp(-tau)) / tau.
@@ -120,32 +126,51 @@ static float passed_to(const Sweep *sweep, const GroupWay *way, const int at[3],
     return at[way->main] + 1 < lattice->count[way->main] ? open[cell + stride[way->main]] : 1;
 }
 
-SIMD_INLINE void sweep_slice(const Sweep *sweep, const GroupWay *way, int group, int slice,
-                             const float *before, float *after, double sum[3])
+// Cell `at` on the way of the group: what comes in becomes what goes out.
+SIMD_INLINE void cross_cell(const Sweep *sweep, const GroupWay *way, int group, const int at[3],
+                            float io[GROUP_WIDE], double sum[3])
 {
     const LightGridState *state = sweep->state;
     const int *n = state->lattice.count;
+    size_t cell = ((size_t)at[2] * (size_t)n[1] + (size_t)at[1]) * (size_t)n[0] + (size_t)at[0];
+    int slot = state->slot[cell];
+    if (sweep->scene->blocks) {
+        float passed = passed_to(sweep, way, at, cell);
+        for (int i = 0; i < GROUP_WIDE; ++i) io[i] *= passed;
+    }
+    if (slot < 0) return;
+    if (slot >= state->filled) {
+        keep(sweep, group, slot, io, sum);
+        return;
+    }
+    float mean[GROUP_WIDE];
+    pass_cell(sweep, group, slot, io, mean);
+    keep(sweep, group, slot, mean, sum);
+}
+
+// `rows`: three rows of the slice before, of which one is made anew for each row of cells.
+SIMD_INLINE void sweep_slice(const Sweep *sweep, const GroupWay *way, int group, int slice,
+                             const float *before, float *after, float *rows, double sum[3])
+{
+    const int *n = sweep->state->lattice.count;
     int at[3], wide = n[way->across[0]], high = n[way->across[1]];
-    size_t row = ((size_t)wide + 2) * GROUP_WIDE;
+    size_t row = ((size_t)wide + 2) * GROUP_WIDE, used = (size_t)wide * GROUP_WIDE;
     at[way->main] = slice;
-    for (int y = 0; y < high; ++y)
-        for (int x = 0; x < wide; ++x) {
-            float in[GROUP_WIDE], mean[GROUP_WIDE];
+    // Rows lie at y % 3 and, so that three in their order are one piece, once more behind them.
+    for (int y = 0; y < high + 2; ++y) {
+        float *own = rows + (size_t)(y % 3) * used;
+        blend_row(way, before + (size_t)y * row, wide, own);
+        memcpy(own + 3 * used, own, used * sizeof *own);
+        if (y < 2) continue;
+        at[way->across[1]] = y - 2;
+        const float *first = rows + (size_t)((y - 2) % 3) * used;
+        float *out = after + (size_t)(y - 1) * row + GROUP_WIDE;
+        for (int x = 0; x < wide; ++x, first += GROUP_WIDE, out += GROUP_WIDE) {
             at[way->across[0]] = x;
-            at[way->across[1]] = y;
-            size_t cell =
-                ((size_t)at[2] * (size_t)n[1] + (size_t)at[1]) * (size_t)n[0] + (size_t)at[0];
-            int slot = state->slot[cell];
-            arrive(way, before + (size_t)y * row + (size_t)x * GROUP_WIDE, row, in);
-            if (sweep->scene->blocks) {
-                float passed = passed_to(sweep, way, at, cell);
-                for (int i = 0; i < GROUP_WIDE; ++i) in[i] *= passed;
-            }
-            memcpy(mean, in, sizeof mean);
-            if (slot >= 0 && slot < state->filled) pass_cell(sweep, group, slot, in, mean);
-            if (slot >= 0) keep(sweep, group, slot, mean, sum);
-            memcpy(after + (size_t)(y + 1) * row + (size_t)(x + 1) * GROUP_WIDE, in, sizeof in);
+            blend(way->taps[1], first, used, out);
+            cross_cell(sweep, way, group, at, out, sum);
         }
+    }
 }
 
 static void fill_plane(float *plane, size_t floats, const float sky[GROUP_WIDE])
@@ -160,8 +185,9 @@ SIMD_INLINE void sweep_group(const Sweep *sweep, int group)
     GroupWay way;
     find_way(sweep, group, &way);
     int slices = state->lattice.count[way.main];
-    float *planes[2] = {state->planes + (size_t)(2 * group) * state->plane,
-                        state->planes + (size_t)(2 * group + 1) * state->plane};
+    float *planes[2] = {state->planes + (size_t)(3 * group) * state->plane,
+                        state->planes + (size_t)(3 * group + 1) * state->plane},
+          *rows = state->planes + (size_t)(3 * group + 2) * state->plane;
     double *sum = state->sums[1][group];
     memset(sum, 0, sizeof state->sums[1][group]);
     size_t used = ((size_t)state->lattice.count[way.across[0]] + 2) *
@@ -169,7 +195,7 @@ SIMD_INLINE void sweep_group(const Sweep *sweep, int group)
     for (int k = 0; k < 2; ++k) fill_plane(planes[k], used, way.sky);
     for (int i = 0; i < slices; ++i)
         sweep_slice(sweep, &way, group, way.forward ? i : slices - 1 - i, planes[i % 2],
-                    planes[(i + 1) % 2], sum);
+                    planes[(i + 1) % 2], rows, sum);
 }
 
 SIMD_INLINE void sweep_groups(const Sweep *sweep, int part)

@@ -29,13 +29,21 @@ const float ORDINATE[3][ORDINATES] = {
      0.712883f,  0.927995f,  0.724549f,  0.927805f,  0.936490f,  0.722339f,  0.935436f,  0.734559f},
 };
 
-void ordinates_tangent(int class, float tangent[3])
+float TANGENT[TANGENTS][3];
+float TANGENT_SINE[TANGENTS][ORDINATES];
+
+static void make_tangent(int class)
 {
     double z = 1 - 2 * (class + 0.5) / TANGENTS, across = sqrt(1 - z * z),
            turn = PI * (1 + sqrt(5)) * (class + 0.5);
-    tangent[0] = (float)(across * cos(turn));
-    tangent[1] = (float)(across * sin(turn));
-    tangent[2] = (float)z;
+    float *t = TANGENT[class];
+    t[0] = (float)(across * cos(turn));
+    t[1] = (float)(across * sin(turn));
+    t[2] = (float)z;
+    for (int d = 0; d < ORDINATES; ++d) {
+        float along = t[0] * ORDINATE[0][d] + t[1] * ORDINATE[1][d] + t[2] * ORDINATE[2][d];
+        TANGENT_SINE[class][d] = sqrtf(fmaxf(1 - along * along, 0));
+    }
 }
 
 // --- Look-up by the squares of a cube's faces.
@@ -49,8 +57,7 @@ static int find_nearest(const float way[3])
     int best = 0;
     float most = -2;
     for (int class = 0; class < TANGENTS; ++class) {
-        float t[3];
-        ordinates_tangent(class, t);
+        const float *t = TANGENT[class];
         float cosine = t[0] * way[0] + t[1] * way[1] + t[2] * way[2];
         if (cosine > most) most = cosine, best = class;
     }
@@ -60,6 +67,7 @@ static int find_nearest(const float way[3])
 void ordinates_prepare(void)
 {
     if (prepared) return;
+    for (int class = 0; class < TANGENTS; ++class) make_tangent(class);
     for (int face = 0; face < 6; ++face)
         for (int j = 0; j < SQUARES; ++j)
             for (int i = 0; i < SQUARES; ++i) {

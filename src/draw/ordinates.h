@@ -18,10 +18,12 @@ enum { ORDINATE_OF_LIGHT = 21 };
 // the root's end from the tip's.
 enum { TANGENTS = 128 };
 
-// Unit vector of a class, 0 .. TANGENTS - 1.
-void ordinates_tangent(int class, float tangent[3]);
+// Unit vector of each class, and the sine of its angle with each ordinate. Both are there after
+// ordinates_prepare.
+extern float TANGENT[TANGENTS][3];
+extern float TANGENT_SINE[TANGENTS][ORDINATES];
 
 // The nearest class of a unit vector, but for what lies within 2 degrees of another one's region.
-// Makes its table at first use: ordinates_prepare before threads ask.
+// Needs ordinates_prepare.
 int ordinates_class(const float tangent[3]);
 void ordinates_prepare(void);
