@@ -28,6 +28,7 @@ enum { MOST_WORDS = 16, NAME_SIZE = 80 };
 #define VALUE_AUTO_INT(CHOICES)   "N|auto"
 #define VALUE_AUTO_FLOAT(CHOICES) "X|auto"
 #define VALUE_AUTO_VEC3(CHOICES)  "X,Y,Z|auto"
+#define VALUE_AUTO_COLOR(CHOICES) "COLOR|auto"
 #define VALUE_UNIT(CHOICES)       "UNIT"
 #define VALUE_SIZE(CHOICES)       "WxH"
 #define VALUE_PART(CHOICES)       "I/N"

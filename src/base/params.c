@@ -168,6 +168,8 @@ static const struct Form {
     [PARAM_AUTO_INT] = {"auto or a whole number ", "", NUMBER_INT, 1, 0, true},
     [PARAM_AUTO_FLOAT] = {"auto or a number ", "", NUMBER_FLOAT, 1, 0, true},
     [PARAM_AUTO_VEC3] = {"auto or three numbers x,y,z ", "", NUMBER_FLOAT, 3, ',', true},
+    [PARAM_AUTO_COLOR] = {"auto, a name (--help colors), #rrggbb or r,g,b ", "", NUMBER_FLOAT, 3,
+                          ',', false},
     [PARAM_UNIT] = {"auto, m, cm, mm, in or a number ", "", NUMBER_FLOAT, 1, 0, true},
     [PARAM_SIZE] = {"WxH, each ", "", NUMBER_INT, 2, 'x', false},
     [PARAM_PART] = {"I/N, each ", " and I at most N", NUMBER_INT, 2, '/', false},
@@ -300,6 +302,9 @@ Result params_parse(const ParamInfo *info, void *params, const char *text, Error
         return RESULT_OK;
     case PARAM_COLOR:
         return parse_color(&input, floats);
+    case PARAM_AUTO_COLOR:
+        *(AutoVec3 *)field = (AutoVec3){.automatic = strcmp(text, "auto") == 0};
+        return *(bool *)field ? RESULT_OK : parse_color(&input, ((AutoVec3 *)field)->value);
     case PARAM_BACKGROUND:
         if (strcmp(text, "transparent") == 0) {
             memset(floats, 0, 4 * sizeof *floats);
@@ -372,6 +377,9 @@ char *params_format(const ParamInfo *info, const void *params)
         return strdup(*(const bool *)field ? "true" : "false");
     case PARAM_COLOR:
         return format_color(form, floats);
+    case PARAM_AUTO_COLOR:
+        return *(const bool *)field ? strdup("auto")
+                                    : format_color(form, ((const AutoVec3 *)field)->value);
     case PARAM_BACKGROUND:
         return floats[3] == 0 ? strdup("transparent") : format_color(form, floats);
     case PARAM_UNIT:

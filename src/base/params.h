@@ -38,6 +38,7 @@ typedef enum ParamKind {
     PARAM_AUTO_INT,   // AutoInt: auto, or a decimal
     PARAM_AUTO_FLOAT, // AutoFloat: auto, or a number
     PARAM_AUTO_VEC3,  // AutoVec3: auto, or x,y,z
+    PARAM_AUTO_COLOR, // AutoVec3: auto, or a color
     PARAM_UNIT,       // AutoFloat, metres per unit of a file: auto, m, cm, mm, in, or a number
     PARAM_SIZE,       // int[2]: WxH
     PARAM_PART,       // int[2]: I/N, I at most N
@@ -125,6 +126,7 @@ typedef enum ParamGroup { PARAM_GROUPS(GROUP_VALUE) GROUP_COUNT } ParamGroup;
 #define PARAM_FIELD_AUTO_INT(field)   AutoInt field;
 #define PARAM_FIELD_AUTO_FLOAT(field) AutoFloat field;
 #define PARAM_FIELD_AUTO_VEC3(field)  AutoVec3 field;
+#define PARAM_FIELD_AUTO_COLOR(field) AutoVec3 field;
 #define PARAM_FIELD_UNIT(field)       AutoFloat field;
 #define PARAM_FIELD_SIZE(field)       int field[2];
 #define PARAM_FIELD_PART(field)       int field[2];

@@ -116,6 +116,7 @@ static const double WIDE = 1e6;
 static void write_range(const ParamInfo *info, char *text, size_t size)
 {
     static const char *const FORMS[] = {[PARAM_COLOR] = "name, #rrggbb or r,g,b",
+                                        [PARAM_AUTO_COLOR] = "name, #rrggbb, r,g,b or auto",
                                         [PARAM_BACKGROUND] = "name, #rrggbb, r,g,b or transparent",
                                         [PARAM_UNIT] = "m, cm, mm, in, auto, or a number of metres",
                                         [PARAM_PATH] = ""};

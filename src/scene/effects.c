@@ -35,6 +35,10 @@ CONDITION(is_marschner, section->shading == SHADING_MARSCHNER)
 CONDITION(is_kajiya, section->shading == SHADING_KAJIYA)
 CONDITION(has_tips, section->tip_length > 0)
 CONDITION(has_pigment, !section->melanin.automatic)
+CONDITION(shows_color, section->albedo.automatic && section->melanin.automatic)
+CONDITION(shows_albedo, section->melanin.automatic)
+CONDITION(scatters, scene->run.shadow == SHADOW_DOM)
+CONDITION(has_grid, scene->run.scatter != SCATTER_NONE)
 CONDITION(is_smooth, section->smooth > 1)
 
 // Each parameter's condition, and why it has no effect where that does not hold.
@@ -62,6 +66,11 @@ static const struct {
     {"refraction roughness lobes azimuthal_roughness", is_marschner,
      "only --shading marschner uses it"},
     {"specular1 exponent1 specular2 exponent2", is_kajiya, "only --shading kajiya uses it"},
+    {"ambient diffuse", is_kajiya, "only --shading kajiya uses it"},
+    {"color", shows_color, "--albedo or --melanin is given"},
+    {"albedo", shows_albedo, "--melanin is given"},
+    {"scatter scatter_cells", scatters, "--shadow is not dom"},
+    {"scatter_cells", has_grid, "--scatter is none"},
     {"tip_color", has_tips, "--tip-length is 0"},
     {"melanin_redness", has_pigment, "--melanin is auto"},
     {"curve", is_smooth, "--smooth is 1"},

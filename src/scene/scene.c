@@ -219,6 +219,21 @@ Result scene_check(const Scene *scene, Error *error)
     return check_head(scene, error);
 }
 
+// --- Defaults that give way.
+
+void scene_settle_colors(Scene *scene)
+{
+    size_t albedo = (size_t)(params_find("albedo") - PARAM_TABLE),
+           color = (size_t)(params_find("color") - PARAM_TABLE),
+           melanin = (size_t)(params_find("melanin") - PARAM_TABLE);
+    for (uint32_t i = 0; i < scene->section_count; ++i) {
+        Section *section = &scene->sections[i];
+        uint8_t said = section->origin[albedo];
+        if (section->origin[color] > said || section->origin[melanin] > said)
+            section->params.albedo = (AutoVec3){.automatic = true};
+    }
+}
+
 // --- Presets.
 
 // The table of parameters has the defaults of the studio and of normal quality.

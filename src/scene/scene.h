@@ -113,6 +113,10 @@ typedef struct SceneOverrides {
     const char *algo; // whose parameters are right in any section
 } SceneOverrides;
 
+// A section whose color or melanin is said more closely than its albedo has no albedo: the default
+// of --look gives way.
+void scene_settle_colors(Scene *scene);
+
 // As scene_read, but without scene_check, so that flags may still mend a combination.
 Result scene_read_unchecked(Scene *scene, const char *path, const SceneOverrides *overrides,
                             Error *error);

@@ -213,6 +213,7 @@ Result scene_from_arguments(Scene *scene, int argc, char **argv, Error *error)
     if (run) THEN(result, open_files(scene, &found, error));
     free(found.files);
     if (run) THEN(result, apply_flags(scene, walk, error));
+    scene_settle_colors(scene);
     if (run) THEN(result, choose_turn(scene, error));
     if (run) THEN(result, choose_still(scene, error));
     if (run) THEN(result, check_arguments(scene, error));

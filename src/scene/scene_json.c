@@ -265,6 +265,7 @@ Result scene_read_unchecked(Scene *scene, const char *path, const SceneOverrides
                                             : error_set(error, RESULT_FAILED, "out of memory");
     free(document.folder);
     json_decref(json);
+    scene_settle_colors(scene);
     return result;
 }
 

@@ -27,6 +27,7 @@ static const Form FORMS[] = {
     [PARAM_AUTO_INT] = {.string = true, .number = true},
     [PARAM_AUTO_FLOAT] = {.string = true, .number = true},
     [PARAM_AUTO_VEC3] = {.string = true, .numbers = 3},
+    [PARAM_AUTO_COLOR] = {.string = true, .numbers = 3},
     [PARAM_UNIT] = {.string = true, .number = true},
     [PARAM_SIZE] = {.string = true, .numbers = 2},
     [PARAM_PART] = {.string = true},
@@ -79,7 +80,8 @@ static void describe_value(const ParamInfo *info, char *text, size_t size)
     char flag[160];
     params_describe(info, flag, sizeof flag);
     const Form *form = &FORMS[info->kind];
-    bool vector = form->numbers == 3 && info->kind != PARAM_COLOR && info->kind != PARAM_BACKGROUND;
+    bool vector = form->numbers == 3 && info->kind != PARAM_COLOR &&
+                  info->kind != PARAM_AUTO_COLOR && info->kind != PARAM_BACKGROUND;
     snprintf(text, size, "%s%s%s",
              form->string && !form->number && !form->numbers ? "a string: " : "", flag,
              vector ? ", as an array" : "");
@@ -176,6 +178,7 @@ json_t *scene_param_write(const ParamInfo *info, const void *params)
     // As flags have them; a color of no whole levels is "r,g,b".
     case PARAM_PART:
     case PARAM_COLOR:
+    case PARAM_AUTO_COLOR:
     case PARAM_BACKGROUND:
     case PARAM_CHOICE:
     case PARAM_TEXT:

@@ -4,6 +4,8 @@
 #include "image/image.h"
 #include "image/png.h"
 
+#include "glsl/common/shared_math.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,10 +18,49 @@ static void decode(const float srgb[3], float linear[3])
     for (int k = 0; k < 3; ++k) linear[k] = (float)image_linear_from_srgb((double)srgb[k]);
 }
 
+// --- Albedo.
+
+// Chiang et al.'s measure of azimuthal roughness, 0..1 (EGSR 2016, equation 8): the one whose
+// logistic lobe has this standard deviation (rad).
+static double find_roughness(double deviation)
+{
+    double scale = deviation * sqrt(3) / PI, low = 0, high = 1;
+    for (int turn = 0; turn < 50; ++turn) {
+        double b = 0.5 * (low + high);
+        if (0.626657069 * (0.265 * b + 1.194 * b * b + 5.372 * pow(b, 22)) < scale)
+            low = b;
+        else
+            high = b;
+    }
+    return 0.5 * (low + high);
+}
+
+// Of fibres that together show the albedo C, the absorption by radius is (ln C / fit(b))^2 (Chiang
+// et al. 2016, equation 9): what a diameter lets through, exp(-2 sigma).
+static void absorb(const SectionParams *params, float linear[3])
+{
+    const double least = 1e-4; // black
+    double b = find_roughness((double)params->azimuthal_roughness * PI / 180), square = b * b,
+           fit = 5.969 - 0.215 * b + 2.532 * square - 10.73 * square * b + 5.574 * square * square +
+                 0.245 * square * square * b;
+    for (int k = 0; k < 3; ++k) {
+        double root = log(fmin(fmax((double)linear[k], least), 1)) / fit;
+        linear[k] = (float)exp(-2 * root * root);
+    }
+}
+
+// Whether colours are those of a whole head of hair, and fibres' own must be found.
+static bool is_albedo(const SectionParams *params)
+{
+    return !params->albedo.automatic && params->melanin.automatic &&
+           params->shading == SHADING_MARSCHNER;
+}
+
 void paint_color(const SectionParams *params, float linear[3])
 {
     double red = (double)params->melanin_redness, amount = (double)params->melanin.value;
-    decode(params->color, linear);
+    decode(params->albedo.automatic ? params->color : params->albedo.value, linear);
+    if (is_albedo(params)) absorb(params, linear);
     for (int k = 0; k < 3 && !params->melanin.automatic; ++k)
         linear[k] = (float)exp(-2 * amount * ((1 - red) * EUMELANIN[k] + red * PHEOMELANIN[k]));
 }
@@ -74,6 +115,11 @@ static void paint_by_file(Paint *paint, const Strands *strands)
         for (int k = 0; k < 3; ++k) paint->color[v][k] = clamp_share(strands->color[v][k]);
 }
 
+static void absorb_all(Paint *paint, const SectionParams *params)
+{
+    for (uint32_t v = 0; v < paint->vertex_count; ++v) absorb(params, paint->color[v]);
+}
+
 static void paint_evenly(Paint *paint, const float color[3])
 {
     for (uint32_t v = 0; v < paint->vertex_count; ++v)
@@ -95,6 +141,7 @@ static void paint_strand(Paint *paint, const Strands *strands, const SectionPara
     double opacity = 0;
     float tip[3];
     decode(params->tip_color, tip);
+    if (is_albedo(params)) absorb(params, tip);
     for (uint32_t v = first; from_file && v < first + n; ++v)
         opacity += (double)clamp_share(strands->color[v][3]) / n;
     for (uint32_t j = 0; j < n; ++j) {
@@ -155,6 +202,8 @@ Result paint_create(Paint *paint, const Strands *strands, const SectionParams *p
         paint_by_file(paint, strands), paint->colors_from_file = true;
     else
         paint_evenly(paint, own);
+    bool seen = *params->color_map || paint->colors_from_file;
+    if (result == RESULT_OK && seen && is_albedo(params)) absorb_all(paint, params);
     for (uint32_t s = 0; result == RESULT_OK && s < strands->strand_count; ++s)
         paint_strand(paint, strands, params, s);
     if (result == RESULT_OK) set_thickness(paint, strands, params);

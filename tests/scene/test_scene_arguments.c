@@ -32,9 +32,11 @@ static void assert_prints(Scene *scene, const ParamInfo *info, const char *expec
 static const char *sample(const ParamInfo *info, char text[64])
 {
     static const char *const TEXTS[] = {
-        [PARAM_BOOL] = "true",          [PARAM_VEC3] = "1,2,3",      [PARAM_COLOR] = "#010203",
-        [PARAM_BACKGROUND] = "#010203", [PARAM_AUTO_VEC3] = "1,2,3", [PARAM_UNIT] = "in",
-        [PARAM_SIZE] = "32x24",         [PARAM_PART] = "2/3",        [PARAM_TEXT] = "word",
+        [PARAM_BOOL] = "true",         [PARAM_VEC3] = "1,2,3",
+        [PARAM_COLOR] = "#010203",     [PARAM_BACKGROUND] = "#010203",
+        [PARAM_AUTO_VEC3] = "1,2,3",   [PARAM_AUTO_COLOR] = "#010203",
+        [PARAM_UNIT] = "in",           [PARAM_SIZE] = "32x24",
+        [PARAM_PART] = "2/3",          [PARAM_TEXT] = "word",
         [PARAM_PATH] = "/some/where/",
     };
     bool whole =
