@@ -220,24 +220,91 @@ void paint_destroy(Paint *paint)
 
 // --- Thickness where nobody says.
 
-static const double FIBRE_LAYERS = 3;
-static const double THINNEST = 1.0 / 5000, THICKEST = 1.0 / 400;
+enum { MOST_SAMPLES = 500000, LEAST_CELLS = 8, MOST_CELLS = 64 };
+static const double FIBRES = 3;      // before a point of the silhouette, on average
+static const double SEEN = 0.5;      // share of the fibres that lies before the head or body
+static const double TIP_RATIO = 0.3; // of the radii, as --tip-ratio has it by default
+// Of the longest strand; hair is at most THICKEST, fur at most STUBBIEST.
+static const double THINNEST = 1.0 / 5000, THICKEST = 1.0 / 400, STUBBIEST = 1.0 / 12;
+static const double WIDEST = 1.0 / 300; // of the silhouette's side: its mean area's root
+
+// Fibres in cells of the three views along the axes of the hair's box.
+typedef struct Silhouette {
+    // Length of fibre, times its share of the radius at the root, over the cell's area (1/m).
+    double fibres[3][MOST_CELLS * MOST_CELLS];
+    int cells;   // along the box's longest side
+    double side; // m, of a cell
+    float low[3];
+} Silhouette;
+
+static void add_piece(Silhouette *silhouette, const double middle[3], const double way[3],
+                      double share)
+{
+    int at[3];
+    for (int k = 0; k < 3; ++k) {
+        at[k] = (int)((middle[k] - (double)silhouette->low[k]) / silhouette->side);
+        at[k] = at[k] < 0 ? 0 : at[k] >= silhouette->cells ? silhouette->cells - 1 : at[k];
+    }
+    for (int view = 0; view < 3; ++view) {
+        int a = (view + 1) % 3, b = (view + 2) % 3, n = silhouette->cells;
+        double length = sqrt(way[a] * way[a] + way[b] * way[b]);
+        silhouette->fibres[view][at[a] * n + at[b]] +=
+            share * length / (silhouette->side * silhouette->side);
+    }
+}
+
+// In pieces of half a cell at most.
+static void add_strand(Silhouette *silhouette, const Strands *strands, uint32_t s, double weight)
+{
+    uint32_t first = strands->first[s], n = strands_size(strands, s);
+    for (uint32_t j = 0; j + 1 < n; ++j) {
+        const float *a = strands->position[first + j], *b = strands->position[first + j + 1];
+        double way[3], middle[3], length = 0;
+        for (int k = 0; k < 3; ++k) way[k] = (double)b[k] - a[k], length += way[k] * way[k];
+        // No segment is longer than the box's diagonal.
+        int pieces = (int)ceil(2 * sqrt(length) / silhouette->side);
+        for (int k = 0; k < 3; ++k) way[k] /= pieces;
+        double share = weight * (1 - (1 - TIP_RATIO) * (j + 0.5) / (n - 1));
+        for (int i = 0; i < pieces; ++i) {
+            for (int k = 0; k < 3; ++k) middle[k] = (double)a[k] + (i + 0.5) * way[k];
+            add_piece(silhouette, middle, way, share);
+        }
+    }
+}
+
+// The mean over the cells that hold any, and the views' mean area of those (m^2).
+static double mean_fibres(const Silhouette *silhouette, double *area)
+{
+    double sum = 0, count = 0;
+    for (int view = 0; view < 3; ++view)
+        for (int i = 0; i < silhouette->cells * silhouette->cells; ++i) {
+            sum += silhouette->fibres[view][i];
+            count += silhouette->fibres[view][i] > 0;
+        }
+    *area = count / 3 * silhouette->side * silhouette->side;
+    return sum / count;
+}
 
 float paint_auto_radius(const Strands *strands, uint32_t followers)
 {
     float low[3], high[3];
     strands_bounds(strands, low, high);
-    double x = (double)high[0] - low[0], y = (double)high[1] - low[1], z = (double)high[2] - low[2];
-    double silhouette = (x * y + y * z + z * x) / 2, total = 0, longest = 0;
-    for (uint32_t s = 0; s < strands->strand_count; ++s) {
-        double length = strands_length(strands, s);
-        total += length;
-        longest = fmax(longest, length);
-    }
-    total *= 1 + (double)followers;
-    if (!(total > 0)) return 1e-4f; // nothing to draw
-    double radius = FIBRE_LAYERS * silhouette / (2 * total);
-    return (float)fmin(fmax(radius, longest * THINNEST), longest * THICKEST);
+    double longest = 0, side = 0, area;
+    for (int k = 0; k < 3; ++k) side = fmax(side, (double)high[k] - (double)low[k]);
+    uint32_t stride = strands->vertex_count / MOST_SAMPLES + 1;
+    for (uint32_t s = 0; s < strands->strand_count; s += stride)
+        longest = fmax(longest, strands_length(strands, s));
+    if (!(longest > 0) || !(side > 0)) return 1e-4f; // nothing to draw
+    // Large enough to hold a few strands each, between which followers lie.
+    int cells = (int)(sqrt((double)strands->strand_count / stride) / 2);
+    cells = cells < LEAST_CELLS ? LEAST_CELLS : cells > MOST_CELLS ? MOST_CELLS : cells;
+    Silhouette silhouette = {.cells = cells, .side = side / cells};
+    memcpy(silhouette.low, low, sizeof low);
+    for (uint32_t s = 0; s < strands->strand_count; s += stride)
+        add_strand(&silhouette, strands, s, stride * (1 + (double)followers));
+    double radius = FIBRES / (SEEN * 2 * mean_fibres(&silhouette, &area));
+    double fur = fmin(longest * STUBBIEST, sqrt(area) * WIDEST);
+    return (float)fmin(fmax(radius, longest * THINNEST), fmax(longest * THICKEST, fur));
 }
 
 float paint_radius(const SectionParams *params, const Strands *strands, uint32_t followers)

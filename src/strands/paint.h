@@ -39,10 +39,16 @@ void paint_color(const SectionParams *params, float linear[3]);
 // Fibre radius at the root, metres, > 0, for drawing these strands with this many followers each.
 //
 // A head carries 100,000 hairs of about 40 um; files hold a few thousand, each of which stands for
-// many. So the strands share the image instead: laid side by side they would cover the mean
-// silhouette of the hair's box (a quarter of its surface, Cauchy) FIBRE_LAYERS times. Twice as many
-// strands are drawn half as thick; the same hair in another unit looks the same. Kept between
-// 1/5000 and 1/400 of the longest strand, for single strands and very dense fur.
+// many. So the strands share the image instead: on average 3 lie before a point of the silhouette,
+// in the half of the hair that a head or body does not hide. Fibres at random that cover a point 3
+// times on average miss it with exp(-3) = 5 % (Poisson). The silhouette is all cells of the three
+// views along the axes that hold hair, with 8 to 64 cells along the box's longest side, by the
+// number of strands. Twice as many strands are drawn half as thick; the same hair in another unit
+// looks the same.
+//
+// So that fibres still look like fibres, the radius is at most 1/400 of the longest strand; of
+// short strands (fur) it may be more, up to 1/12 and 1/300 of the silhouette's side, the root of
+// its area. It is at least 1/5000 of the longest strand.
 float paint_auto_radius(const Strands *strands, uint32_t followers);
 
 // The section's radius if it says one, else that.

@@ -257,7 +257,7 @@ static void denser_hair_is_drawn_finer(void **state)
     for (uint32_t v = 0; v < many.vertex_count; ++v)
         memcpy(many.position[v], few.position[v % few.vertex_count], sizeof(float[3]));
     float coarse = paint_auto_radius(&few, 0), fine = paint_auto_radius(&many, 0);
-    assert_true(fine < coarse && fine > 0 && coarse <= 0.3f / 399);
+    assert_true(fine < coarse && fine > 0 && coarse <= 0.3f / 100);
     Strands none = {0};
     assert_true(paint_auto_radius(&none, 0) > 0);
     strands_destroy(&few);
