@@ -274,8 +274,8 @@ static Result add_uv(Mesh *mesh, Error *error)
 // Eyes go to the face, then to the ears; shoulders are plain and the skull is under hair.
 static double look_at(const Double3 at)
 {
-    if (at[1] < -0.13) return 0.2;
-    if (at[2] > 0.03 && at[1] < 0.03) return at[1] > -0.095 && at[2] > 0.06 ? 30.0 : 6.0;
+    if (at[1] < -0.13) return 0.5;
+    if (at[2] > 0.03 && at[1] < 0.03) return at[1] > -0.095 && at[2] > 0.06 ? 20.0 : 5.0;
     return at[1] < 0.02 && fabs(at[0]) > 0.068 ? 3.0 : 0.5;
 }
 
