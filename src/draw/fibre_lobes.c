@@ -53,7 +53,8 @@ static void set_lobes(FibreLobes *lobes, const MaterialParams *material)
 bool fibre_lobes_create(FibreLobes *lobes, FibreTable table, const MaterialParams *material,
                         const float color[3])
 {
-    *lobes = (FibreLobes){0};
+    static uint64_t made;
+    *lobes = (FibreLobes){.serial = ++made};
     set_lobes(lobes, material);
     memcpy(lobes->color, color, sizeof lobes->color);
     lobes->azimuthal = malloc(3 * PLANE * sizeof *lobes->azimuthal);

@@ -8,6 +8,7 @@
 #include "glsl/draw/material.h"
 
 #include <stdbool.h>
+#include <stdint.h>
 
 // Of one colour, by azimuth and cosine of theta_d (SCATTER_ of draw.h): R, TT, TRT and nothing.
 typedef struct FibreTable {
@@ -20,6 +21,7 @@ typedef struct FibreLobes {
     float color[3];        // what a diameter lets through, linear
     float (*azimuthal)[4]; // [3][SCATTER_INCLINATIONS][SCATTER_AZIMUTHS], owned
     float (*albedo)[3];    // [SCATTER_INCLINATIONS], owned: share of light that is scattered
+    uint64_t serial;       // another one for each that was made
 } FibreLobes;
 
 // Of fibres with this material and colour; false if memory is short. Destroying a zeroed struct is

@@ -24,6 +24,7 @@ void hair_scatter_destroy(HairScatter *scatter)
 {
     forget_room(scatter);
     light_grid_destroy(&scatter->grid);
+    light_dual_destroy(&scatter->dual);
     light_blocks_destroy(&scatter->blocks);
     for (int k = 0; k < scatter->kind_count; ++k) fibre_lobes_destroy(&scatter->kinds[k]);
     *scatter = (HairScatter){0};
@@ -96,7 +97,7 @@ static Result reserve_seen(HairScatter *scatter, uint32_t i, const ShadowCaster 
 }
 
 static Result map_hair(HairScatter *scatter, Drawing *drawing, const ShadowCaster *caster,
-                       const GpuBuffer *left, uint32_t i, Error *error)
+                       const GpuBuffer *left, int maps, uint32_t i, Error *error)
 {
     const HairBatch *batch = caster->batch;
     GridHair *hair = &scatter->hair[i];
@@ -107,6 +108,8 @@ static Result map_hair(HairScatter *scatter, Drawing *drawing, const ShadowCaste
     if (shows) TRY(reserve_seen(scatter, i, caster, hair->points, error));
     hair->caster.position = map(scatter, &batch->position, GL_MAP_READ_BIT);
     hair->left = map(scatter, left, GL_MAP_READ_BIT);
+    if (scatter->options.scatter == SCATTER_DUAL && hair->left)
+        hair->behind = hair->left + (size_t)maps * hair->points;
     if (batch->paint.buffer) hair->caster.paint = map(scatter, &batch->paint, GL_MAP_READ_BIT);
     if (shows)
         hair->seen =
@@ -131,7 +134,7 @@ static bool is_wanted(const HairScatter *scatter, const HairScatterScene *scene)
     bool any = false;
     for (uint32_t i = 0; i < scene->casters.count; ++i)
         any |= (scene->casters.list[i].look.features & LOOK_MARSCHNER) != 0;
-    return any && (scatter->options.scatter == SCATTER_GRID || has_sky(&scene->drawing->draw));
+    return any && (scatter->options.scatter != SCATTER_NONE || has_sky(&scene->drawing->draw));
 }
 
 static bool same_lights(const DrawParams *a, const DrawParams *b)
@@ -200,13 +203,16 @@ static Result find_light(HairScatter *scatter, const Shadows *shadows,
     scatter->count = scene->casters.count;
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     for (uint32_t i = 0; i < scatter->count && result == RESULT_OK; ++i)
-        result =
-            map_hair(scatter, scene->drawing, &scene->casters.list[i], &lights[i].left, i, error);
+        result = map_hair(scatter, scene->drawing, &scene->casters.list[i], &lights[i].left,
+                          shadows->hair.cpu.maps, i, error);
     GridScene grid = make_scene(scatter, shadows, scene);
     bool solved = scatter->any && scatter->shadow_version == shadows->version &&
                   same_lights(&scatter->drawn, &scene->drawing->draw);
-    if (!solved) THEN(result, light_grid_solve(&scatter->grid, &grid, error));
-    THEN(result, light_grid_gather(&scatter->grid, &grid, error));
+    bool in_cells = grid.suns || has_sky(grid.draw),
+         dual = scatter->options.scatter == SCATTER_DUAL;
+    if (in_cells && !solved) THEN(result, light_grid_solve(&scatter->grid, &grid, error));
+    if (in_cells) THEN(result, light_grid_gather(&scatter->grid, &grid, error));
+    if (dual) THEN(result, light_dual_find(&scatter->dual, &grid, in_cells, error));
     unmap_all(scatter);
     scatter->any = result == RESULT_OK;
     scatter->solved = !solved;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "draw/drawing.h"
+#include "draw/light_dual.h"
 #include "draw/light_grid.h"
 #include "draw/shadows.h"
 
@@ -26,6 +27,7 @@ typedef struct HairScatter {
     HairScatterOptions options;
     const GpuLimits *limits;
     LightGrid grid;
+    LightDual dual;
     LightBlocks blocks;
     FibreLobes kinds[LIGHT_GRID_KINDS];
     GLuint kind_table[LIGHT_GRID_KINDS]; // texture

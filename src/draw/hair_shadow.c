@@ -56,11 +56,11 @@ Result hair_shadow_build(HairShadow *hair, unsigned variant, Error *error)
 }
 
 Result hair_shadow_create(HairShadow *hair, const GpuLimits *limits, bool deep, int side,
-                          bool by_processor, Error *error)
+                          bool by_processor, bool behind, Error *error)
 {
     *hair =
         (HairShadow){.deep = deep, .by_processor = by_processor, .side = side, .limits = limits};
-    return by_processor ? hair_shadow_cpu_create(&hair->cpu, side, deep, error) : RESULT_OK;
+    return by_processor ? hair_shadow_cpu_create(&hair->cpu, side, deep, behind, error) : RESULT_OK;
 }
 
 static void destroy_maps(HairShadow *hair)

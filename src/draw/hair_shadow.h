@@ -23,9 +23,9 @@ typedef struct HairShadow {
     int maps; // there is room for
 } HairShadow;
 
-// `side`: a multiple of 8. `by_processor`: C makes the maps.
+// `side`: a multiple of 8. `by_processor`: C makes the maps. `behind`: see ParticleLight.
 Result hair_shadow_create(HairShadow *hair, const GpuLimits *limits, bool deep, int side,
-                          bool by_processor, Error *error);
+                          bool by_processor, bool behind, Error *error);
 void hair_shadow_destroy(HairShadow *hair);
 
 // Compiles the shaders for hair that needs CAST_ bits `variant`, unless they are there.

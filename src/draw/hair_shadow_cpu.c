@@ -7,9 +7,9 @@
 
 static const GLbitfield WRITTEN = GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT;
 
-Result hair_shadow_cpu_create(HairShadowCpu *cpu, int side, bool deep, Error *error)
+Result hair_shadow_cpu_create(HairShadowCpu *cpu, int side, bool deep, bool behind, Error *error)
 {
-    *cpu = (HairShadowCpu){0};
+    *cpu = (HairShadowCpu){.behind = behind};
     return shadow_map_create(&cpu->map, side, deep, error);
 }
 
@@ -20,7 +20,7 @@ static void forget_room(HairShadowCpu *cpu)
     free(cpu->lights);
     free(cpu->left);
     free(cpu->mapped);
-    *cpu = (HairShadowCpu){.map = cpu->map};
+    *cpu = (HairShadowCpu){.map = cpu->map, .behind = cpu->behind};
 }
 
 void hair_shadow_cpu_destroy(HairShadowCpu *cpu)
@@ -53,13 +53,14 @@ static Result make_lights(HairShadowCpu *cpu, const GpuLimits *limits, int maps,
                           ShadowCasters casters, Error *error)
 {
     cpu->lit = 0;
+    cpu->maps = maps;
     for (uint32_t i = 0; i < casters.count && cpu->map.deep; ++i) {
-        int64_t floats = maps * count_floats(&casters.list[i]);
+        int64_t floats = maps * (1 + cpu->behind) * count_floats(&casters.list[i]);
         if (floats > limits->texture_texels || floats * 4 > limits->storage_block) return RESULT_OK;
     }
     for (uint32_t i = 0; i < casters.count && cpu->map.deep; ++i) {
         GpuBuffer *left = &cpu->lights[i].left;
-        int64_t size = maps * count_floats(&casters.list[i]) * 4;
+        int64_t size = maps * (1 + cpu->behind) * count_floats(&casters.list[i]) * 4;
         cpu->lights[i].batch = casters.list[i].batch;
         if (left->size == size) continue;
         gpu_buffer_destroy(left);
@@ -145,7 +146,8 @@ void hair_shadow_cpu_draw(HairShadowCpu *cpu, const CastParams *params, float ac
     for (uint32_t i = 0; i < cpu->lit; ++i) {
         size_t points =
             hair_slots(cpu->lights[i].batch) * (size_t)mapped_caster_points(&cpu->casters[i]);
-        shadow_light_find(&cpu->map, params, &cpu->casters[i], across, layers,
-                          cpu->left[i] + number * points);
+        float *left = cpu->left[i] + number * points;
+        shadow_light_find(&cpu->map, params, &cpu->casters[i], across, layers, left,
+                          cpu->behind ? left + (size_t)cpu->maps * points : NULL);
     }
 }

@@ -23,15 +23,17 @@ typedef struct HairShadowCpu {
     uint32_t count, room;
     ParticleLight *lights; // [room], owned
     float **left;          // [room], owned: theirs, while maps are drawn
-    uint32_t lit;          // of them there are; 0: none (they would not fit into a buffer)
-    GLuint *mapped;        // [3 room + 2], owned: buffers
+    bool behind;           // each light has as many values again, of what is behind (look.h)
+    int maps;
+    uint32_t lit;   // of them there are; 0: none (they would not fit into a buffer)
+    GLuint *mapped; // [3 room + 2], owned: buffers
     uint32_t mapped_count;
     float *depths; // of all maps, while they are drawn; deep
     uint32_t *texels;
 } HairShadowCpu;
 
 // `side`, `deep`: see shadow_map_create. Destroying a zeroed struct is legal.
-Result hair_shadow_cpu_create(HairShadowCpu *cpu, int side, bool deep, Error *error);
+Result hair_shadow_cpu_create(HairShadowCpu *cpu, int side, bool deep, bool behind, Error *error);
 void hair_shadow_cpu_destroy(HairShadowCpu *cpu);
 
 // Maps all that is read and written, and waits for the GPU. `depths` (deep) and `texels` are what

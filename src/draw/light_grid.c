@@ -141,7 +141,7 @@ static void set_kinds(LightGridState *state, const GridScene *scene)
 {
     for (int k = 0; k < scene->kind_count; ++k) {
         GridKind *kind = &state->kinds[k];
-        if (memcmp(&kind->lobes, &scene->kinds[k], sizeof kind->lobes) == 0) continue;
+        if (kind->lobes.serial == scene->kinds[k].serial) continue;
         kind->lobes = scene->kinds[k];
         forget_kind(kind);
     }

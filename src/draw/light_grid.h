@@ -27,9 +27,10 @@ enum { LIGHT_GRID_KINDS = 4 }; // of fibres that scatter in ways of their own; o
 typedef struct GridHair {
     MappedCaster caster;
     const float *left; // [map][points]: what of each mapped light reaches the points of its curves
-    size_t points;     // of all its strands (look_points)
-    int kind;          // of its fibres
-    float (*seen)[4];  // [points], for light_grid_gather: linear RGB; NULL: is not asked for
+    const float *behind; // the same of the mean number of fibres behind it; for light_dual.h
+    size_t points;       // of all its strands (look_points)
+    int kind;            // of its fibres
+    float (*seen)[4];    // [points], for light_grid_gather: linear RGB; NULL: is not asked for
 } GridHair;
 
 typedef struct GridScene {

@@ -33,7 +33,9 @@ enum { LOOK_SHADED = 2048, LOOK_VARIANTS = 4 * LOOK_SHADED };
 // What hair leaves of light at the points of a batch (look_points), laid out as its particles are.
 typedef struct ParticleLight {
     const HairBatch *batch;
-    GpuBuffer left; // float a shadow map and point, 0..1
+    // float a shadow map and point, 0..1; then, where it is asked for (ShadowOptions), of each as
+    // many again: the mean number of fibres behind the point
+    GpuBuffer left;
 } ParticleLight;
 
 typedef struct Look {

@@ -76,8 +76,10 @@ Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
     THEN(result, RASTERS[renderer->raster].create(renderer, error));
     THEN(result, make_base(renderer, error));
     bool scatters = options->scatter != SCATTER_NONE || options->shadow.kind == SHADOW_DOM;
+    ShadowOptions shadow = options->shadow;
+    shadow.behind = options->scatter == SCATTER_DUAL;
     if (options->shadow.kind != SHADOW_NONE)
-        THEN(result, shadows_create(&renderer->shadow, &gpu->limits, &options->shadow,
+        THEN(result, shadows_create(&renderer->shadow, &gpu->limits, &shadow,
                                     gpu->software || scatters, error));
     const HairScatterOptions scatter = {options->scatter,
                                         options->scatter_cells ? options->scatter_cells : 24, 2};

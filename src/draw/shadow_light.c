@@ -9,7 +9,7 @@ typedef struct Search {
     const CastParams *params;
     const MappedCaster *caster;
     const uint32_t *layers; // [LAYERS][side][side]
-    float across, *left;
+    float across, *left, *behind;
     float last; // LAYER_END: a bound that compilers know makes them jump
 } Search;
 
@@ -50,8 +50,25 @@ SIMD_INLINE void find_looks(const Search *search, const Places *places, Looks *l
     }
 }
 
+// Of all fibres along the light's way those that are not before the point, nor its own.
+SIMD_INLINE void find_behind(const Search *search, const Tile *tile, const Places *places,
+                             const Looks *looks, const float before[W], float *behind)
+{
+    const uint32_t *last = search->layers + (size_t)(LAYERS - 1) * (size_t)search->shadow->side *
+                                                (size_t)search->shadow->side;
+    int side = search->shadow->side;
+    for (int k = 0; k < W; ++k) {
+        int at = looks->texel[k], below = at + side;
+        float all = mix4(layer_depth(last[at], 1), layer_depth(last[at + 1], 1),
+                         layer_depth(last[below], 1), layer_depth(last[below + 1], 1), looks->u[k],
+                         looks->v[k]);
+        float own = own_layer_depth(2 * places->radius[k] * search->across, tile->opacity[k], 1);
+        behind[k] = simd_positive(all - own - simd_positive(before[k]));
+    }
+}
+
 SIMD_INLINE void find_lights(const Search *search, const Tile *tile, const Places *places,
-                             float *left)
+                             float *left, float *behind)
 {
     const uint32_t *layers = search->layers;
     int side = search->shadow->side, squares = side * side;
@@ -74,6 +91,7 @@ SIMD_INLINE void find_lights(const Search *search, const Tile *tile, const Place
                       (places->v[k] <= most);
         sum[k] *= inside ? 1.f : 0.f;
     }
+    if (behind) find_behind(search, tile, places, &looks, sum, behind);
     for (int k = 0; k < W; ++k) left[k] = simd_exp2(-(float)LOG2E * simd_positive(sum[k]));
 }
 
@@ -87,9 +105,9 @@ SIMD_INLINE void find_light(const Search *search, int part)
         Tile tile = open_tile(caster, t);
         for (int j = 0; j < mapped_caster_points(caster); ++j) {
             find_places(search->params, &tile, j, &places);
-            find_lights(search, &tile, &places,
-                        search->left +
-                            ((size_t)t * (size_t)mapped_caster_points(caster) + (size_t)j) * W);
+            size_t at = ((size_t)t * (size_t)mapped_caster_points(caster) + (size_t)j) * W;
+            find_lights(search, &tile, &places, search->left + at,
+                        search->behind ? search->behind + at : NULL);
         }
     }
 }
@@ -97,7 +115,7 @@ SIMD_INLINE void find_light(const Search *search, int part)
 SIMD_STAGE(find_light, Search)
 
 void shadow_light_find(ShadowMap *shadow, const CastParams *params, const MappedCaster *caster,
-                       float across, const uint32_t *layers, float *left)
+                       float across, const uint32_t *layers, float *left, float *behind)
 {
     Search search = {.shadow = shadow,
                      .params = params,
@@ -105,6 +123,7 @@ void shadow_light_find(ShadowMap *shadow, const CastParams *params, const Mapped
                      .layers = layers,
                      .across = across,
                      .left = left,
+                     .behind = behind,
                      .last = LAYER_END};
     run_find_light(&search, shadow->parts);
 }

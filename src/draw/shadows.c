@@ -115,7 +115,7 @@ Result shadows_create(Shadows *shadow, const GpuLimits *limits, const ShadowOpti
     *shadow = (Shadows){.options = *options};
     shadow->options.side = (options->side + 7) / 8 * 8;
     return hair_shadow_create(&shadow->hair, limits, options->kind == SHADOW_DOM,
-                              shadow->options.side, by_processor, error);
+                              shadow->options.side, by_processor, options->behind, error);
 }
 
 void shadows_destroy(Shadows *shadow)
