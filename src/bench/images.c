@@ -301,6 +301,7 @@ static RendererOptions renderer_options(const Stage *stage, const RunParams *run
         .lod = {run->lod_start, run->lod_end, run->lod_min, run->lod_width},
         .scatter = (Scatter)run->scatter,
         .scatter_cells = run->scatter_cells,
+        .scatter_orders = run->scatter_orders,
         .shadow = {(Shadow)run->shadow, run->shadow_size, run->shadow_spacing}};
     memcpy(options.background, run->background, sizeof options.background);
     options.background[3] = 1;

@@ -12,7 +12,7 @@
 typedef struct HairScatterOptions {
     Scatter scatter; // none and dual: only light of the sky
     int cells;       // 4 .. 64, see light_grid.h
-    int orders;      // 1 .. 16
+    int orders;      // 1 .. 32
 } HairScatterOptions;
 
 typedef struct HairScatterScene {

@@ -184,9 +184,13 @@ Result light_grid_solve(LightGrid *grid, const GridScene *scene, Error *error)
     TRY(light_grid_make_scatter(state, scene, error));
     bool sky = has_sky(scene->draw);
     light_grid_sweep(state, scene, sky, true, state->lights == 0);
-    for (int order = 0; order < scene->orders; ++order) {
+    double all[3] = {0};
+    light_grid_needs_more(state, all);
+    for (int order = 1; order <= scene->orders; ++order) {
         light_grid_scatter(state);
         light_grid_sweep(state, scene, false, false, false);
+        bool more = light_grid_needs_more(state, all);
+        if (order > 1 && !more) break;
     }
     if (scene->orders > 1) light_grid_close(state);
     return RESULT_OK;

@@ -44,7 +44,7 @@ typedef struct GridScene {
     const LightBlocks *blocks; // what the mesh takes away; NULL: no mesh
     bool suns;                 // the lights' light is followed, too, not only that of the sky
     int cells;                 // along the longest side of the box, 4 .. 64
-    int orders;                // of scattering that are swept, 0 .. 16; 0: light of the sky alone
+    int orders; // of scattering that are swept at most, 0 .. 32; 0: the sky's own light alone
 } GridScene;
 
 typedef struct LightGrid {

@@ -257,17 +257,36 @@ void light_grid_scatter(LightGridState *state)
 
 // --- The orders that are not swept.
 
+// Of two orders after each other what hair meets falls by this factor.
+static double falling(const LightGridState *state, int channel)
+{
+    double before = 0, last = 0;
+    for (int g = 0; g < ORDINATE_GROUPS; ++g) {
+        before += state->sums[0][g][channel];
+        last += state->sums[1][g][channel];
+    }
+    return before > 0 ? fmin(last / before, 0.95) : 0;
+}
+
+bool light_grid_needs_more(const LightGridState *state, double all[3])
+{
+    const double most_left = 0.2;
+    bool more = false;
+    for (int c = 0; c < 3; ++c) {
+        double last = 0, ratio = falling(state, c);
+        for (int g = 0; g < ORDINATE_GROUPS; ++g) last += state->sums[1][g][c];
+        all[c] += last;
+        double left = last * ratio / (1 - ratio);
+        more |= left > most_left * (all[c] + left);
+    }
+    return more;
+}
+
 SIMD_INLINE void close_lights(const LightGridState *state, int part)
 {
-    // Of two orders after each other what hair meets falls by this factor.
     float more[3];
     for (int c = 0; c < 3; ++c) {
-        double before = 0, last = 0;
-        for (int g = 0; g < ORDINATE_GROUPS; ++g) {
-            before += state->sums[0][g][c];
-            last += state->sums[1][g][c];
-        }
-        double ratio = before > 0 ? fmin(last / before, 0.9) : 0;
+        double ratio = falling(state, c);
         more[c] = (float)(ratio / (1 - ratio));
     }
     int first = (int)((int64_t)state->active * part / state->parts),

@@ -32,9 +32,10 @@ typedef struct RendererOptions {
                    // own; 0: 1. AOVs of what is nearest have one
     uint32_t seed; // of what varies by strand
     ShadowOptions shadow;
-    Scatter scatter;   // of light from fibre to fibre; needs deep shadow maps
-    int scatter_cells; // along the longest side of the hair, 4 .. 64; 0: 24
-    Floor floor;       // not with an AOV
+    Scatter scatter;    // of light from fibre to fibre; needs deep shadow maps
+    int scatter_orders; // that are followed, 1 .. 32; 0: 16
+    int scatter_cells;  // along the longest side of the hair, 4 .. 64; 0: 24
+    Floor floor;        // not with an AOV
     LodOptions lod;
     Oit oit;            // how the fragments of a pixel are blended; auto: abuffer. Else quads are
                         // what raster auto is

@@ -78,6 +78,7 @@ static Result describe_images(const Images *images, RendererOptions *options, Er
         .lod = {run->lod_start, run->lod_end, run->lod_min, run->lod_width},
         .scatter = (Scatter)run->scatter,
         .scatter_cells = run->scatter_cells,
+        .scatter_orders = run->scatter_orders,
         .shadow = {
             .kind = (Shadow)run->shadow, .side = run->shadow_size, .spacing = run->shadow_spacing}};
     memcpy(options->background, run->background, sizeof options->background);
