@@ -16,6 +16,7 @@
 #define MESH_TAPS 6 // as soft as shadows of hair, whose maps are coarser
 #include "draw/lights.glsl"
 #include "draw/shadow_surface.glsl"
+#include "draw/sky.glsl"
 #include "draw/floor_light.glsl"
 #endif
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A matt plane, lit as the mesh is, that fades away from its middle (needs lights.glsl,
-// shadow_surface.glsl).
+// shadow_surface.glsl, sky.glsl).
 //   FLOOR 1: it is seen   2: only the light that it lacks where there is shadow: black that covers
 //       so much
 #include "draw/floor.glsl"
@@ -20,8 +20,7 @@ float floor_there(vec3 x)
 // Linear, premultiplied.
 vec4 floor_shown(vec3 x, float there)
 {
-    vec3 around = draw_params.mesh_color.a * light_around(FLOOR_UP, 1.0), light = around,
-         sent = around;
+    vec3 around = sky_reaching(x, FLOOR_UP), light = around, sent = around;
 #if SHADOW
     shadow_find_on(x, FLOOR_UP);
 #endif

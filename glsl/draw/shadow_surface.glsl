@@ -2,6 +2,11 @@
 // Shadows on surfaces: each map is read only where its light could shine, and can be in something's
 // way (needs lights.glsl). CPU drivers run both sides of an `if`, but a loop ends when no lane
 // needs another turn: so these loops of one turn or none are questions.
+//   SHADOW_WRAP: the greatest cosine below the horizon from which light still counts. A surface's
+//       own shadow, which is sharp where light grazes it, comes in softly up to the same above.
+#ifndef SHADOW_WRAP
+#define SHADOW_WRAP 0.0
+#endif
 
 #if SHADOW
 bool shadow_covers(vec2 texel, int side)
@@ -17,7 +22,8 @@ void shadow_find_on(vec3 x, vec3 n)
              place = vec4(x, 1.0) * shadow_params.from_world[map];
         vec4 at = draw_params.light_place[int(of_light.x)];
         // A lamp has no map behind it.
-        bool shone = dot(at.xyz - at.w * x, n) > 0.0 && place.w > 0.0;
+        float facing = dot(normalize(at.xyz - at.w * x), n);
+        bool shone = facing > -SHADOW_WRAP && place.w > 0.0;
         float left = 1.0;
         vec2 texel = place.xy / place.w;
         int turns = shone && place.z > 0.0 && shadow_covers(texel, shadow_side) ? 1 : 0;
@@ -27,7 +33,8 @@ void shadow_find_on(vec3 x, vec3 n)
         vec4 mesh_place = vec4(x, 1.0) * shadow_params.mesh_from_world[map];
         turns =
             shone && shadow_covers(mesh_place.xy / mesh_place.w, shadow_params.mesh_side) ? 1 : 0;
-        for (int turn = 0; turn < turns; ++turn) left *= light_past_mesh(map, x);
+        float own = SHADOW_WRAP > 0.0 ? smoothstep(0.0, SHADOW_WRAP, facing) : 1.0;
+        for (int turn = 0; turn < turns; ++turn) left *= mix(1.0, light_past_mesh(map, x), own);
 #endif
         shadow_keep(int(of_light.x), left);
     }

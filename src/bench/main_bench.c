@@ -222,6 +222,8 @@ static void try_renderers(const Gpu *gpu, Result *worst, FILE *stream, Error *er
         {"floats, 2 x 2", {.kind = IMAGE_FLOAT, .samples = 2}},
         {"floor", {.floor = {.kind = FLOOR_PLANE}}},
         {"floor, dom", {.shadow = {SHADOW_DOM, 64, 200}, .floor = {.kind = FLOOR_PLANE}}},
+        {"skin", {.mesh_shading = MESH_SKIN}},
+        {"skin, dom", {.shadow = {SHADOW_DOM, 64, 200}, .mesh_shading = MESH_SKIN}},
         {"catcher, approx", {.shadow = {SHADOW_APPROX, 64, 200}, .floor = {.kind = FLOOR_SHADOW}}},
         {"coverage", {.aov = AOV_COVERAGE}},
         {"depth", {.aov = AOV_DEPTH, .kind = IMAGE_FLOAT}},

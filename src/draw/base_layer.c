@@ -96,6 +96,7 @@ Result base_layer_build_light(BaseLayer *base, Shadow shadow, Error *error)
                                     {"SHADOW_MAPS", unrolled ? base->map_count : 0},
                                     {"SHADOW", shadow},
                                     {"SHADOW_BY_MESH", 1},
+                                    {"SKIN", base->shading == MESH_SKIN},
                                     {NULL, 0}};
     return base->light ? RESULT_OK
                        : shader_build_draw(&base->light, "draw/screen.vert", "draw/mesh.frag",

@@ -6,6 +6,7 @@
 // camera, head, lights nor shadows have changed.
 #pragma once
 
+#include "base/params.h"
 #include "draw/render_mesh.h"
 #include "draw/shadows.h"
 #include "gpu/gpu_timer.h"
@@ -27,6 +28,7 @@ typedef enum BaseArea { BASE_WITHOUT_MESH, BASE_BESIDE_MESH, BASE_OVER_MESH } Ba
 // A zeroed struct has no mesh.
 typedef struct BaseLayer {
     RenderMesh mesh;
+    MeshShading shading; // of the mesh; stays the same
     BaseFloor floor;
     GLuint light;               // program of the mesh
     GLuint finish[3][3];        // programs, by BaseArea and FloorKind

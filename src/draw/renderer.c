@@ -71,6 +71,7 @@ Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
     if (options->samples != 1 && options->samples != 2 && options->samples != 4)
         return error_set(error, RESULT_USAGE, "--samples %d: expected 1, 2 or 4", options->samples);
     renderer->raster = choose_raster(gpu, options);
+    renderer->base.shading = options->mesh_shading;
     Result result = render_target_create(&renderer->target, &gpu->limits, options->width,
                                          options->height, options->samples, options->kind, error);
     THEN(result, RASTERS[renderer->raster].create(renderer, error));

@@ -36,6 +36,7 @@ typedef struct RendererOptions {
     int scatter_orders; // that are followed, 1 .. 32; 0: 16
     int scatter_cells;  // along the longest side of the hair, 4 .. 64; 0: 24
     Floor floor;        // not with an AOV
+    MeshShading mesh_shading;
     LodOptions lod;
     Oit oit;            // how the fragments of a pixel are blended; auto: abuffer. Else quads are
                         // what raster auto is

@@ -74,6 +74,7 @@ static Result describe_images(const Images *images, RendererOptions *options, Er
         .aov = (Aov)run->aov,
         .samples = run->samples,
         .seed = run->seed,
+        .mesh_shading = (MeshShading)run->mesh_shading,
         .floor = floor_find(images->scene, images->framing),
         .lod = {run->lod_start, run->lod_end, run->lod_min, run->lod_width},
         .scatter = (Scatter)run->scatter,

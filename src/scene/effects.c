@@ -50,7 +50,7 @@ static const struct {
     {"collide friction collision_margin", has_colliders,
      "there are neither --colliders nor --collide-mesh"},
     {"friction collision_margin", collides, "--no-collide"},
-    {"collide_mesh mesh_unit mesh_up mesh_color", has_mesh, "there is no --mesh"},
+    {"collide_mesh mesh_unit mesh_up mesh_color mesh_shading", has_mesh, "there is no --mesh"},
     {"sdf_resolution sdf_cache", collides_mesh, "there is no --collide-mesh"},
     {"gust gust_period gust_repeat wind_spread wind_shelter", has_wind, "there is no --wind"},
     {"gust_period gust_repeat", has_gusts, "--gust is 0"},

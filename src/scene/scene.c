@@ -240,9 +240,9 @@ void scene_settle_colors(Scene *scene)
 static const struct {
     const char *preset, *word, *name, *value;
 } PRESETS[] = {
-    {"quality", "draft", "lod_width", "1"},     {"quality", "final", "shadow", "dom"},
-    {"quality", "final", "shadow_size", "512"}, {"quality", "final", "samples", "2"},
-    {"quality", "final", "smooth", "3"},
+    {"look", "plain", "mesh_shading", "matt"}, {"quality", "draft", "lod_width", "1"},
+    {"quality", "final", "shadow", "dom"},     {"quality", "final", "shadow_size", "512"},
+    {"quality", "final", "samples", "2"},      {"quality", "final", "smooth", "3"},
 };
 
 static Result apply_preset(const char *preset, const char *word, ParamScope scope, void *params,

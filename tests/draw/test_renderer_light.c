@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Hair with a mesh and lights.
+#include "support/needed.h"
 #include "support/stage.h"
 
 #include <math.h>
@@ -192,6 +193,54 @@ static void a_strand_throws_its_shadow_on_the_mesh(void **state)
     }
 }
 
+// What the middle of a square shows of a light that comes in at `a` degrees, beyond what it shows
+// without one.
+static double light_on_square(double a)
+{
+    const double turn = a * 3.14159265358979 / 180;
+    double shown[2];
+    for (int lit = 0; lit < 2; ++lit) {
+        studio.light = (Light){.direction = {(float)sin(turn), 0, (float)cos(turn)},
+                               .color = {1, 1, 1},
+                               .intensity = (float)lit};
+        studio_draw(&studio);
+        shown[lit] = (double)*(const float *)(const void *)(studio.image.pixels +
+                                                            ((size_t)(SIDE / 2) * SIDE + SIDE / 2) *
+                                                                3 * sizeof(float));
+    }
+    return shown[1] - shown[0];
+}
+
+// Skin seen square to it, whose highlight a black mesh shows alone, against the formulas that
+// skin.glsl names, in double precision. Pixels of the mesh are halves: a step is 2^-11 of them.
+static void skin_has_a_soft_edge_and_a_highlight(void **state)
+{
+    (void)state;
+    const double wrap = 0.25, reflectance = 0.028, square = 0.28 * 0.28;
+    RendererOptions options = BLACK;
+    options.kind = IMAGE_FLOAT;
+    options.mesh_shading = MESH_SKIN;
+    Mesh mesh = make_square(100);
+    for (int a = 0; a <= 110; a += 5) {
+        double shown[2], c = cos(a * 3.14159265358979 / 180), light = fmax(c, 0),
+                         half = sqrt(0.5 * (1 + c)), spread = half * half * (square - 1) + 1,
+                         masking = 0.5 / (light * sqrt(1 * (1 - square) + square) +
+                                          sqrt(light * light * (1 - square) + square)),
+                         fresnel = reflectance + (1 - reflectance) * pow(1 - half, 5),
+                         highlight = light * square / (spread * spread) * masking * fresnel,
+                         diffuse = pow(fmax((c + wrap) / (1 + wrap), 0), 1 + 2 * wrap);
+        for (int white = 0; white < 2; ++white) {
+            const float color[3] = {(float)white, (float)white, (float)white};
+            use(&options);
+            NEEDED(renderer_set_mesh(&studio.renderer, &mesh, color, error));
+            shown[white] = light_on_square(a);
+        }
+        assert_true(fabs(shown[0] - highlight) < 1.0 / 1024);
+        assert_true(fabs(shown[1] - shown[0] - diffuse) < 2.0 / 1024);
+    }
+    mesh_destroy(&mesh);
+}
+
 static void put_square(void)
 {
     Error error = {{0}};
@@ -260,6 +309,7 @@ int main(void)
         CLAIM(light_falls_off_by_the_square_of_the_distance),
         CLAIM(a_spot_shines_into_its_cone),
         CLAIM(a_strand_throws_its_shadow_on_the_mesh),
+        CLAIM(skin_has_a_soft_edge_and_a_highlight),
         CLAIM(a_mesh_is_drawn_again_where_it_looks_different),
     };
     return stage_run(tests);

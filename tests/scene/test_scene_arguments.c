@@ -61,7 +61,7 @@ static const char *find_condition(const ParamInfo *info)
         const char *names, *condition;
     } CONDITIONS[] = {
         {" collide friction collision_margin ", "--colliders ground:0"},
-        {" collide_mesh mesh_unit mesh_up mesh_color ", "--mesh /m.obj"},
+        {" collide_mesh mesh_unit mesh_up mesh_color mesh_shading ", "--mesh /m.obj"},
         {" sdf_resolution sdf_cache ", "--mesh /m.obj --collide-mesh"},
         {" gust gust_period gust_repeat wind_spread wind_shelter ", "--wind 1,0,0"},
         {" export_followers ", "--export x.usda"},
