@@ -16,10 +16,10 @@
 layout(binding = BIND_SURFACE) uniform sampler2D surface;
 layout(location = 0) out vec4 color; // linear
 
-// What the mesh of this colour shows at x with the unit normal n.
-vec3 light_on(vec3 base, vec3 x, vec3 n, vec3 to_eye)
+// What the mesh shows at x with the unit normal n.
+vec3 light_on(vec3 x, vec3 n, vec3 to_eye)
 {
-    vec3 light = base * sky_reaching(x, n);
+    vec3 light = sky_reaching(x, n), highlight = vec3(0.0);
 #if SHADOW
     x += shadow_params.mesh_lift * n; // so that the surface does not shadow itself
     shadow_find_on(x, n);
@@ -27,21 +27,20 @@ vec3 light_on(vec3 base, vec3 x, vec3 n, vec3 to_eye)
     for (int i = 0; i < light_count; ++i) {
         vec3 to_light, reaching = light_reaching(i, x, to_light);
 #if SKIN
-        light += reaching *
-                 (base * skin_diffuse(dot(n, to_light)) + skin_highlight(n, to_light, to_eye));
+        light += reaching * skin_diffuse(dot(n, to_light));
+        highlight += reaching * skin_highlight(n, to_light, to_eye);
 #else
-        light += reaching * base * max(dot(n, to_light), 0.0);
+        light += reaching * max(dot(n, to_light), 0.0);
 #endif
     }
-    return light;
+    return draw_params.mesh_color.rgb * light + highlight;
 }
 
 void main()
 {
     vec4 seen = texelFetch(surface, ivec2(gl_FragCoord.xy), 0);
     vec3 way = ray_through(gl_FragCoord.xy),
-         n = seen.xyz * inversesqrt(max(dot(seen.xyz, seen.xyz), 1e-20));
-    color = vec4(light_on(draw_params.mesh_color.rgb, draw_params.eye.xyz + seen.w * way,
-                          dot(n, way) > 0.0 ? -n : n, -normalize(way)),
-                 1.0);
+         n = seen.xyz * inversesqrt(max(dot(seen.xyz, seen.xyz), 1e-20)),
+         x = draw_params.eye.xyz + seen.w * way;
+    color = vec4(light_on(x, dot(n, way) > 0.0 ? -n : n, -normalize(way)), 1.0);
 }

@@ -26,7 +26,8 @@ bool exposure_is_wanted(const Scene *scene)
            !scene_draws_floats(run);
 }
 
-// The scene as the meter draws it: small, before nothing, light as it is; hair stays as it is put.
+// The scene as the meter draws it: small, before nothing, light as it is, by the one rasteriser that
+// sorts everything, so that both have the same exposure; hair stays as it is put.
 static Scene meter_scene(const Scene *scene)
 {
     static char hair[] = "put", light[] = "light.pfm";
@@ -41,6 +42,9 @@ static Scene meter_scene(const Scene *scene)
     run->exposure = (AutoFloat){0};
     run->tone_map = TONE_NONE;
     run->samples = 1;
+    run->raster = RASTER_BLOCKS;
+    run->oit = OIT_AUTO;
+    run->oit_layers = 0;
     run->floor = FLOOR_NONE;
     run->collide_mesh = false;
     run->from_cache = hair;

@@ -201,6 +201,15 @@ static void find_axes(Axes *axes, const float camera_up[3])
     glm_vec3_cross(axes->back, axes->right, axes->top);
 }
 
+void outline_camera_axes(float axes[3][3], const float camera_up[3])
+{
+    Axes found = {0};
+    find_axes(&found, camera_up);
+    memcpy(axes[0], found.right, sizeof axes[0]);
+    memcpy(axes[1], found.top, sizeof axes[1]);
+    memcpy(axes[2], found.back, sizeof axes[2]);
+}
+
 // How far from the target the eye must be to see all of `outline` in a frame that is larger by
 // `scale`, tangents of the half angles given.
 static float distance_to_see(const Outline *outline, const Axes *axes, const float target[3],

@@ -1,38 +1,54 @@
 // SPDX-License-Identifier: MIT
 #include "scene/scene.h"
 
+#include "scene/outline.h"
+
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
-// --- Lights, for the automatic camera, which looks along -z. Unit vectors.
+// --- Lights.
 
 typedef struct LightSet {
-    Light lights[3];
+    Light lights[3]; // directions: unit vectors, x to the right, y up, z towards the camera
     uint32_t count;
+    bool turned; // they stand around the automatic camera, which does not look along -z
 } LightSet;
 
 static const LightSet LOOK_LIGHTS[] = {
+    // A key from above on the left, a rim from behind on the right, a fill against black shadows.
+    [LOOK_STUDIO] =
+        {{{.direction = {-0.48f, 0.64f, 0.6f}, .color = {1, 1, 1}, .intensity = 1, .shadow = true},
+          {.direction = {0.48f, 0.6f, -0.64f},
+           .color = {1, 1, 1},
+           .intensity = 1.2f,
+           .shadow = true},
+          {.direction = {0.8f, 0, 0.6f}, .color = {1, 1, 1}, .intensity = 0.25f, .shadow = true}},
+         3,
+         true},
     // From above the camera's left shoulder, and a weaker one from the right against black shadows.
-    [LOOK_STUDIO] = {{{.direction = {-0.48f, 0.64f, 0.6f},
-                       .color = {1, 1, 1},
-                       .intensity = 1.0f,
-                       .shadow = true},
-                      {.direction = {0.8f, 0.0f, 0.6f}, .color = {1, 1, 1}, .intensity = 0.35f}},
-                     2},
-    [LOOK_PLAIN] = {{{.direction = {-0.48f, 0.64f, 0.6f},
-                      .color = {1, 1, 1},
-                      .intensity = 1.0f,
-                      .shadow = true},
-                     {.direction = {0.8f, 0.0f, 0.6f}, .color = {1, 1, 1}, .intensity = 0.35f}},
-                    2},
+    [LOOK_PLAIN] =
+        {{{.direction = {-0.48f, 0.64f, 0.6f}, .color = {1, 1, 1}, .intensity = 1, .shadow = true},
+          {.direction = {0.8f, 0, 0.6f}, .color = {1, 1, 1}, .intensity = 0.35f}},
+         2,
+         false},
 };
 
-void scene_set_lights(Scene *scene, LookKind look)
+void scene_set_lights(Scene *scene)
 {
-    const LightSet *set = &LOOK_LIGHTS[look];
+    const LightSet *set = &LOOK_LIGHTS[scene->run.look];
+    float axes[3][3];
+    if (scene->own_lights) return;
     scene->light_count = set->count;
     memcpy(scene->lights, set->lights, sizeof set->lights);
+    if (!set->turned || !scene->run.eye.automatic || scene->eye.count) return;
+    outline_camera_axes(axes, scene->run.camera_up);
+    for (uint32_t i = 0; i < set->count; ++i) {
+        const float *d = set->lights[i].direction;
+        for (int k = 0; k < 3; ++k)
+            scene->lights[i].direction[k] =
+                d[0] * axes[0][k] + d[1] * axes[1][k] + d[2] * axes[2][k];
+    }
 }
 
 void scene_destroy(Scene *scene)
@@ -240,9 +256,16 @@ void scene_settle_colors(Scene *scene)
 static const struct {
     const char *preset, *word, *name, *value;
 } PRESETS[] = {
-    {"look", "plain", "mesh_shading", "matt"}, {"quality", "draft", "lod_width", "1"},
-    {"quality", "final", "shadow", "dom"},     {"quality", "final", "shadow_size", "512"},
-    {"quality", "final", "samples", "2"},      {"quality", "final", "smooth", "3"},
+    {"look", "plain", "shading", "kajiya"},     {"look", "plain", "ambient", "0.12"},
+    {"look", "plain", "diffuse", "0.4"},        {"look", "plain", "roughness", "8"},
+    {"look", "plain", "opacity", "0.6"},        {"look", "plain", "color_variation", "0.35"},
+    {"look", "plain", "shadow", "none"},        {"look", "plain", "shadow_opacity", "0.33"},
+    {"look", "plain", "sky", "#ffffff"},        {"look", "plain", "ground", "#ffffff"},
+    {"look", "plain", "exposure", "0"},         {"look", "plain", "tone_map", "none"},
+    {"look", "plain", "mesh_color", "#b08d78"}, {"look", "plain", "mesh_shading", "matt"},
+    {"look", "plain", "background", "#20242b"}, {"quality", "draft", "lod_width", "1"},
+    {"quality", "final", "shadow", "dom"},      {"quality", "final", "shadow_size", "512"},
+    {"quality", "final", "samples", "2"},       {"quality", "final", "smooth", "3"},
 };
 
 static Result apply_preset(const char *preset, const char *word, ParamScope scope, void *params,
@@ -273,7 +296,7 @@ Result scene_create_as(Scene *scene, const Presets *presets, Error *error)
     *scene = (Scene){0};
     TRY(params_create_run(&scene->run, error));
     TRY(scene_apply_presets(presets, SCOPE_RUN, &scene->run, error));
-    scene_set_lights(scene, (LookKind)scene->run.look);
+    scene_set_lights(scene);
     return RESULT_OK;
 }
 

@@ -83,6 +83,7 @@ typedef struct Scene {
     Keyframes eye, target;          // width 3, m; without keys run.eye, run.target hold
     Keyframes fov;                  // width 1, deg; without keys run.fov holds
     Light lights[SCENE_MAX_LIGHTS]; // those of the look if the user names none
+    bool own_lights;                // the user names some, or none at all by an empty list
     Colliders colliders;            // shapes that hair must not cross
     uint32_t light_count;           // 0 if the user gives an empty list: ambient light only
 } Scene;
@@ -151,5 +152,6 @@ Result scene_apply_presets(const Presets *presets, ParamScope scope, void *param
 // scene_create with the presets' defaults and lights. Errors as above.
 Result scene_create_as(Scene *scene, const Presets *presets, Error *error);
 
-// The lights of a scene that names none, before a camera that looks along -z.
-void scene_set_lights(Scene *scene, LookKind look);
+// The lights of a scene that names none, by run.look. Those of the studio stand around the
+// automatic camera, and around one that looks along -z where the scene has a camera of its own.
+void scene_set_lights(Scene *scene);

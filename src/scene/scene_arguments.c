@@ -78,7 +78,6 @@ static Result add_sections(Scene *scene, const Found *found, Error *error)
     Result result = params_create_section(&defaults, error);
     THEN(result, scene_apply_presets(presets, SCOPE_RUN, &scene->run, error));
     THEN(result, scene_apply_presets(presets, SCOPE_SECTION, &defaults, error));
-    if (result == RESULT_OK) scene_set_lights(scene, (LookKind)scene->run.look);
     for (size_t i = 0; i < found->file_count; i++)
         THEN(result, scene_add_section(scene, found->files[i], &defaults, error));
     params_destroy_section(&defaults);
@@ -216,6 +215,7 @@ Result scene_from_arguments(Scene *scene, int argc, char **argv, Error *error)
     scene_settle_colors(scene);
     if (run) THEN(result, choose_turn(scene, error));
     if (run) THEN(result, choose_still(scene, error));
+    if (run && result == RESULT_OK) scene_set_lights(scene);
     if (run) THEN(result, check_arguments(scene, error));
     return result;
 }

@@ -241,7 +241,6 @@ static Result read_document(Scene *scene, const Document *document, Error *error
     TRY(read_params(document, &sink, ORIGIN_SHARED_KEY, &document->root, document->json, error));
     scene->run.look = look;
     scene->run.quality = quality;
-    scene_set_lights(scene, (LookKind)look);
     TRY(read_sections(scene, document, error));
     return read_parts(scene, document, error);
 }
@@ -273,6 +272,7 @@ Result scene_read(Scene *scene, const char *path, Error *error)
 {
     const SceneOverrides none = {0};
     TRY(scene_read_unchecked(scene, path, &none, error));
+    scene_set_lights(scene);
     Result result = scene_check(scene, error);
     if (result != RESULT_USAGE && result != RESULT_BAD_INPUT) return result;
     return error_prefix(error, RESULT_BAD_INPUT, "%.300s: ", path);

@@ -288,6 +288,7 @@ Result scene_tracks_read_lights(Scene *scene, const JsonPlace *place, const json
         return json_fail(place, error, "got %zu lights, expected %d at most", count,
                          SCENE_MAX_LIGHTS);
     scene->light_count = 0;
+    scene->own_lights = true;
     for (size_t i = 0; i < count; i++) {
         JsonPlace light_place = {.parent = place, .index = i};
         scene->lights[i] = (Light){

@@ -3,6 +3,7 @@
 #include "draw/look.h"
 #include "image/image.h"
 #include "image/png.h"
+#include "support/plain.h"
 #include "support/studio.h"
 #include "support/temporary.h"
 
@@ -38,7 +39,7 @@ static Strands make_strands(void)
 static SectionParams make_params(void)
 {
     SectionParams params;
-    NEEDED(params_create_section(&params, error));
+    plain_section(&params);
     studio_make_plain(&params, 1);
     return params;
 }

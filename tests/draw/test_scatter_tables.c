@@ -4,6 +4,7 @@
 #include "draw/scatter_tables.h"
 #include "gpu/gpu_buffer.h"
 #include "support/needed.h"
+#include "support/plain.h"
 #include "support/reference_marschner.h"
 #include "support/test_glsl.h"
 
@@ -48,7 +49,7 @@ static int close_gpu(void **state)
 static SectionParams make_fibre(float color)
 {
     SectionParams params;
-    NEEDED(params_create_section(&params, error));
+    plain_section(&params);
     params.diffuse = 0;
     for (int k = 0; k < 3; ++k) params.color[k] = color;
     return params;

@@ -3,6 +3,7 @@
 // against it.
 #include "reference/image_reference.h"
 #include "strands/strands_read.h"
+#include "support/plain.h"
 #include "support/studio.h"
 
 #include <math.h>
@@ -50,11 +51,10 @@ static void sitting_close(Sitting *sitting)
 // Takes the strands over.
 static SectionParams *sitting_add(Sitting *sitting, Strands strands, float radius, float opacity)
 {
-    Error error = {{0}};
     uint32_t i = sitting->scene.item_count++;
     assert_true(i < MOST_ITEMS);
     SectionParams *material = &sitting->material[i];
-    assert_int_equal(params_create_section(material, &error), RESULT_OK);
+    plain_section(material);
     studio_make_plain(material, opacity);
     sitting->strands[i] = strands;
     sitting->items[i] =
@@ -287,8 +287,7 @@ static void dress(SectionParams *material, float tip_ratio)
 {
     const SectionParams worn = *material;
     *material = (SectionParams){0};
-    Error error = {{0}};
-    assert_int_equal(params_create_section(material, &error), RESULT_OK);
+    plain_section(material);
     material->opacity = worn.opacity;
     material->tip_ratio = tip_ratio;
     SectionParams old = worn;

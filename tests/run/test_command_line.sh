@@ -140,8 +140,8 @@ run 2 $hair --frames many -o "$work/x/"; one_line
 run 2 $hair --algo splitt -o "$work/x/"; one_line; says "did you mean 'split'"
 run 2 $hair --algo verlet -o "$work/x/"; one_line; says "no solver 'verlet': expected split, emulation"
 run 2 $hair --rope-iterations 5 -o "$work/x/"; one_line; says "--rope-iterations: --algo split has no such parameter"
-run 2 $hair --shadow-size 64 -o "$work/x/"; one_line; says "--shadow-size: it has no effect: --shadow is none"
-printf '{"frames": 1, "size": "16x16", "shadow_size": 99, "sections": [{"file": "%s/%s"}]}\n' "$PWD" "$hair" >"$work/idle.json"
+run 2 $hair --look plain --shadow-size 64 -o "$work/x/"; one_line; says "--shadow-size: it has no effect: --shadow is none"
+printf '{"frames": 1, "size": "16x16", "look": "plain", "shadow_size": 99, "sections": [{"file": "%s/%s"}]}\n' "$PWD" "$hair" >"$work/idle.json"
 run 0 "$work/idle.json" -o "$work/idle/"; says "idle.json: shadow_size: it has no effect: --shadow is none"
 run 0 "$work/idle.json" -o "$work/idle/" -q; silent err
 printf '{"sections": [{"file": "%s/%s", "chain_bend": 9}]}\n' "$PWD" "$hair" >"$work/owner.json"

@@ -91,11 +91,15 @@ static void a_preset_gives_way_to_what_is_said(void **state)
         const char *arguments;
         Shadow shadow;
         int size, smooth;
-    } cases[] = {{"a.tfx -o x/", SHADOW_NONE, 256, 1},
+    } cases[] = {{"a.tfx -o x/ --look plain", SHADOW_NONE, 256, 1},
+                 {"a.tfx -o x/", SHADOW_DOM, 256, 1},
+                 {"--look studio a.tfx -o x/ --look plain --shadow none", SHADOW_NONE, 256, 1},
+                 {"--shadow approx a.tfx -o x/ --look plain", SHADOW_APPROX, 256, 1},
+                 {"--quality final a.tfx -o x/ --look plain", SHADOW_DOM, 512, 3},
                  {"a.tfx -o x/ --quality final", SHADOW_DOM, 512, 3},
                  {"--shadow approx --smooth 2 a.tfx -o x/ --quality final", SHADOW_APPROX, 512, 2},
                  {"a.tfx -o x/ --quality final --shadow-size 100", SHADOW_DOM, 100, 3},
-                 {"a.tfx -o x/ --quality final --quality draft", SHADOW_NONE, 256, 1}};
+                 {"a.tfx -o x/ --look plain --quality final --quality draft", SHADOW_NONE, 256, 1}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         Scene scene;
         assert_read(&scene, cases[i].arguments);
@@ -119,18 +123,80 @@ static void a_preset_gives_way_to_what_is_said(void **state)
     scene_destroy(&scene);
 }
 
-static void without_lights_there_are_two_and_an_empty_list_means_none(void **state)
+// A scene file's look counts like a flag's, and a flag's instead of it; what the file says besides
+// wins over both.
+static void a_look_is_said_by_the_scene_file_too(void **state)
 {
     Scene scene;
     Error error;
-    assert_read(&scene, "a.tfx -o x/");
-    assert_true(scene.lights[0].intensity > scene.lights[1].intensity);
-    assert_true(scene.lights[0].shadow && !scene.lights[1].shadow);
-    for (int i = 0; i < 2; i++) {
-        const float *d = scene.lights[i].direction;
-        assert_true(fabsf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] - 1) < 1e-6f);
-    }
+    static const char TEXT[] = "{\"look\": \"plain\", \"tip_ratio\": 0.5, \"sections\": "
+                               "[{\"file\": \"a\"}, {\"file\": \"b\", \"opacity\": 0.5}]}";
+    assert_int_equal(read_scene(state, &scene, TEXT, &error), RESULT_OK);
+    assert_int_equal(scene.run.look, LOOK_PLAIN);
+    assert_int_equal(scene.run.tone_map, TONE_NONE);
+    assert_false(scene.run.exposure.automatic);
+    assert_int_equal(scene.light_count, 2);
+    assert_int_equal(scene.sections[0].params.shading, SHADING_KAJIYA);
+    assert_true(scene.sections[0].params.opacity == 0.6f);
+    assert_true(scene.sections[0].params.tip_ratio == 0.5f);
+    assert_true(scene.sections[1].params.opacity == 0.5f);
     scene_destroy(&scene);
+    char line[600];
+    snprintf(line, sizeof line, "%s -o x/ --look studio", write_scene(state, TEXT));
+    assert_read(&scene, line);
+    assert_int_equal(scene.run.look, LOOK_STUDIO);
+    assert_int_equal(scene.run.tone_map, TONE_FILMIC);
+    assert_true(scene.run.exposure.automatic);
+    assert_int_equal(scene.light_count, 3);
+    assert_int_equal(scene.sections[0].params.shading, SHADING_MARSCHNER);
+    assert_true(scene.sections[0].params.opacity == 1);
+    assert_true(scene.sections[0].params.tip_ratio == 0.5f);
+    assert_true(scene.sections[1].params.opacity == 0.5f);
+    scene_destroy(&scene);
+    assert_int_equal(read_scene(state, &scene,
+                                "{\"look\": \"plan\", \"sections\": [{\"file\": \"a\"}]}", &error),
+                     RESULT_BAD_INPUT);
+    assert_non_null(strstr(error.text, "look: got 'plan'"));
+    scene_destroy(&scene);
+}
+
+// Those of the studio stand around the automatic camera: 25 degrees to the side, 10 above.
+static void lights_stand_around_the_automatic_camera(void **state)
+{
+    (void)state;
+    static const char *const lines[] = {"a.tfx -o x/", "a.tfx -o x/ --eye 0,0,3",
+                                        "a.tfx -o x/ --look plain",
+                                        "a.tfx -o x/ --look plain --eye 0,0,3"};
+    Light key[4];
+    for (int i = 0; i < 4; ++i) {
+        Scene scene;
+        assert_read(&scene, lines[i]);
+        key[i] = scene.lights[0];
+        scene_destroy(&scene);
+    }
+    const float side = 25 * 0.01745329f, above = 10 * 0.01745329f, *fixed = key[1].direction,
+                right[3] = {cosf(side), 0, -sinf(side)},
+                back[3] = {sinf(side) * cosf(above), sinf(above), cosf(side) * cosf(above)},
+                top[3] = {-sinf(side) * sinf(above), cosf(above), -cosf(side) * sinf(above)};
+    for (int k = 0; k < 3; ++k)
+        assert_true(fabsf(key[0].direction[k] - fixed[0] * right[k] - fixed[1] * top[k] -
+                          fixed[2] * back[k]) < 1e-5f);
+    assert_memory_equal(key[2].direction, key[3].direction, sizeof key[2].direction);
+}
+
+static void without_lights_the_look_has_some_and_an_empty_list_means_none(void **state)
+{
+    Scene scene;
+    Error error;
+    for (int look = 0; look < 2; ++look) {
+        assert_read(&scene, look ? "a.tfx -o x/ --look plain" : "a.tfx -o x/");
+        assert_true(scene.lights[0].shadow && scene.lights[1].shadow == !look);
+        for (uint32_t i = 0; i < scene.light_count; i++) {
+            const float *d = scene.lights[i].direction;
+            assert_true(fabsf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] - 1) < 1e-5f);
+        }
+        scene_destroy(&scene);
+    }
     assert_int_equal(
         read_scene(state, &scene, "{\"sections\": [{\"file\": \"a\"}], \"lights\": []}", &error),
         RESULT_OK);
@@ -399,7 +465,9 @@ int main(void)
         cmocka_unit_test(a_section_overrides_the_top_level_and_flags_override_both),
         cmocka_unit_test(paths_in_a_scene_file_are_relative_to_its_folder),
         TEST(a_preset_gives_way_to_what_is_said),
-        TEST(without_lights_there_are_two_and_an_empty_list_means_none),
+        TEST(a_look_is_said_by_the_scene_file_too),
+        TEST(lights_stand_around_the_automatic_camera),
+        TEST(without_lights_the_look_has_some_and_an_empty_list_means_none),
         TEST(a_scene_file_is_known_by_its_content_and_stands_alone),
         TEST(what_is_written_is_a_scene_file_of_the_same_scene),
         cmocka_unit_test(a_file_name_that_is_no_utf_8_is_still_written),

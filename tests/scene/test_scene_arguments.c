@@ -71,6 +71,7 @@ static const char *find_condition(const ParamInfo *info)
         {" shadow_spacing ", "--shadow approx"},
         {" floor_height floor_color ", "--floor plane"},
         {" refraction roughness lobes azimuthal_roughness ", "--shading marschner"},
+        {" specular1 exponent1 specular2 exponent2 ", "--shading kajiya"},
         {" tip_color ", "--tip-length 1"},
         {" melanin_redness ", "--melanin 1"},
         {" curve ", "--smooth 2"},
@@ -99,7 +100,8 @@ static void every_row_is_set_by_its_flag_and_by_nothing_else(void **state)
         const ParamInfo *info = &PARAM_TABLE[i];
         char buffer[64], name[64], line[300], said[100];
         const char *value = sample(info, buffer);
-        if (strcmp(info->name, "quality") == 0) continue; // which stands for several
+        if (strcmp(info->name, "quality") == 0 || strcmp(info->name, "look") == 0)
+            continue; // which stand for several
         snprintf(name, sizeof name, "%s", info->name);
         for (char *at = name; *at; at++) *at = *at == '_' ? '-' : *at;
         for (int form = 0; form < 2; form++) {
@@ -349,14 +351,15 @@ static void flags_without_effect_are_refused(void **state)
         {"a.tfx -o x/ --sdf-resolution 99 --mesh m.obj", "there is no --collide-mesh"},
         {"a.tfx -o x/ --gust 1", "--gust: it has no effect: there is no --wind"},
         {"a.tfx -o x/ --wind 1,0,0 --gust 0 --gust-period 3", "--gust is 0"},
-        {"a.tfx -o x/ --shadow-size 99", "--shadow-size: it has no effect: --shadow is none"},
+        {"a.tfx -o x/ --shadow none --shadow-size 99",
+         "--shadow-size: it has no effect: --shadow is none"},
         {"a.tfx -o x/ --shadow dom --shadow-spacing 9", "only --shadow approx uses it"},
         {"a.tfx -o x/ --raster quads --oit none --oit-layers 9", "--oit is none"},
         {"a.tfx -o x/ --floor-color 0,0,0", "--floor-color: it has no effect"},
         {"a.tfx -o x/ --ease-in 0.5", "there is no --turntable"},
         {"a.tfx -o x/ --no-turn-lights", "--turn-lights: it has no effect"},
         {"a.tfx -o x/ --followers 0 --follow interpolate", "--followers is 0"},
-        {"a.tfx -o x/ --roughness 9", "only --shading marschner uses it"},
+        {"a.tfx -o x/ --look plain --roughness 9", "only --shading marschner uses it"},
         {"a.tfx -o x/ --shading marschner --exponent2 9", "only --shading kajiya uses it"},
     };
     for (size_t i = 0; i < sizeof LINES / sizeof LINES[0]; i++)
@@ -398,7 +401,8 @@ static void keys_of_another_solver_are_refused_unless_the_command_line_has_it(vo
 static void keys_without_effect_are_a_warning_of_one_line(void **state)
 {
     static const char TEXT[] =
-        "{\"shadow_size\": 99, \"friction\": 0.1, \"gust\": 0.5, \"sections\": "
+        "{\"look\": \"plain\", \"shadow_size\": 99, \"friction\": 0.1, \"gust\": 0.5, "
+        "\"sections\": "
         "[{\"file\": \"a\"}, {\"file\": \"b\", \"roughness\": 9, \"collide\": true}]}";
     Scene scene = {0};
     Error error = {{0}};

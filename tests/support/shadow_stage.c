@@ -2,6 +2,7 @@
 #include "support/shadow_stage.h"
 
 #include "draw/drawing.h"
+#include "support/plain.h"
 #include "support/test_glsl.h"
 
 #include <math.h>
@@ -23,7 +24,7 @@ void shadow_stage_open(ShadowStage *stage, Strands strands, float radius, float 
 {
     *stage = (ShadowStage){.strands = strands, .light = *light};
     const GpuLimits *limits = &fixture_gpu()->limits;
-    NEEDED(params_create_section(&stage->material, error));
+    plain_section(&stage->material);
     stage->material.tip_ratio = 1;
     stage->material.shadow_opacity = opacity;
     NEEDED(hair_create(&stage->hair, &stage->strands, 0, limits, error));

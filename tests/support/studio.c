@@ -2,6 +2,7 @@
 #include "support/studio.h"
 #include "base/random.h"
 #include "support/needed.h"
+#include "support/plain.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -64,7 +65,7 @@ uint32_t studio_add(Studio *studio, const Strands *strands, float radius, float 
     assert_true(i < STUDIO_MAX_ITEMS);
     for (uint32_t k = 0; k < i; ++k) first_id += studio->hair[k].strand_count;
     SectionParams *material = &studio->material[i];
-    NEEDED(params_create_section(material, error));
+    plain_section(material);
     studio_make_plain(material, opacity);
     NEEDED(hair_create(&studio->hair[i], strands, first_id, &studio->gpu.limits, error));
     studio->items[i] = (RenderItem){&studio->hair[i], material, radius};
