@@ -110,8 +110,9 @@ MaterialParams drawing_material(const SectionParams *params, float radius)
 
 // --- A drawing.
 
-// Light on the mesh that comes from everywhere.
-static const float MESH_AMBIENT = 0.15f;
+// The share of the light from everywhere that a matt mesh and its floor show. It has no shadows
+// there, and stands for what is left of such light between hair and mesh.
+static const float MATT_AMBIENT = 0.15f;
 
 int drawing_display(const RendererOptions *options)
 {
@@ -147,7 +148,7 @@ static void fill_draw_params(const RendererOptions *options, const RenderMesh *m
     memcpy(draw->head_rotation, frame->head_rotation, sizeof draw->head_rotation);
     memcpy(draw->head_translation, frame->head_translation, sizeof frame->head_translation);
     if (options->aov == AOV_NONE) memcpy(draw->mesh_color, mesh->color, sizeof mesh->color);
-    draw->mesh_color[3] = MESH_AMBIENT;
+    draw->mesh_color[3] = options->mesh_shading == MESH_SKIN ? 1 : MATT_AMBIENT;
     draw->seed = options->seed;
 }
 

@@ -14,8 +14,8 @@
 // RESULT_FAILED when memory is short.
 Result meter_exposure(float *exposure, const Image *image, Error *error);
 
-#define METER_MIDDLE 0.16
-#define METER_KEPT   0.3
+#define METER_MIDDLE 0.11
+#define METER_KEPT   0.4
 #define METER_BRIGHT 0.02
-#define METER_WHITE  1.6
+#define METER_WHITE  1.0
 #define METER_STEP   0.0625

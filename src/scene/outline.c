@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "scene/outline.h"
+#include "scene/axes.h"
 #include "scene/schedule.h"
 #include "strands/follow_plan.h"
 
@@ -8,7 +9,6 @@
 #include <math.h>
 #include <string.h>
 
-static const float SIDE_DEG = 25, ABOVE_DEG = 10;
 // Times, angles and vertices that are looked at; the margin covers what lies between.
 enum { TIMES = 16, ANGLES = 64, VERTICES = 50000 };
 
@@ -181,35 +181,6 @@ static void find_outlines(Framing *framing, const Scene *scene, const Strands *s
     add_outline(&framing->all, &framing->hair);
 }
 
-// Axes of the automatic camera: `right`, `top` and, from the target to the eye, `back`.
-typedef struct Axes {
-    vec3 right, top, back, up;
-} Axes;
-
-static void find_axes(Axes *axes, const float camera_up[3])
-{
-    memcpy(axes->up, camera_up, sizeof(vec3));
-    glm_vec3_normalize(axes->up);
-    if (glm_vec3_norm(axes->up) < 0.5f) glm_vec3_copy((vec3){0, 1, 0}, axes->up);
-    vec3 front = {0, 0, 1};
-    if (fabsf(axes->up[2]) > 0.99f) glm_vec3_copy((vec3){0, -1, 0}, front);
-    glm_vec3_crossn(axes->up, front, axes->right);
-    glm_vec3_cross(axes->right, axes->up, axes->back);
-    glm_vec3_rotate(axes->right, glm_rad(SIDE_DEG), axes->up);
-    glm_vec3_rotate(axes->back, glm_rad(SIDE_DEG), axes->up);
-    glm_vec3_rotate(axes->back, -glm_rad(ABOVE_DEG), axes->right);
-    glm_vec3_cross(axes->back, axes->right, axes->top);
-}
-
-void outline_camera_axes(float axes[3][3], const float camera_up[3])
-{
-    Axes found = {0};
-    find_axes(&found, camera_up);
-    memcpy(axes[0], found.right, sizeof axes[0]);
-    memcpy(axes[1], found.top, sizeof axes[1]);
-    memcpy(axes[2], found.back, sizeof axes[2]);
-}
-
 // How far from the target the eye must be to see all of `outline` in a frame that is larger by
 // `scale`, tangents of the half angles given.
 static float distance_to_see(const Outline *outline, const Axes *axes, const float target[3],
@@ -245,7 +216,7 @@ static const Outline *outline_shown(const Framing *framing, const Scene *scene)
 static void place_eye(Framing *framing, const Scene *scene)
 {
     Axes axes = {0};
-    find_axes(&axes, scene->run.camera_up);
+    axes_find(&axes, scene->run.camera_up);
     float tan_y = tanf(narrowest_fov(scene) / 2), distance = 0;
     float tan_x = tan_y * (float)scene->run.size[0] / (float)scene->run.size[1];
     float turn = fminf(fabsf(scene->run.turntable), 360) * (scene->run.turntable < 0 ? -1 : 1);

@@ -35,10 +35,6 @@ void outline_add(Outline *outline, const float point[3]);
 // Corner 0..7 of the box.
 void outline_corner(const Outline *outline, int which, float corner[3]);
 
-// The axes of the automatic camera (unit vectors in the world): right, top and, from the target to
-// the eye, back.
-void outline_camera_axes(float axes[3][3], const float camera_up[3]);
-
 // Finds what the sequence will show without simulating it: the style carried by the head, and the
 // shape in which the hair comes to rest: each strand rebuilt from its root with directions between
 // that of gravity + drag * wind and the style's, by the section's share of style, and around all of

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scene/scene.h"
 
-#include "scene/outline.h"
+#include "scene/axes.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -37,17 +37,17 @@ static const LightSet LOOK_LIGHTS[] = {
 void scene_set_lights(Scene *scene)
 {
     const LightSet *set = &LOOK_LIGHTS[scene->run.look];
-    float axes[3][3];
+    Axes axes;
     if (scene->own_lights) return;
     scene->light_count = set->count;
     memcpy(scene->lights, set->lights, sizeof set->lights);
     if (!set->turned || !scene->run.eye.automatic || scene->eye.count) return;
-    outline_camera_axes(axes, scene->run.camera_up);
+    axes_find(&axes, scene->run.camera_up);
     for (uint32_t i = 0; i < set->count; ++i) {
         const float *d = set->lights[i].direction;
         for (int k = 0; k < 3; ++k)
             scene->lights[i].direction[k] =
-                d[0] * axes[0][k] + d[1] * axes[1][k] + d[2] * axes[2][k];
+                d[0] * axes.right[k] + d[1] * axes.top[k] + d[2] * axes.back[k];
     }
 }
 
