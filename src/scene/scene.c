@@ -256,8 +256,8 @@ void scene_settle_colors(Scene *scene)
 static const struct {
     const char *preset, *word, *name, *value;
 } PRESETS[] = {
-    {"look", "plain", "shading", "kajiya"},     {"look", "plain", "ambient", "0.12"},
-    {"look", "plain", "diffuse", "0.4"},        {"look", "plain", "roughness", "8"},
+    {"look", "plain", "shading", "kajiya"},     {"look", "plain", "roughness", "8"},
+    {"look", "plain", "albedo", "auto"},        {"look", "plain", "scatter", "none"},
     {"look", "plain", "opacity", "0.6"},        {"look", "plain", "color_variation", "0.35"},
     {"look", "plain", "shadow", "none"},        {"look", "plain", "shadow_opacity", "0.33"},
     {"look", "plain", "sky", "#ffffff"},        {"look", "plain", "ground", "#ffffff"},
