@@ -17,7 +17,7 @@ static const float RADIUS = 30;
 static RendererOptions with_floor(const RendererOptions *base, FloorKind kind)
 {
     RendererOptions options = *base;
-    options.shadow = (ShadowOptions){SHADOW_DOM, 96, 200};
+    options.shadow = (ShadowOptions){.kind = SHADOW_DOM, .side = 96, .spacing = 200};
     options.floor = (Floor){
         .kind = kind, .middle = {0, HEIGHT, 0}, .whole = 2000, .faded = 3000, .color = {1, 1, 1}};
     return options;

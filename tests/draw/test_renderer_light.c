@@ -171,7 +171,7 @@ static void a_strand_throws_its_shadow_on_the_mesh(void **state)
 {
     (void)state;
     RendererOptions options = BLACK;
-    options.shadow = (ShadowOptions){SHADOW_DOM, 256, 200};
+    options.shadow = (ShadowOptions){.kind = SHADOW_DOM, .side = 256, .spacing = 200};
     Error error = {{0}};
     const float white[3] = {1, 1, 1};
     Mesh mesh = make_square(100);
@@ -273,7 +273,8 @@ static void a_mesh_is_drawn_again_where_it_looks_different(void **state)
     } pictures[] = {
         {front, &view, true}, {front, &view, false}, {side, &view, true}, {side, &turned, true}};
     for (int shadow = 0; shadow < 2; ++shadow) {
-        options.shadow = (ShadowOptions){shadow ? SHADOW_DOM : SHADOW_NONE, 64, 200};
+        options.shadow =
+            (ShadowOptions){.kind = shadow ? SHADOW_DOM : SHADOW_NONE, .side = 64, .spacing = 200};
         uint8_t *seen[4];
         use(&options);
         put_square();
