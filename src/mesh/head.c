@@ -51,8 +51,8 @@ static const Part PARTS[] = {
     // Brows, sockets, lids.
     {ADD, CONE, BOTH, 0.020, {0.012, 0.013, 0.075, 0.0090}, {0.044, 0.015, 0.057, 0.007}},
     {CUT, EGG, BOTH, 0.016, {0.0315, -0.006, 0.094}, {0.022, 0.0140, 0.0175}},
-    {ADD, EGG, BOTH, 0.004, {0.0325, -0.0045, 0.0615}, {0.0185, 0.0125, 0.0165}},
-    {ADD, EGG, BOTH, 0.0025, {0.0325, -0.0150, 0.0610}, {0.0165, 0.0070, 0.0135}},
+    {ADD, EGG, BOTH, 0.004, {0.0325, -0.0040, 0.0615}, {0.0180, 0.0115, 0.0168}},
+    {ADD, EGG, BOTH, 0.007, {0.0325, -0.0145, 0.0605}, {0.0160, 0.0080, 0.0140}},
     // Nose: body, bridge, tip, wings, nostrils.
     {ADD, EGG, ONE, 0.012, {0, -0.030, 0.079}, {0.0125, 0.026, 0.016}},
     {ADD, CONE, ONE, 0.014, {0, 0.006, 0.077, 0.0060}, {0, -0.036, 0.098, 0.0075}},
@@ -62,6 +62,7 @@ static const Part PARTS[] = {
     // Lips.
     {ADD, CONE, BOTH, 0.0060, {0.0035, -0.0727, 0.0868, 0.0062}, {0.0205, -0.0778, 0.0790, 0.0032}},
     {ADD, CONE, BOTH, 0.0030, {0.0000, -0.0848, 0.0866, 0.0080}, {0.0195, -0.0800, 0.0788, 0.0036}},
+    {CUT, CONE, BOTH, 0.008, {0.0010, -0.0788, 0.0955, 0.0014}, {0.0160, -0.0790, 0.0872, 0.0008}},
     {CUT, EGG, ONE, 0.012, {0, -0.0955, 0.0965}, {0.018, 0.005, 0.007}},
     // Ears: shell, rim, lobe, hollow.
     {ADD, EGG, BOTH, 0.010, {0.0640, -0.018, -0.008}, {0.0120, 0.0240, 0.0150}},
@@ -271,11 +272,14 @@ static Result add_uv(Mesh *mesh, Error *error)
     return RESULT_OK;
 }
 
-// Eyes go to the face, then to the ears; shoulders are plain and the skull is under hair.
+// Eyes go to the face, its eyes and mouth first, then to the ears; shoulders are plain and the
+// skull is under hair.
 static double look_at(const Double3 at)
 {
+    bool ahead = at[2] > 0.03 && at[1]<0.03, near = at[2]> 0.058 && at[1] > -0.095;
     if (at[1] < -0.13) return 0.5;
-    if (at[2] > 0.03 && at[1] < 0.03) return at[1] > -0.095 && at[2] > 0.06 ? 20.0 : 5.0;
+    if (ahead && near) return at[1] > -0.022 && fabs(at[0]) > 0.012 ? 80.0 : 20.0;
+    if (ahead) return 5.0;
     return at[1] < 0.02 && fabs(at[0]) > 0.068 ? 3.0 : 0.5;
 }
 
