@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+// The white furnace: hair that takes nothing of light, under a sky that is everywhere as bright as
+// the background, can't be seen. It passes only if light among hair neither vanishes nor grows: in
+// the fibre's lobes, in the grid, at its edge and at the eye.
+#include "bench/light_case.h"
+#include "bench/light_stage.h"
+#include "support/hair_fixture.h"
+#include "support/temporary.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+// The sky's light by 48 directions, cells and lobes that are blurred by a direction's width: what
+// is stated, of the hair's mean and as RMS of blocks (of 8 x 8 pixels).
+static const double STATED = 0.03;
+enum { WIDTH = 160, HEIGHT = 120 };
+
+typedef struct Furnace {
+    const char *groom, *place; // file of tests/data/light/grooms; keys of the camera
+    const char *flags;
+} Furnace;
+
+static void write_scene(const Furnace *furnace, const char *path)
+{
+    char folder[4096];
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    assert_non_null(getcwd(folder, sizeof folder));
+    fprintf(file,
+            "{\"sections\": [{\"file\": \"%s/tests/data/light/grooms/%s\", \"unit\": \"m\", "
+            "\"algo\": \"none\", \"shading\": \"marschner\", \"radius\": 0.0001, \"tip_ratio\": 1, "
+            "\"opacity\": 1, \"color\": \"#ffffff\", \"color_variation\": 0}], \"lights\": [], "
+            "\"sky\": \"#ffffff\", \"ground\": \"#ffffff\", \"background\": \"#ffffff\", "
+            "\"shadow\": \"dom\", \"samples\": 2, \"size\": [%d, %d], %s}",
+            folder, furnace->groom, WIDTH, HEIGHT, furnace->place);
+    assert_int_equal(fclose(file), 0);
+}
+
+static void draw(LightStage *stage, const char *path, const char *const flags[3])
+{
+    Error error;
+    if (light_stage_create(stage, fixture_gpu(), path, flags, &error)) fail_msg("%s", error.text);
+    if (light_stage_draw(stage, true, &error)) fail_msg("%s", error.text);
+}
+
+// How far the hair is from the background: its mean, and the RMS over blocks, each weighted by what
+// of it is covered.
+static void require_unseen(const Image *light, const Image *coverage, const char *name)
+{
+    double off[3] = {0}, squares[3] = {0}, weight = 0;
+    int blocks = 0;
+    for (int row = 0; row < HEIGHT / LIGHT_BLOCK_PX; ++row)
+        for (int column = 0; column < WIDTH / LIGHT_BLOCK_PX; ++column) {
+            double lit[3], covered[3];
+            light_case_block(light, column, row, lit);
+            light_case_block(coverage, column, row, covered);
+            if (!(covered[0] > 0)) continue;
+            ++blocks, weight += covered[0];
+            for (int k = 0; k < 3; ++k) {
+                off[k] += lit[k] - 1;
+                squares[k] += (lit[k] - 1) * (lit[k] - 1) / covered[0];
+            }
+        }
+    assert_true(blocks >= 20);
+    for (int k = 0; k < 3; ++k) {
+        double mean = off[k] / weight, rms = sqrt(squares[k] / weight);
+        print_message("%s, channel %d: mean %+.4f, RMS of %d blocks %.4f\n", name, k, mean, blocks,
+                      rms);
+        if (!(fabs(mean) <= STATED && rms <= STATED))
+            fail_msg("%s, channel %d: mean %+.4f, RMS of blocks %.4f: expected at most %g", name, k,
+                     mean, rms, STATED);
+    }
+}
+
+static void require_furnace(void **state, const char *groom, const char *place, const char *flags)
+{
+    const Furnace setting = {groom, place, flags}, *furnace = &setting;
+    LightStage lit, covered;
+    char name[128];
+    const char *path = temporary_path(state, "furnace.json");
+    write_scene(furnace, path);
+    draw(&lit, path, (const char *[]){furnace->flags, "", ""});
+    draw(&covered, path, (const char *[]){furnace->flags, "--aov coverage", ""});
+    snprintf(name, sizeof name, "%s %s", furnace->groom, furnace->flags);
+    require_unseen(&lit.image, &covered.image, name);
+    light_stage_destroy(&lit);
+    light_stage_destroy(&covered);
+}
+
+#define CURLS "curls3k.tfx", "\"margin\": 0.01"
+#define FUR   "fur.tfx", "\"margin\": 0.01"
+
+static void curls_vanish(void **state)
+{
+    require_furnace(state, CURLS, "--raster blocks");
+}
+
+static void curls_vanish_as_triangles(void **state)
+{
+    require_furnace(state, CURLS, "--raster quads");
+}
+
+static void curls_vanish_with_tilted_scales(void **state)
+{
+    require_furnace(state, CURLS, "--cone-angle 3 --roughness 8 --azimuthal-roughness 20");
+}
+
+static void fur_vanishes(void **state)
+{
+    require_furnace(state, FUR, "--raster blocks");
+}
+
+int main(void)
+{
+#define WITH_FILES(test) cmocka_unit_test_setup_teardown(test, temporary_create, temporary_destroy)
+    const struct CMUnitTest tests[] = {
+        WITH_FILES(curls_vanish),
+        WITH_FILES(curls_vanish_as_triangles),
+        WITH_FILES(curls_vanish_with_tilted_scales),
+        WITH_FILES(fur_vanishes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
