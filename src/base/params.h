@@ -49,8 +49,9 @@ typedef enum ParamKind {
 
 // The words of each CHOICE and the values they stand for, counted from 0.
 #define CHOICES_NONE(X)
-#define CHOICES_UP(X)     X(UP_AUTO, "auto") X(UP_Y, "y") X(UP_Z, "z")
-#define CHOICES_FOLLOW(X) X(FOLLOW_OFFSET, "offset") X(FOLLOW_INTERPOLATE, "interpolate")
+#define CHOICES_UP(X) X(UP_AUTO, "auto") X(UP_Y, "y") X(UP_Z, "z")
+#define CHOICES_FOLLOW(X)                                                                          \
+    X(FOLLOW_OFFSET, "offset") X(FOLLOW_INTERPOLATE, "interpolate") X(FOLLOW_AUTO, "auto")
 #define CHOICES_TELEPORT(X)                                                                        \
     X(TELEPORT_CARRY, "carry") X(TELEPORT_LIMIT, "limit") X(TELEPORT_NONE, "none")
 #define CHOICES_BACKEND(X) X(BACKEND_AUTO, "auto") X(BACKEND_EGL, "egl") X(BACKEND_OSMESA, "osmesa")

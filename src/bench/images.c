@@ -110,6 +110,7 @@ static Result stage_create(Stage *stage, const BenchOptions *options, const Gpu 
     *stage = (Stage){.options = options, .gpu = gpu, .set = set, .file = file};
     TRY(scene_create_as(&stage->scene, &(Presets){.look = "plain"}, error));
     Result result = params_create_section(&params, error);
+    params.followers = (AutoInt){.value = 0};
     THEN(result, scene_add_section(&stage->scene, set ? set : file, &params, error));
     params_destroy_section(&params);
     THEN(result, read_hair(stage, &stage->strands, error));

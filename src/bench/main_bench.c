@@ -53,7 +53,7 @@ static Result try_hair(const Gpu *gpu, const SectionParams *params, const Strand
         .gpu = gpu, .hair = &hair, .params = params, .sheltered = params->style == 1};
     Result result = strands_make(&strands, recipe, error);
     THEN(result, hair_create(&hair, &strands, 0, &gpu->limits, error));
-    THEN(result, params->followers
+    THEN(result, params->followers.value
                      ? follow_create(&follow, gpu, NULL, &hair, &strands, params, 1, error)
                      : solver_create(&solver, &setup, error));
     follow_destroy(&follow);
@@ -81,7 +81,7 @@ static Result try_solver(const Gpu *gpu, const SolverType *type, const char *var
 static Result try_follow(const Gpu *gpu, FollowMode mode, Error *error)
 {
     StrandsRecipe recipe = strands_make_recipe(STRANDS_STYLE_FUR);
-    const SectionParams params = {.followers = 1, .follow = (int)mode};
+    const SectionParams params = {.followers = {.value = 1}, .follow = (int)mode};
     recipe.count = 4;
     return try_hair(gpu, &params, &recipe, error);
 }

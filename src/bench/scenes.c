@@ -64,7 +64,7 @@ static Result add_section(Scene *scene, Strands *strands, const SceneKind *kind,
     Result result =
         trial_params(&params, kind->rest[i] == STATIC ? &still : &row->method, "", error);
     params.sleep = kind->rest[i] == SLEEPS ? 1 : 0;
-    params.followers = kind->followers;
+    params.followers = (AutoInt){.value = kind->followers};
     params.follow = (int)kind->mode;
     THEN(result, strands_make_set(strands, row->set, 1, error));
     THEN(result, scene_add_section(scene, row->set, &params, error));

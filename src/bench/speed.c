@@ -221,7 +221,7 @@ static Result measure(Row *row, const Gpu *gpu, const Strands *strands, const Be
     Result result = trial_params(&params, &row->method, "", error);
     THEN(result, scene_create_as(&scene, &(Presets){.look = "plain"}, error));
     params.sleep = 0; // every step is one
-    params.followers = 0;
+    params.followers = (AutoInt){.value = 0};
     THEN(result, scene_add_section(&scene, row->hair, &params, error));
     params_destroy_section(&params);
     THEN(result, simulation_create(&simulation, gpu, &timer, &scene, strands, NULL, error));

@@ -8,7 +8,7 @@
 #include "run/survey.h"
 #include "scene/effects.h"
 #include "scene/fit.h"
-#include "strands/strands.h"
+#include "strands/follow_plan.h"
 
 #include <string.h>
 
@@ -185,6 +185,19 @@ static Result expose(Run *run, Error *error)
     return RESULT_OK;
 }
 
+// What is drawn beside the strands of a file that asks for nothing.
+static void report_filled(const Run *run)
+{
+    for (uint32_t i = 0; i < run->scene.section_count; ++i) {
+        const Section *section = &run->scene.sections[i];
+        const Strands *strands = &run->assets.strands[i];
+        if (section->params.hidden || !follow_plan_fills(&section->params, strands)) continue;
+        fprintf(stderr, "%s: %u followers fill between %u strands: --followers says otherwise\n",
+                section->file, run->simulation.sections[i].follow.hair.strand_count,
+                strands->strand_count);
+    }
+}
+
 // Files first: their errors are reported before a driver is started. The output's folder is made
 // last but before any work.
 static Result prepare(Run *run, Error *error)
@@ -202,6 +215,7 @@ static Result prepare(Run *run, Error *error)
     if (draws) TRY(expose(run, error));
     TRY(simulation_create(&run->simulation, &run->gpu, &run->timer, &run->scene,
                           run->assets.strands, &run->assets.mesh, error));
+    if (draws && !params->quiet) report_filled(run);
     TRY(open_source(run, error));
     if (draws)
         TRY(images_create(&run->images, &run->scene, &run->assets, &run->simulation, &run->framing,

@@ -256,6 +256,7 @@ void scene_settle_colors(Scene *scene)
 static const struct {
     const char *preset, *word, *name, *value;
 } PRESETS[] = {
+    {"look", "plain", "followers", "-1"},       {"look", "plain", "follow", "offset"},
     {"look", "plain", "shading", "kajiya"},     {"look", "plain", "roughness", "8"},
     {"look", "plain", "albedo", "auto"},        {"look", "plain", "scatter", "none"},
     {"look", "plain", "opacity", "0.6"},        {"look", "plain", "color_variation", "0.35"},

@@ -13,6 +13,9 @@ enum {
     NEIGHBOURS = 32,
     MOST_TRIANGLES = NEIGHBOURS * (NEIGHBOURS - 1) / 2,
     RADIUS_SAMPLES = 256,
+    FEWEST_FILLED = 32,     // strands
+    MOST_FILLED = 5000,     // strands, with their followers twice as many
+    FRAME_SEGMENTS = 16000, // what else a picture of 1280x720 costs, drawn and encoded
     SHARE_NEIGHBOURS = 16
 };
 static const double MOST_SIDE = 6; // radii
@@ -25,11 +28,30 @@ static float find_radius(const SectionParams *params, const Strands *strands)
                                         : follow_plan_auto_radius(strands);
 }
 
+uint32_t follow_plan_fill(const Strands *strands)
+{
+    uint32_t count = strands->strand_count;
+    if (count < FEWEST_FILLED || count >= MOST_FILLED) return 0;
+    double segments = strands->vertex_count - count;
+    double most = floor(2 * (segments + FRAME_SEGMENTS) / segments);
+    return (uint32_t)fmin(most, 2.0 * MOST_FILLED / count);
+}
+
+bool follow_plan_fills(const SectionParams *params, const Strands *strands)
+{
+    return params->followers.automatic && !strands->followers && follow_plan_fill(strands) > 0;
+}
+
 FollowOptions follow_plan_options(const SectionParams *params, const Strands *strands,
                                   uint32_t seed)
 {
-    FollowOptions options = {.interpolate = params->follow == FOLLOW_INTERPOLATE, .seed = seed};
-    options.per_guide = params->followers < 0 ? strands->followers : (uint32_t)params->followers;
+    FollowOptions options = {.seed = seed};
+    bool given = !params->followers.automatic && params->followers.value >= 0;
+    options.per_guide = given ? (uint32_t)params->followers.value : strands->followers;
+    bool fills = follow_plan_fills(params, strands);
+    if (fills) options.per_guide = follow_plan_fill(strands);
+    options.interpolate =
+        params->follow == FOLLOW_INTERPOLATE || (params->follow == FOLLOW_AUTO && fills);
     if (options.per_guide) options.radius = find_radius(params, strands);
     return options;
 }

@@ -24,9 +24,18 @@ typedef struct FollowOptions {
 } FollowOptions;
 
 // What the parameters say of the followers of these strands, or else what their file says, or else
-// no followers, and follow_plan_auto_radius.
+// (if automatic) follow_plan_fill, interpolated; and follow_plan_auto_radius.
 FollowOptions follow_plan_options(const SectionParams *params, const Strands *strands,
                                   uint32_t seed);
+
+// How many followers each of these strands gets where nobody says a number: 0 for fewer than 32
+// strands, which are wisps, and for 5,000 or more, which cover; else as many as keep the time of a
+// frame within 3 times that of the strands alone. A frame's time is about that of its segments and
+// of FRAME_SEGMENTS more; so the followers of n segments may have 2 (n + FRAME_SEGMENTS).
+uint32_t follow_plan_fill(const Strands *strands);
+
+// Whether that is the number that these have: neither the user nor the file says one.
+bool follow_plan_fills(const SectionParams *params, const Strands *strands);
 
 // How far from its guide a follower may be, m; 0 if there are none. (Between three, it is within
 // their hull.)

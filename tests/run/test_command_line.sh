@@ -235,6 +235,12 @@ run 0 "$work/cm.tfx" --unit 0.015625 --frames 3 --size 64x48 -q -o "$work/u1/"
 run 0 "$work/other.tfx" --unit 0.00390625 --frames 3 --size 64x48 -q -o "$work/u2/"
 if diff -r "$work/u1" "$work/u2" >"$work/err"; then good; else bad "pictures differ"; fi
 
+claim "hair of few strands is filled, in one line, unless the user says a number"
+run 0 assets/curls.tfx --frames 1 --size 16x16 -o "$work/fill/" --stats "$work/stats.json"; says "assets/curls.tfx: 1200 followers fill between 300 strands: --followers says otherwise"
+in_file "$work/stats.json" '"followers": 1200'
+run 0 assets/curls.tfx --followers 0 --frames 1 --size 16x16 -o "$work/fill/"; if grep -q "followers" "$work/err"; then bad "said something"; else good; fi
+run 0 assets/curls.tfx --frames 1 --size 16x16 -q -o "$work/fill/"; silent err
+
 claim "a variant that may run away is told, unless quiet"
 run 0 $hair --algo emulation --variant thesis --frames 1 --size 16x16 -o "$work/e/"; says "gains energy"
 run 0 $hair --algo emulation --variant thesis --frames 1 --size 16x16 -q -o "$work/e/"

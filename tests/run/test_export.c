@@ -130,7 +130,7 @@ static void followers_come_with_them_if_asked_for(void **state)
     Error error;
     simulation_fixture_create(&fixture, "chain", "");
     SectionParams *params = &fixture.scene.sections[0].params;
-    params->followers = 3;
+    params->followers = (AutoInt){.value = 3};
     params->follower_radius.automatic = false;
     params->follower_radius.value = 0.01f;
     fixture.scene.run.export_followers = true;

@@ -230,6 +230,7 @@ static void test_the_file_says_how_many_unless_the_user_does(void **state)
     Strands strands = make_lawn(20, upright);
     SectionParams params;
     assert_int_equal(params_create_section(&params, NULL), RESULT_OK);
+    params.followers = (AutoInt){.value = -1};
     assert_int_equal(follow_plan_options(&params, &strands, 0).per_guide, 0);
     assert_true(follow_plan_reach(&params, &strands) == 0);
     strands.followers = 6;
@@ -239,10 +240,43 @@ static void test_the_file_says_how_many_unless_the_user_does(void **state)
     strands.follower_radius = 0.25f;
     params.tip_separation = 2;
     assert_true(follow_plan_reach(&params, &strands) == 0.75f);
-    params.followers = 0;
+    params.followers = (AutoInt){.value = 0};
     assert_int_equal(follow_plan_options(&params, &strands, 0).per_guide, 0);
     params_destroy_section(&params);
     strands_destroy(&strands);
+}
+
+static void test_hair_of_few_strands_is_filled(void **state)
+{
+    (void)state;
+    SectionParams params;
+    assert_int_equal(params_create_section(&params, NULL), RESULT_OK);
+    const double frame = 16000; // segments that a frame costs besides those of the hair
+    for (uint32_t count = 20; count < 6000; count = count * 5 / 4) {
+        Strands strands = make_curls(count);
+        FollowOptions options = follow_plan_options(&params, &strands, 0);
+        double segments = strands.vertex_count - strands.strand_count,
+               filled = segments * (1 + options.per_guide);
+        assert_int_equal(options.per_guide, follow_plan_fill(&strands));
+        assert_true(filled + frame <= 3 * (segments + frame));
+        bool few = count >= 32 && count < 5000;
+        assert_int_equal(options.per_guide >= 2, few);
+        assert_int_equal(options.interpolate, few);
+        assert_int_equal(follow_plan_fills(&params, &strands), few);
+        // A number of the user's or of the file's wins.
+        params.followers = (AutoInt){.value = 1};
+        options = follow_plan_options(&params, &strands, 0);
+        assert_true(options.per_guide == 1 && !options.interpolate);
+        params.followers = (AutoInt){.value = -1};
+        assert_int_equal(follow_plan_options(&params, &strands, 0).per_guide, 0);
+        params.followers = (AutoInt){.automatic = true};
+        strands.followers = 3;
+        options = follow_plan_options(&params, &strands, 0);
+        assert_true(options.per_guide == 3 && !options.interpolate);
+        assert_false(follow_plan_fills(&params, &strands));
+        strands_destroy(&strands);
+    }
+    params_destroy_section(&params);
 }
 
 // Curls with two vertex counts: two batches.
@@ -305,7 +339,7 @@ static void check_gpu(int mode)
     HairFixture fixture;
     Follow follow;
     fixture_create_strands(&fixture, &strands, "chain", "", 0.5f, 1);
-    fixture.params.followers = 3;
+    fixture.params.followers = (AutoInt){.value = 3};
     fixture.params.follow = mode;
     fixture.params.tip_separation = 0.7f;
     assert_int_equal(follow_create(&follow, fixture_gpu(), &fixture.timer, &fixture.hair, &strands,
@@ -356,6 +390,7 @@ int main(void)
         cmocka_unit_test(test_interpolation_covers_the_scalp),
         cmocka_unit_test(test_interpolation_keeps_partings),
         cmocka_unit_test(test_the_file_says_how_many_unless_the_user_does),
+        cmocka_unit_test(test_hair_of_few_strands_is_filled),
         cmocka_unit_test(test_the_gpu_puts_followers_beside_guides),
         cmocka_unit_test(test_the_gpu_puts_followers_between_guides),
     };

@@ -39,7 +39,7 @@ static void add_section(World *world, const Kind *kind)
     assert_int_equal(params_parse(params_find("algo"), &params, kind->algo, NULL), RESULT_OK);
     params.style = kind->style;
     params.drag = kind->drag;
-    params.followers = kind->followers;
+    params.followers = (AutoInt){.value = kind->followers};
     params.sleep = 1e-4f;
     assert_int_equal(scene_add_section(&world->scene, kind->algo, &params, NULL), RESULT_OK);
     params_destroy_section(&params);
