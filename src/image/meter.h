@@ -14,8 +14,8 @@
 // RESULT_FAILED when memory is short.
 Result meter_exposure(float *exposure, const Image *image, Error *error);
 
-#define METER_MIDDLE 0.11
+#define METER_MIDDLE 0.13
 #define METER_KEPT   0.4
-#define METER_BRIGHT 0.02
-#define METER_WHITE  1.0
+#define METER_BRIGHT 0.03
+#define METER_WHITE  1.2
 #define METER_STEP   0.0625

@@ -19,11 +19,11 @@ static const LightSet LOOK_LIGHTS[] = {
     // A key from above on the left, a rim from behind on the right, a fill against black shadows.
     [LOOK_STUDIO] =
         {{{.direction = {-0.48f, 0.64f, 0.6f}, .color = {1, 1, 1}, .intensity = 1, .shadow = true},
-          {.direction = {0.48f, 0.6f, -0.64f},
+          {.direction = {0.64f, 0.48f, -0.6f},
            .color = {1, 1, 1},
-           .intensity = 1.2f,
+           .intensity = 0.5f,
            .shadow = true},
-          {.direction = {0.8f, 0, 0.6f}, .color = {1, 1, 1}, .intensity = 0.25f, .shadow = true}},
+          {.direction = {0.8f, 0, 0.6f}, .color = {1, 1, 1}, .intensity = 0.35f, .shadow = true}},
          3,
          true},
     // From above the camera's left shoulder, and a weaker one from the right against black shadows.
