@@ -39,7 +39,8 @@ uint32_t follow_plan_fill(const Strands *strands)
 
 bool follow_plan_fills(const SectionParams *params, const Strands *strands)
 {
-    return params->followers.automatic && !strands->followers && follow_plan_fill(strands) > 0;
+    return params->followers.automatic && params->radius.automatic && !strands->followers &&
+           follow_plan_fill(strands) > 0;
 }
 
 FollowOptions follow_plan_options(const SectionParams *params, const Strands *strands,

@@ -34,7 +34,8 @@ FollowOptions follow_plan_options(const SectionParams *params, const Strands *st
 // of FRAME_SEGMENTS more; so the followers of n segments may have 2 (n + FRAME_SEGMENTS).
 uint32_t follow_plan_fill(const Strands *strands);
 
-// Whether that is the number that these have: neither the user nor the file says one.
+// Whether that is the number that these have: neither the user nor the file says one. Where the
+// user says how thick fibres are, the strands are all fibres that there are.
 bool follow_plan_fills(const SectionParams *params, const Strands *strands);
 
 // How far from its guide a follower may be, m; 0 if there are none. (Between three, it is within

@@ -263,6 +263,10 @@ static void test_hair_of_few_strands_is_filled(void **state)
         assert_int_equal(options.per_guide >= 2, few);
         assert_int_equal(options.interpolate, few);
         assert_int_equal(follow_plan_fills(&params, &strands), few);
+        // Strands whose radius the user says are single fibres.
+        params.radius = (AutoFloat){.value = 1e-4f};
+        assert_false(follow_plan_fills(&params, &strands));
+        params.radius = (AutoFloat){.automatic = true};
         // A number of the user's or of the file's wins.
         params.followers = (AutoInt){.value = 1};
         options = follow_plan_options(&params, &strands, 0);
