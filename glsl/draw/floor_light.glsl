@@ -20,7 +20,7 @@ float floor_there(vec3 x)
 // Linear, premultiplied.
 vec4 floor_shown(vec3 x, float there)
 {
-    vec3 around = sky_reaching(x, FLOOR_UP), light = around, sent = around;
+    vec3 around = sky_reaching(FLOOR_UP), light = around, sent = around;
 #if SHADOW
     shadow_find_on(x, FLOOR_UP);
 #endif

@@ -16,10 +16,10 @@
 layout(binding = BIND_SURFACE) uniform sampler2D surface;
 layout(location = 0) out vec4 color; // linear
 
-// What the mesh shows at x with the unit normal n.
-vec3 light_on(vec3 x, vec3 n, vec3 to_eye)
+// What the mesh shows at x with the unit normal n where it sees the share `open` of the sky.
+vec3 light_on(vec3 x, vec3 n, float open, vec3 to_eye)
 {
-    vec3 light = sky_reaching(x, n), highlight = vec3(0.0);
+    vec3 light = sky_reaching_into(n, open, draw_params.mesh_color.rgb), highlight = vec3(0.0);
 #if SHADOW
     x += shadow_params.mesh_lift * n; // so that the surface does not shadow itself
     shadow_find_on(x, n);
@@ -42,5 +42,10 @@ void main()
     vec3 way = ray_through(gl_FragCoord.xy),
          n = seen.xyz * inversesqrt(max(dot(seen.xyz, seen.xyz), 1e-20)),
          x = draw_params.eye.xyz + seen.w * way;
-    color = vec4(light_on(x, dot(n, way) > 0.0 ? -n : n, -normalize(way)), 1.0);
+#if SKIN
+    float open = min(length(seen.xyz), 1.0);
+#else
+    const float open = 1.0;
+#endif
+    color = vec4(light_on(x, dot(n, way) > 0.0 ? -n : n, open, -normalize(way)), 1.0);
 }

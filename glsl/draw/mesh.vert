@@ -5,14 +5,15 @@
 
 layout(location = 0) in vec3 position; // m, the head's frame
 layout(location = 1) in vec3 normal;
+layout(location = 2) in float open; // share of the sky
 
 invariant gl_Position; // by both of its programs
 out vec3 world_position;
-out vec3 world_normal;
+out vec3 world_normal; // as long as the share of the sky
 
 void main()
 {
     world_position = rotate(draw_params.head_rotation, position) + draw_params.head_translation.xyz;
-    world_normal = rotate(draw_params.head_rotation, normal);
+    world_normal = open * rotate(draw_params.head_rotation, normal);
     gl_Position = draw_params.clip_from_world * vec4(world_position, 1.0);
 }

@@ -57,6 +57,20 @@ Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const float colo
     return RESULT_OK;
 }
 
+Result render_mesh_set_openness(RenderMesh *mesh, const float *open, uint32_t vertex_count,
+                                const GpuLimits *limits, Error *error)
+{
+    if (!mesh->triangle_count) return RESULT_OK;
+    TRY(gpu_buffer_create(&mesh->open, limits, "the sky on the mesh",
+                          (int64_t)vertex_count * (int64_t)sizeof *open, open, 0, error));
+    glBindVertexArray(mesh->vertex_array);
+    glBindBuffer(GL_ARRAY_BUFFER, mesh->open.buffer);
+    glVertexAttribPointer(2, 1, GL_FLOAT, GL_FALSE, 0, NULL);
+    glEnableVertexAttribArray(2);
+    glBindVertexArray(0);
+    return RESULT_OK;
+}
+
 void render_mesh_destroy(RenderMesh *mesh)
 {
     const GLuint programs[] = {mesh->surface, mesh->edges};
@@ -66,6 +80,7 @@ void render_mesh_destroy(RenderMesh *mesh)
     gpu_buffer_destroy(&mesh->position);
     gpu_buffer_destroy(&mesh->normal);
     gpu_buffer_destroy(&mesh->triangle);
+    gpu_buffer_destroy(&mesh->open);
     *mesh = (RenderMesh){0};
 }
 
@@ -73,6 +88,7 @@ static void draw_with(const RenderMesh *mesh, GLuint program)
 {
     glUseProgram(program);
     glBindVertexArray(mesh->vertex_array);
+    if (!mesh->open.buffer) glVertexAttrib1f(2, 1);
     glDrawElements(GL_TRIANGLES, (GLsizei)(3 * mesh->triangle_count), GL_UNSIGNED_INT, NULL);
 }
 

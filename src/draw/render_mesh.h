@@ -11,6 +11,7 @@ typedef struct RenderMesh {
     GLuint surface, edges; // programs
     GLuint vertex_array;
     GpuBuffer position, normal, triangle; // float[3], float[3], uint[3]
+    GpuBuffer open;                       // float, see openness.h; none: 1 everywhere
     uint32_t triangle_count;              // 0: no mesh, nothing is done
     float low[3], high[3];                // bounds in the head's frame, m
     float color[3];                       // linear
@@ -19,6 +20,10 @@ typedef struct RenderMesh {
 // Uploads. `color`: linear RGB. RESULT_FAILED if memory is short.
 Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const float color[3],
                           const GpuLimits *limits, Error *error);
+
+// Gives each vertex its share of the sky (openness.h). RESULT_FAILED if memory is short.
+Result render_mesh_set_openness(RenderMesh *mesh, const float *open, uint32_t vertex_count,
+                                const GpuLimits *limits, Error *error);
 void render_mesh_destroy(RenderMesh *mesh);
 
 // Draws into the target's depth, its surface, which is right where there is depth, and its edges.

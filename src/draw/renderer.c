@@ -127,6 +127,13 @@ Result renderer_set_mesh(Renderer *renderer, const Mesh *mesh, const float color
     return make_base(renderer, error);
 }
 
+Result renderer_set_openness(Renderer *renderer, const float *open, Error *error)
+{
+    renderer->base.any = false;
+    return render_mesh_set_openness(&renderer->base.mesh, open, renderer->mesh.vertex_count,
+                                    &renderer->gpu->limits, error);
+}
+
 int renderer_channels(const Renderer *renderer)
 {
     return renderer->options.background[3] < 1 ? 4 : 3;

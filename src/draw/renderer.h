@@ -42,6 +42,9 @@ void renderer_destroy(Renderer *renderer);
 // The mesh that hides hair, in the head's frame, and its colour (sRGB 0..1). Copied to the GPU.
 Result renderer_set_mesh(Renderer *renderer, const Mesh *mesh, const float color[3], Error *error);
 
+// The mesh's share of the sky (openness.h), [vertices of the mesh]; matt meshes do without.
+Result renderer_set_openness(Renderer *renderer, const float *open, Error *error);
+
 // 3, or 4 where the background is not opaque: what image_create must be given.
 int renderer_channels(const Renderer *renderer);
 

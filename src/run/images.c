@@ -2,6 +2,7 @@
 #include "run/images.h"
 #include "base/target.h"
 #include "draw/look.h"
+#include "draw/openness.h"
 #include "scene/camera.h"
 #include "strands/paint.h"
 
@@ -89,6 +90,34 @@ static Result describe_images(const Images *images, RendererOptions *options, Er
     return RESULT_OK;
 }
 
+// Tells skin how much of the sky it sees.
+static Result open_sky(Images *images, Error *error)
+{
+    const Assets *assets = images->assets;
+    const RendererOptions *options = &images->renderer.options;
+    uint32_t count = 0, sections = images->scene->section_count;
+    if (!assets->has_mesh || options->mesh_shading != MESH_SKIN || options->aov != AOV_NONE)
+        return RESULT_OK;
+    OpennessHair *hair = calloc((size_t)sections + 1, sizeof *hair);
+    float *open = malloc((size_t)assets->mesh.vertex_count * sizeof *open + 1);
+    Result result = RESULT_OK;
+    if (!hair || !open) result = error_set(error, RESULT_FAILED, "no memory for the mesh's sky");
+    for (uint32_t i = 0; i < sections && result == RESULT_OK; ++i) {
+        const SectionParams *params = &images->scene->sections[i].params;
+        uint32_t followers = images->simulation->sections[i].follow.per_guide;
+        if (params->hidden) continue;
+        hair[count++] =
+            (OpennessHair){.strands = &assets->strands[i],
+                           .radius = paint_radius(params, &assets->strands[i], followers),
+                           .each = 1 + (float)followers};
+    }
+    THEN(result, openness_find(open, &assets->mesh, hair, count, error));
+    THEN(result, renderer_set_openness(&images->renderer, open, error));
+    free(hair);
+    free(open);
+    return result;
+}
+
 static Result open_renderer(Images *images, GpuTimer *timer, Error *error)
 {
     const Assets *assets = images->assets;
@@ -98,7 +127,8 @@ static Result open_renderer(Images *images, GpuTimer *timer, Error *error)
     if (assets->has_mesh)
         TRY(renderer_set_mesh(&images->renderer, &assets->mesh, images->scene->run.mesh_color,
                               error));
-    return create_items(images, error);
+    TRY(create_items(images, error));
+    return open_sky(images, error);
 }
 
 static Result open_output(Images *images, int frame_count, Error *error)

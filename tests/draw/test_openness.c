@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+// The share of the sky that a mesh sees. Cells are a thirtieth of the scenes' two metres and
+// directions 30 degrees apart: shares are right to some 0.1.
+#include "draw/openness.h"
+#include "support/needed.h"
+#include "support/studio.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { SIDE = 21, PLANE = SIDE * SIDE }; // vertices
+
+// A square of 2 m by 2 m from `corner` along two axes, appended at vertex `first`.
+static void put_plane(Mesh *mesh, uint32_t first, uint32_t first_triangle, const float corner[3],
+                      int across, int along, const float normal[3])
+{
+    for (uint32_t i = 0; i < PLANE; ++i) {
+        float *x = mesh->position[first + i];
+        memcpy(x, corner, sizeof(float[3]));
+        x[across] += 0.1f * (float)(i % SIDE);
+        x[along] += 0.1f * (float)(i / SIDE);
+        memcpy(mesh->normal[first + i], normal, sizeof(float[3]));
+    }
+    for (uint32_t y = 0; y + 1 < SIDE; ++y)
+        for (uint32_t x = 0; x + 1 < SIDE; ++x) {
+            uint32_t a = first + y * SIDE + x, *t = mesh->triangle[first_triangle];
+            memcpy(t, (uint32_t[3]){a, a + 1, a + SIDE}, sizeof(uint32_t[3]));
+            memcpy(t + 3, (uint32_t[3]){a + 1, a + SIDE + 1, a + SIDE}, sizeof(uint32_t[3]));
+            first_triangle += 2;
+        }
+}
+
+// A floor, and with `walls` 2 one wall at its edge x = -1.
+static Mesh make_walls(uint32_t walls)
+{
+    const uint32_t triangles = 2 * (SIDE - 1) * (SIDE - 1);
+    Mesh mesh;
+    NEEDED(mesh_create(&mesh, walls * PLANE, walls * triangles, error));
+    put_plane(&mesh, 0, 0, (const float[3]){-1, 0, -1}, 0, 2, (const float[3]){0, 1, 0});
+    if (walls > 1)
+        put_plane(&mesh, PLANE, triangles, (const float[3]){-1, 0, -1}, 1, 2,
+                  (const float[3]){1, 0, 0});
+    return mesh;
+}
+
+// The share at the vertex in this column of the floor's middle row.
+static float open_at(const Mesh *mesh, const OpennessHair *hair, int column)
+{
+    float *open = malloc(mesh->vertex_count * sizeof *open);
+    assert_non_null(open);
+    NEEDED(openness_find(open, mesh, hair, hair != NULL, error));
+    for (uint32_t v = 0; v < mesh->vertex_count; ++v) assert_true(open[v] >= 0 && open[v] <= 1);
+    float found = open[SIDE / 2 * SIDE + column];
+    free(open);
+    return found;
+}
+
+static void a_floor_sees_all_of_the_sky(void **state)
+{
+    (void)state;
+    Mesh floor = make_walls(1);
+    for (int column = 0; column < SIDE; column += 5)
+        assert_true(open_at(&floor, NULL, column) > 0.98f);
+    mesh_destroy(&floor);
+}
+
+// From the foot of the wall half of the sky is hidden (a little less: it ends at 2 m); from a metre
+// away 1/2 (1 - 1 / sqrt(5)) and less, since it ends at its sides, too.
+static void a_wall_hides_its_side_of_the_sky(void **state)
+{
+    (void)state;
+    Mesh walls = make_walls(2);
+    float foot = open_at(&walls, NULL, 1), middle = open_at(&walls, NULL, SIDE / 2),
+          far = open_at(&walls, NULL, SIDE - 1);
+    assert_true(foot > 0.45f && foot < 0.7f);
+    assert_true(middle > 0.72f && middle < 0.95f);
+    assert_true(far > 0.85f && foot < middle && middle < far);
+    mesh_destroy(&walls);
+}
+
+// A dense mat of hair above the floor's half, of optical depth 2 r length / area = 2 at right
+// angles: under it a share of exp(-2) or so, more where light comes in from its side.
+static void hair_hides_the_sky_by_its_density(void **state)
+{
+    (void)state;
+    enum { STRANDS = 100 };
+    float x[2 * STRANDS][3], open[3];
+    for (int s = 0; s < STRANDS; ++s)
+        for (int end = 0; end < 2; ++end) {
+            x[2 * s + end][0] = 0.01f * (float)s;
+            x[2 * s + end][1] = 0.15f;
+            x[2 * s + end][2] = end ? 1.0f : -1.0f;
+        }
+    Strands strands = studio_strands(STRANDS, 2, (const float(*)[3])x);
+    Mesh floor = make_walls(1);
+    for (int i = 0; i < 3; ++i) {
+        const OpennessHair hair = {&strands, i == 2 ? 0.005f : 0.01f,
+                                   i == 0   ? 0.5f
+                                   : i == 1 ? 1
+                                            : 2};
+        open[i] = open_at(&floor, &hair, 3 * SIDE / 4);
+        assert_true(open_at(&floor, &hair, SIDE / 4) > 0.8f); // beside it
+    }
+    assert_true(open[1] < 0.3f && open[0] > open[1] + 0.1f && open[0] < 0.6f);
+    assert_true(fabsf(open[2] - open[1]) < 1e-3f); // half as wide and twice as many
+    strands_destroy(&strands);
+    mesh_destroy(&floor);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_floor_sees_all_of_the_sky),
+        cmocka_unit_test(a_wall_hides_its_side_of_the_sky),
+        cmocka_unit_test(hair_hides_the_sky_by_its_density),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
