@@ -49,7 +49,8 @@ typedef enum ParamKind {
 
 // The words of each CHOICE and the values they stand for, counted from 0.
 #define CHOICES_NONE(X)
-#define CHOICES_UP(X) X(UP_AUTO, "auto") X(UP_Y, "y") X(UP_Z, "z")
+#define CHOICES_UP(X)    X(UP_AUTO, "auto") X(UP_Y, "y") X(UP_Z, "z")
+#define CHOICES_SCALP(X) X(SCALP_AUTO, "auto") X(SCALP_NONE, "none")
 #define CHOICES_FOLLOW(X)                                                                          \
     X(FOLLOW_OFFSET, "offset") X(FOLLOW_INTERPOLATE, "interpolate") X(FOLLOW_AUTO, "auto")
 #define CHOICES_TELEPORT(X)                                                                        \
@@ -80,6 +81,7 @@ typedef enum ParamKind {
 
 #define CHOICE_VALUE(value, word) value,
 typedef enum UpAxis { CHOICES_UP(CHOICE_VALUE) } UpAxis;
+typedef enum ScalpRule { CHOICES_SCALP(CHOICE_VALUE) } ScalpRule;
 typedef enum FollowMode { CHOICES_FOLLOW(CHOICE_VALUE) } FollowMode;
 typedef enum TeleportRule { CHOICES_TELEPORT(CHOICE_VALUE) } TeleportRule;
 typedef enum Backend { CHOICES_BACKEND(CHOICE_VALUE) } Backend;

@@ -8,6 +8,7 @@
 #include "run/survey.h"
 #include "scene/effects.h"
 #include "scene/fit.h"
+#include "scene/scalp_guess.h"
 #include "strands/follow_plan.h"
 
 #include <string.h>
@@ -207,6 +208,8 @@ static Result prepare(Run *run, Error *error)
     TRY(check_values(&run->scene, error));
     TRY(find_done(run, error));
     TRY(assets_load(&run->assets, &run->scene, params->quiet ? NULL : stderr, params->verbose,
+                    error));
+    TRY(scalp_guess(&run->scene, &run->assets, params->quiet ? NULL : stderr, params->verbose,
                     error));
     run->loaded_ms = clock_ms();
     if (!params->quiet) warn_all(&run->scene);

@@ -256,17 +256,18 @@ void scene_settle_colors(Scene *scene)
 static const struct {
     const char *preset, *word, *name, *value;
 } PRESETS[] = {
-    {"look", "plain", "followers", "-1"},       {"look", "plain", "follow", "offset"},
-    {"look", "plain", "shading", "kajiya"},     {"look", "plain", "roughness", "8"},
-    {"look", "plain", "albedo", "auto"},        {"look", "plain", "scatter", "none"},
-    {"look", "plain", "opacity", "0.6"},        {"look", "plain", "color_variation", "0.35"},
-    {"look", "plain", "shadow", "none"},        {"look", "plain", "shadow_opacity", "0.33"},
-    {"look", "plain", "sky", "#ffffff"},        {"look", "plain", "ground", "#ffffff"},
-    {"look", "plain", "exposure", "0"},         {"look", "plain", "tone_map", "none"},
-    {"look", "plain", "mesh_color", "#b08d78"}, {"look", "plain", "mesh_shading", "matt"},
-    {"look", "plain", "background", "#20242b"}, {"quality", "draft", "lod_width", "1"},
-    {"quality", "final", "shadow", "dom"},      {"quality", "final", "shadow_size", "512"},
-    {"quality", "final", "samples", "2"},       {"quality", "final", "smooth", "3"},
+    {"look", "plain", "scalp", "none"},           {"look", "plain", "followers", "-1"},
+    {"look", "plain", "follow", "offset"},        {"look", "plain", "shading", "kajiya"},
+    {"look", "plain", "roughness", "8"},          {"look", "plain", "albedo", "auto"},
+    {"look", "plain", "scatter", "none"},         {"look", "plain", "opacity", "0.6"},
+    {"look", "plain", "color_variation", "0.35"}, {"look", "plain", "shadow", "none"},
+    {"look", "plain", "shadow_opacity", "0.33"},  {"look", "plain", "sky", "#ffffff"},
+    {"look", "plain", "ground", "#ffffff"},       {"look", "plain", "exposure", "0"},
+    {"look", "plain", "tone_map", "none"},        {"look", "plain", "mesh_color", "#b08d78"},
+    {"look", "plain", "mesh_shading", "matt"},    {"look", "plain", "background", "#20242b"},
+    {"quality", "draft", "lod_width", "1"},       {"quality", "final", "shadow", "dom"},
+    {"quality", "final", "shadow_size", "512"},   {"quality", "final", "samples", "2"},
+    {"quality", "final", "smooth", "3"},
 };
 
 static Result apply_preset(const char *preset, const char *word, ParamScope scope, void *params,

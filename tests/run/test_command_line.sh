@@ -235,6 +235,15 @@ run 0 "$work/cm.tfx" --unit 0.015625 --frames 3 --size 64x48 -q -o "$work/u1/"
 run 0 "$work/other.tfx" --unit 0.00390625 --frames 3 --size 64x48 -q -o "$work/u2/"
 if diff -r "$work/u1" "$work/u2" >"$work/err"; then good; else bad "pictures differ"; fi
 
+claim "hair on a scalp gets a head that hides and holds it; --scalp none, -q and what is no scalp are silent"
+run 0 assets/curls.tfx --frames 1 --size 48x32 -o "$work/head.png" --stats "$work/stats.json"; says "scalp: an ellipsoid 0.1"; in_file "$work/stats.json" '"sphere"'
+run 0 assets/curls.tfx --frames 1 --size 48x32 --scalp none -o "$work/bare.png"; if grep -q "scalp" "$work/err"; then bad "said something"; else good; fi
+if cmp -s "$work/head.png" "$work/bare.png"; then bad "the same picture"; else good; fi
+run 0 assets/fur.tfx --frames 1 --size 16x16 -v -o "$work/fur.png"; says "scalp: none: the roots are not on top"
+run 0 assets/curls.tfx --frames 1 --size 16x16 -q -o "$work/bare.png"; silent err
+run 0 assets/curls.tfx --frames 1 --size 16x16 --look plain -o "$work/bare.png"; if grep -q "scalp" "$work/err"; then bad "said something"; else good; fi
+run 0 assets/curls.tfx --frames 3 --size 16x16 --cache "$work/scalp.cache"; run 0 assets/curls.tfx --frames 3 --size 16x16 --from-cache "$work/scalp.cache" -o "$work/scalp/"
+
 claim "hair of few strands is filled, in one line, unless the user says a number"
 run 0 assets/curls.tfx --frames 1 --size 16x16 -o "$work/fill/" --stats "$work/stats.json"; says "assets/curls.tfx: 1200 followers fill between 300 strands: --followers says otherwise"
 in_file "$work/stats.json" '"followers": 1200'
