@@ -106,7 +106,6 @@ static const char *const EXAMPLES[] = {
     "tractrix-render hair.tfx --turntable --wind 2,0,0 -o hair.mp4",
     "tractrix-render scene.json --cache sim.cache",
     "tractrix-render scene.json --from-cache sim.cache --first 60 --last 119 -o frames/",
-    "tractrix-render scene.json --frames 120 -o frames/hair_%04d.png",
     NULL};
 
 // Bounds from here on only keep numbers sane: help does not name them.
