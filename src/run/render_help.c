@@ -24,10 +24,10 @@ static const char *const NOTES[] = {
     NULL};
 
 // What --help alone lists.
-static const char *const BRIEF[] = {
-    "mesh",       "fps",       "output", "size",   "first",     "last",       "cache",
-    "from_cache", "quiet",     "algo",   "style",  "followers", "frames",     "wind",
-    "colliders",  "turntable", "color",  "shadow", "quality",   "background", NULL};
+static const char *const BRIEF[] = {"mesh",   "fps",     "output",     "size",      "first",
+                                    "cache",  "quiet",   "algo",       "style",     "followers",
+                                    "frames", "wind",    "colliders",  "turntable", "albedo",
+                                    "look",   "quality", "background", NULL};
 
 static const struct {
     ParamGroup group;
