@@ -211,13 +211,9 @@ bool hair_shadow_find_box(HairShadow *hair, const LightView *view, ShadowCasters
     return true;
 }
 
-LightFrame hair_shadow_frame(const HairShadow *hair, const LightView *view, const double box[6],
-                             ShadowCasters casters)
+LightFrame hair_shadow_frame(const HairShadow *hair, const LightView *view, const double box[6])
 {
-    double diameter = 0, distance = view->perspective ? fmax(0.5 * (box[2] + box[5]), 1e-6) : 1;
-    for (uint32_t i = 0; i < casters.count; ++i)
-        diameter = fmax(diameter, 2 * (double)casters.list[i].look.material.radius);
-    return light_frame_steady(view, box, hair->side, MARGIN, diameter / distance);
+    return light_frame_steady(view, box, hair->side, MARGIN);
 }
 
 // The smallest step of sums that cannot overflow, were all segments in one texel.

@@ -42,10 +42,8 @@ Result hair_shadow_begin(HairShadow *hair, int maps, ShadowCasters casters, Erro
 bool hair_shadow_find_box(HairShadow *hair, const LightView *view, ShadowCasters casters,
                           double box[6]);
 
-// Where a map of hair in `box` lies. No texel is smaller than the widest fibre: what a fibre adds
-// to the map could not be told from its own share then.
-LightFrame hair_shadow_frame(const HairShadow *hair, const LightView *view, const double box[6],
-                             ShadowCasters casters);
+// Where a map of hair in `box` lies.
+LightFrame hair_shadow_frame(const HairShadow *hair, const LightView *view, const double box[6]);
 
 // Texels of such a map in a metre across, about.
 float hair_shadow_scale(const LightView *view, const LightFrame *frame);

@@ -55,10 +55,10 @@ bool light_frame_place(const LightView *view, const double x[3], double place[3]
 
 // Row k of the window (0, 1) is that of the view in texels.
 static void set_window(LightFrame *frame, const double low[2], const double high[2], int side,
-                       int margin, double least_texel)
+                       int margin)
 {
     double extent = fmax(fmax(high[0] - low[0], high[1] - low[1]), 1e-6);
-    double texel = fmax(exp2(ceil(8 * log2(extent)) / 8) / (side - 2 * margin), least_texel);
+    double texel = exp2(ceil(8 * log2(extent)) / 8) / (side - 2 * margin);
     for (int k = 0; k < 2; ++k) {
         double shift = side / 2.0 - floor((low[k] + high[k]) / (2 * texel));
         for (int i = 0; i < 4; ++i)
@@ -76,19 +76,17 @@ static void set_depth(LightFrame *frame, double near, double far)
     frame->depth[1] = far;
 }
 
-static LightFrame begin(const LightView *view, const double box[6], int side, int margin,
-                        double least_texel)
+static LightFrame begin(const LightView *view, const double box[6], int side, int margin)
 {
     LightFrame frame = {0};
     for (int k = 0; k < 4; ++k) light_frame_row(view, k, frame.rows[k]);
-    set_window(&frame, box, box + 3, side, margin, least_texel);
+    set_window(&frame, box, box + 3, side, margin);
     return frame;
 }
 
-LightFrame light_frame_steady(const LightView *view, const double box[6], int side, int margin,
-                              double least_texel)
+LightFrame light_frame_steady(const LightView *view, const double box[6], int side, int margin)
 {
-    LightFrame frame = begin(view, box, side, margin, least_texel);
+    LightFrame frame = begin(view, box, side, margin);
     double range = exp2(ceil(8 * log2(fmax(1.02 * (box[5] - box[2]), 1e-6))) / 8),
            near = box[2] - 0.01 * range;
     set_depth(&frame, near, near + range);
@@ -97,7 +95,7 @@ LightFrame light_frame_steady(const LightView *view, const double box[6], int si
 
 LightFrame light_frame_drawn(const LightView *view, const double box[6], int side, int margin)
 {
-    LightFrame frame = begin(view, box, side, margin, 0);
+    LightFrame frame = begin(view, box, side, margin);
     double range = fmax(box[5] - box[2], 1e-6), near = box[2] - 0.01 * range,
            far = box[5] + 0.01 * range;
     if (view->perspective) {

@@ -40,10 +40,8 @@ typedef struct LightFrame {
 // Around `box` (lowest u, v, depth, then the highest, as LightView has them), with `margin` texels
 // left free at the edges of `side`. The window changes in steps as the box does, so that shadows do
 // not swim with every frame: its size in eighths of octaves, its middle by whole texels.
-// Depths are linear: the box's and some more, also in steps. `least_texel`: no smaller texels (m;
-// before a lamp m at a depth of one metre).
-LightFrame light_frame_steady(const LightView *view, const double box[6], int side, int margin,
-                              double least_texel);
+// Depths are linear: the box's and some more, also in steps.
+LightFrame light_frame_steady(const LightView *view, const double box[6], int side, int margin);
 
 // The same window with the depths that OpenGL draws: before a lamp linear on the screen.
 LightFrame light_frame_drawn(const LightView *view, const double box[6], int side, int margin);

@@ -189,7 +189,7 @@ static void draw_map(Shadows *shadow, const ShadowScene *scene, int light)
         for (int k = 0; k < 3; ++k) box[k] = LIGHT_FRAME_FAR, box[k + 3] = -LIGHT_FRAME_FAR;
         add_mesh_box(&scene->mesh, &view, box);
     }
-    LightFrame frame = hair_shadow_frame(&shadow->hair, &view, box, scene->casters);
+    LightFrame frame = hair_shadow_frame(&shadow->hair, &view, box);
     set_hair_frame(params, map, light, &view, &frame);
     hair_shadow_draw(&shadow->hair, &view, &frame, map, scene->casters);
     if (by_mesh) {
