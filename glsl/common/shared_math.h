@@ -150,7 +150,8 @@ SHARED_FUNCTION float layer_of(float behind)
 }
 
 // Mean number of fibres that block light before a layer and in it, in 16 bits each: steps of 2^-12,
-// which no light differs by more than 1e-4 in, up to 16, behind which it is dark. (Halves take CPU drivers longer.)
+// which no light differs by more than 1e-4 in, up to 16, behind which it is dark. (Halves take CPU
+// drivers longer.)
 #define LAYER_STEPS 4096.0f
 
 SHARED_FUNCTION uint pack_layer(float before, float own)
@@ -168,8 +169,31 @@ SHARED_FUNCTION float layer_depth(uint bits, float share)
 // A texel holds the mean number of fibres that light meets on its way through it: each fibre adds
 // its opacity times the share of the texel that it covers. Fibres at random places leave
 // exp(-number) of the light (Poisson). (Not the logarithm of what a texel's own fibres leave: a
-// fibre as wide as a texel would darken all of its neighbours.)
-//
+// fibre as wide as a texel would darken all of its neighbours.) A ribbon of many texels does not
+// lie at random: it takes its opacity, exactly.
+#define RESOLVED_FROM 6.0f // texels: width from which a ribbon counts as such ...
+#define RESOLVED_OVER 6.0f // ... the more, up to so much more
+
+// -ln x for 1e-3 <= x <= 1: ln(2^e m) = e ln 2 + 2 artanh((m - 1) / (m + 1)), with m within
+// sqrt(1/2) .. sqrt(2) by the series to the ninth power (1e-9 off).
+SHARED_FUNCTION float minus_log(float x)
+{
+    int bits = INT(BITS_OF_FLOAT(x)), exponent = (bits - 0x3f3504f3) >> 23;
+    float mantissa = FLOAT_OF_BITS(UINT(bits - exponent * 0x800000)),
+          t = (mantissa - 1.0f) / (mantissa + 1.0f), s = t * t;
+    float series = 1.0f + s * (0.33333333f + s * (0.2f + s * (0.14285714f + s * 0.11111111f)));
+    return -(FLOAT(exponent) * 0.693147181f + 2.0f * t * series);
+}
+
+// What a fibre adds where it covers a texel. `width`: texels.
+SHARED_FUNCTION float fibre_depth(float opacity, float width)
+{
+    float resolved =
+        SHARED_MIN(SHARED_MAX((width - RESOLVED_FROM) * (1.0f / RESOLVED_OVER), 0.0f), 1.0f);
+    float exact = minus_log(SHARED_MAX(1.0f - opacity, 1e-3f));
+    return opacity + resolved * (exact - opacity);
+}
+
 // A fibre is in the map itself, smeared over the texels beside it and its layer's depth. Where it
 // lies it finds OWN_SHARE of a thin one of its width (texels): the middle of a line that is laid
 // into texels, smoothed by 1 2 1 and read between four of them, in the mean over where it crosses
@@ -178,5 +202,5 @@ SHARED_FUNCTION float layer_depth(uint bits, float share)
 
 SHARED_FUNCTION float own_layer_depth(float width, float opacity, float share)
 {
-    return share * opacity * SHARED_MIN(OWN_SHARE * width, 1.0f);
+    return share * fibre_depth(opacity, width) * SHARED_MIN(OWN_SHARE * width, 1.0f);
 }

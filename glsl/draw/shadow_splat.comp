@@ -67,7 +67,8 @@ void main()
         float along = clamp(ceil(size * density - SLACK), 1.0, MOST_ALONG);
         float across = width > 1.5 ? clamp(ceil(width * density), 1.0, floor(MOST / along)) : 1.0;
 #if DEEP
-        uint part = uint(int(opacity * width * size * unit / (along * across) + 0.5));
+        uint part =
+            uint(int(fibre_depth(opacity, width) * width * size * unit / (along * across) + 0.5));
 #endif
         vec2 beside = vec2(-way.y, way.x) * (width / max(size, 1e-9)) / across;
         vec3 step = vec3(way, b.z - a.z) / along, at = a.xyz + 0.5 * step;

@@ -225,8 +225,9 @@ static float find_unit(ShadowCasters casters, bool perspective, double texels)
         const MaterialParams *material = &caster->look.material;
         bool any_width = perspective || caster->batch->paint.buffer;
         double width = any_width ? 1 : fmin(2.0 * (double)material->radius * texels, 1);
-        most += (double)material->shadow_opacity * width * caster->batch->strand_count *
-                (caster->batch->vertex_count - 1) * material->smooth_parts;
+        most += (double)fibre_depth(material->shadow_opacity, 100) * width *
+                caster->batch->strand_count * (caster->batch->vertex_count - 1) *
+                material->smooth_parts;
     }
     return (float)fmin(UNIT, SUM_MAX / most);
 }

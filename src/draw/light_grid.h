@@ -41,7 +41,7 @@ typedef struct GridScene {
     const DrawParams *draw;    // lights, sky, ground, eye
     float to_eye[3];           // unit, world: against the way that the camera looks
     int map_of[MAX_LIGHTS];    // of each light; -1: it casts no shadow
-    const LightBlocks *blocks; // what the mesh takes away; NULL: no mesh
+    const LightBlocks *blocks; // what the mesh takes away within the box of hair; NULL: no mesh
     bool suns;                 // the lights' light is followed, too, not only that of the sky
     int cells;                 // along the longest side of the box, 4 .. 64
     int orders; // of scattering that are swept at most, 0 .. 32; 0: the sky's own light alone

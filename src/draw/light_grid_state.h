@@ -84,7 +84,7 @@ bool light_grid_fill(LightGridState *state, const GridScene *scene, Error *error
 void light_grid_sweep(LightGridState *state, const GridScene *scene, bool sky, bool fresh,
                       bool sourceless);
 void light_grid_scatter(LightGridState *state);
-// Adds what hair meets of the last order to `all`; whether more than a fifth of the light would be
+// Adds what hair meets of the last order to `all`; whether more than a twentieth of the light would be
 // left to light_grid_close.
 bool light_grid_needs_more(const LightGridState *state, double all[3]);
 // Adds what the orders after the last would.

@@ -270,7 +270,7 @@ static double falling(const LightGridState *state, int channel)
 
 bool light_grid_needs_more(const LightGridState *state, double all[3])
 {
-    const double most_left = 0.2;
+    const double most_left = 0.05;
     bool more = false;
     for (int c = 0; c < 3; ++c) {
         double last = 0, ratio = falling(state, c);

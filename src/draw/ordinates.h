@@ -23,7 +23,7 @@ enum { TANGENTS = 128 };
 extern float TANGENT[TANGENTS][3];
 extern float TANGENT_SINE[TANGENTS][ORDINATES];
 
-// The nearest class of a unit vector, but for what lies within 2 degrees of another one's region.
+// The nearest class of a unit vector, but for what lies within 4 degrees of another one's region.
 // Needs ordinates_prepare.
 int ordinates_class(const float tangent[3]);
 void ordinates_prepare(void);

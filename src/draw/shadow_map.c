@@ -131,7 +131,7 @@ SIMD_INLINE void find_box(const Cast *cast, int part)
 // `width` times `size` texels.
 SIMD_INLINE uint32_t find_part(float opacity, float width, float size, float unit, float points)
 {
-    float depth = opacity * width * size;
+    float depth = fibre_depth(opacity, width) * width * size;
     return (uint32_t)(int)(simd_min(simd_max(depth * unit, 0) / points, 2e9f) + 0.5f);
 }
 

@@ -33,5 +33,5 @@ void main()
     lit_from = directions[2 * i].xyz;
     vec3 to_eye = directions[2 * i + 1].xyz;
     colors[i] = vec4(
-        shade_fibre(fibre_material(), material.color.rgb, vec3(0.0), vec3(0, 1, 0), to_eye), 1.0);
+        shade_fibre(fibre_material(), material.color.rgb, 0, vec3(0.0), vec3(0, 1, 0), to_eye), 1.0);
 }

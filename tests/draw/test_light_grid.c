@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: MIT
+// The light among hair, by what holds whatever the hair: without absorption nothing is lost, black
+// takes light away, a mesh stands in the way; and its parts against sums by brute force.
+#include "base/random.h"
+#include "draw/drawing.h"
+#include "draw/light_dual.h"
+#include "draw/light_grid.h"
+#include "support/needed.h"
+
+#include "glsl/common/shared_math.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { STRANDS = 40 * STRAND_TILE, N = 6, PARTICLES = STRANDS * N };
+
+// A table whose fibres scatter all light alike to all sides of them, or the share `color`.
+static FibreTable make_table(void)
+{
+    const size_t count = (size_t)SCATTER_COLORS * SCATTER_INCLINATIONS * SCATTER_AZIMUTHS;
+    float(*values)[4] = malloc(count * sizeof *values);
+    assert_non_null(values);
+    for (size_t i = 0; i < count; ++i) {
+        size_t color = i / (SCATTER_INCLINATIONS * SCATTER_AZIMUTHS);
+        float share = (float)color / (SCATTER_COLORS - 1);
+        for (int p = 0; p < 4; ++p) values[i][p] = p < 3 ? share / (3 * 2 * (float)PI) : 0;
+    }
+    return (FibreTable){(const float(*)[4])values};
+}
+
+// A ball of short straight strands that lie at random.
+typedef struct Ball {
+    float position[PARTICLES][4], left[2 * PARTICLES], seen[PARTICLES][4];
+    DrawParams draw;
+    FibreTable table;
+    FibreLobes lobes;
+    GridHair hair;
+    GridScene scene;
+} Ball;
+
+static void place_strands(Ball *ball)
+{
+    Random random = random_create(3, 0);
+    for (uint32_t s = 0; s < STRANDS; ++s) {
+        float root[3], way[3], square;
+        do {
+            square = 0;
+            for (int k = 0; k < 3; ++k) {
+                root[k] = (float)(2 * random_real(&random) - 1);
+                square += root[k] * root[k];
+            }
+        } while (square > 1);
+        for (int k = 0; k < 3; ++k) way[k] = (float)(random_real(&random) - 0.5);
+        for (uint32_t j = 0; j < N; ++j) {
+            float *x =
+                ball->position[((size_t)(s / STRAND_TILE) * N + j) * STRAND_TILE + s % STRAND_TILE];
+            for (int k = 0; k < 3; ++k) x[k] = 0.1f * (root[k] + 0.15f * (float)j * way[k]);
+            x[3] = 1;
+        }
+    }
+}
+
+static Ball *open_ball(float color)
+{
+    Ball *ball = calloc(1, sizeof *ball);
+    assert_non_null(ball);
+    SectionParams params;
+    NEEDED(params_create_section(&params, error));
+    params.cone_angle = 0;
+    MaterialParams material = drawing_material(&params, 1e-3f);
+    params_destroy_section(&params);
+    material.tip_ratio = 1;
+    material.opacity = material.shadow_opacity = 1;
+    material.vertex_count = N;
+    material.smooth_parts = 1;
+    material.drawn_strands = STRANDS;
+    material.last_strand = STRANDS - 1;
+    material.last_share = 1;
+    place_strands(ball);
+    ball->table = make_table();
+    const float colors[3] = {color, color, color};
+    assert_true(fibre_lobes_create(&ball->lobes, ball->table, &material, colors));
+    for (int i = 0; i < PARTICLES; ++i) ball->left[i] = 1;
+    ball->hair =
+        (GridHair){.caster = {.position = (const float(*)[4])ball->position, .material = material},
+                   .left = ball->left,
+                   .behind = ball->left + PARTICLES,
+                   .points = PARTICLES,
+                   .seen = ball->seen};
+    ball->draw.eye[2] = 3;
+    ball->scene = (GridScene){.hair = &ball->hair,
+                              .hair_count = 1,
+                              .kinds = &ball->lobes,
+                              .kind_count = 1,
+                              .draw = &ball->draw,
+                              .to_eye = {0, 0, 1},
+                              .cells = 16,
+                              .orders = 32,
+                              .suns = true};
+    return ball;
+}
+
+static void close_ball(Ball *ball)
+{
+    fibre_lobes_destroy(&ball->lobes);
+    free((void *)(uintptr_t)ball->table.values);
+    free(ball);
+}
+
+static void solve(Ball *ball)
+{
+    LightGrid grid = {0};
+    NEEDED(light_grid_solve(&grid, &ball->scene, error));
+    NEEDED(light_grid_gather(&grid, &ball->scene, error));
+    light_grid_destroy(&grid);
+}
+
+static void set_sky(Ball *ball, float light)
+{
+    for (int k = 0; k < 3; ++k) ball->draw.sky[k] = ball->draw.ground[k] = light;
+}
+
+static void set_sun(Ball *ball, float x, float y, float z)
+{
+    ball->draw.light_count = 1;
+    const float place[3] = {x, y, z};
+    for (int k = 0; k < 3; ++k) {
+        ball->draw.light_place[0][k] = place[k];
+        ball->draw.light_color[0][k] = 1;
+    }
+}
+
+// Of the points below the height y.
+static double mean_below(const Ball *ball, float y)
+{
+    double sum = 0;
+    int count = 0;
+    for (int i = 0; i < PARTICLES; ++i) {
+        if (ball->position[i][1] >= y) continue;
+        sum += (double)ball->seen[i][1];
+        ++count;
+    }
+    return sum / count;
+}
+
+static double mean_seen(const Ball *ball)
+{
+    double sum = 0;
+    for (int i = 0; i < PARTICLES; ++i) sum += (double)ball->seen[i][1] / PARTICLES;
+    return sum;
+}
+
+static void hair_without_absorption_vanishes_before_an_even_sky(void **state)
+{
+    (void)state;
+    Ball *ball = open_ball(1);
+    set_sky(ball, 0.7f);
+    solve(ball);
+    for (int i = 0; i < PARTICLES; ++i)
+        for (int k = 0; k < 3; ++k)
+            if (fabs((double)ball->seen[i][k] / 0.7 - 1) > 0.03)
+                fail_msg("point %d: %g of a sky of 0.7", i, (double)ball->seen[i][k]);
+    close_ball(ball);
+}
+
+// Of black hair in the sky nothing comes back, and what is not black lies between.
+static void darker_hair_sends_less(void **state)
+{
+    (void)state;
+    double before = -1;
+    for (int i = 0; i <= 4; ++i) {
+        Ball *ball = open_ball((float)i / 4);
+        set_sky(ball, 1);
+        set_sun(ball, 0, 1, 0);
+        solve(ball);
+        double mean = mean_seen(ball);
+        if (i == 0) assert_true(mean < 1e-6);
+        assert_true(mean > before);
+        before = mean;
+        close_ball(ball);
+    }
+}
+
+// Two suns, and a sky, send what they send each by itself.
+static void lights_add_up(void **state)
+{
+    (void)state;
+    double parts[3] = {0}, all = 0;
+    for (int i = 0; i < 4; ++i) {
+        Ball *ball = open_ball(0.8f);
+        ball->scene.orders = 2; // of all alike
+        if (i == 0 || i == 3) set_sun(ball, 0, 1, 0);
+        if (i == 1) set_sun(ball, 0.6f, 0, 0.8f);
+        if (i == 3) {
+            ball->draw.light_count = 2;
+            const float place[3] = {0.6f, 0, 0.8f};
+            memcpy(ball->draw.light_place[1], place, sizeof place);
+            memcpy(ball->draw.light_color[1], ball->draw.light_color[0], sizeof(float[3]));
+        }
+        if (i >= 2) set_sky(ball, 0.5f);
+        solve(ball);
+        if (i < 3)
+            parts[i] = mean_seen(ball);
+        else
+            all = mean_seen(ball);
+        close_ball(ball);
+    }
+    // Cells lie by the first light, and the rest of the orders is extrapolated for all together.
+    assert_true(fabs(all / (parts[0] + parts[1] + parts[2]) - 1) < 0.04);
+}
+
+// A lamp far away is a sun of the light that it has there.
+static void a_far_lamp_is_a_sun(void **state)
+{
+    (void)state;
+    double means[2];
+    for (int i = 0; i < 2; ++i) {
+        Ball *ball = open_ball(0.8f);
+        set_sun(ball, 0, i ? 100 : 1, 0);
+        ball->draw.light_place[0][3] = (float)i;
+        ball->draw.light_axis[0][3] = 100 * 100;
+        ball->draw.light_cone[0][0] = 1;
+        solve(ball);
+        means[i] = mean_seen(ball);
+        close_ball(ball);
+    }
+    assert_true(fabs(means[1] / means[0] - 1) < 0.01);
+}
+
+// Below a plate through the ball there is next to no light of a sun above it; a plate at its bottom
+// takes none from what is above.
+static void a_mesh_stands_in_the_light(void **state)
+{
+    (void)state;
+    const uint32_t triangles[2][3] = {{0, 1, 2}, {2, 1, 3}};
+    double means[3];
+    for (int i = 0; i < 3; ++i) {
+        Ball *ball = open_ball(0.8f);
+        float vertices[4][3], y = i == 1 ? 0.01f : -0.115f;
+        for (int v = 0; v < 4; ++v) {
+            const float at[3] = {v & 1 ? 0.3f : -0.3f, y, v & 2 ? 0.3f : -0.3f};
+            memcpy(vertices[v], at, sizeof at);
+        }
+        LightBlocks blocks = {.mesh = {.vertices = (const float(*)[3])vertices,
+                                       .triangles = triangles,
+                                       .vertex_count = 4,
+                                       .triangle_count = 2,
+                                       .rotation = {0, 0, 0, 1}}};
+        set_sun(ball, 0, 1, 0);
+        if (i > 0) ball->scene.blocks = &blocks;
+        solve(ball);
+        means[i] = mean_below(ball, -0.045f);
+        light_blocks_destroy(&blocks);
+        close_ball(ball);
+    }
+    assert_true(means[1] < 0.05 * means[0]);
+    assert_true(means[2] > 0.9 * means[0]);
+}
+
+// --- Parts.
+
+// Over all directions a fibre sends on its albedo.
+static void lobes_send_on_their_albedo(void **state)
+{
+    (void)state;
+    Ball *ball = open_ball(0.5f);
+    const float tangent[3] = {0, 0, 1};
+    const int steps = 400;
+    for (int i = 0; i < 3; ++i) {
+        double sine = 0.35 * i, sum = 0;
+        Ways out = {0}, in = {0};
+        for (int l = 0; l < ORDINATE_LANES; ++l) {
+            out.axis[0][l] = (float)sqrt(1 - sine * sine);
+            out.axis[2][l] = (float)sine;
+        }
+        for (int a = 0; a < steps; ++a)
+            for (int b = 0; b < steps; b += ORDINATE_LANES) {
+                double z = 2 * (a + 0.5) / steps - 1, across = sqrt(1 - z * z);
+                float f[3][ORDINATE_LANES];
+                for (int l = 0; l < ORDINATE_LANES; ++l) {
+                    double phi = 2 * PI * (b + l + 0.5) / steps;
+                    in.axis[0][l] = (float)(across * cos(phi));
+                    in.axis[1][l] = (float)(across * sin(phi));
+                    in.axis[2][l] = (float)z;
+                }
+                fibre_lobes_scatter(&ball->lobes, tangent, &out, &in, 0, f);
+                for (int l = 0; l < ORDINATE_LANES; ++l)
+                    sum += (double)f[1][l] * 4 * PI / ((double)steps * steps);
+            }
+        float albedo[3];
+        fibre_lobes_albedo(&ball->lobes, out.axis[0][0], albedo);
+        if (fabs(sum / (double)albedo[1] - 1) > 0.01)
+            fail_msg("%g, albedo %g", sum, (double)albedo[1]);
+    }
+    close_ball(ball);
+}
+
+static void classes_are_the_nearest(void **state)
+{
+    (void)state;
+    Random random = random_create(5, 0);
+    ordinates_prepare();
+    for (int i = 0; i < 2000; ++i) {
+        float way[3], length = 0;
+        for (int k = 0; k < 3; ++k) {
+            way[k] = (float)(2 * random_real(&random) - 1);
+            length += way[k] * way[k];
+        }
+        float best = -2;
+        for (int k = 0; k < 3; ++k) way[k] /= sqrtf(length);
+        for (int c = 0; c < TANGENTS; ++c)
+            best = fmaxf(best,
+                         TANGENT[c][0] * way[0] + TANGENT[c][1] * way[1] + TANGENT[c][2] * way[2]);
+        const float *t = TANGENT[ordinates_class(way)];
+        double off = acos(fmin((double)(t[0] * way[0] + t[1] * way[1] + t[2] * way[2]), 1)) -
+                     acos(fmin((double)best, 1));
+        assert_true(off < 7 * PI / 180); // two half diagonals of a square of the table
+    }
+}
+
+static void ordinates_are_spread_evenly(void **state)
+{
+    (void)state;
+    double mean[3] = {0};
+    for (int d = 0; d < ORDINATES; ++d) {
+        int axis = d / (2 * ORDINATE_LANES);
+        bool forward = d / ORDINATE_LANES % 2;
+        double square = 0;
+        for (int k = 0; k < 3; ++k) {
+            square += (double)ORDINATE[k][d] * (double)ORDINATE[k][d];
+            mean[k] += (double)ORDINATE[k][d] / ORDINATES;
+            assert_true(fabsf(ORDINATE[k][d]) <= fabsf(ORDINATE[axis][d]));
+        }
+        assert_true(fabs(square - 1) < 1e-5);
+        assert_true((ORDINATE[axis][d] > 0) == forward);
+    }
+    for (int k = 0; k < 3; ++k) assert_true(fabs(mean[k]) < 1e-3);
+}
+
+// --- Dual scattering.
+
+// Without fibres before and behind there is none; behind ten that absorb nothing there is more
+// light than of the light's own rays.
+static void dual_light_comes_of_other_fibres(void **state)
+{
+    (void)state;
+    Ball *ball = open_ball(1);
+    LightDual dual = {0};
+    set_sun(ball, 0, 1, 0);
+    NEEDED(light_dual_find(&dual, &ball->scene, false, error));
+    assert_true(mean_seen(ball) < 1e-3);
+    for (int i = 0; i < PARTICLES; ++i) ball->left[i] = expf(-3), ball->left[PARTICLES + i] = 3;
+    NEEDED(light_dual_find(&dual, &ball->scene, false, error));
+    double once = mean_seen(ball);
+    assert_true(once > 0.05 && once < 1);
+    NEEDED(light_dual_find(&dual, &ball->scene, true, error));
+    assert_true(fabs(mean_seen(ball) / once - 2) < 1e-3);
+    light_dual_destroy(&dual);
+    close_ball(ball);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(hair_without_absorption_vanishes_before_an_even_sky),
+        cmocka_unit_test(darker_hair_sends_less),
+        cmocka_unit_test(lights_add_up),
+        cmocka_unit_test(a_far_lamp_is_a_sun),
+        cmocka_unit_test(a_mesh_stands_in_the_light),
+        cmocka_unit_test(lobes_send_on_their_albedo),
+        cmocka_unit_test(classes_are_the_nearest),
+        cmocka_unit_test(ordinates_are_spread_evenly),
+        cmocka_unit_test(dual_light_comes_of_other_fibres),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
