@@ -7,8 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LINES = 2 }; // each way, for each row of cells
-
 // A triangle's corners in cells of the lattice, from its first corner.
 typedef struct Corners {
     double at[3][3];
@@ -58,38 +56,38 @@ static double most_of(const Corners *c, int k)
     return fmax(fmax(c->at[0][k], c->at[1][k]), c->at[2][k]);
 }
 
-// A bit of the line's for the way from the middle before to the middle of the cell that the
-// triangle crosses.
-static void close_way(uint8_t *closed, const LightLattice *lattice, int axis, const int line[3],
+// Closes the way from the middle before to the middle of the cell that the triangle crosses on the
+// line of cells (u, v).
+static void close_way(float *open, const LightLattice *lattice, int axis, const int line[2],
                       double depth)
 {
     int cell[3], u = (axis + 1) % 3, v = (axis + 2) % 3;
     cell[axis] = (int)ceil(fmin(fmax(depth - 0.5, -2), lattice->count[axis] + 1));
-    cell[u] = line[0] / LINES;
-    cell[v] = line[1] / LINES;
+    cell[u] = line[0];
+    cell[v] = line[1];
     if (cell[axis] < 0 || cell[axis] >= lattice->count[axis]) return;
     size_t at = ((size_t)cell[2] * (size_t)lattice->count[1] + (size_t)cell[1]) *
                     (size_t)lattice->count[0] +
                 (size_t)cell[0];
-    closed[at] |= (uint8_t)(1 << (line[0] % LINES * LINES + line[1] % LINES));
+    open[at] = 0;
 }
 
-static void close_triangle(uint8_t *closed, const LightLattice *lattice, int axis, const Corners *c)
+static void close_triangle(float *open, const LightLattice *lattice, int axis, const Corners *c)
 {
-    int u = (axis + 1) % 3, v = (axis + 2) % 3, line[3];
+    int u = (axis + 1) % 3, v = (axis + 2) % 3, line[2];
     double depth;
     for (int k = 0; k < 3; ++k)
         if (!(most_of(c, k) >= 0) || !(least_of(c, k) <= lattice->count[k])) return;
     int first[2], end[2];
     for (int k = 0; k < 2; ++k) {
         int on = k ? v : u;
-        first[k] = (int)fmax(floor(least_of(c, on) * LINES), 0);
-        end[k] = (int)fmin(ceil(most_of(c, on) * LINES), lattice->count[on] * LINES);
+        first[k] = (int)fmax(floor(least_of(c, on)), 0);
+        end[k] = (int)fmin(ceil(most_of(c, on)), lattice->count[on]);
     }
     for (line[0] = first[0]; line[0] < end[0]; ++line[0])
         for (line[1] = first[1]; line[1] < end[1]; ++line[1])
-            if (meet(c, axis, (line[0] + 0.5) / LINES, (line[1] + 0.5) / LINES, &depth))
-                close_way(closed, lattice, axis, line, depth);
+            if (meet(c, axis, line[0] + 0.5, line[1] + 0.5, &depth))
+                close_way(open, lattice, axis, line, depth);
 }
 
 static Result make_room(LightBlocks *blocks, size_t count, Error *error)
@@ -104,27 +102,19 @@ static Result make_room(LightBlocks *blocks, size_t count, Error *error)
 
 Result light_blocks_find(LightBlocks *blocks, const LightLattice *lattice, Error *error)
 {
-    static const float PASSED[16] = {1,     0.75f, 0.75f, 0.5f,  0.75f, 0.5f,  0.5f,  0.25f,
-                                     0.75f, 0.5f,  0.5f,  0.25f, 0.5f,  0.25f, 0.25f, 0};
     const LightMesh *mesh = &blocks->mesh;
     size_t cells = light_lattice_cells(lattice);
     TRY(make_room(blocks, 3 * cells, error));
-    uint8_t *closed = calloc(3 * cells, 1);
     double(*places)[3] = malloc((mesh->vertex_count + 1) * sizeof *places);
-    if (!closed || !places) {
-        free(closed);
-        free(places);
-        return error_set(error, RESULT_FAILED, "no memory for the mesh in the light");
-    }
+    if (!places) return error_set(error, RESULT_FAILED, "no memory for the mesh in the light");
+    for (size_t i = 0; i < 3 * cells; ++i) blocks->open[i] = 1;
     for (uint32_t i = 0; i < mesh->vertex_count; ++i) place_vertex(mesh, lattice, i, places[i]);
     for (uint32_t i = 0; i < mesh->triangle_count; ++i) {
         Corners c;
         for (int k = 0; k < 3; ++k) memcpy(c.at[k], places[mesh->triangles[i][k]], sizeof c.at[k]);
         for (int axis = 0; axis < 3; ++axis)
-            close_triangle(closed + (size_t)axis * cells, lattice, axis, &c);
+            close_triangle(blocks->open + (size_t)axis * cells, lattice, axis, &c);
     }
-    for (size_t i = 0; i < 3 * cells; ++i) blocks->open[i] = PASSED[closed[i]];
-    free(closed);
     free(places);
     return RESULT_OK;
 }

@@ -17,14 +17,14 @@ typedef struct LightMesh {
 
 typedef struct LightBlocks {
     LightMesh mesh;
-    // [3][cells], owned: share of the light that passes between the middle of the cell before (on
-    // each axis) and that of the cell
+    // [3][cells], owned: 1 where light passes between the middle of the cell before (on each axis)
+    // and that of the cell, 0 where the mesh crosses that way: no chain of open ways leads through
+    // it
     float *open;
     size_t room;
 } LightBlocks;
 
-// Finds `open` for this lattice. Each way is tried on 2 x 2 lines beside the middle's.
-// RESULT_FAILED if memory is short.
+// Finds `open` for this lattice. RESULT_FAILED if memory is short.
 Result light_blocks_find(LightBlocks *blocks, const LightLattice *lattice, Error *error);
 
 // Share of light that the mesh lets through on the straight way from the middle of `cell` along the

@@ -15,7 +15,7 @@
 // light counts by Poisson's law, and there are no free factors.
 #pragma once
 
-#include "draw/light_grid.h"
+#include "draw/light_scene.h"
 
 typedef struct LightDual {
     struct DualTable *tables; // [LIGHT_GRID_KINDS], owned

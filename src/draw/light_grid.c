@@ -196,6 +196,11 @@ Result light_grid_solve(LightGrid *grid, const GridScene *scene, Error *error)
     return RESULT_OK;
 }
 
+Result light_grid_gather(LightGrid *grid, const GridScene *scene, Error *error)
+{
+    return light_grid_show(grid->state, scene, error);
+}
+
 void light_grid_destroy(LightGrid *grid)
 {
     LightGridState *state = grid->state;

@@ -14,38 +14,7 @@
 // turn with the first light, so that one of the directions is its own.
 #pragma once
 
-#include "base/error.h"
-#include "draw/fibre_lobes.h"
-#include "draw/light_blocks.h"
-#include "draw/mapped_caster.h"
-
-#include "glsl/draw/draw.h"
-
-enum { LIGHT_GRID_KINDS = 4 }; // of fibres that scatter in ways of their own; others share the last
-
-// A batch of hair in the light.
-typedef struct GridHair {
-    MappedCaster caster;
-    const float *left; // [map][points]: what of each mapped light reaches the points of its curves
-    const float *behind; // the same of the mean number of fibres behind it; for light_dual.h
-    size_t points;       // of all its strands (look_points)
-    int kind;            // of its fibres
-    float (*seen)[4];    // [points], for light_grid_gather: linear RGB; NULL: is not asked for
-} GridHair;
-
-typedef struct GridScene {
-    const GridHair *hair;
-    uint32_t hair_count;
-    const FibreLobes *kinds;   // [kind_count]
-    int kind_count;            // 1 .. LIGHT_GRID_KINDS
-    const DrawParams *draw;    // lights, sky, ground, eye
-    float to_eye[3];           // unit, world: against the way that the camera looks
-    int map_of[MAX_LIGHTS];    // of each light; -1: it casts no shadow
-    const LightBlocks *blocks; // what the mesh takes away within the box of hair; NULL: no mesh
-    bool suns;                 // the lights' light is followed, too, not only that of the sky
-    int cells;                 // along the longest side of the box, 4 .. 64
-    int orders; // of scattering that are swept at most, 0 .. 32; 0: the sky's own light alone
-} GridScene;
+#include "draw/light_scene.h"
 
 typedef struct LightGrid {
     struct LightGridState *state; // owned

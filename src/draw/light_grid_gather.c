@@ -398,9 +398,8 @@ static int find_ordinate(const LightLattice *lattice, const float to_eye[3])
     return best;
 }
 
-Result light_grid_gather(LightGrid *grid, const GridScene *scene, Error *error)
+Result light_grid_show(LightGridState *state, const GridScene *scene, Error *error)
 {
-    LightGridState *state = grid->state;
     if (!state->filled) return RESULT_OK;
     Gather gather = {.state = state, .scene = scene};
     light_lattice_turn(&state->lattice, scene->draw->eye, gather.eye);

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "base/simd.h"
-#include "draw/light_grid.h"
+#include "draw/light_scene.h"
 
 enum {
     GRID_LANES = ORDINATE_LANES,
@@ -84,11 +84,14 @@ bool light_grid_fill(LightGridState *state, const GridScene *scene, Error *error
 void light_grid_sweep(LightGridState *state, const GridScene *scene, bool sky, bool fresh,
                       bool sourceless);
 void light_grid_scatter(LightGridState *state);
-// Adds what hair meets of the last order to `all`; whether more than a twentieth of the light would be
-// left to light_grid_close.
+// Adds what hair meets of the last order to `all`; whether more than a twentieth of the light would
+// be left to light_grid_close.
 bool light_grid_needs_more(const LightGridState *state, double all[3]);
 // Adds what the orders after the last would.
 void light_grid_close(LightGridState *state);
+
+// What hair shows, see light_grid_gather.
+Result light_grid_show(LightGridState *state, const GridScene *scene, Error *error);
 
 // Tables of kinds, made if they are not there.
 Result light_grid_make_first(LightGridState *state, const GridScene *scene, Error *error);

@@ -58,23 +58,54 @@ static void find_way(const Sweep *sweep, int group, GroupWay *way)
     find_sky(sweep, group, way->sky);
 }
 
-// The weighted sum of three neighbours, `stride` floats apart.
-SIMD_INLINE void blend(const float taps[TAPS][GRID_LANES], const float *from, size_t stride,
-                       float out[GROUP_WIDE])
+// The weighted sum of three neighbours, `stride` floats apart; the mesh lets the share `low` of the
+// first one through, `high` of the last.
+SIMD_INLINE void blend(const float taps[TAPS][GRID_LANES], float low, float high, const float *from,
+                       size_t stride, float out[GROUP_WIDE])
 {
     for (int c = 0; c < 3; ++c)
         for (int l = 0; l < GRID_LANES; ++l) {
             int i = c * GRID_LANES + l;
-            out[i] = taps[0][l] * from[i] + taps[1][l] * from[stride + (size_t)i] +
-                     taps[2][l] * from[2 * stride + (size_t)i];
+            out[i] = low * taps[0][l] * from[i] + taps[1][l] * from[stride + (size_t)i] +
+                     high * taps[2][l] * from[2 * stride + (size_t)i];
         }
 }
 
-// Of a row of the slice before, blended along the first axis across.
-SIMD_INLINE void blend_row(const GroupWay *way, const float *before, int wide, float *row)
+// Share that the mesh lets through between the cell at `at`, which may lie beside the lattice, and
+// the one before it on an axis.
+static float passed_before(const Sweep *sweep, int axis, const int at[3])
 {
-    for (size_t x = 0; x < (size_t)wide; ++x)
-        blend(way->taps[0], before + x * GROUP_WIDE, GROUP_WIDE, row + x * GROUP_WIDE);
+    const LightLattice *lattice = &sweep->state->lattice;
+    if (!sweep->scene->blocks) return 1;
+    for (int k = 0; k < 3; ++k)
+        if (at[k] < 0 || at[k] >= lattice->count[k]) return 1;
+    size_t cell =
+        ((size_t)at[2] * (size_t)lattice->count[1] + (size_t)at[1]) * (size_t)lattice->count[0] +
+        (size_t)at[0];
+    return sweep->scene->blocks->open[(size_t)axis * light_lattice_cells(lattice) + cell];
+}
+
+// The same between the cell and the one behind it.
+static float passed_behind(const Sweep *sweep, int axis, const int at[3])
+{
+    int next[3] = {at[0], at[1], at[2]};
+    ++next[axis];
+    return passed_before(sweep, axis, next);
+}
+
+// Of a row of the slice before, which lies at `at`, blended along the first axis across.
+SIMD_INLINE void blend_row(const Sweep *sweep, const GroupWay *way, int at[3], const float *before,
+                           int wide, float *row)
+{
+    int axis = way->across[0];
+    bool blocks = sweep->scene->blocks != NULL;
+    for (int x = 0; x < wide; ++x) {
+        at[axis] = x;
+        float low = blocks ? passed_before(sweep, axis, at) : 1,
+              high = blocks ? passed_behind(sweep, axis, at) : 1;
+        blend(way->taps[0], low, high, before + (size_t)x * GROUP_WIDE, GROUP_WIDE,
+              row + (size_t)x * GROUP_WIDE);
+    }
 }
 
 // out = S + (in - S) exp(-tau), in the mean S + (in - S)(1 - exp(-tau)) / tau.
@@ -114,18 +145,6 @@ SIMD_INLINE void keep(const Sweep *sweep, int group, int slot, const float mean[
     }
 }
 
-// Share that the mesh lets through to the cell on its main axis.
-static float passed_to(const Sweep *sweep, const GroupWay *way, const int at[3], size_t cell)
-{
-    const LightLattice *lattice = &sweep->state->lattice;
-    const size_t stride[3] = {1, (size_t)lattice->count[0],
-                              (size_t)lattice->count[0] * (size_t)lattice->count[1]};
-    const float *open =
-        sweep->scene->blocks->open + (size_t)way->main * light_lattice_cells(lattice);
-    if (way->forward) return open[cell];
-    return at[way->main] + 1 < lattice->count[way->main] ? open[cell + stride[way->main]] : 1;
-}
-
 // Cell `at` on the way of the group: what comes in becomes what goes out.
 SIMD_INLINE void cross_cell(const Sweep *sweep, const GroupWay *way, int group, const int at[3],
                             float io[GROUP_WIDE], double sum[3])
@@ -135,7 +154,8 @@ SIMD_INLINE void cross_cell(const Sweep *sweep, const GroupWay *way, int group, 
     size_t cell = ((size_t)at[2] * (size_t)n[1] + (size_t)at[1]) * (size_t)n[0] + (size_t)at[0];
     int slot = state->slot[cell];
     if (sweep->scene->blocks) {
-        float passed = passed_to(sweep, way, at, cell);
+        float passed = way->forward ? passed_before(sweep, way->main, at)
+                                    : passed_behind(sweep, way->main, at);
         for (int i = 0; i < GROUP_WIDE; ++i) io[i] *= passed;
     }
     if (slot < 0) return;
@@ -153,21 +173,26 @@ SIMD_INLINE void sweep_slice(const Sweep *sweep, const GroupWay *way, int group,
                              const float *before, float *after, float *rows, double sum[3])
 {
     const int *n = sweep->state->lattice.count;
-    int at[3], wide = n[way->across[0]], high = n[way->across[1]];
+    int at[3], from[3], wide = n[way->across[0]], tall = n[way->across[1]], axis = way->across[1];
+    bool blocks = sweep->scene->blocks != NULL;
     size_t row = ((size_t)wide + 2) * GROUP_WIDE, used = (size_t)wide * GROUP_WIDE;
     at[way->main] = slice;
+    from[way->main] = way->forward ? slice - 1 : slice + 1;
     // Rows lie at y % 3 and, so that three in their order are one piece, once more behind them.
-    for (int y = 0; y < high + 2; ++y) {
+    for (int y = 0; y < tall + 2; ++y) {
         float *own = rows + (size_t)(y % 3) * used;
-        blend_row(way, before + (size_t)y * row, wide, own);
+        from[axis] = y - 1;
+        blend_row(sweep, way, from, before + (size_t)y * row, wide, own);
         memcpy(own + 3 * used, own, used * sizeof *own);
         if (y < 2) continue;
-        at[way->across[1]] = y - 2;
+        at[axis] = y - 2;
         const float *first = rows + (size_t)((y - 2) % 3) * used;
         float *out = after + (size_t)(y - 1) * row + GROUP_WIDE;
         for (int x = 0; x < wide; ++x, first += GROUP_WIDE, out += GROUP_WIDE) {
             at[way->across[0]] = x;
-            blend(way->taps[1], first, used, out);
+            float low = blocks ? passed_before(sweep, axis, at) : 1,
+                  high = blocks ? passed_behind(sweep, axis, at) : 1;
+            blend(way->taps[1], low, high, first, used, out);
             cross_cell(sweep, way, group, at, out, sum);
         }
     }

@@ -4,8 +4,6 @@
 #include "image/image.h"
 #include "image/png.h"
 
-#include "glsl/common/shared_math.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,7 +22,7 @@ static void decode(const float srgb[3], float linear[3])
 // logistic lobe has this standard deviation (rad).
 static double find_roughness(double deviation)
 {
-    double scale = deviation * sqrt(3) / PI, low = 0, high = 1;
+    double scale = deviation * sqrt(3) / M_PI, low = 0, high = 1;
     for (int turn = 0; turn < 50; ++turn) {
         double b = 0.5 * (low + high);
         if (0.626657069 * (0.265 * b + 1.194 * b * b + 5.372 * pow(b, 22)) < scale)
@@ -40,7 +38,7 @@ static double find_roughness(double deviation)
 static void absorb(const SectionParams *params, float linear[3])
 {
     const double least = 1e-4; // black
-    double b = find_roughness((double)params->azimuthal_roughness * PI / 180), square = b * b,
+    double b = find_roughness((double)params->azimuthal_roughness * M_PI / 180), square = b * b,
            fit = 5.969 - 0.215 * b + 2.532 * square - 10.73 * square * b + 5.574 * square * square +
                  0.245 * square * square * b;
     for (int k = 0; k < 3; ++k) {

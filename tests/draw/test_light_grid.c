@@ -259,7 +259,7 @@ static void a_mesh_stands_in_the_light(void **state)
         light_blocks_destroy(&blocks);
         close_ball(ball);
     }
-    assert_true(means[1] < 0.05 * means[0]);
+    if (!(means[1] < 0.05 * means[0])) fail_msg("%g of %g", means[1], means[0]);
     assert_true(means[2] > 0.9 * means[0]);
 }
 
