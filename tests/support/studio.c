@@ -56,6 +56,7 @@ void studio_make_plain(SectionParams *material, float opacity)
     material->color_variation = 0;
     material->tip_ratio = 1;
     material->opacity = opacity;
+    material->smooth = 1;
     for (int k = 0; k < 3; ++k) material->color[k] = 1;
 }
 
