@@ -11,7 +11,7 @@
 #include <string.h>
 
 enum { W = ORDINATE_LANES, AZIMUTHS = SCATTER_AZIMUTHS, INCLINATIONS = SCATTER_INCLINATIONS };
-enum { PLANE = AZIMUTHS * INCLINATIONS };
+enum { SHEET = AZIMUTHS * INCLINATIONS };
 
 static float mix(float a, float b, float share)
 {
@@ -25,8 +25,8 @@ static void pick_color(FibreTable table, float color, float (*plane)[4])
 {
     float place = fminf(fmaxf(color, 0), 1) * (SCATTER_COLORS - 1), low = floorf(place);
     low = fminf(low, SCATTER_COLORS - 2);
-    const float(*a)[4] = table.values + (size_t)low * PLANE, (*b)[4] = a + PLANE;
-    for (int i = 0; i < PLANE; ++i)
+    const float(*a)[4] = table.values + (size_t)low * SHEET, (*b)[4] = a + SHEET;
+    for (int i = 0; i < SHEET; ++i)
         for (int p = 0; p < 4; ++p) plane[i][p] = mix(a[i][p], b[i][p], place - low);
 }
 
@@ -57,14 +57,14 @@ bool fibre_lobes_create(FibreLobes *lobes, FibreTable table, const MaterialParam
     *lobes = (FibreLobes){.serial = ++made};
     set_lobes(lobes, material);
     memcpy(lobes->color, color, sizeof lobes->color);
-    lobes->azimuthal = malloc(3 * PLANE * sizeof *lobes->azimuthal);
+    lobes->azimuthal = malloc(3 * SHEET * sizeof *lobes->azimuthal);
     lobes->albedo = malloc(INCLINATIONS * sizeof *lobes->albedo);
     if (!lobes->azimuthal || !lobes->albedo) {
         fibre_lobes_destroy(lobes);
         return false;
     }
     for (int c = 0; c < 3; ++c) {
-        float(*plane)[4] = lobes->azimuthal + (size_t)c * PLANE;
+        float(*plane)[4] = lobes->azimuthal + (size_t)c * SHEET;
         pick_color(table, color[c], plane);
         for (int i = 0; i < INCLINATIONS; ++i)
             lobes->albedo[i][c] = fminf(sum_azimuths((const float(*)[4])plane + i * AZIMUTHS), 1);
@@ -96,7 +96,7 @@ void fibre_lobes_fit_albedo(FibreTable table, float fit[2])
     const int half = (SCATTER_COLORS - 1) / 2;
     double color = (double)half / (SCATTER_COLORS - 1),
            low = (double)sum_azimuths(table.values + across),
-           middle = (double)sum_azimuths(table.values + (size_t)half * PLANE + across);
+           middle = (double)sum_azimuths(table.values + (size_t)half * SHEET + across);
     fit[0] = (float)low;
     fit[1] = (float)(log((middle - low) / (1 - low)) / log(color));
 }
@@ -194,7 +194,7 @@ void fibre_lobes_scatter(const FibreLobes *lobes, const float tangent[3], const 
     find_nodes(&angles, &nodes);
     for (int c = 0; c < 3; ++c)
         for (int k = 0; k < W; ++k) {
-            const float(*a)[4] = (const float(*)[4])lobes->azimuthal + c * PLANE + nodes.at[k],
+            const float(*a)[4] = (const float(*)[4])lobes->azimuthal + c * SHEET + nodes.at[k],
                   (*b)[4] = a + AZIMUTHS;
             float sum = 0, x = nodes.across[k], y = nodes.along[k];
             for (int p = 0; p < 3; ++p)
