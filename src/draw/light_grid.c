@@ -221,6 +221,7 @@ void light_grid_destroy(LightGrid *grid)
     free(state->order);
     free(state->light);
     free(state->hidden);
+    free(state->glow);
     free(state->tint);
     free(state->class);
     free(state->planes);

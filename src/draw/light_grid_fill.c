@@ -359,8 +359,8 @@ static bool grow_cells(LightGridState *state, size_t cells)
 static bool grow_slots(LightGridState *state)
 {
     size_t filled = (size_t)state->filled, active = (size_t)state->active;
-    size_t of[9];
-    for (int i = 0; i < 9; ++i) of[i] = i < 6 ? state->filled_room : state->slot_room;
+    size_t of[10];
+    for (int i = 0; i < 10; ++i) of[i] = i < 6 || i == 9 ? state->filled_room : state->slot_room;
     filled += filled / 4, active += active / 4;
     if (state->filled_room >= (size_t)state->filled && state->slot_room >= (size_t)state->active)
         return true;
@@ -369,6 +369,7 @@ static bool grow_slots(LightGridState *state)
                 grow(&state->mean, &of[2], filled, ORDINATES * sizeof(float)) &
                 grow(&state->source, &of[3], filled, GRID_WIDE * sizeof(float)) &
                 grow(&state->tint, &of[4], filled, 3 * sizeof(float)) &
+                grow(&state->glow, &of[9], filled, 3 * sizeof(float)) &
                 grow(&state->class, &of[5], filled, sizeof(int)) &
                 grow(&state->order, &of[6], active, GRID_WIDE * sizeof(float)) &
                 grow(&state->light, &of[7], active, GRID_WIDE * sizeof(float)) &
@@ -549,6 +550,25 @@ SIMD_INLINE void fill_source(const LightGridState *state, const GridScene *scene
     }
 }
 
+// A matt surface in a light of 1 that it is square to shows its colour; those in a cell lie any way
+// towards the light, half as bright in the mean.
+static void fill_glow(const LightGridState *state, const GridScene *scene, const CellSum *sum,
+                      int f)
+{
+    float *glow = state->glow + 3 * (size_t)f;
+    for (int c = 0; c < 3; ++c) glow[c] = 0;
+    if (!scene->blocks) return;
+    double area = 0;
+    for (int u = 0; u < sum->count; ++u) area += (double)sum->area[sum->used[u]];
+    for (int l = 0; l < state->lights && area > 0; ++l) {
+        double lit = 0;
+        for (int u = 0; u < sum->count; ++u) lit += (double)sum->lit[l][sum->used[u]];
+        float share = 0.5f * (float)(lit / area) * find_passed(state, scene, f, l);
+        for (int c = 0; c < 3; ++c)
+            glow[c] += share * scene->draw->light_color[l][c] * scene->draw->mesh_color[c];
+    }
+}
+
 // Along a direction a cell is as long as its side over the direction's main component.
 SIMD_INLINE void fill_passage(LightGridState *state, int f)
 {
@@ -587,6 +607,7 @@ SIMD_INLINE void fill_cells(const CellFill *fill, int part)
             state->tint[3 * f + k] =
                 state->tinted && sum->whole ? (float)sum->tint[k] / (float)sum->whole : 1;
         fill_source(state, fill->scene, sum, f, state->source + (size_t)f * GRID_WIDE);
+        fill_glow(state, fill->scene, sum, f);
         state->class[f] = find_main_class(sum);
         fill_passage(state, f);
         clear_sum(state, sum);
@@ -601,6 +622,7 @@ static void find_lights(LightGridState *state, const GridScene *scene)
     float middle[3] = {0}, way[3], unused[3];
     state->lights = scene->suns ? scene->draw->light_count : 0;
     state->tinted = false;
+    memcpy(state->mesh_color, scene->draw->mesh_color, sizeof state->mesh_color);
     for (uint32_t h = 0; h < scene->hair_count; ++h)
         state->tinted |= scene->hair[h].caster.paint != NULL;
     state->item_words = 2 + state->lights + (state->tinted ? 3 : 0);

@@ -46,7 +46,8 @@ typedef struct LightGridState {
     int pieces;    // of a segment
     int lights;
     int item_words;
-    bool tinted; // hair has paint
+    float mesh_color[3]; // linear RGB
+    bool tinted;         // hair has paint
     float to_light[MAX_LIGHTS]
                   [3]; // lattice's axes: unit, of lights afar and of lamps to the middle
     size_t cell_room, item_room, slot_room, filled_room;
@@ -58,17 +59,18 @@ typedef struct LightGridState {
     uint32_t item_count;
     int filled, active; // slots: those with hair come first
 
-    float *depth;                       // [filled][ORDINATES]: tau
-    float *left;                        // [filled][ORDINATES]: exp(-tau)
-    float *mean;                        // [filled][ORDINATES]: (1 - exp(-tau)) / tau
-    float *source;                      // [filled][GRID_WIDE]: S
-    float *order;                       // [active][GRID_WIDE]: L of the last order
-    float *light;                       // [active][GRID_WIDE]: L of all
-    float *hidden;                      // [active][4]: mean light, and 1 where it will do
-    float *tint;                        // [filled][3]: albedo over that of the kind
-    int *class;                         // [filled]: main tangent and kind
-    float *planes;                      // [groups][3][plane]: two slices, and rows
-    size_t plane;                       // floats
+    float *depth;  // [filled][ORDINATES]: tau
+    float *left;   // [filled][ORDINATES]: exp(-tau)
+    float *mean;   // [filled][ORDINATES]: (1 - exp(-tau)) / tau
+    float *source; // [filled][GRID_WIDE]: S
+    float *order;  // [active][GRID_WIDE]: L of the last order
+    float *light;  // [active][GRID_WIDE]: L of all
+    float *hidden; // [active][4]: mean light, and 1 where it will do
+    float *glow;   // [filled][3]: what the mesh sends back of a cell's light, linear RGB
+    float *tint;   // [filled][3]: albedo over that of the kind
+    int *class;    // [filled]: main tangent and kind
+    float *planes; // [groups][3][plane]: two slices, and rows
+    size_t plane;  // floats
     double sums[2][ORDINATE_GROUPS][3]; // of the last two orders, see light_grid_sweep
 
     GridKind kinds[LIGHT_GRID_KINDS];

@@ -156,7 +156,13 @@ SIMD_INLINE void cross_cell(const Sweep *sweep, const GroupWay *way, int group, 
     if (sweep->scene->blocks) {
         float passed = way->forward ? passed_before(sweep, way->main, at)
                                     : passed_behind(sweep, way->main, at);
-        for (int i = 0; i < GROUP_WIDE; ++i) io[i] *= passed;
+        for (int c = 0; c < 3; ++c) {
+            float glow = slot >= 0 && slot < state->filled ? state->glow[3 * slot + c] : 0;
+            for (int l = 0; l < GRID_LANES; ++l) {
+                int i = c * GRID_LANES + l;
+                io[i] = passed * io[i] + (1 - passed) * glow;
+            }
+        }
     }
     if (slot < 0) return;
     if (slot >= state->filled) {
@@ -259,6 +265,18 @@ SIMD_INLINE void scatter_channel(const float (*rows)[ORDINATES], const float *in
             out[g * GROUP_WIDE + channel * GRID_LANES + l] = tint * sum[g * GRID_LANES + l];
 }
 
+// Of the last order the mesh sends back its colour's share, alike to all sides.
+SIMD_INLINE void reflect(const LightGridState *state, int f)
+{
+    const float *in = state->order + (size_t)f * GRID_WIDE;
+    for (int c = 0; c < 3; ++c) {
+        float sum = 0;
+        for (int g = 0; g < ORDINATE_GROUPS; ++g)
+            for (int l = 0; l < GRID_LANES; ++l) sum += in[g * GROUP_WIDE + c * GRID_LANES + l];
+        state->glow[3 * f + c] = state->mesh_color[c] * sum * (1.f / ORDINATES);
+    }
+}
+
 SIMD_INLINE void scatter(const LightGridState *state, int part)
 {
     int first = (int)((int64_t)state->filled * part / state->parts),
@@ -270,6 +288,7 @@ SIMD_INLINE void scatter(const LightGridState *state, int part)
         for (int c = 0; c < 3; ++c)
             scatter_channel((const float(*)[ORDINATES])kind->scatter[state->class[f] % TANGENTS][c],
                             in, c, state->tint[3 * f + c], out);
+        reflect(state, f);
     }
 }
 

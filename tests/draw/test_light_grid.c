@@ -234,13 +234,13 @@ static void a_far_lamp_is_a_sun(void **state)
 }
 
 // Below a plate through the ball there is next to no light of a sun above it; a plate at its bottom
-// takes none from what is above.
+// takes none from what is above, and where it is not black gives some back.
 static void a_mesh_stands_in_the_light(void **state)
 {
     (void)state;
     const uint32_t triangles[2][3] = {{0, 1, 2}, {2, 1, 3}};
-    double means[3];
-    for (int i = 0; i < 3; ++i) {
+    double means[4];
+    for (int i = 0; i < 4; ++i) {
         Ball *ball = open_ball(0.8f);
         float vertices[4][3], y = i == 1 ? 0.01f : -0.115f;
         for (int v = 0; v < 4; ++v) {
@@ -254,6 +254,7 @@ static void a_mesh_stands_in_the_light(void **state)
                                        .rotation = {0, 0, 0, 1}}};
         set_sun(ball, 0, 1, 0);
         if (i > 0) ball->scene.blocks = &blocks;
+        for (int k = 0; k < 3; ++k) ball->draw.mesh_color[k] = i == 3 ? 0.8f : 0;
         solve(ball);
         means[i] = mean_below(ball, -0.045f);
         light_blocks_destroy(&blocks);
@@ -261,6 +262,7 @@ static void a_mesh_stands_in_the_light(void **state)
     }
     if (!(means[1] < 0.05 * means[0])) fail_msg("%g of %g", means[1], means[0]);
     assert_true(means[2] > 0.9 * means[0]);
+    assert_true(means[3] > 1.05 * means[2]);
 }
 
 // --- Parts.
