@@ -92,7 +92,7 @@ static void a_preset_gives_way_to_what_is_said(void **state)
         Shadow shadow;
         int size, smooth;
     } cases[] = {{"a.tfx -o x/ --look plain", SHADOW_NONE, 256, 1},
-                 {"a.tfx -o x/", SHADOW_DOM, 256, 1},
+                 {"a.tfx -o x/", SHADOW_DOM, 512, 2},
                  {"--look studio a.tfx -o x/ --look plain --shadow none", SHADOW_NONE, 256, 1},
                  {"--shadow approx a.tfx -o x/ --look plain", SHADOW_APPROX, 256, 1},
                  {"--quality final a.tfx -o x/ --look plain", SHADOW_DOM, 512, 3},
