@@ -76,7 +76,8 @@ Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
                                          options->height, options->samples, options->kind, error);
     THEN(result, RASTERS[renderer->raster].create(renderer, error));
     THEN(result, make_base(renderer, error));
-    bool scatters = options->scatter != SCATTER_NONE || options->shadow.kind == SHADOW_DOM;
+    // The light among hair needs what C finds of shadows, whatever the driver.
+    bool scatters = options->scatter != SCATTER_NONE && options->shadow.kind == SHADOW_DOM;
     ShadowOptions shadow = options->shadow;
     shadow.behind = options->scatter == SCATTER_DUAL;
     if (options->shadow.kind != SHADOW_NONE)

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The room draw turns hair into images. It takes hair on the GPU (sim/hair.h), the view, lights and
-// materials of a frame, and a mesh; it hands on an Image. First come shadow maps (shadows.h), then
-// mesh and floor (base_layer.h), then the hair by one of two rasterisers: blocks.h composites on
-// the CPU, quads.h sends triangles into an A-buffer. drawing.h has what the passes of an image
-// share.
+// materials of a frame, and a mesh; it hands on an Image. First come shadow maps (shadows.h) and
+// the light among hair (hair_scatter.h), then mesh and floor (base_layer.h), then the hair by one
+// of two rasterisers: blocks.h composites on the CPU, quads.h sends triangles into an A-buffer.
+// drawing.h has what the passes of an image share.
 #pragma once
 
 #include "draw/base_layer.h"

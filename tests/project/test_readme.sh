@@ -6,7 +6,7 @@
 command -v ffmpeg >/dev/null || { echo "skipped: no ffmpeg"; exit 77; }
 make_checkout
 awk '/^```sh$/ { inside = 1; next } /^```$/ { inside = 0 } inside' README.md |
-    sed -e 's/^tractrix-render /.\/small /' -e 's/--first 43 --last 93 --every 50/--first 1 --last 3 --every 2/' -e 's/--first 60 --last 119/--first 2 --last 3/' \
+    sed -e 's/^tractrix-render /.\/small /' -e 's/--first 0 --last 92 --every 92/--first 1 --last 3 --every 2/' -e 's/--first 60 --last 119/--first 2 --last 3/' \
         >"$work/checkout/commands"
 
 claim "the README's commands work"

@@ -10,11 +10,12 @@ make_checkout() {
     ln -s "$(realpath "$bin")" "$work/checkout/out/release"
     printf 'all:\n' >"$work/checkout/Makefile"
 
-    # The last of equal flags counts. Scenes of docs/ have one frame.
+    # The last of equal flags counts. Scenes of docs/ have one frame, and so has an image without a number in its name.
     cat >"$work/checkout/small" <<END
 #!/bin/sh
 case " \$* " in
-*" --frames 1 "* | " docs/"*) exec "$(realpath "$bin")/tractrix-render" "\$@" --size 96x64 ;;
+*" --contact-sheet "* | *%*) exec "$(realpath "$bin")/tractrix-render" "\$@" --size 96x64 --frames 4 ;;
+*" --frames 1 "* | " docs/"* | *.png\ *) exec "$(realpath "$bin")/tractrix-render" "\$@" --size 96x64 ;;
 *) exec "$(realpath "$bin")/tractrix-render" "\$@" --size 96x64 --frames 4 ;;
 esac
 END
