@@ -25,9 +25,9 @@ if [ "$(cd "$work/part" && echo *)" = "frame_0001.png frame_0003.png frame_0005.
 if cmp -s "$work/whole/frame_0005.png" "$work/part/frame_0005.png"; then good; else bad "frame 5 differs"; fi
 
 claim "the same command gives the same bytes, with any number of driver threads"
-run 0 assets/demo.json --frames 3 --size 320x240 -q -o "$work/r1/"
-run 0 assets/demo.json --frames 3 --size 320x240 -q -o "$work/r2/"
-if LP_NUM_THREADS=1 "$program" assets/demo.json --frames 3 --size 320x240 -q -o "$work/r3/" 2>"$work/err"; then good; else bad "one thread"; fi
+run 0 assets/demo.json --followers 2 --frames 3 --size 320x240 -q -o "$work/r1/"
+run 0 assets/demo.json --followers 2 --frames 3 --size 320x240 -q -o "$work/r2/"
+if LP_NUM_THREADS=1 "$program" assets/demo.json --followers 2 --frames 3 --size 320x240 -q -o "$work/r3/" 2>"$work/err"; then good; else bad "one thread"; fi
 for other in r2 r3; do
     if diff -r "$work/r1" "$work/$other" >"$work/err"; then good; else bad "$other differs"; fi
 done
@@ -43,7 +43,7 @@ for raster in auto blocks; do run 0 $hair $small --software --raster $raster -q 
 if cmp -s "$work/auto_1.pfm" "$work/blocks_1.pfm"; then good; else bad ".pfm differs"; fi
 
 claim "--exposure auto is one number for all parts, a cache, a still and a sequence, and all rasterisers; it is told"
-exposed="assets/demo.json --size 320x240 --exposure auto --frames 4"
+exposed="assets/demo.json --followers 2 --size 320x240 --exposure auto --frames 4"
 exposure_is() { # the last run's
     found=$(sed -n 's/.*"exposure": \([-0-9.][-0-9.]*\).*/\1/p' "$work/stats.json")
     if [ -n "$found" ] && [ "$found" != 0.0 ] && [ "$found" = "${first:=$found}" ]; then good; else bad "exposure '$found', not '$first'"; fi
@@ -189,7 +189,7 @@ printf x >"$work/plain"
 run 1 $hair --frames 1 -o "$work/plain/sub/"; says "plain"
 
 claim "an interrupt ends with 130, one line and whole files"
-"$program" assets/demo.json --size 320x240 -o "$work/int/" >"$work/out" 2>"$work/err" &
+"$program" assets/demo.json --followers 2 --size 320x240 -o "$work/int/" >"$work/out" 2>"$work/err" &
 pid=$!
 while [ ! -e "$work/int/frame_0001.png" ] && kill -0 $pid 2>/dev/null; do sleep 0.05; done
 kill -INT $pid; kill -TERM $pid 2>/dev/null
@@ -197,7 +197,7 @@ wait $pid
 status=$?
 # A second signal ends the program at once (128 + 15) if it comes before the first was looked at.
 if [ $status = 130 ] || [ $status = 143 ]; then good; else bad "exit status $status"; fi
-"$program" assets/demo.json --size 320x240 -o "$work/int2/" >"$work/out" 2>"$work/err" &
+"$program" assets/demo.json --followers 2 --size 320x240 -o "$work/int2/" >"$work/out" 2>"$work/err" &
 pid=$!
 while [ ! -e "$work/int2/frame_0001.png" ] && kill -0 $pid 2>/dev/null; do sleep 0.05; done
 kill -TERM $pid
@@ -256,7 +256,7 @@ run 0 $hair --algo emulation --variant thesis --frames 1 --size 16x16 -q -o "$wo
 if [ -s "$work/err" ]; then bad "said something"; else good; fi
 
 claim "a cache plays back what was simulated: any frames, the same pictures, in several processes at once"
-scene="assets/demo.json --size 48x32 --frames 12" # followers that keep out of the mesh, which a cache does not hold
+scene="assets/demo.json --followers 2 --size 48x32 --frames 12" # followers that keep out of the mesh, which a cache does not hold
 # shellcheck disable=SC2086
 {
 run 0 $scene -q --cache "$work/a.cache" -o "$work/direct/"
@@ -309,7 +309,7 @@ run 0 $scene --resume --cache "$work/r.cache"; says "simulating again from the s
 if cmp -s "$work/a.cache" "$work/r.cache"; then good; else bad "the cache made again differs"; fi
 run 3 $scene -q --resume --cache "$work/r.cache" --gravity 0,-1,0; one_line; says "gravity"
 run 2 $scene -q --resume -o "$work/v.mp4"; one_line; says "--cache"
-"$program" assets/demo.json --preroll 0 --frames 5000 --cache "$work/i.cache" >"$work/out" 2>"$work/err" &
+"$program" assets/demo.json --followers 2 --preroll 0 --frames 5000 --cache "$work/i.cache" >"$work/out" 2>"$work/err" &
 pid=$!
 while [ ! -s "$work/i.cache" ] && kill -0 $pid 2>/dev/null; do sleep 0.05; done
 sleep 0.3; kill -INT $pid
