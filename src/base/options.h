@@ -64,8 +64,8 @@ typedef struct OptionsProgram {
     const char *const (*topics)[2]; // --help TOPIC: words, and what they list or NULL
     bool (*is_of)(const char *topic, size_t option); // for each word of `topics`
     const OptionsChapter *const *chapters;
-    const char *const *notes;                        // paragraphs below the options
-    const char *const (*status)[2];                  // number and meaning
+    const char *const *notes;       // paragraphs below the options
+    const char *const (*status)[2]; // number and meaning
     const char *const *examples;
 } OptionsProgram;
 

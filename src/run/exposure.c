@@ -26,8 +26,8 @@ bool exposure_is_wanted(const Scene *scene)
            !scene_draws_floats(run);
 }
 
-// The scene as the meter draws it: small, before nothing, light as it is, by the one rasteriser that
-// sorts everything, so that both have the same exposure; hair stays as it is put.
+// The scene as the meter draws it: small, before nothing, light as it is, by the one rasteriser
+// that sorts everything, so that both have the same exposure; hair stays as it is put.
 static Scene meter_scene(const Scene *scene)
 {
     static char hair[] = "put", light[] = "light.pfm";

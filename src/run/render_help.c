@@ -105,8 +105,7 @@ static const char *const EXAMPLES[] = {
     "tractrix-render hair.tfx -o hair.png",
     "tractrix-render hair.tfx --turntable --wind 2,0,0 -o hair.mp4",
     "tractrix-render scene.json --cache sim.cache",
-    "tractrix-render scene.json --from-cache sim.cache --first 60 --last 119 -o frames/",
-    NULL};
+    "tractrix-render scene.json --from-cache sim.cache --first 60 --last 119 -o frames/", NULL};
 
 // Bounds from here on only keep numbers sane: help does not name them.
 static const double WIDE = 1e6;

@@ -21,9 +21,9 @@ typedef struct ScalpFit {
 // roots of a scalp, which is a part of the surface, hardly tell. Roots that lie off count less, by
 // Huber's weights (1964), of which the scale is 1.4826 times the median distance.
 //
-// A head is: at least 32 roots; radii of 5 to 40 cm (models are not always to scale) of which none is 2 times another; a median
-// distance of at most 4 % of the mean radius; roots that do not all look one way (a patch, a wisp)
-// nor lie all around (a ball of fur), but more above than below; strands that leave outwards; and
-// at most a tenth of the vertices inside. The radii are then made smaller by the distance within
-// which nine of ten roots lie, so that roots are seen.
+// A head is: at least 32 roots; radii of 5 to 40 cm (models are not always to scale) of which none
+// is 2 times another; a median distance of at most 4 % of the mean radius; roots that do not all
+// look one way (a patch, a wisp) nor lie all around (a ball of fur), but more above than below;
+// strands that leave outwards; and at most a tenth of the vertices inside. The radii are then made
+// smaller by the distance within which nine of ten roots lie, so that roots are seen.
 ScalpFit scalp_fit(const Strands *strands, uint32_t count);

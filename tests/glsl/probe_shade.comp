@@ -32,6 +32,7 @@ void main()
     if (i >= directions.length() / 2) return;
     lit_from = directions[2 * i].xyz;
     vec3 to_eye = directions[2 * i + 1].xyz;
-    colors[i] = vec4(
-        shade_fibre(fibre_material(), material.color.rgb, 0, vec3(0.0), vec3(0, 1, 0), to_eye), 1.0);
+    colors[i] =
+        vec4(shade_fibre(fibre_material(), material.color.rgb, 0, vec3(0.0), vec3(0, 1, 0), to_eye),
+             1.0);
 }

@@ -76,7 +76,8 @@ static void still_hair_touches_the_margin_and_keeps_it(void **state)
 
 static void so_does_hair_in_the_wind_on_a_moving_head_with_a_mesh(void **state)
 {
-    margins_are_kept(state, "assets/demo.json --followers 2 --style 0 --wind 3,0,0 --drag 3 --speed 4");
+    margins_are_kept(state,
+                     "assets/demo.json --followers 2 --style 0 --wind 3,0,0 --drag 3 --speed 4");
 }
 
 static void so_do_followers_drawn_from_a_cache(void **state)
