@@ -16,7 +16,7 @@ static void place_vertex(const LightMesh *mesh, const LightLattice *lattice, uin
                          double place[3])
 {
     versor turn = {0};
-    vec3 x;
+    vec3 x = {0};
     float turned[3];
     memcpy(turn, mesh->rotation, sizeof turn);
     memcpy(x, mesh->vertices[v], sizeof(float[3]));
@@ -110,7 +110,7 @@ Result light_blocks_find(LightBlocks *blocks, const LightLattice *lattice, Error
     for (size_t i = 0; i < 3 * cells; ++i) blocks->open[i] = 1;
     for (uint32_t i = 0; i < mesh->vertex_count; ++i) place_vertex(mesh, lattice, i, places[i]);
     for (uint32_t i = 0; i < mesh->triangle_count; ++i) {
-        Corners c;
+        Corners c = {0};
         for (int k = 0; k < 3; ++k) memcpy(c.at[k], places[mesh->triangles[i][k]], sizeof c.at[k]);
         for (int axis = 0; axis < 3; ++axis)
             close_triangle(blocks->open + (size_t)axis * cells, lattice, axis, &c);

@@ -78,7 +78,7 @@ static int compare_doubles(const void *a, const void *b)
 // Of at most LENGTH_SAMPLES strands, in the file's unit.
 static double median_length(const FormatSource *source)
 {
-    double length[LENGTH_SAMPLES];
+    double length[LENGTH_SAMPLES] = {0};
     uint32_t count = 0, stride = source->strands.strand_count / LENGTH_SAMPLES + 1;
     for (uint32_t s = 0; s < source->strands.strand_count; s += stride)
         length[count++] = source_length(source, s);
