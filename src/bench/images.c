@@ -291,19 +291,20 @@ static Result draw_frames(const Stage *stage, const Manner *manner, Renderer *re
 
 static RendererOptions renderer_options(const Stage *stage, const RunParams *run)
 {
-    RendererOptions options = {
-        .raster = (Raster)run->raster,
-        .oit = (Oit)run->oit,
-        .oit_layers = run->oit_layers,
-        .width = stage->scene.run.size[0],
-        .height = stage->scene.run.size[1],
-        .samples = run->samples,
-        .seed = run->seed,
-        .lod = {run->lod_start, run->lod_end, run->lod_min, run->lod_width},
-        .scatter = (Scatter)run->scatter,
-        .scatter_cells = run->scatter_cells,
-        .scatter_orders = run->scatter_orders,
-        .shadow = {(Shadow)run->shadow, run->shadow_size, run->shadow_spacing}};
+    RendererOptions options = {.raster = (Raster)run->raster,
+                               .oit = (Oit)run->oit,
+                               .oit_layers = run->oit_layers,
+                               .width = stage->scene.run.size[0],
+                               .height = stage->scene.run.size[1],
+                               .samples = run->samples,
+                               .seed = run->seed,
+                               .lod = {run->lod_start, run->lod_end, run->lod_min, run->lod_width},
+                               .scatter = (Scatter)run->scatter,
+                               .scatter_cells = run->scatter_cells,
+                               .scatter_orders = run->scatter_orders,
+                               .shadow = {.kind = (Shadow)run->shadow,
+                                          .side = run->shadow_size,
+                                          .spacing = run->shadow_spacing}};
     memcpy(options.background, run->background, sizeof options.background);
     options.background[3] = 1;
     return options;

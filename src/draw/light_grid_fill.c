@@ -348,9 +348,9 @@ static bool grow(void *array, size_t *room, size_t count, size_t size)
 static bool grow_cells(LightGridState *state, size_t cells)
 {
     size_t room[3] = {state->cell_room, state->cell_room, state->cell_room};
-    bool good = grow(&state->slot, &room[0], cells, sizeof *state->slot) &
+    bool good = grow(&state->slot, &room[0], cells, sizeof *state->slot) &&
                 grow(&state->first_item, &room[1], (size_t)state->parts * cells,
-                     sizeof *state->first_item) &
+                     sizeof *state->first_item) &&
                 grow(&state->cell_of, &room[2], cells, sizeof *state->cell_of);
     state->cell_room = good ? room[0] : 0;
     return good;
@@ -364,15 +364,15 @@ static bool grow_slots(LightGridState *state)
     filled += filled / 4, active += active / 4;
     if (state->filled_room >= (size_t)state->filled && state->slot_room >= (size_t)state->active)
         return true;
-    bool good = grow(&state->depth, &of[0], filled, ORDINATES * sizeof(float)) &
-                grow(&state->left, &of[1], filled, ORDINATES * sizeof(float)) &
-                grow(&state->mean, &of[2], filled, ORDINATES * sizeof(float)) &
-                grow(&state->source, &of[3], filled, GRID_WIDE * sizeof(float)) &
-                grow(&state->tint, &of[4], filled, 3 * sizeof(float)) &
-                grow(&state->glow, &of[9], filled, 3 * sizeof(float)) &
-                grow(&state->class, &of[5], filled, sizeof(int)) &
-                grow(&state->order, &of[6], active, GRID_WIDE * sizeof(float)) &
-                grow(&state->light, &of[7], active, GRID_WIDE * sizeof(float)) &
+    bool good = grow(&state->depth, &of[0], filled, ORDINATES * sizeof(float)) &&
+                grow(&state->left, &of[1], filled, ORDINATES * sizeof(float)) &&
+                grow(&state->mean, &of[2], filled, ORDINATES * sizeof(float)) &&
+                grow(&state->source, &of[3], filled, GRID_WIDE * sizeof(float)) &&
+                grow(&state->tint, &of[4], filled, 3 * sizeof(float)) &&
+                grow(&state->glow, &of[9], filled, 3 * sizeof(float)) &&
+                grow(&state->class, &of[5], filled, sizeof(int)) &&
+                grow(&state->order, &of[6], active, GRID_WIDE * sizeof(float)) &&
+                grow(&state->light, &of[7], active, GRID_WIDE * sizeof(float)) &&
                 grow(&state->hidden, &of[8], active, 4 * sizeof(float));
     state->filled_room = good ? of[0] : 0;
     state->slot_room = good ? of[6] : 0;

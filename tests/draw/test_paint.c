@@ -201,11 +201,12 @@ static void painted_hair_lies_in_shadow(void **state)
     (void)state;
     for (Raster raster = RASTER_QUADS; raster <= RASTER_BLOCKS; ++raster) {
         Studio studio;
-        studio_open(&studio, &(RendererOptions){.raster = raster,
-                                                .width = 128,
-                                                .height = 128,
-                                                .background = {0, 0, 0, 1},
-                                                .shadow = {SHADOW_DOM, 64, 200}});
+        studio_open(&studio,
+                    &(RendererOptions){.raster = raster,
+                                       .width = 128,
+                                       .height = 128,
+                                       .background = {0, 0, 0, 1},
+                                       .shadow = {.kind = SHADOW_DOM, .side = 64, .spacing = 200}});
         Strands strands = make_strands();
         float color[STRANDS * SIZE][4], thickness[STRANDS * SIZE];
         for (int v = 0; v < STRANDS * SIZE; ++v) {

@@ -80,7 +80,7 @@ static RendererOptions options_of(int samples, Shadow shadow)
                              .kind = IMAGE_16,
                              .samples = samples,
                              .background = {0, 0, 0, 1},
-                             .shadow = {shadow, 256, 200}};
+                             .shadow = {.kind = shadow, .side = 256, .spacing = 200}};
 }
 
 // Measured: 1.1 (quads) and 0.8 (blocks), most of it where a ribbon's edge comes into a pixel and
