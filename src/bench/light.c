@@ -34,7 +34,7 @@ static const Way WAYS[] = {
     {"cells 8", CURVES "--scatter grid --scatter-cells 8", UNBOUND},
     {"cells 12", CURVES "--scatter grid --scatter-cells 12", UNBOUND},
     {"cells 16", CURVES "--scatter grid --scatter-cells 16", UNBOUND},
-    {"cells 32", CURVES "--scatter grid --scatter-cells 32", UNBOUND},
+    {"cells 24", CURVES "--scatter grid --scatter-cells 24", UNBOUND},
     {"cells 48", CURVES "--scatter grid --scatter-cells 48", UNBOUND},
     {"map 128", CURVES "--scatter grid --shadow-size 128", UNBOUND},
     {"map 256", CURVES "--scatter grid --shadow-size 256", UNBOUND},

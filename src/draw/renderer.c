@@ -84,7 +84,7 @@ Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
         THEN(result, shadows_create(&renderer->shadow, &gpu->limits, &shadow,
                                     gpu->software || scatters, error));
     const HairScatterOptions scatter = {options->scatter,
-                                        options->scatter_cells ? options->scatter_cells : 24,
+                                        options->scatter_cells ? options->scatter_cells : 32,
                                         options->scatter_orders ? options->scatter_orders : 16};
     hair_scatter_create(&renderer->scatter, &gpu->limits, &scatter);
     if (result != RESULT_OK) renderer_destroy(renderer);

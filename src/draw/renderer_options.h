@@ -34,7 +34,7 @@ typedef struct RendererOptions {
     ShadowOptions shadow;
     Scatter scatter;    // of light from fibre to fibre; needs deep shadow maps
     int scatter_orders; // that are followed, 1 .. 32; 0: 16
-    int scatter_cells;  // along the longest side of the hair, 4 .. 64; 0: 24
+    int scatter_cells;  // along the longest side of the hair, 4 .. 64; 0: 32
     Floor floor;        // not with an AOV
     MeshShading mesh_shading;
     LodOptions lod;

@@ -284,7 +284,7 @@ static const struct {
     {"quality", "final", "shadow_size", "512"},
     {"quality", "final", "samples", "2"},
     {"quality", "final", "smooth", "3"},
-    {"quality", "final", "scatter_cells", "32"},
+    {"quality", "final", "scatter_cells", "48"},
 };
 
 static Result apply_preset(const char *preset, const char *word, ParamScope scope, void *params,

@@ -265,6 +265,9 @@ Result scene_read_unchecked(Scene *scene, const char *path, const SceneOverrides
     free(document.folder);
     json_decref(json);
     scene_settle_colors(scene);
+    // A scene file says what there is.
+    if (scene->origin[params_find("scalp") - PARAM_TABLE] == ORIGIN_DEFAULT)
+        scene->run.scalp = SCALP_NONE;
     return result;
 }
 

@@ -18,6 +18,7 @@ static void a_scene_file_says_all_that_flags_can_and_more(void **state)
     Scene scene;
     Error error;
     assert_int_equal(scene_read(&scene, "tests/data/scene_full.json", &error), RESULT_OK);
+    assert_int_equal(scene.run.scalp, SCALP_NONE); // it says what there is
     assert_int_equal(scene.run.frames, 90);
     assert_int_equal(scene.run.size[0], 640);
     assert_true(scene.run.background[3] == 0);
