@@ -263,19 +263,20 @@ SIMD_INLINE void show_light(const GridKind *kind, const Particles *p, int i, con
     const float(*rows)[GRID_WIDE] = (const float(*)[GRID_WIDE])kind->gather + p->node[i];
     const float *const *cell = around->cell, *w = around->weight;
     float u = p->share[0][i], v = p->share[1][i], a = (1 - u) * (1 - v), b = u * (1 - v),
-          c = (1 - u) * v, d = u * v, sum[3][GRID_LANES] = {{0}};
+          c = (1 - u) * v, d = u * v;
+    Lanes sum[3] = {{0}};
+#define AT(array) (*(const Lanes *)((array) + at))
     for (int g = 0; g < ORDINATE_GROUPS; ++g)
-        for (int n = 0; n < 3; ++n)
-            for (int l = 0; l < GRID_LANES; ++l) {
-                int at = (g * 3 + n) * GRID_LANES + l;
-                float light = (w[0] * cell[0][at] + w[1] * cell[1][at]) +
-                              (w[2] * cell[2][at] + w[3] * cell[3][at]) +
-                              ((w[4] * cell[4][at] + w[5] * cell[5][at]) +
-                               (w[6] * cell[6][at] + w[7] * cell[7][at]));
-                float sent = (a * rows[0][at] + b * rows[1][at]) +
-                             (c * rows[ROW][at] + d * rows[ROW + 1][at]);
-                sum[n][l] += light * sent;
-            }
+        for (int n = 0; n < 3; ++n) {
+            int at = (g * 3 + n) * GRID_LANES;
+            const Lanes light = (w[0] * AT(cell[0]) + w[1] * AT(cell[1])) +
+                                (w[2] * AT(cell[2]) + w[3] * AT(cell[3])) +
+                                ((w[4] * AT(cell[4]) + w[5] * AT(cell[5])) +
+                                 (w[6] * AT(cell[6]) + w[7] * AT(cell[7])));
+            sum[n] += light * ((a * AT(rows[0]) + b * AT(rows[1])) +
+                               (c * AT(rows[ROW]) + d * AT(rows[ROW + 1])));
+        }
+#undef AT
     for (int n = 0; n < 3; ++n) {
         float all = 0;
         for (int l = 0; l < GRID_LANES; ++l) all += sum[n][l];

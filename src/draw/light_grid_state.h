@@ -18,6 +18,10 @@ enum {
 // three quarters: what agreed best with path-traced light.
 #define GRID_BLUR (0.75f / ORDINATES)
 
+// The lanes of a group as one vector, wherever they lie. (Compilers do not find it by themselves
+// among three channels.)
+typedef float Lanes __attribute__((vector_size(4 * GRID_LANES), aligned(4), may_alias));
+
 // What one kind of fibre needs; `lobes` tells what it was made for.
 typedef struct GridKind {
     FibreLobes lobes;                          // a copy: arrays are not owned

@@ -58,17 +58,23 @@ static void find_way(const Sweep *sweep, int group, GroupWay *way)
     find_sky(sweep, group, way->sky);
 }
 
+// Added to all radiance: what thick hair leaves of it would else become so small that processors
+// need a hundred cycles for each operation with it (denormal numbers).
+#define LEAST_LIGHT 1e-30f
+
 // The weighted sum of three neighbours, `stride` floats apart; the mesh lets the share `low` of the
 // first one through, `high` of the last.
 SIMD_INLINE void blend(const float taps[TAPS][GRID_LANES], float low, float high, const float *from,
-                       size_t stride, float out[GROUP_WIDE])
+                       size_t stride, float *out)
 {
-    for (int c = 0; c < 3; ++c)
-        for (int l = 0; l < GRID_LANES; ++l) {
-            int i = c * GRID_LANES + l;
-            out[i] = low * taps[0][l] * from[i] + taps[1][l] * from[stride + (size_t)i] +
-                     high * taps[2][l] * from[2 * stride + (size_t)i];
-        }
+    const Lanes first = low * *(const Lanes *)taps[0], middle = *(const Lanes *)taps[1],
+                last = high * *(const Lanes *)taps[2];
+    for (int c = 0; c < 3; ++c) {
+        const float *at = from + c * GRID_LANES;
+        *(Lanes *)(out + c * GRID_LANES) = first * *(const Lanes *)at +
+                                           middle * *(const Lanes *)(at + stride) +
+                                           last * *(const Lanes *)(at + 2 * stride) + LEAST_LIGHT;
+    }
 }
 
 // Share that the mesh lets through between the cell at `at`, which may lie beside the lattice, and
@@ -109,63 +115,61 @@ SIMD_INLINE void blend_row(const Sweep *sweep, const GroupWay *way, int at[3], c
 }
 
 // out = S + (in - S) exp(-tau), in the mean S + (in - S)(1 - exp(-tau)) / tau.
-SIMD_INLINE void pass_cell(const Sweep *sweep, int group, int slot, float io[GROUP_WIDE],
-                           float mean[GROUP_WIDE])
+SIMD_INLINE void pass_cell(const Sweep *sweep, int group, int slot, float *io, float *mean)
 {
     const LightGridState *state = sweep->state;
     size_t lane = (size_t)slot * ORDINATES + (size_t)group * GRID_LANES,
            wide = (size_t)slot * GRID_WIDE + (size_t)group * GROUP_WIDE;
-    const float *left = state->left + lane, *share = state->mean + lane,
-                *source = state->source + wide;
-    for (int c = 0; c < 3; ++c)
-        for (int l = 0; l < GRID_LANES; ++l) {
-            int i = c * GRID_LANES + l;
-            float s = sweep->sourceless ? 0 : source[i], in = io[i] - s;
-            mean[i] = s + in * share[l];
-            io[i] = s + in * left[l];
-        }
+    const Lanes left = *(const Lanes *)(state->left + lane),
+                share = *(const Lanes *)(state->mean + lane);
+    const float given = sweep->sourceless ? 0 : 1, *source = state->source + wide;
+    for (int c = 0; c < 3; ++c) {
+        Lanes *at = (Lanes *)(io + c * GRID_LANES);
+        const Lanes s = given * *(const Lanes *)(source + c * GRID_LANES), in = *at - s;
+        *(Lanes *)(mean + c * GRID_LANES) = s + in * share;
+        *at = s + in * left;
+    }
 }
 
-SIMD_INLINE void keep(const Sweep *sweep, int group, int slot, const float mean[GROUP_WIDE],
-                      double sum[3])
+SIMD_INLINE void keep(const Sweep *sweep, int group, int slot, const float *mean, double sum[3])
 {
     LightGridState *state = sweep->state;
     size_t wide = (size_t)slot * GRID_WIDE + (size_t)group * GROUP_WIDE;
-    float *order = state->order + wide, *light = state->light + wide;
-    for (int i = 0; i < GROUP_WIDE; ++i) {
-        order[i] = mean[i];
-        light[i] = sweep->fresh ? mean[i] : light[i] + mean[i];
-    }
-    if (slot >= state->filled) return;
-    const float *depth = state->depth + (size_t)slot * ORDINATES + (size_t)group * GRID_LANES;
     for (int c = 0; c < 3; ++c) {
-        float met = 0;
-        for (int l = 0; l < GRID_LANES; ++l) met += depth[l] * mean[c * GRID_LANES + l];
-        sum[c] += (double)met;
+        const Lanes here = *(const Lanes *)(mean + c * GRID_LANES);
+        Lanes *light = (Lanes *)(state->light + wide + c * GRID_LANES);
+        *(Lanes *)(state->order + wide + c * GRID_LANES) = here;
+        if (sweep->fresh)
+            *light = here;
+        else
+            *light += here;
+        if (slot >= state->filled) continue;
+        const Lanes met = here * *(const Lanes *)(state->depth + (size_t)slot * ORDINATES +
+                                                  (size_t)group * GRID_LANES);
+        sum[c] += (double)(((met[0] + met[1]) + (met[2] + met[3])) +
+                           ((met[4] + met[5]) + (met[6] + met[7])));
     }
 }
 
-// Cell `at` on the way of the group: what comes in becomes what goes out.
-SIMD_INLINE void cross_cell(const Sweep *sweep, const GroupWay *way, int group, const int at[3],
-                            float io[GROUP_WIDE], double sum[3])
+// What comes from the side of the mesh is what that sends back.
+SIMD_INLINE void meet_mesh(const Sweep *sweep, const GroupWay *way, const int at[3], int slot,
+                           float *io)
 {
     const LightGridState *state = sweep->state;
-    const int *n = state->lattice.count;
-    size_t cell = ((size_t)at[2] * (size_t)n[1] + (size_t)at[1]) * (size_t)n[0] + (size_t)at[0];
-    int slot = state->slot[cell];
-    if (sweep->scene->blocks) {
-        float passed = way->forward ? passed_before(sweep, way->main, at)
-                                    : passed_behind(sweep, way->main, at);
-        for (int c = 0; c < 3; ++c) {
-            float glow = slot >= 0 && slot < state->filled ? state->glow[3 * slot + c] : 0;
-            for (int l = 0; l < GRID_LANES; ++l) {
-                int i = c * GRID_LANES + l;
-                io[i] = passed * io[i] + (1 - passed) * glow;
-            }
-        }
+    float passed =
+        way->forward ? passed_before(sweep, way->main, at) : passed_behind(sweep, way->main, at);
+    for (int c = 0; c < 3; ++c) {
+        float glow = slot >= 0 && slot < state->filled ? state->glow[3 * slot + c] : 0;
+        Lanes *lanes = (Lanes *)(io + c * GRID_LANES);
+        *lanes = passed * *lanes + (1 - passed) * glow;
     }
+}
+
+// A cell on the way of the group: what comes in becomes what goes out.
+SIMD_INLINE void cross_cell(const Sweep *sweep, int group, int slot, float *io, double sum[3])
+{
     if (slot < 0) return;
-    if (slot >= state->filled) {
+    if (slot >= sweep->state->filled) {
         keep(sweep, group, slot, io, sum);
         return;
     }
@@ -179,9 +183,11 @@ SIMD_INLINE void sweep_slice(const Sweep *sweep, const GroupWay *way, int group,
                              const float *before, float *after, float *rows, double sum[3])
 {
     const int *n = sweep->state->lattice.count;
+    const size_t strides[3] = {1, (size_t)n[0], (size_t)n[0] * (size_t)n[1]};
     int at[3], from[3], wide = n[way->across[0]], tall = n[way->across[1]], axis = way->across[1];
     bool blocks = sweep->scene->blocks != NULL;
-    size_t row = ((size_t)wide + 2) * GROUP_WIDE, used = (size_t)wide * GROUP_WIDE;
+    size_t row = ((size_t)wide + 2) * GROUP_WIDE, used = (size_t)wide * GROUP_WIDE,
+           step = strides[way->across[0]];
     at[way->main] = slice;
     from[way->main] = way->forward ? slice - 1 : slice + 1;
     // Rows lie at y % 3 and, so that three in their order are one piece, once more behind them.
@@ -194,12 +200,15 @@ SIMD_INLINE void sweep_slice(const Sweep *sweep, const GroupWay *way, int group,
         at[axis] = y - 2;
         const float *first = rows + (size_t)((y - 2) % 3) * used;
         float *out = after + (size_t)(y - 1) * row + GROUP_WIDE;
-        for (int x = 0; x < wide; ++x, first += GROUP_WIDE, out += GROUP_WIDE) {
+        const int *slot = sweep->state->slot + (size_t)slice * strides[way->main] +
+                          (size_t)(y - 2) * strides[axis];
+        for (int x = 0; x < wide; ++x, first += GROUP_WIDE, out += GROUP_WIDE, slot += step) {
             at[way->across[0]] = x;
             float low = blocks ? passed_before(sweep, axis, at) : 1,
                   high = blocks ? passed_behind(sweep, axis, at) : 1;
             blend(way->taps[1], low, high, first, used, out);
-            cross_cell(sweep, way, group, at, out, sum);
+            if (blocks) meet_mesh(sweep, way, at, *slot, out);
+            cross_cell(sweep, group, *slot, out, sum);
         }
     }
 }
