@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "draw/fibre_lobes.h"
 
-#include "base/simd.h"
+#include "draw/fibre_lobe.h"
 
 #include "glsl/common/shared_math.h"
 #include "glsl/draw/draw.h"
@@ -103,22 +103,6 @@ void fibre_lobes_fit_albedo(FibreTable table, float fit[2])
 
 // --- Scattering.
 
-// exp(-x) I0(x) for x >= 0, as in shade_marschner.glsl.
-SIMD_INLINE float bessel_i0_scaled(float x)
-{
-    float square = x * x;
-    return (0.5f + 0.5f * simd_exp2(simd_max(-2 * (float)LOG2E * x, -60))) /
-           sqrtf(sqrtf(1 + 0.25f * square)) * (1 + 0.24273f * square) / (1 + 0.43023f * square);
-}
-
-// acos(x) / pi within 2e-5 (Abramowitz and Stegun 4.4.45).
-SIMD_INLINE float turn_of(float x)
-{
-    float a = fabsf(x), root = sqrtf(simd_positive(1 - a)) *
-                               (1.5707288f + a * (-0.2121144f + a * (0.0742610f - 0.0187293f * a)));
-    return (x < 0 ? (float)PI - root : root) * (float)(1 / PI);
-}
-
 SIMD_INLINE float dot(const float t[3], const Ways *ways, int k)
 {
     return t[0] * ways->axis[0][k] + t[1] * ways->axis[1][k] + t[2] * ways->axis[2][k];
@@ -144,24 +128,19 @@ SIMD_INLINE void find_angles(const float tangent[3], const Ways *out, const Ways
         angles->cos_r[k] = cos_r;
         angles->sin_i[k] = sin_i;
         angles->cos_i[k] = cos_i;
-        angles->turn[k] = turn_of(simd_min(simd_max(cos_phi, -1), 1));
+        angles->turn[k] = fibre_turn(simd_min(simd_max(cos_phi, -1), 1));
     }
 }
 
 SIMD_INLINE void find_longitudinal(const FibreLobes *lobes, const Angles *a, int p, float extra,
                                    float m[W])
 {
-    float v = lobes->variance[p] + extra, sharpness = 1 / v,
-          scale = sharpness / (1 - simd_exp2(simd_max(-2 * (float)LOG2E * sharpness, -60)));
-    float tilt_cos = lobes->tilt_cos[p], tilt_sin = lobes->tilt_sin[p];
-    for (int k = 0; k < W; ++k) {
-        float sine = a->sin_r[k] * tilt_cos - a->cos_r[k] * tilt_sin,
-              cosine = a->cos_r[k] * tilt_cos + a->sin_r[k] * tilt_sin;
-        float c = fabsf(a->cos_i[k] * cosine), s = a->sin_i[k] * sine,
-              power = (float)LOG2E * (c - s - 1) * sharpness;
+    float v = lobes->variance[p] + extra, tilt_cos = lobes->tilt_cos[p],
+          tilt_sin = lobes->tilt_sin[p];
+    for (int k = 0; k < W; ++k)
         m[k] =
-            scale * simd_exp2(simd_max(simd_min(power, 0), -60)) * bessel_i0_scaled(c * sharpness);
-    }
+            fibre_lobe(v, a->sin_i[k], a->cos_i[k], a->sin_r[k] * tilt_cos - a->cos_r[k] * tilt_sin,
+                       a->cos_r[k] * tilt_cos + a->sin_r[k] * tilt_sin);
 }
 
 // The four nodes around each lane's place in the table.

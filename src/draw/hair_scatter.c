@@ -122,19 +122,13 @@ static Result map_hair(HairScatter *scatter, Drawing *drawing, const ShadowCaste
 
 // --- What is asked for.
 
-static bool has_sky(const DrawParams *draw)
-{
-    for (int k = 0; k < 3; ++k)
-        if (draw->sky[k] > 0 || draw->ground[k] > 0) return true;
-    return false;
-}
-
 static bool is_wanted(const HairScatter *scatter, const HairScatterScene *scene)
 {
     bool any = false;
     for (uint32_t i = 0; i < scene->casters.count; ++i)
         any |= (scene->casters.list[i].look.features & LOOK_MARSCHNER) != 0;
-    return any && (scatter->options.scatter != SCATTER_NONE || has_sky(&scene->drawing->draw));
+    return any &&
+           (scatter->options.scatter != SCATTER_NONE || light_scene_has_sky(&scene->drawing->draw));
 }
 
 static bool same_lights(const DrawParams *a, const DrawParams *b)
@@ -208,7 +202,7 @@ static Result find_light(HairScatter *scatter, const Shadows *shadows,
     GridScene grid = make_scene(scatter, shadows, scene);
     bool solved = scatter->any && scatter->shadow_version == shadows->version &&
                   same_lights(&scatter->drawn, &scene->drawing->draw);
-    bool in_cells = grid.suns || has_sky(grid.draw),
+    bool in_cells = grid.suns || light_scene_has_sky(grid.draw),
          dual = scatter->options.scatter == SCATTER_DUAL;
     if (in_cells && !solved) THEN(result, light_grid_solve(&scatter->grid, &grid, error));
     if (in_cells) THEN(result, light_grid_gather(&scatter->grid, &grid, error));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "draw/light_dual.h"
 
-#include "base/simd.h"
+#include "draw/fibre_lobe.h"
 
 #include "glsl/common/shared_math.h"
 
@@ -139,14 +139,6 @@ SIMD_INLINE void set_particles(const GridScene *scene, const GridHair *hair, int
         }
 }
 
-// acos(x) / pi within 2e-5 (Abramowitz and Stegun 4.4.45).
-SIMD_INLINE float turn_of(float x)
-{
-    float a = fabsf(x), root = sqrtf(simd_positive(1 - a)) *
-                               (1.5707288f + a * (-0.2121144f + a * (0.0742610f - 0.0187293f * a)));
-    return (x < 0 ? (float)PI - root : root) * (float)(1 / PI);
-}
-
 // As light_sent of lights.glsl.
 SIMD_INLINE void set_light(const DrawParams *draw, int l, Lit *lit)
 {
@@ -170,7 +162,7 @@ SIMD_INLINE void set_light(const DrawParams *draw, int l, Lit *lit)
         float ci = sqrtf(simd_positive(1 - si * si)), cr = sqrtf(simd_positive(1 - sr * sr));
         float cos_phi = (between - si * sr) / simd_max(ci * cr, 1e-6f);
         lit->sin_i[i] = si, lit->cos_i[i] = ci, lit->sin_r[i] = sr, lit->cos_r[i] = cr;
-        lit->turn[i] = turn_of(simd_min(simd_max(cos_phi, -1), 1));
+        lit->turn[i] = fibre_turn(simd_min(simd_max(cos_phi, -1), 1));
     }
 }
 
@@ -206,31 +198,6 @@ static void look_up(const DualTable *table, const Lit *lit, int c, Looked *looke
     }
 }
 
-// d'Eon's lobe of the variance v about the cone that mirrors theta_i (see shade_marschner.glsl).
-SIMD_INLINE float lobe(float v, float sin_i, float cos_i, float sine, float cosine)
-{
-    float sharpness = 1 / v, c = fabsf(cos_i * cosine), x = c * sharpness, square = x * x,
-          power = (float)LOG2E * (c - sin_i * sine - 1) * sharpness;
-    float bessel = (0.5f + 0.5f * simd_exp2(simd_max(-2 * (float)LOG2E * x, -60))) /
-                   sqrtf(sqrtf(1 + 0.25f * square)) * (1 + 0.24273f * square) /
-                   (1 + 0.43023f * square);
-    return sharpness / (1 - simd_exp2(simd_max(-2 * (float)LOG2E * sharpness, -60))) *
-           simd_exp2(simd_max(simd_min(power, 0), -60)) * bessel;
-}
-
-// log2(x) for 1e-6 < x < 1 within 1e-4: the exponent, and a fit of the rest.
-SIMD_INLINE float log2_of(float x)
-{
-    union {
-        float value;
-        int bits;
-    } m = {.value = x};
-    int exponent = (m.bits - 0x3f3504f3) >> 23;
-    m.bits -= exponent * (1 << 23);
-    float t = (m.value - 1) / (m.value + 1), s = t * t;
-    return (float)exponent + 2.885390082f * t * (1 + s * (1.f / 3 + s * (0.2f + s * (1.f / 7))));
-}
-
 SIMD_INLINE float exp_of(float x)
 {
     return simd_exp2(simd_max((float)LOG2E * simd_min(x, 0), -60));
@@ -242,10 +209,9 @@ SIMD_INLINE void add_channel(const FibreLobes *lobes, const Lit *lit, const Look
     for (int i = 0; i < W; ++i) {
         float af = simd_min(simd_max(looked->forward[i], 1e-3f), 0.999f), ab = looked->back[i],
               vf = looked->forward_variance[i], vb = looked->back_variance[i];
-        float direct = simd_max(left[i], 1e-6f),
-              n = -0.693147181f * log2_of(simd_min(direct, 0.999999f));
+        float direct = simd_max(left[i], 1e-6f), n = minus_log(simd_min(direct, 0.999999f));
         float square = af * af, x = 1 - square, cube = ab * ab * ab,
-              e = 1 - simd_exp2(simd_max(2 * behind[i] * log2_of(af), -60));
+              e = 1 - simd_exp2(simd_max(-2 * (float)LOG2E * behind[i] * minus_log(af), -60));
         float back = ab * square / x * e + cube * square / (x * x * x) * e * e * e;
         float sent = simd_positive(exp_of(-n * (1 - af)) - left[i]),
               spread = vf * n * af / (1 - exp_of(-simd_max(n * af, 1e-6f)));
@@ -255,12 +221,13 @@ SIMD_INLINE void add_channel(const FibreLobes *lobes, const Lit *lit, const Look
               v = root * root;
         float si = lit->sin_i[i], ci = lit->cos_i[i], sr = lit->sin_r[i], cr = lit->cos_r[i];
         float seen = back * (float)(1 / PI) *
-                     (left[i] * lobe(v, si, ci, sr, cr) + sent * lobe(v + spread, si, ci, sr, cr));
+                     (left[i] * fibre_lobe(v, si, ci, sr, cr) +
+                      sent * fibre_lobe(v + spread, si, ci, sr, cr));
         for (int p = 0; p < 3; ++p) {
             float tilt_cos = lobes->tilt_cos[p], tilt_sin = lobes->tilt_sin[p];
             seen += sent * looked->around[p][i] *
-                    lobe(lobes->variance[p] + spread, si, ci, sr * tilt_cos - cr * tilt_sin,
-                         cr * tilt_cos + sr * tilt_sin);
+                    fibre_lobe(lobes->variance[p] + spread, si, ci, sr * tilt_cos - cr * tilt_sin,
+                               cr * tilt_cos + sr * tilt_sin);
         }
         sum[i] += (float)PI * color * lit->sent[i] * seen;
     }

@@ -9,9 +9,8 @@
 
 // --- Tables of kinds of fibres.
 
-static const float SIDE_BLUR = GRID_BLUR;
-
-// Scales a row so that all lanes of `in` together give the fibre's albedo at the cosine.
+// What a fibre of the class sends along each direction of light 1 from `way` (unit, towards it),
+// times the width that it shows there.
 static void make_first_row(const FibreLobes *lobes, const float way[3], int class,
                            float row[GRID_WIDE])
 {
@@ -21,7 +20,7 @@ static void make_first_row(const FibreLobes *lobes, const float way[3], int clas
     for (int g = 0; g < ORDINATE_GROUPS; ++g) {
         float f[3][ORDINATE_LANES];
         grid_group_ways(g, &out);
-        fibre_lobes_scatter(lobes, t, &out, &in, SIDE_BLUR, f);
+        fibre_lobes_scatter(lobes, t, &out, &in, GRID_BLUR, f);
         for (int l = 0; l < GRID_LANES; ++l) {
             float along = t[0] * out.axis[0][l] + t[1] * out.axis[1][l] + t[2] * out.axis[2][l],
                   sine = sqrtf(fmaxf(1 - along * along, 0));
@@ -64,6 +63,7 @@ Result light_grid_make_first(LightGridState *state, const GridScene *scene, Erro
     return RESULT_OK;
 }
 
+// Rows are scaled so that light 1 from everywhere leaves as the fibre's albedo.
 static void make_scatter_table(const FibreLobes *lobes, int class,
                                float (*table)[ORDINATES][ORDINATES])
 {
@@ -75,7 +75,7 @@ static void make_scatter_table(const FibreLobes *lobes, int class,
         for (int d = 0; d < ORDINATES; ++d) {
             float f[3][ORDINATE_LANES], from[3] = {ORDINATE[0][d], ORDINATE[1][d], ORDINATE[2][d]};
             grid_same_ways(from, -1, &in);
-            fibre_lobes_scatter(lobes, t, &out, &in, 2 * SIDE_BLUR, f);
+            fibre_lobes_scatter(lobes, t, &out, &in, 2 * GRID_BLUR, f);
             for (int c = 0; c < 3; ++c)
                 for (int l = 0; l < GRID_LANES; ++l) {
                     table[c][d][g * GRID_LANES + l] = f[c][l];
@@ -163,13 +163,6 @@ static Result make_planes(LightGridState *state, Error *error)
                          : error_set(error, RESULT_FAILED, "no memory for light among hair");
 }
 
-static bool has_sky(const DrawParams *draw)
-{
-    for (int c = 0; c < 3; ++c)
-        if (draw->sky[c] > 0 || draw->ground[c] > 0) return true;
-    return false;
-}
-
 Result light_grid_solve(LightGrid *grid, const GridScene *scene, Error *error)
 {
     if (!grid->state) grid->state = calloc(1, sizeof *grid->state);
@@ -182,7 +175,7 @@ Result light_grid_solve(LightGrid *grid, const GridScene *scene, Error *error)
     if (!light_grid_fill(state, scene, error, &result)) return result;
     TRY(make_planes(state, error));
     TRY(light_grid_make_scatter(state, scene, error));
-    bool sky = has_sky(scene->draw);
+    bool sky = light_scene_has_sky(scene->draw);
     light_grid_sweep(state, scene, sky, true, state->lights == 0);
     double all[3] = {0};
     light_grid_needs_more(state, all);

@@ -22,7 +22,7 @@ enum {
 // among three channels.)
 typedef float Lanes __attribute__((vector_size(4 * GRID_LANES), aligned(4), may_alias));
 
-// What one kind of fibre needs; `lobes` tells what it was made for.
+// The tables of one kind of fibre. They hold for `lobes`.
 typedef struct GridKind {
     FibreLobes lobes;                          // a copy: arrays are not owned
     float (*scatter)[3][ORDINATES][ORDINATES]; // [TANGENTS][channel][in][out], owned

@@ -34,3 +34,11 @@ typedef struct GridScene {
     int cells;                 // along the longest side of the box, 4 .. 64
     int orders; // of scattering that are swept at most, 0 .. 32; 0: the sky's own light alone
 } GridScene;
+
+// Whether light comes from above or below, besides the lights.
+static inline bool light_scene_has_sky(const DrawParams *draw)
+{
+    for (int c = 0; c < 3; ++c)
+        if (draw->sky[c] > 0 || draw->ground[c] > 0) return true;
+    return false;
+}

@@ -26,7 +26,7 @@ typedef struct ShadowOptions {
     Shadow kind;   // not none
     int side;      // texels across a map of hair, rounded up to a multiple of 8
     float spacing; // approx: between fibres along the light, in radii
-    bool behind;   // dom by the processor: lights tell what is behind hair's points, too (look.h)
+    bool behind;   // dom by the processor: also count the fibres behind each point (look.h)
 } ShadowOptions;
 
 // What the maps are made of. Two scenes of equal bytes and of the same revision have the same maps.

@@ -174,7 +174,7 @@ static Result aim(Run *run, Error *error)
     return RESULT_OK;
 }
 
-// Finds the exposure, unless the scene gives it. What is told is what is given to --exposure.
+// Finds the exposure, unless the scene gives it, and reports it as a value for --exposure.
 static Result expose(Run *run, Error *error)
 {
     const RunParams *params = &run->scene.run;
