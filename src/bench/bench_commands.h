@@ -50,3 +50,8 @@ Result images_run(const BenchOptions *options, const Gpu *gpu, Error *error);
 // tests/data/light, by each way to compute it: mean, rel and coverage over the tracer's, times of
 // images, and bounds; with options->picture images side by side.
 Result light_run(const BenchOptions *options, const Gpu *gpu, Error *error);
+
+// What becomes of the hair files that are named, on options->mesh, with each solver and rate: at
+// rest, and while the head shakes (groom_stage.h). Parts: rest, shake, speed. RESULT_USAGE without
+// a file.
+Result groom_run(const BenchOptions *options, const Gpu *gpu, Error *error);

@@ -31,7 +31,9 @@ typedef struct BenchOptions {
     const char *parts;               // "motions,work"; NULL: all of the command
     const char *case_name;          // "curls_blond_sky,fur_brown_side"; a case of stress; NULL: all
     const char *ways;               // of light, "grid,dual"; NULL: those that have bounds
-    const char *render;             // flags of tractrix-render for every image; NULL: none
+    const char *render;             // flags of tractrix-render for every scene; NULL: none
+    const char *mesh;               // OBJ file of the head of grooms; NULL: none
+    int strands;                    // of a groom, spread evenly over the file; 0: all
     const char *picture, *before;   // PNG file; folder of PFM files by another version; NULL: none
     Method method;                  // algo NULL: all
     double rates[BENCH_MOST_RATES]; // steps a second

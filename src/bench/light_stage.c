@@ -1,32 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "bench/light_stage.h"
 #include "base/interrupt.h"
+#include "bench/scene_words.h"
 
 #include <stdlib.h>
-#include <string.h>
 
-enum { MOST_WORDS = 64 };
-
-static Result read_scene(LightStage *stage, const char *file, const char *const flags[3],
-                         Error *error)
-{
-    static const char usual[] = "--quiet --frames 1 --exposure 0 --tone-map none -o light.pfm";
-    char *argv[MOST_WORDS] = {"tractrix-render", (char *)file}, *rest;
-    int argc = 2;
-    if (asprintf(&stage->words, "%s %s %s %s", usual, flags[0], flags[1], flags[2]) < 0) {
-        stage->words = NULL;
-        return error_set(error, RESULT_FAILED, "no memory for flags");
-    }
-    for (char *word = strtok_r(stage->words, " ", &rest); word; word = strtok_r(NULL, " ", &rest)) {
-        if (argc == MOST_WORDS)
-            return error_set(error, RESULT_USAGE, "more than %d words of flags", MOST_WORDS);
-        argv[argc++] = word;
-    }
-    TRY(scene_from_arguments(&stage->scene, argc, argv, error));
-    return stage->scene.request == REQUEST_RUN
-               ? RESULT_OK
-               : error_set(error, RESULT_USAGE, "flags that ask for help: expected those of a run");
-}
+static const char USUAL[] = "--quiet --frames 1 --exposure 0 --tone-map none -o light.pfm";
 
 Result light_stage_create(LightStage *stage, const Gpu *gpu, const char *file,
                           const char *const flags[3], Error *error)
@@ -34,7 +13,9 @@ Result light_stage_create(LightStage *stage, const Gpu *gpu, const char *file,
     const Scene *scene = &stage->scene;
     *stage = (LightStage){0};
     gpu_timer_create(&stage->timer, false, gpu->software);
-    TRY(read_scene(stage, file, flags, error));
+    const char *const names[] = {file, NULL};
+    const char *const all[SCENE_WORDS_FLAGS] = {USUAL, flags[0], flags[1], flags[2]};
+    TRY(scene_words_read(&stage->scene, &stage->words, names, all, error));
     TRY(assets_load(&stage->assets, scene, NULL, false, error));
     const Mesh *mesh = stage->assets.has_mesh ? &stage->assets.mesh : NULL;
     outline_frame(&stage->framing, scene, stage->assets.strands, mesh);

@@ -304,6 +304,9 @@ static const struct {
      "the same for every scheme and preset; parts: straight, curls, fur, files (those named)"},
     {"light", light_run,
      "light in hair against a path tracer's, by each way to compute it: --way, --case, --picture"},
+    {"groom", groom_run,
+     "what becomes of hair files at rest and in a shake of the head: --mesh, --algo, --rates, "
+     "--strands; parts: rest, shake, speed"},
     {"shaders", run_shaders, "compiles every shader variant with warnings as errors"},
 };
 enum { COMMAND_COUNT = sizeof COMMANDS / sizeof *COMMANDS };

@@ -51,18 +51,29 @@ static Result apply(SectionParams *params, char *words, Error *error)
     return RESULT_OK;
 }
 
-Result trial_params(SectionParams *params, const Method *method, const char *before, Error *error)
+static Result apply_text(SectionParams *params, const char *text, Error *error)
 {
     char words[4096];
-    *params = (SectionParams){0};
-    if (snprintf(words, sizeof words, "%s %s", before, method->settings) >= (int)sizeof words)
+    if (snprintf(words, sizeof words, "%s", text) >= (int)sizeof words)
         return error_set(error, RESULT_USAGE, "settings: longer than %zu bytes", sizeof words);
-    TRY(params_create_section(params, error));
-    TRY(scene_apply_presets(&(Presets){.look = "plain"}, SCOPE_SECTION, params, error));
+    return apply(params, words, error);
+}
+
+Result trial_apply(SectionParams *params, const Method *method, Error *error)
+{
     TRY(set_param(params, "algo", method->algo, error));
     TRY(set_param(params, "variant", method->variant, error));
-    TRY(apply(params, words, error));
+    TRY(apply_text(params, method->settings, error));
     return solver_check(params, error);
+}
+
+Result trial_params(SectionParams *params, const Method *method, const char *before, Error *error)
+{
+    *params = (SectionParams){0};
+    TRY(params_create_section(params, error));
+    TRY(scene_apply_presets(&(Presets){.look = "plain"}, SCOPE_SECTION, params, error));
+    TRY(apply_text(params, before, error));
+    return trial_apply(params, method, error);
 }
 
 const char *trial_variant(const Method *method)

@@ -30,6 +30,9 @@ typedef struct Method {
 // bytes. The struct may be destroyed in either case.
 Result trial_params(SectionParams *params, const Method *method, const char *before, Error *error);
 
+// Gives parameters that are there already the method's algo, variant and settings. Errors as above.
+Result trial_apply(SectionParams *params, const Method *method, Error *error);
+
 // Whether a parameter is one of those that `settings` may have: a section's, of the simulation,
 // that changes how guides move.
 bool trial_takes(const ParamInfo *info);

@@ -66,6 +66,7 @@ const SolverType SOLVER_EMULATION = {
     .summary =
         "every particle pulls the strand along as tractrices, O(n^2), second order; thesis: as "
         "published, unstable without much drag",
+    .style = "position springs, --style, --style-stiffness",
     .variants = {"projected", "thesis"},
     .caution = caution,
     .most_stability = 1.6f, // as hybrid's
