@@ -4,7 +4,7 @@
 # Lost frames are found and drawn. `make check-farm` installs what the runners need.
 . tests/support/claims.sh
 program=$bin/tractrix-render
-scene="assets/gust.json --frames 7 --size 64x48"
+scene="assets/gust.json --look plain --frames 7 --size 64x48"
 same() { if diff -r "$work/one" "$1" >"$work/out" 2>"$work/err"; then good; else bad "$1 differs from one process's"; fi; }
 # farm ARGUMENT...: with the tests' program.
 farm() {

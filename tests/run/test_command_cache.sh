@@ -1,0 +1,88 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Caches, resumed runs and exported hair of tractrix-render.
+. tests/support/claims.sh
+program=$bin/tractrix-render
+hair=assets/fur.tfx
+plain="--look plain --followers 0"
+
+claim "a cache plays back what was simulated: any frames, the same pictures, in several processes at once"
+scene="assets/demo.json --look plain --followers 1 --preroll 0.1 --sdf-resolution 32 --size 48x32 --frames 12" # followers that keep out of the mesh, which a cache does not hold
+# shellcheck disable=SC2086
+{
+run 0 $scene -q --cache "$work/a.cache" -o "$work/direct/"
+run 0 $scene -q --from-cache "$work/a.cache" -o "$work/played/"
+"$program" $scene -q --from-cache "$work/a.cache" --first 6 -o "$work/farm/" 2>"$work/err" &
+pid=$!
+run 0 $scene -q --from-cache "$work/a.cache" --last 5 -o "$work/farm/"
+}
+wait $pid || bad "the other process"
+for other in played farm; do
+    if diff -r "$work/direct" "$work/$other" >"$work/err"; then good; else bad "$other differs"; fi
+done
+if [ -e "$work/a.cache.state" ]; then bad "a whole cache has a state"; else good; fi
+
+claim "a cache of another scene, or one that is damaged or cut off, is refused by one line that says where"
+# shellcheck disable=SC2086
+{
+run 3 $scene -q --from-cache "$work/a.cache" --style 0.3 -o "$work/x/"; one_line; says "sections[0].style"
+run 3 $hair -q --from-cache "$work/a.cache" --frames 2 -o "$work/x/"; one_line; says "a.cache: was simulated with"
+run 3 $scene -q --from-cache "$work/a.cache" --frames 13 -o "$work/x/"; one_line; says "no frame 12, whole ones: 0 to 11"
+run 3 $scene -q --from-cache "$work/none.cache" -o "$work/x/"; one_line; says "none.cache"
+run 3 $scene -q --from-cache "$hair" -o "$work/x/"; one_line; says "TRXCACHE"
+size=$(($(wc -c <"$work/a.cache") * 2 / 3))
+head -c $size "$work/a.cache" >"$work/cut.cache"
+run 3 $scene -q --from-cache "$work/cut.cache" -o "$work/x/"; one_line; says "whole ones: 0 to"; says "the file ends within"
+run 0 $scene -q --from-cache "$work/cut.cache" --last 6 -o "$work/whole6/"
+run 2 $scene --cache "$work/a.cache" --from-cache "$work/a.cache"; one_line
+cp "$work/a.cache" "$work/flip.cache"
+printf 'x' | dd of="$work/flip.cache" bs=1 seek=$size conv=notrunc 2>/dev/null
+run 3 $scene -q --from-cache "$work/flip.cache" -o "$work/flip/"; one_line; says "flip.cache: frame"; says "checksum"
+}
+if cmp -s "$work/whole6/frame_0006.png" "$work/direct/frame_0006.png"; then good; else bad "frame 6 differs"; fi
+
+claim "a run that was stopped goes on where it was, and only what is missing or broken is drawn"
+# shellcheck disable=SC2086
+{
+run 0 $scene -q --last 4 --cache "$work/r.cache" -o "$work/res/"
+is_file "$work/r.cache.state"
+run 0 $scene --resume --cache "$work/r.cache" -o "$work/res/"; says "5 of 12 frames are there"; says "7 frames in"
+if cmp -s "$work/a.cache" "$work/r.cache"; then good; else bad "the resumed cache differs"; fi
+rm "$work/res/frame_0003.png"
+head -c 900 "$work/direct/frame_0009.png" >"$work/res/frame_0009.png"
+run 0 $scene --resume --from-cache "$work/a.cache" -o "$work/res/"; says "10 of 12"; says "2 frames in"
+if diff -r "$work/direct" "$work/res" >"$work/err"; then good; else bad "resumed pictures differ"; fi
+rm "$work/res/frame_0011.png"
+run 0 $scene --resume -o "$work/res/"; says "1 frame in"
+if diff -r "$work/direct" "$work/res" >"$work/err"; then good; else bad "pictures drawn again differ"; fi
+head -c $size "$work/a.cache" >"$work/r.cache" # and no state: from the start
+run 0 $scene --resume --cache "$work/r.cache"; says "simulating again from the start"
+if cmp -s "$work/a.cache" "$work/r.cache"; then good; else bad "the cache made again differs"; fi
+run 3 $scene -q --resume --cache "$work/r.cache" --gravity 0,-1,0; one_line; says "gravity"
+run 2 $scene -q --resume -o "$work/v.mp4"; one_line; says "--cache"
+"$program" assets/demo.json $plain --preroll 0 --frames 5000 --cache "$work/i.cache" >"$work/out" 2>"$work/err" &
+pid=$!
+while [ ! -s "$work/i.cache" ] && kill -0 $pid 2>/dev/null; do sleep 0.05; done
+sleep 0.3; kill -INT $pid
+wait $pid
+status=$?
+}
+if [ $status = 130 ]; then good; else bad "exit status $status, expected 130"; fi
+is_file "$work/i.cache.state"
+
+claim "each frame as a hair file, which reads back"
+# shellcheck disable=SC2086
+run 0 $hair $plain --frames 3 --size 32x24 -q --export "$work/hair/fur_%03d.tfx" -o "$work/hair/"
+run 0 --check "$work/hair/fur_002.tfx"; says "TressFX 4"
+run 0 assets/curls.tfx assets/demo.tfx --frames 1 -q --export "$work/hair/both.hair"
+run 0 --check "$work/hair/both.hair"
+run 2 $hair --frames 3 -q --export "$work/hair/one.tfx"; one_line
+run 0 assets/curls.tfx assets/demo.tfx --frames 3 --export "$work/hair/x.usda" --cache "$work/hair/cache"
+run 0 assets/curls.tfx assets/demo.tfx --frames 3 -q --export "$work/hair/y.usda" --from-cache "$work/hair/cache"
+if cmp -s "$work/hair/x.usda" "$work/hair/y.usda"; then good; else bad "the USD file from a cache differs"; fi
+run 0 $hair --frames 2 --export "$work/hair/x_%d.obj"; says "--export: Wavefront lines files leave out: texture coordinates of strands"
+run 0 --check --unit m "$work/hair/x_1.obj"; says "Wavefront lines"
+run 2 $hair --frames 3 -q --resume --export "$work/hair/x.usda"; says "written in one piece"; one_line
+run 2 $hair --frames 3 -q --export "$work/hair/"; one_line
+
+finish
