@@ -25,8 +25,7 @@ static Result read_scene(GroomStage *stage, const GroomSetup *setup, Error *erro
     snprintf(rate, sizeof rate, "--fps %d --sim-rate %.9g", FPS, setup->rate);
     const char *const names[] = {setup->file, setup->mesh ? "--mesh" : NULL, setup->mesh, NULL};
     const char *const flags[SCENE_WORDS_FLAGS] = {"--quiet --followers 0 --sleep 0 -o groom/", rate,
-                                                  setup->mesh ? "--collide-mesh" : "",
-                                                  setup->flags};
+                                                  setup->flags, ""};
     TRY(scene_words_read(scene, &stage->words, names, flags, error));
     if (scene->file)
         return error_set(error, RESULT_USAGE, "%s is a scene file: expected hair", scene->file);

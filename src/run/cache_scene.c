@@ -33,11 +33,13 @@ static void keep_what_moves(json_t *object)
     for (size_t i = 0; i < sizeof DRAWN / sizeof *DRAWN; ++i) json_object_del(object, DRAWN[i]);
 }
 
-// The same for a scene and its sections.
+// The same for a scene and its sections. Without a mesh nothing collides with it.
 static void keep_values(json_t *scene)
 {
     const json_t *sections = json_object_get(scene, "sections");
     keep_what_moves(scene);
+    if (!json_object_get(scene, "mesh_checksum"))
+        json_object_set_new(scene, "collide_mesh", json_false());
     for (size_t i = 0; i < json_array_size(sections); ++i)
         keep_what_moves(json_array_get(sections, i));
 }
@@ -45,9 +47,9 @@ static void keep_values(json_t *scene)
 Result cache_scene_describe(Bytes *text, const Simulation *simulation, Error *error)
 {
     json_t *object = scene_to_json(simulation->scene);
-    keep_values(object);
     if (simulation->mesh_checksum)
         json_object_set_new(object, "mesh_checksum", json_integer(simulation->mesh_checksum));
+    keep_values(object);
     // 17 digits: key times are doubles.
     char *dump = json_dumps(object, JSON_COMPACT | JSON_SORT_KEYS | JSON_REAL_PRECISION(17));
     json_decref(object);

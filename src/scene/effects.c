@@ -12,7 +12,10 @@
         (void)scene, (void)section;                                                                \
         return holds;                                                                              \
     }
-CONDITION(has_colliders, scene->colliders.count > 0 || scene->run.collide_mesh)
+// A head may be fitted where there is no mesh.
+CONDITION(has_head, *scene->run.mesh || scene->run.scalp != SCALP_NONE)
+CONDITION(has_colliders,
+          scene->colliders.count > 0 || (scene->run.collide_mesh && has_head(scene, section)))
 CONDITION(collides, section->collide)
 CONDITION(collides_mesh, scene->run.collide_mesh)
 CONDITION(has_mesh, *scene->run.mesh)
@@ -48,10 +51,12 @@ static const struct {
     const char *why;
 } EFFECTS[] = {
     {"collide friction collision_margin", has_colliders,
-     "there are neither --colliders nor --collide-mesh"},
+     "no --colliders, --mesh or --scalp to collide with"},
     {"friction collision_margin", collides, "--no-collide"},
-    {"collide_mesh mesh_unit mesh_up mesh_color mesh_shading", has_mesh, "there is no --mesh"},
-    {"sdf_resolution sdf_cache", collides_mesh, "there is no --collide-mesh"},
+    {"collide_mesh", has_head, "there is no --mesh and no --scalp"},
+    {"mesh_unit mesh_up mesh_color mesh_shading sdf_resolution sdf_cache", has_mesh,
+     "there is no --mesh"},
+    {"sdf_resolution sdf_cache", collides_mesh, "--no-collide-mesh"},
     {"gust gust_period gust_repeat wind_spread wind_shelter", has_wind, "there is no --wind"},
     {"gust_period gust_repeat", has_gusts, "--gust is 0"},
     {"teleport_distance teleport_angle", knows_jumps, "--teleport is none"},

@@ -90,5 +90,7 @@ Result scalp_guess(Scene *scene, Assets *assets, FILE *messages, bool verbose, E
     TRY(make_mesh(&assets->mesh, &fit, error));
     assets->has_mesh = true;
     darken(scene);
+    if (!scene->run.collide_mesh) return RESULT_OK;
+    scene->run.collide_mesh = false; // shapes do it
     return add_colliders(&scene->colliders, &fit, error);
 }

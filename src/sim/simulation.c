@@ -76,14 +76,26 @@ static Result create_sections(Simulation *simulation, const Gpu *gpu, const Stra
     return RESULT_OK;
 }
 
+static bool collides(const SectionParams *params)
+{
+    return params->collide && strcmp(params->algo, "none") != 0;
+}
+
+static bool any_collides(const Scene *scene)
+{
+    for (uint32_t i = 0; i < scene->section_count; ++i)
+        if (collides(&scene->sections[i].params)) return true;
+    return false;
+}
+
 // What a cache holds is out of the mesh already; its guides' followers are not.
 static bool needs_field(const Scene *scene, const Strands *strands)
 {
     if (!*scene->run.from_cache) return true;
     for (uint32_t i = 0; i < scene->section_count; ++i) {
         const SectionParams *params = &scene->sections[i].params;
-        bool moves = strcmp(params->algo, "none") != 0;
-        if (moves && follow_plan_options(params, &strands[i], 0).per_guide > 0) return true;
+        if (collides(params) && follow_plan_options(params, &strands[i], 0).per_guide > 0)
+            return true;
     }
     return false;
 }
@@ -95,6 +107,7 @@ static Result create_field(Simulation *simulation, const Gpu *gpu, const Strands
     DistanceField *field = &simulation->field;
     uint32_t resolution = (uint32_t)run->sdf_resolution;
     if (!run->collide_mesh || !mesh || !mesh->triangle_count) return RESULT_OK;
+    if (!any_collides(simulation->scene)) return RESULT_OK;
     uint32_t sum = libdeflate_crc32(0, mesh->position, mesh->vertex_count * sizeof *mesh->position);
     simulation->mesh_checksum =
         libdeflate_crc32(sum, mesh->triangle, mesh->triangle_count * sizeof *mesh->triangle);

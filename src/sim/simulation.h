@@ -69,9 +69,9 @@ Result simulation_choose_substeps(int *substeps, const Scene *scene, const Stran
                                   Error *error);
 
 // Uploads strands[section] and makes the solvers, unless scene->run.from_cache is set: then there
-// is nothing but simulation_show. `mesh` may be NULL where the scene says nothing of collide_mesh;
-// it is not needed afterwards. `gpu`, `timer`, `scene` outlive the simulation. Errors of
-// hair_create and solver_create, prefixed with the section's file, and of
+// is nothing but simulation_show. `mesh`, which hair collides with unless the scene says otherwise,
+// may be NULL and is not needed afterwards. `gpu`, `timer`, `scene` outlive the simulation. Errors
+// of hair_create and solver_create, prefixed with the section's file, and of
 // simulation_choose_substeps.
 Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer,
                          const Scene *scene, const Strands *strands, const Mesh *mesh,

@@ -247,6 +247,8 @@ if diff -r "$work/u1" "$work/u2" >"$work/err"; then good; else bad "pictures dif
 
 claim "hair on a scalp gets a head that hides and holds it; --scalp none, -q and what is no scalp are silent"
 run 0 assets/curls.tfx --scatter none --followers 0 --frames 1 --size 48x32 -o "$work/head.png" --stats "$work/stats.json"; says "scalp: an ellipsoid 0.1"; in_file "$work/stats.json" '"sphere"'
+run 0 assets/curls.tfx --scatter none --followers 0 --frames 1 --size 48x32 --no-collide-mesh -o "$work/head.png" --stats "$work/stats.json"; says "scalp: an ellipsoid 0.1"
+if grep -q '"sphere"' "$work/stats.json"; then bad "a fitted head holds hair with --no-collide-mesh"; else good; fi
 run 0 assets/curls.tfx --scatter none --followers 0 --frames 1 --size 48x32 --scalp none -o "$work/bare.png"; if grep -q "scalp" "$work/err"; then bad "said something"; else good; fi
 if cmp -s "$work/head.png" "$work/bare.png"; then bad "the same picture"; else good; fi
 run 0 assets/fur.tfx --frames 1 --size 16x16 --scatter none -v -o "$work/fur.png"; says "scalp: none: the roots are not on top"

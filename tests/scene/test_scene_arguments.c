@@ -61,8 +61,8 @@ static const char *find_condition(const ParamInfo *info)
         const char *names, *condition;
     } CONDITIONS[] = {
         {" collide friction collision_margin ", "--colliders ground:0"},
-        {" collide_mesh mesh_unit mesh_up mesh_color mesh_shading ", "--mesh /m.obj"},
-        {" sdf_resolution sdf_cache ", "--mesh /m.obj --collide-mesh"},
+        {" collide_mesh mesh_unit mesh_up mesh_color mesh_shading sdf_resolution sdf_cache ",
+         "--mesh /m.obj"},
         {" gust gust_period gust_repeat wind_spread wind_shelter ", "--wind 1,0,0"},
         {" export_followers ", "--export x.usda"},
         {" turn_lights ease_in ease_out ", "--turntable 360 --frames 120"},
@@ -352,10 +352,14 @@ static void flags_without_effect_are_refused(void **state)
         {"a.tfx -o x/ --rope-iterations 5",
          "--rope-iterations: --algo split has no such parameter"},
         {"a.tfx b.tfx -o x/ --algo chain --rope-damping 0", "--rope-damping: --algo chain has no"},
-        {"a.tfx -o x/ --collide", "--collide: it has no effect: there are neither --colliders"},
+        {"a.tfx -o x/ --collide --scalp none", "--collide: it has no effect: no --colliders"},
+        {"a.tfx -o x/ --mesh m.obj --no-collide-mesh --friction 1", "--friction: it has no effect"},
+        {"a.tfx -o x/ --no-collide-mesh --friction 1", "--mesh or --scalp to collide with"},
         {"a.tfx -o x/ --friction 1 --colliders ground:0 --no-collide", "effect: --no-collide"},
-        {"a.tfx -o x/ --collide-mesh", "--collide-mesh: it has no effect: there is no --mesh"},
-        {"a.tfx -o x/ --sdf-resolution 99 --mesh m.obj", "there is no --collide-mesh"},
+        {"a.tfx -o x/ --collide-mesh --scalp none",
+         "--collide-mesh: it has no effect: there is no"},
+        {"a.tfx -o x/ --sdf-resolution 99", "there is no --mesh"},
+        {"a.tfx -o x/ --sdf-resolution 99 --mesh m.obj --no-collide-mesh", "--no-collide-mesh"},
         {"a.tfx -o x/ --gust 1", "--gust: it has no effect: there is no --wind"},
         {"a.tfx -o x/ --wind 1,0,0 --gust 0 --gust-period 3", "--gust is 0"},
         {"a.tfx -o x/ --shadow none --shadow-size 99",
@@ -419,7 +423,7 @@ static void keys_without_effect_are_a_warning_of_one_line(void **state)
     assert_int_equal(read_scene(state, &scene, TEXT, &error), RESULT_OK);
     effects_warn(&scene, stream);
     fclose(stream);
-    assert_non_null(strstr(said, "scene.json: friction: it has no effect: there are neither"));
+    assert_non_null(strstr(said, "scene.json: friction: it has no effect: no --colliders"));
     assert_non_null(strstr(said, "scene.json: shadow_size: it has no effect: --shadow is none\n"));
     assert_non_null(strstr(said, "scene.json: sections[1].roughness: it has no effect: only "));
     size_t lines = 0;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // From steps to frames: the clocks, frames between steps, the warm-up, sub-steps by themselves.
+#include "mesh/scalp.h"
+#include "support/hair_fixture.h"
 #include "support/simulation_fixture.h"
 
 #include <math.h>
@@ -249,6 +251,35 @@ static void a_strand_of_n_has_the_stability_number_of_its_links(void **state)
     strands_destroy(&strands);
 }
 
+// Spacing of the field of distances that the simulation makes of a mesh; 0: it makes none.
+static float spacing_of(const char *algo, bool mesh, bool section)
+{
+    SimulationFixture fixture;
+    Mesh ball;
+    Error error;
+    simulation_fixture_create(&fixture, algo, "");
+    fixture.scene.run.sdf_cache = false;
+    if (!mesh) fixture.scene.run.collide_mesh = false;
+    if (!section) fixture.scene.sections[0].params.collide = false;
+    assert_int_equal(scalp_make_mesh(&ball, SCALP_SPHERE, 8, &error), RESULT_OK);
+    if (simulation_create(&fixture.simulation, fixture_gpu(), &fixture.timer, &fixture.scene,
+                          &fixture.strands, &ball, &error))
+        fail_msg("%s", error.text);
+    float spacing = fixture.simulation.field.spacing;
+    mesh_destroy(&ball);
+    simulation_fixture_destroy(&fixture);
+    return spacing;
+}
+
+static void a_mesh_becomes_a_field_only_where_hair_collides_with_it(void **state)
+{
+    (void)state;
+    assert_true(spacing_of("split", true, true) > 0);
+    assert_true(spacing_of("split", false, true) == 0);
+    assert_true(spacing_of("split", true, false) == 0);
+    assert_true(spacing_of("none", true, true) == 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -260,6 +291,7 @@ int main(void)
         cmocka_unit_test(at_speed_0_everything_stands),
         cmocka_unit_test(the_warm_up_is_simulated_with_the_head_at_rest),
         cmocka_unit_test(automatic_substeps_are_the_fewest_stable_ones),
+        cmocka_unit_test(a_mesh_becomes_a_field_only_where_hair_collides_with_it),
         cmocka_unit_test(a_strand_of_n_has_the_stability_number_of_its_links),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
