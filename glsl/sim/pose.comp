@@ -5,6 +5,9 @@
 //   MIX 1: the physical strand alone
 //   MIX 2: nearer to the physical strand
 //   MIX 3: nearer to the style
+// HANGS 1: at rest the physical strand hangs straight down, along `hanging`, and the style is what
+// is drawn. So the style's segment is turned by the rotation that takes `hanging` to what is a
+// share of the way from there to the physical segment.
 #include "sim/pose_params.h"
 #include "common/hair_address.glsl"
 #include "common/rigid.glsl"
@@ -46,6 +49,22 @@ vec3 turn(vec3 a, vec3 b, Turn by)
     return ss > 1e-12 ? turned : a;
 }
 
+// The same, but that a result which would flip to the other side as b passes -a fades to a there:
+// |a + b|^2 = 2 + 2 cos, 0.27 at 150 degrees.
+vec3 turn_fading(vec3 a, vec3 b, Turn by)
+{
+    vec3 kept = mix(a, turn(a, b, by), smoothstep(0.0, 0.27, 2.0 + 2.0 * dot(a, b)));
+    return kept * inversesqrt(max(dot(kept, kept), 1e-12));
+}
+
+// x turned by the smallest rotation from the unit vector a to the unit vector b.
+vec3 turn_along(vec3 a, vec3 b, vec3 x)
+{
+    vec3 k = cross(a, b);
+    float c = dot(a, b);
+    return c * x + cross(k, x) + k * (dot(k, x) / max(1.0 + c, 1e-6));
+}
+
 void main()
 {
     int s = int(gl_GlobalInvocationID.x), n = int(pose_params.vertex_count);
@@ -65,7 +84,15 @@ void main()
 #else
         vec4 segment = texelFetch(rest, a);
         vec3 d = rotate(rotation, segment.xyz);
+#if HANGS && MIX >= 2
+        vec3 hanging = pose_params.hanging.xyz, physical = texelFetch(segments, a).xyz;
 #if MIX == 2
+        vec3 swung = turn_fading(physical, hanging, by);
+#else
+        vec3 swung = turn_fading(hanging, physical, by);
+#endif
+        d = j > int(pose_params.lead) ? turn_along(hanging, swung, d) : d;
+#elif MIX == 2
         d = turn(texelFetch(segments, a).xyz, d, by);
 #elif MIX == 3
         d = turn(d, texelFetch(segments, a).xyz, by);

@@ -53,6 +53,7 @@ typedef enum ParamKind {
 #define CHOICES_SCALP(X) X(SCALP_AUTO, "auto") X(SCALP_NONE, "none")
 #define CHOICES_FOLLOW(X)                                                                          \
     X(FOLLOW_OFFSET, "offset") X(FOLLOW_INTERPOLATE, "interpolate") X(FOLLOW_AUTO, "auto")
+#define CHOICES_REST(X) X(REST_GROOM, "groom") X(REST_HANGING, "hanging")
 #define CHOICES_TELEPORT(X)                                                                        \
     X(TELEPORT_CARRY, "carry") X(TELEPORT_LIMIT, "limit") X(TELEPORT_NONE, "none")
 #define CHOICES_BACKEND(X) X(BACKEND_AUTO, "auto") X(BACKEND_EGL, "egl") X(BACKEND_OSMESA, "osmesa")
@@ -83,6 +84,7 @@ typedef enum ParamKind {
 typedef enum UpAxis { CHOICES_UP(CHOICE_VALUE) } UpAxis;
 typedef enum ScalpRule { CHOICES_SCALP(CHOICE_VALUE) } ScalpRule;
 typedef enum FollowMode { CHOICES_FOLLOW(CHOICE_VALUE) } FollowMode;
+typedef enum RestRule { CHOICES_REST(CHOICE_VALUE) } RestRule;
 typedef enum TeleportRule { CHOICES_TELEPORT(CHOICE_VALUE) } TeleportRule;
 typedef enum Backend { CHOICES_BACKEND(CHOICE_VALUE) } Backend;
 typedef enum Quality { CHOICES_QUALITY(CHOICE_VALUE) } Quality;

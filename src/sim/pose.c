@@ -3,6 +3,8 @@
 
 #include "glsl/sim/pose_params.h"
 
+#include <cglm/cglm.h>
+
 #include <math.h>
 #include <string.h>
 
@@ -46,12 +48,14 @@ static void interpolate(double (*function)(double, double), double v, float coef
     for (int i = 0; i < TERMS; ++i) coefficients[i] = (float)c[i];
 }
 
-Result pose_create(Pose *pose, const Gpu *gpu, float style, Error *error)
+Result pose_create(Pose *pose, const Gpu *gpu, float style, const float hanging[3], Error *error)
 {
+    memcpy(pose->hanging, hanging, sizeof pose->hanging);
+    bool hangs = hanging[0] != 0 || hanging[1] != 0 || hanging[2] != 0;
     double v = 2 * fmin((double)style, 1 - (double)style);
     interpolate(turn_cos, v, pose->turn_cos);
     interpolate(turn_sin, v, pose->turn_sin);
-    const ShaderDefine defines[] = {{"MIX", (int)mix_of_style(style)}, {0}};
+    const ShaderDefine defines[] = {{"MIX", (int)mix_of_style(style)}, {"HANGS", hangs}, {0}};
     return step_pass_create(&pose->pass, gpu, "sim/pose.comp", defines, error);
 }
 
@@ -60,9 +64,12 @@ void pose_destroy(Pose *pose)
     step_pass_destroy(&pose->pass);
 }
 
-void pose_write(Pose *pose, const HairBatch *batch, const GpuBuffer *segments, const HeadPose *head)
+void pose_write(Pose *pose, const HairBatch *batch, const GpuBuffer *segments, uint32_t lead,
+                const HeadPose *head)
 {
-    PoseParams params = {.strand_count = batch->strand_count, .vertex_count = batch->vertex_count};
+    PoseParams params = {
+        .strand_count = batch->strand_count, .vertex_count = batch->vertex_count, .lead = lead};
+    glm_quat_rotatev((float *)head->rotation, pose->hanging, params.hanging);
     head_put(params.head_rotation, params.head_translation, head);
     memcpy(params.turn_cos, pose->turn_cos, sizeof pose->turn_cos);
     memcpy(params.turn_sin, pose->turn_sin, sizeof pose->turn_sin);

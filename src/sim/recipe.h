@@ -19,6 +19,9 @@ typedef struct SolverSetup {
     const Colliders *colliders; // shapes that hair must not cross; NULL: none
     const DistanceField *field; // a mesh that it must not cross; NULL: none
     bool sheltered;             // SolverStep.shelter counts
+    // m/s^2, in the world: under which the groom is at rest, with the head at `head`; 0 0 0: hair
+    // falls from there (--rest hanging).
+    float rest_gravity[3];
 } SolverSetup;
 
 // Events so far, for the statistics.
@@ -36,7 +39,8 @@ typedef enum SolverStateKind {
     // pose costs nothing. glsl/sim/particles.glsl has what the shader is given.
     SOLVER_PARTICLES,
     // Unit directions with rest lengths (vec4 a particle, j = 0 unused), and tips (two vec4 a
-    // strand: position, times limited; velocity). The pose mixes the style into what is drawn.
+    // strand: position, times limited; velocity). The pose mixes the style into what is drawn
+    // (pose.h). With a rest gravity they start hanging straight down.
     SOLVER_SEGMENTS,
 } SolverStateKind;
 

@@ -34,20 +34,29 @@ static void write_followers(SimulationSection *section, const HeadPose *head)
     collision_push_drawn(&section->follow_collision, head);
 }
 
+// Gravity at time 0.
+static void find_rest_gravity(float gravity[3], const Scene *scene)
+{
+    Forces forces;
+    forces_evaluate(&forces, scene, 0);
+    memcpy(gravity, forces.gravity, sizeof forces.gravity);
+}
+
 static Result create_section(Simulation *simulation, uint32_t i, const Gpu *gpu,
                              const Strands *strands, Error *error)
 {
     SimulationSection *section = &simulation->sections[i];
     const SectionParams *params = &simulation->scene->sections[i].params;
     const RunParams *run = &simulation->scene->run;
-    const SolverSetup setup = {.gpu = gpu,
-                               .timer = simulation->timer,
-                               .hair = &section->hair,
-                               .params = params,
-                               .colliders = &simulation->scene->colliders,
-                               .field = simulation->field.spacing > 0 ? &simulation->field : NULL,
-                               .sheltered = run->wind_shelter > 0,
-                               .head = &simulation->head};
+    SolverSetup setup = {.gpu = gpu,
+                         .timer = simulation->timer,
+                         .hair = &section->hair,
+                         .params = params,
+                         .colliders = &simulation->scene->colliders,
+                         .field = simulation->field.spacing > 0 ? &simulation->field : NULL,
+                         .sheltered = run->wind_shelter > 0,
+                         .head = &simulation->head};
+    if (params->rest == REST_GROOM) find_rest_gravity(setup.rest_gravity, simulation->scene);
     TRY(hair_create(&section->hair, strands, 0, &gpu->limits, error));
     TRY(follow_create(&section->follow, gpu, simulation->timer, &section->hair, strands, params,
                       run->seed, error));

@@ -90,7 +90,8 @@ struct SolverState {
     GpuBuffer uniforms, own_uniforms;
     void *own; // the solver's own block
     StepPrograms programs;
-    SolverBatch *batches; // one for each of the hair
+    SolverBatch *batches;  // one for each of the hair
+    float rest_gravity[3]; // m/s^2, in the head's frame: what the groom holds; 0 0 0: nothing
     Pose pose;           // of segments; else of the style: particles start so, static hair stays so
     Collision collision; // of the state
     Collision drawn;     // of what is drawn, where the state is another
@@ -156,22 +157,42 @@ static Result build_programs(SolverState *state, const SolverSetup *setup, Error
 
 typedef float Float4[4];
 
-// The strand's texels of `rest` become directions in the world; the tip is at their end.
-static void place_strand(const HairBatch *hair, uint32_t slot, const HeadPose *head, Float4 *rest,
-                         Float4 tip)
+static bool is_balanced(const SolverState *state)
 {
+    return glm_vec3_norm2((float *)state->rest_gravity) > 0;
+}
+
+// The strand's texels of `rest` become directions in the world; the tip is at their end. Segments
+// behind those that the head carries hang along `hanging` (head's frame) where that is not 0.
+static void place_strand(const HairBatch *hair, uint32_t slot, const HeadPose *head, uint32_t lead,
+                         const float hanging[3], Float4 *rest, Float4 tip)
+{
+    bool hangs = glm_vec3_norm2((float *)hanging) > 0;
     for (uint32_t j = 0; j < hair->vertex_count; ++j) {
         float *at = rest[hair_address(hair, slot, j)];
+        if (hangs && j > lead) glm_vec3_copy((float *)hanging, at);
         if (head) glm_quat_rotatev((float *)head->rotation, at, at);
         if (head && j == 0) glm_vec3_add((float *)head->translation, at, at);
         for (int k = 0; k < 3; ++k) tip[k] += j == 0 ? at[k] : at[3] * at[k];
     }
 }
 
-// Segments and tips at rest in the style where the head is.
-static Result create_segments(SolverBatch *batch, const HairBatch *hair, const SolverSetup *setup,
+// Where a strand at rest hangs: unit vector in the head's frame; 0 0 0 where it starts in the
+// style.
+static void find_hanging(const SolverState *state, vec3 hanging)
+{
+    glm_vec3_zero(hanging);
+    if (is_balanced(state)) glm_vec3_normalize_to((float *)state->rest_gravity, hanging);
+}
+
+// Segments and tips at rest where the head is.
+static Result create_segments(SolverState *state, uint32_t i, const SolverSetup *setup,
                               Error *error)
 {
+    SolverBatch *batch = &state->batches[i];
+    const HairBatch *hair = &state->hair->batches[i];
+    vec3 hanging;
+    find_hanging(state, hanging);
     const GpuLimits *limits = &setup->gpu->limits;
     uint32_t slots = hair_slots(hair);
     Float4 *segments = gpu_buffer_read(&hair->rest),
@@ -180,7 +201,8 @@ static Result create_segments(SolverBatch *batch, const HairBatch *hair, const S
     if (!segments || !tips)
         result = error_set(error, RESULT_FAILED, "no memory for %u strands", slots);
     for (uint32_t slot = 0; slot < slots && result == RESULT_OK; ++slot)
-        place_strand(hair, slot, setup->head, segments, tips[2 * slot]);
+        place_strand(hair, slot, setup->head, state->programs.leads[i], hanging, segments,
+                     tips[2 * slot]);
     THEN(result, gpu_buffer_create(&batch->state, limits, "segments", hair->rest.size, segments,
                                    GL_RGBA32F, error));
     THEN(result, gpu_buffer_create(&batch->tips, limits, "tips",
@@ -197,7 +219,7 @@ static Result create_batch(SolverState *state, uint32_t i, const SolverSetup *se
     SolverBatch *batch = &state->batches[i];
     uint32_t scratch = state->recipe->scratch;
     assert(scratch <= HAIR_MOST_SCRATCH);
-    if (has_segments(state)) return create_segments(batch, hair, setup, error);
+    if (has_segments(state)) return create_segments(state, i, setup, error);
     TRY(gpu_buffer_create(&batch->state, limits, "velocities", hair->rest.size, NULL, GL_RGBA32F,
                           error));
     gpu_buffer_clear(&batch->state, 0);
@@ -206,11 +228,23 @@ static Result create_batch(SolverState *state, uint32_t i, const SolverSetup *se
                              hair->rest.size * scratch, NULL, 0, error);
 }
 
+static void set_rest_gravity(SolverState *state, const SolverType *type, const SolverSetup *setup)
+{
+    versor inverse = {0, 0, 0, 1};
+    const SectionParams *params = setup->params;
+    if (!(params->style > 0) || (type->published && !strcmp(type->published, params->variant)))
+        return;
+    if (setup->head) glm_quat_conjugate((float *)setup->head->rotation, inverse);
+    glm_quat_rotatev(inverse, (float *)setup->rest_gravity, state->rest_gravity);
+}
+
 static Result build(SolverState *state, const SolverSetup *setup, Error *error)
 {
     const SolverRecipe *recipe = state->recipe;
     bool segments = has_segments(state);
-    TRY(pose_create(&state->pose, setup->gpu, segments ? setup->params->style : 1, error));
+    vec3 hanging;
+    find_hanging(state, hanging);
+    TRY(pose_create(&state->pose, setup->gpu, segments ? setup->params->style : 1, hanging, error));
     if (!recipe) return RESULT_OK;
     state->batches = calloc(state->hair->batch_count + 1, sizeof *state->batches);
     state->own = calloc(1, recipe->params_size + 1);
@@ -218,8 +252,10 @@ static Result build(SolverState *state, const SolverSetup *setup, Error *error)
         return error_set(error, RESULT_FAILED, "no memory for a solver");
     TRY(build_programs(state, setup, error));
     uint32_t carried = setup->params->clamped > 1 ? 2 : recipe->carried;
-    TRY(collision_create(&state->collision, setup,
-                         segments ? COLLISION_SEGMENTS : COLLISION_PARTICLES, carried, error));
+    // What hangs through the head to let the groom swing must not collide; what is drawn does.
+    if (!segments || !is_balanced(state))
+        TRY(collision_create(&state->collision, setup,
+                             segments ? COLLISION_SEGMENTS : COLLISION_PARTICLES, carried, error));
     if (segments) TRY(collision_create(&state->drawn, setup, COLLISION_DRAWN, carried, error));
     for (uint32_t i = 0; i < state->hair->batch_count; ++i)
         TRY(create_batch(state, i, setup, error));
@@ -241,6 +277,7 @@ Result solver_create(Solver *solver, const SolverSetup *setup, Error *error)
     state->hair = setup->hair;
     state->params = setup->params;
     state->timer = setup->timer;
+    set_rest_gravity(state, type, setup);
     Result result = build(state, setup, error);
     if (result == RESULT_OK)
         *solver = (Solver){type, state};
@@ -276,7 +313,8 @@ static void write_pose(SolverState *state, const HeadPose *head)
 {
     for (uint32_t i = 0; i < state->hair->batch_count; ++i)
         pose_write(&state->pose, &state->hair->batches[i],
-                   has_segments(state) ? &state->batches[i].state : NULL, head);
+                   has_segments(state) ? &state->batches[i].state : NULL,
+                   has_segments(state) ? state->programs.leads[i] : 0, head);
 }
 
 void solver_pose(const Solver *solver, const HeadPose *head)
@@ -311,11 +349,25 @@ static void dispatch(SolverState *state, uint32_t i, StepParams *uniforms)
     step_programs_dispatch(&state->programs, i, hair->strand_count);
 }
 
+// The groom is at rest under its rest gravity, in which the file's author has seen it: whatever in
+// hair held it then still does, and turns with the head. So particles feel what gravity differs
+// from that. (For springs of stiffness k towards the style it is the same as to move their ends by
+// -g/k: Twigg, Kacic-Alesic: Optimization for Sag-Free Simulations, SCA 2011.) Strands of segments
+// have it in their pose.
+static void hold_groom(const SolverState *state, StepParams *uniforms)
+{
+    vec3 held;
+    if (!has_particles(state)) return;
+    glm_quat_rotatev(uniforms->head_rotation, (float *)state->rest_gravity, held);
+    glm_vec3_sub(uniforms->gravity, held, uniforms->gravity);
+}
+
 // One of `count` equal parts of a step.
 static void step_part(SolverState *state, const SolverStep *step, int part, int count)
 {
     const SolverRecipe *recipe = state->recipe;
     StepParams uniforms = step_uniforms(step, state->params);
+    hold_groom(state, &uniforms);
     if (recipe->fill) {
         memset(state->own, 0, recipe->params_size);
         recipe->fill(state->own, &uniforms, step, state->params);

@@ -35,6 +35,7 @@ struct SolverType {
     // Greatest stability number of a step (simulation_stability) at which it is calm, for
     // --substeps auto; 0: any.
     float most_stability;
+    const char *published; // the variant that stays as published, without --rest; may be NULL
     const char *variants[SOLVER_MAX_VARIANTS]; // words of --variant, the default first; NULL ends
     // A variant's, or one for all; none: it steps nothing, hair is carried stiff in its style.
     const struct SolverRecipe *recipes[SOLVER_MAX_VARIANTS];

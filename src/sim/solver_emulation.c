@@ -70,5 +70,6 @@ const SolverType SOLVER_EMULATION = {
     .variants = {"projected", "thesis"},
     .caution = caution,
     .most_stability = 1.6f, // as hybrid's
+    .published = "thesis",
     .recipes = {&RECIPE},
 };

@@ -44,5 +44,6 @@ const SolverType SOLVER_SPLIT = {
     .lengths = "exact",
     .style = "mixed into what is drawn, --style",
     .variants = {"ball", "dragged", "thesis"},
+    .published = "thesis",
     .recipes = {&RECIPE},
 };

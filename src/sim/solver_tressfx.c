@@ -127,5 +127,6 @@ const SolverType SOLVER_TRESSFX = {
     .lengths = "exact; tressfx4: stretch",
     .style = "local and global shape, --style, its own flags",
     .variants = {"steady", "tressfx4"},
+    .published = "tressfx4",
     .recipes = {&RECIPE},
 };
