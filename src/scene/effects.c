@@ -42,6 +42,7 @@ CONDITION(shows_color, section->albedo.automatic && section->melanin.automatic)
 CONDITION(shows_albedo, section->melanin.automatic)
 CONDITION(scatters, scene->run.shadow == SHADOW_DOM)
 CONDITION(has_grid, scene->run.scatter != SCATTER_NONE)
+CONDITION(has_style, section->style > 0)
 CONDITION(is_smooth, section->smooth > 1)
 
 // Each parameter's condition, and why it has no effect where that does not hold.
@@ -57,6 +58,7 @@ static const struct {
     {"mesh_unit mesh_up mesh_color mesh_shading sdf_resolution sdf_cache", has_mesh,
      "there is no --mesh"},
     {"sdf_resolution sdf_cache", collides_mesh, "--no-collide-mesh"},
+    {"rest", has_style, "--style is 0"},
     {"gust gust_period gust_repeat wind_spread wind_shelter", has_wind, "there is no --wind"},
     {"gust_period gust_repeat", has_gusts, "--gust is 0"},
     {"teleport_distance teleport_angle", knows_jumps, "--teleport is none"},

@@ -31,6 +31,7 @@ static void create_scene(World *world, const char *algo, float drag, float toler
     assert_int_equal(params_parse(params_find("algo"), &params, algo, NULL), RESULT_OK);
     params.drag = drag;
     params.sleep = tolerance;
+    params.rest = REST_HANGING; // what falls comes to rest after a while
     assert_int_equal(scene_add_section(&world->scene, "waves", &params, NULL), RESULT_OK);
     params_destroy_section(&params);
 }
