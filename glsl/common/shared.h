@@ -32,6 +32,7 @@ typedef uint uvec4[4] __attribute__((aligned(16)));
 #define BIND_SCRATCH        3 // a solver's scratch memory
 #define BIND_CONTACTS       4 // collisions: vec4 a particle
 #define BIND_CONTACT_COUNTS 5 // uvec4 a strand
+#define BIND_CLEARANCE_OUT  6 // float a particle
 
 // Buffer textures.
 #define BIND_POSITION        0 // vec4 a particle
@@ -41,3 +42,4 @@ typedef uint uvec4[4] __attribute__((aligned(16)));
 #define BIND_COLLIDERS       4 // shapes that hair must not cross
 #define BIND_FIELD           5 // distances to a mesh
 #define BIND_CONTACTS_BEFORE 6
+#define BIND_CLEARANCE       7 // float a particle: how far the groom is from colliders

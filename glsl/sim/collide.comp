@@ -19,11 +19,15 @@
 // strands that lie on a sphere flutter for ever.)
 //
 // Roots may lie inside. A root that does stays there, and the distance that is needed grows with
-// the arc length from the root.
+// the arc length from the root. A groom that is at rest (CLEARANCE 1) keeps what is nearer to a
+// collider than the margin: a particle needs the margin, or the distance that it has in the groom
+// where that is less (its clearance), inside as well as outside. So contacts at rest do not push.
 //
 // MODE 0: positions and velocities
 // MODE 1: unit directions and the tip (split)
 // MODE 2: positions that are drawn, neither velocity nor friction
+// MODE 3: pushes nothing: finds the clearances of positions in the head's frame, once
+// CLEARANCE 1: particles have clearances; MODE 0 and 2
 // CONES: how many cones there are, or 0: any number
 // FIELD 1: one more collider, a mesh (distance_field.glsl)
 #include "sim/collide_params.h"
@@ -37,6 +41,7 @@
 #define PARTICLES 0
 #define SEGMENTS  1
 #define DRAWN     2
+#define FINDING   3
 
 layout(local_size_x = GROUP_SIZE) in;
 #if MODE == SEGMENTS
@@ -46,13 +51,21 @@ layout(std430, binding = BIND_STATE_OUT) buffer Segments { vec4 segments[]; };
 layout(std430, binding = BIND_TIPS) buffer Tips { vec4 tips[]; };
 #else
 layout(binding = BIND_POSITION) uniform samplerBuffer position_before;
+#endif
+#if MODE == PARTICLES || MODE == DRAWN
 layout(std430, binding = BIND_POSITION_OUT) buffer Positions { vec4 positions[]; };
+#endif
+#if MODE == FINDING
+layout(std430, binding = BIND_CLEARANCE_OUT) writeonly buffer Clearances { float clearances[]; };
+#endif
+#if CLEARANCE
+layout(binding = BIND_CLEARANCE) uniform samplerBuffer clearances;
 #endif
 #if MODE == PARTICLES
 layout(binding = BIND_STATE) uniform samplerBuffer velocity_before;
 layout(std430, binding = BIND_STATE_OUT) buffer Velocities { vec4 velocities[]; };
 #endif
-#if MODE != DRAWN
+#if MODE == PARTICLES || MODE == SEGMENTS
 layout(binding = BIND_REST) uniform samplerBuffer rest;
 // A particle: where it was at the end of step w. In the root's place: split's tip.
 layout(std430, binding = BIND_CONTACTS) writeonly buffer Contacts { vec4 contacts[]; };
@@ -70,6 +83,25 @@ const float LEAVING = 0.5;
 int n;
 float margin, friction;
 
+#if MODE == FINDING
+// Strands take this much (of the longest one's length) less than they have, or rounding and what a
+// solver leaves of its steps would be contacts.
+const float SLACK = 1e-4;
+
+void main()
+{
+    int s = int(gl_GlobalInvocationID.x);
+    n = int(collide_params.vertex_count);
+    if (s >= int(collide_params.strand_count)) return;
+    open_cones();
+    for (int j = 0; j < n; ++j) {
+        int a = particle_address(s, j, n);
+        vec3 p = rotate(collide_params.head_rotation, texelFetch(position_before, a).xyz) +
+                 collide_params.head_translation.xyz;
+        clearances[a] = nearest_surface(p).distance - SLACK * collide_params.longest;
+    }
+}
+#else
 vec3 particle_before(int address, vec3 from)
 {
 #if MODE == SEGMENTS
@@ -83,6 +115,16 @@ vec3 particle_before(int address, vec3 from)
 // How far a particle is allowed to be deeper than the margin, arc m behind a root that lies
 // `inside` deep.
 float allowed(float inside, float arc) { return max(inside - LEAVING * arc, 0.0); }
+
+// The distance that a particle should have, arc m behind a root that lies `inside` deep.
+float needed(int address, float inside, float arc)
+{
+#if CLEARANCE
+    return min(margin, texelFetch(clearances, address).x);
+#else
+    return margin - allowed(inside, arc);
+#endif
+}
 
 vec3 normalise_or(vec3 v, vec3 otherwise)
 {
@@ -134,21 +176,23 @@ struct Strand {
         inside = max(inside, own);                                                                 \
         int last = at_root < margin + 2.0 * strand.longest ? n : 1;                                \
         for (int j = 1; j < last; ++j) {                                                           \
-            p = particle_before(strand.first + j * STRAND_TILE, p);                                \
-            deepest = max(deepest, margin - DISTANCE - allowed(own, float(j) * spacing));          \
+            int a = strand.first + j * STRAND_TILE;                                                \
+            p = particle_before(a, p);                                                             \
+            deepest = max(deepest, needed(a, own, float(j) * spacing) - DISTANCE);                 \
         }                                                                                          \
         p = tip;                                                                                   \
-        deepest = max(deepest, margin - DISTANCE - allowed(own, strand.longest));                  \
+        deepest = max(deepest, needed(last_address, own, strand.longest) - DISTANCE);              \
     }
 
 // Whether the strand touches anything. `inside`: how deep its root lies.
 bool touches(Strand strand, out float inside)
 {
     float deepest = -1.0, spacing = strand.longest / float(n - 1);
+    int last_address = strand.first + (n - 1) * STRAND_TILE;
 #if MODE == SEGMENTS
     vec3 tip = tips[2 * strand.number].xyz;
 #else
-    vec3 tip = texelFetch(position_before, strand.first + (n - 1) * STRAND_TILE).xyz;
+    vec3 tip = texelFetch(position_before, last_address).xyz;
 #endif
     inside = 0.0;
     int group = 1;
@@ -220,7 +264,7 @@ void walk(Strand strand, float inside, bool touched)
             at = p + l * normalise_or(x - p, link / l);
         }
         arc += l;
-        float need = j < int(collide_params.carried) ? -1e30 : margin - allowed(inside, arc);
+        float need = j < int(collide_params.carried) ? -1e30 : needed(a, inside, arc);
         push_out(at, v, p, l, need, a, tally);
 #if MODE == SEGMENTS
         segments[a] =
@@ -281,3 +325,4 @@ void main()
     bool touched = touches(strand, inside);
     walk(strand, inside, touched);
 }
+#endif

@@ -27,6 +27,9 @@ static int count_kind(const Colliders *colliders, ColliderKind kind)
 
 void collision_destroy(Collision *collision)
 {
+    for (uint32_t i = 0; collision->clearances && i < collision->hair->batch_count; ++i)
+        gpu_buffer_destroy(&collision->clearances[i]);
+    free(collision->clearances);
     for (uint32_t i = 0; collision->batches && i < collision->hair->batch_count; ++i) {
         gpu_buffer_destroy(&collision->batches[i].contacts);
         gpu_buffer_destroy(&collision->batches[i].counts);
@@ -71,6 +74,53 @@ static Result create_batches(Collision *collision, const GpuLimits *limits, Erro
     return RESULT_OK;
 }
 
+// The pass for one of the modes.
+static Result create_pass(Collision *collision, const Gpu *gpu, CollisionMode mode, Error *error)
+{
+    int cones = 0;
+    const Colliders *colliders = collision->colliders;
+#define ADD_CONE(kind, name, numbers, frame) cones += count_kind(colliders, COLLIDER_##kind);
+    COLLIDERS(ADD_CONE, COLLIDER_NONE)
+#define HAS(kind, name, numbers, frame) {"HAS_" #kind, count_kind(colliders, COLLIDER_##kind) > 0},
+    const ShaderDefine defines[] = {
+        {"MODE", (int)mode},
+        {"CLEARANCE", mode != COLLISION_FINDING && collision->clearances},
+        {"CONES", cones <= MOST_IN_REGISTERS ? cones : 0},
+        {"FIELD", collision->field != NULL},
+        COLLIDERS(COLLIDER_NONE, HAS){0}};
+    return step_pass_create(&collision->pass, gpu, "sim/collide.comp", defines, error);
+}
+
+// As far as particles are from the colliders at time 0, in the groom.
+static Result find_clearances(Collision *collision, const SolverSetup *setup, Error *error)
+{
+    static const HeadPose origin = {.rotation = {0, 0, 0, 1}};
+    enum { LARGEST = 0x7f7fffff }; // of floats, as bits
+    const Hair *hair = collision->hair;
+    const HeadPose *head = setup->head ? setup->head : &origin;
+    const SolverStep step = {.dt = 1, .head_old = *head, .head = *head};
+    if (!setup->keeps_groom || collision->mode == COLLISION_SEGMENTS) return RESULT_OK;
+    TRY(create_pass(collision, setup->gpu, COLLISION_FINDING, error));
+    collision->clearances = calloc(hair->batch_count + (size_t)1, sizeof *collision->clearances);
+    if (!collision->clearances)
+        return error_set(error, RESULT_FAILED, "no memory for clearances of colliders");
+    bool reached = collision_begin(collision, &step, 1, 1);
+    for (uint32_t i = 0; i < hair->batch_count; ++i) {
+        GpuBuffer *buffer = &collision->clearances[i];
+        int64_t slots = hair_slots(&hair->batches[i]);
+        TRY(gpu_buffer_create(buffer, &setup->gpu->limits, "clearances",
+                              slots * hair->batches[i].vertex_count * (int64_t)sizeof(float), NULL,
+                              GL_R32F, error));
+        gpu_buffer_bind_storage(buffer, BIND_CLEARANCE_OUT);
+        if (reached)
+            collision_push(collision, i, NULL, NULL);
+        else
+            gpu_buffer_clear(buffer, LARGEST);
+    }
+    step_pass_destroy(&collision->pass);
+    return RESULT_OK;
+}
+
 Result collision_create(Collision *collision, const SolverSetup *setup, CollisionMode mode,
                         uint32_t carried, Error *error)
 {
@@ -80,27 +130,19 @@ Result collision_create(Collision *collision, const SolverSetup *setup, Collisio
     if ((!colliders->count && !setup->field) || !setup->params->collide) return RESULT_OK;
     *collision = (Collision){
         .hair = setup->hair,
-        .bounds = setup->hair,
+        .bounds = setup->bounds ? setup->bounds : setup->hair,
         .params = setup->params,
         .colliders = colliders,
         .field = setup->field,
         .mode = mode,
         .carried = carried,
     };
-    int cones = 0;
-#define ADD_CONE(kind, name, numbers, frame) cones += count_kind(colliders, COLLIDER_##kind);
-    COLLIDERS(ADD_CONE, COLLIDER_NONE)
-#define HAS(kind, name, numbers, frame) {"HAS_" #kind, count_kind(colliders, COLLIDER_##kind) > 0},
-    const ShaderDefine defines[] = {{"MODE", (int)mode},
-                                    {"CONES", cones <= MOST_IN_REGISTERS ? cones : 0},
-                                    {"FIELD", setup->field != NULL},
-                                    COLLIDERS(COLLIDER_NONE, HAS){0}};
     Result result = check_loops(collision, setup->gpu->software, error);
-    THEN(result,
-         step_pass_create(&collision->pass, setup->gpu, "sim/collide.comp", defines, error));
     THEN(result,
          gpu_buffer_create(&collision->shapes, &setup->gpu->limits, "colliders",
                            (int64_t)(colliders->count * sizeof(Shape)), NULL, GL_RGBA32F, error));
+    THEN(result, find_clearances(collision, setup, error));
+    THEN(result, create_pass(collision, setup->gpu, mode, error));
     if (mode != COLLISION_DRAWN)
         THEN(result, create_batches(collision, &setup->gpu->limits, error));
     if (result != RESULT_OK) collision_destroy(collision);
@@ -213,6 +255,8 @@ void collision_push(Collision *collision, uint32_t batch, const GpuBuffer *state
     gpu_buffer_bind_storage(&hair->position, BIND_POSITION_OUT);
     gpu_buffer_bind_texture(&collision->shapes, BIND_COLLIDERS);
     if (collision->field) gpu_buffer_bind_texture(&collision->field->values, BIND_FIELD);
+    if (collision->clearances)
+        gpu_buffer_bind_texture(&collision->clearances[batch], BIND_CLEARANCE);
     if (state) {
         gpu_buffer_bind_texture(state, BIND_STATE);
         gpu_buffer_bind_storage(state, BIND_STATE_OUT);

@@ -12,6 +12,7 @@ typedef enum CollisionMode {
     COLLISION_PARTICLES, // positions in Hair's buffer and velocities
     COLLISION_SEGMENTS,  // unit directions with lengths, and tips: the state of split
     COLLISION_DRAWN,     // positions in Hair's buffer alone
+    COLLISION_FINDING,   // none: finds clearances (collision_find_clearances)
 } CollisionMode;
 
 typedef struct CollisionBatch {
@@ -31,11 +32,15 @@ typedef struct Collision {
     StepPass pass;
     GpuBuffer shapes;
     CollisionBatch *batches; // [hair->batch_count]; NULL with COLLISION_DRAWN
+    GpuBuffer *clearances;   // [hair->batch_count] float a particle: see collide.comp; NULL: none
     CollideParams step;      // the present one's
 } Collision;
 
-// Empty if the scene has no colliders. Velocities and friction need a mode other than
-// COLLISION_DRAWN. RESULT_USAGE for more colliders than the loops of a CPU driver can take.
+// Empty if the scene has no colliders. With setup->keeps_groom and a mode other than
+// COLLISION_SEGMENTS particles stay as near to colliders as they are in the groom, for which the
+// hair's positions must be those of the groom with the head at the origin. Velocities and friction
+// need a mode other than COLLISION_DRAWN. RESULT_USAGE for more colliders than the loops of a CPU
+// driver can take.
 Result collision_create(Collision *collision, const SolverSetup *setup, CollisionMode mode,
                         uint32_t carried, Error *error);
 void collision_destroy(Collision *collision);

@@ -19,6 +19,8 @@ typedef struct SolverSetup {
     const Colliders *colliders; // shapes that hair must not cross; NULL: none
     const DistanceField *field; // a mesh that it must not cross; NULL: none
     bool sheltered;             // SolverStep.shelter counts
+    bool keeps_groom;           // colliders do not push what is as near to them in the groom
+    const Hair *bounds;         // whose bounds and longest strand hold for `hair`; NULL: its own
     // m/s^2, in the world: under which the groom is at rest, with the head at `head`; 0 0 0: hair
     // falls from there (--rest hanging).
     float rest_gravity[3];

@@ -21,11 +21,12 @@ static Result create_follow_collision(SimulationSection *section, const SolverSe
                                       Error *error)
 {
     SolverSetup drawn = *setup;
+    static const HeadPose origin = {.rotation = {0, 0, 0, 1}};
     drawn.hair = &section->follow.hair;
+    drawn.bounds = &section->hair;
     if (!drawn.hair->batch_count || strcmp(setup->params->algo, "none") == 0) return RESULT_OK;
-    Result result = collision_create(&section->follow_collision, &drawn, COLLISION_DRAWN, 1, error);
-    section->follow_collision.bounds = &section->hair;
-    return result;
+    follow_write(&section->follow, &origin); // of the groom
+    return collision_create(&section->follow_collision, &drawn, COLLISION_DRAWN, 1, error);
 }
 
 static void write_followers(SimulationSection *section, const HeadPose *head)
@@ -55,6 +56,7 @@ static Result create_section(Simulation *simulation, uint32_t i, const Gpu *gpu,
                          .colliders = &simulation->scene->colliders,
                          .field = simulation->field.spacing > 0 ? &simulation->field : NULL,
                          .sheltered = run->wind_shelter > 0,
+                         .keeps_groom = solver_keeps_groom(params),
                          .head = &simulation->head};
     if (params->rest == REST_GROOM) find_rest_gravity(setup.rest_gravity, simulation->scene);
     TRY(hair_create(&section->hair, strands, 0, &gpu->limits, error));

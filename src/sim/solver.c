@@ -228,12 +228,22 @@ static Result create_batch(SolverState *state, uint32_t i, const SolverSetup *se
                              hair->rest.size * scratch, NULL, 0, error);
 }
 
-static void set_rest_gravity(SolverState *state, const SolverType *type, const SolverSetup *setup)
+// Whether a groom of this style and variant can be at rest.
+static bool can_keep_groom(const SectionParams *params)
+{
+    const char *published = find_type(params->algo)->published;
+    return params->style > 0 && !(published && strcmp(published, params->variant) == 0);
+}
+
+bool solver_keeps_groom(const SectionParams *params)
+{
+    return params->rest == REST_GROOM && can_keep_groom(params);
+}
+
+static void set_rest_gravity(SolverState *state, const SolverSetup *setup)
 {
     versor inverse = {0, 0, 0, 1};
-    const SectionParams *params = setup->params;
-    if (!(params->style > 0) || (type->published && !strcmp(type->published, params->variant)))
-        return;
+    if (!can_keep_groom(setup->params)) return;
     if (setup->head) glm_quat_conjugate((float *)setup->head->rotation, inverse);
     glm_quat_rotatev(inverse, (float *)setup->rest_gravity, state->rest_gravity);
 }
@@ -277,7 +287,7 @@ Result solver_create(Solver *solver, const SolverSetup *setup, Error *error)
     state->hair = setup->hair;
     state->params = setup->params;
     state->timer = setup->timer;
-    set_rest_gravity(state, type, setup);
+    set_rest_gravity(state, setup);
     Result result = build(state, setup, error);
     if (result == RESULT_OK)
         *solver = (Solver){type, state};

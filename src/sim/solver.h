@@ -80,6 +80,10 @@ const char *solver_caution(const SectionParams *params);
 // Its type's most_stability. The words have been checked.
 float solver_most_stability(const SectionParams *params);
 
+// Whether hair of this style, --rest and variant is at rest in its groom. The words have been
+// checked.
+bool solver_keeps_groom(const SectionParams *params);
+
 // Hair at rest in its style where the head is. Errors of solver_check and of the recipe's check;
 // RESULT_USAGE for strands of more vertices than it takes; of shaders and buffers.
 Result solver_create(Solver *solver, const SolverSetup *setup, Error *error);
