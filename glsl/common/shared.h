@@ -43,3 +43,4 @@ typedef uint uvec4[4] __attribute__((aligned(16)));
 #define BIND_FIELD           5 // distances to a mesh
 #define BIND_CONTACTS_BEFORE 6
 #define BIND_CLEARANCE       7 // float a particle: how far the groom is from colliders
+#define BIND_ALONG           8 // two vec4 a vertex: what of a step differs along the strand

@@ -40,11 +40,15 @@ void constrain_add(inout Constraint p, Strand strand, int j, vec3 d, vec3 x)
 {
     int a = strand.address + j * STRAND_TILE;
     vec3 aim = recall_aim(a, j),
-         u = kicked(strand, recall_velocity(a, j).xyz + strand.root_velocity),
-         force = strand.push / step_params.gain;
+         u = kicked(strand, j, recall_velocity(a, j).xyz + strand.root_velocity);
+#if VARIES
+    vec3 force = kick_at(j, vec3(0.0), strand.wind) / forces_along(j).y;
+#else
+    vec3 force = strand.push / step_params.gain;
+#endif
 #if STYLED
     p.style = next_style(p.style, fetch_rest(strand, j), strand.rotation);
-    force += strand.spring.stiffness * (p.style - 0.5 * (x + aim));
+    force += spring_of(strand, j).stiffness * (p.style - 0.5 * (x + aim));
 #endif
     float factor, off = -dot(d, p.d_before), right = dot(d, u - p.u_before),
                   right_left = right - off * p.row.value;

@@ -22,15 +22,20 @@ void main()
     vec4 rotation = step_params.head_rotation;
     vec3 root = leader, style = vec3(0.0),
          along = rotate(rotation, texelFetch(rest, a + STRAND_TILE).xyz);
-    float pull = dftl_params.spring.pull;
     carry_lead(a);
     positions[a] = vec4(leader, 1.0);
     for (int j = 1; j < n; ++j, a += STRAND_TILE) {
         vec3 x = texelFetch(position_before, a + STRAND_TILE).xyz;
-        vec3 predicted = x + dt * kick(texelFetch(velocity_before, a + STRAND_TILE).xyz, wind);
+        vec3 predicted =
+            x + dt * kick_at(j, texelFetch(velocity_before, a + STRAND_TILE).xyz, wind);
         vec4 segment = texelFetch(rest, a + STRAND_TILE);
 #if STYLED
         style = next_style(style, segment, rotation);
+#if VARIES
+        float pull = own_along(j).y;
+#else
+        float pull = dftl_params.spring.pull;
+#endif
         predicted += pull * (root + style - predicted);
 #endif
         vec3 reach = predicted - leader;

@@ -29,10 +29,30 @@ vec3 strand_wind(uint id, vec3 root)
     return wind;
 }
 
+#if VARIES
+// Of the solver's vertices from its root on, two texels each: the solver's own; then e^{-ch}, h f,
+// c, and gravity's share over its mean (recipe.h).
+layout(binding = BIND_ALONG) uniform samplerBuffer along_strand;
+
+vec4 own_along(int j) { return texelFetch(along_strand, 2 * j); }
+vec4 forces_along(int j) { return texelFetch(along_strand, 2 * j + 1); }
+#endif
+
 // Constant acceleration and drag c relative to the wind w, exact for any step: v e^{-ch} + (g + c
 // w) h (1 - e^{-ch})/(ch).
 vec3 kick(vec3 v, vec3 wind)
 {
     return v * step_params.decay +
            (step_params.gravity.xyz + step_params.drag * wind) * step_params.gain;
+}
+
+// The same at vertex j, where drag and gravity may differ along the strand (VARIES).
+vec3 kick_at(int j, vec3 v, vec3 wind)
+{
+#if VARIES
+    vec4 forces = forces_along(j);
+    return v * forces.x + (forces.w * step_params.gravity.xyz + forces.z * wind) * forces.y;
+#else
+    return kick(v, wind);
+#endif
 }

@@ -22,40 +22,72 @@
 // The sweeps run to and fro. Needs strand.glsl, tridiagonal.glsl, and keep, recall (vec4 a
 // particle), keep_beside, recall_beside.
 
-// K(v) relative to the root: forces and drag for half a step.
-vec3 kicked(Strand strand, vec3 v) { return strand.decay * v + strand.push - strand.root_velocity; }
+// K(v) of particle j relative to the root: forces and drag for half a step.
+vec3 kicked(Strand strand, int j, vec3 v)
+{
+    return kicked_velocity(strand, j, v) - strand.root_velocity;
+}
 
-// vs of a particle that is `offset` from its place in the style; of two particles' difference as
-// well.
-vec3 sprung(Strand strand, vec3 kick, vec3 offset)
+// vs of particle j that is `offset` from its place in the style; of two particles' difference as
+// well where their springs are alike.
+vec3 sprung(Strand strand, int j, vec3 kick, vec3 offset)
 {
 #if STYLED
-    return strand.spring.keep * kick - strand.spring.draw * offset;
+    StyleSpring spring = spring_of(strand, j);
+    return spring.keep * kick - spring.draw * offset;
 #else
     return kick;
 #endif
 }
+
+#if VARIES
+// What particles j - 1 and j differ by in vs. `style`: j's place, then that of j - 1.
+vec3 sprung_apart(Strand strand, int j, vec3 kick, vec3 kick_before, vec3 q, vec3 q_before,
+                  inout vec3 style)
+{
+    vec3 there = sprung(strand, j, kick, q - strand.root_old - style);
+    style -= next_style(vec3(0.0), fetch_rest(strand, j), strand.rotation);
+    if (j == 1) return there;
+    return there - sprung(strand, j - 1, kick_before, q_before - strand.root_old - style);
+}
+
+vec3 style_of_tip(Strand strand)
+{
+    vec3 style = vec3(0.0);
+    for (int j = 1; j <= LAST; ++j)
+        style = next_style(style, fetch_rest(strand, j), strand.rotation);
+    return style;
+}
+#endif
 
 // Tip to root: rows of the tensions. Only differences along the strand count.
 void find_directions(Strand strand)
 {
     float h = 0.5 * strand.dt;
     vec3 q = fetch_position(strand, LAST), v = fetch_velocity(strand, LAST),
-         kick = kicked(strand, v), d_beyond = vec3(0.0);
+         kick = kicked(strand, LAST, v), d_beyond = vec3(0.0);
     Row row = NO_ROW;
+#if VARIES
+    vec3 style = style_of_tip(strand);
+#endif
     for (int j = LAST; j >= 1; --j) {
         vec3 q_before = strand.root_old, v_before = strand.root_velocity, kick_before = vec3(0.0);
         if (j > 1) {
             q_before = fetch_position(strand, j - 1), v_before = fetch_velocity(strand, j - 1);
-            kick_before = kicked(strand, v_before);
+            kick_before = kicked(strand, j - 1, v_before);
         }
-        vec3 r = q - q_before, d = direction(r + h * (v - v_before)), offset = r;
+        vec3 r = q - q_before, d = direction(r + h * (v - v_before));
+#if VARIES
+        vec3 apart = sprung_apart(strand, j, kick, kick_before, q, q_before, style);
+#else
+        vec3 offset = r;
 #if STYLED
         offset -= next_style(vec3(0.0), fetch_rest(strand, j), strand.rotation);
 #endif
+        vec3 apart = sprung(strand, j, kick - kick_before, offset);
+#endif
         float factor;
-        row = eliminate(row, -dot(d, d_beyond), j == 1 ? 1.0 : 2.0,
-                        dot(d, sprung(strand, kick - kick_before, offset)), factor);
+        row = eliminate(row, -dot(d, d_beyond), j == 1 ? 1.0 : 2.0, dot(d, apart), factor);
         keep(j, vec4(d, row.value));
         keep_beside(j, factor);
         q = q_before, v = v_before, kick = kick_before, d_beyond = d;
@@ -85,8 +117,8 @@ vec3 find_tensions(Strand strand)
 #if STYLED
         style = next_style(style, r, strand.rotation);
 #endif
-        vs_before =
-            sprung(strand, kicked(strand, fetch_velocity(strand, j)), q - strand.root_old - style);
+        vs_before = sprung(strand, j, kicked(strand, j, fetch_velocity(strand, j)),
+                           q - strand.root_old - style);
         q_before = q, g_before = g, t_before = t;
     }
     row = eliminate(row, -h * t_before, 1.0 + h * t_before, vs_before - g_before, factor);
@@ -116,9 +148,9 @@ Middle middle_open(Strand strand)
 vec3 middle_place(inout Middle m, Strand strand, int j, vec3 q)
 {
     int a = strand.address + j * STRAND_TILE;
-    vec3 offset = q - strand.root_old, kick = kicked(strand, fetch_velocity(strand, j)),
+    vec3 offset = q - strand.root_old, kick = kicked(strand, j, fetch_velocity(strand, j)),
          p = offset + strand.dt * m.w;
-    m.gained += 2.0 * dot(m.w, m.w - sprung(strand, kick, offset - m.style));
+    m.gained += 2.0 * dot(m.w, m.w - sprung(strand, j, kick, offset - m.style));
     keep_aim(a, j, p);
     keep_velocity(a, j, vec4(2.0 * m.w - kick, 0.0));
 #if STYLED

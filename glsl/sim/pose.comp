@@ -5,6 +5,7 @@
 //   MIX 1: the physical strand alone
 //   MIX 2: nearer to the physical strand
 //   MIX 3: nearer to the style
+//   MIX 4: by a share that differs along the strand
 // HANGS 1: at rest the physical strand hangs straight down, along `hanging`, and the style is what
 // is drawn. So the style's segment is turned by the rotation that takes `hanging` to what is a
 // share of the way from there to the physical segment.
@@ -65,6 +66,24 @@ vec3 turn_along(vec3 a, vec3 b, vec3 x)
     return c * x + cross(k, x) + k * (dot(k, x) / max(1.0 + c, 1e-6));
 }
 
+#if MIX == 4
+layout(binding = BIND_ALONG) uniform samplerBuffer along_strand; // solver_split.c
+
+// From the unit vector a towards the unit vector b by a share w of their angle. With HANGS it
+// fades to the nearer one where they point nearly the opposite way, as turn_fading does.
+vec3 slerp(vec3 a, vec3 b, float w)
+{
+    float cosine = clamp(dot(a, b), -1.0, 1.0), angle = acos(cosine),
+          sine = sqrt(max(1.0 - cosine * cosine, 0.0));
+    vec3 turned =
+        sine > 1e-4 ? (sin((1.0 - w) * angle) * a + sin(w * angle) * b) / sine : mix(a, b, w);
+#if HANGS
+    turned = mix(w < 0.5 ? a : b, turned, smoothstep(0.0, 0.27, 2.0 + 2.0 * cosine));
+#endif
+    return turned * inversesqrt(max(dot(turned, turned), 1e-12));
+}
+#endif
+
 void main()
 {
     int s = int(gl_GlobalInvocationID.x), n = int(pose_params.vertex_count);
@@ -84,7 +103,13 @@ void main()
 #else
         vec4 segment = texelFetch(rest, a);
         vec3 d = rotate(rotation, segment.xyz);
-#if HANGS && MIX >= 2
+#if MIX == 4
+        vec3 start = HANGS == 1 ? pose_params.hanging.xyz : d;
+        vec3 swung = slerp(start, texelFetch(segments, a).xyz,
+                           1.0 - texelFetch(along_strand, 2 * (j - int(pose_params.lead))).x);
+        vec3 turned = HANGS == 1 ? turn_along(start, swung, d) : swung;
+        d = j > int(pose_params.lead) ? turned : d;
+#elif HANGS && MIX >= 2
         vec3 hanging = pose_params.hanging.xyz, physical = texelFetch(segments, a).xyz;
 #if MIX == 2
         vec3 swung = turn_fading(physical, hanging, by);

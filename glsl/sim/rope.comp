@@ -47,17 +47,41 @@ vec3 root_at(vec3 root_move, int step, int small_steps)
     return root_move * (float(step) / float(small_steps));
 }
 
-// The flight in later small steps is by carried_share() m + fall, Verlet's form with drag; the
-// first starts from a velocity.
-float carried_share() { return rope_params.kept * step_params.decay; }
-
-vec3 fall_of(vec3 wind) { return step_params.dt * kick(vec3(0.0), wind); }
-
-vec3 first_flight(vec3 v, vec3 wind)
+// Particle j's flight in later small steps is by carried_share(j) m + fall_of(j), Verlet's form
+// with drag; the first starts from a velocity. What differs along the strand (VARIES): the first
+// small step's decay and gain, both pulls towards the style.
+float carried_share(int j)
 {
+#if VARIES
+    return rope_params.kept * forces_along(j).x;
+#else
+    return rope_params.kept * step_params.decay;
+#endif
+}
+
+vec3 fall_of(int j, vec3 wind) { return step_params.dt * kick_at(j, vec3(0.0), wind); }
+
+vec3 first_flight(int j, vec3 v, vec3 wind)
+{
+#if VARIES
+    vec4 own = own_along(j), forces = forces_along(j);
+    return step_params.dt *
+           (v * own.x + (forces.w * step_params.gravity.xyz + forces.z * wind) * own.y);
+#else
     return step_params.dt *
            (v * rope_params.first_decay +
             (step_params.gravity.xyz + step_params.drag * wind) * rope_params.first_gain);
+#endif
+}
+
+float pull_at(int j, bool first)
+{
+#if VARIES
+    vec4 own = own_along(j);
+    return first ? own.z : own.w;
+#else
+    return first ? rope_params.first_spring.pull : rope_params.spring.pull;
+#endif
 }
 
 void finish(int a, vec3 r, float l, vec3 moved, inout vec3 drawn, inout vec3 along)
@@ -92,10 +116,10 @@ void main()
         at += link_before(drawn, next, l[j], v.w);
         drawn = next;
         x[j] = at;
-        m[j] = first_flight(v.xyz, wind);
+        m[j] = first_flight(j, v.xyz, wind);
 #if STYLED
         style[j] = next_style(style[j - 1], segment, rotation);
-        m[j] += rope_params.first_spring.pull * (x[0] + style[j] - (x[j] + m[j]));
+        m[j] += pull_at(j, true) * (x[0] + style[j] - (x[j] + m[j]));
 #endif
     }
 
@@ -115,15 +139,13 @@ void main()
 #else
     // The first small step's flight is known; a particle flies just before its first link is
     // mended.
-    float carried = 1.0, pull = 0.0;
-    vec3 fall = vec3(0.0);
     for (int step = 0; step < small_steps; ++step) {
         vec3 from = root_at(carry, step + 1, small_steps), gone = vec3(0.0), push = vec3(0.0);
         x[0] = from;
         for (int j = 1; j < VERTICES; ++j) {
-            vec3 move = carried * m[j] + fall;
+            vec3 move = step > 0 ? carried_share(j) * m[j] + fall_of(j, wind) : m[j];
 #if STYLED
-            move += pull * (x[0] + style[j] - (x[j] + move));
+            move += (step > 0 ? pull_at(j, false) : 0.0) * (x[0] + style[j] - (x[j] + move));
 #endif
             vec3 to = x[j] + move;
             push = mended(to - from, l[j], j == 1 ? 1.0 : 2.0);
@@ -131,7 +153,6 @@ void main()
             from = to + push, gone = move + push;
         }
         x[VERTICES - 1] = from, m[VERTICES - 1] = gone;
-        carried = carried_share(), pull = rope_params.spring.pull, fall = fall_of(wind);
     }
 #endif
 
@@ -154,14 +175,12 @@ void main()
     int phase = int(step_params.phase), step = phase / rope_params.sweeps, a = strand_base(s);
     bool loads = phase == 0, flies = phase == step * rope_params.sweeps,
          draws = phase + 1 == rope_params.small_steps * rope_params.sweeps;
-    vec3 wind = strand_wind(texelFetch(strand_id, s).x, root_position(strand_root(a))),
-         fall = fall_of(wind);
+    vec3 wind = strand_wind(texelFetch(strand_id, s).x, root_position(strand_root(a)));
     vec4 root = strand_root(a);
     vec3 drawn_before = texelFetch(position_before, a).xyz, at = vec3(0.0);
     vec3 x = root_at(root_move(root), step + 1, rope_params.small_steps), m = vec3(0.0),
          style_at = x;
     vec4 rotation = step_params.head_rotation;
-    float pull = loads ? rope_params.first_spring.pull : rope_params.spring.pull;
     vec3 before = x, drawn = root_position(root),
          along = rotate(rotation, texelFetch(rest, a + STRAND_TILE).xyz);
     float weights = 1.0, l = 0.0, l_before = 0.0;
@@ -181,15 +200,15 @@ void main()
             at += link_before(drawn_before, to, l, v.w);
             drawn_before = to;
             next = at;
-            next_m = first_flight(v.xyz, wind);
+            next_m = first_flight(j, v.xyz, wind);
         } else {
             next = scratch[2 * b].xyz;
             next_m = scratch[2 * b + 1].xyz;
-            if (flies) next_m = carried_share() * next_m + fall;
+            if (flies) next_m = carried_share(j) * next_m + fall_of(j, wind);
         }
 #if STYLED
         style_at = next_style(style_at, segment, rotation);
-        if (flies) next_m += pull * (style_at - (next + next_m));
+        if (flies) next_m += pull_at(j, loads) * (style_at - (next + next_m));
 #endif
         if (flies) next += next_m;
         vec3 push = mended(next - x, l, weights);

@@ -57,6 +57,16 @@ Springs springs_of(int links)
                    spring_params.angular * float(links));
 }
 
+// The angular spring of link j over the mean.
+float angular_at(int j)
+{
+#if VARIES
+    return own_along(j).x;
+#else
+    return 1.0;
+#endif
+}
+
 // The angular spring's force on a link of direction u; none where u is opposite to the style's
 // direction t.
 vec3 angular_force(vec3 u, vec3 t, float b)
@@ -98,12 +108,12 @@ void eliminate(int base, int n, vec3 wind, vec3 root_velocity)
     int at = base + (n - 1) * STRAND_TILE;
     vec3 drawn = texelFetch(position_before, at).xyz;
     vec4 v = texelFetch(velocity_before, at);
-    vec3 flying = kick(v.xyz, wind);
+    vec3 flying = kick_at(n - 1, v.xyz, wind);
     for (int j = n - 1; j > 0; --j, at -= STRAND_TILE) {
         vec4 style = texelFetch(rest, at), v_before = texelFetch(velocity_before, at - STRAND_TILE);
         vec3 drawn_before = texelFetch(position_before, at - STRAND_TILE).xyz;
-        vec3 flying_before = j == 1 ? root_velocity : kick(v_before.xyz, wind);
-        float l = style.w, m, b = min(angular, 0.25 * p * l);
+        vec3 flying_before = j == 1 ? root_velocity : kick_at(j - 1, v_before.xyz, wind);
+        float l = style.w, m, b = min(angular * angular_at(j), 0.25 * p * l);
         vec3 r = link_before(drawn_before, drawn, l, v.w), flown = dt * (flying - flying_before);
         vec3 t = rotate(rotation, style.xyz), u = direction_of(r, t, m);
 
@@ -143,7 +153,7 @@ void substitute(int base, int n, vec3 wind, vec3 root_velocity, vec3 root)
         vec3 was = texelFetch(position_before, a).xyz;
         vec4 v = texelFetch(velocity_before, a);
         float l = texelFetch(rest, a).w;
-        vec3 flying = kick(v.xyz, wind);
+        vec3 flying = kick_at(j, v.xyz, wind);
         vec3 s = link_before(drawn_before, was, l, v.w) + dt * (flying - flying_before);
         vec4 before = vec4(x_before, 1.0);
         vec3 x = vec3(dot(scratch[3 * a], before), dot(scratch[3 * a + 1], before),
@@ -223,11 +233,16 @@ void main()
             float m;
             next_r = link_before(was, to, style.w, next_v.w);
             vec3 u = direction_of(next_r, t, m);
-            next_force = link_force(next_r, u, t, m, style.w, springs, softness);
+            next_force = link_force(next_r, u, t, m, style.w,
+                                    Springs(springs.k, springs.b * angular_at(j)), softness);
             was = to;
         }
         if (j > 1) {
+#if VARIES
+            vec3 now = kick_at(j - 1, v.xyz, wind) + gain * (force - next_force);
+#else
             vec3 now = v.xyz * decay + fall + gain * (force - next_force);
+#endif
             draw_link(a, r + (dt * now - moved), l, now, spring_params.stretch_drawn != 0u, drawn,
                       along);
             moved = dt * now;

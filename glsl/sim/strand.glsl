@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A strand on its way through a step: what solvers of particles with an implicit style spring begin
-// with (needs particles.glsl). Macros: STYLED, whether there is a style spring.
+// with (needs particles.glsl). Macros: STYLED, whether there is a style spring; VARIES, whether it
+// or the forces differ along the strand: then `push`, `decay` and `spring` are means.
 #include "sim/style_spring.h"
 
 const float SAFE_MOVE = 1e15; // metres: keeps squares finite whatever the head does
@@ -8,8 +9,11 @@ const float SAFE_MOVE = 1e15; // metres: keeps squares finite whatever the head 
 struct Strand {
     int address; // of the root
     vec3 root, root_old, root_velocity;
-    float length;  // of the strand
-    vec3 push;     // what forces add to a velocity
+    float length; // of the strand
+    vec3 push;    // what forces add to a velocity
+#if VARIES
+    vec3 wind;
+#endif
     vec4 rotation; // of the head
     float dt, decay;
     StyleSpring spring;
@@ -24,7 +28,11 @@ Strand strand_open(int number, StyleSpring spring)
     strand.root_old = texelFetch(position_before, strand.address).xyz;
     strand.root_velocity = (strand.root - strand.root_old) / step_params.dt;
     strand.length = root_rest.w;
-    strand.push = kick(vec3(0.0), strand_wind(texelFetch(strand_id, number).x, strand.root));
+    vec3 wind = strand_wind(texelFetch(strand_id, number).x, strand.root);
+#if VARIES
+    strand.wind = wind;
+#endif
+    strand.push = kick(vec3(0.0), wind);
     strand.rotation = step_params.head_rotation;
     strand.dt = step_params.dt;
     strand.decay = step_params.decay;
@@ -43,14 +51,35 @@ vec3 fetch_velocity(Strand strand, int j)
 }
 vec4 fetch_rest(Strand strand, int j) { return texelFetch(rest, strand.address + j * STRAND_TILE); }
 
+// The velocity v of particle j after forces have acted.
+vec3 kicked_velocity(Strand strand, int j, vec3 v)
+{
+#if VARIES
+    return kick_at(j, v, strand.wind);
+#else
+    return strand.decay * v + strand.push;
+#endif
+}
+
+// Particle j's spring.
+StyleSpring spring_of(Strand strand, int j)
+{
+#if VARIES
+    vec4 a = own_along(j);
+    return StyleSpring(a.x, a.y, a.z, a.w);
+#else
+    return strand.spring;
+#endif
+}
+
 // How far particle j, now at q, would go without constraints. `style` goes from particle to
 // particle, 0 at the root.
 vec3 predicted_move(Strand strand, int j, vec3 q, inout vec3 style)
 {
-    vec3 move = strand.dt * (strand.decay * fetch_velocity(strand, j) + strand.push);
+    vec3 move = strand.dt * kicked_velocity(strand, j, fetch_velocity(strand, j));
 #if STYLED
     style = next_style(style, fetch_rest(strand, j), strand.rotation);
-    move += strand.spring.pull * (style - (q - strand.root) - move);
+    move += spring_of(strand, j).pull * (style - (q - strand.root) - move);
 #endif
     return move;
 }

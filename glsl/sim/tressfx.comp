@@ -59,6 +59,25 @@ vec3 unit(vec3 v, vec3 otherwise)
 
 vec4 conjugate(vec4 rotation) { return vec4(-rotation.xyz, rotation.w); }
 
+// The shares of the local pass and of the global shape at vertex j.
+float local_at(int j)
+{
+#if VARIES
+    return own_along(j).x;
+#else
+    return tressfx_params.local_share;
+#endif
+}
+
+float global_at(int j)
+{
+#if VARIES
+    return own_along(j).y;
+#else
+    return tressfx_params.global_share;
+#endif
+}
+
 // What the head does to the strand in this step, in the head's frame at its end.
 struct Carried {
     vec3 root_old, root; // in the world
@@ -119,12 +138,12 @@ void predict(Carried carried)
         float lever = min(1.0, MOST_LEVER * segment.w / REST(min(j + 1, n - 1)).w);
         vec3 given = (j + 1 < n ? exchanged * lever : 0.0) * (ahead - v);
         v += given, ahead -= given;
-        vec3 x = from + dt * rotate(to_head, kick(v, wind));
+        vec3 x = from + dt * rotate(to_head, kick_at(j, v, wind));
 #endif
         x = mix(x - home, turn_between(first_old, first, x), share);
         from = mix(from - home, turn_between(first_old, first, from), share);
 #if !TRESSFX4
-        if (float(j) < last_global) x = mix(x, style, global);
+        if (float(j) < last_global) x = mix(x, style, global_at(j));
 #endif
         positions[a] = vec4(j < 2 ? style : x, 1.0);
         if (j > 1) velocities[a] = vec4(from, 0.0);
@@ -134,14 +153,13 @@ void predict(Carried carried)
 
 void keep_local_shape()
 {
-    float share = tressfx_params.local_share;
     vec3 before = X(0), x = X(1);
     vec4 rest_here = REST(1);
     for (int j = 1; j < n - 1; ++j) {
         vec4 rest_next = REST(j + 1);
         vec3 wanted = rest_next.w *
                       turn_between(rest_here.xyz, unit(x - before, rest_here.xyz), rest_next.xyz);
-        vec3 next = X(j + 1), gap = share * (x + wanted - next);
+        vec3 next = X(j + 1), gap = local_at(j + 1) * (x + wanted - next);
         x = j > 1 ? x - gap * min(1.0, MOST_LEVER * rest_here.w / rest_next.w) : x;
         X(j) = x;
         before = x;

@@ -24,6 +24,7 @@ enum { MOST_WORDS = 16, NAME_SIZE = 80 };
 #define VALUE_VEC3(CHOICES)       "X,Y,Z"
 #define VALUE_COLOR(CHOICES)      "COLOR"
 #define VALUE_BACKGROUND(CHOICES) "COLOR"
+#define VALUE_PROFILE(CHOICES)    "X[:X...]"
 #define VALUE_TURN(CHOICES)       "[X]"
 #define VALUE_AUTO_INT(CHOICES)   "N|auto"
 #define VALUE_AUTO_FLOAT(CHOICES) "X|auto"

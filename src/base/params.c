@@ -160,6 +160,7 @@ static const struct Form {
     [PARAM_INT] = {"a whole number ", "", NUMBER_INT, 1, 0, false},
     [PARAM_UINT] = {"a whole number ", "", NUMBER_UINT, 1, 0, false},
     [PARAM_FLOAT] = {"a number ", "", NUMBER_FLOAT, 1, 0, false},
+    [PARAM_PROFILE] = {"a number ", ", or such from root to tip, A:B", NUMBER_FLOAT, 1, 0, false},
     [PARAM_TURN] = {"a number ", "", NUMBER_FLOAT, 1, 0, false},
     [PARAM_VEC3] = {"three numbers x,y,z ", "", NUMBER_FLOAT, 3, ',', false},
     [PARAM_COLOR] = {"a name (--help colors), #rrggbb or r,g,b ", "", NUMBER_FLOAT, 3, ',', false},
@@ -181,6 +182,9 @@ static const struct Form {
 enum { AUTO_OFFSET = offsetof(AutoFloat, value) };
 _Static_assert(offsetof(AutoInt, value) == AUTO_OFFSET && offsetof(AutoVec3, value) == AUTO_OFFSET,
                "all Auto structs begin alike");
+_Static_assert(offsetof(SectionParams, style_along) - offsetof(SectionParams, style) ==
+                   offsetof(ProfileNumber, along),
+               "the two fields of a profile lie as a ProfileNumber");
 
 // A value on its way in: what the user wrote, and what it should have been.
 typedef struct Input {
@@ -290,6 +294,18 @@ static Result parse_choice(const Input *input, int *value)
     return refuse(input, suggest_nearest(input->text, choices, (size_t)count));
 }
 
+static Result parse_profile(const Input *input, ProfileNumber *number)
+{
+    const ParamInfo *info = input->info;
+    if (!strpbrk(input->text, ":@")) { // which says the nearest number
+        TRY(parse_numbers(input, &number->mean));
+        number->along = (Profile){0};
+        return RESULT_OK;
+    }
+    return profile_parse(number, input->text, info->minimum, info->maximum) ? RESULT_OK
+                                                                            : refuse(input, NULL);
+}
+
 Result params_parse(const ParamInfo *info, void *params, const char *text, Error *error)
 {
     void *field = (char *)params + info->offset;
@@ -330,6 +346,8 @@ Result params_parse(const ParamInfo *info, void *params, const char *text, Error
         *(char **)field = copy;
         return RESULT_OK;
     }
+    case PARAM_PROFILE:
+        return parse_profile(&input, field);
     case PARAM_TURN:
         if (!*text) input.text = "360";
         return parse_numbers(&input, field);
@@ -372,6 +390,7 @@ char *params_format(const ParamInfo *info, const void *params)
     const void *field = (const char *)params + info->offset;
     const struct Form *form = &FORMS[info->kind];
     const float *floats = field;
+    char profile[400];
     switch (info->kind) {
     case PARAM_BOOL:
         return strdup(*(const bool *)field ? "true" : "false");
@@ -387,6 +406,9 @@ char *params_format(const ParamInfo *info, const void *params)
             if (((const AutoFloat *)field)->value == LENGTH_UNITS[i].metres)
                 return strdup(LENGTH_UNITS[i].word);
         return format_numbers(form, field);
+    case PARAM_PROFILE:
+        profile_format(field, profile, sizeof profile);
+        return strdup(profile);
     case PARAM_CHOICE:
         return strdup(info->choices[*(const int *)field]);
     case PARAM_TEXT:

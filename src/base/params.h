@@ -4,6 +4,7 @@
 #pragma once
 
 #include "base/error.h"
+#include "base/profile.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -31,6 +32,7 @@ typedef enum ParamKind {
     PARAM_INT,        // int: decimal
     PARAM_UINT,       // uint32_t: decimal
     PARAM_FLOAT,      // float: decimal, with or without exponent
+    PARAM_PROFILE,    // ProfileNumber: decimal, or A:B, A:B@0.3:C along the strand (profile.h)
     PARAM_TURN,       // float: decimal; "" (an option without a number) is 360
     PARAM_VEC3,       // float[3]: x,y,z
     PARAM_COLOR,      // float[3], sRGB 0..1: #rrggbb, r,g,b or a name (colors.h)
@@ -122,10 +124,14 @@ typedef enum ParamGroup { PARAM_GROUPS(GROUP_VALUE) GROUP_COUNT } ParamGroup;
 #undef GROUP_VALUE
 
 // The two structs: a field for every row of params.def.
-#define PARAM_FIELD_BOOL(field)       bool field;
-#define PARAM_FIELD_INT(field)        int field;
-#define PARAM_FIELD_UINT(field)       uint32_t field;
-#define PARAM_FIELD_FLOAT(field)      float field;
+#define PARAM_FIELD_BOOL(field)  bool field;
+#define PARAM_FIELD_INT(field)   int field;
+#define PARAM_FIELD_UINT(field)  uint32_t field;
+#define PARAM_FIELD_FLOAT(field) float field;
+// A number and how it differs along the strand: a ProfileNumber in two fields.
+#define PARAM_FIELD_PROFILE(field)                                                                 \
+    float field;                                                                                   \
+    Profile field##_along;
 #define PARAM_FIELD_TURN(field)       float field;
 #define PARAM_FIELD_VEC3(field)       float field[3];
 #define PARAM_FIELD_COLOR(field)      float field[3];

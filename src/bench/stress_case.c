@@ -63,7 +63,7 @@ static Field find_param(const ParamInfo *info)
     Field field = {info->name, default_of(info), info->minimum, info->maximum, EVEN, 0.2, info};
     if (info->kind == PARAM_BOOL) field.high = 1;
     for (; info->kind == PARAM_CHOICE && info->choices[(int)field.high + 1];) ++field.high;
-    if (info->kind != PARAM_FLOAT)
+    if (info->kind != PARAM_FLOAT && info->kind != PARAM_PROFILE)
         field.spread = field.high > 3 ? WHOLE_LOG : WHOLE;
     else if (field.low > 0)
         field.spread = LOG;
@@ -91,8 +91,9 @@ static const Fields *list_fields(void)
     all.count = STRESS_PARAMS;
     for (size_t i = 0; i < PARAM_COUNT && all.count < STRESS_MOST_FIELDS; ++i) {
         ParamKind kind = PARAM_TABLE[i].kind;
-        if (trial_takes(&PARAM_TABLE[i]) && (kind == PARAM_FLOAT || kind == PARAM_INT ||
-                                             kind == PARAM_BOOL || kind == PARAM_CHOICE))
+        if (trial_takes(&PARAM_TABLE[i]) &&
+            (kind == PARAM_FLOAT || kind == PARAM_PROFILE || kind == PARAM_INT ||
+             kind == PARAM_BOOL || kind == PARAM_CHOICE))
             all.field[all.count++] = find_param(&PARAM_TABLE[i]);
     }
     return &all;

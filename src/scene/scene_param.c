@@ -7,12 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TEXT_SIZE = 128, NUMBERS_MAX = 3 };
+enum { TEXT_SIZE = 512, NUMBERS_MAX = 3 };
 
 // Which JSON types may stand for a kind's value.
 typedef struct Form {
     bool boolean, number, string;
     size_t numbers; // in an array; 0: no array
+    bool points;    // an array of [place, value]
 } Form;
 
 static const Form FORMS[] = {
@@ -20,6 +21,7 @@ static const Form FORMS[] = {
     [PARAM_INT] = {.number = true},
     [PARAM_UINT] = {.number = true},
     [PARAM_FLOAT] = {.number = true},
+    [PARAM_PROFILE] = {.number = true, .points = true},
     [PARAM_TURN] = {.number = true},
     [PARAM_VEC3] = {.numbers = 3},
     [PARAM_COLOR] = {.string = true, .numbers = 3},
@@ -59,6 +61,25 @@ static bool array_to_text(const json_t *value, size_t count, char separator, cha
     return true;
 }
 
+// An array of points [place, value] as a flag's value would have it: value@place:value@place.
+static bool points_to_text(const json_t *value, char text[TEXT_SIZE])
+{
+    size_t count = json_array_size(value);
+    int length = 0;
+    if (!json_is_array(value) || !count || count > PROFILE_MOST) return false;
+    for (size_t i = 0; i < count; i++) {
+        const json_t *point = json_array_get(value, i), *place = json_array_get(point, 0),
+                     *number = json_array_get(point, 1);
+        if (json_array_size(point) != 2 || !json_is_number(place) || !json_is_number(number))
+            return false;
+        if (i > 0) text[length++] = ':';
+        length += number_to_text(number, text + length, TEXT_SIZE - (size_t)length);
+        text[length++] = '@';
+        length += number_to_text(place, text + length, TEXT_SIZE - (size_t)length);
+    }
+    return true;
+}
+
 // The value in the form that a flag's value has, in `buffer` or where it stands; NULL if its type
 // is wrong for the kind.
 static const char *value_to_text(ParamKind kind, const json_t *value, char buffer[TEXT_SIZE])
@@ -70,6 +91,7 @@ static const char *value_to_text(ParamKind kind, const json_t *value, char buffe
         number_to_text(value, buffer, TEXT_SIZE);
         return buffer;
     }
+    if (form->points && points_to_text(value, buffer)) return buffer;
     char separator = kind == PARAM_SIZE ? 'x' : ',';
     return form->numbers && array_to_text(value, form->numbers, separator, buffer) ? buffer : NULL;
 }
@@ -80,6 +102,13 @@ static void describe_value(const ParamInfo *info, char *text, size_t size)
     char flag[160];
     params_describe(info, flag, sizeof flag);
     const Form *form = &FORMS[info->kind];
+    if (form->points) {
+        snprintf(text, size,
+                 "a number from %.10g to %.10g, or points along the strand, "
+                 "[[place, number], ...]",
+                 info->minimum, info->maximum);
+        return;
+    }
     bool vector = form->numbers == 3 && info->kind != PARAM_COLOR &&
                   info->kind != PARAM_AUTO_COLOR && info->kind != PARAM_BACKGROUND;
     snprintf(text, size, "%s%s%s",
@@ -147,6 +176,20 @@ json_t *scene_param_write_text(const char *text)
     return string;
 }
 
+static json_t *write_profile(const ProfileNumber *number)
+{
+    if (!number->along.count) return scene_param_write_float(number->mean);
+    json_t *points = json_array();
+    for (uint32_t i = 0; i < number->along.count; i++) {
+        const float point[2] = {number->along.at[i], number->along.value[i]};
+        json_t *pair = scene_param_write_floats(point, 2);
+        if (pair && json_array_append_new(points, pair) == 0) continue;
+        json_decref(points);
+        return NULL;
+    }
+    return points;
+}
+
 json_t *scene_param_write(const ParamInfo *info, const void *params)
 {
     const void *field = (const char *)params + info->offset;
@@ -164,6 +207,8 @@ json_t *scene_param_write(const ParamInfo *info, const void *params)
     case PARAM_FLOAT:
     case PARAM_TURN:
         return scene_param_write_float(*(const float *)field);
+    case PARAM_PROFILE:
+        return write_profile(field);
     case PARAM_VEC3:
         return scene_param_write_floats(field, 3);
     case PARAM_AUTO_INT:

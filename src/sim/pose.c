@@ -10,8 +10,10 @@
 
 enum { TERMS = 8 };
 
-static PoseMix mix_of_style(float style)
+static PoseMix mix_of(const PoseOptions *options)
 {
+    float style = options->style;
+    if (options->varies) return POSE_VARIES;
     if (style <= 0) return POSE_PHYSICAL;
     if (style >= 1) return POSE_STYLE;
     return style <= 0.5f ? POSE_NEAR_PHYSICAL : POSE_NEAR_STYLE;
@@ -48,14 +50,15 @@ static void interpolate(double (*function)(double, double), double v, float coef
     for (int i = 0; i < TERMS; ++i) coefficients[i] = (float)c[i];
 }
 
-Result pose_create(Pose *pose, const Gpu *gpu, float style, const float hanging[3], Error *error)
+Result pose_create(Pose *pose, const Gpu *gpu, const PoseOptions *options, Error *error)
 {
+    const float *hanging = options->hanging;
     memcpy(pose->hanging, hanging, sizeof pose->hanging);
     bool hangs = hanging[0] != 0 || hanging[1] != 0 || hanging[2] != 0;
-    double v = 2 * fmin((double)style, 1 - (double)style);
+    double v = 2 * fmin((double)options->style, 1 - (double)options->style);
     interpolate(turn_cos, v, pose->turn_cos);
     interpolate(turn_sin, v, pose->turn_sin);
-    const ShaderDefine defines[] = {{"MIX", (int)mix_of_style(style)}, {"HANGS", hangs}, {0}};
+    const ShaderDefine defines[] = {{"MIX", (int)mix_of(options)}, {"HANGS", hangs}, {0}};
     return step_pass_create(&pose->pass, gpu, "sim/pose.comp", defines, error);
 }
 

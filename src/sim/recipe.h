@@ -71,6 +71,9 @@ typedef struct SolverRecipe {
     // Sets the variant's own macros beside those of step_programs_create, at most STEP_OWN_DEFINES;
     // {0} ends them. NULL: none.
     void (*define)(ShaderDefine *defines, const SectionParams *params);
+    // For profiles (along.h): what the shader reads of one vertex, of its block by `fill` with the
+    // parameters as they are there, and the block of their means. NULL: it takes the means.
+    void (*along)(float texel[4], const void *block, const void *mean, const SectionParams *there);
     // How many equal sub-steps a step needs for the longest strand; NULL: 1.
     int (*substeps)(const SolverStep *step, const SectionParams *params, const Hair *hair);
     // How many dispatches (StepParams.phase) a (sub-)step takes where strands are not in registers;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "sim/solver.h"
 #include "base/suggest.h"
+#include "sim/along.h"
 #include "sim/collision.h"
 #include "sim/pose.h"
 #include "sim/recipe.h"
@@ -90,8 +91,10 @@ struct SolverState {
     GpuBuffer uniforms, own_uniforms;
     void *own; // the solver's own block
     StepPrograms programs;
+    Along along;           // parameters that differ along the strand, or empty
     SolverBatch *batches;  // one for each of the hair
     float rest_gravity[3]; // m/s^2, in the head's frame: what the groom holds; 0 0 0: nothing
+    bool varies;           // parameters differ along the strand
     Pose pose;           // of segments; else of the style: particles start so, static hair stays so
     Collision collision; // of the state
     Collision drawn;     // of what is drawn, where the state is another
@@ -117,6 +120,7 @@ static void destroy(SolverState *state)
     }
     free(state->batches);
     free(state->own);
+    along_destroy(&state->along);
     step_programs_destroy(&state->programs);
     gpu_buffer_destroy(&state->uniforms);
     gpu_buffer_destroy(&state->own_uniforms);
@@ -149,6 +153,7 @@ static Result build_programs(SolverState *state, const SolverSetup *setup, Error
         .strands_on_cpu = recipe->strands_on_cpu ? recipe->strands_on_cpu : 1,
         .lead = recipe->carried < 2 && state->params->clamped > 1,
         .sheltered = setup->sheltered,
+        .varies = has_particles(state) && state->varies,
         .styled = state->params->style > 0 && state->params->style_stiffness > 0,
         .defines = defines,
     };
@@ -228,22 +233,21 @@ static Result create_batch(SolverState *state, uint32_t i, const SolverSetup *se
                              hair->rest.size * scratch, NULL, 0, error);
 }
 
-// Whether a groom of this style and variant can be at rest.
-static bool can_keep_groom(const SectionParams *params)
+static bool is_published(const SectionParams *params)
 {
     const char *published = find_type(params->algo)->published;
-    return params->style > 0 && !(published && strcmp(published, params->variant) == 0);
+    return published && strcmp(published, params->variant) == 0;
 }
 
 bool solver_keeps_groom(const SectionParams *params)
 {
-    return params->rest == REST_GROOM && can_keep_groom(params);
+    return params->rest == REST_GROOM && params->style > 0 && !is_published(params);
 }
 
 static void set_rest_gravity(SolverState *state, const SolverSetup *setup)
 {
     versor inverse = {0, 0, 0, 1};
-    if (!can_keep_groom(setup->params)) return;
+    if (!(setup->params->style > 0) || is_published(setup->params)) return;
     if (setup->head) glm_quat_conjugate((float *)setup->head->rotation, inverse);
     glm_quat_rotatev(inverse, (float *)setup->rest_gravity, state->rest_gravity);
 }
@@ -254,13 +258,20 @@ static Result build(SolverState *state, const SolverSetup *setup, Error *error)
     bool segments = has_segments(state);
     vec3 hanging;
     find_hanging(state, hanging);
-    TRY(pose_create(&state->pose, setup->gpu, segments ? setup->params->style : 1, hanging, error));
+    const PoseOptions pose = {.style = segments ? setup->params->style : 1,
+                              .varies = segments && state->varies,
+                              .hanging = {hanging[0], hanging[1], hanging[2]}};
+    TRY(pose_create(&state->pose, setup->gpu, &pose, error));
     if (!recipe) return RESULT_OK;
     state->batches = calloc(state->hair->batch_count + 1, sizeof *state->batches);
     state->own = calloc(1, recipe->params_size + 1);
     if (!state->batches || !state->own)
         return error_set(error, RESULT_FAILED, "no memory for a solver");
     TRY(build_programs(state, setup, error));
+    if (state->varies)
+        TRY(along_create(&state->along, recipe, state->hair, state->programs.leads, state->params,
+                         &setup->gpu->limits, error));
+    if (segments) along_fill(&state->along, &(SolverStep){.dt = 1}, state->own);
     uint32_t carried = setup->params->clamped > 1 ? 2 : recipe->carried;
     // What hangs through the head to let the groom swing must not collide; what is drawn does.
     if (!segments || !is_balanced(state))
@@ -288,6 +299,7 @@ Result solver_create(Solver *solver, const SolverSetup *setup, Error *error)
     state->params = setup->params;
     state->timer = setup->timer;
     set_rest_gravity(state, setup);
+    state->varies = recipe && !is_published(state->params) && along_varies(recipe, state->params);
     Result result = build(state, setup, error);
     if (result == RESULT_OK)
         *solver = (Solver){type, state};
@@ -321,10 +333,12 @@ int solver_buffers(const Solver *solver, uint32_t batch, SolverBuffer buffers[SO
 
 static void write_pose(SolverState *state, const HeadPose *head)
 {
-    for (uint32_t i = 0; i < state->hair->batch_count; ++i)
+    for (uint32_t i = 0; i < state->hair->batch_count; ++i) {
+        along_bind(&state->along, i);
         pose_write(&state->pose, &state->hair->batches[i],
                    has_segments(state) ? &state->batches[i].state : NULL,
                    has_segments(state) ? state->programs.leads[i] : 0, head);
+    }
 }
 
 void solver_pose(const Solver *solver, const HeadPose *head)
@@ -352,6 +366,7 @@ static void dispatch(SolverState *state, uint32_t i, StepParams *uniforms)
     gpu_buffer_bind_texture(&hair->rest, BIND_REST);
     gpu_buffer_bind_texture(&hair->strand_id, BIND_STRAND_ID);
     gpu_buffer_bind_texture(&batch->state, BIND_STATE);
+    along_bind(&state->along, i);
     gpu_buffer_bind_storage(&hair->position, BIND_POSITION_OUT);
     gpu_buffer_bind_storage(&batch->state, BIND_STATE_OUT);
     if (batch->tips.buffer) gpu_buffer_bind_storage(&batch->tips, BIND_TIPS);
@@ -366,10 +381,11 @@ static void dispatch(SolverState *state, uint32_t i, StepParams *uniforms)
 // have it in their pose.
 static void hold_groom(const SolverState *state, StepParams *uniforms)
 {
-    vec3 held;
-    if (!has_particles(state)) return;
-    glm_quat_rotatev(uniforms->head_rotation, (float *)state->rest_gravity, held);
+    vec3 held = {0};
+    if (has_particles(state))
+        glm_quat_rotatev(uniforms->head_rotation, (float *)state->rest_gravity, held);
     glm_vec3_sub(uniforms->gravity, held, uniforms->gravity);
+    glm_vec3_scale(uniforms->gravity, state->params->gravity_share, uniforms->gravity);
 }
 
 // One of `count` equal parts of a step.
@@ -383,6 +399,7 @@ static void step_part(SolverState *state, const SolverStep *step, int part, int 
         recipe->fill(state->own, &uniforms, step, state->params);
         gpu_buffer_set_uniforms(&state->own_uniforms, BIND_SOLVER, state->own, recipe->params_size);
     }
+    along_fill(&state->along, step, state->own);
     int phases = recipe->phases && !state->programs.in_registers
                      ? recipe->phases(state->params, state->hair)
                      : 1;

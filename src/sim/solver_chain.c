@@ -27,6 +27,7 @@ static const SolverRecipe RECIPE = {
     .params_size = sizeof(ChainParams),
     .fill = fill,
     .define = define,
+    .along = step_spring_along,
 };
 
 const SolverType SOLVER_CHAIN = {

@@ -18,6 +18,7 @@ static const SolverRecipe RECIPE = {
     .shader = "sim/dftl.comp",
     .params_size = sizeof(DftlParams),
     .fill = fill,
+    .along = step_spring_along,
 };
 
 const SolverType SOLVER_DFTL = {

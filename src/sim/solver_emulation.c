@@ -52,6 +52,7 @@ static const SolverRecipe RECIPE = {
     .fill = fill,
     .define = define,
     .phases = phases,
+    .along = step_spring_along,
 };
 
 static const char *caution(const SectionParams *params)

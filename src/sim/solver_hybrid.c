@@ -17,6 +17,7 @@ static const SolverRecipe RECIPE = {
     .most_vertices = 12000, // five sweeps
     .params_size = sizeof(HybridParams),
     .fill = fill,
+    .along = step_spring_along,
 };
 
 const SolverType SOLVER_HYBRID = {

@@ -47,6 +47,14 @@ static int phases(const SectionParams *params, const Hair *hair)
     return params->rope_iterations;
 }
 
+static void along(float texel[4], const void *block, const void *mean, const SectionParams *there)
+{
+    const RopeParams *rope = block;
+    (void)mean, (void)there;
+    texel[0] = rope->first_decay, texel[1] = rope->first_gain;
+    texel[2] = rope->first_spring.pull, texel[3] = rope->spring.pull;
+}
+
 static Result check(const SolverSetup *setup, Error *error)
 {
     if (is_bullet(setup->params) && setup->params->rope_compliance > 0)
@@ -66,6 +74,7 @@ static const SolverRecipe RECIPE = {
     .fill = fill,
     .define = define,
     .phases = phases,
+    .along = along,
 };
 
 const SolverType SOLVER_ROPE = {

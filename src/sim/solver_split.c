@@ -25,6 +25,13 @@ static void define(ShaderDefine *defines, const SectionParams *params)
     defines[1] = (ShaderDefine){"DRAGGED", thesis || dragged};
 }
 
+// The pose's.
+static void along(float texel[4], const void *block, const void *mean, const SectionParams *there)
+{
+    (void)block, (void)mean;
+    texel[0] = there->style;
+}
+
 static const SolverRecipe RECIPE = {
     .label = "sim_split",
     .shader = "sim/split.comp",
@@ -36,6 +43,7 @@ static const SolverRecipe RECIPE = {
     .params_size = sizeof(SplitParams),
     .fill = fill,
     .define = define,
+    .along = along,
 };
 
 const SolverType SOLVER_SPLIT = {

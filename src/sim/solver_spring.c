@@ -20,6 +20,13 @@ static void fill(void *block, StepParams *uniforms, const SolverStep *step,
     };
 }
 
+static void along(float texel[4], const void *block, const void *mean, const SectionParams *there)
+{
+    const SpringParams *spring = block, *all = mean;
+    (void)there;
+    texel[0] = all->angular > 0 ? spring->angular / all->angular : 0;
+}
+
 static void define(ShaderDefine *defines, const SectionParams *params)
 {
     defines[0] = (ShaderDefine){"IMPLICIT", strcmp(params->variant, "explicit") != 0};
@@ -59,6 +66,7 @@ static const SolverRecipe IMPLICIT = {
     .params_size = sizeof(SpringParams),
     .fill = fill,
     .define = define,
+    .along = along,
     .substeps = calm_substeps,
     .phases = two_phases,
 };
@@ -85,6 +93,7 @@ static const SolverRecipe EXPLICIT = {
     .params_size = sizeof(SpringParams),
     .fill = fill,
     .define = define,
+    .along = along,
     .substeps = stable_substeps,
 };
 

@@ -82,6 +82,13 @@ static void fill(void *block, StepParams *uniforms, const SolverStep *step,
     };
 }
 
+static void along(float texel[4], const void *block, const void *mean, const SectionParams *there)
+{
+    const TressfxParams *tressfx = block;
+    (void)mean, (void)there;
+    texel[0] = tressfx->local_share, texel[1] = tressfx->global_share;
+}
+
 static void define(ShaderDefine *defines, const SectionParams *params)
 {
     defines[0] = (ShaderDefine){"TRESSFX4", is_faithful(params)};
@@ -118,6 +125,7 @@ static const SolverRecipe RECIPE = {
     .params_size = sizeof(TressfxParams),
     .fill = fill,
     .define = define,
+    .along = along,
 };
 
 const SolverType SOLVER_TRESSFX = {

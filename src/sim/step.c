@@ -67,6 +67,15 @@ StyleSpring step_midpoint(StepParams *uniforms, const SolverStep *step, const Se
     return step_style_spring(uniforms, h, params);
 }
 
+void step_spring_along(float texel[4], const void *block, const void *mean,
+                       const SectionParams *there)
+{
+    const StyleSpring *spring = block;
+    (void)mean, (void)there;
+    texel[0] = spring->stiffness, texel[1] = spring->pull;
+    texel[2] = spring->keep, texel[3] = spring->draw;
+}
+
 float step_style_odds(const SectionParams *params)
 {
     return params->style / fmaxf(1 - params->style, 1e-6f);
@@ -123,7 +132,7 @@ static bool fits_registers(const Hair *hair, uint32_t most)
 static Result build(StepPrograms *programs, uint32_t batch, uint32_t vertices,
                     const StepProgramsOptions *options, Error *error)
 {
-    ShaderDefine defines[8 + STEP_OWN_DEFINES] = {
+    ShaderDefine defines[9 + STEP_OWN_DEFINES] = {
         {"GROUP_SIZE", (int)programs->group_size},
         {"STRANDS", (int)programs->strands_per_lane},
         {"IN_REGISTERS", programs->in_registers},
@@ -131,9 +140,10 @@ static Result build(StepPrograms *programs, uint32_t batch, uint32_t vertices,
         {"LEAD", (int)programs->leads[batch]},
         {"SHELTER", options->sheltered},
         {"STYLED", options->styled},
+        {"VARIES", options->varies},
     };
     for (int i = 0; options->defines && options->defines[i].name; ++i)
-        defines[7 + i] = options->defines[i];
+        defines[8 + i] = options->defines[i];
     return shader_build_compute(&programs->programs[batch], options->shader, defines, error);
 }
 

@@ -44,6 +44,10 @@ StyleSpring step_style_spring(const StepParams *uniforms, double h, const Sectio
 StyleSpring step_midpoint(StepParams *uniforms, const SolverStep *step,
                           const SectionParams *params);
 
+// SolverRecipe.along of solvers whose block begins with a StyleSpring: that spring.
+void step_spring_along(float texel[4], const void *block, const void *mean,
+                       const SectionParams *there);
+
 // style/(1 - style): 1, a stiffness as given, for style 0.5.
 float step_style_odds(const SectionParams *params);
 
@@ -87,6 +91,7 @@ typedef struct StepProgramsOptions {
     uint32_t lead;  // vertices that the head carries beside the root, where a strand has enough
     bool sheltered; // the head keeps wind off (forces.glsl)
     bool styled;    // there is a spring towards the style
+    bool varies;    // parameters differ along the strand (along.h)
     const ShaderDefine *defines; // the variant's own, at most STEP_OWN_DEFINES
 } StepProgramsOptions;
 
@@ -99,7 +104,8 @@ typedef struct StepPrograms {
 } StepPrograms;
 
 // Compiles with the macros GROUP_SIZE (lanes), STRANDS (a lane's), IN_REGISTERS, VERTICES (but for
-// the lead), LEAD, SHELTER, STYLED and the own ones. Strands are in registers if all are short
+// the lead), LEAD, SHELTER, STYLED, VARIES and the own
+// ones. Strands are in registers if all are short
 // enough and of few different counts. Errors of shader_build_compute; RESULT_FAILED without memory.
 Result step_programs_create(StepPrograms *programs, const Gpu *gpu, const Hair *hair,
                             const StepProgramsOptions *options, Error *error);

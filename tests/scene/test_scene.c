@@ -301,7 +301,11 @@ static const struct {
      "sections[1]: unknown key 'darg': did you mean 'drag'?"},
     {"{\"sections\": [{\"file\": \"a\", \"fps\": 1}]}", "'fps' belongs to the top level"},
     {"{\"sections\": [{\"file\": \"a\", \"drag\": -1}]}",
-     "sections[0].drag: got '-1', expected a number from 0 to 1000000 (1/s) (nearest: 0)"},
+     "sections[0].drag: got '-1', expected a number from 0 to 1000000 (1/s), or such from "
+     "root to tip, A:B (nearest: 0)"},
+    {"{" HAIR ", \"drag\": [[0, 1], [1]]}",
+     "drag: got [[0,1],[1]], expected a number from 0 to 1000000, or points along the strand"},
+    {"{" HAIR ", \"drag\": [[0.5, 1], [0.25, 3]]}", "drag: got '1@0.5:3@0.25'"},
     {"{" HAIR ", \"tip-ratio\": 1}", "unknown key 'tip-ratio': did you mean 'tip_ratio'?"},
     {"{" HAIR ", \"line\\nend\": 1}", "unknown key 'line?end'"},
     {"{" HAIR ", \"fps\": \"30\"}", "fps: got \"30\", expected a number from 1 to 10000"},
