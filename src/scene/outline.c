@@ -134,8 +134,11 @@ static void add_rest_strand(Outline *outline, const Strands *strands, uint32_t s
 static void add_rest(Outline *outline, const Strands *strands, const SectionParams *params,
                      const Moment *moment, uint32_t times)
 {
+    // A groom at rest on a head that stands still stays as it is; other forms of solvers may not.
+    bool rests = times == 1 && params->rest == REST_GROOM && params->style > 0 && !*params->variant;
     vec3 pull;
-    for (int k = 0; k < 3; ++k) pull[k] = moment->gravity[k] + params->drag * moment->wind[k];
+    for (int k = 0; k < 3; ++k)
+        pull[k] = (rests ? 0 : moment->gravity[k]) + params->drag * moment->wind[k];
     float strength = glm_vec3_norm(pull);
     if (!(strength > 0) || params->style >= 1 || strcmp(params->algo, "none") == 0) return;
     glm_vec3_scale(pull, 1 / strength, pull);

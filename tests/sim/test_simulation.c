@@ -212,7 +212,7 @@ static void automatic_substeps_are_the_fewest_stable_ones(void **state)
     run->fps = 24;
     run->gravity[1] = -200;
     double g = simulation_acceleration(&fixture.scene, &fixture.scene.sections[0].params);
-    assert_true(fabs(g - (200 + 0.5 * 1.5)) < 1e-6); // drag 1/s, wind 0.5 m/s, half of it gusts
+    assert_true(fabs(g - (200 + 3 * 0.5 * 1.5)) < 1e-6); // drag 3/s, wind 0.5 m/s, half of it gusts
     simulation_fixture_start(&fixture);
     int chosen = fixture.simulation.substeps;
     assert_true(chosen > 1);
