@@ -31,6 +31,7 @@
 #if BENDS
 #include "sim/bend.glsl"
 #endif
+const float ALLOWED = 0.005; // share of energy
 #include "sim/energy_account.glsl"
 
 const float THETA = 0.25;

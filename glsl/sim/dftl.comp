@@ -6,47 +6,60 @@
 // leader, x' = leader + l (p - leader)/|p - leader|. That alone acts as if all mass sat at the
 // leader; so the velocity gets back what the follower's correction d' took:
 //     v_i = (x'_i - x_i)/dt - s d'_{i+1}/dt,      s: ftl_damping
+// What is stored is the velocity of the drawn strand, u = (x'_i - x_i)/dt, and in its fourth
+// component s d'_{i+1}/dt as a share of the segment, along which it lies.
 //
 // STYLED 1: before that, p is drawn to the style (style_spring.h).
+// GUARDED 1: the drawn strand gains no energy by corrections (energy_account.glsl).
 #include "sim/dftl_params.h"
 #include "sim/particles.glsl"
+#include "sim/strand.glsl"
+
+#undef BENDS
+#define BENDS 0
+const float ALLOWED = 0.003; // share of energy
+#include "sim/energy_account.glsl"
 
 void main()
 {
-    int s = first_strand(), n = int(step_params.vertex_count);
+    int s = first_strand(), last = int(step_params.vertex_count) - 1;
     if (s >= int(step_params.strand_count)) return;
-    int a = strand_base(s);
-    vec3 wind = strand_wind(texelFetch(strand_id, s).x, root_position(strand_root(a)));
-    float dt = step_params.dt, per_second = 1.0 / step_params.dt, damping = dftl_params.damping;
-    vec3 leader = root_position(strand_root(a)), leader_velocity = vec3(0.0);
-    vec4 rotation = step_params.head_rotation;
-    vec3 root = leader, style = vec3(0.0),
-         along = rotate(rotation, texelFetch(rest, a + STRAND_TILE).xyz);
-    carry_lead(a);
-    positions[a] = vec4(leader, 1.0);
-    for (int j = 1; j < n; ++j, a += STRAND_TILE) {
-        vec3 x = texelFetch(position_before, a + STRAND_TILE).xyz;
-        vec3 predicted =
-            x + dt * kick_at(j, texelFetch(velocity_before, a + STRAND_TILE).xyz, wind);
-        vec4 segment = texelFetch(rest, a + STRAND_TILE);
+    Strand strand = strand_open(s, dftl_params.spring);
+    Account account = account_open(strand, 0.0);
+    float per_second = 1.0 / strand.dt, given = dftl_params.damping * per_second;
+    vec3 leader = strand.root, leader_velocity = strand.root_velocity, style = vec3(0.0),
+         along = rotate(strand.rotation, fetch_rest(strand, 1).xyz), x = fetch_position(strand, 1);
+    positions[strand.address] = vec4(leader, 1.0);
+    for (int j = 1; j <= last; ++j) {
+        int a = strand.address + j * STRAND_TILE;
+        vec3 ahead = fetch_position(strand, min(j + 1, last));
+        vec4 u = texelFetch(velocity_before, a), segment = fetch_rest(strand, j);
+        // u would lead to x + move, v does to x + move + back
+        vec3 kicked = kicked_velocity(strand, j, u.xyz), move = strand.dt * kicked,
+             back = strand.dt * (kicked_velocity(strand, j, u.xyz - u.w * (ahead - x)) - kicked);
 #if STYLED
-        style = next_style(style, segment, rotation);
-#if VARIES
-        float pull = own_along(j).y;
-#else
-        float pull = dftl_params.spring.pull;
+        float pull = spring_of(strand, j).pull;
+        style = next_style(style, segment, strand.rotation);
+        move += pull * (strand.root + style - x - move);
+        back -= pull * back;
 #endif
-        predicted += pull * (root + style - predicted);
-#endif
+        vec3 predicted = x + move + back;
         vec3 reach = predicted - leader;
         float square = dot(reach, reach);
         // on its leader: the last direction (first the style's) goes on
         along = square > 1e-24 ? reach * inversesqrt(square) : along;
         vec3 follower = leader + segment.w * along;
-        velocities[a] = vec4(leader_velocity - damping * per_second * (follower - predicted), 0.0);
-        positions[a + STRAND_TILE] = vec4(follower, 1.0);
+        velocities[a - STRAND_TILE] =
+            vec4(leader_velocity, given * (1.0 - sqrt(square) / segment.w));
+        positions[a] = vec4(follower, 1.0);
+#if GUARDED
+        account_add(account, strand, follower - x, move, u.xyz);
+#endif
         leader_velocity = per_second * (follower - x);
-        leader = follower;
+        leader = follower, x = ahead;
     }
-    velocities[a] = vec4(leader_velocity, 0.0);
+    velocities[strand.address + last * STRAND_TILE] = vec4(leader_velocity, 0.0);
+#if GUARDED
+    account_close(account, strand, last);
+#endif
 }

@@ -10,12 +10,12 @@
 //
 // (leapfrog's energy: velocities between steps, work over the mean of two steps). The strand
 // carries a = max(a + X, 0), what it has gained since it last had least, in the fourth component of
-// the root's velocity. Above ALLOWED of what gravity could give to it, and of what it has, it goes
-// by the share k of its way only, each segment from where it was towards where it went. For moves k
-// m, X = A k^2 + B k + C (springs give what they give along the way: to B), of which the greatest k
-// that keeps within ALLOWED is known at once. Segments that turn far go by more than k; that goes
-// into the account. Should no k do, the velocities of the one that gains least pay for the rest.
-const float ALLOWED = 0.005;
+// the root's velocity. Above ALLOWED (the solver says it) of what gravity could give to it, and of
+// what it has, it goes by the share k of its way only, each segment from where it was towards where
+// it went. For moves k m, X = A k^2 + B k + C (springs give what they give along the way: to B), of
+// which the greatest k that keeps within ALLOWED is known at once. Segments that turn far go by
+// more than k; that goes into the account. Should no k do, the velocities of the one that gains
+// least pay for the rest.
 
 struct Account {
     vec3 moved, moved_before;        // of the root, in this step and in the one before

@@ -55,8 +55,6 @@ static const struct {
     {"pendulum", "split", "planar90_c4", "error", 60, false, 0.002, NAN},
     {"beam", "", "", "error", 0, true, 0.01, NAN},
     {"stretch", "", "", "as drawn", 0, false, 1e-5, NAN},
-    {"energy", "dftl", "n = 64", "rise", 0, false, 0.01, 0.12}, // docs/solvers_rigid.md says why
-    {"energy", "dftl", "n = 16", "rise", 0, false, 0.01, 0.04},
     {"energy", "", "", "rise", 0, false, 0.01, NAN},
     {"scale", "", "", "from metres", 0, true, 1e-4, NAN},
 };

@@ -329,8 +329,7 @@ static Result stretch_measure(Run *run, Error *error)
 // above the start's in what a strand could lose by falling ("rise") and, without drag and style,
 // the change over the whole run ("change"). Kinetic energy is that of the solver's own velocities;
 // "rise as drawn" has it from the drawn motion from step to step, and potential energy from the
-// middle of that. Of dftl, whose velocities also hold the corrections that are to come, there is
-// only the latter; of split, whose tip alone has mass, that of the tip.
+// middle of that. Of split, whose tip alone has mass, there is only that of the tip.
 
 static bool energy_set_up(Setup *setup)
 {
@@ -414,7 +413,7 @@ static Result energy_measure(Run *run, Error *error)
     double start[EXPERIMENT_POINTS][3], before[EXPERIMENT_POINTS][3], now[EXPERIMENT_POINTS][3];
     double drawn = 0, own = 0, change = 0;
     bool tips = strcmp(run->method->algo, "split") == 0;
-    bool has_own = !tips && strcmp(run->method->algo, "dftl") != 0;
+    bool has_own = !tips;
     long steps = (long)(setup->seconds * trial->rate + 0.5);
     long sparse = (long)fmax(trial->rate / 4, 1);
     TRY(read_masses(trial, setup->n, start, error));

@@ -30,7 +30,7 @@ static const struct {
     {"chain", "", 0, 0.03, "its account leaves out what stiff springs of the style give"},
     {"hybrid", "", 0, 0.03, "its balance takes a gain out of velocities, after the step's move"},
     {"emulation", "projected", 0, 0.06, "so does its balance"},
-    {"dftl", "", 0, 0.15, "its corrections go into velocities, not into what is drawn"},
+    {"dftl", "mueller", ENERGY | REST, 0, "its corrections give energy, as published"},
 };
 static const double USUAL_RISE = 0.02;
 
@@ -94,8 +94,6 @@ static void apply_promises(StressBound *bound, const StressCase *stress,
         }
     bool elastic = is(stress, "spring") || is(stress, "rope");
     if (elastic) lacks |= params->stretch_drawn ? LENGTHS : ENERGY; // which it draws
-    // The lower, the more it whips, and the more the shorter the steps (docs/solvers_rigid.md).
-    if (is(stress, "dftl") && params->ftl_damping < 0.98f) lacks |= ENERGY;
     if (is(stress, "tressfx") && !is_stable_tressfx(stress, params)) lacks |= ENERGY | REST;
     if (lacks & ENERGY) bound->rise = -1;
     bound->length_error = lacks & LENGTHS ? 0 : LENGTH_ERROR;
@@ -122,11 +120,13 @@ StressBound stress_run_bound(const StressCase *stress, const SectionParams *para
         .g = stress->value[STRESS_gravity],
         .length = stress->value[STRESS_length],
         .stiffness = turned_springs(stress, params),
-        // What a jerk of the root gives to a strand, over its change of velocity: where it is by
-        // tens of links, chain's corrections of the lengths overshoot, for that step only; those of
-        // dftl are velocities, which it takes a dozen steps to lose.
-        .jerk = is(stress, "chain") || is(stress, "dftl") ? 1.5 : 1,
-        .jerk_stays = is(stress, "dftl"),
+        // What a jerk of the root gives to a strand, over its change of velocity, in that step
+        // only. Where it is by tens of links, chain's corrections of the lengths overshoot. In dftl
+        // no particle moves by more than its leader, and the root by the jerk; a slowed one that is
+        // thrown about its leader comes out there all the same.
+        .jerk = is(stress, "chain")  ? 1.5
+                : is(stress, "dftl") ? 2
+                                     : 1,
         .carries = is(stress, "tressfx") || (params->clamped > 1 && stress->value[STRESS_n] > 2),
         .bends = 16 * (is(stress, "chain") ? (double)params->chain_bend : 0) * odds_of(params) *
                  (stress->value[STRESS_n] - 1) * stress->value[STRESS_length],
@@ -169,7 +169,7 @@ void stress_run_bound_step(StressBound *bound, const double moved[3], double ang
 void stress_run_bound_fill(const StressBound *bound, bool last, StressParams *params)
 {
     const double most = 1e18; // float32 squares it
-    double overshoot = (bound->jerk - 1) * (bound->jerk_stays ? bound->kicks : bound->changed);
+    double overshoot = (bound->jerk - 1) * bound->changed;
     params->per_dt = (float)(1 / bound->step_s);
     params->kicks = (float)fmin(bound->kicks + overshoot + bound->turning, most);
     params->spun = bound->carries ? (float)fmin(bound->spun, most) : 0;

@@ -70,8 +70,7 @@ typedef struct StressBound {
     double rate, spun;        // 1/s: the head's turning; its changes, and its own direction's
     double root_velocity[3];
     double rise;     // share by which the solver lets energy rise; < 0: no bound
-    double jerk;     // times the root's changes of velocity,
-    bool jerk_stays; // of all so far; else of the last step's only
+    double jerk;     // times the root's changes of velocity in the last step
     double changed;  // m/s: the last of them
     double bends;    // m^2/s^2: what bends by a radian would store, 16 times: twice the energy, and
                      // both segments' directions off by as much again

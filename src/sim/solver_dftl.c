@@ -3,6 +3,8 @@
 
 #include "glsl/sim/dftl_params.h"
 
+#include <string.h>
+
 static void fill(void *block, StepParams *uniforms, const SolverStep *step,
                  const SectionParams *params)
 {
@@ -13,12 +15,19 @@ static void fill(void *block, StepParams *uniforms, const SolverStep *step,
     };
 }
 
+static void define(ShaderDefine *defines, const SectionParams *params)
+{
+    defines[0] = (ShaderDefine){"GUARDED", strcmp(params->variant, "mueller") != 0};
+}
+
 static const SolverRecipe RECIPE = {
     .label = "sim_dftl",
     .shader = "sim/dftl.comp",
+    .most_vertices = 32000, // two sweeps
     .params_size = sizeof(DftlParams),
     .fill = fill,
     .along = step_spring_along,
+    .define = define,
 };
 
 const SolverType SOLVER_DFTL = {
@@ -27,5 +36,6 @@ const SolverType SOLVER_DFTL = {
                "strongly damped",
     .lengths = "exact",
     .style = "position springs, --style, --style-stiffness",
+    .variants = {"steady", "mueller"},
     .recipes = {&RECIPE},
 };

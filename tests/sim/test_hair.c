@@ -131,13 +131,10 @@ static void no_batch_has_more_strands_than_a_dispatch_takes(void **state)
 static GLuint build(const char *shader)
 {
     GLuint program;
-    const ShaderDefine defines[] = {{"GROUP_SIZE", 8},   {"STRANDS", 1},
-                                    {"IN_REGISTERS", 0}, {"VERTICES", 4},
-                                    {"SHELTER", 0},      {"LEAD", 0},
-                                    {"THESIS", 0},       {"DRAGGED", 0},
-                                    {"STYLED", 1},       {"BENDS", 1},
-                                    {"BULLET", 0},       {"IMPLICIT", 1},
-                                    {"TRESSFX4", 0},     {0}};
+    const ShaderDefine defines[] = {
+        {"GROUP_SIZE", 8}, {"STRANDS", 1},  {"IN_REGISTERS", 0}, {"VERTICES", 4}, {"SHELTER", 0},
+        {"LEAD", 0},       {"THESIS", 0},   {"DRAGGED", 0},      {"STYLED", 1},   {"BENDS", 1},
+        {"BULLET", 0},     {"IMPLICIT", 1}, {"TRESSFX4", 0},     {"GUARDED", 1},  {0}};
     assert_int_equal(shader_build_compute(&program, shader, defines, NULL), RESULT_OK);
     return program;
 }

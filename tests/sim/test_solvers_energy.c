@@ -11,24 +11,7 @@
 
 #include <cmocka.h>
 
-// Who gains more energy than 1 % of what can be lost by falling, from how many particles on and by
-// how much at most, as measured.
-static const struct {
-    const char *algo;
-    int from;
-    double most;
-    const char *why;
-} RISES[] = {
-    {"dftl", 64, 0.12, "its corrections go into velocities, not into what is drawn"},
-    {"dftl", 16, 0.04, "so do they here, at 30 Hz"},
-};
-
-static double allowed_rise(const SolverType *type, int n)
-{
-    for (size_t i = 0; i < sizeof RISES / sizeof *RISES; ++i)
-        if (strcmp(RISES[i].algo, type->name) == 0 && n >= RISES[i].from) return RISES[i].most;
-    return 0.01;
-}
+static const double ALLOWED_RISE = 0.01; // of what can be lost by falling
 
 enum { LONG_MOST = 64, LONG_KINDS = 2 };
 static const int LONG_COUNTS[] = {4, 16, 64};
@@ -82,12 +65,10 @@ static void long_run_read(LongRun *run, Vec positions[LONG_SIZES][LONG_KINDS][LO
     }
 }
 
-// Whether a solver's own velocities are those of its strand. Those of dftl also hold the
-// corrections that are to come: at 60 Hz and at rest 3 m/s in a strand of 64.
+// Whether a solver has velocities of the strand that is drawn.
 static bool has_velocities(const SolverType *type)
 {
-    return !solver_is_static(type) && strcmp(type->name, "split") != 0 &&
-           strcmp(type->name, "dftl") != 0;
+    return !solver_is_static(type) && strcmp(type->name, "split") != 0;
 }
 
 // Seconds of the steps that the solver really takes.
@@ -189,7 +170,7 @@ static int check_run(const SolverType *type, double per_second, float style, flo
     fixture_destroy(&run.fixture);
     const char *variant = type->variants[0] ? type->variants[0] : "";
     for (int i = 0; i < LONG_SIZES; ++i) {
-        if (most[i] < allowed_rise(type, LONG_COUNTS[i]) ||
+        if (most[i] < ALLOWED_RISE ||
             !(every_solver_promises(type, variant, LONG_COUNTS[i]) & ENERGY))
             continue;
         printf("%s, n = %d at %g Hz, drag %g, style %g: energy rises by %.2g of what could be "
