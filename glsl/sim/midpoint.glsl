@@ -16,9 +16,10 @@
 // does along dt w. Second order, and energy neither comes nor goes, but for what tractrices change
 // about p (see constrain.glsl).
 //
-// The springs' end that counts is q + theta dt w, theta = 1/2 .. 1 as k h^2 grows: second order for
-// soft ones, damped for stiff ones;
-//     keep = 1/(1 + z + z^2/(1 + z)),  draw = keep z/h,  z = k h^2 (step_style_spring in step.c).
+// The springs' end that counts is that of the step, q + dt w, as in the other solvers:
+//     keep = 1/(1 + 2z),  draw = keep z/h,  z = k h^2 (step_style_spring in step.c).
+// (q + dt w/2 would be second order and damp nothing: strands that their springs push together
+// buckled, and trembled on.)
 // The sweeps run to and fro. Needs strand.glsl, tridiagonal.glsl, and keep, recall (vec4 a
 // particle), keep_beside, recall_beside.
 

@@ -53,7 +53,7 @@ StyleSpring step_style_spring(const StepParams *uniforms, double h, const Sectio
     // Two half kicks about a spring at rest add (1 + e^{-ch})/(1 + e^{-2ch}) gain each: as much of
     // the spring keeps the balance exact.
     double z = k * h * gain * (1 + decay) / (1 + decay * decay);
-    double keep = 1 / (1 + z + z * z / (1 + z));
+    double keep = 1 / (1 + 2 * z);
     return (StyleSpring){.stiffness = (float)k,
                          .pull = w > 0 ? (float)(w / (1 - style + w)) : 0,
                          .keep = (float)keep,

@@ -54,7 +54,7 @@ static void spring_half(const Middle *m, int n, const Vec *kicked, Vec *vs)
     double gain = m->h, decay = m->decay;
     if (m->decay < 1) gain = vec_norm(m->push) / vec_norm(m->force);
     double z = m->stiffness * m->h * gain * (1 + decay) / (1 + decay * decay);
-    double keep = 1 / (1 + z + z * z / (1 + z));
+    double keep = 1 / (1 + 2 * z);
     memset(vs[0], 0, sizeof(Vec));
     for (int j = 1; j < n; ++j)
         for (int k = 0; k < 3; ++k)
