@@ -67,6 +67,8 @@ static Result create_section(Simulation *simulation, uint32_t i, const Gpu *gpu,
     TRY(solver_create(&section->solver, &setup, error));
     TRY(sleep_create(&section->sleep, gpu, simulation->timer, &section->hair, &section->solver,
                      params, error));
+    TRY(volume_create(&section->volume, gpu, simulation->timer, &section->hair, &section->solver,
+                      params, error));
     if (needs_inbetween(simulation, &section->solver))
         TRY(inbetween_create(&section->inbetween, gpu, &section->hair, error));
     return RESULT_OK;
@@ -207,6 +209,7 @@ void simulation_destroy(Simulation *simulation)
 {
     for (uint32_t i = 0; simulation->sections && i < simulation->scene->section_count; ++i) {
         sleep_destroy(&simulation->sections[i].sleep);
+        volume_destroy(&simulation->sections[i].volume);
         collision_destroy(&simulation->sections[i].follow_collision);
         follow_destroy(&simulation->sections[i].follow);
         inbetween_destroy(&simulation->sections[i].inbetween);
@@ -248,6 +251,7 @@ static void step_section(Simulation *simulation, SimulationSection *section, con
     }
     inbetween_restore(&section->inbetween);
     solver_step(&section->solver, step);
+    volume_step(&section->volume, step);
     sleep_check(&section->sleep, &section->solver);
     section->stepped = true;
     simulation->strand_steps += strands;

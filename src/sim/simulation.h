@@ -17,6 +17,7 @@
 #include "sim/inbetween.h"
 #include "sim/sleep.h"
 #include "sim/solver.h"
+#include "sim/volume.h"
 #include "strands/strands.h"
 
 typedef struct SimulationSection {
@@ -26,6 +27,7 @@ typedef struct SimulationSection {
     Collision follow_collision; // of the followers, which take no part in the motion
     Inbetween inbetween; // empty where no frame falls between two steps, or the solver is static
     Sleep sleep;
+    Volume volume;
     bool posed;        // positions are written ...
     bool stepped;      // ... and the hair has moved since ...
     HeadPose posed_at; // ... or not, and they hold while the head is here

@@ -454,6 +454,13 @@ int solver_substeps(const Solver *solver, const SolverStep *step)
     return state->recipe->substeps(step, state->params, state->hair);
 }
 
+uint32_t solver_carried(const Solver *solver)
+{
+    const SolverState *state = solver->state;
+    uint32_t carried = state->params->clamped > 1 ? 2 : state->recipe->carried;
+    return carried > 1 ? carried : 1;
+}
+
 bool solver_is_static(const SolverType *type)
 {
     return !type->recipes[0];

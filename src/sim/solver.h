@@ -103,6 +103,10 @@ void solver_report(const Solver *solver, SolverReport *report);
 // How many equal sub-steps the solver will make of this step, >= 1.
 int solver_substeps(const Solver *solver, const SolverStep *step);
 
+// Vertices, from the root, that the head carries (SolverRecipe.carried and --clamped); not of a
+// static solver.
+uint32_t solver_carried(const Solver *solver);
+
 // True if stepping changes nothing: the pose depends on the head alone.
 bool solver_is_static(const SolverType *type);
 
