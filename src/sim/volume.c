@@ -9,7 +9,7 @@
 
 // Cells of the longest side of the groom for each cubic root of its particles; room about it, in
 // lengths of the longest strand; cells in all; particles of a grain, and its length in cells.
-static const double FINENESS = 1, ROOM = 0.3, GRAIN_CELLS = 2;
+static const double FINENESS = 1, ROOM = 0.3, GRAIN_CELLS = 3;
 enum { LEAST_SIDE = 8, MOST_SIDE = 32, MOST_CELLS = 60000, MOST_GRAIN = 4, PUSHES = 2 };
 // With --volume 1: the share of a velocity within a dense cell that friction takes in FRICTION_S,
 // and the cells a second at which hair leaves one.
