@@ -71,7 +71,7 @@ static Result try_solver(const Gpu *gpu, const SolverType *type, const char *var
     const SectionParams params = {.algo = (char *)type->name,
                                   .variant = (char *)variant,
                                   .style = style,
-                                  .style_stiffness = 300,
+                                  .style_stiffness = 200,
                                   .clamped = style < 1 ? 1 : 2,
                                   // Springs with bending and without.
                                   .chain_bend = style < 1 ? 10 : 0};

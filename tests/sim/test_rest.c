@@ -77,7 +77,7 @@ static void check_groom(const char *algo, const char *variant)
             SimulationFixture fixture;
             create(&fixture, algo, variant, tilted ? 0.8f : 0, rates[i]);
             double moved = displacement_after(&fixture, 2 * rates[i]);
-            if (is_published(variant) ? moved < 0.01 : !(moved < 1e-4))
+            if (is_published(variant) ? moved < 0.005 : !(moved < 1e-4))
                 fail_msg("%s %s, %d Hz, %s: moved by %.2g of its length", algo, variant, rates[i],
                          tilted ? "tilted" : "upright", moved);
         }
@@ -101,7 +101,7 @@ static void check_hanging(const char *algo, const char *variant)
     create(&fixture, algo, variant, 0, 60);
     fixture.scene.sections[0].params.rest = REST_HANGING;
     double moved = displacement_after(&fixture, 120);
-    if (!(moved > 0.01)) fail_msg("%s %s moved by %.2g only", algo, variant, moved);
+    if (!(moved > 0.005)) fail_msg("%s %s moved by %.2g only", algo, variant, moved);
 }
 
 static void hanging_hair_falls_from_its_style(void **state)
