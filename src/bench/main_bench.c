@@ -14,6 +14,7 @@
 #include "sim/inbetween.h"
 #include "sim/pose.h"
 #include "sim/simulation.h"
+#include "sim/volume.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -49,13 +50,19 @@ static Result try_hair(const Gpu *gpu, const SectionParams *params, const Strand
     Hair hair = {0};
     Solver solver = {0};
     Follow follow = {0};
-    const SolverSetup setup = {
-        .gpu = gpu, .hair = &hair, .params = params, .sheltered = params->style == 1};
+    Volume volume = {0};
+    const SolverSetup setup = {.gpu = gpu,
+                               .hair = &hair,
+                               .params = params,
+                               .sheltered = params->style == 1,
+                               .rest_gravity = {0, params->volume > 0 ? -9.81f : 0, 0}};
     Result result = strands_make(&strands, recipe, error);
     THEN(result, hair_create(&hair, &strands, 0, &gpu->limits, error));
     THEN(result, params->followers.value
                      ? follow_create(&follow, gpu, NULL, &hair, &strands, params, 1, error)
                      : solver_create(&solver, &setup, error));
+    if (solver.type) THEN(result, volume_create(&volume, gpu, NULL, &hair, &solver, params, error));
+    volume_destroy(&volume);
     follow_destroy(&follow);
     solver_destroy(&solver);
     hair_destroy(&hair);
@@ -63,14 +70,27 @@ static Result try_hair(const Gpu *gpu, const SectionParams *params, const Strand
     return result;
 }
 
+// What a solver's programs depend on.
+typedef struct SolverShape {
+    uint32_t vertices;
+    float style, style_of_tip;
+    float volume; // and the groom at rest
+} SolverShape;
+
 static Result try_solver(const Gpu *gpu, const SolverType *type, const char *variant,
-                         uint32_t vertices, float style, Error *error)
+                         const SolverShape *shape, Error *error)
 {
     StrandsRecipe recipe = strands_make_recipe(STRANDS_STYLE_RANDOM);
-    recipe.count = 4, recipe.vertices = vertices;
+    recipe.count = 4, recipe.vertices = shape->vertices;
+    float style = shape->style;
+    Profile along = {.count = style != shape->style_of_tip ? 2 : 0,
+                     .at = {0, 1},
+                     .value = {style, shape->style_of_tip}};
     const SectionParams params = {.algo = (char *)type->name,
                                   .variant = (char *)variant,
                                   .style = style,
+                                  .style_along = along,
+                                  .volume = shape->volume,
                                   .style_stiffness = 200,
                                   .clamped = style < 1 ? 1 : 2,
                                   // Springs with bending and without.
@@ -97,22 +117,22 @@ static Result try_inbetween(const Gpu *gpu, Error *error)
 
 static void try_solvers(const Gpu *gpu, Result *worst, FILE *stream, Error *error)
 {
-    static const struct {
-        uint32_t vertices;
-        float style;
-    } shapes[] = {
-        {8, 0.5f}, {8, 0}, {8, 1}, {64, 0.5f}}; // in registers and not, each mix of the style
+    // In registers and not, each mix of the style, also along the strand and of a groom at rest.
+    static const SolverShape shapes[] = {
+        {8, 0.5f, 0.5f, 0}, {8, 0, 0, 0},        {8, 1, 1, 0},       {64, 0.5f, 0.5f, 0},
+        {8, 0.9f, 0.3f, 1}, {64, 0.9f, 0.3f, 0}, {8, 0.4f, 0.4f, 1}, {64, 0.6f, 0.6f, 1},
+    };
     for (const SolverType *const *type = SOLVER_TYPES; *type; ++type)
         for (int v = 0; v == 0 || (*type)->variants[v]; ++v)
             for (size_t i = 0; i < sizeof shapes / sizeof *shapes; ++i) {
                 const char *variant = (*type)->variants[v] ? (*type)->variants[v] : "";
                 char what[64];
                 Error why = {{0}};
-                snprintf(what, sizeof what, "%s %s, %u vertices, style %g", (*type)->name, variant,
-                         shapes[i].vertices, (double)shapes[i].style);
-                report(what,
-                       try_solver(gpu, *type, variant, shapes[i].vertices, shapes[i].style, &why),
-                       &why, worst, stream, error);
+                snprintf(what, sizeof what, "%s %s, %u vertices, style %g:%g, volume %g",
+                         (*type)->name, variant, shapes[i].vertices, (double)shapes[i].style,
+                         (double)shapes[i].style_of_tip, (double)shapes[i].volume);
+                report(what, try_solver(gpu, *type, variant, &shapes[i], &why), &why, worst, stream,
+                       error);
             }
 }
 

@@ -67,6 +67,7 @@ static const struct {
     {"split", "dragged", "by its definition the root pulls the strand through the world", 0, 0.2},
     {"split", "thesis", "as published", 0, 2},
     {"emulation", "thesis", "as published", 0, 2},
+    {"emulation", "projected", "each of its pulls rounds: 2.6e-4 with springs of 200/s2", 0, 5e-4},
     {"tressfx", "steady", "takes part in a share of the head's motion; air resists the rest", 0,
      0.1},
     {"tressfx", "tressfx4", "the same", 0, 0.5},
