@@ -126,7 +126,7 @@ static void try_solvers(const Gpu *gpu, Result *worst, FILE *stream, Error *erro
         for (int v = 0; v == 0 || (*type)->variants[v]; ++v)
             for (size_t i = 0; i < sizeof shapes / sizeof *shapes; ++i) {
                 const char *variant = (*type)->variants[v] ? (*type)->variants[v] : "";
-                char what[64];
+                char what[128];
                 Error why = {{0}};
                 snprintf(what, sizeof what, "%s %s, %u vertices, style %g:%g, volume %g",
                          (*type)->name, variant, shapes[i].vertices, (double)shapes[i].style,
@@ -255,7 +255,7 @@ static void try_renderers(const Gpu *gpu, Result *worst, FILE *stream, Error *er
         {"tangent", {.aov = AOV_TANGENT, .kind = IMAGE_16}}};
     for (size_t i = 0; i < sizeof images / sizeof *images; ++i)
         for (Raster raster = RASTER_QUADS; raster <= RASTER_BLOCKS; ++raster) {
-            char what[64];
+            char what[128];
             Error why = {{0}};
             snprintf(what, sizeof what, "renderer, %s, %s",
                      raster == RASTER_QUADS ? "quads" : "blocks", images[i].name);
