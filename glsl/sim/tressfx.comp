@@ -280,7 +280,7 @@ void finish(Carried carried)
 {
     vec4 to_world = step_params.head_rotation;
     float dt = step_params.dt, most = tressfx_params.most_move;
-    vec3 x = vec3(0.0), before = vec3(0.0), along = vec3(0.0);
+    vec3 x = vec3(0.0), before = vec3(0.0), along = vec3(0.0), world = carried.root;
     positions[address(0)] = vec4(carried.root, 1.0);
     velocities[address(0)] = vec4(0.0);
     for (int j = 1; j < n; ++j) {
@@ -293,6 +293,8 @@ void finish(Carried carried)
         vec3 here = j > 1 ? now.xyz + now.w * before : now.xyz;
         along = unit(here - before, segment.xyz);
         x += segment.w * along;
+        // Turning x would round it by more than a short segment may be off.
+        world += segment.w * rotate(to_world, along);
         before = here;
 #endif
         vec3 moved = x - velocities[a].xyz;
@@ -303,7 +305,10 @@ void finish(Carried carried)
         float kept = square > limit ? most * inversesqrt(square) : 1.0;
 #endif
         if (j > 1) velocities[a] = vec4(rotate(to_world, moved * (kept / dt)), 0.0);
-        positions[a] = vec4(carried.root + rotate(to_world, x), 1.0);
+#if TRESSFX4
+        world = carried.root + rotate(to_world, x);
+#endif
+        positions[a] = vec4(world, 1.0);
     }
 }
 
