@@ -196,7 +196,7 @@ static Result create_segments(SolverState *state, uint32_t i, const SolverSetup 
 {
     SolverBatch *batch = &state->batches[i];
     const HairBatch *hair = &state->hair->batches[i];
-    vec3 hanging;
+    vec3 hanging = {0};
     find_hanging(state, hanging);
     const GpuLimits *limits = &setup->gpu->limits;
     uint32_t slots = hair_slots(hair);
@@ -256,7 +256,7 @@ static Result build(SolverState *state, const SolverSetup *setup, Error *error)
 {
     const SolverRecipe *recipe = state->recipe;
     bool segments = has_segments(state);
-    vec3 hanging;
+    vec3 hanging = {0};
     find_hanging(state, hanging);
     const PoseOptions pose = {.style = segments ? setup->params->style : 1,
                               .varies = segments && state->varies,

@@ -43,8 +43,8 @@ static const char *sample(const ParamInfo *info, char text[64])
         info->kind == PARAM_INT || info->kind == PARAM_UINT || info->kind == PARAM_AUTO_INT;
     if (info->kind == PARAM_CHOICE) return info->choices[1];
     if (strcmp(info->name, "colliders") == 0) return "ground:0;sphere:1,2,3,4";
-    if (!whole && info->kind != PARAM_FLOAT && info->kind != PARAM_TURN && info->kind != PARAM_PROFILE &&
-        info->kind != PARAM_AUTO_FLOAT)
+    if (!whole && info->kind != PARAM_FLOAT && info->kind != PARAM_TURN &&
+        info->kind != PARAM_PROFILE && info->kind != PARAM_AUTO_FLOAT)
         return TEXTS[info->kind];
     double least = fmax(info->minimum, -1);
     if (whole)

@@ -277,7 +277,7 @@ static void long_hair_keeps_its_space(void **state)
 static void threads_do_not_matter(void **state)
 {
     (void)state;
-    Float3 *x[2];
+    Float3 *x[2] = {NULL};
     for (int i = 0; i < 2; ++i) {
         World world;
         Gpu gpu;
