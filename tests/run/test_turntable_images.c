@@ -19,7 +19,7 @@ static void render(void **state, const char *arguments, const char *folder)
 {
     char line[1500];
     const char *programs = getenv("TRACTRIX_BIN");
-    snprintf(line, sizeof line, "%s/tractrix-render %s --size %dx%d -q -o '%s/'",
+    snprintf(line, sizeof line, "%s/tractrix-render --scatter none %s --size %dx%d -q -o '%s/'",
              programs ? programs : "out/release", arguments, WIDTH, HEIGHT,
              temporary_path(state, folder));
     assert_int_equal(system(line), 0);
@@ -85,8 +85,8 @@ static void so_do_followers_drawn_from_a_cache(void **state)
     const char *hair = "assets/curls.tfx --followers 3 --follower-radius 0.02 --tip-separation 2 "
                        "--style 0.3 --turntable 360 --margin 0.25 --frames 16";
     char line[1000];
-    snprintf(line, sizeof line, "%s/tractrix-render %s -q --cache '%s'", getenv("TRACTRIX_BIN"),
-             hair, temporary_path(state, "x.cache"));
+    snprintf(line, sizeof line, "%s/tractrix-render --scatter none %s -q --cache '%s'",
+             getenv("TRACTRIX_BIN"), hair, temporary_path(state, "x.cache"));
     assert_int_equal(system(line), 0);
     snprintf(line, sizeof line, "%s --from-cache '%s'", hair, temporary_path(state, "x.cache"));
     margins_are_kept(state, line);
@@ -125,7 +125,7 @@ static void a_contact_sheet_shows_the_frames(void **state)
     const char *hair = "assets/fur.tfx --frames 12 --turntable 360";
     render(state, hair, "all");
     snprintf(line, sizeof line,
-             "%s/tractrix-render %s --size %dx%d -q --contact-sheet %dx%d -o '%s'",
+             "%s/tractrix-render --scatter none %s --size %dx%d -q --contact-sheet %dx%d -o '%s'",
              getenv("TRACTRIX_BIN"), hair, WIDTH, HEIGHT, COLUMNS, ROWS,
              temporary_path(state, "sheet.png"));
     assert_int_equal(system(line), 0);
