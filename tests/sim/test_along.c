@@ -43,8 +43,8 @@ static double farthest(const char *algo, const char *variant, const char *const 
     uint64_t count;
     Float3 *one = simulate(algo, variant, a, &count), *other = simulate(algo, variant, b, &count);
     double most = 0;
-    for (uint64_t i = 0; i < 3 * count; ++i)
-        most = fmax(most, fabs((double)(one[0][i] - other[0][i])));
+    for (uint64_t i = 0; i < count; ++i)
+        for (int k = 0; k < 3; ++k) most = fmax(most, fabs((double)(one[i][k] - other[i][k])));
     free(one);
     free(other);
     return most;
