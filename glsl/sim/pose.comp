@@ -58,14 +58,6 @@ vec3 turn_fading(vec3 a, vec3 b, Turn by)
     return kept * inversesqrt(max(dot(kept, kept), 1e-12));
 }
 
-// x turned by the smallest rotation from the unit vector a to the unit vector b.
-vec3 turn_along(vec3 a, vec3 b, vec3 x)
-{
-    vec3 k = cross(a, b);
-    float c = dot(a, b);
-    return c * x + cross(k, x) + k * (dot(k, x) / max(1.0 + c, 1e-6));
-}
-
 #if MIX == 4
 layout(binding = BIND_ALONG) uniform samplerBuffer along_strand; // solver_split.c
 
@@ -107,7 +99,7 @@ void main()
         vec3 start = HANGS == 1 ? pose_params.hanging.xyz : d;
         vec3 swung = slerp(start, texelFetch(segments, a).xyz,
                            1.0 - texelFetch(along_strand, 2 * (j - int(pose_params.lead))).x);
-        vec3 turned = HANGS == 1 ? turn_along(start, swung, d) : swung;
+        vec3 turned = HANGS == 1 ? turn_between(start, swung, d) : swung;
         d = j > int(pose_params.lead) ? turned : d;
 #elif HANGS && MIX >= 2
         vec3 hanging = pose_params.hanging.xyz, physical = texelFetch(segments, a).xyz;
@@ -116,7 +108,7 @@ void main()
 #else
         vec3 swung = turn_fading(hanging, physical, by);
 #endif
-        d = j > int(pose_params.lead) ? turn_along(hanging, swung, d) : d;
+        d = j > int(pose_params.lead) ? turn_between(hanging, swung, d) : d;
 #elif MIX == 2
         d = turn(texelFetch(segments, a).xyz, d, by);
 #elif MIX == 3

@@ -43,14 +43,6 @@ int address(int j) { return particle_address(strand, j, n); }
 #define REST(j) texelFetch(rest, address(j))
 #define X(j)    positions[address(j)].xyz
 
-// x turned by the smallest rotation from the unit vector a to the unit vector b.
-vec3 turn_between(vec3 a, vec3 b, vec3 x)
-{
-    vec3 k = cross(a, b);
-    float c = dot(a, b);
-    return c * x + cross(k, x) + k * (dot(k, x) / max(1.0 + c, 1e-6));
-}
-
 vec3 unit(vec3 v, vec3 otherwise)
 {
     float square = dot(v, v);

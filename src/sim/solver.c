@@ -182,11 +182,10 @@ static void place_strand(const HairBatch *hair, uint32_t slot, const HeadPose *h
     }
 }
 
-// Where a strand at rest hangs: unit vector in the head's frame; 0 0 0 where it starts in the
-// style.
+// Where a strand at rest hangs: unit vector in the head's frame; `hanging` stays where it starts in
+// the style.
 static void find_hanging(const SolverState *state, vec3 hanging)
 {
-    glm_vec3_zero(hanging);
     if (is_balanced(state)) glm_vec3_normalize_to((float *)state->rest_gravity, hanging);
 }
 

@@ -104,9 +104,9 @@ typedef struct StepPrograms {
 } StepPrograms;
 
 // Compiles with the macros GROUP_SIZE (lanes), STRANDS (a lane's), IN_REGISTERS, VERTICES (but for
-// the lead), LEAD, SHELTER, STYLED, VARIES and the own
-// ones. Strands are in registers if all are short
-// enough and of few different counts. Errors of shader_build_compute; RESULT_FAILED without memory.
+// the lead), LEAD, SHELTER, STYLED, VARIES and the own ones. Strands are in registers if all are
+// short enough and of few different counts. Errors of shader_build_compute; RESULT_FAILED without
+// memory.
 Result step_programs_create(StepPrograms *programs, const Gpu *gpu, const Hair *hair,
                             const StepProgramsOptions *options, Error *error);
 void step_programs_destroy(StepPrograms *programs);

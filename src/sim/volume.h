@@ -4,8 +4,8 @@
 //
 // After each step the particles of a section are summed up in the cells of a grid that moves with
 // the head: how many, and their velocities. A cell is dense if it has more of them than its own
-// groom had there, and more than those which are in it now had about them at rest. A groom at rest
-// therefore feels nothing, exactly, whatever the grid. What approaches a dense cell is stopped, or
+// groom had there, and more than those which are in it now had about them at rest. So a groom at
+// rest feels nothing, with cells of any size. What approaches a dense cell is stopped, or
 // bounces back the more the denser it is, and leaves it at a speed of a few cells a second
 // (volume_push.comp); velocities within it are mixed. All of it keeps momentum; only the leaving
 // can add kinetic energy, at a bounded speed. Particles outside the grid, those that the head
