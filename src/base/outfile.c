@@ -89,6 +89,12 @@ static int find_write_error(OutFile *file)
     return errno;
 }
 
+Result outfile_check(OutFile *file, Error *error)
+{
+    int reason = find_write_error(file);
+    return reason ? fail_to_write(file->path, reason, error) : RESULT_OK;
+}
+
 Result outfile_commit(OutFile *file, Error *error)
 {
     int reason = find_write_error(file);

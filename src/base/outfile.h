@@ -18,6 +18,10 @@ typedef struct OutFile {
 // path and reason: no such folder, a folder of that name, an existing file that is read-only, ...
 Result outfile_open(OutFile *file, const char *path, Error *error);
 
+// Flushes what has been written so far. RESULT_FAILED with path and reason if a write failed; then
+// only outfile_discard may follow.
+Result outfile_check(OutFile *file, Error *error);
+
 // Flushes, syncs to disk, closes and renames to the final name; on any failure the temporary file
 // is removed, an older file of the final name is left as it was, and the reason is given (disk
 // full, ...). `file` is zeroed.

@@ -137,6 +137,23 @@ Result cache_file_check(const CacheFile *cache, int last, Error *error)
                      ended ? "" : without_path(cache, &cache->end));
 }
 
+bool cache_file_verify(CacheFile *cache)
+{
+    for (uint32_t i = 0; i < cache->frame_count; ++i) {
+        Bytes payload = {0};
+        uint64_t end;
+        Error why;
+        Result result = read_part(cache, cache->offsets[i], "FRAM", &payload, &end, &why);
+        bytes_destroy(&payload);
+        if (result == RESULT_OK) continue;
+        error_set(&cache->end, RESULT_BAD_INPUT, "%s: frame %u, %s", cache->file.path, i,
+                  without_path(cache, &why));
+        cache->frame_count = i;
+        return false;
+    }
+    return true;
+}
+
 static float take_float(const uint8_t *bytes)
 {
     uint32_t bits;
@@ -188,7 +205,20 @@ static Result flush(CacheWriter *writer, Error *error)
 {
     errno = 0;
     if (fflush(writer->stream) == 0 && !ferror(writer->stream)) return RESULT_OK;
-    return fail_to_write(writer, errno ? errno : EIO, error);
+    return fail_to_write(writer, writer->reason ? writer->reason : errno ? errno : EIO, error);
+}
+
+// Only an empty file and a cache may be written over.
+static Result check_kind(const CacheWriter *writer, int descriptor, Error *error)
+{
+    char magic[sizeof CACHE_MAGIC - 1];
+    ssize_t got = pread(descriptor, magic, sizeof magic, 0);
+    if (got == 0 || (got == sizeof magic && memcmp(magic, CACHE_MAGIC, sizeof magic) == 0))
+        return RESULT_OK;
+    if (got < 0) return fail_to_write(writer, errno, error);
+    return error_set(error, RESULT_FAILED,
+                     "%s: is no cache and stays as it is: expected a cache, or a new name",
+                     writer->path);
 }
 
 static Result open_stream(CacheWriter *writer, const char *path, const Simulation *simulation,
@@ -208,8 +238,9 @@ static Result open_stream(CacheWriter *writer, const char *path, const Simulatio
         close(descriptor);
         return fail_to_write(writer, ENOMEM, error);
     }
-    if (flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return RESULT_OK;
-    return error_set(error, RESULT_FAILED, "%s: another process is writing it", path);
+    if (flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+        return error_set(error, RESULT_FAILED, "%s: another process is writing it", path);
+    return check_kind(writer, descriptor, error);
 }
 
 static Result cut(CacheWriter *writer, uint64_t size, Error *error)
@@ -224,7 +255,10 @@ static Result cut(CacheWriter *writer, uint64_t size, Error *error)
 static void append(CacheWriter *writer, const char *tag, uint32_t number, const void *payload,
                    size_t size)
 {
+    errno = 0;
     chunk_write(writer->stream, tag, number, payload, size);
+    // The stream keeps that a write has failed, but not why.
+    if (ferror(writer->stream) && !writer->reason) writer->reason = errno;
     writer->at += CHUNK_HEADER_BYTES + size;
 }
 

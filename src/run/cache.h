@@ -38,6 +38,10 @@ void cache_file_close(CacheFile *cache);
 // complete frames and where and why they end.
 Result cache_file_check(const CacheFile *cache, int last, Error *error);
 
+// Reads all frames and compares their checksums. From the first damaged one on, frames no longer
+// count: `end` says which and why. False when one was damaged.
+bool cache_file_verify(CacheFile *cache);
+
 // The head's rotation (unit quaternion x, y, z, w) and translation, and the positions of
 // `vertex_count` vertices in the order of `hair`. RESULT_BAD_INPUT with frame and place if it is
 // missing or damaged.
@@ -55,11 +59,12 @@ typedef struct CacheWriter {
     uint32_t frame_count, room;
     float (*positions)[3]; // of all guides
     uint8_t *payload;
+    int reason;      // errno of the first write that failed, 0: none has
     double write_ms; // spent so far, with packing
 } CacheWriter;
 
-// Makes the file anew, or empties it. RESULT_FAILED with path and reason, also if another process
-// is writing it.
+// Makes the file anew, or empties one that is a cache already. RESULT_FAILED with path and reason,
+// also for a file of another kind, which stays as it is, and if another process is writing it.
 Result cache_writer_open(CacheWriter *writer, const char *path, const Simulation *simulation,
                          const Strands *strands, Error *error);
 

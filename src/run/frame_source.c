@@ -95,8 +95,8 @@ static Result begin_cache(FrameSource *source, const char *path, Error *error)
     return result;
 }
 
-// Finds the state after a frame of the cache. If there is none that fits, the simulation starts
-// again, with the same result.
+// Finds the state after a whole frame of the cache. If there is none that fits, the simulation
+// starts again, with the same result.
 static bool find_state(FrameSource *source, FILE *messages, Error *error)
 {
     int frame = 0;
@@ -120,6 +120,8 @@ static Result resume_cache(FrameSource *source, const char *path, int last, FILE
     CacheReader *reader = &source->reader;
     TRY(cache_reader_open(reader, path, source->simulation, source->strands, error));
     source->reads = true;
+    if (!cache_file_verify(&reader->cache) && messages)
+        fprintf(messages, "%s\n", reader->cache.end.text);
     if (messages) fprintf(messages, "%s: %u frames are there\n", path, reader->cache.frame_count);
     if ((int)reader->cache.frame_count > last) {
         source->played = (int)reader->cache.frame_count;

@@ -268,6 +268,47 @@ static void stopped_and_resumed_after_any_frame_is_the_same_file(void **state)
     bytes_destroy(&file);
 }
 
+// A bit that flips within a kept frame costs time, never a wrong file: from any place, with a state
+// behind the damage or with none.
+static void a_damaged_frame_is_simulated_again(void **state)
+{
+    Recorded recorded = {0};
+    record(&recorded, state, "whole.cache", true);
+    char path[300];
+    snprintf(path, sizeof path, "%s", temporary_path(state, "part.cache"));
+    for (int count = 2; count <= FRAMES; ++count) {
+        Bytes file;
+        run_source(path, false, count, &recorded);
+        assert_int_equal(bytes_read_file(&file, path, NULL), RESULT_OK);
+        uint8_t *chunk = memmem(file.data, file.size, "FRAM", 4);
+        chunk[CHUNK_HEADER_BYTES + 40] ^= 4; // in the first frame's payload
+        write_bytes(path, file.data, file.size);
+        run_source(path, true, FRAMES, &recorded);
+        assert_same_files(path, recorded.path);
+        bytes_destroy(&file);
+    }
+}
+
+static void a_file_that_is_no_cache_is_not_written_over(void **state)
+{
+    SimulationFixture fixture;
+    CacheWriter writer;
+    Error error;
+    Bytes file;
+    start(&fixture, NULL);
+    const char *path = temporary_path(state, "notes.txt");
+    write_bytes(path, (const uint8_t *)"my notes", 8);
+    assert_int_equal(
+        cache_writer_open(&writer, path, &fixture.simulation, &fixture.strands, &error),
+        RESULT_FAILED);
+    assert_non_null(strstr(error.text, "is no cache"));
+    assert_int_equal(bytes_read_file(&file, path, NULL), RESULT_OK);
+    assert_int_equal(file.size, 8);
+    assert_memory_equal(file.data, "my notes", 8);
+    bytes_destroy(&file);
+    simulation_fixture_destroy(&fixture);
+}
+
 static void two_do_not_write_the_same_file(void **state)
 {
     SimulationFixture fixture;
@@ -294,6 +335,8 @@ int main(void)
         TEST(every_flipped_bit_is_found),
         TEST(another_scene_is_refused_by_the_value_that_differs),
         TEST(stopped_and_resumed_after_any_frame_is_the_same_file),
+        TEST(a_damaged_frame_is_simulated_again),
+        TEST(a_file_that_is_no_cache_is_not_written_over),
         TEST(two_do_not_write_the_same_file),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

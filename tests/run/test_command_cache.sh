@@ -41,6 +41,16 @@ run 3 $scene -q --from-cache "$work/flip.cache" -o "$work/flip/"; one_line; says
 }
 if cmp -s "$work/whole6/frame_0006.png" "$work/direct/frame_0006.png"; then good; else bad "frame 6 differs"; fi
 
+claim "a file that is no cache stays as it is, and a full disk is said as such, in a cache and in USD"
+cp "$hair" "$work/own.tfx"
+run 1 "$hair" -q --frames 2 --cache "$work/own.tfx"; one_line; says "is no cache"
+if cmp -s "$hair" "$work/own.tfx"; then good; else bad "the file was changed"; fi
+for out in --cache --export; do # the limit of a file's size stands for the disk
+    (ulimit -f 20; trap '' XFSZ; "$program" "$hair" $plain -q --frames 9 $out "$work/full.usda" 2>"$work/err") && bad "$out reports success"
+    one_line; says "cannot write: File too large"
+    rm -f "$work"/full.usda*
+done
+
 claim "a run that was stopped goes on where it was, and only what is missing or broken is drawn"
 # shellcheck disable=SC2086
 {

@@ -196,8 +196,7 @@ Result usd_writer_add(UsdWriter *writer, int code, const float (*positions)[3], 
     if (writer->options.animated) fprintf(stream, "        %d: ", code);
     put_list(stream, positions[0], writer->strands->vertex_count, 3, 3);
     fputs(writer->options.animated ? ",\n" : "\n", stream);
-    if (!ferror(stream)) return RESULT_OK;
-    return error_set(error, RESULT_FAILED, "%s: cannot write frame %d", writer->file.path, code);
+    return ferror(stream) ? outfile_check(&writer->file, error) : RESULT_OK;
 }
 
 static void put_extents(UsdWriter *writer)
