@@ -5,6 +5,7 @@
 #include "base/target.h"
 #include "run/caption.h"
 #include "run/exposure.h"
+#include "run/run_paths.h"
 #include "run/survey.h"
 #include "scene/effects.h"
 #include "scene/fit.h"
@@ -97,6 +98,7 @@ static Result check_values(const Scene *scene, Error *error)
     TRY(check_target(run, run->output, target_parse, error));
     TRY(check_target(run, run->export, format_target, error));
     TRY(check_sheet(run, error));
+    TRY(run_paths_check(scene, error));
     TRY(caption_check(run->caption, error));
     bool fits = run->framing == FRAMING_HAIR || run->framing == FRAMING_ALL;
     if (fits && !fit_is_free(scene))

@@ -7,6 +7,7 @@
 #include "glsl/common/shared_math.h"
 
 #include <math.h>
+#include <string.h>
 
 // Puts `value` into `object` and takes its reference; false if either is NULL or memory is short.
 static bool put(json_t *object, const char *key, json_t *value)
@@ -158,13 +159,19 @@ static bool write_lights(json_t *object, const Scene *scene)
     return put(object, "lights", array) && good;
 }
 
+// A permission, which only a command line can give.
+static bool is_permission(const ParamInfo *info)
+{
+    return strcmp(info->name, "allow_paths") == 0;
+}
+
 // `algo`: of the section, whose parameters are written.
 static bool write_params(json_t *object, ParamScope scope, const void *params, const char *algo)
 {
     bool good = true;
     for (size_t i = 0; i < PARAM_COUNT; i++) {
         const ParamInfo *info = &PARAM_TABLE[i];
-        if (info->scope == scope && params_owned_by(info, algo))
+        if (info->scope == scope && params_owned_by(info, algo) && !is_permission(info))
             good = put(object, info->name, scene_param_write(info, params)) && good;
     }
     return good;

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+#include "base/paths.h"
+
+#include "base/target.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+// Where a file is: the deepest folder that exists, and the path below it.
+typedef struct Place {
+    bool used, exists, numbered;
+    struct stat file, folder; // `file` if it exists
+    char *full;               // owned; the path, links followed if it exists
+    const char *rest;         // of a numbered one up to the number
+    char *after;              // owned; of a numbered one, behind the number
+} Place;
+
+static void destroy_place(Place *place)
+{
+    free(place->full);
+    free(place->after);
+}
+
+// Sets folder and rest of `full`.
+static bool find_folder(Place *place)
+{
+    char *full = place->full;
+    for (char *slash = strrchr(full, '/'); slash;
+         slash = memrchr(full, '/', (size_t)(slash - full))) {
+        *slash = 0;
+        bool there = stat(*full ? full : "/", &place->folder) == 0;
+        *slash = '/';
+        place->rest = slash + 1;
+        if (there) return true;
+    }
+    place->rest = full;
+    return stat(".", &place->folder) == 0;
+}
+
+static bool find_place(Place *place, const PathUse *use)
+{
+    Target target = {0};
+    *place = (Place){.used = use->path && *use->path && strcmp(use->path, "-") != 0};
+    if (!place->used) return true;
+    if (use->role == PATH_WRITTEN && target_parse(&target, use->path, NULL) != RESULT_OK)
+        target_parse_any(&target, use->path, NULL);
+    place->numbered = target.before && target.kind == TARGET_FRAMES;
+    place->exists = !place->numbered && stat(use->path, &place->file) == 0;
+    if (place->exists) place->full = realpath(use->path, NULL);
+    if (!place->full) place->full = strdup(place->numbered ? target.before : use->path);
+    if (place->numbered) place->after = strdup(target.after);
+    target_destroy(&target);
+    return place->full && (!place->numbered || place->after) && find_folder(place);
+}
+
+static bool is_same(const struct stat *a, const struct stat *b)
+{
+    return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
+}
+
+// Whether `name` is `before`, digits, `after`.
+static bool is_numbered(const char *name, const char *before, const char *after)
+{
+    size_t length = strlen(before);
+    if (strncasecmp(name, before, length) != 0) return false;
+    size_t digits = strspn(name + length, "0123456789");
+    return digits > 0 && strcasecmp(name + length + digits, after) == 0;
+}
+
+// Whether a file may belong to both patterns.
+static bool patterns_meet(const Place *a, const Place *b)
+{
+    size_t length = strlen(a->rest);
+    if (length > strlen(b->rest)) return patterns_meet(b, a);
+    return strcasecmp(a->after, b->after) == 0 && strncasecmp(a->rest, b->rest, length) == 0 &&
+           strspn(b->rest + length, "0123456789") == strlen(b->rest) - length;
+}
+
+static bool are_one(const Place *a, const Place *b)
+{
+    if (a->exists && b->exists) return S_ISREG(a->file.st_mode) && is_same(&a->file, &b->file);
+    if (!is_same(&a->folder, &b->folder)) return false;
+    if (a->numbered && b->numbered) return patterns_meet(a, b);
+    if (a->numbered) return is_numbered(b->rest, a->rest, a->after);
+    if (b->numbered) return is_numbered(a->rest, b->rest, b->after);
+    // Of two spellings, one that exists and one that doesn't are two files.
+    return !a->exists && !b->exists && strcasecmp(a->rest, b->rest) == 0;
+}
+
+static Result compare(const PathUse *use, const PathUse *other, Error *error)
+{
+    if (other->role == PATH_WRITTEN)
+        return error_set(error, RESULT_USAGE,
+                         "%s %.300s and %s %.300s would write the same file: "
+                         "expected two names",
+                         use->name, use->path, other->name, other->path);
+    return error_set(error, RESULT_USAGE,
+                     "%s %.300s would overwrite %s %.300s: expected another name", use->name,
+                     use->path, other->name, other->path);
+}
+
+Result paths_check(const PathUse *uses, int count, Error *error)
+{
+    Place *places = calloc((size_t)count + 1, sizeof *places);
+    bool found = places != NULL;
+    for (int i = 0; i < count && found; ++i) found = find_place(&places[i], &uses[i]);
+    Result result = found ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for paths");
+    for (int i = 0; i < count && found; ++i)
+        for (int k = 0; k < count && uses[i].role == PATH_WRITTEN; ++k) {
+            bool once = k > i || uses[k].role == PATH_READ; // each pair of outputs once
+            if (result == RESULT_OK && once && i != k && places[i].used && places[k].used &&
+                are_one(&places[i], &places[k]))
+                result = compare(&uses[i], &uses[k], error);
+        }
+    for (int i = 0; i < count && places; ++i) destroy_place(&places[i]);
+    free(places);
+    return result;
+}
