@@ -14,6 +14,10 @@
 // Spacings around the mesh, and within which distances to triangles are computed.
 enum { PADDING = 3, BAND = 2 };
 
+// Work items are made and dispatched in parts of about so many (32 MiB), or what half of a storage
+// block holds, whatever the mesh.
+enum { PART_ITEMS = 1 << 21 };
+
 // What a work item is: a triangle, and where its block or square begins
 // (glsl/field/field_near.comp, field_cross.comp).
 typedef struct Item {
@@ -128,8 +132,9 @@ static bool plane_is_near(const Extent *extent, const uint32_t at[3])
 }
 
 static void add_blocks(Items *items, const DistanceField *field, const Extent *extent,
-                       uint32_t triangle)
+                       uint32_t triangle, uint32_t unused)
 {
+    (void)unused;
     uint32_t first[3], end[3], at[3];
     for (int k = 0; k < 3; ++k)
         cover(extent->low[k] - BAND, extent->high[k] + BAND, field->size[k], FIELD_BLOCK, &first[k],
@@ -187,8 +192,7 @@ static Result take_items(Work *work, Items *items, Error *error)
 {
     gpu_buffer_destroy(&work->items);
     Result result = RESULT_OK;
-    if (items->failed || items->count > UINT32_MAX / 2)
-        result = error_set(error, RESULT_FAILED, "no memory for a distance field");
+    if (items->failed) result = error_set(error, RESULT_FAILED, "no memory for a distance field");
     THEN(result, gpu_buffer_create(&work->items, &work->gpu->limits, "a distance field's work",
                                    (int64_t)(items->count * sizeof(Item)), items->list, 0, error));
     work->params.count = (uint32_t)items->count;
@@ -204,9 +208,15 @@ static Result upload_triangles(Work *work, Error *error)
     for (size_t i = 0; i < (size_t)mesh->triangle_count * 3; ++i)
         for (int k = 0; k < 3; ++k)
             corners[i][k] = mesh->position[mesh->triangle[i / 3][i % 3]][k] - work->field->low[k];
-    Result result = gpu_buffer_create(
-        &work->triangles, &work->gpu->limits, "a distance field's triangles",
-        (int64_t)mesh->triangle_count * 3 * (int64_t)sizeof *corners, corners, GL_RGBA32F, error);
+    // Read as a texture only, so that the limit of storage blocks is none for it.
+    GLsizeiptr size = (GLsizeiptr)((size_t)mesh->triangle_count * 3 * sizeof *corners);
+    Result result =
+        gpu_buffer_create_pieces(&work->triangles, &work->gpu->limits,
+                                 "a distance field's triangles", size, GL_RGBA32F, error);
+    if (result == RESULT_OK) {
+        glBindBuffer(GL_COPY_WRITE_BUFFER, work->triangles.buffer);
+        glBufferSubData(GL_COPY_WRITE_BUFFER, 0, size, corners);
+    }
     free(corners);
     return result;
 }
@@ -234,25 +244,42 @@ static Result create_buffers(Work *work, Error *error)
     return RESULT_OK;
 }
 
+// Adds the work items of a triangle.
+typedef void AddItems(Items *items, const DistanceField *field, const Extent *extent,
+                      uint32_t triangle, uint32_t axis);
+
+// Dispatches the program in use over the items of all triangles.
+static Result dispatch_triangles(Work *work, AddItems *add, uint32_t axis, Error *error)
+{
+    int64_t half_block = work->gpu->limits.storage_block / (int64_t)(2 * sizeof(Item));
+    size_t part = half_block < PART_ITEMS ? (size_t)half_block : PART_ITEMS;
+    for (uint32_t t = 0; t < work->mesh->triangle_count;) {
+        Items items = {0};
+        for (; t < work->mesh->triangle_count && items.count < part && !items.failed; ++t) {
+            Extent extent = extent_of(work->field, work->mesh, t);
+            add(&items, work->field, &extent, t, axis);
+        }
+        TRY(take_items(work, &items, error));
+        gpu_buffer_bind_storage(&work->items, 0);
+        dispatch_items(work);
+    }
+    return RESULT_OK;
+}
+
 static Result find_near(Work *work, Error *error)
 {
     GLuint program;
-    Items items = {0};
-    for (uint32_t t = 0; t < work->mesh->triangle_count; ++t) {
-        Extent extent = extent_of(work->field, work->mesh, t);
-        add_blocks(&items, work->field, &extent, t);
-    }
-    TRY(take_items(work, &items, error));
     TRY(use(&program, "field/field_near.comp", error));
     gpu_buffer_clear(&work->squares, 0x7f7fffff); // the largest float
     gpu_buffer_clear(&work->nearest, 0xffffffff);
     gpu_buffer_bind_texture(&work->triangles, BIND_POSITION);
-    gpu_buffer_bind_storage(&work->items, 0);
     gpu_buffer_bind_storage(&work->squares, 1);
     gpu_buffer_bind_storage(&work->nearest, 2);
-    for (work->params.phase = 0; work->params.phase < 2; ++work->params.phase) dispatch_items(work);
+    Result result = RESULT_OK;
+    for (work->params.phase = 0; work->params.phase < 2; ++work->params.phase)
+        THEN(result, dispatch_triangles(work, add_blocks, 0, error));
     glDeleteProgram(program);
-    return RESULT_OK;
+    return result;
 }
 
 static Result seed(Work *work, Error *error)
@@ -290,18 +317,11 @@ static Result flood(Work *work, Error *error)
 static Result cross(Work *work, uint32_t axis, Error *error)
 {
     GLuint program;
-    Items items = {0};
-    for (uint32_t t = 0; t < work->mesh->triangle_count; ++t) {
-        Extent extent = extent_of(work->field, work->mesh, t);
-        add_columns(&items, work->field, &extent, t, axis);
-    }
-    TRY(take_items(work, &items, error));
     TRY(use(&program, "field/field_cross.comp", error));
-    gpu_buffer_bind_storage(&work->items, 0);
     gpu_buffer_bind_storage(&work->squares, 1); // now the crossings
-    dispatch_items(work);
+    Result result = dispatch_triangles(work, add_columns, axis, error);
     glDeleteProgram(program);
-    return RESULT_OK;
+    return result;
 }
 
 static Result sign(Work *work, uint32_t axis, Error *error)

@@ -331,6 +331,31 @@ static void a_field_is_kept_on_disk(void **state)
     mesh_destroy(&box);
 }
 
+// A driver of small storage blocks gets the work in parts, and the field is the same to the bit:
+// the limit below is the grid's largest buffer, and the work in one piece would take several times
+// as much.
+static void any_mesh_fits_into_the_limits_of_the_driver(void **state)
+{
+    (void)state;
+    Mesh sphere;
+    float *values, *other;
+    shapes_make_sphere(&sphere, 100, 200, 0.1f);
+    DistanceField field = compute(&sphere, 8, &values), parts;
+    Gpu small = *fixture_gpu();
+    small.limits.storage_block = (int64_t)distance_field_count(&field) * 16;
+    assert_true(small.limits.storage_block < (int64_t)sphere.triangle_count * 16 / 4);
+    Error error = {{0}};
+    if (distance_field_create(&parts, &small, &sphere, 8, &error) != RESULT_OK)
+        fail_msg("%s", error.text);
+    other = read_values(&parts);
+    assert_memory_equal(other, values, distance_field_count(&field) * sizeof(float));
+    free(values);
+    free(other);
+    distance_field_destroy(&field);
+    distance_field_destroy(&parts);
+    mesh_destroy(&sphere);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -340,6 +365,7 @@ int main(void)
         cmocka_unit_test(holes_do_not_change_the_signs),
         cmocka_unit_test(a_mesh_turned_inside_out_is_the_same),
         cmocka_unit_test(the_head_is_closed),
+        cmocka_unit_test(any_mesh_fits_into_the_limits_of_the_driver),
         cmocka_unit_test_setup_teardown(a_field_is_kept_on_disk, temporary_create,
                                         temporary_destroy),
     };
