@@ -19,7 +19,7 @@ $(error CONFIG=$(CONFIG): expected release, debug or sanitize)
 endif
 
 # --- Flags. stb is used by its headers alone; its pkg-config file would link a library that nothing here needs.
-LIBRARIES := epoxy egl libdeflate jansson muparser
+LIBRARIES := epoxy egl libdeflate libpng jansson muparser
 HEADERS   := cglm stb
 MISSING   := $(shell for p in $(LIBRARIES) $(HEADERS); do pkg-config --exists $$p || echo $$p; done 2>/dev/null)
 

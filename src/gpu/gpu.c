@@ -94,6 +94,16 @@ static void copy_string(char *to, size_t size, GLenum name)
     snprintf(to, size, "%s", text ? text : "unknown");
 }
 
+static void read_processor(char name[256])
+{
+    char line[512];
+    FILE *info = fopen("/proc/cpuinfo", "r");
+    snprintf(name, 256, "unknown");
+    while (info && fgets(line, sizeof line, info))
+        if (sscanf(line, "model name : %255[^\n]", name) == 1) break;
+    if (info) fclose(info);
+}
+
 // A device may call itself software and be hardware, or the other way round: the renderer's name
 // decides.
 static bool is_cpu_driver(const char *renderer)
@@ -119,6 +129,7 @@ static Result read_limits(Gpu *gpu, Error *error)
     copy_string(gpu->renderer, sizeof gpu->renderer, GL_RENDERER);
     copy_string(gpu->version, sizeof gpu->version, GL_VERSION);
     copy_string(gpu->vendor, sizeof gpu->vendor, GL_VENDOR);
+    read_processor(gpu->processor);
     gpu->software = is_cpu_driver(gpu->renderer);
     int version = 10 * query_int(GL_MAJOR_VERSION) + query_int(GL_MINOR_VERSION);
     if (version < 43)

@@ -37,6 +37,7 @@ typedef struct Gpu {
     char renderer[256];       // GL_RENDERER
     char version[256];        // GL_VERSION
     char vendor[128];         // GL_VENDOR
+    char processor[256];      // the CPU's name: images and times of a CPU driver depend on it
     char path[64];            // the way in: "EGL device 0", "EGL surfaceless", "OSMesa"
     EglContext egl;           // zeroed: not by EGL
     struct GpuOsMesa *osmesa; // NULL: not by OSMesa

@@ -1,58 +1,106 @@
 // SPDX-License-Identifier: MIT
-// Chunks, kinds of pixels and filters as in the PNG specification, sections 5, 9 and 11.
 #include "image/png.h"
 
 #include <endian.h>
 #include <libdeflate.h>
-#include <limits.h>
+#include <png.h>
+#include <setjmp.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define STB_IMAGE_IMPLEMENTATION
-#define STBI_ONLY_PNG
-#define STBI_NO_STDIO
-#define STBI_MAX_DIMENSIONS (1 << 20)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-parameter"
-#pragma GCC diagnostic ignored "-Wunused-but-set-variable"
-#pragma GCC diagnostic ignored "-Wshadow"
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
-#pragma GCC diagnostic ignored "-Wsign-compare"
-#include <stb_image.h>
-#pragma GCC diagnostic pop
-
 // Measured on frames of hair: the higher levels take half as long again for little or no gain in
 // size, and as hair runs downwards the row above predicts well.
-enum { DEFLATE_LEVEL = 1, FILTER_UP = 2 };
-enum { ENCODE_MAX_BYTES = 1 << 30, READ_MAX_PIXELS = 1 << 28 };
-enum { CHUNK_HEAD_BYTES = 8, CHUNK_EXTRA_BYTES = 12, IHDR_BYTES = 13, END_BYTES = 64 };
+enum { DEFLATE_LEVEL = 1 };
+enum { ENCODE_MAX_BYTES = 1 << 30, READ_MAX_PIXELS = 1 << 28, READ_MAX_SIDE = 1 << 20 };
+enum { READ_MAX_FACTOR = 64, READ_SURE_BYTES = 64 << 20 }; // of memory, by the file's size
+enum { TEXT_MAX_BYTES = 1 << 20, TEXT_MAX_COUNT = 256 };
+enum { BYTE_BITS = 8, SIGNATURE_BYTES = 8 };
 
-static const uint8_t SIGNATURE[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+// What libpng and the functions that it calls work with. libpng leaves by longjmp: nothing in a
+// step may need cleaning up but what is here.
+typedef struct Codec {
+    png_structp png;
+    png_infop info;
+    char reason[200];     // of the failure
+    const uint8_t *bytes; // read
+    size_t size, at;
+    Bytes written; // with `room`
+    size_t room;
+    const Image *source; // to be written: with these rows, compressed
+    const ImageTexts *texts;
+    png_text *chunks; // of the texts
+    uint8_t *packed;
+    size_t packed_size;
+    Image image; // being read
+    bool deep;   // 16 bits stay
+} Codec;
 
-static uint8_t color_type(int channels)
+static void fail(png_structp png, png_const_charp message)
 {
-    return channels == 4 ? 6 : 2;
+    Codec *codec = png_get_error_ptr(png);
+    // The warning before it says which part of the header is wrong.
+    if (!codec->reason[0] || strncmp(message, "Invalid IHDR", 12) != 0)
+        snprintf(codec->reason, sizeof codec->reason, "%s", message);
+    png_longjmp(png, 1);
 }
 
-static void put_u32(uint8_t *to, uint32_t value)
+static void warn(png_structp png, png_const_charp message)
 {
-    for (int k = 0; k < 4; ++k) to[k] = (uint8_t)(value >> (24 - 8 * k));
+    Codec *codec = png_get_error_ptr(png);
+    snprintf(codec->reason, sizeof codec->reason, "%s", message);
 }
 
-static uint32_t take_u32(const uint8_t *bytes)
+// Whether the step came to its end; else `reason` says why not.
+static bool go(Codec *codec, void (*step)(Codec *codec))
 {
-    return (uint32_t)bytes[0] << 24 | (uint32_t)bytes[1] << 16 | (uint32_t)bytes[2] << 8 | bytes[3];
+    if (setjmp(png_jmpbuf(codec->png))) return false;
+    step(codec);
+    return true;
 }
 
 // --- Writing.
 
-// Length, name and checksum around the `size` bytes behind the chunk's head. Returns the end.
-static uint8_t *close_chunk(uint8_t *chunk, const char name[4], size_t size)
+static void take_bytes(png_structp png, png_bytep bytes, size_t size)
 {
-    put_u32(chunk, (uint32_t)size);
-    memcpy(chunk + 4, name, 4);
-    put_u32(chunk + CHUNK_HEAD_BYTES + size, libdeflate_crc32(0, chunk + 4, size + 4));
-    return chunk + size + CHUNK_EXTRA_BYTES;
+    Codec *codec = png_get_io_ptr(png);
+    Bytes *out = &codec->written;
+    if (size > codec->room - out->size) png_error(png, "chunks of an unexpected size");
+    memcpy(out->data + out->size, bytes, size);
+    out->size += size;
+}
+
+static void flush_nothing(png_structp png)
+{
+    (void)png;
+}
+
+static bool is_ascii(const char *text)
+{
+    while (*text && !(*text & 0x80)) ++text;
+    return !*text;
+}
+
+static void write_file(Codec *codec)
+{
+    const Image *image = codec->source;
+    png_set_write_fn(codec->png, codec, take_bytes, flush_nothing);
+    png_set_IHDR(codec->png, codec->info, (png_uint_32)image->width, (png_uint_32)image->height,
+                 image->kind == IMAGE_16 ? 16 : 8,
+                 image->channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
+    size_t count = codec->texts ? codec->texts->count : 0;
+    for (size_t i = 0; i < count; ++i) {
+        const ImageText *text = &codec->texts->list[i];
+        codec->chunks[i] =
+            (png_text){.compression = is_ascii(text->value) ? PNG_TEXT_COMPRESSION_NONE
+                                                            : PNG_ITXT_COMPRESSION_NONE,
+                       .key = (png_charp)text->key,
+                       .text = text->value};
+    }
+    png_set_text(codec->png, codec->info, codec->chunks, (int)count);
+    png_write_info(codec->png, codec->info);
+    png_write_chunk(codec->png, (png_const_bytep) "IDAT", codec->packed, codec->packed_size);
+    png_write_chunk(codec->png, (png_const_bytep) "IEND", NULL, 0);
 }
 
 // Each row: the filter, then its bytes, big-endian ones, less those of the row above.
@@ -62,7 +110,7 @@ static void filter_rows(const Image *image, size_t row, uint8_t *to)
     const uint8_t *here = image->pixels;
     for (int y = 0; y < image->height; ++y, here += row, to += row) {
         const uint8_t *above = y > 0 ? here - row : NULL;
-        *to++ = FILTER_UP;
+        *to++ = PNG_FILTER_VALUE_UP;
         if (!above)
             for (size_t i = 0; i < row; ++i) to[i] = here[i ^ swapped];
         else if (swapped)
@@ -72,52 +120,70 @@ static void filter_rows(const Image *image, size_t row, uint8_t *to)
     }
 }
 
-static size_t write_file(uint8_t *file, size_t room, const Image *image,
-                         struct libdeflate_compressor *compressor, const uint8_t *rows, size_t size)
+// false when memory is short.
+static bool pack_rows(Codec *codec)
 {
-    memcpy(file, SIGNATURE, sizeof SIGNATURE);
-    uint8_t *at = file + sizeof SIGNATURE, *header = at + CHUNK_HEAD_BYTES;
-    put_u32(header, (uint32_t)image->width);
-    put_u32(header + 4, (uint32_t)image->height);
-    header[8] = image->kind == IMAGE_16 ? 16 : 8;
-    header[9] = color_type(image->channels);
-    header[10] = header[11] = header[12] = 0; // deflate, the usual filters, not interlaced
-    at = close_chunk(at, "IHDR", IHDR_BYTES);
-    size_t packed = libdeflate_zlib_compress(compressor, rows, size, at + CHUNK_HEAD_BYTES, room);
-    at = close_chunk(at, "IDAT", packed);
-    return (size_t)(close_chunk(at, "IEND", 0) - file);
-}
-
-Result png_encode(const Image *image, Bytes *png, Error *error)
-{
+    const Image *image = codec->source;
     size_t row = image_size(image) / (size_t)image->height;
     size_t size = (row + 1) * (size_t)image->height;
-    *png = (Bytes){0};
-    if (size >= ENCODE_MAX_BYTES)
-        return error_set(error, RESULT_FAILED, "an image of %d x %d is too large for PNG here",
-                         image->width, image->height);
     struct libdeflate_compressor *compressor = libdeflate_alloc_compressor(DEFLATE_LEVEL);
     size_t room = compressor ? libdeflate_zlib_compress_bound(compressor, size) : 0;
-    uint8_t *rows = malloc(size), *file = malloc(room + END_BYTES + 1);
-    Result result = RESULT_OK;
-    if (compressor && rows && file) {
+    uint8_t *rows = malloc(size);
+    codec->packed = malloc(room + 1);
+    if (compressor && rows && codec->packed) {
         filter_rows(image, row, rows);
-        *png = (Bytes){.data = file, .size = write_file(file, room, image, compressor, rows, size)};
-        png->data[png->size] = 0;
-    } else {
-        free(file);
-        result = error_set(error, RESULT_FAILED, "no memory to encode an image of %d x %d",
-                           image->width, image->height);
+        codec->packed_size = libdeflate_zlib_compress(compressor, rows, size, codec->packed, room);
     }
     free(rows);
     libdeflate_free_compressor(compressor);
+    return codec->packed_size > 0;
+}
+
+// Room for the file: chunks take 12 bytes each, those of texts a few more.
+static bool make_room(Codec *codec)
+{
+    enum { REST = 256 };
+    size_t count = codec->texts ? codec->texts->count : 0;
+    codec->room = codec->packed_size + REST;
+    for (size_t i = 0; i < count; ++i)
+        codec->room += strlen(codec->texts->list[i].value) + IMAGE_TEXT_KEY_BYTES + REST;
+    codec->chunks = calloc(count + 1, sizeof *codec->chunks);
+    codec->written.data = malloc(codec->room + 1);
+    codec->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, codec, fail, warn);
+    codec->info = codec->png ? png_create_info_struct(codec->png) : NULL;
+    return codec->chunks && codec->written.data && codec->info;
+}
+
+Result png_encode(const Image *image, const ImageTexts *texts, Bytes *png, Error *error)
+{
+    Codec codec = {.source = image, .texts = texts};
+    Result result = RESULT_OK;
+    *png = (Bytes){0};
+    if (image_size(image) + (size_t)image->height >= ENCODE_MAX_BYTES)
+        return error_set(error, RESULT_FAILED, "an image of %d x %d is too large for PNG here",
+                         image->width, image->height);
+    if (!pack_rows(&codec) || !make_room(&codec))
+        result = error_set(error, RESULT_FAILED, "no memory to encode an image of %d x %d",
+                           image->width, image->height);
+    else if (!go(&codec, write_file))
+        result = error_set(error, RESULT_FAILED, "cannot encode an image of %d x %d: %s",
+                           image->width, image->height, codec.reason);
+    if (result == RESULT_OK) {
+        *png = codec.written;
+        png->data[png->size] = 0;
+    } else {
+        bytes_destroy(&codec.written);
+    }
+    png_destroy_write_struct(&codec.png, &codec.info);
+    free(codec.chunks);
+    free(codec.packed);
     return result;
 }
 
 Result png_write(const char *path, const Image *image, Error *error)
 {
     Bytes png;
-    Result result = png_encode(image, &png, error);
+    Result result = png_encode(image, NULL, &png, error);
     if (result != RESULT_OK) return error_prefix(error, result, "%s: ", path);
     result = bytes_write_file(&png, path, error);
     bytes_destroy(&png);
@@ -126,41 +192,128 @@ Result png_write(const char *path, const Image *image, Error *error)
 
 // --- Reading.
 
-static Result fail_to_read(const char *path, Error *error)
+static void give_bytes(png_structp png, png_bytep bytes, size_t size)
 {
-    return error_set(error, RESULT_BAD_INPUT, "%s: not a readable PNG file: %s", path,
-                     stbi_failure_reason());
+    Codec *codec = png_get_io_ptr(png);
+    if (size > codec->size - codec->at) png_error(png, "it ends too early");
+    memcpy(bytes, codec->bytes + codec->at, size);
+    codec->at += size;
 }
 
-static Result decode(Image *image, ImageKind kind, const Bytes *file, const char *path,
-                     Error *error)
+// Nothing but pixels and what they need is looked at, and nothing of that is forgiven.
+static void expect_pixels(Codec *codec)
 {
-    Image found = {.kind = kind};
-    int channels, size = (int)file->size;
-    *image = (Image){0};
-    if (file->size > INT_MAX)
-        return error_set(error, RESULT_BAD_INPUT, "%s: larger than 2 GiB", path);
-    if (!stbi_info_from_memory(file->data, size, &found.width, &found.height, &channels))
-        return fail_to_read(path, error);
-    if ((long long)found.width * found.height > READ_MAX_PIXELS)
+    png_set_keep_unknown_chunks(codec->png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
+    png_set_benign_errors(codec->png, 0);
+    png_set_crc_action(codec->png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
+}
+
+static void expect_texts(Codec *codec)
+{
+    static const png_byte names[] = "tEXt\0zTXt\0iTXt";
+    expect_pixels(codec);
+    png_set_keep_unknown_chunks(codec->png, PNG_HANDLE_CHUNK_AS_DEFAULT, names, 3);
+    png_set_benign_errors(codec->png, 1);
+    png_set_crc_action(codec->png, PNG_CRC_ERROR_QUIT, PNG_CRC_WARN_DISCARD);
+}
+
+static void read_header(Codec *codec)
+{
+    png_structp png = codec->png;
+    png_set_read_fn(png, codec, give_bytes);
+    png_set_user_limits(png, READ_MAX_SIDE, READ_MAX_SIDE);
+    png_set_chunk_malloc_max(png, TEXT_MAX_BYTES);
+    png_set_chunk_cache_max(png, TEXT_MAX_COUNT);
+    png_read_info(png, codec->info);
+    png_set_expand(png); // palettes, grey below 8 bits, transparent colours
+    png_set_gray_to_rgb(png);
+    if (!codec->deep)
+        png_set_strip_16(png);
+    else if (htobe16(1) != 1)
+        png_set_swap(png);
+    png_set_interlace_handling(png);
+    png_read_update_info(png, codec->info);
+    codec->image = (Image){.width = (int)png_get_image_width(png, codec->info),
+                           .height = (int)png_get_image_height(png, codec->info),
+                           .channels = png_get_channels(png, codec->info),
+                           .kind = png_get_bit_depth(png, codec->info) == 16 ? IMAGE_16 : IMAGE_8};
+}
+
+static void read_pixels(Codec *codec)
+{
+    png_structp png = codec->png;
+    size_t row = png_get_rowbytes(png, codec->info);
+    int passes = png_get_interlace_type(png, codec->info) == PNG_INTERLACE_NONE
+                     ? 1
+                     : PNG_INTERLACE_ADAM7_PASSES;
+    for (int pass = 0; pass < passes; ++pass)
+        for (int y = 0; y < codec->image.height; ++y)
+            png_read_row(png, codec->image.pixels + (size_t)y * row, NULL);
+    png_read_end(png, NULL);
+}
+
+// Pixels are not touched before they are read: the memory that a header asks for need not be there.
+static Result make_image(Codec *codec, const char *path, Error *error)
+{
+    Image *image = &codec->image;
+    long long count = (long long)image->width * image->height;
+    if (count > READ_MAX_PIXELS)
         return error_set(error, RESULT_BAD_INPUT, "%s: %d x %d pixels, at most %d are read", path,
-                         found.width, found.height, READ_MAX_PIXELS);
-    found.channels = channels == 2 || channels == 4 ? 4 : 3;
-    if (kind == IMAGE_16)
-        found.pixels = (uint8_t *)stbi_load_16_from_memory(file->data, size, &found.width,
-                                                           &found.height, NULL, found.channels);
+                         image->width, image->height, READ_MAX_PIXELS);
+    size_t size = image_size(image), most = READ_MAX_FACTOR * codec->size + READ_SURE_BYTES;
+    if (size > most)
+        return error_set(error, RESULT_BAD_INPUT,
+                         "%s: %d x %d pixels in %zu bytes: expected no more than %d times its size "
+                         "and %d MiB",
+                         path, image->width, image->height, codec->size, READ_MAX_FACTOR,
+                         READ_SURE_BYTES >> 20);
+    image->pixels = malloc(size);
+    if (image->pixels) return RESULT_OK;
+    return error_set(error, RESULT_FAILED, "%s: no memory for %d x %d pixels", path, image->width,
+                     image->height);
+}
+
+static Result open_reader(Codec *codec, const Bytes *file, const char *path, Error *error)
+{
+    *codec = (Codec){.bytes = file->data, .size = file->size};
+    size_t start = file->size < SIGNATURE_BYTES ? file->size : SIGNATURE_BYTES;
+    if (start == 0 || png_sig_cmp(file->data, 0, start) != 0)
+        return error_set(error, RESULT_BAD_INPUT, "%s: not a PNG file", path);
+    codec->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, codec, fail, warn);
+    codec->info = codec->png ? png_create_info_struct(codec->png) : NULL;
+    if (codec->info) return RESULT_OK;
+    return error_set(error, RESULT_FAILED, "%s: no memory to read it", path);
+}
+
+// The step, or what is wrong with the file.
+static Result try_step(Codec *codec, void (*step)(Codec *codec), const char *path, Error *error)
+{
+    if (go(codec, step)) return RESULT_OK;
+    return error_set(error, RESULT_BAD_INPUT, "%s: not a readable PNG file: %s", path,
+                     codec->reason);
+}
+
+static Result decode(Image *image, bool deep, const Bytes *file, const char *path, Error *error)
+{
+    Codec codec;
+    *image = (Image){0};
+    Result result = open_reader(&codec, file, path, error);
+    codec.deep = deep;
+    THEN(result, try_step(&codec, expect_pixels, path, error));
+    THEN(result, try_step(&codec, read_header, path, error));
+    THEN(result, make_image(&codec, path, error));
+    THEN(result, try_step(&codec, read_pixels, path, error));
+    if (result == RESULT_OK)
+        *image = codec.image;
     else
-        found.pixels = stbi_load_from_memory(file->data, size, &found.width, &found.height, NULL,
-                                             found.channels);
-    if (!found.pixels) return fail_to_read(path, error);
-    *image = found;
-    return RESULT_OK;
+        image_destroy(&codec.image);
+    png_destroy_read_struct(&codec.png, &codec.info, NULL);
+    return result;
 }
 
 Result png_decode_deep(Image *image, const Bytes *file, const char *path, Error *error)
 {
-    bool deep = file->size <= INT_MAX && stbi_is_16_bit_from_memory(file->data, (int)file->size);
-    return decode(image, deep ? IMAGE_16 : IMAGE_8, file, path, error);
+    return decode(image, true, file, path, error);
 }
 
 Result png_read(Image *image, const char *path, Error *error)
@@ -168,43 +321,50 @@ Result png_read(Image *image, const char *path, Error *error)
     *image = (Image){0};
     Bytes file;
     TRY(bytes_read_file(&file, path, error));
-    Result result = decode(image, IMAGE_8, &file, path, error);
+    Result result = decode(image, false, &file, path, error);
     bytes_destroy(&file);
     return result;
 }
 
-// --- Whole or not.
+// --- Texts.
 
-// The end of the chunk at `at`; 0 if the chunk isn't whole or its checksum is wrong.
-static size_t chunk_end(const Bytes *file, size_t at)
+// Latin-1 takes at most two bytes a letter in UTF-8.
+static Result set_latin(ImageTexts *texts, const char *key, const char *latin, Error *error)
 {
-    if (file->size - at < CHUNK_EXTRA_BYTES) return 0;
-    size_t size = take_u32(file->data + at);
-    if (size > file->size - at - CHUNK_EXTRA_BYTES) return 0;
-    uint32_t sum = libdeflate_crc32(0, file->data + at + 4, size + 4);
-    return sum == take_u32(file->data + at + CHUNK_HEAD_BYTES + size)
-               ? at + CHUNK_EXTRA_BYTES + size
-               : 0;
+    char *text = malloc(2 * strlen(latin) + 1), *to = text;
+    if (!text) return error_set(error, RESULT_FAILED, "no memory for the texts of an image");
+    for (const uint8_t *at = (const uint8_t *)latin; *at; ++at) {
+        if (*at >= 0x80) *to++ = (char)(0xc0 | *at >> 6);
+        *to++ = (char)(*at < 0x80 ? *at : 0x80 | (*at & 0x3f));
+    }
+    *to = 0;
+    Result result = image_texts_set(texts, key, text, error);
+    free(text);
+    return result;
 }
 
-bool png_is_whole(const char *path, int width, int height, int channels)
+static Result take_texts(ImageTexts *texts, const Codec *codec, Error *error)
 {
-    static const uint8_t head[CHUNK_HEAD_BYTES] = {0, 0, 0, IHDR_BYTES, 'I', 'H', 'D', 'R'};
-    size_t at = sizeof SIGNATURE, begin = at + sizeof head;
-    Bytes file;
-    if (bytes_read_file(&file, path, NULL) != RESULT_OK) return false;
-    const uint8_t *data = file.data;
-    bool begun = file.size >= begin + IHDR_BYTES && memcmp(data, SIGNATURE, at) == 0 &&
-                 memcmp(data + at, head, sizeof head) == 0 &&
-                 take_u32(data + begin) == (uint32_t)width &&
-                 take_u32(data + begin + 4) == (uint32_t)height && data[begin + 8] == 8 &&
-                 data[begin + 9] == color_type(channels);
-    bool ended = false;
-    while (begun && !ended && at) {
-        ended = file.size - at >= CHUNK_EXTRA_BYTES && memcmp(data + at + 4, "IEND", 4) == 0;
-        at = chunk_end(&file, at);
+    png_textp found;
+    int count = png_get_text(codec->png, codec->info, &found, NULL);
+    for (int i = 0; i < count; ++i) {
+        if (!image_texts_is_key(found[i].key) || !found[i].text) continue;
+        bool latin = found[i].compression < PNG_ITXT_COMPRESSION_NONE;
+        TRY(latin ? set_latin(texts, found[i].key, found[i].text, error)
+                  : image_texts_set(texts, found[i].key, found[i].text, error));
     }
-    bool whole = ended && at == file.size;
-    bytes_destroy(&file);
-    return whole;
+    return RESULT_OK;
+}
+
+Result png_decode_texts(ImageTexts *texts, const Bytes *file, const char *path, Error *error)
+{
+    Codec codec;
+    *texts = (ImageTexts){0};
+    Result result = open_reader(&codec, file, path, error);
+    THEN(result, try_step(&codec, expect_texts, path, error));
+    THEN(result, try_step(&codec, read_header, path, error));
+    THEN(result, take_texts(texts, &codec, error));
+    if (result != RESULT_OK) image_texts_destroy(texts);
+    png_destroy_read_struct(&codec.png, &codec.info, NULL);
+    return result;
 }

@@ -6,6 +6,8 @@
 #include "scene/camera.h"
 #include "strands/paint.h"
 
+#include "version.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -131,9 +133,19 @@ static Result open_renderer(Images *images, GpuTimer *timer, Error *error)
     return open_sky(images, error);
 }
 
+// Who drew the images. A CPU driver's depend on the processor as well.
+static Result describe_origin(ImageTexts *texts, const Gpu *gpu, Error *error)
+{
+    TRY(image_texts_set(texts, "Software", "tractrix " TRACTRIX_VERSION, error));
+    TRY(image_texts_set(texts, "Renderer", gpu->renderer, error));
+    TRY(image_texts_set(texts, "Driver", gpu->version, error));
+    return gpu->software ? image_texts_set(texts, "CPU", gpu->processor, error) : RESULT_OK;
+}
+
 static Result open_output(Images *images, int frame_count, Error *error)
 {
     const RunParams *run = &images->scene->run;
+    TRY(describe_origin(&images->texts, images->gpu, error));
     const OutputOptions options = {
         .target = run->output,
         .width = run->size[0],
@@ -144,6 +156,7 @@ static Result open_output(Images *images, int frame_count, Error *error)
         .frame_count = frame_count,
         .columns = run->contact_sheet[0],
         .rows = run->contact_sheet[1],
+        .texts = &images->texts,
     };
     return output_create(&images->output, &options, error);
 }
@@ -168,6 +181,7 @@ void images_destroy(Images *images)
 {
     output_destroy(images->output);
     renderer_destroy(&images->renderer);
+    image_texts_destroy(&images->texts);
     free(images->items);
     *images = (Images){0};
 }

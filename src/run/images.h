@@ -19,6 +19,7 @@ typedef struct Images {
     Renderer renderer;
     RenderItem *items; // of each section, unless hidden, its guides and followers if there are any
     uint32_t item_count;
+    ImageTexts texts; // of the files
     Output *output;
 } Images;
 

@@ -37,6 +37,8 @@ struct Output {
     Target target;
     Video *video;     // NULL unless a video is written
     ImageSheet sheet; // empty unless a contact sheet is; the worker's
+    ImageTexts texts; // the worker's
+    bool has_texts;
     Slot *slots;
     Slot **queue; // ring of `slot_count`, so there is always room
     int slot_count;
@@ -56,14 +58,29 @@ struct Output {
     OutputCounters counters;
 };
 
-static Result write_image(const Output *output, const Image *image, int frame, uint64_t *bytes,
+// Of a sheet the first and the last.
+static Result set_frame(Output *output, int frame, Error *error)
+{
+    char text[40];
+    if (!output->has_texts) return RESULT_OK;
+    if (output->sheet.columns)
+        snprintf(text, sizeof text, "%d-%d", output->frame_first, output->frame_last);
+    else
+        snprintf(text, sizeof text, "%d", frame);
+    return image_texts_set(&output->texts, "Frame", text, error);
+}
+
+static Result write_image(Output *output, const Image *image, int frame, uint64_t *bytes,
                           Error *error)
 {
     char *name = target_name_frame(&output->target, frame);
     if (!name) return error_set(error, RESULT_FAILED, "no memory for the name of frame %d", frame);
-    Bytes png;
-    Result result = image->kind == IMAGE_FLOAT ? pfm_encode(image, &png, error)
-                                               : png_encode(image, &png, error);
+    Bytes png = {0};
+    Result result = set_frame(output, frame, error);
+    if (result == RESULT_OK && image->kind == IMAGE_FLOAT)
+        result = pfm_encode(image, &png, error);
+    else if (result == RESULT_OK)
+        result = png_encode(image, &output->texts, &png, error);
     *bytes = png.size;
     if (result == RESULT_OK)
         result = bytes_write_file(&png, name, error);
@@ -262,8 +279,10 @@ Result output_create(Output **output, const OutputOptions *options, Error *error
     Output *created = calloc(1, sizeof *created);
     if (!created) return error_set(error, RESULT_FAILED, "no memory for the output");
     create_lock(created);
+    created->has_texts = options->texts != NULL;
     Result result = target_parse(&created->target, options->target, error);
     THEN(result, check_options(options, &created->target, error));
+    THEN(result, image_texts_copy(&created->texts, options->texts, error));
     THEN(result, create_slots(created, options, error));
     THEN(result, start_sheet(created, options, error));
     THEN(result, target_prepare(&created->target, error));
@@ -356,6 +375,7 @@ void output_destroy(Output *output)
     if (output->has_worker) stop_worker(output);
     video_destroy(output->video);
     image_sheet_destroy(&output->sheet);
+    image_texts_destroy(&output->texts);
     for (int i = 0; i < output->slot_count; i++) image_destroy(&output->slots[i].image);
     free(output->slots);
     free(output->queue);

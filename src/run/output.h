@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "image/image.h"
+#include "image/image_text.h"
 
 #include <stdint.h>
 
@@ -24,7 +25,8 @@ typedef struct OutputOptions {
     double fps;         // frames a second, used for videos
     int frame_count;    // how many will come, 0: not known; "x.png" takes 1, or a sheet
     int columns, rows;  // of a contact sheet that takes all frames, "x.png" or "x.pfm"; <= 1: none
-    int queue_length;   // images in the pool: drawn, waiting or being encoded; 0: the usual 3
+    const ImageTexts *texts; // of each PNG file, which adds its frame's number; NULL: none
+    int queue_length;        // images in the pool: drawn, waiting or being encoded; 0: the usual 3
 } OutputOptions;
 
 typedef struct OutputCounters {

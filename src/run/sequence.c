@@ -4,7 +4,7 @@
 #include "base/interrupt.h"
 #include "base/progress.h"
 #include "base/target.h"
-#include "image/png.h"
+#include "image/float_image.h"
 #include "run/caption.h"
 #include "strands/formats/format.h"
 
@@ -61,11 +61,17 @@ int sequence_count_drawn(const RunParams *run)
 
 // --- What an interrupted run has left (--resume).
 
+// Whether the whole file can be read, and is what would be written.
 static bool image_is_complete(const Target *target, int frame, const RunParams *run)
 {
+    ImageKind kind = target->floats ? IMAGE_FLOAT : run->depth == DEPTH_16 ? IMAGE_16 : IMAGE_8;
+    int channels = run->background[3] < 1 && !target->floats ? 4 : 3;
     char *name = target_name_frame(target, frame);
-    bool whole =
-        name && png_is_whole(name, run->size[0], run->size[1], run->background[3] < 1 ? 4 : 3);
+    Image image = {0};
+    bool whole = name && float_image_read_image(&image, name, NULL) == RESULT_OK &&
+                 image.width == run->size[0] && image.height == run->size[1] &&
+                 image.channels == channels && image.kind == kind;
+    image_destroy(&image);
     free(name);
     return whole;
 }

@@ -14,8 +14,8 @@ typedef struct FramesDone {
     int count;  // how many
 } FramesDone;
 
-// Looks at each frame that the run draws. An image is complete if it is a PNG file of the run's
-// size and channels whose chunks have correct checksums; a hair file if it exists. RESULT_USAGE for
+// Looks at each frame that the run draws. An image is complete if all of its file can be read
+// and it has the run's size, depth and channels; a hair file if it exists. RESULT_USAGE for
 // a video, or a USD file of all frames, without --cache: only its simulation can be continued.
 // RESULT_FAILED when memory is short. A zeroed struct may be destroyed.
 Result sequence_find_done(FramesDone *done, const RunParams *run, int last, Error *error);

@@ -29,17 +29,6 @@ void stats_destroy(Stats *stats)
     *stats = (Stats){0};
 }
 
-// The CPU's name: images and times of a CPU driver depend on it.
-static json_t *processor(void)
-{
-    char line[512], name[256] = "unknown";
-    FILE *info = fopen("/proc/cpuinfo", "r");
-    while (info && fgets(line, sizeof line, info))
-        if (sscanf(line, "model name : %255[^\n]", name) == 1) break;
-    if (info) fclose(info);
-    return json_string(name);
-}
-
 static json_t *describe_device(const Gpu *gpu)
 {
     json_t *device = json_object();
@@ -48,7 +37,7 @@ static json_t *describe_device(const Gpu *gpu)
     json_object_set_new(device, "vendor", json_string(gpu->vendor));
     json_object_set_new(device, "path", json_string(gpu->path));
     json_object_set_new(device, "software", json_boolean(gpu->software));
-    json_object_set_new(device, "processor", processor());
+    json_object_set_new(device, "processor", json_string(gpu->processor));
     return device;
 }
 

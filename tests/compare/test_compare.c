@@ -140,7 +140,7 @@ static void write_image(const char *path, const Image *image)
 {
     Bytes file;
     Result result = image->kind == IMAGE_FLOAT ? pfm_encode(image, &file, NULL)
-                                               : png_encode(image, &file, NULL);
+                                               : png_encode(image, NULL, &file, NULL);
     assert_int_equal(result, RESULT_OK);
     assert_int_equal(bytes_write_file(&file, path, NULL), RESULT_OK);
     bytes_destroy(&file);

@@ -124,7 +124,7 @@ static void sixteen_bits_are_finer_than_eight(void **state)
     Bytes png;
     const char *path = temporary_path(state, "deep.png");
     NEEDED(png_write(path, &studio.image, error));
-    NEEDED(png_encode(&studio.image, &png, error));
+    NEEDED(png_encode(&studio.image, NULL, &png, error));
     assert_int_equal(png.data[24], 16);
     bytes_destroy(&png);
     NEEDED(png_read(&read, path, error)); // as 8 bits: the upper ones

@@ -40,6 +40,14 @@ static void assert_same_image(const Image *a, const Image *b)
                         (size_t)a->width * (size_t)a->height * (size_t)a->channels);
 }
 
+// One line of what can be printed.
+static void assert_line(const char *text)
+{
+    if (!*text || strstr(text, "(null)")) fail_msg("no reason: '%s'", text);
+    for (const char *at = text; *at; ++at)
+        if (*at < ' ' || *at > '~') fail_msg("'%s' has byte %d", text, *at);
+}
+
 static void every_size_and_kind_survives_a_round_trip(void **state)
 {
     static const int sizes[][2] = {{1, 1}, {1, 7}, {9, 1}, {33, 17}, {64, 64}, {1280, 720}};
@@ -78,7 +86,7 @@ static void the_file_is_made_of_valid_chunks(void **state)
     (void)state;
     Image image = make_image(33, 17, 4);
     Bytes png;
-    assert_int_equal(png_encode(&image, &png, NULL), RESULT_OK);
+    assert_int_equal(png_encode(&image, NULL, &png, NULL), RESULT_OK);
     assert_memory_equal(png.data, "\x89PNG\r\n\x1a\n", 8);
     static const char *const names[] = {"IHDR", "IDAT", "IEND"};
     size_t at = 8;
@@ -107,7 +115,7 @@ static void every_row_is_the_difference_from_the_row_above(void **state)
     Bytes png;
     uint8_t rows[H][1 + ROW], above[ROW] = {0};
     size_t size;
-    assert_int_equal(png_encode(&image, &png, NULL), RESULT_OK);
+    assert_int_equal(png_encode(&image, NULL, &png, NULL), RESULT_OK);
     struct libdeflate_decompressor *decompressor = libdeflate_alloc_decompressor();
     assert_int_equal(libdeflate_zlib_decompress(decompressor, png.data + 41,
                                                 read_big_endian(png.data + 33), rows, sizeof rows,
@@ -131,8 +139,8 @@ static void the_same_image_gives_the_same_bytes(void **state)
     (void)state;
     Image image = make_image(321, 123, 3);
     Bytes first, second;
-    assert_int_equal(png_encode(&image, &first, NULL), RESULT_OK);
-    assert_int_equal(png_encode(&image, &second, NULL), RESULT_OK);
+    assert_int_equal(png_encode(&image, NULL, &first, NULL), RESULT_OK);
+    assert_int_equal(png_encode(&image, NULL, &second, NULL), RESULT_OK);
     assert_int_equal(first.size, second.size);
     assert_memory_equal(first.data, second.data, first.size);
     bytes_destroy(&first);
@@ -146,7 +154,7 @@ static void an_image_too_large_is_refused(void **state)
     Error error;
     Bytes png;
     Image image = {.width = 40000, .height = 40000, .channels = 4};
-    assert_int_equal(png_encode(&image, &png, &error), RESULT_FAILED);
+    assert_int_equal(png_encode(&image, NULL, &png, &error), RESULT_FAILED);
     assert_non_null(strstr(error.text, "40000 x 40000"));
     assert_null(png.data);
 }
@@ -192,7 +200,7 @@ static void a_cut_file_is_bad_input(void **state)
     Image image = make_image(9, 5, 3), back;
     Bytes png;
     const char *path = temporary_path(state, "cut.png");
-    assert_int_equal(png_encode(&image, &png, &error), RESULT_OK);
+    assert_int_equal(png_encode(&image, NULL, &png, &error), RESULT_OK);
     // All but the closing chunk is needed.
     for (size_t size = 0; size < png.size - 12; size++) {
         Bytes cut = {.data = png.data, .size = size};
@@ -203,30 +211,261 @@ static void a_cut_file_is_bad_input(void **state)
     image_destroy(&image);
 }
 
-static void only_whole_files_of_the_right_form_are_whole(void **state)
+// Sums protect every byte, those of chunks too that nothing reads.
+static void any_flipped_bit_is_found(void **state)
 {
-    Image image = make_image(13, 9, 3);
-    const char *path = temporary_path(state, "image.png");
+    (void)state;
+    Image image = make_image(13, 9, 3), back;
+    ImageTexts texts = {0};
     Bytes png;
-    assert_false(png_is_whole(path, 13, 9, 3));
-    assert_int_equal(png_encode(&image, &png, NULL), RESULT_OK);
-    assert_int_equal(bytes_write_file(&png, path, NULL), RESULT_OK);
-    assert_true(png_is_whole(path, 13, 9, 3));
-    assert_false(png_is_whole(path, 9, 13, 3));
-    assert_false(png_is_whole(path, 13, 9, 4));
-    for (size_t size = 0; size < png.size; size++) {
-        Bytes cut = {.data = png.data, .size = size};
-        assert_int_equal(bytes_write_file(&cut, path, NULL), RESULT_OK);
-        assert_false(png_is_whole(path, 13, 9, 3));
-    }
-    for (size_t at = 0; at < png.size; at++) {
+    assert_int_equal(image_texts_set(&texts, "Software", "x", NULL), RESULT_OK);
+    assert_int_equal(png_encode(&image, &texts, &png, NULL), RESULT_OK);
+    for (size_t at = 0; at < png.size; ++at) {
+        Error error = {{0}};
         png.data[at] ^= 0x10;
-        assert_int_equal(bytes_write_file(&png, path, NULL), RESULT_OK);
-        assert_false(png_is_whole(path, 13, 9, 3));
+        assert_int_equal(png_decode_deep(&back, &png, "x.png", &error), RESULT_BAD_INPUT);
+        assert_line(error.text);
         png.data[at] ^= 0x10;
     }
+    assert_int_equal(png_decode_deep(&back, &png, "x.png", NULL), RESULT_OK);
+    assert_same_image(&image, &back);
+    image_texts_destroy(&texts);
     bytes_destroy(&png);
+    image_destroy(&back);
     image_destroy(&image);
+}
+
+// --- Texts.
+
+static const char *const KEYS[] = {"Software", "Frame", "A b", "Fingerprint"};
+static const char *const VALUES[] = {"tractrix 0", "", "na\u00efve \u2192 \U0001f600\nline",
+                                     "0123456789abcdef"};
+enum { KEY_COUNT = 4 };
+
+static void texts_survive_and_leave_the_pixels(void **state)
+{
+    (void)state;
+    Image image = make_image(5, 4, 4), back;
+    ImageTexts texts = {0}, found;
+    Bytes png, bare, again;
+    for (int i = 0; i < KEY_COUNT; ++i)
+        assert_int_equal(image_texts_set(&texts, KEYS[i], VALUES[i], NULL), RESULT_OK);
+    assert_int_equal(png_encode(&image, &texts, &png, NULL), RESULT_OK);
+    assert_int_equal(png_encode(&image, &texts, &again, NULL), RESULT_OK);
+    assert_int_equal(png_encode(&image, NULL, &bare, NULL), RESULT_OK);
+    assert_int_equal(png.size, again.size);
+    assert_memory_equal(png.data, again.data, png.size);
+    assert_true(bare.size < png.size);
+    assert_int_equal(png_decode_deep(&back, &png, "x.png", NULL), RESULT_OK);
+    assert_same_image(&image, &back);
+    assert_int_equal(png_decode_texts(&found, &png, "x.png", NULL), RESULT_OK);
+    assert_int_equal(found.count, KEY_COUNT);
+    for (int i = 0; i < KEY_COUNT; ++i)
+        assert_string_equal(image_texts_find(&found, KEYS[i]), VALUES[i]);
+    assert_null(image_texts_find(&found, "frame"));
+    image_texts_destroy(&found);
+    assert_int_equal(png_decode_texts(&found, &bare, "x.png", NULL), RESULT_OK);
+    assert_int_equal(found.count, 0);
+    bytes_destroy(&png), bytes_destroy(&again), bytes_destroy(&bare);
+    image_texts_destroy(&texts);
+    image_destroy(&back);
+    image_destroy(&image);
+}
+
+static void texts_are_clean(void **state)
+{
+    (void)state;
+    static const char *const keys[] = {"", " a", "a ", "a  b", "caf\u00e9", "tab\t"};
+    char key[IMAGE_TEXT_KEY_BYTES + 1];
+    ImageTexts texts = {0};
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; ++i)
+        assert_int_equal(image_texts_set(&texts, keys[i], "x", NULL), RESULT_FAILED);
+    memset(key, 'k', sizeof key);
+    key[IMAGE_TEXT_KEY_BYTES] = 0;
+    assert_int_equal(image_texts_set(&texts, key, "x", NULL), RESULT_FAILED);
+    key[IMAGE_TEXT_KEY_BYTES - 1] = 0;
+    assert_int_equal(image_texts_set(&texts, key, "x", NULL), RESULT_OK);
+    assert_int_equal(image_texts_set(&texts, key, "a\tb\x1b[1m\xff\xc0\x80\xed\xa0\x80\xc3", NULL),
+                     RESULT_OK);
+    assert_int_equal(texts.count, 1);
+    assert_string_equal(image_texts_find(&texts, key), "a b [1m???"
+                                                       "???"
+                                                       "?");
+    image_texts_destroy(&texts);
+}
+
+// --- Files of other programs: chunks made here, rows compressed by zlib's format.
+
+typedef struct File {
+    uint8_t data[4096];
+    size_t size;
+} File;
+
+static void add_u32(File *file, uint32_t value)
+{
+    for (int k = 0; k < 4; ++k) file->data[file->size++] = (uint8_t)(value >> (24 - 8 * k));
+}
+
+static void add_chunk(File *file, const char *name, const void *bytes, size_t size)
+{
+    add_u32(file, (uint32_t)size);
+    memcpy(file->data + file->size, name, 4);
+    if (size) memcpy(file->data + file->size + 4, bytes, size);
+    file->size += size + 4;
+    add_u32(file, checksum(file->data + file->size - size - 4, size + 4));
+}
+
+static void add_header(File *file, uint32_t width, uint32_t height, int depth, int type, int laced)
+{
+    File header = {.size = 0};
+    memcpy(file->data, "\x89PNG\r\n\x1a\n", 8);
+    file->size = 8;
+    add_u32(&header, width);
+    add_u32(&header, height);
+    const uint8_t rest[] = {(uint8_t)depth, (uint8_t)type, 0, 0, (uint8_t)laced};
+    memcpy(header.data + 8, rest, sizeof rest);
+    add_chunk(file, "IHDR", header.data, 13);
+}
+
+static void add_end(File *file, const void *rows, size_t size)
+{
+    uint8_t packed[2048];
+    struct libdeflate_compressor *compressor = libdeflate_alloc_compressor(6);
+    size_t got = libdeflate_zlib_compress(compressor, rows, size, packed, sizeof packed);
+    libdeflate_free_compressor(compressor);
+    assert_true(got > 0);
+    add_chunk(file, "IDAT", packed, got);
+    add_chunk(file, "IEND", NULL, 0);
+}
+
+static Result decode(Image *image, const File *file, Error *error)
+{
+    Bytes bytes = {.data = malloc(file->size + 1), .size = file->size};
+    memcpy(bytes.data, file->data, file->size);
+    bytes.data[file->size] = 0;
+    Result result = png_decode_deep(image, &bytes, "x.png", error);
+    bytes_destroy(&bytes);
+    return result;
+}
+
+// Two pixels beside each other of each kind, as RGB or RGBA of the depth that comes out.
+static void every_kind_of_pixel_is_read(void **state)
+{
+    (void)state;
+    static const struct {
+        int depth, type; // 0 grey, 2 RGB, 3 palette, 4 grey and alpha, 6 RGBA
+        uint8_t row[17]; // with the filter
+        size_t size;
+        const char *colours;
+        int colour_bytes;
+        ImageKind kind;
+        int channels;
+        uint16_t pixels[8];
+    } kinds[] = {
+        {1, 0, {0, 0x40}, 2, NULL, 0, IMAGE_8, 3, {0, 0, 0, 255, 255, 255}},
+        {2, 0, {0, 0x60}, 2, NULL, 0, IMAGE_8, 3, {85, 85, 85, 170, 170, 170}},
+        {4, 0, {0, 0x3f}, 2, NULL, 0, IMAGE_8, 3, {51, 51, 51, 255, 255, 255}},
+        {8, 0, {0, 7, 200}, 3, NULL, 0, IMAGE_8, 3, {7, 7, 7, 200, 200, 200}},
+        {16,
+         0,
+         {0, 1, 2, 3, 4},
+         5,
+         NULL,
+         0,
+         IMAGE_16,
+         3,
+         {0x102, 0x102, 0x102, 0x304, 0x304, 0x304}},
+        {8, 0, {0, 7, 200}, 3, "\0\7", 2, IMAGE_8, 4, {7, 7, 7, 0, 200, 200, 200, 255}},
+        {8, 2, {0, 1, 2, 3, 4, 5, 6}, 7, NULL, 0, IMAGE_8, 3, {1, 2, 3, 4, 5, 6}},
+        {8, 3, {0, 1, 0}, 3, NULL, 0, IMAGE_8, 3, {40, 50, 60, 10, 20, 30}},
+        {8, 3, {0, 1, 0}, 3, "\x80", 1, IMAGE_8, 4, {40, 50, 60, 255, 10, 20, 30, 128}},
+        {1, 3, {0, 0x80}, 2, NULL, 0, IMAGE_8, 3, {40, 50, 60, 10, 20, 30}},
+        {8, 4, {0, 9, 8, 7, 6}, 5, NULL, 0, IMAGE_8, 4, {9, 9, 9, 8, 7, 7, 7, 6}},
+        {16,
+         4,
+         {0, 1, 2, 3, 4, 5, 6, 7, 8},
+         9,
+         NULL,
+         0,
+         IMAGE_16,
+         4,
+         {0x102, 0x102, 0x102, 0x304, 0x506, 0x506, 0x506, 0x708}},
+        {8, 6, {0, 1, 2, 3, 4, 5, 6, 7, 8}, 9, NULL, 0, IMAGE_8, 4, {1, 2, 3, 4, 5, 6, 7, 8}},
+    };
+    static const uint8_t palette[] = {10, 20, 30, 40, 50, 60};
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; ++i)
+        for (int laced = 0; laced < 2; ++laced) {
+            File file;
+            Image image;
+            Error error = {{0}};
+            add_header(&file, 2, 1, kinds[i].depth, kinds[i].type, laced);
+            add_chunk(&file, "gAMA", "\0\1\x86\xa0", 4); // 1: not looked at
+            if (kinds[i].type == 3) add_chunk(&file, "PLTE", palette, sizeof palette);
+            if (kinds[i].colours)
+                add_chunk(&file, "tRNS", kinds[i].colours, (size_t)kinds[i].colour_bytes);
+            add_chunk(&file, "tEXt", "Comment\0\xe9", 9);
+            if (laced && kinds[i].size < 3) continue; // pixels share a byte
+            uint8_t rows[40] = {0}; // interlaced: the first pixel in pass 1, the second in pass 6
+            size_t half = (kinds[i].size - 1) / 2, size = kinds[i].size;
+            memcpy(rows, kinds[i].row, size);
+            if (laced) {
+                rows[half + 1] = 0;
+                memcpy(rows + half + 2, kinds[i].row + 1 + half, half);
+                size += 1;
+            }
+            add_end(&file, rows, size);
+            if (decode(&image, &file, &error) != RESULT_OK) fail_msg("%zu: %s", i, error.text);
+            assert_int_equal(image.kind, kinds[i].kind);
+            assert_int_equal(image.channels, kinds[i].channels);
+            for (int k = 0; k < 2 * image.channels; ++k)
+                assert_int_equal(image.kind == IMAGE_16 ? ((uint16_t *)(void *)image.pixels)[k]
+                                                        : image.pixels[k],
+                                 kinds[i].pixels[k]);
+            image_destroy(&image);
+        }
+}
+
+// A header may ask for far more than the file can hold: refused at once, whatever is behind it.
+static void bombs_are_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        uint32_t width, height;
+        const char *says;
+    } sizes[] = {{16000, 16000, "expected no more than"},
+                 {1 << 20, 1 << 20, "at most"},
+                 {1u << 30, 1, "width"},
+                 {0, 5, "width"},
+                 {5, 0, "height"},
+                 {0xffffffff, 1, "out of range"}};
+    static const uint8_t zeros[200];
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; ++i) {
+        File file;
+        Image image;
+        Error error = {{0}};
+        add_header(&file, sizes[i].width, sizes[i].height, 8, 6, 0);
+        add_end(&file, zeros, sizeof zeros);
+        assert_int_equal(decode(&image, &file, &error), RESULT_BAD_INPUT);
+        assert_line(error.text);
+        if (!strstr(error.text, sizes[i].says)) fail_msg("%zu: %s", i, error.text);
+        assert_null(image.pixels);
+    }
+}
+
+static void too_few_and_wrong_rows_are_found(void **state)
+{
+    (void)state;
+    uint8_t rows[4 * 13] = {0};
+    for (int i = 0; i < 3; ++i) {
+        File file;
+        Image image;
+        Error error = {{0}};
+        add_header(&file, 4, 4, 8, i == 2 ? 5 : 2, 0); // a kind of pixel that is none
+        rows[26] = i == 1 ? 9 : 0;                     // a filter that is none
+        add_end(&file, rows, i == 0 ? sizeof rows - 1 : sizeof rows);
+        assert_int_equal(decode(&image, &file, &error), RESULT_BAD_INPUT);
+        assert_line(error.text);
+    }
 }
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, temporary_create, temporary_destroy)
@@ -242,7 +481,12 @@ int main(void)
         TEST(a_full_disk_leaves_no_file),
         TEST(files_that_are_no_png_are_bad_input),
         TEST(a_cut_file_is_bad_input),
-        TEST(only_whole_files_of_the_right_form_are_whole),
+        TEST(any_flipped_bit_is_found),
+        TEST(texts_survive_and_leave_the_pixels),
+        TEST(texts_are_clean),
+        TEST(every_kind_of_pixel_is_read),
+        TEST(bombs_are_refused),
+        TEST(too_few_and_wrong_rows_are_found),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
