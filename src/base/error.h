@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The room base: what every other room stands on. It takes nothing of this project and hands on
 // results and errors (this file), files whole or in chunks (bytes.h, outfile.h, chunk.h, reader.h,
-// csv.h, json.h), text (decimal.h, suggest.h), the table of parameters (params.h), the command line
-// of all programs (options.h, program.h), numbers that are the same on every machine (random.h,
-// portable.h, double3.h), threads and vectors (parallel.h, simd.h).
+// csv.h, json.h, leftovers.h), text (decimal.h, suggest.h), the table of parameters (params.h), the
+// command line of all programs (options.h, program.h), numbers that are the same on every machine
+// (random.h, portable.h, double3.h), threads and vectors (parallel.h, simd.h).
 //
 // This file: how every function reports failure: a Result and, with it, one line of text.
 #pragma once

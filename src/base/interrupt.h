@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
-// SIGINT and SIGTERM as a flag that loops look at.
+// SIGINT, SIGTERM and SIGHUP as a flag that loops look at, and an end for programs that do not.
 #pragma once
 
 #include <stdbool.h>
 
-// From now on the first SIGINT or SIGTERM only sets the flag, and gives both back their default
-// action, so that a second one ends the program at once. SIGPIPE and SIGXFSZ are ignored: a closed
-// pipe or a size limit is a failed write.
+// From now on the first SIGINT, SIGTERM or SIGHUP (unless that is ignored, as by nohup) only sets
+// the flag, and gives all of them back their default action, so that a second one ends the program
+// at once. If the calling thread does not ask for the flag within 0.4 s, or has asked and not ended
+// 20 s later, temporary files and children are removed (leftovers.h) and the program ends with
+// status 130. SIGPIPE and SIGXFSZ are ignored: a closed pipe or a size limit is a failed write.
 void interrupt_install(void);
 
 // Whether one of them has come. False for ever if nothing is installed. Any thread may ask.

@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -26,19 +27,22 @@ static char *resolve_name(const char *path)
 
 // Creates a file that did not exist, beside `path`. mkstemp would do but for its fixed permissions
 // of 0600.
-static int open_temporary(OutFile *file)
+static int create_temporary(OutFile *file, const char *folder)
 {
-    const char *slash = strrchr(file->path, '/');
-    int folder_length = slash ? (int)(slash - file->path) + 1 : 0;
     for (unsigned attempt = 0; attempt < 10000; attempt++) {
-        if (asprintf(&file->temporary, "%.*s.tractrix-%ld-%u.tmp", folder_length, file->path,
-                     (long)getpid(), attempt) < 0) {
+        char name[LEFTOVER_NAME_SIZE];
+        leftovers_name(name, attempt);
+        if (asprintf(&file->temporary, "%s%s", folder, name) < 0) {
             file->temporary = NULL;
             errno = ENOMEM;
             return -1;
         }
         int descriptor = open(file->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (descriptor >= 0) return descriptor;
+        if (descriptor >= 0) {
+            flock(descriptor, LOCK_SH | LOCK_NB); // somebody uses it; see leftovers_sweep
+            file->leftover = leftover_add_file(file->temporary);
+            return descriptor;
+        }
         int reason = errno;
         free(file->temporary);
         file->temporary = NULL;
@@ -46,6 +50,19 @@ static int open_temporary(OutFile *file)
         if (reason != EEXIST) return -1;
     }
     return -1;
+}
+
+static int open_temporary(OutFile *file)
+{
+    const char *slash = strrchr(file->path, '/');
+    char *folder = strndup(file->path, slash ? (size_t)(slash - file->path) + 1 : 0);
+    if (!folder) return -1;
+    leftovers_sweep(*folder ? folder : ".");
+    int descriptor = create_temporary(file, folder);
+    int reason = errno;
+    free(folder);
+    errno = reason;
+    return descriptor;
 }
 
 // Devices and pipes (/dev/stdout) cannot be replaced by renaming: they are written as they are.
@@ -115,6 +132,7 @@ void outfile_discard(OutFile *file)
 {
     if (file->stream) fclose(file->stream);
     if (file->temporary) unlink(file->temporary);
+    leftover_forget(file->leftover);
     free(file->temporary);
     free(file->path);
     *file = (OutFile){0};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/error.h"
+#include "base/leftovers.h"
 
 #include <limits.h>
 #include <stdio.h>
@@ -12,6 +13,7 @@ typedef struct OutFile {
     FILE *stream;    // write here; write errors are sticky and found by outfile_commit
     char *path;      // the final name, links followed
     char *temporary; // the present name; NULL for a device or pipe, which is written directly
+    Leftover *leftover;
 } OutFile;
 
 // Creates the temporary file (permissions as for any new file, by the umask). RESULT_FAILED with

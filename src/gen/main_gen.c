@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // tractrix-gen: makes hair and the mesh it grows on.
+#include "base/interrupt.h"
 #include "base/program.h"
 #include "gen/fur.h"
 #include "gen/strands_make.h"
@@ -268,6 +269,7 @@ static Result run(int argc, char **argv, Error *error)
 int main(int argc, char **argv)
 {
     Error error = {{0}};
+    interrupt_install();
     Result result = run(argc, argv, &error);
     return program_end("tractrix-gen", result, &error);
 }

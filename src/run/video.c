@@ -28,6 +28,7 @@ struct Video {
     int input;    // the end of ffmpeg's standard input that is written, -1: closed
     int messages; // ffmpeg's standard error: a file in memory, which unlike a pipe nobody needs to
                   // empty
+    Leftover *group;
 };
 
 typedef struct Format {
@@ -182,6 +183,7 @@ static int spawn(Video *video, const Command *command, int input_read_end)
     int reason = posix_spawnp(&video->process, "ffmpeg", &actions, &attributes,
                               (char *const *)command->arguments, environ);
     if (reason != 0) video->process = 0;
+    if (reason == 0) video->group = leftover_add_group(video->process);
     posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
     return reason;
@@ -303,12 +305,17 @@ Result video_finish(Video *video, uint64_t *bytes, Error *error)
     TRY(wait_end(video, error));
     struct stat status;
     if (fstat(fileno(video->file.stream), &status) == 0) *bytes = (uint64_t)status.st_size;
+    if (*bytes == 0)
+        return error_set(error, RESULT_FAILED,
+                         "%s: ffmpeg ended well but wrote nothing: expected a video",
+                         video->file.path);
     return outfile_commit(&video->file, error);
 }
 
+// Its children, too, which hold the pipe.
 void video_kill(Video *video)
 {
-    kill(video->process, SIGKILL);
+    kill(-video->process, SIGKILL);
 }
 
 void video_destroy(Video *video)
@@ -316,7 +323,8 @@ void video_destroy(Video *video)
     if (!video) return;
     close_input(video);
     if (video->process > 0) {
-        kill(video->process, SIGKILL);
+        video_kill(video);
+        leftover_forget(video->group);
         while (waitpid(video->process, NULL, 0) < 0 && errno == EINTR) {
         }
     }

@@ -127,18 +127,34 @@ static int wait_for_interrupt(const OutputOptions *options)
     return 0;
 }
 
+// The second one has a child of its own, which holds the pipe when its parent has been killed.
 static void an_interrupt_ends_a_wait_and_leaves_nothing(void **state)
 {
+    static const char *const scripts[] = {"exec sleep 600", "sleep 600; true"};
     OutputOptions options = grey_options(temporary_path(state, "x.mp4"), 3);
     options.width = options.height = 1024;
-    char *path = replace_ffmpeg(state, "exec sleep 600");
-    pid_t child = fork();
-    if (child == 0) _exit(wait_for_interrupt(&options));
-    int status;
-    assert_int_equal(waitpid(child, &status, 0), child);
+    for (int i = 0; i < 2; ++i) {
+        char *path = replace_ffmpeg(state, scripts[i]);
+        pid_t child = fork();
+        if (child == 0) _exit(wait_for_interrupt(&options));
+        int status;
+        assert_int_equal(waitpid(child, &status, 0), child);
+        restore_path(path);
+        assert_true(WIFEXITED(status));
+        assert_int_equal(WEXITSTATUS(status), 0);
+        assert_int_equal(temporary_count_files(temporary_path(state, ".")), 1);
+    }
+}
+
+static void an_ffmpeg_that_writes_nothing_is_an_error(void **state)
+{
+    OutputOptions options = grey_options(temporary_path(state, "x.mp4"), 3);
+    Error error;
+    char *path = replace_ffmpeg(state, "cat >/dev/null");
+    Result result = grey_write(&options, 3, &error);
     restore_path(path);
-    assert_true(WIFEXITED(status));
-    assert_int_equal(WEXITSTATUS(status), 0);
+    assert_int_equal(result, RESULT_FAILED);
+    grey_assert_line(&error, "wrote nothing");
     assert_int_equal(temporary_count_files(temporary_path(state, ".")), 1);
 }
 
@@ -168,6 +184,7 @@ int main(void)
         TEST(a_dying_ffmpeg_fails_with_its_last_words_and_no_file),
         TEST(destroying_a_video_early_leaves_nothing),
         TEST(a_video_without_frames_is_an_error),
+        TEST(an_ffmpeg_that_writes_nothing_is_an_error),
         TEST(an_interrupt_ends_a_wait_and_leaves_nothing),
         TEST(a_second_interrupt_ends_the_program),
     };

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#include "base/leftovers.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#define NAME_FORMAT ".tractrix-%08x-%ld-%u.tmp"
+
+struct Leftover {
+    Leftover *next;
+    int group; // 0: a file
+    char path[];
+};
+
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+static Leftover *first;
+static char *swept; // the folder that was looked through last
+
+static Leftover *add(const char *path, int group)
+{
+    size_t size = strlen(path) + 1;
+    Leftover *leftover = malloc(sizeof *leftover + size);
+    if (!leftover) return NULL;
+    leftover->group = group;
+    memcpy(leftover->path, path, size);
+    pthread_mutex_lock(&lock);
+    leftover->next = first;
+    first = leftover;
+    pthread_mutex_unlock(&lock);
+    return leftover;
+}
+
+Leftover *leftover_add_file(const char *path)
+{
+    return add(path, 0);
+}
+
+Leftover *leftover_add_group(int process_group)
+{
+    return add("", process_group);
+}
+
+void leftover_forget(Leftover *leftover)
+{
+    if (!leftover) return;
+    pthread_mutex_lock(&lock);
+    Leftover **link = &first;
+    while (*link && *link != leftover) link = &(*link)->next;
+    if (*link) *link = leftover->next;
+    pthread_mutex_unlock(&lock);
+    free(leftover);
+}
+
+void leftovers_remove(void)
+{
+    pthread_mutex_lock(&lock); // and kept: nothing is added any more
+    for (const Leftover *leftover = first; leftover; leftover = leftover->next) {
+        if (leftover->group)
+            kill(-leftover->group, SIGKILL);
+        else
+            unlink(leftover->path);
+    }
+}
+
+// --- Those of other runs.
+
+// FNV-1a of the machine's name: a process number means nothing on another machine.
+static uint32_t hash_host(void)
+{
+    char host[256] = "";
+    uint32_t hash = 2166136261u;
+    gethostname(host, sizeof host - 1);
+    for (const char *at = host; *at; ++at) hash = (hash ^ (uint8_t)*at) * 16777619u;
+    return hash;
+}
+
+void leftovers_name(char name[LEFTOVER_NAME_SIZE], unsigned number)
+{
+    snprintf(name, LEFTOVER_NAME_SIZE, NAME_FORMAT, hash_host(), (long)getpid(), number);
+}
+
+// Whether the name is that of a temporary file whose process, on this machine, has ended.
+static bool is_abandoned(const char *name)
+{
+    unsigned host, number;
+    long process;
+    char same[LEFTOVER_NAME_SIZE];
+    if (sscanf(name, NAME_FORMAT, &host, &process, &number) != 3 || process <= 0) return false;
+    snprintf(same, sizeof same, NAME_FORMAT, host, process, number);
+    return strcmp(name, same) == 0 && host == hash_host() && kill((pid_t)process, 0) != 0 &&
+           errno == ESRCH;
+}
+
+// A container that shares the folder may have other process numbers: its files are locked.
+static void remove_unlocked(int folder, const char *name)
+{
+    int file = openat(folder, name, O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
+    if (file < 0) return;
+    if (flock(file, LOCK_EX | LOCK_NB) == 0) unlinkat(folder, name, 0);
+    close(file);
+}
+
+static void sweep(const char *folder)
+{
+    DIR *directory = opendir(folder);
+    if (!directory) return;
+    for (const struct dirent *entry; (entry = readdir(directory));)
+        if (is_abandoned(entry->d_name)) remove_unlocked(dirfd(directory), entry->d_name);
+    closedir(directory);
+}
+
+void leftovers_sweep(const char *folder)
+{
+    pthread_mutex_lock(&lock);
+    bool again = swept && strcmp(swept, folder) == 0;
+    if (!again) {
+        free(swept);
+        swept = strdup(folder);
+    }
+    pthread_mutex_unlock(&lock);
+    if (!again) sweep(folder);
+}
