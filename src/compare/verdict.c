@@ -57,7 +57,7 @@ static Result draw(const char *path, bool sheet, const Image *a, const Image *b,
 static Result measure(Verdict *verdict, float *map, const Image *a, const Image *b,
                       const VerdictOptions *options, Error *error)
 {
-    TRY(compare_images(&verdict->figures, map, a, b, &options->limits, error));
+    TRY(compare_images(&verdict->figures, map, a, b, NULL, &options->limits, error));
     verdict->measured = true;
     verdict->outcome = verdict->figures.same ? OUTCOME_SAME : OUTCOME_DIFFERENT;
     if (verdict->figures.same && !options->draw_same) return RESULT_OK;

@@ -10,7 +10,7 @@
 // Colours at equal steps; their CIE L* is 0, 25, 50, 75 and 98 to within 2.
 static const float STOPS[][3] = {
     {0, 0, 2}, {88, 30, 120}, {200, 62, 110}, {252, 159, 106}, {254, 250, 205}};
-enum { STOP_COUNT = sizeof STOPS / sizeof *STOPS, GAP_PX = 4, CHECK_PX = 8 };
+enum { STOP_COUNT = sizeof STOPS / sizeof *STOPS, GAP_PX = 4, CHECK_PX = 8, STRIPE_PX = 4 };
 
 void heat_map_color(uint8_t rgb[3], float error)
 {
@@ -24,8 +24,14 @@ void heat_map_color(uint8_t rgb[3], float error)
 Result heat_map_create(Image *image, const float *errors, int width, int height, Error *error)
 {
     TRY(image_create(image, width, height, 3, error));
-    for (size_t i = 0; i < (size_t)width * (size_t)height; ++i)
-        heat_map_color(image->pixels + 3 * i, errors[i]);
+    for (size_t i = 0; i < (size_t)width * (size_t)height; ++i) {
+        uint8_t *rgb = image->pixels + 3 * i;
+        size_t diagonal = i % (size_t)width + i / (size_t)width;
+        if (isnan(errors[i]))
+            memset(rgb, diagonal / STRIPE_PX % 2 ? 144 : 96, 3);
+        else
+            heat_map_color(rgb, errors[i]);
+    }
     return RESULT_OK;
 }
 

@@ -9,8 +9,8 @@
 // lightness rises evenly, so that it reads in grey as well. Others are clamped.
 void heat_map_color(uint8_t rgb[3], float error);
 
-// The errors [height][width] in these colours, an IMAGE_8 of 3 channels. RESULT_FAILED when memory
-// is short.
+// The errors [height][width] in these colours, an IMAGE_8 of 3 channels; grey stripes where they
+// are NAN, as those of ignored pixels are. RESULT_FAILED when memory is short.
 Result heat_map_create(Image *image, const float *errors, int width, int height, Error *error);
 
 // A, B and the heat map of their errors side by side, with a gap between. Transparent parts show

@@ -31,7 +31,7 @@ static Image make_image(int channels, const uint8_t color[4])
 static CompareResult compare(Image a, Image b, const CompareLimits *limits)
 {
     CompareResult result;
-    assert_int_equal(compare_images(&result, NULL, &a, &b, limits, NULL), RESULT_OK);
+    assert_int_equal(compare_images(&result, NULL, &a, &b, NULL, limits, NULL), RESULT_OK);
     image_destroy(&a);
     image_destroy(&b);
     return result;
