@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
 // tractrix-compare: measures how much images differ, frame by frame, and compares that with limits.
+#include "base/clock.h"
 #include "base/interrupt.h"
 #include "base/options.h"
 #include "base/program.h"
 #include "base/progress.h"
+#include "compare/github.h"
+#include "compare/junit.h"
 #include "compare/pairs.h"
 #include "compare/verdict.h"
 #include "image/compare.h"
+#include "image/mask.h"
 
 #include <errno.h>
 #include <pthread.h>
@@ -17,8 +21,8 @@
 
 typedef struct Command {
     double pixel_tolerance, max_flip, ppd; // the first two: negative if not given
-    const char *max_failing, *heat_map, *sheet, *json, *junit;
-    bool update, quiet;
+    const char *max_failing, *mask, *heat_map, *sheet, *json, *junit, *unrendered;
+    bool github, only_failures, update, quiet;
     int jobs;
     const char *a, *b;
     CompareLimits limits;
@@ -35,6 +39,9 @@ static const Option OPTIONS[] = {
      "maximum mean FLIP error; without the two options above it is the only limit"},
     {"ppd", 0, OPTION_REAL, AT(ppd), "X", 1, 1000,
      "pixels per degree of view, for FLIP [default 67]"},
+    {"mask", 0, OPTION_STRING, AT(mask), "PATH", 0, 0,
+     "ignore the pixels that are black in this image; a folder or pattern: a mask for each image "
+     "of the same name or number"},
     {"heatmap", 0, OPTION_STRING, AT(heat_map), "PATH", 0, 0,
      "PNG file of the FLIP error per pixel, black to yellow; a folder for folders and patterns, "
      "with a file for each image that differs"},
@@ -42,6 +49,12 @@ static const Option OPTIONS[] = {
      "the same with A, B and the heat map side by side"},
     {"json", 0, OPTION_STRING, AT(json), "FILE", 0, 0, "write all figures as JSON"},
     {"junit", 0, OPTION_STRING, AT(junit), "FILE", 0, 0, "write the results as JUnit XML, for CI"},
+    {"github", 0, OPTION_SWITCH, AT(github), NULL, 0, 0,
+     "print annotations for GitHub Actions, and append a summary to $GITHUB_STEP_SUMMARY"},
+    {"only-failures", 0, OPTION_SWITCH, AT(only_failures), NULL, 0, 0,
+     "list only images that are not the same, in lines and reports; counts are of all"},
+    {"unrendered", 0, OPTION_STRING, AT(unrendered), "FILE", 0, 0,
+     "images that B lacks because they could not be made: lines NAME: REASON, for the reports"},
     {"update", 0, OPTION_SWITCH, AT(update), NULL, 0, 0,
      "accept B: copy it over A where they differ or A has none"},
     {"jobs", 'j', OPTION_WHOLE, AT(jobs), "N", 1, 1024,
@@ -57,12 +70,14 @@ static const char *const NOTES[] = {
     "al. 2004 on luma. FLIP is that of Andersson et al. 2020: 0 looks the same, 1 is the largest "
     "difference. Equal images score exactly 0 (SSIM 1). Images with alpha are compared over black "
     "and over white, and the worse result counts.",
+    "In a mask white is compared and black ignored. Images without a mask are compared whole, but "
+    "each mask must belong to an image.",
     NULL};
 
 static const char *const STATUS[][2] = {{"0", "equal within the limits"},
                                         {"1", "different or missing; or a file can't be written"},
                                         {"2", "wrong usage"},
-                                        {"3", "an image or folder can't be read"},
+                                        {"3", "an image, a mask or a folder can't be read"},
                                         {"130", "interrupted"},
                                         {NULL, NULL}};
 
@@ -70,7 +85,9 @@ static const char *const EXAMPLES[] = {
     "tractrix-compare golden.png new.png --heatmap difference.png",
     "tractrix-compare goldens/ frames/ --pixel-tolerance 8 --max-failing-pixels 2% --sheet bad/",
     "tractrix-compare ref_%04d.png new_%04d.png --max-flip 0.05 --junit report.xml",
-    "tractrix-compare goldens/ frames/ --update", NULL};
+    "tractrix-compare goldens/ frames/ --mask masks/ --only-failures --github",
+    "tractrix-compare goldens/ frames/ --update",
+    NULL};
 
 static const OptionsProgram PROGRAM = {
     .name = "tractrix-compare",
@@ -145,6 +162,8 @@ typedef struct Work {
     size_t next; // pair to be taken
     pthread_mutex_t lock;
     pthread_cond_t changed;
+    time_t started;
+    double start_ms;
 } Work;
 
 // The file for this pair in the folder, "frame_0001.png" or "frame_0001.pfm.png"; the file itself
@@ -208,7 +227,8 @@ static Result print_verdicts(Work *work, Error *error)
             progress_clear(&progress);
             return error_set(error, RESULT_INTERRUPTED, "interrupted");
         }
-        if (!work->command->quiet) {
+        bool listed = !work->command->only_failures || work->verdicts[i].outcome != OUTCOME_SAME;
+        if (!work->command->quiet && listed) {
             progress_clear(&progress);
             verdict_print(&work->verdicts[i], &work->list->pairs[i], stdout);
         }
@@ -253,8 +273,15 @@ static Result conclude(const Work *work, Error *error)
 {
     const Command *command = work->command;
     if (command->json)
-        TRY(verdict_write_json(command->json, work->list, work->verdicts, &command->limits, error));
-    if (command->junit) TRY(verdict_write_junit(command->junit, work->list, work->verdicts, error));
+        TRY(verdict_write_json(command->json, work->list, work->verdicts, &command->limits,
+                               command->only_failures, error));
+    JunitOptions junit = {command->only_failures, 1e-3 * (clock_ms() - work->start_ms),
+                          work->started};
+    if (command->junit) TRY(junit_write(command->junit, work->list, work->verdicts, &junit, error));
+    if (command->github) {
+        TRY(github_append_summary(work->list, work->verdicts, &command->limits, error));
+        github_print_annotations(work->list, work->verdicts, stdout);
+    }
     if (!command->quiet) verdict_print_tally(work->list, work->verdicts, stdout);
     Result result = verdict_status(work->list, work->verdicts);
     for (size_t i = 0; i < work->list->count && result != RESULT_OK; ++i) {
@@ -266,20 +293,37 @@ static Result conclude(const Work *work, Error *error)
     return result;
 }
 
+// One mask for all is tried before the images, so that a wrong one is named once.
+static Result check_mask(const Command *command, Error *error)
+{
+    Mask mask;
+    struct stat status;
+    if (!command->mask || stat(command->mask, &status) != 0 || S_ISDIR(status.st_mode))
+        return RESULT_OK; // its place is looked at with those of the images
+    TRY(mask_read(&mask, command->mask, error));
+    mask_destroy(&mask);
+    return RESULT_OK;
+}
+
 static Result run(const Command *command, Error *error)
 {
     PairList list;
-    TRY(pairs_find(&list, command->a, command->b, command->update, error));
+    PairOptions options = {command->update, command->mask, command->unrendered};
+    TRY(check_mask(command, error));
+    TRY(pairs_find(&list, command->a, command->b, &options, error));
     Work work = {.command = command,
                  .list = &list,
                  .verdicts = calloc(list.count, sizeof *work.verdicts),
                  .ready = calloc(list.count, sizeof *work.ready),
                  .lock = PTHREAD_MUTEX_INITIALIZER,
-                 .changed = PTHREAD_COND_INITIALIZER};
+                 .changed = PTHREAD_COND_INITIALIZER,
+                 .started = time(NULL),
+                 .start_ms = clock_ms()};
     Result result = work.verdicts && work.ready ? make_folders(command, &list, error)
                                                 : error_set(error, RESULT_FAILED, "no memory");
     THEN(result, run_threads(&work, error));
     THEN(result, conclude(&work, error));
+    for (size_t i = 0; work.verdicts && i < list.count; ++i) verdict_destroy(&work.verdicts[i]);
     free(work.verdicts);
     free(work.ready);
     pairs_destroy(&list);

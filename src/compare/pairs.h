@@ -15,6 +15,9 @@ typedef struct Pair {
     char *name;        // for people: the file's name in a folder or sequence, else b
     char *a, *b;       // where both are, or would be
     bool has_a, has_b; // whether they were found
+    int frame;         // its number, in patterns
+    char *mask;        // which pixels are compared (image/mask.h); NULL: all
+    char *unrendered;  // why B could not be made; NULL: nobody says so
 } Pair;
 
 typedef struct PairList {
@@ -23,10 +26,25 @@ typedef struct PairList {
     bool many; // folders or sequences, though they may have one image
 } PairList;
 
+typedef struct PairOptions {
+    bool create;            // A need not exist: it is what B is, and empty
+    const char *mask;       // NULL: none; see below
+    const char *unrendered; // file of images that could not be made; NULL: none
+} PairOptions;
+
 // `a` and `b` are both files; or both folders, whose files ending in .png or .pfm (not hidden ones)
 // go by name; or both patterns with %d or %04d in the file's name, as tractrix-render -o takes
-// them, whose files go by number. What only one has is a pair with the other missing. With `create`
-// `a` need not exist: it is what `b` is, and empty. RESULT_USAGE for mixed kinds, RESULT_BAD_INPUT
-// if a folder can't be read or there is no image at all. Files are not opened.
-Result pairs_find(PairList *list, const char *a, const char *b, bool create, Error *error);
+// them, whose files go by number. What only one has is a pair with the other missing.
+// RESULT_USAGE for mixed kinds, RESULT_BAD_INPUT if a folder can't be read or there is no image at
+// all. Files are not opened.
+//
+// A mask is a file for all pairs; a folder of masks for the images of the same name, whatever the
+// suffix; or a pattern of masks for the images of the same number. RESULT_BAD_INPUT for a mask that
+// belongs to no image, as a wrong name would be a mask without effect.
+//
+// `unrendered` has lines "NAME: REASON"; NAME is an image's name or a pattern as above. Pairs of
+// that name without a B get the reason; where there are none, NAME becomes a pair. For folders
+// only.
+Result pairs_find(PairList *list, const char *a, const char *b, const PairOptions *options,
+                  Error *error);
 void pairs_destroy(PairList *list);

@@ -2,10 +2,11 @@
 #include "compare/verdict.h"
 
 #include "base/bytes.h"
+#include "base/clock.h"
 #include "base/json.h"
-#include "base/outfile.h"
 #include "image/float_image.h"
 #include "image/heat_map.h"
+#include "image/mask.h"
 #include "image/png.h"
 
 #include <math.h>
@@ -13,8 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const OUTCOME_NAMES[OUTCOME_COUNT] = {"same",    "different",  "size mismatch",
-                                                         "missing", "unreadable", "failed"};
+static const char *const OUTCOME_NAMES[OUTCOME_COUNT] = {
+    "same", "different", "size mismatch", "missing", "unrendered", "unreadable", "failed"};
 
 // --- One pair.
 
@@ -41,28 +42,61 @@ static void copy_reference(Verdict *verdict, const Pair *pair)
     bytes_destroy(&file);
 }
 
-// Writes the heat map, or the sheet of A, B and the heat map.
-static Result draw(const char *path, bool sheet, const Image *a, const Image *b, const float *map,
-                   Error *error)
+// Writes the heat map, or the sheet of A, B and the heat map. `written` takes the file's name.
+static Result draw(char **written, const char *path, bool sheet, const Image *a, const Image *b,
+                   const float *map, Error *error)
 {
     Image image = {0};
     if (!path) return RESULT_OK;
     Result result = sheet ? heat_map_create_sheet(&image, a, b, map, error)
                           : heat_map_create(&image, map, a->width, a->height, error);
     THEN(result, png_write(path, &image, error));
+    if (result == RESULT_OK) *written = strdup(path); // without memory a report does not name it
     image_destroy(&image);
     return result;
 }
 
 static Result measure(Verdict *verdict, float *map, const Image *a, const Image *b,
-                      const VerdictOptions *options, Error *error)
+                      const Mask *mask, const VerdictOptions *options, Error *error)
 {
-    TRY(compare_images(&verdict->figures, map, a, b, NULL, &options->limits, error));
+    TRY(compare_images(&verdict->figures, map, a, b, mask, &options->limits, error));
     verdict->measured = true;
     verdict->outcome = verdict->figures.same ? OUTCOME_SAME : OUTCOME_DIFFERENT;
     if (verdict->figures.same && !options->draw_same) return RESULT_OK;
-    TRY(draw(options->heat_map, false, a, b, map, error));
-    return draw(options->sheet, true, a, b, map, error);
+    TRY(draw(&verdict->heat_map, options->heat_map, false, a, b, map, error));
+    return draw(&verdict->sheet, options->sheet, true, a, b, map, error);
+}
+
+// An empty mask where the pair has none.
+static Result read_mask(Mask *mask, const Pair *pair, const Image *a, Error *error)
+{
+    *mask = (Mask){0};
+    if (!pair->mask) return RESULT_OK;
+    TRY(mask_read(mask, pair->mask, error));
+    if (mask->width == a->width && mask->height == a->height) return RESULT_OK;
+    error_set(error, RESULT_OK, "%s: a mask of %d x %d pixels: expected %d x %d as %s has",
+              pair->mask, mask->width, mask->height, a->width, a->height, pair->a);
+    mask_destroy(mask);
+    return RESULT_BAD_INPUT;
+}
+
+static void measure_all(Verdict *verdict, const Pair *pair, const Image *a, const Image *b,
+                        const VerdictOptions *options)
+{
+    Mask mask;
+    Error error = {{0}};
+    Result result = read_mask(&mask, pair, a, &error);
+    if (result != RESULT_OK) {
+        set_unreadable(verdict, result, &error);
+        verdict->mask_is_wrong = true;
+        return;
+    }
+    float *map = malloc((size_t)a->width * (size_t)a->height * sizeof *map);
+    result = map ? measure(verdict, map, a, b, mask.nearest ? &mask : NULL, options, &error)
+                 : error_set(&error, RESULT_FAILED, "no memory for a map");
+    if (result != RESULT_OK) set_outcome(verdict, OUTCOME_FAILED, &error);
+    free(map);
+    mask_destroy(&mask);
 }
 
 static void compare_with(Verdict *verdict, const Pair *pair, const Image *b,
@@ -70,7 +104,6 @@ static void compare_with(Verdict *verdict, const Pair *pair, const Image *b,
 {
     Image a;
     Error error = {{0}};
-    float *map = NULL;
     Result result = float_image_read_image(&a, pair->a, &error);
     if (result != RESULT_OK) {
         set_unreadable(verdict, result, &error);
@@ -79,22 +112,23 @@ static void compare_with(Verdict *verdict, const Pair *pair, const Image *b,
                   b->height);
         set_outcome(verdict, OUTCOME_SIZES, &error);
     } else {
-        map = malloc((size_t)a.width * (size_t)a.height * sizeof *map);
-        result = map ? measure(verdict, map, &a, b, options, &error)
-                     : error_set(&error, RESULT_FAILED, "no memory for a map");
-        if (result != RESULT_OK) set_outcome(verdict, OUTCOME_FAILED, &error);
+        measure_all(verdict, pair, &a, b, options);
     }
-    free(map);
     image_destroy(&a);
 }
 
 // B first: what can't be read never becomes a reference, while an unreadable reference may be
 // replaced.
-void verdict_find(Verdict *verdict, const Pair *pair, const VerdictOptions *options)
+static void find(Verdict *verdict, const Pair *pair, const VerdictOptions *options)
 {
     Image b;
     Error error;
     *verdict = (Verdict){.outcome = OUTCOME_MISSING};
+    if (pair->unrendered) {
+        error_set(&error, RESULT_OK, "%s", pair->unrendered);
+        set_outcome(verdict, OUTCOME_UNRENDERED, &error);
+        return;
+    }
     if (!pair->has_a || !pair->has_b)
         snprintf(verdict->text, sizeof verdict->text, "no %s", pair->has_a ? pair->b : pair->a);
     if (!pair->has_b || (!pair->has_a && !options->update)) return;
@@ -104,9 +138,34 @@ void verdict_find(Verdict *verdict, const Pair *pair, const VerdictOptions *opti
         return;
     }
     if (pair->has_a) compare_with(verdict, pair, &b, options);
-    if (options->update && verdict->outcome != OUTCOME_SAME && verdict->outcome != OUTCOME_FAILED)
+    bool may_update = verdict->outcome != OUTCOME_FAILED && !verdict->mask_is_wrong;
+    if (options->update && verdict->outcome != OUTCOME_SAME && may_update)
         copy_reference(verdict, pair);
     image_destroy(&b);
+}
+
+void verdict_find(Verdict *verdict, const Pair *pair, const VerdictOptions *options)
+{
+    double start_ms = clock_ms();
+    find(verdict, pair, options);
+    verdict->seconds = 1e-3 * (clock_ms() - start_ms);
+}
+
+void verdict_destroy(Verdict *verdict)
+{
+    free(verdict->heat_map);
+    free(verdict->sheet);
+    *verdict = (Verdict){0};
+}
+
+bool verdict_is_good(const Verdict *verdict)
+{
+    return verdict->outcome == OUTCOME_SAME || verdict->updated;
+}
+
+const char *verdict_word(const Verdict *verdict)
+{
+    return OUTCOME_NAMES[verdict->outcome];
 }
 
 void verdict_print(const Verdict *verdict, const Pair *pair, FILE *stream)
@@ -120,27 +179,17 @@ void verdict_print(const Verdict *verdict, const Pair *pair, FILE *stream)
 
 // --- All pairs.
 
-static bool is_good(const Verdict *verdict)
+VerdictTally verdict_tally(const PairList *list, const Verdict *verdicts)
 {
-    return verdict->outcome == OUTCOME_SAME || verdict->updated;
-}
-
-typedef struct Tally {
-    int outcomes[OUTCOME_COUNT]; // those updated, too
-    int updated, bad;
-    int unreadable; // of the bad ones
-    int worst;      // the measured pair with the largest mean of FLIP, -1: none
-} Tally;
-
-static Tally count_verdicts(const PairList *list, const Verdict *verdicts)
-{
-    Tally tally = {.worst = -1};
+    VerdictTally tally = {.worst = -1};
     for (size_t i = 0; i < list->count; ++i) {
         const Verdict *verdict = &verdicts[i];
+        bool is_error =
+            verdict->outcome == OUTCOME_UNREADABLE || verdict->outcome == OUTCOME_UNRENDERED;
         tally.outcomes[verdict->outcome]++;
         tally.updated += verdict->updated;
-        tally.bad += !is_good(verdict);
-        tally.unreadable += !is_good(verdict) && verdict->outcome == OUTCOME_UNREADABLE;
+        tally.bad += !verdict_is_good(verdict);
+        tally.errors += !verdict_is_good(verdict) && is_error;
         if (verdict->measured &&
             (tally.worst < 0 || verdict->figures.flip > verdicts[tally.worst].figures.flip))
             tally.worst = (int)i;
@@ -150,13 +199,15 @@ static Tally count_verdicts(const PairList *list, const Verdict *verdicts)
 
 Result verdict_status(const PairList *list, const Verdict *verdicts)
 {
-    Tally tally = count_verdicts(list, verdicts);
-    return tally.unreadable ? RESULT_BAD_INPUT : tally.bad ? RESULT_FAILED : RESULT_OK;
+    for (size_t i = 0; i < list->count; ++i)
+        if (verdicts[i].outcome == OUTCOME_UNREADABLE && !verdicts[i].updated)
+            return RESULT_BAD_INPUT;
+    return verdict_tally(list, verdicts).bad ? RESULT_FAILED : RESULT_OK;
 }
 
 void verdict_print_tally(const PairList *list, const Verdict *verdicts, FILE *stream)
 {
-    Tally tally = count_verdicts(list, verdicts);
+    VerdictTally tally = verdict_tally(list, verdicts);
     double flip = tally.worst < 0 ? 0 : verdicts[tally.worst].figures.flip;
     fprintf(stream, "%zu image%s:", list->count, list->count == 1 ? "" : "s");
     const char *between = " ";
@@ -185,6 +236,7 @@ static void set_figures(json_t *object, const CompareResult *figures)
     double psnr = figures->psnr;
     json_object_set_new(object, "width", json_integer(figures->width));
     json_object_set_new(object, "height", json_integer(figures->height));
+    json_object_set_new(object, "compared_pixels", json_integer((json_int_t)figures->compared));
     json_object_set_new(object, "rmse", json_real(figures->rmse));
     json_object_set_new(object, "psnr_db", isfinite(psnr) ? json_real(psnr) : json_null());
     json_object_set_new(object, "ssim", json_real(figures->ssim));
@@ -201,6 +253,8 @@ static json_t *pair_to_json(const Pair *pair, const Verdict *verdict)
     json_object_set_new(object, "name", text_to_json(pair->name));
     json_object_set_new(object, "a", text_to_json(pair->a));
     json_object_set_new(object, "b", text_to_json(pair->b));
+    if (pair->mask) json_object_set_new(object, "mask", text_to_json(pair->mask));
+    json_object_set_new(object, "good", json_boolean(verdict_is_good(verdict)));
     json_object_set_new(object, "outcome", json_string(OUTCOME_NAMES[verdict->outcome]));
     json_object_set_new(object, "updated", json_boolean(verdict->updated));
     if (verdict->text[0]) json_object_set_new(object, "text", text_to_json(verdict->text));
@@ -222,9 +276,9 @@ static json_t *limits_to_json(const CompareLimits *limits)
 }
 
 Result verdict_write_json(const char *path, const PairList *list, const Verdict *verdicts,
-                          const CompareLimits *limits, Error *error)
+                          const CompareLimits *limits, bool only_failures, Error *error)
 {
-    Tally tally = count_verdicts(list, verdicts);
+    VerdictTally tally = verdict_tally(list, verdicts);
     json_t *object = json_object(), *pairs = json_array();
     json_object_set_new(object, "good", json_boolean(tally.bad == 0));
     json_object_set_new(object, "limits", limits_to_json(limits));
@@ -233,61 +287,10 @@ Result verdict_write_json(const char *path, const PairList *list, const Verdict 
         json_object_set_new(object, OUTCOME_NAMES[i], json_integer(tally.outcomes[i]));
     json_object_set_new(object, "updated", json_integer(tally.updated));
     for (size_t i = 0; i < list->count; ++i)
-        json_array_append_new(pairs, pair_to_json(&list->pairs[i], &verdicts[i]));
+        if (!only_failures || verdicts[i].outcome != OUTCOME_SAME)
+            json_array_append_new(pairs, pair_to_json(&list->pairs[i], &verdicts[i]));
     json_object_set_new(object, "pairs", pairs);
     Result result = json_write_file(object, path, error);
     json_decref(object);
     return result;
-}
-
-// --- JUnit.
-
-// Escaped for an attribute. XML has no place for most control characters.
-static void put_xml(FILE *stream, const char *text)
-{
-    for (; *text; ++text) {
-        unsigned char c = (unsigned char)*text;
-        const char *entity = c == '&'   ? "&amp;"
-                             : c == '<' ? "&lt;"
-                             : c == '>' ? "&gt;"
-                             : c == '"' ? "&quot;"
-                             : c < 0x20 ? "?"
-                                        : NULL;
-        if (entity)
-            fputs(entity, stream);
-        else
-            fputc(c, stream);
-    }
-}
-
-static void put_case(FILE *stream, const Pair *pair, const Verdict *verdict)
-{
-    char figures[512] = "";
-    const char *word = verdict->outcome == OUTCOME_UNREADABLE ? "error" : "failure";
-    fprintf(stream, "    <testcase classname=\"tractrix-compare\" name=\"");
-    put_xml(stream, pair->name);
-    if (is_good(verdict)) {
-        fprintf(stream, "\"/>\n");
-        return;
-    }
-    if (verdict->measured) compare_format(figures, sizeof figures, &verdict->figures);
-    fprintf(stream, "\">\n      <%s type=\"%s\" message=\"", word, OUTCOME_NAMES[verdict->outcome]);
-    put_xml(stream, figures);
-    put_xml(stream, verdict->text);
-    fprintf(stream, "\"/>\n    </testcase>\n");
-}
-
-Result verdict_write_junit(const char *path, const PairList *list, const Verdict *verdicts,
-                           Error *error)
-{
-    OutFile file;
-    TRY(outfile_open(&file, path, error));
-    Tally tally = count_verdicts(list, verdicts);
-    fprintf(file.stream, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n");
-    fprintf(file.stream,
-            "  <testsuite name=\"tractrix-compare\" tests=\"%zu\" failures=\"%d\" errors=\"%d\">\n",
-            list->count, tally.bad - tally.unreadable, tally.unreadable);
-    for (size_t i = 0; i < list->count; ++i) put_case(file.stream, &list->pairs[i], &verdicts[i]);
-    fprintf(file.stream, "  </testsuite>\n</testsuites>\n");
-    return outfile_commit(&file, error);
 }

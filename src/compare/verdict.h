@@ -13,7 +13,8 @@ typedef enum Outcome {
     OUTCOME_DIFFERENT,  // beyond the limits
     OUTCOME_SIZES,      // of two sizes
     OUTCOME_MISSING,    // in one of two folders or sequences
-    OUTCOME_UNREADABLE, // one of them
+    OUTCOME_UNRENDERED, // B could not be made: see the text
+    OUTCOME_UNREADABLE, // one of them, or the mask
     OUTCOME_FAILED,     // no memory, a file can't be written: see the text
     OUTCOME_COUNT
 } Outcome;
@@ -22,8 +23,12 @@ typedef struct Verdict {
     Outcome outcome;
     bool measured; // SAME and DIFFERENT: the figures hold
     CompareResult figures;
-    bool updated;    // B took A's place: all is well now
-    char text[1024]; // why it is not the same, if the outcome needs more words
+    bool mask_is_wrong; // the reason for UNREADABLE
+    bool updated;       // B took A's place: all is well now
+    char text[1024];    // why it is not the same, if the outcome needs more words
+    char *heat_map;     // files that were written, owned; NULL: none
+    char *sheet;
+    double seconds; // that it took
 } Verdict;
 
 typedef struct VerdictOptions {
@@ -37,11 +42,27 @@ typedef struct VerdictOptions {
 // and only if it can be read as an image; a reference without a new image is left. May be called
 // from several threads at once.
 void verdict_find(Verdict *verdict, const Pair *pair, const VerdictOptions *options);
+void verdict_destroy(Verdict *verdict);
+
+// Same or updated.
+bool verdict_is_good(const Verdict *verdict);
+
+// "same", "size mismatch", ...
+const char *verdict_word(const Verdict *verdict);
 
 // "NAME: same: RMSE ..." with an end of line.
 void verdict_print(const Verdict *verdict, const Pair *pair, FILE *stream);
 
 // --- Of all pairs: verdicts [list->count].
+
+typedef struct VerdictTally {
+    int outcomes[OUTCOME_COUNT]; // those updated, too
+    int updated, bad;
+    int errors; // of the bad ones: unreadable or unrendered
+    int worst;  // the measured pair with the largest mean of FLIP, -1: none
+} VerdictTally;
+
+VerdictTally verdict_tally(const PairList *list, const Verdict *verdicts);
 
 // RESULT_OK if all are the same or updated; RESULT_BAD_INPUT if an image could not be read and is
 // not replaced; else RESULT_FAILED.
@@ -50,11 +71,7 @@ Result verdict_status(const PairList *list, const Verdict *verdicts);
 // The closing line: counts, and the largest mean of FLIP.
 void verdict_print_tally(const PairList *list, const Verdict *verdicts, FILE *stream);
 
-// A JSON object: limits, counts, and an object for each pair. RESULT_FAILED with path and reason.
+// A JSON object: limits, counts, and an object for each pair; with `only_failures` for each that is
+// not the same. RESULT_FAILED with path and reason.
 Result verdict_write_json(const char *path, const PairList *list, const Verdict *verdicts,
-                          const CompareLimits *limits, Error *error);
-
-// JUnit's XML, a test case for each pair, as GitLab, Jenkins and others read it: unreadable images
-// are errors, other bad verdicts failures. RESULT_FAILED with path and reason.
-Result verdict_write_junit(const char *path, const PairList *list, const Verdict *verdicts,
-                           Error *error);
+                          const CompareLimits *limits, bool only_failures, Error *error);

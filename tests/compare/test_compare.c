@@ -233,13 +233,15 @@ static void grey_floats_of_either_byte_order_are_read(void **state)
 
 // --- Pairs.
 
+static const PairOptions NO_OPTIONS;
+
 static void check_pairs(void **state, const char *a, const char *b, const char *expected)
 {
     PairList list;
     char text[500] = "", from[300], to[300];
     snprintf(from, sizeof from, "%s", temporary_path(state, a));
     snprintf(to, sizeof to, "%s", temporary_path(state, b));
-    assert_int_equal(pairs_find(&list, from, to, false, NULL), RESULT_OK);
+    assert_int_equal(pairs_find(&list, from, to, &NO_OPTIONS, NULL), RESULT_OK);
     for (size_t i = 0; i < list.count; ++i)
         snprintf(text + strlen(text), sizeof text - strlen(text), "%s%s%s ", list.pairs[i].name,
                  list.pairs[i].has_a ? "" : "<", list.pairs[i].has_b ? "" : ">");
@@ -265,10 +267,10 @@ static void two_kinds_of_places_do_not_go_together(void **state)
     const char *folder = temporary_path(state, "."), *file = temporary_path(state, "a.png");
     const char *pattern = temporary_path(state, "x%d.png");
     temporary_write(state, "a.png", "", 0644);
-    assert_int_equal(pairs_find(&list, folder, file, false, &error), RESULT_USAGE);
-    assert_int_equal(pairs_find(&list, file, pattern, false, &error), RESULT_USAGE);
-    assert_int_equal(pairs_find(&list, pattern, pattern, false, &error), RESULT_BAD_INPUT);
-    assert_int_equal(pairs_find(&list, temporary_path(state, "no/"), folder, false, &error),
+    assert_int_equal(pairs_find(&list, folder, file, &NO_OPTIONS, &error), RESULT_USAGE);
+    assert_int_equal(pairs_find(&list, file, pattern, &NO_OPTIONS, &error), RESULT_USAGE);
+    assert_int_equal(pairs_find(&list, pattern, pattern, &NO_OPTIONS, &error), RESULT_BAD_INPUT);
+    assert_int_equal(pairs_find(&list, temporary_path(state, "no/"), folder, &NO_OPTIONS, &error),
                      RESULT_BAD_INPUT);
 }
 

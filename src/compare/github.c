@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+// The forms: https://docs.github.com/en/actions/reference/workflow-commands-for-github-actions
+#include "compare/github.h"
+
+#include "compare/ci_path.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+// GitHub drops errors beyond ten a step, and summaries beyond 1 MiB.
+enum { MOST_ERRORS = 10, MOST_ROWS = 1000 };
+
+// --- Annotations.
+
+// A command is one line. In a property ':' and ',' have a meaning, too.
+static void put_data(FILE *stream, const char *text, bool is_property)
+{
+    for (; *text; ++text) {
+        bool is_special = strchr("%\r\n", *text) || (is_property && strchr(":,", *text));
+        if (is_special)
+            fprintf(stream, "%%%02X", (unsigned)(unsigned char)*text);
+        else
+            fputc(*text, stream);
+    }
+}
+
+static void put_error(FILE *stream, const Pair *pair, const Verdict *verdict)
+{
+    char figures[512] = "", *file = ci_path(pair->a);
+    const char *between = "";
+    if (verdict->measured) compare_format(figures, sizeof figures, &verdict->figures);
+    fputs("::error file=", stream);
+    put_data(stream, file ? file : pair->a, true);
+    fputs(",title=", stream);
+    put_data(stream, pair->name, true);
+    fprintf(stream, "%%3A %s::", verdict_word(verdict));
+    const char *const parts[] = {figures, verdict->text};
+    for (int i = 0; i < 2; ++i) {
+        if (!*parts[i]) continue;
+        fputs(between, stream);
+        put_data(stream, parts[i], false);
+        between = "; ";
+    }
+    fputc('\n', stream);
+    free(file);
+}
+
+void github_print_annotations(const PairList *list, const Verdict *verdicts, FILE *stream)
+{
+    int bad = verdict_tally(list, verdicts).bad, printed = 0;
+    int most = bad > MOST_ERRORS ? MOST_ERRORS - 1 : MOST_ERRORS;
+    for (size_t i = 0; i < list->count && printed < most; ++i) {
+        if (verdict_is_good(&verdicts[i])) continue;
+        put_error(stream, &list->pairs[i], &verdicts[i]);
+        ++printed;
+    }
+    if (printed < bad)
+        fprintf(stream, "::error title=tractrix-compare::%d more images failed: see the summary\n",
+                bad - printed);
+}
+
+// --- The summary.
+
+// As code in a cell of a table.
+static void put_code(FILE *stream, const char *text)
+{
+    fputc('`', stream);
+    for (; *text; ++text) {
+        if (*text == '|') fputc('\\', stream);
+        fputc(*text == '`' ? '\'' : (unsigned char)*text < 0x20 ? '?' : *text, stream);
+    }
+    fputc('`', stream);
+}
+
+static void put_row(FILE *stream, const Pair *pair, const Verdict *verdict)
+{
+    const CompareResult *figures = &verdict->figures;
+    fputs("| ", stream);
+    put_code(stream, pair->name);
+    fprintf(stream, " | %s%s | ", verdict_word(verdict), verdict->updated ? ", updated" : "");
+    if (verdict->measured)
+        fprintf(stream, "%.4g | %.4g | %.6g | %llu (%.3g %%) | ", figures->flip, figures->rmse,
+                figures->ssim, (unsigned long long)figures->failing,
+                100 * (double)figures->failing / (double)figures->compared);
+    else
+        fputs("| | | | ", stream);
+    if (verdict->text[0]) put_code(stream, verdict->text);
+    char *sheet = verdict->sheet ? ci_path(verdict->sheet) : NULL;
+    if (sheet) put_code(stream, sheet);
+    fputs(" |\n", stream);
+    free(sheet);
+}
+
+static void put_limits(FILE *stream, const CompareLimits *limits)
+{
+    const char *unit = limits->max_failing_percent ? " %" : "";
+    fputs("\nLimits:", stream);
+    if (limits->pixels_matter)
+        fprintf(stream, " pixel tolerance %g, failing pixels %g%s%s", limits->pixel_tolerance,
+                limits->max_failing, unit, limits->flip_matters ? "," : "");
+    if (limits->flip_matters) fprintf(stream, " FLIP %g", limits->max_flip);
+    fputs(".\n\n", stream);
+}
+
+static void put_summary(FILE *stream, const PairList *list, const Verdict *verdicts,
+                        const CompareLimits *limits)
+{
+    VerdictTally tally = verdict_tally(list, verdicts);
+    int rows = 0, wanted = tally.bad + tally.updated;
+    fprintf(stream, "### Images: %d of %zu failed\n\n", tally.bad, list->count);
+    verdict_print_tally(list, verdicts, stream);
+    put_limits(stream, limits);
+    if (wanted)
+        fputs("| image | result | FLIP | RMSE | SSIM | failing pixels | |\n"
+              "| --- | --- | ---: | ---: | ---: | ---: | --- |\n",
+              stream);
+    for (size_t i = 0; i < list->count && rows < MOST_ROWS; ++i) {
+        if (verdicts[i].outcome == OUTCOME_SAME) continue;
+        put_row(stream, &list->pairs[i], &verdicts[i]);
+        ++rows;
+    }
+    if (rows < wanted) fprintf(stream, "\n%d more images are not listed.\n", wanted - rows);
+    if (wanted) fputc('\n', stream);
+}
+
+Result github_append_summary(const PairList *list, const Verdict *verdicts,
+                             const CompareLimits *limits, Error *error)
+{
+    const char *path = getenv("GITHUB_STEP_SUMMARY");
+    if (!path || !*path) return RESULT_OK;
+    FILE *stream = fopen(path, "a");
+    if (!stream)
+        return error_set(error, RESULT_FAILED, "%s: cannot write: %s", path, strerror(errno));
+    put_summary(stream, list, verdicts, limits);
+    bool bad = ferror(stream);
+    if (fclose(stream) != 0 || bad)
+        return error_set(error, RESULT_FAILED, "%s: cannot write: %s", path, strerror(errno));
+    return RESULT_OK;
+}
