@@ -56,6 +56,8 @@ typedef struct OptionsProgram {
     const char *name, *summary, *description;
     const char *synopsis;             // behind the name; more lines, each for a usage of its own
     const char *page;                 // name of the manual page; NULL: `name`
+    const struct OptionsProgram *sub; // what it is with its command `sub_word`, or NULL
+    const char *sub_word;
     const char *const (*commands)[2]; // words and what they do
     const Option *options;
     size_t option_count;
@@ -107,6 +109,10 @@ typedef struct OptionsArgument {
 // for a value that is missing or not taken.
 Result options_next(OptionsWalk *walk, OptionsArgument *argument, Error *error);
 
+// Those that every program has: --help, --version.
+enum { OPTIONS_COMMON_COUNT = 2 };
+extern const Option OPTIONS_COMMON[OPTIONS_COMMON_COUNT];
+
 // The parameters of params.def as options, [PARAM_COUNT], in the table's order, without `place`.
 extern const Option OPTIONS_OF_PARAMS[];
 
@@ -115,7 +121,7 @@ const Option *options_find(const Option *options, size_t count, const char *name
 
 // --- The help by itself.
 
-// Writes what --help TOPIC prints: NULL for plain --help; all; man (roff), markdown, bash
-// (completion); a word of `topics`, the chapter's topic, or an option. RESULT_USAGE for others,
-// with the list.
+// Writes what --help TOPIC prints: NULL for plain --help; all; man (roff), markdown; bash, zsh,
+// fish (completion); a word of `topics`, the chapter's topic, or an option. RESULT_USAGE for
+// others, with the list.
 Result options_help(const OptionsProgram *program, const char *topic, FILE *stream, Error *error);

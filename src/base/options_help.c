@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What programs say about themselves: on a terminal, as a manual page, in Markdown, and the
-// completion of their command lines.
+// What programs say about themselves: on a terminal, as a manual page and in Markdown.
 #include "base/options.h"
+#include "base/options_complete.h"
 
 #include "version.h"
 
@@ -11,21 +11,22 @@
 
 enum { WIDTH = 96, COLUMN = 30, FLAG_SIZE = 400, LIST_SIZE = 800 };
 
-static const Option COMMON[] = {
+const Option OPTIONS_COMMON[OPTIONS_COMMON_COUNT] = {
     {"help", 'h', OPTION_STRING, 0, "[TOPIC]", 0, 0,
-     "print help and stop; TOPIC: all, man, markdown, bash (completion), or an option's name"},
+     "print help and stop; TOPIC: all, man, markdown, an option's name, or the completion of a "
+     "shell: bash, zsh, fish"},
     {"version", 0, OPTION_SWITCH, 0, NULL, 0, 0, "print the version and stop"},
 };
-enum { COMMON_COUNT = sizeof COMMON / sizeof *COMMON };
 
 static size_t count_options(const OptionsProgram *program)
 {
-    return program->option_count + COMMON_COUNT;
+    return program->option_count + OPTIONS_COMMON_COUNT;
 }
 
 static const Option *option_at(const OptionsProgram *program, size_t i)
 {
-    return i < program->option_count ? &program->options[i] : &COMMON[i - program->option_count];
+    return i < program->option_count ? &program->options[i]
+                                     : &OPTIONS_COMMON[i - program->option_count];
 }
 
 static const char *heading_of(const OptionsProgram *program, size_t i)
@@ -169,7 +170,7 @@ static void list_options(FILE *stream, const OptionsProgram *program, Selection 
                          void (*entry)(FILE *stream, const char *flag, const char *text))
 {
     size_t count = count_options(program);
-    bool done[OPTIONS_MOST + COMMON_COUNT] = {false};
+    bool done[OPTIONS_MOST + OPTIONS_COMMON_COUNT] = {false};
     assert(program->option_count <= OPTIONS_MOST);
     for (size_t i = 0; i < count; ++i) {
         if (done[i] || !selects(program, selection, i)) continue;
@@ -214,7 +215,8 @@ static void list_topics(const OptionsProgram *program, bool explained, char *tex
     for (const OptionsChapter *const *c = program->chapters; c && *c && length < size; ++c)
         length += (size_t)snprintf(text + length, size - length, "%s, ", (*c)->topic);
     if (length < size)
-        snprintf(text + length, size - length, "all, man, markdown, bash or an option's name");
+        snprintf(text + length, size - length,
+                 "all, man, markdown, bash, zsh, fish or an option's name");
 }
 
 static void put_text(FILE *stream, const OptionsProgram *program, bool brief)
@@ -328,78 +330,6 @@ static void put_markdown(FILE *stream, const OptionsProgram *program)
     }
 }
 
-// --- Completion in bash.
-
-// The small words among a value's alternatives, with blanks between them; whether there are any.
-static bool put_words(FILE *stream, const char *value)
-{
-    bool any = false;
-    for (size_t length; *value; value += length + (value[length] == '|')) {
-        length = strcspn(value, "|");
-        bool small = length > 0;
-        for (size_t i = 0; i < length; ++i)
-            small = small && !isupper((unsigned char)value[i]) &&
-                    (isalnum((unsigned char)value[i]) || value[i] == '-');
-        if (!small) continue;
-        if (stream) fprintf(stream, "%s%.*s", any ? " " : "", (int)length, value);
-        any = true;
-    }
-    return any;
-}
-
-// The completion of an option's value: small words between bars, or files' names for FILE, DIR and
-// PATH (whole or as a part), nothing for others.
-static void put_completion(FILE *stream, const Option *option)
-{
-    char name[80];
-    const char *value = option->value;
-    if (!value) return;
-    write_name(name, sizeof name, option->name);
-    fprintf(stream, "    ");
-    if (option->letter) fprintf(stream, "-%c|", option->letter);
-    fprintf(stream, "%s) ", name);
-    if (put_words(NULL, value)) {
-        fprintf(stream, "mapfile -t COMPREPLY < <(compgen -W '");
-        put_words(stream, value);
-        fprintf(stream, "' -- \"$word\") ;;\n");
-    } else {
-        bool path = strstr(value, "FILE") || strstr(value, "DIR") || strstr(value, "PATH");
-        fprintf(stream, path ? "files ;;\n" : ";;\n");
-    }
-}
-
-static void put_bash(FILE *stream, const OptionsProgram *program)
-{
-    char function[80];
-    snprintf(function, sizeof function, "_%s", program->name);
-    for (char *at = function; *at; ++at)
-        if (*at == '-') *at = '_';
-    fprintf(stream, "# Completion of %s in bash, made by %s --help=bash.\n", program->name,
-            program->name);
-    // bash ends words at '=': --flag=value comes as three.
-    fprintf(stream,
-            "%s() {\n"
-            "    local word=${COMP_WORDS[COMP_CWORD]} flag=${COMP_WORDS[COMP_CWORD - 1]}\n"
-            "    [[ $word == = ]] && word=\n"
-            "    [[ $flag == = ]] && flag=${COMP_WORDS[COMP_CWORD - 2]}\n"
-            "    files() { compopt -o filenames; mapfile -t COMPREPLY < <(compgen -f -- "
-            "\"$word\"); }\n"
-            "    COMPREPLY=()\n"
-            "    case $flag in\n",
-            function);
-    for (size_t i = 0; i < program->option_count; ++i) put_completion(stream, &program->options[i]);
-    fprintf(stream, "    *) if [[ $word == -* ]]; then mapfile -t COMPREPLY < <(compgen -W '");
-    for (size_t i = 0; i < count_options(program); ++i) {
-        const Option *option = option_at(program, i);
-        char name[80];
-        write_name(name, sizeof name, option->name);
-        if (option->letter) fprintf(stream, "%s-%c", i ? " " : "", option->letter);
-        fprintf(stream, "%s%s", i || option->letter ? " " : "", name);
-    }
-    fprintf(stream, "' -- \"$word\"); else files; fi ;;\n    esac\n}\ncomplete -F %s %s\n",
-            function, program->name);
-}
-
 // --- Topics.
 
 Result options_help(const OptionsProgram *program, const char *topic, FILE *stream, Error *error)
@@ -416,8 +346,8 @@ Result options_help(const OptionsProgram *program, const char *topic, FILE *stre
         put_man(stream, program);
     else if (strcmp(topic, "markdown") == 0)
         put_markdown(stream, program);
-    else if (strcmp(topic, "bash") == 0)
-        put_bash(stream, program);
+    else if (options_complete(program, topic, stream))
+        return RESULT_OK;
     else if (listed && (*listed)[0])
         list_options(stream, program, (Selection){.topic = topic}, put_heading, put_entry);
     else if (chapter && *chapter)
@@ -425,7 +355,7 @@ Result options_help(const OptionsProgram *program, const char *topic, FILE *stre
     else {
         const Option *option = options_find(program->options, program->option_count, topic);
         char flag[FLAG_SIZE];
-        if (!option) option = options_find(COMMON, COMMON_COUNT, topic);
+        if (!option) option = options_find(OPTIONS_COMMON, OPTIONS_COMMON_COUNT, topic);
         char list[LIST_SIZE];
         list_topics(program, false, list, sizeof list);
         if (!option)

@@ -156,7 +156,7 @@ static const char *const EXAMPLES[] = {
     "--guides 400 --clump 0.6 -o hair.tfx",
     NULL};
 
-static const OptionsProgram PROGRAM = {
+const OptionsProgram FUR_RECIPE_PROGRAM = {
     .name = "tractrix-gen",
     .page = "tractrix-gen-fur",
     .summary = "grow fur or hair on a mesh",
@@ -194,7 +194,7 @@ Result fur_recipe_parse(FurOptions *options, int argc, char **argv, bool *done, 
 {
     Command command = {.recipe = fur_recipe_default(), .output.format = FORMAT_TFX4, .unit = 1.0};
     int first;
-    Result result = options_parse(&PROGRAM, &command, argc, argv, &first, done, error);
+    Result result = options_parse(&FUR_RECIPE_PROGRAM, &command, argc, argv, &first, done, error);
     if (result != RESULT_OK || *done) return result;
     if (argc - first != 1)
         return error_set(error, RESULT_USAGE, "fur: got %d files, expected one mesh", argc - first);

@@ -45,6 +45,9 @@ typedef struct FurRecipe {
     double tip_thickness; // share of it at the tip
 } FurRecipe;
 
+// What `tractrix-gen fur --help` says.
+extern const OptionsProgram FUR_RECIPE_PROGRAM;
+
 // Short fur that stands off.
 FurRecipe fur_recipe_default(void);
 

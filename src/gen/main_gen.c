@@ -57,13 +57,19 @@ static const char *const EXAMPLES[] = {
     "tractrix-gen --kind curls --shape head --count 2000 -o curls.tfx --mesh head.obj",
     "tractrix-gen --set 10k16 -o 10k16.tfx", NULL};
 
+static const char *const COMMANDS[][2] = {
+    {"fur", "grow fur and hair on any mesh: see tractrix-gen fur --help or tractrix-gen-fur(1)"},
+    {NULL, NULL}};
+
 static const OptionsProgram PROGRAM = {
     .name = "tractrix-gen",
     .summary = "make hair, and what it grows on",
-    .synopsis = "[OPTION]... -o FILE",
+    .synopsis = "[OPTION]... -o FILE\nfur [OPTION]... MESH.obj -o FILE",
+    .commands = COMMANDS,
+    .sub = &FUR_RECIPE_PROGRAM,
+    .sub_word = "fur",
     .description = "Makes hair, and with --mesh the shape it grows on. Metres, y up, the face "
-                   "towards +z. `tractrix-gen fur` grows fur and hair on any mesh: see its --help "
-                   "or tractrix-gen-fur(1).",
+                   "towards +z.",
     .options = OPTIONS,
     .option_count = sizeof OPTIONS / sizeof *OPTIONS,
     .status = STATUS,

@@ -117,8 +117,9 @@ static void mistakes_name_the_option_and_what_was_expected(void **state)
         {"--fast=maybe", "--fast: got 'maybe', expected true or false"},
         {"--turn=1", "--turn: got '1', takes no value"},
         {"--no-size", "--no-size: --size takes a value: only switches have --no-"},
-        {"--help nothing", "--help: no topic 'nothing': expected all, man, markdown, bash or an "
-                           "option's name"},
+        {"--help nothing",
+         "--help: no topic 'nothing': expected all, man, markdown, bash, zsh, fish or "
+         "an option's name"},
     };
     for (size_t i = 0; i < sizeof LINES / sizeof *LINES; ++i) {
         Values values;
@@ -139,7 +140,12 @@ static void help_has_a_form_for_every_topic(void **state)
         {"all", "Usage: program [OPTION]... FILE\n"},
         {"man", ".TH PROGRAM 1"},
         {"markdown", "| `--kind one\\|two\\|three` | kind |"},
-        {"bash", "--kind) mapfile -t COMPREPLY < <(compgen -W 'one two three'"},
+        {"bash", "--kind) _tractrix_words 'one two three' ;;"},
+        {"bash", "-o|--out-file) _tractrix_files -f ;;"},
+        {"zsh", "'--kind=[kind]:value:(one two three)'"},
+        {"zsh", "'-o+[file to write]:FILE:_files'"},
+        {"fish", "-l kind -x -a 'one two three' -d 'kind'"},
+        {"fish", "-s o -l out-file -r -F -d 'file to write'"},
         {"size", "  --size M                    size [default 1]\n"},
         {"-n", "  -n, --count N               count\n"},
         {"--help", "  -h, --help [TOPIC]"},

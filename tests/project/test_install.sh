@@ -53,31 +53,6 @@ claim "make uninstall leaves no file behind"
 installs uninstall
 holds test -z "$(find "$root" -type f)"
 
-# offers WORD... -- EXPECTED...: the command line so far makes bash offer these words and no others.
-offers() {
-    line='' expected=''
-    while [ "$1" != -- ]; do line="$line '$1'"; shift; done
-    shift
-    for word in "$@"; do expected="$expected$word "; done
-    offered=$(bash -c ". '$work/complete'; compopt() { :; }; COMP_WORDS=($line); COMP_CWORD=\$((\${#COMP_WORDS[@]} - 1))
-        _tractrix_render; printf '%s\n' \"\${COMPREPLY[@]}\"" 2>&1 | sort | tr '\n' ' ' | sed 's/^ //')
-    if [ "$offered" = "$expected" ]; then good; else bad "$line: offers '$offered', expected '$expected'"; fi
-}
-
-claim "bash completes flags, their words and files"
-program=$bin/tractrix-render
-run 0 --help=bash
-cp "$work/out" "$work/complete"
-offers tractrix-render --turn -- --turn-lights --turntable
-offers tractrix-render --raster '' -- auto blocks quads
-offers tractrix-render --raster = b -- blocks
-offers tractrix-render --algo e -- emulation
-offers tractrix-render --mesh assets/hea -- assets/head.obj
-offers tractrix-render assets/dem -- assets/demo.json assets/demo.tfx
-offers tractrix-render --frames 1 --
-offers tractrix-render -o asse -- assets
-run 2 --help=html; one_line
-
 claim "the version sorts as Debian's do"
 run 0 --version
 version=$(cut -d' ' -f2 "$work/out")
