@@ -4,6 +4,7 @@
 #include "base/colors.h"
 #include "base/params.h"
 #include "scene/scene.h"
+#include "scene/scene_schema.h"
 #include "sim/solver.h"
 
 #include <stdlib.h>
@@ -75,6 +76,9 @@ static const char *const SCENE_KEYS[][3] = {
      "distance. A spot is full up to `inner` degrees off its axis and dark beyond `outer`. With "
      "--shadow the first light casts shadows, and others with \"shadow\": true. Without this key "
      "there are two lights; an empty list leaves ambient light only"},
+    {"$schema", "\"/usr/share/tractrix/scene.schema.json\"",
+     "for editors, which complete and check the file with this JSON schema; --help schema prints "
+     "it"},
     {NULL, NULL, NULL}};
 
 static const OptionsChapter SCENE_FILES = {
@@ -106,6 +110,9 @@ static const char *const EXAMPLES[] = {
     "tractrix-render hair.tfx --turntable --wind 2,0,0 -o hair.mp4",
     "tractrix-render scene.json --cache sim.cache",
     "tractrix-render scene.json --from-cache sim.cache --first 60 --last 119 -o frames/", NULL};
+
+// Not a list of options.
+static const char *const SCHEMA_TOPIC[2] = {"schema", "JSON schema of scene files"};
 
 // Bounds from here on only keep numbers sane: help does not name them.
 static const double WIDE = 1e6;
@@ -218,6 +225,7 @@ static void make_texts(Texts *texts)
                sizeof texts->colors[i]);
     for (; count < sizeof GROUP_TOPICS / sizeof *GROUP_TOPICS; ++count)
         memcpy(texts->topics[count], GROUP_TOPICS[count].topic, sizeof texts->topics[count]);
+    memcpy(texts->topics[count++], SCHEMA_TOPIC, sizeof SCHEMA_TOPIC);
     for (const SolverType *const *type = SOLVER_TYPES; *type; ++type) {
         bool any = false;
         for (size_t i = 0; i < PARAM_COUNT; ++i) any = any || is_of((*type)->name, i);
@@ -226,8 +234,17 @@ static void make_texts(Texts *texts)
     }
 }
 
+static Result write_schema(FILE *stream, Error *error)
+{
+    SchemaSolver solvers[MOST_TOPICS] = {{NULL, NULL}};
+    for (size_t i = 0; SOLVER_TYPES[i] && i + 1 < MOST_TOPICS; ++i)
+        solvers[i] = (SchemaSolver){SOLVER_TYPES[i]->name, SOLVER_TYPES[i]->variants};
+    return scene_schema_write(solvers, SCENE_KEYS, stream, error);
+}
+
 Result render_help(const char *topic, FILE *stream, Error *error)
 {
+    if (topic && strcmp(topic, SCHEMA_TOPIC[0]) == 0) return write_schema(stream, error);
     Texts *texts = calloc(1, sizeof *texts);
     if (!texts) return error_set(error, RESULT_FAILED, "no memory for the help");
     make_texts(texts);

@@ -20,7 +20,7 @@ static const struct {
 };
 
 static const char *const FRAME_WORDS[] = {"head", "world", NULL};
-static const float FARTHEST = 1e6f;
+static const float FARTHEST = (float)COLLIDERS_FARTHEST;
 
 // The name of number `i` of a kind, with those behind it; NULL if there are not as many.
 static const char *number_name(ColliderKind kind, uint32_t i)

@@ -17,6 +17,9 @@ typedef enum ColliderKind {
         COLLIDER_KINDS,
 } ColliderKind;
 
+// The largest of a shape's numbers.
+#define COLLIDERS_FARTHEST 1e6
+
 enum { COLLIDER_NUMBERS = 4 * COLLIDER_TEXELS };
 
 // Metres. Directions are of unit length, whatever the scene says.

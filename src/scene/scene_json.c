@@ -25,6 +25,9 @@ static const Part PARTS[] = {{"head", scene_tracks_read_head},
                              {"colliders", read_colliders}};
 enum { PART_COUNT = sizeof PARTS / sizeof PARTS[0] };
 
+// For editors: the path or address of the file's JSON schema, ignored here.
+static const char SCHEMA_KEY[] = "$schema";
+
 // The file being read. `root` is its place, `folder` what stands before the last '/' in its path
 // and that '/', or "".
 typedef struct Document {
@@ -53,14 +56,15 @@ static Result parse_document(json_t **json, const char *path, const Bytes *bytes
 // array. The top level may have parameters of either scope, sections only their own.
 static const char **list_keys(bool top)
 {
-    const char **names = calloc(PARAM_COUNT + PART_COUNT + 2, sizeof names[0]);
+    const char **names = calloc(PARAM_COUNT + PART_COUNT + 3, sizeof names[0]);
     size_t count = 0;
     if (!names) return NULL;
     for (size_t i = 0; i < PARAM_COUNT; i++) {
         if (top || PARAM_TABLE[i].scope == SCOPE_SECTION) names[count++] = PARAM_TABLE[i].name;
     }
     for (size_t i = 0; top && i < PART_COUNT; i++) names[count++] = PARTS[i].key;
-    names[count] = top ? "sections" : "file";
+    names[count++] = top ? "sections" : "file";
+    if (top) names[count] = SCHEMA_KEY;
     return names;
 }
 
@@ -79,6 +83,12 @@ static Result check_keys(bool top, const JsonPlace *place, const json_t *object,
     return result;
 }
 
+// Parameters that may have keyframes.
+static bool is_force(const char *name)
+{
+    return strcmp(name, "gravity") == 0 || strcmp(name, "wind") == 0;
+}
+
 // Where parameters of one scope go, and the Origin of each row.
 typedef struct Sink {
     ParamScope scope;
@@ -94,8 +104,8 @@ static Result read_params(const Document *document, const Sink *sink, Origin ori
     for (size_t i = 0; i < PARAM_COUNT; i++) {
         const ParamInfo *info = &PARAM_TABLE[i];
         const json_t *value = json_object_get(object, info->name);
-        bool keys = json_is_object(value) && info->kind == PARAM_VEC3;
-        bool list = json_is_array(value) && info->kind == PARAM_TEXT;
+        bool keys = json_is_object(value) && is_force(info->name);
+        bool list = json_is_array(value) && strcmp(info->name, "colliders") == 0;
         if (info->scope != sink->scope || !value) continue;
         sink->origin[i] = (uint8_t)origin;
         JsonPlace place = {.parent = parent, .key = info->name};
@@ -235,6 +245,10 @@ static Result read_document(Scene *scene, const Document *document, Error *error
 {
     const Presets presets = find_presets(document);
     TRY(check_keys(true, &document->root, document->json, error));
+    const json_t *schema = json_object_get(document->json, SCHEMA_KEY);
+    const JsonPlace schema_place = {.parent = &document->root, .key = SCHEMA_KEY};
+    if (schema && !json_is_string(schema))
+        return json_refuse(&schema_place, schema, "a string: the schema's path", error);
     TRY(scene_apply_presets(&presets, SCOPE_RUN, &scene->run, error));
     const Sink sink = {SCOPE_RUN, &scene->run, scene->origin};
     int look = scene->run.look, quality = scene->run.quality;

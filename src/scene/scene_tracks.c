@@ -14,8 +14,6 @@ const char *const LIGHT_KIND_WORDS[] = {
     [LIGHT_DIRECTIONAL] = "directional", [LIGHT_POINT] = "point", [LIGHT_SPOT] = "spot", NULL};
 const double DEGREE = 3.14159265358979323846 / 180.0;
 
-static const double TIME_MAX_S = 1e9, OFFSET_MAX = 1e6, INTENSITY_MAX = 1e4;
-
 enum { MEMBERS_MAX = 3 };
 
 // A member that the keys of a track may have, and where its values go.
@@ -56,7 +54,8 @@ static Result read_key(const Member *members, size_t count, const JsonPlace *pla
     if (!time_value) return json_fail(place, error, "expected a key 'time' (s)");
     JsonPlace time_place = {.parent = place, .key = "time"};
     double before = *time;
-    TRY(json_read_number(&time_place, time_value, -TIME_MAX_S, TIME_MAX_S, "seconds", time, error));
+    TRY(json_read_number(&time_place, time_value, -SCENE_TIME_MAX_S, SCENE_TIME_MAX_S, "seconds",
+                         time, error));
     if (*time <= before)
         return json_fail(&time_place, error, "got %.9g, expected more than %.9g, the key before",
                          *time, before);
@@ -119,8 +118,8 @@ static Result read_vector(float to[3], const JsonPlace *parent, const json_t *ob
     JsonPlace place = {.parent = parent, .key = key};
     if (!value && needed) return json_fail(parent, error, "expected a key '%s'", key);
     if (!value) return RESULT_OK;
-    return json_read_vector(&place, value, 3, -OFFSET_MAX, OFFSET_MAX, "an array of three numbers",
-                            to, error);
+    return json_read_vector(&place, value, 3, -SCENE_OFFSET_MAX, SCENE_OFFSET_MAX,
+                            "an array of three numbers", to, error);
 }
 
 // Three formulas of time; a number stands for itself.
@@ -152,8 +151,8 @@ static Result read_head_keys(Scene *scene, const JsonPlace *place, const json_t 
                              Error *error)
 {
     const Member members[] = {
-        {"translate", &scene->head.translation, 3, -OFFSET_MAX, OFFSET_MAX, 1.0},
-        {"rotate", &scene->head.rotation, 3, -OFFSET_MAX, OFFSET_MAX, DEGREE},
+        {"translate", &scene->head.translation, 3, -SCENE_OFFSET_MAX, SCENE_OFFSET_MAX, 1.0},
+        {"rotate", &scene->head.rotation, 3, -SCENE_OFFSET_MAX, SCENE_OFFSET_MAX, DEGREE},
     };
     bool by_formula = json_object_get(value, "translate") || json_object_get(value, "rotate");
     if (by_formula && !json_object_get(value, "keys")) return RESULT_OK;
@@ -232,8 +231,10 @@ static Result read_quantity(float *quantity, const JsonPlace *parent, const json
 
 static Result read_cone(Light *light, const JsonPlace *place, const json_t *value, Error *error)
 {
-    TRY(read_quantity(&light->outer_deg, place, value, "outer", 0.1, 90, "degrees", error));
-    TRY(read_quantity(&light->inner_deg, place, value, "inner", 0, 90, "degrees", error));
+    TRY(read_quantity(&light->outer_deg, place, value, "outer", SCENE_CONE_MIN, SCENE_CONE_MAX,
+                      "degrees", error));
+    TRY(read_quantity(&light->inner_deg, place, value, "inner", 0, SCENE_CONE_MAX, "degrees",
+                      error));
     if (light->inner_deg < light->outer_deg) return RESULT_OK;
     return json_fail(place, error, "'inner' is %.9g deg, expected less than 'outer', %.9g deg",
                      (double)light->inner_deg, (double)light->outer_deg);
@@ -266,13 +267,13 @@ static Result read_light(Light *light, const JsonPlace *place, const json_t *val
     if (type) TRY(json_read_choice(&type_place, type, LIGHT_KIND_WORDS, &kind, error));
     light->kind = (LightKind)kind;
     TRY(json_check_object(place, value, NAMES[kind], error));
-    TRY(read_quantity(&light->intensity, place, value, "intensity", 0, INTENSITY_MAX, "a factor",
-                      error));
+    TRY(read_quantity(&light->intensity, place, value, "intensity", 0, SCENE_INTENSITY_MAX,
+                      "a factor", error));
     if (kind != LIGHT_POINT) TRY(read_direction(light, place, value, error));
     if (kind != LIGHT_DIRECTIONAL) {
         TRY(read_vector(light->position, place, value, "position", true, error));
-        TRY(read_quantity(&light->distance, place, value, "distance", 1e-3, OFFSET_MAX, "metres",
-                          error));
+        TRY(read_quantity(&light->distance, place, value, "distance", SCENE_LIGHT_NEAREST,
+                          SCENE_OFFSET_MAX, "metres", error));
     }
     if (kind == LIGHT_SPOT) TRY(read_cone(light, place, value, error));
     TRY(read_light_color(light, place, value, error));

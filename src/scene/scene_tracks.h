@@ -5,6 +5,15 @@
 #include "base/json.h"
 #include "scene/scene.h"
 
+// Ranges of what these parts hold, as files have it: times (s), places and turns (m, deg), a
+// light's intensity, its least distance (m) and its cone (deg).
+#define SCENE_TIME_MAX_S    1e9
+#define SCENE_OFFSET_MAX    1e6
+#define SCENE_INTENSITY_MAX 1e4
+#define SCENE_LIGHT_NEAREST 1e-3
+#define SCENE_CONE_MIN      0.1
+#define SCENE_CONE_MAX      90.0
+
 // Each reads the value of the key that its name has in the scene file; run/render_help.c
 // explains them to users. RESULT_BAD_INPUT with the place, RESULT_FAILED when memory is short.
 Result scene_tracks_read_head(Scene *scene, const JsonPlace *place, const json_t *value,

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Tests `make install`: files in their places, programs that work without the checkout, manual pages, completion in bash,
+# Tests `make install`: files in their places, programs that work without the checkout, manual pages,
 # versions, and shaders read from a folder.
 . tests/support/claims.sh
 program=$bin/tractrix-render
@@ -54,6 +54,7 @@ installs uninstall
 holds test -z "$(find "$root" -type f)"
 
 claim "the version sorts as Debian's do"
+program=$bin/tractrix-render
 run 0 --version
 version=$(cut -d' ' -f2 "$work/out")
 if command -v dpkg >/dev/null; then

@@ -5,6 +5,8 @@
 
 #include "version.h"
 
+#include <jansson.h>
+
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -60,6 +62,30 @@ static void help_names_every_flag_with_its_default(void **state)
     }
     free(help);
     free(table);
+}
+
+// That it says the same as the program: tests/project/check_schema.
+static void the_schema_has_every_parameter_with_its_help(void **state)
+{
+    (void)state;
+    char *text = capture("schema");
+    json_t *schema = json_loads(text, JSON_REJECT_DUPLICATES, NULL);
+    const json_t *top = json_object_get(schema, "properties");
+    const json_t *rules = json_object_get(schema, "definitions");
+    const json_t *section = json_object_get(json_object_get(rules, "sectionObject"), "properties");
+    for (size_t i = 0; i < PARAM_COUNT; i++) {
+        const ParamInfo *info = &PARAM_TABLE[i];
+        const char *help =
+            json_string_value(json_object_get(json_object_get(rules, info->name), "description"));
+        assert_non_null(json_object_get(top, info->name));
+        assert_int_equal(json_object_get(section, info->name) != NULL,
+                         info->scope == SCOPE_SECTION);
+        if (strcmp(info->name, "colliders") == 0) continue; // a part with a text of its own
+        if (!help || strncmp(help, info->help, strlen(info->help)) != 0)
+            fail_msg("%s: %s", info->name, help);
+    }
+    json_decref(schema);
+    free(text);
 }
 
 static void help_is_at_most_96_columns_wide(void **state)
@@ -126,6 +152,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(help_names_every_flag_with_its_default),
+        cmocka_unit_test(the_schema_has_every_parameter_with_its_help),
         cmocka_unit_test(help_is_at_most_96_columns_wide),
         cmocka_unit_test(plain_help_fits_a_screen_and_names_the_topics),
         cmocka_unit_test(topics_list_groups_and_solvers),
