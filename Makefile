@@ -48,7 +48,9 @@ TESTS     := $(wildcard tests/*/test_*.c)
 KEEP      := tests/support/keep_drivers.c
 TEST_SHADERS := $(wildcard tests/glsl/*)
 SUPPORT   := $(filter-out $(KEEP),$(wildcard tests/support/*.c))
-OBJECTS   := $(SOURCES:src/%.c=$(OUT)/%.o) $(if $(SHADERS),$(OUT)/glsl_sources.o) $(if $(BENCH_SHADERS),$(OUT)/bench/bench_glsl.o)
+PAGES     := $(filter %.html %.css %.js,$(wildcard src/report/*))
+OBJECTS   := $(SOURCES:src/%.c=$(OUT)/%.o) $(if $(SHADERS),$(OUT)/glsl_sources.o) $(if $(BENCH_SHADERS),$(OUT)/bench/bench_glsl.o) \
+             $(OUT)/report/report_texts.o
 PROGRAMS  := $(foreach main,$(MAINS),$(OUT)/$(patsubst main_%.c,tractrix-%,$(notdir $(main))))
 TEST_PROGRAMS := $(TESTS:%.c=$(OUT)/%)
 SUPPORT_OBJECTS := $(SUPPORT:%.c=$(OUT)/%.o) $(OUT)/tests/glsl_sources.o
@@ -77,13 +79,16 @@ endif
 # Lanes: selects and roots without a thought for traps and errno, or nothing becomes vector instructions. The same bits.
 $(OUT)/draw/shadow_map.o $(OUT)/draw/shadow_light.o $(OUT)/draw/fibre_lobes.o $(addprefix $(OUT)/draw/light_,grid_fill.o grid_sweep.o grid_gather.o dual.o): C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math
 $(OUT)/draw/block_composite.o $(OUT)/draw/block_pixels.o: C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math -ffinite-math-only -fno-signed-zeros
-$(OUT)/glsl_sources.c: scripts/embed-glsl $(SHADERS) $(OUT)/files
-	$(call run,EMBED,scripts/embed-glsl GLSL_SOURCES $(SHADERS) >$@.tmp && mv $@.tmp $@)
-$(OUT)/bench/bench_glsl.c: scripts/embed-glsl $(BENCH_SHADERS) $(OUT)/files # of the library, taken by the programs that name it
-	$(call run,EMBED,scripts/embed-glsl BENCH_GLSL_SOURCES $(BENCH_SHADERS) >$@.tmp && mv $@.tmp $@)
-$(OUT)/tests/glsl_sources.c: scripts/embed-glsl $(TEST_SHADERS) $(OUT)/files
-	$(call run,EMBED,scripts/embed-glsl TEST_GLSL_SOURCES $(TEST_SHADERS) >$@.tmp && mv $@.tmp $@)
-$(OUT)/glsl_sources.o $(OUT)/bench/bench_glsl.o $(OUT)/tests/glsl_sources.o: %.o: %.c $(OUT)/flags # C promises only 4095 characters a string; every compiler takes more
+EMBED_GLSL := scripts/embed-text gpu/shader.h GlslSource
+$(OUT)/glsl_sources.c: scripts/embed-text $(SHADERS) $(OUT)/files
+	$(call run,EMBED,$(EMBED_GLSL) GLSL_SOURCES glsl/ $(SHADERS) >$@.tmp && mv $@.tmp $@)
+$(OUT)/bench/bench_glsl.c: scripts/embed-text $(BENCH_SHADERS) $(OUT)/files # of the library, taken by the programs that name it
+	$(call run,EMBED,$(EMBED_GLSL) BENCH_GLSL_SOURCES glsl/ $(BENCH_SHADERS) >$@.tmp && mv $@.tmp $@)
+$(OUT)/tests/glsl_sources.c: scripts/embed-text $(TEST_SHADERS) $(OUT)/files
+	$(call run,EMBED,$(EMBED_GLSL) TEST_GLSL_SOURCES glsl/ $(TEST_SHADERS) >$@.tmp && mv $@.tmp $@)
+$(OUT)/report/report_texts.c: scripts/embed-text $(PAGES) $(OUT)/files
+	$(call run,EMBED,scripts/embed-text report/report.h 'ReportText*' REPORT_TEXTS src/report/ $(PAGES) >$@.tmp && mv $@.tmp $@)
+$(OUT)/glsl_sources.o $(OUT)/bench/bench_glsl.o $(OUT)/tests/glsl_sources.o $(OUT)/report/report_texts.o: %.o: %.c $(OUT)/flags # C promises only 4095 characters a string; every compiler takes more
 	$(call run,CC,$(CC) $(C_FLAGS) -Wno-overlength-strings -MMD -MP -c -o $@ $<)
 $(OUT)/libtractrix.a: $(OBJECTS) $(OUT)/files
 	$(call run,AR,rm -f $@ && $(AR) qcs $@ $(OBJECTS))
@@ -114,7 +119,7 @@ $(OUT)/flags: FORCE | $(FOLDERS)
 	$(if $(MISSING),$(error missing: $(MISSING). Run scripts/setup, which installs what is needed on Debian and Ubuntu and lists it elsewhere))
 	@$(call write_if_changed,$(CC) $(C_FLAGS) $(LD_FLAGS) $(LD_LIBS))
 $(OUT)/files: FORCE | $(FOLDERS)
-	@$(call write_if_changed,$(SOURCES) $(SHADERS) $(BENCH_SHADERS) $(SUPPORT) $(TEST_SHADERS))
+	@$(call write_if_changed,$(SOURCES) $(SHADERS) $(BENCH_SHADERS) $(PAGES) $(SUPPORT) $(TEST_SHADERS))
 $(OUT)/version.h: FORCE | $(FOLDERS)
 	@scripts/write-version $(VERSION) $@
 $(FOLDERS):

@@ -6,11 +6,13 @@
 #include "base/program.h"
 #include "base/progress.h"
 #include "compare/github.h"
+#include "compare/html.h"
 #include "compare/junit.h"
 #include "compare/pairs.h"
 #include "compare/verdict.h"
 #include "image/compare.h"
 #include "image/mask.h"
+#include "report/shell_words.h"
 
 #include <errno.h>
 #include <pthread.h>
@@ -21,11 +23,12 @@
 
 typedef struct Command {
     double pixel_tolerance, max_flip, ppd; // the first two: negative if not given
-    const char *max_failing, *mask, *heat_map, *sheet, *json, *junit, *unrendered;
+    const char *max_failing, *mask, *heat_map, *sheet, *json, *junit, *unrendered, *html;
     bool github, only_failures, update, quiet;
     int jobs;
     const char *a, *b;
     CompareLimits limits;
+    char *line; // the command line, for the page; owned
 } Command;
 
 #define AT(member) offsetof(Command, member)
@@ -47,6 +50,8 @@ static const Option OPTIONS[] = {
      "with a file for each image that differs"},
     {"sheet", 0, OPTION_STRING, AT(sheet), "PATH", 0, 0,
      "the same with A, B and the heat map side by side"},
+    {"html", 0, OPTION_STRING, AT(html), "FILE.html", 0, 0,
+     "write a page that shows every pair, with all images in it: for a browser, without a network"},
     {"json", 0, OPTION_STRING, AT(json), "FILE", 0, 0, "write all figures as JSON"},
     {"junit", 0, OPTION_STRING, AT(junit), "FILE", 0, 0, "write the results as JUnit XML, for CI"},
     {"github", 0, OPTION_SWITCH, AT(github), NULL, 0, 0,
@@ -86,6 +91,7 @@ static const char *const EXAMPLES[] = {
     "tractrix-compare goldens/ frames/ --pixel-tolerance 8 --max-failing-pixels 2% --sheet bad/",
     "tractrix-compare ref_%04d.png new_%04d.png --max-flip 0.05 --junit report.xml",
     "tractrix-compare goldens/ frames/ --mask masks/ --only-failures --github",
+    "tractrix-compare goldens/ frames/ --html report.html",
     "tractrix-compare goldens/ frames/ --update",
     NULL};
 
@@ -133,6 +139,18 @@ static Result read_limits(Command *command, Error *error)
     return command->max_failing ? read_failing(limits, command->max_failing, error) : RESULT_OK;
 }
 
+// The command line as it can be pasted, before the parser changes its order.
+static char *quote_line(int argc, char **argv)
+{
+    const char **words = calloc((size_t)argc + 2, sizeof *words);
+    if (!words) return NULL;
+    words[0] = "tractrix-compare";
+    for (int i = 1; i < argc; ++i) words[i] = argv[i];
+    char *line = shell_join(words);
+    free(words);
+    return line;
+}
+
 static Result parse(Command *command, int argc, char **argv, bool *done, Error *error)
 {
     long cores = sysconf(_SC_NPROCESSORS_ONLN);
@@ -142,7 +160,9 @@ static Result parse(Command *command, int argc, char **argv, bool *done, Error *
                          .ppd = compare_limits_default().pixels_per_degree,
                          .jobs = cores < 1      ? 1
                                  : cores > 1024 ? 1024
-                                                : (int)cores};
+                                                : (int)cores,
+                         .line = quote_line(argc, argv)};
+    if (!command->line) return error_set(error, RESULT_FAILED, "no memory for the command line");
     Result result = options_parse(&PROGRAM, command, argc, argv, &first, done, error);
     if (result != RESULT_OK || *done) return result;
     if (argc - first != 2)
@@ -158,6 +178,8 @@ typedef struct Work {
     const Command *command;
     const PairList *list;
     Verdict *verdicts;
+    HtmlPair *pages; // NULL: no page is wanted
+    Html html;
     bool *ready;
     size_t next; // pair to be taken
     pthread_mutex_t lock;
@@ -188,7 +210,9 @@ static void judge(Work *work, size_t i)
                               .heat_map = heat_map,
                               .sheet = sheet,
                               .draw_same = !work->list->many,
-                              .update = command->update};
+                              .update = command->update,
+                              .map = work->pages ? &work->pages[i].map : NULL};
+    if (work->pages) html_pair_read(&work->pages[i], pair);
     verdict_find(&work->verdicts[i], pair, &options);
     free(heat_map);
     free(sheet);
@@ -212,12 +236,26 @@ static void *run_thread(void *argument)
     return NULL;
 }
 
+// The pair's place on the page, whose images are written at once.
+static Result add_to_page(Work *work, size_t i, Error *error)
+{
+    Result result =
+        html_add(&work->html, &work->list->pairs[i], &work->verdicts[i], &work->pages[i], error);
+    html_pair_destroy(&work->pages[i]);
+    if (result == RESULT_OK) return RESULT_OK;
+    pthread_mutex_lock(&work->lock);
+    work->next = work->list->count; // no more pairs: they would have no place
+    pthread_mutex_unlock(&work->lock);
+    return result;
+}
+
 // Waits for each verdict in turn. A pair that nobody took, after an interruption, ends it.
 static Result print_verdicts(Work *work, Error *error)
 {
     Progress progress;
+    Result result = RESULT_OK;
     progress_start(&progress, stderr, (int)work->list->count, work->command->quiet);
-    for (size_t i = 0; i < work->list->count; ++i) {
+    for (size_t i = 0; i < work->list->count && result == RESULT_OK; ++i) {
         pthread_mutex_lock(&work->lock);
         while (!work->ready[i] && !interrupt_requested())
             pthread_cond_wait(&work->changed, &work->lock);
@@ -232,10 +270,11 @@ static Result print_verdicts(Work *work, Error *error)
             progress_clear(&progress);
             verdict_print(&work->verdicts[i], &work->list->pairs[i], stdout);
         }
+        if (work->pages && listed) result = add_to_page(work, i, error);
         progress_update(&progress, (int)i + 1);
     }
     progress_clear(&progress);
-    return RESULT_OK;
+    return result;
 }
 
 static Result run_threads(Work *work, Error *error)
@@ -269,7 +308,7 @@ static Result make_folders(const Command *command, const PairList *list, Error *
 
 // Reports, the closing line and the exit status. Status 3 names the first culprit on stderr as
 // well, where the other programs name theirs.
-static Result conclude(const Work *work, Error *error)
+static Result conclude(Work *work, Error *error)
 {
     const Command *command = work->command;
     if (command->json)
@@ -282,6 +321,8 @@ static Result conclude(const Work *work, Error *error)
         TRY(github_append_summary(work->list, work->verdicts, &command->limits, error));
         github_print_annotations(work->list, work->verdicts, stdout);
     }
+    if (command->html)
+        TRY(html_close(&work->html, work->list, &command->limits, command->line, error));
     if (!command->quiet) verdict_print_tally(work->list, work->verdicts, stdout);
     Result result = verdict_status(work->list, work->verdicts);
     for (size_t i = 0; i < work->list->count && result != RESULT_OK; ++i) {
@@ -315,15 +356,21 @@ static Result run(const Command *command, Error *error)
                  .list = &list,
                  .verdicts = calloc(list.count, sizeof *work.verdicts),
                  .ready = calloc(list.count, sizeof *work.ready),
+                 .pages = command->html ? calloc(list.count, sizeof *work.pages) : NULL,
                  .lock = PTHREAD_MUTEX_INITIALIZER,
                  .changed = PTHREAD_COND_INITIALIZER,
                  .started = time(NULL),
                  .start_ms = clock_ms()};
-    Result result = work.verdicts && work.ready ? make_folders(command, &list, error)
-                                                : error_set(error, RESULT_FAILED, "no memory");
+    bool room = work.verdicts && work.ready && (work.pages || !command->html);
+    Result result =
+        room ? make_folders(command, &list, error) : error_set(error, RESULT_FAILED, "no memory");
+    if (command->html) THEN(result, html_open(&work.html, command->html, error));
     THEN(result, run_threads(&work, error));
     THEN(result, conclude(&work, error));
     for (size_t i = 0; work.verdicts && i < list.count; ++i) verdict_destroy(&work.verdicts[i]);
+    for (size_t i = 0; work.pages && i < list.count; ++i) html_pair_destroy(&work.pages[i]);
+    html_discard(&work.html);
+    free(work.pages);
     free(work.verdicts);
     free(work.ready);
     pairs_destroy(&list);
@@ -338,5 +385,6 @@ int main(int argc, char **argv)
     interrupt_install();
     Result result = parse(&command, argc, argv, &done, &error);
     if (result == RESULT_OK && !done) result = run(&command, &error);
+    free(command.line);
     return program_end("tractrix-compare", result, &error);
 }

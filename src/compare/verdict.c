@@ -56,12 +56,24 @@ static Result draw(char **written, const char *path, bool sheet, const Image *a,
     return result;
 }
 
+// The heat map in memory, if any pixel differs.
+static Result keep_map(Bytes *png, const float *map, const CompareResult *figures, Error *error)
+{
+    Image image = {0};
+    if (!png || !(figures->flip_most > 0)) return RESULT_OK;
+    Result result = heat_map_create(&image, map, figures->width, figures->height, error);
+    THEN(result, png_encode(&image, NULL, png, error));
+    image_destroy(&image);
+    return result;
+}
+
 static Result measure(Verdict *verdict, float *map, const Image *a, const Image *b,
                       const Mask *mask, const VerdictOptions *options, Error *error)
 {
     TRY(compare_images(&verdict->figures, map, a, b, mask, &options->limits, error));
     verdict->measured = true;
     verdict->outcome = verdict->figures.same ? OUTCOME_SAME : OUTCOME_DIFFERENT;
+    TRY(keep_map(options->map, map, &verdict->figures, error));
     if (verdict->figures.same && !options->draw_same) return RESULT_OK;
     TRY(draw(&verdict->heat_map, options->heat_map, false, a, b, map, error));
     return draw(&verdict->sheet, options->sheet, true, a, b, map, error);
@@ -247,7 +259,7 @@ static void set_figures(json_t *object, const CompareResult *figures)
     json_object_set_new(object, "failing_pixels", json_integer((json_int_t)figures->failing));
 }
 
-static json_t *pair_to_json(const Pair *pair, const Verdict *verdict)
+json_t *verdict_to_json(const Verdict *verdict, const Pair *pair)
 {
     json_t *object = json_object();
     json_object_set_new(object, "name", text_to_json(pair->name));
@@ -262,7 +274,7 @@ static json_t *pair_to_json(const Pair *pair, const Verdict *verdict)
     return object;
 }
 
-static json_t *limits_to_json(const CompareLimits *limits)
+json_t *verdict_limits_to_json(const CompareLimits *limits)
 {
     json_t *object = json_object();
     const char *number = limits->max_failing_percent ? "max_failing_percent" : "max_failing_pixels";
@@ -281,14 +293,14 @@ Result verdict_write_json(const char *path, const PairList *list, const Verdict 
     VerdictTally tally = verdict_tally(list, verdicts);
     json_t *object = json_object(), *pairs = json_array();
     json_object_set_new(object, "good", json_boolean(tally.bad == 0));
-    json_object_set_new(object, "limits", limits_to_json(limits));
+    json_object_set_new(object, "limits", verdict_limits_to_json(limits));
     json_object_set_new(object, "images", json_integer((json_int_t)list->count));
     for (int i = 0; i < OUTCOME_COUNT; ++i)
         json_object_set_new(object, OUTCOME_NAMES[i], json_integer(tally.outcomes[i]));
     json_object_set_new(object, "updated", json_integer(tally.updated));
     for (size_t i = 0; i < list->count; ++i)
         if (!only_failures || verdicts[i].outcome != OUTCOME_SAME)
-            json_array_append_new(pairs, pair_to_json(&list->pairs[i], &verdicts[i]));
+            json_array_append_new(pairs, verdict_to_json(&verdicts[i], &list->pairs[i]));
     json_object_set_new(object, "pairs", pairs);
     Result result = json_write_file(object, path, error);
     json_decref(object);

@@ -3,9 +3,11 @@
 // the verdicts on all pairs come to.
 #pragma once
 
+#include "base/bytes.h"
 #include "compare/pairs.h"
 #include "image/compare.h"
 
+#include <jansson.h>
 #include <stdio.h>
 
 typedef enum Outcome {
@@ -36,6 +38,7 @@ typedef struct VerdictOptions {
     const char *heat_map, *sheet; // file to write for this pair; NULL: none
     bool draw_same;               // not only for those that differ
     bool update;                  // copy B over A unless they are the same
+    Bytes *map;                   // takes the heat map as PNG if a pixel differs; NULL: none
 } VerdictOptions;
 
 // Never fails: what goes wrong is an outcome. B is copied byte for byte, complete or not at all,
@@ -49,6 +52,10 @@ bool verdict_is_good(const Verdict *verdict);
 
 // "same", "size mismatch", ...
 const char *verdict_word(const Verdict *verdict);
+
+// Names, outcome and figures as an object, and the limits.
+json_t *verdict_to_json(const Verdict *verdict, const Pair *pair);
+json_t *verdict_limits_to_json(const CompareLimits *limits);
 
 // "NAME: same: RMSE ..." with an end of line.
 void verdict_print(const Verdict *verdict, const Pair *pair, FILE *stream);

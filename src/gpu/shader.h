@@ -9,7 +9,7 @@
 
 #include <stdbool.h>
 
-// A file of glsl/, embedded by scripts/embed-glsl. The table ends with {NULL, NULL}. For work on
+// A file of glsl/, embedded by scripts/embed-text. The table ends with {NULL, NULL}. For work on
 // shaders without a build, TRACTRIX_GLSL_DIR names a folder from which all of them are read
 // instead.
 typedef struct GlslSource {

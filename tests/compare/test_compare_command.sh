@@ -30,7 +30,7 @@ run 1 $a $b --max-flip 0.9 --max-failing-pixels 1
 claim "wrong usage is status 2 and one line"
 for words in "" "$a" "$a $b $other" "--max-flip 2 $a $b" "--max-flip x $a $b" "--max-failing-pixels 1.5 $a $b" "--max-failing-pixels 101% $a $b" \
     "--max-failing-pixels -1 $a $b" "--pixel-tolerance 300 $a $b" "--ppd 0 $a $b" "-j 0 $a $b" "--jobs 1.5 $a $b" "--json= $a $b" "--bogus $a $b" \
-    "$a $b --max-flip" "$golden $a" "--help=html" "--pixel-tolerance nan $a $b"; do
+    "$a $b --max-flip" "$golden $a" "--help=webpage" "--pixel-tolerance nan $a $b"; do
     # shellcheck disable=SC2086
     run 2 $words; one_line; silent out
 done

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: MIT
+#include "compare/html.h"
+
+#include "image/float_image.h"
+#include "image/heat_map.h"
+#include "image/png.h"
+#include "report/picture.h"
+#include "report/shell_words.h"
+
+#include "version.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// Twice the size on the page, for dense screens.
+enum { THUMBNAIL_WIDTH = 144, THUMBNAIL_HEIGHT = 108 };
+
+// --- A pair's files.
+
+static void set_text(json_t *object, const char *key, const char *text)
+{
+    json_object_set_new(object, key, report_text(text));
+}
+
+// The PNG that stands on the page: the file itself if browsers show it as it is.
+static Result choose_png(HtmlSide *side, const Image *image, Bytes *file, Error *error)
+{
+    if (image->kind == IMAGE_8 && picture_is_plain(file)) {
+        side->png = *file;
+        *file = (Bytes){0};
+        return RESULT_OK;
+    }
+    Image picture;
+    TRY(picture_create(&picture, image, error));
+    Result result = png_encode(&picture, NULL, &side->png, error);
+    image_destroy(&picture);
+    return result;
+}
+
+// [key, text] for each text of a PNG file, such as the device that drew it; other files have none.
+static json_t *list_texts(const Bytes *file, const char *path)
+{
+    ImageTexts texts;
+    json_t *list = json_array();
+    if (png_decode_texts(&texts, file, path, NULL) != RESULT_OK) return list;
+    for (size_t i = 0; i < texts.count; ++i) {
+        json_t *pair = json_array();
+        json_array_append_new(pair, report_text(texts.list[i].key));
+        json_array_append_new(pair, report_text(texts.list[i].value));
+        json_array_append_new(list, pair);
+    }
+    image_texts_destroy(&texts);
+    return list;
+}
+
+static void read_side(HtmlSide *side, Image *image, const char *path)
+{
+    static const char *const DEPTHS[] = {"8 bits", "16 bits", "float"};
+    Bytes file = {0};
+    Error error;
+    side->facts = json_object();
+    *image = (Image){0};
+    Result result = float_image_read_image(image, path, &error);
+    THEN(result, bytes_read_file(&file, path, &error));
+    if (result == RESULT_OK) {
+        json_object_set_new(side->facts, "bytes", json_integer((json_int_t)file.size));
+        json_object_set_new(side->facts, "width", json_integer(image->width));
+        json_object_set_new(side->facts, "height", json_integer(image->height));
+        json_object_set_new(side->facts, "depth", json_string(DEPTHS[image->kind]));
+        json_object_set_new(side->facts, "alpha", json_boolean(image->channels == 4));
+        json_object_set_new(side->facts, "texts", list_texts(&file, path));
+        result = choose_png(side, image, &file, &error);
+    }
+    if (result != RESULT_OK) set_text(side->facts, "error", error.text);
+    bytes_destroy(&file);
+}
+
+static bool are_equal(const Image *a, const Image *b)
+{
+    return a->pixels && b->pixels && a->width == b->width && a->height == b->height &&
+           a->channels == b->channels && a->kind == b->kind &&
+           memcmp(a->pixels, b->pixels, image_size(a)) == 0;
+}
+
+// Without memory there is none: the page has a mark in its place.
+static void make_thumbnail(HtmlPair *page, const Image *image)
+{
+    Image picture = {0}, small = {0};
+    Error error;
+    Result result = picture_create(&picture, image, &error);
+    THEN(result,
+         picture_create_thumbnail(&small, &picture, THUMBNAIL_WIDTH, THUMBNAIL_HEIGHT, &error));
+    THEN(result, png_encode(&small, NULL, &page->thumbnail, &error));
+    image_destroy(&picture);
+    image_destroy(&small);
+}
+
+void html_pair_read(HtmlPair *page, const Pair *pair)
+{
+    const char *const paths[2] = {pair->a, pair->b};
+    const bool there[2] = {pair->has_a, pair->has_b};
+    Image image[2] = {{0}};
+    *page = (HtmlPair){0};
+    for (int i = 0; i < 2; ++i)
+        if (there[i]) read_side(&page->side[i], &image[i], paths[i]);
+    page->equal = are_equal(&image[0], &image[1]);
+    for (int i = 1; i >= 0 && !page->thumbnail.size; --i)
+        if (image[i].pixels) make_thumbnail(page, &image[i]);
+    for (int i = 0; i < 2; ++i) image_destroy(&image[i]);
+}
+
+void html_pair_destroy(HtmlPair *page)
+{
+    for (int i = 0; i < 2; ++i) {
+        bytes_destroy(&page->side[i].png);
+        json_decref(page->side[i].facts);
+    }
+    bytes_destroy(&page->map);
+    bytes_destroy(&page->thumbnail);
+    *page = (HtmlPair){0};
+}
+
+// --- The page.
+
+Result html_open(Html *html, const char *path, Error *error)
+{
+    *html = (Html){0};
+    TRY(report_open(&html->report, path, error));
+    html->pairs = json_array();
+    return RESULT_OK;
+}
+
+// What makes B the reference; for an image without a B, what removes the reference. NULL: nothing
+// does, as there is no B that can be read, or memory is short.
+static char *accepting_command(const Pair *pair, const Verdict *verdict, const HtmlPair *page)
+{
+    const char *const update[] = {"tractrix-compare", "--update", "--", pair->a, pair->b, NULL};
+    const char *const removal[] = {"rm", "--", pair->a, NULL};
+    if (verdict_is_good(verdict) || verdict->outcome == OUTCOME_UNRENDERED) return NULL;
+    if (pair->has_b && !page->side[1].png.size) return NULL;
+    return shell_join(pair->has_b ? update : removal);
+}
+
+static Result add_image(Html *html, json_t *object, const char *key, const Bytes *png, Error *error)
+{
+    int number;
+    if (!png->size) return RESULT_OK;
+    TRY(report_add_image(&html->report, png, &number, error));
+    json_object_set_new(object, key, json_integer(number));
+    return RESULT_OK;
+}
+
+Result html_add(Html *html, const Pair *pair, const Verdict *verdict, const HtmlPair *page,
+                Error *error)
+{
+    json_t *object = verdict_to_json(verdict, pair), *sides[2];
+    char *accept = accepting_command(pair, verdict, page);
+    for (int i = 0; i < 2; ++i)
+        sides[i] = page->side[i].facts ? json_incref(page->side[i].facts) : json_object();
+    set_text(object, "name", pair->name);
+    set_text(sides[0], "path", pair->a);
+    set_text(sides[1], "path", pair->b);
+    if (verdict->text[0]) set_text(object, "text", verdict->text);
+    if (accept) set_text(object, "accept", accept);
+    json_object_set_new(object, "thumbnail", report_base64(&page->thumbnail));
+    json_object_set_new(object, "equal", json_boolean(page->equal));
+    Result result = add_image(html, sides[1], "image", &page->side[1].png, error);
+    if (page->equal)
+        json_object_set(sides[0], "image", json_object_get(sides[1], "image"));
+    else
+        THEN(result, add_image(html, sides[0], "image", &page->side[0].png, error));
+    THEN(result, add_image(html, object, "map", &page->map, error));
+    json_object_set_new(object, "a", sides[0]);
+    json_object_set_new(object, "b", sides[1]);
+    json_array_append_new(html->pairs, object);
+    free(accept);
+    return result;
+}
+
+// What the heat map's colours mean: from 0 to 1 in even steps.
+static json_t *list_colors(void)
+{
+    enum { STEPS = 64 };
+    json_t *list = json_array();
+    for (int i = 0; i < STEPS; ++i) {
+        uint8_t rgb[3];
+        heat_map_color(rgb, (float)i / (STEPS - 1));
+        json_array_append_new(list, json_pack("[i, i, i]", rgb[0], rgb[1], rgb[2]));
+    }
+    return list;
+}
+
+Result html_close(Html *html, const PairList *list, const CompareLimits *limits,
+                  const char *command, Error *error)
+{
+    json_t *data = json_object();
+    set_text(data, "program", "tractrix-compare " TRACTRIX_VERSION);
+    set_text(data, "command", command);
+    json_object_set_new(data, "limits", verdict_limits_to_json(limits));
+    json_object_set_new(data, "images", json_integer((json_int_t)list->count));
+    json_object_set_new(data, "many", json_boolean(list->many));
+    json_object_set_new(data, "colors", list_colors());
+    json_object_set(data, "pairs", html->pairs);
+    Result result = report_close(&html->report, "compare", data, error);
+    json_decref(data);
+    html_discard(html);
+    return result;
+}
+
+void html_discard(Html *html)
+{
+    report_discard(&html->report);
+    json_decref(html->pairs);
+    *html = (Html){0};
+}
