@@ -189,7 +189,7 @@ check-farm: # GNU parallel and a Slurm of one node, which make test does without
 	@tests/runner $(OUT) test_farm
 check-sanitize: # but for scripts that run the programs as others do, many times over
 	$(QUIET) CONFIG=sanitize OUT=$(SIDE)sanitize all tests
-	@tests/runner $(SIDE)sanitize test_ '^test_(farm|readme|tutorial|docs|install|turntable_script|goldens|light_command|groom_command)'
+	@tests/runner $(SIDE)sanitize test_ '^test_(blender|farm|readme|tutorial|docs|install|turntable_script|goldens|light_command|groom_command)'
 
 format: ## clang-format all C and GLSL files
 	clang-format -i $(C_FILES)
@@ -205,6 +205,7 @@ install: all $(MANUALS) $(COMPLETIONS) ## programs, manuals, bash completion, do
 	install -d $(BIN_DIR) $(MAN_DIR) $(BASH_DIR) $(DATA_DIR) $(DOC_DIR)/docs
 	install $(PROGRAMS) $(BIN_DIR)
 	install scripts/turntable.sh $(BIN_DIR)/tractrix-turntable
+	install -m 644 scripts/blender_hair.py scripts/alembic_curves.py $(DATA_DIR)
 	install -m 644 $(MANUALS) $(MAN_DIR)
 	for file in $(COMPLETIONS); do install -m 644 $$file $(BASH_DIR)/$$(basename $$file .bash) || exit 1; done
 	$(if $(wildcard assets/*),install -m 644 $(wildcard assets/*) $(DATA_DIR))
