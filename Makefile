@@ -189,7 +189,7 @@ check-farm: # GNU parallel and a Slurm of one node, which make test does without
 	@tests/runner $(OUT) test_farm
 check-sanitize: # but for scripts that run the programs as others do, many times over
 	$(QUIET) CONFIG=sanitize OUT=$(SIDE)sanitize all tests
-	@tests/runner $(SIDE)sanitize test_ '^test_(blender|farm|readme|tutorial|docs|install|turntable_script|goldens|light_command|groom_command)'
+	@tests/runner $(SIDE)sanitize test_ '^test_(blender|farm|compare_goldens|ci_examples|readme|tutorial|docs|install|turntable_script|goldens|light_command|groom_command)'
 
 format: ## clang-format all C and GLSL files
 	clang-format -i $(C_FILES)

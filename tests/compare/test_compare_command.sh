@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# The command line of tractrix-compare as CI meets it: every exit status, messages, files, and scripts/compare-goldens.
+# The command line of tractrix-compare as CI meets it: every exit status, messages, files.
 . tests/support/claims.sh
 program=$bin/tractrix-compare
 golden=tests/golden
@@ -94,24 +94,5 @@ run 1 "$work/none/new.png" $b --update; one_line; says "none/new.png"
 claim "a reference without a new image is reported and left"
 rm "$work/b/f_6.png"
 run 1 "$work/a" "$work/b" --update; says "f_6.png: missing"; equal "$work/a/f_6.png" $b
-
-claim "scripts/compare-goldens renders, updates, compares, and keeps what differs"
-small="assets/curls.tfx --algo none --size 48x36 --frames 1"
-printf '# a comment\nplain %s\ntwo_%%02d assets/fur.tfx --size 48x36 --frames 2\n' "$small" >"$work/list"
-TRACTRIX_BIN=$(realpath "$bin")
-export TRACTRIX_BIN
-goldens() {
-    expected=$1; shift
-    scripts/compare-goldens "$work/list" "$work/goldens" "$work/result" "$@" >"$work/out" 2>"$work/err"
-    status=$?
-    if [ $status = "$expected" ]; then good; else bad "exit status $status, expected $expected"; fi
-}
-goldens 0 --update; says "3 references updated"
-goldens 0; says "3 images: 3 same"; none "$work/result/sheets/plain.png"
-printf 'plain %s --color #ff0000\n' "$small" >"$work/list"
-goldens 1 --pixel-tolerance 8 --max-failing-pixels 1%; says "plain.png: different"; says "two_00.png: missing"
-is_png "$work/result/sheets/plain.png"; in_file "$work/result/report.xml" "plain.png"
-printf 'plain nowhere.tfx\n' >"$work/list"
-goldens 3; says "did not render"
 
 finish

@@ -20,7 +20,7 @@ lines=$(scripts/compare-goldens tests/goldens.txt $golden "$bin/goldens" $limits
 status=$?
 echo "$lines"
 passed=$(echo "$lines" | grep -c ': same: ')
-failed=$(echo "$lines" | grep -cE ': (different|sizes|missing|unreadable|failed): ')
+failed=$(echo "$lines" | grep -cE ': (different|size mismatch|missing|unrendered|unreadable|failed): ')
 [ $status = 0 ] || [ "$failed" -gt 0 ] || failed=1
 
 # The threshold tells the goldens themselves apart.

@@ -1,0 +1,77 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# scripts/compare-goldens renders, updates, compares, goes on after failures, and keeps what differs.
+# shellcheck disable=SC2016 # nothing shall expand
+. tests/support/claims.sh
+TRACTRIX_BIN=$(realpath "$bin")
+export TRACTRIX_BIN
+unset CI_PROJECT_DIR GITHUB_WORKSPACE GITHUB_STEP_SUMMARY JENKINS_URL
+program=scripts/compare-goldens
+small="assets/curls.tfx --algo none --size 48x36 --frames 1"
+goldens() {
+    expected=$1; shift
+    run "$expected" "$work/list" "$work/goldens" "$work/result" "$@"
+}
+
+claim "help and version are answered, wrong usage is status 2 and one line"
+run 0 --help; says "Usage: compare-goldens LIST GOLDENS OUT [OPTION]..."; says "Exit status:"; silent err
+run 0 -h; run 0 --version; says "compare-goldens "
+run 2; one_line
+run 2 a b; one_line
+run 2 a b --update; one_line
+run 2 a "" c; one_line
+run 2 "$work/none" "$work/goldens" "$work/result"; one_line; says "none: cannot read it"
+run 2 "$work" "$work/goldens" "$work/result"; one_line
+
+claim "a mistake in the list is found before an image is drawn"
+for line in 'a/b x.tfx' 'plain' 'plain "x.tfx' "plain it's" 'one x.tfx
+one y.tfx' '# only a comment'; do
+    printf '%s\n' "$line" >"$work/list"
+    goldens 2 --update; one_line; says "$work/list: "; none "$work/result"
+done
+printf 'a x.tfx\n\nb y.tfx\na z.tfx' >"$work/list"
+goldens 2 --update; says "list: line 4: a: the second scene of this name"
+
+claim "without goldens it says how to make them, before an image is drawn"
+printf '# a comment\nplain %s\ntwo_%%02d "assets/fur.tfx" --size 48x36 --frames 2\r' "$small" >"$work/list"
+goldens 3; one_line; says "$work/goldens: no goldens yet; run with --update"; none "$work/result"
+mkdir "$work/goldens"
+goldens 3; one_line; says "no goldens yet; run with --update"
+goldens 2 --bogus; one_line; none "$work/result"
+
+claim "goldens are made, and equal images pass"
+goldens 0 --update; says "3 references updated"
+goldens 0; says "3 images: 3 same"; none "$work/result/sheets/plain.png"; silent err
+in_file "$work/result/report.xml" 'tests="3" failures="0"'; in_file "$work/result/report.json" '"images": 3'
+
+claim "an image that differs fails, with sheet and reports; all failures are named at the end"
+printf 'plain %s --color #ff0000\n' "$small" >"$work/list"
+goldens 1 --pixel-tolerance 8 --max-failing-pixels 1%; says "plain.png: different"; says "two_00.png: missing"
+says "compare-goldens: failed:"; says "  plain.png: different"; says "  two_01.png: missing"
+is_png "$work/result/sheets/plain.png"; in_file "$work/result/report.xml" "plain.png"
+
+claim "an image that does not render does not stop the others, and is in the reports"
+printf 'new_%%02d nowhere.tfx\ntwo_%%02d assets/fur.tfx --bogus\nplain %s\n' "$small" >"$work/list"
+goldens 1; says "new_%02d: did not render: nowhere.tfx: No such file"; says "two_%02d: did not render: --bogus: no such option"
+says "plain.png: same"; says "two_01.png: unrendered: --bogus"; says "new_%02d.png: unrendered: nowhere.tfx"; says "4 images: 1 same, 3 unrendered"
+says "  new_%02d.png: unrendered"
+in_file "$work/result/report.xml" 'failures="0" errors="3"'; in_file "$work/result/report.json" '"outcome": "unrendered"'
+goldens 1 --update; says "two_01.png: unrendered"; is_png "$work/goldens/two_01.png"
+
+claim "arguments in quotes keep blanks; no variable, pattern or command is expanded"
+cp assets/fur.tfx "$work/two words.tfx"
+printf "plain '%s' --algo none --size 48x36 --frames 1\nodd \$(touch $work/harm) ; * > $work/harm\n" "$work/two words.tfx" >"$work/list"
+rm -r "$work/goldens"
+goldens 1 --update; says "plain.png: missing"; says "1 reference updated"; says 'odd: did not render: $(touch: No such file'; none "$work/harm"
+is_png "$work/goldens/plain.png"
+
+claim "it works from a folder with blanks and with programs from PATH"
+printf 'plain %s\n' "$small" >"$work/two words"
+run 0 "$work/two words" "$work/golden images/" "$work/new images/" --update
+PATH=$TRACTRIX_BIN:$PATH
+unset TRACTRIX_BIN
+mkdir "$work/bin"; cp scripts/compare-goldens "$work/bin/tractrix-compare-goldens"; program=$work/bin/tractrix-compare-goldens
+run 0 "$work/two words" "$work/golden images/" "$work/new images/"; says "1 image: 1 same"
+run 0 --help; says "Usage: tractrix-compare-goldens "
+
+finish
