@@ -7,7 +7,7 @@ TRACTRIX_BIN=$(realpath "$bin")
 export TRACTRIX_BIN
 unset CI_PROJECT_DIR GITHUB_WORKSPACE GITHUB_STEP_SUMMARY JENKINS_URL
 program=scripts/compare-goldens
-small="assets/curls.tfx --algo none --size 48x36 --frames 1"
+small="assets/curls.tfx --algo none --followers 0 --look plain --size 48x36 --frames 1"
 goldens() {
     expected=$1; shift
     run "$expected" "$work/list" "$work/goldens" "$work/result" "$@"
@@ -33,7 +33,7 @@ printf 'a x.tfx\n\nb y.tfx\na z.tfx' >"$work/list"
 goldens 2 --update; says "list: line 4: a: the second scene of this name"
 
 claim "without goldens it says how to make them, before an image is drawn"
-printf '# a comment\nplain %s\ntwo_%%02d "assets/fur.tfx" --size 48x36 --frames 2\r' "$small" >"$work/list"
+printf '# a comment\nplain %s\ntwo_%%02d "assets/fur.tfx" --algo none --followers 0 --look plain --size 48x36 --frames 2\r' "$small" >"$work/list"
 goldens 3; one_line; says "$work/goldens: no goldens yet; run with --update"; none "$work/result"
 mkdir "$work/goldens"
 goldens 3; one_line; says "no goldens yet; run with --update"
@@ -60,7 +60,7 @@ goldens 1 --update; says "two_01.png: unrendered"; is_png "$work/goldens/two_01.
 
 claim "arguments in quotes keep blanks; no variable, pattern or command is expanded"
 cp assets/fur.tfx "$work/two words.tfx"
-printf "plain '%s' --algo none --size 48x36 --frames 1\nodd \$(touch $work/harm) ; * > $work/harm\n" "$work/two words.tfx" >"$work/list"
+printf "plain '%s' --algo none --followers 0 --look plain --size 48x36 --frames 1\nodd \$(touch $work/harm) ; * > $work/harm\n" "$work/two words.tfx" >"$work/list"
 rm -r "$work/goldens"
 goldens 1 --update; says "plain.png: missing"; says "1 reference updated"; says 'odd: did not render: $(touch: No such file'; none "$work/harm"
 is_png "$work/goldens/plain.png"
