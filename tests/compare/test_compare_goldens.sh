@@ -48,7 +48,7 @@ claim "an image that differs fails, with sheet and reports; all failures are nam
 printf 'plain %s --color #ff0000\n' "$small" >"$work/list"
 goldens 1 --pixel-tolerance 8 --max-failing-pixels 1%; says "plain.png: different"; says "two_00.png: missing"
 says "compare-goldens: failed:"; says "  plain.png: different"; says "  two_01.png: missing"
-is_png "$work/result/sheets/plain.png"; in_file "$work/result/report.xml" "plain.png"
+is_png "$work/result/sheets/plain.png"; in_file "$work/result/report.xml" "plain.png"; in_file "$work/result/report.html" "plain.png"
 
 claim "an image that does not render does not stop the others, and is in the reports"
 printf 'new_%%02d nowhere.tfx\ntwo_%%02d assets/fur.tfx --bogus\nplain %s\n' "$small" >"$work/list"
@@ -56,6 +56,7 @@ goldens 1; says "new_%02d: did not render: nowhere.tfx: No such file"; says "two
 says "plain.png: same"; says "two_01.png: unrendered: --bogus"; says "new_%02d.png: unrendered: nowhere.tfx"; says "4 images: 1 same, 3 unrendered"
 says "  new_%02d.png: unrendered"
 in_file "$work/result/report.xml" 'failures="0" errors="3"'; in_file "$work/result/report.json" '"outcome": "unrendered"'
+in_file "$work/result/report.html" "new_%02d.png"
 goldens 1 --update; says "two_01.png: unrendered"; is_png "$work/goldens/two_01.png"
 
 claim "arguments in quotes keep blanks; no variable, pattern or command is expanded"

@@ -69,6 +69,13 @@ step 0 key; if [ "$(cat "$work/runner/output")" = "$key" ]; then good; else bad 
 echo >>"$work/action/glsl/sim/forces.glsl"
 step 0 key; if [ "$(cat "$work/runner/output")" != "$key" ]; then good; else bad "one key for two sources"; fi
 
+claim "the steps are clean shell"
+if command -v shellcheck >/dev/null; then
+    holds shellcheck -s bash -e SC1091,SC2086,SC2164 "$work"/steps/*.sh # system files, options as words; bash -e
+else
+    skip "no shellcheck"
+fi
+
 claim "the action installs, builds, and passes the example"
 step 0 install-packages
 step 0 build; in_file "$work/calls" "make --silent -C $work/action -j "
@@ -108,6 +115,7 @@ gitlab() {
 
 claim "GitLab's job clones, builds and compares, and keeps what its report names"
 holds "$steps" gitlab examples/ci/gitlab-ci.yml images "$work/steps/job.sh"; says "tractrix-images/report.xml"
+if command -v shellcheck >/dev/null; then holds shellcheck -s sh -e SC2086 "$work/steps/job.sh"; fi
 in_file "$work/steps/job.sh" 'TRACTRIX_GOLDENS=${TRACTRIX_GOLDENS-examples/ci/goldens}'
 gitlab 0 TRACTRIX_DIR=.tractrix TRACTRIX_LIST=one.txt "TRACTRIX_GOLDENS=new images" "TRACTRIX_OPTIONS=$limits"; says "1 image: 1 same"
 in_file "$work/calls" "git clone --quiet --depth 1 --branch v0.1.0 https://gitlab.com/OWNER/tractrix.git .tractrix"
