@@ -2,6 +2,8 @@
 #include "gen/strands_make.h"
 
 #include "base/double3.h"
+#include "base/interrupt.h"
+#include "base/parallel.h"
 #include "base/random.h"
 #include "base/suggest.h"
 
@@ -26,13 +28,12 @@ typedef struct Seedling {
     Random random;
 } Seedling;
 
-static Seedling begin_strand(const StrandsRecipe *recipe, ScalpRoots *roots, uint32_t s)
+static Seedling begin_strand(const StrandsRecipe *recipe, const ScalpRoot *root, uint32_t s)
 {
     Seedling seedling = {.recipe = recipe, .random = random_create(recipe->seed, s)};
-    scalp_roots_next(roots, seedling.direction);
-    scalp_normal(recipe->shape, seedling.direction, seedling.normal);
-    double3_add_scaled(seedling.root, scalp_radius(recipe->shape, seedling.direction),
-                       seedling.direction);
+    double3_copy(root->direction, seedling.direction);
+    double3_copy(root->normal, seedling.normal);
+    double3_add_scaled(seedling.root, root->radius, root->direction);
     seedling.length =
         recipe->length * (1.0 - recipe->length_variation * random_real(&seedling.random));
     // Slow waves over the head keep neighbours in step.
@@ -189,21 +190,65 @@ static void grow(Seedling *seedling, Double3 *points)
     }
 }
 
-static void make_all(Strands *strands, const StrandsRecipe *recipe, Double3 *points)
+// A block of strands, grown by several threads.
+enum { BLOCK = 1024 };
+
+typedef struct Block {
+    Strands *strands;
+    const StrandsRecipe *recipe;
+    ScalpRoot root[BLOCK];
+    uint32_t first, count; // of the strands
+    Double3 *points;       // [threads][recipe->vertices]
+} Block;
+
+static void make_strand(const Block *block, uint32_t i, Double3 *points)
 {
-    bool everywhere = recipe->style == STRANDS_STYLE_FUR;
-    ScalpRoots roots = scalp_roots_begin(recipe->shape, everywhere, recipe->seed);
-    for (uint32_t s = 0; s < recipe->count; s++) {
-        Seedling seedling = begin_strand(recipe, &roots, s);
-        grow(&seedling, points);
-        uint32_t first = s * recipe->vertices;
-        strands->first[s + 1] = first + recipe->vertices;
-        for (uint32_t v = 0; v < recipe->vertices; v++)
-            for (int i = 0; i < 3; i++) strands->position[first + v][i] = (float)points[v][i];
-        const double *d = seedling.direction;
-        strands->strand_uv[s][0] = (float)(0.5 + atan2(d[0], d[2]) / (2.0 * PI));
-        strands->strand_uv[s][1] = (float)(0.5 + asin(fmin(fmax(d[1], -1.0), 1.0)) / PI);
+    const StrandsRecipe *recipe = block->recipe;
+    Strands *strands = block->strands;
+    uint32_t s = block->first + i, first = s * recipe->vertices;
+    Seedling seedling = begin_strand(recipe, &block->root[i], s);
+    grow(&seedling, points);
+    strands->first[s + 1] = first + recipe->vertices;
+    for (uint32_t v = 0; v < recipe->vertices; v++)
+        for (int k = 0; k < 3; k++) strands->position[first + v][k] = (float)points[v][k];
+    const double *d = seedling.direction;
+    strands->strand_uv[s][0] = (float)(0.5 + atan2(d[0], d[2]) / (2.0 * PI));
+    strands->strand_uv[s][1] = (float)(0.5 + asin(fmin(fmax(d[1], -1.0), 1.0)) / PI);
+}
+
+static void make_part(void *data, int part)
+{
+    const Block *block = data;
+    uint32_t parts = (uint32_t)parallel_threads(), at = (uint32_t)part;
+    Double3 *points = block->points + (size_t)part * block->recipe->vertices;
+    for (uint32_t i = block->count * at / parts; i < block->count * (at + 1) / parts; i++)
+        make_strand(block, i, points);
+}
+
+// RESULT_INTERRUPTED or RESULT_FAILED.
+static Result make_all(Strands *strands, const StrandsRecipe *recipe, Error *error)
+{
+    size_t threads = (size_t)parallel_threads();
+    Block *block = malloc(sizeof *block);
+    Double3 *points = malloc(threads * recipe->vertices * sizeof *points);
+    Result result = RESULT_OK;
+    if (!block || !points)
+        result = error_set(error, RESULT_FAILED, "no memory for %u strands", recipe->count);
+    ScalpRoots roots =
+        scalp_roots_begin(recipe->shape, recipe->style == STRANDS_STYLE_FUR, recipe->seed);
+    for (uint32_t s = 0; s < recipe->count && result == RESULT_OK; s += BLOCK) {
+        block->strands = strands;
+        block->recipe = recipe;
+        block->points = points;
+        block->first = s;
+        block->count = recipe->count - s < BLOCK ? recipe->count - s : BLOCK;
+        scalp_roots_take(&roots, block->root, block->count);
+        parallel_run((int)threads, make_part, block);
+        if (interrupt_requested()) result = error_set(error, RESULT_INTERRUPTED, "interrupted");
     }
+    free(block);
+    free(points);
+    return result;
 }
 
 StrandsRecipe strands_make_recipe(StrandsStyle style)
@@ -281,12 +326,9 @@ Result strands_make(Strands *strands, const StrandsRecipe *recipe, Error *error)
     Result result = strands_create(strands, recipe->count, recipe->count * recipe->vertices, error);
     if (result != RESULT_OK) return result;
     strands->strand_uv = calloc(recipe->count, sizeof *strands->strand_uv);
-    Double3 *points = malloc(recipe->vertices * sizeof *points);
-    if (strands->strand_uv && points)
-        make_all(strands, recipe, points);
-    else
-        result = error_set(error, RESULT_FAILED, "no memory for %u strands", recipe->count);
-    free(points);
+    result = strands->strand_uv
+                 ? make_all(strands, recipe, error)
+                 : error_set(error, RESULT_FAILED, "no memory for %u strands", recipe->count);
     if (result != RESULT_OK) strands_destroy(strands);
     return result;
 }

@@ -4,6 +4,7 @@
 #include "mesh/simplify.h"
 #include "mesh/surface_net.h"
 
+#include <pthread.h>
 #include <stddef.h>
 
 // --- Parts. Each joins what the parts before it have made.
@@ -96,21 +97,42 @@ static double egg_distance(const Part *part, const Double3 at)
     return l > 0.0 ? k * (k - 1.0) / l : -fmin(part->b[0], fmin(part->b[1], part->b[2]));
 }
 
+// What all points share: of a round cone its axis and sides, of any part the box around it (and its
+// mirror image, in |x|), and the least ratio of its bound to the distance from that box.
+typedef struct Shape {
+    Double3 axis;
+    double length, slant, straight;
+    Double3 low, high;
+    double ratio;
+} Shape;
+
+enum { PART_COUNT = sizeof PARTS / sizeof *PARTS };
+_Static_assert((int)PART_COUNT <= (int)HEAD_PARTS_MOST, "a patch has room for all parts");
+
+// Neighbours in the table that are passed over together.
+typedef struct Group {
+    Double3 low, high;
+    double ratio, blend; // the least, the largest
+} Group;
+
+enum { GROUP_PARTS = 4, GROUPS = (PART_COUNT + GROUP_PARTS - 1) / GROUP_PARTS };
+
+static Shape shapes[PART_COUNT];
+static Group groups[GROUPS];
+
 // In the plane of axis and point: beside the slanting side, or beyond one of the spheres' circles.
-static double cone_distance(const Part *part, const Double3 at)
+static double cone_distance(const Part *part, const Shape *shape, const Double3 at)
 {
-    Double3 axis, p, across;
-    double3_subtract(part->b, part->a, axis);
+    Double3 p, across;
     double3_subtract(at, part->a, p);
-    double length = double3_normalize(axis), slant = (part->a[3] - part->b[3]) / length;
-    double along = double3_dot(p, axis);
+    double along = double3_dot(p, shape->axis);
     double3_copy(p, across);
-    double3_flatten(across, axis);
-    double flat = double3_length(across), straight = sqrt(1.0 - slant * slant);
-    double foot = along + flat * slant / straight;
+    double3_flatten(across, shape->axis);
+    double flat = double3_length(across);
+    double foot = along + flat * shape->slant / shape->straight;
     if (foot <= 0.0) return double3_length(p) - part->a[3];
-    if (foot >= length) return double3_distance(at, part->b) - part->b[3];
-    return flat * straight + along * slant - part->a[3];
+    if (foot >= shape->length) return double3_distance(at, part->b) - part->b[3];
+    return flat * shape->straight + along * shape->slant - part->a[3];
 }
 
 // A minimum that rounds the seam over `blend`, with two derivatives; symmetric, to the bit.
@@ -118,16 +140,6 @@ static double smooth_min(double a, double b, double blend)
 {
     double least = a < b ? a : b, near = blend - fabs(a - b), h = near / blend;
     return near > 0.0 ? least - h * h * h * blend / 6.0 : least;
-}
-
-static double part_distance(const Part *part, const Double3 at)
-{
-    double distance[2];
-    for (int side = 0; side < (part->sides == BOTH ? 2 : 1); side++) {
-        Double3 here = {side ? -at[0] : at[0], at[1], at[2]};
-        distance[side] = part->form == EGG ? egg_distance(part, here) : cone_distance(part, here);
-    }
-    return part->sides == BOTH ? smooth_min(distance[0], distance[1], part->blend) : distance[0];
 }
 
 static double greater(double a, double b)
@@ -140,51 +152,136 @@ static double lesser(double a, double b)
     return a < b ? a : b;
 }
 
-// Whether the part, and its mirror image, is farther away than `distance`: by the box around it. An
-// ellipsoid's bound is at least the distance times its shortest radius over its longest.
-static bool is_far(const Part *part, const Double3 at, double distance)
+// Whether a bound of at least `ratio` times the way to the box is more than `distance`, >= 0.
+static bool is_far(const Double3 low, const Double3 high, double ratio, const Double3 at,
+                   double distance)
 {
-    const double *a = part->a, *b = part->b;
     double gap = 0.0;
-    if (part->form == EGG) {
-        for (int i = 0; i < 3; i++)
-            gap = greater(gap, fabs((i == 0 ? fabs(at[0]) : at[i]) - a[i]) - b[i]);
-        gap *= lesser(b[0], lesser(b[1], b[2]));
-        return gap > distance * greater(b[0], greater(b[1], b[2]));
-    }
-    for (int i = 0; i < 3; i++) {
-        double p = i == 0 ? fabs(at[0]) : at[i];
-        gap = greater(gap, greater(lesser(a[i], b[i]) - p, p - greater(a[i], b[i])));
-    }
-    return gap - greater(a[3], b[3]) > distance;
+    for (int i = 0; i < 3; i++) gap = greater(gap, greater(low[i] - at[i], at[i] - high[i]));
+    return gap * ratio > distance;
 }
 
-// Parts that are too far away to change the sum are passed over.
-double head_distance(const Double3 at)
+static double form_distance(const Part *part, const Shape *shape, const Double3 at)
 {
-    double sum = 1.0;
-    for (size_t i = 0; i < sizeof PARTS / sizeof *PARTS; i++) {
-        const Part *part = &PARTS[i];
-        double sign = part->kind == ADD ? 1.0 : -1.0;
-        if (part->kind != KEEP && is_far(part, at, greater(sign * sum, 0.0) + 1.2 * part->blend))
+    return part->form == EGG ? egg_distance(part, at) : cone_distance(part, shape, at);
+}
+
+// `at` is on the part's side, x >= 0. The mirror image counts where it is near enough to blend.
+static double part_distance(const Part *part, const Shape *shape, const Double3 at)
+{
+    const Double3 mirrored = {-at[0], at[1], at[2]};
+    double distance = form_distance(part, shape, at);
+    if (part->sides == ONE || is_far(shape->low, shape->high, shape->ratio, mirrored,
+                                     greater(distance + part->blend, 0.0)))
+        return distance;
+    return smooth_min(distance, form_distance(part, shape, mirrored), part->blend);
+}
+
+// An ellipsoid's bound is at least the distance times its shortest radius over its longest.
+static void find_shape(const Part *part, Shape *shape)
+{
+    const double *a = part->a, *b = part->b;
+    for (int i = 0; i < 3; i++) {
+        double wide = part->form == EGG ? b[i] : greater(a[3], b[3]);
+        shape->low[i] = (part->form == EGG ? a[i] : lesser(a[i], b[i])) - wide;
+        shape->high[i] = (part->form == EGG ? a[i] : greater(a[i], b[i])) + wide;
+    }
+    shape->ratio = 1.0;
+    if (part->form == EGG) {
+        shape->ratio = lesser(b[0], lesser(b[1], b[2])) / greater(b[0], greater(b[1], b[2]));
+        return;
+    }
+    double3_subtract(b, a, shape->axis);
+    shape->length = double3_normalize(shape->axis);
+    shape->slant = (a[3] - b[3]) / shape->length;
+    shape->straight = sqrt(1.0 - shape->slant * shape->slant);
+}
+
+static void find_shapes(void)
+{
+    for (int i = 0; i < PART_COUNT; i++) {
+        const Shape *shape = &shapes[i];
+        Group *group = &groups[i / GROUP_PARTS];
+        find_shape(&PARTS[i], &shapes[i]);
+        if (i % GROUP_PARTS == 0) {
+            double3_copy(shape->low, group->low);
+            double3_copy(shape->high, group->high);
+            group->ratio = 1.0;
+        }
+        for (int k = 0; k < 3; k++) {
+            group->low[k] = lesser(group->low[k], shape->low[k]);
+            group->high[k] = greater(group->high[k], shape->high[k]);
+        }
+        // What is kept is everywhere.
+        group->ratio = PARTS[i].kind == KEEP ? 0.0 : lesser(group->ratio, shape->ratio);
+        group->blend = greater(group->blend, PARTS[i].blend);
+    }
+}
+
+// The head with part `i`, of the head without it; on the side where x >= 0.
+static double join_part(double sum, int i, const Double3 at)
+{
+    const Part *part = &PARTS[i];
+    double sign = part->kind == ADD ? 1.0 : -1.0;
+    double distance = part_distance(part, &shapes[i], at);
+    if (part->kind == KEEP) distance = -distance;
+    return sign * smooth_min(sign * sum, distance, part->blend);
+}
+
+// Parts that are too far away to change the sum are passed over. Within `reach`, the way to a box
+// changes by as much, and a sum by a few times as much: its gradient stays below 8.
+double head_patch_find(HeadPatch *patch, const Double3 point, double reach)
+{
+    const Double3 at = {fabs(point[0]), point[1], point[2]};
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    double sum = 1.0, slack = 9.0 * reach;
+    pthread_once(&once, find_shapes);
+    patch->count = 0;
+    for (int i = 0; i < PART_COUNT; i++) {
+        const Shape *shape = &shapes[i];
+        const Group *group = &groups[i / GROUP_PARTS];
+        double sign = PARTS[i].kind == ADD ? 1.0 : -1.0;
+        if (i % GROUP_PARTS == 0 && is_far(group->low, group->high, group->ratio, at,
+                                           fabs(sum) + 1.2 * group->blend + slack)) {
+            i += GROUP_PARTS - 1;
             continue;
-        double distance = part_distance(part, at);
-        if (part->kind == KEEP) distance = -distance;
-        sum = sign * smooth_min(sign * sum, distance, part->blend);
+        }
+        if (PARTS[i].kind != KEEP &&
+            is_far(shape->low, shape->high, shape->ratio, at,
+                   greater(sign * sum, 0.0) + 1.2 * PARTS[i].blend + slack))
+            continue;
+        patch->part[patch->count++] = (unsigned char)i;
+        sum = join_part(sum, i, at);
     }
     return sum;
+}
+
+double head_patch_distance(const HeadPatch *patch, const Double3 point)
+{
+    const Double3 at = {fabs(point[0]), point[1], point[2]};
+    double sum = 1.0;
+    for (int i = 0; i < patch->count; i++) sum = join_part(sum, patch->part[i], at);
+    return sum;
+}
+
+double head_distance(const Double3 at)
+{
+    HeadPatch unused;
+    return head_patch_find(&unused, at, 0.0);
 }
 
 void head_normal(const Double3 at, Double3 normal)
 {
     const double step = 1e-5;
+    HeadPatch patch;
+    head_patch_find(&patch, at, step);
     for (int i = 0; i < 3; i++) {
         Double3 ahead, behind;
         double3_copy(at, ahead);
         double3_copy(at, behind);
         ahead[i] += step;
         behind[i] -= step;
-        normal[i] = head_distance(ahead) - head_distance(behind);
+        normal[i] = head_patch_distance(&patch, ahead) - head_patch_distance(&patch, behind);
     }
     if (!(double3_normalize(normal) > 0.0)) normal[1] = 1.0;
 }

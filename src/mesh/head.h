@@ -11,6 +11,19 @@
 // surface. Mirror images have equal distances, to the bit.
 double head_distance(const Double3 at);
 
+// The parts of the head that matter within `reach` (m, at most 0.01) of a point: a distance there
+// costs a fraction of head_distance's time, and is the same to the bit.
+enum { HEAD_PARTS_MOST = 64 };
+
+typedef struct HeadPatch {
+    int count;
+    unsigned char part[HEAD_PARTS_MOST];
+} HeadPatch;
+
+// Returns the point's distance, too.
+double head_patch_find(HeadPatch *patch, const Double3 point, double reach);
+double head_patch_distance(const HeadPatch *patch, const Double3 point);
+
 // Outward normal of unit length there: the distance's gradient.
 void head_normal(const Double3 at, Double3 normal);
 

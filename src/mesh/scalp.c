@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "mesh/scalp.h"
 
+#include "base/parallel.h"
 #include "base/random.h"
 #include "mesh/head.h"
 
@@ -15,33 +16,21 @@ static double head_radius(const Double3 direction)
 {
     double inside = 0.0, outside = 0.4;
     Double3 at = {0};
+    HeadPatch patch;
     for (int i = 0; i < 200; i++) {
         for (int k = 0; k < 3; k++) at[k] = outside * direction[k];
-        double step = 0.5 * head_distance(at);
+        double step = 0.5 * head_patch_find(&patch, at, 0.0);
         if (step < 1e-4) break;
         outside -= step;
     }
     inside = outside - 0.002;
+    head_patch_find(&patch, at, 0.002);
     for (int i = 0; i < 40; i++) {
         double middle = 0.5 * (inside + outside);
         for (int k = 0; k < 3; k++) at[k] = middle * direction[k];
-        *(head_distance(at) < 0.0 ? &inside : &outside) = middle;
+        *(head_patch_distance(&patch, at) < 0.0 ? &inside : &outside) = middle;
     }
     return outside;
-}
-
-double scalp_radius(ScalpShape shape, const Double3 direction)
-{
-    return shape == SCALP_SPHERE ? SPHERE_RADIUS : head_radius(direction);
-}
-
-void scalp_normal(ScalpShape shape, const Double3 direction, Double3 normal)
-{
-    double3_copy(direction, normal);
-    if (shape == SCALP_SPHERE) return;
-    Double3 at = {0};
-    double3_add_scaled(at, scalp_radius(shape, direction), direction);
-    head_normal(at, normal);
 }
 
 double scalp_distance(ScalpShape shape, const Double3 at)
@@ -83,22 +72,34 @@ static double smooth(double low, double high, double x)
 
 // The head's hair line: from the nape, behind and over the ears, past the temples to the forehead.
 // docs/fur.md has it as a formula.
-static bool has_hair(ScalpShape shape, const Double3 direction, bool everywhere)
+static bool has_hair(ScalpShape shape, const Double3 direction, double radius, bool everywhere)
 {
     if (shape == SCALP_SPHERE) return everywhere || direction[1] > 0.2;
-    if (direction[1] < -0.8) return false;
-    double radius = scalp_radius(shape, direction), y = radius * direction[1];
-    double z = radius * direction[2];
+    double y = radius * direction[1], z = radius * direction[2];
     return y > -0.085 + 0.099 * smooth(-0.06, -0.022, z) + 0.056 * smooth(0.015, 0.075, z);
 }
 
-// Area of the surface per area of the unit sphere.
-static double area_ratio(ScalpShape shape, const Double3 direction)
+// Finds radius and normal of the root in its direction; false if no hair grows there.
+static bool find_root(ScalpShape shape, bool everywhere, ScalpRoot *root)
 {
-    Double3 normal;
-    double radius = scalp_radius(shape, direction);
-    scalp_normal(shape, direction, normal);
-    return radius * radius / fmax(double3_dot(normal, direction), 0.2);
+    const double *direction = root->direction;
+    root->radius = SPHERE_RADIUS;
+    double3_copy(direction, root->normal);
+    if (shape == SCALP_SPHERE) return has_hair(shape, direction, root->radius, everywhere);
+    if (direction[1] < -0.8) return false; // the neck
+    root->radius = head_radius(direction);
+    if (!has_hair(shape, direction, root->radius, everywhere)) return false;
+    Double3 at = {0};
+    double3_add_scaled(at, root->radius, direction);
+    head_normal(at, root->normal);
+    return true;
+}
+
+// Area of the surface per area of the unit sphere.
+static double area_ratio(const ScalpRoot *root)
+{
+    double across = double3_dot(root->normal, root->direction);
+    return root->radius * root->radius / fmax(across, 0.2);
 }
 
 // Archimedes: even in y and in the angle about the y axis is even on the sphere.
@@ -117,31 +118,58 @@ ScalpRoots scalp_roots_begin(ScalpShape shape, bool everywhere, uint32_t seed)
     for (int i = 0; i < 3; i++) roots.shift[i] = random_real(&random);
     enum { GRID = 64 };
     for (int i = 0; i < GRID * GRID; i++) {
-        Double3 direction;
-        map_to_sphere((i / GRID + 0.5) / GRID, (i % GRID + 0.5) / GRID, direction);
-        if (has_hair(shape, direction, everywhere))
-            roots.heaviest = fmax(roots.heaviest, area_ratio(shape, direction));
+        ScalpRoot root;
+        map_to_sphere((i / GRID + 0.5) / GRID, (i % GRID + 0.5) / GRID, root.direction);
+        if (find_root(shape, everywhere, &root))
+            roots.heaviest = fmax(roots.heaviest, area_ratio(&root));
     }
     roots.heaviest *= 1.05; // the grid may have missed the very top
     return roots;
 }
 
-// Points of a low-discrepancy sequence in three dimensions (additive recurrence with powers of the
-// inverse of g, g^4 = g + 1: Roberts 2018, "The unreasonable effectiveness of quasirandom
-// sequences"). Two dimensions give the direction, the third thins out by area.
-void scalp_roots_next(ScalpRoots *roots, Double3 direction)
+// Element `number` of a low-discrepancy sequence in three dimensions (additive recurrence with
+// powers of the inverse of g, g^4 = g + 1: Roberts 2018, "The unreasonable effectiveness of
+// quasirandom sequences"). Two dimensions give the direction, the third thins out by area. False:
+// no root.
+static bool find_candidate(const ScalpRoots *roots, uint64_t number, ScalpRoot *root)
 {
     static const Double3 alpha = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
-    for (;;) {
-        Double3 point;
-        for (int i = 0; i < 3; i++) {
-            double x = roots->shift[i] + alpha[i] * (double)roots->next;
-            point[i] = x - floor(x);
-        }
-        roots->next++;
-        map_to_sphere(point[0], point[1], direction);
-        if (!has_hair(roots->shape, direction, roots->everywhere)) continue;
-        if (point[2] * roots->heaviest <= area_ratio(roots->shape, direction)) return;
+    Double3 point;
+    for (int i = 0; i < 3; i++) {
+        double x = roots->shift[i] + alpha[i] * (double)number;
+        point[i] = x - floor(x);
+    }
+    map_to_sphere(point[0], point[1], root->direction);
+    return find_root(roots->shape, roots->everywhere, root) &&
+           point[2] * roots->heaviest <= area_ratio(root);
+}
+
+enum { CANDIDATES = 1024 };
+
+typedef struct Candidates {
+    const ScalpRoots *roots;
+    ScalpRoot root[CANDIDATES];
+    bool good[CANDIDATES];
+} Candidates;
+
+static void find_part(void *data, int part)
+{
+    Candidates *candidates = data;
+    int parts = parallel_threads();
+    for (int i = CANDIDATES * part / parts; i < CANDIDATES * (part + 1) / parts; i++)
+        candidates->good[i] = find_candidate(
+            candidates->roots, candidates->roots->next + (uint64_t)i, &candidates->root[i]);
+}
+
+void scalp_roots_take(ScalpRoots *roots, ScalpRoot *root, uint32_t count)
+{
+    Candidates candidates = {.roots = roots};
+    for (uint32_t found = 0; found < count;) {
+        parallel_run(parallel_threads(), find_part, &candidates);
+        int i = 0;
+        for (; i < CANDIDATES && found < count; i++)
+            if (candidates.good[i]) root[found++] = candidates.root[i];
+        roots->next += (uint64_t)i;
     }
 }
 
@@ -194,8 +222,7 @@ Result scalp_make_mesh(Mesh *mesh, ScalpShape shape, uint32_t rings, Error *erro
         double turn = 2.0 * M_PI * ((v - 1) % around) / around;
         Double3 direction;
         direction_at(M_PI * ring / rings, turn, direction);
-        double radius = scalp_radius(shape, direction);
-        for (int i = 0; i < 3; i++) mesh->position[v][i] = (float)(radius * direction[i]);
+        for (int i = 0; i < 3; i++) mesh->position[v][i] = (float)(SPHERE_RADIUS * direction[i]);
     }
     for (uint32_t ring = 0; ring < rings; ring++) add_ring_triangles(mesh, ring, rings);
     mesh_compute_normals(mesh);

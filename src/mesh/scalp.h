@@ -14,12 +14,6 @@ typedef enum ScalpShape {
     SCALP_HEAD,   // 0.23 high, 0.16 wide, 0.2 deep, with neck and shoulders
 } ScalpShape;
 
-// Distance of the surface's outermost point from the origin in a direction of unit length.
-double scalp_radius(ScalpShape shape, const Double3 direction);
-
-// Normal of unit length, outwards, of that point.
-void scalp_normal(ScalpShape shape, const Double3 direction, Double3 normal);
-
 // Distance of a point from the surface, m, negative inside.
 double scalp_distance(ScalpShape shape, const Double3 at);
 
@@ -27,8 +21,14 @@ double scalp_distance(ScalpShape shape, const Double3 at);
 // lower.
 void scalp_lift(ScalpShape shape, Double3 point, double gap);
 
-// Directions of roots, one after the other: even over the area, and so is any number of them from
-// the first on.
+// Where a strand grows.
+typedef struct ScalpRoot {
+    Double3 direction; // of unit length, seen from the origin
+    double radius;     // distance from the origin, m: of the surface's outermost point there
+    Double3 normal;    // of the surface, of unit length, outwards
+} ScalpRoot;
+
+// A sequence of roots: even over the area, and so is any number of them from the first on.
 typedef struct ScalpRoots {
     ScalpShape shape;
     bool everywhere;
@@ -40,8 +40,9 @@ typedef struct ScalpRoots {
 // Hair grows on the sphere's upper part (y > 0.2 of the radius) or all of it (`everywhere`), and on
 // the head above its hair line. The same seed gives the same roots.
 ScalpRoots scalp_roots_begin(ScalpShape shape, bool everywhere, uint32_t seed);
-// The next root's direction, of unit length.
-void scalp_roots_next(ScalpRoots *roots, Double3 direction);
+
+// The next `count` roots, found by several threads; the same in any number of calls.
+void scalp_roots_take(ScalpRoots *roots, ScalpRoot *root, uint32_t count);
 
 // A closed mesh whose vertices lie on the surface; 3 <= rings <= 4096. The sphere has `rings` bands
 // between the poles and 2 * rings squares around, 4 * rings * (rings - 1) triangles; the head has
