@@ -220,13 +220,14 @@ class Archive:
 
 def walk(archive: Archive) -> list:
     """All objects that hold curves."""
-    found, waiting = [], [(Node("", "", archive.top), 0)]
+    found, waiting, seen = [], [(Node("", "", archive.top), 0)], {0}
     while waiting:
         node, depth = waiting.pop()
         if node.schema.startswith("AbcGeom_Curve"):
             found.append(node)
-        if depth > MOST_DEPTH:
-            raise AlembicError(f"{archive.path}: objects more than {MOST_DEPTH} deep: expected a tree")
+        if depth > MOST_DEPTH or (node.group in seen and depth and node.group):
+            raise AlembicError(f"{archive.path}: {node.name}: an object within itself, or more than {MOST_DEPTH} deep: expected a tree")
+        seen.add(node.group)
         for name, meta, group in reversed(archive.objects(node.group)):
             schema = dict(part.split("=", 1) for part in meta.split(";") if "=" in part).get("schema", "")
             child = Node(f"{node.name}/{name}", schema, group, list(node.above), node.rate)
@@ -369,7 +370,8 @@ def read(path: str, scale: float = 1.0) -> dict:
     radius (V,) or None; fps. `scale`: metres of one unit. Raises AlembicError."""
     try:
         archive = Archive(path)
-        parts = [curves_of(archive, node) for node in walk(archive)]
+        with np.errstate(all="ignore"):
+            parts = [curves_of(archive, node) for node in walk(archive)]
     except OSError as error:
         raise AlembicError(f"{path}: {error.strerror}") from None
     except (ValueError, IndexError, struct.error, MemoryError) as error:
@@ -381,6 +383,8 @@ def read(path: str, scale: float = 1.0) -> dict:
     if any(len(p["frames"]) not in (1, count) for p in parts):
         raise AlembicError(f"{path}: curves of different numbers of samples: expected the same for all that move")
     frames = np.concatenate([np.broadcast_to(p["frames"], (count, *p["frames"].shape[1:])) for p in parts], 1)
+    if not np.isfinite(frames).all():
+        raise AlembicError(f"{path}: positions that are not finite: expected numbers")
     frames = (frames * scale).astype(np.float32)
     result = {"points": frames[0], "sizes": np.concatenate([p["sizes"] for p in parts]).astype(np.int32)}
     for name, factor in (("uv", 1.0), ("radius", scale)):

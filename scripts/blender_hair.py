@@ -262,16 +262,22 @@ def read_usda(path: str) -> Hair:
     )  # fmt: skip
 
 
-def convert_hair(path: str) -> Hair:
-    """Reads a cache, numbered files or any other hair file by tractrix-convert."""
-    program = os.environ.get("TRACTRIX_CONVERT") or shutil.which("tractrix-convert")
+def convert_hair(path: str, units: tuple = ()) -> Hair:
+    """Reads a cache, numbered files or any other hair file by tractrix-convert; `units`: its --unit and --up."""
+    here = os.path.dirname(os.path.abspath(__file__))
+    beside = os.pathsep.join(os.path.join(here, *folder) for folder in (("..", "out", "release"), ("..", "..", "bin")))
+    name = "tractrix-convert"
+    program = os.environ.get("TRACTRIX_CONVERT") or shutil.which(name) or shutil.which(name, path=beside)
     if not program:
         raise HairError(f"{path}: tractrix-convert is needed to read it: expected it on the PATH, or its name in TRACTRIX_CONVERT", FAILED)
     with tempfile.TemporaryDirectory() as folder:
         usda = os.path.join(folder, "hair.usda")
-        done = subprocess.run([program, path, "-o", usda], capture_output=True, text=True, check=False)
-        for line in done.stderr.splitlines()[-1:] if done.returncode else []:
-            raise HairError(line.removeprefix("tractrix-convert: "), done.returncode)
+        done = subprocess.run([program, path, *units, "-o", usda], capture_output=True, text=True, check=False)
+        lines = [line.removeprefix("tractrix-convert: ") for line in done.stderr.splitlines()]
+        if done.returncode:
+            raise HairError(lines[-1] if lines else f"{path}: tractrix-convert failed", done.returncode)
+        for line in lines:
+            say(line)
         return read_usda(usda)
 
 
@@ -781,11 +787,14 @@ def light_keys(context) -> dict:
     """The scene file's members that say what shines: lights, sky, ground, background, exposure, tones."""
     scene = context.scene
     lamps = [o for o in context.view_layer.objects if o.type == "LIGHT" and o.visible_get() and o.data.energy > 0]
+    radiance = world_radiance(scene)
+    if not lamps and max(radiance) <= 0:
+        say("the scene has no light: Tractrix's own lights shine")
+        return {}
     if len(lamps) > MAX_LIGHTS:
         say(f"{len(lamps)} lights: the strongest {MAX_LIGHTS} are kept")
     lights = [light_of(o, unit_of(scene)) for o in lamps]
     lights.sort(key=lambda light: (light["type"] != "directional", -light["intensity"]))
-    radiance = world_radiance(scene)
     if max(radiance) > 1:
         say(f"world: {max(radiance):.3g} is brighter than white: it becomes white")
     view = scene.view_settings
@@ -1012,7 +1021,7 @@ def set_rate(scene, fps: float) -> None:
     scene.render.fps_base = scene.render.fps / fps
 
 
-def import_hair(context, path: str, scale: float = 1.0):
+def import_hair(context, path: str, scale: float = 1.0, units: tuple = ()) -> None:
     """Imports the strands of `path` with their frames. Binary USD and `.abc` go to Blender's importers where it has them."""
     kind = os.path.splitext(path)[1].lower()
     if not os.path.exists(path) and "%" not in path:
@@ -1022,7 +1031,7 @@ def import_hair(context, path: str, scale: float = 1.0):
     if kind in (".usd", ".usdc", ".usdz"):
         raise HairError(f"{path}: this Blender was built without USD: expected .usda (usdcat x.usdc -o x.usda)", FAILED)
     readers = {".npz": read_npz, ".usda": read_usda, ".abc": lambda name: read_alembic(name, scale)}
-    hair = readers.get(kind, convert_hair)(path)
+    hair = readers[kind](path) if kind in readers else convert_hair(path, units)
     obj = new_curves(context, os.path.splitext(os.path.basename(path))[0], hair)
     if hair.frames is not None:
         animate(context, obj, hair)
@@ -1238,6 +1247,8 @@ def parser() -> Parser:
     back = commands.add_parser("import", help="hair and scene files into Blender")
     back.add_argument("input", nargs="?", default="", help=".npz, .usda, .abc, .cache, x_%%04d.tfx or any hair file")
     back.add_argument("--scene", default="", metavar="x.json", help="camera, lights and mesh of a scene file of Tractrix")
+    back.add_argument("--unit", default="", help="of hair files that do not say theirs: m, cm, mm, in or metres")
+    back.add_argument("--up", choices=("y", "z"), help="axis that points up in such files")
     back.add_argument("--scale", type=float, default=1.0, metavar="M", help="metres of one unit of an .abc or binary USD file")
     back.add_argument("-o", "--output", default="", help="x.blend; x.abc or x.usd where Blender was built with them")
     return top
@@ -1297,7 +1308,8 @@ def run_import(words: argparse.Namespace) -> None:
     if words.scene:
         import_scene(bpy.context, words.scene)
     if words.input:
-        import_hair(bpy.context, words.input, words.scale)
+        given = (("--unit", words.unit), ("--up", words.up))
+        import_hair(bpy.context, words.input, words.scale, tuple(part for pair in given if pair[1] for part in pair))
     if words.output:
         save(words.output)
 

@@ -392,6 +392,8 @@ def round_trip():
         source = np.frombuffer(file.read()[160:], "<f4", 300 * 48 * 4).reshape(300, 48, 4)[::10, :, :3]
     error = np.abs(place - source).max()
     check("the .abc file's strands are those of assets/curls.tfx, which it was made from", error < 1e-5 and uv.shape == (30, 2), error)
+    with open(path("groom.json"), encoding="utf-8") as file:
+        check("a scene without light and camera leaves both to Tractrix", not {"lights", "sky", "eye"} & set(json.load(file)))
     tractrix("tractrix-render", path("groom.json"), "--drag", "3", "-q", "--export", path("sim.usda"))
     empty()
     check("the simulation is imported", hair.main(["import", path("sim.usda"), "-o", path("sim.blend")]) == 0)
