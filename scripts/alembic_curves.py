@@ -365,13 +365,13 @@ def looks(archive: Archive, own: dict, sizes: np.ndarray) -> dict:
     return {"uv": uv, "radius": width}
 
 
+@np.errstate(all="ignore")  # what is not finite is refused
 def read(path: str, scale: float = 1.0) -> dict:
     """All curves of a file: points (V, 3) and, with several samples, frames (F, V, 3) in metres, y up; sizes (S,); uv (S, 2) and
     radius (V,) or None; fps. `scale`: metres of one unit. Raises AlembicError."""
     try:
         archive = Archive(path)
-        with np.errstate(all="ignore"):
-            parts = [curves_of(archive, node) for node in walk(archive)]
+        parts = [curves_of(archive, node) for node in walk(archive)]
     except OSError as error:
         raise AlembicError(f"{path}: {error.strerror}") from None
     except (ValueError, IndexError, struct.error, MemoryError) as error:
@@ -383,9 +383,9 @@ def read(path: str, scale: float = 1.0) -> dict:
     if any(len(p["frames"]) not in (1, count) for p in parts):
         raise AlembicError(f"{path}: curves of different numbers of samples: expected the same for all that move")
     frames = np.concatenate([np.broadcast_to(p["frames"], (count, *p["frames"].shape[1:])) for p in parts], 1)
+    frames = (frames * scale).astype(np.float32)
     if not np.isfinite(frames).all():
         raise AlembicError(f"{path}: positions that are not finite: expected numbers")
-    frames = (frames * scale).astype(np.float32)
     result = {"points": frames[0], "sizes": np.concatenate([p["sizes"] for p in parts]).astype(np.int32)}
     for name, factor in (("uv", 1.0), ("radius", scale)):
         values = [p[name] for p in parts]

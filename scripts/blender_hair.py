@@ -432,22 +432,63 @@ def attribute_of(data, name: str, member: str, width: int) -> Optional[np.ndarra
     return column(found.data, member, width) if found and len(found.data) else None
 
 
-def curves_piece(obj, depsgraph) -> Optional[Piece]:
-    """The strands of a Curves object after its modifiers."""
-    evaluated = obj.evaluated_get(depsgraph)
-    data = evaluated.data
+def curves_piece(obj, context) -> Optional[Piece]:
+    """The strands of a Curves object after its modifiers: points of poly and Catmull-Rom curves, others as they are drawn."""
+    depsgraph = context.evaluated_depsgraph_get()
+    data = obj.evaluated_get(depsgraph).data
     if len(data.curves) == 0:
         return None
     types = attribute_of(data, "curve_type", "value", 1) if "curve_type" in data.attributes else None
-    if types is not None and (types > POLY_CURVE).any():
-        raise HairError(f"object '{obj.name}': Bezier or NURBS curves: expected poly or Catmull-Rom curves (Curve > Set Curve Type)")
+    if types is None or (types <= POLY_CURVE).all():
+        return points_of_curves(obj, obj.evaluated_get(depsgraph))
+    modifier = obj.modifiers.new("Tractrix lines", "NODES")
+    modifier.node_group = tree = drawn_curves()
+    try:
+        context.view_layer.update()
+        return points_of_curves(obj, obj.evaluated_get(context.evaluated_depsgraph_get()))
+    finally:
+        obj.modifiers.remove(modifier)
+        bpy.data.node_groups.remove(tree)
+
+
+def points_of_curves(obj, evaluated) -> Piece:
+    """The control points of an evaluated Curves object with their attributes."""
+    data = evaluated.data
     return Piece(
-        obj.name, into_world(evaluated, column(data.position_data, "vector", 3)),
+        obj.name,
+        into_world(evaluated, column(data.position_data, "vector", 3)),
         column(data.curves, "points_length", 1, np.int32),
         attribute_of(data, "surface_uv_coordinate", "vector", 2),
-        attribute_of(data, "radius", "value", 1), attribute_of(data, "color", "color", 4),
-        obj.data.surface, obj.active_material,
-    )  # fmt: skip
+        attribute_of(data, "radius", "value", 1),
+        attribute_of(data, "color", "color", 4),
+        obj.data.surface,
+        obj.active_material,
+    )
+
+
+def drawn_curves():
+    """A node group that makes poly curves of all curves, with the points that Blender draws them by."""
+    tree = geometry_tree("Tractrix lines")
+    begin, end, lines = (tree.nodes.new(kind) for kind in ("NodeGroupInput", "NodeGroupOutput", "GeometryNodeResampleCurve"))
+    if hasattr(lines, "mode"):
+        lines.mode = "EVALUATED"
+    else:  # Blender 5
+        lines.inputs["Mode"].default_value = "Evaluated"
+    tree.links.new(begin.outputs[0], lines.inputs["Curve"])
+    tree.links.new(lines.outputs[0], end.inputs[0])
+    return tree
+
+
+def geometry_tree(name: str):
+    """An empty node group from geometry to geometry."""
+    tree = bpy.data.node_groups.new(name, "GeometryNodeTree")
+    if hasattr(tree, "interface"):  # Blender 4
+        tree.interface.new_socket("Geometry", in_out="INPUT", socket_type="NodeSocketGeometry")
+        tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
+    else:
+        tree.inputs.new("NodeSocketGeometry", "Geometry")
+        tree.outputs.new("NodeSocketGeometry", "Geometry")
+    return tree
 
 
 def spline_piece(obj, depsgraph) -> Optional[Piece]:
@@ -544,7 +585,7 @@ def gather(context, objects: list, children: str) -> list:
     pieces = []
     for obj in objects:
         if obj.type == "CURVES":
-            pieces.append(curves_piece(obj, depsgraph))
+            pieces.append(curves_piece(obj, context))
         elif obj.type == "CURVE":
             pieces.append(spline_piece(obj, depsgraph))
         else:
@@ -993,13 +1034,7 @@ def animate(context, obj, hair: Hair) -> None:
 
 def take_positions(obj, carrier) -> None:
     """A node modifier that moves the points of `obj` to the vertices of `carrier`, index by index."""
-    tree = bpy.data.node_groups.new(carrier.name, "GeometryNodeTree")
-    if hasattr(tree, "interface"):  # Blender 4
-        tree.interface.new_socket("Geometry", in_out="INPUT", socket_type="NodeSocketGeometry")
-        tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
-    else:
-        tree.inputs.new("NodeSocketGeometry", "Geometry")
-        tree.outputs.new("NodeSocketGeometry", "Geometry")
+    tree = geometry_tree(carrier.name)
     kinds = ("NodeGroupInput", "NodeGroupOutput", "GeometryNodeObjectInfo", "GeometryNodeInputPosition",
              "GeometryNodeInputIndex", "GeometryNodeSampleIndex", "GeometryNodeSetPosition")  # fmt: skip
     begin, end, info, position, index, sample, move = (tree.nodes.new(kind) for kind in kinds)

@@ -141,6 +141,34 @@ def curves_object():
 
 
 @step
+def cubic_curves():
+    """NURBS of a Curves object are the lines that Blender draws."""
+    empty()
+    old = bpy.data.curves.new("old", "CURVE")
+    old.dimensions = "3D"
+    spline = old.splines.new("NURBS")
+    spline.points.add(4)
+    spline.points.foreach_set("co", np.c_[np.random.default_rng(2).random((5, 3)), np.ones(5)].ravel())
+    spline.order_u, spline.use_endpoint_u = 4, True
+    obj = bpy.data.objects.new("old", old)
+    bpy.context.scene.collection.objects.link(obj)
+    bpy.context.view_layer.objects.active = obj
+    obj.select_set(True)
+    export("-o", path("nurbs_old.npz"))
+    bpy.ops.object.convert(target="CURVES")
+    check("the curve is a Curves object", bpy.context.object.type == "CURVES")
+    export("-o", path("nurbs.npz"))
+    wanted, got = hair.read_npz(path("nurbs_old.npz")), hair.read_npz(path("nurbs.npz"))
+    check("more points than the NURBS has", len(got.points) > 5, len(got.points))
+    check(
+        "they are those of the old curve",
+        got.points.shape == wanted.points.shape and np.allclose(got.points, wanted.points, atol=1e-6),
+        (got.points, wanted.points),
+    )
+    check("the object is as it was", not bpy.context.object.modifiers and not bpy.data.node_groups)
+
+
+@step
 def units_and_axes():
     """Blender's z up and unit become y up and metres; an object's own transform counts."""
     empty()
