@@ -859,8 +859,8 @@ def world_radiance(scene) -> list:
     return [c * node.inputs["Strength"].default_value for c in list(node.inputs["Color"].default_value)[:3]]
 
 
-def color_keys(material) -> dict:
-    """A section's colour from a Principled Hair or Principled material, {} if it has none."""
+def color_keys(material, folder: str) -> dict:
+    """A section's colour or map, relative to `folder`, from a Principled Hair or Principled material; {} if it has none."""
     nodes = material.node_tree.nodes if material and material.use_nodes else []
     for node in nodes:
         if node.type == "BSDF_HAIR_PRINCIPLED" and node.parametrization == "MELANIN":
@@ -870,8 +870,19 @@ def color_keys(material) -> dict:
             return {"melanin": round(pigment * 0.506 / 0.419, 6), "melanin_redness": round(redness, 6)}
         if node.type in ("BSDF_HAIR_PRINCIPLED", "BSDF_PRINCIPLED"):
             entry = node.inputs.get("Color") or node.inputs.get("Base Color")
-            if entry and not entry.is_linked:
+            if entry and entry.is_linked:
+                return map_keys(entry.links[0].from_node, material, folder)
+            if entry:
                 return {"albedo": srgb(entry.default_value)}
+    return {}
+
+
+def map_keys(node, material, folder: str) -> dict:
+    """`color_map` of an image texture that is a PNG file; anything else is left out with a warning."""
+    name = bpy.path.abspath(node.image.filepath) if node.type == "TEX_IMAGE" and node.image else ""
+    if name.lower().endswith(".png") and os.path.exists(name):
+        return {"color_map": os.path.relpath(name, folder)}
+    say(f"material '{material.name}': its colour is left out: expected a plain one, or an image texture of a PNG file")
     return {}
 
 
@@ -884,7 +895,7 @@ def scene_members(context, options: ExportOptions, hair: Hair, pieces: list, hea
         roots, tips = hair.radius[hair.first], hair.radius[hair.first + hair.sizes - 1]
         section["radius"] = round(max(float(roots.mean()), 1e-7), 9)
         section["tip_ratio"] = round(min(float(tips.mean() / max(roots.mean(), 1e-12)), 1), 6)
-    section.update(color_keys(pieces[0].material))
+    section.update(color_keys(pieces[0].material, folder))
     share = render.resolution_percentage / 100
     members = {
         "size": [max(int(render.resolution_x * share), 1), max(int(render.resolution_y * share), 1)],
@@ -894,7 +905,7 @@ def scene_members(context, options: ExportOptions, hair: Hair, pieces: list, hea
         members["frames"] = options.frames[1] - options.frames[0] + 1
     if options.mesh:
         members.update(mesh=os.path.relpath(options.mesh, folder), mesh_unit="m", mesh_up="y")
-        skin = color_keys(head_meshes(context, options, pieces)[0].active_material)
+        skin = color_keys(head_meshes(context, options, pieces)[0].active_material, folder)
         if "albedo" in skin:
             members["mesh_color"] = skin["albedo"]
     if head:

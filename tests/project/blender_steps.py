@@ -369,6 +369,40 @@ def scene_back():
 
 
 @step
+def materials():
+    """Melanin, a plain colour, or a map of the hair's material become the section's."""
+    for kind, member, wanted in (
+        ("ShaderNodeBsdfHairPrincipled", "melanin", -math.log(0.5) * 0.506 / 0.419),
+        ("ShaderNodeBsdfPrincipled", "albedo", [hair.srgb([0.2])[0], hair.srgb([0.1])[0], hair.srgb([0.05])[0]]),
+        ("ShaderNodeTexImage", "color_map", "map.png"),
+    ):
+        empty()
+        obj = hair.new_curves(bpy.context, "hair", some_hair())
+        material = bpy.data.materials.new("hair")
+        material.use_nodes = True
+        nodes = material.node_tree.nodes
+        nodes.clear()
+        shader = nodes.new(kind if "Bsdf" in kind else "ShaderNodeBsdfPrincipled")
+        if member == "melanin":
+            shader.parametrization, shader.inputs["Melanin"].default_value = "MELANIN", 0.5
+        elif member == "albedo":
+            shader.inputs["Base Color"].default_value = (0.2, 0.1, 0.05, 1)
+        else:
+            texture = nodes.new(kind)
+            texture.image = bpy.data.images.new("map", 4, 4)
+            texture.image.filepath_raw, texture.image.file_format = path("map.png"), "PNG"
+            texture.image.save()
+            material.node_tree.links.new(texture.outputs[0], shader.inputs["Base Color"])
+        obj.data.materials.append(material)
+        export("-o", path("material.tfx"), "--scene", path("material.json"))
+        with open(path("material.json"), encoding="utf-8") as file:
+            got = json.load(file)["sections"][0].get(member)
+        same = got == wanted if isinstance(wanted, str) else got is not None and np.allclose(got, wanted, atol=1e-5)
+        check(f"{member} of the material", same, (got, wanted))
+    tractrix("tractrix-render", path("material.json"), "-q", "--frames", "1", "--size", "40x30", "-o", path("material.png"))
+
+
+@step
 def light_units():
     """A white matt plane in Cycles shows what the scene file's intensity says."""
     if not hasattr(bpy.types, "CyclesRenderSettings") and "cycles" not in bpy.context.preferences.addons:
