@@ -404,7 +404,7 @@ def arrays(hair: dict) -> dict:
     if hair["frames"] is not None:
         made["frames"] = hair["frames"].reshape(-1, *shape) if even else hair["frames"]
     made.update({name: hair[name] for name in ("uv", "radius") if hair[name] is not None})
-    return {**made, "fps": np.float32(hair["fps"])}
+    return {**made, "fps": np.float32(hair["fps"]), "unit": np.float32(1), "up": np.array("y")}
 
 
 def main() -> int:

@@ -156,7 +156,7 @@ def tfx_text(hair: Hair) -> str:
 
 def npz_arrays(hair: Hair) -> dict:
     """The arrays of a `.npz` file: `positions` (S, P, 3) or `points` and `sizes`, and what else `hair` has."""
-    arrays = {"fps": np.float32(hair.fps)}
+    arrays = {"fps": np.float32(hair.fps), "unit": np.float32(1), "up": np.array("y")}
     if hair.even:
         shape = (len(hair.sizes), int(hair.sizes[0]), 3)
         arrays["positions"] = hair.points.reshape(shape)
@@ -219,6 +219,18 @@ def read_npz(path: str) -> Hair:
         if data["frames"].size % hair.points.size:
             raise HairError(f"{path}: `frames` has shape {data['frames'].shape}: expected all points of each frame")
         hair.frames = data["frames"].reshape(-1, len(hair.points), 3).astype(np.float32)
+    return in_metres(hair, float(data.get("unit", 1)), str(data.get("up", "y")) == "z")
+
+
+def in_metres(hair: Hair, unit: float, up_z: bool) -> Hair:
+    """`hair` whose file has another unit or axis, in metres with y up; changed in place."""
+    for name in ("points", "frames", "radius"):
+        values = getattr(hair, name)
+        if values is not None and unit != 1:
+            values = values * np.float32(unit)
+        if values is not None and up_z and name != "radius":
+            values = to_y_up(values)
+        setattr(hair, name, values)
     return hair
 
 
@@ -249,17 +261,14 @@ def read_usda(path: str) -> Hair:
         raise HairError(f"{path}: points do not fit the numbers of vertices: expected 3 numbers a vertex")
     frames = np.stack(values).reshape(len(values), -1, 3)
     unit = re.search(r"metersPerUnit = ([\d.eE+-]+)", text)
-    frames *= np.float32(unit[1]) if unit else np.float32(0.01)
-    if 'upAxis = "Z"' in text:
-        frames = to_y_up(frames)
     rate = re.search(r"timeCodesPerSecond = ([\d.eE+-]+)", text)
     uv, width = array("primvars:st"), array("widths")
-    return Hair(
-        frames[0], sizes,
-        uv.reshape(-1, 2) if uv is not None and len(uv) == 2 * len(sizes) else None,
-        width * np.float32(0.5 * (float(unit[1]) if unit else 0.01)) if width is not None and len(width) == len(frames[0]) else None,
-        frames=frames if len(frames) > 1 else None, fps=float(rate[1]) if rate else 24.0,
-    )  # fmt: skip
+    hair = Hair(frames[0], sizes, frames=frames if len(frames) > 1 else None, fps=float(rate[1]) if rate else 24.0)
+    if uv is not None and len(uv) == 2 * len(sizes):
+        hair.uv = uv.reshape(-1, 2)
+    if width is not None and len(width) == len(hair.points):
+        hair.radius = width / 2
+    return in_metres(hair, float(unit[1]) if unit else 0.01, 'upAxis = "Z"' in text)
 
 
 def convert_hair(path: str, units: tuple = ()) -> Hair:

@@ -126,7 +126,13 @@ def curves_object():
             check(f"{name} of a Curves object, ragged {ragged}", same, getattr(got, name))
     with np.load(path("curves.npz")) as file:
         names = set(file.files)
-    check("ragged .npz has points and sizes", {"points", "sizes", "uv", "radius", "color", "fps"} == names, names)
+    check("ragged .npz has points and sizes", {"points", "sizes", "uv", "radius", "color", "fps", "unit", "up"} == names, names)
+    with np.load(path("curves.npz")) as file:
+        np.savez(path("centimetres.npz"), **{**file, "unit": np.float32(0.01), "up": np.array("z")})
+    got = hair.read_npz(path("centimetres.npz"))
+    check(
+        "unit and axis of .npz", np.allclose(got.points, hair.to_y_up(given.points) * 0.01) and np.allclose(got.radius, given.radius * 0.01)
+    )
     export("-o", path("ragged.tfx"))
     with open(path("ragged.tfx"), encoding="ascii") as file:
         check("ragged .tfx is text", file.readline() == "numStrands 6\n")
