@@ -66,6 +66,18 @@ rm -r "$work/goldens"
 goldens 1 --update; says "plain.png: missing"; says "1 reference updated"; says 'odd: did not render: $(touch: No such file'; none "$work/harm"
 is_png "$work/goldens/plain.png"
 
+claim "without the programs it says what it expected, and an interruption is status 130"
+TRACTRIX_BIN=$work
+goldens 1; one_line; says "no tractrix-render in $work"
+TRACTRIX_BIN=$(realpath "$bin")
+printf 'long_%%d assets/curls.tfx --algo none --followers 0 --look plain --size 48x36 --frames 100000\nafter %s\n' "$small" >"$work/list"
+for signal in INT TERM; do
+    timeout --preserve-status -s $signal 1 "$program" "$work/list" "$work/goldens" "$work/result" >"$work/out" 2>"$work/err"
+    status=$?
+    if [ $status = 130 ]; then good; else bad "exit status $status after SIG$signal"; fi
+    silent out; none "$work/result/frames/after.png"; none "$work/result/report.json"
+done
+
 claim "it works from a folder with blanks and with programs from PATH"
 printf 'plain %s\n' "$small" >"$work/two words"
 run 0 "$work/two words" "$work/golden images/" "$work/new images/" --update
