@@ -184,6 +184,7 @@ typedef struct Work {
     size_t next; // pair to be taken
     pthread_mutex_t lock;
     pthread_cond_t changed;
+    Mask mask; // of all pairs; empty: none
     time_t started;
     double start_ms;
 } Work;
@@ -211,6 +212,7 @@ static void judge(Work *work, size_t i)
                               .sheet = sheet,
                               .draw_same = !work->list->many,
                               .update = command->update,
+                              .mask = work->mask.nearest ? &work->mask : NULL,
                               .map = work->pages ? &work->pages[i].map : NULL};
     if (work->pages) html_pair_read(&work->pages[i], pair);
     verdict_find(&work->verdicts[i], pair, &options);
@@ -334,24 +336,27 @@ static Result conclude(Work *work, Error *error)
     return result;
 }
 
-// One mask for all is tried before the images, so that a wrong one is named once.
-static Result check_mask(const Command *command, Error *error)
+// One mask for all is read before the images, once, so that a wrong one is named once.
+static Result read_mask(Mask *mask, const Command *command, Error *error)
 {
-    Mask mask;
+    *mask = (Mask){0};
     struct stat status;
     if (!command->mask || stat(command->mask, &status) != 0 || S_ISDIR(status.st_mode))
         return RESULT_OK; // its place is looked at with those of the images
-    TRY(mask_read(&mask, command->mask, error));
-    mask_destroy(&mask);
-    return RESULT_OK;
+    return mask_read(mask, command->mask, error);
 }
 
 static Result run(const Command *command, Error *error)
 {
-    PairList list;
+    PairList list = {0};
+    Mask mask;
     PairOptions options = {command->update, command->mask, command->unrendered};
-    TRY(check_mask(command, error));
-    TRY(pairs_find(&list, command->a, command->b, &options, error));
+    TRY(read_mask(&mask, command, error));
+    Result found = pairs_find(&list, command->a, command->b, &options, error);
+    if (found != RESULT_OK) {
+        mask_destroy(&mask);
+        return found;
+    }
     Work work = {.command = command,
                  .list = &list,
                  .verdicts = calloc(list.count, sizeof *work.verdicts),
@@ -359,6 +364,7 @@ static Result run(const Command *command, Error *error)
                  .pages = command->html ? calloc(list.count, sizeof *work.pages) : NULL,
                  .lock = PTHREAD_MUTEX_INITIALIZER,
                  .changed = PTHREAD_COND_INITIALIZER,
+                 .mask = mask,
                  .started = time(NULL),
                  .start_ms = clock_ms()};
     bool room = work.verdicts && work.ready && (work.pages || !command->html);
@@ -374,6 +380,7 @@ static Result run(const Command *command, Error *error)
     free(work.verdicts);
     free(work.ready);
     pairs_destroy(&list);
+    mask_destroy(&work.mask);
     return result;
 }
 

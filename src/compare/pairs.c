@@ -154,11 +154,12 @@ static Result list_side(PairList *list, const Side sides[2], int from, Error *er
 
 // --- Images that could not be made.
 
+// Whether the pair has this name, or a number in it.
 static bool is_of(const Side *named, const Pair *pair)
 {
     int frame;
-    return named->target.kind == TARGET_FRAMES ? read_number(named, pair->name, &frame)
-                                               : strcmp(named->target.before, pair->name) == 0;
+    return named->kind == KIND_PATTERN ? read_number(named, pair->name, &frame)
+                                       : strcmp(named->text, pair->name) == 0;
 }
 
 static Result give_reason(Pair *pair, const char *reason, Error *error)
@@ -171,8 +172,10 @@ static Result give_reason(Pair *pair, const char *reason, Error *error)
 static Result add_unrendered(PairList *list, const Side sides[2], const char *name,
                              const char *reason, Error *error)
 {
-    Side named = {.text = name, .kind = KIND_PATTERN};
-    TRY(target_parse_any(&named.target, name, error));
+    Side named = {.text = name, .kind = KIND_FILE};
+    if (target_parse_any(&named.target, name, NULL) == RESULT_OK &&
+        named.target.kind == TARGET_FRAMES)
+        named.kind = KIND_PATTERN;
     Result result = RESULT_OK;
     bool found = false;
     for (size_t i = 0; i < list->count && result == RESULT_OK; ++i) {

@@ -79,36 +79,41 @@ static Result measure(Verdict *verdict, float *map, const Image *a, const Image 
     return draw(&verdict->sheet, options->sheet, true, a, b, map, error);
 }
 
-// An empty mask where the pair has none.
-static Result read_mask(Mask *mask, const Pair *pair, const Image *a, Error *error)
+// NULL where the pair has none. `own` is to be destroyed.
+static Result read_mask(Mask *own, const Mask **mask, const Pair *pair, const Image *a,
+                        const VerdictOptions *options, Error *error)
 {
-    *mask = (Mask){0};
+    *mask = options->mask;
     if (!pair->mask) return RESULT_OK;
-    TRY(mask_read(mask, pair->mask, error));
-    if (mask->width == a->width && mask->height == a->height) return RESULT_OK;
-    error_set(error, RESULT_OK, "%s: a mask of %d x %d pixels: expected %d x %d as %s has",
-              pair->mask, mask->width, mask->height, a->width, a->height, pair->a);
-    mask_destroy(mask);
-    return RESULT_BAD_INPUT;
+    if (!*mask) {
+        TRY(mask_read(own, pair->mask, error));
+        *mask = own;
+    }
+    if ((*mask)->width == a->width && (*mask)->height == a->height) return RESULT_OK;
+    return error_set(error, RESULT_BAD_INPUT,
+                     "%s: a mask of %d x %d pixels: expected %d x %d as %s has", pair->mask,
+                     (*mask)->width, (*mask)->height, a->width, a->height, pair->a);
 }
 
 static void measure_all(Verdict *verdict, const Pair *pair, const Image *a, const Image *b,
                         const VerdictOptions *options)
 {
-    Mask mask;
+    Mask own = {0};
+    const Mask *mask;
+    float *map = NULL;
     Error error = {{0}};
-    Result result = read_mask(&mask, pair, a, &error);
+    Result result = read_mask(&own, &mask, pair, a, options, &error);
     if (result != RESULT_OK) {
         set_unreadable(verdict, result, &error);
         verdict->mask_is_wrong = true;
-        return;
+    } else {
+        map = malloc((size_t)a->width * (size_t)a->height * sizeof *map);
+        result = map ? measure(verdict, map, a, b, mask, options, &error)
+                     : error_set(&error, RESULT_FAILED, "no memory for a map");
+        if (result != RESULT_OK) set_outcome(verdict, OUTCOME_FAILED, &error);
     }
-    float *map = malloc((size_t)a->width * (size_t)a->height * sizeof *map);
-    result = map ? measure(verdict, map, a, b, mask.nearest ? &mask : NULL, options, &error)
-                 : error_set(&error, RESULT_FAILED, "no memory for a map");
-    if (result != RESULT_OK) set_outcome(verdict, OUTCOME_FAILED, &error);
     free(map);
-    mask_destroy(&mask);
+    mask_destroy(&own);
 }
 
 static void compare_with(Verdict *verdict, const Pair *pair, const Image *b,

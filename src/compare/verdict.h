@@ -38,6 +38,7 @@ typedef struct VerdictOptions {
     const char *heat_map, *sheet; // file to write for this pair; NULL: none
     bool draw_same;               // not only for those that differ
     bool update;                  // copy B over A unless they are the same
+    const Mask *mask;             // that of all pairs, already read; NULL: read each pair's
     Bytes *map;                   // takes the heat map as PNG if a pixel differs; NULL: none
 } VerdictOptions;
 

@@ -145,6 +145,8 @@ in_file "$work/report.xml" '<error type="unrendered" message="the disk is full">
 printf 'f_%%d.pfm: cut off\n' >"$work/lines"
 run 1 "$work/a" "$work/b" --unrendered "$work/lines" --update; says "f_1.pfm: same"; says "f_2.pfm: unrendered: cut off"; says "2 images: 1 same, 1 unrendered"
 run 1 "$work/masks/none" "$work/b" --unrendered "$work/lines" --update; says "2 images: 1 missing, 1 unrendered; 1 reference updated"
+printf 'a%%%%b%%.png: odd\n' >"$work/lines"
+run 1 "$work/a" "$work/b" --unrendered "$work/lines"; says "a%%b%.png: unrendered: odd"; says "f_2.pfm: missing"
 printf 'nothing\n' >"$work/lines"
 run 3 "$work/a" "$work/b" --unrendered "$work/lines"; one_line; says "got 'nothing', expected NAME: REASON"
 run 2 $a $b --unrendered "$work/lines"; one_line; says "is for folders"
