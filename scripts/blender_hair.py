@@ -931,7 +931,11 @@ def moving_head(roots: Optional[np.ndarray], options: ExportOptions, fps: float)
     """The head's track if the roots move, and as a rigid body; reports the residual."""
     if roots is None or np.abs(roots - roots[0]).max() <= 1e-7:
         return None
-    head, (residual, frame) = head_track(roots, fps)
+    try:
+        head, (residual, frame) = head_track(roots, fps)
+    except HairError as error:
+        say(f"{error}: no head is written")
+        return None
     place = f"frame {options.frames[0] + frame}"
     if residual > options.tolerance:
         say(f"{place}: roots are {residual:.3g} m off a rigid motion, more than {options.tolerance:g} m: no head is written")
@@ -1249,6 +1253,8 @@ def import_scene(context, path: str) -> None:
     scene.frame_end = scene.frame_start + count - 1
     times = np.arange(count) / fps * float(members.get("speed", 1))
     place_camera(context, members, times)
+    if "lights" not in members:
+        say("the scene file leaves the lights to Tractrix: none are made")
     for number, light in enumerate(members.get("lights", [])):
         place_light(context, light, number)
     if "mesh" in members:

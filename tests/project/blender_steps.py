@@ -274,6 +274,13 @@ def rigid_head():
     export("--frames", "scene", "-o", path("soft.tfx"), "--scene", path("soft.json"))
     with open(path("soft.json"), encoding="utf-8") as file:
         check("a head that stretches is not written", "head" not in json.load(file))
+    hair_of_one = hair.new_curves(bpy.context, "one", some_hair(strands=1))
+    hair_of_one.keyframe_insert("location", frame=1)
+    hair_of_one.location = (1, 0, 0)
+    hair_of_one.keyframe_insert("location", frame=9)
+    export("--frames", "scene", "--objects", "one", "-o", path("one.tfx"), "--scene", path("one.json"))
+    with open(path("one.json"), encoding="utf-8") as file:
+        check("the head of a single root is not written", "head" not in json.load(file))
     check("no rotation without three roots", raises(lambda: hair.fit_rigid(np.zeros((2, 3)), np.zeros((2, 3)))))
 
 
@@ -480,6 +487,10 @@ def round_trip():
     check("a cache is imported", hair.main(["import", path("sim.cache")]) == 0)
     export("--frames", "scene", "-o", path("cache.npz"))
     check("a cache holds the same", np.array_equal(hair.read_npz(path("cache.npz")).frames, got.frames))
+    tractrix("tractrix-render", path("groom.json"), "--from-cache", path("sim.cache"), "--drag", "3", "-q", "--export", path("n_%04d.tfx"))
+    check("numbered files are imported", hair.main(["import", path("n_%04d.tfx"), "--unit", "m"]) == 0)
+    export("--frames", "scene", "-o", path("numbered.npz"))
+    check("numbered files hold the same", np.array_equal(hair.read_npz(path("numbered.npz")).frames, got.frames))
 
 
 @step
