@@ -18,9 +18,10 @@ ifeq ($(filter $(CONFIG),release debug sanitize),)
 $(error CONFIG=$(CONFIG): expected release, debug or sanitize)
 endif
 
-# --- Flags. stb is used by its headers alone; its pkg-config file would link a library that nothing here needs.
+# --- Flags. stb is used by its headers alone; its pkg-config file would link a library that nothing here needs. Of
+# OpenEXR the C core is used, its libraries of C++ are not.
 LIBRARIES := epoxy egl libdeflate libpng jansson muparser
-HEADERS   := cglm stb
+HEADERS   := cglm stb OpenEXR
 MISSING   := $(shell for p in $(LIBRARIES) $(HEADERS); do pkg-config --exists $$p || echo $$p; done 2>/dev/null)
 
 OPTIMISE_release  := -O2 -DNDEBUG
@@ -36,7 +37,7 @@ INCLUDES  := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(LIBRARIES) 
 C_FLAGS   := -std=c11 -D_GNU_SOURCE -I. -Isrc -Iglsl -I$(OUT) $(INCLUDES) $(WARNINGS) -ffp-contract=off -pthread \
              $(OPTIMISE_$(CONFIG)) $(SANITIZE_$(CONFIG)) $(CPPFLAGS) $(CFLAGS)
 LD_FLAGS  := -pthread -Wl,--as-needed $(SANITIZE_$(CONFIG)) $(LINKER_$(CONFIG)) $(LDFLAGS)
-LD_LIBS   := $(shell pkg-config --libs $(LIBRARIES) 2>/dev/null) -ldl -lm $(LDLIBS)
+LD_LIBS   := $(shell pkg-config --libs $(LIBRARIES) 2>/dev/null) $(filter -L% -lOpenEXRCore%,$(shell pkg-config --libs OpenEXR 2>/dev/null)) -ldl -lm $(LDLIBS)
 
 # --- Files, in the rooms of src/, glsl/ and tests/. Every src/<room>/main_<x>.c is the program tractrix-<x>, every
 # tests/<room>/test_<x>.c a program of its own; the tests share tests/support/.

@@ -10,6 +10,18 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+bool outfile_is_stdout(const char *path)
+{
+    return strcmp(path, "-") == 0;
+}
+
+Result outfile_refuse_terminal(const char *path, Error *error)
+{
+    if (!outfile_is_stdout(path) || !isatty(STDOUT_FILENO)) return RESULT_OK;
+    return error_set(error, RESULT_USAGE,
+                     "standard output is a terminal: expected a pipe or a file for binary data");
+}
+
 static Result fail_to_write(const char *path, int reason, Error *error)
 {
     return error_set(error, RESULT_FAILED, "%s: cannot write: %s", path, strerror(reason));
@@ -20,6 +32,7 @@ static Result fail_to_write(const char *path, int reason, Error *error)
 static char *resolve_name(const char *path)
 {
     struct stat status;
+    if (outfile_is_stdout(path)) return strdup("standard output");
     bool is_link = lstat(path, &status) == 0 && S_ISLNK(status.st_mode);
     char *target = is_link ? realpath(path, NULL) : NULL;
     return target ? target : strdup(path);
@@ -84,7 +97,9 @@ Result outfile_open(OutFile *file, const char *path, Error *error)
     *file = (OutFile){0};
     file->path = resolve_name(path);
     if (!file->path) return fail_to_write(path, ENOMEM, error);
-    int descriptor = open_descriptor(file);
+    bool to_stdout = outfile_is_stdout(path);
+    if (to_stdout) fflush(stdout);
+    int descriptor = to_stdout ? fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0) : open_descriptor(file);
     int reason = errno;
     if (descriptor >= 0) {
         file->stream = fdopen(descriptor, "wb");

@@ -6,6 +6,7 @@
 #include "base/leftovers.h"
 
 #include <limits.h>
+#include <stdbool.h>
 #include <stdio.h>
 
 // A file that is being written under a temporary name (".tractrix-...tmp") in the folder of `path`.
@@ -16,8 +17,15 @@ typedef struct OutFile {
     Leftover *leftover;
 } OutFile;
 
-// Creates the temporary file (permissions as for any new file, by the umask). RESULT_FAILED with
-// path and reason: no such folder, a folder of that name, an existing file that is read-only, ...
+// Whether the path is "-", which is standard output.
+bool outfile_is_stdout(const char *path);
+
+// RESULT_USAGE if `path` is standard output and that is a terminal: for binary data.
+Result outfile_refuse_terminal(const char *path, Error *error);
+
+// Creates the temporary file, or writes to standard output directly (permissions as for any new
+// file, by the umask). RESULT_FAILED with path and reason: no such folder, a folder of that name,
+// an existing file that is read-only, ...
 Result outfile_open(OutFile *file, const char *path, Error *error);
 
 // Flushes what has been written so far. RESULT_FAILED with path and reason if a write failed; then

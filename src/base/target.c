@@ -90,21 +90,58 @@ static Result take_pattern(Target *target, const char *text, Error *error)
     return RESULT_OK;
 }
 
-static Result take_image(Target *target, const char *text, Error *error)
+static Result take_one(Target *target, const char *text, TargetFormat format, Error *error)
 {
-    static const char *const videos[] = {".mp4", ".webm", ".gif"};
-    if (is_folder(text)) return take_folder(target, text, error);
-    target->floats = has_suffix(text, ".pfm");
-    if (target->floats || has_suffix(text, ".png")) return take_pattern(target, text, error);
-    for (size_t i = 0; i < sizeof videos / sizeof *videos; i++) {
-        if (!has_suffix(text, videos[i])) continue;
-        target->kind = TARGET_VIDEO;
-        target->before = strdup(text);
-        return target->before ? RESULT_OK : fail_memory(error);
+    target->kind = TARGET_VIDEO;
+    target->format = format;
+    target->before = strdup(text);
+    return target->before ? RESULT_OK : fail_memory(error);
+}
+
+// "-", "-.png" and the like.
+static Result take_stream(Target *target, const char *text, Error *error)
+{
+    static const struct {
+        const char *text;
+        TargetFormat format;
+        TargetKind kind;
+    } streams[] = {{"-", TARGET_PNG, TARGET_VIDEO},
+                   {"-.png", TARGET_PNG, TARGET_VIDEO},
+                   {"-.y4m", TARGET_Y4M, TARGET_VIDEO},
+                   {"-.pfm", TARGET_PFM, TARGET_STILL},
+                   {"-.exr", TARGET_EXR, TARGET_STILL}};
+    for (size_t i = 0; i < sizeof streams / sizeof *streams; ++i) {
+        if (strcasecmp(text, streams[i].text) != 0) continue;
+        TRY(take_one(target, "-", streams[i].format, error));
+        target->kind = streams[i].kind;
+        target->stream = true;
+        target->floats = target->format == TARGET_PFM || target->format == TARGET_EXR;
+        return RESULT_OK;
     }
     return error_set(error, RESULT_USAGE,
-                     "%s: expected a folder with a slash at its end, or a name ending in .png, "
-                     ".pfm, .mp4, .webm or .gif",
+                     "%s: standard output takes - (PNG), -.y4m, -.pfm or -.exr; ./%s is a file",
+                     text, text);
+}
+
+static Result take_image(Target *target, const char *text, Error *error)
+{
+    static const char *const videos[] = {".mp4", ".webm", ".gif", ".y4m"}, *const images[] = {
+                                                                               ".png", ".pfm",
+                                                                               ".exr"};
+    if (text[0] == '-' && (!text[1] || text[1] == '.')) return take_stream(target, text, error);
+    if (is_folder(text)) return take_folder(target, text, error);
+    for (int i = 0; i < 3; ++i) {
+        if (!has_suffix(text, images[i])) continue;
+        target->format = (TargetFormat)(TARGET_PNG + i);
+        target->floats = i > 0;
+        return take_pattern(target, text, error);
+    }
+    for (size_t i = 0; i < sizeof videos / sizeof *videos; i++)
+        if (has_suffix(text, videos[i]))
+            return take_one(target, text, i == 3 ? TARGET_Y4M : TARGET_FFMPEG, error);
+    return error_set(error, RESULT_USAGE,
+                     "%s: expected a folder with a slash at its end, a name ending in .png, .pfm, "
+                     ".exr, .mp4, .webm, .gif or .y4m, or - for standard output",
                      *text ? text : "output name is empty");
 }
 
@@ -165,7 +202,8 @@ Result target_prepare(const Target *target, Error *error)
     char *name = target_name_frame(target, 0);
     if (!name) return fail_memory(error);
     OutFile probe = {0};
-    Result result = make_folders(name, error);
+    Result result = outfile_refuse_terminal(name, error);
+    THEN(result, make_folders(name, error));
     THEN(result, outfile_open(&probe, name, error));
     outfile_discard(&probe);
     free(name);

@@ -12,18 +12,31 @@ typedef enum TargetKind {
     TARGET_VIDEO,  // one file for all frames
 } TargetKind;
 
+// What the files hold.
+typedef enum TargetFormat {
+    TARGET_PNG,
+    TARGET_PFM,
+    TARGET_EXR,
+    TARGET_Y4M,    // raw video
+    TARGET_FFMPEG, // video that ffmpeg encodes
+} TargetFormat;
+
 typedef struct Target {
     TargetKind kind;
+    TargetFormat format;
+    bool stream;  // standard output; `before` is "-"
     char *before; // the name up to the frame number; the full name of a still or a video
     char *after;  // the name behind the number, with the suffix
-    bool floats;  // the files are PFM, not PNG
+    bool floats;  // the files are PFM or EXR
     int digits;   // the number is padded with zeros to this length
 } Target;
 
 // Takes "DIR/" or an existing folder (frame_0000.png, frame_0001.png, ... in it), a name ending in
 // .png with one %d or %0Nd (N from 1 to 9) in its last part ("%%" is a percent sign), a plain name
-// ending in .png, the same with .pfm, or one ending in .mp4, .webm or .gif. RESULT_USAGE for
-// anything else, RESULT_FAILED when memory is short.
+// ending in .png, the same with .pfm or .exr, or one ending in .mp4, .webm, .gif or .y4m; or, for
+// standard output, "-" or "-.png" (PNG files one after the other, TARGET_VIDEO), "-.y4m", "-.pfm"
+// or
+// "-.exr". RESULT_USAGE for anything else, RESULT_FAILED when memory is short.
 Result target_parse(Target *target, const char *text, Error *error);
 
 // Takes any name, with a number or without one (TARGET_STILL), whatever it ends in. Errors as

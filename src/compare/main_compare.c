@@ -68,7 +68,8 @@ static const Option OPTIONS[] = {
 };
 
 static const char *const NOTES[] = {
-    "A and B are two images (PNG of 8 or 16 bits, PFM), two folders, whose .png and .pfm files are "
+    "A and B are two images (PNG of 8 or 16 bits, PFM, EXR), two folders, whose .png, .pfm and "
+    ".exr files are "
     "paired by name, or two patterns with %d or %04d, paired by number. Images of different sizes "
     "and images without a partner count as different.",
     "RMSE and PSNR are of red, green and blue in sRGB levels of 0 to 255. SSIM is that of Wang et "

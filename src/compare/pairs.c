@@ -60,7 +60,9 @@ static char *place_of(const Side *side, const char *name, int frame)
 static bool is_image(const char *name)
 {
     const char *dot = strrchr(name, '.');
-    return name[0] != '.' && dot && (strcasecmp(dot, ".png") == 0 || strcasecmp(dot, ".pfm") == 0);
+    return name[0] != '.' && dot &&
+           (strcasecmp(dot, ".png") == 0 || strcasecmp(dot, ".pfm") == 0 ||
+            strcasecmp(dot, ".exr") == 0);
 }
 
 // Whether the file is one of a pattern, and which: the name that its number gives must be its own.

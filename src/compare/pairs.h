@@ -32,9 +32,9 @@ typedef struct PairOptions {
     const char *unrendered; // file of images that could not be made; NULL: none
 } PairOptions;
 
-// `a` and `b` are both files; or both folders, whose files ending in .png or .pfm (not hidden ones)
-// go by name; or both patterns with %d or %04d in the file's name, as tractrix-render -o takes
-// them, whose files go by number. What only one has is a pair with the other missing.
+// `a` and `b` are both files; or both folders, whose files ending in .png, .pfm or .exr (not
+// hidden) go by name; or both patterns with %d or %04d in the file's name, as tractrix-render -o
+// takes them, whose files go by number. What only one has is a pair with the other missing.
 // RESULT_USAGE for mixed kinds, RESULT_BAD_INPUT if a folder can't be read or there is no image at
 // all. Files are not opened.
 //

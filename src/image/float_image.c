@@ -2,6 +2,7 @@
 #include "image/float_image.h"
 
 #include "base/bytes.h"
+#include "image/exr_file.h"
 #include "image/pfm.h"
 #include "image/png.h"
 
@@ -16,20 +17,39 @@ Result float_image_read_image(Image *image, const char *path, Error *error)
     *image = (Image){0};
     TRY(bytes_read_file(&file, path, error));
     bool is_pfm = file.size > 1 && file.data[0] == 'P' && (file.data[1] | 0x20) == 'f';
-    Result result =
-        is_pfm ? pfm_decode(image, &file, path, error) : png_decode_deep(image, &file, path, error);
+    Result result = is_pfm               ? pfm_decode(image, &file, path, error)
+                    : exr_file_is(&file) ? exr_file_decode(image, &file, path, error)
+                                         : png_decode_deep(image, &file, path, error);
     bytes_destroy(&file);
     return result;
 }
 
-// Sample `i` in levels, alpha (one of four) too. As image_srgb_from_linear, but beyond 0..1 as
-// well.
+// Sample `i` in levels, alpha (one of four) too.
 static double read_level(const Image *image, size_t i)
 {
     if (image->kind == IMAGE_8) return image->pixels[i];
-    if (image->kind == IMAGE_16) return ((const uint16_t *)(const void *)image->pixels)[i] / 257.0;
-    double linear = (double)((const float *)(const void *)image->pixels)[i], size = fabs(linear);
-    return 255 * copysign(srgb_encode(size), linear);
+    return ((const uint16_t *)(const void *)image->pixels)[i] / 257.0;
+}
+
+// As image_srgb_from_linear, but beyond 0..1 as well.
+static double level_of_light(double linear)
+{
+    return 255 * copysign(srgb_encode(fabs(linear)), linear);
+}
+
+// Of a pixel's colour, which begins with sample `i`, in levels.
+static void lay_over(const Image *image, size_t i, float level, float rgb[3])
+{
+    bool has_alpha = image->channels == 4;
+    const float *light = (const float *)(const void *)image->pixels + i;
+    if (image->kind == IMAGE_FLOAT) {
+        double behind = has_alpha ? float_image_linear(level) * (1 - (double)light[3]) : 0;
+        for (int k = 0; k < 3; ++k) rgb[k] = (float)level_of_light((double)light[k] + behind);
+        return;
+    }
+    double alpha = has_alpha ? read_level(image, i + 3) / 255 : 1;
+    for (size_t k = 0; k < 3; ++k)
+        rgb[k] = (float)(read_level(image, i + k) * alpha + (double)level * (1 - alpha));
 }
 
 Result float_image_create(FloatImage *floats, const Image *image, float level, Error *error)
@@ -42,12 +62,7 @@ Result float_image_create(FloatImage *floats, const Image *image, float level, E
         return error_set(error, RESULT_FAILED, "no memory to compare images of %d x %d",
                          image->width, image->height);
     }
-    for (size_t i = 0; i < count; ++i) {
-        double alpha = step == 4 ? read_level(image, 4 * i + 3) / 255 : 1;
-        for (size_t k = 0; k < 3; ++k)
-            floats->rgb[3 * i + k] =
-                (float)(read_level(image, step * i + k) * alpha + (double)level * (1 - alpha));
-    }
+    for (size_t i = 0; i < count; ++i) lay_over(image, step * i, level, floats->rgb + 3 * i);
     return RESULT_OK;
 }
 

@@ -15,13 +15,13 @@ typedef struct FloatImage {
     float *rgb; // [height][width][3], owned
 } FloatImage;
 
-// Reads a file by its content, PNG of 8 or 16 bits or PFM, at full depth. RESULT_BAD_INPUT with
-// path and reason; RESULT_FAILED when memory is short.
+// Reads a file by its content, PNG of 8 or 16 bits, PFM or EXR, at full depth. RESULT_BAD_INPUT
+// with path and reason; RESULT_FAILED when memory is short.
 Result float_image_read_image(Image *image, const char *path, Error *error);
 
 // Lays the image over a uniform background, whose channels are all `level`; blending is in sRGB
-// values, as in browsers. Without alpha the background does not matter. RESULT_FAILED when memory
-// is short; the float image is zeroed then.
+// values, as in browsers, but of floats in light. Without alpha the background does not matter.
+// RESULT_FAILED when memory is short; the float image is zeroed then.
 Result float_image_create(FloatImage *floats, const Image *image, float level, Error *error);
 void float_image_destroy(FloatImage *floats);
 

@@ -8,6 +8,7 @@
 
 #include "version.h"
 
+#include <cglm/mat4.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -120,15 +121,51 @@ static Result open_sky(Images *images, Error *error)
     return result;
 }
 
-static Result open_renderer(Images *images, GpuTimer *timer, Error *error)
+static Result open_one(Images *images, Renderer *renderer, const RendererOptions *options,
+                       GpuTimer *timer, Error *error)
 {
     const Assets *assets = images->assets;
+    TRY(renderer_create(renderer, images->gpu, timer, options, error));
+    if (!assets->has_mesh) return RESULT_OK;
+    return renderer_set_mesh(renderer, &assets->mesh, images->scene->run.mesh_color, error);
+}
+
+// Whether EXR files are written that have layers: an image by --aov and a sheet have none.
+static bool has_layers(const RunParams *run, const Target *target)
+{
+    return target->format == TARGET_EXR && run->exr_layers && run->aov == AOV_NONE &&
+           run->contact_sheet[0] == 1 && run->contact_sheet[1] == 1;
+}
+
+static Result open_layers(Images *images, const RendererOptions *options, GpuTimer *timer,
+                          Error *error)
+{
+    static const Aov aovs[EXR_LAYERS] = {[EXR_COVERAGE] = AOV_COVERAGE,
+                                         [EXR_DEPTH] = AOV_DEPTH,
+                                         [EXR_TANGENT] = AOV_TANGENT,
+                                         [EXR_STRAND] = AOV_STRAND};
+    Target target;
+    TRY(target_parse(&target, images->scene->run.output, error));
+    bool wanted = has_layers(&images->scene->run, &target);
+    target_destroy(&target);
+    if (!wanted) return RESULT_OK;
+    images->layers = calloc(EXR_LAYERS, sizeof *images->layers);
+    if (!images->layers) return error_set(error, RESULT_FAILED, "no memory for layers");
+    for (int l = 0; l < EXR_LAYERS; ++l) {
+        RendererOptions layer = *options;
+        layer.aov = aovs[l];
+        layer.background[3] = 1;
+        TRY(open_one(images, &images->layers[l], &layer, timer, error));
+    }
+    return RESULT_OK;
+}
+
+static Result open_renderer(Images *images, GpuTimer *timer, Error *error)
+{
     RendererOptions options;
     TRY(describe_images(images, &options, error));
-    TRY(renderer_create(&images->renderer, images->gpu, timer, &options, error));
-    if (assets->has_mesh)
-        TRY(renderer_set_mesh(&images->renderer, &assets->mesh, images->scene->run.mesh_color,
-                              error));
+    TRY(open_one(images, &images->renderer, &options, timer, error));
+    TRY(open_layers(images, &options, timer, error));
     TRY(create_items(images, error));
     return open_sky(images, error);
 }
@@ -157,6 +194,8 @@ static Result open_output(Images *images, int frame_count, Error *error)
         .columns = run->contact_sheet[0],
         .rows = run->contact_sheet[1],
         .texts = &images->texts,
+        .layers = images->layers != NULL,
+        .exr_float = run->exr_float,
     };
     return output_create(&images->output, &options, error);
 }
@@ -181,12 +220,15 @@ void images_destroy(Images *images)
 {
     output_destroy(images->output);
     renderer_destroy(&images->renderer);
+    for (int l = 0; l < EXR_LAYERS && images->layers; ++l) renderer_destroy(&images->layers[l]);
+    free(images->layers);
     image_texts_destroy(&images->texts);
     free(images->items);
     *images = (Images){0};
 }
 
-Result images_draw(Images *images, int frame, const View *view, Image *image, Error *error)
+static Result draw_by(Images *images, Renderer *renderer, int frame, const View *view, Image *image,
+                      Error *error)
 {
     const Scene *scene = images->scene;
     const Simulation *simulation = images->simulation;
@@ -202,6 +244,30 @@ Result images_draw(Images *images, int frame, const View *view, Image *image, Er
     memcpy(ambient.ground, scene->run.ground, sizeof ambient.ground);
     memcpy(drawn.head_rotation, simulation->head.rotation, sizeof drawn.head_rotation);
     memcpy(drawn.head_translation, simulation->head.translation, sizeof drawn.head_translation);
-    return renderer_draw(&images->renderer, &drawn, images->items, images->item_count, image,
-                         error);
+    return renderer_draw(renderer, &drawn, images->items, images->item_count, image, error);
+}
+
+Result images_draw(Images *images, int frame, const View *view, Image *image, Error *error)
+{
+    return draw_by(images, &images->renderer, frame, view, image, error);
+}
+
+Result images_draw_layers(Images *images, int frame, const View *view, Image layers[EXR_LAYERS],
+                          Error *error)
+{
+    for (int l = 0; l < EXR_LAYERS && images->layers; ++l)
+        TRY(draw_by(images, &images->layers[l], frame, view, &layers[l], error));
+    return RESULT_OK;
+}
+
+void images_set_matrices(OutputExtra *extra, const View *view)
+{
+    // From clip space: x of -w to w becomes 0 to w, y the other way round.
+    mat4 halve = {{0.5f, 0, 0, 0}, {0, -0.5f, 0, 0}, {0, 0, 1, 0}, {0.5f, 0.5f, 0, 1}};
+    mat4 from_world = {0}, projection = {0}, whole;
+    memcpy(from_world, view->view, sizeof from_world);
+    memcpy(projection, view->projection, sizeof projection);
+    glm_mat4_mulN((mat4 *[]){&halve, &projection, &from_world}, 3, whole);
+    memcpy(extra->world_to_camera, from_world, sizeof from_world);
+    memcpy(extra->world_to_ndc, whole, sizeof whole);
 }

@@ -17,6 +17,7 @@ typedef struct Images {
     const Framing *framing;
     const Gpu *gpu;
     Renderer renderer;
+    Renderer *layers;  // [EXR_LAYERS], owned; NULL: none
     RenderItem *items; // of each section, unless hidden, its guides and followers if there are any
     uint32_t item_count;
     ImageTexts texts; // of the files
@@ -39,3 +40,11 @@ void images_destroy(Images *images);
 // size of the run, the channels of renderer_channels and the kind of renderer.options. Errors of
 // renderer_draw.
 Result images_draw(Images *images, int frame, const View *view, Image *image, Error *error);
+
+// The same of what EXR files have beside the image, if they have it. Errors of renderer_draw.
+Result images_draw_layers(Images *images, int frame, const View *view, Image layers[EXR_LAYERS],
+                          Error *error);
+
+// The matrices of a view, as EXR files have them: world to camera, and to the image, whose corners
+// are (0, 0), at the top left, and (1, 1).
+void images_set_matrices(OutputExtra *extra, const View *view);

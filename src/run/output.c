@@ -8,6 +8,7 @@
 #include "image/pfm.h"
 #include "image/png.h"
 #include "run/video.h"
+#include "run/y4m.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -29,13 +30,16 @@ typedef enum SlotState { SLOT_FREE, SLOT_LENT, SLOT_QUEUED } SlotState;
 
 typedef struct Slot {
     Image image; // first, so that an image lent out leads back to its slot
+    OutputExtra extra;
     SlotState state;
     int frame;
 } Slot;
 
 struct Output {
     Target target;
-    Video *video;     // NULL unless a video is written
+    Video *video; // NULL unless ffmpeg writes a video
+    Y4m y4m;      // the worker's
+    bool exr_float;
     ImageSheet sheet; // empty unless a contact sheet is; the worker's
     ImageTexts texts; // the worker's
     bool has_texts;
@@ -70,17 +74,29 @@ static Result set_frame(Output *output, int frame, Error *error)
     return image_texts_set(&output->texts, "Frame", text, error);
 }
 
-static Result write_image(Output *output, const Image *image, int frame, uint64_t *bytes,
-                          Error *error)
+static Result encode(const Output *output, const Image *image, const OutputExtra *extra,
+                     Bytes *file, Error *error)
+{
+    if (output->target.format == TARGET_PFM) return pfm_encode(image, file, error);
+    if (output->target.format == TARGET_PNG) return png_encode(image, &output->texts, file, error);
+    ExrFile exr = {.image = image, .floats = output->exr_float, .texts = &output->texts};
+    if (extra) {
+        exr.layers = extra->layers[0].pixels ? extra->layers : NULL;
+        exr.world_to_camera = (const float(*)[4])extra->world_to_camera;
+        exr.world_to_ndc = (const float(*)[4])extra->world_to_ndc;
+    }
+    return exr_file_encode(&exr, file, error);
+}
+
+// `extra`: NULL: a sheet has none.
+static Result write_image(Output *output, const Image *image, const OutputExtra *extra, int frame,
+                          uint64_t *bytes, Error *error)
 {
     char *name = target_name_frame(&output->target, frame);
     if (!name) return error_set(error, RESULT_FAILED, "no memory for the name of frame %d", frame);
     Bytes png = {0};
     Result result = set_frame(output, frame, error);
-    if (result == RESULT_OK && image->kind == IMAGE_FLOAT)
-        result = pfm_encode(image, &png, error);
-    else if (result == RESULT_OK)
-        result = png_encode(image, &output->texts, &png, error);
+    THEN(result, encode(output, image, extra, &png, error));
     *bytes = png.size;
     if (result == RESULT_OK)
         result = bytes_write_file(&png, name, error);
@@ -94,7 +110,9 @@ static Result write_image(Output *output, const Image *image, int frame, uint64_
 static Result take_frame(Output *output, const Slot *slot, uint64_t *bytes, Error *error)
 {
     if (output->video) return video_write(output->video, &slot->image, error);
-    if (!output->sheet.columns) return write_image(output, &slot->image, slot->frame, bytes, error);
+    if (output->y4m.planes) return y4m_write(&output->y4m, &slot->image, error);
+    if (!output->sheet.columns)
+        return write_image(output, &slot->image, &slot->extra, slot->frame, bytes, error);
     image_sheet_add(&output->sheet, &slot->image);
     return RESULT_OK;
 }
@@ -126,13 +144,16 @@ static Result encode_next(Output *output)
 // Completes the one file that all frames have gone to, if there is one.
 static Result end_file(Output *output)
 {
-    if (!output->video && !output->sheet.columns) return RESULT_OK;
+    bool y4m = output->y4m.planes != NULL;
+    if (!output->video && !y4m && !output->sheet.columns) return RESULT_OK;
     pthread_mutex_unlock(&output->mutex);
     double start_ms = clock_ms();
     uint64_t bytes = 0;
     Error error;
     Result result = output->video ? video_finish(output->video, &bytes, &error)
-                                  : write_image(output, &output->sheet.image, 0, &bytes, &error);
+                    : y4m         ? y4m_finish(&output->y4m, &error)
+                          : write_image(output, &output->sheet.image, NULL, 0, &bytes, &error);
+    if (y4m) bytes = output->y4m.bytes;
     double encode_ms = clock_ms() - start_ms;
     pthread_mutex_lock(&output->mutex);
     output->counters.encode_ms += encode_ms;
@@ -190,18 +211,28 @@ static bool is_sheet(const OutputOptions *options)
 static Result check_options(const OutputOptions *options, const Target *target, Error *error)
 {
     bool sheet = is_sheet(options);
-    if (sheet && target->kind != TARGET_STILL)
+    bool one_png = target->stream && target->format == TARGET_PNG;
+    if (sheet && target->kind != TARGET_STILL && !one_png)
         return error_set(error, RESULT_USAGE,
-                         "%s: a contact sheet is one image: expected a name ending in .png or "
-                         ".pfm, without a number",
+                         "%s: a contact sheet is one image: expected a name ending in .png, .pfm "
+                         "or .exr, without a number",
                          options->target);
-    if (target->kind == TARGET_STILL && !sheet && options->frame_count > 1)
+    bool many = target->kind == TARGET_STILL && !sheet && options->frame_count > 1;
+    if (many && target->stream)
+        return error_set(error, RESULT_USAGE,
+                         "%s: one image for %d frames: expected - (PNG) or -.y4m, or --frames 1",
+                         options->target, options->frame_count);
+    if (many)
         return error_set(
             error, RESULT_USAGE,
             "%s: one name for %d frames: expected a number in it (frame_%%04d.png), or --frames 1",
             options->target, options->frame_count);
+    if (target->format == TARGET_Y4M && options->channels == 4)
+        return error_set(error, RESULT_USAGE,
+                         "%s: .y4m cannot hold a transparent background, write .webm or PNG frames",
+                         options->target);
     if (target->floats != (options->kind == IMAGE_FLOAT) ||
-        (target->kind == TARGET_VIDEO && options->kind != IMAGE_8))
+        (target->format >= TARGET_Y4M && options->kind != IMAGE_8))
         return error_set(error, RESULT_USAGE, "%s: cannot store images of this depth",
                          options->target);
     if (options->channels != 3 && options->channels != 4)
@@ -225,6 +256,10 @@ static Result create_slots(Output *output, const OutputOptions *options, Error *
     for (int i = 0; i < count && result == RESULT_OK; i++)
         result = image_create_kind(&output->slots[i].image, options->width, options->height,
                                    options->channels, options->kind, error);
+    int layers = output->target.format == TARGET_EXR && options->layers ? EXR_LAYERS : 0;
+    for (int i = 0; i < count * layers && result == RESULT_OK; i++)
+        result = image_create_kind(&output->slots[i / layers].extra.layers[i % layers],
+                                   options->width, options->height, 3, IMAGE_FLOAT, error);
     return result;
 }
 
@@ -253,6 +288,10 @@ static Result start_sheet(Output *output, const OutputOptions *options, Error *e
 
 static Result start_video(Output *output, const OutputOptions *options, Error *error)
 {
+    if (output->target.format == TARGET_PNG) return RESULT_OK; // file after file
+    if (output->target.format == TARGET_Y4M)
+        return y4m_create(&output->y4m, output->target.before, options->width, options->height,
+                          options->fps, error);
     VideoOptions video = {
         .path = output->target.before,
         .width = options->width,
@@ -280,6 +319,7 @@ Result output_create(Output **output, const OutputOptions *options, Error *error
     if (!created) return error_set(error, RESULT_FAILED, "no memory for the output");
     create_lock(created);
     created->has_texts = options->texts != NULL;
+    created->exr_float = options->exr_float;
     Result result = target_parse(&created->target, options->target, error);
     THEN(result, check_options(options, &created->target, error));
     THEN(result, image_texts_copy(&created->texts, options->texts, error));
@@ -321,6 +361,11 @@ Result output_acquire(Output *output, Image **image, Error *error)
     return result;
 }
 
+OutputExtra *output_extra(Image *image)
+{
+    return &((Slot *)image)->extra;
+}
+
 Result output_submit(Output *output, int frame_index, Image *image, Error *error)
 {
     Slot *slot = (Slot *)image;
@@ -346,7 +391,7 @@ Result output_finish(Output *output, Error *error)
 {
     pthread_mutex_lock(&output->mutex);
     Result result = RESULT_OK;
-    if (output->video && output->submitted == 0)
+    if ((output->video || output->y4m.planes) && output->submitted == 0)
         result = error_set(error, RESULT_FAILED, "%s: a video needs at least one frame",
                            output->target.before);
     output->closing = result == RESULT_OK;
@@ -376,7 +421,11 @@ void output_destroy(Output *output)
     video_destroy(output->video);
     image_sheet_destroy(&output->sheet);
     image_texts_destroy(&output->texts);
-    for (int i = 0; i < output->slot_count; i++) image_destroy(&output->slots[i].image);
+    y4m_destroy(&output->y4m);
+    for (int i = 0; i < output->slot_count; i++) {
+        image_destroy(&output->slots[i].image);
+        for (int l = 0; l < EXR_LAYERS; l++) image_destroy(&output->slots[i].extra.layers[l]);
+    }
     free(output->slots);
     free(output->queue);
     free(output->description);
@@ -399,6 +448,7 @@ const char *output_describe(Output *output)
     pthread_mutex_lock(&output->mutex);
     int first = output->frame_first, last = output->frame_last;
     pthread_mutex_unlock(&output->mutex);
+    if (output->target.stream) return "standard output";
     char *first_name = target_name_frame(&output->target, first);
     char *last_name = target_name_frame(&output->target, last);
     free(output->description);

@@ -9,22 +9,32 @@
 #pragma once
 
 #include "base/error.h"
+#include "image/exr_file.h"
 #include "image/image.h"
 #include "image/image_text.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 typedef struct Output Output;
 
+// What goes into a frame's EXR file beside its image.
+typedef struct OutputExtra {
+    Image layers[EXR_LAYERS]; // IMAGE_FLOAT of 3 channels; without pixels where there are none
+    float world_to_camera[4][4], world_to_ndc[4][4]; // see ExrFile
+} OutputExtra;
+
 typedef struct OutputOptions {
     const char *target; // as target_parse takes it: "DIR/", "name_%04d.png", "x.png", "x.mp4",
-                        // "x.webm", "x.gif"
+                        // "x.webm", "x.gif", "x.y4m", "-", ...
     int width, height;  // pixels of every frame
-    int channels;       // 3, or 4 for PNG, PFM and webm
-    ImageKind kind;     // 16 bits for PNG only; floats for PFM and for nothing else
+    int channels;       // 3, or 4 for PNG, PFM, EXR and webm
+    ImageKind kind;     // 16 bits for PNG only; floats for PFM and EXR and for nothing else
+    bool layers;        // of EXR: each frame has layers
+    bool exr_float;     // of EXR: 32 bits a channel
     double fps;         // frames a second, used for videos
     int frame_count;    // how many will come, 0: not known; "x.png" takes 1, or a sheet
-    int columns, rows;  // of a contact sheet that takes all frames, "x.png" or "x.pfm"; <= 1: none
+    int columns, rows;  // of a contact sheet that takes all frames, "x.png" or the like; <= 1: none
     const ImageTexts *texts; // of each PNG file, which adds its frame's number; NULL: none
     int queue_length;        // images in the pool: drawn, waiting or being encoded; 0: the usual 3
 } OutputOptions;
@@ -35,15 +45,18 @@ typedef struct OutputCounters {
     double encode_ms; // wall time that the worker spent encoding and writing
 } OutputCounters;
 
-// Makes the folder if needed, tries that a file can be created there, starts ffmpeg for a video,
-// and the worker. RESULT_USAGE for a target or a combination that makes no sense, RESULT_FAILED
-// with path and reason otherwise.
+// Refuses a terminal, makes the folder if needed, tries that a file can be created there, starts
+// ffmpeg for a video, and the worker. RESULT_USAGE for a target or a combination that makes no
+// sense, RESULT_FAILED with path and reason otherwise.
 Result output_create(Output **output, const OutputOptions *options, Error *error);
 
 // Lends an image of the pool; its pixels are undefined. Blocks while all are waiting or being
 // encoded. RESULT_FAILED with the worker's error, path and reason, if that has failed;
 // RESULT_INTERRUPTED once interrupt_requested().
 Result output_acquire(Output *output, Image **image, Error *error);
+
+// What belongs to an image that is lent out, to be filled like it. Files but EXR leave it out.
+OutputExtra *output_extra(Image *image);
 
 // Gives the image back to be written as frame `frame_index` (>= 0, part of the file's name; videos
 // go by the order of submission). Never blocks. Fails like output_acquire, the image is given back

@@ -2,6 +2,7 @@
 #include "run/run.h"
 #include "base/clock.h"
 #include "base/interrupt.h"
+#include "base/outfile.h"
 #include "base/target.h"
 #include "run/caption.h"
 #include "run/exposure.h"
@@ -75,6 +76,10 @@ static Result check_target(const RunParams *run, const char *path,
     Target target = {0};
     if (!*path) return RESULT_OK;
     Result result = parse(&target, path, error);
+    if (result == RESULT_OK && target.stream) result = outfile_refuse_terminal("-", error);
+    if (result == RESULT_OK && target.stream && outfile_is_stdout(run->stats))
+        result = error_set(error, RESULT_USAGE,
+                           "--stats -: images go to standard output: expected a file");
     if (result == RESULT_OK && target.kind == TARGET_VIDEO && run->part[1] > 1)
         result = error_set(error, RESULT_USAGE,
                            "--part: %s holds all frames, expected a file for each", path);

@@ -65,12 +65,12 @@ int sequence_count_drawn(const RunParams *run)
 static bool image_is_complete(const Target *target, int frame, const RunParams *run)
 {
     ImageKind kind = target->floats ? IMAGE_FLOAT : run->depth == DEPTH_16 ? IMAGE_16 : IMAGE_8;
-    int channels = run->background[3] < 1 && !target->floats ? 4 : 3;
+    bool alpha = target->format == TARGET_EXR || (run->background[3] < 1 && !target->floats);
     char *name = target_name_frame(target, frame);
     Image image = {0};
     bool whole = name && float_image_read_image(&image, name, NULL) == RESULT_OK &&
                  image.width == run->size[0] && image.height == run->size[1] &&
-                 image.channels == channels && image.kind == kind;
+                 image.channels == (alpha ? 4 : 3) && image.kind == kind;
     image_destroy(&image);
     free(name);
     return whole;
@@ -133,7 +133,7 @@ typedef struct Previous {
     bool any;
     uint64_t changes; // of the simulation, when it was drawn
     View view;
-    Image image;
+    Image image, layers[EXR_LAYERS];
 } Previous;
 
 static bool same_view(const View *a, const View *b)
@@ -142,13 +142,26 @@ static bool same_view(const View *a, const View *b)
            memcmp(a->projection, b->projection, sizeof a->projection) == 0;
 }
 
-static Result remember(Previous *previous, const View *view, const Image *image, Error *error)
+// The first time it takes memory.
+static Result copy(Image *to, const Image *from, Error *error)
 {
-    if (!previous->image.pixels) {
-        TRY(image_create_kind(&previous->image, image->width, image->height, image->channels,
-                              image->kind, error));
-    }
-    memcpy(previous->image.pixels, image->pixels, image_size(image));
+    if (!from->pixels) return RESULT_OK;
+    if (!to->pixels)
+        TRY(image_create_kind(to, from->width, from->height, from->channels, from->kind, error));
+    memcpy(to->pixels, from->pixels, image_size(from));
+    return RESULT_OK;
+}
+
+static Result copy_layers(Image to[EXR_LAYERS], const Image from[EXR_LAYERS], Error *error)
+{
+    for (int l = 0; l < EXR_LAYERS; ++l) TRY(copy(&to[l], &from[l], error));
+    return RESULT_OK;
+}
+
+static Result remember(Previous *previous, const View *view, Image *image, Error *error)
+{
+    TRY(copy(&previous->image, image, error));
+    TRY(copy_layers(previous->layers, output_extra(image)->layers, error));
     previous->view = *view;
     previous->any = true;
     return RESULT_OK;
@@ -171,12 +184,14 @@ static Result draw(Sequence *sequence, Previous *previous, int number, const Vie
     previous->changes = simulation->changes;
     if (!still) previous->any = false;
     if (still && previous->any && !scene->run.turn_lights && same_view(view, &previous->view)) {
-        memcpy(image->pixels, previous->image.pixels, image_size(image));
         ++sequence->frames_repeated;
-        return RESULT_OK;
+        TRY(copy(image, &previous->image, error));
+        return copy_layers(output_extra(image)->layers, previous->layers, error);
     }
     if (sequence->frames_drawn == 0) give_back_memory();
     Result result = images_draw(sequence->images, number, view, image, error);
+    THEN(result,
+         images_draw_layers(sequence->images, number, view, output_extra(image)->layers, error));
     if (result == RESULT_OK && still) result = remember(previous, view, image, error);
     sequence->frames_drawn += result == RESULT_OK;
     return result;
@@ -194,6 +209,7 @@ static Result output_frame(Sequence *sequence, Previous *previous, int frame, Fr
     times->wait_ms = acquired - begin;
     if (result != RESULT_OK) return result;
     camera_view(&view, sequence->scene, sequence->images->framing, frame);
+    images_set_matrices(output_extra(image), &view);
     result = draw(sequence, previous, frame, &view, image, error);
     if (result == RESULT_OK && *sequence->scene->run.caption) {
         char text[CAPTION_BYTES];
@@ -253,5 +269,6 @@ Result sequence_run(Sequence *sequence, Error *error)
     }
     progress_clear(&progress);
     image_destroy(&previous.image);
+    for (int l = 0; l < EXR_LAYERS; ++l) image_destroy(&previous.layers[l]);
     return result;
 }

@@ -12,6 +12,12 @@
         (void)scene, (void)section;                                                                \
         return holds;                                                                              \
     }
+static bool writes(const char *output, const char *suffix)
+{
+    size_t length = strlen(output), own = strlen(suffix);
+    return length >= own && strcasecmp(output + length - own, suffix) == 0;
+}
+
 // A head may be fitted where there is no mesh.
 CONDITION(has_head, *scene->run.mesh || scene->run.scalp != SCALP_NONE)
 CONDITION(has_colliders,
@@ -30,6 +36,7 @@ CONDITION(turns, scene->run.turntable != 0)
 CONDITION(frames_hair, scene->run.eye.automatic && scene->eye.count == 0)
 CONDITION(knows_jumps, scene->run.teleport != TELEPORT_NONE)
 CONDITION(exports, *scene->run.export)
+CONDITION(writes_exr, writes(scene->run.output, ".exr"))
 CONDITION(sorts, scene->run.oit != OIT_NONE)
 CONDITION(has_far_end, scene->run.lod_end > 0)
 CONDITION(thins, scene->run.lod_end > 0 || scene->run.lod_width > 0)
@@ -51,6 +58,7 @@ static const struct {
     bool (*holds)(const Scene *scene, const SectionParams *section);
     const char *why;
 } EFFECTS[] = {
+    {"exr_layers exr_float", writes_exr, "--output is no .exr file"},
     {"collide friction collision_margin", has_colliders,
      "no --colliders, --mesh or --scalp to collide with"},
     {"friction collision_margin", collides, "--no-collide"},

@@ -168,7 +168,8 @@ static Result check_output(const char *output, Error *error)
 {
     const char *percent = strchr(output, '%');
     bool literal = ends_with(output, "/") || ends_with(output, ".mp4") ||
-                   ends_with(output, ".webm") || ends_with(output, ".gif");
+                   ends_with(output, ".webm") || ends_with(output, ".gif") ||
+                   ends_with(output, ".y4m");
     if (!percent || literal) return RESULT_OK;
     size_t length = conversion_length(percent);
     if (length > 0 && !strchr(percent + length, '%')) return RESULT_OK;
@@ -192,7 +193,7 @@ static Result check_head(const Scene *scene, Error *error)
 
 bool scene_draws_floats(const RunParams *run)
 {
-    return ends_with(run->output, ".pfm");
+    return ends_with(run->output, ".pfm") || ends_with(run->output, ".exr");
 }
 
 // Light as it is, and what is no light, cannot be toned.
@@ -202,13 +203,14 @@ static Result check_depth(const Scene *scene, Error *error)
     size_t row = (size_t)(params_find("tone_map") - PARAM_TABLE);
     bool tones = run->tone_map != TONE_NONE && scene->origin[row] == ORIGIN_FLAG;
     bool video = ends_with(run->output, ".mp4") || ends_with(run->output, ".webm") ||
-                 ends_with(run->output, ".gif");
+                 ends_with(run->output, ".gif") || ends_with(run->output, ".y4m");
     const char *pair = NULL;
-    if (run->depth == DEPTH_16 && scene_draws_floats(run)) pair = "--depth 16 and .pfm files";
+    if (run->depth == DEPTH_16 && scene_draws_floats(run))
+        pair = "--depth 16 and .pfm or .exr files";
     if (run->depth == DEPTH_16 && video) pair = "--depth 16 and a video";
-    if (tones && scene_draws_floats(run)) pair = "--tone-map and .pfm files";
+    if (tones && scene_draws_floats(run)) pair = "--tone-map and .pfm or .exr files";
     if (tones && run->aov != AOV_NONE) pair = "--tone-map and --aov";
-    if (*run->caption && scene_draws_floats(run)) pair = "--caption and .pfm files";
+    if (*run->caption && scene_draws_floats(run)) pair = "--caption and .pfm or .exr files";
     if (*run->caption && run->aov != AOV_NONE) pair = "--caption and --aov";
     if (pair) return error_set(error, RESULT_USAGE, "%s exclude each other", pair);
     return RESULT_OK;

@@ -126,7 +126,7 @@ Result scene_read_unchecked(Scene *scene, const char *path, const SceneOverrides
 // output pattern, names of files. RESULT_USAGE naming the flags in conflict.
 Result scene_check(const Scene *scene, Error *error);
 
-// Whether the images are light as it is (.pfm).
+// Whether the images are light as it is (.pfm, .exr).
 bool scene_draws_floats(const RunParams *run);
 
 // Every effective value as an object that is a scene file again (paths are relative to the working
