@@ -3,7 +3,8 @@
 # Shared by the tests of documents, whose commands run in a copy of what they need. They source it instead of claims.sh.
 . tests/support/claims.sh
 
-# make_checkout: makes $work/checkout, with a program `small` that is tractrix-render with smaller images and fewer frames.
+# make_checkout: makes $work/checkout, with a program `small` that is tractrix-render with smaller,
+# simpler images and fewer frames.
 make_checkout() {
     mkdir -p "$work/checkout/out"
     cp -r assets scripts "$work/checkout/"
@@ -14,9 +15,9 @@ make_checkout() {
     cat >"$work/checkout/small" <<END
 #!/bin/sh
 case " \$* " in
-*" --contact-sheet "* | *%*) exec "$(realpath "$bin")/tractrix-render" "\$@" --size 96x64 --followers 1 --smooth 1 --frames 4 ;;
-*" --frames 1 "* | " docs/"* | *.png\ *) exec "$(realpath "$bin")/tractrix-render" "\$@" --size 96x64 --followers 1 --smooth 1 ;;
-*) exec "$(realpath "$bin")/tractrix-render" "\$@" --size 96x64 --followers 1 --smooth 1 --frames 4 ;;
+*" --contact-sheet "* | *%*) exec "$(realpath "$bin")/tractrix-render" "\$@" --size 96x64 --followers 1 --smooth 1 --quality draft --frames 4 ;;
+*" --frames 1 "* | " docs/"* | *.png\ *) exec "$(realpath "$bin")/tractrix-render" "\$@" --size 96x64 --followers 1 --smooth 1 --quality draft ;;
+*) exec "$(realpath "$bin")/tractrix-render" "\$@" --size 96x64 --followers 1 --smooth 1 --quality draft --frames 4 ;;
 esac
 END
     chmod +x "$work/checkout/small"
