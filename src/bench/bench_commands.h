@@ -55,3 +55,8 @@ Result light_run(const BenchOptions *options, const Gpu *gpu, Error *error);
 // rest, and while the head shakes (groom_stage.h). Parts: rest, shake, speed. RESULT_USAGE without
 // a file.
 Result groom_run(const BenchOptions *options, const Gpu *gpu, Error *error);
+
+// The rows of the CSV files that are named, of one machine or several, as a page: options->output's
+// html. RESULT_USAGE without that or a file, or with csv or json; RESULT_BAD_INPUT for a file that
+// is no CSV. `gpu` may be NULL.
+Result page_run(const BenchOptions *options, const Gpu *gpu, Error *error);

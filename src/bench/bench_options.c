@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "bench/bench_options.h"
 #include "base/options.h"
+#include "report/shell_words.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -78,6 +79,8 @@ static const Option OPTIONS[] = {
      "stress: print failures as they were found, not made smaller"},
     {"json", 0, OPTION_STRING, AT(bench.output.json), "FILE", 0, 0, "write the rows as JSON"},
     {"csv", 0, OPTION_STRING, AT(bench.output.csv), "FILE", 0, 0, "write the rows as CSV"},
+    {"html", 0, OPTION_STRING, AT(bench.output.html), "FILE.html", 0, 0,
+     "write the rows as a page with plots: for a browser, without a network"},
     {"device", 0, OPTION_WHOLE, AT(bench.gpu.device), "N", 0, 1000,
      "EGL device (default: the best one)"},
     {"software", 0, OPTION_SWITCH, AT(software), NULL, 0, 0,
@@ -95,7 +98,8 @@ static const char *const STATUS[][2] = {
 static const char *const EXAMPLES[] = {
     "tractrix-bench step --vectors tests/data/tractrix_steps.csv",
     "tractrix-bench accuracy --part motions --algo rope --rope-iterations 50 --rates 60,120",
-    "tractrix-bench speed --set 10k32 --algo chain --csv chain.csv", NULL};
+    "tractrix-bench speed --set 10k32 --algo chain --csv chain.csv",
+    "tractrix-bench accuracy --part work --set 1k16 --html work.html", NULL};
 
 static const char *const NOTES[] = {
     "The options from --style on are those of tractrix-render; they change the solvers. Times are "
@@ -223,6 +227,25 @@ static Result read_words(Values *values, Error *error)
 
 // --- All of it.
 
+// The page's heading: the command, or the files whose rows it shows.
+static Result name_page(BenchOptions *options, char **words, int count, Error *error)
+{
+    char *joined = NULL;
+    size_t size;
+    FILE *stream = open_memstream(&joined, &size);
+    bool shows = count > 1 && strcmp(words[0], "page") == 0;
+    if (stream) {
+        fprintf(stream, "%s", shows ? "" : "tractrix-bench ");
+        for (int i = shows; i < (shows ? count : count > 0); ++i)
+            fprintf(stream, "%s%s", shows && i > 1 ? ", " : "", words[i]);
+    }
+    if (stream && fclose(stream) == 0) options->title = joined;
+    options->output.title = options->title;
+    options->output.command = options->line;
+    if (options->title && options->line) return RESULT_OK;
+    return error_set(error, RESULT_FAILED, "no memory for the command line");
+}
+
 Result bench_options_read(BenchOptions *options, int argc, char **argv,
                           const char *const (*commands)[2], Error *error)
 {
@@ -234,6 +257,7 @@ Result bench_options_read(BenchOptions *options, int argc, char **argv,
                                .frames = 15,
                                .gpu = {.device = -1}}};
     int first = 0;
+    values.bench.line = shell_join_line("tractrix-bench", argc, argv); // before its order changes
     list_rows(&rows);
     const OptionsProgram program = {.name = "tractrix-bench",
                                     .summary = "measure accuracy and speed",
@@ -250,6 +274,8 @@ Result bench_options_read(BenchOptions *options, int argc, char **argv,
     Result result = options_parse(&program, &values, argc, argv, &first, &values.bench.done, error);
     if (!values.bench.done) THEN(result, read_words(&values, error));
     if (!values.bench.done) THEN(result, join_settings(&values, &rows, error));
+    if (!values.bench.done)
+        THEN(result, name_page(&values.bench, argv + first, argc - first, error));
     values.bench.files = argv + first;
     values.bench.file_count = argc - first;
     *options = values.bench;
@@ -260,6 +286,8 @@ Result bench_options_read(BenchOptions *options, int argc, char **argv,
 void bench_options_destroy(BenchOptions *options)
 {
     free(options->settings);
+    free(options->line);
+    free(options->title);
     *options = (BenchOptions){0};
 }
 

@@ -49,8 +49,9 @@ typedef struct BenchOptions {
     TableOutput output;
     char **files; // what is no option: the command and hair files
     int file_count;
-    bool done;      // --help or --version was answered
-    char *settings; // owned: the text that `method` points to
+    bool done;          // --help or --version was answered
+    char *settings;     // owned: the text that `method` points to
+    char *line, *title; // owned: what `output` points to
 } BenchOptions;
 
 // Reads a command line; strings point into argv, which is reordered. `commands`, names and what

@@ -327,6 +327,8 @@ static const struct {
     {"groom", groom_run,
      "what becomes of hair files at rest and in a shake of the head: --mesh, --algo, --rates, "
      "--strands; parts: rest, shake, speed"},
+    {"page", page_run,
+     "rows that --csv wrote, on one machine or several, as a page: FILE.csv... --html FILE.html"},
     {"shaders", run_shaders, "compiles every shader variant with warnings as errors"},
 };
 enum { COMMAND_COUNT = sizeof COMMANDS / sizeof *COMMANDS };
@@ -346,6 +348,10 @@ static Result run_command(BenchOptions *options, Error *error)
         return error_set(error, RESULT_USAGE, "no command '%s': %s", word,
                          suggest_words(words, sizeof words, word, names, COMMAND_COUNT));
     }
+    if (COMMANDS[command].run == page_run) return page_run(options, NULL, error);
+    const TableOutput *output = &options->output;
+    if (COMMANDS[command].run == run_shaders && (output->csv || output->json || output->html))
+        return error_set(error, RESULT_USAGE, "shaders: has no rows for --csv, --json or --html");
     // What Mesa finds in its cache it does not compile, and warns of nothing.
     if (COMMANDS[command].run == run_shaders) setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
     TRY(gpu_create(&gpu, &options->gpu, error));

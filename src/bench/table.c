@@ -2,6 +2,7 @@
 #include "bench/table.h"
 #include "base/bytes.h"
 #include "base/json.h"
+#include "bench/page.h"
 
 #include "version.h"
 
@@ -188,10 +189,41 @@ const char *table_check_within(Table *table, double value, double least, double 
     return verdict;
 }
 
+// The kept rows as arrays in the order of the columns.
+static Result write_page(const Table *table, Error *error)
+{
+    json_t *columns = json_array(), *rows = json_array();
+    Device device[DEVICE_COUNT];
+    list_device(table->gpu, device);
+    for (size_t i = 0; i < table->column_count; ++i) {
+        const Column *column = &table->columns[i];
+        bool number = column->kind == COLUMN_WHOLE || column->kind == COLUMN_REAL;
+        json_array_append_new(
+            columns, page_column(column->name, number, column->width > 0 || !table->screen));
+    }
+    for (int i = 0; i < DEVICE_COUNT; ++i)
+        json_array_append_new(columns, page_column(device[i].name, false, false));
+    for (size_t row = 0; row < json_array_size(table->rows); ++row) {
+        json_t *object = json_array_get(table->rows, row), *values = json_array();
+        for (size_t i = 0; i < json_array_size(columns); ++i) {
+            const char *name =
+                json_string_value(json_object_get(json_array_get(columns, i), "name"));
+            json_array_append(values, json_object_get(object, name));
+        }
+        json_array_append_new(rows, values);
+    }
+    Result result = page_write(table->output.html, table->output.title, table->output.command,
+                               columns, rows, error);
+    json_decref(columns);
+    json_decref(rows);
+    return result;
+}
+
 static Result write_files(Table *table, Error *error)
 {
     const Bytes bytes = {.data = (uint8_t *)table->csv, .size = table->csv_size};
     if (table->output.csv) TRY(bytes_write_file(&bytes, table->output.csv, error));
+    if (table->output.html) TRY(write_page(table, error));
     return table->output.json ? json_write_file(table->rows, table->output.json, error) : RESULT_OK;
 }
 

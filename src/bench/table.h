@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rows of results: one description of the columns makes the lines on the screen, the CSV file and
-// the JSON file. Beside it what sums up samples: quartiles of times, slopes of logarithms.
+// Rows of results: one description of the columns makes the lines on the screen, the CSV file, the
+// JSON file and the page. Beside it what sums up samples: quartiles of times, slopes of logarithms.
 #pragma once
 
 #include "base/error.h"
@@ -39,7 +39,8 @@ enum { TABLE_CHARS = 1152 };
 
 // Where rows go. A zeroed one goes nowhere but the screen.
 typedef struct TableOutput {
-    const char *json, *csv; // files; NULL: none
+    const char *json, *csv, *html; // files; NULL: none
+    const char *title, *command;   // of the page
 } TableOutput;
 
 // Zeroed but for what table_open fills.

@@ -28,7 +28,7 @@ typedef struct Command {
     int jobs;
     const char *a, *b;
     CompareLimits limits;
-    char *line; // the command line, for the page; owned
+    char *line; // the command line before the parser changes its order; owned
 } Command;
 
 #define AT(member) offsetof(Command, member)
@@ -140,18 +140,6 @@ static Result read_limits(Command *command, Error *error)
     return command->max_failing ? read_failing(limits, command->max_failing, error) : RESULT_OK;
 }
 
-// The command line as it can be pasted, before the parser changes its order.
-static char *quote_line(int argc, char **argv)
-{
-    const char **words = calloc((size_t)argc + 2, sizeof *words);
-    if (!words) return NULL;
-    words[0] = "tractrix-compare";
-    for (int i = 1; i < argc; ++i) words[i] = argv[i];
-    char *line = shell_join(words);
-    free(words);
-    return line;
-}
-
 static Result parse(Command *command, int argc, char **argv, bool *done, Error *error)
 {
     long cores = sysconf(_SC_NPROCESSORS_ONLN);
@@ -162,7 +150,7 @@ static Result parse(Command *command, int argc, char **argv, bool *done, Error *
                          .jobs = cores < 1      ? 1
                                  : cores > 1024 ? 1024
                                                 : (int)cores,
-                         .line = quote_line(argc, argv)};
+                         .line = shell_join_line("tractrix-compare", argc, argv)};
     if (!command->line) return error_set(error, RESULT_FAILED, "no memory for the command line");
     Result result = options_parse(&PROGRAM, command, argc, argv, &first, done, error);
     if (result != RESULT_OK || *done) return result;

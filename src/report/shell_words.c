@@ -67,3 +67,14 @@ char *shell_join(const char *const *words)
     free(text);
     return NULL;
 }
+
+char *shell_join_line(const char *program, int argc, char **argv)
+{
+    const char **words = calloc((size_t)argc + 2, sizeof *words);
+    if (!words) return NULL;
+    words[0] = program;
+    for (int i = 1; i < argc; ++i) words[i] = argv[i];
+    char *line = shell_join(words);
+    free(words);
+    return line;
+}

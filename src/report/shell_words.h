@@ -10,3 +10,6 @@ void shell_put_word(FILE *stream, const char *word);
 
 // The words with blanks between them, up to a NULL. Free it. NULL when memory is short.
 char *shell_join(const char *const *words);
+
+// The command line of `program`, whose first word is what main got instead of that name.
+char *shell_join_line(const char *program, int argc, char **argv);
