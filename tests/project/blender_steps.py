@@ -490,6 +490,16 @@ def round_trip():
     tractrix("tractrix-render", path("groom.json"), "--from-cache", path("sim.cache"), "--drag", "3", "-q", "--export", path("n_%04d.tfx"))
     check("numbered files are imported", hair.main(["import", path("n_%04d.tfx"), "--unit", "m"]) == 0)
     export("--frames", "scene", "-o", path("numbered.npz"))
+    told = subprocess.run([os.path.join(BIN, "tractrix-convert"), "--help", "all"], capture_output=True, text=True, check=False).stdout
+    if "npz" in told:
+        tractrix("tractrix-convert", path("back.npz"), "-o", path("convert.usda"))
+        check("tractrix-convert reads the frames of .npz", np.array_equal(hair.read_usda(path("convert.usda")).frames, got.frames))
+        tractrix("tractrix-convert", path("curves.npz"), "-o", path("convert.npz"))
+        one, other = hair.read_npz(path("curves.npz")), hair.read_npz(path("convert.npz"))
+        same = [np.array_equal(getattr(one, n), getattr(other, n)) for n in ("points", "sizes", "uv", "radius", "color")]
+        check("tractrix-convert keeps all of .npz", all(same), same)
+    else:
+        skip("tractrix-convert does not read .npz")
     check("numbered files hold the same", np.array_equal(hair.read_npz(path("numbered.npz")).frames, got.frames))
 
 
