@@ -56,8 +56,10 @@ PROGRAMS  := $(foreach main,$(MAINS),$(OUT)/$(patsubst main_%.c,tractrix-%,$(not
 TEST_PROGRAMS := $(TESTS:%.c=$(OUT)/%)
 SUPPORT_OBJECTS := $(SUPPORT:%.c=$(OUT)/%.o) $(OUT)/tests/glsl_sources.o
 KEEP_sanitize := $(KEEP:%.c=$(OUT)/%.o)
-MANUALS   := $(PROGRAMS:%=%.1) $(OUT)/tractrix-gen-fur.1
-COMPLETIONS := $(PROGRAMS:%=%.bash)
+SCRIPTS   := $(addprefix $(OUT)/tractrix-,farm turntable compare-goldens) # programs that are scripts
+MANUALS   := $(addsuffix .1,$(PROGRAMS) $(SCRIPTS)) $(OUT)/tractrix-gen-fur.1
+SHELLS    := bash zsh fish
+COMPLETIONS := $(foreach shell,$(SHELLS),$(addsuffix .$(shell),$(PROGRAMS) $(SCRIPTS)))
 FOLDERS   := $(sort $(dir $(OBJECTS) $(SUPPORT_OBJECTS) $(TEST_PROGRAMS)))
 
 # --- Build. Recipes that recurse use all processors unless -j says otherwise.
@@ -68,7 +70,7 @@ AGAIN = @$(MAKE) --no-print-directory
 SILENT := $(findstring s,$(firstword -$(MAKEFLAGS)))
 run = $(if $(V),$(2),@$(if $(SILENT),,printf '  %-6s %s\n' $(1) $@; )$(2))
 
-all: $(OUT)/libtractrix.a $(PROGRAMS) ## the programs (default)
+all: $(OUT)/libtractrix.a $(PROGRAMS) $(SCRIPTS) ## the programs (default)
 tests: $(TEST_PROGRAMS)
 	@:
 
@@ -102,8 +104,17 @@ $(OUT)/tractrix-%.1: $(OUT)/tractrix-%
 	$(call run,MAN,$< --help=man >$@.tmp && mv $@.tmp $@)
 $(OUT)/tractrix-gen-fur.1: $(OUT)/tractrix-gen
 	$(call run,MAN,$< fur --help=man >$@.tmp && mv $@.tmp $@)
-$(OUT)/tractrix-%.bash: $(OUT)/tractrix-%
-	$(call run,BASH,$< --help=bash >$@.tmp && mv $@.tmp $@)
+define completion # SHELL
+$(OUT)/tractrix-%.$(1): $(OUT)/tractrix-%
+	$$(call run,SHELL,$$< --help=$(1) >$$@.tmp && mv $$@.tmp $$@)
+$(SCRIPTS:%=%.$(1)): %.$(1): % scripts/help-pages
+	$$(call run,SHELL,scripts/help-pages $(1) $$< $(VERSION) >$$@.tmp && mv $$@.tmp $$@)
+endef
+$(foreach shell,$(SHELLS),$(eval $(call completion,$(shell))))
+$(SCRIPTS): $(OUT)/tractrix-%: scripts/% | $(FOLDERS)
+	$(call run,COPY,install $< $@)
+$(SCRIPTS:%=%.1): %.1: % scripts/help-pages $(OUT)/version.h
+	$(call run,MAN,scripts/help-pages man $< "$$(sed -n 's/.*_VERSION "\(.*\)"/\1/p' $(OUT)/version.h)" >$@.tmp && mv $@.tmp $@)
 
 $(OUT)/tests/%.o: tests/%.c $(OUT)/flags | $(OUT)/version.h
 	$(call run,CC,$(CC) $(C_FLAGS) -Itests -MMD -MP -c -o $@ $<)
@@ -197,26 +208,39 @@ format: ## clang-format all C and GLSL files
 
 # --- Installation.
 BIN_DIR = $(DESTDIR)$(PREFIX)/bin
-MAN_DIR = $(DESTDIR)$(PREFIX)/share/man/man1
-DATA_DIR = $(DESTDIR)$(PREFIX)/share/tractrix
-DOC_DIR = $(DESTDIR)$(PREFIX)/share/doc/tractrix
-BASH_DIR = $(DESTDIR)$(PREFIX)/share/bash-completion/completions
+SHARE_DIR = $(DESTDIR)$(PREFIX)/share
+MAN_DIR = $(SHARE_DIR)/man/man1
+DATA_DIR = $(SHARE_DIR)/tractrix
+DOC_DIR = $(SHARE_DIR)/doc/tractrix
+bash_DIR = $(SHARE_DIR)/bash-completion/completions
+fish_DIR = $(SHARE_DIR)/fish/vendor_completions.d
+zsh_DIR = $(SHARE_DIR)/zsh/$(ZSH_FOLDER)
+ZSH_FOLDER ?= site-functions
+# Where the completion of FILE, PROGRAM.SHELL, goes; each shell has its own names.
+shell_of = $(patsubst .%,%,$(suffix $(1)))
+completion_of = $($(shell_of)_DIR)/$(patsubst %,$(completion_name_$(shell_of)),$(basename $(notdir $(1))))
+completion_name_bash := %
+completion_name_fish := %.fish
+completion_name_zsh := _%
+EXAMPLES := $(wildcard examples/* examples/*/* examples/*/*/*)
 
-install: all $(MANUALS) $(COMPLETIONS) ## programs, manuals, bash completion, docs and assets under $(DESTDIR)$(PREFIX)
-	install -d $(BIN_DIR) $(MAN_DIR) $(BASH_DIR) $(DATA_DIR) $(DOC_DIR)/docs
-	install $(PROGRAMS) $(BIN_DIR)
-	install scripts/turntable.sh $(BIN_DIR)/tractrix-turntable
+install: all $(MANUALS) $(COMPLETIONS) ## programs, manuals, completion, docs, assets and examples under $(DESTDIR)$(PREFIX)
+	install -d $(BIN_DIR) $(MAN_DIR) $(bash_DIR) $(fish_DIR) $(zsh_DIR) $(DATA_DIR) $(DOC_DIR)/docs
+	install $(PROGRAMS) $(SCRIPTS) $(BIN_DIR)
 	install -m 644 scripts/blender_hair.py scripts/alembic_curves.py $(DATA_DIR)
 	install -m 644 $(MANUALS) $(MAN_DIR)
-	for file in $(COMPLETIONS); do install -m 644 $$file $(BASH_DIR)/$$(basename $$file .bash) || exit 1; done
-	$(if $(wildcard assets/*),install -m 644 $(wildcard assets/*) $(DATA_DIR))
+	$(foreach file,$(COMPLETIONS),install -m 644 $(file) $(call completion_of,$(file)) &&) true
+	install -m 644 $(wildcard assets/*) $(DATA_DIR)
 	install -m 644 LICENSE README.md CHANGELOG.md CONTRIBUTING.md CITATION.cff $(DOC_DIR)
 	install -m 644 $(wildcard docs/*.*) $(DOC_DIR)/docs
+	ln -sfn ../../tractrix $(DOC_DIR)/assets
+	$(foreach file,$(EXAMPLES),$(if $(wildcard $(file)/.),,install -D -m $(if $(shell test -x $(file) && echo x),755,644) $(file) $(DOC_DIR)/$(file) &&)) true
 
 uninstall: ## remove what install put there
-	rm -f $(PROGRAMS:$(OUT)/%=$(BIN_DIR)/%) $(MANUALS:$(OUT)/%=$(MAN_DIR)/%) $(PROGRAMS:$(OUT)/%=$(BASH_DIR)/%)
-	rm -f $(BIN_DIR)/tractrix-turntable
+	rm -f $(addprefix $(BIN_DIR)/,$(notdir $(PROGRAMS) $(SCRIPTS))) $(addprefix $(MAN_DIR)/,$(notdir $(MANUALS)))
+	rm -f $(foreach file,$(COMPLETIONS),$(call completion_of,$(file)))
 	rm -rf $(DATA_DIR) $(DOC_DIR)
+	for folder in $(bash_DIR) $(fish_DIR) $(zsh_DIR); do rmdir $$folder $$(dirname $$folder) 2>/dev/null || true; done
 
 clean: ## remove out/
 	rm -rf out

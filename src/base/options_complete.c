@@ -283,7 +283,8 @@ static void put_zsh_function(FILE *stream, const OptionsProgram *program)
         }
         fprintf(stream, "))'");
     }
-    fprintf(stream, " \\\n        '*:file:_files'\n}\n");
+    // A program that passes its options on to this one gives more specs.
+    fprintf(stream, " \\\n        \"${@:-*:file:_files}\"\n}\n");
 }
 
 // --- fish
@@ -366,8 +367,8 @@ bool options_complete(const OptionsProgram *program, const char *shell, FILE *st
     } else if (zsh) {
         // Read as a file of $fpath it is the function itself; read by `source`, it defines it.
         put_zsh_function(stream, program);
-        fprintf(stream, "if [[ $funcstack[1] == %s ]]; then %s; else compdef %s %s; fi\n", function,
-                function, function, program->name);
+        fprintf(stream, "if [[ $funcstack[1] == %s ]]; then %s \"$@\"; else compdef %s %s; fi\n",
+                function, function, function, program->name);
     } else {
         put_fish(stream, program, "");
     }

@@ -9,6 +9,11 @@ for name in render gen convert compare bench; do
     "$bin/tractrix-$name" --help=zsh >"$shells/zsh/_tractrix-$name"
     "$bin/tractrix-$name" --help=fish >"$shells/fish/tractrix-$name.fish"
 done
+for name in farm turntable compare-goldens; do
+    scripts/help-pages bash "$bin/tractrix-$name" 0 >"$shells/bash/tractrix-$name"
+    scripts/help-pages zsh "$bin/tractrix-$name" 0 >"$shells/zsh/_tractrix-$name"
+    scripts/help-pages fish "$bin/tractrix-$name" 0 >"$shells/fish/tractrix-$name.fish"
+done
 
 # What a shell offers for LINE, one a line. bash gets the words that its line editor would make of it: '=' is one.
 ask_bash() {
@@ -100,8 +105,20 @@ offers "tractrix-gen fur --comb" --comb --comb-reach
 offers "tractrix-gen --comb"
 offers "tractrix-gen fur assets/hea" head.obj
 
-claim "the files are sound, and bash's may be read in any order"
-for name in render gen convert compare bench; do
+claim "programs that are scripts: their words, their options, and those of the program that they run"
+offers "tractrix-farm pl" plain
+offers "tractrix-farm --par" --part --parts
+offers "tractrix-farm plain -o x assets/gust.json --alg" --algo
+offers "tractrix-farm plain -o x assets/gust.json --algo rop" rope
+offers "tractrix-turntable assets/gust.json sh" sheet
+offers "tractrix-turntable assets/gus" gust.json
+offers "tractrix-turntable --sec" --seconds
+offers "tractrix-turntable assets/gust.json sheet --raster " auto blocks quads
+offers "tractrix-compare-goldens tests/gold" golden goldens.txt
+offers "tractrix-compare-goldens tests/goldens.txt tests/golden/ x/ --pix" --pixel-tolerance
+
+claim "the files are sound, of every shell"
+for name in render gen convert compare bench farm turntable compare-goldens; do
     holds bash -n "$shells/bash/tractrix-$name"
     ! command -v zsh >/dev/null || holds zsh -n "$shells/zsh/_tractrix-$name"
     ! command -v fish >/dev/null || holds fish --no-execute "$shells/fish/tractrix-$name.fish"

@@ -15,7 +15,8 @@ farm() {
 run 0 $scene -q -o "$work/one/"
 
 claim "--help is answered"
-farm --help; says "usage: farm"
+farm --help; says "Usage: farm"
+farm --version; says "farm "
 
 claim "shares are whole together, and none has another's frames"
 for part in 1/3 2/3 3/3; do
@@ -68,11 +69,19 @@ says "part 2 failed"; says "5 of 7 frames are there"
 for frame in 0 1 2 3 4 5 6; do equal "$work/one/frame_000$frame.png" "$work/lost/000$frame.png"; done
 
 claim "wrong usage is told"
-for words in "" "plain" "plain -o $work/x/" "cloud -o $work/x/ a.json" "-n 0 plain -o $work/x/ a.json" "-z plain -o $work/x/ a.json"; do
+for words in "" "plain" "plain -o $work/x/" "cloud -o $work/x/ a.json" "-n 0 plain -o $work/x/ a.json" "-z plain -o $work/x/ a.json" \
+    "plain -o $work/x/" "--parts" "plain --wind 1 -o $work/x/ a.json"; do
     # shellcheck disable=SC2086
     scripts/farm $words >"$work/out" 2>"$work/err"
     if [ $? = 2 ]; then good; else bad "scripts/farm $words: not status 2"; fi
+    one_line
 done
+
+claim "long options, before the runner and behind it"
+# shellcheck disable=SC2086
+farm --parts=2 plain --cache "$work/long.cache" --output "$work/long/" $scene
+same "$work/long"
+is_file "$work/long.cache"
 
 claim "GNU parallel"
 if command -v parallel >/dev/null; then

@@ -4,6 +4,7 @@
 # versions, and shaders read from a folder.
 . tests/support/claims.sh
 program=$bin/tractrix-render
+bin_here=$(realpath "$bin")
 root=$work/root share=$work/root/usr/share
 
 # The programs are there, built by who runs the tests; told of the same flags, make takes them as they are.
@@ -17,12 +18,17 @@ installs() {
 }
 claim "make install puts everything under DESTDIR and PREFIX"
 installs install
-for name in "$bin"/tractrix-*.bash; do # one of each program
-    name=${name##*/}
-    name=${name%.bash}
+for name in render gen convert compare bench farm turntable compare-goldens; do
+    name=tractrix-$name
     is_file "$root/usr/bin/$name"; is_file "$share/man/man1/$name.1"; is_file "$share/bash-completion/completions/$name"
+    is_file "$share/fish/vendor_completions.d/$name.fish"; is_file "$share/zsh/site-functions/_$name"
 done
-for file in man/man1/tractrix-gen-fur.1 doc/tractrix/LICENSE doc/tractrix/docs/renderer.md tractrix/demo.json; do is_file "$share/$file"; done
+if [ "$(find "$root/usr/bin" -type f | wc -l)" = 8 ]; then good; else bad "not 8 programs: $(ls "$root/usr/bin")"; fi
+for file in man/man1/tractrix-gen-fur.1 doc/tractrix/LICENSE doc/tractrix/docs/renderer.md tractrix/demo.json tractrix/scene.schema.json; do
+    is_file "$share/$file"
+done
+# Every example of the checkout, programs as such.
+for file in $(git ls-files examples 2>/dev/null); do equal "$file" "$share/doc/tractrix/$file"; done
 
 claim "an installed program needs nothing of the checkout"
 program=$root/usr/bin/tractrix-render
@@ -30,11 +36,25 @@ cd "$work" || exit 1
 run 0 "$share/tractrix/demo.json" --frames 1 --size 64x48 -q -o "$work/installed/"
 program=$root/usr/bin/tractrix-turntable
 export TURNTABLE_S=0.1 TURNTABLE_OUT="$work/turn"
-run 0 "$share/tractrix/fur.tfx" frames -- --size 48x32 -q
+run 0 "$share/tractrix/fur.tfx" frames --size 48x32 -q
 unset TURNTABLE_S TURNTABLE_OUT
+program=$root/usr/bin/tractrix-farm
+run 0 -n 2 plain -o "$work/farm/" "$share/tractrix/fur.tfx" --frames 2 --size 48x32 -q
+program=$root/usr/bin/tractrix-compare-goldens
+printf 'fur %s --frames 1 --size 48x32\n' "$share/tractrix/fur.tfx" >"$work/list"
+run 0 "$work/list" "$work/goldens/" "$work/compared/" --update
+run 0 "$work/list" "$work/goldens/" "$work/compared/"
+for name in farm turntable compare-goldens; do
+    program=$root/usr/bin/tractrix-$name
+    run 0 --version; says "tractrix-$name $(sed -n 's/.*TRACTRIX_VERSION "\(.*\)"/\1/p' "$bin_here/version.h")"; silent err
+    run 0 --help; says "Usage: tractrix-$name "; silent err
+done
+# Scenes of the docs find the assets.
+program=$root/usr/bin/tractrix-render
+run 0 "$share/doc/tractrix/docs/floor.json" --check
 program=$root/usr/bin/tractrix-render
 cd - >/dev/null || exit 1
-is_file "$work/installed/frame_0000.png"; is_file "$work/turn/fur/frame_0000.png"
+is_file "$work/installed/frame_0000.png"; is_file "$work/turn/fur/frame_0000.png"; is_file "$work/farm/frame_0001.png"; is_file "$work/goldens/fur.png"
 
 claim "manual pages are sound"
 for page in "$share"/man/man1/*; do
@@ -51,7 +71,9 @@ done
 
 claim "make uninstall leaves no file behind"
 installs uninstall
-holds test -z "$(find "$root" -type f)"
+holds test -z "$(find "$root" ! -type d)"
+# Folders of the project and of completions, too; those of every system stay.
+holds test "$(cd "$root" && find . -type d | sort | tr '\n' ' ')" = ". ./usr ./usr/bin ./usr/share ./usr/share/doc ./usr/share/man ./usr/share/man/man1 "
 
 claim "the version sorts as Debian's do"
 program=$bin/tractrix-render

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# The command line of scripts/turntable.sh: every format, options behind --, errors.
+# The command line of scripts/turntable: every format, options of tractrix-render, errors.
 . tests/support/claims.sh
-program=scripts/turntable.sh
+program=scripts/turntable
 turns=$work/turns
 export TRACTRIX_BIN="$bin" TURNTABLE_OUT="$turns" TURNTABLE_S=0.5
 small="--size 64x48 --quality draft --preroll 0.1"
@@ -32,10 +32,20 @@ else
 fi
 
 claim "--help and --version are answered, wherever it stands and whatever may be written"
-run 0 --help; says "usage: turntable.sh ASSET"; silent err
-run 0 --version; says "turntable.sh "
+run 0 --help; says "Usage: turntable [OPTION]... ASSET"; silent err
+run 0 --version; says "turntable "
 none out/turntable/--help
 
+claim "options of its own, and of tractrix-render without --"
+unset TURNTABLE_OUT TURNTABLE_S
+# shellcheck disable=SC2086
+run 0 -s 0.1 assets/fur.tfx frames -o "$work/own/" $small -q
+if [ "$(find "$work/own/fur" -name 'frame_*.png' | wc -l)" = 3 ]; then good; else bad "not 3 frames"; fi
+run 0 --seconds=0.04 --output="$work/long" assets/fur.tfx sheet --size 16x16 --quality draft --preroll 0 -q
+is_file "$work/long/fur_sheet.png"
+
 claim "what it can't do is refused"
+run 2 -o; one_line; says "expected DIR"; run 2 --seconds x assets/fur.tfx; one_line; says "got 'x'"; run 2 --output= assets/fur.tfx; one_line
+run 2 assets/fur.tfx sheet --wind 1,0,0 -o "$work/late"; one_line; says "before the options"; none "$work/late"; run 2 sheet; one_line; says "no asset"
 run 2; one_line; says "no asset"; run 2 --no-such-option; one_line; run 2 assets/fur.tfx avi; one_line; run 3 "$work/none.tfx" sheet; run 2 assets/fur.tfx sheet -- --no-such-flag
 finish
