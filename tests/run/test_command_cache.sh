@@ -46,6 +46,7 @@ cp "$hair" "$work/own.tfx"
 run 1 "$hair" -q --frames 2 --cache "$work/own.tfx"; one_line; says "is no cache"
 if cmp -s "$hair" "$work/own.tfx"; then good; else bad "the file was changed"; fi
 for out in --cache --export; do # the limit of a file's size stands for the disk
+    # shellcheck disable=SC2086
     (ulimit -f 20; trap '' XFSZ; "$program" "$hair" $plain -q --frames 9 $out "$work/full.usda" 2>"$work/err") && bad "$out reports success"
     one_line; says "cannot write: File too large"
     rm -f "$work"/full.usda*
