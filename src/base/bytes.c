@@ -5,6 +5,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -54,6 +55,24 @@ Result bytes_read_file(Bytes *bytes, const char *path, Error *error)
     bytes_destroy(bytes);
     return error_set(error, reason == ENOMEM ? RESULT_FAILED : RESULT_BAD_INPUT, "%s: %s", path,
                      strerror(reason));
+}
+
+Result bytes_read_input(Bytes *bytes, const char *path, Error *error)
+{
+    static bool read_before;
+    *bytes = (Bytes){0};
+    if (strcmp(path, "-") != 0) return bytes_read_file(bytes, path, error);
+    if (read_before)
+        return error_set(error, RESULT_USAGE, "-: standard input can be read only once");
+    if (isatty(STDIN_FILENO))
+        return error_set(error, RESULT_USAGE,
+                         "-: standard input is a terminal: expected a pipe or a file");
+    read_before = true;
+    int reason = read_all(bytes, STDIN_FILENO, 65536);
+    if (reason == 0) return RESULT_OK;
+    bytes_destroy(bytes);
+    return error_set(error, reason == ENOMEM ? RESULT_FAILED : RESULT_BAD_INPUT,
+                     "-: standard input: %s", strerror(reason));
 }
 
 void bytes_destroy(Bytes *bytes)

@@ -19,6 +19,9 @@ typedef struct Bytes {
 Result bytes_read_file(Bytes *bytes, const char *path, Error *error);
 void bytes_destroy(Bytes *bytes);
 
+// The same, but "-" is standard input. RESULT_USAGE if it is a terminal or has been read before.
+Result bytes_read_input(Bytes *bytes, const char *path, Error *error);
+
 // Writes the bytes as a whole file through an OutFile: complete or not at all, RESULT_FAILED
 // with path and reason.
 Result bytes_write_file(const Bytes *bytes, const char *path, Error *error);

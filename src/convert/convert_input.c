@@ -169,8 +169,20 @@ static int find_last(const ConvertInput *input)
 {
     int last = input->first;
     if (input->cached) return (int)input->cache.cache.frame_count - 1;
+    if (input->framed) return input->frames.first + (int)input->frames.count - 1;
     while (frame_is_there(input, last)) ++last;
     return last - 1;
+}
+
+// --first and --last are numbers that the file has.
+static Result check_framed(const ConvertInput *input, Error *error)
+{
+    int first = input->frames.first, last = find_last(input);
+    if (input->first >= first && input->last <= last && input->first <= input->last)
+        return RESULT_OK;
+    return error_set(error, RESULT_BAD_INPUT, "%s: no frame %d: it has %d to %d", input->paths[0],
+                     input->first < first || input->first > last ? input->first : input->last,
+                     first, last);
 }
 
 static Result choose_frames(ConvertInput *input, Error *error)
@@ -184,14 +196,52 @@ static Result choose_frames(ConvertInput *input, Error *error)
                              "(x_%%04d.tfx)");
         return RESULT_OK;
     }
-    if (input->fps <= 0) input->fps = input->cached ? input->cache.fps : USUAL_FPS;
+    double own = input->cached ? input->cache.fps : input->frames.fps;
+    if (input->fps <= 0) input->fps = own > 0 ? own : USUAL_FPS;
+    if (input->framed && input->first == 0) input->first = input->frames.first;
     if (input->last < 0) input->last = find_last(input);
+    if (input->framed) return check_framed(input, error);
     if (input->last >= input->first)
         return input->cached ? cache_file_check(&input->cache.cache, input->last, error)
                              : RESULT_OK;
     if (input->cached) return cache_file_check(&input->cache.cache, input->first, error);
     return error_set(error, RESULT_BAD_INPUT, "%s: no file for frame %d", input->paths[0],
                      input->first);
+}
+
+// --- Reading a file.
+
+static void report_mended(const ConvertInput *input, const StrandsReport *report, int file,
+                          const char *path)
+{
+    if (!input->messages) return;
+    strands_report_print_mended(report, path, input->messages);
+    if (input->says_guess && input->reports[file].strands == 0)
+        strands_report_print_guess(report, path, input->messages);
+    if (report->shuffled)
+        fprintf(input->messages, "%s: strands are shuffled: the file says 'is sorted 0'\n", path);
+}
+
+// `frames`: NULL for the first frame only.
+static Result read_file(ConvertInput *input, const char *path, int file, Strands *strands,
+                        StrandsFrames *frames, Error *error)
+{
+    StrandsReport report;
+    TRY(strands_read_frames(strands, frames, path, &input->options, &report, error));
+    report_mended(input, &report, file, path);
+    input->features |= strands_features(strands);
+    if (input->reports[file].strands == 0) input->reports[file] = report;
+    return RESULT_OK;
+}
+
+// A single file may have frames.
+static Result open_single(ConvertInput *input, Error *error)
+{
+    if (input->path_count > 1 || input->cached || input->numbered) return RESULT_OK;
+    TRY(read_file(input, input->paths[0], 0, &input->still,
+                  input->wants_frames ? &input->frames : NULL, error));
+    input->framed = input->frames.count > 0;
+    return RESULT_OK;
 }
 
 // --- Opening.
@@ -212,12 +262,15 @@ Result convert_input_open(ConvertInput *input, Error *error)
     if (!input->reports) return error_set(error, RESULT_FAILED, "no memory for reports");
     if (input->cached) result = open_cache(&input->cache, input->paths[0], error);
     if (input->numbered) result = format_target(&input->pattern, input->paths[0], error);
+    THEN(result, open_single(input, error));
     return result == RESULT_OK ? choose_frames(input, error) : result;
 }
 
 void convert_input_close(ConvertInput *input)
 {
     close_cache(&input->cache);
+    strands_destroy(&input->still);
+    strands_frames_destroy(&input->frames);
     target_destroy(&input->pattern);
     free(input->reports);
     *input = (ConvertInput){0};
@@ -225,34 +278,12 @@ void convert_input_close(ConvertInput *input)
 
 // --- Reading.
 
-static void report_mended(const ConvertInput *input, const StrandsReport *report, int file,
-                          const char *path)
-{
-    if (!input->messages) return;
-    strands_report_print_mended(report, path, input->messages);
-    if (input->says_guess && input->reports[file].strands == 0)
-        strands_report_print_guess(report, path, input->messages);
-    if (report->shuffled)
-        fprintf(input->messages, "%s: strands are shuffled: the file says 'is sorted 0'\n", path);
-}
-
-static Result read_file(ConvertInput *input, const char *path, int file, Strands *strands,
-                        Error *error)
-{
-    StrandsReport report;
-    TRY(strands_read(strands, path, &input->options, &report, error));
-    report_mended(input, &report, file, path);
-    input->features |= strands_features(strands);
-    if (input->reports[file].strands == 0) input->reports[file] = report;
-    return RESULT_OK;
-}
-
 // The unit and axis that are guessed for the first frame hold for all.
 static Result read_numbered(ConvertInput *input, int frame, Strands *strands, Error *error)
 {
     char *name = target_name_frame(&input->pattern, frame);
     if (!name) return error_set(error, RESULT_FAILED, "no memory for a name");
-    Result result = read_file(input, name, 0, strands, error);
+    Result result = read_file(input, name, 0, strands, NULL, error);
     if (result == RESULT_OK) {
         input->options.unit = input->reports[0].unit_used;
         input->options.up = input->reports[0].up_z ? UP_Z : UP_Y;
@@ -261,15 +292,29 @@ static Result read_numbered(ConvertInput *input, int frame, Strands *strands, Er
     return result;
 }
 
+// The single file's, of which `still` has all but the positions.
+static Result read_framed(const ConvertInput *input, int frame, Strands *strands, Error *error)
+{
+    size_t count = input->still.vertex_count;
+    TRY(strands_join(strands, &input->still, 1, error));
+    memcpy(strands->position, input->frames.position + (frame - input->frames.first) * count,
+           count * sizeof *strands->position);
+    return RESULT_OK;
+}
+
 static Result read_files(ConvertInput *input, Strands *strands, Error *error)
 {
-    if (input->path_count == 1) return read_file(input, input->paths[0], 0, strands, error);
+    if (input->path_count == 1) {
+        *strands = input->still;
+        input->still = (Strands){0};
+        return RESULT_OK;
+    }
     Strands *sets = calloc((size_t)input->path_count, sizeof *sets);
     Result result =
         sets ? RESULT_OK
              : error_set(error, RESULT_FAILED, "no memory for %d files", input->path_count);
     for (int i = 0; i < input->path_count && result == RESULT_OK; ++i)
-        result = read_file(input, input->paths[i], i, &sets[i], error);
+        result = read_file(input, input->paths[i], i, &sets[i], NULL, error);
     THEN(result, strands_join(strands, sets, (uint32_t)input->path_count, error));
     for (int i = 0; sets && i < input->path_count; ++i) strands_destroy(&sets[i]);
     free(sets);
@@ -281,6 +326,7 @@ Result convert_input_read(ConvertInput *input, int frame, Strands *strands, Erro
     *strands = (Strands){0};
     if (input->cached) return read_cache(&input->cache, frame, strands, error);
     if (input->numbered) return read_numbered(input, frame, strands, error);
+    if (input->framed) return read_framed(input, frame, strands, error);
     return read_files(input, strands, error);
 }
 

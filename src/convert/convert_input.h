@@ -28,9 +28,12 @@ typedef struct ConvertInput {
     char **paths; // not owned
     int path_count;
     StrandsReadOptions options;
-    FILE *messages;        // reports what was mended; NULL: nowhere
-    bool says_guess;       // of unit and axis, among the messages
-    bool cached, numbered; // else the files are one frame
+    FILE *messages;                // reports what was mended; NULL: nowhere
+    bool says_guess;               // of unit and axis, among the messages
+    bool wants_frames;             // of a single file with time all of them, else only the first
+    bool cached, numbered, framed; // else the files are one frame
+    Strands still;                 // of a single file, until it is handed on; framed: to the end
+    StrandsFrames frames;          // framed
     CacheStrands cache;
     Target pattern;
     int first, last, every; // frames that are wanted
@@ -48,7 +51,7 @@ void convert_input_close(ConvertInput *input);
 
 static inline bool convert_input_moves(const ConvertInput *input)
 {
-    return input->cached || input->numbered;
+    return input->cached || input->numbered || input->framed;
 }
 
 static inline int convert_input_count(const ConvertInput *input)

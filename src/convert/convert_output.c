@@ -8,6 +8,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 // --- The name.
 
@@ -17,9 +18,17 @@ static const char *suffix_of(const char *path)
     return dot && (!slash || dot > slash) ? dot : "";
 }
 
+static bool is_npz(const char *path, int format)
+{
+    return format ? format - 1 == FORMAT_NPZ : strcasecmp(suffix_of(path), ".npz") == 0;
+}
+
 // With --format any name will do.
 static Result parse_target(ConvertOutput *output, Error *error)
 {
+    if (!output->format && strcmp(output->path, "-") == 0)
+        return error_set(error, RESULT_USAGE,
+                         "-: standard output has no suffix: expected --format");
     if (!output->format) return format_target(&output->target, output->path, error);
     TRY(target_parse_any(&output->target, output->path, error));
     if (FORMAT_TABLE[output->format - 1]->animated && output->target.kind == TARGET_STILL)
@@ -27,13 +36,24 @@ static Result parse_target(ConvertOutput *output, Error *error)
     return RESULT_OK;
 }
 
+bool convert_output_is_still(const char *path, int format)
+{
+    ConvertOutput output = {.path = path, .format = format};
+    bool still = parse_target(&output, NULL) != RESULT_OK || output.target.kind == TARGET_STILL;
+    target_destroy(&output.target);
+    return still && !is_npz(path, format);
+}
+
 Result convert_output_open(ConvertOutput *output, int frame_count, Error *error)
 {
     TRY(parse_target(output, error));
+    if (output->animated && output->target.kind == TARGET_STILL &&
+        is_npz(output->path, output->format))
+        output->target.kind = TARGET_VIDEO;
     if (output->target.kind == TARGET_STILL && frame_count > 1)
         return error_set(error, RESULT_USAGE,
                          "%s: one name for %d frames, put the frame number into it, x_%%04d%s, "
-                         "or write .usda",
+                         "or write .usda or .npz",
                          output->path, frame_count, suffix_of(output->path));
     return target_prepare(&output->target, error);
 }
@@ -44,6 +64,7 @@ void convert_output_close(ConvertOutput *output)
     strands_destroy(&output->still);
     target_destroy(&output->target);
     free(output->widths);
+    free(output->npz_frames);
     *output = (ConvertOutput){0};
 }
 
@@ -99,19 +120,62 @@ static bool same_strands(const Strands *a, const Strands *b)
            memcmp(a->first, b->first, ((size_t)a->strand_count + 1) * sizeof *a->first) == 0;
 }
 
+static Result check_same(const ConvertOutput *output, int frame, const Strands *strands,
+                         Error *error)
+{
+    if (same_strands(&output->still, strands)) return RESULT_OK;
+    return error_set(error, RESULT_FAILED,
+                     "%s: frame %d has other strands than frame %d; in one file they must be "
+                     "the same",
+                     output->path, frame, output->first);
+}
+
 static Result add_usd(ConvertOutput *output, int frame, Strands *strands, Error *error)
 {
     bool begins = !output->usd.strands;
-    if (begins) {
+    if (begins)
         TRY(open_usd(output, strands, error));
-    } else if (!same_strands(&output->still, strands)) {
-        return error_set(error, RESULT_FAILED,
-                         "%s: frame %d has other strands than frame %d; in one file they must be "
-                         "the same",
-                         output->path, frame, output->first);
-    }
+    else
+        TRY(check_same(output, frame, strands, error));
     const Strands *now = begins ? &output->still : strands;
     return usd_writer_add(&output->usd, frame, (const float(*)[3])now->position, error);
+}
+
+// --- .npz: all frames are kept to the end.
+
+static Result add_npz(ConvertOutput *output, int frame, Strands *strands, Error *error)
+{
+    if (output->npz_count == 0) {
+        strands_destroy(&output->still);
+        output->still = *strands;
+        *strands = (Strands){0};
+    }
+    const Strands *now = output->npz_count ? strands : &output->still;
+    TRY(check_same(output, frame, now, error));
+    size_t size = now->vertex_count;
+    if (output->npz_count == output->npz_room) {
+        uint32_t room = 2 * output->npz_room + 16;
+        float(*more)[3] = realloc(output->npz_frames, room * size * sizeof *more);
+        if (!more) return error_set(error, RESULT_FAILED, "%s: no memory", output->path);
+        output->npz_frames = more;
+        output->npz_room = room;
+    }
+    memcpy(output->npz_frames + output->npz_count++ * size, now->position,
+           size * sizeof *now->position);
+    return RESULT_OK;
+}
+
+static Result finish_npz(ConvertOutput *output, Error *error)
+{
+    const NpzFrames frames = {output->npz_count, (const float(*)[3])output->npz_frames, output->fps,
+                              output->first};
+    OutFile file;
+    TRY(format_check_terminal(output->target.before, FORMAT_NPZ, error));
+    TRY(outfile_open(&file, output->target.before, error));
+    Result result = npz_write_frames(&file, &output->still, &frames, error);
+    if (result == RESULT_OK) return outfile_commit(&file, error);
+    outfile_discard(&file);
+    return result;
 }
 
 // --- Any kind.
@@ -141,14 +205,16 @@ Result convert_output_add(ConvertOutput *output, int frame, Strands *strands, Er
     output->kind =
         output->format ? (FormatKind)output->format - 1 : format_choose(output->path, strands);
     output->lost |= strands_features(strands) & ~FORMAT_TABLE[output->kind]->features;
-    if (output->target.kind == TARGET_VIDEO) return add_usd(output, frame, strands, error);
+    if (output->target.kind == TARGET_VIDEO)
+        return (output->kind == FORMAT_NPZ ? add_npz : add_usd)(output, frame, strands, error);
     return write_file(output, frame, strands, error);
 }
 
 Result convert_output_finish(ConvertOutput *output, Error *error)
 {
-    if (!output->usd.strands) return RESULT_OK;
-    Result result = usd_writer_finish(&output->usd, error);
+    if (!output->usd.strands && !output->npz_count) return RESULT_OK;
+    Result result =
+        output->npz_count ? finish_npz(output, error) : usd_writer_finish(&output->usd, error);
     output->files += result == RESULT_OK;
     return result;
 }

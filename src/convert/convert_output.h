@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/target.h"
+#include "strands/formats/npz_file.h"
 #include "strands/formats/usd_write.h"
 #include "strands/strands_report.h"
 
@@ -21,9 +22,14 @@ typedef struct ConvertOutput {
     Strands still; // of the first frame, if all go into one file
     float *widths;
     UsdWriter usd;
+    float (*npz_frames)[3]; // of .npz, [npz_count * still.vertex_count]
+    uint32_t npz_count, npz_room;
     uint32_t lost; // features that the files do not have
     int files;     // written
 } ConvertOutput;
+
+// Whether the name, or standard output, is for one frame. `format` as above.
+bool convert_output_is_still(const char *path, int format);
 
 // Checks the name and makes its folder; everything up to `section` is set. `frame_count`: how many
 // will come. RESULT_USAGE for the name, RESULT_FAILED if no file can be made there.

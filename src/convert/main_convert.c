@@ -16,8 +16,8 @@
 #include <string.h>
 
 typedef struct Command {
-    const char *unit, *to_unit, *output, *json; // NULL: not given
-    int up, to_up, format, first, last, every, seed;
+    const char *unit, *to_unit, *output, *json, *array; // NULL: not given
+    int points, up, to_up, format, first, last, every, seed;
     double fps, width;
     bool strict, stats, quiet;
     OptionSteps steps;
@@ -28,7 +28,8 @@ static const char AXES[] = "y|z", FROM_AXES[] = "auto|y|z", UNITS[] = "m|cm|mm|i
 
 static const Option OPTIONS[] = {
     {"output", 'o', OPTION_STRING, AT(output), "FILE", 0, 0,
-     "file to write, in the format of its suffix (below); with one %d or %04d, a file per frame"},
+     "file to write, in the format of its suffix (below); with one %d or %04d, a file per frame; - "
+     "is standard output, in the format of --format"},
     {"format", 0, OPTION_WORD, AT(format), "auto" FORMAT_WORDS, 0, 0,
      "format of FILE, whatever its name; auto uses the suffix, .tfx is tfx4, or text if strands "
      "differ in their number of vertices [default auto]"},
@@ -43,6 +44,14 @@ static const Option OPTIONS[] = {
     {"up", 0, OPTION_WORD, AT(up), FROM_AXES, 0, 0,
      "axis of the hair files that points up; auto: as the file says, else z in Cem Yuksel's .hair "
      "files, y in others [default auto]"},
+    {"points-per-strand", 0, OPTION_WHOLE, AT(points), "N", 2, 65535,
+     "points of each strand of a .ply or .npy that is a mere list of points, vertices of each "
+     "cubic "
+     "USD curve [default: found from where consecutive points jump; 2 or 4 for each segment of a "
+     "curve]"},
+    {"array", 0, OPTION_STRING, AT(array), "NAME", 0, 0,
+     "name of a .npz file's array of positions [default: positions, points, or the first that can "
+     "be it]"},
     {"strict", 0, OPTION_SWITCH, AT(strict), NULL, 0, 0,
      "reject files with defects instead of repairing them"},
     {"to-unit", 0, OPTION_STRING, AT(to_unit), UNITS, 0, 0, "unit of the written file [default m]"},
@@ -104,6 +113,7 @@ static const char *const EXAMPLES[] = {
     "tractrix-convert scan.data --up z --min-length 0.01 --spacing 0.005 -o scan.tfx --format text",
     "tractrix-convert anim.cache -o anim.usda",
     "tractrix-convert sim_%04d.tfx --fps 30 -o sim.usda",
+    "tractrix-gen --kind curls -o - | tractrix-convert - --resample 64 -o x.usda",
     NULL};
 
 static const OptionsProgram PROGRAM = {
@@ -155,14 +165,22 @@ static Result check_sense(const Command *command, int files, Error *error)
 
 static void describe_formats(char *text, size_t size)
 {
-    char names[300], suffixes[200];
+    char names[400], suffixes[200];
     format_list_names(names, sizeof names);
     format_list_suffixes(suffixes, sizeof suffixes);
     snprintf(text, size,
-             "FILE is a hair file (%s), a name with %%d or %%04d that stands for numbered ones, or "
+             "FILE is a hair file (%s), - for standard input, a name with %%d or %%04d that stands "
+             "for numbered ones, or "
              "a cache of tractrix-render. Several hair files become one. Without -o, --stats and "
              "--json the program only reports what they are. The suffix of what is written is %s.",
              names, suffixes);
+}
+
+// Of a file with time: all frames for what holds them or if some are asked for.
+static bool wants_frames(const Command *command)
+{
+    bool still = !command->output || convert_output_is_still(command->output, command->format);
+    return !still || command->first > 0 || command->last >= 0;
 }
 
 static Result parse(Job *job, int argc, char **argv, bool *done, Error *error)
@@ -170,7 +188,7 @@ static Result parse(Job *job, int argc, char **argv, bool *done, Error *error)
     Command *command = &job->command;
     int first;
     float unit = 0, to_unit = 1;
-    char formats[1024];
+    char formats[1400];
     const char *const notes[] = {formats, OTHER_NOTES};
     OptionsProgram program = PROGRAM;
     program.notes = notes;
@@ -190,9 +208,12 @@ static Result parse(Job *job, int argc, char **argv, bool *done, Error *error)
                                 .options = {.unit = unit,
                                             .up = (UpAxis)command->up,
                                             .strict = command->strict,
-                                            .seed = (uint32_t)command->seed},
+                                            .seed = (uint32_t)command->seed,
+                                            .points_per_strand = (uint32_t)command->points,
+                                            .array = command->array},
                                 .messages = command->quiet ? NULL : stderr,
                                 .says_guess = command->output,
+                                .wants_frames = wants_frames(command),
                                 .first = command->first,
                                 .last = command->last,
                                 .every = command->every,
@@ -258,17 +279,25 @@ static Result do_frames(Job *job, Error *error)
     return result;
 }
 
+// Standard output may be the hair's.
+static FILE *messages_of(const Command *command)
+{
+    return command->output && outfile_is_stdout(command->output) ? stderr : stdout;
+}
+
 static void print_output(const Job *job)
 {
+    FILE *stream = messages_of(&job->command);
     const ConvertOutput *output = &job->output;
     const char *kind = FORMAT_TABLE[output->kind]->name;
     char lost[300];
     strands_features_describe(output->lost, lost, sizeof lost);
     if (*lost) fprintf(stderr, "%s: %s leaves out: %s\n", output->path, kind, lost);
     if (output->animated)
-        printf("%s: %s, %d frames\n", output->path, kind, convert_input_count(&job->input));
+        fprintf(stream, "%s: %s, %d frames\n", output->path, kind,
+                convert_input_count(&job->input));
     else
-        printf("%s: %s\n", output->path, kind);
+        fprintf(stream, "%s: %s\n", output->path, kind);
 }
 
 static json_t *output_to_json(const ConvertOutput *output)
@@ -303,7 +332,7 @@ static Result run(Job *job, Error *error)
     TRY(do_frames(job, error));
     if (!command->quiet && only_reports) convert_input_print(&job->input, stdout);
     if (!command->quiet && command->output) print_output(job);
-    if (command->stats) figures_print(&job->figures, stdout);
+    if (command->stats) figures_print(&job->figures, messages_of(command));
     if (!command->json) return RESULT_OK;
     return write_json(command->json, &job->input, &job->figures,
                       command->output ? &job->output : NULL, error);

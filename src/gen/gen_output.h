@@ -10,17 +10,25 @@
 #include "base/options.h"
 #include "strands/formats/format.h"
 
+#include <stdio.h>
+
 typedef struct GenOutput {
     const char *path; // NULL: not given
     int format;       // a FormatKind
     bool quiet;
 } GenOutput;
 
+// Where messages go: standard output may be the hair's ("-").
+static inline FILE *gen_messages(const GenOutput *output)
+{
+    return output->path && outfile_is_stdout(output->path) ? stderr : stdout;
+}
+
 // Rows of an option table; `at` is the offset of a GenOutput's member, or of an int, in the
 // command's struct.
 #define GEN_OPTION_OUTPUT(at)                                                                      \
     {                                                                                              \
-        "output", 'o', OPTION_STRING, at, "FILE", 0, 0, "hair file to write"                       \
+        "output", 'o', OPTION_STRING, at, "FILE", 0, 0, "hair file to write; - is standard output" \
     }
 #define GEN_OPTION_FORMAT(at)                                                                      \
     {                                                                                              \

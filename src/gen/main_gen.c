@@ -190,10 +190,11 @@ static Result write_strands(const GenOutput *output, const Strands *strands, uin
 {
     TRY(format_write(output->path, (FormatKind)output->format, strands, error));
     if (output->quiet) return RESULT_OK;
-    printf("%s: %u strands of %u vertices, ", output->path, strands->strand_count,
-           strands_size(strands, 0));
-    if (guides) printf("%u of them guides, ", guides);
-    printf("%s\n", FORMAT_TABLE[output->format]->name);
+    FILE *stream = gen_messages(output);
+    fprintf(stream, "%s: %u strands of %u vertices, ", output->path, strands->strand_count,
+            strands_size(strands, 0));
+    if (guides) fprintf(stream, "%u of them guides, ", guides);
+    fprintf(stream, "%s\n", FORMAT_TABLE[output->format]->name);
     return RESULT_OK;
 }
 
@@ -215,8 +216,8 @@ static Result write_mesh(const Command *command, ScalpShape shape, Error *error)
                                           : head_make_mesh(&mesh, HEAD_TRIANGLES, error);
     THEN(result, obj_write_mesh(command->mesh, &mesh, error));
     if (result == RESULT_OK && !command->output.quiet)
-        printf("%s: %u vertices, %u triangles\n", command->mesh, mesh.vertex_count,
-               mesh.triangle_count);
+        fprintf(gen_messages(&command->output), "%s: %u vertices, %u triangles\n", command->mesh,
+                mesh.vertex_count, mesh.triangle_count);
     mesh_destroy(&mesh);
     return result;
 }

@@ -12,6 +12,8 @@ static StrandsReadOptions read_options(const Scene *scene, const Section *sectio
         .up = (UpAxis)section->params.up,
         .strict = scene->run.strict,
         .seed = scene->run.seed,
+        .points_per_strand = section->params.points_per_strand,
+        .array = section->params.array,
     };
 }
 

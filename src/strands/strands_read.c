@@ -6,29 +6,80 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 // --- Detection.
+
+#define BLENDER "convert it: blender -b --python blender_hair.py -- export FILE -o x.npz"
 
 // Files that are often taken for hair and how to make hair of them, by their first bytes.
 static const struct {
     const char *begin, *name, *advice;
 } FOREIGN[] = {
-    {"Ogawa", "Alembic", "export USD (.usda)"},
-    {"\x89HDF", "HDF5 (old Alembic)", "export USD (.usda)"},
-    {"PXR-USDC", "binary USD", "convert it with usdcat -o FILE.usda"},
-    {"PK\x03\x04", "a zip archive (.usdz, .npz)", "unpack it"},
-    {"\x1f\x8b", "compressed by gzip", "unpack it"},
-    {"Kaydara FBX", "FBX", "export USD (.usda) or Wavefront lines"},
-    {"glTF", "glTF", "export USD (.usda) or Wavefront lines"},
+    {"Ogawa", "Alembic (.abc)", BLENDER},
+    {"\x89HDF", "HDF5, as in old Alembic files (.abc)",
+     "rewrite it with abcconvert -toOgawa, then " BLENDER},
+    {"PXR-USDC", "binary USD (.usdc)", BLENDER " (or usdcat FILE -o x.usda)"},
+    {"BLENDER", "a Blender file (.blend)", BLENDER},
+    {"\x28\xb5\x2f\xfd", "compressed by zstd, as Blender files (.blend) are", BLENDER},
+    {"\x1f\x8b", "compressed by gzip, as old Blender files (.blend) may be",
+     "unpack it, or " BLENDER},
+    {"BZh", "compressed by bzip2", "unpack it"},
+    {"\xfd"
+     "7zXZ",
+     "compressed by xz", "unpack it"},
+    {"7z\xbc\xaf", "a 7-Zip archive", "unpack it"},
+    {"//Maya ASCII", "a Maya scene (.ma)", "export Alembic there, then " BLENDER},
+    {"FOR4", "a Maya scene (.mb)", "export Alembic there, then " BLENDER},
+    {"FOR8", "a Maya scene (.mb)", "export Alembic there, then " BLENDER},
+    {"Kaydara FBX", "FBX", "it keeps no strands: export Alembic, USD or Wavefront lines"},
+    {"; FBX", "FBX", "it keeps no strands: export Alembic, USD or Wavefront lines"},
+    {"gl"
+     "TF",
+     "GLB, a scene of triangles", "it keeps no strands: export Alembic, USD or Wavefront lines"},
+    {"\x7fNSJ", "a Houdini file (.bgeo)", "export .usda there"},
+    {"\x89PNG", "a PNG image", "expected hair"},
 };
 
-static Result refuse_unknown(Reader *reader)
+// "PK", the name of the first file at byte 30.
+static Result refuse_zip(Reader *reader)
 {
-    char names[300];
+    bool usd = memmem(reader->data, reader->size < 300 ? reader->size : 300, ".usd", 4) != NULL;
+    if (usd) return reader_fail(reader, "not supported: a USD package (.usdz): " BLENDER);
+    return reader_fail(reader, "not supported: a zip archive: unpack it (a .npz's first file is a "
+                               ".npy)");
+}
+
+static bool begins_with(const Reader *reader, const char *begin)
+{
+    size_t length = strlen(begin);
+    return reader->size >= length && memcmp(reader->data, begin, length) == 0;
+}
+
+// Their comments look like Wavefront's.
+static bool is_xgen(const Bytes *bytes)
+{
+    const char *text = (const char *)bytes->data;
+    return text[0] == '#' && strncasecmp(text + 1 + strspn(text + 1, " "), "xgen", 4) == 0;
+}
+
+static Result refuse_unknown(Reader *reader, bool xgen)
+{
+    char names[400];
     if (reader->size == 0) return reader_fail(reader, "the file is empty");
+    if (xgen)
+        return reader_fail(reader, "not supported: an XGen description: export its curves as "
+                                   "Alembic in Maya, then " BLENDER);
+    if (begins_with(reader, "PK\x03\x04")) return refuse_zip(reader);
     for (size_t i = 0; i < sizeof FOREIGN / sizeof *FOREIGN; i++)
-        if (strncmp((const char *)reader->data, FOREIGN[i].begin, strlen(FOREIGN[i].begin)) == 0)
+        if (begins_with(reader, FOREIGN[i].begin))
             return reader_fail(reader, "not supported: %s: %s", FOREIGN[i].name, FOREIGN[i].advice);
+    size_t head = reader->size < 4096 ? reader->size : 4096;
+    if (reader->data[strspn((const char *)reader->data, " \t\r\n")] == '{' &&
+        memmem(reader->data, head, "\"asset\"", 7))
+        return reader_fail(reader,
+                           "not supported: GLTF, a scene of triangles: it keeps no strands: export "
+                           "Alembic, USD or Wavefront lines");
     format_list_names(names, sizeof names);
     return reader_fail(reader, "not a hair file: expected %s", names);
 }
@@ -117,15 +168,15 @@ static void make_rotation(const double angle[3], double r[3][3])
 
 // To metres, y up: p' = unit * (translation + rotation * (scale * p)), then (x, y, z) -> (x, z, -y)
 // if `up_z`. Computed in double and rounded once; with unit 1 and none of the others, bits stay.
-static void convert(FormatSource *source, double unit, bool up_z)
+static void convert_positions(const FormatSource *source, float (*positions)[3], size_t count,
+                              double unit, bool up_z)
 {
-    Strands *strands = &source->strands;
     double rotation[3][3], scale = source->scale != 0.0 ? source->scale : 1.0;
     make_rotation(source->rotation, rotation);
     bool rotated =
         source->rotation[0] != 0.0 || source->rotation[1] != 0.0 || source->rotation[2] != 0.0;
-    for (uint32_t v = 0; v < strands->vertex_count; v++) {
-        float *position = strands->position[v];
+    for (size_t v = 0; v < count; v++) {
+        float *position = positions[v];
         double p[3] = {position[0] * scale, position[1] * scale, position[2] * scale};
         double q[3] = {p[0], p[1], p[2]};
         for (int i = 0; i < 3 && rotated; i++)
@@ -137,6 +188,16 @@ static void convert(FormatSource *source, double unit, bool up_z)
         position[1] = (float)((up_z ? q[2] : q[1]) * unit);
         position[2] = (float)((up_z ? -q[1] : q[2]) * unit);
     }
+}
+
+static void convert(FormatSource *source, double unit, bool up_z)
+{
+    Strands *strands = &source->strands;
+    double scale = source->scale != 0.0 ? source->scale : 1.0;
+    convert_positions(source, strands->position, strands->vertex_count, unit, up_z);
+    if (source->frames)
+        convert_positions(source, source->frames, (size_t)source->samples * strands->vertex_count,
+                          unit, up_z);
     for (uint32_t v = 0; strands->vertex_thickness && v < strands->vertex_count; v++)
         strands->vertex_thickness[v] = (float)(strands->vertex_thickness[v] * unit * fabs(scale));
     strands->follower_radius = (float)(strands->follower_radius * unit * fabs(scale));
@@ -208,10 +269,10 @@ static bool check_coordinates(const FormatSource *source, uint32_t s, uint32_t e
     return true;
 }
 
-// Moves the vertices of strand s that are to stay to `to` and on. Returns how many they are, 0 for
-// a strand to drop.
+// Moves the vertices of strand s that are to stay to `to` and on, and notes in `kept`, unless it is
+// NULL, which they were. Returns how many they are, 0 for a strand to drop.
 static uint32_t mend_strand(FormatSource *source, uint32_t s, uint32_t end, uint32_t to,
-                            StrandsReport *report)
+                            uint32_t *kept_from, StrandsReport *report)
 {
     Strands *strands = &source->strands;
     uint32_t begin = strands->first[s], kept = 1;
@@ -232,11 +293,14 @@ static uint32_t mend_strand(FormatSource *source, uint32_t s, uint32_t end, uint
         return 0;
     }
     move_vertex(strands, to, begin);
+    if (kept_from) kept_from[to] = begin;
     for (uint32_t v = begin + 1; v < end; v++) {
-        if (coincide(strands->position[to + kept - 1], strands->position[v], nearest))
+        if (coincide(strands->position[to + kept - 1], strands->position[v], nearest)) {
             note(report, DEFECT_COINCIDENT, vertex_place(source, s, v));
-        else
-            move_vertex(strands, to + kept++, v);
+            continue;
+        }
+        if (kept_from) kept_from[to + kept] = v;
+        move_vertex(strands, to + kept++, v);
     }
     return kept;
 }
@@ -279,8 +343,10 @@ static Result fail_too_long(const FormatSource *source, uint32_t s, uint32_t siz
 }
 
 // Mends positions that are in metres, in place, to what strands_read promises. Counts what it does
-// in `report`. Fails (RESULT_BAD_INPUT) only for a strand that is longer than the maximum.
-static Result mend(FormatSource *source, const char *path, StrandsReport *report, Error *error)
+// in `report`; `kept_from`, [vertex_count] or NULL, takes the old number of each vertex. Fails
+// (RESULT_BAD_INPUT) only for a strand that is longer than the maximum.
+static Result mend(FormatSource *source, const char *path, uint32_t *kept_from,
+                   StrandsReport *report, Error *error)
 {
     Strands *strands = &source->strands;
     report->defects[DEFECT_OVER_LIMIT] = (Defect){source->over_limit, source->over_limit_line};
@@ -293,7 +359,7 @@ static Result mend(FormatSource *source, const char *path, StrandsReport *report
         strands->first[s] = begin;
         begin = end;
         mend_attributes(source, s, report);
-        uint32_t size = mend_strand(source, s, end, kept_vertices, report);
+        uint32_t size = mend_strand(source, s, end, kept_vertices, kept_from, report);
         if (size > STRANDS_MAX_SIZE) return fail_too_long(source, s, size, path, error);
         if (size == 0) continue;
         move_strand(strands, kept_strands, s);
@@ -304,6 +370,37 @@ static Result mend(FormatSource *source, const char *path, StrandsReport *report
     strands->strand_count = kept_strands;
     strands->vertex_count = kept_vertices;
     return RESULT_OK;
+}
+
+// Of all frames, keeps the vertices that are left; source->frames then has as many as the strands.
+static Result mend_frames(FormatSource *source, const char *path, uint32_t file_count,
+                          const uint32_t *kept_from, Error *error)
+{
+    uint32_t count = source->strands.vertex_count;
+    for (uint32_t f = 0; f < source->samples; f++) {
+        float(*from)[3] = source->frames + (size_t)f * file_count;
+        float(*to)[3] = source->frames + (size_t)f * count;
+        for (uint32_t v = 0; v < count; v++) {
+            if (!is_usable(from[kept_from[v]]))
+                return error_set(error, RESULT_BAD_INPUT,
+                                 "%s: frame %d: vertex %u is not finite or beyond 1000 km", path,
+                                 source->first_frame + (int)f, kept_from[v]);
+            memmove(to[v], from[kept_from[v]], sizeof *to);
+        }
+    }
+    return RESULT_OK;
+}
+
+static Result mend_all(FormatSource *source, const char *path, StrandsReport *report, Error *error)
+{
+    uint32_t count = source->strands.vertex_count, *kept_from = NULL;
+    if (!source->frames) return mend(source, path, NULL, report, error);
+    kept_from = malloc(((size_t)count + 1) * sizeof *kept_from);
+    if (!kept_from) return error_set(error, RESULT_FAILED, "%s: no memory", path);
+    Result result = mend(source, path, kept_from, report, error);
+    THEN(result, mend_frames(source, path, count, kept_from, error));
+    free(kept_from);
+    return result;
 }
 
 // --- Reading.
@@ -317,6 +414,7 @@ static void report_source(StrandsReport *report, const FormatSource *source, For
     report->shuffled = source->shuffle;
     report->samples = source->samples;
     report->rotation_was_deg = source->rotation_was_deg;
+    memcpy(report->note, source->note, sizeof report->note);
 }
 
 static bool describe_first_defect(const StrandsReport *report, const char *name, char *text,
@@ -358,7 +456,7 @@ static Result finish(FormatSource *source, const char *name, const StrandsReadOp
     report->up_guessed = up == UP_AUTO;
     report->up_z = report->up_guessed ? format->up_z : up == UP_Z;
     convert(source, (double)report->unit_used, report->up_z);
-    TRY(mend(source, name, report, error));
+    TRY(mend_all(source, name, report, error));
     const Strands *strands = &source->strands;
     if (source->shuffle && strands->strand_count > 1)
         TRY(strands_shuffle(&source->strands, options->seed, error));
@@ -367,42 +465,91 @@ static Result finish(FormatSource *source, const char *name, const StrandsReadOp
     return strands->strand_count ? RESULT_OK : refuse_empty(report, name, error);
 }
 
-Result strands_read_bytes(Strands *strands, const char *name, const Bytes *bytes,
+// A wish without effect is an error.
+static Result check_wishes(const FormatSource *source, const char *name, const char *format,
+                           Error *error)
+{
+    if (source->wishes.points_per_strand && !source->used_points)
+        return error_set(error, RESULT_USAGE,
+                         "%s: --points-per-strand has no effect: this %s file says where strands "
+                         "end",
+                         name, format);
+    if (source->wishes.array && !source->used_array)
+        return error_set(error, RESULT_USAGE, "%s: --array has no effect: it is for .npz files",
+                         name);
+    return RESULT_OK;
+}
+
+// Reads, mends and measures; what is read stays in the source.
+static Result read_source(FormatSource *source, const char *name, const Bytes *bytes,
                           const StrandsReadOptions *options, StrandsReport *report, Error *error)
 {
-    StrandsReadOptions defaults = {0};
-    StrandsReport unwanted;
-    if (!options) options = &defaults;
-    if (!report) report = &unwanted;
-    *strands = (Strands){0};
-    *report = (StrandsReport){.kind = FORMAT_KINDS};
-    FormatKind kind = format_detect(bytes);
+    bool xgen = is_xgen(bytes);
+    FormatKind kind = xgen ? FORMAT_KINDS : format_detect(bytes);
     const Format *format = kind < FORMAT_KINDS ? FORMAT_TABLE[kind] : NULL;
     Reader reader = format && format->text ? reader_begin_text(name, bytes, error)
                                            : reader_begin_binary(name, bytes, error);
-    FormatSource source = {0};
-    Result result = format ? format->read(&source, &reader) : refuse_unknown(&reader);
+    source->wishes.points_per_strand = options->points_per_strand;
+    source->wishes.array = options->array && *options->array ? options->array : NULL;
+    Result result = format ? format->read(source, &reader) : refuse_unknown(&reader, xgen);
     reader_end(&reader);
-    if (result == RESULT_OK) {
-        report_source(report, &source, kind);
-        result = finish(&source, name, options, report, error);
-    }
+    if (result != RESULT_OK) return result;
+    TRY(check_wishes(source, name, format->name, error));
+    report_source(report, source, kind);
+    return finish(source, name, options, report, error);
+}
+
+static Result read_bytes(Strands *strands, StrandsFrames *frames, const char *name,
+                         const Bytes *bytes, const StrandsReadOptions *options,
+                         StrandsReport *report, Error *error)
+{
+    StrandsReadOptions defaults = {0};
+    StrandsReport unwanted;
+    if (!report) report = &unwanted;
+    *strands = (Strands){0};
+    *report = (StrandsReport){.kind = FORMAT_KINDS};
+    FormatSource source = {.wishes.all_frames = frames};
+    Result result = read_source(&source, name, bytes, options ? options : &defaults, report, error);
     if (result == RESULT_OK) {
         *strands = source.strands;
         source.strands = (Strands){0};
     }
+    if (result == RESULT_OK && frames && source.frames) {
+        *frames = (StrandsFrames){source.samples, source.frames, source.fps, source.first_frame};
+        source.frames = NULL;
+        report->all_samples = true;
+    }
     format_source_destroy(&source);
+    return result;
+}
+
+Result strands_read_bytes(Strands *strands, const char *name, const Bytes *bytes,
+                          const StrandsReadOptions *options, StrandsReport *report, Error *error)
+{
+    return read_bytes(strands, NULL, name, bytes, options, report, error);
+}
+
+Result strands_read_frames(Strands *strands, StrandsFrames *frames, const char *path,
+                           const StrandsReadOptions *options, StrandsReport *report, Error *error)
+{
+    *strands = (Strands){0};
+    if (frames) *frames = (StrandsFrames){0};
+    if (report) *report = (StrandsReport){.kind = FORMAT_KINDS};
+    Bytes bytes;
+    TRY(bytes_read_input(&bytes, path, error));
+    Result result = read_bytes(strands, frames, path, &bytes, options, report, error);
+    bytes_destroy(&bytes);
     return result;
 }
 
 Result strands_read(Strands *strands, const char *path, const StrandsReadOptions *options,
                     StrandsReport *report, Error *error)
 {
-    *strands = (Strands){0};
-    if (report) *report = (StrandsReport){.kind = FORMAT_KINDS};
-    Bytes bytes;
-    TRY(bytes_read_file(&bytes, path, error));
-    Result result = strands_read_bytes(strands, path, &bytes, options, report, error);
-    bytes_destroy(&bytes);
-    return result;
+    return strands_read_frames(strands, NULL, path, options, report, error);
+}
+
+void strands_frames_destroy(StrandsFrames *frames)
+{
+    free(frames->position);
+    *frames = (StrandsFrames){0};
 }

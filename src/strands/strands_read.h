@@ -12,7 +12,17 @@ typedef struct StrandsReadOptions {
     UpAxis up;     // the file's axis that is up; UP_AUTO: as the file says or its format has it
     bool strict;   // refuse a file with any defect
     uint32_t seed; // for the shuffle of a file that says `is sorted 0`
+    uint32_t points_per_strand; // of files of points without strands; 0: find it
+    const char *array;          // the name of the positions in .npz; NULL or "": the usual ones
 } StrandsReadOptions;
+
+// All frames of a file with time. A zeroed one is empty.
+typedef struct StrandsFrames {
+    uint32_t count;       // 0: the file has no time
+    float (*position)[3]; // [count * vertex_count] of the strands, metres, y up
+    double fps;           // 0: the file does not say
+    int first;            // number of the first frame
+} StrandsFrames;
 
 // Reads `path` and mends it: metres, y up, and at least one strand. Every strand has 2 ..
 // STRANDS_MAX_SIZE vertices, coordinates are finite and at most 1e6 m, and neighbours lie further
@@ -32,14 +42,22 @@ typedef struct StrandsReadOptions {
 // UP_AUTO is the axis that the file states, or that of its format: z for HAIR files that this
 // program did not write (Cem Yuksel's have z up), else y.
 //
-// Fails with RESULT_BAD_INPUT (not a hair file, malformed, no usable strand, or defects and
-// `strict`) with one line that names the place, or RESULT_FAILED (memory); `strands` is empty then.
-// `report` is complete where the content was well formed, even on failure: kind is FORMAT_KINDS
-// where it was not.
+// The path "-" is standard input, which can be read once.
+//
+// Fails with RESULT_USAGE for an option that the file has no use for, RESULT_BAD_INPUT (not a hair
+// file, malformed, no usable strand, or defects and `strict`) with one line that names the place,
+// or RESULT_FAILED (memory); `strands` is empty then. `report` is complete where the content was
+// well formed, even on failure: kind is FORMAT_KINDS where it was not.
 Result strands_read(Strands *strands, const char *path, const StrandsReadOptions *options,
                     StrandsReport *report, Error *error);
 
-// The same for content that is in memory (with a zero behind it, as bytes.h says); `name` stands
-// for the path in messages.
+// The same with all frames: those of the vertices that are left of the first frame, which alone is
+// mended. RESULT_BAD_INPUT for a frame with a coordinate that is not finite or beyond 1000 km.
+Result strands_read_frames(Strands *strands, StrandsFrames *frames, const char *path,
+                           const StrandsReadOptions *options, StrandsReport *report, Error *error);
+void strands_frames_destroy(StrandsFrames *frames);
+
+// strands_read for content that is in memory (with a zero behind it, as bytes.h says); `name`
+// stands for the path in messages.
 Result strands_read_bytes(Strands *strands, const char *name, const Bytes *bytes,
                           const StrandsReadOptions *options, StrandsReport *report, Error *error);

@@ -143,7 +143,11 @@ uint32_t strands_report_print_mended(const StrandsReport *report, const char *pa
         fprintf(stream, "%s\n", text);
         lines++;
     }
-    if (report->samples > 1) {
+    if (*report->note) {
+        fprintf(stream, "%s: %s\n", path, report->note);
+        lines++;
+    }
+    if (report->samples > 1 && !report->all_samples) {
         fprintf(stream, "%s: of %u time samples only the first is read\n", path, report->samples);
         lines++;
     }
@@ -197,7 +201,10 @@ static void print_unit(const StrandsReport *report, FILE *stream)
 
 static void print_notes(const StrandsReport *report, FILE *stream)
 {
-    if (report->samples) fprintf(stream, "  times     the first of %u\n", report->samples);
+    if (*report->note) fprintf(stream, "  note      %s\n", report->note);
+    if (report->samples)
+        fprintf(stream, "  times     %s%u\n", report->all_samples ? "" : "the first of ",
+                report->samples);
     if (report->shuffled) fprintf(stream, "  order     shuffled, the file says 'is sorted 0'\n");
     if (report->rotation_was_deg)
         fprintf(stream, "  rotation  taken to be in degrees: a value is beyond 2 pi\n");

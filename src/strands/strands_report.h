@@ -31,9 +31,11 @@ typedef struct StrandsReport {
     float unit_used;                              // metres per unit of the file
     bool up_z;                                    // the file's z is up, else its y
     bool unit_guessed, up_guessed;                // neither the caller nor the file says
-    uint32_t samples;      // in time, of which the first was read; 0: the file has no time
-    bool shuffled;         // the file said `is sorted 0`
-    bool rotation_was_deg; // a `rotation` was taken to be in degrees
+    uint32_t samples;            // in time, of which the first was read; 0: the file has no time
+    bool all_samples;            // ... or all of them
+    char note[FORMAT_NOTE_SIZE]; // what the reader chose or left out; "": nothing to say
+    bool shuffled;               // the file said `is sorted 0`
+    bool rotation_was_deg;       // a `rotation` was taken to be in degrees
     Defect defects[DEFECT_KINDS];
     uint32_t empty_roots;  // strands of one vertex, left out as the data set intends (no defect)
     uint32_t shared_roots; // strands that begin exactly where an earlier one does (kept, no defect)
@@ -53,8 +55,8 @@ bool strands_report_is_clean(const StrandsReport *report);
 void strands_report_describe(const StrandsReport *report, const char *path, DefectKind kind,
                              bool mended, char *text, size_t size);
 
-// Prints one such line for each kind of defect that there is, and one if the file has more than one
-// time sample. Returns how many lines.
+// Prints one such line for each kind of defect that there is, one with the reader's note, and one
+// if the file has more than one time sample. Returns how many lines.
 uint32_t strands_report_print_mended(const StrandsReport *report, const char *path, FILE *stream);
 
 // Prints a line with what was guessed of the unit and the axis, and how to change it; nothing where

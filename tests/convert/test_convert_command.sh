@@ -12,7 +12,7 @@ run 0 $curls; says "TressFX 4 binary"; says "defects   none"; silent err
 run 0 $curls $fur; says "$curls:"; says "$fur:"
 
 claim "all that a format holds comes back, to the bit, through any other that holds it"
-for format in text tfx3 tfx4 hair data obj usda; do
+for format in text tfx3 tfx4 hair data obj usda ply ply-text npz npy; do
     run 0 $curls --unit m -q -o "$x.$format" --format $format; silent out; silent err
     run 0 "$x.$format" --unit m -q -o "$work/again.data"
     run 0 $curls --unit m -q -o "$work/direct.data"
@@ -30,7 +30,7 @@ run 0 $curls -q -o "$x.obj"; silent err
 claim "the name decides the format, --format overrules it"
 run 0 $curls -o "$x.hair"; run 0 "$x.hair"; says "HAIR"
 run 0 $curls -o "$work/noname" --format hair; equal "$x.hair" "$work/noname"
-run 2 $curls -o "$work/noname2"; says ".usda, .hair, .obj, .tfx or .data"; one_line
+run 2 $curls -o "$work/noname2"; says ".usda, .hair, .obj, .tfx, .data, .ply, .npz or .npy"; one_line
 
 claim "units and axes of what is written are those that are asked for"
 run 0 $curls --unit m -q -o "$x.data" --to-unit 0.25 --to-up z
@@ -94,6 +94,24 @@ says "dirty.tfx:5: 1 vertex that coincides"; says "1 attribute value that is not
 run 0 "$work/clean.tfx" --strict; says "strands   3 usable of 3"; silent err
 run 3 "$work/dirty.tfx" --strict -o "$work/none.tfx"; says "refused: --strict"; one_line; none "$work/none.tfx"
 
+claim "- is standard input and standard output, and then all messages go to standard error"
+"$program" - -q --unit m -o - --format data <$curls >"$work/again.data" 2>"$work/err"; silent err; equal "$work/again.data" "$work/direct.data"
+"$bin/tractrix-gen" --kind straight --count 50 -o - 2>"$work/err" | "$program" - --stats >"$work/out"; says "50 strands"; says "-: 50 strands of"
+"$program" - -o - --format usda <$curls 2>"$work/err" >"$work/x.usda"; says "-: USD (.usda)"; run 0 "$work/x.usda"; says "300 usable"
+"$program" - --stats -o - --format hair <$curls 2>"$work/err" >"$work/x.hair"; says "300 strands"; run 0 "$work/x.hair"; says "300 usable"
+"$program" - - --stats <$curls >"$work/out" 2>"$work/err"; says "can be read only once"; one_line
+run 2 $curls -o -; says "expected --format"; one_line
+run 3 - --stats; says "-: byte 0: the file is empty"; one_line
+
+claim "lists of points need no more than how many make a strand"
+run 0 $curls -q --unit m -o "$x.ply" --format ply-text
+sed '/^element strand/,/^end_header/d; s/^property float z$/&\nend_header/' "$x.ply" | head -n 14408 >"$work/cloud.ply"
+run 0 "$work/cloud.ply" --unit m -o "$work/again.data"; says "cloud.ply: 48 points a strand, found from where points jump"; equal "$work/again.data" "$work/direct.data"
+run 0 "$work/cloud.ply" --unit m --points-per-strand 48 -o "$work/again.data"; silent err; equal "$work/again.data" "$work/direct.data"
+run 3 "$work/cloud.ply" --points-per-strand 49; says "14400 points are no strands of 49"; one_line
+run 2 $curls --points-per-strand 48; says "has no effect"; one_line
+run 2 $curls --array x; says "has no effect"; one_line
+
 claim "figures go to JSON"
 run 0 "$work/dirty.tfx" --unit m --json "$work/x.json"; silent out
 for part in '"kind": "not_finite"' '"first_place": 9' '"curvature": {' '"root_spacing": {' '"sizes": [' '"unit_m": 1'; do
@@ -112,6 +130,9 @@ run 0 "$work/f_%02d.tfx"; says "frames    4, 0 to 3, 60 a second"
 run 0 "$work/f_%02d.tfx" --first 1 --every 2 -q -o "$work/g_%d.data"; none "$work/g_0.data"; none "$work/g_2.data"
 run 0 "$work/f_03.tfx" --unit m -q -o "$work/h.data"
 run 0 "$work/f_%02d.tfx" --unit m --first 3 -q -o "$work/g_%d.data"; equal "$work/g_3.data" "$work/h.data"
+run 0 "$work/f_%02d.tfx" --unit m -q -o "$work/anim.npz" --fps 24; run 0 "$work/anim.npz" -q -o "$work/anim2.usda"; run 0 "$work/f_%02d.tfx" --unit m -q -o "$work/anim3.usda" --fps 24; equal "$work/anim2.usda" "$work/anim3.usda"
+run 0 "$work/anim.npz" --first 2 --last 3 -q -o "$work/h_%d.data"; run 0 "$work/f_03.tfx" --unit m -q -o "$work/h.data"; equal "$work/h_3.data" "$work/h.data"; none "$work/h_1.data"
+run 3 "$work/anim.npz" --first 4 -o "$work/none.usda"; says "no frame 4: it has 0 to 3"; one_line; none "$work/none.usda"
 run 2 "$work/f_%02d.tfx" -o "$work/one.data"; says "one name for 4 frames"; one_line; none "$work/one.data"
 run 3 "$work/f_%02d.tfx" --first 7; says "no file for frame 7"; one_line
 run 3 "$work/f_%02d.tfx" --last 4 -o "$work/none.usda"; says "f_04.tfx"; one_line; none "$work/none.usda"

@@ -47,8 +47,8 @@ if [ "$count" -gt 615 ] && [ "$count" -lt 641 ]; then good; else bad "$count str
 claim "followers and thickness go where the format holds them"
 run 0 fur assets/ball.obj -n 9 --followers 16 --format tfx3 -o "$work/f.tfx"
 run 0 fur assets/ball.obj -n 9 --thickness 1e-4 --tip-thickness 0.1 --format hair -o "$work/f.hair"
-refused 2 "--followers: expected --format usda, tfx3 or text" fur assets/ball.obj --followers 3
-refused 2 "--thickness: expected --format usda or hair" fur assets/ball.obj --thickness 1e-4
+refused 2 "--followers: expected --format usda, tfx3, text or npz" fur assets/ball.obj --followers 3
+refused 2 "--thickness: expected --format usda, hair, ply, ply-text or npz" fur assets/ball.obj --thickness 1e-4
 
 claim "the unit and the axis of the mesh count"
 printf 'v 0 0 0\nv 100 0 0\nv 0 100 0\nf 1 2 3\n' >"$work/flat.obj"

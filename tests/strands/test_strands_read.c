@@ -99,7 +99,8 @@ static void malformed_text_is_refused_with_its_line(void **state)
     } cases[] = {
         {"", "FILE: byte 0: the file is empty"},
         {"hello\n", "FILE: byte 0: not a hair file: expected USD (.usda), HAIR, Wavefront lines, "
-                    "TressFX 4 binary, TressFX 3 binary, TressFX 2 text, USC-HairSalon (.data) or "
+                    "TressFX 4 binary, TressFX 3 binary, TressFX 2 text, USC-HairSalon (.data), "
+                    "PLY strands, PLY strands as text, numpy arrays (.npz), numpy array (.npy) or "
                     "CT2Hair (.bin)"},
         {"PXR-USDC",
          "FILE: byte 0: not supported: binary USD: convert it with usdcat -o FILE.usda"},

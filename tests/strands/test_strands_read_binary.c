@@ -75,7 +75,8 @@ static void check_truncations(const uint8_t *data, size_t size)
 
 static void every_truncation_is_read_or_refused(void **state)
 {
-    static const FormatKind kinds[] = {FORMAT_TFX2, FORMAT_TFX3, FORMAT_TFX4, FORMAT_HAIR};
+    static const FormatKind kinds[] = {FORMAT_TFX2, FORMAT_TFX3,     FORMAT_TFX4, FORMAT_HAIR,
+                                       FORMAT_PLY,  FORMAT_PLY_TEXT, FORMAT_NPY,  FORMAT_NPZ};
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         Bytes bytes = make_file(state, kinds[i]);
         check_truncations(bytes.data, bytes.size);
@@ -99,7 +100,8 @@ static void any_damage_to_a_header_is_survived(void **state)
     static const struct {
         FormatKind kind;
         size_t header;
-    } cases[] = {{FORMAT_TFX3, 296}, {FORMAT_TFX4, 160}, {FORMAT_HAIR, 136}};
+    } cases[] = {{FORMAT_TFX3, 296}, {FORMAT_TFX4, 160}, {FORMAT_HAIR, 136},
+                 {FORMAT_PLY, 360},  {FORMAT_NPY, 128},  {FORMAT_NPZ, 176}};
     static const uint32_t words[] = {0,          1,          3,   0x7fffffff, 0x80000000,
                                      0xffffffff, 0xfffffffe, 161, 500};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

@@ -2,6 +2,7 @@
 #include "strands/formats/format.h"
 
 #include <endian.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -73,6 +74,11 @@ Result format_target(Target *target, const char *text, Error *error)
     return RESULT_OK;
 }
 
+Result format_check_terminal(const char *path, FormatKind kind, Error *error)
+{
+    return FORMAT_TABLE[kind]->text ? RESULT_OK : outfile_refuse_terminal(path, error);
+}
+
 Result format_write(const char *path, FormatKind kind, const Strands *strands, Error *error)
 {
     const Format *format = FORMAT_TABLE[kind];
@@ -80,6 +86,7 @@ Result format_write(const char *path, FormatKind kind, const Strands *strands, E
         return error_set(error, RESULT_FAILED, "%s: no strands to write", path);
     if (!format->write)
         return error_set(error, RESULT_FAILED, "%s: %s can only be read", path, format->name);
+    TRY(format_check_terminal(path, kind, error));
     OutFile file;
     TRY(outfile_open(&file, path, error));
     Result result = format->write(&file, strands, error);
@@ -140,7 +147,11 @@ void format_list_holding(uint32_t features, char *text, size_t size)
 Result format_source_create(FormatSource *source, Reader *reader, uint32_t strand_count,
                             uint64_t vertex_count)
 {
-    *source = (FormatSource){0};
+    FormatSource before = *source;
+    *source = (FormatSource){.wishes = before.wishes,
+                             .used_points = before.used_points,
+                             .used_array = before.used_array};
+    memcpy(source->note, before.note, sizeof source->note);
     if (vertex_count >= UINT32_MAX)
         return reader_fail(reader, "%llu vertices are more than 32-bit indices hold",
                            (unsigned long long)vertex_count);
@@ -156,7 +167,19 @@ void format_source_destroy(FormatSource *source)
     strands_destroy(&source->strands);
     free(source->place);
     free(source->vertex_line);
+    free(source->frames);
     *source = (FormatSource){0};
+}
+
+void format_source_note(FormatSource *source, const char *format, ...)
+{
+    size_t used = strlen(source->note);
+    va_list arguments;
+    va_start(arguments, format);
+    if (used > 0 && used + 2 < sizeof source->note)
+        used += (size_t)sprintf(source->note + used, "; ");
+    vsnprintf(source->note + used, sizeof source->note - used, format, arguments);
+    va_end(arguments);
 }
 
 Result format_source_copy(Reader *reader, void *array, uint64_t start, size_t count, size_t width)

@@ -21,8 +21,14 @@
     X(TFX4, tfx4, "tfx4")                                                                          \
     X(TFX3, tfx3, "tfx3")                                                                          \
     X(TFX2, tfx2, "text")                                                                          \
-    X(SALON_DATA, salon_data, "data")
+    X(SALON_DATA, salon_data, "data")                                                              \
+    X(PLY, ply, "ply")                                                                             \
+    X(PLY_TEXT, ply_text, "ply-text")                                                              \
+    X(NPZ, npz, "npz")                                                                             \
+    X(NPY, npy, "npy")
 #define FORMATS(X) FORMATS_WRITTEN(X) X(SALON_BIN, salon_bin, "")
+
+enum { FORMAT_NOTE_SIZE = 400 };
 
 typedef enum FormatKind {
 #define KIND(kind, row, word) FORMAT_##kind,
@@ -35,10 +41,20 @@ typedef enum FormatKind {
 #define FORMAT_WORD(kind, row, word) "|" word
 #define FORMAT_WORDS                 FORMATS_WRITTEN(FORMAT_WORD)
 
+// What the caller says where a file does not.
+typedef struct FormatWishes {
+    uint32_t points_per_strand; // of clouds of points; 0: found from where consecutive points jump
+    const char *array;          // the name of the positions in .npz; NULL: see npz_file.c
+    bool all_frames;            // of files with time
+} FormatWishes;
+
 // What a reader hands on: the file's content as it stands there, neither mended nor converted.
 // Owned by the struct; a zeroed one is empty. Strands may have any number of vertices here.
 typedef struct FormatSource {
-    Strands strands;        // the file's unit and axes
+    FormatWishes wishes;          // the caller's
+    bool used_points, used_array; // a wish that has had its effect
+    char note[FORMAT_NOTE_SIZE];  // what the reader chose or left out; "": nothing to say
+    Strands strands;              // the file's unit and axes
     uint64_t *place;        // [strand_count] line of the strand's head, or byte of its first vertex
     uint32_t *vertex_line;  // [vertex_count] text only, NULL for binary
     uint32_t vertex_stride; // binary: bytes from one vertex of a strand to the next
@@ -47,6 +63,9 @@ typedef struct FormatSource {
     float unit;             // metres, as the file says; 0: it doesn't
     UpAxis up;              // that the file says is up; UP_AUTO: it doesn't
     uint32_t samples;       // in time, of which the first is here; 0: the file has no time
+    float (*frames)[3];     // [samples * vertex_count], of wishes.all_frames; NULL: none
+    double fps;             // samples a second; 0: the file does not say
+    int first_frame;        // number of the first sample
     bool roots_only;        // strands of one vertex are meant: roots without hair (USC-HairSalon)
     double scale;           // p' = translation + rotation * (scale * p), in the file's unit; 0 = 1
     double rotation[3];     // about x, y, z, radians; applied in the order z, x, y
@@ -96,10 +115,13 @@ FormatKind format_choose(const char *name, const Strands *strands);
 // short.
 Result format_target(Target *target, const char *text, Error *error);
 
-// Writes a file, complete or not at all; coordinates are metres, y up. What the format can't hold
-// is left out (see `features`). RESULT_FAILED for no strands, strands that it can't hold, a
-// format that is only read, and with the reason if writing fails.
+// Writes a file, complete or not at all, or standard output for "-"; coordinates are metres, y up.
+// What the format can't hold is left out (see `features`). RESULT_FAILED for no strands, strands
+// that it can't hold, a format that is only read, and with the reason if writing fails.
 Result format_write(const char *path, FormatKind kind, const Strands *strands, Error *error);
+
+// RESULT_USAGE for a binary format to standard output ("-") that is a terminal.
+Result format_check_terminal(const char *path, FormatKind kind, Error *error);
 
 // "a, b or c": the suffixes that are written, and the names of all formats.
 void format_list_suffixes(char *text, size_t size);
@@ -110,10 +132,15 @@ void format_list_holding(uint32_t features, char *text, size_t size);
 
 // --- For the formats' own files.
 
-// Makes room for strands, vertices and `place`; fails as the reader's memory failure.
+// Makes room for strands, vertices and `place`, and resets all but wishes and notes; fails as the
+// reader's memory failure.
 Result format_source_create(FormatSource *source, Reader *reader, uint32_t strand_count,
                             uint64_t vertex_count);
 void format_source_destroy(FormatSource *source);
+
+// Adds to what the source notes (printf style), with "; " between two notes; cut if it is too long.
+void format_source_note(FormatSource *source, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 
 // Adds the optional array at `*array` (one of the strands' members) of `count` times `width` floats
 // copied from byte `start`, which must have been checked. Fails as the reader's memory failure.
