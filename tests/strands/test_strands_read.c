@@ -103,7 +103,8 @@ static void malformed_text_is_refused_with_its_line(void **state)
                     "PLY strands, PLY strands as text, numpy arrays (.npz), numpy array (.npy) or "
                     "CT2Hair (.bin)"},
         {"PXR-USDC",
-         "FILE: byte 0: not supported: binary USD: convert it with usdcat -o FILE.usda"},
+         "FILE: byte 0: not supported: binary USD (.usdc): convert it: blender -b --python "
+         "blender_hair.py -- export FILE -o x.npz (or usdcat FILE -o x.usda)"},
         {"numStrands", "FILE:1: expected the number of strands, got the end of the file"},
         {"numStrands x\n", "FILE:1: expected the number of strands, got 'x'"},
         {"numStrands -1\n", "FILE:1: expected the number of strands, got '-1'"},
