@@ -23,6 +23,6 @@ drive() {
 
 # dump PAGE [WIDTH,HEIGHT]: the page's elements after its scripts, to $work/dump.
 dump() {
-    HOME=$work timeout 120 "$browser" --headless --enable-logging=stderr --no-sandbox --disable-gpu --hide-scrollbars --window-size="${2:-1280,800}" \
-        --user-data-dir="$work/profile" --virtual-time-budget=20000 --dump-dom "file://$1" >"$work/dump" 2>"$work/browser.log" </dev/null
+    HOME=$work timeout 300 "$browser" --headless --enable-logging=stderr --no-sandbox --disable-gpu --hide-scrollbars --window-size="${2:-1280,800}" \
+        --user-data-dir="$work/profile" --virtual-time-budget=600000 --dump-dom "file://$1" >"$work/dump" 2>"$work/browser.log" </dev/null
 }
