@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "compare/html.h"
 
+#include "image/exr_file.h"
 #include "image/float_image.h"
 #include "image/heat_map.h"
 #include "image/png.h"
@@ -37,12 +38,14 @@ static Result choose_png(HtmlSide *side, const Image *image, Bytes *file, Error 
     return result;
 }
 
-// [key, text] for each text of a PNG file, such as the device that drew it; other files have none.
+// [key, text] for each text of a PNG or EXR file, such as the device that drew it; PFM has none.
 static json_t *list_texts(const Bytes *file, const char *path)
 {
     ImageTexts texts;
     json_t *list = json_array();
-    if (png_decode_texts(&texts, file, path, NULL) != RESULT_OK) return list;
+    Result result = exr_file_is(file) ? exr_file_decode_texts(&texts, file, path, NULL)
+                                      : png_decode_texts(&texts, file, path, NULL);
+    if (result != RESULT_OK) return list;
     for (size_t i = 0; i < texts.count; ++i) {
         json_t *pair = json_array();
         json_array_append_new(pair, report_text(texts.list[i].key));

@@ -569,7 +569,7 @@ function metrics(pair) {
         element("tr", { class: broken ? "broken" : "" }, element("th", { text: name, scope: "row" }), element("td", { class: "number" }, value), element("td", { class: "number", text: limit && (broken ? "✕\u00a0≤\u00a0" : "✓\u00a0≤\u00a0") + limit })));
     const head = element("thead", {}, element("tr", {}, ...["Figure", "Value", "Limit"].map((text) => element("th", { text, scope: "col" }))));
     const masked = pair.width * pair.height - pair.compared_pixels;
-    const limits = [masked ? "A mask leaves out " + figure(100 * masked / (masked + pair.compared_pixels), 3) + " % of the pixels: " + pair.mask + "." : "", data.limits.pixel_tolerance === undefined ? "" : "A pixel fails if a channel is off by more than " + figure(data.limits.pixel_tolerance) + " of 255 levels.", "FLIP for " + figure(data.limits.pixels_per_degree) + " pixels a degree."];
+    const limits = [masked ? "A mask leaves out " + figure(100 * masked / (masked + pair.compared_pixels), 3) + " % of the pixels: " + pair.mask + "." : "", data.limits.pixel_tolerance === undefined ? "" : data.limits.pixel_tolerance === 0 ? "A pixel fails if any channel differs." : "A pixel fails if a channel is off by more than " + figure(data.limits.pixel_tolerance) + " of 255 levels.", "FLIP for " + figure(data.limits.pixels_per_degree) + " pixels a degree."];
     return element("section", {}, element("h3", { text: "Figures" }), element("table", { class: "metrics" }, head, element("tbody", {}, ...rows)), element("p", { class: "soft", text: limits.filter(Boolean).join(" ") }));
 }
 
@@ -652,7 +652,8 @@ const KEYS = [
     [["Space"], "blink; stop and go on", toggleBlink],
     [["+", "-"], "zoom in, out", (event) => zoom(event.key === "-" ? 0.5 : 2)],
     [["="], null, () => zoom(2)],
-    [["0", "1:1", "z"], "fit; z: pixel by pixel", (event) => (event.key === "0" ? fit() : zoomTo(1 / (window.devicePixelRatio || 1)))],
+    [["0"], "fit", fit],
+    [["z"], "a pixel of the image for one of the screen", () => zoomTo(1 / (window.devicePixelRatio || 1))],
     [["Shift"], "with arrows: move the image", null],
     [["w"], "the pixel with the largest difference", () => state.chosen.at_pixel && state.chosen.largest_difference > 0 && goTo(...state.chosen.at_pixel)],
     [["a"], "mark for acceptance", toggleMark],
@@ -687,7 +688,8 @@ drawLegend();
 drawVerdict();
 drawOutcomes();
 drawList();
-choose(readAddress() || pairs[0]);
+if (pairs.length) choose(readAddress() || pairs[0]);
+else document.querySelector("main").replaceChildren(element("p", { class: "note", text: "Only images that are not the same are listed, and there is none." }));
 addEventListener("hashchange", () => {
     const asked = readAddress();
     if (asked) choose(asked);

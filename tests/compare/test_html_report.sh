@@ -3,7 +3,8 @@
 # The page of tractrix-compare --html: what is in the file, then, in a headless Chromium, what a reader does with it.
 . tests/support/claims.sh
 . tests/support/browser.sh
-program=$(realpath "$bin/tractrix-compare")
+bin=$(realpath "$bin")
+program=$bin/tractrix-compare
 root=$PWD
 golden=$root/tests/golden
 
@@ -60,6 +61,17 @@ claim "--update shows what was there before"
 cp a/differ.png one/x.png; cp b/differ.png two/x.png
 run 0 one two --update --html report.html; counts 1 '"updated":true'; counts 4 'id="image-'
 
+claim "--only-failures leaves out what is the same"
+run 3 a b --pixel-tolerance 8 --max-failing-pixels 2% --only-failures --html report.html
+counts 0 same.png; counts 1 '"images":8'; counts 5 '"outcome":'
+run 0 a/same.png b/same.png --only-failures --html report.html; counts 1 '"pairs":[]'
+cp report.html nothing.html
+
+claim "texts of EXR files are shown"
+if "$bin/tractrix-render" "$root/assets/curls.tfx" --algo none --size 32x24 -q -o one.exr; then
+    run 0 one.exr one.exr --html report.html; counts 2 '["Software","tractrix '; counts 2 '"depth":"float"'; counts 1 'id="image-'
+else skip "no image of floats: no driver"; fi
+
 claim "a page that cannot be written is named, and none is left"
 run 1 a b --html none/report.html; says none; one_line
 run 1 a b --html /dev/full -q; says /dev/full; one_line
@@ -74,6 +86,15 @@ drive "$work/report.html" tests/compare/html_report.js
 claim "in a narrow window"
 sed 's/await drive\(List\|Modes\|Zoom\|Figures\)();//' tests/compare/html_report.js >"$work/narrow.js"
 size=500,900 drive "$work/report.html" "$work/narrow.js"
+claim "without a failure to show"
+cat >"$work/nothing.js" <<'END'
+claim("it says so", document.querySelector("main").textContent.includes("there is none") && byId("verdict").textContent === "The image is within the limits");
+press("j");
+press("?");
+claim("keys do no harm", byId("help").open);
+finish();
+END
+drive "$work/nothing.html" "$work/nothing.js"
 claim "a script that is not the page's own does not run"
 { cat "$work/report.html" && echo '<script>document.title = "foreign"</script>'; } >"$work/foreign.html"
 dump "$work/foreign.html"

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+// Words for shells, text of any bytes, images for browsers, and what a page is made of.
+#include "report/picture.h"
+#include "report/report.h"
+#include "report/shell_words.h"
+#include "report/utf8.h"
+
+#include "image/png.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static void expect_word(const char *word, const char *expected)
+{
+    const char *const words[] = {word, NULL};
+    char *text = shell_join(words);
+    assert_string_equal(text, expected);
+    free(text);
+}
+
+static void words_are_quoted_where_needed(void **state)
+{
+    (void)state;
+    expect_word("frames/a_0001.png", "frames/a_0001.png");
+    expect_word("", "''");
+    expect_word("two words", "'two words'");
+    expect_word("it's", "'it'\\''s'");
+    expect_word("$HOME`x`\"\\!*", "'$HOME`x`\"\\!*'");
+    expect_word("~x", "'~x'");
+    expect_word("=ls", "'=ls'");
+    expect_word("Zopf_\xc3\xa4.png", "'Zopf_\xc3\xa4.png'");
+    expect_word("a\nb\x1b'", "$'a\\012b\\033\\''");
+    expect_word("\xff.png", "$'\\377.png'");
+    expect_word("\xc2\x9b[2J", "$'\\302\\233[2J'"); // a control character that terminals obey
+}
+
+// A real shell reads every byte back.
+static void shells_read_words_back(void **state)
+{
+    (void)state;
+    char word[256], line[64];
+    for (int i = 1; i < 256; ++i) word[i - 1] = (char)i;
+    word[255] = 0;
+    const char *const words[] = {"printf", "%s", word, NULL};
+    char *text = shell_join(words), *command = NULL;
+    assert_true(asprintf(&command, "bash -s <<'END_OF_TEST' | od -An -v -tu1 -w1\n%s\nEND_OF_TEST",
+                         text) > 0);
+    FILE *stream = popen(command, "r");
+    assert_non_null(stream);
+    for (int i = 1; i < 256; ++i) {
+        assert_non_null(fgets(line, sizeof line, stream));
+        assert_int_equal(atoi(line), i);
+    }
+    assert_null(fgets(line, sizeof line, stream));
+    assert_int_equal(pclose(stream), 0);
+    free(command);
+    free(text);
+}
+
+static void only_utf8_is_left(void **state)
+{
+    (void)state;
+    static const char *const CASES[][2] = {
+        {"plain", "plain"},
+        {"\xe2\x82\xac\xf0\x9f\x98\x80", "\xe2\x82\xac\xf0\x9f\x98\x80"},
+        {"a\xff"
+         "b",
+         "a\xef\xbf\xbd"
+         "b"},
+        {"\xc0\x80", "\xef\xbf\xbd\xef\xbf\xbd"},                 // a zero in two bytes
+        {"\xed\xa0\x80", "\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd"}, // a surrogate
+        {"\xf4\x90\x80\x80", "\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd"}, // above U+10FFFF
+        {"\xe2\x82", "\xef\xbf\xbd\xef\xbf\xbd"}};                                // cut
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; ++i) {
+        char *clean = utf8_clean(CASES[i][0], strlen(CASES[i][0]));
+        assert_string_equal(clean, CASES[i][1]);
+        free(clean);
+    }
+}
+
+static void base64_is_that_of_the_standard(void **state)
+{
+    (void)state; // RFC 4648, section 10
+    static const char *const CASES[][2] = {{"f", "Zg=="},           {"fo", "Zm8="},
+                                           {"foo", "Zm9v"},         {"foob", "Zm9vYg=="},
+                                           {"fooba", "Zm9vYmE="},   {"foobar", "Zm9vYmFy"},
+                                           {"\xfb\xff\xfe", "+//+"}};
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; ++i) {
+        const Bytes bytes = {(uint8_t *)CASES[i][0], strlen(CASES[i][0])};
+        json_t *value = report_base64(&bytes);
+        assert_string_equal(json_string_value(value), CASES[i][1]);
+        json_decref(value);
+    }
+}
+
+static void pictures_have_8_bits(void **state)
+{
+    (void)state;
+    Image deep, light, picture;
+    const uint16_t levels[6] = {0, 128, 129, 65535, 257 * 200, 257 * 200 + 128};
+    const uint8_t rounded[6] = {0, 0, 1, 255, 200, 200}; // 128 / 257 < 0.5 < 129 / 257
+    assert_int_equal(image_create_kind(&deep, 2, 1, 3, IMAGE_16, NULL), RESULT_OK);
+    memcpy(deep.pixels, levels, sizeof levels);
+    assert_int_equal(picture_create(&picture, &deep, NULL), RESULT_OK);
+    assert_memory_equal(picture.pixels, rounded, sizeof rounded);
+    image_destroy(&picture);
+    image_destroy(&deep);
+    // premultiplied light: half of it at half of the alpha is all of it; 0.5 becomes 187.5
+    const float values[8] = {0.25f, 0.5f, 2, 0.5f, -1, 0, 0, 0};
+    const uint8_t shown[8] = {188, 255, 255, 128, 0, 0, 0, 0};
+    assert_int_equal(image_create_kind(&light, 2, 1, 4, IMAGE_FLOAT, NULL), RESULT_OK);
+    memcpy(light.pixels, values, sizeof values);
+    assert_int_equal(picture_create(&picture, &light, NULL), RESULT_OK);
+    assert_memory_equal(picture.pixels, shown, sizeof shown);
+    image_destroy(&picture);
+    image_destroy(&light);
+}
+
+static void thumbnails_are_means_of_light(void **state)
+{
+    (void)state;
+    Image picture, small;
+    assert_int_equal(image_create(&picture, 40, 20, 4, NULL), RESULT_OK);
+    for (size_t i = 0; i < 800; ++i) // columns of white, and of a red that is not seen
+        memcpy(picture.pixels + 4 * i, i % 2 ? "\xff\0\0\0" : "\xff\xff\xff\xff", 4);
+    assert_int_equal(picture_create_thumbnail(&small, &picture, 10, 10, NULL), RESULT_OK);
+    assert_int_equal(small.width, 10);
+    assert_int_equal(small.height, 5);
+    for (size_t i = 0; i < 50; ++i)
+        assert_memory_equal(small.pixels + 4 * i, "\xff\xff\xff\x80", 4);
+    image_destroy(&small);
+    for (size_t i = 0; i < 800; ++i)
+        memcpy(picture.pixels + 4 * i, i % 2 ? "\xff\xff\xff\xff" : "\0\0\0\xff", 4);
+    assert_int_equal(picture_create_thumbnail(&small, &picture, 10, 10, NULL), RESULT_OK);
+    assert_int_equal(small.pixels[0], 188); // sRGB of half the light
+    image_destroy(&small);
+    assert_int_equal(picture_create_thumbnail(&small, &picture, 400, 400, NULL), RESULT_OK);
+    assert_int_equal(small.width, 40);
+    assert_memory_equal(small.pixels, picture.pixels, image_size(&picture));
+    image_destroy(&small);
+    image_destroy(&picture);
+}
+
+// Browsers would show these in other colours than those that are compared.
+static void files_with_gamma_are_not_plain(void **state)
+{
+    (void)state;
+    Image image;
+    Bytes png, changed;
+    assert_int_equal(image_create(&image, 2, 2, 3, NULL), RESULT_OK);
+    memset(image.pixels, 9, image_size(&image));
+    assert_int_equal(png_encode(&image, NULL, &png, NULL), RESULT_OK);
+    assert_true(picture_is_plain(&png));
+    changed = (Bytes){calloc(1, png.size + 16), png.size + 16};
+    memcpy(changed.data, png.data, 33);
+    memcpy(changed.data + 33, "\0\0\0\4gAMA\0\0\0\1....", 16);
+    memcpy(changed.data + 49, png.data + 33, png.size - 33);
+    assert_false(picture_is_plain(&changed));
+    const Bytes cut = {png.data, 20}, none = {NULL, 0}, other = {(uint8_t *)"PF\n1 1\n-1\n", 10};
+    assert_true(picture_is_plain(&cut));
+    assert_false(picture_is_plain(&none));
+    assert_false(picture_is_plain(&other));
+    bytes_destroy(&changed);
+    bytes_destroy(&png);
+    image_destroy(&image);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(words_are_quoted_where_needed),
+        cmocka_unit_test(shells_read_words_back),
+        cmocka_unit_test(only_utf8_is_left),
+        cmocka_unit_test(base64_is_that_of_the_standard),
+        cmocka_unit_test(pictures_have_8_bits),
+        cmocka_unit_test(thumbnails_are_means_of_light),
+        cmocka_unit_test(files_with_gamma_are_not_plain),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
