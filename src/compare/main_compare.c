@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/interrupt.h"
 #include "base/options.h"
+#include "base/outfile.h"
 #include "base/program.h"
 #include "base/progress.h"
 #include "compare/github.h"
@@ -140,6 +141,33 @@ static Result read_limits(Command *command, Error *error)
     return command->max_failing ? read_failing(limits, command->max_failing, error) : RESULT_OK;
 }
 
+// How many reports and images go to standard output.
+static int count_to_stdout(const Command *command)
+{
+    const char *const paths[] = {command->json, command->junit, command->html, command->heat_map,
+                                 command->sheet};
+    int count = 0;
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; ++i)
+        count += paths[i] && outfile_is_stdout(paths[i]);
+    return count;
+}
+
+// Where the lines go: a report on standard output has it for itself.
+static FILE *lines(const Command *command)
+{
+    return count_to_stdout(command) ? stderr : stdout;
+}
+
+static Result check_reports(const Command *command, Error *error)
+{
+    const char *const images[] = {command->heat_map, command->sheet};
+    for (int i = 0; i < 2; ++i)
+        if (images[i]) TRY(outfile_refuse_terminal(images[i], error));
+    if (count_to_stdout(command) <= 1) return RESULT_OK;
+    return error_set(error, RESULT_USAGE, "%d reports to standard output: expected one",
+                     count_to_stdout(command));
+}
+
 static Result parse(Command *command, int argc, char **argv, bool *done, Error *error)
 {
     long cores = sysconf(_SC_NPROCESSORS_ONLN);
@@ -158,6 +186,7 @@ static Result parse(Command *command, int argc, char **argv, bool *done, Error *
         return error_set(error, RESULT_USAGE,
                          "got %d names, expected two files, folders or patterns", argc - first);
     command->a = argv[first], command->b = argv[first + 1];
+    TRY(check_reports(command, error));
     return read_limits(command, error);
 }
 
@@ -259,7 +288,7 @@ static Result print_verdicts(Work *work, Error *error)
         bool listed = !work->command->only_failures || work->verdicts[i].outcome != OUTCOME_SAME;
         if (!work->command->quiet && listed) {
             progress_clear(&progress);
-            verdict_print(&work->verdicts[i], &work->list->pairs[i], stdout);
+            verdict_print(&work->verdicts[i], &work->list->pairs[i], lines(work->command));
         }
         if (work->pages && listed) result = add_to_page(work, i, error);
         progress_update(&progress, (int)i + 1);
@@ -310,11 +339,11 @@ static Result conclude(Work *work, Error *error)
     if (command->junit) TRY(junit_write(command->junit, work->list, work->verdicts, &junit, error));
     if (command->github) {
         TRY(github_append_summary(work->list, work->verdicts, &command->limits, error));
-        github_print_annotations(work->list, work->verdicts, stdout);
+        github_print_annotations(work->list, work->verdicts, lines(command));
     }
     if (command->html)
         TRY(html_close(&work->html, work->list, &command->limits, command->line, error));
-    if (!command->quiet) verdict_print_tally(work->list, work->verdicts, stdout);
+    if (!command->quiet) verdict_print_tally(work->list, work->verdicts, lines(command));
     Result result = verdict_status(work->list, work->verdicts);
     for (size_t i = 0; i < work->list->count && result != RESULT_OK; ++i) {
         const Verdict *verdict = &work->verdicts[i];

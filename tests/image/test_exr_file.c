@@ -452,6 +452,24 @@ static void damaged_files_are_refused(void **state)
     image_destroy(&image);
 }
 
+// Premultiplied light over black stays as it is; over white comes what shines through.
+static void alpha_is_laid_over_in_light(void **state)
+{
+    (void)state;
+    float pixel[] = {0.25f, 0.25f, 0, 0.5f};
+    const Image image = {
+        .width = 1, .height = 1, .channels = 4, .pixels = (uint8_t *)pixel, .kind = IMAGE_FLOAT};
+    const float levels[] = {0, 255}, light[2][3] = {{0.25f, 0.25f, 0}, {0.75f, 0.75f, 0.5f}};
+    for (int i = 0; i < 2; ++i) {
+        FloatImage seen;
+        assert_int_equal(float_image_create(&seen, &image, levels[i], NULL), RESULT_OK);
+        for (int k = 0; k < 3; ++k)
+            assert_true(fabs((double)seen.rgb[k] -
+                             255 * image_srgb_from_linear((double)light[i][k])) < 1e-3);
+        float_image_destroy(&seen);
+    }
+}
+
 // OpenEXR's own programs, which are of C++ and share no code with the core.
 static void openexr_reads_our_files(void **state)
 {
@@ -493,6 +511,7 @@ int main(void)
         TEST(what_is_not_a_colour_is_refused),
         TEST(bombs_are_refused),
         TEST(damaged_files_are_refused),
+        TEST(alpha_is_laid_over_in_light),
         TEST(openexr_reads_our_files),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

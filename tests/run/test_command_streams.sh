@@ -118,10 +118,26 @@ run 0 $hair --algo none --frames 3 --resume -o "$work/e/x_%d.exr"; says "2 of 3 
 # shellcheck disable=SC2086
 run 2 $hair -q --exr-float -o "$work/x.png"; one_line; says "exr"
 
-claim "transparent EXR files keep their alpha"
+claim "transparent EXR files keep their alpha: over black and white they are what PNG shows, but for blending in light"
 # shellcheck disable=SC2086
-run 0 $hair -q --background transparent -o "$work/t.exr"
+run 0 $hair -q --background transparent --exr-float -o "$work/t.exr"
 # shellcheck disable=SC2086
-run 0 $hair -q --background transparent --depth 16 -o "$work/t.png"
-run 0 --help output; says "exr"
+run 0 $hair -q --background transparent -o "$work/t.pfm"
+holds "$compare" "$work/wide.exr" "$work/wide.exr"
+if "$compare" -q "$work/t.exr" "$work/t.pfm"; then bad "the alpha is lost"; else good; fi
+
+claim "reports of a comparison on standard output have it for themselves"
+"$compare" "$work/one.exr" "$work/t.exr" --json - >"$work/stream" 2>"$work/err" </dev/null
+if [ $? = 1 ]; then good; else bad "another status"; fi
+in_file "$work/err" "1 image: 1 different"; in_file "$work/stream" '"rmse"'
+if [ "$(head -c 1 "$work/stream")" = "{" ] && ! grep -q "image: " "$work/stream"; then good; else bad "lines among the JSON"; fi
+"$compare" "$work/one.exr" "$work/one.exr" --junit - 2>"$work/err" </dev/null | head -n 1 >"$work/stream"; in_file "$work/stream" "<?xml"
+"$compare" "$work/f_0.png" "$work/f_2.png" --heatmap - 2>"$work/err" </dev/null >"$work/stream"; is_png "$work/stream"
+program=$compare; run 2 "$work/one.exr" "$work/one.exr" --json - --junit -; one_line; says "expected one"
+# shellcheck disable=SC2086
+if "$bin/tractrix-render" $hair -q -o -.exr 2>"$work/err" | "$compare" -q "$work/one.exr" /dev/stdin 2>>"$work/err"; then
+    good
+else
+    bad "a pipe differs"
+fi
 finish
