@@ -203,6 +203,16 @@ check-sanitize: # but for scripts that run the programs as others do, many times
 	$(QUIET) CONFIG=sanitize OUT=$(SIDE)sanitize all tests
 	@tests/runner $(SIDE)sanitize test_ '^test_(blender|farm|compare_goldens|ci_examples|readme|tutorial|docs|install|turntable_script|goldens|light_command|groom_command)'
 
+# --- Packages. They take minutes: no part of `make check`.
+deb: ## Debian packages in out/deb (dpkg-buildpackage), linted
+	@scripts/setup deb
+	@scripts/make-deb out/deb
+check-deb: deb ## install them in a clean root, run the programs, purge them (as root)
+	@scripts/check-deb out/deb
+check-container: ## go through the Containerfile without a container engine (as root)
+	@scripts/setup deb
+	@scripts/check-container
+
 format: ## clang-format all C and GLSL files
 	clang-format -i $(C_FILES)
 
@@ -246,11 +256,11 @@ clean: ## remove out/
 	rm -rf out
 
 help: ## this list
-	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 20
+	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 24
 	@echo; sed -n '4,7s/^#//p' $(firstword $(MAKEFILE_LIST))
 
 FORCE:
-.PHONY: all tests demo test bench bench-image stress check $(CHECKS:%=check-%) format install uninstall clean help FORCE
+.PHONY: deb check-deb check-container all tests demo test bench bench-image stress check $(CHECKS:%=check-%) format install uninstall clean help FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
 -include $(patsubst %.o,%.d,$(OBJECTS) $(MAINS:src/%.c=$(OUT)/%.o) $(TEST_PROGRAMS:%=%.o) $(SUPPORT_OBJECTS))

@@ -2,7 +2,7 @@
 // The table of colliders, simple shapes that hair must not cross: read by C (scene/colliders.c,
 // which parses, writes and packs them) and by GLSL (sim/colliders.glsl, which pushes hair out).
 //
-// To add a collider: add an OTHER row below and, to sim/colliders.glsl, its distance function
+// To add a collider: add a row OTHER below and, to sim/colliders.glsl, its distance function
 //     float name_distance(int i, vec3 p, out vec3 normal)
 // from a point of the world, m, to the shape at texel i * COLLIDER_TEXELS: negative inside;
 // `normal` is the outward unit normal of the nearest surface.

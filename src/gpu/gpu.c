@@ -245,11 +245,12 @@ Result gpu_create(Gpu *gpu, const GpuOptions *options, Error *error)
     *gpu = (Gpu){0};
     Error attempts = {{0}};
     if (try_all(gpu, options, &attempts) != RESULT_OK)
-        return error_set(error, RESULT_NO_GL,
-                         "no usable OpenGL 4.3 (%s); on Debian the packages libegl1 and "
-                         "libgl1-mesa-dri give a CPU driver, in a container on NVIDIA the "
-                         "'graphics' driver capability is needed",
-                         attempts.text);
+        return error_set(
+            error, RESULT_NO_GL,
+            "no usable OpenGL 4.3 (%s); on Debian the packages libegl1, "
+            "libopengl0 and libgl1-mesa-dri give a CPU driver, in a container on NVIDIA the "
+            "'graphics' driver capability is needed",
+            attempts.text);
     if (options->debug) {
         glEnable(GL_DEBUG_OUTPUT);
         glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);

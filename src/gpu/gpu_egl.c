@@ -31,18 +31,28 @@ static Result fail(const char *call, Error *error)
     return error_set(error, RESULT_NO_GL, "%s: %s (0x%04x)", call, words, (unsigned)code);
 }
 
-// libepoxy ends the program if it can't load libEGL, so that is tried before its first EGL call.
-static Result require_library(Error *error)
+// Stays open: libepoxy will want it.
+static bool can_load(const char *name)
 {
-    void *library = dlopen("libEGL.so.1", RTLD_LAZY | RTLD_LOCAL);
-    if (!library) return error_set(error, RESULT_NO_GL, "libEGL.so.1 is not installed");
-    return RESULT_OK; // cppcheck-suppress resourceLeak // libepoxy will want it
+    void *library = dlopen(name, RTLD_LAZY | RTLD_LOCAL);
+    return library != NULL; // cppcheck-suppress resourceLeak
+}
+
+// libepoxy ends the program if it can't load libEGL, or one of the two that have OpenGL's entry
+// points: they are tried before its first call.
+static Result require_libraries(Error *error)
+{
+    if (!can_load("libEGL.so.1"))
+        return error_set(error, RESULT_NO_GL, "libEGL.so.1 is not installed");
+    if (!can_load("libGL.so.1") && !can_load("libOpenGL.so.0"))
+        return error_set(error, RESULT_NO_GL, "neither libOpenGL.so.0 nor libGL.so.1 is installed");
+    return RESULT_OK;
 }
 
 Result gpu_egl_find_devices(EglDevices *devices, Error *error)
 {
     *devices = (EglDevices){0};
-    TRY(require_library(error));
+    TRY(require_libraries(error));
     if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device") ||
         !epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration"))
         return error_set(error, RESULT_NO_GL, "EGL can't enumerate devices");
@@ -105,7 +115,7 @@ static Result open_context(EglContext *egl, bool debug, Error *error)
 Result gpu_egl_create(EglContext *egl, void *device, bool debug, Error *error)
 {
     *egl = (EglContext){0};
-    Result result = require_library(error);
+    Result result = require_libraries(error);
     THEN(result, open_display(egl, device, error));
     THEN(result, open_context(egl, debug, error));
     if (result != RESULT_OK) gpu_egl_destroy(egl);

@@ -14,7 +14,7 @@ for page in docs/*.md; do
     claim "the examples of $page run"
     awk '/^```sh$/ { inside = 1; print "# line " NR; next } /^```$/ { inside = 0 } inside' "$page" |
         sed 's/^tractrix-render /.\/small /; s/--contact-sheet [0-9x]*/--contact-sheet 2x2/; s/--count 20000 /--count 2000 /
-            /^TURNTABLE_S=/ { s/=1 /=0.2 /; s/$/ --size 96x64 --followers 1 --quality draft/; }' >"$work/checkout/commands"
+            /^scripts.turntable / { s/--seconds 1 /--seconds 0.2 /; s/$/ --size 96x64 --followers 1 --quality draft/; }' >"$work/checkout/commands"
     if grep -q ffmpeg "$page" && ! command -v ffmpeg >/dev/null; then skip "no ffmpeg"; continue; fi
     if grep -q '^blender ' "$work/checkout/commands" && ! command -v blender >/dev/null; then skip "no blender"; continue; fi
     if (cd "$work/checkout" && sh -eu commands) >"$work/out" 2>"$work/err" </dev/null; then good; else bad "see above"; fi
