@@ -245,10 +245,10 @@ function pointAt(row, event) {
     tip.style.top = Math.min(event.clientY + 12, innerHeight - tip.offsetHeight - 6) + "px";
 }
 
-// The axes, then what else the screen's table shows and this row has.
+// The axes, then what else the screen's table shows, this row has, and no choice has fixed.
 function tipColumns(row) {
     const first = [column(state.x), column(state.y)].filter((one, i, list) => list.indexOf(one) === i);
-    const rest = columns.filter((one) => one.shown && !first.includes(one) && one.name !== state.series && !isDevice(one.name) && !["–", ""].includes(wordOf(row, one.name)));
+    const rest = columns.filter((one) => one.shown && !first.includes(one) && one.name !== state.series && one.name !== "command" && !state.facets[one.name] && !isDevice(one.name) && !["–", ""].includes(wordOf(row, one.name)));
     return [...first, ...rest].slice(0, 14);
 }
 

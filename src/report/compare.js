@@ -40,6 +40,7 @@ const state = {
     x: 0, // where the image's corner is in a pane, px
     y: 0,
     fits: true,
+    spot: null, // a pixel that has a frame: x, y
     slider: 0.5, // of the pane
     shows: "b", // while blinking
     heat: 1, // opacity
@@ -173,6 +174,7 @@ function choose(pair) {
     }
     writeAddress();
     if (!same) state.fits = true;
+    state.spot = null;
     showPair();
     drawDetails();
     say(pair.name + ": " + OUTCOMES[outcomeOf(pair)][2]);
@@ -397,6 +399,9 @@ function place() {
         const side = state.chosen[which], shown = isHere(which) && !(which === "b" && lack(state.mode));
         plane.style.transform = "translate(" + state.x + "px, " + state.y + "px) scale(" + state.scale + ")";
         plane.classList.toggle("pixels", state.scale * ratio >= 1.5);
+        const spot = pane.querySelector(".spot");
+        spot.hidden = !state.spot || state.scale < 6;
+        if (state.spot) Object.assign(spot.style, { left: state.x + state.spot[0] * state.scale + "px", top: state.y + state.spot[1] * state.scale + "px", width: state.scale + "px", height: state.scale + "px" });
         Object.assign(ground.style, { left: state.x + "px", top: state.y + "px", width: (shown ? side.width : 0) * state.scale + "px", height: (shown ? side.height : 0) * state.scale + "px" });
     }
     byId("zoom-fit").textContent = (state.fits ? "Fit " : "") + figure(100 * state.scale, 3) + " %";
@@ -453,6 +458,7 @@ function goTo(x, y) {
     state.x = across / 2 - (x + 0.5) * state.scale;
     state.y = down / 2 - (y + 0.5) * state.scale;
     state.fits = false;
+    state.spot = [x, y];
     place();
     read(x, y);
 }

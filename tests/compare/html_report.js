@@ -92,6 +92,8 @@ async function driveZoom() {
     const [px, py] = state.chosen.at_pixel, i = 4 * (py * 160 + px);
     const most = Math.max(...[0, 1, 2].map((k) => Math.abs(a.data[i + k] - b.data[i + k])));
     claim("w goes to the largest difference, whose levels differ by it", most === state.chosen.largest_difference && byId("readout").textContent.startsWith("x " + px + "  y " + py));
+    const spot = document.querySelector("#pane-a .spot"), plane_a = document.querySelector("#pane-a .a").getBoundingClientRect(), frame = spot.getBoundingClientRect();
+    claim("and frames it", !spot.hidden && near((frame.left - plane_a.left) / state.scale, px) && near((frame.top - plane_a.top) / state.scale, py) && near(frame.width, state.scale));
     press("0");
 }
 
