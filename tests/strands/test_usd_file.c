@@ -6,6 +6,7 @@
 #include "strands/strands_read.h"
 #include "support/temporary.h"
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -208,7 +209,8 @@ static void what_is_written_is_read_to_the_bit(void **state)
 // As other programs write them: comments, parents, other prims, several curves, frames, z up.
 static const char FOREIGN[] =
     "#usda 1.0\n(\n    \"a (comment) = {\"\n    doc = \"\"\"three\n \"quotes\" \"\"\"\n"
-    "    subLayers = [\n        @a(b.usd@\n    ]\n    metersPerUnit = 0.1\n    upAxis = \"Z\"\n)\n"
+    "    subLayers = [\n    ]\n    comment = @a(b.usd@\n    metersPerUnit = 0.1\n    upAxis = "
+    "\"Z\"\n)\n"
     "def Xform \"World\" (\n    prepend apiSchemas = [\"X\"]\n    kind = \"group\"\n)\n{\n"
     "    token visibility\n    def Mesh \"m\"\n    {\n        point3f[] points = [(9, 9, 9)]\n"
     "        double3 xformOp:translate = (0, 1, 2)\n"
@@ -252,11 +254,33 @@ static void what_would_give_other_hair_is_refused_with_its_line(void **state)
         const char *text, *says;
     } cases[] = {
         {"#usda 1.0\n", "FILE:2: no BasisCurves"},
-        {CURVES("double3 xformOp:translate = (1, 2, 3)\n"), "FILE:7: curves with a transform"},
-        {CURVES("uniform token type = \"cubic\"\n"), "FILE:2: curves of type cubic"},
+        {CURVES("uniform token[] xformOpOrder = [\"xformOp:scale\"]\n"),
+         "FILE:7: xformOpOrder names 'xformOp:scale', which has no value"},
+        {CURVES("float xformOp:shear = 3\nuniform token[] xformOpOrder = [\"xformOp:shear\"]\n"),
+         "FILE:7: 'xformOp:shear' is no transform"},
+        {CURVES("float3 xformOp:scale = (1, 0, 1)\n"
+                "uniform token[] xformOpOrder = [\"!invert!xformOp:scale\"]\n"),
+         "FILE:7: 'xformOp:scale' has no inverse"},
+        {CURVES("uniform token type = \"cubic\"\n"), "FILE:5: a cubic curve of 2 points"},
+        {CURVES("uniform token type = \"cubic\"\nuniform token basis = \"hermite\"\n"),
+         "FILE:2: curves of basis hermite"},
+        {CURVES("uniform token visibility = \"invisible\"\n"),
+         "no BasisCurves with points (left out: 1 prims"},
+        {CURVES("point3f[] points.timeSamples = { 1: [(0, 0, 0), (0, 1, 0)], 0: [] }\n"),
+         "FILE:7: the time sample 0 does not lie behind"},
+        {CURVES("point3f[] points.timeSamples = { x: [] }\n"), "FILE:7: expected a time, got 'x'"},
+        {"#usda 1.0\n(\nsubLayers = [@a.usda@]\n)\n", "FILE:3: subLayers are not read: expected"},
+        {"#usda 1.0\ndef \"x\" (\nprepend references = @a.usda@\n)\n{\n}\n",
+         "FILE:3: references are not read"},
+        {"#usda 1.0\ndef \"x\" (\ninherits = </a>\n)\n{\n}\n", "FILE:3: inherits are not read"},
+        {"#usda 1.0\ndef \"x\"\n{\nvariantSet \"v\" = {\n}\n}\n", "FILE:4: variants are not read"},
+        {"#usda 1.0\ndef PointInstancer \"p\"\n{\ndef BasisCurves \"x\"\n{\n"
+         "point3f[] points = [(0, 0, 0)]\n}\n}\n",
+         "curves of a PointInstancer"},
         {CURVES("uniform token wrap = \"periodic\"\n"), "FILE:2: periodic"},
         {CURVES("float[] widths = [1, 2, 3]\n"), "FILE:7: widths: 3 numbers"},
-        {CURVES("int[] primvars:st:indices = [1]\n"), "FILE:7: primvars:st: indexed"},
+        {CURVES("texCoord2f[] primvars:st = [(1, 2)]\nint[] primvars:st:indices = [1]\n"),
+         "FILE:8: primvars:st:indices: 1 of 1 values"},
         {CURVES("int[] curveVertexCounts = [3]\n"), "FILE:7: curveVertexCounts: 1 numbers"},
         {CURVES("int[] curveVertexCounts = [1]\n"), "FILE:6: points: 6 numbers"},
         {CURVES("int[] curveVertexCounts = [1.5]\n"), "FILE:7: curveVertexCounts"},
@@ -272,6 +296,212 @@ static void what_would_give_other_hair_is_refused_with_its_line(void **state)
         read_text(cases[i].text, strlen(cases[i].text), NULL, RESULT_BAD_INPUT, &error);
         if (!strstr(error.text, cases[i].says)) fail_msg("%s: %s", cases[i].text, error.text);
     }
+}
+
+// Reads strands in metres and compares the vertices, x y z each.
+static void check_vertices(const char *text, uint32_t strand_count, const float *wanted,
+                           uint32_t count)
+{
+    Error error = {""};
+    Strands strands = read_text(text, strlen(text), NULL, RESULT_OK, &error);
+    assert_int_equal(strands.strand_count, strand_count);
+    assert_int_equal(strands.vertex_count, count);
+    for (uint32_t i = 0; i < 3 * count; ++i)
+        if (fabsf((&strands.position[0][0])[i] - wanted[i]) > 1e-6f)
+            fail_msg("%s: number %u is %g, not %g", text, i, (double)(&strands.position[0][0])[i],
+                     (double)wanted[i]);
+    strands_destroy(&strands);
+}
+
+#define METRIC "#usda 1.0\n(\nmetersPerUnit = 1\nupAxis = \"Y\"\n)\n"
+#define CUBIC(more, counts, points)                                                                \
+    METRIC "def BasisCurves \"x\"\n{\n" more "int[] curveVertexCounts = " counts "\n"              \
+           "point3f[] points = " points "\n}\n"
+
+// By hand: a bezier at t = 0, 1/4, ... 1; p(1/2) = (a + 3 b + 3 c + d) / 8. Splines through points
+// of a line at equal distances are that line, pinned ones up to its ends.
+static void cubic_curves_become_points_on_them(void **state)
+{
+    (void)state;
+    static const float bezier[] = {0, 0,        0,       0.15625f, 0.5625f, 0, 0.5f, 0.75f,
+                                   0, 0.84375f, 0.5625f, 0,        1,       0, 0};
+    check_vertices(CUBIC("", "[4]", "[(0, 0, 0), (0, 1, 0), (1, 1, 0), (1, 0, 0)]"), 1, bezier, 5);
+    static const float inner[] = {0, 1, 0, 0, 1.5f, 0, 0, 2, 0};
+    static const float whole[] = {0, 0, 0, 0, 0.5f, 0,    0, 1, 0, 0, 1.5f,
+                                  0, 0, 2, 0, 0,    2.5f, 0, 0, 3, 0};
+#define LINE                "[(0, 0, 0), (0, 1, 0), (0, 2, 0), (0, 3, 0)]"
+#define SPLINE(basis, more) "uniform token basis = \"" basis "\"\n" more
+#define PINNED              "uniform token wrap = \"pinned\"\n"
+    check_vertices(CUBIC(SPLINE("bspline", ""), "[4]", LINE), 1, inner, 3);
+    check_vertices(CUBIC(SPLINE("catmullRom", ""), "[4]", LINE), 1, inner, 3);
+    check_vertices(CUBIC(SPLINE("bspline", PINNED), "[4]", LINE), 1, whole, 7);
+    check_vertices(CUBIC(SPLINE("catmullRom", PINNED), "[4]", LINE), 1, whole, 7);
+    // B-spline: (a + 4 b + c) / 6 at a joint; Catmull-Rom: (-a + 9 b + 9 c - d) / 16 between two.
+    static const float bent[] = {0, 1, 0, 0.5f, 1.25f - 0.125f, 0, 1, 1, 0};
+    check_vertices(
+        CUBIC(SPLINE("catmullRom", ""), "[4]", "[(0, 0, 0), (0, 1, 0), (1, 1, 0), (1, 0, 0)]"), 1,
+        bent, 3);
+    static const float joint[] = {1.0f / 6, 5.0f / 6, 0,        0.5f, 23.0f / 24,
+                                  0,        5.0f / 6, 5.0f / 6, 0};
+    check_vertices(
+        CUBIC(SPLINE("bspline", ""), "[4]", "[(0, 0, 0), (0, 1, 0), (1, 1, 0), (1, 0, 0)]"), 1,
+        joint, 3);
+}
+
+static void attributes_of_cubic_curves_go_to_their_points(void **state)
+{
+    (void)state;
+    Error error = {""};
+    const char *text = CUBIC(
+        "float[] widths = [1, 3] (\ninterpolation = \"varying\"\n)\n"
+        "color3f[] primvars:displayColor = [(1, 0, 0), (0, 1, 0)] (interpolation = \"vertex\")\n"
+        "int[] primvars:displayColor:indices = [0, 0, 1, 1]\n"
+        "texCoord2f[] primvars:st = [(0.25, 0.5)] (interpolation = \"constant\")\n",
+        "[4]", "[(0, 0, 0), (0, 1, 0), (0, 2, 0), (0, 3, 0)]");
+    Strands strands = read_text(text, strlen(text), NULL, RESULT_OK, &error);
+    static const float widths[] = {1, 1.5f, 2, 2.5f, 3};
+    assert_memory_equal(strands.vertex_thickness, widths, sizeof widths);
+    assert_true(strands.color[2][0] == 0.5f && strands.color[4][1] == 1);
+    assert_true(strands.strand_uv[0][0] == 0.25f && strands.strand_uv[0][1] == 0.5f);
+    strands_destroy(&strands);
+}
+
+#define MOVED(parent, own)                                                                         \
+    METRIC "def Xform \"a\"\n{\n" parent "def BasisCurves \"x\"\n{\n" own                          \
+           "uniform token type = \"linear\"\nint[] curveVertexCounts = [2]\n"                      \
+           "point3f[] points = [(1, 2, 3), (1, 2, 4)]\n}\n}\n"
+#define ORDER(names) "uniform token[] xformOpOrder = [" names "]\n"
+
+static void transforms_act_in_their_order(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        float first[3], second[3];
+    } cases[] = {
+        {MOVED("double3 xformOp:translate = (10, 0, 0)\n" ORDER("\"xformOp:translate\""), ""),
+         {11, 2, 3},
+         {11, 2, 4}},
+        {MOVED("double3 xformOp:translate = (10, 0, 0)\nfloat3 xformOp:scale = (2, 2, 2)\n" ORDER(
+                   "\"xformOp:translate\", \"xformOp:scale\""),
+               ""),
+         {12, 4, 6},
+         {12, 4, 8}}, // the last of the list acts first
+        {MOVED("float3 xformOp:scale = (2, 2, 2)\n" ORDER("\"xformOp:scale\""),
+               "double3 xformOp:translate = (10, 0, 0)\n" ORDER("\"xformOp:translate\"")),
+         {22, 4, 6},
+         {22, 4, 8}},
+        {MOVED("float3 xformOp:scale = (2, 2, 2)\n" ORDER("\"xformOp:scale\""),
+               "double3 xformOp:translate = (10, 0, 0)\n" ORDER(
+                   "\"!resetXformStack!\", \"xformOp:translate\"")),
+         {11, 2, 3},
+         {11, 2, 4}},
+        {MOVED("", "float xformOp:rotateZ = 90\n" ORDER("\"xformOp:rotateZ\"")),
+         {-2, 1, 3},
+         {-2, 1, 4}},
+        {MOVED("", "float3 xformOp:rotateXYZ = (90, 0, 90)\n" ORDER("\"xformOp:rotateXYZ\"")),
+         {3, 1, 2},
+         {4, 1, 2}}, // x first: (1, -3, 2)
+        {MOVED("", "float3 xformOp:rotateZYX = (90, 0, 90)\n" ORDER("\"xformOp:rotateZYX\"")),
+         {-2, -3, 1},
+         {-2, -4, 1}}, // z first: (-2, 1, 3)
+        {MOVED("", "quatf xformOp:orient = (0.70710678, 0, 0, 0.70710678)\n" ORDER(
+                       "\"xformOp:orient\"")),
+         {-2, 1, 3},
+         {-2, 1, 4}},
+        {MOVED("", "matrix4d xformOp:transform = ( (0, 1, 0, 0), (-1, 0, 0, 0), (0, 0, 1, 0), "
+                   "(5, 6, 7, 1) )\n" ORDER("\"xformOp:transform\"")),
+         {3, 7, 10},
+         {3, 7, 11}},
+        {MOVED("",
+               "double3 xformOp:translate:pivot = (1, 2, 0)\nfloat xformOp:rotateZ = 90\n" ORDER(
+                   "\"xformOp:translate:pivot\", \"xformOp:rotateZ\", "
+                   "\"!invert!xformOp:translate:pivot\"")),
+         {1, 2, 3},
+         {1, 2, 4}},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        float wanted[6];
+        memcpy(wanted, cases[i].first, 12);
+        memcpy(wanted + 3, cases[i].second, 12);
+        check_vertices(cases[i].text, 1, wanted, 2);
+    }
+}
+
+static StrandsFrames read_frames(void **state, const char *text, Strands *strands, char note[400])
+{
+    StrandsFrames frames;
+    StrandsReport report;
+    Error error = {""};
+    temporary_write(state, "x.usda", text, 0644);
+    if (strands_read_frames(strands, &frames, temporary_path(state, "x.usda"), NULL, &report,
+                            &error) != RESULT_OK)
+        fail_msg("%s: %s", text, error.text);
+    memcpy(note, report.note, 400);
+    return frames;
+}
+
+static void all_times_of_points_and_transforms_are_frames(void **state)
+{
+    static const char text[] =
+        "#usda 1.0\n(\nmetersPerUnit = 1\ntimeCodesPerSecond = 30\n)\n"
+        "def Xform \"a\"\n{\ndouble3 xformOp:translate.timeSamples = {\n1: (0, 0, 0),\n"
+        "3: (4, 0, 0)\n}\n" ORDER("\"xformOp:translate\"") "def BasisCurves \"x\"\n{\n"
+                                                           "uniform token type = \"linear\"\nint[] "
+                                                           "curveVertexCounts = [2]\n"
+                                                           "point3f[] points.timeSamples = {\n2: "
+                                                           "[(0, 0, 0), (0, 1, 0)],\n"
+                                                           "4: [(0, 0, 2), (0, 1, 2)],\n}\n}\n}\n";
+    Strands strands;
+    char note[400];
+    StrandsFrames frames = read_frames(state, text, &strands, note);
+    assert_int_equal(frames.count, 4);
+    assert_int_equal(frames.first, 1);
+    assert_true(frames.fps == 30);
+    static const float x[] = {0, 2, 4, 4}, z[] = {0, 0, 1, 2};
+    for (int f = 0; f < 4; ++f) {
+        assert_true(frames.position[2 * f][0] == x[f] && frames.position[2 * f][2] == z[f]);
+        assert_true(frames.position[2 * f + 1][1] == 1);
+    }
+    strands_frames_destroy(&frames);
+    strands_destroy(&strands);
+    char uneven[sizeof text];
+    memcpy(uneven, text, sizeof text);
+    memcpy(strstr(uneven, "4: [(0"), "9: [(0", 6); // 1, 2, 3, 9
+    frames = read_frames(state, uneven, &strands, note);
+    assert_int_equal(frames.count, 9);
+    assert_non_null(strstr(note, "uneven distances: frames are the time codes 1 to 9"));
+    strands_frames_destroy(&frames);
+    strands_destroy(&strands);
+}
+
+static void what_is_not_drawn_is_left_out_and_counted(void **state)
+{
+    (void)state;
+#define PRIM(specifier, meta, more)                                                                \
+    specifier " BasisCurves \"x\" " meta "\n{\nuniform token type = \"linear\"\n"                  \
+              "int[] curveVertexCounts = [2]\npoint3f[] points = [(0, 0, 0), (0, 1, 0)]\n" more    \
+              "}\n"
+    const char *text = METRIC PRIM("def", "", "") PRIM("def", "(active = false)", "") PRIM(
+        "over", "", "") PRIM("class", "", "")
+        PRIM("def", "", "uniform token purpose = \"guide\"\n") "def Xform \"a\"\n{\ntoken "
+                                                               "visibility = \"invisible\"\n" PRIM(
+                                                                   "def", "",
+                                                                   "") "}\n"
+                                                                       "def NurbsCurves "
+                                                                       "\"n\"\n{\n}\n" PRIM(
+                                                                           "def", "(kind = \"x\")",
+                                                                           "float xformOp:rotateX "
+                                                                           "= 9\n");
+    StrandsReport report;
+    Error error = {""};
+    Strands strands = read_text(text, strlen(text), &report, RESULT_OK, &error);
+    assert_int_equal(strands.strand_count, 2);
+    assert_string_equal(report.note,
+                        "left out: 5 prims of curves that are inactive, invisible, abstract or of "
+                        "purpose guide or proxy; left out: 1 prims of NURBS or Hermite curves; 1 "
+                        "transforms without xformOpOrder have no effect");
+    strands_destroy(&strands);
 }
 
 static void every_truncation_and_damage_is_survived(void **state)
@@ -313,6 +543,11 @@ int main(void)
         TEST(what_is_written_is_read_to_the_bit),
         TEST(curves_of_other_programs_are_read),
         TEST(what_would_give_other_hair_is_refused_with_its_line),
+        TEST(cubic_curves_become_points_on_them),
+        TEST(attributes_of_cubic_curves_go_to_their_points),
+        TEST(transforms_act_in_their_order),
+        TEST(all_times_of_points_and_transforms_are_frames),
+        TEST(what_is_not_drawn_is_left_out_and_counted),
         TEST(every_truncation_and_damage_is_survived),
         TEST(a_file_that_is_not_finished_is_not_there),
     };

@@ -1,235 +1,236 @@
 // SPDX-License-Identifier: MIT
-// Reads `.usda`: all BasisCurves prims of type linear, by their points' value or first time sample.
-// Layers, prims and properties of other kinds are ignored. Attributes have one value, or one
-// for each strand or vertex, as their number shows; of several prims those are kept that all
-// have. Fails at a transform of curves or above them, at cubic or periodic curves and at indexed
-// primvars, since passing over these would give other hair.
+// Reads `.usda`: all BasisCurves prims that are drawn, in the order of the file, with the
+// transforms of their parents and, if they are wanted, all times. Prims that are inactive,
+// invisible, abstract (class, over) or of purpose guide or proxy are left out and counted. What
+// would bring in other files or choose among versions (sublayers, references, variants, ...) is
+// refused, since passing over it would give other hair.
 #include "strands/formats/format.h"
+#include "strands/formats/usd_curves.h"
 #include "strands/formats/usd_text.h"
+#include "strands/formats/usd_transform.h"
 #include "strands/formats/usd_write.h"
 #include "strands/strands_edit.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-// --- A BasisCurves prim as it stands in the file, and the strands that it is.
-
-typedef enum UsdArray {
-    USD_COUNTS,
-    USD_POINTS,
-    USD_WIDTHS,
-    USD_COLOR,
-    USD_OPACITY,
-    USD_ST,
-    USD_ST1,
-    USD_THICKNESS,
-    USD_MOBILITY,
-    USD_ARRAYS
-} UsdArray;
-
-// Their attributes' names.
-static const char *const ARRAY_NAMES[USD_ARRAYS] = {
-    "curveVertexCounts",       "points",      "widths",       "primvars:displayColor",
-    "primvars:displayOpacity", "primvars:st", "primvars:st1", "primvars:thickness",
-    "primvars:mobility"};
-
-typedef struct UsdCurves {
-    UsdValues array[USD_ARRAYS];
-    char type[USD_WORD_SIZE], wrap[USD_WORD_SIZE];
-    uint32_t line; // of the prim
-    float followers, follower_radius, both_ends_fixed;
-} UsdCurves;
-
-static void fail_count(Reader *reader, const UsdCurves *curves, int array)
-{
-    reader->line = curves->array[array].line;
-    reader_fail(reader, "%s: %zu numbers for these curves", ARRAY_NAMES[array],
-                curves->array[array].count);
-}
-
-// UsdValues of `width` floats, one for each vertex: as they are, or those of the strand, or the
-// only one. NULL if there are none.
-static float *spread(Reader *reader, const UsdCurves *curves, int array, const Strands *strands,
-                     size_t width)
-{
-    const UsdValues *values = &curves->array[array];
-    size_t count = values->count / width;
-    bool each = count == strands->vertex_count, uniform = count == strands->strand_count;
-    if (!values->line || values->count == 0 || !reader_ok(reader)) return NULL;
-    if (values->count % width != 0 || !(each || uniform || count == 1)) {
-        fail_count(reader, curves, array);
-        return NULL;
-    }
-    float *spread = malloc(strands->vertex_count * width * sizeof *spread + 1);
-    if (!spread) reader_fail_memory(reader);
-    for (uint32_t s = 0; spread && s < strands->strand_count; ++s)
-        for (uint32_t v = strands->first[s]; v < strands->first[s + 1]; ++v)
-            memcpy(spread + v * width,
-                   values->value + (each      ? v
-                                    : uniform ? s
-                                              : 0) *
-                                       width,
-                   width * sizeof *spread);
-    return spread;
-}
-
-// The values themselves, of which there must be `count`.
-static void *keep(Reader *reader, UsdCurves *curves, int array, size_t count)
-{
-    UsdValues *values = &curves->array[array];
-    if (!values->line || values->count == 0 || !reader_ok(reader)) return NULL;
-    if (values->count != count) fail_count(reader, curves, array);
-    void *kept = values->value;
-    values->value = NULL;
-    return kept;
-}
-
-static void set_colors(Reader *reader, const UsdCurves *curves, Strands *strands)
-{
-    float *color = spread(reader, curves, USD_COLOR, strands, 3);
-    float *opacity = spread(reader, curves, USD_OPACITY, strands, 1);
-    bool any = color || opacity;
-    if (any) strands->color = malloc(((size_t)strands->vertex_count + 1) * sizeof *strands->color);
-    if (any && !strands->color) reader_fail_memory(reader);
-    for (uint32_t v = 0; strands->color && v < strands->vertex_count; ++v) {
-        for (int k = 0; k < 3; ++k) strands->color[v][k] = color ? color[3 * v + k] : 1;
-        strands->color[v][3] = opacity ? opacity[v] : 1;
-    }
-    free(color);
-    free(opacity);
-}
-
-static void set_attributes(Reader *reader, UsdCurves *curves, Strands *strands)
-{
-    size_t strand_count = strands->strand_count, vertices = strands->vertex_count;
-    strands->vertex_thickness = spread(reader, curves, USD_WIDTHS, strands, 1);
-    set_colors(reader, curves, strands);
-    if (curves->array[USD_ST].count == 2 * vertices)
-        strands->vertex_uv = keep(reader, curves, USD_ST, 2 * vertices);
-    else
-        strands->strand_uv = keep(reader, curves, USD_ST, 2 * strand_count);
-    if (!strands->vertex_uv) strands->vertex_uv = keep(reader, curves, USD_ST1, 2 * vertices);
-    strands->strand_thickness = keep(reader, curves, USD_THICKNESS, strand_count);
-    strands->mobility = keep(reader, curves, USD_MOBILITY, vertices);
-    strands->followers = (uint32_t)(curves->followers > 0 ? curves->followers : 0);
-    strands->follower_radius = curves->follower_radius;
-    strands->both_ends_fixed = curves->both_ends_fixed != 0;
-}
-
-static void set_sizes(Reader *reader, const UsdCurves *curves, Strands *strands)
-{
-    const UsdValues *counts = &curves->array[USD_COUNTS];
-    uint64_t vertices = 0;
-    for (size_t s = 0; s < counts->count && reader_ok(reader); ++s) {
-        float size = counts->value[s];
-        if (!(size >= 0 && size <= strands->vertex_count && size == (float)(uint32_t)size))
-            fail_count(reader, curves, USD_COUNTS);
-        if (reader_ok(reader)) vertices += (uint64_t)size;
-        strands->first[s + 1] = (uint32_t)vertices;
-        if (vertices > strands->vertex_count) break;
-    }
-    if (vertices != strands->vertex_count) fail_count(reader, curves, USD_POINTS);
-}
-
-static void check_kind(Reader *reader, const UsdCurves *curves)
-{
-    reader->line = curves->line;
-    if (strcmp(curves->type, "linear") != 0)
-        reader_fail(reader, "curves of type %s: only linear ones are read",
-                    *curves->type ? curves->type : "cubic");
-    if (strcmp(curves->wrap, "periodic") == 0)
-        reader_fail(reader, "periodic curves: strands have ends");
-}
-
-// The strands of curves that have points; arrays move into them. Fails the reader, at the array's
-// line, where an array's size does not fit the curves. The strands may be destroyed in either case.
-static Result make_strands(Strands *strands, Reader *reader, UsdCurves *curves)
-{
-    const UsdValues *points = &curves->array[USD_POINTS];
-    uint32_t line = reader->line;
-    *strands = (Strands){0};
-    check_kind(reader, curves);
-    if (points->count % 3 || points->count >= UINT32_MAX ||
-        curves->array[USD_COUNTS].count >= UINT32_MAX)
-        fail_count(reader, curves, USD_POINTS);
-    if (!reader_ok(reader)) return reader->result;
-    if (strands_create(strands, (uint32_t)curves->array[USD_COUNTS].count,
-                       (uint32_t)(points->count / 3), NULL) != RESULT_OK)
-        return reader_fail_memory(reader);
-    memcpy(strands->position, points->value, points->count * sizeof(float));
-    set_sizes(reader, curves, strands);
-    if (reader_ok(reader)) set_attributes(reader, curves, strands);
-    if (reader_ok(reader)) reader->line = line;
-    return reader->result;
-}
-
-static void curves_destroy(UsdCurves *curves)
-{
-    for (int i = 0; i < USD_ARRAYS; ++i) free(curves->array[i].value);
-    *curves = (UsdCurves){0};
-}
-
-// --- Prims.
-
 enum { DEEPEST = 64 };
+
+typedef struct UsdPrim {
+    int parent; // -1: none
+    UsdTransform transform;
+    bool hidden, abstract, instancer;
+} UsdPrim;
 
 typedef struct Usd {
     Reader *reader;
-    Strands *sets;           // [count] of each prim
-    uint32_t *line;          // [count] of its points
-    uint32_t count, samples; // of prims; of the times of any of their attributes
+    FormatWishes wishes;
+    UsdPrim *prim; // [prim_count]
+    int prim_count;
+    UsdCurves *curves; // [curves_count] with points
+    uint32_t curves_count, left_out, other_curves;
     float unit;
+    double codes_per_second, frames_per_second; // 0: the file does not say
     bool up_z;
 } Usd;
 
-static void read_property_value(Usd *usd, UsdCurves *curves, const char *name)
+static const char FLATTEN[] = "expected one layer: usdcat --flatten FILE -o flat.usda";
+
+// --- Properties.
+
+static void read_samples(Usd *usd, UsdCurves *curves, UsdValues *only, bool points)
+{
+    Reader *reader = usd->reader;
+    double time, last = -INFINITY;
+    usd_text_expect(reader, '{');
+    for (size_t count = 0; usd_text_next_sample(reader, &time); ++count) {
+        if (time <= last)
+            reader_fail(reader, "the time sample %g does not lie behind the one before it", time);
+        last = time;
+        if (points) curves->time_count = count + 1;
+        if (count > 0 && !(points && usd->wishes.all_frames)) {
+            usd_text_skip_value(reader);
+            continue;
+        }
+        UsdValues values = {.time = time};
+        usd_text_read_values(reader, &values);
+        if (!points) {
+            free(only->value);
+            *only = values;
+            continue;
+        }
+        UsdValues *more = realloc(curves->points, (curves->sample_count + 1) * sizeof *more);
+        if (!more) {
+            free(values.value);
+            reader_fail_memory(reader);
+            return;
+        }
+        curves->points = more;
+        curves->points[curves->sample_count++] = values;
+    }
+}
+
+static void read_points(Usd *usd, UsdCurves *curves, bool samples)
+{
+    if (curves->timed && !samples) { // samples win over the default
+        usd_text_skip_value(usd->reader);
+        return;
+    }
+    for (size_t i = 0; i < curves->sample_count; ++i) free(curves->points[i].value);
+    curves->sample_count = 0;
+    curves->timed = samples;
+    if (samples) {
+        read_samples(usd, curves, NULL, true);
+        return;
+    }
+    UsdValues *one = realloc(curves->points, sizeof *one);
+    if (!one) {
+        reader_fail_memory(usd->reader);
+        return;
+    }
+    *one = (UsdValues){0};
+    curves->points = one;
+    curves->sample_count = 1;
+    usd_text_read_values(usd->reader, one);
+}
+
+// Returns which array the property is, or -1.
+static int read_curves_value(Usd *usd, UsdCurves *curves, const char *name, size_t length,
+                             bool samples)
+{
+    Reader *reader = usd->reader;
+    struct {
+        const char *name;
+        char *text;
+    } words[] = {{"type", curves->type}, {"basis", curves->basis}, {"wrap", curves->wrap}};
+    for (int i = 0; i < 3; ++i)
+        if (strcmp(name, words[i].name) == 0) {
+            usd_text_read_string(reader, words[i].text);
+            return USD_ARRAYS;
+        }
+    if (length == 6 && strncmp(name, "points", 6) == 0) {
+        read_points(usd, curves, samples);
+        return USD_ARRAYS;
+    }
+    for (int i = 0; i < USD_ARRAYS; ++i) {
+        size_t known = strlen(USD_ARRAY_NAMES[i]);
+        if (strncmp(name, USD_ARRAY_NAMES[i], known) != 0) continue;
+        bool indices = strncmp(name + known, ":indices", 8) == 0;
+        if (known != length && !(indices && known + 8 == length)) continue;
+        UsdValues *to = indices ? &curves->indices[i] : &curves->array[i];
+        if (samples)
+            read_samples(usd, curves, to, false);
+        else
+            usd_text_read_values(reader, to);
+        return indices ? USD_ARRAYS : i;
+    }
+    return -1;
+}
+
+static bool is_shown(const char *name, const char *word)
+{
+    if (strcmp(name, "visibility") == 0) return strcmp(word, "invisible") != 0;
+    return strcmp(word, "guide") != 0 && strcmp(word, "proxy") != 0;
+}
+
+static int read_property_value(Usd *usd, int prim, UsdCurves *curves, const char *name)
 {
     Reader *reader = usd->reader;
     size_t length = strcspn(name, ".");
     bool samples = strcmp(name + length, ".timeSamples") == 0;
-    if (curves && strcmp(name, "type") == 0) {
-        usd_text_read_string(reader, curves->type);
-        return;
+    char word[USD_WORD_SIZE];
+    if (name[length] && !samples) { // .connect
+        usd_text_skip_value(reader);
+    } else if (strncmp(name, "xformOp:", 8) == 0) {
+        snprintf(word, sizeof word, "%.*s", (int)length, name);
+        usd_transform_read_op(&usd->prim[prim].transform, reader, word, samples);
+    } else if (strcmp(name, "xformOpOrder") == 0) {
+        usd_transform_read_order(&usd->prim[prim].transform, reader);
+    } else if ((strcmp(name, "visibility") == 0 || strcmp(name, "purpose") == 0) &&
+               usd_text_peek(reader, false) == '"') {
+        usd_text_read_string(reader, word);
+        if (!is_shown(name, word)) usd->prim[prim].hidden = true;
+    } else {
+        int array = curves ? read_curves_value(usd, curves, name, length, samples) : -1;
+        if (array < 0) usd_text_skip_value(reader);
+        return array;
     }
-    if (curves && strcmp(name, "wrap") == 0) {
-        usd_text_read_string(reader, curves->wrap);
-        return;
-    }
-    for (int i = 0; curves && i < USD_ARRAYS; ++i) {
-        size_t known = strlen(ARRAY_NAMES[i]);
-        if (strncmp(name, ARRAY_NAMES[i], known) != 0) continue;
-        if (strcmp(name + known, ":indices") == 0)
-            reader_fail(reader, "%s: indexed primvars are not read", ARRAY_NAMES[i]);
-        if (known != length || (name[length] && !samples)) continue;
-        uint32_t count = samples ? usd_text_read_samples(reader, &curves->array[i]) : 0;
-        if (count > usd->samples) usd->samples = count;
-        if (!samples) usd_text_read_values(reader, &curves->array[i]);
-        return;
-    }
-    usd_text_skip_value(reader);
+    return -1;
 }
 
-// "uniform token[] name = value (metadata)"; the name is the last word. Returns whether it moves
-// what is below.
-static bool read_property(Usd *usd, UsdCurves *curves, char name[USD_WORD_SIZE])
+// (interpolation = "vertex" ...)
+static void read_rate(Reader *reader, char rate[16])
+{
+    char word[USD_WORD_SIZE];
+    usd_text_expect(reader, '(');
+    while (reader_ok(reader) && !usd_text_take(reader, ')')) {
+        if (!usd_text_is_letter(usd_text_peek(reader, false))) {
+            usd_text_skip_value(reader);
+            continue;
+        }
+        usd_text_read_word(reader, word);
+        if (!usd_text_take(reader, '=')) continue;
+        if (strcmp(word, "interpolation") == 0) {
+            usd_text_read_string(reader, word);
+            snprintf(rate, 16, "%.15s", word);
+        } else {
+            usd_text_skip_value(reader);
+        }
+    }
+}
+
+// "uniform token[] name = value (metadata)"; the name is the last word.
+static void read_property(Usd *usd, int prim, UsdCurves *curves, char name[USD_WORD_SIZE])
 {
     Reader *reader = usd->reader;
+    int array = -1;
+    if (strcmp(name, "variantSet") == 0) reader_fail(reader, "variants are not read: %s", FLATTEN);
     char c = usd_text_peek(reader, true);
     while (c && c != '=' && c != '(' && c != '}' && c != '\n' && reader_ok(reader)) {
         if (c == '"')
-            usd_text_skip_value(reader); // variantSet "name" = ...
+            usd_text_skip_value(reader);
         else
             usd_text_read_type(reader, name);
         c = usd_text_peek(reader, true);
     }
-    if (usd_text_take(reader, '=')) read_property_value(usd, curves, name);
-    if (usd_text_peek(reader, true) == '(') usd_text_skip_value(reader);
-    return strncmp(name, "xformOp:", 8) == 0;
+    if (usd_text_take(reader, '=')) array = read_property_value(usd, prim, curves, name);
+    if (usd_text_peek(reader, true) != '(') return;
+    if (curves && array >= 0 && array < USD_ARRAYS)
+        read_rate(reader, curves->rate[array]);
+    else
+        usd_text_skip_value(reader);
 }
 
-// What tractrix itself puts into customData; the rest is ignored.
-static void read_metadata(Reader *reader, UsdCurves *curves)
+// --- Metadata of a prim.
+
+// Whether what comes is None or empty brackets; it is stepped over.
+static bool skip_empty(Reader *reader)
 {
+    size_t at = reader->at + 1;
+    char c = usd_text_peek(reader, false);
+    at = reader->at + 1;
+    while (c == '[' && reader->data[at] && strchr(" \t\r\n", reader->data[at])) ++at;
+    bool empty = (c == '[' && reader->data[at] == ']') ||
+                 strncmp((const char *)reader->data + reader->at, "None", 4) == 0;
+    usd_text_skip_value(reader);
+    return empty;
+}
+
+static bool composes(const char *word)
+{
+    static const char *const arcs[] = {"references", "payload", "inherits", "specializes",
+                                       "variantSets"};
+    for (size_t i = 0; i < sizeof arcs / sizeof *arcs; ++i)
+        if (strcmp(word, arcs[i]) == 0) return true;
+    return false;
+}
+
+// What tractrix itself puts into customData, whether the prim is active, and what would compose it
+// with others; the rest is ignored.
+static void read_metadata(Usd *usd, int prim, UsdCurves *curves)
+{
+    Reader *reader = usd->reader;
     char word[USD_WORD_SIZE];
     int depth = 0;
     do {
@@ -249,69 +250,130 @@ static void read_metadata(Reader *reader, UsdCurves *curves)
                     : strcmp(word, "bothEndsFixed") == 0  ? &curves->both_ends_fixed
                                                           : NULL;
         if (to && usd_text_take(reader, '=')) *to = usd_text_read_float(reader);
+        if (to || depth != 1 || usd_text_peek(reader, true) != '=') continue;
+        if (strcmp(word, "active") == 0) {
+            usd_text_take(reader, '=');
+            usd_text_read_word(reader, word);
+            if (strcmp(word, "false") == 0 || strcmp(word, "0") == 0) usd->prim[prim].hidden = true;
+        } else if (composes(word)) {
+            uint32_t line = reader->line;
+            usd_text_take(reader, '=');
+            if (skip_empty(reader)) continue;
+            reader->line = line;
+            reader_fail(reader, "%s are not read: %s", word, FLATTEN);
+        }
     } while (depth > 0 && reader_ok(reader));
 }
+
+// --- Prims.
 
 static void add_curves(Usd *usd, UsdCurves *curves)
 {
     Reader *reader = usd->reader;
-    if (!reader_ok(reader) || curves->array[USD_POINTS].count == 0) return; // an `over`, or empty
-    Strands *sets = realloc(usd->sets, ((size_t)usd->count + 1) * sizeof *sets);
-    if (sets) usd->sets = sets;
-    uint32_t *lines = realloc(usd->line, ((size_t)usd->count + 1) * sizeof *lines);
-    if (lines) usd->line = lines;
-    if (!sets || !lines) {
+    if (!reader_ok(reader) || curves->sample_count == 0 || curves->points[0].count == 0)
+        return; // an `over`, or empty
+    bool hidden = false, instancer = false;
+    for (int p = curves->prim; p >= 0; p = usd->prim[p].parent) {
+        hidden = hidden || usd->prim[p].hidden || usd->prim[p].abstract;
+        instancer = instancer || usd->prim[p].instancer;
+    }
+    if (hidden) {
+        ++usd->left_out;
+        return;
+    }
+    if (instancer) reader_fail(reader, "curves of a PointInstancer are not read: %s", FLATTEN);
+    UsdCurves *more = realloc(usd->curves, ((size_t)usd->curves_count + 1) * sizeof *more);
+    if (!more) {
         reader_fail_memory(reader);
         return;
     }
-    lines[usd->count] = curves->array[USD_POINTS].line;
-    make_strands(&sets[usd->count++], reader, curves);
+    usd->curves = more;
+    usd->curves[usd->curves_count++] = *curves;
+    *curves = (UsdCurves){0};
 }
 
-static void read_prim(Usd *usd, int depth);
+static void read_prim(Usd *usd, const char *specifier, int parent, int depth);
 
 static bool begins_prim(const char *word)
 {
     return strcmp(word, "def") == 0 || strcmp(word, "over") == 0 || strcmp(word, "class") == 0;
 }
 
-static void read_body(Usd *usd, UsdCurves *curves, int depth)
+static void read_body(Usd *usd, int prim, UsdCurves *curves, int depth)
 {
     Reader *reader = usd->reader;
-    uint32_t before = usd->count, moved = 0;
     usd_text_expect(reader, '{');
     while (reader_ok(reader) && !usd_text_take(reader, '}')) {
         char word[USD_WORD_SIZE];
-        uint32_t line = reader->line;
         usd_text_read_type(reader, word);
         if (begins_prim(word))
-            read_prim(usd, depth + 1);
-        else if (read_property(usd, curves, word))
-            moved = line;
+            read_prim(usd, word, prim, depth + 1);
+        else
+            read_property(usd, prim, curves, word);
     }
-    if (curves) add_curves(usd, curves);
-    if (!moved || usd->count == before) return;
-    reader->line = moved;
-    reader_fail(reader, "curves with a transform: only untransformed ones are read");
 }
 
-static void read_prim(Usd *usd, int depth)
+static int add_prim(Usd *usd, int parent)
+{
+    UsdPrim *more = realloc(usd->prim, ((size_t)usd->prim_count + 1) * sizeof *more);
+    if (!more) {
+        reader_fail_memory(usd->reader);
+        return -1;
+    }
+    usd->prim = more;
+    usd->prim[usd->prim_count] = (UsdPrim){.parent = parent};
+    return usd->prim_count++;
+}
+
+static void read_prim(Usd *usd, const char *specifier, int parent, int depth)
 {
     Reader *reader = usd->reader;
     UsdCurves curves = {.line = reader->line};
     char type[USD_WORD_SIZE] = "", name[USD_WORD_SIZE];
     if (depth > DEEPEST) reader_fail(reader, "prims more than %d deep", DEEPEST);
+    int prim = add_prim(usd, parent);
+    if (prim < 0) return;
+    usd->prim[prim].abstract = strcmp(specifier, "def") != 0;
     if (usd_text_peek(reader, false) != '"') usd_text_read_word(reader, type);
     if (usd_text_peek(reader, false) == '"')
         usd_text_read_string(reader, name);
     else
         reader_fail(reader, "expected a prim's name");
-    if (usd_text_peek(reader, false) == '(') read_metadata(reader, &curves);
-    if (reader_ok(reader)) read_body(usd, strcmp(type, "BasisCurves") ? NULL : &curves, depth);
-    curves_destroy(&curves);
+    bool ours = strcmp(type, "BasisCurves") == 0;
+    usd->prim[prim].instancer = strcmp(type, "PointInstancer") == 0;
+    usd->other_curves += strcmp(type, "NurbsCurves") == 0 || strcmp(type, "HermiteCurves") == 0;
+    curves.prim = prim;
+    if (usd_text_peek(reader, false) == '(') read_metadata(usd, prim, &curves);
+    if (reader_ok(reader)) read_body(usd, prim, ours ? &curves : NULL, depth);
+    if (ours) add_curves(usd, &curves);
+    usd_curves_destroy(&curves);
 }
 
 // --- The layer.
+
+static void read_layer_value(Usd *usd, const char *name)
+{
+    Reader *reader = usd->reader;
+    char word[USD_WORD_SIZE];
+    uint32_t line = reader->line;
+    double *rate = strcmp(name, "timeCodesPerSecond") == 0 ? &usd->codes_per_second
+                   : strcmp(name, "framesPerSecond") == 0  ? &usd->frames_per_second
+                                                           : NULL;
+    if (rate) {
+        *rate = (double)usd_text_read_float(reader);
+    } else if (strcmp(name, "metersPerUnit") == 0) {
+        usd->unit = usd_text_read_float(reader);
+    } else if (strcmp(name, "upAxis") == 0 && usd_text_peek(reader, false) == '"') {
+        usd_text_read_string(reader, word);
+        usd->up_z = strcmp(word, "Z") == 0;
+    } else if (strcmp(name, "subLayers") == 0) {
+        if (skip_empty(reader)) return;
+        reader->line = line;
+        reader_fail(reader, "subLayers are not read: %s", FLATTEN);
+    } else {
+        usd_text_skip_value(reader);
+    }
+}
 
 static void read_layer(Usd *usd)
 {
@@ -325,13 +387,7 @@ static void read_layer(Usd *usd)
             continue;
         }
         usd_text_read_word(reader, word);
-        if (!usd_text_take(reader, '=')) continue; // "prepend"
-        if (strcmp(word, "metersPerUnit") == 0)
-            usd->unit = usd_text_read_float(reader);
-        else if (strcmp(word, "upAxis") == 0 && usd_text_peek(reader, false) == '"')
-            usd_text_read_string(reader, word), usd->up_z = strcmp(word, "Z") == 0;
-        else
-            usd_text_skip_value(reader);
+        if (usd_text_take(reader, '=')) read_layer_value(usd, word); // else "prepend"
     }
 }
 
@@ -342,50 +398,241 @@ static void read_prims(Usd *usd)
     while (reader_ok(reader) && usd_text_peek(reader, false)) {
         usd_text_read_word(reader, word);
         if (begins_prim(word))
-            read_prim(usd, 0);
+            read_prim(usd, word, -1, 0);
         else if (usd_text_take(reader, '=')) // reorder rootPrims = ...
             usd_text_skip_value(reader);
     }
 }
 
-static Result join(Usd *usd, FormatSource *source)
+// --- Times.
+
+typedef struct Times {
+    double *time; // [count] rising; those at which the hair is looked at
+    uint32_t count, in_file;
+    int first;   // number of the first frame
+    double step; // time codes from frame to frame
+} Times;
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// All times of curves and of what moves them, to `times` unless it is NULL. Returns how many.
+static size_t gather_times(const Usd *usd, double *times)
+{
+    size_t count = 0;
+    for (uint32_t i = 0; i < usd->curves_count; ++i) {
+        const UsdCurves *curves = &usd->curves[i];
+        for (size_t k = 0; curves->timed && k < curves->sample_count; ++k, ++count)
+            if (times) times[count] = curves->points[k].time;
+        for (int p = curves->prim; p >= 0; p = usd->prim[p].parent)
+            for (size_t op = 0; op < usd->prim[p].transform.op_count; ++op) {
+                const UsdTrack *track = &usd->prim[p].transform.op[op].track;
+                for (size_t k = 0; track->timed && k < track->count; ++k, ++count)
+                    if (times) times[count] = track->time[k];
+            }
+    }
+    return count;
+}
+
+// Times that are not evenly spaced become all whole time codes between the first and the last.
+static void even_out(Times *times, FormatSource *source)
+{
+    double first = times->time[0], last = times->time[times->count - 1];
+    double step = (last - first) / (times->count - 1);
+    bool even = true;
+    for (uint32_t i = 1; i < times->count; ++i)
+        even = even && fabs(times->time[i] - times->time[i - 1] - step) <= 1e-6 * step;
+    times->step = step;
+    bool whole = even && fabs(step - 1) < 1e-9 && first == floor(first);
+    times->first = whole && first >= 0 && first < 1e7 ? (int)first : 0;
+    double from = ceil(first), count = floor(last) - from + 1;
+    if (even || !(count >= 2 && count <= 1e6)) return;
+    double *codes = malloc((size_t)count * sizeof *codes);
+    if (!codes) return;
+    for (uint32_t i = 0; i < (uint32_t)count; ++i) codes[i] = from + i;
+    format_source_note(source,
+                       "time samples at uneven distances: frames are the time codes %g to %g", from,
+                       floor(last));
+    free(times->time);
+    *times = (Times){codes, (uint32_t)count, times->in_file, from >= 0 ? (int)from : 0, 1};
+}
+
+// Without all_frames only the first of the curves' samples are there, but all of the transforms'.
+static Result find_times(const Usd *usd, FormatSource *source, Times *times)
+{
+    size_t count = gather_times(usd, NULL);
+    *times = (Times){.time = malloc((count + 1) * sizeof *times->time), .step = 1};
+    if (!times->time) return reader_fail_memory(usd->reader);
+    gather_times(usd, times->time);
+    qsort(times->time, count, sizeof *times->time, compare_doubles);
+    for (size_t i = 0; i < count; ++i)
+        if (i == 0 || times->time[i] > times->time[times->count - 1])
+            times->time[times->count++] = times->time[i];
+    times->in_file = times->count;
+    for (uint32_t i = 0; i < usd->curves_count; ++i)
+        if (usd->curves[i].time_count > times->in_file)
+            times->in_file = (uint32_t)usd->curves[i].time_count;
+    if (times->count == 0) times->time[0] = 0;
+    if (usd->wishes.all_frames && times->count > 1) even_out(times, source);
+    return RESULT_OK;
+}
+
+// --- Strands.
+
+static void find_matrix(const Usd *usd, int prim, double time, double matrix[4][4])
+{
+    bool reset;
+    usd_transform_evaluate(&usd->prim[prim].transform, usd->reader, time, matrix, &reset);
+    for (int p = usd->prim[prim].parent; p >= 0 && !reset && reader_ok(usd->reader);
+         p = usd->prim[p].parent) {
+        double above[4][4];
+        usd_transform_evaluate(&usd->prim[p].transform, usd->reader, time, above, &reset);
+        usd_transform_multiply(matrix, matrix, above);
+    }
+}
+
+// All curves at a time, one behind the other.
+static void place_all(const Usd *usd, const Strands *sets, double time, float (*to)[3])
+{
+    for (uint32_t i = 0; i < usd->curves_count && reader_ok(usd->reader); ++i) {
+        double matrix[4][4];
+        find_matrix(usd, usd->curves[i].prim, time, matrix);
+        usd_curves_place(&usd->curves[i], &sets[i], time, matrix, to);
+        to += sets[i].vertex_count;
+    }
+}
+
+// Widths and the followers' radius grow with the transform: by the cube root of its volume.
+static void scale_widths(const Usd *usd, Strands *strands, uint32_t i, double time)
+{
+    double m[4][4];
+    find_matrix(usd, usd->curves[i].prim, time, m);
+    double volume = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                    m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                    m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+    double scale = cbrt(fabs(volume));
+    if (!reader_ok(usd->reader) || fabs(scale - 1) < 1e-9) return;
+    strands->follower_radius = (float)(strands->follower_radius * scale);
+    for (uint32_t v = 0; strands->vertex_thickness && v < strands->vertex_count; ++v)
+        strands->vertex_thickness[v] = (float)(strands->vertex_thickness[v] * scale);
+}
+
+static Result make_source(const Usd *usd, FormatSource *source, const Strands *sets)
 {
     Reader *reader = usd->reader;
     Strands all;
-    if (strands_join(&all, usd->sets, usd->count, NULL) != RESULT_OK)
+    if (strands_join(&all, sets, usd->curves_count, NULL) != RESULT_OK)
         return reader_fail_memory(reader);
-    if (format_source_create(source, reader, all.strand_count, all.vertex_count) == RESULT_OK) {
-        strands_destroy(&source->strands);
-        source->strands = all;
-        source->vertex_line = malloc(all.vertex_count * sizeof *source->vertex_line + 1);
-        if (!source->vertex_line) return reader_fail_memory(reader);
-        for (uint32_t i = 0, s = 0, v = 0; i < usd->count; ++i) {
-            for (uint32_t k = 0; k < usd->sets[i].strand_count; ++k)
-                source->place[s++] = usd->line[i];
-            for (uint32_t k = 0; k < usd->sets[i].vertex_count; ++k)
-                source->vertex_line[v++] = usd->line[i];
-        }
-    } else {
+    if (format_source_create(source, reader, all.strand_count, all.vertex_count) != RESULT_OK) {
         strands_destroy(&all);
+        return reader->result;
     }
+    strands_destroy(&source->strands);
+    source->strands = all;
+    source->vertex_line = malloc(all.vertex_count * sizeof *source->vertex_line + 1);
+    if (!source->vertex_line) return reader_fail_memory(reader);
+    for (uint32_t i = 0, s = 0, v = 0; i < usd->curves_count; ++i) {
+        uint32_t line = usd->curves[i].points[0].line;
+        for (uint32_t k = 0; k < sets[i].strand_count; ++k) source->place[s++] = line;
+        for (uint32_t k = 0; k < sets[i].vertex_count; ++k) source->vertex_line[v++] = line;
+    }
+    return RESULT_OK;
+}
+
+static Result make_frames(const Usd *usd, FormatSource *source, const Strands *sets,
+                          const Times *times)
+{
+    Reader *reader = usd->reader;
+    size_t each = source->strands.vertex_count;
+    double most = 64.0 * ((double)reader->size + 1e6), size = 12.0 * (double)each * times->count;
+    if (size > most)
+        return reader_fail(reader,
+                           "%u frames of %zu vertices need %.0f MB: more than 64 times the "
+                           "file",
+                           times->count, each, size / 1e6);
+    source->frames = malloc(each * times->count * sizeof *source->frames + 1);
+    if (!source->frames) return reader_fail_memory(reader);
+    for (uint32_t f = 0; f < times->count && reader_ok(reader); ++f)
+        place_all(usd, sets, times->time[f], source->frames + f * each);
+    source->samples = times->count;
+    source->first_frame = times->first;
     return reader->result;
+}
+
+static Result make_strands(Usd *usd, FormatSource *source, Strands *sets, Times *times)
+{
+    Reader *reader = usd->reader;
+    uint32_t cubic = 0;
+    for (uint32_t i = 0; i < usd->curves_count && reader_ok(reader); ++i) {
+        usd_curves_make(&usd->curves[i], reader, usd->wishes.points_per_strand, &sets[i]);
+        cubic += strcmp(usd->curves[i].type, "linear") != 0;
+    }
+    if (!reader_ok(reader)) return reader->result;
+    source->used_points = cubic > 0;
+    TRY(find_times(usd, source, times));
+    for (uint32_t i = 0; i < usd->curves_count; ++i) scale_widths(usd, &sets[i], i, times->time[0]);
+    TRY(reader->result);
+    TRY(make_source(usd, source, sets));
+    place_all(usd, sets, times->time[0], source->strands.position);
+    source->samples = times->in_file;
+    if (usd->wishes.all_frames && times->count > 1) return make_frames(usd, source, sets, times);
+    return reader->result;
+}
+
+static void note_choices(const Usd *usd, FormatSource *source)
+{
+    uint32_t idle = 0;
+    for (int p = 0; p < usd->prim_count; ++p)
+        idle += usd->prim[p].transform.op_count && !usd->prim[p].transform.line;
+    if (usd->left_out)
+        format_source_note(source,
+                           "left out: %u prims of curves that are inactive, invisible, abstract or "
+                           "of purpose guide or proxy",
+                           usd->left_out);
+    if (usd->other_curves)
+        format_source_note(source, "left out: %u prims of NURBS or Hermite curves",
+                           usd->other_curves);
+    if (idle) format_source_note(source, "%u transforms without xformOpOrder have no effect", idle);
+}
+
+static void destroy(Usd *usd)
+{
+    for (int i = 0; i < usd->prim_count; ++i) usd_transform_destroy(&usd->prim[i].transform);
+    for (uint32_t i = 0; i < usd->curves_count; ++i) usd_curves_destroy(&usd->curves[i]);
+    free(usd->prim);
+    free(usd->curves);
 }
 
 static Result read(FormatSource *source, Reader *reader)
 {
-    Usd usd = {.reader = reader, .unit = 0.01f}; // what USD takes for granted
+    Usd usd = {.reader = reader, .wishes = source->wishes, .unit = 0.01f}; // USD's default
+    Times times = {0};
     read_layer(&usd);
     read_prims(&usd);
     if (reader->at < reader->size) reader_fail(reader, "a byte 0 within the text");
-    if (reader_ok(reader) && usd.count == 0) reader_fail(reader, "no BasisCurves with points");
+    note_choices(&usd, source);
+    if (reader_ok(reader) && usd.curves_count == 0)
+        reader_fail(reader,
+                    *source->note ? "no BasisCurves with points (%s)"
+                                  : "no BasisCurves with points%s",
+                    source->note);
     if (reader_ok(reader) && !(usd.unit > 0)) reader_fail(reader, "metersPerUnit is not above 0");
-    if (reader_ok(reader)) join(&usd, source);
+    Strands *sets = calloc((size_t)usd.curves_count + 1, sizeof *sets);
+    if (!sets) reader_fail_memory(reader);
+    if (reader_ok(reader)) make_strands(&usd, source, sets, &times);
+    double codes = usd.codes_per_second > 0    ? usd.codes_per_second
+                   : usd.frames_per_second > 0 ? usd.frames_per_second
+                                               : 24; // USD's default
     source->unit = usd.unit;
     source->up = usd.up_z ? UP_Z : UP_Y;
-    source->samples = usd.samples;
-    for (uint32_t i = 0; i < usd.count; ++i) strands_destroy(&usd.sets[i]);
-    free(usd.sets);
-    free(usd.line);
+    source->fps = codes / (times.step > 0 ? times.step : 1);
+    for (uint32_t i = 0; sets && i < usd.curves_count; ++i) strands_destroy(&sets[i]);
+    free(sets);
+    free(times.time);
+    destroy(&usd);
     return reader->result;
 }
 

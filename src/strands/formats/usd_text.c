@@ -122,19 +122,31 @@ void usd_text_skip_value(Reader *reader)
     if (depth > 0) reader_fail(reader, "brackets without an end");
 }
 
-float usd_text_read_float(Reader *reader)
+// As float32 if `single`, which is rounded once.
+static double read_number(Reader *reader, bool single)
 {
     char text[USD_WORD_SIZE], *end;
     Reader before = *reader;
     usd_text_read_word(reader, text);
     if (!reader->locale) reader->locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    if (!reader->locale) return (float)reader_fail_memory(reader);
-    float value = strtof_l(text, &end, reader->locale);
+    if (!reader->locale) return (double)reader_fail_memory(reader);
+    double value = single ? (double)strtof_l(text, &end, reader->locale)
+                          : strtod_l(text, &end, reader->locale);
     before.locale = reader->locale;
     if (!reader_ok(reader) || (end != text && !*end)) return value;
     *reader = before;
     reader_fail(reader, "expected a number, got '%.40s'", text);
     return 0;
+}
+
+float usd_text_read_float(Reader *reader)
+{
+    return (float)read_number(reader, true);
+}
+
+static double read_double(Reader *reader)
+{
+    return read_number(reader, false);
 }
 
 // --- Arrays.
@@ -170,20 +182,43 @@ void usd_text_read_values(Reader *reader, UsdValues *values)
     }
 }
 
-uint32_t usd_text_read_samples(Reader *reader, UsdValues *values)
+bool usd_text_next_sample(Reader *reader, double *time)
 {
-    uint32_t count = 0;
-    usd_text_expect(reader, '{');
-    while (reader_ok(reader) && !usd_text_take(reader, '}')) {
-        while (usd_text_here(reader) && usd_text_here(reader) != ':' &&
-               usd_text_here(reader) != '\n')
-            usd_text_step(reader);
-        usd_text_expect(reader, ':');
-        if (count++ == 0)
-            usd_text_read_values(reader, values);
-        else
-            usd_text_skip_value(reader);
-        usd_text_take(reader, ',');
+    usd_text_take(reader, ',');
+    if (!reader_ok(reader) || usd_text_take(reader, '}')) return false;
+    char text[USD_WORD_SIZE] = "", *end;
+    usd_text_peek(reader, false);
+    for (size_t i = 0; i + 1 < sizeof text; ++i) { // the colon might belong to a name
+        char c = usd_text_here(reader);
+        if (!c || strchr(":\n {[", c)) break;
+        text[i] = c;
+        text[i + 1] = 0;
+        usd_text_step(reader);
     }
-    return count;
+    if (!reader->locale) reader->locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    *time = reader->locale ? strtod_l(text, &end, reader->locale) : 0;
+    if (!reader->locale)
+        reader_fail_memory(reader);
+    else if (reader_ok(reader) && (end == text || *end || !(*time > -1e15 && *time < 1e15)))
+        reader_fail(reader, "expected a time, got '%.40s'", text);
+    usd_text_expect(reader, ':');
+    return reader_ok(reader);
+}
+
+void usd_text_read_numbers(Reader *reader, double *numbers, int most)
+{
+    int count = 0, depth = 0;
+    do {
+        char c = usd_text_peek(reader, false);
+        if (c == '(') {
+            ++depth;
+        } else if (c == ')') {
+            --depth;
+        } else if (c != ',' || depth == 0) {
+            if (count == most) reader_fail(reader, "more than %d numbers", most);
+            if (reader_ok(reader)) numbers[count++] = read_double(reader);
+            continue;
+        }
+        usd_text_step(reader);
+    } while (depth > 0 && reader_ok(reader));
 }

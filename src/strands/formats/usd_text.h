@@ -43,10 +43,15 @@ typedef struct UsdValues {
     float *value;
     size_t count, room;
     uint32_t line; // 0: there are none
+    double time;   // of a sample
 } UsdValues;
 
 // An array, or the word None.
 void usd_text_read_values(Reader *reader, UsdValues *values);
 
-// { time: value, ... }: the first of them. Returns how many there are.
-uint32_t usd_text_read_samples(Reader *reader, UsdValues *values);
+// Within { time: value, ... }: steps to the next value and gives its time; false, past the brace,
+// if there is none.
+bool usd_text_next_sample(Reader *reader, double *time);
+
+// One number, or a tuple of at most `most`, however grouped; those that are not there stay.
+void usd_text_read_numbers(Reader *reader, double *numbers, int most);
