@@ -25,7 +25,7 @@ vec3 shade_particle(Fibre m, Painter painter, int at, int point, vec3 x, vec3 ta
 #elif AOV == 2
     return 0.5 + 0.5 * tangent;
 #else
-    uint bits = hash_bits(painter.id) | 0x10101u; // black is no strand
+    uint bits = max(hash_bits(painter.id) & 0xffffffu, 1u); // black is no strand
     return vec3(uvec3(bits, bits >> 8, bits >> 16) & 255u) / 255.0;
 #endif
 }

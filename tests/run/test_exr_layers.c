@@ -95,7 +95,8 @@ static void assert_layers(void **state, const char *raster)
                 *s = (const float *)(void *)strand.pixels;
     read_channel(exr, "Z", EXR_PIXEL_FLOAT, numbers[0]);
     for (int i = 0; i < PIXELS; ++i) {
-        hair[i] = d[3 * i] > 0 && t[3 * i] + t[3 * i + 1] + t[3 * i + 2] > 0 && s[3 * i] > 0;
+        hair[i] = d[3 * i] > 0 && t[3 * i] + t[3 * i + 1] + t[3 * i + 2] > 0 &&
+                  s[3 * i] + s[3 * i + 1] + s[3 * i + 2] > 0;
         assert_true(numbers[0][i] == (hair[i] ? d[3 * i] : 0));
         seen += hair[i];
         lost += !hair[i] && d[3 * i] > 0;
