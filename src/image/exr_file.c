@@ -419,13 +419,28 @@ static long long side(int first, int last)
     return (long long)last - first + 1;
 }
 
+// What reading takes of a chunk: here and, packed, unpacked and half-way, in the library.
+static Result find_chunk_size(const Picture *picture, uint64_t *size, Error *error)
+{
+    enum { COPIES = 3 };
+    const exr_attr_chlist_t *list;
+    uint64_t unpacked, of_pixel = 0;
+    TRY_EXR(picture, exr_get_chunk_unpacked_size(picture->stream.context, PART, &unpacked));
+    TRY_EXR(picture, exr_get_channels(picture->stream.context, PART, &list));
+    for (int i = 0; i < list->num_channels; ++i)
+        if (list->entries[i].x_sampling == 1 && list->entries[i].y_sampling == 1)
+            of_pixel += list->entries[i].pixel_type == EXR_PIXEL_HALF ? 2 : 4;
+    *size = COPIES * unpacked + unpacked / of_pixel * PLANES * sizeof(float);
+    return RESULT_OK;
+}
+
 static Result make_image(Picture *picture, Error *error)
 {
-    uint64_t chunk;
+    uint64_t chunk = 0;
     exr_context_t context = picture->stream.context;
     TRY_EXR(picture, exr_get_data_window(context, PART, &picture->data));
     TRY_EXR(picture, exr_get_display_window(context, PART, &picture->shown));
-    TRY_EXR(picture, exr_get_chunk_unpacked_size(context, PART, &chunk));
+    TRY(find_chunk_size(picture, &chunk, error));
     const exr_attr_box2i_t *shown = &picture->shown;
     long long width = side(shown->min.x, shown->max.x), height = side(shown->min.y, shown->max.y);
     if (width < 1 || height < 1 || width > READ_MAX_SIDE || height > READ_MAX_SIDE ||

@@ -13,7 +13,7 @@
 enum { DEFLATE_LEVEL = 1 };
 enum { ENCODE_MAX_BYTES = 1 << 30, READ_MAX_PIXELS = 1 << 28, READ_MAX_SIDE = 1 << 20 };
 enum { READ_MAX_FACTOR = 64, READ_SURE_BYTES = 64 << 20 }; // of memory, by the file's size
-enum { TEXT_MAX_BYTES = 1 << 20, TEXT_MAX_COUNT = 256 };
+enum { TEXT_MAX_BYTES = 1 << 17, TEXT_MAX_COUNT = 128 };
 enum { BYTE_BITS = 8, SIGNATURE_BYTES = 8 };
 
 // What libpng and the functions that it calls work with. libpng leaves by longjmp: nothing in a

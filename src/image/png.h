@@ -29,6 +29,6 @@ Result png_read(Image *image, const char *path, Error *error);
 Result png_decode_deep(Image *image, const Bytes *file, const char *path, Error *error);
 
 // The texts that stand before the pixels (tEXt, zTXt, iTXt), as UTF-8; of a key that stands there
-// twice the last one. Chunks that are damaged, too large (1 MiB), or whose key is not ASCII are
+// twice the last one. Chunks that are damaged, too large (128 KiB), or whose key is not ASCII are
 // left out. RESULT_BAD_INPUT if it is no PNG file or ends before the pixels.
 Result png_decode_texts(ImageTexts *texts, const Bytes *file, const char *path, Error *error);

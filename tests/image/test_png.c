@@ -425,6 +425,33 @@ static void every_kind_of_pixel_is_read(void **state)
         }
 }
 
+// Texts may be compressed a thousand times: large ones are left out, and so are those after 128.
+static void texts_that_swell_are_left_out(void **state)
+{
+    (void)state;
+    enum { LARGE = 200000 };
+    static char letters[LARGE];
+    uint8_t chunk[1000] = "Large\0"; // key, its end and the way of compression
+    static File file;
+    ImageTexts texts;
+    memset(letters, 'a', sizeof letters);
+    add_header(&file, 1, 1, 8, 2, 0);
+    add_chunk(&file, "tEXt", "Before\0small", 12);
+    struct libdeflate_compressor *compressor = libdeflate_alloc_compressor(6);
+    size_t packed =
+        libdeflate_zlib_compress(compressor, letters, LARGE, chunk + 7, sizeof chunk - 7);
+    libdeflate_free_compressor(compressor);
+    assert_true(packed > 0);
+    for (int i = 0; i < 5; ++i) add_chunk(&file, "zTXt", chunk, packed + 7);
+    add_chunk(&file, "tEXt", "After\0small", 11);
+    add_end(&file, "\0\1\2\3", 4);
+    const Bytes bytes = {.data = file.data, .size = file.size};
+    assert_int_equal(png_decode_texts(&texts, &bytes, "x.png", NULL), RESULT_OK);
+    assert_int_equal(texts.count, 2);
+    assert_string_equal(image_texts_find(&texts, "After"), "small");
+    image_texts_destroy(&texts);
+}
+
 // A header may ask for far more than the file can hold: refused at once, whatever is behind it.
 static void bombs_are_refused(void **state)
 {
@@ -485,6 +512,7 @@ int main(void)
         TEST(texts_survive_and_leave_the_pixels),
         TEST(texts_are_clean),
         TEST(every_kind_of_pixel_is_read),
+        TEST(texts_that_swell_are_left_out),
         TEST(bombs_are_refused),
         TEST(too_few_and_wrong_rows_are_found),
     };
