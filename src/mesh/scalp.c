@@ -118,7 +118,7 @@ ScalpRoots scalp_roots_begin(ScalpShape shape, bool everywhere, uint32_t seed)
     for (int i = 0; i < 3; i++) roots.shift[i] = random_real(&random);
     enum { GRID = 64 };
     for (int i = 0; i < GRID * GRID; i++) {
-        ScalpRoot root;
+        ScalpRoot root = {0};
         map_to_sphere((i / GRID + 0.5) / GRID, (i % GRID + 0.5) / GRID, root.direction);
         if (find_root(shape, everywhere, &root))
             roots.heaviest = fmax(roots.heaviest, area_ratio(&root));
