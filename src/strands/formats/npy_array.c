@@ -221,7 +221,7 @@ double npy_array_number(const NpyArray *array, uint64_t i)
 
 void npy_array_copy(const NpyArray *array, float *to)
 {
-    uint64_t place[NPY_MOST_AXES] = {0}, step[NPY_MOST_AXES], at = 0, stride = 1;
+    uint64_t place[NPY_MOST_AXES] = {0}, step[NPY_MOST_AXES] = {0}, at = 0, stride = 1;
     for (uint32_t i = 0; i < array->axes; i++) {
         uint32_t axis = array->fortran ? i : array->axes - 1 - i;
         step[axis] = stride;

@@ -501,7 +501,7 @@ static Result write_npz(OutFile *file, const Strands *strands, Error *error)
 
 static Result write_npy(OutFile *file, const Strands *strands, Error *error)
 {
-    char header[NPY_HEADER_SIZE];
+    char header[NPY_HEADER_SIZE] = "";
     uint32_t size = strands_size(strands, 0);
     for (uint32_t s = 1; s < strands->strand_count; s++)
         if (strands_size(strands, s) != size)
