@@ -207,8 +207,10 @@ check-sanitize: # but for scripts that run the programs as others do, many times
 deb: ## Debian packages in out/deb (dpkg-buildpackage), linted
 	@scripts/setup deb
 	@scripts/make-deb out/deb
-check-deb: deb ## install them in a clean root, run the programs, purge them (as root)
+check-deb: deb ## install them in a clean root, run the programs, purge them (as root); build them again: the same bytes
 	@scripts/check-deb out/deb
+	@umask 077; TZ=Asia/Tokyo scripts/make-deb out/deb-again/elsewhere
+	@for file in out/deb/*.deb; do cmp $$file out/deb-again/elsewhere/$${file##*/} || exit 1; done; echo "check-deb: built twice, the same bytes"
 check-container: ## go through the Containerfile without a container engine (as root)
 	@scripts/setup deb
 	@scripts/check-container

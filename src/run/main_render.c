@@ -3,12 +3,23 @@
 #include "base/clock.h"
 #include "base/interrupt.h"
 #include "base/program.h"
+#include "run/caption.h"
 #include "run/render_help.h"
 #include "run/run.h"
 
 #include "version.h"
 
 #include <string.h>
+
+// --check: words that are looked up first, then the hair files.
+static Result check(const Scene *scene, Error *error)
+{
+    TRY(caption_check(scene->run.caption, error));
+    for (uint32_t i = 0; i < scene->section_count; ++i)
+        TRY(solver_check(&scene->sections[i].params, error));
+    error->text[0] = 0; // the report says it all
+    return assets_check(scene, stdout);
+}
 
 static Result answer(Run *run, Error *error)
 {
@@ -19,10 +30,7 @@ static Result answer(Run *run, Error *error)
         return RESULT_OK;
     }
     if (params->list_devices) return gpu_list_devices(stdout, error);
-    if (params->check) {
-        error->text[0] = 0; // the report says it all
-        return assets_check(&run->scene, stdout);
-    }
+    if (params->check) return check(&run->scene, error);
     return run_go(run, error);
 }
 
