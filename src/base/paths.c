@@ -79,8 +79,16 @@ static bool patterns_meet(const Place *a, const Place *b)
            strspn(b->rest + length, "0123456789") == strlen(b->rest) - length;
 }
 
+// Whether `folder` is one that is read, and the files of `place` go into it.
+static bool goes_into(const Place *place, const Place *folder)
+{
+    return folder->exists && S_ISDIR(folder->file.st_mode) && place->numbered &&
+           is_same(&place->folder, &folder->file);
+}
+
 static bool are_one(const Place *a, const Place *b)
 {
+    if (goes_into(a, b) || goes_into(b, a)) return true;
     if (a->exists && b->exists) return S_ISREG(a->file.st_mode) && is_same(&a->file, &b->file);
     if (!is_same(&a->folder, &b->folder)) return false;
     if (a->numbered && b->numbered) return patterns_meet(a, b);

@@ -4,6 +4,7 @@
 #include "base/interrupt.h"
 #include "base/options.h"
 #include "base/outfile.h"
+#include "base/paths.h"
 #include "base/program.h"
 #include "base/progress.h"
 #include "compare/github.h"
@@ -168,6 +169,23 @@ static Result check_reports(const Command *command, Error *error)
                      count_to_stdout(command));
 }
 
+// What is written is neither compared nor written twice. --update may write A.
+static Result check_paths(const Command *command, Error *error)
+{
+    const PathUse uses[] = {
+        {"A", command->a, PATH_READ},
+        {"B", command->b, PATH_READ},
+        {"--mask", command->mask, PATH_READ},
+        {"--unrendered", command->unrendered, PATH_READ},
+        {"--heatmap", command->heat_map, PATH_WRITTEN},
+        {"--sheet", command->sheet, PATH_WRITTEN},
+        {"--html", command->html, PATH_WRITTEN},
+        {"--json", command->json, PATH_WRITTEN},
+        {"--junit", command->junit, PATH_WRITTEN},
+    };
+    return paths_check(uses, sizeof uses / sizeof *uses, error);
+}
+
 static Result parse(Command *command, int argc, char **argv, bool *done, Error *error)
 {
     long cores = sysconf(_SC_NPROCESSORS_ONLN);
@@ -186,6 +204,7 @@ static Result parse(Command *command, int argc, char **argv, bool *done, Error *
         return error_set(error, RESULT_USAGE,
                          "got %d names, expected two files, folders or patterns", argc - first);
     command->a = argv[first], command->b = argv[first + 1];
+    TRY(check_paths(command, error));
     TRY(check_reports(command, error));
     return read_limits(command, error);
 }

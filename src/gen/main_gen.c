@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // tractrix-gen: makes hair and the mesh it grows on.
 #include "base/interrupt.h"
+#include "base/paths.h"
 #include "base/program.h"
 #include "gen/fur.h"
 #include "gen/strands_make.h"
@@ -226,6 +227,9 @@ static Result write_all(const Command *command, Error *error)
 {
     StrandsRecipe recipe = make_recipe(command);
     ScalpShape shape = command->set >= 0 ? SCALP_SPHERE : recipe.shape;
+    const PathUse uses[] = {{"-o", command->output.path, PATH_WRITTEN},
+                            {"--mesh", command->mesh, PATH_WRITTEN}};
+    TRY(paths_check(uses, 2, error));
     if (command->output.path) TRY(write_hair(command, &recipe, error));
     if (command->mesh) TRY(write_mesh(command, shape, error));
     return RESULT_OK;
@@ -256,6 +260,9 @@ static Result grow_fur(int argc, char **argv, Error *error)
     bool done;
     TRY(fur_recipe_parse(&options, argc, argv, &done, error));
     if (done) return RESULT_OK;
+    const PathUse uses[] = {{"the mesh", options.mesh, PATH_READ},
+                            {"-o", options.output.path, PATH_WRITTEN}};
+    TRY(paths_check(uses, 2, error));
     TRY(obj_read_mesh(&mesh, options.mesh, (float)options.unit, options.up_z, error));
     Result result = write_fur(&options, &mesh, error);
     mesh_destroy(&mesh);

@@ -82,6 +82,17 @@ static void a_pattern_has_all_numbers(void **state)
     assert_int_equal(check(pattern, temporary_path(state, "e_7.png"), PATH_READ), RESULT_USAGE);
 }
 
+static void a_folder_of_inputs_takes_no_outputs(void **state)
+{
+    assert_int_equal(mkdir(temporary_path(state, "in"), 0755), 0);
+    const char *in = temporary_path(state, "in");
+    assert_int_equal(check(temporary_path(state, "in/"), in, PATH_READ), RESULT_USAGE);
+    assert_int_equal(check(in, in, PATH_READ), RESULT_USAGE);
+    assert_int_equal(check(temporary_path(state, "in/x_%d.png"), in, PATH_READ), RESULT_USAGE);
+    assert_int_equal(check(temporary_path(state, "in/x.json"), in, PATH_READ), RESULT_OK);
+    assert_int_equal(check(temporary_path(state, "out/"), in, PATH_READ), RESULT_OK);
+}
+
 static void devices_and_streams_may_be_used_twice(void **state)
 {
     (void)state;
@@ -99,6 +110,7 @@ int main(void)
         TEST(an_input_is_not_overwritten_by_any_of_its_names),
         TEST(two_outputs_are_two_files),
         TEST(a_pattern_has_all_numbers),
+        TEST(a_folder_of_inputs_takes_no_outputs),
         TEST(devices_and_streams_may_be_used_twice),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -95,4 +95,13 @@ claim "a reference without a new image is reported and left"
 rm "$work/b/f_6.png"
 run 1 "$work/a" "$work/b" --update; says "f_6.png: missing"; equal "$work/a/f_6.png" $b
 
+claim "no report takes the place of an image that is compared, or of another report"
+mkdir -p "$work/own"
+cp tests/golden/curls_still.png "$work/own/a.png"
+cp tests/golden/curls_still.png "$work/own/b.png"
+run 2 "$work/own/a.png" "$work/own/b.png" --json "$work/own/a.png"; one_line; says "--json"
+run 2 "$work/own/a.png" "$work/own/b.png" --json "$work/x" --junit "$work/x"; one_line; says "--junit"
+run 2 "$work/own" tests/golden --sheet "$work/own"; one_line; says "--sheet"
+equal "$work/own/a.png" tests/golden/curls_still.png
+
 finish

@@ -78,4 +78,10 @@ if [ $? = 1 ]; then good; else bad "status with a full disk"; fi
 one_line
 run 0 fur "$work/part.obj" -n 9 -o "$work/part.tfx"; says "1 triangles without area are ignored"; one_line
 
+claim "hair and mesh are two files, and neither is the mesh that hair grows on"
+run 2 -n 3 -o "$work/same.obj" --mesh "$work/same.obj"; one_line; says "--mesh"; none "$work/same.obj"
+cp assets/ball.obj "$work/own.obj"
+run 2 fur "$work/own.obj" --count 20 -o "$work/own.obj"; one_line; says "the mesh"
+equal "$work/own.obj" assets/ball.obj
+
 finish
