@@ -307,8 +307,8 @@ static void check_vertices(const char *text, uint32_t strand_count, const float 
     assert_int_equal(strands.strand_count, strand_count);
     assert_int_equal(strands.vertex_count, count);
     for (uint32_t i = 0; i < 3 * count; ++i)
-        if (fabsf((&strands.position[0][0])[i] - wanted[i]) > 1e-6f)
-            fail_msg("%s: number %u is %g, not %g", text, i, (double)(&strands.position[0][0])[i],
+        if (fabsf(strands.position[i / 3][i % 3] - wanted[i]) > 1e-6f)
+            fail_msg("%s: number %u is %g, not %g", text, i, (double)strands.position[i / 3][i % 3],
                      (double)wanted[i]);
     strands_destroy(&strands);
 }
@@ -482,17 +482,17 @@ static void what_is_not_drawn_is_left_out_and_counted(void **state)
     specifier " BasisCurves \"x\" " meta "\n{\nuniform token type = \"linear\"\n"                  \
               "int[] curveVertexCounts = [2]\npoint3f[] points = [(0, 0, 0), (0, 1, 0)]\n" more    \
               "}\n"
-    const char *text = METRIC PRIM("def", "", "") PRIM("def", "(active = false)", "") PRIM(
-        "over", "", "") PRIM("class", "", "")
-        PRIM("def", "", "uniform token purpose = \"guide\"\n") "def Xform \"a\"\n{\ntoken "
-                                                               "visibility = \"invisible\"\n" PRIM(
-                                                                   "def", "",
-                                                                   "") "}\n"
-                                                                       "def NurbsCurves "
-                                                                       "\"n\"\n{\n}\n" PRIM(
-                                                                           "def", "(kind = \"x\")",
-                                                                           "float xformOp:rotateX "
-                                                                           "= 9\n");
+    const char *text = METRIC PRIM("def", "", "") PRIM("def", "(active = false)", "")
+        PRIM("over", "", "") PRIM("class", "", "") PRIM(
+            "def", "", "uniform token purpose = \"guide\"\n") "def Xform \"a\"\n{\ntoken "
+                                                              "visibility = \"invisible\"\n" PRIM(
+                                                                  "def", "",
+                                                                  "") "}\n"
+                                                                      "def NurbsCurves "
+                                                                      "\"n\"\n{\n}\n" PRIM(
+                                                                          "def", "(kind = \"x\")",
+                                                                          "float xformOp:rotateX "
+                                                                          "= 9\n");
     StrandsReport report;
     Error error = {""};
     Strands strands = read_text(text, strlen(text), &report, RESULT_OK, &error);

@@ -510,7 +510,8 @@ static Result write_npy(OutFile *file, const Strands *strands, Error *error)
                              "numbers (--resample N), .npz does not",
                              file->path, s, strands_size(strands, s), size);
     const uint64_t shape[] = {strands->strand_count, size, 3};
-    fwrite(header, 1, npy_array_header(header, "<f4", shape, 3), file->stream);
+    size_t head = npy_array_header(header, "<f4", shape, 3);
+    fwrite(header, 1, head, file->stream);
     format_put_floats(file->stream, strands->position, 3 * (size_t)strands->vertex_count);
     return RESULT_OK;
 }
