@@ -34,6 +34,8 @@ Result reader_fail(Reader *reader, const char *format, ...)
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
+    for (char *at = text; *at; ++at) // words of the file: the message stays one line
+        if ((unsigned char)*at < ' ' || *at == 127) *at = '?';
     reader->result = RESULT_BAD_INPUT;
     if (reader->line)
         return error_set(reader->error, RESULT_BAD_INPUT, "%s:%u: %s", reader->path, reader->line,
