@@ -201,7 +201,7 @@ check-farm: # GNU parallel and a Slurm of one node, which make test does without
 	@tests/runner $(OUT) test_farm
 check-sanitize: # but for scripts that run the programs as others do, many times over
 	$(QUIET) CONFIG=sanitize OUT=$(SIDE)sanitize all tests
-	@tests/runner $(SIDE)sanitize test_ '^test_(blender|farm|compare_goldens|ci_examples|readme|tutorial|docs|install|turntable_script|goldens|light_command|groom_command)'
+	@tests/runner $(SIDE)sanitize test_ '^test_(html_report|bench_html|blender|farm|compare_goldens|ci_examples|readme|tutorial|docs|install|turntable_script|goldens|light_command|groom_command)'
 
 # --- Packages. They take minutes: no part of `make check`.
 deb: ## Debian packages in out/deb (dpkg-buildpackage), linted
