@@ -101,7 +101,34 @@ claim "- is standard input and standard output, and then all messages go to stan
 "$program" - --stats -o - --format hair <$curls 2>"$work/err" >"$work/x.hair"; says "300 strands"; run 0 "$work/x.hair"; says "300 usable"
 "$program" - - --stats <$curls >"$work/out" 2>"$work/err"; says "can be read only once"; one_line
 run 2 $curls -o -; says "expected --format"; one_line
+"$bin/tractrix-render" - --check <$curls >"$work/out" 2>"$work/err"; says "300 usable of 300"; silent err
 run 3 - --stats; says "-: byte 0: the file is empty"; one_line
+
+claim "cubic curves below transforms are read, and all their times"
+cat >"$work/cubic.usda" <<'END'
+#usda 1.0
+(
+    metersPerUnit = 1
+)
+def Xform "head"
+{
+    double3 xformOp:translate.timeSamples = {
+        1: (0, 0, 0),
+        3: (0, 0, 4),
+    }
+    uniform token[] xformOpOrder = ["xformOp:translate"]
+    def BasisCurves "hair"
+    {
+        uniform token basis = "bspline"
+        uniform token wrap = "pinned"
+        int[] curveVertexCounts = [4]
+        point3f[] points.timeSamples = { 2: [(0, 0, 0), (0, 1, 0), (0, 2, 0), (0, 3, 0)] }
+    }
+}
+END
+run 0 "$work/cubic.usda" -o "$work/linear.usda"; says "3 frames"
+in_file "$work/linear.usda" "        3: [(0, 0, 4), (0, 0.5, 4), (0, 1, 4), (0, 1.5, 4), (0, 2, 4), (0, 2.5, 4), (0, 3, 4)],"
+run 0 "$work/cubic.usda" --points-per-strand 4 -o "$work/linear.obj"; says "of 3 time samples only the first is read"; in_file "$work/linear.obj" "v 0 2 0"
 
 claim "lists of points need no more than how many make a strand"
 run 0 $curls -q --unit m -o "$x.ply" --format ply-text
