@@ -65,6 +65,7 @@ static const char *find_condition(const ParamInfo *info)
          "--mesh /m.obj"},
         {" gust gust_period gust_repeat wind_spread wind_shelter ", "--wind 1,0,0"},
         {" export_followers ", "--export x.usda"},
+        {" exr_layers exr_float ", "--output x_%d.exr"},
         {" turn_lights ease_in ease_out ", "--turntable 360 --frames 120"},
         {" turntable ", "--frames 120"},
         {" shadow_size shadow_opacity ", "--shadow dom"},
