@@ -36,7 +36,7 @@ cd "$work" || exit 1
 run 0 "$share/tractrix/demo.json" --frames 1 --size 64x48 -q -o "$work/installed/"
 program=$root/usr/bin/tractrix-turntable
 export TURNTABLE_S=0.1 TURNTABLE_OUT="$work/turn"
-run 0 "$share/tractrix/fur.tfx" frames --size 48x32 -q
+run 0 "$share/tractrix/fur.tfx" frames --size 48x32 --quality draft --preroll 0 -q
 unset TURNTABLE_S TURNTABLE_OUT
 program=$root/usr/bin/tractrix-farm
 run 0 -n 2 plain -o "$work/farm/" "$share/tractrix/fur.tfx" --frames 2 --size 48x32 -q
