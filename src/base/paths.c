@@ -45,10 +45,12 @@ static bool find_place(Place *place, const PathUse *use)
     Target target = {0};
     *place = (Place){.used = use->path && *use->path && strcmp(use->path, "-") != 0};
     if (!place->used) return true;
-    if (use->role == PATH_WRITTEN && target_parse(&target, use->path, NULL) != RESULT_OK)
+    bool file = stat(use->path, &place->file) == 0;
+    bool pattern = !file && strchr(use->path, '%');
+    if (use->role == PATH_WRITTEN ? target_parse(&target, use->path, NULL) != RESULT_OK : pattern)
         target_parse_any(&target, use->path, NULL);
     place->numbered = target.before && target.kind == TARGET_FRAMES;
-    place->exists = !place->numbered && stat(use->path, &place->file) == 0;
+    place->exists = !place->numbered && file;
     if (place->exists) place->full = realpath(use->path, NULL);
     if (!place->full) place->full = strdup(place->numbered ? target.before : use->path);
     if (place->numbered) place->after = strdup(target.after);

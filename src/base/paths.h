@@ -6,7 +6,7 @@
 #include "base/error.h"
 
 typedef enum PathRole {
-    PATH_READ,    // a file that is read, or a folder of them
+    PATH_READ,    // a file that is read, or a folder or pattern of them
     PATH_WRITTEN, // a file that is written, or a folder or pattern of numbered ones (target.h)
 } PathRole;
 

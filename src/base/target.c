@@ -3,6 +3,7 @@
 
 #include "base/outfile.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -174,6 +175,44 @@ char *target_name_frame(const Target *target, int frame)
     char *name = NULL;
     int length = asprintf(&name, "%s%0*d%s", target->before, target->digits, frame, target->after);
     return length < 0 ? NULL : name;
+}
+
+// The part of the pattern behind its folder.
+static const char *find_name(const Target *target)
+{
+    const char *slash = strrchr(target->before, '/');
+    return slash ? slash + 1 : target->before;
+}
+
+bool target_read_number(const Target *target, const char *name, int *frame)
+{
+    const char *before = find_name(target);
+    size_t length = strlen(before);
+    char *end;
+    if (strncmp(name, before, length) != 0 || name[length] < '0' || name[length] > '9')
+        return false;
+    errno = 0;
+    long number = strtol(name + length, &end, 10);
+    if (errno || number > 999999999) return false;
+    *frame = (int)number;
+    // The name that the number gives must be its own.
+    char *path = target_name_frame(target, *frame);
+    bool own = path && strcmp(path + (before - target->before), name) == 0;
+    free(path);
+    return own;
+}
+
+int target_find_last(const Target *target)
+{
+    int last = -1, frame;
+    const char *name = find_name(target);
+    char *folder = strndup(target->before, (size_t)(name - target->before));
+    DIR *directory = folder ? opendir(*folder ? folder : ".") : NULL;
+    for (const struct dirent *entry; directory && (entry = readdir(directory));)
+        if (target_read_number(target, entry->d_name, &frame) && frame > last) last = frame;
+    if (directory) closedir(directory);
+    free(folder);
+    return last;
 }
 
 // Like `mkdir -p` for what stands before the last slash of `name`, which is changed and changed

@@ -65,26 +65,6 @@ static bool is_image(const char *name)
             strcasecmp(dot, ".exr") == 0);
 }
 
-// Whether the file is one of a pattern, and which: the name that its number gives must be its own.
-static bool read_number(const Side *side, const char *name, int *frame)
-{
-    const char *slash = strrchr(side->target.before, '/');
-    const char *before = slash ? slash + 1 : side->target.before;
-    size_t length = strlen(before);
-    char *end;
-    if (strncmp(name, before, length) != 0 || name[length] < '0' || name[length] > '9')
-        return false;
-    errno = 0;
-    long number = strtol(name + length, &end, 10);
-    if (errno || number > 999999999) return false;
-    *frame = (int)number;
-    char *path = place_of(side, NULL, *frame);
-    size_t folder = slash ? (size_t)(before - side->target.before) : 0;
-    bool own = path && strcmp(path + folder, name) == 0;
-    free(path);
-    return own;
-}
-
 // --- The list.
 
 // Numbers by value, so that a digit more is a later frame.
@@ -147,7 +127,7 @@ static Result list_side(PairList *list, const Side sides[2], int from, Error *er
     while (result == RESULT_OK && (entry = readdir(directory))) {
         int frame = 0;
         if (side->kind == KIND_FOLDER ? is_image(entry->d_name)
-                                      : read_number(side, entry->d_name, &frame))
+                                      : target_read_number(&side->target, entry->d_name, &frame))
             result = add_pair(list, sides, entry->d_name, frame, from, error);
     }
     closedir(directory);
@@ -160,7 +140,7 @@ static Result list_side(PairList *list, const Side sides[2], int from, Error *er
 static bool is_of(const Side *named, const Pair *pair)
 {
     int frame;
-    return named->kind == KIND_PATTERN ? read_number(named, pair->name, &frame)
+    return named->kind == KIND_PATTERN ? target_read_number(&named->target, pair->name, &frame)
                                        : strcmp(named->text, pair->name) == 0;
 }
 
@@ -266,7 +246,7 @@ static Result give_masks(PairList *list, const Side *masks, Error *error)
     while (result == RESULT_OK && (entry = readdir(directory))) {
         int frame = 0;
         if (masks->kind == KIND_FOLDER ? !is_image(entry->d_name)
-                                       : !read_number(masks, entry->d_name, &frame))
+                                       : !target_read_number(&masks->target, entry->d_name, &frame))
             continue;
         ++count;
         result = give_mask(list, masks, entry->d_name, frame, error);

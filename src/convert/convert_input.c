@@ -185,8 +185,27 @@ static Result check_framed(const ConvertInput *input, Error *error)
                      first, last);
 }
 
+// Whether the last frame that is there is the last that there was.
+static Result check_whole(const ConvertInput *input, Error *error)
+{
+    const CacheFile *cache = &input->cache.cache;
+    int last = input->numbered ? target_find_last(&input->pattern) : -1;
+    if (input->cached && !cache->finished)
+        return error_set(error, RESULT_FAILED,
+                         "%s: unfinished or cut off, %u whole frames: expected a whole cache, "
+                         "--partial or --last N",
+                         input->paths[0], cache->frame_count);
+    if (last > input->last && input->last >= input->first)
+        return error_set(error, RESULT_FAILED,
+                         "%s: no file for frame %d, but one for frame %d: expected all, --partial "
+                         "or --last N",
+                         input->paths[0], input->last + 1, last);
+    return RESULT_OK;
+}
+
 static Result choose_frames(ConvertInput *input, Error *error)
 {
+    bool whole = input->whole && input->last < 0;
     bool cut = input->first > 0 || input->last >= 0 || input->every > 1;
     if (!convert_input_moves(input)) {
         input->first = input->last = 0;
@@ -200,6 +219,7 @@ static Result choose_frames(ConvertInput *input, Error *error)
     if (input->fps <= 0) input->fps = own > 0 ? own : USUAL_FPS;
     if (input->framed && input->first == 0) input->first = input->frames.first;
     if (input->last < 0) input->last = find_last(input);
+    if (whole) TRY(check_whole(input, error));
     if (input->framed) return check_framed(input, error);
     if (input->last >= input->first)
         return input->cached ? cache_file_check(&input->cache.cache, input->last, error)
@@ -337,7 +357,8 @@ static void print_frames(const ConvertInput *input, FILE *stream)
     int count = convert_input_count(input);
     fprintf(stream, "  frames    %d, %d to %d", count, input->first, input->last);
     if (input->every > 1) fprintf(stream, " by %d", input->every);
-    fprintf(stream, ", %g a second\n", input->fps);
+    fprintf(stream, ", %g a second%s\n", input->fps,
+            input->cached && !input->cache.cache.finished ? "; unfinished or cut off" : "");
 }
 
 void convert_input_print(const ConvertInput *input, FILE *stream)

@@ -37,6 +37,7 @@ typedef struct ConvertInput {
     CacheStrands cache;
     Target pattern;
     int first, last, every; // frames that are wanted
+    bool whole;             // without `last`, frames that are cut off or missing are an error
     double fps;
     StrandsReport *reports; // [path_count] of the first frame's files; none for a cache
     uint32_t features;      // STRANDS_HAS_...: of any of the first frame's files
@@ -45,7 +46,7 @@ typedef struct ConvertInput {
 // What the paths are: one cache, one name with %d or %04d, or hair files. `first`, `every`: as
 // asked for; `last` negative: the last that there is. `fps`: 0: the cache's, or 60. RESULT_USAGE
 // for what doesn't go together, RESULT_BAD_INPUT for a cache that can't be used or frames that are
-// not there.
+// not there, RESULT_FAILED for an unfinished cache or a gap in numbered files, if `whole`.
 Result convert_input_open(ConvertInput *input, Error *error);
 void convert_input_close(ConvertInput *input);
 

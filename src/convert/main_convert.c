@@ -4,6 +4,7 @@
 #include "base/json.h"
 #include "base/options.h"
 #include "base/params.h"
+#include "base/paths.h"
 #include "base/program.h"
 #include "base/progress.h"
 #include "convert/convert_input.h"
@@ -19,7 +20,7 @@ typedef struct Command {
     const char *unit, *to_unit, *output, *json, *array; // NULL: not given
     int points, up, to_up, format, first, last, every, seed;
     double fps, width;
-    bool strict, stats, quiet;
+    bool strict, stats, quiet, partial;
     OptionSteps steps;
 } Command;
 
@@ -63,6 +64,9 @@ static const Option OPTIONS[] = {
 
     {"first", 0, OPTION_WHOLE, AT(first), "N", 0, 9999999, "first frame [default 0]"},
     {"last", 0, OPTION_WHOLE, AT(last), "N", 0, 9999999, "last frame [default: the last there is]"},
+    {"partial", 0, OPTION_SWITCH, AT(partial), NULL, 0, 0,
+     "take the whole frames of a cache that is cut off, or of numbered files up to a gap; without "
+     "it such input is an error"},
     {"every", 0, OPTION_WHOLE, AT(every), "N", 1, 9999999, "every Nth frame [default 1]"},
     {"fps", 0, OPTION_REAL, AT(fps), "X", 1, 10000,
      "frames per second of .usda [default: the cache's; 60 for numbered files]"},
@@ -148,6 +152,19 @@ static Result parse_unit(const char *name, const char *text, float *metres, Erro
     return result == RESULT_OK ? result : error_prefix(error, result, "--%s: ", name);
 }
 
+// What is written is neither read nor written twice.
+static Result check_paths(const Command *command, char **files, int count, Error *error)
+{
+    PathUse *uses = calloc((size_t)count + 2, sizeof *uses);
+    if (!uses) return error_set(error, RESULT_FAILED, "no memory for %d files", count);
+    for (int i = 0; i < count; ++i) uses[i] = (PathUse){"the input", files[i], PATH_READ};
+    uses[count] = (PathUse){"-o", command->output, PATH_WRITTEN};
+    uses[count + 1] = (PathUse){"--json", command->json, PATH_WRITTEN};
+    Result result = paths_check(uses, count + 2, error);
+    free(uses);
+    return result;
+}
+
 static Result check_sense(const Command *command, int files, Error *error)
 {
     bool to = command->to_unit || command->to_up || command->format || command->width > 0;
@@ -197,6 +214,7 @@ static Result parse(Job *job, int argc, char **argv, bool *done, Error *error)
     TRY(options_parse(&program, command, argc, argv, &first, done, error));
     if (*done) return RESULT_OK;
     TRY(check_sense(command, argc - first, error));
+    TRY(check_paths(command, argv + first, argc - first, error));
     TRY(parse_unit("unit", command->unit, &unit, error));
     TRY(parse_unit("to-unit", command->to_unit, &to_unit, error));
     if (to_unit == 0)
@@ -216,6 +234,7 @@ static Result parse(Job *job, int argc, char **argv, bool *done, Error *error)
                                 .wants_frames = wants_frames(command),
                                 .first = command->first,
                                 .last = command->last,
+                                .whole = command->output && !command->partial,
                                 .every = command->every,
                                 .fps = command->fps};
     job->output = (ConvertOutput){.path = command->output,

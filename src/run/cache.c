@@ -65,6 +65,7 @@ static bool read_index(CacheFile *cache)
         good = add_offset(&cache->offsets, &cache->frame_count, &cache->room, le64toh(offset));
     }
     bytes_destroy(&index);
+    cache->finished = good;
     return good;
 }
 

@@ -23,7 +23,8 @@ typedef struct CacheFile {
     Bytes hair;        // as docs/cache.md has it
     uint64_t *offsets; // [frame_count]
     uint32_t frame_count, room;
-    Error end; // why there are no more, if that is not the file's proper end
+    bool finished; // it has its index: no frame is missing
+    Error end;     // why there are no more, if that is not the file's proper end
 } CacheFile;
 
 // Whether the file begins like a cache; false also if it can't be read.

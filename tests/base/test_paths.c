@@ -91,6 +91,10 @@ static void a_folder_of_inputs_takes_no_outputs(void **state)
     assert_int_equal(check(temporary_path(state, "in/x_%d.png"), in, PATH_READ), RESULT_USAGE);
     assert_int_equal(check(temporary_path(state, "in/x.json"), in, PATH_READ), RESULT_OK);
     assert_int_equal(check(temporary_path(state, "out/"), in, PATH_READ), RESULT_OK);
+    const char *pattern = temporary_path(state, "in/x_%04d.tfx");
+    assert_int_equal(check(pattern, pattern, PATH_READ), RESULT_USAGE);
+    assert_int_equal(check(temporary_path(state, "in/x_0001.tfx"), pattern, PATH_READ),
+                     RESULT_USAGE);
 }
 
 static void devices_and_streams_may_be_used_twice(void **state)

@@ -179,6 +179,26 @@ run 3 "$work/cut.cache" --last 3; says "no frame 3"; one_line
 head -c 40 "$work/a.cache" >"$work/cut.cache"; run 3 "$work/cut.cache"; one_line
 run 2 "$work/a.cache" $curls; says "can't be joined"; one_line
 
+claim "frames that are cut off or missing are not lost in silence"
+head -c "$(($(wc -c <"$work/a.cache") * 3 / 4))" "$work/a.cache" >"$work/cut.cache"
+run 0 "$work/cut.cache"; says "unfinished or cut off"
+run 1 "$work/cut.cache" -o "$work/cut.usda"; says "--partial"; one_line; none "$work/cut.usda"
+run 0 "$work/cut.cache" -o "$work/cut.usda" --partial; is_file "$work/cut.usda"
+run 0 "$work/cut.cache" -o "$work/cut.usda" --last 1; says "2 frames"
+for number in 0 1 3; do cp assets/fur.tfx "$work/gap_$number.tfx"; done
+run 1 "$work/gap_%d.tfx" -o "$work/gap.usda"; says "no file for frame 2, but one for frame 3"; one_line; none "$work/gap.usda"
+run 0 "$work/gap_%d.tfx" -o "$work/gap.usda" --partial; says "2 frames"
+rm "$work/gap_3.tfx"
+run 0 "$work/gap_%d.tfx" -o "$work/gap.usda"; says "2 frames"
+
+claim "no output takes the place of an input or of another output"
+cp assets/fur.tfx "$work/own.tfx"
+run 2 "$work/own.tfx" --json "$work/own.tfx"; says "--json"; one_line
+run 2 "$work/own.tfx" -o "$work/own.tfx" --scale 2; says "-o"; one_line
+run 2 "$work/own.tfx" -o "$work/same.tfx" --json "$work/same.tfx"; says "--json"; one_line; none "$work/same.tfx"
+run 2 "$work/gap_%d.tfx" -o "$work/gap_%d.tfx"; one_line
+equal "$work/own.tfx" assets/fur.tfx
+
 claim "an interrupted export leaves no USD file, nor a part of one"
 mkdir "$work/broken"
 "$bin/tractrix-render" $curls --frames 1000000 -q --export "$work/broken/x.usda" >"$work/out" 2>"$work/err" &

@@ -186,7 +186,7 @@ static void aovs_are_what_they_are_said_to_be(void **state)
     draw();
     memcpy(one, studio_pixel(&studio, MIDDLE, MIDDLE), 3);
     assert_memory_equal(both, one, 3);
-    assert_true(one[0] > 0 && one[1] > 0 && one[2] > 0);
+    assert_true(one[0] || one[1] || one[2]); // black is no strand
 }
 
 int main(void)

@@ -307,10 +307,11 @@ static void check_vertices(const char *text, uint32_t strand_count, const float 
     Strands strands = read_text(text, strlen(text), NULL, RESULT_OK, &error);
     assert_int_equal(strands.strand_count, strand_count);
     assert_int_equal(strands.vertex_count, count);
-    for (uint32_t i = 0; i < 3 * count; ++i)
-        if (fabsf(strands.position[i / 3][i % 3] - wanted[i]) > 1e-6f)
-            fail_msg("%s: number %u is %g, not %g", text, i, (double)strands.position[i / 3][i % 3],
-                     (double)wanted[i]);
+    for (uint32_t i = 0; i < 3 * count; ++i) {
+        float got = strands.position[i / 3][i % 3];
+        if (fabsf(got - wanted[i]) > 1e-6f)
+            fail_msg("%s: number %u is %g, not %g", text, i, (double)got, (double)wanted[i]);
+    }
     strands_destroy(&strands);
 }
 
