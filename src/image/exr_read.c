@@ -1,268 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "image/exr_file.h"
-
-#include <openexr.h>
+#include "image/exr_stream.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { PART = 0, ROWS = 16 }; // of a ZIP block
 enum { READ_MAX_PIXELS = 1 << 28, READ_MAX_SIDE = 1 << 20 };
 enum { READ_MAX_FACTOR = 64, READ_SURE_BYTES = 64 << 20 }; // of memory, by the file's size
-
-// The library's stream, and what it says of a failure.
-typedef struct Stream {
-    exr_context_t context;
-    Bytes written; // with `room`
-    size_t room;
-    const Bytes *read;
-    char reason[160];
-} Stream;
-
-// The last one stays: the first is often less exact. Files may have put anything into it.
-static void keep_reason(exr_const_context_t context, exr_result_t code, const char *message)
-{
-    void *data = NULL;
-    (void)code;
-    if (exr_get_user_data(context, &data) != EXR_ERR_SUCCESS || !data) return;
-    Stream *stream = data;
-    snprintf(stream->reason, sizeof stream->reason, "%s", message ? message : "");
-    for (char *at = stream->reason; *at; ++at)
-        if (*at < ' ' || *at > '~') *at = *at == '\n' ? ' ' : '?';
-}
-
-static const char *reason_of(const Stream *stream, exr_result_t code)
-{
-    return stream->reason[0] ? stream->reason : exr_get_default_error_message(code);
-}
-
-// --- Writing.
-
-static int64_t take_bytes(exr_const_context_t context, void *data, const void *bytes, uint64_t size,
-                          uint64_t offset, exr_stream_error_func_ptr_t fail)
-{
-    Stream *stream = data;
-    size_t end = (size_t)(offset + size);
-    if (end > stream->room) {
-        size_t room = end + end / 2 + 4096;
-        uint8_t *larger = realloc(stream->written.data, room + 1);
-        if (!larger) return fail(context, EXR_ERR_OUT_OF_MEMORY, "no memory"), -1;
-        stream->written.data = larger;
-        stream->room = room;
-    }
-    if (offset > stream->written.size) // a gap that is filled later
-        memset(stream->written.data + stream->written.size, 0, offset - stream->written.size);
-    memcpy(stream->written.data + offset, bytes, size);
-    if (end > stream->written.size) stream->written.size = end;
-    return (int64_t)size;
-}
-
-// A channel: which number of which image, and how it is stored.
-typedef struct Channel {
-    const char *name;
-    int layer; // ExrLayer; -1: the image
-    int number;
-    exr_pixel_type_t type;
-} Channel;
-
-// In the order of files: that of their names' bytes. HALF stands for what was asked.
-static const Channel CHANNELS[] = {{"A", -1, 3, EXR_PIXEL_HALF},
-                                   {"B", -1, 2, EXR_PIXEL_HALF},
-                                   {"G", -1, 1, EXR_PIXEL_HALF},
-                                   {"R", -1, 0, EXR_PIXEL_HALF},
-                                   {"Z", EXR_DEPTH, 0, EXR_PIXEL_FLOAT},
-                                   {"coverage", EXR_COVERAGE, 0, EXR_PIXEL_HALF},
-                                   {"id", EXR_STRAND, 0, EXR_PIXEL_UINT},
-                                   {"tangent.X", EXR_TANGENT, 0, EXR_PIXEL_HALF},
-                                   {"tangent.Y", EXR_TANGENT, 1, EXR_PIXEL_HALF},
-                                   {"tangent.Z", EXR_TANGENT, 2, EXR_PIXEL_HALF}};
-enum { CHANNELS_MOST = sizeof CHANNELS / sizeof *CHANNELS };
-
-typedef struct Writer {
-    Stream stream;
-    const ExrFile *file;
-    exr_encode_pipeline_t pipeline;
-    uint32_t *rows; // [CHANNELS_MOST][ROWS][width]: floats, or numbers of strands
-} Writer;
-
-static exr_result_t add_channels(const Writer *writer)
-{
-    exr_result_t code = EXR_ERR_SUCCESS;
-    for (int c = 0; c < CHANNELS_MOST && code == EXR_ERR_SUCCESS; ++c) {
-        const Channel *channel = &CHANNELS[c];
-        bool widened = channel->type == EXR_PIXEL_HALF && writer->file->floats;
-        if (channel->layer >= 0 && !writer->file->layers) continue;
-        code = exr_add_channel(writer->stream.context, PART, channel->name,
-                               widened ? EXR_PIXEL_FLOAT : channel->type, EXR_PERCEPTUALLY_LINEAR,
-                               1, 1);
-    }
-    return code;
-}
-
-static exr_result_t add_matrix(exr_context_t context, const char *name, const float (*columns)[4])
-{
-    // The library's matrices are for row vectors and lie row by row: the same order.
-    exr_attr_m44f_t matrix;
-    if (!columns) return EXR_ERR_SUCCESS;
-    memcpy(matrix.m, columns, sizeof matrix.m);
-    return exr_attr_set_m44f(context, PART, name, &matrix);
-}
-
-static exr_result_t write_header(const Writer *writer)
-{
-    const ExrFile *file = writer->file;
-    exr_context_t context = writer->stream.context;
-    const exr_attr_chromaticities_t rec709 = {.red_x = 0.64f,
-                                              .red_y = 0.33f,
-                                              .green_x = 0.3f,
-                                              .green_y = 0.6f,
-                                              .blue_x = 0.15f,
-                                              .blue_y = 0.06f,
-                                              .white_x = 0.3127f,
-                                              .white_y = 0.329f};
-    int part;
-    exr_result_t code = exr_add_part(context, "image", EXR_STORAGE_SCANLINE, &part);
-    if (code == EXR_ERR_SUCCESS)
-        code = exr_initialize_required_attr_simple(context, PART, file->image->width,
-                                                   file->image->height, EXR_COMPRESSION_ZIP);
-    if (code == EXR_ERR_SUCCESS) code = add_channels(writer);
-    if (code == EXR_ERR_SUCCESS)
-        code = exr_attr_set_chromaticities(context, PART, "chromaticities", &rec709);
-    size_t count = file->texts ? file->texts->count : 0;
-    for (size_t i = 0; i < count && code == EXR_ERR_SUCCESS; ++i)
-        code = exr_attr_set_string(context, PART, file->texts->list[i].key,
-                                   file->texts->list[i].value);
-    if (code == EXR_ERR_SUCCESS) code = add_matrix(context, "worldToCamera", file->world_to_camera);
-    if (code == EXR_ERR_SUCCESS) code = add_matrix(context, "worldToNDC", file->world_to_ndc);
-    return code == EXR_ERR_SUCCESS ? exr_write_header(context) : code;
-}
-
-static uint32_t bits_of(float value)
-{
-    uint32_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    return bits;
-}
-
-// The stored number of a channel, from what the layer's pixel has.
-static uint32_t convert(const Channel *channel, const float *pixel, int channels)
-{
-    if (channel->layer < 0) return bits_of(channel->number < channels ? pixel[channel->number] : 1);
-    if (channel->layer == EXR_STRAND)
-        return (uint32_t)(pixel[0] * 255 + 0.5f) | (uint32_t)(pixel[1] * 255 + 0.5f) << 8 |
-               (uint32_t)(pixel[2] * 255 + 0.5f) << 16;
-    if (channel->layer != EXR_TANGENT) return bits_of(pixel[channel->number]);
-    double t[3], square = 0;
-    for (int k = 0; k < 3; ++k) {
-        t[k] = 2 * (double)pixel[k] - 1;
-        square += t[k] * t[k];
-    }
-    return bits_of(square == 0 ? 0 : (float)(t[channel->number] / sqrt(square)));
-}
-
-// Whether all layers of the nearest strand have one. Each is drawn for itself: where it covers just
-// as much as it takes, some may have it and others not.
-static bool has_strand(const Image *layers, size_t pixel)
-{
-    for (int l = EXR_DEPTH; l <= EXR_STRAND; ++l) {
-        const float *at = (const float *)(const void *)layers[l].pixels + 3 * pixel;
-        if (at[0] == 0 && at[1] == 0 && at[2] == 0) return false;
-    }
-    return true;
-}
-
-static void fill_rows(const Writer *writer, int y, int rows)
-{
-    size_t width = (size_t)writer->file->image->width;
-    for (int c = 0; c < CHANNELS_MOST; ++c) {
-        const Channel *channel = &CHANNELS[c];
-        if (channel->layer >= 0 && !writer->file->layers) continue;
-        const Image *image =
-            channel->layer < 0 ? writer->file->image : &writer->file->layers[channel->layer];
-        const float *from = (const float *)(const void *)image->pixels;
-        size_t step = (size_t)image->channels, first = (size_t)y * width,
-               count = (size_t)rows * width;
-        uint32_t *to = writer->rows + (size_t)c * ROWS * width;
-        for (size_t i = 0; i < count; ++i) {
-            bool none = channel->layer >= EXR_DEPTH && !has_strand(writer->file->layers, first + i);
-            to[i] = none ? 0 : convert(channel, from + (first + i) * step, image->channels);
-        }
-    }
-}
-
-// The place in `rows` of the channel of that name.
-static const uint8_t *rows_of(const Writer *writer, const char *name)
-{
-    size_t width = (size_t)writer->file->image->width;
-    int c = 0;
-    while (c + 1 < CHANNELS_MOST && strcmp(CHANNELS[c].name, name) != 0) ++c;
-    return (const uint8_t *)(writer->rows + (size_t)c * ROWS * width);
-}
-
-static exr_result_t write_block(Writer *writer, int y)
-{
-    exr_context_t context = writer->stream.context;
-    exr_encode_pipeline_t *pipeline = &writer->pipeline;
-    exr_chunk_info_t info;
-    exr_result_t code = exr_write_scanline_chunk_info(context, PART, y, &info);
-    if (code != EXR_ERR_SUCCESS) return code;
-    code = y == 0 ? exr_encoding_initialize(context, PART, &info, pipeline)
-                  : exr_encoding_update(context, PART, &info, pipeline);
-    if (code != EXR_ERR_SUCCESS) return code;
-    fill_rows(writer, y, info.height);
-    for (int c = 0; c < pipeline->channel_count; ++c) {
-        exr_coding_channel_info_t *channel = &pipeline->channels[c];
-        channel->user_bytes_per_element = sizeof *writer->rows;
-        channel->user_data_type =
-            channel->data_type == EXR_PIXEL_UINT ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT;
-        channel->user_pixel_stride = sizeof *writer->rows;
-        channel->user_line_stride = writer->file->image->width * (int)sizeof *writer->rows;
-        channel->encode_from_ptr = rows_of(writer, channel->channel_name);
-    }
-    if (y == 0) code = exr_encoding_choose_default_routines(context, PART, pipeline);
-    return code == EXR_ERR_SUCCESS ? exr_encoding_run(context, PART, pipeline) : code;
-}
-
-static exr_result_t write_all(Writer *writer)
-{
-    exr_context_initializer_t start = EXR_DEFAULT_CONTEXT_INITIALIZER;
-    start.error_handler_fn = keep_reason;
-    start.user_data = &writer->stream;
-    start.write_fn = take_bytes;
-    exr_context_t *context = &writer->stream.context;
-    exr_result_t code = exr_start_write(context, "image.exr", EXR_WRITE_FILE_DIRECTLY, &start);
-    if (code != EXR_ERR_SUCCESS) return code;
-    exr_set_longname_support(*context, 1);
-    code = write_header(writer);
-    for (int y = 0; y < writer->file->image->height && code == EXR_ERR_SUCCESS; y += ROWS)
-        code = write_block(writer, y);
-    exr_encoding_destroy(*context, &writer->pipeline);
-    exr_result_t closed = exr_finish(context);
-    return code == EXR_ERR_SUCCESS ? closed : code;
-}
-
-Result exr_file_encode(const ExrFile *file, Bytes *exr, Error *error)
-{
-    Writer writer = {.file = file, .pipeline = EXR_ENCODE_PIPELINE_INITIALIZER};
-    Bytes *written = &writer.stream.written;
-    *exr = (Bytes){0};
-    writer.rows =
-        malloc((size_t)CHANNELS_MOST * ROWS * (size_t)file->image->width * sizeof *writer.rows);
-    exr_result_t code = writer.rows ? write_all(&writer) : EXR_ERR_OUT_OF_MEMORY;
-    free(writer.rows);
-    if (code != EXR_ERR_SUCCESS) {
-        bytes_destroy(written);
-        return error_set(error, RESULT_FAILED, "cannot encode an image of %d x %d as EXR: %s",
-                         file->image->width, file->image->height, reason_of(&writer.stream, code));
-    }
-    written->data[written->size] = 0;
-    *exr = *written;
-    return RESULT_OK;
-}
-
-// --- Reading.
 
 bool exr_file_is(const Bytes *file)
 {
@@ -272,7 +18,7 @@ bool exr_file_is(const Bytes *file)
 static int64_t give_bytes(exr_const_context_t context, void *data, void *bytes, uint64_t size,
                           uint64_t offset, exr_stream_error_func_ptr_t fail)
 {
-    const Bytes *file = ((const Stream *)data)->read;
+    const Bytes *file = ((const ExrStream *)data)->read;
     (void)context;
     (void)fail;
     if (offset >= file->size) return 0;
@@ -284,14 +30,14 @@ static int64_t give_bytes(exr_const_context_t context, void *data, void *bytes, 
 static int64_t tell_size(exr_const_context_t context, void *data)
 {
     (void)context;
-    return (int64_t)((const Stream *)data)->read->size;
+    return (int64_t)((const ExrStream *)data)->read->size;
 }
 
 enum { PLANES = 5 };
 
 // A file being read: where its pixels go.
 typedef struct Picture {
-    Stream stream;
+    ExrStream stream;
     const char *path;
     Image image;                  // of the display window
     exr_attr_box2i_t data, shown; // windows, first to last
@@ -305,7 +51,7 @@ static Result fail_library(const Picture *picture, exr_result_t code, Error *err
 {
     return error_set(error, code == EXR_ERR_OUT_OF_MEMORY ? RESULT_FAILED : RESULT_BAD_INPUT,
                      "%s: not a readable EXR file: %s", picture->path,
-                     reason_of(&picture->stream, code));
+                     exr_stream_reason(&picture->stream, code));
 }
 
 // `code` of a call of the library: goes on, or says what is wrong.
@@ -321,7 +67,7 @@ static Result open_file(Picture *picture, const Bytes *file, const char *path, E
     *picture =
         (Picture){.path = path, .stream.read = file, .pipeline = EXR_DECODE_PIPELINE_INITIALIZER};
     if (!exr_file_is(file)) return error_set(error, RESULT_BAD_INPUT, "%s: not an EXR file", path);
-    start.error_handler_fn = keep_reason;
+    start.error_handler_fn = exr_stream_keep_reason;
     start.user_data = &picture->stream;
     start.read_fn = give_bytes;
     start.size_fn = tell_size;
@@ -400,7 +146,7 @@ static bool is_taken(const Picture *picture, const char *name)
 static Result choose_channels(Picture *picture, Error *error)
 {
     const exr_attr_chlist_t *list;
-    TRY_EXR(picture, exr_get_channels(picture->stream.context, PART, &list));
+    TRY_EXR(picture, exr_get_channels(picture->stream.context, EXR_PART, &list));
     if (!take_any_layer(picture, list) && !take_grey(picture, list))
         return error_set(error, RESULT_BAD_INPUT,
                          "%s: no channels of a colour: expected R, G and B, or Y alone",
@@ -425,8 +171,8 @@ static Result find_chunk_size(const Picture *picture, uint64_t *size, Error *err
     enum { COPIES = 3 };
     const exr_attr_chlist_t *list;
     uint64_t unpacked, of_pixel = 0;
-    TRY_EXR(picture, exr_get_chunk_unpacked_size(picture->stream.context, PART, &unpacked));
-    TRY_EXR(picture, exr_get_channels(picture->stream.context, PART, &list));
+    TRY_EXR(picture, exr_get_chunk_unpacked_size(picture->stream.context, EXR_PART, &unpacked));
+    TRY_EXR(picture, exr_get_channels(picture->stream.context, EXR_PART, &list));
     for (int i = 0; i < list->num_channels; ++i)
         if (list->entries[i].x_sampling == 1 && list->entries[i].y_sampling == 1)
             of_pixel += list->entries[i].pixel_type == EXR_PIXEL_HALF ? 2 : 4;
@@ -438,8 +184,8 @@ static Result make_image(Picture *picture, Error *error)
 {
     uint64_t chunk = 0;
     exr_context_t context = picture->stream.context;
-    TRY_EXR(picture, exr_get_data_window(context, PART, &picture->data));
-    TRY_EXR(picture, exr_get_display_window(context, PART, &picture->shown));
+    TRY_EXR(picture, exr_get_data_window(context, EXR_PART, &picture->data));
+    TRY_EXR(picture, exr_get_display_window(context, EXR_PART, &picture->shown));
     TRY(find_chunk_size(picture, &chunk, error));
     const exr_attr_box2i_t *shown = &picture->shown;
     long long width = side(shown->min.x, shown->max.x), height = side(shown->min.y, shown->max.y);
@@ -504,8 +250,8 @@ static Result read_chunk(Picture *picture, bool first, const exr_chunk_info_t *c
     exr_decode_pipeline_t *pipeline = &picture->pipeline;
     TRY(make_block(picture, chunk, error));
     memset(picture->block, 0, PLANES * picture->block_room * sizeof *picture->block);
-    TRY_EXR(picture, first ? exr_decoding_initialize(context, PART, chunk, pipeline)
-                           : exr_decoding_update(context, PART, chunk, pipeline));
+    TRY_EXR(picture, first ? exr_decoding_initialize(context, EXR_PART, chunk, pipeline)
+                           : exr_decoding_update(context, EXR_PART, chunk, pipeline));
     for (int c = 0; c < pipeline->channel_count; ++c) {
         exr_coding_channel_info_t *channel = &pipeline->channels[c];
         size_t plane = PLANES - 1;
@@ -518,8 +264,8 @@ static Result read_chunk(Picture *picture, bool first, const exr_chunk_info_t *c
         channel->user_data_type = EXR_PIXEL_FLOAT;
         channel->user_line_stride = chunk->width * (int)sizeof(float);
     }
-    TRY_EXR(picture, exr_decoding_choose_default_routines(context, PART, pipeline));
-    TRY_EXR(picture, exr_decoding_run(context, PART, pipeline));
+    TRY_EXR(picture, exr_decoding_choose_default_routines(context, EXR_PART, pipeline));
+    TRY_EXR(picture, exr_decoding_run(context, EXR_PART, pipeline));
     bool grey = picture->names[0] == picture->names[1];
     for (size_t k = 1; k < 3 && grey; ++k)
         memcpy(picture->block + k * picture->block_room, picture->block,
@@ -531,10 +277,10 @@ static Result read_lines(Picture *picture, Error *error)
 {
     exr_chunk_info_t chunk;
     int32_t lines;
-    TRY_EXR(picture, exr_get_scanlines_per_chunk(picture->stream.context, PART, &lines));
+    TRY_EXR(picture, exr_get_scanlines_per_chunk(picture->stream.context, EXR_PART, &lines));
     for (long long y = picture->data.min.y; y <= picture->data.max.y; y += lines) {
         TRY_EXR(picture,
-                exr_read_scanline_chunk_info(picture->stream.context, PART, (int)y, &chunk));
+                exr_read_scanline_chunk_info(picture->stream.context, EXR_PART, (int)y, &chunk));
         TRY(read_chunk(picture, y == picture->data.min.y, &chunk, picture->data.min.x, y, error));
     }
     return RESULT_OK;
@@ -547,11 +293,11 @@ static Result read_tiles(Picture *picture, Error *error)
     int32_t wide, high;
     long long width = side(picture->data.min.x, picture->data.max.x),
               height = side(picture->data.min.y, picture->data.max.y);
-    TRY_EXR(picture, exr_get_tile_sizes(context, PART, 0, 0, &wide, &high));
+    TRY_EXR(picture, exr_get_tile_sizes(context, EXR_PART, 0, 0, &wide, &high));
     for (long long row = 0; row * high < height; ++row)
         for (long long column = 0; column * wide < width; ++column) {
-            TRY_EXR(picture,
-                    exr_read_tile_chunk_info(context, PART, (int)column, (int)row, 0, 0, &chunk));
+            TRY_EXR(picture, exr_read_tile_chunk_info(context, EXR_PART, (int)column, (int)row, 0,
+                                                      0, &chunk));
             TRY(read_chunk(picture, row == 0 && column == 0, &chunk,
                            picture->data.min.x + column * wide, picture->data.min.y + row * high,
                            error));
@@ -563,8 +309,8 @@ static Result read_picture(Picture *picture, Error *error)
 {
     exr_storage_t storage;
     exr_compression_t compression;
-    TRY_EXR(picture, exr_get_storage(picture->stream.context, PART, &storage));
-    TRY_EXR(picture, exr_get_compression(picture->stream.context, PART, &compression));
+    TRY_EXR(picture, exr_get_storage(picture->stream.context, EXR_PART, &storage));
+    TRY_EXR(picture, exr_get_compression(picture->stream.context, EXR_PART, &compression));
     if (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED)
         return error_set(error, RESULT_BAD_INPUT, "%s: deep pixels: expected flat ones",
                          picture->path);
@@ -597,11 +343,11 @@ Result exr_file_decode_texts(ImageTexts *texts, const Bytes *file, const char *p
     int32_t count = 0;
     *texts = (ImageTexts){0};
     Result result = open_file(&picture, file, path, error);
-    if (result == RESULT_OK) exr_get_attribute_count(picture.stream.context, PART, &count);
+    if (result == RESULT_OK) exr_get_attribute_count(picture.stream.context, EXR_PART, &count);
     for (int32_t i = 0; i < count && result == RESULT_OK; ++i) {
         const exr_attribute_t *attribute;
-        if (exr_get_attribute_by_index(picture.stream.context, PART, EXR_ATTR_LIST_FILE_ORDER, i,
-                                       &attribute) != EXR_ERR_SUCCESS ||
+        if (exr_get_attribute_by_index(picture.stream.context, EXR_PART, EXR_ATTR_LIST_FILE_ORDER,
+                                       i, &attribute) != EXR_ERR_SUCCESS ||
             attribute->type != EXR_ATTR_STRING || !image_texts_is_key(attribute->name))
             continue;
         result = image_texts_set(texts, attribute->name, attribute->string->str, error);

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: MIT
+#include "image/exr_file.h"
+#include "image/exr_stream.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ROWS = 16 }; // of a ZIP block
+
+static int64_t take_bytes(exr_const_context_t context, void *data, const void *bytes, uint64_t size,
+                          uint64_t offset, exr_stream_error_func_ptr_t fail)
+{
+    ExrStream *stream = data;
+    size_t end = (size_t)(offset + size);
+    if (end > stream->room) {
+        size_t room = end + end / 2 + 4096;
+        uint8_t *larger = realloc(stream->written.data, room + 1);
+        if (!larger) return fail(context, EXR_ERR_OUT_OF_MEMORY, "no memory"), -1;
+        stream->written.data = larger;
+        stream->room = room;
+    }
+    if (offset > stream->written.size) // a gap that is filled later
+        memset(stream->written.data + stream->written.size, 0, offset - stream->written.size);
+    memcpy(stream->written.data + offset, bytes, size);
+    if (end > stream->written.size) stream->written.size = end;
+    return (int64_t)size;
+}
+
+// A channel: which number of which image, and how it is stored.
+typedef struct Channel {
+    const char *name;
+    int layer; // ExrLayer; -1: the image
+    int number;
+    exr_pixel_type_t type;
+} Channel;
+
+// In the order of files: that of their names' bytes. HALF stands for what was asked.
+static const Channel CHANNELS[] = {{"A", -1, 3, EXR_PIXEL_HALF},
+                                   {"B", -1, 2, EXR_PIXEL_HALF},
+                                   {"G", -1, 1, EXR_PIXEL_HALF},
+                                   {"R", -1, 0, EXR_PIXEL_HALF},
+                                   {"Z", EXR_DEPTH, 0, EXR_PIXEL_FLOAT},
+                                   {"coverage", EXR_COVERAGE, 0, EXR_PIXEL_HALF},
+                                   {"id", EXR_STRAND, 0, EXR_PIXEL_UINT},
+                                   {"tangent.X", EXR_TANGENT, 0, EXR_PIXEL_HALF},
+                                   {"tangent.Y", EXR_TANGENT, 1, EXR_PIXEL_HALF},
+                                   {"tangent.Z", EXR_TANGENT, 2, EXR_PIXEL_HALF}};
+enum { CHANNELS_MOST = sizeof CHANNELS / sizeof *CHANNELS };
+
+typedef struct Writer {
+    ExrStream stream;
+    const ExrFile *file;
+    exr_encode_pipeline_t pipeline;
+    uint32_t *rows; // [CHANNELS_MOST][ROWS][width]: floats, or numbers of strands
+} Writer;
+
+static exr_result_t add_channels(const Writer *writer)
+{
+    exr_result_t code = EXR_ERR_SUCCESS;
+    for (int c = 0; c < CHANNELS_MOST && code == EXR_ERR_SUCCESS; ++c) {
+        const Channel *channel = &CHANNELS[c];
+        bool widened = channel->type == EXR_PIXEL_HALF && writer->file->floats;
+        if (channel->layer >= 0 && !writer->file->layers) continue;
+        code = exr_add_channel(writer->stream.context, EXR_PART, channel->name,
+                               widened ? EXR_PIXEL_FLOAT : channel->type, EXR_PERCEPTUALLY_LINEAR,
+                               1, 1);
+    }
+    return code;
+}
+
+static exr_result_t add_matrix(exr_context_t context, const char *name, const float (*columns)[4])
+{
+    // The library's matrices are for row vectors and lie row by row: the same order.
+    exr_attr_m44f_t matrix;
+    if (!columns) return EXR_ERR_SUCCESS;
+    memcpy(matrix.m, columns, sizeof matrix.m);
+    return exr_attr_set_m44f(context, EXR_PART, name, &matrix);
+}
+
+static exr_result_t write_header(const Writer *writer)
+{
+    const ExrFile *file = writer->file;
+    exr_context_t context = writer->stream.context;
+    const exr_attr_chromaticities_t rec709 = {.red_x = 0.64f,
+                                              .red_y = 0.33f,
+                                              .green_x = 0.3f,
+                                              .green_y = 0.6f,
+                                              .blue_x = 0.15f,
+                                              .blue_y = 0.06f,
+                                              .white_x = 0.3127f,
+                                              .white_y = 0.329f};
+    int part;
+    exr_result_t code = exr_add_part(context, "image", EXR_STORAGE_SCANLINE, &part);
+    if (code == EXR_ERR_SUCCESS)
+        code = exr_initialize_required_attr_simple(context, EXR_PART, file->image->width,
+                                                   file->image->height, EXR_COMPRESSION_ZIP);
+    if (code == EXR_ERR_SUCCESS) code = add_channels(writer);
+    if (code == EXR_ERR_SUCCESS)
+        code = exr_attr_set_chromaticities(context, EXR_PART, "chromaticities", &rec709);
+    size_t count = file->texts ? file->texts->count : 0;
+    for (size_t i = 0; i < count && code == EXR_ERR_SUCCESS; ++i)
+        code = exr_attr_set_string(context, EXR_PART, file->texts->list[i].key,
+                                   file->texts->list[i].value);
+    if (code == EXR_ERR_SUCCESS) code = add_matrix(context, "worldToCamera", file->world_to_camera);
+    if (code == EXR_ERR_SUCCESS) code = add_matrix(context, "worldToNDC", file->world_to_ndc);
+    return code == EXR_ERR_SUCCESS ? exr_write_header(context) : code;
+}
+
+static uint32_t bits_of(float value)
+{
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+// The stored number of a channel, from what the layer's pixel has.
+static uint32_t convert(const Channel *channel, const float *pixel, int channels)
+{
+    if (channel->layer < 0) return bits_of(channel->number < channels ? pixel[channel->number] : 1);
+    if (channel->layer == EXR_STRAND)
+        return (uint32_t)(pixel[0] * 255 + 0.5f) | (uint32_t)(pixel[1] * 255 + 0.5f) << 8 |
+               (uint32_t)(pixel[2] * 255 + 0.5f) << 16;
+    if (channel->layer != EXR_TANGENT) return bits_of(pixel[channel->number]);
+    double t[3], square = 0;
+    for (int k = 0; k < 3; ++k) {
+        t[k] = 2 * (double)pixel[k] - 1;
+        square += t[k] * t[k];
+    }
+    return bits_of(square == 0 ? 0 : (float)(t[channel->number] / sqrt(square)));
+}
+
+// Whether all layers of the nearest strand have one. Each is drawn for itself: where it covers just
+// as much as it takes, some may have it and others not.
+static bool has_strand(const Image *layers, size_t pixel)
+{
+    for (int l = EXR_DEPTH; l <= EXR_STRAND; ++l) {
+        const float *at = (const float *)(const void *)layers[l].pixels + 3 * pixel;
+        if (at[0] == 0 && at[1] == 0 && at[2] == 0) return false;
+    }
+    return true;
+}
+
+static void fill_rows(const Writer *writer, int y, int rows)
+{
+    size_t width = (size_t)writer->file->image->width;
+    for (int c = 0; c < CHANNELS_MOST; ++c) {
+        const Channel *channel = &CHANNELS[c];
+        if (channel->layer >= 0 && !writer->file->layers) continue;
+        const Image *image =
+            channel->layer < 0 ? writer->file->image : &writer->file->layers[channel->layer];
+        const float *from = (const float *)(const void *)image->pixels;
+        size_t step = (size_t)image->channels, first = (size_t)y * width,
+               count = (size_t)rows * width;
+        uint32_t *to = writer->rows + (size_t)c * ROWS * width;
+        for (size_t i = 0; i < count; ++i) {
+            bool none = channel->layer >= EXR_DEPTH && !has_strand(writer->file->layers, first + i);
+            to[i] = none ? 0 : convert(channel, from + (first + i) * step, image->channels);
+        }
+    }
+}
+
+// The place in `rows` of the channel of that name.
+static const uint8_t *rows_of(const Writer *writer, const char *name)
+{
+    size_t width = (size_t)writer->file->image->width;
+    int c = 0;
+    while (c + 1 < CHANNELS_MOST && strcmp(CHANNELS[c].name, name) != 0) ++c;
+    return (const uint8_t *)(writer->rows + (size_t)c * ROWS * width);
+}
+
+static exr_result_t write_block(Writer *writer, int y)
+{
+    exr_context_t context = writer->stream.context;
+    exr_encode_pipeline_t *pipeline = &writer->pipeline;
+    exr_chunk_info_t info;
+    exr_result_t code = exr_write_scanline_chunk_info(context, EXR_PART, y, &info);
+    if (code != EXR_ERR_SUCCESS) return code;
+    code = y == 0 ? exr_encoding_initialize(context, EXR_PART, &info, pipeline)
+                  : exr_encoding_update(context, EXR_PART, &info, pipeline);
+    if (code != EXR_ERR_SUCCESS) return code;
+    fill_rows(writer, y, info.height);
+    for (int c = 0; c < pipeline->channel_count; ++c) {
+        exr_coding_channel_info_t *channel = &pipeline->channels[c];
+        channel->user_bytes_per_element = sizeof *writer->rows;
+        channel->user_data_type =
+            channel->data_type == EXR_PIXEL_UINT ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT;
+        channel->user_pixel_stride = sizeof *writer->rows;
+        channel->user_line_stride = writer->file->image->width * (int)sizeof *writer->rows;
+        channel->encode_from_ptr = rows_of(writer, channel->channel_name);
+    }
+    if (y == 0) code = exr_encoding_choose_default_routines(context, EXR_PART, pipeline);
+    return code == EXR_ERR_SUCCESS ? exr_encoding_run(context, EXR_PART, pipeline) : code;
+}
+
+static exr_result_t write_all(Writer *writer)
+{
+    exr_context_initializer_t start = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    start.error_handler_fn = exr_stream_keep_reason;
+    start.user_data = &writer->stream;
+    start.write_fn = take_bytes;
+    exr_context_t *context = &writer->stream.context;
+    exr_result_t code = exr_start_write(context, "image.exr", EXR_WRITE_FILE_DIRECTLY, &start);
+    if (code != EXR_ERR_SUCCESS) return code;
+    exr_set_longname_support(*context, 1);
+    code = write_header(writer);
+    for (int y = 0; y < writer->file->image->height && code == EXR_ERR_SUCCESS; y += ROWS)
+        code = write_block(writer, y);
+    exr_encoding_destroy(*context, &writer->pipeline);
+    exr_result_t closed = exr_finish(context);
+    return code == EXR_ERR_SUCCESS ? closed : code;
+}
+
+Result exr_file_encode(const ExrFile *file, Bytes *exr, Error *error)
+{
+    Writer writer = {.file = file, .pipeline = EXR_ENCODE_PIPELINE_INITIALIZER};
+    Bytes *written = &writer.stream.written;
+    *exr = (Bytes){0};
+    writer.rows =
+        malloc((size_t)CHANNELS_MOST * ROWS * (size_t)file->image->width * sizeof *writer.rows);
+    exr_result_t code = writer.rows ? write_all(&writer) : EXR_ERR_OUT_OF_MEMORY;
+    free(writer.rows);
+    if (code != EXR_ERR_SUCCESS) {
+        bytes_destroy(written);
+        return error_set(error, RESULT_FAILED, "cannot encode an image of %d x %d as EXR: %s",
+                         file->image->width, file->image->height,
+                         exr_stream_reason(&writer.stream, code));
+    }
+    written->data[written->size] = 0;
+    *exr = *written;
+    return RESULT_OK;
+}
