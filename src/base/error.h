@@ -18,7 +18,7 @@ typedef enum Result {
     RESULT_USAGE = 2,         // the command line or a parameter is wrong
     RESULT_BAD_INPUT = 3,     // a file's content is wrong
     RESULT_NO_GL = 4,         // no usable OpenGL
-    RESULT_INTERRUPTED = 130, // SIGINT or SIGTERM
+    RESULT_INTERRUPTED = 130, // SIGINT, SIGTERM or SIGHUP
 } Result;
 
 // One line for the user: what, where, what was expected. No newline, no trailing full stop.

@@ -10,7 +10,6 @@
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdio.h>
-#include <string.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -51,11 +50,7 @@ static void *watch(void *unused)
     wait_ms(NOTICE_MS);
     if (atomic_load(&noticed)) wait_ms(END_MS);
     leftovers_remove();
-    static const char message[] = ": interrupted\n";
-    const char *name = program_invocation_short_name;
-    if (write(STDERR_FILENO, name, strlen(name)) >= 0 &&
-        write(STDERR_FILENO, message, sizeof message - 1) >= 0)
-        _exit(RESULT_INTERRUPTED);
+    dprintf(STDERR_FILENO, "%s: interrupted\n", program_invocation_short_name);
     _exit(RESULT_INTERRUPTED);
 }
 

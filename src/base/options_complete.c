@@ -17,7 +17,7 @@ typedef enum ValueKind {
     VALUE_TEXT,
 } ValueKind;
 
-// --- What all shells are told.
+// --- Names and words that the scripts of all shells need.
 
 static const Option *option_at(const OptionsProgram *program, size_t i)
 {
