@@ -153,9 +153,10 @@ Result json_check_object(const JsonPlace *place, const json_t *value, const char
         while (i < count && strcmp(key, names[i]) != 0) i++;
         char words[160];
         if (i == count)
-            return json_fail(place, error, "unknown key '%.60s'%s%s", key,
-                             *suggest_words(words, sizeof words, key, names, count) ? ": " : "",
-                             words);
+            return json_fail(place, error, "unknown key '%.60s': %s", key,
+                             *suggest_words(words, sizeof words, key, names, count)
+                                 ? words
+                                 : "expected a key of --help schema");
     }
     return RESULT_OK;
 }

@@ -78,11 +78,33 @@ static int open_temporary(OutFile *file)
     return descriptor;
 }
 
+// Like `mkdir -p` for what stands before the last slash of `name`, which is changed and changed
+// back. False with errno.
+static bool make_folders(char *name)
+{
+    int reason = 0;
+    for (char *slash = strchr(name + 1, '/'); slash && !reason; slash = strchr(slash + 1, '/')) {
+        *slash = 0;
+        struct stat status;
+        reason = mkdir(name, 0777) == 0 || errno == EEXIST ? 0 : errno;
+        // mkdir can say "no permission" of a folder that is there: what counts is whether a file
+        // can be made in it.
+        if (reason && stat(name, &status) == 0) reason = 0;
+        *slash = '/';
+    }
+    errno = reason;
+    return reason == 0;
+}
+
 // Devices and pipes (/dev/stdout) cannot be replaced by renaming: they are written as they are.
 static int open_descriptor(OutFile *file)
 {
     struct stat status;
-    if (stat(file->path, &status) != 0) return open_temporary(file);
+    if (stat(file->path, &status) != 0) {
+        int descriptor = open_temporary(file);
+        if (descriptor >= 0 || errno != ENOENT || !make_folders(file->path)) return descriptor;
+        return open_temporary(file);
+    }
     if (S_ISDIR(status.st_mode)) {
         errno = EISDIR;
         return -1;

@@ -23,9 +23,9 @@ bool outfile_is_stdout(const char *path);
 // RESULT_USAGE if `path` is standard output and that is a terminal: for binary data.
 Result outfile_refuse_terminal(const char *path, Error *error);
 
-// Creates the temporary file, or writes to standard output directly (permissions as for any new
-// file, by the umask). RESULT_FAILED with path and reason: no such folder, a folder of that name,
-// an existing file that is read-only, ...
+// Creates the temporary file and the folders that its path lacks, or writes to standard output
+// directly (permissions as for any new file, by the umask). RESULT_FAILED with path and reason: a
+// folder that cannot be made, a folder of that name, an existing file that is read-only, ...
 Result outfile_open(OutFile *file, const char *path, Error *error);
 
 // Flushes what has been written so far. RESULT_FAILED with path and reason if a write failed; then

@@ -3,15 +3,18 @@
 
 #include "base/target.h"
 
+#include <errno.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 // Where a file is: the deepest folder that exists, and the path below it.
 typedef struct Place {
     bool used, exists, numbered;
+    int closed;               // why no file can be made in `folder`; 0 if one can
     struct stat file, folder; // `file` if it exists
     char *full;               // owned; the path, links followed if it exists
     const char *rest;         // of a numbered one up to the number
@@ -24,6 +27,15 @@ static void destroy_place(Place *place)
     free(place->after);
 }
 
+// Whether `name` is there; then sets folder and why it takes no files.
+static bool look_at_folder(Place *place, const char *name)
+{
+    if (stat(name, &place->folder) != 0) return false;
+    if (access(name, W_OK | X_OK) != 0) place->closed = errno;
+    if (!S_ISDIR(place->folder.st_mode)) place->closed = ENOTDIR;
+    return true;
+}
+
 // Sets folder and rest of `full`.
 static bool find_folder(Place *place)
 {
@@ -31,13 +43,13 @@ static bool find_folder(Place *place)
     for (char *slash = strrchr(full, '/'); slash;
          slash = memrchr(full, '/', (size_t)(slash - full))) {
         *slash = 0;
-        bool there = stat(*full ? full : "/", &place->folder) == 0;
+        bool there = look_at_folder(place, *full ? full : "/");
         *slash = '/';
         place->rest = slash + 1;
         if (there) return true;
     }
     place->rest = full;
-    return stat(".", &place->folder) == 0;
+    return look_at_folder(place, ".");
 }
 
 static bool find_place(Place *place, const PathUse *use)
@@ -112,6 +124,19 @@ static Result compare(const PathUse *use, const PathUse *other, Error *error)
                      use->path, other->name, other->path);
 }
 
+// What can be told before anything is read; a file that is there may still be one's own in a folder
+// that isn't, if it is written as it is (a device, a pipe).
+static Result check_open(const Place *place, const PathUse *use, Error *error)
+{
+    bool replaced = !place->exists || S_ISREG(place->file.st_mode);
+    int reason = replaced ? place->closed : 0;
+    if (place->exists && S_ISREG(place->file.st_mode) && access(use->path, W_OK) != 0)
+        reason = errno;
+    if (!place->used || use->role != PATH_WRITTEN || !reason) return RESULT_OK;
+    return error_set(error, RESULT_FAILED, "%s %.300s: cannot write: %s", use->name, use->path,
+                     strerror(reason));
+}
+
 Result paths_check(const PathUse *uses, int count, Error *error)
 {
     Place *places = calloc((size_t)count + 1, sizeof *places);
@@ -125,6 +150,8 @@ Result paths_check(const PathUse *uses, int count, Error *error)
                 are_one(&places[i], &places[k]))
                 result = compare(&uses[i], &uses[k], error);
         }
+    for (int i = 0; i < count && result == RESULT_OK; ++i)
+        result = check_open(&places[i], &uses[i], error);
     for (int i = 0; i < count && places; ++i) destroy_place(&places[i]);
     free(places);
     return result;

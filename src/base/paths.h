@@ -19,5 +19,6 @@ typedef struct PathUse {
 // Compares what is written with everything else: by identity where the file exists, so that links,
 // spellings and a file system's case do not matter; else by folder and name, without regard to
 // case. A pattern has every file that differs from it in the number alone. Devices and pipes may be
-// used twice. RESULT_USAGE naming both uses, RESULT_FAILED when memory is short.
+// used twice. RESULT_USAGE naming both uses; RESULT_FAILED naming an output whose file, or whose
+// deepest folder that exists, cannot be written, or when memory is short.
 Result paths_check(const PathUse *uses, int count, Error *error);

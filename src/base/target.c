@@ -215,34 +215,12 @@ int target_find_last(const Target *target)
     return last;
 }
 
-// Like `mkdir -p` for what stands before the last slash of `name`, which is changed and changed
-// back.
-static Result make_folders(char *name, Error *error)
-{
-    for (char *slash = strchr(name + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
-        *slash = 0;
-        struct stat status;
-        int reason = mkdir(name, 0777) == 0 || errno == EEXIST ? 0 : errno;
-        if (reason == 0 && stat(name, &status) == 0 && !S_ISDIR(status.st_mode)) reason = ENOTDIR;
-        // mkdir can say "no permission" of a folder that is there: what counts is whether a file
-        // can be made in it.
-        if (reason != 0 && reason != ENOTDIR && stat(name, &status) == 0) reason = 0;
-        if (reason != 0)
-            error_set(error, RESULT_FAILED, "%s: cannot make this folder: %s", name,
-                      strerror(reason));
-        *slash = '/';
-        if (reason != 0) return RESULT_FAILED;
-    }
-    return RESULT_OK;
-}
-
 Result target_prepare(const Target *target, Error *error)
 {
     char *name = target_name_frame(target, 0);
     if (!name) return fail_memory(error);
     OutFile probe = {0};
     Result result = outfile_refuse_terminal(name, error);
-    THEN(result, make_folders(name, error));
     THEN(result, outfile_open(&probe, name, error));
     outfile_discard(&probe);
     free(name);

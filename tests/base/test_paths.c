@@ -106,6 +106,39 @@ static void devices_and_streams_may_be_used_twice(void **state)
     assert_int_equal(check(NULL, NULL, PATH_READ), RESULT_OK);
 }
 
+static void a_place_that_cannot_be_written_is_told_before_anything_runs(void **state)
+{
+    Error error;
+    temporary_write(state, "plain", "x", 0644);
+    PathUse use = {"--cache", temporary_path(state, "plain/x.cache"), PATH_WRITTEN};
+    assert_int_equal(paths_check(&use, 1, &error), RESULT_FAILED);
+    assert_non_null(strstr(error.text, "--cache"));
+    assert_non_null(strstr(error.text, "Not a directory"));
+    use.path = temporary_path(state, "plain/deep/x_%d.png");
+    assert_int_equal(paths_check(&use, 1, &error), RESULT_FAILED);
+    use.path = temporary_path(state, "new/deep/x.cache");
+    assert_int_equal(paths_check(&use, 1, &error), RESULT_OK);
+    use = (PathUse){"the hair file", temporary_path(state, "plain/x.tfx"), PATH_READ};
+    assert_int_equal(paths_check(&use, 1, &error), RESULT_OK);
+}
+
+static void a_locked_file_or_folder_is_told_before_anything_runs(void **state)
+{
+    if (geteuid() == 0) {
+        puts("skipped: root may write everywhere");
+        skip();
+    }
+    Error error;
+    temporary_write(state, "locked", "x", 0444);
+    PathUse use = {"--cache", temporary_path(state, "locked"), PATH_WRITTEN};
+    assert_int_equal(paths_check(&use, 1, &error), RESULT_FAILED);
+    assert_non_null(strstr(error.text, "Permission denied"));
+    assert_int_equal(mkdir(temporary_path(state, "shut"), 0555), 0);
+    use.path = temporary_path(state, "shut/new/x.cache");
+    assert_int_equal(paths_check(&use, 1, &error), RESULT_FAILED);
+    assert_non_null(strstr(error.text, "Permission denied"));
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, temporary_create, temporary_destroy)
 
 int main(void)
@@ -116,6 +149,8 @@ int main(void)
         TEST(a_pattern_has_all_numbers),
         TEST(a_folder_of_inputs_takes_no_outputs),
         TEST(devices_and_streams_may_be_used_twice),
+        TEST(a_place_that_cannot_be_written_is_told_before_anything_runs),
+        TEST(a_locked_file_or_folder_is_told_before_anything_runs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

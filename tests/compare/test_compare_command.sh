@@ -56,7 +56,7 @@ claim "heat map and sheet are written, the same whatever else is asked"
 run 1 $a $b --heatmap "$work/heat.png" --sheet "$work/sheet.png"; is_png "$work/heat.png"; is_png "$work/sheet.png"
 run 1 "$work/heat.png" "$work/sheet.png"; says "160 x 120 and 488 x 120"
 run 0 $a $a --heatmap "$work/black.png"; is_png "$work/black.png"
-run 1 $a $b --heatmap "$work/none/heat.png"; says "none"; one_line
+run 1 $a $b --heatmap "$work/heat.png/heat.png"; says "Not a directory"; one_line
 
 claim "folders go frame by frame; what one lacks is missing"
 mkdir "$work/a" "$work/b"
@@ -89,7 +89,8 @@ rm "$work/b/f_1.png" "$work/a/f_3.png" "$work/a/f_1.png"
 run 0 "$work/a" "$work/b"
 run 0 "$work/new/" "$work/b" --update; equal "$work/new/f_6.png" $b
 run 0 "$work/new.png" $b --update; equal "$work/new.png" $b
-run 1 "$work/none/new.png" $b --update; one_line; says "none/new.png"
+: >"$work/plain"
+run 1 "$work/plain/new.png" $b --update; one_line; says "plain/new.png"
 
 claim "a reference without a new image is reported and left"
 rm "$work/b/f_6.png"

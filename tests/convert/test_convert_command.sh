@@ -145,7 +145,8 @@ for part in '"kind": "not_finite"' '"first_place": 9' '"curvature": {' '"root_sp
     in_file "$work/x.json" "$part"
 done
 run 0 $curls --json "$work/x.json" -q -o "$x.obj"; in_file "$work/x.json" '"left_out": "texture coordinates of strands"'
-run 1 $curls --json "$work/none/x.json"; one_line
+run 0 $curls --json "$work/none/x.json"; is_file "$work/none/x.json"
+run 1 $curls --json "$work/none/x.json/y.json"; says "Not a directory"; one_line
 
 claim "numbered files are frames"
 for i in 0 1 2 3; do run 0 $fur --unit m --subsample 1% -q --translate "0,$i,0" -o "$work/f_0$i.tfx"; done

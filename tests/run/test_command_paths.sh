@@ -46,6 +46,14 @@ run 2 assets/fur.tfx $small --cache "$work/c" --stats "$work/c.state"; refuses "
 }
 for file in e.usda e_0.png new c c.state; do none "$work/$file"; done
 
+claim "folders that are missing are made, and a place that takes no files is told before a frame is drawn"
+# shellcheck disable=SC2086
+{
+run 0 assets/fur.tfx $small -o "$work/made.png" --stats "$work/deep/er/x.json"; is_file "$work/deep/er/x.json"
+run 1 assets/fur.tfx $small -o "$work/first.png" --stats "$work/own.tfx/x.json"; refuses "--stats" "Not a directory"
+}
+none "$work/first.png"
+
 claim "a scene file writes into its own folder only, unless the command line says otherwise"
 ln -s ../elsewhere "$work/scene/away"
 for key in '"output": "../elsewhere/"' '"output": "away/x.png"' '"export": "new/../../elsewhere/x.usda"' \
