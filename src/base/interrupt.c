@@ -15,7 +15,7 @@
 
 // How long the program may take to notice, and then to end: it may have the state of a large
 // simulation to write.
-enum { NOTICE_MS = 400, END_MS = 20000 };
+enum { NOTICE_MS = 300, END_MS = 20000 };
 
 static int signals[] = {SIGINT, SIGTERM, SIGHUP}; // 0: left as it was
 enum { SIGNAL_COUNT = sizeof signals / sizeof *signals };
