@@ -167,6 +167,11 @@ STRESS = --cases 5000 --steps 10000 --seed 1
 stress: all ## random circumstances for every solver until a rule breaks, an hour or so (STRESS="--algo chain --seed 2")
 	LP_NUM_THREADS=$${LP_NUM_THREADS-0} $(OUT)/tractrix-bench stress $(STRESS)
 
+# Seconds to a minute for each fault; it goes on where it was interrupted.
+mutate: ## put small faults into a copy of the tree, one at a time, and print the share that tests catch, hours (MUTATE="--only split")
+	@scripts/setup build run test
+	@scripts/mutate $(MUTATE)
+
 # --- Static checks and the sanitizers; all of them run, then the failures are named. One alone: make check-format.
 CHECKS := format scripts warnings clang cppcheck shaders farm sanitize
 C_FILES = $(wildcard src/*/*.[ch] src/*/*/*.[ch] tests/*/*.[ch] glsl/*/* tests/glsl/*)
@@ -265,7 +270,7 @@ help: ## this list
 	@echo; sed -n '4,7s/^#//p' $(firstword $(MAKEFILE_LIST))
 
 FORCE:
-.PHONY: deb check-deb check-container all tests demo test bench bench-image stress check $(CHECKS:%=check-%) format install uninstall clean help FORCE
+.PHONY: deb check-deb check-container all tests demo test bench bench-image stress mutate check $(CHECKS:%=check-%) format install uninstall clean help FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
 -include $(patsubst %.o,%.d,$(OBJECTS) $(MAINS:src/%.c=$(OUT)/%.o) $(TEST_PROGRAMS:%=%.o) $(SUPPORT_OBJECTS))
