@@ -167,8 +167,8 @@ STRESS = --cases 5000 --steps 10000 --seed 1
 stress: all ## random circumstances for every solver until a rule breaks, an hour or so (STRESS="--algo chain --seed 2")
 	LP_NUM_THREADS=$${LP_NUM_THREADS-0} $(OUT)/tractrix-bench stress $(STRESS)
 
-# Seconds to a minute for each fault; it goes on where it was interrupted.
-mutate: ## put small faults into a copy of the tree, one at a time, and print the share that tests catch, hours (MUTATE="--only split")
+# Into a copy of the tree. It goes on where it was interrupted.
+mutate: ## whether tests catch small faults, put in one at a time, hours (MUTATE="--only split"; tests/mutants.txt)
 	@scripts/setup build run test
 	@scripts/mutate $(MUTATE)
 
@@ -206,7 +206,7 @@ check-farm: # GNU parallel and a Slurm of one node, which make test does without
 	@tests/runner $(OUT) test_farm
 # But for scripts that run the programs as others do, many times over, and tests that draw hundreds of images.
 # SANITIZE_BUT=none runs all.
-SANITIZE_BUT = ^test_(bench_command|bench_html|blender|ci_examples|command_cache|command_line|compare_goldens|docs|farm|gen_command|goldens|groom_command|html_report|install|light_command|readme|stress|turntable_images|turntable_script|tutorial)
+SANITIZE_BUT = ^test_(bench_command|bench_html|blender|ci_examples|command_cache|command_line|compare_goldens|docs|farm|gen_command|goldens|groom_command|html_report|install|light_command|mutate|readme|stress|turntable_images|turntable_script|tutorial)
 check-sanitize:
 	$(QUIET) CONFIG=sanitize OUT=$(SIDE)sanitize all tests
 	@tests/runner $(SIDE)sanitize test_ '$(SANITIZE_BUT)'
