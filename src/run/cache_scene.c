@@ -1,10 +1,34 @@
 // SPDX-License-Identifier: MIT
 #include "run/cache_scene.h"
 
+#include "version.h"
+
 #include <endian.h>
+#include <epoxy/gl.h>
 #include <libdeflate.h>
 #include <stdlib.h>
 #include <string.h>
+
+// --- Who simulated.
+
+static const char MAKER[] = "made_by";
+
+const char *cache_scene_own_maker(void)
+{
+    static char maker[600];
+    snprintf(maker, sizeof maker, "tractrix %s, %s, OpenGL %s", TRACTRIX_VERSION,
+             (const char *)glGetString(GL_RENDERER), (const char *)glGetString(GL_VERSION));
+    return maker;
+}
+
+char *cache_scene_maker(const Bytes *text)
+{
+    json_t *scene = json_loadb((const char *)text->data, text->size, 0, NULL);
+    const char *maker = json_string_value(json_object_get(scene, MAKER));
+    char *copy = strdup(maker ? maker : "unknown");
+    json_decref(scene);
+    return copy;
+}
 
 // --- Values.
 
@@ -50,6 +74,7 @@ Result cache_scene_describe(Bytes *text, const Simulation *simulation, Error *er
     if (simulation->mesh_checksum)
         json_object_set_new(object, "mesh_checksum", json_integer(simulation->mesh_checksum));
     keep_values(object);
+    json_object_set_new(object, MAKER, json_string(cache_scene_own_maker()));
     // 17 digits: key times are doubles.
     char *dump = json_dumps(object, JSON_COMPACT | JSON_SORT_KEYS | JSON_REAL_PRECISION(17));
     json_decref(object);
@@ -122,6 +147,8 @@ Result cache_scene_compare(const Bytes *text, const Simulation *simulation, cons
         // Read back, so that numbers are of the same kinds on both sides.
         json_t *is = json_loadb((const char *)now.data, now.size, 0, NULL);
         Difference difference;
+        json_object_del(was, MAKER);
+        json_object_del(is, MAKER);
         if (!is)
             result = error_set(error, RESULT_FAILED, "no memory for the scene's values");
         else if (find_difference(&difference, "", was, is))

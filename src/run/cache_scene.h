@@ -7,10 +7,18 @@
 #include "sim/simulation.h"
 
 // The scene's values that move the guides, as JSON: those of the groups Simulation and Forces, the
-// head, keyed forces, colliders, a checksum of the mesh that hair collides with. Not files (their
+// head, keyed forces, colliders, a checksum of the mesh that hair collides with, who made it. Not
+// files (their
 // content is recorded below), the camera, looks, followers and the length of the sequence.
 // RESULT_FAILED when memory is short.
 Result cache_scene_describe(Bytes *text, const Simulation *simulation, Error *error);
+
+// Which program and driver simulated: the text's "made_by"; "unknown" in caches of early versions.
+// To be freed; NULL when memory is short. It counts for nothing in the comparison below.
+char *cache_scene_maker(const Bytes *text);
+
+// The same of this process, whose context is current. Valid until the next call.
+const char *cache_scene_own_maker(void);
 
 // Compares such a text with the scene: RESULT_BAD_INPUT with `path`, the first key that differs,
 // and both values.

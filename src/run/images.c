@@ -6,8 +6,6 @@
 #include "scene/camera.h"
 #include "strands/paint.h"
 
-#include "version.h"
-
 #include <cglm/mat4.h>
 #include <stdlib.h>
 #include <string.h>
@@ -170,19 +168,9 @@ static Result open_renderer(Images *images, GpuTimer *timer, Error *error)
     return open_sky(images, error);
 }
 
-// Who drew the images. A CPU driver's depend on the processor as well.
-static Result describe_origin(ImageTexts *texts, const Gpu *gpu, Error *error)
-{
-    TRY(image_texts_set(texts, "Software", "tractrix " TRACTRIX_VERSION, error));
-    TRY(image_texts_set(texts, "Renderer", gpu->renderer, error));
-    TRY(image_texts_set(texts, "Driver", gpu->version, error));
-    return gpu->software ? image_texts_set(texts, "CPU", gpu->processor, error) : RESULT_OK;
-}
-
 static Result open_output(Images *images, int frame_count, Error *error)
 {
     const RunParams *run = &images->scene->run;
-    TRY(describe_origin(&images->texts, images->gpu, error));
     const OutputOptions options = {
         .target = run->output,
         .width = run->size[0],
@@ -193,7 +181,7 @@ static Result open_output(Images *images, int frame_count, Error *error)
         .frame_count = frame_count,
         .columns = run->contact_sheet[0],
         .rows = run->contact_sheet[1],
-        .texts = &images->texts,
+        .texts = &images->fingerprint->origin,
         .layers = images->layers != NULL,
         .exr_float = run->exr_float,
     };
@@ -210,9 +198,10 @@ Result images_open(Images *images, const Scene *scene, const Assets *assets, Sim
 
 Result images_create(Images *images, const Scene *scene, const Assets *assets,
                      Simulation *simulation, const Framing *framing, const Gpu *gpu,
-                     GpuTimer *timer, int frame_count, Error *error)
+                     GpuTimer *timer, const Fingerprint *fingerprint, int frame_count, Error *error)
 {
     TRY(images_open(images, scene, assets, simulation, framing, gpu, timer, error));
+    images->fingerprint = fingerprint;
     return open_output(images, frame_count, error);
 }
 
@@ -222,7 +211,6 @@ void images_destroy(Images *images)
     renderer_destroy(&images->renderer);
     for (int l = 0; l < EXR_LAYERS && images->layers; ++l) renderer_destroy(&images->layers[l]);
     free(images->layers);
-    image_texts_destroy(&images->texts);
     free(images->items);
     *images = (Images){0};
 }

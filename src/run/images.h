@@ -20,7 +20,7 @@ typedef struct Images {
     Renderer *layers;  // [EXR_LAYERS], owned; NULL: none
     RenderItem *items; // of each section, unless hidden, its guides and followers if there are any
     uint32_t item_count;
-    ImageTexts texts; // of the files
+    const Fingerprint *fingerprint; // NULL without an output
     Output *output;
 } Images;
 
@@ -29,7 +29,8 @@ typedef struct Images {
 // and output_create.
 Result images_create(Images *images, const Scene *scene, const Assets *assets,
                      Simulation *simulation, const Framing *framing, const Gpu *gpu,
-                     GpuTimer *timer, int frame_count, Error *error);
+                     GpuTimer *timer, const Fingerprint *fingerprint, int frame_count,
+                     Error *error);
 
 // The same without an output: for images_draw alone.
 Result images_open(Images *images, const Scene *scene, const Assets *assets, Simulation *simulation,

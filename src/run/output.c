@@ -7,6 +7,7 @@
 #include "base/target.h"
 #include "image/pfm.h"
 #include "image/png.h"
+#include "run/record.h"
 #include "run/video.h"
 #include "run/y4m.h"
 
@@ -62,8 +63,8 @@ struct Output {
     OutputCounters counters;
 };
 
-// Of a sheet the first and the last.
-static Result set_frame(Output *output, int frame, Error *error)
+// Of a sheet the first and the last. `extra`: NULL: a sheet has none.
+static Result set_texts(Output *output, int frame, const OutputExtra *extra, Error *error)
 {
     char text[40];
     if (!output->has_texts) return RESULT_OK;
@@ -71,7 +72,9 @@ static Result set_frame(Output *output, int frame, Error *error)
         snprintf(text, sizeof text, "%d-%d", output->frame_first, output->frame_last);
     else
         snprintf(text, sizeof text, "%d", frame);
-    return image_texts_set(&output->texts, "Frame", text, error);
+    TRY(image_texts_set(&output->texts, "Frame", text, error));
+    if (!extra || !*extra->scene) return RESULT_OK;
+    return image_texts_set(&output->texts, FINGERPRINT_KEY, extra->scene, error);
 }
 
 static Result encode(const Output *output, const Image *image, const OutputExtra *extra,
@@ -95,13 +98,15 @@ static Result write_image(Output *output, const Image *image, const OutputExtra 
     char *name = target_name_frame(&output->target, frame);
     if (!name) return error_set(error, RESULT_FAILED, "no memory for the name of frame %d", frame);
     Bytes png = {0};
-    Result result = set_frame(output, frame, error);
+    Result result = set_texts(output, frame, extra, error);
     THEN(result, encode(output, image, extra, &png, error));
     *bytes = png.size;
     if (result == RESULT_OK)
         result = bytes_write_file(&png, name, error);
     else
         error_prefix(error, result, "%s: ", name);
+    if (output->target.format == TARGET_PFM && extra && *extra->scene)
+        THEN(result, record_add(&output->target, frame, extra->scene, error));
     bytes_destroy(&png);
     free(name);
     return result;

@@ -12,15 +12,18 @@
 #include "image/exr_file.h"
 #include "image/image.h"
 #include "image/image_text.h"
+#include "run/fingerprint.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
 typedef struct Output Output;
 
-// What goes into a frame's EXR file beside its image.
+// What goes into a frame's file beside its image: the scene into PNG and EXR, of PFM into a file
+// beside it (record.h); the rest into EXR.
 typedef struct OutputExtra {
-    Image layers[EXR_LAYERS]; // IMAGE_FLOAT of 3 channels; without pixels where there are none
+    char scene[FINGERPRINT_BYTES]; // empty: none
+    Image layers[EXR_LAYERS];      // IMAGE_FLOAT of 3 channels; without pixels where there are none
     float world_to_camera[4][4], world_to_ndc[4][4]; // see ExrFile
 } OutputExtra;
 
@@ -55,7 +58,8 @@ Result output_create(Output **output, const OutputOptions *options, Error *error
 // RESULT_INTERRUPTED once interrupt_requested().
 Result output_acquire(Output *output, Image **image, Error *error);
 
-// What belongs to an image that is lent out, to be filled like it. Files but EXR leave it out.
+// What belongs to an image that is lent out, to be filled like it. Sheets and videos leave it
+// out.
 OutputExtra *output_extra(Image *image);
 
 // Gives the image back to be written as frame `frame_index` (>= 0, part of the file's name; videos

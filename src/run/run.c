@@ -4,6 +4,7 @@
 #include "base/interrupt.h"
 #include "base/outfile.h"
 #include "base/target.h"
+#include "run/cache_scene.h"
 #include "run/caption.h"
 #include "run/exposure.h"
 #include "run/run_paths.h"
@@ -13,12 +14,14 @@
 #include "scene/scalp_guess.h"
 #include "strands/follow_plan.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 void run_destroy(Run *run)
 {
     if (run->exports) exporter_destroy(&run->exporter);
-    sequence_destroy_done(&run->done);
+    resume_destroy(&run->done);
+    fingerprint_destroy(&run->fingerprint);
     if (run->has_gpu) {
         frame_source_close(&run->source);
         images_destroy(&run->images);
@@ -103,6 +106,7 @@ static Result check_values(const Scene *scene, Error *error)
     TRY(check_target(run, run->output, target_parse, error));
     TRY(check_target(run, run->export, format_target, error));
     TRY(check_sheet(run, error));
+    if (run->resume) TRY(resume_check(run, error));
     TRY(run_paths_check(scene, error));
     TRY(caption_check(run->caption, error));
     bool fits = run->framing == FRAMING_HAIR || run->framing == FRAMING_ALL;
@@ -115,16 +119,36 @@ static Result check_values(const Scene *scene, Error *error)
     return RESULT_OK;
 }
 
+// What frames of this run say of themselves. A cache that another program or driver has made counts
+// as a file that is read.
+static Result describe(Run *run, Error *error)
+{
+    char *maker = NULL;
+    if (run->source.reads) {
+        maker = cache_scene_maker(&run->source.reader.cache.scene);
+        if (!maker) return error_set(error, RESULT_FAILED, "no memory for a cache's scene");
+    }
+    bool own = maker && strcmp(maker, cache_scene_own_maker()) == 0;
+    Result result = fingerprint_create(&run->fingerprint, &run->scene, &run->assets, &run->framing,
+                                       run->exposure, &run->gpu, own ? NULL : maker, error);
+    free(maker);
+    return result;
+}
+
 // Finds what an interrupted run has left.
 static Result find_done(Run *run, Error *error)
 {
     const RunParams *params = &run->scene.run;
+    FramesDone *done = &run->done;
     if (!params->resume) return RESULT_OK;
-    Result result = sequence_find_done(&run->done, params, sequence_last_frame(params), error);
-    if (run->done.count && !params->quiet)
-        fprintf(stderr, "%d of %d frames are there\n", run->done.count,
-                sequence_count_drawn(params));
-    return result;
+    TRY(resume_find(done, params, sequence_last_frame(params), &run->fingerprint, error));
+    if (params->quiet) return RESULT_OK;
+    if (done->count)
+        fprintf(stderr, "%d of %d frames are there\n", done->count, sequence_count_drawn(params));
+    if (done->stale)
+        fprintf(stderr, "%d existing file%s will be written again: %s\n", done->stale,
+                done->stale == 1 ? "" : "s", done->why.text);
+    return RESULT_OK;
 }
 
 static void warn_lost(const Exporter *exporter)
@@ -213,7 +237,6 @@ static Result prepare(Run *run, Error *error)
     const RunParams *params = &run->scene.run;
     bool draws = *params->output != 0;
     TRY(check_values(&run->scene, error));
-    TRY(find_done(run, error));
     TRY(assets_load(&run->assets, &run->scene, params->quiet ? NULL : stderr, params->verbose,
                     error));
     TRY(scalp_guess(&run->scene, &run->assets, params->quiet ? NULL : stderr, params->verbose,
@@ -227,10 +250,12 @@ static Result prepare(Run *run, Error *error)
                           run->assets.strands, &run->assets.mesh, error));
     if (draws && !params->quiet) report_filled(run);
     TRY(open_source(run, error));
+    TRY(describe(run, error));
+    TRY(find_done(run, error));
     if (draws)
         TRY(images_create(&run->images, &run->scene, &run->assets, &run->simulation, &run->framing,
-                          &run->gpu, &run->timer, sequence_count_drawn(params) - run->done.count,
-                          error));
+                          &run->gpu, &run->timer, &run->fingerprint,
+                          sequence_count_drawn(params) - run->done.count, error));
     run->images.renderer.options.exposure = run->exposure;
     if (*params->stats) {
         TRY(stats_create(&run->stats, error));
@@ -284,6 +309,7 @@ Result run_go(Run *run, Error *error)
         .source = &run->source,
         .images = &run->images,
         .exporter = run->exports ? &run->exporter : NULL,
+        .fingerprint = &run->fingerprint,
         .done = run->done.done,
         .timer = &run->timer,
         .stats = &run->stats,

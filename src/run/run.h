@@ -7,6 +7,7 @@
 #pragma once
 
 #include "run/images.h"
+#include "run/resume.h"
 #include "run/sequence.h"
 
 // All that a run makes, so that one function can destroy it in whatever state it is. The caller
@@ -24,6 +25,7 @@ typedef struct Run {
     FrameSource source;
     Exporter exporter;
     bool exports;
+    Fingerprint fingerprint;
     FramesDone done;
     Stats stats;
     double begin_ms, loaded_ms, ready_ms; // clock_ms

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "run/run_paths.h"
 #include "base/paths.h"
+#include "run/record.h"
+#include "strands/formats/format.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -150,6 +152,18 @@ static void add_params(List *list, ParamScope scope, const void *params)
     }
 }
 
+// What is written beside numbered files that have no texts. NULL: nothing.
+static char *find_record(const char *path,
+                         Result (*parse)(Target *target, const char *text, Error *error))
+{
+    Target target = {0};
+    bool known = *path && parse(&target, path, NULL) == RESULT_OK;
+    bool texts = parse == target_parse && target.format != TARGET_PFM;
+    char *record = known && !texts ? record_path(&target) : NULL;
+    target_destroy(&target);
+    return record;
+}
+
 Result run_paths_check(const Scene *scene, Error *error)
 {
     enum { RUN_PATHS = 16, SECTION_PATHS = 4 };
@@ -157,6 +171,8 @@ Result run_paths_check(const Scene *scene, Error *error)
     List list = {.uses = calloc(room, sizeof *list.uses),
                  .names = calloc(room, sizeof *list.names)};
     char *state = NULL; // what --cache writes beside the cache
+    char *records[2] = {find_record(scene->run.output, target_parse),
+                        find_record(scene->run.export, format_target)};
     Result result = check_places(scene, error);
     THEN(result, check_inputs(scene, error));
     bool there = list.uses && list.names &&
@@ -167,6 +183,8 @@ Result run_paths_check(const Scene *scene, Error *error)
         add(&list, "the scene file", scene->file, PATH_READ);
         add_params(&list, SCOPE_RUN, &scene->run);
         add(&list, "--cache's state", state, PATH_WRITTEN);
+        add(&list, "--output's record", records[0], PATH_WRITTEN);
+        add(&list, "--export's record", records[1], PATH_WRITTEN);
         for (uint32_t i = 0; i < scene->section_count; ++i) {
             add(&list, "the hair file", scene->sections[i].file, PATH_READ);
             add_params(&list, SCOPE_SECTION, &scene->sections[i].params);
@@ -176,5 +194,7 @@ Result run_paths_check(const Scene *scene, Error *error)
     free(list.uses);
     free(list.names);
     free(state);
+    free(records[0]);
+    free(records[1]);
     return result;
 }

@@ -3,15 +3,11 @@
 #include "base/clock.h"
 #include "base/interrupt.h"
 #include "base/progress.h"
-#include "base/target.h"
-#include "image/float_image.h"
 #include "run/caption.h"
-#include "strands/formats/format.h"
+#include "run/record.h"
 
 #include <malloc.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 int sequence_last_frame(const RunParams *run)
 {
@@ -57,72 +53,6 @@ int sequence_count_drawn(const RunParams *run)
     int all = count_named(run), before = run->part[0] - 1, parts = run->part[1];
     if (count_tiles(run)) return count_tiles(run);
     return all <= before ? 0 : (all - before - 1) / parts + 1;
-}
-
-// --- What an interrupted run has left (--resume).
-
-// Whether the whole file can be read, and is what would be written.
-static bool image_is_complete(const Target *target, int frame, const RunParams *run)
-{
-    ImageKind kind = target->floats ? IMAGE_FLOAT : run->depth == DEPTH_16 ? IMAGE_16 : IMAGE_8;
-    bool alpha = target->format == TARGET_EXR || (run->background[3] < 1 && !target->floats);
-    char *name = target_name_frame(target, frame);
-    Image image = {0};
-    bool whole = name && float_image_read_image(&image, name, NULL) == RESULT_OK &&
-                 image.width == run->size[0] && image.height == run->size[1] &&
-                 image.channels == (alpha ? 4 : 3) && image.kind == kind;
-    image_destroy(&image);
-    free(name);
-    return whole;
-}
-
-static bool file_exists(const Target *target, int frame)
-{
-    char *name = target_name_frame(target, frame);
-    bool there = name && access(name, R_OK) == 0;
-    free(name);
-    return there;
-}
-
-static Result find_files(FramesDone *done, const RunParams *run, int last, const Target *images,
-                         const Target *hair, Error *error)
-{
-    bool draws = *run->output != 0, exports = *run->export != 0;
-    if (!draws && !exports) return RESULT_OK; // a cache alone knows itself
-    done->done = calloc((size_t)last + 1, sizeof *done->done);
-    if (!done->done) return error_set(error, RESULT_FAILED, "no memory for %d frames", last);
-    for (int frame = run->first; frame <= last; frame += run->every) {
-        if (!sequence_draws_frame(run, frame)) continue;
-        done->done[frame] = (!draws || image_is_complete(images, frame, run)) &&
-                            (!exports || file_exists(hair, frame));
-        done->count += done->done[frame];
-    }
-    return RESULT_OK;
-}
-
-Result sequence_find_done(FramesDone *done, const RunParams *run, int last, Error *error)
-{
-    Target images = {0}, hair = {0};
-    *done = (FramesDone){0};
-    Result result = *run->output ? target_parse(&images, run->output, error) : RESULT_OK;
-    if (result == RESULT_OK && *run->export) result = format_target(&hair, run->export, error);
-    bool video = result == RESULT_OK && *run->output && images.kind == TARGET_VIDEO;
-    bool whole = video || (result == RESULT_OK && *run->export && hair.kind == TARGET_VIDEO);
-    if (whole && !*run->cache)
-        result = error_set(error, RESULT_USAGE,
-                           "--resume: %s: it is written in one piece; with --cache at least its "
-                           "simulation can be resumed",
-                           video ? run->output : run->export);
-    if (result == RESULT_OK && !whole) result = find_files(done, run, last, &images, &hair, error);
-    target_destroy(&images);
-    target_destroy(&hair);
-    return result;
-}
-
-void sequence_destroy_done(FramesDone *done)
-{
-    free(done->done);
-    *done = (FramesDone){0};
 }
 
 // --- The loop.
@@ -210,6 +140,7 @@ static Result output_frame(Sequence *sequence, Previous *previous, int frame, Fr
     if (result != RESULT_OK) return result;
     camera_view(&view, sequence->scene, sequence->images->framing, frame);
     images_set_matrices(output_extra(image), &view);
+    fingerprint_of_image(output_extra(image)->scene, sequence->fingerprint, frame);
     result = draw(sequence, previous, frame, &view, image, error);
     if (result == RESULT_OK && *sequence->scene->run.caption) {
         char text[CAPTION_BYTES];
@@ -218,6 +149,14 @@ static Result output_frame(Sequence *sequence, Previous *previous, int frame, Fr
     }
     times->draw_ms = clock_ms() - acquired;
     return result == RESULT_OK ? output_submit(output, frame, image, error) : result;
+}
+
+static Result export_frame(Sequence *sequence, int frame, Error *error)
+{
+    char scene[FINGERPRINT_BYTES];
+    TRY(exporter_write(sequence->exporter, frame, error));
+    fingerprint_of_hair(scene, sequence->fingerprint, frame);
+    return record_add(&sequence->exporter->target, frame, scene, error);
 }
 
 static bool wants(const Sequence *sequence, int frame)
@@ -235,7 +174,7 @@ static Result run_frame(Sequence *sequence, Previous *previous, int frame, Error
         frame_source_go(sequence->source, frame, wanted && (draws || sequence->exporter), error);
     times.simulate_ms = clock_ms() - begin;
     if (result == RESULT_OK && wanted && sequence->exporter)
-        result = exporter_write(sequence->exporter, frame, error);
+        result = export_frame(sequence, frame, error);
     if (result == RESULT_OK && wanted && draws)
         result = output_frame(sequence, previous, frame, &times, error);
     stats_add_frame(sequence->stats, sequence->timer, &times, &sequence->images->renderer.counts);

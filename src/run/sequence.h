@@ -8,25 +8,13 @@
 #include "run/images.h"
 #include "run/stats.h"
 
-// What an interrupted run has left: which of its files are complete (--resume).
-typedef struct FramesDone {
-    bool *done; // [frames]: all files of the frame are complete; NULL: none
-    int count;  // how many
-} FramesDone;
-
-// Looks at each frame that the run draws. An image is complete if all of its file can be read
-// and it has the run's size, depth and channels; a hair file if it exists. RESULT_USAGE for
-// a video, or a USD file of all frames, without --cache: only its simulation can be continued.
-// RESULT_FAILED when memory is short. A zeroed struct may be destroyed.
-Result sequence_find_done(FramesDone *done, const RunParams *run, int last, Error *error);
-void sequence_destroy_done(FramesDone *done);
-
 typedef struct Sequence {
     const Scene *scene;
     FrameSource *source; // moves its simulation
     Images *images;      // empty: nothing is drawn
     Exporter *exporter;  // NULL: no hair files
-    const bool *done;    // [frames] those that need not be drawn again; NULL: none
+    const Fingerprint *fingerprint;
+    const bool *done; // [frames] those that need not be drawn again; NULL: none
     GpuTimer *timer;
     Stats *stats; // may be off
     int frames_drawn;

@@ -96,4 +96,40 @@ run 0 --check --unit m "$work/hair/x_1.obj"; says "Wavefront lines"
 run 2 $hair --frames 3 -q --resume --export "$work/hair/x.usda"; says "written in one piece"; one_line
 run 2 $hair --frames 3 -q --export "$work/hair/"; one_line
 
+claim "--resume keeps only frames of this very scene, whatever their form, and says which it writes again and why"
+# go TEXT ARGUMENT...: with --resume and --quiet off, which says TEXT.
+go() {
+    text=$1; shift
+    # shellcheck disable=SC2086
+    run 0 "$work/own.tfx" $plain --scalp none --algo none --size 32x24 --resume $to "$work/again/$name" "$@"
+    says "$text"
+}
+for name in f_%d.png f_%d.exr f_%d.pfm f_%d.tfx; do
+    to=-o; [ $name != f_%d.tfx ] || to=--export
+    first=$work/again/f_0${name#f_%d}
+    cp $hair "$work/own.tfx"
+    go "2 frames in" --frames 2
+    cp "$first" "$work/first"
+    go "2 of 2 frames are there" --frames 2 --stats "$work/again.json" --verbose
+    go "1 of 1 frames are there" --frames 2 --first 1 --part 1/2
+    go "2 of 3 frames are there" --frames 3
+    go "3 existing files will be written again: $first: other parameters or other files" --frames 3 --color red --albedo auto
+    go "3 of 3 frames are there" --frames 3 --color red --albedo auto
+    cp assets/fall.tfx "$work/own.tfx"
+    go "3 existing files will be written again" --frames 3 --color red --albedo auto
+    cp $hair "$work/own.tfx"
+    go "3 existing files will be written again" --frames 3
+    equal "$first" "$work/first"
+    head -c 300 "$work/first" >"$first"
+    go "1 existing file will be written again: $first:" --frames 3
+    equal "$first" "$work/first"
+done
+name=x_%d.pfm; to=-o
+go "2 frames in" --frames 2
+mv "$work/again/x_.pfm.scenes" "$work/lines"
+go "no record of the scene that it shows" --frames 2
+(cat "$work/lines"; printf '0 no\n7\n99999999999 0123456789abcdef 01234567\n-1 0 0\n%s' "$(head -c 20 "$work/lines")") >"$work/again/x_.pfm.scenes"
+go "2 of 2 frames are there" --frames 2
+run 2 $hair -q -o "$work/again/x_%d.pfm" --stats "$work/again/x_.pfm.scenes"; one_line; says "--output's record"
+
 finish

@@ -33,6 +33,8 @@ is_png() { if [ "$(head -c 4 "$1" | tail -c 3)" = PNG ]; then good; else bad "no
 none() { if [ -e "$1" ]; then bad "there is $1"; else good; fi; }
 no_files() { if [ -z "$(ls -A "$1" 2>/dev/null)" ]; then good; else bad "left behind: $(ls -A "$1")"; fi; }
 equal() { if cmp -s "$1" "$2"; then good; else bad "$1 and $2 are not equal"; fi; }
+# same_images A B: the images, or those of two folders, have the same pixels; their texts may differ.
+same_images() { holds "$bin/tractrix-compare" -q "$1" "$2"; }
 
 finish() {
     echo "$passed passed, $failed failed, $skipped skipped"
