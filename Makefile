@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Tractrix: headless hair simulator and renderer. `make help` lists the targets.
 #
-#   CONFIG  release (default), debug or sanitize        OUT     where everything goes, out/$(CONFIG)
+#   CONFIG  release (default), debug, sanitize, coverage   OUT  where everything goes, out/$(CONFIG)
 #   WERROR  not empty: warnings are errors              ONLY    `make test`: only tests with this in their name
 #   V       not empty: show whole commands
 #   CC, CPPFLAGS, CFLAGS, LDFLAGS, LDLIBS, PREFIX and DESTDIR as usual; the flags are added to the project's own.
@@ -14,8 +14,8 @@ ifeq ($(origin CC),default)
 CC := gcc
 endif
 
-ifeq ($(filter $(CONFIG),release debug sanitize),)
-$(error CONFIG=$(CONFIG): expected release, debug or sanitize)
+ifeq ($(filter $(CONFIG),release debug sanitize coverage),)
+$(error CONFIG=$(CONFIG): expected release, debug, sanitize or coverage)
 endif
 
 # --- Flags. stb is used by its headers alone; its pkg-config file would link a library that nothing here needs. Of
@@ -28,6 +28,8 @@ OPTIMISE_release  := -O2 -DNDEBUG
 OPTIMISE_debug    := -O0 -g3 -DTRACTRIX_DEBUG
 OPTIMISE_sanitize := -O1 -g -fno-omit-frame-pointer
 SANITIZE_sanitize := -fsanitize=address,undefined -fno-sanitize-recover=undefined
+OPTIMISE_coverage := -O1 -g
+SANITIZE_coverage := --coverage -fprofile-update=atomic
 LINKER_sanitize   := -Wl,--export-dynamic-symbol=dlclose
 
 WARNINGS  := -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wvla $(if $(WERROR),-Werror)
@@ -210,6 +212,13 @@ SANITIZE_BUT = ^test_(bench_command|bench_html|blender|ci_examples|command_cache
 check-sanitize:
 	$(QUIET) CONFIG=sanitize OUT=$(SIDE)sanitize all tests
 	@tests/runner $(SIDE)sanitize test_ '$(SANITIZE_BUT)'
+
+coverage: ## lines of the readers and writers that the tests run: at least 90 % (ONLY=name: some tests)
+	@scripts/setup build run test
+	$(QUIET) CONFIG=coverage OUT=$(SIDE)coverage all tests
+	@find $(SIDE)coverage -name '*.gcda' -delete
+	@tests/runner $(SIDE)coverage $(ONLY)
+	@scripts/coverage $(SIDE)coverage
 
 # --- Packages. They take minutes: no part of `make check`.
 deb: ## Debian packages in out/deb (dpkg-buildpackage), linted
