@@ -85,6 +85,29 @@ static void the_line_says_count_rate_and_time_left(void **state)
     assert_string_equal(line, "120/120 [########################################]");
 }
 
+// Strands come in millions, cells in thousands of millions.
+static void the_bar_is_right_for_large_counts(void **state)
+{
+    (void)state;
+    char line[300];
+    progress_format(line, sizeof line, 100, 1000000000, 2000000000, 0.0);
+    assert_string_equal(line, "1000000000/2000000000 [####################--------------------]");
+}
+
+// A rate without time to divide by would stay infinite for ever.
+static void two_updates_at_one_time_keep_the_rate(void **state)
+{
+    (void)state;
+    Terminal terminal = open_terminal(80);
+    Progress progress;
+    progress_start_at(&progress, terminal.stream, 3, false, 0.0);
+    progress_update_at(&progress, 1, 0.5);
+    progress_update_at(&progress, 3, 0.5); // the last one is always drawn
+    assert_float_equal(progress.rate, 2.0, 1e-9);
+    assert_non_null(strstr(read_terminal(&terminal), "2/s"));
+    close_terminal(&terminal);
+}
+
 static void nothing_is_drawn_where_no_terminal_is(void **state)
 {
     (void)state;
@@ -165,6 +188,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_line_fits_any_width),
         cmocka_unit_test(the_line_says_count_rate_and_time_left),
+        cmocka_unit_test(the_bar_is_right_for_large_counts),
+        cmocka_unit_test(two_updates_at_one_time_keep_the_rate),
         cmocka_unit_test(nothing_is_drawn_where_no_terminal_is),
         cmocka_unit_test(nothing_is_drawn_when_quiet_or_zeroed),
         cmocka_unit_test(it_draws_ten_times_a_second_and_the_last_frame),

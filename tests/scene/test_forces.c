@@ -79,6 +79,50 @@ static void gusts_repeat_if_told(void **state)
     scene_destroy(&scene);
 }
 
+// Each of the three sines is changed to the nearest whole number of waves in that time: 3.64, 8.4
+// and 18.8 of them to 4, 8 and 19.
+static void gusts_that_repeat_keep_nearly_their_rates(void **state)
+{
+    (void)state;
+    const double turn = 2 * 3.14159265358979;
+    Scene scene;
+    make_scene(&scene, 2, 0, 0);
+    scene.run.gust = 0.5f;
+    scene.run.gust_repeat = 4;
+    scene.run.gust_period = 1.1f;
+    for (double time = 0; time < 4; time += 0.17) {
+        Forces forces;
+        forces_evaluate(&forces, &scene, time);
+        double gust = 0.5 * sin(turn * time) + 0.3 * sin(turn * 2 * time + 1.3) +
+                      0.2 * sin(turn * 4.75 * time + 2.1),
+               mean = 0;
+        for (int i = 0; i < 4; ++i) mean += (double)forces.wind[i][0] / 4;
+        assert_true(fabs(mean - 2 * (1 + 0.5 * gust)) < 1e-5);
+    }
+    scene_destroy(&scene);
+}
+
+static double spread_of(float asked_deg)
+{
+    Scene scene;
+    Forces forces;
+    make_scene(&scene, 2, 0, 0);
+    scene.run.gust = 0;
+    scene.run.wind_spread = asked_deg;
+    forces_evaluate(&forces, &scene, 0);
+    scene_destroy(&scene);
+    const float *w = forces.wind[0];
+    return atan2(hypot((double)w[1], (double)w[2]), (double)w[0]) * 180 / 3.14159265358979;
+}
+
+// A right angle would need an infinite wind.
+static void the_spread_ends_just_before_a_right_angle(void **state)
+{
+    (void)state;
+    assert_true(fabs(spread_of(85) - 85) < 1e-3);
+    assert_true(fabs(spread_of(90) - 89) < 1e-3);
+}
+
 static void gusts_stay_within_their_share_and_vary(void **state)
 {
     (void)state;
@@ -126,6 +170,8 @@ int main(void)
         cmocka_unit_test(without_wind_there_is_gravity_alone),
         cmocka_unit_test(four_winds_turn_by_the_spread_and_keep_the_mean),
         cmocka_unit_test(gusts_repeat_if_told),
+        cmocka_unit_test(gusts_that_repeat_keep_nearly_their_rates),
+        cmocka_unit_test(the_spread_ends_just_before_a_right_angle),
         cmocka_unit_test(gusts_stay_within_their_share_and_vary),
         cmocka_unit_test(keyframes_win_over_constants),
     };
