@@ -77,9 +77,27 @@ static void round_numbers_and_their_neighbours_are_the_shortest(void **state)
     free(values);
 }
 
+// In messages: whole numbers below ten million as such, others with as few digits as read back.
+static void numbers_in_messages_are_short(void **state)
+{
+    (void)state;
+    static const struct {
+        float value;
+        const char *text;
+    } cases[] = {
+        {60, "60"},    {-3, "-3"},           {9999999, "9999999"},   {1e10f, "1e+10"},
+        {0.1f, "0.1"}, {2.5e-7f, "2.5e-07"}, {16777216, "16777216"}, {12.3456f, "12.3456"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        char text[40];
+        decimal_format(cases[i].value, text, sizeof text);
+        if (strcmp(text, cases[i].text) != 0) fail_msg("%s, expected %s", text, cases[i].text);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(numbers_in_messages_are_short),
         cmocka_unit_test(numbers_of_any_size_are_the_shortest),
         cmocka_unit_test(round_numbers_and_their_neighbours_are_the_shortest),
     };

@@ -122,6 +122,50 @@ static void the_worse_of_two_backgrounds_counts(void **state)
     assert_true(compare_colors(4, none, red).largest == 0 && compare_colors(4, none, red).same);
 }
 
+// The map has at each pixel the larger error of the two: here over black at one, over white at the
+// other.
+static void the_map_has_the_worse_of_two_backgrounds(void **state)
+{
+    (void)state;
+    static const uint8_t none[4] = {0, 0, 0, 0};
+    Image a = make_image(4, none), b = make_image(4, none);
+    enum { OVER_BLACK = 3 * W + 4, OVER_WHITE = 6 * W + 15 };
+    memcpy(b.pixels + (size_t)4 * OVER_BLACK, (uint8_t[4]){255, 255, 255, 255}, 4);
+    memcpy(b.pixels + (size_t)4 * OVER_WHITE, (uint8_t[4]){0, 0, 0, 255}, 4);
+    CompareLimits limits = compare_limits_default();
+    CompareResult result;
+    float map[W * H];
+    assert_int_equal(compare_images(&result, map, &a, &b, NULL, &limits, NULL), RESULT_OK);
+    if (!(map[OVER_BLACK] > 0.1f && map[OVER_WHITE] > 0.1f))
+        fail_msg("%g, %g", (double)map[OVER_BLACK], (double)map[OVER_WHITE]);
+    image_destroy(&a);
+    image_destroy(&b);
+}
+
+// Of the pixels that count, not of all.
+static void a_share_of_failing_pixels_is_that_of_the_compared_ones(void **state)
+{
+    (void)state;
+    static const uint8_t grey[4] = {100, 100, 100};
+    Image a = make_image(3, grey), b = make_image(3, grey);
+    bool compared[W * H] = {0};
+    Mask mask;
+    for (int i = 0; i < 20; ++i) compared[i] = true;
+    assert_int_equal(mask_create(&mask, compared, W, H, NULL), RESULT_OK);
+    b.pixels[3 * 7] = 200;
+    CompareLimits limits = compare_limits_default();
+    limits.max_failing_percent = true;
+    for (int percent = 4; percent <= 6; ++percent) {
+        CompareResult result;
+        limits.max_failing = percent;
+        assert_int_equal(compare_images(&result, NULL, &a, &b, &mask, &limits, NULL), RESULT_OK);
+        assert_int_equal(result.same, percent >= 5); // one of 20
+    }
+    mask_destroy(&mask);
+    image_destroy(&a);
+    image_destroy(&b);
+}
+
 static void a_picture_without_alpha_is_opaque(void **state)
 {
     (void)state;
@@ -283,6 +327,8 @@ int main(void)
         cmocka_unit_test(the_two_knobs_of_pixels_are_apart),
         cmocka_unit_test(flip_is_a_limit_of_its_own),
         cmocka_unit_test(the_worse_of_two_backgrounds_counts),
+        cmocka_unit_test(the_map_has_the_worse_of_two_backgrounds),
+        cmocka_unit_test(a_share_of_failing_pixels_is_that_of_the_compared_ones),
         cmocka_unit_test(a_picture_without_alpha_is_opaque),
         TEST(files_keep_their_depth),
         cmocka_unit_test(levels_do_not_depend_on_the_depth),

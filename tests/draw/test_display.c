@@ -6,6 +6,8 @@
 #include "support/studio.h"
 #include "support/temporary.h"
 
+#include "glsl/common/shared_math.h"
+
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -84,6 +86,19 @@ static void tones_have_an_inverse(void **state)
     assert_true(fabs(tone_map(TONE_REINHARD, 4) - 1) < 1e-12);
 }
 
+// By hand, from the formulas of the papers: c (1 + c/16) / (1 + c); (2.51 c^2 + 0.03 c) / (2.43 c^2
+// + 0.59 c + 0.14).
+static void tones_are_those_of_their_papers(void **state)
+{
+    (void)state;
+    static const double filmic[][2] = {{0.18, 0.086724 / 0.324932}, {1, 2.54 / 3.16}};
+    assert_true(fabs(tone_map(TONE_REINHARD, 1) - 0.53125) < 1e-9);
+    for (int i = 0; i < 2; ++i) {
+        assert_true(fabs(tone_map(TONE_FILMIC, filmic[i][0]) - filmic[i][1]) < 1e-9);
+        assert_true(fabs((double)tone_filmic((float)filmic[i][0]) - filmic[i][1]) < 1e-6);
+    }
+}
+
 static void bright_light_is_rolled_off_and_the_background_stays(void **state)
 {
     (void)state;
@@ -155,6 +170,24 @@ static void pfm_has_rows_from_below(void **state)
     image_destroy(&image);
 }
 
+// Warmer strands have as much less blue as they have more red; brighter ones have more of all.
+static void warmth_keeps_the_sum_of_red_and_blue(void **state)
+{
+    (void)state;
+    use((RendererOptions){.exposure = 1, .kind = IMAGE_FLOAT});
+    const float position[2][3] = {{-50, 0, 0}, {50, 0, 0}};
+    Strands strands = studio_strands(1, 2, position);
+    uint32_t i = studio_add(&studio, &strands, 8, 1);
+    studio.material[i].ambient = 0.5f;
+    studio.material[i].warmth_variation = 0.5f;
+    draw();
+    float red = float_at(MIDDLE, MIDDLE, 0), green = float_at(MIDDLE, MIDDLE, 1),
+          blue = float_at(MIDDLE, MIDDLE, 2);
+    assert_true(fabsf(red - blue) > 0.02f * green);
+    assert_true(fabsf(red + blue - 2 * green) < 2e-3f * green);
+    strands_destroy(&strands);
+}
+
 // Two bands, the nearer half transparent, which shows in the coverage alone.
 static void draw_aov(Aov aov, ImageKind kind, float near, float far)
 {
@@ -193,8 +226,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tones_have_an_inverse),
+        cmocka_unit_test(tones_are_those_of_their_papers),
         cmocka_unit_test(bright_light_is_rolled_off_and_the_background_stays),
         cmocka_unit_test(floats_are_premultiplied_light),
+        cmocka_unit_test(warmth_keeps_the_sum_of_red_and_blue),
         cmocka_unit_test_setup_teardown(sixteen_bits_are_finer_than_eight, temporary_create,
                                         temporary_destroy),
         cmocka_unit_test(pfm_has_rows_from_below),

@@ -218,6 +218,27 @@ static void without_a_floor_or_below_it_nothing_is_drawn(void **state)
     free(plain);
 }
 
+// A light from below reaches nothing, the middle is whole up to its edge, and fades behind it.
+static void a_floor_is_lit_from_above_and_fades_beyond_its_radius(void **state)
+{
+    (void)state;
+    RendererOptions options = with_floor(&BLACK, FLOOR_PLANE);
+    double point[3];
+    find_floor_point(SIDE / 2, SIDE / 2 + 99, point);
+    // Just inside and just beyond the radius of that point, whose z is near 0.
+    for (int inside = 0; inside < 2; ++inside) {
+        options.floor.middle[2] = (float)point[2] + 200;
+        options.floor.whole = inside ? 205 : 100;
+        options.floor.faded = inside ? 400 : 300;
+        use(&options);
+        studio.light = (Light){.direction = {0, -1, 0}, .color = {1, 1, 1}, .intensity = 0.5f};
+        studio_draw(&studio);
+        int dark = studio_pixel(&studio, SIDE / 2, SIDE / 2 + 99)[0];
+        double expected = srgb((inside ? 1 : 0.5) * AMBIENT);
+        if (fabs(dark - expected) > 1) fail_msg("from below: %d, expected %.1f", dark, expected);
+    }
+}
+
 // Where there is no hair both rasterisers show the same floor; either one in its turn keeps it.
 static void both_rasterisers_show_the_same_floor(void **state)
 {
@@ -247,6 +268,7 @@ int main(void)
         CLAIM(the_mesh_throws_its_shadow_on_the_floor_too),
         CLAIM(a_plane_hides_what_is_below_it_a_catcher_does_not),
         CLAIM(without_a_floor_or_below_it_nothing_is_drawn),
+        CLAIM(a_floor_is_lit_from_above_and_fades_beyond_its_radius),
         CLAIM(both_rasterisers_show_the_same_floor),
     };
     return stage_run(tests);

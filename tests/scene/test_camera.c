@@ -246,6 +246,55 @@ static void every_camera_is_finite(void **state)
         }
 }
 
+// They are as far from their guides as the radius says.
+static void room_is_left_for_followers(void **state)
+{
+    (void)state;
+    Shot shot;
+    open_shot(&shot, 1);
+    shot.section.params.followers.automatic = false;
+    shot.section.params.followers.value = 0;
+    frame_shot(&shot);
+    float high = shot.framing.hair.high[1];
+    shot.section.params.followers.value = 4;
+    shot.section.params.follower_radius.automatic = false;
+    shot.section.params.follower_radius.value = 0.2f;
+    shot.section.params.tip_separation = 0;
+    frame_shot(&shot);
+    assert_true(fabsf(shot.framing.hair.high[1] - high - 0.2f) < 1e-5f);
+    close_shot(&shot);
+}
+
+static void of_an_empty_scene_the_planes_are_in_order(void **state)
+{
+    (void)state;
+    Shot shot;
+    View view;
+    open_shot(&shot, 1);
+    memset(&shot.framing, 0, sizeof shot.framing);
+    shot.framing.eye[2] = 2;
+    view_of(&shot, 0, &view);
+    assert_true(view.near_distance > 0 && view.near_distance < view.far_distance);
+    close_shot(&shot);
+}
+
+// 20 degrees off the axis the picture is still upright; on it another direction is up.
+static void up_is_kept_as_long_as_it_can_be(void **state)
+{
+    (void)state;
+    Shot shot;
+    View view;
+    open_shot(&shot, 1);
+    frame_shot(&shot);
+    shot.scene.run.eye.automatic = shot.scene.run.target.automatic = false;
+    memcpy(shot.scene.run.target.value, (float[3]){0, 0, 0}, sizeof(float[3]));
+    memcpy(shot.scene.run.eye.value, (float[3]){0.342f, 0.94f, 0}, sizeof(float[3]));
+    view_of(&shot, 0, &view);
+    // The picture's top direction is row 1 of the view.
+    assert_true(fabsf(view.view[1][1] - 0.342f) < 1e-3f && view.view[0][1] < -0.9f);
+    close_shot(&shot);
+}
+
 static void denser_hair_is_drawn_finer(void **state)
 {
     (void)state;
@@ -274,6 +323,9 @@ int main(void)
         cmocka_unit_test(the_unit_does_not_change_the_picture),
         cmocka_unit_test(given_eye_and_target_are_taken),
         cmocka_unit_test(every_camera_is_finite),
+        cmocka_unit_test(room_is_left_for_followers),
+        cmocka_unit_test(of_an_empty_scene_the_planes_are_in_order),
+        cmocka_unit_test(up_is_kept_as_long_as_it_can_be),
         cmocka_unit_test(denser_hair_is_drawn_finer),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

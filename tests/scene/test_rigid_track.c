@@ -108,6 +108,22 @@ static void set_formulas(Formula formulas[3], const char *x, const char *y, cons
         assert_int_equal(formula_create(&formulas[i], texts[i], &error), RESULT_OK);
 }
 
+// A single key holds for ever; two of a turn alone move.
+static void only_two_keys_of_either_kind_move(void **state)
+{
+    (void)state;
+    for (int turns = 0; turns < 2; ++turns) {
+        RigidTrack track = {0};
+        Keyframes *keys = turns ? &track.rotation : &track.translation;
+        assert_true(rigid_track_is_still(&track));
+        assert_int_equal(keyframes_append(keys, 0, (const float[]){0, 0, 0}, 3, NULL), RESULT_OK);
+        assert_true(rigid_track_is_still(&track));
+        assert_int_equal(keyframes_append(keys, 1, (const float[]){0, 1, 0}, 3, NULL), RESULT_OK);
+        assert_false(rigid_track_is_still(&track));
+        rigid_track_destroy(&track);
+    }
+}
+
 static void formulas_move_in_metres_and_turn_in_degrees(void **state)
 {
     (void)state;
@@ -163,6 +179,7 @@ int main(void)
         cmocka_unit_test(a_turn_is_right_handed_and_leaves_its_pivot_in_place),
         cmocka_unit_test(translation_comes_after_the_turn),
         cmocka_unit_test(turns_of_more_than_half_a_circle_are_made_as_written),
+        cmocka_unit_test(only_two_keys_of_either_kind_move),
         cmocka_unit_test(formulas_move_in_metres_and_turn_in_degrees),
         cmocka_unit_test(a_formula_that_fails_somewhere_is_reported_and_cut),
         cmocka_unit_test(what_is_no_formula_of_t_is_refused),

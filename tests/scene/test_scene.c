@@ -250,6 +250,32 @@ static void assert_written_again(void **state, const Scene *scene)
     scene_destroy(&again);
 }
 
+// Tracks of one object whose keys stand at different times.
+static void keys_are_written_at_their_own_times(void **state)
+{
+    Scene scene, again;
+    Error error = {""};
+    assert_int_equal(read_scene(state, &scene, "{\"sections\": [{\"file\": \"/a\"}]}", &error),
+                     RESULT_OK);
+    const float point[3] = {1, 2, 3}, fov[1] = {30};
+    for (int i = 0; i < 3; ++i) {
+        assert_int_equal(keyframes_append(&scene.eye, 2 * i, point, 3, &error), RESULT_OK);
+        assert_int_equal(keyframes_append(&scene.target, 1 + i, point, 3, &error), RESULT_OK);
+        assert_int_equal(keyframes_append(&scene.fov, 3 * i, fov, 1, &error), RESULT_OK);
+    }
+    char *text = dump(&scene);
+    if (read_scene(state, &again, text, &error) != RESULT_OK) fail_msg("%s", error.text);
+    assert_int_equal(again.eye.count, 3);
+    assert_int_equal(again.target.count, 3);
+    assert_int_equal(again.fov.count, 3);
+    for (int i = 0; i < 3; ++i)
+        assert_true(again.eye.time[i] == 2 * i && again.target.time[i] == 1 + i &&
+                    again.fov.time[i] == 3 * i);
+    free(text);
+    scene_destroy(&scene);
+    scene_destroy(&again);
+}
+
 static void what_is_written_is_a_scene_file_of_the_same_scene(void **state)
 {
     Scene scene;
@@ -474,6 +500,7 @@ int main(void)
         TEST(lights_stand_around_the_automatic_camera),
         TEST(without_lights_the_look_has_some_and_an_empty_list_means_none),
         TEST(a_scene_file_is_known_by_its_content_and_stands_alone),
+        TEST(keys_are_written_at_their_own_times),
         TEST(what_is_written_is_a_scene_file_of_the_same_scene),
         cmocka_unit_test(a_file_name_that_is_no_utf_8_is_still_written),
         TEST(wrong_scene_files_are_refused_with_place_and_expectation),

@@ -158,7 +158,8 @@ static void a_text_lists_shapes(void **state)
     colliders_destroy(&colliders);
     assert_refused("sphere:1,2,3", "sphere:x,y,z,radius");
     assert_refused("sphere:1,2,3,-1", "radius");
-    assert_refused("sphere:1,2,3,1,", "sphere:x,y,z,radius");
+    assert_refused("sphere:1,2,3,1,", "expected sphere:x,y,z,radius");
+    assert_refused("ground:1 2", "got 'ground:1 2', expected ground:");
     assert_refused("sphere:1,2,3,1e9", "1e+06");
     assert_refused("ball:1,2,3,4", "one of sphere:x,y,z,radius; capsule:");
     assert_refused("plane:0,0,0,1", "direction");

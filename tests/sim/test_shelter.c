@@ -17,6 +17,8 @@ typedef struct Bends {
     float x[STRANDS]; // m: how far the tips are blown along
 } Bends;
 
+static bool oblique; // the root behind is half beside
+
 static Bends blow(const char *algo, float share, float head_speed, float wind)
 {
     double start[STRANDS * N][3];
@@ -25,6 +27,7 @@ static Bends blow(const char *algo, float share, float head_speed, float wind)
     Bends bends;
     for (int i = 0; i < STRANDS * N; ++i) {
         memcpy(start[i], roots[i / N], sizeof start[i]);
+        if (oblique && i / N == BEHIND) start[i][2] = 0.1;
         start[i][1] -= 0.02 * (i % N);
     }
     fixture_create(&fixture, (const double(*)[3])start, STRANDS, N, algo, "", 0.2f, 8);
@@ -66,6 +69,19 @@ static void hair_in_the_lee_hangs_still(void **state)
         if (!solver_is_static(*type)) check_lee((*type)->name);
 }
 
+// Between beside and behind the shelter grows smoothly, by 3 c^2 - 2 c^3 of the cosine c: at 45
+// degrees hair feels a wind that is weaker by that share.
+static void it_grows_smoothly_towards_the_lee(void **state)
+{
+    (void)state;
+    const double c = sqrt(0.5), share = c * c * (3 - 2 * c);
+    oblique = true;
+    Bends half = blow("chain", 0.5f, 0, 3);
+    Bends weaker = blow("chain", 0, 0, (float)(3 * (1 - 0.5 * share)));
+    oblique = false;
+    assert_true(fabsf(half.x[BEHIND] - weaker.x[BEHIND]) < 1e-5f);
+}
+
 // A head that runs into still air is sheltered on its other side, as one at rest in wind. (The
 // first steps differ: hair that has no velocity yet is torn along.)
 static void motion_counts_like_wind(void **state)
@@ -99,6 +115,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(hair_in_the_lee_hangs_still),
+        cmocka_unit_test(it_grows_smoothly_towards_the_lee),
         cmocka_unit_test(motion_counts_like_wind),
         cmocka_unit_test(the_middle_is_that_of_all_roots),
     };

@@ -205,6 +205,19 @@ static void malformed_ply_is_refused(void **state)
     refuse(told, strlen(told), &(StrandsReadOptions){.points_per_strand = 2}, "has no effect");
 }
 
+// Rows without numbers take no bytes: four thousand million of them take no time either.
+static void rows_of_nothing_are_passed_over(void **state)
+{
+    (void)state;
+    Error error = {""};
+    Strands strands;
+    const char *text = PLY("element vertex 2\n" XYZ "element strand 1\nproperty ushort nsegs\n"
+                           "element nothing 4000000000\nend_header\n0 0 0\n0 1 0\n1\n");
+    assert_int_equal(reading_text(&strands, text, &METRES, &(StrandsReport){0}, &error), RESULT_OK);
+    assert_int_equal(strands.strand_count, 1);
+    strands_destroy(&strands);
+}
+
 // --- .npy
 
 static void pile_header(Pile *pile, int version, const char *dict)
@@ -482,6 +495,7 @@ int main(void)
         cmocka_unit_test(text_ply_with_edges_is_read),
         cmocka_unit_test(bare_points_become_strands),
         cmocka_unit_test(malformed_ply_is_refused),
+        cmocka_unit_test(rows_of_nothing_are_passed_over),
         cmocka_unit_test(npy_of_every_float_and_order_is_read),
         cmocka_unit_test(other_npy_is_refused),
         cmocka_unit_test(deflated_npz_is_read),

@@ -61,6 +61,56 @@ static void parameters_mean_what_they_say(void **state)
     strands_destroy(&strands);
 }
 
+// About z, then x, then y, as DirectX's XMMatrixRotationRollPitchYaw does: a quarter turn about
+// each axis takes (1, 2, 3) somewhere else, and all three together do so in that order.
+static void a_file_is_turned_about_each_axis(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *angles;
+        float expected[3];
+    } cases[] = {{"90 0 0", {1, -3, 2}},
+                 {"0 90 0", {3, 2, -1}},
+                 {"0 0 90", {-2, 1, 3}},
+                 {"90 90 90", {1, -3, 2}}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        char text[200];
+        snprintf(text, sizeof text, "rotation %s\nnumStrands 1\nis sorted 1\n" STRAND,
+                 cases[i].angles);
+        Strands strands = reading_good(text, NULL);
+        for (int k = 0; k < 3; ++k)
+            if (fabsf(strands.position[0][k] - cases[i].expected[k]) > 1e-5f)
+                fail_msg("%s: axis %d at %g", cases[i].angles, k, (double)strands.position[0][k]);
+        strands_destroy(&strands);
+    }
+}
+
+// A kilometre away floats are 6e-5 apart: two vertices as near as that are one.
+static void far_away_rounding_makes_no_vertices(void **state)
+{
+    (void)state;
+    StrandsReport report;
+    Strands strands = reading_good("numStrands 1\nis sorted 1\nstrand 0 numVerts 3 texcoord 0 0\n"
+                                   "1000 0 0\n1000.00006 0 0\n1001 0 0\n",
+                                   &report);
+    assert_int_equal(strands.vertex_count, 2);
+    assert_int_equal(report.defects[DEFECT_COINCIDENT].count, 1);
+    strands_destroy(&strands);
+}
+
+// Lines of a Wavefront file name their vertices in any order: the first defect is the first in the
+// file.
+static void the_first_defect_is_the_first_in_the_file(void **state)
+{
+    (void)state;
+    StrandsReport report;
+    Strands strands = reading_good(
+        "v 0 0 0\nv 0 1 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 1 1 0\nl 4 5 6\nl 1 2 3\n", &report);
+    assert_int_equal(report.defects[DEFECT_COINCIDENT].count, 2);
+    assert_int_equal(report.defects[DEFECT_COINCIDENT].first_place, 3);
+    strands_destroy(&strands);
+}
+
 static void numbers_are_rounded_as_strtof_does(void **state)
 {
     (void)state;
@@ -478,6 +528,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(both_dialects_and_line_ends_are_read),
         cmocka_unit_test(parameters_mean_what_they_say),
+        cmocka_unit_test(a_file_is_turned_about_each_axis),
+        cmocka_unit_test(far_away_rounding_makes_no_vertices),
+        cmocka_unit_test(the_first_defect_is_the_first_in_the_file),
         cmocka_unit_test(numbers_are_rounded_as_strtof_does),
         cmocka_unit_test(malformed_text_is_refused_with_its_line),
         cmocka_unit_test(dirty_strands_are_mended_and_counted),

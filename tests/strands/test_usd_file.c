@@ -247,6 +247,22 @@ static void curves_of_other_programs_are_read(void **state)
     "#usda 1.0\ndef BasisCurves \"x\"\n{\nuniform token type = \"linear\"\n"                       \
     "int[] curveVertexCounts = [2]\npoint3f[] points = [(0, 0, 0), (0, 1, 0)]\n" more "}\n"
 
+// Strings in three quotes hold lines and quotes, whatever they look like.
+static void long_strings_are_skipped_whole(void **state)
+{
+    (void)state;
+    Error error = {""};
+    static const char text[] =
+        "#usda 1.0\n(\n    doc = \"\"\"a \"quoted\" word ) {\nline\"\"\"\n)\n"
+        "def BasisCurves \"x\"\n{\nuniform token type = \"linear\"\n"
+        "string note = \"\"\"one \" } two\"\"\"\n"
+        "int[] curveVertexCounts = [2]\n"
+        "point3f[] points = [(0, 0, 0), (0, 1, 0)]\n}\n";
+    Strands strands = read_text(text, strlen(text), NULL, RESULT_OK, &error);
+    assert_int_equal(strands.strand_count, 1);
+    strands_destroy(&strands);
+}
+
 static void what_would_give_other_hair_is_refused_with_its_line(void **state)
 {
     (void)state;
@@ -544,6 +560,7 @@ int main(void)
         TEST(everything_that_strands_have_is_written),
         TEST(what_is_written_is_read_to_the_bit),
         TEST(curves_of_other_programs_are_read),
+        TEST(long_strings_are_skipped_whole),
         TEST(what_would_give_other_hair_is_refused_with_its_line),
         TEST(cubic_curves_become_points_on_them),
         TEST(attributes_of_cubic_curves_go_to_their_points),
