@@ -26,9 +26,9 @@ typedef struct Error {
     char text[1024];
 } Error;
 
-// Writes the line (printf style, cut at the buffer's end) and returns `result`, so that failing
-// reads `return error_set(error, RESULT_BAD_INPUT, "%s: byte %zu: ...", path, at);`. `error` may be
-// NULL.
+// Writes the line (printf style; whatever bytes the arguments have it stays a line, shortened in
+// the middle where it is too long: quote.h) and returns `result`, so that failing reads `return
+// error_set(error, RESULT_BAD_INPUT, "%s: byte %zu: ...", path, at);`. `error` may be NULL.
 Result error_set(Error *error, Result result, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 

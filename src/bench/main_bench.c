@@ -2,7 +2,9 @@
 // tractrix-bench: accuracy of the tractrix and of solvers, speed of solvers and drawing, check of
 // all shaders.
 #include "base/interrupt.h"
+#include "base/paths.h"
 #include "base/program.h"
+#include "base/quote.h"
 #include "base/suggest.h"
 #include "bench/bench_commands.h"
 #include "bench/bench_glsl.h"
@@ -333,6 +335,29 @@ static const struct {
 };
 enum { COMMAND_COUNT = sizeof COMMANDS / sizeof *COMMANDS };
 
+// No output may be a file that is read, or another output.
+static Result check_paths(const BenchOptions *options, Error *error)
+{
+    const PathUse own[] = {{"--csv", options->output.csv, PATH_WRITTEN},
+                           {"--json", options->output.json, PATH_WRITTEN},
+                           {"--html", options->output.html, PATH_WRITTEN},
+                           {"--picture", options->picture, PATH_WRITTEN},
+                           {"--tfx", options->tfx, PATH_READ},
+                           {"--mesh", options->mesh, PATH_READ},
+                           {"--vectors", options->vectors, PATH_READ},
+                           {"--reference", options->reference, PATH_READ},
+                           {"--before", options->before, PATH_READ}};
+    enum { OWN = sizeof own / sizeof *own };
+    PathUse *uses = malloc((OWN + (size_t)options->file_count) * sizeof *uses);
+    if (!uses) return error_set(error, RESULT_FAILED, "no memory for paths");
+    memcpy(uses, own, sizeof own);
+    for (int i = 0; i < options->file_count; ++i)
+        uses[OWN + i] = (PathUse){"the file", options->files[i], PATH_READ};
+    Result result = paths_check(uses, OWN + options->file_count, error);
+    free(uses);
+    return result;
+}
+
 static Result run_command(BenchOptions *options, Error *error)
 {
     const char *names[COMMAND_COUNT];
@@ -348,6 +373,7 @@ static Result run_command(BenchOptions *options, Error *error)
         return error_set(error, RESULT_USAGE, "no command '%s': %s", word,
                          suggest_words(words, sizeof words, word, names, COMMAND_COUNT));
     }
+    TRY(check_paths(options, error));
     if (COMMANDS[command].run == page_run) return page_run(options, NULL, error);
     const TableOutput *output = &options->output;
     if (COMMANDS[command].run == run_shaders && (output->csv || output->json || output->html))
@@ -355,7 +381,8 @@ static Result run_command(BenchOptions *options, Error *error)
     // What Mesa finds in its cache it does not compile, and warns of nothing.
     if (COMMANDS[command].run == run_shaders) setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
     TRY(gpu_create(&gpu, &options->gpu, error));
-    fprintf(stderr, "%s, OpenGL %s (%s)\n", gpu.renderer, gpu.version, gpu.path);
+    fprintf(stderr, "%s, OpenGL %s (%s)\n", quote(gpu.renderer).text, quote(gpu.version).text,
+            gpu.path);
     Result result = COMMANDS[command].run(options, &gpu, error);
     gpu_destroy(&gpu);
     return result;

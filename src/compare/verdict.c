@@ -4,6 +4,7 @@
 #include "base/bytes.h"
 #include "base/clock.h"
 #include "base/json.h"
+#include "base/quote.h"
 #include "image/float_image.h"
 #include "image/heat_map.h"
 #include "image/mask.h"
@@ -190,8 +191,9 @@ void verdict_print(const Verdict *verdict, const Pair *pair, FILE *stream)
     char figures[512] = "";
     if (verdict->measured) compare_format(figures, sizeof figures, &verdict->figures);
     bool both = verdict->measured && verdict->text[0];
-    fprintf(stream, "%s: %s: %s%s%s%s\n", pair->name, OUTCOME_NAMES[verdict->outcome], figures,
-            both ? "; " : "", verdict->text, verdict->updated ? "; reference updated" : "");
+    fprintf(stream, "%s: %s: %s%s%s%s\n", quote(pair->name).text, OUTCOME_NAMES[verdict->outcome],
+            figures, both ? "; " : "", quote(verdict->text).text,
+            verdict->updated ? "; reference updated" : "");
 }
 
 // --- All pairs.
@@ -235,7 +237,9 @@ void verdict_print_tally(const PairList *list, const Verdict *verdicts, FILE *st
     }
     if (tally.updated)
         fprintf(stream, "; %d reference%s updated", tally.updated, tally.updated == 1 ? "" : "s");
-    if (flip > 0) fprintf(stream, "; largest FLIP %.4g (%s)", flip, list->pairs[tally.worst].name);
+    if (flip > 0)
+        fprintf(stream, "; largest FLIP %.4g (%s)", flip,
+                quote(list->pairs[tally.worst].name).text);
     fprintf(stream, "\n");
 }
 

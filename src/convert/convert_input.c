@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "convert/convert_input.h"
 
+#include "base/quote.h"
 #include "base/reader.h"
 #include "strands/strands.h"
 #include "strands/strands_edit.h"
@@ -239,7 +240,8 @@ static void report_mended(const ConvertInput *input, const StrandsReport *report
     if (input->says_guess && input->reports[file].strands == 0)
         strands_report_print_guess(report, path, input->messages);
     if (report->shuffled)
-        fprintf(input->messages, "%s: strands are shuffled: the file says 'is sorted 0'\n", path);
+        fprintf(input->messages, "%s: strands are shuffled: the file says 'is sorted 0'\n",
+                quote(path).text);
 }
 
 // `frames`: NULL for the first frame only.
@@ -366,7 +368,7 @@ void convert_input_print(const ConvertInput *input, FILE *stream)
     const Strands *layout = &input->cache.layout;
     if (input->cached) {
         fprintf(stream, "%s: a cache\n  strands   %u of %u section%s\n  vertices  %u\n",
-                input->paths[0], layout->strand_count, input->cache.section_count,
+                quote(input->paths[0]).text, layout->strand_count, input->cache.section_count,
                 input->cache.section_count == 1 ? "" : "s", layout->vertex_count);
     }
     for (int i = 0; i < input->path_count && !input->cached; ++i)

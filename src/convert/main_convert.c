@@ -7,6 +7,7 @@
 #include "base/paths.h"
 #include "base/program.h"
 #include "base/progress.h"
+#include "base/quote.h"
 #include "convert/convert_input.h"
 #include "convert/convert_output.h"
 #include "convert/convert_steps.h"
@@ -311,12 +312,12 @@ static void print_output(const Job *job)
     const char *kind = FORMAT_TABLE[output->kind]->name;
     char lost[300];
     strands_features_describe(output->lost, lost, sizeof lost);
-    if (*lost) fprintf(stderr, "%s: %s leaves out: %s\n", output->path, kind, lost);
+    if (*lost) fprintf(stderr, "%s: %s leaves out: %s\n", quote(output->path).text, kind, lost);
     if (output->animated)
-        fprintf(stream, "%s: %s, %d frames\n", output->path, kind,
+        fprintf(stream, "%s: %s, %d frames\n", quote(output->path).text, kind,
                 convert_input_count(&job->input));
     else
-        fprintf(stream, "%s: %s\n", output->path, kind);
+        fprintf(stream, "%s: %s\n", quote(output->path).text, kind);
 }
 
 static json_t *output_to_json(const ConvertOutput *output)

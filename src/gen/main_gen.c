@@ -3,6 +3,7 @@
 #include "base/interrupt.h"
 #include "base/paths.h"
 #include "base/program.h"
+#include "base/quote.h"
 #include "gen/fur.h"
 #include "gen/strands_make.h"
 #include "mesh/head.h"
@@ -192,8 +193,8 @@ static Result write_strands(const GenOutput *output, const Strands *strands, uin
     TRY(format_write(output->path, (FormatKind)output->format, strands, error));
     if (output->quiet) return RESULT_OK;
     FILE *stream = gen_messages(output);
-    fprintf(stream, "%s: %u strands of %u vertices, ", output->path, strands->strand_count,
-            strands_size(strands, 0));
+    fprintf(stream, "%s: %u strands of %u vertices, ", quote(output->path).text,
+            strands->strand_count, strands_size(strands, 0));
     if (guides) fprintf(stream, "%u of them guides, ", guides);
     fprintf(stream, "%s\n", FORMAT_TABLE[output->format]->name);
     return RESULT_OK;
@@ -217,8 +218,8 @@ static Result write_mesh(const Command *command, ScalpShape shape, Error *error)
                                           : head_make_mesh(&mesh, HEAD_TRIANGLES, error);
     THEN(result, obj_write_mesh(command->mesh, &mesh, error));
     if (result == RESULT_OK && !command->output.quiet)
-        fprintf(gen_messages(&command->output), "%s: %u vertices, %u triangles\n", command->mesh,
-                mesh.vertex_count, mesh.triangle_count);
+        fprintf(gen_messages(&command->output), "%s: %u vertices, %u triangles\n",
+                quote(command->mesh).text, mesh.vertex_count, mesh.triangle_count);
     mesh_destroy(&mesh);
     return result;
 }
@@ -243,11 +244,11 @@ static Result write_fur(const FurOptions *options, const Mesh *mesh, Error *erro
     FurReport report;
     TRY(fur_grow(&strands, &options->recipe, mesh, options->mesh, &report, error));
     if (report.flat_triangles)
-        fprintf(stderr, "%s: %u triangles without area are ignored\n", options->mesh,
+        fprintf(stderr, "%s: %u triangles without area are ignored\n", quote(options->mesh).text,
                 report.flat_triangles);
     if (report.stuck)
         fprintf(stderr, "%s: %llu segments could not be kept outside the mesh\n",
-                options->output.path, (unsigned long long)report.stuck);
+                quote(options->output.path).text, (unsigned long long)report.stuck);
     Result result = write_strands(&options->output, &strands, report.guides, error);
     strands_destroy(&strands);
     return result;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "gpu/gpu.h"
+#include "base/quote.h"
 #include "gpu/gpu_egl.h"
 
 #include <epoxy/gl.h>
@@ -237,7 +238,7 @@ static void APIENTRY print_message(GLenum source, GLenum type, GLuint id, GLenum
 {
     (void)source, (void)id, (void)length, (void)user;
     if (severity == GL_DEBUG_SEVERITY_NOTIFICATION || type == GL_DEBUG_TYPE_PERFORMANCE) return;
-    fprintf(stderr, "tractrix: GL: %s\n", text);
+    fprintf(stderr, "tractrix: GL: %s\n", quote(text).text);
 }
 
 Result gpu_create(Gpu *gpu, const GpuOptions *options, Error *error)
@@ -270,8 +271,8 @@ void gpu_destroy(Gpu *gpu)
 static bool list_one(FILE *stream, Gpu *gpu, Result result, const char *name, const Error *why)
 {
     if (result == RESULT_OK)
-        fprintf(stream, "%-17s %s, OpenGL %s%s\n", name, gpu->renderer, gpu->version,
-                gpu->software ? " (CPU)" : "");
+        fprintf(stream, "%-17s %s, OpenGL %s%s\n", name, quote(gpu->renderer).text,
+                quote(gpu->version).text, gpu->software ? " (CPU)" : "");
     else
         fprintf(stream, "%-17s not usable: %s\n", name, why->text);
     gpu_destroy(gpu);

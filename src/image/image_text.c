@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "image/image_text.h"
 
-#include <stdint.h>
+#include "base/utf8.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,31 +18,14 @@ bool image_texts_is_key(const char *key)
     return true;
 }
 
-// How many bytes of UTF-8 stand at `at` for one letter, RFC 3629; 0: it is none.
-static size_t letter_size(const uint8_t *at)
-{
-    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
-    size_t size = at[0] < 0x80       ? 1
-                  : at[0] >> 5 == 6  ? 2
-                  : at[0] >> 4 == 14 ? 3
-                  : at[0] >> 3 == 30 ? 4
-                                     : 0;
-    uint32_t code = size > 1 ? at[0] & (0x7fu >> size) : at[0];
-    for (size_t i = 1; i < size; ++i) {
-        if (at[i] >> 6 != 2) return 0;
-        code = code << 6 | (at[i] & 0x3f);
-    }
-    bool is_half = code >= 0xd800 && code < 0xe000; // of a pair in UTF-16
-    return code < least[size] || code > 0x10ffff || is_half ? 0 : size;
-}
-
 static void clean(char *text)
 {
-    for (uint8_t *at = (uint8_t *)text; *at;) {
-        size_t size = letter_size(at);
+    const char *end = text + strlen(text);
+    for (char *at = text; *at;) {
+        size_t size = utf8_length(at, (size_t)(end - at));
         if (size == 0)
             *at++ = '?';
-        else if ((*at < ' ' && *at != '\n') || *at == 0x7f)
+        else if (((unsigned char)*at < ' ' && *at != '\n') || *at == 0x7f)
             *at++ = ' ';
         else
             at += size;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "report/report.h"
 
-#include "report/utf8.h"
+#include "base/utf8.h"
 
 #include <errno.h>
 #include <limits.h>

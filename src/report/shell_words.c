@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "report/shell_words.h"
 
-#include "report/utf8.h"
+#include "base/utf8.h"
 
 #include <stdbool.h>
 #include <stdlib.h>

@@ -2,6 +2,7 @@
 #include "run/cache.h"
 #include "base/clock.h"
 #include "base/float_planes.h"
+#include "base/quote.h"
 #include "run/cache_scene.h"
 
 #include <endian.h>
@@ -123,8 +124,12 @@ void cache_file_close(CacheFile *cache)
 // What follows the file's name in a message about it.
 static const char *without_path(const CacheFile *cache, const Error *why)
 {
-    size_t length = strlen(cache->file.path) + strlen(": ");
-    return strlen(why->text) > length ? why->text + length : why->text;
+    char path[sizeof why->text];
+    quote_line(path, sizeof path, cache->file.path);
+    size_t length = strlen(path);
+    bool begins =
+        strncmp(why->text, path, length) == 0 && strncmp(why->text + length, ": ", 2) == 0;
+    return begins ? why->text + length + 2 : why->text;
 }
 
 Result cache_file_check(const CacheFile *cache, int last, Error *error)

@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "base/interrupt.h"
 #include "base/outfile.h"
+#include "base/quote.h"
 #include "run/cache_scene.h"
 #include "sim/simulation_state.h"
 
@@ -122,7 +123,8 @@ static Result resume_cache(FrameSource *source, const char *path, int last, FILE
     source->reads = true;
     if (!cache_file_verify(&reader->cache) && messages)
         fprintf(messages, "%s\n", reader->cache.end.text);
-    if (messages) fprintf(messages, "%s: %u frames are there\n", path, reader->cache.frame_count);
+    if (messages)
+        fprintf(messages, "%s: %u frames are there\n", quote(path).text, reader->cache.frame_count);
     if ((int)reader->cache.frame_count > last) {
         source->played = (int)reader->cache.frame_count;
         return RESULT_OK;

@@ -407,6 +407,12 @@ Result output_finish(Output *output, Error *error)
     return result;
 }
 
+void output_flush(Output *output)
+{
+    if (!output->video && !output->y4m.planes && !output->sheet.columns)
+        output_finish(output, NULL);
+}
+
 static void stop_worker(Output *output)
 {
     pthread_mutex_lock(&output->mutex);

@@ -4,8 +4,8 @@
 //
 // Use: output_create; for each frame output_acquire, fill the image, output_submit; output_finish;
 // output_destroy. All functions are called from one thread. The worker has every signal blocked.
-// After a failure of any function, or instead of output_finish, call output_destroy: no
-// half-written file and no half a video remains.
+// After a failure of any function, or instead of output_finish, call output_destroy, if need be
+// after output_flush: no half-written file and no half a video remains.
 #pragma once
 
 #include "base/error.h"
@@ -70,6 +70,10 @@ Result output_submit(Output *output, int frame_index, Image *image, Error *error
 // Waits until everything submitted is written and a video or sheet has its final name. Fails like
 // output_acquire, and with RESULT_FAILED if a video has no frame.
 Result output_finish(Output *output, Error *error);
+
+// Of a run that has failed: writes the frames that wait, each a file or a piece of a stream of its
+// own. Nothing for a video or a sheet, which would lack the rest.
+void output_flush(Output *output);
 
 // Without a successful output_finish: drops what waits, kills ffmpeg and removes the unfinished
 // file. NULL is legal.

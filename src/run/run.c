@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/interrupt.h"
 #include "base/outfile.h"
+#include "base/quote.h"
 #include "base/target.h"
 #include "run/cache_scene.h"
 #include "run/caption.h"
@@ -55,7 +56,8 @@ static void warn_all(const Scene *scene)
         const Section *section = &scene->sections[i];
         const char *caution = solver_caution(&section->params);
         if (caution)
-            fprintf(stderr, "%s: --algo %s: %s\n", section->file, section->params.algo, caution);
+            fprintf(stderr, "%s: --algo %s: %s\n", quote(section->file).text, section->params.algo,
+                    caution);
     }
 }
 
@@ -67,7 +69,8 @@ static Result open_gpu(Run *run, Error *error)
     run->has_gpu = true;
     gpu_timer_create(&run->timer, *params->stats != 0, run->gpu.software);
     if (!params->quiet)
-        fprintf(stderr, "%s, OpenGL %s (%s)\n", run->gpu.renderer, run->gpu.version, run->gpu.path);
+        fprintf(stderr, "%s, OpenGL %s (%s)\n", quote(run->gpu.renderer).text,
+                quote(run->gpu.version).text, run->gpu.path);
     return RESULT_OK;
 }
 
@@ -225,7 +228,7 @@ static void report_filled(const Run *run)
         const Strands *strands = &run->assets.strands[i];
         if (section->params.hidden || !follow_plan_fills(&section->params, strands)) continue;
         fprintf(stderr, "%s: %u followers fill between %u strands: --followers says otherwise\n",
-                section->file, run->simulation.sections[i].follow.hair.strand_count,
+                quote(section->file).text, run->simulation.sections[i].follow.hair.strand_count,
                 strands->strand_count);
     }
 }
@@ -277,13 +280,14 @@ static void report_result(const Run *run, const Sequence *sequence, double ms)
                 (unsigned long long)report.moves_limited);
     const CacheWriter *cache = &run->source.writer;
     if (cache->frame_count && run->scene.run.verbose)
-        fprintf(stderr, "%s: %u frames, %.3g MB, %.3g ms a frame to pack and write\n", cache->path,
-                cache->frame_count, (double)cache->at * 1e-6, cache->write_ms / cache->frame_count);
+        fprintf(stderr, "%s: %u frames, %.3g MB, %.3g ms a frame to pack and write\n",
+                quote(cache->path).text, cache->frame_count, (double)cache->at * 1e-6,
+                cache->write_ms / cache->frame_count);
     fprintf(stderr, "%d frame%s in %.1f s, %.3g a second", frames, frames == 1 ? "" : "s", ms / 1e3,
             frames * 1e3 / ms);
     bool described = run->images.output && frames > 0;
     fprintf(stderr, described ? ": %s\n" : "%s\n",
-            described ? output_describe(run->images.output) : "");
+            described ? quote(output_describe(run->images.output)).text : "");
 }
 
 static Result write_stats(Run *run, const Sequence *sequence, Error *error)
@@ -314,7 +318,10 @@ Result run_go(Run *run, Error *error)
         .timer = &run->timer,
         .stats = &run->stats,
     };
-    TRY(sequence_run(&sequence, error));
+    Result result = sequence_run(&sequence, error);
+    bool failed = result != RESULT_OK && result != RESULT_INTERRUPTED;
+    if (failed && run->images.output) output_flush(run->images.output);
+    TRY(result);
     if (run->images.output && run->done.count < sequence_count_drawn(&run->scene.run))
         TRY(output_finish(run->images.output, error));
     if (run->exports) TRY(exporter_finish(&run->exporter, error));

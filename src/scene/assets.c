@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "scene/assets.h"
+#include "base/quote.h"
 
 #include "mesh/obj.h"
 
@@ -22,7 +23,7 @@ static void warn_ignored(const Strands *strands, const char *file, FILE *message
 {
     if (strands->both_ends_fixed)
         fprintf(messages, "%s: the file fixes both ends of its strands; here the tips move\n",
-                file);
+                quote(file).text);
 }
 
 static Result load_section(Assets *assets, const Scene *scene, uint32_t i, FILE *messages,

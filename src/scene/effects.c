@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "scene/effects.h"
+#include "base/quote.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -168,12 +169,13 @@ void effects_warn(const Scene *scene, FILE *stream)
                                                      : NULL;
         if (first && !is_default(info, first) &&
             find_shared_reason(info, scene, ORIGIN_SHARED_KEY, reason))
-            fprintf(stream, "%s: %s: %s\n", scene->file, info->name, reason);
+            fprintf(stream, "%s: %s: %s\n", quote(scene->file).text, info->name, reason);
         for (uint32_t s = 0; info->scope == SCOPE_SECTION && s < scene->section_count; ++s) {
             const Section *section = &scene->sections[s];
             if (section->origin[i] == ORIGIN_KEY && !is_default(info, &section->params) &&
                 find_reason(info, scene, section, reason))
-                fprintf(stream, "%s: sections[%u].%s: %s\n", scene->file, s, info->name, reason);
+                fprintf(stream, "%s: sections[%u].%s: %s\n", quote(scene->file).text, s, info->name,
+                        reason);
         }
     }
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "strands/strands_report.h"
+#include "base/quote.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -140,15 +141,16 @@ uint32_t strands_report_print_mended(const StrandsReport *report, const char *pa
         if (report->defects[kind].count == 0) continue;
         char text[1024];
         strands_report_describe(report, path, (DefectKind)kind, true, text, sizeof text);
-        fprintf(stream, "%s\n", text);
+        fprintf(stream, "%s\n", quote(text).text);
         lines++;
     }
     if (*report->note) {
-        fprintf(stream, "%s: %s\n", path, report->note);
+        fprintf(stream, "%s: %s\n", quote(path).text, quote(report->note).text);
         lines++;
     }
     if (report->samples > 1 && !report->all_samples) {
-        fprintf(stream, "%s: of %u time samples only the first is read\n", path, report->samples);
+        fprintf(stream, "%s: of %u time samples only the first is read\n", quote(path).text,
+                report->samples);
         lines++;
     }
     return lines;
@@ -168,7 +170,7 @@ void strands_report_print_guess(const StrandsReport *report, const char *path, F
     bool unit, up;
     find_guesses(report, &unit, &up);
     if (!unit && !up) return;
-    fprintf(stream, "%s: guessed ", path);
+    fprintf(stream, "%s: guessed ", quote(path).text);
     if (unit) fprintf(stream, "a unit of %g m", (double)report->unit_used);
     fprintf(stream, "%s", unit && up ? " and " : "");
     if (up) fprintf(stream, "%c up", report->up_z ? 'z' : 'y');
@@ -201,7 +203,7 @@ static void print_unit(const StrandsReport *report, FILE *stream)
 
 static void print_notes(const StrandsReport *report, FILE *stream)
 {
-    if (*report->note) fprintf(stream, "  note      %s\n", report->note);
+    if (*report->note) fprintf(stream, "  note      %s\n", quote(report->note).text);
     if (report->samples)
         fprintf(stream, "  times     %s%u\n", report->all_samples ? "" : "the first of ",
                 report->samples);
@@ -217,7 +219,7 @@ static void print_notes(const StrandsReport *report, FILE *stream)
 
 void strands_report_print(const StrandsReport *report, const char *path, FILE *stream)
 {
-    fprintf(stream, "%s: %s", path, FORMAT_TABLE[report->kind]->name);
+    fprintf(stream, "%s: %s", quote(path).text, FORMAT_TABLE[report->kind]->name);
     if (report->version > 0.0f) fprintf(stream, ", version %g", (double)report->version);
     fprintf(stream, "\n  strands   %u usable of %u\n", report->strands, report->declared_strands);
     fprintf(stream, "  vertices  %u usable of %u; per strand %u min, %u median, %u max\n",
@@ -235,6 +237,6 @@ void strands_report_print(const StrandsReport *report, const char *path, FILE *s
         if (report->defects[kind].count == 0) continue;
         char text[1024];
         strands_report_describe(report, path, (DefectKind)kind, true, text, sizeof text);
-        fprintf(stream, "  defect    %s\n", text);
+        fprintf(stream, "  defect    %s\n", quote(text).text);
     }
 }

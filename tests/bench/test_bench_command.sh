@@ -119,4 +119,15 @@ run 2 speed --set 2k16; says "2k16"
 run 3 accuracy --reference "$work/nothing"
 run 3 step --vectors "$work/nothing.csv"
 
+claim "outputs overwrite neither what is read nor each other"
+cp tests/data/motion/c_root2Hz_n16_c4.csv "$work/rows.csv" 2>/dev/null || cp "$work/step.csv" "$work/rows.csv"
+cp "$work/rows.csv" "$work/rows.kept"; ln -s rows.csv "$work/link.csv"; cp assets/ball.obj "$work/ball.obj"
+run 2 step --csv "$work/same" --json "$work/same"; one_line; says "--csv"; says "--json"; none "$work/same"
+run 2 step --vectors "$work/rows.csv" --csv "$work/link.csv"; one_line; says "--vectors"
+run 2 page "$work/rows.csv" --html "$work/rows.csv"; one_line; says "--html"
+run 2 groom --mesh "$work/ball.obj" --json "$work/ball.obj"; one_line; says "--mesh"
+run 2 light --picture "$work/x.png" --html "$work/x.png"; one_line; says "--picture"
+run 2 speed "$work/rows.csv" --csv "$work/../$(basename "$work")/rows.csv"; one_line; says "the file"
+equal "$work/rows.csv" "$work/rows.kept"; equal "$work/ball.obj" assets/ball.obj
+
 finish

@@ -21,6 +21,12 @@ run 2 a b; one_line
 run 2 a b --update; one_line
 run 2 a "" c; one_line
 run 2 "$work/none" "$work/goldens" "$work/result"; one_line; says "none: cannot read it"
+mkdir -p "$work/cleared/frames" "$work/cleared/sheets"
+echo "still assets/fur.tfx" >"$work/cleared/report.xml"; cp "$work/cleared/report.xml" "$work/cleared/sheets/list.txt"
+ln -s cleared "$work/alias"
+run 2 "$work/cleared/sheets/list.txt" "$work/goldens" "$work/alias/"; one_line; says "would be removed with"; is_file "$work/cleared/sheets/list.txt"
+run 2 "$work/cleared/report.xml" "$work/goldens" "$work/cleared"; one_line; says "would be removed with"; is_file "$work/cleared/report.xml"
+run 2 "$work/cleared/report.xml" "$work/cleared/frames" "$work/alias" --update; one_line; says "would be removed with"
 run 2 "$work" "$work/goldens" "$work/result"; one_line
 
 claim "a mistake in the list is found before an image is drawn"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Words for shells, text of any bytes, images for browsers, and what a page is made of.
+#include "base/utf8.h"
 #include "report/picture.h"
 #include "report/report.h"
 #include "report/shell_words.h"
-#include "report/utf8.h"
 
 #include "image/png.h"
 

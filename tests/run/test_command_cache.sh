@@ -39,6 +39,20 @@ cp "$work/a.cache" "$work/flip.cache"
 printf 'x' | dd of="$work/flip.cache" bs=1 seek=$size conv=notrunc 2>/dev/null
 run 3 $scene -q --from-cache "$work/flip.cache" -o "$work/flip/"; one_line; says "flip.cache: frame"; says "checksum"
 }
+flipped=$(sed -n 's/.*flip.cache: frame \([0-9]*\),.*/\1/p' "$work/err")
+for last in $((flipped - 1)) $flipped; do # frames that were drawn before it are there, and whole
+    name=$(printf frame_%04d.png "$last")
+    if [ "$last" = "$flipped" ]; then none "$work/flip/$name"; else equal "$work/flip/$name" "$work/direct/$name"; fi
+done
+for to in flip.y4m sheet.png; do # but no video or sheet that lacks the rest
+    sheet=; [ $to = flip.y4m ] || sheet="--contact-sheet 4x3"
+    # shellcheck disable=SC2086
+    run 3 $scene -q --from-cache "$work/flip.cache" $sheet -o "$work/$to"; one_line; says "flip.cache: frame $flipped,"
+    none "$work/$to"
+done
+# shellcheck disable=SC2086
+"$program" $scene -q --from-cache "$work/flip.cache" -o - >"$work/flip.stream" 2>"$work/err"
+cat "$work"/flip/frame_*.png >"$work/flip.files"; equal "$work/flip.files" "$work/flip.stream"
 if cmp -s "$work/whole6/frame_0006.png" "$work/direct/frame_0006.png"; then good; else bad "frame 6 differs"; fi
 
 claim "a file that is no cache stays as it is, and a full disk is said as such, in a cache and in USD"

@@ -61,7 +61,7 @@ static void destroy(World *world)
 static Numbers numbers_of(const World *world)
 {
     Fingerprint fingerprint;
-    Numbers numbers;
+    Numbers numbers = {.image = "", .hair = ""};
     assert_int_equal(fingerprint_create(&fingerprint, &world->scene, &world->assets,
                                         &world->framing, world->exposure, &world->gpu, world->maker,
                                         NULL),
