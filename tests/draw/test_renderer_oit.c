@@ -118,6 +118,30 @@ static void faint_fragments_add_up(void **state)
     assert_true(fabs(draw_rest(200, 0.003f) - srgb(1 - pow(0.997, 200))) <= 3);
 }
 
+// Two ribbons in one place that differ in blue alone: the order in which they are drawn does not
+// show.
+static void equal_depths_are_ordered_by_all_of_the_colour(void **state)
+{
+    (void)state;
+    const float position[2][3] = {{-60, 0, 0}, {60, 0, 0}};
+    uint8_t seen[2][3];
+    for (int swapped = 0; swapped < 2; ++swapped) {
+        for (int i = 0; i < 2; ++i) {
+            Strands strands = studio_strands(1, 2, position);
+            uint32_t item = studio_add(&studio, &strands, 6, 0.5f);
+            memcpy(studio.material[item].color, (float[3]){1, 1, i == swapped ? 1 : 0},
+                   sizeof(float[3]));
+            strands_destroy(&strands);
+        }
+        open_studio(RASTER_QUADS, OIT_ABUFFER, 4);
+        studio_draw(&studio);
+        memcpy(seen[swapped], studio_pixel(&studio, SIDE / 2, SIDE / 2), 3);
+        studio_clear(&studio);
+    }
+    assert_memory_equal(seen[0], seen[1], 3);
+    assert_true(seen[0][2] > 100 && seen[0][2] < 250); // both colours are seen
+}
+
 static void together_they_can_hide_all(void **state)
 {
     (void)state;
@@ -145,6 +169,7 @@ int main(void)
         CLAIM(so_many_layers_are_in_order),
         CLAIM(faint_fragments_add_up),
         CLAIM(together_they_can_hide_all),
+        CLAIM(equal_depths_are_ordered_by_all_of_the_colour),
     };
     return cmocka_run_group_tests(tests, open_stage, close_stage);
 }

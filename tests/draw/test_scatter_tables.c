@@ -141,11 +141,11 @@ static double table_error(double eta, double roughness, const float (*table)[4],
 static void the_table_is_the_quadrature(void **state)
 {
     (void)state;
-    const double roughnesses_deg[] = {5, 12, 40}, etas[] = {1.55, 1.55, 1.3};
+    const double roughnesses_deg[] = {5, 12, 40, 75}, etas[] = {1.55, 1.55, 1.3, 1.55};
     size_t nodes = (size_t)SCATTER_AZIMUTHS * SCATTER_INCLINATIONS * SCATTER_COLORS;
     float(*table)[4] = malloc(nodes * sizeof *table);
     assert_non_null(table);
-    for (int r = 0; r < 3; ++r) {
+    for (int r = 0; r < 4; ++r) {
         GLuint texture;
         double roughness = roughnesses_deg[r] * PI / 180;
         NEEDED(scatter_tables_find(&tables, (float)etas[r], (float)roughness, &texture, error));

@@ -33,6 +33,7 @@ static void both_dialects_and_line_ends_are_read(void **state)
         StrandsReport report;
         Strands strands = reading_good(texts[i], &report);
         assert_int_equal(report.kind, FORMAT_TFX2);
+        assert_true(report.version == 2); // said or not
         assert_int_equal(strands.vertex_count, 2);
         assert_memory_equal(strands.position[1], ((float[3]){1, 3, 3}), 12);
         assert_memory_equal(strands.strand_uv[0], ((float[2]){0.5f, 0.25f}), 8);

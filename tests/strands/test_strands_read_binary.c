@@ -4,6 +4,7 @@
 #include "support/reading.h"
 #include "support/temporary.h"
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -142,6 +143,10 @@ static void malformed_binaries_are_refused_with_their_byte(void **state)
          "FILE: byte 16: strand UVs start at byte 12, within the header of 160 bytes"},
         {FORMAT_TFX4, 28, 600,
          "FILE: byte 28: colours need 12 times 16 bytes from byte 600 on, the file has 76"},
+        {FORMAT_TFX3, 148, 295,
+         "FILE: byte 148: thicknesses start at byte 295, within the header of 296 bytes"},
+        {FORMAT_TFX4, 16, 159,
+         "FILE: byte 16: strand UVs start at byte 159, within the header of 160 bytes"},
         {FORMAT_TFX3, 144, 100,
          "FILE: byte 144: positions start at byte 100, within the header of 296 bytes"},
         {FORMAT_HAIR, 4, 0, "FILE: byte 4: 0 strands: expected at least 1"},
@@ -161,6 +166,55 @@ static void malformed_binaries_are_refused_with_their_byte(void **state)
         assert_string_equal(error.text, cases[i].message);
         bytes_destroy(&bytes);
     }
+}
+
+// bothEndsImmovable is one byte; the three behind it may hold anything.
+static void padding_behind_a_bool_does_not_count(void **state)
+{
+    for (int at = 16; at < 20; ++at) {
+        Bytes bytes = make_file(state, FORMAT_TFX3);
+        Strands strands;
+        memset(bytes.data + 16, 0, 4);
+        bytes.data[at] = 1;
+        assert_int_equal(reading_copy(&strands, bytes.data, bytes.size, &METRES, NULL, NULL),
+                         RESULT_OK);
+        assert_int_equal(strands.both_ends_fixed, at == 16);
+        strands_destroy(&strands);
+        bytes_destroy(&bytes);
+    }
+}
+
+// Each vertex has its own colour and opacity, as they were written.
+static void hair_files_keep_every_colour(void **state)
+{
+    Bytes bytes = make_file(state, FORMAT_HAIR);
+    Strands strands, made = make_sample();
+    assert_int_equal(reading_copy(&strands, bytes.data, bytes.size, &METRES, NULL, NULL),
+                     RESULT_OK);
+    for (uint32_t v = 0; v < made.vertex_count; ++v)
+        for (int i = 0; i < 4; ++i)
+            assert_true(fabsf(strands.color[v][i] - made.color[v][i]) < 1e-6f);
+    strands_destroy(&strands);
+    strands_destroy(&made);
+    bytes_destroy(&bytes);
+}
+
+// A unit of 0 m is none.
+static void a_unit_without_length_is_ignored(void **state)
+{
+    Bytes bytes = make_file(state, FORMAT_HAIR);
+    char *unit = strstr((char *)bytes.data + 40, "unit 1 m");
+    assert_non_null(unit);
+    unit[5] = '0';
+    Strands strands;
+    StrandsReport report;
+    assert_int_equal(
+        reading_copy(&strands, bytes.data, bytes.size, &(StrandsReadOptions){0}, &report, NULL),
+        RESULT_OK);
+    assert_int_equal(strands.strand_count, 3);
+    assert_true(report.unit_used > 0);
+    strands_destroy(&strands);
+    bytes_destroy(&bytes);
 }
 
 static void bytes_behind_the_arrays_are_reported(void **state)
@@ -224,6 +278,12 @@ int main(void)
                                         temporary_destroy),
         cmocka_unit_test_setup_teardown(malformed_binaries_are_refused_with_their_byte,
                                         temporary_create, temporary_destroy),
+        cmocka_unit_test_setup_teardown(padding_behind_a_bool_does_not_count, temporary_create,
+                                        temporary_destroy),
+        cmocka_unit_test_setup_teardown(hair_files_keep_every_colour, temporary_create,
+                                        temporary_destroy),
+        cmocka_unit_test_setup_teardown(a_unit_without_length_is_ignored, temporary_create,
+                                        temporary_destroy),
         cmocka_unit_test_setup_teardown(bytes_behind_the_arrays_are_reported, temporary_create,
                                         temporary_destroy),
         cmocka_unit_test_setup_teardown(merged_vertices_take_their_attributes_along,
