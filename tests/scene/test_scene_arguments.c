@@ -373,9 +373,22 @@ static void flags_without_effect_are_refused(void **state)
         {"a.tfx -o x/ --followers 0 --follow interpolate", "--followers is 0"},
         {"a.tfx -o x/ --look plain --roughness 9", "only --shading marschner uses it"},
         {"a.tfx -o x/ --shading marschner --exponent2 9", "only --shading kajiya uses it"},
+        {"a.tfx -o x/ --style 0 --rest hanging", "--rest: it has no effect: --style is 0"},
+        {"a.tfx -o x/ --teleport none --teleport-angle 9", "--teleport is none"},
+        {"a.tfx -o x/ --smooth 1 --curve bspline", "--smooth is 1"},
+        {"a.tfx -o x/ --eye 0,0,3 --margin 0.5", "--eye is given"},
+        {"a.tfx -o x/ --tip-length 0 --tip-color red", "--tip-length is 0"},
+        {"a.tfx -o x/ --scatter none --scatter-cells 9", "--scatter is none"},
+        {"a.tfx -o x/ --lod-width 1 --lod-start 1",
+         "--lod-start: it has no effect: --lod-end is 0"},
+        {"a.tfx -o x/ --lod-min 0.5",
+         "--lod-min: it has no effect: --lod-end and --lod-width are 0"},
     };
     for (size_t i = 0; i < sizeof LINES / sizeof LINES[0]; i++)
         assert_refused(LINES[i].line, RESULT_USAGE, LINES[i].message);
+    Scene scene;
+    assert_read(&scene, "a.tfx -o x/ --lod-width 1 --lod-min 0.5"); // one of two is enough
+    scene_destroy(&scene);
 }
 
 static void one_section_that_has_the_parameter_is_enough(void **state)
