@@ -81,6 +81,15 @@ void bytes_destroy(Bytes *bytes)
     *bytes = (Bytes){0};
 }
 
+void bytes_drop_mark(Bytes *bytes)
+{
+    static const char MARK[] = "\xef\xbb\xbf";
+    size_t length = sizeof MARK - 1;
+    if (bytes->size < length || memcmp(bytes->data, MARK, length) != 0) return;
+    bytes->size -= length;
+    memmove(bytes->data, bytes->data + length, bytes->size + 1); // with the zero
+}
+
 Result bytes_write_file(const Bytes *bytes, const char *path, Error *error)
 {
     OutFile file;

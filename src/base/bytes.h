@@ -22,6 +22,9 @@ void bytes_destroy(Bytes *bytes);
 // The same, but "-" is standard input. RESULT_USAGE if it is a terminal or has been read before.
 Result bytes_read_input(Bytes *bytes, const char *path, Error *error);
 
+// Removes a byte-order mark of UTF-8 from the beginning, as some editors put it before text.
+void bytes_drop_mark(Bytes *bytes);
+
 // Writes the bytes as a whole file through an OutFile: complete or not at all, RESULT_FAILED
 // with path and reason.
 Result bytes_write_file(const Bytes *bytes, const char *path, Error *error);

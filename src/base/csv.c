@@ -37,7 +37,11 @@ static Result read_file(Csv *csv, const char *path, Error *error)
 {
     *csv = (Csv){.path = strdup(path)};
     TRY(bytes_read_file(&csv->bytes, path, error));
+    bytes_drop_mark(&csv->bytes);
     const char *text = (const char *)csv->bytes.data, *end = text + csv->bytes.size;
+    if (!*text)
+        return error_set(error, RESULT_BAD_INPUT, "%s: no text: expected a line of columns' names",
+                         path);
     csv->column_count = count_of(text, text + strcspn(text, "\n"), ',') + 1;
     size_t lines = count_of(text, end, '\n') + 1;
     csv->column = calloc(csv->column_count, sizeof *csv->column);

@@ -3,6 +3,7 @@
 
 #include "base/portable.h"
 
+#include <ctype.h>
 #include <muParserDLL.h>
 
 #include <math.h>
@@ -22,14 +23,37 @@ static void stay_silent(muParserHandle_t parser)
     (void)parser;
 }
 
-// A probe of what the parser lets pass: `1,2` is two values, `t=3` sets the time.
-static const char *find_fault(const Formula *formula)
+// What the parser says is wrong and at which character, from 1: its words have the place, from 0
+// and in several forms, and a full stop.
+static void describe_fault(char *text, size_t size, const Formula *formula)
+{
+    snprintf(text, size, "%s", mupGetErrorMsg(formula->parser));
+    for (const char *const *tail =
+             (const char *const[]){" found at position", " at position", NULL};
+         *tail; ++tail) {
+        char *at = strstr(text, *tail);
+        if (at) *at = 0;
+    }
+    size_t length = strlen(text);
+    if (length && text[length - 1] == '.') text[--length] = 0;
+    text[0] = (char)tolower((unsigned char)text[0]);
+    int place = mupGetErrorPos(formula->parser), end = (int)strlen(formula->text);
+    if (place >= 0)
+        snprintf(text + length, size - length, " at character %d", (place < end ? place : end) + 1);
+}
+
+// NULL: none. A probe of what the parser lets pass: `1,2` is two values, `t=3` sets the time.
+// `words`: room for the parser's own.
+static const char *find_fault(const Formula *formula, char *words, size_t size)
 {
     const double probe = 0.25;
     int values = 0;
     for (int i = 0; i < formula->count; i++) formula->value[i] = probe;
     mupEvalMulti(formula->parser, &values);
-    if (mupError(formula->parser)) return mupGetErrorMsg(formula->parser);
+    if (mupError(formula->parser)) {
+        describe_fault(words, size, formula);
+        return words;
+    }
     if (values != 1) return "more than one value, and a decimal point is '.'";
     for (int i = 0; i < formula->count; i++)
         if (formula->value[i] != probe) return "variables are given, they cannot be set";
@@ -43,8 +67,8 @@ static Result fail(Formula *formula, const char *const *names, const char *fault
         size_t used = strlen(list);
         snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", names[i]);
     }
-    error_set(error, RESULT_BAD_INPUT, "got '%.100s', expected a formula of %s: %.200s",
-              formula->text, list, fault);
+    error_set(error, RESULT_BAD_INPUT, "got '%.100s', expected a formula of %s: %s", formula->text,
+              list, fault);
     formula_destroy(formula);
     return RESULT_BAD_INPUT;
 }
@@ -67,7 +91,8 @@ Result formula_create_named(Formula *formula, const char *text, const char *cons
     mupDefineFun3(parser, "smoothstep", smoothstep, 1);
     mupDefineFun3(parser, "noise", portable_noise, 1);
     mupSetExpr(parser, text);
-    const char *fault = find_fault(formula);
+    char words[300];
+    const char *fault = find_fault(formula, words, sizeof words);
     return fault ? fail(formula, names, fault, error) : RESULT_OK;
 }
 

@@ -23,14 +23,6 @@ static size_t name_place(const JsonPlace *place, char *text, size_t size)
     return length < size ? length : size - 1;
 }
 
-// Keys and values may hold line ends; a message is one line.
-static void replace_controls(char *text)
-{
-    for (; *text; text++) {
-        if ((unsigned char)*text < ' ' || *text == 127) *text = '?';
-    }
-}
-
 Result json_fail(const JsonPlace *place, Error *error, const char *format, ...)
 {
     char name[512], rest[400];
@@ -39,8 +31,6 @@ Result json_fail(const JsonPlace *place, Error *error, const char *format, ...)
     va_start(arguments, format);
     vsnprintf(rest, sizeof rest, format, arguments);
     va_end(arguments);
-    replace_controls(name);
-    replace_controls(rest);
     return error_set(error, RESULT_BAD_INPUT, "%s: %s", name, rest);
 }
 

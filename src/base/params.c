@@ -199,9 +199,6 @@ static Result refuse(const Input *input, const char *nearest)
     params_describe(input->info, expected, sizeof expected);
     char got[64];
     snprintf(got, sizeof got, "%s", input->text);
-    for (char *at = got; *at; at++) {
-        if ((unsigned char)*at < ' ' || *at == 127) *at = '?';
-    }
     const char *dots = strlen(input->text) >= sizeof got ? "..." : "";
     if (!nearest)
         return error_set(input->error, RESULT_USAGE, "got '%s%s', expected %s", got, dots,

@@ -34,8 +34,6 @@ Result reader_fail(Reader *reader, const char *format, ...)
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    for (char *at = text; *at; ++at) // words of the file: the message stays one line
-        if ((unsigned char)*at < ' ' || *at == 127) *at = '?';
     reader->result = RESULT_BAD_INPUT;
     if (reader->line)
         return error_set(reader->error, RESULT_BAD_INPUT, "%s:%u: %s", reader->path, reader->line,
@@ -222,7 +220,7 @@ Result reader_fail_expected(Reader *reader, const char *what)
     char word[33] = "";
     for (size_t i = 0; i < length && i < sizeof word - 1; i++) {
         uint8_t c = reader->data[reader->at + i];
-        word[i] = (char)(c > ' ' && c < 127 ? c : '?');
+        word[i] = c ? (char)c : '?'; // the message quotes the others
     }
     return reader_fail(reader, "expected %s, got '%s'%s", what, word,
                        length >= sizeof word ? "..." : "");

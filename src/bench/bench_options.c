@@ -183,9 +183,8 @@ static Result read_rates(const char *text, BenchOptions *options, Error *error)
     }
     return error_set(
         error, RESULT_USAGE,
-        "--rates: expected up to %d numbers from 1 to 1000000 with commas between them, "
-        "got '%s'",
-        BENCH_MOST_RATES, text);
+        "--rates: got '%s', expected up to %d numbers from 1 to 1000000 with commas between them",
+        text, BENCH_MOST_RATES);
 }
 
 static Result read_size(const char *text, int size[2], Error *error)

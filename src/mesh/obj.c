@@ -273,6 +273,7 @@ Result obj_read_mesh(Mesh *mesh, const char *path, float unit, bool up_z, Error 
     *mesh = (Mesh){0};
     Bytes bytes;
     TRY(bytes_read_file(&bytes, path, error));
+    bytes_drop_mark(&bytes);
     Obj obj = {.reader = reader_begin_text(path, &bytes, error)};
     obj.reader.continuation = true;
     read_statements(&obj);

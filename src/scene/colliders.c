@@ -50,11 +50,13 @@ Result colliders_add(Colliders *colliders, const Collider *collider, Error *erro
     for (uint32_t i = 0; i < count_numbers(added.kind); ++i) {
         float *number = &added.numbers[i];
         if (!(fabsf(*number) <= FARTHEST))
-            return error_set(error, RESULT_USAGE, "%s: got %g, expected numbers of at most %g",
-                             name, (double)*number, (double)FARTHEST);
+            return error_set(error, RESULT_USAGE,
+                             "%s: got %.6g, expected numbers from %.10g to %.10g", name,
+                             (double)*number, -(double)FARTHEST, (double)FARTHEST);
         if (is_named(added.kind, i, "radius") && *number < 0)
-            return error_set(error, RESULT_USAGE, "%s: got the radius %g, expected 0 or more", name,
-                             (double)*number);
+            return error_set(error, RESULT_USAGE,
+                             "%s: got the radius %.6g, expected a number from 0 to %.10g", name,
+                             (double)*number, (double)FARTHEST);
         if (!is_named(added.kind, i, "nx")) continue;
         double x = (double)number[0], y = (double)number[1], z = (double)number[2];
         double length = sqrt(x * x + y * y + z * z);

@@ -30,7 +30,8 @@ static bool is_scene_file(const char *path)
     fclose(file);
     beginning[size] = 0;
     bool binary = memchr(beginning, 0, size) != NULL;
-    return !binary && beginning[strspn(beginning, " \t\r\n")] == '{';
+    const char *text = beginning + (strncmp(beginning, "\xef\xbb\xbf", 3) == 0 ? 3 : 0);
+    return !binary && text[strspn(text, " \t\r\n")] == '{';
 }
 
 // What the first walk along the command line finds.

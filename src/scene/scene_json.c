@@ -44,12 +44,8 @@ static Result parse_document(json_t **json, const char *path, const Bytes *bytes
     *json = json_loadb((const char *)bytes->data, bytes->size, JSON_REJECT_DUPLICATES, &why);
     if (*json) return RESULT_OK;
     // jansson has no place for what is not the text's fault.
-    if (why.line < 0) return error_set(error, RESULT_FAILED, "%.300s: out of memory", path);
-    for (char *at = why.text; *at; at++) {
-        if ((unsigned char)*at < ' ') *at = '?';
-    }
-    return error_set(error, RESULT_BAD_INPUT, "%.300s:%d:%d: %s", path, why.line, why.column,
-                     why.text);
+    if (why.line < 0) return error_set(error, RESULT_FAILED, "%s: out of memory", path);
+    return error_set(error, RESULT_BAD_INPUT, "%s:%d:%d: %s", path, why.line, why.column, why.text);
 }
 
 // The names of all keys that an object of the file may have, ended by NULL; the caller frees the
@@ -266,6 +262,7 @@ Result scene_read_unchecked(Scene *scene, const char *path, const SceneOverrides
     json_t *json;
     TRY(scene_create(scene, error));
     TRY(bytes_read_file(&bytes, path, error));
+    bytes_drop_mark(&bytes);
     Result result = parse_document(&json, path, &bytes, error);
     bytes_destroy(&bytes);
     if (result != RESULT_OK) return result;

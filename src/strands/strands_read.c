@@ -537,6 +537,8 @@ Result strands_read_frames(Strands *strands, StrandsFrames *frames, const char *
     if (report) *report = (StrandsReport){.kind = FORMAT_KINDS};
     Bytes bytes;
     TRY(bytes_read_input(&bytes, path, error));
+    // Before text only: a binary file may begin with a number of these bytes.
+    if (format_detect(&bytes) == FORMAT_KINDS) bytes_drop_mark(&bytes);
     Result result = read_bytes(strands, frames, path, &bytes, options, report, error);
     bytes_destroy(&bytes);
     return result;

@@ -217,7 +217,7 @@ static const struct {
     {"size", "640.5x480", "WxH"},
     {"up", "x", "got 'x', expected auto, y or z"},
     {"backend", "elg", "expected auto, egl or osmesa (nearest: egl)"},
-    {"fps", "two\nlines\x7f", "got 'two?lines?'"},
+    {"fps", "two\nlines\x7f", "got 'two\\nlines\\x7f'"},
 };
 
 static void wrong_values_are_refused_by_name_and_change_nothing(void **state)
