@@ -160,7 +160,7 @@ static void a_text_lists_shapes(void **state)
     assert_refused("sphere:1,2,3,-1", "radius");
     assert_refused("sphere:1,2,3,1,", "expected sphere:x,y,z,radius");
     assert_refused("ground:1 2", "got 'ground:1 2', expected ground:");
-    assert_refused("sphere:1,2,3,1e9", "1e+06");
+    assert_refused("sphere:1,2,3,1e9", "from -1000000 to 1000000");
     assert_refused("ball:1,2,3,4", "one of sphere:x,y,z,radius; capsule:");
     assert_refused("plane:0,0,0,1", "direction");
     assert_refused("ground:0; ; ground:1", "expected");
