@@ -119,6 +119,11 @@ static void the_worse_of_two_backgrounds_counts(void **state)
     assert_true(compare_colors(4, none, half).largest == 128);
     assert_true(compare_colors(4, none, white_half).largest == 128);
     assert_true(compare_colors(4, half, none).flip > 0.1);
+    // Over the other background both are equal: SSIM 1. Here of areas, whose variances are 0.
+    double c1 = 6.5025, over_white = (2 * 255 * 127 + c1) / (255 * 255 + 127 * 127 + c1),
+           over_black = c1 / (128 * 128 + c1);
+    assert_true(fabs(compare_colors(4, none, half).ssim - over_white) < 1e-6);
+    assert_true(fabs(compare_colors(4, none, white_half).ssim - over_black) < 1e-6);
     assert_true(compare_colors(4, none, red).largest == 0 && compare_colors(4, none, red).same);
 }
 

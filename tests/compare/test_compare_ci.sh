@@ -110,6 +110,16 @@ JENKINS_URL=x CI_PROJECT_DIR=$work "$program" "$work/a" "$work/b" -q --junit "$w
 in_file "$work/report.xml" "[[ATTACHMENT|$real/b/f_2.pfm]]"
 rm "$work/a/g<&>.png" "$work/b/g<&>.png"
 
+claim "JUnit stays XML whatever bytes a name has"
+odd=$(printf 'h\001i\033\tj\nk\177.pfm')
+mkdir "$work/p" "$work/q"
+cp "$work/a/f_2.pfm" "$work/p/$odd"; cp "$work/b/f_2.pfm" "$work/q/$odd"
+cp "$work/a/f_2.pfm" "$work/p/$(printf '\377.pfm')"
+run 1 "$work/p" "$work/q" --junit "$work/report.xml"
+if command -v xmllint >/dev/null; then holds xmllint --noout "$work/report.xml"; else skip "no xmllint"; fi
+in_file "$work/report.xml" 'name="h?i??j?k'; in_file "$work/report.xml" 'name="?.pfm"'
+rm -r "$work/p" "$work/q"
+
 claim "--github prints escaped annotations and appends a summary"
 GITHUB_WORKSPACE=$work GITHUB_STEP_SUMMARY=$work/summary.md
 export GITHUB_WORKSPACE GITHUB_STEP_SUMMARY

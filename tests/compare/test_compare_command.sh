@@ -96,6 +96,13 @@ claim "a reference without a new image is reported and left"
 rm "$work/b/f_6.png"
 run 1 "$work/a" "$work/b" --update; says "f_6.png: missing"; equal "$work/a/f_6.png" $b
 
+claim "a reference whose heat map or sheet could not be written is left"
+cp $a "$work/ref.png"
+for option in --heatmap --sheet; do
+    run 1 "$work/ref.png" $b --update $option "$work/none/drawn.png"; one_line; says "none/drawn.png"; equal "$work/ref.png" $a
+done
+run 0 "$work/ref.png" $b --update --heatmap "$work/drawn.png"; says "reference updated"; equal "$work/ref.png" $b; is_png "$work/drawn.png"
+
 claim "no report takes the place of an image that is compared, or of another report"
 mkdir -p "$work/own"
 cp tests/golden/curls_still.png "$work/own/a.png"

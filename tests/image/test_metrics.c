@@ -198,6 +198,25 @@ static void a_single_pixel_can_be_compared(void **state)
     }
 }
 
+// Windows shrink to the largest odd square that fits; whatever it is, black and white have the SSIM
+// of areas, and equal pictures that of 1.
+static void pictures_of_every_small_size_can_be_compared(void **state)
+{
+    (void)state;
+    enum { MOST = 13 };
+    static float white[3 * MOST * MOST], black[3 * MOST * MOST];
+    for (int i = 0; i < 3 * MOST * MOST; ++i) white[i] = 255;
+    for (int width = 1; width <= MOST; ++width)
+        for (int height = 1; height <= MOST; ++height) {
+            FloatImage a = {width, height, white}, b = {width, height, black};
+            double ssim;
+            assert_int_equal(compare_ssim(&ssim, &a, &b, NULL, NULL), RESULT_OK);
+            assert_true(fabs(ssim - 6.5025 / (65025 + 6.5025)) < 1e-12);
+            assert_int_equal(compare_ssim(&ssim, &a, &a, NULL, NULL), RESULT_OK);
+            assert_true(fabs(ssim - 1) < 1e-12);
+        }
+}
+
 // From far away a lone dot fades; from near it is seen. That is what the distance is for.
 static void what_is_seen_depends_on_the_distance(void **state)
 {
@@ -243,6 +262,7 @@ int main(void)
         cmocka_unit_test(equal_plates_score_exactly_nothing),
         cmocka_unit_test(the_order_of_pictures_does_not_matter),
         cmocka_unit_test(a_single_pixel_can_be_compared),
+        cmocka_unit_test(pictures_of_every_small_size_can_be_compared),
         cmocka_unit_test(what_is_seen_depends_on_the_distance),
         cmocka_unit_test(a_larger_error_is_lighter_in_the_heat_map),
     };
