@@ -68,6 +68,35 @@ static void wide_ribbons_are_whole(void **state)
         }
 }
 
+// A cylinder parallel to the picture, seen off the axis of a wide camera, is as wide as its tangent
+// planes through the eye: of the radius r at the place (x, z) before the eye they cut the screen at
+// focal (x z +- r sqrt(x^2 + z^2 - r^2)) / (z^2 - r^2). Rounding and rows as above.
+static void cylinders_off_the_axis_are_wider(void **state)
+{
+    (void)state;
+    const double x[] = {0, 0.7, 1.2}, z = 1, r = 0.04, edge = tan(55 * M_PI / 180);
+    use(&TRANSPARENT);
+    for (int turned = 0; turned < 2; ++turned)
+        for (size_t i = 0; i < sizeof x / sizeof *x; ++i) {
+            View view;
+            studio_view(&view, SIDE, SIDE);
+            view.eye[2] = 0, view.near_distance = 0.1f, view.far_distance = 10;
+            view.fov = glm_rad(110);
+            glm_look(view.eye, (vec3){0, 0, -1}, (vec3){0, 1, 0}, view.view);
+            glm_perspective(view.fov, 1, 0.1f, 10, view.projection);
+            float from[3] = {(float)x[i], -4, -1}, to[3] = {(float)x[i], 4, -1};
+            if (turned) from[0] = -4, to[0] = 4, from[1] = to[1] = (float)x[i];
+            add_line(from, to, (float)r, 1);
+            studio_draw_view(&studio, &view);
+            double root = r * sqrt(x[i] * x[i] + z * z - r * r),
+                   focal = SIDE / 2 / edge, // px
+                width = focal * 2 * root / (z * z - r * r), bound = (width + 1.5) * SIDE / 510;
+            if (fabs(alpha_sum() - width * SIDE) > bound)
+                fail_msg("at %g: %g px wide instead of %g", x[i], alpha_sum() / SIDE, width);
+            studio_clear(&studio);
+        }
+}
+
 static double line_area(double deg, float distance, float radius, float length)
 {
     float angle = glm_rad((float)deg), z = 1000 - distance;
@@ -197,6 +226,28 @@ static void joints_are_covered_once(void **state)
             float x = position[j - 1][0] * (1 - t) + position[j][0] * t + SIDE / 2;
             float y = SIDE / 2 - (position[j - 1][1] * (1 - t) + position[j][1] * t);
             assert_true(studio_pixel(&studio, (int)x, (int)y)[3] >= 127);
+        }
+}
+
+// Two wide ribbons that meet at a bend of 120 degrees have a mitre that is twice as long as they
+// are wide to one side: both are whole up to near its tip.
+static void the_mitre_of_a_sharp_bend_is_whole(void **state)
+{
+    (void)state;
+    const float radius = 16, half = 0.8660254f;
+    const float position[3][3] = {{-100, 0, 0}, {0, 0, 0}, {-50, 100 * half, 0}};
+    use(&TRANSPARENT);
+    Strands strands = studio_strands(1, 3, position);
+    studio_add(&studio, &strands, radius, 1);
+    strands_destroy(&strands);
+    studio_draw(&studio);
+    for (float out = 0; out < 1.8f * radius; out += 0.5f)
+        for (int side = -1; side <= 1; side += 2) {
+            // Along the bend's outer bisector, and off it by what still lies in the mitre.
+            float off = 0.4f * (float)side * (2 * radius - out) * 0.5f;
+            float x = half * out + 0.5f * off, y = -0.5f * out + half * off;
+            assert_int_equal(studio_pixel(&studio, (int)(SIDE / 2 + x), (int)(SIDE / 2 - y))[3],
+                             255);
         }
 }
 
@@ -401,7 +452,9 @@ int main(void)
         CLAIM(thin_hair_is_steady_in_a_slow_turn),
         CLAIM(coverage_does_not_change_below_a_pixel),
         CLAIM(joints_are_covered_once),
+        CLAIM(the_mitre_of_a_sharp_bend_is_whole),
         CLAIM(wide_ribbons_are_whole),
+        CLAIM(cylinders_off_the_axis_are_wider),
         CLAIM(layers_of_equal_opacity_multiply),
         CLAIM(many_layers_still_multiply),
         CLAIM(hair_smaller_than_a_pixel_leaves_no_holes),

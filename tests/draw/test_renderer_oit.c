@@ -148,6 +148,28 @@ static void together_they_can_hide_all(void **state)
     assert_in_range(draw_rest(12, 0.9f), 254, 255);
 }
 
+// The brightest light of 30,000 opaque fragments in a pixel: their sums do not overflow.
+static void sums_of_very_many_bright_fragments_are_whole(void **state)
+{
+    (void)state;
+    enum { COUNT = 30000 };
+    static const float bright[3] = {3, 0.5f, 0.1f}; // sRGB: 13 times white, a fifth, a hundredth
+    RendererOptions options = BLACK;
+    options.width = options.height = 1;
+    options.raster = RASTER_QUADS;
+    options.oit = OIT_NONE;
+    studio_set_options(&studio, &options);
+    Strands strands = crowd(COUNT);
+    uint32_t item = studio_add(&studio, &strands, 0.6f, 0.99f);
+    memcpy(studio.material[item].color, bright, sizeof bright);
+    studio_draw(&studio);
+    const uint8_t *pixel = studio_pixel(&studio, 0, 0);
+    assert_true(studio.renderer.counts.fragments >= COUNT);
+    assert_int_equal(pixel[0], 255);
+    for (int k = 1; k < 3; ++k) assert_true(abs(pixel[k] - (int)lroundf(255 * bright[k])) <= 2);
+    strands_destroy(&strands);
+}
+
 static int open_stage(void **state)
 {
     (void)state;
@@ -167,6 +189,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         CLAIM(the_driver_chooses_the_rasteriser),
         CLAIM(so_many_layers_are_in_order),
+        CLAIM(sums_of_very_many_bright_fragments_are_whole),
         CLAIM(faint_fragments_add_up),
         CLAIM(together_they_can_hide_all),
         CLAIM(equal_depths_are_ordered_by_all_of_the_colour),

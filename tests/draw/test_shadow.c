@@ -117,6 +117,76 @@ static void mesh_stands_in_the_light(void **state)
     mesh_destroy(&mesh);
 }
 
+// Light that comes in aslant lights a mesh evenly: it casts no shadow on itself. The hair's shadow
+// falls elsewhere.
+static void a_lit_mesh_has_no_shadow_of_its_own(void **state)
+{
+    (void)state;
+    enum { POINTS = 21 };
+    for (float slope = -1.5f; slope <= 1.5f; slope += 0.375f) {
+        Mesh mesh = shadow_stage_square(-0.5f, 0.5f);
+        for (int v = 0; v < 4; ++v) mesh.position[v][1] += slope * mesh.position[v][2];
+        ShadowStage stage;
+        shadow_stage_open(&stage, shadow_stage_layers(1), 0.01f, 0.3f, &mesh, &LIGHT_ABOVE);
+        draw_maps(&stage, SHADOW_DOM, 256, 1);
+        float points[POINTS * POINTS][4];
+        uint32_t count = 0;
+        for (int i = 0; i < POINTS; ++i)
+            for (int j = 0; j < POINTS; ++j) {
+                float x = 0.037f * (float)(i - POINTS / 2), z = 0.037f * (float)(j - POINTS / 2);
+                if (fabsf(z) < 0.1f) continue;
+                memcpy(points[count++], ((float[4]){x, -0.5f + slope * z, z, 1}), 16);
+            }
+        float *light = shadow_stage_light(&stage, (const float(*)[4])points, count);
+        for (uint32_t i = 0; i < count; ++i) shadow_assert_near((double)light[i], 1, 1e-6);
+        free(light);
+        shadow_stage_close(&stage);
+        mesh_destroy(&mesh);
+    }
+}
+
+// Integral of p (1 - p) across an edge (texels), p the share of the light that is gone: by the
+// definition of the map's filter, 5 x 5 texels with the weights of a cone of 3 texels.
+static double penumbra_of_cone(void)
+{
+    enum { STEPS = 200 };
+    double sum = 0;
+    for (int i = -4 * STEPS; i < 4 * STEPS; ++i) {
+        double u = (i + 0.5) / STEPS, off = u - floor(u) - 0.5, gone = 0, all = 0;
+        for (int y = -2; y <= 2; ++y)
+            for (int x = -2; x <= 2; ++x) {
+                double weight = fmax(3 - hypot(x, y - off), 0);
+                all += weight;
+                if (floor(u) + y < 0) gone += weight;
+            }
+        sum += gone / all * (1 - gone / all) / STEPS;
+    }
+    return sum;
+}
+
+// Of TressFX's maps. Where in a texel the point lies along the edge changes the figure by 1 %.
+static void the_edge_of_a_shadow_is_as_soft_as_its_filter(void **state)
+{
+    (void)state;
+    enum { STEPS = 400 };
+    ShadowStage stage;
+    shadow_stage_open(&stage, shadow_stage_layers(1), 0.1f, 0.4f, NULL, &LIGHT_ABOVE);
+    draw_maps(&stage, SHADOW_APPROX, 64, 1e5f);
+    float(*to)[4] = stage.shadow.params.from_world[0];
+    double texels = hypot((double)to[0][2], (double)to[1][2]), sum = 0; // a metre along z
+    float points[STEPS][4];
+    for (int i = 0; i < STEPS; ++i)
+        memcpy(points[i], ((float[4]){0.1f, -0.3f, 0.5f * ((float)i + 0.5f) / STEPS, 1}), 16);
+    float *light = shadow_stage_light(&stage, (const float(*)[4])points, STEPS);
+    for (int i = 0; i < STEPS; ++i) {
+        double gone = (1 - (double)light[i]) / 0.4;
+        sum += gone * (1 - gone) * 0.5 / STEPS * texels;
+    }
+    shadow_assert_near(sum, penumbra_of_cone(), 0.03 * penumbra_of_cone());
+    free(light);
+    shadow_stage_close(&stage);
+}
+
 // Thickness and opacity that a file has: the first strand grows from 1 to 3 radii, the second one
 // lets half as much through as the material says.
 static void shadows_are_as_wide_and_dark_as_the_paint(void **state)
@@ -324,6 +394,8 @@ int main(void)
         cmocka_unit_test(approximated_layers_multiply_at_even_distances),
         cmocka_unit_test(one_fibre_takes_its_opacity),
         cmocka_unit_test(mesh_stands_in_the_light),
+        cmocka_unit_test(a_lit_mesh_has_no_shadow_of_its_own),
+        cmocka_unit_test(the_edge_of_a_shadow_is_as_soft_as_its_filter),
         cmocka_unit_test(shadows_are_as_wide_and_dark_as_the_paint),
         cmocka_unit_test(smooth_strands_cast_the_shadow_of_their_curve),
         cmocka_unit_test(strands_left_out_cast_no_shadow),

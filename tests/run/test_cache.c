@@ -268,6 +268,40 @@ static void stopped_and_resumed_after_any_frame_is_the_same_file(void **state)
     bytes_destroy(&file);
 }
 
+// Where chunk `number` begins that holds a frame; `number` FRAMES: where the file ends.
+static size_t frame_at(const Bytes *file, int number)
+{
+    const uint8_t *at = file->data - 1, *end = file->data + file->size;
+    for (int i = 0; i <= number && number < FRAMES; ++i) {
+        at = memmem(at + 1, (size_t)(end - at) - 1, "FRAM", 4);
+        assert_non_null(at);
+    }
+    return number < FRAMES ? (size_t)(at - file->data) : file->size;
+}
+
+// A file without an index whose frames 1 and 2 have changed places ends before them.
+static void frames_in_another_order_are_not_shown(void **state)
+{
+    Original original = {0};
+    Bytes file;
+    record(&original.recorded, state, "open.cache", false);
+    start(&original.fixture, original.recorded.path);
+    assert_int_equal(bytes_read_file(&file, original.recorded.path, NULL), RESULT_OK);
+    assert_int_equal(play(&original.fixture, &original.recorded, original.recorded.path), FRAMES);
+    size_t at[4];
+    for (int i = 1; i < 4; ++i) at[i] = frame_at(&file, i);
+    uint8_t *swapped = malloc(file.size);
+    memcpy(swapped, file.data, file.size);
+    memcpy(swapped + at[1], file.data + at[2], at[3] - at[2]);
+    memcpy(swapped + at[1] + at[3] - at[2], file.data + at[1], at[2] - at[1]);
+    const char *path = temporary_path(state, "swapped.cache");
+    write_bytes(path, swapped, file.size);
+    assert_int_equal(play(&original.fixture, &original.recorded, path), 1);
+    free(swapped);
+    bytes_destroy(&file);
+    simulation_fixture_destroy(&original.fixture);
+}
+
 // A bit that flips within a kept frame costs time, never a wrong file: from any place, with a state
 // behind the damage or with none.
 static void a_damaged_frame_is_simulated_again(void **state)
@@ -335,6 +369,7 @@ int main(void)
         TEST(every_flipped_bit_is_found),
         TEST(another_scene_is_refused_by_the_value_that_differs),
         TEST(stopped_and_resumed_after_any_frame_is_the_same_file),
+        TEST(frames_in_another_order_are_not_shown),
         TEST(a_damaged_frame_is_simulated_again),
         TEST(a_file_that_is_no_cache_is_not_written_over),
         TEST(two_do_not_write_the_same_file),

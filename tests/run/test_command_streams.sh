@@ -65,6 +65,22 @@ if command -v ffmpeg >/dev/null; then
     # shellcheck disable=SC2086
     "$program" $turn -q -o -.y4m | ffmpeg -loglevel error -i - -pix_fmt yuv420p -vf pad=34:26 "$work/v.mp4" 2>"$work/err"
     is_file "$work/v.mp4"
+    claim "a video on a full disk is a failure that says so, and leaves nothing"
+    mkdir "$work/disk"
+    if unshare -m mount -t tmpfs -o size=24k none "$work/disk" 2>"$work/err"; then
+        for name in v.mp4 v.webm v.gif; do
+            # shellcheck disable=SC2016,SC2086
+            unshare -m sh -c 'cd "$1" && mount -t tmpfs -o size=24k none disk || exit 9
+                shift; "$@"; status=$?; ls -A "${0%/*}"; exit "$status"' "$work/disk/$name" "$work" \
+                "$(realpath "$program")" "$PWD/assets/curls.tfx" --algo none --followers 0 --look plain --size 160x120 --turntable 360 --frames 40 -q \
+                -o "$work/disk/$name" >"$work/out" 2>"$work/err"
+            status=$?
+            if [ $status = 1 ]; then good; else bad "exit status $status, expected 1"; fi
+            one_line; says "No space left on device"; silent out
+        done
+    else
+        skip "no file system can be mounted here"
+    fi
 else
     claim "ffmpeg reads streams"; skip "no ffmpeg"
 fi
