@@ -102,6 +102,31 @@ static void smooth_has_no_jump_in_velocity_even_at_its_ends(void **state)
     assert_true(slope_jump(INTERPOLATION_LINEAR) > 30);
 }
 
+// In the middle of an interval a cubic Hermite curve is h/8 (slope before - slope behind) from the
+// mean of its ends. Slopes as the paper has them: G = S1 S2 / (a S2 + (1 - a) S1), a = (1 + h2 /
+// (h1
+// + h2)) / 3 with the rises S by seconds of intervals of h1 and h2 seconds.
+static void smooth_has_the_slopes_of_fritsch_and_butland(void **state)
+{
+    (void)state;
+    static const double waits[][2] = {{1, 3}, {4, 0.5}, {2, 2}};
+    static const double rises[][2] = {{1, 2}, {-3, -0.5}, {2, -1}, {0, 5}};
+    for (int w = 0; w < 3; ++w)
+        for (int r = 0; r < 4; ++r) {
+            double h1 = waits[w][0], h2 = waits[w][1], s1 = rises[r][0], s2 = rises[r][1];
+            double a = (1 + h2 / (h1 + h2)) / 3;
+            double slope = s1 * s2 > 0 ? s1 * s2 / (a * s2 + (1 - a) * s1) : 0;
+            const Sample samples[] = {
+                {0, 0}, {h1, (float)(s1 * h1)}, {h1 + h2, (float)(s1 * h1 + s2 * h2)}};
+            Keyframes keys = make_track(samples, 3, INTERPOLATION_SMOOTH);
+            double before = 0.5 * s1 * h1 - h1 / 8 * slope;
+            double after = s1 * h1 + 0.5 * s2 * h2 + h2 / 8 * slope;
+            assert_true(fabs(at(&keys, h1 / 2) - before) < 16 * 0x1p-24); // rounding of up to 16
+            assert_true(fabs(at(&keys, h1 + h2 / 2) - after) < 16 * 0x1p-24);
+            keyframes_destroy(&keys);
+        }
+}
+
 static void one_key_is_a_constant(void **state)
 {
     (void)state;
@@ -151,6 +176,7 @@ int main(void)
         cmocka_unit_test(linear_is_halfway_in_the_middle),
         cmocka_unit_test(smooth_never_leaves_the_range_of_its_two_keys),
         cmocka_unit_test(smooth_has_no_jump_in_velocity_even_at_its_ends),
+        cmocka_unit_test(smooth_has_the_slopes_of_fritsch_and_butland),
         cmocka_unit_test(one_key_is_a_constant),
         cmocka_unit_test(times_must_be_finite_and_increase),
         cmocka_unit_test(many_keys_are_all_found),

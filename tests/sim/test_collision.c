@@ -131,6 +131,98 @@ static void a_world_collider_stays_where_it_is(void **state)
     }
 }
 
+// --- Roots inside.
+
+enum { BURIED = 9 };
+static const double BURIED_LINK = 0.01, DEPTH = 0.035; // of the root below the margin, m
+
+// A strand along x from a root below the ground, that rises by `rise` along each metre.
+static void lay_buried(HairFixture *fixture, const char *algo, double rise)
+{
+    Vec start[BURIED] = {{0, MARGIN - DEPTH, 0}};
+    for (int j = 1; j < BURIED; ++j) {
+        start[j][0] = start[j - 1][0] + BURIED_LINK * sqrt(1 - rise * rise);
+        start[j][1] = start[j - 1][1] + BURIED_LINK * rise, start[j][2] = 0;
+    }
+    fixture_create(fixture, (const Vec *)start, 1, BURIED, algo, "", 0, 0);
+    fixture->step.gravity[1] = 0;
+    fixture_collide(fixture, "ground:0");
+}
+
+// A root's depth is left after twice that length: a level strand is pushed to just what that
+// allows.
+static void a_strand_leaves_half_as_far_as_it_goes(void **state)
+{
+    (void)state;
+    static const char *const algos[] = {"dftl", "chain", "split"};
+    for (size_t i = 0; i < sizeof algos / sizeof *algos; ++i) {
+        Vec q[BURIED];
+        HairFixture fixture;
+        lay_buried(&fixture, algos[i], 0);
+        fixture_step(&fixture);
+        twin_read_strand(&fixture, 0, q);
+        for (int j = 1; j < BURIED; ++j) {
+            double need = MARGIN - fmax(DEPTH - 0.5 * j * BURIED_LINK, 0);
+            if (!(fabs(q[j][1] - need) < ROUNDING))
+                fail_msg("%s: particle %d at %g, not %g", algos[i], j, q[j][1], need);
+        }
+        fixture_destroy(&fixture);
+    }
+}
+
+// One that rises by a little more than half its length touches nothing, by a little less it does.
+static void a_strand_that_leaves_faster_is_not_pushed(void **state)
+{
+    (void)state;
+    for (int touches = 0; touches < 2; ++touches) {
+        SolverReport report = {0};
+        HairFixture fixture;
+        lay_buried(&fixture, "dftl", touches ? 0.499 : 0.501);
+        fixture_step(&fixture);
+        solver_report(&fixture.solver, &report);
+        assert_int_equal(report.contacts, touches ? 7 : 0); // all whose 0.5 s is below DEPTH
+        fixture_destroy(&fixture);
+    }
+}
+
+// --- Reach: what hair can come to is not left out.
+
+// A tip at either end of a capsule of 3 m, whose middle is 1.5 m from it.
+static void hair_at_the_ends_of_a_long_capsule_is_pushed(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {"capsule:0.1,-0.03,0,0.05, 0.1,-0.03,-3,0.05",
+                                        "capsule:0.1,-0.03,3,0.05, 0.1,-0.03,0,0.05"};
+    for (int i = 0; i < 2; ++i) {
+        Vec pushed, expected;
+        push_pair((const Vec){0.1, 0, 0}, "sphere:0.1,-0.03,0,0.05", "dftl", expected);
+        push_pair((const Vec){0.1, 0, 0}, texts[i], "dftl", pushed);
+        assert_at(pushed, expected[0], expected[1], expected[2]);
+    }
+}
+
+// A particle that is 5 mm aside from upright falls round its root for 0.7 s, to a ball a link's
+// length below the root, of which it reaches the uppermost 4 mm.
+static void upright_hair_falls_onto_what_is_below(void **state)
+{
+    (void)state;
+    const double link = 0.1, ball = 0.03;
+    const Vec start[PAIR] = {{0, 0, 0}, {0.005, sqrt(link * link - 0.005 * 0.005), 0}};
+    HairFixture fixture;
+    double lowest = 1;
+    fixture_create(&fixture, start, 1, PAIR, "chain", "", 0, 0);
+    fixture_collide(&fixture, "sphere:0,-0.126,0,0.03");
+    for (int i = 0; i < 120; ++i) {
+        Vec q[PAIR];
+        fixture_step(&fixture);
+        twin_read_strand(&fixture, 0, q);
+        lowest = fmin(lowest, q[1][1]);
+        assert_true(hypot(q[1][0], q[1][1] + 0.126) > ball + MARGIN - ROUNDING);
+    }
+    assert_true(lowest < -0.9 * link); // it did come there
+    fixture_destroy(&fixture);
+}
+
 // --- The list.
 
 static void assert_refused(const char *text, const char *part)
@@ -209,6 +301,10 @@ int main(void)
         cmocka_unit_test(a_capsule_of_two_radii_pushes_to_its_surface),
         cmocka_unit_test(a_capsule_inside_its_larger_end_is_a_sphere),
         cmocka_unit_test(a_world_collider_stays_where_it_is),
+        cmocka_unit_test(a_strand_leaves_half_as_far_as_it_goes),
+        cmocka_unit_test(a_strand_that_leaves_faster_is_not_pushed),
+        cmocka_unit_test(hair_at_the_ends_of_a_long_capsule_is_pushed),
+        cmocka_unit_test(upright_hair_falls_onto_what_is_below),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -208,6 +208,54 @@ static void a_sphere_has_its_distances(void **state)
     mesh_destroy(&sphere);
 }
 
+// Every grid point against every triangle, in spacings. Within the band of two spacings distances
+// are exact: measured 3.7e-6; coordinates of up to 40 spacings round by 2.4e-6 each. Beyond it,
+// they are those to the nearest of many surface points that flooding finds: a pass less would take
+// the turned box's errors to 1.7 times their mean. They depend on the passes and not on rounding,
+// so that 1.3 times what was measured will do.
+static void judge_all(const Mesh *mesh, uint32_t resolution, double most, double mean)
+{
+    float *values;
+    DistanceField field = compute(mesh, resolution, &values);
+    double near = 0, far = 0, sum = 0;
+    size_t count = distance_field_count(&field), farther = 0;
+    for (size_t i = 0; i < count; ++i) {
+        Point p;
+        grid_point(&field, i, p);
+        double exact = mesh_distance(mesh, p) / (double)field.spacing;
+        double off = fabs(fabs((double)values[i]) / (double)field.spacing - exact);
+        if (exact < 2)
+            near = fmax(near, off);
+        else
+            far = fmax(far, off), sum += off, ++farther;
+    }
+    print_message("%zu points: off by %.2g near, beyond by up to %.3g, on average %.3g\n", count,
+                  near, far, sum / (double)farther);
+    assert_true(near < 1.1e-5);
+    assert_true(far < most && sum < mean * (double)farther);
+    free(values);
+    distance_field_destroy(&field);
+}
+
+static void every_point_has_its_distance(void **state)
+{
+    (void)state;
+    Mesh sphere, head, box;
+    shapes_make_sphere(&sphere, 8, 12, 0.1f);
+    assert_int_equal(scalp_make_mesh(&head, SCALP_HEAD, 6, NULL), RESULT_OK);
+    make_box(&box, (const float[3]){0.11f, 0.07f, 0.05f});
+    for (int i = 0; i < 8; ++i) {
+        float *at = box.position[i], x = at[0], y = at[1];
+        at[0] = 0.8f * x - 0.6f * y, at[1] = 0.6f * x + 0.8f * y;
+    }
+    judge_all(&sphere, 24, 0.179 * 1.3, 3.39e-3 * 1.3);
+    judge_all(&head, 20, 0.0636 * 1.3, 1.38e-3 * 1.3);
+    judge_all(&box, 33, 0.0293 * 1.3, 7.36e-4 * 1.3);
+    mesh_destroy(&sphere);
+    mesh_destroy(&head);
+    mesh_destroy(&box);
+}
+
 static void read_head(Mesh *mesh)
 {
     Error error = {{0}};
@@ -215,8 +263,9 @@ static void read_head(Mesh *mesh)
         fail_msg("%s", error.text);
 }
 
-// Beyond two spacings distances are those to the nearest of many surface points: measured 0.09.
-// Against all triangles, and the generalised winding number, in double precision.
+// Beyond two spacings distances are those to the nearest of many surface points: measured 0.0705,
+// and 1.3 times that. Against all triangles, and the generalised winding number, in double
+// precision.
 static void the_bundled_head_has_exact_distances(void **state)
 {
     (void)state;
@@ -225,7 +274,7 @@ static void the_bundled_head_has_exact_distances(void **state)
     read_head(&head);
     DistanceField field = compute(&head, 64, &values);
     Judgement judgement = judge(&field, values, 263, exact_mesh, &head);
-    assert_true(judgement.error < 0.2);
+    assert_true(judgement.error < 0.0705 * 1.3);
     assert_int_equal(judgement.wrong, 0);
     free(values);
     distance_field_destroy(&field);
@@ -361,6 +410,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_box_has_exact_distances_and_signs),
         cmocka_unit_test(a_sphere_has_its_distances),
+        cmocka_unit_test(every_point_has_its_distance),
         cmocka_unit_test(the_bundled_head_has_exact_distances),
         cmocka_unit_test(holes_do_not_change_the_signs),
         cmocka_unit_test(a_mesh_turned_inside_out_is_the_same),
