@@ -25,31 +25,78 @@ static void bent_alone(SectionParams *params)
 
 static const TwinPair PAIR = {"chain", "", reference_chain_step, false};
 
-// Measured: 5e-7 to 1e-6 of the length where drag forgets what rounding adds, 1e-5 at 240 Hz, 6e-5
-// for 32 particles; strands without much drag are chaotic (a curl's start rounding grows to 1e-4
-// within 0.6 to 1.5 s), so those are compared while float32 can follow. 10 times what was measured.
+// Three times what was measured, the larger of a CPU with and without AVX. Strands without much
+// drag are chaotic (a curl's start rounding grows to 1e-4 within 0.6 to 1.5 s), so those are
+// compared while float32 can follow.
 static void it_equals_its_double_precision_twin(void **state)
 {
     (void)state;
     static const TwinCase cases[] = {
-        {2, 60, 1, 0, 600, 1e-5, NULL},   {3, 60, 4, 0, 600, 1e-5, NULL},
-        {16, 60, 4, 0, 600, 1e-5, NULL},  {16, 240, 4, 0, 600, 1e-4, NULL},
-        {16, 60, 4, 0.5, 60, 1e-5, NULL}, {16, 60, 0, 0, 30, 1e-5, NULL},
-        {16, 60, 1, 0.5, 60, 1e-5, NULL},
+        {2, 60, 1, 0, 600, 3 * 9.7e-7, NULL},   {3, 60, 4, 0, 600, 3 * 7.9e-7, NULL},
+        {16, 60, 4, 0, 600, 3 * 3.5e-7, NULL},  {16, 240, 4, 0, 600, 3 * 1.2e-5, NULL},
+        {16, 60, 4, 0.5, 60, 3 * 6.8e-7, NULL}, {16, 60, 0, 0, 30, 3 * 1.3e-6, NULL},
+        {16, 60, 1, 0.5, 60, 3 * 7e-7, NULL},
     };
     twin_require(&PAIR, cases, sizeof cases / sizeof *cases);
 }
 
+// The second is chaotic in its first seconds and comes to the same swing again: 5e-5 by one
+// rounding, more by others.
 static void strands_through_memory_equal_the_twin_too(void **state)
 {
     (void)state;
     static const TwinCase cases[] = {
-        {17, 60, 4, 0, 600, 1e-5, NULL},
+        {17, 60, 4, 0, 600, 3 * 7.6e-7, NULL},
         {32, 60, 4, 0, 600, 6e-4, NULL},
-        {32, 60, 4, 0.5, 30, 1e-4, NULL},
-        {64, 60, 4, 0.5, 8, 6e-5, NULL},
+        {32, 60, 4, 0.5, 30, 3 * 4.9e-7, NULL},
+        {64, 60, 4, 0.5, 8, 3 * 6.3e-6, NULL},
     };
     twin_require(&PAIR, cases, sizeof cases / sizeof *cases);
+}
+
+// A head that jumps by 40 cm leaves segments off by a share that the strand's length decides: short
+// ones are rescued by tractrices, long ones are not, and each as the twin is. Of the lengths, 0.1
+// to 0.4 m in steps of 0.55 %, one may lie so near the threshold that rounding decides. Measured
+// for the others: 4e-7; three times that.
+static void violent_steps_are_rescued_from_the_twins_threshold_on(void **state)
+{
+    (void)state;
+    enum { COUNT = 256, N = 8 };
+    static Vec start[COUNT * N];
+    static TwinStrand twins[COUNT];
+    HairFixture fixture;
+    double worst = 0;
+    int others = 0;
+    for (int s = 0; s < COUNT; ++s) {
+        twin_make_curl(&start[s * N], N, 0, 2);
+        for (int j = 0; j < N; ++j)
+            for (int k = 0; k < 3; ++k)
+                start[s * N + j][k] = (double)(float)(start[s * N + j][k] * 0.5 * pow(1.0055, s));
+        twin_start(&twins[s], N, (const Vec *)&start[s * N]);
+    }
+    fixture_create(&fixture, (const Vec *)start, COUNT, N, "chain", "", 0, 1);
+    fixture.step.head.translation[0] = 0.4f;
+    const TwinStep step = {.dt = fixture.step.dt,
+                           .drag = 1,
+                           .first = true,
+                           .gravity = {0, (double)-9.81f, 0},
+                           .head_old = fixture.step.head_old,
+                           .head = fixture.step.head};
+    fixture_step(&fixture);
+    for (int s = 0; s < COUNT; ++s) {
+        Vec q[N];
+        reference_chain_step(&twins[s], &step, &fixture.params);
+        twin_read_strand(&fixture, s, q);
+        double off = twin_rms((const Vec *)q, (const Vec *)twins[s].x, N, 0.1 * pow(1.0055, s));
+        if (off > 1e-3)
+            ++others;
+        else
+            worst = fmax(worst, off);
+    }
+    print_message("%.2g off, %d strands otherwise\n", worst, others);
+    assert_true(others <= 1);
+    assert_true(worst < 1.2e-6);
+    fixture_destroy(&fixture);
 }
 
 static void it_equals_the_reference_traces(void **state)
@@ -61,16 +108,16 @@ static void it_equals_the_reference_traces(void **state)
 
 // --- Bending and twist.
 
-// Measured: 1e-6 to 4e-5 (n = 32) while the account takes nothing; then it passes rounding on.
+// Three times what was measured, while the account takes nothing; then it passes rounding on.
 static void bending_equals_its_double_precision_twin(void **state)
 {
     (void)state;
     for (int i = 0; i < 2; ++i) {
         void (*tune)(SectionParams * params) = i ? bent_alone : bent;
         const TwinCase cases[] = {
-            {8, 60, 1, 0.5, 5, 2e-5, tune},    {16, 60, 1, 0.5, 5, 2e-5, tune},
-            {16, 240, 1, 0.5, 10, 2e-5, tune}, {32, 60, 4, 0.5, 5, 2e-4, tune},
-            {16, 60, 4, 0.5, 60, 5e-3, tune},
+            {8, 60, 1, 0.5, 5, 3 * 1.1e-6, tune},    {16, 60, 1, 0.5, 5, 2e-5, tune},
+            {16, 240, 1, 0.5, 10, 3 * 4.6e-6, tune}, {32, 60, 4, 0.5, 5, 3 * 3.7e-5, tune},
+            {16, 60, 4, 0.5, 60, 3 * 5.5e-5, tune},
         };
         twin_require(&PAIR, cases, sizeof cases / sizeof *cases);
     }
@@ -252,6 +299,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_equals_its_double_precision_twin),
+        cmocka_unit_test(violent_steps_are_rescued_from_the_twins_threshold_on),
         cmocka_unit_test(it_equals_the_reference_traces),
         cmocka_unit_test(strands_through_memory_equal_the_twin_too),
         cmocka_unit_test(bending_equals_its_double_precision_twin),

@@ -31,9 +31,21 @@ static double step_tolerance(int n, double c, double dt)
     return 2 * sqrt((double)n / (c * dt)) * 0x1p-24;
 }
 
-static void run_against_reference(int n, const char *variant, float style)
+// After so many seconds, the RMS error over the length that was measured against the twin; three
+// times that is allowed, and on a GPU, whose operations are less exact (twin.c), as much as
+// step_tolerance says.
+typedef struct SplitCase {
+    int n;
+    const char *variant;
+    double style, rate, seconds, measured;
+} SplitCase;
+
+static void run_against_reference(const SplitCase *trial)
 {
-    enum { COUNT = 5, STEPS = 600 };
+    enum { COUNT = 5 };
+    const int n = trial->n, steps = (int)(trial->seconds * trial->rate);
+    const char *variant = trial->variant;
+    const float style = (float)trial->style;
     static Vec start[COUNT * MOST];
     static ReferenceStrand twin[COUNT];
     Vec directions[MOST], drawn[MOST], expected[MOST];
@@ -44,6 +56,7 @@ static void run_against_reference(int n, const char *variant, float style)
     for (int s = 0; s < COUNT; ++s) twin_make_curl(&start[s * n], n, 0.01 * s, 1 + s);
     fixture_create(&fixture, (const Vec *)start, COUNT, n, "split", variant, style, 1);
     for (int s = 0; s < COUNT; ++s) reference_start(&twin[s], n, (const Vec *)&start[s * n]);
+    fixture.step.dt = 1 / trial->rate;
     for (int i = 0; i < 4; ++i) fixture.step.wind[i][0] = 1.5f, fixture.step.wind[i][2] = 0.5f;
 
     ReferenceForces forces = {.dt = fixture.step.dt,
@@ -51,8 +64,9 @@ static void run_against_reference(int n, const char *variant, float style)
                               .gravity = {0, (double)-9.81f, 0},
                               .wind = {1.5, 0, 0.5},
                               .first = true};
-    for (int i = 1; i <= STEPS; ++i) {
-        fixture.step.head.translation[0] = (float)(0.02 * (1 - cos(6.283185307 * 2 * i / 60)));
+    for (int i = 1; i <= steps; ++i) {
+        double turns = 2 * i * fixture.step.dt;
+        fixture.step.head.translation[0] = (float)(0.02 * (1 - cos(6.283185307 * turns)));
         fixture_step(&fixture);
         for (int s = 0; s < COUNT; ++s) {
             Vec root = {start[s * n][0] + (double)fixture.step.head.translation[0], start[s * n][1],
@@ -72,35 +86,48 @@ static void run_against_reference(int n, const char *variant, float style)
         double off = twin_rms((const Vec *)drawn, (const Vec *)expected, n, total_length(&twin[s]));
         worst = fmax(worst, off);
     }
-    printf("split %s, n = %d, style %g: RMS %.2g of the length from the double-precision twin "
-           "after %d steps\n",
-           variant, n, (double)style, worst, STEPS);
-    if (!(worst < step_tolerance(n, 1, forces.dt)))
-        fail_msg("%.3g exceeds %.3g", worst, step_tolerance(n, 1, forces.dt));
+    double limit = 3 * trial->measured;
+    if (!fixture_gpu()->software) limit = fmax(limit, step_tolerance(n, 1, forces.dt));
+    printf("split %s, n = %d, style %g, %g steps a second: RMS %.2g of the length from the "
+           "double-precision twin after %d steps\n",
+           variant, n, trial->style, trial->rate, worst, steps);
+    if (!(worst < limit)) fail_msg("%.3g exceeds %.3g", worst, limit);
     fixture_destroy(&fixture);
 }
 
+static void run_cases(const SplitCase *cases, size_t count)
+{
+    for (size_t i = 0; i < count; ++i) run_against_reference(&cases[i]);
+}
+
+// At long steps the tip swings by most of a radian in one: corrections of its arc are large, and
+// its string is taut or not within one step.
 static void ball_equals_its_double_precision_twin(void **state)
 {
     (void)state;
-    run_against_reference(16, "ball", 0);
-    run_against_reference(32, "ball", 0.5f);
-    run_against_reference(2, "ball", 0);
-    run_against_reference(16, "dragged", 0);
+    static const SplitCase cases[] = {
+        {16, "ball", 0, 60, 10, 3.7e-7}, {32, "ball", 0.5, 60, 10, 2.8e-7},
+        {2, "ball", 0, 60, 10, 1.1e-6},  {16, "dragged", 0, 60, 10, 1.7e-7},
+        {2, "ball", 0, 20, 2, 4.5e-7},   {16, "ball", 0, 15, 2, 1.4e-7},
+        {16, "ball", 0, 10, 2, 7.6e-8},  {3, "dragged", 0, 10, 2, 2.1e-7},
+    };
+    run_cases(cases, sizeof cases / sizeof *cases);
 }
 
 static void thesis_equals_its_double_precision_twin(void **state)
 {
     (void)state;
-    run_against_reference(16, "thesis", 0);
-    run_against_reference(3, "thesis", 0.7f);
+    static const SplitCase cases[] = {{16, "thesis", 0, 60, 10, 7.6e-7},
+                                      {3, "thesis", 0.7, 60, 10, 1.5e-7}};
+    run_cases(cases, sizeof cases / sizeof *cases);
 }
 
 static void strands_through_memory_equal_the_twin_too(void **state)
 {
     (void)state;
-    run_against_reference(64, "ball", 0);
-    run_against_reference(64, "thesis", 0);
+    static const SplitCase cases[] = {{64, "ball", 0, 60, 10, 5.2e-7},
+                                      {64, "thesis", 0, 60, 10, 1.9e-6}};
+    run_cases(cases, sizeof cases / sizeof *cases);
 }
 
 static void dragged_equals_the_reference_traces(void **state)

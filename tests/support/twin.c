@@ -199,6 +199,14 @@ static double run_case(const TwinPair *pair, const TwinCase *trial)
     return worst;
 }
 
+// A CPU's operations round to half a unit in the last place; GLSL allows 2.5 for divisions and 2
+// for inverse square roots (GLSL 4.30, 4.7.1), so that a GPU's rounding adds up to at most 5 times
+// as much.
+static double driver_factor(void)
+{
+    return fixture_gpu()->software ? 1 : 5;
+}
+
 void twin_require(const TwinPair *pair, const TwinCase *cases, int count)
 {
     for (int i = 0; i < count; ++i) {
@@ -207,7 +215,7 @@ void twin_require(const TwinPair *pair, const TwinCase *cases, int count)
         printf("%s %s, n = %d, %g steps a second: RMS %.2g of the length from the double-precision "
                "twin after %d steps\n",
                pair->algo, pair->variant, trial->n, trial->per_second, off, trial->steps);
-        if (!(off < trial->tolerance))
-            fail_msg("case %d: %.3g exceeds %.3g", i, off, trial->tolerance);
+        double limit = driver_factor() * trial->tolerance;
+        if (!(off < limit)) fail_msg("case %d: %.3g exceeds %.3g", i, off, limit);
     }
 }

@@ -77,7 +77,8 @@ typedef struct TwinCase {
     int n;                          // particles
     double per_second, drag, style; // steps a second; drag in 1/s
     int steps;
-    double tolerance;                    // greatest distance at the end: RMS over the length
+    double tolerance;                    // greatest distance at the end on a CPU driver: RMS over
+                                         // the length; on GPUs five times that
     void (*tune)(SectionParams *params); // changes parameters; or NULL
 } TwinCase;
 
