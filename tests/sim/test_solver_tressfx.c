@@ -65,8 +65,8 @@ static void steady_equals_its_double_precision_twin(void **state)
         {16, 60, 1, 0.5, 600, 3 * 6.4e-7, loose},
         {64, 60, 1, 0.5, 600, 3 * 1.2e-6, local_only},
         {64, 240, 1, 0.5, 600, 3 * 5.8e-6, local_only},
-        {16, 60, 1, 0.5, 60, 6e-6, range_of_four},
-        {16, 60, 1, 0.5, 60, 6e-6, clamped},
+        {16, 60, 1, 0.5, 60, 3 * 4.2e-7, range_of_four},
+        {16, 60, 1, 0.5, 60, 3 * 5.2e-7, clamped},
     };
     twin_require(&STEADY, cases, sizeof cases / sizeof *cases);
 }
@@ -75,10 +75,10 @@ static void tressfx4_equals_its_double_precision_twin(void **state)
 {
     (void)state;
     static const TwinCase cases[] = {
-        {2, 60, 1, 0.5, 600, 3 * 9.7e-8, NULL},    {5, 60, 1, 0.5, 600, 3 * 7.9e-8, NULL},
-        {16, 60, 1, 0.5, 600, 3 * 2.4e-7, NULL},   {32, 60, 0, 0.7, 600, 3 * 2.7e-7, shaped},
-        {16, 60, 1, 0.5, 600, 3 * 4e-6, loose},    {64, 60, 1, 0.5, 600, 3 * 2.4e-6, NULL},
-        {16, 60, 1, 0.5, 60, 6e-6, range_of_four}, {16, 60, 1, 0.5, 60, 6e-6, clamped},
+        {2, 60, 1, 0.5, 600, 3 * 9.7e-8, NULL},          {5, 60, 1, 0.5, 600, 3 * 7.9e-8, NULL},
+        {16, 60, 1, 0.5, 600, 3 * 2.4e-7, NULL},         {32, 60, 0, 0.7, 600, 3 * 2.7e-7, shaped},
+        {16, 60, 1, 0.5, 600, 3 * 4e-6, loose},          {64, 60, 1, 0.5, 600, 3 * 2.4e-6, NULL},
+        {16, 60, 1, 0.5, 60, 3 * 3.1e-7, range_of_four}, {16, 60, 1, 0.5, 60, 3 * 2.9e-7, clamped},
     };
     twin_require(&TRESSFX4, cases, sizeof cases / sizeof *cases);
 }
