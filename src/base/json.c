@@ -4,12 +4,33 @@
 #include "base/suggest.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { EXCERPT_SIZE = 64 };
+
+static atomic_bool memory_short;
+
+static void *allocate(size_t size)
+{
+    void *block = malloc(size);
+    if (!block) atomic_store(&memory_short, true);
+    return block;
+}
+
+// Before main: no value may come from another allocator.
+static __attribute__((constructor)) void watch_memory(void)
+{
+    json_set_alloc_funcs(allocate, free);
+}
+
+bool json_memory_short(void)
+{
+    return atomic_load(&memory_short);
+}
 
 // Writes the place's name from the root on; returns its length, cut at `size` - 1.
 static size_t name_place(const JsonPlace *place, char *text, size_t size)
@@ -154,7 +175,10 @@ Result json_check_object(const JsonPlace *place, const json_t *value, const char
 Result json_write_file(const json_t *value, const char *path, Error *error)
 {
     char *text = value ? json_dumps(value, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
-    if (!text) return error_set(error, RESULT_FAILED, "%s: no memory for the result", path);
+    if (!text || json_memory_short()) {
+        free(text);
+        return error_set(error, RESULT_FAILED, "%s: no memory for the result", path);
+    }
     OutFile file;
     Result result = outfile_open(&file, path, error);
     if (result == RESULT_OK) fprintf(file.stream, "%s\n", text);

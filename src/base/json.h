@@ -6,6 +6,8 @@
 #include "base/error.h"
 
 #include <jansson.h>
+
+#include <stdbool.h>
 #include <stddef.h>
 
 // A place in a document, for messages such as "scene.json: sections[2].drag: got ...". The root has
@@ -41,7 +43,11 @@ Result json_read_choice(const JsonPlace *place, const json_t *value, const char 
 Result json_check_object(const JsonPlace *place, const json_t *value, const char *const *names,
                          Error *error);
 
+// Whether memory was short for any JSON value so far: values are then incomplete, since what is put
+// into NULL, or is NULL, is dropped without a word. Whoever writes a document asks before.
+bool json_memory_short(void);
+
 // Writes `value` as an indented file that appears complete or not at all; floats are as short as
-// float32 allows. Takes no reference. RESULT_FAILED with path and reason, also for a NULL value
-// (memory was short when it was made).
+// float32 allows. Takes no reference. RESULT_FAILED with path and reason, also if memory was short
+// when the value was made.
 Result json_write_file(const json_t *value, const char *path, Error *error);

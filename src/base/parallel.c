@@ -14,10 +14,19 @@ typedef struct Share {
     bool running;
 } Share;
 
-int parallel_threads(void)
+static pthread_once_t counted = PTHREAD_ONCE_INIT;
+static int threads;
+
+static void count_threads(void)
 {
     long count = sysconf(_SC_NPROCESSORS_ONLN);
-    return count < 1 ? 1 : count > PARALLEL_MOST ? PARALLEL_MOST : (int)count;
+    threads = count < 1 ? 1 : count > PARALLEL_MOST ? PARALLEL_MOST : (int)count;
+}
+
+int parallel_threads(void)
+{
+    pthread_once(&counted, count_threads);
+    return threads;
 }
 
 static void *run(void *argument)

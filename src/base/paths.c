@@ -52,9 +52,11 @@ static bool find_folder(Place *place)
     return look_at_folder(place, ".");
 }
 
+// False with errno.
 static bool find_place(Place *place, const PathUse *use)
 {
     Target target = {0};
+    errno = 0;
     *place = (Place){.used = use->path && *use->path && strcmp(use->path, "-") != 0};
     if (!place->used) return true;
     bool file = stat(use->path, &place->file) == 0;
@@ -67,7 +69,8 @@ static bool find_place(Place *place, const PathUse *use)
     if (!place->full) place->full = strdup(place->numbered ? target.before : use->path);
     if (place->numbered) place->after = strdup(target.after);
     target_destroy(&target);
-    return place->full && (!place->numbered || place->after) && find_folder(place);
+    if (!place->full || (place->numbered && !place->after)) errno = ENOMEM;
+    return errno != ENOMEM && find_folder(place);
 }
 
 static bool is_same(const struct stat *a, const struct stat *b)
@@ -141,8 +144,13 @@ Result paths_check(const PathUse *uses, int count, Error *error)
 {
     Place *places = calloc((size_t)count + 1, sizeof *places);
     bool found = places != NULL;
-    for (int i = 0; i < count && found; ++i) found = find_place(&places[i], &uses[i]);
     Result result = found ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for paths");
+    for (int i = 0; i < count && found; ++i) {
+        found = find_place(&places[i], &uses[i]);
+        if (!found)
+            result = error_set(error, RESULT_FAILED, "%s %.300s: cannot look at its folder: %s",
+                               uses[i].name, uses[i].path, strerror(errno));
+    }
     for (int i = 0; i < count && found; ++i)
         for (int k = 0; k < count && uses[i].role == PATH_WRITTEN; ++k) {
             bool once = k > i || uses[k].role == PATH_READ; // each pair of outputs once

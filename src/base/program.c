@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "base/program.h"
 
+#include <errno.h>
 #include <poll.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <string.h>
 #include <unistd.h>
 
 // Whether standard output is a pipe whose reader has gone, as `head` does when it has enough.
@@ -16,9 +18,13 @@ static bool reader_left(void)
 int program_end(const char *name, Result result, Error *error)
 {
     bool reported = result != RESULT_OK && error->text[0];
+    errno = 0;
     bool lost = fflush(stdout) != 0 || ferror(stdout);
+    // The stream keeps that an earlier write failed, not why: what is lost is asked for again.
+    if (lost && !errno && write(STDOUT_FILENO, "\n", 1) >= 0) errno = EIO;
     if (lost && !reported && !reader_left())
-        result = error_set(error, RESULT_FAILED, "cannot write to standard output");
+        result =
+            error_set(error, RESULT_FAILED, "cannot write to standard output: %s", strerror(errno));
     if (result != RESULT_OK && error->text[0]) fprintf(stderr, "%s: %s\n", name, error->text);
     return result;
 }

@@ -88,7 +88,9 @@ void *gpu_buffer_read(const GpuBuffer *buffer)
     if (!content) return NULL;
     glBindBuffer(GL_COPY_READ_BUFFER, buffer->buffer);
     glGetBufferSubData(GL_COPY_READ_BUFFER, 0, (GLsizeiptr)buffer->size, content);
-    return content;
+    if (glGetError() == GL_NO_ERROR) return content;
+    free(content);
+    return NULL;
 }
 
 void gpu_buffer_bind_storage(const GpuBuffer *buffer, GLuint binding)

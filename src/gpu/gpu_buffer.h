@@ -34,7 +34,8 @@ void gpu_buffer_destroy(GpuBuffer *buffer);
 // Sets every 4 bytes to `word`. Only queues GPU work.
 void gpu_buffer_clear(const GpuBuffer *buffer, uint32_t word);
 
-// A copy of the content, to be freed; NULL when memory is short. Waits for the GPU.
+// A copy of the content, to be freed; NULL when memory is short, here or in the driver, or an
+// earlier call has left an error. Waits for the GPU.
 void *gpu_buffer_read(const GpuBuffer *buffer);
 
 // Binds as storage at a BIND_..._OUT point, or the texture at a BIND_ texture unit

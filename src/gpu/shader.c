@@ -10,6 +10,8 @@
 
 enum { MAX_FILES = 32, MAX_LOG = 4096 };
 
+static const char NO_REASON[] = "the driver refuses it and gives no reason";
+
 static const GlslSource NONE[] = {{NULL, NULL}};
 static const GlslSource *added_sources = NONE;
 static bool warnings_are_errors;
@@ -170,6 +172,7 @@ static Result compile(GLuint shader, const char *file, const ShaderDefine *defin
         glCompileShader(shader);
         glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
         glGetShaderInfoLog(shader, sizeof log, NULL, log);
+        if (!good && !*log) snprintf(log, sizeof log, "%s", NO_REASON);
         if (!good || (warnings_are_errors && *log))
             result = report_log(&composition, file, log, error);
     }
@@ -186,7 +189,7 @@ static Result link_program(GLuint program, const char *file, Error *error)
     glGetProgramInfoLog(program, sizeof log, NULL, log);
     if (good && !(warnings_are_errors && *log)) return RESULT_OK;
     log[strcspn(log, "\n")] = 0;
-    return error_set(error, RESULT_FAILED, "glsl/%s: link: %s", file, log);
+    return error_set(error, RESULT_FAILED, "glsl/%s: link: %s", file, *log ? log : NO_REASON);
 }
 
 typedef struct Stage {
@@ -194,14 +197,20 @@ typedef struct Stage {
     const char *file;
 } Stage;
 
+static Result fail_memory(const char *file, Error *error)
+{
+    return error_set(error, RESULT_FAILED, "glsl/%s: the driver has no memory for it", file);
+}
+
 static Result build(GLuint *program, const Stage *stages, int count, const ShaderDefine *defines,
                     Error *error)
 {
     *program = glCreateProgram();
-    Result result = RESULT_OK;
+    Result result = *program ? RESULT_OK : fail_memory(stages[count - 1].file, error);
     for (int i = 0; i < count && result == RESULT_OK; ++i) {
         GLuint shader = glCreateShader(stages[i].type);
-        result = compile(shader, stages[i].file, defines, error);
+        result = shader ? compile(shader, stages[i].file, defines, error)
+                        : fail_memory(stages[i].file, error);
         if (result == RESULT_OK) glAttachShader(*program, shader);
         glDeleteShader(shader); // lives on while it is attached
     }

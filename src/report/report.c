@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "report/report.h"
 
+#include "base/json.h"
 #include "base/utf8.h"
 
 #include <errno.h>
@@ -148,6 +149,8 @@ Result report_add_image(Report *report, const Bytes *png, int *number, Error *er
 Result report_close(Report *report, const char *kind, const json_t *data, Error *error)
 {
     Result result = fflush(report->images) == 0 ? RESULT_OK : fail_images(report, error);
+    if (json_memory_short())
+        result = error_set(error, RESULT_FAILED, "%s: no memory for the page", report->file.path);
     if (!data) THEN(result, error_set(error, RESULT_FAILED, "no memory for the report"));
     if (result == RESULT_OK) put_page(report, kind, data);
     if (result == RESULT_OK && ferror(report->images)) result = fail_images(report, error);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "run/cache_scene.h"
 
+#include "base/json.h"
+
 #include "version.h"
 
 #include <endian.h>
@@ -78,7 +80,10 @@ Result cache_scene_describe(Bytes *text, const Simulation *simulation, Error *er
     // 17 digits: key times are doubles.
     char *dump = json_dumps(object, JSON_COMPACT | JSON_SORT_KEYS | JSON_REAL_PRECISION(17));
     json_decref(object);
-    if (!dump) return error_set(error, RESULT_FAILED, "no memory for the scene's values");
+    if (!dump || json_memory_short()) {
+        free(dump);
+        return error_set(error, RESULT_FAILED, "no memory for the scene's values");
+    }
     *text = (Bytes){.data = (uint8_t *)dump, .size = strlen(dump)};
     return RESULT_OK;
 }
@@ -140,6 +145,8 @@ Result cache_scene_compare(const Bytes *text, const Simulation *simulation, cons
 {
     json_t *was = json_loadb((const char *)text->data, text->size, 0, NULL);
     Bytes now = {0};
+    if (!was && json_memory_short())
+        return error_set(error, RESULT_FAILED, "%s: no memory for its scene", path);
     if (!was) return error_set(error, RESULT_BAD_INPUT, "%s: its scene is no JSON object", path);
     keep_values(was); // of earlier versions, which wrote other solvers' parameters, too
     Result result = cache_scene_describe(&now, simulation, error);
