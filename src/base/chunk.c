@@ -44,21 +44,38 @@ void chunk_write(FILE *stream, const char *tag, uint32_t number, const void *pay
 bool chunk_file_read_raw(ChunkFile *file, uint64_t at, void *bytes, size_t size)
 {
     uint8_t *to = bytes;
+    errno = 0;
     while (size > 0) {
         ssize_t got = pread(file->descriptor, to, size, (off_t)at);
-        if (got < 0 && errno == EINTR) continue;
+        if (got < 0 && errno == EINTR) {
+            errno = 0;
+            continue;
+        }
         if (got <= 0) return false;
         to += got, at += (uint64_t)got, size -= (size_t)got;
     }
     return true;
 }
 
+static Result fail_at(const ChunkFile *file, uint64_t at, const char *what, Error *error)
+{
+    return error_set(error, RESULT_BAD_INPUT, "%s: byte %llu: %s", file->path,
+                     (unsigned long long)at, what);
+}
+
+// After chunk_file_read_raw has failed.
+static Result fail_to_read(const ChunkFile *file, uint64_t at, const char *ended, Error *error)
+{
+    return fail_at(file, at, errno ? strerror(errno) : ended, error);
+}
+
 static Result check_header(ChunkFile *file, const char *magic, Error *error)
 {
     char header[CHUNK_FILE_HEADER_BYTES];
     uint32_t version;
-    if (!chunk_file_read_raw(file, 0, header, sizeof header) ||
-        memcmp(header, magic, MAGIC_BYTES) != 0)
+    if (!chunk_file_read_raw(file, 0, header, sizeof header) && errno)
+        return fail_to_read(file, 0, "", error);
+    if (file->size < sizeof header || memcmp(header, magic, MAGIC_BYTES) != 0)
         return error_set(error, RESULT_BAD_INPUT, "%s: byte 0: expected %s", file->path, magic);
     memcpy(&version, header + MAGIC_BYTES, sizeof version);
     if (le32toh(version) == VERSION) return RESULT_OK;
@@ -91,17 +108,11 @@ void chunk_file_close(ChunkFile *file)
     *file = (ChunkFile){.descriptor = -1};
 }
 
-static Result fail_at(const ChunkFile *file, uint64_t at, const char *what, Error *error)
-{
-    return error_set(error, RESULT_BAD_INPUT, "%s: byte %llu: %s", file->path,
-                     (unsigned long long)at, what);
-}
-
 Result chunk_find(ChunkFile *file, uint64_t at, Chunk *chunk, Error *error)
 {
     Header header;
     if (!chunk_file_read_raw(file, at, &header, sizeof header))
-        return fail_at(file, at, "the file ends", error);
+        return fail_to_read(file, at, "the file ends", error);
     if (le32toh(header.header_checksum) !=
         libdeflate_crc32(0, &header, offsetof(Header, header_checksum)))
         return fail_at(file, at, "damaged, no chunk begins here", error);
@@ -123,9 +134,11 @@ Result chunk_read(ChunkFile *file, const Chunk *chunk, Bytes *payload, Error *er
                          (unsigned long long)chunk->size);
     }
     payload->data[payload->size] = 0;
-    if (chunk_file_read_raw(file, chunk->at + CHUNK_HEADER_BYTES, payload->data, payload->size) &&
-        libdeflate_crc32(0, payload->data, payload->size) == chunk->checksum)
-        return RESULT_OK;
-    bytes_destroy(payload);
-    return fail_at(file, chunk->at, "damaged, the checksum differs", error);
+    Result result = RESULT_OK;
+    if (!chunk_file_read_raw(file, chunk->at + CHUNK_HEADER_BYTES, payload->data, payload->size))
+        result = fail_to_read(file, chunk->at, "the file ends within this chunk", error);
+    else if (libdeflate_crc32(0, payload->data, payload->size) != chunk->checksum)
+        result = fail_at(file, chunk->at, "damaged, the checksum differs", error);
+    if (result != RESULT_OK) bytes_destroy(payload);
+    return result;
 }

@@ -51,5 +51,6 @@ static inline uint64_t chunk_end(const Chunk *chunk)
 // RESULT_FAILED if memory is short.
 Result chunk_read(ChunkFile *file, const Chunk *chunk, Bytes *payload, Error *error);
 
-// `size` bytes at `at` as they are; false if there are fewer.
+// `size` bytes at `at` as they are; false if there are fewer (errno 0) or they cannot be read
+// (errno).
 bool chunk_file_read_raw(ChunkFile *file, uint64_t at, void *bytes, size_t size);

@@ -2,6 +2,7 @@
 #include "base/float_planes.h"
 
 #include <endian.h>
+#include <errno.h>
 #include <libdeflate.h>
 #include <math.h>
 #include <stdlib.h>
@@ -127,7 +128,9 @@ bool float_planes_unpack(float *values, size_t count, size_t stride, const uint8
     }
     good = good && at == size;
     if (good) join(values, count, stride, planes);
+    int reason = decompressor && planes ? 0 : ENOMEM;
     if (decompressor) libdeflate_free_decompressor(decompressor);
     free(planes);
+    errno = reason;
     return good;
 }

@@ -18,6 +18,7 @@ size_t float_planes_bound(size_t count);
 size_t float_planes_pack(const float *values, size_t count, size_t stride, uint8_t *packed);
 
 // The same bits again. `size` bytes must be just what was packed: anything else gives false, and
-// values that mean nothing. No bytes are read beyond `size`.
+// values that mean nothing. No bytes are read beyond `size`. False with errno ENOMEM if memory is
+// short, else errno is 0.
 bool float_planes_unpack(float *values, size_t count, size_t stride, const uint8_t *packed,
                          size_t size);

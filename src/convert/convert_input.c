@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "convert/convert_input.h"
 
+#include "base/json.h"
 #include "base/quote.h"
 #include "base/reader.h"
 #include "strands/strands.h"
@@ -24,6 +25,9 @@ static Result read_fps(CacheStrands *strands, Error *error)
 {
     const Bytes *text = &strands->cache.scene;
     json_t *scene = json_loadb((const char *)text->data, text->size, 0, NULL);
+    if (!scene && json_memory_short())
+        return error_set(error, RESULT_FAILED, "%s: no memory for its scene",
+                         strands->cache.file.path);
     strands->fps = json_number_value(json_object_get(scene, "fps"));
     json_decref(scene);
     return strands->fps > 0 ? RESULT_OK : refuse_cache(strands, "its scene has no fps", error);
@@ -272,7 +276,8 @@ Result convert_input_open(ConvertInput *input, Error *error)
 {
     Result result = RESULT_OK;
     for (int i = 0; i < input->path_count; ++i) {
-        bool cached = cache_file_matches(input->paths[i]);
+        bool cached;
+        TRY(cache_file_matches(input->paths[i], &cached, error));
         bool numbered = !cached && strchr(input->paths[i], '%') && access(input->paths[i], F_OK);
         input->cached = input->cached || cached;
         input->numbered = input->numbered || numbered;

@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -44,8 +45,8 @@ static Result read_part(CacheFile *cache, uint64_t at, const char *tag, Bytes *p
     return chunk_read(&cache->file, &chunk, payload, error);
 }
 
-// Reads the index at the end; false if there is none or it is damaged.
-static bool read_index(CacheFile *cache)
+// Reads the index at the end: `finished` stays false if there is none or it is damaged.
+static Result read_index(CacheFile *cache, Error *error)
 {
     struct {
         uint64_t at;
@@ -54,11 +55,15 @@ static bool read_index(CacheFile *cache)
     _Static_assert(sizeof trailer == CACHE_TRAILER_BYTES, "a trailer has no holes");
     uint64_t size = cache->file.size, end;
     Bytes index = {0};
-    if (size < CACHE_TRAILER_BYTES ||
-        !chunk_file_read_raw(&cache->file, size - CACHE_TRAILER_BYTES, &trailer, sizeof trailer) ||
-        memcmp(trailer.magic, CACHE_TRAILER, sizeof trailer.magic) != 0 ||
-        read_part(cache, le64toh(trailer.at), "INDX", &index, &end, NULL) != RESULT_OK)
-        return false;
+    if (size < CACHE_TRAILER_BYTES) return RESULT_OK;
+    if (!chunk_file_read_raw(&cache->file, size - CACHE_TRAILER_BYTES, &trailer, sizeof trailer))
+        return error_set(error, RESULT_BAD_INPUT, "%s: its end: %s", cache->file.path,
+                         errno ? strerror(errno) : "the file has become shorter");
+    if (memcmp(trailer.magic, CACHE_TRAILER, sizeof trailer.magic) != 0) return RESULT_OK;
+    errno = 0;
+    Result result = read_part(cache, le64toh(trailer.at), "INDX", &index, &end, error);
+    // A damaged index is none; one that cannot be read says nothing about the cache.
+    if (result != RESULT_OK) return result == RESULT_FAILED || errno ? result : RESULT_OK;
     bool good = true;
     for (size_t i = 0; i < index.size / sizeof(uint64_t) && good; ++i) {
         uint64_t offset;
@@ -67,7 +72,8 @@ static bool read_index(CacheFile *cache)
     }
     bytes_destroy(&index);
     cache->finished = good;
-    return good;
+    if (good) return RESULT_OK;
+    return error_set(error, RESULT_FAILED, "%s: no memory for an index", cache->file.path);
 }
 
 // Finds the frames chunk by chunk from `at`, as far as they are complete and in order.
@@ -76,7 +82,11 @@ static Result scan(CacheFile *cache, uint64_t at, Error *error)
     cache->frame_count = 0;
     while (at < cache->file.size) {
         Chunk chunk;
-        if (chunk_find(&cache->file, at, &chunk, &cache->end) != RESULT_OK) return RESULT_OK;
+        errno = 0;
+        Result result = chunk_find(&cache->file, at, &chunk, &cache->end);
+        if (result != RESULT_OK && errno)
+            return error_set(error, result, "%s", cache->end.text); // not the file's fault
+        if (result != RESULT_OK) return RESULT_OK;
         if (strcmp(chunk.tag, "INDX") == 0) return RESULT_OK;
         if (strcmp(chunk.tag, "FRAM") != 0 || chunk.number != cache->frame_count) {
             error_set(&cache->end, RESULT_BAD_INPUT, "%s: byte %llu: not frame %u",
@@ -90,14 +100,44 @@ static Result scan(CacheFile *cache, uint64_t at, Error *error)
     return RESULT_OK;
 }
 
-bool cache_file_matches(const char *path)
+Result cache_file_matches(const char *path, bool *matches, Error *error)
 {
     char magic[sizeof CACHE_MAGIC - 1];
     FILE *stream = fopen(path, "rb");
-    bool same = stream && fread(magic, sizeof magic, 1, stream) == 1 &&
-                memcmp(magic, CACHE_MAGIC, sizeof magic) == 0;
+    *matches = stream && fread(magic, sizeof magic, 1, stream) == 1 &&
+               memcmp(magic, CACHE_MAGIC, sizeof magic) == 0;
+    int reason = stream && ferror(stream) ? errno : 0;
     if (stream) fclose(stream);
-    return same;
+    // A folder is for others to refuse.
+    if (!reason || reason == EISDIR) return RESULT_OK;
+    return error_set(error, RESULT_BAD_INPUT, "%s: %s", path, strerror(reason));
+}
+
+// Whether the file ends within the chunk at *at or before it; *at then is where the chunk ends.
+static bool ends_within(ChunkFile *file, uint64_t *at)
+{
+    Chunk chunk = {.size = 0};
+    if (file->size < *at + CHUNK_HEADER_BYTES) return true;
+    Result result = chunk_find(file, *at, &chunk, NULL);
+    *at += CHUNK_HEADER_BYTES + chunk.size;
+    return result != RESULT_OK && chunk.size > 0; // without a size it is damaged, not cut off
+}
+
+bool cache_file_is_stub(const char *path)
+{
+    char magic[sizeof CACHE_MAGIC - 1];
+    struct stat status;
+    ChunkFile file = {.descriptor = open(path, O_RDONLY | O_CLOEXEC)};
+    bool stub =
+        file.descriptor >= 0 && fstat(file.descriptor, &status) == 0 && S_ISREG(status.st_mode);
+    file.size = stub ? (uint64_t)status.st_size : 0;
+    size_t begun = file.size < sizeof magic ? (size_t)file.size : sizeof magic;
+    uint64_t at = CHUNK_FILE_HEADER_BYTES;
+    stub = stub && chunk_file_read_raw(&file, 0, magic, begun) &&
+           memcmp(magic, CACHE_MAGIC, begun) == 0 &&
+           (file.size < at || ends_within(&file, &at) || ends_within(&file, &at));
+    if (file.descriptor >= 0) close(file.descriptor);
+    return stub;
 }
 
 Result cache_file_open(CacheFile *cache, const char *path, Error *error)
@@ -107,7 +147,8 @@ Result cache_file_open(CacheFile *cache, const char *path, Error *error)
     TRY(chunk_file_open(&cache->file, path, CACHE_MAGIC, error));
     Result result = read_part(cache, at, "SCEN", &cache->scene, &at, error);
     THEN(result, read_part(cache, at, "HAIR", &cache->hair, &at, error));
-    if (result == RESULT_OK && !read_index(cache)) result = scan(cache, at, error);
+    THEN(result, read_index(cache, error));
+    if (result == RESULT_OK && !cache->finished) result = scan(cache, at, error);
     if (result != RESULT_OK) cache_file_close(cache);
     return result;
 }
@@ -184,9 +225,13 @@ Result cache_file_read(CacheFile *cache, int frame, float head[CACHE_HEAD_FLOATS
     bool good = payload.size >= HEAD_BYTES &&
                 float_planes_unpack((float *)positions, (size_t)(3 * vertex_count), CACHE_STRIDE,
                                     payload.data + HEAD_BYTES, payload.size - HEAD_BYTES);
+    bool short_of_memory = !good && payload.size >= HEAD_BYTES && errno == ENOMEM;
     for (int i = 0; i < CACHE_HEAD_FLOATS && good; ++i) head[i] = take_float(payload.data + 4 * i);
     bytes_destroy(&payload);
     if (good) return RESULT_OK;
+    if (short_of_memory)
+        return error_set(error, RESULT_FAILED, "%s: no memory for frame %d", cache->file.path,
+                         frame);
     return error_set(error, RESULT_BAD_INPUT, "%s: frame %d at byte %llu is no frame of this hair",
                      cache->file.path, frame, (unsigned long long)cache->offsets[frame]);
 }

@@ -27,8 +27,12 @@ typedef struct CacheFile {
     Error end;     // why there are no more, if that is not the file's proper end
 } CacheFile;
 
-// Whether the file begins like a cache; false also if it can't be read.
-bool cache_file_matches(const char *path);
+// Whether the file begins like a cache; no if it can't be opened. RESULT_BAD_INPUT if it can't be
+// read.
+Result cache_file_matches(const char *path, bool *matches, Error *error);
+
+// Whether it is a cache that ends before its first frame could begin: its run was stopped at once.
+bool cache_file_is_stub(const char *path);
 
 // Opens a cache, finished or not. RESULT_BAD_INPUT with one line about the file's defect,
 // RESULT_FAILED when memory is short. A zeroed struct may be closed.

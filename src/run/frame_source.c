@@ -115,10 +115,26 @@ static bool find_state(FrameSource *source, FILE *messages, Error *error)
     return false;
 }
 
+// The run was stopped when all frames were there, but not the index behind them.
+static Result complete_cache(FrameSource *source, Error *error)
+{
+    const CacheFile *cache = &source->reader.cache;
+    TRY(cache_writer_continue(&source->writer, &source->reader, cache->frame_count,
+                              source->simulation, error));
+    TRY(cache_writer_finish(&source->writer, error));
+    if ((int)cache->frame_count >= source->simulation->scene->run.frames)
+        unlink(source->state_path);
+    return RESULT_OK;
+}
+
 static Result resume_cache(FrameSource *source, const char *path, int last, FILE *messages,
                            Error *error)
 {
     CacheReader *reader = &source->reader;
+    if (cache_file_is_stub(path)) {
+        if (messages) fprintf(messages, "%s: no frames yet: simulating from the start\n", path);
+        return begin_cache(source, path, error);
+    }
     TRY(cache_reader_open(reader, path, source->simulation, source->strands, error));
     source->reads = true;
     if (!cache_file_verify(&reader->cache) && messages)
@@ -127,7 +143,7 @@ static Result resume_cache(FrameSource *source, const char *path, int last, FILE
         fprintf(messages, "%s: %u frames are there\n", quote(path).text, reader->cache.frame_count);
     if ((int)reader->cache.frame_count > last) {
         source->played = (int)reader->cache.frame_count;
-        return RESULT_OK;
+        return reader->cache.finished ? RESULT_OK : complete_cache(source, error);
     }
     if (!find_state(source, messages, error)) return begin_cache(source, path, error);
     Result result = cache_writer_continue(&source->writer, reader, (uint32_t)source->played,
