@@ -62,7 +62,12 @@ SCRIPTS   := $(addprefix $(OUT)/tractrix-,farm turntable compare-goldens) # prog
 MANUALS   := $(addsuffix .1,$(PROGRAMS) $(SCRIPTS)) $(OUT)/tractrix-gen-fur.1
 SHELLS    := bash zsh fish
 COMPLETIONS := $(foreach shell,$(SHELLS),$(addsuffix .$(shell),$(PROGRAMS) $(SCRIPTS)))
-FOLDERS   := $(sort $(dir $(OBJECTS) $(SUPPORT_OBJECTS) $(TEST_PROGRAMS)))
+# Fault injection: the programs once more, with each call of calls.def wrapped, and what makes them fail.
+FAULTY    := $(PROGRAMS:$(OUT)/%=$(OUT)/faults/%)
+FAULT_CALLS := $(shell sed -nEf tests/faults/wrapped.sed tests/faults/calls.def)
+TORTURE   := $(OUT)/tests/faults/torture
+TORTURE_OBJECTS := $(patsubst %.c,$(OUT)/%.o,$(filter-out tests/faults/inject.c,$(wildcard tests/faults/*.c)))
+FOLDERS   := $(sort $(dir $(OBJECTS) $(SUPPORT_OBJECTS) $(TEST_PROGRAMS) $(FAULTY) $(TORTURE)))
 
 # --- Build. Recipes that recurse use all processors unless -j says otherwise.
 JOBS = $(if $(filter -j% --jobserver%,$(MAKEFLAGS)),,-j$(shell nproc))
@@ -73,7 +78,7 @@ SILENT := $(findstring s,$(firstword -$(MAKEFLAGS)))
 run = $(if $(V),$(2),@$(if $(SILENT),,printf '  %-6s %s\n' $(1) $@; )$(2))
 
 all: $(OUT)/libtractrix.a $(PROGRAMS) $(SCRIPTS) ## the programs (default)
-tests: $(TEST_PROGRAMS)
+tests: $(TEST_PROGRAMS) $(FAULTY) $(TORTURE)
 	@:
 
 $(OUT)/%.o: src/%.c $(OUT)/flags | $(OUT)/version.h
@@ -125,6 +130,14 @@ $(OUT)/tests/support/libsupport.a: $(SUPPORT_OBJECTS) $(OUT)/files
 $(OUT)/tests/%: $(OUT)/tests/%.o $(KEEP_$(CONFIG)) $(OUT)/tests/support/libsupport.a $(OUT)/libtractrix.a
 	$(call run,LINK,$(CC) $(LD_FLAGS) -o $@ $^ $(LD_LIBS) -lcmocka)
 
+define faulty # MAIN
+$(OUT)/faults/$(patsubst main_%,tractrix-%,$(notdir $(1))): $(OUT)/$(1).o $(OUT)/tests/faults/inject.o $(KEEP_$(CONFIG)) $(OUT)/libtractrix.a
+	$$(call run,LINK,$$(CC) $$(LD_FLAGS) $$(FAULT_CALLS:%=-Wl,--wrap=%) -o $$@ $$^ $$(LD_LIBS))
+endef
+$(foreach main,$(MAINS:src/%.c=%),$(eval $(call faulty,$(main))))
+$(TORTURE): $(TORTURE_OBJECTS) $(KEEP_$(CONFIG)) $(OUT)/libtractrix.a
+	$(call run,LINK,$(CC) $(LD_FLAGS) -o $@ $^ $(LD_LIBS))
+
 # Stamps, rewritten only when what they hold changes, so that what depends on them is rebuilt just then: the flags,
 # the list of files (one may have been removed) and the version.
 quote = '$(subst ','\'',$(1))'
@@ -173,6 +186,10 @@ stress: all ## random circumstances for every solver until a rule breaks, an hou
 mutate: ## whether tests catch small faults, put in one at a time, hours (MUTATE="--only split"; tests/mutants.txt)
 	@scripts/setup build run test
 	@scripts/mutate $(MUTATE)
+
+SEED = 1
+torture: all tests ## every call of small runs fails in turn, 200 kills: an hour or so (SEED=N, TORTURE_OPTIONS="--only convert")
+	@$(TORTURE) $(OUT) --long --seed $(SEED) --jobs $$(nproc) $(TORTURE_OPTIONS)
 
 # --- Static checks and the sanitizers; all of them run, then the failures are named. One alone: make check-format.
 CHECKS := format scripts warnings clang cppcheck shaders farm sanitize
@@ -279,7 +296,7 @@ help: ## this list
 	@echo; sed -n '4,7s/^#//p' $(firstword $(MAKEFILE_LIST))
 
 FORCE:
-.PHONY: deb check-deb check-container all tests demo test bench bench-image stress mutate check $(CHECKS:%=check-%) format install uninstall clean help FORCE
+.PHONY: deb check-deb check-container all tests demo test bench bench-image stress mutate torture check $(CHECKS:%=check-%) format install uninstall clean help FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
 -include $(patsubst %.o,%.d,$(OBJECTS) $(MAINS:src/%.c=$(OUT)/%.o) $(TEST_PROGRAMS:%=%.o) $(SUPPORT_OBJECTS))

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include "faults/place.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+// Room for the sanitizers' own files, which is none.
+void place_create(Place *place, const char *work, int number)
+{
+    snprintf(place->root, sizeof place->root, "%.4000s/%d", work, number);
+    snprintf(place->run, sizeof place->run, "%s/run", place->root);
+    snprintf(place->tmp, sizeof place->tmp, "%s/tmp", place->root);
+    snprintf(place->log, sizeof place->log, "%s/log", place->root);
+    folder_clear(place->root);
+}
+
+void place_run(const Place *place, const Run *run, const Attempt *attempt, ChildEnd *end)
+{
+    char text[1000], program[4200], fault[200], log[4300], tmp[4300];
+    char *words[RUN_WORDS];
+    run_words(run, text, words);
+    for (int i = 0; attempt->resumes && !run->one_piece; ++i)
+        if (!words[i]) {
+            words[i] = "--resume";
+            words[i + 1] = NULL;
+            break;
+        }
+    if (!attempt->resumes) {
+        folder_clear(place->run);
+        folder_clear(place->tmp);
+        remove(place->log);
+    }
+    snprintf(program, sizeof program, "%s/tractrix-%s", attempt->bin, run->program);
+    snprintf(fault, sizeof fault, "TRACTRIX_FAULT=%s", attempt->fault ? attempt->fault : "");
+    snprintf(log, sizeof log, "TRACTRIX_FAULT_LOG=%s", place->log);
+    snprintf(tmp, sizeof tmp, "TMPDIR=%s", place->tmp);
+    const char *names[] = {fault, log, tmp, NULL};
+    child_run(&(Child){.folder = place->run,
+                       .program = program,
+                       .arguments = words,
+                       .environment = names,
+                       .limit_s = attempt->limit_s,
+                       .kill_after_s = attempt->kill_after_s,
+                       .kill_signal = attempt->kill_signal},
+              end);
+}
+
+static bool is_listed(const char *list, const char *name)
+{
+    size_t length = strlen(name);
+    for (const char *at = list; at && (at = strstr(at, name)); at += length)
+        if ((at == list || at[-1] == ' ') && (!at[length] || at[length] == ' ')) return true;
+    return false;
+}
+
+static bool has_end(const char *name, const char *end)
+{
+    size_t length = strlen(name), end_length = strlen(end);
+    return length >= end_length && strcmp(name + length - end_length, end) == 0;
+}
+
+static bool may_be_partial(const Run *run, const char *name)
+{
+    return run->grows && (has_end(name, ".cache") || has_end(name, ".cache.state"));
+}
+
+// Of a file with times in it: the same first byte, and it does not end in the middle of a line.
+static bool is_alike(const FolderFile *a, const FolderFile *b)
+{
+    return a->size > 0 && b->size > 0 && a->bytes[0] == b->bytes[0] &&
+           a->bytes[a->size - 1] == b->bytes[b->size - 1];
+}
+
+static const char *judge_file(const Run *run, const Folder *reference, const FolderFile *file,
+                              FilesState state, char words[300])
+{
+    const FolderFile *wanted = folder_find(reference, file->name);
+    if (state != FILES_WHOLE && may_be_partial(run, file->name)) return NULL;
+    if (state == FILES_KILLED && strncmp(file->name, ".tractrix-", 10) == 0) return NULL;
+    if (wanted && folder_same(wanted, file)) return NULL;
+    if (wanted && is_listed(run->measured, file->name) && is_alike(wanted, file)) return NULL;
+    snprintf(words, 300, "%s: %s", file->name, wanted ? "not whole" : "left behind");
+    return words;
+}
+
+const char *place_judge_files(const Place *place, const Run *run, const Folder *reference,
+                              FilesState state, char words[300])
+{
+    Folder found, scratch;
+    const char *wrong = NULL;
+    folder_read(&found, place->run);
+    folder_read(&scratch, place->tmp);
+    for (int i = 0; i < found.count && !wrong; ++i)
+        wrong = judge_file(run, reference, &found.files[i], state, words);
+    for (int i = 0; i < reference->count && !wrong && state == FILES_WHOLE; ++i)
+        if (!folder_find(&found, reference->files[i].name)) {
+            snprintf(words, 300, "%s: missing", reference->files[i].name);
+            wrong = words;
+        }
+    if (!wrong && state != FILES_KILLED && scratch.count) {
+        snprintf(words, 300, "left behind in TMPDIR: %s", scratch.files[0].name);
+        wrong = words;
+    }
+    folder_destroy(&found);
+    folder_destroy(&scratch);
+    return wrong;
+}
+
+// --- How it ended.
+
+static int count_lines(const char *text)
+{
+    int lines = 0;
+    for (; *text; ++text) lines += *text == '\n';
+    return lines;
+}
+
+// A line of an error: the program's name first, a reason last.
+static const char *judge_line(const Run *run, const char *line, const char *reason)
+{
+    char name[40];
+    int length = snprintf(name, sizeof name, "tractrix-%s: ", run->program);
+    size_t size = strlen(line);
+    if (!size || line[size - 1] != '\n') return "no line of error";
+    if (count_lines(line) != 1) return "more than one line of error";
+    if (strncmp(line, name, (size_t)length) != 0) return "the line does not begin with the name";
+    while (size && isspace((unsigned char)line[size - 1])) --size;
+    if (line[size - 1] == ':' || line[size - 1] == '(') return "an empty reason";
+    if (strstr(line, "(null)")) return "(null)";
+    if (strstr(line, "Success")) return "a reason of success";
+    for (size_t i = 0; i < size; ++i)
+        if (iscntrl((unsigned char)line[i])) return "a control character";
+    if (strcasestr(line, reason)) return NULL;
+    // Memory has several names.
+    bool memory = strcasestr(reason, "memory");
+    return memory && strcasestr(line, "memory") ? NULL : "the line does not give the reason";
+}
+
+// tractrix-bench begins with a line that names the device.
+static const char *skip_device(const Run *run, const char *errors)
+{
+    const char *end = strchr(errors, '\n');
+    bool named = strcmp(run->program, "bench") == 0 && strncmp(errors, "tractrix-", 9) != 0;
+    return named && end ? end + 1 : errors;
+}
+
+const char *place_judge_end(const Run *run, const ChildEnd *end, const char *reason, bool *whole,
+                            char words[300])
+{
+    *whole = false;
+    if (end->hung) return "hangs";
+    if (end->status < 0) {
+        snprintf(words, 300, "crashes: %s", strsignal(end->signal));
+        return words;
+    }
+    *whole = end->status == run->status && (run->status == 0 || !end->errors[0]);
+    if (end->status > 4 || (end->status == 0 && run->status != 0)) {
+        snprintf(words, 300, "exit status %d", end->status);
+        return words;
+    }
+    const char *errors = skip_device(run, end->errors);
+    if (!*whole) return judge_line(run, errors, reason);
+    return count_lines(errors) > 1 ? "says more than a line, but is done" : NULL;
+}
