@@ -10,25 +10,41 @@
 
 static const double SPHERE_RADIUS = 0.1;
 
-// The outermost point of the head in a direction, from outside in steps that cannot cross it, then
-// by halving.
-static double head_radius(const Double3 direction)
+static double distance_along(const HeadPatch *patch, const Double3 direction, double radius)
 {
-    double inside = 0.0, outside = 0.4;
     Double3 at = {0};
+    double3_add_scaled(at, radius, direction);
+    return head_patch_distance(patch, at);
+}
+
+// Where the head begins between two radii at most 2 mm apart, the outer one outside, to 2e-15 m:
+// six halvings, then regula falsi that halves the value of an end that stays (the Illinois method;
+// Dowell and Jarratt 1971, "A modified regula falsi method for computing the root of an equation").
+static double find_crossing(const Double3 direction, double inside, double outside)
+{
+    enum { ROUNDS = 100, HALVINGS = 6 };
+    const double close = 2e-15;
     HeadPatch patch;
-    for (int i = 0; i < 200; i++) {
-        for (int k = 0; k < 3; k++) at[k] = outside * direction[k];
-        double step = 0.5 * head_patch_find(&patch, at, 0.0);
-        if (step < 1e-4) break;
-        outside -= step;
-    }
-    inside = outside - 0.002;
-    head_patch_find(&patch, at, 0.002);
-    for (int i = 0; i < 40; i++) {
-        double middle = 0.5 * (inside + outside);
-        for (int k = 0; k < 3; k++) at[k] = middle * direction[k];
-        *(head_patch_distance(&patch, at) < 0.0 ? &inside : &outside) = middle;
+    Double3 at = {0};
+    double3_add_scaled(at, outside, direction);
+    head_patch_find(&patch, at, outside - inside);
+    double below = distance_along(&patch, direction, inside);
+    double above = distance_along(&patch, direction, outside);
+    int before = 0;
+    for (int i = 0; i < ROUNDS && below < 0.0 && above > 0.0 && outside - inside > close; i++) {
+        double middle = outside - above * (outside - inside) / (above - below);
+        if (i < HALVINGS || !(middle > inside && middle < outside))
+            middle = 0.5 * (inside + outside);
+        double value = distance_along(&patch, direction, middle);
+        int side = value < 0.0 ? -1 : 1;
+        if (side < 0) {
+            inside = middle, below = value;
+            if (before == side && i > HALVINGS) above *= 0.5;
+        } else {
+            outside = middle, above = value;
+            if (before == side && i > HALVINGS) below *= 0.5;
+        }
+        before = side;
     }
     return outside;
 }
@@ -72,34 +88,66 @@ static double smooth(double low, double high, double x)
 
 // The head's hair line: from the nape, behind and over the ears, past the temples to the forehead.
 // docs/fur.md has it as a formula.
+static double hair_line(double z)
+{
+    return -0.085 + 0.099 * smooth(-0.06, -0.022, z) + 0.056 * smooth(0.015, 0.075, z);
+}
+
 static bool has_hair(ScalpShape shape, const Double3 direction, double radius, bool everywhere)
 {
     if (shape == SCALP_SPHERE) return everywhere || direction[1] > 0.2;
     double y = radius * direction[1], z = radius * direction[2];
-    return y > -0.085 + 0.099 * smooth(-0.06, -0.022, z) + 0.056 * smooth(0.015, 0.075, z);
-}
-
-// Finds radius and normal of the root in its direction; false if no hair grows there.
-static bool find_root(ScalpShape shape, bool everywhere, ScalpRoot *root)
-{
-    const double *direction = root->direction;
-    root->radius = SPHERE_RADIUS;
-    double3_copy(direction, root->normal);
-    if (shape == SCALP_SPHERE) return has_hair(shape, direction, root->radius, everywhere);
-    if (direction[1] < -0.8) return false; // the neck
-    root->radius = head_radius(direction);
-    if (!has_hair(shape, direction, root->radius, everywhere)) return false;
-    Double3 at = {0};
-    double3_add_scaled(at, root->radius, direction);
-    head_normal(at, root->normal);
-    return true;
+    return y > hair_line(z);
 }
 
 // Area of the surface per area of the unit sphere.
-static double area_ratio(const ScalpRoot *root)
+static double area_ratio(double radius, double across)
 {
-    double across = double3_dot(root->normal, root->direction);
-    return root->radius * root->radius / fmax(across, 0.2);
+    return radius * radius / fmax(across, 0.2);
+}
+
+// Whether hair may grow on the head in a direction where it begins below `outside`; false only if
+// none does. The hair line rises with z, so the ends of the range tell.
+static bool may_have_hair(const Double3 direction, double outside)
+{
+    const double least = 0.05; // the head is thicker everywhere
+    double high = direction[1] > 0.0 ? outside : least, near = direction[2] > 0.0 ? least : outside;
+    return high * direction[1] > hair_line(near * direction[2]);
+}
+
+// The outermost point of the head in a direction, from outside in steps that cannot cross it, then
+// exactly. False as soon as it is plain that no hair grows there, or that the area ratio is below
+// `least`: the normal just outside is turned by less than a fifth of its length.
+static bool find_head_root(double least, ScalpRoot *root)
+{
+    const double *direction = root->direction;
+    double outside = 0.4, step = 1.0;
+    Double3 at = {0};
+    if (direction[1] < -0.8) return false; // the neck
+    for (int i = 0; i < 200 && step >= 1e-4; i++) {
+        if (!may_have_hair(direction, outside)) return false;
+        for (int k = 0; k < 3; k++) at[k] = outside * direction[k];
+        step = 0.5 * head_distance(at);
+        if (step >= 1e-4) outside -= step;
+    }
+    head_normal(at, root->normal);
+    if (least > area_ratio(outside, double3_dot(root->normal, direction) - 0.2)) return false;
+    root->radius = find_crossing(direction, outside - 0.002, outside);
+    if (!has_hair(SCALP_HEAD, direction, root->radius, false)) return false;
+    for (int k = 0; k < 3; k++) at[k] = root->radius * direction[k];
+    head_normal(at, root->normal);
+    return least <= area_ratio(root->radius, double3_dot(root->normal, direction));
+}
+
+// Finds radius and normal of the root in its direction; false if no hair grows there, or the area
+// ratio is below `least`.
+static bool find_root(const ScalpRoots *roots, double least, ScalpRoot *root)
+{
+    if (roots->shape == SCALP_HEAD) return find_head_root(least, root);
+    root->radius = SPHERE_RADIUS;
+    double3_copy(root->direction, root->normal);
+    return has_hair(roots->shape, root->direction, root->radius, roots->everywhere) &&
+           least <= area_ratio(root->radius, double3_dot(root->normal, root->direction));
 }
 
 // Archimedes: even in y and in the angle about the y axis is even on the sphere.
@@ -120,8 +168,9 @@ ScalpRoots scalp_roots_begin(ScalpShape shape, bool everywhere, uint32_t seed)
     for (int i = 0; i < GRID * GRID; i++) {
         ScalpRoot root = {0};
         map_to_sphere((i / GRID + 0.5) / GRID, (i % GRID + 0.5) / GRID, root.direction);
-        if (find_root(shape, everywhere, &root))
-            roots.heaviest = fmax(roots.heaviest, area_ratio(&root));
+        if (find_root(&roots, 0.0, &root))
+            roots.heaviest = fmax(
+                roots.heaviest, area_ratio(root.radius, double3_dot(root.normal, root.direction)));
     }
     roots.heaviest *= 1.05; // the grid may have missed the very top
     return roots;
@@ -140,8 +189,7 @@ static bool find_candidate(const ScalpRoots *roots, uint64_t number, ScalpRoot *
         point[i] = x - floor(x);
     }
     map_to_sphere(point[0], point[1], root->direction);
-    return find_root(roots->shape, roots->everywhere, root) &&
-           point[2] * roots->heaviest <= area_ratio(root);
+    return find_root(roots, point[2] * roots->heaviest, root);
 }
 
 enum { CANDIDATES = 1024 };
