@@ -1,26 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "base/progress.h"
 
+#include "base/activity.h"
 #include "base/clock.h"
 
 #include <math.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #define DRAW_INTERVAL_S 0.1
 // The rate follows a change within about this time; shorter makes the remaining time jump.
-#define SMOOTHING_S     3.0
-#define COLUMNS_DEFAULT 80
-#define COLUMNS_MIN     40
-#define COLUMNS_MAX     200
-#define BAR_MAX         40
-
-static int count_columns(FILE *stream)
-{
-    struct winsize size;
-    if (ioctl(fileno(stream), TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return COLUMNS_DEFAULT;
-    return size.ws_col > COLUMNS_MAX ? COLUMNS_MAX : size.ws_col;
-}
+#define SMOOTHING_S 3.0
+#define COLUMNS_MIN 40
+#define COLUMNS_MAX 200
+#define BAR_MAX     40
 
 void progress_start_at(Progress *progress, FILE *stream, int total, bool quiet, double now_s)
 {
@@ -71,13 +63,16 @@ int progress_format(char *line, size_t size, int columns, int done, int total, d
 static void draw(Progress *progress)
 {
     char line[COLUMNS_MAX + 1];
-    int length = progress_format(line, sizeof line, count_columns(progress->stream), progress->done,
-                                 progress->total, progress->rate);
+    int length = progress_format(
+        line, sizeof line, activity_width(progress->stream) - activity_columns(progress->stream),
+        progress->done, progress->total, progress->rate);
+    int before = progress->shown;
+    progress->shown = length;
+    if (activity_line(progress->stream, line)) return;
     // Blanks cover what a longer line left: not every terminal knows the codes to erase.
-    int blanks = progress->shown > length ? progress->shown - length : 0;
+    int blanks = before > length ? before - length : 0;
     fprintf(progress->stream, "\r%s%*s", line, blanks, "");
     fflush(progress->stream);
-    progress->shown = length;
 }
 
 void progress_update_at(Progress *progress, int done, double now_s)
@@ -106,8 +101,10 @@ void progress_update(Progress *progress, int done)
 void progress_clear(Progress *progress)
 {
     if (!progress->stream || progress->shown == 0) return;
-    fprintf(progress->stream, "\r%*s\r", progress->shown, "");
-    fflush(progress->stream);
+    if (!activity_line(progress->stream, NULL)) {
+        fprintf(progress->stream, "\r%*s\r", progress->shown, "");
+        fflush(progress->stream);
+    }
     progress->shown = 0;
     progress->drawn_s -= DRAW_INTERVAL_S;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // tractrix-convert: describes hair files, edits hair, and writes it in other formats.
+#include "base/activity.h"
 #include "base/interrupt.h"
 #include "base/json.h"
 #include "base/options.h"
@@ -270,12 +271,15 @@ static Result do_frame(Job *job, int frame, Error *error)
     const Command *command = &job->command;
     Strands strands;
     bool first = frame == job->input.first;
+    activity_set("reading");
     Result result = convert_input_read(&job->input, frame, &strands, error);
     if (result == RESULT_OK && first)
         job->output.lost = job->input.features & ~strands_features(&strands);
+    activity_set("converting");
     THEN(result, convert_steps_apply(&job->steps, &strands, error));
     if (first && (command->stats || command->json))
         THEN(result, figures_measure(&job->figures, &strands, error));
+    activity_set("writing");
     if (command->output) THEN(result, convert_output_add(&job->output, frame, &strands, error));
     strands_destroy(&strands);
     return result;
@@ -296,6 +300,7 @@ static Result do_frames(Job *job, Error *error)
     }
     progress_clear(&progress);
     if (job->command.output) THEN(result, convert_output_finish(&job->output, error));
+    activity_end();
     return result;
 }
 
@@ -348,6 +353,8 @@ static Result run(Job *job, Error *error)
 {
     const Command *command = &job->command;
     bool only_reports = !command->output && !command->stats && !command->json;
+    activity_start(stderr, command->quiet);
+    activity_set("reading");
     TRY(open_files(job, error));
     TRY(do_frames(job, error));
     if (!command->quiet && only_reports) convert_input_print(&job->input, stdout);
@@ -366,6 +373,7 @@ int main(int argc, char **argv)
     interrupt_install();
     Result result = parse(&job, argc, argv, &done, &error);
     if (result == RESULT_OK && !done) result = run(&job, &error);
+    activity_end();
     convert_output_close(&job.output);
     convert_input_close(&job.input);
     figures_destroy(&job.figures);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "draw/renderer.h"
 
+#include "base/activity.h"
 #include "draw/drawing.h"
 
 #include "glsl/common/shared_math.h"
@@ -215,6 +216,7 @@ static Result draw_shadow(Renderer *renderer, const RenderFrame *frame, Error *e
         if (hair_shadow_lights(&renderer->shadow.hair, &look->lights, &look->batches))
             look->features |= LOOK_SHADOW_FOUND;
     }
+    activity_set("light among hair");
     return renderer->options.shadow.kind == SHADOW_DOM && renderer->options.aov == AOV_NONE
                ? draw_scatter(renderer, frame, &scene, error)
                : RESULT_OK;
@@ -301,7 +303,9 @@ Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderI
                       item_count, error));
     renderer->counts = (RendererCounts){0};
     drawing_upload(&renderer->drawing);
+    activity_set("shadows");
     TRY(draw_shadow(renderer, frame, error));
+    activity_set("drawing");
     set_state(renderer, draw->background);
     TRY(draw_base(renderer, error));
     TRY(RASTERS[renderer->raster].draw(renderer, image, error));

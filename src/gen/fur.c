@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gen/fur.h"
 
+#include "base/activity.h"
+#include "base/progress.h"
 #include "gen/fur_roots.h"
 #include "gen/fur_weave.h"
 
@@ -124,9 +126,12 @@ static Result grow_all(Farm *farm, Strands *strands, FurReport *report, Error *e
 {
     const FurRecipe *recipe = farm->recipe;
     uint32_t grown = 0;
+    Progress progress;
+    progress_start(&progress, stderr, (int)farm->count, activity_columns(stderr) == 0);
     for (uint32_t s = 0; s < farm->count; s++) {
         const SurfacePoint *root = &farm->roots[s];
         Random random = random_create((uint64_t)recipe->seed, 0x737472616e640000u + s); // "strand"
+        if (s % 1024 == 0) progress_update(&progress, (int)s);
         Double3 normal;
         FurWeave weave;
         double length = find_length(farm, root, &random);
@@ -141,6 +146,7 @@ static Result grow_all(Farm *farm, Strands *strands, FurReport *report, Error *e
                                        farm->vertices, (uint32_t)recipe->vertices);
         store(farm, strands, grown++, root);
     }
+    progress_clear(&progress);
     strands->strand_count = grown;
     strands->vertex_count = grown * (uint32_t)recipe->vertices;
     if (grown > 0) return RESULT_OK;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // tractrix-gen: makes hair and the mesh it grows on.
+#include "base/activity.h"
 #include "base/interrupt.h"
 #include "base/paths.h"
 #include "base/program.h"
@@ -190,7 +191,10 @@ static StrandsRecipe make_recipe(const Command *command)
 static Result write_strands(const GenOutput *output, const Strands *strands, uint32_t guides,
                             Error *error)
 {
-    TRY(format_write(output->path, (FormatKind)output->format, strands, error));
+    activity_set("writing");
+    Result result = format_write(output->path, (FormatKind)output->format, strands, error);
+    activity_end();
+    TRY(result);
     if (output->quiet) return RESULT_OK;
     FILE *stream = gen_messages(output);
     fprintf(stream, "%s: %u strands of %u vertices, ", quote(output->path).text,
@@ -231,6 +235,8 @@ static Result write_all(const Command *command, Error *error)
     const PathUse uses[] = {{"-o", command->output.path, PATH_WRITTEN},
                             {"--mesh", command->mesh, PATH_WRITTEN}};
     TRY(paths_check(uses, 2, error));
+    activity_start(stderr, command->output.quiet);
+    activity_set("growing hair");
     if (command->output.path) TRY(write_hair(command, &recipe, error));
     if (command->mesh) TRY(write_mesh(command, shape, error));
     return RESULT_OK;
@@ -264,6 +270,8 @@ static Result grow_fur(int argc, char **argv, Error *error)
     const PathUse uses[] = {{"the mesh", options.mesh, PATH_READ},
                             {"-o", options.output.path, PATH_WRITTEN}};
     TRY(paths_check(uses, 2, error));
+    activity_start(stderr, options.output.quiet);
+    activity_set("growing hair");
     TRY(obj_read_mesh(&mesh, options.mesh, (float)options.unit, options.up_z, error));
     Result result = write_fur(&options, &mesh, error);
     mesh_destroy(&mesh);
@@ -286,5 +294,6 @@ int main(int argc, char **argv)
     Error error = {{0}};
     interrupt_install();
     Result result = run(argc, argv, &error);
+    activity_end();
     return program_end("tractrix-gen", result, &error);
 }

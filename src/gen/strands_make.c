@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "gen/strands_make.h"
 
+#include "base/activity.h"
 #include "base/double3.h"
 #include "base/interrupt.h"
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "base/random.h"
 #include "base/suggest.h"
 
@@ -234,6 +236,8 @@ static Result make_all(Strands *strands, const StrandsRecipe *recipe, Error *err
     Result result = RESULT_OK;
     if (!block || !points)
         result = error_set(error, RESULT_FAILED, "no memory for %u strands", recipe->count);
+    Progress progress;
+    progress_start(&progress, stderr, (int)recipe->count, activity_columns(stderr) == 0);
     ScalpRoots roots =
         scalp_roots_begin(recipe->shape, recipe->style == STRANDS_STYLE_FUR, recipe->seed);
     for (uint32_t s = 0; s < recipe->count && result == RESULT_OK; s += BLOCK) {
@@ -244,8 +248,10 @@ static Result make_all(Strands *strands, const StrandsRecipe *recipe, Error *err
         block->count = recipe->count - s < BLOCK ? recipe->count - s : BLOCK;
         scalp_roots_take(&roots, block->root, block->count);
         parallel_run((int)threads, make_part, block);
+        progress_update(&progress, (int)(s + block->count));
         if (interrupt_requested()) result = error_set(error, RESULT_INTERRUPTED, "interrupted");
     }
+    progress_clear(&progress);
     free(block);
     free(points);
     return result;

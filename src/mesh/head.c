@@ -86,22 +86,20 @@ static const Part PARTS[] = {
 // clang-format on
 
 // Quilez's bound, exact in sign: (|p/r| - 1) |p/r| / |p/r^2|.
-static double egg_distance(const Part *part, const Double3 inverse, const Double3 at)
+static double egg_distance(const Part *part, const Double3 at)
 {
     Double3 p, q;
     for (int i = 0; i < 3; i++) {
-        p[i] = (at[i] - part->a[i]) * inverse[i];
-        q[i] = p[i] * inverse[i];
+        p[i] = (at[i] - part->a[i]) / part->b[i];
+        q[i] = p[i] / part->b[i];
     }
     double k = double3_length(p), l = double3_length(q);
     return l > 0.0 ? k * (k - 1.0) / l : -fmin(part->b[0], fmin(part->b[1], part->b[2]));
 }
 
-// What all points share: of an egg 1 / radii, of a round cone its axis and sides, of any part the
-// box around it (and its mirror image, in |x|), and the least ratio of its bound to the distance
-// from that box.
+// What all points share: of a round cone its axis and sides, of any part the box around it (and its
+// mirror image, in |x|), and the least ratio of its bound to the distance from that box.
 typedef struct Shape {
-    Double3 inverse;
     Double3 axis;
     double length, slant, straight;
     Double3 low, high;
@@ -165,8 +163,7 @@ static bool is_far(const Double3 low, const Double3 high, double ratio, const Do
 
 static double form_distance(const Part *part, const Shape *shape, const Double3 at)
 {
-    return part->form == EGG ? egg_distance(part, shape->inverse, at)
-                             : cone_distance(part, shape, at);
+    return part->form == EGG ? egg_distance(part, at) : cone_distance(part, shape, at);
 }
 
 // `at` is on the part's side, x >= 0. The mirror image counts where it is near enough to blend.
@@ -191,7 +188,6 @@ static void find_shape(const Part *part, Shape *shape)
     }
     shape->ratio = 1.0;
     if (part->form == EGG) {
-        for (int i = 0; i < 3; i++) shape->inverse[i] = 1.0 / b[i];
         shape->ratio = lesser(b[0], lesser(b[1], b[2])) / greater(b[0], greater(b[1], b[2]));
         return;
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "run/run.h"
+#include "base/activity.h"
 #include "base/clock.h"
 #include "base/interrupt.h"
 #include "base/outfile.h"
@@ -20,6 +21,7 @@
 
 void run_destroy(Run *run)
 {
+    activity_end();
     if (run->exports) exporter_destroy(&run->exporter);
     resume_destroy(&run->done);
     fingerprint_destroy(&run->fingerprint);
@@ -196,6 +198,7 @@ static Result aim(Run *run, Error *error)
                   run->assets.has_mesh ? &run->assets.mesh : NULL);
     if (!survey_is_wanted(&run->scene)) return RESULT_OK;
     TRY(survey_fit_camera(&run->framing, &report, &run->scene, &run->assets, &run->gpu, error));
+    activity_set(NULL);
     if (params->verbose)
         fprintf(stderr, "camera: fits %d frames, simulated in %.2g s\n", report.frames,
                 report.ms / 1e3);
@@ -214,7 +217,9 @@ static Result expose(Run *run, Error *error)
     const RunParams *params = &run->scene.run;
     run->exposure = params->exposure.value;
     if (!exposure_is_wanted(&run->scene)) return RESULT_OK;
+    activity_set("finding the exposure");
     TRY(exposure_find(&run->exposure, &run->scene, &run->assets, &run->framing, &run->gpu, error));
+    activity_set(NULL);
     if (!params->quiet)
         fprintf(stderr, "exposure: %+.4g EV (--exposure auto)\n", (double)run->exposure);
     return RESULT_OK;
@@ -239,22 +244,28 @@ static Result prepare(Run *run, Error *error)
 {
     const RunParams *params = &run->scene.run;
     bool draws = *params->output != 0;
+    activity_start(stderr, params->quiet);
     TRY(check_values(&run->scene, error));
     TRY(assets_load(&run->assets, &run->scene, params->quiet ? NULL : stderr, params->verbose,
                     error));
     TRY(scalp_guess(&run->scene, &run->assets, params->quiet ? NULL : stderr, params->verbose,
                     error));
+    activity_set(NULL);
     run->loaded_ms = clock_ms();
     if (!params->quiet) warn_all(&run->scene);
     TRY(open_gpu(run, error));
+    activity_set("fitting the camera");
     if (draws) TRY(aim(run, error));
     if (draws) TRY(expose(run, error));
+    activity_set("uploading hair");
     TRY(simulation_create(&run->simulation, &run->gpu, &run->timer, &run->scene,
                           run->assets.strands, &run->assets.mesh, error));
+    activity_set(NULL);
     if (draws && !params->quiet) report_filled(run);
     TRY(open_source(run, error));
     TRY(describe(run, error));
     TRY(find_done(run, error));
+    activity_set("preparing the renderer");
     if (draws)
         TRY(images_create(&run->images, &run->scene, &run->assets, &run->simulation, &run->framing,
                           &run->gpu, &run->timer, &run->fingerprint,
@@ -265,6 +276,7 @@ static Result prepare(Run *run, Error *error)
         stats_describe(&run->stats, &run->gpu, &run->scene, &run->assets, &run->simulation);
         if (draws) stats_add_exposure(&run->stats, run->exposure);
     }
+    activity_set(NULL);
     if (params->verbose) report_steps(&run->simulation);
     run->ready_ms = clock_ms();
     return RESULT_OK;
@@ -322,11 +334,13 @@ Result run_go(Run *run, Error *error)
     bool failed = result != RESULT_OK && result != RESULT_INTERRUPTED;
     if (failed && run->images.output) output_flush(run->images.output);
     TRY(result);
+    activity_set("finishing");
     if (run->images.output && run->done.count < sequence_count_drawn(&run->scene.run))
         TRY(output_finish(run->images.output, error));
     if (run->exports) TRY(exporter_finish(&run->exporter, error));
     TRY(frame_source_finish(&run->source, error));
     TRY(write_stats(run, &sequence, error));
+    activity_end();
     if (!run->scene.run.quiet) report_result(run, &sequence, clock_ms() - run->begin_ms);
     return RESULT_OK;
 }

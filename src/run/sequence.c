@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "run/sequence.h"
+#include "base/activity.h"
 #include "base/clock.h"
 #include "base/interrupt.h"
 #include "base/progress.h"
@@ -148,6 +149,7 @@ static Result output_frame(Sequence *sequence, Previous *previous, int frame, Fr
         caption_draw(image, text);
     }
     times->draw_ms = clock_ms() - acquired;
+    activity_set("writing");
     return result == RESULT_OK ? output_submit(output, frame, image, error) : result;
 }
 
@@ -170,9 +172,11 @@ static Result run_frame(Sequence *sequence, Previous *previous, int frame, Error
     FrameTimes times = {.frame = frame};
     double begin = clock_ms();
     bool wanted = wants(sequence, frame), draws = sequence->images->output != NULL;
+    activity_set("simulating");
     Result result =
         frame_source_go(sequence->source, frame, wanted && (draws || sequence->exporter), error);
     times.simulate_ms = clock_ms() - begin;
+    if (wanted && sequence->exporter) activity_set("exporting");
     if (result == RESULT_OK && wanted && sequence->exporter)
         result = export_frame(sequence, frame, error);
     if (result == RESULT_OK && wanted && draws)

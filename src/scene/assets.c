@@ -2,6 +2,7 @@
 #include "scene/assets.h"
 #include "base/quote.h"
 
+#include "base/activity.h"
 #include "mesh/obj.h"
 
 #include <stdlib.h>
@@ -31,8 +32,10 @@ static Result load_section(Assets *assets, const Scene *scene, uint32_t i, FILE 
 {
     const Section *section = &scene->sections[i];
     const StrandsReadOptions options = read_options(scene, section);
+    activity_set("reading hair");
     Result result =
         strands_read(&assets->strands[i], section->file, &options, &assets->reports[i], error);
+    activity_set(NULL);
     if (result != RESULT_OK || !messages) return result;
     strands_report_print_mended(&assets->reports[i], section->file, messages);
     warn_ignored(&assets->strands[i], section->file, messages);
@@ -51,6 +54,7 @@ static Result load_mesh(Assets *assets, const Scene *scene, Error *error)
     bool up_z = scene->run.mesh_up == UP_Z;
     if (scene->run.mesh_up == UP_AUTO) up_z = assets->section_count && assets->reports[0].up_z;
     assets->has_mesh = true;
+    activity_set("reading the mesh");
     return obj_read_mesh(&assets->mesh, scene->run.mesh, unit, up_z, error);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The progress line.
+// The progress line, and what stands behind it.
+#include "base/activity.h"
 #include "base/progress.h"
 
 #include <pty.h>
@@ -182,6 +183,51 @@ static void clearing_leaves_an_empty_line_and_drawing_goes_on(void **state)
     close_terminal(&terminal);
 }
 
+// What the thread draws within `seconds`.
+static const char *watch_terminal(const Terminal *terminal, double seconds)
+{
+    usleep((useconds_t)(seconds * 1e6));
+    return read_terminal(terminal);
+}
+
+static void a_silent_second_is_followed_by_what_the_program_is_at(void **state)
+{
+    (void)state;
+    Terminal terminal = open_terminal(80);
+    Progress progress;
+    activity_start(terminal.stream, false);
+    activity_set("reading hair");
+    assert_string_equal(watch_terminal(&terminal, 0.3), "");
+    assert_non_null(strstr(watch_terminal(&terminal, 1.7), "\rreading hair, "));
+    activity_set(NULL);
+    assert_null(strstr(read_terminal(&terminal), "reading"));
+    activity_set("simulating");
+    progress_start(&progress, terminal.stream, 10, false);
+    progress_update(&progress, 3);
+    assert_non_null(strstr(watch_terminal(&terminal, 2.0), "left simulating, "));
+    progress_clear(&progress);
+    activity_end();
+    const char *text = read_terminal(&terminal);
+    assert_int_equal(text[strlen(text) - 1], '\r');
+    close_terminal(&terminal);
+}
+
+static void no_activity_is_shown_when_quiet_or_on_a_file(void **state)
+{
+    (void)state;
+    Terminal terminal = open_terminal(80);
+    FILE *file = tmpfile();
+    activity_start(terminal.stream, true);
+    activity_start(file, false);
+    activity_set("reading hair");
+    assert_string_equal(watch_terminal(&terminal, 1.3), "");
+    activity_end();
+    fflush(file);
+    assert_int_equal(ftell(file), 0);
+    fclose(file);
+    close_terminal(&terminal);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -194,6 +240,8 @@ int main(void)
         cmocka_unit_test(it_draws_ten_times_a_second_and_the_last_frame),
         cmocka_unit_test(the_rate_settles_on_a_new_value),
         cmocka_unit_test(clearing_leaves_an_empty_line_and_drawing_goes_on),
+        cmocka_unit_test(a_silent_second_is_followed_by_what_the_program_is_at),
+        cmocka_unit_test(no_activity_is_shown_when_quiet_or_on_a_file),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
