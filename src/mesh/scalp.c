@@ -12,39 +12,56 @@ static const double SPHERE_RADIUS = 0.1;
 
 static double distance_along(const HeadPatch *patch, const Double3 direction, double radius)
 {
-    Double3 at = {0};
-    double3_add_scaled(at, radius, direction);
+    const Double3 at = {radius * direction[0], radius * direction[1], radius * direction[2]};
     return head_patch_distance(patch, at);
 }
 
-// Where the head begins between two radii at most 2 mm apart, the outer one outside, to 2e-15 m:
-// six halvings, then regula falsi that halves the value of an end that stays (the Illinois method;
-// Dowell and Jarratt 1971, "A modified regula falsi method for computing the root of an equation").
-static double find_crossing(const Double3 direction, double inside, double outside)
+// Narrows the ends about a crossing to 1e-14 m: regula falsi that halves the value of an end that
+// stays (the Illinois method; Dowell and Jarratt 1971, "A modified regula falsi method for
+// computing the root of an equation").
+static void narrow(const HeadPatch *patch, const Double3 direction, double *inside, double *outside)
 {
-    enum { ROUNDS = 100, HALVINGS = 6 };
-    const double close = 2e-15;
-    HeadPatch patch;
-    Double3 at = {0};
-    double3_add_scaled(at, outside, direction);
-    head_patch_find(&patch, at, outside - inside);
-    double below = distance_along(&patch, direction, inside);
-    double above = distance_along(&patch, direction, outside);
+    enum { ROUNDS = 40 };
+    double below = distance_along(patch, direction, *inside);
+    double above = distance_along(patch, direction, *outside);
     int before = 0;
-    for (int i = 0; i < ROUNDS && below < 0.0 && above > 0.0 && outside - inside > close; i++) {
-        double middle = outside - above * (outside - inside) / (above - below);
-        if (i < HALVINGS || !(middle > inside && middle < outside))
-            middle = 0.5 * (inside + outside);
-        double value = distance_along(&patch, direction, middle);
+    for (int i = 0; i < ROUNDS && below < 0.0 && above > 0.0 && *outside - *inside > 1e-14; i++) {
+        double middle = *outside - above * (*outside - *inside) / (above - below);
+        if (!(middle > *inside && middle < *outside)) middle = 0.5 * (*inside + *outside);
+        double value = distance_along(patch, direction, middle);
         int side = value < 0.0 ? -1 : 1;
         if (side < 0) {
-            inside = middle, below = value;
-            if (before == side && i > HALVINGS) above *= 0.5;
+            *inside = middle, below = value;
+            if (before == side) above *= 0.5;
         } else {
-            outside = middle, above = value;
-            if (before == side && i > HALVINGS) below *= 0.5;
+            *outside = middle, above = value;
+            if (before == side) below *= 0.5;
         }
         before = side;
+    }
+}
+
+// Where the head begins in the 2 mm below a radius outside: by 40 halvings, of which only the first
+// ones, and those between the ends that narrow() finds, need distances.
+static double find_crossing(const Double3 direction, double outside)
+{
+    enum { HALVINGS = 40, PLAIN = 6 };
+    const double wide = 0.002;
+    double inside = outside - wide, low = inside, high = outside;
+    HeadPatch patch;
+    Double3 at = {0};
+    for (int k = 0; k < 3; k++) at[k] = outside * direction[k];
+    head_patch_find(&patch, at, wide);
+    for (int i = 0; i < HALVINGS; i++) {
+        if (i == PLAIN) {
+            low = inside, high = outside;
+            narrow(&patch, direction, &low, &high);
+        }
+        double middle = 0.5 * (inside + outside);
+        bool under = i >= PLAIN && (middle <= low || middle >= high)
+                         ? middle <= low
+                         : distance_along(&patch, direction, middle) < 0.0;
+        *(under ? &inside : &outside) = middle;
     }
     return outside;
 }
@@ -132,7 +149,7 @@ static bool find_head_root(double least, ScalpRoot *root)
     }
     head_normal(at, root->normal);
     if (least > area_ratio(outside, double3_dot(root->normal, direction) - 0.2)) return false;
-    root->radius = find_crossing(direction, outside - 0.002, outside);
+    root->radius = find_crossing(direction, outside);
     if (!has_hair(SCALP_HEAD, direction, root->radius, false)) return false;
     for (int k = 0; k < 3; k++) at[k] = root->radius * direction[k];
     head_normal(at, root->normal);
