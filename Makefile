@@ -177,10 +177,9 @@ bench-image: all ## image error and milliseconds of every scheme: table, out/ima
 	$(OUT)/tractrix-bench images $(IMAGES) --csv out/image.csv
 	@scripts/plot-image out/image.csv out/image
 
-# A CPU driver shares such small dispatches out among threads at a loss.
 STRESS = --cases 5000 --steps 10000 --seed 1
 stress: all ## random circumstances for every solver until a rule breaks, an hour or so (STRESS="--algo chain --seed 2")
-	LP_NUM_THREADS=$${LP_NUM_THREADS-0} $(OUT)/tractrix-bench stress $(STRESS)
+	scripts/stress $(OUT)/tractrix-bench $(STRESS)
 
 # Into a copy of the tree. It goes on where it was interrupted.
 mutate: ## whether tests catch small faults, put in one at a time, hours (MUTATE="--only split"; tests/mutants.txt)

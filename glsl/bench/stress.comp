@@ -4,7 +4,7 @@
 //
 // Energy is a particle's mean, mass 1, in the frame that goes with the root without turning; x and
 // v belong to the middle of the step:
-//     E = mean(v.v/2 - g.(x - s)),   s: where it began, in the style.   B = mean(|g| l - g.s)
+//     E = mean(v.v/2 - g.(x - s)),   s: where it began.   B = mean(|g| l - g.s)
 //         bounds g.(x - s) at l along the strand.
 // TIP 1: the strand is one particle, its tip, with a velocity of its own (split).
 #include "bench/stress_params.h"
@@ -32,12 +32,13 @@ void main()
     int s = int(gl_GlobalInvocationID.x), n = int(stress_params.vertex_count);
     if (s >= int(stress_params.strand_count)) return;
     int base = particle_address(s, 0, n);
-    vec3 g = stress_params.gravity.xyz, root = texelFetch(position, base).xyz,
-         root_move = root - texelFetch(before, base).xyz;
+    vec3 g = stress_params.gravity.xyz, first_g = stress_params.gravity_first.xyz,
+         root = texelFetch(position, base).xyz, root_move = root - texelFetch(before, base).xyz;
+    vec3 down = first_g / max(length(first_g), 1e-30);
     float strength = length(g), per_dt = stress_params.per_dt, rounding = stress_params.rounding;
     vec3 last = root, style = vec3(0.0);
     float along = 0.0, short_by = 0.0, lifted = 0.0, shortest = HUGE, highest = 0.0, kinetic = 0.0,
-          potential = 0.0, budget = 0.0, size = largest(root), off = 0.0, move = 0.0;
+          potential = 0.0, budget = 0.0, began = 0.0, size = largest(root), off = 0.0, move = 0.0;
     bool finite = size < HUGE;
     vec4 lead = texelFetch(rest, base + STRAND_TILE); // what the head carries, if it does
     float raised = stress_params.carried * (strength * lead.w + lead.w * dot(g, lead.xyz));
@@ -55,7 +56,8 @@ void main()
         last = x;
         along += segment.w;
         shortest = min(shortest, segment.w);
-        style += segment.w * segment.xyz;
+        bool hangs = stress_params.hangs > 0.0 && float(j) > stress_params.carried;
+        style += segment.w * (hangs ? down : segment.xyz);
         move = max(move, length(moved));
 #if TIP
         if (j < n - 1) continue;
@@ -64,27 +66,33 @@ void main()
 #endif
         kinetic += 0.5 * dot(v, v);
         potential += dot(g, x - root - 0.5 * moved - style);
-        highest += strength * along;
+        highest += along;
         lifted += strength * short_by + raised;
         budget += strength * along - dot(g, style);
+        began += length(first_g) * along - dot(first_g, style);
     }
 #if !TIP
     float mean = 1.0 / float(n - 1);
-    kinetic *= mean, potential *= mean, budget *= mean, highest *= mean, lifted *= mean;
+    kinetic *= mean, potential *= mean, budget *= mean, began *= mean, highest *= mean,
+        lifted *= mean;
 #endif
     float noise = rounding * size,
           bent = stress_params.bends * noise * noise / (shortest * shortest),
           noise_speed = stress_params.noise_steps * noise * per_dt;
-    float speed = sqrt(2.0 * (budget + strength * noise) + stress_params.added + bent) +
-                  stress_params.kicks + stress_params.spun * lead.w + noise_speed;
-    float allowed =
-        0.5 * speed * speed * (1.0 + stress_params.rise) + stress_params.rise * highest + lifted;
+    float added = stress_params.added + 4.0 * stress_params.changes * highest;
+    float speed = sqrt(2.0 * (began + strength * noise) + added + bent) + stress_params.kicks +
+                  stress_params.spun * lead.w + noise_speed;
+    float allowed = 0.5 * speed * speed * (1.0 + stress_params.rise) +
+                    stress_params.rise * stress_params.strongest * highest + lifted;
     vec4 value = vec4(0.0);
+    float weight = strength * highest, pressed = weight > 0.0 ? budget / weight - 1.0 : 0.0;
+    value.w = max(worst[s].w, float(stress_params.flutter * pressed > stress_params.most_flutter));
     if (stress_params.length_error > 0.0) value.x = off / stress_params.length_error;
-    if (stress_params.energy != 0u && shortest > stress_params.resolved * noise && allowed < HUGE &&
-        allowed > 0.0)
+    if (stress_params.energy != 0u && value.w == 0.0 && shortest > stress_params.resolved * noise &&
+        allowed < HUGE && allowed > 0.0)
         value.y = (kinetic - potential + budget) / allowed;
-    if (stress_params.rest_move > 0.0 && shortest > stress_params.rest_shortest)
+    if (stress_params.rest_move > 0.0 && value.w == 0.0 && shortest > stress_params.rest_shortest &&
+        shortest > stress_params.rest_resolved * noise)
         value.z = move / (stress_params.rest_move + noise);
     uvec4 broken = uvec4(!finite, !passes(value.x), !passes(value.y), !passes(value.z));
     uvec4 was = first[s];

@@ -32,6 +32,7 @@
 #include "sim/bend.glsl"
 #endif
 const float ALLOWED = 0.005; // share of energy
+#define SLOWS_AGAIN 0
 #include "sim/energy_account.glsl"
 
 const float THETA = 0.25;

@@ -18,6 +18,7 @@
 #undef BENDS
 #define BENDS 0
 const float ALLOWED = 0.003; // share of energy
+#define SLOWS_AGAIN 1
 #include "sim/energy_account.glsl"
 
 void main()

@@ -16,6 +16,10 @@
 // which the greatest k that keeps within ALLOWED is known at once. Segments that turn far go by
 // more than k; that goes into the account. Should no k do, the velocities of the one that gains
 // least pay for the rest.
+//
+// SLOWS_AGAIN 1: segments that turn right over have no way between, and go all of it or none. Where
+// the strand's moves have more than 1.5 times the energy meant for them, they are made smaller
+// again.
 
 struct Account {
     vec3 moved, moved_before;        // of the root, in this step and in the one before
@@ -59,6 +63,11 @@ float share_within(float a, float b, float c)
     float q = 0.5 * (abs(b) + sqrt(discriminant));
     return clamp(b > 0.0 ? -c / q : q / a, 0.0, 1.0);
 }
+
+#if SLOWS_AGAIN
+const int MOST_SLOWED = 6; // times in a step
+const float LESS = 0.4;    // each time; one half decides nothing for a segment that turns over
+#endif
 
 // Scales the strand's move by `share` and its velocities by `kept` besides. Gives what springs
 // store then.
@@ -115,6 +124,15 @@ void account_close(Account account, Strand strand, int last)
         gained += account_slow(account, strand, last, share, kept) -
                   mix(account.stored_before, account.stored, share) - over;
         gained += kept * kept * (per_square * account.squares - kinetic);
+#if SLOWS_AGAIN
+        for (int i = 0; i < MOST_SLOWED && per_square * account.squares > 1.5 * kinetic + fall;
+             ++i) {
+            share *= LESS, kinetic *= LESS * LESS;
+            gained = share * linear + constant;
+            account_slow(account, strand, last, LESS, 1.0);
+            gained += per_square * account.squares;
+        }
+#endif
     }
     float kept_gain = gained > 0.0 && gained < 1e30 ? gained : 0.0; // 0 for a NaN
     velocities[strand.address] = vec4(account.moved / strand.dt, kept_gain);

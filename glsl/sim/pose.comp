@@ -58,6 +58,18 @@ vec3 turn_fading(vec3 a, vec3 b, Turn by)
     return kept * inversesqrt(max(dot(kept, kept), 1e-12));
 }
 
+#if HANGS && MIX >= 2
+// turn_between, of unit length also where a and b point nearly the opposite way, and rounding
+// decides about which axis; x where it leaves none.
+vec3 swing(vec3 a, vec3 b, vec3 x)
+{
+    vec3 turned = turn_between(a, b, x);
+    float square = dot(turned, turned);
+    if (dot(a, b) > -0.9) return turned;
+    return square > 1e-4 ? turned * inversesqrt(square) : x;
+}
+#endif
+
 #if MIX == 4
 layout(binding = BIND_ALONG) uniform samplerBuffer along_strand; // solver_split.c
 
@@ -99,8 +111,10 @@ void main()
         vec3 start = HANGS == 1 ? pose_params.hanging.xyz : d;
         vec3 swung = slerp(start, texelFetch(segments, a).xyz,
                            1.0 - texelFetch(along_strand, 2 * (j - int(pose_params.lead))).x);
-        vec3 turned = HANGS == 1 ? turn_between(start, swung, d) : swung;
-        d = j > int(pose_params.lead) ? turned : d;
+#if HANGS
+        swung = swing(start, swung, d);
+#endif
+        d = j > int(pose_params.lead) ? swung : d;
 #elif HANGS && MIX >= 2
         vec3 hanging = pose_params.hanging.xyz, physical = texelFetch(segments, a).xyz;
 #if MIX == 2
@@ -108,7 +122,7 @@ void main()
 #else
         vec3 swung = turn_fading(hanging, physical, by);
 #endif
-        d = j > int(pose_params.lead) ? turn_between(hanging, swung, d) : d;
+        d = j > int(pose_params.lead) ? swing(hanging, swung, d) : d;
 #elif MIX == 2
         d = turn(texelFetch(segments, a).xyz, d, by);
 #elif MIX == 3

@@ -40,6 +40,7 @@ StressOptions stress_options_default(void)
 typedef struct Tally {
     const char *algo, *variant;
     int cases, sets, failures, shrunk;
+    int fluttering; // strands that may flutter (stress_run.h)
     int broken[STRESS_RULES];
     double worst[STRESS_RULES];
     double seconds;
@@ -168,6 +169,7 @@ static void count(Bench *bench, Tally *tally, const StressCase *strands,
 {
     int worst[STRESS_RULES] = {-1, -1, -1, -1};
     for (int s = 0; s < strand_count; ++s) {
+        tally->fluttering += verdicts[s].flutters;
         for (int i = 0; i < STRESS_RULES; ++i) {
             tally->broken[i] += verdicts[s].first[i] > 0;
             if (!(verdicts[s].worst[i] <= tally->worst[i])) tally->worst[i] = verdicts[s].worst[i];
@@ -231,6 +233,12 @@ static void print_tally(Bench *bench, const Tally *tally)
             tally->algo, *tally->variant ? tally->variant : "-", tally->cases, tally->sets,
             tally->failures, tally->seconds, broken[0], broken[1], broken[2], broken[3], worst[1],
             worst[2], worst[3]);
+    if (tally->fluttering)
+        fprintf(
+            bench->stream,
+            "  energy and rest not checked for %d strands that may flutter: their weight presses "
+            "on their style (docs/stress.md)\n",
+            tally->fluttering);
     fflush(bench->stream);
     Row line = {.what = "form", .algo = tally->algo, .variant = tally->variant, .rule = ""};
     line.cases = tally->cases, line.sets = tally->sets, line.failures = tally->failures;

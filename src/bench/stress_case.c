@@ -41,6 +41,7 @@ static const struct {
 } SPECIAL[] = {
     {"drag", 1e-3, 1e4, ZERO, 0.5}, // beyond, hair is the air's
     {"style", 0, 1, STYLE, 0.5},
+    {"rest", REST_GROOM, REST_HANGING, WHOLE, 1},
     {"style_stiffness", 1, 1e9, ZERO, 0.3}, // softer ones are as none
     {"chain_bend", 1, 1e6, ZERO, 0.4},
     {"rope_iterations", 1, 100, WHOLE_LOG, 0.3}, // each costs as much as the first

@@ -4,6 +4,9 @@
 // some of them; these are its text, "dt=0.5 wind=1e4 shape=curl". Behind the circumstances come the
 // parameters of the case's solver, with the names, owners, defaults and ranges of params.def.
 //
+// Gravity at time 0, under which a groom is at rest (--rest groom), is rest_share times what it is
+// from then on.
+//
 // Most are the same for all strands that are stepped together, a set; shape, tilt and shape_seed
 // are each strand's own.
 #pragma once
@@ -23,6 +26,7 @@
     STRESS_FIELD(dt, 1.0 / 60, 1e-6, 1, LOG, 0.6)     /* s */                                      \
     STRESS_FIELD(length, 0.25, 1e-6, 1e4, LOG, 0.4)   /* m */                                      \
     STRESS_FIELD(gravity, 9.81, 1e-3, 1e5, ZERO, 0.4) /* m/s2 */                                   \
+    STRESS_FIELD(rest_share, 1, 0, 2, EVEN, 0.3)      /* of gravity: that at time 0 */             \
     STRESS_FIELD(wind, 0, 1e-2, 1e4, ZERO, 0.4)       /* m/s */                                    \
     STRESS_FIELD(wind_pitch, 90, 0, 180, EVEN, 0.3)   /* degrees from straight down */             \
     STRESS_FIELD(gust, 0, 0, 1, EVEN, 0.3)            /* as --gust */                              \

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "bench/stress_run.h"
+#include "base/double3.h"
 #include "base/interrupt.h"
 #include "bench/bench_glsl.h"
 #include "scene/forces.h"
@@ -41,6 +42,9 @@ static const double REST_MOVE =
 static const double PATIENCE = 30; // of each time constant, until a strand must lie still
 static const double CALM = 2; // stability number (simulation.h) up to which solvers come to rest
 
+static const double TRESSFX_RESOLVED = 4096; // roundings
+static const double MOST_FLUTTER = 0.5;      // the smallest at which a strand was found to: 0.52
+
 static const double NOISE_STEPS = 8; // steps whose rounding may add up, beside a random walk's
 
 static bool is(const StressCase *stress, const char *algo)
@@ -79,13 +83,30 @@ static bool is_stable_tressfx(const StressCase *stress, const SectionParams *par
            params->tressfx_local_share <= 0.5f && params->tressfx_local_max <= 0.95f;
 }
 
+// F: a strand's weight over the stiffness of its joints (stress_run.h), in TressFX's two passes a
+// frame, which `steady` keeps to.
+static double flutter_number(const StressCase *stress, const SectionParams *params, double g)
+{
+    double k = fmin((double)params->tressfx_local_constraint_stiffness,
+                    (double)params->tressfx_local_max),
+           firm = k / (1 - 0.75 * k) * odds_of(params),
+           share = fmin(firm / (1 + 0.75 * firm), (double)params->tressfx_local_max) *
+                   (double)params->tressfx_local_share;
+    double rate = (double)params->tressfx_damping_rate, square = 4 * share * rate * rate;
+    double n = stress->value[STRESS_n], link = stress->value[STRESS_length] / (n - 1);
+    if (!is(stress, "tressfx") || params->tressfx_local_constraints_iterations == 0) return 0;
+    return square > 0 ? fmin(n * g / (link * square), 1e18) : 0;
+}
+
 static void apply_promises(StressBound *bound, const StressCase *stress,
                            const SectionParams *params, bool rests)
 {
     unsigned lacks = 0;
     bound->rise = USUAL_RISE;
     // Shorter segments have no certain direction; TressFX's levers make much of that.
-    bound->resolved = is(stress, "tressfx") ? 4096 : 64;
+    bound->resolved = is(stress, "tressfx") ? TRESSFX_RESOLVED : 64;
+    // What rounding turns a short segment by, by that it turns all behind it.
+    bound->rest_resolved = is(stress, "tressfx") ? TRESSFX_RESOLVED : 0;
     for (size_t i = 0; i < sizeof EXCEPTIONS / sizeof *EXCEPTIONS; ++i)
         if (strcmp(EXCEPTIONS[i].algo, stress->algo) == 0 &&
             (!EXCEPTIONS[i].variant || strcmp(EXCEPTIONS[i].variant, stress->variant) == 0)) {
@@ -100,13 +121,39 @@ static void apply_promises(StressBound *bound, const StressCase *stress,
     bound->rest_move = rests && !(lacks & REST) ? REST_MOVE * bound->length : 0;
 }
 
-// Whether what drag takes must have ended in the half of the steps in which the head rests.
-static bool must_rest(const StressCase *stress, const StressBound *bound, double g, int steps)
+// What is felt of gravity, m/s^2, at `turned` rad of the head: a groom holds its own part.
+static void find_felt(const StressBound *bound, const double gravity[3], double turned,
+                      double felt[3])
 {
-    double time = bound->step_s * steps / 2;
+    double cosine = bound->held * cos(turned), sine = bound->held * sin(turned);
+    felt[0] = bound->share * (gravity[0] - cosine * gravity[0] + sine * gravity[1]);
+    felt[1] = bound->share * (gravity[1] - cosine * gravity[1] - sine * gravity[0]);
+    felt[2] = bound->share * (gravity[2] - cosine * gravity[2]);
+}
+
+// What the groom holds, and how strong what is left can be.
+static void find_held(StressBound *bound, const StressCase *stress, const SectionParams *params)
+{
+    const double *value = stress->value;
+    double holds = solver_keeps_groom(params) ? value[STRESS_rest_share] : 0;
+    bool segments = is(stress, "split");
+    bound->hangs = segments && holds > 0;
+    bound->held = segments ? 0 : holds;
+    bound->share = (double)params->gravity_share;
+    double most = value[STRESS_spin] > 0 ? 1 + bound->held : fabs(1 - bound->held);
+    bound->g = bound->share * value[STRESS_gravity] * most;
+}
+
+// Whether what drag takes must have ended in the half of the steps in which the head rests.
+static bool must_rest(const StressCase *stress, const StressBound *bound, int steps)
+{
+    double time = bound->step_s * steps / 2, gravity = stress->value[STRESS_gravity];
+    double g = bound->share * gravity * fabs(1 - bound->held) + bound->drag * bound->wind;
     if (stress->value[STRESS_gust] > 0 && bound->wind > 0) return false;
-    if (!(bound->drag > 0 && g > 0)) return false;
-    return time > PATIENCE * fmax(2 / bound->drag, bound->drag * bound->length / g);
+    if (!(bound->drag > 0) || !(time > PATIENCE * 2 / bound->drag)) return false;
+    if (g > 0) return time > PATIENCE * bound->drag * bound->length / g;
+    // Only springs pull: 2L e^{-y N} is left after N steps of a share y, 2 L/(e N) a step at most.
+    return bound->held > 0 && steps / 2 > 2 / (exp(1) * REST_MOVE);
 }
 
 StressBound stress_run_bound(const StressCase *stress, const SectionParams *params, int steps)
@@ -117,7 +164,6 @@ StressBound stress_run_bound(const StressCase *stress, const SectionParams *para
             stress->value[STRESS_dt] * (is(stress, "rope") ? (double)params->rope_time_scale : 1),
         .drag = (double)params->drag,
         .wind = stress->value[STRESS_wind] * (1 + stress->value[STRESS_gust]) / cos(spread),
-        .g = stress->value[STRESS_gravity],
         .length = stress->value[STRESS_length],
         .stiffness = turned_springs(stress, params),
         // What a jerk of the root gives to a strand, over its change of velocity, in that step
@@ -134,21 +180,40 @@ StressBound stress_run_bound(const StressCase *stress, const SectionParams *para
                        : strcmp(stress->variant, "explicit") == 0 ? STRESS_MOST_SMALL_STEPS
                                                                   : 1,
     };
+    find_held(&bound, stress, params);
     if (is(stress, "tressfx")) // which has more that makes hair go with the air
         bound.drag += (double)params->tressfx_damping * (double)params->tressfx_damping_rate;
     double g = bound.g + bound.drag * bound.wind, links = stress->value[STRESS_n] - 1;
     bound.rest_shortest = bound.step_s * bound.step_s * g * links / (CALM * CALM);
-    apply_promises(&bound, stress, params, must_rest(stress, &bound, g, steps));
+    apply_promises(&bound, stress, params, must_rest(stress, &bound, steps));
+    if (bound.rise >= 0 || bound.rest_move > 0)
+        bound.flutter = flutter_number(stress, params, bound.g);
     // Damping by a share in each step is drag of some strength.
     if (is(stress, "rope") && params->rope_damping > 0) bound.drag = INFINITY;
     return bound;
 }
 
-void stress_run_bound_step(StressBound *bound, const double moved[3], double angle)
+// Takes into account how what is felt of gravity has changed.
+static void step_gravity(StressBound *bound, const StressMove *move)
 {
-    double change = 0, speed = 0, rate = fabs(angle) / bound->step_s;
+    Double3 felt, change;
+    find_felt(bound, move->gravity, move->turned, felt);
+    if (bound->steps == 0) {
+        memcpy(bound->felt_first, felt, sizeof felt);
+        memcpy(bound->felt, felt, sizeof felt);
+    }
+    for (int k = 0; k < 3; ++k) change[k] = felt[k] - bound->felt[k];
+    bound->changes += double3_length(change);
+    bound->strongest = fmax(bound->strongest, double3_length(felt));
+    memcpy(bound->felt, felt, sizeof felt);
+}
+
+void stress_run_bound_step(StressBound *bound, const StressMove *move)
+{
+    double change = 0, speed = 0, angle = move->angle, rate = fabs(angle) / bound->step_s;
+    step_gravity(bound, move);
     for (int k = 0; k < 3; ++k) {
-        double u = moved[k] / bound->step_s;
+        double u = move->moved[k] / bound->step_s;
         change += (u - bound->root_velocity[k]) * (u - bound->root_velocity[k]);
         speed += u * u;
         bound->root_velocity[k] = u;
@@ -174,6 +239,13 @@ void stress_run_bound_fill(const StressBound *bound, bool last, StressParams *pa
     params->kicks = (float)fmin(bound->kicks + overshoot + bound->turning, most);
     params->spun = bound->carries ? (float)fmin(bound->spun, most) : 0;
     params->carried = bound->carries;
+    params->hangs = bound->hangs;
+    params->changes = (float)fmin(bound->changes, most);
+    params->strongest = (float)bound->strongest;
+    for (int k = 0; k < 3; ++k) {
+        params->gravity[k] = (float)bound->felt[k];
+        params->gravity_first[k] = (float)bound->felt_first[k];
+    }
     params->added = (float)fmin(bound->blown + bound->turned, most * most);
     params->rise = (float)bound->rise;
     params->energy = bound->rise >= 0;
@@ -183,6 +255,9 @@ void stress_run_bound_fill(const StressBound *bound, bool last, StressParams *pa
     params->noise_steps = (float)(bound->small_steps * (NOISE_STEPS + sqrt(bound->steps)));
     params->length_error = (float)bound->length_error;
     params->rest_shortest = (float)bound->rest_shortest;
+    params->flutter = (float)bound->flutter;
+    params->most_flutter = (float)MOST_FLUTTER;
+    params->rest_resolved = (float)bound->rest_resolved;
     params->rest_move = last ? (float)bound->rest_move : 0;
 }
 
@@ -255,13 +330,20 @@ static Result create_check(Run *run, const Gpu *gpu, Error *error)
     return result;
 }
 
+// rad, below two turns: the head's angle about z after step i.
+static double angle_at(const Run *run, int i)
+{
+    double moving = i < run->steps / 2 ? i : run->steps / 2;
+    return fmod(run->set->value[STRESS_spin] * moving * run->set->value[STRESS_dt], 4 * PI);
+}
+
 // The head after step i: off the origin, to and fro along x, shaken along z, turning about z; it
 // stands still in the second half.
 static HeadPose pose_at(const Run *run, int i)
 {
     const double *value = run->set->value;
     int moving = i < run->steps / 2 ? i : run->steps / 2;
-    double time = moving * value[STRESS_dt], half = fmod(value[STRESS_spin] * time, 4 * PI) / 2;
+    double time = moving * value[STRESS_dt], half = angle_at(run, i) / 2;
     double jumped = moving / JUMP_PERIOD % 2 ? value[STRESS_jump] : 0;
     double shaken = value[STRESS_shake] * sin(2 * PI * value[STRESS_shake_rate] * time);
     return (HeadPose){{0, 0, (float)sin(half), (float)cos(half)},
@@ -303,11 +385,15 @@ static Result run_create(Run *run, const Gpu *gpu, const StressCase *strands, in
     run->step = (SolverStep){.dt = value[STRESS_dt], .first = true, .number = 1};
     run->step.head = run->step.head_old = pose_at(run, 0);
     TRY(upload(run, gpu, strands, count, error));
+    float rest_gravity = 0;
+    if (run->params.rest == REST_GROOM)
+        rest_gravity = (float)(-value[STRESS_gravity] * value[STRESS_rest_share]);
     const SolverSetup setup = {.gpu = gpu,
                                .timer = &run->timer,
                                .hair = &run->hair,
                                .params = &run->params,
-                               .head = &run->step.head};
+                               .head = &run->step.head,
+                               .rest_gravity = {0, rest_gravity, 0}};
     TRY(solver_create(&run->solver, &setup, error));
     return create_check(run, gpu, error);
 }
@@ -330,7 +416,6 @@ static void look(Run *run, int i)
                            .used_most = (float)run->allowed,
                            .strand_count = batch->strand_count,
                            .vertex_count = batch->vertex_count};
-    memcpy(params.gravity, run->step.gravity, sizeof run->step.gravity);
     stress_run_bound_fill(&run->bound, i == run->steps, &params);
     solver_pose(&run->solver, &run->step.head);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
@@ -354,17 +439,21 @@ static void take_step(Run *run, int i)
 {
     SolverStep *step = &run->step;
     Forces forces;
-    double before[3], now[3], moved[3];
+    double before[3], now[3];
+    StressMove move = {.turned = angle_at(run, i)};
     forces_evaluate(&forces, &run->scene, (i - 1) * step->dt);
     memcpy(step->gravity, forces.gravity, sizeof step->gravity);
     memcpy(step->wind, forces.wind, sizeof step->wind);
     step->head = pose_at(run, i);
     root_at(run, &step->head_old, before);
     root_at(run, &step->head, now);
-    for (int k = 0; k < 3; ++k) moved[k] = now[k] - before[k];
+    for (int k = 0; k < 3; ++k) {
+        move.moved[k] = now[k] - before[k];
+        move.gravity[k] = (double)step->gravity[k];
+    }
     bool turns = i <= run->steps / 2;
-    stress_run_bound_step(&run->bound, moved,
-                          turns ? fmin(run->set->value[STRESS_spin] * step->dt, PI) : 0);
+    move.angle = turns ? fmin(run->set->value[STRESS_spin] * step->dt, PI) : 0;
+    stress_run_bound_step(&run->bound, &move);
     bool looked_at = is_looked_at(run, i);
     if (looked_at) keep_positions(run);
     solver_step(&run->solver, step);
@@ -394,6 +483,7 @@ Result stress_run(StressVerdict *verdicts, const Gpu *gpu, const StressCase *str
         glGetBufferSubData(GL_COPY_READ_BUFFER, at, sizeof worst, worst);
         glBindBuffer(GL_COPY_READ_BUFFER, run.first.buffer);
         glGetBufferSubData(GL_COPY_READ_BUFFER, at, sizeof first, first);
+        verdicts[s].flutters = worst[3] > 0;
         for (int i = 0; i < STRESS_RULES; ++i) {
             verdicts[s].first[i] = (int)first[i];
             verdicts[s].worst[i] = i == 0 ? 0 : (double)worst[i - 1];
