@@ -199,13 +199,13 @@ static void hair_files_keep_every_colour(void **state)
     bytes_destroy(&bytes);
 }
 
-// A unit of 0 m is none.
+// A unit below 0 m is none.
 static void a_unit_without_length_is_ignored(void **state)
 {
     Bytes bytes = make_file(state, FORMAT_HAIR);
     char *unit = strstr((char *)bytes.data + 40, "unit 1 m");
     assert_non_null(unit);
-    unit[5] = '0';
+    unit[4] = '-'; // "unit-1 m", which reads as -1
     Strands strands;
     StrandsReport report;
     assert_int_equal(
