@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Tractrix: headless hair simulator and renderer. `make help` lists the targets.
 #
-#   CONFIG  release (default), debug, sanitize, coverage   OUT  where everything goes, out/$(CONFIG)
+#   CONFIG  release (default), debug, sanitize, coverage, fuzz   OUT  where everything goes, out/$(CONFIG)
 #   WERROR  not empty: warnings are errors              ONLY    `make test`: only tests with this in their name
 #   V       not empty: show whole commands
 #   CC, CPPFLAGS, CFLAGS, LDFLAGS, LDLIBS, PREFIX and DESTDIR as usual; the flags are added to the project's own.
@@ -14,8 +14,11 @@ ifeq ($(origin CC),default)
 CC := gcc
 endif
 
-ifeq ($(filter $(CONFIG),release debug sanitize coverage),)
-$(error CONFIG=$(CONFIG): expected release, debug, sanitize or coverage)
+ifeq ($(filter $(CONFIG),release debug sanitize coverage fuzz),)
+$(error CONFIG=$(CONFIG): expected release, debug, sanitize, coverage or fuzz)
+endif
+ifeq ($(CONFIG),fuzz)
+CC := clang
 endif
 
 # --- Flags. stb is used by its headers alone; its pkg-config file would link a library that nothing here needs. Of
@@ -30,6 +33,8 @@ OPTIMISE_sanitize := -O1 -g -fno-omit-frame-pointer
 SANITIZE_sanitize := -fsanitize=address,undefined -fno-sanitize-recover=undefined
 OPTIMISE_coverage := -O1 -g
 SANITIZE_coverage := --coverage -fprofile-update=atomic
+OPTIMISE_fuzz     := -O1 -g -fno-omit-frame-pointer
+SANITIZE_fuzz     := -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined
 LINKER_sanitize   := -Wl,--export-dynamic-symbol=dlclose
 
 WARNINGS  := -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wvla $(if $(WERROR),-Werror)
@@ -51,12 +56,14 @@ TESTS     := $(wildcard tests/*/test_*.c)
 KEEP      := tests/support/keep_drivers.c
 TEST_SHADERS := $(wildcard tests/glsl/*)
 SUPPORT   := $(filter-out $(KEEP),$(wildcard tests/support/*.c))
+FUZZ      := $(filter-out tests/fuzz/test_% tests/fuzz/engine.c,$(wildcard tests/fuzz/*.c))
 PAGES     := $(filter %.html %.css %.js,$(wildcard src/report/*))
 OBJECTS   := $(SOURCES:src/%.c=$(OUT)/%.o) $(if $(SHADERS),$(OUT)/glsl_sources.o) $(if $(BENCH_SHADERS),$(OUT)/bench/bench_glsl.o) \
              $(OUT)/report/report_texts.o
 PROGRAMS  := $(foreach main,$(MAINS),$(OUT)/$(patsubst main_%.c,tractrix-%,$(notdir $(main))))
 TEST_PROGRAMS := $(TESTS:%.c=$(OUT)/%)
 SUPPORT_OBJECTS := $(SUPPORT:%.c=$(OUT)/%.o) $(OUT)/tests/glsl_sources.o
+FUZZ_OBJECTS := $(FUZZ:%.c=$(OUT)/%.o)
 KEEP_sanitize := $(KEEP:%.c=$(OUT)/%.o)
 SCRIPTS   := $(addprefix $(OUT)/tractrix-,farm turntable compare-goldens) # programs that are scripts
 MANUALS   := $(addsuffix .1,$(PROGRAMS) $(SCRIPTS)) $(OUT)/tractrix-gen-fur.1
@@ -67,7 +74,7 @@ FAULTY    := $(PROGRAMS:$(OUT)/%=$(OUT)/faults/%)
 FAULT_CALLS := $(shell sed -nEf tests/faults/wrapped.sed tests/faults/calls.def)
 TORTURE   := $(OUT)/tests/faults/torture
 TORTURE_OBJECTS := $(patsubst %.c,$(OUT)/%.o,$(filter-out tests/faults/inject.c,$(wildcard tests/faults/*.c)))
-FOLDERS   := $(sort $(dir $(OBJECTS) $(SUPPORT_OBJECTS) $(TEST_PROGRAMS) $(FAULTY) $(TORTURE)))
+FOLDERS   := $(sort $(dir $(OBJECTS) $(SUPPORT_OBJECTS) $(FUZZ_OBJECTS) $(TEST_PROGRAMS) $(FAULTY) $(TORTURE)))
 
 # --- Build. Recipes that recurse use all processors unless -j says otherwise.
 JOBS = $(if $(filter -j% --jobserver%,$(MAKEFLAGS)),,-j$(shell nproc))
@@ -127,8 +134,11 @@ $(OUT)/tests/%.o: tests/%.c $(OUT)/flags | $(OUT)/version.h
 	$(call run,CC,$(CC) $(C_FLAGS) -Itests -MMD -MP -c -o $@ $<)
 $(OUT)/tests/support/libsupport.a: $(SUPPORT_OBJECTS) $(OUT)/files
 	$(call run,AR,rm -f $@ && $(AR) rcs $@ $(SUPPORT_OBJECTS))
+$(OUT)/tests/fuzz/test_fuzz_corpora: $(FUZZ_OBJECTS)
+$(OUT)/tests/fuzz/fuzz: $(OUT)/tests/fuzz/engine.o $(FUZZ_OBJECTS) $(OUT)/libtractrix.a
+	$(call run,LINK,$(CC) $(LD_FLAGS) -fsanitize=fuzzer -o $@ $^ $(LD_LIBS))
 $(OUT)/tests/%: $(OUT)/tests/%.o $(KEEP_$(CONFIG)) $(OUT)/tests/support/libsupport.a $(OUT)/libtractrix.a
-	$(call run,LINK,$(CC) $(LD_FLAGS) -o $@ $^ $(LD_LIBS) -lcmocka)
+	$(call run,LINK,$(CC) $(LD_FLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(LD_LIBS) -lcmocka)
 
 define faulty # MAIN
 $(OUT)/faults/$(patsubst main_%,tractrix-%,$(notdir $(1))): $(OUT)/$(1).o $(OUT)/tests/faults/inject.o $(KEEP_$(CONFIG)) $(OUT)/libtractrix.a
@@ -228,6 +238,13 @@ SANITIZE_BUT = ^test_(bench_command|bench_html|blender|ci_examples|command_cache
 check-sanitize:
 	$(QUIET) CONFIG=sanitize OUT=$(SIDE)sanitize all tests
 	@tests/runner $(SIDE)sanitize test_ '$(SANITIZE_BUT)'
+
+TIME = 60
+fuzz: all ## feed mutated bytes to every reader, TIME seconds each (60; ONLY="png cache": these)
+	@scripts/setup build run check
+	@command -v clang >/dev/null || { echo "fuzz: no clang here: expected clang with libFuzzer" >&2; exit 1; }
+	$(QUIET) CONFIG=fuzz OUT=$(SIDE)fuzz $(SIDE)fuzz/tests/fuzz/fuzz
+	@scripts/fuzz --time $(TIME) $(OUT) $(SIDE)fuzz $(ONLY)
 
 coverage: ## lines of the readers and writers that the tests run: at least 90 % (ONLY=name: some tests)
 	@scripts/setup build run test

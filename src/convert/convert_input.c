@@ -108,11 +108,22 @@ static Result place_all(CacheStrands *strands, Error *error)
     return RESULT_OK;
 }
 
+// Frames are compressed, so the file's size says little of their vertices; but a small file shall
+// not take all memory.
+static bool is_too_much(const CacheStrands *strands, const Counts *counts)
+{
+    enum { FACTOR = 64, SURE_BYTES = 64 << 20, VERTEX_BYTES = 36 }; // layout, frame as read, frame
+    return counts->vertices * VERTEX_BYTES > FACTOR * strands->cache.file.size + SURE_BYTES;
+}
+
 static Result read_hair(CacheStrands *strands, Error *error)
 {
     Counts counts = count_all(&strands->cache.hair, &strands->section_count);
     if (!counts.good)
         return refuse_cache(strands, "its hair is not what docs/cache.md says", error);
+    if (is_too_much(strands, &counts))
+        return refuse_cache(strands, "its hair has more vertices than a file of its size can hold",
+                            error);
     TRY(strands_create(&strands->layout, (uint32_t)counts.strands, (uint32_t)counts.vertices,
                        error));
     strands->order = malloc(counts.strands * sizeof *strands->order);

@@ -273,13 +273,27 @@ static Result make_image(Codec *codec, const char *path, Error *error)
                      image->height);
 }
 
+// libpng takes what a chunk says of its own length; it is told here that there is no such memory.
+static png_voidp give_memory(png_structp png, size_t size)
+{
+    const Codec *codec = png_get_mem_ptr(png);
+    return size <= READ_MAX_FACTOR * codec->size + READ_SURE_BYTES ? malloc(size) : NULL;
+}
+
+static void take_memory(png_structp png, png_voidp block)
+{
+    (void)png;
+    free(block);
+}
+
 static Result open_reader(Codec *codec, const Bytes *file, const char *path, Error *error)
 {
     *codec = (Codec){.bytes = file->data, .size = file->size};
     size_t start = file->size < SIGNATURE_BYTES ? file->size : SIGNATURE_BYTES;
     if (start == 0 || png_sig_cmp(file->data, 0, start) != 0)
         return error_set(error, RESULT_BAD_INPUT, "%s: not a PNG file", path);
-    codec->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, codec, fail, warn);
+    codec->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, codec, fail, warn, codec,
+                                          give_memory, take_memory);
     codec->info = codec->png ? png_create_info_struct(codec->png) : NULL;
     if (codec->info) return RESULT_OK;
     return error_set(error, RESULT_FAILED, "%s: no memory to read it", path);

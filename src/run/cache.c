@@ -8,6 +8,7 @@
 #include <endian.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
@@ -211,6 +212,13 @@ static float take_float(const uint8_t *bytes)
     return value;
 }
 
+static bool are_finite(const float *numbers, size_t count)
+{
+    bool finite = true;
+    for (size_t i = 0; i < count; ++i) finite &= isfinite(numbers[i]) != 0;
+    return finite;
+}
+
 Result cache_file_read(CacheFile *cache, int frame, float head[CACHE_HEAD_FLOATS],
                        float (*positions)[3], uint64_t vertex_count, Error *error)
 {
@@ -228,6 +236,8 @@ Result cache_file_read(CacheFile *cache, int frame, float head[CACHE_HEAD_FLOATS
     bool short_of_memory = !good && payload.size >= HEAD_BYTES && errno == ENOMEM;
     for (int i = 0; i < CACHE_HEAD_FLOATS && good; ++i) head[i] = take_float(payload.data + 4 * i);
     bytes_destroy(&payload);
+    good = good && are_finite(head, CACHE_HEAD_FLOATS) &&
+           are_finite((const float *)positions, (size_t)(3 * vertex_count));
     if (good) return RESULT_OK;
     if (short_of_memory)
         return error_set(error, RESULT_FAILED, "%s: no memory for frame %d", cache->file.path,

@@ -49,7 +49,7 @@ bool cache_file_verify(CacheFile *cache);
 
 // The head's rotation (unit quaternion x, y, z, w) and translation, and the positions of
 // `vertex_count` vertices in the order of `hair`. RESULT_BAD_INPUT with frame and place if it is
-// missing or damaged.
+// missing, damaged or not finite.
 Result cache_file_read(CacheFile *cache, int frame, float head[CACHE_HEAD_FLOATS],
                        float (*positions)[3], uint64_t vertex_count, Error *error);
 
