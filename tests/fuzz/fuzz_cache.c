@@ -29,9 +29,11 @@ void fuzz_cache(const Bytes *bytes, int unused)
     Bytes copy = *bytes;
     fuzz_repair_chunks(&copy);
     char *path = (char *)fuzz_file("x.cache", &copy);
-    if (!cache_file_matches(path)) return; // a hair file, or nothing
     ConvertInput input = {.paths = &path, .path_count = 1, .last = -1, .every = 1};
     Error error = {{0}};
+    bool matches = false;
+    fuzz_claim(cache_file_matches(path, &matches, &error) == RESULT_OK, "%s", error.text);
+    if (!matches) return; // a hair file, or nothing
     Result result = convert_input_open(&input, &error);
     fuzz_claim_error(result, &error);
     if (result == RESULT_OK) read_frames(&input);
