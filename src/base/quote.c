@@ -62,7 +62,7 @@ void quote_line(char *line, size_t size, const char *text)
 
 Quoted quote(const char *text)
 {
-    Quoted quoted;
+    Quoted quoted = {{0}};
     quote_line(quoted.text, sizeof quoted.text, text);
     return quoted;
 }

@@ -321,8 +321,13 @@ static Result run_threads(Work *work, Error *error)
     pthread_t threads[1024];
     int count = 0, wanted = work->command->jobs;
     if ((size_t)wanted > work->list->count) wanted = (int)work->list->count;
-    while (count < wanted && pthread_create(&threads[count], NULL, run_thread, work) == 0) ++count;
-    if (count == 0) return error_set(error, RESULT_FAILED, "cannot start a thread");
+    int reason = 0;
+    while (count < wanted && !reason) {
+        reason = pthread_create(&threads[count], NULL, run_thread, work);
+        if (!reason) ++count;
+    }
+    if (count == 0)
+        return error_set(error, RESULT_FAILED, "cannot start a thread: %s", strerror(reason));
     Result result = print_verdicts(work, error);
     for (int i = 0; i < count; ++i) pthread_join(threads[i], NULL);
     return result;

@@ -10,6 +10,7 @@
 // Room for the sanitizers' own files, which is none.
 void place_create(Place *place, const char *work, int number)
 {
+    memset(place, 0, sizeof *place);
     snprintf(place->root, sizeof place->root, "%.4000s/%d", work, number);
     snprintf(place->run, sizeof place->run, "%s/run", place->root);
     snprintf(place->tmp, sizeof place->tmp, "%s/tmp", place->root);

@@ -18,7 +18,7 @@ static void claim_image(const Image *image)
                image->height);
     fuzz_claim(image->channels == 3 || image->channels == 4, "%d channels", image->channels);
     if (image->kind != IMAGE_FLOAT) return;
-    const float *level = (const float *)image->pixels;
+    const float *level = (const void *)image->pixels;
     for (size_t i = 0; i < image_size(image) / sizeof *level; ++i)
         fuzz_claim(isfinite(level[i]), "a level of %g", (double)level[i]);
 }
