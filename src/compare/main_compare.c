@@ -197,7 +197,8 @@ static Result parse(Command *command, int argc, char **argv, bool *done, Error *
                                  : cores > 1024 ? 1024
                                                 : (int)cores,
                          .line = shell_join_line("tractrix-compare", argc, argv)};
-    if (!command->line) return error_set(error, RESULT_FAILED, "no memory for the command line");
+    if (!command->line)
+        return error_set(error, RESULT_FAILED, "cannot note the command line: %s", strerror(errno));
     Result result = options_parse(&PROGRAM, command, argc, argv, &first, done, error);
     if (result != RESULT_OK || *done) return result;
     if (argc - first != 2)
@@ -252,7 +253,10 @@ static void judge(Work *work, size_t i)
                               .mask = work->mask.nearest ? &work->mask : NULL,
                               .map = work->pages ? &work->pages[i].map : NULL};
     if (work->pages) html_pair_read(&work->pages[i], pair);
-    verdict_find(&work->verdicts[i], pair, &options);
+    if (!heat_map == !command->heat_map && !sheet == !command->sheet)
+        verdict_find(&work->verdicts[i], pair, &options);
+    else
+        work->verdicts[i] = (Verdict){.outcome = OUTCOME_FAILED, .text = "no memory for a name"};
     free(heat_map);
     free(sheet);
 }

@@ -107,10 +107,10 @@ Result cache_file_matches(const char *path, bool *matches, Error *error)
     FILE *stream = fopen(path, "rb");
     *matches = stream && fread(magic, sizeof magic, 1, stream) == 1 &&
                memcmp(magic, CACHE_MAGIC, sizeof magic) == 0;
-    int reason = stream && ferror(stream) ? errno : 0;
+    int reason = !stream || ferror(stream) ? errno : 0;
     if (stream) fclose(stream);
-    // A folder is for others to refuse.
-    if (!reason || reason == EISDIR) return RESULT_OK;
+    // A folder, and a name that is no file, are for others to refuse.
+    if (!reason || reason == EISDIR || reason == ENOENT) return RESULT_OK;
     return error_set(error, RESULT_BAD_INPUT, "%s: %s", path, strerror(reason));
 }
 

@@ -27,8 +27,8 @@ typedef struct CacheFile {
     Error end;     // why there are no more, if that is not the file's proper end
 } CacheFile;
 
-// Whether the file begins like a cache; no if it can't be opened. RESULT_BAD_INPUT if it can't be
-// read.
+// Whether the file begins like a cache; no if there is none. RESULT_BAD_INPUT if it can't be opened
+// or read.
 Result cache_file_matches(const char *path, bool *matches, Error *error);
 
 // Whether it is a cache that ends before its first frame could begin: its run was stopped at once.
