@@ -103,7 +103,7 @@ same "$(grep -c '"what": "failed"' "$work/stress.json")" "$failures" "in JSON"
 same "$(grep -c '  set [0-9]*, strand [0-9]*: energy at step' "$work/out")" "$failures" "on the screen"
 found=$(field "$work/stress.csv" case | head -1) used=$(field "$work/stress.csv" of_allowed | head -1)
 smallest=$(field "$work/stress.csv" case | tail -2 | head -1)
-says "set 0, strand $(field "$work/stress.csv" strand | head -1): energy"; says ": '$found'"
+says ", strand $(field "$work/stress.csv" strand | head -1): energy"; says ": '$found'"
 says "--allow 0.4 --case '$smallest'"
 run 1 stress --algo hybrid --steps 50 --allow 0.4 --case "$found" --csv "$work/repeated.csv"
 same "$(field "$work/repeated.csv" of_allowed | head -1)" "$used" "the repeated case"

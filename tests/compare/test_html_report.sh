@@ -73,7 +73,7 @@ if "$bin/tractrix-render" "$root/assets/curls.tfx" --algo none --size 32x24 -q -
 else skip "no image of floats: no driver"; fi
 
 claim "a page that cannot be written is named, and none is left"
-run 1 a b --html none/report.html; says none; one_line
+run 1 a b --html /proc/none/report.html; says /proc/none; one_line
 run 1 a b --html /dev/full -q; says /dev/full; one_line
 mkdir left && run 2 a b/same.png --html left/report.html; no_files left
 

@@ -272,7 +272,7 @@ static void what_would_give_other_hair_is_refused_with_its_line(void **state)
         {"#usda 1.0\n", "FILE:2: no BasisCurves"},
         {CURVES("uniform token[] xformOpOrder = [\"xformOp:scale\"]\n"),
          "FILE:7: xformOpOrder names 'xformOp:scale', which has no value"},
-        {CURVES("uniform token[] xformOpOrder = [\"a\nb\"]\n"), "xformOpOrder names 'a?b'"},
+        {CURVES("uniform token[] xformOpOrder = [\"a\nb\"]\n"), "xformOpOrder names 'a\\nb'"},
         {CURVES("float xformOp:shear = 3\nuniform token[] xformOpOrder = [\"xformOp:shear\"]\n"),
          "FILE:7: 'xformOp:shear' is no transform"},
         {CURVES("float3 xformOp:scale = (1, 0, 1)\n"
