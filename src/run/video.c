@@ -171,16 +171,20 @@ static int spawn(Video *video, const Command *command, int input_read_end)
     sigaddset(&ignored, SIGXFSZ);
     posix_spawn_file_actions_init(&actions);
     posix_spawnattr_init(&attributes);
-    posix_spawn_file_actions_adddup2(&actions, input_read_end, STDIN_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, video->messages, STDERR_FILENO);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    int reason = posix_spawn_file_actions_adddup2(&actions, input_read_end, STDIN_FILENO);
+    if (!reason)
+        reason = posix_spawn_file_actions_adddup2(&actions, video->messages, STDERR_FILENO);
+    if (!reason)
+        reason =
+            posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
     posix_spawnattr_setpgroup(&attributes, 0);
     posix_spawnattr_setsigmask(&attributes, &none);
     posix_spawnattr_setsigdefault(&attributes, &ignored);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK |
                                               POSIX_SPAWN_SETSIGDEF);
     // The list is not written to; the const is missing from the declaration for historical reasons.
-    int reason = posix_spawnp(&video->process, "ffmpeg", &actions, &attributes,
+    if (!reason)
+        reason = posix_spawnp(&video->process, "ffmpeg", &actions, &attributes,
                               (char *const *)command->arguments, environ);
     if (reason != 0) video->process = 0;
     if (reason == 0) video->group = leftover_add_group(video->process);
@@ -289,9 +293,11 @@ Result video_write(Video *video, const Image *image, Error *error)
         if (written < 0) {
             // Why the pipe broke is for ffmpeg to say.
             int reason = errno;
-            if (wait_end(video, error) != RESULT_OK) return RESULT_FAILED;
-            return error_set(error, RESULT_FAILED, "%s: ffmpeg stopped reading: %s",
-                             video->file.path, strerror(reason));
+            bool broke = reason == EPIPE;
+            if (broke && wait_end(video, error) != RESULT_OK) return RESULT_FAILED;
+            return error_set(error, RESULT_FAILED, "%s: %s: %s", video->file.path,
+                             broke ? "ffmpeg stopped reading" : "cannot write to ffmpeg",
+                             strerror(reason));
         }
         data += written;
         left -= (size_t)written;
@@ -304,7 +310,9 @@ Result video_finish(Video *video, uint64_t *bytes, Error *error)
     *bytes = 0;
     TRY(wait_end(video, error));
     struct stat status;
-    if (fstat(fileno(video->file.stream), &status) == 0) *bytes = (uint64_t)status.st_size;
+    if (fstat(fileno(video->file.stream), &status) != 0)
+        return error_set(error, RESULT_FAILED, "%s: %s", video->file.path, strerror(errno));
+    *bytes = (uint64_t)status.st_size;
     if (*bytes == 0)
         return error_set(error, RESULT_FAILED,
                          "%s: ffmpeg ended well but wrote nothing: expected a video",
