@@ -68,7 +68,8 @@ static bool may_be_partial(const Run *run, const char *name)
     return run->grows && (has_end(name, ".cache") || has_end(name, ".cache.state"));
 }
 
-// The same from the pixels on: the texts before them name the processor, which a run can do without.
+// The same from the pixels on: the texts before them name the processor, which a run can do
+// without.
 static bool are_same_pixels(const FolderFile *a, const FolderFile *b)
 {
     const char *from = memmem(a->bytes, a->size, "IDAT", 4);
