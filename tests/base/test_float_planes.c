@@ -7,6 +7,8 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -64,6 +66,24 @@ static void smooth_curves_take_fewer_bytes(void **state)
     free(values);
 }
 
+// What is cut off lies at the end of a page, behind which there is no memory: nothing is read
+// there.
+static void refuse_before_a_hole(const uint8_t *packed, size_t size, size_t count)
+{
+    size_t page = (size_t)sysconf(_SC_PAGESIZE), pages = (size + page - 1) / page * page;
+    uint8_t *memory =
+        mmap(NULL, pages + page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    float *read = malloc(count * sizeof *read);
+    assert_true(memory != MAP_FAILED && read != NULL);
+    assert_int_equal(mprotect(memory + pages, page, PROT_NONE), 0);
+    for (size_t cut = 0; cut < size; ++cut) {
+        memcpy(memory + pages - cut, packed, cut);
+        assert_false(float_planes_unpack(read, count, 3, memory + pages - cut, cut));
+    }
+    free(read);
+    munmap(memory, pages + page);
+}
+
 static void what_was_not_packed_is_refused(void **state)
 {
     (void)state;
@@ -78,6 +98,7 @@ static void what_was_not_packed_is_refused(void **state)
         assert_false(float_planes_unpack(read, COUNT, 3, part, cut));
         free(part);
     }
+    refuse_before_a_hole(packed, size, COUNT);
     assert_false(float_planes_unpack(read, COUNT + 1, 3, packed, size));
     assert_false(float_planes_unpack(read, COUNT - 1, 3, packed, size));
     free(packed);

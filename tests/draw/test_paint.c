@@ -195,6 +195,36 @@ static void hair_shows_its_paint(void **state)
     }
 }
 
+// Between two vertices a smooth strand's half-width goes evenly from 4 to 12 px: 6 px a quarter of
+// the way on, 8 px half-way.
+static void smooth_hair_is_as_thick_as_between_its_vertices(void **state)
+{
+    (void)state;
+    enum { N = 3, PARTS = 4, LONG = 40 };
+    const float position[N][3] = {{0, -LONG, 0}, {0, 0, 0}, {0, LONG, 0}};
+    float color[N][4], thickness[N] = {1, 3, 1};
+    for (int v = 0; v < N; ++v)
+        for (int k = 0; k < 4; ++k) color[v][k] = 1;
+    const Paint paint = {.color = color, .thickness = thickness, .vertex_count = N};
+    for (Raster raster = RASTER_QUADS; raster <= RASTER_BLOCKS; ++raster) {
+        Studio studio;
+        studio_open(&studio, &(RendererOptions){.raster = raster, .width = 128, .height = 128});
+        Strands strands = studio_strands(1, N, position);
+        studio_add(&studio, &strands, 4, 1);
+        studio.material[0].smooth = PARTS;
+        studio.material[0].curve = CURVE_CATMULL_ROM;
+        NEEDED(look_paint(&studio.hair[0], &strands, &paint, &studio.gpu.limits, error));
+        studio_draw(&studio);
+        for (int down = -3; down <= 3; ++down) { // quarters of the way
+            int half = 4 + 2 * (4 - abs(down)), y = 64 + down * LONG / 4;
+            assert_int_equal(studio_pixel(&studio, 64 + half - 2, y)[3], 255);
+            assert_int_equal(studio_pixel(&studio, 64 + half + 1, y)[3], 0);
+        }
+        strands_destroy(&strands);
+        studio_close(&studio);
+    }
+}
+
 // White paint changes nothing: not in the shadow of the strand to the right either, which is dark.
 static void painted_hair_lies_in_shadow(void **state)
 {
@@ -246,6 +276,7 @@ int main(void)
                                         temporary_destroy),
         cmocka_unit_test(melanin_gives_the_colors_of_hair),
         cmocka_unit_test(hair_shows_its_paint),
+        cmocka_unit_test(smooth_hair_is_as_thick_as_between_its_vertices),
         cmocka_unit_test(painted_hair_lies_in_shadow),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -178,6 +178,23 @@ static void a_strand_past_the_eye_is_drawn_up_to_it(void **state)
             assert_int_equal(studio_pixel(&studio, SIDE / 2 + x, y)[3], 0);
 }
 
+// What has come nearer than 10 px to the eye is not drawn, though it is before the eye: of three
+// vertices at 100, 4 and 2 px the way from 100 to 91 px off the middle, and not on to 50 px beside
+// it.
+static void nothing_is_drawn_between_the_eye_and_the_near_plane(void **state)
+{
+    (void)state;
+    const float position[3][3] = {{10, 0, 900}, {0.3f, 0, 996}, {-0.1f, 0, 998}};
+    Strands strands = studio_strands(1, 3, position);
+    use(&TRANSPARENT);
+    studio_add(&studio, &strands, 0.05f, 1);
+    strands_destroy(&strands);
+    studio_draw(&studio);
+    assert_true(studio_pixel(&studio, SIDE / 2 + 93, SIDE / 2)[3] > 128);
+    for (int x = 0; x < SIDE / 2 + 85; ++x)
+        for (int y = 0; y < SIDE; ++y) assert_int_equal(studio_pixel(&studio, x, y)[3], 0);
+}
+
 // Through the picture's corner, ever nearer to the eye: Mesa's clipping by w once cut pieces off.
 static void a_strand_is_whole_up_to_the_edge(void **state)
 {
@@ -319,6 +336,7 @@ int main(void)
         CLAIM(a_strand_towards_the_eye_is_harmless),
         CLAIM(broken_positions_harm_no_other_strand),
         CLAIM(a_strand_past_the_eye_is_drawn_up_to_it),
+        CLAIM(nothing_is_drawn_between_the_eye_and_the_near_plane),
         CLAIM(a_strand_is_whole_up_to_the_edge),
         CLAIM(transparent_pictures_have_straight_alpha),
         CLAIM(hair_outside_the_picture_costs_nothing),

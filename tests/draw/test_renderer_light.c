@@ -142,6 +142,20 @@ static void light_falls_off_by_the_square_of_the_distance(void **state)
     assert_true(light_strand(&light) < 0.001);
 }
 
+// A lamp in the hair shines a million times as bright as at its distance and no more, whose square
+// would be four million times as much. A block shows its middle, up to 2 px off: a fifteenth.
+static void a_lamp_that_touches_hair_stays_finite(void **state)
+{
+    (void)state;
+    use(&BLACK);
+    const Light lamp = {.kind = LIGHT_POINT,
+                        .color = {1, 1, 1},
+                        .intensity = 0.4e-6f,
+                        .position = {0, 0.5f, 0},
+                        .distance = 1000};
+    assert_true(fabs(light_strand(&lamp) - 0.4) < 0.01 + 0.4 / 15);
+}
+
 // Full up to the inner angle, half as much (squared) half-way by cosine, nothing beyond. The next
 // vertices, 30 px off, are darker, and a block shows its middle, up to 2 px off: a fifteenth.
 static void a_spot_shines_into_its_cone(void **state)
@@ -241,6 +255,42 @@ static void skin_has_a_soft_edge_and_a_highlight(void **state)
     mesh_destroy(&mesh);
 }
 
+// What a square of skin of this grey shows where it sees the share `open` of the sky.
+static double sky_on_square(const Mesh *mesh, float grey, float open)
+{
+    const float color[3] = {grey, grey, grey}, shares[4] = {open, open, open, open};
+    RendererOptions options = BLACK;
+    options.kind = IMAGE_FLOAT;
+    options.mesh_shading = MESH_SKIN;
+    use(&options);
+    NEEDED(renderer_set_mesh(&studio.renderer, mesh, color, error));
+    NEEDED(renderer_set_openness(&studio.renderer, shares, error));
+    studio_draw(&studio);
+    return (double)*(const float *)(const void *)(studio.image.pixels +
+                                                  ((size_t)(SIDE / 2) * SIDE + SIDE / 2) * 3 *
+                                                      sizeof(float));
+}
+
+// A surface that sees the share o of the sky, and else its like, has the light o / (1 - c (1 - o)):
+// white ones show all of the sky however little they see of it. Pixels of the mesh are halves.
+static void what_hides_the_sky_sends_on_its_light(void **state)
+{
+    (void)state;
+    static const float greys[] = {0.2f, 0.5f, 0.8f, 1}, opens[] = {0.9f, 0.4f, 0.1f};
+    Mesh mesh = make_square(100);
+    for (int g = 0; g < 4; ++g) {
+        double whole = sky_on_square(&mesh, greys[g], 1),
+               c = image_linear_from_srgb((double)greys[g]); // colours of meshes are in sRGB
+        assert_true(whole > 0.1 * c);
+        for (int i = 0; i < 3; ++i) {
+            double o = (double)opens[i], shown = sky_on_square(&mesh, greys[g], opens[i]) / whole;
+            if (!(fabs(shown / (o / (1 - c * (1 - o))) - 1) < 0x1p-9))
+                fail_msg("grey %g, open %g: %g of the light", c, o, shown);
+        }
+    }
+    mesh_destroy(&mesh);
+}
+
 static void put_square(void)
 {
     Error error = {{0}};
@@ -308,9 +358,11 @@ int main(void)
         CLAIM(a_mesh_hides_all_of_many_strands),
         CLAIM(hair_close_to_a_sloping_mesh_is_all_seen_or_all_hidden),
         CLAIM(light_falls_off_by_the_square_of_the_distance),
+        CLAIM(a_lamp_that_touches_hair_stays_finite),
         CLAIM(a_spot_shines_into_its_cone),
         CLAIM(a_strand_throws_its_shadow_on_the_mesh),
         CLAIM(skin_has_a_soft_edge_and_a_highlight),
+        CLAIM(what_hides_the_sky_sends_on_its_light),
         CLAIM(a_mesh_is_drawn_again_where_it_looks_different),
     };
     return stage_run(tests);

@@ -316,6 +316,38 @@ static void every_solver_has_it(void **state)
     }
 }
 
+// Of two batches each has its densities at rest: nothing of either stays with the driver.
+static void every_buffer_is_given_back(void **state)
+{
+    (void)state;
+    enum { SIZES = 2, STRANDS = 4 };
+    Strands strands;
+    HairFixture fixture;
+    Volume volume;
+    GLuint names[SIZES];
+    assert_int_equal(strands_create(&strands, SIZES * STRANDS, 5 * STRANDS, NULL), RESULT_OK);
+    for (uint32_t s = 0; s < SIZES * STRANDS; ++s) { // of 2 and of 3 vertices
+        strands.first[s + 1] = strands.first[s] + 2 + s / STRANDS;
+        for (uint32_t v = strands.first[s]; v < strands.first[s + 1]; ++v)
+            strands.position[v][1] = -0.1f * (float)(v - strands.first[s]),
+            strands.position[v][0] = 0.01f * (float)s;
+    }
+    fixture_create_strands(&fixture, &strands, "hybrid", "", 0.5f, 1);
+    fixture.params.volume = 1;
+    assert_int_equal(volume_create(&volume, fixture_gpu(), &fixture.timer, &fixture.hair,
+                                   &fixture.solver, &fixture.params, NULL),
+                     RESULT_OK);
+    assert_int_equal(fixture.hair.batch_count, SIZES);
+    for (int i = 0; i < SIZES; ++i) {
+        names[i] = volume.rest[i].buffer;
+        assert_true(glIsBuffer(names[i]));
+    }
+    volume_destroy(&volume);
+    for (int i = 0; i < SIZES; ++i) assert_false(glIsBuffer(names[i]));
+    fixture_destroy(&fixture);
+    strands_destroy(&strands);
+}
+
 static void none_makes_no_pass(void **state)
 {
     (void)state;
@@ -357,6 +389,7 @@ int main(void)
         cmocka_unit_test(long_hair_keeps_its_space),
         cmocka_unit_test(every_solver_has_it),
         cmocka_unit_test(none_makes_no_pass),
+        cmocka_unit_test(every_buffer_is_given_back),
         cmocka_unit_test(blocks_are_as_the_driver_has_them),
         cmocka_unit_test(threads_do_not_matter),
     };

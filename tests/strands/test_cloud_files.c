@@ -376,6 +376,18 @@ static void end_archive(Archive *archive)
     pile_text(pile, "note");
 }
 
+// A directory that claims more files than the archive has bytes for is refused before any is read.
+static void a_directory_has_room_for_its_files(void **state)
+{
+    (void)state;
+    Archive archive = {.count = 0};
+    Pile file = make_npy(1, "{'descr': '|u1', 'fortran_order': False, 'shape': (0,), }");
+    add_deflated(&archive, "empty.npy", &file, 0);
+    archive.count = 1000;
+    end_archive(&archive);
+    refuse(archive.pile.data, archive.pile.size, &METRES, "the zip directory need 1000 times 46 ");
+}
+
 static Pile make_floats(const char *shape, int count)
 {
     char dict[100];
@@ -502,6 +514,7 @@ int main(void)
         cmocka_unit_test(npy_of_every_float_and_order_is_read),
         cmocka_unit_test(other_npy_is_refused),
         cmocka_unit_test(deflated_npz_is_read),
+        cmocka_unit_test(a_directory_has_room_for_its_files),
         cmocka_unit_test(npz_that_lies_is_refused),
         cmocka_unit_test(files_of_other_programs_are_named_with_what_converts_them),
     };
