@@ -36,7 +36,7 @@
 
 #define BIND_PAINT     8  // uvec4 a particle, see look_paint; beside what shadows are read from
 #define BIND_SCATTER   10 // marschner's table, see scatter.comp
-#define BIND_SCATTERED 15 // vec4 a point of a strand: the light among hair, see hair_scatter.h
+#define BIND_SCATTERED 15 // vec3 a point of a strand: the light among hair, see hair_scatter.h
 
 // Nodes of that table by azimuth (0 to pi), cosine of theta_d and colour (both 0 to 1).
 #define SCATTER_AZIMUTHS     128

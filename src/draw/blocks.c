@@ -67,8 +67,11 @@ static Result read_back(BlocksBehind *behind, const RenderTarget *target, const 
 
 enum {
     PROJECT_GROUP = 8,
-    ALIGNED_RIBBONS = 32 // at whose multiples every driver lets a buffer's range begin
+    ALIGNED_RIBBONS = 32, // at whose multiples every driver lets a buffer's range begin
+    MOST_SLOTS = 1 << 21  // 151 MB; more than a strand takes
 };
+
+static const char UNREADABLE[] = "hair's ribbons cannot be read";
 
 _Static_assert(sizeof(RibbonRecord) == RIBBON_TEXELS * 16, "a record as shaders write it");
 
@@ -112,6 +115,7 @@ Result blocks_create(Blocks *blocks, const GpuLimits *limits, const RendererOpti
 {
     *blocks =
         (Blocks){.project = {.file = "draw/block_project.comp", .group_size = PROJECT_GROUP},
+                 .most_slots = MOST_SLOTS,
                  .limits = limits,
                  .skips = true,
                  .nearest = options->aov > AOV_COVERAGE,
@@ -136,6 +140,7 @@ void blocks_destroy(Blocks *blocks)
     cull_destroy(&blocks->cull);
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; ++i) gpu_buffer_destroy(buffers[i]);
     block_raster_destroy(&blocks->raster);
+    ribbon_store_destroy(&blocks->store);
     destroy_behind(&blocks->behind);
     *blocks = (Blocks){0};
 }
@@ -146,7 +151,9 @@ Result blocks_begin(Blocks *blocks, uint64_t segments, const BlocksBase *base, E
         return error_set(error, RESULT_FAILED,
                          "%llu segments of hair: at most %u can be drawn at once",
                          (unsigned long long)segments, UINT32_MAX - 1);
-    int64_t count = (int64_t)segments + 1;
+    blocks->stores = segments > blocks->most_slots;
+    if (blocks->stores) TRY(ribbon_store_begin(&blocks->store, (size_t)segments, error));
+    int64_t count = 1 + (int64_t)(blocks->stores ? blocks->most_slots : segments);
     const GpuLimits *limits = blocks->limits;
     TRY(make_room(&blocks->ribbons, limits, "ribbons", count * (int64_t)sizeof(RibbonRecord),
                   error));
@@ -189,14 +196,35 @@ static Result project_part(Blocks *blocks, const HairBatch *batch, const Look *l
     return RESULT_OK;
 }
 
+// Moves what was projected so far to the store and empties its slots.
+static Result store_ribbons(Blocks *blocks, Error *error)
+{
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    const RibbonKey *keys = map(&blocks->keys, blocks->keys.size);
+    const RibbonRecord *records = map(&blocks->ribbons, blocks->ribbons.size);
+    if (keys && records) ribbon_store_add(&blocks->store, keys, records, blocks->slots);
+    if (keys) unmap(&blocks->keys);
+    if (records) unmap(&blocks->ribbons);
+    if (!keys || !records) return error_set(error, RESULT_FAILED, UNREADABLE);
+    clear(&blocks->keys, (int64_t)(blocks->slots * sizeof(RibbonKey)));
+    blocks->slots = 0;
+    return RESULT_OK;
+}
+
+// The most strands with so many ribbons that a shader can see and the buffers hold at once.
+static int64_t most_strands(const Blocks *blocks, int64_t of_strand)
+{
+    int64_t seen = blocks->limits->storage_block / (int64_t)sizeof(RibbonRecord) - ALIGNED_RIBBONS,
+            most = blocks->stores ? smaller(seen, (int64_t)blocks->most_slots) : seen;
+    return most / of_strand;
+}
+
 Result blocks_add(Blocks *blocks, const HairBatch *batch, const Look *look, Error *error)
 {
     MaterialParams part = look_material(look, batch);
     TRY(cull_make_room(&blocks->cull, blocks->limits, part.drawn_strands, error));
     int64_t of_strand = (int64_t)(batch->vertex_count - 1) * part.smooth_parts,
-            most =
-                (blocks->limits->storage_block / (int64_t)sizeof(RibbonRecord) - ALIGNED_RIBBONS) /
-                of_strand;
+            most = most_strands(blocks, of_strand);
     uint strands = part.drawn_strands;
     gpu_buffer_bind_texture(&batch->position, BIND_POSITION);
     gpu_buffer_bind_texture(&batch->strand_id, BIND_STRAND_ID);
@@ -204,7 +232,10 @@ Result blocks_add(Blocks *blocks, const HairBatch *batch, const Look *look, Erro
     for (uint first = 0; first < strands; first += part.drawn_strands) {
         part.first_strand = first;
         part.drawn_strands = (uint)smaller(strands - first, most);
-        TRY(project_part(blocks, batch, look, &part, part.drawn_strands * of_strand, error));
+        int64_t slots = part.drawn_strands * of_strand;
+        if (blocks->stores && blocks->slots + (size_t)slots > blocks->most_slots)
+            TRY(store_ribbons(blocks, error));
+        TRY(project_part(blocks, batch, look, &part, slots, error));
     }
     return RESULT_OK;
 }
@@ -224,19 +255,33 @@ static Result read_counts(Blocks *blocks, Error *error)
     return RESULT_OK;
 }
 
-static Result draw_mapped(Blocks *blocks, BlockScene *scene, GpuTimer *timer, Error *error)
+static Result draw_scene(Blocks *blocks, const BlockScene *scene, GpuTimer *timer, Error *error)
 {
-    scene->keys = map(&blocks->keys, blocks->keys.size);
-    scene->records = map(&blocks->ribbons, blocks->ribbons.size);
-    Result result = scene->keys && scene->records
-                        ? RESULT_OK
-                        : error_set(error, RESULT_FAILED, "hair's ribbons cannot be read");
     gpu_timer_begin(timer, "draw_bin");
-    THEN(result, block_raster_bin(&blocks->raster, scene, &blocks->touched, error));
+    Result result = block_raster_bin(&blocks->raster, scene, &blocks->touched, error);
     gpu_timer_end(timer);
     gpu_timer_begin(timer, "draw_composite");
     if (result == RESULT_OK) block_raster_composite(&blocks->raster, scene);
     gpu_timer_end(timer);
+    return result;
+}
+
+static Result draw_stored(Blocks *blocks, BlockScene *scene, GpuTimer *timer, Error *error)
+{
+    TRY(store_ribbons(blocks, error));
+    scene->keys = blocks->store.keys;
+    scene->records = blocks->store.records;
+    scene->slots = blocks->store.count;
+    return draw_scene(blocks, scene, timer, error);
+}
+
+static Result draw_mapped(Blocks *blocks, BlockScene *scene, GpuTimer *timer, Error *error)
+{
+    scene->keys = map(&blocks->keys, blocks->keys.size);
+    scene->records = map(&blocks->ribbons, blocks->ribbons.size);
+    Result result =
+        scene->keys && scene->records ? RESULT_OK : error_set(error, RESULT_FAILED, UNREADABLE);
+    THEN(result, draw_scene(blocks, scene, timer, error));
     if (scene->keys) unmap(&blocks->keys);
     if (scene->records) unmap(&blocks->ribbons);
     return result;
@@ -261,5 +306,5 @@ Result blocks_draw(Blocks *blocks, GpuTimer *timer, Image *image, Error *error)
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     TRY(read_counts(blocks, error));
     TRY(read_behind(blocks, &scene, timer, error));
-    return draw_mapped(blocks, &scene, timer, error);
+    return (blocks->stores ? draw_stored : draw_mapped)(blocks, &scene, timer, error);
 }

@@ -7,6 +7,7 @@
 #include "draw/block_raster.h"
 #include "draw/cull.h"
 #include "draw/drawing.h"
+#include "draw/ribbon_store.h"
 #include "gpu/gpu_timer.h"
 #include "sim/hair.h"
 
@@ -38,9 +39,12 @@ typedef struct Blocks {
     bool nearest;            // ribbons hide what is behind them
     GpuBuffer ribbons, keys; // RibbonRecord, RibbonKey: one a slot
     GpuBuffer counts, material;
+    size_t most_slots; // that these hold; an image with more moves its ribbons to `store`
+    RibbonStore store;
     const GpuLimits *limits;
     BlocksBase base;                    // of the image
-    size_t slots;                       // of the image
+    bool stores;                        // this image has more slots
+    size_t slots;                       // of the image in the driver's buffers
     bool skips;                         // many strands of the last image could be left out
     uint64_t strands;                   // of the image
     uint64_t touched, segments, culled; // blocks that ribbons touch, each counted

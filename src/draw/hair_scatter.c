@@ -84,16 +84,18 @@ static void unmap_all(HairScatter *scatter)
     }
 }
 
+enum { SEEN_BYTES = 3 * sizeof(float) }; // of a point: linear RGB
+
 static Result reserve_seen(HairScatter *scatter, uint32_t i, const ShadowCaster *caster,
                            size_t points, Error *error)
 {
     GpuBuffer *seen = &scatter->seen[i].left;
     scatter->seen[i].batch = caster->batch;
-    if (seen->size == (int64_t)points * 16) return RESULT_OK;
+    if (seen->size == SEEN_BYTES * (int64_t)points) return RESULT_OK;
     scatter->any = false;
     gpu_buffer_destroy(seen);
-    return gpu_buffer_create(seen, scatter->limits, "light among hair", (int64_t)points * 16, NULL,
-                             GL_RGBA32F, error);
+    return gpu_buffer_create(seen, scatter->limits, "light among hair",
+                             SEEN_BYTES * (int64_t)points, NULL, GL_RGB32F, error);
 }
 
 static Result map_hair(HairScatter *scatter, Drawing *drawing, const ShadowCaster *caster,

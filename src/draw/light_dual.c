@@ -271,7 +271,6 @@ static void fill_between(const Find *find, const GridHair *hair, int tile, int f
             float *seen = hair->seen[first + k * W + i];
             for (int c = 0; c < 3; ++c)
                 seen[c] = (find->add ? seen[c] : 0) + mix(a[c][i], b[c][i], share);
-            seen[3] = 1;
         }
     }
 }

@@ -11,6 +11,7 @@
 enum { W = STRAND_TILE };
 
 #define ITEM_STEPS 65536.0f
+enum { KEPT_ITEM_BYTES = 32 << 20 };
 
 // --- The lattice.
 
@@ -379,6 +380,16 @@ static bool grow_slots(LightGridState *state)
     return good;
 }
 
+// Items are read no more when cells are filled. Few are kept for the next image, since fresh memory
+// costs more than it saves there; 1,000,000 strands of 16 vertices have 300 MB.
+static void release_items(LightGridState *state)
+{
+    if (state->item_room * sizeof *state->items <= KEPT_ITEM_BYTES) return;
+    free(state->items);
+    state->items = NULL;
+    state->item_room = 0;
+}
+
 // --- Cells.
 
 // Items of each part and cell begin where those before end; cells with hair get slots, then those
@@ -658,6 +669,7 @@ static Result fill_all(LightGridState *state, const GridScene *scene, Error *err
     CellFill cell_fill = {state, scene, sums};
     run_fill_cells(&cell_fill, state->parts);
     free(sums);
+    release_items(state);
     return RESULT_OK;
 }
 

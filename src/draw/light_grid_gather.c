@@ -258,7 +258,7 @@ SIMD_INLINE void find_around(const LightGridState *state, const Particles *p, in
 
 // The radiance around a particle times what its fibre sends of it to the eye.
 SIMD_INLINE void show_light(const GridKind *kind, const Particles *p, int i, const Around *around,
-                            float seen[4])
+                            float seen[3])
 {
     const float(*rows)[GRID_WIDE] = (const float(*)[GRID_WIDE])kind->gather + p->node[i];
     const float *const *cell = around->cell, *w = around->weight;
@@ -282,7 +282,6 @@ SIMD_INLINE void show_light(const GridKind *kind, const Particles *p, int i, con
         for (int l = 0; l < GRID_LANES; ++l) all += sum[n][l];
         seen[n] = all;
     }
-    seen[3] = 1;
 }
 
 // Points of the curves between two particles of a tile's strands are interpolated.
@@ -294,7 +293,7 @@ static void fill_between(const GridHair *hair, int tile, int from, int to, int s
            between = (size_t)(to - from) * parts, last = first + between * W;
     for (size_t k = 1; k < between; ++k)
         for (size_t i = 0; i < (size_t)strands; ++i)
-            for (int n = 0; n < 4; ++n) {
+            for (int n = 0; n < 3; ++n) {
                 float a = hair->seen[first + i][n], b = hair->seen[last + i][n];
                 hair->seen[first + k * W + i][n] = a + (b - a) * ((float)k / (float)between);
             }
@@ -307,7 +306,7 @@ SIMD_INLINE void gather_particles(const Gather *gather, const GridHair *hair, in
     const GridKind *kind = &gather->state->kinds[hair->kind];
     size_t points = (size_t)(m->vertex_count - 1) * m->smooth_parts + 1;
     Around around;
-    float(*seen)[4] = hair->seen + ((size_t)tile * points + (size_t)j * m->smooth_parts) * W;
+    float(*seen)[3] = hair->seen + ((size_t)tile * points + (size_t)j * m->smooth_parts) * W;
     for (int i = 0; i < strands; ++i) {
         int slot = find_slot(gather->state, p, i);
         const float *hidden = gather->state->hidden + 4 * (size_t)(slot < 0 ? 0 : slot);

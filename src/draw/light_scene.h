@@ -18,7 +18,7 @@ typedef struct GridHair {
     const float *behind; // the same of the mean number of fibres behind it; for light_dual.h
     size_t points;       // of all its strands (look_points)
     int kind;            // of its fibres
-    float (*seen)[4];    // [points], for light_grid_gather: linear RGB; NULL: is not asked for
+    float (*seen)[3];    // [points], for light_grid_gather: linear RGB; NULL: is not asked for
 } GridHair;
 
 typedef struct GridScene {

@@ -9,6 +9,8 @@ static int64_t texel_size(GLenum format)
     case GL_RGBA32F:
     case GL_RGBA32UI:
         return 16;
+    case GL_RGB32F:
+        return 12;
     case GL_RG32F:
     case GL_RG32UI:
         return 8;

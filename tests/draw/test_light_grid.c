@@ -36,7 +36,7 @@ static FibreTable make_table(void)
 
 // A ball of short straight strands that lie at random.
 typedef struct Ball {
-    float position[PARTICLES][4], left[2 * PARTICLES], seen[PARTICLES][4];
+    float position[PARTICLES][4], left[2 * PARTICLES], seen[PARTICLES][3];
     DrawParams draw;
     FibreTable table;
     FibreLobes lobes;
