@@ -28,24 +28,34 @@ static uint32_t order_of(float value)
 }
 
 // Folded, the distances 0, -1, 1, -2, ... are 0, 1, 2, 3, ...: small ones either way have zeros
-// above.
-static void split(const float *values, size_t count, size_t stride, uint8_t *planes)
+// above. This is one of their bytes; planes are made one by one, since frames can be large.
+static void split(const float *values, size_t count, size_t stride, int plane, uint8_t *bytes)
 {
     for (size_t i = 0; i < count; ++i) {
         uint32_t before = i < stride ? 0x80000000u : order_of(values[i - stride]);
         uint32_t distance = order_of(values[i]) - before;
         uint32_t folded = distance << 1 ^ (distance >> 31 ? UINT32_MAX : 0);
-        for (int plane = 0; plane < PLANES; ++plane)
-            planes[(size_t)plane * count + i] = (uint8_t)(folded >> 8 * plane);
+        bytes[i] = (uint8_t)(folded >> 8 * plane);
     }
 }
 
-static void join(float *values, size_t count, size_t stride, const uint8_t *planes)
+// Puts a plane's bytes into the folded distances, which lie in the room of the values; plane 0 is
+// the first.
+static void put_plane(float *values, size_t count, int plane, const uint8_t *bytes)
 {
     for (size_t i = 0; i < count; ++i) {
         uint32_t folded = 0;
-        for (int plane = 0; plane < PLANES; ++plane)
-            folded |= (uint32_t)planes[(size_t)plane * count + i] << 8 * plane;
+        if (plane) memcpy(&folded, &values[i], sizeof folded);
+        folded |= (uint32_t)bytes[i] << 8 * plane;
+        memcpy(&values[i], &folded, sizeof folded);
+    }
+}
+
+static void join(float *values, size_t count, size_t stride)
+{
+    for (size_t i = 0; i < count; ++i) {
+        uint32_t folded;
+        memcpy(&folded, &values[i], sizeof folded);
         uint32_t before = i < stride ? 0x80000000u : order_of(values[i - stride]);
         uint32_t order = before + (folded >> 1 ^ (folded & 1 ? UINT32_MAX : 0));
         uint32_t bits = order >> 31 ? order & 0x7fffffffu : ~order;
@@ -83,15 +93,14 @@ static size_t pack_plane(struct libdeflate_compressor *compressor, const uint8_t
 size_t float_planes_pack(const float *values, size_t count, size_t stride, uint8_t *packed)
 {
     struct libdeflate_compressor *compressor = libdeflate_alloc_compressor(DEFLATE_LEVEL);
-    uint8_t *planes = malloc(PLANES * count + 1);
+    uint8_t *bytes = malloc(count + 1);
     size_t size = 0;
-    if (compressor && planes) {
-        split(values, count, stride, planes);
-        for (size_t plane = 0; plane < PLANES; ++plane)
-            size += pack_plane(compressor, planes + plane * count, count, packed + size);
+    for (int plane = 0; plane < PLANES && compressor && bytes; ++plane) {
+        split(values, count, stride, plane, bytes);
+        size += pack_plane(compressor, bytes, count, packed + size);
     }
     if (compressor) libdeflate_free_compressor(compressor);
-    free(planes);
+    free(bytes);
     return size;
 }
 
@@ -117,20 +126,20 @@ bool float_planes_unpack(float *values, size_t count, size_t stride, const uint8
                          size_t size)
 {
     struct libdeflate_decompressor *decompressor = libdeflate_alloc_decompressor();
-    uint8_t *planes = malloc(PLANES * count + 1);
-    bool good = decompressor && planes;
+    uint8_t *bytes = malloc(count + 1);
+    bool good = decompressor && bytes;
     size_t at = 0;
-    for (size_t plane = 0; plane < PLANES && good; ++plane) {
-        size_t used =
-            unpack_plane(decompressor, planes + plane * count, count, packed + at, size - at);
+    for (int plane = 0; plane < PLANES && good; ++plane) {
+        size_t used = unpack_plane(decompressor, bytes, count, packed + at, size - at);
         good = used > 0;
         at += used;
+        if (good) put_plane(values, count, plane, bytes);
     }
     good = good && at == size;
-    if (good) join(values, count, stride, planes);
-    int reason = decompressor && planes ? 0 : ENOMEM;
+    if (good) join(values, count, stride);
+    int reason = decompressor && bytes ? 0 : ENOMEM;
     if (decompressor) libdeflate_free_decompressor(decompressor);
-    free(planes);
+    free(bytes);
     errno = reason;
     return good;
 }

@@ -67,8 +67,9 @@ static Result read_back(BlocksBehind *behind, const RenderTarget *target, const 
 
 enum {
     PROJECT_GROUP = 8,
-    ALIGNED_RIBBONS = 32, // at whose multiples every driver lets a buffer's range begin
-    MOST_SLOTS = 1 << 21  // 151 MB; more than a strand takes
+    ALIGNED_RIBBONS = 32,  // at whose multiples every driver lets a buffer's range begin
+    MOST_SLOTS = 1 << 21,  // 151 MB
+    STORED_SLOTS = 1 << 18 // 19 MB; a strand takes 65,000 at most
 };
 
 static const char UNREADABLE[] = "hair's ribbons cannot be read";
@@ -116,6 +117,7 @@ Result blocks_create(Blocks *blocks, const GpuLimits *limits, const RendererOpti
     *blocks =
         (Blocks){.project = {.file = "draw/block_project.comp", .group_size = PROJECT_GROUP},
                  .most_slots = MOST_SLOTS,
+                 .stored_slots = STORED_SLOTS,
                  .limits = limits,
                  .skips = true,
                  .nearest = options->aov > AOV_COVERAGE,
@@ -152,8 +154,9 @@ Result blocks_begin(Blocks *blocks, uint64_t segments, const BlocksBase *base, E
                          "%llu segments of hair: at most %u can be drawn at once",
                          (unsigned long long)segments, UINT32_MAX - 1);
     blocks->stores = segments > blocks->most_slots;
-    if (blocks->stores) TRY(ribbon_store_begin(&blocks->store, (size_t)segments, error));
-    int64_t count = 1 + (int64_t)(blocks->stores ? blocks->most_slots : segments);
+    ribbon_store_destroy(&blocks->store);
+    if (blocks->stores) TRY(ribbon_store_create(&blocks->store, (size_t)segments, error));
+    int64_t count = 1 + (int64_t)(blocks->stores ? blocks->stored_slots : segments);
     const GpuLimits *limits = blocks->limits;
     TRY(make_room(&blocks->ribbons, limits, "ribbons", count * (int64_t)sizeof(RibbonRecord),
                   error));
@@ -215,7 +218,7 @@ static Result store_ribbons(Blocks *blocks, Error *error)
 static int64_t most_strands(const Blocks *blocks, int64_t of_strand)
 {
     int64_t seen = blocks->limits->storage_block / (int64_t)sizeof(RibbonRecord) - ALIGNED_RIBBONS,
-            most = blocks->stores ? smaller(seen, (int64_t)blocks->most_slots) : seen;
+            most = blocks->stores ? smaller(seen, (int64_t)blocks->stored_slots) : seen;
     return most / of_strand;
 }
 
@@ -233,7 +236,7 @@ Result blocks_add(Blocks *blocks, const HairBatch *batch, const Look *look, Erro
         part.first_strand = first;
         part.drawn_strands = (uint)smaller(strands - first, most);
         int64_t slots = part.drawn_strands * of_strand;
-        if (blocks->stores && blocks->slots + (size_t)slots > blocks->most_slots)
+        if (blocks->stores && blocks->slots + (size_t)slots > blocks->stored_slots)
             TRY(store_ribbons(blocks, error));
         TRY(project_part(blocks, batch, look, &part, slots, error));
     }
@@ -272,7 +275,9 @@ static Result draw_stored(Blocks *blocks, BlockScene *scene, GpuTimer *timer, Er
     scene->keys = blocks->store.keys;
     scene->records = blocks->store.records;
     scene->slots = blocks->store.count;
-    return draw_scene(blocks, scene, timer, error);
+    Result result = draw_scene(blocks, scene, timer, error);
+    ribbon_store_destroy(&blocks->store);
+    return result;
 }
 
 static Result draw_mapped(Blocks *blocks, BlockScene *scene, GpuTimer *timer, Error *error)

@@ -39,7 +39,8 @@ typedef struct Blocks {
     bool nearest;            // ribbons hide what is behind them
     GpuBuffer ribbons, keys; // RibbonRecord, RibbonKey: one a slot
     GpuBuffer counts, material;
-    size_t most_slots; // that these hold; an image with more moves its ribbons to `store`
+    // An image of more than most_slots moves its ribbons to `store`, stored_slots at a time.
+    size_t most_slots, stored_slots;
     RibbonStore store;
     const GpuLimits *limits;
     BlocksBase base;                    // of the image

@@ -3,17 +3,11 @@
 
 #include <stdlib.h>
 
-Result ribbon_store_begin(RibbonStore *store, size_t most, Error *error)
+Result ribbon_store_create(RibbonStore *store, size_t most, Error *error)
 {
-    store->count = 0;
-    if (store->room >= most) return RESULT_OK;
-    ribbon_store_destroy(store);
-    store->keys = malloc(most * sizeof *store->keys);
-    store->records = malloc(most * sizeof *store->records);
-    if (store->keys && store->records) {
-        store->room = most;
-        return RESULT_OK;
-    }
+    *store = (RibbonStore){.keys = malloc(most * sizeof *store->keys),
+                           .records = malloc(most * sizeof *store->records)};
+    if (store->keys && store->records) return RESULT_OK;
     ribbon_store_destroy(store);
     return error_set(error, RESULT_FAILED, "no memory for %zu ribbons", most);
 }

@@ -10,14 +10,14 @@
 
 // A zeroed struct is empty.
 typedef struct RibbonStore {
-    RibbonKey *keys;       // [room], owned
-    RibbonRecord *records; // [room], owned
-    size_t room, count;
+    RibbonKey *keys;       // [most], owned
+    RibbonRecord *records; // [most], owned
+    size_t count;
 } RibbonStore;
 
-// Empties the store and makes room for `most` ribbons. The system gives the memory as it is
-// written. RESULT_FAILED if memory is short.
-Result ribbon_store_begin(RibbonStore *store, size_t most, Error *error);
+// Makes an empty store with room for `most` ribbons. The system gives the memory as it is written.
+// RESULT_FAILED if memory is short.
+Result ribbon_store_create(RibbonStore *store, size_t most, Error *error);
 
 // Adds the ribbons of so many slots in their order; there must be room. Slots with depth 0 hold
 // none.

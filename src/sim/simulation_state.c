@@ -175,6 +175,16 @@ static bool write_buffer(Archive *archive, const GpuBuffer *buffer)
     return packed_size > 0;
 }
 
+// More bytes than the state takes. The system gives the memory as it is written, so that a large
+// one is neither copied nor there twice while it grows.
+static size_t state_bound(const BufferList *list)
+{
+    size_t size = 1 << 20;
+    for (uint32_t i = 0; i < list->count; ++i)
+        size += 64 + float_planes_bound((size_t)list->buffers[i]->size / sizeof(float));
+    return size;
+}
+
 Result simulation_state_save(Simulation *simulation, Bytes *state, Error *error)
 {
     BufferList list;
@@ -182,14 +192,19 @@ Result simulation_state_save(Simulation *simulation, Bytes *state, Error *error)
     TRY(list_buffers(&list, simulation, error));
     for (uint32_t i = 0; i < simulation->scene->section_count; ++i)
         inbetween_restore(&simulation->sections[i].inbetween);
-    char *data = NULL;
-    Archive archive = {.stream = open_memstream(&data, &state->size)};
+    size_t room = state_bound(&list);
+    char *data = malloc(room);
+    Archive archive = {.stream = data ? fmemopen(data, room, "w") : NULL};
     bool good = archive.stream && pass_numbers(&archive, simulation, &list);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     for (uint32_t i = 0; i < list.count && good; ++i)
         good = write_buffer(&archive, list.buffers[i]);
-    if (archive.stream && fclose(archive.stream) != 0) good = false;
-    state->data = (uint8_t *)data;
+    if (archive.stream) {
+        state->size = (size_t)ftell(archive.stream);
+        if (fclose(archive.stream) != 0) good = false;
+    }
+    char *less = good ? realloc(data, state->size + 1) : NULL;
+    state->data = (uint8_t *)(less ? less : data);
     free(list.buffers);
     if (good) return RESULT_OK;
     bytes_destroy(state);

@@ -279,6 +279,28 @@ static void bytes_do_not_depend_on_driver_threads(void **state)
     stage_open(&TRANSPARENT);
 }
 
+// Large grooms move their ribbons out of the driver's buffers piece by piece; here pieces are of
+// two strands.
+static void stored_ribbons_draw_the_same(void **state)
+{
+    (void)state;
+    if (raster == RASTER_QUADS) return;
+    size_t size;
+    use(&BLACK);
+    add_tangle(500, 2, 0.4f, NULL);
+    uint8_t *expected = draw_copy(&size);
+    Blocks *blocks = &studio.renderer.blocks;
+    assert_false(blocks->stores);
+    blocks->most_slots = 5499; // of the tangle's 500 x 11
+    blocks->stored_slots = 22;
+    assert_draws_the_same(expected, size);
+    assert_true(blocks->stores);
+    blocks->most_slots = 5500;
+    assert_draws_the_same(expected, size);
+    assert_false(blocks->stores);
+    free(expected);
+}
+
 static void blocks_lie_alike_in_c_and_glsl(void **state)
 {
     (void)state;
@@ -341,6 +363,7 @@ int main(void)
         CLAIM(transparent_pictures_have_straight_alpha),
         CLAIM(hair_outside_the_picture_costs_nothing),
         CLAIM(bytes_do_not_depend_on_driver_threads),
+        CLAIM(stored_ribbons_draw_the_same),
         CLAIM(blocks_lie_alike_in_c_and_glsl),
         CLAIM(a_picture_beyond_the_driver_is_refused),
     };
