@@ -16,7 +16,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { HEAD_BYTES = 4 * CACHE_HEAD_FLOATS };
+enum { HEAD_BYTES = 4 * CACHE_HEAD_FLOATS, KEPT_BYTES = 32 << 20 };
 
 // --- The file, without the scene that it is of.
 
@@ -282,16 +282,31 @@ static Result check_kind(const CacheWriter *writer, int descriptor, Error *error
                      writer->path);
 }
 
+static Result make_frame_room(CacheWriter *writer, uint64_t count, Error *error)
+{
+    if (!writer->positions) writer->positions = malloc(count * sizeof *writer->positions + 1);
+    if (!writer->payload) writer->payload = malloc(HEAD_BYTES + float_planes_bound(3 * count));
+    if (writer->positions && writer->payload) return RESULT_OK;
+    return error_set(error, RESULT_FAILED, "no memory for frames of %llu particles",
+                     (unsigned long long)count);
+}
+
+// Memory of large frames is given back until the next: the renderer needs it meanwhile.
+static void release_frame_room(CacheWriter *writer, uint64_t count)
+{
+    if (count * sizeof *writer->positions <= KEPT_BYTES) return;
+    free(writer->positions);
+    free(writer->payload);
+    writer->positions = NULL;
+    writer->payload = NULL;
+}
+
 static Result open_stream(CacheWriter *writer, const char *path, const Simulation *simulation,
                           Error *error)
 {
-    uint64_t count = count_particles(simulation);
-    *writer = (CacheWriter){.path = strdup(path),
-                            .positions = malloc(count * sizeof *writer->positions + 1),
-                            .payload = malloc(HEAD_BYTES + float_planes_bound(3 * count))};
-    if (!writer->path || !writer->positions || !writer->payload)
-        return error_set(error, RESULT_FAILED, "no memory for frames of %llu particles",
-                         (unsigned long long)count);
+    *writer = (CacheWriter){.path = strdup(path)};
+    if (!writer->path) return error_set(error, RESULT_FAILED, "no memory for a file's name");
+    TRY(make_frame_room(writer, count_particles(simulation), error));
     int descriptor = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (descriptor < 0) return fail_to_write(writer, errno, error);
     writer->stream = fdopen(descriptor, "r+b");
@@ -395,6 +410,7 @@ static Result read_positions(CacheWriter *writer, const Simulation *simulation, 
 Result cache_writer_add(CacheWriter *writer, const Simulation *simulation, Error *error)
 {
     size_t count = (size_t)(3 * count_particles(simulation));
+    TRY(make_frame_room(writer, count / 3, error));
     TRY(read_positions(writer, simulation, error));
     double begin_ms = clock_ms();
     put_head(writer->payload, &simulation->head);
@@ -404,6 +420,7 @@ Result cache_writer_add(CacheWriter *writer, const Simulation *simulation, Error
         return error_set(error, RESULT_FAILED, "%s: no memory for a frame", writer->path);
     append(writer, "FRAM", writer->frame_count - 1, writer->payload, HEAD_BYTES + size);
     Result result = flush(writer, error);
+    release_frame_room(writer, count / 3);
     writer->write_ms += clock_ms() - begin_ms;
     return result;
 }

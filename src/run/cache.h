@@ -62,7 +62,7 @@ typedef struct CacheWriter {
     uint64_t *offsets; // [frame_count]
     uint64_t at;       // bytes written
     uint32_t frame_count, room;
-    float (*positions)[3]; // of all guides
+    float (*positions)[3]; // of all guides; NULL between large frames
     uint8_t *payload;
     int reason;      // errno of the first write that failed, 0: none has
     double write_ms; // spent so far, with packing
