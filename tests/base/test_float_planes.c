@@ -72,6 +72,7 @@ static void refuse_before_a_hole(const uint8_t *packed, size_t size, size_t coun
 {
     size_t page = (size_t)sysconf(_SC_PAGESIZE), pages = (size + page - 1) / page * page;
     uint8_t *memory =
+        // cppcheck-suppress invalidFunctionArg; -1 is what MAP_ANONYMOUS asks for
         mmap(NULL, pages + page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     float *read = malloc(count * sizeof *read);
     assert_true(memory != MAP_FAILED && read != NULL);
