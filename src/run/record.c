@@ -37,9 +37,9 @@ static Result find_checksum(uint32_t *checksum, const char *name, Error *error)
 // In one piece, so that lines of several processes do not mix.
 static Result append(const char *path, const char *line, Error *error)
 {
+    errno = 0;
     int descriptor = open(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
     ssize_t size = (ssize_t)strlen(line);
-    errno = 0;
     bool good = descriptor >= 0 && write(descriptor, line, (size_t)size) == size;
     int reason = errno ? errno : ENOSPC;
     if (descriptor >= 0 && close(descriptor) != 0 && good) {
