@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 # Tractrix: headless hair simulator and renderer. `make help` lists the targets.
 #
-#   CONFIG  release (default), debug, sanitize, coverage, fuzz   OUT  where everything goes, out/$(CONFIG)
+#   CONFIG  release (default), debug, sanitize, coverage, threads, fuzz
+#   OUT     where everything goes, out/$(CONFIG)
 #   WERROR  not empty: warnings are errors              ONLY    `make test`: only tests with this in their name
 #   V       not empty: show whole commands
 #   CC, CPPFLAGS, CFLAGS, LDFLAGS, LDLIBS, PREFIX and DESTDIR as usual; the flags are added to the project's own.
@@ -14,8 +15,8 @@ ifeq ($(origin CC),default)
 CC := gcc
 endif
 
-ifeq ($(filter $(CONFIG),release debug sanitize coverage fuzz),)
-$(error CONFIG=$(CONFIG): expected release, debug, sanitize, coverage or fuzz)
+ifeq ($(filter $(CONFIG),release debug sanitize coverage threads fuzz),)
+$(error CONFIG=$(CONFIG): expected release, debug, sanitize, coverage, threads or fuzz)
 endif
 ifeq ($(CONFIG),fuzz)
 CC := clang
@@ -33,9 +34,12 @@ OPTIMISE_sanitize := -O1 -g -fno-omit-frame-pointer
 SANITIZE_sanitize := -fsanitize=address,undefined -fno-sanitize-recover=undefined
 OPTIMISE_coverage := -O1 -g
 SANITIZE_coverage := --coverage -fprofile-update=atomic
+OPTIMISE_threads  := -O1 -g -fno-omit-frame-pointer
+SANITIZE_threads  := -fsanitize=thread
 OPTIMISE_fuzz     := -O1 -g -fno-omit-frame-pointer
 SANITIZE_fuzz     := -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined
 LINKER_sanitize   := -Wl,--export-dynamic-symbol=dlclose
+LINKER_threads    := $(LINKER_sanitize)
 
 WARNINGS  := -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wvla $(if $(WERROR),-Werror)
 # Library headers are not ours to mend: -isystem keeps their warnings out.
@@ -65,6 +69,7 @@ TEST_PROGRAMS := $(TESTS:%.c=$(OUT)/%)
 SUPPORT_OBJECTS := $(SUPPORT:%.c=$(OUT)/%.o) $(OUT)/tests/glsl_sources.o
 FUZZ_OBJECTS := $(FUZZ:%.c=$(OUT)/%.o)
 KEEP_sanitize := $(KEEP:%.c=$(OUT)/%.o)
+KEEP_threads := $(KEEP_sanitize)
 SCRIPTS   := $(addprefix $(OUT)/tractrix-,farm turntable compare-goldens) # programs that are scripts
 MANUALS   := $(addsuffix .1,$(PROGRAMS) $(SCRIPTS)) $(OUT)/tractrix-gen-fur.1
 SHELLS    := bash zsh fish
@@ -238,6 +243,15 @@ SANITIZE_BUT = ^test_(bench_command|bench_html|blender|ci_examples|command_cache
 check-sanitize:
 	$(QUIET) CONFIG=sanitize OUT=$(SIDE)sanitize all tests
 	@tests/runner $(SIDE)sanitize test_ '$(SANITIZE_BUT)'
+# Tests of what threads share: parallel_run, the output's worker, the video, pairs of images, progress, leftovers. Those
+# that draw hundreds of images stay out; scripts/run-threads goes through the same code once.
+THREADED = ^test_(block_bins|block_composite|compare|groom_shape|leftovers|light_grid|output|output_video|png|progress|renderer_pool|scalp|sequence|shadow_reference|strands_make|video)\.c
+check-threads: export TSAN_OPTIONS = suppressions=$(CURDIR)/tests/tsan.supp exitcode=66
+check-threads: ## data races of the threaded parts, by ThreadSanitizer: some minutes (ONLY=name: some tests)
+	@scripts/setup build run test
+	$(QUIET) CONFIG=threads OUT=$(SIDE)threads all tests
+	@tests/runner $(SIDE)threads '$(or $(ONLY),$(THREADED))'
+	@$(if $(ONLY),,scripts/run-threads $(SIDE)threads)
 
 TIME = 60
 fuzz: all ## feed mutated bytes to every reader, TIME seconds each (60; ONLY="png cache": these)
@@ -309,7 +323,7 @@ clean: ## remove out/
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 24
-	@echo; sed -n '4,7s/^#//p' $(firstword $(MAKEFILE_LIST))
+	@echo; sed -n '4,8s/^#//p' $(firstword $(MAKEFILE_LIST))
 
 FORCE:
 .PHONY: deb check-deb check-container all tests demo test bench bench-image stress mutate torture check $(CHECKS:%=check-%) format install uninstall clean help FORCE
