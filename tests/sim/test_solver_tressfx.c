@@ -83,6 +83,19 @@ static void tressfx4_equals_its_double_precision_twin(void **state)
     twin_require(&TRESSFX4, cases, sizeof cases / sizeof *cases);
 }
 
+// A vertex between a short segment and one more than twice as long gives way by less.
+static void uneven_strands_equal_their_twins_too(void **state)
+{
+    (void)state;
+    static const TwinCase cases[] = {
+        {4, 60, 1, 0.5, 60, 3 * 7.3e-8, NULL},
+        {16, 60, 1, 0.5, 60, 3 * 4.5e-7, NULL},
+        {33, 60, 1, 0.5, 60, 3 * 6.6e-7, local_only},
+    };
+    twin_require_uneven(&STEADY, cases, 3);
+    twin_require_uneven(&TRESSFX4, cases, 2);
+}
+
 // How far below its root the tip of a straight strand hangs after 3 s, over its length, when it is
 // held horizontally.
 static double sag(const char *variant, int n, double per_second, int passes, float global)
@@ -233,6 +246,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(steady_equals_its_double_precision_twin),
         cmocka_unit_test(tressfx4_equals_its_double_precision_twin),
+        cmocka_unit_test(uneven_strands_equal_their_twins_too),
         cmocka_unit_test(only_the_stiffness_sets_how_stiff_steady_is),
         cmocka_unit_test(the_default_global_shape_holds_the_groom),
         cmocka_unit_test(sections_keep_their_own_parameters),

@@ -104,15 +104,22 @@ static void finish(TwinStrand *strand, const Carried *carried, const Vec *from, 
     memcpy(strand->x, x, (size_t)strand->n * sizeof(Vec));
 }
 
+// A vertex between a segment and one more than twice as long gives way by less.
+static double lever(double here, double next)
+{
+    return fmin(1, 2 * here / next);
+}
+
 static void keep_local_shape(const Carried *carried, int n, double share, Vec *x)
 {
     for (int j = 1; j < n - 1; ++j) {
         Vec last, wanted;
         subtract(x[j], x[j - 1], last);
         turn_between(carried->rest[j], last, carried->rest[j + 1], wanted);
+        double back = lever(vec_norm(carried->rest[j]), vec_norm(carried->rest[j + 1]));
         for (int k = 0; k < 3; ++k) {
             double delta = share * (x[j][k] + wanted[k] - x[j + 1][k]);
-            if (j > 1) x[j][k] -= delta;
+            if (j > 1) x[j][k] -= delta * back;
             x[j + 1][k] += delta;
         }
     }
@@ -188,7 +195,8 @@ static void exchange_velocities(TwinStrand *strand, double shock, double share)
     for (int k = 0; k < 3; ++k) strand->v[1][k] *= 1 - shock;
     for (int j = 1; j < strand->n - 1; ++j)
         for (int k = 0; k < 3; ++k) {
-            double given = share * (strand->v[j + 1][k] - strand->v[j][k]);
+            double given = share * lever(strand->length[j], strand->length[j + 1]) *
+                           (strand->v[j + 1][k] - strand->v[j][k]);
             strand->v[j][k] += given, strand->v[j + 1][k] -= given;
         }
 }

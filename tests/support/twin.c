@@ -91,13 +91,45 @@ void twin_rebuild(const TwinStrand *strand, Vec *positions)
     }
 }
 
+static void place_on_curl(Vec at, double x, double turns, double u)
+{
+    double angle = 6.283185307 * turns * u;
+    at[0] = (double)(float)(x + 0.2 * u);
+    at[1] = (double)(float)(0.02 * u * cos(angle) + 0.05 * u * u);
+    at[2] = (double)(float)(0.02 * u * sin(angle));
+}
+
 void twin_make_curl(Vec *q, int n, double x, double turns)
 {
-    for (int j = 0; j < n; ++j) {
-        double u = (double)j / (n - 1), angle = 6.283185307 * turns * u;
-        q[j][0] = (double)(float)(x + 0.2 * u);
-        q[j][1] = (double)(float)(0.02 * u * cos(angle) + 0.05 * u * u);
-        q[j][2] = (double)(float)(0.02 * u * sin(angle));
+    for (int j = 0; j < n; ++j) place_on_curl(q[j], x, turns, (double)j / (n - 1));
+}
+
+void twin_make_uneven_curl(Vec *q, int n, double x, double turns)
+{
+    for (int j = 0; j < n; ++j)
+        place_on_curl(q[j], x, turns, (2 * j + j % 2) / (double)(2 * (n - 1) + (n - 1) % 2));
+}
+
+void twin_put(HairFixture *fixture, const TwinStrand *twins, int count)
+{
+    SolverBuffer buffers[SOLVER_MAX_BUFFERS];
+    const HairBatch *batch = &fixture->hair.batches[0];
+    solver_pose(&fixture->solver, &fixture->step.head); // else the first pose would write the style
+    assert_true(solver_buffers(&fixture->solver, 0, buffers) >= 2);
+    assert_true(buffers[0].kind == SOLVER_POINTS && buffers[1].kind == SOLVER_VELOCITIES);
+    for (int i = 0; i < 2; ++i) {
+        const GpuBuffer *buffer = buffers[i].buffer;
+        float(*values)[4] = gpu_buffer_read(buffer);
+        assert_non_null(values);
+        for (int s = 0; s < count; ++s)
+            for (int j = 0; j < twins[s].n; ++j) {
+                const double *from = i ? twins[s].v[j] : twins[s].x[j];
+                float *to = values[hair_address(batch, (uint32_t)s, (uint32_t)j)];
+                for (int k = 0; k < 3; ++k) to[k] = (float)from[k];
+            }
+        glBindBuffer(GL_COPY_WRITE_BUFFER, buffer->buffer);
+        glBufferSubData(GL_COPY_WRITE_BUFFER, 0, (GLsizeiptr)buffer->size, values);
+        free(values);
     }
 }
 
@@ -174,14 +206,14 @@ static double find_distance(HairFixture *fixture, const TwinPair *pair, const Tw
 }
 
 // The same after the case's steps.
-static double run_case(const TwinPair *pair, const TwinCase *trial)
+static double run_case(const TwinPair *pair, const TwinCase *trial, bool uneven)
 {
     static Vec start[CURLS * TWIN_MAX];
     static TwinStrand twins[CURLS];
     const int n = trial->n;
     HairFixture fixture;
     for (int s = 0; s < CURLS; ++s) {
-        twin_make_curl(&start[s * n], n, 0.01 * s, 1 + s);
+        (uneven ? twin_make_uneven_curl : twin_make_curl)(&start[s * n], n, 0.01 * s, 1 + s);
         twin_start(&twins[s], n, (const Vec *)&start[s * n]);
     }
     fixture_create_tuned(&fixture, (const Vec *)start, CURLS, n, pair->algo, pair->variant,
@@ -207,15 +239,26 @@ static double driver_factor(void)
     return fixture_gpu()->software ? 1 : 5;
 }
 
-void twin_require(const TwinPair *pair, const TwinCase *cases, int count)
+static void require(const TwinPair *pair, const TwinCase *cases, int count, bool uneven)
 {
     for (int i = 0; i < count; ++i) {
         const TwinCase *trial = &cases[i];
-        double off = run_case(pair, trial);
+        double off = run_case(pair, trial, uneven);
         printf("%s %s, n = %d, %g steps a second: RMS %.2g of the length from the double-precision "
-               "twin after %d steps\n",
-               pair->algo, pair->variant, trial->n, trial->per_second, off, trial->steps);
+               "twin after %d steps%s\n",
+               pair->algo, pair->variant, trial->n, trial->per_second, off, trial->steps,
+               uneven ? ", uneven" : "");
         double limit = driver_factor() * trial->tolerance;
         if (!(off < limit)) fail_msg("case %d: %.3g exceeds %.3g", i, off, limit);
     }
+}
+
+void twin_require(const TwinPair *pair, const TwinCase *cases, int count)
+{
+    require(pair, cases, count, false);
+}
+
+void twin_require_uneven(const TwinPair *pair, const TwinCase *cases, int count)
+{
+    require(pair, cases, count, true);
 }

@@ -56,6 +56,13 @@ void twin_rebuild(const TwinStrand *strand, Vec *positions);
 // A curly strand of n particles, 0.21 m long, from a root at `x`.
 void twin_make_curl(Vec *q, int n, double x, double turns);
 
+// The same, with segments that are long and short in turn, 3 : 1.
+void twin_make_uneven_curl(Vec *q, int n, double x, double turns);
+
+// Puts the strands of batch 0, all of one size, where the first `count` twins are, with their
+// velocities. Of particle solvers.
+void twin_put(HairFixture *fixture, const TwinStrand *twins, int count);
+
 // Strand s of batch 0 as it is drawn.
 void twin_read_strand(HairFixture *fixture, int s, Vec *q);
 
@@ -86,3 +93,6 @@ typedef struct TwinCase {
 // tolerance, or farther; prints each distance. Five curls of different turns, wind of 1.6 m/s, a
 // head that moves at 2 Hz by 4 cm and turns by 0.2 rad.
 void twin_require(const TwinPair *pair, const TwinCase *cases, int count);
+
+// The same of curls whose segments are long and short in turn.
+void twin_require_uneven(const TwinPair *pair, const TwinCase *cases, int count);
