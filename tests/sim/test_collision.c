@@ -131,6 +131,72 @@ static void a_world_collider_stays_where_it_is(void **state)
     }
 }
 
+// --- A mesh.
+
+// A cube of 20 cm at `middle`, turned by this quaternion.
+static void make_cube(Mesh *mesh, const float middle[3], const versor turn)
+{
+    static const uint32_t quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                         {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    assert_int_equal(mesh_create(mesh, 8, 12, NULL), RESULT_OK);
+    for (int i = 0; i < 8; ++i) {
+        float *at = mesh->position[i];
+        for (int k = 0; k < 3; ++k) at[k] = i >> k & 1 ? 0.1f : -0.1f;
+        glm_quat_rotatev((float *)turn, at, at);
+        glm_vec3_add(at, (float *)middle, at);
+    }
+    for (int i = 0; i < 12; ++i)
+        for (int k = 0; k < 3; ++k) mesh->triangle[i][k] = quads[i / 2][k == 0 ? 0 : k + i % 2];
+}
+
+// Near the middle of each side of a cube, turned about no axis of the grid, its field is that
+// side's plane: a tip there is pushed to where the plane pushes it. The roots are 30 cm off, beyond
+// the grid, by a distance that they do reach. Measured (the field's samples, positions in it): 6e-7
+// m, and three times that.
+static void a_mesh_pushes_as_the_planes_of_its_sides_do(void **state)
+{
+    (void)state;
+    versor turn = {0.2f, -0.3f, 0.1f, 0.927362f};
+    double worst = 0;
+    glm_quat_normalize(turn);
+    for (int side = 0; side < 6; ++side) {
+        vec3 normal = {0}, along = {0}, middle;
+        Vec tip, pushed, expected, start[PAIR] = {{0}}, q[PAIR];
+        char text[200];
+        Mesh cube;
+        DistanceField field;
+        HairFixture fixture;
+        normal[side / 2] = side % 2 ? 1 : -1, along[(side / 2 + 1) % 3] = 1;
+        glm_quat_rotatev(turn, normal, normal);
+        glm_quat_rotatev(turn, along, along);
+        glm_vec3_scale(normal, -0.4f, middle); // the side is 30 cm from the root
+        make_cube(&cube, middle, turn);
+        for (int k = 0; k < 3; ++k) tip[k] = (double)(-0.304f * normal[k] + 0.02f * along[k]);
+        snprintf(text, sizeof text, "plane:%.9g,%.9g,%.9g,-0.3", (double)normal[0],
+                 (double)normal[1], (double)normal[2]);
+        push_pair(tip, text, "dftl", expected);
+        assert_int_equal(distance_field_create(&field, fixture_gpu(), &cube, 20, NULL), RESULT_OK);
+        vec_copy(tip, start[1]);
+        fixture_create(&fixture, (const Vec *)start, 1, PAIR, "dftl", "", 0, 0);
+        fixture.step.gravity[1] = 0;
+        fixture.field = &field;
+        fixture_solve_anew(&fixture);
+        fixture_step(&fixture);
+        twin_read_strand(&fixture, 0, q);
+        vec_copy(q[1], pushed);
+        Vec moved;
+        vec_add_scaled(pushed, -1, tip, moved);
+        assert_true(vec_norm(moved) > 0.004);
+        vec_add_scaled(pushed, -1, expected, moved);
+        worst = fmax(worst, vec_norm(moved));
+        fixture_destroy(&fixture);
+        distance_field_destroy(&field);
+        mesh_destroy(&cube);
+    }
+    print_message("a mesh pushes to within %.2g m\n", worst);
+    assert_true(worst < 3 * 9.1e-7);
+}
+
 // --- Roots inside.
 
 enum { BURIED = 9 };
@@ -301,6 +367,7 @@ int main(void)
         cmocka_unit_test(a_capsule_of_two_radii_pushes_to_its_surface),
         cmocka_unit_test(a_capsule_inside_its_larger_end_is_a_sphere),
         cmocka_unit_test(a_world_collider_stays_where_it_is),
+        cmocka_unit_test(a_mesh_pushes_as_the_planes_of_its_sides_do),
         cmocka_unit_test(a_strand_leaves_half_as_far_as_it_goes),
         cmocka_unit_test(a_strand_that_leaves_faster_is_not_pushed),
         cmocka_unit_test(hair_at_the_ends_of_a_long_capsule_is_pushed),

@@ -191,6 +191,76 @@ static void a_turning_ball_drags_hair_along(void **state)
     }
 }
 
+// --- On a ball that turns far in one step.
+
+static const Vec BALL = {0, -4, 0}; // its middle; 4 m in radius
+
+// The root and the tip on the ball, above (x, z).
+static void put_on_ball(double x, double z, Vec at)
+{
+    at[0] = x, at[1] = sqrt(pow(4 + MARGIN, 2) - x * x - z * z) - 4, at[2] = z;
+}
+
+// The tip of a link whose root lies off the axis, before and after the ball has turned by 60
+// degrees in a step; how deep it was pressed into the ball.
+static double turn_far(float friction, Vec before, Vec after, Vec root_after)
+{
+    HairFixture fixture;
+    Vec root, tip, q[PAIR];
+    SolverReport report = {0};
+    static const double upright[4] = {0, 0, 0, 1};
+    put_on_ball(0.5, 0, root);
+    put_on_ball(0.5, 1, tip);
+    lay_pair(&fixture, "dftl", "sphere:0,-4,0,4", root, tip);
+    fixture.params.friction = friction;
+    fixture_solve_anew(&fixture);
+    fixture_step(&fixture);
+    twin_read_strand(&fixture, 0, q);
+    vec_copy(q[1], before);
+    turn_about_y(upright, M_PI / 3, fixture.step.head.rotation);
+    fixture_step(&fixture);
+    twin_read_strand(&fixture, 0, q);
+    vec_copy(q[0], root_after);
+    vec_copy(q[1], after);
+    solver_report(&fixture.solver, &report);
+    fixture_destroy(&fixture);
+    return (double)report.deepest_found;
+}
+
+static void cross(const Vec a, const Vec b, Vec r)
+{
+    for (int k = 0; k < 3; ++k)
+        r[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
+// The place of the ball under the tip has come from where the turn took it from: not along the
+// tangent. Of the tip's slip against it friction undoes as much as friction times the depth, of
+// which the link lets it follow what lies across: but for the depth's share of the ball's radius,
+// and the way's of the link's length.
+static void friction_acts_against_the_slip_on_a_ball_that_turns_far(void **state)
+{
+    (void)state;
+    const double cosine = cos(M_PI / 3), sine = sin(M_PI / 3);
+    Vec before, smooth, rough, root, normal, slip, link, across, shift;
+    turn_far(0, before, smooth, root);
+    double depth = turn_far((float)FRICTION, before, rough, root);
+    const Vec back = {cosine * smooth[0] - sine * smooth[2], smooth[1],
+                      sine * smooth[0] + cosine * smooth[2]};
+    vec_add_scaled(back, -1, before, slip);
+    vec_add_scaled(smooth, -1, BALL, normal);
+    vec_add_scaled(slip, -vec_dot(slip, normal) / vec_dot(normal, normal), normal, slip);
+    vec_add_scaled(smooth, -1, root, link);
+    cross(normal, link, across);
+    vec_add_scaled(rough, -1, smooth, shift);
+    double expected =
+        -FRICTION * depth * vec_dot(slip, across) / (vec_norm(slip) * vec_norm(across));
+    double got = vec_dot(shift, across) / vec_norm(across);
+    print_message("%.4g deep, friction moves the tip by %.4g, expected %.4g\n", depth, got,
+                  expected);
+    assert_true(fabs(expected) > 0.5 * FRICTION * depth);
+    assert_true(fabs(got / expected - 1) < depth / 4 + got / vec_norm(link));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -198,6 +268,7 @@ int main(void)
         cmocka_unit_test(hair_slides_on_a_slope_beyond_the_angle_of_friction),
         cmocka_unit_test(hair_slides_to_a_halt),
         cmocka_unit_test(a_turning_ball_drags_hair_along),
+        cmocka_unit_test(friction_acts_against_the_slip_on_a_ball_that_turns_far),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
