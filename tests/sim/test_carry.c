@@ -155,10 +155,58 @@ static void a_head_at_constant_speed_is_like_one_at_rest(void **state)
     for_all_solvers(check_galilean);
 }
 
+// All parts of a motion at once, in a state of any velocities: x' = R x + T, v' = R v + V + W x x'.
+// Float32 rounds positions of up to 3 m and velocities of up to 6 m/s: a few units of 2^-23 and
+// 2^-22.
+static void a_motion_acts_as_its_formula_says(void **state)
+{
+    (void)state;
+    Vec start[N];
+    TwinStrand strand;
+    HairFixture fixture;
+    Carry carry;
+    Error error;
+    SolverBuffer buffers[SOLVER_MAX_BUFFERS];
+    HeadMotion motion = {
+        .translation = {1, -2, 0.5f}, .velocity = {0.3f, -1, 2}, .spin = {1, -2, 0.5f}};
+    glm_quatv(motion.rotation, 1.1f, (vec3){0.36f, 0.48f, 0.8f});
+    twin_make_curl(start, N, 0, 1.5);
+    twin_start(&strand, N, (const Vec *)start);
+    for (int j = 0; j < N; ++j)
+        for (int k = 0; k < 3; ++k) strand.v[j][k] = sin(3 * j + k);
+    fixture_create(&fixture, (const Vec *)start, 1, N, "chain", "", 0.3f, 1);
+    if (carry_create(&carry, &error) != RESULT_OK) fail_msg("%s", error.text);
+    twin_put(&fixture, &strand, 1);
+    carry_apply(&carry, &fixture.solver, &fixture.hair, &motion);
+    solver_buffers(&fixture.solver, 0, buffers);
+    float(*points)[4] = gpu_buffer_read(buffers[0].buffer);
+    float(*velocities)[4] = gpu_buffer_read(buffers[1].buffer);
+    assert_true(points && velocities);
+    for (uint32_t j = 0; j < N; ++j) {
+        uint32_t at = (uint32_t)hair_address(&fixture.hair.batches[0], 0, j);
+        vec3 x, v, turning;
+        for (int k = 0; k < 3; ++k) x[k] = (float)strand.x[j][k], v[k] = (float)strand.v[j][k];
+        glm_quat_rotatev(motion.rotation, x, x);
+        glm_quat_rotatev(motion.rotation, v, v);
+        glm_vec3_add(x, motion.translation, x);
+        glm_vec3_cross(motion.spin, x, turning);
+        for (int k = 0; k < 3; ++k) {
+            assert_true(fabsf(points[at][k] - x[k]) < 1e-6f);
+            assert_true(fabsf(velocities[at][k] - (v[k] + motion.velocity[k] + turning[k])) <
+                        4e-6f);
+        }
+    }
+    free(points);
+    free(velocities);
+    carry_destroy(&carry);
+    fixture_destroy(&fixture);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(carried_hair_goes_on_as_if_it_had_always_been_there),
+        cmocka_unit_test(a_motion_acts_as_its_formula_says),
         cmocka_unit_test(a_head_at_constant_speed_is_like_one_at_rest),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
