@@ -16,7 +16,7 @@ static void set_text(Error *error, char *line)
     free(line);
 }
 
-Result error_set(Error *error, Result result, const char *format, ...)
+Result(error_set)(Error *error, Result result, const char *format, ...)
 {
     char *line = NULL;
     if (!error) return result;
@@ -28,7 +28,7 @@ Result error_set(Error *error, Result result, const char *format, ...)
     return result;
 }
 
-Result error_prefix(Error *error, Result result, const char *format, ...)
+Result(error_prefix)(Error *error, Result result, const char *format, ...)
 {
     char *prefix = NULL, *line = NULL;
     if (!error) return result;

@@ -36,6 +36,19 @@ Result error_set(Error *error, Result result, const char *format, ...)
 Result error_prefix(Error *error, Result result, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+// Static analysers look at one file at a time: without this they follow paths on which a failure
+// returns RESULT_OK.
+#if defined __clang_analyzer__ || defined TRACTRIX_ANALYZER
+#define RETURNS_RESULT(function, error, result, ...)                                               \
+    __extension__({                                                                                \
+        Result returned = (result);                                                                \
+        function(error, returned, __VA_ARGS__);                                                    \
+        returned;                                                                                  \
+    })
+#define error_set(...)    RETURNS_RESULT((error_set), __VA_ARGS__)
+#define error_prefix(...) RETURNS_RESULT((error_prefix), __VA_ARGS__)
+#endif
+
 // Leaves the function with the call's result unless it is RESULT_OK. For functions that have
 // nothing to clean up on that way; those that have say THEN.
 #define TRY(call)                                                                                  \

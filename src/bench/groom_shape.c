@@ -189,7 +189,8 @@ Result groom_shape_voxels(const GroomShape *shape, const float (*points)[3], dou
         for (uint32_t v = shape->first[s] + 1; v < shape->first[s + 1] && room; ++v)
             room = add_segment(shape, points[v - 1], points[v], &voxels);
     if (room) {
-        qsort(voxels.list, voxels.count, sizeof *voxels.list, compare_numbers);
+        if (voxels.count > 0)
+            qsort(voxels.list, voxels.count, sizeof *voxels.list, compare_numbers);
         *count = 0;
         for (size_t i = 0; i < voxels.count; ++i)
             *count += i == 0 || voxels.list[i] != voxels.list[i - 1];

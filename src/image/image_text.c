@@ -39,22 +39,27 @@ static ImageText *find(const ImageTexts *texts, const char *key)
     return NULL;
 }
 
+// The text of this key, empty if it is new; NULL: no memory.
+static ImageText *find_or_add(ImageTexts *texts, const char *key)
+{
+    ImageText *text = find(texts, key);
+    if (text) return text;
+    ImageText *list = realloc(texts->list, (texts->count + 1) * sizeof *list);
+    if (!list) return NULL;
+    texts->list = list;
+    text = &list[texts->count++];
+    *text = (ImageText){.value = NULL};
+    memcpy(text->key, key, strlen(key) + 1);
+    return text;
+}
+
 Result image_texts_set(ImageTexts *texts, const char *key, const char *value, Error *error)
 {
     if (!image_texts_is_key(key))
         return error_set(error, RESULT_FAILED, "an image's text of this name cannot be written");
-    ImageText *text = find(texts, key);
     char *copy = strdup(value);
-    if (copy && !text) {
-        ImageText *list = realloc(texts->list, (texts->count + 1) * sizeof *list);
-        if (list) {
-            texts->list = list;
-            text = &list[texts->count++];
-            *text = (ImageText){.value = NULL};
-            memcpy(text->key, key, strlen(key) + 1);
-        }
-    }
-    if (!copy || !text) {
+    ImageText *text = copy ? find_or_add(texts, key) : NULL;
+    if (!text) {
         free(copy);
         return error_set(error, RESULT_FAILED, "no memory for the texts of an image");
     }

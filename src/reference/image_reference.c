@@ -3,6 +3,7 @@
 #include "base/double3.h"
 #include "base/parallel.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -416,6 +417,7 @@ double image_reference_plane(const ShapePlane *plane, double x, double y)
 static void add_hit(Row *row, const Shape *shape, uint32_t number, uint32_t sample, double x,
                     double y)
 {
+    assert(row->count < row->room);
     Hit *hit = &row->hits[row->count++];
     hit->sample = sample;
     hit->shape = number;

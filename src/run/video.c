@@ -206,14 +206,15 @@ static int start(Video *video, const Command *command)
     return reason;
 }
 
-static Result start_ffmpeg(Video *video, const VideoOptions *options, Error *error)
+static Result start_ffmpeg(Video *video, const Format *format, const VideoOptions *options,
+                           Error *error)
 {
     // A device cannot be renamed to, and most formats are not written from front to back.
     if (!video->file.temporary)
         return error_set(error, RESULT_FAILED, "%s: not a regular file", options->path);
     Command command;
     int reason = ENOMEM;
-    if (make_command(&command, find_format(options->path), options, video->file.temporary))
+    if (make_command(&command, format, options, video->file.temporary))
         reason = start(video, &command);
     free(command.output);
     if (reason == ENOENT)
@@ -230,12 +231,13 @@ static Result start_ffmpeg(Video *video, const VideoOptions *options, Error *err
 Result video_create(Video **video, const VideoOptions *options, Error *error)
 {
     *video = NULL;
-    TRY(check_options(options, find_format(options->path), error));
+    const Format *format = find_format(options->path);
+    TRY(check_options(options, format, error));
     Video *created = calloc(1, sizeof *created);
     if (!created) return error_set(error, RESULT_FAILED, "%s: no memory", options->path);
     created->input = created->messages = -1;
     Result result = outfile_open(&created->file, options->path, error);
-    THEN(result, start_ffmpeg(created, options, error));
+    THEN(result, start_ffmpeg(created, format, options, error));
     if (result == RESULT_OK)
         *video = created;
     else

@@ -24,6 +24,14 @@ static const SolverType *find_type(const char *name)
     return NULL;
 }
 
+// Of parameters that solver_check has let through.
+static const SolverType *known_type(const SectionParams *params)
+{
+    const SolverType *type = find_type(params->algo);
+    assert(type);
+    return type;
+}
+
 static Result refuse_type(const char *name, Error *error)
 {
     const char *names[MAX_WORDS];
@@ -58,13 +66,13 @@ Result solver_check(const SectionParams *params, Error *error)
 
 const char *solver_caution(const SectionParams *params)
 {
-    const SolverType *type = find_type(params->algo);
+    const SolverType *type = known_type(params);
     return type->caution ? type->caution(params) : NULL;
 }
 
 float solver_most_stability(const SectionParams *params)
 {
-    return find_type(params->algo)->most_stability;
+    return known_type(params)->most_stability;
 }
 
 // Which of the type's variants the parameters name: 0, the default, for "".
@@ -234,7 +242,7 @@ static Result create_batch(SolverState *state, uint32_t i, const SolverSetup *se
 
 static bool is_published(const SectionParams *params)
 {
-    const char *published = find_type(params->algo)->published;
+    const char *published = known_type(params)->published;
     return published && strcmp(published, params->variant) == 0;
 }
 
@@ -286,7 +294,7 @@ Result solver_create(Solver *solver, const SolverSetup *setup, Error *error)
 {
     *solver = (Solver){0};
     TRY(solver_check(setup->params, error));
-    const SolverType *type = find_type(setup->params->algo);
+    const SolverType *type = known_type(setup->params);
     const SolverRecipe *own = type->recipes[find_variant(type, setup->params->variant)];
     const SolverRecipe *recipe = own ? own : type->recipes[0];
     if (recipe) TRY(check_vertices(type, recipe, setup->hair, error));
