@@ -149,10 +149,30 @@ static void make_cube(Mesh *mesh, const float middle[3], const versor turn)
         for (int k = 0; k < 3; ++k) mesh->triangle[i][k] = quads[i / 2][k == 0 ? 0 : k + i % 2];
 }
 
+// A strand from the origin that dips into what `text` or the field has with its middle particle,
+// and whose tip is outside again: where the middle one is pushed to.
+static void push_elbow(const Vec middle, const vec3 normal, const char *text,
+                       const DistanceField *field, Vec pushed)
+{
+    enum { ELBOW = 3 };
+    Vec start[ELBOW] = {{0}}, q[ELBOW];
+    HairFixture fixture;
+    vec_copy(middle, start[1]);
+    for (int k = 0; k < 3; ++k) start[2][k] = middle[k] + 0.05 * (double)normal[k];
+    fixture_create(&fixture, (const Vec *)start, 1, ELBOW, "dftl", "", 0, 0);
+    fixture.step.gravity[1] = 0;
+    fixture.field = field;
+    fixture_collide(&fixture, text);
+    fixture_step(&fixture);
+    twin_read_strand(&fixture, 0, q);
+    vec_copy(q[1], pushed);
+    fixture_destroy(&fixture);
+}
+
 // Near the middle of each side of a cube, turned about no axis of the grid, its field is that
-// side's plane: a tip there is pushed to where the plane pushes it. The roots are 30 cm off, beyond
-// the grid, by a distance that they do reach. Measured (the field's samples, positions in it): 6e-7
-// m, and three times that.
+// side's plane: a particle there is pushed to where the plane pushes it. The roots are 30 cm off,
+// beyond the grid, by a distance that they do reach. Measured (the field's samples, positions in
+// it): 9.1e-7 m, and three times that.
 static void a_mesh_pushes_as_the_planes_of_its_sides_do(void **state)
 {
     (void)state;
@@ -160,36 +180,26 @@ static void a_mesh_pushes_as_the_planes_of_its_sides_do(void **state)
     double worst = 0;
     glm_quat_normalize(turn);
     for (int side = 0; side < 6; ++side) {
-        vec3 normal = {0}, along = {0}, middle;
-        Vec tip, pushed, expected, start[PAIR] = {{0}}, q[PAIR];
+        vec3 normal = {0}, along = {0}, centre;
+        Vec middle, pushed, expected, moved, off;
         char text[200];
         Mesh cube;
         DistanceField field;
-        HairFixture fixture;
         normal[side / 2] = side % 2 ? 1 : -1, along[(side / 2 + 1) % 3] = 1;
         glm_quat_rotatev(turn, normal, normal);
         glm_quat_rotatev(turn, along, along);
-        glm_vec3_scale(normal, -0.4f, middle); // the side is 30 cm from the root
-        make_cube(&cube, middle, turn);
-        for (int k = 0; k < 3; ++k) tip[k] = (double)(-0.304f * normal[k] + 0.02f * along[k]);
+        glm_vec3_scale(normal, -0.4f, centre); // the side is 30 cm from the root
+        make_cube(&cube, centre, turn);
+        for (int k = 0; k < 3; ++k) middle[k] = (double)(-0.304f * normal[k] + 0.02f * along[k]);
         snprintf(text, sizeof text, "plane:%.9g,%.9g,%.9g,-0.3", (double)normal[0],
                  (double)normal[1], (double)normal[2]);
-        push_pair(tip, text, "dftl", expected);
+        push_elbow(middle, normal, text, NULL, expected);
         assert_int_equal(distance_field_create(&field, fixture_gpu(), &cube, 20, NULL), RESULT_OK);
-        vec_copy(tip, start[1]);
-        fixture_create(&fixture, (const Vec *)start, 1, PAIR, "dftl", "", 0, 0);
-        fixture.step.gravity[1] = 0;
-        fixture.field = &field;
-        fixture_solve_anew(&fixture);
-        fixture_step(&fixture);
-        twin_read_strand(&fixture, 0, q);
-        vec_copy(q[1], pushed);
-        Vec moved;
-        vec_add_scaled(pushed, -1, tip, moved);
+        push_elbow(middle, normal, "", &field, pushed);
+        vec_add_scaled(pushed, -1, middle, moved);
+        vec_add_scaled(pushed, -1, expected, off);
         assert_true(vec_norm(moved) > 0.004);
-        vec_add_scaled(pushed, -1, expected, moved);
-        worst = fmax(worst, vec_norm(moved));
-        fixture_destroy(&fixture);
+        worst = fmax(worst, vec_norm(off));
         distance_field_destroy(&field);
         mesh_destroy(&cube);
     }

@@ -30,8 +30,8 @@ static void stretched(SectionParams *params)
 static const TwinPair IMPLICIT = {"spring", "implicit", reference_spring_implicit_step, true};
 static const TwinPair EXPLICIT = {"spring", "explicit", reference_spring_explicit_step, true};
 
-// Three times what was measured. At 30 Hz, without angular springs, strands of 16 and more tremble
-// by some 1e-3: chaos, left out.
+// Three times what was measured (twin.h). At 30 Hz, without angular springs, strands of 16 and more
+// tremble by some 1e-3: chaos, left out.
 static void implicit_equals_its_double_precision_twin(void **state)
 {
     (void)state;

@@ -45,9 +45,9 @@ static void clamped(SectionParams *params)
     params->tressfx_clamp_position_delta = 1;
 }
 
-// Three times what was measured. A strand whips at 240 Hz, for n = 64, and with little shape.
-// The free end of a long one whose first third is held whips more (1.5e-3 at 60 Hz): n = 64 has
-// local shape alone.
+// Three times what was measured (twin.h). A strand whips at 240 Hz, for n = 64, and with little
+// shape. The free end of a long one whose first third is held whips more (1.5e-3 at 60 Hz): n = 64
+// has local shape alone.
 static const TwinPair STEADY = {"tressfx", "steady", reference_tressfx_steady, false};
 static const TwinPair TRESSFX4 = {"tressfx", "tressfx4", reference_tressfx_4, false};
 

@@ -84,6 +84,8 @@ typedef struct TwinCase {
     int n;                          // particles
     double per_second, drag, style; // steps a second; drag in 1/s
     int steps;
+    // Measured with vectors of 256 and 128 bits, AVX without FMA, and SSE2, as
+    // scripts/goldens-by-cpu sets them; three times the largest.
     double tolerance;                    // greatest distance at the end on a CPU driver: RMS over
                                          // the length; on GPUs five times that
     void (*tune)(SectionParams *params); // changes parameters; or NULL
