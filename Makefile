@@ -262,6 +262,10 @@ check-threads: ## data races of the threaded parts, by ThreadSanitizer: some min
 check-analyzer: ## gcc -fanalyzer over all of src: some minutes
 	@scripts/setup build
 	$(QUIET) CONFIG=analyzer WERROR=1 OUT=$(SIDE)analyzer all
+check-tidy: ## clang-tidy over src, with the checks of .clang-tidy: some minutes
+	@scripts/setup build lint
+	$(QUIET) all
+	@scripts/check-tidy $(SIDE)tidy -std=c11 -D_GNU_SOURCE -I. -Isrc -Iglsl -I$(OUT) $(INCLUDES)
 
 TIME = 60
 fuzz: all ## feed mutated bytes to every reader, TIME seconds each (60; ONLY="png cache": these)
@@ -336,7 +340,7 @@ help: ## this list
 	@echo; sed -n '4,8s/^#//p' $(firstword $(MAKEFILE_LIST))
 
 FORCE:
-.PHONY: deb check-deb check-container all tests demo test bench bench-image stress mutate torture check $(CHECKS:%=check-%) format install uninstall clean help FORCE
+.PHONY: deb check-deb check-container all tests demo test bench bench-image stress mutate torture check $(CHECKS:%=check-%) check-threads check-analyzer check-tidy format install uninstall clean help FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
 -include $(patsubst %.o,%.d,$(OBJECTS) $(MAINS:src/%.c=$(OUT)/%.o) $(TEST_PROGRAMS:%=%.o) $(SUPPORT_OBJECTS))

@@ -257,7 +257,7 @@ static Result list_points(Work *work, Error *error)
     bool one = asked->algo && !trial_is_default(asked);
     double rates[EXPERIMENT_RATES];
     int count = list_rates(options, own, rates);
-    work->points = calloc((size_t)(WORTH_COUNT * count), sizeof *work->points);
+    work->points = calloc((size_t)WORTH_COUNT * (size_t)count, sizeof *work->points);
     if (!work->points) return error_set(error, RESULT_FAILED, "no memory for points");
     for (int m = 0; m < (one ? 1 : WORTH_COUNT); ++m) {
         const Method *method = one ? asked : &WORTH[m];

@@ -155,7 +155,7 @@ static bool add_segment(const GroomShape *shape, const float a[3], const float b
 {
     double pieces = ceil(distance(a, b) / (double)shape->edge * SAMPLES_PER_EDGE);
     pieces = fmin(fmax(pieces, 1), MOST_SAMPLES);
-    for (double i = 0; i <= pieces; ++i) {
+    for (int i = 0; i <= (int)pieces; ++i) {
         double place[3];
         for (int k = 0; k < 3; ++k)
             place[k] = (double)a[k] + i / pieces * ((double)b[k] - (double)a[k]);

@@ -204,9 +204,9 @@ void light_case_block(const Image *image, int column, int row, double mean[3])
 {
     const float *pixels = (const float *)(const void *)image->pixels;
     mean[0] = mean[1] = mean[2] = 0;
-    for (int i = 0; i < LIGHT_BLOCK_PX * LIGHT_BLOCK_PX; ++i) {
-        size_t x = (size_t)(column * LIGHT_BLOCK_PX + i % LIGHT_BLOCK_PX);
-        size_t y = (size_t)(row * LIGHT_BLOCK_PX + i / LIGHT_BLOCK_PX);
+    for (size_t i = 0; i < (size_t)LIGHT_BLOCK_PX * LIGHT_BLOCK_PX; ++i) {
+        size_t x = (size_t)column * LIGHT_BLOCK_PX + i % LIGHT_BLOCK_PX;
+        size_t y = (size_t)row * LIGHT_BLOCK_PX + i / LIGHT_BLOCK_PX;
         const float *pixel = pixels + (y * (size_t)image->width + x) * (size_t)image->channels;
         for (int k = 0; k < 3; ++k) mean[k] += (double)pixel[k] / (LIGHT_BLOCK_PX * LIGHT_BLOCK_PX);
     }

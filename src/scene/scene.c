@@ -110,6 +110,11 @@ static Result check_frames(const RunParams *run, Error *error)
     return RESULT_OK;
 }
 
+static bool is_same_point(const float a[3], const float b[3])
+{
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
 static Result check_camera(const Scene *scene, Error *error)
 {
     const RunParams *run = &scene->run;
@@ -122,8 +127,7 @@ static Result check_camera(const Scene *scene, Error *error)
                          (double)run->ease_in, (double)run->ease_out);
     bool fixed_eye = scene->eye.count == 0 && !run->eye.automatic;
     bool fixed_target = scene->target.count == 0 && !run->target.automatic;
-    if (fixed_eye && fixed_target &&
-        memcmp(run->eye.value, run->target.value, sizeof run->eye.value) == 0)
+    if (fixed_eye && fixed_target && is_same_point(run->eye.value, run->target.value))
         return error_set(error, RESULT_USAGE, "--eye and --target are the same point");
     return RESULT_OK;
 }

@@ -328,6 +328,7 @@ static void wrong_command_lines_are_refused_with_the_nearest_name(void **state)
         {"a.tfx -o x/ --first 5 --last 4", "--last 4 is before --first 5"},
         {"a.tfx -o x/ --camera-up 0,0,0", "--camera-up 0,0,0"},
         {"a.tfx -o x/ --eye 1,2,3 --target 1,2,3", "--eye and --target are the same point"},
+        {"a.tfx -o x/ --eye 0,2,3 --target -0,2,3", "--eye and --target are the same point"},
         {"a.tfx -o x_%d_%d.png", "expected one %d"},
         {"a.tfx -o x_%s.png", "expected one %d"},
         {"a.tfx -o x_%5d.png", "expected one %d"},

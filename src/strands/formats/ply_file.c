@@ -244,7 +244,7 @@ static void skip_list(Ply *ply, const PlyProperty *property)
     if (count < 0) reader_fail(reader, "a list of %g numbers", count);
     if (!reader_ok(reader)) return;
     if (ply->text) {
-        for (double i = 0; i < count && reader_ok(reader); i++)
+        for (uint64_t i = 0; i < (uint64_t)count && reader_ok(reader); i++)
             read_number(ply, property->type, false);
     } else if (reader_check_array(reader, reader->at, (uint64_t)count, TYPES[property->type].size,
                                   "a list")) {
@@ -283,7 +283,7 @@ static bool check_count(Ply *ply, const PlyElement *element)
     uint64_t size = least_size(ply, element), left = reader_left(ply->reader) + ply->text;
     if (size == 0 || element->count <= left / size) return true;
     reader_fail(ply->reader, "%u times '%s' need %llu bytes at least, the file has %zu more",
-                element->count, element->name, (unsigned long long)(size * element->count),
+                element->count, element->name, (unsigned long long)size * element->count,
                 reader_left(ply->reader));
     return false;
 }
