@@ -270,20 +270,25 @@ double head_distance(const Double3 at)
     return head_patch_find(&unused, at, 0.0);
 }
 
-void head_normal(const Double3 at, Double3 normal)
+void head_patch_normal(const HeadPatch *patch, const Double3 at, Double3 normal)
 {
-    const double step = 1e-5;
-    HeadPatch patch;
-    head_patch_find(&patch, at, step);
+    const double step = HEAD_NORMAL_REACH;
     for (int i = 0; i < 3; i++) {
         Double3 ahead, behind;
         double3_copy(at, ahead);
         double3_copy(at, behind);
         ahead[i] += step;
         behind[i] -= step;
-        normal[i] = head_patch_distance(&patch, ahead) - head_patch_distance(&patch, behind);
+        normal[i] = head_patch_distance(patch, ahead) - head_patch_distance(patch, behind);
     }
     if (!(double3_normalize(normal) > 0.0)) normal[1] = 1.0;
+}
+
+void head_normal(const Double3 at, Double3 normal)
+{
+    HeadPatch patch;
+    head_patch_find(&patch, at, HEAD_NORMAL_REACH);
+    head_patch_normal(&patch, at, normal);
 }
 
 // --- The mesh.

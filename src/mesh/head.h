@@ -27,6 +27,10 @@ double head_patch_distance(const HeadPatch *patch, const Double3 point);
 // Outward normal of unit length there: the distance's gradient.
 void head_normal(const Double3 at, Double3 normal);
 
+// The same of a patch that reaches at least HEAD_NORMAL_REACH (m) from the point.
+#define HEAD_NORMAL_REACH 1e-5
+void head_patch_normal(const HeadPatch *patch, const Double3 at, Double3 normal);
+
 // A closed mesh of at most `triangle_count` triangles, or as few as keep it whole. Vertices lie on
 // the surface to 0.01 mm; texture coordinates are longitude (0.5 in front, the seam at the back)
 // and latitude (1 on top) about the origin. RESULT_FAILED when memory is short.

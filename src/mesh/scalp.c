@@ -89,10 +89,11 @@ void scalp_lift(ScalpShape shape, Double3 point, double gap)
         return;
     }
     for (int i = 0; i < ROUNDS; i++) {
+        HeadPatch patch;
         Double3 normal;
-        double lack = gap - head_distance(point);
+        double lack = gap - head_patch_find(&patch, point, HEAD_NORMAL_REACH);
         if (lack <= 0.0) return;
-        head_normal(point, normal);
+        head_patch_normal(&patch, point, normal);
         double3_add_scaled(point, lack, normal);
     }
 }
