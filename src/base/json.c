@@ -172,6 +172,14 @@ Result json_check_object(const JsonPlace *place, const json_t *value, const char
     return RESULT_OK;
 }
 
+json_t *json_read(const void *text, size_t size, size_t flags, json_error_t *why)
+{
+    json_t *value = json_loadb(text, size, flags, why);
+    if (!value || !json_memory_short()) return value;
+    json_decref(value);
+    return NULL;
+}
+
 Result json_write_file(const json_t *value, const char *path, Error *error)
 {
     char *text = value ? json_dumps(value, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;

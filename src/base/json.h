@@ -47,6 +47,11 @@ Result json_check_object(const JsonPlace *place, const json_t *value, const char
 // into NULL, or is NULL, is dropped without a word. Whoever writes a document asks before.
 bool json_memory_short(void);
 
+// Reads a value; the caller owns the reference. NULL with *why (NULL: nowhere) if the text is no
+// JSON, or if memory was short: jansson then loses a number's last digits without a word, so that
+// no value counts. json_memory_short tells the two apart.
+json_t *json_read(const void *text, size_t size, size_t flags, json_error_t *why);
+
 // Writes `value` as an indented file that appears complete or not at all; floats are as short as
 // float32 allows. Takes no reference. RESULT_FAILED with path and reason, also if memory was short
 // when the value was made.

@@ -17,5 +17,6 @@ void exr_stream_keep_reason(exr_const_context_t context, exr_result_t code, cons
 
 const char *exr_stream_reason(const ExrStream *stream, exr_result_t code)
 {
+    if (stream->short_of_memory) return "no memory";
     return stream->reason[0] ? stream->reason : exr_get_default_error_message(code);
 }

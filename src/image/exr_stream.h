@@ -5,6 +5,7 @@
 #include "base/bytes.h"
 
 #include <openexr.h>
+#include <stdbool.h>
 
 enum { EXR_PART = 0 }; // the first; files that are written have no other
 
@@ -13,6 +14,7 @@ typedef struct ExrStream {
     Bytes written; // with `room`
     size_t room;
     const Bytes *read;
+    bool short_of_memory; // in a callback, where no handler may be called
     char reason[160];
 } ExrStream;
 

@@ -25,7 +25,7 @@ const char *cache_scene_own_maker(void)
 
 char *cache_scene_maker(const Bytes *text)
 {
-    json_t *scene = json_loadb((const char *)text->data, text->size, 0, NULL);
+    json_t *scene = json_read(text->data, text->size, 0, NULL);
     const char *maker = json_string_value(json_object_get(scene, MAKER));
     char *copy = strdup(maker ? maker : "unknown");
     json_decref(scene);
@@ -143,7 +143,7 @@ static Result refuse(const Difference *difference, const char *path, Error *erro
 Result cache_scene_compare(const Bytes *text, const Simulation *simulation, const char *path,
                            Error *error)
 {
-    json_t *was = json_loadb((const char *)text->data, text->size, 0, NULL);
+    json_t *was = json_read(text->data, text->size, 0, NULL);
     Bytes now = {0};
     if (!was && json_memory_short())
         return error_set(error, RESULT_FAILED, "%s: no memory for its scene", path);
@@ -152,7 +152,7 @@ Result cache_scene_compare(const Bytes *text, const Simulation *simulation, cons
     Result result = cache_scene_describe(&now, simulation, error);
     if (result == RESULT_OK) {
         // Read back, so that numbers are of the same kinds on both sides.
-        json_t *is = json_loadb((const char *)now.data, now.size, 0, NULL);
+        json_t *is = json_read(now.data, now.size, 0, NULL);
         Difference difference;
         json_object_del(was, MAKER);
         json_object_del(is, MAKER);

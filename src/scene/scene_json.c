@@ -41,10 +41,9 @@ typedef struct Document {
 static Result parse_document(json_t **json, const char *path, const Bytes *bytes, Error *error)
 {
     json_error_t why;
-    *json = json_loadb((const char *)bytes->data, bytes->size, JSON_REJECT_DUPLICATES, &why);
+    *json = json_read(bytes->data, bytes->size, JSON_REJECT_DUPLICATES, &why);
     if (*json) return RESULT_OK;
-    // jansson has no place for what is not the text's fault.
-    if (why.line < 0) return error_set(error, RESULT_FAILED, "%s: out of memory", path);
+    if (json_memory_short()) return error_set(error, RESULT_FAILED, "%s: out of memory", path);
     return error_set(error, RESULT_BAD_INPUT, "%s:%d:%d: %s", path, why.line, why.column, why.text);
 }
 

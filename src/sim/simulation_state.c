@@ -200,8 +200,9 @@ Result simulation_state_save(Simulation *simulation, Bytes *state, Error *error)
     for (uint32_t i = 0; i < list.count && good; ++i)
         good = write_buffer(&archive, list.buffers[i]);
     if (archive.stream) {
-        state->size = (size_t)ftell(archive.stream);
-        if (fclose(archive.stream) != 0) good = false;
+        long size = ftell(archive.stream);
+        if (fclose(archive.stream) != 0 || size < 0) good = false;
+        state->size = good ? (size_t)size : 0;
     }
     char *less = good ? realloc(data, state->size + 1) : NULL;
     state->data = (uint8_t *)(less ? less : data);

@@ -256,6 +256,19 @@ static void fill_stream(const char *name, FILE *stream)
 
 // --- Those with arguments of their own kind.
 
+extern int __real_fclose(FILE *stream);
+extern int __wrap_fclose(FILE *stream);
+
+// A stream in memory has no disk that could fail it.
+int __wrap_fclose(FILE *stream)
+{
+    bool has_file = fileno(stream) >= 0;
+    int outcome = __real_fclose(stream);
+    if (!has_file || !chosen("fclose", strerror(EIO))) return outcome;
+    errno = EIO;
+    return EOF;
+}
+
 int __wrap_asprintf(char **text, const char *format, ...)
 {
     if (chosen("asprintf", strerror(ENOMEM))) {

@@ -87,6 +87,18 @@ static bool is_alike(const FolderFile *a, const FolderFile *b)
            a->bytes[a->size - 1] == b->bytes[b->size - 1];
 }
 
+// A record of frames (run/record.h) gets a line for each frame that is done; a line that was cut
+// short counts for none. Each other line must be one of an undisturbed run.
+static bool is_record_begun(const FolderFile *wanted, const FolderFile *file)
+{
+    const unsigned char *line = file->bytes, *end = line + file->size;
+    if (!has_end(file->name, ".scenes")) return false;
+    for (const unsigned char *next; (next = memchr(line, '\n', (size_t)(end - line)));
+         line = next + 1)
+        if (!memmem(wanted->bytes, wanted->size, line, (size_t)(next + 1 - line))) return false;
+    return true;
+}
+
 static const char *judge_file(const Run *run, const Folder *reference, const FolderFile *file,
                               FilesState state, char words[300])
 {
@@ -94,6 +106,7 @@ static const char *judge_file(const Run *run, const Folder *reference, const Fol
     if (state != FILES_WHOLE && may_be_partial(run, file->name)) return NULL;
     if (state == FILES_KILLED && strncmp(file->name, ".tractrix-", 10) == 0) return NULL;
     if (wanted && folder_same(wanted, file)) return NULL;
+    if (wanted && state != FILES_WHOLE && is_record_begun(wanted, file)) return NULL;
     bool loose = is_listed(run->measured, file->name) || has_end(file->name, ".png");
     if (wanted && loose && is_alike(wanted, file)) return NULL;
     snprintf(words, 300, "%s: %s", file->name, wanted ? "not whole" : "left behind");
