@@ -34,14 +34,24 @@ static Result find_checksum(uint32_t *checksum, const char *name, Error *error)
     return RESULT_OK;
 }
 
+// Writes all; signals may interrupt.
+static bool write_all(int descriptor, const char *text, size_t size)
+{
+    while (size) {
+        ssize_t written = write(descriptor, text, size);
+        if (written < 0 && errno != EINTR) return false;
+        if (written > 0) text += written, size -= (size_t)written;
+    }
+    return true;
+}
+
 // In one piece, so that lines of several processes do not mix.
 static Result append(const char *path, const char *line, Error *error)
 {
     errno = 0;
     int descriptor = open(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-    ssize_t size = (ssize_t)strlen(line);
-    bool good = descriptor >= 0 && write(descriptor, line, (size_t)size) == size;
-    int reason = errno ? errno : ENOSPC;
+    bool good = descriptor >= 0 && write_all(descriptor, line, strlen(line));
+    int reason = errno;
     if (descriptor >= 0 && close(descriptor) != 0 && good) {
         good = false;
         reason = errno;
