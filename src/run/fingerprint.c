@@ -97,9 +97,10 @@ static Result add_values(uint64_t *hash, const Scene *scene, Error *error)
         remove_exempt(json_array_get(sections, i));
     char *text =
         object ? json_dumps(object, JSON_COMPACT | JSON_SORT_KEYS | JSON_REAL_PRECISION(17)) : NULL;
-    if (text) *hash = add_text(*hash, text);
+    bool whole = text && !json_memory_short();
+    if (whole) *hash = add_text(*hash, text);
     Result result =
-        text ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for the scene's values");
+        whole ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for the scene's values");
     free(text);
     json_decref(object);
     return result;
