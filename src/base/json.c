@@ -180,6 +180,26 @@ json_t *json_read(const void *text, size_t size, size_t flags, json_error_t *why
     return NULL;
 }
 
+Result json_parse(json_t **value, const char *path, const Bytes *bytes, size_t flags, Error *error)
+{
+    json_error_t why;
+    *value = json_read(bytes->data, bytes->size, flags, &why);
+    if (*value) return RESULT_OK;
+    // jansson has no place for what is not the text's fault.
+    if (json_memory_short()) return error_set(error, RESULT_FAILED, "%s: out of memory", path);
+    return error_set(error, RESULT_BAD_INPUT, "%s:%d:%d: %s", path, why.line, why.column, why.text);
+}
+
+Result json_load(json_t **value, const char *path, Error *error)
+{
+    Bytes bytes;
+    *value = NULL;
+    TRY(bytes_read_file(&bytes, path, error));
+    Result result = json_parse(value, path, &bytes, 0, error);
+    bytes_destroy(&bytes);
+    return result;
+}
+
 Result json_write_file(const json_t *value, const char *path, Error *error)
 {
     char *text = value ? json_dumps(value, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;

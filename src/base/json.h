@@ -3,6 +3,7 @@
 // documents.
 #pragma once
 
+#include "base/bytes.h"
 #include "base/error.h"
 
 #include <jansson.h>
@@ -51,6 +52,11 @@ bool json_memory_short(void);
 // JSON, or if memory was short: jansson then loses a number's last digits without a word, so that
 // no value counts. json_memory_short tells the two apart.
 json_t *json_read(const void *text, size_t size, size_t flags, json_error_t *why);
+
+// Reads a whole text or file, named `path` in messages; the caller owns *value. RESULT_BAD_INPUT
+// with line and column if it is no JSON, RESULT_FAILED if memory is short. `flags` are jansson's.
+Result json_parse(json_t **value, const char *path, const Bytes *bytes, size_t flags, Error *error);
+Result json_load(json_t **value, const char *path, Error *error);
 
 // Writes `value` as an indented file that appears complete or not at all; floats are as short as
 // float32 allows. Takes no reference. RESULT_FAILED with path and reason, also if memory was short

@@ -84,7 +84,8 @@ Result child_run(const ChildRun *run, json_t **row, double *wall_ms, Error *erro
          word = strtok_r(NULL, " ", &rest))
         words[count++] = word;
     Result result = execute(words, run, wall_ms, error);
-    json_t *rows = result == RESULT_OK ? json_load_file(path, 0, NULL) : NULL;
+    json_t *rows = NULL;
+    THEN(result, json_load(&rows, path, error));
     *row = json_incref(json_array_get(rows, 0));
     json_decref(rows);
     unlink(path);

@@ -280,13 +280,11 @@ static Result read_frames(Motion *motion, const Csv *csv, const json_t *floors, 
 Result trial_read_motion(Motion *motion, const char *folder, const char *name, Error *error)
 {
     char path[4096];
-    json_error_t problem;
     Csv csv = {0};
+    json_t *object;
     *motion = (Motion){0};
     snprintf(path, sizeof path, "%s/%s.json", folder, name);
-    json_t *object = json_load_file(path, 0, &problem);
-    if (!object)
-        return error_set(error, RESULT_BAD_INPUT, "%s:%d: %s", path, problem.line, problem.text);
+    TRY(json_load(&object, path, error));
     motion->name = strdup(name);
     Result result = motion->name
                         ? read_description(motion, path, object, error)
@@ -302,16 +300,18 @@ Result trial_read_motion(Motion *motion, const char *folder, const char *name, E
 }
 
 // Whether FOLDER/NAME.json is a motion's.
-static bool is_motion(const char *folder, const char *name)
+static Result is_motion(bool *found, const char *folder, const char *name, Error *error)
 {
     char path[4096];
+    json_t *object;
+    *found = false;
     snprintf(path, sizeof path, "%s/%s.csv", folder, name);
-    if (access(path, R_OK) != 0) return false;
+    if (access(path, R_OK) != 0) return RESULT_OK;
     snprintf(path, sizeof path, "%s/%s.json", folder, name);
-    json_t *object = json_load_file(path, 0, NULL);
-    bool found = json_object_get(object, "root_motion") != NULL;
+    TRY(json_load(&object, path, error));
+    *found = json_object_get(object, "root_motion") != NULL;
     json_decref(object);
-    return found;
+    return RESULT_OK;
 }
 
 static const char *const MEAN_OF[] = {
@@ -341,7 +341,9 @@ static Result read_motions(MotionFolder *folder, const glob_t *found, Error *err
     for (size_t i = 0; i < found->gl_pathc; ++i) {
         char *name = strrchr(found->gl_pathv[i], '/') + 1;
         name[strlen(name) - strlen(".json")] = 0;
-        if (!is_motion(folder->path, name)) continue;
+        bool is_one;
+        TRY(is_motion(&is_one, folder->path, name, error));
+        if (!is_one) continue;
         TRY(trial_read_motion(&folder->motions[folder->count], folder->path, name, error));
         in_mean += is_stated_for(&folder->motions[folder->count++]);
     }
@@ -362,10 +364,10 @@ Result trial_read_folder(MotionFolder *folder, const char *path, Error *error)
     Result result = read_motions(folder, &found, error);
     globfree(&found);
     snprintf(file, sizeof file, "%s/static_style.json", path);
-    folder->styles = json_load_file(file, 0, NULL);
+    if (access(file, R_OK) == 0) THEN(result, json_load(&folder->styles, file, error));
     for (int i = 0; i < 2; ++i) {
         snprintf(file, sizeof file, "%s/%s.json", path, pendulums[i]);
-        folder->starts[i] = json_load_file(file, 0, NULL);
+        if (access(file, R_OK) == 0) THEN(result, json_load(&folder->starts[i], file, error));
         snprintf(file, sizeof file, "%s/%s.csv", path, pendulums[i]);
         if (access(file, R_OK) == 0) THEN(result, csv_read(&folder->pendulums[i], file, error));
     }

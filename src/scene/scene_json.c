@@ -37,16 +37,6 @@ typedef struct Document {
     const SceneOverrides *overrides;
 } Document;
 
-// Reads the bytes as JSON; the caller owns the reference. Errors have file, line and column.
-static Result parse_document(json_t **json, const char *path, const Bytes *bytes, Error *error)
-{
-    json_error_t why;
-    *json = json_read(bytes->data, bytes->size, JSON_REJECT_DUPLICATES, &why);
-    if (*json) return RESULT_OK;
-    if (json_memory_short()) return error_set(error, RESULT_FAILED, "%s: out of memory", path);
-    return error_set(error, RESULT_BAD_INPUT, "%s:%d:%d: %s", path, why.line, why.column, why.text);
-}
-
 // The names of all keys that an object of the file may have, ended by NULL; the caller frees the
 // array. The top level may have parameters of either scope, sections only their own.
 static const char **list_keys(bool top)
@@ -262,7 +252,7 @@ Result scene_read_unchecked(Scene *scene, const char *path, const SceneOverrides
     TRY(scene_create(scene, error));
     TRY(bytes_read_file(&bytes, path, error));
     bytes_drop_mark(&bytes);
-    Result result = parse_document(&json, path, &bytes, error);
+    Result result = json_parse(&json, path, &bytes, JSON_REJECT_DUPLICATES, error);
     bytes_destroy(&bytes);
     if (result != RESULT_OK) return result;
 
