@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdatomic.h>
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,17 +15,39 @@ enum { EXCERPT_SIZE = 64 };
 
 static atomic_bool memory_short;
 
+// When memory is short, jansson 2.14 loses characters of what it reads and then stops at an
+// assertion of its own (lex_scan_string). It gets a reserve instead, which is never used again:
+// what was read does not count then (json_read), but the end is an orderly one.
+enum { RESERVE_BYTES = 1 << 18, ALIGNMENT = 16 };
+static _Alignas(ALIGNMENT) char reserve[RESERVE_BYTES];
+static atomic_size_t reserve_used;
+
+static void *take_reserve(size_t size)
+{
+    size = (size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+    if (size > RESERVE_BYTES) return NULL;
+    size_t at = atomic_fetch_add(&reserve_used, size);
+    return at <= RESERVE_BYTES - size ? reserve + at : NULL;
+}
+
 static void *allocate(size_t size)
 {
     void *block = malloc(size);
-    if (!block) atomic_store(&memory_short, true);
-    return block;
+    if (block) return block;
+    atomic_store(&memory_short, true);
+    return take_reserve(size);
+}
+
+static void release(void *block)
+{
+    uintptr_t at = (uintptr_t)block, first = (uintptr_t)reserve;
+    if (at < first || at >= first + RESERVE_BYTES) free(block);
 }
 
 // Before main: no value may come from another allocator.
 static __attribute__((constructor)) void watch_memory(void)
 {
-    json_set_alloc_funcs(allocate, free);
+    json_set_alloc_funcs(allocate, release);
 }
 
 bool json_memory_short(void)
@@ -180,6 +203,14 @@ json_t *json_read(const void *text, size_t size, size_t flags, json_error_t *why
     return NULL;
 }
 
+char *json_text(const json_t *value, size_t flags)
+{
+    char *text = value ? json_dumps(value, flags) : NULL;
+    if (!text || !json_memory_short()) return text;
+    release(text);
+    return NULL;
+}
+
 Result json_parse(json_t **value, const char *path, const Bytes *bytes, size_t flags, Error *error)
 {
     json_error_t why;
@@ -202,11 +233,8 @@ Result json_load(json_t **value, const char *path, Error *error)
 
 Result json_write_file(const json_t *value, const char *path, Error *error)
 {
-    char *text = value ? json_dumps(value, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
-    if (!text || json_memory_short()) {
-        free(text);
-        return error_set(error, RESULT_FAILED, "%s: no memory for the result", path);
-    }
+    char *text = json_text(value, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
+    if (!text) return error_set(error, RESULT_FAILED, "%s: no memory for the result", path);
     OutFile file;
     Result result = outfile_open(&file, path, error);
     if (result == RESULT_OK) fprintf(file.stream, "%s\n", text);

@@ -53,6 +53,10 @@ bool json_memory_short(void);
 // no value counts. json_memory_short tells the two apart.
 json_t *json_read(const void *text, size_t size, size_t flags, json_error_t *why);
 
+// The value as text, owned by the caller; NULL for no value, and if memory was short when the text
+// or any value was made.
+char *json_text(const json_t *value, size_t flags);
+
 // Reads a whole text or file, named `path` in messages; the caller owns *value. RESULT_BAD_INPUT
 // with line and column if it is no JSON, RESULT_FAILED if memory is short. `flags` are jansson's.
 Result json_parse(json_t **value, const char *path, const Bytes *bytes, size_t flags, Error *error);

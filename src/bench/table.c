@@ -231,7 +231,9 @@ Result table_close(Table *table, Result result, Error *error)
 {
     bool whole = table->csv_stream && fclose(table->csv_stream) == 0;
     if (!whole) THEN(result, error_set(error, RESULT_FAILED, "no memory for the table"));
-    if ((result == RESULT_OK || result == RESULT_FAILED) && whole) {
+    // What was measured before a failure is worth a file, but no earlier file gives way to nothing.
+    bool any = result == RESULT_OK || (result == RESULT_FAILED && json_array_size(table->rows));
+    if (any && whole) {
         Error unwritten;
         Result written = write_files(table, &unwritten);
         if (written != RESULT_OK) result = error_set(error, written, "%s", unwritten.text);

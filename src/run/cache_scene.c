@@ -78,12 +78,9 @@ Result cache_scene_describe(Bytes *text, const Simulation *simulation, Error *er
     keep_values(object);
     json_object_set_new(object, MAKER, json_string(cache_scene_own_maker()));
     // 17 digits: key times are doubles.
-    char *dump = json_dumps(object, JSON_COMPACT | JSON_SORT_KEYS | JSON_REAL_PRECISION(17));
+    char *dump = json_text(object, JSON_COMPACT | JSON_SORT_KEYS | JSON_REAL_PRECISION(17));
     json_decref(object);
-    if (!dump || json_memory_short()) {
-        free(dump);
-        return error_set(error, RESULT_FAILED, "no memory for the scene's values");
-    }
+    if (!dump) return error_set(error, RESULT_FAILED, "no memory for the scene's values");
     *text = (Bytes){.data = (uint8_t *)dump, .size = strlen(dump)};
     return RESULT_OK;
 }
@@ -125,8 +122,7 @@ static bool find_difference(Difference *difference, const char *place, const jso
 
 static void print_value(const json_t *value, char *text, size_t size)
 {
-    char *dump =
-        value ? json_dumps(value, JSON_COMPACT | JSON_ENCODE_ANY | JSON_REAL_PRECISION(9)) : NULL;
+    char *dump = json_text(value, JSON_COMPACT | JSON_ENCODE_ANY | JSON_REAL_PRECISION(9));
     snprintf(text, size, "%.60s", dump ? dump : "nothing");
     free(dump);
 }

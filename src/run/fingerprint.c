@@ -95,12 +95,10 @@ static Result add_values(uint64_t *hash, const Scene *scene, Error *error)
     remove_exempt(object);
     for (size_t i = 0; i < json_array_size(sections); ++i)
         remove_exempt(json_array_get(sections, i));
-    char *text =
-        object ? json_dumps(object, JSON_COMPACT | JSON_SORT_KEYS | JSON_REAL_PRECISION(17)) : NULL;
-    bool whole = text && !json_memory_short();
-    if (whole) *hash = add_text(*hash, text);
+    char *text = json_text(object, JSON_COMPACT | JSON_SORT_KEYS | JSON_REAL_PRECISION(17));
+    if (text) *hash = add_text(*hash, text);
     Result result =
-        whole ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for the scene's values");
+        text ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for the scene's values");
     free(text);
     json_decref(object);
     return result;

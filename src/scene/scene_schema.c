@@ -497,7 +497,7 @@ Result scene_schema_write(const SchemaSolver *solvers, const char *const (*keys)
             "look. Made by tractrix-render --help schema.",
             "type", "object", "required", "sections", "additionalProperties", 0, "properties",
             top(keys), "definitions", definitions(solvers, &run, &own));
-    char *lines = schema ? json_dumps(schema, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
+    char *lines = json_text(schema, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
     if (lines) fprintf(stream, "%s\n", lines);
     if (!lines && result == RESULT_OK)
         result = error_set(error, RESULT_FAILED, "no memory for the schema");
