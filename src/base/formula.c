@@ -2,6 +2,7 @@
 #include "base/formula.h"
 
 #include "base/portable.h"
+#include "base/quote.h"
 
 #include <ctype.h>
 #include <muParserDLL.h>
@@ -27,13 +28,15 @@ static void stay_silent(muParserHandle_t parser)
 // and in several forms, and a full stop.
 static void describe_fault(char *text, size_t size, const Formula *formula)
 {
-    snprintf(text, size, "%s", mupGetErrorMsg(formula->parser));
+    const char *message = mupGetErrorMsg(formula->parser), *end_of_words = NULL;
     for (const char *const *tail =
              (const char *const[]){" found at position", " at position", NULL};
-         *tail; ++tail) {
-        char *at = strstr(text, *tail);
-        if (at) *at = 0;
-    }
+         *tail && !end_of_words; ++tail)
+        end_of_words = strstr(message, *tail);
+    char *own = strndup(message, end_of_words ? (size_t)(end_of_words - message) : strlen(message));
+    // Half of the room: the place comes behind.
+    quote_line(text, size / 2, own ? own : "out of memory");
+    free(own);
     size_t length = strlen(text);
     if (length && text[length - 1] == '.') text[--length] = 0;
     text[0] = (char)tolower((unsigned char)text[0]);
