@@ -11,6 +11,7 @@
 #include <string.h>
 
 static const int SIGNALS[] = {SIGKILL, SIGTERM, SIGINT};
+static const double LOADING_S = 0.05;
 
 typedef struct Kills {
     const Run *run;
@@ -40,12 +41,16 @@ static void run_undisturbed(Kills *kills)
     folder_read(&kills->reference, kills->place.run);
 }
 
-// After a signal that can be caught: it says so, or was done before.
-static const char *judge_interrupted(const Kills *kills, const ChildEnd *end, bool *late,
-                                     char words[300])
+// After a signal that can be caught: it says so, or was done before. In the first milliseconds,
+// while libraries are loaded, no handler is there yet.
+static const char *judge_interrupted(const Kills *kills, int signal, const ChildEnd *end,
+                                     bool *late, char words[300])
 {
     *late = end->status == 0;
     if (end->hung) return "hangs";
+    if (end->status < 0 && end->signal == signal && end->seconds < LOADING_S)
+        return place_judge_files(&kills->place, kills->run, &kills->reference, FILES_PARTIAL,
+                                 words);
     if (end->status != 0 && end->status != 130) {
         snprintf(words, 300, "status %d, signal %d", end->status, end->signal);
         return words;
@@ -97,7 +102,8 @@ static void kill_once(Kills *kills, int which, double after_s, KillTally *tally)
                          .kill_signal = SIGNALS[which]},
               &end);
     const char *wrong = which == 0 ? judge_killed(kills, &end, &late, words)
-                                   : judge_interrupted(kills, &end, &late, words);
+                                   : judge_interrupted(kills, SIGNALS[which], &end, &late, words);
+    place_wait_left(&kills->place); // an ffmpeg ends a moment after the run that was killed
     if (!wrong) wrong = judge_resumed(kills, words);
     ++tally->kills;
     ++tally->by[which];

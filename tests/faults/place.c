@@ -2,10 +2,15 @@
 #include "faults/place.h"
 
 #include <ctype.h>
+#include <glob.h>
+#include <limits.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
 
 // Room for the sanitizers' own files, which is none.
 void place_create(Place *place, const char *work, int number)
@@ -47,6 +52,29 @@ void place_run(const Place *place, const Run *run, const Attempt *attempt, Child
                        .kill_after_s = attempt->kill_after_s,
                        .kill_signal = attempt->kill_signal},
               end);
+}
+
+static bool is_worked_in(const char *folder)
+{
+    glob_t found = {0};
+    char there[4300];
+    bool any = false;
+    glob("/proc/[0-9]*/cwd", 0, NULL, &found);
+    for (size_t i = 0; i < found.gl_pathc && !any; ++i) {
+        ssize_t size = readlink(found.gl_pathv[i], there, sizeof there - 1);
+        there[size > 0 ? size : 0] = 0;
+        any = strcmp(there, folder) == 0;
+    }
+    globfree(&found);
+    return any;
+}
+
+void place_wait_left(const Place *place)
+{
+    char folder[PATH_MAX];
+    if (!realpath(place->run, folder)) return;
+    for (int i = 0; i < 1000 && is_worked_in(folder); ++i)
+        nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);
 }
 
 static bool is_listed(const char *list, const char *name)

@@ -29,6 +29,9 @@ typedef struct Attempt {
 // Empties the folders, unless it resumes, and runs.
 void place_run(const Place *place, const Run *run, const Attempt *attempt, ChildEnd *end);
 
+// Waits until no process works in the run's folder any more, 10 s at most.
+void place_wait_left(const Place *place);
+
 typedef enum FilesState {
     FILES_KILLED,  // some are there, and temporaries
     FILES_PARTIAL, // some are there
