@@ -173,14 +173,6 @@ static Result find_chunk_size(const Picture *picture, uint64_t *size, Error *err
     uint64_t unpacked, of_pixel = 0;
     TRY_EXR(picture, exr_get_chunk_unpacked_size(picture->stream.context, EXR_PART, &unpacked));
     TRY_EXR(picture, exr_get_channels(picture->stream.context, EXR_PART, &list));
-    // The library counts whole blocks of rows, but makes room for those that are there.
-    long long rows = side(picture->data.min.y, picture->data.max.y);
-    exr_storage_t storage;
-    int32_t of_block = 0;
-    TRY_EXR(picture, exr_get_storage(picture->stream.context, EXR_PART, &storage));
-    if (storage == EXR_STORAGE_SCANLINE)
-        TRY_EXR(picture, exr_get_scanlines_per_chunk(picture->stream.context, EXR_PART, &of_block));
-    if (rows > 0 && rows < of_block) unpacked = unpacked / (uint64_t)of_block * (uint64_t)rows;
     for (int i = 0; i < list->num_channels; ++i)
         if (list->entries[i].x_sampling == 1 && list->entries[i].y_sampling == 1)
             of_pixel += list->entries[i].pixel_type == EXR_PIXEL_HALF ? 2 : 4;

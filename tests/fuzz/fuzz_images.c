@@ -10,6 +10,8 @@
 
 void fuzz_png(const Bytes *bytes, int unused);
 void fuzz_pfm(const Bytes *bytes, int unused);
+enum { WIDEST_WRITTEN = 65536 };
+
 void fuzz_exr(const Bytes *bytes, int unused);
 
 static void claim_image(const Image *image)
@@ -42,8 +44,11 @@ void fuzz_png(const Bytes *bytes, int unused)
     fuzz_claim_error(result, &error);
     result = png_decode_deep(&image, &copy, "x.png", &error);
     fuzz_claim_error(result, &error);
-    if (result == RESULT_OK) {
-        claim_image(&image);
+    // Blocks of written files have 16 rows: of one that is much wider than high, the library takes
+    // more memory than such a small file may ask for.
+    bool is_wide = image.width > WIDEST_WRITTEN;
+    if (result == RESULT_OK) claim_image(&image);
+    if (result == RESULT_OK && !is_wide) {
         result = png_encode(&image, &texts, &again, &error);
         THEN(result, png_decode_deep(&second, &again, "again.png", &error));
         fuzz_claim(result == RESULT_OK, "written, but not read back: %s", error.text);
