@@ -10,8 +10,6 @@
 
 void fuzz_png(const Bytes *bytes, int unused);
 void fuzz_pfm(const Bytes *bytes, int unused);
-enum { WIDEST_WRITTEN = 65536 };
-
 void fuzz_exr(const Bytes *bytes, int unused);
 
 static void claim_image(const Image *image)
@@ -44,11 +42,8 @@ void fuzz_png(const Bytes *bytes, int unused)
     fuzz_claim_error(result, &error);
     result = png_decode_deep(&image, &copy, "x.png", &error);
     fuzz_claim_error(result, &error);
-    // Blocks of written files have 16 rows: of one that is much wider than high, the library takes
-    // more memory than such a small file may ask for.
-    bool is_wide = image.width > WIDEST_WRITTEN;
-    if (result == RESULT_OK) claim_image(&image);
-    if (result == RESULT_OK && !is_wide) {
+    if (result == RESULT_OK) {
+        claim_image(&image);
         result = png_encode(&image, &texts, &again, &error);
         THEN(result, png_decode_deep(&second, &again, "again.png", &error));
         fuzz_claim(result == RESULT_OK, "written, but not read back: %s", error.text);
@@ -80,6 +75,10 @@ void fuzz_pfm(const Bytes *bytes, int unused)
     bytes_destroy(&again);
 }
 
+// Blocks of written files have 16 rows: of one that is much wider than high, the library takes more
+// memory than such a small file may ask for.
+enum { WIDEST_WRITTEN = 65536 };
+
 void fuzz_exr(const Bytes *bytes, int unused)
 {
     (void)unused;
@@ -91,8 +90,8 @@ void fuzz_exr(const Bytes *bytes, int unused)
     fuzz_claim_error(result, &error);
     result = exr_file_decode(&image, bytes, "x.exr", &error);
     fuzz_claim_error(result, &error);
-    if (result == RESULT_OK) {
-        claim_image(&image);
+    if (result == RESULT_OK) claim_image(&image);
+    if (result == RESULT_OK && image.width <= WIDEST_WRITTEN) {
         const ExrFile file = {.image = &image, .floats = true};
         result = exr_file_encode(&file, &again, &error);
         THEN(result, exr_file_decode(&second, &again, "again.exr", &error));
