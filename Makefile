@@ -246,7 +246,7 @@ check-farm: # GNU parallel and a Slurm of one node, which make test does without
 	@tests/runner $(OUT) test_farm
 # But for scripts that run the programs as others do, many times over, and tests that draw hundreds of images.
 # SANITIZE_BUT=none runs all.
-SANITIZE_BUT = ^test_(bench_command|bench_html|blender|ci_examples|command_cache|command_line|compare_goldens|docs|farm|faults|gen_command|goldens|groom_command|html_report|install|light_command|mutate|readme|stress|turntable_images|turntable_script|tutorial|along$$|solvers$$|volume$$)
+SANITIZE_BUT = ^test_(bench_command|bench_html|blender|ci_examples|command_cache|command_line|compare_goldens|docs|farm|faults|gen_command|goldens|groom_command|html_report|install|light_command|mutate|readme|stress|turntable_images|turntable_script|tutorial|(along|clamped|shadow|solvers|volume)[.])
 check-sanitize:
 	$(QUIET) CONFIG=sanitize OUT=$(SIDE)sanitize all tests
 	@tests/runner $(SIDE)sanitize test_ '$(SANITIZE_BUT)'
