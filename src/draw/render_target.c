@@ -46,7 +46,9 @@ static Result check_frame(GLuint frame, const char *what, Error *error)
 {
     glBindFramebuffer(GL_FRAMEBUFFER, frame);
     GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
-    if (status == GL_FRAMEBUFFER_COMPLETE) return gpu_check(what, error);
+    // Out of memory, for one, is why a frame is not complete.
+    TRY(gpu_check(what, error));
+    if (status == GL_FRAMEBUFFER_COMPLETE) return RESULT_OK;
     return error_set(error, RESULT_FAILED, "%s: framebuffer status 0x%04x", what, status);
 }
 

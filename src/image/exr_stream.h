@@ -15,7 +15,7 @@ typedef struct ExrStream {
     size_t room;
     const Bytes *read;
     bool short_of_memory; // in a callback, where no handler may be called
-    char reason[600]; // with a name of up to 255 bytes
+    char reason[600];     // with a name of up to 255 bytes
 } ExrStream;
 
 // The library's error handler; the context's user data is the stream.
