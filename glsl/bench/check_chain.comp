@@ -5,7 +5,9 @@
 #include "common/shared.h"
 #include "sim/tractrix.glsl"
 
-layout(local_size_x = 8) in;
+#define GROUP_SIZE 8
+layout(local_size_x = GROUP_SIZE) in;
+#include "common/lane.glsl"
 layout(std430, binding = BIND_STATE_OUT) readonly buffer Spans { uvec4 spans[]; };
 layout(std430, binding = BIND_TIPS) readonly buffer Waypoints { vec4 waypoints[]; };
 // In: start, out: result.
@@ -13,8 +15,9 @@ layout(std430, binding = BIND_POSITION_OUT) buffer Points { vec4 points[]; };
 
 void main()
 {
-    if (int(gl_GlobalInvocationID.x) >= spans.length()) return;
-    uvec4 span = spans[gl_GlobalInvocationID.x];
+    int i = lane_index();
+    if (i >= spans.length()) return;
+    uvec4 span = spans[i];
     uint head = span.x, segments = span.y;
     vec3 x = points[head].xyz, before = x;
     for (uint j = head + 1u; j <= head + segments; ++j) {

@@ -5,13 +5,15 @@
 #include "sim/tractrix.glsl"
 #include "bench/tractrix_published.glsl"
 
-layout(local_size_x = 8) in;
+#define GROUP_SIZE 8
+layout(local_size_x = GROUP_SIZE) in;
+#include "common/lane.glsl"
 layout(std430, binding = BIND_STATE_OUT) readonly buffer Cases { vec4 cases[]; };
 layout(std430, binding = BIND_POSITION_OUT) writeonly buffer Tails { vec4 tails[]; };
 
 void main()
 {
-    int i = int(gl_GlobalInvocationID.x);
+    int i = lane_index();
     if (i >= tails.length()) return;
     vec3 head = cases[3 * i].xyz, tail = cases[3 * i + 1].xyz, target = cases[3 * i + 2].xyz;
 #if PUBLISHED

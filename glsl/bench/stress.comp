@@ -11,6 +11,7 @@
 #include "common/hair_address.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
+#include "common/lane.glsl"
 layout(binding = BIND_POSITION) uniform samplerBuffer position;
 layout(binding = BIND_STRESS_BEFORE) uniform samplerBuffer before;
 layout(binding = BIND_REST) uniform samplerBuffer rest;
@@ -29,7 +30,7 @@ bool passes(float value) { return value <= stress_params.used_most; }
 
 void main()
 {
-    int s = int(gl_GlobalInvocationID.x), n = int(stress_params.vertex_count);
+    int s = lane_index(), n = int(stress_params.vertex_count);
     if (s >= int(stress_params.strand_count)) return;
     int base = particle_address(s, 0, n);
     vec3 g = stress_params.gravity.xyz, first_g = stress_params.gravity_first.xyz,

@@ -19,6 +19,7 @@
 #include "draw/paint.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
+#include "common/lane.glsl"
 // How many, how many hidden, then rows.
 layout(std430, binding = BIND_LISTED_OUT) buffer Listed { uint listed[]; };
 #if HIDING
@@ -91,8 +92,7 @@ bool is_hidden(Box box)
 
 void main()
 {
-    int n = int(material.vertex_count), row = int(gl_GlobalInvocationID.x),
-        s = int(material.first_strand) + row;
+    int n = int(material.vertex_count), row = lane_index(), s = int(material.first_strand) + row;
     if (row >= int(material.drawn_strands)) return;
     int root = particle_address(s, 0, n), j = 1;
     Painter painter = paint_strand(0u, n);

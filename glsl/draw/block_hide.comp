@@ -4,13 +4,14 @@
 #include "draw/draw.h"
 
 layout(local_size_x = GROUP_SIZE) in;
+#include "common/lane.glsl"
 layout(location = 0) uniform ivec2 tiles; // columns, rows
 layout(binding = BIND_MESH_DEPTH) uniform sampler2D mesh_depth;
 layout(std430, binding = BIND_HIDING_OUT) writeonly buffer Hiding { float hiding[]; };
 
 void main()
 {
-    int tile = int(gl_GlobalInvocationID.x), columns = tiles.x;
+    int tile = lane_index(), columns = tiles.x;
     if (tile >= columns * tiles.y) return;
     ivec2 corner = HIDE_TILE * ivec2(tile % columns, tile / columns);
     ivec2 edge = ivec2(draw_params.width, draw_params.height) - 1;

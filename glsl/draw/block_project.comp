@@ -9,6 +9,7 @@
 #include "draw/block.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
+#include "common/lane.glsl"
 // Of this part of a batch, in what is bound of the buffers.
 layout(location = 0) uniform int first_slot;
 // How many; 1: they are those of the list (block_cull.comp)
@@ -115,13 +116,13 @@ void put_joint(Walk w, int j, vec2 next)
 
 void main()
 {
-    int row = int(gl_GlobalInvocationID.x);
+    int row = lane_index();
     if (row >= strands.x) return;
     if (strands.y != 0) row = int(texelFetch(listed, row + 2).x);
     int s = int(material.first_strand) + row;
     slot = first_slot + row * (count_points() - 1);
     walk_strand(s, texelFetch(strand_id, s).x);
-    uint group = gl_WorkGroupID.x % 64u * 16u;
+    uint group = uint(group_index()) % 64u * 16u;
     atomicAdd(counts[group], uint(count));
     if (count == 0) atomicAdd(counts[group + 1u], 1u);
 }

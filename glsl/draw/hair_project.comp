@@ -14,6 +14,7 @@
 #include "draw/ribbon_walk.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
+#include "common/lane.glsl"
 // How many; 1: they are those of the list (block_cull.comp)
 layout(location = 0) uniform ivec2 strands;
 layout(binding = BIND_LISTED) uniform usamplerBuffer listed;
@@ -87,7 +88,7 @@ void put_joint(Walk w, int j, vec2 next)
 
 void main()
 {
-    int row = int(gl_GlobalInvocationID.x);
+    int row = lane_index();
     if (row >= strands.x) return;
     int s =
         int(material.first_strand) + (strands.y != 0 ? int(texelFetch(listed, row + 2).x) : row);

@@ -8,6 +8,7 @@
 #include "draw/shadow_cast.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
+#include "common/lane.glsl"
 layout(std430, binding = BIND_BOUNDS_OUT) buffer Bounds { int bounds[]; };
 
 int ordered(float x)
@@ -18,10 +19,10 @@ int ordered(float x)
 
 void main()
 {
-    int s = int(gl_GlobalInvocationID.x), n = int(material.vertex_count);
+    int s = lane_index(), n = int(material.vertex_count);
     if (s >= int(material.drawn_strands)) return;
     Curve curve = curve_open(particle_address(s, 0, n), n);
-    int begin = int(gl_GlobalInvocationID.y) * PART_VERTICES;
+    int begin = int(gl_WorkGroupID.z) * PART_VERTICES;
     int end = min(begin + PART_VERTICES, curve.segments * curve.parts + 1);
     float reach = cast_params.reach;
     vec3 low = vec3(1e30), high = vec3(-1e30);

@@ -4,6 +4,7 @@
 #include "draw/shadow.h"
 
 layout(local_size_x = GROUP_SIZE) in;
+#include "common/lane.glsl"
 layout(location = 0) uniform ivec2 map;  // side, number
 layout(location = 1) uniform float unit; // steps for one fibre
 layout(binding = BIND_SUMS) uniform usamplerBuffer sums;
@@ -30,7 +31,7 @@ Row read_row(int row, ivec3 columns)
 
 void main()
 {
-    int at = int(gl_GlobalInvocationID.x), column = at % side, row = at / side * STRIP;
+    int at = lane_index(), column = at % side, row = at / side * STRIP;
     if (row >= side) return;
     ivec3 columns = clamp(column + ivec3(-1, 0, 1), 0, side - 1);
     float scale = 1.0 / (16.0 * unit);

@@ -16,6 +16,7 @@
 #include "draw/shadow_cast.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
+#include "common/lane.glsl"
 #if DEEP
 layout(binding = BIND_DEPTHS) uniform samplerBuffer depths;
 layout(std430, binding = BIND_SUMS_OUT) buffer Sums { uint sums[]; };
@@ -45,10 +46,10 @@ float point_radius(Painter painter, Curve curve, int k)
 
 void main()
 {
-    int s = int(gl_GlobalInvocationID.x), n = int(material.vertex_count);
+    int s = lane_index(), n = int(material.vertex_count);
     int root = particle_address(s, 0, n);
     Curve curve = curve_open(root, n);
-    int begin = int(gl_GlobalInvocationID.y) * PART_SEGMENTS;
+    int begin = int(gl_WorkGroupID.z) * PART_SEGMENTS;
     int end = min(begin + PART_SEGMENTS, curve.segments * curve.parts);
     if (s >= int(material.drawn_strands) || begin >= end) return;
     Painter painter = paint_strand(0u, n); // no colour is asked for

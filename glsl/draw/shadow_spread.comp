@@ -6,6 +6,7 @@
 #include "draw/shadow.h"
 
 layout(local_size_x = GROUP_SIZE) in;
+#include "common/lane.glsl"
 layout(location = 0) uniform ivec2 map; // side, number
 layout(binding = BIND_FIRST) uniform usamplerBuffer first;
 layout(std430, binding = BIND_DEPTHS_OUT) writeonly buffer Depths { float depths[]; };
@@ -22,7 +23,7 @@ float first_at(ivec2 texel)
 
 void main()
 {
-    int at = int(gl_GlobalInvocationID.x);
+    int at = lane_index();
     // The lower left one of the four.
     ivec2 corner = ivec2(at % (coarse + 1), at / (coarse + 1)) - 1;
     if (corner.y >= coarse) return;

@@ -2,7 +2,8 @@
 // The grid of a distance field while it is computed, and the mesh's triangles.
 #include "field/field_params.h"
 
-layout(local_size_x = FIELD_GROUP) in;
+layout(local_size_x = GROUP_SIZE) in;
+#include "common/lane.glsl"
 // 3 texels each: its corners, m, from grid point 0 0 0
 layout(binding = BIND_POSITION) uniform samplerBuffer triangles;
 
@@ -14,10 +15,7 @@ int grid_address(ivec3 at)
 
 // The item of a lane in a dispatch of work items; the lane's grid point in a dispatch of the grid
 // (a row of x each).
-uint item()
-{
-    return (gl_WorkGroupID.y * FIELD_ROW + gl_WorkGroupID.x) * FIELD_GROUP + gl_LocalInvocationID.x;
-}
+uint item() { return uint(lane_index()); }
 ivec3 grid_point() { return ivec3(gl_GlobalInvocationID.x, gl_WorkGroupID.yz); }
 
 vec3 corner(uint triangle, int i) { return texelFetch(triangles, int(triangle) * 3 + i).xyz; }

@@ -15,10 +15,6 @@ UNIFORM_BLOCK(FieldParams, field_params, BIND_STEP)
 }
 END_BLOCK(FieldParams, field_params);
 
-// Lanes of a group, groups in a row of a dispatch of work items.
-#define FIELD_GROUP 64
-#define FIELD_ROW   32768
-
 // Side of the block of grid points, and of the square of columns, that a work item is.
 #define FIELD_BLOCK   4
 #define FIELD_COLUMNS 8

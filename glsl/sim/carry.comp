@@ -5,13 +5,13 @@
 #include "common/rigid.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
+#include "common/lane.glsl"
 layout(std430, binding = BIND_POSITION_OUT) buffer Points { vec4 points[]; };
 layout(std430, binding = BIND_STATE_OUT) buffer Vectors { vec4 vectors[]; };
 
 void main()
 {
-    int i = int((gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * uint(GROUP_SIZE) +
-                gl_LocalInvocationID.x);
+    int i = lane_index();
     if (i >= int(carry_params.count)) return;
     int p = i * int(carry_params.stride), v = p + int(carry_params.beside);
     vec4 R = carry_params.rotation, vector = vectors[v];

@@ -44,6 +44,7 @@
 #define FINDING   3
 
 layout(local_size_x = GROUP_SIZE) in;
+#include "common/lane.glsl"
 #if MODE == SEGMENTS
 layout(binding = BIND_STATE) uniform samplerBuffer segments_before; // unit direction, length
 layout(std430, binding = BIND_STATE_OUT) buffer Segments { vec4 segments[]; };
@@ -90,7 +91,7 @@ const float SLACK = 1e-4;
 
 void main()
 {
-    int s = int(gl_GlobalInvocationID.x);
+    int s = lane_index();
     n = int(collide_params.vertex_count);
     if (s >= int(collide_params.strand_count)) return;
     open_cones();
@@ -303,7 +304,7 @@ void walk(Strand strand, float inside, bool touched)
 
 void main()
 {
-    int s = int(gl_GlobalInvocationID.x);
+    int s = lane_index();
     n = int(collide_params.vertex_count);
     if (s >= int(collide_params.strand_count)) return;
     margin = collide_params.margin;

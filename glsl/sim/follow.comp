@@ -6,6 +6,7 @@
 #include "common/rigid.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
+#include "common/lane.glsl"
 layout(binding = BIND_POSITION) uniform samplerBuffer guides;
 layout(binding = BIND_FOLLOW_OFFSETS) uniform samplerBuffer offsets;
 layout(binding = BIND_FOLLOW_GUIDES) uniform usamplerBuffer others; // INTERPOLATE only
@@ -13,7 +14,7 @@ layout(std430, binding = BIND_POSITION_OUT) writeonly buffer Positions { vec4 po
 
 void main()
 {
-    int s = int(gl_GlobalInvocationID.x), n = int(follow_params.vertex_count);
+    int s = lane_index(), n = int(follow_params.vertex_count);
     if (s >= int(follow_params.strand_count)) return;
     vec4 own = texelFetch(offsets, s);
     vec3 offset = rotate(follow_params.head_rotation, own.xyz),

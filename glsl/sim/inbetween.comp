@@ -7,6 +7,7 @@
 #include "common/rigid.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
+#include "common/lane.glsl"
 layout(binding = BIND_POSITION) uniform samplerBuffer earlier;
 layout(binding = BIND_STATE) uniform samplerBuffer later;
 layout(std430, binding = BIND_POSITION_OUT) writeonly buffer Positions { vec4 positions[]; };
@@ -15,7 +16,7 @@ vec4 conjugate(vec4 q) { return vec4(-q.xyz, q.w); }
 
 void main()
 {
-    int s = int(gl_GlobalInvocationID.x), n = int(inbetween_params.vertex_count);
+    int s = lane_index(), n = int(inbetween_params.vertex_count);
     if (s >= int(inbetween_params.strand_count)) return;
     vec4 from_earlier = conjugate(inbetween_params.earlier_rotation),
          from_later = conjugate(inbetween_params.later_rotation);

@@ -13,6 +13,7 @@
 #include "common/rigid.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
+#include "common/lane.glsl"
 layout(binding = BIND_POSITION) uniform samplerBuffer position_before; // xyz: m
 layout(binding = BIND_STATE) uniform samplerBuffer velocity_before;    // xyz: m/s
 layout(binding = BIND_REST) uniform samplerBuffer rest;                // the style: see hair.h
@@ -22,10 +23,7 @@ layout(std430, binding = BIND_POSITION_OUT) buffer Positions { vec4 positions[];
 layout(std430, binding = BIND_STATE_OUT) buffer Velocities { vec4 velocities[]; };
 
 // The first of the lane's strands. Lanes beyond the last strand have nothing to do.
-int first_strand()
-{
-    return int(gl_WorkGroupID.x) * GROUP_SIZE * STRANDS + int(gl_LocalInvocationID.x);
-}
+int first_strand() { return group_index() * GROUP_SIZE * STRANDS + int(gl_LocalInvocationID.x); }
 
 // With LEAD 1 the head carries vertex 1 too, and that is the solver's root: it sees vertices 0 ..
 // vertex_count - 1 from strand_base on.

@@ -14,6 +14,7 @@
 #include "common/rigid.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
+#include "common/lane.glsl"
 layout(binding = BIND_REST) uniform samplerBuffer rest;
 layout(binding = BIND_STATE) uniform samplerBuffer segments; // unit direction, rest length
 layout(std430, binding = BIND_POSITION_OUT) writeonly buffer Positions { vec4 positions[]; };
@@ -90,7 +91,7 @@ vec3 slerp(vec3 a, vec3 b, float w)
 
 void main()
 {
-    int s = int(gl_GlobalInvocationID.x), n = int(pose_params.vertex_count);
+    int s = lane_index(), n = int(pose_params.vertex_count);
     if (s >= int(pose_params.strand_count)) return;
     int first = particle_address(s, 0, n);
     vec4 root = texelFetch(rest, first), rotation = pose_params.head_rotation;

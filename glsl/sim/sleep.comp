@@ -6,6 +6,7 @@
 #include "common/hair_address.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
+#include "common/lane.glsl"
 layout(binding = BIND_POSITION) uniform samplerBuffer position;
 layout(binding = BIND_REST) uniform samplerBuffer rest;
 layout(std430, binding = BIND_ANCHORS_OUT) buffer Anchors { vec4 anchors[]; };
@@ -13,7 +14,7 @@ layout(std430, binding = BIND_CALM_OUT) buffer Calm { uint calm[]; };
 
 void main()
 {
-    int s = int(gl_GlobalInvocationID.x), n = int(sleep_params.vertex_count);
+    int s = lane_index(), n = int(sleep_params.vertex_count);
     if (s >= int(sleep_params.strand_count)) return;
     int first = particle_address(s, 0, n);
     float strand_length = texelFetch(rest, first).w;

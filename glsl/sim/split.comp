@@ -18,6 +18,7 @@
 #include "sim/tractrix.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
+#include "common/lane.glsl"
 layout(binding = BIND_REST) uniform samplerBuffer rest;
 layout(binding = BIND_STRAND_ID) uniform usamplerBuffer strand_id;
 #include "sim/strand_root.glsl"
@@ -120,7 +121,7 @@ void settle(inout Strand strand, vec3 end) { strand.position += strand.velocity 
 // the pipeline of a CPU. Those past the end, if any, are the copies that fill the last tile.
 void main()
 {
-    int first = int(gl_WorkGroupID.x) * GROUP_SIZE * STRANDS + int(gl_LocalInvocationID.x);
+    int first = group_index() * GROUP_SIZE * STRANDS + int(gl_LocalInvocationID.x);
     if (first >= int(step_params.strand_count)) return;
     Strand strand[STRANDS];
     vec3 target[STRANDS], move[STRANDS], drag[STRANDS];

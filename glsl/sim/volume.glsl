@@ -7,6 +7,7 @@
 #include "sim/volume_params.h"
 
 layout(local_size_x = GROUP_SIZE) in;
+#include "common/lane.glsl"
 
 #define STRANDS 0
 #define CELLS   1
@@ -39,7 +40,6 @@ float share_of(int j, int n) { return float(j) / float(n - 1); }
 // The k-th cell of the lane; lanes side by side have cells side by side.
 int lane_cell(int k)
 {
-    return (int(gl_WorkGroupID.x) * VOLUME_CELLS_A_LANE + k) * GROUP_SIZE +
-           int(gl_LocalInvocationID.x);
+    return (group_index() * VOLUME_CELLS_A_LANE + k) * GROUP_SIZE + int(gl_LocalInvocationID.x);
 }
 #endif

@@ -18,7 +18,7 @@ layout(std430, binding = BIND_VOLUME_DENSE_OUT) readonly buffer Dense { uint den
 
 void main()
 {
-    int s = int(gl_GlobalInvocationID.x), n = int(volume_params.vertex_count);
+    int s = lane_index(), n = int(volume_params.vertex_count);
     if (s >= int(volume_params.strand_count) || dense[0] == 0u) return;
     int first = particle_address(s, 0, n);
     vec3 away = volume_params.head_velocity.xyz;

@@ -15,7 +15,7 @@ layout(std430, binding = BIND_VOLUME_SUMS_OUT) buffer Sums { int sums[]; };
 
 void main()
 {
-    int s = int(gl_GlobalInvocationID.x), n = int(volume_params.vertex_count);
+    int s = lane_index(), n = int(volume_params.vertex_count);
     if (s >= int(volume_params.strand_count)) return;
     int first = particle_address(s, 0, n);
     vec3 away = volume_params.head_velocity.xyz;

@@ -3,6 +3,7 @@
 #include "base/double3.h"
 #include "base/interrupt.h"
 #include "bench/bench_glsl.h"
+#include "gpu/gpu_dispatch.h"
 #include "scene/forces.h"
 #include "sim/solver.h"
 #include "sim/step.h"
@@ -279,7 +280,7 @@ typedef struct Run {
     SolverStep step;
     StressBound bound;
     GLuint program;
-    uint32_t group_size;
+    const GpuLimits *limits;
     GpuBuffer before, worst, first, uniforms;
 } Run;
 
@@ -314,9 +315,9 @@ static Result upload(Run *run, const Gpu *gpu, const StressCase *strands, int co
 static Result create_check(Run *run, const Gpu *gpu, Error *error)
 {
     const HairBatch *batch = &run->hair.batches[0];
-    run->group_size = step_group_size(gpu);
+    run->limits = &gpu->limits;
     const ShaderDefine defines[] = {
-        {"GROUP_SIZE", (int)run->group_size}, {"TIP", is(run->set, "split")}, {0}};
+        {"GROUP_SIZE", gpu->limits.sizes.strands}, {"TIP", is(run->set, "split")}, {0}};
     int64_t size = (int64_t)hair_slots(batch) * 16;
     void *zero = calloc((size_t)size, 1);
     if (!zero) return error_set(error, RESULT_FAILED, "no memory for verdicts");
@@ -431,7 +432,7 @@ static void look(Run *run, int i)
         gpu_buffer_bind_storage(buffers[1].buffer, BIND_TIPS);
     }
     glUseProgram(run->program);
-    glDispatchCompute(step_group_count(batch->strand_count, run->group_size, 1), 1, 1);
+    gpu_dispatch(run->limits, batch->strand_count, (uint64_t)run->limits->sizes.strands, 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 

@@ -3,12 +3,15 @@
 #include "base/csv.h"
 #include "bench/bench_glsl.h"
 #include "gpu/gpu_buffer.h"
+#include "gpu/gpu_dispatch.h"
 
 #include "glsl/common/shared.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum { CHECK_LANES = 8 }; // of a group of glsl/bench/check_*.comp
 
 typedef float Float4[4];
 
@@ -107,7 +110,7 @@ static Result run_check(const Gpu *gpu, const char *file, const ShaderDefine *de
     }
     if (result == RESULT_OK) {
         glUseProgram(program);
-        glDispatchCompute((GLuint)((lanes + 7) / 8), 1, 1);
+        gpu_dispatch(&gpu->limits, lanes, CHECK_LANES, 1);
         glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
         glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffers[0].buffer);
         glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, results);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "draw/blocks.h"
 
+#include "gpu/gpu_dispatch.h"
+
 #include "glsl/draw/draw.h"
 
 #include <stdlib.h>
@@ -66,7 +68,6 @@ static Result read_back(BlocksBehind *behind, const RenderTarget *target, const 
 // --- Blocks.
 
 enum {
-    PROJECT_GROUP = 8,
     ALIGNED_RIBBONS = 32,  // at whose multiples every driver lets a buffer's range begin
     MOST_SLOTS = 1 << 21,  // 151 MB
     STORED_SLOTS = 1 << 18 // 19 MB; a strand takes 65,000 at most
@@ -114,17 +115,18 @@ static void unmap(const GpuBuffer *buffer)
 Result blocks_create(Blocks *blocks, const GpuLimits *limits, const RendererOptions *options,
                      Error *error)
 {
-    *blocks =
-        (Blocks){.project = {.file = "draw/block_project.comp", .group_size = PROJECT_GROUP},
-                 .most_slots = MOST_SLOTS,
-                 .stored_slots = STORED_SLOTS,
-                 .limits = limits,
-                 .skips = true,
-                 .nearest = options->aov > AOV_COVERAGE,
-                 .style = {.samples = options->samples,
-                           .tone = drawing_display(options),
-                           .shows_depth = options->aov == AOV_DEPTH,
-                           .depth_range = {options->depth_range[0], options->depth_range[1]}}};
+    *blocks = (Blocks){
+        .project = {.file = "draw/block_project.comp", .group_size = limits->sizes.strands},
+        .most_slots = MOST_SLOTS,
+        .stored_slots = STORED_SLOTS,
+        .limits = limits,
+        .cull = {.limits = limits},
+        .skips = true,
+        .nearest = options->aov > AOV_COVERAGE,
+        .style = {.samples = options->samples,
+                  .tone = drawing_display(options),
+                  .shows_depth = options->aov == AOV_DEPTH,
+                  .depth_range = {options->depth_range[0], options->depth_range[1]}}};
     drawing_background(options, blocks->style.background);
     Result result = block_raster_create(&blocks->raster, options->width * options->samples,
                                         options->height * options->samples, error);
@@ -161,7 +163,7 @@ Result blocks_begin(Blocks *blocks, uint64_t segments, const BlocksBase *base, E
     TRY(make_room(&blocks->ribbons, limits, "ribbons", count * (int64_t)sizeof(RibbonRecord),
                   error));
     TRY(make_room(&blocks->keys, limits, "depths", count * (int64_t)sizeof(RibbonKey), error));
-    TRY(cull_begin(&blocks->cull, limits, &base->cull, blocks->skips, error));
+    TRY(cull_begin(&blocks->cull, &base->cull, blocks->skips, error));
     clear(&blocks->keys, count * (int64_t)sizeof(RibbonKey));
     clear(&blocks->counts, blocks->counts.size);
     blocks->base = *base;
@@ -193,7 +195,7 @@ static Result project_part(Blocks *blocks, const HairBatch *batch, const Look *l
     bind_range(&blocks->keys, BIND_KEYS_OUT, begin, first + slots, sizeof(RibbonKey));
     glUniform1i(0, (GLint)(first - begin));
     glUniform2i(1, (GLint)count, blocks->cull.tries);
-    if (count) glDispatchCompute((count + PROJECT_GROUP - 1) / PROJECT_GROUP, 1, 1);
+    gpu_dispatch(blocks->limits, count, (uint64_t)blocks->limits->sizes.strands, 1);
     blocks->slots += (size_t)slots;
     blocks->strands += part->drawn_strands;
     return RESULT_OK;
@@ -225,7 +227,7 @@ static int64_t most_strands(const Blocks *blocks, int64_t of_strand)
 Result blocks_add(Blocks *blocks, const HairBatch *batch, const Look *look, Error *error)
 {
     MaterialParams part = look_material(look, batch);
-    TRY(cull_make_room(&blocks->cull, blocks->limits, part.drawn_strands, error));
+    TRY(cull_make_room(&blocks->cull, part.drawn_strands, error));
     int64_t of_strand = (int64_t)(batch->vertex_count - 1) * part.smooth_parts,
             most = most_strands(blocks, of_strand);
     uint strands = part.drawn_strands;

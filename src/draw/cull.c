@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "draw/cull.h"
 
+#include "gpu/gpu_dispatch.h"
+
 #include "glsl/draw/draw.h"
 
 #include <stddef.h>
@@ -65,7 +67,7 @@ void cull_make_levels(float *nearest, int columns, int rows, float *levels)
 
 // --- Strands that are out of sight.
 
-enum { GROUP = 8, HEAD_WORDS = 2 }; // of `listed`, before the rows
+enum { HEAD_WORDS = 2 }; // of `listed`, before the rows
 
 _Static_assert((int)HIDE_LEVELS == HIDE_LEVELS, "levels");
 
@@ -83,7 +85,7 @@ static void unmap(const GpuBuffer *buffer)
 
 static Result build_hide(Cull *cull, Error *error)
 {
-    const ShaderDefine defines[] = {{"GROUP_SIZE", GROUP}, {NULL, 0}};
+    const ShaderDefine defines[] = {{"GROUP_SIZE", cull->limits->sizes.items}, {NULL, 0}};
     return cull->hide ? RESULT_OK
                       : shader_build_compute(&cull->hide, "draw/block_hide.comp", defines, error);
 }
@@ -96,7 +98,7 @@ static void find_nearest(Cull *cull, const RenderTarget *target)
     gpu_buffer_bind_storage(&cull->nearest, BIND_HIDING_OUT);
     glUseProgram(cull->hide);
     glUniform2i(0, cull->tiles[0], cull->tiles[1]);
-    glDispatchCompute((count + GROUP - 1) / GROUP, 1, 1);
+    gpu_dispatch(cull->limits, count, (uint64_t)cull->limits->sizes.items, 1);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
@@ -111,36 +113,34 @@ static Result spread(Cull *cull, Error *error)
                              : error_set(error, RESULT_FAILED, "what is hidden cannot be found");
 }
 
-static Result measure_base(Cull *cull, const GpuLimits *limits, const RenderTarget *target,
-                           Error *error)
+static Result measure_base(Cull *cull, const RenderTarget *target, Error *error)
 {
     cull->tiles[0] = (target->width * target->samples + HIDE_TILE - 1) / HIDE_TILE;
     cull->tiles[1] = (target->height * target->samples + HIDE_TILE - 1) / HIDE_TILE;
     int64_t size = (int64_t)cull->tiles[0] * cull->tiles[1] * (int64_t)sizeof(float);
     TRY(build_hide(cull, error));
-    TRY(gpu_buffer_reserve(&cull->nearest, limits, "hidden tiles", size, 0, error));
-    TRY(gpu_buffer_reserve(&cull->levels, limits, "hidden levels", size * HIDE_LEVELS, GL_R32F,
-                           error));
+    TRY(gpu_buffer_reserve(&cull->nearest, cull->limits, "hidden tiles", size, 0, error));
+    TRY(gpu_buffer_reserve(&cull->levels, cull->limits, "hidden levels", size * HIDE_LEVELS,
+                           GL_R32F, error));
     find_nearest(cull, target);
     return spread(cull, error);
 }
 
-Result cull_begin(Cull *cull, const GpuLimits *limits, const CullBase *base, bool many,
-                  Error *error)
+Result cull_begin(Cull *cull, const CullBase *base, bool many, Error *error)
 {
     cull->covered = base->target != NULL;
     cull->tries = !cull->off && (many || (cull->covered && base->version != cull->base));
     cull->outside = cull->hidden = 0;
     if (!cull->tries || !cull->covered || base->version == cull->base) return RESULT_OK;
     cull->base = 0;
-    TRY(measure_base(cull, limits, base->target, error));
+    TRY(measure_base(cull, base->target, error));
     cull->base = base->version;
     return RESULT_OK;
 }
 
 static Result build_list(Cull *cull, unsigned variant, Error *error)
 {
-    const ShaderDefine defines[] = {{"GROUP_SIZE", GROUP},
+    const ShaderDefine defines[] = {{"GROUP_SIZE", cull->limits->sizes.strands},
                                     {"HIDING", (variant & CULL_HIDING) != 0},
                                     {"PAINT", (variant & CULL_PAINT) != 0},
                                     {"SMOOTH", (variant & CULL_SMOOTH) != 0},
@@ -169,10 +169,10 @@ static Result use(Cull *cull, const HairBatch *batch, bool smooth, Error *error)
     return RESULT_OK;
 }
 
-Result cull_make_room(Cull *cull, const GpuLimits *limits, uint32_t strands, Error *error)
+Result cull_make_room(Cull *cull, uint32_t strands, Error *error)
 {
-    return gpu_buffer_reserve(&cull->listed, limits, "strands", ((int64_t)strands + HEAD_WORDS) * 4,
-                              GL_R32UI, error);
+    return gpu_buffer_reserve(&cull->listed, cull->limits, "strands",
+                              ((int64_t)strands + HEAD_WORDS) * 4, GL_R32UI, error);
 }
 
 Result cull_list(Cull *cull, const HairBatch *batch, const MaterialParams *part, uint32_t *count,
@@ -183,7 +183,7 @@ Result cull_list(Cull *cull, const HairBatch *batch, const MaterialParams *part,
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, cull->listed.buffer);
     glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof found, found);
     gpu_buffer_bind_storage(&cull->listed, BIND_LISTED_OUT);
-    glDispatchCompute((part->drawn_strands + GROUP - 1) / GROUP, 1, 1);
+    gpu_dispatch(cull->limits, part->drawn_strands, (uint64_t)cull->limits->sizes.strands, 1);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof found, found);
     gpu_buffer_bind_texture(&cull->listed, BIND_LISTED);
@@ -200,5 +200,5 @@ void cull_destroy(Cull *cull)
         if (cull->list[i]) glDeleteProgram(cull->list[i]);
     if (cull->hide) glDeleteProgram(cull->hide);
     for (int i = 0; i < 3; ++i) gpu_buffer_destroy(buffers[i]);
-    *cull = (Cull){0};
+    *cull = (Cull){.limits = cull->limits};
 }

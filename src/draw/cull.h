@@ -17,6 +17,7 @@ enum { CULL_HIDING = 1, CULL_PAINT = 2, CULL_SMOOTH = 4, CULL_VARIANTS = 8 };
 
 // A zeroed struct is empty.
 typedef struct Cull {
+    const GpuLimits *limits;    // the context's, set by who makes it
     GLuint list[CULL_VARIANTS]; // programs
     GLuint hide;                // program
     GpuBuffer listed;           // how many, how many hidden, rows: see block_cull.comp
@@ -42,12 +43,11 @@ Result cull_build(Cull *cull, unsigned variant, Error *error);
 
 // Begins an image. `many`: of the last one so many strands were left out, here or later, that it
 // is worth trying. Needs the DrawParams block. RESULT_FAILED if memory is short.
-Result cull_begin(Cull *cull, const GpuLimits *limits, const CullBase *base, bool many,
-                  Error *error);
+Result cull_begin(Cull *cull, const CullBase *base, bool many, Error *error);
 
 // Makes room for a list of so many strands; texture units may change. RESULT_FAILED if memory is
 // short.
-Result cull_make_room(Cull *cull, const GpuLimits *limits, uint32_t strands, Error *error);
+Result cull_make_room(Cull *cull, uint32_t strands, Error *error);
 
 // Lists the part's strands that may be seen in BIND_LISTED, and how many they are. Only if `tries`.
 // Needs room, the uniforms of image and part, positions bound. Waits.

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "draw/hair_shadow.h"
 
+#include "gpu/gpu_dispatch.h"
+
 #include <math.h>
 #include <string.h>
 
 enum {
-    GROUP = 8,
-    TEXEL_GROUP = 64,
     STRIP = 8,          // divides the side of a map
     PART_VERTICES = 64, // that one lane walks
     PART_SEGMENTS = 8,
@@ -43,15 +43,18 @@ static unsigned variant_of(const ShadowCaster *caster)
 
 Result hair_shadow_build(HairShadow *hair, unsigned variant, Error *error)
 {
-    TRY(build(&hair->bounds[variant], "draw/shadow_bounds.comp", GROUP, FIRSTS, variant, error));
-    TRY(build(&hair->first[variant], "draw/shadow_splat.comp", GROUP,
+    const GpuSizes sizes = hair->limits->sizes;
+    TRY(build(&hair->bounds[variant], "draw/shadow_bounds.comp", sizes.strands, FIRSTS, variant,
+              error));
+    TRY(build(&hair->first[variant], "draw/shadow_splat.comp", sizes.strands,
               hair->deep ? COARSE_FIRSTS : FIRSTS, variant, error));
     if (hair->deep)
-        TRY(build(&hair->splat[variant], "draw/shadow_splat.comp", GROUP, DEEP, variant, error));
+        TRY(build(&hair->splat[variant], "draw/shadow_splat.comp", sizes.strands, DEEP, variant,
+                  error));
     if (hair->deep)
-        TRY(build(&hair->spread, "draw/shadow_spread.comp", TEXEL_GROUP, DEEP, 0, error));
+        TRY(build(&hair->spread, "draw/shadow_spread.comp", sizes.items, DEEP, 0, error));
     if (hair->deep)
-        TRY(build(&hair->finish, "draw/shadow_finish.comp", TEXEL_GROUP, DEEP, 0, error));
+        TRY(build(&hair->finish, "draw/shadow_finish.comp", sizes.items, DEEP, 0, error));
     return RESULT_OK;
 }
 
@@ -165,8 +168,8 @@ static void cast(HairShadow *hair, ShadowCasters casters, const CastParams *para
         gpu_buffer_set_uniforms(&hair->material, BIND_MATERIAL, &material, sizeof material);
         gpu_buffer_bind_texture(&batch->position, BIND_POSITION);
         if (batch->paint.buffer) gpu_buffer_bind_texture(&batch->paint, BIND_PAINT);
-        glDispatchCompute((material.drawn_strands + GROUP - 1) / GROUP, (points + part - 1) / part,
-                          1);
+        gpu_dispatch(hair->limits, material.drawn_strands, (uint64_t)hair->limits->sizes.strands,
+                     (points + part - 1) / part);
     }
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
                     GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -245,25 +248,25 @@ static void draw_firsts(HairShadow *hair, ShadowCasters casters, const CastParam
     cast(hair, casters, &wide, hair->first, PART_SEGMENTS);
 }
 
-static void run_texels(const CastParams *params, GLuint program, int lanes)
+static void run_texels(const HairShadow *hair, const CastParams *params, GLuint program, int lanes)
 {
     glUseProgram(program);
     glUniform2i(0, params->side, params->map);
-    glDispatchCompute((GLuint)((lanes + TEXEL_GROUP - 1) / TEXEL_GROUP), 1, 1);
+    gpu_dispatch(hair->limits, (uint64_t)lanes, (uint64_t)hair->limits->sizes.items, 1);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
 static void spread(const HairShadow *hair, const CastParams *params)
 {
     int corners = params->side / SHADOW_COARSE + 1;
-    run_texels(params, hair->spread, corners * corners);
+    run_texels(hair, params, hair->spread, corners * corners);
 }
 
 static void finish(const HairShadow *hair, const CastParams *params)
 {
     glUseProgram(hair->finish);
     glUniform1f(1, params->unit);
-    run_texels(params, hair->finish, params->side * params->side / STRIP);
+    run_texels(hair, params, hair->finish, params->side * params->side / STRIP);
 }
 
 static void draw_deep(HairShadow *hair, ShadowCasters casters, CastParams *params)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "draw/quads.h"
 
+#include "gpu/gpu_dispatch.h"
+
 #include "glsl/draw/draw.h"
 
 #include <math.h>
@@ -8,7 +10,7 @@
 // --- Ribbons into lists.
 
 // Particles that are projected at a time, so that what is kept of them stays small.
-enum { GROUP_SIZE = 8, PART_PARTICLES = 1 << 19 };
+enum { PART_PARTICLES = 1 << 19 };
 
 static void destroy_ribbons(QuadRibbons *hair)
 {
@@ -24,10 +26,11 @@ static void destroy_ribbons(QuadRibbons *hair)
 }
 
 // `nearest`: a ribbon hides all that is behind it, in every pixel of which it covers a sixteenth.
-static Result create_ribbons(QuadRibbons *hair, bool nearest, Error *error)
+static Result create_ribbons(QuadRibbons *hair, const GpuLimits *limits, bool nearest, Error *error)
 {
     const ShaderDefine defines[] = {{"NEAREST", nearest}, {NULL, 0}};
-    *hair = (QuadRibbons){.project = {.file = "draw/hair_project.comp", .group_size = GROUP_SIZE}};
+    *hair = (QuadRibbons){
+        .project = {.file = "draw/hair_project.comp", .group_size = limits->sizes.strands}};
     glGenVertexArrays(1, &hair->vertex_array);
     Result result =
         shader_build_draw(&hair->draw, "draw/hair.vert", "draw/hair.frag", defines, error);
@@ -53,8 +56,8 @@ static void write(const GpuBuffer *buffer, int64_t at, const void *data, size_t 
 }
 
 // How many strands are projected goes to *strands.
-static Result project(QuadRibbons *hair, const HairBatch *batch, const Look *look, Cull *cull,
-                      uint32_t *strands, Error *error)
+static Result project(QuadRibbons *hair, const GpuLimits *limits, const HairBatch *batch,
+                      const Look *look, Cull *cull, uint32_t *strands, Error *error)
 {
     const MaterialParams *material = &look->material;
     const GLuint command[COMMAND_WORDS] = {[COMMAND_INSTANCE_COUNT] = 1};
@@ -72,7 +75,7 @@ static Result project(QuadRibbons *hair, const HairBatch *batch, const Look *loo
     gpu_buffer_bind_storage(&hair->shades, BIND_SHADES_OUT);
     gpu_buffer_bind_storage(&hair->indices, BIND_INDICES_OUT);
     gpu_buffer_bind_storage(&hair->command, BIND_COMMAND_OUT);
-    glDispatchCompute((*strands + GROUP_SIZE - 1) / GROUP_SIZE, 1, 1);
+    gpu_dispatch(limits, *strands, (uint64_t)limits->sizes.strands, 1);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT |
                     GL_COMMAND_BARRIER_BIT);
     return RESULT_OK;
@@ -107,9 +110,9 @@ static Result draw_batch(QuadRibbons *hair, const HairBatch *batch, const Look *
         part.material.first_strand = first;
         part.material.drawn_strands = left < most ? left : most;
         Result result = make_scratch(hair, part.material.drawn_strands, n, limits, error);
-        THEN(result, cull_make_room(cull, limits, part.material.drawn_strands, error));
+        THEN(result, cull_make_room(cull, part.material.drawn_strands, error));
         gpu_timer_begin(timer, "draw_project");
-        THEN(result, project(hair, batch, &part, cull, &seen, error));
+        THEN(result, project(hair, limits, batch, &part, cull, &seen, error));
         gpu_timer_end(timer);
         if (result != RESULT_OK) return result;
         if (seen == 0) continue;
@@ -132,11 +135,12 @@ Result quads_create(Quads *quads, const Gpu *gpu, const RendererOptions *options
                                            : OIT_LAYERS;
     bool nearest = options->aov > AOV_COVERAGE;
     *quads = (Quads){.limits = &gpu->limits,
+                     .cull = {.limits = &gpu->limits},
                      .width = options->width,
                      .height = options->height,
                      .samples = options->samples,
                      .skips = true};
-    TRY(create_ribbons(&quads->hair, nearest, error));
+    TRY(create_ribbons(&quads->hair, &gpu->limits, nearest, error));
     TRY(abuffer_create(&quads->abuffer, &gpu->limits, options->width, options->samples, layers,
                        drawing_display(options), options->aov == AOV_DEPTH, gpu->software,
                        options->pool_bytes, error));
@@ -258,7 +262,7 @@ static void count_left_out(Quads *quads, const Drawing *drawing, RendererCounts 
 Result quads_draw(Quads *quads, Drawing *drawing, RenderTarget *target, const CullBase *base,
                   GpuTimer *timer, Image *image, RendererCounts *counts, Error *error)
 {
-    TRY(cull_begin(&quads->cull, quads->limits, base, quads->skips, error));
+    TRY(cull_begin(&quads->cull, base, quads->skips, error));
     glEnable(GL_SCISSOR_TEST);
     Result result = draw_bands(quads, drawing, target, base->target != NULL, timer, counts, error);
     glDisable(GL_SCISSOR_TEST);

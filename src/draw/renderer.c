@@ -47,7 +47,7 @@ static Raster choose_raster(const Gpu *gpu, const RendererOptions *options)
 {
     bool plain = options->oit == OIT_AUTO && options->oit_layers == 0;
     if (options->raster != RASTER_AUTO) return options->raster;
-    return gpu->software && plain ? RASTER_BLOCKS : RASTER_QUADS;
+    return gpu->kind == GPU_CPU_DRIVER && plain ? RASTER_BLOCKS : RASTER_QUADS;
 }
 
 static bool has_base(const Renderer *renderer)
@@ -83,7 +83,7 @@ Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
     shadow.behind = options->scatter == SCATTER_DUAL;
     if (options->shadow.kind != SHADOW_NONE)
         THEN(result, shadows_create(&renderer->shadow, &gpu->limits, &shadow,
-                                    gpu->software || scatters, error));
+                                    gpu->kind == GPU_CPU_DRIVER || scatters, error));
     const HairScatterOptions scatter = {options->scatter,
                                         options->scatter_cells ? options->scatter_cells : 32,
                                         options->scatter_orders ? options->scatter_orders : 16};

@@ -125,13 +125,14 @@ static int query_int(GLenum name)
 
 // GL 4.3 guarantees shader storage in compute shaders only; vertex and fragment stages get theirs
 // by buffer texture and images.
-static Result read_limits(Gpu *gpu, Error *error)
+static Result read_limits(Gpu *gpu, const GpuOptions *options, Error *error)
 {
     copy_string(gpu->renderer, sizeof gpu->renderer, GL_RENDERER);
     copy_string(gpu->version, sizeof gpu->version, GL_VERSION);
     copy_string(gpu->vendor, sizeof gpu->vendor, GL_VENDOR);
     read_processor(gpu->processor);
     gpu->software = is_cpu_driver(gpu->renderer);
+    gpu->kind = gpu->software && !options->assume_hardware ? GPU_CPU_DRIVER : GPU_HARDWARE;
     int version = 10 * query_int(GL_MAJOR_VERSION) + query_int(GL_MINOR_VERSION);
     if (version < 43)
         return error_set(error, RESULT_NO_GL, "%s has OpenGL %d.%d, 4.3 is needed", gpu->renderer,
@@ -142,6 +143,7 @@ static Result read_limits(Gpu *gpu, Error *error)
         .texture_texels = query_int(GL_MAX_TEXTURE_BUFFER_SIZE),
         .framebuffer_side_px = layer_px && layer_px < side_px ? layer_px : side_px,
         .work_groups = 65535,
+        .sizes = GPU_SIZES[gpu->kind],
     };
     if (query_int(GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS) < 4)
         return error_set(error, RESULT_NO_GL, "%s has no shader storage in fragment shaders",
@@ -152,7 +154,7 @@ static Result read_limits(Gpu *gpu, Error *error)
 static Result accept(Gpu *gpu, const GpuOptions *options, const char *path, Error *error)
 {
     snprintf(gpu->path, sizeof gpu->path, "%s", path);
-    TRY(read_limits(gpu, error));
+    TRY(read_limits(gpu, options, error));
     if (options->require_hardware && gpu->software)
         return error_set(error, RESULT_NO_GL, "%s is a CPU driver", gpu->renderer);
     if (options->software && !gpu->software)

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/params.h"
 #include "gpu/gpu_egl.h"
+#include "gpu/gpu_sizes.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -18,15 +19,18 @@ typedef struct GpuOptions {
     int device;            // index as `gpu_list_devices` prints it; -1: the best one
     bool software;         // only CPU drivers
     bool require_hardware; // no CPU driver
+    bool assume_hardware;  // a CPU driver is treated as hardware
     bool debug;            // KHR_debug context; messages go to stderr
 } GpuOptions;
 
-// What the driver allows, read once after the context is made. Bytes unless said otherwise.
+// What the driver allows, and what suits it, read once after the context is made. Bytes unless said
+// otherwise.
 typedef struct GpuLimits {
     int64_t storage_block;   // largest SSBO range that a shader can see
     int64_t texture_texels;  // largest buffer texture, in texels
     int framebuffer_side_px; // largest width and height
-    int work_groups;         // per dispatch, x
+    int work_groups;         // side by side in a dispatch
+    GpuSizes sizes;          // by the device's kind
 } GpuLimits;
 
 // A current context. Everything else in this program calls GL only while one exists, on the thread
@@ -34,6 +38,7 @@ typedef struct GpuLimits {
 typedef struct Gpu {
     GpuLimits limits;
     bool software;            // a CPU driver, judged by GL_RENDERER
+    GpuKind kind;             // what decisions go by: of `software`, unless hardware is assumed
     char renderer[256];       // GL_RENDERER
     char version[256];        // GL_VERSION
     char vendor[128];         // GL_VENDOR

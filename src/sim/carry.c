@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "sim/carry.h"
+#include "gpu/gpu_dispatch.h"
 
 #include "glsl/sim/carry_params.h"
 
 #include <string.h>
 
-// Lanes of a group; groups in a row, which every driver allows.
-enum { GROUP = 64, ROW = 65535 };
-
-Result carry_create(Carry *carry, Error *error)
+Result carry_create(Carry *carry, const GpuLimits *limits, Error *error)
 {
-    *carry = (Carry){0};
-    const ShaderDefine defines[] = {{"GROUP_SIZE", GROUP}, {0}};
+    *carry = (Carry){.limits = limits};
+    const ShaderDefine defines[] = {{"GROUP_SIZE", limits->sizes.items}, {0}};
     return shader_build_compute(&carry->program, "sim/carry.comp", defines, error);
 }
 
@@ -33,9 +31,8 @@ static void carry_buffer(Carry *carry, CarryParams params, const SolverBuffer *b
     gpu_buffer_set_uniforms(&carry->uniforms, BIND_STEP, &params, sizeof params);
     gpu_buffer_bind_storage(points->buffer, BIND_POSITION_OUT);
     gpu_buffer_bind_storage(buffer->buffer, BIND_STATE_OUT);
-    GLuint groups = (params.count + GROUP - 1) / GROUP;
     glUseProgram(carry->program);
-    glDispatchCompute(groups < ROW ? groups : ROW, (groups + ROW - 1) / ROW, 1);
+    gpu_dispatch(carry->limits, params.count, (uint64_t)carry->limits->sizes.items, 1);
 }
 
 void carry_apply(Carry *carry, const Solver *solver, const Hair *hair, const HeadMotion *motion)

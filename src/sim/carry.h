@@ -9,12 +9,13 @@
 
 // A zeroed one may be destroyed.
 typedef struct Carry {
+    const GpuLimits *limits; // the context's
     GLuint program;
     GpuBuffer uniforms;
 } Carry;
 
 // Errors of shader_build_compute.
-Result carry_create(Carry *carry, Error *error);
+Result carry_create(Carry *carry, const GpuLimits *limits, Error *error);
 void carry_destroy(Carry *carry);
 
 // Changes the state of `solver`, which holds `hair` and has posed. Only queues GPU work.

@@ -2,6 +2,7 @@
 #include "sim/distance_field.h"
 #include "base/chunk.h"
 #include "base/outfile.h"
+#include "gpu/gpu_dispatch.h"
 #include "gpu/shader.h"
 
 #include "glsl/field/field_params.h"
@@ -164,25 +165,33 @@ static void set_params(Work *work)
     gpu_buffer_set_uniforms(&work->uniforms, BIND_STEP, &work->params, sizeof work->params);
 }
 
+// Work groups for a row of `points` of the grid, whose rows are the dispatch's.
+static GLuint groups_of(const Work *work, uint32_t points)
+{
+    GLuint lanes = (GLuint)work->gpu->limits.sizes.items;
+    return (points + lanes - 1) / lanes;
+}
+
 static void dispatch_grid(Work *work)
 {
     const uint32_t *size = work->field->size;
     set_params(work);
-    glDispatchCompute((size[0] + FIELD_GROUP - 1) / FIELD_GROUP, size[1], size[2]);
+    glDispatchCompute(groups_of(work, size[0]), size[1], size[2]);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
 static void dispatch_items(Work *work)
 {
-    uint32_t groups = (work->params.count + FIELD_GROUP - 1) / FIELD_GROUP;
+    const GpuLimits *limits = &work->gpu->limits;
     set_params(work);
-    glDispatchCompute(groups < FIELD_ROW ? groups : FIELD_ROW, groups / FIELD_ROW + 1, 1);
+    gpu_dispatch(limits, work->params.count, (uint64_t)limits->sizes.items, 1);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
-static Result use(GLuint *program, const char *file, Error *error)
+static Result use(const Work *work, GLuint *program, const char *file, Error *error)
 {
-    TRY(shader_build_compute(program, file, NULL, error));
+    const ShaderDefine defines[] = {{"GROUP_SIZE", work->gpu->limits.sizes.items}, {NULL, 0}};
+    TRY(shader_build_compute(program, file, defines, error));
     glUseProgram(*program);
     return RESULT_OK;
 }
@@ -269,7 +278,7 @@ static Result dispatch_triangles(Work *work, AddItems *add, uint32_t axis, Error
 static Result find_near(Work *work, Error *error)
 {
     GLuint program;
-    TRY(use(&program, "field/field_near.comp", error));
+    TRY(use(work, &program, "field/field_near.comp", error));
     gpu_buffer_clear(&work->squares, 0x7f7fffff); // the largest float
     gpu_buffer_clear(&work->nearest, 0xffffffff);
     gpu_buffer_bind_texture(&work->triangles, BIND_POSITION);
@@ -285,7 +294,7 @@ static Result find_near(Work *work, Error *error)
 static Result seed(Work *work, Error *error)
 {
     GLuint program;
-    TRY(use(&program, "field/field_seed.comp", error));
+    TRY(use(work, &program, "field/field_seed.comp", error));
     gpu_buffer_bind_storage(&work->nearest, 0);
     gpu_buffer_bind_storage(&work->closest[0], 1);
     dispatch_grid(work);
@@ -300,7 +309,7 @@ static Result flood(Work *work, Error *error)
     const uint32_t *size = work->field->size;
     uint32_t longest = size[0] > size[1] ? size[0] : size[1], stride = 1;
     if (size[2] > longest) longest = size[2];
-    TRY(use(&program, "field/field_flood.comp", error));
+    TRY(use(work, &program, "field/field_flood.comp", error));
     while (2 * stride < longest) stride *= 2;
     for (int ones = 0; ones<2; stride = stride> 1 ? stride / 2 : 1) {
         ones += stride == 1;
@@ -317,7 +326,7 @@ static Result flood(Work *work, Error *error)
 static Result cross(Work *work, uint32_t axis, Error *error)
 {
     GLuint program;
-    TRY(use(&program, "field/field_cross.comp", error));
+    TRY(use(work, &program, "field/field_cross.comp", error));
     gpu_buffer_bind_storage(&work->squares, 1); // now the crossings
     Result result = dispatch_triangles(work, add_columns, axis, error);
     glDeleteProgram(program);
@@ -328,15 +337,14 @@ static Result sign(Work *work, uint32_t axis, Error *error)
 {
     GLuint program;
     const uint32_t *size = work->field->size;
-    TRY(use(&program, "field/field_sign.comp", error));
+    TRY(use(work, &program, "field/field_sign.comp", error));
     work->params.axis = axis;
     set_params(work);
     gpu_buffer_bind_storage(&work->squares, 0);
     gpu_buffer_bind_storage(&work->winding, 1);
     gpu_buffer_bind_storage(&work->field->values, 2);
     gpu_buffer_bind_texture(&work->closest[work->present], BIND_REST);
-    glDispatchCompute((size[(axis + 1) % 3] + FIELD_GROUP - 1) / FIELD_GROUP, size[(axis + 2) % 3],
-                      1);
+    glDispatchCompute(groups_of(work, size[(axis + 1) % 3]), size[(axis + 2) % 3], 1);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
     glDeleteProgram(program);
     return RESULT_OK;

@@ -6,15 +6,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-// How many guides' followers a buffer holds and a dispatch takes.
+// How many guides' followers a buffer holds.
 static uint32_t guides_that_fit(const Follow *follow, uint32_t vertex_count,
                                 const GpuLimits *limits)
 {
     int64_t texels = limits->storage_block / 16;
     if (limits->texture_texels < texels) texels = limits->texture_texels;
     int64_t strands = texels / vertex_count / STRAND_TILE * STRAND_TILE;
-    int64_t most = (int64_t)limits->work_groups * HAIR_LEAST_GROUP;
-    return (uint32_t)((strands < most ? strands : most) / follow->per_guide);
+    return (uint32_t)(strands / follow->per_guide);
 }
 
 typedef float Float4[4];

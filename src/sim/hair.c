@@ -37,16 +37,15 @@ static uint32_t slots_of(uint32_t strands)
 }
 
 // Where the batch that begins at `begin` ends: at another vertex count, where a buffer of what
-// solvers keep would be full, or where one dispatch has as many work groups as it may.
+// solvers keep would be full.
 static uint32_t batch_end(const Order *order, const Strands *strands, uint32_t begin,
                           const GpuLimits *limits)
 {
     uint32_t n = strands_size(strands, order->strand[begin]), end = begin;
     int64_t texels = limits->storage_block / (16 * HAIR_MOST_SCRATCH);
     if (limits->texture_texels < texels) texels = limits->texture_texels;
-    int64_t most = (int64_t)limits->work_groups * HAIR_LEAST_GROUP;
     while (end < order->count && strands_size(strands, order->strand[end]) == n &&
-           (int64_t)slots_of(end - begin + 1) * n <= texels && end - begin < most)
+           (int64_t)slots_of(end - begin + 1) * n <= texels)
         ++end;
     return end;
 }

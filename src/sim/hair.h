@@ -29,10 +29,6 @@ typedef struct HairBatch {
     GpuBuffer paint;
 } HairBatch;
 
-// The fewest strands that a work group of any shader takes (step_group_size): no batch has more
-// strands than a dispatch of such groups, GpuLimits.work_groups.
-enum { HAIR_LEAST_GROUP = 8 };
-
 // The most vec4 a particle that a solver keeps in one buffer (SolverRecipe.scratch): no batch has
 // more particles than such a buffer can hold.
 enum { HAIR_MOST_SCRATCH = 3 };

@@ -200,7 +200,8 @@ Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer
     simulation->step = -simulation->schedule.settling;
     THEN(result, create_field(simulation, gpu, strands, mesh, error));
     THEN(result, create_sections(simulation, gpu, strands, error));
-    if (!rigid_track_is_still(&scene->head)) THEN(result, carry_create(&simulation->carry, error));
+    if (!rigid_track_is_still(&scene->head))
+        THEN(result, carry_create(&simulation->carry, &gpu->limits, error));
     if (result != RESULT_OK) simulation_destroy(simulation);
     return result;
 }

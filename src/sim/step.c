@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "sim/step.h"
+#include "gpu/gpu_dispatch.h"
 
 #include <cglm/cglm.h>
 
@@ -81,22 +82,11 @@ float step_style_odds(const SectionParams *params)
     return params->style / fmaxf(1 - params->style, 1e-6f);
 }
 
-uint32_t step_group_size(const Gpu *gpu)
-{
-    return gpu->software ? 8 : 64;
-}
-
-uint32_t step_group_count(uint32_t count, uint32_t group_size, uint32_t strands_per_lane)
-{
-    uint32_t strands = group_size * strands_per_lane;
-    return (count + strands - 1) / strands;
-}
-
 Result step_pass_create(StepPass *pass, const Gpu *gpu, const char *shader,
                         const ShaderDefine *defines, Error *error)
 {
-    *pass = (StepPass){.group_size = step_group_size(gpu)};
-    ShaderDefine all[2 + STEP_OWN_DEFINES] = {{"GROUP_SIZE", (int)pass->group_size}};
+    *pass = (StepPass){.limits = &gpu->limits};
+    ShaderDefine all[2 + STEP_OWN_DEFINES] = {{"GROUP_SIZE", gpu->limits.sizes.strands}};
     for (int i = 0; defines && defines[i].name; ++i) all[1 + i] = defines[i];
     return shader_build_compute(&pass->program, shader, all, error);
 }
@@ -112,7 +102,7 @@ void step_pass_run(StepPass *pass, const void *params, size_t size, uint32_t str
 {
     gpu_buffer_set_uniforms(&pass->uniforms, BIND_STEP, params, size);
     glUseProgram(pass->program);
-    glDispatchCompute(step_group_count(strand_count, pass->group_size, 1), 1, 1);
+    gpu_dispatch(pass->limits, strand_count, (uint64_t)pass->limits->sizes.strands, 1);
 }
 
 // Whether the hair's strands may stay in registers for a step: all have at most `most` vertices,
@@ -133,7 +123,7 @@ static Result build(StepPrograms *programs, uint32_t batch, uint32_t vertices,
                     const StepProgramsOptions *options, Error *error)
 {
     ShaderDefine defines[9 + STEP_OWN_DEFINES] = {
-        {"GROUP_SIZE", (int)programs->group_size},
+        {"GROUP_SIZE", programs->limits->sizes.strands},
         {"STRANDS", (int)programs->strands_per_lane},
         {"IN_REGISTERS", programs->in_registers},
         {"VERTICES", (int)(vertices - programs->leads[batch])},
@@ -163,8 +153,9 @@ Result step_programs_create(StepPrograms *programs, const Gpu *gpu, const Hair *
         .programs = calloc(hair->batch_count + 1, sizeof *programs->programs),
         .leads = calloc(hair->batch_count + 1, sizeof *programs->leads),
         .batch_count = hair->batch_count,
-        .group_size = step_group_size(gpu),
-        .strands_per_lane = in_registers && gpu->software ? options->strands_on_cpu : 1,
+        .limits = &gpu->limits,
+        .strands_per_lane =
+            in_registers && gpu->kind == GPU_CPU_DRIVER ? options->strands_on_cpu : 1,
         .in_registers = in_registers,
     };
     Result result = RESULT_OK;
@@ -195,6 +186,6 @@ void step_programs_destroy(StepPrograms *programs)
 void step_programs_dispatch(const StepPrograms *programs, uint32_t batch, uint32_t strand_count)
 {
     glUseProgram(programs->programs[batch]);
-    glDispatchCompute(
-        step_group_count(strand_count, programs->group_size, programs->strands_per_lane), 1, 1);
+    uint64_t per_group = (uint64_t)programs->limits->sizes.strands * programs->strands_per_lane;
+    gpu_dispatch(programs->limits, strand_count, per_group, 1);
 }

@@ -51,21 +51,12 @@ void step_spring_along(float texel[4], const void *block, const void *mean,
 // style/(1 - style): 1, a stiffness as given, for style 0.5.
 float step_style_odds(const SectionParams *params);
 
-// Lanes of a work group: on a CPU driver one SIMD register, so that there are many groups to share
-// out among the cores; on a GPU whole warps. Both are such that a group's strands are whole tiles,
-// or the tile whole groups.
-uint32_t step_group_size(const Gpu *gpu);
-
-// Work groups of `group_size` lanes that cover `count` strands with `strands_per_lane` strands a
-// lane.
-uint32_t step_group_count(uint32_t count, uint32_t group_size, uint32_t strands_per_lane);
-
 enum { STEP_OWN_DEFINES = 8 };
 
 // A program that works on strands, a lane each, and its parameters. A zeroed one may be destroyed.
 typedef struct StepPass {
     GLuint program;
-    uint32_t group_size;
+    const GpuLimits *limits; // the context's
     GpuBuffer uniforms;
 } StepPass;
 
@@ -99,7 +90,8 @@ typedef struct StepProgramsOptions {
 typedef struct StepPrograms {
     GLuint *programs; // [batch_count]; equal ones may be the same
     uint32_t *leads;  // [batch_count]: of the batch's strands
-    uint32_t batch_count, group_size, strands_per_lane;
+    uint32_t batch_count, strands_per_lane;
+    const GpuLimits *limits; // the context's
     bool in_registers;
 } StepPrograms;
 

@@ -234,7 +234,7 @@ static void barrier(void)
 static void run_cells(Volume *volume, StepPass *pass)
 {
     step_pass_run(pass, &volume->step, sizeof volume->step,
-                  volume->cell_count / VOLUME_CELLS_A_LANE + pass->group_size);
+                  volume->cell_count / VOLUME_CELLS_A_LANE + (uint32_t)pass->limits->sizes.strands);
     barrier();
 }
 

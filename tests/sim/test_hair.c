@@ -111,23 +111,6 @@ static void hair_larger_than_a_buffer_is_split_never_cut(void **state)
     strands_destroy(&strands);
 }
 
-// A dispatch of one batch takes a work group for each 8 strands at most; beyond the limit nothing
-// would run at all, as happened to 524,288 strands of 16 vertices.
-static void no_batch_has_more_strands_than_a_dispatch_takes(void **state)
-{
-    (void)state;
-    Strands strands;
-    Hair hair;
-    GpuLimits limits = fixture_gpu()->limits;
-    limits.work_groups = 4;
-    make_strands(&strands, 300);
-    assert_int_equal(hair_create(&hair, &strands, 0, &limits, NULL), RESULT_OK);
-    for (uint32_t i = 0; i < hair.batch_count; ++i) assert_true(hair.batches[i].strand_count <= 32);
-    check_batches(&hair, &strands, 0);
-    hair_destroy(&hair);
-    strands_destroy(&strands);
-}
-
 static GLuint build(const char *shader)
 {
     GLuint program;
@@ -249,7 +232,6 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(strands_of_any_count_stand_in_batches_of_their_own),
         cmocka_unit_test(hair_larger_than_a_buffer_is_split_never_cut),
-        cmocka_unit_test(no_batch_has_more_strands_than_a_dispatch_takes),
         cmocka_unit_test(blocks_lie_alike_in_c_and_glsl),
         cmocka_unit_test(own_blocks_of_solvers_lie_alike_in_c_and_glsl),
         cmocka_unit_test(shader_errors_name_file_and_line),
