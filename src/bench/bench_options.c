@@ -81,8 +81,9 @@ static const Option OPTIONS[] = {
     {"csv", 0, OPTION_STRING, AT(bench.output.csv), "FILE", 0, 0, "write the rows as CSV"},
     {"html", 0, OPTION_STRING, AT(bench.output.html), "FILE.html", 0, 0,
      "write the rows as a page with plots: for a browser, without a network"},
-    {"device", 0, OPTION_WHOLE, AT(bench.gpu.device), "N", 0, 1000,
-     "EGL device (default: the best one)"},
+    {"device", 0, OPTION_STRING, AT(bench.gpu.device), "NAME|N", 0, 0,
+     "device, by number or name as tractrix-render --list-devices has them (default: the best "
+     "one)"},
     {"software", 0, OPTION_SWITCH, AT(software), NULL, 0, 0,
      "use a CPU driver even where there is a GPU"},
     {"osmesa", 0, OPTION_SWITCH, AT(osmesa), NULL, 0, 0, "use OSMesa instead of EGL"},
@@ -254,7 +255,7 @@ Result bench_options_read(BenchOptions *options, int argc, char **argv,
                                .warm_up = 20,
                                .stress = stress_options_default(),
                                .frames = 15,
-                               .gpu = {.device = -1}}};
+                               .gpu = {0}}};
     int first = 0;
     values.bench.line = shell_join_line("tractrix-bench", argc, argv); // before its order changes
     list_rows(&rows);

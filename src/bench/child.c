@@ -49,7 +49,7 @@ static Result execute(char **words, const ChildRun *run, double *wall_ms, Error 
 
 Result child_run(const ChildRun *run, json_t **row, double *wall_ms, Error *error)
 {
-    char path[PATH_MAX], steps[16], warm_up[16], device[16], *rest = NULL;
+    char path[PATH_MAX], steps[16], warm_up[16], *rest = NULL;
     char *words[MOST_WORDS + 1] = {"tractrix-bench", "speed"},
                              *settings = strdup(run->method->settings);
     int count = 2;
@@ -63,7 +63,6 @@ Result child_run(const ChildRun *run, json_t **row, double *wall_ms, Error *erro
     }
     snprintf(steps, sizeof steps, "%d", run->steps);
     snprintf(warm_up, sizeof warm_up, "%d", run->warm_up);
-    snprintf(device, sizeof device, "%d", run->gpu->device);
     const char *const pairs[][2] = {{"--part", "sets"},
                                     {"--algo", run->method->algo},
                                     {"--variant", run->method->variant},
@@ -72,7 +71,7 @@ Result child_run(const ChildRun *run, json_t **row, double *wall_ms, Error *erro
                                     {"--steps", steps},
                                     {"--warm-up", warm_up},
                                     {"--json", path},
-                                    {"--device", run->gpu->device >= 0 ? device : NULL}};
+                                    {"--device", run->gpu->device}};
     for (size_t i = 0; i < sizeof pairs / sizeof *pairs; ++i) {
         if (!pairs[i][1] || !*pairs[i][1]) continue;
         words[count++] = (char *)pairs[i][0];

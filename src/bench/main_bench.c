@@ -404,6 +404,7 @@ int main(int argc, char **argv)
 {
     Error error = {{0}};
     interrupt_install();
-    Result result = run(argc, argv, &error);
+    Result result = assumptions_take_option(&argc, argv, &error);
+    THEN(result, run(argc, argv, &error));
     return program_end("tractrix-bench", result, &error);
 }

@@ -2,90 +2,13 @@
 #include "gpu/gpu.h"
 #include "base/quote.h"
 #include "gpu/gpu_egl.h"
+#include "gpu/gpu_osmesa.h"
+#include "gpu/shader.h"
 
 #include <epoxy/gl.h>
 
-#include <dlfcn.h>
 #include <stdlib.h>
 #include <string.h>
-
-// --- OSMesa: Mesa's llvmpipe without EGL, loaded at run time.
-
-// The few names of <GL/osmesa.h> that are needed, so that building does not need its package.
-enum {
-    OSMESA_FORMAT = 0x22,
-    OSMESA_DEPTH_BITS = 0x30,
-    OSMESA_PROFILE = 0x33,
-    OSMESA_CORE_PROFILE = 0x34,
-    OSMESA_CONTEXT_MAJOR_VERSION = 0x36,
-    OSMESA_CONTEXT_MINOR_VERSION = 0x37,
-};
-
-typedef void (*AnyFunction)(void);
-typedef struct GpuOsMesa OsMesa;
-
-struct GpuOsMesa {
-    void *context;
-    uint32_t pixel; // the default framebuffer, which nothing draws to
-    void *(*create)(const int *attributes, void *share);
-    void (*destroy)(void *context);
-    GLboolean (*make_current)(void *context, void *buffer, GLenum type, GLsizei width,
-                              GLsizei height);
-    AnyFunction (*get_function)(const char *name);
-};
-
-// POSIX promises that dlsym gives functions, too; ISO C has no cast that says so, a copy of the
-// bytes does.
-static void load(void *library, const char *name, void *function)
-{
-    void *address = dlsym(library, name);
-    memcpy(function, &address, sizeof address);
-}
-
-// libepoxy resolves a name when it is first called and insists on EGL or GLX for that; its names
-// are plain pointers, though.
-static bool fill_functions(const OsMesa *mesa)
-{
-    bool complete = true;
-    AnyFunction function;
-#define GL_FUNCTION(name)                                                                          \
-    function = mesa->get_function(#name);                                                          \
-    memcpy(&epoxy_##name, &function, sizeof function);                                             \
-    complete = complete && function;
-#include "gpu/gl_functions.def"
-#undef GL_FUNCTION
-    return complete;
-}
-
-static Result open_osmesa(OsMesa *mesa, Error *error)
-{
-    static const int attributes[] = {OSMESA_FORMAT,
-                                     GL_RGBA,
-                                     OSMESA_DEPTH_BITS,
-                                     0,
-                                     OSMESA_PROFILE,
-                                     OSMESA_CORE_PROFILE,
-                                     OSMESA_CONTEXT_MAJOR_VERSION,
-                                     4,
-                                     OSMESA_CONTEXT_MINOR_VERSION,
-                                     3,
-                                     0};
-    void *library = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
-    if (!library) return error_set(error, RESULT_NO_GL, "libOSMesa.so.8 is not installed");
-    load(library, "OSMesaCreateContextAttribs", &mesa->create);
-    load(library, "OSMesaDestroyContext", &mesa->destroy);
-    load(library, "OSMesaMakeCurrent", &mesa->make_current);
-    load(library, "OSMesaGetProcAddress", &mesa->get_function);
-    if (!mesa->create || !mesa->destroy || !mesa->make_current || !mesa->get_function)
-        return error_set(error, RESULT_NO_GL, "libOSMesa.so.8 lacks OSMesaCreateContextAttribs");
-    mesa->context = mesa->create(attributes, NULL);
-    if (!mesa->context) return error_set(error, RESULT_NO_GL, "OSMesa has no OpenGL 4.3 core");
-    if (!mesa->make_current(mesa->context, &mesa->pixel, GL_UNSIGNED_BYTE, 1, 1))
-        return error_set(error, RESULT_NO_GL, "OSMesa can't make its context current");
-    if (!fill_functions(mesa))
-        return error_set(error, RESULT_NO_GL, "OSMesa lacks an OpenGL 4.3 function");
-    return RESULT_OK; // cppcheck-suppress resourceLeak // LLVM's handlers must outlive the library
-}
 
 // --- What a context offers.
 
@@ -116,6 +39,13 @@ static bool is_cpu_driver(const char *renderer)
     return false;
 }
 
+static int64_t query_int64(GLenum name)
+{
+    GLint64 value = 0;
+    glGetInteger64v(name, &value);
+    return value;
+}
+
 static int query_int(GLenum name)
 {
     GLint value = 0;
@@ -125,25 +55,24 @@ static int query_int(GLenum name)
 
 // GL 4.3 guarantees shader storage in compute shaders only; vertex and fragment stages get theirs
 // by buffer texture and images.
-static Result read_limits(Gpu *gpu, const GpuOptions *options, Error *error)
+static Result read_limits(Gpu *gpu, Error *error)
 {
     copy_string(gpu->renderer, sizeof gpu->renderer, GL_RENDERER);
     copy_string(gpu->version, sizeof gpu->version, GL_VERSION);
     copy_string(gpu->vendor, sizeof gpu->vendor, GL_VENDOR);
     read_processor(gpu->processor);
     gpu->software = is_cpu_driver(gpu->renderer);
-    gpu->kind = gpu->software && !options->assume_hardware ? GPU_CPU_DRIVER : GPU_HARDWARE;
+    gpu->kind = gpu->software ? GPU_CPU_DRIVER : GPU_HARDWARE;
     int version = 10 * query_int(GL_MAJOR_VERSION) + query_int(GL_MINOR_VERSION);
     if (version < 43)
         return error_set(error, RESULT_NO_GL, "%s has OpenGL %d.%d, 4.3 is needed", gpu->renderer,
                          version / 10, version % 10);
     int side_px = query_int(GL_MAX_TEXTURE_SIZE), layer_px = query_int(GL_MAX_FRAMEBUFFER_WIDTH);
     gpu->limits = (GpuLimits){
-        .storage_block = query_int(GL_MAX_SHADER_STORAGE_BLOCK_SIZE),
-        .texture_texels = query_int(GL_MAX_TEXTURE_BUFFER_SIZE),
+        .storage_block = query_int64(GL_MAX_SHADER_STORAGE_BLOCK_SIZE),
+        .texture_texels = query_int64(GL_MAX_TEXTURE_BUFFER_SIZE),
         .framebuffer_side_px = layer_px && layer_px < side_px ? layer_px : side_px,
         .work_groups = 65535,
-        .sizes = GPU_SIZES[gpu->kind],
     };
     if (query_int(GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS) < 4)
         return error_set(error, RESULT_NO_GL, "%s has no shader storage in fragment shaders",
@@ -151,88 +80,145 @@ static Result read_limits(Gpu *gpu, const GpuOptions *options, Error *error)
     return RESULT_OK;
 }
 
-static Result accept(Gpu *gpu, const GpuOptions *options, const char *path, Error *error)
+// Sets what depends on what the driver cannot do, and on what tests imitate.
+static void assume(Gpu *gpu, const Assumptions *assumptions)
 {
-    snprintf(gpu->path, sizeof gpu->path, "%s", path);
-    TRY(read_limits(gpu, options, error));
-    if (options->require_hardware && gpu->software)
-        return error_set(error, RESULT_NO_GL, "%s is a CPU driver", gpu->renderer);
-    if (options->software && !gpu->software)
-        return error_set(error, RESULT_NO_GL, "%s is not a CPU driver", gpu->renderer);
-    return RESULT_OK;
+    GpuLimits *limits = &gpu->limits;
+    if (assumptions->hardware && gpu->software) {
+        gpu->kind = GPU_HARDWARE;
+        size_t used = strlen(gpu->renderer);
+        snprintf(gpu->renderer + used, sizeof gpu->renderer - used, " assumed to be hardware");
+    }
+    limits->sizes = GPU_SIZES[gpu->kind];
+    if (assumptions->groups && assumptions->groups < limits->work_groups)
+        limits->work_groups = assumptions->groups;
+    if (assumptions->side_px && assumptions->side_px < limits->framebuffer_side_px)
+        limits->framebuffer_side_px = assumptions->side_px;
 }
 
 // --- The ways to a context.
 
-static Result try_egl(Gpu *gpu, const GpuOptions *options, void *device, const char *path,
+// What a search has met so far.
+typedef struct Search {
+    GpuOptions options;
+    Assumptions assumptions;
+    Error attempts; // all that failed
+    Error hardware; // those of them that are hardware
+} Search;
+
+static bool asks_for_device(const GpuOptions *options)
+{
+    return options->device && *options->device;
+}
+
+static Result accept(Gpu *gpu, const Search *search, int number, Error *error)
+{
+    const GpuOptions *options = &search->options;
+    TRY(read_limits(gpu, error));
+    if (options->require_hardware && gpu->software)
+        return error_set(error, RESULT_NO_GL, "%s is a CPU driver", gpu->renderer);
+    if (options->software && !gpu->software)
+        return error_set(error, RESULT_NO_GL, "%s is not a CPU driver", gpu->renderer);
+    if (asks_for_device(options) &&
+        !gpu_device_is(options->device, number, gpu->renderer, gpu->vendor, &gpu->identity))
+        return error_set(error, RESULT_NO_GL, "%s is not %s", gpu->renderer, options->device);
+    assume(gpu, &search->assumptions);
+    return RESULT_OK;
+}
+
+// `device` NULL: the surfaceless platform.
+static Result try_egl(Gpu *gpu, const Search *search, const GpuDevice *device, int number,
                       Error *error)
 {
-    TRY(gpu_egl_create(&gpu->egl, device, options->debug, error));
-    Result result = accept(gpu, options, path, error);
+    if (device)
+        snprintf(gpu->path, sizeof gpu->path, "EGL device %d", number);
+    else
+        snprintf(gpu->path, sizeof gpu->path, "EGL surfaceless");
+    TRY(gpu_egl_create(&gpu->egl, device ? device->egl : NULL, search->options.debug, error));
+    gpu->identity = gpu_device_identify(device);
+    Result result = accept(gpu, search, number, error);
     if (result != RESULT_OK) gpu_destroy(gpu);
     return result;
 }
 
-static Result try_osmesa(Gpu *gpu, const GpuOptions *options, Error *error)
+static Result try_osmesa(Gpu *gpu, const Search *search, Error *error)
 {
-    if (options->require_hardware) return error_set(error, RESULT_NO_GL, "OSMesa draws on the CPU");
-    gpu->osmesa = calloc(1, sizeof *gpu->osmesa);
-    if (!gpu->osmesa) return error_set(error, RESULT_FAILED, "no memory for a context");
-    Result result = open_osmesa(gpu->osmesa, error);
-    THEN(result, accept(gpu, options, "OSMesa", error));
+    if (search->options.require_hardware)
+        return error_set(error, RESULT_NO_GL, "OSMesa draws on the CPU");
+    TRY(gpu_osmesa_create(&gpu->osmesa, error));
+    snprintf(gpu->path, sizeof gpu->path, "OSMesa");
+    Result result = accept(gpu, search, -1, error);
     if (result != RESULT_OK) gpu_destroy(gpu);
     return result;
 }
 
-// Adds to the one line that the user gets if nothing works, as long as there is room.
-static void note_failure(Error *attempts, const char *path, const Error *why)
+// Adds to a line of reasons, as long as there is room.
+static void note_failure(Error *line, const char *path, const Error *why)
 {
-    size_t used = strlen(attempts->text), room = sizeof attempts->text - used;
-    int length =
-        snprintf(attempts->text + used, room, "%s%s: %s", used ? "; " : "", path, why->text);
-    if (length < 0 || (size_t)length >= room) attempts->text[used] = 0;
+    size_t used = strlen(line->text), room = sizeof line->text - used;
+    int length = snprintf(line->text + used, room, "%s%s: %s", used ? "; " : "", path, why->text);
+    if (length < 0 || (size_t)length >= room) line->text[used] = 0;
+}
+
+static bool is_passed_over(const GpuDevice *device, const GpuOptions *options, int number)
+{
+    char own[16];
+    snprintf(own, sizeof own, "%d", number);
+    bool other = asks_for_device(options) &&
+                 strspn(options->device, "0123456789") == strlen(options->device) &&
+                 strtol(options->device, NULL, 10) != number;
+    return other || (options->software && !device->software);
 }
 
 // Hardware devices first, so that the fastest is taken where both are there.
-static Result try_devices(Gpu *gpu, const GpuOptions *options, Error *attempts)
+static Result try_devices(Gpu *gpu, Search *search)
 {
     Error why;
-    EglDevices devices;
+    GpuDevices devices;
     if (gpu_egl_find_devices(&devices, &why) != RESULT_OK)
-        note_failure(attempts, "EGL devices", &why);
+        note_failure(&search->attempts, "EGL devices", &why);
     for (int pass = 0; pass < 2; ++pass)
         for (int i = 0; i < devices.count; ++i) {
-            char path[64];
-            snprintf(path, sizeof path, "EGL device %d", i);
-            if (devices.software[i] != (pass == 1) ||
-                (options->device >= 0 && options->device != i))
+            const GpuDevice *device = &devices.device[i];
+            if (device->software != (pass == 1) || is_passed_over(device, &search->options, i))
                 continue;
-            if (try_egl(gpu, options, devices.device[i], path, &why) == RESULT_OK) return RESULT_OK;
-            note_failure(attempts, path, &why);
+            if (try_egl(gpu, search, device, i, &why) == RESULT_OK) return RESULT_OK;
+            char path[32];
+            snprintf(path, sizeof path, "EGL device %d", i);
+            note_failure(&search->attempts, path, &why);
+            if (!device->software) note_failure(&search->hardware, path, &why);
         }
-    if (options->device >= devices.count) {
-        error_set(&why, RESULT_NO_GL, "no device %d, there are %d (see --list-devices)",
-                  options->device, devices.count);
-        note_failure(attempts, "--device", &why);
+    return RESULT_NO_GL;
+}
+
+static Result try_all(Gpu *gpu, Search *search)
+{
+    Error why;
+    const GpuOptions *options = &search->options;
+    bool any_path = !asks_for_device(options);
+    if (options->backend != BACKEND_OSMESA) {
+        if (try_devices(gpu, search) == RESULT_OK) return RESULT_OK;
+        if (any_path && try_egl(gpu, search, NULL, -1, &why) == RESULT_OK) return RESULT_OK;
+        if (any_path) note_failure(&search->attempts, "EGL surfaceless", &why);
+    }
+    if (options->backend != BACKEND_EGL && any_path) {
+        if (try_osmesa(gpu, search, &why) == RESULT_OK) return RESULT_OK;
+        note_failure(&search->attempts, "OSMesa", &why);
     }
     return RESULT_NO_GL;
 }
 
-static Result try_all(Gpu *gpu, const GpuOptions *options, Error *attempts)
+// Why a CPU driver was taken though nobody asked for one; "" if no GPU is in sight.
+static void explain_choice(Gpu *gpu, const Search *search)
 {
-    Error why;
-    bool any_path = options->device < 0;
-    if (options->backend != BACKEND_OSMESA) {
-        if (try_devices(gpu, options, attempts) == RESULT_OK) return RESULT_OK;
-        if (any_path && try_egl(gpu, options, NULL, "EGL surfaceless", &why) == RESULT_OK)
-            return RESULT_OK;
-        if (any_path) note_failure(attempts, "EGL surfaceless", &why);
-    }
-    if (options->backend != BACKEND_EGL && any_path) {
-        if (try_osmesa(gpu, options, &why) == RESULT_OK) return RESULT_OK;
-        note_failure(attempts, "OSMesa", &why);
-    }
-    return RESULT_NO_GL;
+    const GpuOptions *options = &search->options;
+    if (!gpu->software || options->software || asks_for_device(options) ||
+        options->backend == BACKEND_OSMESA)
+        return;
+    if (*search->hardware.text)
+        gpu->passed_over = search->hardware;
+    else
+        gpu_device_explain("/dev", &gpu->passed_over);
 }
 
 static void APIENTRY print_message(GLenum source, GLenum type, GLuint id, GLenum severity,
@@ -243,17 +229,31 @@ static void APIENTRY print_message(GLenum source, GLenum type, GLuint id, GLenum
     fprintf(stderr, "tractrix: GL: %s\n", quote(text).text);
 }
 
+static Result refuse(const Search *search, Error *error)
+{
+    Error sign;
+    if (asks_for_device(&search->options))
+        return error_set(error, RESULT_NO_GL,
+                         "--device %s: no such device: %s (see --list-devices)",
+                         search->options.device,
+                         *search->attempts.text ? search->attempts.text : "there are fewer");
+    gpu_device_explain("/dev", &sign);
+    return error_set(
+        error, RESULT_NO_GL,
+        "no usable OpenGL 4.3 (%s%s%s); on Debian the packages libegl1, libopengl0 and "
+        "libgl1-mesa-dri give a CPU driver, in a container on NVIDIA the 'graphics' "
+        "driver capability is needed",
+        search->attempts.text, *sign.text ? "; " : "", sign.text);
+}
+
 Result gpu_create(Gpu *gpu, const GpuOptions *options, Error *error)
 {
     *gpu = (Gpu){0};
-    Error attempts = {{0}};
-    if (try_all(gpu, options, &attempts) != RESULT_OK)
-        return error_set(
-            error, RESULT_NO_GL,
-            "no usable OpenGL 4.3 (%s); on Debian the packages libegl1, "
-            "libopengl0 and libgl1-mesa-dri give a CPU driver, in a container on NVIDIA the "
-            "'graphics' driver capability is needed",
-            attempts.text);
+    Search search = {.options = *options};
+    TRY(assumptions_read(&search.assumptions, error));
+    if (try_all(gpu, &search) != RESULT_OK) return refuse(&search, error);
+    explain_choice(gpu, &search);
+    shader_assume_ulps(search.assumptions.ulps);
     if (options->debug) {
         glEnable(GL_DEBUG_OUTPUT);
         glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
@@ -265,47 +265,62 @@ Result gpu_create(Gpu *gpu, const GpuOptions *options, Error *error)
 void gpu_destroy(Gpu *gpu)
 {
     gpu_egl_destroy(&gpu->egl);
-    if (gpu->osmesa && gpu->osmesa->context) gpu->osmesa->destroy(gpu->osmesa->context);
-    free(gpu->osmesa);
+    gpu_osmesa_destroy(gpu->osmesa);
     *gpu = (Gpu){0};
+}
+
+// --- The list of devices.
+
+static void list_identity(FILE *stream, const Gpu *gpu)
+{
+    const GpuIdentity *identity = &gpu->identity;
+    fprintf(stream, "%18s%s", "", quote(gpu->vendor).text);
+    if (*identity->pci) fprintf(stream, ", PCI %s", quote(identity->pci).text);
+    if (*identity->uuid) fprintf(stream, ", UUID %s", identity->uuid);
+    if (identity->memory) fprintf(stream, ", %.1f GiB", (double)identity->memory / 0x1p30);
+    if (*identity->node) fprintf(stream, ", %s", quote(identity->node).text);
+    fputc('\n', stream);
 }
 
 static bool list_one(FILE *stream, Gpu *gpu, Result result, const char *name, const Error *why)
 {
-    if (result == RESULT_OK)
+    if (result == RESULT_OK) {
         fprintf(stream, "%-17s %s, OpenGL %s%s\n", name, quote(gpu->renderer).text,
                 quote(gpu->version).text, gpu->software ? " (CPU)" : "");
-    else
+        list_identity(stream, gpu);
+    } else {
         fprintf(stream, "%-17s not usable: %s\n", name, why->text);
+    }
     gpu_destroy(gpu);
     return result == RESULT_OK;
+}
+
+static bool has_hardware(const GpuDevices *devices)
+{
+    for (int i = 0; i < devices->count; ++i)
+        if (!devices->device[i].software) return true;
+    return false;
 }
 
 Result gpu_list_devices(FILE *stream, Error *error)
 {
     Gpu gpu = {0};
     Error why;
-    EglDevices devices;
-    const GpuOptions any = {.device = -1};
+    GpuDevices devices;
+    const Search any = {.options = {0}};
     bool usable = false;
+    Error sign;
     if (gpu_egl_find_devices(&devices, &why) != RESULT_OK)
         list_one(stream, &gpu, RESULT_NO_GL, "EGL devices", &why);
     for (int i = 0; i < devices.count; ++i) {
         char name[32];
         snprintf(name, sizeof name, "--device %d", i);
-        usable |=
-            list_one(stream, &gpu, try_egl(&gpu, &any, devices.device[i], name, &why), name, &why);
+        Result result = try_egl(&gpu, &any, &devices.device[i], i, &why);
+        usable |= list_one(stream, &gpu, result, name, &why);
     }
-    usable |= list_one(stream, &gpu, try_egl(&gpu, &any, NULL, "EGL surfaceless", &why),
-                       "EGL surfaceless", &why);
+    usable |= list_one(stream, &gpu, try_egl(&gpu, &any, NULL, -1, &why), "EGL surfaceless", &why);
     usable |= list_one(stream, &gpu, try_osmesa(&gpu, &any, &why), "--backend osmesa", &why);
+    gpu_device_explain("/dev", &sign);
+    if (*sign.text && !has_hardware(&devices)) fprintf(stream, "%s\n", sign.text);
     return usable ? RESULT_OK : error_set(error, RESULT_NO_GL, "no usable OpenGL 4.3 device");
-}
-
-Result gpu_check(const char *what, Error *error)
-{
-    GLenum code = glGetError();
-    if (code == GL_NO_ERROR) return RESULT_OK;
-    return error_set(error, RESULT_FAILED, "%s: OpenGL error 0x%04x%s", what, code,
-                     code == GL_OUT_OF_MEMORY ? " (out of memory)" : "");
 }

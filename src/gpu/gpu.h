@@ -7,7 +7,10 @@
 
 #include "base/error.h"
 #include "base/params.h"
+#include "gpu/assume.h"
+#include "gpu/gpu_device.h"
 #include "gpu/gpu_egl.h"
+#include "gpu/gpu_error.h"
 #include "gpu/gpu_sizes.h"
 
 #include <stdbool.h>
@@ -16,10 +19,9 @@
 
 typedef struct GpuOptions {
     Backend backend;
-    int device;            // index as `gpu_list_devices` prints it; -1: the best one
+    const char *device;    // as gpu_device_is has it; NULL or "": the best one
     bool software;         // only CPU drivers
     bool require_hardware; // no CPU driver
-    bool assume_hardware;  // a CPU driver is treated as hardware
     bool debug;            // KHR_debug context; messages go to stderr
 } GpuOptions;
 
@@ -37,26 +39,27 @@ typedef struct GpuLimits {
 // that made it.
 typedef struct Gpu {
     GpuLimits limits;
-    bool software;            // a CPU driver, judged by GL_RENDERER
-    GpuKind kind;             // what decisions go by: of `software`, unless hardware is assumed
-    char renderer[256];       // GL_RENDERER
-    char version[256];        // GL_VERSION
-    char vendor[128];         // GL_VENDOR
-    char processor[256];      // the CPU's name: images and times of a CPU driver depend on it
-    char path[64];            // the way in: "EGL device 0", "EGL surfaceless", "OSMesa"
+    bool software;       // a CPU driver, judged by GL_RENDERER
+    GpuKind kind;        // what decisions go by: of `software`, unless hardware is assumed
+    char renderer[256];  // GL_RENDERER
+    char version[256];   // GL_VERSION
+    char vendor[128];    // GL_VENDOR
+    char processor[256]; // the CPU's name: images and times of a CPU driver depend on it
+    char path[64];       // the way in: "EGL device 0", "EGL surfaceless", "OSMesa"
+    Error passed_over;   // why hardware was not taken, if there are signs of any and this is a
+                         // CPU driver that nobody asked for; "": no
+    GpuIdentity identity;
     EglContext egl;           // zeroed: not by EGL
     struct GpuOsMesa *osmesa; // NULL: not by OSMesa
 } Gpu;
 
-// Makes a context and makes it current. Order: EGL devices, hardware before software; EGL
-// surfaceless; OSMesa. RESULT_NO_GL with one line that says what was tried, why it failed and which
-// package helps.
+// Makes a context and makes it current, as the environment's assumptions have it (gpu/assume.h).
+// Order: EGL devices, hardware before software; EGL surfaceless; OSMesa. RESULT_NO_GL with one line
+// that says what was tried, why it failed and which package helps.
 Result gpu_create(Gpu *gpu, const GpuOptions *options, Error *error);
 void gpu_destroy(Gpu *gpu);
 
-// Prints one line per EGL device and per other way in: index, renderer, version, or why it can't be
-// used. RESULT_NO_GL if none works.
+// Prints each EGL device and other way in: number, renderer, version, and below them vendor, PCI
+// address, UUID, memory and node as far as they are known; or why it can't be used. RESULT_NO_GL if
+// none works.
 Result gpu_list_devices(FILE *stream, Error *error);
-
-// RESULT_FAILED naming `what` if a GL error is pending (out of memory, ...). Waits for nothing.
-Result gpu_check(const char *what, Error *error);

@@ -4,6 +4,7 @@
 #include <epoxy/egl.h>
 
 #include <dlfcn.h>
+#include <stdio.h>
 #include <string.h>
 
 static const struct {
@@ -49,19 +50,34 @@ static Result require_libraries(Error *error)
     return RESULT_OK;
 }
 
-Result gpu_egl_find_devices(EglDevices *devices, Error *error)
+// Words of EGL_EXT_device_drm and EGL_EXT_device_drm_render_node (whose name libepoxy 1.5 lacks).
+static GpuDevice describe(void *egl)
 {
-    *devices = (EglDevices){0};
+    enum { RENDER_NODE_FILE = 0x3377 };
+    GpuDevice device = {.egl = egl};
+    const char *text = eglQueryDeviceStringEXT(egl, EGL_EXTENSIONS), *node = NULL;
+    const char *extensions = text ? text : "";
+    device.software = strstr(extensions, "EGL_MESA_device_software");
+    if (strstr(extensions, "EGL_EXT_device_drm_render_node"))
+        node = eglQueryDeviceStringEXT(egl, RENDER_NODE_FILE);
+    if (!node && strstr(extensions, "EGL_EXT_device_drm"))
+        node = eglQueryDeviceStringEXT(egl, EGL_DRM_DEVICE_FILE_EXT);
+    if (node) snprintf(device.node, sizeof device.node, "%s", node);
+    gpu_device_look_up(&device);
+    return device;
+}
+
+Result gpu_egl_find_devices(GpuDevices *devices, Error *error)
+{
+    *devices = (GpuDevices){0};
     TRY(require_libraries(error));
     if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device") ||
         !epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration"))
         return error_set(error, RESULT_NO_GL, "EGL can't enumerate devices");
-    if (!eglQueryDevicesEXT(32, devices->device, &devices->count))
+    void *found[GPU_MOST_DEVICES];
+    if (!eglQueryDevicesEXT(GPU_MOST_DEVICES, found, &devices->count))
         return fail("eglQueryDevicesEXT", error);
-    for (int i = 0; i < devices->count; ++i) {
-        const char *extensions = eglQueryDeviceStringEXT(devices->device[i], EGL_EXTENSIONS);
-        devices->software[i] = extensions && strstr(extensions, "EGL_MESA_device_software");
-    }
+    for (int i = 0; i < devices->count; ++i) devices->device[i] = describe(found[i]);
     return RESULT_OK;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/error.h"
+#include "gpu/gpu_device.h"
 
 #include <stdbool.h>
 
@@ -11,15 +12,9 @@ typedef struct EglContext {
     void *display, *context;
 } EglContext;
 
-typedef struct EglDevices {
-    void *device[32];  // EGLDeviceEXT
-    bool software[32]; // says of itself that it is a CPU driver
-    int count;
-} EglDevices;
-
 // The devices that EGL enumerates, in its order. RESULT_NO_GL if libEGL is missing or can't
 // enumerate.
-Result gpu_egl_find_devices(EglDevices *devices, Error *error);
+Result gpu_egl_find_devices(GpuDevices *devices, Error *error);
 
 // Makes a 4.3 core context on a device, or on the surfaceless platform for device NULL, and makes
 // it current without a surface. RESULT_NO_GL with the failed call and EGL's error in words.

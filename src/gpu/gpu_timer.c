@@ -2,6 +2,7 @@
 #include "gpu/gpu_timer.h"
 
 #include "base/clock.h"
+#include "gpu/gpu_error.h"
 
 #include <assert.h>
 #include <string.h>
@@ -36,6 +37,8 @@ static void read_oldest(TimerLabel *label)
 
 void gpu_timer_begin(GpuTimer *timer, const char *name)
 {
+    gpu_error_note("between passes");
+    timer->pass = name;
     if (!timer->enabled) return;
     assert(timer->current < 0);
     timer->current = find_label(timer, name);
@@ -52,6 +55,7 @@ void gpu_timer_begin(GpuTimer *timer, const char *name)
 
 void gpu_timer_end(GpuTimer *timer)
 {
+    gpu_error_note(timer->pass);
     if (!timer->enabled) return;
     TimerLabel *label = &timer->labels[timer->current];
     if (timer->by_clock) {

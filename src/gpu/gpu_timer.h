@@ -25,14 +25,16 @@ typedef struct GpuTimer {
     double begun_ms;
     TimerLabel labels[TIMER_MAX_LABELS];
     int count;
-    int current; // label that is being measured, -1: none
+    int current;      // label that is being measured, -1: none
+    const char *pass; // that has begun, measured or not
 } GpuTimer;
 
 // `enabled` is false where nobody asks for times; `software` as Gpu has it.
 void gpu_timer_create(GpuTimer *timer, bool enabled, bool software);
 void gpu_timer_destroy(GpuTimer *timer);
 
-// Measures the GL commands between begin and end under `name`. Spans do not nest.
+// Measures the GL commands between begin and end under `name`, to which their errors are put down
+// (gpu_error.h) also where nobody measures. Spans do not nest.
 void gpu_timer_begin(GpuTimer *timer, const char *name);
 void gpu_timer_end(GpuTimer *timer);
 

@@ -2,8 +2,10 @@
 #include "gpu/shader.h"
 
 #include "base/bytes.h"
+#include "base/outfile.h"
 
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,6 +17,7 @@ static const char NO_REASON[] = "the driver refuses it and gives no reason";
 static const GlslSource NONE[] = {{NULL, NULL}};
 static const GlslSource *added_sources = NONE;
 static bool warnings_are_errors;
+static int assumed_ulps;
 
 void shader_add_sources(const GlslSource *sources)
 {
@@ -24,6 +27,11 @@ void shader_add_sources(const GlslSource *sources)
 void shader_treat_warnings_as_errors(bool on)
 {
     warnings_are_errors = on;
+}
+
+void shader_assume_ulps(int ulps)
+{
+    assumed_ulps = ulps;
 }
 
 const char *shader_folder(void)
@@ -142,7 +150,36 @@ static Result compose(Composition *c, const char *file, const ShaderDefine *defi
         int length = snprintf(line, sizeof line, "#define %s %d", define->name, define->value);
         TRY(append_line(c, line, (size_t)length, -1, 0, error));
     }
+    if (assumed_ulps) {
+        static const char perturb[] = "common/perturb.glsl";
+        char line[32];
+        int length = snprintf(line, sizeof line, "#define ULPS %d", assumed_ulps);
+        TRY(append_line(c, line, (size_t)length, -1, 0, error));
+        TRY(append_file(c, perturb, strlen(perturb), error));
+    }
     return append_file(c, file, strlen(file), error);
+}
+
+// Writes the joined text where TRACTRIX_GLSL_DUMP asks for it. The name's number is the text's
+// FNV-1a hash, so that variants of a file lie side by side.
+static Result dump(const Composition *c, const char *file, Error *error)
+{
+    const char *folder = getenv("TRACTRIX_GLSL_DUMP"), *ending = strrchr(file, '.');
+    char path[4096];
+    uint64_t hash = 0xcbf29ce484222325;
+    OutFile out;
+    if (!folder || !*folder || !ending) return RESULT_OK;
+    for (size_t i = 0; i < c->length; ++i) hash = (hash ^ (uint8_t)c->text[i]) * 0x100000001b3;
+    int start = snprintf(path, sizeof path, "%s/", folder);
+    if (start < 0 || (size_t)start + strlen(file) + 20 >= sizeof path)
+        return error_set(error, RESULT_FAILED, "TRACTRIX_GLSL_DUMP: too long a path");
+    snprintf(path + start, sizeof path - (size_t)start, "%.*s.%016llx%s", (int)(ending - file),
+             file, (unsigned long long)hash, ending);
+    for (char *at = path + start; *at; ++at)
+        if (*at == '/') *at = '_';
+    TRY(outfile_open(&out, path, error));
+    fwrite(c->text, 1, c->length, out.stream);
+    return outfile_commit(&out, error);
 }
 
 // The first line of a driver's log as "glsl/FILE:LINE: message". Mesa writes "0:12(5): error: ...",
@@ -172,8 +209,9 @@ static Result compile(GLuint shader, const char *file, const ShaderDefine *defin
         glCompileShader(shader);
         glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
         glGetShaderInfoLog(shader, sizeof log, NULL, log);
+        result = dump(&composition, file, error);
         if (!good && !*log) snprintf(log, sizeof log, "%s", NO_REASON);
-        if (!good || (warnings_are_errors && *log))
+        if (result == RESULT_OK && (!good || (warnings_are_errors && *log)))
             result = report_log(&composition, file, log, error);
     }
     composition_destroy(&composition);

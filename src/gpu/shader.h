@@ -38,8 +38,14 @@ Result shader_build_compute(GLuint *program, const char *file, const ShaderDefin
 Result shader_build_draw(GLuint *program, const char *vertex_file, const char *fragment_file,
                          const ShaderDefine *defines, Error *error);
 
-// The folder of TRACTRIX_GLSL_DIR; NULL: the shaders are the program's own.
+// The folder of TRACTRIX_GLSL_DIR; NULL: the shaders are the program's own. Where
+// TRACTRIX_GLSL_DUMP names a folder, the joined text of every shader that is built is written
+// there, for compilers of other drivers: draw_hair.frag is draw_hair.HASH.frag.
 const char *shader_folder(void);
+
+// Every shader built from now on rounds otherwise, by so many units in the last place
+// (glsl/common/perturb.glsl); 0: as the driver does.
+void shader_assume_ulps(int ulps);
 
 // Compiler warnings of all programs built so far count as failures if this is on (the shader check
 // of `make check`).

@@ -53,7 +53,8 @@ int main(int argc, char **argv)
         return program_end("tractrix-render", RESULT_OK, &error);
     }
     Run run = {.begin_ms = clock_ms()};
-    Result result = scene_from_arguments(&run.scene, argc, argv, &error);
+    Result result = assumptions_take_option(&argc, argv, &error);
+    THEN(result, scene_from_arguments(&run.scene, argc, argv, &error));
     THEN(result, answer(&run, &error));
     run_destroy(&run);
     return program_end("tractrix-render", result, &error);

@@ -73,6 +73,8 @@ static Result open_gpu(Run *run, Error *error)
     if (!params->quiet)
         fprintf(stderr, "%s, OpenGL %s (%s)\n", quote(run->gpu.renderer).text,
                 quote(run->gpu.version).text, run->gpu.path);
+    if (!params->quiet && *run->gpu.passed_over.text)
+        fprintf(stderr, "no GPU is used: %s\n", run->gpu.passed_over.text);
     return RESULT_OK;
 }
 

@@ -36,6 +36,8 @@ static json_t *describe_device(const Gpu *gpu)
     json_object_set_new(device, "version", json_string(gpu->version));
     json_object_set_new(device, "vendor", json_string(gpu->vendor));
     json_object_set_new(device, "path", json_string(gpu->path));
+    json_object_set_new(device, "pci", json_string(gpu->identity.pci));
+    json_object_set_new(device, "uuid", json_string(gpu->identity.uuid));
     json_object_set_new(device, "software", json_boolean(gpu->software));
     json_object_set_new(device, "processor", json_string(gpu->processor));
     return device;

@@ -140,7 +140,7 @@ static Result check_conflicts(const RunParams *run, Error *error)
     if (run->software && run->require_hardware) pair = "--software and --require-hardware";
     if (run->backend == BACKEND_OSMESA) {
         if (run->require_hardware) pair = "--backend osmesa and --require-hardware";
-        if (run->device >= 0) pair = "--backend osmesa and --device";
+        if (*run->device) pair = "--backend osmesa and --device";
     }
     if (run->raster == RASTER_BLOCKS && run->oit != OIT_AUTO) pair = "--raster blocks and --oit";
     if (run->raster == RASTER_BLOCKS && run->oit_layers > 0)

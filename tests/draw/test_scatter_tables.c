@@ -26,7 +26,7 @@ static GLuint programs[2]; // probe_shade.comp, by Lobes
 static int open_gpu(void **state)
 {
     (void)state;
-    NEEDED(gpu_create(&gpu, &(GpuOptions){.device = -1}, error));
+    NEEDED(gpu_create(&gpu, &(GpuOptions){0}, error));
     shader_add_sources(TEST_GLSL_SOURCES);
     shader_treat_warnings_as_errors(true);
     for (int lobes = LOBES_ENERGY; lobes <= LOBES_GAUSS; ++lobes) {

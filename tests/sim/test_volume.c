@@ -282,7 +282,7 @@ static void threads_do_not_matter(void **state)
         World world;
         Gpu gpu;
         setenv("LP_NUM_THREADS", i ? "2" : "1", 1);
-        assert_int_equal(gpu_create(&gpu, &(GpuOptions){.device = -1}, NULL), RESULT_OK);
+        assert_int_equal(gpu_create(&gpu, &(GpuOptions){0}, NULL), RESULT_OK);
         start(&world, &gpu, "hybrid", 1, 0, "");
         for (int frame = 0; frame < 20; ++frame) simulation_advance(&world.simulation);
         x[i] = read_positions(&world);

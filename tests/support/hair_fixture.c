@@ -13,7 +13,7 @@ const Gpu *fixture_gpu(void)
 {
     static Gpu gpu;
     Error error;
-    if (!gpu.renderer[0] && gpu_create(&gpu, &(GpuOptions){.device = -1}, &error) != RESULT_OK)
+    if (!gpu.renderer[0] && gpu_create(&gpu, &(GpuOptions){0}, &error) != RESULT_OK)
         fail_msg("%s", error.text);
     return &gpu;
 }

@@ -17,7 +17,7 @@ static const float EYE = 1000;
 void studio_open(Studio *studio, const RendererOptions *options)
 {
     memset(studio, 0, sizeof *studio);
-    NEEDED(gpu_create(&studio->gpu, &(GpuOptions){.device = -1}, error));
+    NEEDED(gpu_create(&studio->gpu, &(GpuOptions){0}, error));
     gpu_timer_create(&studio->timer, false, studio->gpu.software);
     studio_set_options(studio, options);
 }
