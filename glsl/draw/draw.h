@@ -62,6 +62,28 @@
 #define BLOCK_COUNT_WORDS (64 * 16)
 #define MANY_BLOCKS       0xffffffffu
 
+// The same points for the compute rasteriser, which composites those ribbons by tiles.
+#define BIND_TILE_COUNTS_OUT 0 // uint a tile: its ribbons
+#define BIND_TILE_ENDS_OUT   1 // uint a tile: where its list goes on, in the end behind its last pair
+#define BIND_TILE_USE_OUT    2 // TILE_USE_WORDS uint
+#define BIND_PAIRS_OUT       3 // uvec2 a ribbon in a tile: ~depth, slot
+#define BIND_RIBBONS         4 // RIBBON_TEXELS uvec4 a slot
+#define BIND_KEYS            5 // uvec2 a slot
+#define BIND_SORTED          6
+#define IMAGE_PAIRS          0 // image units
+#define IMAGE_SORTED         1 // as PAIRS_OUT, each list in order
+#define IMAGE_PICTURE        2
+
+#define TILE_SIDE        16 // px; a work group composites one
+#define TILE_CELL_WIDTH  8  // px of the cells by which ribbons are left out that miss them
+#define TILE_CELL_HEIGHT 4
+
+// Words of TILE_USE_OUT.
+#define TILE_USE_PAIRS   0 // of all tiles, modulo 2^32
+#define TILE_USE_LONGEST 1 // pairs of a tile
+#define TILE_USE_COARSE  2 // sum of each tile's pairs / 1024
+#define TILE_USE_WORDS   3
+
 // The A-buffer's pool is split into shards, each with a counter of its own: pixels of different
 // 8x8 blocks then rarely wait for each other's atomics. A small picture full of hair would fill few
 // of them: it uses one.

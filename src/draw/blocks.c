@@ -69,7 +69,6 @@ static Result read_back(BlocksBehind *behind, const RenderTarget *target, const 
 
 enum {
     ALIGNED_RIBBONS = 32,  // at whose multiples every driver lets a buffer's range begin
-    MOST_SLOTS = 1 << 21,  // 151 MB
     STORED_SLOTS = 1 << 18 // 19 MB; a strand takes 65,000 at most
 };
 
@@ -84,11 +83,11 @@ static int64_t smaller(int64_t a, int64_t b)
 
 // Makes room for so many bytes; the driver shows shaders parts of them.
 static Result make_room(GpuBuffer *buffer, const GpuLimits *limits, const char *what, int64_t size,
-                        Error *error)
+                        GLenum texel_format, Error *error)
 {
     if (buffer->size >= size) return RESULT_OK;
     gpu_buffer_destroy(buffer);
-    return gpu_buffer_create_pieces(buffer, limits, what, size, 0, error);
+    return gpu_buffer_create_pieces(buffer, limits, what, size, texel_format, error);
 }
 
 static void clear(const GpuBuffer *buffer, int64_t size)
@@ -117,7 +116,7 @@ Result blocks_create(Blocks *blocks, const GpuLimits *limits, const RendererOpti
 {
     *blocks = (Blocks){
         .project = {.file = "draw/block_project.comp", .group_size = limits->sizes.strands},
-        .most_slots = MOST_SLOTS,
+        .most_slots = BLOCKS_MOST_SLOTS,
         .stored_slots = STORED_SLOTS,
         .limits = limits,
         .cull = {.limits = limits},
@@ -161,8 +160,9 @@ Result blocks_begin(Blocks *blocks, uint64_t segments, const BlocksBase *base, E
     int64_t count = 1 + (int64_t)(blocks->stores ? blocks->stored_slots : segments);
     const GpuLimits *limits = blocks->limits;
     TRY(make_room(&blocks->ribbons, limits, "ribbons", count * (int64_t)sizeof(RibbonRecord),
+                  GL_RGBA32UI, error));
+    TRY(make_room(&blocks->keys, limits, "depths", count * (int64_t)sizeof(RibbonKey), GL_RG32UI,
                   error));
-    TRY(make_room(&blocks->keys, limits, "depths", count * (int64_t)sizeof(RibbonKey), error));
     TRY(cull_begin(&blocks->cull, &base->cull, blocks->skips, error));
     clear(&blocks->keys, count * (int64_t)sizeof(RibbonKey));
     clear(&blocks->counts, blocks->counts.size);
@@ -245,7 +245,7 @@ Result blocks_add(Blocks *blocks, const HairBatch *batch, const Look *look, Erro
     return RESULT_OK;
 }
 
-static Result read_counts(Blocks *blocks, Error *error)
+Result blocks_count(Blocks *blocks, Error *error)
 {
     const GLuint *counts = map(&blocks->counts, blocks->counts.size);
     if (!counts) return error_set(error, RESULT_FAILED, "hair's counts cannot be read");
@@ -311,7 +311,7 @@ Result blocks_draw(Blocks *blocks, GpuTimer *timer, Image *image, Error *error)
     BlockScene scene = {
         .slots = blocks->slots, .style = blocks->style, .nearest = blocks->nearest, .image = image};
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    TRY(read_counts(blocks, error));
+    TRY(blocks_count(blocks, error));
     TRY(read_behind(blocks, &scene, timer, error));
     return (blocks->stores ? draw_stored : draw_mapped)(blocks, &scene, timer, error);
 }

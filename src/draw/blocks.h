@@ -13,6 +13,8 @@
 
 #include <stdbool.h>
 
+enum { BLOCKS_MOST_SLOTS = 1 << 21 }; // 151 MB
+
 // What stands behind and among the hair. No target: nothing.
 typedef struct BlocksBase {
     CullBase cull;
@@ -63,6 +65,9 @@ Result blocks_begin(Blocks *blocks, uint64_t segments, const BlocksBase *base, E
 
 // Adds a batch. Needs the DrawParams block. RESULT_FAILED if the look's shader does not compile.
 Result blocks_add(Blocks *blocks, const HairBatch *batch, const Look *look, Error *error);
+
+// Counts what was added: segments, culled. Waits for it. RESULT_FAILED if it can't be read.
+Result blocks_count(Blocks *blocks, Error *error);
 
 // Draws all that was added into `image`. No ribbon is lost: lists are counted before they are made.
 // RESULT_FAILED if memory is short.

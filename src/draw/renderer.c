@@ -17,7 +17,7 @@ typedef struct RasterType {
     Result (*add_base)(Renderer *renderer, Error *error); // NULL: nothing is to be made
     Result (*draw)(Renderer *renderer, Image *image, Error *error);
 } RasterType;
-static const RasterType RASTERS[3];
+static const RasterType RASTERS[4];
 
 static Result create_quads(Renderer *renderer, Error *error)
 {
@@ -27,6 +27,14 @@ static Result create_quads(Renderer *renderer, Error *error)
 static Result create_blocks(Renderer *renderer, Error *error)
 {
     return blocks_create(&renderer->blocks, &renderer->gpu->limits, &renderer->options, error);
+}
+
+// Blocks project for it, and draw what it cannot.
+static Result create_compute(Renderer *renderer, Error *error)
+{
+    TRY(create_blocks(renderer, error));
+    renderer->blocks.most_slots = compute_most_slots(renderer->gpu);
+    return compute_create(&renderer->compute, renderer->gpu, &renderer->options, error);
 }
 
 // The options as they are drawn by: with what an AOV asks for.
@@ -47,7 +55,8 @@ static Raster choose_raster(const Gpu *gpu, const RendererOptions *options)
 {
     bool plain = options->oit == OIT_AUTO && options->oit_layers == 0;
     if (options->raster != RASTER_AUTO) return options->raster;
-    return gpu->kind == GPU_CPU_DRIVER && plain ? RASTER_BLOCKS : RASTER_QUADS;
+    if (!plain) return RASTER_QUADS;
+    return gpu->kind == GPU_HARDWARE ? RASTER_COMPUTE : RASTER_BLOCKS;
 }
 
 static bool has_base(const Renderer *renderer)
@@ -97,6 +106,7 @@ void renderer_destroy(Renderer *renderer)
     render_target_destroy(&renderer->target);
     quads_destroy(&renderer->quads);
     blocks_destroy(&renderer->blocks);
+    compute_destroy(&renderer->compute);
     base_layer_destroy(&renderer->base);
     shadows_destroy(&renderer->shadow);
     hair_scatter_destroy(&renderer->scatter);
@@ -261,25 +271,66 @@ static Result project_items(Renderer *renderer, Error *error)
     return result;
 }
 
-static Result draw_blocks(Renderer *renderer, Image *image, Error *error)
+// The ribbons of all items.
+static Result project(Renderer *renderer, Error *error)
 {
-    Blocks *blocks = &renderer->blocks;
     const Drawing *drawing = &renderer->drawing;
     const BlocksBase base = {
         .cull = {has_base(renderer) ? &renderer->target : NULL, renderer->base.depth_version},
         .version = renderer->base.version,
         .box = drawing->base_box,
         .depth = {drawing->draw.depth[0], drawing->draw.depth[1]}};
-    TRY(blocks_begin(blocks, drawing_count_segments(drawing), &base, error));
-    TRY(project_items(renderer, error));
-    TRY(blocks_draw(blocks, renderer->timer, image, error));
+    Blocks *blocks = &renderer->blocks;
+    uint64_t segments = drawing_count_segments(drawing);
+    Result result = blocks_begin(blocks, segments, &base, error);
+    if (result != RESULT_OK && blocks->most_slots > BLOCKS_MOST_SLOTS) {
+        blocks->most_slots = BLOCKS_MOST_SLOTS; // a GPU without so much memory: piece by piece
+        result = blocks_begin(blocks, segments, &base, error);
+    }
+    if (result != RESULT_OK) return result;
+    return project_items(renderer, error);
+}
+
+static Result draw_blocks(Renderer *renderer, Image *image, Error *error)
+{
+    TRY(project(renderer, error));
+    TRY(blocks_draw(&renderer->blocks, renderer->timer, image, error));
     count_blocks(renderer);
+    return RESULT_OK;
+}
+
+static Result add_base_to_compute(Renderer *renderer, Error *error)
+{
+    return compute_add_base(&renderer->compute, error);
+}
+
+static Result draw_compute(Renderer *renderer, Image *image, Error *error)
+{
+    Blocks *blocks = &renderer->blocks;
+    ComputeCounts counts;
+    bool drawn = false;
+    TRY(project(renderer, error));
+    if (!blocks->stores)
+        TRY(compute_draw(&renderer->compute, blocks, &renderer->target, renderer->timer, image,
+                         &counts, &drawn, error));
+    if (drawn)
+        TRY(blocks_count(blocks, error));
+    else
+        TRY(blocks_draw(blocks, renderer->timer, image, error));
+    count_blocks(renderer);
+    if (!drawn) return RESULT_OK;
+    renderer->counts.fragments = counts.pairs;
+    renderer->counts.pool_bytes =
+        (uint64_t)(renderer->compute.bins.pairs.size + renderer->compute.bins.sorted.size);
+    renderer->counts.redraws = counts.redraws;
+    renderer->counts.bands = counts.bands;
     return RESULT_OK;
 }
 
 static const RasterType RASTERS[] = {
     [RASTER_QUADS] = {create_quads, add_base_to_quads, draw_quads},
     [RASTER_BLOCKS] = {create_blocks, NULL, draw_blocks},
+    [RASTER_COMPUTE] = {create_compute, add_base_to_compute, draw_compute},
 };
 
 static Result draw_base(Renderer *renderer, Error *error)

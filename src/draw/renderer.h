@@ -2,12 +2,13 @@
 // The room draw turns hair into images. It takes hair on the GPU (sim/hair.h), the view, lights and
 // materials of a frame, and a mesh; it hands on an Image. First come shadow maps (shadows.h) and
 // the light among hair (hair_scatter.h), then mesh and floor (base_layer.h), then the hair by one
-// of two rasterisers: blocks.h composites on the CPU, quads.h sends triangles into an A-buffer.
-// drawing.h has what the passes of an image share.
+// of three rasterisers: blocks.h composites on the CPU, compute.h on the GPU, quads.h sends
+// triangles into an A-buffer. drawing.h has what the passes of an image share.
 #pragma once
 
 #include "draw/base_layer.h"
 #include "draw/blocks.h"
+#include "draw/compute.h"
 #include "draw/drawing.h"
 #include "draw/hair_scatter.h"
 #include "draw/quads.h"
@@ -21,6 +22,7 @@ typedef struct Renderer {
     Raster raster; // auto is decided
     Quads quads;
     Blocks blocks;
+    Compute compute;
     BaseLayer base;
     Shadows shadow;
     HairScatter scatter;
@@ -33,7 +35,8 @@ typedef struct Renderer {
 
 // Makes targets and shaders. `gpu` and `timer` outlive the renderer; spans "draw_mesh",
 // "draw_project", and of quads "draw_hair", "draw_resolve" and "draw_read" (of the image), of
-// blocks "draw_read" (of mesh and floor), "draw_bin" and "draw_composite". RESULT_FAILED if the
+// blocks "draw_read" (of mesh and floor), "draw_bin" and "draw_composite", of compute "draw_bin",
+// "draw_sort", "draw_composite" and "draw_read" (of the image). RESULT_FAILED if the
 // size exceeds the driver's or memory is short.
 Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
                        const RendererOptions *options, Error *error);

@@ -20,7 +20,7 @@ typedef struct LodOptions {
 } LodOptions;
 
 typedef struct RendererOptions {
-    Raster raster;        // how hair becomes pixels; auto: blocks on CPU drivers, else quads
+    Raster raster;        // how hair becomes pixels; auto: blocks on CPU drivers, else compute
     int width, height;    // px, each 1 .. the driver's limits.framebuffer_side_px
     float background[4];  // sRGB and opacity 0..1; below 1 the images have an alpha channel
     float exposure;       // all light but the background's is this many times doubled
@@ -73,10 +73,10 @@ typedef struct RenderFrame {
 typedef struct RendererCounts {
     uint64_t segments;    // sent to the rasteriser; straight runs count as one
     uint64_t culled;      // strands outside the image, which cost no drawing
-    uint64_t hidden;      // strands behind mesh or floor that were not even projected (blocks)
-    uint64_t fragments;   // stored and blended: pixels of a ribbon, or with blocks blocks of it
-    uint64_t pool_bytes;  // of the A-buffer or the block lists now
-    uint32_t redraws;     // bands that were drawn again because the A-buffer was too small
+    uint64_t hidden;      // strands behind mesh or floor that were not even projected
+    uint64_t fragments;   // stored and blended: pixels of a ribbon; with blocks and compute blocks of it
+    uint64_t pool_bytes;  // of the A-buffer or the lists now
+    uint32_t redraws;     // bands that were drawn again because the A-buffer or the lists were too small
     uint32_t bands;       // horizontal bands that the image was drawn in
     uint64_t thinned;     // strands that others stand for, at their distance
     uint32_t shadow_maps; // that were made; those of the image before may have done

@@ -13,6 +13,9 @@ typedef enum GpuKind {
 typedef struct GpuSizes {
     int strands; // of shaders that give a lane a strand
     int items;   // of shaders that give a lane a texel, a cell or a triangle
+    int sort;    // of compute_sort.comp: as many pairs are sorted at once
+    int pixels;  // of a lane of compute_composite.comp: 1 or 4
+    int stages;  // 1: that shader unpacks ribbons into shared memory
 } GpuSizes;
 
 extern const GpuSizes GPU_SIZES[GPU_KINDS];

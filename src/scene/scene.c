@@ -145,6 +145,9 @@ static Result check_conflicts(const RunParams *run, Error *error)
     if (run->raster == RASTER_BLOCKS && run->oit != OIT_AUTO) pair = "--raster blocks and --oit";
     if (run->raster == RASTER_BLOCKS && run->oit_layers > 0)
         pair = "--raster blocks and --oit-layers";
+    if (run->raster == RASTER_COMPUTE && run->oit != OIT_AUTO) pair = "--raster compute and --oit";
+    if (run->raster == RASTER_COMPUTE && run->oit_layers > 0)
+        pair = "--raster compute and --oit-layers";
     if (pair) return error_set(error, RESULT_USAGE, "%s exclude each other", pair);
     if (run->lod_end > 0 && run->lod_end <= run->lod_start)
         return error_set(error, RESULT_USAGE,

@@ -284,7 +284,7 @@ static void bytes_do_not_depend_on_driver_threads(void **state)
 static void stored_ribbons_draw_the_same(void **state)
 {
     (void)state;
-    if (raster == RASTER_QUADS) return;
+    if (raster != RASTER_BLOCKS) return;
     size_t size;
     use(&BLACK);
     add_tangle(500, 2, 0.4f, NULL);

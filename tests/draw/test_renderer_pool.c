@@ -141,5 +141,5 @@ int main(void)
         CLAIM(a_row_that_no_pool_holds_is_an_error),
         CLAIM(samples_do_not_depend_on_bands),
     };
-    return stage_run_quads(tests);
+    return stage_run_one(tests, RASTER_QUADS);
 }

@@ -75,7 +75,7 @@ offers "tractrix-compare --max-f" --max-failing-pixels --max-flip
 offers "tractrix-bench --warm" --warm-up
 
 claim "the words of an option, also behind '='"
-offers "tractrix-render --raster " auto blocks quads
+offers "tractrix-render --raster " auto blocks compute quads
 offers "tractrix-render --raster=b" blocks
 offers "tractrix-render --algo e" emulation
 offers "tractrix-render --color aub" auburn
@@ -113,7 +113,7 @@ offers "tractrix-farm plain -o x assets/gust.json --algo rop" rope
 offers "tractrix-turntable assets/gust.json sh" sheet
 offers "tractrix-turntable assets/gus" gust.json
 offers "tractrix-turntable --sec" --seconds
-offers "tractrix-turntable assets/gust.json sheet --raster " auto blocks quads
+offers "tractrix-turntable assets/gust.json sheet --raster " auto blocks compute quads
 offers "tractrix-compare-goldens tests/gold" golden goldens.txt
 offers "tractrix-compare-goldens tests/goldens.txt tests/golden/ x/ --pix" --pixel-tolerance
 

@@ -16,7 +16,7 @@ draw() {
 }
 
 claim "few work groups side by side draw the same bytes as many"
-for raster in blocks quads; do
+for raster in blocks compute quads; do
     draw "many_$raster" --raster $raster
     TRACTRIX_ASSUME=groups=3
     export TRACTRIX_ASSUME

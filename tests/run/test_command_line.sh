@@ -130,7 +130,7 @@ if cmp -s "$work/hidden_1.tfx" "$work/shown_1.tfx"; then good; else bad "exporte
 run 0 "$work/shown.json" -q --cache "$work/layers.cache"
 run 0 "$work/hidden.json" -q --from-cache "$work/layers.cache" -o "$work/layer/"
 same_images "$work/alone" "$work/layer"
-for raster in blocks quads; do
+for raster in blocks quads compute; do
     for shadow in none approx dom; do run 0 $hair --hidden --frames 1 --raster $raster --shadow $shadow --size 32x24 -q -o "$work/nothing.png"; done
 done
 

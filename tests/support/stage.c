@@ -12,6 +12,8 @@
 const RendererOptions TRANSPARENT = {.width = SIDE, .height = SIDE};
 const RendererOptions BLACK = {.width = SIDE, .height = SIDE, .background = {0, 0, 0, 1}};
 
+static const char *const NAMES[] = {"", "quads", "blocks", "compute"};
+
 Raster raster;
 Studio studio;
 
@@ -26,8 +28,7 @@ static int open_studio(void **state)
 {
     (void)state;
     stage_open(&TRANSPARENT);
-    print_message("drawing %s with %s\n", raster == RASTER_QUADS ? "quads" : "blocks",
-                  studio.gpu.renderer);
+    print_message("drawing %s with %s\n", NAMES[raster], studio.gpu.renderer);
     return 0;
 }
 
@@ -126,10 +127,10 @@ Mesh make_square(float half)
     return mesh;
 }
 
-int stage_run_count(const struct CMUnitTest *tests, size_t count, Raster last)
+int stage_run_count(const struct CMUnitTest *tests, size_t count, Raster first, Raster last)
 {
     int failed = 0;
-    for (raster = RASTER_QUADS; raster <= last; ++raster)
+    for (raster = first; raster <= last; ++raster)
         failed += _cmocka_run_group_tests("renderer", tests, count, open_studio, close_studio);
     return failed;
 }

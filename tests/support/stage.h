@@ -16,13 +16,16 @@ extern const RendererOptions TRANSPARENT, BLACK;
 extern Raster raster; // that draws now
 extern Studio studio; // each test leaves it without hair
 
-// A test that clears the studio behind it; runs all with each rasteriser, or with quads alone, and
-// gives how many failed.
-#define CLAIM(name)      cmocka_unit_test_teardown(name, clear_studio)
-#define stage_run(tests) stage_run_count(tests, sizeof(tests) / sizeof(tests)[0], RASTER_BLOCKS)
-#define stage_run_quads(tests)                                                                     \
-    stage_run_count(tests, sizeof(tests) / sizeof(tests)[0], RASTER_QUADS)
-int stage_run_count(const struct CMUnitTest *tests, size_t count, Raster last);
+// A test that clears the studio behind it; runs all with quads and with blocks, with compute too,
+// or with one alone, and gives how many failed.
+#define CLAIM(name) cmocka_unit_test_teardown(name, clear_studio)
+#define stage_run(tests)                                                                           \
+    stage_run_count(tests, sizeof(tests) / sizeof(tests)[0], RASTER_QUADS, RASTER_BLOCKS)
+#define stage_run_all(tests)                                                                       \
+    stage_run_count(tests, sizeof(tests) / sizeof(tests)[0], RASTER_QUADS, RASTER_COMPUTE)
+#define stage_run_one(tests, only)                                                                 \
+    stage_run_count(tests, sizeof(tests) / sizeof(tests)[0], only, only)
+int stage_run_count(const struct CMUnitTest *tests, size_t count, Raster first, Raster last);
 int clear_studio(void **state);
 
 // Opens the studio anew, in a new context.

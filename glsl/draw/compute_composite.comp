@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: MIT
+// Composites a tile of pixels a work group: its list's ribbons near to far, each under what stands
+// before it, premultiplied and in linear light, over what stands behind, to colours. The arithmetic
+// is that of src/draw/block_composite.c and block_pixels.c.
+//   PIXELS 1, 4: of a lane, one above the other; GROUP_SIZE: lanes, for a tile
+//   STAGED 1: ribbons are unpacked once, into shared memory   0: by every lane for itself
+//   BASE 1: mesh or floor stand behind, and hide what is behind them
+//   NEAREST 1: a ribbon hides all behind it where it covers LEAST_COVERAGE of the pixel
+//   DEPTH 1: and shows its distance
+//   SAMPLES: what is a pixel here is one of SAMPLES x SAMPLES that the picture has the mean of
+//   KIND 0: 8 bits a channel are stored   1: 16   2: floats
+//   TONE: see display.glsl
+//
+// Ribbons are taken BATCH at a time: lanes find the cells that each of them touches, a bit a ribbon
+// in the cell's mask, then each cell's lanes go through their mask from its lowest bit on. So bits
+// may be set in any order. A cell is left out once less than LEAST is seen through all its pixels.
+#include "draw/draw.h"
+#include "draw/block.glsl"
+#include "draw/compute_strip.glsl"
+#include "draw/display.glsl"
+
+#define CELL_LANES (TILE_CELL_WIDTH * TILE_CELL_HEIGHT / PIXELS)
+
+layout(local_size_x = GROUP_SIZE) in;
+layout(location = 0) uniform ivec3 band;     // columns of tiles; the first of its rows, the end
+layout(location = 1) uniform uint room;      // pairs
+layout(location = 2) uniform ivec4 base_box; // px: first column and row, end column and row
+layout(binding = BIND_RIBBONS) uniform usamplerBuffer ribbons;
+layout(binding = BIND_SORTED) uniform usamplerBuffer sorted;
+layout(std430, binding = BIND_TILE_COUNTS_OUT) readonly buffer Counts { uint counts[]; };
+layout(std430, binding = BIND_TILE_ENDS_OUT) readonly buffer Ends { uint ends[]; };
+#if BASE
+layout(binding = BIND_BASE) uniform sampler2D base;
+layout(binding = BIND_MESH_DEPTH) uniform sampler2D mesh_depth;
+#endif
+#if KIND == 0
+layout(binding = IMAGE_PICTURE, rgba8) writeonly uniform image2D picture;
+const float LEVELS = 255.0;
+#elif KIND == 1
+layout(binding = IMAGE_PICTURE, rgba16) writeonly uniform image2D picture;
+const float LEVELS = 65535.0;
+#else
+layout(binding = IMAGE_PICTURE, rgba32f) writeonly uniform image2D picture;
+#endif
+
+// Some number of each of a lane's pixels.
+#if PIXELS == 4
+#define Numbers    vec4
+#define OF(v, k)   v[k]
+#define LARGEST(v) max(max(v.x, v.y), max(v.z, v.w))
+#define ROWS       vec4(0.0, 1.0, 2.0, 3.0)
+#else
+#define Numbers    float
+#define OF(v, k)   v
+#define LARGEST(v) v
+#define ROWS       0.0
+#endif
+
+const int CELLS_ACROSS = TILE_SIDE / TILE_CELL_WIDTH, // 2
+    CELLS = CELLS_ACROSS * (TILE_SIDE / TILE_CELL_HEIGHT), BATCH = 128, WORDS = BATCH / 32;
+const float LEAST = 1.0 / 1024.0;
+const float LEAST_COVERAGE = 1.0 / 16.0; // as in hair.frag
+
+// Those of this batch and of the next one, in turn.
+shared uint masks[2 * CELLS * WORDS];
+shared int open_from[CELLS]; // the batch that the cell is open for
+
+ivec2 corner = (ivec2(gl_WorkGroupID.xy) + ivec2(0, band.y)) * TILE_SIDE;
+// The middle of the first pixel of the block that the tile is part of, as C counts pixels.
+ivec2 block = corner / ivec2(BLOCK_WIDTH, BLOCK_HEIGHT) * ivec2(BLOCK_WIDTH, BLOCK_HEIGHT);
+vec2 origin = vec2(block) + 0.5;
+
+// --- Ribbons.
+
+struct Ribbon {
+    // Distance from the middle line, share of the length, share of a pixel that the first end and
+    // that the last one leaves it: in the block's first pixel, by column, by row.
+    vec4 at, by_x, by_y;
+    vec4 width; // px: half-width at the first end, how much more at the last; inner, outer
+    vec4 cover; // factor and curve, see coverage; 1/w at the first end, how much more at the last
+    vec3 first, change; // colour
+};
+
+vec2 unpack_shorts(uint word) { return uintBitsToFloat(uvec2(word << 16, word & 0xffff0000u)); }
+
+float bound_offset(vec2 bound) { return bound_is_free(bound) ? 0.5 : 1.0; }
+
+Ribbon unpack_ribbon(uvec4 line, uvec4 shape, uvec4 tint)
+{
+    vec2 a = origin - uintBitsToFloat(line.xy), b = origin - uintBitsToFloat(line.zw), way = a - b;
+    float inverse = inversesqrt(max(way.x * way.x + way.y * way.y, 1e-20));
+    vec2 d = way * inverse, first = unpack_shorts(shape.y), last = unpack_shorts(shape.z);
+    float steep = max(abs(d.x), abs(d.y)), flat_ = max(min(abs(d.x), abs(d.y)), 1e-3);
+    float change_w = uintBitsToFloat(shape.w & 0xfffff000u), mean_w = uintBitsToFloat(tint.w);
+#if NEAREST
+    float opacity = 1.0;
+#else
+    float opacity = float(int(shape.w & 0xfffu)) * (1.0 / 4095.0);
+#endif
+    Ribbon r;
+    r.at = vec4(a.y * d.x - a.x * d.y, (a.x * d.x + a.y * d.y) * inverse,
+                a.x * first.x + a.y * first.y + bound_offset(first),
+                1.0 - b.x * last.x - b.y * last.y - bound_offset(last));
+    r.by_x = vec4(-d.y, d.x * inverse, first.x, -last.x);
+    r.by_y = vec4(d.x, d.y * inverse, first.y, -last.y);
+    float half_width = low_level(shape.x);
+    r.width = vec4(half_width, high_level(shape.x) - half_width, 0.5 * (steep - flat_),
+                   0.5 * (steep + flat_));
+    r.cover =
+        vec4(opacity / steep, 0.5 / flat_, mean_w * (1.0 - 0.5 * change_w), mean_w * change_w);
+    r.first = vec3(low_level(tint.x), high_level(tint.x), low_level(tint.y));
+    r.change = vec3(high_level(tint.y), low_level(tint.z), high_level(tint.z)) - r.first;
+    return r;
+}
+
+#if STAGED
+#define STAGED_WORDS 7
+shared vec4 staged[BATCH * STAGED_WORDS];
+
+void stage(int i, Ribbon r)
+{
+    int at = i * STAGED_WORDS;
+    staged[at] = r.at;
+    staged[at + 1] = r.by_x;
+    staged[at + 2] = r.by_y;
+    staged[at + 3] = r.width;
+    staged[at + 4] = r.cover;
+    staged[at + 5] = vec4(r.first, r.change.x);
+    staged[at + 6] = vec4(r.change.yz, 0.0, 0.0);
+}
+#endif
+
+// Ribbon i of the batch that begins at `begin`.
+Ribbon fetch_ribbon(int begin, int i)
+{
+#if STAGED
+    int at = i * STAGED_WORDS;
+    vec4 color = staged[at + 5];
+    return Ribbon(staged[at], staged[at + 1], staged[at + 2], staged[at + 3], staged[at + 4],
+                  color.rgb, vec3(color.a, staged[at + 6].xy));
+#else
+    int at = int(texelFetch(sorted, begin + i).y) * RIBBON_TEXELS;
+    return unpack_ribbon(texelFetch(ribbons, at), texelFetch(ribbons, at + 1),
+                         texelFetch(ribbons, at + 2));
+#endif
+}
+
+// The cells that the ribbon may touch, a bit each.
+uint find_cells(Strip s)
+{
+    uint cells = 0u;
+    for (int row = 0; row < CELLS / CELLS_ACROSS; ++row) {
+        int top = corner.y + row * TILE_CELL_HEIGHT, first = max(top, s.rows.x),
+            last = min(top + TILE_CELL_HEIGHT - 1, s.rows.y);
+        // From the tile's left side on; halves of the tile.
+        ivec2 columns = strip_columns(s, first, last) - corner.x;
+        uint left = uint(columns.x < TILE_CELL_WIDTH && columns.y >= 0),
+             right = uint(columns.x < TILE_SIDE && columns.y >= TILE_CELL_WIDTH);
+        cells |= (first <= last && columns.x <= columns.y ? left | (right << 1) : 0u)
+                 << (row * CELLS_ACROSS);
+    }
+    return cells;
+}
+
+// Lane i of the group lists ribbons i, i + GROUP_SIZE, ... of the batch in the cells that are open.
+void list_batch(int begin, int count, int batch, uint open)
+{
+    int lane = int(gl_LocalInvocationID.x);
+    if (lane < CELLS * WORDS) masks[(~batch & 1) * CELLS * WORDS + lane] = 0u;
+    for (int i = lane; i < min(count, BATCH); i += GROUP_SIZE) {
+        int at = int(texelFetch(sorted, begin + i).y) * RIBBON_TEXELS;
+        uvec4 line = texelFetch(ribbons, at);
+        uint cells = open & find_cells(make_strip(line.xy, texelFetch(ribbons, at + 3)));
+        for (int cell = 0; cell < CELLS; ++cell)
+            if ((cells >> cell & 1u) != 0u)
+                atomicOr(masks[((batch & 1) * CELLS + cell) * WORDS + (i >> 5)], 1u << (i & 31));
+#if STAGED
+        if (cells != 0u)
+            stage(i, unpack_ribbon(line, texelFetch(ribbons, at + 1), texelFetch(ribbons, at + 2)));
+#endif
+    }
+}
+
+// --- Pixels.
+
+ivec2 place; // of the lane's first one
+Numbers red = Numbers(0.0), green = Numbers(0.0), blue = Numbers(0.0);
+Numbers through = Numbers(1.0); // share of what stands behind that is seen
+Numbers hidden = Numbers(0.0);  // 1/w of what hides all behind it; 0: nothing
+
+Numbers profile_area(Ribbon r, Numbers t)
+{
+    Numbers m = min(t, r.width.w), u = max(m - r.width.z, 0.0);
+    return m - r.cover.y * (u * u);
+}
+
+void draw(Ribbon r)
+{
+    vec2 px = vec2(place - block);
+    Numbers y = px.y + ROWS;
+    vec4 row = r.at + px.x * r.by_x;
+    Numbers across = abs(row.x + y * r.by_y.x), along = clamp(row.y + y * r.by_y.y, 0.0, 1.0),
+            first = row.z + y * r.by_y.z, last = row.w + y * r.by_y.w;
+    Numbers half_width = r.width.x + along * r.width.y, beyond = across - half_width,
+            covered =
+                profile_area(r, across + half_width) - sign(beyond) * profile_area(r, abs(beyond)),
+            alpha = r.cover.x * covered * clamp(min(first, last), 0.0, 1.0);
+#if BASE || NEAREST
+    Numbers near = r.cover.z + along * r.cover.w;
+#endif
+#if NEAREST
+    Numbers seen = step(LEAST_COVERAGE, alpha) * (1.0 - step(near, hidden));
+    hidden = mix(hidden, near, seen);
+    through *= 1.0 - seen;
+    red = mix(red, r.first.r + along * r.change.r, seen);
+    green = mix(green, r.first.g + along * r.change.g, seen);
+    blue = mix(blue, r.first.b + along * r.change.b, seen);
+#else
+#if BASE
+    alpha *= step(hidden, near);
+#endif
+    alpha *= through;
+    through -= alpha;
+    red += alpha * (r.first.r + along * r.change.r);
+    green += alpha * (r.first.g + along * r.change.g);
+    blue += alpha * (r.first.b + along * r.change.b);
+#endif
+}
+
+void draw_batch(int begin, int cell, int batch)
+{
+    int at = ((batch & 1) * CELLS + cell) * WORDS;
+    for (int word = 0; word < WORDS; ++word)
+        for (uint bits = masks[at + word]; bits != 0u; bits &= bits - 1u)
+            draw(fetch_ribbon(begin, 32 * word + findLSB(bits)));
+}
+
+uint find_open(int batch)
+{
+    uint open = 0u;
+    for (int cell = 0; cell < CELLS; ++cell) open |= uint(open_from[cell] == batch) << cell;
+    return open;
+}
+
+void draw_list(int begin, int count)
+{
+    int lane = int(gl_LocalInvocationID.x), cell = lane / CELL_LANES;
+    if (lane < CELLS * WORDS) masks[lane] = 0u;
+    if (lane < CELLS) open_from[lane] = 0;
+    barrier();
+    uint open = ~0u;
+    for (int batch = 0; batch * BATCH < count && open != 0u; ++batch) {
+        int from = begin + batch * BATCH;
+        list_batch(from, count - batch * BATCH, batch, open);
+        barrier();
+        draw_batch(from, cell, batch);
+        if (NEAREST == 1 || LARGEST(through) > LEAST) open_from[cell] = batch + 1;
+        barrier();
+        open = find_open(batch + 1);
+    }
+}
+
+// --- What stands behind, and colours.
+
+bool is_in_base(ivec2 p)
+{
+    return all(greaterThanEqual(p, base_box.xy)) && all(lessThan(p, base_box.zw));
+}
+
+void hide()
+{
+#if BASE
+    for (int k = 0; k < PIXELS; ++k) {
+        ivec2 p = place + ivec2(0, k);
+        float z = is_in_base(p) ? texelFetch(mesh_depth, p, 0).x : 1.0;
+        OF(hidden, k) = z < 1.0 ? (2.0 * z - 1.0 - draw_params.depth.x) / draw_params.depth.y : 0.0;
+    }
+#endif
+}
+
+vec4 light_behind(ivec2 p)
+{
+    vec4 light = draw_params.background;
+#if BASE
+    if (is_in_base(p)) light = texelFetch(base, p, 0);
+#endif
+    return light;
+}
+
+vec4 light_of(int k)
+{
+#if DEPTH
+    return vec4(vec3(depth_shown(OF(through, k) == 0.0 ? OF(hidden, k) : 0.0)), 1.0);
+#else
+    return vec4(OF(red, k), OF(green, k), OF(blue, k), 1.0 - OF(through, k)) +
+           OF(through, k) * light_behind(place + ivec2(0, k));
+#endif
+}
+
+// Levels are found here: drivers may round in another way.
+void store(ivec2 p, vec4 light)
+{
+#if KIND < 2
+    light.rgb = display_from_linear(light.rgb * (1.0 / max(light.a, 1e-6)));
+    light = floor(clamp(light, 0.0, 1.0) * LEVELS + 0.5) * (1.0 / LEVELS);
+#endif
+    imageStore(picture, p, light);
+}
+
+#if SAMPLES > 1
+shared vec4 lights[TILE_SIDE * TILE_SIDE];
+
+void store_all()
+{
+    const int SIDE = TILE_SIDE / SAMPLES;
+    ivec2 own = place - corner;
+    for (int k = 0; k < PIXELS; ++k) lights[(own.y + k) * TILE_SIDE + own.x] = light_of(k);
+    barrier();
+    for (int i = int(gl_LocalInvocationID.x); i < SIDE * SIDE; i += GROUP_SIZE) {
+        ivec2 p = ivec2(i % SIDE, i / SIDE);
+        vec4 sum = vec4(0.0);
+        for (int k = 0; k < SAMPLES * SAMPLES; ++k) {
+            ivec2 s = p * SAMPLES + ivec2(k % SAMPLES, k / SAMPLES);
+            sum += lights[s.y * TILE_SIDE + s.x];
+        }
+        store(corner / SAMPLES + p, sum * (1.0 / float(SAMPLES * SAMPLES)));
+    }
+}
+#else
+void store_all()
+{
+    for (int k = 0; k < PIXELS; ++k) store(place + ivec2(0, k), light_of(k));
+}
+#endif
+
+void main()
+{
+    int lane = int(gl_LocalInvocationID.x), cell = lane / CELL_LANES, own = lane % CELL_LANES,
+        tile = (band.y + int(gl_WorkGroupID.y)) * band.x + int(gl_WorkGroupID.x);
+    place = corner + ivec2(cell % CELLS_ACROSS * TILE_CELL_WIDTH + own % TILE_CELL_WIDTH,
+                           cell / CELLS_ACROSS * TILE_CELL_HEIGHT + own / TILE_CELL_WIDTH * PIXELS);
+    uint count = counts[tile], end = ends[tile];
+    hide();
+    if (count > 0u && end <= room) draw_list(int(end - count), int(count));
+    store_all();
+}

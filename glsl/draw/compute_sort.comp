@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// Sorts each tile's pairs, a tile a work group: near ribbons first, alike ones by their slots. No
+// two pairs are the same, so there is one order.
+//
+// Runs of GROUP_SIZE pairs are sorted in shared memory, where each lane counts the pairs that come
+// before its own. Two runs at a time then become one: a pair's place is its place in its own run
+// and how many of the other run come before it, found by halving. Lists of any length do.
+#include "draw/draw.h"
+
+layout(local_size_x = GROUP_SIZE) in;
+layout(location = 0) uniform ivec3 band; // columns of tiles; the first of its rows, the end
+layout(location = 1) uniform uint room;  // pairs
+layout(std430, binding = BIND_TILE_COUNTS_OUT) readonly buffer Counts { uint counts[]; };
+layout(std430, binding = BIND_TILE_ENDS_OUT) readonly buffer Ends { uint ends[]; };
+// What a lane writes others of its group read. Images, not storage, which CPU drivers read a word
+// at a time.
+layout(binding = IMAGE_PAIRS, rg32ui) coherent uniform uimageBuffer pairs;
+layout(binding = IMAGE_SORTED, rg32ui) coherent uniform uimageBuffer sorted;
+#if STAGED
+shared uvec2 run[GROUP_SIZE];
+#endif
+
+const uint LENGTH = uint(GROUP_SIZE);
+
+bool comes_before(uvec2 a, uvec2 b) { return a.x < b.x || (a.x == b.x && a.y < b.y); }
+
+uvec2 get(bool in_sorted, uint at)
+{
+    if (in_sorted) return imageLoad(sorted, int(at)).xy;
+    return imageLoad(pairs, int(at)).xy;
+}
+
+void put(bool in_sorted, uint at, uvec2 pair)
+{
+    if (in_sorted)
+        imageStore(sorted, int(at), uvec4(pair, 0u, 0u));
+    else
+        imageStore(pairs, int(at), uvec4(pair, 0u, 0u));
+}
+
+void sort_run(uint at, uint count, bool to_sorted)
+{
+    uint lane = gl_LocalInvocationID.x;
+    uvec2 own = get(false, at + lane);
+    uint place = 0u;
+#if STAGED
+    run[lane] = own;
+    barrier();
+    for (uint i = 0u; i < count; ++i) place += uint(comes_before(run[i], own));
+#else
+    for (uint i = 0u; i < count; ++i) place += uint(comes_before(get(false, at + i), own));
+#endif
+    barrier(); // all have read
+    if (lane < count) put(to_sorted, at + place, own);
+}
+
+// Where the pair goes that is number i of a list that begins at `begin`, of runs of `length`.
+uint find_place(bool in_sorted, uvec2 pair, uint begin, uint count, uint length, uint i)
+{
+    uint both = i / (2u * length) * 2u * length;
+    bool is_first = i - both < length;
+    uint low = min(is_first ? both + length : both, count),
+         high = min(is_first ? both + 2u * length : both + length, count), other = low;
+    while (low < high) {
+        uint middle = (low + high) / 2u;
+        if (comes_before(get(in_sorted, begin + middle), pair))
+            low = middle + 1u;
+        else
+            high = middle;
+    }
+    return begin + i + low - other - (is_first ? 0u : length);
+}
+
+void main()
+{
+    int tile = (band.y + int(gl_WorkGroupID.y)) * band.x + int(gl_WorkGroupID.x);
+    uint count = counts[tile], end = ends[tile], begin = end - count;
+    if (count == 0u || end > room) return;
+    bool in_sorted = true; // in the end, after one merge and another
+    for (uint length = LENGTH; length < count; length *= 2u) in_sorted = !in_sorted;
+    for (uint i = 0u; i < count; i += LENGTH)
+        sort_run(begin + i, min(count - i, LENGTH), in_sorted);
+    for (uint length = LENGTH; length < count; length *= 2u) {
+        memoryBarrierImage();
+        barrier();
+        for (uint i = gl_LocalInvocationID.x; i < count; i += LENGTH) {
+            uvec2 pair = get(in_sorted, begin + i);
+            put(!in_sorted, find_place(in_sorted, pair, begin, count, length, i), pair);
+        }
+        in_sorted = !in_sorted;
+    }
+}

@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: MIT
+// The compute rasteriser draws what blocks draw, in either of its forms, in every run, however
+// short of room its lists are.
+#include "support/stage.h"
+
+#include "glsl/draw/draw.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const RendererOptions SMALL = {
+    .width = 101, .height = 67, .background = {0.2f, 0.1f, 0.4f, 1}}; // px: no whole tiles
+
+static void use_raster(const RendererOptions *options, Raster asked)
+{
+    raster = asked;
+    use(options);
+    raster = RASTER_COMPUTE;
+}
+
+// A mesh that slopes through the hair.
+static void add_mesh(void)
+{
+    const float green[3] = {0, 1, 0};
+    Error error = {{0}};
+    Mesh mesh = make_square(30);
+    for (int v = 0; v < 4; ++v) mesh.position[v][2] = 0.3f * mesh.position[v][0];
+    assert_int_equal(renderer_set_mesh(&studio.renderer, &mesh, green, &error), RESULT_OK);
+    mesh_destroy(&mesh);
+}
+
+// Curved strands, a wide one through the mesh and wide ones that hide what is behind them.
+static void add_hair(void)
+{
+    add_tangle(600, 0.7f, 0.6f, NULL);
+    add_line((float[3]){-50, -35, -12}, (float[3]){50, 20, 12}, 7, 0.5f);
+    for (int i = 0; i < 2; ++i)
+        add_line((float[3]){-60, -10.0f * (float)i, 30}, (float[3]){60, 25, 30}, 5, 1);
+}
+
+static float float_at(const Image *image, size_t i)
+{
+    float light;
+    memcpy(&light, image->pixels + 4 * i, 4);
+    return light;
+}
+
+// A value of 255; light as sRGB.
+static double level_at(const Image *image, size_t i)
+{
+    uint16_t sixteen;
+    if (image->kind == IMAGE_8) return image->pixels[i];
+    if (image->kind == IMAGE_FLOAT) return srgb(fmin(float_at(image, i), 1));
+    memcpy(&sixteen, image->pixels + 2 * i, 2);
+    return sixteen / 257.0;
+}
+
+// --- What blocks draw.
+
+typedef struct Difference {
+    double rmse, largest; // levels
+    double largest_light; // of floats
+    double share;         // of values that differ by more than a level
+} Difference;
+
+static Difference find_difference(const Image *a, const Image *b)
+{
+    Difference found = {0};
+    size_t count = (size_t)a->width * (size_t)a->height * (size_t)a->channels;
+    double sum = 0;
+    for (size_t i = 0; i < count; ++i) {
+        double d = fabs(level_at(a, i) - level_at(b, i));
+        sum += d * d;
+        if (a->kind == IMAGE_FLOAT)
+            found.largest_light =
+                fmax(found.largest_light, fabs((double)float_at(a, i) - (double)float_at(b, i)));
+        found.largest = fmax(found.largest, d);
+        found.share += d > 1;
+    }
+    found.share /= (double)count;
+    found.rmse = sqrt(sum / (double)count);
+    return found;
+}
+
+static Difference compare_with_blocks(const RendererOptions *options, bool over_mesh)
+{
+    size_t size;
+    use_raster(options, RASTER_BLOCKS);
+    if (over_mesh) add_mesh();
+    studio_draw(&studio);
+    uint64_t fragments = studio.renderer.counts.fragments;
+    Image expected = studio.image;
+    expected.pixels = studio_copy(&studio, &size);
+    use(options);
+    if (over_mesh) add_mesh();
+    studio_draw(&studio);
+    assert_int_equal(studio.renderer.raster, RASTER_COMPUTE);
+    assert_true(studio.renderer.counts.fragments > fragments); // tiles are smaller than blocks
+    Difference found = find_difference(&expected, &studio.image);
+    free(expected.pixels);
+    return found;
+}
+
+// Where one of two nearest ribbons, or none, is the nearest by rounding alone, pixels differ, but
+// few.
+static void pictures_are_those_of_blocks(void **state)
+{
+    (void)state;
+    const Floor floor = {.kind = FLOOR_PLANE,
+                         .middle = {0, -20, 0},
+                         .whole = 2000,
+                         .faded = 3000,
+                         .color = {1, 1, 1}};
+    const RendererOptions kinds[] = {
+        {.background = {0.2f, 0.1f, 0.4f, 1}, .tone = TONE_FILMIC},
+        {.background = {0, 0, 0, 1}, .samples = 4, .tone = TONE_REINHARD},
+        {.samples = 2, .kind = IMAGE_16},
+        {.kind = IMAGE_FLOAT},
+        {.background = {1, 1, 1, 1}, .floor = floor},
+        {.aov = AOV_COVERAGE},
+        {.aov = AOV_DEPTH, .depth_range = {900, 1100}},
+        {.aov = AOV_TANGENT, .kind = IMAGE_16},
+        {.aov = AOV_STRAND}};
+    add_hair();
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; ++i) {
+        RendererOptions options = kinds[i];
+        options.width = SMALL.width, options.height = SMALL.height;
+        bool nearest = options.aov > AOV_COVERAGE;
+        Difference found = compare_with_blocks(&options, i % 2);
+        print_message("picture %zu: RMSE %g, at most %g levels, %g %% by more than one\n", i,
+                      found.rmse, found.largest, 100 * found.share);
+        if (nearest)
+            assert_true(found.share <= 1e-3);
+        else
+            assert_true(found.rmse <= 0.05 && found.largest <= 1.01);
+    }
+}
+
+// Both leave out ribbons that less than 1/1024 is seen of, but of other pixels. None is brighter
+// than 1.1.
+static void a_thicket_differs_by_what_is_left_out(void **state)
+{
+    (void)state;
+    RendererOptions options = SMALL;
+    options.kind = IMAGE_FLOAT;
+    add_tangle(4000, 1.5f, 0.7f, NULL);
+    studio.light = (Light){.direction = {0, 0, 1}, .color = {1, 1, 1}, .intensity = 0.5f};
+    Difference found = compare_with_blocks(&options, false);
+    print_message("thicket: at most %g of the light\n", found.largest_light);
+    assert_true(found.largest_light <= 1.1 / 1024);
+    assert_true(found.largest <= 1);
+}
+
+// --- Lists.
+
+typedef struct Pair {
+    uint32_t depth, slot;
+} Pair;
+
+static int by_depth_and_slot(const void *a, const void *b)
+{
+    const Pair *x = a, *y = b;
+    if (x->depth != y->depth) return x->depth < y->depth ? -1 : 1;
+    return x->slot < y->slot ? -1 : x->slot > y->slot;
+}
+
+// Each list has the ribbons that the counts speak of, without one twice, in order. Returns the
+// longest.
+static uint32_t check_lists(const ComputeBins *bins)
+{
+    uint32_t *counts = gpu_buffer_read(&bins->counts), *ends = gpu_buffer_read(&bins->ends),
+             longest = 0;
+    Pair *sorted = gpu_buffer_read(&bins->sorted);
+    uint64_t all = 0;
+    assert_true(counts && ends && sorted);
+    for (int tile = 0; tile < bins->rows * bins->columns; ++tile) {
+        if (counts[tile]) assert_true((int64_t)ends[tile] <= bins->room);
+        for (uint32_t i = 1; i < counts[tile]; ++i) {
+            const Pair *pair = &sorted[ends[tile] - counts[tile] + i];
+            assert_true(by_depth_and_slot(pair - 1, pair) < 0);
+            assert_int_not_equal(pair[-1].depth, 0); // no slot has an infinite 1/w
+        }
+        all += counts[tile];
+        if (counts[tile] > longest) longest = counts[tile];
+    }
+    assert_int_equal(all, studio.renderer.counts.fragments);
+    free(counts);
+    free(ends);
+    free(sorted);
+    return longest;
+}
+
+// --- The same bytes.
+
+static void lanes_of_either_form_draw_the_same_bytes(void **state)
+{
+    (void)state;
+    const GpuSizes own = studio.gpu.limits.sizes;
+    RendererOptions options = SMALL;
+    add_hair();
+    for (options.samples = 1; options.samples <= 4; options.samples += 3) {
+        size_t size;
+        studio.gpu.limits.sizes = GPU_SIZES[GPU_CPU_DRIVER];
+        use(&options);
+        add_mesh();
+        uint8_t *expected = draw_copy(&size);
+        studio.gpu.limits.sizes = GPU_SIZES[GPU_HARDWARE];
+        use(&options);
+        add_mesh();
+        for (int run = 0; run < 2; ++run) assert_draws_the_same(expected, size);
+        free(expected);
+    }
+    studio.gpu.limits.sizes = own;
+}
+
+static void lists_that_are_too_short_grow(void **state)
+{
+    (void)state;
+    size_t size;
+    use(&SMALL);
+    add_hair();
+    uint8_t *expected = draw_copy(&size);
+    const RendererCounts *counts = &studio.renderer.counts;
+    ComputeBins *bins = &studio.renderer.compute.bins;
+    assert_int_equal(counts->redraws, 0);
+    bins->room = (int64_t)counts->fragments - 1; // the last one of all does not find room
+    assert_draws_the_same(expected, size);
+    assert_int_equal(counts->redraws, 1);
+    assert_true(bins->room >= (int64_t)counts->fragments);
+    bins->room = (int64_t)counts->fragments;
+    gpu_buffer_clear(&bins->pairs, 0);
+    assert_draws_the_same(expected, size);
+    assert_int_equal(counts->redraws, 0);
+    check_lists(bins);
+    free(expected);
+}
+
+static void bands_draw_the_same(void **state)
+{
+    (void)state;
+    size_t size;
+    RendererOptions options = SMALL;
+    add_hair();
+    options.samples = 2;
+    use(&options);
+    add_mesh();
+    uint8_t *expected = draw_copy(&size);
+    uint64_t pairs = studio.renderer.counts.fragments;
+    assert_int_equal(studio.renderer.counts.bands, 1);
+    options.pool_bytes = (int64_t)pairs * 16 / 2; // two lists of 8 bytes
+    use(&options);
+    add_mesh();
+    assert_draws_the_same(expected, size);
+    assert_in_range(studio.renderer.counts.bands, 2, 5);
+    assert_int_equal(studio.renderer.counts.fragments, pairs);
+    assert_draws_the_same(expected, size);
+    assert_int_equal(studio.renderer.counts.redraws, 0); // it begins with bands now
+    free(expected);
+}
+
+static void blocks_draw_what_lists_cannot_hold(void **state)
+{
+    (void)state;
+    size_t size;
+    RendererOptions options = SMALL;
+    add_hair();
+    use_raster(&options, RASTER_BLOCKS);
+    uint8_t *expected = draw_copy(&size);
+    const RendererCounts *counts = &studio.renderer.counts;
+    uint64_t fragments = counts->fragments;
+    options.pool_bytes = 64;
+    use(&options);
+    assert_draws_the_same(expected, size);
+    assert_int_equal(counts->fragments, fragments);
+    options.pool_bytes = 0;
+    use(&options);
+    studio.renderer.compute.longest = 20; // of a tile
+    assert_draws_the_same(expected, size);
+    assert_int_equal(counts->fragments, fragments);
+    assert_int_equal(studio.renderer.raster, RASTER_COMPUTE);
+    free(expected);
+}
+
+// --- Tiles.
+
+// Lists of 1 to 9 runs of a CPU driver's lanes and of several of a GPU's, of which many are alike.
+static void lists_of_any_length_are_in_order(void **state)
+{
+    (void)state;
+    static const uint32_t lengths[] = {1, 64, 65, 257, 576, 1500};
+    const GpuSizes own = studio.gpu.limits.sizes;
+    for (int kind = 0; kind < GPU_KINDS; ++kind) {
+        studio.gpu.limits.sizes = GPU_SIZES[kind];
+        use(&SMALL);
+        for (size_t i = 0; i < sizeof lengths / sizeof *lengths; ++i) {
+            Strands strands = crowd(lengths[i]);
+            studio_add(&studio, &strands, 0.4f, 0.001f);
+            studio_draw(&studio);
+            assert_int_equal(check_lists(&studio.renderer.compute.bins), lengths[i]);
+            strands_destroy(&strands);
+            studio_clear(&studio);
+        }
+        add_tangle(3000, 0.7f, 0.6f, NULL);
+        studio_draw(&studio);
+        assert_true(check_lists(&studio.renderer.compute.bins) > 100);
+        studio_clear(&studio);
+    }
+    studio.gpu.limits.sizes = own;
+}
+
+// Binning, by tiles, has every ribbon of which blocks find a pixel: one is opaque, and all else
+// stands behind.
+static void no_tile_of_a_ribbon_is_left_out(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 6; ++i) {
+        float turn = 1.1f * (float)i, x = 49 * cosf(turn), y = 49 * sinf(turn);
+        add_line((float[3]){-x, -y, 0}, (float[3]){x, y, 0}, 0.3f + 0.8f * (float)i, 1);
+        Difference found = compare_with_blocks(&SMALL, false);
+        assert_true(found.largest <= 1.01);
+        studio_clear(&studio);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        CLAIM(pictures_are_those_of_blocks),
+        CLAIM(a_thicket_differs_by_what_is_left_out),
+        CLAIM(lanes_of_either_form_draw_the_same_bytes),
+        CLAIM(lists_that_are_too_short_grow),
+        CLAIM(bands_draw_the_same),
+        CLAIM(blocks_draw_what_lists_cannot_hold),
+        CLAIM(lists_of_any_length_are_in_order),
+        CLAIM(no_tile_of_a_ribbon_is_left_out),
+    };
+    return stage_run_one(tests, RASTER_COMPUTE);
+}
