@@ -81,8 +81,8 @@ const int ROUNDS = 3;
 // length
 const float LEAVING = 0.5;
 
-int n;
-float margin, friction;
+int n = 0;
+float margin = 0.0, friction = 0.0;
 
 #if MODE == FINDING
 // Strands take this much (of the longest one's length) less than they have, or rounding and what a

@@ -46,7 +46,7 @@ static void report(const char *what, Result result, const Error *why, Result *wo
 
 // A solver on four strands or, with params->followers, followers of them.
 static Result try_hair(const Gpu *gpu, const SectionParams *params, const StrandsRecipe *recipe,
-                       Error *error)
+                       const Colliders *colliders, Error *error)
 {
     Strands strands = {0};
     Hair hair = {0};
@@ -56,6 +56,7 @@ static Result try_hair(const Gpu *gpu, const SectionParams *params, const Strand
     const SolverSetup setup = {.gpu = gpu,
                                .hair = &hair,
                                .params = params,
+                               .colliders = colliders,
                                .sheltered = params->style == 1,
                                .rest_gravity = {0, params->volume > 0 ? -9.81f : 0, 0}};
     Result result = strands_make(&strands, recipe, error);
@@ -97,7 +98,34 @@ static Result try_solver(const Gpu *gpu, const SolverType *type, const char *var
                                   .clamped = style < 1 ? 1 : 2,
                                   // Springs with bending and without.
                                   .chain_bend = style < 1 ? 10 : 0};
-    return try_hair(gpu, &params, &recipe, error);
+    return try_hair(gpu, &params, &recipe, NULL, error);
+}
+
+// What pushes hair out of shapes, for the solver's kind of state.
+static Result try_collide(const Gpu *gpu, const char *algo, const char *shapes, Error *error)
+{
+    StrandsRecipe recipe = strands_make_recipe(STRANDS_STYLE_RANDOM);
+    const SectionParams params = {.algo = (char *)algo, .variant = "", .collide = true};
+    Colliders colliders = {0};
+    recipe.count = 4;
+    Result result = colliders_parse(&colliders, shapes, error);
+    THEN(result, try_hair(gpu, &params, &recipe, &colliders, error));
+    colliders_destroy(&colliders);
+    return result;
+}
+
+static void try_collisions(const Gpu *gpu, Result *worst, FILE *stream, Error *error)
+{
+    static const char *const shapes[] = {"sphere:0,0,0,0.1; capsule:0,0,0,0.1,0,-0.1,0,0.1",
+                                         "sphere:0,0,0,0.1; ground:0; plane:0,1,0,0"},
+                             *const algos[] = {"chain", "split"};
+    for (size_t i = 0; i < 4; ++i) {
+        char what[128];
+        Error why = {{0}};
+        snprintf(what, sizeof what, "%s, %s", algos[i / 2], shapes[i % 2]);
+        report(what, try_collide(gpu, algos[i / 2], shapes[i % 2], &why), &why, worst, stream,
+               error);
+    }
 }
 
 static Result try_follow(const Gpu *gpu, FollowMode mode, Error *error)
@@ -105,7 +133,7 @@ static Result try_follow(const Gpu *gpu, FollowMode mode, Error *error)
     StrandsRecipe recipe = strands_make_recipe(STRANDS_STYLE_FUR);
     const SectionParams params = {.followers = {.value = 1}, .follow = (int)mode};
     recipe.count = 4;
-    return try_hair(gpu, &params, &recipe, error);
+    return try_hair(gpu, &params, &recipe, NULL, error);
 }
 
 static Result try_inbetween(const Gpu *gpu, Error *error)
@@ -121,8 +149,10 @@ static void try_solvers(const Gpu *gpu, Result *worst, FILE *stream, Error *erro
 {
     // In registers and not, each mix of the style, also along the strand and of a groom at rest.
     static const SolverShape shapes[] = {
-        {8, 0.5f, 0.5f, 0}, {8, 0, 0, 0},        {8, 1, 1, 0},       {64, 0.5f, 0.5f, 0},
-        {8, 0.9f, 0.3f, 1}, {64, 0.9f, 0.3f, 0}, {8, 0.4f, 0.4f, 1}, {64, 0.6f, 0.6f, 1},
+        {8, 0.5f, 0.5f, 0},  {8, 0, 0, 0},        {8, 1, 1, 0},       {64, 0.5f, 0.5f, 0},
+        {8, 0.9f, 0.3f, 1},  {64, 0.9f, 0.3f, 0}, {8, 0.4f, 0.4f, 1}, {64, 0.6f, 0.6f, 1},
+        {16, 0.5f, 0.5f, 0}, {16, 0.9f, 0.3f, 0}, {16, 0, 0, 0},      {24, 0.5f, 0.5f, 0},
+        {32, 0.5f, 0.5f, 0},
     };
     for (const SolverType *const *type = SOLVER_TYPES; *type; ++type)
         for (int v = 0; v == 0 || (*type)->variants[v]; ++v)
@@ -293,6 +323,7 @@ static Result run_shaders(const BenchOptions *arguments, const Gpu *gpu, Error *
     }
     report("sim/inbetween.comp", try_inbetween(gpu, &why), &why, &worst, stream, error);
     try_solvers(gpu, &worst, stream, error);
+    try_collisions(gpu, &worst, stream, error);
     for (FollowMode mode = FOLLOW_OFFSET; mode <= FOLLOW_INTERPOLATE; ++mode)
         report(mode == FOLLOW_OFFSET ? "followers, offset" : "followers, interpolated",
                try_follow(gpu, mode, &why), &why, &worst, stream, error);
