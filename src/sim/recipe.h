@@ -50,10 +50,7 @@ typedef struct SolverRecipe {
     const char *label;  // of the timer: "sim_<name>"
     const char *shader; // glsl file
     SolverStateKind state;
-    // Strands of at most this many vertices get IN_REGISTERS 1 and VERTICES; 0: never.
-    uint32_t most_in_registers;
-    // Strands of a lane on a CPU driver, in registers: two hide each other's latency; 0: 1.
-    uint32_t strands_on_cpu;
+    StepShape shape; // which strands get IN_REGISTERS 1 and VERTICES: a row of STEP_SIZES
     // vec4 a particle of scratch memory (BIND_SCRATCH) where the strand is not in registers.
     uint32_t scratch;
     // Longer strands are refused: their loops would take more than the 65,535 iterations that CPU

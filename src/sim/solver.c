@@ -157,8 +157,7 @@ static Result build_programs(SolverState *state, const SolverSetup *setup, Error
     if (recipe->define) recipe->define(defines, state->params);
     const StepProgramsOptions options = {
         .shader = recipe->shader,
-        .most_in_registers = recipe->most_in_registers,
-        .strands_on_cpu = recipe->strands_on_cpu ? recipe->strands_on_cpu : 1,
+        .shape = recipe->shape,
         .lead = recipe->carried < 2 && state->params->clamped > 1,
         .sheltered = setup->sheltered,
         .varies = has_particles(state) && state->varies,

@@ -21,7 +21,7 @@ static void define(ShaderDefine *defines, const SectionParams *params)
 static const SolverRecipe RECIPE = {
     .label = "sim_chain",
     .shader = "sim/chain.comp",
-    .most_in_registers = 16,
+    .shape = STEP_CHAIN,
     .scratch = 2,
     .most_vertices = 7000, // nine sweeps
     .params_size = sizeof(ChainParams),

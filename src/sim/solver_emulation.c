@@ -45,7 +45,7 @@ static int phases(const SectionParams *params, const Hair *hair)
 static const SolverRecipe RECIPE = {
     .label = "sim_emulation",
     .shader = "sim/emulation.comp",
-    .most_in_registers = 32,
+    .shape = STEP_EMULATION,
     .scratch = 2,
     .most_vertices = 5000, // four sweeps beside a dispatch's links
     .params_size = sizeof(EmulationParams),

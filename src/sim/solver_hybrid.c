@@ -12,7 +12,7 @@ static void fill(void *block, StepParams *uniforms, const SolverStep *step,
 static const SolverRecipe RECIPE = {
     .label = "sim_hybrid",
     .shader = "sim/hybrid.comp",
-    .most_in_registers = 32,
+    .shape = STEP_HYBRID,
     .scratch = 2,
     .most_vertices = 12000, // five sweeps
     .params_size = sizeof(HybridParams),

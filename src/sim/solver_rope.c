@@ -67,7 +67,7 @@ static Result check(const SolverSetup *setup, Error *error)
 static const SolverRecipe RECIPE = {
     .label = "sim_rope",
     .shader = "sim/rope.comp",
-    .most_in_registers = 32,
+    .shape = STEP_ROPE,
     .scratch = 2,
     .check = check,
     .params_size = sizeof(RopeParams),

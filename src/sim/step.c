@@ -148,14 +148,14 @@ static bool is_shared(const StepPrograms *programs, const Hair *hair, uint32_t i
 Result step_programs_create(StepPrograms *programs, const Gpu *gpu, const Hair *hair,
                             const StepProgramsOptions *options, Error *error)
 {
-    bool in_registers = fits_registers(hair, options->most_in_registers);
+    const StepSizes *sizes = &STEP_SIZES[options->shape][gpu->kind];
+    bool in_registers = fits_registers(hair, sizes->most_in_registers);
     *programs = (StepPrograms){
         .programs = calloc(hair->batch_count + 1, sizeof *programs->programs),
         .leads = calloc(hair->batch_count + 1, sizeof *programs->leads),
         .batch_count = hair->batch_count,
         .limits = &gpu->limits,
-        .strands_per_lane =
-            in_registers && gpu->kind == GPU_CPU_DRIVER ? options->strands_on_cpu : 1,
+        .strands_per_lane = in_registers ? sizes->strands : 1,
         .in_registers = in_registers,
     };
     Result result = RESULT_OK;

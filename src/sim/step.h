@@ -7,6 +7,7 @@
 #include "gpu/shader.h"
 #include "sim/hair.h"
 #include "sim/head.h"
+#include "sim/step_sizes.h"
 
 #include "glsl/sim/step_params.h"
 #include "glsl/sim/style_spring.h"
@@ -73,16 +74,11 @@ void step_pass_run(StepPass *pass, const void *params, size_t size, uint32_t str
 // What decides how many programs a solver has and how strands go to lanes.
 typedef struct StepProgramsOptions {
     const char *shader; // glsl file
-    // Strands of at most this many vertices get IN_REGISTERS 1, which costs a compilation for each
-    // vertex count; 0: never.
-    uint32_t most_in_registers;
-    // Strands of a lane on CPU drivers where they are in registers: two hide each other's latency,
-    // a GPU has other lanes for that.
-    uint32_t strands_on_cpu;
-    uint32_t lead;  // vertices that the head carries beside the root, where a strand has enough
-    bool sheltered; // the head keeps wind off (forces.glsl)
-    bool styled;    // there is a spring towards the style
-    bool varies;    // parameters differ along the strand (along.h)
+    StepShape shape;    // which strands get IN_REGISTERS 1, and how many strands a lane takes
+    uint32_t lead;      // vertices that the head carries beside the root, where a strand has enough
+    bool sheltered;     // the head keeps wind off (forces.glsl)
+    bool styled;        // there is a spring towards the style
+    bool varies;        // parameters differ along the strand (along.h)
     const ShaderDefine *defines; // the variant's own, at most STEP_OWN_DEFINES
 } StepProgramsOptions;
 
