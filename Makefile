@@ -213,7 +213,7 @@ torture: all tests ## every call of small runs fails in turn, 200 kills: an hour
 	@$(TORTURE) $(OUT) --long --seed $(SEED) --jobs $$(nproc) $(TORTURE_OPTIONS)
 
 # --- Static checks and the sanitizers; all of them run, then the failures are named. One alone: make check-format.
-CHECKS := format scripts warnings clang cppcheck shaders farm sanitize
+CHECKS := format scripts warnings clang cppcheck shaders gpu-statistics farm sanitize
 C_FILES = $(wildcard src/*/*.[ch] src/*/*/*.[ch] tests/*/*.[ch] glsl/*/* tests/glsl/*)
 SIDE   := $(if $(filter command line,$(origin OUT)),$(OUT)/,out/)
 QUIET   = $(AGAIN) $(JOBS) --silent
@@ -240,6 +240,9 @@ check-cppcheck: # readdirCalled: it asks for readdir_r, which POSIX has since wi
 check-shaders:
 	$(QUIET) all
 	@scripts/check-shaders $(OUT)
+check-gpu-statistics: # registers and waves on GPUs; a line says so where a package for it is missing
+	$(QUIET) all
+	@scripts/gpu-statistics --programs $(OUT) || [ $$? = 77 ]
 check-farm: # GNU parallel and a Slurm of one node, which make test does without
 	@scripts/setup farm
 	$(QUIET) all
