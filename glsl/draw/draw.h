@@ -35,13 +35,14 @@
 #define BIND_EDGE_DEPTH   7 // the same of some samples a pixel
 
 #define BIND_PAINT     8  // uvec4 a particle, see look_paint; beside what shadows are read from
-#define BIND_SCATTER   10 // marschner's table, see scatter.comp
+#define BIND_SCATTER   10 // marschner's table, see scatter.comp; or that of a section's tints
 #define BIND_SCATTERED 15 // vec3 a point of a strand: the light among hair, see hair_scatter.h
 
 // Nodes of that table by azimuth (0 to pi), cosine of theta_d and colour (both 0 to 1).
 #define SCATTER_AZIMUTHS     128
 #define SCATTER_INCLINATIONS 64
 #define SCATTER_COLORS       24
+#define TINT_SLICES          16 // of brightness, see tint_table.h
 
 // The same points for the block-list rasteriser, which is never at work with the A-buffer.
 #define BIND_BLOCK_COUNTS_OUT 0 // uint, 16 for each of 64 groups: ribbons, strands without any

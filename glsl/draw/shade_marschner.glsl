@@ -20,9 +20,16 @@
 // Light that comes from other fibres and from the sky has been found before (light_grid.h) for the
 // hair's mean colour; what a strand's own colour scatters of it differs by its albedo.
 //   SCATTERED 1: so it is   0: nothing stands between the fibre and the sky
+//   TINTS 1: the table has the section's own colour in slices of brightness (tint_table.h), the
+//       strand's being the nearest: from there on TT goes as the colour, TRT as its square
 #include "common/shared_math.h"
 
+#if TINTS
+// R | TT of red << 16, TT of green and blue, TRT of red and green, TRT of blue: units.
+layout(binding = BIND_SCATTER) uniform usamplerBuffer tint_table;
+#else
 layout(binding = BIND_SCATTER) uniform sampler3D scatter_table;
+#endif
 #if SCATTERED
 layout(binding = BIND_SCATTERED) uniform samplerBuffer scattered_light;
 #endif
@@ -31,12 +38,28 @@ layout(binding = BIND_SCATTERED) uniform samplerBuffer scattered_light;
 struct Fibre {
     vec4 albedo, mean_albedo;                  // see material.h
     vec3 sharpness, scale, tilt_cos, tilt_sin; // of R, TT, TRT
+#if TINTS
+    int slice;          // its first texel
+    vec3 unit, through; // the strand's colour over the slice's
+#endif
 };
 
-Fibre fibre_material()
+Fibre fibre_material(Painter painter)
 {
+#if TINTS
+    float last = material.tint_unit.w,
+          which = floor((0.5 + 0.5 * hash_signed(painter.id ^ draw_params.seed)) * last + 0.5),
+          brightness = 1.0 + material.color_variation * (2.0 * which / max(last, 1.0) - 1.0);
+    vec3 of_slice = max(min(material.color.rgb * brightness, 1.0), 1e-3);
+#endif
     return Fibre(material.albedo, material.mean_albedo, material.lobe_sharpness.xyz,
-                 material.lobe_scale.xyz, material.lobe_tilt_cos.xyz, material.lobe_tilt_sin.xyz);
+                 material.lobe_scale.xyz, material.lobe_tilt_cos.xyz, material.lobe_tilt_sin.xyz
+#if TINTS
+                 ,
+                 int(which) * (SCATTER_INCLINATIONS * SCATTER_AZIMUTHS), material.tint_unit.xyz,
+                 max(min(painter.tint, 1.0), 1e-3) / of_slice
+#endif
+    );
 }
 
 // exp(-x) I0(x) for x >= 0 within 0.06 % (Olivares, Martin and Valero, J. Phys. Conf. Ser. 1043,
@@ -85,13 +108,43 @@ vec3 longitudinal(Fibre m, Outgoing to, float sin_i, float cos_i, float cos_d)
 }
 #endif
 
-// N of R, TT and TRT for one channel of the colour; x and y are those of the table's nodes.
+// The sum over R, TT and TRT of M, which is `along`, times N; x and y of `at` are those of the
+// table's nodes.
+#if TINTS
+// Halves of words are small: whole numbers with a sign become floats in one instruction.
+vec4 low_halves(uvec4 words) { return vec4(ivec4(words & 0xffffu)); }
+vec4 high_halves(uvec4 words) { return vec4(ivec4(words >> 16)); }
+
+vec3 sum_of_beams(Fibre m, vec3 base, vec2 at, vec3 along)
+{
+    const vec2 nodes = vec2(SCATTER_AZIMUTHS, SCATTER_INCLINATIONS);
+    vec2 place = at * (nodes - 1.0), first = min(floor(place), nodes - 2.0), share = place - first;
+    int texel = m.slice + int(first.y) * SCATTER_AZIMUTHS + int(first.x);
+    uvec4 a = texelFetch(tint_table, texel), b = texelFetch(tint_table, texel + 1),
+          c = texelFetch(tint_table, texel + SCATTER_AZIMUTHS),
+          d = texelFetch(tint_table, texel + SCATTER_AZIMUTHS + 1);
+    vec4 low = mix(mix(low_halves(a), low_halves(b), share.x),
+                   mix(low_halves(c), low_halves(d), share.x), share.y);
+    vec4 high = mix(mix(high_halves(a), high_halves(b), share.x),
+                    mix(high_halves(c), high_halves(d), share.x), share.y);
+    along *= m.unit;
+    return along.x * low.x + m.through * (along.y * vec3(high.x, low.y, high.y) +
+                                          m.through * (along.z * vec3(low.z, high.z, low.w)));
+}
+#else
 vec3 azimuthal(vec2 at, float color)
 {
     const vec3 nodes = vec3(SCATTER_AZIMUTHS, SCATTER_INCLINATIONS, SCATTER_COLORS);
     return textureLod(scatter_table, (vec3(at, min(color, 1.0)) * (nodes - 1.0) + 0.5) / nodes, 0.0)
         .rgb;
 }
+
+vec3 sum_of_beams(Fibre m, vec3 base, vec2 at, vec3 along)
+{
+    return vec3(dot(along, azimuthal(at, base.r)), dot(along, azimuthal(at, base.g)),
+                dot(along, azimuthal(at, base.b)));
+}
+#endif
 
 // The share of light square to a fibre that it scatters, by what its diameter lets through.
 vec3 albedo_of(Fibre m, vec3 base)
@@ -124,8 +177,7 @@ vec3 shade_fibre(Fibre m, vec3 base, int point, vec3 x, vec3 tangent, vec3 to_ey
 #endif
         vec3 along = longitudinal(m, to, sin_i, cos_i, cos_d);
         vec2 at = vec2(acos(cos_phi) * (1.0 / PI), cos_d);
-        vec3 scattered = vec3(dot(along, azimuthal(at, base.r)), dot(along, azimuthal(at, base.g)),
-                              dot(along, azimuthal(at, base.b)));
+        vec3 scattered = sum_of_beams(m, base, at, along);
         color += reaching * PI * scattered;
     }
     return color;

@@ -204,7 +204,9 @@ static Result try_looks(Renderer *renderer, Error *error)
                                       LOOK_TANGENT,
                                       LOOK_STRAND,
                                       LOOK_SMOOTH,
-                                      LOOK_SMOOTH | LOOK_PAINT};
+                                      LOOK_SMOOTH | LOOK_PAINT,
+                                      LOOK_MARSCHNER | LOOK_TINTS,
+                                      LOOK_MARSCHNER | LOOK_TINTS | LOOK_GAUSS};
     TRY(scatter_tables_find(&renderer->drawing.scatter, 1.5f, 0.2f, &texture, error));
     for (unsigned features = 0; features < LOOK_SHADOW_APPROX; ++features)
         if ((features & (LOOK_MARSCHNER | LOOK_GAUSS)) != LOOK_GAUSS) // which does not count alone

@@ -256,19 +256,38 @@ static Result make_room(Drawing *drawing, Error *error)
     if (!looks)
         return error_set(error, RESULT_FAILED, "no memory for %u sections", drawing->item_count);
     drawing->looks = looks;
+    TintTable *tints = realloc(drawing->tints, drawing->item_count * sizeof *tints);
+    if (!tints)
+        return error_set(error, RESULT_FAILED, "no memory for %u sections", drawing->item_count);
+    memset(tints + drawing->look_room, 0,
+           (drawing->item_count - drawing->look_room) * sizeof *tints);
+    drawing->tints = tints;
     drawing->look_room = drawing->item_count;
     return RESULT_OK;
 }
 
-static Result fit_albedo(Drawing *drawing, Look *look, Error *error)
+static void fit_albedo(Look *look, FibreTable table)
 {
-    FibreTable table;
     float *fit = look->material.albedo;
-    TRY(scatter_tables_read(&drawing->scatter, look->scatter, &table, error));
     fibre_lobes_fit_albedo(table, fit);
     for (int k = 0; k < 3; ++k)
         look->material.mean_albedo[k] =
             fit[0] + (1 - fit[0]) * powf(fminf(look->mean_color[k], 1), fit[1]);
+}
+
+// A table of the section's own, where strands differ by their brightness alone.
+static Result make_tints(Drawing *drawing, const Hair *hair, FibreTable table, Look *look,
+                         Error *error)
+{
+    MaterialParams *material = &look->material;
+    TintTable *tints = &drawing->tints[look - drawing->looks];
+    if (drawing->gpu->kind != GPU_CPU_DRIVER || hair->is_painted || material->warmth_variation != 0)
+        return RESULT_OK;
+    TRY(tint_table_make(tints, table, material->color, material->color_variation,
+                        &drawing->gpu->limits, error));
+    memcpy(material->tint_unit, tints->unit, sizeof tints->unit);
+    look->tints = tints;
+    look->features |= LOOK_TINTS;
     return RESULT_OK;
 }
 
@@ -291,7 +310,10 @@ static Result make_look(Drawing *drawing, const RendererOptions *options, const 
     if (item->material->lobes == LOBES_GAUSS) look->features |= LOOK_GAUSS;
     TRY(scatter_tables_find(&drawing->scatter, item->material->refraction,
                             glm_rad(item->material->azimuthal_roughness), &look->scatter, error));
-    return fit_albedo(drawing, look, error);
+    FibreTable table;
+    TRY(scatter_tables_read(&drawing->scatter, look->scatter, &table, error));
+    fit_albedo(look, table);
+    return make_tints(drawing, item->hair, table, look, error);
 }
 
 Result drawing_begin(Drawing *drawing, const RendererOptions *options, const RenderMesh *mesh,
@@ -316,10 +338,12 @@ Result drawing_begin(Drawing *drawing, const RendererOptions *options, const Ren
 
 void drawing_destroy(Drawing *drawing)
 {
+    for (uint32_t i = 0; i < drawing->look_room; ++i) tint_table_destroy(&drawing->tints[i]);
+    free(drawing->tints);
     scatter_tables_destroy(&drawing->scatter);
     gpu_buffer_destroy(&drawing->uniforms);
     free(drawing->looks);
-    *drawing = (Drawing){0};
+    *drawing = (Drawing){.gpu = drawing->gpu};
 }
 
 void drawing_upload(Drawing *drawing)

@@ -7,15 +7,18 @@
 #include "draw/render_mesh.h"
 #include "draw/renderer_options.h"
 #include "draw/scatter_tables.h"
+#include "gpu/gpu.h"
 
 #include "glsl/draw/draw.h"
 
-// A zeroed struct is empty.
+// A struct that has but the GPU is empty.
 typedef struct Drawing {
+    const Gpu *gpu;
     DrawParams draw; // with the values of the band that is being drawn
     const RenderItem *items;
     uint32_t item_count;
-    Look *looks; // [look_room], owned: of the items
+    Look *looks;      // [look_room], owned: of the items
+    TintTable *tints; // [look_room], owned
     uint32_t look_room;
     int mesh_box[4]; // samples: x, y lowest, highest; empty without a mesh
     int base_box[4]; // the same of mesh and floor

@@ -121,6 +121,7 @@ Result look_programs_build(LookPrograms *programs, unsigned features, Error *err
                                     {"SHADOW", shadow},
                                     {"SHADOW_FOUND", (features & LOOK_SHADOW_FOUND) != 0},
                                     {"SCATTERED", (features & LOOK_SCATTERED) != 0},
+                                    {"TINTS", (features & LOOK_TINTS) != 0},
                                     {"DUAL", (features & LOOK_DUAL) != 0},
                                     {"SHADOW_BY_MESH", (features & LOOK_SHADOW_BY_MESH) != 0},
                                     {NULL, 0}};
@@ -163,7 +164,9 @@ Result look_programs_use(LookPrograms *programs, const Look *look, const HairBat
     glUseProgram(programs->program[features]);
     if (features & LOOK_PAINT) gpu_buffer_bind_texture(&batch->paint, BIND_PAINT);
     if (features & LOOK_SHADOW_FOUND) use_lights(look, batch);
-    if (look->features & LOOK_MARSCHNER) {
+    if (look->features & LOOK_TINTS) {
+        gpu_buffer_bind_texture(&look->tints->texels, BIND_SCATTER);
+    } else if (look->features & LOOK_MARSCHNER) {
         glActiveTexture(GL_TEXTURE0 + BIND_SCATTER);
         glBindTexture(GL_TEXTURE_3D, look->scatter);
     }

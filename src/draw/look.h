@@ -3,6 +3,7 @@
 // each set of features, so that what a scene does not use costs nothing.
 #pragma once
 
+#include "draw/tint_table.h"
 #include "gpu/shader.h"
 #include "sim/hair.h"
 #include "strands/paint.h"
@@ -22,13 +23,14 @@ typedef enum LookFeature {
     LOOK_SHADOW_FOUND = 256, // the look has a ParticleLight of each batch
     LOOK_SCATTERED = 512,    // the look has the light among its hair
     LOOK_DUAL = 1024,        // of marschner, --scatter dual
+    LOOK_TINTS = 2048,       // of marschner: the look has a table of its own
     // Instead of shading (with LOOK_PAINT alone): white, the tangent, the strand's own colour.
-    LOOK_WHITE = 2048,
-    LOOK_TANGENT = 4096,
-    LOOK_STRAND = 6144,
+    LOOK_WHITE = 4096,
+    LOOK_TANGENT = 8192,
+    LOOK_STRAND = 12288,
 } LookFeature;
 
-enum { LOOK_SHADED = 2048, LOOK_VARIANTS = 4 * LOOK_SHADED };
+enum { LOOK_SHADED = 4096, LOOK_VARIANTS = 4 * LOOK_SHADED };
 
 // What hair leaves of light at the points of a batch (look_points), laid out as its particles are.
 typedef struct ParticleLight {
@@ -44,6 +46,7 @@ typedef struct Look {
     int light_count;                // of the scene
     int map_count;                  // lights that have a shadow map
     GLuint scatter;                 // LOOK_MARSCHNER: the 3D texture of scatter_tables.h
+    const TintTable *tints;         // LOOK_TINTS
     float mean_color[3];            // of the hair, linear RGB
     const ParticleLight *lights;    // [batches], LOOK_SHADOW_FOUND
     const ParticleLight *scattered; // [batches], LOOK_SCATTERED: linear RGB, see hair_scatter.h

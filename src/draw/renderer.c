@@ -76,7 +76,8 @@ static Result make_base(Renderer *renderer, Error *error)
 Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
                        const RendererOptions *asked, Error *error)
 {
-    *renderer = (Renderer){.options = settle(asked), .gpu = gpu, .timer = timer};
+    *renderer =
+        (Renderer){.options = settle(asked), .drawing = {.gpu = gpu}, .gpu = gpu, .timer = timer};
     const RendererOptions *options = &renderer->options;
     if (options->samples != 1 && options->samples != 2 && options->samples != 4)
         return error_set(error, RESULT_USAGE, "--samples %d: expected 1, 2 or 4", options->samples);

@@ -329,8 +329,8 @@ static void blocks_lie_alike_in_c_and_glsl(void **state)
     MATERIAL(exponent1), MATERIAL(specular2), MATERIAL(exponent2), MATERIAL(shift1_cos);
     MATERIAL(shift1_sin), MATERIAL(shift2_cos), MATERIAL(shift2_sin);
     MATERIAL(lobe_sharpness), MATERIAL(lobe_scale), MATERIAL(lobe_tilt_cos);
-    MATERIAL(lobe_tilt_sin), MATERIAL(vertex_count), MATERIAL(first_strand), MATERIAL(smooth_parts),
-        MATERIAL(smooth_curve), MATERIAL(last_strand), MATERIAL(last_share),
+    MATERIAL(lobe_tilt_sin), MATERIAL(tint_unit), MATERIAL(vertex_count), MATERIAL(first_strand),
+        MATERIAL(smooth_parts), MATERIAL(smooth_curve), MATERIAL(last_strand), MATERIAL(last_share),
         MATERIAL(drawn_strands);
 }
 

@@ -17,6 +17,8 @@ vec3 light_reaching(int i, vec3 x, out vec3 to_light)
 
 vec3 light_around_fibre(vec3 tangent, vec3 to_eye, float eye) { return vec3(0.0); }
 
+#include "common/hash.glsl"
+#include "draw/paint.glsl"
 #include "draw/shade_marschner.glsl"
 
 layout(local_size_x = 32) in;
@@ -32,7 +34,8 @@ void main()
     if (i >= directions.length() / 2) return;
     lit_from = directions[2 * i].xyz;
     vec3 to_eye = directions[2 * i + 1].xyz;
-    colors[i] =
-        vec4(shade_fibre(fibre_material(), material.color.rgb, 0, vec3(0.0), vec3(0, 1, 0), to_eye),
-             1.0);
+    Painter painter = paint_strand(0u, 2);
+    vec3 color =
+        shade_fibre(fibre_material(painter), painter.tint, 0, vec3(0.0), vec3(0, 1, 0), to_eye);
+    colors[i] = vec4(color, 1.0);
 }
