@@ -106,7 +106,7 @@ ifeq ($(CONFIG),release) # a yardstick shall be as fast as the compiler makes it
 $(OUT)/bench/cpu_split.o: C_FLAGS += -O3 -fno-math-errno -fno-trapping-math -ffinite-math-only -fno-signed-zeros -ffp-contract=fast
 endif
 # Lanes: selects and roots without a thought for traps and errno, or nothing becomes vector instructions. The same bits.
-$(OUT)/draw/shadow_map.o $(OUT)/draw/shadow_light.o $(OUT)/draw/fibre_lobes.o $(addprefix $(OUT)/draw/light_,grid_fill.o grid_sweep.o grid_gather.o dual.o) $(OUT)/mesh/head.o: C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math
+$(addprefix $(OUT)/draw/shadow_,map.o light.o points.o) $(OUT)/draw/fibre_lobes.o $(addprefix $(OUT)/draw/light_,grid_fill.o grid_sweep.o grid_gather.o dual.o) $(OUT)/mesh/head.o: C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math
 $(OUT)/draw/block_composite.o $(OUT)/draw/block_pixels.o: C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math -ffinite-math-only -fno-signed-zeros
 EMBED_GLSL := scripts/embed-text gpu/shader.h GlslSource
 $(OUT)/glsl_sources.c: scripts/embed-text $(SHADERS) $(OUT)/files

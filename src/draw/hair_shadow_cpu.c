@@ -20,12 +20,13 @@ static void forget_room(HairShadowCpu *cpu)
     free(cpu->lights);
     free(cpu->left);
     free(cpu->mapped);
-    *cpu = (HairShadowCpu){.map = cpu->map, .behind = cpu->behind};
+    *cpu = (HairShadowCpu){.map = cpu->map, .points = cpu->points, .behind = cpu->behind};
 }
 
 void hair_shadow_cpu_destroy(HairShadowCpu *cpu)
 {
     shadow_map_destroy(&cpu->map);
+    shadow_points_destroy(&cpu->points);
     forget_room(cpu);
 }
 
@@ -111,7 +112,10 @@ Result hair_shadow_cpu_begin(HairShadowCpu *cpu, const GpuLimits *limits, int ma
     TRY(make_room(cpu, casters.count, error));
     TRY(make_lights(cpu, limits, maps, casters, error));
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    if (map_all(cpu, casters, depths, texels)) return RESULT_OK;
+    if (map_all(cpu, casters, depths, texels)) {
+        shadow_points_find(&cpu->points, cpu->casters, cpu->count, cpu->map.parts);
+        return RESULT_OK;
+    }
     hair_shadow_cpu_end(cpu);
     return error_set(error, RESULT_FAILED, "cannot read hair's positions for its shadows");
 }

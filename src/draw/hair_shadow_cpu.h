@@ -5,6 +5,7 @@
 
 #include "draw/look.h"
 #include "draw/shadow_map.h"
+#include "draw/shadow_points.h"
 
 // Hair that stands in the light: the ribbons that are drawn, with the material's shadow_opacity.
 typedef struct ShadowCaster {
@@ -19,6 +20,7 @@ typedef struct ShadowCasters {
 
 typedef struct HairShadowCpu {
     ShadowMap map;
+    ShadowPoints points;
     MappedCaster *casters; // [room], owned
     uint32_t count, room;
     ParticleLight *lights; // [room], owned

@@ -2,14 +2,16 @@
 // A batch of hair that stands in the light, in the processor's memory.
 #pragma once
 
+#include "glsl/common/shared.h"
 #include "glsl/draw/material.h"
 #include "glsl/draw/shadow.h"
 
 // Laid out as in HairBatch.
 typedef struct MappedCaster {
     const float (*position)[4];
-    const uint32_t (*paint)[4]; // see look_paint; NULL: none
-    MaterialParams material;    // smooth_parts at least 1
+    const uint32_t (*paint)[4];            // see look_paint; NULL: none
+    const float (*points)[3][STRAND_TILE]; // [tile][point], see shadow_points.h; NULL: none
+    MaterialParams material;               // smooth_parts at least 1
 } MappedCaster;
 
 typedef struct MappedCasters {

@@ -83,14 +83,14 @@ void shadow_map_destroy(ShadowMap *shadow)
 SIMD_INLINE void widen_box(const Cast *cast, const Tile *tile, int j, float box[6][W])
 {
     const CastParams *params = cast->params;
-    float curve[W][4], limit = params->limit, reach = params->reach;
-    const float(*x)[4] = find_points(tile, j, curve);
+    float own[3][W], limit = params->limit, reach = params->reach;
+    const float(*x)[W] = find_points(tile, j, own);
     Places p;
     project_points(params, x, &p);
     float place[3][W];
     for (int k = 0; k < W; ++k) {
-        bool sound = (k < tile->strands) & (fabsf(x[k][0]) < limit) & (fabsf(x[k][1]) < limit) &
-                     (fabsf(x[k][2]) < limit) & (fabsf(p.u[k]) < reach) & (fabsf(p.v[k]) < reach);
+        bool sound = (k < tile->strands) & (fabsf(x[0][k]) < limit) & (fabsf(x[1][k]) < limit) &
+                     (fabsf(x[2][k]) < limit) & (fabsf(p.u[k]) < reach) & (fabsf(p.v[k]) < reach);
         place[0][k] = sound ? p.u[k] : NAN; // which no comparison takes
         place[1][k] = sound ? p.v[k] : NAN;
         place[2][k] = sound ? p.z[k] : NAN;

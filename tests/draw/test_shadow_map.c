@@ -2,6 +2,8 @@
 #include "draw/shadow_map.h"
 
 #include "base/random.h"
+#include "draw/shadow_points.h"
+#include "draw/shadow_tile.h"
 #include "gen/strands_make.h"
 #include "strands/paint.h"
 #include "support/shadow_stage.h"
@@ -129,11 +131,43 @@ static void c_makes_the_same_maps_with_any_thread_count(void **state)
     shadow_map_destroy(&shadow);
 }
 
+// Points that were found once are those that each pass finds, of straight and of smooth hair.
+static void points_are_found_once(void **state)
+{
+    (void)state;
+    enum { STRANDS = 3 * STRAND_TILE, N = 6, MOST_PARTS = 3 };
+    static float position[STRANDS * N][4];
+    Random random = random_create(9, 0);
+    for (int i = 0; i < STRANDS * N; ++i)
+        for (int k = 0; k < 3; ++k) position[i][k] = (float)random_real(&random);
+    for (int i = 0; i < 2 * MOST_PARTS; ++i) {
+        MappedCaster caster = {.position = (const float(*)[4])position,
+                               .material = {.vertex_count = N,
+                                            .smooth_parts = (uint)(1 + i % MOST_PARTS),
+                                            .smooth_curve = (uint)(i / MOST_PARTS),
+                                            .drawn_strands = STRANDS - 3}};
+        MappedCaster before = caster;
+        ShadowPoints points = {0};
+        shadow_points_find(&points, &caster, 1, 2);
+        assert_non_null(caster.points);
+        for (int t = 0; t < STRANDS / STRAND_TILE; ++t)
+            for (int j = 0; j < mapped_caster_points(&caster); ++j) {
+                float own[3][STRAND_TILE];
+                Tile tile = {.caster = &before, .number = (size_t)t},
+                     found = {.caster = &caster, .number = (size_t)t};
+                assert_memory_equal(find_points(&found, j, NULL), find_points(&tile, j, own),
+                                    sizeof own);
+            }
+        shadow_points_destroy(&points);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(c_and_shaders_are_alike),
         cmocka_unit_test(c_makes_the_same_maps_with_any_thread_count),
+        cmocka_unit_test(points_are_found_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
