@@ -186,7 +186,22 @@ SIMD_INLINE Spot find_spot(const Points *points, int k, int turn, float edge)
                   .inside = (u == x) & (v == y) & (turn < points->count[k])};
 }
 
-SIMD_INLINE void add_points(const Cast *cast, const Points *points, uint32_t *sums)
+// Points on their way into the sums: laid down many at a time, since additions to places that are
+// known do not wait for each other's.
+enum { QUEUE = 2048 };
+typedef struct Queue {
+    int count;
+    int place[QUEUE];
+    uint32_t part[QUEUE];
+} Queue;
+
+SIMD_INLINE void empty_queue(Queue *queue, uint32_t *sums)
+{
+    for (int n = 0; n < queue->count; ++n) sums[queue->place[n]] += queue->part[n];
+    queue->count = 0;
+}
+
+SIMD_INLINE void add_points(const Cast *cast, const Points *points, Queue *queue, uint32_t *sums)
 {
     const float *depths = cast->shadow->depths;
     int side = cast->shadow->side;
@@ -200,7 +215,10 @@ SIMD_INLINE void add_points(const Cast *cast, const Points *points, uint32_t *su
             place[k] = (spot.row * LAYERS + layer) * side + spot.column;
             part[k] = spot.inside ? points->part[k] : 0;
         }
-        for (int k = 0; k < W; ++k) sums[place[k]] += part[k];
+        memcpy(queue->place + queue->count, place, sizeof place);
+        memcpy(queue->part + queue->count, part, sizeof part);
+        queue->count += W;
+        if (queue->count == QUEUE) empty_queue(queue, sums);
     }
 }
 
@@ -248,8 +266,8 @@ static void lay_wide(const Cast *cast, const Tile *tile, const Points *p, int k,
     }
 }
 
-SIMD_INLINE void lay_tile(const Cast *cast, const Tile *tile, bool deep, uint32_t *sums,
-                          float *first)
+SIMD_INLINE void lay_tile(const Cast *cast, const Tile *tile, bool deep, Queue *queue,
+                          uint32_t *sums, float *first)
 {
     Places ends[2];
     Points points;
@@ -258,7 +276,7 @@ SIMD_INLINE void lay_tile(const Cast *cast, const Tile *tile, bool deep, uint32_
         find_places(cast->params, tile, j, &ends[j % 2]);
         lay_points(cast, tile, &ends[(j + 1) % 2], &ends[j % 2], &points);
         if (deep)
-            add_points(cast, &points, sums);
+            add_points(cast, &points, queue, sums);
         else
             keep_firsts(cast, &points, first);
         for (int k = 0; points.wide && k < tile->strands; ++k)
@@ -273,7 +291,9 @@ SIMD_INLINE void lay_hair(const Cast *cast, int part, bool deep)
            coarse = (size_t)shadow->coarse * (size_t)shadow->coarse;
     uint32_t *sums = deep ? shadow->sums + (size_t)part * LAYERS * texels : NULL;
     float *first = shadow->first + (size_t)part * coarse;
+    Queue queue;
     int range[2];
+    queue.count = 0;
     if (deep) memset(sums, 0, LAYERS * texels * sizeof *sums);
     for (size_t i = 0; !deep && i < coarse; ++i) first[i] = 1;
     for (uint32_t c = 0; c < cast->casters.count; ++c) {
@@ -281,9 +301,10 @@ SIMD_INLINE void lay_hair(const Cast *cast, int part, bool deep)
         find_range(caster, part, cast->shadow->parts, range);
         for (int t = range[0]; t < range[1]; ++t) {
             Tile tile = open_tile(caster, t);
-            lay_tile(cast, &tile, deep, sums, first);
+            lay_tile(cast, &tile, deep, &queue, sums, first);
         }
     }
+    if (deep) empty_queue(&queue, sums);
 }
 
 SIMD_INLINE void splat(const Cast *cast, int part)
