@@ -177,6 +177,12 @@ typedef struct Segments {
     bool sound[W];
 } Segments;
 
+// One piece of each segment: its area, and what each light leaves of it, in steps.
+typedef struct Pieces {
+    float area[W];
+    uint32_t lit[MAX_LIGHTS][W];
+} Pieces;
+
 SIMD_INLINE void find_areas(const GridHair *hair, const LightLattice *lattice, int tile, int j,
                             Segments *s)
 {
@@ -226,20 +232,21 @@ SIMD_INLINE int find_cell(const LightLattice *lattice, const Segments *s, float 
     return (at[2] * lattice->count[1] + at[1]) * lattice->count[0] + at[0];
 }
 
-// What light l leaves at a place between particles j and j + 1 of strand i of a tile.
-static float find_left(const GridScene *scene, const GridHair *hair, int l, int tile, int j, int i,
-                       float on)
+// What light l leaves at places between particles j and j + 1 of a tile's strands.
+SIMD_INLINE void find_left(const GridScene *scene, const GridHair *hair, int l, int tile, int j,
+                           float on, float out[W])
 {
     int map = scene->map_of[l];
-    if (map < 0) return 1;
+    for (int i = 0; i < W; ++i) out[i] = 1;
+    if (map < 0) return;
     size_t parts = hair->caster.material.smooth_parts,
            points = (hair->caster.material.vertex_count - 1) * parts + 1,
-           at = (size_t)map * hair->points + ((size_t)tile * points + (size_t)j * parts) * W +
-                (size_t)i;
-    return hair->left[at] + on * (hair->left[at + parts * W] - hair->left[at]);
+           at = (size_t)map * hair->points + ((size_t)tile * points + (size_t)j * parts) * W;
+    const float *left = hair->left + at, *next = left + parts * W;
+    for (int i = 0; i < W; ++i) out[i] = left[i] + on * (next[i] - left[i]);
 }
 
-static uint32_t steps_of(float x)
+SIMD_INLINE uint32_t steps_of(float x)
 {
     return (uint32_t)simd_min(simd_max(x, 0) + 0.5f, 4e9f);
 }
@@ -274,22 +281,33 @@ static void put_tint(const GridHair *hair, size_t particle, float area, uint32_t
     }
 }
 
-static void put_item(const Fill *fill, const GridHair *hair, const Segments *s, int tile, int j,
-                     int i, float on, int cell, uint32_t *next)
+// What each light leaves of one piece's areas, in steps.
+SIMD_INLINE void find_lit(const Fill *fill, const GridHair *hair, const Segments *s, int tile,
+                          int j, float on, Pieces *pieces)
+{
+    const LightGridState *state = fill->state;
+    for (int i = 0; i < W; ++i) pieces->area[i] = s->area[i] / (float)state->pieces;
+    for (int l = 0; l < state->lights; ++l) {
+        float lit[W];
+        find_left(fill->scene, hair, l, tile, j, on, lit);
+        for (int i = 0; i < W; ++i) lit[i] *= pieces->area[i];
+        if (fill->scene->draw->light_place[l][3] != 0)
+            for (int i = 0; i < W; ++i)
+                lit[i] *= find_lamp(fill->scene, &state->lattice, l, s, on, i);
+        for (int i = 0; i < W; ++i) pieces->lit[l][i] = steps_of(lit[i]);
+    }
+}
+
+SIMD_INLINE void put_item(const Fill *fill, const GridHair *hair, const Segments *s,
+                          const Pieces *pieces, size_t particle, int i, uint32_t number)
 {
     LightGridState *state = fill->state;
     GridItem *item =
-        (GridItem *)(void *)(state->items + (size_t)next[cell]++ * (size_t)state->item_words);
-    float area = s->area[i] / (float)state->pieces;
+        (GridItem *)(void *)(state->items + (size_t)number * (size_t)state->item_words);
     item->class = s->class[i];
-    item->area = steps_of(area);
-    for (int l = 0; l < state->lights; ++l)
-        item->lit[l] = steps_of(area * find_left(fill->scene, hair, l, tile, j, i, on) *
-                                find_lamp(fill->scene, &state->lattice, l, s, on, i));
-    if (state->tinted)
-        put_tint(hair,
-                 ((size_t)tile * hair->caster.material.vertex_count + (size_t)j) * W + (size_t)i,
-                 area, item->lit + state->lights);
+    item->area = steps_of(pieces->area[i]);
+    for (int l = 0; l < state->lights; ++l) item->lit[l] = pieces->lit[l][i];
+    if (state->tinted) put_tint(hair, particle, pieces->area[i], item->lit + state->lights);
 }
 
 SIMD_INLINE void place_segments(const Fill *fill, const GridHair *hair, int tile, int j,
@@ -297,15 +315,18 @@ SIMD_INLINE void place_segments(const Fill *fill, const GridHair *hair, int tile
 {
     const LightLattice *lattice = &fill->state->lattice;
     int strands = tile_strands(hair, tile), pieces = fill->state->pieces, cells[W];
+    size_t at = ((size_t)tile * hair->caster.material.vertex_count + (size_t)j) * W;
+    Pieces piece_of;
     find_areas(hair, lattice, tile, j, s);
     if (fill->emit) find_classes(hair, strands, s);
     for (int piece = 0; piece < pieces; ++piece) {
         float on = ((float)piece + 0.5f) / (float)pieces;
         for (int i = 0; i < W; ++i) cells[i] = find_cell(lattice, s, on, i);
+        if (fill->emit) find_lit(fill, hair, s, tile, j, on, &piece_of);
         for (int i = 0; i < strands; ++i) {
             if (!s->sound[i]) continue;
             if (fill->emit)
-                put_item(fill, hair, s, tile, j, i, on, cells[i], counts);
+                put_item(fill, hair, s, &piece_of, at + (size_t)i, i, counts[cells[i]]++);
             else
                 ++counts[cells[i]];
         }
