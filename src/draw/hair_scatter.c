@@ -98,8 +98,24 @@ static Result reserve_seen(HairScatter *scatter, uint32_t i, const ShadowCaster 
                              SEEN_BYTES * (int64_t)points, NULL, GL_RGB32F, error);
 }
 
+// What shadow maps were made of, and found: copies of it, or the buffers.
+static bool map_shadows(HairScatter *scatter, const HairShadowCpu *cpu, const HairBatch *batch,
+                        uint32_t i, GridHair *hair)
+{
+    if (cpu->copies) {
+        hair->caster.position = cpu->casters[i].position;
+        hair->caster.paint = cpu->casters[i].paint;
+        hair->left = cpu->left[i];
+    } else {
+        hair->caster.position = map(scatter, &batch->position, GL_MAP_READ_BIT);
+        hair->left = map(scatter, &cpu->lights[i].left, GL_MAP_READ_BIT);
+        if (batch->paint.buffer) hair->caster.paint = map(scatter, &batch->paint, GL_MAP_READ_BIT);
+    }
+    return hair->caster.position && hair->left && (hair->caster.paint || !batch->paint.buffer);
+}
+
 static Result map_hair(HairScatter *scatter, Drawing *drawing, const ShadowCaster *caster,
-                       const GpuBuffer *left, int maps, uint32_t i, Error *error)
+                       const HairShadowCpu *cpu, uint32_t i, Error *error)
 {
     const HairBatch *batch = caster->batch;
     GridHair *hair = &scatter->hair[i];
@@ -108,16 +124,13 @@ static Result map_hair(HairScatter *scatter, Drawing *drawing, const ShadowCaste
     TRY(find_kind(scatter, drawing, &caster->look, &hair->kind, error));
     bool shows = caster->look.features & LOOK_MARSCHNER;
     if (shows) TRY(reserve_seen(scatter, i, caster, hair->points, error));
-    hair->caster.position = map(scatter, &batch->position, GL_MAP_READ_BIT);
-    hair->left = map(scatter, left, GL_MAP_READ_BIT);
+    bool good = map_shadows(scatter, cpu, batch, i, hair);
     if (scatter->options.scatter == SCATTER_DUAL && hair->left)
-        hair->behind = hair->left + (size_t)maps * hair->points;
-    if (batch->paint.buffer) hair->caster.paint = map(scatter, &batch->paint, GL_MAP_READ_BIT);
+        hair->behind = hair->left + (size_t)cpu->maps * hair->points;
     if (shows)
         hair->seen =
             map(scatter, &scatter->seen[i].left, GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT);
-    if (!hair->caster.position || !hair->left || (batch->paint.buffer && !hair->caster.paint) ||
-        (shows && !hair->seen))
+    if (!good || (shows && !hair->seen))
         return error_set(error, RESULT_FAILED, "cannot read hair's positions for its light");
     return RESULT_OK;
 }
@@ -188,7 +201,7 @@ static bool kinds_changed(const HairScatter *scatter, const HairScatterScene *sc
 }
 
 static Result find_light(HairScatter *scatter, const Shadows *shadows,
-                         const HairScatterScene *scene, const ParticleLight *lights, Error *error)
+                         const HairScatterScene *scene, Error *error)
 {
     Result result = RESULT_OK;
     if (kinds_changed(scatter, scene)) {
@@ -199,8 +212,8 @@ static Result find_light(HairScatter *scatter, const Shadows *shadows,
     scatter->count = scene->casters.count;
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     for (uint32_t i = 0; i < scatter->count && result == RESULT_OK; ++i)
-        result = map_hair(scatter, scene->drawing, &scene->casters.list[i], &lights[i].left,
-                          shadows->hair.cpu.maps, i, error);
+        result = map_hair(scatter, scene->drawing, &scene->casters.list[i], &shadows->hair.cpu, i,
+                          error);
     GridScene grid = make_scene(scatter, shadows, scene);
     bool solved = scatter->any && scatter->shadow_version == shadows->version &&
                   same_lights(&scatter->drawn, &scene->drawing->draw);
@@ -242,7 +255,7 @@ Result hair_scatter_draw(HairScatter *scatter, Shadows *shadows, const HairScatt
     if (!is_seen(scatter, shadows, scene)) {
         TRY(make_room(scatter, scene->casters.count, error));
         gpu_timer_begin(timer, "draw_scatter");
-        Result result = find_light(scatter, shadows, scene, lights, error);
+        Result result = find_light(scatter, shadows, scene, error);
         gpu_timer_end(timer);
         TRY(result);
     }

@@ -13,14 +13,22 @@ Result hair_shadow_cpu_create(HairShadowCpu *cpu, int side, bool deep, bool behi
     return shadow_map_create(&cpu->map, side, deep, error);
 }
 
+// Positions, paint and light of each batch, and a map's two parts.
+static size_t count_buffers(uint32_t batches)
+{
+    return 3 * (size_t)batches + 2;
+}
+
 static void forget_room(HairShadowCpu *cpu)
 {
     for (uint32_t i = 0; i < cpu->room; ++i) gpu_buffer_destroy(&cpu->lights[i].left);
+    for (size_t i = 0; cpu->mapped && i < count_buffers(cpu->room); ++i) free(cpu->mapped[i].copy);
     free(cpu->casters);
     free(cpu->lights);
     free(cpu->left);
     free(cpu->mapped);
-    *cpu = (HairShadowCpu){.map = cpu->map, .points = cpu->points, .behind = cpu->behind};
+    *cpu = (HairShadowCpu){
+        .map = cpu->map, .points = cpu->points, .behind = cpu->behind, .copies = cpu->copies};
 }
 
 void hair_shadow_cpu_destroy(HairShadowCpu *cpu)
@@ -37,11 +45,11 @@ static Result make_room(HairShadowCpu *cpu, uint32_t count, Error *error)
     cpu->casters = malloc((count + 1) * sizeof *cpu->casters);
     cpu->lights = calloc(count + 1, sizeof *cpu->lights);
     cpu->left = malloc((count + 1) * sizeof *cpu->left);
-    cpu->mapped = malloc((3 * (size_t)count + 2) * sizeof *cpu->mapped);
-    if (!cpu->casters || !cpu->lights || !cpu->left || !cpu->mapped)
-        return error_set(error, RESULT_FAILED, "no memory for %u batches", count);
-    cpu->room = count;
-    return RESULT_OK;
+    cpu->mapped = calloc(count_buffers(count), sizeof *cpu->mapped);
+    if (cpu->lights && cpu->mapped) cpu->room = count;
+    if (cpu->casters && cpu->lights && cpu->left && cpu->mapped) return RESULT_OK;
+    forget_room(cpu);
+    return error_set(error, RESULT_FAILED, "no memory for %u batches", count);
 }
 
 static int64_t count_floats(const ShadowCaster *caster)
@@ -71,12 +79,31 @@ static Result make_lights(HairShadowCpu *cpu, const GpuLimits *limits, int maps,
     return RESULT_OK;
 }
 
+// Of what is written the content is undefined.
+static void *copy(SharedBuffer *shared, const GpuBuffer *buffer)
+{
+    if (shared->room < buffer->size) {
+        free(shared->copy);
+        shared->copy = malloc((size_t)buffer->size);
+        shared->room = shared->copy ? buffer->size : 0;
+    }
+    if (shared->copy && !shared->written)
+        glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)buffer->size, shared->copy);
+    return shared->copy;
+}
+
 // NULL on failure.
 static void *map(HairShadowCpu *cpu, const GpuBuffer *buffer, GLbitfield access)
 {
+    SharedBuffer *shared = &cpu->mapped[cpu->mapped_count];
+    shared->buffer = buffer->buffer;
+    shared->size = buffer->size;
+    shared->written = access & GL_MAP_WRITE_BIT;
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
-    void *data = glMapBufferRange(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)buffer->size, access);
-    if (data) cpu->mapped[cpu->mapped_count++] = buffer->buffer;
+    void *data = cpu->copies ? copy(shared, buffer)
+                             : glMapBufferRange(GL_SHADER_STORAGE_BUFFER, 0,
+                                                (GLsizeiptr)buffer->size, access);
+    if (data) ++cpu->mapped_count;
     return data;
 }
 
@@ -123,8 +150,12 @@ Result hair_shadow_cpu_begin(HairShadowCpu *cpu, const GpuLimits *limits, int ma
 void hair_shadow_cpu_end(HairShadowCpu *cpu)
 {
     while (cpu->mapped_count) {
-        glBindBuffer(GL_SHADER_STORAGE_BUFFER, cpu->mapped[--cpu->mapped_count]);
-        glUnmapBuffer(GL_SHADER_STORAGE_BUFFER);
+        const SharedBuffer *shared = &cpu->mapped[--cpu->mapped_count];
+        glBindBuffer(GL_SHADER_STORAGE_BUFFER, shared->buffer);
+        if (!cpu->copies)
+            glUnmapBuffer(GL_SHADER_STORAGE_BUFFER);
+        else if (shared->written)
+            glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)shared->size, shared->copy);
     }
 }
 

@@ -18,6 +18,14 @@ typedef struct ShadowCasters {
     uint32_t count;
 } ShadowCasters;
 
+// A buffer while the processor uses it: mapped, or a copy of it.
+typedef struct SharedBuffer {
+    GLuint buffer;
+    int64_t size, room; // bytes, of the buffer and of `copy`
+    void *copy;         // owned; it stays until the buffer is used again
+    bool written;
+} SharedBuffer;
+
 typedef struct HairShadowCpu {
     ShadowMap map;
     ShadowPoints points;
@@ -27,8 +35,12 @@ typedef struct HairShadowCpu {
     float **left;          // [room], owned: theirs, while maps are drawn
     bool behind;           // each light has as many values again, of what is behind (look.h)
     int maps;
-    uint32_t lit;   // of them there are; 0: none (they would not fit into a buffer)
-    GLuint *mapped; // [3 room + 2], owned: buffers
+    uint32_t lit; // of them there are; 0: none (they would not fit into a buffer)
+    // Buffers are copied, not mapped: what hardware keeps in memory of its own is read once, and
+    // what is written is sent, never read. Then `casters` and `left` can still be read after
+    // hair_shadow_cpu_end, until maps are made again.
+    bool copies;
+    SharedBuffer *mapped; // [3 room + 2], owned
     uint32_t mapped_count;
     float *depths; // of all maps, while they are drawn; deep
     uint32_t *texels;

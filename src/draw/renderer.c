@@ -91,6 +91,7 @@ Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
     bool scatters = options->scatter != SCATTER_NONE && options->shadow.kind == SHADOW_DOM;
     ShadowOptions shadow = options->shadow;
     shadow.behind = options->scatter == SCATTER_DUAL;
+    shadow.copies = gpu->kind == GPU_HARDWARE;
     if (options->shadow.kind != SHADOW_NONE)
         THEN(result, shadows_create(&renderer->shadow, &gpu->limits, &shadow,
                                     gpu->kind == GPU_CPU_DRIVER || scatters, error));

@@ -114,8 +114,10 @@ Result shadows_create(Shadows *shadow, const GpuLimits *limits, const ShadowOpti
 {
     *shadow = (Shadows){.options = *options};
     shadow->options.side = (options->side + 7) / 8 * 8;
-    return hair_shadow_create(&shadow->hair, limits, options->kind == SHADOW_DOM,
-                              shadow->options.side, by_processor, options->behind, error);
+    Result result = hair_shadow_create(&shadow->hair, limits, options->kind == SHADOW_DOM,
+                                       shadow->options.side, by_processor, options->behind, error);
+    shadow->hair.cpu.copies = options->copies;
+    return result;
 }
 
 void shadows_destroy(Shadows *shadow)

@@ -26,6 +26,7 @@ typedef struct ShadowOptions {
     Shadow kind;   // not none
     int side;      // texels across a map of hair, rounded up to a multiple of 8
     float spacing; // approx: between fibres along the light, in radii
+    bool copies;   // by the processor: of buffers that it cannot share with the GPU
     bool behind;   // dom by the processor: also count the fibres behind each point (look.h)
 } ShadowOptions;
 

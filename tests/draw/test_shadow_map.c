@@ -70,6 +70,7 @@ static void c_and_shaders_are_alike(void **state)
         look->material.smooth_curve = i / 8 == 2 ? CURVE_BSPLINE : CURVE_CATMULL_ROM;
         look->features = i < 8 ? 0 : LOOK_SMOOTH;
         stage.on_fibre = true;
+        stage.copies = i % 3 == 0;
         uint32_t count = strands.vertex_count;
         float(*points)[4] = malloc(count * sizeof *points);
         assert_non_null(points);

@@ -64,7 +64,8 @@ void shadow_stage_draw(ShadowStage *stage, Shadow kind, int side, float spacing,
     DrawParams draw = {.head_rotation = {0, 0, 0, 1}};
     gpu_buffer_set_uniforms(&uniforms, BIND_DRAW, &draw, sizeof draw);
     shadows_destroy(&stage->shadow);
-    const ShadowOptions options = {.kind = kind, .side = side, .spacing = spacing};
+    const ShadowOptions options = {
+        .kind = kind, .side = side, .spacing = spacing, .copies = stage->copies};
     NEEDED(shadows_create(&stage->shadow, &fixture_gpu()->limits, &options, by_processor, error));
     NEEDED(shadows_draw(&stage->shadow, &stage->scene, &timer, error));
     gpu_timer_destroy(&timer);

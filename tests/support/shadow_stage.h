@@ -29,6 +29,7 @@ typedef struct ShadowStage {
     RenderMesh mesh;
     Shadows shadow;
     bool on_fibre; // points that are asked for lie in the middle of fibres
+    bool copies;   // what is drawn by the processor is drawn as on hardware
     Light light;
 } ShadowStage;
 
