@@ -44,12 +44,14 @@ static bool fill_functions(const GpuOsMesa *mesa)
 {
     bool complete = true;
     AnyFunction function;
-#define GL_FUNCTION(name)                                                                          \
+#define GL_FUNCTION(type, name, parameters, arguments)                                             \
     function = mesa->get_function(#name);                                                          \
     memcpy(&epoxy_##name, &function, sizeof function);                                             \
     complete = complete && function;
+#define GL_VALUE GL_FUNCTION
 #include "gpu/gl_functions.def"
 #undef GL_FUNCTION
+#undef GL_VALUE
     return complete;
 }
 

@@ -6,6 +6,7 @@
 #include "base/outfile.h"
 #include "base/quote.h"
 #include "base/target.h"
+#include "gpu/gl_count.h"
 #include "run/cache_scene.h"
 #include "run/caption.h"
 #include "run/exposure.h"
@@ -332,6 +333,7 @@ static Result write_stats(Run *run, const Sequence *sequence, Error *error)
 Result run_go(Run *run, Error *error)
 {
     TRY(prepare(run, error));
+    if (getenv("TRACTRIX_GL_CALLS")) gl_count_start(); // not documented: a table at the end
     Sequence sequence = {
         .scene = &run->scene,
         .source = &run->source,
@@ -343,6 +345,7 @@ Result run_go(Run *run, Error *error)
         .stats = &run->stats,
     };
     Result result = sequence_run(&sequence, error);
+    gl_count_print(stderr);
     bool failed = result != RESULT_OK && result != RESULT_INTERRUPTED;
     if (failed && run->images.output) output_flush(run->images.output);
     TRY(result);

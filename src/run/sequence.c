@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "base/interrupt.h"
 #include "base/progress.h"
+#include "gpu/gl_count.h"
 #include "run/caption.h"
 #include "run/record.h"
 
@@ -182,6 +183,7 @@ static Result run_frame(Sequence *sequence, Previous *previous, int frame, Error
     if (result == RESULT_OK && wanted && draws)
         result = output_frame(sequence, previous, frame, &times, error);
     stats_add_frame(sequence->stats, sequence->timer, &times, &sequence->images->renderer.counts);
+    gl_count_frame();
     return result;
 }
 
