@@ -20,8 +20,9 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
-// How many, how many hidden, then rows.
+// How many, then rows; of the whole picture how many, how many hidden.
 layout(std430, binding = BIND_LISTED_OUT) buffer Listed { uint listed[]; };
+layout(std430, binding = BIND_TALLY_OUT) buffer Tally { uint tally[2]; };
 #if HIDING
 layout(location = 0) uniform ivec2 tiles; // of level 0: columns, rows
 layout(binding = BIND_HIDING) uniform samplerBuffer hiding;
@@ -118,6 +119,8 @@ void main()
     } while (++j < n);
     bool outside = any(greaterThan(least, vec4(0.0))) || farthest < near_distance;
     hidden = hidden && !outside;
-    if (hidden) atomicAdd(listed[1], 1u);
-    if (!outside && !hidden) listed[2u + atomicAdd(listed[0], 1u)] = uint(row);
+    if (hidden) atomicAdd(tally[1], 1u);
+    if (outside || hidden) return;
+    atomicAdd(tally[0], 1u);
+    listed[1u + atomicAdd(listed[0], 1u)] = uint(row);
 }

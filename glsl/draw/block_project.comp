@@ -117,8 +117,8 @@ void put_joint(Walk w, int j, vec2 next)
 void main()
 {
     int row = lane_index();
-    if (row >= strands.x) return;
-    if (strands.y != 0) row = int(texelFetch(listed, row + 2).x);
+    if (row >= (strands.y != 0 ? int(texelFetch(listed, 0).x) : strands.x)) return;
+    if (strands.y != 0) row = int(texelFetch(listed, row + 1).x);
     int s = int(material.first_strand) + row;
     slot = first_slot + row * (count_points() - 1);
     walk_strand(s, texelFetch(strand_id, s).x);

@@ -89,9 +89,9 @@ void put_joint(Walk w, int j, vec2 next)
 void main()
 {
     int row = lane_index();
-    if (row >= strands.x) return;
+    if (row >= (strands.y != 0 ? int(texelFetch(listed, 0).x) : strands.x)) return;
     int s =
-        int(material.first_strand) + (strands.y != 0 ? int(texelFetch(listed, row + 2).x) : row);
+        int(material.first_strand) + (strands.y != 0 ? int(texelFetch(listed, row + 1).x) : row);
     first = row * count_points();
     Walk w = walk_strand(s, texelFetch(strand_id, s).x);
     vec2 next = direction(w.kept, w.last);

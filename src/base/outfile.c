@@ -149,10 +149,21 @@ Result outfile_check(OutFile *file, Error *error)
     return reason ? fail_to_write(file->path, reason, error) : RESULT_OK;
 }
 
-Result outfile_commit(OutFile *file, Error *error)
+static int find_sync_error(OutFile *file)
 {
     int reason = find_write_error(file);
-    if (reason == 0 && file->temporary && fsync(fileno(file->stream)) != 0) reason = errno;
+    return reason == 0 && file->temporary && fsync(fileno(file->stream)) != 0 ? errno : reason;
+}
+
+Result outfile_sync(OutFile *file, Error *error)
+{
+    int reason = find_sync_error(file);
+    return reason ? fail_to_write(file->path, reason, error) : RESULT_OK;
+}
+
+Result outfile_commit(OutFile *file, Error *error)
+{
+    int reason = find_sync_error(file);
     if (fclose(file->stream) != 0 && reason == 0) reason = errno;
     file->stream = NULL;
     if (reason == 0 && file->temporary && rename(file->temporary, file->path) != 0) reason = errno;

@@ -32,6 +32,10 @@ Result outfile_open(OutFile *file, const char *path, Error *error);
 // only outfile_discard may follow.
 Result outfile_check(OutFile *file, Error *error);
 
+// Flushes and syncs to disk, so that outfile_commit need not wait for that. Fails like
+// outfile_check.
+Result outfile_sync(OutFile *file, Error *error);
+
 // Flushes, syncs to disk, closes and renames to the final name; on any failure the temporary file
 // is removed, an older file of the final name is left as it was, and the reason is given (disk
 // full, ...). `file` is zeroed.

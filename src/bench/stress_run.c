@@ -4,6 +4,7 @@
 #include "base/interrupt.h"
 #include "bench/bench_glsl.h"
 #include "gpu/gpu_dispatch.h"
+#include "gpu/gpu_uniforms.h"
 #include "scene/forces.h"
 #include "sim/solver.h"
 #include "sim/step.h"
@@ -281,7 +282,7 @@ typedef struct Run {
     StressBound bound;
     GLuint program;
     const GpuLimits *limits;
-    GpuBuffer before, worst, first, uniforms;
+    GpuBuffer before, worst, first;
 } Run;
 
 static void run_destroy(Run *run)
@@ -294,7 +295,6 @@ static void run_destroy(Run *run)
     gpu_buffer_destroy(&run->before);
     gpu_buffer_destroy(&run->worst);
     gpu_buffer_destroy(&run->first);
-    gpu_buffer_destroy(&run->uniforms);
 }
 
 static Result upload(Run *run, const Gpu *gpu, const StressCase *strands, int count, Error *error)
@@ -420,7 +420,7 @@ static void look(Run *run, int i)
     stress_run_bound_fill(&run->bound, i == run->steps, &params);
     solver_pose(&run->solver, &run->step.head);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
-    gpu_buffer_set_uniforms(&run->uniforms, BIND_STEP, &params, sizeof params);
+    gpu_uniforms_set(BIND_STEP, &params, sizeof params);
     gpu_buffer_bind_texture(&batch->position, BIND_POSITION);
     gpu_buffer_bind_texture(&run->before, BIND_STRESS_BEFORE);
     gpu_buffer_bind_texture(&batch->rest, BIND_REST);

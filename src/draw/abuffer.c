@@ -79,6 +79,7 @@ void abuffer_destroy(ABuffer *abuffer)
     gpu_buffer_destroy(&abuffer->counters);
     gpu_buffer_destroy(&abuffer->extent);
     gpu_buffer_destroy(&abuffer->shortage);
+    late_read_destroy(&abuffer->counts);
     *abuffer = (ABuffer){0};
 }
 
@@ -117,18 +118,32 @@ Result abuffer_begin(ABuffer *abuffer, int rows, const int box[4], Error *error)
     return RESULT_OK;
 }
 
-void abuffer_measure(const ABuffer *abuffer, ABufferUse *use)
+enum { COUNTER_BYTES = COUNTER_WORDS * 4 };
+
+Result abuffer_send_use(ABuffer *abuffer, const Cull *cull, Error *error)
 {
-    GLuint counters[COUNTER_WORDS];
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    glBindBuffer(GL_SHADER_STORAGE_BUFFER, abuffer->counters.buffer);
-    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof counters, counters);
+    LateRead *counts = &abuffer->counts;
+    TRY(late_read_begin(counts, "A-buffer counters", COUNTER_BYTES + CULL_TALLY_BYTES, error));
+    late_read_buffer(counts, 0, &abuffer->counters, COUNTER_BYTES);
+    if (cull->tries) late_read_buffer(counts, COUNTER_BYTES, &cull->tally, CULL_TALLY_BYTES);
+    late_read_send(counts);
+    return RESULT_OK;
+}
+
+Result abuffer_take_use(ABuffer *abuffer, ABufferUse *use, Cull *cull, Error *error)
+{
+    const void *bytes;
+    TRY(late_read_open(&abuffer->counts, "A-buffer counters", &bytes, error));
+    const uint32_t *counters = bytes;
     *use = (ABufferUse){.segments = counters[COUNTER_SEGMENTS], .culled = counters[COUNTER_CULLED]};
     for (int i = 0; i < SHARD_COUNT; ++i) {
-        GLuint count = counters[i * SHARD_RUN];
+        uint32_t count = counters[i * SHARD_RUN];
         use->fragments += count;
         if (count > use->fullest) use->fullest = count;
     }
+    cull_count(cull, cull->tries ? counters + COUNTER_WORDS : NULL);
+    late_read_close(&abuffer->counts);
+    return RESULT_OK;
 }
 
 bool abuffer_holds(const ABuffer *abuffer, const ABufferUse *use)
@@ -162,13 +177,4 @@ void abuffer_resolve(const ABuffer *abuffer, const RenderTarget *target, bool ov
     glUseProgram(abuffer->resolve[over_mesh]);
     glBindVertexArray(abuffer->vertex_array);
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-}
-
-bool abuffer_fell_short(const ABuffer *abuffer)
-{
-    GLuint flag;
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    glBindBuffer(GL_SHADER_STORAGE_BUFFER, abuffer->shortage.buffer);
-    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof flag, &flag);
-    return flag != 0;
 }

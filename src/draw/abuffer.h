@@ -2,6 +2,7 @@
 // The A-buffer: the pool of all fragments of a band of the image, and its resolution to colours.
 #pragma once
 
+#include "draw/cull.h"
 #include "draw/render_target.h"
 #include "gpu/shader.h"
 
@@ -15,6 +16,7 @@ typedef struct ABuffer {
     GpuBuffer counters;  // uint, see COUNTER_WORDS
     GpuBuffer shortage;  // uint: not 0 once a pixel had too many fragments to visit
     GpuBuffer extent;    // int[4]: screen box of what has to be resolved: x, y lowest, highest, px
+    LateRead counts;     // what a band has stored, on its way back
     const GpuLimits *limits;
     int64_t most_nodes; // that the pool can grow to
     int shards;         // that the pool is split into: SHARD_COUNT or 1
@@ -57,8 +59,13 @@ int abuffer_shard_nodes(const ABuffer *abuffer);
 // storage points of draw.h.
 Result abuffer_begin(ABuffer *abuffer, int rows, const int box[4], Error *error);
 
-// Waits for what has been drawn since. All is stored if abuffer_holds says so.
-void abuffer_measure(const ABuffer *abuffer, ABufferUse *use);
+// Sends what has been drawn since, and what `cull` has found, on its way back. RESULT_FAILED if
+// memory is short.
+Result abuffer_send_use(ABuffer *abuffer, const Cull *cull, Error *error);
+
+// Waits for what was sent. All is stored if abuffer_holds says so. RESULT_FAILED if it does not
+// come.
+Result abuffer_take_use(ABuffer *abuffer, ABufferUse *use, Cull *cull, Error *error);
 bool abuffer_holds(const ABuffer *abuffer, const ABufferUse *use);
 
 // Makes the pool large enough for `use` and some more, if need be by having one shard from now on,
@@ -69,7 +76,3 @@ Result abuffer_grow(ABuffer *abuffer, const ABufferUse *use, bool *grown, Error 
 // Writes the pixels within the extent and the scissor to the target's image, over its base if
 // `over_mesh` (after abuffer_add_base). Needs the DrawParams block.
 void abuffer_resolve(const ABuffer *abuffer, const RenderTarget *target, bool over_mesh);
-
-// Whether a pixel that was resolved since abuffer_create had more fragments than a CPU
-// driver's loops can visit. Waits.
-bool abuffer_fell_short(const ABuffer *abuffer);

@@ -2,6 +2,7 @@
 #include "draw/blocks.h"
 
 #include "gpu/gpu_dispatch.h"
+#include "gpu/gpu_uniforms.h"
 
 #include "glsl/draw/draw.h"
 
@@ -137,8 +138,7 @@ Result blocks_create(Blocks *blocks, const GpuLimits *limits, const RendererOpti
 
 void blocks_destroy(Blocks *blocks)
 {
-    GpuBuffer *const buffers[] = {&blocks->ribbons, &blocks->keys, &blocks->counts,
-                                  &blocks->material};
+    GpuBuffer *const buffers[] = {&blocks->ribbons, &blocks->keys, &blocks->counts};
     look_programs_destroy(&blocks->project);
     cull_destroy(&blocks->cull);
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; ++i) gpu_buffer_destroy(buffers[i]);
@@ -187,15 +187,14 @@ static Result project_part(Blocks *blocks, const HairBatch *batch, const Look *l
                            const MaterialParams *part, int64_t slots, Error *error)
 {
     int64_t first = (int64_t)blocks->slots, begin = first / ALIGNED_RIBBONS * ALIGNED_RIBBONS;
-    uint32_t count = part->drawn_strands;
-    gpu_buffer_set_uniforms(&blocks->material, BIND_MATERIAL, part, sizeof *part);
-    if (blocks->cull.tries) TRY(cull_list(&blocks->cull, batch, part, &count, error));
+    gpu_uniforms_set(BIND_MATERIAL, part, sizeof *part);
+    if (blocks->cull.tries) TRY(cull_list(&blocks->cull, batch, part, error));
     TRY(look_programs_use(&blocks->project, look, batch, error));
     bind_range(&blocks->ribbons, BIND_RIBBONS_OUT, begin, first + slots, sizeof(RibbonRecord));
     bind_range(&blocks->keys, BIND_KEYS_OUT, begin, first + slots, sizeof(RibbonKey));
     glUniform1i(0, (GLint)(first - begin));
-    glUniform2i(1, (GLint)count, blocks->cull.tries);
-    gpu_dispatch(blocks->limits, count, (uint64_t)blocks->limits->sizes.strands, 1);
+    glUniform2i(1, (GLint)part->drawn_strands, blocks->cull.tries);
+    gpu_dispatch(blocks->limits, part->drawn_strands, (uint64_t)blocks->limits->sizes.strands, 1);
     blocks->slots += (size_t)slots;
     blocks->strands += part->drawn_strands;
     return RESULT_OK;
@@ -245,8 +244,19 @@ Result blocks_add(Blocks *blocks, const HairBatch *batch, const Look *look, Erro
     return RESULT_OK;
 }
 
+static Result count_left_out(Blocks *blocks, Error *error)
+{
+    const uint32_t *tally = NULL;
+    if (blocks->cull.tries && !(tally = map(&blocks->cull.tally, CULL_TALLY_BYTES)))
+        return error_set(error, RESULT_FAILED, "what is out of sight cannot be read");
+    cull_count(&blocks->cull, tally);
+    if (tally) unmap(&blocks->cull.tally);
+    return RESULT_OK;
+}
+
 Result blocks_count(Blocks *blocks, Error *error)
 {
+    TRY(count_left_out(blocks, error));
     const GLuint *counts = map(&blocks->counts, blocks->counts.size);
     if (!counts) return error_set(error, RESULT_FAILED, "hair's counts cannot be read");
     blocks->segments = blocks->culled = 0;

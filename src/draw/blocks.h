@@ -40,7 +40,7 @@ typedef struct Blocks {
     PixelStyle style;
     bool nearest;            // ribbons hide what is behind them
     GpuBuffer ribbons, keys; // RibbonRecord, RibbonKey: one a slot
-    GpuBuffer counts, material;
+    GpuBuffer counts;
     // An image of more than most_slots moves its ribbons to `store`, stored_slots at a time.
     size_t most_slots, stored_slots;
     RibbonStore store;

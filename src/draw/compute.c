@@ -139,8 +139,9 @@ Result compute_draw(Compute *compute, const Blocks *blocks, RenderTarget *target
         draw_band(compute, blocks, target, row, row + rows, timer);
         bool is_last = row + rows == all;
         gpu_timer_begin(timer, "draw_read");
-        if (is_last) render_target_read(target, image);
+        Result read = is_last ? render_target_read(target, image, error) : RESULT_OK;
         gpu_timer_end(timer);
+        TRY(read);
         TRY(compute_bins_measure(&compute->bins, &use, error));
         *drawn = use.longest <= (uint32_t)compute->longest;
         if (*drawn && use.pairs > (uint64_t)compute->bins.room) {

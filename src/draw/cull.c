@@ -67,7 +67,7 @@ void cull_make_levels(float *nearest, int columns, int rows, float *levels)
 
 // --- Strands that are out of sight.
 
-enum { HEAD_WORDS = 2 }; // of `listed`, before the rows
+enum { HEAD_WORDS = 1 }; // of `listed`, before the rows
 
 _Static_assert((int)HIDE_LEVELS == HIDE_LEVELS, "levels");
 
@@ -130,7 +130,11 @@ Result cull_begin(Cull *cull, const CullBase *base, bool many, Error *error)
 {
     cull->covered = base->target != NULL;
     cull->tries = !cull->off && (many || (cull->covered && base->version != cull->base));
-    cull->outside = cull->hidden = 0;
+    cull->looked_at = cull->outside = cull->hidden = 0;
+    if (cull->tries)
+        TRY(gpu_buffer_reserve(&cull->tally, cull->limits, "strands in sight", CULL_TALLY_BYTES, 0,
+                               error));
+    cull_restart(cull);
     if (!cull->tries || !cull->covered || base->version == cull->base) return RESULT_OK;
     cull->base = 0;
     TRY(measure_base(cull, base->target, error));
@@ -175,30 +179,40 @@ Result cull_make_room(Cull *cull, uint32_t strands, Error *error)
                               ((int64_t)strands + HEAD_WORDS) * 4, GL_R32UI, error);
 }
 
-Result cull_list(Cull *cull, const HairBatch *batch, const MaterialParams *part, uint32_t *count,
-                 Error *error)
+void cull_restart(Cull *cull)
 {
-    GLuint found[HEAD_WORDS] = {0};
+    cull->looked_at = 0;
+    if (cull->tries) gpu_buffer_clear(&cull->tally, 0);
+}
+
+void cull_count(Cull *cull, const uint32_t *tally)
+{
+    cull->hidden = tally ? tally[1] : 0;
+    cull->outside = tally ? cull->looked_at - tally[0] - tally[1] : 0;
+}
+
+Result cull_list(Cull *cull, const HairBatch *batch, const MaterialParams *part, Error *error)
+{
+    const GLuint none[HEAD_WORDS] = {0};
     TRY(use(cull, batch, part->smooth_parts > 1, error));
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, cull->listed.buffer);
-    glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof found, found);
+    glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof none, none);
+    gpu_buffer_bind_storage(&cull->tally, BIND_TALLY_OUT);
     gpu_buffer_bind_storage(&cull->listed, BIND_LISTED_OUT);
     gpu_dispatch(cull->limits, part->drawn_strands, (uint64_t)cull->limits->sizes.strands, 1);
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
-    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof found, found);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
+                    GL_SHADER_STORAGE_BARRIER_BIT);
     gpu_buffer_bind_texture(&cull->listed, BIND_LISTED);
-    *count = found[0];
-    cull->hidden += found[1];
-    cull->outside += part->drawn_strands - found[0] - found[1];
+    cull->looked_at += part->drawn_strands;
     return RESULT_OK;
 }
 
 void cull_destroy(Cull *cull)
 {
-    GpuBuffer *const buffers[] = {&cull->listed, &cull->nearest, &cull->levels};
+    GpuBuffer *const buffers[] = {&cull->listed, &cull->tally, &cull->nearest, &cull->levels};
     for (int i = 0; i < CULL_VARIANTS; ++i)
         if (cull->list[i]) glDeleteProgram(cull->list[i]);
     if (cull->hide) glDeleteProgram(cull->hide);
-    for (int i = 0; i < 3; ++i) gpu_buffer_destroy(buffers[i]);
+    for (int i = 0; i < 4; ++i) gpu_buffer_destroy(buffers[i]);
     *cull = (Cull){.limits = cull->limits};
 }

@@ -10,7 +10,7 @@
 #include <stdbool.h>
 
 // Of the strands of an image, left out: looking for them in the next one pays.
-enum { CULL_SHARE = 16 };
+enum { CULL_SHARE = 16, CULL_TALLY_BYTES = 8 };
 
 // What the shader that lists strands needs: something opaque is there, painted, smooth.
 enum { CULL_HIDING = 1, CULL_PAINT = 2, CULL_SMOOTH = 4, CULL_VARIANTS = 8 };
@@ -20,7 +20,8 @@ typedef struct Cull {
     const GpuLimits *limits;    // the context's, set by who makes it
     GLuint list[CULL_VARIANTS]; // programs
     GLuint hide;                // program
-    GpuBuffer listed;           // how many, how many hidden, rows: see block_cull.comp
+    GpuBuffer listed;           // of a part: how many, rows: see block_cull.comp
+    GpuBuffer tally;            // of the image: strands that are listed, that are hidden
     GpuBuffer nearest;          // by tile, see block_hide.comp
     GpuBuffer levels;           // see cull_make_levels
     int tiles[2];               // columns, rows
@@ -28,7 +29,8 @@ typedef struct Cull {
     bool covered;               // something opaque is in this image
     bool tries;               // this image: many were left out of the last one, or the base is new
     bool off;                 // never try, so that tests can tell
-    uint64_t outside, hidden; // strands of this image that were left out
+    uint64_t looked_at;       // strands of this image
+    uint64_t outside, hidden; // of them left out, once they are counted
 } Cull;
 
 // What is opaque in an image: its depth, of a size in samples, and a number that is another one
@@ -49,10 +51,16 @@ Result cull_begin(Cull *cull, const CullBase *base, bool many, Error *error);
 // short.
 Result cull_make_room(Cull *cull, uint32_t strands, Error *error);
 
-// Lists the part's strands that may be seen in BIND_LISTED, and how many they are. Only if `tries`.
-// Needs room, the uniforms of image and part, positions bound. Waits.
-Result cull_list(Cull *cull, const HairBatch *batch, const MaterialParams *part, uint32_t *count,
-                 Error *error);
+// Lists the part's strands that may be seen in BIND_LISTED, how many there are before them. Only if
+// `tries`. Needs room, the uniforms of image and part, positions bound.
+Result cull_list(Cull *cull, const HairBatch *batch, const MaterialParams *part, Error *error);
+
+// Begins to count anew: another band has the same strands. Nothing if it does not try.
+void cull_restart(Cull *cull);
+
+// What `tally` has come to, CULL_TALLY_BYTES of it: fills `outside` and `hidden`. NULL: it was not
+// tried.
+void cull_count(Cull *cull, const uint32_t *tally);
 
 void cull_destroy(Cull *cull);
 

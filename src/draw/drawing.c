@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "draw/drawing.h"
 
+#include "gpu/gpu_uniforms.h"
 #include "image/tone.h"
 #include "strands/paint.h"
 
@@ -341,14 +342,13 @@ void drawing_destroy(Drawing *drawing)
     for (uint32_t i = 0; i < drawing->look_room; ++i) tint_table_destroy(&drawing->tints[i]);
     free(drawing->tints);
     scatter_tables_destroy(&drawing->scatter);
-    gpu_buffer_destroy(&drawing->uniforms);
     free(drawing->looks);
     *drawing = (Drawing){.gpu = drawing->gpu};
 }
 
 void drawing_upload(Drawing *drawing)
 {
-    gpu_buffer_set_uniforms(&drawing->uniforms, BIND_DRAW, &drawing->draw, sizeof drawing->draw);
+    gpu_uniforms_set(BIND_DRAW, &drawing->draw, sizeof drawing->draw);
 }
 
 uint64_t drawing_count_segments(const Drawing *drawing)

@@ -23,7 +23,6 @@ typedef struct Drawing {
     int mesh_box[4]; // samples: x, y lowest, highest; empty without a mesh
     int base_box[4]; // the same of mesh and floor
     ScatterTables scatter;
-    GpuBuffer uniforms;
 } Drawing;
 
 // How light becomes colour: a Tone, or TONE_LIGHT where pixels are light as it is.

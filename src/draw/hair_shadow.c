@@ -2,6 +2,7 @@
 #include "draw/hair_shadow.h"
 
 #include "gpu/gpu_dispatch.h"
+#include "gpu/gpu_uniforms.h"
 
 #include <math.h>
 #include <string.h>
@@ -91,8 +92,6 @@ void hair_shadow_destroy(HairShadow *hair)
     destroy_maps(hair);
     hair_shadow_cpu_destroy(&hair->cpu);
     gpu_buffer_destroy(&hair->box);
-    gpu_buffer_destroy(&hair->cast_uniforms);
-    gpu_buffer_destroy(&hair->material);
     *hair = (HairShadow){0};
 }
 
@@ -158,14 +157,14 @@ void hair_shadow_end(HairShadow *hair)
 static void cast(HairShadow *hair, ShadowCasters casters, const CastParams *params,
                  const GLuint programs[CAST_VARIANTS], uint32_t part)
 {
-    gpu_buffer_set_uniforms(&hair->cast_uniforms, BIND_CAST, params, sizeof *params);
+    gpu_uniforms_set(BIND_CAST, params, sizeof *params);
     for (uint32_t i = 0; i < casters.count; ++i) {
         const ShadowCaster *caster = &casters.list[i];
         const HairBatch *batch = caster->batch;
         MaterialParams material = look_material(&caster->look, batch);
         uint32_t points = (batch->vertex_count - 1) * material.smooth_parts + 1;
         glUseProgram(programs[variant_of(caster)]);
-        gpu_buffer_set_uniforms(&hair->material, BIND_MATERIAL, &material, sizeof material);
+        gpu_uniforms_set(BIND_MATERIAL, &material, sizeof material);
         gpu_buffer_bind_texture(&batch->position, BIND_POSITION);
         if (batch->paint.buffer) gpu_buffer_bind_texture(&batch->paint, BIND_PAINT);
         gpu_dispatch(hair->limits, material.drawn_strands, (uint64_t)hair->limits->sizes.strands,

@@ -19,8 +19,7 @@ typedef struct HairShadow {
     GLuint bounds[CAST_VARIANTS], first[CAST_VARIANTS], splat[CAST_VARIANTS]; // programs
     GLuint spread, finish;
     GpuBuffer box, firsts, depths, sums, layers; // see shadow.h
-    GpuBuffer cast_uniforms, material;
-    int maps; // there is room for
+    int maps;                                    // there is room for
 } HairShadow;
 
 // `side`: a multiple of 8. `by_processor`: C makes the maps. `behind`: see ParticleLight.

@@ -2,6 +2,7 @@
 #include "draw/quads.h"
 
 #include "gpu/gpu_dispatch.h"
+#include "gpu/gpu_uniforms.h"
 
 #include "glsl/draw/draw.h"
 
@@ -21,7 +22,6 @@ static void destroy_ribbons(QuadRibbons *hair)
     gpu_buffer_destroy(&hair->shades);
     gpu_buffer_destroy(&hair->indices);
     gpu_buffer_destroy(&hair->command);
-    gpu_buffer_destroy(&hair->material);
     *hair = (QuadRibbons){0};
 }
 
@@ -55,27 +55,25 @@ static void write(const GpuBuffer *buffer, int64_t at, const void *data, size_t 
     glBufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)at, (GLsizeiptr)size, data);
 }
 
-// How many strands are projected goes to *strands.
 static Result project(QuadRibbons *hair, const GpuLimits *limits, const HairBatch *batch,
-                      const Look *look, Cull *cull, uint32_t *strands, Error *error)
+                      const Look *look, Cull *cull, Error *error)
 {
     const MaterialParams *material = &look->material;
     const GLuint command[COMMAND_WORDS] = {[COMMAND_INSTANCE_COUNT] = 1};
-    *strands = material->drawn_strands;
-    gpu_buffer_set_uniforms(&hair->material, BIND_MATERIAL, material, sizeof *material);
+    gpu_uniforms_set(BIND_MATERIAL, material, sizeof *material);
     gpu_buffer_bind_texture(&batch->position, BIND_POSITION);
     Result result = RESULT_OK;
-    if (cull->tries) result = cull_list(cull, batch, material, strands, error);
+    if (cull->tries) result = cull_list(cull, batch, material, error);
     THEN(result, look_programs_use(&hair->project, look, batch, error));
-    if (result != RESULT_OK || *strands == 0) return result;
-    glUniform2i(0, (GLint)*strands, cull->tries);
+    if (result != RESULT_OK) return result;
+    glUniform2i(0, (GLint)material->drawn_strands, cull->tries);
     write(&hair->command, 0, command, sizeof command);
     gpu_buffer_bind_texture(&batch->strand_id, BIND_STRAND_ID);
     gpu_buffer_bind_storage(&hair->edges, BIND_EDGES_OUT);
     gpu_buffer_bind_storage(&hair->shades, BIND_SHADES_OUT);
     gpu_buffer_bind_storage(&hair->indices, BIND_INDICES_OUT);
     gpu_buffer_bind_storage(&hair->command, BIND_COMMAND_OUT);
-    gpu_dispatch(limits, *strands, (uint64_t)limits->sizes.strands, 1);
+    gpu_dispatch(limits, material->drawn_strands, (uint64_t)limits->sizes.strands, 1);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT |
                     GL_COMMAND_BARRIER_BIT);
     return RESULT_OK;
@@ -106,16 +104,15 @@ static Result draw_batch(QuadRibbons *hair, const HairBatch *batch, const Look *
              most = n < PART_PARTICLES ? PART_PARTICLES / n : 1,
              strands = part.material.drawn_strands;
     for (uint32_t first = 0; first < strands; first += most) {
-        uint32_t left = strands - first, seen;
+        uint32_t left = strands - first;
         part.material.first_strand = first;
         part.material.drawn_strands = left < most ? left : most;
         Result result = make_scratch(hair, part.material.drawn_strands, n, limits, error);
         THEN(result, cull_make_room(cull, part.material.drawn_strands, error));
         gpu_timer_begin(timer, "draw_project");
-        THEN(result, project(hair, limits, batch, &part, cull, &seen, error));
+        THEN(result, project(hair, limits, batch, &part, cull, error));
         gpu_timer_end(timer);
         if (result != RESULT_OK) return result;
-        if (seen == 0) continue;
         gpu_timer_begin(timer, "draw_hair");
         draw_ribbons(hair);
         gpu_timer_end(timer);
@@ -161,7 +158,7 @@ Result quads_add_base(Quads *quads, Error *error)
     return abuffer_add_base(&quads->abuffer, error);
 }
 
-// The band's lists; measured, but not resolved yet.
+// The band's lists; they are being measured, but not resolved yet.
 static Result draw_band(Quads *quads, Drawing *drawing, const RenderTarget *target, int row,
                         int rows, GpuTimer *timer, Error *error)
 {
@@ -173,7 +170,7 @@ static Result draw_band(Quads *quads, Drawing *drawing, const RenderTarget *targ
     draw->band[3] = (uint32_t)abuffer_shard_nodes(&quads->abuffer);
     draw->shards = (uint32_t)quads->abuffer.shards;
     drawing_upload(drawing);
-    quads->cull.outside = quads->cull.hidden = 0; // the same in every band
+    cull_restart(&quads->cull);
     glBindFramebuffer(GL_FRAMEBUFFER, target->hair_frame);
     glViewport(0, 0, quads->width * samples, quads->height * samples);
     glScissor(0, row * samples, quads->width * samples, rows * samples);
@@ -183,7 +180,18 @@ static Result draw_band(Quads *quads, Drawing *drawing, const RenderTarget *targ
             result = draw_batch(&quads->hair, &hair->batches[b], &drawing->looks[i], &quads->cull,
                                 quads->limits, timer, error);
     }
+    THEN(result, abuffer_send_use(&quads->abuffer, &quads->cull, error));
     return result;
+}
+
+static void resolve_band(const Quads *quads, const RenderTarget *target, bool over_mesh, int row,
+                         int rows, GpuTimer *timer)
+{
+    gpu_timer_begin(timer, "draw_resolve");
+    glViewport(0, 0, quads->width, quads->height);
+    glScissor(0, row, quads->width, rows);
+    abuffer_resolve(&quads->abuffer, target, over_mesh);
+    gpu_timer_end(timer);
 }
 
 // Rows that fill the pool well if hair is as dense in them as in a band of `rows` with this use:
@@ -228,13 +236,9 @@ static Result draw_bands(Quads *quads, Drawing *drawing, const RenderTarget *tar
         ABufferUse use;
         if (rows > quads->height - row) rows = quads->height - row;
         TRY(draw_band(quads, drawing, target, row, rows, timer, error));
-        abuffer_measure(&quads->abuffer, &use);
+        TRY(abuffer_take_use(&quads->abuffer, &use, &quads->cull, error));
         if (abuffer_holds(&quads->abuffer, &use)) {
-            gpu_timer_begin(timer, "draw_resolve");
-            glViewport(0, 0, quads->width, quads->height);
-            glScissor(0, row, quads->width, rows);
-            abuffer_resolve(&quads->abuffer, target, over_mesh);
-            gpu_timer_end(timer);
+            resolve_band(quads, target, over_mesh, row, rows, timer);
             count_band(&use, counts);
             row += rows;
             rows = rows_that_fit(quads, &use, rows);
@@ -259,24 +263,78 @@ static void count_left_out(Quads *quads, const Drawing *drawing, RendererCounts 
     quads->skips = counts->culled + counts->hidden > strands / CULL_SHARE;
 }
 
-Result quads_draw(Quads *quads, Drawing *drawing, RenderTarget *target, const CullBase *base,
-                  GpuTimer *timer, Image *image, RendererCounts *counts, Error *error)
+// In bands, each of which is measured before it is resolved.
+static Result draw_measured(Quads *quads, Drawing *drawing, RenderTarget *target, bool over_mesh,
+                            GpuTimer *timer, RendererCounts *counts, Error *error)
 {
-    TRY(cull_begin(&quads->cull, base, quads->skips, error));
     glEnable(GL_SCISSOR_TEST);
-    Result result = draw_bands(quads, drawing, target, base->target != NULL, timer, counts, error);
+    Result result = draw_bands(quads, drawing, target, over_mesh, timer, counts, error);
     glDisable(GL_SCISSOR_TEST);
-    if (result != RESULT_OK) return result;
-    count_left_out(quads, drawing, counts);
+    if (result == RESULT_OK) count_left_out(quads, drawing, counts);
+    return result;
+}
+
+// In one band, which is taken to fit: quads_settle finds out.
+static Result draw_trusting(Quads *quads, Drawing *drawing, const RenderTarget *target,
+                            bool over_mesh, GpuTimer *timer, Error *error)
+{
+    glEnable(GL_SCISSOR_TEST);
+    Result result = draw_band(quads, drawing, target, 0, quads->height, timer, error);
+    if (result == RESULT_OK) resolve_band(quads, target, over_mesh, 0, quads->height, timer);
+    glDisable(GL_SCISSOR_TEST);
+    quads->unsettled = result == RESULT_OK;
+    return result;
+}
+
+static Result send(Quads *quads, RenderTarget *target, bool again, GpuTimer *timer, Error *error)
+{
     gpu_timer_begin(timer, "draw_read");
-    render_target_read(target, image);
-    bool short_of_turns = abuffer_fell_short(&quads->abuffer);
+    Result result = render_target_send(target, &quads->abuffer.shortage, again, error);
     gpu_timer_end(timer);
+    return result;
+}
+
+Result quads_draw(Quads *quads, Drawing *drawing, RenderTarget *target, const CullBase *base,
+                  GpuTimer *timer, RendererCounts *counts, Error *error)
+{
+    bool over_mesh = base->target != NULL, one = quads->band_rows >= quads->height;
+    quads->unsettled = false;
+    TRY(cull_begin(&quads->cull, base, quads->skips, error));
+    TRY(one ? draw_trusting(quads, drawing, target, over_mesh, timer, error)
+            : draw_measured(quads, drawing, target, over_mesh, timer, counts, error));
+    counts->pool_bytes = (uint64_t)quads->abuffer.nodes.size;
+    return send(quads, target, false, timer, error);
+}
+
+Result quads_settle(Quads *quads, Drawing *drawing, RenderTarget *target, bool over_mesh,
+                    GpuTimer *timer, RendererCounts *counts, Error *error)
+{
+    ABufferUse use;
+    int rows = quads->height;
+    if (!quads->unsettled) return RESULT_OK;
+    quads->unsettled = false;
+    TRY(abuffer_take_use(&quads->abuffer, &use, &quads->cull, error));
+    if (abuffer_holds(&quads->abuffer, &use)) {
+        count_band(&use, counts);
+        count_left_out(quads, drawing, counts);
+        return RESULT_OK;
+    }
+    ++counts->redraws;
+    TRY(make_it_fit(quads, &use, &rows, error));
+    quads->band_rows = rows;
+    TRY(draw_measured(quads, drawing, target, over_mesh, timer, counts, error));
+    counts->pool_bytes = (uint64_t)quads->abuffer.nodes.size;
+    return send(quads, target, true, timer, error);
+}
+
+Result quads_take(RenderTarget *target, int place, Image *image, Error *error)
+{
+    uint32_t short_of_turns;
+    TRY(render_target_take(target, place, image, &short_of_turns, error));
     if (short_of_turns)
         return error_set(error, RESULT_FAILED,
                          "a pixel has more than %d hair fragments, more than this driver's loops "
                          "can visit",
                          ABUFFER_MOST_TURNS);
-    counts->pool_bytes = (uint64_t)quads->abuffer.nodes.size;
     return RESULT_OK;
 }

@@ -16,7 +16,6 @@ typedef struct QuadRibbons {
     GLuint vertex_array;        // without attributes
     GpuBuffer edges, shades;    // uvec4 a particle, see hair.vert
     GpuBuffer indices, command; // triangles, and how many of them: glDrawElementsIndirect
-    GpuBuffer material;
 } QuadRibbons;
 
 // A zeroed struct has nothing, and no limits.
@@ -28,7 +27,8 @@ typedef struct Quads {
     int samples;       // across a pixel
     int band_rows;     // that the next image starts with
     Cull cull;
-    bool skips; // strands are looked through before they are projected
+    bool unsettled; // nobody knows yet whether the A-buffer held all of the image
+    bool skips;     // strands are looked through before they are projected
 } Quads;
 
 // RESULT_FAILED if memory is short. `gpu` outlives the quads.
@@ -38,8 +38,16 @@ void quads_destroy(Quads *quads);
 // Makes what drawing over a mesh needs; nothing if it is there.
 Result quads_add_base(Quads *quads, Error *error);
 
-// Draws the image's hair over the target's base, or over the background if `over_mesh` is false,
-// and copies it into `image`; waits for it. `base`: what is opaque. What it does is added to
-// `counts`. See renderer_draw.
+// Draws the image's hair over the target's base, or over the background if `base` has no target,
+// and sends the image on its way back. It waits only for images of several bands. `base`: what is
+// opaque. What it does is added to `counts`, some of it by quads_settle. See renderer_begin.
 Result quads_draw(Quads *quads, Drawing *drawing, RenderTarget *target, const CullBase *base,
-                  GpuTimer *timer, Image *image, RendererCounts *counts, Error *error);
+                  GpuTimer *timer, RendererCounts *counts, Error *error);
+
+// Finds out whether the image has all of its hair, and draws it again if not, by what was bound and
+// what the hair was.
+Result quads_settle(Quads *quads, Drawing *drawing, RenderTarget *target, bool over_mesh,
+                    GpuTimer *timer, RendererCounts *counts, Error *error);
+
+// The image at `place` of the target; waits for it.
+Result quads_take(RenderTarget *target, int place, Image *image, Error *error);

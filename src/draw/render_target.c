@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "draw/render_target.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 static GLuint create_texture(GLenum format, int width, int height)
@@ -66,10 +65,6 @@ Result render_target_create(RenderTarget *target, const GpuLimits *limits, int w
                          : samples == 2 ? " of 2 x 2 samples"
                                         : "",
                          side, side);
-    target->rgba = malloc((size_t)width * (size_t)height * 4 * image_channel_size(kind));
-    if (!target->rgba)
-        return error_set(error, RESULT_FAILED, "no memory for an image of %d x %d px", width,
-                         height);
     target->image = create_texture(formats[kind], width, height);
     target->image_frame = create_color_frame(target->image, 0);
     target->hair_frame = create_frame();
@@ -124,20 +119,38 @@ void render_target_destroy(RenderTarget *target)
         glDeleteFramebuffers(6, frames);
         glDeleteTextures(7, textures);
     }
-    free(target->rgba);
+    for (int i = 0; i < 2; ++i) late_read_destroy(&target->sent[i]);
     *target = (RenderTarget){0};
 }
 
-void render_target_read(RenderTarget *target, Image *image)
+// --- The way back.
+
+static int64_t rgba_bytes(const RenderTarget *target)
+{
+    return (int64_t)target->width * target->height * 4 * (int64_t)image_channel_size(target->kind);
+}
+
+Result render_target_send(RenderTarget *target, const GpuBuffer *flag, bool again, Error *error)
 {
     static const GLenum types[] = {GL_UNSIGNED_BYTE, GL_UNSIGNED_SHORT, GL_FLOAT};
-    size_t count = (size_t)target->width * (size_t)target->height,
-           rgb = 3 * image_channel_size(target->kind), step = rgb / 3 * 4;
-    uint8_t *rgba = image->channels == 4 ? image->pixels : target->rgba;
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, target->image_frame);
-    glReadPixels(0, 0, target->width, target->height, GL_RGBA, types[target->kind], rgba);
-    if (image->channels == 4) return;
-    if (target->kind != IMAGE_8) {
+    if (again) target->next ^= 1;
+    LateRead *sent = &target->sent[target->next];
+    int64_t size = rgba_bytes(target);
+    TRY(late_read_begin(sent, "an image read back", size + (int64_t)sizeof(uint32_t), error));
+    late_read_pixels(sent, 0, target->image_frame, target->width, target->height,
+                     types[target->kind]);
+    if (flag) late_read_buffer(sent, size, flag, sizeof(uint32_t));
+    late_read_send(sent);
+    target->next ^= 1;
+    return RESULT_OK;
+}
+
+// Leaves alpha out.
+static void copy_rgb(Image *image, const uint8_t *rgba)
+{
+    size_t count = (size_t)image->width * (size_t)image->height,
+           rgb = 3 * image_channel_size(image->kind), step = rgb / 3 * 4;
+    if (image->kind != IMAGE_8) {
         for (size_t i = 0; i < count; ++i) memcpy(image->pixels + i * rgb, rgba + i * step, rgb);
         return;
     }
@@ -146,4 +159,28 @@ void render_target_read(RenderTarget *target, Image *image)
         image->pixels[3 * i + 1] = rgba[4 * i + 1];
         image->pixels[3 * i + 2] = rgba[4 * i + 2];
     }
+}
+
+Result render_target_take(RenderTarget *target, int place, Image *image, uint32_t *flag,
+                          Error *error)
+{
+    LateRead *sent = &target->sent[place];
+    size_t size = (size_t)rgba_bytes(target);
+    const void *bytes;
+    TRY(late_read_open(sent, "an image read back", &bytes, error));
+    memcpy(flag, (const uint8_t *)bytes + size, sizeof *flag);
+    if (image->channels == 4)
+        memcpy(image->pixels, bytes, size);
+    else
+        copy_rgb(image, bytes);
+    late_read_close(sent);
+    return RESULT_OK;
+}
+
+Result render_target_read(RenderTarget *target, Image *image, Error *error)
+{
+    uint32_t unused;
+    int place = target->next;
+    TRY(render_target_send(target, NULL, false, error));
+    return render_target_take(target, place, image, &unused, error);
 }

@@ -2,7 +2,7 @@
 // The textures that an image is drawn to, and its way back to memory. Row 0 is the image's top.
 #pragma once
 
-#include "gpu/gpu_buffer.h"
+#include "gpu/late_read.h"
 #include "image/image.h"
 
 enum { EDGE_SAMPLES = 4 }; // of the mesh's depth where the hair has one; CPU drivers have no more
@@ -19,7 +19,8 @@ typedef struct RenderTarget {
     GLuint lit, lit_frame;         // RGBA16F, light of that surface; with `middle_depth`
     GLuint edge_depth, edge_frame; // the mesh's, EDGE_SAMPLES a sample
     ImageKind kind;
-    uint8_t *rgba; // [height][width][4], for images without alpha
+    LateRead sent[2]; // images on their way back, in turn
+    int next;         // of them
 } RenderTarget;
 
 // A pixel has `samples` x `samples` samples. RESULT_FAILED if the size is more than the driver
@@ -31,5 +32,16 @@ void render_target_destroy(RenderTarget *target);
 // Adds what a mesh or a floor needs; nothing if it is there.
 Result render_target_add_base(RenderTarget *target, Error *error);
 
-// Copies the image into `image` of 3 or 4 channels; waits for it.
-void render_target_read(RenderTarget *target, Image *image);
+// Copies the image into `image` of 3 or 4 channels; waits for it. RESULT_FAILED if it does not
+// come.
+Result render_target_read(RenderTarget *target, Image *image, Error *error);
+
+// Sends the image on its way, and the first word of `flag` behind it unless it is NULL. One image
+// may be under way already. `again`: the last one was not good, this one replaces it. RESULT_FAILED
+// if memory is short.
+Result render_target_send(RenderTarget *target, const GpuBuffer *flag, bool again, Error *error);
+
+// The image that was sent when `next` was `place`, one of the last two, into `image` of 3 or 4
+// channels, and its word into *flag; waits for it. RESULT_FAILED if it does not come.
+Result render_target_take(RenderTarget *target, int place, Image *image, uint32_t *flag,
+                          Error *error);

@@ -16,6 +16,9 @@ typedef struct RasterType {
     Result (*create)(Renderer *renderer, Error *error);
     Result (*add_base)(Renderer *renderer, Error *error); // NULL: nothing is to be made
     Result (*draw)(Renderer *renderer, Image *image, Error *error);
+    // NULL, both: `draw` has filled the image. See renderer_settle, renderer_take.
+    Result (*settle)(Renderer *renderer, Error *error);
+    Result (*take)(Renderer *renderer, int place, Image *image, Error *error);
 } RasterType;
 static const RasterType RASTERS[4];
 
@@ -241,10 +244,27 @@ static Result add_base_to_quads(Renderer *renderer, Error *error)
 
 static Result draw_quads(Renderer *renderer, Image *image, Error *error)
 {
+    (void)image;
     const CullBase base = {has_base(renderer) ? &renderer->target : NULL,
                            renderer->base.depth_version};
     return quads_draw(&renderer->quads, &renderer->drawing, &renderer->target, &base,
-                      renderer->timer, image, &renderer->counts, error);
+                      renderer->timer, &renderer->counts, error);
+}
+
+static Result settle_quads(Renderer *renderer, Error *error)
+{
+    if (!renderer->quads.unsettled) return RESULT_OK;
+    // Others may have drawn since.
+    if (renderer->options.shadow.kind != SHADOW_NONE) shadows_bind(&renderer->shadow);
+    (has_base(renderer) ? glEnable : glDisable)(GL_DEPTH_TEST);
+    glDepthMask(GL_FALSE);
+    return quads_settle(&renderer->quads, &renderer->drawing, &renderer->target, has_base(renderer),
+                        renderer->timer, &renderer->counts, error);
+}
+
+static Result take_quads(Renderer *renderer, int place, Image *image, Error *error)
+{
+    return quads_take(&renderer->target, place, image, error);
 }
 
 static void count_blocks(Renderer *renderer)
@@ -330,9 +350,9 @@ static Result draw_compute(Renderer *renderer, Image *image, Error *error)
 }
 
 static const RasterType RASTERS[] = {
-    [RASTER_QUADS] = {create_quads, add_base_to_quads, draw_quads},
-    [RASTER_BLOCKS] = {create_blocks, NULL, draw_blocks},
-    [RASTER_COMPUTE] = {create_compute, add_base_to_compute, draw_compute},
+    [RASTER_QUADS] = {create_quads, add_base_to_quads, draw_quads, settle_quads, take_quads},
+    [RASTER_BLOCKS] = {create_blocks, NULL, draw_blocks, NULL, NULL},
+    [RASTER_COMPUTE] = {create_compute, add_base_to_compute, draw_compute, NULL, NULL},
 };
 
 static Result draw_base(Renderer *renderer, Error *error)
@@ -346,8 +366,8 @@ static Result draw_base(Renderer *renderer, Error *error)
     return base_layer_draw(&renderer->base, &scene, &renderer->target, renderer->timer, error);
 }
 
-Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderItem *items,
-                     uint32_t item_count, Image *image, Error *error)
+Result renderer_begin(Renderer *renderer, const RenderFrame *frame, const RenderItem *items,
+                      uint32_t item_count, Image *image, Error *error)
 {
     assert(image->width == renderer->options.width && image->height == renderer->options.height);
     assert(image->channels == renderer_channels(renderer));
@@ -365,4 +385,37 @@ Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderI
     renderer->counts.thinned = drawing_count_thinned(&renderer->drawing);
     renderer->counts.shadow_maps = renderer->shadow.maps_drawn;
     return gpu_check("drawing", error);
+}
+
+bool renderer_is_late(const Renderer *renderer)
+{
+    return RASTERS[renderer->raster].take != NULL;
+}
+
+int renderer_place(const Renderer *renderer)
+{
+    return renderer->target.next;
+}
+
+Result renderer_settle(Renderer *renderer, Error *error)
+{
+    const RasterType *raster = &RASTERS[renderer->raster];
+    return raster->settle ? raster->settle(renderer, error) : RESULT_OK;
+}
+
+Result renderer_take(Renderer *renderer, int place, Image *image, Error *error)
+{
+    const RasterType *raster = &RASTERS[renderer->raster];
+    if (!raster->take) return RESULT_OK;
+    TRY(raster->take(renderer, place, image, error));
+    return gpu_check("reading the image", error);
+}
+
+Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderItem *items,
+                     uint32_t item_count, Image *image, Error *error)
+{
+    int place = renderer_place(renderer);
+    TRY(renderer_begin(renderer, frame, items, item_count, image, error));
+    TRY(renderer_settle(renderer, error));
+    return renderer_take(renderer, place, image, error);
 }

@@ -58,3 +58,16 @@ int renderer_channels(const Renderer *renderer);
 // than there can be or a pixel has more fragments than a CPU driver's loops can visit.
 Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderItem *items,
                      uint32_t item_count, Image *image, Error *error);
+
+// The same in three steps, so that the next image is begun while this one is on its way.
+// renderer_begin queues an image, which is in `image` at once unless renderer_is_late.
+// renderer_settle comes before hair or mesh changes: it waits until all has been drawn, and draws
+// it again if an A-buffer was too small. renderer_take comes after that, before or after the next
+// renderer_begin: it waits for the image, and copies it. `place`: what renderer_place has said
+// before renderer_begin. Errors as above.
+Result renderer_begin(Renderer *renderer, const RenderFrame *frame, const RenderItem *items,
+                      uint32_t item_count, Image *image, Error *error);
+bool renderer_is_late(const Renderer *renderer);
+int renderer_place(const Renderer *renderer);
+Result renderer_settle(Renderer *renderer, Error *error);
+Result renderer_take(Renderer *renderer, int place, Image *image, Error *error);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "draw/shadows.h"
 
+#include "gpu/gpu_uniforms.h"
+
 #include <cglm/cglm.h>
 
 #include <math.h>
@@ -125,7 +127,6 @@ void shadows_destroy(Shadows *shadow)
     hair_shadow_destroy(&shadow->hair);
     destroy_mesh(&shadow->mesh);
     free(shadow->casters);
-    gpu_buffer_destroy(&shadow->uniforms);
     *shadow = (Shadows){0};
 }
 
@@ -198,7 +199,7 @@ static void draw_map(Shadows *shadow, const ShadowScene *scene, int light)
         add_mesh_box(&scene->mesh, &view, box);
         MeshFrame mesh = frame_mesh(&view, box);
         set_mesh_frame(params, map, &mesh);
-        gpu_buffer_set_uniforms(&shadow->uniforms, BIND_SHADOW, params, sizeof *params);
+        gpu_uniforms_set(BIND_SHADOW, params, sizeof *params);
         draw_mesh(&shadow->mesh, scene->mesh.mesh, map);
     }
     ++params->maps;
@@ -290,7 +291,7 @@ Result shadows_draw(Shadows *shadow, const ShadowScene *scene, GpuTimer *timer, 
 
 void shadows_bind(Shadows *shadow)
 {
-    gpu_buffer_set_uniforms(&shadow->uniforms, BIND_SHADOW, &shadow->params, sizeof shadow->params);
+    gpu_uniforms_set(BIND_SHADOW, &shadow->params, sizeof shadow->params);
     hair_shadow_bind(&shadow->hair);
     glActiveTexture(GL_TEXTURE0 + BIND_SHADOW_MESH);
     glBindTexture(GL_TEXTURE_2D, shadow->mesh.depth);

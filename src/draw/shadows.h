@@ -44,7 +44,6 @@ typedef struct Shadows {
     ShadowOptions options;
     HairShadow hair;
     MeshShadow mesh;
-    GpuBuffer uniforms;
     ShadowParams params;
     ShadowScene drawn; // what the maps show; pointers are not followed
     Light lights[SCENE_MAX_LIGHTS];

@@ -3,6 +3,7 @@
 #include "base/quote.h"
 #include "gpu/gpu_egl.h"
 #include "gpu/gpu_osmesa.h"
+#include "gpu/gpu_uniforms.h"
 #include "gpu/shader.h"
 
 #include <epoxy/gl.h>
@@ -249,6 +250,7 @@ static Result refuse(const Search *search, Error *error)
 Result gpu_create(Gpu *gpu, const GpuOptions *options, Error *error)
 {
     *gpu = (Gpu){0};
+    gpu_uniforms_forget();
     Search search = {.options = *options};
     TRY(assumptions_read(&search.assumptions, error));
     if (try_all(gpu, &search) != RESULT_OK) return refuse(&search, error);
@@ -266,6 +268,7 @@ void gpu_destroy(Gpu *gpu)
 {
     gpu_egl_destroy(&gpu->egl);
     gpu_osmesa_destroy(gpu->osmesa);
+    gpu_uniforms_forget();
     *gpu = (Gpu){0};
 }
 

@@ -105,12 +105,3 @@ void gpu_buffer_bind_texture(const GpuBuffer *buffer, GLuint unit)
     glActiveTexture(GL_TEXTURE0 + unit);
     glBindTexture(GL_TEXTURE_BUFFER, buffer->texture);
 }
-
-void gpu_buffer_set_uniforms(GpuBuffer *buffer, GLuint binding, const void *data, size_t size)
-{
-    if (!buffer->buffer) glGenBuffers(1, &buffer->buffer);
-    buffer->size = (int64_t)size;
-    glBindBuffer(GL_UNIFORM_BUFFER, buffer->buffer);
-    glBufferData(GL_UNIFORM_BUFFER, (GLsizeiptr)size, data, GL_STREAM_DRAW);
-    glBindBufferBase(GL_UNIFORM_BUFFER, binding, buffer->buffer);
-}

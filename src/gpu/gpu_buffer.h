@@ -42,6 +42,3 @@ void *gpu_buffer_read(const GpuBuffer *buffer);
 // (glsl/common/shared.h).
 void gpu_buffer_bind_storage(const GpuBuffer *buffer, GLuint binding);
 void gpu_buffer_bind_texture(const GpuBuffer *buffer, GLuint unit);
-
-// Replaces the content of a uniform block and binds it. The buffer is made at first use.
-void gpu_buffer_set_uniforms(GpuBuffer *buffer, GLuint binding, const void *data, size_t size);

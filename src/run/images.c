@@ -215,8 +215,8 @@ void images_destroy(Images *images)
     *images = (Images){0};
 }
 
-static Result draw_by(Images *images, Renderer *renderer, int frame, const View *view, Image *image,
-                      Error *error)
+static Result begin_by(Images *images, Renderer *renderer, int frame, const View *view,
+                       Image *image, Error *error)
 {
     const Scene *scene = images->scene;
     const Simulation *simulation = images->simulation;
@@ -232,20 +232,55 @@ static Result draw_by(Images *images, Renderer *renderer, int frame, const View 
     memcpy(ambient.ground, scene->run.ground, sizeof ambient.ground);
     memcpy(drawn.head_rotation, simulation->head.rotation, sizeof drawn.head_rotation);
     memcpy(drawn.head_translation, simulation->head.translation, sizeof drawn.head_translation);
-    return renderer_draw(renderer, &drawn, images->items, images->item_count, image, error);
+    return renderer_begin(renderer, &drawn, images->items, images->item_count, image, error);
+}
+
+static int count_layers(const Images *images)
+{
+    return images->layers ? EXR_LAYERS : 0;
+}
+
+Result images_begin(Images *images, int frame, const View *view, Image *image,
+                    Image layers[EXR_LAYERS], Error *error)
+{
+    TRY(begin_by(images, &images->renderer, frame, view, image, error));
+    for (int l = 0; l < count_layers(images); ++l)
+        TRY(begin_by(images, &images->layers[l], frame, view, &layers[l], error));
+    return RESULT_OK;
+}
+
+bool images_are_late(const Images *images)
+{
+    return renderer_is_late(&images->renderer);
+}
+
+int images_place(const Images *images)
+{
+    return renderer_place(&images->renderer);
+}
+
+Result images_settle(Images *images, Error *error)
+{
+    TRY(renderer_settle(&images->renderer, error));
+    for (int l = 0; l < count_layers(images); ++l) TRY(renderer_settle(&images->layers[l], error));
+    return RESULT_OK;
+}
+
+Result images_take(Images *images, int place, Image *image, Image layers[EXR_LAYERS], Error *error)
+{
+    TRY(renderer_take(&images->renderer, place, image, error));
+    for (int l = 0; l < count_layers(images); ++l)
+        TRY(renderer_take(&images->layers[l], place, &layers[l], error));
+    return RESULT_OK;
 }
 
 Result images_draw(Images *images, int frame, const View *view, Image *image, Error *error)
 {
-    return draw_by(images, &images->renderer, frame, view, image, error);
-}
-
-Result images_draw_layers(Images *images, int frame, const View *view, Image layers[EXR_LAYERS],
-                          Error *error)
-{
-    for (int l = 0; l < EXR_LAYERS && images->layers; ++l)
-        TRY(draw_by(images, &images->layers[l], frame, view, &layers[l], error));
-    return RESULT_OK;
+    Renderer *renderer = &images->renderer;
+    int place = renderer_place(renderer);
+    TRY(begin_by(images, renderer, frame, view, image, error));
+    TRY(renderer_settle(renderer, error));
+    return renderer_take(renderer, place, image, error);
 }
 
 void images_set_matrices(OutputExtra *extra, const View *view)

@@ -42,9 +42,14 @@ void images_destroy(Images *images);
 // renderer_draw.
 Result images_draw(Images *images, int frame, const View *view, Image *image, Error *error);
 
-// The same of what EXR files have beside the image, if they have it. Errors of renderer_draw.
-Result images_draw_layers(Images *images, int frame, const View *view, Image layers[EXR_LAYERS],
-                          Error *error);
+// The same in steps, as renderer_begin, renderer_settle and renderer_take, and with `layers`: what
+// EXR files have beside the image, if they have it.
+Result images_begin(Images *images, int frame, const View *view, Image *image,
+                    Image layers[EXR_LAYERS], Error *error);
+bool images_are_late(const Images *images);
+int images_place(const Images *images);
+Result images_settle(Images *images, Error *error);
+Result images_take(Images *images, int place, Image *image, Image layers[EXR_LAYERS], Error *error);
 
 // The matrices of a view, as EXR files have them: world to camera, and to the image, whose corners
 // are (0, 0), at the top left, and (1, 1).

@@ -4,6 +4,8 @@
 #include "base/bytes.h"
 #include "base/clock.h"
 #include "base/interrupt.h"
+#include "base/outfile.h"
+#include "base/parallel.h"
 #include "base/target.h"
 #include "image/pfm.h"
 #include "image/png.h"
@@ -21,8 +23,8 @@
 #include <string.h>
 #include <time.h>
 
-// One image is drawn, one encoded, one waits: more helps only if the times vary a lot from frame to
-// frame.
+// One image is drawn, one is on its way back from the GPU or waits, one is encoded: where there is
+// more to encode than to draw, another one is for each worker more.
 #define QUEUE_LENGTH_DEFAULT 3
 // How soon a wait sees an interrupt.
 #define WAIT_SLICE_NS 20000000
@@ -36,35 +38,46 @@ typedef struct Slot {
     int frame;
 } Slot;
 
+// A thread that encodes.
+typedef struct Worker {
+    Output *output;
+    pthread_t thread;
+    ImageTexts texts;
+} Worker;
+
 struct Output {
     Target target;
     Video *video; // NULL unless ffmpeg writes a video
-    Y4m y4m;      // the worker's
+    Y4m y4m;      // the one worker's
     bool exr_float;
-    ImageSheet sheet; // empty unless a contact sheet is; the worker's
-    ImageTexts texts; // the worker's
+    ImageSheet sheet; // empty unless a contact sheet is; the one worker's
+    ImageTexts texts; // what every worker begins with
     bool has_texts;
-    Slot *slots;
-    Slot **queue; // ring of `slot_count`, so there is always room
-    int slot_count;
+    OutputOptions options; // sizes of images
+    Slot *slots;           // [slot_room]
+    Slot **queue;          // ring of `slot_room`, so there is always room
+    int slot_count, slot_room;
     char *description;
 
-    pthread_t worker;
-    bool has_worker;
+    Worker workers[PARALLEL_MOST];
+    int worker_count, most_workers;
     pthread_mutex_t mutex; // guards all that follows, and the slots' states
     pthread_cond_t changed;
     int queue_first, queued;
+    uint64_t taken, written; // frames: the files appear in the order in which frames came
+    int at_work;             // workers that have not ended
     int submitted, frame_first, frame_last;
     bool closing;  // no more frames will come
     bool aborting; // the frames that wait are not wanted
-    bool ended;    // the worker has done all it will do
-    Result result; // the worker's failure and what it says
+    bool ended;    // the workers have done all they will do
+    Result result; // the first failure of a worker and what it says
     Error failure;
     OutputCounters counters;
 };
 
 // Of a sheet the first and the last. `extra`: NULL: a sheet has none.
-static Result set_texts(Output *output, int frame, const OutputExtra *extra, Error *error)
+static Result set_texts(const Output *output, ImageTexts *texts, int frame,
+                        const OutputExtra *extra, Error *error)
 {
     char text[40];
     if (!output->has_texts) return RESULT_OK;
@@ -72,17 +85,17 @@ static Result set_texts(Output *output, int frame, const OutputExtra *extra, Err
         snprintf(text, sizeof text, "%d-%d", output->frame_first, output->frame_last);
     else
         snprintf(text, sizeof text, "%d", frame);
-    TRY(image_texts_set(&output->texts, "Frame", text, error));
+    TRY(image_texts_set(texts, "Frame", text, error));
     if (!extra || !*extra->scene) return RESULT_OK;
-    return image_texts_set(&output->texts, FINGERPRINT_KEY, extra->scene, error);
+    return image_texts_set(texts, FINGERPRINT_KEY, extra->scene, error);
 }
 
-static Result encode(const Output *output, const Image *image, const OutputExtra *extra,
-                     Bytes *file, Error *error)
+static Result encode(const Output *output, const ImageTexts *texts, const Image *image,
+                     const OutputExtra *extra, Bytes *file, Error *error)
 {
     if (output->target.format == TARGET_PFM) return pfm_encode(image, file, error);
-    if (output->target.format == TARGET_PNG) return png_encode(image, &output->texts, file, error);
-    ExrFile exr = {.image = image, .floats = output->exr_float, .texts = &output->texts};
+    if (output->target.format == TARGET_PNG) return png_encode(image, texts, file, error);
+    ExrFile exr = {.image = image, .floats = output->exr_float, .texts = texts};
     if (extra) {
         exr.layers = extra->layers[0].pixels ? extra->layers : NULL;
         exr.world_to_camera = (const float(*)[4])extra->world_to_camera;
@@ -91,99 +104,173 @@ static Result encode(const Output *output, const Image *image, const OutputExtra
     return exr_file_encode(&exr, file, error);
 }
 
-// `extra`: NULL: a sheet has none.
-static Result write_image(Output *output, const Image *image, const OutputExtra *extra, int frame,
-                          uint64_t *bytes, Error *error)
+// A file that is written, but has not its name yet.
+typedef struct Written {
+    OutFile file;
+    uint64_t bytes;
+    Result result;
+    Error error;
+} Written;
+
+static Result write_bytes(Written *written, const Bytes *bytes, const char *name)
 {
+    TRY(outfile_open(&written->file, name, &written->error));
+    fwrite(bytes->data, 1, bytes->size, written->file.stream);
+    return outfile_sync(&written->file, &written->error);
+}
+
+// `extra`: NULL: a sheet has none.
+static Result encode_file(Worker *worker, const Image *image, const OutputExtra *extra, int frame,
+                          Written *written)
+{
+    Output *output = worker->output;
+    Error *error = &written->error;
     char *name = target_name_frame(&output->target, frame);
     if (!name) return error_set(error, RESULT_FAILED, "no memory for the name of frame %d", frame);
-    Bytes png = {0};
-    Result result = set_texts(output, frame, extra, error);
-    THEN(result, encode(output, image, extra, &png, error));
-    *bytes = png.size;
+    Bytes bytes = {0};
+    Result result = set_texts(output, &worker->texts, frame, extra, error);
+    THEN(result, encode(output, &worker->texts, image, extra, &bytes, error));
+    written->bytes = bytes.size;
     if (result == RESULT_OK)
-        result = bytes_write_file(&png, name, error);
+        result = write_bytes(written, &bytes, name);
     else
         error_prefix(error, result, "%s: ", name);
-    if (output->target.format == TARGET_PFM && extra && *extra->scene)
-        THEN(result, record_add(&output->target, frame, extra->scene, error));
-    bytes_destroy(&png);
+    bytes_destroy(&bytes);
     free(name);
     return result;
 }
 
-static Result take_frame(Output *output, const Slot *slot, uint64_t *bytes, Error *error)
+// Gives the file its name.
+static Result commit_file(const Output *output, Written *written, const char *scene, int frame)
+{
+    if (written->result != RESULT_OK) return written->result;
+    if (written->file.path) TRY(outfile_commit(&written->file, &written->error));
+    if (output->target.format != TARGET_PFM || !*scene) return RESULT_OK;
+    return record_add(&output->target, frame, scene, &written->error);
+}
+
+// Into the one file of all frames.
+static Result take_frame(Output *output, const Slot *slot, Error *error)
 {
     if (output->video) return video_write(output->video, &slot->image, error);
     if (output->y4m.planes) return y4m_write(&output->y4m, &slot->image, error);
-    if (!output->sheet.columns)
-        return write_image(output, &slot->image, &slot->extra, slot->frame, bytes, error);
     image_sheet_add(&output->sheet, &slot->image);
     return RESULT_OK;
 }
 
-// Encodes the oldest frame that waits. Called with the mutex held, which is let go meanwhile.
-static Result encode_next(Output *output)
+static bool is_one_file(const Output *output)
 {
+    return output->video || output->y4m.planes || output->sheet.columns;
+}
+
+// Keeps the first failure. Called with the mutex held.
+static void fail(Output *output, Result result, const Error *why)
+{
+    if (output->result != RESULT_OK) return;
+    output->result = result;
+    output->failure = *why;
+}
+
+static bool goes_on(const Output *output)
+{
+    return output->result == RESULT_OK && !output->aborting;
+}
+
+// Once the files of all earlier frames have their names; none if one of them has failed. Called
+// with the mutex held, which is let go meanwhile, as by the next function.
+static void end_frame(Output *output, Written *written, uint64_t turn, const char *scene, int frame)
+{
+    while (output->written != turn && goes_on(output))
+        pthread_cond_wait(&output->changed, &output->mutex);
+    if (goes_on(output)) {
+        pthread_mutex_unlock(&output->mutex);
+        Result result = commit_file(output, written, scene, frame);
+        pthread_mutex_lock(&output->mutex);
+        if (result != RESULT_OK) {
+            fail(output, result, &written->error);
+        } else {
+            output->written++;
+            output->counters.frames++;
+            output->counters.bytes += written->bytes;
+        }
+    }
+    outfile_discard(&written->file);
+}
+
+// Encodes the oldest frame that waits.
+static void encode_next(Worker *worker)
+{
+    Output *output = worker->output;
     Slot *slot = output->queue[output->queue_first];
-    output->queue_first = (output->queue_first + 1) % output->slot_count;
+    Written written = {.result = RESULT_OK};
+    char scene[FINGERPRINT_BYTES];
+    output->queue_first = (output->queue_first + 1) % output->slot_room;
     output->queued--;
+    uint64_t turn = output->taken++;
     pthread_mutex_unlock(&output->mutex);
     double start_ms = clock_ms();
-    uint64_t bytes = 0;
-    Error error;
-    Result result = take_frame(output, slot, &bytes, &error);
+    int frame = slot->frame;
+    memcpy(scene, slot->extra.scene, sizeof scene);
+    written.result = is_one_file(output)
+                         ? take_frame(output, slot, &written.error)
+                         : encode_file(worker, &slot->image, &slot->extra, frame, &written);
     double encode_ms = clock_ms() - start_ms;
     pthread_mutex_lock(&output->mutex);
     slot->state = SLOT_FREE;
     output->counters.encode_ms += encode_ms;
-    if (result == RESULT_OK) {
-        output->counters.frames++;
-        output->counters.bytes += bytes;
-    } else {
-        output->failure = error;
-    }
+    pthread_cond_broadcast(&output->changed);
+    end_frame(output, &written, turn, scene, frame);
+}
+
+static Result write_sheet(Worker *worker, uint64_t *bytes, Error *error)
+{
+    Output *output = worker->output;
+    Written written = {.result = RESULT_OK};
+    written.result = encode_file(worker, &output->sheet.image, NULL, 0, &written);
+    Result result = commit_file(output, &written, "", 0);
+    *bytes = written.bytes;
+    *error = written.error;
+    outfile_discard(&written.file);
     return result;
 }
 
 // Completes the one file that all frames have gone to, if there is one.
-static Result end_file(Output *output)
+static void end_file(Worker *worker)
 {
+    Output *output = worker->output;
     bool y4m = output->y4m.planes != NULL;
-    if (!output->video && !y4m && !output->sheet.columns) return RESULT_OK;
+    if (!is_one_file(output)) return;
     pthread_mutex_unlock(&output->mutex);
     double start_ms = clock_ms();
     uint64_t bytes = 0;
     Error error;
     Result result = output->video ? video_finish(output->video, &bytes, &error)
                     : y4m         ? y4m_finish(&output->y4m, &error)
-                          : write_image(output, &output->sheet.image, NULL, 0, &bytes, &error);
+                                  : write_sheet(worker, &bytes, &error);
     if (y4m) bytes = output->y4m.bytes;
     double encode_ms = clock_ms() - start_ms;
     pthread_mutex_lock(&output->mutex);
     output->counters.encode_ms += encode_ms;
     output->counters.bytes += bytes;
-    if (result != RESULT_OK) output->failure = error;
-    return result;
+    if (result != RESULT_OK) fail(output, result, &error);
 }
 
 static void *work(void *argument)
 {
-    Output *output = argument;
-    Result result = RESULT_OK;
+    Worker *worker = argument;
+    Output *output = worker->output;
     pthread_mutex_lock(&output->mutex);
-    while (result == RESULT_OK && !output->aborting) {
+    while (goes_on(output)) {
         if (output->queued > 0)
-            result = encode_next(output);
+            encode_next(worker);
         else if (output->closing)
             break;
         else
             pthread_cond_wait(&output->changed, &output->mutex);
         pthread_cond_broadcast(&output->changed);
     }
-    if (result == RESULT_OK && !output->aborting) result = end_file(output);
-    output->result = result;
-    output->ended = true;
+    if (goes_on(output)) end_file(worker);
+    output->ended = --output->at_work == 0;
     pthread_cond_broadcast(&output->changed);
     pthread_mutex_unlock(&output->mutex);
     return NULL;
@@ -249,38 +336,68 @@ static Result check_options(const OutputOptions *options, const Target *target, 
     return RESULT_OK;
 }
 
+static Result add_slot(Output *output, Error *error)
+{
+    const OutputOptions *options = &output->options;
+    Slot *slot = &output->slots[output->slot_count];
+    int layers = output->target.format == TARGET_EXR && options->layers ? EXR_LAYERS : 0;
+    Result result = image_create_kind(&slot->image, options->width, options->height,
+                                      options->channels, options->kind, error);
+    for (int i = 0; i < layers && result == RESULT_OK; i++)
+        result = image_create_kind(&slot->extra.layers[i], options->width, options->height, 3,
+                                   IMAGE_FLOAT, error);
+    output->slot_count += result == RESULT_OK;
+    if (result == RESULT_OK) return result;
+    image_destroy(&slot->image);
+    for (int i = 0; i < layers; i++) image_destroy(&slot->extra.layers[i]);
+    return result;
+}
+
 static Result create_slots(Output *output, const OutputOptions *options, Error *error)
 {
-    int count = options->queue_length > 0 ? options->queue_length : QUEUE_LENGTH_DEFAULT;
-    output->slots = calloc((size_t)count, sizeof *output->slots);
-    output->queue = calloc((size_t)count, sizeof *output->queue);
+    bool fixed = options->queue_length > 0;
+    int count = fixed ? options->queue_length : QUEUE_LENGTH_DEFAULT;
+    output->slot_room = fixed ? count : count + PARALLEL_MOST;
+    output->slots = calloc((size_t)output->slot_room, sizeof *output->slots);
+    output->queue = calloc((size_t)output->slot_room, sizeof *output->queue);
     if (!output->slots || !output->queue)
         return error_set(error, RESULT_FAILED, "no memory for the output's queue");
-    output->slot_count = count;
+    output->options = *options;
     Result result = RESULT_OK;
-    for (int i = 0; i < count && result == RESULT_OK; i++)
-        result = image_create_kind(&output->slots[i].image, options->width, options->height,
-                                   options->channels, options->kind, error);
-    int layers = output->target.format == TARGET_EXR && options->layers ? EXR_LAYERS : 0;
-    for (int i = 0; i < count * layers && result == RESULT_OK; i++)
-        result = image_create_kind(&output->slots[i / layers].extra.layers[i % layers],
-                                   options->width, options->height, 3, IMAGE_FLOAT, error);
+    for (int i = 0; i < count && result == RESULT_OK; i++) result = add_slot(output, error);
     return result;
 }
 
 // Signals are the main thread's; with SIGPIPE and SIGXFSZ blocked a write that fails says so by its
-// result.
+// result. Called with the mutex held, or before there are workers.
 static Result start_worker(Output *output, Error *error)
 {
     sigset_t all, before;
+    Worker *worker = &output->workers[output->worker_count];
+    worker->output = output;
+    TRY(image_texts_copy(&worker->texts, &output->texts, error));
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
-    int reason = pthread_create(&output->worker, NULL, work, output);
+    int reason = pthread_create(&worker->thread, NULL, work, worker);
     pthread_sigmask(SIG_SETMASK, &before, NULL);
-    output->has_worker = reason == 0;
-    if (reason == 0) return RESULT_OK;
+    if (reason == 0) {
+        output->worker_count++;
+        output->at_work++;
+        return RESULT_OK;
+    }
+    image_texts_destroy(&worker->texts);
     return error_set(error, RESULT_FAILED, "cannot start the thread that writes frames: %s",
                      strerror(reason));
+}
+
+// All images wait or are being encoded: another worker and an image for it, if that can be had.
+// Called with the mutex held.
+static void grow(Output *output)
+{
+    if (output->worker_count >= output->most_workers || output->slot_count >= output->slot_room)
+        return;
+    if (start_worker(output, NULL) != RESULT_OK || add_slot(output, NULL) != RESULT_OK)
+        output->most_workers = output->worker_count;
 }
 
 static Result start_sheet(Output *output, const OutputOptions *options, Error *error)
@@ -333,7 +450,12 @@ Result output_create(Output **output, const OutputOptions *options, Error *error
     THEN(result, target_prepare(&created->target, error));
     if (result == RESULT_OK && created->target.kind == TARGET_VIDEO)
         result = start_video(created, options, error);
-    THEN(result, start_worker(created, error));
+    created->most_workers = is_one_file(created) || created->target.stream ? 1 : parallel_threads();
+    if (result == RESULT_OK) {
+        pthread_mutex_lock(&created->mutex);
+        result = start_worker(created, error);
+        pthread_mutex_unlock(&created->mutex);
+    }
     if (result == RESULT_OK)
         *output = created;
     else
@@ -355,6 +477,8 @@ Result output_acquire(Output *output, Image **image, Error *error)
     Slot *slot = NULL;
     Result result = report_failure(output, error);
     while (result == RESULT_OK && !(slot = find_free_slot(output))) {
+        grow(output);
+        if ((slot = find_free_slot(output))) break;
         result = wait_changed(output, error);
         THEN(result, report_failure(output, error));
     }
@@ -381,7 +505,7 @@ Result output_submit(Output *output, int frame_index, Image *image, Error *error
     if (result == RESULT_OK) {
         slot->state = SLOT_QUEUED;
         slot->frame = frame_index;
-        output->queue[(output->queue_first + output->queued++) % output->slot_count] = slot;
+        output->queue[(output->queue_first + output->queued++) % output->slot_room] = slot;
         if (output->submitted++ == 0) output->frame_first = frame_index;
         output->frame_last = frame_index;
         pthread_cond_broadcast(&output->changed);
@@ -409,11 +533,10 @@ Result output_finish(Output *output, Error *error)
 
 void output_flush(Output *output)
 {
-    if (!output->video && !output->y4m.planes && !output->sheet.columns)
-        output_finish(output, NULL);
+    if (!is_one_file(output)) output_finish(output, NULL);
 }
 
-static void stop_worker(Output *output)
+static void stop_workers(Output *output)
 {
     pthread_mutex_lock(&output->mutex);
     output->aborting = true;
@@ -422,13 +545,16 @@ static void stop_worker(Output *output)
     pthread_mutex_unlock(&output->mutex);
     // The worker may be waiting for ffmpeg: its end wakes it.
     if (output->video && !ended) video_kill(output->video);
-    pthread_join(output->worker, NULL);
+    for (int i = 0; i < output->worker_count; i++) {
+        pthread_join(output->workers[i].thread, NULL);
+        image_texts_destroy(&output->workers[i].texts);
+    }
 }
 
 void output_destroy(Output *output)
 {
     if (!output) return;
-    if (output->has_worker) stop_worker(output);
+    if (output->worker_count) stop_workers(output);
     video_destroy(output->video);
     image_sheet_destroy(&output->sheet);
     image_texts_destroy(&output->texts);

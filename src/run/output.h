@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The frame sink: takes finished images and writes them on a worker thread while the next one is
-// computed.
+// The frame sink: takes finished images and writes them on worker threads while the next ones are
+// computed: one, and more, up to the number of processors, when images have to wait for it. Files
+// appear in the order of their frames. Videos, sheets and standard output have one.
 //
 // Use: output_create; for each frame output_acquire, fill the image, output_submit; output_finish;
-// output_destroy. All functions are called from one thread. The worker has every signal blocked.
+// output_destroy. All functions are called from one thread. The workers have every signal blocked.
 // After a failure of any function, or instead of output_finish, call output_destroy, if need be
 // after output_flush: no half-written file and no half a video remains.
 #pragma once
@@ -39,22 +40,23 @@ typedef struct OutputOptions {
     int frame_count;    // how many will come, 0: not known; "x.png" takes 1, or a sheet
     int columns, rows;  // of a contact sheet that takes all frames, "x.png" or the like; <= 1: none
     const ImageTexts *texts; // of each PNG file, which adds its frame's number; NULL: none
-    int queue_length;        // images in the pool: drawn, waiting or being encoded; 0: the usual 3
+    int queue_length; // images in the pool: drawn, waiting or being encoded; 0: 3, and one for
+                      // each worker more
 } OutputOptions;
 
 typedef struct OutputCounters {
     int frames;       // encoded so far
     uint64_t bytes;   // in the files; a video or sheet counts when it is complete
-    double encode_ms; // wall time that the worker spent encoding and writing
+    double encode_ms; // wall time that the workers spent encoding and writing
 } OutputCounters;
 
 // Refuses a terminal, makes the folder if needed, tries that a file can be created there, starts
-// ffmpeg for a video, and the worker. RESULT_USAGE for a target or a combination that makes no
+// ffmpeg for a video, and a worker. RESULT_USAGE for a target or a combination that makes no
 // sense, RESULT_FAILED with path and reason otherwise.
 Result output_create(Output **output, const OutputOptions *options, Error *error);
 
 // Lends an image of the pool; its pixels are undefined. Blocks while all are waiting or being
-// encoded. RESULT_FAILED with the worker's error, path and reason, if that has failed;
+// encoded. RESULT_FAILED with a worker's error, path and reason, if that has failed;
 // RESULT_INTERRUPTED once interrupt_requested().
 Result output_acquire(Output *output, Image **image, Error *error);
 

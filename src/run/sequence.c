@@ -68,6 +68,20 @@ typedef struct Previous {
     Image image, layers[EXR_LAYERS];
 } Previous;
 
+// An image that is on its way back from the GPU while the next frame is simulated and drawn.
+typedef struct Pending {
+    Image *image; // NULL: none
+    int frame, place;
+    View view;
+    bool still; // the simulation had not moved since the image before
+} Pending;
+
+// What a run carries from frame to frame.
+typedef struct Carried {
+    Previous previous;
+    Pending pending;
+} Carried;
+
 static bool same_view(const View *a, const View *b)
 {
     return memcmp(a->view, b->view, sizeof a->view) == 0 &&
@@ -107,51 +121,87 @@ static void give_back_memory(void)
     malloc_trim(0);
 }
 
-static Result draw(Sequence *sequence, Previous *previous, int number, const View *view,
-                   Image *image, Error *error)
+static Result hand_on(Sequence *sequence, int frame, Image *image, Error *error)
 {
-    const Scene *scene = sequence->scene;
-    const Simulation *simulation = sequence->source->simulation;
-    bool still = simulation->changes == previous->changes || sequence->frames_drawn == 0;
-    previous->changes = simulation->changes;
-    if (!still) previous->any = false;
-    if (still && previous->any && !scene->run.turn_lights && same_view(view, &previous->view)) {
-        ++sequence->frames_repeated;
-        TRY(copy(image, &previous->image, error));
-        return copy_layers(output_extra(image)->layers, previous->layers, error);
+    if (*sequence->scene->run.caption) {
+        char text[CAPTION_BYTES];
+        caption_write(text, sequence->scene, frame);
+        caption_draw(image, text);
     }
-    if (sequence->frames_drawn == 0) give_back_memory();
-    Result result = images_draw(sequence->images, number, view, image, error);
-    THEN(result,
-         images_draw_layers(sequence->images, number, view, output_extra(image)->layers, error));
-    if (result == RESULT_OK && still) result = remember(previous, view, image, error);
-    sequence->frames_drawn += result == RESULT_OK;
-    return result;
+    activity_set("writing");
+    return output_submit(sequence->images->output, frame, image, error);
 }
 
-static Result output_frame(Sequence *sequence, Previous *previous, int frame, FrameTimes *times,
+// Hands on the image that is on its way, if there is one.
+static Result finish_pending(Sequence *sequence, Carried *carried, Error *error)
+{
+    Pending pending = carried->pending;
+    if (!pending.image) return RESULT_OK;
+    carried->pending.image = NULL;
+    TRY(images_take(sequence->images, pending.place, pending.image,
+                    output_extra(pending.image)->layers, error));
+    if (pending.still) TRY(remember(&carried->previous, &pending.view, pending.image, error));
+    return hand_on(sequence, pending.frame, pending.image, error);
+}
+
+// Whether the image is the previous one again, into which it is copied then.
+static Result repeat(Sequence *sequence, Carried *carried, const View *view, Image *image,
+                     bool *still, bool *repeated, Error *error)
+{
+    Previous *previous = &carried->previous;
+    const Simulation *simulation = sequence->source->simulation;
+    *still = simulation->changes == previous->changes || sequence->frames_drawn == 0;
+    previous->changes = simulation->changes;
+    if (*still) TRY(finish_pending(sequence, carried, error));
+    if (!*still) previous->any = false;
+    *repeated = *still && previous->any && !sequence->scene->run.turn_lights &&
+                same_view(view, &previous->view);
+    if (!*repeated) return RESULT_OK;
+    ++sequence->frames_repeated;
+    TRY(copy(image, &previous->image, error));
+    return copy_layers(output_extra(image)->layers, previous->layers, error);
+}
+
+// Begins an image, and takes the one before. With statistics each frame has its own times: nothing
+// is left for the next one.
+static Result draw(Sequence *sequence, Carried *carried, int frame, const View *view, Image *image,
+                   Error *error)
+{
+    Images *images = sequence->images;
+    bool still, repeated;
+    TRY(repeat(sequence, carried, view, image, &still, &repeated, error));
+    if (repeated) return hand_on(sequence, frame, image, error);
+    if (sequence->frames_drawn == 0) give_back_memory();
+    const Pending begun = {.image = image,
+                           .frame = frame,
+                           .place = images_place(images),
+                           .view = *view,
+                           .still = still};
+    TRY(images_begin(images, frame, view, image, output_extra(image)->layers, error));
+    ++sequence->frames_drawn;
+    TRY(finish_pending(sequence, carried, error));
+    carried->pending = begun;
+    if (images_are_late(images) && !sequence->stats->root) return RESULT_OK;
+    TRY(images_settle(images, error));
+    return finish_pending(sequence, carried, error);
+}
+
+static Result output_frame(Sequence *sequence, Carried *carried, int frame, FrameTimes *times,
                            Error *error)
 {
-    Output *output = sequence->images->output;
     View view;
     Image *image;
     double begin = clock_ms();
-    Result result = output_acquire(output, &image, error);
+    Result result = output_acquire(sequence->images->output, &image, error);
     double acquired = clock_ms();
     times->wait_ms = acquired - begin;
     if (result != RESULT_OK) return result;
     camera_view(&view, sequence->scene, sequence->images->framing, frame);
     images_set_matrices(output_extra(image), &view);
     fingerprint_of_image(output_extra(image)->scene, sequence->fingerprint, frame);
-    result = draw(sequence, previous, frame, &view, image, error);
-    if (result == RESULT_OK && *sequence->scene->run.caption) {
-        char text[CAPTION_BYTES];
-        caption_write(text, sequence->scene, frame);
-        caption_draw(image, text);
-    }
+    result = draw(sequence, carried, frame, &view, image, error);
     times->draw_ms = clock_ms() - acquired;
-    activity_set("writing");
-    return result == RESULT_OK ? output_submit(output, frame, image, error) : result;
+    return result;
 }
 
 static Result export_frame(Sequence *sequence, int frame, Error *error)
@@ -168,20 +218,21 @@ static bool wants(const Sequence *sequence, int frame)
            !(sequence->done && sequence->done[frame]);
 }
 
-static Result run_frame(Sequence *sequence, Previous *previous, int frame, Error *error)
+static Result run_frame(Sequence *sequence, Carried *carried, int frame, Error *error)
 {
     FrameTimes times = {.frame = frame};
     double begin = clock_ms();
     bool wanted = wants(sequence, frame), draws = sequence->images->output != NULL;
+    Result result = draws ? images_settle(sequence->images, error) : RESULT_OK;
     activity_set("simulating");
-    Result result =
-        frame_source_go(sequence->source, frame, wanted && (draws || sequence->exporter), error);
+    THEN(result,
+         frame_source_go(sequence->source, frame, wanted && (draws || sequence->exporter), error));
     times.simulate_ms = clock_ms() - begin;
     if (wanted && sequence->exporter) activity_set("exporting");
     if (result == RESULT_OK && wanted && sequence->exporter)
         result = export_frame(sequence, frame, error);
     if (result == RESULT_OK && wanted && draws)
-        result = output_frame(sequence, previous, frame, &times, error);
+        result = output_frame(sequence, carried, frame, &times, error);
     stats_add_frame(sequence->stats, sequence->timer, &times, &sequence->images->renderer.counts);
     gl_count_frame();
     return result;
@@ -197,11 +248,19 @@ static int last_wanted(const Sequence *sequence)
     return last;
 }
 
+// Hands on what is still on its way, also if a later frame has failed or was interrupted.
+static Result end(Sequence *sequence, Carried *carried, Error *error)
+{
+    if (!carried->pending.image) return RESULT_OK;
+    TRY(images_settle(sequence->images, error));
+    return finish_pending(sequence, carried, error);
+}
+
 Result sequence_run(Sequence *sequence, Error *error)
 {
     const RunParams *run = &sequence->scene->run;
     int last = last_wanted(sequence), all = sequence_last_frame(run) + 1;
-    Previous previous = {0};
+    Carried carried = {0};
     Progress progress;
     Result result = RESULT_OK;
     progress_start(&progress, stderr, all, run->quiet);
@@ -209,11 +268,13 @@ Result sequence_run(Sequence *sequence, Error *error)
         if (!wants(sequence, frame) && !frame_source_needs(sequence->source, frame)) continue;
         result = interrupt_requested() ? error_set(error, RESULT_INTERRUPTED,
                                                    "interrupted after %d of %d frames", frame, all)
-                                       : run_frame(sequence, &previous, frame, error);
+                                       : run_frame(sequence, &carried, frame, error);
         progress_update(&progress, frame + 1);
     }
+    Result ended = end(sequence, &carried, result == RESULT_OK ? error : NULL);
+    if (result == RESULT_OK) result = ended;
     progress_clear(&progress);
-    image_destroy(&previous.image);
-    for (int l = 0; l < EXR_LAYERS; ++l) image_destroy(&previous.layers[l]);
+    image_destroy(&carried.previous.image);
+    for (int l = 0; l < EXR_LAYERS; ++l) image_destroy(&carried.previous.layers[l]);
     return result;
 }

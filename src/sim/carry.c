@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "sim/carry.h"
 #include "gpu/gpu_dispatch.h"
+#include "gpu/gpu_uniforms.h"
 
 #include "glsl/sim/carry_params.h"
 
@@ -16,7 +17,6 @@ Result carry_create(Carry *carry, const GpuLimits *limits, Error *error)
 void carry_destroy(Carry *carry)
 {
     if (carry->program) glDeleteProgram(carry->program);
-    gpu_buffer_destroy(&carry->uniforms);
     *carry = (Carry){0};
 }
 
@@ -28,7 +28,7 @@ static void carry_buffer(Carry *carry, CarryParams params, const SolverBuffer *b
     params.beside = buffer->kind == SOLVER_TIPS;
     params.directions = buffer->kind == SOLVER_DIRECTIONS;
     params.count = (uint)(buffer->buffer->size / (int64_t)sizeof(vec4)) / params.stride;
-    gpu_buffer_set_uniforms(&carry->uniforms, BIND_STEP, &params, sizeof params);
+    gpu_uniforms_set(BIND_STEP, &params, sizeof params);
     gpu_buffer_bind_storage(points->buffer, BIND_POSITION_OUT);
     gpu_buffer_bind_storage(buffer->buffer, BIND_STATE_OUT);
     glUseProgram(carry->program);

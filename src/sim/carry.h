@@ -11,7 +11,6 @@
 typedef struct Carry {
     const GpuLimits *limits; // the context's
     GLuint program;
-    GpuBuffer uniforms;
 } Carry;
 
 // Errors of shader_build_compute.

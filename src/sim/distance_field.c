@@ -3,6 +3,7 @@
 #include "base/chunk.h"
 #include "base/outfile.h"
 #include "gpu/gpu_dispatch.h"
+#include "gpu/gpu_uniforms.h"
 #include "gpu/shader.h"
 
 #include "glsl/field/field_params.h"
@@ -37,14 +38,14 @@ typedef struct Work {
     const Mesh *mesh;
     DistanceField *field;
     FieldParams params;
-    GpuBuffer uniforms, triangles, items, squares, nearest, closest[2], winding;
+    GpuBuffer triangles, items, squares, nearest, closest[2], winding;
     int present; // of closest
 } Work;
 
 static void work_destroy(Work *work)
 {
-    GpuBuffer *buffers[] = {&work->uniforms, &work->triangles,  &work->items,      &work->squares,
-                            &work->nearest,  &work->closest[0], &work->closest[1], &work->winding};
+    GpuBuffer *buffers[] = {&work->triangles,  &work->items,      &work->squares, &work->nearest,
+                            &work->closest[0], &work->closest[1], &work->winding};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; ++i) gpu_buffer_destroy(buffers[i]);
 }
 
@@ -162,7 +163,7 @@ static void add_columns(Items *items, const DistanceField *field, const Extent *
 
 static void set_params(Work *work)
 {
-    gpu_buffer_set_uniforms(&work->uniforms, BIND_STEP, &work->params, sizeof work->params);
+    gpu_uniforms_set(BIND_STEP, &work->params, sizeof work->params);
 }
 
 // Work groups for a row of `points` of the grid, whose rows are the dispatch's.

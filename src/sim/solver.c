@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "sim/solver.h"
 #include "base/suggest.h"
+#include "gpu/gpu_uniforms.h"
 #include "sim/along.h"
 #include "sim/collision.h"
 #include "sim/pose.h"
@@ -96,7 +97,6 @@ struct SolverState {
     const Hair *hair;
     const SectionParams *params;
     GpuTimer *timer;
-    GpuBuffer uniforms, own_uniforms;
     void *own; // the solver's own block
     StepPrograms programs;
     Along along;           // parameters that differ along the strand, or empty
@@ -130,8 +130,6 @@ static void destroy(SolverState *state)
     free(state->own);
     along_destroy(&state->along);
     step_programs_destroy(&state->programs);
-    gpu_buffer_destroy(&state->uniforms);
-    gpu_buffer_destroy(&state->own_uniforms);
     pose_destroy(&state->pose);
     collision_destroy(&state->collision);
     collision_destroy(&state->drawn);
@@ -367,7 +365,7 @@ static void dispatch(SolverState *state, uint32_t i, StepParams *uniforms)
     const SolverBatch *batch = &state->batches[i];
     uniforms->strand_count = hair->strand_count;
     uniforms->vertex_count = hair->vertex_count - state->programs.leads[i];
-    gpu_buffer_set_uniforms(&state->uniforms, BIND_STEP, uniforms, sizeof *uniforms);
+    gpu_uniforms_set(BIND_STEP, uniforms, sizeof *uniforms);
     gpu_buffer_bind_texture(&hair->position, BIND_POSITION);
     gpu_buffer_bind_texture(&hair->rest, BIND_REST);
     gpu_buffer_bind_texture(&hair->strand_id, BIND_STRAND_ID);
@@ -403,7 +401,7 @@ static void step_part(SolverState *state, const SolverStep *step, int part, int 
     if (recipe->fill) {
         memset(state->own, 0, recipe->params_size);
         recipe->fill(state->own, &uniforms, step, state->params);
-        gpu_buffer_set_uniforms(&state->own_uniforms, BIND_SOLVER, state->own, recipe->params_size);
+        gpu_uniforms_set(BIND_SOLVER, state->own, recipe->params_size);
     }
     along_fill(&state->along, step, state->own);
     int phases = recipe->phases && !state->programs.in_registers

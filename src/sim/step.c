@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "sim/step.h"
 #include "gpu/gpu_dispatch.h"
+#include "gpu/gpu_uniforms.h"
 
 #include <cglm/cglm.h>
 
@@ -94,13 +95,12 @@ Result step_pass_create(StepPass *pass, const Gpu *gpu, const char *shader,
 void step_pass_destroy(StepPass *pass)
 {
     if (pass->program) glDeleteProgram(pass->program);
-    gpu_buffer_destroy(&pass->uniforms);
     *pass = (StepPass){0};
 }
 
 void step_pass_run(StepPass *pass, const void *params, size_t size, uint32_t strand_count)
 {
-    gpu_buffer_set_uniforms(&pass->uniforms, BIND_STEP, params, size);
+    gpu_uniforms_set(BIND_STEP, params, size);
     glUseProgram(pass->program);
     gpu_dispatch(pass->limits, strand_count, (uint64_t)pass->limits->sizes.strands, 1);
 }

@@ -58,7 +58,6 @@ enum { STEP_OWN_DEFINES = 8 };
 typedef struct StepPass {
     GLuint program;
     const GpuLimits *limits; // the context's
-    GpuBuffer uniforms;
 } StepPass;
 
 // `defines`: all macros but GROUP_SIZE, STEP_OWN_DEFINES at most, ended by {0}; NULL: none. Errors

@@ -3,6 +3,7 @@
 #include "draw/drawing.h"
 #include "draw/scatter_tables.h"
 #include "gpu/gpu_buffer.h"
+#include "gpu/gpu_uniforms.h"
 #include "support/needed.h"
 #include "support/plain.h"
 #include "support/reference_marschner.h"
@@ -77,7 +78,7 @@ static void set_direction(Direction d, double theta, double phi)
 // f for `count` pairs of directions (towards the light, towards the eye), on the GPU.
 static void scatter(const SectionParams *params, int count, Direction (*pairs)[2], float (*f)[4])
 {
-    GpuBuffer draw = {0}, material = {0}, in, out;
+    GpuBuffer in, out;
     DrawParams draw_params = {.light_count = 1, .seed = strand.seed};
     MaterialParams look = drawing_material(params, 1);
     TintTable tints = {0};
@@ -94,8 +95,8 @@ static void scatter(const SectionParams *params, int count, Direction (*pairs)[2
     NEEDED(scatter_tables_read(&tables, texture, &table, error));
     NEEDED(tint_table_make(&tints, table, look.color, strand.variation, &gpu.limits, error));
     memcpy(look.tint_unit, tints.unit, sizeof tints.unit);
-    gpu_buffer_set_uniforms(&draw, BIND_DRAW, &draw_params, sizeof draw_params);
-    gpu_buffer_set_uniforms(&material, BIND_MATERIAL, &look, sizeof look);
+    gpu_uniforms_set(BIND_DRAW, &draw_params, sizeof draw_params);
+    gpu_uniforms_set(BIND_MATERIAL, &look, sizeof look);
     gpu_buffer_bind_storage(&in, 0);
     gpu_buffer_bind_storage(&out, 1);
     glActiveTexture(GL_TEXTURE0 + BIND_SCATTER);
@@ -108,8 +109,6 @@ static void scatter(const SectionParams *params, int count, Direction (*pairs)[2
     glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, count * (GLsizeiptr)sizeof *f, f);
     gpu_buffer_destroy(&in);
     gpu_buffer_destroy(&out);
-    gpu_buffer_destroy(&draw);
-    gpu_buffer_destroy(&material);
     tint_table_destroy(&tints);
 }
 

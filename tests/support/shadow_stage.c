@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "support/shadow_stage.h"
 
+#include "gpu/gpu_uniforms.h"
+
 #include "draw/drawing.h"
 #include "support/plain.h"
 #include "support/test_glsl.h"
@@ -59,17 +61,15 @@ void shadow_stage_close(ShadowStage *stage)
 void shadow_stage_draw(ShadowStage *stage, Shadow kind, int side, float spacing, bool by_processor)
 {
     GpuTimer timer;
-    GpuBuffer uniforms = {0};
     gpu_timer_create(&timer, false, true);
     DrawParams draw = {.head_rotation = {0, 0, 0, 1}};
-    gpu_buffer_set_uniforms(&uniforms, BIND_DRAW, &draw, sizeof draw);
+    gpu_uniforms_set(BIND_DRAW, &draw, sizeof draw);
     shadows_destroy(&stage->shadow);
     const ShadowOptions options = {
         .kind = kind, .side = side, .spacing = spacing, .copies = stage->copies};
     NEEDED(shadows_create(&stage->shadow, &fixture_gpu()->limits, &options, by_processor, error));
     NEEDED(shadows_draw(&stage->shadow, &stage->scene, &timer, error));
     gpu_timer_destroy(&timer);
-    gpu_buffer_destroy(&uniforms);
 }
 
 float *shadow_stage_light(ShadowStage *stage, const float (*points)[4], uint32_t count)

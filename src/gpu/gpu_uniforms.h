@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+// Uniform blocks, all in one buffer of the context: a ring in which every content has a place of
+// its own, so that a draw that is queued still reads what it was given, and no driver allocates
+// memory or waits for it. When the ring is full the driver is asked for a new one (glBufferData
+// without data), which it has once the old one has been read: once in some 40 frames.
+#pragma once
+
+#include <epoxy/gl.h>
+
+#include <stddef.h>
+
+enum { GPU_UNIFORMS_BINDINGS = 8, GPU_UNIFORMS_MOST = 1 << 14 };
+
+// Gives the block at `binding` (< GPU_UNIFORMS_BINDINGS) this content of `size` bytes, at most
+// GPU_UNIFORMS_MOST, for all that is queued from now on. Nothing is uploaded if it has it. Nothing
+// else may bind uniform buffers.
+void gpu_uniforms_set(GLuint binding, const void *data, size_t size);
+
+// Another context is current, or none: the ring has gone with the one that had it.
+void gpu_uniforms_forget(void);
