@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The A-buffer's pool grows as needed; where it may not, the image is drawn in bands.
+#include "support/needed.h"
 #include "support/stage.h"
 
 #include <stdlib.h>
@@ -56,6 +57,54 @@ static void bands_are_no_more_than_the_pool_asks_for(void **state)
     uint64_t node_bytes = 16, least = counts->fragments * node_bytes / SMALL_POOL + 1;
     assert_in_range(counts->bands, least, 3 * least);
     assert_int_equal(counts->pool_bytes, small.pool_bytes);
+}
+
+static Image late_image(const RendererOptions *options)
+{
+    Image image;
+    NEEDED(image_create(&image, options->width, options->height, 3, error));
+    return image;
+}
+
+// The first image is taken when the next one has been begun, over which the pool has been found
+// too small; both are what they are one at a time.
+static void an_image_that_comes_late_has_all_of_its_hair(void **state)
+{
+    (void)state;
+    const RendererOptions large = {.width = 512, .height = 512, .background = {0, 0, 0, 1}};
+    Renderer *renderer = &studio.renderer;
+    uint8_t *expected[2];
+    size_t size;
+    View view[2];
+    use(&large);
+    add_tangle(6000, 6, 0.4f, NULL);
+    studio_view(&view[0], 512, 512);
+    studio_view(&view[1], 512, 512);
+    view[1].projection[0][0] *= 2; // less hair in sight
+    for (int i = 0; i < 2; ++i) {
+        studio_draw_view(&studio, &view[i]);
+        expected[i] = studio_copy(&studio, &size);
+    }
+    use(&large); // its pool is small again
+    Image image[2] = {late_image(&large), late_image(&large)};
+    int place[2];
+    for (int i = 0; i < 2; ++i) {
+        RenderFrame frame = {.view = &view[i],
+                             .lights = &studio.light,
+                             .light_count = studio.light.intensity != 0,
+                             .head_rotation = {0, 0, 0, 1}};
+        place[i] = renderer_place(renderer);
+        NEEDED(renderer_begin(renderer, &frame, studio.items, studio.count, &image[i], error));
+        assert_true(renderer_is_late(renderer));
+        NEEDED(renderer_settle(renderer, error));
+        if (i == 0) assert_true(renderer->counts.redraws > 0);
+    }
+    for (int i = 0; i < 2; ++i) {
+        NEEDED(renderer_take(renderer, place[i], &image[i], error));
+        assert_memory_equal(image[i].pixels, expected[i], size);
+        image_destroy(&image[i]);
+        free(expected[i]);
+    }
 }
 
 // Its pixels are all of one 8x8 block, so of one shard.
@@ -134,6 +183,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         CLAIM(a_pool_that_is_too_small_grows),
+        CLAIM(an_image_that_comes_late_has_all_of_its_hair),
         CLAIM(bands_give_the_same_picture),
         CLAIM(bands_are_no_more_than_the_pool_asks_for),
         CLAIM(a_small_picture_uses_the_whole_pool),

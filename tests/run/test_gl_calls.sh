@@ -1,0 +1,36 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Calls of OpenGL a frame, once a run is under way: nothing makes the program wait for all that a GPU has been given.
+. tests/support/claims.sh
+program=$bin/tractrix-render
+export TRACTRIX_GL_CALLS=1
+scene="assets/bob.tfx --look plain --followers 0 --algo dftl --substeps 1 --size 96x72 -q --eye 0,0.1,0.8"
+
+# calls MOST BLOCKING ARGUMENT...: a frame has at most so many calls, and exactly so many blocking reads.
+calls() {
+    most=$1 blocking=$2
+    shift 2
+    # shellcheck disable=SC2086 # words
+    run 0 $scene "$@"
+    if awk -v most="$most" -v blocking="$blocking" '
+        / calls a frame/ { found = 1; good = $1 <= most && $5 == blocking }
+        END { exit !(found && good) }' "$work/err"; then good; else bad "more than $most calls, or not $blocking blocking: $*"; fi
+}
+
+claim "quads: no read waits; images, the A-buffer's use and culled strands come late"
+calls 200 0 --raster quads --turntable --frames 12 -o "$work/all/%d.png"
+
+claim "every frame is there and none is another's: they are those of single frames"
+for i in 0 5 11; do
+    # shellcheck disable=SC2086 # words
+    run 0 $scene --raster quads --turntable --frames 12 --first $i --last $i -o "$work/one/%d.png"
+    same_images "$work/all/$i.png" "$work/one/$i.png"
+done
+
+claim "EXR files with layers: five images a frame, none is waited for"
+calls 700 0 --raster quads --frames 4 -o "$work/%d.exr"
+
+claim "blocks read hair by mapping it, which costs a CPU driver nothing"
+calls 110 3 --raster blocks --frames 4 -o "$work/blocks/%d.png"
+
+finish
