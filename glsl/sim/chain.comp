@@ -81,7 +81,7 @@ float predict(Strand strand)
 float carried_tension(Strand strand, int j)
 {
 #if BENDS
-    return bend_acts(strand) * texelFetch(velocity_before, strand.address + j * STRAND_TILE).w;
+    return bend_acts(strand) * velocity_before(strand.address + j * STRAND_TILE).w;
 #else
     return 0.0;
 #endif

@@ -34,7 +34,7 @@ void main()
     for (int j = 1; j <= last; ++j) {
         int a = strand.address + j * STRAND_TILE;
         vec3 ahead = fetch_position(strand, min(j + 1, last));
-        vec4 u = texelFetch(velocity_before, a), segment = fetch_rest(strand, j);
+        vec4 u = velocity_before(a), segment = fetch_rest(strand, j);
         // u would lead to x + move, v does to x + move + back
         vec3 kicked = kicked_velocity(strand, j, u.xyz), move = strand.dt * kicked,
              back = strand.dt * (kicked_velocity(strand, j, u.xyz - u.w * (ahead - x)) - kicked);

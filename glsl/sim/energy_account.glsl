@@ -29,7 +29,7 @@ struct Account {
 
 Account account_open(Strand strand, float stored)
 {
-    vec3 before = texelFetch(velocity_before, strand.address).xyz * strand.dt;
+    vec3 before = velocity_before(strand.address).xyz * strand.dt;
     return Account(strand.root - strand.root_old, before, 0.0, 0.0, 0.0, stored, stored);
 }
 
@@ -109,7 +109,7 @@ void account_close(Account account, Strand strand, int last)
 {
     float per_square = 0.5 / (strand.dt * strand.dt), kinetic = per_square * account.squares,
           linear = per_square * account.linear + (account.stored - account.stored_before);
-    float constant = texelFetch(velocity_before, strand.address).w + per_square * account.constant;
+    float constant = velocity_before(strand.address).w + per_square * account.constant;
     float fall =
         ALLOWED * 0.5 * float(last) * strand.length * length(strand.push) / step_params.gain;
     float gained = kinetic + linear + constant,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a solver of particles (recipe.h) is given: positions and velocities of the step
-// before by texture, both to be written to the same places, the style, and where the head carries
+// before, both to be written to the same places, the style, and where the head carries
 // the root.
 //
 // Macros: GROUP_SIZE lanes a group; STRANDS strands a lane, GROUP_SIZE apart; IN_REGISTERS and
@@ -14,13 +14,25 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
-layout(binding = BIND_POSITION) uniform samplerBuffer position_before; // xyz: m
-layout(binding = BIND_STATE) uniform samplerBuffer velocity_before;    // xyz: m/s
-layout(binding = BIND_REST) uniform samplerBuffer rest;                // the style: see hair.h
+layout(binding = BIND_REST) uniform samplerBuffer rest; // the style: see hair.h
 layout(binding = BIND_STRAND_ID) uniform usamplerBuffer strand_id;
 #include "sim/strand_root.glsl"
 layout(std430, binding = BIND_POSITION_OUT) buffer Positions { vec4 positions[]; };
 layout(std430, binding = BIND_STATE_OUT) buffer Velocities { vec4 velocities[]; };
+
+// A particle at the step's start: xyz, m and m/s. A lane fetches only particles of its own strand,
+// each before it stores to that particle. That is enough where loads and stores of one memory keep
+// their order: ORDERED 1, by the buffers themselves. Texels of the same memory are cheaper to fetch
+// on CPU drivers, which keep the order, too; a GPU's compiler may move them beyond a store.
+#if ORDERED
+#define position_before(address) positions[address]
+#define velocity_before(address) velocities[address]
+#else
+layout(binding = BIND_POSITION) uniform samplerBuffer position_texels;
+layout(binding = BIND_STATE) uniform samplerBuffer velocity_texels;
+#define position_before(address) texelFetch(position_texels, address)
+#define velocity_before(address) texelFetch(velocity_texels, address)
+#endif
 
 // The first of the lane's strands. Lanes beyond the last strand have nothing to do.
 int first_strand() { return group_index() * GROUP_SIZE * STRANDS + int(gl_LocalInvocationID.x); }

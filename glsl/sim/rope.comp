@@ -101,7 +101,7 @@ void main()
     float l[VERTICES];
     int small_steps = rope_params.small_steps, sweeps = rope_params.sweeps;
     vec4 root = strand_root(base), rotation = step_params.head_rotation;
-    vec3 drawn = texelFetch(position_before, base).xyz, at = vec3(0.0), carry = root_move(root);
+    vec3 drawn = position_before(base).xyz, at = vec3(0.0), carry = root_move(root);
     x[0] = root_at(carry, 1, small_steps);
 #if STYLED
     vec3 style[VERTICES]; // from the root
@@ -109,8 +109,8 @@ void main()
 #endif
     for (int j = 1; j < VERTICES; ++j) {
         int a = base + j * STRAND_TILE;
-        vec3 next = texelFetch(position_before, a).xyz;
-        vec4 v = texelFetch(velocity_before, a);
+        vec3 next = position_before(a).xyz;
+        vec4 v = velocity_before(a);
         vec4 segment = texelFetch(rest, a);
         l[j] = segment.w;
         at += link_before(drawn, next, l[j], v.w);
@@ -177,7 +177,7 @@ void main()
          draws = phase + 1 == rope_params.small_steps * rope_params.sweeps;
     vec3 wind = strand_wind(texelFetch(strand_id, s).x, root_position(strand_root(a)));
     vec4 root = strand_root(a);
-    vec3 drawn_before = texelFetch(position_before, a).xyz, at = vec3(0.0);
+    vec3 drawn_before = position_before(a).xyz, at = vec3(0.0);
     vec3 x = root_at(root_move(root), step + 1, rope_params.small_steps), m = vec3(0.0),
          style_at = x;
     vec4 rotation = step_params.head_rotation;
@@ -195,8 +195,8 @@ void main()
         vec4 segment = texelFetch(rest, b);
         l = segment.w;
         if (loads) {
-            vec3 to = texelFetch(position_before, b).xyz;
-            vec4 v = texelFetch(velocity_before, b);
+            vec3 to = position_before(b).xyz;
+            vec4 v = velocity_before(b);
             at += link_before(drawn_before, to, l, v.w);
             drawn_before = to;
             next = at;

@@ -3,8 +3,13 @@
 // IN_REGISTERS 1: the strand has VERTICES vertices, and stays in registers for the whole step,
 // whose loops unroll. 0: any length, in memory.
 // the buffer at the step's start
-layout(binding = BIND_STATE) uniform samplerBuffer segments_before;
 layout(std430, binding = BIND_STATE_OUT) buffer Segments { vec4 segments[]; };
+#if ORDERED // see particles.glsl
+#define segments_before(address) segments[address]
+#else
+layout(binding = BIND_STATE) uniform samplerBuffer segment_texels;
+#define segments_before(address) texelFetch(segment_texels, address)
+#endif
 
 const float SAFE_MOVE = 1e15; // metres: keeps squares finite whatever the head does
 
@@ -20,7 +25,7 @@ vec3 open_links(int k, int address)
 {
     vec3 span = vec3(0.0);
     for (int i = 0; i < LINKS; ++i) {
-        vec4 segment = texelFetch(segments_before, address + (LINKS - i) * STRAND_TILE);
+        vec4 segment = segments_before(address + (LINKS - i) * STRAND_TILE);
         span += segment.w * segment.xyz;
 #if IN_REGISTERS
         links[k][i] = vec4(-segment.xyz, segment.w);

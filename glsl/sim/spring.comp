@@ -106,12 +106,12 @@ void eliminate(int base, int n, vec3 wind, vec3 root_velocity)
     mat3 M = mat3(1.0);
     vec3 d = vec3(0.0);
     int at = base + (n - 1) * STRAND_TILE;
-    vec3 drawn = texelFetch(position_before, at).xyz;
-    vec4 v = texelFetch(velocity_before, at);
+    vec3 drawn = position_before(at).xyz;
+    vec4 v = velocity_before(at);
     vec3 flying = kick_at(n - 1, v.xyz, wind);
     for (int j = n - 1; j > 0; --j, at -= STRAND_TILE) {
-        vec4 style = texelFetch(rest, at), v_before = texelFetch(velocity_before, at - STRAND_TILE);
-        vec3 drawn_before = texelFetch(position_before, at - STRAND_TILE).xyz;
+        vec4 style = texelFetch(rest, at), v_before = velocity_before(at - STRAND_TILE);
+        vec3 drawn_before = position_before(at - STRAND_TILE).xyz;
         vec3 flying_before = j == 1 ? root_velocity : kick_at(j - 1, v_before.xyz, wind);
         float l = style.w, m, b = min(angular * angular_at(j), 0.25 * p * l);
         vec3 r = link_before(drawn_before, drawn, l, v.w), flown = dt * (flying - flying_before);
@@ -142,7 +142,7 @@ void eliminate(int base, int n, vec3 wind, vec3 root_velocity)
 void substitute(int base, int n, vec3 wind, vec3 root_velocity, vec3 root)
 {
     float dt = step_params.dt, per_second = 1.0 / step_params.dt;
-    vec3 drawn_before = texelFetch(position_before, base).xyz, flying_before = root_velocity,
+    vec3 drawn_before = position_before(base).xyz, flying_before = root_velocity,
          x_before = vec3(0.0);
     vec3 drawn = root,
          along = rotate(step_params.head_rotation, texelFetch(rest, base + STRAND_TILE).xyz);
@@ -150,8 +150,8 @@ void substitute(int base, int n, vec3 wind, vec3 root_velocity, vec3 root)
     positions[base] = vec4(root, 1.0);
     for (int j = 1; j < n; ++j) {
         int a = base + j * STRAND_TILE;
-        vec3 was = texelFetch(position_before, a).xyz;
-        vec4 v = texelFetch(velocity_before, a);
+        vec3 was = position_before(a).xyz;
+        vec4 v = velocity_before(a);
         float l = texelFetch(rest, a).w;
         vec3 flying = kick_at(j, v.xyz, wind);
         vec3 s = link_before(drawn_before, was, l, v.w) + dt * (flying - flying_before);
@@ -212,7 +212,7 @@ void main()
     float dt = step_params.dt, gain = step_params.gain, decay = step_params.decay;
     Springs springs = springs_of(n - 1);
     float softness = SHORT * root.w / float(n - 1); // e
-    vec3 was = texelFetch(position_before, a).xyz;
+    vec3 was = position_before(a).xyz;
     vec3 moved = root_move(root); // by the particle before
     vec3 drawn = root_position(root),
          along = rotate(rotation, texelFetch(rest, a + STRAND_TILE).xyz);
@@ -227,9 +227,8 @@ void main()
         vec3 next_r = vec3(0.0), next_force = vec3(0.0);
         if (j < n) {
             style = texelFetch(rest, a + STRAND_TILE);
-            next_v = texelFetch(velocity_before, a + STRAND_TILE);
-            vec3 to = texelFetch(position_before, a + STRAND_TILE).xyz,
-                 t = rotate(rotation, style.xyz);
+            next_v = velocity_before(a + STRAND_TILE);
+            vec3 to = position_before(a + STRAND_TILE).xyz, t = rotate(rotation, style.xyz);
             float m;
             next_r = link_before(was, to, style.w, next_v.w);
             vec3 u = direction_of(next_r, t, m);

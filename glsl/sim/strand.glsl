@@ -25,7 +25,7 @@ Strand strand_open(int number, StyleSpring spring)
     strand.address = strand_base(number);
     vec4 root_rest = strand_root(strand.address);
     strand.root = root_position(root_rest);
-    strand.root_old = texelFetch(position_before, strand.address).xyz;
+    strand.root_old = position_before(strand.address).xyz;
     strand.root_velocity = (strand.root - strand.root_old) / step_params.dt;
     strand.length = root_rest.w;
     vec3 wind = strand_wind(texelFetch(strand_id, number).x, strand.root);
@@ -43,11 +43,11 @@ Strand strand_open(int number, StyleSpring spring)
 
 vec3 fetch_position(Strand strand, int j)
 {
-    return texelFetch(position_before, strand.address + j * STRAND_TILE).xyz;
+    return position_before(strand.address + j * STRAND_TILE).xyz;
 }
 vec3 fetch_velocity(Strand strand, int j)
 {
-    return texelFetch(velocity_before, strand.address + j * STRAND_TILE).xyz;
+    return velocity_before(strand.address + j * STRAND_TILE).xyz;
 }
 vec4 fetch_rest(Strand strand, int j) { return texelFetch(rest, strand.address + j * STRAND_TILE); }
 

@@ -87,7 +87,7 @@ Carried carried_by_head()
          first_new = rotate(step_params.head_rotation, first.xyz);
     carried.first_old = rotate(conjugate(step_params.head_rotation), first_old);
     vec3 moved = carried.root - carried.root_old + first.w * (first_new - first_old);
-    vec3 jerk = moved - step_params.dt * texelFetch(velocity_before, address(1)).xyz;
+    vec3 jerk = moved - step_params.dt * velocity_before(address(1)).xyz;
     float threshold = tressfx_params.shock_threshold;
     carried.share = dot(jerk, jerk) > threshold * threshold ? 1.0 : tressfx_params.shock;
     velocities[address(1)] = vec4(moved / step_params.dt, 0.0); // for the next step's jerk
@@ -112,21 +112,21 @@ void predict(Carried carried)
     home = rotate(to_head, home);
 #if !TRESSFX4
     // The others' velocities are relative to the motion that the whole strand takes part in.
-    vec3 ahead = (1.0 - share) * texelFetch(velocity_before, address(1)).xyz;
+    vec3 ahead = (1.0 - share) * velocity_before(address(1)).xyz;
     float exchanged = tressfx_params.exchanged;
 #endif
     for (int j = 1; j < n; ++j) {
         int a = address(j);
         vec4 segment = REST(j);
         style += segment.w * segment.xyz;
-        vec3 from = rotate(to_head, texelFetch(position_before, a).xyz - root_old);
+        vec3 from = rotate(to_head, position_before(a).xyz - root_old);
 #if TRESSFX4
-        vec3 v = texelFetch(velocity_before, a).xyz;
+        vec3 v = velocity_before(a).xyz;
         vec3 x = from + dt * rotate(to_head, v * step_params.decay + step_params.gravity.xyz * dt);
         if (float(j) < last_global) x = mix(x, style + home, global);
 #else
         vec3 v = ahead;
-        ahead = texelFetch(velocity_before, address(min(j + 1, n - 1))).xyz;
+        ahead = velocity_before(address(min(j + 1, n - 1))).xyz;
         float lever = min(1.0, MOST_LEVER * segment.w / REST(min(j + 1, n - 1)).w);
         vec3 given = (j + 1 < n ? exchanged * lever : 0.0) * (ahead - v);
         v += given, ahead -= given;

@@ -151,7 +151,7 @@ static void try_solvers(const Gpu *gpu, Result *worst, FILE *stream, Error *erro
     static const SolverShape shapes[] = {
         {8, 0.5f, 0.5f, 0},  {8, 0, 0, 0},        {8, 1, 1, 0},       {64, 0.5f, 0.5f, 0},
         {8, 0.9f, 0.3f, 1},  {64, 0.9f, 0.3f, 0}, {8, 0.4f, 0.4f, 1}, {64, 0.6f, 0.6f, 1},
-        {16, 0.5f, 0.5f, 0}, {16, 0.9f, 0.3f, 0}, {16, 0, 0, 0},      {24, 0.5f, 0.5f, 0},
+        {16, 0.5f, 0.5f, 0}, {16, 0.9f, 0.3f, 0}, {16, 0, 0, 0},      {20, 0.5f, 0.5f, 0},
         {32, 0.5f, 0.5f, 0},
     };
     for (const SolverType *const *type = SOLVER_TYPES; *type; ++type)

@@ -122,7 +122,7 @@ static bool fits_registers(const Hair *hair, uint32_t most)
 static Result build(StepPrograms *programs, uint32_t batch, uint32_t vertices,
                     const StepProgramsOptions *options, Error *error)
 {
-    ShaderDefine defines[9 + STEP_OWN_DEFINES] = {
+    ShaderDefine defines[10 + STEP_OWN_DEFINES] = {
         {"GROUP_SIZE", programs->limits->sizes.strands},
         {"STRANDS", (int)programs->strands_per_lane},
         {"IN_REGISTERS", programs->in_registers},
@@ -131,9 +131,10 @@ static Result build(StepPrograms *programs, uint32_t batch, uint32_t vertices,
         {"SHELTER", options->sheltered},
         {"STYLED", options->styled},
         {"VARIES", options->varies},
+        {"ORDERED", programs->ordered},
     };
     for (int i = 0; options->defines && options->defines[i].name; ++i)
-        defines[8 + i] = options->defines[i];
+        defines[9 + i] = options->defines[i];
     return shader_build_compute(&programs->programs[batch], options->shader, defines, error);
 }
 
@@ -157,6 +158,7 @@ Result step_programs_create(StepPrograms *programs, const Gpu *gpu, const Hair *
         .limits = &gpu->limits,
         .strands_per_lane = in_registers ? sizes->strands : 1,
         .in_registers = in_registers,
+        .ordered = gpu->kind == GPU_HARDWARE,
     };
     Result result = RESULT_OK;
     if (!programs->programs || !programs->leads)

@@ -88,12 +88,13 @@ typedef struct StepPrograms {
     uint32_t batch_count, strands_per_lane;
     const GpuLimits *limits; // the context's
     bool in_registers;
+    bool ordered; // the state is read by the buffers that it is written to (particles.glsl)
 } StepPrograms;
 
 // Compiles with the macros GROUP_SIZE (lanes), STRANDS (a lane's), IN_REGISTERS, VERTICES (but for
-// the lead), LEAD, SHELTER, STYLED, VARIES and the own ones. Strands are in registers if all are
-// short enough and of few different counts. Errors of shader_build_compute; RESULT_FAILED without
-// memory.
+// the lead), LEAD, SHELTER, STYLED, VARIES, ORDERED and the own ones. Strands are in registers if
+// all are short enough and of few different counts. Errors of shader_build_compute; RESULT_FAILED
+// without memory.
 Result step_programs_create(StepPrograms *programs, const Gpu *gpu, const Hair *hair,
                             const StepProgramsOptions *options, Error *error);
 void step_programs_destroy(StepPrograms *programs);

@@ -13,5 +13,5 @@ const StepSizes STEP_SIZES[STEP_SHAPES][GPU_KINDS] = {
     [STEP_EMULATION] = {[GPU_CPU_DRIVER] = {32, 1}, [GPU_HARDWARE] = {0, 1}},
     [STEP_HYBRID] = {[GPU_CPU_DRIVER] = {32, 1}, [GPU_HARDWARE] = {0, 1}},
     [STEP_ROPE] = {[GPU_CPU_DRIVER] = {32, 1}, [GPU_HARDWARE] = {8, 1}},
-    [STEP_SPLIT] = {[GPU_CPU_DRIVER] = {40, 2}, [GPU_HARDWARE] = {24, 1}},
+    [STEP_SPLIT] = {[GPU_CPU_DRIVER] = {40, 2}, [GPU_HARDWARE] = {20, 1}},
 };
