@@ -25,12 +25,14 @@ struct Account {
     vec3 moved, moved_before;        // of the root, in this step and in the one before
     float squares, linear, constant; // times dt^2/2
     float stored_before, stored;     // in springs that count as constraints
+    float gained;                    // in the steps before, and not paid yet
 };
 
 Account account_open(Strand strand, float stored)
 {
-    vec3 before = velocity_before(strand.address).xyz * strand.dt;
-    return Account(strand.root - strand.root_old, before, 0.0, 0.0, 0.0, stored, stored);
+    vec4 before = velocity_before(strand.address);
+    return Account(strand.root - strand.root_old, before.xyz * strand.dt, 0.0, 0.0, 0.0, stored,
+                   stored, before.w);
 }
 
 // A particle that has gone by `move`, would have gone by `free` without constraints, and had the
@@ -109,7 +111,7 @@ void account_close(Account account, Strand strand, int last)
 {
     float per_square = 0.5 / (strand.dt * strand.dt), kinetic = per_square * account.squares,
           linear = per_square * account.linear + (account.stored - account.stored_before);
-    float constant = velocity_before(strand.address).w + per_square * account.constant;
+    float constant = account.gained + per_square * account.constant;
     float fall =
         ALLOWED * 0.5 * float(last) * strand.length * length(strand.push) / step_params.gain;
     float gained = kinetic + linear + constant,

@@ -74,6 +74,7 @@ float global_at(int j)
 struct Carried {
     vec3 root_old, root; // in the world
     vec3 first_old;      // where the first segment, now REST(1), pointed
+    vec3 first_velocity; // of vertex 1 in the step before
     float share;         // of the root's rigid motion that the whole strand takes part in
 };
 
@@ -87,7 +88,8 @@ Carried carried_by_head()
          first_new = rotate(step_params.head_rotation, first.xyz);
     carried.first_old = rotate(conjugate(step_params.head_rotation), first_old);
     vec3 moved = carried.root - carried.root_old + first.w * (first_new - first_old);
-    vec3 jerk = moved - step_params.dt * velocity_before(address(1)).xyz;
+    carried.first_velocity = velocity_before(address(1)).xyz;
+    vec3 jerk = moved - step_params.dt * carried.first_velocity;
     float threshold = tressfx_params.shock_threshold;
     carried.share = dot(jerk, jerk) > threshold * threshold ? 1.0 : tressfx_params.shock;
     velocities[address(1)] = vec4(moved / step_params.dt, 0.0); // for the next step's jerk
@@ -112,7 +114,7 @@ void predict(Carried carried)
     home = rotate(to_head, home);
 #if !TRESSFX4
     // The others' velocities are relative to the motion that the whole strand takes part in.
-    vec3 ahead = (1.0 - share) * velocity_before(address(1)).xyz;
+    vec3 ahead = (1.0 - share) * carried.first_velocity;
     float exchanged = tressfx_params.exchanged;
 #endif
     for (int j = 1; j < n; ++j) {
