@@ -183,7 +183,7 @@ void list_batch(int begin, int count, int batch, uint open)
 
 // --- Pixels.
 
-ivec2 place; // of the lane's first one
+ivec2 place = ivec2(0); // of the lane's first one
 Numbers red = Numbers(0.0), green = Numbers(0.0), blue = Numbers(0.0);
 Numbers through = Numbers(1.0); // share of what stands behind that is seen
 Numbers hidden = Numbers(0.0);  // 1/w of what hides all behind it; 0: nothing
