@@ -1,47 +1,33 @@
 // SPDX-License-Identifier: MIT
-// Composites a tile of pixels a work group: its list's ribbons near to far, each under what stands
-// before it, premultiplied and in linear light, over what stands behind, to colours. The arithmetic
-// is that of src/draw/block_composite.c and block_pixels.c.
+// Composites a tile of pixels a work group, of the tiles with ribbons: its list's ribbons near to
+// far, each under what stands before it, premultiplied and in linear light, over what stands
+// behind, to colours. The arithmetic is that of src/draw/block_composite.c and block_pixels.c.
 //   PIXELS 1, 4: of a lane, one above the other; GROUP_SIZE: lanes, for a tile
 //   STAGED 1: ribbons are unpacked once, into shared memory   0: by every lane for itself
-//   BASE 1: mesh or floor stand behind, and hide what is behind them
+//   BASE 1: mesh or floor hide what is behind them; see compute_pixels.glsl, too
 //   NEAREST 1: a ribbon hides all behind it where it covers LEAST_COVERAGE of the pixel
 //   DEPTH 1: and shows its distance
-//   SAMPLES: what is a pixel here is one of SAMPLES x SAMPLES that the picture has the mean of
-//   KIND 0: 8 bits a channel are stored   1: 16   2: floats
-//   TONE: see display.glsl
+//   SAMPLES, KIND, TONE: see compute_pixels.glsl
 //
 // Ribbons are taken BATCH at a time: lanes find the cells that each of them touches, a bit a ribbon
 // in the cell's mask, then each cell's lanes go through their mask from its lowest bit on. So bits
 // may be set in any order. A cell is left out once less than LEAST is seen through all its pixels.
 #include "draw/draw.h"
 #include "draw/block.glsl"
+#include "draw/compute_pixels.glsl"
 #include "draw/compute_strip.glsl"
-#include "draw/display.glsl"
 
 #define CELL_LANES (TILE_CELL_WIDTH * TILE_CELL_HEIGHT / PIXELS)
 
 layout(local_size_x = GROUP_SIZE) in;
-layout(location = 0) uniform ivec3 band;     // columns of tiles; the first of its rows, the end
-layout(location = 1) uniform uint room;      // pairs
-layout(location = 2) uniform ivec4 base_box; // px: first column and row, end column and row
+layout(location = 0) uniform int tile_columns;
+layout(location = 1) uniform uint room; // pairs
 layout(binding = BIND_RIBBONS) uniform usamplerBuffer ribbons;
 layout(binding = BIND_SORTED) uniform usamplerBuffer sorted;
 layout(std430, binding = BIND_TILE_COUNTS_OUT) readonly buffer Counts { uint counts[]; };
 layout(std430, binding = BIND_TILE_ENDS_OUT) readonly buffer Ends { uint ends[]; };
-#if BASE
-layout(binding = BIND_BASE) uniform sampler2D base;
-layout(binding = BIND_MESH_DEPTH) uniform sampler2D mesh_depth;
-#endif
-#if KIND == 0
-layout(binding = IMAGE_PICTURE, rgba8) writeonly uniform image2D picture;
-const float LEVELS = 255.0;
-#elif KIND == 1
-layout(binding = IMAGE_PICTURE, rgba16) writeonly uniform image2D picture;
-const float LEVELS = 65535.0;
-#else
-layout(binding = IMAGE_PICTURE, rgba32f) writeonly uniform image2D picture;
-#endif
+layout(std430, binding = BIND_TILE_USE_OUT) readonly buffer Use { uint use[TILE_USE_WORDS]; };
+layout(std430, binding = BIND_TILES_OUT) readonly buffer Tiles { uint tiles[]; };
 
 // Some number of each of a lane's pixels.
 #if PIXELS == 4
@@ -65,7 +51,9 @@ const float LEAST_COVERAGE = 1.0 / 16.0; // as in hair.frag
 shared uint masks[2 * CELLS * WORDS];
 shared int open_from[CELLS]; // the batch that the cell is open for
 
-ivec2 corner = (ivec2(gl_WorkGroupID.xy) + ivec2(0, band.y)) * TILE_SIDE;
+uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+int tile = int(tiles[min(group, max(use[TILE_USE_TILES], 1u) - 1u)]);
+ivec2 corner = ivec2(tile % tile_columns, tile / tile_columns) * TILE_SIDE;
 // The middle of the first pixel of the block that the tile is part of, as C counts pixels.
 ivec2 block = corner / ivec2(BLOCK_WIDTH, BLOCK_HEIGHT) * ivec2(BLOCK_WIDTH, BLOCK_HEIGHT);
 vec2 origin = vec2(block) + 0.5;
@@ -262,11 +250,6 @@ void draw_list(int begin, int count)
 
 // --- What stands behind, and colours.
 
-bool is_in_base(ivec2 p)
-{
-    return all(greaterThanEqual(p, base_box.xy)) && all(lessThan(p, base_box.zw));
-}
-
 void hide()
 {
 #if BASE
@@ -278,15 +261,6 @@ void hide()
 #endif
 }
 
-vec4 light_behind(ivec2 p)
-{
-    vec4 light = draw_params.background;
-#if BASE
-    if (is_in_base(p)) light = texelFetch(base, p, 0);
-#endif
-    return light;
-}
-
 vec4 light_of(int k)
 {
 #if DEPTH
@@ -295,16 +269,6 @@ vec4 light_of(int k)
     return vec4(OF(red, k), OF(green, k), OF(blue, k), 1.0 - OF(through, k)) +
            OF(through, k) * light_behind(place + ivec2(0, k));
 #endif
-}
-
-// Levels are found here: drivers may round in another way.
-void store(ivec2 p, vec4 light)
-{
-#if KIND < 2
-    light.rgb = display_from_linear(light.rgb * (1.0 / max(light.a, 1e-6)));
-    light = floor(clamp(light, 0.0, 1.0) * LEVELS + 0.5) * (1.0 / LEVELS);
-#endif
-    imageStore(picture, p, light);
 }
 
 #if SAMPLES > 1
@@ -336,11 +300,12 @@ void store_all()
 void main()
 {
     int lane = int(gl_LocalInvocationID.x), cell = lane / CELL_LANES, own = lane % CELL_LANES,
-        tile = (band.y + int(gl_WorkGroupID.y)) * band.x + int(gl_WorkGroupID.x);
+        count = int(counts[tile]);
+    if (group >= use[TILE_USE_TILES]) return;
     place = corner + ivec2(cell % CELLS_ACROSS * TILE_CELL_WIDTH + own % TILE_CELL_WIDTH,
                            cell / CELLS_ACROSS * TILE_CELL_HEIGHT + own / TILE_CELL_WIDTH * PIXELS);
-    uint count = counts[tile], end = ends[tile];
+    uint end = ends[tile];
     hide();
-    if (count > 0u && end <= room) draw_list(int(end - count), int(count));
+    if (end <= room) draw_list(int(end) - count, count);
     store_all();
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Sorts each tile's pairs, a tile a work group: near ribbons first, alike ones by their slots. No
-// two pairs are the same, so there is one order.
+// Sorts the pairs of tiles with ribbons, a tile a work group: near ribbons first, alike ones by
+// their slots. No two pairs are the same, so there is one order.
 //
 // Runs of GROUP_SIZE pairs are sorted in shared memory, where each lane counts the pairs that come
 // before its own. Two runs at a time then become one: a pair's place is its place in its own run
@@ -8,10 +8,11 @@
 #include "draw/draw.h"
 
 layout(local_size_x = GROUP_SIZE) in;
-layout(location = 0) uniform ivec3 band; // columns of tiles; the first of its rows, the end
-layout(location = 1) uniform uint room;  // pairs
+layout(location = 0) uniform uint room; // pairs
 layout(std430, binding = BIND_TILE_COUNTS_OUT) readonly buffer Counts { uint counts[]; };
 layout(std430, binding = BIND_TILE_ENDS_OUT) readonly buffer Ends { uint ends[]; };
+layout(std430, binding = BIND_TILE_USE_OUT) readonly buffer Use { uint use[TILE_USE_WORDS]; };
+layout(std430, binding = BIND_TILES_OUT) readonly buffer Tiles { uint tiles[]; };
 // What a lane writes others of its group read. Images, not storage, which CPU drivers read a word
 // at a time.
 layout(binding = IMAGE_PAIRS, rg32ui) coherent uniform uimageBuffer pairs;
@@ -73,9 +74,10 @@ uint find_place(bool in_sorted, uvec2 pair, uint begin, uint count, uint length,
 
 void main()
 {
-    int tile = (band.y + int(gl_WorkGroupID.y)) * band.x + int(gl_WorkGroupID.x);
-    uint count = counts[tile], end = ends[tile], begin = end - count;
-    if (count == 0u || end > room) return;
+    uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    if (group >= use[TILE_USE_TILES]) return;
+    uint tile = tiles[group], count = counts[tile], end = ends[tile], begin = end - count;
+    if (end > room) return;
     bool in_sorted = true; // in the end, after one merge and another
     for (uint length = LENGTH; length < count; length *= 2u) in_sorted = !in_sorted;
     for (uint i = 0u; i < count; i += LENGTH)

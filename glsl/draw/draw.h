@@ -69,6 +69,7 @@
 #define BIND_TILE_ENDS_OUT   1 // uint a tile: where its list goes on, in the end behind its last pair
 #define BIND_TILE_USE_OUT    2 // TILE_USE_WORDS uint
 #define BIND_PAIRS_OUT       3 // uvec2 a ribbon in a tile: ~depth, slot
+#define BIND_TILES_OUT       4 // uint: the tiles with ribbons
 #define BIND_RIBBONS         4 // RIBBON_TEXELS uvec4 a slot
 #define BIND_KEYS            5 // uvec2 a slot
 #define BIND_SORTED          6
@@ -84,7 +85,11 @@
 #define TILE_USE_PAIRS   0 // of all tiles, modulo 2^32
 #define TILE_USE_LONGEST 1 // pairs of a tile
 #define TILE_USE_COARSE  2 // sum of each tile's pairs / 1024
-#define TILE_USE_WORDS   3
+#define TILE_USE_TILES   3 // with ribbons
+#define TILE_USE_GROUPS  4 // 3 words: work groups for these, as glDispatchComputeIndirect reads them
+#define TILE_USE_WORDS   7
+
+#define TILE_ROW 64 // work groups side by side; less than a row too many run
 
 // The A-buffer's pool is split into shards, each with a counter of its own: pixels of different
 // 8x8 blocks then rarely wait for each other's atomics. A small picture full of hair would fill few

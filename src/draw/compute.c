@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "draw/compute.h"
 
+#include "gpu/gpu_dispatch.h"
 #include "gpu/shader.h"
 
 #include "glsl/draw/draw.h"
@@ -14,18 +15,21 @@ enum { MOST_SLOTS = 1 << 24 };
 static Result build(Compute *compute, int over_base, Error *error)
 {
     const GpuSizes *sizes = &compute->bins.limits->sizes;
-    const ShaderDefine defines[] = {{"GROUP_SIZE", TILE_SIDE * TILE_SIDE / sizes->pixels},
-                                    {"PIXELS", sizes->pixels},
-                                    {"STAGED", sizes->stages},
-                                    {"BASE", over_base},
-                                    {"NEAREST", compute->nearest},
-                                    {"DEPTH", compute->style.shows_depth},
-                                    {"SAMPLES", compute->style.samples},
-                                    {"KIND", (int)compute->kind},
-                                    {"TONE", compute->style.tone},
-                                    {NULL, 0}};
-    return shader_build_compute(&compute->composite[over_base], "draw/compute_composite.comp",
-                                defines, error);
+    ShaderDefine defines[] = {{"GROUP_SIZE", TILE_SIDE * TILE_SIDE / sizes->pixels},
+                              {"PIXELS", sizes->pixels},
+                              {"STAGED", sizes->stages},
+                              {"BASE", over_base},
+                              {"NEAREST", compute->nearest},
+                              {"DEPTH", compute->style.shows_depth},
+                              {"SAMPLES", compute->style.samples},
+                              {"KIND", (int)compute->kind},
+                              {"TONE", compute->style.tone},
+                              {NULL, 0}};
+    TRY(shader_build_compute(&compute->composite[over_base], "draw/compute_composite.comp", defines,
+                             error));
+    defines[0].value = sizes->items;
+    return shader_build_compute(&compute->behind[over_base], "draw/compute_behind.comp", defines,
+                                error);
 }
 
 size_t compute_most_slots(const Gpu *gpu)
@@ -61,8 +65,10 @@ Result compute_create(Compute *compute, const Gpu *gpu, const RendererOptions *o
 
 void compute_destroy(Compute *compute)
 {
-    for (int i = 0; i < 2; ++i)
+    for (int i = 0; i < 2; ++i) {
         if (compute->composite[i]) glDeleteProgram(compute->composite[i]);
+        if (compute->behind[i]) glDeleteProgram(compute->behind[i]);
+    }
     compute_bins_destroy(&compute->bins);
     *compute = (Compute){0};
 }
@@ -78,23 +84,34 @@ static void bind_texture(GLuint unit, GLuint texture)
     glBindTexture(GL_TEXTURE_2D, texture);
 }
 
+static void use_program(GLuint program, const Compute *compute, const BlocksBase *base)
+{
+    const int *box = base->box;
+    glUseProgram(program);
+    glUniform1i(0, compute->bins.columns);
+    if (base->cull.target) glUniform4i(2, box[0], box[1], box[2] + 1, box[3] + 1);
+}
+
 static void composite(const Compute *compute, const RenderTarget *target, const BlocksBase *base,
                       int first, int end)
 {
     static const GLenum formats[] = {GL_RGBA8, GL_RGBA16, GL_RGBA32F};
     bool over_base = base->cull.target != NULL;
-    glUseProgram(compute->composite[over_base]);
-    glUniform3i(0, compute->bins.columns, first, end);
-    glUniform1ui(1, (GLuint)compute->bins.room);
+    int side = TILE_SIDE / target->samples, top = first * side,
+        bottom = end * side < target->height ? end * side : target->height;
     if (over_base) {
-        const int *box = base->box;
         bind_texture(BIND_BASE, target->base);
         bind_texture(BIND_MESH_DEPTH, target->depth);
-        glUniform4i(2, box[0], box[1], box[2] + 1, box[3] + 1);
     }
     glBindImageTexture(IMAGE_PICTURE, target->image, 0, GL_FALSE, 0, GL_WRITE_ONLY,
                        formats[target->kind]);
-    glDispatchCompute((GLuint)compute->bins.columns, (GLuint)(end - first), 1);
+    use_program(compute->behind[over_base], compute, base);
+    glUniform3i(1, target->width, top, bottom);
+    gpu_dispatch(compute->bins.limits, (uint64_t)target->width * (uint64_t)(bottom - top),
+                 (uint64_t)compute->bins.limits->sizes.items, 1);
+    use_program(compute->composite[over_base], compute, base);
+    glUniform1ui(1, (GLuint)compute->bins.room);
+    compute_bins_dispatch(&compute->bins);
     glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
                     GL_BUFFER_UPDATE_BARRIER_BIT);
 }
@@ -107,7 +124,7 @@ static void draw_band(Compute *compute, const Blocks *blocks, const RenderTarget
                       first, end);
     gpu_timer_end(timer);
     gpu_timer_begin(timer, "draw_sort");
-    compute_bins_sort(&compute->bins, first, end);
+    compute_bins_sort(&compute->bins);
     gpu_timer_end(timer);
     gpu_timer_begin(timer, "draw_composite");
     composite(compute, target, &blocks->base, first, end);

@@ -12,7 +12,8 @@
 // A zeroed struct has nothing.
 typedef struct Compute {
     ComputeBins bins;
-    GLuint composite[2]; // programs: over the background alone, over mesh or floor
+    // Programs: over the background alone, over mesh or floor. Tiles with ribbons; without.
+    GLuint composite[2], behind[2];
     PixelStyle style;
     bool nearest;
     ImageKind kind;

@@ -52,6 +52,7 @@ Result compute_bins_create(ComputeBins *bins, const GpuLimits *limits, int width
     int64_t tiles = (int64_t)bins->columns * bins->rows * 4;
     Result result = build(bins, error);
     THEN(result, gpu_buffer_create(&bins->counts, limits, "tiles", tiles, NULL, 0, error));
+    THEN(result, gpu_buffer_create(&bins->tiles, limits, "tiles in use", tiles, NULL, 0, error));
     THEN(result, gpu_buffer_create(&bins->ends, limits, "tiles' lists", tiles, NULL, 0, error));
     THEN(result,
          gpu_buffer_create(&bins->use, limits, "use of tiles", TILE_USE_WORDS * 4, NULL, 0, error));
@@ -63,8 +64,8 @@ Result compute_bins_create(ComputeBins *bins, const GpuLimits *limits, int width
 void compute_bins_destroy(ComputeBins *bins)
 {
     const GLuint programs[] = {bins->count, bins->place, bins->fill, bins->sort};
-    GpuBuffer *const buffers[] = {&bins->counts, &bins->ends, &bins->use, &bins->pairs,
-                                  &bins->sorted};
+    GpuBuffer *const buffers[] = {&bins->counts, &bins->ends,  &bins->tiles,
+                                  &bins->use,    &bins->pairs, &bins->sorted};
     for (size_t i = 0; i < sizeof programs / sizeof *programs; ++i)
         if (programs[i]) glDeleteProgram(programs[i]);
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; ++i) gpu_buffer_destroy(buffers[i]);
@@ -99,6 +100,7 @@ void compute_bins_fill(ComputeBins *bins, const GpuBuffer *ribbons, const GpuBuf
     gpu_buffer_bind_storage(&bins->ends, BIND_TILE_ENDS_OUT);
     gpu_buffer_bind_storage(&bins->use, BIND_TILE_USE_OUT);
     gpu_buffer_bind_storage(&bins->pairs, BIND_PAIRS_OUT);
+    gpu_buffer_bind_storage(&bins->tiles, BIND_TILES_OUT);
     gpu_buffer_bind_texture(ribbons, BIND_RIBBONS);
     gpu_buffer_bind_texture(keys, BIND_KEYS);
     gpu_buffer_bind_texture(&bins->sorted, BIND_SORTED);
@@ -108,16 +110,21 @@ void compute_bins_fill(ComputeBins *bins, const GpuBuffer *ribbons, const GpuBuf
     list(bins, bins->fill, slots, first, end);
 }
 
-void compute_bins_sort(const ComputeBins *bins, int first, int end)
+void compute_bins_dispatch(const ComputeBins *bins)
+{
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, bins->use.buffer);
+    glDispatchComputeIndirect((GLintptr)TILE_USE_GROUPS * 4);
+}
+
+void compute_bins_sort(const ComputeBins *bins)
 {
     glUseProgram(bins->sort);
-    glUniform3i(0, bins->columns, first, end);
-    glUniform1ui(1, (GLuint)bins->room);
+    glUniform1ui(0, (GLuint)bins->room);
     glBindImageTexture(IMAGE_PAIRS, bins->pairs.texture, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RG32UI);
     glBindImageTexture(IMAGE_SORTED, bins->sorted.texture, 0, GL_FALSE, 0, GL_READ_WRITE,
                        GL_RG32UI);
-    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    glDispatchCompute((GLuint)bins->columns, (GLuint)(end - first), 1);
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+    compute_bins_dispatch(bins);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 

@@ -13,7 +13,8 @@ typedef struct ComputeBins {
     const GpuLimits *limits;
     GLuint count, place, fill, sort; // programs
     int columns, rows;               // tiles
-    GpuBuffer counts, ends, use;     // uint a tile; see draw.h
+    GpuBuffer counts, ends, tiles;   // uint a tile
+    GpuBuffer use;                   // see draw.h
     GpuBuffer pairs, sorted;         // uvec2, [room]
     int64_t room, most_room;         // pairs
 } ComputeBins;
@@ -36,8 +37,12 @@ void compute_bins_destroy(ComputeBins *bins);
 void compute_bins_fill(ComputeBins *bins, const GpuBuffer *ribbons, const GpuBuffer *keys,
                        int64_t slots, int first, int end);
 
-// Sorts the lists of the same rows. Only queues work.
-void compute_bins_sort(const ComputeBins *bins, int first, int end);
+// Sorts the lists. Only queues work.
+void compute_bins_sort(const ComputeBins *bins);
+
+// Runs the current program on every tile with ribbons, a work group each (TILES_OUT); less than
+// TILE_ROW groups more.
+void compute_bins_dispatch(const ComputeBins *bins);
 
 // What the last band used. Waits for it.
 Result compute_bins_measure(const ComputeBins *bins, ComputeUse *use, Error *error);

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// The pixels of tiles without ribbons, a pixel of the picture a lane: what stands behind alone.
+//   DEPTH 1: no ribbon's distance
+//   BASE, SAMPLES, KIND, TONE: see compute_pixels.glsl
+#include "draw/draw.h"
+#include "draw/compute_pixels.glsl"
+
+layout(local_size_x = GROUP_SIZE) in;
+#include "common/lane.glsl"
+layout(location = 0) uniform int columns; // of tiles
+layout(
+    location = 1) uniform ivec3 rows; // px of the picture: its width; the band's first row, the end
+layout(std430, binding = BIND_TILE_COUNTS_OUT) readonly buffer Counts { uint counts[]; };
+
+void main()
+{
+    int pixel = lane_index();
+    ivec2 p = ivec2(pixel % rows.x, rows.y + pixel / rows.x), tile = p * SAMPLES / TILE_SIDE;
+    if (p.y >= rows.z || counts[tile.y * columns + tile.x] != 0u) return;
+    vec4 sum = vec4(0.0);
+    for (int k = 0; k < SAMPLES * SAMPLES; ++k)
+        sum += light_behind(p * SAMPLES + ivec2(k % SAMPLES, k / SAMPLES));
+#if DEPTH
+    sum = vec4(0.0, 0.0, 0.0, 1.0);
+#endif
+    store(p, sum * (1.0 / float(SAMPLES * SAMPLES)));
+}

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// What stands behind the hair, and how light becomes the picture's colours, as in
+// src/draw/block_pixels.c (needs draw.h).
+//   BASE 1: mesh or floor stand behind
+//   SAMPLES: what is a pixel here is one of SAMPLES x SAMPLES that the picture has the mean of
+//   KIND 0: 8 bits a channel are stored   1: 16   2: floats
+//   TONE: see display.glsl
+#include "draw/display.glsl"
+
+layout(location = 2) uniform ivec4 base_box; // px: first column and row, end column and row
+#if BASE
+layout(binding = BIND_BASE) uniform sampler2D base;
+layout(binding = BIND_MESH_DEPTH) uniform sampler2D mesh_depth;
+#endif
+#if KIND == 0
+layout(binding = IMAGE_PICTURE, rgba8) writeonly uniform image2D picture;
+const float LEVELS = 255.0;
+#elif KIND == 1
+layout(binding = IMAGE_PICTURE, rgba16) writeonly uniform image2D picture;
+const float LEVELS = 65535.0;
+#else
+layout(binding = IMAGE_PICTURE, rgba32f) writeonly uniform image2D picture;
+#endif
+
+bool is_in_base(ivec2 p)
+{
+    return all(greaterThanEqual(p, base_box.xy)) && all(lessThan(p, base_box.zw));
+}
+
+vec4 light_behind(ivec2 p)
+{
+    vec4 light = draw_params.background;
+#if BASE
+    if (is_in_base(p)) light = texelFetch(base, p, 0);
+#endif
+    return light;
+}
+
+// Levels are found here: drivers may round in another way.
+void store(ivec2 p, vec4 light)
+{
+#if KIND < 2
+    light.rgb = display_from_linear(light.rgb * (1.0 / max(light.a, 1e-6)));
+    light = floor(clamp(light, 0.0, 1.0) * LEVELS + 0.5) * (1.0 / LEVELS);
+#endif
+    imageStore(picture, p, light);
+}
