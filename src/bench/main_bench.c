@@ -198,6 +198,7 @@ static Result try_looks(Renderer *renderer, Error *error)
                                       LOOK_SHADOW_DOM | LOOK_SHADOW_FOUND,
                                       LOOK_SHADOW_DOM | LOOK_SHADOW_FOUND | LOOK_SHADOW_BY_MESH,
                                       LOOK_SHADOW_APPROX | LOOK_SHADOW_BY_MESH,
+                                      LOOK_SHADOW_DOM | LOOK_SHADOW_BY_MESH | LOOK_MESH_TEXELS,
                                       LOOK_SHADOW_DOM | LOOK_SHADOW_BY_MESH | LOOK_LIGHTS,
                                       LOOK_WHITE,
                                       LOOK_WHITE | LOOK_PAINT,

@@ -123,6 +123,7 @@ Result look_programs_build(LookPrograms *programs, unsigned features, Error *err
                                     {"SCATTERED", (features & LOOK_SCATTERED) != 0},
                                     {"TINTS", (features & LOOK_TINTS) != 0},
                                     {"DUAL", (features & LOOK_DUAL) != 0},
+                                    {"MESH_TEXELS", (features & LOOK_MESH_TEXELS) != 0},
                                     {"SHADOW_BY_MESH", (features & LOOK_SHADOW_BY_MESH) != 0},
                                     {NULL, 0}};
     GLuint *program = &programs->program[features];

@@ -24,13 +24,14 @@ typedef enum LookFeature {
     LOOK_SCATTERED = 512,    // the look has the light among its hair
     LOOK_DUAL = 1024,        // of marschner, --scatter dual
     LOOK_TINTS = 2048,       // of marschner: the look has a table of its own
+    LOOK_MESH_TEXELS = 4096, // of shadows by the mesh: its maps are in a buffer
     // Instead of shading (with LOOK_PAINT alone): white, the tangent, the strand's own colour.
-    LOOK_WHITE = 4096,
-    LOOK_TANGENT = 8192,
-    LOOK_STRAND = 12288,
+    LOOK_WHITE = 8192,
+    LOOK_TANGENT = 16384,
+    LOOK_STRAND = 24576,
 } LookFeature;
 
-enum { LOOK_SHADED = 4096, LOOK_VARIANTS = 4 * LOOK_SHADED };
+enum { LOOK_SHADED = 8192, LOOK_VARIANTS = 4 * LOOK_SHADED };
 
 // What hair leaves of light at the points of a batch (look_points), laid out as its particles are.
 typedef struct ParticleLight {

@@ -98,6 +98,7 @@ Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
     if (options->shadow.kind != SHADOW_NONE)
         THEN(result, shadows_create(&renderer->shadow, &gpu->limits, &shadow,
                                     gpu->kind == GPU_CPU_DRIVER || scatters, error));
+    renderer->shadow.with_texels = gpu->kind == GPU_CPU_DRIVER;
     const HairScatterOptions scatter = {options->scatter,
                                         options->scatter_cells ? options->scatter_cells : 32,
                                         options->scatter_orders ? options->scatter_orders : 16};
@@ -228,6 +229,8 @@ static Result draw_shadow(Renderer *renderer, const RenderFrame *frame, Error *e
     for (uint32_t i = 0; i < drawing->item_count; ++i) {
         Look *look = &drawing->looks[i];
         look->map_count = renderer->shadow.params.maps;
+        if (renderer->shadow.mesh.texels.buffer && look->features & LOOK_SHADOW_BY_MESH)
+            look->features |= LOOK_MESH_TEXELS;
         if (hair_shadow_lights(&renderer->shadow.hair, &look->lights, &look->batches))
             look->features |= LOOK_SHADOW_FOUND;
     }

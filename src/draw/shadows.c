@@ -28,6 +28,7 @@ static void destroy_mesh(MeshShadow *shadow)
     if (shadow->program) glDeleteProgram(shadow->program);
     if (shadow->depth) glDeleteTextures(1, &shadow->depth);
     if (shadow->frame) glDeleteFramebuffers(1, &shadow->frame);
+    gpu_buffer_destroy(&shadow->texels);
     *shadow = (MeshShadow){0};
 }
 
@@ -48,6 +49,10 @@ Result shadows_reserve_mesh(Shadows *shadows, int maps, Error *error)
     Result result = shader_build_draw(&shadow->program, "draw/shadow_mesh.vert", "draw/depth.frag",
                                       NULL, error);
     THEN(result, gpu_check("the mesh's shadow map", error));
+    if (shadows->with_texels)
+        THEN(result, gpu_buffer_create(&shadow->texels, shadows->hair.limits, "the mesh's shadows",
+                                       (int64_t)sizeof(float) * MESH_SIDE * MESH_SIDE * maps, NULL,
+                                       GL_R32F, error));
     shadow->maps = maps;
     if (result != RESULT_OK) destroy_mesh(shadow);
     return result;
@@ -107,6 +112,15 @@ static void draw_mesh(const MeshShadow *shadow, const RenderMesh *mesh, int map)
     glBindVertexArray(mesh->vertex_array);
     glDrawElements(GL_TRIANGLES, (GLsizei)(3 * mesh->triangle_count), GL_UNSIGNED_INT, NULL);
     glDisable(GL_DEPTH_TEST);
+}
+
+static void copy_texels(const MeshShadow *shadow, int maps)
+{
+    if (!shadow->texels.buffer) return;
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, shadow->frame);
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, shadow->texels.buffer);
+    glReadPixels(0, 0, MESH_SIDE, MESH_SIDE * maps, GL_DEPTH_COMPONENT, GL_FLOAT, NULL);
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
 }
 
 // --- All maps.
@@ -266,6 +280,7 @@ static Result draw_maps(Shadows *shadow, const ShadowScene *scene, Error *error)
     for (uint32_t i = 0; i < scene->light_count; ++i)
         if (casts(&scene->lights[i])) draw_map(shadow, scene, (int)i);
     hair_shadow_end(&shadow->hair);
+    if (has_mesh(scene) && params->maps) copy_texels(&shadow->mesh, params->maps);
     shadow->maps_drawn = (uint32_t)params->maps;
     ++shadow->version;
     return RESULT_OK;
@@ -293,6 +308,9 @@ void shadows_bind(Shadows *shadow)
 {
     gpu_uniforms_set(BIND_SHADOW, &shadow->params, sizeof shadow->params);
     hair_shadow_bind(&shadow->hair);
+    // First, since a buffer that is made later comes to the unit that is active then.
+    if (shadow->mesh.texels.buffer)
+        gpu_buffer_bind_texture(&shadow->mesh.texels, BIND_SHADOW_TEXELS);
     glActiveTexture(GL_TEXTURE0 + BIND_SHADOW_MESH);
     glBindTexture(GL_TEXTURE_2D, shadow->mesh.depth);
 }

@@ -13,6 +13,7 @@
 typedef struct MeshShadow {
     GLuint program;
     GLuint depth, frame; // a square for each map, one below the other
+    GpuBuffer texels;    // with_texels: the same, floats, row by row
     int maps;            // there is room for
 } MeshShadow;
 
@@ -42,6 +43,7 @@ typedef struct ShadowScene {
 
 typedef struct Shadows {
     ShadowOptions options;
+    bool with_texels; // the mesh's maps are copied to a buffer
     HairShadow hair;
     MeshShadow mesh;
     ShadowParams params;
@@ -67,5 +69,6 @@ Result shadows_reserve_mesh(Shadows *shadow, int maps, Error *error);
 // short.
 Result shadows_draw(Shadows *shadow, const ShadowScene *scene, GpuTimer *timer, Error *error);
 
-// Binds what glsl/draw/shadow.glsl reads.
+// Binds what glsl/draw/shadow.glsl reads; the mesh's maps as a texture and, if there is one, as a
+// buffer.
 void shadows_bind(Shadows *shadow);
