@@ -90,6 +90,7 @@ static void assume(Gpu *gpu, const Assumptions *assumptions)
         size_t used = strlen(gpu->renderer);
         snprintf(gpu->renderer + used, sizeof gpu->renderer - used, " assumed to be hardware");
     }
+    gpu->ulps = assumptions->ulps;
     limits->sizes = GPU_SIZES[gpu->kind];
     if (assumptions->groups && assumptions->groups < limits->work_groups)
         limits->work_groups = assumptions->groups;

@@ -40,6 +40,7 @@ typedef struct GpuLimits {
 typedef struct Gpu {
     GpuLimits limits;
     bool software;       // a CPU driver, judged by GL_RENDERER
+    int ulps;            // by which its maths is made wrong; 0: as it is
     GpuKind kind;        // what decisions go by: of `software`, unless hardware is assumed
     char renderer[256];  // GL_RENDERER
     char version[256];   // GL_VERSION

@@ -122,7 +122,7 @@ static void run_against_reference(const SplitCase *trial)
                 fmax(worst, find_distance(&fixture, twin, COUNT, (const Vec *)start, trial->style));
     }
     double limit = 3 * trial->measured;
-    if (!fixture_gpu()->software) limit = fmax(limit, step_tolerance(n, 1, forces.dt));
+    if (fixture_rounding() > 1) limit = fmax(limit, step_tolerance(n, 1, forces.dt));
     printf("split %s, n = %d, style %g, %g steps a second: RMS %.2g of the length from the "
            "double-precision twin after %d steps\n",
            variant, n, trial->style, trial->rate, worst, steps);
@@ -291,7 +291,8 @@ static void check_opposites(double style)
         Vec q[2];
         twin_read_strand(&fixture, s, q);
         double length = vec_norm(q[1]) / 0.8, cosine = (0.6 * q[1][0] + 0.8 * q[1][1]) / 0.8;
-        if (!(fabs(length - 1) < 4e-7)) fail_msg("strand %d is %.8g times as long", s, length);
+        if (!(fabs(length - 1) < 4e-7 * fixture_rounding()))
+            fail_msg("strand %d is %.8g times as long", s, length);
         if (!(fabs(cosine - cos(M_PI * (1 - style))) < 0.1))
             fail_msg("strand %d: a cosine of %g with the style", s, cosine);
     }

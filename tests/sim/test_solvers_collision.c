@@ -238,7 +238,8 @@ static void check_turn(const SolverType *type, const char *variant)
         memcpy(a[j], r, sizeof r);
     }
     double off = twin_rms((const Vec *)a, (const Vec *)b, DRAPED_N, 0.24);
-    every_solver_require(off < 1e-3, type, variant, "a turned scene moves otherwise, by %.2g", off);
+    every_solver_require(off < 1e-3 * fixture_rounding(), type, variant,
+                         "a turned scene moves otherwise, by %.2g", off);
     fixture_destroy(&plain);
     fixture_destroy(&other);
 }

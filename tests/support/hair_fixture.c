@@ -18,6 +18,12 @@ const Gpu *fixture_gpu(void)
     return &gpu;
 }
 
+double fixture_rounding(void)
+{
+    const Gpu *gpu = fixture_gpu();
+    return gpu->software && gpu->ulps == 0 ? 1 : 5;
+}
+
 void fixture_assert_offset(GLuint program, const char *name, size_t expected)
 {
     const GLenum property = GL_OFFSET;

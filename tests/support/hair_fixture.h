@@ -18,6 +18,11 @@ typedef struct HairFixture {
 // The context of a test program, made at the first call; the test fails if there is none.
 const Gpu *fixture_gpu(void);
 
+// What the driver's rounding adds up to, against a CPU driver's. A CPU's operations round to half a
+// unit in the last place; GLSL allows 2.5 for divisions and 2 for inverse square roots (GLSL 4.30,
+// 4.7.1): 1 for a CPU driver, 5 for a GPU and for maths that is made wrong (gpu/assume.h).
+double fixture_rounding(void);
+
 // That the member `name` ("Block.member", arrays with "[0]") of a program's uniform block lies
 // where C has it.
 void fixture_assert_offset(GLuint program, const char *name, size_t expected);

@@ -231,14 +231,6 @@ static double run_case(const TwinPair *pair, const TwinCase *trial, bool uneven)
     return worst;
 }
 
-// A CPU's operations round to half a unit in the last place; GLSL allows 2.5 for divisions and 2
-// for inverse square roots (GLSL 4.30, 4.7.1), so that a GPU's rounding adds up to at most 5 times
-// as much.
-static double driver_factor(void)
-{
-    return fixture_gpu()->software ? 1 : 5;
-}
-
 static void require(const TwinPair *pair, const TwinCase *cases, int count, bool uneven)
 {
     for (int i = 0; i < count; ++i) {
@@ -248,7 +240,7 @@ static void require(const TwinPair *pair, const TwinCase *cases, int count, bool
                "twin after %d steps%s\n",
                pair->algo, pair->variant, trial->n, trial->per_second, off, trial->steps,
                uneven ? ", uneven" : "");
-        double limit = driver_factor() * trial->tolerance;
+        double limit = fixture_rounding() * trial->tolerance;
         if (!(off < limit)) fail_msg("case %d: %.3g exceeds %.3g", i, off, limit);
     }
 }
