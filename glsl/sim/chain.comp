@@ -92,7 +92,7 @@ float carried_tension(Strand strand, int j)
 float limit_carried(Strand strand, int j, float carried)
 {
     float move = strand.dt * length(strand.push) * (1.0 - strand.spring.pull) +
-                 2.0 * strand.length * strand.spring.pull;
+                 2.0 * strand.total_length * strand.spring.pull;
     float most = 2.0 * float(LAST + 1 - j) * move / fetch_rest(strand, max(j, 1)).w;
     return clamp(carried, -most, most);
 }

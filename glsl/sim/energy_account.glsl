@@ -113,7 +113,7 @@ void account_close(Account account, Strand strand, int last)
           linear = per_square * account.linear + (account.stored - account.stored_before);
     float constant = account.gained + per_square * account.constant;
     float fall =
-        ALLOWED * 0.5 * float(last) * strand.length * length(strand.push) / step_params.gain;
+        ALLOWED * 0.5 * float(last) * strand.total_length * length(strand.push) / step_params.gain;
     float gained = kinetic + linear + constant,
           over = max(gained, 0.0) - (fall + ALLOWED * kinetic), share = 1.0, kept = 1.0;
     bool guards = over > 0.0 && kinetic > 0.0 && over < 1e30;

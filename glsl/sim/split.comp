@@ -31,7 +31,7 @@ const float MOVE_LIMIT = 100.0;
 
 struct Strand {
     int number, address;     // address: of its root
-    float length;            // R, m
+    float total_length;      // R, m
     vec3 root_old, root;     // at the step's start and end
     vec3 push;               // what forces add to a velocity in this step, m/s
     vec3 position, velocity; // of the tip
@@ -45,7 +45,7 @@ Strand open_strand(int number)
     strand.number = number;
     strand.address = particle_address(number, LEAD, LINKS + 1 + LEAD);
     vec4 root = strand_root(strand.address), tip = tips[2 * number], v = tips[2 * number + 1];
-    strand.length = root.w;
+    strand.total_length = root.w;
     strand.root_old =
         rotate(step_params.head_rotation_old, root.xyz) + step_params.head_translation_old.xyz;
     strand.root = rotate(step_params.head_rotation, root.xyz) + step_params.head_translation.xyz;
@@ -54,7 +54,7 @@ Strand open_strand(int number)
     strand.position = tip.xyz;
     strand.velocity = kick(v.xyz, wind);
     strand.limited = tip.w;
-    float most = MOVE_LIMIT * strand.length / step_params.dt;
+    float most = MOVE_LIMIT * strand.total_length / step_params.dt;
     float fastest =
         max(abs(strand.velocity.x), max(abs(strand.velocity.y), abs(strand.velocity.z)));
     if (fastest > most) {
@@ -76,7 +76,8 @@ Strand open_strand(int number)
 vec3 land(inout Strand strand, vec3 target, vec3 s)
 {
     vec3 r = strand.position - strand.root_old;
-    float R = strand.length, ss = dot(s, s), rr = dot(r, r), sr = dot(s, r), excess = ss - R * R;
+    float R = strand.total_length, ss = dot(s, s), rr = dot(r, r), sr = dot(s, r),
+          excess = ss - R * R;
     if (excess > 0.0) {
         float disc = sr * sr - rr * excess;
         bool taut = rr > 0.99 * R * R && sr > 0.0 && disc > 0.1 * sr * sr;
@@ -100,7 +101,7 @@ vec3 fly(inout Strand strand)
 {
     vec3 target = strand.position + strand.velocity * step_params.dt, s = target - strand.root;
     vec3 r = strand.position - strand.root_old, k = strand.push * step_params.dt, m = s - 0.5 * k;
-    float R = strand.length, rr = dot(r, r);
+    float R = strand.total_length, rr = dot(r, r);
     k -= r * (dot(k, r) / rr), m -= r * (dot(m, r) / rr);
     float bent = dot(m, m) / (R * R);
     if (dot(s, s) > R * R && rr > 0.99 * R * R && dot(s, r) > 0.0 && bent < 1.0) {

@@ -9,8 +9,8 @@ const float SAFE_MOVE = 1e15; // metres: keeps squares finite whatever the head 
 struct Strand {
     int address; // of the root
     vec3 root, root_old, root_velocity;
-    float length; // of the strand
-    vec3 push;    // what forces add to a velocity
+    float total_length; // of the strand
+    vec3 push;          // what forces add to a velocity
 #if VARIES
     vec3 wind;
 #endif
@@ -27,7 +27,7 @@ Strand strand_open(int number, StyleSpring spring)
     strand.root = root_position(root_rest);
     strand.root_old = position_before(strand.address).xyz;
     strand.root_velocity = (strand.root - strand.root_old) / step_params.dt;
-    strand.length = root_rest.w;
+    strand.total_length = root_rest.w;
     vec3 wind = strand_wind(texelFetch(strand_id, number).x, strand.root);
 #if VARIES
     strand.wind = wind;
