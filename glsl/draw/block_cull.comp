@@ -42,7 +42,9 @@ vec2 size = vec2(draw_params.width, draw_params.height);
 float focal = draw_params.focal, near_distance = draw_params.near_distance;
 vec2 pad = 1.0 + 2.0 * MITRE * PIXEL / size;
 // A metre of radius.
-vec2 wide = 2.0 * MITRE * focal * sqrt(1.0 + dot(size, size) / (focal * focal)) / size;
+vec2 reach =
+    2.0 * max(draw_params.axis.xy, size - draw_params.axis.xy); // off the eye's axis, twice
+vec2 wide = 2.0 * MITRE * focal * sqrt(1.0 + dot(reach, reach) / (focal * focal)) / size;
 
 // What is known of a strand so far, in clip space.
 vec4 least = vec4(1e30); // distance beyond: left, top, right, bottom

@@ -126,6 +126,7 @@ UNIFORM_BLOCK(DrawParams, draw_params, BIND_DRAW)
     float width, height; // of the picture, px
     float focal;         // px: size on the screen of one metre at a distance of one
     float near_distance; // m
+    vec4 axis;           // xy: where the eye's axis meets the picture, px
     vec4 depth;          // clip z = x * w + y
     vec4 depth_range;    // --aov depth: x, y m that are shown as 1 and as 0; alike: m as they are
     uvec4 band;          // picture's width, first row, end row, pool's nodes in a shard

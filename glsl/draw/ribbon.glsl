@@ -68,7 +68,7 @@ float bend(Particle a, Particle p, Particle b)
 // lies across the ribbon.
 float outline_half_width(Particle p, vec2 normal)
 {
-    float q =
-        dot(normal, p.at.xy - 0.5 * size) * inversesqrt(max(dot(normal, normal), 1e-12)) / focal;
+    float q = dot(normal, p.at.xy - draw_params.axis.xy) *
+              inversesqrt(max(dot(normal, normal), 1e-12)) / focal;
     return p.at.w * sqrt(1.0 + q * q);
 }

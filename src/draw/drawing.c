@@ -29,6 +29,8 @@ void drawing_set_view(DrawParams *draw, const View *view, int width, int height)
     draw->height = (float)height;
     draw->band[0] = (uint32_t)width;
     draw->focal = 0.5f * draw->height * view->projection[1][1];
+    draw->axis[0] = draw->width / 2;
+    draw->axis[1] = draw->height / 2;
     draw->near_distance = view->near_distance;
     // Clip z = z22 z + z32 with the distance before the eye w = -z.
     draw->depth[0] = -view->projection[2][2];
@@ -196,6 +198,36 @@ static void add_floor_to_box(const Floor *floor, DrawParams *draw, int box[4])
     }
 }
 
+static void find_boxes(Drawing *drawing, const RendererOptions *options, const RenderMesh *mesh)
+{
+    find_mesh_box(mesh, &drawing->draw, drawing->mesh_box);
+    memcpy(drawing->base_box, drawing->mesh_box, sizeof drawing->base_box);
+    add_floor_to_box(&options->floor, &drawing->draw, drawing->base_box);
+}
+
+// The image's samples are those of the whole less the window's first: x' = x - first, and with
+// x = (X/W + 1)/2 size for both X' = X size/size' + W ((size - 2 first)/size' - 1).
+void drawing_set_window(Drawing *drawing, const RendererOptions *options, const RenderMesh *mesh,
+                        const int place[2], const int size[2])
+{
+    const float whole[2] = {drawing->whole.width, drawing->whole.height};
+    DrawParams *draw = &drawing->draw;
+    *draw = drawing->whole;
+    for (int k = 0; k < 2; ++k) {
+        double first = place[k] * options->samples, own = size[k] * options->samples,
+               scale = (double)whole[k] / own, shift = ((double)whole[k] - 2 * first) / own - 1;
+        for (int i = 0; i < 4; ++i)
+            draw->clip_from_world[i][k] =
+                (float)(scale * (double)drawing->whole.clip_from_world[i][k] +
+                        shift * (double)drawing->whole.clip_from_world[i][3]);
+        draw->axis[k] -= (float)first;
+    }
+    draw->width = (float)(size[0] * options->samples);
+    draw->height = (float)(size[1] * options->samples);
+    draw->band[0] = (uint)(size[0] * options->samples);
+    find_boxes(drawing, options, mesh);
+}
+
 // Whether the lights ask for more than directions and one ambient colour.
 static bool lights_are_simple(const RenderFrame *frame)
 {
@@ -328,9 +360,8 @@ Result drawing_begin(Drawing *drawing, const RendererOptions *options, const Ren
     drawing->items = items;
     drawing->item_count = item_count;
     fill_draw_params(options, mesh, frame, &drawing->draw);
-    find_mesh_box(mesh, &drawing->draw, drawing->mesh_box);
-    memcpy(drawing->base_box, drawing->mesh_box, sizeof drawing->base_box);
-    add_floor_to_box(&options->floor, &drawing->draw, drawing->base_box);
+    drawing->whole = drawing->draw;
+    find_boxes(drawing, options, mesh);
     TRY(make_room(drawing, error));
     for (uint32_t i = 0; i < item_count; ++i)
         TRY(make_look(drawing, options, &items[i], features, &drawing->looks[i], error));

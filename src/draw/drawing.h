@@ -14,7 +14,8 @@
 // A struct that has but the GPU is empty.
 typedef struct Drawing {
     const Gpu *gpu;
-    DrawParams draw; // with the values of the band that is being drawn
+    DrawParams whole; // of the image
+    DrawParams draw;  // with the values of the band that is being drawn
     const RenderItem *items;
     uint32_t item_count;
     Look *looks;      // [look_room], owned: of the items
@@ -40,6 +41,11 @@ void drawing_destroy(Drawing *drawing);
 
 // Gives `draw` to the shaders.
 void drawing_upload(Drawing *drawing);
+
+// From now on the drawing is of a window onto the image, from `place` on and of `size` px, which
+// may hang over: camera and boxes are its own. After drawing_begin.
+void drawing_set_window(Drawing *drawing, const RendererOptions *options, const RenderMesh *mesh,
+                        const int place[2], const int size[2]);
 
 // The middle of hair's style, carried by the head: m, world.
 void drawing_find_middle(const Drawing *drawing, const Hair *hair, vec3 middle);

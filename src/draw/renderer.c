@@ -24,12 +24,12 @@ static const RasterType RASTERS[4];
 
 static Result create_quads(Renderer *renderer, Error *error)
 {
-    return quads_create(&renderer->quads, renderer->gpu, &renderer->options, error);
+    return quads_create(&renderer->quads, renderer->gpu, &renderer->part, error);
 }
 
 static Result create_blocks(Renderer *renderer, Error *error)
 {
-    return blocks_create(&renderer->blocks, &renderer->gpu->limits, &renderer->options, error);
+    return blocks_create(&renderer->blocks, &renderer->gpu->limits, &renderer->part, error);
 }
 
 // Blocks project for it, and draw what it cannot.
@@ -37,7 +37,7 @@ static Result create_compute(Renderer *renderer, Error *error)
 {
     TRY(create_blocks(renderer, error));
     renderer->blocks.most_slots = compute_most_slots(renderer->gpu);
-    return compute_create(&renderer->compute, renderer->gpu, &renderer->options, error);
+    return compute_create(&renderer->compute, renderer->gpu, &renderer->part, error);
 }
 
 // The options as they are drawn by: with what an AOV asks for.
@@ -76,6 +76,19 @@ static Result make_base(Renderer *renderer, Error *error)
     return result == RESULT_OK && raster->add_base ? raster->add_base(renderer, error) : result;
 }
 
+static Result divide(Renderer *renderer, Error *error)
+{
+    const RendererOptions *options = &renderer->options;
+    renderer->tiles = tiles_divide(&renderer->gpu->limits, options->width, options->height,
+                                   options->samples, TILE_MOST_SAMPLES);
+    renderer->part = *options;
+    renderer->part.width = renderer->tiles.width;
+    renderer->part.height = renderer->tiles.height;
+    if (tiles_count(&renderer->tiles) == 1) return RESULT_OK;
+    return image_create_kind(&renderer->tile, renderer->part.width, renderer->part.height,
+                             renderer_channels(renderer), options->kind, error);
+}
+
 Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
                        const RendererOptions *asked, Error *error)
 {
@@ -86,8 +99,10 @@ Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
         return error_set(error, RESULT_USAGE, "--samples %d: expected 1, 2 or 4", options->samples);
     renderer->raster = choose_raster(gpu, options);
     renderer->base.shading = options->mesh_shading;
-    Result result = render_target_create(&renderer->target, &gpu->limits, options->width,
-                                         options->height, options->samples, options->kind, error);
+    Result result = divide(renderer, error);
+    THEN(result,
+         render_target_create(&renderer->target, &gpu->limits, renderer->part.width,
+                              renderer->part.height, options->samples, options->kind, error));
     THEN(result, RASTERS[renderer->raster].create(renderer, error));
     THEN(result, make_base(renderer, error));
     // The light among hair needs what C finds of shadows, whatever the driver.
@@ -119,6 +134,7 @@ void renderer_destroy(Renderer *renderer)
     mesh_destroy(&renderer->mesh);
     free(renderer->casters);
     drawing_destroy(&renderer->drawing);
+    image_destroy(&renderer->tile);
     *renderer = (Renderer){0};
 }
 
@@ -159,7 +175,7 @@ int renderer_channels(const Renderer *renderer)
 
 static void set_state(const Renderer *renderer, const float background[4])
 {
-    const RendererOptions *options = &renderer->options;
+    const RendererOptions *options = &renderer->part;
     glViewport(0, 0, options->width * options->samples, options->height * options->samples);
     glDisable(GL_BLEND);
     glDisable(GL_CULL_FACE);
@@ -369,12 +385,57 @@ static Result draw_base(Renderer *renderer, Error *error)
     return base_layer_draw(&renderer->base, &scene, &renderer->target, renderer->timer, error);
 }
 
+static Result draw_window(Renderer *renderer, Image *image, Error *error)
+{
+    drawing_upload(&renderer->drawing);
+    set_state(renderer, renderer->drawing.draw.background);
+    TRY(draw_base(renderer, error));
+    return RASTERS[renderer->raster].draw(renderer, image, error);
+}
+
+static void add_counts(RendererCounts *sum, const RendererCounts *counts)
+{
+    sum->segments += counts->segments;
+    sum->culled += counts->culled;
+    sum->hidden += counts->hidden;
+    sum->fragments += counts->fragments;
+    sum->redraws += counts->redraws;
+    sum->bands += counts->bands;
+    if (counts->pool_bytes > sum->pool_bytes) sum->pool_bytes = counts->pool_bytes;
+}
+
+// What is late elsewhere is not here: the next tile has the same target.
+static Result finish_tile(Renderer *renderer, int sent, Error *error)
+{
+    const RasterType *raster = &RASTERS[renderer->raster];
+    if (raster->settle) TRY(raster->settle(renderer, error));
+    return raster->take ? raster->take(renderer, sent, &renderer->tile, error) : RESULT_OK;
+}
+
+static Result draw_tiles(Renderer *renderer, Image *image, Error *error)
+{
+    const Tiles *tiles = &renderer->tiles;
+    RendererCounts sum = {0};
+    for (int i = 0; i < tiles_count(tiles); ++i) {
+        int place[2], size[] = {tiles->width, tiles->height}, sent = renderer->target.next;
+        tiles_place(tiles, i, place);
+        drawing_set_window(&renderer->drawing, &renderer->options, &renderer->base.mesh, place,
+                           size);
+        renderer->counts = (RendererCounts){0};
+        TRY(draw_window(renderer, &renderer->tile, error));
+        TRY(finish_tile(renderer, sent, error));
+        tiles_copy(tiles, i, &renderer->tile, image);
+        add_counts(&sum, &renderer->counts);
+    }
+    renderer->counts = sum;
+    return RESULT_OK;
+}
+
 Result renderer_begin(Renderer *renderer, const RenderFrame *frame, const RenderItem *items,
                       uint32_t item_count, Image *image, Error *error)
 {
     assert(image->width == renderer->options.width && image->height == renderer->options.height);
     assert(image->channels == renderer_channels(renderer));
-    const DrawParams *draw = &renderer->drawing.draw;
     TRY(drawing_begin(&renderer->drawing, &renderer->options, &renderer->base.mesh, frame, items,
                       item_count, error));
     renderer->counts = (RendererCounts){0};
@@ -382,9 +443,10 @@ Result renderer_begin(Renderer *renderer, const RenderFrame *frame, const Render
     activity_set("shadows");
     TRY(draw_shadow(renderer, frame, error));
     activity_set("drawing");
-    set_state(renderer, draw->background);
-    TRY(draw_base(renderer, error));
-    TRY(RASTERS[renderer->raster].draw(renderer, image, error));
+    if (tiles_count(&renderer->tiles) == 1)
+        TRY(draw_window(renderer, image, error));
+    else
+        TRY(draw_tiles(renderer, image, error));
     renderer->counts.thinned = drawing_count_thinned(&renderer->drawing);
     renderer->counts.shadow_maps = renderer->shadow.maps_drawn;
     return gpu_check("drawing", error);
@@ -392,7 +454,7 @@ Result renderer_begin(Renderer *renderer, const RenderFrame *frame, const Render
 
 bool renderer_is_late(const Renderer *renderer)
 {
-    return RASTERS[renderer->raster].take != NULL;
+    return RASTERS[renderer->raster].take && tiles_count(&renderer->tiles) == 1;
 }
 
 int renderer_place(const Renderer *renderer)
@@ -403,13 +465,14 @@ int renderer_place(const Renderer *renderer)
 Result renderer_settle(Renderer *renderer, Error *error)
 {
     const RasterType *raster = &RASTERS[renderer->raster];
-    return raster->settle ? raster->settle(renderer, error) : RESULT_OK;
+    bool late = renderer_is_late(renderer) && raster->settle;
+    return late ? raster->settle(renderer, error) : RESULT_OK;
 }
 
 Result renderer_take(Renderer *renderer, int place, Image *image, Error *error)
 {
     const RasterType *raster = &RASTERS[renderer->raster];
-    if (!raster->take) return RESULT_OK;
+    if (!renderer_is_late(renderer)) return RESULT_OK;
     TRY(raster->take(renderer, place, image, error));
     return gpu_check("reading the image", error);
 }

@@ -13,9 +13,13 @@
 #include "draw/hair_scatter.h"
 #include "draw/quads.h"
 #include "draw/renderer_options.h"
+#include "draw/tiles.h"
 
 typedef struct Renderer {
     RendererOptions options;
+    Tiles tiles;          // of the image; one: it is drawn at once
+    RendererOptions part; // the options with the size of a tile
+    Image tile;           // owned; no pixels: there is one only
     const Gpu *gpu;
     GpuTimer *timer;
     RenderTarget target;
@@ -36,8 +40,8 @@ typedef struct Renderer {
 // Makes targets and shaders. `gpu` and `timer` outlive the renderer; spans "draw_mesh",
 // "draw_project", and of quads "draw_hair", "draw_resolve" and "draw_read" (of the image), of
 // blocks "draw_read" (of mesh and floor), "draw_bin" and "draw_composite", of compute "draw_bin",
-// "draw_sort", "draw_composite" and "draw_read" (of the image). RESULT_FAILED if the
-// size exceeds the driver's or memory is short.
+// "draw_sort", "draw_composite" and "draw_read" (of the image). RESULT_FAILED if
+// memory is short.
 Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
                        const RendererOptions *options, Error *error);
 void renderer_destroy(Renderer *renderer);
@@ -51,11 +55,12 @@ Result renderer_set_openness(Renderer *renderer, const float *open, Error *error
 // 3, or 4 where the background is not opaque: what image_create must be given.
 int renderer_channels(const Renderer *renderer);
 
-// Draws one image into `image`, which has the renderer's size and channels, and waits for it. The
-// order of items and of strands does not matter, and every run gives the same bytes. No fragment is
-// lost: an A-buffer that is too small grows and the band is drawn again; at its largest the image
-// is drawn in more bands. RESULT_FAILED if memory is short or, with quads, a single row needs more
-// than there can be or a pixel has more fragments than a CPU driver's loops can visit.
+// Draws one image, tile by tile where it is large (tiles.h), into `image`, which has the renderer's
+// size and channels, and waits for it. The order of items and of strands does not matter, and every
+// run gives the same bytes. No fragment is lost: an A-buffer that is too small grows and the band
+// is drawn again; at its largest the image is drawn in more bands. RESULT_FAILED if memory is short
+// or, with quads, a single row needs more than there can be or a pixel has more fragments than a
+// CPU driver's loops can visit.
 Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderItem *items,
                      uint32_t item_count, Image *image, Error *error);
 
