@@ -56,6 +56,43 @@ head -c 500 "$work/one/frame_0004.png" >"$work/plain/frame_0004.png"
 farm -n 3 plain -o "$work/plain/" $scene
 same "$work/plain"
 
+claim "GPUs are shared out among the parts"
+cat >"$work/gpus" <<END
+#!/bin/sh
+# A machine with three GPUs, one of which cannot be used; --device is noted and left out.
+for word do
+    shift
+    case \$word in
+    --list-devices)
+        echo "--device 0        llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5 (CPU)"
+        echo "                  Mesa/X.org"
+        for number in 1 2 4; do echo "--device \$number        A GPU, OpenGL 4.6"; done
+        echo "--device 3        not usable: no access"
+        exit ;;
+    --device) takes=1; continue ;;
+    esac
+    if [ "\${takes-}" ]; then takes=; echo "\$word" >>"$work/taken"; continue; fi
+    set -- "\$@" "\$word"
+done
+exec "$program" "\$@"
+END
+chmod +x "$work/gpus"
+# taken LIST OPTION...: the devices that four parts take, one after the other.
+taken() {
+    list=$1
+    shift
+    rm -rf "$work/taken" "$work/shared" "$work/shared.cache"
+    # shellcheck disable=SC2086
+    holds env TRACTRIX_RENDER="$work/gpus" scripts/farm -n 4 "$@" plain -o "$work/shared/" $scene
+    if [ "$(tr '\n' ' ' <"$work/taken" 2>/dev/null)" = "$list" ]; then good; else bad "took $(cat "$work/taken"), expected $list"; fi
+}
+taken "1 2 4 1 "
+same "$work/shared"
+taken "4 0 4 0 " --devices 4,0
+taken "" --devices none
+# shellcheck disable=SC2086
+if scripts/farm --devices 1,x plain -o "$work/x/" $scene >"$work/out" 2>"$work/err"; then bad "took '1,x'"; else says "--devices: got '1,x'"; fi
+
 claim "a share that is lost is drawn at the end"
 cat >"$work/losing" <<END
 #!/bin/sh

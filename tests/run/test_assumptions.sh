@@ -30,6 +30,17 @@ draw hardware --assume-hardware --raster blocks
 holds "$bin/tractrix-compare" -q --pixel-tolerance 2 "$work/many_blocks" "$work/hardware"
 in_file "$work/hardware/frame_0000.png" "assumed to be hardware"
 
+claim "an image that is larger than a framebuffer is drawn as tiles, and no seam is seen"
+for raster in blocks quads compute; do
+    [ -d "$work/many_$raster" ] || draw "many_$raster" --raster $raster
+    TRACTRIX_ASSUME=side=128
+    export TRACTRIX_ASSUME
+    draw "tiles_$raster" --raster $raster
+    unset TRACTRIX_ASSUME
+    # Positions within a tile round otherwise than in the image: one level, at a mesh's edge a few.
+    holds "$bin/tractrix-compare" -q --pixel-tolerance 1 --max-failing-pixels 0.2% "$work/many_$raster" "$work/tiles_$raster"
+done
+
 claim "an assumption that is not known is wrong usage"
 TRACTRIX_ASSUME="hardware speed=2"
 export TRACTRIX_ASSUME
