@@ -4,8 +4,8 @@
 //   SHADOW_BY_MESH 1: the mesh throws shadows, too
 //   SHADOW_FOUND 1: what hair leaves at each point of a strand has been found before
 //       (shadow_light.h)
-//   MESH_TEXELS 1: the mesh's maps are a buffer: CPU drivers fetch four of its texels in a third of
-//       the time that they gather them in from a texture
+//   MESH_TEXELS 1: the mesh's maps are a buffer: CPU drivers fetch its texels in less time than
+//       they gather them from a texture
 //   LIGHT_COUNT, SHADOW_MAPS: how many lights and maps, so that loops over them are unrolled; 0:
 //       any number
 #ifndef LIGHT_COUNT

@@ -22,8 +22,8 @@ layout(std430, binding = BIND_STATE_OUT) buffer Velocities { vec4 velocities[]; 
 
 // A particle at the step's start: xyz, m and m/s. A lane fetches only particles of its own strand,
 // each before it stores to that particle. That is enough where loads and stores of one memory keep
-// their order: ORDERED 1, by the buffers themselves. Texels of the same memory are cheaper to fetch
-// on CPU drivers, which keep the order, too; a GPU's compiler may move them beyond a store.
+// their order: ORDERED 1, by the buffers themselves. CPU drivers get
+// texels of the same memory; a GPU's compiler may move those beyond a store.
 #if ORDERED
 #define position_before(address) positions[address]
 #define velocity_before(address) velocities[address]

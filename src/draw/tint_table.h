@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Marschner's table for the strands of one section, all of one colour but for their brightness: a
 // point needs four texels of a buffer where the table of all colours (scatter_tables.h) takes three
-// samples of a volume. CPU drivers, which sample in software, shade twice as fast by it.
+// samples of a volume. For CPU drivers, which sample in software.
 #pragma once
 
 #include "draw/fibre_lobes.h"

@@ -103,8 +103,8 @@ static void write_file(Codec *codec)
     png_write_chunk(codec->png, (png_const_bytep) "IEND", NULL, 0);
 }
 
-// to = a - b, byte by byte. In pieces, since compilers make no vectors of such a loop by themselves:
-// 2.4 -> 0.4 ms for 1280 x 720 pixels.
+// to = a - b, byte by byte. In pieces, since compilers make no vectors of such a loop by
+// themselves.
 static void subtract(uint8_t *to, const uint8_t *a, const uint8_t *b, size_t count)
 {
     typedef uint8_t Piece __attribute__((vector_size(16)));

@@ -170,8 +170,8 @@ static void what_is_nearest_has_one_sample(void **state)
     }
 }
 
-// Draws by the one rasteriser and by another, of quads by blocks, of others by quads: the share of values that differ by more than
-// `tolerance`, among those that are not 0 with both.
+// Draws by the one rasteriser and by another, of quads by blocks, of others by quads: the share of
+// values that differ by more than `tolerance`, among those that are not 0 with both.
 static double share_that_differs(const RendererOptions *options, double tolerance)
 {
     size_t touched = 0, different = 0;
