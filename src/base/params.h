@@ -59,8 +59,10 @@ typedef enum ParamKind {
 #define CHOICES_TELEPORT(X)                                                                        \
     X(TELEPORT_CARRY, "carry") X(TELEPORT_LIMIT, "limit") X(TELEPORT_NONE, "none")
 #define CHOICES_BACKEND(X) X(BACKEND_AUTO, "auto") X(BACKEND_EGL, "egl") X(BACKEND_OSMESA, "osmesa")
-#define CHOICES_RASTER(X)  X(RASTER_AUTO, "auto") X(RASTER_QUADS, "quads") X(RASTER_BLOCKS, "blocks") X(RASTER_COMPUTE, "compute")
-#define CHOICES_OIT(X)     X(OIT_AUTO, "auto") X(OIT_ABUFFER, "abuffer") X(OIT_NONE, "none")
+#define CHOICES_RASTER(X)                                                                          \
+    X(RASTER_AUTO, "auto")                                                                         \
+    X(RASTER_QUADS, "quads") X(RASTER_BLOCKS, "blocks") X(RASTER_COMPUTE, "compute")
+#define CHOICES_OIT(X) X(OIT_AUTO, "auto") X(OIT_ABUFFER, "abuffer") X(OIT_NONE, "none")
 
 #define CHOICES_TONE(X)  X(TONE_NONE, "none") X(TONE_REINHARD, "reinhard") X(TONE_FILMIC, "filmic")
 #define CHOICES_DEPTH(X) X(DEPTH_8, "8") X(DEPTH_16, "16")

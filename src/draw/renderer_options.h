@@ -71,13 +71,15 @@ typedef struct RenderFrame {
 
 // Of the last image, for the statistics.
 typedef struct RendererCounts {
-    uint64_t segments;    // sent to the rasteriser; straight runs count as one
-    uint64_t culled;      // strands outside the image, which cost no drawing
-    uint64_t hidden;      // strands behind mesh or floor that were not even projected
-    uint64_t fragments;   // stored and blended: pixels of a ribbon; with blocks and compute blocks of it
-    uint64_t pool_bytes;  // of the A-buffer or the lists now
-    uint32_t redraws;     // bands that were drawn again because the A-buffer or the lists were too small
-    uint32_t bands;       // horizontal bands that the image was drawn in
+    uint64_t segments; // sent to the rasteriser; straight runs count as one
+    uint64_t culled;   // strands outside the image, which cost no drawing
+    uint64_t hidden;   // strands behind mesh or floor that were not even projected
+    uint64_t
+        fragments; // stored and blended: pixels of a ribbon; with blocks and compute blocks of it
+    uint64_t pool_bytes; // of the A-buffer or the lists now
+    uint32_t
+        redraws;    // bands that were drawn again because the A-buffer or the lists were too small
+    uint32_t bands; // horizontal bands that the image was drawn in
     uint64_t thinned;     // strands that others stand for, at their distance
     uint32_t shadow_maps; // that were made; those of the image before may have done
 } RendererCounts;
