@@ -289,7 +289,8 @@ static Result make_image(Codec *codec, const char *path, Error *error)
                      image->height);
 }
 
-// libpng takes what a chunk says of its own length; it is told here that there is no such memory.
+// libpng trusts the length that a chunk states. This limit makes it refuse lengths that memory
+// cannot hold.
 static png_voidp give_memory(png_structp png, size_t size)
 {
     const Codec *codec = png_get_mem_ptr(png);
