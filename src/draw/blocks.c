@@ -244,30 +244,28 @@ Result blocks_add(Blocks *blocks, const HairBatch *batch, const Look *look, Erro
     return RESULT_OK;
 }
 
-static Result count_left_out(Blocks *blocks, Error *error)
+void blocks_take_counts(Blocks *blocks, const uint32_t *counts, const uint32_t *tally)
 {
-    const uint32_t *tally = NULL;
-    if (blocks->cull.tries && !(tally = map(&blocks->cull.tally, CULL_TALLY_BYTES)))
-        return error_set(error, RESULT_FAILED, "what is out of sight cannot be read");
     cull_count(&blocks->cull, tally);
-    if (tally) unmap(&blocks->cull.tally);
-    return RESULT_OK;
-}
-
-Result blocks_count(Blocks *blocks, Error *error)
-{
-    TRY(count_left_out(blocks, error));
-    const GLuint *counts = map(&blocks->counts, blocks->counts.size);
-    if (!counts) return error_set(error, RESULT_FAILED, "hair's counts cannot be read");
     blocks->segments = blocks->culled = 0;
     for (int i = 0; i < BLOCK_COUNT_WORDS; i += 16) {
         blocks->segments += counts[i];
         blocks->culled += counts[i + 1];
     }
-    unmap(&blocks->counts);
     blocks->culled += blocks->cull.outside;
     blocks->skips = blocks->culled + blocks->cull.hidden > blocks->strands / CULL_SHARE;
-    return RESULT_OK;
+}
+
+Result blocks_count(Blocks *blocks, Error *error)
+{
+    bool tries = blocks->cull.tries;
+    const uint32_t *tally = tries ? map(&blocks->cull.tally, CULL_TALLY_BYTES) : NULL,
+                   *counts = map(&blocks->counts, blocks->counts.size);
+    bool good = counts && (tally || !tries);
+    if (good) blocks_take_counts(blocks, counts, tally);
+    if (tally) unmap(&blocks->cull.tally);
+    if (counts) unmap(&blocks->counts);
+    return good ? RESULT_OK : error_set(error, RESULT_FAILED, "hair's counts cannot be read");
 }
 
 static Result draw_scene(Blocks *blocks, const BlockScene *scene, GpuTimer *timer, Error *error)

@@ -66,6 +66,10 @@ Result blocks_begin(Blocks *blocks, uint64_t segments, const BlocksBase *base, E
 // Adds a batch. Needs the DrawParams block. RESULT_FAILED if the look's shader does not compile.
 Result blocks_add(Blocks *blocks, const HairBatch *batch, const Look *look, Error *error);
 
+// Takes what the buffers `counts` and, if strands were looked through, `cull.tally` have come to;
+// NULL: they were not.
+void blocks_take_counts(Blocks *blocks, const uint32_t *counts, const uint32_t *tally);
+
 // Counts what was added: segments, culled. Waits for it. RESULT_FAILED if it can't be read.
 Result blocks_count(Blocks *blocks, Error *error);
 

@@ -70,6 +70,7 @@ void compute_destroy(Compute *compute)
         if (compute->behind[i]) glDeleteProgram(compute->behind[i]);
     }
     compute_bins_destroy(&compute->bins);
+    late_read_destroy(&compute->late);
     *compute = (Compute){0};
 }
 
@@ -142,36 +143,76 @@ static Result make_it_fit(Compute *compute, const ComputeUse *use, int *rows, bo
     return RESULT_OK;
 }
 
-// Draws the image in bands of band_rows, of which each is looked at before the next one, or in one
-// that is looked at when the image has been read, when there is nothing left to wait for.
-Result compute_draw(Compute *compute, const Blocks *blocks, RenderTarget *target, GpuTimer *timer,
-                    Image *image, ComputeCounts *counts, bool *drawn, Error *error)
+// One band, and after it `use`: whether it fits, or what comes next. See compute_draw.
+static Result judge_band(Compute *compute, const ComputeUse *use, int *row, int *rows,
+                         ComputeCounts *counts, bool *drawn, Error *error)
+{
+    *drawn = use->longest <= (uint32_t)compute->longest;
+    if (!*drawn) return RESULT_OK;
+    if (use->pairs <= (uint64_t)compute->bins.room) {
+        counts->pairs += use->pairs;
+        ++counts->bands;
+        *row += *rows;
+        *rows = compute->band_rows;
+        return RESULT_OK;
+    }
+    ++counts->redraws;
+    TRY(make_it_fit(compute, use, rows, drawn, error));
+    if (*row == 0) compute->band_rows = *rows;
+    return RESULT_OK;
+}
+
+Result compute_draw(Compute *compute, const Blocks *blocks, const RenderTarget *target,
+                    GpuTimer *timer, ComputeCounts *counts, bool *drawn, Error *error)
 {
     int all = compute->bins.rows, rows = compute->band_rows;
-    *counts = (ComputeCounts){0};
     *drawn = true;
-    for (int row = 0; row < all;) {
+    for (int row = 0; row < all && *drawn;) {
         ComputeUse use;
         if (rows > all - row) rows = all - row;
         draw_band(compute, blocks, target, row, row + rows, timer);
-        bool is_last = row + rows == all;
-        gpu_timer_begin(timer, "draw_read");
-        Result read = is_last ? render_target_read(target, image, error) : RESULT_OK;
-        gpu_timer_end(timer);
-        TRY(read);
         TRY(compute_bins_measure(&compute->bins, &use, error));
-        *drawn = use.longest <= (uint32_t)compute->longest;
-        if (*drawn && use.pairs > (uint64_t)compute->bins.room) {
-            ++counts->redraws;
-            TRY(make_it_fit(compute, &use, &rows, drawn, error));
-            if (row == 0) compute->band_rows = rows;
-            if (*drawn) continue;
-        }
-        if (!*drawn) return RESULT_OK;
-        counts->pairs += use.pairs;
-        ++counts->bands;
-        row += rows;
-        rows = compute->band_rows;
+        TRY(judge_band(compute, &use, &row, &rows, counts, drawn, error));
     }
+    return RESULT_OK;
+}
+
+// --- An image that is trusted to fit.
+
+enum { USE_AT = BLOCK_COUNT_WORDS, TALLY_AT = USE_AT + TILE_USE_WORDS, LATE_BYTES = 4 * TALLY_AT };
+
+bool compute_trusts(const Compute *compute)
+{
+    return compute->band_rows >= compute->bins.rows;
+}
+
+Result compute_begin(Compute *compute, const Blocks *blocks, const RenderTarget *target,
+                     GpuTimer *timer, Error *error)
+{
+    LateRead *late = &compute->late;
+    draw_band(compute, blocks, target, 0, compute->bins.rows, timer);
+    TRY(late_read_begin(late, "hair's counts", LATE_BYTES + CULL_TALLY_BYTES, error));
+    late_read_buffer(late, 0, &blocks->counts, 4 * BLOCK_COUNT_WORDS);
+    late_read_buffer(late, 4 * USE_AT, &compute->bins.use, 4 * TILE_USE_WORDS);
+    if (blocks->cull.tries)
+        late_read_buffer(late, 4 * TALLY_AT, &blocks->cull.tally, CULL_TALLY_BYTES);
+    late_read_send(late);
+    compute->unsettled = true;
+    return RESULT_OK;
+}
+
+Result compute_settle(Compute *compute, Blocks *blocks, ComputeCounts *counts, bool *good,
+                      bool *drawn, Error *error)
+{
+    const void *bytes;
+    int row = 0, rows = compute->bins.rows;
+    compute->unsettled = false;
+    TRY(late_read_open(&compute->late, "hair's counts", &bytes, error));
+    const uint32_t *words = bytes;
+    blocks_take_counts(blocks, words, blocks->cull.tries ? words + TALLY_AT : NULL);
+    ComputeUse use = compute_bins_use(words + USE_AT);
+    late_read_close(&compute->late);
+    TRY(judge_band(compute, &use, &row, &rows, counts, drawn, error));
+    *good = row > 0;
     return RESULT_OK;
 }

@@ -8,6 +8,7 @@
 #include "draw/compute_bins.h"
 #include "draw/render_target.h"
 #include "gpu/gpu.h"
+#include "gpu/late_read.h"
 
 // A zeroed struct has nothing.
 typedef struct Compute {
@@ -17,9 +18,11 @@ typedef struct Compute {
     PixelStyle style;
     bool nearest;
     ImageKind kind;
-    int longest;   // pairs of a tile that the driver's loops can visit
-    int most_rows; // of tiles in a band, for the same reason
-    int band_rows; // that the next image is drawn in
+    int longest;    // pairs of a tile that the driver's loops can visit
+    int most_rows;  // of tiles in a band, for the same reason
+    int band_rows;  // that the next image is drawn in
+    LateRead late;  // counts of the image
+    bool unsettled; // nobody has looked at them
 } Compute;
 
 // What an image came to.
@@ -41,9 +44,18 @@ void compute_destroy(Compute *compute);
 Result compute_add_base(Compute *compute, Error *error);
 
 // Composites what `blocks` has projected into the target's image, over its base if the blocks have
-// one, and copies it into `image`; waits for it. Lists that turn out to have been short of room
-// grow, and the image is drawn again; at their largest it is drawn in bands. *drawn is false, and
-// blocks_draw must do it, where a row of tiles has more ribbons than lists can or a tile has more
-// than a CPU driver's loops can visit.
-Result compute_draw(Compute *compute, const Blocks *blocks, RenderTarget *target, GpuTimer *timer,
-                    Image *image, ComputeCounts *counts, bool *drawn, Error *error);
+// one, in bands of tiles, each of which is waited for. Lists that turn out to have been short of
+// room grow, and the band is drawn again; at their largest there are more bands. Adds to `counts`.
+// *drawn is false, and blocks_draw must do it, where a row of tiles has more ribbons than lists can
+// or a tile has more than a CPU driver's loops can visit.
+Result compute_draw(Compute *compute, const Blocks *blocks, const RenderTarget *target,
+                    GpuTimer *timer, ComputeCounts *counts, bool *drawn, Error *error);
+
+// Whether the next image goes in one band. Then compute_begin queues it without a look at any
+// count, and compute_settle takes the counts when they are there, those of the blocks too: with
+// *good false the image must be drawn by compute_draw or, with *drawn false as well, by the blocks.
+bool compute_trusts(const Compute *compute);
+Result compute_begin(Compute *compute, const Blocks *blocks, const RenderTarget *target,
+                     GpuTimer *timer, Error *error);
+Result compute_settle(Compute *compute, Blocks *blocks, ComputeCounts *counts, bool *good,
+                      bool *drawn, Error *error);

@@ -128,15 +128,21 @@ void compute_bins_sort(const ComputeBins *bins)
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
+ComputeUse compute_bins_use(const uint32_t *words)
+{
+    uint64_t coarse = (uint64_t)words[TILE_USE_COARSE] << 10;
+    ComputeUse use = {.pairs = words[TILE_USE_PAIRS], .longest = words[TILE_USE_LONGEST]};
+    if (coarse > use.pairs) use.pairs = coarse; // which began at 0 again
+    return use;
+}
+
 Result compute_bins_measure(const ComputeBins *bins, ComputeUse *use, Error *error)
 {
-    GLuint words[TILE_USE_WORDS];
+    GLuint words[TILE_USE_WORDS] = {0};
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, bins->use.buffer);
     glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof words, words);
-    uint64_t coarse = (uint64_t)words[TILE_USE_COARSE] << 10;
-    *use = (ComputeUse){.pairs = words[TILE_USE_PAIRS], .longest = words[TILE_USE_LONGEST]};
-    if (coarse > use->pairs) use->pairs = coarse; // which began at 0 again
+    *use = compute_bins_use(words);
     return gpu_check("binning ribbons", error);
 }
 

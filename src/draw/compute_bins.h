@@ -44,6 +44,9 @@ void compute_bins_sort(const ComputeBins *bins);
 // TILE_ROW groups more.
 void compute_bins_dispatch(const ComputeBins *bins);
 
+// What TILE_USE_WORDS of `use` say.
+ComputeUse compute_bins_use(const uint32_t *words);
+
 // What the last band used. Waits for it.
 Result compute_bins_measure(const ComputeBins *bins, ComputeUse *use, Error *error);
 

@@ -145,6 +145,11 @@ Result render_target_send(RenderTarget *target, const GpuBuffer *flag, bool agai
     return RESULT_OK;
 }
 
+void render_target_skip(RenderTarget *target, bool again)
+{
+    if (!again) target->next ^= 1;
+}
+
 // Leaves alpha out.
 static void copy_rgb(Image *image, const uint8_t *rgba)
 {
@@ -175,12 +180,4 @@ Result render_target_take(RenderTarget *target, int place, Image *image, uint32_
         copy_rgb(image, bytes);
     late_read_close(sent);
     return RESULT_OK;
-}
-
-Result render_target_read(RenderTarget *target, Image *image, Error *error)
-{
-    uint32_t unused;
-    int place = target->next;
-    TRY(render_target_send(target, NULL, false, error));
-    return render_target_take(target, place, image, &unused, error);
 }

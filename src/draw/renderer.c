@@ -345,33 +345,85 @@ static Result add_base_to_compute(Renderer *renderer, Error *error)
     return compute_add_base(&renderer->compute, error);
 }
 
-static Result draw_compute(Renderer *renderer, Image *image, Error *error)
+static void count_compute(Renderer *renderer, const ComputeCounts *counts)
+{
+    const ComputeBins *bins = &renderer->compute.bins;
+    count_blocks(renderer);
+    renderer->counts.fragments = counts->pairs;
+    renderer->counts.pool_bytes = (uint64_t)(bins->pairs.size + bins->sorted.size);
+    renderer->counts.redraws = counts->redraws;
+    renderer->counts.bands = counts->bands;
+}
+
+static Result send_image(Renderer *renderer, bool again, Error *error)
+{
+    int place = again ? renderer->target.next ^ 1 : renderer->target.next;
+    gpu_timer_begin(renderer->timer, "draw_read");
+    Result result = render_target_send(&renderer->target, NULL, again, error);
+    gpu_timer_end(renderer->timer);
+    renderer->direct[place] = false;
+    return result;
+}
+
+// Blocks draw what compute cannot, straight into the image.
+static Result draw_directly(Renderer *renderer, bool again, Error *error)
+{
+    int place = again ? renderer->target.next ^ 1 : renderer->target.next;
+    TRY(blocks_draw(&renderer->blocks, renderer->timer, renderer->begun, error));
+    render_target_skip(&renderer->target, again);
+    renderer->direct[place] = true;
+    count_blocks(renderer);
+    return RESULT_OK;
+}
+
+static Result draw_looking(Renderer *renderer, ComputeCounts counts, bool again, Error *error)
 {
     Blocks *blocks = &renderer->blocks;
-    ComputeCounts counts;
-    bool drawn = false;
+    bool drawn;
+    TRY(compute_draw(&renderer->compute, blocks, &renderer->target, renderer->timer, &counts,
+                     &drawn, error));
+    if (!drawn) return draw_directly(renderer, again, error);
+    if (!again) TRY(blocks_count(blocks, error));
+    count_compute(renderer, &counts);
+    return send_image(renderer, again, error);
+}
+
+static Result draw_compute(Renderer *renderer, Image *image, Error *error)
+{
+    Compute *compute = &renderer->compute;
+    renderer->begun = image;
+    compute->unsettled = false;
     TRY(project(renderer, error));
-    if (!blocks->stores)
-        TRY(compute_draw(&renderer->compute, blocks, &renderer->target, renderer->timer, image,
-                         &counts, &drawn, error));
-    if (drawn)
-        TRY(blocks_count(blocks, error));
-    else
-        TRY(blocks_draw(blocks, renderer->timer, image, error));
-    count_blocks(renderer);
-    if (!drawn) return RESULT_OK;
-    renderer->counts.fragments = counts.pairs;
-    renderer->counts.pool_bytes =
-        (uint64_t)(renderer->compute.bins.pairs.size + renderer->compute.bins.sorted.size);
-    renderer->counts.redraws = counts.redraws;
-    renderer->counts.bands = counts.bands;
-    return RESULT_OK;
+    if (renderer->blocks.stores) return draw_directly(renderer, false, error);
+    if (!compute_trusts(compute)) return draw_looking(renderer, (ComputeCounts){0}, false, error);
+    TRY(compute_begin(compute, &renderer->blocks, &renderer->target, renderer->timer, error));
+    return send_image(renderer, false, error);
+}
+
+static Result settle_compute(Renderer *renderer, Error *error)
+{
+    ComputeCounts counts = {0};
+    bool good, drawn;
+    if (!renderer->compute.unsettled) return RESULT_OK;
+    TRY(compute_settle(&renderer->compute, &renderer->blocks, &counts, &good, &drawn, error));
+    if (good) count_compute(renderer, &counts);
+    if (good) return RESULT_OK;
+    return drawn ? draw_looking(renderer, counts, true, error)
+                 : draw_directly(renderer, true, error);
+}
+
+static Result take_compute(Renderer *renderer, int place, Image *image, Error *error)
+{
+    uint32_t none;
+    if (renderer->direct[place]) return RESULT_OK;
+    return render_target_take(&renderer->target, place, image, &none, error);
 }
 
 static const RasterType RASTERS[] = {
     [RASTER_QUADS] = {create_quads, add_base_to_quads, draw_quads, settle_quads, take_quads},
     [RASTER_BLOCKS] = {create_blocks, NULL, draw_blocks, NULL, NULL},
-    [RASTER_COMPUTE] = {create_compute, add_base_to_compute, draw_compute, NULL, NULL},
+    [RASTER_COMPUTE] = {create_compute, add_base_to_compute, draw_compute, settle_compute,
+                        take_compute},
 };
 
 static Result draw_base(Renderer *renderer, Error *error)
@@ -431,6 +483,13 @@ static Result draw_tiles(Renderer *renderer, Image *image, Error *error)
     return RESULT_OK;
 }
 
+// What no raster knows.
+static void count_image(Renderer *renderer)
+{
+    renderer->counts.thinned = drawing_count_thinned(&renderer->drawing);
+    renderer->counts.shadow_maps = renderer->shadow.maps_drawn;
+}
+
 Result renderer_begin(Renderer *renderer, const RenderFrame *frame, const RenderItem *items,
                       uint32_t item_count, Image *image, Error *error)
 {
@@ -447,8 +506,7 @@ Result renderer_begin(Renderer *renderer, const RenderFrame *frame, const Render
         TRY(draw_window(renderer, image, error));
     else
         TRY(draw_tiles(renderer, image, error));
-    renderer->counts.thinned = drawing_count_thinned(&renderer->drawing);
-    renderer->counts.shadow_maps = renderer->shadow.maps_drawn;
+    count_image(renderer);
     return gpu_check("drawing", error);
 }
 
@@ -465,8 +523,10 @@ int renderer_place(const Renderer *renderer)
 Result renderer_settle(Renderer *renderer, Error *error)
 {
     const RasterType *raster = &RASTERS[renderer->raster];
-    bool late = renderer_is_late(renderer) && raster->settle;
-    return late ? raster->settle(renderer, error) : RESULT_OK;
+    if (!renderer_is_late(renderer) || !raster->settle) return RESULT_OK;
+    TRY(raster->settle(renderer, error));
+    count_image(renderer);
+    return RESULT_OK;
 }
 
 Result renderer_take(Renderer *renderer, int place, Image *image, Error *error)

@@ -27,6 +27,8 @@ typedef struct Renderer {
     Quads quads;
     Blocks blocks;
     Compute compute;
+    Image *begun;   // of compute: the image that was begun last, not owned
+    bool direct[2]; // of compute, by place: it is in its image already
     BaseLayer base;
     Shadows shadow;
     HairScatter scatter;

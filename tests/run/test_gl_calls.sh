@@ -20,8 +20,14 @@ calls() {
 claim "quads: no read waits; images, the A-buffer's use and culled strands come late"
 calls 200 0 --raster quads --turntable --frames 12 -o "$work/all/%d.png"
 
+claim "compute: neither images nor the lists' use are waited for"
+calls 200 0 --raster compute --turntable --frames 12 -o "$work/compute/%d.png"
+
 claim "every frame is there and none is another's: they are those of single frames"
 for i in 0 5 11; do
+    # shellcheck disable=SC2086 # words
+    run 0 $scene --raster compute --turntable --frames 12 --first $i --last $i -o "$work/one/c%d.png"
+    same_images "$work/compute/$i.png" "$work/one/c$i.png"
     # shellcheck disable=SC2086 # words
     run 0 $scene --raster quads --turntable --frames 12 --first $i --last $i -o "$work/one/%d.png"
     same_images "$work/all/$i.png" "$work/one/$i.png"
