@@ -130,6 +130,7 @@ void compute_bins_sort(const ComputeBins *bins)
 
 ComputeUse compute_bins_use(const uint32_t *words)
 {
+    // cppcheck-suppress ctuArrayIndex // it does not know TILE_USE_WORDS
     uint64_t coarse = (uint64_t)words[TILE_USE_COARSE] << 10;
     ComputeUse use = {.pairs = words[TILE_USE_PAIRS], .longest = words[TILE_USE_LONGEST]};
     if (coarse > use.pairs) use.pairs = coarse; // which began at 0 again
