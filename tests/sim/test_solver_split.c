@@ -121,7 +121,7 @@ static void run_against_reference(const SplitCase *trial)
             worst =
                 fmax(worst, find_distance(&fixture, twin, COUNT, (const Vec *)start, trial->style));
     }
-    double limit = 3 * trial->measured;
+    double limit = 3 * trial->measured * fixture_rounding();
     if (fixture_rounding() > 1) limit = fmax(limit, step_tolerance(n, 1, forces.dt));
     printf("split %s, n = %d, style %g, %g steps a second: RMS %.2g of the length from the "
            "double-precision twin after %d steps\n",
