@@ -35,8 +35,8 @@ enum { LONG_STEPS = 60 }; // below so many a second every step is compared
 
 // After so many seconds, the RMS error over the length that was measured against the twin, the
 // largest of CPUs with vectors of 256 and 128 bits, AVX without FMA, and SSE2; three
-// times that is allowed, and on a GPU, whose operations are less exact (twin.c), as much as
-// step_tolerance says.
+// times that is allowed, and where operations are less exact that times fixture_rounding(), or as
+// much as step_tolerance says.
 typedef struct SplitCase {
     int n;
     const char *variant;
