@@ -122,6 +122,9 @@ static void pictures_are_those_of_blocks(void **state)
         {.aov = AOV_DEPTH, .depth_range = {900, 1100}},
         {.aov = AOV_TANGENT, .kind = IMAGE_16},
         {.aov = AOV_STRAND}};
+    // Where compute's maths is not C's, the two may leave out a 1/1024 of other pixels: near black
+    // sRGB has 12.92 * 255 levels.
+    const double most = studio.gpu.software && !studio.gpu.ulps ? 1.01 : 1 + 12.92 * 255 / 1024;
     add_hair();
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; ++i) {
         RendererOptions options = kinds[i];
@@ -133,7 +136,7 @@ static void pictures_are_those_of_blocks(void **state)
         if (nearest)
             assert_true(found.share <= 1e-3);
         else
-            assert_true(found.rmse <= 0.05 && found.largest <= 1.01);
+            assert_true(found.rmse <= 0.05 && found.largest <= most);
     }
 }
 
