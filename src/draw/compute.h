@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The compute rasteriser: what the block rasteriser does on the CPU, on the GPU, with the same
 // arithmetic. blocks.h projects strands; here their ribbons are binned into tiles of pixels, sorted
-// and composited, without a look at any count before the image is there.
+// and composited, without a look at any count before the image is queued.
 #pragma once
 
 #include "draw/blocks.h"

@@ -32,10 +32,6 @@ void render_target_destroy(RenderTarget *target);
 // Adds what a mesh or a floor needs; nothing if it is there.
 Result render_target_add_base(RenderTarget *target, Error *error);
 
-// Copies the image into `image` of 3 or 4 channels; waits for it. RESULT_FAILED if it does not
-// come.
-Result render_target_read(RenderTarget *target, Image *image, Error *error);
-
 // Sends the image on its way, and the first word of `flag` behind it unless it is NULL. One image
 // may be under way already. `again`: the last one was not good, this one replaces it. RESULT_FAILED
 // if memory is short.

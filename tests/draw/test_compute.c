@@ -39,23 +39,6 @@ static void add_hair(void)
         add_line((float[3]){-60, -10.0f * (float)i, 30}, (float[3]){60, 25, 30}, 5, 1);
 }
 
-static float float_at(const Image *image, size_t i)
-{
-    float light;
-    memcpy(&light, image->pixels + 4 * i, 4);
-    return light;
-}
-
-// A value of 255; light as sRGB.
-static double level_at(const Image *image, size_t i)
-{
-    uint16_t sixteen;
-    if (image->kind == IMAGE_8) return image->pixels[i];
-    if (image->kind == IMAGE_FLOAT) return srgb(fmin(float_at(image, i), 1));
-    memcpy(&sixteen, image->pixels + 2 * i, 2);
-    return sixteen / 257.0;
-}
-
 // --- What blocks draw.
 
 typedef struct Difference {

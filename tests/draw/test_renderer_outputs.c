@@ -44,23 +44,6 @@ static size_t count_values(const Image *image)
     return (size_t)image->width * (size_t)image->height * (size_t)image->channels;
 }
 
-static float float_at(const Image *image, size_t i)
-{
-    float value;
-    memcpy(&value, image->pixels + 4 * i, 4);
-    return value;
-}
-
-// A value of 255; light as sRGB.
-static double level_at(const Image *image, size_t i)
-{
-    uint16_t sixteen;
-    if (image->kind == IMAGE_8) return image->pixels[i];
-    if (image->kind == IMAGE_FLOAT) return srgb(fmin(float_at(image, i), 1));
-    memcpy(&sixteen, image->pixels + 2 * i, 2);
-    return sixteen / 257.0;
-}
-
 // Half a level of rounding; srgb_from_linear is off by 0.012.
 static void every_kind_shows_the_same_picture(void **state)
 {

@@ -134,3 +134,19 @@ int stage_run_count(const struct CMUnitTest *tests, size_t count, Raster first, 
         failed += _cmocka_run_group_tests("renderer", tests, count, open_studio, close_studio);
     return failed;
 }
+
+float float_at(const Image *image, size_t i)
+{
+    float light;
+    memcpy(&light, image->pixels + 4 * i, 4);
+    return light;
+}
+
+double level_at(const Image *image, size_t i)
+{
+    uint16_t sixteen;
+    if (image->kind == IMAGE_8) return image->pixels[i];
+    if (image->kind == IMAGE_FLOAT) return srgb(fmin((double)float_at(image, i), 1));
+    memcpy(&sixteen, image->pixels + 2 * i, 2);
+    return sixteen / 257.0;
+}

@@ -54,5 +54,9 @@ double alpha_sum(void);
 // 0..255 for linear light of 0..1 (IEC 61966-2-1).
 double srgb(double linear);
 
+// Value i of an image of floats; value i of any image in levels of 255, light as sRGB.
+float float_at(const Image *image, size_t i);
+double level_at(const Image *image, size_t i);
+
 // A mesh in the plane z = 0, `half` px to each side.
 Mesh make_square(float half);
