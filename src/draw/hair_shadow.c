@@ -318,7 +318,7 @@ void hair_shadow_bind(const HairShadow *hair)
 
 bool hair_shadow_lights(const HairShadow *hair, const ParticleLight **lights, uint32_t *count)
 {
-    *lights = hair->cpu.lights;
+    *lights = hair->cpu.past_mesh ? hair->cpu.reaching : hair->cpu.lights;
     *count = hair->cpu.lit;
     return hair->by_processor && hair->cpu.lit > 0;
 }

@@ -54,6 +54,7 @@ void hair_shadow_draw(HairShadow *hair, const LightView *view, const LightFrame 
 void hair_shadow_end(HairShadow *hair);
 
 // The light at all particles of the casters, if C has found it: false where shaders look for it.
+// With cpu.past_mesh the mesh's shadows are in it, too.
 bool hair_shadow_lights(const HairShadow *hair, const ParticleLight **lights, uint32_t *count);
 
 // Binds what glsl/draw/shadow.glsl reads.

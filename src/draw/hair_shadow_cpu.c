@@ -13,28 +13,34 @@ Result hair_shadow_cpu_create(HairShadowCpu *cpu, int side, bool deep, bool behi
     return shadow_map_create(&cpu->map, side, deep, error);
 }
 
-// Positions, paint and light of each batch, and a map's two parts.
+// Positions, paint and light of each batch, without and with the mesh, a map's two parts and the
+// mesh's maps.
 static size_t count_buffers(uint32_t batches)
 {
-    return 3 * (size_t)batches + 2;
+    return 4 * (size_t)batches + 3;
 }
 
 static void forget_room(HairShadowCpu *cpu)
 {
-    for (uint32_t i = 0; i < cpu->room; ++i) gpu_buffer_destroy(&cpu->lights[i].left);
+    for (uint32_t i = 0; i < cpu->room; ++i) {
+        gpu_buffer_destroy(&cpu->lights[i].left);
+        gpu_buffer_destroy(&cpu->reaching[i].left);
+    }
     for (size_t i = 0; cpu->mapped && i < count_buffers(cpu->room); ++i) free(cpu->mapped[i].copy);
     free(cpu->casters);
     free(cpu->lights);
+    free(cpu->reaching);
     free(cpu->left);
     free(cpu->mapped);
-    *cpu = (HairShadowCpu){
-        .map = cpu->map, .points = cpu->points, .behind = cpu->behind, .copies = cpu->copies};
+    cpu->casters = NULL, cpu->lights = cpu->reaching = NULL, cpu->left = NULL, cpu->mapped = NULL;
+    cpu->room = cpu->lit = 0;
 }
 
 void hair_shadow_cpu_destroy(HairShadowCpu *cpu)
 {
     shadow_map_destroy(&cpu->map);
     shadow_points_destroy(&cpu->points);
+    shadow_past_destroy(&cpu->past);
     forget_room(cpu);
 }
 
@@ -44,10 +50,11 @@ static Result make_room(HairShadowCpu *cpu, uint32_t count, Error *error)
     forget_room(cpu);
     cpu->casters = malloc((count + 1) * sizeof *cpu->casters);
     cpu->lights = calloc(count + 1, sizeof *cpu->lights);
+    cpu->reaching = calloc(count + 1, sizeof *cpu->reaching);
     cpu->left = malloc((count + 1) * sizeof *cpu->left);
     cpu->mapped = calloc(count_buffers(count), sizeof *cpu->mapped);
-    if (cpu->lights && cpu->mapped) cpu->room = count;
-    if (cpu->casters && cpu->lights && cpu->left && cpu->mapped) return RESULT_OK;
+    if (cpu->lights && cpu->reaching && cpu->mapped) cpu->room = count;
+    if (cpu->casters && cpu->left && cpu->room == count) return RESULT_OK;
     forget_room(cpu);
     return error_set(error, RESULT_FAILED, "no memory for %u batches", count);
 }
@@ -55,6 +62,15 @@ static Result make_room(HairShadowCpu *cpu, uint32_t count, Error *error)
 static int64_t count_floats(const ShadowCaster *caster)
 {
     return (int64_t)hair_slots(caster->batch) * look_points(&caster->look, caster->batch);
+}
+
+static Result make_light(ParticleLight *light, const ShadowCaster *caster, const GpuLimits *limits,
+                         int64_t size, Error *error)
+{
+    light->batch = caster->batch;
+    if (light->left.size == size) return RESULT_OK;
+    gpu_buffer_destroy(&light->left);
+    return gpu_buffer_create(&light->left, limits, "light on hair", size, NULL, GL_R32F, error);
 }
 
 // Room for what is left at each point, if a shader can see so much.
@@ -68,12 +84,10 @@ static Result make_lights(HairShadowCpu *cpu, const GpuLimits *limits, int maps,
         if (floats > limits->texture_texels || floats * 4 > limits->storage_block) return RESULT_OK;
     }
     for (uint32_t i = 0; i < casters.count && cpu->map.deep; ++i) {
-        GpuBuffer *left = &cpu->lights[i].left;
-        int64_t size = maps * (1 + cpu->behind) * count_floats(&casters.list[i]) * 4;
-        cpu->lights[i].batch = casters.list[i].batch;
-        if (left->size == size) continue;
-        gpu_buffer_destroy(left);
-        TRY(gpu_buffer_create(left, limits, "light on hair", size, NULL, GL_R32F, error));
+        int64_t size = maps * count_floats(&casters.list[i]) * 4;
+        TRY(make_light(&cpu->lights[i], &casters.list[i], limits, size * (1 + cpu->behind), error));
+        if (cpu->past_mesh)
+            TRY(make_light(&cpu->reaching[i], &casters.list[i], limits, size, error));
     }
     if (cpu->map.deep) cpu->lit = casters.count;
     return RESULT_OK;
@@ -114,7 +128,8 @@ static bool map_caster(HairShadowCpu *cpu, const ShadowCaster *caster, uint32_t 
     *mine = (MappedCaster){.material = look_material(&caster->look, batch),
                            .position = map(cpu, &batch->position, GL_MAP_READ_BIT)};
     if (batch->paint.buffer) mine->paint = map(cpu, &batch->paint, GL_MAP_READ_BIT);
-    if (i < cpu->lit) cpu->left[i] = map(cpu, &cpu->lights[i].left, WRITTEN);
+    GLbitfield access = cpu->past_mesh ? GL_MAP_READ_BIT | GL_MAP_WRITE_BIT : WRITTEN;
+    if (i < cpu->lit) cpu->left[i] = map(cpu, &cpu->lights[i].left, access);
     return mine->position && (mine->paint || !batch->paint.buffer) &&
            (i >= cpu->lit || cpu->left[i]);
 }
@@ -185,4 +200,28 @@ void hair_shadow_cpu_draw(HairShadowCpu *cpu, const CastParams *params, float ac
         shadow_light_find(&cpu->map, params, &cpu->casters[i], across, layers, left,
                           cpu->behind ? left + (size_t)cpu->maps * points : NULL);
     }
+}
+
+static Result pass_mesh(HairShadowCpu *cpu, const ShadowParams *params, const float *depths,
+                        Error *error)
+{
+    TRY(shadow_past_begin(&cpu->past, params, depths, cpu->map.parts, error));
+    for (uint32_t i = 0; i < cpu->lit; ++i) {
+        const MappedCaster *caster = &cpu->casters[i];
+        size_t points = hair_slots(cpu->lights[i].batch) * (size_t)mapped_caster_points(caster);
+        float *reaching = map(cpu, &cpu->reaching[i].left, WRITTEN);
+        if (!reaching) return error_set(error, RESULT_FAILED, "cannot write light on hair");
+        shadow_past_find(&cpu->past, params, depths, caster, points, cpu->left[i], reaching,
+                         cpu->map.parts);
+    }
+    return RESULT_OK;
+}
+
+Result hair_shadow_cpu_pass_mesh(HairShadowCpu *cpu, const ShadowParams *params,
+                                 const GpuBuffer *texels, Error *error)
+{
+    if (cpu->lit == 0) return RESULT_OK;
+    const float *depths = map(cpu, texels, GL_MAP_READ_BIT);
+    return depths ? pass_mesh(cpu, params, depths, error)
+                  : error_set(error, RESULT_FAILED, "cannot read the mesh's shadows");
 }

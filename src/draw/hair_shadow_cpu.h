@@ -5,6 +5,7 @@
 
 #include "draw/look.h"
 #include "draw/shadow_map.h"
+#include "draw/shadow_past.h"
 #include "draw/shadow_points.h"
 
 // Hair that stands in the light: the ribbons that are drawn, with the material's shadow_opacity.
@@ -33,14 +34,18 @@ typedef struct HairShadowCpu {
     uint32_t count, room;
     ParticleLight *lights; // [room], owned
     float **left;          // [room], owned: theirs, while maps are drawn
-    bool behind;           // each light has as many values again, of what is behind (look.h)
+    // With a mesh in the light: what it leaves, too (see shadow_past.h).
+    bool past_mesh;
+    ShadowPast past;
+    ParticleLight *reaching; // [room], owned
+    bool behind;             // each light has as many values again, of what is behind (look.h)
     int maps;
     uint32_t lit; // of them there are; 0: none (they would not fit into a buffer)
     // Buffers are copied, not mapped: what hardware keeps in memory of its own is read once, and
     // what is written is sent, never read. Then `casters` and `left` can still be read after
     // hair_shadow_cpu_end, until maps are made again.
     bool copies;
-    SharedBuffer *mapped; // [3 room + 2], owned
+    SharedBuffer *mapped; // [4 room + 2], owned
     uint32_t mapped_count;
     float *depths; // of all maps, while they are drawn; deep
     uint32_t *texels;
@@ -62,3 +67,8 @@ void hair_shadow_cpu_end(HairShadowCpu *cpu);
 // in `lights`, too; `across`: ShadowParams.place[map].w.
 bool hair_shadow_cpu_find_box(HairShadowCpu *cpu, const CastParams *params, double box[6]);
 void hair_shadow_cpu_draw(HairShadowCpu *cpu, const CastParams *params, float across);
+
+// With `past_mesh`, when all maps are drawn: what reaches the points of hair past the mesh, too,
+// whose maps' depths are in `texels`. RESULT_FAILED if memory is short.
+Result hair_shadow_cpu_pass_mesh(HairShadowCpu *cpu, const ShadowParams *params,
+                                 const GpuBuffer *texels, Error *error);

@@ -247,8 +247,11 @@ static Result draw_shadow(Renderer *renderer, const RenderFrame *frame, Error *e
         look->map_count = renderer->shadow.params.maps;
         if (renderer->shadow.mesh.texels.buffer && look->features & LOOK_SHADOW_BY_MESH)
             look->features |= LOOK_MESH_TEXELS;
-        if (hair_shadow_lights(&renderer->shadow.hair, &look->lights, &look->batches))
+        if (hair_shadow_lights(&renderer->shadow.hair, &look->lights, &look->batches)) {
             look->features |= LOOK_SHADOW_FOUND;
+            if (renderer->shadow.hair.cpu.past_mesh)
+                look->features &= ~(unsigned)(LOOK_SHADOW_BY_MESH | LOOK_MESH_TEXELS);
+        }
     }
     activity_set("light among hair");
     return renderer->options.shadow.kind == SHADOW_DOM && renderer->options.aov == AOV_NONE

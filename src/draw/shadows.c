@@ -114,13 +114,21 @@ static void draw_mesh(const MeshShadow *shadow, const RenderMesh *mesh, int map)
     glDisable(GL_DEPTH_TEST);
 }
 
-static void copy_texels(const MeshShadow *shadow, int maps)
+// Of all maps, for those that do not read textures: C where it finds the light on hair, else hair's
+// shaders.
+static Result share_mesh(Shadows *shadows, Error *error)
 {
-    if (!shadow->texels.buffer) return;
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, shadow->frame);
-    glBindBuffer(GL_PIXEL_PACK_BUFFER, shadow->texels.buffer);
-    glReadPixels(0, 0, MESH_SIDE, MESH_SIDE * maps, GL_DEPTH_COMPONENT, GL_FLOAT, NULL);
+    const MeshShadow *mesh = &shadows->mesh;
+    if (!mesh->texels.buffer) return RESULT_OK;
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, mesh->frame);
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, mesh->texels.buffer);
+    glReadPixels(0, 0, MESH_SIDE, MESH_SIDE * shadows->params.maps, GL_DEPTH_COMPONENT, GL_FLOAT,
+                 NULL);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+    return shadows->hair.by_processor && shadows->hair.cpu.past_mesh
+               ? hair_shadow_cpu_pass_mesh(&shadows->hair.cpu, &shadows->params, &mesh->texels,
+                                           error)
+               : RESULT_OK;
 }
 
 // --- All maps.
@@ -276,11 +284,13 @@ static Result draw_maps(Shadows *shadow, const ShadowScene *scene, Error *error)
     params->side = shadow->options.side;
     params->mesh_side = MESH_SIDE;
     find_mean_fibre(shadow, scene, params);
+    shadow->hair.cpu.past_mesh = shadow->with_texels && has_mesh(scene);
     TRY(hair_shadow_begin(&shadow->hair, count_maps(scene), scene->casters, error));
     for (uint32_t i = 0; i < scene->light_count; ++i)
         if (casts(&scene->lights[i])) draw_map(shadow, scene, (int)i);
+    Result result = has_mesh(scene) && params->maps ? share_mesh(shadow, error) : RESULT_OK;
     hair_shadow_end(&shadow->hair);
-    if (has_mesh(scene) && params->maps) copy_texels(&shadow->mesh, params->maps);
+    if (result != RESULT_OK) return result;
     shadow->maps_drawn = (uint32_t)params->maps;
     ++shadow->version;
     return RESULT_OK;
