@@ -310,8 +310,9 @@ SIMD_INLINE void composite(const Block *block, BlockForm form, const RibbonRecor
     memset(open, 1, sizeof open);
     for (size_t done = 0; done < count; done += BATCH) {
         if (form != BLOCK_NEAREST && done && !look_through(block, open)) return;
+        // To the second level: there are more than the first one can wait for.
         for (size_t i = done + BATCH; i < done + 2 * BATCH && i < count; ++i)
-            __builtin_prefetch(&records[(uint32_t)order[i]]);
+            __builtin_prefetch(&records[(uint32_t)order[i]], 0, 2);
         int size = count - done < BATCH ? (int)(count - done) : BATCH, listed = 0;
         fetch(records, order + done, size, words);
         unpack(words, block, form == BLOCK_NEAREST, &batch);
