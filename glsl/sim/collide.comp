@@ -30,6 +30,8 @@
 // CLEARANCE 1: particles have clearances; MODE 0 and 2
 // CONES: how many cones there are, or 0: any number
 // FIELD 1: one more collider, a mesh (distance_field.glsl)
+// ORDERED: see particles.glsl; here, too, a lane fetches what is its strand's, before it stores
+// there
 #include "sim/collide_params.h"
 #include "common/hair_address.glsl"
 #include "common/rigid.glsl"
@@ -46,12 +48,10 @@
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
 #if MODE == SEGMENTS
-layout(binding = BIND_STATE) uniform samplerBuffer segments_before; // unit direction, length
+// unit direction, length
 layout(std430, binding = BIND_STATE_OUT) buffer Segments { vec4 segments[]; };
 // a strand: position, times limited; velocity
 layout(std430, binding = BIND_TIPS) buffer Tips { vec4 tips[]; };
-#else
-layout(binding = BIND_POSITION) uniform samplerBuffer position_before;
 #endif
 #if MODE == PARTICLES || MODE == DRAWN
 layout(std430, binding = BIND_POSITION_OUT) buffer Positions { vec4 positions[]; };
@@ -63,17 +63,30 @@ layout(std430, binding = BIND_CLEARANCE_OUT) writeonly buffer Clearances { float
 layout(binding = BIND_CLEARANCE) uniform samplerBuffer clearances;
 #endif
 #if MODE == PARTICLES
-layout(binding = BIND_STATE) uniform samplerBuffer velocity_before;
 layout(std430, binding = BIND_STATE_OUT) buffer Velocities { vec4 velocities[]; };
 #endif
 #if MODE == PARTICLES || MODE == SEGMENTS
 layout(binding = BIND_REST) uniform samplerBuffer rest;
 // A particle: where it was at the end of step w. In the root's place: split's tip.
-layout(std430, binding = BIND_CONTACTS) writeonly buffer Contacts { vec4 contacts[]; };
-layout(binding = BIND_CONTACTS_BEFORE) uniform samplerBuffer contacts_before;
+layout(std430, binding = BIND_CONTACTS) buffer Contacts { vec4 contacts[]; };
 // A strand, of its last step with contacts: their number, the step; of all steps, as bits of
 // floats: deepest before and after the push.
 layout(std430, binding = BIND_CONTACT_COUNTS) buffer Counts { uvec4 counts[]; };
+#endif
+
+#if ORDERED && MODE != FINDING
+#define position_before(address) positions[address]
+#define velocity_before(address) velocities[address]
+#define segment_before(address)  segments[address]
+#define contact_before(address)  contacts[address]
+#else
+layout(binding = BIND_POSITION) uniform samplerBuffer position_texels;
+layout(binding = BIND_STATE) uniform samplerBuffer state_texels;
+layout(binding = BIND_CONTACTS_BEFORE) uniform samplerBuffer contact_texels;
+#define position_before(address) texelFetch(position_texels, address)
+#define velocity_before(address) texelFetch(state_texels, address)
+#define segment_before(address)  texelFetch(state_texels, address)
+#define contact_before(address)  texelFetch(contact_texels, address)
 #endif
 
 const int ROUNDS = 3;
@@ -97,7 +110,7 @@ void main()
     open_cones();
     for (int j = 0; j < n; ++j) {
         int a = particle_address(s, j, n);
-        vec3 p = rotate(collide_params.head_rotation, texelFetch(position_before, a).xyz) +
+        vec3 p = rotate(collide_params.head_rotation, position_before(a).xyz) +
                  collide_params.head_translation.xyz;
         clearances[a] = nearest_surface(p).distance - SLACK * collide_params.longest;
     }
@@ -106,10 +119,10 @@ void main()
 vec3 particle_before(int address, vec3 from)
 {
 #if MODE == SEGMENTS
-    vec4 segment = texelFetch(segments_before, address);
+    vec4 segment = segment_before(address);
     return from + segment.w * segment.xyz;
 #else
-    return texelFetch(position_before, address).xyz;
+    return position_before(address).xyz;
 #endif
 }
 
@@ -193,7 +206,7 @@ bool touches(Strand strand, out float inside)
 #if MODE == SEGMENTS
     vec3 tip = tips[2 * strand.number].xyz;
 #else
-    vec3 tip = texelFetch(position_before, last_address).xyz;
+    vec3 tip = position_before(last_address).xyz;
 #endif
     inside = 0.0;
     int group = 1;
@@ -227,7 +240,7 @@ void push_out(inout vec3 at, inout vec3 v, vec3 p, float l, float need, int addr
     tally.found = max(tally.found, depth);
     vec3 aim = at;
 #if MODE != DRAWN
-    vec4 before = texelFetch(contacts_before, address);
+    vec4 before = contact_before(address);
     vec3 surface = nearest.moved * head_displacement(at), slip = at - before.xyz - surface;
     aim -= before.w == collide_params.stamp_before
                ? held_back(slip, nearest.normal, max(depth, 0.0))
@@ -258,7 +271,7 @@ void walk(Strand strand, float inside, bool touched)
         vec3 x = particle_before(a, p_before), link = x - p_before, at = x, v = vec3(0.0);
         float l = length(link);
 #if MODE == PARTICLES
-        vec4 velocity = texelFetch(velocity_before, a);
+        vec4 velocity = velocity_before(a);
         v = velocity.xyz;
 #endif
         if (p != p_before) {
@@ -268,8 +281,7 @@ void walk(Strand strand, float inside, bool touched)
         float need = j < int(collide_params.carried) ? -1e30 : needed(a, inside, arc);
         push_out(at, v, p, l, need, a, tally);
 #if MODE == SEGMENTS
-        segments[a] =
-            at == x && p == p_before ? texelFetch(segments_before, a) : vec4((at - p) / l, l);
+        segments[a] = at == x && p == p_before ? segment_before(a) : vec4((at - p) / l, l);
 #else
         positions[a] = vec4(at, 1.0);
 #endif
@@ -319,7 +331,7 @@ void main()
 #if MODE == SEGMENTS
     vec3 at = rotate(collide_params.head_rotation, root.xyz) + collide_params.head_translation.xyz;
 #else
-    vec3 at = texelFetch(position_before, first).xyz;
+    vec3 at = position_before(first).xyz;
 #endif
     Strand strand = Strand(s, first, at, longest);
     float inside;

@@ -4,14 +4,20 @@
 //
 // SEGMENTS 1: `split`: the tip's change is the one whose shares come closest to what the particles
 // of the drawn strand would take (least squares)
+// ORDERED: see particles.glsl
 #define WHO 0
 #include "sim/volume.glsl"
 
 #if SEGMENTS
 layout(std430, binding = BIND_TIPS) buffer Tips { vec4 tips[]; };
 #else
-layout(binding = BIND_STATE) uniform samplerBuffer velocity_before;
 layout(std430, binding = BIND_STATE_OUT) buffer Velocities { vec4 velocities[]; };
+#if ORDERED
+#define velocity_before(address) velocities[address]
+#else
+layout(binding = BIND_STATE) uniform samplerBuffer velocity_texels;
+#define velocity_before(address) texelFetch(velocity_texels, address)
+#endif
 #endif
 layout(binding = BIND_VOLUME_CHANGES) uniform samplerBuffer changes;
 layout(std430, binding = BIND_VOLUME_DENSE_OUT) readonly buffer Dense { uint dense[]; };
@@ -40,7 +46,7 @@ void main()
                 pushed += i < end && is_slow(v) ? share * (change.xyz - change.w * v) : vec3(0.0);
 #else
                 int a = first + min(j + i, n - 1) * STRAND_TILE;
-                vec4 v = texelFetch(velocity_before, a);
+                vec4 v = velocity_before(a);
                 vec3 relative = v.xyz - away;
                 if (i < end && is_slow(relative))
                     velocities[a] = vec4(v.xyz + change.xyz - change.w * relative, v.w);

@@ -87,8 +87,9 @@ Result step_pass_create(StepPass *pass, const Gpu *gpu, const char *shader,
                         const ShaderDefine *defines, Error *error)
 {
     *pass = (StepPass){.limits = &gpu->limits};
-    ShaderDefine all[2 + STEP_OWN_DEFINES] = {{"GROUP_SIZE", gpu->limits.sizes.strands}};
-    for (int i = 0; defines && defines[i].name; ++i) all[1 + i] = defines[i];
+    ShaderDefine all[3 + STEP_OWN_DEFINES] = {{"GROUP_SIZE", gpu->limits.sizes.strands},
+                                              {"ORDERED", gpu->kind == GPU_HARDWARE}};
+    for (int i = 0; defines && defines[i].name; ++i) all[2 + i] = defines[i];
     return shader_build_compute(&pass->program, shader, all, error);
 }
 
