@@ -44,9 +44,15 @@ SimdLevel simd_level(void);
     {                                                                                              \
         name((const type *)data, part);                                                            \
     }                                                                                              \
+    SIMD_FOR_AVX512 static void name##_avx512(void *data, int part)                                \
+    {                                                                                              \
+        name((const type *)data, part);                                                            \
+    }                                                                                              \
     static void run_##name(type *data, int parts)                                                  \
     {                                                                                              \
-        parallel_run(parts, simd_level() >= SIMD_AVX2 ? name##_avx2 : name##_any, data);           \
+        static void (*const versions[SIMD_LEVELS])(void *, int) = {name##_any, name##_avx2,        \
+                                                                   name##_avx512};                 \
+        parallel_run(parts, versions[simd_level()], data);                                         \
     }
 
 SIMD_INLINE float simd_float_of(uint32_t bits)

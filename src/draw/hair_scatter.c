@@ -102,6 +102,7 @@ static Result reserve_seen(HairScatter *scatter, uint32_t i, const ShadowCaster 
 static bool map_shadows(HairScatter *scatter, const HairShadowCpu *cpu, const HairBatch *batch,
                         uint32_t i, GridHair *hair)
 {
+    hair->caster.order = cpu->casters[i].order;
     if (cpu->copies) {
         hair->caster.position = cpu->casters[i].position;
         hair->caster.paint = cpu->casters[i].paint;

@@ -41,6 +41,7 @@ void hair_shadow_cpu_destroy(HairShadowCpu *cpu)
     shadow_map_destroy(&cpu->map);
     shadow_points_destroy(&cpu->points);
     shadow_past_destroy(&cpu->past);
+    tile_order_destroy(&cpu->order);
     forget_room(cpu);
 }
 
@@ -155,6 +156,7 @@ Result hair_shadow_cpu_begin(HairShadowCpu *cpu, const GpuLimits *limits, int ma
     TRY(make_lights(cpu, limits, maps, casters, error));
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     if (map_all(cpu, casters, depths, texels)) {
+        tile_order_find(&cpu->order, cpu->casters, cpu->count);
         shadow_points_find(&cpu->points, cpu->casters, cpu->count, cpu->map.parts);
         return RESULT_OK;
     }

@@ -7,6 +7,7 @@
 #include "draw/shadow_map.h"
 #include "draw/shadow_past.h"
 #include "draw/shadow_points.h"
+#include "draw/tile_order.h"
 
 // Hair that stands in the light: the ribbons that are drawn, with the material's shadow_opacity.
 typedef struct ShadowCaster {
@@ -30,6 +31,7 @@ typedef struct SharedBuffer {
 typedef struct HairShadowCpu {
     ShadowMap map;
     ShadowPoints points;
+    TileOrder order;
     MappedCaster *casters; // [room], owned
     uint32_t count, room;
     ParticleLight *lights; // [room], owned

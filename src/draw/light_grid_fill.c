@@ -342,7 +342,8 @@ SIMD_INLINE void place(const Fill *fill, int part)
     for (uint32_t h = 0; h < fill->scene->hair_count; ++h) {
         const GridHair *hair = &fill->scene->hair[h];
         tile_range(hair, part, state->parts, range);
-        for (int tile = range[0]; tile < range[1]; ++tile) {
+        for (int turn = range[0]; turn < range[1]; ++turn) {
+            int tile = (int)mapped_caster_tile(&hair->caster, turn);
             turn_points(&state->lattice, tile_points(hair, tile, 0), s.b);
             for (int j = 0; j + 1 < (int)hair->caster.material.vertex_count; ++j) {
                 memcpy(s.a, s.b, sizeof s.a);

@@ -370,7 +370,8 @@ SIMD_INLINE void gather_hair(const Gather *gather, int part)
         int64_t tiles = ((int64_t)hair->caster.material.drawn_strands + W - 1) / W;
         int first = (int)(tiles * part / gather->state->parts),
             end = (int)(tiles * (part + 1) / gather->state->parts);
-        for (int tile = first; tile < end && hair->seen; ++tile) gather_tile(gather, hair, tile);
+        for (int turn = first; turn < end && hair->seen; ++turn)
+            gather_tile(gather, hair, (int)mapped_caster_tile(&hair->caster, turn));
     }
 }
 

@@ -6,18 +6,27 @@
 #include "glsl/draw/material.h"
 #include "glsl/draw/shadow.h"
 
+#include <stddef.h>
+
 // Laid out as in HairBatch.
 typedef struct MappedCaster {
     const float (*position)[4];
     const uint32_t (*paint)[4];            // see look_paint; NULL: none
     const float (*points)[3][STRAND_TILE]; // [tile][point], see shadow_points.h; NULL: none
-    MaterialParams material;               // smooth_parts at least 1
+    const uint32_t *order;   // of tiles, see tile_order.h; NULL: that of their numbers
+    MaterialParams material; // smooth_parts at least 1
 } MappedCaster;
 
 typedef struct MappedCasters {
     const MappedCaster *list;
     uint32_t count;
 } MappedCasters;
+
+// The tile to walk at place `turn`.
+static inline size_t mapped_caster_tile(const MappedCaster *caster, int turn)
+{
+    return caster->order ? caster->order[turn] : (size_t)turn;
+}
 
 // Points of a strand: its particles, or those of its curve.
 static inline int mapped_caster_points(const MappedCaster *caster)

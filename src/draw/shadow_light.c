@@ -105,7 +105,7 @@ SIMD_INLINE void find_light(const Search *search, int part)
         Tile tile = open_tile(caster, t);
         for (int j = 0; j < mapped_caster_points(caster); ++j) {
             find_places(search->params, &tile, j, &places);
-            size_t at = ((size_t)t * (size_t)mapped_caster_points(caster) + (size_t)j) * W;
+            size_t at = (tile.number * (size_t)mapped_caster_points(caster) + (size_t)j) * W;
             find_lights(search, &tile, &places, search->left + at,
                         search->behind ? search->behind + at : NULL);
         }

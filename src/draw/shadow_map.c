@@ -49,15 +49,18 @@ static size_t count_parts(size_t map_bytes)
 
 Result shadow_map_create(ShadowMap *shadow, int side, bool deep, Error *error)
 {
-    size_t texels = (size_t)side * (size_t)side,
-           parts = count_parts((deep ? LAYERS : 1) * texels * sizeof *shadow->sums),
+    size_t texels = (size_t)side * (size_t)side, wide = ((size_t)side + 47) / 64 * 64 + 16,
+           row = (size_t)side * wide,
+           parts = count_parts(deep ? LAYERS * row * sizeof *shadow->sums
+                                    : texels * sizeof *shadow->first),
            coarse = (size_t)(deep ? side / SHADOW_COARSE : side);
-    *shadow = (ShadowMap){.side = side, .coarse = (int)coarse, .deep = deep, .parts = (int)parts};
+    *shadow = (ShadowMap){
+        .side = side, .wide = (int)wide, .coarse = (int)coarse, .deep = deep, .parts = (int)parts};
     shadow->first = malloc(parts * coarse * coarse * sizeof *shadow->first);
     if (deep) {
         shadow->least = malloc(2 * (coarse + 2) * (coarse + 2) * sizeof *shadow->least);
         shadow->depths = malloc(texels * sizeof *shadow->depths);
-        shadow->sums = malloc(parts * LAYERS * texels * sizeof *shadow->sums);
+        shadow->sums = malloc(parts * LAYERS * row * sizeof *shadow->sums);
         shadow->rows = malloc(parts * LINES * ((size_t)side + 2) * sizeof *shadow->rows);
     }
     if (shadow->first &&
@@ -109,7 +112,8 @@ SIMD_INLINE void find_box(const Cast *cast, int part)
     for (int k = 0; k < W; ++k)
         for (int i = 0; i < 6; ++i) box[i][k] = i < 3 ? INFINITY : -INFINITY;
     for (uint32_t c = 0; c < cast->casters.count; ++c) {
-        const MappedCaster *caster = &cast->casters.list[c];
+        MappedCaster plain = cast->casters.list[c], *caster = &plain;
+        plain.order = NULL; // each tile is read once
         find_range(caster, part, cast->shadow->parts, range);
         for (int t = range[0]; t < range[1]; ++t) {
             Tile tile = open_tile(caster, t);
@@ -204,7 +208,7 @@ SIMD_INLINE void empty_queue(Queue *queue, uint32_t *sums)
 SIMD_INLINE void add_points(const Cast *cast, const Points *points, Queue *queue, uint32_t *sums)
 {
     const float *depths = cast->shadow->depths;
-    int side = cast->shadow->side;
+    int side = cast->shadow->side, wide = cast->shadow->wide;
     float edge = (float)side - 0.5f;
     for (int turn = 0; turn < points->most; ++turn) {
         int place[W];
@@ -212,7 +216,7 @@ SIMD_INLINE void add_points(const Cast *cast, const Points *points, Queue *queue
         for (int k = 0; k < W; ++k) {
             Spot spot = find_spot(points, k, turn, edge);
             int layer = (int)layer_of(spot.z - depths[spot.row * side + spot.column]);
-            place[k] = (spot.row * LAYERS + layer) * side + spot.column;
+            place[k] = (spot.row * LAYERS + layer) * wide + spot.column;
             part[k] = spot.inside ? points->part[k] : 0;
         }
         memcpy(queue->place + queue->count, place, sizeof place);
@@ -260,7 +264,8 @@ static void lay_wide(const Cast *cast, const Tile *tile, const Points *p, int k,
         if (!(u >= 0 && v >= 0 && u <= (float)side - 0.5f && v <= (float)side - 0.5f)) continue;
         int row = (int)v, texel = row * side + (int)u;
         if (cast->deep)
-            sums[(row * LAYERS + (int)layer_of(z - shadow->depths[texel])) * side + (int)u] += part;
+            sums[(row * LAYERS + (int)layer_of(z - shadow->depths[texel])) * shadow->wide +
+                 (int)u] += part;
         else
             first[texel] = simd_min(simd_max(z, 0), first[texel]);
     }
@@ -287,14 +292,14 @@ SIMD_INLINE void lay_tile(const Cast *cast, const Tile *tile, bool deep, Queue *
 SIMD_INLINE void lay_hair(const Cast *cast, int part, bool deep)
 {
     const ShadowMap *shadow = cast->shadow;
-    size_t texels = (size_t)shadow->side * (size_t)shadow->side,
+    size_t words = LAYERS * (size_t)shadow->side * (size_t)shadow->wide,
            coarse = (size_t)shadow->coarse * (size_t)shadow->coarse;
-    uint32_t *sums = deep ? shadow->sums + (size_t)part * LAYERS * texels : NULL;
+    uint32_t *sums = deep ? shadow->sums + (size_t)part * words : NULL;
     float *first = shadow->first + (size_t)part * coarse;
     Queue queue;
     int range[2];
     queue.count = 0;
-    if (deep) memset(sums, 0, LAYERS * texels * sizeof *sums);
+    if (deep) memset(sums, 0, words * sizeof *sums);
     for (size_t i = 0; !deep && i < coarse; ++i) first[i] = 1;
     for (uint32_t c = 0; c < cast->casters.count; ++c) {
         const MappedCaster *caster = &cast->casters.list[c];
@@ -332,9 +337,9 @@ SIMD_INLINE void gather_row(const ShadowMap *shadow, int row, float *line, float
 {
     int side = shadow->side;
     row = row < 0 ? 0 : row >= side ? side - 1 : row;
-    size_t width = (size_t)side, map = width * LAYERS * width;
+    size_t wide = (size_t)shadow->wide, map = (size_t)side * LAYERS * wide;
     for (size_t layer = 0; layer < LAYERS; ++layer, smooth += side) {
-        const uint32_t *sums = shadow->sums + ((size_t)row * LAYERS + layer) * width;
+        const uint32_t *sums = shadow->sums + ((size_t)row * LAYERS + layer) * wide;
         for (int x = 0; x < side; ++x) line[x + 1] = (float)(int)sums[x];
         for (int part = 1; part < shadow->parts; ++part) {
             sums += map;

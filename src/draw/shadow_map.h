@@ -13,12 +13,13 @@
 // threads where such maps would take more than 256 MiB.
 typedef struct ShadowMap {
     int side, coarse; // texels across a map and across that of the first depths
+    int wide;         // of `sums`, from row to row of a layer: rows must not share lines of caches
     bool deep;
     int parts;
     float *first;   // [parts][coarse][coarse], owned; 1: no hair
     float *least;   // [2][coarse + 2][coarse + 2], owned, deep: for spread
     float *depths;  // [side][side], owned, deep: where layers begin
-    uint32_t *sums; // [parts][side][SHADOW_LAYERS][side], owned, deep
+    uint32_t *sums; // [parts][side][SHADOW_LAYERS][wide], owned, deep
     float *rows;    // owned, deep: for finish
 } ShadowMap;
 

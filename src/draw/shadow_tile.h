@@ -163,11 +163,12 @@ SIMD_INLINE void find_places(const CastParams *params, const Tile *tile, int k, 
     find_radii(tile, k, places->radius);
 }
 
-// Tile `number` of a caster.
-static inline Tile open_tile(const MappedCaster *caster, int number)
+// The tile of a caster whose turn it is.
+static inline Tile open_tile(const MappedCaster *caster, int turn)
 {
     const MaterialParams *material = &caster->material;
-    int first = number * W, left = (int)material->drawn_strands - first;
+    int number = (int)mapped_caster_tile(caster, turn), first = number * W,
+        left = (int)material->drawn_strands - first;
     Tile tile = {.caster = caster, .number = (size_t)number, .strands = left < W ? left : W};
     for (int k = 0; k < W; ++k) {
         bool last = first + k == (int)material->last_strand;
