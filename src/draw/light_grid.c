@@ -185,7 +185,7 @@ Result light_grid_solve(LightGrid *grid, const GridScene *scene, Error *error)
         bool more = light_grid_needs_more(state, all);
         if (order > 1 && !more) break;
     }
-    if (scene->orders > 1) light_grid_close(state);
+    light_grid_close(state, scene->orders > 1);
     return RESULT_OK;
 }
 
@@ -208,8 +208,10 @@ void light_grid_destroy(LightGrid *grid)
     free(state->items);
     free(state->cell_of);
     free(state->depth);
-    free(state->left);
-    free(state->mean);
+    free(state->passage);
+    free(state->sum);
+    free(state->walls);
+    free(state->spans);
     free(state->source);
     free(state->order);
     free(state->light);

@@ -383,17 +383,17 @@ static bool grow_slots(LightGridState *state)
 {
     size_t filled = (size_t)state->filled, active = (size_t)state->active;
     size_t of[10];
-    for (int i = 0; i < 10; ++i) of[i] = i < 6 || i == 9 ? state->filled_room : state->slot_room;
+    for (int i = 0; i < 10; ++i) of[i] = i < 5 || i == 9 ? state->filled_room : state->slot_room;
     filled += filled / 4, active += active / 4;
     if (state->filled_room >= (size_t)state->filled && state->slot_room >= (size_t)state->active)
         return true;
     bool good = grow(&state->depth, &of[0], filled, ORDINATES * sizeof(float)) &&
-                grow(&state->left, &of[1], filled, ORDINATES * sizeof(float)) &&
-                grow(&state->mean, &of[2], filled, ORDINATES * sizeof(float)) &&
-                grow(&state->source, &of[3], filled, GRID_WIDE * sizeof(float)) &&
-                grow(&state->tint, &of[4], filled, 3 * sizeof(float)) &&
+                grow(&state->passage, &of[1], filled, GRID_WIDE * sizeof(float)) &&
+                grow(&state->source, &of[2], filled, GRID_WIDE * sizeof(float)) &&
+                grow(&state->tint, &of[3], filled, 3 * sizeof(float)) &&
                 grow(&state->glow, &of[9], filled, 3 * sizeof(float)) &&
-                grow(&state->class, &of[5], filled, sizeof(int)) &&
+                grow(&state->class, &of[4], filled, sizeof(int)) &&
+                grow(&state->sum, &of[5], active, GRID_WIDE * sizeof(float)) &&
                 grow(&state->order, &of[6], active, GRID_WIDE * sizeof(float)) &&
                 grow(&state->light, &of[7], active, GRID_WIDE * sizeof(float)) &&
                 grow(&state->hidden, &of[8], active, 4 * sizeof(float));
@@ -559,9 +559,10 @@ SIMD_INLINE void fill_depths(const CellSum *sum, float depth[ORDINATES])
 }
 
 SIMD_INLINE void fill_source(const LightGridState *state, const GridScene *scene,
-                             const CellSum *sum, int f, float source[GRID_WIDE])
+                             const CellSum *sum, int f)
 {
     const float *depth = state->depth + (size_t)f * ORDINATES, *tint = state->tint + 3 * f;
+    float source[GRID_WIDE];
     for (int i = 0; i < GRID_WIDE; ++i) source[i] = 0;
     for (int l = 0; l < state->lights; ++l) {
         float part[GRID_WIDE] = {0}, passed = find_passed(state, scene, f, l);
@@ -581,6 +582,8 @@ SIMD_INLINE void fill_source(const LightGridState *state, const GridScene *scene
                 }
             }
     }
+    for (int g = 0; g < ORDINATE_GROUPS; ++g)
+        memcpy(grid_source(state, g, f), source + g * GROUP_WIDE, GROUP_WIDE * sizeof *source);
 }
 
 // A matt surface in a light of 1 that it is square to shows its colour; those in a cell lie any way
@@ -605,13 +608,17 @@ static void fill_glow(const LightGridState *state, const GridScene *scene, const
 // Along a direction a cell is as long as its side over the direction's main component.
 SIMD_INLINE void fill_passage(LightGridState *state, int f)
 {
-    float *depth = state->depth + (size_t)f * ORDINATES,
-          *left = state->left + (size_t)f * ORDINATES, *mean = state->mean + (size_t)f * ORDINATES;
-    for (int d = 0; d < ORDINATES; ++d) {
-        float main = fabsf(ORDINATE[d / (2 * GRID_LANES)][d]), tau = depth[d] / main,
-              through = simd_exp2(-(float)LOG2E * simd_min(tau, 40));
-        left[d] = through;
-        mean[d] = tau > 1e-3f ? (1 - through) / tau : 1 - 0.5f * tau;
+    const float *depth = state->depth + (size_t)f * ORDINATES;
+    for (int g = 0; g < ORDINATE_GROUPS; ++g) {
+        float *left = grid_passage(state, g, f), *mean = left + GRID_LANES;
+        memcpy(mean + GRID_LANES, depth + g * GRID_LANES, GRID_LANES * sizeof *depth);
+        for (int l = 0; l < GRID_LANES; ++l) {
+            int d = g * GRID_LANES + l;
+            float main = fabsf(ORDINATE[g / 2][d]), tau = depth[d] / main,
+                  through = simd_exp2(-(float)LOG2E * simd_min(tau, 40));
+            left[l] = through;
+            mean[l] = tau > 1e-3f ? (1 - through) / tau : 1 - 0.5f * tau;
+        }
     }
 }
 
@@ -639,7 +646,7 @@ SIMD_INLINE void fill_cells(const CellFill *fill, int part)
         for (int k = 0; k < 3; ++k)
             state->tint[3 * f + k] =
                 state->tinted && sum->whole ? (float)sum->tint[k] / (float)sum->whole : 1;
-        fill_source(state, fill->scene, sum, f, state->source + (size_t)f * GRID_WIDE);
+        fill_source(state, fill->scene, sum, f);
         fill_glow(state, fill->scene, sum, f);
         state->class[f] = find_main_class(sum);
         fill_passage(state, f);
@@ -678,7 +685,8 @@ static Result fill_all(LightGridState *state, const GridScene *scene, Error *err
     Fill fill = {.state = state, .scene = scene};
     run_place(&fill, state->parts);
     make_slots(state);
-    if (!grow(&state->items, &state->item_room,
+    if (!light_grid_find_walls(state, scene) || !light_grid_find_spans(state) ||
+        !grow(&state->items, &state->item_room,
               (size_t)state->item_count * (size_t)state->item_words, sizeof *state->items) ||
         !grow_slots(state))
         return RESULT_FAILED;

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { GROUP_WIDE = 3 * GRID_LANES, TAPS = 3 };
+enum { TAPS = 3 };
 
 typedef struct Sweep {
     LightGridState *state;
@@ -22,6 +22,8 @@ typedef struct GroupWay {
     bool forward;
     float taps[2][TAPS][GRID_LANES]; // weights of the cells before, by the axes across
     float sky[GROUP_WIDE];
+    ptrdiff_t stride[3], step[3]; // of slots and of walls, along `main` and the axes across
+    const float *walls[3];        // shares that pass the mesh along those axes; NULL: there is none
 } GroupWay;
 
 // From above (+y of the world) comes the sky, from below the ground, evenly between them.
@@ -36,6 +38,19 @@ static void find_sky(const Sweep *sweep, int group, float sky[GROUP_WIDE])
             sky[c * GRID_LANES + l] =
                 sweep->sky ? draw->ground[c] + (0.5f + 0.5f * up) * (draw->sky[c] - draw->ground[c])
                            : 0;
+    }
+}
+
+static void find_strides(const LightGridState *state, GroupWay *way)
+{
+    const int *n = state->lattice.count;
+    const ptrdiff_t stride[3] = {1, n[0], (ptrdiff_t)n[0] * n[1]},
+                    step[3] = {1, n[0] + 2, (ptrdiff_t)(n[0] + 2) * (n[1] + 2)};
+    for (int k = 0; k < 3; ++k) {
+        int axis = k ? way->across[k - 1] : way->main;
+        way->stride[k] = stride[axis];
+        way->step[k] = step[axis];
+        way->walls[k] = grid_walls(state, axis);
     }
 }
 
@@ -56,60 +71,34 @@ static void find_way(const Sweep *sweep, int group, GroupWay *way)
         }
     }
     find_sky(sweep, group, way->sky);
+    find_strides(sweep->state, way);
 }
 
 // Added to all radiance: what thick hair leaves of it would else become so small that processors
 // need a hundred cycles for each operation with it (denormal numbers).
 #define LEAST_LIGHT 1e-30f
 
-// The weighted sum of three neighbours, `stride` floats apart; the mesh lets the share `low` of the
-// first one through, `high` of the last.
-SIMD_INLINE void blend(const float taps[TAPS][GRID_LANES], float low, float high, const float *from,
-                       size_t stride, float *out)
+// The weighted sum of three neighbours; the mesh lets the share `low` of the first one through,
+// `high` of the last.
+SIMD_INLINE void blend(const float taps[TAPS][GRID_LANES], float low, float high, const float *a,
+                       const float *b, const float *c, float *out)
 {
     const Lanes first = low * *(const Lanes *)taps[0], middle = *(const Lanes *)taps[1],
                 last = high * *(const Lanes *)taps[2];
-    for (int c = 0; c < 3; ++c) {
-        const float *at = from + c * GRID_LANES;
-        *(Lanes *)(out + c * GRID_LANES) = first * *(const Lanes *)at +
-                                           middle * *(const Lanes *)(at + stride) +
-                                           last * *(const Lanes *)(at + 2 * stride) + LEAST_LIGHT;
-    }
+    for (int k = 0; k < GROUP_WIDE; k += GRID_LANES)
+        *(Lanes *)(out + k) = first * *(const Lanes *)(a + k) + middle * *(const Lanes *)(b + k) +
+                              last * *(const Lanes *)(c + k) + LEAST_LIGHT;
 }
 
-// Share that the mesh lets through between the cell at `at`, which may lie beside the lattice, and
-// the one before it on an axis.
-static float passed_before(const Sweep *sweep, int axis, const int at[3])
+// Of a row of the slice before, blended along the first axis across.
+SIMD_INLINE void blend_row(const GroupWay *way, bool walls, const int cells[2], const float *wall,
+                           const float *before, float *row)
 {
-    const LightLattice *lattice = &sweep->state->lattice;
-    if (!sweep->scene->blocks) return 1;
-    for (int k = 0; k < 3; ++k)
-        if (at[k] < 0 || at[k] >= lattice->count[k]) return 1;
-    size_t cell =
-        ((size_t)at[2] * (size_t)lattice->count[1] + (size_t)at[1]) * (size_t)lattice->count[0] +
-        (size_t)at[0];
-    return sweep->scene->blocks->open[(size_t)axis * light_lattice_cells(lattice) + cell];
-}
-
-// The same between the cell and the one behind it.
-static float passed_behind(const Sweep *sweep, int axis, const int at[3])
-{
-    int next[3] = {at[0], at[1], at[2]};
-    ++next[axis];
-    return passed_before(sweep, axis, next);
-}
-
-// Of a row of the slice before, which lies at `at`, blended along the first axis across.
-SIMD_INLINE void blend_row(const Sweep *sweep, const GroupWay *way, int at[3], const float *before,
-                           int wide, float *row)
-{
-    int axis = way->across[0];
-    bool blocks = sweep->scene->blocks != NULL;
-    for (int x = 0; x < wide; ++x) {
-        at[axis] = x;
-        float low = blocks ? passed_before(sweep, axis, at) : 1,
-              high = blocks ? passed_behind(sweep, axis, at) : 1;
-        blend(way->taps[0], low, high, before + (size_t)x * GROUP_WIDE, GROUP_WIDE,
+    for (int x = cells[0]; x < cells[1]; ++x) {
+        float low = walls ? wall[x * way->step[1]] : 1,
+              high = walls ? wall[(x + 1) * way->step[1]] : 1;
+        const float *at = before + (size_t)x * GROUP_WIDE;
+        blend(way->taps[0], low, high, at, at + GROUP_WIDE, at + 2 * GROUP_WIDE,
               row + (size_t)x * GROUP_WIDE);
     }
 }
@@ -118,11 +107,9 @@ SIMD_INLINE void blend_row(const Sweep *sweep, const GroupWay *way, int at[3], c
 SIMD_INLINE void pass_cell(const Sweep *sweep, int group, int slot, float *io, float *mean)
 {
     const LightGridState *state = sweep->state;
-    size_t lane = (size_t)slot * ORDINATES + (size_t)group * GRID_LANES,
-           wide = (size_t)slot * GRID_WIDE + (size_t)group * GROUP_WIDE;
-    const Lanes left = *(const Lanes *)(state->left + lane),
-                share = *(const Lanes *)(state->mean + lane);
-    const float given = sweep->sourceless ? 0 : 1, *source = state->source + wide;
+    const float *passage = grid_passage(state, group, slot);
+    const Lanes left = *(const Lanes *)passage, share = *(const Lanes *)(passage + GRID_LANES);
+    const float given = sweep->sourceless ? 0 : 1, *source = grid_source(state, group, slot);
     for (int c = 0; c < 3; ++c) {
         Lanes *at = (Lanes *)(io + c * GRID_LANES);
         const Lanes s = given * *(const Lanes *)(source + c * GRID_LANES), in = *at - s;
@@ -131,33 +118,37 @@ SIMD_INLINE void pass_cell(const Sweep *sweep, int group, int slot, float *io, f
     }
 }
 
-SIMD_INLINE void keep(const Sweep *sweep, int group, int slot, const float *mean, double sum[3])
+SIMD_INLINE void keep(const Sweep *sweep, int group, int slot, const float *mean)
 {
-    LightGridState *state = sweep->state;
-    size_t wide = (size_t)slot * GRID_WIDE + (size_t)group * GROUP_WIDE;
+    const LightGridState *state = sweep->state;
+    float *order = grid_lane(state, state->order, group, slot),
+          *sum = grid_lane(state, state->sum, group, slot);
     for (int c = 0; c < 3; ++c) {
         const Lanes here = *(const Lanes *)(mean + c * GRID_LANES);
-        Lanes *light = (Lanes *)(state->light + wide + c * GRID_LANES);
-        *(Lanes *)(state->order + wide + c * GRID_LANES) = here;
+        Lanes *light = (Lanes *)(sum + c * GRID_LANES);
+        *(Lanes *)(order + c * GRID_LANES) = here;
         if (sweep->fresh)
             *light = here;
         else
             *light += here;
-        if (slot >= state->filled) continue;
-        const Lanes met = here * *(const Lanes *)(state->depth + (size_t)slot * ORDINATES +
-                                                  (size_t)group * GRID_LANES);
+    }
+}
+
+// Adds what the cell's hair meets.
+SIMD_INLINE void add_met(const LightGridState *state, int group, int slot, const float *mean,
+                         double sum[3])
+{
+    const Lanes depth = *(const Lanes *)(grid_passage(state, group, slot) + 2 * GRID_LANES);
+    for (int c = 0; c < 3; ++c) {
+        const Lanes met = *(const Lanes *)(mean + c * GRID_LANES) * depth;
         sum[c] += (double)(((met[0] + met[1]) + (met[2] + met[3])) +
                            ((met[4] + met[5]) + (met[6] + met[7])));
     }
 }
 
 // What comes from the side of the mesh is what that sends back.
-SIMD_INLINE void meet_mesh(const Sweep *sweep, const GroupWay *way, const int at[3], int slot,
-                           float *io)
+SIMD_INLINE void meet_mesh(const LightGridState *state, float passed, int slot, float *io)
 {
-    const LightGridState *state = sweep->state;
-    float passed =
-        way->forward ? passed_before(sweep, way->main, at) : passed_behind(sweep, way->main, at);
     for (int c = 0; c < 3; ++c) {
         float glow = slot >= 0 && slot < state->filled ? state->glow[3 * slot + c] : 0;
         Lanes *lanes = (Lanes *)(io + c * GRID_LANES);
@@ -170,46 +161,84 @@ SIMD_INLINE void cross_cell(const Sweep *sweep, int group, int slot, float *io, 
 {
     if (slot < 0) return;
     if (slot >= sweep->state->filled) {
-        keep(sweep, group, slot, io, sum);
+        keep(sweep, group, slot, io);
         return;
     }
     float mean[GROUP_WIDE];
     pass_cell(sweep, group, slot, io, mean);
-    keep(sweep, group, slot, mean, sum);
+    keep(sweep, group, slot, mean);
+    add_met(sweep->state, group, slot, mean, sum);
 }
 
-// `rows`: three rows of the slice before, of which one is made anew for each row of cells.
-SIMD_INLINE void sweep_slice(const Sweep *sweep, const GroupWay *way, int group, int slice,
-                             const float *before, float *after, float *rows, double sum[3])
+// Row y of the cells of a slice: from three rows of the slice before, to `out`.
+SIMD_INLINE void sweep_row(const Sweep *sweep, const GroupWay *way, int group, bool walls,
+                           int slice, int y, const int cells[2], const float *const rows[3],
+                           float *out, double sum[3])
+{
+    const LightGridState *state = sweep->state;
+    const int *slot = state->slot + slice * way->stride[0] + y * way->stride[2];
+    ptrdiff_t at = slice * way->step[0] + y * way->step[2];
+    for (int x = cells[0]; x < cells[1]; ++x) {
+        size_t column = (size_t)x * GROUP_WIDE;
+        ptrdiff_t here = at + x * way->step[1];
+        float low = walls ? way->walls[2][here] : 1,
+              high = walls ? way->walls[2][here + way->step[2]] : 1;
+        blend(way->taps[1], low, high, rows[0] + column, rows[1] + column, rows[2] + column,
+              out + column);
+        float passed = walls ? way->walls[0][here + (way->forward ? 0 : way->step[0])] : 1;
+        int own = slot[x * way->stride[1]];
+        if (passed != 1) meet_mesh(state, passed, own, out + column);
+        cross_cell(sweep, group, own, out + column, sum);
+    }
+}
+
+// The planes of a sweep: of the slice before and of this one, each with a cell around, and three
+// rows.
+typedef struct Planes {
+    const float *before;
+    float *after, *rows;
+} Planes;
+
+static void fill_cells(float *row, int first, int end, const float sky[GROUP_WIDE])
+{
+    for (int x = first; x < end; ++x)
+        memcpy(row + (size_t)x * GROUP_WIDE, sky, GROUP_WIDE * sizeof *sky);
+}
+
+// Cells that are needed but not swept get what comes from around.
+static void fill_rest(const Sweep *sweep, const GroupWay *way, const GridSpan *span, float *row)
+{
+    float around[GROUP_WIDE];
+    for (int i = 0; i < GROUP_WIDE; ++i) around[i] = way->sky[i] + LEAST_LIGHT;
+    if (sweep->sky) return; // all that are needed are swept
+    int middle = span->swept[0] < span->swept[1] ? span->swept[0] : span->needed[1];
+    fill_cells(row, span->needed[0], middle, around);
+    if (middle == span->swept[0]) fill_cells(row, span->swept[1], span->needed[1], around);
+}
+
+SIMD_INLINE void sweep_slice(const Sweep *sweep, const GroupWay *way, int group, bool walls,
+                             int slice, const Planes *planes, double sum[3])
 {
     const int *n = sweep->state->lattice.count;
-    const size_t strides[3] = {1, (size_t)n[0], (size_t)n[0] * (size_t)n[1]};
-    int at[3], from[3], wide = n[way->across[0]], tall = n[way->across[1]], axis = way->across[1];
-    bool blocks = sweep->scene->blocks != NULL;
-    size_t row = ((size_t)wide + 2) * GROUP_WIDE, used = (size_t)wide * GROUP_WIDE,
-           step = strides[way->across[0]];
-    at[way->main] = slice;
-    from[way->main] = way->forward ? slice - 1 : slice + 1;
-    // Rows lie at y % 3 and, so that three in their order are one piece, once more behind them.
+    int wide = n[way->across[0]], tall = n[way->across[1]];
+    size_t row = ((size_t)wide + 2) * GROUP_WIDE, used = (size_t)wide * GROUP_WIDE;
+    const GridSpan *spans = grid_spans(sweep->state, group, slice);
+    ptrdiff_t wall = (way->forward ? slice - 1 : slice + 1) * way->step[0] - way->step[2];
+    // Row y of the slice before lies at y % 3, for the three rows of cells around it.
     for (int y = 0; y < tall + 2; ++y) {
-        float *own = rows + (size_t)(y % 3) * used;
-        from[axis] = y - 1;
-        blend_row(sweep, way, from, before + (size_t)y * row, wide, own);
-        memcpy(own + 3 * used, own, used * sizeof *own);
+        int blended[2] = {wide, 0};
+        for (int around = y < 2 ? 0 : y - 2; around <= y && around < tall; ++around)
+            grid_span_join(blended, grid_span_cells(&spans[around], sweep->sky));
+        blend_row(way, walls, blended, walls ? way->walls[1] + wall + y * way->step[2] : NULL,
+                  planes->before + (size_t)y * row, planes->rows + (size_t)(y % 3) * used);
         if (y < 2) continue;
-        at[axis] = y - 2;
-        const float *first = rows + (size_t)((y - 2) % 3) * used;
-        float *out = after + (size_t)(y - 1) * row + GROUP_WIDE;
-        const int *slot = sweep->state->slot + (size_t)slice * strides[way->main] +
-                          (size_t)(y - 2) * strides[axis];
-        for (int x = 0; x < wide; ++x, first += GROUP_WIDE, out += GROUP_WIDE, slot += step) {
-            at[way->across[0]] = x;
-            float low = blocks ? passed_before(sweep, axis, at) : 1,
-                  high = blocks ? passed_behind(sweep, axis, at) : 1;
-            blend(way->taps[1], low, high, first, used, out);
-            if (blocks) meet_mesh(sweep, way, at, *slot, out);
-            cross_cell(sweep, group, *slot, out, sum);
-        }
+        const float *const rows[3] = {planes->rows + (size_t)((y - 2) % 3) * used,
+                                      planes->rows + (size_t)((y - 1) % 3) * used,
+                                      planes->rows + (size_t)(y % 3) * used};
+        float *out = planes->after + (size_t)(y - 1) * row + GROUP_WIDE;
+        fill_rest(sweep, way, &spans[y - 2], out);
+        sweep_row(sweep, way, group, walls, slice, y - 2,
+                  grid_span_cells(&spans[y - 2], sweep->sky), rows, out, sum);
     }
 }
 
@@ -219,29 +248,33 @@ static void fill_plane(float *plane, size_t floats, const float sky[GROUP_WIDE])
         memcpy(plane + i, sky, GROUP_WIDE * sizeof *sky);
 }
 
-SIMD_INLINE void sweep_group(const Sweep *sweep, int group)
+SIMD_INLINE void sweep_slices(const Sweep *sweep, const GroupWay *way, int group, bool walls)
 {
     LightGridState *state = sweep->state;
-    GroupWay way;
-    find_way(sweep, group, &way);
-    int slices = state->lattice.count[way.main];
+    const int *n = state->lattice.count;
+    int slices = n[way->main];
     float *planes[2] = {state->planes + (size_t)(3 * group) * state->plane,
                         state->planes + (size_t)(3 * group + 1) * state->plane},
           *rows = state->planes + (size_t)(3 * group + 2) * state->plane;
     double *sum = state->sums[1][group];
     memset(sum, 0, sizeof state->sums[1][group]);
-    size_t used = ((size_t)state->lattice.count[way.across[0]] + 2) *
-                  ((size_t)state->lattice.count[way.across[1]] + 2) * GROUP_WIDE;
-    for (int k = 0; k < 2; ++k) fill_plane(planes[k], used, way.sky);
+    size_t used = ((size_t)n[way->across[0]] + 2) * ((size_t)n[way->across[1]] + 2) * GROUP_WIDE;
+    for (int k = 0; k < 2; ++k) fill_plane(planes[k], used, way->sky);
     for (int i = 0; i < slices; ++i)
-        sweep_slice(sweep, &way, group, way.forward ? i : slices - 1 - i, planes[i % 2],
-                    planes[(i + 1) % 2], rows, sum);
+        sweep_slice(sweep, way, group, walls, way->forward ? i : slices - 1 - i,
+                    &(Planes){planes[i % 2], planes[(i + 1) % 2], rows}, sum);
 }
 
 SIMD_INLINE void sweep_groups(const Sweep *sweep, int part)
 {
-    for (int group = part; group < ORDINATE_GROUPS; group += sweep->parts)
-        sweep_group(sweep, group);
+    for (int group = part; group < ORDINATE_GROUPS; group += sweep->parts) {
+        GroupWay way;
+        find_way(sweep, group, &way);
+        if (way.walls[0])
+            sweep_slices(sweep, &way, group, true);
+        else
+            sweep_slices(sweep, &way, group, false);
+    }
 }
 
 SIMD_STAGE(sweep_groups, Sweep)
@@ -257,31 +290,31 @@ void light_grid_sweep(LightGridState *state, const GridScene *scene, bool sky, b
 
 // --- Scattering.
 
-// The lanes of one channel, in the order of cells' floats.
-SIMD_INLINE void scatter_channel(const float (*rows)[ORDINATES], const float *in, int channel,
-                                 float tint, float *out)
+// Of one channel of cell f.
+SIMD_INLINE void scatter_channel(const LightGridState *state, const float (*rows)[ORDINATES], int f,
+                                 int channel, float tint)
 {
     float sum[ORDINATES];
     for (int d = 0; d < ORDINATES; ++d) sum[d] = 0;
     for (int g = 0; g < ORDINATE_GROUPS; ++g)
         for (int l = 0; l < GRID_LANES; ++l) {
-            float from = in[g * GROUP_WIDE + channel * GRID_LANES + l];
+            float from = grid_lane(state, state->order, g, f)[channel * GRID_LANES + l];
             const float *row = rows[g * GRID_LANES + l];
             for (int d = 0; d < ORDINATES; ++d) sum[d] += from * row[d];
         }
     for (int g = 0; g < ORDINATE_GROUPS; ++g)
         for (int l = 0; l < GRID_LANES; ++l)
-            out[g * GROUP_WIDE + channel * GRID_LANES + l] = tint * sum[g * GRID_LANES + l];
+            grid_source(state, g, f)[channel * GRID_LANES + l] = tint * sum[g * GRID_LANES + l];
 }
 
 // Of the last order the mesh sends back its colour's share, alike to all sides.
 SIMD_INLINE void reflect(const LightGridState *state, int f)
 {
-    const float *in = state->order + (size_t)f * GRID_WIDE;
     for (int c = 0; c < 3; ++c) {
         float sum = 0;
         for (int g = 0; g < ORDINATE_GROUPS; ++g)
-            for (int l = 0; l < GRID_LANES; ++l) sum += in[g * GROUP_WIDE + c * GRID_LANES + l];
+            for (int l = 0; l < GRID_LANES; ++l)
+                sum += grid_lane(state, state->order, g, f)[c * GRID_LANES + l];
         state->glow[3 * f + c] = state->mesh_color[c] * sum * (1.f / ORDINATES);
     }
 }
@@ -292,11 +325,10 @@ SIMD_INLINE void scatter(const LightGridState *state, int part)
         end = (int)((int64_t)state->filled * (part + 1) / state->parts);
     for (int f = first; f < end; ++f) {
         const GridKind *kind = &state->kinds[state->class[f] / TANGENTS];
-        const float *in = state->order + (size_t)f * GRID_WIDE;
-        float *out = state->source + (size_t)f * GRID_WIDE;
         for (int c = 0; c < 3; ++c)
-            scatter_channel((const float(*)[ORDINATES])kind->scatter[state->class[f] % TANGENTS][c],
-                            in, c, state->tint[3 * f + c], out);
+            scatter_channel(state,
+                            (const float(*)[ORDINATES])kind->scatter[state->class[f] % TANGENTS][c],
+                            f, c, state->tint[3 * f + c]);
         reflect(state, f);
     }
 }
@@ -306,56 +338,4 @@ SIMD_STAGE(scatter, LightGridState)
 void light_grid_scatter(LightGridState *state)
 {
     run_scatter(state, state->parts);
-}
-
-// --- The orders that are not swept.
-
-// Of two orders after each other what hair meets falls by this factor.
-static double falling(const LightGridState *state, int channel)
-{
-    double before = 0, last = 0;
-    for (int g = 0; g < ORDINATE_GROUPS; ++g) {
-        before += state->sums[0][g][channel];
-        last += state->sums[1][g][channel];
-    }
-    return before > 0 ? fmin(last / before, 0.95) : 0;
-}
-
-bool light_grid_needs_more(const LightGridState *state, double all[3])
-{
-    const double most_left = 0.05;
-    bool more = false;
-    for (int c = 0; c < 3; ++c) {
-        double last = 0, ratio = falling(state, c);
-        for (int g = 0; g < ORDINATE_GROUPS; ++g) last += state->sums[1][g][c];
-        all[c] += last;
-        double left = last * ratio / (1 - ratio);
-        more |= left > most_left * (all[c] + left);
-    }
-    return more;
-}
-
-SIMD_INLINE void close_lights(const LightGridState *state, int part)
-{
-    float more[3];
-    for (int c = 0; c < 3; ++c) {
-        double ratio = falling(state, c);
-        more[c] = (float)(ratio / (1 - ratio));
-    }
-    int first = (int)((int64_t)state->active * part / state->parts),
-        end = (int)((int64_t)state->active * (part + 1) / state->parts);
-    for (size_t s = (size_t)first; s < (size_t)end; ++s)
-        for (int g = 0; g < ORDINATE_GROUPS; ++g)
-            for (int c = 0; c < 3; ++c) {
-                size_t at = s * GRID_WIDE + (size_t)(g * 3 + c) * GRID_LANES;
-                for (int l = 0; l < GRID_LANES; ++l)
-                    state->light[at + (size_t)l] += more[c] * state->order[at + (size_t)l];
-            }
-}
-
-SIMD_STAGE(close_lights, LightGridState)
-
-void light_grid_close(LightGridState *state)
-{
-    run_close_lights(state, state->parts);
 }
