@@ -8,7 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { W = STRAND_TILE };
+enum {
+    W = STRAND_TILE,
+    BOX = 7, // lowest place, highest, square of the longest segment
+};
 
 #define ITEM_STEPS 65536.0f
 enum { KEPT_ITEM_BYTES = 32 << 20 };
@@ -63,7 +66,7 @@ static void find_light(const DrawParams *draw, int i, const float x[3], float wa
 typedef struct Fill {
     LightGridState *state;
     const GridScene *scene;
-    float (*box)[8]; // [parts]: lowest, highest, longest segment squared
+    float (*box)[BOX]; // [parts]: lowest, highest, longest segment squared
     bool emit;
 } Fill;
 
@@ -94,30 +97,34 @@ static int tile_strands(const GridHair *hair, int tile)
     return left < W ? left : W;
 }
 
-SIMD_INLINE void widen(float box[8], float own[3][W], const float before[3][W], int strands,
+// Of what is within reach only: other positions are broken, and none of them a number here, which
+// no comparison takes.
+SIMD_INLINE void widen(float box[BOX][W], float own[3][W], const float before[3][W], int strands,
                        bool first)
 {
-    for (int i = 0; i < strands; ++i) {
-        float square = 0;
-        bool sound = true;
-        for (int k = 0; k < 3; ++k) sound &= fabsf(own[k][i]) < 1e6f;
-        if (!sound) continue;
-        for (int k = 0; k < 3; ++k) {
-            box[k] = simd_min(own[k][i], box[k]);
-            box[k + 3] = simd_max(own[k][i], box[k + 3]);
-            float way = own[k][i] - before[k][i];
-            square += way * way;
-        }
-        if (!first) box[6] = simd_max(square, box[6]);
+    float square[W];
+    for (int i = 0; i < W; ++i) {
+        bool sound = (i < strands) & (fabsf(own[0][i]) < 1e6f) & (fabsf(own[1][i]) < 1e6f) &
+                     (fabsf(own[2][i]) < 1e6f);
+        for (int k = 0; k < 3; ++k) own[k][i] = sound ? own[k][i] : NAN;
+        square[i] = 0;
     }
+    for (int k = 0; k < 3; ++k)
+        for (int i = 0; i < W; ++i) {
+            box[k][i] = simd_min(own[k][i], box[k][i]);
+            box[k + 3][i] = simd_max(own[k][i], box[k + 3][i]);
+            float way = own[k][i] - before[k][i];
+            square[i] += way * way;
+        }
+    for (int i = 0; i < W && !first; ++i) box[6][i] = simd_max(square[i], box[6][i]);
 }
 
 SIMD_INLINE void find_box(const Fill *fill, int part)
 {
-    float *box = fill->box[part], points[2][3][W];
+    float box[BOX][W], points[2][3][W] = {{{0}}}, *whole = fill->box[part];
     int range[2];
-    for (int k = 0; k < 3; ++k) box[k] = 1e30f, box[k + 3] = -1e30f;
-    box[6] = 0;
+    for (int k = 0; k < BOX; ++k)
+        for (int i = 0; i < W; ++i) box[k][i] = k < 3 ? 1e30f : k < 6 ? -1e30f : 0;
     for (uint32_t h = 0; h < fill->scene->hair_count; ++h) {
         const GridHair *hair = &fill->scene->hair[h];
         tile_range(hair, part, fill->state->parts, range);
@@ -128,6 +135,11 @@ SIMD_INLINE void find_box(const Fill *fill, int part)
                       tile_strands(hair, tile), j == 0);
             }
     }
+    for (int k = 0; k < BOX; ++k) {
+        whole[k] = box[k][0];
+        for (int i = 1; i < W; ++i)
+            whole[k] = k < 3 ? simd_min(box[k][i], whole[k]) : simd_max(box[k][i], whole[k]);
+    }
 }
 
 SIMD_STAGE(find_box, Fill)
@@ -137,7 +149,7 @@ SIMD_STAGE(find_box, Fill)
 static bool find_lattice(LightGridState *state, const GridScene *scene)
 {
     static const float SIDEWAYS[3] = {0, 0, 0};
-    float boxes[PARALLEL_MOST][8], box[8], unused[3];
+    float boxes[PARALLEL_MOST][BOX], box[BOX], unused[3];
     LightLattice *lattice = &state->lattice;
     const float light[3] = {ORDINATE[0][ORDINATE_OF_LIGHT], ORDINATE[1][ORDINATE_OF_LIGHT],
                             ORDINATE[2][ORDINATE_OF_LIGHT]};
@@ -150,7 +162,7 @@ static bool find_lattice(LightGridState *state, const GridScene *scene)
     run_find_box(&fill, state->parts);
     memcpy(box, boxes[0], sizeof box);
     for (int part = 1; part < state->parts; ++part)
-        for (int k = 0; k < 7; ++k)
+        for (int k = 0; k < BOX; ++k)
             box[k] = k < 3 ? fminf(box[k], boxes[part][k]) : fmaxf(box[k], boxes[part][k]);
     if (box[0] > box[3]) return false;
     float extent = 1e-6f;
