@@ -46,14 +46,24 @@ static bool meet(const Corners *c, int axis, double pu, double pv, double *depth
     return true;
 }
 
+// Of numbers, without a call.
+static double lesser(double a, double b)
+{
+    return a < b ? a : b;
+}
+static double greater(double a, double b)
+{
+    return a > b ? a : b;
+}
+
 static double least_of(const Corners *c, int k)
 {
-    return fmin(fmin(c->at[0][k], c->at[1][k]), c->at[2][k]);
+    return lesser(lesser(c->at[0][k], c->at[1][k]), c->at[2][k]);
 }
 
 static double most_of(const Corners *c, int k)
 {
-    return fmax(fmax(c->at[0][k], c->at[1][k]), c->at[2][k]);
+    return greater(greater(c->at[0][k], c->at[1][k]), c->at[2][k]);
 }
 
 // Closes the way from the middle before to the middle of the cell that the triangle crosses on the

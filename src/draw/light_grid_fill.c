@@ -258,9 +258,12 @@ SIMD_INLINE void find_left(const GridScene *scene, const GridHair *hair, int l, 
     for (int i = 0; i < W; ++i) out[i] = left[i] + on * (next[i] - left[i]);
 }
 
+// By signed conversions, which all vectors have: what is large is even.
 SIMD_INLINE uint32_t steps_of(float x)
 {
-    return (uint32_t)simd_min(simd_max(x, 0) + 0.5f, 4e9f);
+    float steps = simd_min(simd_max(x, 0) + 0.5f, 4e9f);
+    int large = steps >= 0x1p30f;
+    return (uint32_t)(int)(steps * (large ? 0.5f : 1.f)) << large;
 }
 
 static float find_lamp(const GridScene *scene, const LightLattice *lattice, int l,
@@ -461,7 +464,8 @@ static void make_slots(LightGridState *state)
 
 // What a cell's items come to.
 typedef struct CellSum {
-    uint64_t area[GRID_CLASSES], lit[MAX_LIGHTS][GRID_CLASSES], whole, tint[3];
+    uint64_t class[GRID_CLASSES][1 + MAX_LIGHTS]; // area, and what each light meets of it
+    uint64_t whole, tint[3];
     uint16_t used[GRID_CLASSES];
     int count;
     bool is_used[GRID_CLASSES];
@@ -476,8 +480,9 @@ static void add_items(const LightGridState *state, uint32_t first, uint32_t end,
             sum->is_used[item->class] = true;
             sum->used[sum->count++] = (uint16_t)item->class;
         }
-        sum->area[item->class] += item->area;
-        for (int l = 0; l < state->lights; ++l) sum->lit[l][item->class] += item->lit[l];
+        uint64_t *class = sum->class[item->class];
+        class[0] += item->area;
+        for (int l = 0; l < state->lights; ++l) class[1 + l] += item->lit[l];
         sum->whole += item->area;
         for (int k = 0; k < 3 && state->tinted; ++k) sum->tint[k] += item->lit[state->lights + k];
     }
@@ -487,8 +492,7 @@ static void clear_sum(const LightGridState *state, CellSum *sum)
 {
     for (int u = 0; u < sum->count; ++u) {
         sum->is_used[sum->used[u]] = false;
-        sum->area[sum->used[u]] = 0;
-        for (int l = 0; l < state->lights; ++l) sum->lit[l][sum->used[u]] = 0;
+        memset(sum->class[sum->used[u]], 0, sizeof sum->class[0]);
     }
     sum->count = 0;
     sum->whole = 0;
@@ -513,7 +517,7 @@ static int find_main_class(const CellSum *sum)
           main[3] = {0.577f, 0.577f, 0.578f}, most = 0;
     int kind = 0;
     for (int u = 0; u < sum->count; ++u) {
-        float w = (float)sum->area[sum->used[u]];
+        float w = (float)sum->class[sum->used[u]][0];
         const float *t = TANGENT[sum->used[u] % TANGENTS];
         kind_area[sum->used[u] / TANGENTS] += w;
         if (w > most) most = w, memcpy(main, t, sizeof main);
@@ -564,23 +568,23 @@ SIMD_INLINE void fill_depths(const CellSum *sum, float depth[ORDINATES])
 {
     for (int d = 0; d < ORDINATES; ++d) depth[d] = 0;
     for (int u = 0; u < sum->count; ++u) {
-        float w = (float)sum->area[sum->used[u]] * (1 / ITEM_STEPS);
+        float w = (float)sum->class[sum->used[u]][0] * (1 / ITEM_STEPS);
         const float *sine = TANGENT_SINE[sum->used[u] % TANGENTS];
         for (int d = 0; d < ORDINATES; ++d) depth[d] += w * sine[d];
     }
 }
 
 SIMD_INLINE void fill_source(const LightGridState *state, const GridScene *scene,
-                             const CellSum *sum, int f)
+                             const CellSum *sum, const float passed[MAX_LIGHTS], int f)
 {
     const float *depth = state->depth + (size_t)f * ORDINATES, *tint = state->tint + 3 * f;
     float source[GRID_WIDE];
     for (int i = 0; i < GRID_WIDE; ++i) source[i] = 0;
     for (int l = 0; l < state->lights; ++l) {
-        float part[GRID_WIDE] = {0}, passed = find_passed(state, scene, f, l);
-        for (int u = 0; u < sum->count && passed > 0; ++u) {
+        float part[GRID_WIDE] = {0};
+        for (int u = 0; u < sum->count && passed[l] > 0; ++u) {
             int class = sum->used[u];
-            float w = (float)sum->lit[l][class] * (passed / ITEM_STEPS);
+            float w = (float)sum->class[class][1 + l] * (passed[l] / ITEM_STEPS);
             const float *first = state->kinds[class / TANGENTS].first[l][class % TANGENTS];
             if (w > 0)
                 for (int i = 0; i < GRID_WIDE; ++i) part[i] += w * first[i];
@@ -601,17 +605,17 @@ SIMD_INLINE void fill_source(const LightGridState *state, const GridScene *scene
 // A matt surface in a light of 1 that it is square to shows its colour; those in a cell lie any way
 // towards the light, half as bright in the mean.
 static void fill_glow(const LightGridState *state, const GridScene *scene, const CellSum *sum,
-                      int f)
+                      const float passed[MAX_LIGHTS], int f)
 {
     float *glow = state->glow + 3 * (size_t)f;
     for (int c = 0; c < 3; ++c) glow[c] = 0;
     if (!scene->blocks) return;
     double area = 0;
-    for (int u = 0; u < sum->count; ++u) area += (double)sum->area[sum->used[u]];
+    for (int u = 0; u < sum->count; ++u) area += (double)sum->class[sum->used[u]][0];
     for (int l = 0; l < state->lights && area > 0; ++l) {
         double lit = 0;
-        for (int u = 0; u < sum->count; ++u) lit += (double)sum->lit[l][sum->used[u]];
-        float share = 0.5f * (float)(lit / area) * find_passed(state, scene, f, l);
+        for (int u = 0; u < sum->count; ++u) lit += (double)sum->class[sum->used[u]][1 + l];
+        float share = 0.5f * (float)(lit / area) * passed[l];
         for (int c = 0; c < 3; ++c)
             glow[c] += share * scene->draw->light_color[l][c] * scene->draw->mesh_color[c];
     }
@@ -658,8 +662,10 @@ SIMD_INLINE void fill_cells(const CellFill *fill, int part)
         for (int k = 0; k < 3; ++k)
             state->tint[3 * f + k] =
                 state->tinted && sum->whole ? (float)sum->tint[k] / (float)sum->whole : 1;
-        fill_source(state, fill->scene, sum, f);
-        fill_glow(state, fill->scene, sum, f);
+        float passed[MAX_LIGHTS];
+        for (int l = 0; l < state->lights; ++l) passed[l] = find_passed(state, fill->scene, f, l);
+        fill_source(state, fill->scene, sum, passed, f);
+        fill_glow(state, fill->scene, sum, passed, f);
         state->class[f] = find_main_class(sum);
         fill_passage(state, f);
         clear_sum(state, sum);
