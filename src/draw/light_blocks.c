@@ -158,6 +158,46 @@ float light_blocks_march(const LightBlocks *blocks, const LightLattice *lattice,
     return passed;
 }
 
+void light_path_find(LightPath *path, const LightLattice *lattice, const float way[3])
+{
+    const int *n = lattice->count;
+    const ptrdiff_t stride[3] = {1, n[0], (ptrdiff_t)n[0] * n[1]};
+    int axis = 0, at[3] = {0}, steps[3] = {0};
+    for (int k = 1; k < 3; ++k)
+        if (fabsf(way[k]) > fabsf(way[axis])) axis = k;
+    float main = fabsf(way[axis]);
+    path->count = 0;
+    for (int k = 0; k < 3; ++k) path->up[k] = way[k] > 0;
+    for (int step = 1; steps[axis] < n[axis]; ++step)
+        for (int i = 0; i < 3; ++i) {
+            int k = (axis + 1 + i) % 3, next = (int)lroundf((float)step * way[k] / main);
+            if (next == at[k]) continue;
+            int face[3] = {at[0], at[1], at[2]};
+            face[k] = next > at[k] ? next : at[k];
+            at[k] = next;
+            path->until[k][steps[k]++] = path->count;
+            path->way[path->count++] = k * (ptrdiff_t)light_lattice_cells(lattice) + face[0] +
+                                       face[1] * stride[1] + face[2] * stride[2];
+        }
+    for (int k = 0; k < 3; ++k)
+        while (steps[k] < n[k]) path->until[k][steps[k]++] = path->count;
+}
+
+float light_path_follow(const LightPath *path, const LightBlocks *blocks,
+                        const LightLattice *lattice, const int cell[3])
+{
+    const int *n = lattice->count;
+    const float *open = blocks->open + ((ptrdiff_t)cell[2] * n[1] + cell[1]) * n[0] + cell[0];
+    int count = path->count;
+    for (int k = 0; k < 3; ++k) { // the step that leaves the lattice crosses nothing
+        int left = path->up[k] ? n[k] - 1 - cell[k] : cell[k];
+        count = path->until[k][left] < count ? path->until[k][left] : count;
+    }
+    for (int i = 0; i < count; ++i)
+        if (open[path->way[i]] == 0) return 0;
+    return 1;
+}
+
 void light_blocks_destroy(LightBlocks *blocks)
 {
     free(blocks->open);

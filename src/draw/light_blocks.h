@@ -5,6 +5,8 @@
 #include "base/error.h"
 #include "draw/light_lattice.h"
 
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 // A mesh where it stands: metres, world.
@@ -31,5 +33,22 @@ Result light_blocks_find(LightBlocks *blocks, const LightLattice *lattice, Error
 // unit vector `way` (of the lattice) out of the lattice, or as far as `reach` (m).
 float light_blocks_march(const LightBlocks *blocks, const LightLattice *lattice, const int cell[3],
                          const float way[3], float reach);
+
+// The ways that a straight way from the middle of any cell crosses, in their order: the same ones
+// from each cell, but for where they leave the lattice.
+enum { LIGHT_PATH_MOST = 3 * 66 };
+typedef struct LightPath {
+    int count;
+    ptrdiff_t way[LIGHT_PATH_MOST]; // in LightBlocks.open, from the cell's own on axis 0
+    int until[3][LIGHT_PATH_MOST]; // ways before the n-th step on an axis; those there are not: all
+    bool up[3];                    // the axis' steps are towards higher cells
+} LightPath;
+
+// The path along the unit vector `way`. Lattices have 65 cells along each axis at most.
+void light_path_find(LightPath *path, const LightLattice *lattice, const float way[3]);
+
+// What light_blocks_march finds along the path's way, with no bound to its reach.
+float light_path_follow(const LightPath *path, const LightBlocks *blocks,
+                        const LightLattice *lattice, const int cell[3]);
 
 void light_blocks_destroy(LightBlocks *blocks);

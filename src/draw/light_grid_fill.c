@@ -541,25 +541,32 @@ static int find_main_class(const CellSum *sum)
     return kind * TANGENTS + ordinates_class(main);
 }
 
+typedef struct CellFill {
+    LightGridState *state;
+    const GridScene *scene;
+    CellSum *sums;               // [parts]
+    LightPath paths[MAX_LIGHTS]; // of lights afar, where there is a mesh
+} CellFill;
+
 // The mesh's shadow on cell f from light l.
-static float find_passed(const LightGridState *state, const GridScene *scene, int f, int l)
+static float find_passed(const CellFill *fill, int f, int l)
 {
-    if (!scene->blocks) return 1;
+    const LightGridState *state = fill->state;
     const LightLattice *lattice = &state->lattice;
+    const GridScene *scene = fill->scene;
     const int *n = lattice->count;
     int c = state->cell_of[f], cell[3] = {c % n[0], c / n[0] % n[1], c / (n[0] * n[1])};
-    float way[3], reach = 1e6f;
-    memcpy(way, state->to_light[l], sizeof way);
-    if (scene->draw->light_place[l][3] != 0) {
-        float square = 0, lamp[3];
-        light_lattice_turn(lattice, scene->draw->light_place[l], lamp);
-        for (int k = 0; k < 3; ++k) {
-            way[k] = lamp[k] - lattice->low[k] - ((float)cell[k] + 0.5f) * lattice->side;
-            square += way[k] * way[k];
-        }
-        reach = fmaxf(sqrtf(square), 1e-6f);
-        for (int k = 0; k < 3; ++k) way[k] /= reach;
+    float way[3], square = 0, lamp[3];
+    if (!scene->blocks) return 1;
+    if (scene->draw->light_place[l][3] == 0)
+        return light_path_follow(&fill->paths[l], scene->blocks, lattice, cell);
+    light_lattice_turn(lattice, scene->draw->light_place[l], lamp);
+    for (int k = 0; k < 3; ++k) {
+        way[k] = lamp[k] - lattice->low[k] - ((float)cell[k] + 0.5f) * lattice->side;
+        square += way[k] * way[k];
     }
+    float reach = fmaxf(sqrtf(square), 1e-6f);
+    for (int k = 0; k < 3; ++k) way[k] /= reach;
     return light_blocks_march(scene->blocks, lattice, cell, way, reach);
 }
 
@@ -638,12 +645,6 @@ SIMD_INLINE void fill_passage(LightGridState *state, int f)
     }
 }
 
-typedef struct CellFill {
-    LightGridState *state;
-    const GridScene *scene;
-    CellSum *sums; // [parts]
-} CellFill;
-
 SIMD_INLINE void fill_cells(const CellFill *fill, int part)
 {
     LightGridState *state = fill->state;
@@ -663,7 +664,7 @@ SIMD_INLINE void fill_cells(const CellFill *fill, int part)
             state->tint[3 * f + k] =
                 state->tinted && sum->whole ? (float)sum->tint[k] / (float)sum->whole : 1;
         float passed[MAX_LIGHTS];
-        for (int l = 0; l < state->lights; ++l) passed[l] = find_passed(state, fill->scene, f, l);
+        for (int l = 0; l < state->lights; ++l) passed[l] = find_passed(fill, f, l);
         fill_source(state, fill->scene, sum, passed, f);
         fill_glow(state, fill->scene, sum, passed, f);
         state->class[f] = find_main_class(sum);
@@ -714,7 +715,9 @@ static Result fill_all(LightGridState *state, const GridScene *scene, Error *err
     if (result != RESULT_OK) return result;
     CellSum *sums = calloc((size_t)state->parts, sizeof *sums);
     if (!sums) return RESULT_FAILED;
-    CellFill cell_fill = {state, scene, sums};
+    CellFill cell_fill = {.state = state, .scene = scene, .sums = sums};
+    for (int l = 0; l < state->lights && scene->blocks; ++l)
+        light_path_find(&cell_fill.paths[l], &state->lattice, state->to_light[l]);
     run_fill_cells(&cell_fill, state->parts);
     free(sums);
     release_items(state);
