@@ -488,7 +488,7 @@ static void add_items(const LightGridState *state, uint32_t first, uint32_t end,
     }
 }
 
-static void clear_sum(const LightGridState *state, CellSum *sum)
+static void clear_sum(CellSum *sum)
 {
     for (int u = 0; u < sum->count; ++u) {
         sum->is_used[sum->used[u]] = false;
@@ -669,7 +669,7 @@ SIMD_INLINE void fill_cells(const CellFill *fill, int part)
         fill_glow(state, fill->scene, sum, passed, f);
         state->class[f] = find_main_class(sum);
         fill_passage(state, f);
-        clear_sum(state, sum);
+        clear_sum(sum);
     }
 }
 
