@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the parts of the light grid share: light_grid.c, light_grid_fill.c, light_grid_sweep.c and
-// light_grid_gather.c.
+// What the parts of the light grid share: light_grid.c and light_grid_*.c.
 #pragma once
 
 #include "base/simd.h"
@@ -14,6 +13,9 @@ enum {
     GATHER_SIDE = 32, // squares across the octahedron of tangents
     GATHER_NODES = (GATHER_SIDE + 1) * (GATHER_SIDE + 1),
 };
+
+// Steps in which areas are added up.
+#define ITEM_STEPS 65536.0f
 
 // 4 pi / ORDINATES is the solid angle of a direction; a disc of it has this variance each way, by
 // three quarters: what agreed best with path-traced light.
@@ -142,6 +144,20 @@ static inline void grid_span_join(int cells[2], const int other[2])
 
 // Lattice, items, what is in each cell. False if there is no hair.
 bool light_grid_fill(LightGridState *state, const GridScene *scene, Error *error, Result *result);
+
+// Its steps. Where the cells lie (false: there is no hair), and the lights.
+bool light_grid_find_lattice(LightGridState *state, const GridScene *scene);
+void light_grid_find_lights(LightGridState *state, const GridScene *scene);
+// Counts the items of each part and cell, in `first_item`; with `emit`, which needs what
+// light_grid_make_slots makes of that, puts them where they belong.
+void light_grid_place(LightGridState *state, const GridScene *scene, bool emit);
+void light_grid_make_slots(LightGridState *state);
+// Of the items what a sweep needs. False if memory is short.
+bool light_grid_fill_cells(LightGridState *state, const GridScene *scene);
+
+// The way to light i at x (world), and its light there, as light_sent of lights.glsl.
+void light_grid_light(const DrawParams *draw, int i, const float x[3], float way[3],
+                      float color[3]);
 
 // What sweeps need of the mesh (false: memory is short), and which cells they visit.
 bool light_grid_find_walls(LightGridState *state, const GridScene *scene);

@@ -199,23 +199,7 @@ typedef struct Planes {
     float *after, *rows;
 } Planes;
 
-static void fill_cells(float *row, int first, int end, const float sky[GROUP_WIDE])
-{
-    for (int x = first; x < end; ++x)
-        memcpy(row + (size_t)x * GROUP_WIDE, sky, GROUP_WIDE * sizeof *sky);
-}
-
-// Cells that are needed but not swept get what comes from around.
-static void fill_rest(const Sweep *sweep, const GroupWay *way, const GridSpan *span, float *row)
-{
-    float around[GROUP_WIDE];
-    for (int i = 0; i < GROUP_WIDE; ++i) around[i] = way->sky[i] + LEAST_LIGHT;
-    if (sweep->sky) return; // all that are needed are swept
-    int middle = span->swept[0] < span->swept[1] ? span->swept[0] : span->needed[1];
-    fill_cells(row, span->needed[0], middle, around);
-    if (middle == span->swept[0]) fill_cells(row, span->swept[1], span->needed[1], around);
-}
-
+// What lies before all hair is never written: there stands what comes from around, as at the start.
 SIMD_INLINE void sweep_slice(const Sweep *sweep, const GroupWay *way, int group, bool walls,
                              int slice, const Planes *planes, double sum[3])
 {
@@ -236,7 +220,6 @@ SIMD_INLINE void sweep_slice(const Sweep *sweep, const GroupWay *way, int group,
                                       planes->rows + (size_t)((y - 1) % 3) * used,
                                       planes->rows + (size_t)(y % 3) * used};
         float *out = planes->after + (size_t)(y - 1) * row + GROUP_WIDE;
-        fill_rest(sweep, way, &spans[y - 2], out);
         sweep_row(sweep, way, group, walls, slice, y - 2,
                   grid_span_cells(&spans[y - 2], sweep->sky), rows, out, sum);
     }

@@ -5,6 +5,7 @@
 #include "draw/drawing.h"
 #include "draw/light_dual.h"
 #include "draw/light_grid.h"
+#include "draw/light_grid_state.h"
 #include "support/needed.h"
 
 #include "glsl/common/shared_math.h"
@@ -265,6 +266,132 @@ static void a_mesh_stands_in_the_light(void **state)
     assert_true(means[3] > 1.05 * means[2]);
 }
 
+// --- Sweeps that leave cells out, beside those that visit all.
+
+// A third of the strands each in corners of a box around the ball, and a tilted plate among them.
+typedef struct Clumps {
+    Ball *ball;
+    float vertices[4][3];
+    LightBlocks blocks;
+    LightGrid grid;
+} Clumps;
+
+static const uint32_t PLATE[2][3] = {{0, 1, 2}, {2, 1, 3}};
+
+static void open_clumps(Clumps *clumps)
+{
+    *clumps = (Clumps){.ball = open_ball(0.8f)};
+    Ball *ball = clumps->ball;
+    const float place[3][3] = {{-0.3f, 0.2f, 0.1f}, {0.25f, -0.3f, 0}, {0.1f, 0.1f, 0.3f}};
+    for (int i = 0; i < PARTICLES; ++i)
+        for (int k = 0; k < 3; ++k) ball->position[i][k] += place[i % STRAND_TILE % 3][k];
+    for (int v = 0; v < 4; ++v) {
+        const float at[3] = {v & 1 ? 0.2f : -0.2f, v & 1 ? 0.1f : -0.1f, v & 2 ? 0.2f : -0.2f};
+        memcpy(clumps->vertices[v], at, sizeof at);
+    }
+    clumps->blocks.mesh = (LightMesh){.vertices = (const float(*)[3])clumps->vertices,
+                                      .triangles = PLATE,
+                                      .vertex_count = 4,
+                                      .triangle_count = 2,
+                                      .rotation = {0, 0, 0, 1}};
+    ball->scene.blocks = &clumps->blocks;
+    for (int k = 0; k < 3; ++k) ball->draw.mesh_color[k] = 0.8f;
+    set_sky(ball, 0.5f);
+    set_sun(ball, 0.36f, 0.8f, 0.48f);
+    NEEDED(light_grid_solve(&clumps->grid, &ball->scene, error));
+}
+
+static void close_clumps(Clumps *clumps)
+{
+    light_grid_destroy(&clumps->grid);
+    light_blocks_destroy(&clumps->blocks);
+    close_ball(clumps->ball);
+}
+
+static void visit_all_cells(LightGridState *state)
+{
+    const int *n = state->lattice.count;
+    for (int group = 0; group < ORDINATE_GROUPS; ++group)
+        for (int slice = 0; slice < n[group / 2]; ++slice)
+            for (int y = 0; y < n[(group / 2 + 2) % 3]; ++y) {
+                int wide = n[(group / 2 + 1) % 3];
+                grid_spans(state, group, slice)[y] = (GridSpan){{0, wide}, {0, wide}};
+            }
+}
+
+// To rounding of what keeps light from becoming denormal numbers (1e-30 a cell).
+static void sweeps_leave_out_what_nobody_sees(void **unused)
+{
+    (void)unused;
+    Clumps clumps;
+    open_clumps(&clumps);
+    LightGridState *state = clumps.grid.state;
+    size_t floats = (size_t)state->active * GRID_WIDE;
+    float *sums = malloc(floats * sizeof *sums);
+    assert_non_null(sums);
+    for (int sky = 0; sky < 2; ++sky) {
+        assert_true(light_grid_find_spans(state));
+        light_grid_sweep(state, &clumps.ball->scene, sky, true, false);
+        memcpy(sums, state->sum, floats * sizeof *sums);
+        visit_all_cells(state);
+        light_grid_sweep(state, &clumps.ball->scene, sky, true, false);
+        size_t dark = 0;
+        for (size_t i = 0; i < floats; ++i) {
+            if (!(fabsf(sums[i] - state->sum[i]) <= 1e-25f))
+                fail_msg("%g, not %g", (double)sums[i], (double)state->sum[i]);
+            dark += state->sum[i] < 1e-6f;
+        }
+        assert_true(sky || dark > floats / 8); // behind the hair, as the light goes
+    }
+    free(sums);
+    close_clumps(&clumps);
+}
+
+static void walls_are_those_of_the_mesh_and_open_around(void **unused)
+{
+    (void)unused;
+    Clumps clumps;
+    open_clumps(&clumps);
+    const LightGridState *state = clumps.grid.state;
+    const int *n = state->lattice.count;
+    const float *open = clumps.blocks.open;
+    int closed = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        for (int z = -1; z <= n[2]; ++z)
+            for (int y = -1; y <= n[1]; ++y)
+                for (int x = -1; x <= n[0]; ++x) {
+                    bool inside = x >= 0 && y >= 0 && z >= 0 && x < n[0] && y < n[1] && z < n[2];
+                    float wall = grid_walls(state, axis)[(z * (n[1] + 2) + y) * (n[0] + 2) + x];
+                    assert_true(wall == (inside ? *open++ : 1));
+                    closed += wall == 0;
+                }
+    assert_true(closed > 20);
+    close_clumps(&clumps);
+}
+
+static void a_path_is_the_way_from_each_cell(void **unused)
+{
+    (void)unused;
+    Clumps clumps;
+    open_clumps(&clumps);
+    const LightLattice *lattice = &clumps.grid.state->lattice;
+    const int *n = lattice->count;
+    int shut = 0, cells = 0;
+    for (int d = 0; d < ORDINATES; ++d) {
+        const float way[3] = {ORDINATE[0][d], ORDINATE[1][d], ORDINATE[2][d]};
+        LightPath path;
+        light_path_find(&path, lattice, way);
+        for (int c = 0; c < n[0] * n[1] * n[2]; ++c, ++cells) {
+            const int cell[3] = {c % n[0], c / n[0] % n[1], c / (n[0] * n[1])};
+            float passed = light_blocks_march(&clumps.blocks, lattice, cell, way, 1e6f);
+            assert_true(light_path_follow(&path, &clumps.blocks, lattice, cell) == passed);
+            shut += passed == 0;
+        }
+    }
+    assert_in_range(shut, cells / 50, cells / 2);
+    close_clumps(&clumps);
+}
+
 // Straight strands side by side along x, five cells long, of so many vertices, all of which see the
 // same light. Gives what their two ends show to an eye at the z axis.
 static void show_brush(uint32_t vertices, float radius, double seen[2][STRANDS])
@@ -450,6 +577,9 @@ int main(void)
         cmocka_unit_test(lights_add_up),
         cmocka_unit_test(a_far_lamp_is_a_sun),
         cmocka_unit_test(a_mesh_stands_in_the_light),
+        cmocka_unit_test(sweeps_leave_out_what_nobody_sees),
+        cmocka_unit_test(walls_are_those_of_the_mesh_and_open_around),
+        cmocka_unit_test(a_path_is_the_way_from_each_cell),
         cmocka_unit_test(long_segments_are_as_many_short_ones),
         cmocka_unit_test(hair_behind_seven_fibres_is_hidden_and_no_other),
         cmocka_unit_test(lobes_send_on_their_albedo),
