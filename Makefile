@@ -246,7 +246,7 @@ check-gpu-statistics: # registers and waves on GPUs; a line says so where a pack
 	$(QUIET) all
 	@scripts/gpu-statistics --programs $(OUT) || [ $$? = 77 ]
 # Tests whose figures depend on the driver's maths, with every root, power and angle two units in the last place off.
-ROUNDED = ^test_(solver_|solvers|shadow|renderer|image_reference|collision|follow|volume|sleep|rest|carry|distance_field).*\.c
+ROUNDED = ^test_(solver_|solvers|shadow|renderer|image_reference|collision|follow|volume|sleep|rest|carry|pose|distance_field).*\.c
 check-rounding:
 	$(QUIET) all tests
 	@TEST_ASSUME=ulps=2 tests/runner $(OUT) '$(ROUNDED)'

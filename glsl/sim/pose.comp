@@ -51,41 +51,46 @@ vec3 turn(vec3 a, vec3 b, Turn by)
     return ss > 1e-12 ? turned : a;
 }
 
-// The same, but that a result which would flip to the other side as b passes -a fades to a there:
-// |a + b|^2 = 2 + 2 cos, 0.27 at 150 degrees.
-vec3 turn_fading(vec3 a, vec3 b, Turn by)
-{
-    vec3 kept = mix(a, turn(a, b, by), smoothstep(0.0, 0.27, 2.0 + 2.0 * dot(a, b)));
-    return kept * inversesqrt(max(dot(kept, kept), 1e-12));
-}
-
-#if HANGS && MIX >= 2
-// turn_between, of unit length also where a and b point nearly the opposite way, and rounding
-// decides about which axis; x where it leaves none.
-vec3 swing(vec3 a, vec3 b, vec3 x)
-{
-    vec3 turned = turn_between(a, b, x);
-    float square = dot(turned, turned);
-    if (dot(a, b) > -0.9) return turned;
-    return square > 1e-4 ? turned * inversesqrt(square) : x;
-}
-#endif
-
 #if MIX == 4
 layout(binding = BIND_ALONG) uniform samplerBuffer along_strand; // solver_split.c
 
-// From the unit vector a towards the unit vector b by a share w of their angle. With HANGS it
-// fades to the nearer one where they point nearly the opposite way, as turn_fading does.
+// From the unit vector a towards the unit vector b by a share w of their angle.
 vec3 slerp(vec3 a, vec3 b, float w)
 {
     float cosine = clamp(dot(a, b), -1.0, 1.0), angle = acos(cosine),
           sine = sqrt(max(1.0 - cosine * cosine, 0.0));
     vec3 turned =
         sine > 1e-4 ? (sin((1.0 - w) * angle) * a + sin(w * angle) * b) / sine : mix(a, b, w);
-#if HANGS
-    turned = mix(w < 0.5 ? a : b, turned, smoothstep(0.0, 0.27, 2.0 + 2.0 * cosine));
-#endif
     return turned * inversesqrt(max(dot(turned, turned), 1e-12));
+}
+#endif
+
+#if HANGS && MIX >= 2
+// sin(v p) / sin(p) and cos(v p) for `cosine` = cos(p), p <= 90 deg.
+vec2 share_of_turn(float cosine, Turn by, float v)
+{
+#if MIX == 4
+    float angle = acos(cosine), sine = sqrt(max(1.0 - cosine * cosine, 0.0));
+    return vec2(sine > 1e-4 ? sin(v * angle) / sine : v, cos(v * angle));
+#else
+    float x = 0.5 - 0.5 * cosine;
+    return vec2(polynomial(by.sin_low, by.sin_high, x), polynomial(by.cos_low, by.cos_high, x));
+#endif
+}
+
+// x turned about h x b by a share v of the angle from the unit vector h to the unit vector b. With
+// half that angle, p, the rotation is the quaternion (sin(v p) axis, cos(v p)), axis = h x b / (2
+// sin(p) cos(p)). As b passes -h, where the axis flips, v fades to the nearer of 0 and 1, from 150
+// degrees on, where 4 cos^2(p) is 0.27: the quaternion goes to (0, 1) or (sin(p) axis, cos(p)). It
+// need not stay a unit: its square divides the rotation's terms.
+vec3 turn_along(vec3 x, vec3 h, vec3 b, Turn by, float v)
+{
+    float square = clamp(0.5 + 0.5 * dot(h, b), 0.0, 1.0), cosine = sqrt(square),
+          near = min(square * (4.0 / 0.27), 1.0);
+    vec2 far = v < 0.5 ? vec2(0.0, 1.0) : vec2(1.0, cosine),
+         turn = mix(far, share_of_turn(cosine, by, v), near * near * (3.0 - 2.0 * near));
+    vec3 s = cross(h, b) * (0.5 * turn.x / max(cosine, 1e-6)), t = cross(s, x);
+    return x + (turn.y * t + cross(s, t)) * (2.0 / max(dot(s, s) + turn.y * turn.y, 1e-12));
 }
 #endif
 
@@ -98,7 +103,11 @@ void main()
     Turn by = Turn(pose_params.turn_cos[0], pose_params.turn_cos[1], pose_params.turn_sin[0],
                    pose_params.turn_sin[1]);
 
-    vec3 x = rotate(rotation, root.xyz) + pose_params.head_translation.xyz;
+    vec3 x = rotate(rotation, root.xyz) + pose_params.head_translation.xyz,
+         hanging = pose_params.hanging.xyz;
+    // A matrix turns a vector by half as many operations as a quaternion.
+    mat3 head = mat3(rotate(rotation, vec3(1.0, 0.0, 0.0)), rotate(rotation, vec3(0.0, 1.0, 0.0)),
+                     rotate(rotation, vec3(0.0, 0.0, 1.0)));
     positions[first] = vec4(x, 1.0);
     for (int j = 1; j < n; ++j) {
         int a = first + j * STRAND_TILE;
@@ -107,27 +116,24 @@ void main()
         vec3 d = segment.xyz;
 #else
         vec4 segment = texelFetch(rest, a);
-        vec3 d = rotate(rotation, segment.xyz);
+        vec3 d = head * segment.xyz;
+#if MIX >= 2
+        vec3 physical = texelFetch(segments, a).xyz;
 #if MIX == 4
-        vec3 start = HANGS == 1 ? pose_params.hanging.xyz : d;
-        vec3 swung = slerp(start, texelFetch(segments, a).xyz,
-                           1.0 - texelFetch(along_strand, 2 * (j - int(pose_params.lead))).x);
-#if HANGS
-        swung = swing(start, swung, d);
-#endif
-        d = j > int(pose_params.lead) ? swung : d;
-#elif HANGS && MIX >= 2
-        vec3 hanging = pose_params.hanging.xyz, physical = texelFetch(segments, a).xyz;
-#if MIX == 2
-        vec3 swung = turn_fading(physical, hanging, by);
+        float share = 1.0 - texelFetch(along_strand, 2 * (j - int(pose_params.lead))).x;
 #else
-        vec3 swung = turn_fading(hanging, physical, by);
+        const float share = MIX == 2 ? 1.0 : 0.0; // the nearer one: `by` has it
 #endif
-        d = j > int(pose_params.lead) ? swing(hanging, swung, d) : d;
+#if HANGS
+        vec3 turned = turn_along(d, hanging, physical, by, share);
+#elif MIX == 4
+        vec3 turned = slerp(d, physical, share);
 #elif MIX == 2
-        d = turn(texelFetch(segments, a).xyz, d, by);
-#elif MIX == 3
-        d = turn(d, texelFetch(segments, a).xyz, by);
+        vec3 turned = turn(physical, d, by);
+#else
+        vec3 turned = turn(d, physical, by);
+#endif
+        d = j > int(pose_params.lead) ? turned : d;
 #endif
 #endif
         x += segment.w * d;

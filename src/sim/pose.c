@@ -55,7 +55,7 @@ Result pose_create(Pose *pose, const Gpu *gpu, const PoseOptions *options, Error
     const float *hanging = options->hanging;
     memcpy(pose->hanging, hanging, sizeof pose->hanging);
     bool hangs = hanging[0] != 0 || hanging[1] != 0 || hanging[2] != 0;
-    double v = 2 * fmin((double)options->style, 1 - (double)options->style);
+    double style = (double)options->style, v = hangs ? 1 - style : 2 * fmin(style, 1 - style);
     interpolate(turn_cos, v, pose->turn_cos);
     interpolate(turn_sin, v, pose->turn_sin);
     const ShaderDefine defines[] = {{"MIX", (int)mix_of(options)}, {"HANGS", hangs}, {0}};
