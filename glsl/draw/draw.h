@@ -48,6 +48,7 @@
 #define BIND_BLOCK_COUNTS_OUT 0 // uint, 16 for each of 64 groups: ribbons, strands without any
 #define BIND_RIBBONS_OUT      1 // RIBBON_TEXELS uvec4 a ribbon, see block.glsl
 #define BIND_HIDING_OUT       1 // float a tile, see block_hide.comp
+#define BIND_LEVELS_OUT       2 // float a tile and level, see block_level.comp
 #define BIND_TALLY_OUT        2 // two uint: strands of the image that are listed, that are hidden
 #define BIND_LISTED_OUT       3 // uint: how many strands of a part are listed, then rows
 #define BIND_KEYS_OUT         4 // uvec2 a ribbon

@@ -5,89 +5,15 @@
 
 #include "glsl/draw/draw.h"
 
-#include <stddef.h>
-
-// --- Tiles of what hides.
-
-typedef struct Tiles {
-    float *tile; // [rows][stride]
-    int columns, rows, stride;
-} Tiles;
-
-static float least(float a, float b)
-{
-    return b < a ? b : a;
-}
-
-static int at_most(int a, int b)
-{
-    return a < b ? a : b;
-}
-
-// The least of the tiles in columns x .. end_x - 1 and rows y .. end_y - 1.
-static float least_of(const Tiles *tiles, int x, int y, int end_x, int end_y)
-{
-    const float *row = tiles->tile + (ptrdiff_t)y * tiles->stride;
-    float found = row[x];
-    for (; y < end_y; ++y, row += tiles->stride)
-        for (int i = x; i < end_x; ++i) found = least(found, row[i]);
-    return found;
-}
-
-static void spread_tiles(const Tiles *tiles, float *level)
-{
-    for (int y = 0; y < tiles->rows; ++y)
-        for (int x = 0; x < tiles->columns; ++x)
-            level[(ptrdiff_t)y * tiles->stride + x] =
-                least_of(tiles, x ? x - 1 : 0, y ? y - 1 : 0, at_most(x + 2, tiles->columns),
-                         at_most(y + 2, tiles->rows));
-}
-
-// In place: a tile is written when all that lie there have been read.
-static void halve(Tiles *tiles)
-{
-    int columns = (tiles->columns + 1) / 2, rows = (tiles->rows + 1) / 2;
-    for (int y = 0; y < rows; ++y)
-        for (int x = 0; x < columns; ++x)
-            tiles->tile[(ptrdiff_t)y * tiles->stride + x] =
-                least_of(tiles, 2 * x, 2 * y, at_most(2 * x + 2, tiles->columns),
-                         at_most(2 * y + 2, tiles->rows));
-    tiles->columns = columns;
-    tiles->rows = rows;
-}
-
-void cull_make_levels(float *nearest, int columns, int rows, float *levels)
-{
-    Tiles tiles = {nearest, columns, rows, columns};
-    for (int k = 0; k < HIDE_LEVELS; ++k, levels += (ptrdiff_t)rows * columns) {
-        spread_tiles(&tiles, levels);
-        halve(&tiles);
-    }
-}
-
-// --- Strands that are out of sight.
-
 enum { HEAD_WORDS = 1 }; // of `listed`, before the rows
-
-_Static_assert((int)HIDE_LEVELS == HIDE_LEVELS, "levels");
-
-static void *map(const GpuBuffer *buffer, GLbitfield access)
-{
-    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
-    return glMapBufferRange(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)buffer->size, access);
-}
-
-static void unmap(const GpuBuffer *buffer)
-{
-    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
-    glUnmapBuffer(GL_SHADER_STORAGE_BUFFER);
-}
 
 static Result build_hide(Cull *cull, Error *error)
 {
     const ShaderDefine defines[] = {{"GROUP_SIZE", cull->limits->sizes.items}, {NULL, 0}};
-    return cull->hide ? RESULT_OK
-                      : shader_build_compute(&cull->hide, "draw/block_hide.comp", defines, error);
+    if (!cull->hide) TRY(shader_build_compute(&cull->hide, "draw/block_hide.comp", defines, error));
+    return cull->spread
+               ? RESULT_OK
+               : shader_build_compute(&cull->spread, "draw/block_level.comp", defines, error);
 }
 
 static void find_nearest(Cull *cull, const RenderTarget *target)
@@ -99,18 +25,24 @@ static void find_nearest(Cull *cull, const RenderTarget *target)
     glUseProgram(cull->hide);
     glUniform2i(0, cull->tiles[0], cull->tiles[1]);
     gpu_dispatch(cull->limits, count, (uint64_t)cull->limits->sizes.items, 1);
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
-static Result spread(Cull *cull, Error *error)
+Result cull_make_levels(Cull *cull, Error *error)
 {
-    float *levels = map(&cull->levels, GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT);
-    float *nearest = map(&cull->nearest, GL_MAP_READ_BIT | GL_MAP_WRITE_BIT);
-    if (nearest && levels) cull_make_levels(nearest, cull->tiles[0], cull->tiles[1], levels);
-    if (nearest) unmap(&cull->nearest);
-    if (levels) unmap(&cull->levels);
-    return nearest && levels ? RESULT_OK
-                             : error_set(error, RESULT_FAILED, "what is hidden cannot be found");
+    TRY(build_hide(cull, error));
+    gpu_buffer_bind_storage(&cull->nearest, BIND_HIDING_OUT);
+    gpu_buffer_bind_storage(&cull->levels, BIND_LEVELS_OUT);
+    glUseProgram(cull->spread);
+    glUniform2i(0, cull->tiles[0], cull->tiles[1]);
+    for (int level = 0; level < HIDE_LEVELS; ++level) {
+        uint64_t columns = (uint64_t)((cull->tiles[0] - 1) >> level) + 1,
+                 rows = (uint64_t)((cull->tiles[1] - 1) >> level) + 1;
+        glUniform1i(1, level);
+        gpu_dispatch(cull->limits, columns * rows, (uint64_t)cull->limits->sizes.items, 1);
+        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+    }
+    return RESULT_OK;
 }
 
 static Result measure_base(Cull *cull, const RenderTarget *target, Error *error)
@@ -119,11 +51,12 @@ static Result measure_base(Cull *cull, const RenderTarget *target, Error *error)
     cull->tiles[1] = (target->height * target->samples + HIDE_TILE - 1) / HIDE_TILE;
     int64_t size = (int64_t)cull->tiles[0] * cull->tiles[1] * (int64_t)sizeof(float);
     TRY(build_hide(cull, error));
-    TRY(gpu_buffer_reserve(&cull->nearest, cull->limits, "hidden tiles", size, 0, error));
+    TRY(gpu_buffer_reserve(&cull->nearest, cull->limits, "hidden tiles", size * HIDE_LEVELS, 0,
+                           error));
     TRY(gpu_buffer_reserve(&cull->levels, cull->limits, "hidden levels", size * HIDE_LEVELS,
                            GL_R32F, error));
     find_nearest(cull, target);
-    return spread(cull, error);
+    return cull_make_levels(cull, error);
 }
 
 Result cull_begin(Cull *cull, const CullBase *base, bool many, Error *error)
@@ -213,6 +146,7 @@ void cull_destroy(Cull *cull)
     for (int i = 0; i < CULL_VARIANTS; ++i)
         if (cull->list[i]) glDeleteProgram(cull->list[i]);
     if (cull->hide) glDeleteProgram(cull->hide);
+    if (cull->spread) glDeleteProgram(cull->spread);
     for (int i = 0; i < 4; ++i) gpu_buffer_destroy(buffers[i]);
     *cull = (Cull){.limits = cull->limits};
 }

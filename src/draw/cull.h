@@ -19,11 +19,10 @@ enum { CULL_HIDING = 1, CULL_PAINT = 2, CULL_SMOOTH = 4, CULL_VARIANTS = 8 };
 typedef struct Cull {
     const GpuLimits *limits;    // the context's, set by who makes it
     GLuint list[CULL_VARIANTS]; // programs
-    GLuint hide;                // program
+    GLuint hide, spread;        // programs
     GpuBuffer listed;           // of a part: how many, rows: see block_cull.comp
     GpuBuffer tally;            // of the image: strands that are listed, that are hidden
-    GpuBuffer nearest;          // by tile, see block_hide.comp
-    GpuBuffer levels;           // see cull_make_levels
+    GpuBuffer nearest, levels;  // see cull_make_levels
     int tiles[2];               // columns, rows
     uint64_t base;              // BaseLayer.depth_version that `levels` were made for; 0: none
     bool covered;               // something opaque is in this image
@@ -65,8 +64,9 @@ void cull_count(Cull *cull, const uint32_t *tally);
 void cull_destroy(Cull *cull);
 
 // How far away something may be and still be seen, by tiles of the image and by larger ones.
-// `nearest` [rows][columns]: a figure for each tile; it is used up. `levels`
-// [HIDE_LEVELS][rows][columns]: at level k, tile (x, y), which has 2^k x 2^k of the first, the
-// least of all that lie in it and in the eight around it. Where a level has no such tile nothing is
-// written. Both counts >= 1.
-void cull_make_levels(float *nearest, int columns, int rows, float *levels);
+// `nearest` and `levels` have [HIDE_LEVELS][rows][columns] floats, `tiles` of them, both counts
+// >= 1. Of the first level `nearest` has a figure for each tile (block_hide.comp). In `levels`,
+// tile (x, y) of level k, which has 2^k x 2^k of the first, gets the least of all that lie in it
+// and in the eight around it. Where a level has no such tile nothing is written. Only queues GPU
+// work. Errors of shader_build_compute.
+Result cull_make_levels(Cull *cull, Error *error);
