@@ -207,7 +207,8 @@ void hair_shadow_cpu_draw(HairShadowCpu *cpu, const CastParams *params, float ac
 static Result pass_mesh(HairShadowCpu *cpu, const ShadowParams *params, const float *depths,
                         Error *error)
 {
-    TRY(shadow_past_begin(&cpu->past, params, depths, cpu->map.parts, error));
+    if (!cpu->bounded) TRY(shadow_past_begin(&cpu->past, params, depths, cpu->map.parts, error));
+    cpu->bounded = true;
     for (uint32_t i = 0; i < cpu->lit; ++i) {
         const MappedCaster *caster = &cpu->casters[i];
         size_t points = hair_slots(cpu->lights[i].batch) * (size_t)mapped_caster_points(caster);
@@ -220,8 +221,9 @@ static Result pass_mesh(HairShadowCpu *cpu, const ShadowParams *params, const fl
 }
 
 Result hair_shadow_cpu_pass_mesh(HairShadowCpu *cpu, const ShadowParams *params,
-                                 const GpuBuffer *texels, Error *error)
+                                 const GpuBuffer *texels, bool fresh, Error *error)
 {
+    cpu->bounded = cpu->bounded && !fresh;
     if (cpu->lit == 0) return RESULT_OK;
     const float *depths = map(cpu, texels, GL_MAP_READ_BIT);
     return depths ? pass_mesh(cpu, params, depths, error)

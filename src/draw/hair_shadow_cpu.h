@@ -39,6 +39,7 @@ typedef struct HairShadowCpu {
     // With a mesh in the light: what it leaves, too (see shadow_past.h).
     bool past_mesh;
     ShadowPast past;
+    bool bounded;            // `past` has bounds of the mesh's maps as they are
     ParticleLight *reaching; // [room], owned
     bool behind;             // each light has as many values again, of what is behind (look.h)
     int maps;
@@ -71,6 +72,7 @@ bool hair_shadow_cpu_find_box(HairShadowCpu *cpu, const CastParams *params, doub
 void hair_shadow_cpu_draw(HairShadowCpu *cpu, const CastParams *params, float across);
 
 // With `past_mesh`, when all maps are drawn: what reaches the points of hair past the mesh, too,
-// whose maps' depths are in `texels`. RESULT_FAILED if memory is short.
+// whose maps' depths are in `texels`, `fresh` if they are others than at the last call.
+// RESULT_FAILED if memory is short.
 Result hair_shadow_cpu_pass_mesh(HairShadowCpu *cpu, const ShadowParams *params,
-                                 const GpuBuffer *texels, Error *error);
+                                 const GpuBuffer *texels, bool fresh, Error *error);

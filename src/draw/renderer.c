@@ -155,6 +155,7 @@ Result renderer_set_mesh(Renderer *renderer, const Mesh *mesh, const float color
     linear_from_srgb_color(color, linear);
     RenderMesh *mine = &renderer->base.mesh;
     renderer->base.any = false;
+    shadows_forget_mesh(&renderer->shadow);
     render_mesh_destroy(mine);
     TRY(copy_mesh(&renderer->mesh, mesh, error));
     TRY(render_mesh_create(mine, mesh, linear, &renderer->gpu->limits, error));

@@ -97,38 +97,69 @@ static MeshFrame frame_mesh(const LightView *view, const double box[6])
     return mesh;
 }
 
-// Draws map `map`, of which the ShadowParams block tells the frame. The first one empties all.
-static void draw_mesh(const MeshShadow *shadow, const RenderMesh *mesh, int map)
+// Draws all maps, of which the ShadowParams block tells the frames.
+static void draw_mesh(const MeshShadow *shadow, const RenderMesh *mesh, int maps)
 {
     const float farthest = 1;
     glBindFramebuffer(GL_FRAMEBUFFER, shadow->frame);
     glDisable(GL_SCISSOR_TEST);
     glEnable(GL_DEPTH_TEST);
     glDepthMask(GL_TRUE);
-    if (map == 0) glClearBufferfv(GL_DEPTH, 0, &farthest);
-    glViewport(0, map * MESH_SIDE, MESH_SIDE, MESH_SIDE);
+    glClearBufferfv(GL_DEPTH, 0, &farthest);
     glUseProgram(shadow->program);
-    glUniform1i(1, map);
     glBindVertexArray(mesh->vertex_array);
-    glDrawElements(GL_TRIANGLES, (GLsizei)(3 * mesh->triangle_count), GL_UNSIGNED_INT, NULL);
+    for (int map = 0; map < maps; ++map) {
+        glViewport(0, map * MESH_SIDE, MESH_SIDE, MESH_SIDE);
+        glUniform1i(1, map);
+        glDrawElements(GL_TRIANGLES, (GLsizei)(3 * mesh->triangle_count), GL_UNSIGNED_INT, NULL);
+    }
     glDisable(GL_DEPTH_TEST);
 }
 
-// Of all maps, for those that do not read textures: C where it finds the light on hair, else hair's
-// shaders.
-static Result share_mesh(Shadows *shadows, Error *error)
+// For those that do not read textures.
+static void copy_texels(const MeshShadow *shadow, int maps)
 {
-    const MeshShadow *mesh = &shadows->mesh;
-    if (!mesh->texels.buffer) return RESULT_OK;
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, mesh->frame);
-    glBindBuffer(GL_PIXEL_PACK_BUFFER, mesh->texels.buffer);
-    glReadPixels(0, 0, MESH_SIDE, MESH_SIDE * shadows->params.maps, GL_DEPTH_COMPONENT, GL_FLOAT,
-                 NULL);
+    if (!shadow->texels.buffer) return;
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, shadow->frame);
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, shadow->texels.buffer);
+    glReadPixels(0, 0, MESH_SIDE, MESH_SIDE * maps, GL_DEPTH_COMPONENT, GL_FLOAT, NULL);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+}
+
+static bool mesh_is_shown(const MeshShadow *shadow, const ShadowMesh *mesh,
+                          const ShadowParams *params)
+{
+    const ShadowMesh *shown = &shadow->shown;
+    return shown->mesh == mesh->mesh && shadow->shown_maps == params->maps &&
+           memcmp(shown->rotation, mesh->rotation, sizeof shown->rotation) == 0 &&
+           memcmp(shown->translation, mesh->translation, sizeof shown->translation) == 0 &&
+           memcmp(shadow->frames, params->mesh_from_world, sizeof shadow->frames) == 0;
+}
+
+// Makes the mesh's maps, unless they show it: where the head stands still and hair alone moves. C
+// reads them where it finds the light on hair, else shaders.
+static Result draw_mesh_maps(Shadows *shadows, const ShadowMesh *mesh, Error *error)
+{
+    MeshShadow *shadow = &shadows->mesh;
+    const ShadowParams *params = &shadows->params;
+    bool fresh = !mesh_is_shown(shadow, mesh, params);
+    if (fresh) {
+        gpu_uniforms_set(BIND_SHADOW, params, sizeof *params);
+        draw_mesh(shadow, mesh->mesh, params->maps);
+        copy_texels(shadow, params->maps);
+        shadow->shown = *mesh;
+        shadow->shown_maps = params->maps;
+        memcpy(shadow->frames, params->mesh_from_world, sizeof shadow->frames);
+    }
     return shadows->hair.by_processor && shadows->hair.cpu.past_mesh
-               ? hair_shadow_cpu_pass_mesh(&shadows->hair.cpu, &shadows->params, &mesh->texels,
+               ? hair_shadow_cpu_pass_mesh(&shadows->hair.cpu, params, &shadow->texels, fresh,
                                            error)
                : RESULT_OK;
+}
+
+void shadows_forget_mesh(Shadows *shadows)
+{
+    shadows->mesh.shown.mesh = NULL;
 }
 
 // --- All maps.
@@ -201,6 +232,26 @@ static void set_mesh_frame(ShadowParams *params, int map, const MeshFrame *mesh)
     params->mesh_lift = fmaxf(params->mesh_lift, (float)mesh->lift);
 }
 
+static void empty_box(double box[6])
+{
+    for (int k = 0; k < 3; ++k) box[k] = LIGHT_FRAME_FAR, box[k + 3] = -LIGHT_FRAME_FAR;
+}
+
+// The mesh's window: around the mesh alone, so that it stays while the head does; what lies beside
+// or behind it has no mesh before it. At least a tenth as deep as wide, since depths of a mesh that
+// is flat before the light would be nothing but rounding. Before a lamp, which may stand in the
+// mesh's box, around hair as well.
+static void frame_mesh_map(ShadowParams *params, int map, const ShadowMesh *mesh,
+                           const LightView *view, double box[6])
+{
+    if (!view->perspective) empty_box(box);
+    add_mesh_box(mesh, view, box);
+    if (!view->perspective)
+        box[5] = fmax(box[5], box[2] + 0.1 * fmax(box[3] - box[0], box[4] - box[1]));
+    MeshFrame frame = frame_mesh(view, box);
+    set_mesh_frame(params, map, &frame);
+}
+
 // The next map, of light `light`; none if nothing is in its sight.
 static void draw_map(Shadows *shadow, const ShadowScene *scene, int light)
 {
@@ -208,22 +259,15 @@ static void draw_map(Shadows *shadow, const ShadowScene *scene, int light)
     ShadowParams *params = &shadow->params;
     int map = params->maps;
     double box[6];
-    bool by_mesh = has_mesh(scene);
     if (!hair_shadow_find_box(&shadow->hair, &view, scene->casters, box)) {
-        if (!by_mesh) return;
-        for (int k = 0; k < 3; ++k) box[k] = LIGHT_FRAME_FAR, box[k + 3] = -LIGHT_FRAME_FAR;
+        if (!has_mesh(scene)) return;
+        empty_box(box);
         add_mesh_box(&scene->mesh, &view, box);
     }
     LightFrame frame = hair_shadow_frame(&shadow->hair, &view, box);
     set_hair_frame(params, map, light, &view, &frame);
     hair_shadow_draw(&shadow->hair, &view, &frame, map, scene->casters);
-    if (by_mesh) {
-        add_mesh_box(&scene->mesh, &view, box);
-        MeshFrame mesh = frame_mesh(&view, box);
-        set_mesh_frame(params, map, &mesh);
-        gpu_uniforms_set(BIND_SHADOW, params, sizeof *params);
-        draw_mesh(&shadow->mesh, scene->mesh.mesh, map);
-    }
+    if (has_mesh(scene)) frame_mesh_map(params, map, &scene->mesh, &view, box);
     ++params->maps;
 }
 
@@ -288,7 +332,8 @@ static Result draw_maps(Shadows *shadow, const ShadowScene *scene, Error *error)
     TRY(hair_shadow_begin(&shadow->hair, count_maps(scene), scene->casters, error));
     for (uint32_t i = 0; i < scene->light_count; ++i)
         if (casts(&scene->lights[i])) draw_map(shadow, scene, (int)i);
-    Result result = has_mesh(scene) && params->maps ? share_mesh(shadow, error) : RESULT_OK;
+    Result result =
+        has_mesh(scene) && params->maps ? draw_mesh_maps(shadow, &scene->mesh, error) : RESULT_OK;
     hair_shadow_end(&shadow->hair);
     if (result != RESULT_OK) return result;
     shadow->maps_drawn = (uint32_t)params->maps;

@@ -9,19 +9,22 @@
 #include "gpu/gpu_timer.h"
 #include "scene/scene.h"
 
-// How far each light sees before the mesh stands in its way: plain depth maps.
-typedef struct MeshShadow {
-    GLuint program;
-    GLuint depth, frame; // a square for each map, one below the other
-    GpuBuffer texels;    // with_texels: the same, floats, row by row
-    int maps;            // there is room for
-} MeshShadow;
-
 // The mesh where the head has carried it.
 typedef struct ShadowMesh {
     const RenderMesh *mesh;
     float rotation[4], translation[3]; // m; as the DrawParams block has them
 } ShadowMesh;
+
+// How far each light sees before the mesh stands in its way: plain depth maps.
+typedef struct MeshShadow {
+    GLuint program;
+    GLuint depth, frame;     // a square for each map, one below the other
+    GpuBuffer texels;        // with_texels: the same, floats, row by row
+    int maps;                // there is room for
+    ShadowMesh shown;        // in all maps; mesh NULL: none
+    mat4 frames[MAX_LIGHTS]; // its maps'
+    int shown_maps;
+} MeshShadow;
 
 typedef struct ShadowOptions {
     Shadow kind;   // not none
@@ -63,6 +66,9 @@ void shadows_destroy(Shadows *shadow);
 
 // Room for so many maps of a mesh, and their shader. RESULT_FAILED if memory is short.
 Result shadows_reserve_mesh(Shadows *shadow, int maps, Error *error);
+
+// The mesh is another one, at the same place in memory.
+void shadows_forget_mesh(Shadows *shadows);
 
 // Makes the map of each light that casts shadows, unless they show this scene already. Waits for
 // the GPU, changes framebuffer and viewport. Needs the DrawParams block. RESULT_FAILED if memory is

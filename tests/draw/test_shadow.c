@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "draw/look.h"
 #include "gen/strands_make.h"
+#include "gpu/gpu_uniforms.h"
 #include "strands/paint.h"
 #include "support/shadow_stage.h"
 
@@ -281,6 +282,47 @@ static void strands_left_out_cast_no_shadow(void **state)
     shadow_stage_close(&stage);
 }
 
+static void wipe_mesh(const ShadowStage *stage)
+{
+    const float farthest = 1;
+    glBindFramebuffer(GL_FRAMEBUFFER, stage->shadow.mesh.frame);
+    glDepthMask(GL_TRUE);
+    glClearBufferfv(GL_DEPTH, 0, &farthest);
+}
+
+// Maps of a mesh that have been wiped show when they are drawn again: not where hair alone moves.
+static void the_meshs_maps_are_kept_while_it_stands(void **state)
+{
+    (void)state;
+    ShadowStage stage;
+    GpuTimer timer;
+    Mesh square = shadow_stage_square(0.2f, 0.3f);
+    const struct {
+        float shift;
+        bool forget, drawn;
+    } pictures[] = {{0, false, false},   {0.05f, false, true},   {0.05f, false, false},
+                    {0.05f, true, true}, {0.0501f, false, true}, {0, false, true}};
+    gpu_timer_create(&timer, false, true);
+    shadow_stage_open(&stage, shadow_stage_layers(1), 0.01f, 0.3f, &square, &LIGHT_ABOVE);
+    draw_maps(&stage, SHADOW_DOM, 64, 1);
+    expect_light(&stage, 0.2f, -0.5f, 0.2f, 0, 0);
+    for (size_t i = 0; i < sizeof pictures / sizeof *pictures; ++i) {
+        DrawParams draw = {.head_rotation = {0, 0, 0, 1},
+                           .head_translation = {pictures[i].shift, 0, 0}};
+        gpu_uniforms_set(BIND_DRAW, &draw, sizeof draw);
+        stage.scene.mesh.translation[0] = pictures[i].shift;
+        ++stage.scene.revision;
+        if (pictures[i].forget) shadows_forget_mesh(&stage.shadow);
+        wipe_mesh(&stage);
+        NEEDED(shadows_draw(&stage.shadow, &stage.scene, &timer, error));
+        assert_int_equal(stage.shadow.maps_drawn, 1);
+        expect_light(&stage, 0.2f, -0.5f, 0.2f, pictures[i].drawn ? 0 : 1, 0);
+    }
+    shadow_stage_close(&stage);
+    mesh_destroy(&square);
+    gpu_timer_destroy(&timer);
+}
+
 static void maps_are_kept_while_nothing_changes(void **state)
 {
     (void)state;
@@ -400,6 +442,7 @@ int main(void)
         cmocka_unit_test(smooth_strands_cast_the_shadow_of_their_curve),
         cmocka_unit_test(strands_left_out_cast_no_shadow),
         cmocka_unit_test(maps_are_kept_while_nothing_changes),
+        cmocka_unit_test(the_meshs_maps_are_kept_while_it_stands),
         cmocka_unit_test(broken_positions_leave_the_rest_its_shadow),
         cmocka_unit_test(deep_maps_are_near_the_exact_light),
     };
