@@ -283,7 +283,7 @@ Result images_draw(Images *images, int frame, const View *view, Image *image, Er
     return renderer_take(renderer, place, image, error);
 }
 
-void images_set_matrices(OutputExtra *extra, const View *view)
+void images_set_matrices(FrameExtra *extra, const View *view)
 {
     // From clip space: x of -w to w becomes 0 to w, y the other way round.
     mat4 halve = {{0.5f, 0, 0, 0}, {0, -0.5f, 0, 0}, {0, 0, 1, 0}, {0.5f, 0.5f, 0, 1}};

@@ -53,4 +53,4 @@ Result images_take(Images *images, int place, Image *image, Image layers[EXR_LAY
 
 // The matrices of a view, as EXR files have them: world to camera, and to the image, whose corners
 // are (0, 0), at the top left, and (1, 1).
-void images_set_matrices(OutputExtra *extra, const View *view);
+void images_set_matrices(FrameExtra *extra, const View *view);

@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "run/output.h"
 
-#include "base/bytes.h"
 #include "base/clock.h"
 #include "base/interrupt.h"
-#include "base/outfile.h"
 #include "base/parallel.h"
-#include "base/target.h"
-#include "image/pfm.h"
-#include "image/png.h"
-#include "run/record.h"
-#include "run/video.h"
-#include "run/y4m.h"
+#include "run/single_file.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -33,7 +26,7 @@ typedef enum SlotState { SLOT_FREE, SLOT_LENT, SLOT_QUEUED } SlotState;
 
 typedef struct Slot {
     Image image; // first, so that an image lent out leads back to its slot
-    OutputExtra extra;
+    FrameExtra extra;
     SlotState state;
     int frame;
 } Slot;
@@ -47,13 +40,10 @@ typedef struct Worker {
 
 struct Output {
     Target target;
-    Video *video; // NULL unless ffmpeg writes a video
-    Y4m y4m;      // the one worker's
-    bool exr_float;
-    ImageSheet sheet; // empty unless a contact sheet is; the one worker's
-    ImageTexts texts; // what every worker begins with
+    SingleFile single; // the one worker's
+    ImageTexts texts;  // what every worker begins with
     bool has_texts;
-    OutputOptions options; // sizes of images
+    OutputOptions options; // of numbers; what it points to may be gone
     Slot *slots;           // [slot_room]
     Slot **queue;          // ring of `slot_room`, so there is always room
     int slot_count, slot_room;
@@ -75,92 +65,32 @@ struct Output {
     OutputCounters counters;
 };
 
-// Of a sheet the first and the last. `extra`: NULL: a sheet has none.
-static Result set_texts(const Output *output, ImageTexts *texts, int frame,
-                        const OutputExtra *extra, Error *error)
-{
-    char text[40];
-    if (!output->has_texts) return RESULT_OK;
-    if (output->sheet.columns)
-        snprintf(text, sizeof text, "%d-%d", output->frame_first, output->frame_last);
-    else
-        snprintf(text, sizeof text, "%d", frame);
-    TRY(image_texts_set(texts, "Frame", text, error));
-    if (!extra || !*extra->scene) return RESULT_OK;
-    return image_texts_set(texts, FINGERPRINT_KEY, extra->scene, error);
-}
-
-static Result encode(const Output *output, const ImageTexts *texts, const Image *image,
-                     const OutputExtra *extra, Bytes *file, Error *error)
-{
-    if (output->target.format == TARGET_PFM) return pfm_encode(image, file, error);
-    if (output->target.format == TARGET_PNG) return png_encode(image, texts, file, error);
-    ExrFile exr = {.image = image, .floats = output->exr_float, .texts = texts};
-    if (extra) {
-        exr.layers = extra->layers[0].pixels ? extra->layers : NULL;
-        exr.world_to_camera = (const float(*)[4])extra->world_to_camera;
-        exr.world_to_ndc = (const float(*)[4])extra->world_to_ndc;
-    }
-    return exr_file_encode(&exr, file, error);
-}
-
-// A file that is written, but has not its name yet.
-typedef struct Written {
-    OutFile file;
-    uint64_t bytes;
-    Result result;
+// A frame that a worker has taken.
+typedef struct Taken {
+    FrameFile file;
+    uint64_t turn; // how many were taken before
+    char scene[FINGERPRINT_BYTES];
+    Result result; // of encoding and writing
     Error error;
-} Written;
+} Taken;
 
-static Result write_bytes(Written *written, const Bytes *bytes, const char *name)
+static FrameFile name_file(const Output *output, int first, int last)
 {
-    TRY(outfile_open(&written->file, name, &written->error));
-    fwrite(bytes->data, 1, bytes->size, written->file.stream);
-    return outfile_sync(&written->file, &written->error);
+    return (FrameFile){&output->target, first, last, .exr_float = output->options.exr_float};
 }
 
-// `extra`: NULL: a sheet has none.
-static Result encode_file(Worker *worker, const Image *image, const OutputExtra *extra, int frame,
-                          Written *written)
+static ImageTexts *texts_of(Worker *worker)
 {
-    Output *output = worker->output;
-    Error *error = &written->error;
-    char *name = target_name_frame(&output->target, frame);
-    if (!name) return error_set(error, RESULT_FAILED, "no memory for the name of frame %d", frame);
-    Bytes bytes = {0};
-    Result result = set_texts(output, &worker->texts, frame, extra, error);
-    THEN(result, encode(output, &worker->texts, image, extra, &bytes, error));
-    written->bytes = bytes.size;
-    if (result == RESULT_OK)
-        result = write_bytes(written, &bytes, name);
-    else
-        error_prefix(error, result, "%s: ", name);
-    bytes_destroy(&bytes);
-    free(name);
-    return result;
+    return worker->output->has_texts ? &worker->texts : NULL;
 }
 
-// Gives the file its name.
-static Result commit_file(const Output *output, Written *written, const char *scene, int frame)
+static void encode(Worker *worker, const Slot *slot, Taken *taken)
 {
-    if (written->result != RESULT_OK) return written->result;
-    if (written->file.path) TRY(outfile_commit(&written->file, &written->error));
-    if (output->target.format != TARGET_PFM || !*scene) return RESULT_OK;
-    return record_add(&output->target, frame, scene, &written->error);
-}
-
-// Into the one file of all frames.
-static Result take_frame(Output *output, const Slot *slot, Error *error)
-{
-    if (output->video) return video_write(output->video, &slot->image, error);
-    if (output->y4m.planes) return y4m_write(&output->y4m, &slot->image, error);
-    image_sheet_add(&output->sheet, &slot->image);
-    return RESULT_OK;
-}
-
-static bool is_one_file(const Output *output)
-{
-    return output->video || output->y4m.planes || output->sheet.columns;
+    SingleFile *single = &worker->output->single;
+    taken->result = single_file_is_used(single)
+                        ? single_file_add(single, &slot->image, &taken->error)
+                        : frame_file_write(&taken->file, &slot->image, texts_of(worker),
+                                           &slot->extra, &taken->error);
 }
 
 // Keeps the first failure. Called with the mutex held.
@@ -176,25 +106,32 @@ static bool goes_on(const Output *output)
     return output->result == RESULT_OK && !output->aborting;
 }
 
-// Once the files of all earlier frames have their names; none if one of them has failed. Called
-// with the mutex held, which is let go meanwhile, as by the next function.
-static void end_frame(Output *output, Written *written, uint64_t turn, const char *scene, int frame)
+// Gives the frame its file, if it has one of its own.
+static Result commit(Output *output, Taken *taken)
 {
-    while (output->written != turn && goes_on(output))
+    if (taken->result != RESULT_OK || single_file_is_used(&output->single)) return taken->result;
+    return frame_file_commit(&taken->file, taken->scene, &taken->error);
+}
+
+// Once the files of all earlier frames have their names; none if one of them has failed. Called
+// with the mutex held, which is let go meanwhile, as by the next functions.
+static void end_frame(Output *output, Taken *taken)
+{
+    while (output->written != taken->turn && goes_on(output))
         pthread_cond_wait(&output->changed, &output->mutex);
     if (goes_on(output)) {
         pthread_mutex_unlock(&output->mutex);
-        Result result = commit_file(output, written, scene, frame);
+        Result result = commit(output, taken);
         pthread_mutex_lock(&output->mutex);
         if (result != RESULT_OK) {
-            fail(output, result, &written->error);
+            fail(output, result, &taken->error);
         } else {
             output->written++;
             output->counters.frames++;
-            output->counters.bytes += written->bytes;
+            output->counters.bytes += taken->file.bytes;
         }
     }
-    outfile_discard(&written->file);
+    frame_file_discard(&taken->file);
 }
 
 // Encodes the oldest frame that waits.
@@ -202,52 +139,32 @@ static void encode_next(Worker *worker)
 {
     Output *output = worker->output;
     Slot *slot = output->queue[output->queue_first];
-    Written written = {.result = RESULT_OK};
-    char scene[FINGERPRINT_BYTES];
+    Taken taken = {.file = name_file(output, slot->frame, slot->frame), .turn = output->taken++};
     output->queue_first = (output->queue_first + 1) % output->slot_room;
     output->queued--;
-    uint64_t turn = output->taken++;
     pthread_mutex_unlock(&output->mutex);
     double start_ms = clock_ms();
-    int frame = slot->frame;
-    memcpy(scene, slot->extra.scene, sizeof scene);
-    written.result = is_one_file(output)
-                         ? take_frame(output, slot, &written.error)
-                         : encode_file(worker, &slot->image, &slot->extra, frame, &written);
+    memcpy(taken.scene, slot->extra.scene, sizeof taken.scene);
+    encode(worker, slot, &taken);
     double encode_ms = clock_ms() - start_ms;
     pthread_mutex_lock(&output->mutex);
     slot->state = SLOT_FREE;
     output->counters.encode_ms += encode_ms;
     pthread_cond_broadcast(&output->changed);
-    end_frame(output, &written, turn, scene, frame);
-}
-
-static Result write_sheet(Worker *worker, uint64_t *bytes, Error *error)
-{
-    Output *output = worker->output;
-    Written written = {.result = RESULT_OK};
-    written.result = encode_file(worker, &output->sheet.image, NULL, 0, &written);
-    Result result = commit_file(output, &written, "", 0);
-    *bytes = written.bytes;
-    *error = written.error;
-    outfile_discard(&written.file);
-    return result;
+    end_frame(output, &taken);
 }
 
 // Completes the one file that all frames have gone to, if there is one.
 static void end_file(Worker *worker)
 {
     Output *output = worker->output;
-    bool y4m = output->y4m.planes != NULL;
-    if (!is_one_file(output)) return;
+    if (!single_file_is_used(&output->single)) return;
+    FrameFile file = name_file(output, output->frame_first, output->frame_last);
     pthread_mutex_unlock(&output->mutex);
     double start_ms = clock_ms();
     uint64_t bytes = 0;
     Error error;
-    Result result = output->video ? video_finish(output->video, &bytes, &error)
-                    : y4m         ? y4m_finish(&output->y4m, &error)
-                                  : write_sheet(worker, &bytes, &error);
-    if (y4m) bytes = output->y4m.bytes;
+    Result result = single_file_finish(&output->single, &file, texts_of(worker), &bytes, &error);
     double encode_ms = clock_ms() - start_ms;
     pthread_mutex_lock(&output->mutex);
     output->counters.encode_ms += encode_ms;
@@ -403,25 +320,22 @@ static void grow(Output *output)
 static Result start_sheet(Output *output, const OutputOptions *options, Error *error)
 {
     if (!is_sheet(options)) return RESULT_OK;
-    Result result = image_sheet_create(&output->sheet, options->columns, options->rows,
-                                       &output->slots[0].image, error);
+    Result result = single_file_start_sheet(&output->single, options->columns, options->rows,
+                                            &output->slots[0].image, error);
     return result == RESULT_USAGE ? error_prefix(error, result, "%s: ", options->target) : result;
 }
 
 static Result start_video(Output *output, const OutputOptions *options, Error *error)
 {
-    if (output->target.format == TARGET_PNG) return RESULT_OK; // file after file
-    if (output->target.format == TARGET_Y4M)
-        return y4m_create(&output->y4m, output->target.before, options->width, options->height,
-                          options->fps, error);
-    VideoOptions video = {
+    const VideoOptions video = {
         .path = output->target.before,
         .width = options->width,
         .height = options->height,
         .channels = options->channels,
         .fps = options->fps,
     };
-    return video_create(&output->video, &video, error);
+    if (output->target.kind != TARGET_VIDEO) return RESULT_OK;
+    return single_file_start_video(&output->single, output->target.format, &video, error);
 }
 
 static void create_lock(Output *output)
@@ -441,16 +355,15 @@ Result output_create(Output **output, const OutputOptions *options, Error *error
     if (!created) return error_set(error, RESULT_FAILED, "no memory for the output");
     create_lock(created);
     created->has_texts = options->texts != NULL;
-    created->exr_float = options->exr_float;
     Result result = target_parse(&created->target, options->target, error);
     THEN(result, check_options(options, &created->target, error));
     THEN(result, image_texts_copy(&created->texts, options->texts, error));
     THEN(result, create_slots(created, options, error));
     THEN(result, start_sheet(created, options, error));
     THEN(result, target_prepare(&created->target, error));
-    if (result == RESULT_OK && created->target.kind == TARGET_VIDEO)
-        result = start_video(created, options, error);
-    created->most_workers = is_one_file(created) || created->target.stream ? 1 : parallel_threads();
+    THEN(result, start_video(created, options, error));
+    bool one = single_file_is_used(&created->single) || created->target.stream;
+    created->most_workers = one ? 1 : parallel_threads();
     if (result == RESULT_OK) {
         pthread_mutex_lock(&created->mutex);
         result = start_worker(created, error);
@@ -490,7 +403,7 @@ Result output_acquire(Output *output, Image **image, Error *error)
     return result;
 }
 
-OutputExtra *output_extra(Image *image)
+FrameExtra *output_extra(Image *image)
 {
     return &((Slot *)image)->extra;
 }
@@ -520,7 +433,7 @@ Result output_finish(Output *output, Error *error)
 {
     pthread_mutex_lock(&output->mutex);
     Result result = RESULT_OK;
-    if ((output->video || output->y4m.planes) && output->submitted == 0)
+    if (single_file_is_video(&output->single) && output->submitted == 0)
         result = error_set(error, RESULT_FAILED, "%s: a video needs at least one frame",
                            output->target.before);
     output->closing = result == RESULT_OK;
@@ -533,7 +446,7 @@ Result output_finish(Output *output, Error *error)
 
 void output_flush(Output *output)
 {
-    if (!is_one_file(output)) output_finish(output, NULL);
+    if (!single_file_is_used(&output->single)) output_finish(output, NULL);
 }
 
 static void stop_workers(Output *output)
@@ -544,7 +457,7 @@ static void stop_workers(Output *output)
     pthread_cond_broadcast(&output->changed);
     pthread_mutex_unlock(&output->mutex);
     // The worker may be waiting for ffmpeg: its end wakes it.
-    if (output->video && !ended) video_kill(output->video);
+    if (!ended) single_file_stop(&output->single);
     for (int i = 0; i < output->worker_count; i++) {
         pthread_join(output->workers[i].thread, NULL);
         image_texts_destroy(&output->workers[i].texts);
@@ -555,10 +468,8 @@ void output_destroy(Output *output)
 {
     if (!output) return;
     if (output->worker_count) stop_workers(output);
-    video_destroy(output->video);
-    image_sheet_destroy(&output->sheet);
+    single_file_destroy(&output->single);
     image_texts_destroy(&output->texts);
-    y4m_destroy(&output->y4m);
     for (int i = 0; i < output->slot_count; i++) {
         image_destroy(&output->slots[i].image);
         for (int l = 0; l < EXR_LAYERS; l++) image_destroy(&output->slots[i].extra.layers[l]);

@@ -10,23 +10,14 @@
 #pragma once
 
 #include "base/error.h"
-#include "image/exr_file.h"
 #include "image/image.h"
 #include "image/image_text.h"
-#include "run/fingerprint.h"
+#include "run/frame_file.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
 typedef struct Output Output;
-
-// What goes into a frame's file beside its image: the scene into PNG and EXR, of PFM into a file
-// beside it (record.h); the rest into EXR.
-typedef struct OutputExtra {
-    char scene[FINGERPRINT_BYTES]; // empty: none
-    Image layers[EXR_LAYERS];      // IMAGE_FLOAT of 3 channels; without pixels where there are none
-    float world_to_camera[4][4], world_to_ndc[4][4]; // see ExrFile
-} OutputExtra;
 
 typedef struct OutputOptions {
     const char *target; // as target_parse takes it: "DIR/", "name_%04d.png", "x.png", "x.mp4",
@@ -62,7 +53,7 @@ Result output_acquire(Output *output, Image **image, Error *error);
 
 // What belongs to an image that is lent out, to be filled like it. Sheets and videos leave it
 // out.
-OutputExtra *output_extra(Image *image);
+FrameExtra *output_extra(Image *image);
 
 // Gives the image back to be written as frame `frame_index` (>= 0, part of the file's name; videos
 // go by the order of submission). Never blocks. Fails like output_acquire, the image is given back
