@@ -90,6 +90,8 @@ layout(binding = BIND_CONTACTS_BEFORE) uniform samplerBuffer contact_texels;
 #endif
 
 const int ROUNDS = 3;
+// of a link: as exactly its end is put on a surface
+const float EXACT = 1e-6;
 // way out of a collider for each way along the strand: a root's depth is left after twice that
 // length
 const float LEAVING = 0.5;
@@ -248,7 +250,7 @@ void push_out(inout vec3 at, inout vec3 v, vec3 p, float l, float need, int addr
 #endif
     vec3 d = normalise_or(aim - p, nearest.normal);
     depth -= contact ? dot(p + l * d - at, nearest.normal) : 0.0;
-    for (int round = 0; round < ROUNDS && contact && abs(depth) > 1e-6 * l; ++round) {
+    for (int round = 0; round < ROUNDS && contact && abs(depth) > EXACT * l; ++round) {
         d = turned(d, nearest.normal, depth, l);
         at = p + l * d;
         nearest = nearest_surface(at);
@@ -256,7 +258,12 @@ void push_out(inout vec3 at, inout vec3 v, vec3 p, float l, float need, int addr
     }
     tally.left = max(tally.left, contact ? depth : 0.0);
 #if MODE != DRAWN
-    v = contact ? velocity_after(v, surface / collide_params.dt, nearest.normal) : v;
+    // What has been carried along with a particle that was pushed may be just at the surface:
+    // rounding shall not decide whether it flies on into it.
+    float rounding = EXACT * (l + max(abs(at.x), max(abs(at.y), abs(at.z))));
+    v = contact || depth > -rounding
+            ? velocity_after(v, surface / collide_params.dt, nearest.normal)
+            : v;
 #endif
 }
 

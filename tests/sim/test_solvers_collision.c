@@ -209,6 +209,19 @@ static void a_turning_head_pushes_hair_and_keeps_its_lengths(void **state)
 
 // --- Symmetries.
 
+enum { TURN_STEPS = 20 };
+
+// How far a turned scene may be off. A step adds rounding of about 2^-24 a particle, which a strand
+// of n sums up to sqrt(n) 2^-24 of its length; at worst that of all steps adds up, in both runs.
+// Measured: 2.8e-6, and 5.4e-6 where maths is 4 or 8 units off, of 9.5e-6.
+// Explicit springs shake: a particle that touches in the one scene and just not in the other goes
+// on by more than rounding. Measured: 5.8e-4, whether maths is 0, 1 or 2 units off.
+static double turn_tolerance(const char *algo, const char *variant)
+{
+    if (strcmp(algo, "spring") == 0 && strcmp(variant, "explicit") == 0) return 1e-3;
+    return 2 * TURN_STEPS * sqrt(DRAPED_N) * 0x1p-24 * fixture_rounding();
+}
+
 // The scene turned by 30 degrees about z: shapes as text with the same numbers turned.
 static void check_turn(const SolverType *type, const char *variant)
 {
@@ -230,7 +243,7 @@ static void check_turn(const SolverType *type, const char *variant)
                             "plane:0,1,0,-0.03");
     fixture_collide(&other, text);
     other.step.gravity[0] = (float)(9.81 * s), other.step.gravity[1] = (float)(-9.81 * c);
-    for (int i = 0; i < 20; ++i) fixture_step(&plain), fixture_step(&other);
+    for (int i = 0; i < TURN_STEPS; ++i) fixture_step(&plain), fixture_step(&other);
     twin_read_strand(&plain, 1, a);
     twin_read_strand(&other, 1, b);
     for (int j = 0; j < DRAPED_N; ++j) {
@@ -238,7 +251,7 @@ static void check_turn(const SolverType *type, const char *variant)
         memcpy(a[j], r, sizeof r);
     }
     double off = twin_rms((const Vec *)a, (const Vec *)b, DRAPED_N, 0.24);
-    every_solver_require(off < 1e-3 * fixture_rounding(), type, variant,
+    every_solver_require(off < turn_tolerance(type->name, variant), type, variant,
                          "a turned scene moves otherwise, by %.2g", off);
     fixture_destroy(&plain);
     fixture_destroy(&other);
