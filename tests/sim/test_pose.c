@@ -154,9 +154,26 @@ static double find_turned(const double b[3], const double h[3])
     return sqrt(fmax(0.5 + 0.5 * dot(b, h), 0));
 }
 
-// Positions are sums of 20 directions at 3 m: a direction's difference is off by 2^-22 twice. The
-// cosine of half the angle to the hanging way, the root of a sum that rounds to 2^-24, is off by
-// 2^-25 over itself, which turns what is drawn by about as much, less than 2^-22 / cosine in all.
+// A drawn direction's rounding, in each coordinate. Positions are sums of 20 directions: within 9
+// m, where their difference is off by 2^-21. Products and sums of head and turn round about 8
+// times, by 2^-24 each. A root and a division make the tangent of half the turn, which turns what
+// is drawn by as much; one more division makes the turn, of which it moves up to twice. Each is off
+// by half a unit, 2^-24, or as often as fixture_rounding() says.
+static double find_rounding(void)
+{
+    return (4 + fixture_rounding()) * 0x1p-22;
+}
+
+// What is added as a segment turns to where it points upwards. The cosine of half the angle to the
+// hanging way, the root of a sum that rounds to 2^-24, is off by 2^-25 over itself, which turns
+// what is drawn by about as much, less than 2^-22 / cosine with the axis. The share fades by the
+// cosine's square, times 4/0.27 (define()): it is off by the slope there times 2^-24.
+static double find_rounding_near_axis(double cosine)
+{
+    double near = fmin(cosine * cosine * 4 / 0.27, 1), slope = 6 * near * (1 - near) * 4 / 0.27;
+    return 0x1p-22 / cosine + slope * 0x1p-24;
+}
+
 static void hanging_hair_turns_its_style(void **state)
 {
     (void)state;
@@ -179,11 +196,11 @@ static void hanging_hair_turns_its_style(void **state)
                     off = fmax(off, fabs(got[k] - d[k]));
                 }
                 length = sqrt(dot(got, got));
-                if (!(fabs(length - 1) < 4e-6 * fixture_rounding()))
+                if (!(fabs(length - 1) < sqrt(3) * find_rounding()))
                     fail_msg("style %g: a segment's length is off by %g", SHARES[i], length - 1);
                 if (cosine < 4e-4) continue; // rounding decides about the axis
-                double most = 4e-6 + 0x1p-22 / cosine;
-                if (!(off < most * fixture_rounding()))
+                double most = find_rounding() + find_rounding_near_axis(cosine);
+                if (!(off < most))
                     fail_msg("style %g, %g degrees: off by %g, at most %g", SHARES[i],
                              ANGLES[at % ANGLE_COUNT], off, most);
             }
