@@ -1,21 +1,15 @@
 // SPDX-License-Identifier: MIT
-// The box around all hair as the light sees it: (u, v, depth). Floats are compared as ints, which
-// atomics can do: of positive ones the bits grow with the value, of negative ones they fall.
+// The box around all hair as the light sees it: (u, v, depth).
 #include "draw/shadow.h"
 #include "draw/material.h"
 #include "common/hair_address.glsl"
 #include "draw/curve.glsl"
 #include "draw/shadow_cast.glsl"
+#include "draw/bounds.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
-layout(std430, binding = BIND_BOUNDS_OUT) buffer Bounds { int bounds[]; };
-
-int ordered(float x)
-{
-    int bits = floatBitsToInt(x);
-    return bits < 0 ? bits ^ 0x7fffffff : bits;
-}
+layout(std430, binding = BIND_BOUNDS_OUT) buffer Bounds { int bounds[]; }; // six a map
 
 void main()
 {
@@ -35,8 +29,9 @@ void main()
         high = sound ? max(high, place) : high;
     }
     if (high.x < low.x) return;
+    int first = 6 * cast_params.map;
     for (int k = 0; k < 3; ++k) {
-        atomicMin(bounds[k], ordered(low[k]));
-        atomicMax(bounds[3 + k], ordered(high[k]));
+        atomicMin(bounds[first + k], ordered(low[k]));
+        atomicMax(bounds[first + 3 + k], ordered(high[k]));
     }
 }

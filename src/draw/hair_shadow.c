@@ -36,7 +36,7 @@ static Result build(GLuint *program, const char *file, int group, int kind, unsi
     return *program ? RESULT_OK : shader_build_compute(program, file, defines, error);
 }
 
-static unsigned variant_of(const ShadowCaster *caster)
+unsigned hair_shadow_variant(const ShadowCaster *caster)
 {
     return (caster->batch->paint.buffer ? CAST_PAINT : 0) |
            (caster->look.features & LOOK_SMOOTH ? CAST_SMOOTH : 0);
@@ -116,7 +116,8 @@ static Result make_maps(HairShadow *hair, int maps, Error *error)
 static Result make_scratch(HairShadow *hair, ShadowCasters casters, Error *error)
 {
     int64_t texels = (int64_t)hair->maps * hair->side * hair->side;
-    TRY(gpu_buffer_reserve(&hair->box, hair->limits, "light's box", 4 * BOX_WORDS, 0, error));
+    TRY(gpu_buffer_reserve(&hair->box, hair->limits, "light's box", 4 * MAX_LIGHTS * BOX_WORDS, 0,
+                           error));
     if (hair->deep)
         TRY(gpu_buffer_reserve(&hair->firsts, hair->limits, "shadow's depths",
                                4 * texels / (SHADOW_COARSE * SHADOW_COARSE), GL_R32UI, error));
@@ -124,7 +125,7 @@ static Result make_scratch(HairShadow *hair, ShadowCasters casters, Error *error
         TRY(gpu_buffer_reserve(&hair->sums, hair->limits, "shadow's sums",
                                4 * texels * SHADOW_LAYERS, GL_R32UI, error));
     for (uint32_t i = 0; i < casters.count; ++i)
-        TRY(hair_shadow_build(hair, variant_of(&casters.list[i]), error));
+        TRY(hair_shadow_build(hair, hair_shadow_variant(&casters.list[i]), error));
     return RESULT_OK;
 }
 
@@ -163,7 +164,7 @@ static void cast(HairShadow *hair, ShadowCasters casters, const CastParams *para
         const HairBatch *batch = caster->batch;
         MaterialParams material = look_material(&caster->look, batch);
         uint32_t points = (batch->vertex_count - 1) * material.smooth_parts + 1;
-        glUseProgram(programs[variant_of(caster)]);
+        glUseProgram(programs[hair_shadow_variant(caster)]);
         gpu_uniforms_set(BIND_MATERIAL, &material, sizeof material);
         gpu_buffer_bind_texture(&batch->position, BIND_POSITION);
         if (batch->paint.buffer) gpu_buffer_bind_texture(&batch->paint, BIND_PAINT);
@@ -174,7 +175,7 @@ static void cast(HairShadow *hair, ShadowCasters casters, const CastParams *para
                     GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-static float decode(int32_t bits)
+float hair_shadow_unordered(int32_t bits)
 {
     float value;
     bits = bits < 0 ? bits ^ 0x7fffffff : bits;
@@ -188,29 +189,48 @@ static void set_rows(CastParams *params, double rows[4][4])
         for (int i = 0; i < 4; ++i) params->from_world[k][i] = (float)rows[k][i];
 }
 
-bool hair_shadow_find_box(HairShadow *hair, const LightView *view, ShadowCasters casters,
-                          double box[6])
+static CastParams box_params(const LightView *view, int map)
 {
     double rows[4][4];
-    const GLint none[BOX_WORDS] = {INT32_MAX, INT32_MAX, INT32_MAX,
-                                   INT32_MIN, INT32_MIN, INT32_MIN};
-    GLint words[BOX_WORDS];
     CastParams params = {
+        .map = map,
         .limit = (float)LIGHT_FRAME_FAR,
         .reach = (float)(view->perspective ? LIGHT_FRAME_WIDE : LIGHT_FRAME_FAR),
     };
     for (int k = 0; k < 4; ++k) light_frame_row(view, k, rows[k]);
     set_rows(&params, rows);
-    if (hair->by_processor) return hair_shadow_cpu_find_box(&hair->cpu, &params, box);
+    return params;
+}
+
+static void find_boxes(HairShadow *hair, const LightView *views, int count, ShadowCasters casters,
+                       double (*boxes)[6])
+{
+    GLint words[MAX_LIGHTS][BOX_WORDS];
+    GLsizeiptr size = (GLsizeiptr)((size_t)count * sizeof *words);
+    for (int i = 0; i < count; ++i)
+        for (int k = 0; k < BOX_WORDS; ++k) words[i][k] = k < 3 ? INT32_MAX : INT32_MIN;
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, hair->box.buffer);
-    glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof none, none);
+    glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, size, words);
     gpu_buffer_bind_storage(&hair->box, BIND_BOUNDS_OUT);
-    cast(hair, casters, &params, hair->bounds, PART_VERTICES);
+    for (int i = 0; i < count; ++i) {
+        CastParams params = box_params(&views[i], i);
+        cast(hair, casters, &params, hair->bounds, PART_VERTICES);
+    }
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, hair->box.buffer);
-    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof words, words);
-    if (words[0] > words[3]) return false;
-    for (int i = 0; i < 6; ++i) box[i] = (double)decode(words[i]);
-    return true;
+    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, size, words);
+    for (int i = 0; i < count; ++i)
+        for (int k = 0; k < BOX_WORDS; ++k)
+            boxes[i][k] = (double)hair_shadow_unordered(words[i][k]);
+}
+
+void hair_shadow_find_boxes(HairShadow *hair, const LightView *views, int count,
+                            ShadowCasters casters, double (*boxes)[6])
+{
+    if (count && !hair->by_processor) find_boxes(hair, views, count, casters, boxes);
+    for (int i = 0; i < count && hair->by_processor; ++i) {
+        CastParams params = box_params(&views[i], i);
+        hair_shadow_cpu_find_box(&hair->cpu, &params, boxes[i]);
+    }
 }
 
 LightFrame hair_shadow_frame(const HairShadow *hair, const LightView *view, const double box[6])

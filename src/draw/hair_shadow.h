@@ -10,6 +10,10 @@
 #include "draw/light_frame.h"
 
 enum { CAST_PAINT = 1, CAST_SMOOTH = 2, CAST_VARIANTS = 4 }; // what the ribbons' shaders need
+unsigned hair_shadow_variant(const ShadowCaster *caster);
+
+// The float whose bits shaders have compared as this int (glsl/draw/bounds.glsl).
+float hair_shadow_unordered(int32_t bits);
 
 typedef struct HairShadow {
     bool deep, by_processor;
@@ -36,10 +40,10 @@ Result hair_shadow_begin(HairShadow *hair, int maps, ShadowCasters casters, Erro
 
 // Between begin and end.
 
-// The box (see light_frame.h) of all hair before the light; false if there is none. Waits for the
-// GPU.
-bool hair_shadow_find_box(HairShadow *hair, const LightView *view, ShadowCasters casters,
-                          double box[6]);
+// Of each of `count` lights, at most MAX_LIGHTS, the box (see light_frame.h) of all hair before it;
+// the lowest place is above the highest if there is none. Waits for the GPU, once.
+void hair_shadow_find_boxes(HairShadow *hair, const LightView *views, int count,
+                            ShadowCasters casters, double (*boxes)[6]);
 
 // Where a map of hair in `box` lies.
 LightFrame hair_shadow_frame(const HairShadow *hair, const LightView *view, const double box[6]);

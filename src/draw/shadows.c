@@ -252,23 +252,36 @@ static void frame_mesh_map(ShadowParams *params, int map, const ShadowMesh *mesh
     set_mesh_frame(params, map, &frame);
 }
 
-// The next map, of light `light`; none if nothing is in its sight.
-static void draw_map(Shadows *shadow, const ShadowScene *scene, int light)
+// The next map, of light `light` and of hair in `box`; none if nothing is in its sight.
+static void draw_map(Shadows *shadow, const ShadowScene *scene, int light, const LightView *view,
+                     double box[6])
 {
-    LightView view = light_frame_view(&scene->lights[light], scene->middle);
     ShadowParams *params = &shadow->params;
     int map = params->maps;
-    double box[6];
-    if (!hair_shadow_find_box(&shadow->hair, &view, scene->casters, box)) {
+    if (!(box[0] <= box[3])) {
         if (!has_mesh(scene)) return;
         empty_box(box);
-        add_mesh_box(&scene->mesh, &view, box);
+        add_mesh_box(&scene->mesh, view, box);
     }
-    LightFrame frame = hair_shadow_frame(&shadow->hair, &view, box);
-    set_hair_frame(params, map, light, &view, &frame);
-    hair_shadow_draw(&shadow->hair, &view, &frame, map, scene->casters);
-    if (has_mesh(scene)) frame_mesh_map(params, map, &scene->mesh, &view, box);
+    LightFrame frame = hair_shadow_frame(&shadow->hair, view, box);
+    set_hair_frame(params, map, light, view, &frame);
+    hair_shadow_draw(&shadow->hair, view, &frame, map, scene->casters);
+    if (has_mesh(scene)) frame_mesh_map(params, map, &scene->mesh, view, box);
     ++params->maps;
+}
+
+static void draw_hair_maps(Shadows *shadow, const ShadowScene *scene)
+{
+    LightView views[SCENE_MAX_LIGHTS] = {0};
+    double boxes[SCENE_MAX_LIGHTS][6];
+    int lights[SCENE_MAX_LIGHTS], count = 0;
+    for (uint32_t i = 0; i < scene->light_count; ++i) {
+        if (!casts(&scene->lights[i])) continue;
+        views[count] = light_frame_view(&scene->lights[i], scene->middle);
+        lights[count++] = (int)i;
+    }
+    hair_shadow_find_boxes(&shadow->hair, views, count, scene->casters, boxes);
+    for (int i = 0; i < count; ++i) draw_map(shadow, scene, lights[i], &views[i], boxes[i]);
 }
 
 static bool same_ribbons(const ShadowCaster *a, const ShadowCaster *b)
@@ -288,7 +301,7 @@ static bool same_casters(const Shadows *shadow, ShadowCasters casters)
     return same;
 }
 
-static bool is_drawn(const Shadows *shadow, const ShadowScene *scene)
+bool shadows_show(const Shadows *shadow, const ShadowScene *scene)
 {
     const ShadowScene *drawn = &shadow->drawn;
     return shadow->any && scene->revision && scene->revision == drawn->revision &&
@@ -330,8 +343,7 @@ static Result draw_maps(Shadows *shadow, const ShadowScene *scene, Error *error)
     find_mean_fibre(shadow, scene, params);
     shadow->hair.cpu.past_mesh = shadow->with_texels && has_mesh(scene);
     TRY(hair_shadow_begin(&shadow->hair, count_maps(scene), scene->casters, error));
-    for (uint32_t i = 0; i < scene->light_count; ++i)
-        if (casts(&scene->lights[i])) draw_map(shadow, scene, (int)i);
+    draw_hair_maps(shadow, scene);
     Result result =
         has_mesh(scene) && params->maps ? draw_mesh_maps(shadow, &scene->mesh, error) : RESULT_OK;
     hair_shadow_end(&shadow->hair);
@@ -344,7 +356,7 @@ static Result draw_maps(Shadows *shadow, const ShadowScene *scene, Error *error)
 Result shadows_draw(Shadows *shadow, const ShadowScene *scene, GpuTimer *timer, Error *error)
 {
     shadow->maps_drawn = 0;
-    if (is_drawn(shadow, scene)) return RESULT_OK;
+    if (shadows_show(shadow, scene)) return RESULT_OK;
     TRY(reserve(shadow, scene, error));
     gpu_timer_begin(timer, "draw_shadow");
     Result result = draw_maps(shadow, scene, error);

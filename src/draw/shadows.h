@@ -70,6 +70,9 @@ Result shadows_reserve_mesh(Shadows *shadow, int maps, Error *error);
 // The mesh is another one, at the same place in memory.
 void shadows_forget_mesh(Shadows *shadows);
 
+// Whether the maps show this scene already.
+bool shadows_show(const Shadows *shadow, const ShadowScene *scene);
+
 // Makes the map of each light that casts shadows, unless they show this scene already. Waits for
 // the GPU, changes framebuffer and viewport. Needs the DrawParams block. RESULT_FAILED if memory is
 // short.
