@@ -58,6 +58,7 @@ Result light_grid_make_first(LightGridState *state, const GridScene *scene, Erro
             MakeFirst make = {kind, l, state->parts};
             parallel_run(state->parts, make_first, &make);
             kind->has_first[l] = true;
+            ++kind->first_made;
         }
     }
     return RESULT_OK;
@@ -109,8 +110,18 @@ static void make_scatter(void *data, int part)
     }
 }
 
-// Only those of the classes that cells have.
-Result light_grid_make_scatter(LightGridState *state, const GridScene *scene, Error *error)
+// Adds a class, of its kind, to those whose table is to be made.
+static void need_scatter(MakeScatter *make, int class)
+{
+    GridKind *kind = &make->state->kinds[class / TANGENTS];
+    if (kind->has_scatter[class % TANGENTS]) return;
+    kind->has_scatter[class % TANGENTS] = true;
+    make->needed[make->count++] = (uint16_t) class;
+    ++kind->scatter_made;
+}
+
+Result light_grid_make_scatter(LightGridState *state, const GridScene *scene, bool all,
+                               Error *error)
 {
     MakeScatter make = {.state = state, .parts = state->parts};
     for (int k = 0; k < scene->kind_count; ++k) {
@@ -119,13 +130,9 @@ Result light_grid_make_scatter(LightGridState *state, const GridScene *scene, Er
         if (!kind->scatter)
             return error_set(error, RESULT_FAILED, "no memory for light among hair");
     }
-    for (int f = 0; f < state->filled; ++f) {
-        GridKind *kind = &state->kinds[state->class[f] / TANGENTS];
-        int class = state->class[f] % TANGENTS;
-        if (kind->has_scatter[class]) continue;
-        kind->has_scatter[class] = true;
-        make.needed[make.count++] = (uint16_t)state->class[f];
-    }
+    for (int class = 0; class < scene->kind_count * TANGENTS && all; ++class)
+        need_scatter(&make, class);
+    for (int f = 0; f < state->filled && !all; ++f) need_scatter(&make, state->class[f]);
     if (make.count) parallel_run(state->parts, make_scatter, &make);
     return RESULT_OK;
 }
@@ -137,13 +144,23 @@ static void forget_kind(GridKind *kind)
     kind->has_gather = false;
 }
 
-static void set_kinds(LightGridState *state, const GridScene *scene)
+void light_grid_set_kinds(LightGridState *state, const GridScene *scene)
 {
     for (int k = 0; k < scene->kind_count; ++k) {
         GridKind *kind = &state->kinds[k];
         if (kind->lobes.serial == scene->kinds[k].serial) continue;
         kind->lobes = scene->kinds[k];
         forget_kind(kind);
+    }
+}
+
+void light_grid_forget(LightGridState *state)
+{
+    for (int k = 0; k < LIGHT_GRID_KINDS; ++k) {
+        free(state->kinds[k].scatter);
+        free(state->kinds[k].first);
+        free(state->kinds[k].gather);
+        state->kinds[k] = (GridKind){0};
     }
 }
 
@@ -170,11 +187,11 @@ Result light_grid_solve(LightGrid *grid, const GridScene *scene, Error *error)
     Result result;
     if (!state) return error_set(error, RESULT_FAILED, "no memory for light among hair");
     state->parts = parallel_threads();
-    set_kinds(state, scene);
+    light_grid_set_kinds(state, scene);
     state->filled = state->active = 0;
     if (!light_grid_fill(state, scene, error, &result)) return result;
     TRY(make_planes(state, error));
-    TRY(light_grid_make_scatter(state, scene, error));
+    TRY(light_grid_make_scatter(state, scene, false, error));
     bool sky = light_scene_has_sky(scene->draw);
     light_grid_sweep(state, scene, sky, true, state->lights == 0);
     double all[3] = {0};
@@ -198,11 +215,7 @@ void light_grid_destroy(LightGrid *grid)
 {
     LightGridState *state = grid->state;
     if (!state) return;
-    for (int k = 0; k < LIGHT_GRID_KINDS; ++k) {
-        free(state->kinds[k].scatter);
-        free(state->kinds[k].first);
-        free(state->kinds[k].gather);
-    }
+    light_grid_forget(state);
     free(state->slot);
     free(state->first_item);
     free(state->items);

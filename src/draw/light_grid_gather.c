@@ -79,6 +79,7 @@ Result light_grid_make_gather(LightGridState *state, const GridScene *scene, Err
         MakeGather make = {kind, state->parts};
         parallel_run(state->parts, make_rows, &make);
         kind->has_gather = true;
+        ++kind->gather_made;
     }
     return RESULT_OK;
 }
@@ -377,7 +378,7 @@ SIMD_INLINE void gather_hair(const Gather *gather, int part)
 
 SIMD_STAGE(gather_hair, Gather)
 
-static float find_opacity(const GridScene *scene)
+float light_grid_opacity(const GridScene *scene)
 {
     float least = 1;
     for (uint32_t h = 0; h < scene->hair_count; ++h) {
@@ -387,11 +388,11 @@ static float find_opacity(const GridScene *scene)
     return least;
 }
 
-static int find_ordinate(const LightLattice *lattice, const float to_eye[3])
+int light_grid_nearest(const LightLattice *lattice, const float to[3])
 {
     float way[3], most = -2;
     int best = 0;
-    light_lattice_turn(lattice, to_eye, way);
+    light_lattice_turn(lattice, to, way);
     for (int d = 0; d < ORDINATES; ++d) {
         float cosine = ORDINATE[0][d] * way[0] + ORDINATE[1][d] * way[1] + ORDINATE[2][d] * way[2];
         if (cosine > most) most = cosine, best = d;
@@ -404,8 +405,8 @@ Result light_grid_show(LightGridState *state, const GridScene *scene, Error *err
     if (!state->filled) return RESULT_OK;
     Gather gather = {.state = state, .scene = scene};
     light_lattice_turn(&state->lattice, scene->draw->eye, gather.eye);
-    gather.opacity = find_opacity(scene);
-    gather.ordinate = find_ordinate(&state->lattice, scene->to_eye);
+    gather.opacity = light_grid_opacity(scene);
+    gather.ordinate = light_grid_nearest(&state->lattice, scene->to_eye);
     TRY(light_grid_make_gather(state, scene, error));
     run_find_hidden(&gather, state->parts);
     run_gather_hair(&gather, state->parts);

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { BOX = 7 }; // lowest place, highest, square of the longest segment
+enum { BOX = LIGHT_GRID_BOX };
 
 // Rows of the rotation by the smallest angle that turns `from` into `to` (unit).
 static void find_turn(const float from[3], const float to[3], float turn[3][3])
@@ -103,30 +103,25 @@ SIMD_INLINE void find_box(const FindBox *find, int part)
 
 SIMD_STAGE(find_box, FindBox)
 
-// The lattice's steps change in eighths of octaves, its corner by whole
-// cells, so that light does not swim with every frame.
-bool light_grid_find_lattice(LightGridState *state, const GridScene *scene)
+void light_grid_find_turn(LightGridState *state, const GridScene *scene)
 {
     static const float SIDEWAYS[3] = {0, 0, 0};
-    float boxes[PARALLEL_MOST][BOX], box[BOX], unused[3];
-    LightLattice *lattice = &state->lattice;
     const float light[3] = {ORDINATE[0][ORDINATE_OF_LIGHT], ORDINATE[1][ORDINATE_OF_LIGHT],
                             ORDINATE[2][ORDINATE_OF_LIGHT]};
-    float way[3] = {-light[0], -light[1], -light[2]};
+    float way[3] = {-light[0], -light[1], -light[2]}, unused[3];
     // Of a lamp the way from the origin will do: only that it is steady matters.
     if (scene->draw->light_count) light_grid_light(scene->draw, 0, SIDEWAYS, way, unused);
     const float down[3] = {-way[0], -way[1], -way[2]};
-    find_turn(down, light, lattice->turn);
-    FindBox find = {.state = state, .scene = scene, .box = boxes};
-    run_find_box(&find, state->parts);
-    memcpy(box, boxes[0], sizeof box);
-    for (int part = 1; part < state->parts; ++part)
-        for (int k = 0; k < BOX; ++k)
-            box[k] = k < 3 ? fminf(box[k], boxes[part][k]) : fmaxf(box[k], boxes[part][k]);
-    if (box[0] > box[3]) return false;
+    find_turn(down, light, state->lattice.turn);
+}
+
+bool light_grid_set_box(LightGridState *state, int cells, const float box[BOX])
+{
+    LightLattice *lattice = &state->lattice;
+    if (!(box[0] <= box[3])) return false;
     float extent = 1e-6f;
     for (int k = 0; k < 3; ++k) extent = fmaxf(extent, box[k + 3] - box[k]);
-    lattice->side = exp2f(ceilf(8 * log2f(extent)) / 8) / (float)scene->cells;
+    lattice->side = exp2f(ceilf(8 * log2f(extent)) / 8) / (float)cells;
     for (int k = 0; k < 3; ++k) {
         float first = floorf(box[k] / lattice->side);
         lattice->low[k] = first * lattice->side;
@@ -136,6 +131,19 @@ bool light_grid_find_lattice(LightGridState *state, const GridScene *scene)
     float pieces = ceilf(state->longest / (0.75f * lattice->side));
     state->pieces = (int)fminf(fmaxf(pieces, 1), 8);
     return true;
+}
+
+bool light_grid_find_lattice(LightGridState *state, const GridScene *scene)
+{
+    float boxes[PARALLEL_MOST][BOX], box[BOX];
+    light_grid_find_turn(state, scene);
+    FindBox find = {.state = state, .scene = scene, .box = boxes};
+    run_find_box(&find, state->parts);
+    memcpy(box, boxes[0], sizeof box);
+    for (int part = 1; part < state->parts; ++part)
+        for (int k = 0; k < BOX; ++k)
+            box[k] = k < 3 ? fminf(box[k], boxes[part][k]) : fmaxf(box[k], boxes[part][k]);
+    return light_grid_set_box(state, scene->cells, box);
 }
 
 void light_grid_find_lights(LightGridState *state, const GridScene *scene)

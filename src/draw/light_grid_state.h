@@ -5,6 +5,8 @@
 #include "base/simd.h"
 #include "draw/light_scene.h"
 
+#include "glsl/draw/light.h"
+
 enum {
     GRID_LANES = ORDINATE_LANES,
     GROUP_WIDE = 3 * GRID_LANES, // floats of a cell and group: [channel][lane]
@@ -12,10 +14,11 @@ enum {
     GRID_CLASSES = LIGHT_GRID_KINDS * TANGENTS,
     GATHER_SIDE = 32, // squares across the octahedron of tangents
     GATHER_NODES = (GATHER_SIDE + 1) * (GATHER_SIDE + 1),
+    LIGHT_GRID_BOX = 7, // lowest place by axis, highest (m), square of the longest segment
 };
 
 // Steps in which areas are added up.
-#define ITEM_STEPS 65536.0f
+#define ITEM_STEPS ((float)LIGHT_STEPS)
 
 // 4 pi / ORDINATES is the solid angle of a direction; a disc of it has this variance each way, by
 // three quarters: what agreed best with path-traced light.
@@ -42,6 +45,7 @@ typedef struct GridKind {
     float (*gather)[GRID_WIDE]; // [GATHER_NODES], owned
     float gather_eye[3];
     bool has_gather;
+    uint32_t first_made, scatter_made, gather_made; // another number whenever a table is
 } GridKind;
 
 // A part of a segment, in the order of cells: its class of tangent (and kind), its area over h^2,
@@ -145,8 +149,13 @@ static inline void grid_span_join(int cells[2], const int other[2])
 // Lattice, items, what is in each cell. False if there is no hair.
 bool light_grid_fill(LightGridState *state, const GridScene *scene, Error *error, Result *result);
 
-// Its steps. Where the cells lie (false: there is no hair), and the lights.
+// Its steps. Where the cells lie (false: there is no hair): the lattice's axes, the box of hair by
+// them, and from that, with `cells` along its longest side, the lattice. Its side changes in
+// eighths of octaves and its corner by whole cells, so that light does not swim with every frame.
 bool light_grid_find_lattice(LightGridState *state, const GridScene *scene);
+void light_grid_find_turn(LightGridState *state, const GridScene *scene);
+bool light_grid_set_box(LightGridState *state, int cells, const float box[LIGHT_GRID_BOX]);
+// The lights.
 void light_grid_find_lights(LightGridState *state, const GridScene *scene);
 // Counts the items of each part and cell, in `first_item`; with `emit`, which needs what
 // light_grid_make_slots makes of that, puts them where they belong.
@@ -177,9 +186,20 @@ void light_grid_close(LightGridState *state, bool further);
 // What hair shows, see light_grid_gather.
 Result light_grid_show(LightGridState *state, const GridScene *scene, Error *error);
 
-// Tables of kinds, made if they are not there.
+// Of an image: the nearest ordinate to a way of the world, and the least opacity of hair to the eye
+// over that to light.
+int light_grid_nearest(const LightLattice *lattice, const float way[3]);
+float light_grid_opacity(const GridScene *scene);
+
+// The kinds are those of the scene: tables of others are forgotten.
+void light_grid_set_kinds(LightGridState *state, const GridScene *scene);
+
+// Tables of kinds, made if they are not there; scatter those of the classes that cells have, or
+// all.
 Result light_grid_make_first(LightGridState *state, const GridScene *scene, Error *error);
-Result light_grid_make_scatter(LightGridState *state, const GridScene *scene, Error *error);
+Result light_grid_make_scatter(LightGridState *state, const GridScene *scene, bool all,
+                               Error *error);
+void light_grid_forget(LightGridState *state); // all tables
 Result light_grid_make_gather(LightGridState *state, const GridScene *scene, Error *error);
 
 static inline void grid_group_ways(int group, Ways *ways)

@@ -5,7 +5,6 @@
 
 #include <math.h>
 #include <stdbool.h>
-#include <stdint.h>
 
 const float ORDINATE[3][ORDINATES] = {
     {-0.722086f, -0.933447f, -0.729081f, -0.929400f, -0.934657f, -0.718108f, -0.930610f, -0.725103f,
@@ -48,8 +47,8 @@ static void make_tangent(int class)
 
 // --- Look-up by the squares of a cube's faces.
 
-enum { SQUARES = 24 };
-static uint8_t nearest[6][SQUARES][SQUARES];
+enum { SQUARES = ORDINATE_SQUARES };
+uint8_t TANGENT_NEAREST[6][SQUARES][SQUARES];
 static bool prepared;
 
 static int find_nearest(const float way[3])
@@ -77,7 +76,7 @@ void ordinates_prepare(void)
                 way[face / 2] = (face % 2 ? 1.f : -1.f) / length;
                 way[(face / 2 + 1) % 3] = at[0] / length;
                 way[(face / 2 + 2) % 3] = at[1] / length;
-                nearest[face][j][i] = (uint8_t)find_nearest(way);
+                TANGENT_NEAREST[face][j][i] = (uint8_t)find_nearest(way);
             }
     prepared = true;
 }
@@ -93,6 +92,6 @@ int ordinates_class(const float t[3])
     float x = fabsf(t[0]), y = fabsf(t[1]), z = fabsf(t[2]);
     int axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
     float main = fmaxf(fabsf(t[axis]), 1e-20f);
-    return nearest[2 * axis + (t[axis] > 0)][square_of(t[(axis + 2) % 3] / main)]
-                  [square_of(t[(axis + 1) % 3] / main)];
+    return TANGENT_NEAREST[2 * axis + (t[axis] > 0)][square_of(t[(axis + 2) % 3] / main)]
+                          [square_of(t[(axis + 1) % 3] / main)];
 }

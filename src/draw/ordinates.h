@@ -3,6 +3,8 @@
 // tangents by which it sorts fibres.
 #pragma once
 
+#include <stdint.h>
+
 // ORDINATE_LANES of each group have the same main axis and sign, so that they sweep the grid side
 // by side: groups -x, +x, -y, +y, -z, +z.
 enum { ORDINATES = 48, ORDINATE_LANES = 8, ORDINATE_GROUPS = ORDINATES / ORDINATE_LANES };
@@ -18,10 +20,15 @@ enum { ORDINATE_OF_LIGHT = 21 };
 // the root's end from the tip's.
 enum { TANGENTS = 128 };
 
-// Unit vector of each class, and the sine of its angle with each ordinate. Both are there after
-// ordinates_prepare.
+// Unit vector of each class, and the sine of its angle with each ordinate. These tables are there
+// after ordinates_prepare.
 extern float TANGENT[TANGENTS][3];
 extern float TANGENT_SINE[TANGENTS][ORDINATES];
+
+// The class of each square of the faces -x, +x, -y ... of a cube around the origin: [face][row
+// along the axis two on][column along the next].
+enum { ORDINATE_SQUARES = 24 };
+extern uint8_t TANGENT_NEAREST[6][ORDINATE_SQUARES][ORDINATE_SQUARES];
 
 // The nearest class of a unit vector, but for what lies within 4 degrees of another one's region.
 // Needs ordinates_prepare.
