@@ -15,14 +15,13 @@ const int light_count = LIGHT_COUNT;
 int light_count = draw_params.light_count;
 #endif
 
-// Linear RGB of light i at x, as a matt white surface square to it would show it, were nothing
-// between them, and the unit vector towards it.
-vec3 light_sent(int i, vec3 x, out vec3 to_light)
-{
 #if LIGHTS
-    // A directional light's place is its direction, with w = 0. The square of the reference
-    // distance over that of the distance: 1 where the light has its intensity. A cap keeps it
-    // finite. The cone's edge as glTF's KHR_lights_punctual has it.
+// The share of light i's colour that a surface at x square to it is given, and the unit vector
+// towards it. A directional light's place is its direction, with w = 0. The square of the reference
+// distance over that of the distance: 1 where the light has its intensity. A cap keeps it finite.
+// The cone's edge as glTF's KHR_lights_punctual has it.
+float light_share(int i, vec3 x, out vec3 to_light)
+{
     vec4 place = draw_params.light_place[i], axis = draw_params.light_axis[i],
          cone = draw_params.light_cone[i];
     vec3 way = place.xyz - place.w * x;
@@ -30,7 +29,16 @@ vec3 light_sent(int i, vec3 x, out vec3 to_light)
     to_light = way * inversesqrt(square);
     float inside = clamp(cone.x - cone.y * dot(axis.xyz, to_light), 0.0, 1.0);
     float falloff = place.w == 0.0 ? 1.0 : min(axis.w / square, 1e6);
-    return draw_params.light_color[i].rgb * (falloff * inside * inside);
+    return falloff * inside * inside;
+}
+#endif
+
+// Linear RGB of light i at x, as a matt white surface square to it would show it, were nothing
+// between them, and the unit vector towards it.
+vec3 light_sent(int i, vec3 x, out vec3 to_light)
+{
+#if LIGHTS
+    return draw_params.light_color[i].rgb * light_share(i, x, to_light);
 #else
     to_light = draw_params.light_place[i].xyz;
     return draw_params.light_color[i].rgb;

@@ -149,6 +149,19 @@ float light_past_mesh(int map, vec3 x)
 #endif
 #endif
 
+#if SHADOW && !SHADOW_FOUND
+// What hair leaves of a map's light at x: all of it beside the map, and behind a lamp, which has
+// none there.
+float hair_leaves(int map, vec3 x)
+{
+    vec4 place = vec4(x, 1.0) * shadow_params.from_world[map];
+    vec2 texel = place.xy / place.w;
+    float left = light_through_hair(map, texel, place.z, shadow_params.place[map]);
+    bool beside = any(lessThan(texel, vec2(0.0))) || any(greaterThan(texel, vec2(shadow_side)));
+    return beside || place.w <= 0.0 ? 1.0 : left;
+}
+#endif
+
 #if SHADOW
 // Of each light what is left at the point of the last shadow_find; whole where it has no map.
 float shadow_left[MAX_LIGHTS] = float[MAX_LIGHTS](1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0);
@@ -174,22 +187,16 @@ void shadow_keep(int light, float left)
 void shadow_find(int point, vec3 x)
 {
     for (int map = 0; map < shadow_maps; ++map) {
-        vec4 of_light = shadow_params.place[map];
 #if SHADOW_FOUND
         float left = texelFetch(shadow_found, map * shadow_points + point).x;
 #else
-        vec4 place = vec4(x, 1.0) * shadow_params.from_world[map];
-        vec2 texel = place.xy / place.w;
-        float left = light_through_hair(map, texel, place.z, of_light);
-        // Beside the map no hair stands in the light, and a lamp has no map behind it.
-        bool beside = any(lessThan(texel, vec2(0.0))) || any(greaterThan(texel, vec2(shadow_side)));
-        left = beside || place.w <= 0.0 ? 1.0 : left;
+        float left = hair_leaves(map, x);
 #endif
 #if SHADOW_BY_MESH
         float past = light_past_mesh(map, x);
         left *= dot(vec4(x, 1.0), shadow_params.from_world[map][3]) > 0.0 ? past : 1.0;
 #endif
-        shadow_keep(int(of_light.x), left);
+        shadow_keep(int(shadow_params.place[map].x), left);
     }
 }
 #endif

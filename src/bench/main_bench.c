@@ -174,9 +174,10 @@ static Result try_light_counts(LookPrograms *programs, Error *error)
     static const struct {
         int lights, maps;
     } counts[] = {{1, 0}, {2, 0}, {2, 1}, {4, 4}};
-    static const unsigned features[] = {0, LOOK_SHADOW_DOM,
-                                        LOOK_SHADOW_DOM | LOOK_SHADOW_BY_MESH | LOOK_LIGHTS,
-                                        LOOK_MARSCHNER | LOOK_SHADOW_APPROX};
+    static const unsigned features[] = {
+        0, LOOK_SHADOW_DOM, LOOK_SHADOW_DOM | LOOK_SHADOW_BY_MESH | LOOK_LIGHTS,
+        LOOK_SHADOW_DOM | LOOK_SHADOW_BY_MESH | LOOK_MARSCHNER | LOOK_SCATTERED,
+        LOOK_MARSCHNER | LOOK_SHADOW_APPROX};
     for (size_t i = 0; i < sizeof counts / sizeof *counts; ++i) {
         look_programs_count(programs, counts[i].lights, counts[i].maps);
         for (size_t k = 0; k < sizeof features / sizeof *features; ++k)
@@ -200,6 +201,8 @@ static Result try_looks(Renderer *renderer, Error *error)
                                       LOOK_SHADOW_APPROX | LOOK_SHADOW_BY_MESH,
                                       LOOK_SHADOW_DOM | LOOK_SHADOW_BY_MESH | LOOK_MESH_TEXELS,
                                       LOOK_SHADOW_DOM | LOOK_SHADOW_BY_MESH | LOOK_LIGHTS,
+                                      LOOK_SHADOW_DOM | LOOK_SHADOW_BY_MESH | LOOK_MARSCHNER |
+                                          LOOK_SCATTERED,
                                       LOOK_WHITE,
                                       LOOK_WHITE | LOOK_PAINT,
                                       LOOK_TANGENT,
@@ -225,6 +228,9 @@ static Result try_shadows(Renderer *renderer, Error *error)
     bool shadows = options->shadow.kind != SHADOW_NONE;
     for (unsigned variant = 0; variant < CAST_VARIANTS && shadows; ++variant)
         TRY(hair_shadow_build(&renderer->shadow.hair, variant, error));
+    for (unsigned i = 0; i < LIGHT_PASSES * CAST_VARIANTS && shadows; ++i)
+        TRY(light_pass_build(&renderer->scatter.passes.programs, (LightPass)(i / CAST_VARIANTS),
+                             i % CAST_VARIANTS, error));
     if (shadows) TRY(shadows_reserve_mesh(&renderer->shadow, 1, error));
     TRY(base_layer_build_floor(&renderer->base.floor, error));
     for (int count = 0; count <= 2; count += 2) {

@@ -7,7 +7,8 @@
 void hair_scatter_create(HairScatter *scatter, const GpuLimits *limits,
                          const HairScatterOptions *options)
 {
-    *scatter = (HairScatter){.options = *options, .limits = limits};
+    *scatter = (HairScatter){
+        .options = *options, .limits = limits, .passes = {.programs = {.limits = limits}}};
 }
 
 static void forget_room(HairScatter *scatter)
@@ -24,6 +25,7 @@ void hair_scatter_destroy(HairScatter *scatter)
 {
     forget_room(scatter);
     light_grid_destroy(&scatter->grid);
+    light_passes_destroy(&scatter->passes);
     light_dual_destroy(&scatter->dual);
     light_blocks_destroy(&scatter->blocks);
     for (int k = 0; k < scatter->kind_count; ++k) fibre_lobes_destroy(&scatter->kinds[k]);
@@ -115,6 +117,7 @@ static bool map_shadows(HairScatter *scatter, const HairShadowCpu *cpu, const Ha
     return hair->caster.position && hair->left && (hair->caster.paint || !batch->paint.buffer);
 }
 
+// `cpu` NULL: hair stays with the GPU.
 static Result map_hair(HairScatter *scatter, Drawing *drawing, const ShadowCaster *caster,
                        const HairShadowCpu *cpu, uint32_t i, Error *error)
 {
@@ -125,6 +128,7 @@ static Result map_hair(HairScatter *scatter, Drawing *drawing, const ShadowCaste
     TRY(find_kind(scatter, drawing, &caster->look, &hair->kind, error));
     bool shows = caster->look.features & LOOK_MARSCHNER;
     if (shows) TRY(reserve_seen(scatter, i, caster, hair->points, error));
+    if (!cpu) return RESULT_OK;
     bool good = map_shadows(scatter, cpu, batch, i, hair);
     if (scatter->options.scatter == SCATTER_DUAL && hair->left)
         hair->behind = hair->left + (size_t)cpu->maps * hair->points;
@@ -201,9 +205,29 @@ static bool kinds_changed(const HairScatter *scatter, const HairScatterScene *sc
     return false;
 }
 
+// By the processor. `solved`: the light is there, and only where it is seen from has changed.
+static Result find_by_processor(HairScatter *scatter, const GridScene *grid, bool solved,
+                                Error *error)
+{
+    bool in_cells = grid->suns || light_scene_has_sky(grid->draw);
+    if (in_cells && !solved) TRY(light_grid_solve(&scatter->grid, grid, error));
+    if (in_cells) TRY(light_grid_gather(&scatter->grid, grid, error));
+    return scatter->options.scatter == SCATTER_DUAL
+               ? light_dual_find(&scatter->dual, grid, in_cells, error)
+               : RESULT_OK;
+}
+
+static Result find_by_shaders(HairScatter *scatter, const GridScene *grid, ShadowCasters casters,
+                              bool solved, Error *error)
+{
+    if (!solved) TRY(light_passes_solve(&scatter->passes, grid, casters, error));
+    return light_passes_gather(&scatter->passes, grid, casters, scatter->seen, error);
+}
+
 static Result find_light(HairScatter *scatter, const Shadows *shadows,
                          const HairScatterScene *scene, Error *error)
 {
+    const HairShadowCpu *cpu = shadows->hair.by_processor ? &shadows->hair.cpu : NULL;
     Result result = RESULT_OK;
     if (kinds_changed(scatter, scene)) {
         forget_kinds(scatter);
@@ -211,18 +235,16 @@ static Result find_light(HairScatter *scatter, const Shadows *shadows,
     }
     scatter->mapped_count = 0;
     scatter->count = scene->casters.count;
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    if (cpu) glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     for (uint32_t i = 0; i < scatter->count && result == RESULT_OK; ++i)
-        result = map_hair(scatter, scene->drawing, &scene->casters.list[i], &shadows->hair.cpu, i,
-                          error);
+        result = map_hair(scatter, scene->drawing, &scene->casters.list[i], cpu, i, error);
     GridScene grid = make_scene(scatter, shadows, scene);
     bool solved = scatter->any && scatter->shadow_version == shadows->version &&
                   same_lights(&scatter->drawn, &scene->drawing->draw);
-    bool in_cells = grid.suns || light_scene_has_sky(grid.draw),
-         dual = scatter->options.scatter == SCATTER_DUAL;
-    if (in_cells && !solved) THEN(result, light_grid_solve(&scatter->grid, &grid, error));
-    if (in_cells) THEN(result, light_grid_gather(&scatter->grid, &grid, error));
-    if (dual) THEN(result, light_dual_find(&scatter->dual, &grid, in_cells, error));
+    if (cpu)
+        THEN(result, find_by_processor(scatter, &grid, solved, error));
+    else
+        THEN(result, find_by_shaders(scatter, &grid, scene->casters, solved, error));
     unmap_all(scatter);
     scatter->any = result == RESULT_OK;
     scatter->solved = !solved;
@@ -245,13 +267,24 @@ static bool is_seen(const HairScatter *scatter, const Shadows *shadows,
            !kinds_changed(scatter, scene);
 }
 
+Result hair_scatter_begin(HairScatter *scatter, const Shadows *shadows,
+                          const HairScatterScene *scene, Error *error)
+{
+    if (shadows->hair.by_processor || !is_wanted(scatter, scene) ||
+        shadows_show(shadows, scene->shadow))
+        return RESULT_OK;
+    const GridScene grid = {.draw = &scene->drawing->draw};
+    return light_passes_begin(&scatter->passes, &grid, scene->casters, error);
+}
+
 Result hair_scatter_draw(HairScatter *scatter, Shadows *shadows, const HairScatterScene *scene,
                          GpuTimer *timer, Error *error)
 {
     const ParticleLight *lights;
     uint32_t count;
     scatter->solved = 0;
-    if (!is_wanted(scatter, scene) || !hair_shadow_lights(&shadows->hair, &lights, &count))
+    if (!is_wanted(scatter, scene) ||
+        (shadows->hair.by_processor && !hair_shadow_lights(&shadows->hair, &lights, &count)))
         return RESULT_OK;
     if (!is_seen(scatter, shadows, scene)) {
         TRY(make_room(scatter, scene->casters.count, error));
@@ -265,6 +298,7 @@ Result hair_scatter_draw(HairScatter *scatter, Shadows *shadows, const HairScatt
         if (!(look->features & LOOK_MARSCHNER)) continue;
         look->features |= LOOK_SCATTERED;
         look->scattered = scatter->seen;
+        look->batches = scene->casters.count;
     }
     return RESULT_OK;
 }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The light among hair (light_grid.h) for images: found where OpenGL's buffers can be mapped, from
-// what the deep shadow maps leave at hair's points, and kept while hair, lights and mesh stand
-// still.
+// The light among hair (light_grid.h) for images: found by the processor where it makes the shadow
+// maps, from what they leave at hair's points, else by shaders (light_passes.h), and kept while
+// hair, lights and mesh stand still.
 #pragma once
 
 #include "draw/drawing.h"
 #include "draw/light_dual.h"
 #include "draw/light_grid.h"
+#include "draw/light_passes.h"
 #include "draw/shadows.h"
 
 typedef struct HairScatterOptions {
@@ -27,6 +28,7 @@ typedef struct HairScatter {
     HairScatterOptions options;
     const GpuLimits *limits;
     LightGrid grid;
+    LightPasses passes;
     LightDual dual;
     LightBlocks blocks;
     FibreLobes kinds[LIGHT_GRID_KINDS];
@@ -48,8 +50,12 @@ void hair_scatter_create(HairScatter *scatter, const GpuLimits *limits,
                          const HairScatterOptions *options);
 void hair_scatter_destroy(HairScatter *scatter);
 
+// Queues what shaders have to know of hair early: before the shadows of the scene are drawn.
+Result hair_scatter_begin(HairScatter *scatter, const Shadows *shadows,
+                          const HairScatterScene *scene, Error *error);
+
 // Finds the light if it is another one than before and if a look of the drawing asks for it, and
-// gives it to the looks. Needs `shadows` drawn for the scene, deep and by the processor.
-// RESULT_FAILED if memory is short.
+// gives it to the looks. Needs `shadows`, deep ones, drawn for the scene and bound. RESULT_FAILED
+// if memory is short.
 Result hair_scatter_draw(HairScatter *scatter, Shadows *shadows, const HairScatterScene *scene,
                          GpuTimer *timer, Error *error);

@@ -146,13 +146,19 @@ void look_programs_count(LookPrograms *programs, int light_count, int map_count)
     programs->map_count = map_count;
 }
 
-static void use_lights(const Look *look, const HairBatch *batch)
+// The light at the batch's points, of all batches.
+static const ParticleLight *light_of(const ParticleLight *lights, uint32_t count,
+                                     const HairBatch *batch)
 {
     uint32_t i = 0;
-    while (i + 1 < look->batches && look->lights[i].batch != batch) ++i;
-    gpu_buffer_bind_texture(&look->lights[i].left, BIND_SHADOW_LEFT);
-    if (look->features & LOOK_SCATTERED)
-        gpu_buffer_bind_texture(&look->scattered[i].left, BIND_SCATTERED);
+    while (i + 1 < count && lights[i].batch != batch) ++i;
+    return &lights[i];
+}
+
+static void use_lights(const Look *look, const HairBatch *batch)
+{
+    const ParticleLight *light = light_of(look->lights, look->batches, batch);
+    gpu_buffer_bind_texture(&light->left, BIND_SHADOW_LEFT);
     glUniform1i(SHADOW_POINTS_AT, (GLint)(hair_slots(batch) * look_points(look, batch)));
 }
 
@@ -165,6 +171,9 @@ Result look_programs_use(LookPrograms *programs, const Look *look, const HairBat
     glUseProgram(programs->program[features]);
     if (features & LOOK_PAINT) gpu_buffer_bind_texture(&batch->paint, BIND_PAINT);
     if (features & LOOK_SHADOW_FOUND) use_lights(look, batch);
+    if (features & LOOK_SCATTERED)
+        gpu_buffer_bind_texture(&light_of(look->scattered, look->batches, batch)->left,
+                                BIND_SCATTERED);
     if (look->features & LOOK_TINTS) {
         gpu_buffer_bind_texture(&look->tints->texels, BIND_SCATTER);
     } else if (look->features & LOOK_MARSCHNER) {

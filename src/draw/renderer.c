@@ -105,14 +105,14 @@ Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
                               renderer->part.height, options->samples, options->kind, error));
     THEN(result, RASTERS[renderer->raster].create(renderer, error));
     THEN(result, make_base(renderer, error));
-    // The light among hair needs what C finds of shadows, whatever the driver.
-    bool scatters = options->scatter != SCATTER_NONE && options->shadow.kind == SHADOW_DOM;
+    // Dual scattering needs what C finds of shadows, whatever the driver.
+    bool dual = options->scatter == SCATTER_DUAL && options->shadow.kind == SHADOW_DOM;
     ShadowOptions shadow = options->shadow;
-    shadow.behind = options->scatter == SCATTER_DUAL;
+    shadow.behind = dual;
     shadow.copies = gpu->kind == GPU_HARDWARE;
     if (options->shadow.kind != SHADOW_NONE)
         THEN(result, shadows_create(&renderer->shadow, &gpu->limits, &shadow,
-                                    gpu->kind == GPU_CPU_DRIVER || scatters, error));
+                                    gpu->kind == GPU_CPU_DRIVER || dual, error));
     renderer->shadow.with_texels = gpu->kind == GPU_CPU_DRIVER;
     const HairScatterOptions scatter = {options->scatter,
                                         options->scatter_cells ? options->scatter_cells : 32,
@@ -211,8 +211,8 @@ static Result list_casters(Renderer *renderer, ShadowScene *scene, Error *error)
     return RESULT_OK;
 }
 
-static Result draw_scatter(Renderer *renderer, const RenderFrame *frame, const ShadowScene *shadow,
-                           Error *error)
+// The mesh, where the head has carried it, among hair.
+static LightMesh mesh_among_hair(const Renderer *renderer, const RenderFrame *frame)
 {
     const Mesh *mesh = &renderer->mesh;
     LightMesh among = {.vertices = (const float(*)[3])mesh->position,
@@ -221,27 +221,17 @@ static Result draw_scatter(Renderer *renderer, const RenderFrame *frame, const S
                        .triangle_count = mesh->triangle_count};
     memcpy(among.rotation, frame->head_rotation, sizeof among.rotation);
     memcpy(among.translation, frame->head_translation, sizeof among.translation);
-    const HairScatterScene scene = {.shadow = shadow,
-                                    .view = frame->view,
-                                    .drawing = &renderer->drawing,
-                                    .casters = shadow->casters,
-                                    .mesh = mesh->triangle_count ? &among : NULL};
-    return hair_scatter_draw(&renderer->scatter, &renderer->shadow, &scene, renderer->timer, error);
+    return among;
 }
 
-static Result draw_shadow(Renderer *renderer, const RenderFrame *frame, Error *error)
+// Shadows, then light among hair, and both to the looks.
+static Result draw_light(Renderer *renderer, const HairScatterScene *scene, Error *error)
 {
-    Drawing *drawing = &renderer->drawing;
-    ShadowScene scene = {.lights = frame->lights,
-                         .light_count = frame->light_count,
-                         .mesh = {.mesh = &renderer->base.mesh},
-                         .revision = frame->revision};
-    if (renderer->options.shadow.kind == SHADOW_NONE) return RESULT_OK;
-    memcpy(scene.mesh.rotation, frame->head_rotation, sizeof scene.mesh.rotation);
-    memcpy(scene.mesh.translation, frame->head_translation, sizeof scene.mesh.translation);
-    if (drawing->item_count) drawing_find_middle(drawing, drawing->items[0].hair, scene.middle);
-    TRY(list_casters(renderer, &scene, error));
-    TRY(shadows_draw(&renderer->shadow, &scene, renderer->timer, error));
+    Drawing *drawing = scene->drawing;
+    bool scatters =
+        renderer->options.shadow.kind == SHADOW_DOM && renderer->options.aov == AOV_NONE;
+    if (scatters) TRY(hair_scatter_begin(&renderer->scatter, &renderer->shadow, scene, error));
+    TRY(shadows_draw(&renderer->shadow, scene->shadow, renderer->timer, error));
     shadows_bind(&renderer->shadow);
     for (uint32_t i = 0; i < drawing->item_count; ++i) {
         Look *look = &drawing->looks[i];
@@ -255,9 +245,30 @@ static Result draw_shadow(Renderer *renderer, const RenderFrame *frame, Error *e
         }
     }
     activity_set("light among hair");
-    return renderer->options.shadow.kind == SHADOW_DOM && renderer->options.aov == AOV_NONE
-               ? draw_scatter(renderer, frame, &scene, error)
-               : RESULT_OK;
+    return scatters ? hair_scatter_draw(&renderer->scatter, &renderer->shadow, scene,
+                                        renderer->timer, error)
+                    : RESULT_OK;
+}
+
+static Result draw_shadow(Renderer *renderer, const RenderFrame *frame, Error *error)
+{
+    Drawing *drawing = &renderer->drawing;
+    ShadowScene shadow = {.lights = frame->lights,
+                          .light_count = frame->light_count,
+                          .mesh = {.mesh = &renderer->base.mesh},
+                          .revision = frame->revision};
+    if (renderer->options.shadow.kind == SHADOW_NONE) return RESULT_OK;
+    memcpy(shadow.mesh.rotation, frame->head_rotation, sizeof shadow.mesh.rotation);
+    memcpy(shadow.mesh.translation, frame->head_translation, sizeof shadow.mesh.translation);
+    if (drawing->item_count) drawing_find_middle(drawing, drawing->items[0].hair, shadow.middle);
+    TRY(list_casters(renderer, &shadow, error));
+    LightMesh among = mesh_among_hair(renderer, frame);
+    const HairScatterScene scene = {.shadow = &shadow,
+                                    .view = frame->view,
+                                    .drawing = drawing,
+                                    .casters = shadow.casters,
+                                    .mesh = among.triangle_count ? &among : NULL};
+    return draw_light(renderer, &scene, error);
 }
 
 static Result add_base_to_quads(Renderer *renderer, Error *error)

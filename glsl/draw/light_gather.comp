@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+// What hair shows of the light among it: light_grid_gather.c, at every particle. The radiance of
+// the eight cells around it (trilinear), weighted by what a fibre with its tangent sends from each
+// ordinate to the eye. Those weights are tabled for one way to the eye, by tangents on an
+// octahedron (bilinear); a particle's tangent is turned as its own way to the eye is.
+#include "draw/light.h"
+#include "draw/material.h"
+#include "common/hair_address.glsl"
+#include "draw/curve.glsl"
+#include "draw/light.glsl"
+
+layout(local_size_x = GROUP_SIZE) in;
+#include "common/lane.glsl"
+layout(location = 0) uniform int kind;
+layout(binding = BIND_LIGHT_ALL) uniform samplerBuffer all_light;
+layout(binding = BIND_LIGHT_GATHER) uniform samplerBuffer gather;
+layout(std430, binding = BIND_LIGHT_SLOTS_OUT) readonly buffer Slots { int slots[]; };
+layout(std430, binding = BIND_LIGHT_CELLS_OUT) readonly buffer Cells { LightCell cell[]; };
+layout(std430, binding = BIND_LIGHT_SEEN_OUT) writeonly buffer Seen { float seen[]; };
+
+// Turned by the smallest rotation from the way to the eye to that of the table.
+vec3 turn_tangent(vec3 x, vec3 t)
+{
+    vec3 axis = light_params.eye_axis.xyz, way = light_params.eye.xyz - x;
+    way *= inversesqrt(max(dot(way, way), 1e-20));
+    vec3 between = way + axis;
+    return t - dot(t, between) / max(1.0 + dot(way, axis), 1e-3) * between +
+           2.0 * dot(t, way) * axis;
+}
+
+// Where a tangent lies among the table's nodes.
+vec2 node_place(vec3 t)
+{
+    t /= max(abs(t.x) + abs(t.y) + abs(t.z), 1e-12);
+    vec2 far = 1.0 - abs(t.yx);
+    vec2 at = t.z < 0.0 ? vec2(t.x < 0.0 ? -far.x : far.x, t.y < 0.0 ? -far.y : far.y) : t.xy;
+    return clamp((at + 1.0) * (0.5 * float(LIGHT_SIDE)), 0.0, float(LIGHT_SIDE) - 1e-3);
+}
+
+vec3 weight_at(int row, int at)
+{
+    int first = row * LIGHT_WIDE + at;
+    return vec3(texelFetch(gather, first).x, texelFetch(gather, first + LIGHT_LANES).x,
+                texelFetch(gather, first + 2 * LIGHT_LANES).x);
+}
+
+// The slot of a cell around a place, nearest in the lattice; what has none has no light.
+int slot_near(ivec3 at) { return slots[cell_address(clamp(at, ivec3(0), cells - 1))]; }
+
+vec3 light_at(int slot, int d)
+{
+    return slot < 0 ? vec3(0.0) : texelFetch(all_light, slot * LIGHT_ORDINATES + d).rgb;
+}
+
+vec3 show(vec3 x, vec3 t)
+{
+    int own = slots[cell_address(cell_around(x))];
+    if (own >= 0 && cell[own].mean.w > 0.0)
+        return cell[own].mean.rgb * light_params.albedo[kind].rgb;
+    vec3 from = clamp((x - light_params.low.xyz) / side - 0.5, vec3(-0.5), vec3(cells) - 0.5),
+         whole = floor(from), high = from - whole, low = 1.0 - high;
+    ivec3 at = ivec3(whole);
+    ivec4 near = ivec4(slot_near(at), slot_near(at + ivec3(1, 0, 0)),
+                       slot_near(at + ivec3(0, 1, 0)), slot_near(at + ivec3(1, 1, 0))),
+          far = ivec4(slot_near(at + ivec3(0, 0, 1)), slot_near(at + ivec3(1, 0, 1)),
+                      slot_near(at + ivec3(0, 1, 1)), slot_near(at + 1));
+    vec4 plane = vec4(low.x * low.y, high.x * low.y, low.x * high.y, high.x * high.y);
+    vec2 place = node_place(turn_tangent(x, t)), share = fract(place);
+    int node = kind * LIGHT_NODES + int(place.y) * LIGHT_ROW + int(place.x);
+    vec3 sum = vec3(0.0);
+    for (int d = 0; d < LIGHT_ORDINATES; ++d) {
+        vec3 light = low.z * (plane.x * light_at(near.x, d) + plane.y * light_at(near.y, d) +
+                              plane.z * light_at(near.z, d) + plane.w * light_at(near.w, d)) +
+                     high.z * (plane.x * light_at(far.x, d) + plane.y * light_at(far.y, d) +
+                               plane.z * light_at(far.z, d) + plane.w * light_at(far.w, d));
+        int column = wide_address(d, 0);
+        sum += light * mix(mix(weight_at(node, column), weight_at(node + 1, column), share.x),
+                           mix(weight_at(node + LIGHT_ROW, column),
+                               weight_at(node + LIGHT_ROW + 1, column), share.x),
+                           share.y);
+    }
+    return sum;
+}
+
+void put(int s, int point, int points, vec3 light)
+{
+    int at = 3 * particle_address(s, point, points);
+    for (int k = 0; k < 3; ++k) seen[at + k] = light[k];
+}
+
+// Points of the curve between two particles are interpolated.
+void main()
+{
+    int s = lane_index(), n = int(material.vertex_count), parts = int(material.smooth_parts),
+        points = (n - 1) * parts + 1;
+    if (s >= int(material.drawn_strands)) return;
+    Curve curve = curve_open(particle_address(s, 0, n), n);
+    int begin = int(gl_WorkGroupID.z) * PART_SEGMENTS, end = min(begin + PART_SEGMENTS, n - 1);
+    if (begin > end) return;
+    vec3 here = particle(curve, begin), before = particle(curve, max(begin - 1, 0)),
+         last = vec3(0.0);
+    for (int j = begin; j <= end; ++j) {
+        vec3 after = particle(curve, min(j + 1, n - 1)),
+             light = show(to_lattice(here), to_lattice(after - before));
+        for (int k = 1; k < parts && j > begin; ++k)
+            put(s, (j - 1) * parts + k, points, mix(last, light, float(k) / float(parts)));
+        if (j < end || j == n - 1) put(s, j * parts, points, light);
+        last = light;
+        before = here;
+        here = after;
+    }
+}

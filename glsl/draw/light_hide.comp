@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// Which cells of the light grid lie so deep in hair that they can hardly be seen, and their mean
+// light.
+#include "draw/light.h"
+#include "draw/light.glsl"
+
+layout(local_size_x = GROUP_SIZE) in;
+#include "common/lane.glsl"
+layout(binding = BIND_LIGHT_ALL) uniform samplerBuffer all_light;
+layout(std430, binding = BIND_LIGHT_SLOTS_OUT) readonly buffer Slots { int slots[]; };
+layout(std430, binding = BIND_LIGHT_CELLS_OUT) buffer Cells { LightCell cell[]; };
+layout(std430, binding = BIND_LIGHT_STATE_OUT) readonly buffer State { LightState state; };
+layout(std430, binding = BIND_LIGHT_DEPTH_OUT) readonly buffer Depth { float depth[]; };
+
+// Fibres between the eye and the cell, but for those of the cell and of its neighbours, beyond
+// which a share of 1e-3 of hair is seen.
+const float HIDDEN_BEHIND = 7.0;
+
+bool is_hidden(ivec3 place)
+{
+    vec3 middle = vec3(place) + 0.5,
+         way = (light_params.eye.xyz - light_params.low.xyz) / side - middle;
+    float main = max(max(max(abs(way.x), abs(way.y)), abs(way.z)), 1e-6), far = length(way) / main,
+          behind = 0.0;
+    for (int k = 2; float(k) < main; ++k) {
+        ivec3 at = ivec3(floor(middle + float(k) * way / main));
+        if (!cell_inside(at)) return false;
+        int slot = slots[cell_address(at)];
+        if (slot >= 0 && slot < int(state.filled))
+            behind += depth[slot * LIGHT_ORDINATES + int(light_params.eye_axis.w)] * far;
+        if (behind * light_params.eye.w > HIDDEN_BEHIND) return true;
+    }
+    return false;
+}
+
+void main()
+{
+    int slot = lane_index();
+    if (slot >= int(state.filled + state.beside)) return;
+    bool hidden = is_hidden(cell_place(cell[slot].places.x));
+    vec3 sum = vec3(0.0);
+    for (int d = 0; d < LIGHT_ORDINATES && hidden; ++d)
+        sum += texelFetch(all_light, slot * LIGHT_ORDINATES + d).rgb;
+    cell[slot].mean = vec4(sum / float(LIGHT_ORDINATES), hidden ? 1.0 : 0.0);
+}

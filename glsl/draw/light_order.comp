@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// Whether another order of scattering is swept, and what the orders that are not would add: of two
+// orders after each other what hair meets falls by a factor, and goes on falling so
+// (light_grid_close.c).
+#include "draw/light.h"
+#include "draw/light.glsl"
+
+layout(local_size_x = 1) in;
+layout(location = 0) uniform ivec2 sweep; // its number; the last one's that there may be
+layout(std430, binding = BIND_LIGHT_STATE_OUT) buffer State
+{
+    LightState state;
+    vec4 met[];
+};
+
+const float LEFT = 0.05; // of the light, at most
+
+vec3 met_by(int which)
+{
+    vec3 sum = vec3(0.0);
+    for (int d = 0; d < LIGHT_ORDINATES; ++d) sum += met[which * LIGHT_ORDINATES + d].rgb;
+    return sum;
+}
+
+void main()
+{
+    if (state.done != 0u) return;
+    vec3 all = vec3(0.0), before = vec3(0.0), last = vec3(0.0);
+    for (int k = 0; k <= sweep.x; ++k) {
+        before = last;
+        last = met_by(k);
+        all += last;
+    }
+    vec3 falling =
+             mix(vec3(0.0), min(last / max(before, 1e-30), 0.95), greaterThan(before, vec3(0.0))),
+         further = falling / (1.0 - falling), left = last * further;
+    bool more = any(greaterThan(left, LEFT * (all + left)));
+    state.more = vec4(sweep.y > 1 ? further : vec3(0.0), 0.0);
+    state.last = uint(sweep.x);
+    state.done = sweep.x > 1 && !more ? 1u : 0u;
+}

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// Slots for the cells of the light grid that are marked, then for those beside them, where points
+// between cells look, too.
+//   BESIDE 0: marks become slots   1: those beside cells with slots get some   2: slots learn their
+//   cells
+#include "draw/light.h"
+#include "draw/light.glsl"
+
+layout(local_size_x = GROUP_SIZE) in;
+#include "common/lane.glsl"
+layout(std430, binding = BIND_LIGHT_SLOTS_OUT) buffer Slots
+{
+    int slots[];
+}; // 1 is a mark; -1: none
+layout(std430, binding = BIND_LIGHT_STATE_OUT) buffer State { LightState state; };
+#if BESIDE == 2
+layout(std430, binding = BIND_LIGHT_CELLS_OUT) buffer Cells { LightCell cell[]; };
+#endif
+
+void main()
+{
+    int at = lane_index();
+    if (at >= int(light_params.count.w)) return;
+    int slot = slots[at];
+#if BESIDE == 0
+    slots[at] = slot == 1 ? int(atomicAdd(state.filled, 1u)) : -1;
+#elif BESIDE == 1
+    // Others get slots meanwhile, behind those with hair.
+    int filled = int(state.filled);
+    if (slot >= 0) return;
+    ivec3 place = cell_place(at);
+    bool beside = false;
+    for (int q = 0; q < 27; ++q) {
+        ivec3 near = place + ivec3(q % 3, q / 3 % 3, q / 9) - 1;
+        if (!cell_inside(near)) continue;
+        int other = slots[cell_address(near)];
+        beside = beside || (other >= 0 && other < filled);
+    }
+    if (beside) slots[at] = filled + int(atomicAdd(state.beside, 1u));
+#else
+    if (slot >= 0) cell[slot].places.x = at;
+#endif
+}

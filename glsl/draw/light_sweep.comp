@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+// Light goes through the cells of the light grid: light_grid_sweep.c. A work group has an ordinate,
+// and goes with it slice by slice along its main axis; into a cell comes light from between the
+// cells of the slice before (bilinear).
+//   WALLED 1: a mesh stands in the way
+#include "draw/light.h"
+#include "draw/light.glsl"
+#include "draw/light_walls.glsl"
+
+layout(local_size_x = GROUP_SIZE) in;
+layout(location = 0) uniform ivec2 sweep; // its number; 1: light comes from around, too
+layout(location = 1) uniform int sourceless;
+layout(std430, binding = BIND_LIGHT_SLOTS_OUT) readonly buffer Slots { int slots[]; };
+layout(std430, binding = BIND_LIGHT_CELLS_OUT) readonly buffer Cells { LightCell cell[]; };
+layout(std430, binding = BIND_LIGHT_STATE_OUT) buffer State
+{
+    LightState state;
+    vec4 met[];
+};
+// [ordinate][2], light that leaves the cells of a slice, with a cell around
+layout(std430, binding = BIND_LIGHT_PLANES_OUT) coherent buffer Planes { vec4 plane[]; };
+layout(std430, binding = BIND_LIGHT_DEPTH_OUT) readonly buffer Depth { float depth[]; };
+layout(std430, binding = BIND_LIGHT_SOURCE_OUT) readonly buffer Source { float source[]; };
+layout(std430, binding = BIND_LIGHT_ORDER_OUT) writeonly buffer Order { float order[]; };
+layout(std430, binding = BIND_LIGHT_TOTAL_OUT) buffer Total { float total[]; };
+
+int d = int(gl_WorkGroupID.x), group = d / LIGHT_LANES, axis = group / 2;
+bool forward = group % 2 == 1;
+vec3 way = turned(light_params.ordinate[d].xyz, axis);
+ivec3 count = turned(cells, axis), stride = turned(ivec3(1, cells.x, cells.x *cells.y), axis);
+float longer = 1.0 / abs(way.x); // of a cell along the ordinate
+// Weights of the cells before, by the axes across.
+vec3 weights(float shift) { return vec3(max(shift, 0.0), 1.0 - abs(shift), max(-shift, 0.0)); }
+vec3 column_weights = weights(way.y * longer), row_weights = weights(way.z * longer);
+
+#if WALLED
+ivec3 wall_stride = turned(wall_step, axis);
+ivec3 wall_first =
+    ivec3(wall_origin(axis), wall_origin((axis + 1) % 3), wall_origin((axis + 2) % 3));
+// The wall of an axis k (0: along) at a slice, column and row.
+float wall(int first, ivec3 at)
+{
+    ivec3 from = at * wall_stride;
+    return wall_at(first + from.x + from.y + from.z);
+}
+#endif
+
+int plane_address(int parity, int x, int y)
+{
+    return (2 * d + parity) * int(light_params.plane) + (y + 1) * (count.y + 2) + x + 1;
+}
+
+// From above (+y of the world) comes the sky, from below the ground, evenly between them.
+vec3 light_from_around()
+{
+    vec3 out_of = light_params.ordinate[d].xyz;
+    float up = -(light_params.turn[0].y * out_of.x + light_params.turn[1].y * out_of.y +
+                 light_params.turn[2].y * out_of.z);
+    return sweep.y == 0 ? vec3(0.0)
+                        : draw_params.ground.rgb +
+                              (0.5 + 0.5 * up) * (draw_params.sky.rgb - draw_params.ground.rgb);
+}
+
+// Of row y of the slice before, blended along the columns.
+vec3 row_light(int parity, int slice, int x, int y)
+{
+    vec3 weight = column_weights;
+#if WALLED
+    weight.x *= wall(wall_first.y, ivec3(slice, x, y));
+    weight.z *= wall(wall_first.y, ivec3(slice, x + 1, y));
+#endif
+    return weight.x * plane[plane_address(parity, x - 1, y)].rgb +
+           weight.y * plane[plane_address(parity, x, y)].rgb +
+           weight.z * plane[plane_address(parity, x + 1, y)].rgb;
+}
+
+vec3 incoming(int parity, int slice, int x, int y, int slot)
+{
+    int before = forward ? slice - 1 : slice + 1;
+    vec3 weight = row_weights;
+#if WALLED
+    weight.x *= wall(wall_first.z, ivec3(slice, x, y));
+    weight.z *= wall(wall_first.z, ivec3(slice, x, y + 1));
+#endif
+    vec3 light = weight.x * row_light(parity, before, x, y - 1) +
+                 weight.y * row_light(parity, before, x, y) +
+                 weight.z * row_light(parity, before, x, y + 1);
+#if WALLED
+    // What comes from the side of the mesh is what that sends back.
+    float passed = wall(wall_first.x, ivec3(forward ? slice : slice + 1, x, y));
+    vec3 glow = slot >= 0 && slot < int(state.filled) ? cell[slot].glow.rgb : vec3(0.0);
+    light = passed * light + (1.0 - passed) * glow;
+#endif
+    return light;
+}
+
+void keep(int at, vec3 mean)
+{
+    for (int k = 0; k < 3; ++k) {
+        order[at + k] = mean[k];
+        total[at + k] = mean[k] + (sweep.x > 0 ? total[at + k] : 0.0);
+    }
+}
+
+// What leaves the cell of what comes in; adds what its hair meets. out = S + (in - S) exp(-tau), in
+// the mean S + (in - S) (1 - exp(-tau)) / tau.
+vec3 cross_cell(vec3 light, int slot, inout vec3 sum)
+{
+    if (slot < 0) return light;
+    int at = ordinate_address(d, slot);
+    if (slot >= int(state.filled)) {
+        keep(at, light);
+        return light;
+    }
+    float across = depth[slot * LIGHT_ORDINATES + d], tau = across * longer,
+          left = exp2(-LOG2E * min(tau, 40.0)),
+          share = tau > 1e-3 ? (1.0 - left) / tau : 1.0 - 0.5 * tau;
+    vec3 sent = sourceless != 0 ? vec3(0.0) : vec3(source[at], source[at + 1], source[at + 2]),
+         mean = sent + (light - sent) * share;
+    keep(at, mean);
+    sum += mean * across;
+    return sent + (light - sent) * left;
+}
+
+shared vec3 sums[GROUP_SIZE];
+
+void main()
+{
+    int lane = int(gl_LocalInvocationID.x), wide = count.y, tall = count.z;
+    if (state.done != 0u) return;
+    vec4 around = vec4(light_from_around(), 0.0);
+    for (int i = lane; i < 2 * int(light_params.plane); i += GROUP_SIZE)
+        plane[2 * d * int(light_params.plane) + i] = around;
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < count.x; ++i) {
+        memoryBarrierBuffer();
+        barrier();
+        int slice = forward ? i : count.x - 1 - i;
+        for (int c = lane; c < wide * tall; c += GROUP_SIZE) {
+            int x = c % wide, y = c / wide,
+                slot = slots[slice * stride.x + x * stride.y + y * stride.z];
+            vec3 light = incoming(i & 1, slice, x, y, slot);
+            plane[plane_address(~i & 1, x, y)] = vec4(cross_cell(light, slot, sum), 0.0);
+        }
+    }
+    sums[lane] = sum;
+    for (int half_of = GROUP_SIZE / 2; half_of > 0; half_of /= 2) {
+        memoryBarrierShared();
+        barrier();
+        if (lane < half_of) sums[lane] += sums[lane + half_of];
+    }
+    if (lane == 0) met[sweep.x * LIGHT_ORDINATES + d] = vec4(sums[0], 0.0);
+}

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// What a mesh lets through from cell to cell of the light grid (needs light.glsl): by axis, from
+// the middle of the cell before to that of the cell; all of it around the lattice.
+layout(binding = BIND_LIGHT_WALLS) uniform samplerBuffer walls;
+
+ivec3 wall_step = ivec3(1, cells.x + 2, (cells.x + 2) * (cells.y + 2));
+
+// Where axis `axis` has cell (0, 0, 0).
+int wall_origin(int axis)
+{
+    return axis * wall_step.z * (cells.z + 2) + wall_step.x + wall_step.y + wall_step.z;
+}
+
+float wall_at(int at) { return texelFetch(walls, at).x; }
