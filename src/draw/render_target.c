@@ -51,20 +51,11 @@ static Result check_frame(GLuint frame, const char *what, Error *error)
     return error_set(error, RESULT_FAILED, "%s: framebuffer status 0x%04x", what, status);
 }
 
-Result render_target_create(RenderTarget *target, const GpuLimits *limits, int width, int height,
-                            int samples, ImageKind kind, Error *error)
+Result render_target_create(RenderTarget *target, int width, int height, int samples,
+                            ImageKind kind, Error *error)
 {
     static const GLenum formats[] = {GL_RGBA8, GL_RGBA16, GL_RGBA32F};
     *target = (RenderTarget){.width = width, .height = height, .samples = samples, .kind = kind};
-    int side = limits->framebuffer_side_px / samples;
-    if (width > side || height > side)
-        return error_set(error, RESULT_FAILED,
-                         "an image of %d x %d px%s: this driver draws at most %d x %d", width,
-                         height,
-                         samples == 4   ? " of 4 x 4 samples"
-                         : samples == 2 ? " of 2 x 2 samples"
-                                        : "",
-                         side, side);
     target->image = create_texture(formats[kind], width, height);
     target->image_frame = create_color_frame(target->image, 0);
     target->hair_frame = create_frame();

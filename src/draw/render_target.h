@@ -23,10 +23,10 @@ typedef struct RenderTarget {
     int next;         // of them
 } RenderTarget;
 
-// A pixel has `samples` x `samples` samples. RESULT_FAILED if the size is more than the driver
-// allows or memory is short.
-Result render_target_create(RenderTarget *target, const GpuLimits *limits, int width, int height,
-                            int samples, ImageKind kind, Error *error);
+// A pixel has `samples` x `samples` samples, of which the driver's framebuffers hold as many
+// (tiles.h). RESULT_FAILED if memory is short.
+Result render_target_create(RenderTarget *target, int width, int height, int samples,
+                            ImageKind kind, Error *error);
 void render_target_destroy(RenderTarget *target);
 
 // Adds what a mesh or a floor needs; nothing if it is there.

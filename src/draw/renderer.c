@@ -101,8 +101,8 @@ Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
     renderer->base.shading = options->mesh_shading;
     Result result = divide(renderer, error);
     THEN(result,
-         render_target_create(&renderer->target, &gpu->limits, renderer->part.width,
-                              renderer->part.height, options->samples, options->kind, error));
+         render_target_create(&renderer->target, renderer->part.width, renderer->part.height,
+                              options->samples, options->kind, error));
     THEN(result, RASTERS[renderer->raster].create(renderer, error));
     THEN(result, make_base(renderer, error));
     // Dual scattering needs what C finds of shadows, whatever the driver.

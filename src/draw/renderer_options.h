@@ -21,7 +21,7 @@ typedef struct LodOptions {
 
 typedef struct RendererOptions {
     Raster raster;        // how hair becomes pixels; auto: blocks on CPU drivers, else compute
-    int width, height;    // px, each 1 .. the driver's limits.framebuffer_side_px
+    int width, height;    // px; what no framebuffer holds is drawn as tiles
     float background[4];  // sRGB and opacity 0..1; below 1 the images have an alpha channel
     float exposure;       // all light but the background's is this many times doubled
     Tone tone;            // how light becomes colour; the background's does not change
