@@ -6,12 +6,12 @@ ivec3 cells = ivec3(light_params.count.xyz);
 float side = light_params.low.w; // m
 
 struct LightCell {
-    vec4 glow;    // rgb: what the mesh sends back of its light
-    vec4 tint;    // rgb: albedo over that of the kind
-    vec4 mean;    // rgb: mean light; w = 1: so little of the cell is seen that it will do
-    uvec4 tints;  // xyz: sums of painted areas, their low words
-    uvec4 carry;  // their high words
-    ivec4 places; // x: which cell; y: main tangent and kind
+    vec4 glow;     // rgb: what the mesh sends back of its light
+    vec4 tint;     // rgb: albedo over that of the kind
+    vec4 mean;     // rgb: mean light; w = 1: so little of the cell is seen that it will do
+    uint tints[4]; // of them three: sums of painted areas, their low words
+    uint carry[4]; // their high words
+    ivec4 places;  // x: which cell; y: main tangent and kind
 };
 
 struct LightState {

@@ -120,6 +120,12 @@ vec3 first_of(int which, int light, int d)
                 texelFetch(first, at + 2 * LIGHT_LANES).x);
 }
 
+vec3 painted_areas(LightCell of)
+{
+    return vec3(of.carry[0], of.carry[1], of.carry[2]) * 4294967296.0 +
+           vec3(of.tints[0], of.tints[1], of.tints[2]);
+}
+
 void main()
 {
     int slot = range.x + group_index(), d = min(int(gl_LocalInvocationID.x), LIGHT_ORDINATES - 1),
@@ -134,7 +140,7 @@ void main()
         tau += area * class_sine(which % LIGHT_CLASSES, d);
         add_tangent(tangents, which, area);
     }
-    vec3 painted = vec3(cell[slot].carry.xyz) * 4294967296.0 + vec3(cell[slot].tints.xyz),
+    vec3 painted = painted_areas(cell[slot]),
          tint = light_params.tinted != 0u && tangents.area > 0.0
                     ? painted / (LIGHT_STEPS * tangents.area)
                     : vec3(1.0);

@@ -24,8 +24,10 @@ layout(local_size_x = GROUP_SIZE) in;
 layout(std430, binding = BIND_LIGHT_SLOTS_OUT) buffer Slots { int slots[]; };
 #if ITEMS
 layout(location = 0) uniform int kind;
-layout(location = 1) uniform int light;
 layout(location = 2) uniform ivec2 range; // of slots: the first, and behind the last
+#if ITEMS == 2
+layout(location = 1) uniform int light;
+#endif
 layout(std430, binding = BIND_LIGHT_CELLS_OUT) buffer Cells { LightCell cell[]; };
 // [slot][class][1 + lights][2]: the area, and what each light meets of it
 layout(std430, binding = BIND_LIGHT_SUMS_OUT) buffer Sums { uint sums[]; };

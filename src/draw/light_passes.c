@@ -271,14 +271,14 @@ static Result make_room(LightPasses *passes, Error *error)
 
 // --- What is in the cells.
 
-// Adds up a quantity of all hair in the cells of a range of slots.
+// Adds up a quantity of all hair in the cells of a range of slots; `light` < 0: their areas.
 static Result add_items(LightPasses *passes, const GridScene *scene, ShadowCasters casters,
                         LightPass pass, int light, const int range[2], Error *error)
 {
     for (uint32_t i = 0; i < casters.count; ++i) {
         TRY(light_pass_use(&passes->programs, pass, hair_shadow_variant(&casters.list[i]), error));
         glUniform1i(0, scene->hair[i].kind);
-        glUniform1i(1, light);
+        if (light >= 0) glUniform1i(1, light);
         glUniform2i(2, range[0], range[1]);
         light_pass_run_hair(&passes->programs, &casters.list[i],
                             casters.list[i].batch->vertex_count - 1, LIGHT_PART_SEGMENTS);
@@ -292,7 +292,7 @@ static Result fill_range(LightPasses *passes, const GridScene *scene, ShadowCast
 {
     gpu_buffer_clear(&passes->sums, 0);
     gpu_buffer_bind_storage(&passes->sums, BIND_LIGHT_SUMS_OUT);
-    TRY(add_items(passes, scene, casters, LIGHT_PASS_AREAS, 0, range, error));
+    TRY(add_items(passes, scene, casters, LIGHT_PASS_AREAS, -1, range, error));
     for (int l = 0; l < passes->grid->lights; ++l)
         TRY(add_items(passes, scene, casters,
                       scene->map_of[l] < 0 ? LIGHT_PASS_LIT_ALL : LIGHT_PASS_LIT, l, range, error));
