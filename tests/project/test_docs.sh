@@ -16,7 +16,10 @@ for page in docs/*.md; do
         sed 's/^tractrix-render /.\/small /; s/--contact-sheet [0-9x]*/--contact-sheet 2x2/; s/--count 20000 /--count 2000 /
             /^scripts.turntable / { s/--seconds 1 /--seconds 0.2 /; s/$/ --size 96x64 --followers 1 --quality draft/; }' >"$work/checkout/commands"
     if grep -q ffmpeg "$page" && ! command -v ffmpeg >/dev/null; then skip "no ffmpeg"; continue; fi
-    if grep -q '^blender ' "$work/checkout/commands" && ! command -v blender >/dev/null; then skip "no blender"; continue; fi
+    if grep -q '^blender ' "$work/checkout/commands" && ! blender -b --factory-startup --python-exit-code 9 --python-expr 'import numpy' >/dev/null 2>&1; then
+        skip "blender does not start, or its Python has no numpy"
+        continue
+    fi
     if (cd "$work/checkout" && sh -eu commands) >"$work/out" 2>"$work/err" </dev/null; then good; else bad "see above"; fi
 done
 finish
