@@ -21,29 +21,17 @@ enum { STRANDS = 100, N = 8, SUMS_OF_A_TURN = 1 << 18 };
 // Of the strands one in two and a half, the last of them a narrow one.
 static const float LEAST_SHARE = 0.403f;
 
-static const Light SUN = {.kind = LIGHT_DIRECTIONAL,
-                          .direction = {0.48f, 0.6f, 0.64f},
-                          .color = {1, 0.8f, 0.5f},
-                          .intensity = 2,
-                          .shadow = true},
-                   BACK = {.kind = LIGHT_DIRECTIONAL,
-                           .direction = {-0.6f, 0, -0.8f},
-                           .color = {0.3f, 0.6f, 1},
-                           .intensity = 1},
-                   LAMP = {.kind = LIGHT_POINT,
-                           .position = {-150, 100, 40},
-                           .distance = 100,
-                           .color = {1, 1, 1},
-                           .intensity = 1,
-                           .shadow = true},
-                   SPOT = {.kind = LIGHT_SPOT,
-                           .position = {20, 300, 100},
-                           .direction = {0, -0.95f, -0.3122f},
-                           .inner_deg = 10,
-                           .outer_deg = 25,
-                           .distance = 300,
-                           .color = {1, 0.2f, 0.2f},
-                           .intensity = 3};
+// Initialisers of lights.
+// clang-format off
+#define SUN {.kind = LIGHT_DIRECTIONAL, .direction = {0.48f, 0.6f, 0.64f}, .color = {1, 0.8f, 0.5f}, \
+    .intensity = 2, .shadow = true}
+#define BACK {.kind = LIGHT_DIRECTIONAL, .direction = {-0.6f, 0, -0.8f}, .color = {0.3f, 0.6f, 1}, \
+    .intensity = 1}
+#define LAMP {.kind = LIGHT_POINT, .position = {-150, 100, 40}, .distance = 100, \
+    .color = {1, 1, 1}, .intensity = 1, .shadow = true}
+#define SPOT {.kind = LIGHT_SPOT, .position = {20, 300, 100}, .direction = {0, -0.95f, -0.3122f}, \
+    .inner_deg = 10, .outer_deg = 25, .distance = 300, .color = {1, 0.2f, 0.2f}, .intensity = 3}
+// clang-format on
 
 // What is drawn, and how.
 typedef struct Case {
