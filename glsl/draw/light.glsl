@@ -16,7 +16,7 @@ struct LightCell {
 
 struct LightState {
     uint filled, beside; // cells with hair, cells next to them
-    uint done, last;     // 1: no order more is needed; the last that was swept
+    uint done;           // 1: no order more is needed
     vec4 more;           // rgb: how much of the last order the orders after it add
 };
 

@@ -36,6 +36,5 @@ void main()
          further = falling / (1.0 - falling), left = last * further;
     bool more = any(greaterThan(left, LEFT * (all + left)));
     state.more = vec4(sweep.y > 1 ? further : vec3(0.0), 0.0);
-    state.last = uint(sweep.x);
     state.done = sweep.x > 1 && !more ? 1u : 0u;
 }

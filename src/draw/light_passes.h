@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The light grid (light_grid.h) in compute shaders, for GPUs: hair stays where it is, C finds where
-// the cells lie and the tables of fibres. Two small things come back, both behind fences: the box
-// of hair, and how many cells have some. The same light as C's but for rounding, and for particles
-// of straight hair, of which C leaves some out. Needs the DrawParams block.
+// the cells lie and the tables of fibres. Two small things come back: the box of hair, behind a
+// fence, and how many cells have some, for which C waits. The same light as C's but for rounding,
+// and for particles of straight hair, of which C leaves some out. Needs the DrawParams block.
 #pragma once
 
 #include "draw/light_grid.h"
