@@ -4,11 +4,11 @@
 // CPUs, where it is several times as fast as ribbons that are drawn as triangles into an A-buffer.
 #pragma once
 
-#include "draw/block_raster.h"
-#include "draw/cull.h"
 #include "draw/drawing.h"
-#include "draw/ribbon_store.h"
 #include "gpu/gpu_timer.h"
+#include "lanes/block_raster.h"
+#include "lanes/ribbon_store.h"
+#include "passes/cull.h"
 #include "sim/hair.h"
 
 #include <stdbool.h>

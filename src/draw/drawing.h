@@ -6,8 +6,8 @@
 #include "draw/look.h"
 #include "draw/render_mesh.h"
 #include "draw/renderer_options.h"
-#include "draw/scatter_tables.h"
 #include "gpu/gpu.h"
+#include "passes/scatter_tables.h"
 
 #include "glsl/draw/draw.h"
 

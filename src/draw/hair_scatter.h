@@ -6,9 +6,9 @@
 
 #include "draw/drawing.h"
 #include "draw/light_dual.h"
-#include "draw/light_grid.h"
-#include "draw/light_passes.h"
 #include "draw/shadows.h"
+#include "lanes/light_grid.h"
+#include "passes/light_passes.h"
 
 typedef struct HairScatterOptions {
     Scatter scatter; // none and dual: only light of the sky

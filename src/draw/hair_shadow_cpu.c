@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "draw/hair_shadow_cpu.h"
 
-#include "draw/shadow_light.h"
+#include "lanes/shadow_light.h"
 
 #include <stdlib.h>
 

@@ -4,10 +4,10 @@
 #pragma once
 
 #include "draw/look.h"
-#include "draw/shadow_map.h"
-#include "draw/shadow_past.h"
-#include "draw/shadow_points.h"
-#include "draw/tile_order.h"
+#include "lanes/shadow_map.h"
+#include "lanes/shadow_past.h"
+#include "lanes/shadow_points.h"
+#include "lanes/tile_order.h"
 
 // Hair that stands in the light: the ribbons that are drawn, with the material's shadow_opacity.
 typedef struct ShadowCaster {

@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "draw/fibre_lobes.h"
 #include "draw/light_blocks.h"
-#include "draw/mapped_caster.h"
+#include "lanes/mapped_caster.h"
 
 #include "glsl/draw/draw.h"
 

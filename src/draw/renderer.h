@@ -8,12 +8,12 @@
 
 #include "draw/base_layer.h"
 #include "draw/blocks.h"
-#include "draw/compute.h"
 #include "draw/drawing.h"
 #include "draw/hair_scatter.h"
-#include "draw/quads.h"
 #include "draw/renderer_options.h"
 #include "draw/tiles.h"
+#include "passes/compute.h"
+#include "passes/quads.h"
 
 typedef struct Renderer {
     RendererOptions options;

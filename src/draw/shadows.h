@@ -4,9 +4,9 @@
 // (glsl/draw/shadow.glsl).
 #pragma once
 
-#include "draw/hair_shadow.h"
 #include "draw/render_mesh.h"
 #include "gpu/gpu_timer.h"
+#include "passes/hair_shadow.h"
 #include "scene/scene.h"
 
 // The mesh where the head has carried it.

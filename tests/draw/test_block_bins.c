@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "base/random.h"
-#include "draw/block_bins.h"
 #include "glsl/draw/draw.h"
+#include "lanes/block_bins.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A block of pixels against the same sum in double precision, pixel by pixel.
 #include "base/random.h"
-#include "draw/block_composite.h"
+#include "lanes/block_composite.h"
 
 #include <math.h>
 #include <setjmp.h>

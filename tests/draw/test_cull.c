@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The levels of cull.h, each against the one below it.
-#include "draw/cull.h"
+#include "passes/cull.h"
 
 #include "glsl/draw/draw.h"
 

@@ -4,8 +4,8 @@
 #include "base/random.h"
 #include "draw/drawing.h"
 #include "draw/light_dual.h"
-#include "draw/light_grid.h"
-#include "draw/light_grid_state.h"
+#include "lanes/light_grid.h"
+#include "lanes/light_grid_state.h"
 #include "support/needed.h"
 
 #include "glsl/common/shared_math.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The light among hair by shaders, which GPUs have, against C's, point by point.
-#include "draw/light_passes.h"
+#include "passes/light_passes.h"
 
-#include "draw/light_grid_state.h"
+#include "lanes/light_grid_state.h"
 #include "support/hair_fixture.h"
 #include "support/needed.h"
 #include "support/stage.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Marschner's table against the reference, and what holds for all light.
 #include "draw/drawing.h"
-#include "draw/scatter_tables.h"
 #include "gpu/gpu_buffer.h"
 #include "gpu/gpu_uniforms.h"
+#include "passes/scatter_tables.h"
 #include "support/needed.h"
 #include "support/plain.h"
 #include "support/reference_marschner.h"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "draw/shadow_map.h"
+#include "lanes/shadow_map.h"
 
 #include "base/random.h"
-#include "draw/shadow_points.h"
-#include "draw/shadow_tile.h"
 #include "gen/strands_make.h"
+#include "lanes/shadow_points.h"
+#include "lanes/shadow_tile.h"
 #include "strands/paint.h"
 #include "support/shadow_stage.h"
 

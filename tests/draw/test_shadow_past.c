@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What C finds that a mesh leaves of lights at points of hair, beside the definition of
 // glsl/draw/shadow.glsl in double precision.
-#include "draw/shadow_past.h"
+#include "lanes/shadow_past.h"
 
 #include "base/random.h"
 

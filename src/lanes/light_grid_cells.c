@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: MIT
+// What hair in each cell of a light grid takes from each direction, and what the lights leave in
+// it.
+#include "lanes/light_grid_state.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Items of each part and cell begin where those before end; cells with hair get slots, then those
+// beside them, where points between cells look, too.
+void light_grid_make_slots(LightGridState *state)
+{
+    const int *n = state->lattice.count;
+    size_t cells = light_lattice_cells(&state->lattice);
+    uint32_t sum = 0;
+    state->filled = 0;
+    for (size_t c = 0; c < cells; ++c) {
+        uint32_t before = sum;
+        for (int part = 0; part < state->parts; ++part) {
+            uint32_t *first = &state->first_item[(size_t)part * cells + c], count = *first;
+            *first = sum;
+            sum += count;
+        }
+        state->slot[c] = sum > before ? state->filled : -1;
+        if (sum > before) state->cell_of[state->filled++] = (int)c;
+    }
+    state->item_count = sum;
+    state->active = state->filled;
+    for (int f = 0; f < state->filled; ++f) {
+        int c = state->cell_of[f], at[3] = {c % n[0], c / n[0] % n[1], c / (n[0] * n[1])};
+        for (int q = 0; q < 27; ++q) {
+            int x = at[0] + q % 3 - 1, y = at[1] + q / 3 % 3 - 1, z = at[2] + q / 9 - 1;
+            if (x < 0 || y < 0 || z < 0 || x >= n[0] || y >= n[1] || z >= n[2]) continue;
+            int other = (z * n[1] + y) * n[0] + x;
+            if (state->slot[other] >= 0) continue;
+            state->slot[other] = state->active;
+            state->cell_of[state->active++] = other;
+        }
+    }
+}
+
+// What a cell's items come to.
+typedef struct CellSum {
+    uint64_t class[GRID_CLASSES][1 + MAX_LIGHTS]; // area, and what each light meets of it
+    uint64_t whole, tint[3];
+    uint16_t used[GRID_CLASSES];
+    int count;
+    bool is_used[GRID_CLASSES];
+} CellSum;
+
+static void add_items(const LightGridState *state, uint32_t first, uint32_t end, CellSum *sum)
+{
+    for (uint32_t n = first; n < end; ++n) {
+        const GridItem *item =
+            (const GridItem *)(const void *)(state->items + n * (size_t)state->item_words);
+        if (!sum->is_used[item->class]) {
+            sum->is_used[item->class] = true;
+            sum->used[sum->count++] = (uint16_t)item->class;
+        }
+        uint64_t *class = sum->class[item->class];
+        class[0] += item->area;
+        for (int l = 0; l < state->lights; ++l) class[1 + l] += item->lit[l];
+        sum->whole += item->area;
+        for (int k = 0; k < 3 && state->tinted; ++k) sum->tint[k] += item->lit[state->lights + k];
+    }
+}
+
+static void clear_sum(CellSum *sum)
+{
+    for (int u = 0; u < sum->count; ++u) {
+        sum->is_used[sum->used[u]] = false;
+        memset(sum->class[sum->used[u]], 0, sizeof sum->class[0]);
+    }
+    sum->count = 0;
+    sum->whole = 0;
+    memset(sum->tint, 0, sizeof sum->tint);
+}
+
+// Classes in their order, whatever thread met them first.
+static void sort_classes(CellSum *sum)
+{
+    for (int u = 1; u < sum->count; ++u) {
+        uint16_t class = sum->used[u];
+        int to = u;
+        for (; to > 0 && sum->used[to - 1] > class; --to) sum->used[to] = sum->used[to - 1];
+        sum->used[to] = class;
+    }
+}
+
+// The main tangent by power iteration on the sum of t t^T, on the side of most tips.
+static int find_main_class(const CellSum *sum)
+{
+    float tensor[3][3] = {{0}}, mean[3] = {0}, kind_area[LIGHT_GRID_KINDS] = {0},
+          main[3] = {0.577f, 0.577f, 0.578f}, most = 0;
+    int kind = 0;
+    for (int u = 0; u < sum->count; ++u) {
+        float w = (float)sum->class[sum->used[u]][0];
+        const float *t = TANGENT[sum->used[u] % TANGENTS];
+        kind_area[sum->used[u] / TANGENTS] += w;
+        if (w > most) most = w, memcpy(main, t, sizeof main);
+        for (int i = 0; i < 3; ++i) {
+            mean[i] += w * t[i];
+            for (int j = 0; j < 3; ++j) tensor[i][j] += w * t[i] * t[j];
+        }
+    }
+    for (int turn = 0; turn < 8; ++turn) {
+        float next[3], length = 0;
+        for (int i = 0; i < 3; ++i) {
+            next[i] = tensor[i][0] * main[0] + tensor[i][1] * main[1] + tensor[i][2] * main[2];
+            length += next[i] * next[i];
+        }
+        for (int i = 0; i < 3 && length > 0; ++i) main[i] = next[i] / sqrtf(length);
+    }
+    if (mean[0] * main[0] + mean[1] * main[1] + mean[2] * main[2] < 0)
+        for (int i = 0; i < 3; ++i) main[i] = -main[i];
+    for (int k = 1; k < LIGHT_GRID_KINDS; ++k)
+        if (kind_area[k] > kind_area[kind]) kind = k;
+    return kind * TANGENTS + ordinates_class(main);
+}
+
+typedef struct CellFill {
+    LightGridState *state;
+    const GridScene *scene;
+    CellSum *sums;               // [parts]
+    LightPath paths[MAX_LIGHTS]; // of lights afar, where there is a mesh
+} CellFill;
+
+// The mesh's shadow on cell f from light l.
+static float find_passed(const CellFill *fill, int f, int l)
+{
+    const LightGridState *state = fill->state;
+    const LightLattice *lattice = &state->lattice;
+    const GridScene *scene = fill->scene;
+    const int *n = lattice->count;
+    int c = state->cell_of[f], cell[3] = {c % n[0], c / n[0] % n[1], c / (n[0] * n[1])};
+    float way[3], square = 0, lamp[3];
+    if (!scene->blocks) return 1;
+    if (scene->draw->light_place[l][3] == 0)
+        return light_path_follow(&fill->paths[l], scene->blocks, lattice, cell);
+    light_lattice_turn(lattice, scene->draw->light_place[l], lamp);
+    for (int k = 0; k < 3; ++k) {
+        way[k] = lamp[k] - lattice->low[k] - ((float)cell[k] + 0.5f) * lattice->side;
+        square += way[k] * way[k];
+    }
+    float reach = fmaxf(sqrtf(square), 1e-6f);
+    for (int k = 0; k < 3; ++k) way[k] /= reach;
+    return light_blocks_march(scene->blocks, lattice, cell, way, reach);
+}
+
+// k h, then first(d) / k = S without scattering, of one cell.
+SIMD_INLINE void fill_depths(const CellSum *sum, float depth[ORDINATES])
+{
+    for (int d = 0; d < ORDINATES; ++d) depth[d] = 0;
+    for (int u = 0; u < sum->count; ++u) {
+        float w = (float)sum->class[sum->used[u]][0] * (1 / ITEM_STEPS);
+        const float *sine = TANGENT_SINE[sum->used[u] % TANGENTS];
+        for (int d = 0; d < ORDINATES; ++d) depth[d] += w * sine[d];
+    }
+}
+
+SIMD_INLINE void fill_source(const LightGridState *state, const GridScene *scene,
+                             const CellSum *sum, const float passed[MAX_LIGHTS], int f)
+{
+    const float *depth = state->depth + (size_t)f * ORDINATES, *tint = state->tint + 3 * f;
+    float source[GRID_WIDE];
+    for (int i = 0; i < GRID_WIDE; ++i) source[i] = 0;
+    for (int l = 0; l < state->lights; ++l) {
+        float part[GRID_WIDE] = {0};
+        for (int u = 0; u < sum->count && passed[l] > 0; ++u) {
+            int class = sum->used[u];
+            float w = (float)sum->class[class][1 + l] * (passed[l] / ITEM_STEPS);
+            const float *first = state->kinds[class / TANGENTS].first[l][class % TANGENTS];
+            if (w > 0)
+                for (int i = 0; i < GRID_WIDE; ++i) part[i] += w * first[i];
+        }
+        for (int g = 0; g < ORDINATE_GROUPS; ++g)
+            for (int c = 0; c < 3; ++c) {
+                float color = scene->draw->light_color[l][c] * tint[c];
+                for (int k = 0; k < GRID_LANES; ++k) {
+                    int at = (g * 3 + c) * GRID_LANES + k;
+                    source[at] += part[at] * color / simd_max(depth[g * GRID_LANES + k], 1e-12f);
+                }
+            }
+    }
+    for (int g = 0; g < ORDINATE_GROUPS; ++g)
+        memcpy(grid_source(state, g, f), source + g * GROUP_WIDE, GROUP_WIDE * sizeof *source);
+}
+
+// A matt surface in a light of 1 that it is square to shows its colour; those in a cell lie any way
+// towards the light, half as bright in the mean.
+static void fill_glow(const LightGridState *state, const GridScene *scene, const CellSum *sum,
+                      const float passed[MAX_LIGHTS], int f)
+{
+    float *glow = state->glow + 3 * (size_t)f;
+    for (int c = 0; c < 3; ++c) glow[c] = 0;
+    if (!scene->blocks) return;
+    double area = 0;
+    for (int u = 0; u < sum->count; ++u) area += (double)sum->class[sum->used[u]][0];
+    for (int l = 0; l < state->lights && area > 0; ++l) {
+        double lit = 0;
+        for (int u = 0; u < sum->count; ++u) lit += (double)sum->class[sum->used[u]][1 + l];
+        float share = 0.5f * (float)(lit / area) * passed[l];
+        for (int c = 0; c < 3; ++c)
+            glow[c] += share * scene->draw->light_color[l][c] * scene->draw->mesh_color[c];
+    }
+}
+
+// Along a direction a cell is as long as its side over the direction's main component.
+SIMD_INLINE void fill_passage(LightGridState *state, int f)
+{
+    const float *depth = state->depth + (size_t)f * ORDINATES;
+    for (int g = 0; g < ORDINATE_GROUPS; ++g) {
+        float *left = grid_passage(state, g, f), *mean = left + GRID_LANES;
+        memcpy(mean + GRID_LANES, depth + g * GRID_LANES, GRID_LANES * sizeof *depth);
+        for (int l = 0; l < GRID_LANES; ++l) {
+            int d = g * GRID_LANES + l;
+            float main = fabsf(ORDINATE[g / 2][d]), tau = depth[d] / main,
+                  through = simd_exp2(-(float)LOG2E * simd_min(tau, 40));
+            left[l] = through;
+            mean[l] = tau > 1e-3f ? (1 - through) / tau : 1 - 0.5f * tau;
+        }
+    }
+}
+
+SIMD_INLINE void fill_cells(const CellFill *fill, int part)
+{
+    LightGridState *state = fill->state;
+    size_t cells = light_lattice_cells(&state->lattice);
+    CellSum *sum = &fill->sums[part];
+    int first = (int)((int64_t)state->filled * part / state->parts),
+        end = (int)((int64_t)state->filled * (part + 1) / state->parts);
+    for (int f = first; f < end; ++f) {
+        // Where the last part's items ended, and before where the cell's began.
+        size_t c = (size_t)state->cell_of[f];
+        uint32_t stop = state->first_item[(size_t)(state->parts - 1) * cells + c],
+                 start = c ? state->first_item[(size_t)(state->parts - 1) * cells + c - 1] : 0;
+        add_items(state, start, stop, sum);
+        sort_classes(sum);
+        fill_depths(sum, state->depth + (size_t)f * ORDINATES);
+        for (int k = 0; k < 3; ++k)
+            state->tint[3 * f + k] =
+                state->tinted && sum->whole ? (float)sum->tint[k] / (float)sum->whole : 1;
+        float passed[MAX_LIGHTS];
+        for (int l = 0; l < state->lights; ++l) passed[l] = find_passed(fill, f, l);
+        fill_source(state, fill->scene, sum, passed, f);
+        fill_glow(state, fill->scene, sum, passed, f);
+        state->class[f] = find_main_class(sum);
+        fill_passage(state, f);
+        clear_sum(sum);
+    }
+}
+
+SIMD_STAGE(fill_cells, CellFill)
+
+bool light_grid_fill_cells(LightGridState *state, const GridScene *scene)
+{
+    CellFill fill = {.state = state, .scene = scene};
+    fill.sums = calloc((size_t)state->parts, sizeof *fill.sums);
+    if (!fill.sums) return false;
+    for (int l = 0; l < state->lights && scene->blocks; ++l)
+        light_path_find(&fill.paths[l], &state->lattice, state->to_light[l]);
+    run_fill_cells(&fill, state->parts);
+    free(fill.sums);
+    return true;
+}

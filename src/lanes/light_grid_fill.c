@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// Where hair lies among the cells of a light grid, step by step, and the memory for it.
+#include "lanes/light_grid_state.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { KEPT_ITEM_BYTES = 32 << 20 };
+
+// --- Memory.
+
+static bool grow(void *array, size_t *room, size_t count, size_t size)
+{
+    void **mine = array;
+    if (*room >= count) return true;
+    free(*mine);
+    *mine = malloc(count * size);
+    *room = *mine ? count : 0;
+    return *mine != NULL;
+}
+
+static bool grow_cells(LightGridState *state, size_t cells)
+{
+    size_t room[3] = {state->cell_room, state->cell_room, state->cell_room};
+    bool good = grow(&state->slot, &room[0], cells, sizeof *state->slot) &&
+                grow(&state->first_item, &room[1], (size_t)state->parts * cells,
+                     sizeof *state->first_item) &&
+                grow(&state->cell_of, &room[2], cells, sizeof *state->cell_of);
+    state->cell_room = good ? room[0] : 0;
+    return good;
+}
+
+static bool grow_slots(LightGridState *state)
+{
+    size_t filled = (size_t)state->filled, active = (size_t)state->active;
+    size_t of[10];
+    for (int i = 0; i < 10; ++i) of[i] = i < 5 || i == 9 ? state->filled_room : state->slot_room;
+    filled += filled / 4, active += active / 4;
+    if (state->filled_room >= (size_t)state->filled && state->slot_room >= (size_t)state->active)
+        return true;
+    bool good = grow(&state->depth, &of[0], filled, ORDINATES * sizeof(float)) &&
+                grow(&state->passage, &of[1], filled, GRID_WIDE * sizeof(float)) &&
+                grow(&state->source, &of[2], filled, GRID_WIDE * sizeof(float)) &&
+                grow(&state->tint, &of[3], filled, 3 * sizeof(float)) &&
+                grow(&state->glow, &of[9], filled, 3 * sizeof(float)) &&
+                grow(&state->class, &of[4], filled, sizeof(int)) &&
+                grow(&state->sum, &of[5], active, GRID_WIDE * sizeof(float)) &&
+                grow(&state->order, &of[6], active, GRID_WIDE * sizeof(float)) &&
+                grow(&state->light, &of[7], active, GRID_WIDE * sizeof(float)) &&
+                grow(&state->hidden, &of[8], active, 4 * sizeof(float));
+    state->filled_room = good ? of[0] : 0;
+    state->slot_room = good ? of[6] : 0;
+    return good;
+}
+
+// Items are read no more when cells are filled. Few are kept for the next image, since fresh memory
+// costs more than it saves there; 1,000,000 strands of 16 vertices have 300 MB.
+static void release_items(LightGridState *state)
+{
+    if (state->item_room * sizeof *state->items <= KEPT_ITEM_BYTES) return;
+    free(state->items);
+    state->items = NULL;
+    state->item_room = 0;
+}
+
+// --- The whole.
+
+static Result fill_all(LightGridState *state, const GridScene *scene, Error *error)
+{
+    size_t cells = light_lattice_cells(&state->lattice);
+    Result result = RESULT_OK;
+    if (!grow_cells(state, cells)) return RESULT_FAILED;
+    memset(state->first_item, 0, (size_t)state->parts * cells * sizeof *state->first_item);
+    light_grid_place(state, scene, false);
+    light_grid_make_slots(state);
+    if (!light_grid_find_walls(state, scene) || !light_grid_find_spans(state) ||
+        !grow(&state->items, &state->item_room,
+              (size_t)state->item_count * (size_t)state->item_words, sizeof *state->items) ||
+        !grow_slots(state))
+        return RESULT_FAILED;
+    light_grid_place(state, scene, true);
+    THEN(result, light_grid_make_first(state, scene, error));
+    if (result != RESULT_OK) return result;
+    if (!light_grid_fill_cells(state, scene)) return RESULT_FAILED;
+    release_items(state);
+    return RESULT_OK;
+}
+
+bool light_grid_fill(LightGridState *state, const GridScene *scene, Error *error, Result *result)
+{
+    ordinates_prepare();
+    *result = RESULT_OK;
+    if (!light_grid_find_lattice(state, scene)) return false;
+    light_grid_find_lights(state, scene);
+    // The blocks' lattice must be this one.
+    if (scene->blocks) {
+        LightBlocks *blocks = (LightBlocks *)scene->blocks;
+        *result = light_blocks_find(blocks, &state->lattice, error);
+        if (*result != RESULT_OK) return false;
+    }
+    *result = fill_all(state, scene, error);
+    if (*result == RESULT_FAILED)
+        error_set(error, RESULT_FAILED, "no memory for light among hair: %d x %d x %d cells",
+                  state->lattice.count[0], state->lattice.count[1], state->lattice.count[2]);
+    return *result == RESULT_OK;
+}

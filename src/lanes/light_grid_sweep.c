@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: MIT
+// Light goes through the cells of a light grid: slice by slice along the main axis of its
+// direction, from between the cells of the slice before (bilinear), on each thread the directions
+// of some groups.
+#include "lanes/light_grid_state.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { TAPS = 3 };
+
+typedef struct Sweep {
+    LightGridState *state;
+    const GridScene *scene;
+    bool sky, fresh, sourceless;
+    int parts;
+} Sweep;
+
+// What a group's directions have in common.
+typedef struct GroupWay {
+    int main, across[2]; // axes
+    bool forward;
+    float taps[2][TAPS][GRID_LANES]; // weights of the cells before, by the axes across
+    float sky[GROUP_WIDE];
+    ptrdiff_t stride[3], step[3]; // of slots and of walls, along `main` and the axes across
+    const float *walls[3];        // shares that pass the mesh along those axes; NULL: there is none
+} GroupWay;
+
+// From above (+y of the world) comes the sky, from below the ground, evenly between them.
+static void find_sky(const Sweep *sweep, int group, float sky[GROUP_WIDE])
+{
+    const DrawParams *draw = sweep->scene->draw;
+    const LightLattice *lattice = &sweep->state->lattice;
+    for (int l = 0; l < GRID_LANES; ++l) {
+        float up = 0;
+        for (int k = 0; k < 3; ++k) up -= lattice->turn[k][1] * ORDINATE[k][group * GRID_LANES + l];
+        for (int c = 0; c < 3; ++c)
+            sky[c * GRID_LANES + l] =
+                sweep->sky ? draw->ground[c] + (0.5f + 0.5f * up) * (draw->sky[c] - draw->ground[c])
+                           : 0;
+    }
+}
+
+static void find_strides(const LightGridState *state, GroupWay *way)
+{
+    const int *n = state->lattice.count;
+    const ptrdiff_t stride[3] = {1, n[0], (ptrdiff_t)n[0] * n[1]},
+                    step[3] = {1, n[0] + 2, (ptrdiff_t)(n[0] + 2) * (n[1] + 2)};
+    for (int k = 0; k < 3; ++k) {
+        int axis = k ? way->across[k - 1] : way->main;
+        way->stride[k] = stride[axis];
+        way->step[k] = step[axis];
+        way->walls[k] = grid_walls(state, axis);
+    }
+}
+
+static void find_way(const Sweep *sweep, int group, GroupWay *way)
+{
+    way->main = group / 2;
+    way->forward = group % 2;
+    way->across[0] = (way->main + 1) % 3;
+    way->across[1] = (way->main + 2) % 3;
+    for (int l = 0; l < GRID_LANES; ++l) {
+        int d = group * GRID_LANES + l;
+        float main = fabsf(ORDINATE[way->main][d]);
+        for (int k = 0; k < 2; ++k) {
+            float shift = ORDINATE[way->across[k]][d] / main;
+            way->taps[k][0][l] = fmaxf(shift, 0);
+            way->taps[k][1][l] = 1 - fabsf(shift);
+            way->taps[k][2][l] = fmaxf(-shift, 0);
+        }
+    }
+    find_sky(sweep, group, way->sky);
+    find_strides(sweep->state, way);
+}
+
+// Added to all radiance: what thick hair leaves of it would else become so small that processors
+// need a hundred cycles for each operation with it (denormal numbers).
+#define LEAST_LIGHT 1e-30f
+
+// The weighted sum of three neighbours; the mesh lets the share `low` of the first one through,
+// `high` of the last.
+SIMD_INLINE void blend(const float taps[TAPS][GRID_LANES], float low, float high, const float *a,
+                       const float *b, const float *c, float *out)
+{
+    const Lanes first = low * *(const Lanes *)taps[0], middle = *(const Lanes *)taps[1],
+                last = high * *(const Lanes *)taps[2];
+    for (int k = 0; k < GROUP_WIDE; k += GRID_LANES)
+        *(Lanes *)(out + k) = first * *(const Lanes *)(a + k) + middle * *(const Lanes *)(b + k) +
+                              last * *(const Lanes *)(c + k) + LEAST_LIGHT;
+}
+
+// Of a row of the slice before, blended along the first axis across.
+SIMD_INLINE void blend_row(const GroupWay *way, bool walls, const int cells[2], const float *wall,
+                           const float *before, float *row)
+{
+    for (int x = cells[0]; x < cells[1]; ++x) {
+        float low = walls ? wall[x * way->step[1]] : 1,
+              high = walls ? wall[(x + 1) * way->step[1]] : 1;
+        const float *at = before + (size_t)x * GROUP_WIDE;
+        blend(way->taps[0], low, high, at, at + GROUP_WIDE, at + 2 * GROUP_WIDE,
+              row + (size_t)x * GROUP_WIDE);
+    }
+}
+
+// out = S + (in - S) exp(-tau), in the mean S + (in - S)(1 - exp(-tau)) / tau.
+SIMD_INLINE void pass_cell(const Sweep *sweep, int group, int slot, float *io, float *mean)
+{
+    const LightGridState *state = sweep->state;
+    const float *passage = grid_passage(state, group, slot);
+    const Lanes left = *(const Lanes *)passage, share = *(const Lanes *)(passage + GRID_LANES);
+    const float given = sweep->sourceless ? 0 : 1, *source = grid_source(state, group, slot);
+    for (int c = 0; c < 3; ++c) {
+        Lanes *at = (Lanes *)(io + c * GRID_LANES);
+        const Lanes s = given * *(const Lanes *)(source + c * GRID_LANES), in = *at - s;
+        *(Lanes *)(mean + c * GRID_LANES) = s + in * share;
+        *at = s + in * left;
+    }
+}
+
+SIMD_INLINE void keep(const Sweep *sweep, int group, int slot, const float *mean)
+{
+    const LightGridState *state = sweep->state;
+    float *order = grid_lane(state, state->order, group, slot),
+          *sum = grid_lane(state, state->sum, group, slot);
+    for (int c = 0; c < 3; ++c) {
+        const Lanes here = *(const Lanes *)(mean + c * GRID_LANES);
+        Lanes *light = (Lanes *)(sum + c * GRID_LANES);
+        *(Lanes *)(order + c * GRID_LANES) = here;
+        if (sweep->fresh)
+            *light = here;
+        else
+            *light += here;
+    }
+}
+
+// Adds what the cell's hair meets.
+SIMD_INLINE void add_met(const LightGridState *state, int group, int slot, const float *mean,
+                         double sum[3])
+{
+    const Lanes depth = *(const Lanes *)(grid_passage(state, group, slot) + 2 * GRID_LANES);
+    for (int c = 0; c < 3; ++c) {
+        const Lanes met = *(const Lanes *)(mean + c * GRID_LANES) * depth;
+        sum[c] += (double)(((met[0] + met[1]) + (met[2] + met[3])) +
+                           ((met[4] + met[5]) + (met[6] + met[7])));
+    }
+}
+
+// What comes from the side of the mesh is what that sends back.
+SIMD_INLINE void meet_mesh(const LightGridState *state, float passed, int slot, float *io)
+{
+    for (int c = 0; c < 3; ++c) {
+        float glow = slot >= 0 && slot < state->filled ? state->glow[3 * slot + c] : 0;
+        Lanes *lanes = (Lanes *)(io + c * GRID_LANES);
+        *lanes = passed * *lanes + (1 - passed) * glow;
+    }
+}
+
+// A cell on the way of the group: what comes in becomes what goes out.
+SIMD_INLINE void cross_cell(const Sweep *sweep, int group, int slot, float *io, double sum[3])
+{
+    if (slot < 0) return;
+    if (slot >= sweep->state->filled) {
+        keep(sweep, group, slot, io);
+        return;
+    }
+    float mean[GROUP_WIDE];
+    pass_cell(sweep, group, slot, io, mean);
+    keep(sweep, group, slot, mean);
+    add_met(sweep->state, group, slot, mean, sum);
+}
+
+// Row y of the cells of a slice: from three rows of the slice before, to `out`.
+SIMD_INLINE void sweep_row(const Sweep *sweep, const GroupWay *way, int group, bool walls,
+                           int slice, int y, const int cells[2], const float *const rows[3],
+                           float *out, double sum[3])
+{
+    const LightGridState *state = sweep->state;
+    const int *slot = state->slot + slice * way->stride[0] + y * way->stride[2];
+    ptrdiff_t at = slice * way->step[0] + y * way->step[2];
+    for (int x = cells[0]; x < cells[1]; ++x) {
+        size_t column = (size_t)x * GROUP_WIDE;
+        ptrdiff_t here = at + x * way->step[1];
+        float low = walls ? way->walls[2][here] : 1,
+              high = walls ? way->walls[2][here + way->step[2]] : 1;
+        blend(way->taps[1], low, high, rows[0] + column, rows[1] + column, rows[2] + column,
+              out + column);
+        float passed = walls ? way->walls[0][here + (way->forward ? 0 : way->step[0])] : 1;
+        int own = slot[x * way->stride[1]];
+        if (passed != 1) meet_mesh(state, passed, own, out + column);
+        cross_cell(sweep, group, own, out + column, sum);
+    }
+}
+
+// The planes of a sweep: of the slice before and of this one, each with a cell around, and three
+// rows.
+typedef struct Planes {
+    const float *before;
+    float *after, *rows;
+} Planes;
+
+// What lies before all hair is never written: there stands what comes from around, as at the start.
+SIMD_INLINE void sweep_slice(const Sweep *sweep, const GroupWay *way, int group, bool walls,
+                             int slice, const Planes *planes, double sum[3])
+{
+    const int *n = sweep->state->lattice.count;
+    int wide = n[way->across[0]], tall = n[way->across[1]];
+    size_t row = ((size_t)wide + 2) * GROUP_WIDE, used = (size_t)wide * GROUP_WIDE;
+    const GridSpan *spans = grid_spans(sweep->state, group, slice);
+    ptrdiff_t wall = (way->forward ? slice - 1 : slice + 1) * way->step[0] - way->step[2];
+    // Row y of the slice before lies at y % 3, for the three rows of cells around it.
+    for (int y = 0; y < tall + 2; ++y) {
+        int blended[2] = {wide, 0};
+        for (int around = y < 2 ? 0 : y - 2; around <= y && around < tall; ++around)
+            grid_span_join(blended, grid_span_cells(&spans[around], sweep->sky));
+        blend_row(way, walls, blended, walls ? way->walls[1] + wall + y * way->step[2] : NULL,
+                  planes->before + (size_t)y * row, planes->rows + (size_t)(y % 3) * used);
+        if (y < 2) continue;
+        const float *const rows[3] = {planes->rows + (size_t)((y - 2) % 3) * used,
+                                      planes->rows + (size_t)((y - 1) % 3) * used,
+                                      planes->rows + (size_t)(y % 3) * used};
+        float *out = planes->after + (size_t)(y - 1) * row + GROUP_WIDE;
+        sweep_row(sweep, way, group, walls, slice, y - 2,
+                  grid_span_cells(&spans[y - 2], sweep->sky), rows, out, sum);
+    }
+}
+
+static void fill_plane(float *plane, size_t floats, const float sky[GROUP_WIDE])
+{
+    for (size_t i = 0; i < floats; i += GROUP_WIDE)
+        memcpy(plane + i, sky, GROUP_WIDE * sizeof *sky);
+}
+
+SIMD_INLINE void sweep_slices(const Sweep *sweep, const GroupWay *way, int group, bool walls)
+{
+    LightGridState *state = sweep->state;
+    const int *n = state->lattice.count;
+    int slices = n[way->main];
+    float *planes[2] = {state->planes + (size_t)(3 * group) * state->plane,
+                        state->planes + (size_t)(3 * group + 1) * state->plane},
+          *rows = state->planes + (size_t)(3 * group + 2) * state->plane;
+    double *sum = state->sums[1][group];
+    memset(sum, 0, sizeof state->sums[1][group]);
+    size_t used = ((size_t)n[way->across[0]] + 2) * ((size_t)n[way->across[1]] + 2) * GROUP_WIDE;
+    for (int k = 0; k < 2; ++k) fill_plane(planes[k], used, way->sky);
+    for (int i = 0; i < slices; ++i)
+        sweep_slice(sweep, way, group, walls, way->forward ? i : slices - 1 - i,
+                    &(Planes){planes[i % 2], planes[(i + 1) % 2], rows}, sum);
+}
+
+SIMD_INLINE void sweep_groups(const Sweep *sweep, int part)
+{
+    for (int group = part; group < ORDINATE_GROUPS; group += sweep->parts) {
+        GroupWay way;
+        find_way(sweep, group, &way);
+        if (way.walls[0])
+            sweep_slices(sweep, &way, group, true);
+        else
+            sweep_slices(sweep, &way, group, false);
+    }
+}
+
+SIMD_STAGE(sweep_groups, Sweep)
+
+void light_grid_sweep(LightGridState *state, const GridScene *scene, bool sky, bool fresh,
+                      bool sourceless)
+{
+    int parts = state->parts < ORDINATE_GROUPS ? state->parts : ORDINATE_GROUPS;
+    memcpy(state->sums[0], state->sums[1], sizeof state->sums[0]);
+    Sweep sweep = {state, scene, sky, fresh, sourceless, parts};
+    run_sweep_groups(&sweep, parts);
+}
+
+// --- Scattering.
+
+// Of one channel of cell f.
+SIMD_INLINE void scatter_channel(const LightGridState *state, const float (*rows)[ORDINATES], int f,
+                                 int channel, float tint)
+{
+    float sum[ORDINATES];
+    for (int d = 0; d < ORDINATES; ++d) sum[d] = 0;
+    for (int g = 0; g < ORDINATE_GROUPS; ++g)
+        for (int l = 0; l < GRID_LANES; ++l) {
+            float from = grid_lane(state, state->order, g, f)[channel * GRID_LANES + l];
+            const float *row = rows[g * GRID_LANES + l];
+            for (int d = 0; d < ORDINATES; ++d) sum[d] += from * row[d];
+        }
+    for (int g = 0; g < ORDINATE_GROUPS; ++g)
+        for (int l = 0; l < GRID_LANES; ++l)
+            grid_source(state, g, f)[channel * GRID_LANES + l] = tint * sum[g * GRID_LANES + l];
+}
+
+// Of the last order the mesh sends back its colour's share, alike to all sides.
+SIMD_INLINE void reflect(const LightGridState *state, int f)
+{
+    for (int c = 0; c < 3; ++c) {
+        float sum = 0;
+        for (int g = 0; g < ORDINATE_GROUPS; ++g)
+            for (int l = 0; l < GRID_LANES; ++l)
+                sum += grid_lane(state, state->order, g, f)[c * GRID_LANES + l];
+        state->glow[3 * f + c] = state->mesh_color[c] * sum * (1.f / ORDINATES);
+    }
+}
+
+SIMD_INLINE void scatter(const LightGridState *state, int part)
+{
+    int first = (int)((int64_t)state->filled * part / state->parts),
+        end = (int)((int64_t)state->filled * (part + 1) / state->parts);
+    for (int f = first; f < end; ++f) {
+        const GridKind *kind = &state->kinds[state->class[f] / TANGENTS];
+        for (int c = 0; c < 3; ++c)
+            scatter_channel(state,
+                            (const float(*)[ORDINATES])kind->scatter[state->class[f] % TANGENTS][c],
+                            f, c, state->tint[3 * f + c]);
+        reflect(state, f);
+    }
+}
+
+SIMD_STAGE(scatter, LightGridState)
+
+void light_grid_scatter(LightGridState *state)
+{
+    run_scatter(state, state->parts);
+}

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// The points of hair that stands in the light, found once for all maps and passes.
+#pragma once
+
+#include "lanes/mapped_caster.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+// Zeroed at the start.
+typedef struct ShadowPoints {
+    float (*all)[3][STRAND_TILE]; // [room], owned: of one caster behind the other
+    size_t room;
+} ShadowPoints;
+
+// Finds the points of all curves, in metres (x, y, z of 16 strands each), on `parts` threads, and
+// leaves them in each caster's `points`. Without memory, or where they would take more than
+// 192 MiB, casters have none, and each pass finds them anew.
+void shadow_points_find(ShadowPoints *points, MappedCaster *casters, uint32_t count, int parts);
+
+void shadow_points_destroy(ShadowPoints *points);

@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: MIT
+#include "passes/hair_shadow.h"
+
+#include "gpu/gpu_dispatch.h"
+#include "gpu/gpu_uniforms.h"
+
+#include <math.h>
+#include <string.h>
+
+enum {
+    STRIP = 8,          // divides the side of a map
+    PART_VERTICES = 64, // that one lane walks
+    PART_SEGMENTS = 8,
+    MARGIN = 3, // texels at the edges of a map that hair leaves free
+    BOX_WORDS = 6
+};
+
+static const double UNIT = 1 << 16; // steps for one fibre
+static const double SUM_MAX = 2e9;  // of those steps: sums do not overflow
+
+// What a program of the deep maps or of the first depths is built for.
+enum { FIRSTS = 0, DEEP = 1, COARSE_FIRSTS = 2 };
+
+static Result build(GLuint *program, const char *file, int group, int kind, unsigned variant,
+                    Error *error)
+{
+    const ShaderDefine defines[] = {{"GROUP_SIZE", group},
+                                    {"DEEP", kind == DEEP},
+                                    {"COARSE", kind == COARSE_FIRSTS},
+                                    {"PART_VERTICES", PART_VERTICES},
+                                    {"PART_SEGMENTS", PART_SEGMENTS},
+                                    {"STRIP", STRIP},
+                                    {"PAINT", (variant & CAST_PAINT) != 0},
+                                    {"SMOOTH", (variant & CAST_SMOOTH) != 0},
+                                    {NULL, 0}};
+    return *program ? RESULT_OK : shader_build_compute(program, file, defines, error);
+}
+
+unsigned hair_shadow_variant(const ShadowCaster *caster)
+{
+    return (caster->batch->paint.buffer ? CAST_PAINT : 0) |
+           (caster->look.features & LOOK_SMOOTH ? CAST_SMOOTH : 0);
+}
+
+Result hair_shadow_build(HairShadow *hair, unsigned variant, Error *error)
+{
+    const GpuSizes sizes = hair->limits->sizes;
+    TRY(build(&hair->bounds[variant], "draw/shadow_bounds.comp", sizes.strands, FIRSTS, variant,
+              error));
+    TRY(build(&hair->first[variant], "draw/shadow_splat.comp", sizes.strands,
+              hair->deep ? COARSE_FIRSTS : FIRSTS, variant, error));
+    if (hair->deep)
+        TRY(build(&hair->splat[variant], "draw/shadow_splat.comp", sizes.strands, DEEP, variant,
+                  error));
+    if (hair->deep)
+        TRY(build(&hair->spread, "draw/shadow_spread.comp", sizes.items, DEEP, 0, error));
+    if (hair->deep)
+        TRY(build(&hair->finish, "draw/shadow_finish.comp", sizes.items, DEEP, 0, error));
+    return RESULT_OK;
+}
+
+Result hair_shadow_create(HairShadow *hair, const GpuLimits *limits, bool deep, int side,
+                          bool by_processor, bool behind, Error *error)
+{
+    *hair =
+        (HairShadow){.deep = deep, .by_processor = by_processor, .side = side, .limits = limits};
+    return by_processor ? hair_shadow_cpu_create(&hair->cpu, side, deep, behind, error) : RESULT_OK;
+}
+
+static void destroy_maps(HairShadow *hair)
+{
+    gpu_buffer_destroy(&hair->firsts);
+    gpu_buffer_destroy(&hair->depths);
+    gpu_buffer_destroy(&hair->sums);
+    gpu_buffer_destroy(&hair->layers);
+    hair->maps = 0;
+}
+
+static void destroy_programs(const GLuint *programs, int count)
+{
+    for (int i = 0; i < count; ++i)
+        if (programs[i]) glDeleteProgram(programs[i]);
+}
+
+void hair_shadow_destroy(HairShadow *hair)
+{
+    destroy_programs(hair->bounds, CAST_VARIANTS);
+    destroy_programs(hair->first, CAST_VARIANTS);
+    destroy_programs(hair->splat, CAST_VARIANTS);
+    destroy_programs(&hair->spread, 1);
+    destroy_programs(&hair->finish, 1);
+    destroy_maps(hair);
+    hair_shadow_cpu_destroy(&hair->cpu);
+    gpu_buffer_destroy(&hair->box);
+    *hair = (HairShadow){0};
+}
+
+// What is read later.
+static Result make_maps(HairShadow *hair, int maps, Error *error)
+{
+    if (hair->maps < maps) {
+        destroy_maps(hair);
+        hair->maps = maps;
+    }
+    int64_t texels = (int64_t)hair->maps * hair->side * hair->side;
+    if (!hair->deep)
+        return gpu_buffer_reserve(&hair->firsts, hair->limits, "shadow's depths", 4 * texels,
+                                  GL_R32UI, error);
+    TRY(gpu_buffer_reserve(&hair->depths, hair->limits, "shadow's beginnings", 4 * texels, GL_R32F,
+                           error));
+    return gpu_buffer_reserve(&hair->layers, hair->limits, "shadow's layers",
+                              4 * texels * SHADOW_LAYERS, GL_R32UI, error);
+}
+
+// What shaders make them with.
+static Result make_scratch(HairShadow *hair, ShadowCasters casters, Error *error)
+{
+    int64_t texels = (int64_t)hair->maps * hair->side * hair->side;
+    TRY(gpu_buffer_reserve(&hair->box, hair->limits, "light's box", 4 * MAX_LIGHTS * BOX_WORDS, 0,
+                           error));
+    if (hair->deep)
+        TRY(gpu_buffer_reserve(&hair->firsts, hair->limits, "shadow's depths",
+                               4 * texels / (SHADOW_COARSE * SHADOW_COARSE), GL_R32UI, error));
+    if (hair->deep)
+        TRY(gpu_buffer_reserve(&hair->sums, hair->limits, "shadow's sums",
+                               4 * texels * SHADOW_LAYERS, GL_R32UI, error));
+    for (uint32_t i = 0; i < casters.count; ++i)
+        TRY(hair_shadow_build(hair, hair_shadow_variant(&casters.list[i]), error));
+    return RESULT_OK;
+}
+
+static void fill(const GpuBuffer *buffer, GLuint value)
+{
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
+    glClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, 0, (GLsizeiptr)buffer->size,
+                         GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
+}
+
+Result hair_shadow_begin(HairShadow *hair, int maps, ShadowCasters casters, Error *error)
+{
+    TRY(make_maps(hair, maps, error));
+    if (hair->by_processor)
+        return hair_shadow_cpu_begin(&hair->cpu, hair->limits, maps, casters, &hair->depths,
+                                     hair->deep ? &hair->layers : &hair->firsts, error);
+    TRY(make_scratch(hair, casters, error));
+    fill(&hair->firsts, SHADOW_DEPTHS);
+    if (hair->deep) fill(&hair->sums, 0);
+    return RESULT_OK;
+}
+
+void hair_shadow_end(HairShadow *hair)
+{
+    if (hair->by_processor) hair_shadow_cpu_end(&hair->cpu);
+}
+
+// Runs a pass, which has a program for each variant, over all ribbons, in parts of `part` of a
+// strand's points.
+static void cast(HairShadow *hair, ShadowCasters casters, const CastParams *params,
+                 const GLuint programs[CAST_VARIANTS], uint32_t part)
+{
+    gpu_uniforms_set(BIND_CAST, params, sizeof *params);
+    for (uint32_t i = 0; i < casters.count; ++i) {
+        const ShadowCaster *caster = &casters.list[i];
+        const HairBatch *batch = caster->batch;
+        MaterialParams material = look_material(&caster->look, batch);
+        uint32_t points = (batch->vertex_count - 1) * material.smooth_parts + 1;
+        glUseProgram(programs[hair_shadow_variant(caster)]);
+        gpu_uniforms_set(BIND_MATERIAL, &material, sizeof material);
+        gpu_buffer_bind_texture(&batch->position, BIND_POSITION);
+        if (batch->paint.buffer) gpu_buffer_bind_texture(&batch->paint, BIND_PAINT);
+        gpu_dispatch(hair->limits, material.drawn_strands, (uint64_t)hair->limits->sizes.strands,
+                     (points + part - 1) / part);
+    }
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
+                    GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+float hair_shadow_unordered(int32_t bits)
+{
+    float value;
+    bits = bits < 0 ? bits ^ 0x7fffffff : bits;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+static void set_rows(CastParams *params, double rows[4][4])
+{
+    for (int k = 0; k < 4; ++k)
+        for (int i = 0; i < 4; ++i) params->from_world[k][i] = (float)rows[k][i];
+}
+
+static CastParams box_params(const LightView *view, int map)
+{
+    double rows[4][4];
+    CastParams params = {
+        .map = map,
+        .limit = (float)LIGHT_FRAME_FAR,
+        .reach = (float)(view->perspective ? LIGHT_FRAME_WIDE : LIGHT_FRAME_FAR),
+    };
+    for (int k = 0; k < 4; ++k) light_frame_row(view, k, rows[k]);
+    set_rows(&params, rows);
+    return params;
+}
+
+static void find_boxes(HairShadow *hair, const LightView *views, int count, ShadowCasters casters,
+                       double (*boxes)[6])
+{
+    GLint words[MAX_LIGHTS][BOX_WORDS];
+    GLsizeiptr size = (GLsizeiptr)((size_t)count * sizeof *words);
+    for (int i = 0; i < count; ++i)
+        for (int k = 0; k < BOX_WORDS; ++k) words[i][k] = k < 3 ? INT32_MAX : INT32_MIN;
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, hair->box.buffer);
+    glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, size, words);
+    gpu_buffer_bind_storage(&hair->box, BIND_BOUNDS_OUT);
+    for (int i = 0; i < count; ++i) {
+        CastParams params = box_params(&views[i], i);
+        cast(hair, casters, &params, hair->bounds, PART_VERTICES);
+    }
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, hair->box.buffer);
+    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, size, words);
+    for (int i = 0; i < count; ++i)
+        for (int k = 0; k < BOX_WORDS; ++k)
+            boxes[i][k] = (double)hair_shadow_unordered(words[i][k]);
+}
+
+void hair_shadow_find_boxes(HairShadow *hair, const LightView *views, int count,
+                            ShadowCasters casters, double (*boxes)[6])
+{
+    if (count && !hair->by_processor) find_boxes(hair, views, count, casters, boxes);
+    for (int i = 0; i < count && hair->by_processor; ++i) {
+        CastParams params = box_params(&views[i], i);
+        hair_shadow_cpu_find_box(&hair->cpu, &params, boxes[i]);
+    }
+}
+
+LightFrame hair_shadow_frame(const HairShadow *hair, const LightView *view, const double box[6])
+{
+    return light_frame_steady(view, box, hair->side, MARGIN);
+}
+
+// The smallest step of sums that cannot overflow, were all segments in one texel.
+static float find_unit(ShadowCasters casters, bool perspective, double texels)
+{
+    double most = 1;
+    for (uint32_t i = 0; i < casters.count; ++i) {
+        const ShadowCaster *caster = &casters.list[i];
+        const MaterialParams *material = &caster->look.material;
+        bool any_width = perspective || caster->batch->paint.buffer;
+        double width = any_width ? 1 : fmin(2.0 * (double)material->radius * texels, 1);
+        most += (double)fibre_depth(material->shadow_opacity, 100) * width *
+                caster->batch->strand_count * (caster->batch->vertex_count - 1) *
+                material->smooth_parts;
+    }
+    return (float)fmin(UNIT, SUM_MAX / most);
+}
+
+// First depths, in texels that are `coarse` of the map's wide.
+static void draw_firsts(HairShadow *hair, ShadowCasters casters, const CastParams *params,
+                        int coarse)
+{
+    CastParams wide = *params;
+    wide.side /= coarse;
+    wide.texels /= (float)coarse;
+    for (int k = 0; k < 2; ++k)
+        for (int i = 0; i < 4; ++i) wide.from_world[k][i] /= (float)coarse;
+    gpu_buffer_bind_storage(&hair->firsts, BIND_FIRST_OUT);
+    cast(hair, casters, &wide, hair->first, PART_SEGMENTS);
+}
+
+static void run_texels(const HairShadow *hair, const CastParams *params, GLuint program, int lanes)
+{
+    glUseProgram(program);
+    glUniform2i(0, params->side, params->map);
+    gpu_dispatch(hair->limits, (uint64_t)lanes, (uint64_t)hair->limits->sizes.items, 1);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+}
+
+static void spread(const HairShadow *hair, const CastParams *params)
+{
+    int corners = params->side / SHADOW_COARSE + 1;
+    run_texels(hair, params, hair->spread, corners * corners);
+}
+
+static void finish(const HairShadow *hair, const CastParams *params)
+{
+    glUseProgram(hair->finish);
+    glUniform1f(1, params->unit);
+    run_texels(hair, params, hair->finish, params->side * params->side / STRIP);
+}
+
+static void draw_deep(HairShadow *hair, ShadowCasters casters, CastParams *params)
+{
+    draw_firsts(hair, casters, params, SHADOW_COARSE);
+    gpu_buffer_bind_texture(&hair->firsts, BIND_FIRST);
+    gpu_buffer_bind_storage(&hair->depths, BIND_DEPTHS_OUT);
+    spread(hair, params);
+    gpu_buffer_bind_texture(&hair->depths, BIND_DEPTHS);
+    gpu_buffer_bind_storage(&hair->sums, BIND_SUMS_OUT);
+    cast(hair, casters, params, hair->splat, PART_SEGMENTS);
+    gpu_buffer_bind_texture(&hair->sums, BIND_SUMS);
+    gpu_buffer_bind_storage(&hair->layers, BIND_LAYERS_OUT);
+    finish(hair, params);
+}
+
+float hair_shadow_scale(const LightView *view, const LightFrame *frame)
+{
+    double distance = view->perspective ? 0.5 * (frame->depth[0] + frame->depth[1]) : 1;
+    return (float)(1 / (frame->texel * distance));
+}
+
+void hair_shadow_draw(HairShadow *hair, const LightView *view, const LightFrame *frame, int map,
+                      ShadowCasters casters)
+{
+    double rows[4][4];
+    memcpy(rows, frame->rows, sizeof rows);
+    CastParams params = {
+        .side = hair->side,
+        .map = map,
+        .texels = (float)(1 / frame->texel),
+        .unit = find_unit(casters, view->perspective, 1 / frame->texel),
+        .reach = (float)(view->perspective ? LIGHT_FRAME_WIDE : LIGHT_FRAME_FAR),
+        .limit = (float)LIGHT_FRAME_FAR,
+    };
+    set_rows(&params, rows);
+    if (hair->by_processor)
+        hair_shadow_cpu_draw(&hair->cpu, &params, hair_shadow_scale(view, frame));
+    else if (hair->deep)
+        draw_deep(hair, casters, &params);
+    else
+        draw_firsts(hair, casters, &params, 1);
+}
+
+void hair_shadow_bind(const HairShadow *hair)
+{
+    if (hair->deep) gpu_buffer_bind_texture(&hair->depths, BIND_DEPTHS);
+    gpu_buffer_bind_texture(hair->deep ? &hair->layers : &hair->firsts, BIND_LAYERS);
+}
+
+bool hair_shadow_lights(const HairShadow *hair, const ParticleLight **lights, uint32_t *count)
+{
+    *lights = hair->cpu.past_mesh ? hair->cpu.reaching : hair->cpu.lights;
+    *count = hair->cpu.lit;
+    return hair->by_processor && hair->cpu.lit > 0;
+}

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// The passes of the light grid's shaders, one by one: how each is built, and what it runs on.
+#pragma once
+
+#include "passes/hair_shadow.h"
+
+typedef enum LightPass {
+    LIGHT_PASS_BOX,
+    LIGHT_PASS_MARK,
+    LIGHT_PASS_HAIR_SLOTS,
+    LIGHT_PASS_BESIDE_SLOTS,
+    LIGHT_PASS_PLACES,
+    LIGHT_PASS_AREAS,
+    LIGHT_PASS_LIT,     // by a light with a map of hair
+    LIGHT_PASS_LIT_ALL, // by one without
+    LIGHT_PASS_FILL,
+    LIGHT_PASS_SWEEP,
+    LIGHT_PASS_SWEEP_WALLED,
+    LIGHT_PASS_ORDER,
+    LIGHT_PASS_SCATTER,
+    LIGHT_PASS_CLOSE,
+    LIGHT_PASS_HIDE,
+    LIGHT_PASS_GATHER,
+    LIGHT_PASSES
+} LightPass;
+
+enum { LIGHT_PART_VERTICES = 64, LIGHT_PART_SEGMENTS = 8 }; // of a strand, that one lane walks
+
+// A struct that has but limits has none yet.
+typedef struct LightPrograms {
+    const GpuLimits *limits;
+    GLuint program[LIGHT_PASSES][CAST_VARIANTS];
+} LightPrograms;
+
+// Compiles a pass for hair that needs CAST_ bits `variant`, unless it is there; the second makes it
+// the current program, too. RESULT_FAILED with the compiler's words.
+Result light_pass_build(LightPrograms *programs, LightPass pass, unsigned variant, Error *error);
+Result light_pass_use(LightPrograms *programs, LightPass pass, unsigned variant, Error *error);
+
+// Runs the current program, which is that of `pass`, on so many cells or slots, and has what comes
+// later wait for it.
+void light_pass_run_cells(const LightPrograms *programs, LightPass pass, int count);
+
+// Runs the current program on the strands of one caster, which have `of` segments or vertices, in
+// parts of `part`. Behind the last caster comes light_pass_end.
+void light_pass_run_hair(const LightPrograms *programs, const ShadowCaster *caster, uint32_t of,
+                         uint32_t part);
+
+// What comes later waits for what has run.
+void light_pass_end(void);
+
+void light_pass_destroy(LightPrograms *programs);

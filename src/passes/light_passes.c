@@ -1,0 +1,420 @@
+// SPDX-License-Identifier: MIT
+#include "passes/light_passes.h"
+
+#include "gpu/gpu_uniforms.h"
+#include "lanes/light_grid_state.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+_Static_assert(LIGHT_ORDINATES == ORDINATES && LIGHT_LANES == ORDINATE_LANES &&
+                   LIGHT_CLASSES == TANGENTS && LIGHT_SQUARES == ORDINATE_SQUARES &&
+                   LIGHT_SIDE == GATHER_SIDE && LIGHT_KINDS == LIGHT_GRID_KINDS &&
+                   LIGHT_BOX_WORDS == LIGHT_GRID_BOX,
+               "numbers of the grid");
+
+enum { CELL_BYTES = 96, STATE_HEAD = 32 };  // of LightCell, LightState (light.glsl)
+static const int64_t SUMS_MOST = 128 << 20; // bytes: of more cells sums are made in turns
+
+void light_passes_destroy(LightPasses *passes)
+{
+    GpuBuffer *const buffers[] = {
+        &passes->box,   &passes->slots,        &passes->cells,          &passes->state,
+        &passes->sums,  &passes->planes,       &passes->depth,          &passes->source,
+        &passes->order, &passes->total,        &passes->light,          &passes->tables,
+        &passes->walls, &passes->first.buffer, &passes->scatter.buffer, &passes->gather.buffer,
+    };
+    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; ++i) gpu_buffer_destroy(buffers[i]);
+    light_pass_destroy(&passes->programs);
+    late_read_destroy(&passes->box_read);
+    late_read_destroy(&passes->counts_read);
+    if (passes->grid) {
+        light_grid_forget(passes->grid);
+        free(passes->grid->walls);
+        free(passes->grid);
+    }
+    *passes = (LightPasses){0};
+}
+
+// --- What C knows.
+
+static Result upload(LightPasses *passes, GpuBuffer *buffer, const char *what, const void *data,
+                     size_t size, Error *error)
+{
+    gpu_buffer_destroy(buffer);
+    return gpu_buffer_create(buffer, passes->programs.limits, what, (int64_t)size, data, GL_R32F,
+                             error);
+}
+
+static Result make_grid(LightPasses *passes, Error *error)
+{
+    if (passes->grid) return RESULT_OK;
+    passes->grid = calloc(1, sizeof *passes->grid);
+    if (!passes->grid) return error_set(error, RESULT_FAILED, "no memory for light among hair");
+    passes->grid->parts = parallel_threads();
+    float tables[LIGHT_TABLES_COUNT];
+    ordinates_prepare();
+    memcpy(tables, TANGENT_SINE, sizeof TANGENT_SINE);
+    memcpy(tables + LIGHT_TANGENT_AT, TANGENT, sizeof TANGENT);
+    for (size_t i = 0; i < sizeof TANGENT_NEAREST; ++i)
+        tables[LIGHT_NEAREST_AT + i] = ((const uint8_t *)TANGENT_NEAREST)[i];
+    return upload(passes, &passes->tables, "classes of tangents", tables, sizeof tables, error);
+}
+
+static KindTableMade made_of(const LightPasses *passes, const GridScene *scene, size_t counter)
+{
+    KindTableMade made = {.kinds = scene->kind_count, .lights = passes->grid->lights};
+    for (int k = 0; k < scene->kind_count; ++k)
+        memcpy(&made.made[k], (const char *)&passes->grid->kinds[k] + counter, sizeof(uint32_t));
+    return made;
+}
+
+// A table of all kinds, `bytes` each, uploaded if it is another one; `counter` and `table` are
+// offsets in GridKind.
+static Result upload_kinds(LightPasses *passes, KindTable *mine, const GridScene *scene,
+                           size_t counter, size_t table, size_t bytes, Error *error)
+{
+    KindTableMade made = made_of(passes, scene, counter);
+    if (mine->buffer.buffer && memcmp(&made, &mine->made, sizeof made) == 0) return RESULT_OK;
+    TRY(upload(passes, &mine->buffer, "a table of fibres", NULL, bytes * (size_t)made.kinds,
+               error));
+    for (int k = 0; k < made.kinds && bytes; ++k) {
+        const void *data;
+        memcpy(&data, (const char *)&passes->grid->kinds[k] + table, sizeof data);
+        glBindBuffer(GL_SHADER_STORAGE_BUFFER, mine->buffer.buffer);
+        glBufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(bytes * (size_t)k), (GLsizeiptr)bytes,
+                        data);
+    }
+    mine->made = made;
+    return RESULT_OK;
+}
+
+static Result upload_tables(LightPasses *passes, const GridScene *scene, Error *error)
+{
+    LightGridState *grid = passes->grid;
+    const size_t row = GRID_WIDE * sizeof(float),
+                 square = (size_t)3 * ORDINATES * ORDINATES * sizeof(float);
+    TRY(light_grid_make_first(grid, scene, error));
+    TRY(light_grid_make_scatter(grid, scene, true, error));
+    TRY(upload_kinds(passes, &passes->first, scene, offsetof(GridKind, first_made),
+                     offsetof(GridKind, first), (size_t)grid->lights * TANGENTS * row, error));
+    return upload_kinds(passes, &passes->scatter, scene, offsetof(GridKind, scatter_made),
+                        offsetof(GridKind, scatter), TANGENTS * square, error);
+}
+
+// The mesh among the cells.
+static Result upload_walls(LightPasses *passes, const GridScene *scene, Error *error)
+{
+    LightGridState *grid = passes->grid;
+    const int *n = grid->lattice.count;
+    size_t cells = ((size_t)n[0] + 2) * ((size_t)n[1] + 2) * ((size_t)n[2] + 2);
+    // The blocks' lattice must be this one.
+    if (scene->blocks) TRY(light_blocks_find((LightBlocks *)scene->blocks, &grid->lattice, error));
+    if (!light_grid_find_walls(grid, scene))
+        return error_set(error, RESULT_FAILED, "no memory for light among hair");
+    return grid->walled ? upload(passes, &passes->walls, "the mesh among hair", grid->walls,
+                                 3 * cells * sizeof *grid->walls, error)
+                        : RESULT_OK;
+}
+
+static void set_lights(const LightGridState *grid, const GridScene *scene, LightParams *params)
+{
+    for (int l = 0; l < grid->lights; ++l) {
+        const float *place = scene->draw->light_place[l];
+        memcpy(params->way[l], grid->to_light[l], sizeof grid->to_light[l]);
+        if (place[3] != 0) light_lattice_turn(&grid->lattice, place, params->way[l]);
+        params->way[l][3] = (float)scene->map_of[l];
+    }
+}
+
+static void set_eye(const LightGridState *grid, const GridScene *scene, LightParams *params)
+{
+    light_lattice_turn(&grid->lattice, scene->draw->eye, params->eye);
+    light_lattice_turn(&grid->lattice, scene->to_eye, params->eye_axis);
+    params->eye[3] = light_grid_opacity(scene);
+    params->eye_axis[3] = (float)light_grid_nearest(&grid->lattice, scene->to_eye);
+    for (int k = 0; k < scene->kind_count; ++k)
+        memcpy(params->albedo[k], scene->kinds[k].albedo[SCATTER_INCLINATIONS - 1],
+               3 * sizeof(float));
+}
+
+// Cells of a slice with a cell around, of whichever axis has most.
+static int count_plane(const LightLattice *lattice)
+{
+    int most = 0;
+    for (int k = 0; k < 3; ++k) {
+        int plane = (lattice->count[(k + 1) % 3] + 2) * (lattice->count[(k + 2) % 3] + 2);
+        most = plane > most ? plane : most;
+    }
+    return most;
+}
+
+static void set_params(const LightPasses *passes, const GridScene *scene)
+{
+    const LightGridState *grid = passes->grid;
+    const LightLattice *lattice = &grid->lattice;
+    LightParams params = {.pieces = (uint)grid->pieces,
+                          .lights = (uint)grid->lights,
+                          .classes = (uint)(scene->kind_count * TANGENTS),
+                          .room = (uint)passes->active,
+                          .plane = (uint)count_plane(lattice),
+                          .walled = grid->walled,
+                          .tinted = grid->tinted};
+    for (int k = 0; k < 3; ++k) {
+        memcpy(params.turn[k], lattice->turn[k], sizeof lattice->turn[k]);
+        params.low[k] = lattice->low[k];
+        params.count[k] = (uint)lattice->count[k];
+        for (int d = 0; d < ORDINATES; ++d) params.ordinate[d][k] = ORDINATE[k][d];
+    }
+    params.low[3] = lattice->side;
+    params.count[3] = (uint)light_lattice_cells(lattice);
+    set_lights(grid, scene, &params);
+    set_eye(grid, scene, &params);
+    gpu_uniforms_set(BIND_LIGHT, &params, sizeof params);
+}
+
+// --- Where hair lies.
+
+Result light_passes_begin(LightPasses *passes, const GridScene *scene, ShadowCasters casters,
+                          Error *error)
+{
+    const GLint none[LIGHT_BOX_WORDS] = {INT32_MAX, INT32_MAX, INT32_MAX, INT32_MIN,
+                                         INT32_MIN, INT32_MIN, 0};
+    TRY(make_grid(passes, error));
+    light_grid_find_turn(passes->grid, scene);
+    LightParams params = {0};
+    for (int k = 0; k < 3; ++k)
+        memcpy(params.turn[k], passes->grid->lattice.turn[k], 3 * sizeof(float));
+    gpu_uniforms_set(BIND_LIGHT, &params, sizeof params);
+    gpu_buffer_destroy(&passes->box);
+    TRY(gpu_buffer_create(&passes->box, passes->programs.limits, "the box of hair", sizeof none,
+                          none, 0, error));
+    TRY(light_pass_use(&passes->programs, LIGHT_PASS_BOX, 0, error));
+    gpu_buffer_bind_storage(&passes->box, BIND_LIGHT_BOX_OUT);
+    for (uint32_t i = 0; i < casters.count; ++i)
+        light_pass_run_hair(&passes->programs, &casters.list[i],
+                            casters.list[i].batch->vertex_count, LIGHT_PART_VERTICES);
+    TRY(late_read_begin(&passes->box_read, "the box of hair", sizeof none, error));
+    late_read_buffer(&passes->box_read, 0, &passes->box, sizeof none);
+    late_read_send(&passes->box_read);
+    return RESULT_OK;
+}
+
+static Result take_box(LightPasses *passes, float box[LIGHT_BOX_WORDS], Error *error)
+{
+    const void *bytes;
+    GLint words[LIGHT_BOX_WORDS];
+    TRY(late_read_open(&passes->box_read, "the box of hair", &bytes, error));
+    memcpy(words, bytes, sizeof words);
+    late_read_close(&passes->box_read);
+    for (int k = 0; k < LIGHT_BOX_WORDS; ++k) box[k] = hair_shadow_unordered(words[k]);
+    return RESULT_OK;
+}
+
+// The counts of cells with hair, and of those beside them.
+static Result count_slots(LightPasses *passes, ShadowCasters casters, Error *error)
+{
+    const int cells = (int)light_lattice_cells(&passes->grid->lattice);
+    const void *bytes;
+    uint32_t counts[2];
+    TRY(gpu_buffer_reserve(&passes->slots, passes->programs.limits, "cells of light",
+                           4 * (int64_t)cells, 0, error));
+    TRY(gpu_buffer_reserve(&passes->state, passes->programs.limits, "cells of light",
+                           STATE_HEAD + LIGHT_MOST * ORDINATES * 16, 0, error));
+    gpu_buffer_clear(&passes->slots, 0);
+    gpu_buffer_clear(&passes->state, 0);
+    gpu_buffer_bind_storage(&passes->slots, BIND_LIGHT_SLOTS_OUT);
+    gpu_buffer_bind_storage(&passes->state, BIND_LIGHT_STATE_OUT);
+    TRY(light_pass_use(&passes->programs, LIGHT_PASS_MARK, 0, error));
+    for (uint32_t i = 0; i < casters.count; ++i)
+        light_pass_run_hair(&passes->programs, &casters.list[i],
+                            casters.list[i].batch->vertex_count - 1, LIGHT_PART_SEGMENTS);
+    light_pass_end();
+    for (LightPass pass = LIGHT_PASS_HAIR_SLOTS; pass <= LIGHT_PASS_BESIDE_SLOTS; ++pass) {
+        TRY(light_pass_use(&passes->programs, pass, 0, error));
+        light_pass_run_cells(&passes->programs, pass, cells);
+    }
+    TRY(late_read_begin(&passes->counts_read, "cells of light", sizeof counts, error));
+    late_read_buffer(&passes->counts_read, 0, &passes->state, sizeof counts);
+    late_read_send(&passes->counts_read);
+    TRY(late_read_open(&passes->counts_read, "cells of light", &bytes, error));
+    memcpy(counts, bytes, sizeof counts);
+    late_read_close(&passes->counts_read);
+    passes->filled = (int)counts[0];
+    passes->active = (int)(counts[0] + counts[1]);
+    return RESULT_OK;
+}
+
+static Result make_room(LightPasses *passes, Error *error)
+{
+    const struct {
+        GpuBuffer *buffer;
+        int64_t slots, bytes;
+        GLenum format;
+    } rooms[] = {
+        {&passes->cells, passes->active, CELL_BYTES, 0},
+        {&passes->depth, passes->filled, ORDINATES * 4, 0},
+        {&passes->source, passes->active, GRID_WIDE * 4, 0},
+        {&passes->order, passes->active, GRID_WIDE * 4, 0},
+        {&passes->total, passes->active, GRID_WIDE * 4, 0},
+        {&passes->light, passes->active, ORDINATES * 16, GL_RGBA32F},
+        {&passes->planes, 2 * ORDINATES, (int64_t)count_plane(&passes->grid->lattice) * 16, 0},
+    };
+    for (size_t i = 0; i < sizeof rooms / sizeof *rooms; ++i)
+        if (rooms[i].buffer->size < rooms[i].slots * rooms[i].bytes)
+            TRY(gpu_buffer_reserve(rooms[i].buffer, passes->programs.limits, "light among hair",
+                                   rooms[i].slots * rooms[i].bytes * 5 / 4 / 16 * 16,
+                                   rooms[i].format, error));
+    gpu_buffer_clear(&passes->cells, 0);
+    return RESULT_OK;
+}
+
+// --- What is in the cells.
+
+// Adds up a quantity of all hair in the cells of a range of slots; `light` < 0: their areas.
+static Result add_items(LightPasses *passes, const GridScene *scene, ShadowCasters casters,
+                        LightPass pass, int light, const int range[2], Error *error)
+{
+    for (uint32_t i = 0; i < casters.count; ++i) {
+        TRY(light_pass_use(&passes->programs, pass, hair_shadow_variant(&casters.list[i]), error));
+        glUniform1i(0, scene->hair[i].kind);
+        if (light >= 0) glUniform1i(1, light);
+        glUniform2i(2, range[0], range[1]);
+        light_pass_run_hair(&passes->programs, &casters.list[i],
+                            casters.list[i].batch->vertex_count - 1, LIGHT_PART_SEGMENTS);
+    }
+    light_pass_end();
+    return RESULT_OK;
+}
+
+static Result fill_range(LightPasses *passes, const GridScene *scene, ShadowCasters casters,
+                         const int range[2], Error *error)
+{
+    gpu_buffer_clear(&passes->sums, 0);
+    gpu_buffer_bind_storage(&passes->sums, BIND_LIGHT_SUMS_OUT);
+    TRY(add_items(passes, scene, casters, LIGHT_PASS_AREAS, -1, range, error));
+    for (int l = 0; l < passes->grid->lights; ++l)
+        TRY(add_items(passes, scene, casters,
+                      scene->map_of[l] < 0 ? LIGHT_PASS_LIT_ALL : LIGHT_PASS_LIT, l, range, error));
+    TRY(light_pass_use(&passes->programs, LIGHT_PASS_FILL, 0, error));
+    glUniform2i(2, range[0], range[1]);
+    light_pass_run_cells(&passes->programs, LIGHT_PASS_FILL, range[1] - range[0]);
+    return RESULT_OK;
+}
+
+static Result fill_cells(LightPasses *passes, const GridScene *scene, ShadowCasters casters,
+                         Error *error)
+{
+    const LightGridState *grid = passes->grid;
+    int64_t slot = (int64_t)8 * (1 + grid->lights) * scene->kind_count * TANGENTS,
+            most = passes->most_sums ? passes->most_sums : SUMS_MOST;
+    if (most > passes->programs.limits->storage_block)
+        most = passes->programs.limits->storage_block;
+    int turn = (int)(most / slot);
+    if (turn > passes->filled) turn = passes->filled;
+    gpu_buffer_bind_storage(&passes->cells, BIND_LIGHT_CELLS_OUT);
+    gpu_buffer_bind_storage(&passes->depth, BIND_LIGHT_DEPTH_OUT);
+    gpu_buffer_bind_storage(&passes->source, BIND_LIGHT_SOURCE_OUT);
+    gpu_buffer_bind_texture(&passes->tables, BIND_LIGHT_TABLES);
+    gpu_buffer_bind_texture(&passes->first.buffer, BIND_LIGHT_FIRST);
+    gpu_buffer_bind_texture(&passes->scatter.buffer, BIND_LIGHT_SCATTER);
+    if (grid->walled) gpu_buffer_bind_texture(&passes->walls, BIND_LIGHT_WALLS);
+    TRY(light_pass_use(&passes->programs, LIGHT_PASS_PLACES, 0, error));
+    light_pass_run_cells(&passes->programs, LIGHT_PASS_PLACES,
+                         (int)light_lattice_cells(&grid->lattice));
+    TRY(gpu_buffer_reserve(&passes->sums, passes->programs.limits, "light among hair", turn * slot,
+                           0, error));
+    for (int first = 0; first < passes->filled; first += turn) {
+        int range[2] = {first, first + turn < passes->filled ? first + turn : passes->filled};
+        TRY(fill_range(passes, scene, casters, range, error));
+    }
+    return RESULT_OK;
+}
+
+// --- Orders of scattering.
+
+static Result run_sweep(LightPasses *passes, int number, bool sky, bool sourceless, Error *error)
+{
+    TRY(light_pass_use(&passes->programs,
+                       passes->grid->walled ? LIGHT_PASS_SWEEP_WALLED : LIGHT_PASS_SWEEP, 0,
+                       error));
+    glUniform2i(0, number, sky);
+    glUniform1i(1, sourceless);
+    glDispatchCompute(ORDINATES, 1, 1);
+    light_pass_end();
+    return RESULT_OK;
+}
+
+// Shaders find out themselves when an order more is not worth it: nobody waits for them.
+static Result sweep_orders(LightPasses *passes, const GridScene *scene, Error *error)
+{
+    gpu_buffer_bind_storage(&passes->planes, BIND_LIGHT_PLANES_OUT);
+    gpu_buffer_bind_storage(&passes->order, BIND_LIGHT_ORDER_OUT);
+    gpu_buffer_bind_storage(&passes->total, BIND_LIGHT_TOTAL_OUT);
+    TRY(run_sweep(passes, 0, light_scene_has_sky(scene->draw), passes->grid->lights == 0, error));
+    for (int order = 1; order <= scene->orders; ++order) {
+        TRY(light_pass_use(&passes->programs, LIGHT_PASS_SCATTER, 0, error));
+        light_pass_run_cells(&passes->programs, LIGHT_PASS_SCATTER, passes->filled);
+        TRY(run_sweep(passes, order, false, false, error));
+        TRY(light_pass_use(&passes->programs, LIGHT_PASS_ORDER, 0, error));
+        glUniform2i(0, order, scene->orders);
+        glDispatchCompute(1, 1, 1);
+        light_pass_end();
+    }
+    TRY(light_pass_use(&passes->programs, LIGHT_PASS_CLOSE, 0, error));
+    gpu_buffer_bind_storage(&passes->light, BIND_LIGHT_ALL_OUT);
+    light_pass_run_cells(&passes->programs, LIGHT_PASS_CLOSE, passes->active);
+    return RESULT_OK;
+}
+
+Result light_passes_solve(LightPasses *passes, const GridScene *scene, ShadowCasters casters,
+                          Error *error)
+{
+    float box[LIGHT_BOX_WORDS];
+    passes->filled = passes->active = 0;
+    if (!passes->box_read.fence) TRY(light_passes_begin(passes, scene, casters, error));
+    TRY(take_box(passes, box, error));
+    if (!light_grid_set_box(passes->grid, scene->cells, box)) return RESULT_OK;
+    light_grid_set_kinds(passes->grid, scene);
+    light_grid_find_lights(passes->grid, scene);
+    for (uint32_t i = 0; i < casters.count; ++i)
+        passes->grid->tinted |= casters.list[i].batch->paint.buffer != 0;
+    set_params(passes, scene);
+    TRY(upload_walls(passes, scene, error));
+    TRY(count_slots(passes, casters, error));
+    if (!passes->filled) return RESULT_OK;
+    TRY(make_room(passes, error));
+    TRY(upload_tables(passes, scene, error));
+    set_params(passes, scene);
+    TRY(fill_cells(passes, scene, casters, error));
+    TRY(sweep_orders(passes, scene, error));
+    return gpu_check("light among hair", error);
+}
+
+Result light_passes_gather(LightPasses *passes, const GridScene *scene, ShadowCasters casters,
+                           const ParticleLight *seen, Error *error)
+{
+    if (!passes->filled) return RESULT_OK;
+    TRY(light_grid_make_gather(passes->grid, scene, error));
+    TRY(upload_kinds(passes, &passes->gather, scene, offsetof(GridKind, gather_made),
+                     offsetof(GridKind, gather), GATHER_NODES * GRID_WIDE * sizeof(float), error));
+    set_params(passes, scene);
+    gpu_buffer_bind_storage(&passes->slots, BIND_LIGHT_SLOTS_OUT);
+    gpu_buffer_bind_storage(&passes->cells, BIND_LIGHT_CELLS_OUT);
+    gpu_buffer_bind_storage(&passes->state, BIND_LIGHT_STATE_OUT);
+    gpu_buffer_bind_storage(&passes->depth, BIND_LIGHT_DEPTH_OUT);
+    gpu_buffer_bind_texture(&passes->light, BIND_LIGHT_ALL);
+    gpu_buffer_bind_texture(&passes->gather.buffer, BIND_LIGHT_GATHER);
+    TRY(light_pass_use(&passes->programs, LIGHT_PASS_HIDE, 0, error));
+    light_pass_run_cells(&passes->programs, LIGHT_PASS_HIDE, passes->active);
+    TRY(light_pass_use(&passes->programs, LIGHT_PASS_GATHER, 0, error));
+    for (uint32_t i = 0; i < casters.count; ++i) {
+        if (!(casters.list[i].look.features & LOOK_MARSCHNER)) continue;
+        glUniform1i(0, scene->hair[i].kind);
+        gpu_buffer_bind_storage(&seen[i].left, BIND_LIGHT_SEEN_OUT);
+        light_pass_run_hair(&passes->programs, &casters.list[i],
+                            casters.list[i].batch->vertex_count - 1, LIGHT_PART_SEGMENTS);
+    }
+    light_pass_end();
+    return gpu_check("light among hair", error);
+}

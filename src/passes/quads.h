@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// The rasteriser of GPUs: ribbons as triangles, whose fragments go to an A-buffer, in bands of rows
+// where that cannot hold the whole image's.
+#pragma once
+
+#include "draw/drawing.h"
+#include "gpu/gpu.h"
+#include "gpu/gpu_timer.h"
+#include "passes/abuffer.h"
+#include "passes/cull.h"
+
+// What projects hair and sends its ribbons to the A-buffer.
+typedef struct QuadRibbons {
+    LookPrograms project;
+    GLuint draw;                // program
+    GLuint vertex_array;        // without attributes
+    GpuBuffer edges, shades;    // uvec4 a particle, see hair.vert
+    GpuBuffer indices, command; // triangles, and how many of them: glDrawElementsIndirect
+} QuadRibbons;
+
+// A zeroed struct has nothing, and no limits.
+typedef struct Quads {
+    QuadRibbons hair;
+    ABuffer abuffer;
+    const GpuLimits *limits;
+    int width, height; // px of the image
+    int samples;       // across a pixel
+    int band_rows;     // that the next image starts with
+    Cull cull;
+    bool unsettled; // nobody knows yet whether the A-buffer held all of the image
+    bool skips;     // strands are looked through before they are projected
+} Quads;
+
+// RESULT_FAILED if memory is short. `gpu` outlives the quads.
+Result quads_create(Quads *quads, const Gpu *gpu, const RendererOptions *options, Error *error);
+void quads_destroy(Quads *quads);
+
+// Makes what drawing over a mesh needs; nothing if it is there.
+Result quads_add_base(Quads *quads, Error *error);
+
+// Draws the image's hair over the target's base, or over the background if `base` has no target,
+// and sends the image on its way back. It waits only for images of several bands. `base`: what is
+// opaque. What it does is added to `counts`, some of it by quads_settle. See renderer_begin.
+Result quads_draw(Quads *quads, Drawing *drawing, RenderTarget *target, const CullBase *base,
+                  GpuTimer *timer, RendererCounts *counts, Error *error);
+
+// Finds out whether the image has all of its hair, and draws it again if not, by what was bound and
+// what the hair was.
+Result quads_settle(Quads *quads, Drawing *drawing, RenderTarget *target, bool over_mesh,
+                    GpuTimer *timer, RendererCounts *counts, Error *error);
+
+// The image at `place` of the target; waits for it.
+Result quads_take(RenderTarget *target, int place, Image *image, Error *error);
