@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "base/bytes.h"
 
+#include "base/claims.h"
 #include "base/outfile.h"
 
 #include <errno.h>
@@ -47,6 +48,12 @@ Result bytes_read_file(Bytes *bytes, const char *path, Error *error)
         if (descriptor >= 0) close(descriptor);
         return error_set(error, RESULT_BAD_INPUT, "%s: %s", path, strerror(reason));
     }
+    if ((S_ISCHR(status.st_mode) && !isatty(descriptor)) || S_ISBLK(status.st_mode)) {
+        close(descriptor);
+        return error_set(error, RESULT_BAD_INPUT,
+                         "%s: a device, which may never end: expected a file or a pipe", path);
+    }
+    claims_note_input(path, &status);
     // One byte more than the size, so that the end of file is met without growing.
     size_t capacity = S_ISREG(status.st_mode) ? (size_t)status.st_size + 1 : 4096;
     int reason = read_all(bytes, descriptor, capacity);

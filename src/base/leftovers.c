@@ -12,27 +12,30 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #define NAME_FORMAT ".tractrix-%08x-%ld-%u.tmp"
 
 struct Leftover {
     Leftover *next;
-    int group; // 0: a file
-    char path[];
+    int group;  // 0: a file
+    int folder; // of the file
+    char name[];
 };
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static Leftover *first;
-static char *swept; // the folder that was looked through last
+static struct stat swept; // the folder that was looked through last
 
-static Leftover *add(const char *path, int group)
+static Leftover *add(int folder, const char *name, int group)
 {
-    size_t size = strlen(path) + 1;
+    size_t size = strlen(name) + 1;
     Leftover *leftover = malloc(sizeof *leftover + size);
     if (!leftover) return NULL;
     leftover->group = group;
-    memcpy(leftover->path, path, size);
+    leftover->folder = folder;
+    memcpy(leftover->name, name, size);
     pthread_mutex_lock(&lock);
     leftover->next = first;
     first = leftover;
@@ -40,14 +43,14 @@ static Leftover *add(const char *path, int group)
     return leftover;
 }
 
-Leftover *leftover_add_file(const char *path)
+Leftover *leftover_add_file(int folder, const char *name)
 {
-    return add(path, 0);
+    return add(folder, name, 0);
 }
 
 Leftover *leftover_add_group(int process_group)
 {
-    return add("", process_group);
+    return add(-1, "", process_group);
 }
 
 void leftover_forget(Leftover *leftover)
@@ -68,7 +71,7 @@ void leftovers_remove(void)
         if (leftover->group)
             kill(-leftover->group, SIGKILL);
         else
-            unlink(leftover->path);
+            unlinkat(leftover->folder, leftover->name, 0);
     }
 }
 
@@ -110,23 +113,26 @@ static void remove_unlocked(int folder, const char *name)
     close(file);
 }
 
-static void sweep(const char *folder)
+static void sweep(int folder)
 {
-    DIR *directory = opendir(folder);
-    if (!directory) return;
+    int readable = openat(folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    DIR *directory = readable < 0 ? NULL : fdopendir(readable);
+    if (!directory) {
+        if (readable >= 0) close(readable);
+        return;
+    }
     for (const struct dirent *entry; (entry = readdir(directory));)
-        if (is_abandoned(entry->d_name)) remove_unlocked(dirfd(directory), entry->d_name);
+        if (is_abandoned(entry->d_name)) remove_unlocked(folder, entry->d_name);
     closedir(directory);
 }
 
-void leftovers_sweep(const char *folder)
+void leftovers_sweep(int folder)
 {
+    struct stat now;
+    if (fstat(folder, &now) != 0) return;
     pthread_mutex_lock(&lock);
-    bool again = swept && strcmp(swept, folder) == 0;
-    if (!again) {
-        free(swept);
-        swept = strdup(folder);
-    }
+    bool again = swept.st_dev == now.st_dev && swept.st_ino == now.st_ino;
+    swept = now;
     pthread_mutex_unlock(&lock);
     if (!again) sweep(folder);
 }

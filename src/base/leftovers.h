@@ -9,9 +9,10 @@
 // Something that must go if the run ends now.
 typedef struct Leftover Leftover;
 
-// Remembers a file to be unlinked, or a process group to be killed, by leftovers_remove. NULL when
-// memory is short: then it is not remembered.
-Leftover *leftover_add_file(const char *path);
+// Remembers a file to be unlinked, or a process group to be killed, by leftovers_remove. `folder`:
+// a handle that stays open until the file is forgotten. NULL when memory is short: then it is not
+// remembered.
+Leftover *leftover_add_file(int folder, const char *name);
 Leftover *leftover_add_group(int process_group);
 
 // Forgets it again: it has its final name, or has ended. NULL is legal.
@@ -25,6 +26,7 @@ void leftovers_remove(void);
 enum { LEFTOVER_NAME_SIZE = 64 };
 void leftovers_name(char name[LEFTOVER_NAME_SIZE], unsigned number);
 
-// Removes temporary files of this machine's processes that have ended from `folder`, the first time
-// that it is given; files that a process holds locked (flock) stay. Failing is legal.
-void leftovers_sweep(const char *folder);
+// Removes temporary files of this machine's processes that have ended from `folder` (a handle),
+// unless it was given last time, too; files that a process holds locked (flock) stay. Failing is
+// legal.
+void leftovers_sweep(int folder);

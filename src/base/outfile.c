@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <ftw.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,104 +25,110 @@ Result outfile_refuse_terminal(const char *path, Error *error)
 
 static Result fail_to_write(const char *path, int reason, Error *error)
 {
-    return error_set(error, RESULT_FAILED, "%s: cannot write: %s", path, strerror(reason));
+    return error_set(error, RESULT_FAILED, "%s: cannot write: %s",
+                     outfile_is_stdout(path) ? "standard output" : path, strerror(reason));
 }
 
-// The name under which the file appears. A link to a file is followed, so that the rename does not
-// replace the link.
-static char *resolve_name(const char *path)
+// --- The place.
+
+// Refuses a file that the run reads, or has written as another output.
+static Result check_identity(const char *path, const struct stat *file, Error *error)
 {
-    struct stat status;
-    if (outfile_is_stdout(path)) return strdup("standard output");
-    bool is_link = lstat(path, &status) == 0 && S_ISLNK(status.st_mode);
-    char *target = is_link ? realpath(path, NULL) : NULL;
-    return target ? target : strdup(path);
+    char other[CLAIMS_PATH_SIZE];
+    bool written;
+    if (!S_ISREG(file->st_mode) || !claims_find_other(other, &written, path, file))
+        return RESULT_OK;
+    return error_set(error, RESULT_USAGE,
+                     "%.300s: would overwrite %s, which %s: expected another name", path, other,
+                     written ? "this run has written" : "is read");
 }
 
-// Creates a file that did not exist, beside `path`. mkstemp would do but for its fixed permissions
-// of 0600.
-static int create_temporary(OutFile *file, const char *folder)
+// Where the file of this path goes, with what is there. A claim has resolved the folder before.
+static Result find_place(Place *place, const char *path, Error *error)
 {
+    const Claim *claim = claims_find(path);
+    bool confined = claim && claim->confined;
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    int reason = claim ? place_copy(place, &claim->place, name) : place_find(place, path);
+    if (!reason) {
+        reason = place_look(place, !confined);
+        if (!reason && place->exists && S_ISDIR(place->file.st_mode)) reason = EISDIR;
+        if (reason) place_close(place);
+    }
+    if (reason) return fail_to_write(path, reason, error);
+    Result result = RESULT_OK;
+    if (confined && place->is_link)
+        result =
+            error_set(error, RESULT_BAD_INPUT,
+                      "%.300s: is a link: outputs of a scene file follow none: expected a plain "
+                      "file, --allow-paths, or the path on the command line",
+                      path);
+    else if (confined && !place_is_within(place, &claim->home))
+        result =
+            error_set(error, RESULT_BAD_INPUT, "%.300s: is outside the scene file's folder", path);
+    else if (place->exists)
+        result = check_identity(path, &place->file, error);
+    if (result != RESULT_OK) place_close(place);
+    return result;
+}
+
+// --- Files that appear complete.
+
+// Creates a file that did not exist. mkstemp would do but for its fixed permissions of 0600. -1
+// with errno.
+static int create_temporary(OutFile *file)
+{
+    int folder = file->place.folder;
+    char name[LEFTOVER_NAME_SIZE];
+    leftovers_sweep(folder);
     for (unsigned attempt = 0; attempt < 10000; attempt++) {
-        char name[LEFTOVER_NAME_SIZE];
         leftovers_name(name, attempt);
-        if (asprintf(&file->temporary, "%s%s", folder, name) < 0) {
-            file->temporary = NULL;
-            errno = ENOMEM;
-            return -1;
-        }
-        int descriptor = open(file->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (descriptor >= 0) {
-            flock(descriptor, LOCK_SH | LOCK_NB); // somebody uses it; see leftovers_sweep
-            file->leftover = leftover_add_file(file->temporary);
+        int descriptor = openat(folder, name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (descriptor < 0 && errno == EEXIST) continue;
+        if (descriptor < 0) return -1;
+        flock(descriptor, LOCK_SH | LOCK_NB); // somebody uses it; see leftovers_sweep
+        file->temporary = strdup(name);
+        if (file->temporary) {
+            file->leftover = leftover_add_file(folder, name);
             return descriptor;
         }
-        int reason = errno;
-        free(file->temporary);
-        file->temporary = NULL;
-        errno = reason;
-        if (reason != EEXIST) return -1;
+        close(descriptor);
+        unlinkat(folder, name, 0);
+        errno = ENOMEM;
+        return -1;
     }
     return -1;
 }
 
-static int open_temporary(OutFile *file)
+// Devices, pipes and names of open files (/dev/stdout) cannot be replaced by renaming: they are
+// written as they are.
+static int open_descriptor(OutFile *file, mode_t folders)
 {
-    const char *slash = strrchr(file->path, '/');
-    char *folder = strndup(file->path, slash ? (size_t)(slash - file->path) + 1 : 0);
-    if (!folder) return -1;
-    leftovers_sweep(*folder ? folder : ".");
-    int descriptor = create_temporary(file, folder);
-    int reason = errno;
-    free(folder);
-    errno = reason;
-    return descriptor;
-}
-
-// Like `mkdir -p` for what stands before the last slash of `name`, which is changed and changed
-// back. False with errno.
-static bool make_folders(char *name)
-{
-    int reason = 0;
-    for (char *slash = strchr(name + 1, '/'); slash && !reason; slash = strchr(slash + 1, '/')) {
-        *slash = 0;
-        struct stat status;
-        reason = mkdir(name, 0777) == 0 || errno == EEXIST ? 0 : errno;
-        // mkdir can say "no permission" of a folder that is there: what counts is whether a file
-        // can be made in it.
-        if (reason && stat(name, &status) == 0) reason = 0;
-        *slash = '/';
-    }
-    errno = reason;
-    return reason == 0;
-}
-
-// Devices and pipes (/dev/stdout) cannot be replaced by renaming: they are written as they are.
-static int open_descriptor(OutFile *file)
-{
-    struct stat status;
-    if (stat(file->path, &status) != 0) {
-        int descriptor = open_temporary(file);
-        if (descriptor >= 0 || errno != ENOENT || !make_folders(file->path)) return descriptor;
-        return open_temporary(file);
-    }
-    if (S_ISDIR(status.st_mode)) {
-        errno = EISDIR;
-        return -1;
-    }
-    if (!S_ISREG(status.st_mode)) return open(file->path, O_WRONLY | O_CLOEXEC);
+    Place *place = &file->place;
+    int link = place->is_alias ? 0 : O_NOFOLLOW;
+    if (place->is_alias || (place->exists && !S_ISREG(place->file.st_mode)))
+        return openat(place->folder, place->name, O_WRONLY | O_CLOEXEC | link);
     // A rename would pass over a file that its owner has made read-only.
-    return access(file->path, W_OK) == 0 ? open_temporary(file) : -1;
+    if (place->exists && faccessat(place->folder, place->name, W_OK, 0) != 0) return -1;
+    int reason = place_make(place, folders);
+    if (!reason) return create_temporary(file);
+    errno = reason;
+    return -1;
 }
 
-Result outfile_open(OutFile *file, const char *path, Error *error)
+static Result open_new(OutFile *file, const char *path, mode_t folders, Error *error)
 {
-    *file = (OutFile){0};
-    file->path = resolve_name(path);
-    if (!file->path) return fail_to_write(path, ENOMEM, error);
     bool to_stdout = outfile_is_stdout(path);
+    *file = (OutFile){.path = strdup(path)};
+    if (!file->path) return fail_to_write(path, ENOMEM, error);
+    Result result = to_stdout ? RESULT_OK : find_place(&file->place, path, error);
+    if (result != RESULT_OK) {
+        outfile_discard(file);
+        return result;
+    }
     if (to_stdout) fflush(stdout);
-    int descriptor = to_stdout ? fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0) : open_descriptor(file);
+    int descriptor =
+        to_stdout ? fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0) : open_descriptor(file, folders);
     int reason = errno;
     if (descriptor >= 0) {
         file->stream = fdopen(descriptor, "wb");
@@ -129,8 +136,46 @@ Result outfile_open(OutFile *file, const char *path, Error *error)
         if (!file->stream) close(descriptor);
     }
     if (file->stream) return RESULT_OK;
+    place_unmake(&file->place);
     outfile_discard(file);
     return fail_to_write(path, reason, error);
+}
+
+Result outfile_open(OutFile *file, const char *path, Error *error)
+{
+    Claim *claim = claims_find(path);
+    if (!claim || !claim->started) return open_new(file, path, 0777, error);
+    OutFile *started = claim->started;
+    claim->started = NULL;
+    *file = *started;
+    free(started);
+    return RESULT_OK;
+}
+
+Result outfile_open_private(OutFile *file, const char *path, Error *error)
+{
+    return open_new(file, path, 0700, error);
+}
+
+Result outfile_try(const char *path, Error *error)
+{
+    OutFile probe;
+    const Claim *claim = claims_find(path);
+    if (claim && claim->started) return RESULT_OK;
+    TRY(outfile_open(&probe, path, error));
+    outfile_discard(&probe);
+    return RESULT_OK;
+}
+
+int outfile_try_folder(const Place *place)
+{
+    OutFile probe = {0};
+    int reason = place_copy(&probe.place, place, "");
+    int descriptor = reason ? -1 : create_temporary(&probe);
+    if (!reason && descriptor < 0) reason = errno;
+    if (descriptor >= 0) close(descriptor);
+    outfile_discard(&probe);
+    return reason;
 }
 
 // The stream remembers that a write failed but not why. The file is lost, so one more byte may ask
@@ -161,13 +206,32 @@ Result outfile_sync(OutFile *file, Error *error)
     return reason ? fail_to_write(file->path, reason, error) : RESULT_OK;
 }
 
+// Gives the file its final name; what that names by now is looked at once more. 0 or an errno, or
+// -1 with the error set.
+static int rename_temporary(OutFile *file, const struct stat *written, Error *error)
+{
+    const Place *place = &file->place;
+    struct stat now;
+    if (fstatat(place->folder, place->name, &now, AT_SYMLINK_NOFOLLOW) == 0 &&
+        check_identity(file->path, &now, error) != RESULT_OK)
+        return -1;
+    if (renameat(place->folder, file->temporary, place->folder, place->name) != 0) return errno;
+    claims_note_output(file->path, written);
+    return 0;
+}
+
 Result outfile_commit(OutFile *file, Error *error)
 {
+    struct stat written;
     int reason = find_sync_error(file);
+    if (reason == 0 && file->temporary && fstat(fileno(file->stream), &written) != 0)
+        reason = errno;
     if (fclose(file->stream) != 0 && reason == 0) reason = errno;
     file->stream = NULL;
-    if (reason == 0 && file->temporary && rename(file->temporary, file->path) != 0) reason = errno;
-    Result result = reason ? fail_to_write(file->path, reason, error) : RESULT_OK;
+    if (reason == 0 && file->temporary) reason = rename_temporary(file, &written, error);
+    Result result = reason < 0 ? RESULT_USAGE
+                    : reason   ? fail_to_write(file->path, reason, error)
+                               : RESULT_OK;
     if (!reason) {
         free(file->temporary);
         file->temporary = NULL;
@@ -179,15 +243,147 @@ Result outfile_commit(OutFile *file, Error *error)
 void outfile_discard(OutFile *file)
 {
     if (file->stream) fclose(file->stream);
-    if (file->temporary) unlink(file->temporary);
+    if (file->temporary) unlinkat(file->place.folder, file->temporary, 0);
     leftover_forget(file->leftover);
+    place_close(&file->place);
     free(file->temporary);
     free(file->path);
     *file = (OutFile){0};
 }
 
-void outfile_scratch_name(char path[PATH_MAX], const char *name)
+Result outfile_start(Claim *claim, Error *error)
+{
+    OutFile *file = malloc(sizeof *file);
+    if (!file) return fail_to_write(claim->before, ENOMEM, error);
+    Result result = open_new(file, claim->before, 0777, error);
+    if (result == RESULT_OK && file->temporary)
+        claim->started = file;
+    else
+        free(file);
+    return result;
+}
+
+void outfile_end(void)
+{
+    for (Claim *claim = claims_next(NULL); claim; claim = claims_next(claim)) {
+        OutFile *file = claim->started;
+        if (!file) continue;
+        unlinkat(file->place.folder, file->temporary, 0);
+        place_unmake(&file->place);
+        outfile_discard(file);
+        free(file);
+        claim->started = NULL;
+    }
+    claims_end();
+}
+
+// --- Files that are not replaced as a whole.
+
+static Result open_as_it_is(int *descriptor, const char *path, int flags, Error *error)
+{
+    Place place;
+    struct stat file;
+    *descriptor = -1;
+    TRY(find_place(&place, path, error));
+    int link = place.is_alias ? 0 : O_NOFOLLOW, reason = place_make(&place, 0777);
+    if (!reason) {
+        *descriptor = openat(place.folder, place.name, flags | O_CREAT | O_CLOEXEC | link, 0666);
+        if (*descriptor < 0 || fstat(*descriptor, &file) != 0) reason = errno;
+    }
+    place_close(&place);
+    Result result =
+        reason ? fail_to_write(path, reason, error) : check_identity(path, &file, error);
+    if (result == RESULT_OK) {
+        claims_note_output(path, &file);
+        return result;
+    }
+    if (*descriptor >= 0) close(*descriptor);
+    *descriptor = -1;
+    return result;
+}
+
+Result outfile_open_kept(int *descriptor, const char *path, Error *error)
+{
+    return open_as_it_is(descriptor, path, O_RDWR, error);
+}
+
+// Writes all; signals may interrupt.
+static bool write_all(int descriptor, const char *text, size_t size)
+{
+    while (size) {
+        ssize_t written = write(descriptor, text, size);
+        if (written < 0 && errno != EINTR) return false;
+        if (written > 0) text += written, size -= (size_t)written;
+    }
+    return true;
+}
+
+Result outfile_append(const char *path, const char *text, Error *error)
+{
+    int descriptor;
+    TRY(open_as_it_is(&descriptor, path, O_WRONLY | O_APPEND, error));
+    int reason = write_all(descriptor, text, strlen(text)) ? 0 : errno;
+    if (close(descriptor) != 0 && !reason) reason = errno;
+    return reason ? fail_to_write(path, reason, error) : RESULT_OK;
+}
+
+Result outfile_remove(const char *path, Error *error)
+{
+    Place place;
+    const Claim *claim = claims_find(path);
+    int reason = claim && !claim->whole_folder
+                     ? place_copy(&place, &claim->place, claim->place.name)
+                     : place_find(&place, path);
+    if (!reason) {
+        bool gone = *place.missing || unlinkat(place.folder, place.name, 0) == 0;
+        reason = gone || errno == ENOENT ? 0 : errno;
+        place_close(&place);
+    }
+    if (!reason) return RESULT_OK;
+    return error_set(error, RESULT_FAILED, "%s: cannot remove it: %s", path, strerror(reason));
+}
+
+static void name_scratch(char path[PATH_MAX], const char *name)
 {
     const char *folder = getenv("TMPDIR");
     snprintf(path, PATH_MAX, "%s/%s-XXXXXX", folder && *folder ? folder : "/tmp", name);
+}
+
+FILE *outfile_open_scratch(void)
+{
+    char path[PATH_MAX];
+    name_scratch(path, "tractrix");
+    int file = mkstemp(path);
+    if (file < 0) return NULL;
+    unlink(path);
+    FILE *stream = fdopen(file, "w+");
+    if (!stream) close(file);
+    return stream;
+}
+
+Result outfile_make_scratch(char path[PATH_MAX], const char *name, Error *error)
+{
+    name_scratch(path, name);
+    int file = mkstemp(path);
+    if (file < 0) return error_set(error, RESULT_FAILED, "%s: %s", path, strerror(errno));
+    close(file);
+    return RESULT_OK;
+}
+
+Result outfile_make_scratch_folder(char path[PATH_MAX], const char *name, Error *error)
+{
+    name_scratch(path, name);
+    if (mkdtemp(path)) return RESULT_OK;
+    return error_set(error, RESULT_FAILED, "%s: %s", path, strerror(errno));
+}
+
+static int remove_entry(const char *path, const struct stat *status, int kind, struct FTW *walk)
+{
+    (void)status, (void)kind, (void)walk;
+    return remove(path);
+}
+
+void outfile_remove_scratch_folder(const char *path)
+{
+    nftw(path, remove_entry, 16, FTW_DEPTH | FTW_PHYS);
 }

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "base/paths.h"
 
+#include "base/outfile.h"
+#include "base/place.h"
 #include "base/target.h"
 
+#include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,72 +15,89 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-// Where a file is: the deepest folder that exists, and the path below it.
-typedef struct Place {
+// A use, looked at.
+typedef struct Spot {
     bool used, exists, numbered;
-    int closed;               // why no file can be made in `folder`; 0 if one can
-    struct stat file, folder; // `file` if it exists
-    char *full;               // owned; the path, links followed if it exists
-    const char *rest;         // of a numbered one up to the number
-    char *after;              // owned; of a numbered one, behind the number
-} Place;
+    struct stat file, folder; // `file` if it exists, links followed
+    Place place;              // links followed but for numbered ones and folders
+    char *rest;               // owned; the path below `folder`, of a numbered one up to the number
+    char *after;              // owned; of a numbered one: behind the number
+} Spot;
 
-static void destroy_place(Place *place)
+static bool is_written(PathRole role)
 {
-    free(place->full);
-    free(place->after);
+    return role != PATH_READ && role != PATH_UPDATED;
 }
 
-// Whether `name` is there; then sets folder and why it takes no files.
-static bool look_at_folder(Place *place, const char *name)
+static void destroy_spot(Spot *spot)
 {
-    if (stat(name, &place->folder) != 0) return false;
-    if (access(name, W_OK | X_OK) != 0) place->closed = errno;
-    if (!S_ISDIR(place->folder.st_mode)) place->closed = ENOTDIR;
-    return true;
+    place_close(&spot->place);
+    free(spot->rest);
+    free(spot->after);
 }
 
-// Sets folder and rest of `full`.
-static bool find_folder(Place *place)
+// Numbered ones have `before` and `after`.
+static void parse(Target *target, const PathUse *use, bool exists)
 {
-    char *full = place->full;
-    for (char *slash = strrchr(full, '/'); slash;
-         slash = memrchr(full, '/', (size_t)(slash - full))) {
-        *slash = 0;
-        bool there = look_at_folder(place, *full ? full : "/");
-        *slash = '/';
-        place->rest = slash + 1;
-        if (there) return true;
+    bool known = use->role == PATH_TARGET && target_parse(target, use->path, NULL) == RESULT_OK;
+    bool pattern = use->role == PATH_TARGET || (!is_written(use->role) && !exists);
+    if (!known && pattern && strchr(use->path, '%')) target_parse_any(target, use->path, NULL);
+}
+
+// A path of a folder or file without slashes at its end, to be freed.
+static char *strip(const char *path)
+{
+    size_t length = strlen(path);
+    while (length > 1 && path[length - 1] == '/') --length;
+    return strndup(path, length);
+}
+
+// Sets place and rest. 0 or an errno.
+static int find_place(Spot *spot, const char *path, bool follow)
+{
+    int reason = place_find(&spot->place, path);
+    if (!reason && !spot->numbered) reason = place_look(&spot->place, follow);
+    // What is no file's name ("..") is for the reader or writer to refuse.
+    if (reason && (reason != EISDIR || !spot->place.missing)) return reason;
+    if (spot->place.exists &&
+        !spot->place.is_link) { // also where ".." behind a missing folder leads
+        spot->exists = true;
+        spot->file = spot->place.file;
     }
-    place->rest = full;
-    return look_at_folder(place, ".");
+    if (fstat(spot->place.folder, &spot->folder) != 0) return errno;
+    if (asprintf(&spot->rest, "%s%s", spot->place.missing, spot->place.name) < 0) spot->rest = NULL;
+    return spot->rest ? 0 : ENOMEM;
 }
 
-// False with errno.
-static bool find_place(Place *place, const PathUse *use)
+// 0 or an errno.
+static int look(Spot *spot, const PathUse *use)
 {
     Target target = {0};
-    errno = 0;
-    *place = (Place){.used = use->path && *use->path && strcmp(use->path, "-") != 0};
-    if (!place->used) return true;
-    bool file = stat(use->path, &place->file) == 0;
-    bool pattern = !file && strchr(use->path, '%');
-    if (use->role == PATH_WRITTEN ? target_parse(&target, use->path, NULL) != RESULT_OK : pattern)
-        target_parse_any(&target, use->path, NULL);
-    place->numbered = target.before && target.kind == TARGET_FRAMES;
-    place->exists = !place->numbered && file;
-    if (place->exists) place->full = realpath(use->path, NULL);
-    if (!place->full) place->full = strdup(place->numbered ? target.before : use->path);
-    if (place->numbered) place->after = strdup(target.after);
+    *spot = (Spot){.place = {.folder = -1}};
+    spot->used = use->path && *use->path && strcmp(use->path, "-") != 0;
+    if (!spot->used) return 0;
+    bool exists = stat(use->path, &spot->file) == 0;
+    parse(&target, use, exists);
+    spot->numbered = target.before && target.kind == TARGET_FRAMES;
+    spot->exists = exists && !spot->numbered;
+    bool plain = !is_written(use->role) || use->role == PATH_FOLDER;
+    char *path = spot->numbered ? strdup(target.before)
+                 : plain        ? strip(use->path)
+                                : strdup(use->path);
+    if (spot->numbered) spot->after = strdup(target.after);
+    bool room = path && (!spot->numbered || spot->after);
+    int reason = room ? find_place(spot, path, !use->home && use->role != PATH_FOLDER) : ENOMEM;
+    // Whether an input can be reached is for its reader to say.
+    if (reason && reason != ENOMEM && !is_written(use->role)) {
+        spot->used = spot->exists;
+        reason = 0;
+    }
+    free(path);
     target_destroy(&target);
-    if (!place->full || (place->numbered && !place->after)) errno = ENOMEM;
-    return errno != ENOMEM && find_folder(place);
+    return reason;
 }
 
-static bool is_same(const struct stat *a, const struct stat *b)
-{
-    return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
-}
+// --- What is one file.
 
 // Whether `name` is `before`, digits, `after`.
 static bool is_numbered(const char *name, const char *before, const char *after)
@@ -88,7 +109,7 @@ static bool is_numbered(const char *name, const char *before, const char *after)
 }
 
 // Whether a file may belong to both patterns.
-static bool patterns_meet(const Place *a, const Place *b)
+static bool patterns_meet(const Spot *a, const Spot *b)
 {
     size_t length = strlen(a->rest);
     if (length > strlen(b->rest)) return patterns_meet(b, a);
@@ -96,18 +117,24 @@ static bool patterns_meet(const Place *a, const Place *b)
            strspn(b->rest + length, "0123456789") == strlen(b->rest) - length;
 }
 
-// Whether `folder` is one that is read, and the files of `place` go into it.
-static bool goes_into(const Place *place, const Place *folder)
+static bool is_folder(const Spot *spot)
 {
-    return folder->exists && S_ISDIR(folder->file.st_mode) && place->numbered &&
-           is_same(&place->folder, &folder->file);
+    return spot->exists && S_ISDIR(spot->file.st_mode);
 }
 
-static bool are_one(const Place *a, const Place *b)
+// Whether `folder` is one, and the file or files of `spot` lie in it.
+static bool lies_in(const Spot *spot, const Spot *folder)
 {
-    if (goes_into(a, b) || goes_into(b, a)) return true;
-    if (a->exists && b->exists) return S_ISREG(a->file.st_mode) && is_same(&a->file, &b->file);
-    if (!is_same(&a->folder, &b->folder)) return false;
+    return is_folder(folder) && spot->rest && !strchr(spot->rest, '/') &&
+           place_is_same(&spot->folder, &folder->file);
+}
+
+static bool are_one(const Spot *a, const Spot *b)
+{
+    if ((a->numbered && lies_in(a, b)) || (b->numbered && lies_in(b, a))) return true;
+    if (a->exists && b->exists && place_is_same(&a->file, &b->file))
+        return S_ISREG(a->file.st_mode) || S_ISDIR(a->file.st_mode);
+    if (!a->rest || !b->rest || !place_is_same(&a->folder, &b->folder)) return false;
     if (a->numbered && b->numbered) return patterns_meet(a, b);
     if (a->numbered) return is_numbered(b->rest, a->rest, a->after);
     if (b->numbered) return is_numbered(a->rest, b->rest, b->after);
@@ -117,7 +144,7 @@ static bool are_one(const Place *a, const Place *b)
 
 static Result compare(const PathUse *use, const PathUse *other, Error *error)
 {
-    if (other->role == PATH_WRITTEN)
+    if (is_written(other->role))
         return error_set(error, RESULT_USAGE,
                          "%s %.300s and %s %.300s would write the same file: "
                          "expected two names",
@@ -127,40 +154,218 @@ static Result compare(const PathUse *use, const PathUse *other, Error *error)
                      use->path, other->name, other->path);
 }
 
-// What can be told before anything is read; a file that is there may still be one's own in a folder
-// that isn't, if it is written as it is (a device, a pipe).
-static Result check_open(const Place *place, const PathUse *use, Error *error)
+// All uses.
+typedef struct Uses {
+    const PathUse *uses;
+    Spot *spots;
+    int count;
+} Uses;
+
+// Compares a file or a pattern that use `i` writes with all other uses.
+static Result compare_all(const Uses *all, int i, const Spot *spot, bool once, Error *error)
 {
-    bool replaced = !place->exists || S_ISREG(place->file.st_mode);
-    int reason = replaced ? place->closed : 0;
-    if (place->exists && S_ISREG(place->file.st_mode) && access(use->path, W_OK) != 0)
-        reason = errno;
-    if (!place->used || use->role != PATH_WRITTEN || !reason) return RESULT_OK;
+    const PathUse *uses = all->uses;
+    for (int k = 0; k < all->count; ++k) {
+        const Spot *other = &all->spots[k];
+        bool wanted = !once || k > i || !is_written(uses[k].role); // each pair of outputs once
+        if (k != i && wanted && other->used && are_one(spot, other))
+            return compare(&uses[i], &uses[k], error);
+    }
+    return RESULT_OK;
+}
+
+// --- One output.
+
+static Result fail(const PathUse *use, int reason, Error *error)
+{
     return error_set(error, RESULT_FAILED, "%s %.300s: cannot write: %s", use->name, use->path,
                      strerror(reason));
 }
 
+// An output that a scene file names.
+static Result check_home(const Spot *spot, const PathUse *use, struct stat *home, Error *error)
+{
+    Place place;
+    int reason = place_find(&place, use->home);
+    if (!reason && fstat(place.folder, home) != 0) reason = errno;
+    place_close(&place);
+    if (reason) return fail(use, reason, error);
+    if (!place_is_within(&spot->place, home))
+        return error_set(error, RESULT_BAD_INPUT,
+                         "%.300s: %s %.300s is outside the scene file's folder: expected "
+                         "--allow-paths, or the path on the command line",
+                         use->home, use->name, use->path);
+    if (!spot->place.is_link) return RESULT_OK;
+    return error_set(error, RESULT_BAD_INPUT,
+                     "%.300s: %s %.300s is a link, which outputs of a scene file do not follow: "
+                     "expected --allow-paths, or the path on the command line",
+                     use->home, use->name, use->path);
+}
+
+// A file of a numbered output that is there and is a link.
+static Result check_link(const Uses *all, int i, const char *name, Error *error)
+{
+    const PathUse *use = &all->uses[i];
+    const Place *folder = &all->spots[i].place;
+    Spot spot = {.used = true, .place = {.folder = -1}};
+    if (use->home)
+        return error_set(
+            error, RESULT_BAD_INPUT,
+            "%.300s: %s %.300s: %.200s is a link, which outputs of a scene file do not "
+            "follow: expected --allow-paths, or the path on the command line",
+            use->home, use->name, use->path, name);
+    int reason = place_copy(&spot.place, folder, name);
+    if (!reason) reason = place_look(&spot.place, true);
+    if (!reason && fstat(spot.place.folder, &spot.folder) != 0) reason = errno;
+    spot.exists = spot.place.exists;
+    spot.file = spot.place.file;
+    if (!reason && asprintf(&spot.rest, "%s%s", spot.place.missing, spot.place.name) < 0) {
+        spot.rest = NULL;
+        reason = ENOMEM;
+    }
+    Result result = reason ? fail(use, reason, error) : compare_all(all, i, &spot, false, error);
+    destroy_spot(&spot);
+    return result;
+}
+
+static Result check_links(const Uses *all, int i, Error *error)
+{
+    const Spot *spot = &all->spots[i];
+    if (!spot->numbered || *spot->place.missing) return RESULT_OK;
+    int folder = openat(spot->place.folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    DIR *directory = folder < 0 ? NULL : fdopendir(folder);
+    if (!directory) { // one may write into a folder without looking into it
+        if (folder >= 0) close(folder);
+        return RESULT_OK;
+    }
+    Result result = RESULT_OK;
+    struct stat file;
+    for (const struct dirent *entry; result == RESULT_OK && (entry = readdir(directory));)
+        if (is_numbered(entry->d_name, spot->place.name, spot->after) &&
+            fstatat(folder, entry->d_name, &file, AT_SYMLINK_NOFOLLOW) == 0 &&
+            S_ISLNK(file.st_mode))
+            result = check_link(all, i, entry->d_name, error);
+    closedir(directory);
+    return result;
+}
+
+// What can be told before anything is read; a file that is there may still be one's own in a folder
+// that isn't, if it is written as it is (a device, a pipe).
+static Result check_open(const Spot *spot, const PathUse *use, Error *error)
+{
+    const Place *place = &spot->place;
+    bool plain = spot->exists && S_ISREG(spot->file.st_mode);
+    int reason = 0;
+    if (spot->exists && S_ISDIR(spot->file.st_mode) && use->role != PATH_FOLDER) reason = EISDIR;
+    if ((!spot->exists || (plain && use->role != PATH_KEPT)) &&
+        faccessat(place->folder, ".", W_OK | X_OK, 0) != 0)
+        reason = errno;
+    if (plain && faccessat(place->folder, place->name, W_OK, 0) != 0) reason = errno;
+    return reason ? fail(use, reason, error) : RESULT_OK;
+}
+
+static Result check_all(const Uses *all, Error *error)
+{
+    Result result = RESULT_OK;
+    for (int i = 0; i < all->count && result == RESULT_OK; ++i) {
+        int reason = look(&all->spots[i], &all->uses[i]);
+        if (reason) result = fail(&all->uses[i], reason, error);
+    }
+    for (int i = 0; i < all->count && result == RESULT_OK; ++i) {
+        struct stat home;
+        if (all->spots[i].used && all->uses[i].home)
+            result = check_home(&all->spots[i], &all->uses[i], &home, error);
+    }
+    for (int i = 0; i < all->count && result == RESULT_OK; ++i) {
+        if (!all->spots[i].used || !is_written(all->uses[i].role)) continue;
+        result = compare_all(all, i, &all->spots[i], true, error);
+        THEN(result, check_links(all, i, error));
+    }
+    for (int i = 0; i < all->count && result == RESULT_OK; ++i)
+        if (all->spots[i].used && is_written(all->uses[i].role))
+            result = check_open(&all->spots[i], &all->uses[i], error);
+    return result;
+}
+
+// --- Claims.
+
+// Makes the folder and tries that a file can be made there.
+static Result try_folder(Claim *claim, const PathUse *use, Error *error)
+{
+    int reason = place_make(&claim->place, 0777);
+    if (!reason) reason = outfile_try_folder(&claim->place);
+    return reason ? fail(use, reason, error) : RESULT_OK;
+}
+
+// Sets the path of the claim and the place of its folder. 0 or an errno.
+static int find_claim(Claim *claim, const Spot *spot, const PathUse *use)
+{
+    Target target = {0};
+    char *path = strip(use->path);
+    claim->whole_folder =
+        use->role == PATH_FOLDER || (use->role == PATH_UPDATED && is_folder(spot));
+    parse(&target, use, spot->exists);
+    if (claim->whole_folder && path)
+        claim->before = strcmp(path, "/") == 0 ? strdup(path) : NULL;
+    else
+        claim->before = strdup(spot->numbered ? target.before : use->path);
+    if (claim->whole_folder && path && !claim->before && asprintf(&claim->before, "%s/", path) < 0)
+        claim->before = NULL;
+    if (spot->numbered) claim->after = strdup(target.after);
+    target_destroy(&target);
+    free(path);
+    bool room = claim->before && (!spot->numbered || claim->after);
+    return room ? place_find(&claim->place, claim->before) : ENOMEM;
+}
+
+static Result claim_one(const Spot *spot, const PathUse *use, Error *error)
+{
+    Claim claim = {.name = use->name, .confined = use->home, .place = {.folder = -1}};
+    if (use->home) TRY(check_home(spot, use, &claim.home, error));
+    int reason = find_claim(&claim, spot, use);
+    Claim *kept = reason ? NULL : claims_add(&claim);
+    if (!kept) {
+        place_close(&claim.place);
+        free(claim.before);
+        free(claim.after);
+        return fail(use, reason ? reason : ENOMEM, error);
+    }
+    if (use->role == PATH_UPDATED || use->role == PATH_KEPT) return RESULT_OK;
+    if (spot->numbered || use->role == PATH_FOLDER) return try_folder(kept, use, error);
+    Result result = outfile_start(kept, error);
+    return result == RESULT_OK ? result : error_prefix(error, result, "%s ", use->name);
+}
+
+static Result claim_all(const Uses *all, Error *error)
+{
+    Result result = RESULT_OK;
+    for (int i = 0; i < all->count && result == RESULT_OK; ++i)
+        if (all->spots[i].used && all->uses[i].role != PATH_READ)
+            result = claim_one(&all->spots[i], &all->uses[i], error);
+    for (int i = 0; i < all->count && result == RESULT_OK; ++i)
+        if (all->spots[i].exists && all->uses[i].role == PATH_READ)
+            claims_note_input(all->uses[i].path, &all->spots[i].file);
+    return result;
+}
+
+static Result check(const PathUse *uses, int count, bool claims, Error *error)
+{
+    Uses all = {uses, calloc((size_t)count + 1, sizeof *all.spots), count};
+    if (!all.spots) return error_set(error, RESULT_FAILED, "no memory for paths");
+    for (int i = 0; i < count; ++i) all.spots[i].place.folder = -1;
+    Result result = check_all(&all, error);
+    if (claims) THEN(result, claim_all(&all, error));
+    for (int i = 0; i < count; ++i) destroy_spot(&all.spots[i]);
+    free(all.spots);
+    return result;
+}
+
 Result paths_check(const PathUse *uses, int count, Error *error)
 {
-    Place *places = calloc((size_t)count + 1, sizeof *places);
-    bool found = places != NULL;
-    Result result = found ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for paths");
-    for (int i = 0; i < count && found; ++i) {
-        found = find_place(&places[i], &uses[i]);
-        if (!found)
-            result = error_set(error, RESULT_FAILED, "%s %.300s: cannot look at its folder: %s",
-                               uses[i].name, uses[i].path, strerror(errno));
-    }
-    for (int i = 0; i < count && found; ++i)
-        for (int k = 0; k < count && uses[i].role == PATH_WRITTEN; ++k) {
-            bool once = k > i || uses[k].role == PATH_READ; // each pair of outputs once
-            if (result == RESULT_OK && once && i != k && places[i].used && places[k].used &&
-                are_one(&places[i], &places[k]))
-                result = compare(&uses[i], &uses[k], error);
-        }
-    for (int i = 0; i < count && result == RESULT_OK; ++i)
-        result = check_open(&places[i], &uses[i], error);
-    for (int i = 0; i < count && places; ++i) destroy_place(&places[i]);
-    free(places);
-    return result;
+    return check(uses, count, false, error);
+}
+
+Result paths_claim(const PathUse *uses, int count, Error *error)
+{
+    return check(uses, count, true, error);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "base/program.h"
+#include "base/outfile.h"
 
 #include <errno.h>
 #include <poll.h>
@@ -17,6 +18,7 @@ static bool reader_left(void)
 
 int program_end(const char *name, Result result, Error *error)
 {
+    outfile_end();
     bool reported = result != RESULT_OK && error->text[0];
     errno = 0;
     bool lost = fflush(stdout) != 0 || ferror(stdout);

@@ -219,10 +219,8 @@ Result target_prepare(const Target *target, Error *error)
 {
     char *name = target_name_frame(target, 0);
     if (!name) return fail_memory(error);
-    OutFile probe = {0};
     Result result = outfile_refuse_terminal(name, error);
-    THEN(result, outfile_open(&probe, name, error));
-    outfile_discard(&probe);
+    THEN(result, outfile_try(name, error));
     free(name);
     return result;
 }

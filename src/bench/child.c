@@ -53,13 +53,12 @@ Result child_run(const ChildRun *run, json_t **row, double *wall_ms, Error *erro
     char *words[MOST_WORDS + 1] = {"tractrix-bench", "speed"},
                              *settings = strdup(run->method->settings);
     int count = 2;
-    outfile_scratch_name(path, "tractrix-bench");
-    int temporary = mkstemp(path);
     *row = NULL;
-    if (temporary >= 0) close(temporary);
-    if (!settings || temporary < 0) {
+    Result result = settings ? outfile_make_scratch(path, "tractrix-bench", error)
+                             : error_set(error, RESULT_FAILED, "no memory for settings");
+    if (result != RESULT_OK) {
         free(settings);
-        return error_set(error, RESULT_FAILED, "%s: %s", path, strerror(errno));
+        return result;
     }
     snprintf(steps, sizeof steps, "%d", run->steps);
     snprintf(warm_up, sizeof warm_up, "%d", run->warm_up);
@@ -82,12 +81,12 @@ Result child_run(const ChildRun *run, json_t **row, double *wall_ms, Error *erro
     for (char *word = strtok_r(settings, " ", &rest); word && count < MOST_WORDS;
          word = strtok_r(NULL, " ", &rest))
         words[count++] = word;
-    Result result = execute(words, run, wall_ms, error);
+    result = execute(words, run, wall_ms, error);
     json_t *rows = NULL;
     THEN(result, json_load(&rows, path, error));
     *row = json_incref(json_array_get(rows, 0));
     json_decref(rows);
-    unlink(path);
+    outfile_remove(path, NULL);
     free(settings);
     if (!*row) THEN(result, error_set(error, RESULT_FAILED, "a measuring process left no row"));
     return result;

@@ -380,22 +380,22 @@ enum { COMMAND_COUNT = sizeof COMMANDS / sizeof *COMMANDS };
 // No output may be a file that is read, or another output.
 static Result check_paths(const BenchOptions *options, Error *error)
 {
-    const PathUse own[] = {{"--csv", options->output.csv, PATH_WRITTEN},
-                           {"--json", options->output.json, PATH_WRITTEN},
-                           {"--html", options->output.html, PATH_WRITTEN},
-                           {"--picture", options->picture, PATH_WRITTEN},
-                           {"--tfx", options->tfx, PATH_READ},
-                           {"--mesh", options->mesh, PATH_READ},
-                           {"--vectors", options->vectors, PATH_READ},
-                           {"--reference", options->reference, PATH_READ},
-                           {"--before", options->before, PATH_READ}};
+    const PathUse own[] = {{"--csv", options->output.csv, PATH_WRITTEN, NULL},
+                           {"--json", options->output.json, PATH_WRITTEN, NULL},
+                           {"--html", options->output.html, PATH_WRITTEN, NULL},
+                           {"--picture", options->picture, PATH_WRITTEN, NULL},
+                           {"--tfx", options->tfx, PATH_READ, NULL},
+                           {"--mesh", options->mesh, PATH_READ, NULL},
+                           {"--vectors", options->vectors, PATH_READ, NULL},
+                           {"--reference", options->reference, PATH_READ, NULL},
+                           {"--before", options->before, PATH_READ, NULL}};
     enum { OWN = sizeof own / sizeof *own };
     PathUse *uses = malloc((OWN + (size_t)options->file_count) * sizeof *uses);
     if (!uses) return error_set(error, RESULT_FAILED, "no memory for paths");
     memcpy(uses, own, sizeof own);
     for (int i = 0; i < options->file_count; ++i)
-        uses[OWN + i] = (PathUse){"the file", options->files[i], PATH_READ};
-    Result result = paths_check(uses, OWN + options->file_count, error);
+        uses[OWN + i] = (PathUse){"the file", options->files[i], PATH_READ, NULL};
+    Result result = paths_claim(uses, OWN + options->file_count, error);
     free(uses);
     return result;
 }

@@ -12,7 +12,6 @@
 #include "strands/paint.h"
 #include "strands/strands_read.h"
 
-#include <ftw.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -503,19 +502,12 @@ static Result run_threads(Speed *speed, Error *error)
     return RESULT_OK;
 }
 
-static int remove_entry(const char *path, const struct stat *status, int kind, struct FTW *walk)
-{
-    (void)status, (void)kind, (void)walk;
-    return remove(path);
-}
-
 static Result run_start(Speed *speed, Error *error)
 {
     for (int m = 0; m < speed->method_count; ++m) {
         char cache[PATH_MAX];
         Result result = RESULT_OK;
-        outfile_scratch_name(cache, "tractrix-cache");
-        if (!mkdtemp(cache)) return error_set(error, RESULT_FAILED, "%s: cannot be made", cache);
+        TRY(outfile_make_scratch_folder(cache, "tractrix-cache", error));
         for (int warm = 0; warm < 2 && result == RESULT_OK; ++warm) {
             Row row = child_row(speed, "start", "1k16", m);
             result =
@@ -524,7 +516,7 @@ static Result run_start(Speed *speed, Error *error)
             row.remark = warm ? "warm" : "cold";
             if (result == RESULT_OK) add_row(speed, &row);
         }
-        nftw(cache, remove_entry, 16, FTW_DEPTH | FTW_PHYS);
+        outfile_remove_scratch_folder(cache);
         TRY(result);
     }
     return RESULT_OK;

@@ -2,9 +2,9 @@
 // The forms: https://docs.github.com/en/actions/reference/workflow-commands-for-github-actions
 #include "compare/github.h"
 
+#include "base/outfile.h"
 #include "compare/ci_path.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -129,12 +129,14 @@ Result github_append_summary(const PairList *list, const Verdict *verdicts,
 {
     const char *path = getenv("GITHUB_STEP_SUMMARY");
     if (!path || !*path) return RESULT_OK;
-    FILE *stream = fopen(path, "a");
-    if (!stream)
-        return error_set(error, RESULT_FAILED, "%s: cannot write: %s", path, strerror(errno));
+    char *text = NULL;
+    size_t size;
+    FILE *stream = open_memstream(&text, &size);
+    if (!stream) return error_set(error, RESULT_FAILED, "%s: no memory for the summary", path);
     put_summary(stream, list, verdicts, limits);
-    bool bad = ferror(stream);
-    if (fclose(stream) != 0 || bad)
-        return error_set(error, RESULT_FAILED, "%s: cannot write: %s", path, strerror(errno));
-    return RESULT_OK;
+    bool whole = fclose(stream) == 0;
+    Result result = whole ? outfile_append(path, text, error)
+                          : error_set(error, RESULT_FAILED, "%s: no memory for the summary", path);
+    free(text);
+    return result;
 }

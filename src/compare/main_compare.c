@@ -169,21 +169,40 @@ static Result check_reports(const Command *command, Error *error)
                      count_to_stdout(command));
 }
 
-// What is written is neither compared nor written twice. --update may write A.
-static Result check_paths(const Command *command, Error *error)
+// What is written is neither compared nor written twice: reports beside every image that is read.
+// --update may write A. A folder or pattern takes a drawing for each of its pairs.
+static Result claim_paths(const Command *command, const PairList *list, Error *error)
 {
-    const PathUse uses[] = {
-        {"A", command->a, PATH_READ},
-        {"B", command->b, PATH_READ},
-        {"--mask", command->mask, PATH_READ},
-        {"--unrendered", command->unrendered, PATH_READ},
-        {"--heatmap", command->heat_map, PATH_WRITTEN},
-        {"--sheet", command->sheet, PATH_WRITTEN},
-        {"--html", command->html, PATH_WRITTEN},
-        {"--json", command->json, PATH_WRITTEN},
-        {"--junit", command->junit, PATH_WRITTEN},
+    PathRole drawings = list->many ? PATH_FOLDER : PATH_WRITTEN;
+    PathRole references = command->update ? PATH_UPDATED : PATH_READ;
+    const char *summary = command->github ? getenv("GITHUB_STEP_SUMMARY") : NULL;
+    const PathUse own[] = {
+        {"A", command->a, references, NULL},
+        {"B", command->b, PATH_READ, NULL},
+        {"--mask", command->mask, PATH_READ, NULL},
+        {"--unrendered", command->unrendered, PATH_READ, NULL},
+        {"--heatmap", command->heat_map, drawings, NULL},
+        {"--sheet", command->sheet, drawings, NULL},
+        {"--html", command->html, PATH_WRITTEN, NULL},
+        {"--json", command->json, PATH_WRITTEN, NULL},
+        {"--junit", command->junit, PATH_WRITTEN, NULL},
+        {"$GITHUB_STEP_SUMMARY", summary, PATH_KEPT, NULL},
     };
-    return paths_check(uses, sizeof uses / sizeof *uses, error);
+    enum { OWN = sizeof own / sizeof *own };
+    PathUse *uses = malloc((OWN + 3 * list->count) * sizeof *uses);
+    if (!uses) return error_set(error, RESULT_FAILED, "no memory for paths");
+    memcpy(uses, own, sizeof own);
+    int count = OWN;
+    for (size_t i = 0; i < list->count && list->many; ++i) {
+        const Pair *pair = &list->pairs[i];
+        if (pair->has_a && !command->update)
+            uses[count++] = (PathUse){"A's image", pair->a, PATH_READ, NULL};
+        if (pair->has_b) uses[count++] = (PathUse){"B's image", pair->b, PATH_READ, NULL};
+        if (pair->mask) uses[count++] = (PathUse){"the mask", pair->mask, PATH_READ, NULL};
+    }
+    Result result = paths_claim(uses, count, error);
+    free(uses);
+    return result;
 }
 
 static Result parse(Command *command, int argc, char **argv, bool *done, Error *error)
@@ -205,7 +224,6 @@ static Result parse(Command *command, int argc, char **argv, bool *done, Error *
         return error_set(error, RESULT_USAGE,
                          "got %d names, expected two files, folders or patterns", argc - first);
     command->a = argv[first], command->b = argv[first + 1];
-    TRY(check_paths(command, error));
     TRY(check_reports(command, error));
     return read_limits(command, error);
 }
@@ -339,21 +357,6 @@ static Result run_threads(Work *work, Error *error)
 
 // ---
 
-static Result make_folder(const char *path, Error *error)
-{
-    if (!path || mkdir(path, 0777) == 0 || errno == EEXIST) return RESULT_OK;
-    return error_set(error, RESULT_FAILED, "%s: %s", path, strerror(errno));
-}
-
-static Result make_folders(const Command *command, const PairList *list, Error *error)
-{
-    if (!list->many) return RESULT_OK;
-    TRY(make_folder(command->heat_map, error));
-    TRY(make_folder(command->sheet, error));
-    bool new_references = command->update && !strchr(command->a, '%');
-    return make_folder(new_references ? command->a : NULL, error);
-}
-
 // Reports, the closing line and the exit status. Status 3 names the first culprit on stderr as
 // well, where the other programs name theirs.
 static Result conclude(Work *work, Error *error)
@@ -397,11 +400,12 @@ static Result run(const Command *command, Error *error)
     PairList list = {0};
     Mask mask;
     PairOptions options = {command->update, command->mask, command->unrendered};
-    TRY(read_mask(&mask, command, error));
-    Result found = pairs_find(&list, command->a, command->b, &options, error);
-    if (found != RESULT_OK) {
-        mask_destroy(&mask);
-        return found;
+    TRY(pairs_find(&list, command->a, command->b, &options, error));
+    Result ready = claim_paths(command, &list, error);
+    THEN(ready, read_mask(&mask, command, error));
+    if (ready != RESULT_OK) {
+        pairs_destroy(&list);
+        return ready;
     }
     Work work = {.command = command,
                  .list = &list,
@@ -414,8 +418,7 @@ static Result run(const Command *command, Error *error)
                  .started = time(NULL),
                  .start_ms = clock_ms()};
     bool room = work.verdicts && work.ready && (work.pages || !command->html);
-    Result result =
-        room ? make_folders(command, &list, error) : error_set(error, RESULT_FAILED, "no memory");
+    Result result = room ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory");
     if (command->html) THEN(result, html_open(&work.html, command->html, error));
     THEN(result, run_threads(&work, error));
     THEN(result, conclude(&work, error));

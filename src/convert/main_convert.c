@@ -159,10 +159,10 @@ static Result check_paths(const Command *command, char **files, int count, Error
 {
     PathUse *uses = calloc((size_t)count + 2, sizeof *uses);
     if (!uses) return error_set(error, RESULT_FAILED, "no memory for %d files", count);
-    for (int i = 0; i < count; ++i) uses[i] = (PathUse){"the input", files[i], PATH_READ};
-    uses[count] = (PathUse){"-o", command->output, PATH_WRITTEN};
-    uses[count + 1] = (PathUse){"--json", command->json, PATH_WRITTEN};
-    Result result = paths_check(uses, count + 2, error);
+    for (int i = 0; i < count; ++i) uses[i] = (PathUse){"the input", files[i], PATH_READ, NULL};
+    uses[count] = (PathUse){"-o", command->output, PATH_TARGET, NULL};
+    uses[count + 1] = (PathUse){"--json", command->json, PATH_WRITTEN, NULL};
+    Result result = paths_claim(uses, count + 2, error);
     free(uses);
     return result;
 }

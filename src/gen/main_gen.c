@@ -232,9 +232,9 @@ static Result write_all(const Command *command, Error *error)
 {
     StrandsRecipe recipe = make_recipe(command);
     ScalpShape shape = command->set >= 0 ? SCALP_SPHERE : recipe.shape;
-    const PathUse uses[] = {{"-o", command->output.path, PATH_WRITTEN},
-                            {"--mesh", command->mesh, PATH_WRITTEN}};
-    TRY(paths_check(uses, 2, error));
+    const PathUse uses[] = {{"-o", command->output.path, PATH_WRITTEN, NULL},
+                            {"--mesh", command->mesh, PATH_WRITTEN, NULL}};
+    TRY(paths_claim(uses, 2, error));
     activity_start(stderr, command->output.quiet);
     activity_set("growing hair");
     if (command->output.path) TRY(write_hair(command, &recipe, error));
@@ -267,9 +267,12 @@ static Result grow_fur(int argc, char **argv, Error *error)
     bool done;
     TRY(fur_recipe_parse(&options, argc, argv, &done, error));
     if (done) return RESULT_OK;
-    const PathUse uses[] = {{"the mesh", options.mesh, PATH_READ},
-                            {"-o", options.output.path, PATH_WRITTEN}};
-    TRY(paths_check(uses, 2, error));
+    const PathUse uses[] = {{"the mesh", options.mesh, PATH_READ, NULL},
+                            {"--density", options.recipe.density, PATH_READ, NULL},
+                            {"--length-map", options.recipe.length_map, PATH_READ, NULL},
+                            {"--comb", options.recipe.comb, PATH_READ, NULL},
+                            {"-o", options.output.path, PATH_WRITTEN, NULL}};
+    TRY(paths_claim(uses, sizeof uses / sizeof *uses, error));
     activity_start(stderr, options.output.quiet);
     activity_set("growing hair");
     TRY(obj_read_mesh(&mesh, options.mesh, (float)options.unit, options.up_z, error));

@@ -9,7 +9,6 @@
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 // --- Base64 (RFC 4648, section 4).
 
@@ -107,23 +106,11 @@ static void put_page(const Report *report, const char *kind, const json_t *data)
     fputs(at, report->file.stream);
 }
 
-static FILE *open_scratch(void)
-{
-    char path[PATH_MAX];
-    outfile_scratch_name(path, "tractrix-report");
-    int file = mkstemp(path);
-    if (file < 0) return NULL;
-    unlink(path);
-    FILE *stream = fdopen(file, "w+");
-    if (!stream) close(file);
-    return stream;
-}
-
 Result report_open(Report *report, const char *path, Error *error)
 {
     *report = (Report){0};
     TRY(outfile_open(&report->file, path, error));
-    report->images = open_scratch();
+    report->images = outfile_open_scratch();
     if (report->images) return RESULT_OK;
     int reason = errno;
     report_discard(report);

@@ -2,6 +2,7 @@
 #include "run/cache.h"
 #include "base/clock.h"
 #include "base/float_planes.h"
+#include "base/outfile.h"
 #include "base/quote.h"
 #include "run/cache_scene.h"
 
@@ -104,6 +105,10 @@ static Result scan(CacheFile *cache, uint64_t at, Error *error)
 Result cache_file_matches(const char *path, bool *matches, Error *error)
 {
     char magic[sizeof CACHE_MAGIC - 1];
+    struct stat status;
+    *matches = false;
+    // What a pipe has given is gone.
+    if (stat(path, &status) == 0 && !S_ISREG(status.st_mode)) return RESULT_OK;
     FILE *stream = fopen(path, "rb");
     *matches = stream && fread(magic, sizeof magic, 1, stream) == 1 &&
                memcmp(magic, CACHE_MAGIC, sizeof magic) == 0;
@@ -307,8 +312,8 @@ static Result open_stream(CacheWriter *writer, const char *path, const Simulatio
     *writer = (CacheWriter){.path = strdup(path)};
     if (!writer->path) return error_set(error, RESULT_FAILED, "no memory for a file's name");
     TRY(make_frame_room(writer, count_particles(simulation), error));
-    int descriptor = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (descriptor < 0) return fail_to_write(writer, errno, error);
+    int descriptor;
+    TRY(outfile_open_kept(&descriptor, path, error));
     writer->stream = fdopen(descriptor, "r+b");
     if (!writer->stream) {
         close(descriptor);

@@ -8,7 +8,6 @@
 #include "run/cache_scene.h"
 #include "sim/simulation_state.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -89,9 +88,9 @@ static Result read_state(Bytes *state, int *frame, const char *path, const Simul
 
 static Result begin_cache(FrameSource *source, const char *path, Error *error)
 {
-    unlink(source->state_path); // that of an older cache
-    Result result =
-        cache_writer_open(&source->writer, path, source->simulation, source->strands, error);
+    Result result = outfile_remove(source->state_path, error); // that of an older cache
+    THEN(result,
+         cache_writer_open(&source->writer, path, source->simulation, source->strands, error));
     source->writes = result == RESULT_OK;
     return result;
 }
@@ -121,10 +120,13 @@ static Result complete_cache(FrameSource *source, Error *error)
     const CacheFile *cache = &source->reader.cache;
     TRY(cache_writer_continue(&source->writer, &source->reader, cache->frame_count,
                               source->simulation, error));
-    TRY(cache_writer_finish(&source->writer, error));
-    if ((int)cache->frame_count >= source->simulation->scene->run.frames)
-        unlink(source->state_path);
-    return RESULT_OK;
+    return cache_writer_finish(&source->writer, error);
+}
+
+// Of a cache that has all frames of the run: nothing is left to go on from.
+static Result drop_state(const FrameSource *source, Error *error)
+{
+    return outfile_remove(source->state_path, error);
 }
 
 static Result resume_cache(FrameSource *source, const char *path, int last, FILE *messages,
@@ -143,7 +145,9 @@ static Result resume_cache(FrameSource *source, const char *path, int last, FILE
         fprintf(messages, "%s: %u frames are there\n", quote(path).text, reader->cache.frame_count);
     if ((int)reader->cache.frame_count > last) {
         source->played = (int)reader->cache.frame_count;
-        return reader->cache.finished ? RESULT_OK : complete_cache(source, error);
+        if (!reader->cache.finished) TRY(complete_cache(source, error));
+        bool whole = source->played >= source->simulation->scene->run.frames;
+        return whole ? drop_state(source, error) : RESULT_OK;
     }
     if (!find_state(source, messages, error)) return begin_cache(source, path, error);
     Result result = cache_writer_continue(&source->writer, reader, (uint32_t)source->played,
@@ -240,10 +244,7 @@ Result frame_source_finish(FrameSource *source, Error *error)
     TRY(cache_writer_finish(&source->writer, error));
     if (source->simulation->frame + 1 < source->simulation->scene->run.frames)
         return write_state(source->state_path, source->simulation, source->strands, error);
-    if (unlink(source->state_path) != 0 && errno != ENOENT)
-        return error_set(error, RESULT_FAILED, "%s: cannot remove it: %s", source->state_path,
-                         strerror(errno));
-    return RESULT_OK;
+    return drop_state(source, error);
 }
 
 void frame_source_close(FrameSource *source)

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "run/record.h"
 #include "base/bytes.h"
+#include "base/outfile.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
 #include <libdeflate.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { LINE_BYTES = 48 };
 
@@ -34,32 +32,6 @@ static Result find_checksum(uint32_t *checksum, const char *name, Error *error)
     return RESULT_OK;
 }
 
-// Writes all; signals may interrupt.
-static bool write_all(int descriptor, const char *text, size_t size)
-{
-    while (size) {
-        ssize_t written = write(descriptor, text, size);
-        if (written < 0 && errno != EINTR) return false;
-        if (written > 0) text += written, size -= (size_t)written;
-    }
-    return true;
-}
-
-// In one piece, so that lines of several processes do not mix.
-static Result append(const char *path, const char *line, Error *error)
-{
-    errno = 0;
-    int descriptor = open(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-    bool good = descriptor >= 0 && write_all(descriptor, line, strlen(line));
-    int reason = errno;
-    if (descriptor >= 0 && close(descriptor) != 0 && good) {
-        good = false;
-        reason = errno;
-    }
-    if (good) return RESULT_OK;
-    return error_set(error, RESULT_FAILED, "%s: cannot write: %s", path, strerror(reason));
-}
-
 Result record_add(const Target *target, int frame, const char *fingerprint, Error *error)
 {
     char text[LINE_BYTES + 1];
@@ -72,7 +44,7 @@ Result record_add(const Target *target, int frame, const char *fingerprint, Erro
     if (result == RESULT_OK) {
         snprintf(line.fingerprint, sizeof line.fingerprint, "%s", fingerprint);
         write_line(text, frame, &line);
-        result = append(path, strcat(text, "\n"), error);
+        result = outfile_append(path, strcat(text, "\n"), error);
     }
     free(path);
     free(name);

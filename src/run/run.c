@@ -115,7 +115,7 @@ static Result check_values(const Scene *scene, Error *error)
     TRY(check_target(run, run->export, format_target, error));
     TRY(check_sheet(run, error));
     if (run->resume) TRY(resume_check(run, error));
-    TRY(run_paths_check(scene, error));
+    TRY(run_paths_claim(scene, error));
     TRY(caption_check(run->caption, error));
     bool fits = run->framing == FRAMING_HAIR || run->framing == FRAMING_ALL;
     if (fits && !fit_is_free(scene))

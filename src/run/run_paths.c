@@ -26,74 +26,21 @@ static bool is_written(const ParamInfo *info)
 
 // --- Where a scene file may write.
 
-// The deepest folder of `path` that exists, links resolved, and what follows it in `path`. NULL
-// when memory is short.
-static char *find_folder(const char *path, const char **rest)
-{
-    char *name = strdup(path), *found = NULL;
-    *rest = path;
-    for (char *slash = name ? strrchr(name, '/') : NULL; slash && !found;
-         slash = strrchr(name, '/')) {
-        *rest = path + (slash - name) + 1;
-        *slash = 0;
-        found = realpath(*name ? name : "/", NULL);
-    }
-    if (name && !found) {
-        *rest = path;
-        found = realpath(".", NULL);
-    }
-    free(name);
-    return found;
-}
-
-static bool is_within(const char *folder, const char *path)
-{
-    size_t length = strlen(folder);
-    bool root = strcmp(folder, "/") == 0;
-    return root ||
-           (strncmp(path, folder, length) == 0 && (path[length] == '/' || path[length] == 0));
-}
-
-static bool climbs(const char *path)
-{
-    for (const char *at = strstr(path, ".."); at; at = strstr(at + 1, ".."))
-        if ((at == path || at[-1] == '/') && (at[2] == '/' || at[2] == 0)) return true;
-    return false;
-}
-
-static Result check_place(const Scene *scene, const ParamInfo *info, const char *path, Error *error)
-{
-    const char *rest, *unused;
-    char *home = find_folder(scene->file, &unused), *there = find_folder(path, &rest);
-    char *target = realpath(path, NULL); // of a link, which may lead elsewhere
-    Result result = RESULT_OK;
-    if (!home || !there)
-        result = error_set(error, RESULT_FAILED, "no memory for paths");
-    else if (!is_within(home, target ? target : there) || (!target && climbs(rest)))
-        result = error_set(error, RESULT_BAD_INPUT,
-                           "%.300s: %s: %.300s is outside the scene file's folder: expected "
-                           "--allow-paths, or the path on the command line",
-                           scene->file, info->name, path);
-    free(home);
-    free(there);
-    free(target);
-    return result;
-}
-
-static Result check_places(const Scene *scene, Error *error)
+static Result check_allowance(const Scene *scene, Error *error)
 {
     size_t allow = (size_t)(params_find("allow_paths") - PARAM_TABLE);
-    if (!scene->file) return RESULT_OK;
-    if (scene->run.allow_paths && scene->origin[allow] != ORIGIN_FLAG)
-        return error_set(error, RESULT_BAD_INPUT,
-                         "%.300s: allow_paths: expected it on the command line only", scene->file);
-    for (int i = 0; i < WRITTEN_COUNT && !scene->run.allow_paths; ++i) {
-        const ParamInfo *info = params_find(WRITTEN[i]);
-        const char *path = path_of(info, &scene->run);
-        if (*path && scene->origin[info - PARAM_TABLE] == ORIGIN_SHARED_KEY)
-            TRY(check_place(scene, info, path, error));
-    }
-    return RESULT_OK;
+    if (!scene->file || !scene->run.allow_paths || scene->origin[allow] == ORIGIN_FLAG)
+        return RESULT_OK;
+    return error_set(error, RESULT_BAD_INPUT,
+                     "%.300s: allow_paths: expected it on the command line only", scene->file);
+}
+
+// The scene file if that, not the command line, names this output: it must stay in its own folder.
+static const char *find_home(const Scene *scene, const char *param)
+{
+    const ParamInfo *info = params_find(param);
+    bool own = scene->origin[info - PARAM_TABLE] == ORIGIN_SHARED_KEY;
+    return own && !scene->run.allow_paths ? scene->file : NULL;
 }
 
 // --- What a scene file may read: any file, but nothing that may never end.
@@ -132,15 +79,22 @@ typedef struct List {
     int count;
 } List;
 
-static void add(List *list, const char *name, const char *path, PathRole role)
+static void add(List *list, const char *name, const char *path, PathRole role, const char *home)
 {
     snprintf(list->names[list->count], sizeof *list->names, "%s", name);
-    list->uses[list->count] = (PathUse){list->names[list->count], path, role};
+    list->uses[list->count] = (PathUse){list->names[list->count], path, role, home};
     ++list->count;
 }
 
+static PathRole role_of(const ParamInfo *info)
+{
+    if (!is_written(info)) return PATH_READ;
+    if (strcmp(info->name, "cache") == 0) return PATH_KEPT;
+    return strcmp(info->name, "stats") == 0 ? PATH_WRITTEN : PATH_TARGET;
+}
+
 // The rows of PARAM_TABLE that are paths of this scope.
-static void add_params(List *list, ParamScope scope, const void *params)
+static void add_params(List *list, const Scene *scene, ParamScope scope, const void *params)
 {
     for (size_t i = 0; i < PARAM_COUNT; ++i) {
         const ParamInfo *info = &PARAM_TABLE[i];
@@ -148,7 +102,8 @@ static void add_params(List *list, ParamScope scope, const void *params)
         if (info->kind != PARAM_PATH || info->scope != scope) continue;
         for (size_t k = 0; k < sizeof flag - 3 && info->name[k]; ++k)
             flag[k + 2] = info->name[k] == '_' ? '-' : info->name[k];
-        add(list, flag, path_of(info, params), is_written(info) ? PATH_WRITTEN : PATH_READ);
+        add(list, flag, path_of(info, params), role_of(info),
+            is_written(info) ? find_home(scene, info->name) : NULL);
     }
 }
 
@@ -164,35 +119,37 @@ static char *find_record(const char *path,
     return record;
 }
 
-Result run_paths_check(const Scene *scene, Error *error)
+// The names in `list` last as long as the claims: to the end of the program.
+Result run_paths_claim(const Scene *scene, Error *error)
 {
     enum { RUN_PATHS = 16, SECTION_PATHS = 4 };
+    static List list;
     size_t room = RUN_PATHS + (size_t)scene->section_count * SECTION_PATHS;
-    List list = {.uses = calloc(room, sizeof *list.uses),
-                 .names = calloc(room, sizeof *list.names)};
+    TRY(check_allowance(scene, error));
+    TRY(check_inputs(scene, error));
     char *state = NULL; // what --cache writes beside the cache
     char *records[2] = {find_record(scene->run.output, target_parse),
                         find_record(scene->run.export, format_target)};
-    Result result = check_places(scene, error);
-    THEN(result, check_inputs(scene, error));
+    free(list.names);
+    list =
+        (List){.uses = calloc(room, sizeof *list.uses), .names = calloc(room, sizeof *list.names)};
     bool there = list.uses && list.names &&
                  asprintf(&state, "%s%s", scene->run.cache, *scene->run.cache ? ".state" : "") >= 0;
-    if (result == RESULT_OK && !there)
-        result = error_set(error, RESULT_FAILED, "no memory for paths");
+    Result result = there ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for paths");
     if (result == RESULT_OK) {
-        add(&list, "the scene file", scene->file, PATH_READ);
-        add_params(&list, SCOPE_RUN, &scene->run);
-        add(&list, "--cache's state", state, PATH_WRITTEN);
-        add(&list, "--output's record", records[0], PATH_WRITTEN);
-        add(&list, "--export's record", records[1], PATH_WRITTEN);
+        add(&list, "the scene file", scene->file, PATH_READ, NULL);
+        add_params(&list, scene, SCOPE_RUN, &scene->run);
+        add(&list, "--cache's state", state, PATH_KEPT, find_home(scene, "cache"));
+        add(&list, "--output's record", records[0], PATH_KEPT, find_home(scene, "output"));
+        add(&list, "--export's record", records[1], PATH_KEPT, find_home(scene, "export"));
         for (uint32_t i = 0; i < scene->section_count; ++i) {
-            add(&list, "the hair file", scene->sections[i].file, PATH_READ);
-            add_params(&list, SCOPE_SECTION, &scene->sections[i].params);
+            add(&list, "the hair file", scene->sections[i].file, PATH_READ, NULL);
+            add_params(&list, scene, SCOPE_SECTION, &scene->sections[i].params);
         }
-        result = paths_check(list.uses, list.count, error);
+        result = paths_claim(list.uses, list.count, error);
     }
     free(list.uses);
-    free(list.names);
+    list.uses = NULL;
     free(state);
     free(records[0]);
     free(records[1]);

@@ -20,6 +20,7 @@
 #define FORMAT_ARGUMENTS   24
 #define PIPE_BYTES         (1 << 20) // a third of a frame of 1280x720 at once instead of 64 KiB
 #define MESSAGE_TAIL_BYTES 600
+#define FOLDER_FILENO      3 // in ffmpeg: the folder of the video
 
 struct Video {
     OutFile file; // only ffmpeg writes to it, the stream here serves to sync and rename
@@ -133,8 +134,9 @@ static bool make_command(Command *command, const Format *format, const VideoOpti
     snprintf(command->size, sizeof command->size, "%dx%d", options->width, options->height);
     snprintf(command->rate, sizeof command->rate, "%.9g", options->fps);
     write_filter(command, format, options);
-    // With the protocol named, no character of the name has a meaning to ffmpeg.
-    if (asprintf(&command->output, "file:%s", temporary) < 0) {
+    // With the protocol named, no character of the name has a meaning to ffmpeg. The folder is the
+    // handle that it gets, whatever its path has come to mean.
+    if (asprintf(&command->output, "file:/proc/self/fd/%d/%s", FOLDER_FILENO, temporary) < 0) {
         command->output = NULL;
         return false;
     }
@@ -177,6 +179,9 @@ static int spawn(Video *video, const Command *command, int input_read_end)
     if (!reason)
         reason =
             posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    if (!reason)
+        reason =
+            posix_spawn_file_actions_adddup2(&actions, video->file.place.folder, FOLDER_FILENO);
     posix_spawnattr_setpgroup(&attributes, 0);
     posix_spawnattr_setsigmask(&attributes, &none);
     posix_spawnattr_setsigdefault(&attributes, &ignored);

@@ -11,7 +11,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 // Spacings around the mesh, and within which distances to triangles are computed.
 enum { PADDING = 3, BAND = 2 };
@@ -466,20 +465,7 @@ static Result read_cached(DistanceField *field, const char *name, const Gpu *gpu
     return result;
 }
 
-// The cache's folder and the one before it, which may be missing.
-static void make_folders(char *name)
-{
-    char *last = strrchr(name, '/');
-    *last = 0;
-    char *before = strrchr(name, '/');
-    *before = 0;
-    mkdir(name, 0700);
-    *before = '/';
-    mkdir(name, 0700);
-    *last = '/';
-}
-
-static Result write_cached(const DistanceField *field, char *name, Error *error)
+static Result write_cached(const DistanceField *field, const char *name, Error *error)
 {
     size_t size = distance_field_count(field) * sizeof(float);
     void *values = gpu_buffer_read(&field->values);
@@ -487,9 +473,8 @@ static Result write_cached(const DistanceField *field, char *name, Error *error)
     GridRecord record = {.spacing = field->spacing};
     memcpy(record.size, field->size, sizeof record.size);
     memcpy(record.low, field->low, sizeof record.low);
-    make_folders(name);
     OutFile file;
-    Result result = outfile_open(&file, name, error);
+    Result result = outfile_open_private(&file, name, error);
     if (result == RESULT_OK) {
         chunk_file_begin(file.stream, MAGIC);
         chunk_write(file.stream, "GRID", 0, &record, sizeof record);

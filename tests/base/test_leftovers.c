@@ -89,7 +89,11 @@ static void what_is_not_known_to_be_abandoned_stays(void **state)
     temporary_write(state, dead, "old", 0644);
     int locked = open(temporary_path(state, name[2]), O_RDONLY);
     assert_int_equal(flock(locked, LOCK_SH), 0);
-    leftovers_sweep(temporary_path(state, "."));
+    int root = open("/", O_PATH), folder = open(temporary_path(state, "."), O_PATH);
+    leftovers_sweep(root); // the folder of an earlier test may have had this one's inode
+    leftovers_sweep(folder);
+    close(root);
+    close(folder);
     assert_false(temporary_has(state, dead));
     for (int i = 0; i < 4; ++i) assert_true(temporary_has(state, name[i]));
     close(locked);

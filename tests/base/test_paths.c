@@ -16,7 +16,7 @@
 static Result check(const char *path, const char *other, PathRole role)
 {
     Error error = {{0}};
-    const PathUse uses[] = {{"--cache", path, PATH_WRITTEN}, {"the other", other, role}};
+    const PathUse uses[] = {{"--cache", path, PATH_TARGET, NULL}, {"the other", other, role, NULL}};
     Result result = paths_check(uses, 2, &error);
     if (result == RESULT_USAGE) {
         assert_non_null(strstr(error.text, "--cache"));
@@ -27,14 +27,14 @@ static Result check(const char *path, const char *other, PathRole role)
 
 static void assert_one(const char *a, const char *b)
 {
-    assert_int_equal(check(a, b, PATH_WRITTEN), RESULT_USAGE);
-    assert_int_equal(check(b, a, PATH_WRITTEN), RESULT_USAGE);
+    assert_int_equal(check(a, b, PATH_TARGET), RESULT_USAGE);
+    assert_int_equal(check(b, a, PATH_TARGET), RESULT_USAGE);
 }
 
 static void assert_two(const char *a, const char *b)
 {
-    assert_int_equal(check(a, b, PATH_WRITTEN), RESULT_OK);
-    assert_int_equal(check(b, a, PATH_WRITTEN), RESULT_OK);
+    assert_int_equal(check(a, b, PATH_TARGET), RESULT_OK);
+    assert_int_equal(check(b, a, PATH_TARGET), RESULT_OK);
 }
 
 static void an_input_is_not_overwritten_by_any_of_its_names(void **state)
@@ -110,7 +110,7 @@ static void a_place_that_cannot_be_written_is_told_before_anything_runs(void **s
 {
     Error error;
     temporary_write(state, "plain", "x", 0644);
-    PathUse use = {"--cache", temporary_path(state, "plain/x.cache"), PATH_WRITTEN};
+    PathUse use = {"--cache", temporary_path(state, "plain/x.cache"), PATH_TARGET, NULL};
     assert_int_equal(paths_check(&use, 1, &error), RESULT_FAILED);
     assert_non_null(strstr(error.text, "--cache"));
     assert_non_null(strstr(error.text, "Not a directory"));
@@ -118,7 +118,7 @@ static void a_place_that_cannot_be_written_is_told_before_anything_runs(void **s
     assert_int_equal(paths_check(&use, 1, &error), RESULT_FAILED);
     use.path = temporary_path(state, "new/deep/x.cache");
     assert_int_equal(paths_check(&use, 1, &error), RESULT_OK);
-    use = (PathUse){"the hair file", temporary_path(state, "plain/x.tfx"), PATH_READ};
+    use = (PathUse){"the hair file", temporary_path(state, "plain/x.tfx"), PATH_READ, NULL};
     assert_int_equal(paths_check(&use, 1, &error), RESULT_OK);
 }
 
@@ -130,7 +130,7 @@ static void a_locked_file_or_folder_is_told_before_anything_runs(void **state)
     }
     Error error;
     temporary_write(state, "locked", "x", 0444);
-    PathUse use = {"--cache", temporary_path(state, "locked"), PATH_WRITTEN};
+    PathUse use = {"--cache", temporary_path(state, "locked"), PATH_TARGET, NULL};
     assert_int_equal(paths_check(&use, 1, &error), RESULT_FAILED);
     assert_non_null(strstr(error.text, "Permission denied"));
     assert_int_equal(mkdir(temporary_path(state, "shut"), 0555), 0);

@@ -135,8 +135,8 @@ counts "$work/out" "::error" 2; if [ "$(wc -l <"$work/out")" = 2 ]; then good; e
 in_file "$work/summary.md" "### Images: 2 of 3 failed"; in_file "$work/summary.md" "Limits: pixel tolerance 0, failing pixels 1 %."
 in_file "$work/summary.md" '| `f_2.pfm` | different |'; in_file "$work/summary.md" '| `o,d:d 100%??x\|'\''.pfm` | different |'
 rm "$work/a/$odd" "$work/b/$odd"
-GITHUB_STEP_SUMMARY=$work/none/summary.md
-run 1 -q "$work/a" "$work/b" --github; one_line; says "none/summary.md: cannot write"
+GITHUB_STEP_SUMMARY=$work/summary.md/none
+run 1 -q "$work/a" "$work/b" --github; one_line; says "summary.md/none: cannot write"
 unset GITHUB_STEP_SUMMARY
 run 1 -q "$work/a" "$work/b" --github; silent err
 mkdir "$work/c" "$work/d"

@@ -148,12 +148,12 @@ static void versions_3_and_4_are_taken_and_no_others(void **state)
 }
 
 // An array of a file: where its header says where it begins, and its length in bytes.
-typedef struct Place {
+typedef struct Position {
     FormatKind kind;
     size_t at, bytes;
-} Place;
+} Position;
 
-static const Place PLACES[] = {
+static const Position PLACES[] = {
     {FORMAT_TFX3, 144, 12 * COUNT}, {FORMAT_TFX3, 148, 4 * LINES}, {FORMAT_TFX3, 152, 8 * LINES},
     {FORMAT_TFX3, 156, 16 * COUNT}, {FORMAT_TFX3, 164, 8 * COUNT}, {FORMAT_TFX4, 12, 16 * COUNT},
     {FORMAT_TFX4, 16, 8 * LINES},   {FORMAT_TFX4, 20, 8 * COUNT},  {FORMAT_TFX4, 24, 4 * LINES},
@@ -174,7 +174,7 @@ static void arrays_may_lie_in_any_order(void **state)
 {
     Strands made = make_strands(true);
     for (size_t i = 0; i < sizeof PLACES / sizeof *PLACES; i++) {
-        const Place *place = &PLACES[i];
+        const Position *place = &PLACES[i];
         Bytes bytes = make_file(state, place->kind, &made);
         uint32_t from, to = (uint32_t)bytes.size;
         memcpy(&from, bytes.data + place->at, 4);
