@@ -192,12 +192,13 @@ static Result check(const Command *command, Error *error)
 
 Result fur_recipe_parse(FurOptions *options, int argc, char **argv, bool *done, Error *error)
 {
-    Command command = {.recipe = fur_recipe_default(), .output.format = FORMAT_TFX4, .unit = 1.0};
+    Command command = {.recipe = fur_recipe_default(), .output.format = -1, .unit = 1.0};
     int first;
     Result result = options_parse(&FUR_RECIPE_PROGRAM, &command, argc, argv, &first, done, error);
     if (result != RESULT_OK || *done) return result;
     if (argc - first != 1)
         return error_set(error, RESULT_USAGE, "fur: got %d files, expected one mesh", argc - first);
+    gen_choose_format(&command.output);
     *options = (FurOptions){.recipe = command.recipe,
                             .output = command.output,
                             .mesh = argv[first],

@@ -14,7 +14,7 @@
 
 typedef struct GenOutput {
     const char *path; // NULL: not given
-    int format;       // a FormatKind
+    int format;       // a FormatKind; -1: not given
     bool quiet;
 } GenOutput;
 
@@ -22,6 +22,14 @@ typedef struct GenOutput {
 static inline FILE *gen_messages(const GenOutput *output)
 {
     return output->path && outfile_is_stdout(output->path) ? stderr : stdout;
+}
+
+// Without --format the suffix says which; names of other suffixes, and standard output, get
+// TressFX 4.
+static inline void gen_choose_format(GenOutput *output)
+{
+    FormatKind kind = output->path ? format_choose(output->path, NULL) : FORMAT_KINDS;
+    if (output->format < 0) output->format = kind < FORMAT_KINDS ? kind : FORMAT_TFX4;
 }
 
 // Rows of an option table; `at` is the offset of a GenOutput's member, or of an int, in the
@@ -33,7 +41,7 @@ static inline FILE *gen_messages(const GenOutput *output)
 #define GEN_OPTION_FORMAT(at)                                                                      \
     {                                                                                              \
         "format", 0, OPTION_WORD, at, &(FORMAT_WORDS)[1], 0, 0,                                    \
-            "format of FILE, whatever its name [default tfx4]"                                     \
+            "format of FILE, whatever its name [default: by its suffix; tfx4]"                     \
     }
 #define GEN_OPTION_SEED(at)                                                                        \
     {                                                                                              \

@@ -148,7 +148,7 @@ static Result parse(Command *command, int argc, char **argv, bool *done, Error *
                          .count = -1,
                          .vertices = -1,
                          .set = -1,
-                         .output.format = FORMAT_TFX4,
+                         .output.format = -1,
                          .seed = 1,
                          .length = NAN,
                          .length_variation = NAN,
@@ -160,6 +160,7 @@ static Result parse(Command *command, int argc, char **argv, bool *done, Error *
     if (first < argc)
         return error_set(error, RESULT_USAGE, "%s: got a file, expected only options and -o FILE",
                          argv[first]);
+    gen_choose_format(&command->output);
     return check_effect(command, error);
 }
 

@@ -55,6 +55,16 @@ static bool fill_functions(const GpuOsMesa *mesa)
     return complete;
 }
 
+// OSMesa of Mesa 22.3 crashes for a driver that it does not know.
+static Result check_driver(Error *error)
+{
+    const char *driver = getenv("GALLIUM_DRIVER");
+    if (!driver || !*driver || strcmp(driver, "llvmpipe") == 0 || strcmp(driver, "softpipe") == 0)
+        return RESULT_OK;
+    return error_set(error, RESULT_NO_GL, "GALLIUM_DRIVER is '%s': expected llvmpipe or softpipe",
+                     driver);
+}
+
 static Result open_osmesa(GpuOsMesa *mesa, Error *error)
 {
     static const int attributes[] = {OSMESA_FORMAT,
@@ -76,6 +86,7 @@ static Result open_osmesa(GpuOsMesa *mesa, Error *error)
     load(library, "OSMesaGetProcAddress", &mesa->get_function);
     if (!mesa->create || !mesa->destroy || !mesa->make_current || !mesa->get_function)
         return error_set(error, RESULT_NO_GL, "libOSMesa.so.8 lacks OSMesaCreateContextAttribs");
+    TRY(check_driver(error));
     mesa->context = mesa->create(attributes, NULL);
     if (!mesa->context) return error_set(error, RESULT_NO_GL, "OSMesa has no OpenGL 4.3 core");
     if (!mesa->make_current(mesa->context, &mesa->pixel, GL_UNSIGNED_BYTE, 1, 1))

@@ -16,6 +16,8 @@ bool obj_matches(const Bytes *bytes)
 {
     static const char *const others[] = {"vp", "o", "g", "s", "mtllib", "usemtl"};
     const char *text = (const char *)bytes->data;
+    // A count of 35 or 118 in four bytes begins like a comment or a vertex.
+    if (strnlen(text, 4) < 4 && bytes->size >= 4) return false;
     text += strspn(text, " \t\r\n");
     if (*text == '#') return strncmp(text, "#usda", 5) != 0;
     size_t length = strcspn(text, " \t\r\n");

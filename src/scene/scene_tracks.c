@@ -197,6 +197,9 @@ static Result read_direction(Light *light, const JsonPlace *parent, const json_t
     JsonPlace place = {.parent = parent, .key = "direction"};
     if (length == 0)
         return json_refuse(&place, json_object_get(object, "direction"), "a direction", error);
+    // A unit vector whose numbers are rounded to float is at most so much longer or shorter: it
+    // stays as it is, so that a scene that is written and read again keeps it.
+    if (fabs(length - 1) <= 0x1p-24) length = 1;
     double sign = light->kind == LIGHT_SPOT ? 1 : -1;
     for (int i = 0; i < 3; i++) light->direction[i] = (float)(sign * (double)way[i] / length + 0.0);
     return RESULT_OK;

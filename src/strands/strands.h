@@ -40,7 +40,11 @@ typedef struct Strands {
     X(mobility, 1, 1) X(vertex_uv, 2, 0) X(vertex_thickness, 1, 1) X(color, 4, 1)
 #define STRANDS_ARRAYS_OF_STRANDS(X) X(strand_uv, 2, 0) X(strand_thickness, 1, 1)
 
-enum { STRANDS_MAX_SIZE = 65535 }; // vertices of one strand that is simulated or drawn
+enum {
+    STRANDS_MAX_SIZE = 65535, // vertices of one strand that is simulated or drawn
+    STRANDS_MAX_FOLLOWERS =
+        1000000 // that a file may ask for, per guide: every format holds as many
+};
 
 // Makes room: `first` (all zero), `position` (all zero), no optional array. RESULT_FAILED when
 // memory is short or a count is beyond what 32-bit indices hold.

@@ -394,6 +394,14 @@ static Result mend_frames(FormatSource *source, const char *path, uint32_t file_
 static Result mend_all(FormatSource *source, const char *path, StrandsReport *report, Error *error)
 {
     uint32_t count = source->strands.vertex_count, *kept_from = NULL;
+    if (source->strands.followers > STRANDS_MAX_FOLLOWERS)
+        return error_set(error, RESULT_BAD_INPUT,
+                         "%s: asks for %u followers a guide: expected at most %d", path,
+                         source->strands.followers, STRANDS_MAX_FOLLOWERS);
+    if (!(source->strands.follower_radius >= 0 && source->strands.follower_radius <= FARTHEST)) {
+        note(report, DEFECT_ATTRIBUTE, count ? source->place[0] : 0);
+        source->strands.follower_radius = 0;
+    }
     if (!source->frames) return mend(source, path, NULL, report, error);
     kept_from = malloc(((size_t)count + 1) * sizeof *kept_from);
     if (!kept_from) return error_set(error, RESULT_FAILED, "%s: no memory", path);

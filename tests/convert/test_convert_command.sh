@@ -104,6 +104,14 @@ run 2 $curls -o -; says "expected --format"; one_line
 "$bin/tractrix-render" - --check <$curls >"$work/out" 2>"$work/err"; says "300 usable of 300"; silent err
 run 3 - --stats; says "-: byte 0: the file is empty"; one_line
 
+claim "a pipe with a name is read like a file; a device, which may never end, is refused"
+mkfifo "$work/named"
+cat assets/fur.tfx >"$work/named" &
+run 0 "$work/named" -o "$work/named.tfx"; equal "$work/named.tfx" assets/fur.tfx
+wait
+run 3 /dev/zero; one_line; says "/dev/zero: a device"
+run 3 /dev/zero -o "$work/zero.tfx"; one_line; none "$work/zero.tfx"
+
 claim "cubic curves below transforms are read, and all their times"
 cat >"$work/cubic.usda" <<'END'
 #usda 1.0

@@ -44,6 +44,22 @@ run 0 fur assets/ball.obj --per-cm2 1 --density 'y > 0' -o "$work/area.tfx"
 count=$(sed -n 's/.*: \([0-9]*\) strands of.*/\1/p' "$work/out")
 if [ "$count" -gt 615 ] && [ "$count" -lt 641 ]; then good; else bad "$count strands"; fi
 
+claim "the suffix says the format, --format says otherwise"
+for suffix in tfx hair obj usda data ply npz npy; do
+    run 0 --count 5 --vertices 4 -q -o "$work/suffix.$suffix"
+    run 0 fur assets/ball.obj -n 9 -q -o "$work/fur.$suffix"
+    case $suffix in
+    tfx) kind="TressFX 4 binary" ;; hair) kind="HAIR" ;; obj) kind="Wavefront" ;; usda) kind="USD" ;;
+    data) kind="USC-HairSalon" ;; ply) kind="PLY" ;; npz) kind="(.npz)" ;; *) kind="(.npy)" ;;
+    esac
+    for name in suffix fur; do
+        "$bin/tractrix-convert" "$work/$name.$suffix" >"$work/out" 2>"$work/err" </dev/null
+        says "$kind"
+    done
+done
+run 0 --count 5 --vertices 4 -o "$work/any.name"; says "TressFX 4 binary"
+run 0 --count 5 --vertices 4 --format text -o "$work/text.hair"; says "TressFX 2 text"
+
 claim "followers and thickness go where the format holds them"
 run 0 fur assets/ball.obj -n 9 --followers 16 --format tfx3 -o "$work/f.tfx"
 run 0 fur assets/ball.obj -n 9 --thickness 1e-4 --tip-thickness 0.1 --format hair -o "$work/f.hair"

@@ -83,6 +83,8 @@ if diff -r "$work/direct" "$work/res" >"$work/err"; then good; else bad "picture
 head -c $size "$work/a.cache" >"$work/r.cache" # and no state: from the start
 run 0 $scene --resume --cache "$work/r.cache"; says "simulating again from the start"
 if cmp -s "$work/a.cache" "$work/r.cache"; then good; else bad "the cache made again differs"; fi
+echo old >"$work/r.cache.state" # a run that was killed when its cache was whole may leave one
+run 0 $scene -q --resume --cache "$work/r.cache"; none "$work/r.cache.state"
 run 3 $scene -q --resume --cache "$work/r.cache" --gravity 0,-1,0; one_line; says "gravity"
 run 2 $scene -q --resume -o "$work/v.mp4"; one_line; says "--cache"
 "$program" assets/demo.json $plain --preroll 0 --frames 5000 --cache "$work/i.cache" >"$work/out" 2>"$work/err" &
@@ -137,6 +139,14 @@ for name in f_%d.png f_%d.exr f_%d.pfm f_%d.tfx; do
     head -c 300 "$work/first" >"$first"
     go "1 existing file will be written again: $first:" --frames 3
     equal "$first" "$work/first"
+    # A later frame, when all before it are as they were.
+    second=$work/again/f_1${name#f_%d}
+    cp "$second" "$work/second"
+    head -c 300 "$work/first" >"$second"
+    go "1 existing file will be written again: $second:" --frames 3; says "2 of 3 frames are there"; equal "$second" "$work/second"
+    go "1 existing file will be written again: $second: other parameters or other files" --first 1 --last 1 --frames 3 --color red --albedo auto
+    go "1 existing file will be written again: $second: other parameters or other files" --frames 3; equal "$second" "$work/second"
+    go "3 of 3 frames are there" --frames 3
 done
 name=t_%d.png; to=-o
 go "2 frames in" --frames 2 --background transparent

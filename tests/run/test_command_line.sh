@@ -180,6 +180,9 @@ __EGL_VENDOR_LIBRARY_FILENAMES=/dev/null
 export __EGL_VENDOR_LIBRARY_FILENAMES
 run 4 $hair --backend egl --frames 1 -o "$work/x/"; one_line; says "surfaceless"; says "libgl1-mesa-dri"
 unset __EGL_VENDOR_LIBRARY_FILENAMES
+GALLIUM_DRIVER=nonsense; export GALLIUM_DRIVER
+run 4 $hair --frames 1 -q -o "$work/x/"; says "expected llvmpipe or softpipe"
+unset GALLIUM_DRIVER
 run 4 $hair --device 31 --frames 1 -o "$work/x/"; one_line; says "--list-devices"
 
 claim "OSMesa is another way in"

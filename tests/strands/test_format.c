@@ -79,6 +79,99 @@ static void reading_back_gives_the_same_bits(void **state)
     strands_destroy(&strands);
 }
 
+// Strands of 2 .. 5 vertices, of equal size if `even`, with all that the format holds.
+static Strands make_full(const Format *format, uint32_t count, bool even)
+{
+    Strands strands;
+    Random random = random_create(count, even);
+    assert_int_equal(strands_create(&strands, count, 5 * count, NULL), RESULT_OK);
+    for (uint32_t s = 0; s < count; s++)
+        strands.first[s + 1] = strands.first[s] + (even ? 3 : 2 + random_below(&random, 4));
+    strands.vertex_count = strands.first[count];
+    for (uint32_t v = 0; v < strands.vertex_count; v++)
+        for (int i = 0; i < 3; i++)
+            strands.position[v][i] = (float)v * 0.01f + 0.003f * (float)random_real(&random);
+    if (format->features & STRANDS_HAS_FOLLOWERS) strands.followers = STRANDS_MAX_FOLLOWERS;
+    if (format->features & STRANDS_HAS_FOLLOWER_RADIUS) strands.follower_radius = 1e6f;
+    if (format->features & STRANDS_HAS_VERTEX_THICKNESS) {
+        strands.vertex_thickness = calloc(strands.vertex_count, sizeof(float));
+        for (uint32_t v = 0; v < strands.vertex_count; v++)
+            strands.vertex_thickness[v] = 1e-5f * (float)(1 + v % 7);
+    }
+    return strands;
+}
+
+// A property of every format and count: above all of a count whose bytes begin like a text (35 is
+// '#', 118 is 'v', 108 is 'l').
+static void what_is_written_is_known_again_and_read_back(void **state)
+{
+    static const uint32_t COUNTS[] = {1,   2,   9,   10,  13,  32,  35,          47,
+                                      80,  102, 103, 108, 111, 115, 118,         123,
+                                      147, 255, 256, 291, 374, 547, 9 * 256 + 35};
+    for (FormatKind kind = 0; kind < FORMAT_KINDS; kind++) {
+        const Format *format = FORMAT_TABLE[kind];
+        for (size_t i = 0; format->write && i < sizeof COUNTS / sizeof *COUNTS; i++) {
+            Strands strands = make_full(format, COUNTS[i], format->equal_sizes);
+            StrandsReport report;
+            Strands back;
+            Error error = {""};
+            const char *path = temporary_path(state, "hair");
+            if (format_write(path, kind, &strands, &error) != RESULT_OK) fail_msg("%s", error.text);
+            if (strands_read(&back, path, &METRES, &report, &error) != RESULT_OK)
+                fail_msg("%s, %u strands: %s", format->name, COUNTS[i], error.text);
+            if (report.kind != kind)
+                fail_msg("%u strands of %s: taken for %s", COUNTS[i], format->name,
+                         FORMAT_TABLE[report.kind]->name);
+            assert_int_equal(back.strand_count, strands.strand_count);
+            assert_memory_equal(back.first, strands.first, 4 * (size_t)(strands.strand_count + 1));
+            assert_memory_equal(back.position, strands.position, 12 * (size_t)strands.vertex_count);
+            assert_int_equal(back.followers, strands.followers);
+            assert_true(back.follower_radius == strands.follower_radius);
+            if (strands.vertex_thickness)
+                assert_memory_equal(back.vertex_thickness, strands.vertex_thickness,
+                                    4 * (size_t)strands.vertex_count);
+            strands_destroy(&strands);
+            strands_destroy(&back);
+        }
+    }
+}
+
+// Files that nothing marks but their counts, of every first byte, against all formats: `floats`
+// numbers a vertex.
+static void every_first_byte_of_a_count_is_told_from_text(void **state)
+{
+    (void)state;
+    for (int floats = 3; floats <= 7; floats += 4)
+        for (uint32_t count = 1; count <= 600; count++) {
+            size_t words = 1 + count * (size_t)(1 + 2 * floats);
+            uint32_t *file = calloc(words + 1, 4);
+            file[0] = count;
+            for (uint32_t s = 0; s < count; s++) file[1 + s * (size_t)(1 + 2 * floats)] = 2;
+            Bytes bytes = {(uint8_t *)file, 4 * words};
+            FormatKind kind = format_detect(&bytes),
+                       expected = floats == 3 ? FORMAT_SALON_DATA : FORMAT_SALON_BIN;
+            if (kind != expected)
+                fail_msg("%u strands: %s", count,
+                         kind < FORMAT_KINDS ? FORMAT_TABLE[kind]->name : "unknown");
+            free(file);
+        }
+}
+
+static void more_followers_than_all_formats_hold_are_refused(void **state)
+{
+    Error error = {""};
+    Strands strands = make_awkward(), back;
+    const char *path = temporary_path(state, "hair");
+    static const FormatKind kinds[] = {FORMAT_TFX2, FORMAT_TFX3, FORMAT_USD, FORMAT_NPZ};
+    strands.followers = 2000000000;
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        assert_int_equal(format_write(path, kinds[i], &strands, &error), RESULT_OK);
+        assert_int_equal(strands_read(&back, path, &METRES, NULL, &error), RESULT_BAD_INPUT);
+        assert_non_null(strstr(error.text, "followers"));
+    }
+    strands_destroy(&strands);
+}
+
 static void what_was_written_in_metres_is_guessed_to_be_metres(void **state)
 {
     static const FormatKind kinds[] = {FORMAT_TFX2, FORMAT_TFX3, FORMAT_TFX4, FORMAT_HAIR};
@@ -246,6 +339,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(rows_of_the_table_are_complete),
         TEST(reading_back_gives_the_same_bits),
+        TEST(what_is_written_is_known_again_and_read_back),
+        TEST(every_first_byte_of_a_count_is_told_from_text),
+        TEST(more_followers_than_all_formats_hold_are_refused),
         TEST(what_was_written_in_metres_is_guessed_to_be_metres),
         TEST(followers_and_fixed_ends_survive_where_the_kind_holds_them),
         TEST(uneven_strands_go_into_text_and_hair_only),

@@ -331,7 +331,7 @@ static void read_companions(Npz *npz)
     source->unit = (float)unit;
     source->fps = fps;
     source->first_frame = first < 9999999 ? (int)first : 9999999;
-    strands->followers = (uint32_t)followers;
+    strands->followers = (uint32_t)fmin(followers, UINT32_MAX);
     strands->follower_radius = (float)radius;
     strands->both_ends_fixed = fixed != 0;
 }

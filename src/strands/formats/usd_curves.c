@@ -254,8 +254,7 @@ static void set_attributes(Reader *reader, const UsdCurves *curves, Strands *str
     set_texture(reader, curves, strands);
     strands->strand_thickness = spread_strands(reader, curves, USD_THICKNESS, strands);
     strands->mobility = spread(reader, curves, USD_MOBILITY, strands);
-    strands->followers =
-        (uint32_t)(curves->followers > 0 && curves->followers < 1e9f ? curves->followers : 0);
+    strands->followers = (uint32_t)(curves->followers > 0 ? fminf(curves->followers, 4e9f) : 0);
     strands->follower_radius = curves->follower_radius;
     strands->both_ends_fixed = curves->both_ends_fixed != 0;
 }
