@@ -140,8 +140,9 @@ $(SCRIPTS:%=%.$(1)): %.$(1): % scripts/help-pages
 	$$(call run,SHELL,scripts/help-pages $(1) $$< $(VERSION) >$$@.tmp && mv $$@.tmp $$@)
 endef
 $(foreach shell,$(SHELLS),$(eval $(call completion,$(shell))))
-$(SCRIPTS): $(OUT)/tractrix-%: scripts/% | $(FOLDERS)
-	$(call run,COPY,install $< $@)
+# With what they share put in, so that each is one file.
+$(SCRIPTS): $(OUT)/tractrix-%: scripts/% scripts/steps.sh | $(FOLDERS)
+	$(call run,COPY,sed -e '/^STEPS_HOME=/d' -e '/^\. ".*\/steps\.sh"$$/{r scripts/steps.sh' -e 'd;}' $< >$@.tmp && chmod 755 $@.tmp && mv $@.tmp $@)
 $(SCRIPTS:%=%.1): %.1: % scripts/help-pages $(OUT)/version.h
 	$(call run,MAN,scripts/help-pages man $< "$$(sed -n 's/.*_VERSION "\(.*\)"/\1/p' $(OUT)/version.h)" >$@.tmp && mv $@.tmp $@)
 

@@ -89,7 +89,7 @@ printf 'plain %s\n' "$small" >"$work/two words"
 run 0 "$work/two words" "$work/golden images/" "$work/new images/" --update
 PATH=$TRACTRIX_BIN:$PATH
 unset TRACTRIX_BIN
-mkdir "$work/bin"; cp scripts/compare-goldens "$work/bin/tractrix-compare-goldens"; program=$work/bin/tractrix-compare-goldens
+mkdir "$work/bin"; cp "$bin/tractrix-compare-goldens" "$work/bin/"; program=$work/bin/tractrix-compare-goldens
 run 0 "$work/two words" "$work/golden images/" "$work/new images/"; says "1 image: 1 same"
 run 0 --help; says "Usage: tractrix-compare-goldens "
 
