@@ -1,5 +1,5 @@
-# shellcheck shell=sh
 # SPDX-License-Identifier: MIT
+# shellcheck shell=sh
 # Shared by the programs that are scripts (farm, turntable, compare-goldens), into which the build copies it: finds the
 # programs and runs them as steps. A step is a session of its own. INT, TERM and HUP to the script end all processes of the
 # running step at once, whatever groups they have made, and then the script, with status 130.

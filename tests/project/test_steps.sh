@@ -20,7 +20,10 @@ chmod +x "$work/fake/"*
 for program in compare gen convert bench; do ln -s "$(realpath "$bin")/tractrix-$program" "$work/fake/"; done
 
 # left: processes that have the test's folder among their words, or are the fake program's.
-left() { printf '%s\n300.125\n' "$work" | grep -aslF --file=- -- /proc/[0-9]*/cmdline; }
+left() {
+    set -- /proc/[0-9]*/cmdline
+    printf '%s\n300.125\n' "$work" | grep -aslFf - "$@"
+}
 
 # ends SIGNAL SCRIPT ARGUMENT...: the signal comes when a first process has started.
 ends() {
