@@ -189,6 +189,44 @@ static void layers_are_channels_of_the_same_file(void **state)
     image_destroy(&image);
 }
 
+// A pixel has a strand if its depth, its tangent and its number are there: in each of the eight
+// cases of what is black. Coverage is as it was drawn.
+static void a_pixel_has_all_of_a_strand_or_nothing(void **state)
+{
+    (void)state;
+    Image image = make_image(4), layers[EXR_LAYERS];
+    Bytes exr;
+    static float numbers[5][PIXELS];
+    static uint32_t ids[PIXELS];
+    make_layers(layers);
+    for (int i = 0; i < PIXELS; ++i)
+        for (int l = 0; l < EXR_LAYERS; ++l) {
+            float *at = (float *)(void *)layers[l].pixels + 3 * i;
+            for (int k = 0; k < 3; ++k) at[k] = l == EXR_COVERAGE ? 0.25f : 0.5f;
+            // One number that is not black is enough, whichever it is.
+            if (l == EXR_STRAND || l == EXR_TANGENT)
+                for (int k = 0; k < 3; ++k) at[k] = k == i / 8 % 3 ? 1.0f : 0;
+            bool black = l != EXR_COVERAGE && i >> (l - EXR_DEPTH) & 1;
+            for (int k = 0; k < 3 && black; ++k) at[k] = 0;
+        }
+    const ExrFile file = {.image = &image, .layers = layers, .floats = true};
+    assert_int_equal(exr_file_encode(&file, &exr, NULL), RESULT_OK);
+    static const char *const names[] = {"Z", "tangent.X", "tangent.Y", "tangent.Z", "coverage"};
+    for (int k = 0; k < 5; ++k) read_channel(&exr, names[k], EXR_PIXEL_FLOAT, numbers[k]);
+    read_channel(&exr, "id", EXR_PIXEL_UINT, ids);
+    for (int i = 0; i < PIXELS; ++i) {
+        bool strand = i % 8 == 0;
+        assert_true(numbers[0][i] == (strand ? 0.5f : 0) && numbers[4][i] == 0.25f);
+        assert_int_equal(ids[i], strand ? 0xffu << (8 * (i / 8 % 3)) : 0u);
+        float square = 0; // of a unit vector, or of none
+        for (int k = 1; k < 4; ++k) square += numbers[k][i] * numbers[k][i];
+        assert_true(strand ? fabsf(square - 1) < 1e-6f : square == 0);
+    }
+    bytes_destroy(&exr);
+    destroy_layers(layers);
+    image_destroy(&image);
+}
+
 static void attributes_are_kept(void **state)
 {
     (void)state;
@@ -505,6 +543,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(images_survive_a_round_trip),
         TEST(layers_are_channels_of_the_same_file),
+        TEST(a_pixel_has_all_of_a_strand_or_nothing),
         TEST(attributes_are_kept),
         TEST(all_kinds_of_files_are_read),
         TEST(windows_and_layers_are_found),

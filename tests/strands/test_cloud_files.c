@@ -7,6 +7,7 @@
 #include "support/temporary.h"
 
 #include <libdeflate.h>
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -130,6 +131,36 @@ static void text_ply_with_edges_is_read(void **state)
     assert_true(strands.color[1][0] == 0.5f && strands.position[4][1] == 2);
     assert_string_equal(report.note, "");
     strands_destroy(&strands);
+}
+
+// Red, green, blue and alpha of 16 bits, and of 8: each over its own largest value.
+static void colours_of_whole_numbers_are_shares_of_their_largest(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *type, *alpha;
+        int most, most_alpha;
+    } cases[] = {{"ushort", "ushort", 65535, 65535},
+                 {"uchar", "ushort", 255, 65535},
+                 {"ushort", "uchar", 65535, 255},
+                 {"uchar", "uchar", 255, 255}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[600];
+        int most = cases[i].most, alpha = cases[i].most_alpha;
+        snprintf(text, sizeof text,
+                 PLY("element vertex 2\n" XYZ "property %s red\nproperty %s green\n"
+                     "property %s blue\nproperty %s alpha\nelement strand 1\n"
+                     "property ushort nsegs\nend_header\n0 0 0 %d 0 %d %d\n0 1 0 %d %d 0 %d\n1\n"),
+                 cases[i].type, cases[i].type, cases[i].type, cases[i].alpha, most, most / 5,
+                 alpha / 5, most, most, alpha);
+        Strands strands = read_well(text, strlen(text), &METRES, &(StrandsReport){0});
+        const float *a = strands.color[0], *b = strands.color[1];
+        // 0.2 in sRGB is ((0.2 + 0.055) / 1.055)^2.4
+        assert_true(a[0] == 1 && a[1] == 0 && fabsf(a[2] - 0.0331048f) < 1e-6f);
+        assert_true(fabsf(a[3] - 0.2f) < 1e-7f);
+        assert_true(b[0] == 1 && b[1] == 1 && b[2] == 0 && b[3] == 1);
+        strands_destroy(&strands);
+    }
 }
 
 // `strands` of `points` points each, roots far apart; `odd` adds one to the first strand.
@@ -277,6 +308,35 @@ static void npy_of_every_float_and_order_is_read(void **state)
             }
 }
 
+// Every half below the smallest ordinary one, 2^-14, and some above: m 2^-24, exactly.
+static void small_halves_are_read_exactly(void **state)
+{
+    (void)state;
+    enum { COUNT = 1100 };
+    static Pile pile;
+    for (int sign = 0; sign < 2; sign++) {
+        pile = make_npy(1, "{'descr': '<f2', 'fortran_order': False, 'shape': (1, 1100, 3), }");
+        for (int m = 0; m < COUNT; m++) {
+            pile_number(&pile, (uint64_t)(m | sign << 15), 2, false);
+            // y keeps neighbours apart: m below 2048 is 2^e (1 + k / 1024).
+            int e = 10;
+            while (m && m >> e == 0) e--;
+            pile_number(&pile, m ? (uint64_t)((e + 15) << 10 | (m - (1 << e)) << (10 - e)) : 0, 2,
+                        false);
+            pile_number(&pile, 0, 2, false);
+        }
+        Strands strands = read_well(pile.data, pile.size, &METRES, &(StrandsReport){0});
+        assert_int_equal(strands.vertex_count, COUNT);
+        for (int m = 0; m < COUNT; m++) {
+            // From 1024 on the exponent is 1: (1024 + m % 1024) 2^-24 again.
+            float expected = ldexpf((float)m, -24);
+            assert_true(strands.position[m][0] == (sign ? -expected : expected));
+            assert_true(strands.position[m][1] == (float)m);
+        }
+        strands_destroy(&strands);
+    }
+}
+
 static void other_npy_is_refused(void **state)
 {
     (void)state;
@@ -397,6 +457,46 @@ static Pile make_floats(const char *shape, int count)
     return pile;
 }
 
+// The letter of the axis in both byte orders and as one byte: where it stands in its word differs.
+static void the_axis_that_is_up_is_read_in_every_byte_order(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *descr, *bytes;
+        int size;
+        bool z, good;
+    } cases[] = {
+        {"<U1", "z\0\0\0", 4, true, true},  {">U1", "\0\0\0z", 4, true, true},
+        {">U1", "\0\0\0y", 4, false, true}, {"|S1", "Z", 1, true, true},
+        {"|S1", "Y", 1, false, true},       {">U1", "z\0\0\0", 4, true, false},
+        {"<U1", "\0\0\0z", 4, true, false}, {"<U2", "z\0\0\0\0\0\0\0", 8, true, false},
+        {"<U1", "x\0\0\0", 4, true, false},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Archive archive = {.count = 0};
+        Pile points = make_floats("(1, 2, 3)", 6);
+        char dict[100];
+        snprintf(dict, sizeof dict, "{'descr': '%s', 'fortran_order': False, 'shape': (), }",
+                 cases[i].descr);
+        Pile up = make_npy(1, dict);
+        memcpy(up.data + up.size, cases[i].bytes, (size_t)cases[i].size);
+        up.size += (size_t)cases[i].size;
+        add_deflated(&archive, "points.npy", &points, 0);
+        add_deflated(&archive, "up.npy", &up, 0);
+        end_archive(&archive);
+        if (!cases[i].good) {
+            refuse(archive.pile.data, archive.pile.size, &METRES, "'up' is neither 'y' nor 'z'");
+            continue;
+        }
+        Strands strands =
+            read_well(archive.pile.data, archive.pile.size, &METRES, &(StrandsReport){0});
+        // (0.375, 0.5, 0.625) in the file
+        assert_true(strands.position[1][1] == (cases[i].z ? 0.625f : 0.5f));
+        assert_true(strands.position[1][2] == (cases[i].z ? -0.5f : 0.625f));
+        strands_destroy(&strands);
+    }
+}
+
 static void deflated_npz_is_read(void **state)
 {
     (void)state;
@@ -508,11 +608,14 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(binary_ply_of_every_type_is_read_in_both_byte_orders),
         cmocka_unit_test(text_ply_with_edges_is_read),
+        cmocka_unit_test(colours_of_whole_numbers_are_shares_of_their_largest),
         cmocka_unit_test(bare_points_become_strands),
         cmocka_unit_test(malformed_ply_is_refused),
         cmocka_unit_test(rows_of_nothing_are_passed_over),
         cmocka_unit_test(npy_of_every_float_and_order_is_read),
+        cmocka_unit_test(small_halves_are_read_exactly),
         cmocka_unit_test(other_npy_is_refused),
+        cmocka_unit_test(the_axis_that_is_up_is_read_in_every_byte_order),
         cmocka_unit_test(deflated_npz_is_read),
         cmocka_unit_test(a_directory_has_room_for_its_files),
         cmocka_unit_test(npz_that_lies_is_refused),
