@@ -97,6 +97,33 @@ mkdir "$TMPDIR/tractrix-mutate-4194305-killed" # beyond all processes
 run 0 --limit 3; says "1 faults were tried before"
 no_files "$TMPDIR"
 
+claim "--random makes faults of every kind by itself, the same for the same seed, outside of comments and texts"
+mkdir -p "$tree/src/run" "$tree/tests/run"
+cat >"$tree/src/run/c.c" <<'END'
+// a < b + 1
+#define X (1 + 2)
+int f(int a, int b) {
+    if (a < b) return 1 + g(a, b);
+    print("1 < 2, /* + */", 'a'); /* 3 > 4
+    5 == 6 */
+    skip(me);
+    return max(a, b);
+}
+END
+script run/test_c.sh 'grep -q "if (a < b) return 1 + g(a, b);" src/run/c.c && grep -q "skip(me);" src/run/c.c && grep -q "return max(a, b)" src/run/c.c'
+printf 'all:\n\t@:\n' >"$tree/Makefile"
+list "$first" '- z = 3' '+ z = 4' 'gap: nobody looks.'
+run 0 --random 80 --list; cp "$work/out" "$work/all"
+for fault in "a <= b" "2 + g(a, b)" "1 - g(a, b)" "g(b, a)" "!(a < b)" "1 == 1" "return min(a, b)" "skip(me);  ->  ;" "f = 1.1;"; do says "$fault"; done
+for no in "X (" "a < b + 2" "2 < 2" "4 >" "max(b, a)" "int b, int a"; do
+    if grep -qF -- "->  ${no}" "$work/all" || grep -- '->' "$work/all" | sed 's/.*->//' | grep -qF -- "$no"; then bad "made '$no'"; else good; fi
+done
+run 0 --random 80 --list; equal "$work/out" "$work/all"
+run 0 --random 5 --seed 9 --list; if [ "$(grep -c '  ->  ' "$work/out")" = 5 ]; then good; else bad "not five faults"; fi
+run 0 --random 9 --only 'run/c' --least 50 --limit 2; says "caught"; says "src/run"; says "all:"
+run 0 --random 80 --only 'w = 5' --least 0 --limit 2; says "survived: src/base/a.c:4"; says "    - w = 5;"
+rm -r "$tree/src/run" "$tree/tests/run"
+
 claim "lists that do not fit, and wrong options"
 list "$first" '- z' '+ y'; run 3 --check; one_line; says "tests/mutants.txt:1: 'z' occurs 2 times in src/base/a.c: expected once"
 list "$first" '- zz' '+ y'; run 3; says "'zz' occurs 0 times"
