@@ -5,7 +5,7 @@
 . tests/support/claims.sh
 program=$bin/tractrix-render
 # Every pass: followers, collisions with shapes and the mesh's field, volume, wind, sleep, shadows, light among hair, a floor.
-scene="assets/curls.tfx --mesh assets/ball.obj --mesh-unit auto --sdf-resolution 24 --colliders capsule:0,-1,0,0.05,0,-1.2,0,0.05 --volume 0.5 --frames 2 --size 160x120 --samples 2 --floor shadow --exposure 0 -q"
+scene="assets/curls.tfx --mesh assets/ball.obj --mesh-unit auto --sdf-resolution 24 --colliders capsule:0,-1,0,0.05,0,-1.2,0,0.05 --volume 0.5 --frames 2 --size 112x84 --samples 2 --scatter-cells 16 --floor shadow --exposure 0 -q"
 
 # draw FOLDER OPTION...
 draw() {
@@ -33,7 +33,7 @@ in_file "$work/hardware/frame_0000.png" "assumed to be hardware"
 claim "an image that is larger than a framebuffer is drawn as tiles, and no seam is seen"
 for raster in blocks quads compute; do
     [ -d "$work/many_$raster" ] || draw "many_$raster" --raster $raster
-    TRACTRIX_ASSUME=side=128
+    TRACTRIX_ASSUME=side=96
     export TRACTRIX_ASSUME
     draw "tiles_$raster" --raster $raster
     unset TRACTRIX_ASSUME
