@@ -2,12 +2,14 @@
 // The table of hair file formats: what is written reads back to the bit.
 #include "base/random.h"
 #include "gen/strands_make.h"
+#include "image/image.h"
 #include "strands/formats/format.h"
 #include "strands/strands.h"
 #include "strands/strands_read.h"
 #include "support/temporary.h"
 
 #include <locale.h>
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -98,6 +100,14 @@ static Strands make_full(const Format *format, uint32_t count, bool even)
         for (uint32_t v = 0; v < strands.vertex_count; v++)
             strands.vertex_thickness[v] = 1e-5f * (float)(1 + v % 7);
     }
+    if (format->features & STRANDS_HAS_COLOR) { // in whole levels of 8 bits, which all of them hold
+        strands.color = malloc(strands.vertex_count * sizeof *strands.color);
+        for (uint32_t v = 0; v < strands.vertex_count; v++)
+            for (uint32_t k = 0; k < 4; k++) {
+                double level = (37 * v + 91 * k) % 256 / 255.0;
+                strands.color[v][k] = (float)(k < 3 ? image_linear_from_srgb(level) : level);
+            }
+    }
     return strands;
 }
 
@@ -127,6 +137,13 @@ static void what_is_written_is_known_again_and_read_back(void **state)
             assert_memory_equal(back.position, strands.position, 12 * (size_t)strands.vertex_count);
             assert_int_equal(back.followers, strands.followers);
             assert_true(back.follower_radius == strands.follower_radius);
+            if (strands.color && !back.color) fail_msg("%s: no colours", format->name);
+            for (uint32_t v = 0; strands.color && v < strands.vertex_count; v++)
+                for (int k = 0; k < 4; k++)
+                    // HAIR files have 1 - opacity, rounded to 2^-24 at most.
+                    if (fabsf(back.color[v][k] - strands.color[v][k]) > (k == 3 ? 0x1p-24f : 0))
+                        fail_msg("%s: colour %d of vertex %u: %.9g, not %.9g", format->name, k, v,
+                                 (double)back.color[v][k], (double)strands.color[v][k]);
             if (strands.vertex_thickness)
                 assert_memory_equal(back.vertex_thickness, strands.vertex_thickness,
                                     4 * (size_t)strands.vertex_count);
