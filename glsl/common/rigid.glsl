@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Rotation by a unit quaternion (x, y, z, w).
+// Rotations as unit quaternions (x, y, z, w).
 
 vec3 rotate(vec4 q, vec3 v)
 {
     vec3 t = 2.0 * cross(q.xyz, v);
     return v + q.w * t + cross(q.xyz, t);
+}
+
+// The rotation by q after the one by p.
+vec4 product(vec4 q, vec4 p)
+{
+    return vec4(q.w * p.xyz + p.w * q.xyz + cross(q.xyz, p.xyz), q.w * p.w - dot(q.xyz, p.xyz));
 }
 
 // x turned by the smallest rotation from the unit vector a to the unit vector b.

@@ -44,3 +44,7 @@ typedef uint uvec4[4] __attribute__((aligned(16)));
 #define BIND_CONTACTS_BEFORE 6
 #define BIND_CLEARANCE       7 // float a particle: how far the groom is from colliders
 #define BIND_ALONG           8 // two vec4 a vertex: what of a step differs along the strand
+// Four vec4 a strand that is bound to a deforming mesh: the rotation (quaternion) and translation
+// (xyz, m), within the head's frame, that take the strand at rest to where the mesh has it before
+// the step; the same after it. In inbetween.comp two more, for the frame that is drawn.
+#define BIND_FRAMES 9

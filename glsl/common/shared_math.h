@@ -5,6 +5,7 @@
 #ifdef __STDC__
 #pragma once
 #include <math.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 typedef uint32_t uint;
@@ -13,11 +14,31 @@ typedef uint32_t uint;
 #define INT(x)          ((int)(x))
 #define UINT(x)         ((uint)(x))
 #define SHARED_SQRT     sqrtf
+#define SHARED_ABS      fabsf
+// A struct of scalars: SHARED_STRUCT(Name) { ... };
+#define SHARED_STRUCT(name)                                                                        \
+    typedef struct name name;                                                                      \
+    struct name
 SHARED_FUNCTION float SHARED_MAX(float a, float least) // `least` if a is not a number
 {
     return a > least ? a : least;
 }
 SHARED_FUNCTION float SHARED_MIN(float a, float most) { return a < most ? a : most; }
+// 2^x for -2^31 < x <= 0, no less than 2^-126: of the fraction -1/2 .. 1/2 the Taylor series to the
+// sixth power (1.2e-7 off), the rest as exponent bits. (A bound for x itself would be a jump, with
+// which compilers do not vectorise a loop.)
+SHARED_FUNCTION float SHARED_EXP2(float x)
+{
+    int whole = (int)(x - 0.5f), bounded = whole > -126 ? whole : -126;
+    float f = (x - (float)whole) * 0.693147181f;
+    float power =
+        1 + f * (1 + f * (0.5f + f * (1.f / 6 + f * (1.f / 24 + f * (1.f / 120 + f / 720)))));
+    union {
+        int bits;
+        float value;
+    } exponent = {.bits = (bounded + 127) * (1 << 23)};
+    return power * exponent.value;
+}
 SHARED_FUNCTION float FLOAT_OF_BITS(uint bits)
 {
     float value;
@@ -32,14 +53,17 @@ SHARED_FUNCTION uint BITS_OF_FLOAT(float value)
 }
 #else
 #define SHARED_FUNCTION
-#define FLOAT(x)      float(x)
-#define INT(x)        int(x)
-#define UINT(x)       uint(x)
-#define SHARED_SQRT   sqrt
-#define SHARED_MAX    max
-#define SHARED_MIN    min
-#define FLOAT_OF_BITS uintBitsToFloat
-#define BITS_OF_FLOAT floatBitsToUint
+#define FLOAT(x)            float(x)
+#define INT(x)              int(x)
+#define UINT(x)             uint(x)
+#define SHARED_SQRT         sqrt
+#define SHARED_ABS          abs
+#define SHARED_EXP2         exp2
+#define SHARED_STRUCT(name) struct name
+#define SHARED_MAX          max
+#define SHARED_MIN          min
+#define FLOAT_OF_BITS       uintBitsToFloat
+#define BITS_OF_FLOAT       floatBitsToUint
 #endif
 
 #define PI    3.14159265358979323846
@@ -184,6 +208,16 @@ SHARED_FUNCTION float minus_log(float x)
     float series = 1.0f + s * (0.33333333f + s * (0.2f + s * (0.14285714f + s * 0.11111111f)));
     return -(FLOAT(exponent) * 0.693147181f + 2.0f * t * series);
 }
+
+// x^power for 0 <= x <= 1 and power >= 0; 2^-60 where it is less. (Drivers have their own.)
+#ifdef __STDC__
+SHARED_FUNCTION float SHARED_POW(float x, float power)
+{
+    return SHARED_EXP2(-FLOAT(LOG2E) * power * minus_log(SHARED_MAX(x, 1e-30f)));
+}
+#else
+#define SHARED_POW pow
+#endif
 
 // What a fibre adds where it covers a texel. `width`: texels.
 SHARED_FUNCTION float fibre_depth(float opacity, float width)

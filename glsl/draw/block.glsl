@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The block rasteriser's record of a ribbon: RIBBON_TEXELS uvec4, that is one line of a CPU's cache
-// (RibbonRecord of ribbon_record.h; src/draw/block_composite.c unpacks it).
+// The compute rasteriser's record of a ribbon: RIBBON_TEXELS uvec4.
 //
 //   line: x, y of its ends, px, as float bits
 //   shape: half-widths at its ends (px, levels); bound at the first end, bound at the last (two
@@ -22,15 +21,13 @@
 
 // Two numbers share a word: levels, which are not negative (shared_math.h), or shorts, a float's
 // upper half.
-#include "common/shared_math.h"
-
-const float JOINT = 512.0; // length of a joint's bound, times 2 at most
+#include "kernel/ribbon.h"
 
 uint pack_levels(vec2 v) { return pack_level(v.x) | (pack_level(v.y) << 16); }
 
-uint pack_shorts(vec2 v)
+uint pack_shorts(RibbonBound bound)
 {
-    uvec2 bits = floatBitsToUint(v) + 0x8000u;
+    uvec2 bits = floatBitsToUint(vec2(bound.x, bound.y)) + 0x8000u;
     return (bits.x >> 16) | (bits.y & 0xffff0000u);
 }
 
@@ -41,7 +38,11 @@ uint pack_depth(float opacity, float change)
            ((floatBitsToUint(change) + 0x800u) & 0xfffff000u);
 }
 
-bool bound_is_free(vec2 bound) { return dot(bound, bound) < 4.0; }
+RibbonBound unpack_shorts(uint word)
+{
+    vec2 bound = uintBitsToFloat(uvec2(word << 16, word & 0xffff0000u));
+    return RibbonBound(bound.x, bound.y, dot(bound, bound) < 4.0 ? 0.5 : 1.0);
+}
 
 struct Span {
     float slope, reach;

@@ -14,7 +14,7 @@
 #include "draw/draw.h"
 #include "draw/material.h"
 #include "common/hair_address.glsl"
-#include "common/hash.glsl"
+#include "common/hash.h"
 #include "draw/curve.glsl"
 #include "draw/paint.glsl"
 

@@ -21,39 +21,26 @@ layout(std430, binding = BIND_RIBBONS_OUT) writeonly buffer Ribbons { uvec4 ribb
 layout(std430, binding = BIND_KEYS_OUT) writeonly buffer Keys { uvec2 keys[]; };
 layout(std430, binding = BIND_BLOCK_COUNTS_OUT) buffer Counts { uint counts[]; };
 
-const float LEAST_OPACITY = 1.0 / 4096.0;
-const float FOLD = LEAST_COSINE; // of 1 + d0.d1: beyond that a joint has no mitre
-
 // A ribbon's end as its record has it.
 struct End {
     vec2 at;
     float inverse_w, half_width;
-    vec2 bound, bound_before; // of the ribbon that begins here, of the one that ends here
+    RibbonBound bound, bound_before; // of the ribbon that begins here, of the one that ends here
     vec3 color;
 };
 
 End make_end(Particle p, vec2 d0, vec2 d1)
 {
-    bool free = d0 == vec2(0.0) || d1 == vec2(0.0) || 1.0 + dot(d0, d1) < FOLD;
-    if (d0 == vec2(0.0)) d0 = d1;
-    if (d1 == vec2(0.0)) d1 = d0;
-    vec2 sum = d0 + d1, joint = JOINT * sum;
-    return End(p.at.xy, p.at.z, outline_half_width(p, vec2(-sum.y, sum.x)), free ? d1 : joint,
-               free ? d0 : joint, p.color);
-}
-
-// How far beyond an end along d its bound lets pixels be, for a ribbon that reaches so far across.
-float overhang(vec2 bound, vec2 d, float reach)
-{
-    float tangent = abs(bound.x * d.y - bound.y * d.x) / max(dot(bound, d), 0.1);
-    return bound_is_free(bound) ? 0.5 : min(tangent, 3.0) * reach + 0.01;
+    vec2 sum = d0 + d1;
+    return End(vec2(p.at.x, p.at.y), p.at.inverse_w, outline_half_width(p, vec2(-sum.y, sum.x)),
+               ribbon_bound(d1.x, d1.y, d0.x, d0.y), ribbon_bound(d0.x, d0.y, d1.x, d1.y), p.color);
 }
 
 // Which pixels' middles are in reach.
 Span find_span(End a, End b, vec2 d, float reach, out bool seen)
 {
-    vec2 p = a.at - d * overhang(a.bound, d, reach),
-         q = b.at + d * overhang(b.bound_before, d, reach);
+    vec2 p = a.at - d * ribbon_overhang(a.bound, d.x, d.y, reach),
+         q = b.at + d * ribbon_overhang(b.bound_before, d.x, d.y, reach);
     vec2 across = reach * abs(d.yx);
     vec2 low = max(ceil(min(p, q) - across - 0.5), 0.0),
          high = min(floor(max(p, q) + across - 0.5), size - 1.0);
@@ -79,8 +66,8 @@ bool store(int slot, End a, End b, float opacity)
     bool seen;
     Span span =
         find_span(a, b, d, max(a.half_width, b.half_width) + 0.5 * (abs(d.x) + abs(d.y)), seen);
-    seen =
-        seen && opacity >= LEAST_OPACITY && a.inverse_w > 0.0 && b.inverse_w > 0.0 && a.at != b.at;
+    seen = seen && opacity >= RIBBON_LEAST_OPACITY && a.inverse_w > 0.0 && b.inverse_w > 0.0 &&
+           a.at != b.at;
     if (seen) {
         float depth = 0.5 * (a.inverse_w + b.inverse_w);
         int at = slot * RIBBON_TEXELS;
@@ -99,7 +86,8 @@ bool store(int slot, End a, End b, float opacity)
 int slot = 0;  // of the strand's first ribbon
 int count = 0; // of its ribbons so far
 // Of the ribbon that is not stored yet.
-End end = End(vec2(0.0), 0.0, 0.0, vec2(0.0), vec2(0.0), vec3(0.0));
+End end =
+    End(vec2(0.0), 0.0, 0.0, RibbonBound(0.0, 0.0, 0.0), RibbonBound(0.0, 0.0, 0.0), vec3(0.0));
 bool begun = false;
 
 void see_point(Particle p) {}

@@ -1,17 +1,23 @@
 // SPDX-License-Identifier: MIT
 // Composites a tile of pixels a work group, of the tiles with ribbons: its list's ribbons near to
 // far, each under what stands before it, premultiplied and in linear light, over what stands
-// behind, to colours. The arithmetic is that of src/draw/block_composite.c and block_pixels.c.
+// behind, to colours. The arithmetic is that of src/lanes/composite.c and pixels.c.
 //   PIXELS 1, 4: of a lane, one above the other; GROUP_SIZE: lanes, for a tile
 //   STAGED 1: ribbons are unpacked once, into shared memory   0: by every lane for itself
 //   BASE 1: mesh or floor hide what is behind them; see compute_pixels.glsl, too
-//   NEAREST 1: a ribbon hides all behind it where it covers LEAST_COVERAGE of the pixel
+//   NEAREST 1: a ribbon hides all behind it where it covers RIBBON_LEAST_COVERAGE of the pixel
 //   DEPTH 1: and shows its distance
 //   SAMPLES, KIND, TONE: see compute_pixels.glsl
 //
 // Ribbons are taken BATCH at a time: lanes find the cells that each of them touches, a bit a ribbon
 // in the cell's mask, then each cell's lanes go through their mask from its lowest bit on. So bits
-// may be set in any order. A cell is left out once less than LEAST is seen through all its pixels.
+// may be set in any order. A cell is left out once less than RIBBON_LEAST_THROUGH is seen through
+// all its pixels.
+#if PIXELS == 4
+#define REAL vec4
+#else
+#define REAL float
+#endif
 #include "draw/draw.h"
 #include "draw/block.glsl"
 #include "draw/compute_pixels.glsl"
@@ -30,13 +36,12 @@ layout(std430, binding = BIND_TILE_USE_OUT) readonly buffer Use { uint use[TILE_
 layout(std430, binding = BIND_TILES_OUT) readonly buffer Tiles { uint tiles[]; };
 
 // Some number of each of a lane's pixels.
+#define Numbers REAL
 #if PIXELS == 4
-#define Numbers    vec4
 #define OF(v, k)   v[k]
 #define LARGEST(v) max(max(v.x, v.y), max(v.z, v.w))
 #define ROWS       vec4(0.0, 1.0, 2.0, 3.0)
 #else
-#define Numbers    float
 #define OF(v, k)   v
 #define LARGEST(v) v
 #define ROWS       0.0
@@ -44,8 +49,6 @@ layout(std430, binding = BIND_TILES_OUT) readonly buffer Tiles { uint tiles[]; }
 
 const int CELLS_ACROSS = TILE_SIDE / TILE_CELL_WIDTH, // 2
     CELLS = CELLS_ACROSS * (TILE_SIDE / TILE_CELL_HEIGHT), BATCH = 128, WORDS = BATCH / 32;
-const float LEAST = 1.0 / 1024.0;
-const float LEAST_COVERAGE = 1.0 / 16.0; // as in hair.frag
 
 // Those of this batch and of the next one, in turn.
 shared uint masks[2 * CELLS * WORDS];
@@ -69,16 +72,13 @@ struct Ribbon {
     vec3 first, change; // colour
 };
 
-vec2 unpack_shorts(uint word) { return uintBitsToFloat(uvec2(word << 16, word & 0xffff0000u)); }
-
-float bound_offset(vec2 bound) { return bound_is_free(bound) ? 0.5 : 1.0; }
-
 Ribbon unpack_ribbon(uvec4 line, uvec4 shape, uvec4 tint)
 {
     vec2 a = origin - uintBitsToFloat(line.xy), b = origin - uintBitsToFloat(line.zw), way = a - b;
     float inverse = inversesqrt(max(way.x * way.x + way.y * way.y, 1e-20));
-    vec2 d = way * inverse, first = unpack_shorts(shape.y), last = unpack_shorts(shape.z);
-    float steep = max(abs(d.x), abs(d.y)), flat_ = max(min(abs(d.x), abs(d.y)), 1e-3);
+    vec2 d = way * inverse;
+    RibbonBound first = unpack_shorts(shape.y), last = unpack_shorts(shape.z);
+    RibbonProfile profile = ribbon_profile(d.x, d.y);
     float change_w = uintBitsToFloat(shape.w & 0xfffff000u), mean_w = uintBitsToFloat(tint.w);
 #if NEAREST
     float opacity = 1.0;
@@ -87,15 +87,14 @@ Ribbon unpack_ribbon(uvec4 line, uvec4 shape, uvec4 tint)
 #endif
     Ribbon r;
     r.at = vec4(a.y * d.x - a.x * d.y, (a.x * d.x + a.y * d.y) * inverse,
-                a.x * first.x + a.y * first.y + bound_offset(first),
-                1.0 - b.x * last.x - b.y * last.y - bound_offset(last));
+                a.x * first.x + a.y * first.y + first.offset,
+                1.0 - b.x * last.x - b.y * last.y - last.offset);
     r.by_x = vec4(-d.y, d.x * inverse, first.x, -last.x);
     r.by_y = vec4(d.x, d.y * inverse, first.y, -last.y);
     float half_width = low_level(shape.x);
-    r.width = vec4(half_width, high_level(shape.x) - half_width, 0.5 * (steep - flat_),
-                   0.5 * (steep + flat_));
-    r.cover =
-        vec4(opacity / steep, 0.5 / flat_, mean_w * (1.0 - 0.5 * change_w), mean_w * change_w);
+    r.width = vec4(half_width, high_level(shape.x) - half_width, profile.inner, profile.outer);
+    r.cover = vec4(opacity * profile.factor, profile.curve, mean_w * (1.0 - 0.5 * change_w),
+                   mean_w * change_w);
     r.first = vec3(low_level(tint.x), high_level(tint.x), low_level(tint.y));
     r.change = vec3(high_level(tint.y), low_level(tint.z), high_level(tint.z)) - r.first;
     return r;
@@ -178,8 +177,7 @@ Numbers hidden = Numbers(0.0);  // 1/w of what hides all behind it; 0: nothing
 
 Numbers profile_area(Ribbon r, Numbers t)
 {
-    Numbers m = min(t, r.width.w), u = max(m - r.width.z, 0.0);
-    return m - r.cover.y * (u * u);
+    return ribbon_area(t, r.width.z, r.width.w, r.cover.y);
 }
 
 void draw(Ribbon r)
@@ -197,7 +195,7 @@ void draw(Ribbon r)
     Numbers near = r.cover.z + along * r.cover.w;
 #endif
 #if NEAREST
-    Numbers seen = step(LEAST_COVERAGE, alpha) * (1.0 - step(near, hidden));
+    Numbers seen = step(RIBBON_LEAST_COVERAGE, alpha) * (1.0 - step(near, hidden));
     hidden = mix(hidden, near, seen);
     through *= 1.0 - seen;
     red = mix(red, r.first.r + along * r.change.r, seen);
@@ -242,7 +240,7 @@ void draw_list(int begin, int count)
         list_batch(from, count - batch * BATCH, batch, open);
         barrier();
         draw_batch(from, cell, batch);
-        if (NEAREST == 1 || LARGEST(through) > LEAST) open_from[cell] = batch + 1;
+        if (NEAREST == 1 || LARGEST(through) > RIBBON_LEAST_THROUGH) open_from[cell] = batch + 1;
         barrier();
         open = find_open(batch + 1);
     }

@@ -4,8 +4,9 @@
 //   SMOOTH 1: smooth curves, in material.smooth_parts parts a segment: Catmull-Rom with centripetal
 //      knots (through all particles) or the uniform cubic B-spline
 //
-// Before the root and behind the tip stands the neighbour's mirror image: so the B-spline, too,
-// begins and ends at the strand's ends.
+// So the B-spline, too, begins and ends at the strand's ends (kernel/curve.h).
+#include "kernel/curve.h"
+
 layout(binding = BIND_POSITION) uniform samplerBuffer position;
 
 struct Curve {
@@ -37,23 +38,25 @@ Around curve_around(Curve c, int j)
     return Around(a, b, d, e);
 }
 
-// The knots' distances are the roots of the particles', and the tangents at b and d those of the
-// parabolas through three knots (Barry and Goldman 1988), over the segment's own distance.
-void curve_tangents(Around o, out vec3 from, out vec3 to)
+float curve_knot_of(vec3 way) { return curve_knot(way.x, way.y, way.z); }
+
+CurveKnots curve_knots_of(Around o)
 {
-    float before = max(sqrt(length(o.b - o.a)), 1e-9), own = max(sqrt(length(o.d - o.b)), 1e-9),
-          after = max(sqrt(length(o.e - o.d)), 1e-9);
-    vec3 way = o.d - o.b;
-    from = way + own * ((o.b - o.a) / before - (o.d - o.a) / (before + own));
-    to = way + own * ((o.e - o.d) / after - (o.e - o.b) / (own + after));
+    return curve_knots(curve_knot_of(o.b - o.a), curve_knot_of(o.d - o.b),
+                       curve_knot_of(o.e - o.d));
+}
+
+vec3 curve_sum(Around o, CurveWeights w)
+{
+    return w.before * (o.b - o.a) + w.own * (o.d - o.b) + w.after * (o.e - o.d);
 }
 
 // Four points whose convex hull has all of segment j of the curve: the B-spline's own, or Bezier's.
 vec3[4] curve_hull(Curve c, int j)
 {
     Around o = curve_around(c, j);
-    vec3 from, to;
-    curve_tangents(o, from, to);
+    CurveKnots knots = curve_knots_of(o);
+    vec3 from = curve_sum(o, curve_tangent_from(knots)), to = curve_sum(o, curve_tangent_to(knots));
     bool spline = material.smooth_curve != 0u;
     return vec3[4](spline ? o.a : o.b, spline ? o.b : o.b + from / 3.0,
                    spline ? o.d : o.d - to / 3.0, spline ? o.e : o.d);
@@ -68,15 +71,8 @@ vec3 curve_point(Curve c, int k)
     int j = min(k / c.parts, c.segments - 1);
     float t = float(k - j * c.parts) / float(c.parts);
     Around o = curve_around(c, j);
-    if (material.smooth_curve != 0u) {
-        float s = 1.0 - t;
-        return (s * s * s * o.a + (3.0 * t * t * t - 6.0 * t * t + 4.0) * o.b +
-                (3.0 * s * s * s - 6.0 * s * s + 4.0) * o.d + t * t * t * o.e) *
-               (1.0 / 6.0);
-    }
-    vec3 way = o.d - o.b, from, to;
-    curve_tangents(o, from, to);
-    return o.b + t * (from + t * (3.0 * way - 2.0 * from - to + t * (from + to - 2.0 * way)));
+    if (material.smooth_curve != 0u) return o.b + curve_sum(o, curve_spline(t));
+    return o.b + curve_sum(o, curve_hermite(curve_knots_of(o), t));
 #else
     return particle(c, k);
 #endif

@@ -42,7 +42,7 @@
 #define SCATTER_AZIMUTHS     128
 #define SCATTER_INCLINATIONS 64
 #define SCATTER_COLORS       24
-#define TINT_SLICES          16 // of brightness, see tint_table.h
+#define TINT_SLICES          4 // of brightness, see tint_table.h
 
 // The same points for the block-list rasteriser, which is never at work with the A-buffer.
 #define BIND_BLOCK_COUNTS_OUT 0 // uint, 16 for each of 64 groups: ribbons, strands without any

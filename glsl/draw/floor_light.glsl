@@ -1,26 +1,21 @@
 // SPDX-License-Identifier: MIT
 // A matt plane, lit as the mesh is, that fades away from its middle (needs lights.glsl,
-// shadow_surface.glsl, sky.glsl).
+// shadow_surface.glsl).
 //   FLOOR 1: it is seen   2: only the light that it lacks where there is shadow: black that covers
 //       so much
-#include "draw/floor.glsl"
+#include "kernel/floor.h"
 
-layout(location = 2) uniform vec3 floor_color; // linear RGB
+layout(location = 0) uniform vec3 floor_middle; // m
+layout(location = 1) uniform vec2 floor_reach;  // m: of the whole floor, of the last of it
+layout(location = 2) uniform vec3 floor_color;  // linear RGB
 
 const vec3 FLOOR_UP = vec3(0.0, 1.0, 0.0);
-
-float luminance(vec3 light) { return dot(light, vec3(0.2126, 0.7152, 0.0722)); }
-
-// How much of the floor is left at x.
-float floor_there(vec3 x)
-{
-    return 1.0 - smoothstep(floor_reach.x, floor_reach.y, length(x.xz - floor_middle.xz));
-}
 
 // Linear, premultiplied.
 vec4 floor_shown(vec3 x, float there)
 {
-    vec3 around = sky_reaching(FLOOR_UP), light = around, sent = around;
+    vec3 around = draw_params.mesh_color.a * light_around(FLOOR_UP, 1.0), light = around,
+         sent = around;
 #if SHADOW
     shadow_find_on(x, FLOOR_UP);
 #endif
@@ -31,7 +26,8 @@ vec4 floor_shown(vec3 x, float there)
         light += all_light * light_left(i);
     }
 #if FLOOR == 2
-    return vec4(vec3(0.0), there * (1.0 - luminance(light) / max(luminance(sent), 1e-6)));
+    return vec4(vec3(0.0), there * floor_shadow(floor_luminance(light.r, light.g, light.b),
+                                                floor_luminance(sent.r, sent.g, sent.b)));
 #else
     return there * vec4(floor_color * light, 1.0);
 #endif

@@ -4,6 +4,7 @@
 #include "draw/draw.h"
 #include "draw/coverage.glsl"
 #include "draw/abuffer.glsl"
+#include "kernel/ribbon.h"
 
 layout(early_fragment_tests) in;
 layout(std430, binding = BIND_NODES_OUT) writeonly buffer Nodes { uvec4 nodes[]; };
@@ -16,9 +17,6 @@ noperspective in vec2 ends;
 noperspective in vec4 color;
 noperspective in float inverse_w;
 
-const float LEAST_ALPHA = 1.0 / 4096.0;
-const float LEAST_COVERAGE = 1.0 / 16.0; // of a pixel whose nearest ribbon is asked for
-
 void main()
 {
     // Of the pixel, as if it lay along the strand, what is beyond the root less what is beyond the
@@ -27,11 +25,11 @@ void main()
     float share = max(beyond.x + beyond.y - 1.0, 0.0);
     float coverage = share * ribbon_coverage(across, half_width, vec2(dFdx(across), dFdy(across)));
 #if NEAREST
-    float alpha = coverage >= LEAST_COVERAGE && color.a >= LEAST_ALPHA ? 1.0 : 0.0;
+    float alpha = coverage >= RIBBON_LEAST_COVERAGE && color.a >= RIBBON_LEAST_OPACITY ? 1.0 : 0.0;
 #else
     float alpha = color.a * coverage;
 #endif
-    if (!(alpha >= LEAST_ALPHA)) return; // nor what is not a number
+    if (!(alpha >= RIBBON_LEAST_OPACITY)) return; // nor what is not a number
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     uvec4 band = draw_params.band; // read once: a uniform costs a load wherever it is named
     uint shards = draw_params.shards;

@@ -13,6 +13,10 @@
 #define WALK_BEYOND 0
 #include "draw/ribbon_walk.glsl"
 
+const float PAD = 0.71;          // px; the corner of a pixel is sqrt(1/2) from its middle
+const float LEAST_COSINE = 0.25; // of the joints' 1 + n0.n1
+const float MITRE_MAX = 2.9;     // bound of |m|: sqrt(2 x) / max(x, LEAST_COSINE) over all x
+
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
 // How many; 1: they are those of the list (block_cull.comp)
@@ -40,9 +44,9 @@ void store(int index, Particle p, vec2 d0, vec2 d1, vec2 beyond, float opacity)
     vec2 normal = vec2(-d0.y - d1.y, d0.x + d1.x);
     float half_width = outline_half_width(p, normal);
     vec2 edge = normal * ((half_width + PAD) / max(1.0 + dot(d0, d1), LEAST_COSINE));
-    vec2 middle = p.at.xy + min(beyond.x, 0.0) * d1 - min(beyond.y, 0.0) * d0;
+    vec2 middle = vec2(p.at.x, p.at.y) + min(beyond.x, 0.0) * d1 - min(beyond.y, 0.0) * d0;
     edges[index] = uvec4(floatBitsToUint(middle), packHalf2x16(edge), packHalf2x16(beyond));
-    shades[index] = uvec4(floatBitsToUint(p.at.z), floatBitsToUint(half_width),
+    shades[index] = uvec4(floatBitsToUint(p.at.inverse_w), floatBitsToUint(half_width),
                           packHalf2x16(p.color.rg), packHalf2x16(vec2(p.color.b, opacity)));
 }
 
@@ -69,20 +73,21 @@ vec4 box = vec4(1e6);   // px: least x, y and what is least of -x, -y
 
 void see_point(Particle p)
 {
-    float reach = MITRE_MAX * (p.at.w + 1.0);
-    if (p.at.z > 0.0) box = min(box, vec4(p.at.xy, -p.at.xy) - reach);
+    float reach = MITRE_MAX * (p.at.half_width + 1.0);
+    vec2 at = vec2(p.at.x, p.at.y);
+    if (p.at.inverse_w > 0.0) box = min(box, vec4(at, -at) - reach);
 }
 
 bool ends_ribbon(Walk w, int j)
 {
-    return w.bent > 1.0 && distance(w.kept.at.xy, w.last.at.xy) > LEAST_WAY;
+    return w.bent > 1.0 && length(way_from(w.kept, w.last)) > LEAST_WAY;
 }
 
 void put_joint(Walk w, int j, vec2 next)
 {
     if (j > 1) {
         store(first + count++, w.kept, w.way, next, vec2(from_root, FAR), w.opacity);
-        from_root = min(max(from_root, 0.0) + distance(w.kept.at.xy, w.last.at.xy), FAR);
+        from_root = min(max(from_root, 0.0) + length(way_from(w.kept, w.last)), FAR);
     }
 }
 
@@ -95,7 +100,7 @@ void main()
     first = row * count_points();
     Walk w = walk_strand(s, texelFetch(strand_id, s).x);
     vec2 next = direction(w.kept, w.last);
-    float left = min(distance(w.kept.at.xy, w.last.at.xy), FAR);
+    float left = min(length(way_from(w.kept, w.last)), FAR);
     store(first + count++, w.kept, w.way, next, vec2(from_root, left), w.opacity);
     store(first + count++, w.last, next, next, vec2(min(max(from_root, 0.0) + left, FAR), -PAD),
           w.opacity);

@@ -2,23 +2,11 @@
 // Cells of the light grid (needs light.h). Cells in which hair lies have the first slots, then
 // those beside them, in any order: nothing depends on it.
 
+#include "kernel/cell.h"
+#include "kernel/lamp.h"
+
 ivec3 cells = ivec3(light_params.count.xyz);
 float side = light_params.low.w; // m
-
-struct LightCell {
-    vec4 glow;     // rgb: what the mesh sends back of its light
-    vec4 tint;     // rgb: albedo over that of the kind
-    vec4 mean;     // rgb: mean light; w = 1: so little of the cell is seen that it will do
-    uint tints[4]; // of them three: sums of painted areas, their low words
-    uint carry[4]; // their high words
-    ivec4 places;  // x: which cell; y: main tangent and kind
-};
-
-struct LightState {
-    uint filled, beside; // cells with hair, cells next to them
-    uint done;           // 1: no order more is needed
-    vec4 more;           // rgb: how much of the last order the orders after it add
-};
 
 vec3 to_lattice(vec3 v)
 {
@@ -49,6 +37,18 @@ int ordinate_address(int d, int slot) { return 3 * (d * int(light_params.room) +
 int wide_address(int d, int channel)
 {
     return (d / LIGHT_LANES * 3 + channel) * LIGHT_LANES + d % LIGHT_LANES;
+}
+
+// The light of an ordinate from around all hair: from above (+y of the world) comes the sky, from
+// below the ground, evenly between them.
+vec3 light_from_around(int d)
+{
+    vec3 out_of = light_params.ordinate[d].xyz;
+    float up = -(light_params.turn[0].y * out_of.x + light_params.turn[1].y * out_of.y +
+                 light_params.turn[2].y * out_of.z);
+    vec4 sky = draw_params.sky, ground = draw_params.ground;
+    return vec3(lamp_around(sky.r, ground.r, up), lamp_around(sky.g, ground.g, up),
+                lamp_around(sky.b, ground.b, up));
 }
 
 // Axis `axis` first, then those that follow it.

@@ -12,8 +12,8 @@
 // Shader storage: no pass has two of the same number.
 #define BIND_LIGHT_BOX_OUT    0 // LIGHT_BOX_WORDS int, see light_box.comp
 #define BIND_LIGHT_SLOTS_OUT  0 // int a cell, see light_slots.comp
-#define BIND_LIGHT_CELLS_OUT  1 // LightCell a slot, see light.glsl
-#define BIND_LIGHT_STATE_OUT  2 // LightState, see light.glsl
+#define BIND_LIGHT_CELLS_OUT  1 // LightCell a slot
+#define BIND_LIGHT_STATE_OUT  2 // LightState, then vec4 a sweep and ordinate: what hair meets
 #define BIND_LIGHT_SUMS_OUT   3 // uint, see light_items.comp
 #define BIND_LIGHT_PLANES_OUT 3 // vec4, see light_sweep.comp
 #define BIND_LIGHT_ALL_OUT    3 // vec4 a slot and ordinate: the light of all orders
@@ -28,7 +28,7 @@
 #define BIND_LIGHT_WALLS   2 // 1 or 0 an axis and cell, with a cell around: what passes the mesh
 #define BIND_LIGHT_FIRST   3 // [kind][light][class][LIGHT_WIDE], see light_fill.comp
 #define BIND_LIGHT_SCATTER 4 // [kind][class][channel][in][out], see light_scatter.comp
-#define BIND_LIGHT_GATHER  5 // [kind][node][LIGHT_WIDE], see light_gather.comp
+#define BIND_LIGHT_GATHER  5 // [kind][CELL_PATCHES][LIGHT_WIDE][CELL_PATCH_NODES]
 #define BIND_LIGHT_ALL     6 // vec4 a slot and ordinate
 
 #define LIGHT_ORDINATES 48                    // directions that light is followed in
@@ -36,13 +36,27 @@
 #define LIGHT_WIDE      (3 * LIGHT_ORDINATES) // [group][channel][lane]
 #define LIGHT_CLASSES   128                   // of tangents
 #define LIGHT_SQUARES   24                    // of tangents, across a face of a cube
-#define LIGHT_SIDE      32                    // of tangents, across an octahedron
-#define LIGHT_ROW       (LIGHT_SIDE + 1)
-#define LIGHT_NODES     (LIGHT_ROW * LIGHT_ROW)
-#define LIGHT_KINDS     4  // of fibres
-#define LIGHT_MOST      33 // sweeps
+#define LIGHT_KINDS     4                     // of fibres
+#define LIGHT_MOST      33                    // sweeps
 
 #define LIGHT_STEPS 65536.0 // in which areas are added up
+
+SHARED_STRUCT(LightCell)
+{
+    vec4 glow;     // rgb: what the mesh sends back of its light
+    vec4 tint;     // rgb: albedo over that of the kind
+    vec4 mean;     // rgb: mean light; w = 1: so little of the cell is seen that it will do
+    uint tints[4]; // of them three: sums of painted areas, their low words
+    uint carry[4]; // their high words
+    ivec4 places;  // x: which cell; y: main tangent and kind
+};
+
+SHARED_STRUCT(LightState)
+{
+    uint filled, beside; // cells with hair, cells next to them
+    uint done;           // 1: no order more is needed
+    vec4 more;           // rgb: how much of the last order the orders after it add
+};
 
 // Floats of the tables: [class][ordinate] the sine of their angle; [class][3]; [face][row][column]
 // the class.
@@ -65,6 +79,7 @@ UNIFORM_BLOCK(LightParams, light_params, BIND_LIGHT)
     vec4 eye_axis; // xyz: unit, that the table of what is seen is for; w: the nearest ordinate
     vec4 albedo[LIGHT_KINDS]; // rgb: of light square to the fibre
     uint pieces;              // of a segment
+    uint step;                // of so many strands one stands for all in the cells
     uint lights;              // whose light is followed
     uint classes;             // of tangents, of all kinds
     uint room;                // slots

@@ -14,8 +14,10 @@ layout(std430, binding = BIND_LIGHT_BOX_OUT) buffer Box { int box[]; };
 
 void main()
 {
-    int s = lane_index(), n = int(material.vertex_count);
-    if (s >= int(material.drawn_strands)) return;
+    uint lane = uint(lane_index());
+    if (lane >= cell_strands(material.drawn_strands, light_params.step)) return;
+    int s = int(cell_strand(lane, material.drawn_strands, light_params.step)),
+        n = int(material.vertex_count);
     Curve curve = curve_open(particle_address(s, 0, n), n);
     int begin = int(gl_WorkGroupID.z) * PART_VERTICES, end = min(begin + PART_VERTICES, n);
     vec3 low = vec3(1e30), high = vec3(-1e30), before = vec3(1e30);

@@ -20,10 +20,9 @@ int class_of(vec3 t)
     int axis = longest_axis(t);
     vec3 from = turned(t, axis);
     vec2 at = from.yz / max(abs(from.x), 1e-20);
-    ivec2 square = clamp(ivec2(0.5 * (at + 1.0) * float(LIGHT_SQUARES)), 0, LIGHT_SQUARES - 1);
+    int column = cell_square(at.x, LIGHT_SQUARES), row = cell_square(at.y, LIGHT_SQUARES);
     int face = 2 * axis + int(from.x > 0.0);
-    return int(
-        texelFetch(light_tables,
-                   LIGHT_NEAREST_AT + (face * LIGHT_SQUARES + square.y) * LIGHT_SQUARES + square.x)
-            .x);
+    return int(texelFetch(light_tables,
+                          LIGHT_NEAREST_AT + (face * LIGHT_SQUARES + row) * LIGHT_SQUARES + column)
+                   .x);
 }

@@ -18,38 +18,28 @@ layout(std430, binding = BIND_LIGHT_SLOTS_OUT) readonly buffer Slots { int slots
 layout(std430, binding = BIND_LIGHT_CELLS_OUT) readonly buffer Cells { LightCell cell[]; };
 layout(std430, binding = BIND_LIGHT_SEEN_OUT) writeonly buffer Seen { float seen[]; };
 
-// Turned by the smallest rotation from the way to the eye to that of the table.
-vec3 turn_tangent(vec3 x, vec3 t)
+// Towards the eye, of the light from an ordinate: between the four nodes around a tangent.
+vec3 weight_of(CellTangent at, int d)
 {
-    vec3 axis = light_params.eye_axis.xyz, way = light_params.eye.xyz - x;
-    way *= inversesqrt(max(dot(way, way), 1e-20));
-    vec3 between = way + axis;
-    return t - dot(t, between) / max(1.0 + dot(way, axis), 1e-3) * between +
-           2.0 * dot(t, way) * axis;
+    int row = (kind * CELL_PATCHES + at.in_patch) * LIGHT_WIDE + wide_address(d, 0);
+    vec3 weight;
+    for (int c = 0; c < 3; ++c) {
+        int node = (row + c * LIGHT_LANES) * CELL_PATCH_NODES + at.node,
+            next = node + CELL_PATCH_ROW;
+        weight[c] =
+            mix(mix(texelFetch(gather, node).x, texelFetch(gather, node + 1).x, at.u),
+                mix(texelFetch(gather, next).x, texelFetch(gather, next + 1).x, at.u), at.v);
+    }
+    return weight;
 }
 
-// Where a tangent lies among the table's nodes.
-vec2 node_place(vec3 t)
-{
-    t /= max(abs(t.x) + abs(t.y) + abs(t.z), 1e-12);
-    vec2 far = 1.0 - abs(t.yx);
-    vec2 at = t.z < 0.0 ? vec2(t.x < 0.0 ? -far.x : far.x, t.y < 0.0 ? -far.y : far.y) : t.xy;
-    return clamp((at + 1.0) * (0.5 * float(LIGHT_SIDE)), 0.0, float(LIGHT_SIDE) - 1e-3);
-}
-
-vec3 weight_at(int row, int at)
-{
-    int first = row * LIGHT_WIDE + at;
-    return vec3(texelFetch(gather, first).x, texelFetch(gather, first + LIGHT_LANES).x,
-                texelFetch(gather, first + 2 * LIGHT_LANES).x);
-}
-
-// The slot of a cell around a place, nearest in the lattice; what has none has no light.
+// The slot of a cell around a place, nearest in the lattice. What has none has the light from
+// around.
 int slot_near(ivec3 at) { return slots[cell_address(clamp(at, ivec3(0), cells - 1))]; }
 
 vec3 light_at(int slot, int d)
 {
-    return slot < 0 ? vec3(0.0) : texelFetch(all_light, slot * LIGHT_ORDINATES + d).rgb;
+    return slot < 0 ? light_from_around(d) : texelFetch(all_light, slot * LIGHT_ORDINATES + d).rgb;
 }
 
 vec3 show(vec3 x, vec3 t)
@@ -65,19 +55,17 @@ vec3 show(vec3 x, vec3 t)
           far = ivec4(slot_near(at + ivec3(0, 0, 1)), slot_near(at + ivec3(1, 0, 1)),
                       slot_near(at + ivec3(0, 1, 1)), slot_near(at + 1));
     vec4 plane = vec4(low.x * low.y, high.x * low.y, low.x * high.y, high.x * high.y);
-    vec2 place = node_place(turn_tangent(x, t)), share = fract(place);
-    int node = kind * LIGHT_NODES + int(place.y) * LIGHT_ROW + int(place.x);
+    vec3 way = light_params.eye.xyz - x, axis = light_params.eye_axis.xyz;
+    CellVector turned = cell_turn(CellVector(t.x, t.y, t.z), CellVector(way.x, way.y, way.z),
+                                  CellVector(axis.x, axis.y, axis.z));
+    CellTangent tangent = cell_tangent(turned.x, turned.y, turned.z);
     vec3 sum = vec3(0.0);
     for (int d = 0; d < LIGHT_ORDINATES; ++d) {
         vec3 light = low.z * (plane.x * light_at(near.x, d) + plane.y * light_at(near.y, d) +
                               plane.z * light_at(near.z, d) + plane.w * light_at(near.w, d)) +
                      high.z * (plane.x * light_at(far.x, d) + plane.y * light_at(far.y, d) +
                                plane.z * light_at(far.z, d) + plane.w * light_at(far.w, d));
-        int column = wide_address(d, 0);
-        sum += light * mix(mix(weight_at(node, column), weight_at(node + 1, column), share.x),
-                           mix(weight_at(node + LIGHT_ROW, column),
-                               weight_at(node + LIGHT_ROW + 1, column), share.x),
-                           share.y);
+        sum += light * weight_of(tangent, d);
     }
     return sum;
 }

@@ -12,10 +12,6 @@ layout(std430, binding = BIND_LIGHT_CELLS_OUT) buffer Cells { LightCell cell[]; 
 layout(std430, binding = BIND_LIGHT_STATE_OUT) readonly buffer State { LightState state; };
 layout(std430, binding = BIND_LIGHT_DEPTH_OUT) readonly buffer Depth { float depth[]; };
 
-// Fibres between the eye and the cell, but for those of the cell and of its neighbours, beyond
-// which a share of 1e-3 of hair is seen.
-const float HIDDEN_BEHIND = 7.0;
-
 bool is_hidden(ivec3 place)
 {
     vec3 middle = vec3(place) + 0.5,
@@ -28,7 +24,7 @@ bool is_hidden(ivec3 place)
         int slot = slots[cell_address(at)];
         if (slot >= 0 && slot < int(state.filled))
             behind += depth[slot * LIGHT_ORDINATES + int(light_params.eye_axis.w)] * far;
-        if (behind * light_params.eye.w > HIDDEN_BEHIND) return true;
+        if (behind * light_params.eye.w > CELL_HIDDEN_BEHIND) return true;
     }
     return false;
 }

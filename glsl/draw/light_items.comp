@@ -9,7 +9,7 @@
 #include "draw/light.h"
 #include "draw/material.h"
 #include "common/hair_address.glsl"
-#include "common/hash.glsl"
+#include "common/hash.h"
 #include "draw/curve.glsl"
 #include "draw/paint.glsl"
 #define LIGHTS         1
@@ -49,9 +49,11 @@ Segment find_segment(Curve curve, Painter painter, int j)
     share = 0.5 * (uintBitsToFloat(texelFetch(paint, at).z) +
                    uintBitsToFloat(texelFetch(paint, at + STRAND_TILE).z));
 #endif
+    float weight = float(material.drawn_strands) /
+                   float(cell_strands(material.drawn_strands, light_params.step));
     return Segment(a, b,
                    2.0 * painter.radius * share * far * material.shadow_opacity *
-                       paint_opacity_share(curve.root) * (LIGHT_STEPS / (side * side)));
+                       paint_opacity_share(curve.root) * (weight * LIGHT_STEPS / (side * side)));
 }
 
 uint steps_of(float x) { return uint(clamp(x, 0.0, 4e9) + 0.5); }
@@ -119,8 +121,10 @@ float find_lamp(vec3 x)
 
 void main()
 {
-    int s = lane_index(), n = int(material.vertex_count), pieces = int(light_params.pieces);
-    if (s >= int(material.drawn_strands)) return;
+    uint lane = uint(lane_index());
+    if (lane >= cell_strands(material.drawn_strands, light_params.step)) return;
+    int s = int(cell_strand(lane, material.drawn_strands, light_params.step)),
+        n = int(material.vertex_count), pieces = int(light_params.pieces);
     Curve curve = curve_open(particle_address(s, 0, n), n);
     Painter painter = paint_strand(0u, n);
     if (s == int(material.last_strand)) painter.radius *= material.last_share;

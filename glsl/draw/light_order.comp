@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whether another order of scattering is swept, and what the orders that are not would add: of two
-// orders after each other what hair meets falls by a factor, and goes on falling so
-// (light_grid_close.c).
+// Whether another order of scattering is swept, and what the orders that are not would add.
 #include "draw/light.h"
 #include "draw/light.glsl"
 
@@ -12,8 +10,6 @@ layout(std430, binding = BIND_LIGHT_STATE_OUT) buffer State
     LightState state;
     vec4 met[];
 };
-
-const float LEFT = 0.05; // of the light, at most
 
 vec3 met_by(int which)
 {
@@ -31,10 +27,13 @@ void main()
         last = met_by(k);
         all += last;
     }
-    vec3 falling =
-             mix(vec3(0.0), min(last / max(before, 1e-30), 0.95), greaterThan(before, vec3(0.0))),
-         further = falling / (1.0 - falling), left = last * further;
-    bool more = any(greaterThan(left, LEFT * (all + left)));
+    bool more = false;
+    vec3 further;
+    for (int c = 0; c < 3; ++c) {
+        float falling = cell_falling(before[c], last[c]);
+        further[c] = cell_further(falling);
+        more = more || cell_needs_more(all[c], last[c], falling);
+    }
     state.more = vec4(sweep.y > 1 ? further : vec3(0.0), 0.0);
     state.done = sweep.x > 1 && !more ? 1u : 0u;
 }

@@ -9,7 +9,6 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 layout(location = 0) uniform ivec2 sweep; // its number; 1: light comes from around, too
-layout(location = 1) uniform int sourceless;
 layout(std430, binding = BIND_LIGHT_SLOTS_OUT) readonly buffer Slots { int slots[]; };
 layout(std430, binding = BIND_LIGHT_CELLS_OUT) readonly buffer Cells { LightCell cell[]; };
 layout(std430, binding = BIND_LIGHT_STATE_OUT) buffer State
@@ -48,17 +47,6 @@ float wall(int first, ivec3 at)
 int plane_address(int parity, int x, int y)
 {
     return (2 * d + parity) * int(light_params.plane) + (y + 1) * (count.y + 2) + x + 1;
-}
-
-// From above (+y of the world) comes the sky, from below the ground, evenly between them.
-vec3 light_from_around()
-{
-    vec3 out_of = light_params.ordinate[d].xyz;
-    float up = -(light_params.turn[0].y * out_of.x + light_params.turn[1].y * out_of.y +
-                 light_params.turn[2].y * out_of.z);
-    return sweep.y == 0 ? vec3(0.0)
-                        : draw_params.ground.rgb +
-                              (0.5 + 0.5 * up) * (draw_params.sky.rgb - draw_params.ground.rgb);
 }
 
 // Of row y of the slice before, blended along the columns.
@@ -102,8 +90,7 @@ void keep(int at, vec3 mean)
     }
 }
 
-// What leaves the cell of what comes in; adds what its hair meets. out = S + (in - S) exp(-tau), in
-// the mean S + (in - S) (1 - exp(-tau)) / tau.
+// What leaves the cell of what comes in (kernel/cell.h); adds what its hair meets.
 vec3 cross_cell(vec3 light, int slot, inout vec3 sum)
 {
     if (slot < 0) return light;
@@ -112,10 +99,9 @@ vec3 cross_cell(vec3 light, int slot, inout vec3 sum)
         keep(at, light);
         return light;
     }
-    float across = depth[slot * LIGHT_ORDINATES + d], tau = across * longer,
-          left = exp2(-LOG2E * min(tau, 40.0)),
-          share = tau > 1e-3 ? (1.0 - left) / tau : 1.0 - 0.5 * tau;
-    vec3 sent = sourceless != 0 ? vec3(0.0) : vec3(source[at], source[at + 1], source[at + 2]),
+    float across = depth[slot * LIGHT_ORDINATES + d], tau = across * longer, left = cell_left(tau),
+          share = cell_mean_share(tau, left);
+    vec3 sent = vec3(source[at], source[at + 1], source[at + 2]),
          mean = sent + (light - sent) * share;
     keep(at, mean);
     sum += mean * across;
@@ -128,7 +114,7 @@ void main()
 {
     int lane = int(gl_LocalInvocationID.x), wide = count.y, tall = count.z;
     if (state.done != 0u) return;
-    vec4 around = vec4(light_from_around(), 0.0);
+    vec4 around = vec4(sweep.y == 0 ? vec3(0.0) : light_from_around(d), 0.0);
     for (int i = lane; i < 2 * int(light_params.plane); i += GROUP_SIZE)
         plane[2 * d * int(light_params.plane) + i] = around;
     vec3 sum = vec3(0.0);

@@ -3,7 +3,7 @@
 //   SHADOW, SHADOW_BY_MESH, LIGHT_COUNT: see shadow.glsl
 //   LIGHTS 0: directional lights, and the same from everywhere else   1: also points, spots, a sky
 
-#include "common/shared_math.h"
+#include "kernel/lamp.h"
 #if SHADOW
 #include "draw/shadow.h"
 #endif
@@ -17,19 +17,15 @@ int light_count = draw_params.light_count;
 
 #if LIGHTS
 // The share of light i's colour that a surface at x square to it is given, and the unit vector
-// towards it. A directional light's place is its direction, with w = 0. The square of the reference
-// distance over that of the distance: 1 where the light has its intensity. A cap keeps it finite.
-// The cone's edge as glTF's KHR_lights_punctual has it.
+// towards it. A directional light's place is its direction, with w = 0.
 float light_share(int i, vec3 x, out vec3 to_light)
 {
     vec4 place = draw_params.light_place[i], axis = draw_params.light_axis[i],
          cone = draw_params.light_cone[i];
     vec3 way = place.xyz - place.w * x;
-    float square = max(dot(way, way), 1e-12);
+    float square = max(dot(way, way), LAMP_NEAREST);
     to_light = way * inversesqrt(square);
-    float inside = clamp(cone.x - cone.y * dot(axis.xyz, to_light), 0.0, 1.0);
-    float falloff = place.w == 0.0 ? 1.0 : min(axis.w / square, 1e6);
-    return falloff * inside * inside;
+    return lamp_share(place.w, square, axis.w, cone.x, cone.y, dot(axis.xyz, to_light));
 }
 #endif
 
@@ -55,7 +51,10 @@ vec3 light_reaching(int i, vec3 x, out vec3 to_light)
 // them the sky and below the ground: `share` is 1 for a plane.
 vec3 light_around(vec3 n, float share)
 {
-    return mix(draw_params.ground.rgb, draw_params.sky.rgb, 0.5 + 0.5 * share * n.y);
+    float up = share * n.y;
+    vec4 sky = draw_params.sky, ground = draw_params.ground;
+    return vec3(lamp_around(sky.r, ground.r, up), lamp_around(sky.g, ground.g, up),
+                lamp_around(sky.b, ground.b, up));
 }
 
 // The same on the side of a fibre that is seen, whose unit tangent has the cosine `eye` with the

@@ -22,7 +22,6 @@ UNIFORM_BLOCK(MaterialParams, material, BIND_MATERIAL)
     vec4 lobe_tilt_cos, lobe_tilt_sin; // of twice their tilt
     vec4 albedo;                       // marschner: x, y of fibre_lobes_fit_albedo
     vec4 mean_albedo;                  // of the hair's mean colour, by it
-    vec4 tint_unit;                    // see tint_table.h
     uint vertex_count;
     uint first_strand, drawn_strands; // of the part of the batch that is being drawn
     uint smooth_parts, smooth_curve;  // parts of a segment; 0 Catmull-Rom, 1 B-spline

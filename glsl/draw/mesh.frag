@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT
 // The mesh in linear light, for each pixel whose middle shows it. Surfaces seen from behind are lit
 // as from in front.
-//   SKIN 0: Lambert's plain matt surface   1: see skin.glsl
+//   SKIN 0: Lambert's plain matt surface   1: see kernel/skin.h
 #include "draw/draw.h"
 #define MESH_TAPS 4 // of its own map, whose texels are seen where light grazes it
 #include "draw/lights.glsl"
 #if SKIN
-#include "draw/skin.glsl"
+#include "kernel/skin.h"
 #define SHADOW_WRAP SKIN_WRAP
 #endif
 #include "draw/shadow_surface.glsl"
-#include "draw/sky.glsl"
 #include "draw/ray.glsl"
 
 layout(binding = BIND_SURFACE) uniform sampler2D surface;
@@ -19,7 +18,10 @@ layout(location = 0) out vec4 color; // linear
 // What the mesh shows at x with the unit normal n where it sees the share `open` of the sky.
 vec3 light_on(vec3 x, vec3 n, float open, vec3 to_eye)
 {
-    vec3 light = sky_reaching_into(n, open, draw_params.mesh_color.rgb), highlight = vec3(0.0);
+    vec4 own = draw_params.mesh_color;
+    vec3 into = vec3(lamp_around_into(open, own.r), lamp_around_into(open, own.g),
+                     lamp_around_into(open, own.b)),
+         light = own.a * light_around(n, 1.0) * into, highlight = vec3(0.0);
 #if SHADOW
     x += shadow_params.mesh_lift * n; // so that the surface does not shadow itself
     shadow_find_on(x, n);
@@ -28,12 +30,15 @@ vec3 light_on(vec3 x, vec3 n, float open, vec3 to_eye)
         vec3 to_light, reaching = light_reaching(i, x, to_light);
 #if SKIN
         light += reaching * skin_diffuse(dot(n, to_light));
-        highlight += reaching * skin_highlight(n, to_light, to_eye);
+        vec3 middle = to_light + to_eye;
+        middle *= inversesqrt(max(dot(middle, middle), 1e-12));
+        highlight += reaching * skin_highlight(dot(n, to_light), dot(n, to_eye), dot(n, middle),
+                                               dot(to_eye, middle));
 #else
         light += reaching * max(dot(n, to_light), 0.0);
 #endif
     }
-    return draw_params.mesh_color.rgb * light + highlight;
+    return own.rgb * light + highlight;
 }
 
 void main()

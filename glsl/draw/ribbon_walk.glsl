@@ -6,7 +6,7 @@
 #include "draw/draw.h"
 #include "draw/material.h"
 #include "common/hair_address.glsl"
-#include "common/hash.glsl"
+#include "common/hash.h"
 #include "draw/curve.glsl"
 #include "draw/paint.glsl"
 #include "draw/shade.glsl"
@@ -40,7 +40,7 @@ Walk walk_strand(int s, uint id)
     Curve curve = curve_open(root, n);
     vec3 here = curve_point(curve, 0), before = here;
     vec4 here_clip = clip_from_world * vec4(here, 1.0), before_clip = here_clip;
-    Particle none = Particle(vec4(0.0), vec3(0.0));
+    Particle none = Particle(RibbonPoint(0.0, 0.0, 0.0, 0.0), vec3(0.0));
     Walk w = Walk(count_points(), paint_opacity(root), none, none, vec2(0.0), 0.0);
     int lit = particle_address(s, 0, w.points); // where light at the strand's points has been found
 #if SHADOW
@@ -57,7 +57,7 @@ Walk walk_strand(int s, uint id)
         p.at = project(clip_near(here_clip, before_clip, after_clip), radius);
 #if SHADOW
         shadow_fibre = vec2(2.0 * radius, shadow_opacity);
-        shadow_find(lit + k * STRAND_TILE, here);
+        shadow_find(here);
 #endif
         p.color = shade_particle(fibre, painter, at, lit + k * STRAND_TILE, here,
                                  unit(after - before), unit(eye - here));

@@ -4,10 +4,8 @@
 //   AOV 0: light   1: white   2: the tangent   3: a colour of the strand's own
 //   MARSCHNER 0: Kajiya and Kay's   1, 2: Marschner's, see there
 
-// Of the sine the cosine or the other way round, where it is not negative.
-float sine_of(float cosine) { return sqrt(max(1.0 - cosine * cosine, 0.0)); }
-
 #include "draw/lights.glsl"
+#include "kernel/fibre.h" // here, as files are taken once, whether or not a condition holds
 #if MARSCHNER
 #include "draw/shade_marschner.glsl"
 #else

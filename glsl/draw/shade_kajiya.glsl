@@ -20,27 +20,18 @@ Fibre fibre_material(Painter painter)
                  vec2(material.shift2_cos, material.shift2_sin));
 }
 
-// How near the eye is to the cone that lies mirrored to the light and turned by a small angle:
-// max(0, cos of the angle between).
-float cone_highlight(float light, float light_sine, float eye, float eye_sine, vec2 turn)
-{
-    float cone = -light * turn.x - light_sine * turn.y;
-    float cone_sine = light_sine * turn.x - light * turn.y;
-    return max(cone * eye + cone_sine * eye_sine, 0.0);
-}
-
 // Linear RGB of a fibre of colour `base` at x along the unit tangent (root to tip), seen along the
 // unit vector to the eye.
 vec3 shade_fibre(Fibre m, vec3 base, int point, vec3 x, vec3 tangent, vec3 to_eye)
 {
-    float eye = clamp(dot(tangent, to_eye), -1.0, 1.0), eye_sine = sine_of(eye);
+    float eye = clamp(dot(tangent, to_eye), -1.0, 1.0), eye_sine = fibre_sine_of(eye);
     vec3 color = m.ambient * base * light_around_fibre(tangent, to_eye, eye);
     for (int i = 0; i < light_count; ++i) {
         vec3 to_light, reaching = light_reaching(i, x, to_light);
         float light = clamp(dot(tangent, to_light), -1.0, 1.0);
-        float light_sine = sine_of(light);
-        float first = cone_highlight(light, light_sine, eye, eye_sine, m.shift1);
-        float second = cone_highlight(light, light_sine, eye, eye_sine, m.shift2);
+        float light_sine = fibre_sine_of(light);
+        float first = fibre_highlight(light, light_sine, eye, eye_sine, m.shift1.x, m.shift1.y);
+        float second = fibre_highlight(light, light_sine, eye, eye_sine, m.shift2.x, m.shift2.y);
         float white = m.specular1 * pow(first, m.exponent1);
         float tinted = m.diffuse * light_sine + m.specular2 * pow(second, m.exponent2);
         color += reaching * (white + tinted * base);

@@ -21,15 +21,11 @@
 #define BIND_DEPTHS_OUT 4 // float a texel: where the layers begin
 
 // Textures.
-#define BIND_FIRST         4
-#define BIND_SUMS          5
-#define BIND_LAYERS        11
-#define BIND_DEPTHS        12
-#define BIND_SHADOW_MESH   13
-#define BIND_SHADOW_TEXELS 3  // float a texel: the same as a buffer
-#define BIND_SHADOW_LEFT   14 // float a map and point of a strand, see shadow.glsl
-
-#define SHADOW_POINTS_AT 4 // location of a uniform: points of a batch
+#define BIND_FIRST       4
+#define BIND_SUMS        5
+#define BIND_LAYERS      11
+#define BIND_DEPTHS      12
+#define BIND_SHADOW_MESH 13
 
 // Of each map the light's view, by the rows of a matrix that a point (x, y, z, 1) is multiplied
 // with.

@@ -1,27 +1,26 @@
 // SPDX-License-Identifier: MIT
-// The box around all hair as the light sees it: (u, v, depth).
+// The box around all particles of hair as the light sees it: (u, v, depth). Curves hardly leave it:
+// a map's margins hold them.
 #include "draw/shadow.h"
 #include "draw/material.h"
 #include "common/hair_address.glsl"
-#include "draw/curve.glsl"
 #include "draw/shadow_cast.glsl"
 #include "draw/bounds.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
+layout(binding = BIND_POSITION) uniform samplerBuffer position;
 layout(std430, binding = BIND_BOUNDS_OUT) buffer Bounds { int bounds[]; }; // six a map
 
 void main()
 {
     int s = lane_index(), n = int(material.vertex_count);
     if (s >= int(material.drawn_strands)) return;
-    Curve curve = curve_open(particle_address(s, 0, n), n);
-    int begin = int(gl_WorkGroupID.z) * PART_VERTICES;
-    int end = min(begin + PART_VERTICES, curve.segments * curve.parts + 1);
+    int begin = int(gl_WorkGroupID.z) * PART_VERTICES, end = min(begin + PART_VERTICES, n);
     float reach = cast_params.reach;
     vec3 low = vec3(1e30), high = vec3(-1e30);
     for (int j = begin; j < end; ++j) {
-        vec3 x = curve_point(curve, j);
+        vec3 x = texelFetch(position, particle_address(s, j, n)).xyz;
         bool sound = all(lessThan(abs(x), vec3(limit)));
         vec3 place = shadow_place(x).xyz;
         sound = sound && all(lessThan(abs(place.xy), vec2(reach)));

@@ -10,7 +10,7 @@
 #include "draw/shadow.h"
 #include "draw/material.h"
 #include "common/hair_address.glsl"
-#include "common/hash.glsl"
+#include "common/hash.h"
 #include "draw/curve.glsl"
 #include "draw/paint.glsl"
 #include "draw/shadow_cast.glsl"
@@ -24,19 +24,15 @@ layout(std430, binding = BIND_SUMS_OUT) buffer Sums { uint sums[]; };
 layout(std430, binding = BIND_FIRST_OUT) buffer First { uint first[]; };
 #endif
 
-// Points in a texel: sums are smoothed afterwards, but where ribbons are wide their pattern would
-// show; of first depths none may be far from a point, and within a wide ribbon every texel must
-// have one: its inner circle does if they are no more than sqrt(1/2) apart. Those of a coarse map
-// are spread to a texel or two around each point afterwards, so that fewer will do.
 #if DEEP
-const float DENSITY = 0.5, WIDE_DENSITY = 2.0, SLACK = 0.0;
+const float DENSITY = CASTER_DEEP, WIDE_DENSITY = CASTER_DEEP_WIDE, SLACK = 0.0;
 #elif COARSE
-const float DENSITY = 0.5, WIDE_DENSITY = 1.42, SLACK = 0.5;
+const float DENSITY = CASTER_COARSE, WIDE_DENSITY = CASTER_FIRST_WIDE, SLACK = CASTER_COARSE_SLACK;
 #else
-const float DENSITY = 1.0, WIDE_DENSITY = 1.42, SLACK = 0.0;
+const float DENSITY = CASTER_FIRST, WIDE_DENSITY = CASTER_FIRST_WIDE, SLACK = 0.0;
 #endif
 // Points on a segment: CPU drivers end loops silently after 65,535 turns of a lane.
-const float MOST_ALONG = 512.0, MOST = 60000.0 / float(PART_SEGMENTS);
+const float MOST = 60000.0 / float(PART_SEGMENTS);
 
 float point_radius(Painter painter, Curve curve, int k)
 {
@@ -63,13 +59,12 @@ void main()
         vec4 b = shadow_place(curve_point(curve, j + 1));
         float next_radius = point_radius(painter, curve, j + 1);
         vec2 way = b.xy - a.xy;
-        float size = length(way), width = 2.0 * texels * (radius + next_radius) / (a.w + b.w);
-        float density = width > 1.5 ? WIDE_DENSITY : DENSITY;
-        float along = clamp(ceil(size * density - SLACK), 1.0, MOST_ALONG);
-        float across = width > 1.5 ? clamp(ceil(width * density), 1.0, floor(MOST / along)) : 1.0;
+        float size = length(way), width = caster_width(texels, radius, next_radius, a.w, b.w);
+        bool wide = width > CASTER_WIDE;
+        float density = wide ? WIDE_DENSITY : DENSITY, along = caster_along(size, density, SLACK);
+        float across = wide ? clamp(ceil(width * density), 1.0, floor(MOST / along)) : 1.0;
 #if DEEP
-        uint part =
-            uint(int(fibre_depth(opacity, width) * width * size * unit / (along * across) + 0.5));
+        uint part = caster_part(fibre_depth(opacity, width), width, size, unit, along * across);
 #endif
         vec2 beside = vec2(-way.y, way.x) * (width / max(size, 1e-9)) / across;
         vec3 step = vec3(way, b.z - a.z) / along, at = a.xyz + 0.5 * step;

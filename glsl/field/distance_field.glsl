@@ -2,8 +2,26 @@
 // The distance to a mesh that moves with the head, from samples on a grid in the head's frame:
 // trilinear, with the gradient of just that (needs collide_params.h, rigid.glsl). Beyond the grid,
 // which the mesh does not reach, the distance is from the grid's nearest point on.
+//
+// BOUND 1: the mesh deforms, and a sample has three numbers more: how far the surface that is
+// nearest to it has come in the step, in the head's frame.
 
 layout(binding = BIND_FIELD) uniform samplerBuffer field;
+
+#if BOUND
+// How far the surface near p has come in the step beside moving with the head, in the frame that
+// the head had before: from the nearest sample.
+vec3 field_moved(vec3 p)
+{
+    vec4 to_world = collide_params.head_rotation, to_head = vec4(-to_world.xyz, to_world.w);
+    vec3 size = collide_params.field_size.xyz;
+    vec3 g =
+        (rotate(to_head, p - collide_params.head_translation.xyz) - collide_params.field_low.xyz) /
+        collide_params.field_low.w;
+    ivec3 at = ivec3(clamp(floor(g + 0.5), vec3(0.0), size - 1.0));
+    return texelFetch(field, (at.z * int(size.y) + at.y) * int(size.x) + at.x).yzw;
+}
+#endif
 
 float field_distance(vec3 p, out vec3 normal)
 {

@@ -30,6 +30,7 @@
 // CLEARANCE 1: particles have clearances; MODE 0 and 2
 // CONES: how many cones there are, or 0: any number
 // FIELD 1: one more collider, a mesh (distance_field.glsl)
+// BOUND 1: strands grow on a mesh that deforms
 // ORDERED: see particles.glsl; here, too, a lane fetches what is its strand's, before it stores
 // there
 #include "sim/collide_params.h"
@@ -64,6 +65,9 @@ layout(binding = BIND_CLEARANCE) uniform samplerBuffer clearances;
 #endif
 #if MODE == PARTICLES
 layout(std430, binding = BIND_STATE_OUT) buffer Velocities { vec4 velocities[]; };
+#endif
+#if BOUND && MODE == SEGMENTS
+layout(binding = BIND_FRAMES) uniform samplerBuffer frames; // see shared.h
 #endif
 #if MODE == PARTICLES || MODE == SEGMENTS
 layout(binding = BIND_REST) uniform samplerBuffer rest;
@@ -243,7 +247,15 @@ void push_out(inout vec3 at, inout vec3 v, vec3 p, float l, float need, int addr
     vec3 aim = at;
 #if MODE != DRAWN
     vec4 before = contact_before(address);
-    vec3 surface = nearest.moved * head_displacement(at), slip = at - before.xyz - surface;
+#if BOUND && FIELD
+    vec3 surface = min(nearest.moved, 1.0) * head_displacement(at);
+    vec4 before_turn = product(collide_params.head_turn_back, collide_params.head_rotation);
+    surface += nearest.moved > 1.5 ? collide_params.part * rotate(before_turn, field_moved(at))
+                                   : vec3(0.0);
+#else
+    vec3 surface = nearest.moved * head_displacement(at);
+#endif
+    vec3 slip = at - before.xyz - surface;
     aim -= before.w == collide_params.stamp_before
                ? held_back(slip, nearest.normal, max(depth, 0.0))
                : vec3(0.0);
@@ -336,7 +348,11 @@ void main()
     longest = root.w;
 #endif
 #if MODE == SEGMENTS
-    vec3 at = rotate(collide_params.head_rotation, root.xyz) + collide_params.head_translation.xyz;
+    vec3 at = root.xyz;
+#if BOUND
+    at = rotate(texelFetch(frames, 4 * s + 2), at) + texelFetch(frames, 4 * s + 3).xyz;
+#endif
+    at = rotate(collide_params.head_rotation, at) + collide_params.head_translation.xyz;
 #else
     vec3 at = position_before(first).xyz;
 #endif

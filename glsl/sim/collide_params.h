@@ -20,6 +20,7 @@ UNIFORM_BLOCK(CollideParams, collide_params, BIND_STEP)
     float friction;     // Coulomb's coefficient
     float stamp;        // number of this step ...
     float stamp_before; // ... and of the one before
+    float part;         // of the whole step that this (sub-)step is
     uint strand_count;
     uint vertex_count;
     uint carried; // vertices, from the root, that the head carries

@@ -64,7 +64,7 @@ float ground_distance(int i, vec3 p, out vec3 normal) { return plane_distance(i,
 struct Nearest {
     float distance;
     vec3 normal;
-    float moved; // 1: with the head
+    float moved; // 1: with the head, 2: also as field_moved says
 };
 
 void take_nearer(inout Nearest nearest, float distance, vec3 normal, float moved)
@@ -102,7 +102,7 @@ Nearest nearest_surface(vec3 p)
 #if FIELD
     vec3 normal;
     float distance = field_distance(p, normal);
-    take_nearer(nearest, distance, normal, 1.0);
+    take_nearer(nearest, distance, normal, BOUND != 0 ? 2.0 : 1.0);
 #endif
     return nearest;
 }

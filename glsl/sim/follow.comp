@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Where followers are (follow_plan.h): beside their guide, or between three of them. A strand a
-// lane; those of a guide lie side by side.
+// lane; those of a guide lie side by side. CLUMPS 1: they gather on it towards the tip.
 #include "sim/follow_params.h"
 #include "common/hair_address.glsl"
 #include "common/rigid.glsl"
@@ -34,6 +34,11 @@ void main()
         x += share_b * (texelFetch(guides, b + at).xyz - x) +
              share_c * (texelFetch(guides, c + at).xyz - x);
 #endif
-        positions[to + at] = vec4(x + offset + float(j) * spread, 1.0);
+        x += offset + float(j) * spread;
+#if CLUMPS
+        float gathered = follow_params.clump * float(j) / float(n - 1);
+        x += gathered * (texelFetch(guides, a + at).xyz - x);
+#endif
+        positions[to + at] = vec4(x, 1.0);
     }
 }

@@ -10,6 +10,7 @@ UNIFORM_BLOCK(FollowParams, follow_params, BIND_STEP)
 {
     vec4 head_rotation; // quaternion x y z w: the head's frame -> world
     float tip_separation;
+    float clump;       // share of the way to the guide at the tip
     uint strand_count; // followers
     uint vertex_count;
     uint first_guide; // strand of the guides' batch

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Forces on a velocity, the same for all solvers (needs step.h).
+// Forces on a velocity, the same for all solvers (needs frame.glsl).
 
-#include "common/hash.glsl"
+#include "common/hash.h"
 
 // What the head leaves of the wind behind it (SHELTER): seen from its middle, roots on the lee side
 // feel air that more and more goes with the head. Only velocities relative to the head count, so
@@ -42,8 +42,7 @@ vec4 forces_along(int j) { return texelFetch(along_strand, 2 * j + 1); }
 // w) h (1 - e^{-ch})/(ch).
 vec3 kick(vec3 v, vec3 wind)
 {
-    return v * step_params.decay +
-           (step_params.gravity.xyz + step_params.drag * wind) * step_params.gain;
+    return v * step_params.decay + (frame_gravity + step_params.drag * wind) * step_params.gain;
 }
 
 // The same at vertex j, where drag and gravity may differ along the strand (VARIES).
@@ -51,7 +50,7 @@ vec3 kick_at(int j, vec3 v, vec3 wind)
 {
 #if VARIES
     vec4 forces = forces_along(j);
-    return v * forces.x + (forces.w * step_params.gravity.xyz + forces.z * wind) * forces.y;
+    return v * forces.x + (forces.w * frame_gravity + forces.z * wind) * forces.y;
 #else
     return kick(v, wind);
 #endif

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The strand between two steps: straight lines in the head's frame, so that roots stay where the
-// head has them. A segment that turns by an angle a from step to step is drawn shorter by a^2/8 at
-// most: 1 % at 16 degrees.
+// head has them (BOUND 1: the mesh). A segment that turns by an angle a from step to step is drawn
+// shorter by a^2/8 at most: 1 % at 16 degrees.
 #include "sim/inbetween_params.h"
 #include "common/hair_address.glsl"
 #include "common/rigid.glsl"
@@ -10,6 +10,9 @@ layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
 layout(binding = BIND_POSITION) uniform samplerBuffer earlier;
 layout(binding = BIND_STATE) uniform samplerBuffer later;
+#if BOUND
+layout(binding = BIND_FRAMES) uniform samplerBuffer frames; // see shared.h
+#endif
 layout(std430, binding = BIND_POSITION_OUT) writeonly buffer Positions { vec4 positions[]; };
 
 vec4 conjugate(vec4 q) { return vec4(-q.xyz, q.w); }
@@ -18,12 +21,20 @@ void main()
 {
     int s = lane_index(), n = int(inbetween_params.vertex_count);
     if (s >= int(inbetween_params.strand_count)) return;
-    vec4 from_earlier = conjugate(inbetween_params.earlier_rotation),
-         from_later = conjugate(inbetween_params.later_rotation);
-    vec4 to_now = inbetween_params.now_rotation;
+    vec4 before = inbetween_params.earlier_rotation, after = inbetween_params.later_rotation,
+         to_now = inbetween_params.now_rotation;
     vec3 at_earlier = inbetween_params.earlier_translation.xyz,
          at_later = inbetween_params.later_translation.xyz;
     vec3 at_now = inbetween_params.now_translation.xyz;
+#if BOUND
+    at_earlier += rotate(before, texelFetch(frames, 6 * s + 1).xyz);
+    at_later += rotate(after, texelFetch(frames, 6 * s + 3).xyz);
+    at_now += rotate(to_now, texelFetch(frames, 6 * s + 5).xyz);
+    before = product(before, texelFetch(frames, 6 * s));
+    after = product(after, texelFetch(frames, 6 * s + 2));
+    to_now = product(to_now, texelFetch(frames, 6 * s + 4));
+#endif
+    vec4 from_earlier = conjugate(before), from_later = conjugate(after);
     float share = inbetween_params.share;
     int first = particle_address(s, 0, n);
     for (int j = 0; j < n; ++j) {

@@ -8,9 +8,10 @@
 // any length, step_params.vertex_count. LEAD: vertices before the solver's root, which the head
 // carries (0 or 1).
 #include "sim/step_params.h"
-#include "sim/forces.glsl"
 #include "common/hair_address.glsl"
 #include "common/rigid.glsl"
+#include "sim/frame.glsl"
+#include "sim/forces.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
@@ -49,16 +50,12 @@ int strand_base(int strand)
 }
 
 // Where the head has carried the root (a texel of `rest` with j = 0) at the step's end.
-vec3 root_position(vec4 root)
-{
-    return rotate(step_params.head_rotation, root.xyz) + step_params.head_translation.xyz;
-}
+vec3 root_position(vec4 root) { return rotate(frame_rotation, root.xyz) + frame_translation; }
 
 // By how much the head carries the root in the step.
 vec3 root_move(vec4 root)
 {
-    vec3 old =
-        rotate(step_params.head_rotation_old, root.xyz) + step_params.head_translation_old.xyz;
+    vec3 old = rotate(frame_rotation_old, root.xyz) + frame_translation_old;
     return root_position(root) - old;
 }
 

@@ -9,6 +9,9 @@
 // HANGS 1: at rest the physical strand hangs straight down, along `hanging`, and the style is what
 // is drawn. So the style's segment is turned by the rotation that takes `hanging` to what is a
 // share of the way from there to the physical segment.
+// FADES 1 (with MIX 4): as the style changes over time, what it holds fades, and the physical
+// strand is drawn.
+// BOUND 1: the mesh carries each strand by a frame of its own; `hanging` is in that.
 #include "sim/pose_params.h"
 #include "common/hair_address.glsl"
 #include "common/rigid.glsl"
@@ -16,6 +19,9 @@
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
 layout(binding = BIND_REST) uniform samplerBuffer rest;
+#if BOUND
+layout(binding = BIND_FRAMES) uniform samplerBuffer frames; // see shared.h
+#endif
 layout(binding = BIND_STATE) uniform samplerBuffer segments; // unit direction, rest length
 layout(std430, binding = BIND_POSITION_OUT) writeonly buffer Positions { vec4 positions[]; };
 
@@ -103,8 +109,14 @@ void main()
     Turn by = Turn(pose_params.turn_cos[0], pose_params.turn_cos[1], pose_params.turn_sin[0],
                    pose_params.turn_sin[1]);
 
-    vec3 x = rotate(rotation, root.xyz) + pose_params.head_translation.xyz,
-         hanging = pose_params.hanging.xyz;
+    vec3 translation = pose_params.head_translation.xyz, hanging = pose_params.hanging.xyz;
+#if BOUND
+    vec4 own = texelFetch(frames, 4 * s + 2);
+    translation += rotate(rotation, texelFetch(frames, 4 * s + 3).xyz);
+    rotation = product(rotation, own);
+    hanging = rotate(rotation, hanging);
+#endif
+    vec3 x = rotate(rotation, root.xyz) + translation;
     // A matrix turns a vector by half as many operations as a quaternion.
     mat3 head = mat3(rotate(rotation, vec3(1.0, 0.0, 0.0)), rotate(rotation, vec3(0.0, 1.0, 0.0)),
                      rotate(rotation, vec3(0.0, 0.0, 1.0)));
@@ -126,6 +138,9 @@ void main()
 #endif
 #if HANGS
         vec3 turned = turn_along(d, hanging, physical, by, share);
+#if FADES
+        turned = slerp(physical, turned, pose_params.held);
+#endif
 #elif MIX == 4
         vec3 turned = slerp(d, physical, share);
 #elif MIX == 2

@@ -65,12 +65,10 @@ vec3 first_flight(int j, vec3 v, vec3 wind)
 {
 #if VARIES
     vec4 own = own_along(j), forces = forces_along(j);
-    return step_params.dt *
-           (v * own.x + (forces.w * step_params.gravity.xyz + forces.z * wind) * own.y);
+    return step_params.dt * (v * own.x + (forces.w * frame_gravity + forces.z * wind) * own.y);
 #else
-    return step_params.dt *
-           (v * rope_params.first_decay +
-            (step_params.gravity.xyz + step_params.drag * wind) * rope_params.first_gain);
+    return step_params.dt * (v * rope_params.first_decay +
+                             (frame_gravity + step_params.drag * wind) * rope_params.first_gain);
 #endif
 }
 
@@ -96,11 +94,12 @@ void main()
     int s = first_strand();
     if (s >= int(step_params.strand_count)) return;
     int base = strand_base(s);
+    open_frame(s);
     vec3 x[VERTICES], m[VERTICES],
         wind = strand_wind(texelFetch(strand_id, s).x, root_position(strand_root(base)));
     float l[VERTICES];
     int small_steps = rope_params.small_steps, sweeps = rope_params.sweeps;
-    vec4 root = strand_root(base), rotation = step_params.head_rotation;
+    vec4 root = strand_root(base), rotation = frame_rotation;
     vec3 drawn = position_before(base).xyz, at = vec3(0.0), carry = root_move(root);
     x[0] = root_at(carry, 1, small_steps);
 #if STYLED
@@ -175,12 +174,13 @@ void main()
     int phase = int(step_params.phase), step = phase / rope_params.sweeps, a = strand_base(s);
     bool loads = phase == 0, flies = phase == step * rope_params.sweeps,
          draws = phase + 1 == rope_params.small_steps * rope_params.sweeps;
+    open_frame(s);
     vec3 wind = strand_wind(texelFetch(strand_id, s).x, root_position(strand_root(a)));
     vec4 root = strand_root(a);
     vec3 drawn_before = position_before(a).xyz, at = vec3(0.0);
     vec3 x = root_at(root_move(root), step + 1, rope_params.small_steps), m = vec3(0.0),
          style_at = x;
-    vec4 rotation = step_params.head_rotation;
+    vec4 rotation = frame_rotation;
     vec3 before = x, drawn = root_position(root),
          along = rotate(rotation, texelFetch(rest, a + STRAND_TILE).xyz);
     float weights = 1.0, l = 0.0, l_before = 0.0;

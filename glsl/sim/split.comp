@@ -14,6 +14,7 @@
 #include "sim/step_params.h"
 #include "common/hair_address.glsl"
 #include "common/rigid.glsl"
+#include "sim/frame.glsl"
 #include "sim/forces.glsl"
 #include "sim/tractrix.glsl"
 
@@ -46,9 +47,9 @@ Strand open_strand(int number)
     strand.address = particle_address(number, LEAD, LINKS + 1 + LEAD);
     vec4 root = strand_root(strand.address), tip = tips[2 * number], v = tips[2 * number + 1];
     strand.total_length = root.w;
-    strand.root_old =
-        rotate(step_params.head_rotation_old, root.xyz) + step_params.head_translation_old.xyz;
-    strand.root = rotate(step_params.head_rotation, root.xyz) + step_params.head_translation.xyz;
+    open_frame(number);
+    strand.root_old = rotate(frame_rotation_old, root.xyz) + frame_translation_old;
+    strand.root = rotate(frame_rotation, root.xyz) + frame_translation;
     vec3 wind = strand_wind(texelFetch(strand_id, number).x, strand.root);
     strand.push = kick(vec3(0.0), wind);
     strand.position = tip.xyz;
@@ -64,7 +65,7 @@ Strand open_strand(int number)
     }
 #if LEAD
     vec4 lead = texelFetch(rest, strand.address);
-    segments[strand.address] = vec4(rotate(step_params.head_rotation, lead.xyz), lead.w);
+    segments[strand.address] = vec4(rotate(frame_rotation, lead.xyz), lead.w);
 #endif
     return strand;
 }

@@ -99,7 +99,7 @@ mat3 inverse_of_symmetric(mat3 m)
 // From the tip to the root: stores C and S^{-1} (z + d) of each link.
 void eliminate(int base, int n, vec3 wind, vec3 root_velocity)
 {
-    vec4 rotation = step_params.head_rotation;
+    vec4 rotation = frame_rotation;
     float dt = step_params.dt, acts = dt * step_params.gain;
     Springs springs = springs_of(n - 1);
     float p = min(0.5 * acts * springs.k, STIFFEST), angular = acts * springs.b;
@@ -144,8 +144,7 @@ void substitute(int base, int n, vec3 wind, vec3 root_velocity, vec3 root)
     float dt = step_params.dt, per_second = 1.0 / step_params.dt;
     vec3 drawn_before = position_before(base).xyz, flying_before = root_velocity,
          x_before = vec3(0.0);
-    vec3 drawn = root,
-         along = rotate(step_params.head_rotation, texelFetch(rest, base + STRAND_TILE).xyz);
+    vec3 drawn = root, along = rotate(frame_rotation, texelFetch(rest, base + STRAND_TILE).xyz);
     carry_lead(base);
     positions[base] = vec4(root, 1.0);
     for (int j = 1; j < n; ++j) {
@@ -172,6 +171,7 @@ void main()
     int strand = first_strand(), n = int(step_params.vertex_count);
     if (strand >= int(step_params.strand_count)) return;
     int base = strand_base(strand);
+    open_frame(strand);
     vec3 wind = strand_wind(texelFetch(strand_id, strand).x, root_position(strand_root(base)));
     vec4 root = strand_root(base);
     vec3 root_velocity = root_move(root) / step_params.dt;
@@ -206,7 +206,8 @@ void main()
     int strand = first_strand(), n = int(step_params.vertex_count);
     if (strand >= int(step_params.strand_count)) return;
     int a = strand_base(strand);
-    vec4 rotation = step_params.head_rotation, root = strand_root(a);
+    open_frame(strand);
+    vec4 rotation = frame_rotation, root = strand_root(a);
     vec3 wind = strand_wind(texelFetch(strand_id, strand).x, root_position(root)),
          fall = kick(vec3(0.0), wind);
     float dt = step_params.dt, gain = step_params.gain, decay = step_params.decay;

@@ -10,6 +10,8 @@ UNIFORM_BLOCK(StepParams, step_params, BIND_STEP)
     vec4 head_rotation;        // at the step's end
     vec4 head_translation;
     vec4 gravity; // xyz, m/s^2
+    // xyz, m/s^2, BOUND 1: what the groom holds of it (solver.c), in the strand's frame of rest
+    vec4 held;
     vec4 wind[4]; // xyz, m/s: four directions around the main one, mixed for each strand
     // xyz, m: the middle of the head; w: share of the wind that it keeps off behind it
     vec4 shelter;
@@ -20,6 +22,8 @@ UNIFORM_BLOCK(StepParams, step_params, BIND_STEP)
     float drag;         // c, 1/s
     uint strand_count;
     uint vertex_count;
-    uint phase; // which dispatch of a step this is
+    uint phase;      // which dispatch of a step this is
+    float frame_old; // BOUND 1: shares of the way from the frames before the whole step to those
+    float frame_now; // after it, at the start and the end of this part of it
 }
 END_BLOCK(StepParams, step_params);

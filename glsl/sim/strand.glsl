@@ -23,6 +23,7 @@ Strand strand_open(int number, StyleSpring spring)
 {
     Strand strand;
     strand.address = strand_base(number);
+    open_frame(number);
     vec4 root_rest = strand_root(strand.address);
     strand.root = root_position(root_rest);
     strand.root_old = position_before(strand.address).xyz;
@@ -33,7 +34,7 @@ Strand strand_open(int number, StyleSpring spring)
     strand.wind = wind;
 #endif
     strand.push = kick(vec3(0.0), wind);
-    strand.rotation = step_params.head_rotation;
+    strand.rotation = frame_rotation;
     strand.dt = step_params.dt;
     strand.decay = step_params.decay;
     strand.spring = spring;

@@ -80,13 +80,12 @@ struct Carried {
 
 Carried carried_by_head()
 {
-    vec4 root = texelFetch(rest, address(0)), first = REST(1), old = step_params.head_rotation_old;
+    vec4 root = texelFetch(rest, address(0)), first = REST(1), old = frame_rotation_old;
     Carried carried;
-    carried.root_old = rotate(old, root.xyz) + step_params.head_translation_old.xyz;
+    carried.root_old = rotate(old, root.xyz) + frame_translation_old;
     carried.root = root_position(root);
-    vec3 first_old = rotate(old, first.xyz),
-         first_new = rotate(step_params.head_rotation, first.xyz);
-    carried.first_old = rotate(conjugate(step_params.head_rotation), first_old);
+    vec3 first_old = rotate(old, first.xyz), first_new = rotate(frame_rotation, first.xyz);
+    carried.first_old = rotate(conjugate(frame_rotation), first_old);
     vec3 moved = carried.root - carried.root_old + first.w * (first_new - first_old);
     carried.first_velocity = velocity_before(address(1)).xyz;
     vec3 jerk = moved - step_params.dt * carried.first_velocity;
@@ -108,7 +107,7 @@ void predict(Carried carried)
     vec3 wind = strand_wind(texelFetch(strand_id, strand).x, carried.root),
          root_old = carried.root_old, home = carried.root - carried.root_old;
     vec3 style = vec3(0.0), first = REST(1).xyz, first_old = carried.first_old;
-    vec4 to_head = conjugate(step_params.head_rotation);
+    vec4 to_head = conjugate(frame_rotation);
     float dt = step_params.dt, global = tressfx_params.global_share,
           last_global = tressfx_params.global_range * float(n), share = carried.share;
     home = rotate(to_head, home);
@@ -124,7 +123,7 @@ void predict(Carried carried)
         vec3 from = rotate(to_head, position_before(a).xyz - root_old);
 #if TRESSFX4
         vec3 v = velocity_before(a).xyz;
-        vec3 x = from + dt * rotate(to_head, v * step_params.decay + step_params.gravity.xyz * dt);
+        vec3 x = from + dt * rotate(to_head, v * step_params.decay + frame_gravity * dt);
         if (float(j) < last_global) x = mix(x, style + home, global);
 #else
         vec3 v = ahead;
@@ -170,9 +169,9 @@ void keep_local_shape()
 // clamp keeps a storm finite.
 void blow()
 {
-    vec3 wind = rotate(
-        conjugate(step_params.head_rotation),
-        strand_wind(texelFetch(strand_id, strand).x, root_position(texelFetch(rest, address(0)))));
+    vec3 wind =
+        rotate(conjugate(frame_rotation), strand_wind(texelFetch(strand_id, strand).x,
+                                                      root_position(texelFetch(rest, address(0)))));
     float strength = 1e4 * step_params.dt * step_params.dt, most = tressfx_params.most_move;
     if (dot(wind, wind) == 0.0) return;
     for (int j = 2; j < n - 1; ++j) {
@@ -272,7 +271,7 @@ void keep_lengths()
 // Lengths, velocities and the way back to the world.
 void finish(Carried carried)
 {
-    vec4 to_world = step_params.head_rotation;
+    vec4 to_world = frame_rotation;
     float dt = step_params.dt, most = tressfx_params.most_move;
     vec3 x = vec3(0.0), before = vec3(0.0), along = vec3(0.0), world = carried.root;
     positions[address(0)] = vec4(carried.root, 1.0);
@@ -311,6 +310,7 @@ void main()
     strand = first_strand();
     if (strand >= int(step_params.strand_count)) return;
     n = int(step_params.vertex_count);
+    open_frame(strand);
     Carried carried = carried_by_head();
     predict(carried);
     int local_passes = n > 2 ? tressfx_params.local_passes : 0;

@@ -8,6 +8,7 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
+#include "kernel/grain.h"
 
 #define STRANDS 0
 #define CELLS   1
@@ -20,15 +21,11 @@ layout(binding = BIND_POSITION) uniform samplerBuffer position;
 // The cell of a grain that begins with particle j of a strand (its root's address), -1: none.
 int grain_cell(int first, int j, int last)
 {
-    int middle = min(j + GRAIN / 2, last);
+    int middle = grain_middle(j, GRAIN, last);
     vec4 x = vec4(texelFetch(position, first + middle * STRAND_TILE).xyz, 1.0);
-    vec3 at = vec3(dot(volume_params.axis[0], x), dot(volume_params.axis[1], x),
-                   dot(volume_params.axis[2], x));
-    vec3 size = vec3(volume_params.size.xyz);
-    // Written so that a position that is no number is in no cell.
-    bool inside = all(greaterThanEqual(at, vec3(1.0))) && all(lessThan(at, size - 1.0));
-    ivec3 cell = ivec3(inside ? at : vec3(0.0)), cells = ivec3(volume_params.size.xyz);
-    return inside ? (cell.z * cells.y + cell.y) * cells.x + cell.x : -1;
+    ivec3 size = ivec3(volume_params.size.xyz);
+    return grain_cell_at(dot(volume_params.axis[0], x), dot(volume_params.axis[1], x),
+                         dot(volume_params.axis[2], x), size.x, size.y, size.z);
 }
 
 // Whether a particle of this velocity relative to the head's takes part.

@@ -23,8 +23,7 @@ vec2 sum_at(int cell)
 void measure(int c, int count)
 {
     int row = int(volume_params.size.x), slice = row * int(volume_params.size.y);
-    vec2 sum = 2.0 * sum_at(c) + sum_at(c - 1) + sum_at(c + 1) + sum_at(c - row) + sum_at(c + row) +
-               sum_at(c - slice) + sum_at(c + slice);
+    vec2 sum = GRAIN_SMOOTH(sum_at, c, row, slice);
     float at_rest = max(sum.y / sum.x, float(texelFetch(own, c).x));
     float over = max(sum.x / (SLACK * at_rest + 2.0 * SLACK_PARTICLES) - 1.0, 0.0) / STOP;
     vec3 v = vec3(texelFetch(sums, VOLUME_SUMS * c + 2).x, texelFetch(sums, VOLUME_SUMS * c + 3).x,

@@ -279,6 +279,11 @@ static Result parse_color(const Input *input, float value[3])
     return RESULT_OK;
 }
 
+// Words that choices once had, and the word that replaces them.
+static const struct {
+    const char *name, *word, *instead;
+} REPLACED[] = {{"scatter", "dual", "grid"}};
+
 static Result parse_choice(const Input *input, int *value)
 {
     const char *const *choices = input->info->choices;
@@ -288,6 +293,11 @@ static Result parse_choice(const Input *input, int *value)
         *value = count;
         return RESULT_OK;
     }
+    for (size_t i = 0; i < sizeof REPLACED / sizeof *REPLACED; i++)
+        if (strcmp(input->info->name, REPLACED[i].name) == 0 &&
+            strcmp(input->text, REPLACED[i].word) == 0)
+            return error_set(input->error, RESULT_USAGE, "'%s' was removed: use '%s' instead",
+                             input->text, REPLACED[i].instead);
     return refuse(input, suggest_nearest(input->text, choices, (size_t)count));
 }
 

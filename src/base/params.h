@@ -80,7 +80,8 @@ typedef enum ParamKind {
     X(FRAMING_AUTO, "auto")                                                                        \
     X(FRAMING_EXPECTED, "expected") X(FRAMING_HAIR, "hair") X(FRAMING_ALL, "all")
 #define CHOICES_SHADOW(X)  X(SHADOW_NONE, "none") X(SHADOW_APPROX, "approx") X(SHADOW_DOM, "dom")
-#define CHOICES_SCATTER(X) X(SCATTER_NONE, "none") X(SCATTER_DUAL, "dual") X(SCATTER_GRID, "grid")
+#define CHOICES_SCATTER(X) X(SCATTER_NONE, "none") X(SCATTER_GRID, "grid")
+#define CHOICES_MOTION(X)  X(MESH_SMOOTH, "smooth") X(MESH_LINEAR, "linear")
 #define CHOICES_MESH(X)    X(MESH_MATT, "matt") X(MESH_SKIN, "skin")
 #define CHOICES_FLOOR(X)   X(FLOOR_NONE, "none") X(FLOOR_PLANE, "plane") X(FLOOR_SHADOW, "shadow")
 
@@ -97,6 +98,7 @@ typedef enum CurveKind { CHOICES_CURVE(CHOICE_VALUE) } CurveKind;
 typedef enum FramingKind { CHOICES_FRAMING(CHOICE_VALUE) } FramingKind;
 typedef enum Shadow { CHOICES_SHADOW(CHOICE_VALUE) } Shadow;
 typedef enum Scatter { CHOICES_SCATTER(CHOICE_VALUE) } Scatter;
+typedef enum MeshMotion { CHOICES_MOTION(CHOICE_VALUE) } MeshMotion;
 typedef enum MeshShading { CHOICES_MESH(CHOICE_VALUE) } MeshShading;
 typedef enum FloorKind { CHOICES_FLOOR(CHOICE_VALUE) } FloorKind;
 typedef enum Raster { CHOICES_RASTER(CHOICE_VALUE) } Raster;

@@ -55,6 +55,27 @@ SimdLevel simd_level(void);
         parallel_run(parts, versions[simd_level()], data);                                         \
     }
 
+// call_NAME(data): NAME(const TYPE *data, 0) on this thread, by the best vectors.
+#define SIMD_CALL(name, type)                                                                      \
+    SIMD_FOR_ANY static void name##_any(const type *data)                                          \
+    {                                                                                              \
+        name(data, 0);                                                                             \
+    }                                                                                              \
+    SIMD_FOR_AVX2 static void name##_avx2(const type *data)                                        \
+    {                                                                                              \
+        name(data, 0);                                                                             \
+    }                                                                                              \
+    SIMD_FOR_AVX512 static void name##_avx512(const type *data)                                    \
+    {                                                                                              \
+        name(data, 0);                                                                             \
+    }                                                                                              \
+    static void call_##name(const type *data)                                                      \
+    {                                                                                              \
+        static void (*const versions[SIMD_LEVELS])(const type *) = {name##_any, name##_avx2,       \
+                                                                    name##_avx512};                \
+        versions[simd_level()](data);                                                              \
+    }
+
 SIMD_INLINE float simd_float_of(uint32_t bits)
 {
     float value;

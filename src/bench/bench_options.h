@@ -30,7 +30,7 @@ typedef struct BenchOptions {
                                      // path-traced light; NULL: those that ship
     const char *parts;               // "motions,work"; NULL: all of the command
     const char *case_name;          // "curls_blond_sky,fur_brown_side"; a case of stress; NULL: all
-    const char *ways;               // of light, "grid,dual"; NULL: those that have bounds
+    const char *ways;               // of light, "grid,none"; NULL: those that have bounds
     const char *render;             // flags of tractrix-render for every scene; NULL: none
     const char *mesh;               // OBJ file of the head of grooms; NULL: none
     int strands;                    // of a groom, spread evenly over the file; 0: all

@@ -294,17 +294,20 @@ static RendererOptions renderer_options(const Stage *stage, const RunParams *run
     RendererOptions options = {.raster = (Raster)run->raster,
                                .oit = (Oit)run->oit,
                                .oit_layers = run->oit_layers,
+                               .least_seen = run->least_seen,
                                .width = stage->scene.run.size[0],
                                .height = stage->scene.run.size[1],
                                .samples = run->samples,
                                .seed = run->seed,
                                .lod = {run->lod_start, run->lod_end, run->lod_min, run->lod_width},
-                               .scatter = (Scatter)run->scatter,
-                               .scatter_cells = run->scatter_cells,
-                               .scatter_orders = run->scatter_orders,
+                               .scatter = {.kind = (Scatter)run->scatter,
+                                           .cells = run->scatter_cells,
+                                           .orders = run->scatter_orders,
+                                           .strands = (uint32_t)run->scatter_strands},
                                .shadow = {.kind = (Shadow)run->shadow,
                                           .side = run->shadow_size,
-                                          .spacing = run->shadow_spacing}};
+                                          .spacing = run->shadow_spacing,
+                                          .strands = run->shadow_strands}};
     memcpy(options.background, run->background, sizeof options.background);
     options.background[3] = 1;
     return options;
@@ -324,7 +327,7 @@ static Result measure(Stage *stage, const BenchScheme *scheme, Row *row, Error *
     if (!samples) return error_set(error, RESULT_FAILED, "no memory for samples");
     gpu_timer_create(&timer, false, stage->gpu->software);
     Result result = renderer_create(&renderer, stage->gpu, &timer, &how, error);
-    if (result == RESULT_OK) row->raster = word_of("raster", (int)renderer.raster);
+    if (result == RESULT_OK) row->raster = word_of("raster", (int)renderer.options.raster);
     THEN(result, image_create(&image, how.width, how.height, 3, error));
     THEN(result,
          draw_frames(stage, &manner, &renderer, samples, samples + frames, &image, row, error));

@@ -26,7 +26,6 @@ typedef struct Way {
 #define UNBOUND LIGHT_ALL, true, NAN, NAN, NAN, NAN
 static const Way WAYS[] = {
     {"none", CURVES "--scatter none", LIGHT_ONE, false, 0.93, 1.08, 0.16, NAN},
-    {"dual", CURVES "--scatter dual", LIGHT_ALL, false, 0.75, 1.05, NAN, NAN},
     {"grid", CURVES "--scatter grid", LIGHT_ALL, false, 0.92, 1.12, 0.16, 0.10},
     {"draft", "--quality draft", UNBOUND},
     {"normal", "--quality normal", UNBOUND},
@@ -413,7 +412,7 @@ static Result run_way(LightRun *run, const LightCase *lit, int w, double coverag
     if (result == RESULT_OK) {
         row.coverage = coverage;
         row.width = stage.image.width, row.height = stage.image.height;
-        row.raster = params_find("raster")->choices[stage.images.renderer.raster];
+        row.raster = params_find("raster")->choices[stage.images.renderer.options.raster];
         for (uint32_t i = 0; i < stage.scene.section_count; ++i)
             row.strands += stage.assets.strands[i].strand_count;
         say_bounds(&row, way);

@@ -10,7 +10,7 @@ static const char USUAL[] = "--quiet --frames 1 --exposure 0 --tone-map none -o 
 Result light_stage_create(LightStage *stage, const Gpu *gpu, const char *file,
                           const char *const flags[3], Error *error)
 {
-    const Scene *scene = &stage->scene;
+    Scene *scene = &stage->scene;
     *stage = (LightStage){0};
     gpu_timer_create(&stage->timer, false, gpu->software);
     const char *const names[] = {file, NULL};

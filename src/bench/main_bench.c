@@ -11,7 +11,9 @@
 #include "bench/stress.h"
 #include "bench/test_vectors.h"
 #include "draw/renderer.h"
+#include "draw/scatter_tables.h"
 #include "gen/strands_make.h"
+#include "passes/passes.h"
 #include "sim/follow.h"
 #include "sim/inbetween.h"
 #include "sim/pose.h"
@@ -140,7 +142,7 @@ static Result try_inbetween(const Gpu *gpu, Error *error)
 {
     const Hair bald = {0};
     Inbetween inbetween;
-    Result result = inbetween_create(&inbetween, gpu, &bald, error);
+    Result result = inbetween_create(&inbetween, gpu, &bald, NULL, error);
     inbetween_destroy(&inbetween);
     return result;
 }
@@ -188,18 +190,14 @@ static Result try_light_counts(LookPrograms *programs, Error *error)
     return RESULT_OK;
 }
 
-// The table of marschner shading, and every way that hair can look.
-static Result try_looks(Renderer *renderer, Error *error)
+// Every way that hair can look.
+static Result try_looks(Passes *passes, Error *error)
 {
-    LookPrograms *programs = renderer->raster == RASTER_QUADS ? &renderer->quads.hair.project
-                                                              : &renderer->blocks.project;
-    GLuint texture;
+    bool quads = passes->options->raster == RASTER_QUADS;
+    LookPrograms *programs = quads ? &passes->quads.hair.project : &passes->ribbons.project;
     static const unsigned others[] = {LOOK_SHADOW_APPROX,
                                       LOOK_SHADOW_DOM,
-                                      LOOK_SHADOW_DOM | LOOK_SHADOW_FOUND,
-                                      LOOK_SHADOW_DOM | LOOK_SHADOW_FOUND | LOOK_SHADOW_BY_MESH,
                                       LOOK_SHADOW_APPROX | LOOK_SHADOW_BY_MESH,
-                                      LOOK_SHADOW_DOM | LOOK_SHADOW_BY_MESH | LOOK_MESH_TEXELS,
                                       LOOK_SHADOW_DOM | LOOK_SHADOW_BY_MESH | LOOK_LIGHTS,
                                       LOOK_SHADOW_DOM | LOOK_SHADOW_BY_MESH | LOOK_MARSCHNER |
                                           LOOK_SCATTERED,
@@ -208,41 +206,37 @@ static Result try_looks(Renderer *renderer, Error *error)
                                       LOOK_TANGENT,
                                       LOOK_STRAND,
                                       LOOK_SMOOTH,
-                                      LOOK_SMOOTH | LOOK_PAINT,
-                                      LOOK_MARSCHNER | LOOK_TINTS,
-                                      LOOK_MARSCHNER | LOOK_TINTS | LOOK_GAUSS};
-    TRY(scatter_tables_find(&renderer->drawing.scatter, 1.5f, 0.2f, &texture, error));
+                                      LOOK_SMOOTH | LOOK_PAINT};
     for (unsigned features = 0; features < LOOK_SHADOW_APPROX; ++features)
         if ((features & (LOOK_MARSCHNER | LOOK_GAUSS)) != LOOK_GAUSS) // which does not count alone
             TRY(look_programs_build(programs, features, error));
     for (size_t i = 0; i < sizeof others / sizeof *others; ++i)
         TRY(look_programs_build(programs, others[i], error));
-    if (renderer->options.shadow.kind == SHADOW_NONE) return RESULT_OK;
+    if (passes->options->shadow.kind == SHADOW_NONE) return RESULT_OK;
     return try_light_counts(programs, error);
 }
 
 // What the options' shadows and floor are drawn by, and culling.
-static Result try_shadows(Renderer *renderer, Error *error)
+static Result try_shadows(Passes *passes, Error *error)
 {
-    const RendererOptions *options = &renderer->options;
+    const RendererOptions *options = passes->options;
     bool shadows = options->shadow.kind != SHADOW_NONE;
     for (unsigned variant = 0; variant < CAST_VARIANTS && shadows; ++variant)
-        TRY(hair_shadow_build(&renderer->shadow.hair, variant, error));
+        TRY(hair_shadow_build(&passes->shadow.hair, variant, error));
     for (unsigned i = 0; i < LIGHT_PASSES * CAST_VARIANTS && shadows; ++i)
-        TRY(light_pass_build(&renderer->scatter.passes.programs, (LightPass)(i / CAST_VARIANTS),
+        TRY(light_pass_build(&passes->scatter.passes.programs, (LightPass)(i / CAST_VARIANTS),
                              i % CAST_VARIANTS, error));
-    if (shadows) TRY(shadows_reserve_mesh(&renderer->shadow, 1, error));
-    TRY(base_layer_build_floor(&renderer->base.floor, error));
+    if (shadows) TRY(shadows_reserve_mesh(&passes->shadow, 1, error));
     for (int count = 0; count <= 2; count += 2) {
-        base_layer_count(&renderer->base, count, shadows ? count : 0);
-        TRY(base_layer_build_light(&renderer->base, options->shadow.kind, error));
-        for (int area = 0; area < 3; ++area)
-            TRY(base_layer_build(&renderer->base, (BaseArea)area, options->floor.kind,
-                                 options->shadow.kind, error));
+        base_layer_count(&passes->base, count, shadows ? count : 0);
+        TRY(base_layer_build_light(&passes->base, options->shadow.kind, error));
+        for (int mesh = 0; mesh < 2; ++mesh)
+            TRY(base_layer_build(&passes->base, mesh, options->floor.kind, options->shadow.kind,
+                                 error));
     }
-    for (unsigned variant = 0; variant < CULL_VARIANTS && renderer->raster == RASTER_BLOCKS;
+    for (unsigned variant = 0; variant < CULL_VARIANTS && options->raster == RASTER_COMPUTE;
          ++variant)
-        TRY(cull_build(&renderer->blocks.cull, variant, error));
+        TRY(cull_build(&passes->ribbons.cull, variant, error));
     return RESULT_OK;
 }
 
@@ -265,16 +259,28 @@ static Result try_renderer(const Gpu *gpu, Raster raster, const RendererOptions 
     gpu_timer_create(&timer, false, true);
     TRY(renderer_create(&renderer, gpu, &timer, &options, error));
     Result result = renderer_set_mesh(&renderer, &mesh, (const float[3]){1, 1, 1}, error);
-    if (raster != RASTER_COMPUTE) { // which projects as blocks do
-        THEN(result, try_looks(&renderer, error));
-        THEN(result, try_shadows(&renderer, error));
+    if (renderer.backend == &DRAW_PASSES) {
+        THEN(result, try_looks(renderer.state, error));
+        THEN(result, try_shadows(renderer.state, error));
     }
     renderer_destroy(&renderer);
     return result;
 }
 
+// The table of marschner shading.
+static void try_tables(Result *worst, FILE *stream, Error *error)
+{
+    ScatterTables tables = {0};
+    unsigned texture;
+    Error why = {{0}};
+    Result result = scatter_tables_find(&tables, 1.5f, 0.2f, &texture, &why);
+    report("scatter.comp", result, &why, worst, stream, error);
+    scatter_tables_destroy(&tables);
+}
+
 static void try_renderers(const Gpu *gpu, Result *worst, FILE *stream, Error *error)
 {
+    try_tables(worst, stream, error);
     static const char *const rasters[] = {"", "quads", "blocks", "compute"};
     static const struct {
         const char *name;

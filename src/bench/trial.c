@@ -14,7 +14,7 @@ bool trial_takes(const ParamInfo *info)
 {
     static const char *const other[] = {"algo",   "variant",         "followers",
                                         "follow", "follower_radius", "tip_separation",
-                                        "sleep",  "volume"};
+                                        "clump",  "sleep",           "volume"};
     for (size_t i = 0; i < sizeof other / sizeof *other; ++i)
         if (strcmp(info->name, other[i]) == 0) return false;
     return info->scope == SCOPE_SECTION && info->group == GROUP_SIMULATION;

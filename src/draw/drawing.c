@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "draw/drawing.h"
 
+#include "draw/scatter_tables.h"
 #include "gpu/gpu_uniforms.h"
 #include "image/tone.h"
+#include "sim/hair.h"
 #include "strands/paint.h"
 
 #include "glsl/common/shared_math.h"
@@ -132,7 +134,7 @@ void drawing_background(const RendererOptions *options, float light[4])
 }
 
 // The image without the band's values.
-static void fill_draw_params(const RendererOptions *options, const RenderMesh *mesh,
+static void fill_draw_params(const RendererOptions *options, const DrawnMesh *mesh,
                              const RenderFrame *frame, DrawParams *draw)
 {
     memset(draw, 0, sizeof *draw);
@@ -174,12 +176,12 @@ static void add_to_box(DrawParams *draw, vec3 x, int box[4])
     }
 }
 
-static void find_mesh_box(const RenderMesh *mesh, DrawParams *draw, int box[4])
+static void find_mesh_box(const DrawnMesh *mesh, DrawParams *draw, int box[4])
 {
     const int far = 1 << 20;
     vec3 x;
     box[0] = box[1] = far, box[2] = box[3] = -far;
-    for (int corner = 0; corner < 8 && mesh->triangle_count; ++corner) {
+    for (int corner = 0; corner < 8 && mesh->mesh.triangle_count; ++corner) {
         for (int k = 0; k < 3; ++k) x[k] = (corner >> k & 1 ? mesh->high : mesh->low)[k];
         glm_quat_rotatev(draw->head_rotation, x, x);
         glm_vec3_add(x, draw->head_translation, x);
@@ -198,7 +200,7 @@ static void add_floor_to_box(const Floor *floor, DrawParams *draw, int box[4])
     }
 }
 
-static void find_boxes(Drawing *drawing, const RendererOptions *options, const RenderMesh *mesh)
+static void find_boxes(Drawing *drawing, const RendererOptions *options, const DrawnMesh *mesh)
 {
     find_mesh_box(mesh, &drawing->draw, drawing->mesh_box);
     memcpy(drawing->base_box, drawing->mesh_box, sizeof drawing->base_box);
@@ -207,7 +209,7 @@ static void find_boxes(Drawing *drawing, const RendererOptions *options, const R
 
 // The image's samples are those of the whole less the window's first: x' = x - first, and with
 // x = (X/W + 1)/2 size for both X' = X size/size' + W ((size - 2 first)/size' - 1).
-void drawing_set_window(Drawing *drawing, const RendererOptions *options, const RenderMesh *mesh,
+void drawing_set_window(Drawing *drawing, const RendererOptions *options, const DrawnMesh *mesh,
                         const int place[2], const int size[2])
 {
     const float whole[2] = {drawing->whole.width, drawing->whole.height};
@@ -269,9 +271,9 @@ static float find_share(const RendererOptions *options, const Drawing *drawing,
     return fmaxf(share, lod->least);
 }
 
-static unsigned shadow_features(const RendererOptions *options, const RenderMesh *mesh)
+static unsigned shadow_features(const RendererOptions *options, const DrawnMesh *mesh)
 {
-    unsigned by_mesh = mesh->triangle_count ? LOOK_SHADOW_BY_MESH : 0;
+    unsigned by_mesh = mesh->mesh.triangle_count ? LOOK_SHADOW_BY_MESH : 0;
     switch (options->shadow.kind) {
     case SHADOW_APPROX:
         return LOOK_SHADOW_APPROX | by_mesh;
@@ -284,17 +286,13 @@ static unsigned shadow_features(const RendererOptions *options, const RenderMesh
 
 static Result make_room(Drawing *drawing, Error *error)
 {
+    if (!drawing->scatter) drawing->scatter = calloc(1, sizeof *drawing->scatter);
+    if (!drawing->scatter) return error_set(error, RESULT_FAILED, "no memory to draw hair");
     if (drawing->look_room >= drawing->item_count) return RESULT_OK;
     Look *looks = realloc(drawing->looks, drawing->item_count * sizeof *looks);
     if (!looks)
         return error_set(error, RESULT_FAILED, "no memory for %u sections", drawing->item_count);
     drawing->looks = looks;
-    TintTable *tints = realloc(drawing->tints, drawing->item_count * sizeof *tints);
-    if (!tints)
-        return error_set(error, RESULT_FAILED, "no memory for %u sections", drawing->item_count);
-    memset(tints + drawing->look_room, 0,
-           (drawing->item_count - drawing->look_room) * sizeof *tints);
-    drawing->tints = tints;
     drawing->look_room = drawing->item_count;
     return RESULT_OK;
 }
@@ -306,22 +304,6 @@ static void fit_albedo(Look *look, FibreTable table)
     for (int k = 0; k < 3; ++k)
         look->material.mean_albedo[k] =
             fit[0] + (1 - fit[0]) * powf(fminf(look->mean_color[k], 1), fit[1]);
-}
-
-// A table of the section's own, where strands differ by their brightness alone.
-static Result make_tints(Drawing *drawing, const Hair *hair, FibreTable table, Look *look,
-                         Error *error)
-{
-    MaterialParams *material = &look->material;
-    TintTable *tints = &drawing->tints[look - drawing->looks];
-    if (drawing->gpu->kind != GPU_CPU_DRIVER || hair->is_painted || material->warmth_variation != 0)
-        return RESULT_OK;
-    TRY(tint_table_make(tints, table, material->color, material->color_variation,
-                        &drawing->gpu->limits, error));
-    memcpy(material->tint_unit, tints->unit, sizeof tints->unit);
-    look->tints = tints;
-    look->features |= LOOK_TINTS;
-    return RESULT_OK;
 }
 
 // `features`: those that do not depend on the item.
@@ -341,15 +323,14 @@ static Result make_look(Drawing *drawing, const RendererOptions *options, const 
     const float *mean = item->hair->is_painted ? item->hair->paint_mean : look->material.color;
     memcpy(look->mean_color, mean, sizeof look->mean_color);
     if (item->material->lobes == LOBES_GAUSS) look->features |= LOOK_GAUSS;
-    TRY(scatter_tables_find(&drawing->scatter, item->material->refraction,
+    TRY(scatter_tables_find(drawing->scatter, item->material->refraction,
                             glm_rad(item->material->azimuthal_roughness), &look->scatter, error));
-    FibreTable table;
-    TRY(scatter_tables_read(&drawing->scatter, look->scatter, &table, error));
-    fit_albedo(look, table);
-    return make_tints(drawing, item->hair, table, look, error);
+    TRY(scatter_tables_read(drawing->scatter, look->scatter, &look->table, error));
+    fit_albedo(look, look->table);
+    return RESULT_OK;
 }
 
-Result drawing_begin(Drawing *drawing, const RendererOptions *options, const RenderMesh *mesh,
+Result drawing_begin(Drawing *drawing, const RendererOptions *options, const DrawnMesh *mesh,
                      const RenderFrame *frame, const RenderItem *items, uint32_t item_count,
                      Error *error)
 {
@@ -370,11 +351,10 @@ Result drawing_begin(Drawing *drawing, const RendererOptions *options, const Ren
 
 void drawing_destroy(Drawing *drawing)
 {
-    for (uint32_t i = 0; i < drawing->look_room; ++i) tint_table_destroy(&drawing->tints[i]);
-    free(drawing->tints);
-    scatter_tables_destroy(&drawing->scatter);
+    if (drawing->scatter) scatter_tables_destroy(drawing->scatter);
+    free(drawing->scatter);
     free(drawing->looks);
-    *drawing = (Drawing){.gpu = drawing->gpu};
+    *drawing = (Drawing){0};
 }
 
 void drawing_upload(Drawing *drawing)

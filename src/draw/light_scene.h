@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What light_grid.h and light_dual.h find light among: hair, lights, eye and mesh.
+// What light_grid.h finds light among: hair, lights, eye and mesh.
 #pragma once
 
 #include "base/error.h"
 #include "draw/fibre_lobes.h"
 #include "draw/light_blocks.h"
-#include "lanes/mapped_caster.h"
+#include "draw/mapped_caster.h"
 
 #include "glsl/draw/draw.h"
 
@@ -14,23 +14,23 @@ enum { LIGHT_GRID_KINDS = 4 }; // of fibres that scatter in ways of their own; o
 // A batch of hair in the light.
 typedef struct GridHair {
     MappedCaster caster;
-    const float *left; // [map][points]: what of each mapped light reaches the points of its curves
-    const float *behind; // the same of the mean number of fibres behind it; for light_dual.h
-    size_t points;       // of all its strands (look_points)
-    int kind;            // of its fibres
-    float (*seen)[3];    // [points], for light_grid_gather: linear RGB; NULL: is not asked for
+    int kind; // of its fibres
 } GridHair;
 
 typedef struct GridScene {
     const GridHair *hair;
     uint32_t hair_count;
-    const FibreLobes *kinds;   // [kind_count]
-    int kind_count;            // 1 .. LIGHT_GRID_KINDS
-    const DrawParams *draw;    // lights, sky, ground, eye
+    const FibreLobes *kinds; // [kind_count]
+    int kind_count;          // 1 .. LIGHT_GRID_KINDS
+    const DrawParams *draw;  // lights, sky, ground, eye
+    // That tells light_grid_solve what is left of lights (lanes/shadow.h); NULL: no light has a
+    // map.
+    const struct LaneShadow *shadow;
     float to_eye[3];           // unit, world: against the way that the camera looks
     int map_of[MAX_LIGHTS];    // of each light; -1: it casts no shadow
     const LightBlocks *blocks; // what the mesh takes away within the box of hair; NULL: no mesh
     bool suns;                 // the lights' light is followed, too, not only that of the sky
+    uint32_t step;             // of so many strands one stands for all in the cells; 0: 1
     int cells;                 // along the longest side of the box, 4 .. 64
     int orders; // of scattering that are swept at most, 0 .. 32; 0: the sky's own light alone
 } GridScene;

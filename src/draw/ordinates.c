@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "draw/ordinates.h"
 
-#include "glsl/common/shared_math.h"
+#include "glsl/kernel/cell.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -81,17 +81,11 @@ void ordinates_prepare(void)
     prepared = true;
 }
 
-static int square_of(float at)
-{
-    int i = (int)(0.5f * (at + 1) * SQUARES);
-    return i < 0 ? 0 : i >= SQUARES ? SQUARES - 1 : i;
-}
-
 int ordinates_class(const float t[3])
 {
     float x = fabsf(t[0]), y = fabsf(t[1]), z = fabsf(t[2]);
     int axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
     float main = fmaxf(fabsf(t[axis]), 1e-20f);
-    return TANGENT_NEAREST[2 * axis + (t[axis] > 0)][square_of(t[(axis + 2) % 3] / main)]
-                          [square_of(t[(axis + 1) % 3] / main)];
+    return TANGENT_NEAREST[2 * axis + (t[axis] > 0)][cell_square(t[(axis + 2) % 3] / main, SQUARES)]
+                          [cell_square(t[(axis + 1) % 3] / main, SQUARES)];
 }

@@ -1,55 +1,49 @@
 // SPDX-License-Identifier: MIT
 // The room draw turns hair into images. It takes hair on the GPU (sim/hair.h), the view, lights and
-// materials of a frame, and a mesh; it hands on an Image. First come shadow maps (shadows.h) and
-// the light among hair (hair_scatter.h), then mesh and floor (base_layer.h), then the hair by one
-// of three rasterisers: blocks.h composites on the CPU, compute.h on the GPU, quads.h sends
-// triangles into an A-buffer. drawing.h has what the passes of an image share.
+// materials of a frame, and a mesh; it hands on an Image. A backend (backend.h) does the work:
+// shadow maps, light among hair, mesh and floor, then the hair. drawing.h has what the passes of an
+// image share.
 #pragma once
 
-#include "draw/base_layer.h"
-#include "draw/blocks.h"
-#include "draw/drawing.h"
-#include "draw/hair_scatter.h"
-#include "draw/renderer_options.h"
+#include "draw/backend.h"
+#include "draw/hair_read.h"
 #include "draw/tiles.h"
-#include "passes/compute.h"
-#include "passes/quads.h"
+#include "gpu/gpu.h"
+#include "gpu/gpu_timer.h"
 
 typedef struct Renderer {
-    RendererOptions options;
-    Tiles tiles;          // of the image; one: it is drawn at once
-    RendererOptions part; // the options with the size of a tile
-    Image tile;           // owned; no pixels: there is one only
+    RendererOptions options; // `raster` is decided
+    Tiles tiles;             // of the image; one: it is drawn at once
+    RendererOptions part;    // the options with the size of a tile
+    Image tile;              // owned; no pixels: there is one only
     const Gpu *gpu;
     GpuTimer *timer;
-    RenderTarget target;
-    Raster raster; // auto is decided
-    Quads quads;
-    Blocks blocks;
-    Compute compute;
-    Image *begun;   // of compute: the image that was begun last, not owned
-    bool direct[2]; // of compute, by place: it is in its image already
-    BaseLayer base;
-    Shadows shadow;
-    HairScatter scatter;
-    Mesh mesh;             // a copy of its positions and triangles, for the light among hair
-    ShadowCaster *casters; // [caster_room], owned
-    uint32_t caster_room;
-    Drawing drawing; // the last one
+    const DrawBackend *backend;
+    void *state; // of the backend, owned
+    DrawnMesh mesh;
+    DrawnHair *hair; // [hair_room], owned
+    uint32_t hair_room;
+    HairRead read;
+    Drawing drawing;    // the last one
+    BackendFrame frame; // the same
     RendererCounts counts;
 } Renderer;
 
-// Makes targets and shaders. `gpu` and `timer` outlive the renderer; spans "draw_mesh",
-// "draw_project", and of quads "draw_hair", "draw_resolve" and "draw_read" (of the image), of
-// blocks "draw_read" (of mesh and floor), "draw_bin" and "draw_composite", of compute "draw_bin",
-// "draw_sort", "draw_composite" and "draw_read" (of the image). RESULT_FAILED if
-// memory is short.
+// Makes what the backend needs. `gpu` and `timer` outlive the renderer, which stays where it is;
+// spans "draw_shadow", "draw_scatter", "draw_mesh", "draw_project", and of quads "draw_hair",
+// "draw_resolve" and "draw_read" (of the image), of blocks "draw_bin" and "draw_composite", of
+// compute "draw_bin", "draw_sort", "draw_composite" and "draw_read". RESULT_FAILED if memory is
+// short.
 Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
                        const RendererOptions *options, Error *error);
 void renderer_destroy(Renderer *renderer);
 
 // The mesh that hides hair, in the head's frame, and its colour (sRGB 0..1). Copied to the GPU.
 Result renderer_set_mesh(Renderer *renderer, const Mesh *mesh, const float color[3], Error *error);
+
+// Moves the vertices of that mesh, after renderer_settle: `moved` has as many, with normals, in the
+// head's frame. What the mesh sees of the sky stays.
+void renderer_move_mesh(Renderer *renderer, const Mesh *moved);
 
 // The mesh's share of the sky (openness.h), [vertices of the mesh]; matt meshes do without.
 Result renderer_set_openness(Renderer *renderer, const float *open, Error *error);

@@ -3,12 +3,13 @@
 #pragma once
 
 #include "base/params.h"
-#include "draw/shadows.h"
+#include "draw/shadow_frames.h"
 #include "image/image.h"
 #include "scene/camera.h"
 #include "scene/floor.h"
 #include "scene/scene.h"
-#include "sim/hair.h"
+
+typedef struct Hair Hair; // sim/hair.h
 
 // How many strands are drawn, all zero: all of them. Files' strands lie in random order, so the
 // first so many stand for all.
@@ -18,6 +19,15 @@ typedef struct LodOptions {
     float least;      // share, 0 .. 1
     float width;      // px: narrower fibres are fewer and as wide as this; 0: are left as they are
 } LodOptions;
+
+// Of light from fibre to fibre.
+typedef struct ScatterOptions {
+    Scatter kind;     // none: only light of the sky
+    int cells;        // along the longest side of the hair, 4 .. 64; 0: 32
+    int orders;       // that are followed, 1 .. 32; 0: 16
+    uint32_t strands; // that stand for all in the cells, at least; 0: all
+    bool off;         // set by scatter_options: no light is found
+} ScatterOptions;
 
 typedef struct RendererOptions {
     Raster raster;        // how hair becomes pixels; auto: blocks on CPU drivers, else compute
@@ -32,14 +42,14 @@ typedef struct RendererOptions {
                    // own; 0: 1. AOVs of what is nearest have one
     uint32_t seed; // of what varies by strand
     ShadowOptions shadow;
-    Scatter scatter;    // of light from fibre to fibre; needs deep shadow maps
-    int scatter_orders; // that are followed, 1 .. 32; 0: 16
-    int scatter_cells;  // along the longest side of the hair, 4 .. 64; 0: 32
-    Floor floor;        // not with an AOV
+    ScatterOptions scatter; // needs deep shadow maps
+    Floor floor;            // not with an AOV
     MeshShading mesh_shading;
     LodOptions lod;
     Oit oit;            // how the fragments of a pixel are blended; auto: abuffer. Else quads are
                         // what raster auto is
+    float least_seen;   // blocks: share of a pixel that a ribbon must be seen by to be shaded, 0 ..
+                        // 0.05
     int oit_layers;     // abuffer: how many of them in order, 1 .. 64, the same; 0: 8, of two
                         // samples 16
     int64_t pool_bytes; // no larger A-buffer; 0: what the driver allows

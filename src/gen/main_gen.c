@@ -6,6 +6,7 @@
 #include "base/program.h"
 #include "base/quote.h"
 #include "gen/fur.h"
+#include "gen/head_motion.h"
 #include "gen/strands_make.h"
 #include "mesh/head.h"
 #include "mesh/obj.h"
@@ -19,7 +20,7 @@ typedef struct Command {
     int kind, shape, count, vertices, set, seed;
     double length, length_variation, curl_radius, curl_turns, curl_disorder;
     GenOutput output;
-    const char *mesh;
+    const char *mesh, *motion;
 } Command;
 
 static const char KINDS[] = "random|straight|curls|fur";
@@ -50,6 +51,8 @@ static const Option OPTIONS[] = {
     GEN_OPTION_FORMAT(AT(output.format)),
     GEN_OPTION_OUTPUT(AT(output.path)),
     {"mesh", 0, OPTION_STRING, AT(mesh), "FILE", 0, 0, "also write the shape, as Wavefront OBJ"},
+    {"motion", 0, OPTION_STRING, AT(motion), "FILE.npz", 0, 0,
+     "also write the head as it turns, nods, speaks and shrugs, for tractrix-render --mesh"},
     GEN_OPTION_QUIET(AT(output.quiet)),
 };
 
@@ -130,7 +133,7 @@ static Result check_effect(const Command *command, Error *error)
     if (command->set >= 0 && shaping)
         return error_set(error, RESULT_USAGE, "--set %s and --%s exclude each other",
                          SET_NAMES[command->set], shaping);
-    if (!command->output.path && !command->mesh)
+    if (!command->output.path && !command->mesh && !command->motion)
         return error_set(error, RESULT_USAGE, "no output: expected -o FILE");
     return RESULT_OK;
 }
@@ -229,17 +232,32 @@ static Result write_mesh(const Command *command, ScalpShape shape, Error *error)
     return result;
 }
 
+static Result write_motion(const Command *command, Error *error)
+{
+    Mesh mesh;
+    Result result = head_make_mesh(&mesh, HEAD_MOTION_TRIANGLES, error);
+    THEN(result, head_motion_write(command->motion, &mesh, error));
+    if (result == RESULT_OK && !command->output.quiet)
+        fprintf(gen_messages(&command->output), "%s: %u vertices, %d s at %d samples a second\n",
+                quote(command->motion).text, mesh.vertex_count, HEAD_MOTION_SECONDS,
+                HEAD_MOTION_RATE);
+    mesh_destroy(&mesh);
+    return result;
+}
+
 static Result write_all(const Command *command, Error *error)
 {
     StrandsRecipe recipe = make_recipe(command);
     ScalpShape shape = command->set >= 0 ? SCALP_SPHERE : recipe.shape;
     const PathUse uses[] = {{"-o", command->output.path, PATH_WRITTEN, NULL},
-                            {"--mesh", command->mesh, PATH_WRITTEN, NULL}};
-    TRY(paths_claim(uses, 2, error));
+                            {"--mesh", command->mesh, PATH_WRITTEN, NULL},
+                            {"--motion", command->motion, PATH_WRITTEN, NULL}};
+    TRY(paths_claim(uses, 3, error));
     activity_start(stderr, command->output.quiet);
     activity_set("growing hair");
     if (command->output.path) TRY(write_hair(command, &recipe, error));
     if (command->mesh) TRY(write_mesh(command, shape, error));
+    if (command->motion) TRY(write_motion(command, error));
     return RESULT_OK;
 }
 

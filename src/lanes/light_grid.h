@@ -23,9 +23,9 @@ typedef struct LightGrid {
 // Finds the light. RESULT_FAILED if memory is short.
 Result light_grid_solve(LightGrid *grid, const GridScene *scene, Error *error);
 
-// What of that light each point of the hair sends to the eye, into `seen`. The scene is that of
-// light_grid_solve but for `draw`'s eye, `to_eye` and `seen`.
-Result light_grid_gather(LightGrid *grid, const GridScene *scene, Error *error);
+// Makes ready what light_grid_show.h needs: `draw`'s eye and `to_eye` may be others than those of
+// light_grid_solve. RESULT_FAILED if memory is short.
+Result light_grid_prepare(LightGrid *grid, const GridScene *scene, Error *error);
 
 // A zeroed struct is legal.
 void light_grid_destroy(LightGrid *grid);

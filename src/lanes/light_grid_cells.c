@@ -11,8 +11,8 @@
 // beside them, where points between cells look, too.
 void light_grid_make_slots(LightGridState *state)
 {
-    const int *n = state->lattice.count;
-    size_t cells = light_lattice_cells(&state->lattice);
+    const int *n = state->field.lattice.count;
+    size_t cells = light_lattice_cells(&state->field.lattice);
     uint32_t sum = 0;
     state->filled = 0;
     for (size_t c = 0; c < cells; ++c) {
@@ -60,9 +60,10 @@ static void add_items(const LightGridState *state, uint32_t first, uint32_t end,
         }
         uint64_t *class = sum->class[item->class];
         class[0] += item->area;
-        for (int l = 0; l < state->lights; ++l) class[1 + l] += item->lit[l];
+        for (int l = 0; l < state->field.lights; ++l) class[1 + l] += item->lit[l];
         sum->whole += item->area;
-        for (int k = 0; k < 3 && state->tinted; ++k) sum->tint[k] += item->lit[state->lights + k];
+        for (int k = 0; k < 3 && state->field.tinted; ++k)
+            sum->tint[k] += item->lit[state->field.lights + k];
     }
 }
 
@@ -130,7 +131,7 @@ typedef struct CellFill {
 static float find_passed(const CellFill *fill, int f, int l)
 {
     const LightGridState *state = fill->state;
-    const LightLattice *lattice = &state->lattice;
+    const LightLattice *lattice = &state->field.lattice;
     const GridScene *scene = fill->scene;
     const int *n = lattice->count;
     int c = state->cell_of[f], cell[3] = {c % n[0], c / n[0] % n[1], c / (n[0] * n[1])};
@@ -165,12 +166,12 @@ SIMD_INLINE void fill_source(const LightGridState *state, const GridScene *scene
     const float *depth = state->depth + (size_t)f * ORDINATES, *tint = state->tint + 3 * f;
     float source[GRID_WIDE];
     for (int i = 0; i < GRID_WIDE; ++i) source[i] = 0;
-    for (int l = 0; l < state->lights; ++l) {
+    for (int l = 0; l < state->field.lights; ++l) {
         float part[GRID_WIDE] = {0};
         for (int u = 0; u < sum->count && passed[l] > 0; ++u) {
             int class = sum->used[u];
             float w = (float)sum->class[class][1 + l] * (passed[l] / ITEM_STEPS);
-            const float *first = state->kinds[class / TANGENTS].first[l][class % TANGENTS];
+            const float *first = state->field.kinds[class / TANGENTS].first[l][class % TANGENTS];
             if (w > 0)
                 for (int i = 0; i < GRID_WIDE; ++i) part[i] += w * first[i];
         }
@@ -197,7 +198,7 @@ static void fill_glow(const LightGridState *state, const GridScene *scene, const
     if (!scene->blocks) return;
     double area = 0;
     for (int u = 0; u < sum->count; ++u) area += (double)sum->class[sum->used[u]][0];
-    for (int l = 0; l < state->lights && area > 0; ++l) {
+    for (int l = 0; l < state->field.lights && area > 0; ++l) {
         double lit = 0;
         for (int u = 0; u < sum->count; ++u) lit += (double)sum->class[sum->used[u]][1 + l];
         float share = 0.5f * (float)(lit / area) * passed[l];
@@ -215,10 +216,9 @@ SIMD_INLINE void fill_passage(LightGridState *state, int f)
         memcpy(mean + GRID_LANES, depth + g * GRID_LANES, GRID_LANES * sizeof *depth);
         for (int l = 0; l < GRID_LANES; ++l) {
             int d = g * GRID_LANES + l;
-            float main = fabsf(ORDINATE[g / 2][d]), tau = depth[d] / main,
-                  through = simd_exp2(-(float)LOG2E * simd_min(tau, 40));
-            left[l] = through;
-            mean[l] = tau > 1e-3f ? (1 - through) / tau : 1 - 0.5f * tau;
+            float tau = depth[d] / fabsf(ORDINATE[g / 2][d]);
+            left[l] = cell_left(tau);
+            mean[l] = cell_mean_share(tau, left[l]);
         }
     }
 }
@@ -226,7 +226,7 @@ SIMD_INLINE void fill_passage(LightGridState *state, int f)
 SIMD_INLINE void fill_cells(const CellFill *fill, int part)
 {
     LightGridState *state = fill->state;
-    size_t cells = light_lattice_cells(&state->lattice);
+    size_t cells = light_lattice_cells(&state->field.lattice);
     CellSum *sum = &fill->sums[part];
     int first = (int)((int64_t)state->filled * part / state->parts),
         end = (int)((int64_t)state->filled * (part + 1) / state->parts);
@@ -240,9 +240,9 @@ SIMD_INLINE void fill_cells(const CellFill *fill, int part)
         fill_depths(sum, state->depth + (size_t)f * ORDINATES);
         for (int k = 0; k < 3; ++k)
             state->tint[3 * f + k] =
-                state->tinted && sum->whole ? (float)sum->tint[k] / (float)sum->whole : 1;
+                state->field.tinted && sum->whole ? (float)sum->tint[k] / (float)sum->whole : 1;
         float passed[MAX_LIGHTS];
-        for (int l = 0; l < state->lights; ++l) passed[l] = find_passed(fill, f, l);
+        for (int l = 0; l < state->field.lights; ++l) passed[l] = find_passed(fill, f, l);
         fill_source(state, fill->scene, sum, passed, f);
         fill_glow(state, fill->scene, sum, passed, f);
         state->class[f] = find_main_class(sum);
@@ -258,8 +258,8 @@ bool light_grid_fill_cells(LightGridState *state, const GridScene *scene)
     CellFill fill = {.state = state, .scene = scene};
     fill.sums = calloc((size_t)state->parts, sizeof *fill.sums);
     if (!fill.sums) return false;
-    for (int l = 0; l < state->lights && scene->blocks; ++l)
-        light_path_find(&fill.paths[l], &state->lattice, state->to_light[l]);
+    for (int l = 0; l < state->field.lights && scene->blocks; ++l)
+        light_path_find(&fill.paths[l], &state->field.lattice, state->field.to_light[l]);
     run_fill_cells(&fill, state->parts);
     free(fill.sums);
     return true;

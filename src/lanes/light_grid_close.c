@@ -4,27 +4,24 @@
 
 #include <math.h>
 
-// Of two orders after each other what hair meets falls by this factor.
-static double falling(const LightGridState *state, int channel)
+// What hair met of the order before the last and of the last.
+static void find_met(const LightGridState *state, int channel, float met[2])
 {
-    double before = 0, last = 0;
-    for (int g = 0; g < ORDINATE_GROUPS; ++g) {
-        before += state->sums[0][g][channel];
-        last += state->sums[1][g][channel];
+    for (int k = 0; k < 2; ++k) {
+        double sum = 0;
+        for (int g = 0; g < ORDINATE_GROUPS; ++g) sum += state->sums[k][g][channel];
+        met[k] = (float)sum;
     }
-    return before > 0 ? fmin(last / before, 0.95) : 0;
 }
 
-bool light_grid_needs_more(const LightGridState *state, double all[3])
+bool light_grid_needs_more(const LightGridState *state, float all[3])
 {
-    const double most_left = 0.05;
     bool more = false;
     for (int c = 0; c < 3; ++c) {
-        double last = 0, ratio = falling(state, c);
-        for (int g = 0; g < ORDINATE_GROUPS; ++g) last += state->sums[1][g][c];
-        all[c] += last;
-        double left = last * ratio / (1 - ratio);
-        more |= left > most_left * (all[c] + left);
+        float met[2];
+        find_met(state, c, met);
+        all[c] += met[1];
+        more |= cell_needs_more(all[c], met[1], cell_falling(met[0], met[1]));
     }
     return more;
 }
@@ -33,8 +30,9 @@ SIMD_INLINE void close_lights(const LightGridState *state, int part)
 {
     float more[3];
     for (int c = 0; c < 3; ++c) {
-        double ratio = state->closing ? falling(state, c) : 0;
-        more[c] = (float)(ratio / (1 - ratio));
+        float met[2];
+        find_met(state, c, met);
+        more[c] = state->closing ? cell_further(cell_falling(met[0], met[1])) : 0;
     }
     int first = (int)((int64_t)state->active * part / state->parts),
         end = (int)((int64_t)state->active * (part + 1) / state->parts);

@@ -46,8 +46,8 @@ static bool grow_slots(LightGridState *state)
                 grow(&state->class, &of[4], filled, sizeof(int)) &&
                 grow(&state->sum, &of[5], active, GRID_WIDE * sizeof(float)) &&
                 grow(&state->order, &of[6], active, GRID_WIDE * sizeof(float)) &&
-                grow(&state->light, &of[7], active, GRID_WIDE * sizeof(float)) &&
-                grow(&state->hidden, &of[8], active, 4 * sizeof(float));
+                grow(&state->light, &of[7], active + 1, GRID_WIDE * sizeof(float)) &&
+                grow(&state->hidden, &of[8], active + 1, 4 * sizeof(float));
     state->filled_room = good ? of[0] : 0;
     state->slot_room = good ? of[6] : 0;
     return good;
@@ -67,19 +67,19 @@ static void release_items(LightGridState *state)
 
 static Result fill_all(LightGridState *state, const GridScene *scene, Error *error)
 {
-    size_t cells = light_lattice_cells(&state->lattice);
+    size_t cells = light_lattice_cells(&state->field.lattice);
     Result result = RESULT_OK;
     if (!grow_cells(state, cells)) return RESULT_FAILED;
     memset(state->first_item, 0, (size_t)state->parts * cells * sizeof *state->first_item);
     light_grid_place(state, scene, false);
     light_grid_make_slots(state);
-    if (!light_grid_find_walls(state, scene) || !light_grid_find_spans(state) ||
+    if (!light_grid_find_spans(state) ||
         !grow(&state->items, &state->item_room,
               (size_t)state->item_count * (size_t)state->item_words, sizeof *state->items) ||
         !grow_slots(state))
         return RESULT_FAILED;
     light_grid_place(state, scene, true);
-    THEN(result, light_grid_make_first(state, scene, error));
+    THEN(result, light_field_make_first(&state->field, scene, error));
     if (result != RESULT_OK) return result;
     if (!light_grid_fill_cells(state, scene)) return RESULT_FAILED;
     release_items(state);
@@ -91,16 +91,15 @@ bool light_grid_fill(LightGridState *state, const GridScene *scene, Error *error
     ordinates_prepare();
     *result = RESULT_OK;
     if (!light_grid_find_lattice(state, scene)) return false;
-    light_grid_find_lights(state, scene);
-    // The blocks' lattice must be this one.
-    if (scene->blocks) {
-        LightBlocks *blocks = (LightBlocks *)scene->blocks;
-        *result = light_blocks_find(blocks, &state->lattice, error);
-        if (*result != RESULT_OK) return false;
-    }
+    light_field_find_lights(&state->field, scene);
+    state->item_words = 2 + state->field.lights + (state->field.tinted ? 3 : 0);
+    memcpy(state->mesh_color, scene->draw->mesh_color, sizeof state->mesh_color);
+    *result = light_field_find_walls(&state->field, scene, error);
+    if (*result != RESULT_OK) return false;
     *result = fill_all(state, scene, error);
     if (*result == RESULT_FAILED)
         error_set(error, RESULT_FAILED, "no memory for light among hair: %d x %d x %d cells",
-                  state->lattice.count[0], state->lattice.count[1], state->lattice.count[2]);
+                  state->field.lattice.count[0], state->field.lattice.count[1],
+                  state->field.lattice.count[2]);
     return *result == RESULT_OK;
 }

@@ -2,6 +2,7 @@
 // Parts of segments of hair, sorted by the cells of a light grid that they lie in: so each cell is
 // worked on by one thread, and adds them up in whole numbers, so that their order does not matter.
 #include "lanes/light_grid_tile.h"
+#include "lanes/shadow.h"
 
 #include <math.h>
 #include <string.h>
@@ -20,22 +21,27 @@ typedef struct Segments {
     bool sound[W];
 } Segments;
 
+// What is left of lights at the segments' ends.
+typedef struct Lefts {
+    float at[2][MAX_LIGHTS][W]; // [end][map]
+} Lefts;
+
 // One piece of each segment: its area, and what each light leaves of it, in steps.
 typedef struct Pieces {
     float area[W];
     uint32_t lit[MAX_LIGHTS][W];
 } Pieces;
 
-SIMD_INLINE void find_areas(const GridHair *hair, const LightLattice *lattice, int tile, int j,
-                            Segments *s)
+SIMD_INLINE void find_areas(const Place *all, const GridStrands *strands, int j, Segments *s)
 {
-    const MaterialParams *m = &hair->caster.material;
-    const uint32_t(*paint)[4] = hair->caster.paint;
+    const LightLattice *lattice = &all->state->field.lattice;
+    const MaterialParams *m = &strands->hair->caster.material;
+    const uint32_t(*paint)[4] = strands->hair->caster.paint;
     float thinning = (1 - m->tip_ratio) / (float)(m->vertex_count - 1),
           share = 1 - thinning * ((float)j + 0.5f),
-          unit = ITEM_STEPS / (lattice->side * lattice->side);
-    size_t at = ((size_t)tile * m->vertex_count + (size_t)j) * W,
-           root = (size_t)tile * m->vertex_count * W;
+          weight = (float)m->drawn_strands /
+                   (float)cell_strands(m->drawn_strands, light_field_step(all->scene)),
+          unit = weight * ITEM_STEPS / (lattice->side * lattice->side);
     for (int i = 0; i < W; ++i) {
         float x = s->b[0][i] - s->a[0][i], y = s->b[1][i] - s->a[1][i], z = s->b[2][i] - s->a[2][i];
         float length = sqrtf(x * x + y * y + z * z);
@@ -44,13 +50,13 @@ SIMD_INLINE void find_areas(const GridHair *hair, const LightLattice *lattice, i
     }
     if (paint)
         for (int i = 0; i < W; ++i) {
-            float here = simd_float_of(paint[at + (size_t)i][2]),
-                  there = simd_float_of(paint[at + W + (size_t)i][2]),
-                  opacity = (float)(paint[root + (size_t)i][1] >> 16) / 65535;
+            size_t root = strands->root[i], at = root + (size_t)j * W;
+            float here = simd_float_of(paint[at][2]), there = simd_float_of(paint[at + W][2]),
+                  opacity = (float)(paint[root][1] >> 16) / 65535;
             s->area[i] *= 0.5f * (here + there) / share * opacity;
         }
-    int last = (int)m->last_strand - tile * W;
-    if (last >= 0 && last < W) s->area[last] *= m->last_share;
+    for (int i = 0; i < W; ++i)
+        s->area[i] *= strands->number[i] == (int)m->last_strand ? m->last_share : 1;
 }
 
 static void find_classes(const GridHair *hair, int strands, Segments *s)
@@ -75,18 +81,39 @@ SIMD_INLINE int find_cell(const LightLattice *lattice, const Segments *s, float 
     return (at[2] * lattice->count[1] + at[1]) * lattice->count[0] + at[0];
 }
 
-// What light l leaves at places between particles j and j + 1 of a tile's strands.
-SIMD_INLINE void find_left(const GridScene *scene, const GridHair *hair, int l, int tile, int j,
-                           float on, float out[W])
+// What hair leaves of each map's light at particle j of strands, found there where curves are. What
+// the mesh leaves of it find_passed finds (light_grid_cells.c).
+SIMD_INLINE void find_left(const LaneShadow *shadow, const GridStrands *strands, int j,
+                           float left[MAX_LIGHTS][W])
 {
-    int map = scene->map_of[l];
-    for (int i = 0; i < W; ++i) out[i] = 1;
-    if (map < 0) return;
-    size_t parts = hair->caster.material.smooth_parts,
-           points = (hair->caster.material.vertex_count - 1) * parts + 1,
-           at = (size_t)map * hair->points + ((size_t)tile * points + (size_t)j * parts) * W;
-    const float *left = hair->left + at, *next = left + parts * W;
-    for (int i = 0; i < W; ++i) out[i] = left[i] + on * (next[i] - left[i]);
+    const MappedCaster *caster = &strands->hair->caster;
+    const MaterialParams *m = &caster->material;
+    int last = (int)m->vertex_count - 1;
+    float x[3][W], radius[W], opacity[W], share = 1 - (1 - m->tip_ratio) / (float)last * (float)j;
+    grid_read_points(strands, j, x);
+    if (m->smooth_parts > 1 && m->smooth_curve != CURVE_CATMULL_ROM && j > 0 && j < last) {
+        float before[3][W], after[3][W];
+        grid_read_points(strands, j - 1, before);
+        grid_read_points(strands, j + 1, after);
+        for (int k = 0; k < 3; ++k)
+            for (int i = 0; i < W; ++i)
+                x[k][i] = (before[k][i] + 4 * x[k][i] + after[k][i]) * (1.f / 6);
+    }
+    for (int i = 0; i < W; ++i) {
+        radius[i] = m->radius * (strands->number[i] == (int)m->last_strand ? m->last_share : 1);
+        opacity[i] = m->shadow_opacity;
+    }
+    for (int i = 0; i < W; ++i) {
+        const uint32_t(*paint)[4] = caster->paint ? caster->paint + strands->root[i] : NULL;
+        radius[i] *= paint ? simd_float_of(paint[(size_t)j * W][2]) : share;
+        opacity[i] *= paint ? (float)(paint[0][1] >> 16) / 65535 : 1;
+        radius[i] = simd_max(radius[i], 1e-9f);
+    }
+    for (int map = 0; map < shadow->params.maps; ++map) {
+        ShadowLook look;
+        shadow_look(shadow, map, (const float(*)[W])x, &look);
+        shadow_look_hair(shadow, map, &look, radius, opacity, left[map]);
+    }
 }
 
 // By signed conversions, which all vectors have: what is large is even.
@@ -100,16 +127,13 @@ SIMD_INLINE uint32_t steps_of(float x)
 static float find_lamp(const GridScene *scene, const LightLattice *lattice, int l,
                        const Segments *s, float on, int i)
 {
-    const float *color = scene->draw->light_color[l];
-    float x[3] = {0}, way[3], there[3];
+    float x[3] = {0}, way[3];
     if (scene->draw->light_place[l][3] == 0) return 1;
     for (int k = 0; k < 3; ++k) {
         float place = s->a[k][i] + on * (s->b[k][i] - s->a[k][i]);
         for (int n = 0; n < 3; ++n) x[n] += lattice->turn[k][n] * place;
     }
-    light_grid_light(scene->draw, l, x, way, there);
-    float most = fmaxf(fmaxf(color[0], color[1]), color[2]);
-    return most > 0 ? fminf(fmaxf(fmaxf(there[0], there[1]), there[2]) / most, 1e3f) : 0;
+    return fminf(light_field_light(scene->draw, l, x, way), 1e3f);
 }
 
 // Of a painted particle the area times the albedo over the kind's.
@@ -128,18 +152,21 @@ static void put_tint(const GridHair *hair, size_t particle, float area, uint32_t
 }
 
 // What each light leaves of one piece's areas, in steps.
-SIMD_INLINE void find_lit(const Place *all, const GridHair *hair, const Segments *s, int tile,
-                          int j, float on, Pieces *pieces)
+SIMD_INLINE void find_lit(const Place *all, const Segments *s, const Lefts *left, int j, float on,
+                          Pieces *pieces)
 {
     const LightGridState *state = all->state;
-    for (int i = 0; i < W; ++i) pieces->area[i] = s->area[i] / (float)state->pieces;
-    for (int l = 0; l < state->lights; ++l) {
+    for (int i = 0; i < W; ++i) pieces->area[i] = s->area[i] / (float)state->field.pieces;
+    for (int l = 0; l < state->field.lights; ++l) {
         float lit[W];
-        find_left(all->scene, hair, l, tile, j, on, lit);
-        for (int i = 0; i < W; ++i) lit[i] *= pieces->area[i];
+        int map = all->scene->map_of[l];
+        const float *from = left->at[j % 2][map < 0 ? 0 : map],
+                    *to = left->at[(j + 1) % 2][map < 0 ? 0 : map];
+        for (int i = 0; i < W; ++i)
+            lit[i] = pieces->area[i] * (map < 0 ? 1 : from[i] + on * (to[i] - from[i]));
         if (all->scene->draw->light_place[l][3] != 0)
             for (int i = 0; i < W; ++i)
-                lit[i] *= find_lamp(all->scene, &state->lattice, l, s, on, i);
+                lit[i] *= find_lamp(all->scene, &state->field.lattice, l, s, on, i);
         for (int i = 0; i < W; ++i) pieces->lit[l][i] = steps_of(lit[i]);
     }
 }
@@ -152,27 +179,28 @@ SIMD_INLINE void put_item(const Place *all, const GridHair *hair, const Segments
         (GridItem *)(void *)(state->items + (size_t)number * (size_t)state->item_words);
     item->class = s->class[i];
     item->area = steps_of(pieces->area[i]);
-    for (int l = 0; l < state->lights; ++l) item->lit[l] = pieces->lit[l][i];
-    if (state->tinted) put_tint(hair, particle, pieces->area[i], item->lit + state->lights);
+    for (int l = 0; l < state->field.lights; ++l) item->lit[l] = pieces->lit[l][i];
+    if (state->field.tinted)
+        put_tint(hair, particle, pieces->area[i], item->lit + state->field.lights);
 }
 
-SIMD_INLINE void place_segments(const Place *all, const GridHair *hair, int tile, int j,
-                                Segments *s, uint32_t *counts)
+SIMD_INLINE void place_segments(const Place *all, const GridStrands *strands, int j, Segments *s,
+                                const Lefts *left, uint32_t *counts)
 {
-    const LightLattice *lattice = &all->state->lattice;
-    int strands = tile_strands(hair, tile), pieces = all->state->pieces, cells[W];
-    size_t at = ((size_t)tile * hair->caster.material.vertex_count + (size_t)j) * W;
+    const LightLattice *lattice = &all->state->field.lattice;
+    int pieces = all->state->field.pieces, cells[W];
     Pieces piece_of;
-    find_areas(hair, lattice, tile, j, s);
-    if (all->emit) find_classes(hair, strands, s);
+    find_areas(all, strands, j, s);
+    if (all->emit) find_classes(strands->hair, strands->strands, s);
     for (int piece = 0; piece < pieces; ++piece) {
         float on = ((float)piece + 0.5f) / (float)pieces;
         for (int i = 0; i < W; ++i) cells[i] = find_cell(lattice, s, on, i);
-        if (all->emit) find_lit(all, hair, s, tile, j, on, &piece_of);
-        for (int i = 0; i < strands; ++i) {
+        if (all->emit) find_lit(all, s, left, j, on, &piece_of);
+        for (int i = 0; i < strands->strands; ++i) {
             if (!s->sound[i]) continue;
             if (all->emit)
-                put_item(all, hair, s, &piece_of, at + (size_t)i, i, counts[cells[i]]++);
+                put_item(all, strands->hair, s, &piece_of, strands->root[i] + (size_t)j * W, i,
+                         counts[cells[i]]++);
             else
                 ++counts[cells[i]];
         }
@@ -182,19 +210,25 @@ SIMD_INLINE void place_segments(const Place *all, const GridHair *hair, int tile
 SIMD_INLINE void place(const Place *all, int part)
 {
     LightGridState *state = all->state;
-    uint32_t *counts = state->first_item + (size_t)part * light_lattice_cells(&state->lattice);
+    uint32_t *counts =
+        state->first_item + (size_t)part * light_lattice_cells(&state->field.lattice);
+    GridStrands strands;
     int range[2];
     Segments s;
+    Lefts left = {0};
+    const LaneShadow *shadow = state->field.lights ? all->scene->shadow : NULL;
     for (uint32_t h = 0; h < all->scene->hair_count; ++h) {
         const GridHair *hair = &all->scene->hair[h];
-        tile_range(hair, part, state->parts, range);
+        grid_turn_range(all->scene, hair, part, state->parts, range);
         for (int turn = range[0]; turn < range[1]; ++turn) {
-            int tile = (int)mapped_caster_tile(&hair->caster, turn);
-            turn_points(&state->lattice, tile_points(hair, tile, 0), s.b);
+            grid_open_strands(all->scene, hair, turn, &strands);
+            grid_turn_points(&state->field.lattice, &strands, 0, s.b);
+            if (all->emit && shadow) find_left(shadow, &strands, 0, left.at[0]);
             for (int j = 0; j + 1 < (int)hair->caster.material.vertex_count; ++j) {
                 memcpy(s.a, s.b, sizeof s.a);
-                turn_points(&state->lattice, tile_points(hair, tile, j + 1), s.b);
-                place_segments(all, hair, tile, j, &s, counts);
+                grid_turn_points(&state->field.lattice, &strands, j + 1, s.b);
+                if (all->emit && shadow) find_left(shadow, &strands, j + 1, left.at[(j + 1) % 2]);
+                place_segments(all, &strands, j, &s, &left, counts);
             }
         }
     }

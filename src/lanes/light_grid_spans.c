@@ -16,7 +16,7 @@ typedef struct Rows {
 
 static Rows find_rows(const LightGridState *state, int group)
 {
-    const int *n = state->lattice.count;
+    const int *n = state->field.lattice.count;
     const ptrdiff_t stride[3] = {1, n[0], (ptrdiff_t)n[0] * n[1]};
     int main = group / 2, x = (main + 1) % 3, y = (main + 2) % 3;
     return (Rows){.slices = n[main],
@@ -77,7 +77,7 @@ static void find_group(const LightGridState *state, int group)
 
 bool light_grid_find_spans(LightGridState *state)
 {
-    const int *n = state->lattice.count;
+    const int *n = state->field.lattice.count;
     size_t rows =
         (size_t)n[0] * (size_t)n[1] + (size_t)n[1] * (size_t)n[2] + (size_t)n[2] * (size_t)n[0];
     if (state->span_room < ORDINATE_GROUPS * rows) {

@@ -4,6 +4,8 @@
 // of some groups.
 #include "lanes/light_grid_state.h"
 
+#include "glsl/kernel/lamp.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -12,7 +14,7 @@ enum { TAPS = 3 };
 typedef struct Sweep {
     LightGridState *state;
     const GridScene *scene;
-    bool sky, fresh, sourceless;
+    bool sky, fresh;
     int parts;
 } Sweep;
 
@@ -27,30 +29,34 @@ typedef struct GroupWay {
 } GroupWay;
 
 // From above (+y of the world) comes the sky, from below the ground, evenly between them.
-static void find_sky(const Sweep *sweep, int group, float sky[GROUP_WIDE])
+static void find_sky(const DrawParams *draw, const LightLattice *lattice, int group,
+                     float sky[GROUP_WIDE])
 {
-    const DrawParams *draw = sweep->scene->draw;
-    const LightLattice *lattice = &sweep->state->lattice;
     for (int l = 0; l < GRID_LANES; ++l) {
         float up = 0;
         for (int k = 0; k < 3; ++k) up -= lattice->turn[k][1] * ORDINATE[k][group * GRID_LANES + l];
         for (int c = 0; c < 3; ++c)
-            sky[c * GRID_LANES + l] =
-                sweep->sky ? draw->ground[c] + (0.5f + 0.5f * up) * (draw->sky[c] - draw->ground[c])
-                           : 0;
+            sky[c * GRID_LANES + l] = lamp_around(draw->sky[c], draw->ground[c], up);
     }
+}
+
+void light_grid_find_around(LightGridState *state, const GridScene *scene)
+{
+    float *light = state->light + (size_t)state->active * GRID_WIDE;
+    for (int group = 0; group < ORDINATE_GROUPS; ++group)
+        find_sky(scene->draw, &state->field.lattice, group, light + group * GROUP_WIDE);
 }
 
 static void find_strides(const LightGridState *state, GroupWay *way)
 {
-    const int *n = state->lattice.count;
+    const int *n = state->field.lattice.count;
     const ptrdiff_t stride[3] = {1, n[0], (ptrdiff_t)n[0] * n[1]},
                     step[3] = {1, n[0] + 2, (ptrdiff_t)(n[0] + 2) * (n[1] + 2)};
     for (int k = 0; k < 3; ++k) {
         int axis = k ? way->across[k - 1] : way->main;
         way->stride[k] = stride[axis];
         way->step[k] = step[axis];
-        way->walls[k] = grid_walls(state, axis);
+        way->walls[k] = light_field_walls(&state->field, axis);
     }
 }
 
@@ -70,7 +76,8 @@ static void find_way(const Sweep *sweep, int group, GroupWay *way)
             way->taps[k][2][l] = fmaxf(-shift, 0);
         }
     }
-    find_sky(sweep, group, way->sky);
+    memset(way->sky, 0, sizeof way->sky);
+    if (sweep->sky) find_sky(sweep->scene->draw, &sweep->state->field.lattice, group, way->sky);
     find_strides(sweep->state, way);
 }
 
@@ -83,11 +90,12 @@ static void find_way(const Sweep *sweep, int group, GroupWay *way)
 SIMD_INLINE void blend(const float taps[TAPS][GRID_LANES], float low, float high, const float *a,
                        const float *b, const float *c, float *out)
 {
-    const Lanes first = low * *(const Lanes *)taps[0], middle = *(const Lanes *)taps[1],
-                last = high * *(const Lanes *)taps[2];
+    const GridLanes first = low * *(const GridLanes *)taps[0], middle = *(const GridLanes *)taps[1],
+                    last = high * *(const GridLanes *)taps[2];
     for (int k = 0; k < GROUP_WIDE; k += GRID_LANES)
-        *(Lanes *)(out + k) = first * *(const Lanes *)(a + k) + middle * *(const Lanes *)(b + k) +
-                              last * *(const Lanes *)(c + k) + LEAST_LIGHT;
+        *(GridLanes *)(out + k) = first * *(const GridLanes *)(a + k) +
+                                  middle * *(const GridLanes *)(b + k) +
+                                  last * *(const GridLanes *)(c + k) + LEAST_LIGHT;
 }
 
 // Of a row of the slice before, blended along the first axis across.
@@ -108,12 +116,13 @@ SIMD_INLINE void pass_cell(const Sweep *sweep, int group, int slot, float *io, f
 {
     const LightGridState *state = sweep->state;
     const float *passage = grid_passage(state, group, slot);
-    const Lanes left = *(const Lanes *)passage, share = *(const Lanes *)(passage + GRID_LANES);
-    const float given = sweep->sourceless ? 0 : 1, *source = grid_source(state, group, slot);
+    const GridLanes left = *(const GridLanes *)passage,
+                    share = *(const GridLanes *)(passage + GRID_LANES);
+    const float *source = grid_source(state, group, slot);
     for (int c = 0; c < 3; ++c) {
-        Lanes *at = (Lanes *)(io + c * GRID_LANES);
-        const Lanes s = given * *(const Lanes *)(source + c * GRID_LANES), in = *at - s;
-        *(Lanes *)(mean + c * GRID_LANES) = s + in * share;
+        GridLanes *at = (GridLanes *)(io + c * GRID_LANES);
+        const GridLanes s = *(const GridLanes *)(source + c * GRID_LANES), in = *at - s;
+        *(GridLanes *)(mean + c * GRID_LANES) = s + in * share;
         *at = s + in * left;
     }
 }
@@ -124,9 +133,9 @@ SIMD_INLINE void keep(const Sweep *sweep, int group, int slot, const float *mean
     float *order = grid_lane(state, state->order, group, slot),
           *sum = grid_lane(state, state->sum, group, slot);
     for (int c = 0; c < 3; ++c) {
-        const Lanes here = *(const Lanes *)(mean + c * GRID_LANES);
-        Lanes *light = (Lanes *)(sum + c * GRID_LANES);
-        *(Lanes *)(order + c * GRID_LANES) = here;
+        const GridLanes here = *(const GridLanes *)(mean + c * GRID_LANES);
+        GridLanes *light = (GridLanes *)(sum + c * GRID_LANES);
+        *(GridLanes *)(order + c * GRID_LANES) = here;
         if (sweep->fresh)
             *light = here;
         else
@@ -136,14 +145,10 @@ SIMD_INLINE void keep(const Sweep *sweep, int group, int slot, const float *mean
 
 // Adds what the cell's hair meets.
 SIMD_INLINE void add_met(const LightGridState *state, int group, int slot, const float *mean,
-                         double sum[3])
+                         GridLanes met[3])
 {
-    const Lanes depth = *(const Lanes *)(grid_passage(state, group, slot) + 2 * GRID_LANES);
-    for (int c = 0; c < 3; ++c) {
-        const Lanes met = *(const Lanes *)(mean + c * GRID_LANES) * depth;
-        sum[c] += (double)(((met[0] + met[1]) + (met[2] + met[3])) +
-                           ((met[4] + met[5]) + (met[6] + met[7])));
-    }
+    const GridLanes depth = *(const GridLanes *)(grid_passage(state, group, slot) + 2 * GRID_LANES);
+    for (int c = 0; c < 3; ++c) met[c] += *(const GridLanes *)(mean + c * GRID_LANES) * depth;
 }
 
 // What comes from the side of the mesh is what that sends back.
@@ -151,13 +156,13 @@ SIMD_INLINE void meet_mesh(const LightGridState *state, float passed, int slot, 
 {
     for (int c = 0; c < 3; ++c) {
         float glow = slot >= 0 && slot < state->filled ? state->glow[3 * slot + c] : 0;
-        Lanes *lanes = (Lanes *)(io + c * GRID_LANES);
+        GridLanes *lanes = (GridLanes *)(io + c * GRID_LANES);
         *lanes = passed * *lanes + (1 - passed) * glow;
     }
 }
 
 // A cell on the way of the group: what comes in becomes what goes out.
-SIMD_INLINE void cross_cell(const Sweep *sweep, int group, int slot, float *io, double sum[3])
+SIMD_INLINE void cross_cell(const Sweep *sweep, int group, int slot, float *io, GridLanes met[3])
 {
     if (slot < 0) return;
     if (slot >= sweep->state->filled) {
@@ -167,7 +172,7 @@ SIMD_INLINE void cross_cell(const Sweep *sweep, int group, int slot, float *io, 
     float mean[GROUP_WIDE];
     pass_cell(sweep, group, slot, io, mean);
     keep(sweep, group, slot, mean);
-    add_met(sweep->state, group, slot, mean, sum);
+    add_met(sweep->state, group, slot, mean, met);
 }
 
 // Row y of the cells of a slice: from three rows of the slice before, to `out`.
@@ -178,6 +183,7 @@ SIMD_INLINE void sweep_row(const Sweep *sweep, const GroupWay *way, int group, b
     const LightGridState *state = sweep->state;
     const int *slot = state->slot + slice * way->stride[0] + y * way->stride[2];
     ptrdiff_t at = slice * way->step[0] + y * way->step[2];
+    GridLanes met[3] = {{0}};
     for (int x = cells[0]; x < cells[1]; ++x) {
         size_t column = (size_t)x * GROUP_WIDE;
         ptrdiff_t here = at + x * way->step[1];
@@ -188,8 +194,10 @@ SIMD_INLINE void sweep_row(const Sweep *sweep, const GroupWay *way, int group, b
         float passed = walls ? way->walls[0][here + (way->forward ? 0 : way->step[0])] : 1;
         int own = slot[x * way->stride[1]];
         if (passed != 1) meet_mesh(state, passed, own, out + column);
-        cross_cell(sweep, group, own, out + column, sum);
+        cross_cell(sweep, group, own, out + column, met);
     }
+    for (int c = 0; c < 3; ++c)
+        for (int l = 0; l < GRID_LANES; ++l) sum[c] += (double)met[c][l];
 }
 
 // The planes of a sweep: of the slice before and of this one, each with a cell around, and three
@@ -203,7 +211,7 @@ typedef struct Planes {
 SIMD_INLINE void sweep_slice(const Sweep *sweep, const GroupWay *way, int group, bool walls,
                              int slice, const Planes *planes, double sum[3])
 {
-    const int *n = sweep->state->lattice.count;
+    const int *n = sweep->state->field.lattice.count;
     int wide = n[way->across[0]], tall = n[way->across[1]];
     size_t row = ((size_t)wide + 2) * GROUP_WIDE, used = (size_t)wide * GROUP_WIDE;
     const GridSpan *spans = grid_spans(sweep->state, group, slice);
@@ -234,7 +242,7 @@ static void fill_plane(float *plane, size_t floats, const float sky[GROUP_WIDE])
 SIMD_INLINE void sweep_slices(const Sweep *sweep, const GroupWay *way, int group, bool walls)
 {
     LightGridState *state = sweep->state;
-    const int *n = state->lattice.count;
+    const int *n = state->field.lattice.count;
     int slices = n[way->main];
     float *planes[2] = {state->planes + (size_t)(3 * group) * state->plane,
                         state->planes + (size_t)(3 * group + 1) * state->plane},
@@ -262,12 +270,11 @@ SIMD_INLINE void sweep_groups(const Sweep *sweep, int part)
 
 SIMD_STAGE(sweep_groups, Sweep)
 
-void light_grid_sweep(LightGridState *state, const GridScene *scene, bool sky, bool fresh,
-                      bool sourceless)
+void light_grid_sweep(LightGridState *state, const GridScene *scene, bool sky, bool fresh)
 {
     int parts = state->parts < ORDINATE_GROUPS ? state->parts : ORDINATE_GROUPS;
     memcpy(state->sums[0], state->sums[1], sizeof state->sums[0]);
-    Sweep sweep = {state, scene, sky, fresh, sourceless, parts};
+    Sweep sweep = {state, scene, sky, fresh, parts};
     run_sweep_groups(&sweep, parts);
 }
 
@@ -307,7 +314,7 @@ SIMD_INLINE void scatter(const LightGridState *state, int part)
     int first = (int)((int64_t)state->filled * part / state->parts),
         end = (int)((int64_t)state->filled * (part + 1) / state->parts);
     for (int f = first; f < end; ++f) {
-        const GridKind *kind = &state->kinds[state->class[f] / TANGENTS];
+        const GridKind *kind = &state->field.kinds[state->class[f] / TANGENTS];
         for (int c = 0; c < 3; ++c)
             scatter_channel(state,
                             (const float(*)[ORDINATES])kind->scatter[state->class[f] % TANGENTS][c],

@@ -1,34 +1,69 @@
 // SPDX-License-Identifier: MIT
-// Tiles of strands, one a lane, for light_grid_lattice.c and light_grid_items.c.
+// The strands that stand for all in the cells of a light grid, 16 at once, one a lane, for
+// light_grid_lattice.c and light_grid_items.c.
 #pragma once
 
 #include "lanes/light_grid_state.h"
 
 enum { W = STRAND_TILE };
 
-SIMD_INLINE void turn_points(const LightLattice *lattice, const float (*x)[4], float out[3][W])
+// In lanes beyond `strands` is the first one's strand again.
+typedef struct GridStrands {
+    const GridHair *hair;
+    int strands;
+    size_t root[W]; // particle of the root; the others follow it STRAND_TILE apart
+    int number[W];
+} GridStrands;
+
+// Turns of 16 strands of a batch.
+static inline int grid_turns(const GridScene *scene, const GridHair *hair)
 {
-    for (int k = 0; k < 3; ++k) {
-        float a = lattice->turn[k][0], b = lattice->turn[k][1], c = lattice->turn[k][2];
-        for (int i = 0; i < W; ++i) out[k][i] = a * x[i][0] + b * x[i][1] + c * x[i][2];
+    return (
+        int)((cell_strands(hair->caster.material.drawn_strands, light_field_step(scene)) + W - 1) /
+             W);
+}
+
+static inline void grid_open_strands(const GridScene *scene, const GridHair *hair, int turn,
+                                     GridStrands *strands)
+{
+    const MaterialParams *m = &hair->caster.material;
+    uint step = light_field_step(scene), count = cell_strands(m->drawn_strands, step),
+         first = (uint)turn * W;
+    strands->hair = hair;
+    strands->strands = count - first < W ? (int)(count - first) : W;
+    for (uint i = 0; i < W; ++i) {
+        uint s = cell_strand(first + (i < count - first ? i : 0), m->drawn_strands, step);
+        strands->number[i] = (int)s;
+        strands->root[i] = (size_t)(s / W) * m->vertex_count * W + s % W;
     }
 }
 
-static void tile_range(const GridHair *hair, int part, int parts, int range[2])
+// Particle j of each strand, world.
+SIMD_INLINE void grid_read_points(const GridStrands *strands, int j, float x[3][W])
 {
-    int64_t tiles = ((int64_t)hair->caster.material.drawn_strands + W - 1) / W;
-    range[0] = (int)(tiles * part / parts);
-    range[1] = (int)(tiles * (part + 1) / parts);
+    for (int i = 0; i < W; ++i) {
+        const float *at = strands->hair->caster.position[strands->root[i] + (size_t)j * W];
+        for (int k = 0; k < 3; ++k) x[k][i] = at[k];
+    }
 }
 
-static const float (*tile_points(const GridHair *hair, int tile, int j))[4]
+// The same along the lattice's axes.
+SIMD_INLINE void grid_turn_points(const LightLattice *lattice, const GridStrands *strands, int j,
+                                  float out[3][W])
 {
-    return hair->caster.position +
-           ((size_t)tile * hair->caster.material.vertex_count + (size_t)j) * W;
+    float x[3][W];
+    grid_read_points(strands, j, x);
+    for (int k = 0; k < 3; ++k) {
+        float a = lattice->turn[k][0], b = lattice->turn[k][1], c = lattice->turn[k][2];
+        for (int i = 0; i < W; ++i) out[k][i] = a * x[0][i] + b * x[1][i] + c * x[2][i];
+    }
 }
 
-static int tile_strands(const GridHair *hair, int tile)
+// The turns of one of `parts` threads, from range[0] to before range[1].
+static inline void grid_turn_range(const GridScene *scene, const GridHair *hair, int part,
+                                   int parts, int range[2])
 {
-    int left = (int)hair->caster.material.drawn_strands - tile * W;
-    return left < W ? left : W;
+    int64_t turns = grid_turns(scene, hair);
+    range[0] = (int)(turns * part / parts);
+    range[1] = (int)(turns * (part + 1) / parts);
 }

@@ -5,22 +5,29 @@
 #pragma once
 
 #include "base/error.h"
-#include "lanes/mapped_caster.h"
+#include "draw/mapped_caster.h"
 
 #include <stdbool.h>
 
-// Each thread draws into a map of its own; sums and minima of them all are the map. There are fewer
-// threads where such maps would take more than 256 MiB.
+enum {
+    SHADOW_MAP_TILE = 16,                    // texels of a row whose layers lie together
+    SHADOW_MAP_LINES = 3 * SHADOW_LAYERS + 1 // three rows of all layers, and one more
+};
+
+// What maps are made with. Each thread draws into sums of its own; those of them all are the map.
+// There are fewer threads where sums would take more than 256 MiB.
 typedef struct ShadowMap {
     int side, coarse; // texels across a map and across that of the first depths
+    int tiles;        // SHADOW_MAP_TILEs in a row
     int wide;         // of `sums`, from row to row of a layer: rows must not share lines of caches
     bool deep;
     int parts;
-    float *first;   // [parts][coarse][coarse], owned; 1: no hair
-    float *least;   // [2][coarse + 2][coarse + 2], owned, deep: for spread
-    float *depths;  // [side][side], owned, deep: where layers begin
-    uint32_t *sums; // [parts][side][SHADOW_LAYERS][wide], owned, deep
-    float *rows;    // owned, deep: for finish
+    float last;     // LAYER_END: a bound that compilers know makes them jump
+    int at_once;    // maps that there is room for in what follows
+    float *first;   // [parts][at_once][coarse][coarse], owned; 1: no hair
+    uint32_t *sums; // [parts][at_once][side][SHADOW_LAYERS][wide], owned, deep
+    float *least;   // [parts][4][coarse + 4], owned, deep: for shadow_finish.c
+    float *rows;    // [parts][SHADOW_MAP_LINES][side + 2], owned, deep: the same
 } ShadowMap;
 
 // `side`: a multiple of 8. `deep`: first depths and layers, else first depths alone, of every
@@ -28,15 +35,20 @@ typedef struct ShadowMap {
 Result shadow_map_create(ShadowMap *shadow, int side, bool deep, Error *error);
 void shadow_map_destroy(ShadowMap *shadow);
 
-// Lowest u, v and depth, then the highest, of particles within the reach of `params`; false if
-// there are none.
-bool shadow_map_find_box(const ShadowMap *shadow, const CastParams *params, MappedCasters casters,
-                         double box[6]);
+// Room to draw so many maps, as many at once as take no more than 256 MiB. RESULT_FAILED if memory
+// is short.
+Result shadow_map_reserve(ShadowMap *shadow, int maps, Error *error);
 
-// One map as shaders read it: deep, depths[side][side] and layers[SHADOW_LAYERS][side][side].
-void shadow_map_draw_deep(ShadowMap *shadow, const CastParams *params, MappedCasters casters,
-                          float *depths, uint32_t *layers);
+// Words of the layers of one map.
+size_t shadow_map_layer_words(const ShadowMap *shadow);
 
-// Not deep: firsts[side][side].
-void shadow_map_draw_firsts(ShadowMap *shadow, const CastParams *params, MappedCasters casters,
-                            uint32_t *firsts);
+// Of each of `count` lights, at most MAX_LIGHTS, lowest u, v and depth, then the highest, of
+// particles within the reach of `params`; the lowest are above the highest if there are none.
+void shadow_map_find_boxes(const ShadowMap *shadow, const CastParams *params, int count,
+                           MappedCasters casters, double (*boxes)[6]);
+
+// All maps, for which there is room: depths[map][side][side], at which hair begins (not deep: its
+// first depths, 1 where there is none), and, deep, layers[map][row][column / SHADOW_MAP_TILE]
+// [SHADOW_LAYERS][SHADOW_MAP_TILE], as pack_layer has them; columns beyond the side are undefined.
+void shadow_map_draw(ShadowMap *shadow, const CastParams *params, int maps, MappedCasters casters,
+                     float *depths, uint32_t *layers);

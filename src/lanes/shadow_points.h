@@ -2,7 +2,7 @@
 // The points of hair that stands in the light, found once for all maps and passes.
 #pragma once
 
-#include "lanes/mapped_caster.h"
+#include "draw/mapped_caster.h"
 
 #include <stdbool.h>
 #include <stddef.h>

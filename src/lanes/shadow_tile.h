@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Tiles of strands that stand in a light, one strand a lane, for shadow_map.c, shadow_light.c and
-// shadow_points.c.
+// Tiles of strands, one strand a lane, for passes that walk over hair.
 #pragma once
 
 #include "base/simd.h"
-#include "lanes/mapped_caster.h"
+#include "draw/mapped_caster.h"
+
+#include "glsl/kernel/caster.h"
+#include "glsl/kernel/curve.h"
 
 enum { W = STRAND_TILE, LAYERS = SHADOW_LAYERS };
 
@@ -17,21 +19,15 @@ typedef struct Places {
 typedef struct Tile {
     const MappedCaster *caster;
     size_t number;
-    int strands; // that are drawn
-    float radius[W], opacity[W];
+    int strands;                 // that are drawn
+    float radius[W], opacity[W]; // m; to light
+    float share[W];              // a factor of all opacities
 } Tile;
 
 // Particle j of a tile's first strand; the others' follow.
 static inline size_t tile_particle(const Tile *tile, int j)
 {
     return (tile->number * tile->caster->material.vertex_count + (size_t)j) * W;
-}
-
-// How far centripetal knots lie apart: the root of their particles' distance.
-SIMD_INLINE float knot_after(float way[3][W], int i)
-{
-    float square = way[0][i] * way[0][i] + way[1][i] * way[1][i] + way[2][i] * way[2][i];
-    return simd_max(sqrtf(sqrtf(square)), 1e-9f);
 }
 
 // The ways from particle j of the tile's strands to the next, metres.
@@ -46,11 +42,9 @@ SIMD_INLINE void find_ways(const Tile *tile, int j, float ways[3][W])
 // after it, and what Hermite's weights have in common.
 typedef struct CurveSegment {
     float start[3][W], ways[3][3][W];
-    float from[W], to[W], before[W], after[W];
+    float before[W], from[W], to[W], after[W]; // CurveKnots
 } CurveSegment;
 
-// Before the root and behind the tip stands the neighbour's mirror image, so that the missing way
-// is the segment's own.
 SIMD_INLINE void open_segment(const Tile *tile, int j, CurveSegment *segment)
 {
     int last = (int)tile->caster->material.vertex_count - 2;
@@ -63,32 +57,25 @@ SIMD_INLINE void open_segment(const Tile *tile, int j, CurveSegment *segment)
         for (int i = 0; i < W; ++i) segment->start[c][i] = start[i][c];
     if (tile->caster->material.smooth_curve) return;
     for (int i = 0; i < W; ++i) {
-        float before = knot_after(segment->ways[0], i), own = knot_after(segment->ways[1], i),
-              after = knot_after(segment->ways[2], i);
-        segment->from[i] = own / (before + own);
-        segment->to[i] = own / (own + after);
-        segment->before[i] = own / before;
-        segment->after[i] = own / after;
+        float knot[3];
+        for (int n = 0; n < 3; ++n)
+            knot[n] =
+                curve_knot(segment->ways[n][0][i], segment->ways[n][1][i], segment->ways[n][2][i]);
+        CurveKnots knots = curve_knots(knot[0], knot[1], knot[2]);
+        segment->before[i] = knots.before, segment->from[i] = knots.from;
+        segment->to[i] = knots.to, segment->after[i] = knots.after;
     }
 }
 
-// The points at t (0 to 1) of a segment, as curve_point of glsl/draw/curve.glsl: its first end and
-// a weighted sum of the three ways.
+// The points at t (0 to 1) of a segment (kernel/curve.h).
 SIMD_INLINE void find_on_segment(const CurveSegment *segment, bool spline, float t, float x[3][W])
 {
-    float s = 1 - t, weight[3][W];
-    if (spline) { // the B-spline's basis, its four weights' sum taken out
-        float before = -s * s * s / 6, after = t * t * t / 6,
-              own = ((3 * s - 6) * s * s + 4) / 6 + after;
-        for (int i = 0; i < W; ++i) weight[0][i] = before, weight[1][i] = own, weight[2][i] = after;
-    } else { // Hermite's, of tangents as curve_tangents has them
-        float end = (3 - 2 * t) * t * t, tangent_from = t * s * s, tangent_to = -t * t * s;
-        for (int i = 0; i < W; ++i) {
-            float from = segment->from[i], to = segment->to[i];
-            weight[0][i] = tangent_from * (segment->before[i] - from);
-            weight[1][i] = end + tangent_from * (1 - from) + tangent_to * (1 - to);
-            weight[2][i] = tangent_to * (segment->after[i] - to);
-        }
+    float weight[3][W];
+    for (int i = 0; i < W; ++i) {
+        CurveKnots knots = {segment->before[i], segment->from[i], segment->to[i],
+                            segment->after[i]};
+        CurveWeights weights = spline ? curve_spline(t) : curve_hermite(knots, t);
+        weight[0][i] = weights.before, weight[1][i] = weights.own, weight[2][i] = weights.after;
     }
     for (int c = 0; c < 3; ++c)
         for (int i = 0; i < W; ++i)
@@ -137,47 +124,37 @@ SIMD_INLINE void find_radii(const Tile *tile, int k, float radius[W])
     }
 }
 
-// Points x of the tile's strands as the light sees them. What lies beside a lamp or behind it goes
-// far away.
+// Points x of the tile's strands as the light sees them.
 SIMD_INLINE void project_points(const CastParams *params, const float x[3][W], Places *places)
 {
     const float(*rows)[4] = (const float(*)[4])params->from_world;
     for (int k = 0; k < W; ++k) {
-        float p = x[0][k], q = x[1][k], r = x[2][k];
-        float w = rows[3][0] * p + rows[3][1] * q + rows[3][2] * r + rows[3][3],
-              inverse = 1 / simd_max(w, 1e-6f);
-        float u = rows[0][0] * p + rows[0][1] * q + rows[0][2] * r + rows[0][3],
-              v = rows[1][0] * p + rows[1][1] * q + rows[1][2] * r + rows[1][3];
-        places->u[k] = w > 0 ? u * inverse : -1e6f;
-        places->v[k] = w > 0 ? v * inverse : -1e6f;
-        places->z[k] = rows[2][0] * p + rows[2][1] * q + rows[2][2] * r + rows[2][3];
-        places->w[k] = simd_max(w, 1e-6f);
+        CasterPlace place = caster_place(rows, x[0][k], x[1][k], x[2][k]);
+        places->u[k] = place.u, places->v[k] = place.v;
+        places->z[k] = place.z, places->w[k] = place.w;
     }
 }
 
-// Point k of the tile's strands.
-SIMD_INLINE void find_places(const CastParams *params, const Tile *tile, int k, Places *places)
-{
-    float own[3][W];
-    project_points(params, find_points(tile, k, own), places);
-    find_radii(tile, k, places->radius);
-}
-
-// The tile of a caster whose turn it is.
-static inline Tile open_tile(const MappedCaster *caster, int turn)
+// A tile of a caster, by its number or by its turn.
+static inline Tile open_tile_at(const MappedCaster *caster, size_t number)
 {
     const MaterialParams *material = &caster->material;
-    int number = (int)mapped_caster_tile(caster, turn), first = number * W,
-        left = (int)material->drawn_strands - first;
-    Tile tile = {.caster = caster, .number = (size_t)number, .strands = left < W ? left : W};
+    int first = (int)number * W, left = (int)material->drawn_strands - first;
+    Tile tile = {.caster = caster, .number = number, .strands = left < W ? left : W};
     for (int k = 0; k < W; ++k) {
         bool last = first + k == (int)material->last_strand;
         tile.radius[k] = material->radius * (last ? material->last_share : 1);
         uint32_t bits =
             caster->paint ? caster->paint[tile_particle(&tile, 0) + (size_t)k][1] >> 16 : 0xffff;
-        tile.opacity[k] = material->shadow_opacity * (float)bits / 65535;
+        tile.share[k] = (float)bits / 65535;
+        tile.opacity[k] = material->shadow_opacity * tile.share[k];
     }
     return tile;
+}
+
+static inline Tile open_tile(const MappedCaster *caster, int turn)
+{
+    return open_tile_at(caster, mapped_caster_tile(caster, turn));
 }
 
 // The tiles of a caster, from range[0] to before range[1], that one of `parts` threads works on.

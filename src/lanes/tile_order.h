@@ -3,7 +3,7 @@
 // that what they touch of maps and cells is still near the processor.
 #pragma once
 
-#include "lanes/mapped_caster.h"
+#include "draw/mapped_caster.h"
 
 #include <stddef.h>
 

@@ -2,9 +2,9 @@
 // The A-buffer: the pool of all fragments of a band of the image, and its resolution to colours.
 #pragma once
 
-#include "draw/render_target.h"
 #include "gpu/shader.h"
 #include "passes/cull.h"
+#include "passes/render_target.h"
 
 #include <stdbool.h>
 

@@ -6,11 +6,10 @@
 
 #include "glsl/draw/draw.h"
 
-// CPU drivers end loops silently after 65,535 turns in all. Sorting and compositing take less than
-// two for a ribbon of a tile, binning one for a tile of a ribbon.
-enum { LONGEST_ON_CPU = 32000, TILES_ON_CPU = 60000 };
-
-enum { MOST_SLOTS = 1 << 24 };
+// CPU drivers end loops silently after 65,535 turns in all. Of n ribbons of a tile a lane that
+// sorts takes n turns for runs of 64, and n / 64 times 8, 9, ... for each merge of two runs: 57,000
+// for 20,000. Compositing takes fewer, binning one for a tile of a ribbon.
+enum { LONGEST_ON_CPU = 20000, TILES_ON_CPU = 60000 };
 
 static Result build(Compute *compute, int over_base, Error *error)
 {
@@ -20,10 +19,10 @@ static Result build(Compute *compute, int over_base, Error *error)
                               {"STAGED", sizes->stages},
                               {"BASE", over_base},
                               {"NEAREST", compute->nearest},
-                              {"DEPTH", compute->style.shows_depth},
-                              {"SAMPLES", compute->style.samples},
+                              {"DEPTH", compute->shows_depth},
+                              {"SAMPLES", compute->samples},
                               {"KIND", (int)compute->kind},
-                              {"TONE", compute->style.tone},
+                              {"TONE", compute->tone},
                               {NULL, 0}};
     TRY(shader_build_compute(&compute->composite[over_base], "draw/compute_composite.comp", defines,
                              error));
@@ -32,19 +31,12 @@ static Result build(Compute *compute, int over_base, Error *error)
                                 error);
 }
 
-size_t compute_most_slots(const Gpu *gpu)
-{
-    int64_t shown = gpu->limits.texture_texels / RIBBON_TEXELS - 1;
-    if (gpu->kind != GPU_HARDWARE) return BLOCKS_MOST_SLOTS;
-    return (size_t)(shown < MOST_SLOTS ? shown : MOST_SLOTS);
-}
-
 Result compute_create(Compute *compute, const Gpu *gpu, const RendererOptions *options,
                       Error *error)
 {
-    *compute = (Compute){.style = {.samples = options->samples,
-                                   .tone = drawing_display(options),
-                                   .shows_depth = options->aov == AOV_DEPTH},
+    *compute = (Compute){.samples = options->samples,
+                         .tone = drawing_display(options),
+                         .shows_depth = options->aov == AOV_DEPTH,
                          .nearest = options->aov > AOV_COVERAGE,
                          .kind = options->kind,
                          .longest = gpu->software ? LONGEST_ON_CPU : INT32_MAX};
@@ -85,7 +77,7 @@ static void bind_texture(GLuint unit, GLuint texture)
     glBindTexture(GL_TEXTURE_2D, texture);
 }
 
-static void use_program(GLuint program, const Compute *compute, const BlocksBase *base)
+static void use_program(GLuint program, const Compute *compute, const RibbonsBase *base)
 {
     const int *box = base->box;
     glUseProgram(program);
@@ -93,7 +85,7 @@ static void use_program(GLuint program, const Compute *compute, const BlocksBase
     if (base->cull.target) glUniform4i(2, box[0], box[1], box[2] + 1, box[3] + 1);
 }
 
-static void composite(const Compute *compute, const RenderTarget *target, const BlocksBase *base,
+static void composite(const Compute *compute, const RenderTarget *target, const RibbonsBase *base,
                       int first, int end)
 {
     static const GLenum formats[] = {GL_RGBA8, GL_RGBA16, GL_RGBA32F};
@@ -117,38 +109,44 @@ static void composite(const Compute *compute, const RenderTarget *target, const 
                     GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-static void draw_band(Compute *compute, const Blocks *blocks, const RenderTarget *target, int first,
-                      int end, GpuTimer *timer)
+static void draw_band(Compute *compute, const Ribbons *ribbons, const RenderTarget *target,
+                      int first, int end, GpuTimer *timer)
 {
     gpu_timer_begin(timer, "draw_bin");
-    compute_bins_fill(&compute->bins, &blocks->ribbons, &blocks->keys, (int64_t)blocks->slots,
+    compute_bins_fill(&compute->bins, &ribbons->records, &ribbons->keys, (int64_t)ribbons->slots,
                       first, end);
     gpu_timer_end(timer);
     gpu_timer_begin(timer, "draw_sort");
     compute_bins_sort(&compute->bins);
     gpu_timer_end(timer);
     gpu_timer_begin(timer, "draw_composite");
-    composite(compute, target, &blocks->base, first, end);
+    composite(compute, target, &ribbons->base, first, end);
     gpu_timer_end(timer);
 }
 
 // After a band that did not fit: more room or, where there can be none, fewer rows.
-static Result make_it_fit(Compute *compute, const ComputeUse *use, int *rows, bool *can,
-                          Error *error)
+static Result make_it_fit(Compute *compute, const ComputeUse *use, int *rows, Error *error)
 {
     bool grown;
     TRY(compute_bins_grow(&compute->bins, use->pairs, &grown, error));
-    *can = grown || *rows > 1;
-    if (!grown) *rows = *rows > 1 ? *rows / 2 : 1;
+    if (!grown && *rows == 1)
+        return error_set(error, RESULT_FAILED,
+                         "a row of tiles has %llu ribbons, more than lists of %lld bytes hold: "
+                         "--raster blocks draws any number",
+                         (unsigned long long)use->pairs, (long long)compute->bins.pairs.size);
+    if (!grown) *rows /= 2;
     return RESULT_OK;
 }
 
 // One band, and after it `use`: whether it fits, or what comes next. See compute_draw.
 static Result judge_band(Compute *compute, const ComputeUse *use, int *row, int *rows,
-                         ComputeCounts *counts, bool *drawn, Error *error)
+                         ComputeCounts *counts, Error *error)
 {
-    *drawn = use->longest <= (uint32_t)compute->longest;
-    if (!*drawn) return RESULT_OK;
+    if (use->longest > (uint32_t)compute->longest)
+        return error_set(error, RESULT_FAILED,
+                         "%u ribbons touch one tile of 16x16 pixels, more than the %d that this "
+                         "driver's loops can visit: --raster blocks draws any number",
+                         use->longest, compute->longest);
     if (use->pairs <= (uint64_t)compute->bins.room) {
         counts->pairs += use->pairs;
         ++counts->bands;
@@ -157,22 +155,21 @@ static Result judge_band(Compute *compute, const ComputeUse *use, int *row, int 
         return RESULT_OK;
     }
     ++counts->redraws;
-    TRY(make_it_fit(compute, use, rows, drawn, error));
+    TRY(make_it_fit(compute, use, rows, error));
     if (*row == 0) compute->band_rows = *rows;
     return RESULT_OK;
 }
 
-Result compute_draw(Compute *compute, const Blocks *blocks, const RenderTarget *target,
-                    GpuTimer *timer, ComputeCounts *counts, bool *drawn, Error *error)
+Result compute_draw(Compute *compute, const Ribbons *ribbons, const RenderTarget *target,
+                    GpuTimer *timer, ComputeCounts *counts, Error *error)
 {
     int all = compute->bins.rows, rows = compute->band_rows;
-    *drawn = true;
-    for (int row = 0; row < all && *drawn;) {
+    for (int row = 0; row < all;) {
         ComputeUse use;
         if (rows > all - row) rows = all - row;
-        draw_band(compute, blocks, target, row, row + rows, timer);
+        draw_band(compute, ribbons, target, row, row + rows, timer);
         TRY(compute_bins_measure(&compute->bins, &use, error));
-        TRY(judge_band(compute, &use, &row, &rows, counts, drawn, error));
+        TRY(judge_band(compute, &use, &row, &rows, counts, error));
     }
     return RESULT_OK;
 }
@@ -186,33 +183,33 @@ bool compute_trusts(const Compute *compute)
     return compute->band_rows >= compute->bins.rows;
 }
 
-Result compute_begin(Compute *compute, const Blocks *blocks, const RenderTarget *target,
+Result compute_begin(Compute *compute, const Ribbons *ribbons, const RenderTarget *target,
                      GpuTimer *timer, Error *error)
 {
     LateRead *late = &compute->late;
-    draw_band(compute, blocks, target, 0, compute->bins.rows, timer);
+    draw_band(compute, ribbons, target, 0, compute->bins.rows, timer);
     TRY(late_read_begin(late, "hair's counts", LATE_BYTES + CULL_TALLY_BYTES, error));
-    late_read_buffer(late, 0, &blocks->counts, 4 * BLOCK_COUNT_WORDS);
+    late_read_buffer(late, 0, &ribbons->counts, 4 * BLOCK_COUNT_WORDS);
     late_read_buffer(late, 4 * USE_AT, &compute->bins.use, 4 * TILE_USE_WORDS);
-    if (blocks->cull.tries)
-        late_read_buffer(late, 4 * TALLY_AT, &blocks->cull.tally, CULL_TALLY_BYTES);
+    if (ribbons->cull.tries)
+        late_read_buffer(late, 4 * TALLY_AT, &ribbons->cull.tally, CULL_TALLY_BYTES);
     late_read_send(late);
     compute->unsettled = true;
     return RESULT_OK;
 }
 
-Result compute_settle(Compute *compute, Blocks *blocks, ComputeCounts *counts, bool *good,
-                      bool *drawn, Error *error)
+Result compute_settle(Compute *compute, Ribbons *ribbons, ComputeCounts *counts, bool *good,
+                      Error *error)
 {
     const void *bytes;
     int row = 0, rows = compute->bins.rows;
     compute->unsettled = false;
     TRY(late_read_open(&compute->late, "hair's counts", &bytes, error));
     const uint32_t *words = bytes;
-    blocks_take_counts(blocks, words, blocks->cull.tries ? words + TALLY_AT : NULL);
+    ribbons_take_counts(ribbons, words, ribbons->cull.tries ? words + TALLY_AT : NULL);
     ComputeUse use = compute_bins_use(words + USE_AT);
     late_read_close(&compute->late);
-    TRY(judge_band(compute, &use, &row, &rows, counts, drawn, error));
+    TRY(judge_band(compute, &use, &row, &rows, counts, error));
     *good = row > 0;
     return RESULT_OK;
 }

@@ -4,7 +4,8 @@
 #pragma once
 
 #include "draw/look.h"
-#include "draw/render_target.h"
+#include "gpu/shader.h"
+#include "passes/render_target.h"
 #include "sim/hair.h"
 
 #include <stdbool.h>

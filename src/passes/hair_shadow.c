@@ -4,19 +4,14 @@
 #include "gpu/gpu_dispatch.h"
 #include "gpu/gpu_uniforms.h"
 
-#include <math.h>
 #include <string.h>
 
 enum {
     STRIP = 8,          // divides the side of a map
     PART_VERTICES = 64, // that one lane walks
     PART_SEGMENTS = 8,
-    MARGIN = 3, // texels at the edges of a map that hair leaves free
     BOX_WORDS = 6
 };
-
-static const double UNIT = 1 << 16; // steps for one fibre
-static const double SUM_MAX = 2e9;  // of those steps: sums do not overflow
 
 // What a program of the deep maps or of the first depths is built for.
 enum { FIRSTS = 0, DEEP = 1, COARSE_FIRSTS = 2 };
@@ -39,14 +34,13 @@ static Result build(GLuint *program, const char *file, int group, int kind, unsi
 unsigned hair_shadow_variant(const ShadowCaster *caster)
 {
     return (caster->batch->paint.buffer ? CAST_PAINT : 0) |
-           (caster->look.features & LOOK_SMOOTH ? CAST_SMOOTH : 0);
+           (caster->look->features & LOOK_SMOOTH ? CAST_SMOOTH : 0);
 }
 
 Result hair_shadow_build(HairShadow *hair, unsigned variant, Error *error)
 {
     const GpuSizes sizes = hair->limits->sizes;
-    TRY(build(&hair->bounds[variant], "draw/shadow_bounds.comp", sizes.strands, FIRSTS, variant,
-              error));
+    TRY(build(&hair->bounds, "draw/shadow_bounds.comp", sizes.strands, FIRSTS, 0, error));
     TRY(build(&hair->first[variant], "draw/shadow_splat.comp", sizes.strands,
               hair->deep ? COARSE_FIRSTS : FIRSTS, variant, error));
     if (hair->deep)
@@ -59,12 +53,9 @@ Result hair_shadow_build(HairShadow *hair, unsigned variant, Error *error)
     return RESULT_OK;
 }
 
-Result hair_shadow_create(HairShadow *hair, const GpuLimits *limits, bool deep, int side,
-                          bool by_processor, bool behind, Error *error)
+void hair_shadow_create(HairShadow *hair, const GpuLimits *limits, bool deep, int side)
 {
-    *hair =
-        (HairShadow){.deep = deep, .by_processor = by_processor, .side = side, .limits = limits};
-    return by_processor ? hair_shadow_cpu_create(&hair->cpu, side, deep, behind, error) : RESULT_OK;
+    *hair = (HairShadow){.deep = deep, .side = side, .limits = limits};
 }
 
 static void destroy_maps(HairShadow *hair)
@@ -84,13 +75,12 @@ static void destroy_programs(const GLuint *programs, int count)
 
 void hair_shadow_destroy(HairShadow *hair)
 {
-    destroy_programs(hair->bounds, CAST_VARIANTS);
+    destroy_programs(&hair->bounds, 1);
     destroy_programs(hair->first, CAST_VARIANTS);
     destroy_programs(hair->splat, CAST_VARIANTS);
     destroy_programs(&hair->spread, 1);
     destroy_programs(&hair->finish, 1);
     destroy_maps(hair);
-    hair_shadow_cpu_destroy(&hair->cpu);
     gpu_buffer_destroy(&hair->box);
     *hair = (HairShadow){0};
 }
@@ -139,32 +129,24 @@ static void fill(const GpuBuffer *buffer, GLuint value)
 Result hair_shadow_begin(HairShadow *hair, int maps, ShadowCasters casters, Error *error)
 {
     TRY(make_maps(hair, maps, error));
-    if (hair->by_processor)
-        return hair_shadow_cpu_begin(&hair->cpu, hair->limits, maps, casters, &hair->depths,
-                                     hair->deep ? &hair->layers : &hair->firsts, error);
     TRY(make_scratch(hair, casters, error));
     fill(&hair->firsts, SHADOW_DEPTHS);
     if (hair->deep) fill(&hair->sums, 0);
     return RESULT_OK;
 }
 
-void hair_shadow_end(HairShadow *hair)
-{
-    if (hair->by_processor) hair_shadow_cpu_end(&hair->cpu);
-}
-
-// Runs a pass, which has a program for each variant, over all ribbons, in parts of `part` of a
-// strand's points.
+// Runs a pass over all ribbons, in parts of `part` of a strand's points: programs[CAST_VARIANTS]
+// or, if that is NULL, the one of all particles.
 static void cast(HairShadow *hair, ShadowCasters casters, const CastParams *params,
-                 const GLuint programs[CAST_VARIANTS], uint32_t part)
+                 const GLuint *programs, uint32_t part)
 {
     gpu_uniforms_set(BIND_CAST, params, sizeof *params);
     for (uint32_t i = 0; i < casters.count; ++i) {
         const ShadowCaster *caster = &casters.list[i];
         const HairBatch *batch = caster->batch;
-        MaterialParams material = look_material(&caster->look, batch);
-        uint32_t points = (batch->vertex_count - 1) * material.smooth_parts + 1;
-        glUseProgram(programs[hair_shadow_variant(caster)]);
+        MaterialParams material = look_material(caster->look, batch);
+        uint32_t points = programs ? look_points(caster->look, batch) : batch->vertex_count;
+        glUseProgram(programs ? programs[hair_shadow_variant(caster)] : hair->bounds);
         gpu_uniforms_set(BIND_MATERIAL, &material, sizeof material);
         gpu_buffer_bind_texture(&batch->position, BIND_POSITION);
         if (batch->paint.buffer) gpu_buffer_bind_texture(&batch->paint, BIND_PAINT);
@@ -183,29 +165,11 @@ float hair_shadow_unordered(int32_t bits)
     return value;
 }
 
-static void set_rows(CastParams *params, double rows[4][4])
-{
-    for (int k = 0; k < 4; ++k)
-        for (int i = 0; i < 4; ++i) params->from_world[k][i] = (float)rows[k][i];
-}
-
-static CastParams box_params(const LightView *view, int map)
-{
-    double rows[4][4];
-    CastParams params = {
-        .map = map,
-        .limit = (float)LIGHT_FRAME_FAR,
-        .reach = (float)(view->perspective ? LIGHT_FRAME_WIDE : LIGHT_FRAME_FAR),
-    };
-    for (int k = 0; k < 4; ++k) light_frame_row(view, k, rows[k]);
-    set_rows(&params, rows);
-    return params;
-}
-
-static void find_boxes(HairShadow *hair, const LightView *views, int count, ShadowCasters casters,
+static void find_boxes(HairShadow *hair, const ShadowFrames *frames, ShadowCasters casters,
                        double (*boxes)[6])
 {
     GLint words[MAX_LIGHTS][BOX_WORDS];
+    int count = frames->count;
     GLsizeiptr size = (GLsizeiptr)((size_t)count * sizeof *words);
     for (int i = 0; i < count; ++i)
         for (int k = 0; k < BOX_WORDS; ++k) words[i][k] = k < 3 ? INT32_MAX : INT32_MIN;
@@ -213,8 +177,8 @@ static void find_boxes(HairShadow *hair, const LightView *views, int count, Shad
     glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, size, words);
     gpu_buffer_bind_storage(&hair->box, BIND_BOUNDS_OUT);
     for (int i = 0; i < count; ++i) {
-        CastParams params = box_params(&views[i], i);
-        cast(hair, casters, &params, hair->bounds, PART_VERTICES);
+        CastParams params = shadow_frames_box(frames, i);
+        cast(hair, casters, &params, NULL, PART_VERTICES);
     }
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, hair->box.buffer);
     glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, size, words);
@@ -223,35 +187,10 @@ static void find_boxes(HairShadow *hair, const LightView *views, int count, Shad
             boxes[i][k] = (double)hair_shadow_unordered(words[i][k]);
 }
 
-void hair_shadow_find_boxes(HairShadow *hair, const LightView *views, int count,
-                            ShadowCasters casters, double (*boxes)[6])
+void hair_shadow_find_boxes(HairShadow *hair, const ShadowFrames *frames, ShadowCasters casters,
+                            double (*boxes)[6])
 {
-    if (count && !hair->by_processor) find_boxes(hair, views, count, casters, boxes);
-    for (int i = 0; i < count && hair->by_processor; ++i) {
-        CastParams params = box_params(&views[i], i);
-        hair_shadow_cpu_find_box(&hair->cpu, &params, boxes[i]);
-    }
-}
-
-LightFrame hair_shadow_frame(const HairShadow *hair, const LightView *view, const double box[6])
-{
-    return light_frame_steady(view, box, hair->side, MARGIN);
-}
-
-// The smallest step of sums that cannot overflow, were all segments in one texel.
-static float find_unit(ShadowCasters casters, bool perspective, double texels)
-{
-    double most = 1;
-    for (uint32_t i = 0; i < casters.count; ++i) {
-        const ShadowCaster *caster = &casters.list[i];
-        const MaterialParams *material = &caster->look.material;
-        bool any_width = perspective || caster->batch->paint.buffer;
-        double width = any_width ? 1 : fmin(2.0 * (double)material->radius * texels, 1);
-        most += (double)fibre_depth(material->shadow_opacity, 100) * width *
-                caster->batch->strand_count * (caster->batch->vertex_count - 1) *
-                material->smooth_parts;
-    }
-    return (float)fmin(UNIT, SUM_MAX / most);
+    if (frames->count) find_boxes(hair, frames, casters, boxes);
 }
 
 // First depths, in texels that are `coarse` of the map's wide.
@@ -288,7 +227,7 @@ static void finish(const HairShadow *hair, const CastParams *params)
     run_texels(hair, params, hair->finish, params->side * params->side / STRIP);
 }
 
-static void draw_deep(HairShadow *hair, ShadowCasters casters, CastParams *params)
+static void draw_deep(HairShadow *hair, ShadowCasters casters, const CastParams *params)
 {
     draw_firsts(hair, casters, params, SHADOW_COARSE);
     gpu_buffer_bind_texture(&hair->firsts, BIND_FIRST);
@@ -302,43 +241,17 @@ static void draw_deep(HairShadow *hair, ShadowCasters casters, CastParams *param
     finish(hair, params);
 }
 
-float hair_shadow_scale(const LightView *view, const LightFrame *frame)
+void hair_shadow_draw(HairShadow *hair, const ShadowFrames *frames, int map, ShadowCasters casters)
 {
-    double distance = view->perspective ? 0.5 * (frame->depth[0] + frame->depth[1]) : 1;
-    return (float)(1 / (frame->texel * distance));
-}
-
-void hair_shadow_draw(HairShadow *hair, const LightView *view, const LightFrame *frame, int map,
-                      ShadowCasters casters)
-{
-    double rows[4][4];
-    memcpy(rows, frame->rows, sizeof rows);
-    CastParams params = {
-        .side = hair->side,
-        .map = map,
-        .texels = (float)(1 / frame->texel),
-        .unit = find_unit(casters, view->perspective, 1 / frame->texel),
-        .reach = (float)(view->perspective ? LIGHT_FRAME_WIDE : LIGHT_FRAME_FAR),
-        .limit = (float)LIGHT_FRAME_FAR,
-    };
-    set_rows(&params, rows);
-    if (hair->by_processor)
-        hair_shadow_cpu_draw(&hair->cpu, &params, hair_shadow_scale(view, frame));
-    else if (hair->deep)
-        draw_deep(hair, casters, &params);
+    const CastParams *params = &frames->casts[map];
+    if (hair->deep)
+        draw_deep(hair, casters, params);
     else
-        draw_firsts(hair, casters, &params, 1);
+        draw_firsts(hair, casters, params, 1);
 }
 
 void hair_shadow_bind(const HairShadow *hair)
 {
     if (hair->deep) gpu_buffer_bind_texture(&hair->depths, BIND_DEPTHS);
     gpu_buffer_bind_texture(hair->deep ? &hair->layers : &hair->firsts, BIND_LAYERS);
-}
-
-bool hair_shadow_lights(const HairShadow *hair, const ParticleLight **lights, uint32_t *count)
-{
-    *lights = hair->cpu.past_mesh ? hair->cpu.reaching : hair->cpu.lights;
-    *count = hair->cpu.lit;
-    return hair->by_processor && hair->cpu.lit > 0;
 }

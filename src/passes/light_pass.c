@@ -4,6 +4,8 @@
 #include "gpu/gpu_dispatch.h"
 #include "gpu/gpu_uniforms.h"
 
+#include "glsl/kernel/cell.h"
+
 enum {
     ORDINATE_GROUP = 64, // lanes of a work group with a lane for each ordinate
     SWEEP_GROUP = 512,
@@ -83,15 +85,15 @@ void light_pass_run_cells(const LightPrograms *programs, LightPass pass, int cou
     light_pass_end();
 }
 
-void light_pass_run_hair(const LightPrograms *programs, const ShadowCaster *caster, uint32_t of,
-                         uint32_t part)
+void light_pass_run_hair(const LightPrograms *programs, const ShadowCaster *caster, uint32_t step,
+                         uint32_t of, uint32_t part)
 {
     const HairBatch *batch = caster->batch;
-    MaterialParams material = look_material(&caster->look, batch);
+    MaterialParams material = look_material(caster->look, batch);
     gpu_uniforms_set(BIND_MATERIAL, &material, sizeof material);
     gpu_buffer_bind_texture(&batch->position, BIND_POSITION);
     if (batch->paint.buffer) gpu_buffer_bind_texture(&batch->paint, BIND_PAINT);
-    gpu_dispatch(programs->limits, material.drawn_strands,
+    gpu_dispatch(programs->limits, cell_strands(material.drawn_strands, step),
                  (uint64_t)programs->limits->sizes.strands, (of + part - 1) / part);
 }
 

@@ -41,10 +41,10 @@ Result light_pass_use(LightPrograms *programs, LightPass pass, unsigned variant,
 // later wait for it.
 void light_pass_run_cells(const LightPrograms *programs, LightPass pass, int count);
 
-// Runs the current program on the strands of one caster, which have `of` segments or vertices, in
-// parts of `part`. Behind the last caster comes light_pass_end.
-void light_pass_run_hair(const LightPrograms *programs, const ShadowCaster *caster, uint32_t of,
-                         uint32_t part);
+// Runs the current program on one of `step` strands of a caster (cell_strand), which have `of`
+// segments or vertices, in parts of `part`. Behind the last caster comes light_pass_end.
+void light_pass_run_hair(const LightPrograms *programs, const ShadowCaster *caster, uint32_t step,
+                         uint32_t of, uint32_t part);
 
 // What comes later waits for what has run.
 void light_pass_end(void);

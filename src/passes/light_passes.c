@@ -2,37 +2,42 @@
 #include "passes/light_passes.h"
 
 #include "gpu/gpu_uniforms.h"
-#include "lanes/light_grid_state.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 _Static_assert(LIGHT_ORDINATES == ORDINATES && LIGHT_LANES == ORDINATE_LANES &&
                    LIGHT_CLASSES == TANGENTS && LIGHT_SQUARES == ORDINATE_SQUARES &&
-                   LIGHT_SIDE == GATHER_SIDE && LIGHT_KINDS == LIGHT_GRID_KINDS &&
-                   LIGHT_BOX_WORDS == LIGHT_GRID_BOX,
+                   LIGHT_KINDS == LIGHT_GRID_KINDS,
                "numbers of the grid");
 
-enum { CELL_BYTES = 96, STATE_HEAD = 32 };  // of LightCell, LightState (light.glsl)
 static const int64_t SUMS_MOST = 128 << 20; // bytes: of more cells sums are made in turns
 
 void light_passes_destroy(LightPasses *passes)
 {
     GpuBuffer *const buffers[] = {
-        &passes->box,   &passes->slots,        &passes->cells,          &passes->state,
-        &passes->sums,  &passes->planes,       &passes->depth,          &passes->source,
-        &passes->order, &passes->total,        &passes->light,          &passes->tables,
-        &passes->walls, &passes->first.buffer, &passes->scatter.buffer, &passes->gather.buffer,
+        &passes->box,
+        &passes->slots,
+        &passes->cells,
+        &passes->state,
+        &passes->sums,
+        &passes->planes,
+        &passes->depth,
+        &passes->source,
+        &passes->order,
+        &passes->total,
+        &passes->light,
+        &passes->tables,
+        &passes->walls,
+        &passes->kinds[FIELD_FIRST].buffer,
+        &passes->kinds[FIELD_SCATTER].buffer,
+        &passes->kinds[FIELD_GATHER].buffer,
     };
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; ++i) gpu_buffer_destroy(buffers[i]);
     light_pass_destroy(&passes->programs);
     late_read_destroy(&passes->box_read);
     late_read_destroy(&passes->counts_read);
-    if (passes->grid) {
-        light_grid_forget(passes->grid);
-        free(passes->grid->walls);
-        free(passes->grid);
-    }
+    light_field_destroy(&passes->field);
     *passes = (LightPasses){0};
 }
 
@@ -46,12 +51,9 @@ static Result upload(LightPasses *passes, GpuBuffer *buffer, const char *what, c
                              error);
 }
 
-static Result make_grid(LightPasses *passes, Error *error)
+static Result upload_classes(LightPasses *passes, Error *error)
 {
-    if (passes->grid) return RESULT_OK;
-    passes->grid = calloc(1, sizeof *passes->grid);
-    if (!passes->grid) return error_set(error, RESULT_FAILED, "no memory for light among hair");
-    passes->grid->parts = parallel_threads();
+    if (passes->tables.buffer) return RESULT_OK;
     float tables[LIGHT_TABLES_COUNT];
     ordinates_prepare();
     memcpy(tables, TANGENT_SINE, sizeof TANGENT_SINE);
@@ -61,29 +63,21 @@ static Result make_grid(LightPasses *passes, Error *error)
     return upload(passes, &passes->tables, "classes of tangents", tables, sizeof tables, error);
 }
 
-static KindTableMade made_of(const LightPasses *passes, const GridScene *scene, size_t counter)
+// A table of all kinds, `bytes` each, uploaded if it is another one.
+static Result upload_kinds(LightPasses *passes, const GridScene *scene, FieldTable table,
+                           size_t bytes, Error *error)
 {
-    KindTableMade made = {.kinds = scene->kind_count, .lights = passes->grid->lights};
-    for (int k = 0; k < scene->kind_count; ++k)
-        memcpy(&made.made[k], (const char *)&passes->grid->kinds[k] + counter, sizeof(uint32_t));
-    return made;
-}
-
-// A table of all kinds, `bytes` each, uploaded if it is another one; `counter` and `table` are
-// offsets in GridKind.
-static Result upload_kinds(LightPasses *passes, KindTable *mine, const GridScene *scene,
-                           size_t counter, size_t table, size_t bytes, Error *error)
-{
-    KindTableMade made = made_of(passes, scene, counter);
+    KindTable *mine = &passes->kinds[table];
+    const GridKind *kinds = passes->field.kinds;
+    KindTableMade made = {.kinds = scene->kind_count, .lights = passes->field.lights};
+    for (int k = 0; k < made.kinds; ++k) made.made[k] = kinds[k].made[table];
     if (mine->buffer.buffer && memcmp(&made, &mine->made, sizeof made) == 0) return RESULT_OK;
     TRY(upload(passes, &mine->buffer, "a table of fibres", NULL, bytes * (size_t)made.kinds,
                error));
     for (int k = 0; k < made.kinds && bytes; ++k) {
-        const void *data;
-        memcpy(&data, (const char *)&passes->grid->kinds[k] + table, sizeof data);
         glBindBuffer(GL_SHADER_STORAGE_BUFFER, mine->buffer.buffer);
         glBufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(bytes * (size_t)k), (GLsizeiptr)bytes,
-                        data);
+                        light_field_table(&kinds[k], table));
     }
     mine->made = made;
     return RESULT_OK;
@@ -91,48 +85,43 @@ static Result upload_kinds(LightPasses *passes, KindTable *mine, const GridScene
 
 static Result upload_tables(LightPasses *passes, const GridScene *scene, Error *error)
 {
-    LightGridState *grid = passes->grid;
-    const size_t row = GRID_WIDE * sizeof(float),
-                 square = (size_t)3 * ORDINATES * ORDINATES * sizeof(float);
-    TRY(light_grid_make_first(grid, scene, error));
-    TRY(light_grid_make_scatter(grid, scene, true, error));
-    TRY(upload_kinds(passes, &passes->first, scene, offsetof(GridKind, first_made),
-                     offsetof(GridKind, first), (size_t)grid->lights * TANGENTS * row, error));
-    return upload_kinds(passes, &passes->scatter, scene, offsetof(GridKind, scatter_made),
-                        offsetof(GridKind, scatter), TANGENTS * square, error);
+    LightField *field = &passes->field;
+    TRY(light_field_make_first(field, scene, error));
+    TRY(light_field_make_scatter(field, scene, NULL, 0, error));
+    TRY(upload_kinds(passes, scene, FIELD_FIRST,
+                     (size_t)field->lights * sizeof *field->kinds->first, error));
+    return upload_kinds(passes, scene, FIELD_SCATTER, TANGENTS * sizeof *field->kinds->scatter,
+                        error);
 }
 
 // The mesh among the cells.
 static Result upload_walls(LightPasses *passes, const GridScene *scene, Error *error)
 {
-    LightGridState *grid = passes->grid;
-    const int *n = grid->lattice.count;
+    LightField *field = &passes->field;
+    const int *n = field->lattice.count;
     size_t cells = ((size_t)n[0] + 2) * ((size_t)n[1] + 2) * ((size_t)n[2] + 2);
-    // The blocks' lattice must be this one.
-    if (scene->blocks) TRY(light_blocks_find((LightBlocks *)scene->blocks, &grid->lattice, error));
-    if (!light_grid_find_walls(grid, scene))
-        return error_set(error, RESULT_FAILED, "no memory for light among hair");
-    return grid->walled ? upload(passes, &passes->walls, "the mesh among hair", grid->walls,
-                                 3 * cells * sizeof *grid->walls, error)
-                        : RESULT_OK;
+    TRY(light_field_find_walls(field, scene, error));
+    return field->walled ? upload(passes, &passes->walls, "the mesh among hair", field->walls,
+                                  3 * cells * sizeof *field->walls, error)
+                         : RESULT_OK;
 }
 
-static void set_lights(const LightGridState *grid, const GridScene *scene, LightParams *params)
+static void set_lights(const LightField *field, const GridScene *scene, LightParams *params)
 {
-    for (int l = 0; l < grid->lights; ++l) {
+    for (int l = 0; l < field->lights; ++l) {
         const float *place = scene->draw->light_place[l];
-        memcpy(params->way[l], grid->to_light[l], sizeof grid->to_light[l]);
-        if (place[3] != 0) light_lattice_turn(&grid->lattice, place, params->way[l]);
+        memcpy(params->way[l], field->to_light[l], sizeof field->to_light[l]);
+        if (place[3] != 0) light_lattice_turn(&field->lattice, place, params->way[l]);
         params->way[l][3] = (float)scene->map_of[l];
     }
 }
 
-static void set_eye(const LightGridState *grid, const GridScene *scene, LightParams *params)
+static void set_eye(const LightField *field, const GridScene *scene, LightParams *params)
 {
-    light_lattice_turn(&grid->lattice, scene->draw->eye, params->eye);
-    light_lattice_turn(&grid->lattice, scene->to_eye, params->eye_axis);
-    params->eye[3] = light_grid_opacity(scene);
-    params->eye_axis[3] = (float)light_grid_nearest(&grid->lattice, scene->to_eye);
+    light_lattice_turn(&field->lattice, scene->draw->eye, params->eye);
+    light_lattice_turn(&field->lattice, scene->to_eye, params->eye_axis);
+    params->eye[3] = light_field_opacity(scene);
+    params->eye_axis[3] = (float)light_field_nearest(&field->lattice, scene->to_eye);
     for (int k = 0; k < scene->kind_count; ++k)
         memcpy(params->albedo[k], scene->kinds[k].albedo[SCATTER_INCLINATIONS - 1],
                3 * sizeof(float));
@@ -151,15 +140,16 @@ static int count_plane(const LightLattice *lattice)
 
 static void set_params(const LightPasses *passes, const GridScene *scene)
 {
-    const LightGridState *grid = passes->grid;
-    const LightLattice *lattice = &grid->lattice;
-    LightParams params = {.pieces = (uint)grid->pieces,
-                          .lights = (uint)grid->lights,
+    const LightField *field = &passes->field;
+    const LightLattice *lattice = &field->lattice;
+    LightParams params = {.pieces = (uint)field->pieces,
+                          .step = light_field_step(scene),
+                          .lights = (uint)field->lights,
                           .classes = (uint)(scene->kind_count * TANGENTS),
                           .room = (uint)passes->active,
                           .plane = (uint)count_plane(lattice),
-                          .walled = grid->walled,
-                          .tinted = grid->tinted};
+                          .walled = field->walled,
+                          .tinted = field->tinted};
     for (int k = 0; k < 3; ++k) {
         memcpy(params.turn[k], lattice->turn[k], sizeof lattice->turn[k]);
         params.low[k] = lattice->low[k];
@@ -168,8 +158,8 @@ static void set_params(const LightPasses *passes, const GridScene *scene)
     }
     params.low[3] = lattice->side;
     params.count[3] = (uint)light_lattice_cells(lattice);
-    set_lights(grid, scene, &params);
-    set_eye(grid, scene, &params);
+    set_lights(field, scene, &params);
+    set_eye(field, scene, &params);
     gpu_uniforms_set(BIND_LIGHT, &params, sizeof params);
 }
 
@@ -180,11 +170,11 @@ Result light_passes_begin(LightPasses *passes, const GridScene *scene, ShadowCas
 {
     const GLint none[LIGHT_BOX_WORDS] = {INT32_MAX, INT32_MAX, INT32_MAX, INT32_MIN,
                                          INT32_MIN, INT32_MIN, 0};
-    TRY(make_grid(passes, error));
-    light_grid_find_turn(passes->grid, scene);
-    LightParams params = {0};
+    TRY(upload_classes(passes, error));
+    light_field_find_turn(&passes->field, scene);
+    LightParams params = {.step = light_field_step(scene)};
     for (int k = 0; k < 3; ++k)
-        memcpy(params.turn[k], passes->grid->lattice.turn[k], 3 * sizeof(float));
+        memcpy(params.turn[k], passes->field.lattice.turn[k], 3 * sizeof(float));
     gpu_uniforms_set(BIND_LIGHT, &params, sizeof params);
     gpu_buffer_destroy(&passes->box);
     TRY(gpu_buffer_create(&passes->box, passes->programs.limits, "the box of hair", sizeof none,
@@ -192,7 +182,7 @@ Result light_passes_begin(LightPasses *passes, const GridScene *scene, ShadowCas
     TRY(light_pass_use(&passes->programs, LIGHT_PASS_BOX, 0, error));
     gpu_buffer_bind_storage(&passes->box, BIND_LIGHT_BOX_OUT);
     for (uint32_t i = 0; i < casters.count; ++i)
-        light_pass_run_hair(&passes->programs, &casters.list[i],
+        light_pass_run_hair(&passes->programs, &casters.list[i], light_field_step(scene),
                             casters.list[i].batch->vertex_count, LIGHT_PART_VERTICES);
     TRY(late_read_begin(&passes->box_read, "the box of hair", sizeof none, error));
     late_read_buffer(&passes->box_read, 0, &passes->box, sizeof none);
@@ -212,22 +202,23 @@ static Result take_box(LightPasses *passes, float box[LIGHT_BOX_WORDS], Error *e
 }
 
 // The counts of cells with hair, and of those beside them.
-static Result count_slots(LightPasses *passes, ShadowCasters casters, Error *error)
+static Result count_slots(LightPasses *passes, const GridScene *scene, ShadowCasters casters,
+                          Error *error)
 {
-    const int cells = (int)light_lattice_cells(&passes->grid->lattice);
+    const int cells = (int)light_lattice_cells(&passes->field.lattice);
     const void *bytes;
     uint32_t counts[2];
     TRY(gpu_buffer_reserve(&passes->slots, passes->programs.limits, "cells of light",
                            4 * (int64_t)cells, 0, error));
     TRY(gpu_buffer_reserve(&passes->state, passes->programs.limits, "cells of light",
-                           STATE_HEAD + LIGHT_MOST * ORDINATES * 16, 0, error));
+                           sizeof(LightState) + LIGHT_MOST * ORDINATES * sizeof(vec4), 0, error));
     gpu_buffer_clear(&passes->slots, 0);
     gpu_buffer_clear(&passes->state, 0);
     gpu_buffer_bind_storage(&passes->slots, BIND_LIGHT_SLOTS_OUT);
     gpu_buffer_bind_storage(&passes->state, BIND_LIGHT_STATE_OUT);
     TRY(light_pass_use(&passes->programs, LIGHT_PASS_MARK, 0, error));
     for (uint32_t i = 0; i < casters.count; ++i)
-        light_pass_run_hair(&passes->programs, &casters.list[i],
+        light_pass_run_hair(&passes->programs, &casters.list[i], light_field_step(scene),
                             casters.list[i].batch->vertex_count - 1, LIGHT_PART_SEGMENTS);
     light_pass_end();
     for (LightPass pass = LIGHT_PASS_HAIR_SLOTS; pass <= LIGHT_PASS_BESIDE_SLOTS; ++pass) {
@@ -252,13 +243,13 @@ static Result make_room(LightPasses *passes, Error *error)
         int64_t slots, bytes;
         GLenum format;
     } rooms[] = {
-        {&passes->cells, passes->active, CELL_BYTES, 0},
+        {&passes->cells, passes->active, sizeof(LightCell), 0},
         {&passes->depth, passes->filled, ORDINATES * 4, 0},
         {&passes->source, passes->active, GRID_WIDE * 4, 0},
         {&passes->order, passes->active, GRID_WIDE * 4, 0},
         {&passes->total, passes->active, GRID_WIDE * 4, 0},
         {&passes->light, passes->active, ORDINATES * 16, GL_RGBA32F},
-        {&passes->planes, 2 * ORDINATES, (int64_t)count_plane(&passes->grid->lattice) * 16, 0},
+        {&passes->planes, 2 * ORDINATES, (int64_t)count_plane(&passes->field.lattice) * 16, 0},
     };
     for (size_t i = 0; i < sizeof rooms / sizeof *rooms; ++i)
         if (rooms[i].buffer->size < rooms[i].slots * rooms[i].bytes)
@@ -280,7 +271,7 @@ static Result add_items(LightPasses *passes, const GridScene *scene, ShadowCaste
         glUniform1i(0, scene->hair[i].kind);
         if (light >= 0) glUniform1i(1, light);
         glUniform2i(2, range[0], range[1]);
-        light_pass_run_hair(&passes->programs, &casters.list[i],
+        light_pass_run_hair(&passes->programs, &casters.list[i], light_field_step(scene),
                             casters.list[i].batch->vertex_count - 1, LIGHT_PART_SEGMENTS);
     }
     light_pass_end();
@@ -293,7 +284,7 @@ static Result fill_range(LightPasses *passes, const GridScene *scene, ShadowCast
     gpu_buffer_clear(&passes->sums, 0);
     gpu_buffer_bind_storage(&passes->sums, BIND_LIGHT_SUMS_OUT);
     TRY(add_items(passes, scene, casters, LIGHT_PASS_AREAS, -1, range, error));
-    for (int l = 0; l < passes->grid->lights; ++l)
+    for (int l = 0; l < passes->field.lights; ++l)
         TRY(add_items(passes, scene, casters,
                       scene->map_of[l] < 0 ? LIGHT_PASS_LIT_ALL : LIGHT_PASS_LIT, l, range, error));
     TRY(light_pass_use(&passes->programs, LIGHT_PASS_FILL, 0, error));
@@ -305,8 +296,8 @@ static Result fill_range(LightPasses *passes, const GridScene *scene, ShadowCast
 static Result fill_cells(LightPasses *passes, const GridScene *scene, ShadowCasters casters,
                          Error *error)
 {
-    const LightGridState *grid = passes->grid;
-    int64_t slot = (int64_t)8 * (1 + grid->lights) * scene->kind_count * TANGENTS,
+    const LightField *field = &passes->field;
+    int64_t slot = (int64_t)8 * (1 + field->lights) * scene->kind_count * TANGENTS,
             most = passes->most_sums ? passes->most_sums : SUMS_MOST;
     if (most > passes->programs.limits->storage_block)
         most = passes->programs.limits->storage_block;
@@ -316,12 +307,12 @@ static Result fill_cells(LightPasses *passes, const GridScene *scene, ShadowCast
     gpu_buffer_bind_storage(&passes->depth, BIND_LIGHT_DEPTH_OUT);
     gpu_buffer_bind_storage(&passes->source, BIND_LIGHT_SOURCE_OUT);
     gpu_buffer_bind_texture(&passes->tables, BIND_LIGHT_TABLES);
-    gpu_buffer_bind_texture(&passes->first.buffer, BIND_LIGHT_FIRST);
-    gpu_buffer_bind_texture(&passes->scatter.buffer, BIND_LIGHT_SCATTER);
-    if (grid->walled) gpu_buffer_bind_texture(&passes->walls, BIND_LIGHT_WALLS);
+    gpu_buffer_bind_texture(&passes->kinds[FIELD_FIRST].buffer, BIND_LIGHT_FIRST);
+    gpu_buffer_bind_texture(&passes->kinds[FIELD_SCATTER].buffer, BIND_LIGHT_SCATTER);
+    if (field->walled) gpu_buffer_bind_texture(&passes->walls, BIND_LIGHT_WALLS);
     TRY(light_pass_use(&passes->programs, LIGHT_PASS_PLACES, 0, error));
     light_pass_run_cells(&passes->programs, LIGHT_PASS_PLACES,
-                         (int)light_lattice_cells(&grid->lattice));
+                         (int)light_lattice_cells(&field->lattice));
     TRY(gpu_buffer_reserve(&passes->sums, passes->programs.limits, "light among hair", turn * slot,
                            0, error));
     for (int first = 0; first < passes->filled; first += turn) {
@@ -333,13 +324,12 @@ static Result fill_cells(LightPasses *passes, const GridScene *scene, ShadowCast
 
 // --- Orders of scattering.
 
-static Result run_sweep(LightPasses *passes, int number, bool sky, bool sourceless, Error *error)
+static Result run_sweep(LightPasses *passes, int number, bool sky, Error *error)
 {
     TRY(light_pass_use(&passes->programs,
-                       passes->grid->walled ? LIGHT_PASS_SWEEP_WALLED : LIGHT_PASS_SWEEP, 0,
+                       passes->field.walled ? LIGHT_PASS_SWEEP_WALLED : LIGHT_PASS_SWEEP, 0,
                        error));
     glUniform2i(0, number, sky);
-    glUniform1i(1, sourceless);
     glDispatchCompute(ORDINATES, 1, 1);
     light_pass_end();
     return RESULT_OK;
@@ -351,11 +341,11 @@ static Result sweep_orders(LightPasses *passes, const GridScene *scene, Error *e
     gpu_buffer_bind_storage(&passes->planes, BIND_LIGHT_PLANES_OUT);
     gpu_buffer_bind_storage(&passes->order, BIND_LIGHT_ORDER_OUT);
     gpu_buffer_bind_storage(&passes->total, BIND_LIGHT_TOTAL_OUT);
-    TRY(run_sweep(passes, 0, light_scene_has_sky(scene->draw), passes->grid->lights == 0, error));
+    TRY(run_sweep(passes, 0, light_scene_has_sky(scene->draw), error));
     for (int order = 1; order <= scene->orders; ++order) {
         TRY(light_pass_use(&passes->programs, LIGHT_PASS_SCATTER, 0, error));
         light_pass_run_cells(&passes->programs, LIGHT_PASS_SCATTER, passes->filled);
-        TRY(run_sweep(passes, order, false, false, error));
+        TRY(run_sweep(passes, order, false, error));
         TRY(light_pass_use(&passes->programs, LIGHT_PASS_ORDER, 0, error));
         glUniform2i(0, order, scene->orders);
         glDispatchCompute(1, 1, 1);
@@ -374,14 +364,14 @@ Result light_passes_solve(LightPasses *passes, const GridScene *scene, ShadowCas
     passes->filled = passes->active = 0;
     if (!passes->box_read.fence) TRY(light_passes_begin(passes, scene, casters, error));
     TRY(take_box(passes, box, error));
-    if (!light_grid_set_box(passes->grid, scene->cells, box)) return RESULT_OK;
-    light_grid_set_kinds(passes->grid, scene);
-    light_grid_find_lights(passes->grid, scene);
+    if (!light_field_set_box(&passes->field, scene->cells, box)) return RESULT_OK;
+    light_field_set_kinds(&passes->field, scene);
+    light_field_find_lights(&passes->field, scene);
     for (uint32_t i = 0; i < casters.count; ++i)
-        passes->grid->tinted |= casters.list[i].batch->paint.buffer != 0;
+        passes->field.tinted |= casters.list[i].batch->paint.buffer != 0;
     set_params(passes, scene);
     TRY(upload_walls(passes, scene, error));
-    TRY(count_slots(passes, casters, error));
+    TRY(count_slots(passes, scene, casters, error));
     if (!passes->filled) return RESULT_OK;
     TRY(make_room(passes, error));
     TRY(upload_tables(passes, scene, error));
@@ -395,24 +385,24 @@ Result light_passes_gather(LightPasses *passes, const GridScene *scene, ShadowCa
                            const ParticleLight *seen, Error *error)
 {
     if (!passes->filled) return RESULT_OK;
-    TRY(light_grid_make_gather(passes->grid, scene, error));
-    TRY(upload_kinds(passes, &passes->gather, scene, offsetof(GridKind, gather_made),
-                     offsetof(GridKind, gather), GATHER_NODES * GRID_WIDE * sizeof(float), error));
+    TRY(light_field_make_gather(&passes->field, scene, error));
+    TRY(upload_kinds(passes, scene, FIELD_GATHER,
+                     CELL_PATCHES * sizeof *passes->field.kinds->gather, error));
     set_params(passes, scene);
     gpu_buffer_bind_storage(&passes->slots, BIND_LIGHT_SLOTS_OUT);
     gpu_buffer_bind_storage(&passes->cells, BIND_LIGHT_CELLS_OUT);
     gpu_buffer_bind_storage(&passes->state, BIND_LIGHT_STATE_OUT);
     gpu_buffer_bind_storage(&passes->depth, BIND_LIGHT_DEPTH_OUT);
     gpu_buffer_bind_texture(&passes->light, BIND_LIGHT_ALL);
-    gpu_buffer_bind_texture(&passes->gather.buffer, BIND_LIGHT_GATHER);
+    gpu_buffer_bind_texture(&passes->kinds[FIELD_GATHER].buffer, BIND_LIGHT_GATHER);
     TRY(light_pass_use(&passes->programs, LIGHT_PASS_HIDE, 0, error));
     light_pass_run_cells(&passes->programs, LIGHT_PASS_HIDE, passes->active);
     TRY(light_pass_use(&passes->programs, LIGHT_PASS_GATHER, 0, error));
     for (uint32_t i = 0; i < casters.count; ++i) {
-        if (!(casters.list[i].look.features & LOOK_MARSCHNER)) continue;
+        if (!(casters.list[i].look->features & LOOK_MARSCHNER)) continue;
         glUniform1i(0, scene->hair[i].kind);
-        gpu_buffer_bind_storage(&seen[i].left, BIND_LIGHT_SEEN_OUT);
-        light_pass_run_hair(&passes->programs, &casters.list[i],
+        gpu_buffer_bind_storage(&seen[i].seen, BIND_LIGHT_SEEN_OUT);
+        light_pass_run_hair(&passes->programs, &casters.list[i], 1,
                             casters.list[i].batch->vertex_count - 1, LIGHT_PART_SEGMENTS);
     }
     light_pass_end();

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // The light grid (light_grid.h) in compute shaders, for GPUs: hair stays where it is, C finds where
 // the cells lie and the tables of fibres. Two small things come back: the box of hair, behind a
-// fence, and how many cells have some, for which C waits. The same light as C's but for rounding,
-// and for particles of straight hair, of which C leaves some out. Needs the DrawParams block.
+// fence, and how many cells have some, for which C waits. The same light as C's but for rounding.
+// Needs the DrawParams block.
 #pragma once
 
+#include "draw/light_field.h"
 #include "gpu/late_read.h"
-#include "lanes/light_grid.h"
 #include "passes/light_pass.h"
+#include "passes/look_programs.h"
 
 // Of the tables that a buffer has: see GridKind.
 typedef struct KindTableMade {
@@ -22,12 +23,12 @@ typedef struct KindTable {
 
 // A struct that has but limits has found nothing.
 typedef struct LightPasses {
-    LightPrograms programs;      // their limits are given
-    struct LightGridState *grid; // owned: lattice, lights and tables
+    LightPrograms programs; // their limits are given
+    LightField field;
     LateRead box_read, counts_read;
     GpuBuffer box, slots, cells, state, sums, planes, depth, source, order, total, light;
     GpuBuffer tables, walls;
-    KindTable first, scatter, gather;
+    KindTable kinds[FIELD_TABLES];
     int filled, active; // cells with hair; with those beside them
     int64_t most_sums;  // bytes: of more cells sums are made in turns; 0: SUMS_MOST
 } LightPasses;

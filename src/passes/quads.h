@@ -8,6 +8,7 @@
 #include "gpu/gpu_timer.h"
 #include "passes/abuffer.h"
 #include "passes/cull.h"
+#include "passes/look_programs.h"
 
 // What projects hair and sends its ribbons to the A-buffer.
 typedef struct QuadRibbons {

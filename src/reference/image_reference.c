@@ -104,7 +104,7 @@ static void shade_kajiya(const ReferenceScene *scene, const SectionParams *m,
     }
 }
 
-// Uniform in -1 .. 1, the same as glsl/common/hash.glsl gives.
+// Uniform in -1 .. 1, the same as glsl/common/hash.h gives.
 static double hash_signed(uint32_t id)
 {
     id = (id ^ (id >> 16)) * 0x7feb352du;

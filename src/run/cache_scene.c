@@ -35,8 +35,8 @@ char *cache_scene_maker(const Bytes *text)
 // --- Values.
 
 // Parameters of the groups below that do not change the guides' motion.
-static const char *const HARMLESS[] = {"frames",          "followers", "follow",
-                                       "follower_radius", "sdf_cache", "tip_separation"};
+static const char *const HARMLESS[] = {"frames",    "followers",      "follow", "follower_radius",
+                                       "sdf_cache", "tip_separation", "clump"};
 
 // Keys beside the parameters that are for drawing only.
 static const char *const DRAWN[] = {"camera", "lights", "file"};
@@ -70,12 +70,23 @@ static void keep_values(json_t *scene)
         keep_what_moves(json_array_get(sections, i));
 }
 
+// What of a mesh that deforms moves hair.
+static json_t *describe_body(const Simulation *simulation)
+{
+    const MeshSequence *sequence = &simulation->scene->body->sequence;
+    const SampleTimes *times = &sequence->times;
+    return json_pack("{s:I, s:I, s:f, s:f, s:b}", "checksum", (json_int_t)sequence->checksum,
+                     "samples", (json_int_t)times->count, "fps", times->rate, "start", times->start,
+                     "linear", times->linear);
+}
+
 Result cache_scene_describe(Bytes *text, const Simulation *simulation, Error *error)
 {
     json_t *object = scene_to_json(simulation->scene);
     if (simulation->mesh_checksum)
         json_object_set_new(object, "mesh_checksum", json_integer(simulation->mesh_checksum));
     keep_values(object);
+    if (simulation->scene->body) json_object_set_new(object, "body", describe_body(simulation));
     json_object_set_new(object, MAKER, json_string(cache_scene_own_maker()));
     // 17 digits: key times are doubles.
     char *dump = json_text(object, JSON_COMPACT | JSON_SORT_KEYS | JSON_REAL_PRECISION(17));

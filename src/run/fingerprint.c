@@ -21,6 +21,7 @@ const FingerprintExempt FINGERPRINT_EXEMPT[] = {
     {"points_per_strand", "the hair as it was read counts"},
     {"array", "the hair as it was read counts"},
     {"mesh", "its content counts"},
+    {"mesh_rest", "the hair that it carries counts"},
     {"mesh_unit", "the mesh as it was read counts"},
     {"mesh_up", "the mesh as it was read counts"},
     {"color_map", "its content counts"},
@@ -147,6 +148,7 @@ static Result add_files(uint64_t *hash, const Scene *scene, const Assets *assets
         TRY(add_map(hash, scene->sections[i].params.color_map, error));
     }
     *hash = add_mesh(*hash, &assets->mesh);
+    if (assets->body) *hash = add_number(*hash, assets->body->sequence.checksum);
     return RESULT_OK;
 }
 

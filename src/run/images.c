@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "run/images.h"
 #include "base/target.h"
-#include "draw/look.h"
+#include "draw/hair_paint.h"
 #include "draw/openness.h"
 #include "scene/camera.h"
 #include "strands/paint.h"
@@ -17,9 +17,9 @@ static Result paint_section(Images *images, uint32_t i, Error *error)
     const GpuLimits *limits = &images->gpu->limits;
     Paint paint;
     Result result = paint_create(&paint, strands, &images->scene->sections[i].params, error);
-    THEN(result, look_paint(&section->hair, strands, &paint, limits, error));
+    THEN(result, hair_paint_upload(&section->hair, strands, &paint, limits, error));
     if (result == RESULT_OK && section->follow.per_guide)
-        result = look_paint(&section->follow.hair, strands, &paint, limits, error);
+        result = hair_paint_upload(&section->follow.hair, strands, &paint, limits, error);
     paint_destroy(&paint);
     return result == RESULT_USAGE
                ? error_prefix(error, result, "%s: ", images->scene->sections[i].file)
@@ -34,7 +34,7 @@ static Result create_items(Images *images, Error *error)
                          images->scene->section_count);
     for (uint32_t i = 0; i < images->scene->section_count; ++i) {
         const SimulationSection *section = &images->simulation->sections[i];
-        const SectionParams *params = &images->scene->sections[i].params;
+        const SectionParams *params = section->params;
         if (params->hidden) continue;
         float radius = paint_radius(params, &images->assets->strands[i], section->follow.per_guide);
         TRY(paint_section(images, i, error));
@@ -64,26 +64,30 @@ static Result describe_images(const Images *images, RendererOptions *options, Er
     const RunParams *run = &images->scene->run;
     Target target;
     TRY(target_parse(&target, run->output, error));
-    *options = (RendererOptions){
-        .raster = (Raster)run->raster,
-        .oit = (Oit)run->oit,
-        .oit_layers = run->oit_layers,
-        .width = run->size[0],
-        .height = run->size[1],
-        .exposure = run->exposure.value,
-        .tone = (Tone)run->tone_map,
-        .kind = run->depth == DEPTH_16 ? IMAGE_16 : IMAGE_8,
-        .aov = (Aov)run->aov,
-        .samples = run->samples,
-        .seed = run->seed,
-        .mesh_shading = (MeshShading)run->mesh_shading,
-        .floor = floor_find(images->scene, images->framing),
-        .lod = {run->lod_start, run->lod_end, run->lod_min, run->lod_width},
-        .scatter = (Scatter)run->scatter,
-        .scatter_cells = run->scatter_cells,
-        .scatter_orders = run->scatter_orders,
-        .shadow = {
-            .kind = (Shadow)run->shadow, .side = run->shadow_size, .spacing = run->shadow_spacing}};
+    *options =
+        (RendererOptions){.raster = (Raster)run->raster,
+                          .oit = (Oit)run->oit,
+                          .oit_layers = run->oit_layers,
+                          .least_seen = run->least_seen,
+                          .width = run->size[0],
+                          .height = run->size[1],
+                          .exposure = run->exposure.value,
+                          .tone = (Tone)run->tone_map,
+                          .kind = run->depth == DEPTH_16 ? IMAGE_16 : IMAGE_8,
+                          .aov = (Aov)run->aov,
+                          .samples = run->samples,
+                          .seed = run->seed,
+                          .mesh_shading = (MeshShading)run->mesh_shading,
+                          .floor = floor_find(images->scene, images->framing),
+                          .lod = {run->lod_start, run->lod_end, run->lod_min, run->lod_width},
+                          .scatter = {.kind = (Scatter)run->scatter,
+                                      .cells = run->scatter_cells,
+                                      .orders = run->scatter_orders,
+                                      .strands = (uint32_t)run->scatter_strands},
+                          .shadow = {.kind = (Shadow)run->shadow,
+                                     .side = run->shadow_size,
+                                     .spacing = run->shadow_spacing,
+                                     .strands = run->shadow_strands}};
     memcpy(options->background, run->background, sizeof options->background);
     if (target.floats) options->kind = IMAGE_FLOAT;
     set_depth_range(images, options);
@@ -158,6 +162,16 @@ static Result open_layers(Images *images, const RendererOptions *options, GpuTim
     return RESULT_OK;
 }
 
+static Result copy_body(Images *images, Error *error)
+{
+    const Mesh *mesh = &images->assets->mesh;
+    if (!images->scene->body) return RESULT_OK;
+    TRY(mesh_create(&images->body, mesh->vertex_count, mesh->triangle_count, error));
+    memcpy(images->body.triangle, mesh->triangle, mesh->triangle_count * sizeof *mesh->triangle);
+    images->body_shape = bound_body_shape(&images->simulation->body, 0);
+    return RESULT_OK;
+}
+
 static Result open_renderer(Images *images, GpuTimer *timer, Error *error)
 {
     RendererOptions options;
@@ -165,6 +179,7 @@ static Result open_renderer(Images *images, GpuTimer *timer, Error *error)
     TRY(open_one(images, &images->renderer, &options, timer, error));
     TRY(open_layers(images, &options, timer, error));
     TRY(create_items(images, error));
+    TRY(copy_body(images, error));
     return open_sky(images, error);
 }
 
@@ -212,7 +227,43 @@ void images_destroy(Images *images)
     for (int l = 0; l < EXR_LAYERS && images->layers; ++l) renderer_destroy(&images->layers[l]);
     free(images->layers);
     free(images->items);
+    mesh_destroy(&images->body);
     *images = (Images){0};
+}
+
+static int count_layers(const Images *images)
+{
+    return images->layers ? EXR_LAYERS : 0;
+}
+
+// Shows the mesh as it is at the simulation's time.
+static void move_mesh(Images *images)
+{
+    Simulation *simulation = images->simulation;
+    if (!images->body.vertex_count) return;
+    double shape = bound_body_shape(&simulation->body, simulation->time);
+    if (shape == images->body_shape) return;
+    const BodyPose *pose = bound_body_pose(&simulation->body, simulation->time);
+    images->body_shape = shape;
+    memcpy(images->body.position, pose->position,
+           images->body.vertex_count * sizeof *pose->position);
+    mesh_compute_normals(&images->body);
+    renderer_move_mesh(&images->renderer, &images->body);
+    for (int l = 0; l < count_layers(images); ++l)
+        renderer_move_mesh(&images->layers[l], &images->body);
+}
+
+// Radii that change over time; all else of a look is read from the parameters.
+static void take_radii(Images *images)
+{
+    for (uint32_t i = 0, item = 0; i < images->scene->section_count; ++i) {
+        const SimulationSection *section = &images->simulation->sections[i];
+        if (section->params->hidden) continue;
+        bool changes =
+            section_tracks_has(&images->scene->sections[i].tracks, params_find("radius"));
+        for (int k = 0; k < (section->follow.per_guide ? 2 : 1); ++k, ++item)
+            if (changes) images->items[item].radius = section->params->radius.value;
+    }
 }
 
 static Result begin_by(Images *images, Renderer *renderer, int frame, const View *view,
@@ -235,14 +286,11 @@ static Result begin_by(Images *images, Renderer *renderer, int frame, const View
     return renderer_begin(renderer, &drawn, images->items, images->item_count, image, error);
 }
 
-static int count_layers(const Images *images)
-{
-    return images->layers ? EXR_LAYERS : 0;
-}
-
 Result images_begin(Images *images, int frame, const View *view, Image *image,
                     Image layers[EXR_LAYERS], Error *error)
 {
+    move_mesh(images);
+    take_radii(images);
     TRY(begin_by(images, &images->renderer, frame, view, image, error));
     for (int l = 0; l < count_layers(images); ++l)
         TRY(begin_by(images, &images->layers[l], frame, view, &layers[l], error));
@@ -278,6 +326,8 @@ Result images_draw(Images *images, int frame, const View *view, Image *image, Er
 {
     Renderer *renderer = &images->renderer;
     int place = renderer_place(renderer);
+    move_mesh(images);
+    take_radii(images);
     TRY(begin_by(images, renderer, frame, view, image, error));
     TRY(renderer_settle(renderer, error));
     return renderer_take(renderer, place, image, error);

@@ -20,6 +20,8 @@ typedef struct Images {
     Renderer *layers;  // [EXR_LAYERS], owned; NULL: none
     RenderItem *items; // of each section, unless hidden, its guides and followers if there are any
     uint32_t item_count;
+    Mesh body;                      // of a mesh that deforms: as it is drawn; owned
+    double body_shape;              // ... bound_body_shape
     const Fingerprint *fingerprint; // NULL without an output
     Output *output;
 } Images;

@@ -68,13 +68,14 @@ static Result make_room(Survey *survey, Error *error)
                      survey->point_count);
 }
 
-static void carry_mesh(const Mesh *mesh, const HeadPose *head, float (*points)[3])
+static void carry_mesh(const float (*position)[3], uint32_t vertex_count, const HeadPose *head,
+                       float (*points)[3])
 {
     versor rotation = {0};
     memcpy(rotation, head->rotation, sizeof rotation);
-    for (uint32_t v = 0; v < mesh->vertex_count; ++v) {
+    for (uint32_t v = 0; v < vertex_count; ++v) {
         vec3 p = {0};
-        memcpy(p, mesh->position[v], sizeof p);
+        memcpy(p, position[v], sizeof p);
         glm_quat_rotatev(rotation, p, points[v]);
         for (int k = 0; k < 3; ++k) points[v][k] += head->translation[k];
     }
@@ -92,9 +93,14 @@ static Result read_points(Survey *survey, Error *error)
             result = hair_read_positions(&section->follow.hair, survey->points + followers->first,
                                          error);
     }
-    if (survey->group_count > 2 * sections)
-        carry_mesh(&survey->assets->mesh, &survey->simulation.head,
+    if (survey->group_count > 2 * sections) {
+        const Mesh *mesh = &survey->assets->mesh;
+        BoundBody *body = &survey->simulation.body;
+        const float(*position)[3] = (const float(*)[3])(
+            body->body ? bound_body_pose(body, survey->simulation.time)->position : mesh->position);
+        carry_mesh(position, mesh->vertex_count, &survey->simulation.head,
                    survey->points + survey->groups[2 * sections].first);
+    }
     return result;
 }
 

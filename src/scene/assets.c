@@ -3,6 +3,7 @@
 #include "base/quote.h"
 
 #include "base/activity.h"
+#include "mesh/mesh_sequence.h"
 #include "mesh/obj.h"
 
 #include <stdlib.h>
@@ -45,20 +46,78 @@ static Result load_section(Assets *assets, const Scene *scene, uint32_t i, FILE 
     return RESULT_OK;
 }
 
-static Result load_mesh(Assets *assets, const Scene *scene, Error *error)
+// Half of the roots' distances from the mesh tell that it is another one.
+static void warn_apart(const Body *body, FILE *messages)
 {
-    if (!*scene->run.mesh) return RESULT_OK;
-    float unit = scene->run.mesh_unit.value;
-    if (scene->run.mesh_unit.automatic)
-        unit = assets->section_count ? assets->reports[0].unit_used : 1;
-    bool up_z = scene->run.mesh_up == UP_Z;
-    if (scene->run.mesh_up == UP_AUTO) up_z = assets->section_count && assets->reports[0].up_z;
-    assets->has_mesh = true;
-    activity_set("reading the mesh");
-    return obj_read_mesh(&assets->mesh, scene->run.mesh, unit, up_z, error);
+    float apart = body_distance(body);
+    if (messages && apart > BODY_APART)
+        fprintf(messages,
+                "%s: half of the roots are more than %.3g mm from the mesh (is it the one that the "
+                "hair was groomed on? --mesh-rest)\n",
+                quote(body->name).text, 1e3 * (double)apart);
 }
 
-Result assets_load(Assets *assets, const Scene *scene, FILE *messages, bool verbose, Error *error)
+// Binds the hair to the mesh, and lets the mesh move the head.
+static Result bind_hair(Assets *assets, Scene *scene, MeshSequence *sequence, const Mesh *rest,
+                        FILE *messages, Error *error)
+{
+    const RunParams *run = &scene->run;
+    const BodyOptions options = {run->mesh, run->teleport_distance, run->teleport_angle};
+    const RigidTrack *head = &scene->head;
+    bool tracked = head->translation.count || head->rotation.count ||
+                   head->translation_formula[0].text || head->rotation_formula[0].text;
+    assets->body = calloc(1, sizeof *assets->body);
+    if (!assets->body) return error_set(error, RESULT_FAILED, "no memory for %s", run->mesh);
+    TRY(body_create(assets->body, sequence, &assets->mesh, rest, assets->strands,
+                    assets->section_count, &options, error));
+    warn_apart(assets->body, messages);
+    scene->body = assets->body;
+    scene->head.samples = &assets->body->head;
+    if (!tracked) body_middle(assets->body, scene->head.pivot);
+    return RESULT_OK;
+}
+
+static Result load_sequence(Assets *assets, Scene *scene, const MeshSequenceOptions *options,
+                            FILE *messages, Error *error)
+{
+    MeshSequence sequence = {0};
+    Mesh rest = {0};
+    Result result =
+        mesh_sequence_read(&sequence, &assets->mesh, &rest, scene->run.mesh, options, error);
+    bool deforms = sequence.times.count > 1 || rest.vertex_count > 0;
+    if (result == RESULT_OK && deforms)
+        result = bind_hair(assets, scene, &sequence, &rest, messages, error);
+    mesh_sequence_destroy(&sequence);
+    mesh_destroy(&rest);
+    return result;
+}
+
+static Result load_mesh(Assets *assets, Scene *scene, FILE *messages, Error *error)
+{
+    const RunParams *run = &scene->run;
+    if (!*run->mesh) return RESULT_OK;
+    const StrandsReport *first = assets->section_count ? &assets->reports[0] : NULL;
+    MeshSequenceOptions options = {
+        .unit = run->mesh_unit.automatic ? 0 : (double)run->mesh_unit.value,
+        .otherwise_unit = first ? (double)first->unit_used : 1,
+        .up_z = run->mesh_up == UP_AUTO ? -1 : run->mesh_up == UP_Z,
+        .otherwise_up_z = first && first->up_z,
+        .rest = run->mesh_rest,
+        .rate = run->mesh_fps.automatic ? 0 : (double)run->mesh_fps.value,
+        .otherwise_rate = (double)run->fps,
+        .start = (double)run->mesh_start,
+        .linear = run->mesh_motion == MESH_LINEAR,
+    };
+    assets->has_mesh = true;
+    activity_set("reading the mesh");
+    if (mesh_sequence_matches(run->mesh))
+        return load_sequence(assets, scene, &options, messages, error);
+    float unit = (float)(options.unit > 0 ? options.unit : options.otherwise_unit);
+    bool up_z = (options.up_z >= 0 ? options.up_z : options.otherwise_up_z) == 1;
+    return obj_read_mesh(&assets->mesh, run->mesh, unit, up_z, error);
+}
+
+Result assets_load(Assets *assets, Scene *scene, FILE *messages, bool verbose, Error *error)
 {
     *assets = (Assets){.section_count = scene->section_count};
     assets->strands = calloc((size_t)scene->section_count + 1, sizeof *assets->strands);
@@ -67,7 +126,7 @@ Result assets_load(Assets *assets, const Scene *scene, FILE *messages, bool verb
         return error_set(error, RESULT_FAILED, "no memory for %u sections", scene->section_count);
     for (uint32_t i = 0; i < scene->section_count; ++i)
         TRY(load_section(assets, scene, i, messages, verbose, error));
-    return load_mesh(assets, scene, error);
+    return load_mesh(assets, scene, messages, error);
 }
 
 void assets_destroy(Assets *assets)
@@ -77,6 +136,8 @@ void assets_destroy(Assets *assets)
     free(assets->strands);
     free(assets->reports);
     mesh_destroy(&assets->mesh);
+    if (assets->body) body_destroy(assets->body);
+    free(assets->body);
     *assets = (Assets){0};
 }
 

@@ -10,14 +10,17 @@ typedef struct Assets {
     uint32_t section_count;
     Strands *strands;       // [section_count]
     StrandsReport *reports; // [section_count]
-    Mesh mesh;              // empty if the scene has none
+    Mesh mesh;              // empty if the scene has none; of a sequence: at time 0
     bool has_mesh;
+    Body *body; // of a mesh that deforms, owned; NULL: none
 } Assets;
 
-// Reads everything that the scene names. What was mended, and units that were guessed (if
+// Reads everything that the scene names. A mesh that deforms moves the scene's head
+// (scene->head.samples) and is its body, as long as the assets are there; strands lie on it as at
+// time 0. What was mended, and units that were guessed (if
 // `verbose`), are printed on `messages` (NULL: not). Errors as strands_read and obj_read_mesh give
 // them; the assets may be destroyed in each case.
-Result assets_load(Assets *assets, const Scene *scene, FILE *messages, bool verbose, Error *error);
+Result assets_load(Assets *assets, Scene *scene, FILE *messages, bool verbose, Error *error);
 void assets_destroy(Assets *assets);
 
 // --check: reads every section's file and prints its report, or why it can't be read, on `stream`.

@@ -26,6 +26,8 @@ CONDITION(has_colliders,
 CONDITION(collides, section->collide)
 CONDITION(collides_mesh, scene->run.collide_mesh)
 CONDITION(has_mesh, *scene->run.mesh)
+CONDITION(has_sequence,
+          *scene->run.mesh && (!writes(scene->run.mesh, ".obj") || strchr(scene->run.mesh, '%')))
 CONDITION(has_wind, scene->wind.count > 0 || scene->run.wind[0] != 0 || scene->run.wind[1] != 0 ||
                         scene->run.wind[2] != 0)
 CONDITION(has_gusts, scene->run.gust > 0)
@@ -66,16 +68,17 @@ static const struct {
     {"collide_mesh", has_head, "there is no --mesh and no --scalp"},
     {"mesh_unit mesh_up mesh_color mesh_shading sdf_resolution sdf_cache", has_mesh,
      "there is no --mesh"},
+    {"mesh_rest mesh_fps mesh_start mesh_motion", has_sequence, "--mesh does not deform"},
     {"sdf_resolution sdf_cache", collides_mesh, "--no-collide-mesh"},
     {"rest", has_style, "--style is 0"},
     {"gust gust_period gust_repeat wind_spread wind_shelter", has_wind, "there is no --wind"},
     {"gust_period gust_repeat", has_gusts, "--gust is 0"},
     {"teleport_distance teleport_angle", knows_jumps, "--teleport is none"},
-    {"follow follower_radius tip_separation", follows, "--followers is 0"},
+    {"follow follower_radius tip_separation clump", follows, "--followers is 0"},
     {"export_followers", exports, "there is no --export"},
     {"margin", frames_hair, "--eye is given"},
     {"turn_lights ease_in ease_out", turns, "there is no --turntable"},
-    {"shadow_size shadow_opacity", has_shadows, "--shadow is none"},
+    {"shadow_size shadow_strands shadow_opacity", has_shadows, "--shadow is none"},
     {"shadow_spacing", guesses_shadows, "only --shadow approx uses it"},
     {"floor_height", has_floor, "--floor is none"},
     {"floor_color", has_matt_floor, "only --floor plane uses it"},
@@ -85,8 +88,8 @@ static const struct {
     {"ambient diffuse", is_kajiya, "only --shading kajiya uses it"},
     {"color", shows_color, "--albedo or --melanin is given"},
     {"albedo", shows_albedo, "--melanin is given"},
-    {"scatter scatter_cells scatter_orders", scatters, "--shadow is not dom"},
-    {"scatter_cells scatter_orders", has_grid, "--scatter is none"},
+    {"scatter scatter_cells scatter_orders scatter_strands", scatters, "--shadow is not dom"},
+    {"scatter_cells scatter_orders scatter_strands", has_grid, "--scatter is none"},
     {"tip_color", has_tips, "--tip-length is 0"},
     {"melanin_redness", has_pigment, "--melanin is auto"},
     {"curve", is_smooth, "--smooth is 1"},

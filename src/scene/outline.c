@@ -7,6 +7,7 @@
 #include <cglm/cglm.h>
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 // Times, angles and vertices that are looked at; the margin covers what lies between.
@@ -163,6 +164,48 @@ static float farthest_follower(const Scene *scene, const Strands *strands)
     return farthest;
 }
 
+// How far the mesh has carried the strand's root, seen from the head.
+static void root_moved(const Body *body, uint32_t section, uint32_t s, const float (*position)[3],
+                       float moved[3])
+{
+    const BoundPoint *point = &body->roots[section].points[s];
+    for (int k = 0; k < 3; ++k) {
+        double now = 0;
+        for (int c = 0; c < 3; ++c) now += point->weight[c] * (double)position[point->corner[c]][k];
+        moved[k] = (float)(now - point->place[k]);
+    }
+}
+
+// The body at a time, and the style where its roots are then.
+static void outline_body(Outline *style, Outline *shape, const Scene *scene, const Strands *strands,
+                         const float (*position)[3])
+{
+    const Body *body = scene->body;
+    for (uint32_t v = 0; v < body->mesh->vertex_count; ++v) outline_add(shape, position[v]);
+    for (uint32_t i = 0; i < scene->section_count; ++i)
+        for (uint32_t s = 0; s < strands[i].strand_count; s += strand_stride(&strands[i], TIMES)) {
+            float moved[3], at[3];
+            root_moved(body, i, s, position, moved);
+            for (uint32_t v = strands[i].first[s]; v < strands[i].first[s + 1]; ++v) {
+                for (int k = 0; k < 3; ++k) at[k] = strands[i].position[v][k] + moved[k];
+                outline_add(style, at);
+            }
+        }
+}
+
+static void add_body_at(Framing *framing, const Scene *scene, const Strands *strands, double time,
+                        const Moment *moment)
+{
+    Outline style = {0}, shape = {0};
+    float(*position)[3] = malloc(scene->body->mesh->vertex_count * sizeof *position + 1);
+    if (!position) return; // the mesh as at time 0 is framed, then
+    mesh_sequence_evaluate(&scene->body->sequence, time, position);
+    outline_body(&style, &shape, scene, strands, (const float(*)[3])position);
+    add_carried(&framing->hair, &style, moment);
+    add_carried(&framing->all, &shape, moment);
+    free(position);
+}
+
 static void find_outlines(Framing *framing, const Scene *scene, const Strands *strands,
                           const Mesh *mesh)
 {
@@ -174,9 +217,11 @@ static void find_outlines(Framing *framing, const Scene *scene, const Strands *s
     uint32_t times = moves ? TIMES : 1;
     for (uint32_t t = 0; t < times; ++t) {
         Moment moment = {0};
-        moment_at(&moment, scene, duration * t / (TIMES - 1));
+        double time = duration * t / (TIMES - 1);
+        moment_at(&moment, scene, time);
         add_carried(&framing->hair, &style, &moment);
         add_carried(&framing->all, &body, &moment);
+        if (scene->body) add_body_at(framing, scene, strands, time, &moment);
         for (uint32_t i = 0; i < scene->section_count; ++i)
             add_rest(&framing->hair, &strands[i], &scene->sections[i].params, &moment, times);
     }

@@ -2,6 +2,7 @@
 #include "scene/rigid_track.h"
 
 #include <math.h>
+#include <string.h>
 
 static const double DEGREE = 3.14159265358979323846 / 180;
 
@@ -38,6 +39,87 @@ static void evaluate_formulas(const Formula *formulas, double time, double scale
     }
 }
 
+// The twist (turn about the origin, rad; velocity of the origin, m) whose motion in unit time is
+// `motion`, and back: R = exp [w], translation = V t with V the mean of the rotations on the way
+// (R. Murray, Z. Li and S. Sastry, "A Mathematical Introduction to Robotic Manipulation", 1994,
+// chapter 2).
+typedef struct Twist {
+    Double3 turn, velocity;
+} Twist;
+
+// The factors of V = 1 + a [w] + b [w]^2 for an angle.
+static void mean_factors(double angle, double *a, double *b)
+{
+    double square = angle * angle;
+    bool small = angle < 1e-4;
+    *a = small ? 0.5 - square / 24 : (1 - cos(angle)) / square;
+    *b = small ? 1.0 / 6 - square / 120 : (angle - sin(angle)) / (square * angle);
+}
+
+static void apply_mean(const Double3 turn, double a, double b, const Double3 v, Double3 result)
+{
+    Double3 once, twice;
+    double3_cross(turn, v, once);
+    double3_cross(turn, once, twice);
+    for (int k = 0; k < 3; ++k) result[k] = v[k] + a * once[k] + b * twice[k];
+}
+
+static Twist twist_of(const RigidMotion *motion)
+{
+    Twist twist;
+    const double *q = motion->rotation;
+    double sign = q[3] < 0 ? -1 : 1, sine = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]),
+           angle = 2 * atan2(sine, sign * q[3]), a, b;
+    for (int k = 0; k < 3; ++k) twist.turn[k] = sine > 0 ? sign * q[k] / sine * angle : 0;
+    mean_factors(angle, &a, &b);
+    // V^-1 = 1 - [w]/2 + c [w]^2.
+    double c = angle < 1e-4 ? 1.0 / 12 : (1 - (1 - b * angle * angle) / (2 * a)) / (angle * angle);
+    apply_mean(twist.turn, -0.5, c, motion->translation, twist.velocity);
+    return twist;
+}
+
+static RigidMotion motion_of(const Twist *twist)
+{
+    RigidMotion motion;
+    double angle = double3_length(twist->turn), a, b;
+    double scale = angle > 0 ? sin(angle / 2) / angle : 0.5;
+    for (int k = 0; k < 3; ++k) motion.rotation[k] = scale * twist->turn[k];
+    motion.rotation[3] = cos(angle / 2);
+    mean_factors(angle, &a, &b);
+    apply_mean(twist->turn, a, b, twist->velocity, motion.translation);
+    return motion;
+}
+
+RigidMotion rigid_samples_evaluate(const RigidSamples *samples, double time)
+{
+    SampleSpan span = sample_span(&samples->times, time);
+    const RigidMotion *at = &samples->motion[span.near];
+    if (span.weight[1] == 1) return samples->motion[span.at[1]];
+    RigidMotion back = rigid_motion_inverse(at);
+    Twist sum = {{0}, {0}};
+    for (int i = 0; i < 4; ++i) {
+        if (span.weight[i] == 0 || span.at[i] == span.near) continue;
+        RigidMotion way = rigid_motion_product(&samples->motion[span.at[i]], &back);
+        Twist twist = twist_of(&way);
+        double3_add_scaled(sum.turn, span.weight[i], twist.turn);
+        double3_add_scaled(sum.velocity, span.weight[i], twist.velocity);
+    }
+    RigidMotion way = motion_of(&sum);
+    return rigid_motion_product(&way, at);
+}
+
+// The track after the samples' motion.
+static void add_samples(const RigidSamples *samples, double time, const double quaternion[4],
+                        const double place[3], float rotation[4], float translation[3])
+{
+    RigidMotion track, sampled = rigid_samples_evaluate(samples, time);
+    memcpy(track.rotation, quaternion, sizeof track.rotation);
+    memcpy(track.translation, place, sizeof track.translation);
+    RigidMotion all = rigid_motion_product(&track, &sampled);
+    for (int i = 0; i < 4; i++) rotation[i] = (float)all.rotation[i];
+    for (int i = 0; i < 3; i++) translation[i] = (float)all.translation[i];
+}
+
 void rigid_track_evaluate(const RigidTrack *track, double time, float rotation[4],
                           float translation[3])
 {
@@ -52,14 +134,17 @@ void rigid_track_evaluate(const RigidTrack *track, double time, float rotation[4
     quaternion_from_vector(turned, quaternion);
     rotate(quaternion, track->pivot, pivot);
     for (int i = 0; i < 4; i++) rotation[i] = (float)quaternion[i];
-    for (int i = 0; i < 3; i++)
-        translation[i] = (float)((double)track->pivot[i] - pivot[i] + (double)moved[i]);
+    double place[3];
+    for (int i = 0; i < 3; i++) place[i] = (double)track->pivot[i] - pivot[i] + (double)moved[i];
+    for (int i = 0; i < 3; i++) translation[i] = (float)place[i];
+    if (track->samples) add_samples(track->samples, time, quaternion, place, rotation, translation);
 }
 
 bool rigid_track_is_still(const RigidTrack *track)
 {
     return track->translation.count < 2 && track->rotation.count < 2 &&
-           !track->translation_formula[0].text && !track->rotation_formula[0].text;
+           !track->translation_formula[0].text && !track->rotation_formula[0].text &&
+           !track->samples;
 }
 
 // `formulas`: three, or none.

@@ -1,9 +1,21 @@
 // SPDX-License-Identifier: MIT
-// The motion of a rigid body, the head, over time: by keyframes or by formulas.
+// The motion of a rigid body, the head, over time: by keyframes, by formulas, or by samples.
 #pragma once
 
 #include "base/formula.h"
+#include "mesh/mesh_binding.h"
+#include "mesh/sample_span.h"
 #include "scene/keyframes.h"
+
+// A motion by samples at even times. Between them it follows the smooth curve (sample_span) of the
+// screw motions from a sample to its neighbours, so that what turns evenly about any axis, or flies
+// with constant acceleration, does so between samples too.
+typedef struct RigidSamples {
+    SampleTimes times;
+    RigidMotion *motion; // [times.count]
+} RigidSamples;
+
+RigidMotion rigid_samples_evaluate(const RigidSamples *samples, double time);
 
 // Rotations are rotation vectors, axis times angle in radians, interpolated number by number: about
 // one fixed axis that is the slerp, except that turns beyond 180 degrees, even several, are made as
@@ -14,6 +26,7 @@ typedef struct RigidTrack {
     Formula translation_formula[3]; // m; all three or none
     Formula rotation_formula[3];    // degrees
     float pivot[3];                 // m, point that the rotation leaves in place
+    const RigidSamples *samples;    // made before the rest of the track; not owned; NULL: none
 } RigidTrack;
 
 // Metres, and degrees of a formula's rotation, are cut to this either way.

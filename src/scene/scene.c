@@ -56,6 +56,7 @@ void scene_destroy(Scene *scene)
     for (uint32_t i = 0; i < scene->section_count; i++) {
         free(scene->sections[i].file);
         params_destroy_section(&scene->sections[i].params);
+        section_tracks_destroy(&scene->sections[i].tracks);
     }
     free(scene->sections);
     free(scene->file);
@@ -198,6 +199,20 @@ static Result check_head(const Scene *scene, Error *error)
     return result == RESULT_OK ? RESULT_OK : error_prefix(error, result, "head.");
 }
 
+// The same of formulas of sections.
+static Result check_tracks(const Scene *scene, Error *error)
+{
+    const int most = 1000000;
+    int frames = scene->run.frames < most ? scene->run.frames : most;
+    for (uint32_t i = 0; i < scene->section_count; ++i)
+        for (int frame = 0; frame < frames && scene->sections[i].tracks.count; ++frame) {
+            double time = frame * (double)scene->run.speed / (double)scene->run.fps;
+            Result result = section_tracks_check(&scene->sections[i].tracks, time, error);
+            if (result != RESULT_OK) return error_prefix(error, result, "sections[%u].", i);
+        }
+    return RESULT_OK;
+}
+
 bool scene_draws_floats(const RunParams *run)
 {
     return ends_with(run->output, ".pfm") || ends_with(run->output, ".exr");
@@ -241,7 +256,8 @@ Result scene_check(const Scene *scene, Error *error)
     TRY(check_output(run->output, error));
     TRY(check_depth(scene, error));
     TRY(check_floor(run, error));
-    return check_head(scene, error);
+    TRY(check_head(scene, error));
+    return check_tracks(scene, error);
 }
 
 // --- Defaults that give way.

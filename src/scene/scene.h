@@ -12,9 +12,11 @@
 
 #include "base/error.h"
 #include "base/params.h"
+#include "scene/body.h"
 #include "scene/colliders.h"
 #include "scene/keyframes.h"
 #include "scene/rigid_track.h"
+#include "scene/section_tracks.h"
 
 #include <jansson.h>
 #include <stdint.h>
@@ -36,8 +38,9 @@ typedef enum Origin {
 
 // One hair file and how it behaves and looks.
 typedef struct Section {
-    char *file; // owned; relative to the working folder
-    SectionParams params;
+    char *file;                   // owned; relative to the working folder
+    SectionParams params;         // those that change over time: as at time 0
+    SectionTracks tracks;         // how they change
     uint8_t origin[SCENE_PARAMS]; // an Origin for each row of the table that is a section's
 } Section;
 
@@ -78,6 +81,7 @@ typedef struct Scene {
     Section *sections;            // [section_count], owned
     uint32_t section_count;
     RigidTrack head;                // moves the roots and the mesh
+    const Body *body;               // how the mesh deforms, set by assets_load; NULL: not at all
     Keyframes gravity;              // width 3, m/s2; without keys run.gravity holds
     Keyframes wind;                 // width 3, m/s; without keys run.wind holds
     Keyframes eye, target;          // width 3, m; without keys run.eye, run.target hold

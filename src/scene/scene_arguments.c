@@ -135,6 +135,7 @@ static Result apply_flag(Scene *scene, const OptionsArgument *argument, Error *e
     }
     for (uint32_t i = 0; info->scope == SCOPE_SECTION && i < scene->section_count; i++) {
         scene->sections[i].origin[row] = ORIGIN_FLAG;
+        section_tracks_drop(&scene->sections[i].tracks, info);
         THEN(result, params_parse(info, &scene->sections[i].params, argument->text, error));
     }
     return result == RESULT_OK ? result : error_prefix(error, result, "%s: ", argument->flag);

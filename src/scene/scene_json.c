@@ -3,6 +3,7 @@
 #include "scene/scene.h"
 #include "scene/scene_param.h"
 #include "scene/scene_tracks.h"
+#include "scene/section_keys.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -78,7 +79,8 @@ static bool is_force(const char *name)
 typedef struct Sink {
     ParamScope scope;
     void *params;
-    uint8_t *origin; // [SCENE_PARAMS]
+    uint8_t *origin;       // [SCENE_PARAMS]
+    SectionTracks *tracks; // of a section; NULL: the run's
 } Sink;
 
 // The parameters of one scope among the members of `object`. Keyframes of forces and the list of
@@ -94,6 +96,11 @@ static Result read_params(const Document *document, const Sink *sink, Origin ori
         if (info->scope != sink->scope || !value) continue;
         sink->origin[i] = (uint8_t)origin;
         JsonPlace place = {.parent = parent, .key = info->name};
+        if (sink->tracks && json_is_object(value)) {
+            TRY(section_keys_read(sink->tracks, sink->params, info, &place, value, error));
+            continue;
+        }
+        if (sink->tracks) section_tracks_drop(sink->tracks, info);
         if (!keys && !list)
             TRY(scene_param_read(info, sink->params, document->folder, &place, value, error));
     }
@@ -115,7 +122,8 @@ static Result read_section(Scene *scene, const Document *document, const Section
     free(path);
     if (result != RESULT_OK) return result;
     Section *section = &scene->sections[scene->section_count - 1];
-    const Sink sink = {SCOPE_SECTION, &section->params, section->origin};
+    const Sink sink = {SCOPE_SECTION, &section->params, section->origin, &section->tracks};
+    TRY(section_tracks_copy(&section->tracks, &defaults->tracks, error));
     memcpy(section->origin, defaults->origin, sizeof section->origin);
     return read_params(document, &sink, ORIGIN_KEY, place, object, error);
 }
@@ -178,7 +186,7 @@ static Result read_sections(Scene *scene, const Document *document, Error *error
     if (!json_is_array(array) || count == 0 || count > SCENE_MAX_SECTIONS)
         return json_refuse(&place, array, "an array of 1 to 1024 sections", error);
     Section defaults = {0};
-    const Sink sink = {SCOPE_SECTION, &defaults.params, defaults.origin};
+    const Sink sink = {SCOPE_SECTION, &defaults.params, defaults.origin, &defaults.tracks};
     const Presets presets = find_presets(document);
     Result result = params_create_section(&defaults.params, error);
     THEN(result, scene_apply_presets(&presets, SCOPE_SECTION, &defaults.params, error));
@@ -192,6 +200,7 @@ static Result read_sections(Scene *scene, const Document *document, Error *error
     for (size_t i = 0; i < PARAM_COUNT; i++)
         THEN(result, check_owner(scene, document, i, &place, error));
     params_destroy_section(&defaults.params);
+    section_tracks_destroy(&defaults.tracks);
     return result;
 }
 
@@ -235,7 +244,7 @@ static Result read_document(Scene *scene, const Document *document, Error *error
     if (schema && !json_is_string(schema))
         return json_refuse(&schema_place, schema, "a string: the schema's path", error);
     TRY(scene_apply_presets(&presets, SCOPE_RUN, &scene->run, error));
-    const Sink sink = {SCOPE_RUN, &scene->run, scene->origin};
+    const Sink sink = {SCOPE_RUN, &scene->run, scene->origin, NULL};
     int look = scene->run.look, quality = scene->run.quality;
     TRY(read_params(document, &sink, ORIGIN_SHARED_KEY, &document->root, document->json, error));
     scene->run.look = look;

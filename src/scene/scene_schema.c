@@ -195,44 +195,6 @@ static json_t *value_of(const ParamInfo *info, const SchemaSolver *solvers)
     return json_pack("{s:s}", "type", "string");
 }
 
-// The help, the unit and the solvers that have it.
-static json_t *description_of(const ParamInfo *info)
-{
-    char line[TEXT_SIZE];
-    const char *unit_text = *info->unit ? info->unit : NULL;
-    int length = snprintf(line, sizeof line, "%s%s%s%s", info->help, unit_text ? " (" : "",
-                          unit_text ? unit_text : "", unit_text ? ")" : "");
-    if (*info->owner && (size_t)length < sizeof line)
-        snprintf(line + length, sizeof line - (size_t)length, "; only for algo: %s", info->owner);
-    return json_string(line);
-}
-
-// `defaults`: the struct of the parameter's scope.
-static json_t *parameter(const ParamInfo *info, const SchemaSolver *solvers, const void *defaults)
-{
-    json_t *value = value_of(info, solvers);
-    bool good = value;
-    if (json_object_get(value, "$ref")) // what stands beside a reference does not count
-        value = json_pack("{s:[o]}", "allOf", value);
-    bool moves = strcmp(info->name, "gravity") == 0 || strcmp(info->name, "wind") == 0;
-    if (moves) value = either(value, reference("forceTrack"));
-    put(value, "description", description_of(info), &good);
-    put(value, "default", scene_param_write(info, defaults), &good);
-    return finish(value, good);
-}
-
-static bool is_key(const ParamInfo *info)
-{
-    return strcmp(info->name, "colliders") != 0; // a part of its own
-}
-
-// --- Tracks and lights.
-
-static json_t *offsets(void)
-{
-    return vector(real(-SCENE_OFFSET_MAX, SCENE_OFFSET_MAX), 3);
-}
-
 static json_t *closed(json_t *properties)
 {
     return json_pack("{s:s, s:o, s:b}", "type", "object", "properties", properties,
@@ -255,6 +217,62 @@ static json_t *track(json_t *members, json_t *others)
     put(between, "default", json_string(INTERPOLATION_WORDS[INTERPOLATION_SMOOTH]), &good);
     put(properties, "interpolation", between, &good);
     return finish(closed(properties), good);
+}
+
+// A number or color of a section that changes over time.
+static json_t *number_track(const ParamInfo *info)
+{
+    bool color = info->kind == PARAM_COLOR || info->kind == PARAM_AUTO_COLOR, good = true;
+    json_t *formula = color ? NULL : json_pack("{s:{s:s}}", "formula", "type", "string");
+    json_t *value = color ? reference("colorValue") : real(info->minimum, info->maximum);
+    json_t *result = track(json_pack("{s:o}", "value", value), formula);
+    if (color)
+        put(result, "required", json_pack("[s]", "keys"), &good);
+    else
+        put(result, "oneOf",
+            json_pack("[{s:[s]}, {s:[s], s:{s:b, s:b}}]", "required", "keys", "required", "formula",
+                      "properties", "keys", 0, "interpolation", 0),
+            &good);
+    return finish(result, good);
+}
+
+// The help, the unit and the solvers that have it.
+static json_t *description_of(const ParamInfo *info)
+{
+    char line[TEXT_SIZE];
+    const char *unit_text = *info->unit ? info->unit : NULL;
+    int length = snprintf(line, sizeof line, "%s%s%s%s", info->help, unit_text ? " (" : "",
+                          unit_text ? unit_text : "", unit_text ? ")" : "");
+    if (*info->owner && (size_t)length < sizeof line)
+        snprintf(line + length, sizeof line - (size_t)length, "; only for algo: %s", info->owner);
+    return json_string(line);
+}
+
+// `defaults`: the struct of the parameter's scope.
+static json_t *parameter(const ParamInfo *info, const SchemaSolver *solvers, const void *defaults)
+{
+    json_t *value = value_of(info, solvers);
+    bool good = value;
+    if (json_object_get(value, "$ref")) // what stands beside a reference does not count
+        value = json_pack("{s:[o]}", "allOf", value);
+    bool moves = strcmp(info->name, "gravity") == 0 || strcmp(info->name, "wind") == 0;
+    if (moves) value = either(value, reference("forceTrack"));
+    if (!section_tracks_refusal(info)) value = either(value, number_track(info));
+    put(value, "description", description_of(info), &good);
+    put(value, "default", scene_param_write(info, defaults), &good);
+    return finish(value, good);
+}
+
+static bool is_key(const ParamInfo *info)
+{
+    return strcmp(info->name, "colliders") != 0; // a part of its own
+}
+
+// --- Tracks and lights.
+
+static json_t *offsets(void)
+{
+    return vector(real(-SCENE_OFFSET_MAX, SCENE_OFFSET_MAX), 3);
 }
 
 static json_t *force_track(void)

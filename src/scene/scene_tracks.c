@@ -23,6 +23,7 @@ typedef struct Member {
     uint32_t width;
     double minimum, maximum; // as the file has them
     double scale;            // from the file's unit to the struct's
+    bool color;              // also a text
 } Member;
 
 static Result read_member(const Member *member, const JsonPlace *parent, const json_t *value,
@@ -31,6 +32,11 @@ static Result read_member(const Member *member, const JsonPlace *parent, const j
     JsonPlace place = {.parent = parent, .key = member->name};
     float numbers[KEYFRAMES_MAX_WIDTH] = {0};
     double number = 0;
+    if (member->color && json_is_string(value)) {
+        SectionParams holder = {0};
+        TRY(scene_param_read(params_find("color"), &holder, NULL, &place, value, error));
+        return keyframes_append(member->keys, time, holder.color, 3, error);
+    }
     TRY(member->width == 1
             ? json_read_number(&place, value, member->minimum, member->maximum, "a number", &number,
                                error)
@@ -105,7 +111,16 @@ Result scene_tracks_read_keys(Keyframes *keys, const ParamInfo *info, const Json
                               const json_t *value, Error *error)
 {
     static const char *const NAMES[] = {"keys", "interpolation", NULL};
-    Member member = {"value", keys, 3, info->minimum, info->maximum, 1.0};
+    Member member = {"value", keys, 3, info->minimum, info->maximum, 1.0, false};
+    TRY(json_check_object(place, value, NAMES, error));
+    return read_track(&member, 1, place, value, error);
+}
+
+Result scene_tracks_read_numbers(Keyframes *keys, const ParamInfo *info, bool color,
+                                 const JsonPlace *place, const json_t *value, Error *error)
+{
+    static const char *const NAMES[] = {"keys", "interpolation", NULL};
+    Member member = {"value", keys, color ? 3 : 1, info->minimum, info->maximum, 1.0, color};
     TRY(json_check_object(place, value, NAMES, error));
     return read_track(&member, 1, place, value, error);
 }
@@ -151,8 +166,8 @@ static Result read_head_keys(Scene *scene, const JsonPlace *place, const json_t 
                              Error *error)
 {
     const Member members[] = {
-        {"translate", &scene->head.translation, 3, -SCENE_OFFSET_MAX, SCENE_OFFSET_MAX, 1.0},
-        {"rotate", &scene->head.rotation, 3, -SCENE_OFFSET_MAX, SCENE_OFFSET_MAX, DEGREE},
+        {"translate", &scene->head.translation, 3, -SCENE_OFFSET_MAX, SCENE_OFFSET_MAX, 1.0, false},
+        {"rotate", &scene->head.rotation, 3, -SCENE_OFFSET_MAX, SCENE_OFFSET_MAX, DEGREE, false},
     };
     bool by_formula = json_object_get(value, "translate") || json_object_get(value, "rotate");
     if (by_formula && !json_object_get(value, "keys")) return RESULT_OK;
@@ -179,9 +194,9 @@ Result scene_tracks_read_camera(Scene *scene, const JsonPlace *place, const json
     static const char *const NAMES[] = {"keys", "interpolation", NULL};
     const ParamInfo *eye = params_find("eye"), *fov = params_find("fov");
     const Member members[] = {
-        {"eye", &scene->eye, 3, eye->minimum, eye->maximum, 1.0},
-        {"target", &scene->target, 3, eye->minimum, eye->maximum, 1.0},
-        {"fov", &scene->fov, 1, fov->minimum, fov->maximum, 1.0},
+        {"eye", &scene->eye, 3, eye->minimum, eye->maximum, 1.0, false},
+        {"target", &scene->target, 3, eye->minimum, eye->maximum, 1.0, false},
+        {"fov", &scene->fov, 1, fov->minimum, fov->maximum, 1.0, false},
     };
     TRY(json_check_object(place, value, NAMES, error));
     return read_track(members, 3, place, value, error);

@@ -28,6 +28,10 @@ Result scene_tracks_read_lights(Scene *scene, const JsonPlace *place, const json
 Result scene_tracks_read_keys(Keyframes *keys, const ParamInfo *info, const JsonPlace *place,
                               const json_t *value, Error *error);
 
+// The same of one number of a section, or of a color: three numbers or what colors have for flags.
+Result scene_tracks_read_numbers(Keyframes *keys, const ParamInfo *info, bool color,
+                                 const JsonPlace *place, const json_t *value, Error *error);
+
 // The words of "interpolation" and of a light's "type", by enumerator, ended by NULL.
 extern const char *const INTERPOLATION_WORDS[];
 extern const char *const LIGHT_KIND_WORDS[];

@@ -3,6 +3,7 @@
 // out is found once, where the value is put into its parent.
 #include "scene/scene_param.h"
 #include "scene/scene_tracks.h"
+#include "scene/section_keys.h"
 
 #include "glsl/common/shared_math.h"
 
@@ -165,14 +166,18 @@ static bool is_permission(const ParamInfo *info)
     return strcmp(info->name, "allow_paths") == 0;
 }
 
-// `algo`: of the section, whose parameters are written.
-static bool write_params(json_t *object, ParamScope scope, const void *params, const char *algo)
+// `algo`: of the section, whose parameters are written, those with tracks as these.
+static bool write_params(json_t *object, ParamScope scope, const void *params, const char *algo,
+                         const SectionTracks *tracks)
 {
     bool good = true;
     for (size_t i = 0; i < PARAM_COUNT; i++) {
         const ParamInfo *info = &PARAM_TABLE[i];
         if (info->scope == scope && params_owned_by(info, algo) && !is_permission(info))
-            good = put(object, info->name, scene_param_write(info, params)) && good;
+            good = put(object, info->name,
+                       section_tracks_has(tracks, info) ? section_keys_write(tracks, info)
+                                                        : scene_param_write(info, params)) &&
+                   good;
     }
     return good;
 }
@@ -185,7 +190,9 @@ static bool write_sections(json_t *object, const Scene *scene)
         json_t *section = json_object();
         good = put(section, "file", scene_param_write_text(scene->sections[i].file)) && good;
         const SectionParams *params = &scene->sections[i].params;
-        good = write_params(section, SCOPE_SECTION, params, params->algo) && good;
+        good = write_params(section, SCOPE_SECTION, params, params->algo,
+                            &scene->sections[i].tracks) &&
+               good;
         good = json_array_append_new(array, section) == 0 && good;
     }
     return put(object, "sections", array) && good;
@@ -194,7 +201,7 @@ static bool write_sections(json_t *object, const Scene *scene)
 json_t *scene_to_json(const Scene *scene)
 {
     json_t *object = json_object();
-    bool good = write_params(object, SCOPE_RUN, &scene->run, "");
+    bool good = write_params(object, SCOPE_RUN, &scene->run, "", &(SectionTracks){0});
     good = write_force(object, "gravity", &scene->gravity) && good;
     good = write_force(object, "wind", &scene->wind) && good;
     good = write_head(object, scene) && good;

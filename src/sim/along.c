@@ -71,7 +71,10 @@ static void fill_vertex(Along *along, const SolverStep *step, const void *mean, 
 
 void along_fill(Along *along, const SolverStep *step, const void *mean)
 {
-    if (!along->hair || (along->dt == step->dt && along->first == step->first)) return;
+    if (!along->hair || (along->dt == step->dt && along->first == step->first &&
+                         along->stamp == step->params_stamp))
+        return;
+    along->stamp = step->params_stamp;
     along->dt = step->dt, along->first = step->first;
     for (uint32_t i = 0; i < along->hair->batch_count; ++i) {
         uint32_t n = along->hair->batches[i].vertex_count, lead = along->leads[i];

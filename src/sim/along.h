@@ -14,6 +14,7 @@ typedef struct Along {
     const uint32_t *leads; // [hair->batch_count]: vertices before the solver's root
     float (*texels)[4];    // [2 longest]
     void *block;           // the recipe's, for one vertex
+    uint64_t stamp;        // SolverStep.params_stamp
     double dt;             // of the step that the tables are for; 0: none yet
     bool first;
 } Along;

@@ -7,10 +7,10 @@
 
 #include <string.h>
 
-Result carry_create(Carry *carry, const GpuLimits *limits, Error *error)
+Result carry_create(Carry *carry, const GpuLimits *limits, bool bound, Error *error)
 {
     *carry = (Carry){.limits = limits};
-    const ShaderDefine defines[] = {{"GROUP_SIZE", limits->sizes.items}, {0}};
+    const ShaderDefine defines[] = {{"GROUP_SIZE", limits->sizes.items}, {"BOUND", bound}, {0}};
     return shader_build_compute(&carry->program, "sim/carry.comp", defines, error);
 }
 
@@ -35,7 +35,8 @@ static void carry_buffer(Carry *carry, CarryParams params, const SolverBuffer *b
     gpu_dispatch(carry->limits, params.count, (uint64_t)carry->limits->sizes.items, 1);
 }
 
-void carry_apply(Carry *carry, const Solver *solver, const Hair *hair, const HeadMotion *motion)
+void carry_apply(Carry *carry, const Solver *solver, const Hair *hair, const HeadMotion *motion,
+                 const GpuBuffer *frames)
 {
     CarryParams params = {0};
     memcpy(params.rotation, motion->rotation, sizeof motion->rotation);
@@ -45,6 +46,8 @@ void carry_apply(Carry *carry, const Solver *solver, const Hair *hair, const Hea
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     for (uint32_t batch = 0; batch < hair->batch_count; ++batch) {
         SolverBuffer buffers[SOLVER_MAX_BUFFERS];
+        if (frames) gpu_buffer_bind_texture(&frames[batch], BIND_FRAMES);
+        params.vertex_count = hair->batches[batch].vertex_count;
         int count = solver_buffers(solver, batch, buffers);
         for (int i = 0; i < count; ++i) carry_buffer(carry, params, &buffers[i]);
     }

@@ -13,9 +13,11 @@ typedef struct Carry {
     GLuint program;
 } Carry;
 
-// Errors of shader_build_compute.
-Result carry_create(Carry *carry, const GpuLimits *limits, Error *error);
+// `bound`: each strand has a motion of its own. Errors of shader_build_compute.
+Result carry_create(Carry *carry, const GpuLimits *limits, bool bound, Error *error);
 void carry_destroy(Carry *carry);
 
 // Changes the state of `solver`, which holds `hair` and has posed. Only queues GPU work.
-void carry_apply(Carry *carry, const Solver *solver, const Hair *hair, const HeadMotion *motion);
+// With frames ([batches], bound_set_way or bound_set_start) those are the motions.
+void carry_apply(Carry *carry, const Solver *solver, const Hair *hair, const HeadMotion *motion,
+                 const GpuBuffer *frames);

@@ -87,6 +87,7 @@ static Result create_pass(Collision *collision, const Gpu *gpu, CollisionMode mo
         {"CLEARANCE", mode != COLLISION_FINDING && collision->clearances},
         {"CONES", cones <= MOST_IN_REGISTERS ? cones : 0},
         {"FIELD", collision->field != NULL},
+        {"BOUND", collision->frames != NULL},
         COLLIDERS(COLLIDER_NONE, HAS){0}};
     return step_pass_create(&collision->pass, gpu, "sim/collide.comp", defines, error);
 }
@@ -134,6 +135,7 @@ Result collision_create(Collision *collision, const SolverSetup *setup, Collisio
         .params = setup->params,
         .colliders = colliders,
         .field = setup->field,
+        .frames = setup->frames,
         .mode = mode,
         .carried = carried,
     };
@@ -237,6 +239,7 @@ bool collision_begin(Collision *collision, const SolverStep *step, int part, int
                         (GLsizeiptr)(collision->colliders->count * sizeof *shapes), shapes);
         collision->step = params;
     }
+    collision->step.part = 1 / (float)parts;
     collision->step.stamp = stamp_of(step->number, part, parts);
     collision->step.stamp_before = part > 1 ? stamp_of(step->number, part - 1, parts)
                                             : stamp_of(step->number - 1, parts, parts);
@@ -262,6 +265,8 @@ void collision_push(Collision *collision, uint32_t batch, const GpuBuffer *state
         gpu_buffer_bind_storage(state, BIND_STATE_OUT);
     }
     if (tips) gpu_buffer_bind_storage(tips, BIND_TIPS);
+    if (collision->frames && collision->mode == COLLISION_SEGMENTS)
+        gpu_buffer_bind_texture(&collision->frames[batch], BIND_FRAMES);
     if (collision->batches) {
         gpu_buffer_bind_texture(&collision->batches[batch].contacts, BIND_CONTACTS_BEFORE);
         gpu_buffer_bind_storage(&collision->batches[batch].contacts, BIND_CONTACTS);

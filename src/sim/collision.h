@@ -27,6 +27,7 @@ typedef struct Collision {
     const SectionParams *params;
     const Colliders *colliders; // never NULL while it is on
     const DistanceField *field; // may be NULL
+    const GpuBuffer *frames;    // of bound strands (bound.h); may be NULL
     CollisionMode mode;
     uint32_t carried; // vertices, from the root, that the head carries
     StepPass pass;

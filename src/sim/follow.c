@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "sim/follow.h"
+#include "base/parallel.h"
 
 #include "glsl/sim/follow_params.h"
 
@@ -53,6 +54,13 @@ static Result upload_batch(HairBatch *hair, FollowBatch *batch, const Follower *
     return result;
 }
 
+// Of a follower that is bound.
+struct FollowerRoot {
+    uint32_t strand[3]; // its guides', of the file
+    double weight[3];
+    double place[3]; // its root at rest, m
+};
+
 static bool add_batch(Follow *follow)
 {
     Hair *hair = &follow->hair;
@@ -64,6 +72,20 @@ static bool add_batch(Follow *follow)
     hairs[hair->batch_count] = (HairBatch){0};
     batches[hair->batch_count++] = (FollowBatch){0};
     return true;
+}
+
+// Which guides each has, by strand of the file.
+static struct FollowerRoot *copy_roots(const HairBatch *hair, const Follower *follower,
+                                       const uint32_t *strand)
+{
+    struct FollowerRoot *roots = calloc(hair->strand_count + (size_t)1, sizeof *roots);
+    for (uint32_t i = 0; roots && i < hair->strand_count; ++i)
+        for (int k = 0; k < 3; ++k) {
+            roots[i].strand[k] = strand[follower[i].guide[k]];
+            roots[i].weight[k] = (double)follower[i].weight[k];
+            roots[i].place[k] = (double)follower[i].offset[k];
+        }
+    return roots;
 }
 
 // The followers of one batch of guides, in as many batches as they need.
@@ -98,7 +120,8 @@ static Result create_batches(Follow *follow, uint32_t guide_batch, const FollowP
 static Result build(Follow *follow, const Gpu *gpu, const Strands *strands,
                     const FollowOptions *options, Error *error)
 {
-    const ShaderDefine defines[] = {{"INTERPOLATE", options->interpolate}, {0}};
+    const ShaderDefine defines[] = {
+        {"INTERPOLATE", options->interpolate}, {"CLUMPS", follow->clump > 0}, {0}};
     Result result = step_pass_create(&follow->pass, gpu, "sim/follow.comp", defines, error);
     for (uint32_t i = 0; i < follow->guides->batch_count && result == RESULT_OK; ++i) {
         const HairBatch *guides = &follow->guides->batches[i];
@@ -125,7 +148,9 @@ Result follow_create(Follow *follow, const Gpu *gpu, GpuTimer *timer, const Hair
     *follow = (Follow){.guides = guides,
                        .timer = timer,
                        .per_guide = options.per_guide,
-                       .tip_separation = params->tip_separation};
+                       .options = options,
+                       .tip_separation = params->tip_separation,
+                       .clump = params->clump};
     follow->hair.strand_count = options.per_guide * guides->strand_count;
     follow->hair.particle_count = options.per_guide * guides->particle_count;
     follow->hair.segment_count = options.per_guide * guides->segment_count;
@@ -139,11 +164,146 @@ void follow_destroy(Follow *follow)
     for (uint32_t i = 0; i < follow->hair.batch_count; ++i) {
         gpu_buffer_destroy(&follow->batches[i].offsets);
         gpu_buffer_destroy(&follow->batches[i].guides);
+        mesh_binding_destroy(&follow->batches[i].roots);
+        free(follow->batches[i].root);
+        free(follow->batches[i].offset);
     }
     free(follow->batches);
+    free(follow->guide_rest);
     hair_destroy(&follow->hair);
     step_pass_destroy(&follow->pass);
     *follow = (Follow){0};
+}
+
+static Result bind_batch(Follow *follow, uint32_t i, BoundBody *body, const Strands *strands,
+                         Error *error)
+{
+    const HairBatch *hair = &follow->hair.batches[i];
+    FollowBatch *batch = &follow->batches[i];
+    size_t slots = hair_slots(hair);
+    float(*places)[3] = calloc(slots + 1, sizeof *places);
+    batch->offset = gpu_buffer_read(&batch->offsets);
+    Result result = places && batch->offset
+                        ? RESULT_OK
+                        : error_set(error, RESULT_FAILED, "no memory for %zu followers", slots);
+    for (uint32_t s = 0; s < hair->strand_count && result == RESULT_OK; ++s) {
+        struct FollowerRoot *root = &batch->root[s]; // its place is the offset so far
+        for (int k = 0; k < 3; ++k) {
+            for (int g = 0; g < 3; ++g)
+                root->place[k] +=
+                    root->weight[g] * (double)strands->position[strands->first[root->strand[g]]][k];
+            places[s][k] = (float)root->place[k];
+        }
+    }
+    THEN(result, bound_points_create(&batch->roots, body, (const float(*)[3])places,
+                                     hair->strand_count, error));
+    free(places);
+    return result;
+}
+
+// The plan once more: followers that are not bound need no memory for it.
+static Result find_roots(Follow *follow, uint32_t guide_batch, const Strands *strands, Error *error)
+{
+    const HairBatch *guides = &follow->guides->batches[guide_batch];
+    FollowPlan plan;
+    Result result = follow_plan_create(&plan, strands, guides->strand, guides->strand_count,
+                                       &follow->options, error);
+    for (uint32_t i = 0; i < follow->hair.batch_count && result == RESULT_OK; ++i) {
+        FollowBatch *batch = &follow->batches[i];
+        if (batch->guide_batch != guide_batch) continue;
+        batch->root = copy_roots(
+            &follow->hair.batches[i],
+            &plan.follower[(size_t)batch->first_guide * follow->options.per_guide], guides->strand);
+        if (!batch->root) result = error_set(error, RESULT_FAILED, "no memory for followers");
+    }
+    follow_plan_destroy(&plan);
+    return result;
+}
+
+Result follow_bind(Follow *follow, BoundBody *body, const MeshBinding *roots,
+                   const Strands *strands, Error *error)
+{
+    for (uint32_t i = 0; follow->hair.batch_count && i < follow->guides->batch_count; ++i)
+        TRY(find_roots(follow, i, strands, error));
+    for (uint32_t i = 0; i < follow->hair.batch_count; ++i)
+        TRY(bind_batch(follow, i, body, strands, error));
+    follow->guide_rest = malloc(((size_t)roots->count + 1) * sizeof *follow->guide_rest);
+    if (!follow->guide_rest) return error_set(error, RESULT_FAILED, "no memory for followers");
+    for (uint32_t s = 0; s < roots->count; ++s)
+        for (int k = 0; k < 3; ++k)
+            follow->guide_rest[s][k] = (double)strands->position[strands->first[s]][k];
+    follow->guide_roots = roots;
+    follow->shape = bound_body_shape(body, 0);
+    return RESULT_OK;
+}
+
+typedef struct Moving {
+    const Follow *follow;
+    FollowBatch *batch;
+    const HairBatch *hair;
+    const BodyPose *pose;
+    const double (*guide)[3]; // [strands]: where the guides' roots are now
+    int parts;
+} Moving;
+
+// The offset from where the guides' roots are to where the mesh has the follower's.
+static void move_part(void *data, int part)
+{
+    const Moving *moving = data;
+    const BodyPose *pose = moving->pose;
+    uint64_t count = hair_slots(moving->hair);
+    uint32_t first = (uint32_t)(count * (uint64_t)part / (uint64_t)moving->parts),
+             end = (uint32_t)(count * ((uint64_t)part + 1) / (uint64_t)moving->parts);
+    for (uint32_t slot = first; slot < end; ++slot) {
+        uint32_t s = slot < moving->hair->strand_count ? slot : moving->hair->strand_count - 1;
+        const struct FollowerRoot *root = &moving->batch->root[s];
+        double place[3];
+        RigidMotion motion =
+            mesh_binding_motion(&moving->batch->roots, s, (const float(*)[3])pose->position,
+                                (const double(*)[4])pose->turn);
+        rigid_motion_apply(&motion, root->place, place);
+        for (int g = 0; g < 3; ++g)
+            for (int k = 0; k < 3; ++k)
+                place[k] -= root->weight[g] * moving->guide[root->strand[g]][k];
+        for (int k = 0; k < 3; ++k) moving->batch->offset[slot][k] = (float)place[k];
+    }
+}
+
+// Where the guides' roots are: [guide_roots->count], to be freed; NULL without memory.
+static double (*place_guides(const Follow *follow, const BodyPose *pose))[3]
+{
+    double(*places)[3] = malloc(((size_t)follow->guide_roots->count + 1) * sizeof *places);
+    for (uint32_t s = 0; places && s < follow->guide_roots->count; ++s) {
+        RigidMotion motion =
+            mesh_binding_motion(follow->guide_roots, s, (const float(*)[3])pose->position,
+                                (const double(*)[4])pose->turn);
+        rigid_motion_apply(&motion, follow->guide_rest[s], places[s]);
+    }
+    return places;
+}
+
+void follow_move(Follow *follow, BoundBody *body, double time)
+{
+    if (!follow->guide_roots || !follow->hair.batch_count) return;
+    double shape = bound_body_shape(body, time);
+    if (shape == follow->shape) return;
+    const BodyPose *pose = bound_body_pose(body, time);
+    double(*guide)[3] = place_guides(follow, pose);
+    if (!guide) return;
+    follow->shape = shape;
+    for (uint32_t i = 0; i < follow->hair.batch_count; ++i) {
+        Moving moving = {.follow = follow,
+                         .batch = &follow->batches[i],
+                         .hair = &follow->hair.batches[i],
+                         .pose = pose,
+                         .guide = (const double(*)[3])guide,
+                         .parts = parallel_threads()};
+        parallel_run(moving.parts, move_part, &moving);
+        glBindBuffer(GL_COPY_WRITE_BUFFER, moving.batch->offsets.buffer);
+        glBufferSubData(GL_COPY_WRITE_BUFFER, 0, (GLsizeiptr)moving.batch->offsets.size,
+                        moving.batch->offset);
+    }
+    free(guide);
 }
 
 static void write_batch(Follow *follow, uint32_t i, FollowParams *params)
@@ -164,6 +324,7 @@ void follow_write(Follow *follow, const HeadPose *head)
 {
     if (!follow->hair.batch_count) return;
     FollowParams params = {.tip_separation = follow->tip_separation,
+                           .clump = follow->clump,
                            .per_guide = follow->per_guide};
     memcpy(params.head_rotation, head->rotation, sizeof head->rotation);
     gpu_timer_begin(follow->timer, "follow");

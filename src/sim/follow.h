@@ -4,6 +4,7 @@
 #pragma once
 
 #include "gpu/shader.h"
+#include "sim/bound.h"
 #include "sim/solver.h"
 #include "strands/follow_plan.h"
 
@@ -11,6 +12,10 @@
 typedef struct FollowBatch {
     uint32_t guide_batch, first_guide; // guide s is strand first_guide + s of that batch
     GpuBuffer offsets, guides;
+    // Where the mesh deforms, follow_bind: [slots] each.
+    MeshBinding roots;
+    struct FollowerRoot *root;
+    float (*offset)[4]; // the content of `offsets`
 } FollowBatch;
 
 typedef struct Follow {
@@ -21,7 +26,11 @@ typedef struct Follow {
     GpuTimer *timer;
     StepPass pass;
     uint32_t per_guide;
-    float tip_separation;
+    float tip_separation, clump;
+    FollowOptions options;
+    const MeshBinding *guide_roots; // of all guides, by strand; NULL: the mesh does not deform
+    double (*guide_rest)[3];        // their roots at rest, m
+    double shape;                   // of the mesh, for which the offsets are
 } Follow;
 
 // Plans the followers of the guides, which are `strands` on the GPU and outlive them. With no
@@ -32,6 +41,15 @@ Result follow_create(Follow *follow, const Gpu *gpu, GpuTimer *timer, const Hair
                      const Strands *strands, const SectionParams *params, uint32_t seed,
                      Error *error);
 void follow_destroy(Follow *follow);
+
+// Binds the followers' roots to the mesh, so that they stay on it where it stretches. `roots` are
+// the guides' (by strand, outlived by both). RESULT_FAILED when memory is short.
+Result follow_bind(Follow *follow, BoundBody *body, const MeshBinding *roots,
+                   const Strands *strands, Error *error);
+
+// Moves the followers' offsets to where the mesh has their roots at a time (s). Does nothing for
+// followers that are not bound.
+void follow_move(Follow *follow, BoundBody *body, double time);
 
 // Writes the followers' positions by their guides', span "follow". Queues GPU work.
 void follow_write(Follow *follow, const HeadPose *head);

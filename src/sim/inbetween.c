@@ -17,10 +17,12 @@ static Result create_copies(GpuBuffer **copies, const Hair *hair, const GpuLimit
     return RESULT_OK;
 }
 
-Result inbetween_create(Inbetween *inbetween, const Gpu *gpu, const Hair *hair, Error *error)
+Result inbetween_create(Inbetween *inbetween, const Gpu *gpu, const Hair *hair,
+                        const GpuBuffer *frames, Error *error)
 {
-    *inbetween = (Inbetween){.hair = hair};
-    Result result = step_pass_create(&inbetween->pass, gpu, "sim/inbetween.comp", NULL, error);
+    *inbetween = (Inbetween){.hair = hair, .frames = frames};
+    const ShaderDefine defines[] = {{"BOUND", frames != NULL}, {0}};
+    Result result = step_pass_create(&inbetween->pass, gpu, "sim/inbetween.comp", defines, error);
     THEN(result, create_copies(&inbetween->earlier, hair, &gpu->limits, error));
     THEN(result, create_copies(&inbetween->later, hair, &gpu->limits, error));
     if (result != RESULT_OK) inbetween_destroy(inbetween);
@@ -69,6 +71,7 @@ void inbetween_mix(Inbetween *inbetween, float share, const HeadPose *earlier,
         params.vertex_count = batch->vertex_count;
         gpu_buffer_bind_texture(&inbetween->earlier[i], BIND_POSITION);
         gpu_buffer_bind_texture(&inbetween->later[i], BIND_STATE);
+        if (inbetween->frames) gpu_buffer_bind_texture(&inbetween->frames[i], BIND_FRAMES);
         gpu_buffer_bind_storage(&batch->position, BIND_POSITION_OUT);
         step_pass_run(&inbetween->pass, &params, sizeof params, batch->strand_count);
     }

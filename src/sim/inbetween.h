@@ -9,13 +9,16 @@
 // A zeroed struct may be destroyed.
 typedef struct Inbetween {
     const Hair *hair;
+    const GpuBuffer *frames;
     GpuBuffer *earlier, *later; // [hair->batch_count], vec4 a particle as in HairBatch.position
     StepPass pass;
     bool mixed; // Hair's positions are not `later` now
 } Inbetween;
 
-// `hair` outlives it. RESULT_FAILED when memory is short.
-Result inbetween_create(Inbetween *inbetween, const Gpu *gpu, const Hair *hair, Error *error);
+// `hair` and `frames`, of bound strands (bound_set_between; NULL: none), outlive it. RESULT_FAILED
+// when memory is short.
+Result inbetween_create(Inbetween *inbetween, const Gpu *gpu, const Hair *hair,
+                        const GpuBuffer *frames, Error *error);
 void inbetween_destroy(Inbetween *inbetween);
 
 // Copies the positions that are drawn now to the earlier or the later ones. All of these only queue

@@ -53,12 +53,18 @@ static void interpolate(double (*function)(double, double), double v, float coef
 Result pose_create(Pose *pose, const Gpu *gpu, const PoseOptions *options, Error *error)
 {
     const float *hanging = options->hanging;
+    pose->held = 1;
+    pose->bound = options->bound;
     memcpy(pose->hanging, hanging, sizeof pose->hanging);
     bool hangs = hanging[0] != 0 || hanging[1] != 0 || hanging[2] != 0;
     double style = (double)options->style, v = hangs ? 1 - style : 2 * fmin(style, 1 - style);
     interpolate(turn_cos, v, pose->turn_cos);
     interpolate(turn_sin, v, pose->turn_sin);
-    const ShaderDefine defines[] = {{"MIX", (int)mix_of(options)}, {"HANGS", hangs}, {0}};
+    const ShaderDefine defines[] = {{"MIX", (int)mix_of(options)},
+                                    {"HANGS", hangs},
+                                    {"FADES", hangs && options->fades},
+                                    {"BOUND", options->bound},
+                                    {0}};
     return step_pass_create(&pose->pass, gpu, "sim/pose.comp", defines, error);
 }
 
@@ -72,7 +78,11 @@ void pose_write(Pose *pose, const HairBatch *batch, const GpuBuffer *segments, u
 {
     PoseParams params = {
         .strand_count = batch->strand_count, .vertex_count = batch->vertex_count, .lead = lead};
-    glm_quat_rotatev((float *)head->rotation, pose->hanging, params.hanging);
+    if (pose->bound) // the strand's frame turns it
+        memcpy(params.hanging, pose->hanging, sizeof pose->hanging);
+    else
+        glm_quat_rotatev((float *)head->rotation, pose->hanging, params.hanging);
+    params.held = pose->held;
     head_put(params.head_rotation, params.head_translation, head);
     memcpy(params.turn_cos, pose->turn_cos, sizeof pose->turn_cos);
     memcpy(params.turn_sin, pose->turn_sin, sizeof pose->turn_sin);

@@ -17,6 +17,8 @@ typedef enum PoseMix {
 typedef struct PoseOptions {
     float style;      // 0 draws the physical strand, 1 the style
     bool varies;      // the style's share differs along the strand: BIND_ALONG has it
+    bool fades;       // the style changes over time: Pose.held
+    bool bound;       // strands have frames of their own (bound.h): BIND_FRAMES has them
     float hanging[3]; // unit vector in the head's frame, or 0 0 0
 } PoseOptions;
 
@@ -24,6 +26,8 @@ typedef struct Pose {
     StepPass pass;
     float turn_cos[8], turn_sin[8]; // see pose.c
     float hanging[3];               // unit vector, or 0 0 0
+    bool bound;
+    float held; // what is left of the style's hold on gravity; 1 at first
 } Pose;
 
 // With a style between 0 and 1,

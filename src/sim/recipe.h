@@ -14,10 +14,15 @@ typedef struct SolverSetup {
     const Gpu *gpu;
     GpuTimer *timer; // spans "sim_<name>" and "pose"
     const Hair *hair;
+    // Of parameters that change over time (`start` is there) the greatest values, while the solver
+    // is made; later those of the step.
     const SectionParams *params;
+    const SectionParams *start; // as at time 0; NULL: nothing changes
+    bool style_changes;         // in time
     const HeadPose *head;       // at the start; NULL: where the style is
     const Colliders *colliders; // shapes that hair must not cross; NULL: none
     const DistanceField *field; // a mesh that it must not cross; NULL: none
+    const GpuBuffer *frames;    // [batches] of strands on a mesh that deforms (bound.h); NULL: none
     bool sheltered;             // SolverStep.shelter counts
     bool keeps_groom;           // colliders do not push what is as near to them in the groom
     const Hair *bounds;         // whose bounds and longest strand hold for `hair`; NULL: its own

@@ -8,6 +8,38 @@
 #include <stdlib.h>
 #include <string.h>
 
+// The greatest value that each parameter will have.
+static SectionParams greatest_params(const Scene *scene, const Section *section)
+{
+    const int most = 10000;
+    int frames = scene->run.frames < most ? scene->run.frames : most;
+    SectionParams params = section->params;
+    section_tracks_greatest(&section->tracks, schedule_frame_time(&scene->run, scene->run.frames),
+                            frames + 1, &params);
+    return params;
+}
+
+// Gives the section the parameters of a time, if they change; returns their stamp.
+static uint64_t set_params(Simulation *simulation, SimulationSection *section, double time)
+{
+    const SectionTracks *tracks =
+        &simulation->scene->sections[section - simulation->sections].tracks;
+    if (!tracks->count) return 0;
+    section_tracks_apply(tracks, time, &section->now);
+    section->volume.strength = section->now.volume;
+    section->follow.tip_separation = section->now.tip_separation;
+    section->follow.clump = section->now.clump;
+    uint64_t stamp = section_tracks_stamp(tracks, &section->now);
+    solver_refresh(&section->solver, stamp);
+    return stamp;
+}
+
+uint64_t simulation_params_stamp(Simulation *simulation, uint32_t section, int64_t step)
+{
+    return set_params(simulation, &simulation->sections[section],
+                      simulation_step_time(simulation, step));
+}
+
 // Frames fall between steps if a frame is no whole number of steps; what does not step is drawn as
 // the head stands at any time.
 static bool needs_inbetween(const Simulation *simulation, const Solver *solver)
@@ -29,8 +61,10 @@ static Result create_follow_collision(SimulationSection *section, const SolverSe
     return collision_create(&section->follow_collision, &drawn, COLLISION_DRAWN, 1, error);
 }
 
-static void write_followers(SimulationSection *section, const HeadPose *head)
+static void write_followers(Simulation *simulation, SimulationSection *section,
+                            const HeadPose *head)
 {
+    follow_move(&section->follow, &simulation->body, simulation->time);
     follow_write(&section->follow, head);
     collision_push_drawn(&section->follow_collision, head);
 }
@@ -43,25 +77,51 @@ static void find_rest_gravity(float gravity[3], const Scene *scene)
     memcpy(gravity, forces.gravity, sizeof forces.gravity);
 }
 
+// Where the section's parameters are: first the greatest values that they will have, by which
+// programs and buffers are made.
+static const SectionParams *take_params(Simulation *simulation, uint32_t i)
+{
+    const Section *from = &simulation->scene->sections[i];
+    SimulationSection *section = &simulation->sections[i];
+    section->params = &from->params;
+    if (!from->tracks.count) return section->params;
+    section->now = greatest_params(simulation->scene, from);
+    return section->params = &section->now;
+}
+
+static const DistanceField *field_of(const Simulation *simulation)
+{
+    if (simulation->moving.work) return &simulation->moving.field;
+    return simulation->field.spacing > 0 ? &simulation->field : NULL;
+}
+
 static Result create_section(Simulation *simulation, uint32_t i, const Gpu *gpu,
                              const Strands *strands, Error *error)
 {
     SimulationSection *section = &simulation->sections[i];
-    const SectionParams *params = &simulation->scene->sections[i].params;
+    const SectionParams *start = &simulation->scene->sections[i].params,
+                        *params = take_params(simulation, i);
+    const SectionTracks *tracks = &simulation->scene->sections[i].tracks;
     const RunParams *run = &simulation->scene->run;
     SolverSetup setup = {.gpu = gpu,
                          .timer = simulation->timer,
                          .hair = &section->hair,
                          .params = params,
+                         .start = tracks->count ? start : NULL,
+                         .style_changes = section_tracks_has(tracks, params_find("style")),
                          .colliders = &simulation->scene->colliders,
-                         .field = simulation->field.spacing > 0 ? &simulation->field : NULL,
+                         .field = field_of(simulation),
                          .sheltered = run->wind_shelter > 0,
                          .keeps_groom = solver_keeps_groom(params),
                          .head = &simulation->head};
     if (params->rest == REST_GROOM) find_rest_gravity(setup.rest_gravity, simulation->scene);
     TRY(hair_create(&section->hair, strands, 0, &gpu->limits, error));
+    TRY(bound_create(&section->bound, &simulation->body, i, &section->hair, &gpu->limits, error));
+    setup.frames = section->bound.frames;
     TRY(follow_create(&section->follow, gpu, simulation->timer, &section->hair, strands, params,
                       run->seed, error));
+    if (simulation->body.body)
+        TRY(follow_bind(&section->follow, &simulation->body, section->bound.roots, strands, error));
     TRY(create_follow_collision(section, &setup, error));
     if (*run->from_cache) return RESULT_OK;
     TRY(solver_create(&section->solver, &setup, error));
@@ -70,7 +130,8 @@ static Result create_section(Simulation *simulation, uint32_t i, const Gpu *gpu,
     TRY(volume_create(&section->volume, gpu, simulation->timer, &section->hair, &section->solver,
                       params, error));
     if (needs_inbetween(simulation, &section->solver))
-        TRY(inbetween_create(&section->inbetween, gpu, &section->hair, error));
+        TRY(inbetween_create(&section->inbetween, gpu, &section->hair, section->bound.frames,
+                             error));
     return RESULT_OK;
 }
 
@@ -85,6 +146,7 @@ static Result create_sections(Simulation *simulation, const Gpu *gpu, const Stra
         Result result = create_section(simulation, i, gpu, &strands[i], error);
         if (result != RESULT_OK)
             return error_prefix(error, result, "%s: ", scene->sections[i].file);
+        set_params(simulation, &simulation->sections[i], 0);
     }
     return RESULT_OK;
 }
@@ -113,6 +175,34 @@ static bool needs_field(const Scene *scene, const Strands *strands)
     return false;
 }
 
+void simulation_update_field(Simulation *simulation, double before, double after)
+{
+    if (!simulation->moving.work) return;
+    const BodyPose *from = bound_body_pose(&simulation->body, before),
+                   *to = bound_body_pose(&simulation->body, after);
+    moving_field_update(&simulation->moving, (const float(*)[3])from->position,
+                        (const float(*)[3])to->position);
+}
+
+static Result create_moving_field(Simulation *simulation, const Gpu *gpu, const Strands *strands,
+                                  Error *error)
+{
+    const Scene *scene = simulation->scene;
+    float longest = 0, margin = 0;
+    for (uint32_t i = 0; i < scene->section_count; ++i) {
+        const SectionParams greatest = greatest_params(scene, &scene->sections[i]),
+                            *params = &greatest;
+        if (!collides(params)) continue;
+        margin = fmaxf(margin, params->collision_margin);
+        for (uint32_t s = 0; s < strands[i].strand_count; ++s)
+            longest = fmaxf(longest, (float)strands_length(&strands[i], s));
+    }
+    TRY(moving_field_create(&simulation->moving, gpu, scene->body, longest, margin,
+                            (uint32_t)scene->run.sdf_resolution, error));
+    simulation_update_field(simulation, 0, 0);
+    return RESULT_OK;
+}
+
 static Result create_field(Simulation *simulation, const Gpu *gpu, const Strands *strands,
                            const Mesh *mesh, Error *error)
 {
@@ -125,6 +215,7 @@ static Result create_field(Simulation *simulation, const Gpu *gpu, const Strands
     simulation->mesh_checksum =
         libdeflate_crc32(sum, mesh->triangle, mesh->triangle_count * sizeof *mesh->triangle);
     if (!needs_field(simulation->scene, strands)) return RESULT_OK;
+    if (simulation->body.body) return create_moving_field(simulation, gpu, strands, error);
     return run->sdf_cache ? distance_field_create_cached(field, gpu, mesh, resolution, NULL, error)
                           : distance_field_create(field, gpu, mesh, resolution, error);
 }
@@ -167,11 +258,11 @@ Result simulation_choose_substeps(int *substeps, const Scene *scene, const Stran
     *substeps = 1;
     for (uint32_t i = 0; i < scene->section_count; ++i) {
         const Section *section = &scene->sections[i];
-        double limit = solver_most_stability(&section->params);
+        const SectionParams params = greatest_params(scene, section);
+        double limit = solver_most_stability(&params);
         if (!(limit > 0)) continue;
-        double sigma =
-            simulation_stability(&strands[i], simulation_acceleration(scene, &section->params),
-                                 1 / schedule_period_rate(&scene->run));
+        double sigma = simulation_stability(&strands[i], simulation_acceleration(scene, &params),
+                                            1 / schedule_period_rate(&scene->run));
         double steps = ceil(sigma / limit);
         if (steps > most_steps)
             return error_set(error, RESULT_USAGE,
@@ -198,10 +289,11 @@ Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer
         THEN(result, simulation_choose_substeps(&simulation->substeps, scene, strands, error));
     simulation->schedule = schedule_create(run, simulation->substeps);
     simulation->step = -simulation->schedule.settling;
+    THEN(result, bound_body_create(&simulation->body, scene->body, error));
     THEN(result, create_field(simulation, gpu, strands, mesh, error));
     THEN(result, create_sections(simulation, gpu, strands, error));
     if (!rigid_track_is_still(&scene->head))
-        THEN(result, carry_create(&simulation->carry, &gpu->limits, error));
+        THEN(result, carry_create(&simulation->carry, &gpu->limits, scene->body != NULL, error));
     if (result != RESULT_OK) simulation_destroy(simulation);
     return result;
 }
@@ -215,12 +307,20 @@ void simulation_destroy(Simulation *simulation)
         follow_destroy(&simulation->sections[i].follow);
         inbetween_destroy(&simulation->sections[i].inbetween);
         solver_destroy(&simulation->sections[i].solver);
+        bound_destroy(&simulation->sections[i].bound);
         hair_destroy(&simulation->sections[i].hair);
     }
     free(simulation->sections);
     distance_field_destroy(&simulation->field);
+    moving_field_destroy(&simulation->moving);
     carry_destroy(&simulation->carry);
+    bound_body_destroy(&simulation->body);
     *simulation = (Simulation){0};
+}
+
+double simulation_step_time(const Simulation *simulation, int64_t step)
+{
+    return fmax(0, (double)step / simulation->schedule.steps_per_s);
 }
 
 // Forces act at the step's start; the head's end pose is where the roots go.
@@ -235,15 +335,31 @@ static SolverStep next_step(const Simulation *simulation)
         .first = simulation->step == -simulation->schedule.settling,
         .number = scene->run.seed + (uint32_t)simulation->step,
         .head_old = simulation->step_head,
-        .head = head_at(scene, fmax(0, (double)(simulation->step + 1) / rate)),
+        .head = head_at(scene, simulation_step_time(simulation, simulation->step + 1)),
+        .shape_old =
+            bound_body_shape(&simulation->body, simulation_step_time(simulation, simulation->step)),
+        .shape = bound_body_shape(&simulation->body,
+                                  simulation_step_time(simulation, simulation->step + 1)),
     };
     memcpy(step.gravity, forces.gravity, sizeof step.gravity);
     memcpy(step.wind, forces.wind, sizeof step.wind);
     return step;
 }
 
-static void step_section(Simulation *simulation, SimulationSection *section, const SolverStep *step)
+// The frames of bound strands in a step; a jump has taken them to its end.
+static void set_frames(const Simulation *simulation, Bound *bound, const SolverStep *step)
 {
+    double after = simulation_step_time(simulation, simulation->step + 1);
+    bool jumped = step->shape_old == step->shape;
+    bound_set(bound, jumped ? after : simulation_step_time(simulation, simulation->step), after);
+}
+
+static void step_section(Simulation *simulation, SimulationSection *section,
+                         const SolverStep *whole)
+{
+    SolverStep own = *whole, *step = &own;
+    own.params_stamp =
+        set_params(simulation, section, simulation_step_time(simulation, simulation->step));
     uint64_t strands = section->hair.strand_count;
     if (solver_is_static(section->solver.type)) return;
     if (sleep_skips(&section->sleep, step)) {
@@ -251,6 +367,7 @@ static void step_section(Simulation *simulation, SimulationSection *section, con
         return;
     }
     inbetween_restore(&section->inbetween);
+    if (section->bound.body) set_frames(simulation, &section->bound, step);
     solver_step(&section->solver, step);
     volume_step(&section->volume, step);
     sleep_check(&section->sleep, &section->solver);
@@ -259,28 +376,45 @@ static void step_section(Simulation *simulation, SimulationSection *section, con
     ++simulation->steps;
 }
 
-static void carry_sections(Simulation *simulation, const HeadMotion *motion)
+// The motion of bound strands: to `to` at the step's end, or (NULL) the start's velocities.
+static void set_motions(const Simulation *simulation, Bound *bound, const HeadPose *to)
+{
+    if (!bound->body) return;
+    if (to)
+        bound_set_way(bound, simulation_step_time(simulation, simulation->step),
+                      &simulation->step_head,
+                      simulation_step_time(simulation, simulation->step + 1), to);
+    else
+        bound_set_start(bound, simulation->scene);
+}
+
+static void carry_sections(Simulation *simulation, const HeadMotion *motion, const HeadPose *to)
 {
     for (uint32_t i = 0; i < simulation->scene->section_count; ++i) {
         SimulationSection *section = &simulation->sections[i];
         if (solver_is_static(section->solver.type)) continue;
         inbetween_restore(&section->inbetween);
+        bound_set_after(&section->bound, simulation_step_time(simulation, simulation->step));
         solver_pose(&section->solver, &simulation->step_head);
-        carry_apply(&simulation->carry, &section->solver, &section->hair, motion);
+        set_motions(simulation, &section->bound, to);
+        carry_apply(&simulation->carry, &section->solver, &section->hair, motion,
+                    section->bound.frames);
     }
 }
 
-// What the head does at the step's start: it sets out, or jumps.
+// What the head does at the step's start: it sets out, or jumps, and the mesh with it.
 static void carry_along(Simulation *simulation, SolverStep *step)
 {
     HeadMotion motion;
     HeadPose carried;
-    if (simulation->step == 0 && head_starts_moving(simulation->scene, &motion))
-        carry_sections(simulation, &motion);
+    bool starts = simulation->step == 0 && head_starts_moving(simulation->scene, &motion);
+    if (starts || (simulation->step == 0 && simulation->body.body))
+        carry_sections(simulation, &motion, NULL);
     if (!head_jumps(simulation->scene, &step->head_old, &step->head, &carried)) return;
     motion = head_motion_between(&step->head_old, &carried);
-    carry_sections(simulation, &motion);
+    carry_sections(simulation, &motion, &carried);
     step->head_old = carried;
+    step->shape_old = step->shape;
     ++simulation->jumps;
 }
 
@@ -288,6 +422,9 @@ static void take_step(Simulation *simulation)
 {
     SolverStep step = next_step(simulation);
     if (simulation->carry.program) carry_along(simulation, &step);
+    double before = simulation_step_time(simulation, simulation->step),
+           after = simulation_step_time(simulation, simulation->step + 1);
+    simulation_update_field(simulation, step.shape_old == step.shape ? after : before, after);
     step_shelter(&step, simulation->middle, simulation->scene->run.wind_shelter);
     for (uint32_t i = 0; i < simulation->scene->section_count; ++i)
         step_section(simulation, &simulation->sections[i], &step);
@@ -309,12 +446,15 @@ static bool moves(const SimulationSection *section)
            (section->inbetween.hair && (!section->sleep.asleep || section->inbetween.mixed));
 }
 
-static void pose_section(Simulation *simulation, SimulationSection *section, const HeadPose *head)
+static void pose_section(Simulation *simulation, SimulationSection *section, const HeadPose *head,
+                         double time)
 {
     inbetween_restore(&section->inbetween);
+    bound_set_after(&section->bound, time);
     solver_pose(&section->solver, head);
     section->posed = true;
     section->posed_at = *head;
+    section->posed_shape = bound_body_shape(&simulation->body, time);
     ++simulation->poses;
 }
 
@@ -324,7 +464,8 @@ static void keep(Simulation *simulation, bool later)
     for (uint32_t i = 0; i < simulation->scene->section_count; ++i) {
         SimulationSection *section = &simulation->sections[i];
         if (!section->inbetween.hair || !moves(section)) continue;
-        pose_section(simulation, section, &simulation->step_head);
+        pose_section(simulation, section, &simulation->step_head,
+                     simulation_step_time(simulation, simulation->step));
         inbetween_keep(&section->inbetween, later);
     }
 }
@@ -340,6 +481,8 @@ void simulation_advance(Simulation *simulation)
         keep(simulation, true);
     }
     simulation->share = next.share;
+    simulation->time =
+        next.share > 0 ? next.time : simulation_step_time(simulation, simulation->step);
     simulation->head =
         next.share > 0 ? head_at(simulation->scene, next.time) : simulation->step_head;
 }
@@ -347,6 +490,9 @@ void simulation_advance(Simulation *simulation)
 static void pose_between(Simulation *simulation, SimulationSection *section)
 {
     gpu_timer_begin(simulation->timer, "inbetween");
+    if (section->bound.body)
+        bound_set_between(&section->bound, simulation_step_time(simulation, simulation->step - 1),
+                          simulation_step_time(simulation, simulation->step), simulation->time);
     inbetween_mix(&section->inbetween, simulation->share, &simulation->step_head_before,
                   &simulation->step_head, &simulation->head);
     gpu_timer_end(simulation->timer);
@@ -355,10 +501,14 @@ static void pose_between(Simulation *simulation, SimulationSection *section)
 
 void simulation_pose(Simulation *simulation)
 {
-    bool moved = !head_is_same(&simulation->posed_at, &simulation->head);
+    double shape = bound_body_shape(&simulation->body, simulation->time);
+    bool moved =
+        !head_is_same(&simulation->posed_at, &simulation->head) || simulation->posed_shape != shape;
     for (uint32_t i = 0; i < simulation->scene->section_count; ++i) {
         SimulationSection *section = &simulation->sections[i];
-        bool same_head = head_is_same(&section->posed_at, &simulation->head);
+        uint64_t stamp = set_params(simulation, section, simulation->time);
+        bool same_head = head_is_same(&section->posed_at, &simulation->head) &&
+                         section->posed_shape == shape && section->posed_stamp == stamp;
         if (section->posed && same_head && !moves(section)) {
             ++simulation->poses_skipped;
             continue;
@@ -366,12 +516,14 @@ void simulation_pose(Simulation *simulation)
         if (simulation->share > 0 && section->inbetween.hair && !section->sleep.asleep)
             pose_between(simulation, section);
         else
-            pose_section(simulation, section, &simulation->head);
-        write_followers(section, &simulation->head);
+            pose_section(simulation, section, &simulation->head, simulation->time);
+        write_followers(simulation, section, &simulation->head);
+        section->posed_stamp = stamp;
         section->stepped = false;
         moved = true;
     }
     simulation->posed_at = simulation->head;
+    simulation->posed_shape = shape;
     simulation->changes += moved;
 }
 
@@ -380,12 +532,16 @@ Result simulation_show(Simulation *simulation, int frame, const HeadPose *head,
 {
     simulation->frame = frame;
     simulation->head = simulation->posed_at = *head;
+    simulation->time = schedule_frame_time(&simulation->scene->run, frame);
+    simulation->posed_shape = bound_body_shape(&simulation->body, simulation->time);
+    simulation_update_field(simulation, simulation->time, simulation->time);
     ++simulation->changes;
     Result result = RESULT_OK;
     for (uint32_t i = 0; i < simulation->scene->section_count && result == RESULT_OK; ++i) {
         SimulationSection *section = &simulation->sections[i];
         result = hair_write_positions(&section->hair, positions, error);
-        if (result == RESULT_OK) write_followers(section, head);
+        set_params(simulation, section, simulation->time);
+        if (result == RESULT_OK) write_followers(simulation, section, head);
         positions += section->hair.particle_count;
         section->posed = false;
     }

@@ -10,45 +10,56 @@
 
 #include "scene/scene.h"
 #include "scene/schedule.h"
+#include "sim/bound.h"
 #include "sim/carry.h"
 #include "sim/collision.h"
 #include "sim/distance_field.h"
 #include "sim/follow.h"
 #include "sim/inbetween.h"
+#include "sim/moving_field.h"
 #include "sim/sleep.h"
 #include "sim/solver.h"
 #include "sim/volume.h"
 #include "strands/strands.h"
 
 typedef struct SimulationSection {
+    const SectionParams *params; // the scene's, or, if they change over time, `now`
+    SectionParams now;           // as at the step or the drawn frame; its texts are the scene's
+    uint64_t posed_stamp;        // of `now`, when followers were last written
     Hair hair;
+    Bound bound; // empty unless the mesh deforms
     Solver solver;
     Follow follow;
     Collision follow_collision; // of the followers, which take no part in the motion
     Inbetween inbetween; // empty where no frame falls between two steps, or the solver is static
     Sleep sleep;
     Volume volume;
-    bool posed;        // positions are written ...
-    bool stepped;      // ... and the hair has moved since ...
-    HeadPose posed_at; // ... or not, and they hold while the head is here
+    bool posed;         // positions are written ...
+    bool stepped;       // ... and the hair has moved since ...
+    HeadPose posed_at;  // ... or not, and they hold while the head is here ...
+    double posed_shape; // ... and the mesh like this
 } SimulationSection;
 
 typedef struct Simulation {
     const Scene *scene;
     GpuTimer *timer;
     Schedule schedule;
-    Carry carry;                 // made if the head moves
+    Carry carry;                 // made if the head moves or the mesh deforms
+    BoundBody body;              // empty unless the mesh deforms
     int substeps;                // steps a period, found if --substeps is auto
-    DistanceField field;         // of the mesh that hair collides with, or empty
+    DistanceField field;         // of the mesh that hair collides with, or empty ...
+    MovingField moving;          // ... since the mesh deforms
     uint32_t mesh_checksum;      // CRC-32 of that mesh's vertices and triangles
     SimulationSection *sections; // [scene->section_count]
     int frame;                   // to be drawn now; frame 0 is the start
-    HeadPose head;               // as drawn
+    HeadPose head;               // as drawn ...
+    double time;                 // ... at this time, s
     float share;     // drawn so far on the way from the last step but one to the last; 0: the last
     float middle[3]; // of the roots, in the head's frame: who is in the lee (--wind-shelter)
     int64_t step;    // steps since time 0; below 0 while the hair settles
     HeadPose step_head, step_head_before;       // after the last step and before it
-    HeadPose posed_at;                          // the head at the last pose
+    HeadPose posed_at;                          // the head at the last pose ...
+    double posed_shape;                         // ... and the mesh (bound_body_shape)
     uint64_t changes;                           // poses that moved what is drawn, or the head
     uint64_t steps, poses, poses_skipped;       // of sections
     uint64_t strand_steps, strand_steps_asleep; // made, and left out
@@ -96,6 +107,16 @@ void simulation_pose(Simulation *simulation);
 // state is lost. RESULT_FAILED when memory is short.
 Result simulation_show(Simulation *simulation, int frame, const HeadPose *head,
                        const float (*positions)[3], Error *error);
+
+// The scene's time (s) after so many steps; the warm-up (below 0) happens at time 0.
+double simulation_step_time(const Simulation *simulation, int64_t step);
+
+// The stamp of a section's parameters in the step that begins after so many steps; the section has
+// them then.
+uint64_t simulation_params_stamp(Simulation *simulation, uint32_t section, int64_t step);
+
+// Makes the field of a mesh that deforms that of a step between two times (s); others stay.
+void simulation_update_field(Simulation *simulation, double before, double after);
 
 // Adds up the solvers' reports. Waits for the GPU.
 SolverReport simulation_report(const Simulation *simulation);

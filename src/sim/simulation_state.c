@@ -234,15 +234,25 @@ static bool read_buffer(Archive *archive, const GpuBuffer *buffer)
 }
 
 // A solver's first pose puts the hair into its style: it is made before the state is put in its
-// place.
+// place. What depends on the time alone follows.
 static void begin_sections(Simulation *simulation)
 {
+    double now = simulation_step_time(simulation, simulation->step);
     for (uint32_t i = 0; i < simulation->scene->section_count; ++i) {
         SimulationSection *section = &simulation->sections[i];
         inbetween_restore(&section->inbetween);
+        bound_set_after(&section->bound, now);
         solver_pose(&section->solver, &simulation->step_head);
         section->posed = false;
+        if (simulation->step > -simulation->schedule.settling)
+            section->sleep.last.params_stamp =
+                simulation_params_stamp(simulation, i, simulation->step - 1);
+        section->sleep.last.shape = bound_body_shape(&simulation->body, now);
     }
+    simulation_update_field(simulation, now, now);
+    simulation->time = simulation->share > 0
+                           ? schedule_frame_time(&simulation->scene->run, simulation->frame)
+                           : now;
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 

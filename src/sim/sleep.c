@@ -57,7 +57,8 @@ void sleep_destroy(Sleep *sleep)
 static bool same_forces(const SolverStep *a, const SolverStep *b)
 {
     return a->dt == b->dt && !a->first && !b->first && head_is_same(&a->head, &b->head) &&
-           head_is_same(&b->head_old, &b->head) &&
+           head_is_same(&b->head_old, &b->head) && b->shape_old == b->shape &&
+           a->shape == b->shape && a->params_stamp == b->params_stamp &&
            memcmp(a->gravity, b->gravity, sizeof a->gravity) == 0 &&
            memcmp(a->wind, b->wind, sizeof a->wind) == 0;
 }

@@ -99,10 +99,14 @@ struct SolverState {
     GpuTimer *timer;
     void *own; // the solver's own block
     StepPrograms programs;
-    Along along;           // parameters that differ along the strand, or empty
-    SolverBatch *batches;  // one for each of the hair
-    float rest_gravity[3]; // m/s^2, in the head's frame: what the groom holds; 0 0 0: nothing
-    bool varies;           // parameters differ along the strand
+    Along along;             // parameters that differ along the strand, or empty
+    SolverBatch *batches;    // one for each of the hair
+    float rest_gravity[3];   // m/s^2, in the head's frame: what the groom holds; 0 0 0: nothing
+    bool varies;             // parameters differ along the strand
+    const GpuBuffer *frames; // of bound strands, or NULL
+    // Of parameters that change: the stiffness towards the style by which the groom holds gravity.
+    bool changes;
+    float held_by;       // at time 0
     Pose pose;           // of segments; else of the style: particles start so, static hair stays so
     Collision collision; // of the state
     Collision drawn;     // of what is drawn, where the state is another
@@ -160,6 +164,7 @@ static Result build_programs(SolverState *state, const SolverSetup *setup, Error
         .sheltered = setup->sheltered,
         .varies = has_particles(state) && state->varies,
         .styled = state->params->style > 0 && state->params->style_stiffness > 0,
+        .bound = state->frames != NULL,
         .defines = defines,
     };
     return step_programs_create(&state->programs, setup->gpu, state->hair, &options, error);
@@ -256,6 +261,13 @@ static void set_rest_gravity(SolverState *state, const SolverSetup *setup)
     glm_quat_rotatev(inverse, (float *)setup->rest_gravity, state->rest_gravity);
 }
 
+// What draws hair to its style, but for a factor.
+static float style_strength(const SectionParams *params)
+{
+    bool springs = strcmp(params->algo, "spring") == 0;
+    return step_style_odds(params) * (springs ? params->spring_angular : params->style_stiffness);
+}
+
 static Result build(SolverState *state, const SolverSetup *setup, Error *error)
 {
     const SolverRecipe *recipe = state->recipe;
@@ -264,6 +276,8 @@ static Result build(SolverState *state, const SolverSetup *setup, Error *error)
     find_hanging(state, hanging);
     const PoseOptions pose = {.style = segments ? setup->params->style : 1,
                               .varies = segments && state->varies,
+                              .fades = segments && setup->style_changes,
+                              .bound = state->frames != NULL,
                               .hanging = {hanging[0], hanging[1], hanging[2]}};
     TRY(pose_create(&state->pose, setup->gpu, &pose, error));
     if (!recipe) return RESULT_OK;
@@ -302,8 +316,14 @@ Result solver_create(Solver *solver, const SolverSetup *setup, Error *error)
     state->hair = setup->hair;
     state->params = setup->params;
     state->timer = setup->timer;
+    state->frames = setup->frames;
     set_rest_gravity(state, setup);
     state->varies = recipe && !is_published(state->params) && along_varies(recipe, state->params);
+    state->changes = setup->start != NULL;
+    if (setup->start) state->held_by = style_strength(setup->start);
+    // The share of the style in what is drawn goes through the table of profiles.
+    if (recipe && recipe->state == SOLVER_SEGMENTS && recipe->along && setup->style_changes)
+        state->varies = true;
     Result result = build(state, setup, error);
     if (result == RESULT_OK)
         *solver = (Solver){type, state};
@@ -335,10 +355,26 @@ int solver_buffers(const Solver *solver, uint32_t batch, SolverBuffer buffers[SO
     return contacts ? 3 : 2;
 }
 
+// As the pull towards the style fades, so does what holds the groom against gravity, or loose hair
+// would float.
+static float held_share(const SolverState *state)
+{
+    if (!state->changes) return 1;
+    float now = style_strength(state->params);
+    return now < state->held_by ? now / state->held_by : (now > 0);
+}
+
+static void bind_frames(const SolverState *state, uint32_t batch)
+{
+    if (state->frames) gpu_buffer_bind_texture(&state->frames[batch], BIND_FRAMES);
+}
+
 static void write_pose(SolverState *state, const HeadPose *head)
 {
+    state->pose.held = held_share(state);
     for (uint32_t i = 0; i < state->hair->batch_count; ++i) {
         along_bind(&state->along, i);
+        bind_frames(state, i);
         pose_write(&state->pose, &state->hair->batches[i],
                    has_segments(state) ? &state->batches[i].state : NULL,
                    has_segments(state) ? state->programs.leads[i] : 0, head);
@@ -371,6 +407,7 @@ static void dispatch(SolverState *state, uint32_t i, StepParams *uniforms)
     gpu_buffer_bind_texture(&hair->strand_id, BIND_STRAND_ID);
     gpu_buffer_bind_texture(&batch->state, BIND_STATE);
     along_bind(&state->along, i);
+    bind_frames(state, i);
     gpu_buffer_bind_storage(&hair->position, BIND_POSITION_OUT);
     gpu_buffer_bind_storage(&batch->state, BIND_STATE_OUT);
     if (batch->tips.buffer) gpu_buffer_bind_storage(&batch->tips, BIND_TIPS);
@@ -386,8 +423,12 @@ static void dispatch(SolverState *state, uint32_t i, StepParams *uniforms)
 static void hold_groom(const SolverState *state, StepParams *uniforms)
 {
     vec3 held = {0};
-    if (has_particles(state))
+    if (has_particles(state) && state->frames)
+        glm_vec3_scale((float *)state->rest_gravity,
+                       held_share(state) * state->params->gravity_share, uniforms->held);
+    else if (has_particles(state))
         glm_quat_rotatev(uniforms->head_rotation, (float *)state->rest_gravity, held);
+    if (state->changes) glm_vec3_scale(held, held_share(state), held);
     glm_vec3_sub(uniforms->gravity, held, uniforms->gravity);
     glm_vec3_scale(uniforms->gravity, state->params->gravity_share, uniforms->gravity);
 }
@@ -431,11 +472,20 @@ void solver_step(const Solver *solver, const SolverStep *whole)
     step.dt = whole->dt / count;
     for (int part = 1; part <= count; ++part) {
         step.head = head_between(&whole->head_old, &whole->head, (float)part / (float)count);
+        step.frame_old = (float)(part - 1) / (float)count;
+        step.frame_now = (float)part / (float)count;
         step_part(state, &step, part, count);
         step.head_old = step.head;
         step.first = false;
     }
     gpu_timer_end(state->timer);
+}
+
+void solver_refresh(const Solver *solver, uint64_t stamp)
+{
+    SolverState *state = solver->state;
+    if (!state || !has_segments(state)) return;
+    along_fill(&state->along, &(SolverStep){.dt = 1, .params_stamp = stamp}, state->own);
 }
 
 void solver_report(const Solver *solver, SolverReport *report)

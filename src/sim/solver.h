@@ -97,6 +97,9 @@ int solver_buffers(const Solver *solver, uint32_t batch, SolverBuffer buffers[SO
 void solver_step(const Solver *solver, const SolverStep *step);
 void solver_pose(const Solver *solver, const HeadPose *head);
 
+// The section's parameters have changed (SolverSetup.start): what is drawn of a style follows.
+void solver_refresh(const Solver *solver, uint64_t stamp);
+
 // Adds limited moves, contacts and depths to `report`. Waits for the GPU.
 void solver_report(const Solver *solver, SolverReport *report);
 

@@ -36,6 +36,8 @@ StepParams step_uniforms(const SolverStep *step, const SectionParams *params)
     StepParams uniforms = {.dt = (float)step->dt, .drag = params->drag};
     head_put(uniforms.head_rotation_old, uniforms.head_translation_old, &step->head_old);
     head_put(uniforms.head_rotation, uniforms.head_translation, &step->head);
+    uniforms.frame_old = step->frame_old;
+    uniforms.frame_now = step->frame_now;
     memcpy(uniforms.gravity, step->gravity, sizeof step->gravity);
     for (int i = 0; i < 4; ++i) memcpy(uniforms.wind[i], step->wind[i], sizeof step->wind[i]);
     memcpy(uniforms.shelter, step->shelter, sizeof step->shelter);
@@ -123,7 +125,7 @@ static bool fits_registers(const Hair *hair, uint32_t most)
 static Result build(StepPrograms *programs, uint32_t batch, uint32_t vertices,
                     const StepProgramsOptions *options, Error *error)
 {
-    ShaderDefine defines[10 + STEP_OWN_DEFINES] = {
+    ShaderDefine defines[11 + STEP_OWN_DEFINES] = {
         {"GROUP_SIZE", programs->limits->sizes.strands},
         {"STRANDS", (int)programs->strands_per_lane},
         {"IN_REGISTERS", programs->in_registers},
@@ -133,9 +135,10 @@ static Result build(StepPrograms *programs, uint32_t batch, uint32_t vertices,
         {"STYLED", options->styled},
         {"VARIES", options->varies},
         {"ORDERED", programs->ordered},
+        {"BOUND", options->bound},
     };
     for (int i = 0; options->defines && options->defines[i].name; ++i)
-        defines[9 + i] = options->defines[i];
+        defines[10 + i] = options->defines[i];
     return shader_build_compute(&programs->programs[batch], options->shader, defines, error);
 }
 

@@ -19,10 +19,15 @@ typedef struct SolverStep {
     bool first;
     uint32_t number;         // counts up by 1 from step to step, from any start
     HeadPose head_old, head; // at the step's start and end
-    float gravity[3];        // m/s^2
-    float wind[4][3];        // m/s: mixed by strand
-    float shelter[4];        // m: the middle of the head; share of the wind kept off behind it
-    float head_velocity[3];  // m/s, of that middle
+    // Of the mesh that hair is bound to: numbers that are equal only where its shape is
+    // (bound_body_shape), and the shares of the whole step at which this part begins and ends.
+    double shape_old, shape;
+    float frame_old, frame_now;
+    uint64_t params_stamp;  // equal only where the section's parameters are (section_tracks_stamp)
+    float gravity[3];       // m/s^2
+    float wind[4][3];       // m/s: mixed by strand
+    float shelter[4];       // m: the middle of the head; share of the wind kept off behind it
+    float head_velocity[3]; // m/s, of that middle
 } SolverStep;
 
 // Fills the step's shelter and head_velocity from its heads and dt: the lee of the head, whose
@@ -78,6 +83,7 @@ typedef struct StepProgramsOptions {
     bool sheltered;     // the head keeps wind off (forces.glsl)
     bool styled;        // there is a spring towards the style
     bool varies;        // parameters differ along the strand (along.h)
+    bool bound;         // strands have frames of their own (bound.h)
     const ShaderDefine *defines; // the variant's own, at most STEP_OWN_DEFINES
 } StepProgramsOptions;
 
@@ -92,9 +98,9 @@ typedef struct StepPrograms {
 } StepPrograms;
 
 // Compiles with the macros GROUP_SIZE (lanes), STRANDS (a lane's), IN_REGISTERS, VERTICES (but for
-// the lead), LEAD, SHELTER, STYLED, VARIES, ORDERED and the own ones. Strands are in registers if
-// all are short enough and of few different counts. Errors of shader_build_compute; RESULT_FAILED
-// without memory.
+// the lead), LEAD, SHELTER, STYLED, VARIES, ORDERED, BOUND and the own ones. Strands are in
+// registers if all are short enough and of few different counts. Errors of shader_build_compute;
+// RESULT_FAILED without memory.
 Result step_programs_create(StepPrograms *programs, const Gpu *gpu, const Hair *hair,
                             const StepProgramsOptions *options, Error *error);
 void step_programs_destroy(StepPrograms *programs);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "sim/volume.h"
 
+#include "glsl/kernel/grain.h"
+
 #include <cglm/cglm.h>
 
 #include <math.h>
@@ -71,19 +73,16 @@ static void place_axes(VolumeParams *params, const float low[3], const HeadPose 
 typedef float Float4[4];
 
 // The cell of the grain that begins with particle j; -1: none.
-static int64_t grain_cell(const Volume *volume, const HairBatch *batch, uint32_t s, uint32_t j,
-                          const Float4 *position)
+static int grain_cell(const Volume *volume, const HairBatch *batch, uint32_t s, uint32_t j,
+                      const Float4 *position)
 {
-    uint32_t middle = j + volume->grain / 2, last = batch->vertex_count - 1;
-    const float *x = position[hair_address(batch, s, middle < last ? middle : last)];
-    const uint32_t *size = volume->step.size;
-    int64_t cell[3];
-    for (int k = 0; k < 3; ++k) {
-        float at = volume->step.axis[k][k] * x[k] + volume->step.axis[k][3];
-        if (!(at >= 1 && at < (float)size[k] - 1)) return -1;
-        cell[k] = (int64_t)at;
-    }
-    return (cell[2] * size[1] + cell[1]) * size[0] + cell[0];
+    int middle = grain_middle((int)j, (int)volume->grain, (int)batch->vertex_count - 1);
+    const float *x = position[hair_address(batch, s, (uint32_t)middle)];
+    const int size[3] = {(int)volume->step.size[0], (int)volume->step.size[1],
+                         (int)volume->step.size[2]};
+    float at[3];
+    for (int k = 0; k < 3; ++k) at[k] = volume->step.axis[k][k] * x[k] + volume->step.axis[k][3];
+    return grain_cell_at(at[0], at[1], at[2], size[0], size[1], size[2]);
 }
 
 // Calls of both: once to count particles, then to write what their cells have.
@@ -96,7 +95,7 @@ static Result for_grains(Volume *volume, uint32_t *count, const uint32_t *own, u
     uint32_t n = batch->vertex_count, grain = volume->grain;
     for (uint32_t s = 0; s < batch->strand_count; ++s)
         for (uint32_t j = volume->step.carried; j < n; j += grain) {
-            int64_t cell = grain_cell(volume, batch, s, j, (const Float4 *)position);
+            int cell = grain_cell(volume, batch, s, j, (const Float4 *)position);
             for (uint32_t k = j; cell >= 0 && k < j + grain && k < n; ++k) {
                 if (count) ++count[cell];
                 if (rest && own[cell] < VOLUME_MOST_REST)
@@ -109,13 +108,14 @@ static Result for_grains(Volume *volume, uint32_t *count, const uint32_t *own, u
     return RESULT_OK;
 }
 
-// A cell twice and those beside it once. Cells at the edge are empty.
+// Cells at the edge are empty.
 static void smooth(const Volume *volume, const uint32_t *count, uint32_t *own)
 {
     uint32_t row = volume->step.size[0], slice = row * volume->step.size[1];
+#define COUNT(cell) count[cell]
     for (uint32_t c = slice; c < volume->cell_count - slice; ++c)
-        own[c] = 2 * count[c] + count[c - 1] + count[c + 1] + count[c - row] + count[c + row] +
-                 count[c - slice] + count[c + slice];
+        own[c] = GRAIN_SMOOTH(COUNT, c, row, slice);
+#undef COUNT
 }
 
 static Result upload_rest(Volume *volume, uint32_t i, const uint32_t *own, const GpuLimits *limits,

@@ -216,6 +216,7 @@ static const struct {
     {"size", "20000x480", "(nearest: 16384)"},
     {"size", "640.5x480", "WxH"},
     {"up", "x", "got 'x', expected auto, y or z"},
+    {"scatter", "dual", "'dual' was removed: use 'grid' instead"},
     {"backend", "elg", "expected auto, egl or osmesa (nearest: egl)"},
     {"fps", "two\nlines\x7f", "got 'two\\nlines\\x7f'"},
 };

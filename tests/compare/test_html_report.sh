@@ -27,9 +27,9 @@ mkdir "$work/a" "$work/b"
 add_text "$golden"/curls_still.png "$work/a/differ.png" Renderer 'Old <card>'
 add_text "$golden"/curls_split.png "$work/b/differ.png" Renderer 'New </script>'
 cp "$golden"/curls_still.png "$work/a/size.png" && cp "$golden"/fur_transparent.png "$work/b/size.png"
-cp "$golden"/fur_dual.png "$work/a/gone.png" && cp "$golden"/curls_tips.png "$work/b/new.png"
+cp "$golden"/fur_grid.png "$work/a/gone.png" && cp "$golden"/curls_tips.png "$work/b/new.png"
 cp "$golden"/curls_floor.png "$work/a/cut.png" && head -c 3000 "$golden"/curls_floor.png >"$work/b/cut.png"
-for side in a b; do cp "$golden"/fur_dual.png "$work/$side/same.png" && cp "$golden"/curls_studio.png "$work/$side/<b>&amp; it's.png"; done
+for side in a b; do cp "$golden"/fur_grid.png "$work/$side/same.png" && cp "$golden"/curls_studio.png "$work/$side/<b>&amp; it's.png"; done
 add_pfm "$work/a/float.pfm" '\0\0\0\x3f\0\0\0\x40\0\0\x80\x39'
 add_pfm "$work/b/float.pfm" '\0\0\0\x3f\0\0\0\x40\0\0\0\0'
 cd "$work" || exit 1

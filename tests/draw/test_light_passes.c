@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The light among hair by shaders, which GPUs have, against C's, point by point.
-#include "passes/light_passes.h"
-
-#include "lanes/light_grid_state.h"
+#include "draw/hair_paint.h"
+#include "passes/passes.h"
 #include "support/hair_fixture.h"
 #include "support/needed.h"
 #include "support/stage.h"
@@ -41,7 +40,8 @@ typedef struct Case {
     Scatter scatter;
     bool sky, mesh, painted, smooth, dense, thinned;
     int cells;
-    bool turns; // sums of cells in turns
+    bool turns;       // sums of cells in turns
+    uint32_t strands; // that stand for all; 0: all
 } Case;
 
 static const Case CASES[] = {
@@ -70,6 +70,14 @@ static const Case CASES[] = {
      .scatter = SCATTER_GRID,
      .painted = true,
      .smooth = true},
+    {.name = "a third of paint, curves",
+     .lights = {SUN},
+     .light_count = 1,
+     .scatter = SCATTER_GRID,
+     .sky = true,
+     .painted = true,
+     .smooth = true,
+     .strands = 60},
     {.name = "dense",
      .lights = {SUN},
      .light_count = 1,
@@ -88,7 +96,7 @@ static void paint_strands(uint32_t item, const Strands *strands)
         for (int k = 0; k < 4; ++k)
             colored.color[v][k] = k < 3 ? 0.3f + 0.6f * (float)((v + 7 * (uint)k) % 11) / 10 : 1;
     NEEDED(paint_create(&paint, &colored, &studio.material[item], error));
-    NEEDED(look_paint(&studio.hair[item], &colored, &paint, &studio.gpu.limits, error));
+    NEEDED(hair_paint_upload(&studio.hair[item], &colored, &paint, &studio.gpu.limits, error));
     paint_destroy(&paint);
     free(colored.color);
 }
@@ -113,18 +121,19 @@ static void add_sections(const Case *of)
     }
 }
 
-static void draw(const Case *of, GpuKind kind)
+static void draw(const Case *of, Raster by)
 {
     const Ambient sky = {{0.5f, 0.6f, 0.9f}, {0.2f, 0.1f, 0.1f}}, none = {{0}, {0}};
     RendererOptions options = BLACK;
     View view;
-    studio.gpu.kind = kind;
+    raster = by;
     options.shadow = (ShadowOptions){.kind = SHADOW_DOM, .side = 128, .spacing = 200};
-    options.scatter = of->scatter;
-    options.scatter_cells = of->cells ? of->cells : 10;
+    options.scatter = (ScatterOptions){
+        .kind = of->scatter, .cells = of->cells ? of->cells : 10, .strands = of->strands};
     if (of->thinned) options.lod = (LodOptions){.start = 1, .end = 2, .least = LEAST_SHARE};
     use(&options);
-    if (of->turns) studio.renderer.scatter.passes.most_sums = SUMS_OF_A_TURN;
+    if (of->turns && by == RASTER_COMPUTE)
+        stage_passes()->scatter.passes.most_sums = SUMS_OF_A_TURN;
     if (of->mesh) {
         Mesh mesh = make_square(45);
         for (uint32_t v = 0; v < mesh.vertex_count; ++v)
@@ -142,22 +151,58 @@ static void draw(const Case *of, GpuKind kind)
         renderer_draw(&studio.renderer, &frame, studio.items, studio.count, &studio.image, error));
 }
 
-// What a section's points show, three floats each; the caller frees it.
+// What the particles of a section show, three floats each, as its positions lie; the caller frees
+// it. By shaders all points of the curves do, of which particles are some.
 static float *copy_seen(uint32_t item, size_t *count)
 {
-    const GpuBuffer *seen = &studio.renderer.scatter.seen[item].left;
-    float *copy = gpu_buffer_read(seen);
+    const HairBatch *batch = &studio.hair[item].batches[0];
+    const size_t n = batch->vertex_count, tiles = hair_slots(batch) / STRAND_TILE;
+    const size_t parts = (size_t)studio.material[item].smooth, points = (n - 1) * parts + 1;
+    const float *all = gpu_buffer_read(&stage_passes()->scatter.seen[item].seen);
+    float *copy = malloc((*count = 3 * tiles * n * STRAND_TILE) * sizeof *copy);
+    assert_non_null(all);
     assert_non_null(copy);
-    *count = (size_t)seen->size / sizeof *copy;
+    for (size_t tile = 0; tile < tiles; ++tile)
+        for (size_t j = 0; j < n; ++j)
+            memcpy(copy + 3 * (tile * n + j) * STRAND_TILE,
+                   all + 3 * (tile * points + j * parts) * STRAND_TILE,
+                   3 * STRAND_TILE * sizeof *copy);
+    free((void *)(uintptr_t)all);
     return copy;
 }
 
-// Points of the strands that are drawn, not of those that only fill the last tile.
-static bool is_drawn(const Case *of, size_t at, size_t count)
+// The same by C.
+static float *find_seen(uint32_t item)
 {
-    size_t tiles = (STRANDS + STRAND_TILE - 1) / STRAND_TILE,
-           points = count / 3 / tiles / STRAND_TILE, point = at / 3,
-           strand = point / (points * STRAND_TILE) * STRAND_TILE + point % STRAND_TILE;
+    const HairBatch *batch = &studio.hair[item].batches[0];
+    const size_t n = batch->vertex_count, all = hair_slots(batch) * n;
+    const float(*position)[4] = gpu_buffer_read(&batch->position);
+    float *copy = malloc(3 * all * sizeof *copy), *to = copy;
+    assert_non_null(position);
+    assert_non_null(copy);
+    for (size_t at = 0; at < all; at += STRAND_TILE) {
+        size_t j = at / STRAND_TILE % n, before = j > 0 ? at - STRAND_TILE : at,
+               after = j + 1 < n ? at + STRAND_TILE : at;
+        float x[3][STRAND_TILE], t[3][STRAND_TILE], seen[3][STRAND_TILE];
+        for (int i = 0; i < STRAND_TILE; ++i)
+            for (int k = 0; k < 3; ++k) {
+                x[k][i] = position[at + (size_t)i][k];
+                t[k][i] = position[after + (size_t)i][k] - position[before + (size_t)i][k];
+            }
+        stage_lanes_show(item, (const float(*)[STRAND_TILE])x, (const float(*)[STRAND_TILE])t,
+                         seen);
+        for (int i = 0; i < STRAND_TILE; ++i)
+            for (int k = 0; k < 3; ++k) *to++ = seen[k][i];
+    }
+    free((void *)(uintptr_t)position);
+    return copy;
+}
+
+// Particles of the strands that are drawn, not of those that only fill the last tile.
+static bool is_drawn(const Case *of, size_t at)
+{
+    size_t particle = at / 3,
+           strand = particle / (N * STRAND_TILE) * STRAND_TILE + particle % STRAND_TILE;
     return strand < (of->thinned ? (size_t)ceilf(STRANDS * LEAST_SHARE) : STRANDS);
 }
 
@@ -168,7 +213,7 @@ static void expect_same(const Case *of, const float *c, const float *shaders, si
 {
     double off = 0, all = 0, most = 0;
     for (size_t i = 0; i < count; ++i) {
-        if (!is_drawn(of, i, count)) continue;
+        if (!is_drawn(of, i)) continue;
         double a = (double)c[i], b = (double)shaders[i];
         assert_true(isfinite(a) && isfinite(b));
         off += (a - b) * (a - b), all += a * a, most = fmax(most, fabs(a - b));
@@ -183,11 +228,11 @@ static void expect_same(const Case *of, const float *c, const float *shaders, si
 // Cells that so little is seen of that their mean light will do.
 static int count_hidden(void)
 {
-    const LightPasses *passes = &studio.renderer.scatter.passes;
+    const LightPasses *passes = &stage_passes()->scatter.passes;
     int hidden = 0;
-    float *cells = gpu_buffer_read(&passes->cells);
+    LightCell *cells = gpu_buffer_read(&passes->cells);
     assert_non_null(cells);
-    for (int slot = 0; slot < passes->active; ++slot) hidden += cells[24 * slot + 11] > 0;
+    for (int slot = 0; slot < passes->active; ++slot) hidden += cells[slot].mean[3] > 0;
     free(cells);
     return hidden;
 }
@@ -195,26 +240,22 @@ static int count_hidden(void)
 static void c_and_shaders_find_the_same_light(void **state)
 {
     (void)state;
-    const Gpu own = studio.gpu;
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; ++i) {
-        float *seen[2][2];
+        float *c[2], *shaders[2];
         size_t count[2];
         add_sections(&CASES[i]);
-        for (int kind = 0; kind < 2; ++kind) {
-            draw(&CASES[i], kind ? GPU_HARDWARE : GPU_CPU_DRIVER);
-            assert_int_equal(studio.renderer.scatter.passes.filled > 0, kind);
-            for (uint32_t item = 0; item < 2; ++item)
-                seen[kind][item] = copy_seen(item, &count[item]);
-        }
+        draw(&CASES[i], RASTER_BLOCKS);
+        for (uint32_t item = 0; item < 2; ++item) c[item] = find_seen(item);
+        draw(&CASES[i], RASTER_COMPUTE);
+        for (uint32_t item = 0; item < 2; ++item) shaders[item] = copy_seen(item, &count[item]);
         assert_int_equal(count_hidden() > 0, CASES[i].dense);
         for (uint32_t item = 0; item < 2; ++item) {
-            expect_same(&CASES[i], seen[0][item], seen[1][item], count[item]);
-            free(seen[0][item]);
-            free(seen[1][item]);
+            expect_same(&CASES[i], c[item], shaders[item], count[item]);
+            free(c[item]);
+            free(shaders[item]);
         }
         studio_clear(&studio);
     }
-    studio.gpu.kind = own.kind;
 }
 
 int main(void)

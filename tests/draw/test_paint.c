@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Colours and thickness that differ over a section.
-#include "draw/look.h"
+#include "draw/hair_paint.h"
 #include "image/image.h"
 #include "image/png.h"
 #include "support/plain.h"
@@ -182,7 +182,7 @@ static void hair_shows_its_paint(void **state)
         const Paint paint = {
             .color = color, .thickness = thickness, .vertex_count = STRANDS * SIZE};
         studio_add(&studio, &strands, 2, 1);
-        NEEDED(look_paint(&studio.hair[0], &strands, &paint, &studio.gpu.limits, error));
+        NEEDED(hair_paint_upload(&studio.hair[0], &strands, &paint, &studio.gpu.limits, error));
         studio_draw(&studio);
         assert_int_equal(studio_pixel(&studio, 64 - 30, 64)[0], 255);
         assert_int_equal(studio_pixel(&studio, 64 - 30, 64)[1], 0);
@@ -213,7 +213,7 @@ static void smooth_hair_is_as_thick_as_between_its_vertices(void **state)
         studio_add(&studio, &strands, 4, 1);
         studio.material[0].smooth = PARTS;
         studio.material[0].curve = CURVE_CATMULL_ROM;
-        NEEDED(look_paint(&studio.hair[0], &strands, &paint, &studio.gpu.limits, error));
+        NEEDED(hair_paint_upload(&studio.hair[0], &strands, &paint, &studio.gpu.limits, error));
         studio_draw(&studio);
         for (int down = -3; down <= 3; ++down) { // quarters of the way
             int half = 4 + 2 * (4 - abs(down)), y = 64 + down * LONG / 4;
@@ -257,7 +257,7 @@ static void painted_hair_lies_in_shadow(void **state)
         assert_true(studio_pixel(&studio, 64 + 30, 64)[0] > 250);
         assert_true(studio_pixel(&studio, 64 - 10, 64)[0] <
                     180); // exp(-0.9): half of white in sRGB
-        NEEDED(look_paint(&studio.hair[0], &strands, &paint, &studio.gpu.limits, error));
+        NEEDED(hair_paint_upload(&studio.hair[0], &strands, &paint, &studio.gpu.limits, error));
         studio_draw(&studio);
         assert_memory_equal(plain, studio.image.pixels, size);
         free(plain);

@@ -53,8 +53,10 @@ static void wide_ribbons_are_whole(void **state)
     for (size_t w = 0; w < sizeof widths / sizeof *widths; ++w)
         for (float deg = 0; deg < 180; deg += 22.5f) {
             float x = cosf(glm_rad(deg)), y = sinf(glm_rad(deg));
-            add_line((float[3]){-300 * x, -300 * y, 0}, (float[3]){300 * x, 300 * y, 0},
-                     widths[w] / 2, 1);
+            const float ends[2][3] = {{-300 * x, -300 * y, 0}, {300 * x, 300 * y, 0}};
+            Strands strands = studio_strands(1, 2, ends);
+            studio_add(&studio, &strands, widths[w] / 2, 1);
+            strands_destroy(&strands);
             studio_draw(&studio);
             for (int row = 0; row < SIDE; ++row)
                 for (int column = 0; column < SIDE; ++column) {

@@ -207,6 +207,25 @@ static void a_strand_throws_its_shadow_on_the_mesh(void **state)
     }
 }
 
+// A mesh that covers 0.4 of a pixel, and with it two of its four samples but not the middle, shows
+// by half.
+static void an_edge_of_the_mesh_shows_by_its_samples(void **state)
+{
+    (void)state;
+    Error error = {{0}};
+    Mesh mesh = make_square(50.4f);
+    use(&BLACK);
+    assert_int_equal(renderer_set_mesh(&studio.renderer, &mesh, (const float[3]){1, 1, 1}, &error),
+                     RESULT_OK);
+    mesh_destroy(&mesh);
+    studio.light = (Light){0};
+    studio_draw(&studio);
+    int whole = studio_pixel(&studio, SIDE / 2 + 49, SIDE / 2)[0],
+        edge = studio_pixel(&studio, SIDE / 2 + 50, SIDE / 2)[0];
+    assert_true(fabs(whole - srgb(0.15)) <= 1 && fabs(edge - srgb(0.15 / 2)) <= 1);
+    assert_int_equal(studio_pixel(&studio, SIDE / 2 + 51, SIDE / 2)[0], 0);
+}
+
 // What the middle of a square shows of a light that comes in at `a` degrees, beyond what it shows
 // without one.
 static double light_on_square(double a)
@@ -226,7 +245,7 @@ static double light_on_square(double a)
 }
 
 // Skin seen square to it, whose highlight a black mesh shows alone, against the formulas that
-// skin.glsl names, in double precision. Pixels of the mesh are halves: a step is 2^-11 of them.
+// kernel/skin.h names, in double precision. Pixels of the mesh are halves: a step is 2^-11 of them.
 static void skin_has_a_soft_edge_and_a_highlight(void **state)
 {
     (void)state;
@@ -329,12 +348,12 @@ static void a_mesh_is_drawn_again_where_it_looks_different(void **state)
         use(&options);
         put_square();
         for (int i = 0; i < 4; ++i) {
-            uint64_t version = studio.renderer.base.version;
+            uint64_t version = stage_base_version();
             studio.light = pictures[i].light;
             studio.light.shadow = shadow;
             studio_draw_view(&studio, pictures[i].view);
             seen[i] = studio_copy(&studio, &size);
-            assert_int_equal(studio.renderer.base.version - version, pictures[i].again || shadow);
+            assert_int_equal(stage_base_version() - version, pictures[i].again || shadow);
         }
         for (int i = 0; i < 4; ++i) {
             use(&options);
@@ -361,6 +380,7 @@ int main(void)
         CLAIM(a_lamp_that_touches_hair_stays_finite),
         CLAIM(a_spot_shines_into_its_cone),
         CLAIM(a_strand_throws_its_shadow_on_the_mesh),
+        CLAIM(an_edge_of_the_mesh_shows_by_its_samples),
         CLAIM(skin_has_a_soft_edge_and_a_highlight),
         CLAIM(what_hides_the_sky_sends_on_its_light),
         CLAIM(a_mesh_is_drawn_again_where_it_looks_different),

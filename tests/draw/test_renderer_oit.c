@@ -23,24 +23,24 @@ static void the_driver_chooses_the_rasteriser(void **state)
     (void)state;
     open_studio(RASTER_AUTO, OIT_AUTO, 0);
     bool hardware = studio.gpu.kind == GPU_HARDWARE;
-    assert_int_equal(studio.renderer.raster, hardware ? RASTER_COMPUTE : RASTER_BLOCKS);
+    assert_int_equal(studio.renderer.options.raster, hardware ? RASTER_COMPUTE : RASTER_BLOCKS);
     GpuKind kind = studio.gpu.kind;
     for (studio.gpu.kind = 0; studio.gpu.kind < GPU_KINDS; ++studio.gpu.kind) {
         open_studio(RASTER_AUTO, OIT_AUTO, 0);
         hardware = studio.gpu.kind == GPU_HARDWARE;
-        assert_int_equal(studio.renderer.raster, hardware ? RASTER_COMPUTE : RASTER_BLOCKS);
+        assert_int_equal(studio.renderer.options.raster, hardware ? RASTER_COMPUTE : RASTER_BLOCKS);
     }
     studio.gpu.kind = kind;
     for (Raster asked = RASTER_QUADS; asked <= RASTER_COMPUTE; ++asked) {
         open_studio(asked, OIT_AUTO, 0);
-        assert_int_equal(studio.renderer.raster, asked);
+        assert_int_equal(studio.renderer.options.raster, asked);
     }
     open_studio(RASTER_AUTO, OIT_NONE, 0); // the others know one order only
-    assert_int_equal(studio.renderer.raster, RASTER_QUADS);
+    assert_int_equal(studio.renderer.options.raster, RASTER_QUADS);
     open_studio(RASTER_AUTO, OIT_ABUFFER, 0);
-    assert_int_equal(studio.renderer.raster, RASTER_QUADS);
+    assert_int_equal(studio.renderer.options.raster, RASTER_QUADS);
     open_studio(RASTER_AUTO, OIT_AUTO, 12);
-    assert_int_equal(studio.renderer.raster, RASTER_QUADS);
+    assert_int_equal(studio.renderer.options.raster, RASTER_QUADS);
 }
 
 enum { STACK = 12, COLORS = 3 };

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Marschner's table against the reference, and what holds for all light.
 #include "draw/drawing.h"
+#include "draw/scatter_tables.h"
 #include "gpu/gpu_buffer.h"
 #include "gpu/gpu_uniforms.h"
-#include "passes/scatter_tables.h"
 #include "support/needed.h"
 #include "support/plain.h"
 #include "support/reference_marschner.h"
@@ -22,14 +22,7 @@
 
 static Gpu gpu;
 static ScatterTables tables;
-static GLuint programs[4]; // probe_shade.comp, by Lobes; the same by tints
-
-// How the strand is shaded whose brightness follows from the seed.
-static struct {
-    bool by_tints;
-    float variation;
-    uint32_t seed;
-} strand;
+static GLuint programs[2]; // probe_shade.comp, by Lobes
 
 static int open_gpu(void **state)
 {
@@ -39,9 +32,7 @@ static int open_gpu(void **state)
     shader_treat_warnings_as_errors(true);
     for (int lobes = LOBES_ENERGY; lobes <= LOBES_GAUSS; ++lobes) {
         const ShaderDefine defines[] = {{"MARSCHNER", 1 + lobes}, {NULL, 0}};
-        const ShaderDefine by_tints[] = {{"MARSCHNER", 1 + lobes}, {"TINTS", 1}, {NULL, 0}};
         NEEDED(shader_build_compute(&programs[lobes], "probe_shade.comp", defines, error));
-        NEEDED(shader_build_compute(&programs[2 + lobes], "probe_shade.comp", by_tints, error));
     }
     return 0;
 }
@@ -50,7 +41,7 @@ static int close_gpu(void **state)
 {
     (void)state;
     scatter_tables_destroy(&tables);
-    for (int i = 0; i < 4; ++i) glDeleteProgram(programs[i]);
+    for (int i = 0; i < 2; ++i) glDeleteProgram(programs[i]);
     gpu_destroy(&gpu);
     return 0;
 }
@@ -79,12 +70,10 @@ static void set_direction(Direction d, double theta, double phi)
 static void scatter(const SectionParams *params, int count, Direction (*pairs)[2], float (*f)[4])
 {
     GpuBuffer in, out;
-    DrawParams draw_params = {.light_count = 1, .seed = strand.seed};
+    DrawParams draw_params = {.light_count = 1};
     MaterialParams look = drawing_material(params, 1);
-    TintTable tints = {0};
-    FibreTable table;
     GLuint texture;
-    look.color_variation = strand.variation;
+    look.color_variation = 0;
     look.warmth_variation = 0;
     NEEDED(scatter_tables_find(&tables, params->refraction, glm_rad(params->azimuthal_roughness),
                                &texture, error));
@@ -92,24 +81,19 @@ static void scatter(const SectionParams *params, int count, Direction (*pairs)[2
                              error));
     NEEDED(gpu_buffer_create(&out, &gpu.limits, "answers", count * (int64_t)sizeof *f, NULL, 0,
                              error));
-    NEEDED(scatter_tables_read(&tables, texture, &table, error));
-    NEEDED(tint_table_make(&tints, table, look.color, strand.variation, &gpu.limits, error));
-    memcpy(look.tint_unit, tints.unit, sizeof tints.unit);
     gpu_uniforms_set(BIND_DRAW, &draw_params, sizeof draw_params);
     gpu_uniforms_set(BIND_MATERIAL, &look, sizeof look);
     gpu_buffer_bind_storage(&in, 0);
     gpu_buffer_bind_storage(&out, 1);
     glActiveTexture(GL_TEXTURE0 + BIND_SCATTER);
     glBindTexture(GL_TEXTURE_3D, texture);
-    if (strand.by_tints) gpu_buffer_bind_texture(&tints.texels, BIND_SCATTER);
-    glUseProgram(programs[(strand.by_tints ? 2 : 0) + params->lobes]);
+    glUseProgram(programs[params->lobes]);
     glDispatchCompute((GLuint)(count + 31) / 32, 1, 1);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, out.buffer);
     glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, count * (GLsizeiptr)sizeof *f, f);
     gpu_buffer_destroy(&in);
     gpu_buffer_destroy(&out);
-    tint_table_destroy(&tints);
 }
 
 // Between nodes as a texture unit does it, which reads a table of 128 x 64 x 24 nodes.
@@ -319,45 +303,6 @@ static void light_goes_either_way_alike(void **state)
     params_destroy_section(&params);
 }
 
-// A section's own table shows what the table of all colours does, but for half a unit of a beam,
-// 1e-5 of the most of it. A strand between two slices is off by at most h = 0.35 / 15 / 0.65 of its
-// colour from the nearer one, from which TT goes with the power 1 in place of 0.5 to 1.5, TRT with
-// 2 in place of 1 to 3: h / 2 and h of them.
-static void a_sections_own_table_shows_the_same(void **state)
-{
-    (void)state;
-    enum { COUNT = 2000, STRANDS = 8 };
-    static Direction pairs[COUNT][2];
-    static float f[2][COUNT][4];
-    const double h = 0.35 / 15 / 0.65;
-    double most = 0;
-    SectionParams params = make_fibre(0.6f);
-    params.color[1] = 0.3f, params.color[2] = 0.12f;
-    for (int i = 0; i < COUNT; ++i)
-        for (int k = 0; k < 2; ++k)
-            set_direction(pairs[i][k], asin(1.9 * fmod(i * 0.618034 + k * 0.4, 1) - 0.95),
-                          2 * PI * fmod(i * (k ? 0.754878 : 0.569840), 1));
-    for (uint32_t s = 0; s < 2 * STRANDS; ++s) {
-        strand.seed = s / 2;
-        strand.variation = s < 2 ? 0 : 0.35f;
-        params.lobes = s % 2 ? LOBES_GAUSS : LOBES_ENERGY;
-        for (int by = 0; by < 2; ++by) {
-            strand.by_tints = by;
-            scatter(&params, COUNT, pairs, f[by]);
-        }
-        for (int i = 0; i < 3 * COUNT; ++i) {
-            double exact = (double)f[0][i / 3][i % 3],
-                   off = fabs((double)f[1][i / 3][i % 3] - exact),
-                   bound = 1e-4 + (s < 2 ? 1e-4 : h) * exact;
-            most = fmax(most, off / bound);
-            if (off > bound) fail_msg("strand %u, pair %d: %g off %g", s, i / 3, exact, off);
-        }
-    }
-    print_message("%.2g of the bound at most\n", most);
-    memset(&strand, 0, sizeof strand);
-    params_destroy_section(&params);
-}
-
 // Poles, equal and opposite directions included, for thin and thick pigment.
 static void no_direction_gives_nonsense(void **state)
 {
@@ -395,7 +340,6 @@ int main(void)
         cmocka_unit_test(a_white_furnace_is_white),
         cmocka_unit_test(pigment_takes_light_away),
         cmocka_unit_test(light_goes_either_way_alike),
-        cmocka_unit_test(a_sections_own_table_shows_the_same),
         cmocka_unit_test(no_direction_gives_nonsense),
     };
     return cmocka_run_group_tests(tests, open_gpu, close_gpu);

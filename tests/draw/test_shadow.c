@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "draw/look.h"
+#include "draw/hair_paint.h"
 #include "gen/strands_make.h"
 #include "gpu/gpu_uniforms.h"
 #include "strands/paint.h"
@@ -9,25 +9,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool by_processor; // what makes the maps that are tested
+static ShadowWay way; // that is tested
 
 static int by_shaders(void **state)
 {
     (void)state;
-    by_processor = false;
+    way = SHADOW_BY_SHADERS;
     return 0;
 }
 
-static int by_c(void **state)
+static int by_lanes(void **state)
 {
     (void)state;
-    by_processor = true;
+    way = SHADOW_BY_LANES;
     return 0;
 }
 
 static void draw_maps(ShadowStage *stage, Shadow kind, int side, float spacing)
 {
-    shadow_stage_draw(stage, kind, side, spacing, by_processor);
+    shadow_stage_draw(stage, kind, side, spacing, way);
 }
 
 static float light_at(ShadowStage *stage, float x, float y, float z)
@@ -173,7 +173,7 @@ static void the_edge_of_a_shadow_is_as_soft_as_its_filter(void **state)
     ShadowStage stage;
     shadow_stage_open(&stage, shadow_stage_layers(1), 0.1f, 0.4f, NULL, &LIGHT_ABOVE);
     draw_maps(&stage, SHADOW_APPROX, 64, 1e5f);
-    float(*to)[4] = stage.shadow.params.from_world[0];
+    const float(*to)[4] = (const float(*)[4])shadow_stage_params(&stage)->from_world[0];
     double texels = hypot((double)to[0][2], (double)to[1][2]), sum = 0; // a metre along z
     float points[STEPS][4];
     for (int i = 0; i < STEPS; ++i)
@@ -204,7 +204,7 @@ static void shadows_are_as_wide_and_dark_as_the_paint(void **state)
         thickness[v] = v < VERTICES ? 1 + 0.5f * (float)v : 2;
     }
     const Paint paint = {.color = color, .thickness = thickness, .vertex_count = 2 * VERTICES};
-    NEEDED(look_paint(&stage.hair, &strands, &paint, &fixture_gpu()->limits, error));
+    NEEDED(hair_paint_upload(&stage.hair, &strands, &paint, &fixture_gpu()->limits, error));
     stage.item.paint = &paint;
     shadow_reference_destroy(&stage.reference);
     NEEDED(shadow_reference_create(&stage.reference, &stage.reference_scene, &LIGHT_ABOVE,
@@ -235,7 +235,7 @@ static void smooth_strands_cast_the_shadow_of_their_curve(void **state)
     const float corners[3][3] = {{-0.5f, 0, 0}, {0, 0, 0.5f}, {0.5f, 0, 0}};
     memcpy(strands.position, corners, sizeof corners);
     shadow_stage_open(&stage, strands, 0.03f, 0.4f, NULL, &LIGHT_ABOVE);
-    Look *look = &stage.casters[0].look;
+    Look *look = &stage.looks[0];
     for (Shadow kind = SHADOW_APPROX; kind <= SHADOW_DOM; ++kind)
         for (uint parts = 1; parts <= 20; parts += 19) {
             look->material.smooth_parts = parts;
@@ -259,7 +259,7 @@ static void strands_left_out_cast_no_shadow(void **state)
         strands.position[v][1] = 0;
     }
     shadow_stage_open(&stage, strands, 0.02f, 0.4f, NULL, &LIGHT_ABOVE);
-    Look *look = &stage.casters[0].look;
+    Look *look = &stage.looks[0];
     look->share = 0.375f; // one and a half
     look->material.radius /= look->share;
     for (Shadow kind = SHADOW_APPROX; kind <= SHADOW_DOM; ++kind) {
@@ -269,25 +269,11 @@ static void strands_left_out_cast_no_shadow(void **state)
         expect_light(&stage, 0, -0.1f, 0.04f + 0.2f, 1, 0.02);
         expect_light(&stage, 0, -0.1f, 0.4f, 1, 0);
     }
-    uint32_t drawn = stage.shadow.maps_drawn;
-    GpuTimer timer;
-    gpu_timer_create(&timer, false, true);
-    assert_int_equal(drawn, 1);
     for (uint32_t pass = 0; pass < 2; ++pass) { // a share that changes makes them anew
-        NEEDED(shadows_draw(&stage.shadow, &stage.scene, &timer, error));
-        assert_int_equal(stage.shadow.maps_drawn, pass);
+        assert_int_equal(shadow_stage_again(&stage), pass);
         look->share = 0.5f;
     }
-    gpu_timer_destroy(&timer);
     shadow_stage_close(&stage);
-}
-
-static void wipe_mesh(const ShadowStage *stage)
-{
-    const float farthest = 1;
-    glBindFramebuffer(GL_FRAMEBUFFER, stage->shadow.mesh.frame);
-    glDepthMask(GL_TRUE);
-    glClearBufferfv(GL_DEPTH, 0, &farthest);
 }
 
 // Maps of a mesh that have been wiped show when they are drawn again: not where hair alone moves.
@@ -295,14 +281,12 @@ static void the_meshs_maps_are_kept_while_it_stands(void **state)
 {
     (void)state;
     ShadowStage stage;
-    GpuTimer timer;
     Mesh square = shadow_stage_square(0.2f, 0.3f);
     const struct {
         float shift;
         bool forget, drawn;
     } pictures[] = {{0, false, false},   {0.05f, false, true},   {0.05f, false, false},
                     {0.05f, true, true}, {0.0501f, false, true}, {0, false, true}};
-    gpu_timer_create(&timer, false, true);
     shadow_stage_open(&stage, shadow_stage_layers(1), 0.01f, 0.3f, &square, &LIGHT_ABOVE);
     draw_maps(&stage, SHADOW_DOM, 64, 1);
     expect_light(&stage, 0.2f, -0.5f, 0.2f, 0, 0);
@@ -312,23 +296,19 @@ static void the_meshs_maps_are_kept_while_it_stands(void **state)
         gpu_uniforms_set(BIND_DRAW, &draw, sizeof draw);
         stage.scene.mesh.translation[0] = pictures[i].shift;
         ++stage.scene.revision;
-        if (pictures[i].forget) shadows_forget_mesh(&stage.shadow);
-        wipe_mesh(&stage);
-        NEEDED(shadows_draw(&stage.shadow, &stage.scene, &timer, error));
-        assert_int_equal(stage.shadow.maps_drawn, 1);
+        if (pictures[i].forget) shadow_stage_forget_mesh(&stage);
+        shadow_stage_wipe_mesh(&stage);
+        assert_int_equal(shadow_stage_again(&stage), 1);
         expect_light(&stage, 0.2f, -0.5f, 0.2f, pictures[i].drawn ? 0 : 1, 0);
     }
     shadow_stage_close(&stage);
     mesh_destroy(&square);
-    gpu_timer_destroy(&timer);
 }
 
 static void maps_are_kept_while_nothing_changes(void **state)
 {
     (void)state;
     ShadowStage stage;
-    GpuTimer timer;
-    gpu_timer_create(&timer, false, true);
     shadow_stage_open(&stage, shadow_stage_layers(2), 0.06f, 0.3f, NULL, &LIGHT_ABOVE);
     draw_maps(&stage, SHADOW_DOM, 64, 1);
     const struct {
@@ -337,19 +317,15 @@ static void maps_are_kept_while_nothing_changes(void **state)
         uint32_t drawn;
     } pictures[] = {{1, 0, 0},    {2, 0, 1},    {2, 0, 0},   {2, 0.5f, 1},
                     {2, 0.5f, 0}, {0, 0.5f, 1}, {0, 0.5f, 1}};
-    assert_int_equal(stage.shadow.maps_drawn, 1);
     for (size_t i = 0; i < sizeof pictures / sizeof *pictures; ++i) {
         stage.scene.revision = pictures[i].revision;
         stage.light.direction[0] = pictures[i].way;
-        NEEDED(shadows_draw(&stage.shadow, &stage.scene, &timer, error));
-        assert_int_equal(stage.shadow.maps_drawn, pictures[i].drawn);
+        assert_int_equal(shadow_stage_again(&stage), pictures[i].drawn);
     }
     stage.light.shadow = false;
-    NEEDED(shadows_draw(&stage.shadow, &stage.scene, &timer, error));
-    assert_int_equal(stage.shadow.maps_drawn, 0);
+    assert_int_equal(shadow_stage_again(&stage), 0);
     expect_light(&stage, 0.1f, -0.5f, 0, 1, 0);
     shadow_stage_close(&stage);
-    gpu_timer_destroy(&timer);
 }
 
 static void broken_positions_leave_the_rest_its_shadow(void **state)
@@ -447,5 +423,5 @@ int main(void)
         cmocka_unit_test(deep_maps_are_near_the_exact_light),
     };
     int failed = cmocka_run_group_tests_name("by shaders", maps, by_shaders, NULL);
-    return failed + cmocka_run_group_tests_name("by C", maps, by_c, NULL);
+    return failed + cmocka_run_group_tests_name("by lanes", maps, by_lanes, NULL);
 }

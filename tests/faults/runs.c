@@ -91,7 +91,7 @@ const Run RUNS[] = {
      .arguments = "../../in/curls.tfx --size 32x24 -q --mesh ../../in/head.obj --collide-mesh "
                   "--raster quads -o f.png"},
     {.program = "render",
-     .name = "studio, dual scattering",
+     .name = "studio, a wide groom",
      .short_faults = 3,
      .arguments = "../../in/curls.tfx --size 32x24 -q --volume 1 --algo split -o f.pfm"},
     {.program = "bench",

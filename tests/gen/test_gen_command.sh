@@ -100,4 +100,10 @@ cp assets/ball.obj "$work/own.obj"
 run 2 fur "$work/own.obj" --count 20 -o "$work/own.obj"; one_line; says "the mesh"
 equal "$work/own.obj" assets/ball.obj
 
+claim "the head in motion is the bundled one, and a file of its own"
+run 0 --motion "$work/nod.npz"; says "3002 vertices, 8 s at 12 samples a second"
+equal "$work/nod.npz" assets/nod.npz
+run 2 --mesh "$work/two" --motion "$work/two"; one_line; says "--motion"; none "$work/two"
+holds "$bin/tractrix-render" assets/fall.tfx -q --mesh "$work/nod.npz" --frames 1 --size 32x32 --look plain -o "$work/nod.png"
+
 finish

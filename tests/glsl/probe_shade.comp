@@ -17,7 +17,7 @@ vec3 light_reaching(int i, vec3 x, out vec3 to_light)
 
 vec3 light_around_fibre(vec3 tangent, vec3 to_eye, float eye) { return vec3(0.0); }
 
-#include "common/hash.glsl"
+#include "common/hash.h"
 #include "draw/paint.glsl"
 #include "draw/shade_marschner.glsl"
 

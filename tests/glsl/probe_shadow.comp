@@ -12,6 +12,6 @@ void main()
 {
     int at = int(gl_GlobalInvocationID.x);
     shadow_fibre = fibre;
-    shadow_find(at, points[at].xyz);
+    shadow_find(points[at].xyz);
     shares[at] = light_left(0);
 }

@@ -320,27 +320,6 @@ static void directions_of_light_are_read_as_they_were_written(void **state)
     }
 }
 
-// A value that differs along the strand: all of its points, with their places.
-static void profiles_are_read_as_they_were_written(void **state)
-{
-    Scene scene, again;
-    Error error = {{0}};
-    const char *text = "{\"sections\": [{\"file\": \"/a\", \"style\": "
-                       "[[0, 0.9], [0.25, 0.5], [0.75, 0.3], [1, 0.1]]}]}";
-    if (read_scene(state, &scene, text, &error) != RESULT_OK) fail_msg("%s", error.text);
-    char *written = dump(&scene);
-    if (read_scene(state, &again, written, &error) != RESULT_OK) fail_msg("%s", error.text);
-    const Profile *a = &scene.sections[0].params.style_along,
-                  *b = &again.sections[0].params.style_along;
-    assert_int_equal(a->count, 4);
-    assert_int_equal(b->count, 4);
-    for (int i = 0; i < 4; ++i) assert_true(a->at[i] == b->at[i] && a->value[i] == b->value[i]);
-    assert_true(b->at[1] == 0.25f && b->value[3] == 0.1f);
-    free(written);
-    scene_destroy(&scene);
-    scene_destroy(&again);
-}
-
 static void a_file_name_that_is_no_utf_8_is_still_written(void **state)
 {
     (void)state;
@@ -553,7 +532,6 @@ int main(void)
         TEST(keys_are_written_at_their_own_times),
         TEST(what_is_written_is_a_scene_file_of_the_same_scene),
         TEST(directions_of_light_are_read_as_they_were_written),
-        TEST(profiles_are_read_as_they_were_written),
         cmocka_unit_test(a_file_name_that_is_no_utf_8_is_still_written),
         TEST(wrong_scene_files_are_refused_with_place_and_expectation),
         TEST(every_truncation_of_a_scene_file_is_refused),

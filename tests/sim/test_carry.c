@@ -29,7 +29,7 @@ static void pair_create(Pair *pair, const SolverType *type, const char *variant,
     twin_make_curl(start, N, 0, 1.5);
     fixture_create(&pair->still, (const Vec *)start, 1, N, type->name, variant, 0.3f, drag);
     fixture_create(&pair->moved, (const Vec *)start, 1, N, type->name, variant, 0.3f, drag);
-    if (carry_create(&pair->carry, &fixture_gpu()->limits, &error) != RESULT_OK)
+    if (carry_create(&pair->carry, &fixture_gpu()->limits, false, &error) != RESULT_OK)
         fail_msg("%s", error.text);
 }
 
@@ -43,7 +43,7 @@ static void pair_destroy(Pair *pair)
 static void apply(Pair *pair, const HeadMotion *motion)
 {
     free(fixture_positions(&pair->moved, 0)); // the solver has posed
-    carry_apply(&pair->carry, &pair->moved.solver, &pair->moved.hair, motion);
+    carry_apply(&pair->carry, &pair->moved.solver, &pair->moved.hair, motion, NULL);
 }
 
 // How far the moved strand is from the still one carried by `head`: RMS over the length.
@@ -176,10 +176,10 @@ static void a_motion_acts_as_its_formula_says(void **state)
     for (int j = 0; j < N; ++j)
         for (int k = 0; k < 3; ++k) strand.v[j][k] = sin(3 * j + k);
     fixture_create(&fixture, (const Vec *)start, 1, N, "chain", "", 0.3f, 1);
-    if (carry_create(&carry, &fixture_gpu()->limits, &error) != RESULT_OK)
+    if (carry_create(&carry, &fixture_gpu()->limits, false, &error) != RESULT_OK)
         fail_msg("%s", error.text);
     twin_put(&fixture, &strand, 1);
-    carry_apply(&carry, &fixture.solver, &fixture.hair, &motion);
+    carry_apply(&carry, &fixture.solver, &fixture.hair, &motion, NULL);
     solver_buffers(&fixture.solver, 0, buffers);
     float(*points)[4] = gpu_buffer_read(buffers[0].buffer);
     float(*velocities)[4] = gpu_buffer_read(buffers[1].buffer);

@@ -360,7 +360,7 @@ static void the_uniform_block_lies_as_c_has_it(void **state)
     ASSERT_OFFSET(dt);
     ASSERT_OFFSET(margin);
     ASSERT_OFFSET(stamp);
-    ASSERT_OFFSET(strand_count);
+    ASSERT_OFFSET(part), ASSERT_OFFSET(strand_count);
     ASSERT_OFFSET(carried);
     ASSERT_OFFSET(shapes[0]);
     collision_destroy(&collision);

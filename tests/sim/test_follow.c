@@ -399,6 +399,8 @@ static double distance_from_plan(const Follow *follow, uint32_t b, const FollowP
                 for (int g = 0; g < 3; ++g)
                     x += (double)follower->weight[g] *
                          (double)of[hair_address(guides, follower->guide[g], j)][k];
+                double gathered = (double)follow->clump * j / (hair->vertex_count - 1);
+                x += gathered * ((double)of[hair_address(guides, follower->guide[0], j)][k] - x);
                 worst = fmax(worst, fabs(x - (double)at[hair_address(hair, s, j)][k]));
             }
     }
@@ -407,7 +409,7 @@ static double distance_from_plan(const Follow *follow, uint32_t b, const FollowP
     return worst;
 }
 
-static void check_gpu(int mode)
+static void check_gpu(int mode, float clump)
 {
     Strands strands = make_mixed();
     HairFixture fixture;
@@ -416,6 +418,7 @@ static void check_gpu(int mode)
     fixture.params.followers = (AutoInt){.value = 3};
     fixture.params.follow = mode;
     fixture.params.tip_separation = 0.7f;
+    fixture.params.clump = clump;
     assert_int_equal(follow_create(&follow, fixture_gpu(), &fixture.timer, &fixture.hair, &strands,
                                    &fixture.params, 4, NULL),
                      RESULT_OK);
@@ -446,13 +449,15 @@ static void check_gpu(int mode)
 static void test_the_gpu_puts_followers_beside_guides(void **state)
 {
     (void)state;
-    check_gpu(FOLLOW_OFFSET);
+    check_gpu(FOLLOW_OFFSET, 0);
+    check_gpu(FOLLOW_OFFSET, 0.6f);
 }
 
 static void test_the_gpu_puts_followers_between_guides(void **state)
 {
     (void)state;
-    check_gpu(FOLLOW_INTERPOLATE);
+    check_gpu(FOLLOW_INTERPOLATE, 0);
+    check_gpu(FOLLOW_INTERPOLATE, 0.6f);
 }
 
 int main(void)

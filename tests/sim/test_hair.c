@@ -182,9 +182,11 @@ static void blocks_lie_alike_in_c_and_glsl(void **state)
 #define STEP(field, suffix)                                                                        \
     fixture_assert_offset(program, "StepParams." #field suffix, offsetof(StepParams, field))
     SIZE(StepParams), STEP(head_rotation_old, ""), STEP(head_translation_old, "");
-    STEP(head_rotation, ""), STEP(head_translation, ""), STEP(gravity, ""), STEP(wind, "[0]");
+    STEP(head_rotation, ""), STEP(head_translation, ""), STEP(gravity, ""), STEP(held, ""),
+        STEP(wind, "[0]");
     STEP(shelter, ""), STEP(head_velocity, ""), STEP(dt, ""), STEP(decay, ""), STEP(gain, "");
     STEP(drag, ""), STEP(strand_count, ""), STEP(vertex_count, ""), STEP(phase, "");
+    STEP(frame_old, ""), STEP(frame_now, "");
     glDeleteProgram(program);
     const ShaderDefine pose[] = {{"GROUP_SIZE", 8}, {"MIX", 2}, {0}};
     assert_int_equal(shader_build_compute(&program, "sim/pose.comp", pose, NULL), RESULT_OK);
@@ -192,14 +194,14 @@ static void blocks_lie_alike_in_c_and_glsl(void **state)
     fixture_assert_offset(program, "PoseParams." #field suffix, offsetof(PoseParams, field))
     POSE(head_rotation, ""), POSE(head_translation, ""), POSE(turn_cos, "[0]"),
         POSE(turn_sin, "[0]");
-    POSE(strand_count, ""), POSE(vertex_count, "");
+    POSE(strand_count, ""), POSE(vertex_count, ""), POSE(lead, "");
     glDeleteProgram(program);
-    const ShaderDefine follow[] = {{"GROUP_SIZE", 8}, {"INTERPOLATE", 1}, {0}};
+    const ShaderDefine follow[] = {{"GROUP_SIZE", 8}, {"INTERPOLATE", 1}, {"CLUMPS", 1}, {0}};
     assert_int_equal(shader_build_compute(&program, "sim/follow.comp", follow, NULL), RESULT_OK);
 #define FOLLOW(field)                                                                              \
     fixture_assert_offset(program, "FollowParams." #field, offsetof(FollowParams, field))
-    FOLLOW(head_rotation), FOLLOW(tip_separation), FOLLOW(strand_count), FOLLOW(vertex_count),
-        FOLLOW(first_guide), FOLLOW(per_guide);
+    FOLLOW(head_rotation), FOLLOW(tip_separation), FOLLOW(clump), FOLLOW(strand_count),
+        FOLLOW(vertex_count), FOLLOW(first_guide), FOLLOW(per_guide);
     glDeleteProgram(program);
     const ShaderDefine inbetween[] = {{"GROUP_SIZE", 8}, {0}};
     assert_int_equal(shader_build_compute(&program, "sim/inbetween.comp", inbetween, NULL),

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Files of points: .ply of every kind, .npy and .npz, and files that are not hair at all.
+#include "base/npy_array.h"
+#include "base/zip.h"
 #include "strands/formats/format.h"
-#include "strands/formats/npy_array.h"
-#include "strands/formats/zip.h"
 #include "support/reading.h"
 #include "support/temporary.h"
 

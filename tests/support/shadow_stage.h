@@ -2,7 +2,8 @@
 // Hair and mesh before a light, for tests of the light that reaches a point.
 #pragma once
 
-#include "draw/shadows.h"
+#include "lanes/shadow.h"
+#include "passes/shadows.h"
 #include "reference/shadow_reference.h"
 #include "support/hair_fixture.h"
 #include "support/needed.h"
@@ -12,6 +13,8 @@
 #include <stddef.h>
 
 #include <cmocka.h>
+
+typedef enum ShadowWay { SHADOW_BY_SHADERS, SHADOW_BY_LANES } ShadowWay;
 
 // Both cast shadows: light from straight above, and a lamp at (0.3, 2, 0.1) m.
 extern const Light LIGHT_ABOVE, LIGHT_LAMP;
@@ -24,12 +27,16 @@ typedef struct ShadowStage {
     ReferenceItem item;
     ReferenceScene reference_scene;
     ShadowReference reference;
+    Look looks[8]; // of the casters
     ShadowCaster casters[8];
     ShadowScene scene;
     RenderMesh mesh;
+    const Mesh *source; // the mesh's, or NULL
+    ShadowWay way;      // of the last shadow_stage_draw; the others' maps are empty
     Shadows shadow;
-    bool on_fibre; // points that are asked for lie in the middle of fibres
-    bool copies;   // what is drawn by the processor is drawn as on hardware
+    LaneShadow lanes;
+    void *position[8], *paint[8]; // of the casters, copies for lanes
+    bool on_fibre;                // points that are asked for lie in the middle of fibres
     Light light;
 } ShadowStage;
 
@@ -40,7 +47,15 @@ void shadow_stage_open(ShadowStage *stage, Strands strands, float radius, float 
 void shadow_stage_close(ShadowStage *stage);
 
 // Makes maps of side x side texels anew; `spacing`: see ShadowOptions.
-void shadow_stage_draw(ShadowStage *stage, Shadow kind, int side, float spacing, bool by_processor);
+void shadow_stage_draw(ShadowStage *stage, Shadow kind, int side, float spacing, ShadowWay way);
+
+// Makes them again where the scene has changed; returns how many were made.
+uint32_t shadow_stage_again(ShadowStage *stage);
+const ShadowParams *shadow_stage_params(const ShadowStage *stage);
+
+// The mesh is another one; its maps are lost, but the renderer doesn't know.
+void shadow_stage_forget_mesh(ShadowStage *stage);
+void shadow_stage_wipe_mesh(ShadowStage *stage);
 
 // What the maps say of `count` points; the caller frees it.
 float *shadow_stage_light(ShadowStage *stage, const float (*points)[4], uint32_t count);

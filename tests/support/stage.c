@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "support/stage.h"
 
+#include "base/random.h"
+#include "passes/passes.h"
+
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -67,13 +70,41 @@ uint32_t add_line(const float from[3], const float to[3], float radius, float op
     return item;
 }
 
-void add_tangle(uint32_t count, float radius, float opacity, const uint32_t *order)
+static void add_lit(const Strands *strands, float radius, float opacity)
 {
-    Strands strands = studio_tangle(7, SIDE, count, 12, 8, 0.2, order);
-    uint32_t item = studio_add(&studio, &strands, radius, opacity);
+    uint32_t item = studio_add(&studio, strands, radius, opacity);
     studio.material[item].diffuse = 1; // colours that differ along every strand
     studio.material[item].ambient = 0.1f;
     studio.light = (Light){.direction = {0.6f, 0.8f, 0}, .color = {1, 0.8f, 0.5f}, .intensity = 1};
+}
+
+void add_tangle(uint32_t count, float radius, float opacity, const uint32_t *order)
+{
+    Strands strands = studio_tangle(7, SIDE, count, 12, 8, 0.2, order);
+    add_lit(&strands, radius, opacity);
+    strands_destroy(&strands);
+}
+
+void add_zigzags(uint32_t count, float radius, float opacity)
+{
+    enum { VERTICES = 12 };
+    float(*position)[3] = malloc(count * VERTICES * sizeof *position);
+    assert_non_null(position);
+    Random random = random_create(11, 0);
+    for (uint32_t s = 0; s < count; ++s) {
+        double turn = 2 * GLM_PI * random_real(&random), way[2] = {cos(turn), sin(turn)}, x[3];
+        for (int k = 0; k < 3; ++k) x[k] = (random_real(&random) - 0.5) * SIDE;
+        for (int j = 0; j < VERTICES; ++j) {
+            float *at = position[s * VERTICES + (uint32_t)j];
+            double along = 6 * j, beside = j % 2 ? 1 : -1;
+            at[0] = (float)(x[0] + along * way[0] - beside * way[1]);
+            at[1] = (float)(x[1] + along * way[1] + beside * way[0]);
+            at[2] = (float)(x[2] + 3 * j);
+        }
+    }
+    Strands strands = studio_strands(count, VERTICES, (const float(*)[3])position);
+    free(position);
+    add_lit(&strands, radius, opacity);
     strands_destroy(&strands);
 }
 
@@ -86,6 +117,18 @@ Strands crowd(uint32_t count)
     Strands strands = studio_strands(count, 2, (const float(*)[3])position);
     free(position);
     return strands;
+}
+
+struct Passes *stage_passes(void)
+{
+    assert_ptr_equal(studio.renderer.backend, &DRAW_PASSES);
+    return studio.renderer.state;
+}
+
+uint64_t stage_base_version(void)
+{
+    return studio.renderer.backend == &DRAW_LANES ? stage_lanes_base_version()
+                                                  : stage_passes()->base.version;
 }
 
 uint8_t *draw_copy(size_t *size)

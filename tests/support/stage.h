@@ -41,8 +41,27 @@ uint32_t add_line(const float from[3], const float to[3], float radius, float op
 // made.
 void add_tangle(uint32_t count, float radius, float opacity, const uint32_t *order);
 
+// The same of strands so bent and so short that no rasteriser leaves out a point of them: 1 px to
+// either side of a straight line from point to point, 6 px apart.
+void add_zigzags(uint32_t count, float radius, float opacity);
+
 // So many strands through the middle, all in the same place.
 Strands crowd(uint32_t count);
+
+// What the backend of quads and compute has, or of blocks. Fails the test if another one draws.
+struct Passes *stage_passes(void);
+struct Lanes *stage_lanes(void);
+
+// The times that mesh and floor were drawn, by any and by blocks.
+uint64_t stage_base_version(void);
+uint64_t stage_lanes_base_version(void);
+
+// What 16 points of an item's hair showed in the last picture by blocks of the light among hair.
+void stage_lanes_show(uint32_t item, const float x[3][STRAND_TILE],
+                      const float tangent[3][STRAND_TILE], float seen[3][STRAND_TILE]);
+
+// Blocks are to draw what mesh and floor hide, too.
+void stage_lanes_draw_hidden(bool on);
 
 // Draws; a copy of the bytes, which the caller frees. Draws, and the bytes must be those.
 uint8_t *draw_copy(size_t *size);

@@ -4,10 +4,10 @@
 // stand in ARRAYS below; docs/formats.md describes them.
 #include "strands/formats/npz_file.h"
 
+#include "base/npy_array.h"
+#include "base/zip.h"
 #include "strands/formats/cloud.h"
 #include "strands/formats/format.h"
-#include "strands/formats/npy_array.h"
-#include "strands/formats/zip.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// Smooth curves through a strand's particles, for shaders and for loops over lanes: a segment's
+// points are its first end and a weighted sum of three ways, to it from the particle before, along
+// it, and from it to the particle after. Before the root and behind the tip stands the neighbour's
+// mirror image, whose way is the segment's own.
+#ifdef __STDC__
+#pragma once
+#endif
+#include "common/shared_math.h"
+
+SHARED_STRUCT(CurveWeights)
+{
+    float before, own, after; // of the ways
+};
+
+// The uniform cubic B-spline at t (0 to 1) of the segment, its four weights' sum taken out.
+SHARED_FUNCTION CurveWeights curve_spline(float t)
+{
+    float s = 1.0f - t;
+    CurveWeights weights;
+    weights.before = -s * s * s * (1.0f / 6.0f);
+    weights.after = t * t * t * (1.0f / 6.0f);
+    weights.own = ((3.0f * s - 6.0f) * s * s + 4.0f) * (1.0f / 6.0f) + weights.after;
+    return weights;
+}
+
+// Catmull-Rom with centripetal knots: their distance is the root of the particles'.
+SHARED_FUNCTION float curve_knot(float x, float y, float z)
+{
+    return SHARED_MAX(SHARED_SQRT(SHARED_SQRT(x * x + y * y + z * z)), 1e-9f);
+}
+
+// What the tangents at both ends are made of: the segment's knots' distance over those beside it.
+SHARED_STRUCT(CurveKnots) { float before, from, to, after; };
+
+SHARED_FUNCTION CurveKnots curve_knots(float before, float own, float after)
+{
+    CurveKnots knots;
+    knots.before = own / before;
+    knots.from = own / (before + own);
+    knots.to = own / (own + after);
+    knots.after = own / after;
+    return knots;
+}
+
+// Tangents are those of the parabolas through three knots (Barry and Goldman 1988), over the
+// segment's own distance.
+SHARED_FUNCTION CurveWeights curve_tangent_from(CurveKnots knots)
+{
+    CurveWeights weights;
+    weights.before = knots.before - knots.from;
+    weights.own = 1.0f - knots.from;
+    weights.after = 0.0f;
+    return weights;
+}
+
+SHARED_FUNCTION CurveWeights curve_tangent_to(CurveKnots knots)
+{
+    CurveWeights weights;
+    weights.before = 0.0f;
+    weights.own = 1.0f - knots.to;
+    weights.after = knots.after - knots.to;
+    return weights;
+}
+
+// Hermite's curve of those tangents.
+SHARED_FUNCTION CurveWeights curve_hermite(CurveKnots knots, float t)
+{
+    float s = 1.0f - t, end = (3.0f - 2.0f * t) * t * t, by_from = t * s * s, by_to = -t * t * s;
+    CurveWeights from = curve_tangent_from(knots), to = curve_tangent_to(knots), weights;
+    weights.before = by_from * from.before;
+    weights.own = end + by_from * from.own + by_to * to.own;
+    weights.after = by_to * to.after;
+    return weights;
+}

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// What a fibre sends to the eye of light that reaches it, for shaders and for loops over lanes;
+// shade_marschner.glsl and shade_kajiya.glsl say what the models are.
+#ifdef __STDC__
+#pragma once
+#endif
+#include "common/shared_math.h"
+
+// Of the sine of an inclination its cosine, or the other way round.
+SHARED_FUNCTION float fibre_sine_of(float cosine)
+{
+    return SHARED_SQRT(SHARED_MAX(1.0f - cosine * cosine, 0.0f));
+}
+
+// acos(x) / pi for -1 <= x <= 1, 1e-8 off (Abramowitz and Stegun 4.4.46).
+SHARED_FUNCTION float fibre_turn(float x)
+{
+    float a = SHARED_ABS(x), series = -0.0012624911f;
+    series = series * a + 0.0066700901f;
+    series = series * a - 0.0170881256f;
+    series = series * a + 0.0308918810f;
+    series = series * a - 0.0501743046f;
+    series = series * a + 0.0889789874f;
+    series = series * a - 0.2145988016f;
+    series = series * a + 1.5707963050f;
+    float turn = SHARED_SQRT(SHARED_MAX(1.0f - a, 0.0f)) * series * FLOAT(1.0 / PI);
+    return x < 0.0f ? 1.0f - turn : turn;
+}
+
+// exp(-x) I0(x) for x >= 0 within 0.06 % (Olivares, Martin and Valero, J. Phys. Conf. Ser. 1043,
+// 2018).
+SHARED_FUNCTION float fibre_bessel(float x)
+{
+    float square = x * x;
+    return (0.5f + 0.5f * SHARED_EXP2(-2.0f * FLOAT(LOG2E) * x)) * (1.0f + 0.24273f * square) /
+           (SHARED_SQRT(SHARED_SQRT(1.0f + 0.25f * square)) * (1.0f + 0.43023f * square));
+}
+
+// d'Eon et al.'s lobe (2011) of the variance v = 1 / sharpness about the cone that mirrors theta_i,
+// with scale = 1 / (v (1 - exp(-2/v))); `sine` and `cosine` are those of the tilted theta_r.
+SHARED_FUNCTION float fibre_lobe(float sin_i, float cos_i, float sine, float cosine,
+                                 float sharpness, float scale)
+{
+    float c = SHARED_ABS(cos_i * cosine), power = (c - sin_i * sine - 1.0f) * sharpness;
+    return scale * SHARED_EXP2(FLOAT(LOG2E) * SHARED_MIN(power, 0.0f)) *
+           fibre_bessel(c * sharpness);
+}
+
+// Marschner's Gaussian of the variance 1 / sharpness in theta_i + theta_r, `off` its tilted middle.
+SHARED_FUNCTION float fibre_gauss(float off, float sharpness, float cos_i, float cos_d)
+{
+    return SHARED_SQRT(sharpness * FLOAT(0.5 / PI)) *
+           SHARED_EXP2(-0.5f * FLOAT(LOG2E) * off * off * sharpness) * cos_i /
+           SHARED_MAX(cos_d * cos_d, 1e-6f);
+}
+
+// The cosine of the azimuth between light and eye, of the sines and cosines of their inclinations
+// and `dot`, the cosine between them.
+SHARED_FUNCTION float fibre_cos_phi(float dot, float sin_i, float cos_i, float sin_r, float cos_r)
+{
+    float cosine = (dot - sin_i * sin_r) / SHARED_MAX(cos_i * cos_r, 1e-6f);
+    return SHARED_MIN(SHARED_MAX(cosine, -1.0f), 1.0f);
+}
+
+// The cosine of theta_d = (theta_r - theta_i) / 2.
+SHARED_FUNCTION float fibre_cos_d(float sin_i, float cos_i, float sin_r, float cos_r)
+{
+    float square = 0.5f + 0.5f * (cos_i * cos_r + sin_i * sin_r);
+    return SHARED_SQRT(SHARED_MIN(SHARED_MAX(square, 0.0f), 1.0f));
+}
+
+// The share of light square to a fibre that it scatters, whose diameter lets `color` through, by
+// the two numbers of fibre_lobes_fit_albedo.
+SHARED_FUNCTION float fibre_albedo(float color, float low, float power)
+{
+    return low + (1.0f - low) * SHARED_POW(SHARED_MIN(color, 1.0f), power);
+}
+
+// How near the eye is to the cone that lies mirrored to the light and turned by a small angle
+// (Kajiya's highlights): the cosine of the angle between, where it is not negative.
+SHARED_FUNCTION float fibre_highlight(float light, float light_sine, float eye, float eye_sine,
+                                      float turn_cos, float turn_sin)
+{
+    float cone = -light * turn_cos - light_sine * turn_sin,
+          cone_sine = light_sine * turn_cos - light * turn_sin;
+    return SHARED_MAX(cone * eye + cone_sine * eye_sine, 0.0f);
+}

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// The frame in which a strand is at rest, at the step's start (old) and end: x_world = rotation
+// x_rest + translation. It is the head's, or, with BOUND 1, that of the deforming mesh around the
+// strand's root, within the head's: then open_frame comes before everything else of a strand
+// (needs step_params.h, rigid.glsl).
+#if BOUND
+layout(binding = BIND_FRAMES) uniform samplerBuffer frames; // see shared.h
+vec4 frame_rotation, frame_rotation_old;
+vec3 frame_translation, frame_translation_old, frame_gravity;
+
+// Within a step that a solver takes in parts, frames go evenly from one end to the other.
+void frame_at(int strand, float share, vec4 head_rotation, vec3 head_translation, out vec4 rotation,
+              out vec3 translation)
+{
+    vec4 before = texelFetch(frames, 4 * strand), after = texelFetch(frames, 4 * strand + 2);
+    vec3 from = texelFetch(frames, 4 * strand + 1).xyz, to = texelFetch(frames, 4 * strand + 3).xyz;
+    vec4 q = before + share * (after - before);
+    rotation = product(head_rotation, q * inversesqrt(dot(q, q)));
+    translation = rotate(head_rotation, from + share * (to - from)) + head_translation;
+}
+
+void open_frame(int strand)
+{
+    frame_at(strand, step_params.frame_old, step_params.head_rotation_old,
+             step_params.head_translation_old.xyz, frame_rotation_old, frame_translation_old);
+    frame_at(strand, step_params.frame_now, step_params.head_rotation,
+             step_params.head_translation.xyz, frame_rotation, frame_translation);
+    frame_gravity = step_params.gravity.xyz - rotate(frame_rotation, step_params.held.xyz);
+}
+#else
+#define frame_rotation        step_params.head_rotation
+#define frame_rotation_old    step_params.head_rotation_old
+#define frame_translation     step_params.head_translation.xyz
+#define frame_translation_old step_params.head_translation_old.xyz
+#define frame_gravity         step_params.gravity.xyz
+#define open_frame(strand)
+#endif

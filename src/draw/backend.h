@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// A way from hair to pixels, whole: the renderer picks one when it is made, and nothing else asks
+// which driver there is. `DRAW_LANES` does everything in C over lanes of the processor
+// (src/lanes); `DRAW_PASSES` has shaders do it (src/passes). Both see the same frame.
+#pragma once
+
+#include "draw/drawing.h"
+#include "draw/drawn_mesh.h"
+#include "draw/renderer_options.h"
+
+// A batch of hair that is drawn.
+typedef struct DrawnHair {
+    const HairBatch *batch; // on the GPU
+    const Look *look;
+    MaterialParams material; // complete
+    // In memory, where the backend reads hair: as HairBatch lays it out.
+    const float (*position)[4];
+    const uint32_t (*paint)[4]; // NULL: none
+    const uint32_t *ids;
+} DrawnHair;
+
+// A frame. What is drawn of it is the window of `drawing->draw`.
+typedef struct BackendFrame {
+    Drawing *drawing;
+    const DrawnHair *hair; // [hair_count]
+    uint32_t hair_count;
+    const RenderFrame *frame;
+    const DrawnMesh *mesh;
+    float middle[3]; // m, world: of the hair
+} BackendFrame;
+
+// Times spans of passes; `timer` is the GpuTimer.
+typedef struct BackendTimer {
+    struct GpuTimer *timer;
+    void (*begin)(struct GpuTimer *timer, const char *name);
+    void (*end)(struct GpuTimer *timer);
+} BackendTimer;
+
+typedef struct BackendOptions {
+    const RendererOptions *options; // of a window: its size, `raster` decided; they stay
+    const struct Gpu *gpu;
+    BackendTimer timer;
+} BackendOptions;
+
+// Errors of all: RESULT_FAILED if memory is short or a shader does not compile.
+typedef struct DrawBackend {
+    bool reads_hair; // DrawnHair is to be in memory
+    Result (*create)(void **state, const BackendOptions *options, Error *error);
+    void (*destroy)(void *state); // NULL is legal
+    // The mesh is another one, or none.
+    Result (*set_mesh)(void *state, const DrawnMesh *mesh, Error *error);
+    void (*move_mesh)(void *state, const DrawnMesh *mesh); // its vertices alone; NULL: no need
+    // Of a frame, in this order: maps of shadows; light among hair; then for each window what
+    // stands behind the hair, its ribbons, and all of it composited. `image` is filled at once, or
+    // when `take` is called for the place that it was begun at.
+    Result (*shadow)(void *state, const BackendFrame *frame, Error *error);
+    Result (*scatter)(void *state, const BackendFrame *frame, Error *error);
+    Result (*shade)(void *state, const BackendFrame *frame, Error *error);
+    Result (*composite)(void *state, const BackendFrame *frame, Image *image, Error *error);
+    void (*count)(const void *state, RendererCounts *counts); // of the last window
+    // See renderer_settle, renderer_take, renderer_place; NULL: images are filled at once.
+    Result (*settle)(void *state, const BackendFrame *frame, Error *error);
+    Result (*take)(void *state, int place, Image *image, Error *error);
+    int (*place)(const void *state);
+} DrawBackend;
+
+extern const DrawBackend DRAW_LANES, DRAW_PASSES;

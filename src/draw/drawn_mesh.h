@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// The opaque mesh among the hair, in memory.
+#pragma once
+
+#include "mesh/mesh.h"
+
+// A zeroed struct is no mesh.
+typedef struct DrawnMesh {
+    Mesh mesh;             // owned: positions, normals and triangles, in the head's frame, m
+    float *open;           // [vertices], owned: the share of the sky, see openness.h; NULL: 1
+    float color[3];        // linear RGB
+    float low[3], high[3]; // bounds in the head's frame, m
+    uint64_t version;      // another one whenever any of this changes
+} DrawnMesh;
+
+// Takes a copy of the mesh. RESULT_FAILED if memory is short.
+Result drawn_mesh_set(DrawnMesh *drawn, const Mesh *mesh, const float color[3], Error *error);
+
+// Moves its vertices: `moved` has as many, with normals. Its openness stays.
+void drawn_mesh_move(DrawnMesh *drawn, const Mesh *moved);
+
+// Takes a copy of its openness.
+Result drawn_mesh_set_openness(DrawnMesh *drawn, const float *open, Error *error);
+
+void drawn_mesh_destroy(DrawnMesh *drawn);

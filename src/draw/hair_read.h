@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// Reads hair from the GPU for a frame: the one crossing of a frame that is drawn by the processor.
+#pragma once
+
+#include "draw/backend.h"
+#include "sim/hair.h"
+
+// Buffers while they are read: mapped where the driver's memory is the processor's own, else
+// copied. A zeroed struct is empty.
+typedef struct HairRead {
+    bool copies; // set before use: buffers lie in memory of the GPU's own
+    struct ReadBuffer {
+        GLuint buffer;
+        int64_t size, room;
+        void *copy; // owned
+    } * buffers;    // [room], owned
+    uint32_t count, room;
+} HairRead;
+
+// Fills in `position`, `paint` and `ids` of the hair, which stay until hair_read_end. Waits for the
+// GPU. RESULT_FAILED if memory is short or a buffer cannot be read.
+Result hair_read_begin(HairRead *read, DrawnHair *hair, uint32_t count, Error *error);
+void hair_read_end(HairRead *read);
+void hair_read_destroy(HairRead *read);

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// A batch of hair that stands in the light, in the processor's memory.
+#pragma once
+
+#include "glsl/common/shared.h"
+#include "glsl/draw/material.h"
+#include "glsl/draw/shadow.h"
+
+#include <stddef.h>
+
+// Laid out as in HairBatch.
+typedef struct MappedCaster {
+    const float (*position)[4];
+    const uint32_t (*paint)[4];            // see hair_paint.h; NULL: none
+    const float (*points)[3][STRAND_TILE]; // [tile][point], once found; NULL: none
+    const uint32_t *order;                 // of tiles; NULL: that of their numbers
+    MaterialParams material;               // smooth_parts at least 1
+    float weight;                          // strands that each stands for in shadow maps; 0: 1
+} MappedCaster;
+
+typedef struct MappedCasters {
+    const MappedCaster *list;
+    uint32_t count;
+} MappedCasters;
+
+// The tile to walk at place `turn`.
+static inline size_t mapped_caster_tile(const MappedCaster *caster, int turn)
+{
+    return caster->order ? caster->order[turn] : (size_t)turn;
+}
+
+// Points of a strand: its particles, or those of its curve.
+static inline int mapped_caster_points(const MappedCaster *caster)
+{
+    return (int)((caster->material.vertex_count - 1) * caster->material.smooth_parts + 1);
+}

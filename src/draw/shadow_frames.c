@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: MIT
+#include "draw/shadow_frames.h"
+
+#include <math.h>
+#include <string.h>
+
+enum {
+    HAIR_MARGIN = 3, // texels at the edges of a map that hair leaves free
+    MESH_MARGIN = 6, // texels at the edges that stay empty: all that a point beside it looks at
+};
+
+static const double UNIT = 1 << 16; // steps of sums for one fibre
+static const double SUM_MAX = 2e9;  // of those steps: sums do not overflow
+
+void shadow_frames_begin(ShadowFrames *frames, const Light *lights, uint32_t light_count,
+                         const float middle[3], const ShadowMesh *mesh, uint64_t revision)
+{
+    memset(frames, 0, sizeof *frames);
+    ShadowKey *key = &frames->key;
+    key->light_count = light_count;
+    key->revision = revision;
+    key->hair = 0xcbf29ce484222325; // FNV-1a
+    key->mesh = *mesh;
+    for (uint32_t i = 0; i < light_count; ++i) {
+        memcpy(&key->lights[i], &lights[i], sizeof *lights);
+        if (!lights[i].shadow || lights[i].intensity <= 0) continue;
+        frames->views[frames->count] = light_frame_view(&lights[i], middle);
+        frames->lights[frames->count++] = (int)i;
+    }
+}
+
+static uint64_t add_bytes(uint64_t hash, const void *bytes, size_t size)
+{
+    for (size_t i = 0; i < size; ++i) hash = (hash ^ ((const uint8_t *)bytes)[i]) * 0x100000001b3;
+    return hash;
+}
+
+static uint64_t add_hair(uint64_t hash, const void *batch, const MaterialParams *m)
+{
+    const float floats[] = {m->radius, m->tip_ratio, m->shadow_opacity, m->last_share};
+    const uint words[] = {m->vertex_count, m->drawn_strands, m->smooth_parts, m->smooth_curve,
+                          m->last_strand};
+    hash = add_bytes(hash, &batch, sizeof batch);
+    hash = add_bytes(hash, floats, sizeof floats);
+    return add_bytes(hash, words, sizeof words);
+}
+
+void shadow_frames_add(ShadowFrames *frames, const void *batch, const MaterialParams *material,
+                       bool painted)
+{
+    double particles = (double)material->drawn_strands * material->vertex_count,
+           depth = (double)fibre_depth(material->shadow_opacity, 100) * material->drawn_strands *
+                   (material->vertex_count - 1) * material->smooth_parts;
+    frames->key.hair = add_hair(frames->key.hair, batch, material);
+    frames->particles += particles;
+    frames->radius += particles * (double)material->radius;
+    frames->opacity += particles * (double)material->shadow_opacity;
+    frames->painted += painted ? depth : 0;
+    frames->plain += painted ? 0 : depth;
+    frames->plain_width += painted ? 0 : depth * 2 * (double)material->radius;
+}
+
+bool shadow_frames_same(const ShadowFrames *frames, const ShadowKey *drawn)
+{
+    return frames->key.revision && memcmp(&frames->key, drawn, sizeof *drawn) == 0;
+}
+
+static float reach_of(const LightView *view)
+{
+    return (float)(view->perspective ? LIGHT_FRAME_WIDE : LIGHT_FRAME_FAR);
+}
+
+static void set_rows(mat4 matrix, double rows[4][4])
+{
+    for (int k = 0; k < 4; ++k)
+        for (int i = 0; i < 4; ++i) matrix[k][i] = (float)rows[k][i];
+}
+
+CastParams shadow_frames_box(const ShadowFrames *frames, int i)
+{
+    const LightView *view = &frames->views[i];
+    double rows[4][4];
+    CastParams params = {.map = i, .limit = (float)LIGHT_FRAME_FAR, .reach = reach_of(view)};
+    for (int k = 0; k < 4; ++k) light_frame_row(view, k, rows[k]);
+    set_rows(params.from_world, rows);
+    return params;
+}
+
+// --- The mesh.
+
+static void empty_box(double box[6])
+{
+    for (int k = 0; k < 3; ++k) box[k] = LIGHT_FRAME_FAR, box[k + 3] = -LIGHT_FRAME_FAR;
+}
+
+// Widens the box to the mesh's.
+static void add_mesh_box(const ShadowMesh *mesh, const LightView *view, double box[6])
+{
+    for (int corner = 0; corner < 8; ++corner) {
+        vec3 x;
+        versor turn;
+        double world[3], place[3];
+        memcpy(turn, mesh->rotation, sizeof turn);
+        for (int k = 0; k < 3; ++k) x[k] = (corner >> k & 1 ? mesh->high : mesh->low)[k];
+        glm_quat_rotatev(turn, x, x);
+        for (int k = 0; k < 3; ++k) world[k] = (double)(x[k] + mesh->translation[k]);
+        if (!light_frame_place(view, world, place)) continue;
+        for (int k = 0; k < 3; ++k) {
+            double bound = k < 2 && view->perspective ? LIGHT_FRAME_WIDE : LIGHT_FRAME_FAR;
+            double value = fmin(fmax(place[k], -bound), bound);
+            box[k] = fmin(box[k], value);
+            box[k + 3] = fmax(box[k + 3], value);
+        }
+    }
+}
+
+// A texel's depth is that of its middle: on a surface that the light meets at 45 degrees it is off
+// by a texel. Two of them by depth, and as much as a texel and a half along the normal. Before a
+// lamp a texel is as wide as half-way, and its depth as steep as at the far end: less elsewhere.
+static void set_mesh_frame(ShadowParams *params, int map, const LightView *view,
+                           const double box[6])
+{
+    LightFrame frame = light_frame_drawn(view, box, SHADOW_MESH_SIDE, MESH_MARGIN);
+    double near = frame.depth[0], far = frame.depth[1], texel = frame.texel,
+           shift = 2 * texel / (far - near);
+    if (view->perspective) {
+        texel *= 0.5 * (near + far);
+        shift = 2 * texel * near / (far * (far - near));
+    }
+    set_rows(params->mesh_from_world[map], frame.rows);
+    params->place[map][2] = (float)shift;
+    params->mesh_lift = fmaxf(params->mesh_lift, (float)(1.5 * texel));
+}
+
+// The mesh's window: around the mesh alone, so that it stays while the head does; what lies beside
+// or behind it has no mesh before it. At least a tenth as deep as wide, since depths of a mesh that
+// is flat before the light would be nothing but rounding. Before a lamp, which may stand in the
+// mesh's box, around hair as well.
+static void place_mesh(ShadowParams *params, int map, const ShadowMesh *mesh, const LightView *view,
+                       double box[6])
+{
+    if (!view->perspective) empty_box(box);
+    add_mesh_box(mesh, view, box);
+    if (!view->perspective)
+        box[5] = fmax(box[5], box[2] + 0.1 * fmax(box[3] - box[0], box[4] - box[1]));
+    set_mesh_frame(params, map, view, box);
+}
+
+ShadowMeshKey shadow_frames_mesh_key(const ShadowFrames *frames)
+{
+    ShadowMeshKey key;
+    memset(&key, 0, sizeof key);
+    memcpy(&key.mesh, &frames->key.mesh, sizeof key.mesh);
+    key.maps = frames->params.maps;
+    memcpy(key.frames, frames->params.mesh_from_world, sizeof key.frames);
+    return key;
+}
+
+// --- Hair.
+
+// What approximated maps take for the mean fibre, which lets a little through.
+static void find_mean_fibre(const ShadowFrames *frames, float spacing, ShadowParams *params)
+{
+    const double least_left = 1e-3;
+    double weight = frames->particles, radius = frames->radius;
+    if (weight == 0) weight = 1, radius = 1;
+    params->fibres = (float)(weight / (radius * (double)spacing));
+    params->passed = (float)log2(fmax(1 - frames->opacity / weight, least_left));
+}
+
+// The smallest step of sums that cannot overflow, were all segments in one texel.
+static float find_unit(const ShadowFrames *frames, bool perspective, double texels)
+{
+    double plain = perspective ? frames->plain : fmin(frames->plain_width * texels, frames->plain);
+    return (float)fmin(UNIT, SUM_MAX / (1 + frames->painted + plain));
+}
+
+static void place_hair(ShadowFrames *frames, int map, int i, const double box[6])
+{
+    const LightView *view = &frames->views[i];
+    ShadowParams *params = &frames->params;
+    LightFrame frame = light_frame_steady(view, box, params->side, HAIR_MARGIN);
+    double distance = view->perspective ? 0.5 * (frame.depth[0] + frame.depth[1]) : 1;
+    set_rows(params->from_world[map], frame.rows);
+    params->place[map][0] = (float)frames->lights[i];
+    params->place[map][1] = (float)(frame.depth[1] - frame.depth[0]);
+    params->place[map][3] = (float)(1 / (frame.texel * distance));
+    frames->casts[map] = (CastParams){.side = params->side,
+                                      .map = map,
+                                      .texels = (float)(1 / frame.texel),
+                                      .unit = find_unit(frames, view->perspective, 1 / frame.texel),
+                                      .reach = reach_of(view),
+                                      .limit = (float)LIGHT_FRAME_FAR};
+    set_rows(frames->casts[map].from_world, frame.rows);
+}
+
+void shadow_frames_place(ShadowFrames *frames, int side, float spacing, double (*boxes)[6])
+{
+    ShadowParams *params = &frames->params;
+    const ShadowMesh *mesh = &frames->key.mesh;
+    memset(params, 0, sizeof *params);
+    params->side = side;
+    params->mesh_side = SHADOW_MESH_SIDE;
+    find_mean_fibre(frames, spacing, params);
+    for (int i = 0; i < frames->count; ++i) {
+        double *box = boxes[i];
+        if (!(box[0] <= box[3])) {
+            if (!mesh->version) continue;
+            empty_box(box);
+            add_mesh_box(mesh, &frames->views[i], box);
+        }
+        place_hair(frames, params->maps, i, box);
+        if (mesh->version) place_mesh(params, params->maps, mesh, &frames->views[i], box);
+        ++params->maps;
+    }
+}

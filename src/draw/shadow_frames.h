@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// Where the shadow maps of a scene lie: which lights have one, each map's window, and what maps
+// depend on, so that they are kept while it stays. Needs no OpenGL: both ways to make maps use it.
+#pragma once
+
+#include "base/params.h"
+#include "draw/light_frame.h"
+
+#include "glsl/draw/material.h"
+#include "glsl/draw/shadow.h"
+
+typedef struct ShadowOptions {
+    Shadow kind;   // not none
+    int side;      // texels across a map of hair, rounded up to a multiple of 8
+    float spacing; // approx: between fibres along the light, in radii
+    int strands;   // in maps by lanes: no fewer than these stand for all; 0: all
+} ShadowOptions;
+
+// A mesh where the head has carried it. Zeroed: none.
+typedef struct ShadowMesh {
+    uint64_t version;                  // another one for each other mesh; 0: there is none
+    float low[3], high[3];             // its box in its own frame, m
+    float rotation[4], translation[3]; // to the world; m
+} ShadowMesh;
+
+// Everything that maps depend on. Two keys of the same bytes and of a revision that is not 0 have
+// the same maps.
+typedef struct ShadowKey {
+    Light lights[SCENE_MAX_LIGHTS];
+    uint32_t light_count;
+    uint64_t revision; // of the positions of hair: another one wherever they differ
+    uint64_t hair;     // a hash of the looks of all batches
+    ShadowMesh mesh;
+} ShadowKey;
+
+// What the maps of a mesh depend on: they stay where hair alone moves.
+typedef struct ShadowMeshKey {
+    ShadowMesh mesh;
+    int maps;
+    mat4 frames[MAX_LIGHTS];
+} ShadowMeshKey;
+
+typedef struct ShadowFrames {
+    ShadowKey key;
+    // The lights that cast shadows.
+    LightView views[SCENE_MAX_LIGHTS];
+    int lights[SCENE_MAX_LIGHTS], count;
+    // Sums over all hair: particles, with their radii and opacities, and what segments may add to a
+    // texel, of hair whose width is its material's, also times its diameter, and of other hair.
+    double particles, radius, opacity, plain, plain_width, painted;
+    // Of shadow_frames_place.
+    ShadowParams params;
+    CastParams casts[MAX_LIGHTS]; // by which hair is laid into each map
+} ShadowFrames;
+
+// Views of the lights that cast shadows; lamps look at `middle` (m, world). `mesh` may be zeroed.
+void shadow_frames_begin(ShadowFrames *frames, const Light *lights, uint32_t light_count,
+                         const float middle[3], const ShadowMesh *mesh, uint64_t revision);
+
+// Each batch of hair that stands in the light, before shadow_frames_place. `batch` says which it
+// is; the material is complete (look_material). `painted`: its width differs from the material's.
+void shadow_frames_add(ShadowFrames *frames, const void *batch, const MaterialParams *material,
+                       bool painted);
+
+// Whether maps of the key `drawn` show this scene: when all hair has been added.
+bool shadow_frames_same(const ShadowFrames *frames, const ShadowKey *drawn);
+
+// What the box of hair before casting light i is found by.
+CastParams shadow_frames_box(const ShadowFrames *frames, int i);
+
+// Lays a map of `side` x `side` texels around boxes[i] of each casting light (lowest u, v and
+// depth, then the highest, as LightView has them; empty if the lowest is above the highest), and
+// one of the mesh. A light that sees neither has no map. `spacing`: see ShadowOptions.
+void shadow_frames_place(ShadowFrames *frames, int side, float spacing, double (*boxes)[6]);
+
+// The key of the mesh's maps as they are placed.
+ShadowMeshKey shadow_frames_mesh_key(const ShadowFrames *frames);
+
+enum { SHADOW_MESH_SIDE = 1024 }; // texels of a map of the mesh

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// What stands behind and among the hair, in C over lanes: mesh and floor over the background, as
+// base_layer.h has it of shaders (same definitions: glsl/kernel/skin.h, lamp.h, floor.h, edge.h).
+//
+// The mesh's surface and the depths of samples at its edges come first (mesh_raster.h), each pixel
+// is lit once by that, and then all is put together. None of this is done again for an image in
+// which neither camera, head, mesh, lights nor shadows have changed.
+#pragma once
+
+#include "base/params.h"
+#include "lanes/block.h"
+#include "lanes/mesh_raster.h"
+#include "lanes/shadow.h"
+#include "scene/floor.h"
+
+#include "glsl/draw/draw.h"
+
+// An image of it. Boxes in samples: x, y lowest, highest; outside of them is background.
+typedef struct LaneBaseScene {
+    PlacedMesh mesh;       // no triangles: none
+    uint64_t mesh_version; // another one wherever the mesh's own positions or normals differ
+    MeshShading shading;
+    const Floor *floor;
+    const LaneShadow *shadow; // what mesh and floor receive; NULL: none
+    const DrawParams *draw;
+    const int *mesh_box, *box; // [4]: of the mesh, of mesh and floor
+} LaneBaseScene;
+
+// A zeroed struct is empty.
+typedef struct LaneBase {
+    MeshRaster raster;
+    MeshSurface surface; // from sample `low` of the image on
+    int low[2];
+    float *lit; // [3][lit_room / 3], owned: linear light of the surface, in rows as it has them
+    size_t lit_room;
+    uint16_t (*light)[4]; // [room], owned, as `depth`: of `shown`
+    float *depth;
+    size_t room;
+    BlockBase shown;                 // what was drawn last
+    DrawParams drawn;                // it shows these
+    uint64_t mesh_version, shadowed; // the latter: LaneShadow.version
+    bool any;
+    uint64_t version;       // counts the times that anything was drawn
+    uint64_t depth_version; // counts the times that depths were
+} LaneBase;
+
+// Makes `shown`, unless it shows this scene already. RESULT_FAILED if memory is short.
+Result lane_base_draw(LaneBase *base, const LaneBaseScene *scene, Error *error);
+void lane_base_destroy(LaneBase *base);

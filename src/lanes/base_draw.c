@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: MIT
+#include "lanes/base.h"
+
+#include "lanes/base_floor.h"
+#include "lanes/base_mesh.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    BAND = 8, // rows that a thread takes at once
+    WIDER = 2 // samples: the surface around the mesh's box
+};
+
+void lane_base_destroy(LaneBase *base)
+{
+    mesh_raster_destroy(&base->raster);
+    mesh_surface_destroy(&base->surface);
+    free(base->lit);
+    free(base->light);
+    free(base->depth);
+    *base = (LaneBase){0};
+}
+
+// --- Room.
+
+static int clamp(int x, int most)
+{
+    return x < 0 ? 0 : x > most ? most : x;
+}
+
+// What of a box lies in the image, from a multiple of W on; empty beside it.
+static void find_part(const DrawParams *draw, const int box[4], int wider, int part[4])
+{
+    int width = (int)draw->width, height = (int)draw->height;
+    part[0] = clamp(box[0] - wider, width) / W * W;
+    part[1] = clamp(box[1] - wider, height);
+    part[2] = clamp(box[2] < width ? box[2] + 1 + wider : width, width);
+    part[3] = clamp(box[3] < height ? box[3] + 1 + wider : height, height);
+    for (int k = 0; k < 2; ++k)
+        if (part[k + 2] < part[k]) part[k + 2] = part[k];
+}
+
+// New memory in place of old, whose content goes.
+static bool renew(void *memory, size_t bytes)
+{
+    void **pointer = memory;
+    free(*pointer);
+    *pointer = malloc(bytes);
+    return *pointer != NULL;
+}
+
+static Result make_room(LaneBase *base, const LaneBaseScene *scene, Error *error)
+{
+    int mesh[4] = {0}, all[4];
+    if (scene->mesh.triangle_count) find_part(scene->draw, scene->mesh_box, WIDER, mesh);
+    find_part(scene->draw, scene->box, 0, all);
+    TRY(mesh_surface_resize(&base->surface, mesh[2] - mesh[0], mesh[3] - mesh[1], error));
+    base->low[0] = mesh[0];
+    base->low[1] = mesh[1];
+    size_t lit = 3 * (size_t)base->surface.pitch * (size_t)base->surface.height,
+           count = (size_t)(all[2] - all[0]) * (size_t)(all[3] - all[1]);
+    bool good = true;
+    if (base->lit_room < lit)
+        good = renew(&base->lit, lit * sizeof *base->lit), base->lit_room = good ? lit : 0;
+    if (good && base->room < count) {
+        good = renew(&base->light, count * sizeof *base->light) &&
+               renew(&base->depth, count * sizeof *base->depth);
+        base->room = good ? count : 0;
+    }
+    base->shown = (BlockBase){.x = all[0],
+                              .y = all[1],
+                              .width = all[2] - all[0],
+                              .height = all[3] - all[1],
+                              .light = (const uint16_t(*)[4])(void *)base->light,
+                              .depth = base->depth};
+    return good ? RESULT_OK
+                : error_set(error, RESULT_FAILED, "no memory for %zu px of mesh and floor", count);
+}
+
+// --- The mesh's surface.
+
+// The eye is where clip x, y and w are 0, so a point q off it has (a q, b q, c q) for them with the
+// rows a, b, c of the matrix. For w = 1 these are x, y and 1; Cramer's rule gives q.
+BaseView base_view(const DrawParams *draw)
+{
+    double row[3][3], cross[3][3], det = 0; // cross[k]: of the other two rows
+    const int rows[3] = {0, 1, 3};
+    BaseView view = {.draw = draw};
+    for (int k = 0; k < 3; ++k)
+        for (int c = 0; c < 3; ++c) row[k][c] = (double)draw->clip_from_world[c][rows[k]];
+    for (int k = 0; k < 3; ++k)
+        for (int c = 0; c < 3; ++c) {
+            const double *a = row[(k + 1) % 3], *b = row[(k + 2) % 3];
+            cross[k][c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
+        }
+    for (int c = 0; c < 3; ++c) det += row[0][c] * cross[0][c];
+    for (int c = 0; c < 3; ++c) {
+        view.across[c] = (float)(2 / (double)draw->width * cross[0][c] / det);
+        view.down[c] = (float)(2 / (double)draw->height * cross[1][c] / det);
+        view.from[c] = (float)((cross[2][c] - cross[0][c] - cross[1][c]) / det);
+    }
+    return view;
+}
+
+// To px of the surface and depths 0 .. 1.
+static void find_rows(const DrawParams *draw, const int low[2], float rows[4][4])
+{
+    const float size[2] = {draw->width, draw->height};
+    for (int j = 0; j < 4; ++j) {
+        const float *clip = draw->clip_from_world[j];
+        double w = (double)clip[3];
+        for (int k = 0; k < 2; ++k)
+            rows[k][j] =
+                (float)(0.5 * (double)size[k] * ((double)clip[k] + w) - (double)low[k] * w);
+        rows[2][j] = (float)(0.5 * ((double)clip[2] + w));
+        rows[3][j] = clip[3];
+    }
+}
+
+// --- All together.
+
+typedef struct Finish {
+    const LaneBase *base;
+    BaseView view;
+    BaseFloor floor;
+    int parts;
+} Finish;
+
+// 16 px: sums of all samples in front of the floor and behind it, premultiplied; depths.
+typedef struct Pixels {
+    float front[4][W], behind[4][W], depth[W];
+} Pixels;
+
+// The middles around px (x, y) of the surface.
+typedef struct Around {
+    float depth[9];
+    size_t at[9];
+} Around;
+
+static Around look_around(const MeshSurface *surface, int x, int y)
+{
+    Around around;
+    for (int n = 0; n < 9; ++n) {
+        int column = clamp(x + n % 3 - 1, surface->width - 1),
+            row = clamp(y + n / 3 - 1, surface->height - 1);
+        around.at[n] = (size_t)row * (size_t)surface->pitch + (size_t)column;
+        around.depth[n] = surface->depth[around.at[n]];
+    }
+    return around;
+}
+
+// A px at an edge, in lane k.
+static void add_edge(const Finish *finish, int x, int y, const float z[MESH_EDGES], float floor_z,
+                     int k, Pixels *pixels)
+{
+    const LaneBase *base = finish->base;
+    const MeshSurface *surface = &base->surface;
+    const size_t plane = base->lit_room / 3;
+    size_t at = (size_t)y * (size_t)surface->pitch + (size_t)x;
+    Around around = look_around(surface, x, y);
+    for (int c = 0; c < 4; ++c) pixels->front[c][k] = pixels->behind[c][k] = 0;
+    for (int i = 0; i < MESH_EDGES; ++i) {
+        float off = edge_off(z[i], surface->depth[at]);
+        bool mesh = z[i] < EDGE_NOWHERE && surface->depth[at] < EDGE_NOWHERE;
+        size_t from = at;
+        for (int n = 0; n < 9; ++n) {
+            float own = fabsf(z[i] - around.depth[n]);
+            if (!(around.depth[n] < EDGE_NOWHERE && own < off)) continue;
+            off = own, from = around.at[n], mesh = true;
+        }
+        float(*to)[W] = z[i] < floor_z ? pixels->front : pixels->behind;
+        for (int c = 0; c < 4; ++c) {
+            float shown = c == 3 ? 1 : base->lit[(size_t)c * plane + from];
+            to[c][k] += (mesh ? shown : finish->view.draw->background[c]) / MESH_EDGES;
+        }
+    }
+}
+
+SIMD_INLINE void add_mesh(const Finish *finish, int x, int y, const float floor_z[W],
+                          Pixels *pixels)
+{
+    const LaneBase *base = finish->base;
+    const MeshSurface *surface = &base->surface;
+    const DrawParams *draw = finish->view.draw;
+    const size_t plane = base->lit_room / 3;
+    size_t at = (size_t)y * (size_t)surface->pitch + (size_t)x;
+    const float *middle = surface->depth + at;
+    float z[MESH_EDGES][W], share[W];
+    int edge[W], edges = 0;
+    for (int i = 0; i < MESH_EDGES; ++i) memcpy(z[i], surface->edge[i] + at, sizeof z[i]);
+    for (int k = 0; k < W; ++k) {
+        float own = middle[k], steep = edge_steep(own, draw->depth[0], draw->focal), far = own,
+              nearer = 0;
+        int parts = 0;
+        for (int i = 0; i < MESH_EDGES; ++i) {
+            far = simd_max(z[i][k], far);
+            parts |= edge_parts(z[i][k], own, steep);
+            nearer += z[i][k] < floor_z[k] ? 1.0f / MESH_EDGES : 0;
+        }
+        pixels->depth[k] = parts ? far : own;
+        share[k] = nearer;
+        edge[k] = parts;
+        edges |= parts;
+    }
+    for (int c = 0; c < 4; ++c) {
+        const float *lit = base->lit + (size_t)(c < 3 ? c : 0) * plane + at;
+        for (int k = 0; k < W; ++k) {
+            float own = c < 3 ? lit[k] : 1;
+            own = middle[k] < EDGE_NOWHERE ? own : draw->background[c];
+            pixels->front[c][k] = share[k] * own;
+            pixels->behind[c][k] = own - share[k] * own;
+        }
+    }
+    for (int k = 0; edges && k < W; ++k) {
+        const float own[MESH_EDGES] = {z[0][k], z[1][k], z[2][k], z[3][k]};
+        if (edge[k] && x + k < surface->width)
+            add_edge(finish, x + k, y, own, floor_z[k], k, pixels);
+    }
+}
+
+// A half: finite and not negative.
+SIMD_INLINE uint16_t half_of(float x)
+{
+    x = simd_min(simd_max(x, 0), 65504) * 0x1p-112f;
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return (uint16_t)((bits + 0xfff + (bits >> 13 & 1)) >> 13); // to the nearest, or the even one
+}
+
+SIMD_INLINE void store(const BlockBase *shown, int x, int y, const Pixels *pixels)
+{
+    uint16_t halves[W][4];
+    size_t at = (size_t)(y - shown->y) * (size_t)shown->width + (size_t)(x - shown->x);
+    int left = shown->x + shown->width - x, count = left < W ? left : W;
+    for (int k = 0; k < W; ++k)
+        for (int c = 0; c < 4; ++c) halves[k][c] = half_of(pixels->front[c][k]);
+    memcpy((void *)(uintptr_t)(shown->light + at), halves, (size_t)count * sizeof *halves);
+    memcpy((void *)(uintptr_t)(shown->depth + at), pixels->depth,
+           (size_t)count * sizeof *pixels->depth);
+}
+
+SIMD_INLINE void finish_pixels(const Finish *finish, int x, int y)
+{
+    const LaneBase *base = finish->base;
+    const MeshSurface *surface = &base->surface;
+    const float *background = finish->view.draw->background;
+    int column = x - base->low[0], row = y - base->low[1];
+    BaseFloorPoints floor;
+    Pixels pixels;
+    bool floored = finish->floor.kind != FLOOR_NONE &&
+                   base_floor_find(&finish->floor, &finish->view, x, y, &floor);
+    for (int k = 0; !floored && k < W; ++k) floor.depth[k] = EDGE_NOWHERE;
+    if (column >= 0 && column < surface->pitch && row >= 0 && row < surface->height) {
+        add_mesh(finish, column, row, floor.depth, &pixels);
+    } else {
+        for (int c = 0; c < 4; ++c)
+            for (int k = 0; k < W; ++k) pixels.front[c][k] = 0, pixels.behind[c][k] = background[c];
+        for (int k = 0; k < W; ++k) pixels.depth[k] = EDGE_NOWHERE;
+    }
+    if (floored) {
+        float shown[4][W];
+        base_floor_shade(&finish->floor, &finish->view, &floor, shown);
+        for (int c = 0; c < 4; ++c)
+            for (int k = 0; k < W; ++k)
+                pixels.front[c][k] += (1 - pixels.front[3][k]) * shown[c][k] +
+                                      (1 - shown[3][k]) * pixels.behind[c][k];
+        base_floor_hide(&finish->floor, &floor, pixels.depth);
+    } else {
+        for (int c = 0; c < 4; ++c)
+            for (int k = 0; k < W; ++k) pixels.front[c][k] += pixels.behind[c][k];
+    }
+    store(&base->shown, x, y, &pixels);
+}
+
+SIMD_INLINE void finish_rows(const Finish *finish, int part)
+{
+    const BlockBase *shown = &finish->base->shown;
+    for (int y = shown->y; y < shown->y + shown->height; ++y)
+        for (int x = shown->x; x < shown->x + shown->width && y / BAND % finish->parts == part;
+             x += W)
+            finish_pixels(finish, x, y);
+}
+SIMD_STAGE(finish_rows, Finish)
+
+static Result draw_all(LaneBase *base, const LaneBaseScene *scene, bool moved, Error *error)
+{
+    int parts = parallel_threads();
+    if (moved) TRY(make_room(base, scene, error));
+    if (scene->mesh.triangle_count) {
+        float rows[4][4];
+        find_rows(scene->draw, base->low, rows);
+        if (moved)
+            TRY(mesh_raster_surface(&base->raster, &scene->mesh, (const float(*)[4])rows,
+                                    &base->surface, parts, error));
+        base_mesh_light(base, scene, parts);
+    }
+    Finish finish = {base, base_view(scene->draw),
+                     base_floor(scene->floor, scene->shadow, scene->draw), parts};
+    run_finish_rows(&finish, parts);
+    return RESULT_OK;
+}
+
+Result lane_base_draw(LaneBase *base, const LaneBaseScene *scene, Error *error)
+{
+    bool moved = !base->any || base->mesh_version != scene->mesh_version ||
+                 memcmp(&base->drawn, scene->draw, sizeof base->drawn) != 0;
+    uint64_t shadowed = scene->shadow ? scene->shadow->version : 0;
+    if (!moved && base->shadowed == shadowed) return RESULT_OK;
+    base->any = false;
+    ++base->version;
+    if (moved) ++base->depth_version;
+    TRY(draw_all(base, scene, moved, error));
+    base->drawn = *scene->draw;
+    base->mesh_version = scene->mesh_version;
+    base->shadowed = shadowed;
+    base->any = true;
+    return RESULT_OK;
+}

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// Light on 16 points of mesh or floor that neighbouring pixels show, for base.c and base_mesh.c.
+#pragma once
+
+#include "base/simd.h"
+#include "lanes/lamp.h"
+#include "lanes/shadow.h"
+
+#include "glsl/draw/draw.h"
+#include "glsl/kernel/edge.h"
+#include "glsl/kernel/floor.h"
+
+enum { W = 16 };
+
+// The camera: the way from the eye through (x, y) of the image (px), as long as it is to one metre
+// before the eye's plane, is x across + y down + from. See ray.glsl.
+typedef struct BaseView {
+    const DrawParams *draw;
+    float across[3], down[3], from[3];
+} BaseView;
+
+BaseView base_view(const DrawParams *draw);
+
+// Ways through the middles of 16 px from (x, y) on.
+SIMD_INLINE void base_ways(const BaseView *view, int x, int y, float way[3][W])
+{
+    float column = (float)x + 0.5f, row = (float)y + 0.5f;
+    for (int c = 0; c < 3; ++c) {
+        float from = view->down[c] * row + view->from[c], across = view->across[c];
+        for (int k = 0; k < W; ++k) way[c][k] = across * (column + (float)k) + from;
+    }
+}
+
+// What is left of the first `lights` lights at points x of surfaces with these unit normals: see
+// lane_shadow_left_on. `shadow` may be NULL.
+SIMD_INLINE void base_left(const LaneShadow *shadow, int lights, const float x[3][W],
+                           const float normal[3][W], float wrap, int taps,
+                           float left[MAX_LIGHTS][W])
+{
+    float of_map[MAX_LIGHTS][W];
+    if (shadow) lane_shadow_left_on(shadow, x, normal, wrap, taps, of_map);
+    for (int i = 0; i < lights; ++i) {
+        int map = shadow ? shadow->map_of[i] : -1;
+        for (int k = 0; k < W; ++k) left[i][k] = map < 0 ? 1 : of_map[map][k];
+    }
+}

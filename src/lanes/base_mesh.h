@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: MIT
+// Light on the mesh, for base.c.
+#pragma once
+
+#include "lanes/base.h"
+
+// Lights the surface of `base` where it shows the mesh, into base->lit.
+void base_mesh_light(const LaneBase *base, const LaneBaseScene *scene, int parts);

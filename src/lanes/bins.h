@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// Bins ribbons into the blocks of pixels that they touch: a list a block.
+#pragma once
+
+#include "lanes/project.h"
+
+// Lists of an image of columns x rows blocks of BLOCK_WIDTH x BLOCK_HEIGHT px (draw.h).
+typedef struct Bins {
+    int columns, rows;
+    int part_room;
+    uint32_t *places; // [parts][rows * columns], owned: ribbons in a block, later where the next
+                      // one goes
+    size_t *begins;   // [rows * columns + 1], owned: where a block's list begins
+    uint64_t *pairs; // [pair_room], owned: ~depth in the upper half, the ribbon's slot in the lower
+    size_t pair_room;
+    size_t longest; // list
+} Bins;
+
+// RESULT_FAILED when memory is short.
+Result bins_create(Bins *bins, int columns, int rows, Error *error);
+void bins_destroy(Bins *bins);
+
+// Lists all ribbons by ascending slots: block b's are pairs[begins[b]] to before pairs[begins[b +
+// 1]]. Sorting a list by its numbers puts near ribbons first, alike ones by their slots. Lists do
+// not depend on the number of threads. RESULT_FAILED when memory is short.
+Result bins_fill(Bins *bins, const Projection *projection, Error *error);
+
+static inline size_t bins_count(const Bins *bins)
+{
+    return (size_t)bins->columns * (size_t)bins->rows;
+}

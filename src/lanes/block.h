@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// A block of pixels, which one thread composites at a time.
+#pragma once
+
+#include "glsl/draw/draw.h"
+
+#include <stdint.h>
+
+// Pixels side by side in a vector; blocks consist of such cells.
+enum {
+    CELL_WIDTH = 2,
+    CELL_HEIGHT = 4,
+    CELL_PIXELS = CELL_WIDTH * CELL_HEIGHT,
+    BLOCK_CELLS_ACROSS = BLOCK_WIDTH / CELL_WIDTH,
+    BLOCK_CELLS = BLOCK_CELLS_ACROSS * (BLOCK_HEIGHT / CELL_HEIGHT)
+};
+
+typedef struct __attribute__((aligned(32))) Cell {
+    float red[CELL_PIXELS], green[CELL_PIXELS], blue[CELL_PIXELS];
+    float through[CELL_PIXELS]; // share of what stands behind that is seen
+} Cell;
+
+// Ribbons become visible where they stand before what hides them, or: a ribbon that covers a pixel
+// by RIBBON_LEAST_COVERAGE hides all behind it.
+typedef enum BlockForm { BLOCK_OPEN, BLOCK_OVER_MESH, BLOCK_NEAREST, BLOCK_FORMS } BlockForm;
+
+// A block's pixels, `cells` row by row, its first pixel's column and row.
+typedef struct Block {
+    Cell *cells;
+    float (*hidden)[CELL_PIXELS]; // 1/w of what hides all behind it; 0: nothing
+    int x, y;
+} Block;
+
+// What stands behind the hair, in a box of the image: samples x, y and how many of them.
+typedef struct BlockBase {
+    int x, y, width, height;
+    const uint16_t (*light)[4]; // [height][width] halves, linear, premultiplied
+    const float *depth;         // [height][width], 0 .. 1: nothing
+} BlockBase;

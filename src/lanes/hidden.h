@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// How far away hair may be and still be seen, by squares of the image: ribbons behind all that is
+// opaque around them are not binned.
+#pragma once
+
+#include "base/error.h"
+#include "lanes/block.h"
+
+#include <stdbool.h>
+
+enum { HIDDEN_SQUARE = 8 }; // px
+
+// A zeroed struct hides nothing.
+typedef struct Hidden {
+    int columns, rows;
+    float *nearest; // [rows][columns], owned: 1/w of the farthest that is opaque in a square and in
+                    // the eight around it; 0: something can be seen past it
+    float *own;     // the same of the square alone
+    size_t room;
+} Hidden;
+
+// Of an image of width x height px with this base. RESULT_FAILED if memory is short.
+Result hidden_find(Hidden *hidden, const BlockBase *base, const float depth[2], int width,
+                   int height, Error *error);
+void hidden_destroy(Hidden *hidden);
+
+// Whether a box of pixels (first and last column and row), nothing of which is nearer than 1/w
+// `inverse_w`, lies behind.
+static inline bool hidden_hides(const Hidden *hidden, int left, int top, int right, int bottom,
+                                float inverse_w)
+{
+    int column = (left + right) / 2 / HIDDEN_SQUARE, row = (top + bottom) / 2 / HIDDEN_SQUARE;
+    return right - left < 2 * HIDDEN_SQUARE && bottom - top < 2 * HIDDEN_SQUARE &&
+           column < hidden->columns && row < hidden->rows &&
+           inverse_w < hidden->nearest[row * hidden->columns + column];
+}

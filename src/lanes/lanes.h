@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// The room lanes draws hair by the processor's own lanes and threads, from its positions in memory
+// to the image: maps of shadows (shadow.h), light among hair (scatter.h), mesh and floor (base.h),
+// then the hair: projected (project.h), binned (bins.h) and composited block by block (raster.h),
+// shaded where it is seen (shade.h). It knows no OpenGL.
+#pragma once
+
+#include "draw/backend.h"
+#include "lanes/base.h"
+#include "lanes/raster.h"
+#include "lanes/scatter.h"
+#include "lanes/shadow_points.h"
+
+// A batch, as passes that are kept see it.
+typedef struct LaneBatch {
+    LaneLook look;
+    TintTable tints;
+} LaneBatch;
+
+typedef struct Lanes {
+    BackendOptions set;
+    const RendererOptions *options; // of a window
+    ScatterOptions scatters;
+    LaneShadow shadow;
+    LaneScatter scatter;
+    LaneBase base;
+    Hidden hidden;
+    bool draws_hidden; // ribbons behind what hides them, too, so that tests can tell
+    ShadowPoints points;
+    Projection projection;
+    Shades shades;
+    LaneRaster raster;
+    LaneBatch *batches;    // [room], owned
+    LaneHair *hair;        // [room], owned
+    MappedCaster *casters; // [room], owned
+    uint32_t room;
+    LaneHairs hairs;
+    LaneLight light;
+    RendererCounts counts;
+} Lanes;

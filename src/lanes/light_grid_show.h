@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+// What 16 points of hair show to the eye of the light among hair, for loops over lanes: the
+// radiance of the eight cells around each point (trilinear), weighted by what a fibre with its
+// tangent sends from each direction to the eye. Both are found together, for all tangents of a
+// patch, when the first point asks for a patch of a cell (light_grid_patch): points that follow
+// interpolate.
+#pragma once
+
+#include "lanes/light_grid_state.h"
+
+#include "glsl/common/shared.h"
+#include "glsl/kernel/cell.h"
+
+// Turns tangents as tables need them.
+SIMD_INLINE void grid_turn_tangents(const float eye[3], const float axis[3],
+                                    const float p[3][STRAND_TILE], float t[3][STRAND_TILE])
+{
+    const CellVector to = {axis[0], axis[1], axis[2]};
+    for (int i = 0; i < STRAND_TILE; ++i) {
+        CellVector tangent = {t[0][i], t[1][i], t[2][i]},
+                   way = {eye[0] - p[0][i], eye[1] - p[1][i], eye[2] - p[2][i]};
+        tangent = cell_turn(tangent, way, to);
+        t[0][i] = tangent.x, t[1][i] = tangent.y, t[2][i] = tangent.z;
+    }
+}
+
+// Where points lie. By axis, the cells before and behind each point, as their part of a cell's
+// number, and their shares; the number of the cell of its own; its tangent.
+typedef struct GridPlaces {
+    int cell[3][2][STRAND_TILE], own[STRAND_TILE];
+    float share[3][2][STRAND_TILE];
+    int patch[STRAND_TILE], node[STRAND_TILE];
+    float u[STRAND_TILE], v[STRAND_TILE];
+} GridPlaces;
+
+SIMD_INLINE void grid_find_places(const LightLattice *lattice, const float x[3][STRAND_TILE],
+                                  const float tangent[3][STRAND_TILE], GridPlaces *places)
+{
+    const float inverse = 1 / lattice->side;
+    int stride = 1;
+    memset(places->own, 0, sizeof places->own);
+    for (int k = 0; k < 3; ++k) {
+        int most = lattice->count[k] - 1;
+        float last = (float)most;
+        for (int i = 0; i < STRAND_TILE; ++i) {
+            float at = (x[k][i] - lattice->low[k]) * inverse,
+                  from = simd_min(simd_max(at - 0.5f, -0.5f), last + 0.5f);
+            int low = (int)(from + 1) - 1;
+            places->cell[k][0][i] = stride * (low < 0 ? 0 : low);
+            places->cell[k][1][i] = stride * (low < most ? low + 1 : most);
+            places->share[k][1][i] = from - (float)low;
+            places->share[k][0][i] = 1 - places->share[k][1][i];
+            places->own[i] += stride * (int)simd_min(simd_max(at, 0), last);
+        }
+        stride *= lattice->count[k];
+    }
+    for (int i = 0; i < STRAND_TILE; ++i) {
+        CellTangent at = cell_tangent(tangent[0][i], tangent[1][i], tangent[2][i]);
+        places->patch[i] = at.in_patch;
+        places->node[i] = at.node;
+        places->u[i] = at.u;
+        places->v[i] = at.v;
+    }
+}
+
+// Two nodes beside each other: red, green, blue and nothing of each.
+typedef float GridPair __attribute__((vector_size(32), aligned(4), may_alias));
+
+// What point i shows.
+SIMD_INLINE void grid_show_point(const LightGridState *state, int kind, const GridPlaces *places,
+                                 int i, float seen[3])
+{
+    GridPair row = {0}, next = {0};
+    for (int q = 0; q < 8; ++q) {
+        int x = q & 1, y = q >> 1 & 1, z = q >> 2;
+        float weight = places->share[2][z][i] * places->share[1][y][i] * places->share[0][x][i],
+              scratch[CELL_PATCH_NODES][4];
+        int slot =
+            state->slot[places->cell[2][z][i] + places->cell[1][y][i] + places->cell[0][x][i]];
+        const float(*patch)[4] = light_grid_patch(state, kind, slot < 0 ? state->active : slot,
+                                                  places->patch[i], scratch) +
+                                 places->node[i];
+        row += weight * *(const GridPair *)patch[0];
+        next += weight * *(const GridPair *)patch[CELL_PATCH_ROW];
+    }
+    row += places->v[i] * (next - row);
+    for (int c = 0; c < 3; ++c) seen[c] = row[c] + places->u[i] * (row[4 + c] - row[c]);
+}
+
+// What the first `count` of 16 points show: linear RGB. x: world, m; tangents: world, of any
+// length; both must be numbers in all lanes. Needs light_grid_prepare.
+SIMD_INLINE void light_grid_show(const LightGrid *grid, int kind, const float x[3][STRAND_TILE],
+                                 const float tangent[3][STRAND_TILE], int count,
+                                 float seen[3][STRAND_TILE])
+{
+    const LightGridState *state = grid->state;
+    float p[3][STRAND_TILE], t[3][STRAND_TILE];
+    GridPlaces places;
+    memset(seen, 0, 3 * sizeof *seen);
+    if (!state || !state->filled) return;
+    for (int k = 0; k < 3; ++k) {
+        const float *turn = state->field.lattice.turn[k];
+        for (int i = 0; i < STRAND_TILE; ++i) {
+            p[k][i] = turn[0] * x[0][i] + turn[1] * x[1][i] + turn[2] * x[2][i];
+            t[k][i] = turn[0] * tangent[0][i] + turn[1] * tangent[1][i] + turn[2] * tangent[2][i];
+        }
+    }
+    const GridKind *of = &state->field.kinds[kind];
+    grid_turn_tangents(state->eye, of->gather_eye, (const float(*)[STRAND_TILE])p, t);
+    grid_find_places(&state->field.lattice, (const float(*)[STRAND_TILE])p,
+                     (const float(*)[STRAND_TILE])t, &places);
+    for (int i = 0; i < count; ++i) {
+        int slot = state->slot[places.own[i]];
+        const float *hidden = state->hidden + 4 * (size_t)(slot < 0 ? state->active : slot);
+        float own[3];
+        if (hidden[3] > 0)
+            for (int c = 0; c < 3; ++c)
+                own[c] = hidden[c] * of->lobes.albedo[SCATTER_INCLINATIONS - 1][c];
+        else
+            grid_show_point(state, kind, &places, i, own);
+        for (int c = 0; c < 3; ++c) seen[c][i] = own[c];
+    }
+}

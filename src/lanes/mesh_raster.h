@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// Triangles of a mesh to depths, as OpenGL fills them: samples on an edge that two triangles share
+// belong to one of them (coordinates in steps of 1/256 px, edges by whole numbers), the nearest
+// sample stays, and of equal depths that of the first triangle. Both sides are seen. Threads take
+// bands of rows: the bits are the same for any number of them.
+#pragma once
+
+#include "base/error.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+// A mesh as it stands in one frame.
+typedef struct PlacedMesh {
+    const float (*position)[3];    // [vertex_count], m, the mesh's frame
+    const float (*normal)[3];      // [vertex_count], unit; for depths alone NULL
+    const float *open;             // [vertex_count], share of the sky; NULL: 1
+    const uint32_t (*triangle)[3]; // [triangle_count]
+    uint32_t vertex_count, triangle_count;
+    float rotation[4], translation[3]; // quaternion x y z w, m: the mesh's frame -> world
+} PlacedMesh;
+
+// Vertices on the screen. A zeroed struct is empty; what was filled may be forgotten.
+typedef struct MeshRaster {
+    int (*place)[2];   // [room], owned: 1/256 px
+    float *value[5];   // [room], owned: depth, 1 over w, normal over w
+    unsigned char *on; // [room], owned: the planes of the view's box that a vertex is beyond
+    size_t room;
+} MeshRaster;
+
+void mesh_raster_destroy(MeshRaster *raster);
+
+// Of each texel's middle the depth of the mesh, 0..1; 1: nothing. depths[side][side], side a
+// multiple of 16. `rows`: of the matrix by which (x, y, z, 1) of the world becomes
+// (u w, v w, depth w, w), u and v in texels. What is not between 0 and 1 in depth is cut off.
+// RESULT_FAILED if memory is short.
+Result mesh_raster_depths(MeshRaster *raster, const PlacedMesh *mesh, const float rows[4][4],
+                          int side, float *depths, int parts, Error *error);
+
+enum {
+    MESH_EDGES = 4
+}; // samples of depth beside a pixel's middle, where OpenGL's CPU driver has
+   // its own
+
+// The mesh's nearest surface in a window. A zeroed struct is empty.
+typedef struct MeshSurface {
+    int width, height, pitch; // px, of rows in memory: a multiple of 16
+    float *depth;             // [height][pitch], owned like all: in middles, 1: nothing
+    float *edge[MESH_EDGES];  // depths at the other samples
+    // In middles where there is mesh, all over w: 1; the normal, which is as long as the share of
+    // the sky.
+    float *inverse, *normal[3];
+    float *memory; // of all these
+    size_t room;
+} MeshSurface;
+
+// Makes room. RESULT_FAILED if memory is short.
+Result mesh_surface_resize(MeshSurface *surface, int width, int height, Error *error);
+void mesh_surface_destroy(MeshSurface *surface);
+
+// Fills the surface. `rows`: see above, u and v in px of the window, depths before the eye as
+// OpenGL has them.
+Result mesh_raster_surface(MeshRaster *raster, const PlacedMesh *mesh, const float rows[4][4],
+                           MeshSurface *surface, int parts, Error *error);

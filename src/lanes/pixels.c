@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: MIT
+#include "lanes/pixels.h"
+
+#include "base/simd.h"
+#include "image/tone.h"
+
+#include "glsl/common/shared_math.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { CHANNELS = 4 };
+
+// A row of cells, row by row of its pixels.
+typedef struct Strip {
+    float light[CHANNELS][CELL_HEIGHT][BLOCK_WIDTH];
+} Strip;
+
+static int least_int(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+// A half that is finite and not negative.
+SIMD_INLINE float float_of_half(uint16_t half)
+{
+    return simd_float_of((uint32_t)(half & 0x7fff) << 13) * 0x1p112f;
+}
+
+bool pixels_have_base(const BlockBase *base, int x, int y)
+{
+    return base && x < base->x + base->width && x + BLOCK_WIDTH > base->x &&
+           y < base->y + base->height && y + BLOCK_HEIGHT > base->y;
+}
+
+// The sample's place in the base; -1 outside.
+SIMD_INLINE int base_at(const BlockBase *base, int x, int y)
+{
+    x -= base->x, y -= base->y;
+    return x >= 0 && x < base->width && y >= 0 && y < base->height ? y * base->width + x : -1;
+}
+
+static void hide(const Block *block, const BlockBase *base, const PixelStyle *style)
+{
+    for (int c = 0; c < BLOCK_CELLS; ++c)
+        for (int k = 0; k < CELL_PIXELS; ++k) {
+            int at = base_at(base, block->x + c % BLOCK_CELLS_ACROSS * CELL_WIDTH + k % CELL_WIDTH,
+                             block->y + c / BLOCK_CELLS_ACROSS * CELL_HEIGHT + k / CELL_WIDTH);
+            float z = at < 0 ? 1 : base->depth[at];
+            block->hidden[c][k] = z < 1 ? (2 * z - 1 - style->depth[0]) / style->depth[1] : 0;
+        }
+}
+
+void pixels_clear(const Block *block, const BlockBase *base, const PixelStyle *style)
+{
+    memset(block->cells, 0, BLOCK_CELLS * sizeof *block->cells);
+    memset(block->hidden, 0, BLOCK_CELLS * sizeof *block->hidden);
+    for (int c = 0; c < BLOCK_CELLS; ++c)
+        for (int k = 0; k < CELL_PIXELS; ++k) block->cells[c].through[k] = 1;
+    if (base) hide(block, base, style);
+}
+
+// --- What is seen: the ribbons over what stands behind them.
+
+static void fill_behind(const Block *block, const BlockBase *base, const PixelStyle *style,
+                        int column, int row, float behind[CHANNELS][CELL_PIXELS])
+{
+    for (int c = 0; c < CHANNELS; ++c)
+        for (int k = 0; k < CELL_PIXELS; ++k) behind[c][k] = style->background[c];
+    for (int k = 0; k < CELL_PIXELS && base; ++k) {
+        int at = base_at(base, block->x + column * CELL_WIDTH + k % CELL_WIDTH,
+                         block->y + row * CELL_HEIGHT + k / CELL_WIDTH);
+        for (int c = 0; c < CHANNELS && at >= 0; ++c)
+            behind[c][k] = float_of_half(base->light[at][c]);
+    }
+}
+
+SIMD_INLINE void lay_over(const Cell *restrict cell, float light[restrict CHANNELS][CELL_PIXELS])
+{
+    for (int k = 0; k < CELL_PIXELS; ++k) {
+        float through = cell->through[k];
+        light[0][k] = cell->red[k] + through * light[0][k];
+        light[1][k] = cell->green[k] + through * light[1][k];
+        light[2][k] = cell->blue[k] + through * light[2][k];
+        light[3][k] = 1 - through + through * light[3][k];
+    }
+}
+
+// What --aov depth shows of a ribbon at the inverse distance `near`, 0: of nothing. See
+// display.glsl.
+static float depth_shown(const PixelStyle *style, float near)
+{
+    float distance = 1 / simd_max(near, 1e-20f), from = style->depth_range[0],
+          to = style->depth_range[1],
+          share = to > from ? simd_min(simd_max((to - distance) / (to - from), 0), 1) : distance;
+    return near > 0 ? share : 0;
+}
+
+static void show_depth(const Cell *cell, const float *hidden, const PixelStyle *style,
+                       float light[CHANNELS][CELL_PIXELS])
+{
+    for (int c = 0; c < CHANNELS; ++c)
+        for (int k = 0; k < CELL_PIXELS; ++k)
+            light[c][k] = c == 3 ? 1 : depth_shown(style, cell->through[k] == 0 ? hidden[k] : 0);
+}
+
+static void fill_strip(const Block *block, const BlockBase *base, const PixelStyle *style, int row,
+                       Strip *strip)
+{
+    for (int column = 0; column < BLOCK_CELLS_ACROSS; ++column) {
+        int at = row * BLOCK_CELLS_ACROSS + column;
+        float light[CHANNELS][CELL_PIXELS];
+        fill_behind(block, base, style, column, row, light);
+        if (style->shows_depth)
+            show_depth(&block->cells[at], block->hidden[at], style, light);
+        else
+            lay_over(&block->cells[at], light);
+        for (int c = 0; c < CHANNELS; ++c)
+            for (int y = 0; y < CELL_HEIGHT; ++y)
+                memcpy(&strip->light[c][y][column * CELL_WIDTH], &light[c][y * CELL_WIDTH],
+                       CELL_WIDTH * sizeof(float));
+    }
+}
+
+// Pixels are the means of side x side samples.
+SIMD_INLINE void average_squares(Strip *strip, int side)
+{
+    for (int c = 0; c < CHANNELS; ++c)
+        for (int y = 0; y < CELL_HEIGHT / side; ++y)
+            for (int x = 0; x < BLOCK_WIDTH / side; ++x) {
+                float sum = 0;
+                for (int k = 0; k < side * side; ++k)
+                    sum += strip->light[c][y * side + k / side][x * side + k % side];
+                strip->light[c][y][x] = sum / (float)(side * side);
+            }
+}
+
+static void average(Strip *strip, int side)
+{
+    if (side == 2) average_squares(strip, 2);
+    if (side == 4) average_squares(strip, 4);
+}
+
+// --- Colours, as display.glsl has them.
+
+SIMD_INLINE float tone_mapped(int tone, float c)
+{
+    return tone == TONE_REINHARD ? tone_reinhard(c) : tone == TONE_FILMIC ? tone_filmic(c) : c;
+}
+
+// Straight alpha, and colours of that tone.
+SIMD_INLINE void display_as(Strip *restrict strip, int y, int kind)
+{
+    for (int x = 0; x < BLOCK_WIDTH; ++x) {
+        float straight = 1 / simd_max(strip->light[3][y][x], 1e-6f);
+        for (int c = 0; c < 3; ++c) {
+            float light = strip->light[c][y][x] * straight;
+            strip->light[c][y][x] =
+                kind == TONE_LIGHT ? light : srgb_from_linear(tone_mapped(kind, light));
+        }
+    }
+}
+
+static void display(Strip *strip, int y, int kind)
+{
+    if (kind == TONE_NONE) display_as(strip, y, TONE_NONE);
+    if (kind == TONE_REINHARD) display_as(strip, y, TONE_REINHARD);
+    if (kind == TONE_FILMIC) display_as(strip, y, TONE_FILMIC);
+    if (kind == TONE_LIGHT) display_as(strip, y, TONE_LIGHT);
+}
+
+static void find_levels(const float light[BLOCK_WIDTH], float most_level,
+                        int32_t levels[BLOCK_WIDTH])
+{
+    for (int x = 0; x < BLOCK_WIDTH; ++x)
+        levels[x] = (int32_t)(simd_min(simd_max(light[x], 0), 1) * most_level + 0.5f);
+}
+
+static void store_8(const Strip *strip, int y, int channels, int width, uint8_t *to)
+{
+    int32_t levels[BLOCK_WIDTH];
+    for (int c = 0; c < channels; ++c) {
+        find_levels(strip->light[c][y], 255, levels);
+        for (int x = 0; x < width; ++x) to[x * channels + c] = (uint8_t)levels[x];
+    }
+}
+
+static void store_16(const Strip *strip, int y, int channels, int width, uint16_t *to)
+{
+    int32_t levels[BLOCK_WIDTH];
+    for (int c = 0; c < channels; ++c) {
+        find_levels(strip->light[c][y], 65535, levels);
+        for (int x = 0; x < width; ++x) to[x * channels + c] = (uint16_t)levels[x];
+    }
+}
+
+static void store_float(const Strip *strip, int y, int channels, int width, float *to)
+{
+    for (int c = 0; c < channels; ++c)
+        for (int x = 0; x < width; ++x) to[x * channels + c] = strip->light[c][y][x];
+}
+
+static void store_row(Strip *strip, int y, const PixelStyle *style, const Image *image, int width,
+                      void *to)
+{
+    if (image->kind != IMAGE_FLOAT) display(strip, y, style->tone);
+    if (image->kind == IMAGE_8)
+        store_8(strip, y, image->channels, width, to);
+    else if (image->kind == IMAGE_16)
+        store_16(strip, y, image->channels, width, to);
+    else
+        store_float(strip, y, image->channels, width, to);
+}
+
+static bool is_row_clear(const Block *block, int row)
+{
+    float least_through = 1;
+    for (int c = 0; c < BLOCK_CELLS_ACROSS; ++c)
+        for (int k = 0; k < CELL_PIXELS; ++k)
+            least_through =
+                simd_min(least_through, block->cells[row * BLOCK_CELLS_ACROSS + c].through[k]);
+    return least_through == 1;
+}
+
+void pixels_store(const Block *block, const BlockBase *base, const PixelStyle *style,
+                  const Image *image)
+{
+    int s = style->samples, left = block->x / s, top = block->y / s,
+        width = least_int(BLOCK_WIDTH / s, image->width - left),
+        height = least_int(BLOCK_HEIGHT / s, image->height - top);
+    size_t pixel = (size_t)image->channels * image_channel_size(image->kind),
+           pitch = (size_t)image->width * pixel;
+    uint8_t *to = image->pixels + (size_t)top * pitch + (size_t)left * pixel;
+    const uint8_t *clear = NULL; // a row without hair
+    Strip strip;
+    bool is_clear = false;
+    for (int y = 0; y < height; ++y, to += pitch) {
+        int row = y * s / CELL_HEIGHT, within = y % (CELL_HEIGHT / s);
+        if (within == 0) is_clear = !base && is_row_clear(block, row);
+        if (is_clear && clear) {
+            memcpy(to, clear, (size_t)width * pixel);
+            continue;
+        }
+        if (is_clear) clear = to;
+        if (within == 0) {
+            fill_strip(block, base, style, row, &strip);
+            average(&strip, s);
+        }
+        store_row(&strip, within, style, image, width, to);
+    }
+}

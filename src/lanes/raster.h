@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// From ribbons to an image, block by block, on all threads.
+#pragma once
+
+#include "lanes/bins.h"
+#include "lanes/composite.h"
+#include "lanes/pixels.h"
+
+// A zeroed struct is empty. Arrays of threads are owned.
+typedef struct LaneRaster {
+    Bins bins;
+    uint64_t *sorting[PARALLEL_MOST]; // [sorting_room]
+    Cell *cells[PARALLEL_MOST];       // [BLOCK_CELLS], then what hides their pixels
+    CompositeScratch *scratch[PARALLEL_MOST];
+    size_t sorting_room;
+} LaneRaster;
+
+// An image: its ribbons, and what they are composited with.
+typedef struct RasterScene {
+    Ribbons ribbons;
+    const BlockBase *base; // NULL: nothing
+    PixelStyle style;
+    bool nearest; // ribbons hide what is behind them, see BlockForm
+    Image *image;
+} RasterScene;
+
+// Of width x height samples. RESULT_FAILED when memory is short.
+Result raster_create(LaneRaster *raster, int width, int height, Error *error);
+void raster_destroy(LaneRaster *raster);
+
+// Bins the ribbons into blocks. RESULT_FAILED when memory is short.
+Result raster_bin(LaneRaster *raster, const Projection *projection, Error *error);
+
+// Composites what was binned and writes all pixels of the image.
+void raster_draw(LaneRaster *raster, const RasterScene *scene);

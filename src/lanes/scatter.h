@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// The light among hair (light_grid.h) for images of the lanes, kept while hair, lights and mesh
+// stand still.
+#pragma once
+
+#include "draw/fibre_kinds.h"
+#include "draw/scatter.h"
+#include "lanes/light_grid.h"
+#include "lanes/shadow.h"
+
+// A zeroed struct is empty.
+typedef struct LaneScatter {
+    LightGrid grid;
+    LightBlocks blocks;
+    FibreKinds kinds;
+    GridHair *hair; // [room], owned: with kinds, also where no light is found
+    uint32_t count, room;
+    uint64_t shadow_version; // of the maps that the light was found by
+    DrawParams drawn;
+    bool any;
+    uint32_t solved; // times that light was found, for the last image
+} LaneScatter;
+
+// Finds the light, unless it is the last frame's, and makes it ready for this eye. `casters` are
+// those of the frame's hair. *shown: whether there is any. RESULT_FAILED if memory is short.
+Result lane_scatter_draw(LaneScatter *scatter, const ScatterOptions *options,
+                         const BackendFrame *frame, const MappedCaster *casters,
+                         const LaneShadow *shadow, bool *shown, Error *error);
+void lane_scatter_destroy(LaneScatter *scatter);

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: MIT
+// What hair and mesh leave of each light that casts shadows, made and read by C over lanes: maps of
+// one frame, and their light at any 16 points. What glsl/draw/shadow.glsl and shadow_surface.glsl
+// read, found where it is asked for.
+//
+// The functions that read are inlined into loops of SIMD_STAGEs; each finds 16 points at once.
+#pragma once
+
+#include "base/error.h"
+#include "base/simd.h"
+#include "draw/mapped_caster.h"
+#include "draw/shadow_frames.h"
+#include "lanes/shadow_map.h"
+#include "lanes/shadow_mesh.h"
+#include "lanes/shadow_sample.h"
+#include "lanes/tile_order.h"
+
+#include "glsl/kernel/left.h"
+
+typedef struct LaneShadowScene {
+    const Light *lights;
+    uint32_t light_count;
+    MappedCasters casters;           // their `order` and `points` are not looked at
+    const struct PlacedMesh *mesh;   // that stands in the light (mesh_raster.h); NULL: none
+    float mesh_low[3], mesh_high[3]; // its box in its own frame, m
+    uint64_t mesh_version;           // another one for each other mesh, > 0
+    float middle[3];                 // m, world: what lamps look at
+    uint64_t revision;               // another one wherever positions differ; 0: never the same
+} LaneShadowScene;
+
+typedef struct LaneShadow {
+    ShadowOptions options;
+    ShadowParams params;              // params.maps of them
+    int map_of[MAX_LIGHTS];           // of each light; -1: it has none
+    float light_place[MAX_LIGHTS][4]; // of each map's light: unit, towards it, with 0; or m, with 1
+    uint64_t version;                 // counts the times that maps were made
+    int maps_drawn;                   // by the last lane_shadow_draw
+    bool any, by_mesh;                // there are maps; of the mesh, too
+    ShadowMap map;
+    // Owned, with room for so many maps: as shadow_map_draw makes them; layers NULL: approx.
+    float *depths;    // [map][side][side]
+    uint32_t *layers; // [map][side][tile][SHADOW_LAYERS][SHADOW_MAP_TILE]
+    int room;
+    LaneMeshShadow mesh;
+    TileOrder order;
+    ShadowSample sample;
+    ShadowKey drawn;
+} LaneShadow;
+
+// `options->kind` is not none. RESULT_FAILED if memory is short. A zeroed struct may be destroyed.
+Result lane_shadow_create(LaneShadow *shadow, const ShadowOptions *options, Error *error);
+void lane_shadow_destroy(LaneShadow *shadow);
+
+// Makes the maps of this scene, unless they show it already. RESULT_FAILED if memory is short.
+Result lane_shadow_draw(LaneShadow *shadow, const LaneShadowScene *scene, Error *error);
+
+// --- What is left at 16 points.
+
+enum { SHADOW_LOOK = STRAND_TILE }; // points
+
+// Where points lie before a map of hair, `inside`: on it, and before the light.
+typedef struct ShadowLook {
+    float u[SHADOW_LOOK], v[SHADOW_LOOK], z[SHADOW_LOOK], inside[SHADOW_LOOK];
+} ShadowLook;
+
+SIMD_INLINE void shadow_look(const LaneShadow *shadow, int map, const float x[3][SHADOW_LOOK],
+                             ShadowLook *look)
+{
+    const float(*rows)[4] = (const float(*)[4])shadow->params.from_world[map];
+    float most = (float)shadow->params.side;
+    for (int k = 0; k < SHADOW_LOOK; ++k) {
+        CasterPlace p = caster_place(rows, x[0][k], x[1][k], x[2][k]);
+        bool inside = (p.u >= 0) & (p.v >= 0) & (p.u <= most) & (p.v <= most);
+        look->u[k] = p.u, look->v[k] = p.v, look->z[k] = p.z;
+        look->inside[k] = inside ? 1.f : 0.f;
+    }
+}
+
+// Past hair, by deep maps. `width`: of the points' own fibres in texels.
+SIMD_INLINE void shadow_look_deep(const LaneShadow *shadow, int map, const ShadowLook *look,
+                                  const float width[SHADOW_LOOK], const float opacity[SHADOW_LOOK],
+                                  float left[SHADOW_LOOK])
+{
+    enum { N = SHADOW_LOOK, S = SHADOW_MAP_TILE };
+    int side = shadow->params.side, tiles = shadow->map.tiles, pitch = tiles * SHADOW_LAYERS * S;
+    const float *depths = shadow->depths + (size_t)map * (size_t)side * (size_t)side;
+    const uint32_t *layers = shadow->layers + (size_t)map * (size_t)side * (size_t)pitch;
+    float wide = (float)side, last = shadow->map.last, u[N], v[N], begin[N], share[N];
+    int column[N], row[N], at[N], next[N];
+    for (int k = 0; k < N; ++k) {
+        u[k] = left_from(look->u[k], wide, 2);
+        v[k] = left_from(look->v[k], wide, 2);
+        column[k] = (int)u[k], row[k] = (int)v[k];
+        u[k] -= (float)column[k], v[k] -= (float)row[k];
+    }
+    for (int k = 0; k < N; ++k) {
+        int texel = row[k] * side + column[k], below = texel + side;
+        begin[k] = left_mix(depths[texel], depths[texel + 1], depths[below], depths[below + 1],
+                            u[k], v[k]);
+    }
+    for (int k = 0; k < N; ++k) {
+        // layer_of, but for a bound that compilers know and then jump by
+        float root = sqrtf(simd_positive(look->z[k] - begin[k])),
+              layer = simd_min((float)SHADOW_LAYERS * root, last);
+        int whole = (int)layer, first = row[k] * pitch + whole * S, to = column[k] + 1;
+        share[k] = layer - (float)whole;
+        at[k] = first + column[k] / S * (SHADOW_LAYERS * S) + column[k] % S;
+        next[k] = first + to / S * (SHADOW_LAYERS * S) + to % S;
+    }
+    for (int k = 0; k < N; ++k) {
+        int a = at[k], b = next[k], c = a + pitch, d = b + pitch;
+        left[k] = left_mix(layer_depth(layers[a], share[k]), layer_depth(layers[b], share[k]),
+                           layer_depth(layers[c], share[k]), layer_depth(layers[d], share[k]), u[k],
+                           v[k]);
+    }
+    for (int k = 0; k < N; ++k) left[k] -= own_layer_depth(width[k], opacity[k], share[k]);
+    for (int k = 0; k < N; ++k) left[k] = left_of_fibres(simd_positive(left[k]) * look->inside[k]);
+}
+
+// Past hair, by first depths.
+SIMD_INLINE void shadow_look_approx(const LaneShadow *shadow, int map, const ShadowLook *look,
+                                    float left[SHADOW_LOOK])
+{
+    enum { N = SHADOW_LOOK, TAPS = LEFT_TAPS };
+    int side = shadow->params.side;
+    const float *firsts = shadow->depths + (size_t)map * (size_t)side * (size_t)side;
+    float fibres = shadow->params.fibres * shadow->params.place[map][1],
+          passed = shadow->params.passed, most = (float)(side - 1), sum[N], weights[N];
+    for (int k = 0; k < N; ++k) sum[k] = weights[k] = 0;
+    for (int tap = 0; tap < TAPS * TAPS; ++tap) {
+        int across = tap % TAPS - TAPS / 2, down = tap / TAPS - TAPS / 2;
+        for (int k = 0; k < N; ++k) {
+            float u = simd_min(simd_max(look->u[k], 0), most + 1),
+                  v = simd_min(simd_max(look->v[k], 0), most + 1);
+            float x = (float)((int)u + across), y = (float)((int)v + down);
+            int column = (int)simd_min(simd_max(x, 0), most),
+                row = (int)simd_min(simd_max(y, 0), most);
+            float weight = left_cone(x + 0.5f - u, y + 0.5f - v),
+                  count = left_fibres(look->z[k], firsts[row * side + column], fibres);
+            sum[k] += weight * SHARED_EXP2(passed * count);
+            weights[k] += weight;
+        }
+    }
+    for (int k = 0; k < N; ++k) {
+        float share = sum[k] / weights[k];
+        left[k] = look->inside[k] > 0 ? share : 1;
+    }
+}
+
+SIMD_INLINE void shadow_look_hair(const LaneShadow *shadow, int map, const ShadowLook *look,
+                                  const float radius[SHADOW_LOOK], const float opacity[SHADOW_LOOK],
+                                  float left[SHADOW_LOOK])
+{
+    float width[SHADOW_LOOK], across = 2 * shadow->params.place[map][3];
+    for (int k = 0; k < SHADOW_LOOK; ++k) width[k] = radius[k] * across;
+    if (shadow->layers)
+        shadow_look_deep(shadow, map, look, width, opacity, left);
+    else
+        shadow_look_approx(shadow, map, look, left);
+}
+
+// Past the mesh, a share 0 .. 1, on hair and surfaces; `covered`: 1 where the map is, else 0.
+SIMD_INLINE void shadow_look_mesh(const LaneShadow *shadow, int map, const float x[3][SHADOW_LOOK],
+                                  int taps, float past[SHADOW_LOOK], float covered[SHADOW_LOOK])
+{
+    enum { N = SHADOW_LOOK, Q = SHADOW_MESH_SQUARE };
+    const float(*rows)[4] = (const float(*)[4])shadow->params.mesh_from_world[map];
+    int side = shadow->params.mesh_side, squares = side / Q, texel[N], open[N], any = 0;
+    const float *depths = shadow->mesh.depths + (size_t)map * (size_t)side * (size_t)side;
+    const float(*bounds)[2] =
+        (const float(*)[2])shadow->mesh.bounds + (size_t)map * (size_t)squares * (size_t)squares;
+    float wide = (float)side, shift = shadow->params.place[map][2], u[N], v[N], depth[N];
+    for (int k = 0; k < N; ++k) {
+        float inverse = 1 / caster_row(rows, 3, x[0][k], x[1][k], x[2][k]),
+              across = caster_row(rows, 0, x[0][k], x[1][k], x[2][k]) * inverse,
+              down = caster_row(rows, 1, x[0][k], x[1][k], x[2][k]) * inverse,
+              z = caster_row(rows, 2, x[0][k], x[1][k], x[2][k]) * inverse - shift;
+        bool on = (across >= 0) & (down >= 0) & (across <= wide) & (down <= wide);
+        covered[k] = on ? 1.f : 0.f;
+        depth[k] = simd_min(z, 1); // what lies behind all of the map
+        u[k] = left_from(across, wide, (float)taps);
+        v[k] = left_from(down, wide, (float)taps);
+        int column = (int)u[k], row = (int)v[k];
+        u[k] -= (float)column, v[k] -= (float)row;
+        texel[k] = row * side + column;
+        open[k] = row / Q * squares + column / Q;
+    }
+    for (int k = 0; k < N; ++k) {
+        float least = bounds[open[k]][0], most = bounds[open[k]][1];
+        past[k] = least < depth[k] ? 0.f : 1.f;
+        open[k] = (least < depth[k]) & (most >= depth[k]);
+        texel[k] = open[k] ? texel[k] : 0;
+        any |= open[k];
+    }
+    if (!any) return;
+    float sum[N], scale = 1 / (float)((taps - 1) * (taps - 1));
+    for (int k = 0; k < N; ++k) sum[k] = 0;
+    for (int j = 0; j < taps; ++j)
+        for (int i = 0; i < taps; ++i)
+            for (int k = 0; k < N; ++k) {
+                float inside = left_inside(i, taps, u[k]) * left_inside(j, taps, v[k]);
+                sum[k] += left_lit(depths[texel[k] + j * side + i], depth[k], inside);
+            }
+    for (int k = 0; k < N; ++k) past[k] = open[k] ? scale * sum[k] : past[k];
+}
+
+// The share, 0 .. 1, of a map's light that reaches points x (m) in the middle of fibres, past hair
+// and mesh. `radius` (m) and `opacity` (to light) are the fibres', which do not shade themselves.
+SIMD_INLINE void lane_shadow_left_of(const LaneShadow *shadow, int map,
+                                     const float x[3][SHADOW_LOOK], const float radius[SHADOW_LOOK],
+                                     const float opacity[SHADOW_LOOK], float left[SHADOW_LOOK])
+{
+    const float *before = shadow->params.from_world[map][3];
+    ShadowLook look;
+    shadow_look(shadow, map, x, &look);
+    shadow_look_hair(shadow, map, &look, radius, opacity, left);
+    if (!shadow->by_mesh) return;
+    float past[SHADOW_LOOK], covered[SHADOW_LOOK];
+    shadow_look_mesh(shadow, map, x, 2, past, covered);
+    for (int k = 0; k < SHADOW_LOOK; ++k) { // nothing stands between a lamp and what is behind it
+        float w = before[0] * x[0][k] + before[1] * x[1][k] + before[2] * x[2][k] + before[3];
+        left[k] *= w > 0 ? past[k] : 1;
+    }
+}
+
+// The same of all maps: left[map].
+SIMD_INLINE void lane_shadow_left(const LaneShadow *shadow, const float x[3][SHADOW_LOOK],
+                                  const float radius[SHADOW_LOOK], const float opacity[SHADOW_LOOK],
+                                  float left[][SHADOW_LOOK])
+{
+    for (int map = 0; map < shadow->params.maps; ++map)
+        lane_shadow_left_of(shadow, map, x, radius, opacity, left[map]);
+}
+
+// The same on surfaces with unit normals, of the mesh (which mesh_lift has moved) or a floor.
+// `wrap`: the greatest cosine below the horizon from which light still counts; up to the same
+// above, a surface's own shadow comes in softly. `taps`: texels of the mesh's map each way that are
+// averaged, 2 .. SHADOW_MESH_TAPS. Where a light cannot shine the share is 1.
+SIMD_INLINE void lane_shadow_left_on(const LaneShadow *shadow, const float x[3][SHADOW_LOOK],
+                                     const float normal[3][SHADOW_LOOK], float wrap, int taps,
+                                     float left[][SHADOW_LOOK])
+{
+    static const float none[SHADOW_LOOK] = {0};
+    float shone[SHADOW_LOOK], own[SHADOW_LOOK];
+    ShadowLook look;
+    for (int map = 0; map < shadow->params.maps; ++map) {
+        const float *at = shadow->light_place[map], *before = shadow->params.from_world[map][3];
+        for (int k = 0; k < SHADOW_LOOK; ++k) {
+            float way[3], square = 0, facing = 0;
+            for (int c = 0; c < 3; ++c) {
+                way[c] = at[c] - at[3] * x[c][k];
+                square += way[c] * way[c];
+                facing += way[c] * normal[c][k];
+            }
+            facing /= sqrtf(simd_max(square, 1e-30f));
+            float w = before[0] * x[0][k] + before[1] * x[1][k] + before[2] * x[2][k] + before[3];
+            float t = simd_min(simd_max(facing / simd_max(wrap, 1e-6f), 0), 1);
+            shone[k] = (facing > -wrap) & (w > 0) ? 1.f : 0.f;
+            own[k] = wrap > 0 ? t * t * (3 - 2 * t) : 1;
+        }
+        shadow_look(shadow, map, x, &look);
+        for (int k = 0; k < SHADOW_LOOK; ++k) look.inside[k] *= look.z[k] > 0 ? shone[k] : 0;
+        shadow_look_hair(shadow, map, &look, none, none, left[map]);
+        if (!shadow->by_mesh) continue;
+        float past[SHADOW_LOOK], covered[SHADOW_LOOK];
+        shadow_look_mesh(shadow, map, x, taps, past, covered);
+        for (int k = 0; k < SHADOW_LOOK; ++k)
+            left[map][k] *= 1 + shone[k] * covered[k] * own[k] * (past[k] - 1);
+    }
+}

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// Depth maps of a mesh before lights, drawn by C, with what decides most look-ups.
+#pragma once
+
+#include "base/error.h"
+#include "draw/shadow_frames.h"
+#include "lanes/mesh_raster.h"
+
+enum {
+    SHADOW_MESH_SQUARE = 16, // texels: side of what has one pair of bounds
+    SHADOW_MESH_TAPS = 6     // texels each way that a point looks at, at most
+};
+
+// A zeroed struct is empty.
+typedef struct LaneMeshShadow {
+    float *depths; // [map][SHADOW_MESH_SIDE][SHADOW_MESH_SIDE], owned: 0..1; 1: no mesh
+    // [map][row][column], owned: the least and the greatest depth that a point in the square looks
+    // at: most points lie before or behind all of them
+    float (*bounds)[2];
+    int room; // maps
+    MeshRaster raster;
+    ShadowMeshKey drawn;
+} LaneMeshShadow;
+
+// Draws the maps that are placed, unless they show the mesh already; on `parts` threads.
+// RESULT_FAILED if memory is short.
+Result shadow_mesh_draw(LaneMeshShadow *shadow, const ShadowFrames *frames, const PlacedMesh *mesh,
+                        int parts, Error *error);
+void shadow_mesh_destroy(LaneMeshShadow *shadow);
+
+// The bounds of `maps` maps of side x side texels, a multiple of SHADOW_MESH_SQUARE.
+void shadow_mesh_bound(const float *depths, int side, int maps, float (*bounds)[2], int parts);

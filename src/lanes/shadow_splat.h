@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// Strands into the sums of shadow maps, as points along their segments and, where they are wide,
+// across them (glsl/draw/shadow_splat.comp): one walk over the hair for several maps.
+#pragma once
+
+#include "lanes/shadow_map.h"
+
+typedef struct ShadowSplat {
+    ShadowMap *shadow;
+    const CastParams *params; // [maps]; not deep or coarse: of a map of first depths
+    int maps;                 // no more than shadow->at_once
+    MappedCasters casters;
+    const float *depths; // [map][side][side]: at which layers begin; NULL: first depths are drawn
+    bool coarse;         // first depths of a coarse map
+} ShadowSplat;
+
+// Empties first depths or sums, and draws them, each thread its own.
+void shadow_splat_draw(ShadowSplat *splat);

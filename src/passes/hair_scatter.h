@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// The light among hair for images, found by shaders (light_passes.h), and kept while hair, lights
+// and mesh stand still.
+#pragma once
+
+#include "draw/backend.h"
+#include "draw/fibre_kinds.h"
+#include "passes/light_passes.h"
+#include "passes/look_programs.h"
+#include "passes/shadows.h"
+
+// A zeroed struct has but to be created.
+typedef struct HairScatter {
+    ScatterOptions options;
+    const GpuLimits *limits;
+    LightPasses passes;
+    LightBlocks blocks;
+    FibreKinds kinds;
+    GridHair *hair;      // [room], owned
+    ParticleLight *seen; // [room], owned
+    uint32_t count, room;
+    uint64_t shadow_version; // of the maps that the light was found by
+    DrawParams drawn;
+    float to_eye[3]; // of the light that is seen
+    bool any;
+    uint32_t solved; // times that light was found, for the last image
+} HairScatter;
+
+void hair_scatter_create(HairScatter *scatter, const GpuLimits *limits,
+                         const ScatterOptions *options);
+void hair_scatter_destroy(HairScatter *scatter);
+
+// Queues what shaders have to know of hair early: before the shadows of the scene are drawn, which
+// are not those of the last image.
+Result hair_scatter_begin(HairScatter *scatter, const BackendFrame *frame, ShadowCasters casters,
+                          Error *error);
+
+// Finds the light if it is another one than before and if a look of the drawing asks for it, and
+// gives it to the looks. Needs `shadows`, deep ones, drawn for the scene and bound. RESULT_FAILED
+// if memory is short.
+Result hair_scatter_draw(HairScatter *scatter, const BackendFrame *frame, ShadowCasters casters,
+                         const Shadows *shadows, Error *error);

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// The opaque mesh behind and among the hair.
+#pragma once
+
+#include "base/params.h"
+#include "gpu/shader.h"
+#include "mesh/mesh.h"
+#include "passes/render_target.h"
+
+typedef struct RenderMesh {
+    GLuint surface, edges; // programs
+    GLuint vertex_array;
+    GpuBuffer position, normal, triangle; // float[3], float[3], uint[3]
+    GpuBuffer open;                       // float, see openness.h; none: 1 everywhere
+    uint32_t triangle_count;              // 0: no mesh, nothing is done
+    float low[3], high[3];                // bounds in the head's frame, m
+    float color[3];                       // linear
+} RenderMesh;
+
+// Uploads. `color`: linear RGB. RESULT_FAILED if memory is short.
+Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const float color[3],
+                          const GpuLimits *limits, Error *error);
+
+// Moves the vertices: [those that the mesh was made with], in the head's frame; unit normals.
+void render_mesh_move(RenderMesh *mesh, const Mesh *moved);
+
+// Gives each vertex its share of the sky (openness.h). RESULT_FAILED if memory is short.
+Result render_mesh_set_openness(RenderMesh *mesh, const float *open, uint32_t vertex_count,
+                                const GpuLimits *limits, Error *error);
+void render_mesh_destroy(RenderMesh *mesh);
+
+// Draws into the target's depth, its surface, which is right where there is depth, and its edges.
+// Needs the DrawParams block, depths cleared, depth test and writing on.
+void render_mesh_draw(const RenderMesh *mesh, const RenderTarget *target);

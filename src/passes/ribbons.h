@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// Strands that are projected and shaded in compute: their ribbons, for the compute rasteriser.
+#pragma once
+
+#include "draw/drawing.h"
+#include "passes/cull.h"
+#include "passes/look_programs.h"
+
+enum { RIBBONS_MOST = 1 << 24 }; // slots; as many as a buffer shows to shaders, if that is less
+
+// What stands behind and among the hair. No target: nothing.
+typedef struct RibbonsBase {
+    CullBase cull;
+    const int *box; // samples: x, y lowest, highest; outside there is background
+} RibbonsBase;
+
+typedef struct Ribbons {
+    const GpuLimits *limits;
+    LookPrograms project;
+    Cull cull;
+    GpuBuffer records, keys; // RIBBON_TEXELS uvec4 (block.glsl) and uvec2 a slot: depth, blocks
+    GpuBuffer counts;
+    RibbonsBase base;          // of the image
+    size_t slots;              // of the image
+    bool skips;                // many strands of the last image could be left out
+    uint64_t strands;          // of the image
+    uint64_t segments, culled; // once they are counted
+} Ribbons;
+
+// `limits` outlives the ribbons. RESULT_FAILED if memory is short.
+Result ribbons_create(Ribbons *ribbons, const GpuLimits *limits, Error *error);
+void ribbons_destroy(Ribbons *ribbons);
+
+// Begins an image of at most `segments` ribbons. Needs the DrawParams block. RESULT_FAILED if
+// memory is short or there are more than shaders can see.
+Result ribbons_begin(Ribbons *ribbons, uint64_t segments, const RibbonsBase *base, Error *error);
+
+// Adds a batch. Needs the DrawParams block. RESULT_FAILED if the look's shader does not compile.
+Result ribbons_add(Ribbons *ribbons, const HairBatch *batch, const Look *look, Error *error);
+
+// Takes what the buffers `counts` and, if strands were looked through, `cull.tally` have come to;
+// NULL: they were not.
+void ribbons_take_counts(Ribbons *ribbons, const uint32_t *counts, const uint32_t *tally);
+
+// Counts what was added: segments, culled. Waits for it. RESULT_FAILED if it can't be read.
+Result ribbons_count(Ribbons *ribbons, Error *error);

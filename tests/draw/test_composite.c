@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: MIT
+// A block of pixels against the same sum in double precision, pixel by pixel.
+#include "lanes/composite.h"
+
+#include "base/random.h"
+
+#include "glsl/common/shared_math.h"
+#include "glsl/kernel/ribbon.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { MOST = 1008, BLOCK_X = 128, BLOCK_Y = 64 };
+
+static ScreenPoint points[2 * MOST + 1];
+static uint64_t order[MOST];
+static Cell cells[BLOCK_CELLS];
+static float hidden[BLOCK_CELLS][CELL_PIXELS];
+static const Block BLOCK = {cells, hidden, BLOCK_X, BLOCK_Y};
+static CompositeScratch *scratch;
+
+typedef struct Pixel {
+    double color[3], through, hidden;
+    double little; // of ribbons, at most, that are not shaded
+} Pixel;
+
+// --- Ribbons, strands of two points whose colours are known: both ends are free.
+
+typedef struct Ribbon {
+    float a[2], b[2], half_width[2], near[2], color[2][3];
+} Ribbon;
+
+static Ribbon ribbons[MOST];
+static LaneHair hair = {.points = 2,
+                        .tiles = MOST / STRAND_TILE,
+                        .caster.material = {.vertex_count = 2, .smooth_parts = 1}};
+static const LaneHairs HAIRS = {&hair, 1, MOST / STRAND_TILE, 2 * MOST};
+static Shades shades;
+
+static float level(double value)
+{
+    return low_level(pack_level((float)value));
+}
+
+static void pack(const Ribbon *r, int i)
+{
+    ScreenPoint *a = &points[2 * i];
+    a[0] = (ScreenPoint){r->a[0], r->a[1], r->near[0], pack_level(r->half_width[0])};
+    a[1] = (ScreenPoint){r->b[0], r->b[1], -r->near[1], pack_level(r->half_width[1]) | 1 << 16};
+    for (int k = 0; k < 2; ++k)
+        shades.points[2 * i + k] =
+            (uint64_t)pack_level(r->color[k][0]) | (uint64_t)pack_level(r->color[k][1]) << 16 |
+            (uint64_t)pack_level(r->color[k][2]) << 32 | (uint64_t)shades.image << 48;
+}
+
+static float range(Random *random, double low, double high)
+{
+    return (float)(low + (high - low) * random_real(random));
+}
+
+// Ribbons in and around the block, in random order of depth.
+static void make_ribbons(uint64_t seed, int count, double width, double opacity)
+{
+    Random random = random_create(seed, 0);
+    hair.caster.material.opacity = (float)opacity;
+    for (int i = 0; i < count; ++i) {
+        Ribbon *r = &ribbons[i];
+        double angle = 6.283185307 * random_real(&random), length = 1 + 30 * random_real(&random);
+        r->a[0] = range(&random, BLOCK_X - 20, BLOCK_X + BLOCK_WIDTH + 20);
+        r->a[1] = range(&random, BLOCK_Y - 20, BLOCK_Y + BLOCK_HEIGHT + 20);
+        r->b[0] = r->a[0] + (float)(length * cos(angle));
+        r->b[1] = r->a[1] + (float)(length * sin(angle));
+        r->near[0] = range(&random, 0.5, 2);
+        r->near[1] = r->near[0] * range(&random, 0.9, 1.1);
+        for (int k = 0; k < 2; ++k) r->half_width[k] = level(width * (0.2 + random_real(&random)));
+        for (int k = 0; k < 6; ++k) r->color[k / 3][k % 3] = level(0.01 + random_real(&random));
+        pack(r, i);
+        order[i] = (uint64_t)(2 * i);
+    }
+}
+
+static void composite_on(SimdLevel simd, const Block *block, BlockForm form, int count,
+                         float least_seen)
+{
+    const Ribbons all = {points, {&HAIRS, NULL, &shades}, least_seen};
+    composite_block_on(simd, block, form, &all, order, (size_t)count, scratch);
+}
+
+static void composite(BlockForm form, int count, float least_seen)
+{
+    composite_on(simd_level(), &BLOCK, form, count, least_seen);
+}
+
+static void clear_block(float share_hidden)
+{
+    Random random = random_create(5, 5);
+    memset(cells, 0, sizeof cells);
+    for (int c = 0; c < BLOCK_CELLS; ++c)
+        for (int k = 0; k < CELL_PIXELS; ++k) {
+            cells[c].through[k] = 1;
+            hidden[c][k] = random_real(&random) < (double)share_hidden ? range(&random, 0.5, 2) : 0;
+        }
+}
+
+// --- The same in double precision.
+
+static double area(double t, double a, double b)
+{
+    double m = fmin(t, 0.5 * (a + b)), u = fmax(m - 0.5 * (a - b), 0);
+    return (m - u * u / (2 * b)) / a;
+}
+
+static double clamp(double x)
+{
+    return fmin(fmax(x, 0), 1);
+}
+
+// Opacity included; where along the ribbon the pixel lies goes to *along.
+static double cover(const Ribbon *r, double x, double y, double *along)
+{
+    double dx = (double)r->b[0] - (double)r->a[0], dy = (double)r->b[1] - (double)r->a[1],
+           length = hypot(dx, dy), ax = x - (double)r->a[0], ay = y - (double)r->a[1];
+    dx /= length, dy /= length;
+    double on = ax * dx + ay * dy;
+    *along = clamp(on / length);
+    double across = fabs(ay * dx - ax * dy),
+           half = (double)r->half_width[0] +
+                  *along * ((double)r->half_width[1] - (double)r->half_width[0]),
+           a = fmax(fabs(dx), fabs(dy)), b = fmax(fmin(fabs(dx), fabs(dy)), 1e-3),
+           before = area(fabs(across - half), a, b),
+           covered = area(across + half, a, b) - (across < half ? -before : before);
+    return (double)hair.caster.material.opacity * covered *
+           clamp(fmin(on + 0.5, length - on + 0.5));
+}
+
+static Pixel expected_pixel(int count, BlockForm form, double x, double y, double hides,
+                            double least)
+{
+    Pixel p = {{0}, 1, hides, 0};
+    for (int i = 0; i < count; ++i) {
+        const Ribbon *r = &ribbons[i];
+        double along, alpha = cover(r, x, y, &along),
+                      near = (double)r->near[0] + along * ((double)r->near[1] - (double)r->near[0]);
+        if (form == BLOCK_NEAREST) {
+            if (alpha / (double)hair.caster.material.opacity < (double)RIBBON_LEAST_COVERAGE ||
+                near <= p.hidden)
+                continue;
+            p.hidden = near;
+            p.through = 1, alpha = 1;
+            memset(p.color, 0, sizeof p.color);
+        }
+        if (form == BLOCK_OVER_MESH && near < p.hidden) continue;
+        for (int k = 0; k < 3; ++k)
+            p.color[k] += p.through * alpha *
+                          ((1 - along) * (double)r->color[0][k] + along * (double)r->color[1][k]);
+        p.little += fmin(p.through * alpha, least);
+        p.through *= 1 - alpha;
+    }
+    return p;
+}
+
+static double difference(const Cell *cell, int k, const Pixel *p)
+{
+    double most = fabs((double)cell->through[k] - p->through);
+    most = fmax(most, fabs((double)cell->red[k] - p->color[0]));
+    most = fmax(most, fabs((double)cell->green[k] - p->color[1]));
+    return fmax(most, fabs((double)cell->blue[k] - p->color[2]));
+}
+
+// The largest difference of any pixel but of `spared` of them: where a pixel's coverage is as good
+// as RIBBON_LEAST_COVERAGE, or two ribbons are as good as equally near, rounding decides. With
+// `least_seen`: beyond what it may change.
+static double compare(int count, BlockForm form, float least_seen, int spared)
+{
+    static float before[BLOCK_CELLS][CELL_PIXELS];
+    double largest = 0, least = (double)least_seen;
+    memcpy(before, hidden, sizeof before);
+    composite(form, count, least_seen);
+    for (int c = 0; c < BLOCK_CELLS; ++c)
+        for (int k = 0; k < CELL_PIXELS; ++k) {
+            double x = BLOCK_X + c % BLOCK_CELLS_ACROSS * CELL_WIDTH + k % CELL_WIDTH + 0.5,
+                   y = BLOCK_Y + c / BLOCK_CELLS_ACROSS * CELL_HEIGHT + k / CELL_WIDTH + 0.5;
+            Pixel p = expected_pixel(count, form, x, y, (double)before[c][k], least);
+            double off = difference(&cells[c], k, &p);
+            if (off > 1e-3 && spared-- > 0) continue;
+            largest = fmax(largest, off - 1.01 * (p.little + 2 * least));
+        }
+    return largest;
+}
+
+// Distances across are rounded at 90 px, by 4e-6 px, of which a pixel's coverage changes by as
+// much, a hundred layers on end by ten times that at most.
+static void ribbons_are_laid_under_each_other(void **state)
+{
+    (void)state;
+    const double widths[] = {0.3, 1, 5};
+    for (int i = 0; i < 3; ++i) {
+        make_ribbons(1, 300, widths[i], 0.3);
+        clear_block(0);
+        assert_true(compare(300, BLOCK_OPEN, 0, 0) < 4e-5);
+    }
+}
+
+// 1/1024 may be missing, not more.
+static void what_is_left_out_hardly_shows(void **state)
+{
+    (void)state;
+    make_ribbons(2, MOST, 5, 0.9);
+    clear_block(0);
+    double off = compare(MOST, BLOCK_OPEN, 0, 0);
+    assert_true(off < (double)RIBBON_LEAST_THROUGH + 4e-5);
+    assert_true(off > 4e-5); // something was
+}
+
+// Ribbons of which less is seen look like the others, whose colours differ by 1.01 at most, and so
+// does what stands behind where no more than twice as much of it is seen.
+static void ribbons_that_are_hardly_seen_look_like_the_others(void **state)
+{
+    (void)state;
+    static Cell with[BLOCK_CELLS];
+    const float least[] = {1 / 1024.0f, 1 / 256.0f, 1 / 64.0f};
+    for (int i = 0; i < 3; ++i) {
+        make_ribbons(8, MOST, i == 1 ? 1 : 3, 0.5);
+        for (int form = BLOCK_OPEN; form <= BLOCK_OVER_MESH; ++form) {
+            clear_block(form == BLOCK_OPEN ? 0 : 0.2f);
+            double beyond = compare(MOST, (BlockForm)form, least[i], form == BLOCK_OPEN ? 0 : 2);
+            assert_true(beyond < 4e-5);
+            memcpy(with, cells, sizeof cells);
+            clear_block(form == BLOCK_OPEN ? 0 : 0.2f);
+            composite((BlockForm)form, MOST, 0);
+            assert_memory_not_equal(with, cells, sizeof cells); // some were
+        }
+    }
+}
+
+static double sum_light(void)
+{
+    double sum = 0;
+    for (int c = 0; c < BLOCK_CELLS; ++c)
+        for (int k = 0; k < CELL_PIXELS; ++k)
+            sum += (double)cells[c].red[k] + (double)cells[c].green[k] + (double)cells[c].blue[k];
+    return sum;
+}
+
+// The colours of what is not shaded are those of the others in the mean; 1.1 % of the light would
+// be lost. Pixels without others, the edges of single ribbons, have none.
+static void light_of_what_is_hardly_seen_is_made_up_for(void **state)
+{
+    (void)state;
+    double sums[2];
+    make_ribbons(10, 600, 0.5, 0.05);
+    for (int least = 0; least < 2; ++least) {
+        clear_block(0);
+        composite(BLOCK_OPEN, 600, least ? 1 / 128.0f : 0);
+        sums[least] = sum_light();
+    }
+    if (!(fabs(sums[1] / sums[0] - 1) < 0.004)) fail_msg("%g of the light", sums[1] / sums[0]);
+}
+
+static void what_lies_behind_the_mesh_is_hidden(void **state)
+{
+    (void)state;
+    make_ribbons(3, 300, 1, 0.5);
+    clear_block(0.5f);
+    assert_true(compare(300, BLOCK_OVER_MESH, 0, 2) < 4e-5);
+}
+
+// Near to far, as lists are: cells whose pixels all hide what comes are left out, and the bytes are
+// those of the ribbons before.
+static void what_is_all_behind_the_mesh_changes_nothing(void **state)
+{
+    (void)state;
+    enum { BEFORE = 128 }; // a batch
+    static Cell expected[BLOCK_CELLS];
+    make_ribbons(9, MOST, 1, 0.5);
+    for (int i = BEFORE; i < MOST; ++i) {
+        for (int k = 0; k < 2; ++k) ribbons[i].near[k] *= 0.1f;
+        pack(&ribbons[i], i);
+    }
+    for (int all = 0; all < 2; ++all) {
+        clear_block(1);
+        composite(BLOCK_OVER_MESH, all ? MOST : BEFORE, 0);
+        if (!all) memcpy(expected, cells, sizeof cells);
+        assert_memory_equal(cells, expected, sizeof cells);
+    }
+    int seen = 0;
+    for (int c = 0; c < BLOCK_CELLS; ++c) seen += expected[c].through[0] < 1;
+    assert_true(seen > BLOCK_CELLS / 10);
+}
+
+static void the_nearest_hides_all_behind_it(void **state)
+{
+    (void)state;
+    make_ribbons(4, 300, 1, 0.5);
+    clear_block(0.3f);
+    assert_true(compare(300, BLOCK_NEAREST, 0, 4) < 4e-5);
+}
+
+static void every_processor_gives_the_same_bits(void **state)
+{
+    (void)state;
+    static Cell expected[BLOCK_CELLS];
+    make_ribbons(6, MOST, 1, 0.5);
+    for (int form = 0; form < BLOCK_FORMS; ++form)
+        for (int least = 0; least < 2; ++least)
+            for (int p = 0; p <= (int)simd_level(); ++p) {
+                clear_block(form == BLOCK_OPEN ? 0 : 0.5f);
+                composite_on((SimdLevel)p, &BLOCK, (BlockForm)form, MOST, least ? 1 / 256.0f : 0);
+                if (p == 0) memcpy(expected, cells, sizeof cells);
+                assert_memory_equal(cells, expected, sizeof cells);
+            }
+}
+
+// Points as far out as projection lets them be: nothing outside the block is touched.
+static void wild_points_harm_nobody(void **state)
+{
+    (void)state;
+    const float wild[] = {1.6e8f, -1.6e8f, 1e4f, -1e4f, 0, 1e-30f, BLOCK_X, BLOCK_Y + 30};
+    enum { WILD = sizeof wild / sizeof *wild };
+    make_ribbons(7, WILD * WILD, 1, 0.5);
+    for (int i = 0; i < WILD * WILD; ++i) {
+        Ribbon *r = &ribbons[i];
+        r->a[0] = wild[i / WILD], r->a[1] = wild[i % WILD];
+        r->b[0] = wild[i * 5 / WILD % WILD], r->b[1] = wild[i * 3 % WILD];
+        r->half_width[0] = i % 3 ? 1 : 5e4f;
+        pack(r, i);
+    }
+    clear_block(0);
+    static struct {
+        Cell before, cells[BLOCK_CELLS], after;
+    } guarded;
+    memset(&guarded, 0x55, sizeof guarded);
+    memcpy(guarded.cells, cells, sizeof cells);
+    const Block block = {guarded.cells, hidden, BLOCK_X, BLOCK_Y};
+    composite_on(simd_level(), &block, BLOCK_OPEN, WILD * WILD, 0);
+    for (size_t i = 0; i < sizeof(Cell); ++i) {
+        assert_int_equal(((const uint8_t *)&guarded.before)[i], 0x55);
+        assert_int_equal(((const uint8_t *)&guarded.after)[i], 0x55);
+    }
+}
+
+static int setup(void **state)
+{
+    (void)state;
+    Error error = {{0}};
+    scratch = aligned_alloc(64, composite_scratch_size());
+    return scratch && shades_begin(&shades, 2 * MOST, &error) == RESULT_OK ? 0 : 1;
+}
+
+static int teardown(void **state)
+{
+    (void)state;
+    free(scratch);
+    shades_destroy(&shades);
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(ribbons_are_laid_under_each_other),
+        cmocka_unit_test(what_is_left_out_hardly_shows),
+        cmocka_unit_test(ribbons_that_are_hardly_seen_look_like_the_others),
+        cmocka_unit_test(light_of_what_is_hardly_seen_is_made_up_for),
+        cmocka_unit_test(what_lies_behind_the_mesh_is_hidden),
+        cmocka_unit_test(what_is_all_behind_the_mesh_changes_nothing),
+        cmocka_unit_test(the_nearest_hides_all_behind_it),
+        cmocka_unit_test(every_processor_gives_the_same_bits),
+        cmocka_unit_test(wild_points_harm_nobody),
+    };
+    return cmocka_run_group_tests(tests, setup, teardown);
+}

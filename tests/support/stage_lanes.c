@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// What of a stage looks into the backend of blocks, some names of which passes have, too.
+#include "lanes/lanes.h"
+#include "lanes/light_grid_show.h"
+#include "support/stage.h"
+
+struct Lanes *stage_lanes(void)
+{
+    assert_ptr_equal(studio.renderer.backend, &DRAW_LANES);
+    return studio.renderer.state;
+}
+
+uint64_t stage_lanes_base_version(void)
+{
+    return stage_lanes()->base.version;
+}
+
+void stage_lanes_draw_hidden(bool on)
+{
+    stage_lanes()->draws_hidden = on;
+}
+
+void stage_lanes_show(uint32_t item, const float x[3][STRAND_TILE],
+                      const float tangent[3][STRAND_TILE], float seen[3][STRAND_TILE])
+{
+    const struct Lanes *lanes = stage_lanes();
+    light_grid_show(&lanes->scatter.grid, lanes->scatter.hair[item].kind, x, tangent, STRAND_TILE,
+                    seen);
+}
