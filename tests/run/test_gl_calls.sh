@@ -37,6 +37,6 @@ claim "EXR files with layers: five images a frame, none is waited for"
 calls 700 0 --raster quads --frames 4 -o "$work/%d.exr"
 
 claim "blocks read hair by mapping it, which costs a CPU driver nothing"
-calls 110 3 --raster blocks --frames 4 -o "$work/blocks/%d.png"
+calls 60 2 --raster blocks --frames 4 -o "$work/blocks/%d.png"
 
 finish
