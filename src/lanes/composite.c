@@ -114,8 +114,8 @@ SIMD_INLINE void set_linear(Linear *l, int i, float at, float by_x, float by_y)
     l->at[i] = at, l->by_x[i] = by_x, l->by_y[i] = by_y;
 }
 
-// Of a place in the block, px; of the first pixel whose middle is not before it the ceiling is taken
-// by a half more.
+// Of a place in the block, px; of the first pixel whose middle is not before it the ceiling is
+// taken by a half more.
 SIMD_INLINE int cell_of(float px, int size, int cell)
 {
     float last = (float)(size - 1), at = px > 0 ? px : 0;
@@ -133,8 +133,7 @@ SIMD_INLINE void find_directions(const Batch *restrict b, RibbonWays *restrict w
         for (int i = 0; i < BATCH; ++i) {
             float x = b->x[n + 1][i] - b->x[n][i], y = b->y[n + 1][i] - b->y[n][i],
                   square = x * x + y * y, scale = 1 / sqrtf(simd_max(square, 1e-20f));
-            bool there =
-                (square > 1e-12f) & (b->near_at[n][i] > 0) & (b->near_at[n + 1][i] > 0);
+            bool there = (square > 1e-12f) & (b->near_at[n][i] > 0) & (b->near_at[n + 1][i] > 0);
             scale = there | (n == 1) ? scale : 0;
             ways->x[n][i] = x * scale, ways->y[n][i] = y * scale;
         }

@@ -131,6 +131,7 @@ run 0 "$work/shown.json" -q --cache "$work/layers.cache"
 run 0 "$work/hidden.json" -q --from-cache "$work/layers.cache" -o "$work/layer/"
 same_images "$work/alone" "$work/layer"
 for raster in blocks quads compute; do
+    # shellcheck disable=SC2086 # words
     for shadow in none approx dom; do run 0 $hair $plain --hidden --frames 1 --raster $raster --shadow $shadow --size 32x24 -q -o "$work/nothing.png"; done
 done
 

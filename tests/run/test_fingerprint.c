@@ -87,9 +87,9 @@ static void *params_of(World *world, const ParamInfo *info)
 // Gives the parameter another value than it has.
 static void change(World *world, const ParamInfo *info)
 {
-    static const char *const WORDS[] = {
-        "true", "false", "1,2,3", "0.1,0.2,0.3", "transparent", "64x48", "2/3",
-        "90",   "7",     "0.25",  "0.01",        "cm",          "1000000", "2", "1"};
+    static const char *const WORDS[] = {"true",  "false", "1,2,3",   "0.1,0.2,0.3", "transparent",
+                                        "64x48", "2/3",   "90",      "7",           "0.25",
+                                        "0.01",  "cm",    "1000000", "2",           "1"};
     void *params = params_of(world, info);
     char *before = params_format(info, params), *after = NULL;
     const char *text = info->kind == PARAM_PATH ? "assets/curls.tfx" : "frame";
