@@ -15,11 +15,6 @@ static Result make_planes(LightGridState *state, Error *error)
     size_t plane = (most > 6 ? most : 6) * most * 3 * GRID_LANES;
     if (state->plane >= plane) return RESULT_OK;
     free(state->planes);
-    if (state->patches) {
-        free((void *)state->patches->of);
-        free(state->patches->seen);
-        free(state->patches);
-    }
     state->planes = malloc(3 * ORDINATE_GROUPS * plane * sizeof *state->planes);
     state->plane = state->planes ? plane : 0;
     return state->planes ? RESULT_OK

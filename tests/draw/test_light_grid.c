@@ -233,6 +233,30 @@ static void lights_add_up(void **state)
     assert_true(fabs(all / (parts[0] + parts[1] + parts[2]) - 1) < 0.04);
 }
 
+// The memory of a grid grows and stays: what it found before is not in what it finds next.
+static void a_grid_serves_hair_that_grows_and_shrinks(void **state)
+{
+    (void)state;
+    Ball *ball = open_ball(0.8f);
+    set_sky(ball, 1);
+    ball->scene.orders = 2;
+    LightGrid grid = {0};
+    static const float LENGTHS[] = {1, 3, 0.25f, 9, 1};
+    for (size_t i = 0; i < sizeof LENGTHS / sizeof *LENGTHS; ++i) {
+        place_strands(ball);
+        for (int p = 0; p < PARTICLES; ++p) ball->position[p][1] *= LENGTHS[i];
+        ball->scene.cells = 16 * (i + 1 < 4 ? (int)i + 1 : 1);
+        NEEDED(light_grid_solve(&grid, &ball->scene, error));
+        show(ball, &grid);
+        static float seen[PARTICLES][3];
+        memcpy(seen, ball->seen, sizeof seen);
+        solve(ball);
+        assert_memory_equal(seen, ball->seen, sizeof seen);
+    }
+    light_grid_destroy(&grid);
+    close_ball(ball);
+}
+
 // A lamp far away is a sun of the light that it has there.
 static void a_far_lamp_is_a_sun(void **state)
 {
@@ -634,6 +658,7 @@ int main(void)
         cmocka_unit_test(hair_without_absorption_vanishes_before_an_even_sky),
         cmocka_unit_test(darker_hair_sends_less),
         cmocka_unit_test(lights_add_up),
+        cmocka_unit_test(a_grid_serves_hair_that_grows_and_shrinks),
         cmocka_unit_test(a_far_lamp_is_a_sun),
         cmocka_unit_test(a_mesh_stands_in_the_light),
         cmocka_unit_test(some_strands_stand_for_all),
