@@ -21,11 +21,13 @@ SIMD_INLINE void bound_square(const float *first, int side, int wide, int high, 
     for (int k = 0; k < SQUARE; ++k) least[k] = most[k] = first[k];
     for (int y = 0; y < high; ++y) {
         const float *row = first + (ptrdiff_t)y * side;
-        for (int x = 0; x < wide; x += wide - SQUARE ? wide - SQUARE : SQUARE)
+        for (int end = 0; end < 2; ++end) { // the first texels of a row, and the last ones
+            const float *at = end ? row + wide - SQUARE : row;
             for (int k = 0; k < SQUARE; ++k) {
-                least[k] = simd_min(row[x + k], least[k]);
-                most[k] = simd_max(row[x + k], most[k]);
+                least[k] = simd_min(at[k], least[k]);
+                most[k] = simd_max(at[k], most[k]);
             }
+        }
     }
     for (int k = 0; k < SQUARE; ++k) {
         low = simd_min(least[k], low);

@@ -10,11 +10,12 @@ golden=$root/tests/golden
 
 # be32 NUMBER: four bytes, the highest first.
 be32() { env printf "$(printf '%08x' "$1" | sed 's/../\\x&/g')"; }
-# add_text IN OUT KEY TEXT: a PNG file with a text chunk behind its header.
+# add_text IN OUT KEY TEXT: a PNG file with a text chunk before its pixels: the last of a key counts.
 add_text() {
     printf 'tEXt%s\0%s' "$3" "$4" >"$work/chunk"
     crc=$(gzip -c "$work/chunk" | tail -c 8 | od -An -N4 -tu4)
-    { head -c 33 "$1" && be32 $(($(wc -c <"$work/chunk") - 4)) && cat "$work/chunk" && be32 "$crc" && tail -c +34 "$1"; } >"$2"
+    at=$(($(grep -obUaF IDAT "$1" | head -n 1 | cut -d: -f1) - 4))
+    { head -c $at "$1" && be32 $(($(wc -c <"$work/chunk") - 4)) && cat "$work/chunk" && be32 "$crc" && tail -c +$((at + 1)) "$1"; } >"$2"
 }
 # add_pfm FILE BYTES: 4 x 1 pixels, the first as its bytes say, the others black.
 add_pfm() { { printf 'PF\n4 1\n-1\n' && env printf "$2" && head -c 36 /dev/zero; } >"$1"; }

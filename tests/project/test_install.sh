@@ -96,11 +96,11 @@ equal "$work/own.png" "$work/same.png"
 in_file "$work/stats.json" "$TRACTRIX_GLSL_DIR"
 chmod u+w "$work/glsl/draw/block_project.comp"
 sed 's/^void main()/this is no GLSL\n&/' glsl/draw/block_project.comp >"$work/glsl/draw/block_project.comp"
-run 1 assets/fur.tfx --frames 1 --size 64x48 --raster blocks -q -o "$work/none.png"
+run 1 assets/fur.tfx --frames 1 --size 64x48 --raster compute -q -o "$work/none.png"
 says "block_project.comp:$(grep -n '^this' "$work/glsl/draw/block_project.comp" | cut -d: -f1)"; one_line
 none "$work/none.png"
 rm "$work/glsl/draw/block_project.comp"
-run 3 assets/fur.tfx --frames 1 --size 64x48 --raster blocks -q -o "$work/none.png"; says "block_project.comp"; one_line
+run 3 assets/fur.tfx --frames 1 --size 64x48 --raster compute -q -o "$work/none.png"; says "block_project.comp"; one_line
 none "$work/none.png"
 
 finish
