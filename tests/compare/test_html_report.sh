@@ -25,8 +25,8 @@ count() { grep -oF -- "$1" "$work/report.html" | wc -l; }
 counts() { if [ "$(count "$2")" = "$1" ]; then good; else bad "'$2' stands $(count "$2") times, expected $1"; fi; }
 
 mkdir "$work/a" "$work/b"
-add_text "$golden"/curls_still.png "$work/a/differ.png" Renderer 'Old <card>'
-add_text "$golden"/curls_split.png "$work/b/differ.png" Renderer 'New </script>'
+add_text "$golden"/curls_still.png "$work/a/differ.png" Comment 'Old <card>'
+add_text "$golden"/curls_split.png "$work/b/differ.png" Comment 'New </script>'
 cp "$golden"/curls_still.png "$work/a/size.png" && cp "$golden"/fur_transparent.png "$work/b/size.png"
 cp "$golden"/fur_grid.png "$work/a/gone.png" && cp "$golden"/curls_tips.png "$work/b/new.png"
 cp "$golden"/curls_floor.png "$work/a/cut.png" && head -c 3000 "$golden"/curls_floor.png >"$work/b/cut.png"
