@@ -381,9 +381,9 @@ static void deep_maps_are_near_the_exact_light(void **state)
         StrandsStyle style;
         uint32_t count, vertices;
         double rms;
-    } sets[] = {{STRANDS_STYLE_STRAIGHT, 10000, 32, 0.2},
-                {STRANDS_STYLE_CURLS, 10000, 32, 0.19},
-                {STRANDS_STYLE_FUR, 37747, 8, 0.22}};
+    } sets[] = {{STRANDS_STYLE_STRAIGHT, 10000, 32, 0.16},
+                {STRANDS_STYLE_CURLS, 10000, 32, 0.15},
+                {STRANDS_STYLE_FUR, 37747, 8, 0.16}};
     Light light = LIGHT_ABOVE;
     memcpy(light.direction, (float[3]){0.36f, 0.8f, 0.48f}, sizeof light.direction);
     for (size_t i = 0; i < sizeof sets / sizeof *sets; ++i) {
