@@ -98,7 +98,7 @@ static void add_mesh_box(const ShadowMesh *mesh, const LightView *view, double b
 {
     for (int corner = 0; corner < 8; ++corner) {
         vec3 x;
-        versor turn;
+        versor turn = {0};
         double world[3], place[3];
         memcpy(turn, mesh->rotation, sizeof turn);
         for (int k = 0; k < 3; ++k) x[k] = (corner >> k & 1 ? mesh->high : mesh->low)[k];

@@ -173,13 +173,16 @@ SIMD_INLINE void fill_row(const MeshPlanes *to, const Setup *setup, const int64_
             int64_t here = edges[i] + turn * setup->along[i], low = here > -bound ? here : -bound;
             edge[i] = (int)(low < bound ? low : bound);
         }
-        for (int p = 0; p < places; ++p)
+        for (int p = 0; p < places; ++p) {
+            int *of_place = p ? hit : seen; // cppcheck-suppress legacyUninitvar ; set below
             fill_place(edge + 3 * p, setup->steps, setup->depth[p] + depth, setup->slopes[0].x,
-                       to->depth[p] + at, p ? hit : seen);
+                       to->depth[p] + at, of_place);
+        }
         for (int i = 1; i < values; ++i) {
             const Slope *slope = &setup->slopes[i];
             float from = setup->value[i] + slope->x * right + slope->y * down, step = slope->x,
                   *value = to->value[i] + at;
+            // cppcheck-suppress uninitvar ; fill_place has set it
             for (int k = 0; k < W; ++k) value[k] = seen[k] ? from + step * (float)k : value[k];
         }
     }

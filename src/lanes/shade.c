@@ -381,8 +381,9 @@ SIMD_INLINE void shade_kajiya(const Shader *shader, Spots *s, float color[3][W])
                                            m->shift2_sin),
                   white = m->specular1 * SHARED_POW(simd_min(first, 1), m->exponent1),
                   tinted = m->diffuse * sine +
-                           m->specular2 * SHARED_POW(simd_min(second, 1), m->exponent2),
-                  reaching = coming.share[i] * left[l][i];
+                           m->specular2 * SHARED_POW(simd_min(second, 1), m->exponent2);
+            // cppcheck-suppress uninitvar ; lamp_find sets it
+            float reaching = coming.share[i] * left[l][i];
             for (int c = 0; c < 3; ++c)
                 color[c][i] +=
                     light->draw->light_color[l][c] * reaching * (white + tinted * s->color[c][i]);

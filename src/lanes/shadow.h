@@ -255,7 +255,7 @@ SIMD_INLINE void lane_shadow_left_on(const LaneShadow *shadow, const float x[3][
             facing /= sqrtf(simd_max(square, 1e-30f));
             float w = before[0] * x[0][k] + before[1] * x[1][k] + before[2] * x[2][k] + before[3];
             float t = simd_min(simd_max(facing / simd_max(wrap, 1e-6f), 0), 1);
-            shone[k] = (facing > -wrap) & (w > 0) ? 1.f : 0.f;
+            shone[k] = ((facing > -wrap) & (w > 0)) ? 1.f : 0.f;
             own[k] = wrap > 0 ? t * t * (3 - 2 * t) : 1;
         }
         shadow_look(shadow, map, x, &look);
