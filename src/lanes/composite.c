@@ -134,7 +134,7 @@ SIMD_INLINE void find_directions(const Batch *restrict b, RibbonWays *restrict w
             float x = b->x[n + 1][i] - b->x[n][i], y = b->y[n + 1][i] - b->y[n][i],
                   square = x * x + y * y, scale = 1 / sqrtf(simd_max(square, 1e-20f));
             bool there = (square > 1e-12f) & (b->near_at[n][i] > 0) & (b->near_at[n + 1][i] > 0);
-            scale = there | (n == 1) ? scale : 0;
+            scale = (there | (n == 1)) ? scale : 0;
             ways->x[n][i] = x * scale, ways->y[n][i] = y * scale;
         }
 }
