@@ -289,26 +289,12 @@ static Result draw_frames(const Stage *stage, const Manner *manner, Renderer *re
     return time_passes(renderer, &frame, &item, image, row, error);
 }
 
+// Of the stage's size, on an opaque background.
 static RendererOptions renderer_options(const Stage *stage, const RunParams *run)
 {
-    RendererOptions options = {.raster = (Raster)run->raster,
-                               .oit = (Oit)run->oit,
-                               .oit_layers = run->oit_layers,
-                               .least_seen = run->least_seen,
-                               .width = stage->scene.run.size[0],
-                               .height = stage->scene.run.size[1],
-                               .samples = run->samples,
-                               .seed = run->seed,
-                               .lod = {run->lod_start, run->lod_end, run->lod_min, run->lod_width},
-                               .scatter = {.kind = (Scatter)run->scatter,
-                                           .cells = run->scatter_cells,
-                                           .orders = run->scatter_orders,
-                                           .strands = (uint32_t)run->scatter_strands},
-                               .shadow = {.kind = (Shadow)run->shadow,
-                                          .side = run->shadow_size,
-                                          .spacing = run->shadow_spacing,
-                                          .strands = run->shadow_strands}};
-    memcpy(options.background, run->background, sizeof options.background);
+    RendererOptions options = renderer_options_of(run);
+    options.width = stage->scene.run.size[0];
+    options.height = stage->scene.run.size[1];
     options.background[3] = 1;
     return options;
 }

@@ -46,14 +46,18 @@ typedef struct RendererOptions {
     Floor floor;            // not with an AOV
     MeshShading mesh_shading;
     LodOptions lod;
-    Oit oit;            // how the fragments of a pixel are blended; auto: abuffer. Else quads are
-                        // what raster auto is
-    float least_seen;   // blocks: share of a pixel that a ribbon must be seen by to be shaded, 0 ..
-                        // 0.05
-    int oit_layers;     // abuffer: how many of them in order, 1 .. 64, the same; 0: 8, of two
-                        // samples 16
+    Oit oit;          // how the fragments of a pixel are blended; auto: abuffer. Else quads are
+                      // what raster auto is
+    float least_seen; // blocks: share of a pixel that must be seen of a ribbon before it is shaded,
+                      // 0 .. 0.5
+    int oit_layers;   // abuffer: how many of them in order, 1 .. 64, the same; 0: 8, of two
+                      // samples 16
     int64_t pool_bytes; // no larger A-buffer; 0: what the driver allows
 } RendererOptions;
+
+// What a run's parameters say of how hair is drawn. Exposure, tone, kind, AOV, floor and the mesh's
+// shading, which depend on more, are left 0.
+RendererOptions renderer_options_of(const RunParams *run);
 
 // Hair to be drawn. The material is that of its section; `radius` is the fibre radius at the root
 // in metres (paint_auto_radius where the section has none).

@@ -64,31 +64,13 @@ static Result describe_images(const Images *images, RendererOptions *options, Er
     const RunParams *run = &images->scene->run;
     Target target;
     TRY(target_parse(&target, run->output, error));
-    *options =
-        (RendererOptions){.raster = (Raster)run->raster,
-                          .oit = (Oit)run->oit,
-                          .oit_layers = run->oit_layers,
-                          .least_seen = run->least_seen,
-                          .width = run->size[0],
-                          .height = run->size[1],
-                          .exposure = run->exposure.value,
-                          .tone = (Tone)run->tone_map,
-                          .kind = run->depth == DEPTH_16 ? IMAGE_16 : IMAGE_8,
-                          .aov = (Aov)run->aov,
-                          .samples = run->samples,
-                          .seed = run->seed,
-                          .mesh_shading = (MeshShading)run->mesh_shading,
-                          .floor = floor_find(images->scene, images->framing),
-                          .lod = {run->lod_start, run->lod_end, run->lod_min, run->lod_width},
-                          .scatter = {.kind = (Scatter)run->scatter,
-                                      .cells = run->scatter_cells,
-                                      .orders = run->scatter_orders,
-                                      .strands = (uint32_t)run->scatter_strands},
-                          .shadow = {.kind = (Shadow)run->shadow,
-                                     .side = run->shadow_size,
-                                     .spacing = run->shadow_spacing,
-                                     .strands = run->shadow_strands}};
-    memcpy(options->background, run->background, sizeof options->background);
+    *options = renderer_options_of(run);
+    options->exposure = run->exposure.value;
+    options->tone = (Tone)run->tone_map;
+    options->kind = run->depth == DEPTH_16 ? IMAGE_16 : IMAGE_8;
+    options->aov = (Aov)run->aov;
+    options->mesh_shading = (MeshShading)run->mesh_shading;
+    options->floor = floor_find(images->scene, images->framing);
     if (target.floats) options->kind = IMAGE_FLOAT;
     set_depth_range(images, options);
     target_destroy(&target);

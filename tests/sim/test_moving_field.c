@@ -63,6 +63,20 @@ static void destroy_ball(Ball *ball)
     mesh_destroy(&ball->mesh);
 }
 
+static void open_field(MovingField *field, Ball *ball, BodyMotion *motion)
+{
+    make_ball(ball, motion);
+    assert_int_equal(
+        moving_field_create(field, fixture_gpu(), &ball->body, 0.1f, 0.002f, 24, &(Error){{0}}),
+        RESULT_OK);
+}
+
+static void close_field(MovingField *field, Ball *ball)
+{
+    moving_field_destroy(field);
+    destroy_ball(ball);
+}
+
 static float (*place(const Body *body, double time))[3]
 {
     float(*position)[3] = calloc(body->mesh->vertex_count, sizeof *position);
@@ -118,17 +132,13 @@ static void distances_are_those_of_the_mesh_now(void **state)
     (void)state;
     Ball ball;
     MovingField field;
-    make_ball(&ball, swell);
-    assert_int_equal(
-        moving_field_create(&field, fixture_gpu(), &ball.body, 0.1f, 0.002f, 24, &(Error){{0}}),
-        RESULT_OK);
+    open_field(&field, &ball, swell);
     update(&field, &ball.body, 0, 0);
     check_distances(&field, &ball.body, 0);
     update(&field, &ball.body, 0.7, 0.8);
     check_distances(&field, &ball.body, 0.8);
     assert_int_equal(field.builds, 2);
-    moving_field_destroy(&field);
-    destroy_ball(&ball);
+    close_field(&field, &ball);
 }
 
 // The surface's own motion: where (x, y, z) of the ball is now, it was at x by the ratio of
@@ -138,10 +148,7 @@ static void samples_know_how_the_surface_moves(void **state)
     (void)state;
     Ball ball;
     MovingField field;
-    make_ball(&ball, swell);
-    assert_int_equal(
-        moving_field_create(&field, fixture_gpu(), &ball.body, 0.1f, 0.002f, 24, &(Error){{0}}),
-        RESULT_OK);
+    open_field(&field, &ball, swell);
     update(&field, &ball.body, 0.5, 0.6);
     float(*texel)[4] = gpu_buffer_read(&field.field.values);
     const uint32_t *size = field.field.size;
@@ -162,8 +169,7 @@ static void samples_know_how_the_surface_moves(void **state)
         assert_true(texel[i][1] == 0 && texel[i][2] == 0 && texel[i][3] == 0);
     assert_int_equal(field.builds, 1);
     free(texel);
-    moving_field_destroy(&field);
-    destroy_ball(&ball);
+    close_field(&field, &ball);
 }
 
 static void a_rigid_motion_builds_nothing_anew(void **state)
@@ -171,14 +177,10 @@ static void a_rigid_motion_builds_nothing_anew(void **state)
     (void)state;
     Ball ball;
     MovingField field;
-    make_ball(&ball, turn);
-    assert_int_equal(
-        moving_field_create(&field, fixture_gpu(), &ball.body, 0.1f, 0.002f, 24, &(Error){{0}}),
-        RESULT_OK);
+    open_field(&field, &ball, turn);
     for (int i = 0; i < 20; ++i) update(&field, &ball.body, 0.05 * i, 0.05 * (i + 1));
     assert_int_equal(field.builds, 1);
-    moving_field_destroy(&field);
-    destroy_ball(&ball);
+    close_field(&field, &ball);
 }
 
 int main(void)
