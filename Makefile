@@ -109,7 +109,7 @@ KEEP_LOOPS := $(shell $(CC) -Werror --param max-completely-peel-times=15 -x c -c
 LANE_PIXELS := $(addprefix $(OUT)/lanes/,composite.o pixels.o shade.o project.o)
 # Lanes: selects and roots without a thought for traps and errno, or nothing becomes vector instructions; a loop of 16
 # lanes is not unrolled before it can (gcc unrolls those of up to 16 turns). The same bits.
-$(filter-out $(LANE_PIXELS) $(OUT)/lanes/block_%,$(patsubst src/%.c,$(OUT)/%.o,$(wildcard src/lanes/*.c))) $(OUT)/draw/fibre_lobes.o $(OUT)/draw/light_tables.o $(OUT)/mesh/head.o: C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math $(KEEP_LOOPS)
+$(filter-out $(LANE_PIXELS),$(patsubst src/%.c,$(OUT)/%.o,$(wildcard src/lanes/*.c))) $(OUT)/draw/fibre_lobes.o $(OUT)/draw/light_tables.o $(OUT)/mesh/head.o: C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math $(KEEP_LOOPS)
 $(LANE_PIXELS): C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math -ffinite-math-only -fno-signed-zeros
 EMBED_GLSL := scripts/embed-text gpu/shader.h GlslSource
 $(OUT)/glsl_sources.c: scripts/embed-text $(SHADERS) $(OUT)/files

@@ -31,7 +31,8 @@ typedef struct PathUse {
 // memory is short.
 Result paths_check(const PathUse *uses, int count, Error *error);
 
-// The same, and claims all (claims.h): what is written is resolved now and for good, single files
-// are begun and folders made, so that a place that takes no files is told before any work. Once in
-// a program, which ends with outfile_end. Fails like paths_check.
+// The same, and claims all uses (claims.h): outputs' paths are resolved here, once for the whole
+// run. Single files are opened under a temporary name and missing folders are made, so that a
+// folder that cannot be written to is reported before any work starts. Call it once per program,
+// and outfile_end at the end. Fails like paths_check.
 Result paths_claim(const PathUse *uses, int count, Error *error);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Where a file is or will be: a handle of its folder, and its name in there. A path is resolved
-// once; what happens to the path afterwards (a folder that becomes a link) changes nothing. All
-// functions return 0 or an errno.
+// once; what happens to the path afterwards (a folder that becomes a link) changes nothing.
+// Functions that return int give 0 or an errno.
 #pragma once
 
 #include <stdbool.h>

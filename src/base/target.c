@@ -202,17 +202,21 @@ bool target_read_number(const Target *target, const char *name, int *frame)
     return own;
 }
 
-int target_find_last(const Target *target)
+TargetNumbers target_find_numbers(const Target *target)
 {
-    int last = -1, frame;
+    TargetNumbers found = {.last = -1};
+    int frame;
     const char *name = find_name(target);
     char *folder = strndup(target->before, (size_t)(name - target->before));
     DIR *directory = folder ? opendir(*folder ? folder : ".") : NULL;
     for (const struct dirent *entry; directory && (entry = readdir(directory));)
-        if (target_read_number(target, entry->d_name, &frame) && frame > last) last = frame;
+        if (target_read_number(target, entry->d_name, &frame)) {
+            if (!found.count++ || frame < found.first) found.first = frame;
+            if (frame > found.last) found.last = frame;
+        }
     if (directory) closedir(directory);
     free(folder);
-    return last;
+    return found;
 }
 
 Result target_prepare(const Target *target, Error *error)

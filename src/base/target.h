@@ -51,8 +51,11 @@ char *target_name_frame(const Target *target, int frame);
 // Whether `name`, without a folder, is one of a pattern's files, and of which frame.
 bool target_read_number(const Target *target, const char *name, int *frame);
 
-// The largest number of a pattern's files that there are; -1: none, or the folder cannot be read.
-int target_find_last(const Target *target);
+// The numbers of a pattern's files that there are; `last` -1: none, or the folder cannot be read.
+typedef struct TargetNumbers {
+    int first, last, count;
+} TargetNumbers;
+TargetNumbers target_find_numbers(const Target *target);
 
 // Makes the folders that are missing and tries to create a file there. RESULT_FAILED with path and
 // reason.

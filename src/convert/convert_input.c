@@ -205,7 +205,7 @@ static Result check_framed(const ConvertInput *input, Error *error)
 static Result check_whole(const ConvertInput *input, Error *error)
 {
     const CacheFile *cache = &input->cache.cache;
-    int last = input->numbered ? target_find_last(&input->pattern) : -1;
+    int last = input->numbered ? target_find_numbers(&input->pattern).last : -1;
     if (input->cached && !cache->finished)
         return error_set(error, RESULT_FAILED,
                          "%s: unfinished or cut off, %u whole frames: expected a whole cache, "

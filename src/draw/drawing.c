@@ -370,14 +370,3 @@ uint64_t drawing_count_segments(const Drawing *drawing)
             drawing->items[i].hair->segment_count * (uint64_t)drawing->items[i].material->smooth;
     return count;
 }
-
-uint64_t drawing_count_thinned(const Drawing *drawing)
-{
-    uint64_t count = 0;
-    for (uint32_t i = 0; i < drawing->item_count; ++i)
-        for (uint32_t b = 0; b < drawing->items[i].hair->batch_count; ++b) {
-            const HairBatch *batch = &drawing->items[i].hair->batches[b];
-            count += batch->strand_count - look_material(&drawing->looks[i], batch).drawn_strands;
-        }
-    return count;
-}

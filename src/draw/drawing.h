@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the passes of one image share: camera and lights, the hair and how it looks, and where the
-// mesh is. Needs no OpenGL, but to be given to shaders. Their pixels are the samples that the
-// image's pixels are the means of.
+// mesh is. Needs OpenGL for marschner's tables and to be given to shaders. Their pixels are the
+// samples that the image's pixels are the means of.
 #pragma once
 
 #include "draw/drawn_mesh.h"
@@ -47,9 +47,8 @@ void drawing_set_window(Drawing *drawing, const RendererOptions *options, const 
 // The middle of hair's style, carried by the head: m, world.
 void drawing_find_middle(const Drawing *drawing, const Hair *hair, vec3 middle);
 
-// Segments of all items, before any is left out; strands that others stand for (LodOptions).
+// Segments of all items, before any is left out.
 uint64_t drawing_count_segments(const Drawing *drawing);
-uint64_t drawing_count_thinned(const Drawing *drawing);
 
 // Camera and lights for an image of this size; the rest is left 0.
 void drawing_set_view(DrawParams *draw, const View *view, int width, int height);

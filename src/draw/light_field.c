@@ -128,7 +128,7 @@ Result light_field_find_walls(LightField *field, const GridScene *scene, Error *
     field->walled = scene->blocks != NULL;
     if (!field->walled) return RESULT_OK;
     // The blocks' lattice must be this one.
-    TRY(light_blocks_find((LightBlocks *)scene->blocks, &field->lattice, error));
+    TRY(light_blocks_find(scene->blocks, &field->lattice, error));
     if (field->wall_room < all) {
         free(field->walls);
         field->walls = malloc(all * sizeof *field->walls);

@@ -26,12 +26,13 @@ typedef struct GridScene {
     // That tells light_grid_solve what is left of lights (lanes/shadow.h); NULL: no light has a
     // map.
     const struct LaneShadow *shadow;
-    float to_eye[3];           // unit, world: against the way that the camera looks
-    int map_of[MAX_LIGHTS];    // of each light; -1: it casts no shadow
-    const LightBlocks *blocks; // what the mesh takes away within the box of hair; NULL: no mesh
-    bool suns;                 // the lights' light is followed, too, not only that of the sky
-    uint32_t step;             // of so many strands one stands for all in the cells; 0: 1
-    int cells;                 // along the longest side of the box, 4 .. 64
+    float to_eye[3];        // unit, world: against the way that the camera looks
+    int map_of[MAX_LIGHTS]; // of each light; -1: it casts no shadow
+    LightBlocks *blocks; // filled for the lattice: what the mesh takes away within the box of hair;
+                         // NULL: no mesh
+    bool suns;           // the lights' light is followed, too, not only that of the sky
+    uint32_t step;       // of so many strands one stands for all in the cells; 0: 1
+    int cells;           // along the longest side of the box, 4 .. 64
     int orders; // of scattering that are swept at most, 0 .. 32; 0: the sky's own light alone
 } GridScene;
 

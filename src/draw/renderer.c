@@ -194,6 +194,15 @@ static Result draw_frame(Renderer *renderer, Image *image, Error *error)
                                               : draw_tiles(renderer, image, error);
 }
 
+// Strands that others stand for.
+static uint64_t count_thinned(const BackendFrame *frame)
+{
+    uint64_t count = 0;
+    for (uint32_t i = 0; i < frame->hair_count; ++i)
+        count += frame->hair[i].batch->strand_count - frame->hair[i].material.drawn_strands;
+    return count;
+}
+
 Result renderer_begin(Renderer *renderer, const RenderFrame *frame, const RenderItem *items,
                       uint32_t item_count, Image *image, Error *error)
 {
@@ -205,7 +214,7 @@ Result renderer_begin(Renderer *renderer, const RenderFrame *frame, const Render
         TRY(hair_read_begin(&renderer->read, renderer->hair, renderer->frame.hair_count, error));
     Result result = draw_frame(renderer, image, error);
     if (reads) hair_read_end(&renderer->read);
-    renderer->counts.thinned = drawing_count_thinned(&renderer->drawing);
+    renderer->counts.thinned = count_thinned(&renderer->frame);
     return result == RESULT_OK ? gpu_check("drawing", error) : result;
 }
 

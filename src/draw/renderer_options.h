@@ -87,7 +87,7 @@ typedef struct RenderFrame {
 typedef struct RendererCounts {
     uint64_t segments; // sent to the rasteriser; straight runs count as one
     uint64_t culled;   // strands outside the image, which cost no drawing
-    uint64_t hidden;   // strands behind mesh or floor that were not even projected
+    uint64_t hidden;   // strands behind mesh or floor that were not drawn
     uint64_t
         fragments; // stored and blended: pixels of a ribbon; with blocks and compute blocks of it
     uint64_t pool_bytes; // of the A-buffer or the lists now

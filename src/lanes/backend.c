@@ -169,7 +169,6 @@ static Result shadow(void *state, const BackendFrame *frame, Error *error)
     const BackendTimer *timer = &lanes->set.timer;
     Result result = open_hair(lanes, frame, error);
     lanes->light = (LaneLight){.draw = &frame->drawing->draw};
-    lanes->counts = (RendererCounts){0};
     if (result != RESULT_OK || lanes->options->shadow.kind == SHADOW_NONE) return result;
     timer->begin(timer->timer, "draw_shadow");
     result = draw_shadow(lanes, frame, error);
@@ -220,9 +219,11 @@ static Result project(Lanes *lanes, const BackendFrame *frame, Error *error)
     const DrawParams *draw = &frame->drawing->draw;
     const float depth[2] = {draw->depth[0], draw->depth[1]};
     bool hides = has_base(lanes, frame) && !lanes->draws_hidden;
-    if (hides)
+    if (hides && lanes->hidden.version != lanes->base.depth_version) {
         TRY(hidden_find(&lanes->hidden, &lanes->base.shown, depth, (int)draw->width,
                         (int)draw->height, error));
+        lanes->hidden.version = lanes->base.depth_version;
+    }
     TRY(shades_begin(&lanes->shades, lanes->hairs.points + 1, error));
     return projection_find(&lanes->projection, &lanes->hairs, draw, hides ? &lanes->hidden : NULL,
                            FAR, error);

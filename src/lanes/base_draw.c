@@ -228,16 +228,16 @@ SIMD_INLINE uint16_t half_of(float x)
     return (uint16_t)((bits + 0xfff + (bits >> 13 & 1)) >> 13); // to the nearest, or the even one
 }
 
-SIMD_INLINE void store(const BlockBase *shown, int x, int y, const Pixels *pixels)
+SIMD_INLINE void store(const LaneBase *base, int x, int y, const Pixels *pixels)
 {
+    const BlockBase *shown = &base->shown;
     uint16_t halves[W][4];
     size_t at = (size_t)(y - shown->y) * (size_t)shown->width + (size_t)(x - shown->x);
     int left = shown->x + shown->width - x, count = left < W ? left : W;
     for (int k = 0; k < W; ++k)
         for (int c = 0; c < 4; ++c) halves[k][c] = half_of(pixels->front[c][k]);
-    memcpy((void *)(uintptr_t)(shown->light + at), halves, (size_t)count * sizeof *halves);
-    memcpy((void *)(uintptr_t)(shown->depth + at), pixels->depth,
-           (size_t)count * sizeof *pixels->depth);
+    memcpy(base->light + at, halves, (size_t)count * sizeof *halves);
+    memcpy(base->depth + at, pixels->depth, (size_t)count * sizeof *pixels->depth);
 }
 
 SIMD_INLINE void finish_pixels(const Finish *finish, int x, int y)
@@ -270,7 +270,7 @@ SIMD_INLINE void finish_pixels(const Finish *finish, int x, int y)
         for (int c = 0; c < 4; ++c)
             for (int k = 0; k < W; ++k) pixels.front[c][k] += pixels.behind[c][k];
     }
-    store(&base->shown, x, y, &pixels);
+    store(base, x, y, &pixels);
 }
 
 SIMD_INLINE void finish_rows(const Finish *finish, int part)

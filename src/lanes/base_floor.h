@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The floor behind 16 px: a matt plane, lit as the mesh is, or only the light that it lacks where
-// there is shadow, which is black that covers so much. For base.c.
+// there is shadow, which is black that covers so much. For base_draw.c.
 #pragma once
 
 #include "lanes/base_light.h"

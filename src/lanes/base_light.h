@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Light on 16 points of mesh or floor that neighbouring pixels show, for base.c and base_mesh.c.
+// Light on 16 points of mesh or floor that neighbouring pixels show, for base_draw.c and
+// base_mesh.c.
 #pragma once
 
 #include "base/simd.h"

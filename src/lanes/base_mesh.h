@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light on the mesh, for base.c.
+// Light on the mesh, for base_draw.c.
 #pragma once
 
 #include "lanes/base.h"

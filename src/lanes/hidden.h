@@ -17,6 +17,7 @@ typedef struct Hidden {
                     // the eight around it; 0: something can be seen past it
     float *own;     // the same of the square alone
     size_t room;
+    uint64_t version; // LaneBase.depth_version that it was found for
 } Hidden;
 
 // Of an image of width x height px with this base. RESULT_FAILED if memory is short.

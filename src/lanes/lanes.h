@@ -36,5 +36,4 @@ typedef struct Lanes {
     uint32_t room;
     LaneHairs hairs;
     LaneLight light;
-    RendererCounts counts;
 } Lanes;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the parts of the light grid share: light_grid.c and light_grid_*.c.
+// What the parts of the light grid share: light_grid_*.c.
 #pragma once
 
 #include "base/simd.h"

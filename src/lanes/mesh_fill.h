@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One triangle to depths and what goes with them, 16 px at once, for mesh_raster.c.
+// One triangle to depths and what goes with them, 16 px at once, for mesh_raster_draw.c.
 #pragma once
 
 #include "base/simd.h"

@@ -340,14 +340,16 @@ static Result make_scratch(Projection *projection, size_t points, size_t most, E
         projection->points = malloc(points * sizeof *projection->points);
         projection->point_room = projection->points ? points : 0;
     }
-    for (int part = 0; part < projection->parts && projection->scratch_room < most; ++part) {
+    const bool grows = projection->scratch_room < most;
+    if (grows) projection->scratch_room = 0;
+    for (int part = 0; part < projection->parts && grows; ++part) {
         free(projection->scratch[part]);
         projection->scratch[part] = malloc(scratch_floats(most) * sizeof(float));
         if (!projection->scratch[part]) projection->point_room = 0;
     }
-    if (points && !projection->point_room)
+    if (!projection->point_room)
         return error_set(error, RESULT_FAILED, "no memory to project %zu points of hair", points);
-    if (projection->scratch_room < most) projection->scratch_room = most;
+    if (grows) projection->scratch_room = most;
     return RESULT_OK;
 }
 

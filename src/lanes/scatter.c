@@ -47,7 +47,6 @@ Result lane_scatter_draw(LaneScatter *scatter, const ScatterOptions *options,
 {
     const DrawParams *draw = &frame->drawing->whole;
     *shown = false;
-    scatter->solved = 0;
     if (!scatter_is_wanted(options, frame)) return RESULT_OK;
     TRY(open_hair(scatter, frame, casters, error));
     TRY(find_kinds(scatter, frame, error));
@@ -63,7 +62,6 @@ Result lane_scatter_draw(LaneScatter *scatter, const ScatterOptions *options,
     if (!solved) TRY(light_grid_solve(&scatter->grid, &scene, error));
     TRY(light_grid_prepare(&scatter->grid, &scene, error));
     scatter->any = true;
-    scatter->solved = !solved;
     scatter->count = frame->hair_count;
     scatter->shadow_version = shadow->version;
     scatter->drawn = *draw;

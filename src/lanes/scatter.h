@@ -18,7 +18,6 @@ typedef struct LaneScatter {
     uint64_t shadow_version; // of the maps that the light was found by
     DrawParams drawn;
     bool any;
-    uint32_t solved; // times that light was found, for the last image
 } LaneScatter;
 
 // Finds the light, unless it is the last frame's, and makes it ready for this eye. `casters` are

@@ -223,15 +223,6 @@ SIMD_INLINE void lane_shadow_left_of(const LaneShadow *shadow, int map,
     }
 }
 
-// The same of all maps: left[map].
-SIMD_INLINE void lane_shadow_left(const LaneShadow *shadow, const float x[3][SHADOW_LOOK],
-                                  const float radius[SHADOW_LOOK], const float opacity[SHADOW_LOOK],
-                                  float left[][SHADOW_LOOK])
-{
-    for (int map = 0; map < shadow->params.maps; ++map)
-        lane_shadow_left_of(shadow, map, x, radius, opacity, left[map]);
-}
-
 // The same on surfaces with unit normals, of the mesh (which mesh_lift has moved) or a floor.
 // `wrap`: the greatest cosine below the horizon from which light still counts; up to the same
 // above, a surface's own shadow comes in softly. `taps`: texels of the mesh's map each way that are

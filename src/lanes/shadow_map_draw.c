@@ -119,12 +119,11 @@ SIMD_INLINE void find_boxes(const Boxes *boxes, int part)
         for (int i = 0; i < 6; ++i)
             for (int k = 0; k < W; ++k) box[b][i][k] = i < 3 ? INFINITY : -INFINITY;
     for (uint32_t c = 0; c < boxes->casters.count; ++c) {
-        MappedCaster all = boxes->casters.list[c], *caster = &all;
+        const MappedCaster *caster = &boxes->casters.list[c];
         int range[2];
-        caster->order = NULL; // each tile is read once
         find_range(caster, part, boxes->parts, range);
         for (int t = range[0]; t < range[1]; ++t) {
-            Tile tile = open_tile(caster, t);
+            Tile tile = open_tile_at(caster, (size_t)t);
             for (int j = 0; j < (int)caster->material.vertex_count; ++j) {
                 const float(*from)[4] = caster->position + tile_particle(&tile, j);
                 for (int i = 0; i < 3; ++i)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The points of hair that stands in the light, found once for all maps and passes.
+// The points of hair, found once for projecting and shading.
 #pragma once
 
 #include "draw/mapped_caster.h"

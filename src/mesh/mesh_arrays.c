@@ -42,7 +42,7 @@ static void take_faces(MeshSamples *samples, Reader *reader, const NpyArray *arr
 {
     uint64_t corners = array->axes == 2 ? array->shape[1] : 0, faces = array->shape[0];
     bool whole = array->kind == 'i' || array->kind == 'u';
-    if (!whole || (corners != 3 && corners != 4) || faces == 0 || faces > UINT32_MAX / 8) {
+    if (!whole || (corners != 3 && corners != 4) || faces == 0 || faces > UINT32_MAX / 16) {
         char text[200];
         npy_array_describe(array, text, sizeof text);
         reader_fail(reader, "faces have shape %s: expected (faces, 3) or (faces, 4) whole numbers",
@@ -148,5 +148,5 @@ static void read_npy(MeshSamples *samples, Reader *reader)
     if (npy_array_read(&array, reader) == RESULT_OK) take_positions(samples, reader, &array);
 }
 
-const MeshSequenceFormat MESH_SEQUENCE_NPZ = {"numpy's .npz", match_npz, read_npz};
-const MeshSequenceFormat MESH_SEQUENCE_NPY = {"numpy's .npy", match_npy, read_npy};
+const MeshSequenceFormat MESH_SEQUENCE_NPZ = {match_npz, read_npz};
+const MeshSequenceFormat MESH_SEQUENCE_NPY = {match_npy, read_npy};

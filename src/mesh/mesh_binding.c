@@ -11,7 +11,15 @@ static int compare_floats(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// Equal distances: the lowest number of a triangle, so that the tree's order decides nothing.
+// v turned by a unit quaternion: v + 2 w (u x v) + 2 u x (u x v), with u the quaternion's vector.
+static void turn_vector(const double q[4], const double v[3], double turned[3])
+{
+    Double3 once, twice;
+    double3_cross(q, v, once);
+    double3_cross(q, once, twice);
+    for (int k = 0; k < 3; ++k) turned[k] = v[k] + 2 * (q[3] * once[k] + twice[k]);
+}
+
 static void bind(BoundPoint *point, const Surface *surface, SurfacePoint *nearest,
                  const float from[3], float *distance)
 {
@@ -75,24 +83,15 @@ RigidMotion mesh_binding_motion(const MeshBinding *binding, uint32_t i, const fl
     bool cancel = !(norm > 1e-6);
     for (int k = 0; k < 4; ++k)
         motion.rotation[k] = cancel ? first[k] : motion.rotation[k] / sqrt(norm);
-    rigid_motion_turn(motion.rotation, point->place, turned);
+    turn_vector(motion.rotation, point->place, turned);
     double3_subtract(place, turned, motion.translation);
     return motion;
-}
-
-// v + 2 w (u x v) + 2 u x (u x v), with u the quaternion's vector.
-void rigid_motion_turn(const double q[4], const double v[3], double turned[3])
-{
-    Double3 once, twice;
-    double3_cross(q, v, once);
-    double3_cross(q, once, twice);
-    for (int k = 0; k < 3; ++k) turned[k] = v[k] + 2 * (q[3] * once[k] + twice[k]);
 }
 
 void rigid_motion_apply(const RigidMotion *motion, const double point[3], double moved[3])
 {
     Double3 turned;
-    rigid_motion_turn(motion->rotation, point, turned);
+    turn_vector(motion->rotation, point, turned);
     for (int k = 0; k < 3; ++k) moved[k] = turned[k] + motion->translation[k];
 }
 
@@ -116,7 +115,7 @@ RigidMotion rigid_motion_inverse(const RigidMotion *motion)
     RigidMotion inverse = *motion;
     Double3 back;
     for (int k = 0; k < 3; ++k) inverse.rotation[k] = -motion->rotation[k];
-    rigid_motion_turn(inverse.rotation, motion->translation, back);
+    turn_vector(inverse.rotation, motion->translation, back);
     for (int k = 0; k < 3; ++k) inverse.translation[k] = -back[k];
     return inverse;
 }
@@ -195,7 +194,7 @@ RigidMotion rigid_motion_fit(const double (*from)[3], const double (*to)[3], uin
     double dot = 0;
     for (int k = 0; k < 4; ++k) dot += motion.rotation[k] * near->rotation[k];
     for (int k = 0; k < 4 && dot < 0; ++k) motion.rotation[k] = -motion.rotation[k];
-    rigid_motion_turn(motion.rotation, middle, turned);
+    turn_vector(motion.rotation, middle, turned);
     double3_subtract(moved, turned, motion.translation);
     return motion;
 }

@@ -38,8 +38,6 @@ void rigid_motion_apply(const RigidMotion *motion, const double point[3], double
 // a after b.
 RigidMotion rigid_motion_product(const RigidMotion *a, const RigidMotion *b);
 RigidMotion rigid_motion_inverse(const RigidMotion *motion);
-// v turned by a unit quaternion.
-void rigid_motion_turn(const double q[4], const double v[3], double turned[3]);
 
 // The motion that takes the points `from` to the points `to` with the least sum of squares (B.
 // Horn, "Closed-form solution of absolute orientation using unit quaternions", 1987). What the

@@ -6,8 +6,10 @@
 #include <libdeflate.h>
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static const MeshSequenceFormat *const FORMATS[] = {&MESH_SEQUENCE_NPZ, &MESH_SEQUENCE_NPY,
@@ -17,6 +19,9 @@ enum { FORMAT_COUNT = sizeof FORMATS / sizeof *FORMATS };
 // Vertices of all samples together, 96 GB.
 static const uint64_t MOST_VERTICES = UINT64_C(1) << 33;
 
+// As in OBJ files: squares of it are finite.
+static const float MOST_COORDINATE = 1e18f;
+
 bool mesh_samples_create(MeshSamples *samples, Reader *reader)
 {
     uint64_t count = samples->count, vertices = samples->vertex_count;
@@ -24,14 +29,14 @@ bool mesh_samples_create(MeshSamples *samples, Reader *reader)
     if (count == 0 || vertices == 0)
         return reader_fail(reader, "%llu samples of %llu vertices: expected at least one of each",
                            (unsigned long long)count, (unsigned long long)vertices) == RESULT_OK;
-    if (count > UINT32_MAX / 2 || vertices > UINT32_MAX / 2 || vertices > MOST_VERTICES / count)
+    if (count > UINT32_MAX / 2 || vertices > UINT32_MAX / 4 || vertices > MOST_VERTICES / count)
         return reader_fail(reader, "%llu samples of %llu vertices are beyond all memory",
                            (unsigned long long)count, (unsigned long long)vertices) == RESULT_OK;
     samples->position = malloc(count * vertices * sizeof *samples->position);
     return samples->position || reader_fail_memory(reader) == RESULT_OK;
 }
 
-void mesh_samples_destroy(MeshSamples *samples)
+static void mesh_samples_destroy(MeshSamples *samples)
 {
     free(samples->position);
     free(samples->triangle);
@@ -50,16 +55,18 @@ static const MeshSequenceFormat *find_format(const char *path, const Bytes *byte
     return NULL;
 }
 
+// Only a regular file is looked into: what is read from a pipe would be lost.
 bool mesh_sequence_matches(const char *path)
 {
-    Bytes bytes = {0};
+    uint8_t first[16];
+    struct stat about;
     if (is_pattern(path)) return true;
-    size_t length = strlen(path);
-    if (length > 4 && strcmp(path + length - 4, ".obj") == 0) return false;
-    if (bytes_read_file(&bytes, path, NULL) != RESULT_OK) return false;
-    bool found = find_format(path, &bytes) != NULL;
-    bytes_destroy(&bytes);
-    return found;
+    if (stat(path, &about) != 0 || !S_ISREG(about.st_mode)) return false;
+    FILE *file = fopen(path, "rb");
+    if (!file) return false;
+    const Bytes bytes = {first, fread(first, 1, sizeof first, file)};
+    fclose(file);
+    return find_format(path, &bytes) != NULL;
 }
 
 void mesh_sequence_destroy(MeshSequence *sequence)
@@ -71,15 +78,21 @@ void mesh_sequence_destroy(MeshSequence *sequence)
 
 // --- Numbered OBJ files.
 
-static int first_number(const Target *target, int last)
+static Result check_gaps(const Target *target, TargetNumbers numbers, Error *error)
 {
-    for (int i = 0; i < last; ++i) {
+    Result result = RESULT_OK;
+    if (numbers.last - numbers.first + 1 == numbers.count) return RESULT_OK;
+    for (int i = numbers.first; i < numbers.last && result == RESULT_OK; ++i) {
         char *name = target_name_frame(target, i);
-        bool there = name && access(name, F_OK) == 0;
+        if (!name)
+            result = error_set(error, RESULT_FAILED, "no memory for a name");
+        else if (access(name, F_OK) != 0)
+            result = error_set(error, RESULT_BAD_INPUT,
+                               "%s: missing: expected files for samples %d to %d without gaps",
+                               name, numbers.first, numbers.last);
         free(name);
-        if (there) return i;
     }
-    return last;
+    return result;
 }
 
 static Result compare(const Mesh *mesh, const Mesh *first, const char *name, const char *than,
@@ -100,15 +113,20 @@ static Result compare(const Mesh *mesh, const Mesh *first, const char *name, con
     return RESULT_OK;
 }
 
-static Result read_numbered(MeshSequence *sequence, Mesh *mesh, const Target *target, int first,
-                            int last, const MeshSequenceOptions *options, Error *error)
+static Result read_numbered(MeshSequence *sequence, Mesh *mesh, const Target *target,
+                            TargetNumbers numbers, const MeshSequenceOptions *options, Error *error)
 {
+    const int first = numbers.first, last = numbers.last;
+    TRY(check_gaps(target, numbers, error));
     float unit = (float)(options->unit > 0 ? options->unit : options->otherwise_unit);
     bool up_z = (options->up_z >= 0 ? options->up_z : options->otherwise_up_z) == 1;
     char *than = target_name_frame(target, first);
     Result result = than ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for a name");
     THEN(result, obj_read_mesh(mesh, than, unit, up_z, error));
     size_t count = (size_t)(last - first) + 1, vertices = mesh->vertex_count;
+    if (result == RESULT_OK && vertices > MOST_VERTICES / count)
+        result = error_set(error, RESULT_BAD_INPUT, "%s: %zu samples are beyond all memory", than,
+                           count);
     if (result == RESULT_OK) {
         sequence->times.count = (uint32_t)count;
         sequence->vertex_count = mesh->vertex_count;
@@ -121,10 +139,6 @@ static Result read_numbered(MeshSequence *sequence, Mesh *mesh, const Target *ta
         Mesh next = {0};
         char *name = target_name_frame(target, i);
         if (!name) result = error_set(error, RESULT_FAILED, "no memory for a name");
-        if (result == RESULT_OK && access(name, F_OK) != 0)
-            result = error_set(error, RESULT_BAD_INPUT,
-                               "%s: missing: expected files for samples %d to %d without gaps",
-                               name, first, last);
         THEN(result, obj_read_mesh(&next, name, unit, up_z, error));
         THEN(result, compare(&next, mesh, name, than, error));
         if (result == RESULT_OK)
@@ -142,13 +156,13 @@ static Result read_pattern(MeshSequence *sequence, Mesh *mesh, const char *path,
 {
     Target target = {0};
     TRY(target_parse_any(&target, path, error));
-    int last = target.kind == TARGET_FRAMES ? target_find_last(&target) : -1;
+    TargetNumbers numbers = {.last = -1};
     Result result = RESULT_OK;
-    if (last < 0)
+    if (target.kind == TARGET_FRAMES) numbers = target_find_numbers(&target);
+    if (numbers.last < 0)
         result = error_set(error, RESULT_BAD_INPUT,
                            "%s: no file has such a name: expected samples as x_0000.obj", path);
-    THEN(result,
-         read_numbered(sequence, mesh, &target, first_number(&target, last), last, options, error));
+    THEN(result, read_numbered(sequence, mesh, &target, numbers, options, error));
     target_destroy(&target);
     return result;
 }
@@ -159,9 +173,9 @@ static Result check_finite(const MeshSamples *samples, const char *path, Error *
 {
     for (uint64_t i = 0; i < samples->count * samples->vertex_count; ++i)
         for (int k = 0; k < 3; ++k)
-            if (!isfinite(samples->position[i][k]))
+            if (!(fabsf(samples->position[i][k]) <= MOST_COORDINATE))
                 return error_set(error, RESULT_BAD_INPUT,
-                                 "%s: sample %llu: vertex %llu is not finite", path,
+                                 "%s: sample %llu: vertex %llu is not finite, or beyond 1e18", path,
                                  (unsigned long long)(i / samples->vertex_count),
                                  (unsigned long long)(i % samples->vertex_count));
     return RESULT_OK;
@@ -185,7 +199,7 @@ static Result make_mesh(Mesh *mesh, MeshSamples *samples, const Mesh *rest, cons
         return error_set(error, RESULT_BAD_INPUT,
                          "%s: it has no faces: expected an OBJ file with them (--mesh-rest)", path);
     uint64_t triangles = own ? samples->triangle_count : rest->triangle_count;
-    if (triangles == 0 || triangles > UINT32_MAX / 4)
+    if (triangles == 0 || triangles > UINT32_MAX / 8)
         return error_set(error, RESULT_BAD_INPUT, "%s: %llu triangles", path,
                          (unsigned long long)triangles);
     TRY(mesh_create(mesh, (uint32_t)samples->vertex_count, (uint32_t)triangles, error));

@@ -33,7 +33,6 @@ typedef struct MeshSamples {
 } MeshSamples;
 
 typedef struct MeshSequenceFormat {
-    const char *name; // "numpy's .npz"
     bool (*match)(const char *path, const Bytes *bytes);
     void (*read)(MeshSamples *samples, Reader *reader); // fails the reader
 } MeshSequenceFormat;
@@ -43,7 +42,6 @@ extern const MeshSequenceFormat MESH_SEQUENCE_NPZ, MESH_SEQUENCE_NPY, MESH_SEQUE
 
 // Makes room for positions; the reader fails where memory is short or the counts are beyond it.
 bool mesh_samples_create(MeshSamples *samples, Reader *reader);
-void mesh_samples_destroy(MeshSamples *samples);
 
 // Whether `path` names a sequence by its pattern (x_%04d.obj) or its content; false for an OBJ
 // file, and for what cannot be read, which obj_read_mesh then says.

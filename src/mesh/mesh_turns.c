@@ -57,14 +57,13 @@ static bool find_twins(uint32_t *twin, const Mesh *mesh)
 
 // Counts, then fills: of each triangle's corner the two others. A neighbour within two triangles
 // comes twice, so an edge of the mesh's border counts half.
-static bool find_rings(MeshTurns *turns, const Mesh *mesh, const bool *wanted)
+static bool find_rings(MeshTurns *turns, const Mesh *mesh)
 {
     uint32_t *count = turns->first;
     for (int fill = 0; fill < 2; ++fill) {
         for (uint32_t t = 0; t < mesh->triangle_count; ++t)
             for (int i = 0; i < 3; ++i) {
                 uint32_t v = turns->twin[mesh->triangle[t][i]];
-                if (wanted && !wanted[v]) continue;
                 if (!fill) {
                     count[v + 1] += 2;
                     continue;
@@ -174,32 +173,32 @@ static bool smooth_normals(Mesh *welded, const MeshTurns *turns, const Mesh *mes
     return true;
 }
 
-static bool build(MeshTurns *turns, const Mesh *rest, const bool *wanted)
+static bool build(MeshTurns *turns, const Mesh *rest)
 {
     size_t n = rest->vertex_count;
     turns->vertex_count = rest->vertex_count;
     turns->first = calloc(n + 2, sizeof *turns->first);
     turns->frame = calloc(n + 1, sizeof *turns->frame);
     turns->twin = calloc(n + 1, sizeof *turns->twin);
-    bool *asked = calloc(n + 1, sizeof *asked);
     Mesh welded = {0};
-    bool good =
-        turns->first && turns->frame && turns->twin && asked && find_twins(turns->twin, rest);
+    bool good = turns->first && turns->frame && turns->twin && find_twins(turns->twin, rest) &&
+                find_rings(turns, rest) && smooth_normals(&welded, turns, rest);
     for (uint32_t v = 0; good && v < n; ++v)
-        if (!wanted || wanted[v]) asked[turns->twin[v]] = true;
-    good = good && find_rings(turns, rest, asked) && smooth_normals(&welded, turns, rest);
-    for (uint32_t v = 0; good && v < n; ++v)
-        if (asked[v]) make_shares(turns, &welded, v);
-    free(asked);
+        if (turns->twin[v] == v) make_shares(turns, &welded, v);
     free(welded.triangle);
     free(welded.normal);
     return good;
 }
 
-Result mesh_turns_create(MeshTurns *turns, const Mesh *rest, const bool *wanted, Error *error)
+Result mesh_turns_create(MeshTurns *turns, const Mesh *rest, Error *error)
 {
     *turns = (MeshTurns){0};
-    if (build(turns, rest, wanted)) return RESULT_OK;
+    // Of six neighbours a triangle, and a table of twice the vertices.
+    if (rest->triangle_count > UINT32_MAX / 8 || rest->vertex_count > UINT32_MAX / 4)
+        return error_set(error, RESULT_BAD_INPUT,
+                         "the mesh: %u vertices and %u triangles are too many", rest->vertex_count,
+                         rest->triangle_count);
+    if (build(turns, rest)) return RESULT_OK;
     mesh_turns_destroy(turns);
     return error_set(error, RESULT_FAILED, "no memory for the turns of %u vertices",
                      rest->vertex_count);

@@ -15,9 +15,8 @@ typedef struct MeshTurns {
     uint32_t *twin;        // [vertex_count]: the first vertex at the same place, whose turn it has
 } MeshTurns;
 
-// `wanted` [vertices of the mesh]: whose turns are asked for; NULL: all. RESULT_FAILED when memory
-// is short.
-Result mesh_turns_create(MeshTurns *turns, const Mesh *rest, const bool *wanted, Error *error);
+// RESULT_BAD_INPUT beyond 2^29 triangles or 2^30 vertices, RESULT_FAILED when memory is short.
+Result mesh_turns_create(MeshTurns *turns, const Mesh *rest, Error *error);
 void mesh_turns_destroy(MeshTurns *turns);
 
 // The rotation at `vertex` from rest to these positions of all vertices: a unit quaternion x y z w.

@@ -96,7 +96,6 @@ static Result find_light(HairScatter *scatter, const BackendFrame *frame, Shadow
     if (!solved) TRY(light_passes_solve(&scatter->passes, &grid, casters, error));
     TRY(light_passes_gather(&scatter->passes, &grid, casters, scatter->seen, error));
     scatter->any = true;
-    scatter->solved = !solved;
     scatter->shadow_version = shadows->version;
     scatter->drawn = *draw;
     memcpy(scatter->to_eye, grid.to_eye, sizeof scatter->to_eye);
@@ -127,7 +126,6 @@ Result hair_scatter_begin(HairScatter *scatter, const BackendFrame *frame, Shado
 Result hair_scatter_draw(HairScatter *scatter, const BackendFrame *frame, ShadowCasters casters,
                          const Shadows *shadows, Error *error)
 {
-    scatter->solved = 0;
     if (!scatter_is_wanted(&scatter->options, frame)) return RESULT_OK;
     if (!is_seen(scatter, shadows, frame)) {
         TRY(make_room(scatter, frame->hair_count, error));

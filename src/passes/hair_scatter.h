@@ -23,7 +23,6 @@ typedef struct HairScatter {
     DrawParams drawn;
     float to_eye[3]; // of the light that is seen
     bool any;
-    uint32_t solved; // times that light was found, for the last image
 } HairScatter;
 
 void hair_scatter_create(HairScatter *scatter, const GpuLimits *limits,

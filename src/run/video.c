@@ -134,8 +134,9 @@ static bool make_command(Command *command, const Format *format, const VideoOpti
     snprintf(command->size, sizeof command->size, "%dx%d", options->width, options->height);
     snprintf(command->rate, sizeof command->rate, "%.9g", options->fps);
     write_filter(command, format, options);
-    // With the protocol named, no character of the name has a meaning to ffmpeg. The folder is the
-    // handle that it gets, whatever its path has come to mean.
+    // Because the protocol is named, no character of the file's name has a meaning to ffmpeg. The
+    // folder is given by the descriptor that ffmpeg inherits, so the file lands there even if the
+    // folder's path has been renamed or replaced meanwhile.
     if (asprintf(&command->output, "file:/proc/self/fd/%d/%s", FOLDER_FILENO, temporary) < 0) {
         command->output = NULL;
         return false;

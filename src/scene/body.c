@@ -182,7 +182,7 @@ static Result carry_groom(const Body *body, const Mesh *rest, const float (*posi
                           Strands *strands, Error *error)
 {
     MeshTurns turns;
-    TRY(mesh_turns_create(&turns, rest, NULL, error));
+    TRY(mesh_turns_create(&turns, rest, error));
     double(*turn)[4] = calloc((size_t)rest->vertex_count + 1, sizeof *turn);
     for (uint32_t v = 0; turn && v < rest->vertex_count; ++v)
         mesh_turns_find(&turns, v, position, turn[v]);

@@ -222,7 +222,7 @@ static json_t *track(json_t *members, json_t *others)
 // A number or color of a section that changes over time.
 static json_t *number_track(const ParamInfo *info)
 {
-    bool color = info->kind == PARAM_COLOR || info->kind == PARAM_AUTO_COLOR, good = true;
+    bool color = section_tracks_is_color(info), good = true;
     json_t *formula = color ? NULL : json_pack("{s:{s:s}}", "formula", "type", "string");
     json_t *value = color ? reference("colorValue") : real(info->minimum, info->maximum);
     json_t *result = track(json_pack("{s:o}", "value", value), formula);

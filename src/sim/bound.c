@@ -40,7 +40,7 @@ Result bound_body_create(BoundBody *bound, const Body *body, Error *error)
 {
     *bound = (BoundBody){.body = body};
     if (!body) return RESULT_OK;
-    Result result = mesh_turns_create(&bound->turns, body->mesh, NULL, error);
+    Result result = mesh_turns_create(&bound->turns, body->mesh, error);
     THEN(result, make_poses(bound, error));
     if (result != RESULT_OK) bound_body_destroy(bound);
     return result;

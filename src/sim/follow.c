@@ -238,7 +238,6 @@ Result follow_bind(Follow *follow, BoundBody *body, const MeshBinding *roots,
 }
 
 typedef struct Moving {
-    const Follow *follow;
     FollowBatch *batch;
     const HairBatch *hair;
     const BodyPose *pose;
@@ -292,8 +291,7 @@ void follow_move(Follow *follow, BoundBody *body, double time)
     if (!guide) return;
     follow->shape = shape;
     for (uint32_t i = 0; i < follow->hair.batch_count; ++i) {
-        Moving moving = {.follow = follow,
-                         .batch = &follow->batches[i],
+        Moving moving = {.batch = &follow->batches[i],
                          .hair = &follow->hair.batches[i],
                          .pose = pose,
                          .guide = (const double(*)[3])guide,

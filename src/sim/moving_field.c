@@ -405,10 +405,10 @@ static void fill_texels(MovingField *field)
     MovingFieldWork *work = field->work;
     const uint32_t *size = field->field.size;
     size_t points = distance_field_count(&field->field);
-    float spacing = field->field.spacing, deepest = 0;
+    float spacing = field->field.spacing;
     for (size_t i = 0; i < points; ++i) {
         bool inside = is_inside(work, i);
-        float distance = work->triangle[i] == NONE ? (inside ? deepest : field->outside)
+        float distance = work->triangle[i] == NONE ? (inside ? 0 : field->outside)
                                                    : spacing * sqrtf(work->square[i]);
         if (!inside) distance = fminf(distance, field->outside);
         work->texel[i][0] = inside ? -distance : distance;

@@ -14,7 +14,7 @@ typedef struct MovingField {
     DistanceField field; // four floats a point: distance (m), and how far the surface that is
                          // nearest has come in the step (m, in the head's frame)
     const Mesh *mesh;    // its triangles
-    float outside;       // m: as far from the mesh distances are told
+    float outside;       // m: the largest distance kept outside the mesh; farther points have it
     struct MovingFieldWork *work;
     bool made;
     uint64_t builds; // how often distances were computed

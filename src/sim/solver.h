@@ -69,11 +69,6 @@ typedef struct Solver {
 // no context.
 Result solver_check(const SectionParams *params, Error *error);
 
-// RESULT_USAGE "PLACE: --algo ALGO has no such parameter" if `info` belongs to other solvers than
-// params->algo, which has been checked. `place`: the parameter as its user wrote it.
-Result solver_check_parameter(const SectionParams *params, const ParamInfo *info, const char *place,
-                              Error *error);
-
 // The warning for users of this algo and variant, or NULL. The words have been checked.
 const char *solver_caution(const SectionParams *params);
 

@@ -39,7 +39,7 @@ static void a_rigid_motion_turns_every_ring(void **state)
     MeshTurns turns;
     shapes_make_sphere(&mesh, 20, 30, 0.1f);
     float(*moved)[3] = calloc(mesh.vertex_count, sizeof *moved);
-    assert_int_equal(mesh_turns_create(&turns, &mesh, NULL, NULL), RESULT_OK);
+    assert_int_equal(mesh_turns_create(&turns, &mesh, NULL), RESULT_OK);
     move_all(&mesh, &MOTION, moved);
     for (uint32_t v = 0; v < mesh.vertex_count; ++v) {
         double turn[4];
@@ -97,7 +97,7 @@ static double worst_turn(int rows, double shear)
             memcpy(mesh.triangle[t++], (uint32_t[]){a, b + n, a + n}, 12);
         }
     mesh_compute_normals(&mesh);
-    assert_int_equal(mesh_turns_create(&turns, &mesh, NULL, NULL), RESULT_OK);
+    assert_int_equal(mesh_turns_create(&turns, &mesh, NULL), RESULT_OK);
     double worst = 0;
     for (int j = 1; j < rows; ++j)
         for (int i = 0; i < sectors; ++i) {
@@ -159,7 +159,7 @@ static void twins_and_other_triangulations_make_no_difference(void **state)
             moved[v][0] = mesh.position[v][0] + 0.4f * mesh.position[v][1];
             moved[v][1] = mesh.position[v][1], moved[v][2] = 0;
         }
-        assert_int_equal(mesh_turns_create(&turns, &mesh, NULL, NULL), RESULT_OK);
+        assert_int_equal(mesh_turns_create(&turns, &mesh, NULL), RESULT_OK);
         mesh_turns_find(&turns, 4, (const float(*)[3])moved, turn[cut]);
         double twin[4];
         mesh_turns_find(&turns, 9, (const float(*)[3])moved, twin);
@@ -182,7 +182,7 @@ static void a_bound_point_keeps_its_place(void **state)
     float(*moved)[3] = calloc(mesh.vertex_count, sizeof *moved);
     double(*turn)[4] = calloc(mesh.vertex_count, sizeof *turn);
     assert_int_equal(mesh_binding_create(&binding, &mesh, "ball", points, 3, NULL), RESULT_OK);
-    assert_int_equal(mesh_turns_create(&turns, &mesh, NULL, NULL), RESULT_OK);
+    assert_int_equal(mesh_turns_create(&turns, &mesh, NULL), RESULT_OK);
     assert_true(binding.median < 0.006f);
     move_all(&mesh, &MOTION, moved);
     for (uint32_t v = 0; v < mesh.vertex_count; ++v)

@@ -126,7 +126,8 @@ SIMD_INLINE void find_lane_light(const LaneLight *light, int part)
 {
     enum { W = STRAND_TILE };
     const ShadowStage *stage = light->stage;
-    float radius[W], opacity[W], x[3][W], left[MAX_LIGHTS][W];
+    float radius[W], opacity[W], x[3][W], left[W];
+    int map = stage->lanes.map_of[0];
     (void)part;
     for (uint32_t i = 0; i < light->count; i += W) {
         for (uint32_t k = 0; k < W; ++k) {
@@ -135,10 +136,10 @@ SIMD_INLINE void find_lane_light(const LaneLight *light, int part)
             radius[k] = stage->on_fibre ? stage->item.radius : 0;
             opacity[k] = stage->material.shadow_opacity;
         }
-        lane_shadow_left(&stage->lanes, (const float(*)[W])x, radius, opacity, left);
-        int map = stage->lanes.map_of[0];
+        if (map >= 0)
+            lane_shadow_left_of(&stage->lanes, map, (const float(*)[W])x, radius, opacity, left);
         for (uint32_t k = 0; k < W && i + k < light->count; ++k)
-            light->shares[i + k] = map < 0 ? 1 : left[map][k];
+            light->shares[i + k] = map < 0 ? 1 : left[k];
     }
 }
 
