@@ -2,6 +2,7 @@
 // How far away hair may be and still be seen, by tiles of the picture: 1/w of the farthest of what
 // is opaque in each, 0 where the background shows.
 #include "draw/draw.h"
+#include "kernel/edge.h"
 
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
@@ -19,7 +20,5 @@ void main()
     for (int y = 0; y < HIDE_TILE; ++y)
         for (int x = 0; x < HIDE_TILE; ++x)
             farthest = max(farthest, texelFetch(mesh_depth, min(corner + ivec2(x, y), edge), 0).x);
-    // As src/draw/block_pixels.c has it, so that the two agree to the bit.
-    hiding[tile] =
-        farthest < 1.0 ? (2.0 * farthest - 1.0 - draw_params.depth.x) / draw_params.depth.y : 0.0;
+    hiding[tile] = edge_inverse_w(farthest, draw_params.depth.x, draw_params.depth.y);
 }

@@ -17,8 +17,8 @@ layout(location = 1) uniform ivec2 strands;
 layout(binding = BIND_LISTED) uniform usamplerBuffer listed;
 layout(binding = BIND_STRAND_ID) uniform usamplerBuffer strand_id;
 layout(std430, binding = BIND_RIBBONS_OUT) writeonly buffer Ribbons { uvec4 ribbons[]; };
-// RibbonKey of ribbon_record.h.
-layout(std430, binding = BIND_KEYS_OUT) writeonly buffer Keys { uvec2 keys[]; };
+// The depth's bits of each ribbon; 0: none.
+layout(std430, binding = BIND_KEYS_OUT) writeonly buffer Keys { uint keys[]; };
 layout(std430, binding = BIND_BLOCK_COUNTS_OUT) buffer Counts { uint counts[]; };
 
 // A ribbon's end as its record has it.
@@ -49,15 +49,6 @@ Span find_span(End a, End b, vec2 d, float reach, out bool seen)
     return Span(d.x * (d.y < 0.0 ? -rows : rows), reach * rows, ivec4(low, max(high, 0.0)));
 }
 
-// First and last column and row of blocks, in bytes, if they are so few.
-uint pack_blocks(ivec4 box)
-{
-    const int WIDTH = BLOCK_WIDTH, HEIGHT = BLOCK_HEIGHT; // powers of two
-    ivec4 at = box / ivec4(WIDTH, HEIGHT, WIDTH, HEIGHT);
-    return max(at.z, at.w) < 256 ? uint(at.x | (at.y << 8) | (at.z << 16) | (at.w << 24))
-                                 : MANY_BLOCKS;
-}
-
 // Whether the ribbon was kept.
 bool store(int slot, End a, End b, float opacity)
 {
@@ -78,7 +69,7 @@ bool store(int slot, End a, End b, float opacity)
         ribbons[at + 2] = uvec4(pack_levels(a.color.rg), pack_levels(vec2(a.color.b, b.color.r)),
                                 pack_levels(b.color.gb), floatBitsToUint(depth));
         ribbons[at + 3] = pack_span(span);
-        keys[slot] = uvec2(floatBitsToUint(depth), pack_blocks(span.box));
+        keys[slot] = floatBitsToUint(depth);
     }
     return seen;
 }

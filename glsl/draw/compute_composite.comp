@@ -19,6 +19,7 @@
 #define REAL float
 #endif
 #include "draw/draw.h"
+#include "kernel/edge.h"
 #include "draw/block.glsl"
 #include "draw/compute_pixels.glsl"
 #include "draw/compute_strip.glsl"
@@ -254,7 +255,7 @@ void hide()
     for (int k = 0; k < PIXELS; ++k) {
         ivec2 p = place + ivec2(0, k);
         float z = is_in_base(p) ? texelFetch(mesh_depth, p, 0).x : 1.0;
-        OF(hidden, k) = z < 1.0 ? (2.0 * z - 1.0 - draw_params.depth.x) / draw_params.depth.y : 0.0;
+        OF(hidden, k) = edge_inverse_w(z, draw_params.depth.x, draw_params.depth.y);
     }
 #endif
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What stands behind the hair, and how light becomes the picture's colours, as in
-// src/draw/block_pixels.c (needs draw.h).
+// src/lanes/pixels.c (needs draw.h).
 //   BASE 1: mesh or floor stand behind
 //   SAMPLES: what is a pixel here is one of SAMPLES x SAMPLES that the picture has the mean of
 //   KIND 0: 8 bits a channel are stored   1: 16   2: floats

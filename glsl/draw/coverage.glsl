@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The exact share of a square pixel that a straight ribbon covers (src/draw/block_composite.c has
+// The exact share of a square pixel that a straight ribbon covers (src/lanes/composite.c has
 // it for many pixels at once).
 
 // Share of the pixel on the positive side of a line at the signed distance t from its middle. `a`

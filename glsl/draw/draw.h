@@ -35,23 +35,23 @@
 #define BIND_EDGE_DEPTH   7 // the same of some samples a pixel
 
 #define BIND_PAINT     8  // uvec4 a particle, see look_paint; beside what shadows are read from
-#define BIND_SCATTER   10 // marschner's table, see scatter.comp; or that of a section's tints
+#define BIND_SCATTER   10 // marschner's table, see scatter.comp
 #define BIND_SCATTERED 15 // vec3 a point of a strand: the light among hair, see hair_scatter.h
 
 // Nodes of that table by azimuth (0 to pi), cosine of theta_d and colour (both 0 to 1).
 #define SCATTER_AZIMUTHS     128
 #define SCATTER_INCLINATIONS 64
 #define SCATTER_COLORS       24
-#define TINT_SLICES          4 // of brightness, see tint_table.h
 
-// The same points for the block-list rasteriser, which is never at work with the A-buffer.
+// The same points for the compute rasteriser, which is never at work with the A-buffer, while
+// strands are projected.
 #define BIND_BLOCK_COUNTS_OUT 0 // uint, 16 for each of 64 groups: ribbons, strands without any
 #define BIND_RIBBONS_OUT      1 // RIBBON_TEXELS uvec4 a ribbon, see block.glsl
 #define BIND_HIDING_OUT       1 // float a tile, see block_hide.comp
 #define BIND_LEVELS_OUT       2 // float a tile and level, see block_level.comp
 #define BIND_TALLY_OUT        2 // two uint: strands of the image that are listed, that are hidden
 #define BIND_LISTED_OUT       3 // uint: how many strands of a part are listed, then rows
-#define BIND_KEYS_OUT         4 // uvec2 a ribbon
+#define BIND_KEYS_OUT         4 // uint a ribbon: its depth's bits; 0: none
 #define BIND_LISTED           7 // while strands are projected
 #define BIND_MESH_DEPTH       8
 #define BIND_HIDING           9 // float a tile and level, see block_cull.comp
@@ -63,16 +63,15 @@
 #define BLOCK_WIDTH       64 // px, of what is composited at once
 #define BLOCK_HEIGHT      64
 #define BLOCK_COUNT_WORDS (64 * 16)
-#define MANY_BLOCKS       0xffffffffu
 
-// The same points for the compute rasteriser, which composites those ribbons by tiles.
+// The same points while it composites those ribbons by tiles.
 #define BIND_TILE_COUNTS_OUT 0 // uint a tile: its ribbons
 #define BIND_TILE_ENDS_OUT   1 // uint a tile: where its list goes on, in the end behind its last pair
 #define BIND_TILE_USE_OUT    2 // TILE_USE_WORDS uint
 #define BIND_PAIRS_OUT       3 // uvec2 a ribbon in a tile: ~depth, slot
 #define BIND_TILES_OUT       4 // uint: the tiles with ribbons
 #define BIND_RIBBONS         4 // RIBBON_TEXELS uvec4 a slot
-#define BIND_KEYS            5 // uvec2 a slot
+#define BIND_KEYS            5 // uint a slot, as KEYS_OUT
 #define BIND_SORTED          6
 #define IMAGE_PAIRS          0 // image units
 #define IMAGE_SORTED         1 // as PAIRS_OUT, each list in order

@@ -13,9 +13,8 @@
 #define WALK_BEYOND 0
 #include "draw/ribbon_walk.glsl"
 
-const float PAD = 0.71;          // px; the corner of a pixel is sqrt(1/2) from its middle
-const float LEAST_COSINE = 0.25; // of the joints' 1 + n0.n1
-const float MITRE_MAX = 2.9;     // bound of |m|: sqrt(2 x) / max(x, LEAST_COSINE) over all x
+const float PAD = 0.71;      // px; the corner of a pixel is sqrt(1/2) from its middle
+const float MITRE_MAX = 2.9; // bound of |m|: sqrt(2 x) / max(x, RIBBON_FOLD) over all x
 
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
@@ -43,7 +42,7 @@ void store(int index, Particle p, vec2 d0, vec2 d1, vec2 beyond, float opacity)
     if (d1 == vec2(0.0)) d1 = d0;
     vec2 normal = vec2(-d0.y - d1.y, d0.x + d1.x);
     float half_width = outline_half_width(p, normal);
-    vec2 edge = normal * ((half_width + PAD) / max(1.0 + dot(d0, d1), LEAST_COSINE));
+    vec2 edge = normal * ((half_width + PAD) / max(1.0 + dot(d0, d1), RIBBON_FOLD));
     vec2 middle = vec2(p.at.x, p.at.y) + min(beyond.x, 0.0) * d1 - min(beyond.y, 0.0) * d0;
     edges[index] = uvec4(floatBitsToUint(middle), packHalf2x16(edge), packHalf2x16(beyond));
     shades[index] = uvec4(floatBitsToUint(p.at.inverse_w), floatBitsToUint(half_width),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The colour, thickness and opacity of a strand's particles (needs draw.h, material.h, hash.glsl).
+// The colour, thickness and opacity of a strand's particles (needs draw.h, material.h, hash.h).
 //   PAINT 0: the section's   1: by particle, see look_paint
 #if PAINT
 layout(binding = BIND_PAINT) uniform usamplerBuffer paint;

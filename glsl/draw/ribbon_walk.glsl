@@ -36,7 +36,7 @@ Walk walk_strand(int s, uint id)
     Painter painter = paint_strand(id, n);
     if (s == int(material.last_strand)) painter.radius *= material.last_share;
     vec3 eye = draw_params.eye.xyz;
-    Fibre fibre = fibre_material(painter);
+    Fibre fibre = fibre_material();
     Curve curve = curve_open(root, n);
     vec3 here = curve_point(curve, 0), before = here;
     vec4 here_clip = clip_from_world * vec4(here, 1.0), before_clip = here_clip;

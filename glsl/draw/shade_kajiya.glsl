@@ -12,7 +12,7 @@ struct Fibre {
     vec2 shift1, shift2; // cosine and sine
 };
 
-Fibre fibre_material(Painter painter)
+Fibre fibre_material()
 {
     return Fibre(material.ambient, material.diffuse, material.specular1, material.exponent1,
                  material.specular2, material.exponent2,

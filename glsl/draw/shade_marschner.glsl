@@ -33,7 +33,7 @@ struct Fibre {
     vec3 sharpness, scale, tilt_cos, tilt_sin; // of R, TT, TRT
 };
 
-Fibre fibre_material(Painter painter)
+Fibre fibre_material()
 {
     return Fibre(material.albedo, material.mean_albedo, material.lobe_sharpness.xyz,
                  material.lobe_scale.xyz, material.lobe_tilt_cos.xyz, material.lobe_tilt_sin.xyz);

@@ -22,6 +22,12 @@
 // The depth at a distance w before the eye's plane; clip z = x w + y.
 SHARED_FUNCTION float edge_depth_at(float x, float y, float w) { return 0.5f + 0.5f * (x + y / w); }
 
+// 1/w of a depth; 0 of EDGE_NOWHERE.
+SHARED_FUNCTION float edge_inverse_w(float z, float x, float y)
+{
+    return z < EDGE_NOWHERE ? (2.0f * z - 1.0f - x) / y : 0.0f;
+}
+
 // What steps of EDGE_STEEP px away from the eye change of a depth; focal: px of a metre at a
 // distance of one.
 SHARED_FUNCTION float edge_steep(float z, float x, float focal)

@@ -38,8 +38,7 @@ SHARED_FUNCTION RibbonPoint ribbon_project(float x, float y, float w, float radi
     return p;
 }
 
-// How far `p` is from what stands in its place if the ribbon runs straight from a to b: 1 is as
-// much as may be. `along`, if it is asked for, is where.
+// Where on the way from a to b, 0 .. 1, a straight ribbon has what stands in the place of `p`.
 SHARED_FUNCTION float ribbon_share(RibbonPoint a, RibbonPoint p, RibbonPoint b)
 {
     float chord_x = b.x - a.x, chord_y = b.y - a.y, arm_x = p.x - a.x, arm_y = p.y - a.y;
@@ -48,6 +47,8 @@ SHARED_FUNCTION float ribbon_share(RibbonPoint a, RibbonPoint p, RibbonPoint b)
     return SHARED_MIN(SHARED_MAX(share, 0.0f), 1.0f);
 }
 
+// How far `p` is from what stands in its place if the ribbon runs straight from a to b: 1 is as
+// much as may be.
 SHARED_FUNCTION float ribbon_bend(RibbonPoint a, RibbonPoint p, RibbonPoint b)
 {
     float t = ribbon_share(a, p, b);

@@ -106,18 +106,3 @@ SIMD_INLINE float simd_ceil(float x)
     float whole = (float)(int)x;
     return whole < x ? whole + 1 : whole;
 }
-
-// 2^x for -60 <= x <= 0: of the fraction -1/2 .. 1/2 the Taylor series to the sixth power (1.2e-7
-// off), the rest as exponent bits.
-SIMD_INLINE float simd_exp2(float x)
-{
-    int whole = (int)(x - 0.5f);
-    float f = (x - (float)whole) * 0.693147181f;
-    float power =
-        1 + f * (1 + f * (0.5f + f * (1.f / 6 + f * (1.f / 24 + f * (1.f / 120 + f / 720)))));
-    union {
-        int bits;
-        float value;
-    } exponent = {.bits = (whole + 127) * (1 << 23)};
-    return power * exponent.value;
-}

@@ -4,6 +4,8 @@
 #include "base/parallel.h"
 #include "base/simd.h"
 
+#include "glsl/common/shared_math.h"
+
 #include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
@@ -108,7 +110,7 @@ SIMD_INLINE Float3 turn(Float3 d, float l, Float3 *move, bool inlined)
     float inverse = 1 / sqrtf(ss);
     Float3 e = scale(inverse, *move);
     float x = -simd_min(ss * inverse * (LOG2_E / l), MAX_EXPONENT);
-    float E = inlined ? simd_exp2(x) : exp2f(x);
+    float E = inlined ? SHARED_EXP2(x) : exp2f(x);
     Float3 m = add(d, -1, e);
     float M = dot(m, m), A = 4 * E - M * (1 + E), B = A + 2 * M, D = M + E * E * (4 - M);
     Float3 change = scale((1 - E) / D, add(scale(A, d), -B, e));

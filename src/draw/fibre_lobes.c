@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "draw/fibre_lobes.h"
 
-#include "draw/fibre_lobe.h"
+#include "base/simd.h"
 
-#include "glsl/common/shared_math.h"
 #include "glsl/draw/draw.h"
+#include "glsl/kernel/fibre.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -135,12 +135,12 @@ SIMD_INLINE void find_angles(const float tangent[3], const Ways *out, const Ways
 SIMD_INLINE void find_longitudinal(const FibreLobes *lobes, const Angles *a, int p, float extra,
                                    float m[W])
 {
-    float v = lobes->variance[p] + extra, tilt_cos = lobes->tilt_cos[p],
-          tilt_sin = lobes->tilt_sin[p];
+    float sharpness = 1 / (lobes->variance[p] + extra), tilt_cos = lobes->tilt_cos[p],
+          tilt_sin = lobes->tilt_sin[p],
+          scale = sharpness / (1 - SHARED_EXP2(-2 * (float)LOG2E * sharpness));
     for (int k = 0; k < W; ++k)
-        m[k] =
-            fibre_lobe(v, a->sin_i[k], a->cos_i[k], a->sin_r[k] * tilt_cos - a->cos_r[k] * tilt_sin,
-                       a->cos_r[k] * tilt_cos + a->sin_r[k] * tilt_sin);
+        m[k] = fibre_lobe(a->sin_i[k], a->cos_i[k], a->sin_r[k] * tilt_cos - a->cos_r[k] * tilt_sin,
+                          a->cos_r[k] * tilt_cos + a->sin_r[k] * tilt_sin, sharpness, scale);
 }
 
 // The four nodes around each lane's place in the table.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lanes/hidden.h"
 
+#include "glsl/kernel/edge.h"
+
 #include <stdlib.h>
 
 static float least(float a, float b)
@@ -20,7 +22,7 @@ static float farthest(const BlockBase *base, const float depth[2], int x, int y)
             float z = base->depth[(size_t)(y + j) * (size_t)base->width + (size_t)(x + i)];
             far = z > far ? z : far;
         }
-    return far < 1 ? (2 * far - 1 - depth[0]) / depth[1] : 0;
+    return edge_inverse_w(far, depth[0], depth[1]);
 }
 
 static Result make_room(Hidden *hidden, size_t count, Error *error)

@@ -5,6 +5,7 @@
 #include "image/tone.h"
 
 #include "glsl/common/shared_math.h"
+#include "glsl/kernel/edge.h"
 
 #include <math.h>
 #include <string.h>
@@ -46,8 +47,8 @@ static void hide(const Block *block, const BlockBase *base, const PixelStyle *st
         for (int k = 0; k < CELL_PIXELS; ++k) {
             int at = base_at(base, block->x + c % BLOCK_CELLS_ACROSS * CELL_WIDTH + k % CELL_WIDTH,
                              block->y + c / BLOCK_CELLS_ACROSS * CELL_HEIGHT + k / CELL_WIDTH);
-            float z = at < 0 ? 1 : base->depth[at];
-            block->hidden[c][k] = z < 1 ? (2 * z - 1 - style->depth[0]) / style->depth[1] : 0;
+            float z = at < 0 ? EDGE_NOWHERE : base->depth[at];
+            block->hidden[c][k] = edge_inverse_w(z, style->depth[0], style->depth[1]);
         }
 }
 

@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { TINT_SLICES = 4 }; // of brightness, see tint_table.h
+
 enum { NODES = SCATTER_AZIMUTHS * SCATTER_INCLINATIONS, WORDS = 4, BEAMS = 3 };
 
 // Where a colour lies among the table's.

@@ -80,7 +80,7 @@ static Result set_mesh(void *state, const DrawnMesh *mesh, Error *error)
     passes->base.any = false;
     shadows_forget_mesh(&passes->shadow);
     render_mesh_destroy(mine);
-    TRY(render_mesh_create(mine, &mesh->mesh, mesh->color, &passes->gpu->limits, error));
+    TRY(render_mesh_create(mine, &mesh->mesh, &passes->gpu->limits, error));
     if (mesh->open)
         TRY(render_mesh_set_openness(mine, mesh->open, mesh->mesh.vertex_count,
                                      &passes->gpu->limits, error));

@@ -38,10 +38,10 @@ static void describe_vertices(RenderMesh *mesh)
     glBindVertexArray(0);
 }
 
-Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const float color[3],
-                          const GpuLimits *limits, Error *error)
+Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const GpuLimits *limits,
+                          Error *error)
 {
-    *mesh = (RenderMesh){.color = {color[0], color[1], color[2]}};
+    *mesh = (RenderMesh){0};
     if (source->triangle_count == 0) return RESULT_OK;
     find_bounds(mesh, source);
     Result result = upload(mesh, source, limits, error);

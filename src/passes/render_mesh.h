@@ -14,12 +14,11 @@ typedef struct RenderMesh {
     GpuBuffer open;                       // float, see openness.h; none: 1 everywhere
     uint32_t triangle_count;              // 0: no mesh, nothing is done
     float low[3], high[3];                // bounds in the head's frame, m
-    float color[3];                       // linear
 } RenderMesh;
 
-// Uploads. `color`: linear RGB. RESULT_FAILED if memory is short.
-Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const float color[3],
-                          const GpuLimits *limits, Error *error);
+// Uploads. RESULT_FAILED if memory is short.
+Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const GpuLimits *limits,
+                          Error *error);
 
 // Moves the vertices: [those that the mesh was made with], in the head's frame; unit normals.
 void render_mesh_move(RenderMesh *mesh, const Mesh *moved);

@@ -136,11 +136,6 @@ Result render_target_send(RenderTarget *target, const GpuBuffer *flag, bool agai
     return RESULT_OK;
 }
 
-void render_target_skip(RenderTarget *target, bool again)
-{
-    if (!again) target->next ^= 1;
-}
-
 // Leaves alpha out.
 static void copy_rgb(Image *image, const uint8_t *rgba)
 {

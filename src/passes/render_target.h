@@ -37,9 +37,6 @@ Result render_target_add_base(RenderTarget *target, Error *error);
 // if memory is short.
 Result render_target_send(RenderTarget *target, const GpuBuffer *flag, bool again, Error *error);
 
-// Passes the image's place over: it is made elsewhere. `again`: the last one was sent in vain.
-void render_target_skip(RenderTarget *target, bool again);
-
 // The image that was sent when `next` was `place`, one of the last two, into `image` of 3 or 4
 // channels, and its word into *flag; waits for it. RESULT_FAILED if it does not come.
 Result render_target_take(RenderTarget *target, int place, Image *image, uint32_t *flag,

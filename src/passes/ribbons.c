@@ -7,9 +7,9 @@
 #include "glsl/draw/draw.h"
 
 enum {
-    ALIGNED = 32,                      // slots at whose multiples every driver lets a range begin
+    ALIGNED = 64,                      // slots at whose multiples every driver lets a range begin
     RECORD_BYTES = 16 * RIBBON_TEXELS, // of a slot
-    KEY_BYTES = 8,
+    KEY_BYTES = 4,
 };
 
 static int64_t smaller(int64_t a, int64_t b)
@@ -79,7 +79,7 @@ Result ribbons_begin(Ribbons *ribbons, uint64_t segments, const RibbonsBase *bas
                          (unsigned long long)segments, (long long)most);
     int64_t count = 1 + (int64_t)segments;
     TRY(make_room(&ribbons->records, limits, "ribbons", count * RECORD_BYTES, GL_RGBA32UI, error));
-    TRY(make_room(&ribbons->keys, limits, "depths", count * KEY_BYTES, GL_RG32UI, error));
+    TRY(make_room(&ribbons->keys, limits, "depths", count * KEY_BYTES, GL_R32UI, error));
     TRY(cull_begin(&ribbons->cull, &base->cull, ribbons->skips, error));
     clear(&ribbons->keys, count * KEY_BYTES);
     clear(&ribbons->counts, ribbons->counts.size);

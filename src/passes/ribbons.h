@@ -18,7 +18,7 @@ typedef struct Ribbons {
     const GpuLimits *limits;
     LookPrograms project;
     Cull cull;
-    GpuBuffer records, keys; // RIBBON_TEXELS uvec4 (block.glsl) and uvec2 a slot: depth, blocks
+    GpuBuffer records, keys; // RIBBON_TEXELS uvec4 (block.glsl) and uint a slot: its depth's bits
     GpuBuffer counts;
     RibbonsBase base;          // of the image
     size_t slots;              // of the image

@@ -46,8 +46,7 @@ void shadow_stage_open(ShadowStage *stage, Strands strands, float radius, float 
         stage->casters[stage->scene.casters.count++] =
             (ShadowCaster){&stage->hair.batches[b], &stage->looks[b]};
     }
-    if (mesh)
-        NEEDED(render_mesh_create(&stage->mesh, mesh, (const float[3]){1, 1, 1}, limits, error));
+    if (mesh) NEEDED(render_mesh_create(&stage->mesh, mesh, limits, error));
 }
 
 void shadow_stage_close(ShadowStage *stage)
