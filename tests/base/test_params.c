@@ -55,7 +55,7 @@ static void every_default_is_valid_and_prints_as_the_table_has_it(void **state)
     assert_int_equal(params.run.size[1], 720);
     assert_true(params.run.eye.automatic);
     assert_true(params.run.gravity[1] == -9.81f);
-    assert_string_equal(params.section.algo, "split");
+    assert_string_equal(params.section.algo, "hybrid");
     destroy(&params);
     destroy(&params);
 }
@@ -261,7 +261,7 @@ static void a_copy_owns_its_texts(void **state)
     params.style = 0.25f;
     assert_int_equal(params_copy_section(&copy, &params, &error), RESULT_OK);
     params_destroy_section(&params);
-    assert_string_equal(copy.algo, "split");
+    assert_string_equal(copy.algo, "hybrid");
     assert_true(copy.style == 0.25f);
     params_destroy_section(&copy);
     params_destroy_section(&copy);

@@ -143,14 +143,14 @@ run 2 $hair --frames 0 -o "$work/x/"; one_line; says "frames"
 run 2 $hair --frames many -o "$work/x/"; one_line
 run 2 $hair --algo splitt -o "$work/x/"; one_line; says "did you mean 'split'"
 run 2 $hair --algo verlet -o "$work/x/"; one_line; says "no solver 'verlet': expected split, emulation"
-run 2 $hair --rope-iterations 5 -o "$work/x/"; one_line; says "--rope-iterations: --algo split has no such parameter"
+run 2 $hair --rope-iterations 5 -o "$work/x/"; one_line; says "--rope-iterations: --algo hybrid has no such parameter"
 run 2 $hair --look plain --shadow-size 64 -o "$work/x/"; one_line; says "--shadow-size: it has no effect: --shadow is none"
 printf '{"frames": 1, "size": "16x16", "look": "plain", "shadow_size": 99, "sections": [{"file": "%s/%s"}]}\n' "$PWD" "$hair" >"$work/idle.json"
 run 0 "$work/idle.json" -o "$work/idle/"; says "idle.json: shadow_size: it has no effect: --shadow is none"
 run 0 "$work/idle.json" -o "$work/idle/" -q; silent err
 printf '{"sections": [{"file": "%s/%s", "chain_bend": 9}]}\n' "$PWD" "$hair" >"$work/owner.json"
-run 2 "$work/owner.json" -o "$work/x/"; one_line; says "owner.json: sections[0].chain_bend: algo 'split' has no such parameter"
-run 2 $hair --variant thesiss -o "$work/x/"; one_line; says "did you mean 'thesis'"
+run 2 "$work/owner.json" -o "$work/x/"; one_line; says "owner.json: sections[0].chain_bend: algo 'hybrid' has no such parameter"
+run 2 $hair --algo split --variant thesiss -o "$work/x/"; one_line; says "did you mean 'thesis'"
 run 2 $hair --software --require-hardware -o "$work/x/"; one_line
 run 2 $hair -o "$work/x_%d_%d.png"; one_line
 run 2 $hair -o "$work/x.avi"; one_line
@@ -228,7 +228,7 @@ no_files "$work/clean"
 claim "statistics hold device, passes, frames and parameters"
 # shellcheck disable=SC2086
 run 0 $hair $small -q --seed 7 -o "$work/s/" --stats "$work/stats.json"
-for word in '"renderer"' '"sim_split"' '"draw_composite"' '"frames_drawn": 2' '"seed": 7' '"peak_memory_kib"' '"commit"'; do
+for word in '"renderer"' '"sim_hybrid"' '"draw_composite"' '"frames_drawn": 2' '"seed": 7' '"peak_memory_kib"' '"commit"'; do
     if grep -qF -- "$word" "$work/stats.json"; then good; else bad "no $word"; fi
 done
 
@@ -282,7 +282,7 @@ if [ -s "$work/err" ]; then bad "said something"; else good; fi
 
 claim "slow motion, a rate of its own, and a warm-up"
 # shellcheck disable=SC2086
-run 0 $hair $plain --frames 2 --size 16x16 --speed 0.25 --sim-rate 100 --preroll 0.1 --substeps auto -v -o "$work/slow/"
+run 0 $hair $plain --algo split --frames 2 --size 16x16 --speed 0.25 --sim-rate 100 --preroll 0.1 --substeps auto -v -o "$work/slow/"
 says "steps of 10 ms"; says "10 before the first"
 run 2 $hair --substeps 0 -o "$work/x/"; one_line; says "auto or a whole number"
 

@@ -353,7 +353,7 @@ static void flags_without_effect_are_refused(void **state)
         const char *line, *message;
     } LINES[] = {
         {"a.tfx -o x/ --rope-iterations 5",
-         "--rope-iterations: --algo split has no such parameter"},
+         "--rope-iterations: --algo hybrid has no such parameter"},
         {"a.tfx b.tfx -o x/ --algo chain --rope-damping 0", "--rope-damping: --algo chain has no"},
         {"a.tfx -o x/ --collide --scalp none", "--collide: it has no effect: no --colliders"},
         {"a.tfx -o x/ --mesh m.obj --no-collide-mesh --friction 1", "--friction: it has no effect"},
@@ -416,7 +416,7 @@ static void keys_of_another_solver_are_refused_unless_the_command_line_has_it(vo
     char line[600];
     snprintf(line, sizeof line, "%s -o x/", write_scene(state, ONE));
     assert_refused(line, RESULT_USAGE,
-                   "scene.json: sections[1].rope_iterations: algo 'split' has no such parameter");
+                   "scene.json: sections[1].rope_iterations: algo 'hybrid' has no such parameter");
     strcat(line, " --algo rope");
     Scene scene;
     assert_read(&scene, line);
