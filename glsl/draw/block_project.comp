@@ -8,6 +8,8 @@
 #include "draw/ribbon_walk.glsl"
 #include "draw/block.glsl"
 
+const float SLANT = 0.004; // of 1/w, by which a ribbon's ends may be apart
+
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
 // Of this part of a batch, in what is bound of the buffers.
@@ -83,7 +85,13 @@ bool begun = false;
 
 void see_point(Particle p) {}
 
-bool ends_ribbon(Walk w, int j) { return w.bent > 1.0 || j >= w.points; }
+// Ribbons are drawn in the order of their middles' depths: one that reaches far into hair would lie
+// over what is before its end.
+bool ends_ribbon(Walk w, int j, Particle p)
+{
+    bool slants = abs(p.at.inverse_w - w.kept.at.inverse_w) > SLANT * p.at.inverse_w;
+    return w.bent > 1.0 || slants || j >= w.points;
+}
 
 void put_joint(Walk w, int j, vec2 next)
 {

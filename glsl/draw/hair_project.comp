@@ -77,7 +77,7 @@ void see_point(Particle p)
     if (p.at.inverse_w > 0.0) box = min(box, vec4(at, -at) - reach);
 }
 
-bool ends_ribbon(Walk w, int j)
+bool ends_ribbon(Walk w, int j, Particle p)
 {
     return w.bent > 1.0 && length(way_from(w.kept, w.last)) > LEAST_WAY;
 }

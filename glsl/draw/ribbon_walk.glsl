@@ -21,7 +21,8 @@ struct Walk {
 };
 
 void see_point(Particle p);               // each of them
-bool ends_ribbon(Walk w, int j);          // whether `last` is not left out, in the turn of point j
+// Whether `last` is not left out, in the turn of point j, which is p.
+bool ends_ribbon(Walk w, int j, Particle p);
 void put_joint(Walk w, int j, vec2 next); // `kept` lies between the directions `way` and `next`
 
 int count_points()
@@ -63,7 +64,7 @@ Walk walk_strand(int s, uint id)
                                  unit(after - before), unit(eye - here));
         see_point(p);
         if (j > 1) w.bent += bend(w.kept, w.last, p);
-        if (j == 1 || ends_ribbon(w, j)) {
+        if (j == 1 || ends_ribbon(w, j, p)) {
             vec2 next = direction(w.kept, w.last);
             put_joint(w, j, next);
             w.way = next;

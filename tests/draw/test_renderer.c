@@ -41,6 +41,44 @@ static void the_nearer_strand_is_in_front(void **state)
     }
 }
 
+// A strand that comes out of the picture, `slope` px towards the eye for each to the right.
+static void add_slanted(float slope)
+{
+    enum { POINTS = 81 };
+    float position[POINTS][3];
+    for (int i = 0; i < POINTS; ++i) {
+        float x = (float)(i - POINTS / 2);
+        memcpy(position[i], (float[3]){x, 0, slope * x}, sizeof *position);
+    }
+    Strands strands = studio_strands(1, POINTS, (const float(*)[3])position);
+    uint32_t item = studio_add(&studio, &strands, 3, 1);
+    memcpy(studio.material[item].color, (float[3]){1, 0, 0}, sizeof(float[3]));
+    strands_destroy(&strands);
+}
+
+// A strand that is straight and of one colour is before what its one end passes and behind what the
+// other does, however steep it is and however few ribbons it could be drawn by.
+static void a_slanted_strand_passes_between_others(void **state)
+{
+    (void)state;
+    const float slopes[] = {0.2f, 1, 5.67f};
+    use(&BLACK);
+    for (size_t i = 0; i < sizeof slopes / sizeof *slopes; ++i)
+        for (int side = -1; side <= 1; side += 2) {
+            float x = 24 * (float)side, z = slopes[i] * x, column = x * 1000 / (1000 - z),
+                  across = column * (1 - z / 2000);
+            add_slanted(slopes[i]);
+            uint32_t post =
+                add_line((float[3]){across, -40, 0.5f * z}, (float[3]){across, 40, 0.5f * z}, 3, 1);
+            memcpy(studio.material[post].color, (float[3]){0, 1, 0}, sizeof(float[3]));
+            studio_draw(&studio);
+            const uint8_t *pixel = studio_pixel(&studio, SIDE / 2 + (int)floorf(column), SIDE / 2);
+            assert_int_equal(pixel[side > 0 ? 0 : 1], 255);
+            assert_int_equal(pixel[side > 0 ? 1 : 0], 0);
+            studio_clear(&studio);
+        }
+}
+
 static void order_of_strands_does_not_matter(void **state)
 {
     (void)state;
@@ -363,6 +401,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         CLAIM(the_nearer_strand_is_in_front),
+        CLAIM(a_slanted_strand_passes_between_others),
         CLAIM(order_of_strands_does_not_matter),
         CLAIM(thousands_of_layers_are_still_white),
         CLAIM(a_picture_does_not_depend_on_the_one_before),
@@ -380,5 +419,7 @@ int main(void)
         CLAIM(blocks_lie_alike_in_c_and_glsl),
         CLAIM(a_picture_beyond_the_driver_is_tiles),
     };
-    return stage_run(tests);
+    const struct CMUnitTest order[] = {CLAIM(the_nearer_strand_is_in_front),
+                                       CLAIM(a_slanted_strand_passes_between_others)};
+    return stage_run(tests) + stage_run_one(order, RASTER_COMPUTE);
 }
