@@ -43,13 +43,21 @@ static Result check_identity(const char *path, const struct stat *file, Error *e
                      written ? "this run has written" : "is read");
 }
 
+// Whether the folder of this path is the one that the claim has resolved. Of a whole folder, what
+// lies deeper is claimed, too, but is found by its own path.
+static bool is_resolved(const Claim *claim, const char *path)
+{
+    return claim && !(claim->whole_folder && strchr(path + strlen(claim->before), '/'));
+}
+
 // Where the file of this path goes, with what is there. A claim has resolved the folder before.
 static Result find_place(Place *place, const char *path, Error *error)
 {
     const Claim *claim = claims_find(path);
     bool confined = claim && claim->confined;
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
-    int reason = claim ? place_copy(place, &claim->place, name) : place_find(place, path);
+    int reason =
+        is_resolved(claim, path) ? place_copy(place, &claim->place, name) : place_find(place, path);
     if (!reason) {
         reason = place_look(place, !confined);
         if (!reason && place->exists && S_ISDIR(place->file.st_mode)) reason = EISDIR;

@@ -78,7 +78,10 @@ static void put_row(FILE *stream, const Pair *pair, const Verdict *verdict)
     const CompareResult *figures = &verdict->figures;
     fputs("| ", stream);
     put_code(stream, pair->name);
-    fprintf(stream, " | %s%s | ", verdict_word(verdict), verdict->updated ? ", updated" : "");
+    fprintf(stream, " | %s%s%s%s%s | ", verdict_word(verdict), verdict->updated ? ", updated" : "",
+            pair->level && pair->has_a ? " (" : "",
+            pair->level && pair->has_a ? LEVEL_NAMES[pair->level] : "",
+            pair->level && pair->has_a ? ")" : "");
     if (verdict->measured)
         fprintf(stream, "%.4g | %.4g | %.6g | %llu (%.3g %%) | ", figures->flip, figures->rmse,
                 figures->ssim, (unsigned long long)figures->failing,
@@ -92,25 +95,28 @@ static void put_row(FILE *stream, const Pair *pair, const Verdict *verdict)
     free(sheet);
 }
 
-static void put_limits(FILE *stream, const CompareLimits *limits)
+static void put_limits(FILE *stream, const char *level, const CompareLimits *limits)
 {
     const char *unit = limits->max_failing_percent ? " %" : "";
-    fputs("\nLimits:", stream);
+    fprintf(stream, "\nLimits%s%s:", *level ? " of the " : "", level);
     if (limits->pixels_matter)
         fprintf(stream, " pixel tolerance %g, failing pixels %g%s%s", limits->pixel_tolerance,
                 limits->max_failing, unit, limits->flip_matters ? "," : "");
     if (limits->flip_matters) fprintf(stream, " FLIP %g", limits->max_flip);
-    fputs(".\n\n", stream);
+    fputs(".\n", stream);
 }
 
 static void put_summary(FILE *stream, const PairList *list, const Verdict *verdicts,
-                        const CompareLimits *limits)
+                        const CompareLimits limits[LEVELS])
 {
     VerdictTally tally = verdict_tally(list, verdicts);
     int rows = 0, wanted = tally.bad + tally.updated;
     fprintf(stream, "### Images: %d of %zu failed\n\n", tally.bad, list->count);
     verdict_print_tally(list, verdicts, stream);
-    put_limits(stream, limits);
+    Level first = list->by_platform ? LEVEL_PLATFORM : LEVEL_NONE;
+    for (Level level = first; level < (list->by_platform ? LEVELS : LEVEL_PLATFORM); ++level)
+        put_limits(stream, LEVEL_NAMES[level], &limits[level]);
+    fputc('\n', stream);
     if (wanted)
         fputs("| image | result | FLIP | RMSE | SSIM | failing pixels | |\n"
               "| --- | --- | ---: | ---: | ---: | ---: | --- |\n",
@@ -125,7 +131,7 @@ static void put_summary(FILE *stream, const PairList *list, const Verdict *verdi
 }
 
 Result github_append_summary(const PairList *list, const Verdict *verdicts,
-                             const CompareLimits *limits, Error *error)
+                             const CompareLimits limits[LEVELS], Error *error)
 {
     const char *path = getenv("GITHUB_STEP_SUMMARY");
     if (!path || !*path) return RESULT_OK;

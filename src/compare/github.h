@@ -11,4 +11,4 @@ void github_print_annotations(const PairList *list, const Verdict *verdicts, FIL
 // Appends counts, limits and a table of bad and updated images in Markdown to the file that
 // $GITHUB_STEP_SUMMARY names; nothing if it is not set. RESULT_FAILED with path and reason.
 Result github_append_summary(const PairList *list, const Verdict *verdicts,
-                             const CompareLimits *limits, Error *error);
+                             const CompareLimits limits[LEVELS], Error *error);

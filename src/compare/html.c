@@ -78,13 +78,6 @@ static void read_side(HtmlSide *side, Image *image, const char *path)
     bytes_destroy(&file);
 }
 
-static bool are_equal(const Image *a, const Image *b)
-{
-    return a->pixels && b->pixels && a->width == b->width && a->height == b->height &&
-           a->channels == b->channels && a->kind == b->kind &&
-           memcmp(a->pixels, b->pixels, image_size(a)) == 0;
-}
-
 // Without memory there is none: the page has a mark in its place.
 static void make_thumbnail(HtmlPair *page, const Image *image)
 {
@@ -106,7 +99,7 @@ void html_pair_read(HtmlPair *page, const Pair *pair)
     *page = (HtmlPair){0};
     for (int i = 0; i < 2; ++i)
         if (there[i]) read_side(&page->side[i], &image[i], paths[i]);
-    page->equal = are_equal(&image[0], &image[1]);
+    page->equal = image_is_equal(&image[0], &image[1]);
     for (int i = 1; i >= 0 && !page->thumbnail.size; --i)
         if (image[i].pixels) make_thumbnail(page, &image[i]);
     for (int i = 0; i < 2; ++i) image_destroy(&image[i]);
@@ -193,13 +186,13 @@ static json_t *list_colors(void)
     return list;
 }
 
-Result html_close(Html *html, const PairList *list, const CompareLimits *limits,
+Result html_close(Html *html, const PairList *list, const CompareLimits limits[LEVELS],
                   const char *command, Error *error)
 {
     json_t *data = json_object();
     set_text(data, "program", "tractrix-compare " TRACTRIX_VERSION);
     set_text(data, "command", command);
-    json_object_set_new(data, "limits", verdict_limits_to_json(limits));
+    json_object_set_new(data, "limits", verdict_limits_to_json(limits, list));
     json_object_set_new(data, "images", json_integer((json_int_t)list->count));
     json_object_set_new(data, "many", json_boolean(list->many));
     json_object_set_new(data, "colors", list_colors());

@@ -36,6 +36,6 @@ Result html_add(Html *html, const Pair *pair, const Verdict *verdict, const Html
                 Error *error);
 
 // Writes the file: complete or not at all. `command` is the command line, for the reader.
-Result html_close(Html *html, const PairList *list, const CompareLimits *limits,
+Result html_close(Html *html, const PairList *list, const CompareLimits limits[LEVELS],
                   const char *command, Error *error);
 void html_discard(Html *html);

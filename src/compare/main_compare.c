@@ -26,10 +26,11 @@
 typedef struct Command {
     double pixel_tolerance, max_flip, ppd; // the first two: negative if not given
     const char *max_failing, *mask, *heat_map, *sheet, *json, *junit, *unrendered, *html;
-    bool github, only_failures, update, quiet;
-    int jobs;
+    const char *commands, *only, *platform, *class_limits, *common_limits;
+    bool github, only_failures, update, any_platform, quiet;
+    int jobs, level; // of --update; LEVEL_NONE: that of the golden in use
     const char *a, *b;
-    CompareLimits limits;
+    CompareLimits limits[LEVELS];
     char *line; // the command line before the parser changes its order; owned
 } Command;
 
@@ -42,6 +43,19 @@ static const Option OPTIONS[] = {
      "how many pixels of an image may differ by more: a number or a percentage [default 0]"},
     {"max-flip", 0, OPTION_REAL, AT(max_flip), "X", 0, 1,
      "maximum mean FLIP error; without the two options above it is the only limit"},
+    {"platform", 0, OPTION_STRING, AT(platform), "NAME", 0, 0,
+     "A is a folder of goldens by platform: each is sought in A/NAME/, then in A/CLASS/ (cpu, "
+     "nvidia, amd, intel, gpu), then in A; tractrix-render --platform prints NAME. Without other "
+     "limits they are 0 levels, then 2 in all but 0.5 % of the pixels, then 8 but for 2 %"},
+    {"any-platform", 0, OPTION_SWITCH, AT(any_platform), NULL, 0, 0,
+     "goldens in A itself count for GPUs, too"},
+    {"level", 0, OPTION_WORD, AT(level), "used|platform|class|common", 0, 0,
+     "the goldens that --update writes [default used: those compared with; new ones are common for "
+     "a CPU, of the class for a GPU]"},
+    {"class-limits", 0, OPTION_STRING, AT(class_limits), "LEVELS,N|P%", 0, 0,
+     "--pixel-tolerance and --max-failing-pixels for goldens of the class"},
+    {"common-limits", 0, OPTION_STRING, AT(common_limits), "LEVELS,N|P%", 0, 0,
+     "the same for goldens of all platforms"},
     {"ppd", 0, OPTION_REAL, AT(ppd), "X", 1, 1000,
      "pixels per degree of view, for FLIP [default 67]"},
     {"mask", 0, OPTION_STRING, AT(mask), "PATH", 0, 0,
@@ -62,6 +76,10 @@ static const Option OPTIONS[] = {
      "list only images that are not the same, in lines and reports; counts are of all"},
     {"unrendered", 0, OPTION_STRING, AT(unrendered), "FILE", 0, 0,
      "images that B lacks because they could not be made: lines NAME: REASON, for the reports"},
+    {"commands", 0, OPTION_STRING, AT(commands), "FILE", 0, 0,
+     "what makes the images B: lines NAME: COMMAND, for the reports"},
+    {"only", 0, OPTION_STRING, AT(only), "NAME", 0, 0,
+     "compare only the image of this name, with %d or %04d those of any number"},
     {"update", 0, OPTION_SWITCH, AT(update), NULL, 0, 0,
      "accept B: copy it over A where they differ or A has none"},
     {"jobs", 'j', OPTION_WHOLE, AT(jobs), "N", 1, 1024,
@@ -96,6 +114,7 @@ static const char *const EXAMPLES[] = {
     "tractrix-compare goldens/ frames/ --mask masks/ --only-failures --github",
     "tractrix-compare goldens/ frames/ --html report.html",
     "tractrix-compare goldens/ frames/ --update",
+    "tractrix-compare goldens/ frames/ --platform \"$(tractrix-render --platform)\"",
     NULL};
 
 static const OptionsProgram PROGRAM = {
@@ -114,7 +133,7 @@ static const OptionsProgram PROGRAM = {
 
 // --- The command line.
 
-static Result read_failing(CompareLimits *limits, const char *text, Error *error)
+static Result read_failing(CompareLimits *limits, const char *name, const char *text, Error *error)
 {
     char *end;
     double number = strtod(text, &end);
@@ -123,23 +142,73 @@ static Result read_failing(CompareLimits *limits, const char *text, Error *error
     limits->max_failing = number;
     limits->max_failing_percent = percent;
     if (number >= 0 && ((percent && number <= 100) || whole)) return RESULT_OK;
-    return error_set(error, RESULT_USAGE,
-                     "--max-failing-pixels: got '%s', expected a whole number, or 0%% to 100%%",
-                     text);
+    return error_set(error, RESULT_USAGE, "%s: got '%s', expected a whole number, or 0%% to 100%%",
+                     name, text);
 }
 
-// Limits that are named count; if none is, only equal images pass.
+// "2,0.5%"
+static Result read_level_limits(CompareLimits *limits, const char *name, const char *text,
+                                Error *error)
+{
+    char *end;
+    double levels = strtod(text, &end);
+    if (end == text || *end != ',' || !(levels >= 0 && levels <= 255))
+        return error_set(error, RESULT_USAGE,
+                         "%s: got '%s', expected 0 to 255 levels and pixels, as 2,0.5%%", name,
+                         text);
+    limits->pixels_matter = true;
+    limits->pixel_tolerance = levels;
+    return read_failing(limits, name, end + 1, error);
+}
+
+// Limits that are named count; if none is, only equal images pass, or what a level allows.
 static Result read_limits(Command *command, Error *error)
 {
-    CompareLimits *limits = &command->limits;
-    *limits = compare_limits_default();
-    limits->pixels_per_degree = command->ppd;
-    limits->flip_matters = command->max_flip >= 0;
-    limits->max_flip = command->max_flip;
-    limits->pixels_matter =
-        !limits->flip_matters || command->pixel_tolerance >= 0 || command->max_failing;
-    if (command->pixel_tolerance >= 0) limits->pixel_tolerance = command->pixel_tolerance;
-    return command->max_failing ? read_failing(limits, command->max_failing, error) : RESULT_OK;
+    CompareLimits limits = compare_limits_default();
+    bool pixels = command->pixel_tolerance >= 0 || command->max_failing;
+    limits.pixels_per_degree = command->ppd;
+    limits.flip_matters = command->max_flip >= 0;
+    limits.max_flip = command->max_flip;
+    limits.pixels_matter = !limits.flip_matters || pixels;
+    if (command->pixel_tolerance >= 0) limits.pixel_tolerance = command->pixel_tolerance;
+    if (command->max_failing)
+        TRY(read_failing(&limits, "--max-failing-pixels", command->max_failing, error));
+    for (Level level = LEVEL_NONE; level < LEVELS; ++level) {
+        command->limits[level] = limits;
+        if (level && !pixels && !limits.flip_matters)
+            level_set_limits(&command->limits[level], level);
+    }
+    if (command->class_limits)
+        TRY(read_level_limits(&command->limits[LEVEL_CLASS], "--class-limits",
+                              command->class_limits, error));
+    if (!command->common_limits) return RESULT_OK;
+    return read_level_limits(&command->limits[LEVEL_COMMON], "--common-limits",
+                             command->common_limits, error);
+}
+
+// What belongs to goldens by platform, and a level that can be written.
+static Result check_platform(const Command *command, Error *error)
+{
+    const char *alone = command->any_platform    ? "--any-platform"
+                        : command->level         ? "--level"
+                        : command->class_limits  ? "--class-limits"
+                        : command->common_limits ? "--common-limits"
+                                                 : NULL;
+    if (!command->platform && alone)
+        return error_set(error, RESULT_USAGE, "%s: expected --platform NAME with it", alone);
+    if (command->level && !command->update)
+        return error_set(error, RESULT_USAGE, "--level: expected --update with it");
+    if (!command->platform) return RESULT_OK;
+    if (!level_is_platform(command->platform))
+        return error_set(error, RESULT_USAGE,
+                         "--platform: got '%s', expected what tractrix-render --platform prints",
+                         command->platform);
+    if (command->level && !level_counts(command->level, command->platform, command->any_platform))
+        return error_set(error, RESULT_USAGE,
+                         "--level common: does not count for the GPU %s: expected platform, class, "
+                         "or --any-platform",
+                         command->platform);
+    return RESULT_OK;
 }
 
 // How many reports and images go to standard output.
@@ -181,6 +250,7 @@ static Result claim_paths(const Command *command, const PairList *list, Error *e
         {"B", command->b, PATH_READ, NULL},
         {"--mask", command->mask, PATH_READ, NULL},
         {"--unrendered", command->unrendered, PATH_READ, NULL},
+        {"--commands", command->commands, PATH_READ, NULL},
         {"--heatmap", command->heat_map, drawings, NULL},
         {"--sheet", command->sheet, drawings, NULL},
         {"--html", command->html, PATH_WRITTEN, NULL},
@@ -225,6 +295,7 @@ static Result parse(Command *command, int argc, char **argv, bool *done, Error *
                          "got %d names, expected two files, folders or patterns", argc - first);
     command->a = argv[first], command->b = argv[first + 1];
     TRY(check_reports(command, error));
+    TRY(check_platform(command, error));
     return read_limits(command, error);
 }
 
@@ -263,7 +334,7 @@ static void judge(Work *work, size_t i)
     const Pair *pair = &work->list->pairs[i];
     char *heat_map = name_drawing(work, command->heat_map, pair);
     char *sheet = name_drawing(work, command->sheet, pair);
-    VerdictOptions options = {.limits = command->limits,
+    VerdictOptions options = {.limits = command->limits[pair->level],
                               .heat_map = heat_map,
                               .sheet = sheet,
                               .draw_same = !work->list->many,
@@ -363,17 +434,17 @@ static Result conclude(Work *work, Error *error)
 {
     const Command *command = work->command;
     if (command->json)
-        TRY(verdict_write_json(command->json, work->list, work->verdicts, &command->limits,
+        TRY(verdict_write_json(command->json, work->list, work->verdicts, command->limits,
                                command->only_failures, error));
     JunitOptions junit = {command->only_failures, 1e-3 * (clock_ms() - work->start_ms),
                           work->started};
     if (command->junit) TRY(junit_write(command->junit, work->list, work->verdicts, &junit, error));
     if (command->github) {
-        TRY(github_append_summary(work->list, work->verdicts, &command->limits, error));
+        TRY(github_append_summary(work->list, work->verdicts, command->limits, error));
         github_print_annotations(work->list, work->verdicts, lines(command));
     }
     if (command->html)
-        TRY(html_close(&work->html, work->list, &command->limits, command->line, error));
+        TRY(html_close(&work->html, work->list, command->limits, command->line, error));
     if (!command->quiet) verdict_print_tally(work->list, work->verdicts, lines(command));
     Result result = verdict_status(work->list, work->verdicts);
     for (size_t i = 0; i < work->list->count && result != RESULT_OK; ++i) {
@@ -399,7 +470,14 @@ static Result run(const Command *command, Error *error)
 {
     PairList list = {0};
     Mask mask;
-    PairOptions options = {command->update, command->mask, command->unrendered};
+    PairOptions options = {.create = command->update,
+                           .mask = command->mask,
+                           .unrendered = command->unrendered,
+                           .commands = command->commands,
+                           .only = command->only,
+                           .platform = command->platform,
+                           .any_platform = command->any_platform,
+                           .update = (Level)command->level};
     TRY(pairs_find(&list, command->a, command->b, &options, error));
     Result ready = claim_paths(command, &list, error);
     THEN(ready, read_mask(&mask, command, error));

@@ -23,7 +23,7 @@ typedef struct Side {
     Kind kind;
     bool missing; // and that is legal
     Target target;
-    size_t count; // images found, of the first side only
+    size_t count; // images found so far and sorted, of the first side only
 } Side;
 
 static Result fail_memory(Error *error)
@@ -78,12 +78,13 @@ static Result add_pair(PairList *list, const Side sides[2], const char *name, in
 {
     char *a = place_of(&sides[0], name, frame);
     if (!a) return fail_memory(error);
-    // The first side's are sorted by the time the second one's come.
+    // Those of the folders before are sorted.
     Pair key = {.a = a}, *pair = NULL;
-    if (from == 1 && sides[0].count)
+    if (from >= 0 && sides[0].count)
         pair = bsearch(&key, list->pairs, sides[0].count, sizeof *pair, order);
     if (pair) {
-        pair->has_b = true;
+        pair->has_a |= from == 0;
+        pair->has_b |= from == 1;
         free(a);
         return RESULT_OK;
     }
@@ -115,9 +116,9 @@ static DIR *open_folder(const Side *side)
     return directory;
 }
 
-static Result list_side(PairList *list, const Side sides[2], int from, Error *error)
+// Adds what is in the place `side`, of which A or B is made as `from` says, and sorts.
+static Result list_side(PairList *list, Side sides[2], const Side *side, int from, Error *error)
 {
-    const Side *side = &sides[from];
     DIR *directory = open_folder(side);
     if (!directory && errno == ENOENT && side->missing && from == 0) return RESULT_OK;
     if (!directory)
@@ -131,10 +132,87 @@ static Result list_side(PairList *list, const Side sides[2], int from, Error *er
             result = add_pair(list, sides, entry->d_name, frame, from, error);
     }
     closedir(directory);
+    sides[0].count = list->count;
+    if (list->count) qsort(list->pairs, list->count, sizeof *list->pairs, order);
     return result;
 }
 
-// --- Images that could not be made.
+// --- Goldens by platform.
+
+// The folder of a level, which need not be there. `text` is to be freed.
+static Side side_of_level(const Side *goldens, Level level, const char *platform, char **text)
+{
+    *text = place_of(goldens, level_folder(level, platform), 0);
+    return (Side){
+        .text = *text, .kind = KIND_FOLDER, .missing = goldens->missing || level != LEVEL_COMMON};
+}
+
+static Result list_levels(PairList *list, Side sides[2], const PairOptions *options, Error *error)
+{
+    Result result = RESULT_OK;
+    for (Level level = LEVEL_PLATFORM; level < LEVELS && result == RESULT_OK; ++level) {
+        char *text;
+        Side side = side_of_level(&sides[0], level, options->platform, &text);
+        if (!text) return fail_memory(error);
+        if (level_counts(level, options->platform, options->any_platform))
+            result = list_side(list, sides, &side, 0, error);
+        free(text);
+    }
+    return result;
+}
+
+// Where the image of this name is at the level, and whether it is there. NULL: no memory.
+static char *golden_of(const Side *goldens, Level level, const PairOptions *options,
+                       const char *name, bool *there)
+{
+    char *text;
+    Side side = side_of_level(goldens, level, options->platform, &text);
+    char *path = text ? place_of(&side, name, 0) : NULL;
+    *there = path && access(path, F_OK) == 0;
+    free(text);
+    return path;
+}
+
+// A is the golden that counts, or where a new one goes; the fallback is the next one that counts.
+static Result choose_golden(Pair *pair, const Side *goldens, const PairOptions *options,
+                            Error *error)
+{
+    free(pair->a);
+    pair->a = NULL;
+    pair->has_a = false;
+    for (Level level = options->update ? options->update : LEVEL_PLATFORM; level < LEVELS;
+         ++level) {
+        bool there;
+        char *path = golden_of(goldens, level, options, pair->name, &there);
+        if (!path) return fail_memory(error);
+        bool counts = there && level_counts(level, options->platform, options->any_platform);
+        pair->not_for_gpus |= there && !counts;
+        if (!pair->a && (counts || options->update)) {
+            pair->a = path, pair->has_a = there, pair->level = level;
+        } else if (pair->a && !pair->fallback && counts) {
+            pair->fallback = path;
+        } else {
+            free(path);
+        }
+    }
+    if (pair->a) return RESULT_OK;
+    pair->level = level_of_new(options->platform);
+    pair->a = golden_of(goldens, pair->level, options, pair->name, &pair->has_a);
+    pair->has_a = false;
+    return pair->a ? RESULT_OK : fail_memory(error);
+}
+
+// --- What is said about images by name: that they could not be made, what makes them.
+
+// A name of one image or, with a number's place, of several. To be destroyed.
+static Side side_of_name(const char *name)
+{
+    Side named = {.text = name, .kind = KIND_FILE};
+    if (target_parse_any(&named.target, name, NULL) == RESULT_OK &&
+        named.target.kind == TARGET_FRAMES)
+        named.kind = KIND_PATTERN;
+    return named;
+}
 
 // Whether the pair has this name, or a number in it.
 static bool is_of(const Side *named, const Pair *pair)
@@ -144,56 +222,105 @@ static bool is_of(const Side *named, const Pair *pair)
                                        : strcmp(named->text, pair->name) == 0;
 }
 
-static Result give_reason(Pair *pair, const char *reason, Error *error)
+static Result give_text(char **to, const char *text, Error *error)
 {
-    if (pair->unrendered) return RESULT_OK; // the first one counts
-    pair->unrendered = strdup(reason);
-    return pair->unrendered ? RESULT_OK : fail_memory(error);
+    if (*to) return RESULT_OK; // the first one counts
+    *to = strdup(text);
+    return *to ? RESULT_OK : fail_memory(error);
 }
 
-static Result add_unrendered(PairList *list, const Side sides[2], const char *name,
-                             const char *reason, Error *error)
+// Of these lines there are two kinds.
+typedef Result GiveLine(PairList *list, Side sides[2], const Side *named, const char *text,
+                        Error *error);
+
+static Result give_reason(PairList *list, Side sides[2], const Side *named, const char *text,
+                          Error *error)
 {
-    Side named = {.text = name, .kind = KIND_FILE};
-    if (target_parse_any(&named.target, name, NULL) == RESULT_OK &&
-        named.target.kind == TARGET_FRAMES)
-        named.kind = KIND_PATTERN;
     Result result = RESULT_OK;
     bool found = false;
     for (size_t i = 0; i < list->count && result == RESULT_OK; ++i) {
         Pair *pair = &list->pairs[i];
-        if (pair->has_b || !is_of(&named, pair)) continue;
+        if (pair->has_b || !is_of(named, pair)) continue;
         found = true;
-        result = give_reason(pair, reason, error);
+        result = give_text(&pair->unrendered, text, error);
     }
-    if (!found) {
-        THEN(result, add_pair(list, sides, name, 0, -1, error));
-        THEN(result, give_reason(&list->pairs[list->count - 1], reason, error));
-    }
-    target_destroy(&named.target);
+    if (found || result != RESULT_OK) return result;
+    TRY(add_pair(list, sides, named->text, 0, -1, error));
+    return give_text(&list->pairs[list->count - 1].unrendered, text, error);
+}
+
+static Result give_command(PairList *list, Side sides[2], const Side *named, const char *text,
+                           Error *error)
+{
+    (void)sides;
+    Result result = RESULT_OK;
+    for (size_t i = 0; i < list->count && result == RESULT_OK; ++i)
+        if (is_of(named, &list->pairs[i])) result = give_text(&list->pairs[i].command, text, error);
     return result;
 }
 
-static Result read_unrendered(PairList *list, const Side sides[2], const char *path, Error *error)
+// Lines "NAME: TEXT".
+static Result read_lines(PairList *list, Side sides[2], const char *path, const char *what,
+                         GiveLine *give, Error *error)
 {
     Bytes file;
-    if (sides[0].kind != KIND_FOLDER)
-        return error_set(error, RESULT_USAGE, "--unrendered is for folders: got patterns");
     TRY(bytes_read_file(&file, path, error));
     Result result = RESULT_OK;
     char *rest = NULL, *line = strtok_r((char *)file.data, "\n", &rest);
     for (; line && result == RESULT_OK; line = strtok_r(NULL, "\n", &rest)) {
         char *colon = strstr(line, ": ");
         if (!colon || colon == line) {
-            result = error_set(error, RESULT_BAD_INPUT, "%s: got '%.60s', expected NAME: REASON",
-                               path, line);
+            result = error_set(error, RESULT_BAD_INPUT, "%s: got '%.60s', expected NAME: %s", path,
+                               line, what);
             break;
         }
         *colon = 0;
-        result = add_unrendered(list, sides, line, colon + 2, error);
+        Side named = side_of_name(line);
+        result = give(list, sides, &named, colon + 2, error);
+        target_destroy(&named.target);
     }
     bytes_destroy(&file);
     return result;
+}
+
+// Options about names of images are for folders.
+static Result check_kind(Kind kind, const PairOptions *options, Error *error)
+{
+    const char *option = options->unrendered ? "--unrendered"
+                         : options->commands ? "--commands"
+                         : options->only     ? "--only"
+                         : options->platform ? "--platform"
+                                             : NULL;
+    if (!option || kind == KIND_FOLDER) return RESULT_OK;
+    return error_set(error, RESULT_USAGE, "%s is for folders: got %s", option,
+                     kind == KIND_PATTERN ? "patterns" : "two files");
+}
+
+static void pair_destroy(Pair *pair)
+{
+    free(pair->name);
+    free(pair->a);
+    free(pair->b);
+    free(pair->mask);
+    free(pair->unrendered);
+    free(pair->command);
+    free(pair->fallback);
+}
+
+// Leaves the pairs of this name.
+static Result keep_only(PairList *list, const char *name, Error *error)
+{
+    Side named = side_of_name(name);
+    size_t kept = 0;
+    for (size_t i = 0; i < list->count; ++i)
+        if (is_of(&named, &list->pairs[i]))
+            list->pairs[kept++] = list->pairs[i];
+        else
+            pair_destroy(&list->pairs[i]);
+    list->count = kept;
+    target_destroy(&named.target);
+    if (kept) return RESULT_OK;
+    return error_set(error, RESULT_BAD_INPUT, "--only %s: no image of this name", name);
 }
 
 // --- Masks.
@@ -212,8 +339,8 @@ static const char *file_name(const char *path)
     return slash ? slash + 1 : path;
 }
 
-// Gives the mask, a file in a folder or one of a pattern, to its pairs.
-static Result give_mask(PairList *list, const Side *masks, const char *name, int frame,
+// Gives the mask, a file in a folder or one of a pattern, to its pairs. `all`: all pairs are there.
+static Result give_mask(PairList *list, const Side *masks, const char *name, int frame, bool all,
                         Error *error)
 {
     bool found = false;
@@ -229,13 +356,13 @@ static Result give_mask(PairList *list, const Side *masks, const char *name, int
         pair->mask = place_of(masks, name, frame);
         if (!pair->mask) return fail_memory(error);
     }
-    if (found) return RESULT_OK;
+    if (found || !all) return RESULT_OK;
     return error_set(error, RESULT_BAD_INPUT,
                      "%s: the mask %s belongs to no image: expected the %s", masks->text, name,
                      masks->kind == KIND_PATTERN ? "number of one" : "name of one");
 }
 
-static Result give_masks(PairList *list, const Side *masks, Error *error)
+static Result give_masks(PairList *list, const Side *masks, bool all, Error *error)
 {
     DIR *directory = open_folder(masks);
     if (!directory)
@@ -249,7 +376,7 @@ static Result give_masks(PairList *list, const Side *masks, Error *error)
                                        : !target_read_number(&masks->target, entry->d_name, &frame))
             continue;
         ++count;
-        result = give_mask(list, masks, entry->d_name, frame, error);
+        result = give_mask(list, masks, entry->d_name, frame, all, error);
     }
     closedir(directory);
     if (result == RESULT_OK && count == 0)
@@ -257,8 +384,10 @@ static Result give_masks(PairList *list, const Side *masks, Error *error)
     return result;
 }
 
-static Result find_masks(PairList *list, const Side sides[2], const char *text, Error *error)
+static Result find_masks(PairList *list, const Side sides[2], const PairOptions *options,
+                         Error *error)
 {
+    const char *text = options->mask;
     Side masks = {.text = text};
     find_kind(&masks);
     if (masks.kind == KIND_FILE) {
@@ -275,17 +404,15 @@ static Result find_masks(PairList *list, const Side sides[2], const char *text, 
                              text, sides[0].text, KIND_NAMES[sides[0].kind]);
         TRY(target_parse(&masks.target, text, error));
     }
-    Result result = give_masks(list, &masks, error);
+    Result result = give_masks(list, &masks, !options->only, error);
     target_destroy(&masks.target);
     return result;
 }
 
 // ---
 
-static Result pair_files(PairList *list, const Side sides[2], const char *unrendered, Error *error)
+static Result pair_files(PairList *list, const Side sides[2], Error *error)
 {
-    if (unrendered)
-        return error_set(error, RESULT_USAGE, "--unrendered is for folders: got two files");
     const char *a = sides[0].text, *b = sides[1].text;
     list->pairs = calloc(1, sizeof *list->pairs);
     if (!list->pairs) return fail_memory(error);
@@ -298,21 +425,29 @@ static Result pair_files(PairList *list, const Side sides[2], const char *unrend
     return list->pairs->name && list->pairs->a && list->pairs->b ? RESULT_OK : fail_memory(error);
 }
 
-static Result pair_many(PairList *list, Side sides[2], const char *unrendered, Error *error)
+static Result pair_many(PairList *list, Side sides[2], const PairOptions *options, Error *error)
 {
     list->many = true;
+    list->by_platform = options->platform != NULL;
     for (int i = 0; i < 2; ++i)
         if (sides[i].kind == KIND_PATTERN)
             TRY(target_parse(&sides[i].target, sides[i].text, error));
-    TRY(list_side(list, sides, 0, error));
-    sides[0].count = list->count;
-    if (list->count) qsort(list->pairs, list->count, sizeof *list->pairs, order);
-    TRY(list_side(list, sides, 1, error));
-    if (unrendered) TRY(read_unrendered(list, sides, unrendered, error));
+    if (options->platform)
+        TRY(list_levels(list, sides, options, error));
+    else
+        TRY(list_side(list, sides, &sides[0], 0, error));
+    TRY(list_side(list, sides, &sides[1], 1, error));
+    if (options->unrendered)
+        TRY(read_lines(list, sides, options->unrendered, "REASON", give_reason, error));
+    if (options->commands)
+        TRY(read_lines(list, sides, options->commands, "COMMAND", give_command, error));
     if (list->count == 0)
         return error_set(error, RESULT_BAD_INPUT, "%s and %s: no image in either", sides[0].text,
                          sides[1].text);
     qsort(list->pairs, list->count, sizeof *list->pairs, order);
+    if (options->only) TRY(keep_only(list, options->only, error));
+    for (size_t i = 0; i < list->count && options->platform; ++i)
+        TRY(choose_golden(&list->pairs[i], &sides[0], options, error));
     return RESULT_OK;
 }
 
@@ -329,11 +464,13 @@ Result pairs_find(PairList *list, const char *a, const char *b, const PairOption
     if (sides[0].kind != sides[1].kind)
         result = error_set(error, RESULT_USAGE, "%s is %s, but %s is %s: expected two of a kind", a,
                            KIND_NAMES[sides[0].kind], b, KIND_NAMES[sides[1].kind]);
-    else if (sides[0].kind == KIND_FILE)
-        result = pair_files(list, sides, options->unrendered, error);
     else
-        result = pair_many(list, sides, options->unrendered, error);
-    if (options->mask) THEN(result, find_masks(list, sides, options->mask, error));
+        result = check_kind(sides[0].kind, options, error);
+    if (sides[0].kind == KIND_FILE)
+        THEN(result, pair_files(list, sides, error));
+    else
+        THEN(result, pair_many(list, sides, options, error));
+    if (options->mask) THEN(result, find_masks(list, sides, options, error));
     for (int i = 0; i < 2; ++i) target_destroy(&sides[i].target);
     if (result != RESULT_OK) pairs_destroy(list);
     return result;
@@ -341,13 +478,7 @@ Result pairs_find(PairList *list, const char *a, const char *b, const PairOption
 
 void pairs_destroy(PairList *list)
 {
-    for (size_t i = 0; i < list->count; ++i) {
-        free(list->pairs[i].name);
-        free(list->pairs[i].a);
-        free(list->pairs[i].b);
-        free(list->pairs[i].mask);
-        free(list->pairs[i].unrendered);
-    }
+    for (size_t i = 0; i < list->count; ++i) pair_destroy(&list->pairs[i]);
     free(list->pairs);
     *list = (PairList){0};
 }

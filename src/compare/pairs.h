@@ -7,6 +7,7 @@
 #pragma once
 
 #include "base/error.h"
+#include "compare/levels.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -18,11 +19,16 @@ typedef struct Pair {
     int frame;         // its number, in patterns
     char *mask;        // which pixels are compared (image/mask.h); NULL: all
     char *unrendered;  // why B could not be made; NULL: nobody says so
+    char *command;     // what made B; NULL: nobody says so
+    Level level;       // which A is, of goldens by platform
+    char *fallback;    // the golden that would count without A, by platform; NULL: none
+    bool not_for_gpus; // A is missing, but there is one of all platforms, which does not count
 } Pair;
 
 typedef struct PairList {
     Pair *pairs; // in the order of names or numbers
     size_t count;
+    bool by_platform;
     bool many; // folders or sequences, though they may have one image
 } PairList;
 
@@ -30,6 +36,13 @@ typedef struct PairOptions {
     bool create;            // A need not exist: it is what B is, and empty
     const char *mask;       // NULL: none; see below
     const char *unrendered; // file of images that could not be made; NULL: none
+    const char *commands;   // file of what makes the images; NULL: none
+    const char *only;       // name of the only image, or pattern of them; NULL: all
+    const char *platform;   // A is a folder of goldens by platform (levels.h), sought for this one;
+                            // NULL: it is not
+    bool any_platform;      // goldens of all count for GPUs, too
+    Level update;           // A is at this level whether it is there or not; LEVEL_NONE: A is what
+                            // is found first
 } PairOptions;
 
 // `a` and `b` are both files; or both folders, whose files ending in .png, .pfm or .exr (not
@@ -43,8 +56,9 @@ typedef struct PairOptions {
 // belongs to no image, as a wrong name would be a mask without effect.
 //
 // `unrendered` has lines "NAME: REASON"; NAME is an image's name or a pattern as above. Pairs of
-// that name without a B get the reason; where there are none, NAME becomes a pair. For folders
-// only.
+// that name without a B get the reason; where there are none, NAME becomes a pair. `commands` has
+// lines "NAME: COMMAND", and all pairs of that name get it. Both are for folders only, as is
+// `only`, of which one pair must be; a mask may then belong to another image.
 Result pairs_find(PairList *list, const char *a, const char *b, const PairOptions *options,
                   Error *error);
 void pairs_destroy(PairList *list);

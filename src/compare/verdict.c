@@ -4,6 +4,7 @@
 #include "base/bytes.h"
 #include "base/clock.h"
 #include "base/json.h"
+#include "base/outfile.h"
 #include "base/quote.h"
 #include "image/float_image.h"
 #include "image/heat_map.h"
@@ -16,7 +17,7 @@
 #include <string.h>
 
 static const char *const OUTCOME_NAMES[OUTCOME_COUNT] = {
-    "same", "different", "size mismatch", "missing", "unrendered", "unreadable", "failed"};
+    "same", "different", "size mismatch", "new", "missing", "unrendered", "unreadable", "failed"};
 
 // --- One pair.
 
@@ -41,6 +42,38 @@ static void copy_reference(Verdict *verdict, const Pair *pair)
     verdict->updated = result == RESULT_OK;
     if (result != RESULT_OK) set_outcome(verdict, OUTCOME_FAILED, &error);
     bytes_destroy(&file);
+}
+
+// Whether the file is an image of the same pixels, whatever the texts in it.
+static bool is_equal(const char *path, const Image *image)
+{
+    Image other;
+    bool equal =
+        float_image_read_image(&other, path, NULL) == RESULT_OK && image_is_equal(&other, image);
+    image_destroy(&other);
+    return equal;
+}
+
+static void drop_reference(Verdict *verdict, const Pair *pair)
+{
+    Error error;
+    verdict->dropped = outfile_remove(pair->a, &error) == RESULT_OK;
+    verdict->updated |= verdict->dropped && verdict->outcome != OUTCOME_SAME;
+    if (!verdict->dropped) set_outcome(verdict, OUTCOME_FAILED, &error);
+}
+
+// Where A's own is within the limits, it stays, so it is A that must be equal to the fallback.
+static void update(Verdict *verdict, const Pair *pair, const Image *b)
+{
+    bool same = verdict->outcome == OUTCOME_SAME;
+    Image a = {0};
+    bool known =
+        !same || (pair->fallback && float_image_read_image(&a, pair->a, NULL) == RESULT_OK);
+    if (known && pair->fallback && is_equal(pair->fallback, same ? &a : b))
+        drop_reference(verdict, pair);
+    else if (!same)
+        copy_reference(verdict, pair);
+    image_destroy(&a);
 }
 
 // Writes the heat map, or the sheet of A, B and the heat map. `written` takes the file's name.
@@ -141,14 +174,17 @@ static void find(Verdict *verdict, const Pair *pair, const VerdictOptions *optio
 {
     Image b;
     Error error;
-    *verdict = (Verdict){.outcome = OUTCOME_MISSING};
+    *verdict = (Verdict){.outcome = pair->has_b ? OUTCOME_NEW : OUTCOME_MISSING};
     if (pair->unrendered) {
         error_set(&error, RESULT_OK, "%s", pair->unrendered);
         set_outcome(verdict, OUTCOME_UNRENDERED, &error);
         return;
     }
     if (!pair->has_a || !pair->has_b)
-        snprintf(verdict->text, sizeof verdict->text, "no %s", pair->has_a ? pair->b : pair->a);
+        snprintf(verdict->text, sizeof verdict->text, "no %s%s", pair->has_a ? pair->b : pair->a,
+                 pair->has_a || !pair->not_for_gpus
+                     ? ""
+                     : "; that of all platforms counts for a GPU only with --any-platform");
     if (!pair->has_b || (!pair->has_a && !options->update)) return;
     Result result = float_image_read_image(&b, pair->b, &error);
     if (result != RESULT_OK) {
@@ -157,8 +193,7 @@ static void find(Verdict *verdict, const Pair *pair, const VerdictOptions *optio
     }
     if (pair->has_a) compare_with(verdict, pair, &b, options);
     bool may_update = verdict->outcome != OUTCOME_FAILED && !verdict->mask_is_wrong;
-    if (options->update && verdict->outcome != OUTCOME_SAME && may_update)
-        copy_reference(verdict, pair);
+    if (options->update && may_update) update(verdict, pair, &b);
     image_destroy(&b);
 }
 
@@ -191,9 +226,15 @@ void verdict_print(const Verdict *verdict, const Pair *pair, FILE *stream)
     char figures[512] = "";
     if (verdict->measured) compare_format(figures, sizeof figures, &verdict->figures);
     bool both = verdict->measured && verdict->text[0];
-    fprintf(stream, "%s: %s: %s%s%s%s\n", quote(pair->name).text, OUTCOME_NAMES[verdict->outcome],
-            figures, both ? "; " : "", quote(verdict->text).text,
-            verdict->updated ? "; reference updated" : "");
+    fprintf(stream, "%s: %s: %s%s%s", quote(pair->name).text, OUTCOME_NAMES[verdict->outcome],
+            figures, both ? "; " : "", quote(verdict->text).text);
+    if (pair->level && pair->has_a)
+        fprintf(stream, "; golden: %s (%s)", quote(pair->a).text, LEVEL_NAMES[pair->level]);
+    if (verdict->dropped)
+        fprintf(stream, "; left to %s, which is equal", quote(pair->fallback).text);
+    else if (verdict->updated)
+        fputs("; reference updated", stream);
+    fputc('\n', stream);
 }
 
 // --- All pairs.
@@ -275,15 +316,18 @@ json_t *verdict_to_json(const Verdict *verdict, const Pair *pair)
     json_object_set_new(object, "a", text_to_json(pair->a));
     json_object_set_new(object, "b", text_to_json(pair->b));
     if (pair->mask) json_object_set_new(object, "mask", text_to_json(pair->mask));
+    if (pair->command) json_object_set_new(object, "command", text_to_json(pair->command));
     json_object_set_new(object, "good", json_boolean(verdict_is_good(verdict)));
     json_object_set_new(object, "outcome", json_string(OUTCOME_NAMES[verdict->outcome]));
     json_object_set_new(object, "updated", json_boolean(verdict->updated));
+    if (pair->level) json_object_set_new(object, "level", json_string(LEVEL_NAMES[pair->level]));
+    if (verdict->dropped) json_object_set_new(object, "left_to", text_to_json(pair->fallback));
     if (verdict->text[0]) json_object_set_new(object, "text", text_to_json(verdict->text));
     if (verdict->measured) set_figures(object, &verdict->figures);
     return object;
 }
 
-json_t *verdict_limits_to_json(const CompareLimits *limits)
+static json_t *limits_to_json(const CompareLimits *limits)
 {
     json_t *object = json_object();
     const char *number = limits->max_failing_percent ? "max_failing_percent" : "max_failing_pixels";
@@ -296,13 +340,22 @@ json_t *verdict_limits_to_json(const CompareLimits *limits)
     return object;
 }
 
+json_t *verdict_limits_to_json(const CompareLimits limits[LEVELS], const PairList *list)
+{
+    if (!list->by_platform) return limits_to_json(&limits[LEVEL_NONE]);
+    json_t *object = json_object();
+    for (Level level = LEVEL_PLATFORM; level < LEVELS; ++level)
+        json_object_set_new(object, LEVEL_NAMES[level], limits_to_json(&limits[level]));
+    return object;
+}
+
 Result verdict_write_json(const char *path, const PairList *list, const Verdict *verdicts,
-                          const CompareLimits *limits, bool only_failures, Error *error)
+                          const CompareLimits limits[LEVELS], bool only_failures, Error *error)
 {
     VerdictTally tally = verdict_tally(list, verdicts);
     json_t *object = json_object(), *pairs = json_array();
     json_object_set_new(object, "good", json_boolean(tally.bad == 0));
-    json_object_set_new(object, "limits", verdict_limits_to_json(limits));
+    json_object_set_new(object, "limits", verdict_limits_to_json(limits, list));
     json_object_set_new(object, "images", json_integer((json_int_t)list->count));
     for (int i = 0; i < OUTCOME_COUNT; ++i)
         json_object_set_new(object, OUTCOME_NAMES[i], json_integer(tally.outcomes[i]));

@@ -14,7 +14,8 @@ typedef enum Outcome {
     OUTCOME_SAME,
     OUTCOME_DIFFERENT,  // beyond the limits
     OUTCOME_SIZES,      // of two sizes
-    OUTCOME_MISSING,    // in one of two folders or sequences
+    OUTCOME_NEW,        // there is no A
+    OUTCOME_MISSING,    // there is no B
     OUTCOME_UNRENDERED, // B could not be made: see the text
     OUTCOME_UNREADABLE, // one of them, or the mask
     OUTCOME_FAILED,     // no memory, a file can't be written: see the text
@@ -26,7 +27,8 @@ typedef struct Verdict {
     bool measured; // SAME and DIFFERENT: the figures hold
     CompareResult figures;
     bool mask_is_wrong; // the reason for UNREADABLE
-    bool updated;       // B took A's place: all is well now
+    bool updated;       // B took A's place, or is left to the fallback: all is well now
+    bool dropped;       // A was removed or not written: the pair's fallback is equal to it
     char text[1024];    // why it is not the same, if the outcome needs more words
     char *heat_map;     // files that were written, owned; NULL: none
     char *sheet;
@@ -43,7 +45,8 @@ typedef struct VerdictOptions {
 } VerdictOptions;
 
 // Never fails: what goes wrong is an outcome. B is copied byte for byte, complete or not at all,
-// and only if it can be read as an image; a reference without a new image is left. May be called
+// and only if it can be read as an image; a reference without a new image is left. A golden by
+// platform that is equal to its fallback, pixel by pixel, is removed or not written. May be called
 // from several threads at once.
 void verdict_find(Verdict *verdict, const Pair *pair, const VerdictOptions *options);
 void verdict_destroy(Verdict *verdict);
@@ -54,9 +57,10 @@ bool verdict_is_good(const Verdict *verdict);
 // "same", "size mismatch", ...
 const char *verdict_word(const Verdict *verdict);
 
-// Names, outcome and figures as an object, and the limits.
+// Names, outcome and figures as an object; and the limits: of goldens by platform an object for
+// each level's.
 json_t *verdict_to_json(const Verdict *verdict, const Pair *pair);
-json_t *verdict_limits_to_json(const CompareLimits *limits);
+json_t *verdict_limits_to_json(const CompareLimits limits[LEVELS], const PairList *list);
 
 // "NAME: same: RMSE ..." with an end of line.
 void verdict_print(const Verdict *verdict, const Pair *pair, FILE *stream);
@@ -82,4 +86,4 @@ void verdict_print_tally(const PairList *list, const Verdict *verdicts, FILE *st
 // A JSON object: limits, counts, and an object for each pair; with `only_failures` for each that is
 // not the same. RESULT_FAILED with path and reason.
 Result verdict_write_json(const char *path, const PairList *list, const Verdict *verdicts,
-                          const CompareLimits *limits, bool only_failures, Error *error);
+                          const CompareLimits limits[LEVELS], bool only_failures, Error *error);

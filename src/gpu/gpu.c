@@ -10,6 +10,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/utsname.h>
 
 // --- What a context offers.
 
@@ -81,6 +82,19 @@ static Result read_limits(Gpu *gpu, Error *error)
     return RESULT_OK;
 }
 
+static void name_platform(Gpu *gpu)
+{
+    struct utsname system;
+    const PlatformFacts facts = {.vendor = gpu->vendor,
+                                 .renderer = gpu->renderer,
+                                 .version = gpu->version,
+                                 .machine = uname(&system) == 0 ? system.machine : "",
+                                 .software = gpu->software,
+                                 .fma = platform_has_fma(),
+                                 .assumed = gpu->software && gpu->kind == GPU_HARDWARE};
+    platform_name(gpu->platform, &facts);
+}
+
 // Sets what depends on what the driver cannot do, and on what tests imitate.
 static void assume(Gpu *gpu, const Assumptions *assumptions)
 {
@@ -125,6 +139,7 @@ static Result accept(Gpu *gpu, const Search *search, int number, Error *error)
         !gpu_device_is(options->device, number, gpu->renderer, gpu->vendor, &gpu->identity))
         return error_set(error, RESULT_NO_GL, "%s is not %s", gpu->renderer, options->device);
     assume(gpu, &search->assumptions);
+    name_platform(gpu);
     return RESULT_OK;
 }
 

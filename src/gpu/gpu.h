@@ -12,6 +12,7 @@
 #include "gpu/gpu_egl.h"
 #include "gpu/gpu_error.h"
 #include "gpu/gpu_sizes.h"
+#include "gpu/platform.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -47,8 +48,9 @@ typedef struct Gpu {
     char vendor[128];    // GL_VENDOR
     char processor[256]; // the CPU's name: images and times of a CPU driver depend on it
     char path[64];       // the way in: "EGL device 0", "EGL surfaceless", "OSMesa"
-    Error passed_over;   // why hardware was not taken, if there are signs of any and this is a
-                         // CPU driver that nobody asked for; "": no
+    char platform[PLATFORM_BYTES];
+    Error passed_over; // why hardware was not taken, if there are signs of any and this is a
+                       // CPU driver that nobody asked for; "": no
     GpuIdentity identity;
     EglContext egl;           // zeroed: not by EGL
     struct GpuOsMesa *osmesa; // NULL: not by OSMesa

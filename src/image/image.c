@@ -24,6 +24,13 @@ size_t image_size(const Image *image)
            image_channel_size(image->kind);
 }
 
+bool image_is_equal(const Image *a, const Image *b)
+{
+    return a->pixels && b->pixels && a->width == b->width && a->height == b->height &&
+           a->channels == b->channels && a->kind == b->kind &&
+           memcmp(a->pixels, b->pixels, image_size(a)) == 0;
+}
+
 Result image_create_kind(Image *image, int width, int height, int channels, ImageKind kind,
                          Error *error)
 {

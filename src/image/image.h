@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -29,6 +30,9 @@ void image_destroy(Image *image);
 // Bytes of a channel, and of all pixels.
 size_t image_channel_size(ImageKind kind);
 size_t image_size(const Image *image);
+
+// Whether both have pixels, and the same ones.
+bool image_is_equal(const Image *a, const Image *b);
 
 // IEC 61966-2-1, between 0..1 and 0..1; what is linear is clamped to that first.
 double image_linear_from_srgb(double value);

@@ -10,6 +10,7 @@ const OUTCOMES = {
     different: [3.4, "bad", "Different"], // and the mean of FLIP, below 1
     "size mismatch": [3, "warn", "Size mismatch"],
     missing: [2, "warn", "Missing"],
+    new: [1.5, "warn", "New"],
     updated: [1, "warn", "Updated"],
     same: [0, "good", "Same"],
 };
@@ -24,6 +25,7 @@ const BLINK_MS = 600;
 const MOST_SCALE = 64;
 
 const outcomeOf = (pair) => (pair.updated ? "updated" : pair.outcome);
+const limitsOf = (pair) => (pair.level ? data.limits[pair.level] : data.limits); // of goldens by platform
 const classOf = (pair) => OUTCOMES[outcomeOf(pair)][1];
 const severity = (pair) => OUTCOMES[outcomeOf(pair)][0] + (pair.flip || 0);
 
@@ -100,7 +102,7 @@ const shown = () =>
     pairs.filter((pair) => (!state.outcome || outcomeOf(pair) === state.outcome) && pair.name.toLowerCase().includes(state.filter.toLowerCase()));
 
 function remark(pair) {
-    if (pair.rmse === undefined) return pair.updated ? "" : pair.outcome === "missing" ? (pair.a.image === undefined ? "no reference" : "no new file") : "";
+    if (pair.rmse === undefined) return pair.updated ? "" : pair.outcome === "missing" ? "no new file" : pair.outcome === "new" ? "no reference" : "";
     return pair.equal ? "identical" : pair.flip === 0 ? "looks equal" : "FLIP " + figure(pair.flip, 3);
 }
 
@@ -549,7 +551,7 @@ byId("zoom-fit").addEventListener("click", () => fit());
 // --- Figures.
 
 function metricRows(pair) {
-    const limits = data.limits, pixels = pair.compared_pixels;
+    const limits = limitsOf(pair), pixels = pair.compared_pixels;
     const percent = limits.max_failing_percent !== undefined;
     const most = percent ? limits.max_failing_percent : limits.max_failing_pixels;
     const share = 100 * pair.failing_pixels / pixels;
@@ -575,7 +577,8 @@ function metrics(pair) {
         element("tr", { class: broken ? "broken" : "" }, element("th", { text: name, scope: "row" }), element("td", { class: "number" }, value), element("td", { class: "number", text: limit && (broken ? "✕\u00a0≤\u00a0" : "✓\u00a0≤\u00a0") + limit })));
     const head = element("thead", {}, element("tr", {}, ...["Figure", "Value", "Limit"].map((text) => element("th", { text, scope: "col" }))));
     const masked = pair.width * pair.height - pair.compared_pixels;
-    const limits = [masked ? "A mask leaves out " + figure(100 * masked / (masked + pair.compared_pixels), 3) + " % of the pixels: " + pair.mask + "." : "", data.limits.pixel_tolerance === undefined ? "" : data.limits.pixel_tolerance === 0 ? "A pixel fails if any channel differs." : "A pixel fails if a channel is off by more than " + figure(data.limits.pixel_tolerance) + " of 255 levels.", "FLIP for " + figure(data.limits.pixels_per_degree) + " pixels a degree."];
+    const of = limitsOf(pair);
+    const limits = [pair.level ? "The limits are those of " + { platform: "the platform's own goldens.", class: "goldens of the class of devices.", common: "goldens of all platforms." }[pair.level] : "", masked ? "A mask leaves out " + figure(100 * masked / (masked + pair.compared_pixels), 3) + " % of the pixels: " + pair.mask + "." : "", of.pixel_tolerance === undefined ? "" : of.pixel_tolerance === 0 ? "A pixel fails if any channel differs." : "A pixel fails if a channel is off by more than " + figure(of.pixel_tolerance) + " of 255 levels.", "FLIP for " + figure(of.pixels_per_degree) + " pixels a degree."];
     return element("section", {}, element("h3", { text: "Figures" }), element("table", { class: "metrics" }, head, element("tbody", {}, ...rows)), element("p", { class: "soft", text: limits.filter(Boolean).join(" ") }));
 }
 
@@ -611,7 +614,7 @@ function acceptance(pair) {
 
 function drawDetails() {
     const pair = state.chosen;
-    const made = element("section", {}, element("h3", { text: "Made by" }), command(data.command), element("p", { class: "soft", text: data.program + ". Commands run in the folder where this one ran." }));
+    const made = element("section", {}, element("h3", { text: "Made by" }), command(pair.command || data.command), element("p", { class: "soft", text: data.program + ". Commands run in the folder where this one ran." }), pair.command ? element("details", {}, element("summary", { text: "Compared by" }), command(data.command)) : null);
     byId("details").replaceChildren(...[metrics(pair), acceptance(pair), sides(pair), made].filter(Boolean));
 }
 

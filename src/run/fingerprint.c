@@ -46,6 +46,7 @@ const FingerprintExempt FINGERPRINT_EXEMPT[] = {
     {"backend", "the renderer's name counts"},
     {"device", "the renderer's name counts"},
     {"list_devices", "draws nothing"},
+    {"platform", "draws nothing"},
     {"software", "the renderer's name counts"},
     {"require_hardware", "the renderer's name counts"},
 };

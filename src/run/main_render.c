@@ -30,6 +30,7 @@ static Result answer(Run *run, Error *error)
         return RESULT_OK;
     }
     if (params->list_devices) return gpu_list_devices(stdout, error);
+    if (params->platform) return run_print_platform(params, stdout, error);
     if (params->check) return check(&run->scene, error);
     return run_go(run, error);
 }

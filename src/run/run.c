@@ -52,6 +52,16 @@ static GpuOptions gpu_options(const RunParams *params)
     return options;
 }
 
+Result run_print_platform(const RunParams *params, FILE *stream, Error *error)
+{
+    Gpu gpu;
+    const GpuOptions options = gpu_options(params);
+    TRY(gpu_create(&gpu, &options, error));
+    fprintf(stream, "%s\n", gpu.platform);
+    gpu_destroy(&gpu);
+    return RESULT_OK;
+}
+
 static void warn_all(const Scene *scene)
 {
     effects_warn(scene, stderr);

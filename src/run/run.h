@@ -35,5 +35,8 @@ typedef struct Run {
 // unless --quiet. Errors of every part; to be called once.
 Result run_go(Run *run, Error *error);
 
+// Prints the name of the platform that the device is (gpu/platform.h). RESULT_NO_GL.
+Result run_print_platform(const RunParams *params, FILE *stream, Error *error);
+
 // Without a successful run_go, unfinished files are removed.
 void run_destroy(Run *run);

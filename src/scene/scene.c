@@ -248,7 +248,7 @@ static Result check_floor(const RunParams *run, Error *error)
 Result scene_check(const Scene *scene, Error *error)
 {
     const RunParams *run = &scene->run;
-    if (scene->section_count == 0 && !run->list_devices)
+    if (scene->section_count == 0 && !run->list_devices && !run->platform)
         return error_set(error, RESULT_USAGE, "no hair: expected a hair file or a scene file");
     TRY(check_frames(run, error));
     TRY(check_camera(scene, error));

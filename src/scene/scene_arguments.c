@@ -197,7 +197,8 @@ static Result check_arguments(const Scene *scene, Error *error)
     const RunParams *run = &scene->run;
     TRY(scene_check(scene, error));
     TRY(effects_check(scene, error));
-    if (!run->output[0] && !run->cache[0] && !run->export[0] && !run->check && !run->list_devices)
+    bool asks = run->check || run->list_devices || run->platform;
+    if (!run->output[0] && !run->cache[0] && !run->export[0] && !asks)
         return error_set(error, RESULT_USAGE,
                          "no output: expected -o DIR/, -o FILE_%%04d.png or -o FILE.mp4");
     return RESULT_OK;

@@ -154,13 +154,24 @@ says "f_2.pfm: unrendered: no hair: expected some"; says "new_%02d.png: unrender
 in_file "$work/report.xml" '<error type="unrendered" message="the disk is full">'; in_file "$work/report.xml" 'failures="0" errors="2"'
 printf 'f_%%d.pfm: cut off\n' >"$work/lines"
 run 1 "$work/a" "$work/b" --unrendered "$work/lines" --update; says "f_1.pfm: same"; says "f_2.pfm: unrendered: cut off"; says "2 images: 1 same, 1 unrendered"
-run 1 "$work/masks/none" "$work/b" --unrendered "$work/lines" --update; says "2 images: 1 missing, 1 unrendered; 1 reference updated"
+run 1 "$work/masks/none" "$work/b" --unrendered "$work/lines" --update; says "2 images: 1 new, 1 unrendered; 1 reference updated"
 printf 'a%%%%b%%.png: odd\n' >"$work/lines"
 run 1 "$work/a" "$work/b" --unrendered "$work/lines"; says "a%%b%.png: unrendered: odd"; says "f_2.pfm: missing"
 printf 'nothing\n' >"$work/lines"
 run 3 "$work/a" "$work/b" --unrendered "$work/lines"; one_line; says "got 'nothing', expected NAME: REASON"
 run 2 $a $b --unrendered "$work/lines"; one_line; says "is for folders"
+run 3 "$work/a" "$work/b" --commands "$work/lines"; one_line; says "got 'nothing', expected NAME: COMMAND"
 : >"$work/lines"
 run 1 "$work/a" "$work/b" --unrendered "$work/lines"; says "f_2.pfm: missing"
+
+claim "--commands says what made each image, --only leaves the images of one name"
+printf 'f_%%d.pfm: draw -o f_%%d.pfm\nf_1.pfm: other\nnone.pfm: nothing\n' >"$work/lines"
+run 1 "$work/a" "$work/b" --commands "$work/lines" --html "$work/report.html" --json "$work/report.json"
+counts "$work/report.json" '"command": "draw -o f_%d.pfm"' 2; counts "$work/report.html" '"command":"draw -o f_%d.pfm"' 2; not_in "$work/report.json" other; not_in "$work/out" none.pfm
+run 0 "$work/a" "$work/b" --only f_1.pfm; says "1 image: 1 same"
+run 1 "$work/a" "$work/b" --only f_%d.pfm; says "2 images: 1 same, 1 missing"
+run 0 "$work/a" "$work/b" --only f_1.pfm --mask "$work/masks" # whose mask is another image's
+run 3 "$work/a" "$work/b" --only f_3.pfm; one_line; says "--only f_3.pfm: no image of this name"
+run 2 $a $b --only f_1.pfm; one_line; says "is for folders"
 
 finish

@@ -65,15 +65,15 @@ run 0 "$work/a" "$work/b"; says "f_1.png: same"; says "4 images: 4 same"
 cp $b "$work/b/f_2.png"; rm "$work/b/f_3.png"; cp $other "$work/b/f_4.png"; cp $b "$work/b/f_5.png"
 for jobs in 1 4; do
     run 1 "$work/a" "$work/b" -j $jobs --heatmap "$work/heats$jobs" --sheet "$work/sheets" --json "$work/report.json" --junit "$work/report.xml"
-    says "f_2.png: different"; says "f_3.png: missing: no $work/b/f_3.png"; says "f_4.png: size mismatch"; says "f_5.png: missing: no $work/a/f_5.png"
-    says "5 images: 1 same, 1 different, 1 size mismatch, 2 missing"
+    says "f_2.png: different"; says "f_3.png: missing: no $work/b/f_3.png"; says "f_4.png: size mismatch"; says "f_5.png: new: no $work/a/f_5.png"
+    says "5 images: 1 same, 1 different, 1 size mismatch, 1 new, 1 missing"
     is_png "$work/heats$jobs/f_2.png"; is_png "$work/sheets/f_2.png"; none "$work/heats$jobs/f_1.png"
     mv "$work/out" "$work/out$jobs"; : >"$work/out"
 done
 equal "$work/out1" "$work/out4"; equal "$work/heats1/f_2.png" "$work/heats4/f_2.png"
-in_file "$work/report.json" '"outcome": "size mismatch"'; in_file "$work/report.json" '"missing": 2'; in_file "$work/report.json" '"psnr_db": null'
+in_file "$work/report.json" '"outcome": "size mismatch"'; in_file "$work/report.json" '"missing": 1'; in_file "$work/report.json" '"psnr_db": null'
 in_file "$work/report.xml" 'tests="5" failures="4" errors="0"'; in_file "$work/report.xml" '<failure type="missing"'
-run 1 "$work/a/f_%d.png" "$work/b/f_%d.png"; says "5 images: 1 same, 1 different, 1 size mismatch, 2 missing"
+run 1 "$work/a/f_%d.png" "$work/b/f_%d.png"; says "5 images: 1 same, 1 different, 1 size mismatch, 1 new, 1 missing"
 
 claim "one unreadable image among others is status 3, and they are still compared"
 cp "$work/text.png" "$work/b/f_1.png"

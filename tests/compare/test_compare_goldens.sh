@@ -37,6 +37,10 @@ one y.tfx' '# only a comment'; do
 done
 printf 'a x.tfx\n\nb y.tfx\na z.tfx' >"$work/list"
 goldens 2 --update; says "list: line 4: a: the second scene of this name"
+printf 'plain %s\nbad assets/fur.tfx --bogus\n' "$small" >"$work/list"
+goldens 2 --update; one_line; says "list: line 2: bad: --bogus: no such option"; none "$work/result"; none "$work/goldens"
+printf 'bad assets/fur.tfx --color nothing\n' >"$work/list"
+goldens 2 --update; one_line; says "list: line 1: bad: --color: got 'nothing'"; none "$work/result"
 
 claim "without goldens it says how to make them, before an image is drawn"
 printf '# a comment\nplain %s\ntwo_%%02d "assets/fur.tfx" --algo none --followers 0 --look plain --size 48x36 --frames 2\r' "$small" >"$work/list"
@@ -53,13 +57,31 @@ in_file "$work/result/report.xml" 'tests="3" failures="0"'; in_file "$work/resul
 claim "an image that differs fails, with sheet and reports; all failures are named at the end"
 printf 'plain %s --color #ff0000\n' "$small" >"$work/list"
 goldens 1 --pixel-tolerance 8 --max-failing-pixels 1%; says "plain.png: different"; says "two_00.png: missing"
+says "golden: $work/goldens/plain.png (common)"
 says "compare-goldens: failed:"; says "  plain.png: different"; says "  two_01.png: missing"
 is_png "$work/result/sheets/plain.png"; in_file "$work/result/report.xml" "plain.png"; in_file "$work/result/report.html" "plain.png"
 
+claim "the report says what made each image, the terminal what accepts all, and both commands do it"
+in_file "$work/result/report.html" "\"command\":\"tractrix-render $small --color '#ff0000' -q -o $work/result/frames/plain.png\""
+accept=$(sed -n 's/^to accept the new images: //p' "$work/err")
+rm "$work/goldens/two_00.png" "$work/goldens/two_01.png"; cp "$work/goldens/plain.png" "$work/before.png"
+PATH=$TRACTRIX_BIN:$PATH sh -c "$accept" >"$work/out" 2>"$work/err"; equal "$work/goldens/plain.png" "$work/result/frames/plain.png"
+made=$(sed -n 's/^ *"command": "\(.*plain.png\)",$/\1/p' "$work/result/report.json")
+rm "$work/result/frames/plain.png"; PATH=$TRACTRIX_BIN:$PATH sh -c "$made"; equal "$work/goldens/plain.png" "$work/result/frames/plain.png"
+goldens 0; says "1 image: 1 same"
+
+claim "--only renders and compares one scene"
+printf 'plain %s\ntwo_%%02d assets/fur.tfx --algo none --followers 0 --look plain --size 48x36 --frames 2\n' "$small" >"$work/list"
+goldens 1; says "plain.png: different"; says "two_00.png: new"; none "$work/goldens/two_00.png"
+goldens 0 --only two_%02d --update; says "2 images: 2 new; 2 references updated"; none "$work/result/frames/plain.png"
+goldens 0 --only=two_%02d; says "2 images: 2 same"
+goldens 2 --only two; one_line; says "no scene two: expected one of plain two_%02d"
+cp "$work/before.png" "$work/goldens/plain.png"
+
 claim "an image that does not render does not stop the others, and is in the reports"
-printf 'new_%%02d nowhere.tfx\ntwo_%%02d assets/fur.tfx --bogus\nplain %s\n' "$small" >"$work/list"
-goldens 1; says "new_%02d: did not render: nowhere.tfx: No such file"; says "two_%02d: did not render: --bogus: no such option"
-says "plain.png: same"; says "two_01.png: unrendered: --bogus"; says "new_%02d.png: unrendered: nowhere.tfx"; says "4 images: 1 same, 3 unrendered"
+printf 'new_%%02d nowhere.tfx\ntwo_%%02d nothing.tfx\nplain %s\n' "$small" >"$work/list"
+goldens 1; says "new_%02d: did not render: nowhere.tfx: No such file"; says "two_%02d: did not render: nothing.tfx"
+says "plain.png: same"; says "two_01.png: unrendered: nothing.tfx"; says "new_%02d.png: unrendered: nowhere.tfx"; says "4 images: 1 same, 3 unrendered"
 says "  new_%02d.png: unrendered"
 in_file "$work/result/report.xml" 'failures="0" errors="3"'; in_file "$work/result/report.json" '"outcome": "unrendered"'
 in_file "$work/result/report.html" "new_%02d.png"
@@ -69,7 +91,7 @@ claim "arguments in quotes keep blanks; no variable, pattern or command is expan
 cp assets/fur.tfx "$work/two words.tfx"
 printf "plain '%s' --algo none --followers 0 --look plain --size 48x36 --frames 1\nodd \$(touch $work/harm) ; * > $work/harm\n" "$work/two words.tfx" >"$work/list"
 rm -r "$work/goldens"
-goldens 1 --update; says "plain.png: missing"; says "1 reference updated"; says 'odd: did not render: $(touch: No such file'; none "$work/harm"
+goldens 1 --update; says "plain.png: new"; says "1 reference updated"; says 'odd: did not render: $(touch: No such file'; none "$work/harm"
 is_png "$work/goldens/plain.png"
 
 claim "without the programs it says what it expected, and an interruption is status 130"
@@ -78,7 +100,7 @@ goldens 1; one_line; says "no tractrix-render in $work"
 TRACTRIX_BIN=$(realpath "$bin")
 printf 'long_%%d assets/curls.tfx --algo none --followers 0 --look plain --size 48x36 --frames 100000\nafter %s\n' "$small" >"$work/list"
 for signal in INT TERM; do
-    timeout --preserve-status -s $signal 1 "$program" "$work/list" "$work/goldens" "$work/result" >"$work/out" 2>"$work/err"
+    timeout --preserve-status -s $signal 3 "$program" "$work/list" "$work/goldens" "$work/result" >"$work/out" 2>"$work/err"
     status=$?
     if [ $status = 130 ]; then good; else bad "exit status $status after SIG$signal"; fi
     silent out; none "$work/result/frames/after.png"; none "$work/result/report.json"

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#include "compare/levels.h"
+
+#include <string.h>
+
+const char *const LEVEL_NAMES[LEVELS] = {"", "platform", "class", "common"};
+
+// How a platform's name begins (gpu/platform.h), and what it is.
+static const char *const CLASSES[][2] = {
+    {"llvmpipe", "cpu"},  {"softpipe", "cpu"}, {"swrast", "cpu"}, {"swiftshader", "cpu"},
+    {"lavapipe", "cpu"},  {"swr", "cpu"},      {"amd", "amd"},    {"intel", "intel"},
+    {"nvidia", "nvidia"}, {"gpu", "gpu"},
+};
+enum { CLASS_COUNT = sizeof CLASSES / sizeof *CLASSES };
+
+const char *level_class(const char *platform)
+{
+    size_t length = strcspn(platform, "-");
+    for (int i = 0; i < CLASS_COUNT; ++i)
+        if (strlen(CLASSES[i][0]) == length && strncmp(platform, CLASSES[i][0], length) == 0)
+            return CLASSES[i][1];
+    return "gpu";
+}
+
+bool level_is_platform(const char *name)
+{
+    for (int i = 0; i < CLASS_COUNT; ++i)
+        if (strcmp(name, CLASSES[i][1]) == 0) return false;
+    return *name && *name != '.' && *name != '-' &&
+           strspn(name, "abcdefghijklmnopqrstuvwxyz0123456789._-") == strlen(name);
+}
+
+const char *level_folder(Level level, const char *platform)
+{
+    if (level == LEVEL_PLATFORM) return platform;
+    return level == LEVEL_CLASS ? level_class(platform) : "";
+}
+
+static bool is_cpu(const char *platform)
+{
+    return strcmp(level_class(platform), "cpu") == 0;
+}
+
+bool level_counts(Level level, const char *platform, bool any)
+{
+    return level != LEVEL_COMMON || any || is_cpu(platform);
+}
+
+Level level_of_new(const char *platform)
+{
+    return is_cpu(platform) ? LEVEL_COMMON : LEVEL_CLASS;
+}
+
+void level_set_limits(CompareLimits *limits, Level level)
+{
+    static const double TOLERANCE[LEVELS] = {0, 0, 2, 8}, PERCENT[LEVELS] = {0, 0, 0.5, 2};
+    limits->pixels_matter = true;
+    limits->pixel_tolerance = TOLERANCE[level];
+    limits->max_failing = PERCENT[level];
+    limits->max_failing_percent = level == LEVEL_CLASS || level == LEVEL_COMMON;
+}
