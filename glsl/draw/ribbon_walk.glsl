@@ -20,7 +20,7 @@ struct Walk {
     float bent;          // of all that was left out since `kept`
 };
 
-void see_point(Particle p);               // each of them
+void see_point(Particle p); // each of them
 // Whether `last` is not left out, in the turn of point j, which is p.
 bool ends_ribbon(Walk w, int j, Particle p);
 void put_joint(Walk w, int j, vec2 next); // `kept` lies between the directions `way` and `next`

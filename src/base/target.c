@@ -126,15 +126,21 @@ static Result take_stream(Target *target, const char *text, Error *error)
 
 static Result take_image(Target *target, const char *text, Error *error)
 {
-    static const char *const videos[] = {".mp4", ".webm", ".gif", ".y4m"}, *const images[] = {
-                                                                               ".png", ".pfm",
-                                                                               ".exr"};
+    static const char *const videos[] = {".mp4", ".webm", ".gif", ".y4m"};
+    static const struct {
+        const char *suffix;
+        TargetFormat format;
+    } images[] = {{".png", TARGET_PNG},
+                  {".pfm", TARGET_PFM},
+                  {".exr", TARGET_EXR},
+                  {".jpg", TARGET_JPEG},
+                  {".jpeg", TARGET_JPEG}};
     if (text[0] == '-' && (!text[1] || text[1] == '.')) return take_stream(target, text, error);
     if (is_folder(text)) return take_folder(target, text, error);
-    for (int i = 0; i < 3; ++i) {
-        if (!has_suffix(text, images[i])) continue;
-        target->format = (TargetFormat)(TARGET_PNG + i);
-        target->floats = i > 0;
+    for (size_t i = 0; i < sizeof images / sizeof *images; ++i) {
+        if (!has_suffix(text, images[i].suffix)) continue;
+        target->format = images[i].format;
+        target->floats = target->format == TARGET_PFM || target->format == TARGET_EXR;
         return take_pattern(target, text, error);
     }
     for (size_t i = 0; i < sizeof videos / sizeof *videos; i++)
@@ -142,7 +148,7 @@ static Result take_image(Target *target, const char *text, Error *error)
             return take_one(target, text, i == 3 ? TARGET_Y4M : TARGET_FFMPEG, error);
     return error_set(error, RESULT_USAGE,
                      "%s: expected a folder with a slash at its end, a name ending in .png, .pfm, "
-                     ".exr, .mp4, .webm, .gif or .y4m, or - for standard output",
+                     ".exr, .jpg, .mp4, .webm, .gif or .y4m, or - for standard output",
                      *text ? text : "output name is empty");
 }
 

@@ -17,6 +17,7 @@ typedef enum TargetFormat {
     TARGET_PNG,
     TARGET_PFM,
     TARGET_EXR,
+    TARGET_JPEG,
     TARGET_Y4M,    // raw video
     TARGET_FFMPEG, // video that ffmpeg encodes
 } TargetFormat;
@@ -33,9 +34,9 @@ typedef struct Target {
 
 // Takes "DIR/" or an existing folder (frame_0000.png, frame_0001.png, ... in it), a name ending in
 // .png with one %d or %0Nd (N from 1 to 9) in its last part ("%%" is a percent sign), a plain name
-// ending in .png, the same with .pfm or .exr, or one ending in .mp4, .webm, .gif or .y4m; or, for
-// standard output, "-" or "-.png" (PNG files one after the other, TARGET_VIDEO), "-.y4m", "-.pfm"
-// or
+// ending in .png, the same with .pfm, .exr, .jpg or .jpeg, or one ending in .mp4, .webm, .gif or
+// .y4m; or, for standard output, "-" or "-.png" (PNG files one after the other, TARGET_VIDEO),
+// "-.y4m", "-.pfm" or
 // "-.exr". RESULT_USAGE for anything else, RESULT_FAILED when memory is short.
 Result target_parse(Target *target, const char *text, Error *error);
 

@@ -4,6 +4,7 @@
 #include "image/exr_file.h"
 #include "image/float_image.h"
 #include "image/heat_map.h"
+#include "image/jpeg.h"
 #include "image/png.h"
 #include "report/picture.h"
 #include "report/shell_words.h"
@@ -15,6 +16,18 @@
 
 // Twice the size on the page, for dense screens.
 enum { THUMBNAIL_WIDTH = 144, THUMBNAIL_HEIGHT = 108 };
+
+// Pairs that differ stand as PNG, the worst first, up to so many bytes in all; the others as JPEG.
+enum { EXACT_BYTES = 8 << 20 };
+
+// A pair that stands on the page in two ways until all are known.
+struct HtmlChoice {
+    json_t *sides[2]; // of the pair; taken with references
+    int exact[2], small[2];
+    bool has[2];
+    size_t bytes; // of the exact ones
+    double badness;
+};
 
 // --- A pair's files.
 
@@ -56,6 +69,18 @@ static json_t *list_texts(const Bytes *file, const char *path)
     return list;
 }
 
+// The same for looking at, if that is smaller.
+static Result make_small(HtmlSide *side, const Image *image, Error *error)
+{
+    Image picture;
+    if (image->channels != 3 || !side->png.size) return RESULT_OK;
+    TRY(picture_create(&picture, image, error));
+    Result result = jpeg_encode(&picture, JPEG_SMALL, &side->small, error);
+    if (result == RESULT_OK && side->small.size >= side->png.size) bytes_destroy(&side->small);
+    image_destroy(&picture);
+    return result;
+}
+
 static void read_side(HtmlSide *side, Image *image, const char *path)
 {
     static const char *const DEPTHS[] = {"8 bits", "16 bits", "float"};
@@ -86,7 +111,10 @@ static void make_thumbnail(HtmlPair *page, const Image *image)
     Result result = picture_create(&picture, image, &error);
     THEN(result,
          picture_create_thumbnail(&small, &picture, THUMBNAIL_WIDTH, THUMBNAIL_HEIGHT, &error));
-    THEN(result, png_encode(&small, NULL, &page->thumbnail, &error));
+    if (image->channels == 3)
+        THEN(result, jpeg_encode(&small, JPEG_SMALL, &page->thumbnail, &error));
+    else
+        THEN(result, png_encode(&small, NULL, &page->thumbnail, &error));
     image_destroy(&picture);
     image_destroy(&small);
 }
@@ -102,13 +130,18 @@ void html_pair_read(HtmlPair *page, const Pair *pair)
     page->equal = image_is_equal(&image[0], &image[1]);
     for (int i = 1; i >= 0 && !page->thumbnail.size; --i)
         if (image[i].pixels) make_thumbnail(page, &image[i]);
-    for (int i = 0; i < 2; ++i) image_destroy(&image[i]);
+    for (int i = 0; i < 2; ++i) {
+        if (image[i].pixels && (i == 1 || !page->equal))
+            make_small(&page->side[i], &image[i], NULL); // without it the PNG stands there
+        image_destroy(&image[i]);
+    }
 }
 
 void html_pair_destroy(HtmlPair *page)
 {
     for (int i = 0; i < 2; ++i) {
         bytes_destroy(&page->side[i].png);
+        bytes_destroy(&page->side[i].small);
         json_decref(page->side[i].facts);
     }
     bytes_destroy(&page->map);
@@ -137,13 +170,67 @@ static char *accepting_command(const Pair *pair, const Verdict *verdict, const H
     return shell_join(pair->has_b ? update : removal);
 }
 
-static Result add_image(Html *html, json_t *object, const char *key, const Bytes *png, Error *error)
+static Result add_image(Html *html, json_t *object, const char *key, const Bytes *file,
+                        Error *error)
 {
     int number;
-    if (!png->size) return RESULT_OK;
-    TRY(report_add_image(&html->report, png, &number, error));
+    if (!file->size) return RESULT_OK;
+    TRY(report_add_image(&html->report, file, &number, error));
     json_object_set_new(object, key, json_integer(number));
     return RESULT_OK;
+}
+
+static Result add_side(Html *html, json_t *side, const HtmlSide *image, struct HtmlChoice *choice,
+                       int i, Error *error)
+{
+    int *number = &choice->exact[i];
+    if (!image->png.size) return RESULT_OK;
+    TRY(report_add_image(&html->report, &image->png, number, error));
+    json_object_set_new(side, "image", json_integer(*number));
+    choice->bytes += image->png.size;
+    choice->has[i] = image->small.size > 0;
+    if (!choice->has[i]) return RESULT_OK;
+    return report_add_image(&html->report, &image->small, &choice->small[i], error);
+}
+
+// Images of a pair that differs: which of the two forms stays is chosen at the end.
+static Result add_sides(Html *html, json_t *sides[2], const HtmlPair *page, const Verdict *verdict,
+                        Error *error)
+{
+    struct HtmlChoice choice = {.badness = verdict->measured ? verdict->figures.flip : 2};
+    struct HtmlChoice *list = realloc(html->choices, (html->choice_count + 1) * sizeof *list);
+    if (!list) return error_set(error, RESULT_FAILED, "no memory for the page's images");
+    html->choices = list;
+    for (int i = 1; i >= 0; --i) TRY(add_side(html, sides[i], &page->side[i], &choice, i, error));
+    for (int i = 0; i < 2; ++i) choice.sides[i] = json_incref(sides[i]);
+    list[html->choice_count++] = choice;
+    return RESULT_OK;
+}
+
+static int order(const void *a, const void *b)
+{
+    const struct HtmlChoice *x = a, *y = b;
+    if (x->badness != y->badness) return x->badness < y->badness ? 1 : -1;
+    return x->exact[1] < y->exact[1] ? -1 : 1;
+}
+
+// The worst pairs stay exact, as many as there is room for.
+static void choose_forms(Html *html)
+{
+    size_t bytes = 0;
+    if (html->choice_count) qsort(html->choices, html->choice_count, sizeof *html->choices, order);
+    for (size_t c = 0; c < html->choice_count; ++c) {
+        const struct HtmlChoice *choice = &html->choices[c];
+        bytes += choice->bytes;
+        for (int i = 0; i < 2; ++i) {
+            if (!choice->has[i]) continue;
+            bool exact = bytes <= EXACT_BYTES;
+            report_omit_image(&html->report, exact ? choice->small[i] : choice->exact[i]);
+            if (exact) continue;
+            json_object_set_new(choice->sides[i], "image", json_integer(choice->small[i]));
+            json_object_set_new(choice->sides[i], "lossy", json_true());
+        }
+    }
 }
 
 Result html_add(Html *html, const Pair *pair, const Verdict *verdict, const HtmlPair *page,
@@ -160,11 +247,16 @@ Result html_add(Html *html, const Pair *pair, const Verdict *verdict, const Html
     if (accept) set_text(object, "accept", accept);
     json_object_set_new(object, "thumbnail", report_base64(&page->thumbnail));
     json_object_set_new(object, "equal", json_boolean(page->equal));
-    Result result = add_image(html, sides[1], "image", &page->side[1].png, error);
-    if (page->equal)
+    Result result;
+    if (page->equal) {
+        bool lossy = page->side[1].small.size > 0;
+        result = add_image(html, sides[1], "image",
+                           lossy ? &page->side[1].small : &page->side[1].png, error);
+        if (lossy) json_object_set_new(sides[1], "lossy", json_true());
         json_object_set(sides[0], "image", json_object_get(sides[1], "image"));
-    else
-        THEN(result, add_image(html, sides[0], "image", &page->side[0].png, error));
+    } else {
+        result = add_sides(html, sides, page, verdict, error);
+    }
     THEN(result, add_image(html, object, "map", &page->map, error));
     json_object_set_new(object, "a", sides[0]);
     json_object_set_new(object, "b", sides[1]);
@@ -176,11 +268,10 @@ Result html_add(Html *html, const Pair *pair, const Verdict *verdict, const Html
 // What the heat map's colours mean: from 0 to 1 in even steps.
 static json_t *list_colors(void)
 {
-    enum { STEPS = 64 };
     json_t *list = json_array();
-    for (int i = 0; i < STEPS; ++i) {
+    for (int i = 0; i < HEAT_MAP_STEPS; ++i) {
         uint8_t rgb[3];
-        heat_map_color(rgb, (float)i / (STEPS - 1));
+        heat_map_color(rgb, (float)i / (HEAT_MAP_STEPS - 1));
         json_array_append_new(list, json_pack("[i, i, i]", rgb[0], rgb[1], rgb[2]));
     }
     return list;
@@ -190,6 +281,7 @@ Result html_close(Html *html, const PairList *list, const CompareLimits limits[L
                   const char *command, Error *error)
 {
     json_t *data = json_object();
+    choose_forms(html);
     set_text(data, "program", "tractrix-compare " TRACTRIX_VERSION);
     set_text(data, "command", command);
     json_object_set_new(data, "limits", verdict_limits_to_json(limits, list));
@@ -206,6 +298,9 @@ Result html_close(Html *html, const PairList *list, const CompareLimits limits[L
 void html_discard(Html *html)
 {
     report_discard(&html->report);
+    for (size_t c = 0; c < html->choice_count; ++c)
+        for (int i = 0; i < 2; ++i) json_decref(html->choices[c].sides[i]);
+    free(html->choices);
     json_decref(html->pairs);
     *html = (Html){0};
 }

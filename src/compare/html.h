@@ -8,11 +8,12 @@
 // What the page shows of a pair.
 typedef struct HtmlSide {
     Bytes png;     // empty: there is no image
+    Bytes small;   // a JPEG for looking at; empty: the PNG is smaller, or has transparency
     json_t *facts; // size, depth, texts of the file, or why there is none
 } HtmlSide;
 typedef struct HtmlPair {
     HtmlSide side[2];
-    bool equal; // pixel by pixel: one PNG, that of the second side, is enough
+    bool equal; // pixel by pixel: one image, that of the second side, is enough
     Bytes map;  // for VerdictOptions
     Bytes thumbnail;
 } HtmlPair;
@@ -26,6 +27,8 @@ void html_pair_destroy(HtmlPair *page);
 typedef struct Html {
     Report report;
     json_t *pairs;
+    struct HtmlChoice *choices; // between PNG and JPEG of pairs that differ
+    size_t choice_count;
 } Html;
 
 // RESULT_FAILED with path and reason.

@@ -60,9 +60,11 @@ static char *place_of(const Side *side, const char *name, int frame)
 static bool is_image(const char *name)
 {
     const char *dot = strrchr(name, '.');
-    return name[0] != '.' && dot &&
-           (strcasecmp(dot, ".png") == 0 || strcasecmp(dot, ".pfm") == 0 ||
-            strcasecmp(dot, ".exr") == 0);
+    // JPEG files are among them to be refused with the reason.
+    static const char *const SUFFIXES[] = {".png", ".pfm", ".exr", ".jpg", ".jpeg"};
+    for (size_t i = 0; i < sizeof SUFFIXES / sizeof *SUFFIXES && dot; ++i)
+        if (strcasecmp(dot, SUFFIXES[i]) == 0) return name[0] != '.';
+    return false;
 }
 
 // --- The list.

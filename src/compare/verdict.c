@@ -90,13 +90,14 @@ static Result draw(char **written, const char *path, bool sheet, const Image *a,
     return result;
 }
 
-// The heat map in memory, if any pixel differs.
-static Result keep_map(Bytes *png, const float *map, const CompareResult *figures, Error *error)
+// The heat map in memory, if any pixel differs, by few colours. Spoils the errors.
+static Result keep_map(Bytes *png, float *map, const CompareResult *figures, Error *error)
 {
     Image image = {0};
     if (!png || !(figures->flip_most > 0)) return RESULT_OK;
+    heat_map_round(map, (size_t)figures->width * (size_t)figures->height);
     Result result = heat_map_create(&image, map, figures->width, figures->height, error);
-    THEN(result, png_encode(&image, NULL, png, error));
+    THEN(result, png_encode_palette(&image, png, error));
     image_destroy(&image);
     return result;
 }
@@ -107,10 +108,11 @@ static Result measure(Verdict *verdict, float *map, const Image *a, const Image 
     TRY(compare_images(&verdict->figures, map, a, b, mask, &options->limits, error));
     verdict->measured = true;
     verdict->outcome = verdict->figures.same ? OUTCOME_SAME : OUTCOME_DIFFERENT;
-    TRY(keep_map(options->map, map, &verdict->figures, error));
-    if (verdict->figures.same && !options->draw_same) return RESULT_OK;
-    TRY(draw(&verdict->heat_map, options->heat_map, false, a, b, map, error));
-    return draw(&verdict->sheet, options->sheet, true, a, b, map, error);
+    if (!verdict->figures.same || options->draw_same) {
+        TRY(draw(&verdict->heat_map, options->heat_map, false, a, b, map, error));
+        TRY(draw(&verdict->sheet, options->sheet, true, a, b, map, error));
+    }
+    return keep_map(options->map, map, &verdict->figures, error);
 }
 
 // NULL where the pair has none. `own` is to be destroyed.

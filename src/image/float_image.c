@@ -3,6 +3,7 @@
 
 #include "base/bytes.h"
 #include "image/exr_file.h"
+#include "image/jpeg.h"
 #include "image/pfm.h"
 #include "image/png.h"
 
@@ -16,6 +17,13 @@ Result float_image_read_image(Image *image, const char *path, Error *error)
     Bytes file;
     *image = (Image){0};
     TRY(bytes_read_file(&file, path, error));
+    if (jpeg_is(&file)) {
+        bytes_destroy(&file);
+        return error_set(error, RESULT_BAD_INPUT,
+                         "%s: a JPEG file, which has lost what is measured: expected PNG, EXR or "
+                         "PFM",
+                         path);
+    }
     bool is_pfm = file.size > 1 && file.data[0] == 'P' && (file.data[1] | 0x20) == 'f';
     Result result = is_pfm               ? pfm_decode(image, &file, path, error)
                     : exr_file_is(&file) ? exr_file_decode(image, &file, path, error)

@@ -21,6 +21,15 @@ void heat_map_color(uint8_t rgb[3], float error)
         rgb[k] = (uint8_t)lrintf(STOPS[stop][k] + share * (STOPS[stop + 1][k] - STOPS[stop][k]));
 }
 
+void heat_map_round(float *errors, size_t count)
+{
+    enum { LAST = HEAT_MAP_STEPS - 1 };
+    for (size_t i = 0; i < count; ++i) {
+        float step = rintf(fminf(errors[i], 1) * LAST);
+        if (!isnan(errors[i])) errors[i] = (errors[i] > 0 ? fmaxf(step, 1) : 0) / LAST;
+    }
+}
+
 Result heat_map_create(Image *image, const float *errors, int width, int height, Error *error)
 {
     TRY(image_create(image, width, height, 3, error));

@@ -9,6 +9,11 @@
 // lightness rises evenly, so that it reads in grey as well. Others are clamped.
 void heat_map_color(uint8_t rgb[3], float error);
 
+// Rounds errors [count] to HEAT_MAP_STEPS even steps from 0 to 1, so that a map has as few colours;
+// no error above 0 becomes 0. NAN stays.
+enum { HEAT_MAP_STEPS = 64 };
+void heat_map_round(float *errors, size_t count);
+
 // The errors [height][width] in these colours, an IMAGE_8 of 3 channels; grey stripes where they
 // are NAN, as those of ignored pixels are. RESULT_FAILED when memory is short.
 Result heat_map_create(Image *image, const float *errors, int width, int height, Error *error);

@@ -10,7 +10,7 @@
 
 // Measured on frames of hair: the higher levels take half as long again for little or no gain in
 // size, and as hair runs downwards the row above predicts well.
-enum { DEFLATE_LEVEL = 1 };
+enum { DEFLATE_LEVEL = 1, PALETTE_DEFLATE_LEVEL = 9, PALETTE_COLORS = 256 };
 enum { ENCODE_MAX_BYTES = 1 << 30, READ_MAX_PIXELS = 1 << 28, READ_MAX_SIDE = 1 << 20 };
 enum { READ_MAX_FACTOR = 64, READ_SURE_BYTES = 64 << 20 }; // of memory, by the file's size
 enum { TEXT_MAX_BYTES = 1 << 17, TEXT_MAX_COUNT = 128 };
@@ -26,7 +26,9 @@ typedef struct Codec {
     size_t size, at;
     Bytes written; // with `room`
     size_t room;
-    const Image *source; // to be written: with these rows, compressed
+    const Image *source;      // to be written: with these rows, compressed
+    const png_color *palette; // of `colors`, of which the source has indices; NULL: none
+    int colors;
     const ImageTexts *texts;
     png_text *chunks; // of the texts
     uint8_t *packed;
@@ -86,8 +88,11 @@ static void write_file(Codec *codec)
     png_set_write_fn(codec->png, codec, take_bytes, flush_nothing);
     png_set_IHDR(codec->png, codec->info, (png_uint_32)image->width, (png_uint_32)image->height,
                  image->kind == IMAGE_16 ? 16 : 8,
-                 image->channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
+                 codec->palette         ? PNG_COLOR_TYPE_PALETTE
+                 : image->channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA
+                                        : PNG_COLOR_TYPE_RGB,
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
+    if (codec->palette) png_set_PLTE(codec->png, codec->info, codec->palette, codec->colors);
     size_t count = codec->texts ? codec->texts->count : 0;
     for (size_t i = 0; i < count; ++i) {
         const ImageText *text = &codec->texts->list[i];
@@ -136,18 +141,28 @@ static void filter_rows(const Image *image, size_t row, uint8_t *to)
     }
 }
 
+// Rows of indices, which no filter makes smaller.
+static void copy_rows(const Image *image, size_t row, uint8_t *to)
+{
+    for (int y = 0; y < image->height; ++y, to += row + 1) {
+        to[0] = PNG_FILTER_VALUE_NONE;
+        memcpy(to + 1, image->pixels + (size_t)y * row, row);
+    }
+}
+
 // false when memory is short.
 static bool pack_rows(Codec *codec)
 {
     const Image *image = codec->source;
     size_t row = image_size(image) / (size_t)image->height;
     size_t size = (row + 1) * (size_t)image->height;
-    struct libdeflate_compressor *compressor = libdeflate_alloc_compressor(DEFLATE_LEVEL);
+    struct libdeflate_compressor *compressor =
+        libdeflate_alloc_compressor(codec->palette ? PALETTE_DEFLATE_LEVEL : DEFLATE_LEVEL);
     size_t room = compressor ? libdeflate_zlib_compress_bound(compressor, size) : 0;
     uint8_t *rows = malloc(size);
     codec->packed = malloc(room + 1);
     if (compressor && rows && codec->packed) {
-        filter_rows(image, row, rows);
+        (codec->palette ? copy_rows : filter_rows)(image, row, rows);
         codec->packed_size = libdeflate_zlib_compress(compressor, rows, size, codec->packed, room);
     }
     free(rows);
@@ -158,7 +173,7 @@ static bool pack_rows(Codec *codec)
 // Room for the file: chunks take 12 bytes each, those of texts a few more.
 static bool make_room(Codec *codec)
 {
-    enum { REST = 256 };
+    enum { REST = 256 + 3 * PALETTE_COLORS };
     size_t count = codec->texts ? codec->texts->count : 0;
     codec->room = codec->packed_size + REST;
     for (size_t i = 0; i < count; ++i)
@@ -170,29 +185,66 @@ static bool make_room(Codec *codec)
     return codec->chunks && codec->written.data && codec->info;
 }
 
-Result png_encode(const Image *image, const ImageTexts *texts, Bytes *png, Error *error)
+static Result encode(Codec *codec, Bytes *png, Error *error)
 {
-    Codec codec = {.source = image, .texts = texts};
+    const Image *image = codec->source;
     Result result = RESULT_OK;
     *png = (Bytes){0};
     if (image_size(image) + (size_t)image->height >= ENCODE_MAX_BYTES)
         return error_set(error, RESULT_FAILED, "an image of %d x %d is too large for PNG here",
                          image->width, image->height);
-    if (!pack_rows(&codec) || !make_room(&codec))
+    if (!pack_rows(codec) || !make_room(codec))
         result = error_set(error, RESULT_FAILED, "no memory to encode an image of %d x %d",
                            image->width, image->height);
-    else if (!go(&codec, write_file))
+    else if (!go(codec, write_file))
         result = error_set(error, RESULT_FAILED, "cannot encode an image of %d x %d: %s",
-                           image->width, image->height, codec.reason);
+                           image->width, image->height, codec->reason);
     if (result == RESULT_OK) {
-        *png = codec.written;
+        *png = codec->written;
         png->data[png->size] = 0;
     } else {
-        bytes_destroy(&codec.written);
+        bytes_destroy(&codec->written);
     }
-    png_destroy_write_struct(&codec.png, &codec.info);
-    free(codec.chunks);
-    free(codec.packed);
+    png_destroy_write_struct(&codec->png, &codec->info);
+    free(codec->chunks);
+    free(codec->packed);
+    return result;
+}
+
+Result png_encode(const Image *image, const ImageTexts *texts, Bytes *png, Error *error)
+{
+    Codec codec = {.source = image, .texts = texts};
+    return encode(&codec, png, error);
+}
+
+// The index of each pixel's colour; false: there are too many colours. Neighbours are often equal.
+static bool find_palette(const Image *image, uint8_t *indices, png_color palette[PALETTE_COLORS],
+                         int *colors)
+{
+    size_t count = (size_t)image->width * (size_t)image->height;
+    int last = 0;
+    *colors = 0;
+    for (size_t i = 0; i < count; ++i) {
+        const uint8_t *rgb = image->pixels + 3 * i;
+        if (!*colors || memcmp(&palette[last], rgb, 3) != 0)
+            for (last = 0; last < *colors && memcmp(&palette[last], rgb, 3) != 0;) ++last;
+        if (last == PALETTE_COLORS) return false;
+        if (last == *colors) palette[(*colors)++] = (png_color){rgb[0], rgb[1], rgb[2]};
+        indices[i] = (uint8_t)last;
+    }
+    return true;
+}
+
+Result png_encode_palette(const Image *image, Bytes *png, Error *error)
+{
+    png_color palette[PALETTE_COLORS];
+    Image indices = {.width = image->width, .height = image->height, .channels = 1};
+    Codec codec = {.source = &indices, .palette = palette};
+    indices.pixels = malloc((size_t)image->width * (size_t)image->height);
+    bool fits = indices.pixels && image->channels == 3 && image->kind == IMAGE_8 &&
+                find_palette(image, indices.pixels, palette, &codec.colors);
+    Result result = fits ? encode(&codec, png, error) : png_encode(image, NULL, png, error);
+    free(indices.pixels);
     return result;
 }
 

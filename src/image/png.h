@@ -14,6 +14,10 @@
 // when memory is short or the image has 1 GiB or more. Free `png` with bytes_destroy.
 Result png_encode(const Image *image, const ImageTexts *texts, Bytes *png, Error *error);
 
+// Encodes an IMAGE_8 without alpha as indices into a palette, as small as it gets, for heat maps
+// and the like; one with more than 256 colours as png_encode does. Fails as that.
+Result png_encode_palette(const Image *image, Bytes *png, Error *error);
+
 // Encodes without texts and writes; the file appears complete or not at all. RESULT_FAILED with
 // path and reason.
 Result png_write(const char *path, const Image *image, Error *error);

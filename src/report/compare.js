@@ -60,8 +60,11 @@ async function blobOf(number) {
     if (!byId("image-" + number)) await loaded;
     const text = byId("image-" + number).textContent;
     const bytes = Uint8Array.fromBase64 ? Uint8Array.fromBase64(text) : Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
-    return new Blob([bytes], { type: "image/png" });
+    return new Blob([bytes], { type: typeOf(text) });
 }
+
+// Of base64: a JPEG file begins with the bytes FF D8 FF.
+const typeOf = (text) => (text.startsWith("/9j/") ? "image/jpeg" : "image/png");
 
 // What is decoded of the pair in the viewer: its own, so that a long list does not fill the memory.
 class Pictures {
@@ -108,7 +111,7 @@ function remark(pair) {
 
 function row(pair) {
     const thumbnail = pair.thumbnail
-        ? element("img", { class: "thumbnail", src: "data:image/png;base64," + pair.thumbnail, alt: "", loading: "lazy", decoding: "async" })
+        ? element("img", { class: "thumbnail", src: "data:" + typeOf(pair.thumbnail) + ";base64," + pair.thumbnail, alt: "", loading: "lazy", decoding: "async" })
         : element("span", { class: "thumbnail", text: "no image" });
     const what = element("div", { class: "what " + classOf(pair) }, element("span", { class: "dot" }), element("span", { class: "word", text: OUTCOMES[outcomeOf(pair)][2] }),
         element("span", { class: "number", text: remark(pair) }), element("span", { class: "marked", text: state.marked.has(pair) ? "✓" : "" }));
@@ -491,6 +494,7 @@ async function read(x, y) {
         const off = b.map((level, k) => level - a[k]).map((level) => (level > 0 ? "+" + level : level < 0 ? "−" + -level : "0"));
         parts.push(element("span", {}, "B − A ", element("b", { text: words(off) })));
     }
+    if (state.chosen.a.lossy || state.chosen.b.lossy) parts.push(element("span", { text: "of JPEG pictures: the files differ by some levels" }));
     if ([state.chosen.a, state.chosen.b].some((side) => side.depth && side.depth !== "8 bits")) parts.push(element("span", { text: "of 8-bit pictures" }));
     byId("readout").replaceChildren(...parts);
 }
@@ -591,6 +595,7 @@ function sides(pair) {
     const facts = (side) => {
         const list = new Map([["File", side.path]]);
         if (side.width) list.set("Image", side.width + " × " + side.height + ", " + side.depth + (side.alpha ? ", alpha" : "")).set("Size", bytes(side.bytes));
+        if (side.lossy) list.set("Shown as", "JPEG, since the page would be large; figures are the file's");
         if (side.error) list.set("Error", side.error);
         for (const [key, text] of side.texts || []) list.set(key, list.has(key) ? list.get(key) + "\n" + text : text);
         return list;

@@ -61,12 +61,27 @@ static int put_json(const char *text, size_t size, void *stream)
     return 0;
 }
 
-static void put_images(FILE *stream, FILE *images)
+static void copy(FILE *to, FILE *from, long size)
 {
     char block[16384];
-    size_t size;
-    rewind(images);
-    while ((size = fread(block, 1, sizeof block, images))) fwrite(block, 1, size, stream);
+    while (size > 0) {
+        size_t wanted = size < (long)sizeof block ? (size_t)size : sizeof block;
+        size_t read = fread(block, 1, wanted, from);
+        if (!read) return;
+        fwrite(block, 1, read, to);
+        size -= (long)read;
+    }
+}
+
+static void put_images(const Report *report)
+{
+    long begin = 0;
+    rewind(report->images);
+    for (int i = 0; i < report->image_count; begin = report->list[i++].end)
+        if (report->list[i].omitted)
+            fseek(report->images, report->list[i].end, SEEK_SET);
+        else
+            copy(report->file.stream, report->images, report->list[i].end - begin);
 }
 
 static void put_policy(FILE *stream, const char *kind)
@@ -87,7 +102,7 @@ static void put_word(const Report *report, const char *word, const char *kind, c
     else if (strncmp(word, "data}", 5) == 0)
         json_dump_callback(data, put_json, stream, JSON_COMPACT | JSON_REAL_PRECISION(9));
     else if (strncmp(word, "images}", 7) == 0)
-        put_images(stream, report->images);
+        put_images(report);
     else {
         char suffix[8];
         snprintf(suffix, sizeof suffix, "%.*s", (int)strcspn(word + 5, "}"), word + 5);
@@ -124,13 +139,32 @@ static Result fail_images(const Report *report, Error *error)
                      report->file.path, strerror(errno));
 }
 
-Result report_add_image(Report *report, const Bytes *png, int *number, Error *error)
+static bool make_room(Report *report)
 {
+    if (report->image_count < report->room) return true;
+    int room = 2 * report->room + 64;
+    struct ReportImage *list = realloc(report->list, (size_t)room * sizeof *list);
+    if (!list) return false;
+    report->list = list;
+    report->room = room;
+    return true;
+}
+
+Result report_add_image(Report *report, const Bytes *file, int *number, Error *error)
+{
+    if (!make_room(report))
+        return error_set(error, RESULT_FAILED, "no memory for the images of %s", report->file.path);
     *number = report->image_count++;
     fprintf(report->images, "<script type=\"text/plain\" id=\"image-%d\">", *number);
-    put_base64(report->images, png);
+    put_base64(report->images, file);
     fputs("</script>\n", report->images);
+    report->list[*number] = (struct ReportImage){.end = ftell(report->images)};
     return ferror(report->images) ? fail_images(report, error) : RESULT_OK;
+}
+
+void report_omit_image(Report *report, int number)
+{
+    report->list[number].omitted = true;
 }
 
 Result report_close(Report *report, const char *kind, const json_t *data, Error *error)
@@ -150,6 +184,7 @@ void report_discard(Report *report)
 {
     outfile_discard(&report->file);
     if (report->images) fclose(report->images);
+    free(report->list);
     *report = (Report){0};
 }
 

@@ -14,6 +14,7 @@
 #include "base/outfile.h"
 
 #include <jansson.h>
+#include <stdbool.h>
 #include <stdio.h>
 
 // A file of src/report, embedded by scripts/embed-text. The table ends with zeros.
@@ -28,15 +29,22 @@ extern const ReportText REPORT_TEXTS[];
 typedef struct Report {
     OutFile file;
     FILE *images;
-    int image_count;
+    struct ReportImage {
+        long end; // of its block in the scratch file
+        bool omitted;
+    } * list;
+    int image_count, room;
 } Report;
 
 // RESULT_FAILED with path and reason if the file cannot be written.
 Result report_open(Report *report, const char *path, Error *error);
 
-// Adds the bytes of a PNG file; *number is what the page's script knows it by, from 0 on.
+// Adds the bytes of a PNG or JPEG file; *number is what the page's script knows it by, from 0 on.
 // RESULT_FAILED if there is no room for it.
-Result report_add_image(Report *report, const Bytes *png, int *number, Error *error);
+Result report_add_image(Report *report, const Bytes *file, int *number, Error *error);
+
+// Leaves the image of this number out of the page.
+void report_omit_image(Report *report, int number);
 
 // Writes the page of `kind`, "compare" or "bench", with its data (no reference is taken; NULL:
 // memory was short). The file appears complete or not at all; RESULT_FAILED with path and reason.

@@ -2,6 +2,7 @@
 #include "run/frame_file.h"
 
 #include "base/bytes.h"
+#include "image/jpeg.h"
 #include "image/pfm.h"
 #include "image/png.h"
 #include "run/record.h"
@@ -28,6 +29,7 @@ static Result encode(const FrameFile *file, const Image *image, const ImageTexts
 {
     if (file->target->format == TARGET_PFM) return pfm_encode(image, bytes, error);
     if (file->target->format == TARGET_PNG) return png_encode(image, texts, bytes, error);
+    if (file->target->format == TARGET_JPEG) return jpeg_encode(image, JPEG_FINE, bytes, error);
     ExrFile exr = {.image = image, .floats = file->exr_float, .texts = texts};
     if (extra) {
         exr.layers = extra->layers[0].pixels ? extra->layers : NULL;

@@ -223,8 +223,8 @@ static Result check_options(const OutputOptions *options, const Target *target, 
     bool one_png = target->stream && target->format == TARGET_PNG;
     if (sheet && target->kind != TARGET_STILL && !one_png)
         return error_set(error, RESULT_USAGE,
-                         "%s: a contact sheet is one image: expected a name ending in .png, .pfm "
-                         "or .exr, without a number",
+                         "%s: a contact sheet is one image: expected a name ending in .png, .jpg, "
+                         ".pfm or .exr, without a number",
                          options->target);
     bool many = target->kind == TARGET_STILL && !sheet && options->frame_count > 1;
     if (many && target->stream)
@@ -236,12 +236,15 @@ static Result check_options(const OutputOptions *options, const Target *target, 
             error, RESULT_USAGE,
             "%s: one name for %d frames: expected a number in it (frame_%%04d.png), or --frames 1",
             options->target, options->frame_count);
-    if (target->format == TARGET_Y4M && options->channels == 4)
+    const char *opaque = target->format == TARGET_Y4M    ? ".y4m"
+                         : target->format == TARGET_JPEG ? "JPEG"
+                                                         : NULL;
+    if (opaque && options->channels == 4)
         return error_set(error, RESULT_USAGE,
-                         "%s: .y4m cannot hold a transparent background, write .webm or PNG frames",
-                         options->target);
+                         "%s: %s cannot hold a transparent background, write .webm or PNG frames",
+                         options->target, opaque);
     if (target->floats != (options->kind == IMAGE_FLOAT) ||
-        (target->format >= TARGET_Y4M && options->kind != IMAGE_8))
+        (target->format >= TARGET_JPEG && options->kind != IMAGE_8))
         return error_set(error, RESULT_USAGE, "%s: cannot store images of this depth",
                          options->target);
     if (options->channels != 3 && options->channels != 4)

@@ -43,6 +43,11 @@ Result resume_check(const RunParams *run, Error *error)
                            "--resume: %s: it is written in one piece; with --cache at least its "
                            "simulation can be resumed",
                            is_whole(&images) ? run->output : run->export);
+    if (result == RESULT_OK && images.before && images.format == TARGET_JPEG)
+        result = error_set(error, RESULT_USAGE,
+                           "--resume: %s: a JPEG file does not say which scene it shows: expected "
+                           "PNG",
+                           run->output);
     target_destroy(&images);
     target_destroy(&hair);
     return result;

@@ -226,7 +226,10 @@ static Result check_depth(const Scene *scene, Error *error)
     bool tones = run->tone_map != TONE_NONE && scene->origin[row] == ORIGIN_FLAG;
     bool video = ends_with(run->output, ".mp4") || ends_with(run->output, ".webm") ||
                  ends_with(run->output, ".gif") || ends_with(run->output, ".y4m");
+    bool jpeg = ends_with(run->output, ".jpg") || ends_with(run->output, ".jpeg");
     const char *pair = NULL;
+    if (run->depth == DEPTH_16 && jpeg) pair = "--depth 16 and .jpg files";
+    if (run->aov != AOV_NONE && jpeg) pair = "--aov and .jpg files";
     if (run->depth == DEPTH_16 && scene_draws_floats(run))
         pair = "--depth 16 and .pfm or .exr files";
     if (run->depth == DEPTH_16 && video) pair = "--depth 16 and a video";

@@ -47,6 +47,8 @@ static void stills_and_videos_have_one_name(void **state)
     (void)state;
     assert_name("x.png", TARGET_STILL, 3, "x.png");
     assert_name("50%%.png", TARGET_STILL, 3, "50%.png");
+    assert_name("x.JPG", TARGET_STILL, 3, "x.JPG");
+    assert_name("x_%02d.jpeg", TARGET_FRAMES, 3, "x_03.jpeg");
     assert_name("a/x.mp4", TARGET_VIDEO, 3, "a/x.mp4");
     assert_name("x%04d.WebM", TARGET_VIDEO, 3, "x%04d.WebM");
     assert_name("x.gif", TARGET_VIDEO, 3, "x.gif");
@@ -69,7 +71,7 @@ static void targets_without_sense_are_usage_errors(void **state)
 {
     (void)state;
     static const char *const texts[] = {"no/such_name",
-                                        "x.jpg",
+                                        "x.bmp",
                                         "x_%d_%d.png",
                                         "x_%s.png",
                                         "x_%5d.png",

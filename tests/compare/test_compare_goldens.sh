@@ -94,6 +94,26 @@ rm -r "$work/goldens"
 goldens 1 --update; says "plain.png: new"; says "1 reference updated"; says 'odd: did not render: $(touch: No such file'; none "$work/harm"
 is_png "$work/goldens/plain.png"
 
+claim "pictures may be JPEG files, goldens may not"
+render() { # STATUS OPTION...
+    expected=$1; shift
+    # shellcheck disable=SC2086 # words
+    "$TRACTRIX_BIN/tractrix-render" $small -q "$@" >"$work/out" 2>"$work/err"
+    status=$?
+    if [ "$status" = "$expected" ]; then good; else bad "exit status $status, expected $expected: $*"; fi
+}
+mkdir "$work/jpeg" "$work/png"
+render 0 -o "$work/jpeg/x.jpg"; render 0 -o "$work/png/x.jpg"
+for option in "--depth 16" "--aov depth" "--background transparent" "--resume"; do
+    # shellcheck disable=SC2086 # words
+    render 2 -o "$work/y_%d.jpg" $option; one_line; none "$work/y_0.jpg"
+done
+program=$TRACTRIX_BIN/tractrix-compare
+run 3 "$work/jpeg/" "$work/png/"; says "x.jpg: unreadable: $work/png/x.jpg: a JPEG file, which has lost what is measured: expected PNG, EXR or PFM"
+render 0 -o "$work/new.png"
+run 3 "$work/jpeg/x.jpg" "$work/new.png"; says "$work/jpeg/x.jpg: a JPEG file"
+program=scripts/compare-goldens
+
 claim "without the programs it says what it expected, and an interruption is status 130"
 TRACTRIX_BIN=$work
 goldens 1; one_line; says "no tractrix-render in $work"

@@ -51,6 +51,9 @@ claim "equal images stand once"
 # differ 2 and its map, size 2, gone, new, cut's reference, float 2 and its map, and one of each equal pair
 counts 13 '<script type="text/plain" id="image-'
 
+claim "equal images and thumbnails are JPEG, what differs is not, heat maps have palettes"
+counts 2 '"lossy":true'; counts 2 '>/9j/'; counts 8 '"thumbnail":"'; counts 7 '"thumbnail":"/9j/'; counts 2 'CAMAAA'
+
 claim "commands are quoted"
 in_file report.html '"accept":"tractrix-compare --update -- a/differ.png b/differ.png"'
 mkdir one two && cp a/differ.png "one/it's \$HOME.png" && cp b/differ.png "two/it's \$HOME.png"

@@ -240,6 +240,17 @@ static double lightness(const uint8_t rgb[3])
     return y > 216.0 / 24389 ? 116 * cbrt(y) - 16 : 24389.0 / 27 * y;
 }
 
+static void a_rounded_map_has_few_steps_and_hides_nothing(void **state)
+{
+    (void)state;
+    float errors[] = {0, 1e-6f, 0.5f, 0.505f, 1, 2, NAN};
+    heat_map_round(errors, sizeof errors / sizeof *errors);
+    const float step = 1.0f / (HEAT_MAP_STEPS - 1);
+    assert_true(errors[0] == 0 && errors[1] == step && errors[4] == 1 && errors[5] == 1);
+    assert_true(fabsf(errors[2] - 0.5f) <= step / 2 + 1e-6f && errors[2] == errors[3]);
+    assert_true(isnan(errors[6]));
+}
+
 static void a_larger_error_is_lighter_in_the_heat_map(void **state)
 {
     (void)state;
@@ -265,6 +276,7 @@ int main(void)
         cmocka_unit_test(pictures_of_every_small_size_can_be_compared),
         cmocka_unit_test(what_is_seen_depends_on_the_distance),
         cmocka_unit_test(a_larger_error_is_lighter_in_the_heat_map),
+        cmocka_unit_test(a_rounded_map_has_few_steps_and_hides_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -495,6 +495,30 @@ static void too_few_and_wrong_rows_are_found(void **state)
     }
 }
 
+// Of 256 colours and fewer there are indices, of more the colours themselves.
+static void palettes_keep_every_colour(void **state)
+{
+    (void)state;
+    for (int colors = 1; colors <= 257; colors += 64) {
+        Image image, back;
+        Bytes small;
+        assert_int_equal(image_create(&image, 33, 40, 3, NULL), RESULT_OK);
+        for (int i = 0; i < 33 * 40; ++i) {
+            image.pixels[3 * i] = (uint8_t)(i % colors);
+            image.pixels[3 * i + 1] = (uint8_t)(i % colors / 256);
+            image.pixels[3 * i + 2] = 7;
+        }
+        assert_int_equal(png_encode_palette(&image, &small, NULL), RESULT_OK);
+        enum { COLOR_TYPE = 25, PALETTE = 3 }; // its place in the file, and indices
+        assert_int_equal(small.data[COLOR_TYPE], colors <= 256 ? PALETTE : 2);
+        assert_int_equal(png_decode_deep(&back, &small, "small", NULL), RESULT_OK);
+        assert_same_image(&image, &back);
+        image_destroy(&back);
+        image_destroy(&image);
+        bytes_destroy(&small);
+    }
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, temporary_create, temporary_destroy)
 
 int main(void)
@@ -511,6 +535,7 @@ int main(void)
         TEST(any_flipped_bit_is_found),
         TEST(texts_survive_and_leave_the_pixels),
         TEST(texts_are_clean),
+        TEST(palettes_keep_every_colour),
         TEST(every_kind_of_pixel_is_read),
         TEST(texts_that_swell_are_left_out),
         TEST(bombs_are_refused),
