@@ -5,44 +5,49 @@
 
 #include <strings.h>
 
+// Hair's are means over a head in the studio's light, not of its highlights: the darkest is what
+// hair that lets no light through still reflects, the brightest what hair without pigment sends
+// back (docs/look.md).
 const ColorName COLOR_NAMES[COLOR_NAME_COUNT] = {
-    {"black", "#000000"},
-    {"silver", "#c0c0c0"},
-    {"gray", "#808080"},
-    {"grey", "#808080"},
-    {"white", "#ffffff"},
-    {"maroon", "#800000"},
-    {"red", "#ff0000"},
-    {"purple", "#800080"},
-    {"fuchsia", "#ff00ff"},
-    {"green", "#008000"},
-    {"lime", "#00ff00"},
-    {"olive", "#808000"},
-    {"yellow", "#ffff00"},
-    {"navy", "#000080"},
-    {"blue", "#0000ff"},
-    {"teal", "#008080"},
-    {"aqua", "#00ffff"},
-    {"raven", "#1c1613"},
-    {"dark-brown", "#3b281d"},
-    {"brown", "#6b4a36"},
-    {"light-brown", "#916b4a"},
-    {"chestnut", "#6f3d26"},
-    {"auburn", "#80402a"},
-    {"ginger", "#b5652f"},
-    {"strawberry", "#cf9468"},
-    {"dark-blond", "#a08257"},
-    {"blond", "#d2b280"},
-    {"platinum", "#e6dac0"},
-    {"salt-and-pepper", "#8b857e"},
+    {"black", "#000000", "#262220"},
+    {"silver", "#c0c0c0", "#8f8d89"},
+    {"gray", "#808080", "#7c7974"},
+    {"grey", "#808080", "#7c7974"},
+    {"white", "#ffffff", "#9c9a96"},
+    {"maroon", "#800000", NULL},
+    {"red", "#ff0000", "#823f27"},
+    {"purple", "#800080", NULL},
+    {"fuchsia", "#ff00ff", NULL},
+    {"green", "#008000", NULL},
+    {"lime", "#00ff00", NULL},
+    {"olive", "#808000", NULL},
+    {"yellow", "#ffff00", NULL},
+    {"navy", "#000080", NULL},
+    {"blue", "#0000ff", NULL},
+    {"teal", "#008080", NULL},
+    {"aqua", "#00ffff", NULL},
+    {"raven", NULL, "#1f1b1a"},
+    {"dark-brown", NULL, "#3b2a21"},
+    {"brown", NULL, "#5c4434"},
+    {"light-brown", NULL, "#785b43"},
+    {"chestnut", NULL, "#5f3a2a"},
+    {"auburn", NULL, "#693527"},
+    {"ginger", NULL, "#9a5833"},
+    {"strawberry", NULL, "#9c7153"},
+    {"dark-blond", NULL, "#8a7150"},
+    {"blond", NULL, "#9c845c"},
+    {"platinum", NULL, "#9c9480"},
+    {"salt-and-pepper", NULL, "#6f6b66"},
 };
 
-const char *colors_find(const char *name, const char **nearest)
+const char *colors_find(const char *name, bool of_hair, const char **nearest)
 {
     const char *names[COLOR_NAME_COUNT];
     for (size_t i = 0; i < COLOR_NAME_COUNT; i++) {
-        names[i] = COLOR_NAMES[i].name;
-        if (strcasecmp(names[i], name) == 0) return COLOR_NAMES[i].value;
+        const ColorName *color = &COLOR_NAMES[i];
+        names[i] = color->name;
+        if (strcasecmp(names[i], name) != 0) continue;
+        return color->hair && (of_hair || !color->css) ? color->hair : color->css;
     }
     if (nearest) *nearest = suggest_nearest(name, names, COLOR_NAME_COUNT);
     return NULL;

@@ -67,6 +67,10 @@ const Option *options_find(const Option *options, size_t count, const char *name
     for (size_t i = 0; i < count; ++i)
         if (letter ? options[i].letter == name[1] : names_equal(options[i].name, name))
             return &options[i];
+    // What has another name is a row of params.def.
+    const ParamInfo *info = letter ? NULL : params_find(name);
+    for (size_t i = 0; info && i < count; ++i)
+        if (names_equal(options[i].name, info->name)) return &options[i];
     return NULL;
 }
 

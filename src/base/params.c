@@ -120,10 +120,17 @@ static bool names_equal(const char *a, const char *b)
     return *a == *b;
 }
 
+const char *params_also(const ParamInfo *info)
+{
+    return strcmp(info->name, "color") == 0 ? "albedo" : NULL;
+}
+
 const ParamInfo *params_find(const char *name)
 {
     for (size_t i = 0; i < PARAM_COUNT; i++) {
+        const char *also = params_also(&PARAM_TABLE[i]);
         if (names_equal(PARAM_TABLE[i].name, name)) return &PARAM_TABLE[i];
+        if (also && names_equal(also, name)) return &PARAM_TABLE[i];
     }
     return NULL;
 }
@@ -267,7 +274,8 @@ static Result parse_color(const Input *input, float value[3])
 {
     const char *text = input->text, *nearest = NULL;
     if (isalpha((unsigned char)text[0])) {
-        text = colors_find(text, &nearest);
+        bool seen = input->info->group == GROUP_HAIR && input->info->kind == PARAM_COLOR;
+        text = colors_find(text, seen, &nearest);
         if (!text) return refuse(input, nearest);
     }
     if (text[0] != '#') return parse_numbers(input, value);

@@ -202,7 +202,11 @@ void params_destroy_section(SectionParams *params);
 // A deep copy into `to`, which must not own anything. RESULT_FAILED when memory is short.
 Result params_copy_section(SectionParams *to, const SectionParams *from, Error *error);
 
-// The row whose name is `name`, read with '-' and '_' as the same; NULL if there is none.
+// A name besides the row's own that flags and scene files may use, or NULL: --albedo is --color.
+const char *params_also(const ParamInfo *info);
+
+// The row whose name, or whose other name, is `name`, read with '-' and '_' as the same; NULL if
+// there is none.
 const ParamInfo *params_find(const char *name);
 
 // Whether the solver of this name (--algo) has the parameter.

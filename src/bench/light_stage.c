@@ -4,8 +4,22 @@
 #include "bench/scene_words.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static const char USUAL[] = "--quiet --frames 1 --exposure 0 --tone-map none -o light.pfm";
+
+// A path-traced case names what its fibres let through; scenes of an older tractrix-render call it
+// the colour.
+static void take_transmission(Scene *scene)
+{
+    const size_t color = (size_t)(params_find("color") - PARAM_TABLE);
+    for (uint32_t i = 0; i < scene->section_count; ++i) {
+        SectionParams *params = &scene->sections[i].params;
+        if (!scene->sections[i].origin[color] || !params->transmission.automatic) continue;
+        params->transmission.automatic = false;
+        memcpy(params->transmission.value, params->color, sizeof params->color);
+    }
+}
 
 Result light_stage_create(LightStage *stage, const Gpu *gpu, const char *file,
                           const char *const flags[3], Error *error)
@@ -16,6 +30,7 @@ Result light_stage_create(LightStage *stage, const Gpu *gpu, const char *file,
     const char *const names[] = {file, NULL};
     const char *const all[SCENE_WORDS_FLAGS] = {USUAL, flags[0], flags[1], flags[2]};
     TRY(scene_words_read(&stage->scene, &stage->words, names, all, error));
+    take_transmission(scene);
     TRY(assets_load(&stage->assets, scene, NULL, false, error));
     const Mesh *mesh = stage->assets.has_mesh ? &stage->assets.mesh : NULL;
     outline_frame(&stage->framing, scene, stage->assets.strands, mesh);

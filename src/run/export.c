@@ -52,10 +52,12 @@ static Result look_at_section(SceneLook *look, const Section *section, const Str
                               size_t first, Error *error)
 {
     Paint paint;
-    Result result = paint_create(&paint, strands, &section->params, error);
+    SectionParams seen = section->params; // owns nothing
+    seen.shading = SHADING_KAJIYA;        // colours as one sees them, as files have them
+    Result result = paint_create(&paint, strands, &seen, error);
     if (result != RESULT_OK) return error_prefix(error, result, "%s: ", section->file);
-    set_widths(look->width + first, strands, &section->params, &paint);
-    set_colors(look->color + first, strands, &section->params, &paint);
+    set_widths(look->width + first, strands, &seen, &paint);
+    set_colors(look->color + first, strands, &seen, &paint);
     paint_destroy(&paint);
     return RESULT_OK;
 }

@@ -11,12 +11,14 @@
 
 enum { SIDE = 256 }; // px of the meter's image, at most
 
+// What the meter draws: the light, and what of it is hair.
+enum { LIGHT, HAIR, DRAWINGS };
+
 typedef struct Meter {
-    Scene scene; // borrows all that the scene owns
+    Scene scene[DRAWINGS]; // own their sections, borrow all else
     GpuTimer timer;
     Simulation simulation;
-    Images images;
-    Image image;
+    Image image[DRAWINGS];
 } Meter;
 
 bool exposure_is_wanted(const Scene *scene)
@@ -26,9 +28,47 @@ bool exposure_is_wanted(const Scene *scene)
            !scene_draws_floats(run);
 }
 
+// A grey card in the hair's place: nothing that makes one hair's colour another's. The section
+// borrows all but its tracks.
+static Result make_grey(Section *grey, const Section *section, Error *error)
+{
+    static char none[] = "";
+    SectionParams *params = &grey->params;
+    *grey = *section;
+    grey->tracks = (SectionTracks){0};
+    params->color_map = none;
+    params->file_colors = false;
+    params->transmission = (AutoVec3){.automatic = true};
+    params->melanin = (AutoFloat){.automatic = true};
+    params->tip_length = 0;
+    for (int k = 0; k < 3; ++k) params->color[k] = (float)image_srgb_from_linear(METER_GREY);
+    TRY(section_tracks_copy(&grey->tracks, &section->tracks, error));
+    static const char *const VARIED[] = {"color", "transmission", "melanin", "tip_length"};
+    for (size_t i = 0; i < sizeof VARIED / sizeof *VARIED; ++i)
+        section_tracks_drop(&grey->tracks, params_find(VARIED[i]));
+    return RESULT_OK;
+}
+
+static Result make_all_grey(Scene *small, const Scene *scene, Error *error)
+{
+    small->sections = calloc((size_t)scene->section_count + 1, sizeof *small->sections);
+    if (!small->sections) return error_set(error, RESULT_FAILED, "no memory for the exposure");
+    Result result = RESULT_OK;
+    for (uint32_t i = 0; i < scene->section_count; ++i)
+        THEN(result, make_grey(&small->sections[i], &scene->sections[i], error));
+    return result;
+}
+
+static void destroy_grey(Scene *small)
+{
+    for (uint32_t i = 0; small->sections && i < small->section_count; ++i)
+        section_tracks_destroy(&small->sections[i].tracks);
+    free(small->sections);
+}
+
 // The scene as the meter draws it: small, before nothing, light as it is, by the one rasteriser
-// that sorts everything, so that both have the same exposure; hair stays as it is put.
-static Scene meter_scene(const Scene *scene)
+// that sorts everything, so that all have the same exposure; hair stays as it is put.
+static Scene meter_scene(const Scene *scene, Aov aov)
 {
     static char hair[] = "put", light[] = "light.pfm";
     Scene small = *scene;
@@ -39,6 +79,7 @@ static Scene meter_scene(const Scene *scene)
         if (run->size[k] < 1) run->size[k] = 1;
     }
     memset(run->background, 0, sizeof run->background);
+    run->aov = aov;
     run->exposure = (AutoFloat){0};
     run->tone_map = TONE_NONE;
     run->samples = 1;
@@ -50,6 +91,7 @@ static Scene meter_scene(const Scene *scene)
     run->from_cache = hair;
     run->output = light;
     run->quiet = true;
+    small.sections = NULL;
     return small;
 }
 
@@ -85,31 +127,40 @@ static Result put_hair(Simulation *simulation, Error *error)
     return result;
 }
 
-static Result read_meter(Meter *meter, float *exposure, const Framing *framing, Error *error)
+static Result draw(Meter *meter, int which, const Assets *assets, const Framing *framing,
+                   const Gpu *gpu, Error *error)
 {
-    const RendererOptions *options = &meter->images.renderer.options;
+    const Scene *scene = &meter->scene[which];
+    Image *image = &meter->image[which];
+    Images images;
     View view;
-    TRY(image_create_kind(&meter->image, options->width, options->height,
-                          renderer_channels(&meter->images.renderer), options->kind, error));
-    camera_view(&view, &meter->scene, framing, 0);
-    TRY(images_draw(&meter->images, 0, &view, &meter->image, error));
-    return meter_exposure(exposure, &meter->image, error);
+    camera_view(&view, scene, framing, 0);
+    Result result =
+        images_open(&images, scene, assets, &meter->simulation, framing, gpu, &meter->timer, error);
+    const RendererOptions *options = &images.renderer.options;
+    THEN(result,
+         image_create_kind(image, options->width, options->height, 4, options->kind, error));
+    THEN(result, images_draw(&images, 0, &view, image, error));
+    images_destroy(&images);
+    return result;
 }
 
 Result exposure_find(float *exposure, const Scene *scene, const Assets *assets,
                      const Framing *framing, const Gpu *gpu, Error *error)
 {
-    Meter meter = {.scene = meter_scene(scene)};
+    Meter meter = {.scene = {meter_scene(scene, AOV_NONE), meter_scene(scene, AOV_COVERAGE)}};
     gpu_timer_create(&meter.timer, false, gpu->software);
-    Result result = simulation_create(&meter.simulation, gpu, &meter.timer, &meter.scene,
-                                      assets->strands, &assets->mesh, error);
+    Result result = make_all_grey(&meter.scene[LIGHT], scene, error);
+    THEN(result, make_all_grey(&meter.scene[HAIR], scene, error));
+    THEN(result, simulation_create(&meter.simulation, gpu, &meter.timer, &meter.scene[LIGHT],
+                                   assets->strands, &assets->mesh, error));
     THEN(result, put_hair(&meter.simulation, error));
-    THEN(result, images_open(&meter.images, &meter.scene, assets, &meter.simulation, framing, gpu,
-                             &meter.timer, error));
-    THEN(result, read_meter(&meter, exposure, framing, error));
-    image_destroy(&meter.image);
-    images_destroy(&meter.images);
+    for (int i = 0; i < DRAWINGS; ++i) THEN(result, draw(&meter, i, assets, framing, gpu, error));
+    THEN(result, meter_exposure(exposure, &meter.image[LIGHT], &meter.image[HAIR],
+                                (Tone)scene->run.tone_map, error));
+    for (int i = 0; i < DRAWINGS; ++i) image_destroy(&meter.image[i]);
     if (meter.simulation.scene) simulation_destroy(&meter.simulation);
     gpu_timer_destroy(&meter.timer);
+    for (int i = 0; i < DRAWINGS; ++i) destroy_grey(&meter.scene[i]);
     return result;
 }

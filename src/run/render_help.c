@@ -27,7 +27,7 @@ static const char *const NOTES[] = {
 // What --help alone lists.
 static const char *const BRIEF[] = {"mesh",   "fps",     "output",     "size",      "first",
                                     "cache",  "quiet",   "algo",       "style",     "followers",
-                                    "frames", "wind",    "colliders",  "turntable", "albedo",
+                                    "frames", "wind",    "colliders",  "turntable", "color",
                                     "look",   "quality", "background", NULL};
 
 static const struct {
@@ -203,9 +203,18 @@ static bool is_of(const char *topic, size_t option)
 // Strings of the rows that are made here.
 typedef struct Texts {
     char help[SCENE_PARAMS][TEXT_SIZE], heading[SCENE_PARAMS][80], solvers[2][TEXT_SIZE];
+    char colors_text[COLOR_NAME_COUNT][32];
     Option options[SCENE_PARAMS];
     const char *headings[SCENE_PARAMS], *topics[MOST_TOPICS][2], *colors[COLOR_NAME_COUNT + 1][3];
 } Texts;
+
+// What the name means, and of hair where that is not the same.
+static void write_color(const char *entry[3], char meaning[32], const ColorName *color)
+{
+    snprintf(meaning, 32, color->css && color->hair ? "%s, of hair %s" : "%s",
+             color->css ? color->css : color->hair, color->hair);
+    entry[0] = color->name, entry[1] = meaning, entry[2] = "";
+}
 
 static void make_texts(Texts *texts)
 {
@@ -223,8 +232,7 @@ static void make_texts(Texts *texts)
         if (strcmp(info->name, "variant") == 0) texts->options[i].value = texts->solvers[1];
     }
     for (size_t i = 0; i < COLOR_NAME_COUNT; ++i)
-        memcpy(texts->colors[i], (const char *[]){COLOR_NAMES[i].name, COLOR_NAMES[i].value, ""},
-               sizeof texts->colors[i]);
+        write_color(texts->colors[i], texts->colors_text[i], &COLOR_NAMES[i]);
     for (; count < sizeof GROUP_TOPICS / sizeof *GROUP_TOPICS; ++count)
         memcpy(texts->topics[count], GROUP_TOPICS[count].topic, sizeof texts->topics[count]);
     memcpy(texts->topics[count++], SCHEMA_TOPIC, sizeof SCHEMA_TOPIC);
@@ -253,9 +261,8 @@ Result render_help(const char *topic, FILE *stream, Error *error)
     const OptionsChapter colors = {
         .topic = "colors",
         .title = "Colors",
-        .text =
-            "Options and keys that take a color also take these names, in sRGB: the basic colors "
-            "of CSS, and colors of hair.",
+        .text = "Options and keys that take a color also take these names, in sRGB: the colors "
+                "of CSS, and what a head of hair shows, where that is asked for.",
         .entries = (const char *const(*)[3])texts->colors,
     };
     const OptionsProgram program = {

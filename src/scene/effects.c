@@ -48,8 +48,8 @@ CONDITION(is_marschner, section->shading == SHADING_MARSCHNER)
 CONDITION(is_kajiya, section->shading == SHADING_KAJIYA)
 CONDITION(has_tips, section->tip_length > 0)
 CONDITION(has_pigment, !section->melanin.automatic)
-CONDITION(shows_color, section->albedo.automatic && section->melanin.automatic)
-CONDITION(shows_albedo, section->melanin.automatic)
+CONDITION(shows_color, section->transmission.automatic && section->melanin.automatic)
+CONDITION(shows_transmission, section->melanin.automatic)
 CONDITION(scatters, scene->run.shadow == SHADOW_DOM)
 CONDITION(has_grid, scene->run.scatter != SCATTER_NONE)
 CONDITION(has_style, section->style > 0)
@@ -86,8 +86,8 @@ static const struct {
      "only --shading marschner uses it"},
     {"specular1 exponent1 specular2 exponent2", is_kajiya, "only --shading kajiya uses it"},
     {"ambient diffuse", is_kajiya, "only --shading kajiya uses it"},
-    {"color", shows_color, "--albedo or --melanin is given"},
-    {"albedo", shows_albedo, "--melanin is given"},
+    {"color", shows_color, "--transmission or --melanin is given"},
+    {"transmission", shows_transmission, "--melanin is given"},
     {"scatter scatter_cells scatter_orders scatter_strands", scatters, "--shadow is not dom"},
     {"scatter_cells scatter_orders scatter_strands", has_grid, "--scatter is none"},
     {"tip_color", has_tips, "--tip-length is 0"},

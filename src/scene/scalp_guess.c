@@ -52,8 +52,7 @@ static Result add_colliders(Colliders *colliders, const ScalpFit *fit, Error *er
 static void darken(Scene *scene)
 {
     const SectionParams *params = &scene->sections[0].params;
-    const float *seen = params->albedo.automatic ? params->color : params->albedo.value;
-    for (int k = 0; k < 3; ++k) scene->run.mesh_color[k] = DARKER * seen[k];
+    for (int k = 0; k < 3; ++k) scene->run.mesh_color[k] = DARKER * params->color[k];
     scene->run.mesh_shading = MESH_MATT;
 }
 

@@ -267,14 +267,15 @@ Result scene_check(const Scene *scene, Error *error)
 
 void scene_settle_colors(Scene *scene)
 {
-    size_t albedo = (size_t)(params_find("albedo") - PARAM_TABLE),
-           color = (size_t)(params_find("color") - PARAM_TABLE),
+    size_t color = (size_t)(params_find("color") - PARAM_TABLE),
+           transmission = (size_t)(params_find("transmission") - PARAM_TABLE),
            melanin = (size_t)(params_find("melanin") - PARAM_TABLE);
     for (uint32_t i = 0; i < scene->section_count; ++i) {
         Section *section = &scene->sections[i];
-        uint8_t said = section->origin[albedo];
-        if (section->origin[color] > said || section->origin[melanin] > said)
-            section->params.albedo = (AutoVec3){.automatic = true};
+        uint8_t said = section->origin[color], crossed = section->origin[transmission];
+        if (said > crossed) section->params.transmission = (AutoVec3){.automatic = true};
+        if (said > section->origin[melanin] || crossed > section->origin[melanin])
+            section->params.melanin = (AutoFloat){.automatic = true};
     }
 }
 
@@ -289,7 +290,7 @@ static const struct {
     {"look", "plain", "follow", "offset"},
     {"look", "plain", "shading", "kajiya"},
     {"look", "plain", "roughness", "8"},
-    {"look", "plain", "albedo", "auto"},
+    {"look", "plain", "color", "#6b4a36"},
     {"look", "plain", "scatter", "none"},
     {"look", "plain", "opacity", "0.6"},
     {"look", "plain", "color_variation", "0.35"},

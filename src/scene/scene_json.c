@@ -42,11 +42,14 @@ typedef struct Document {
 // array. The top level may have parameters of either scope, sections only their own.
 static const char **list_keys(bool top)
 {
-    const char **names = calloc(PARAM_COUNT + PART_COUNT + 3, sizeof names[0]);
+    const char **names = calloc(2 * PARAM_COUNT + PART_COUNT + 3, sizeof names[0]);
     size_t count = 0;
     if (!names) return NULL;
     for (size_t i = 0; i < PARAM_COUNT; i++) {
-        if (top || PARAM_TABLE[i].scope == SCOPE_SECTION) names[count++] = PARAM_TABLE[i].name;
+        const ParamInfo *info = &PARAM_TABLE[i];
+        if (!top && info->scope != SCOPE_SECTION) continue;
+        names[count++] = info->name;
+        if (params_also(info)) names[count++] = params_also(info);
     }
     for (size_t i = 0; top && i < PART_COUNT; i++) names[count++] = PARTS[i].key;
     names[count++] = top ? "sections" : "file";
@@ -90,12 +93,14 @@ static Result read_params(const Document *document, const Sink *sink, Origin ori
 {
     for (size_t i = 0; i < PARAM_COUNT; i++) {
         const ParamInfo *info = &PARAM_TABLE[i];
-        const json_t *value = json_object_get(object, info->name);
+        const char *key = info->name;
+        if (params_also(info) && !json_object_get(object, key)) key = params_also(info);
+        const json_t *value = json_object_get(object, key);
         bool keys = json_is_object(value) && is_force(info->name);
         bool list = json_is_array(value) && strcmp(info->name, "colliders") == 0;
         if (info->scope != sink->scope || !value) continue;
         sink->origin[i] = (uint8_t)origin;
-        JsonPlace place = {.parent = parent, .key = info->name};
+        JsonPlace place = {.parent = parent, .key = key};
         if (sink->tracks && json_is_object(value)) {
             TRY(section_keys_read(sink->tracks, sink->params, info, &place, value, error));
             continue;

@@ -425,6 +425,13 @@ static json_t *rule_of(const SchemaSolver *solver)
                      finish(properties, good));
 }
 
+// By all its names.
+static void put_param(json_t *properties, const ParamInfo *info, bool *good)
+{
+    put(properties, info->name, reference(info->name), good);
+    if (params_also(info)) put(properties, params_also(info), reference(info->name), good);
+}
+
 static json_t *section(const SchemaSolver *solvers)
 {
     json_t *properties = json_object(), *rules = json_array();
@@ -434,8 +441,7 @@ static json_t *section(const SchemaSolver *solvers)
                   "hair file, relative to the folder of this file"),
         &good);
     for (size_t i = 0; i < PARAM_COUNT; ++i)
-        if (PARAM_TABLE[i].scope == SCOPE_SECTION)
-            put(properties, PARAM_TABLE[i].name, reference(PARAM_TABLE[i].name), &good);
+        if (PARAM_TABLE[i].scope == SCOPE_SECTION) put_param(properties, &PARAM_TABLE[i], &good);
     for (; solvers->name; ++solvers) append(rules, rule_of(solvers), &good);
     json_t *object = closed(properties);
     put(object, "required", json_pack("[s]", "file"), &good);
@@ -494,8 +500,7 @@ static json_t *top(const char *const (*keys)[3])
         put(properties, parts[i].key, parts[i].value, &good);
     }
     for (size_t i = 0; i < PARAM_COUNT; ++i)
-        if (is_key(&PARAM_TABLE[i]))
-            put(properties, PARAM_TABLE[i].name, reference(PARAM_TABLE[i].name), &good);
+        if (is_key(&PARAM_TABLE[i])) put_param(properties, &PARAM_TABLE[i], &good);
     return finish(properties, good);
 }
 

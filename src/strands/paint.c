@@ -18,11 +18,22 @@ static void decode(const float srgb[3], float linear[3])
 
 // --- Albedo.
 
-// Chiang et al.'s measure of azimuthal roughness, 0..1 (EGSR 2016, equation 8): the one whose
-// logistic lobe has this standard deviation (rad).
-static double find_roughness(double deviation)
+// The mean light that a head of hair shows, exposed so that it is 0.19 of hair that reflects 0.19,
+// falls with the absorption sigma by a fibre's radius as
+//     DARKEST + SPAN exp(-STEEPNESS sigma^BEND):
+// between what hair that lets nothing through still reflects and what hair without pigment sends
+// back. Fitted to demo, bob, fall and curls of assets/ and to three public grooms under the
+// studio's lights (docs/look.md has how far they are apart).
+static const double DARKEST = 0.0145, SPAN = 0.315, STEEPNESS = 3.5, BEND = 0.73;
+static const double DARK_ROOM = 5e-4; // above DARKEST: black, sigma is 2.3
+static const double FITTED_AT = 12;   // degrees of azimuthal roughness
+
+// How much the root of sigma grows with darkness, at an azimuthal roughness (degrees): Chiang et
+// al. 2016 (EGSR), equation 9, where b is the measure of the logistic lobe, 0..1, that has this
+// standard deviation (equation 8).
+static double chiang_scale(double roughness)
 {
-    double scale = deviation * sqrt(3) / M_PI, low = 0, high = 1;
+    double scale = roughness * M_PI / 180 * sqrt(3) / M_PI, low = 0, high = 1;
     for (int turn = 0; turn < 50; ++turn) {
         double b = 0.5 * (low + high);
         if (0.626657069 * (0.265 * b + 1.194 * b * b + 5.372 * pow(b, 22)) < scale)
@@ -30,35 +41,39 @@ static double find_roughness(double deviation)
         else
             high = b;
     }
-    return 0.5 * (low + high);
+    double b = 0.5 * (low + high), square = b * b;
+    return 5.969 - 0.215 * b + 2.532 * square - 10.73 * square * b + 5.574 * square * square +
+           0.245 * square * square * b;
 }
 
-// Of fibres that together show the albedo C, the absorption by radius is (ln C / fit(b))^2 (Chiang
-// et al. 2016, equation 9): what a diameter lets through, exp(-2 sigma).
+// Of fibres that together show the colour, what a diameter lets through, exp(-2 sigma). A colour
+// that is brighter than hair can be keeps its hue.
 static void absorb(const SectionParams *params, float linear[3])
 {
-    const double least = 1e-4; // black
-    double b = find_roughness((double)params->azimuthal_roughness * M_PI / 180), square = b * b,
-           fit = 5.969 - 0.215 * b + 2.532 * square - 10.73 * square * b + 5.574 * square * square +
-                 0.245 * square * square * b;
+    double wider =
+        pow(chiang_scale(FITTED_AT) / chiang_scale((double)params->azimuthal_roughness), 2);
+    double brightest = fmax((double)linear[0], fmax((double)linear[1], (double)linear[2])),
+           less = fmin(1, (DARKEST + SPAN) / fmax(brightest, DARKEST));
     for (int k = 0; k < 3; ++k) {
-        double root = log(fmin(fmax((double)linear[k], least), 1)) / fit;
-        linear[k] = (float)exp(-2 * root * root);
+        double shown = fmax(less * (double)linear[k] - DARKEST, DARK_ROOM),
+               sigma = pow(fmax(log(SPAN / shown), 0) / STEEPNESS, 1 / BEND);
+        linear[k] = (float)exp(-2 * wider * sigma);
     }
 }
 
-// Whether colours are those of a whole head of hair, and fibres' own must be found.
-static bool is_albedo(const SectionParams *params)
+// A colour as one sees it, as the shading has it: of kajiya what one sees, of marschner what a
+// fibre's diameter lets through.
+static void take_seen(const SectionParams *params, float linear[3])
 {
-    return !params->albedo.automatic && params->melanin.automatic &&
-           params->shading == SHADING_MARSCHNER;
+    if (params->shading == SHADING_MARSCHNER) absorb(params, linear);
 }
 
 void paint_color(const SectionParams *params, float linear[3])
 {
     double red = (double)params->melanin_redness, amount = (double)params->melanin.value;
-    decode(params->albedo.automatic ? params->color : params->albedo.value, linear);
-    if (is_albedo(params)) absorb(params, linear);
+    bool seen = params->transmission.automatic;
+    decode(seen ? params->color : params->transmission.value, linear);
+    if (seen) take_seen(params, linear);
     for (int k = 0; k < 3 && !params->melanin.automatic; ++k)
         linear[k] = (float)exp(-2 * amount * ((1 - red) * EUMELANIN[k] + red * PHEOMELANIN[k]));
 }
@@ -113,9 +128,9 @@ static void paint_by_file(Paint *paint, const Strands *strands)
         for (int k = 0; k < 3; ++k) paint->color[v][k] = clamp_share(strands->color[v][k]);
 }
 
-static void absorb_all(Paint *paint, const SectionParams *params)
+static void take_all_seen(Paint *paint, const SectionParams *params)
 {
-    for (uint32_t v = 0; v < paint->vertex_count; ++v) absorb(params, paint->color[v]);
+    for (uint32_t v = 0; v < paint->vertex_count; ++v) take_seen(params, paint->color[v]);
 }
 
 static void paint_evenly(Paint *paint, const float color[3])
@@ -139,7 +154,7 @@ static void paint_strand(Paint *paint, const Strands *strands, const SectionPara
     double opacity = 0;
     float tip[3];
     decode(params->tip_color, tip);
-    if (is_albedo(params)) absorb(params, tip);
+    take_seen(params, tip);
     for (uint32_t v = first; from_file && v < first + n; ++v)
         opacity += (double)clamp_share(strands->color[v][3]) / n;
     for (uint32_t j = 0; j < n; ++j) {
@@ -201,7 +216,7 @@ Result paint_create(Paint *paint, const Strands *strands, const SectionParams *p
     else
         paint_evenly(paint, own);
     bool seen = *params->color_map || paint->colors_from_file;
-    if (result == RESULT_OK && seen && is_albedo(params)) absorb_all(paint, params);
+    if (result == RESULT_OK && seen) take_all_seen(paint, params);
     for (uint32_t s = 0; result == RESULT_OK && s < strands->strand_count; ++s)
         paint_strand(paint, strands, params, s);
     if (result == RESULT_OK) set_thickness(paint, strands, params);

@@ -17,7 +17,7 @@ typedef struct Paint {
 // Paints the strands as the parameters say:
 //   color       that of color_map at the strand's root (bilinear; u to the right, v up from the
 //               lowest row, both wrap around), else the file's with file_colors, else paint_color
-//   albedo      where the section has one, colours of maps, files and tips are such, too
+//               (colours of maps, files and tips are such as one sees, as params->color is)
 //   tip         from 1 - tip_length of the way along (by vertices) colours run to tip_color
 //   opacity     the file's with file_colors, its mean over the strand
 //   thickness   the file's with file_thickness over its mean of all vertices; where it is by
@@ -30,10 +30,9 @@ Result paint_create(Paint *paint, const Strands *strands, const SectionParams *p
 void paint_destroy(Paint *paint);
 
 // The section's colour, linear RGB: what of white light that crosses a fibre along its diameter is
-// left. That is `color`; or what `melanin` leaves, exp(-2 sigma), sigma the absorption by radius of
-// so much eumelanin and pheomelanin (d'Eon et al. 2011); or that of fibres which together have the
-// colour `albedo` (Chiang et al. 2016). With kajiya, whose colour is what one sees, `albedo`
-// itself.
+// left. That is what `melanin` leaves, exp(-2 sigma), sigma the absorption by radius of so much
+// eumelanin and pheomelanin (d'Eon et al. 2011); else `transmission`; else that of fibres which
+// together show `color` (paint.c). With kajiya, whose colour is what one sees, `color` itself.
 void paint_color(const SectionParams *params, float linear[3]);
 
 // Fibre radius at the root, metres, > 0, for drawing these strands with this many followers each.

@@ -52,7 +52,7 @@ static SectionParams make_fibre(float color)
     SectionParams params;
     plain_section(&params);
     params.diffuse = 0;
-    for (int k = 0; k < 3; ++k) params.color[k] = color;
+    params.transmission = (AutoVec3){.value = {color, color, color}};
     return params;
 }
 

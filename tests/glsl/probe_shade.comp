@@ -35,7 +35,6 @@ void main()
     lit_from = directions[2 * i].xyz;
     vec3 to_eye = directions[2 * i + 1].xyz;
     Painter painter = paint_strand(0u, 2);
-    vec3 color =
-        shade_fibre(fibre_material(painter), painter.tint, 0, vec3(0.0), vec3(0, 1, 0), to_eye);
+    vec3 color = shade_fibre(fibre_material(), painter.tint, 0, vec3(0.0), vec3(0, 1, 0), to_eye);
     colors[i] = vec4(color, 1.0);
 }

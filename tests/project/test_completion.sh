@@ -70,7 +70,7 @@ for shell in zsh fish; do command -v $shell >/dev/null || skip "no $shell"; done
 
 claim "options"
 offers "tractrix-render --turn" --turn-lights --turntable
-offers "tractrix-render --alb" --albedo
+offers "tractrix-render --transm" --transmission
 offers "tractrix-compare --max-f" --max-failing-pixels --max-flip
 offers "tractrix-bench --warm" --warm-up
 

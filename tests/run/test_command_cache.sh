@@ -129,10 +129,10 @@ for name in f_%d.png f_%d.exr f_%d.pfm f_%d.tfx; do
     go "2 of 2 frames are there" --frames 2 --stats "$work/again.json" --verbose
     go "1 of 1 frames are there" --frames 2 --first 1 --part 1/2
     go "2 of 3 frames are there" --frames 3
-    go "3 existing files will be written again: $first: other parameters or other files" --frames 3 --color red --albedo auto
-    go "3 of 3 frames are there" --frames 3 --color red --albedo auto
+    go "3 existing files will be written again: $first: other parameters or other files" --frames 3 --color red
+    go "3 of 3 frames are there" --frames 3 --color red
     cp assets/fall.tfx "$work/own.tfx"
-    go "3 existing files will be written again" --frames 3 --color red --albedo auto
+    go "3 existing files will be written again" --frames 3 --color red
     cp $hair "$work/own.tfx"
     go "3 existing files will be written again" --frames 3
     equal "$first" "$work/first"
@@ -144,7 +144,7 @@ for name in f_%d.png f_%d.exr f_%d.pfm f_%d.tfx; do
     cp "$second" "$work/second"
     head -c 300 "$work/first" >"$second"
     go "1 existing file will be written again: $second:" --frames 3; says "2 of 3 frames are there"; equal "$second" "$work/second"
-    go "1 existing file will be written again: $second: other parameters or other files" --first 1 --last 1 --frames 3 --color red --albedo auto
+    go "1 existing file will be written again: $second: other parameters or other files" --first 1 --last 1 --frames 3 --color red
     go "1 existing file will be written again: $second: other parameters or other files" --frames 3; equal "$second" "$work/second"
     go "3 of 3 frames are there" --frames 3
 done

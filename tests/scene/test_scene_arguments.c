@@ -95,12 +95,6 @@ static bool is_said(const ParamInfo *info, const char *line)
     return strstr(line, flag) || strcmp(info->name, "output") == 0;
 }
 
-// --albedo to these, if it is a default.
-static bool gives_way(const ParamInfo *info)
-{
-    return strcmp(info->name, "color") == 0 || strncmp(info->name, "melanin", 7) == 0;
-}
-
 static void every_row_is_set_by_its_flag_and_by_nothing_else(void **state)
 {
     (void)state;
@@ -122,7 +116,6 @@ static void every_row_is_set_by_its_flag_and_by_nothing_else(void **state)
             assert_read(&scene, line);
             for (size_t j = 0; j < PARAM_COUNT; j++) {
                 const ParamInfo *other = &PARAM_TABLE[j];
-                if (strcmp(other->name, "albedo") == 0 && gives_way(info)) continue;
                 if (j == i || !is_said(other, said))
                     assert_prints(&scene, other, j == i ? value : other->default_text);
             }

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+// Hair in light shows the colour that --color asks for, and all colours of a groom have one
+// exposure.
+#include "image/png.h"
+#include "support/temporary.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static const char HEAD[] = "--mesh assets/head.obj", BALL[] = "--mesh assets/ball.obj";
+
+// Runs tractrix-render; the image is DIR/NAME.png, what it says DIR/NAME.txt.
+static void render(void **state, const char *groom, const char *mesh, const char *more,
+                   const char *name)
+{
+    char line[1500];
+    const char *programs = getenv("TRACTRIX_BIN"), *folder = temporary_path(state, "");
+    snprintf(line, sizeof line,
+             "%s/tractrix-render assets/%s.tfx %s --algo none --size 96x72 %s -o '%s/%s.png' "
+             "2>'%s/%s.txt'",
+             programs ? programs : "out/release", groom, mesh, more, folder, name, folder, name);
+    assert_int_equal(system(line), 0);
+}
+
+static void read_image(void **state, const char *name, Image *image)
+{
+    Error error;
+    char file[64];
+    snprintf(file, sizeof file, "%s.png", name);
+    assert_int_equal(png_read(image, temporary_path(state, file), &error), RESULT_OK);
+}
+
+// The mean light of pixels that hair covers by nine tenths and more, as sRGB levels.
+static void find_mean(void **state, double mean[3])
+{
+    Image image, cover;
+    int count = 0;
+    read_image(state, "light", &image);
+    read_image(state, "cover", &cover);
+    memset(mean, 0, 3 * sizeof *mean);
+    for (int i = 0; i < image.width * image.height; ++i) {
+        if (cover.pixels[i * cover.channels] < 230) continue;
+        ++count;
+        for (int k = 0; k < 3; ++k)
+            mean[k] += image_linear_from_srgb(image.pixels[i * image.channels + k] / 255.0);
+    }
+    assert_true(count > 300);
+    for (int k = 0; k < 3; ++k) mean[k] = 255 * image_srgb_from_linear(mean[k] / count);
+    image_destroy(&image);
+    image_destroy(&cover);
+}
+
+// The colours of base/colors.c, written out: names and numbers are the same.
+static void a_lit_groom_has_its_colour_on_average(void **state)
+{
+    static const struct {
+        const char *groom, *mesh, *color;
+        int level[3];
+    } cases[] = {
+        {"demo", HEAD, "black", {0x26, 0x22, 0x20}},
+        {"demo", HEAD, "dark-brown", {0x3b, 0x2a, 0x21}},
+        {"demo", HEAD, "'#693527'", {0x69, 0x35, 0x27}},
+        {"demo", HEAD, "white", {0x9c, 0x9a, 0x96}},
+        {"bob", HEAD, "red", {0x82, 0x3f, 0x27}},
+        {"bob", HEAD, "blond", {0x9c, 0x84, 0x5c}},
+        {"fall", HEAD, "'#5e3f2b'", {0x5e, 0x3f, 0x2b}},
+        {"curls", HEAD, "ginger", {0x9a, 0x58, 0x33}},
+        {"curls", HEAD, "dark-blond", {0x8a, 0x71, 0x50}},
+        {"fur", BALL, "grey", {0x7c, 0x79, 0x74}},
+    };
+    const char *last = "";
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        char flag[64];
+        double mean[3];
+        snprintf(flag, sizeof flag, "--color %s", cases[i].color);
+        render(state, cases[i].groom, cases[i].mesh, flag, "light");
+        if (strcmp(cases[i].groom, last) != 0)
+            render(state, cases[i].groom, cases[i].mesh, "--aov coverage", "cover");
+        last = cases[i].groom;
+        find_mean(state, mean);
+        for (int k = 0; k < 3; ++k)
+            if (fabs(mean[k] / cases[i].level[k] - 1) > 0.15)
+                fail_msg("%s %s: a mean of %.1f, %.1f, %.1f", cases[i].groom, cases[i].color,
+                         mean[0], mean[1], mean[2]);
+    }
+}
+
+static void read_text(void **state, const char *name, char text[400])
+{
+    FILE *file = fopen(temporary_path(state, name), "r");
+    assert_non_null(file);
+    while (fgets(text, 400, file) && strncmp(text, "exposure:", 9) != 0) {
+    }
+    fclose(file);
+    assert_memory_equal(text, "exposure:", 9);
+}
+
+// Whatever says the colour.
+static void all_colours_have_one_exposure(void **state)
+{
+    static const char *const said[] = {"--color black",
+                                       "--color white",
+                                       "--albedo blond",
+                                       "--melanin 8",
+                                       "--transmission '#ff8000'",
+                                       "--tip-length 1 --tip-color white"};
+    char first[400], text[400];
+    for (size_t i = 0; i < sizeof said / sizeof *said; ++i) {
+        render(state, "curls", HEAD, said[i], "one");
+        read_text(state, "one.txt", i ? text : first);
+        if (i) assert_string_equal(text, first);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(a_lit_groom_has_its_colour_on_average, temporary_create,
+                                        temporary_destroy),
+        cmocka_unit_test_setup_teardown(all_colours_have_one_exposure, temporary_create,
+                                        temporary_destroy),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
