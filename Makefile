@@ -5,12 +5,14 @@
 #   OUT     where everything goes, out/$(CONFIG)
 #   WERROR  not empty: warnings are errors              ONLY    `make test`: only tests with this in their name
 #   V       not empty: show whole commands
-#   CC, CPPFLAGS, CFLAGS, LDFLAGS, LDLIBS, PREFIX and DESTDIR as usual; the flags are added to the project's own.
+#   CC, CPPFLAGS, CFLAGS, LDFLAGS, LDLIBS, PREFIX, LIBDIR and DESTDIR as usual; the flags are added to the project's own.
 
 VERSION := 0.1.0
 CONFIG  ?= release
 OUT     := out/$(CONFIG)
 PREFIX  ?= /usr/local
+LIBDIR  ?= $(PREFIX)/lib
+OBJCOPY ?= objcopy
 ifeq ($(origin CC),default)
 CC := gcc
 endif
@@ -51,8 +53,9 @@ LINKER_threads    := $(LINKER_sanitize)
 WARNINGS  := -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wvla $(if $(WERROR),-Werror)
 # Library headers are not ours to mend: -isystem keeps their warnings out.
 INCLUDES  := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(LIBRARIES) $(HEADERS) 2>/dev/null))
+# -fPIC, hidden: the same objects make programs and the library, which shows what tractrix.h declares.
 # -ffp-contract=off: the same bits whether or not the compiler may use fused multiply-adds.
-C_FLAGS   := -std=c11 -D_GNU_SOURCE -I. -Isrc -Iglsl -I$(OUT) $(INCLUDES) $(WARNINGS) -ffp-contract=off -pthread \
+C_FLAGS   := -std=c11 -D_GNU_SOURCE -I. -Isrc -Iglsl -I$(OUT) $(INCLUDES) $(WARNINGS) -ffp-contract=off -pthread -fPIC -fvisibility=hidden \
              $(OPTIMISE_$(CONFIG)) $(SANITIZE_$(CONFIG)) $(CPPFLAGS) $(CFLAGS)
 LD_FLAGS  := -pthread -Wl,--as-needed $(SANITIZE_$(CONFIG)) $(LINKER_$(CONFIG)) $(LDFLAGS)
 LD_LIBS   := $(shell pkg-config --libs $(LIBRARIES) 2>/dev/null) $(filter -L% -lOpenEXRCore%,$(shell pkg-config --libs OpenEXR 2>/dev/null)) -ldl -lm $(LDLIBS)
@@ -86,7 +89,7 @@ FAULTY    := $(PROGRAMS:$(OUT)/%=$(OUT)/faults/%)
 FAULT_CALLS := $(shell sed -nEf tests/faults/wrapped.sed tests/faults/calls.def)
 TORTURE   := $(OUT)/tests/faults/torture
 TORTURE_OBJECTS := $(patsubst %.c,$(OUT)/%.o,$(filter-out tests/faults/inject.c,$(wildcard tests/faults/*.c)))
-FOLDERS   := $(sort $(dir $(OBJECTS) $(SUPPORT_OBJECTS) $(FUZZ_OBJECTS) $(TEST_PROGRAMS) $(FAULTY) $(TORTURE)))
+FOLDERS   := $(sort $(OUT)/lib/ $(OUT)/lib/pkgconfig/ $(dir $(OBJECTS) $(SUPPORT_OBJECTS) $(FUZZ_OBJECTS) $(TEST_PROGRAMS) $(FAULTY) $(TORTURE)))
 
 # --- Build. Recipes that recurse use all processors unless -j says otherwise.
 JOBS = $(if $(filter -j% --jobserver%,$(MAKEFLAGS)),,-j$(shell nproc))
@@ -96,7 +99,7 @@ AGAIN = @$(MAKE) --no-print-directory
 SILENT := $(findstring s,$(firstword -$(MAKEFLAGS)))
 run = $(if $(V),$(2),@$(if $(SILENT),,printf '  %-6s %s\n' $(1) $@; )$(2))
 
-all: $(OUT)/libtractrix.a $(PROGRAMS) $(SCRIPTS) ## the programs (default)
+all: $(OUT)/libtractrix.a $(PROGRAMS) $(SCRIPTS) library ## the programs and the library (default)
 tests: $(TEST_PROGRAMS) $(FAULTY) $(TORTURE)
 	@:
 
@@ -124,6 +127,26 @@ $(OUT)/glsl_sources.o $(OUT)/bench/bench_glsl.o $(OUT)/tests/glsl_sources.o $(OU
 	$(call run,CC,$(CC) $(C_FLAGS) -Wno-overlength-strings -MMD -MP -c -o $@ $<)
 $(OUT)/libtractrix.a: $(OBJECTS) $(OUT)/files
 	$(call run,AR,rm -f $@ && $(AR) qcs $@ $(OBJECTS))
+# The library for other programs (tractrix.h), of what its room takes of the archive above. The static one is a single
+# object in which nothing but the API has a name that a host's could meet.
+LIBRARY_OBJECTS := $(filter $(OUT)/library/%,$(OBJECTS))
+LIBRARY := $(addprefix $(OUT)/lib/,libtractrix.so.0 libtractrix.so libtractrix.a pkgconfig/tractrix.pc)
+SHARED  := -shared -Wl,-soname,libtractrix.so.0 -Wl,--version-script=src/library/tractrix.map -Wl,-z,nodelete
+ifeq ($(SANITIZE_$(CONFIG)),)
+SHARED  += -Wl,-z,defs
+endif
+library: $(LIBRARY) ## libtractrix.so.0, libtractrix.a and tractrix.pc
+$(OUT)/lib/libtractrix.so.0: $(LIBRARY_OBJECTS) $(OUT)/libtractrix.a src/library/tractrix.map
+	$(call run,LINK,$(CC) $(LD_FLAGS) $(SHARED) -o $@ $(LIBRARY_OBJECTS) $(OUT)/libtractrix.a $(LD_LIBS))
+$(OUT)/lib/libtractrix.so: $(OUT)/lib/libtractrix.so.0
+	$(call run,LINK,ln -sf $(<F) $@)
+$(OUT)/lib/tractrix.o: $(LIBRARY_OBJECTS) $(OUT)/libtractrix.a
+	$(call run,LINK,$(LD) -r -o $@ $^ && $(OBJCOPY) --localize-hidden $@)
+$(OUT)/lib/libtractrix.a: $(OUT)/lib/tractrix.o
+	$(call run,AR,rm -f $@ && $(AR) qcs $@ $<)
+$(OUT)/lib/pkgconfig/tractrix.pc: src/library/tractrix.pc.in $(OUT)/places
+	$(call run,MAKE,sed -e 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|; s|@LIBRARIES@|$(LIBRARIES)|' \
+	    -e 's|@LIBS@|$(filter -lOpenEXRCore%,$(LD_LIBS))|' $< >$@.tmp && mv $@.tmp $@)
 define program # MAIN: the program of src/MAIN.c, a room and its main
 $(OUT)/$(patsubst main_%,tractrix-%,$(notdir $(1))): $(OUT)/$(1).o $(KEEP_$(CONFIG)) $(OUT)/libtractrix.a
 	$$(call run,LINK,$$(CC) $$(LD_FLAGS) -o $$@ $$^ $$(LD_LIBS))
@@ -165,7 +188,7 @@ $(TORTURE): $(TORTURE_OBJECTS) $(KEEP_$(CONFIG)) $(OUT)/libtractrix.a
 	$(call run,LINK,$(CC) $(LD_FLAGS) -o $@ $^ $(LD_LIBS))
 
 # Stamps, rewritten only when what they hold changes, so that what depends on them is rebuilt just then: the flags,
-# the list of files (one may have been removed) and the version.
+# the list of files (one may have been removed), the places of what is installed, and the version.
 quote = '$(subst ','\'',$(1))'
 write_if_changed = printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || printf '%s\n' $(call quote,$(1)) >$@
 $(OUT)/flags: FORCE | $(FOLDERS)
@@ -173,6 +196,8 @@ $(OUT)/flags: FORCE | $(FOLDERS)
 	@$(call write_if_changed,$(CC) $(C_FLAGS) $(LD_FLAGS) $(LD_LIBS))
 $(OUT)/files: FORCE | $(FOLDERS)
 	@$(call write_if_changed,$(SOURCES) $(SHADERS) $(BENCH_SHADERS) $(PAGES) $(SUPPORT) $(TEST_SHADERS))
+$(OUT)/places: FORCE | $(FOLDERS)
+	@$(call write_if_changed,$(PREFIX) $(LIBDIR) $(VERSION) $(LIBRARIES) $(LD_LIBS))
 $(OUT)/version.h: FORCE | $(FOLDERS)
 	@scripts/write-version $(VERSION) $@
 $(FOLDERS):
@@ -314,6 +339,8 @@ format: ## clang-format all C and GLSL files
 
 # --- Installation.
 BIN_DIR = $(DESTDIR)$(PREFIX)/bin
+LIB_DIR = $(DESTDIR)$(LIBDIR)
+INCLUDE_DIR = $(DESTDIR)$(PREFIX)/include
 SHARE_DIR = $(DESTDIR)$(PREFIX)/share
 MAN_DIR = $(SHARE_DIR)/man/man1
 DATA_DIR = $(SHARE_DIR)/tractrix
@@ -330,9 +357,14 @@ completion_name_fish := %.fish
 completion_name_zsh := _%
 EXAMPLES := $(wildcard examples/* examples/*/* examples/*/*/*)
 
-install: all $(MANUALS) $(COMPLETIONS) ## programs, manuals, completion, docs, assets and examples under $(DESTDIR)$(PREFIX)
+install: all $(MANUALS) $(COMPLETIONS) ## programs, library, manuals, completion, docs, assets and examples under $(DESTDIR)$(PREFIX)
 	install -d $(BIN_DIR) $(MAN_DIR) $(bash_DIR) $(fish_DIR) $(zsh_DIR) $(DATA_DIR) $(DOC_DIR)/docs
 	install $(PROGRAMS) $(SCRIPTS) $(BIN_DIR)
+	install -d $(LIB_DIR)/pkgconfig $(INCLUDE_DIR)
+	install -m 644 $(OUT)/lib/libtractrix.so.0 $(OUT)/lib/libtractrix.a $(LIB_DIR)
+	ln -sf libtractrix.so.0 $(LIB_DIR)/libtractrix.so
+	install -m 644 $(OUT)/lib/pkgconfig/tractrix.pc $(LIB_DIR)/pkgconfig
+	install -m 644 src/library/tractrix.h $(INCLUDE_DIR)
 	install -m 644 scripts/blender_hair.py scripts/alembic_curves.py $(DATA_DIR)
 	install -m 644 $(MANUALS) $(MAN_DIR)
 	$(foreach file,$(COMPLETIONS),install -m 644 $(file) $(call completion_of,$(file)) &&) true
@@ -343,6 +375,7 @@ install: all $(MANUALS) $(COMPLETIONS) ## programs, manuals, completion, docs, a
 	$(foreach file,$(EXAMPLES),$(if $(wildcard $(file)/.),,install -D -m $(if $(shell test -x $(file) && echo x),755,644) $(file) $(DOC_DIR)/$(file) &&)) true
 
 uninstall: ## remove what install put there
+	rm -f $(addprefix $(LIB_DIR)/,$(LIBRARY:$(OUT)/lib/%=%)) $(INCLUDE_DIR)/tractrix.h
 	rm -f $(addprefix $(BIN_DIR)/,$(notdir $(PROGRAMS) $(SCRIPTS))) $(addprefix $(MAN_DIR)/,$(notdir $(MANUALS)))
 	rm -f $(foreach file,$(COMPLETIONS),$(call completion_of,$(file)))
 	rm -rf $(DATA_DIR) $(DOC_DIR)
@@ -356,7 +389,7 @@ help: ## this list
 	@echo; sed -n '4,8s/^#//p' $(firstword $(MAKEFILE_LIST))
 
 FORCE:
-.PHONY: deb check-deb check-container drivers all tests demo test bench bench-image stress mutate torture check $(CHECKS:%=check-%) check-threads check-analyzer check-tidy format install uninstall clean help FORCE
+.PHONY: library deb check-deb check-container drivers all tests demo test bench bench-image stress mutate torture check $(CHECKS:%=check-%) check-threads check-analyzer check-tidy format install uninstall clean help FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
 -include $(patsubst %.o,%.d,$(OBJECTS) $(MAINS:src/%.c=$(OUT)/%.o) $(TEST_PROGRAMS:%=%.o) $(SUPPORT_OBJECTS))

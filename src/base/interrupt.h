@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// SIGINT, SIGTERM and SIGHUP as a flag that loops look at, and an end for programs that do not.
+// The wish that the program ends, as a flag that loops look at. interrupt_install.h has signals set
+// it.
 #pragma once
 
 #include <stdbool.h>
 
-// From now on the first SIGINT, SIGTERM or SIGHUP (unless that is ignored, as by nohup) only sets
-// the flag, and gives all of them back their default action, so that a second one ends the program
-// at once. If the calling thread does not ask for the flag within 0.3 s, or has asked and not ended
-// 20 s later, temporary files and children are removed (leftovers.h) and the program ends with
-// status 130. SIGPIPE and SIGXFSZ are ignored: a closed pipe or a size limit is a failed write.
-void interrupt_install(void);
-
-// Whether one of them has come. False for ever if nothing is installed. Any thread may ask.
+// Whether it was asked for. False for ever if nothing asks. Any thread may call it.
 bool interrupt_requested(void);
+
+// For what asks: says which thread is to notice; asks (in a signal's handler, too); whether that
+// thread has noticed.
+void interrupt_expect(void);
+void interrupt_request(void);
+bool interrupt_noticed(void);

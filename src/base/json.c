@@ -44,10 +44,14 @@ static void release(void *block)
     if (at < first || at >= first + RESERVE_BYTES) free(block);
 }
 
-// Before main: no value may come from another allocator.
+// Before main: no value may come from another allocator. Where a program that loads this one as a
+// library has chosen its own, that stays.
 static __attribute__((constructor)) void watch_memory(void)
 {
-    json_set_alloc_funcs(allocate, release);
+    json_malloc_t allocates;
+    json_free_t releases;
+    json_get_alloc_funcs(&allocates, &releases);
+    if (allocates == malloc && releases == free) json_set_alloc_funcs(allocate, release);
 }
 
 bool json_memory_short(void)

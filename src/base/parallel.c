@@ -2,7 +2,9 @@
 #include "base/parallel.h"
 
 #include <assert.h>
-#include <pthread.h>
+#include <sched.h>
+#include <signal.h>
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <unistd.h>
 
@@ -14,19 +16,39 @@ typedef struct Share {
     bool running;
 } Share;
 
-static pthread_once_t counted = PTHREAD_ONCE_INIT;
-static int threads;
+static atomic_int threads; // 0: not counted yet
 
-static void count_threads(void)
+static int count_processors(void)
 {
-    long count = sysconf(_SC_NPROCESSORS_ONLN);
-    threads = count < 1 ? 1 : count > PARALLEL_MOST ? PARALLEL_MOST : (int)count;
+    cpu_set_t allowed;
+    long count = sched_getaffinity(0, sizeof allowed, &allowed) == 0
+                     ? CPU_COUNT(&allowed)
+                     : sysconf(_SC_NPROCESSORS_ONLN);
+    return count < 1 ? 1 : count > PARALLEL_MOST ? PARALLEL_MOST : (int)count;
 }
 
 int parallel_threads(void)
 {
-    pthread_once(&counted, count_threads);
-    return threads;
+    int count = atomic_load(&threads);
+    if (count) return count;
+    count = count_processors();
+    atomic_store(&threads, count);
+    return count;
+}
+
+void parallel_set_threads(int count)
+{
+    atomic_store(&threads, count > PARALLEL_MOST ? PARALLEL_MOST : count < 0 ? 0 : count);
+}
+
+int parallel_start(pthread_t *thread, void *(*work)(void *data), void *data)
+{
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    int reason = pthread_create(thread, NULL, work, data);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return reason;
 }
 
 static void *run(void *argument)
@@ -42,7 +64,7 @@ void parallel_run(int parts, void (*work)(void *data, int part), void *data)
     assert(parts <= PARALLEL_MOST);
     for (int i = 1; i < parts; ++i) {
         shares[i] = (Share){.work = work, .data = data, .part = i};
-        shares[i].running = pthread_create(&shares[i].thread, NULL, run, &shares[i]) == 0;
+        shares[i].running = parallel_start(&shares[i].thread, run, &shares[i]) == 0;
     }
     work(data, 0);
     for (int i = 1; i < parts; ++i) {

@@ -39,8 +39,8 @@ Result light_stage_create(LightStage *stage, const Gpu *gpu, const char *file,
     while (simulation_settle(&stage->simulation))
         if (interrupt_requested()) return error_set(error, RESULT_INTERRUPTED, "interrupted");
     simulation_pose(&stage->simulation);
-    TRY(images_open(&stage->images, scene, &stage->assets, &stage->simulation, &stage->framing, gpu,
-                    &stage->timer, error));
+    TRY(images_create(&stage->images, scene, &stage->assets, &stage->simulation, &stage->framing,
+                      &(ImagesForm){.kind = IMAGE_FLOAT}, gpu, &stage->timer, error));
     camera_view(&stage->view, scene, &stage->framing, 0);
     return image_create_kind(&stage->image, scene->run.size[0], scene->run.size[1],
                              renderer_channels(&stage->images.renderer), IMAGE_FLOAT, error);

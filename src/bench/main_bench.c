@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // tractrix-bench: accuracy of the tractrix and of solvers, speed of solvers and drawing, check of
 // all shaders.
-#include "base/interrupt.h"
+#include "base/interrupt_install.h"
 #include "base/paths.h"
 #include "base/program.h"
 #include "base/quote.h"

@@ -2,6 +2,7 @@
 // tractrix-compare: measures how much images differ, frame by frame, and compares that with limits.
 #include "base/clock.h"
 #include "base/interrupt.h"
+#include "base/interrupt_install.h"
 #include "base/options.h"
 #include "base/outfile.h"
 #include "base/paths.h"

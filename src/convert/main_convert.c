@@ -2,6 +2,7 @@
 // tractrix-convert: describes hair files, edits hair, and writes it in other formats.
 #include "base/activity.h"
 #include "base/interrupt.h"
+#include "base/interrupt_install.h"
 #include "base/json.h"
 #include "base/options.h"
 #include "base/params.h"

@@ -7,6 +7,7 @@
 #include "glsl/kernel/fibre.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -53,8 +54,8 @@ static void set_lobes(FibreLobes *lobes, const MaterialParams *material)
 bool fibre_lobes_create(FibreLobes *lobes, FibreTable table, const MaterialParams *material,
                         const float color[3])
 {
-    static uint64_t made;
-    *lobes = (FibreLobes){.serial = ++made};
+    static atomic_uint_fast64_t made;
+    *lobes = (FibreLobes){.serial = atomic_fetch_add(&made, 1) + 1};
     set_lobes(lobes, material);
     memcpy(lobes->color, color, sizeof lobes->color);
     lobes->azimuthal = malloc(3 * SHEET * sizeof *lobes->azimuthal);

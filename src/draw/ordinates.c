@@ -4,7 +4,7 @@
 #include "glsl/kernel/cell.h"
 
 #include <math.h>
-#include <stdbool.h>
+#include <pthread.h>
 
 const float ORDINATE[3][ORDINATES] = {
     {-0.722086f, -0.933447f, -0.729081f, -0.929400f, -0.934657f, -0.718108f, -0.930610f, -0.725103f,
@@ -49,7 +49,6 @@ static void make_tangent(int class)
 
 enum { SQUARES = ORDINATE_SQUARES };
 uint8_t TANGENT_NEAREST[6][SQUARES][SQUARES];
-static bool prepared;
 
 static int find_nearest(const float way[3])
 {
@@ -63,9 +62,8 @@ static int find_nearest(const float way[3])
     return best;
 }
 
-void ordinates_prepare(void)
+static void prepare(void)
 {
-    if (prepared) return;
     for (int class = 0; class < TANGENTS; ++class) make_tangent(class);
     for (int face = 0; face < 6; ++face)
         for (int j = 0; j < SQUARES; ++j)
@@ -78,7 +76,12 @@ void ordinates_prepare(void)
                 way[(face / 2 + 2) % 3] = at[1] / length;
                 TANGENT_NEAREST[face][j][i] = (uint8_t)find_nearest(way);
             }
-    prepared = true;
+}
+
+void ordinates_prepare(void)
+{
+    static pthread_once_t prepared = PTHREAD_ONCE_INIT;
+    pthread_once(&prepared, prepare);
 }
 
 int ordinates_class(const float t[3])

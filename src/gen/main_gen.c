@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // tractrix-gen: makes hair and the mesh it grows on.
 #include "base/activity.h"
-#include "base/interrupt.h"
+#include "base/interrupt_install.h"
 #include "base/paths.h"
 #include "base/program.h"
 #include "base/quote.h"

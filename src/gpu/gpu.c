@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gpu/gpu.h"
 #include "base/quote.h"
+#include "gpu/gpu_current.h"
 #include "gpu/gpu_egl.h"
 #include "gpu/gpu_osmesa.h"
 #include "gpu/gpu_uniforms.h"
@@ -151,7 +152,8 @@ static Result try_egl(Gpu *gpu, const Search *search, const GpuDevice *device, i
         snprintf(gpu->path, sizeof gpu->path, "EGL device %d", number);
     else
         snprintf(gpu->path, sizeof gpu->path, "EGL surfaceless");
-    TRY(gpu_egl_create(&gpu->egl, device ? device->egl : NULL, search->options.debug, error));
+    TRY(gpu_egl_create(&gpu->egl, device ? device->egl : NULL, search->options.debug != NULL,
+                       error));
     gpu->identity = gpu_device_identify(device);
     Result result = accept(gpu, search, number, error);
     if (result != RESULT_OK) gpu_destroy(gpu);
@@ -241,9 +243,9 @@ static void explain_choice(Gpu *gpu, const Search *search)
 static void APIENTRY print_message(GLenum source, GLenum type, GLuint id, GLenum severity,
                                    GLsizei length, const GLchar *text, const void *user)
 {
-    (void)source, (void)id, (void)length, (void)user;
+    (void)source, (void)id, (void)length;
     if (severity == GL_DEBUG_SEVERITY_NOTIFICATION || type == GL_DEBUG_TYPE_PERFORMANCE) return;
-    fprintf(stderr, "tractrix: GL: %s\n", quote(text).text);
+    fprintf((FILE *)user, "tractrix: GL: %s\n", quote(text).text);
 }
 
 static Result refuse(const Search *search, Error *error)
@@ -263,28 +265,75 @@ static Result refuse(const Search *search, Error *error)
         search->attempts.text, *sign.text ? "; " : "", sign.text);
 }
 
+static Result use_uniforms(Gpu *gpu, Error *error)
+{
+    gpu->uniforms = gpu_uniforms_create();
+    if (!gpu->uniforms) {
+        gpu_destroy(gpu);
+        return error_set(error, RESULT_FAILED, "no memory for uniform blocks");
+    }
+    gpu_uniforms_use(gpu->uniforms);
+    return RESULT_OK;
+}
+
 Result gpu_create(Gpu *gpu, const GpuOptions *options, Error *error)
 {
     *gpu = (Gpu){0};
-    gpu_uniforms_forget();
     Search search = {.options = *options};
     TRY(assumptions_read(&search.assumptions, error));
     if (try_all(gpu, &search) != RESULT_OK) return refuse(&search, error);
+    TRY(use_uniforms(gpu, error));
     explain_choice(gpu, &search);
     shader_assume_ulps(search.assumptions.ulps);
     if (options->debug) {
         glEnable(GL_DEBUG_OUTPUT);
         glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
-        glDebugMessageCallback(print_message, NULL);
+        glDebugMessageCallback(print_message, options->debug);
     }
     return RESULT_OK;
+}
+
+// libepoxy ends the program if it is called without a context.
+Result gpu_borrow(Gpu *gpu, Error *error)
+{
+    *gpu = (Gpu){0};
+    snprintf(gpu->path, sizeof gpu->path, "borrowed");
+    TRY(gpu_current_check(error));
+    gpu_error_forget();
+    TRY(read_limits(gpu, error));
+    assume(gpu, &(Assumptions){0});
+    return use_uniforms(gpu, error);
+}
+
+Result gpu_enter(const Gpu *gpu, Error *error)
+{
+    TRY(gpu_current_check(error));
+    gpu_error_forget();
+    gpu_uniforms_use(gpu->uniforms);
+    gpu_uniforms_forget();
+    shader_assume_ulps(gpu->ulps);
+    return RESULT_OK;
+}
+
+void gpu_leave(void)
+{
+    gpu_uniforms_use(NULL);
+    gpu_error_forget();
+    glDisable(GL_BLEND);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_SCISSOR_TEST);
+    glDepthMask(GL_TRUE);
+    glUseProgram(0);
+    glBindVertexArray(0);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
 void gpu_destroy(Gpu *gpu)
 {
     gpu_egl_destroy(&gpu->egl);
     gpu_osmesa_destroy(gpu->osmesa);
-    gpu_uniforms_forget();
+    gpu_uniforms_destroy(gpu->uniforms);
     *gpu = (Gpu){0};
 }
 

@@ -23,7 +23,7 @@ typedef struct GpuOptions {
     const char *device;    // as gpu_device_is has it; NULL or "": the best one
     bool software;         // only CPU drivers
     bool require_hardware; // no CPU driver
-    bool debug;            // KHR_debug context; messages go to stderr
+    FILE *debug;           // KHR_debug context, whose messages go here; NULL: an ordinary one
 } GpuOptions;
 
 // What the driver allows, and what suits it, read once after the context is made. Bytes unless said
@@ -36,8 +36,8 @@ typedef struct GpuLimits {
     GpuSizes sizes;          // by the device's kind
 } GpuLimits;
 
-// A current context. Everything else in this program calls GL only while one exists, on the thread
-// that made it.
+// A current context. Everything else calls GL only while one exists, on the thread that made it; a
+// thread has one at a time.
 typedef struct Gpu {
     GpuLimits limits;
     bool software;       // a CPU driver, judged by GL_RENDERER
@@ -52,8 +52,9 @@ typedef struct Gpu {
     Error passed_over; // why hardware was not taken, if there are signs of any and this is a
                        // CPU driver that nobody asked for; "": no
     GpuIdentity identity;
-    EglContext egl;           // zeroed: not by EGL
-    struct GpuOsMesa *osmesa; // NULL: not by OSMesa
+    EglContext egl;               // zeroed: not by EGL, or borrowed
+    struct GpuOsMesa *osmesa;     // NULL: not by OSMesa
+    struct GpuUniforms *uniforms; // owned
 } Gpu;
 
 // Makes a context and makes it current, as the environment's assumptions have it (gpu/assume.h).
@@ -61,6 +62,16 @@ typedef struct Gpu {
 // that says what was tried, why it failed and which package helps.
 Result gpu_create(Gpu *gpu, const GpuOptions *options, Error *error);
 void gpu_destroy(Gpu *gpu);
+
+// The same for a context of somebody else's that is current on this thread, by EGL or GLX: it stays
+// his. RESULT_NO_GL if there is none, or it offers too little.
+Result gpu_borrow(Gpu *gpu, Error *error);
+
+// Of a borrowed context: what is called between them are this program's calls. gpu_enter fails with
+// RESULT_NO_GL if no context is current; it forgets errors and bindings that were there.
+// gpu_leave puts defaults back that drawing changes (tractrix_device_borrow).
+Result gpu_enter(const Gpu *gpu, Error *error);
+void gpu_leave(void);
 
 // Prints each EGL device and other way in: number, renderer, version, and below them vendor, PCI
 // address, UUID, memory and node as far as they are known; or why it can't be used. RESULT_NO_GL if

@@ -143,10 +143,7 @@ void gpu_egl_destroy(EglContext *egl)
     if (egl->display) {
         eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
         if (egl->context) eglDestroyContext(egl->display, egl->context);
-        // First: libepoxy looks for a function's provider in the current display, and ends the
-        // program if that is gone.
         eglReleaseThread();
-        eglTerminate(egl->display);
     }
     *egl = (EglContext){0};
 }

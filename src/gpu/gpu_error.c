@@ -37,6 +37,13 @@ void gpu_error_note(const char *pass)
     noted.pass = pass;
 }
 
+void gpu_error_forget(void)
+{
+    noted.code = GL_NO_ERROR, noted.pass = NULL;
+    while (glGetError() != GL_NO_ERROR) {
+    }
+}
+
 Result gpu_check(const char *what, Error *error)
 {
     gpu_error_note(NULL);

@@ -16,5 +16,13 @@ enum { GPU_UNIFORMS_BINDINGS = 8, GPU_UNIFORMS_MOST = 1 << 14 };
 // else may bind uniform buffers.
 void gpu_uniforms_set(GLuint binding, const void *data, size_t size);
 
-// Another context is current, or none: the ring has gone with the one that had it.
+// The ring of a context: its buffer goes with the context. NULL when memory is short.
+typedef struct GpuUniforms GpuUniforms;
+GpuUniforms *gpu_uniforms_create(void);
+void gpu_uniforms_destroy(GpuUniforms *uniforms);
+
+// From now on this thread's blocks lie in that ring, its current context's; NULL: in none.
+void gpu_uniforms_use(GpuUniforms *uniforms);
+
+// Somebody else has bound uniform buffers: all that is set from now on is uploaded again.
 void gpu_uniforms_forget(void);

@@ -17,7 +17,7 @@ static const char NO_REASON[] = "the driver refuses it and gives no reason";
 static const GlslSource NONE[] = {{NULL, NULL}};
 static const GlslSource *added_sources = NONE;
 static bool warnings_are_errors;
-static int assumed_ulps;
+static _Thread_local int assumed_ulps; // as the current context
 
 void shader_add_sources(const GlslSource *sources)
 {

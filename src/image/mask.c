@@ -93,16 +93,23 @@ static Result read_compared(bool **compared, const Image *image, Error *error)
     return *compared ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for a mask");
 }
 
+Result mask_create_from(Mask *mask, const Image *image, Error *error)
+{
+    bool *compared = NULL;
+    *mask = (Mask){0};
+    Result result = read_compared(&compared, image, error);
+    THEN(result, mask_create(mask, compared, image->width, image->height, error));
+    free(compared);
+    return result;
+}
+
 Result mask_read(Mask *mask, const char *path, Error *error)
 {
     Image image;
-    bool *compared = NULL;
     *mask = (Mask){0};
     TRY(float_image_read_image(&image, path, error));
-    Result result = read_compared(&compared, &image, error);
-    THEN(result, mask_create(mask, compared, image.width, image.height, error));
+    Result result = mask_create_from(mask, &image, error);
     if (result != RESULT_OK) error_prefix(error, result, "%s: ", path);
-    free(compared);
     image_destroy(&image);
     return result;
 }

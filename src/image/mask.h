@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/error.h"
+#include "image/image.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -18,6 +19,9 @@ typedef struct Mask {
 // ones are ignored; what is transparent counts as white. RESULT_BAD_INPUT with path and reason,
 // also if no pixel is left to compare; RESULT_FAILED when memory is short.
 Result mask_read(Mask *mask, const char *path, Error *error);
+
+// The same of an image in memory.
+Result mask_create_from(Mask *mask, const Image *image, Error *error);
 
 // The same from pixels: `compared` [height][width]. RESULT_BAD_INPUT if none is true.
 Result mask_create(Mask *mask, const bool *compared, int width, int height, Error *error);

@@ -348,8 +348,19 @@ double mesh_sequence_shape(const MeshSequence *sequence, double time)
         still = still && is_equal(sequence, span.at[i], span.at[1]);
         at += span.weight[i] * span.at[i];
     }
-    if (!still) return at;
+    if (!still) return sequence->earlier + at;
     uint32_t first = span.at[1];
     while (first > 0 && is_equal(sequence, first - 1, first)) --first;
-    return first;
+    return sequence->earlier + first;
+}
+
+void mesh_sequence_push(MeshSequence *sequence, const float (*position)[3], double before,
+                        double after)
+{
+    const size_t size = sequence->vertex_count * sizeof *position;
+    sequence->earlier += !is_equal(sequence, 0, 1);
+    memcpy(mesh_sequence_at(sequence, 0), mesh_sequence_at(sequence, 1), size);
+    memcpy(mesh_sequence_at(sequence, 1), position, size);
+    sequence->times.start = before;
+    sequence->times.rate = 1 / (after - before);
 }

@@ -11,6 +11,7 @@ typedef struct MeshSequence {
     uint32_t vertex_count; // of each sample
     float (*position)[3];  // [times.count * vertex_count], metres, y up
     uint32_t checksum;     // CRC-32 of the positions as they were read
+    double earlier;        // shapes that mesh_sequence_push has left behind
 } MeshSequence;
 
 typedef struct MeshSequenceOptions {
@@ -64,6 +65,11 @@ static inline float (*mesh_sequence_at(const MeshSequence *sequence, uint32_t i)
 
 // The positions at a time (s): [vertex_count].
 void mesh_sequence_evaluate(const MeshSequence *sequence, double time, float (*position)[3]);
+
+// Of two samples: the second becomes the first, at time `before`, and `position` the second, at
+// `after` (s, later).
+void mesh_sequence_push(MeshSequence *sequence, const float (*position)[3], double before,
+                        double after);
 
 // A number that is equal for two times only if the positions are equal to the bit: it does not
 // change while the mesh rests between equal samples, or before and after them.

@@ -21,11 +21,9 @@ typedef struct Meter {
     Image image[DRAWINGS];
 } Meter;
 
-bool exposure_is_wanted(const Scene *scene)
+bool exposure_is_wanted(const RunParams *run, ImageKind kind)
 {
-    const RunParams *run = &scene->run;
-    return run->exposure.automatic && run->aov == AOV_NONE && *run->output &&
-           !scene_draws_floats(run);
+    return run->exposure.automatic && run->aov == AOV_NONE && kind != IMAGE_FLOAT;
 }
 
 // A grey card in the hair's place: nothing that makes one hair's colour another's. The section
@@ -70,7 +68,7 @@ static void destroy_grey(Scene *small)
 // that sorts everything, so that all have the same exposure; hair stays as it is put.
 static Scene meter_scene(const Scene *scene, Aov aov)
 {
-    static char hair[] = "put", light[] = "light.pfm";
+    static char hair[] = "put";
     Scene small = *scene;
     RunParams *run = &small.run;
     int longest = run->size[0] > run->size[1] ? run->size[0] : run->size[1];
@@ -89,7 +87,6 @@ static Scene meter_scene(const Scene *scene, Aov aov)
     run->floor = FLOOR_NONE;
     run->collide_mesh = false;
     run->from_cache = hair;
-    run->output = light;
     run->quiet = true;
     small.sections = NULL;
     return small;
@@ -135,8 +132,8 @@ static Result draw(Meter *meter, int which, const Assets *assets, const Framing 
     Images images;
     View view;
     camera_view(&view, scene, framing, 0);
-    Result result =
-        images_open(&images, scene, assets, &meter->simulation, framing, gpu, &meter->timer, error);
+    Result result = images_create(&images, scene, assets, &meter->simulation, framing,
+                                  &(ImagesForm){.kind = IMAGE_FLOAT}, gpu, &meter->timer, error);
     const RendererOptions *options = &images.renderer.options;
     THEN(result,
          image_create_kind(image, options->width, options->height, 4, options->kind, error));

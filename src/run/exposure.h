@@ -3,11 +3,12 @@
 #pragma once
 
 #include "gpu/gpu.h"
+#include "image/image.h"
 #include "scene/assets.h"
 #include "scene/outline.h"
 
-// Whether the scene leaves the exposure open: light itself and AOVs have none.
-bool exposure_is_wanted(const Scene *scene);
+// Whether the run leaves the exposure of such images open: light itself and AOVs have none.
+bool exposure_is_wanted(const RunParams *run, ImageKind kind);
 
 // Finds the exposure (EV) of all frames: what an exposure meter says of hair and mesh (meter.h), at
 // rest with the head as at time 0, under the lights and before the camera of frame 0, drawn small.

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "run/images.h"
-#include "base/target.h"
 #include "draw/hair_paint.h"
 #include "draw/openness.h"
 #include "scene/camera.h"
 #include "strands/paint.h"
 
-#include <cglm/mat4.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -54,27 +52,20 @@ static void set_depth_range(const Images *images, RendererOptions *options)
     camera_view(&view, images->scene, images->framing, images->scene->run.first);
     options->depth_range[0] = view.near_distance;
     options->depth_range[1] = view.far_distance;
-    if (!images->scene->run.quiet)
-        fprintf(stderr, "depth: white is %.6g m from the eye, black %.6g m\n",
-                (double)view.near_distance, (double)view.far_distance);
 }
 
-static Result describe_images(const Images *images, RendererOptions *options, Error *error)
+static RendererOptions describe_images(const Images *images, ImageKind kind)
 {
     const RunParams *run = &images->scene->run;
-    Target target;
-    TRY(target_parse(&target, run->output, error));
-    *options = renderer_options_of(run);
-    options->exposure = run->exposure.value;
-    options->tone = (Tone)run->tone_map;
-    options->kind = run->depth == DEPTH_16 ? IMAGE_16 : IMAGE_8;
-    options->aov = (Aov)run->aov;
-    options->mesh_shading = (MeshShading)run->mesh_shading;
-    options->floor = floor_find(images->scene, images->framing);
-    if (target.floats) options->kind = IMAGE_FLOAT;
-    set_depth_range(images, options);
-    target_destroy(&target);
-    return RESULT_OK;
+    RendererOptions options = renderer_options_of(run);
+    options.exposure = run->exposure.value;
+    options.tone = (Tone)run->tone_map;
+    options.kind = kind;
+    options.aov = (Aov)run->aov;
+    options.mesh_shading = (MeshShading)run->mesh_shading;
+    options.floor = floor_find(images->scene, images->framing);
+    set_depth_range(images, &options);
+    return options;
 }
 
 // Tells skin how much of the sky it sees.
@@ -114,13 +105,6 @@ static Result open_one(Images *images, Renderer *renderer, const RendererOptions
     return renderer_set_mesh(renderer, &assets->mesh, images->scene->run.mesh_color, error);
 }
 
-// Whether EXR files are written that have layers: an image by --aov and a sheet have none.
-static bool has_layers(const RunParams *run, const Target *target)
-{
-    return target->format == TARGET_EXR && run->exr_layers && run->aov == AOV_NONE &&
-           run->contact_sheet[0] == 1 && run->contact_sheet[1] == 1;
-}
-
 static Result open_layers(Images *images, const RendererOptions *options, GpuTimer *timer,
                           Error *error)
 {
@@ -128,11 +112,6 @@ static Result open_layers(Images *images, const RendererOptions *options, GpuTim
                                          [EXR_DEPTH] = AOV_DEPTH,
                                          [EXR_TANGENT] = AOV_TANGENT,
                                          [EXR_STRAND] = AOV_STRAND};
-    Target target;
-    TRY(target_parse(&target, images->scene->run.output, error));
-    bool wanted = has_layers(&images->scene->run, &target);
-    target_destroy(&target);
-    if (!wanted) return RESULT_OK;
     images->layers = calloc(EXR_LAYERS, sizeof *images->layers);
     if (!images->layers) return error_set(error, RESULT_FAILED, "no memory for layers");
     for (int l = 0; l < EXR_LAYERS; ++l) {
@@ -154,57 +133,27 @@ static Result copy_body(Images *images, Error *error)
     return RESULT_OK;
 }
 
-static Result open_renderer(Images *images, GpuTimer *timer, Error *error)
+static Result open_all(Images *images, const ImagesForm *form, GpuTimer *timer, Error *error)
 {
-    RendererOptions options;
-    TRY(describe_images(images, &options, error));
+    const RendererOptions options = describe_images(images, form->kind);
     TRY(open_one(images, &images->renderer, &options, timer, error));
-    TRY(open_layers(images, &options, timer, error));
+    if (form->layers) TRY(open_layers(images, &options, timer, error));
     TRY(create_items(images, error));
     TRY(copy_body(images, error));
     return open_sky(images, error);
 }
 
-static Result open_output(Images *images, int frame_count, Error *error)
-{
-    const RunParams *run = &images->scene->run;
-    const OutputOptions options = {
-        .target = run->output,
-        .width = run->size[0],
-        .height = run->size[1],
-        .channels = renderer_channels(&images->renderer),
-        .kind = images->renderer.options.kind,
-        .fps = (double)run->fps / run->every,
-        .frame_count = frame_count,
-        .columns = run->contact_sheet[0],
-        .rows = run->contact_sheet[1],
-        .texts = &images->fingerprint->origin,
-        .layers = images->layers != NULL,
-        .exr_float = run->exr_float,
-    };
-    return output_create(&images->output, &options, error);
-}
-
-Result images_open(Images *images, const Scene *scene, const Assets *assets, Simulation *simulation,
-                   const Framing *framing, const Gpu *gpu, GpuTimer *timer, Error *error)
+Result images_create(Images *images, const Scene *scene, const Assets *assets,
+                     Simulation *simulation, const Framing *framing, const ImagesForm *form,
+                     const Gpu *gpu, GpuTimer *timer, Error *error)
 {
     *images = (Images){
         .scene = scene, .assets = assets, .simulation = simulation, .framing = framing, .gpu = gpu};
-    return open_renderer(images, timer, error);
-}
-
-Result images_create(Images *images, const Scene *scene, const Assets *assets,
-                     Simulation *simulation, const Framing *framing, const Gpu *gpu,
-                     GpuTimer *timer, const Fingerprint *fingerprint, int frame_count, Error *error)
-{
-    TRY(images_open(images, scene, assets, simulation, framing, gpu, timer, error));
-    images->fingerprint = fingerprint;
-    return open_output(images, frame_count, error);
+    return open_all(images, form, timer, error);
 }
 
 void images_destroy(Images *images)
 {
-    output_destroy(images->output);
     renderer_destroy(&images->renderer);
     for (int l = 0; l < EXR_LAYERS && images->layers; ++l) renderer_destroy(&images->layers[l]);
     free(images->layers);
@@ -313,16 +262,4 @@ Result images_draw(Images *images, int frame, const View *view, Image *image, Er
     TRY(begin_by(images, renderer, frame, view, image, error));
     TRY(renderer_settle(renderer, error));
     return renderer_take(renderer, place, image, error);
-}
-
-void images_set_matrices(FrameExtra *extra, const View *view)
-{
-    // From clip space: x of -w to w becomes 0 to w, y the other way round.
-    mat4 halve = {{0.5f, 0, 0, 0}, {0, -0.5f, 0, 0}, {0, 0, 1, 0}, {0.5f, 0.5f, 0, 1}};
-    mat4 from_world = {0}, projection = {0}, whole;
-    memcpy(from_world, view->view, sizeof from_world);
-    memcpy(projection, view->projection, sizeof projection);
-    glm_mat4_mulN((mat4 *[]){&halve, &projection, &from_world}, 3, whole);
-    memcpy(extra->world_to_camera, from_world, sizeof from_world);
-    memcpy(extra->world_to_ndc, whole, sizeof whole);
 }

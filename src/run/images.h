@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Draws a run's frames: the renderer and the output that the scene asks for, or the renderer alone
-// for those who look at the pixels themselves.
+// Draws what a simulation has: the one way from a scene to pixels.
 #pragma once
 
 #include "draw/renderer.h"
-#include "run/output.h"
+#include "image/exr_file.h"
 #include "scene/assets.h"
 #include "scene/outline.h"
 #include "sim/simulation.h"
@@ -20,23 +19,21 @@ typedef struct Images {
     Renderer *layers;  // [EXR_LAYERS], owned; NULL: none
     RenderItem *items; // of each section, unless hidden, its guides and followers if there are any
     uint32_t item_count;
-    Mesh body;                      // of a mesh that deforms: as it is drawn; owned
-    double body_shape;              // ... bound_body_shape
-    const Fingerprint *fingerprint; // NULL without an output
-    Output *output;
+    Mesh body;         // of a mesh that deforms: as it is drawn; owned
+    double body_shape; // ... bound_body_shape
 } Images;
 
-// `frame_count`: how many frames will be drawn. The arguments outlive the images, which may be
-// destroyed (while the context is current) in each case. Errors of renderer_create, paint_create
-// and output_create.
-Result images_create(Images *images, const Scene *scene, const Assets *assets,
-                     Simulation *simulation, const Framing *framing, const Gpu *gpu,
-                     GpuTimer *timer, const Fingerprint *fingerprint, int frame_count,
-                     Error *error);
+// What the pixels are, and whether there are also those of EXR's layers.
+typedef struct ImagesForm {
+    ImageKind kind;
+    bool layers;
+} ImagesForm;
 
-// The same without an output: for images_draw alone.
-Result images_open(Images *images, const Scene *scene, const Assets *assets, Simulation *simulation,
-                   const Framing *framing, const Gpu *gpu, GpuTimer *timer, Error *error);
+// The arguments outlive the images, but for `form`; they may be destroyed (while the context is
+// current) in each case. Errors of renderer_create and paint_create.
+Result images_create(Images *images, const Scene *scene, const Assets *assets,
+                     Simulation *simulation, const Framing *framing, const ImagesForm *form,
+                     const Gpu *gpu, GpuTimer *timer, Error *error);
 void images_destroy(Images *images);
 
 // Draws the hair as the simulation has it now, with the lights of frame `frame`. `image` has the
@@ -52,7 +49,3 @@ bool images_are_late(const Images *images);
 int images_place(const Images *images);
 Result images_settle(Images *images, Error *error);
 Result images_take(Images *images, int place, Image *image, Image layers[EXR_LAYERS], Error *error);
-
-// The matrices of a view, as EXR files have them: world to camera, and to the image, whose corners
-// are (0, 0), at the top left, and (1, 1).
-void images_set_matrices(FrameExtra *extra, const View *view);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // tractrix-render: simulates the hair of files or scenes and draws it.
 #include "base/clock.h"
-#include "base/interrupt.h"
+#include "base/interrupt_install.h"
 #include "base/program.h"
 #include "run/caption.h"
 #include "run/render_help.h"

@@ -9,7 +9,6 @@
 #include <assert.h>
 #include <errno.h>
 #include <pthread.h>
-#include <signal.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -288,18 +287,13 @@ static Result create_slots(Output *output, const OutputOptions *options, Error *
     return result;
 }
 
-// Signals are the main thread's; with SIGPIPE and SIGXFSZ blocked a write that fails says so by its
-// result. Called with the mutex held, or before there are workers.
+// Called with the mutex held, or before there are workers.
 static Result start_worker(Output *output, Error *error)
 {
-    sigset_t all, before;
     Worker *worker = &output->workers[output->worker_count];
     worker->output = output;
     TRY(image_texts_copy(&worker->texts, &output->texts, error));
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    int reason = pthread_create(&worker->thread, NULL, work, worker);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    int reason = parallel_start(&worker->thread, work, worker);
     if (reason == 0) {
         output->worker_count++;
         output->at_work++;

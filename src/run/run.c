@@ -28,6 +28,7 @@ void run_destroy(Run *run)
     fingerprint_destroy(&run->fingerprint);
     if (run->has_gpu) {
         frame_source_close(&run->source);
+        output_destroy(run->output);
         images_destroy(&run->images);
         simulation_destroy(&run->simulation);
         gpu_timer_destroy(&run->timer);
@@ -47,7 +48,7 @@ static GpuOptions gpu_options(const RunParams *params)
         .require_hardware = params->require_hardware,
     };
 #ifdef TRACTRIX_DEBUG
-    options.debug = true;
+    options.debug = stderr;
 #endif
     return options;
 }
@@ -229,7 +230,8 @@ static Result expose(Run *run, Error *error)
 {
     const RunParams *params = &run->scene.run;
     run->exposure = params->exposure.value;
-    if (!exposure_is_wanted(&run->scene)) return RESULT_OK;
+    if (!exposure_is_wanted(params, scene_draws_floats(params) ? IMAGE_FLOAT : IMAGE_8))
+        return RESULT_OK;
     activity_set("finding the exposure");
     TRY(exposure_find(&run->exposure, &run->scene, &run->assets, &run->framing, &run->gpu, error));
     activity_set(NULL);
@@ -260,6 +262,27 @@ static void release_strands(Run *run)
         strands_destroy(&run->assets.strands[i]);
 }
 
+static void report_depth(const RendererOptions *options)
+{
+    const float *range = options->depth_range;
+    if (options->aov == AOV_DEPTH && options->kind != IMAGE_FLOAT)
+        fprintf(stderr, "depth: white is %.6g m from the eye, black %.6g m\n", (double)range[0],
+                (double)range[1]);
+}
+
+static Result open_images(Run *run, Error *error)
+{
+    const RunParams *params = &run->scene.run;
+    ImagesForm form;
+    TRY(images_output_form(&form, params, error));
+    TRY(images_create(&run->images, &run->scene, &run->assets, &run->simulation, &run->framing,
+                      &form, &run->gpu, &run->timer, error));
+    run->images.renderer.options.exposure = run->exposure;
+    if (!params->quiet) report_depth(&run->images.renderer.options);
+    return images_output_create(&run->output, &run->images, &run->fingerprint,
+                                sequence_count_drawn(params) - run->done.count, error);
+}
+
 // Files first: their errors are reported before a driver is started. The output's folder is made
 // last but before any work.
 static Result prepare(Run *run, Error *error)
@@ -288,11 +311,7 @@ static Result prepare(Run *run, Error *error)
     TRY(describe(run, error));
     TRY(find_done(run, error));
     activity_set("preparing the renderer");
-    if (draws)
-        TRY(images_create(&run->images, &run->scene, &run->assets, &run->simulation, &run->framing,
-                          &run->gpu, &run->timer, &run->fingerprint,
-                          sequence_count_drawn(params) - run->done.count, error));
-    run->images.renderer.options.exposure = run->exposure;
+    if (draws) TRY(open_images(run, error));
     if (*params->stats) {
         TRY(stats_create(&run->stats, error));
         stats_describe(&run->stats, &run->gpu, &run->scene, &run->assets, &run->simulation);
@@ -307,8 +326,8 @@ static Result prepare(Run *run, Error *error)
 
 static void report_result(const Run *run, const Sequence *sequence, double ms)
 {
-    int frames = run->images.output ? sequence->frames_drawn + sequence->frames_repeated
-                                    : run->simulation.frame + 1;
+    int frames = run->output ? sequence->frames_drawn + sequence->frames_repeated
+                             : run->simulation.frame + 1;
     SolverReport report = simulation_report(&run->simulation);
     if (report.moves_limited && run->scene.run.verbose)
         fprintf(stderr, "%llu moves of more than 100 strand lengths a step were cut\n",
@@ -320,9 +339,9 @@ static void report_result(const Run *run, const Sequence *sequence, double ms)
                 cache->write_ms / cache->frame_count);
     fprintf(stderr, "%d frame%s in %.1f s, %.3g a second", frames, frames == 1 ? "" : "s", ms / 1e3,
             frames * 1e3 / ms);
-    bool described = run->images.output && frames > 0;
+    bool described = run->output && frames > 0;
     fprintf(stderr, described ? ": %s\n" : "%s\n",
-            described ? quote(output_describe(run->images.output)).text : "");
+            described ? quote(output_describe(run->output)).text : "");
 }
 
 static Result write_stats(Run *run, const Sequence *sequence, Error *error)
@@ -330,13 +349,13 @@ static Result write_stats(Run *run, const Sequence *sequence, Error *error)
     const RunParams *params = &run->scene.run;
     if (!*params->stats) return RESULT_OK;
     OutputCounters counters = {0};
-    if (run->images.output) counters = output_count(run->images.output);
+    if (run->output) counters = output_count(run->output);
     stats_add_wall(&run->stats, "load_ms", run->loaded_ms - run->begin_ms);
     stats_add_wall(&run->stats, "set_up_ms", run->ready_ms - run->loaded_ms);
     stats_add_wall(&run->stats, "frames_ms", clock_ms() - run->ready_ms);
     stats_add_wall(&run->stats, "total_ms", clock_ms() - run->begin_ms);
     stats_finish(&run->stats, &run->timer, &run->simulation, sequence->frames_drawn,
-                 sequence->frames_repeated, run->images.output ? &counters : NULL);
+                 sequence->frames_repeated, run->output ? &counters : NULL);
     return stats_write(&run->stats, params->stats, error);
 }
 
@@ -348,6 +367,7 @@ Result run_go(Run *run, Error *error)
         .scene = &run->scene,
         .source = &run->source,
         .images = &run->images,
+        .output = run->output,
         .exporter = run->exports ? &run->exporter : NULL,
         .fingerprint = &run->fingerprint,
         .done = run->done.done,
@@ -357,11 +377,11 @@ Result run_go(Run *run, Error *error)
     Result result = sequence_run(&sequence, error);
     gl_count_print(stderr);
     bool failed = result != RESULT_OK && result != RESULT_INTERRUPTED;
-    if (failed && run->images.output) output_flush(run->images.output);
+    if (failed && run->output) output_flush(run->output);
     TRY(result);
     activity_set("finishing");
-    if (run->images.output && run->done.count < sequence_count_drawn(&run->scene.run))
-        TRY(output_finish(run->images.output, error));
+    if (run->output && run->done.count < sequence_count_drawn(&run->scene.run))
+        TRY(output_finish(run->output, error));
     if (run->exports) TRY(exporter_finish(&run->exporter, error));
     TRY(frame_source_finish(&run->source, error));
     TRY(write_stats(run, &sequence, error));

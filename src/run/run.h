@@ -6,7 +6,7 @@
 // camera), exposure (a look at the first), export, stats, help.
 #pragma once
 
-#include "run/images.h"
+#include "run/images_output.h"
 #include "run/resume.h"
 #include "run/sequence.h"
 
@@ -21,7 +21,8 @@ typedef struct Run {
     Framing framing;
     float exposure; // EV, of all images
     Simulation simulation;
-    Images images; // empty unless the scene has an output
+    Images images;  // empty unless the scene has an output ...
+    Output *output; // ... NULL
     FrameSource source;
     Exporter exporter;
     bool exports;

@@ -129,7 +129,7 @@ static Result hand_on(Sequence *sequence, int frame, Image *image, Error *error)
         caption_draw(image, text);
     }
     activity_set("writing");
-    return output_submit(sequence->images->output, frame, image, error);
+    return output_submit(sequence->output, frame, image, error);
 }
 
 // Hands on the image that is on its way, if there is one.
@@ -192,12 +192,12 @@ static Result output_frame(Sequence *sequence, Carried *carried, int frame, Fram
     View view;
     Image *image;
     double begin = clock_ms();
-    Result result = output_acquire(sequence->images->output, &image, error);
+    Result result = output_acquire(sequence->output, &image, error);
     double acquired = clock_ms();
     times->wait_ms = acquired - begin;
     if (result != RESULT_OK) return result;
     camera_view(&view, sequence->scene, sequence->images->framing, frame);
-    images_set_matrices(output_extra(image), &view);
+    images_output_matrices(output_extra(image), &view);
     fingerprint_of_image(output_extra(image)->scene, sequence->fingerprint, frame);
     result = draw(sequence, carried, frame, &view, image, error);
     times->draw_ms = clock_ms() - acquired;
@@ -222,7 +222,7 @@ static Result run_frame(Sequence *sequence, Carried *carried, int frame, Error *
 {
     FrameTimes times = {.frame = frame};
     double begin = clock_ms();
-    bool wanted = wants(sequence, frame), draws = sequence->images->output != NULL;
+    bool wanted = wants(sequence, frame), draws = sequence->output != NULL;
     Result result = draws ? images_settle(sequence->images, error) : RESULT_OK;
     activity_set("simulating");
     THEN(result,

@@ -5,13 +5,14 @@
 
 #include "run/export.h"
 #include "run/frame_source.h"
-#include "run/images.h"
+#include "run/images_output.h"
 #include "run/stats.h"
 
 typedef struct Sequence {
     const Scene *scene;
     FrameSource *source; // moves its simulation
     Images *images;      // empty: nothing is drawn
+    Output *output;      // of the images; NULL: none
     Exporter *exporter;  // NULL: no hair files
     const Fingerprint *fingerprint;
     const bool *done; // [frames] those that need not be drawn again; NULL: none

@@ -5,8 +5,11 @@
 #include "base/activity.h"
 #include "mesh/mesh_sequence.h"
 #include "mesh/obj.h"
+#include "strands/strands_edit.h"
 
+#include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static StrandsReadOptions read_options(const Scene *scene, const Section *section)
 {
@@ -28,11 +31,20 @@ static void warn_ignored(const Strands *strands, const char *file, FILE *message
                 quote(file).text);
 }
 
+static Result take_given(Assets *assets, uint32_t i, const Strands *given, Error *error)
+{
+    StrandsReport *report = &assets->reports[i];
+    *report = (StrandsReport){.kind = FORMAT_KINDS, .unit_used = 1};
+    TRY(strands_join(&assets->strands[i], given, 1, error));
+    return strands_report_measure(report, given, error);
+}
+
 static Result load_section(Assets *assets, const Scene *scene, uint32_t i, FILE *messages,
                            bool verbose, Error *error)
 {
     const Section *section = &scene->sections[i];
     const StrandsReadOptions options = read_options(scene, section);
+    if (section->given) return take_given(assets, i, section->given, error);
     activity_set("reading hair");
     Result result =
         strands_read(&assets->strands[i], section->file, &options, &assets->reports[i], error);
@@ -62,7 +74,10 @@ static Result bind_hair(Assets *assets, Scene *scene, MeshSequence *sequence, co
                         FILE *messages, Error *error)
 {
     const RunParams *run = &scene->run;
-    const BodyOptions options = {run->mesh, run->teleport_distance, run->teleport_angle};
+    const BodyOptions options = {.name = run->mesh,
+                                 .driven = scene->given_mesh && scene->given_mesh->deforms,
+                                 .cut_distance = run->teleport_distance,
+                                 .cut_angle_deg = run->teleport_angle};
     const RigidTrack *head = &scene->head;
     bool tracked = head->translation.count || head->rotation.count ||
                    head->translation_formula[0].text || head->rotation_formula[0].text;
@@ -92,9 +107,44 @@ static Result load_sequence(Assets *assets, Scene *scene, const MeshSequenceOpti
     return result;
 }
 
+// Two samples, alike: body_drive says what comes. A vertex may come as far as a quarter of the
+// mesh's longest side from where it is.
+static Result drive_given(Assets *assets, Scene *scene, FILE *messages, Error *error)
+{
+    const Mesh *mesh = &assets->mesh, none = {0};
+    MeshSequence sequence = {.times = {.count = 2, .rate = 1, .linear = true},
+                             .vertex_count = mesh->vertex_count};
+    size_t size = mesh->vertex_count * sizeof *mesh->position;
+    sequence.position = malloc(2 * size);
+    if (!sequence.position)
+        return error_set(error, RESULT_FAILED, "no memory for a mesh that deforms");
+    for (uint32_t i = 0; i < 2; ++i) memcpy(mesh_sequence_at(&sequence, i), mesh->position, size);
+    rigid_track_destroy(&scene->head); // it moves as it is told
+    Result result = bind_hair(assets, scene, &sequence, &none, messages, error);
+    mesh_sequence_destroy(&sequence);
+    if (result != RESULT_OK) return result;
+    float low[3], high[3];
+    mesh_bounds(mesh, low, high);
+    for (int k = 0; k < 3; ++k)
+        assets->body->margin = fmaxf(assets->body->margin, 0.25f * (high[k] - low[k]));
+    return RESULT_OK;
+}
+
+static Result take_given_mesh(Assets *assets, Scene *scene, FILE *messages, Error *error)
+{
+    const Mesh *given = &scene->given_mesh->mesh;
+    assets->has_mesh = true;
+    TRY(mesh_create(&assets->mesh, given->vertex_count, given->triangle_count, error));
+    memcpy(assets->mesh.position, given->position, given->vertex_count * sizeof *given->position);
+    memcpy(assets->mesh.triangle, given->triangle, given->triangle_count * sizeof *given->triangle);
+    mesh_compute_normals(&assets->mesh);
+    return scene->given_mesh->deforms ? drive_given(assets, scene, messages, error) : RESULT_OK;
+}
+
 static Result load_mesh(Assets *assets, Scene *scene, FILE *messages, Error *error)
 {
     const RunParams *run = &scene->run;
+    if (scene->given_mesh) return take_given_mesh(assets, scene, messages, error);
     if (!*run->mesh) return RESULT_OK;
     const StrandsReport *first = assets->section_count ? &assets->reports[0] : NULL;
     MeshSequenceOptions options = {

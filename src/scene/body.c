@@ -10,8 +10,17 @@ enum { MOST_POINTS = 20000 };
 
 static const double FULL_RATE = 24; // samples a second at which the limits of cuts hold
 
+static void anchors_destroy(BodyAnchors *anchors)
+{
+    free(anchors->points);
+    free(anchors->from);
+    free(anchors->to);
+    *anchors = (BodyAnchors){0};
+}
+
 void body_destroy(Body *body)
 {
+    anchors_destroy(&body->anchors);
     for (uint32_t i = 0; body->roots && i < body->section_count; ++i)
         mesh_binding_destroy(&body->roots[i]);
     free(body->roots);
@@ -63,29 +72,15 @@ static Result check_distance(const Body *body, Error *error)
 
 // --- The head.
 
-// The surface's points at the roots (or some of them), of which the head is made.
-typedef struct Anchors {
-    BoundPoint *points;
-    uint32_t count;
-    Double3 *from, *to;
-} Anchors;
-
-static void anchors_destroy(Anchors *anchors)
-{
-    free(anchors->points);
-    free(anchors->from);
-    free(anchors->to);
-}
-
-static Result anchors_create(Anchors *anchors, const Body *body, Error *error)
+static Result anchors_create(BodyAnchors *anchors, const Body *body, Error *error)
 {
     uint64_t all = 0;
     for (uint32_t i = 0; i < body->section_count; ++i) all += body->roots[i].count;
     uint64_t stride = 1 + all / MOST_POINTS, number = 0;
     size_t room = (size_t)(all / stride) + 2;
-    *anchors = (Anchors){.points = calloc(room, sizeof *anchors->points),
-                         .from = calloc(room, sizeof *anchors->from),
-                         .to = calloc(room, sizeof *anchors->to)};
+    *anchors = (BodyAnchors){.points = calloc(room, sizeof *anchors->points),
+                             .from = calloc(room, sizeof *anchors->from),
+                             .to = calloc(room, sizeof *anchors->to)};
     if (!anchors->points || !anchors->from || !anchors->to)
         return error_set(error, RESULT_FAILED, "no memory for the head's motion");
     for (uint32_t i = 0; i < body->section_count; ++i)
@@ -94,7 +89,7 @@ static Result anchors_create(Anchors *anchors, const Body *body, Error *error)
     return RESULT_OK;
 }
 
-static void place_anchors(const Anchors *anchors, const float (*position)[3], Double3 *places)
+static void place_anchors(const BodyAnchors *anchors, const float (*position)[3], Double3 *places)
 {
     for (uint32_t i = 0; i < anchors->count; ++i)
         for (int k = 0; k < 3; ++k) {
@@ -105,7 +100,7 @@ static void place_anchors(const Anchors *anchors, const float (*position)[3], Do
         }
 }
 
-static void find_middle(const Anchors *anchors, Double3 middle)
+static void find_middle(const BodyAnchors *anchors, Double3 middle)
 {
     memset(middle, 0, sizeof(Double3));
     for (uint32_t i = 0; i < anchors->count; ++i)
@@ -113,7 +108,7 @@ static void find_middle(const Anchors *anchors, Double3 middle)
 }
 
 // The head at each sample, relative to where it is at sample `origin`.
-static void find_motions(Body *body, Anchors *anchors, uint32_t origin)
+static void find_motions(Body *body, BodyAnchors *anchors, uint32_t origin)
 {
     MeshSequence *sequence = &body->sequence;
     place_anchors(anchors, (const float(*)[3])mesh_sequence_at(sequence, origin), anchors->from);
@@ -130,7 +125,7 @@ static void find_motions(Body *body, Anchors *anchors, uint32_t origin)
     }
 }
 
-static void find_cuts(Body *body, const Anchors *anchors, const BodyOptions *options)
+static void find_cuts(Body *body, const BodyAnchors *anchors, const BodyOptions *options)
 {
     SampleTimes *times = &body->sequence.times;
     double slower = fmax(1, FULL_RATE / times->rate);
@@ -175,6 +170,21 @@ static void part_motion(Body *body)
     }
 }
 
+void body_drive(Body *body, float (*position)[3], double before, double after)
+{
+    MeshSequence *sequence = &body->sequence;
+    BodyAnchors *anchors = &body->anchors;
+    RigidMotion *motion = body->head.motion;
+    place_anchors(anchors, (const float(*)[3])position, anchors->to);
+    motion[0] = motion[1];
+    motion[1] = rigid_motion_fit((const double(*)[3])anchors->from, (const double(*)[3])anchors->to,
+                                 anchors->count, &motion[0]);
+    RigidMotion back = rigid_motion_inverse(&motion[1]);
+    move_points(&back, position, sequence->vertex_count);
+    mesh_sequence_push(sequence, (const float(*)[3])position, before, after);
+    body->head.times = sequence->times;
+}
+
 // --- The groom.
 
 // Carries all strands by the mesh's way from rest to `position`.
@@ -201,7 +211,7 @@ static Result carry_groom(const Body *body, const Mesh *rest, const float (*posi
 
 static Result find_head(Body *body, const BodyOptions *options, Error *error)
 {
-    Anchors anchors;
+    BodyAnchors anchors;
     Result result = anchors_create(&anchors, body, error);
     if (result == RESULT_OK) {
         body->head.times = body->sequence.times;
@@ -209,7 +219,10 @@ static Result find_head(Body *body, const BodyOptions *options, Error *error)
         find_cuts(body, &anchors, options);
         part_motion(body);
     }
-    anchors_destroy(&anchors);
+    if (options->driven)
+        body->anchors = anchors;
+    else
+        anchors_destroy(&anchors);
     return result;
 }
 

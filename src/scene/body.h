@@ -9,6 +9,13 @@
 #include "scene/rigid_track.h"
 #include "strands/strands.h"
 
+// The surface's points at the roots (or some of them), of which the head is made.
+typedef struct BodyAnchors {
+    BoundPoint *points;
+    uint32_t count;
+    Double3 *from, *to;
+} BodyAnchors;
+
 typedef struct Body {
     MeshSequence sequence; // in the head's frame
     RigidSamples head;     // its times.cut is the sequence's
@@ -16,11 +23,14 @@ typedef struct Body {
     const char *name;      // of the mesh's file, for messages; not owned
     MeshBinding *roots;    // [section_count]: of all strands, to the mesh at time 0
     uint32_t section_count;
+    BodyAnchors anchors; // of a body that is driven (body_drive); else empty
+    float margin;        // m: how far such a body's vertices may come from where they were at first
 } Body;
 
 typedef struct BodyOptions {
     const char *name;
     float cut_distance, cut_angle_deg; // of --teleport, for samples at 24 a second or more
+    bool driven; // the sequence has two samples, alike; body_drive says what comes
 } BodyOptions;
 
 // Takes the sequence over, whose faces are `mesh`. Binds the strands of all sections to `rest` (of
@@ -33,6 +43,10 @@ Result body_create(Body *body, MeshSequence *sequence, Mesh *mesh, const Mesh *r
                    Strands *strands, uint32_t section_count, const BodyOptions *options,
                    Error *error);
 void body_destroy(Body *body);
+
+// Goes on: the mesh is at `position` (m, in the world) at the time `after` (s), and gets there
+// straight from where it is at `before`.
+void body_drive(Body *body, float (*position)[3], double before, double after);
 
 // The middle of all roots at time 0.
 void body_middle(const Body *body, float middle[3]);

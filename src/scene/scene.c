@@ -339,6 +339,45 @@ Result scene_apply_presets(const Presets *presets, ParamScope scope, void *param
     return apply_preset("quality", presets->quality, scope, params, error);
 }
 
+// A row of PRESETS in the run or in a section, where nothing else has set it.
+static Result apply_row(Scene *scene, const char *name, const char *value, Error *error)
+{
+    const ParamInfo *info = params_find(name);
+    size_t row = (size_t)(info - PARAM_TABLE);
+    if (info->scope == SCOPE_RUN)
+        return scene->origin[row] == ORIGIN_DEFAULT ? params_parse(info, &scene->run, value, error)
+                                                    : RESULT_OK;
+    for (uint32_t i = 0; i < scene->section_count; ++i)
+        if (scene->sections[i].origin[row] == ORIGIN_DEFAULT)
+            TRY(params_parse(info, &scene->sections[i].params, value, error));
+    return RESULT_OK;
+}
+
+// Whether a preset's row says nothing of a scene file, which itself says what there is.
+static bool is_for_files(const Scene *scene, size_t i)
+{
+    return scene->file && strcmp(PRESETS[i].name, "scalp") == 0;
+}
+
+Result scene_set_preset(Scene *scene, const ParamInfo *info, const char *word, Error *error)
+{
+    static const char *const ORDER[] = {"look", "quality"};
+    const size_t count = sizeof PRESETS / sizeof *PRESETS;
+    TRY(params_parse(info, &scene->run, word, error));
+    scene->origin[info - PARAM_TABLE] = ORIGIN_FLAG;
+    const int words[] = {scene->run.look, scene->run.quality};
+    for (size_t i = 0; i < count; ++i)
+        if (!is_for_files(scene, i))
+            TRY(apply_row(scene, PRESETS[i].name, params_find(PRESETS[i].name)->default_text,
+                          error));
+    for (size_t k = 0; k < 2; ++k)
+        for (size_t i = 0; i < count; ++i)
+            if (!is_for_files(scene, i) && strcmp(PRESETS[i].preset, ORDER[k]) == 0 &&
+                strcmp(PRESETS[i].word, params_find(ORDER[k])->choices[words[k]]) == 0)
+                TRY(apply_row(scene, PRESETS[i].name, PRESETS[i].value, error));
+    return RESULT_OK;
+}
+
 Result scene_create_as(Scene *scene, const Presets *presets, Error *error)
 {
     *scene = (Scene){0};

@@ -10,6 +10,7 @@
 // `draw`.
 #pragma once
 
+#include "base/bytes.h"
 #include "base/error.h"
 #include "base/params.h"
 #include "scene/body.h"
@@ -39,6 +40,7 @@ typedef enum Origin {
 // One hair file and how it behaves and looks.
 typedef struct Section {
     char *file;                   // owned; relative to the working folder
+    const Strands *given;         // hair from elsewhere, of which `file` is but the name; not owned
     SectionParams params;         // those that change over time: as at time 0
     SectionTracks tracks;         // how they change
     uint8_t origin[SCENE_PARAMS]; // an Origin for each row of the table that is a section's
@@ -71,6 +73,12 @@ typedef enum SceneRequest {
     REQUEST_HELP,    // -h, --help
 } SceneRequest;
 
+// A mesh that is in memory already.
+typedef struct GivenMesh {
+    Mesh mesh;
+    bool deforms; // Body.given moves it
+} GivenMesh;
+
 // A zeroed scene is empty and may be destroyed.
 typedef struct Scene {
     SceneRequest request;
@@ -81,6 +89,7 @@ typedef struct Scene {
     Section *sections;            // [section_count], owned
     uint32_t section_count;
     RigidTrack head;                // moves the roots and the mesh
+    const GivenMesh *given_mesh;    // a mesh from elsewhere, instead of run.mesh; not owned
     const Body *body;               // how the mesh deforms, set by assets_load; NULL: not at all
     Keyframes gravity;              // width 3, m/s2; without keys run.gravity holds
     Keyframes wind;                 // width 3, m/s; without keys run.wind holds
@@ -118,6 +127,25 @@ typedef struct SceneOverrides {
     const char *algo; // whose parameters are right in any section
 } SceneOverrides;
 
+// Whether a path is that of a scene file: named .json, or text that begins with '{', which no hair
+// file does.
+bool scene_is_file(const char *path);
+
+// Fills a scene that scene_create has made: one scene file, known by scene_is_file,
+// or hair files, each a section with the presets' defaults. RESULT_USAGE for an empty name,
+// and for a scene file among others; errors as scene_read_unchecked.
+Result scene_open(Scene *scene, const char *const *files, size_t count,
+                  const SceneOverrides *overrides, Error *error);
+
+// Gives a parameter a value as a flag does: of a section, or with -1 of all sections; of the run
+// whatever `section` is. What changes over time of it (keyframes, tracks) goes. Errors of
+// params_parse, and of colliders_parse.
+Result scene_set(Scene *scene, int section, const ParamInfo *info, const char *text, Error *error);
+
+// A turntable lasts 6 s at 30 frames a second where nothing is said of either, with the step that
+// other sequences have. RESULT_FAILED when memory is short.
+Result scene_choose_turn(Scene *scene, Error *error);
+
 // A section whose color or melanin is said more closely than its albedo has no albedo: the default
 // of --look gives way.
 void scene_settle_colors(Scene *scene);
@@ -125,6 +153,11 @@ void scene_settle_colors(Scene *scene);
 // As scene_read, but without scene_check, so that flags may still mend a combination.
 Result scene_read_unchecked(Scene *scene, const char *path, const SceneOverrides *overrides,
                             Error *error);
+
+// The same from the content of a scene file that `name` stands for in messages; paths in it begin
+// at `folder` ("" or ended by '/').
+Result scene_parse_unchecked(Scene *scene, const char *name, const Bytes *content,
+                             const char *folder, const SceneOverrides *overrides, Error *error);
 
 // Whether the values fit together: frame range, camera, message flags, device flags, the '%' in an
 // output pattern, names of files. RESULT_USAGE naming the flags in conflict.
@@ -152,6 +185,10 @@ Result scene_add_section(Scene *scene, const char *file, const SectionParams *pa
 // flag or a scene file says of a parameter wins over both, whatever the order. RESULT_USAGE with
 // the flag's name for another word, RESULT_FAILED when memory is short.
 Result scene_apply_presets(const Presets *presets, ParamScope scope, void *params, Error *error);
+
+// Gives the scene another look or quality (`info`): what neither flags nor a scene file have set
+// becomes what the presets say. Errors as scene_apply_presets.
+Result scene_set_preset(Scene *scene, const ParamInfo *info, const char *word, Error *error);
 
 // scene_create with the presets' defaults and lights. Errors as above.
 Result scene_create_as(Scene *scene, const Presets *presets, Error *error);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "base/bytes.h"
 #include "scene/scene.h"
 #include "scene/scene_param.h"
 #include "scene/scene_tracks.h"
@@ -33,7 +32,7 @@ static const char SCHEMA_KEY[] = "$schema";
 // and that '/', or "".
 typedef struct Document {
     JsonPlace root;
-    char *folder;
+    const char *folder;
     const json_t *json;
     const SceneOverrides *overrides;
 } Document;
@@ -258,30 +257,45 @@ static Result read_document(Scene *scene, const Document *document, Error *error
     return read_parts(scene, document, error);
 }
 
-Result scene_read_unchecked(Scene *scene, const char *path, const SceneOverrides *overrides,
-                            Error *error)
+static Result parse(Scene *scene, const char *name, const json_t *json, const char *folder,
+                    const SceneOverrides *overrides, Error *error)
 {
-    Bytes bytes;
-    json_t *json;
-    TRY(scene_create(scene, error));
-    TRY(bytes_read_file(&bytes, path, error));
-    bytes_drop_mark(&bytes);
-    Result result = json_parse(&json, path, &bytes, JSON_REJECT_DUPLICATES, error);
-    bytes_destroy(&bytes);
-    if (result != RESULT_OK) return result;
-
-    const char *slash = strrchr(path, '/');
-    Document document = {.root = {.key = path}, .json = json, .overrides = overrides};
-    document.folder = strndup(path, slash ? (size_t)(slash + 1 - path) : 0);
-    scene->file = strdup(path);
-    result = document.folder && scene->file ? read_document(scene, &document, error)
-                                            : error_set(error, RESULT_FAILED, "out of memory");
-    free(document.folder);
-    json_decref(json);
+    const Document document = {
+        .root = {.key = name}, .json = json, .folder = folder, .overrides = overrides};
+    scene->file = strdup(name);
+    Result result = scene->file ? read_document(scene, &document, error)
+                                : error_set(error, RESULT_FAILED, "out of memory");
     scene_settle_colors(scene);
     // A scene file says what there is.
     if (scene->origin[params_find("scalp") - PARAM_TABLE] == ORIGIN_DEFAULT)
         scene->run.scalp = SCALP_NONE;
+    return result;
+}
+
+Result scene_parse_unchecked(Scene *scene, const char *name, const Bytes *content,
+                             const char *folder, const SceneOverrides *overrides, Error *error)
+{
+    json_t *json;
+    TRY(scene_create(scene, error));
+    TRY(json_parse(&json, name, content, JSON_REJECT_DUPLICATES, error));
+    Result result = parse(scene, name, json, folder, overrides, error);
+    json_decref(json);
+    return result;
+}
+
+Result scene_read_unchecked(Scene *scene, const char *path, const SceneOverrides *overrides,
+                            Error *error)
+{
+    Bytes bytes;
+    *scene = (Scene){0};
+    TRY(bytes_read_file(&bytes, path, error));
+    bytes_drop_mark(&bytes);
+    const char *slash = strrchr(path, '/');
+    char *folder = strndup(path, slash ? (size_t)(slash + 1 - path) : 0);
+    Result result = folder ? scene_parse_unchecked(scene, path, &bytes, folder, overrides, error)
+                           : error_set(error, RESULT_FAILED, "out of memory");
+    free(folder);
+    bytes_destroy(&bytes);
     return result;
 }
 

@@ -91,8 +91,8 @@ static bool find_box(const Body *body, float reach, float low[3], float high[3])
     for (uint32_t i = 0; i < body->sequence.times.count; ++i) {
         const float(*p)[3] = (const float(*)[3])mesh_sequence_at(&body->sequence, i);
         for (uint32_t v = 0; v < vertices; ++v) {
-            add_point(low, high, p[v], 0);
-            if (rooted[v]) add_point(hair_low, hair_high, p[v], reach);
+            add_point(low, high, p[v], body->margin);
+            if (rooted[v]) add_point(hair_low, hair_high, p[v], reach + body->margin);
         }
     }
     for (int k = 0; k < 3; ++k) {

@@ -274,6 +274,12 @@ Result simulation_choose_substeps(int *substeps, const Scene *scene, const Stran
     return RESULT_OK;
 }
 
+Result simulation_expect_motion(Simulation *simulation, const Gpu *gpu, Error *error)
+{
+    if (simulation->carry.program) return RESULT_OK;
+    return carry_create(&simulation->carry, &gpu->limits, simulation->scene->body != NULL, error);
+}
+
 Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer,
                          const Scene *scene, const Strands *strands, const Mesh *mesh, Error *error)
 {
@@ -293,7 +299,7 @@ Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer
     THEN(result, create_field(simulation, gpu, strands, mesh, error));
     THEN(result, create_sections(simulation, gpu, strands, error));
     if (!rigid_track_is_still(&scene->head))
-        THEN(result, carry_create(&simulation->carry, &gpu->limits, scene->body != NULL, error));
+        THEN(result, simulation_expect_motion(simulation, gpu, error));
     if (result != RESULT_OK) simulation_destroy(simulation);
     return result;
 }

@@ -98,6 +98,10 @@ bool simulation_settle(Simulation *simulation);
 // To the next frame, by as many steps of each section as it takes. Only queues GPU work.
 void simulation_advance(Simulation *simulation);
 
+// Makes what a head that moves needs, where the scene did not say that it does. Before it moves.
+// Errors of carry_create.
+Result simulation_expect_motion(Simulation *simulation, const Gpu *gpu, Error *error);
+
 // Writes the positions that are drawn. Skips what has not changed. As long as `changes` stays the
 // same, so does what is drawn, but for the camera.
 void simulation_pose(Simulation *simulation);

@@ -411,6 +411,55 @@ static Result mend_all(FormatSource *source, const char *path, StrandsReport *re
     return result;
 }
 
+static bool all_finite(const float *values, size_t count)
+{
+    for (size_t i = 0; values && i < count; i++)
+        if (!isfinite(values[i])) return false;
+    return true;
+}
+
+static bool has_finite_attributes(const Strands *strands, uint32_t s)
+{
+    uint32_t v = strands->first[s], size = strands_size(strands, s);
+    bool finite = true;
+#define OF_VERTICES(array, width, mended)                                                          \
+    finite = finite && (!strands->array ||                                                         \
+                        all_finite((const float *)&strands->array[v], (size_t)size * (width)));
+#define OF_STRANDS(array, width, mended)                                                           \
+    finite = finite && (!strands->array || all_finite((const float *)&strands->array[s], width));
+    STRANDS_ARRAYS_OF_VERTICES(OF_VERTICES)
+    STRANDS_ARRAYS_OF_STRANDS(OF_STRANDS)
+#undef OF_VERTICES
+#undef OF_STRANDS
+    return finite;
+}
+
+static Result check_strand(const Strands *strands, uint32_t s, const char *name, Error *error)
+{
+    uint32_t begin = strands->first[s], end = strands->first[s + 1], size = end - begin;
+    if (size < 2 || size > STRANDS_MAX_SIZE)
+        return error_set(error, RESULT_BAD_INPUT, "%s: strand %u has %u vertices: expected 2 to %d",
+                         name, s, size, STRANDS_MAX_SIZE);
+    for (uint32_t v = begin; v < end; v++)
+        if (!is_usable(strands->position[v]))
+            return error_set(error, RESULT_BAD_INPUT,
+                             "%s: strand %u: vertex %u is not finite or beyond 1000 km", name, s,
+                             v - begin);
+    double nearest = nearest_apart(strands, begin, end);
+    for (uint32_t v = begin + 1; v < end; v++)
+        if (coincide(strands->position[v - 1], strands->position[v], nearest))
+            return error_set(error, RESULT_BAD_INPUT, "%s: strand %u: vertices %u and %u coincide",
+                             name, s, v - begin - 1, v - begin);
+    if (has_finite_attributes(strands, s)) return RESULT_OK;
+    return error_set(error, RESULT_BAD_INPUT, "%s: strand %u: an attribute is not finite", name, s);
+}
+
+Result strands_check(const Strands *strands, const char *name, Error *error)
+{
+    for (uint32_t s = 0; s < strands->strand_count; s++) TRY(check_strand(strands, s, name, error));
+    return RESULT_OK;
+}
+
 // --- Reading.
 
 static void report_source(StrandsReport *report, const FormatSource *source, FormatKind kind)

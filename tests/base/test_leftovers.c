@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What killed and interrupted runs leave behind goes away, and nothing else.
 #include "base/bytes.h"
-#include "base/interrupt.h"
+#include "base/interrupt_install.h"
 #include "base/leftovers.h"
 #include "base/outfile.h"
 #include "support/temporary.h"

@@ -24,6 +24,8 @@ for name in render gen convert compare bench farm turntable compare-goldens; do
     is_file "$share/fish/vendor_completions.d/$name.fish"; is_file "$share/zsh/site-functions/_$name"
 done
 if [ "$(find "$root/usr/bin" -type f | wc -l)" = 8 ]; then good; else bad "not 8 programs: $(ls "$root/usr/bin")"; fi
+for file in include/tractrix.h lib/libtractrix.so.0 lib/libtractrix.a lib/pkgconfig/tractrix.pc; do is_file "$root/usr/$file"; done
+holds test "$(readlink "$root/usr/lib/libtractrix.so")" = libtractrix.so.0
 for file in man/man1/tractrix-gen-fur.1 doc/tractrix/LICENSE doc/tractrix/docs/renderer.md tractrix/demo.json tractrix/scene.schema.json; do
     is_file "$share/$file"
 done
@@ -56,6 +58,26 @@ program=$root/usr/bin/tractrix-render
 cd - >/dev/null || exit 1
 is_file "$work/installed/frame_0000.png"; is_file "$work/turn/fur/frame_0000.png"; is_file "$work/farm/frame_0001.png"; is_file "$work/goldens/fur.png"
 
+# The sanitizers' libraries would have to be loaded first.
+claim "30 lines of C against the installed library draw what tractrix-render draws"
+if grep -q fsanitize "$bin/flags"; then
+    skip "libraries of a sanitizer's build"
+else
+    awk '/^```/ { inside = $0 == "```c" && !seen++; next } inside' docs/library.md >"$work/first.c"
+    export PKG_CONFIG_PATH="$root/usr/lib/pkgconfig" PKG_CONFIG_SYSROOT_DIR="$root"
+    # shellcheck disable=SC2046 # words
+    holds cc -o "$work/first" "$work/first.c" $(pkg-config --cflags --libs tractrix)
+    (cd "$work" && LD_LIBRARY_PATH="$root/usr/lib" ./first "$share/tractrix/fur.tfx") >"$work/out" 2>"$work/err"
+    run 0 "$share/tractrix/fur.tfx" --size 640x480 -q -o "$work/rendered.png"
+    holds "$bin_here/tractrix-compare" "$work/first.png" "$work/rendered.png"
+    # shellcheck disable=SC2046
+    holds cc -o "$work/static" "$work/first.c" -I"$root/usr/include" "$root/usr/lib/libtractrix.a" \
+        $(PKG_CONFIG_SYSROOT_DIR='' pkg-config --static --libs tractrix | sed 's/-L[^ ]* *-ltractrix//')
+    rm -f "$work/first.png"
+    (cd "$work" && ./static "$share/tractrix/fur.tfx") >"$work/out" 2>"$work/err"
+    holds "$bin_here/tractrix-compare" "$work/first.png" "$work/rendered.png"
+fi
+
 claim "manual pages are sound"
 for page in "$share"/man/man1/*; do
     in_file "$page" '.SH "'
@@ -73,7 +95,7 @@ claim "make uninstall leaves no file behind"
 installs uninstall
 holds test -z "$(find "$root" ! -type d)"
 # Folders of the project and of completions, too; those of every system stay.
-holds test "$(cd "$root" && find . -type d | sort | tr '\n' ' ')" = ". ./usr ./usr/bin ./usr/share ./usr/share/doc ./usr/share/man ./usr/share/man/man1 "
+holds test "$(cd "$root" && find . -type d | sort | tr '\n' ' ')" = ". ./usr ./usr/bin ./usr/include ./usr/lib ./usr/lib/pkgconfig ./usr/share ./usr/share/doc ./usr/share/man ./usr/share/man/man1 "
 
 claim "the version sorts as Debian's do"
 program=$bin/tractrix-render

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Videos with scripts in place of ffmpeg, and interrupts while they are written.
 #include "base/interrupt.h"
+#include "base/interrupt_install.h"
 #include "support/grey_frames.h"
 #include "support/temporary.h"
 

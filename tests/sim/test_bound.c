@@ -450,7 +450,7 @@ static void a_groom_is_carried_from_its_rest_pose(void **state)
     float(*before)[3] = calloc(strands->vertex_count, sizeof *before);
     memcpy(before, strands->position, strands->vertex_count * sizeof *before);
     Body body;
-    const BodyOptions options = {"sheet", 0.5f, 90};
+    const BodyOptions options = {"sheet", 0.5f, 90, false};
     assert_int_equal(body_create(&body, &sequence, &mesh, &rest, strands, 1, &options, NULL),
                      RESULT_OK);
     for (uint32_t v = 0; v < strands->vertex_count; ++v) {

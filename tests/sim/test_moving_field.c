@@ -39,7 +39,7 @@ static void turn(double time, const double rest[3], double place[3])
 static void make_ball(Ball *ball, BodyMotion *motion)
 {
     const Mesh none = {0};
-    const BodyOptions options = {"ball", 0.5f, 90};
+    const BodyOptions options = {"ball", 0.5f, 90, false};
     MeshSequence sequence;
     *ball = (Ball){0};
     shapes_make_sphere(&ball->mesh, 30, 40, 0.1f);

@@ -59,7 +59,8 @@ void body_fixture_create(BodyFixture *fixture, const char *algo, const char *var
     rigid_track_destroy(&scene->head);
     make_sheet(&fixture->mesh);
     body_fixture_sample(&sequence, &fixture->mesh, motion, rate, start, count);
-    const BodyOptions options = {"sheet", scene->run.teleport_distance, scene->run.teleport_angle};
+    const BodyOptions options = {"sheet", scene->run.teleport_distance, scene->run.teleport_angle,
+                                 false};
     if (body_create(&fixture->body, &sequence, &fixture->mesh, &none, &fixture->base.strands, 1,
                     &options, &error) != RESULT_OK)
         fail_msg("%s", error.text);

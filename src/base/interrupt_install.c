@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include "base/interrupt_install.h"
+
+#include "base/error.h"
+#include "base/interrupt.h"
+#include "base/leftovers.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <semaphore.h>
+#include <signal.h>
+#include <stdio.h>
+#include <time.h>
+#include <unistd.h>
+
+// How long the program may take to notice, and then to end: it may have the state of a large
+// simulation to write.
+enum { NOTICE_MS = 300, END_MS = 20000 };
+
+static int signals[] = {SIGINT, SIGTERM, SIGHUP}; // 0: left as it was
+enum { SIGNAL_COUNT = sizeof signals / sizeof *signals };
+
+static sem_t request_came;
+
+static void request(int number)
+{
+    (void)number;
+    interrupt_request();
+    for (int i = 0; i < SIGNAL_COUNT; ++i)
+        if (signals[i]) signal(signals[i], SIG_DFL);
+    sem_post(&request_came);
+}
+
+static void wait_ms(int ms)
+{
+    struct timespec left = {.tv_sec = ms / 1000, .tv_nsec = ms % 1000 * 1000000L};
+    while (nanosleep(&left, &left) != 0 && errno == EINTR) {
+    }
+}
+
+// Ends a program that is deep in some work, or in a library's, when a signal comes.
+static void *watch(void *unused)
+{
+    (void)unused;
+    while (sem_wait(&request_came) != 0 && errno == EINTR) {
+    }
+    wait_ms(NOTICE_MS);
+    if (interrupt_noticed()) wait_ms(END_MS);
+    leftovers_remove();
+    dprintf(STDERR_FILENO, "%s: interrupted\n", program_invocation_short_name);
+    _exit(RESULT_INTERRUPTED);
+}
+
+// A thread that signals go past. Without it, only loops that look at the flag end.
+static void start_watch(void)
+{
+    pthread_t thread;
+    pthread_attr_t attributes;
+    sigset_t all, before;
+    sigfillset(&all);
+    interrupt_expect();
+    sem_init(&request_came, 0, 0);
+    pthread_attr_init(&attributes);
+    pthread_attr_setdetachstate(&attributes, PTHREAD_CREATE_DETACHED);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    pthread_create(&thread, &attributes, watch, NULL);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    pthread_attr_destroy(&attributes);
+}
+
+void interrupt_install(void)
+{
+    // Writes to files must not stop half way for the signal's sake, hence SA_RESTART.
+    struct sigaction action = {.sa_handler = request, .sa_flags = SA_RESTART}, old;
+    sigemptyset(&action.sa_mask);
+    start_watch();
+    // nohup's wish counts.
+    if (sigaction(SIGHUP, NULL, &old) == 0 && old.sa_handler == SIG_IGN) signals[2] = 0;
+    for (int i = 0; i < SIGNAL_COUNT; ++i)
+        if (signals[i]) sigaction(signals[i], &action, NULL);
+    signal(SIGPIPE, SIG_IGN);
+    signal(SIGXFSZ, SIG_IGN);
+}

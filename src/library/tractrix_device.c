@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+#include "library/library.h"
+
+#include "base/parallel.h"
+#include "gpu/gpu_uniforms.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+// --- The thread of an own device: EGL's current context is a thread's, and so the host's stays.
+
+static void *serve(void *data)
+{
+    TractrixDevice *device = data;
+    pthread_mutex_lock(&device->mutex);
+    while (!device->ends) {
+        if (!device->work) {
+            pthread_cond_wait(&device->changed, &device->mutex);
+            continue;
+        }
+        LibraryWork *work = device->work;
+        pthread_mutex_unlock(&device->mutex);
+        Result result = work(device->data, device->error);
+        pthread_mutex_lock(&device->mutex);
+        device->work = NULL;
+        device->result = result;
+        device->done = true;
+        pthread_cond_broadcast(&device->changed);
+    }
+    pthread_mutex_unlock(&device->mutex);
+    return NULL;
+}
+
+static Result ask(TractrixDevice *device, LibraryWork *work, void *data, Error *error)
+{
+    pthread_mutex_lock(&device->mutex);
+    device->work = work;
+    device->data = data;
+    device->error = error;
+    device->done = false;
+    pthread_cond_broadcast(&device->changed);
+    while (!device->done) pthread_cond_wait(&device->changed, &device->mutex);
+    Result result = device->result;
+    pthread_mutex_unlock(&device->mutex);
+    return result;
+}
+
+static void end_thread(TractrixDevice *device)
+{
+    pthread_mutex_lock(&device->mutex);
+    device->ends = true;
+    pthread_cond_broadcast(&device->changed);
+    pthread_mutex_unlock(&device->mutex);
+    pthread_join(device->thread, NULL);
+}
+
+Result library_on_device(TractrixDevice *device, LibraryWork *work, void *data, Error *error)
+{
+    if (device->process != getpid())
+        return error_set(error, RESULT_NO_GL,
+                         "the device was opened before fork(): expected a device of this process");
+    if (!device->borrowed) return ask(device, work, data, error);
+    TRY(gpu_enter(&device->gpu, error));
+    Result result = work(data, error);
+    gpu_leave();
+    return result;
+}
+
+// --- From the first to the last.
+
+void library_keep_device(TractrixDevice *device)
+{
+    atomic_fetch_add(&device->users, 1);
+}
+
+static Result close_gpu(void *data, Error *error)
+{
+    (void)error;
+    gpu_destroy(data);
+    return RESULT_OK;
+}
+
+void library_drop_device(TractrixDevice *device)
+{
+    Error unused;
+    if (atomic_fetch_sub(&device->users, 1) > 1) return;
+    if (device->process != getpid()) return; // its thread, context and locks are the parent's
+    if (library_on_device(device, close_gpu, &device->gpu, &unused) != RESULT_OK)
+        gpu_uniforms_destroy(device->gpu.uniforms); // the host's context is gone
+    if (!device->borrowed) {
+        end_thread(device);
+        pthread_cond_destroy(&device->changed);
+        pthread_mutex_destroy(&device->mutex);
+    }
+    free(device);
+}
+
+void tractrix_device_destroy(TractrixDevice *device)
+{
+    if (device) library_drop_device(device);
+}
+
+static Result create(TractrixDevice **device, Error *error)
+{
+    *device = calloc(1, sizeof **device);
+    if (!*device) return error_set(error, RESULT_FAILED, "no memory for a device");
+    (*device)->users = 1;
+    (*device)->process = getpid();
+    return RESULT_OK;
+}
+
+typedef struct Opening {
+    Gpu *gpu;
+    GpuOptions options;
+} Opening;
+
+static Result open_gpu(void *data, Error *error)
+{
+    Opening *opening = data;
+    return gpu_create(opening->gpu, &opening->options, error);
+}
+
+static Result start(TractrixDevice *device, Error *error)
+{
+    pthread_mutex_init(&device->mutex, NULL);
+    pthread_cond_init(&device->changed, NULL);
+    int reason = parallel_start(&device->thread, serve, device);
+    if (reason == 0) return RESULT_OK;
+    pthread_cond_destroy(&device->changed);
+    pthread_mutex_destroy(&device->mutex);
+    return error_set(error, RESULT_FAILED, "a device's thread cannot be started: %s",
+                     strerror(reason));
+}
+
+static Result open_device(TractrixDevice **device, const TractrixDeviceOptions *asked, Error *error)
+{
+    TractrixDeviceOptions options = {.size = sizeof options};
+    if (asked) TRY(library_take(&options, sizeof options, asked, sizeof options, "options", error));
+    if (options.software && options.require_hardware)
+        return error_set(error, RESULT_USAGE,
+                         "options: software and require_hardware exclude each other");
+    TRY(create(device, error));
+    Opening opening = {&(*device)->gpu,
+                       {.backend = BACKEND_EGL,
+                        .device = options.name,
+                        .software = options.software,
+                        .require_hardware = options.require_hardware}};
+    Result result = start(*device, error);
+    if (result == RESULT_OK) {
+        result = ask(*device, open_gpu, &opening, error);
+        if (result == RESULT_OK) return RESULT_OK;
+        tractrix_device_destroy(*device);
+    } else {
+        free(*device);
+    }
+    *device = NULL;
+    return result;
+}
+
+TractrixResult tractrix_device_open(TractrixDevice **device, const TractrixDeviceOptions *options,
+                                    TractrixError *error)
+{
+    Error why = {{0}};
+    if (!device) return library_refuse(error, "device: got NULL");
+    *device = NULL;
+    return library_end(open_device(device, options, &why), &why, error);
+}
+
+TractrixResult tractrix_device_borrow(TractrixDevice **device, TractrixError *error)
+{
+    Error why = {{0}};
+    if (!device) return library_refuse(error, "device: got NULL");
+    Result result = create(device, &why);
+    if (result != RESULT_OK) return library_end(result, &why, error);
+    (*device)->borrowed = true;
+    result = gpu_borrow(&(*device)->gpu, &why);
+    if (result == RESULT_OK) {
+        gpu_leave();
+    } else {
+        free(*device);
+        *device = NULL;
+    }
+    return library_end(result, &why, error);
+}
+
+const char *tractrix_device_text(const TractrixDevice *device, const char *what)
+{
+    const Gpu *gpu = &device->gpu;
+    const struct {
+        const char *what, *text;
+    } texts[] = {
+        {"renderer", gpu->renderer},
+        {"version", gpu->version},
+        {"vendor", gpu->vendor},
+        {"processor", gpu->processor},
+        {"path", gpu->path},
+        {"pci", gpu->identity.pci},
+        {"uuid", gpu->identity.uuid},
+        {"node", gpu->identity.node},
+        {"passed-over", gpu->passed_over.text},
+    };
+    for (size_t i = 0; what && i < sizeof texts / sizeof *texts; ++i)
+        if (strcmp(texts[i].what, what) == 0) return texts[i].text;
+    return "";
+}

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+#include "library/library.h"
+
+#include "run/exposure.h"
+#include "run/survey.h"
+#include "scene/camera.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_SIDE = 16384 };
+
+struct TractrixRenderer {
+    TractrixSimulation *simulation;
+    Scene scene; // the simulation's with another size; owns nothing
+    Framing framing;
+    Images images;
+    Image image;
+    uint64_t aims; // the simulation's, when the camera was aimed
+};
+
+static const ImageKind KINDS[] = {
+    [TRACTRIX_RGBA8] = IMAGE_8, [TRACTRIX_RGBA32F] = IMAGE_FLOAT, [TRACTRIX_RGBA16] = IMAGE_16};
+
+static void take_scene(TractrixRenderer *renderer, int width, int height)
+{
+    renderer->scene = renderer->simulation->scene;
+    renderer->scene.run.size[0] = width;
+    renderer->scene.run.size[1] = height;
+}
+
+static Result aim(TractrixRenderer *renderer, Error *error)
+{
+    const Assets *assets = &renderer->simulation->assets;
+    SurveyReport unused;
+    renderer->aims = renderer->simulation->aims;
+    outline_frame(&renderer->framing, &renderer->scene, assets->strands,
+                  assets->has_mesh ? &assets->mesh : NULL);
+    if (!survey_is_wanted(&renderer->scene)) return RESULT_OK;
+    return survey_fit_camera(&renderer->framing, &unused, &renderer->scene, assets,
+                             &renderer->simulation->device->gpu, error);
+}
+
+// --- From the first to the last.
+
+typedef struct Opening {
+    TractrixRenderer *renderer;
+    ImageKind kind;
+} Opening;
+
+static Result open_renderer(void *data, Error *error)
+{
+    Opening *opening = data;
+    TractrixRenderer *renderer = opening->renderer;
+    TractrixSimulation *simulation = renderer->simulation;
+    const RunParams *run = &renderer->scene.run;
+    const Gpu *gpu = &simulation->device->gpu;
+    float exposure = run->exposure.value;
+    TRY(aim(renderer, error));
+    if (exposure_is_wanted(run, opening->kind))
+        TRY(exposure_find(&exposure, &renderer->scene, &simulation->assets, &renderer->framing, gpu,
+                          error));
+    TRY(images_create(&renderer->images, &renderer->scene, &simulation->assets,
+                      &simulation->simulation, &renderer->framing,
+                      &(ImagesForm){.kind = opening->kind}, gpu, &simulation->timer, error));
+    renderer->images.renderer.options.exposure = exposure;
+    return image_create_kind(&renderer->image, run->size[0], run->size[1],
+                             renderer_channels(&renderer->images.renderer), opening->kind, error);
+}
+
+static Result close_renderer(void *data, Error *error)
+{
+    TractrixRenderer *renderer = data;
+    (void)error;
+    images_destroy(&renderer->images);
+    return RESULT_OK;
+}
+
+void tractrix_renderer_destroy(TractrixRenderer *renderer)
+{
+    Error unused;
+    if (!renderer) return;
+    TractrixSimulation *simulation = renderer->simulation;
+    if (library_on_device(simulation->device, close_renderer, renderer, &unused) == RESULT_OK) {
+        image_destroy(&renderer->image);
+        free(renderer);
+    }
+    library_drop_simulation(simulation);
+}
+
+static Result create(TractrixRenderer **renderer, TractrixSimulation *simulation, int width,
+                     int height, TractrixFormat format, Error *error)
+{
+    if (width < 1 || width > MOST_SIDE || height < 1 || height > MOST_SIDE)
+        return error_set(error, RESULT_USAGE, "size: got %dx%d, expected 1x1 to %dx%d", width,
+                         height, MOST_SIDE, MOST_SIDE);
+    if ((unsigned)format >= sizeof KINDS / sizeof *KINDS)
+        return error_set(error, RESULT_USAGE, "format: got %d, expected 0 to 2", (int)format);
+    TractrixRenderer *made = *renderer = calloc(1, sizeof *made);
+    if (!made) return error_set(error, RESULT_FAILED, "no memory for a renderer");
+    library_keep_simulation(simulation);
+    made->simulation = simulation;
+    take_scene(made, width, height);
+    Opening opening = {made, KINDS[format]};
+    return library_on_device(simulation->device, open_renderer, &opening, error);
+}
+
+TractrixResult tractrix_renderer_create(TractrixRenderer **renderer, TractrixSimulation *simulation,
+                                        int width, int height, TractrixFormat format,
+                                        TractrixError *error)
+{
+    Error why = {{0}};
+    if (!renderer) return library_refuse(error, "renderer: got NULL");
+    *renderer = NULL;
+    if (!simulation) return library_refuse(error, "simulation: got NULL");
+    Result result = create(renderer, simulation, width, height, format, &why);
+    if (result != RESULT_OK) {
+        tractrix_renderer_destroy(*renderer);
+        *renderer = NULL;
+    }
+    return library_end(result, &why, error);
+}
+
+// --- Drawing.
+
+// What the matrices say: clip z = P10 z + P14, w = -z; the eye is -R^T t.
+static Result take_view(View *view, const TractrixView *asked, Error *error)
+{
+    TractrixView from;
+    TRY(library_take(&from, sizeof from, asked, sizeof from, "view", error));
+    const float *m = from.world_to_eye, *p = from.projection;
+    memcpy(view->view, m, sizeof view->view);
+    memcpy(view->projection, p, sizeof view->projection);
+    for (int k = 0; k < 3; ++k)
+        view->eye[k] = -(m[4 * k] * m[12] + m[4 * k + 1] * m[13] + m[4 * k + 2] * m[14]);
+    view->fov = 2 * atanf(1 / p[5]);
+    view->near_distance = p[14] / (p[10] - 1);
+    view->far_distance = p[14] / (p[10] + 1);
+    bool sound = true;
+    for (int i = 0; i < 16; ++i) sound = sound && isfinite(m[i]) && isfinite(p[i]);
+    if (!sound || !(p[0] > 0 && p[5] > 0) || p[11] != -1 || p[15] != 0)
+        return error_set(error, RESULT_USAGE,
+                         "view: expected finite matrices, the projection a "
+                         "perspective that looks along -z");
+    if (!(view->near_distance > 0 && view->far_distance > view->near_distance &&
+          isfinite(view->far_distance)))
+        return error_set(error, RESULT_USAGE,
+                         "view: planes at %g and %g m: expected 0 < near < far",
+                         (double)view->near_distance, (double)view->far_distance);
+    return RESULT_OK;
+}
+
+typedef struct DrawCall {
+    TractrixRenderer *renderer;
+    const TractrixView *view;
+} DrawCall;
+
+static Result draw(void *data, Error *error)
+{
+    DrawCall *call = data;
+    TractrixRenderer *renderer = call->renderer;
+    const int *size = renderer->scene.run.size;
+    int frame = renderer->simulation->simulation.frame;
+    View view;
+    take_scene(renderer, size[0], size[1]);
+    if (renderer->aims != renderer->simulation->aims) TRY(aim(renderer, error));
+    if (call->view)
+        TRY(take_view(&view, call->view, error));
+    else
+        camera_view(&view, &renderer->scene, &renderer->framing, frame);
+    return images_draw(&renderer->images, frame, &view, &renderer->image, error);
+}
+
+TractrixResult tractrix_render(TractrixRenderer *renderer, const TractrixView *view,
+                               TractrixImage *image, TractrixError *error)
+{
+    Error why = {{0}};
+    TractrixImage to;
+    if (!renderer) return library_refuse(error, "renderer: got NULL");
+    Result result = library_take_image(&to, image, "image", &why);
+    if (result == RESULT_OK &&
+        (to.width != renderer->image.width || to.height != renderer->image.height ||
+         KINDS[to.format] != renderer->image.kind))
+        result =
+            error_set(&why, RESULT_USAGE, "image: has not the renderer's size %dx%d and format",
+                      renderer->image.width, renderer->image.height);
+    DrawCall call = {renderer, view};
+    THEN(result, library_on_device(renderer->simulation->device, draw, &call, &why));
+    if (result == RESULT_OK) library_put_image(&to, &renderer->image);
+    return library_end(result, &why, error);
+}

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#include "run/images_output.h"
+#include "base/target.h"
+
+#include <cglm/mat4.h>
+#include <string.h>
+
+// Whether EXR files are written that have layers: an image by --aov and a sheet have none.
+static bool has_layers(const RunParams *run, const Target *target)
+{
+    return target->format == TARGET_EXR && run->exr_layers && run->aov == AOV_NONE &&
+           run->contact_sheet[0] == 1 && run->contact_sheet[1] == 1;
+}
+
+Result images_output_form(ImagesForm *form, const RunParams *run, Error *error)
+{
+    Target target;
+    TRY(target_parse(&target, run->output, error));
+    form->kind = target.floats ? IMAGE_FLOAT : run->depth == DEPTH_16 ? IMAGE_16 : IMAGE_8;
+    form->layers = has_layers(run, &target);
+    target_destroy(&target);
+    return RESULT_OK;
+}
+
+Result images_output_create(Output **output, const Images *images, const Fingerprint *fingerprint,
+                            int frame_count, Error *error)
+{
+    const RunParams *run = &images->scene->run;
+    const OutputOptions options = {
+        .target = run->output,
+        .width = run->size[0],
+        .height = run->size[1],
+        .channels = renderer_channels(&images->renderer),
+        .kind = images->renderer.options.kind,
+        .fps = (double)run->fps / run->every,
+        .frame_count = frame_count,
+        .columns = run->contact_sheet[0],
+        .rows = run->contact_sheet[1],
+        .texts = &fingerprint->origin,
+        .layers = images->layers != NULL,
+        .exr_float = run->exr_float,
+    };
+    return output_create(output, &options, error);
+}
+
+void images_output_matrices(FrameExtra *extra, const View *view)
+{
+    // From clip space: x of -w to w becomes 0 to w, y the other way round.
+    mat4 halve = {{0.5f, 0, 0, 0}, {0, -0.5f, 0, 0}, {0, 0, 1, 0}, {0.5f, 0.5f, 0, 1}};
+    mat4 from_world = {0}, projection = {0}, whole;
+    memcpy(from_world, view->view, sizeof from_world);
+    memcpy(projection, view->projection, sizeof projection);
+    glm_mat4_mulN((mat4 *[]){&halve, &projection, &from_world}, 3, whole);
+    memcpy(extra->world_to_camera, from_world, sizeof from_world);
+    memcpy(extra->world_to_ndc, whole, sizeof whole);
+}

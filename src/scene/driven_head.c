@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#include "scene/driven_head.h"
+
+#include <string.h>
+
+// Takes the place of the scene's track, from where that has the head.
+static void take_over(DrivenHead *head, Scene *scene, double time)
+{
+    float rotation[4], translation[3], pivot[3];
+    rigid_track_evaluate(&scene->head, time, rotation, translation);
+    for (int k = 0; k < 4; ++k) head->motion[1].rotation[k] = (double)rotation[k];
+    for (int k = 0; k < 3; ++k) head->motion[1].translation[k] = (double)translation[k];
+    memcpy(pivot, scene->head.pivot, sizeof pivot);
+    rigid_track_destroy(&scene->head);
+    memcpy(scene->head.pivot, pivot, sizeof pivot);
+    head->samples.motion = head->motion;
+    scene->head.samples = &head->samples;
+}
+
+void driven_head_move(DrivenHead *head, Scene *scene, const RigidMotion *to, double before,
+                      double after)
+{
+    if (!head->samples.motion) take_over(head, scene, before);
+    head->motion[0] = head->motion[1];
+    head->motion[1] = *to;
+    head->samples.times =
+        (SampleTimes){.count = 2, .rate = 1 / (after - before), .start = before, .linear = true};
+}

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#include "scene/scene.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+bool scene_is_file(const char *path)
+{
+    size_t length = strlen(path);
+    if (length >= 5 && strcmp(path + length - 5, ".json") == 0) return true;
+    struct stat status;
+    if (stat(path, &status) != 0 || !S_ISREG(status.st_mode)) return false;
+    FILE *file = fopen(path, "rb");
+    if (!file) return false;
+    char beginning[257];
+    size_t size = fread(beginning, 1, sizeof beginning - 1, file);
+    fclose(file);
+    beginning[size] = 0;
+    bool binary = memchr(beginning, 0, size) != NULL;
+    const char *text = beginning + (strncmp(beginning, "\xef\xbb\xbf", 3) == 0 ? 3 : 0);
+    return !binary && text[strspn(text, " \t\r\n")] == '{';
+}
+
+static Result add_sections(Scene *scene, const char *const *files, size_t count,
+                           const Presets *presets, Error *error)
+{
+    SectionParams defaults;
+    Result result = params_create_section(&defaults, error);
+    THEN(result, scene_apply_presets(presets, SCOPE_RUN, &scene->run, error));
+    THEN(result, scene_apply_presets(presets, SCOPE_SECTION, &defaults, error));
+    for (size_t i = 0; i < count; i++)
+        THEN(result, scene_add_section(scene, files[i], &defaults, error));
+    params_destroy_section(&defaults);
+    return result;
+}
+
+Result scene_open(Scene *scene, const char *const *files, size_t count,
+                  const SceneOverrides *overrides, Error *error)
+{
+    const char *scene_file = NULL;
+    for (size_t i = 0; i < count; i++) {
+        if (!files[i][0]) return error_set(error, RESULT_USAGE, "the name of a file is empty");
+        if (scene_is_file(files[i])) scene_file = files[i];
+    }
+    if (!scene_file) return add_sections(scene, files, count, &overrides->presets, error);
+    if (count > 1)
+        return error_set(error, RESULT_USAGE,
+                         "%.200s is a scene file: expected no other file beside it "
+                         "(name hair in its 'sections')",
+                         scene_file);
+    scene_destroy(scene);
+    return scene_read_unchecked(scene, scene_file, overrides, error);
+}

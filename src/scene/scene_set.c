@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include "scene/scene.h"
+
+#include <string.h>
+
+enum { TURN_SECONDS = 6, TURN_FPS = 30 };
+
+// A value given as a flag also replaces the scene file's keyframes of that name.
+static void drop_keyframes(Scene *scene, const char *name)
+{
+    const struct {
+        const char *name;
+        Keyframes *keys;
+    } tracks[] = {{"gravity", &scene->gravity},
+                  {"wind", &scene->wind},
+                  {"eye", &scene->eye},
+                  {"target", &scene->target},
+                  {"fov", &scene->fov}};
+    for (size_t i = 0; i < sizeof tracks / sizeof tracks[0]; i++) {
+        if (strcmp(name, tracks[i].name) == 0) keyframes_destroy(tracks[i].keys);
+    }
+}
+
+static Result set_run(Scene *scene, const ParamInfo *info, const char *text, Error *error)
+{
+    TRY(params_parse(info, &scene->run, text, error));
+    drop_keyframes(scene, info->name);
+    scene->origin[info - PARAM_TABLE] = ORIGIN_FLAG;
+    if (strcmp(info->name, "colliders") != 0) return RESULT_OK;
+    colliders_destroy(&scene->colliders);
+    return colliders_parse(&scene->colliders, scene->run.colliders, error);
+}
+
+static Result set_section(Section *section, const ParamInfo *info, const char *text, Error *error)
+{
+    TRY(params_parse(info, &section->params, text, error));
+    section_tracks_drop(&section->tracks, info);
+    section->origin[info - PARAM_TABLE] = ORIGIN_FLAG;
+    return RESULT_OK;
+}
+
+Result scene_set(Scene *scene, int section, const ParamInfo *info, const char *text, Error *error)
+{
+    if (info->scope == SCOPE_RUN) return set_run(scene, info, text, error);
+    if (section >= 0) return set_section(&scene->sections[section], info, text, error);
+    for (uint32_t i = 0; i < scene->section_count; i++)
+        TRY(set_section(&scene->sections[i], info, text, error));
+    return RESULT_OK;
+}
+
+static bool is_default(const Scene *scene, const char *name)
+{
+    return scene->origin[params_find(name) - PARAM_TABLE] == ORIGIN_DEFAULT;
+}
+
+Result scene_choose_turn(Scene *scene, Error *error)
+{
+    RunParams *run = &scene->run;
+    if (run->turntable == 0 || !is_default(scene, "frames") || !is_default(scene, "fps"))
+        return RESULT_OK;
+    if (is_default(scene, "sim_rate") && is_default(scene, "speed"))
+        TRY(params_parse(params_find("sim_rate"), run, params_find("fps")->default_text, error));
+    run->frames = TURN_SECONDS * TURN_FPS;
+    run->fps = TURN_FPS;
+    return RESULT_OK;
+}

@@ -1,0 +1,570 @@
+// SPDX-License-Identifier: MIT
+// Devices of the library, simulations and images on them, and the host's context beside them.
+#include "support/library_fixture.h"
+
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+
+#include <math.h>
+#include <pthread.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#define error library_error
+
+static TractrixDevice *device; // of all tests that need no other
+
+static int open_device(void **state)
+{
+    (void)state;
+    WELL(tractrix_device_open(&device, NULL, &error));
+    return 0;
+}
+
+static int close_device(void **state)
+{
+    (void)state;
+    tractrix_device_destroy(device);
+    return 0;
+}
+
+static const char *const NONE[] = {NULL};
+
+static TractrixSimulation *simulate(TractrixDevice *on, const char *const *parameters)
+{
+    TractrixScene *scene = library_scene(parameters);
+    TractrixSimulation *simulation;
+    WELL(tractrix_simulation_create(&simulation, on, scene, &error));
+    tractrix_scene_destroy(scene); // a simulation needs it no more
+    return simulation;
+}
+
+static TractrixPositions map(TractrixSimulation *simulation, TractrixPart part)
+{
+    TractrixPositions positions = {.size = sizeof positions};
+    WELL(tractrix_simulation_map(simulation, 0, part, &positions, &error));
+    return positions;
+}
+
+static void assert_near(const float *a, const float *b, float within)
+{
+    for (int k = 0; k < 3; ++k)
+        if (!(fabsf(a[k] - b[k]) <= within))
+            fail_msg("%g, %g, %g is not %g, %g, %g", (double)a[0], (double)a[1], (double)a[2],
+                     (double)b[0], (double)b[1], (double)b[2]);
+}
+
+// --- Positions.
+
+// Strands of several sizes lie in tiles of one size each on the GPU: here they are in their order.
+static void maps_strands_in_their_order(void **state)
+{
+    static const char *const parameters[] = {"followers", "2", "follower_radius", "0.001", NULL};
+    float position[FIXTURE_VERTICES][3];
+    (void)state;
+    TractrixSimulation *simulation = simulate(device, parameters);
+    TractrixPositions guides = map(simulation, TRACTRIX_GUIDES);
+    library_positions(position);
+    assert_int_equal(guides.strand_count, FIXTURE_STRANDS);
+    assert_int_equal(guides.vertex_count, FIXTURE_VERTICES);
+    assert_memory_equal(guides.sizes, library_sizes, sizeof library_sizes);
+    for (int v = 0; v < FIXTURE_VERTICES; ++v) {
+        assert_near(&guides.position[4 * v], position[v], 1e-6f);
+        assert_true(guides.position[4 * v + 3] == 1);
+    }
+    TractrixPositions followers = map(simulation, TRACTRIX_FOLLOWERS);
+    assert_int_equal(followers.strand_count, 2 * FIXTURE_STRANDS);
+    assert_int_equal(followers.vertex_count, 2 * FIXTURE_VERTICES);
+    for (uint32_t s = 0, at = 0; s < 2 * FIXTURE_STRANDS; at += followers.sizes[s++]) {
+        uint32_t first = 0; // of its guide
+        for (uint32_t g = 0; g < s / 2; ++g) first += library_sizes[g];
+        assert_int_equal(followers.sizes[s], library_sizes[s / 2]);
+        assert_near(&followers.position[4 * at], position[first], 0.0011f);
+    }
+    TractrixPositions positions = {.size = sizeof positions};
+    library_refused(tractrix_simulation_map(simulation, 1, TRACTRIX_GUIDES, &positions, &error),
+                    TRACTRIX_USAGE, "section: got 1, expected 0 to 0");
+    positions.size = 3;
+    library_refused(tractrix_simulation_map(simulation, 0, TRACTRIX_GUIDES, &positions, &error),
+                    TRACTRIX_USAGE, "positions.size");
+    library_refused(tractrix_simulation_copy_to_gl(simulation, 0, TRACTRIX_GUIDES, 1, 0, &error),
+                    TRACTRIX_USAGE, "not borrowed");
+    tractrix_simulation_destroy(simulation);
+}
+
+// --- Motion.
+
+// A turn of 90 degrees about z in four frames, and a way along x.
+static TractrixPose pose_after(int frame)
+{
+    double half = 0.5 * 1.5707963267948966 * frame / 4;
+    return (TractrixPose){{0, 0, sin(half), cos(half)}, {0.1 * frame, 0, 0}};
+}
+
+static void follows_poses(void **state)
+{
+    float position[FIXTURE_VERTICES][3];
+    (void)state;
+    TractrixSimulation *simulation = simulate(device, NONE);
+    library_positions(position);
+    for (int frame = 1; frame <= 4; ++frame) {
+        TractrixPose pose = pose_after(frame);
+        WELL(tractrix_simulation_advance(simulation, &pose, &error));
+    }
+    assert_true(fabs(tractrix_simulation_time(simulation) - 4.0 / 60) < 1e-9);
+    WELL(tractrix_simulation_advance(simulation, NULL, &error)); // stays where it is
+    TractrixPositions moved = map(simulation, TRACTRIX_GUIDES);
+    for (uint32_t s = 0, at = 0; s < FIXTURE_STRANDS; at += library_sizes[s++]) {
+        const float *p = position[at], root[3] = {0.4f - p[1], p[0], p[2]};
+        assert_near(&moved.position[4 * at], root, 1e-6f);
+    }
+    tractrix_simulation_destroy(simulation);
+}
+
+// The same motion by the scene's own keys and by poses, over frames of two steps each: the same
+// hair. Poses go by screws, keys straight; without a turn these are one. The bound is that of
+// float32 places at 0.5 m over 8 steps.
+static void moves_as_the_scene_would(void **state)
+{
+    static const char json[] =
+        "{\"sections\": [{\"file\": \"assets/curls.tfx\"}], \"substeps\": 2, \"head\": {\"keys\": "
+        "[{\"time\": 0, \"translate\": [0, 0, 0]}, {\"time\": 1, \"translate\": [3, 1, 0]}], "
+        "\"interpolation\": \"linear\"}}",
+                      still[] = "{\"sections\": [{\"file\": \"assets/curls.tfx\"}], "
+                                "\"substeps\": 2}";
+    TractrixScene *scene;
+    TractrixSimulation *keyed, *driven;
+    (void)state;
+    WELL(tractrix_scene_parse(&scene, json, NULL, &error));
+    WELL(tractrix_simulation_create(&keyed, device, scene, &error));
+    tractrix_scene_destroy(scene);
+    WELL(tractrix_scene_parse(&scene, still, NULL, &error));
+    WELL(tractrix_simulation_create(&driven, device, scene, &error));
+    tractrix_scene_destroy(scene);
+    for (int frame = 1; frame <= 4; ++frame) {
+        const TractrixPose pose = {{0, 0, 0, 1}, {frame / 20.0, frame / 60.0, 0}};
+        WELL(tractrix_simulation_advance(keyed, NULL, &error));
+        WELL(tractrix_simulation_advance(driven, &pose, &error));
+    }
+    TractrixPositions a = map(keyed, TRACTRIX_GUIDES), b = map(driven, TRACTRIX_GUIDES);
+    assert_int_equal(a.vertex_count, b.vertex_count);
+    for (uint32_t v = 0; v < a.vertex_count; ++v)
+        assert_near(&a.position[4 * v], &b.position[4 * v], 1e-5f);
+    tractrix_simulation_destroy(keyed);
+    tractrix_simulation_destroy(driven);
+}
+
+static void refuses_wrong_poses(void **state)
+{
+    static const char *const odd[] = {"sim_rate", "100", NULL};
+    TractrixPose pose = pose_after(1);
+    (void)state;
+    TractrixSimulation *simulation = simulate(device, odd);
+    library_refused(tractrix_simulation_advance(simulation, &pose, &error), TRACTRIX_USAGE,
+                    "whole number");
+    WELL(tractrix_simulation_advance(simulation, NULL, &error));
+    tractrix_simulation_destroy(simulation);
+    simulation = simulate(device, NONE);
+    pose.rotation[3] = 2;
+    library_refused(tractrix_simulation_advance(simulation, &pose, &error), TRACTRIX_USAGE,
+                    "head.rotation");
+    pose = pose_after(1);
+    pose.translation[1] = NAN;
+    library_refused(tractrix_simulation_advance(simulation, &pose, &error), TRACTRIX_USAGE,
+                    "head.translation");
+    library_refused(tractrix_simulation_advance_mesh(simulation, library_sheet[0], 4, &error),
+                    TRACTRIX_USAGE, "deforms");
+    library_refused(tractrix_simulation_set(simulation, "drag", "1", &error), TRACTRIX_USAGE,
+                    "live");
+    library_refused(tractrix_simulation_set(simulation, "wind", "1", &error), TRACTRIX_USAGE,
+                    "wind: ");
+    tractrix_simulation_destroy(simulation);
+}
+
+static TractrixSimulation *simulate_sheet(bool deforms)
+{
+    TractrixScene *scene = library_scene(NONE);
+    TractrixSimulation *simulation;
+    library_set_sheet(scene, deforms);
+    WELL(tractrix_simulation_create(&simulation, device, scene, &error));
+    tractrix_scene_destroy(scene);
+    return simulation;
+}
+
+// A mesh whose vertices move as one body is a head that moves; and where it stretches to twice its
+// width, so do the roots.
+static void follows_a_mesh(void **state)
+{
+    float sheet[4][3], position[FIXTURE_VERTICES][3];
+    (void)state;
+    TractrixSimulation *skin = simulate_sheet(true), *head = simulate_sheet(false);
+    for (int frame = 1; frame <= 4; ++frame) {
+        const TractrixPose pose = {{0, 0, 0, 1}, {0.02 * frame, 0.01 * frame, 0}};
+        memcpy(sheet, library_sheet, sizeof sheet);
+        for (int v = 0; v < 4; ++v)
+            for (int k = 0; k < 2; ++k) sheet[v][k] += (float)pose.translation[k];
+        WELL(tractrix_simulation_advance_mesh(skin, sheet[0], 4, &error));
+        WELL(tractrix_simulation_advance(head, &pose, &error));
+    }
+    TractrixPositions a = map(skin, TRACTRIX_GUIDES), b = map(head, TRACTRIX_GUIDES);
+    for (uint32_t v = 0; v < FIXTURE_VERTICES; ++v)
+        assert_near(&a.position[4 * v], &b.position[4 * v], 2e-5f);
+    for (int v = 0; v < 4; ++v) sheet[v][0] = 2 * library_sheet[v][0];
+    WELL(tractrix_simulation_advance_mesh(skin, sheet[0], 4, &error));
+    WELL(tractrix_simulation_advance(skin, NULL, &error));
+    a = map(skin, TRACTRIX_GUIDES);
+    library_positions(position);
+    for (uint32_t s = 0, at = 0; s < FIXTURE_STRANDS; at += library_sizes[s++]) {
+        const float root[3] = {2 * position[at][0], sheet[0][1], position[at][2]};
+        assert_near(&a.position[4 * at], root, 1e-5f);
+    }
+    const TractrixPose pose = pose_after(1);
+    library_refused(tractrix_simulation_advance(skin, &pose, &error), TRACTRIX_USAGE, "deforms");
+    library_refused(tractrix_simulation_advance_mesh(skin, sheet[0], 3, &error), TRACTRIX_USAGE,
+                    "vertex_count");
+    sheet[2][1] = NAN;
+    library_refused(tractrix_simulation_advance_mesh(skin, sheet[0], 4, &error), TRACTRIX_BAD_INPUT,
+                    "vertex 2");
+    tractrix_simulation_destroy(skin);
+    tractrix_simulation_destroy(head);
+}
+
+static void takes_live_parameters(void **state)
+{
+    static uint8_t before[FIXTURE_PIXELS][4], after[FIXTURE_PIXELS][4];
+    TractrixRenderer *renderer;
+    TractrixImage image = {.size = sizeof image, .width = 48, .height = 32, .pixels = before};
+    (void)state;
+    TractrixSimulation *still = simulate(device, NONE), *blown = simulate(device, NONE);
+    WELL(tractrix_simulation_set(blown, "wind", "8,0,0", &error));
+    for (int frame = 0; frame < 4; ++frame) {
+        WELL(tractrix_simulation_advance(still, NULL, &error));
+        WELL(tractrix_simulation_advance(blown, NULL, &error));
+    }
+    uint32_t tip = FIXTURE_VERTICES - 1;
+    assert_true(map(blown, TRACTRIX_GUIDES).position[4 * tip] >
+                map(still, TRACTRIX_GUIDES).position[4 * tip] + 1e-4f);
+    WELL(tractrix_renderer_create(&renderer, still, 48, 32, TRACTRIX_RGBA8, &error));
+    WELL(tractrix_render(renderer, NULL, &image, &error));
+    WELL(tractrix_simulation_set(still, "fov", "60", &error)); // an automatic eye comes nearer
+    image.pixels = after;
+    WELL(tractrix_render(renderer, NULL, &image, &error));
+    tractrix_renderer_destroy(renderer);
+    assert_memory_not_equal(before, after, sizeof before);
+    library_draw(still, NULL, before); // as a renderer that is made now
+    assert_memory_equal(before, after, sizeof before);
+    tractrix_simulation_destroy(still);
+    tractrix_simulation_destroy(blown);
+}
+
+// --- Images.
+
+static int count_hair(uint8_t pixels[FIXTURE_PIXELS][4])
+{
+    int count = 0;
+    for (int i = 0; i < FIXTURE_PIXELS; ++i) count += memcmp(pixels[i], pixels[0], 4) != 0;
+    return count;
+}
+
+static void draws_by_views_and_formats(void **state)
+{
+    static const char *const clear[] = {"background", "transparent", NULL};
+    static uint8_t pixels[FIXTURE_PIXELS][4];
+    static float light[FIXTURE_PIXELS][4];
+    // From 0.5 m before the hair, which fills about a third of the image's height.
+    TractrixView view = {
+        .size = sizeof view,
+        .world_to_eye = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -0.04f, 0.06f, -0.5f, 1},
+        .projection = {2, 0, 0, 0, 0, 3, 0, 0, 0, 0, -1.02f, -1, 0, 0, -0.0202f, 0}};
+    TractrixRenderer *renderer;
+    TractrixImage image = {.size = sizeof image,
+                           .width = 48,
+                           .height = 32,
+                           .format = TRACTRIX_RGBA32F,
+                           .pixels = light};
+    (void)state;
+    TractrixSimulation *simulation = simulate(device, clear);
+    library_draw(simulation, &view, pixels);
+    assert_in_range(count_hair(pixels), 5, FIXTURE_PIXELS / 2);
+    assert_int_equal(pixels[0][3], 0);
+    view.world_to_eye[14] = 0.5f; // behind the eye
+    library_draw(simulation, &view, pixels);
+    assert_int_equal(count_hair(pixels), 0);
+    WELL(tractrix_renderer_create(&renderer, simulation, 48, 32, TRACTRIX_RGBA32F, &error));
+    WELL(tractrix_render(renderer, NULL, &image, &error));
+    float most = 0;
+    for (int i = 0; i < FIXTURE_PIXELS; ++i) most = fmaxf(most, light[i][3]);
+    assert_true(most > 0.05f && most <= 1 && light[0][3] == 0);
+    view.projection[11] = 0;
+    library_refused(tractrix_render(renderer, &view, &image, &error), TRACTRIX_USAGE, "view");
+    image.width = 47;
+    library_refused(tractrix_render(renderer, NULL, &image, &error), TRACTRIX_USAGE, "48x32");
+    tractrix_renderer_destroy(renderer);
+    library_refused(tractrix_renderer_create(&renderer, simulation, 0, 32, TRACTRIX_RGBA8, &error),
+                    TRACTRIX_USAGE, "size: got 0x32");
+    assert_null(renderer);
+    tractrix_simulation_destroy(simulation);
+}
+
+static void refuses_what_has_no_effect(void **state)
+{
+    static const char *const useless[] = {"gust_period", "3", NULL}, *const both[] = {
+                                                                         "raster", "blocks", "oit",
+                                                                         "none", NULL};
+    static const char *const *const wrong[] = {useless, both};
+    TractrixSimulation *simulation;
+    (void)state;
+    for (int i = 0; i < 2; ++i) {
+        TractrixScene *scene = library_scene(wrong[i]);
+        library_refused(tractrix_simulation_create(&simulation, device, scene, &error),
+                        TRACTRIX_USAGE, i ? "exclude" : "no effect");
+        assert_null(simulation);
+        tractrix_scene_destroy(scene);
+    }
+    TractrixScene *empty;
+    WELL(tractrix_scene_create(&empty, NULL, &error));
+    library_refused(tractrix_simulation_create(&simulation, device, empty, &error), TRACTRIX_USAGE,
+                    "no hair");
+    tractrix_scene_destroy(empty);
+}
+
+// --- Lifetimes.
+
+static void children_keep_their_parents(void **state)
+{
+    static uint8_t one[FIXTURE_PIXELS][4], other[FIXTURE_PIXELS][4];
+    TractrixDevice *own;
+    TractrixRenderer *renderer;
+    TractrixImage image = {.size = sizeof image, .width = 48, .height = 32, .pixels = one};
+    (void)state;
+    WELL(tractrix_device_open(&own, NULL, &error));
+    assert_true(*tractrix_device_text(own, "renderer") && !*tractrix_device_text(own, "colour"));
+    TractrixSimulation *simulation = simulate(own, NONE);
+    WELL(tractrix_renderer_create(&renderer, simulation, 48, 32, TRACTRIX_RGBA8, &error));
+    tractrix_device_destroy(own);
+    tractrix_simulation_destroy(simulation);
+    WELL(tractrix_render(renderer, NULL, &image, &error));
+    tractrix_renderer_destroy(renderer);
+    simulation = simulate(device, NONE);
+    library_draw(simulation, NULL, other);
+    assert_memory_equal(one, other, sizeof one);
+    tractrix_simulation_destroy(simulation);
+    tractrix_device_destroy(NULL);
+    tractrix_simulation_destroy(NULL);
+    tractrix_renderer_destroy(NULL);
+    const TractrixDeviceOptions both = {sizeof both, NULL, true, true},
+                                none = {sizeof none, "no such device", false, false};
+    library_refused(tractrix_device_open(&own, &both, &error), TRACTRIX_USAGE, "exclude");
+    library_refused(tractrix_device_open(&own, &none, &error), TRACTRIX_NO_GL, "no such device");
+}
+
+// In the child nothing works, and nothing hangs.
+static void says_so_after_fork(void **state)
+{
+    (void)state;
+    TractrixSimulation *simulation = simulate(device, NONE);
+    pid_t child = fork();
+    if (child == 0) {
+        TractrixResult result = tractrix_simulation_advance(simulation, NULL, &error);
+        bool told = result == TRACTRIX_NO_GL && strstr(error.text, "fork");
+        tractrix_simulation_destroy(simulation);
+        _exit(told ? 0 : 1);
+    }
+    int status = 1;
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_int_equal(status, 0);
+    WELL(tractrix_simulation_advance(simulation, NULL, &error));
+    tractrix_simulation_destroy(simulation);
+}
+
+// --- Two devices at once.
+
+typedef struct Job {
+    pthread_t thread;
+    float position[FIXTURE_VERTICES][4];
+    uint8_t pixels[FIXTURE_PIXELS][4];
+} Job;
+
+static void work_on(TractrixDevice *on, Job *job)
+{
+    static const char *const windy[] = {"wind", "3,0,0", "shading", "marschner", NULL};
+    TractrixSimulation *simulation = simulate(on, windy);
+    for (int frame = 1; frame <= 4; ++frame) {
+        TractrixPose pose = pose_after(frame);
+        WELL(tractrix_simulation_advance(simulation, &pose, &library_error));
+    }
+    TractrixPositions positions = map(simulation, TRACTRIX_GUIDES);
+    memcpy(job->position, positions.position, sizeof job->position);
+    library_draw(simulation, NULL, job->pixels);
+    tractrix_simulation_destroy(simulation);
+}
+
+static void *work(void *data)
+{
+    TractrixDevice *own;
+    if (tractrix_device_open(&own, NULL, NULL) == TRACTRIX_OK) work_on(own, data);
+    tractrix_device_destroy(own);
+    return NULL;
+}
+
+static void two_devices_work_side_by_side(void **state)
+{
+    static Job jobs[3];
+    (void)state;
+    for (int i = 0; i < 2; ++i)
+        assert_int_equal(pthread_create(&jobs[i].thread, NULL, work, &jobs[i]), 0);
+    for (int i = 0; i < 2; ++i) pthread_join(jobs[i].thread, NULL);
+    work_on(device, &jobs[2]);
+    assert_in_range(count_hair(jobs[2].pixels), 5, FIXTURE_PIXELS);
+    for (int i = 0; i < 2; ++i) {
+        assert_memory_equal(jobs[i].position, jobs[2].position, sizeof jobs[2].position);
+        assert_memory_equal(jobs[i].pixels, jobs[2].pixels, sizeof jobs[2].pixels);
+    }
+}
+
+// --- A host's context.
+
+static EGLDisplay host_display;
+static EGLContext host_context;
+
+static void make_host(void)
+{
+    static const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                        4,
+                                        EGL_CONTEXT_MINOR_VERSION,
+                                        3,
+                                        EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                        EGL_NONE};
+    host_display = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, NULL, NULL);
+    assert_true(host_display && eglInitialize(host_display, NULL, NULL));
+    eglBindAPI(EGL_OPENGL_API);
+    host_context = eglCreateContext(host_display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
+    assert_non_null(host_context);
+    assert_true(eglMakeCurrent(host_display, EGL_NO_SURFACE, EGL_NO_SURFACE, host_context));
+}
+
+static void drop_host(void)
+{
+    eglMakeCurrent(host_display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(host_display, host_context);
+}
+
+// A device of the same driver opens, draws and closes while the host's context is current: it stays
+// so, with what is bound, and its display is not ended.
+static void leaves_a_hosts_context_alone(void **state)
+{
+    TractrixDevice *own;
+    GLuint buffer;
+    GLint bound = 0;
+    static Job job;
+    (void)state;
+    make_host();
+    glGenBuffers(1, &buffer);
+    glBindBuffer(GL_ARRAY_BUFFER, buffer);
+    glBufferData(GL_ARRAY_BUFFER, 16, "fifteen letters", GL_STATIC_DRAW);
+    const TractrixDeviceOptions options = {.size = sizeof options, .software = true};
+    WELL(tractrix_device_open(&own, &options, &error));
+    work_on(own, &job);
+    tractrix_device_destroy(own);
+    assert_ptr_equal(eglGetCurrentContext(), host_context);
+    glGetIntegerv(GL_ARRAY_BUFFER_BINDING, &bound);
+    assert_int_equal(bound, buffer);
+    char text[16];
+    glGetBufferSubData(GL_ARRAY_BUFFER, 0, sizeof text, text);
+    assert_string_equal(text, "fifteen letters");
+    assert_int_equal(glGetError(), GL_NO_ERROR);
+    assert_true(eglMakeCurrent(host_display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT));
+    assert_true(eglMakeCurrent(host_display, EGL_NO_SURFACE, EGL_NO_SURFACE, host_context));
+    drop_host();
+}
+
+static void assert_defaults(void)
+{
+    static const GLenum OFF[] = {GL_BLEND, GL_CULL_FACE, GL_DEPTH_TEST, GL_SCISSOR_TEST,
+                                 GL_STENCIL_TEST};
+    GLboolean mask = GL_FALSE, colors[4];
+    GLint program = 1, alignment = 0;
+    for (size_t i = 0; i < sizeof OFF / sizeof *OFF; ++i) assert_false(glIsEnabled(OFF[i]));
+    glGetBooleanv(GL_DEPTH_WRITEMASK, &mask);
+    glGetBooleanv(GL_COLOR_WRITEMASK, colors);
+    glGetIntegerv(GL_CURRENT_PROGRAM, &program);
+    glGetIntegerv(GL_PACK_ALIGNMENT, &alignment);
+    assert_true(mask && colors[0] && colors[3] && program == 0 && alignment == 4);
+    assert_int_equal(glGetError(), GL_NO_ERROR);
+}
+
+// The same positions and pixels in a borrowed context, whatever the host does with it in between.
+static void works_in_a_borrowed_context(void **state)
+{
+    TractrixDevice *borrowed = (TractrixDevice *)&error;
+    static Job job, own;
+    GLuint buffers[2];
+    (void)state;
+    library_refused(tractrix_device_borrow(&borrowed, &error), TRACTRIX_NO_GL, "no OpenGL context");
+    assert_null(borrowed);
+    make_host();
+    WELL(tractrix_device_borrow(&borrowed, &error));
+    work_on(borrowed, &job);
+    work_on(device, &own);
+    assert_memory_equal(job.position, own.position, sizeof own.position);
+    assert_memory_equal(job.pixels, own.pixels, sizeof own.pixels);
+    assert_defaults();
+    TractrixSimulation *simulation = simulate(borrowed, NONE);
+    glGenBuffers(2, buffers);
+    glBindBuffer(GL_ARRAY_BUFFER, buffers[0]);
+    glBufferData(GL_ARRAY_BUFFER, 32 + sizeof own.position, NULL, GL_STREAM_DRAW);
+    glBindBufferBase(GL_UNIFORM_BUFFER, 0, buffers[0]); // the host's own uniforms
+    WELL(tractrix_simulation_advance(simulation, NULL, &error));
+    WELL(tractrix_simulation_copy_to_gl(simulation, 0, TRACTRIX_GUIDES, buffers[0], 32, &error));
+    glBindBuffer(GL_ARRAY_BUFFER, buffers[0]);
+    glGetBufferSubData(GL_ARRAY_BUFFER, 32, sizeof job.position, job.position);
+    assert_memory_equal(job.position, map(simulation, TRACTRIX_GUIDES).position,
+                        sizeof job.position);
+    library_refused(
+        tractrix_simulation_copy_to_gl(simulation, 0, TRACTRIX_GUIDES, buffers[0], 48, &error),
+        TRACTRIX_USAGE, "buffer: has ");
+    library_refused(
+        tractrix_simulation_copy_to_gl(simulation, 0, TRACTRIX_GUIDES, buffers[0], 8, &error),
+        TRACTRIX_USAGE, "multiple of 16");
+    library_refused(tractrix_simulation_copy_to_gl(simulation, 0, TRACTRIX_GUIDES, 9999, 0, &error),
+                    TRACTRIX_USAGE, "9999");
+    glEnable(0x1234); // an error of the host's is none of the library's
+    WELL(tractrix_simulation_advance(simulation, NULL, &error));
+    assert_defaults();
+    eglMakeCurrent(host_display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    library_refused(tractrix_simulation_advance(simulation, NULL, &error), TRACTRIX_NO_GL,
+                    "no OpenGL context");
+    eglMakeCurrent(host_display, EGL_NO_SURFACE, EGL_NO_SURFACE, host_context);
+    tractrix_simulation_destroy(simulation);
+    tractrix_device_destroy(borrowed);
+    drop_host();
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(maps_strands_in_their_order),
+        cmocka_unit_test(follows_poses),
+        cmocka_unit_test(moves_as_the_scene_would),
+        cmocka_unit_test(refuses_wrong_poses),
+        cmocka_unit_test(follows_a_mesh),
+        cmocka_unit_test(takes_live_parameters),
+        cmocka_unit_test(draws_by_views_and_formats),
+        cmocka_unit_test(refuses_what_has_no_effect),
+        cmocka_unit_test(children_keep_their_parents),
+        cmocka_unit_test(says_so_after_fork),
+        cmocka_unit_test(two_devices_work_side_by_side),
+        cmocka_unit_test(leaves_a_hosts_context_alone),
+        cmocka_unit_test(works_in_a_borrowed_context),
+    };
+    return cmocka_run_group_tests_name("library_device", tests, open_device, close_device);
+}
