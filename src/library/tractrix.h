@@ -161,8 +161,8 @@ void tractrix_simulation_destroy(TractrixSimulation *simulation);
 // "": none. Valid while the simulation lives.
 const char *tractrix_simulation_messages(const TractrixSimulation *simulation);
 
-// As tractrix_scene_set, from the next step or image on, for live parameters: gravity, wind, gust,
-// gust_period, gust_repeat, wind_spread, eye, target, fov, camera_up, sky, ground.
+// As tractrix_scene_set, from the next step or image on, for live parameters (TractrixParameter):
+// of gravity, wind, the camera, sky and ground.
 TractrixResult tractrix_simulation_set(TractrixSimulation *simulation, const char *name,
                                        const char *text, TractrixError *error);
 
