@@ -3,14 +3,13 @@
 # Builds the examples of examples/library against the library and runs them.
 . tests/support/claims.sh
 if grep -q fsanitize "$bin/flags"; then echo "a sanitizer's library needs a sanitizer's programs: skipped"; exit 77; fi
-cc=$(cut -d' ' -f1 "$bin/flags")
 LD_LIBRARY_PATH=$(realpath "$bin/lib")
 export LD_LIBRARY_PATH
 
 for name in game_loop grooms regression; do
     claim "$name.c is a program of less than 100 lines, without warnings"
     # shellcheck disable=SC2046 # words
-    holds "$cc" -Wall -Wextra -Werror -o "$work/$name" "examples/library/$name.c" -Isrc/library -L"$bin/lib" -ltractrix \
+    holds cc -Wall -Wextra -Werror -o "$work/$name" "examples/library/$name.c" -Isrc/library -L"$bin/lib" -ltractrix \
         $(pkg-config --libs epoxy egl) -lm
     holds test "$(wc -l <"examples/library/$name.c")" -lt 100
 done

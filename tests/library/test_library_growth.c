@@ -16,7 +16,7 @@
 
 #define error library_error
 
-enum { ROUNDS = 60, DEVICES = 6, WARM = 20 };
+enum { ROUNDS = 20, DEVICES = 4, WARM = 10 };
 
 static int count_entries(const char *path)
 {
