@@ -8,12 +8,12 @@ bin_here=$(realpath "$bin")
 root=$work/root share=$work/root/usr/share
 
 # The programs are there, built by who runs the tests; told of the same flags, make takes them as they are.
-same="OUT=$(realpath --relative-to=. "$bin") CC=$(cut -d' ' -f1 "$bin/flags")"
+same="OUT=$(realpath --relative-to=. "$bin")" compiler=$(sed 's/ -std=.*//; q' "$bin/flags")
 if grep -q fsanitize "$bin/flags"; then same="$same CONFIG=sanitize"; else same="$same CONFIG=release"; fi
 if grep -q -- -Werror "$bin/flags"; then same="$same WERROR=1"; else same="$same WERROR="; fi
 installs() {
     # shellcheck disable=SC2086
-    holds make --no-print-directory "$1" $same DESTDIR="$root" PREFIX=/usr
+    holds make --no-print-directory "$1" "CC=$compiler" $same DESTDIR="$root" PREFIX=/usr
     if grep -qE '^  (CC|LINK) ' "$work/out"; then bad "built anew"; else good; fi
 }
 claim "make install puts everything under DESTDIR and PREFIX"
