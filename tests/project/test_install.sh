@@ -72,7 +72,8 @@ else
     holds "$bin_here/tractrix-compare" "$work/first.png" "$work/rendered.png"
     # shellcheck disable=SC2046
     holds cc -o "$work/static" "$work/first.c" -I"$root/usr/include" "$root/usr/lib/libtractrix.a" \
-        $(PKG_CONFIG_SYSROOT_DIR='' pkg-config --static --libs tractrix | sed 's/-L[^ ]* *-ltractrix//')
+        $(PKG_CONFIG_SYSROOT_DIR='' pkg-config --libs $(pkg-config --print-requires-private tractrix)) \
+        $(sed -n 's/^Libs.private: //p' "$PKG_CONFIG_PATH/tractrix.pc")
     rm -f "$work/first.png"
     (cd "$work" && ./static "$share/tractrix/fur.tfx") >"$work/out" 2>"$work/err"
     holds "$bin_here/tractrix-compare" "$work/first.png" "$work/rendered.png"
