@@ -8,17 +8,21 @@
 #include <stdlib.h>
 
 enum { RINGS = 32 };
-static const float DARKER = 0.6f;    // of the hair in sRGB: about 0.3 of its light
-static const double LONGER = 1.02;   // axes that need a capsule besides the sphere
-static const double MESH_SIZE = 0.1; // m, radius of the sphere that is stretched
+static const double UNLIKE = 1.4;  // times a head's width: another unit, perhaps
+static const double LONGER = 1.02; // axes that need a capsule besides the sphere
 
+// What scalp_fit finds of hair on the bundled head (demo, bob, fall and curls of assets/ alike).
+static const double HEAD_CENTRE[3] = {0, 0.0155, -0.013}, HEAD_RADIUS[3] = {0.0775, 0.0943, 0.0925};
+
+// The bundled head, its face towards +z, stretched so that its scalp is the fitted one.
 static Result make_mesh(Mesh *mesh, const ScalpFit *fit, Error *error)
 {
-    TRY(scalp_make_mesh(mesh, SCALP_SPHERE, RINGS, error));
+    TRY(scalp_make_mesh(mesh, SCALP_HEAD, RINGS, error));
     for (uint32_t v = 0; v < mesh->vertex_count; ++v)
         for (int k = 0; k < 3; ++k)
             mesh->position[v][k] =
-                (float)(fit->centre[k] + fit->radius[k] / MESH_SIZE * (double)mesh->position[v][k]);
+                (float)(fit->centre[k] + fit->radius[k] / HEAD_RADIUS[k] *
+                                             ((double)mesh->position[v][k] - HEAD_CENTRE[k]));
     mesh_compute_normals(mesh);
     return RESULT_OK;
 }
@@ -49,13 +53,6 @@ static Result add_colliders(Colliders *colliders, const ScalpFit *fit, Error *er
     return RESULT_OK;
 }
 
-static void darken(Scene *scene)
-{
-    const SectionParams *params = &scene->sections[0].params;
-    for (int k = 0; k < 3; ++k) scene->run.mesh_color[k] = DARKER * params->color[k];
-    scene->run.mesh_shading = MESH_MATT;
-}
-
 // Of the sections that are seen; the copies do not own their arrays.
 static Result fit_sections(ScalpFit *fit, const Scene *scene, const Assets *assets, Error *error)
 {
@@ -69,26 +66,47 @@ static Result fit_sections(ScalpFit *fit, const Scene *scene, const Assets *asse
     return RESULT_OK;
 }
 
+// The unit of a head's scalp, where the file's gives another size: a named one if that is near.
+static void suggest_unit(FILE *messages, const ScalpFit *fit, double unit)
+{
+    static const struct {
+        const char *word;
+        double metres;
+    } named[] = {{"m", 1}, {"in", 0.0254}, {"cm", 0.01}, {"mm", 0.001}};
+    double wanted = unit * HEAD_RADIUS[0] / fit->radius[0];
+    fprintf(messages, "the scalp is %.2g m wide, a head's %.2g m: --unit ", 2 * fit->radius[0],
+            2 * HEAD_RADIUS[0]);
+    for (size_t i = 0; i < sizeof named / sizeof *named; ++i)
+        if (fabs(log(wanted / named[i].metres)) < log(UNLIKE)) {
+            fprintf(messages, "%s makes it one\n", named[i].word);
+            return;
+        }
+    fprintf(messages, "%.2g makes it one\n", wanted);
+}
+
+static void report(FILE *messages, const ScalpFit *fit, double unit, bool verbose)
+{
+    if (fit->found)
+        fprintf(messages,
+                "scalp: a head of %.3g x %.3g x %.3g m at %.3g, %.3g, %.3g, off the roots by "
+                "%.2g mm: --scalp none leaves it out\n",
+                2 * fit->radius[0], 2 * fit->radius[1], 2 * fit->radius[2], fit->centre[0],
+                fit->centre[1], fit->centre[2], 1e3 * fit->error);
+    else if (verbose || fit->other_size)
+        fprintf(messages, "scalp: none: %s\n", fit->reason);
+    if ((fit->found || fit->other_size) && fabs(log(fit->radius[0] / HEAD_RADIUS[0])) > log(UNLIKE))
+        suggest_unit(messages, fit, unit);
+}
+
 Result scalp_guess(Scene *scene, Assets *assets, FILE *messages, bool verbose, Error *error)
 {
     ScalpFit fit = {0};
     if (assets->has_mesh || scene->run.scalp == SCALP_NONE) return RESULT_OK;
     TRY(fit_sections(&fit, scene, assets, error));
-    if (messages && (fit.found || verbose)) {
-        fprintf(messages, "scalp: ");
-        if (fit.found)
-            fprintf(messages,
-                    "an ellipsoid %.3g x %.3g x %.3g m at %.3g, %.3g, %.3g, off the roots by "
-                    "%.2g mm: --scalp none leaves it out\n",
-                    2 * fit.radius[0], 2 * fit.radius[1], 2 * fit.radius[2], fit.centre[0],
-                    fit.centre[1], fit.centre[2], 1e3 * fit.error);
-        else
-            fprintf(messages, "none: %s\n", fit.reason);
-    }
+    if (messages) report(messages, &fit, (double)assets->reports[0].unit_used, verbose);
     if (!fit.found) return RESULT_OK;
     TRY(make_mesh(&assets->mesh, &fit, error));
     assets->has_mesh = true;
-    darken(scene);
     if (!scene->run.collide_mesh) return RESULT_OK;
     scene->run.collide_mesh = false; // shapes do it
     return add_colliders(&scene->colliders, &fit, error);

@@ -186,13 +186,18 @@ static const char *judge_directions(const Roots *roots, const double centre[3],
     return out < LEAST_OUT ? "strands do not leave outwards" : NULL;
 }
 
-static const char *judge_size(const double radius[3], double error)
+static const char *judge_form(const double radius[3], double error)
 {
     double least = fmin(radius[0], fmin(radius[1], radius[2])),
            most = fmax(radius[0], fmax(radius[1], radius[2]));
-    if (least < LEAST || most > MOST) return "it would not be as large as a head";
     if (most > MOST_RATIO * least) return "it would be too long";
     return error > MOST_ERROR * mean_radius(radius) ? "the roots lie off" : NULL;
+}
+
+static bool is_size_of_head(const double radius[3])
+{
+    return fmin(radius[0], fmin(radius[1], radius[2])) >= LEAST &&
+           fmax(radius[0], fmax(radius[1], radius[2])) <= MOST;
 }
 
 static const char *judge_vertices(const Strands *strands, uint32_t sets, const ScalpFit *fit)
@@ -233,7 +238,7 @@ static const char *fit_roots(ScalpFit *fit, Roots *roots)
         fit->centre[k] = roots->middle[k] + roots->scale * centre[k];
         fit->radius[k] = roots->scale * radius[k];
     }
-    const char *reason = judge_size(fit->radius, fit->error);
+    const char *reason = judge_form(fit->radius, fit->error);
     if (!reason) reason = judge_directions(roots, centre, radius);
     for (int k = 0; k < 3 && !reason; ++k) fit->radius[k] -= sunk;
     return reason;
@@ -246,6 +251,10 @@ ScalpFit scalp_fit(const Strands *strands, uint32_t count)
     fit.reason = collect(&roots, strands, count) ? fit_roots(&fit, &roots) : "memory is short";
     destroy(&roots);
     if (!fit.reason) fit.reason = judge_vertices(strands, count, &fit);
+    if (!fit.reason && !is_size_of_head(fit.radius)) {
+        fit.reason = "it would not be as large as a head";
+        fit.other_size = true;
+    }
     fit.found = !fit.reason;
     return fit;
 }

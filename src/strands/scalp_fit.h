@@ -7,8 +7,9 @@
 // An ellipsoid along the axes, m.
 typedef struct ScalpFit {
     bool found;         // it looks like a head, see below
+    bool other_size;    // it would look like one, but for its size
     double centre[3];   // m
-    double radius[3];   // m, > 0
+    double radius[3];   // m, > 0; of other_size, too
     double error;       // m, median distance of the roots from the surface
     const char *reason; // why there is none; NULL if there is one
 } ScalpFit;

@@ -52,7 +52,7 @@ static void every_default_is_valid_and_prints_as_the_table_has_it(void **state)
         assert_prints(&PARAM_TABLE[i], params_of(&params, &PARAM_TABLE[i]),
                       PARAM_TABLE[i].default_text);
     assert_int_equal(params.run.frames, 120);
-    assert_int_equal(params.run.size[1], 720);
+    assert_int_equal(params.run.size[1], 960);
     assert_true(params.run.eye.automatic);
     assert_true(params.run.gravity[1] == -9.81f);
     assert_string_equal(params.section.algo, "hybrid");

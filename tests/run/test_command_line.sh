@@ -255,9 +255,13 @@ run 0 "$work/other.tfx" $plain --unit 0.00390625 --frames 3 --size 64x48 -q -o "
 }
 if diff -r "$work/u1" "$work/u2" >"$work/err"; then good; else bad "pictures differ"; fi
 
+claim "a scalp of another size than a head's names the unit that gives it a head"
+run 0 assets/curls.tfx --unit 10 --scatter none --followers 0 --frames 1 --size 16x16 -o "$work/head.png"; says "scalp: none: it would not be as large as a head"; says "the scalp is 1.5 m wide, a head's 0.15 m: --unit m makes it one"
+run 0 assets/curls.tfx --unit 0.5 --scatter none --followers 0 --frames 1 --size 16x16 -o "$work/head.png"; says "scalp: none: it would not be"; says "--unit m makes it one"
+
 claim "hair on a scalp gets a head that hides and holds it; --scalp none, -q and what is no scalp are silent"
-run 0 assets/curls.tfx --scatter none --followers 0 --frames 1 --size 48x32 -o "$work/head.png" --stats "$work/stats.json"; says "scalp: an ellipsoid 0.1"; in_file "$work/stats.json" '"sphere"'
-run 0 assets/curls.tfx --scatter none --followers 0 --frames 1 --size 48x32 --no-collide-mesh -o "$work/head.png" --stats "$work/stats.json"; says "scalp: an ellipsoid 0.1"
+run 0 assets/curls.tfx --scatter none --followers 0 --frames 1 --size 48x32 -o "$work/head.png" --stats "$work/stats.json"; says "scalp: a head of 0.1"; in_file "$work/stats.json" '"sphere"'
+run 0 assets/curls.tfx --scatter none --followers 0 --frames 1 --size 48x32 --no-collide-mesh -o "$work/head.png" --stats "$work/stats.json"; says "scalp: a head of 0.1"
 if grep -q '"sphere"' "$work/stats.json"; then bad "a fitted head holds hair with --no-collide-mesh"; else good; fi
 run 0 assets/curls.tfx --scatter none --followers 0 --frames 1 --size 48x32 --scalp none -o "$work/bare.png"; if grep -q "scalp" "$work/err"; then bad "said something"; else good; fi
 if cmp -s "$work/head.png" "$work/bare.png"; then bad "the same picture"; else good; fi

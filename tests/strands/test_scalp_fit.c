@@ -142,9 +142,14 @@ static void what_is_no_scalp_gets_no_head(void **state)
     for (uint32_t v = 0; v < patch.vertex_count; ++v) patch.position[v][1] = 0.01f * (v & 1);
     assert_refused(&patch, "");
     // A head a kilometre wide.
-    for (uint32_t v = 0; v < inwards.vertex_count; ++v)
-        for (int k = 0; k < 3; ++k) inwards.position[v][k] *= 1e4f;
-    assert_refused(&inwards, "as large as a head");
+    Strands large = make_scalp(500, -0.3, 1, 0);
+    for (uint32_t v = 0; v < large.vertex_count; ++v)
+        for (int k = 0; k < 3; ++k) large.position[v][k] *= 1e4f;
+    assert_refused(&large, "as large as a head");
+    ScalpFit fit = scalp_fit(&large, 1);
+    assert_true(fit.other_size && fabs(fit.radius[0] / (1e4 * RADIUS[0]) - 1) < 0.05);
+    assert_false(scalp_fit(&patch, 1).other_size);
+    strands_destroy(&large);
     strands_destroy(&wisp);
     strands_destroy(&patch);
     strands_destroy(&inwards);
