@@ -7,7 +7,7 @@
 #   V       not empty: show whole commands
 #   CC, CPPFLAGS, CFLAGS, LDFLAGS, LDLIBS, PREFIX, LIBDIR and DESTDIR as usual; the flags are added to the project's own.
 
-VERSION := 0.1.0
+VERSION := 0.2.0
 CONFIG  ?= release
 OUT     := out/$(CONFIG)
 PREFIX  ?= /usr/local
@@ -210,7 +210,7 @@ demo: ## set-up, build, and render the bundled scene to out/demo/
 	@scripts/demo $(OUT) out/demo
 
 test: ## set-up, build, and run all tests (ONLY=name: some of them)
-	@scripts/setup build run test
+	@scripts/setup build run test python
 	$(AGAIN) $(JOBS) all tests
 	@tests/runner $(OUT) $(ONLY)
 
@@ -234,7 +234,7 @@ stress: all ## random circumstances for every solver until a rule breaks, an hou
 
 # Into a copy of the tree. It goes on where it was interrupted.
 mutate: ## whether tests catch small faults, put in one at a time, hours (MUTATE="--only split"; tests/mutants.txt)
-	@scripts/setup build run test
+	@scripts/setup build run test python
 	@scripts/mutate $(MUTATE)
 
 SEED = 1
@@ -242,13 +242,13 @@ torture: all tests ## every call of small runs fails in turn, 200 kills: an hour
 	@$(TORTURE) $(OUT) --long --seed $(SEED) --jobs $$(nproc) $(TORTURE_OPTIONS)
 
 # --- Static checks and the sanitizers; all of them run, then the failures are named. One alone: make check-format.
-CHECKS := format scripts warnings clang cppcheck shaders gpu-statistics rounding farm sanitize
+CHECKS := format scripts warnings clang cppcheck shaders gpu-statistics rounding abi release farm sanitize
 C_FILES = $(wildcard src/*/*.[ch] src/*/*/*.[ch] tests/*/*.[ch] glsl/*/* tests/glsl/*)
 SIDE   := $(if $(filter command line,$(origin OUT)),$(OUT)/,out/)
 QUIET   = $(AGAIN) $(JOBS) --silent
 
 check: ## static checks, warnings as errors with gcc and clang, tests under sanitizers
-	@scripts/setup build run test check
+	@scripts/setup build run test python check
 	@failed=; for step in $(CHECKS); do echo "check: $$step"; \
 	    $(MAKE) --no-print-directory check-$$step || failed="$$failed $$step"; done; \
 	if [ "$$failed" ]; then echo "check: failed:$$failed"; exit 1; fi; echo "check: all well"
@@ -286,7 +286,7 @@ check-farm: # GNU parallel and a Slurm of one node, which make test does without
 	@tests/runner $(OUT) test_farm
 # But for scripts that run the programs as others do, many times over, and tests that draw hundreds of images.
 # SANITIZE_BUT=none runs all.
-SANITIZE_BUT = ^test_(bench_command|bench_html|blender|ci_examples|command_cache|command_line|compare_goldens|docs|farm|faults|furnace|gen_command|goldens|groom_command|html_report|install|light_command|mutate|readme|stress|turntable_images|turntable_script|tutorial|(along|clamped|shadow|solvers|volume)[.])
+SANITIZE_BUT = ^test_(bench_command|bench_html|blender|ci_examples|command_cache|command_line|compare_goldens|docs|farm|faults|furnace|gen_command|goldens|groom_command|html_report|install|light_command|mutate|python|readme|stress|turntable_images|turntable_script|tutorial|(along|clamped|shadow|solvers|volume)[.])
 # Tests in C take the decisions of a GPU here, with maths one unit off: `make test` has those of this machine.
 check-sanitize:
 	$(QUIET) CONFIG=sanitize OUT=$(SIDE)sanitize all tests
@@ -296,7 +296,7 @@ check-sanitize:
 THREADED = ^test_(bins|compare|composite|groom_shape|leftovers|light_grid|output|output_video|png|progress|renderer_pool|scalp|sequence|shadow_reference|strands_make|video)\.c
 check-threads: export TSAN_OPTIONS = suppressions=$(CURDIR)/tests/tsan.supp exitcode=66
 check-threads: ## data races of the threaded parts, by ThreadSanitizer: some minutes (ONLY=name: some tests)
-	@scripts/setup build run test
+	@scripts/setup build run test python
 	$(QUIET) CONFIG=threads OUT=$(SIDE)threads all tests
 	@tests/runner $(SIDE)threads '$(or $(ONLY),$(THREADED))'
 	@$(if $(ONLY),,scripts/run-threads $(SIDE)threads)
@@ -316,7 +316,7 @@ fuzz: all ## feed mutated bytes to every reader, TIME seconds each (60; ONLY="pn
 	@scripts/fuzz --time $(TIME) $(OUT) $(SIDE)fuzz $(ONLY)
 
 coverage: ## lines of the readers and writers that the tests run: at least 90 % (ONLY=name: some tests)
-	@scripts/setup build run test
+	@scripts/setup build run test python
 	$(QUIET) CONFIG=coverage OUT=$(SIDE)coverage all tests
 	@find $(SIDE)coverage -name '*.gcda' -delete
 	@tests/runner $(SIDE)coverage $(ONLY)
@@ -330,6 +330,32 @@ check-deb: deb ## install them in a clean root, run the programs, purge them (as
 	@scripts/check-deb out/deb
 	@umask 077; TZ=Asia/Tokyo scripts/make-deb out/deb-again/elsewhere
 	@for file in out/deb/*.deb; do cmp $$file out/deb-again/elsewhere/$${file##*/} || exit 1; done; echo "check-deb: built twice, the same bytes"
+# The version that the programs say.
+SAID = $$(sed -n 's/.*_VERSION "\(.*\)"/\1/p' $(OUT)/version.h)
+tarball: all ## an archive that runs where it is unpacked, out/tarball/*.tar.gz (Debian 12, Ubuntu 22.04 and newer)
+	@scripts/setup python
+	@rm -rf out/tarball && mkdir -p out/tarball
+	$(QUIET) install PREFIX= DESTDIR=$(CURDIR)/out/tarball/root
+	@scripts/make-tarball out/tarball "$(SAID)"
+wheel: all ## the Python module with its libraries, out/wheel/*.whl
+	@scripts/setup python
+	@scripts/make-wheel $(OUT) out/wheel "$(SAID)"
+check-release: tarball ## unpack it in a clean root and run it (as root, with mmdebstrap)
+	@if [ "$$(id -u)" != 0 ] || ! command -v mmdebstrap >/dev/null; then \
+	    echo "check-release: not root, or no mmdebstrap (scripts/setup deb): skipped, the archive was only made"; exit 0; fi; \
+	scripts/check-tarball out/tarball/*.tar.gz
+# What programs that were built with an earlier release count on; of the room alone the types are to be seen.
+ABI := src/library/tractrix.abi
+$(OUT)/abi/libtractrix.so.0: $(LIBRARY_OBJECTS:$(OUT)/%.o=src/%.c) $(wildcard src/library/*.h) src/library/tractrix.map $(OUT)/libtractrix.a
+	@mkdir -p $(@D)
+	$(call run,LINK,$(CC) $(C_FLAGS) -g $(LD_FLAGS) $(SHARED) -o $@ $(filter %.c,$^) $(OUT)/libtractrix.a $(LD_LIBS))
+ABIDW = abidw --headers-dir src/library --drop-private-types --no-corpus-path --no-comp-dir-path --no-show-locs --no-write-default-sizes --no-elf-needed
+check-abi: $(OUT)/abi/libtractrix.so.0
+	@command -v abidiff >/dev/null || { echo "no abidiff here: skipped"; exit 0; }; \
+	$(ABIDW) --out-file $<.abi $< && abidiff --no-added-syms $(ABI) $<.abi || \
+	    { echo "check-abi: programs may no longer run: expected new functions and members at the end of structs; make update-abi once that is so"; exit 1; }
+update-abi: $(OUT)/abi/libtractrix.so.0
+	@$(ABIDW) --out-file $(ABI) $<
 check-container: ## go through the Containerfile without a container engine (as root)
 	@scripts/setup deb
 	@scripts/check-container
@@ -389,7 +415,7 @@ help: ## this list
 	@echo; sed -n '4,8s/^#//p' $(firstword $(MAKEFILE_LIST))
 
 FORCE:
-.PHONY: library deb check-deb check-container drivers all tests demo test bench bench-image stress mutate torture check $(CHECKS:%=check-%) check-threads check-analyzer check-tidy format install uninstall clean help FORCE
+.PHONY: library deb check-deb tarball wheel update-abi check-container drivers all tests demo test bench bench-image stress mutate torture check $(CHECKS:%=check-%) check-threads check-analyzer check-tidy format install uninstall clean help FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
 -include $(patsubst %.o,%.d,$(OBJECTS) $(MAINS:src/%.c=$(OUT)/%.o) $(TEST_PROGRAMS:%=%.o) $(SUPPORT_OBJECTS))

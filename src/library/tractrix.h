@@ -26,7 +26,7 @@ extern "C" {
 #endif
 #pragma GCC visibility push(default)
 
-#define TRACTRIX_VERSION_NUMBER 0x000100 // major, minor, patch: a byte each
+#define TRACTRIX_VERSION_NUMBER 0x000200 // major, minor, patch: a byte each
 typedef enum TractrixResult {            // the programs' exit statuses
     TRACTRIX_OK = 0,
     TRACTRIX_FAILED = 1,    // at run time: memory, disk, driver
@@ -44,7 +44,7 @@ typedef struct TractrixRenderer TractrixRenderer;
 typedef struct TractrixPicture TractrixPicture;
 
 uint32_t tractrix_version_number(void); // of the library that was loaded
-const char *tractrix_version(void);     // as --version: "0.1.0", or with the commit behind it
+const char *tractrix_version(void);     // as --version: "0.2.0", or with the commit behind it
 // Threads that a call may use, 1 to 16; 0: one a processor that the process may use, the default.
 void tractrix_set_threads(int count);
 

@@ -5,7 +5,7 @@
 . tests/support/checkout.sh
 
 make_checkout
-cp -r docs tests "$work/checkout/"
+cp -r docs tests python "$work/checkout/"
 PATH=$(realpath "$bin"):$PATH
 export PATH
 

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: MIT
+"""How much two images differ."""
+
+from __future__ import annotations
+
+import ctypes
+from typing import NamedTuple
+
+import numpy as np
+
+from ._arrays import pointer
+from ._declarations import Figures, Limits
+from ._image import ImageLike, image_of, rgba
+from ._library import call
+
+
+class Comparison(NamedTuple):
+    """`same`: within the limits. `compared`, `failing`: pixels; `largest`: the largest difference of a channel in levels
+    of 255, first `at` (x, y). `rmse` and `psnr` are in levels and dB, `ssim` is 1 and `flip` (the mean, `flip_most` the
+    largest) 0 for equal images. `map`: FLIP of each pixel, (H, W) float32, NaN where masked. docs/compare.md defines them."""
+
+    same: bool
+    compared: int
+    failing: int
+    largest: float
+    at: tuple[int, int]
+    rmse: float
+    psnr: float
+    ssim: float
+    flip: float
+    flip_most: float
+    map: np.ndarray
+
+
+def limits(pixel_tolerance: float | None = None, max_failing_percent: float | None = None,
+           max_flip: float | None = None, pixels_per_degree: float | None = None) -> Limits:
+    """As tractrix-compare takes its options: without any, images are the same if they are equal; with `max_flip` alone it
+    is the only limit."""
+    pixels = max_flip is None or pixel_tolerance is not None or max_failing_percent is not None
+    return Limits(pixel_tolerance=(pixel_tolerance or 0) if pixels else -1,
+                  max_failing_percent=max_failing_percent or 0,
+                  max_flip=-1 if max_flip is None else max_flip, pixels_per_degree=pixels_per_degree or 0)
+
+
+def compare(image: ImageLike, golden: ImageLike, *, mask: ImageLike | None = None, pixel_tolerance: float | None = None,
+            max_failing_percent: float | None = None, max_flip: float | None = None,
+            pixels_per_degree: float | None = None) -> Comparison:
+    """Compares two images of one size: arrays (H, W), (H, W, 3), (H, W, 4) of uint8, uint16 or floats, or paths. Alpha
+    counts. In a `mask` white is compared, black is not. The limits are tractrix-compare's: a pixel passes if no channel
+    differs by more than `pixel_tolerance` levels of 255, an image if at most `max_failing_percent` of its pixels do not
+    and its mean FLIP is at most `max_flip`. Raises TractrixError(2) if the sizes differ."""
+    a, b = rgba("golden", golden), rgba("image", image)
+    masked = None if mask is None else rgba("mask", mask)
+    figures = Figures()
+    flip_map = np.empty(b.shape[:2], np.float32)
+    wanted = limits(pixel_tolerance, max_failing_percent, max_flip, pixels_per_degree)
+    call("tractrix_compare", ctypes.byref(figures), pointer(flip_map, ctypes.c_float), ctypes.byref(image_of(a)),
+         ctypes.byref(image_of(b)), None if masked is None else ctypes.byref(image_of(masked)), ctypes.byref(wanted))
+    return Comparison(figures.same, figures.compared, figures.failing, figures.largest, tuple(figures.at), figures.rmse,
+                      figures.psnr, figures.ssim, figures.flip, figures.flip_most, flip_map)

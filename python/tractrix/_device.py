@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: MIT
+"""The device of this process: one, opened when it is first needed."""
+
+from __future__ import annotations
+
+import ctypes
+
+from ._declarations import DeviceOptions
+from ._error import usage
+from ._library import Handle, library, lock
+
+_options: tuple[str | None, bool, bool] = (None, False, False)
+_device: Handle | None = None
+
+_TEXTS = ("renderer", "version", "vendor", "processor", "path", "pci", "uuid", "node", "passed-over")
+
+
+def device() -> Handle:
+    global _device
+    with lock:
+        if _device is None:
+            name, software, require_hardware = _options
+            options = DeviceOptions(name=name.encode() if name is not None else None, software=software,
+                                    require_hardware=require_hardware)
+            _device = Handle("tractrix_device_open", "tractrix_device_destroy", ctypes.byref(options))
+        return _device
+
+
+def select_device(name: str | None = None, *, software: bool = False, require_hardware: bool = False) -> None:
+    """Says which device draws, before the first call that needs one: `name` as tractrix-render's --device (number, part
+    of the name, PCI address, node), `software` only a CPU driver, `require_hardware` none of these. Without it the best
+    device is taken. Raises TractrixError(2) once another one is open."""
+    global _options
+    with lock:
+        if _device is not None and _options != (name, software, require_hardware):
+            raise usage("select_device: a device is open already: expected the call before the first image or simulation")
+        _options = (name, software, require_hardware)
+
+
+def describe_device() -> dict[str, str]:
+    """What the device is: `renderer`, `version`, `vendor`, `processor`, `path` (the way in), `pci`, `uuid`, `node`, and
+    `passed-over` (why no GPU is used); without what is not known. Opens it."""
+    with lock:
+        texts = {what: library().tractrix_device_text(device().value, what.encode()).decode() for what in _TEXTS}
+    return {what: text for what, text in texts.items() if text}

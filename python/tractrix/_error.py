@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: MIT
+"""What goes wrong, as exceptions."""
+
+from __future__ import annotations
+
+FAILED, USAGE, BAD_INPUT, NO_GL = 1, 2, 3, 4
+
+
+class TractrixError(Exception):
+    """A call failed: `code` as the programs' exit status (1 failed at run time, 2 wrong usage, 3 bad input,
+    4 no usable OpenGL), `text` one line, "place: what is wrong: what was expected"."""
+
+    def __init__(self, code: int, text: str) -> None:
+        super().__init__(code, text)
+        self.code = code
+        self.text = text
+
+    def __str__(self) -> str:
+        return self.text
+
+
+class TractrixValueError(TractrixError, ValueError):
+    """An argument, a parameter (code 2) or the content of an array or file (code 3) is wrong."""
+
+
+def error_of(code: int, text: str) -> TractrixError:
+    return (TractrixValueError if code in (USAGE, BAD_INPUT) else TractrixError)(code, text)
+
+
+def usage(text: str) -> TractrixError:
+    return error_of(USAGE, text)

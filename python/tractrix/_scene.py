@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: MIT
+"""What a simulation starts from: strands, mesh and parameters."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from ctypes import c_float, c_uint32
+from typing import Any, Mapping, Sequence, Union
+
+import numpy as np
+
+from . import _arrays
+from ._declarations import Mesh, Strands
+from ._error import usage
+from ._library import Handle, call
+from ._values import text_of
+
+# (S, V, 3), a list of (V, 3), (points, sizes), or a path of a hair or scene file.
+StrandsLike = Union[np.ndarray, Sequence[np.ndarray], "tuple[np.ndarray, np.ndarray]", str, "os.PathLike[str]"]
+# (vertices, triangles), or a path.
+MeshLike = Union["tuple[np.ndarray, np.ndarray]", str, "os.PathLike[str]"]
+
+OF_ARRAYS = ("thickness", "color", "uv")
+
+
+def is_path(value: Any) -> bool:
+    return isinstance(value, (str, os.PathLike))
+
+
+def scene_of(strands: StrandsLike, mesh: MeshLike | None, deforms: bool, parameters: Mapping[str, Any]) -> Handle:
+    """A scene of its own. `parameters` with unit and up, and with thickness, color and uv of arrays."""
+    given = {name: value for name, value in parameters.items() if value is not None}
+    if is_path(strands):
+        scene = Handle("tractrix_scene_read", "tractrix_scene_destroy", os.fsencode(strands))
+    else:
+        look = given.pop("look", None)
+        scene = Handle("tractrix_scene_create", "tractrix_scene_destroy", None if look is None else text_of("look", look).encode())
+        _add_strands(scene, strands, given)
+    if mesh is not None and not is_path(mesh):
+        _set_mesh(scene, mesh, deforms, given, parameters)
+    elif deforms:
+        raise usage("deforms: needs mesh=(vertices, triangles)")
+    elif mesh is not None:
+        given["mesh"] = mesh
+    for name, value in given.items():
+        call("tractrix_scene_set", scene.value, -1, name.encode(), text_of(name, value).encode())
+    return scene
+
+
+def _add_strands(scene: Handle, strands: Any, given: dict[str, Any]) -> None:
+    points, sizes = _arrays.strands(strands)
+    unit, up = given.pop("unit", None), given.pop("up", None)
+    parts = {name: given.pop(name) for name in OF_ARRAYS if _is_array(given.get(name))}
+    thickness, color, uv = (parts.get(name) for name in OF_ARRAYS)
+    if thickness is not None:
+        thickness = _arrays.numbers("thickness", np.ravel(thickness), (len(points),))
+    if color is not None:
+        color = _arrays.numbers("color", np.reshape(color, (-1, np.shape(color)[-1])), (len(points), None))
+        if color.shape[1] not in (3, 4):
+            raise usage(f"color: {color.shape[1]} numbers a vertex: expected 3 or 4, linear RGB and opacity")
+        color = np.hstack((color, np.ones((len(color), 4 - color.shape[1]), np.float32)))
+    if uv is not None:
+        uv = _arrays.numbers("uv", uv, (len(sizes), 2))
+    call("tractrix_scene_add_strands", scene.value, None,
+         ctypes.byref(Strands(metres_per_unit=_arrays.metres("unit", unit), up_z=_arrays.up_z("up", up),
+                              strand_count=len(sizes), sizes=_arrays.pointer(sizes, c_uint32),
+                              position=_arrays.pointer(points, c_float), thickness=_arrays.pointer(thickness, c_float),
+                              color=_arrays.pointer(color, c_float), uv=_arrays.pointer(uv, c_float))))
+
+
+def _set_mesh(scene: Handle, mesh: Any, deforms: bool, given: dict[str, Any], parameters: Mapping[str, Any]) -> None:
+    if not isinstance(mesh, (tuple, list)) or len(mesh) != 2:
+        raise usage("mesh: expected (vertices, triangles) or a path")
+    vertices = _arrays.numbers("mesh[0]", mesh[0], (None, 3))
+    triangles = _arrays.numbers("mesh[1]", mesh[1], (None, 3), np.uint32)
+    unit, up = given.pop("mesh_unit", parameters.get("unit")), given.pop("mesh_up", parameters.get("up"))
+    call("tractrix_scene_set_mesh", scene.value,
+         ctypes.byref(Mesh(metres_per_unit=_arrays.metres("mesh_unit", unit), up_z=_arrays.up_z("mesh_up", up),
+                           deforms=deforms, vertex_count=len(vertices), triangle_count=len(triangles),
+                           position=_arrays.pointer(vertices, c_float), triangle=_arrays.pointer(triangles, c_uint32))))
+
+
+def _is_array(value: Any) -> bool:
+    """An array of numbers for vertices, rather than a value of the parameter of that name (color="auburn", (1, 0, 0))."""
+    return value is not None and not is_path(value) and np.size(value) > 4 or isinstance(value, np.ndarray) and value.ndim > 1

@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: MIT
+"""Hair that moves and is drawn."""
+
+from __future__ import annotations
+
+import ctypes
+import itertools
+from typing import TYPE_CHECKING, Any, Iterable, Iterator, List, Union
+
+import numpy as np
+
+from . import _arrays
+from ._declarations import FOLLOWERS, GUIDES, Positions, View
+from ._device import device
+from ._error import usage
+from ._image import FORMATS, image_of
+from ._library import Handle, call, library, lock
+from ._pose import PoseLike, pose_of
+from ._scene import MeshLike, StrandsLike, scene_of
+from ._values import text_of
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._parameters import Parameters
+
+# (S, V, 4): x y z 1 in the world, m, root first; a list of (V, 4) where strands differ in their number of vertices.
+PositionsLike = Union[np.ndarray, List[np.ndarray]]
+
+
+class Simulation:
+    """Hair at time 0, which `advance` moves on frame by frame. `strands` are (S, V, 3), a list of (V, 3) or
+    (points, sizes), for which `unit` is required, or the path of a hair or scene file. `mesh` is (vertices, triangles) or
+    a path; with `deforms` its vertices are given to each `advance`. All other keywords are the parameters of
+    tractrix-render (docs/options.md), `-` as `_`; for arrays `thickness` (relative to its mean, which `radius` gives), `color` (linear RGB, opacity) and
+    `uv` (of roots) may be arrays as well. Raises TractrixError.
+
+    Closed by close(), by `with`, or with its last reference."""
+
+    def __init__(self, strands: StrandsLike, *, mesh: MeshLike | None = None, deforms: bool = False,
+                 **parameters: Unpack[Parameters]) -> None:
+        scene = scene_of(strands, mesh, deforms, parameters)
+        with lock:
+            self._handle = Handle("tractrix_simulation_create", "tractrix_simulation_destroy", device().value, scene.value)
+        scene.close()
+        self._renderers: dict[Any, Handle] = {}
+
+    def __enter__(self) -> Simulation:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        with lock:
+            self._forget_renderers()
+            self._handle.close()
+
+    def _forget_renderers(self) -> None:
+        for renderer in self._renderers.values():
+            renderer.close()
+        self._renderers.clear()
+
+    @property
+    def messages(self) -> list[str]:
+        """Lines about what was mended, guessed or left out when the scene was read."""
+        with lock:
+            return library().tractrix_simulation_messages(self._handle.value).decode().splitlines()
+
+    @property
+    def time(self) -> float:
+        """Seconds of the scene."""
+        with lock:
+            return library().tractrix_simulation_time(self._handle.value)
+
+    def set(self, **parameters: Unpack[Parameters]) -> None:
+        """Changes live parameters (`tractrix.parameters()[name].live`) from the next step or image on."""
+        with lock:
+            for name, value in parameters.items():
+                call("tractrix_simulation_set", self._handle.value, name.encode(), text_of(name, value).encode())
+
+    def advance(self, head: PoseLike | None = None, *, mesh: np.ndarray | None = None) -> None:
+        """On by one frame, 1 / fps seconds. `head`: where the head is at its end, a rigid (4, 4) matrix or
+        ((x, y, z, w), (x, y, z)); without it as the scene says, or where it is. `mesh`: the vertices (N, 3) of a mesh that
+        deforms at the frame's end, in the world, m, y up."""
+        if head is not None and mesh is not None:
+            raise usage("advance: both head and mesh: expected one of them")
+        with lock:
+            if mesh is not None:
+                vertices = _arrays.numbers("mesh", mesh, (None, 3))
+                call("tractrix_simulation_advance_mesh", self._handle.value, _arrays.pointer(vertices, ctypes.c_float), len(vertices))
+            else:
+                call("tractrix_simulation_advance", self._handle.value, None if head is None else ctypes.byref(pose_of(head)))
+
+    def positions(self, section: int = 0, *, followers: bool = False, copy: bool = True) -> PositionsLike:
+        """The vertices as drawn now, read-only: (S, V, 4), x y z 1 in the world, m, root first; a list of (V, 4) if
+        strands differ in size. With copy=False a view of the library's memory, valid until the next call of this object."""
+        view = Positions()
+        with lock:
+            call("tractrix_simulation_map", self._handle.value, section, FOLLOWERS if followers else GUIDES, ctypes.byref(view))
+            if not view.vertex_count:
+                return np.empty((0, 0, 4), np.float32)
+            points = np.ctypeslib.as_array(view.position, (view.vertex_count, 4))
+            sizes = np.ctypeslib.as_array(view.sizes, (view.strand_count,))
+            if copy:
+                points = points.copy()
+        points.flags.writeable = False
+        if (sizes == sizes[0]).all():
+            return points.reshape(len(sizes), sizes[0], 4)
+        return np.split(points, np.cumsum(sizes)[:-1])
+
+    def render(self, size: tuple[int, int] = (1280, 720), *, dtype: Any = np.uint8,
+               view: tuple[np.ndarray, np.ndarray] | None = None) -> np.ndarray:
+        """An image as things are now: (H, W, 4), top row first. uint8 and uint16 are sRGB with straight alpha, float32
+        linear light with premultiplied alpha. `view`: (world_to_eye, projection), two (4, 4) matrices for column vectors;
+        without it the scene's camera. An automatic exposure is found at the first image of each size."""
+        if np.dtype(dtype) not in FORMATS:
+            raise usage(f"dtype: got {np.dtype(dtype)}: expected uint8, uint16 or float32")
+        width, height = (int(length) for length in _arrays.numbers("size", size, (2,), np.int64))
+        with lock:
+            key = width, height, np.dtype(dtype)
+            if key not in self._renderers:
+                self._forget_renderers()
+                self._renderers[key] = Handle("tractrix_renderer_create", "tractrix_renderer_destroy", self._handle.value,
+                                              width, height, FORMATS[key[2]])
+            pixels = np.empty((height, width, 4), dtype)
+            call("tractrix_render", self._renderers[key].value, None if view is None else ctypes.byref(_view_of(view)),
+                 ctypes.byref(image_of(pixels)))
+        return pixels
+
+
+def _view_of(view: tuple[np.ndarray, np.ndarray]) -> View:
+    matrices = [_arrays.numbers(f"view[{index}]", matrix, (4, 4)).T.ravel() for index, matrix in enumerate(view)]
+    if len(matrices) != 2:
+        raise usage(f"view: {len(matrices)} matrices: expected (world_to_eye, projection)")
+    return View(world_to_eye=tuple(matrices[0]), projection=tuple(matrices[1]))
+
+
+def render(strands: StrandsLike, *, mesh: MeshLike | None = None, size: tuple[int, int] = (1280, 720),
+           dtype: Any = np.uint8, view: tuple[np.ndarray, np.ndarray] | None = None,
+           frames: int = 0, **parameters: Unpack[Parameters]) -> np.ndarray:
+    """One image, (H, W, 4): of the hair as it is, or simulated for `frames` frames. For more of the same hair make a
+    Simulation, which has the other arguments."""
+    with Simulation(strands, mesh=mesh, **parameters) as simulation:
+        for _ in range(frames):
+            simulation.advance()
+        return simulation.render(size, dtype=dtype, view=view)
+
+
+def simulate(strands: StrandsLike, *, frames: int | None = None, head: Iterable[PoseLike] | None = None,
+             mesh: MeshLike | None = None, mesh_frames: Iterable[np.ndarray] | None = None, section: int = 0,
+             followers: bool = False, copy: bool = True, **parameters: Unpack[Parameters]) -> Iterator[PositionsLike]:
+    """The positions at the end of each frame. `head` has a pose for each, `mesh_frames` the vertices of a mesh that
+    deforms; without `frames` there are as many as they have. Else as Simulation and its methods."""
+    if head is not None and mesh_frames is not None:
+        raise usage("simulate: both head and mesh_frames: expected one of them")
+    if frames is None and head is None and mesh_frames is None:
+        raise usage("frames: not given: expected a number, or head or mesh_frames, which have one for each frame")
+    simulation = Simulation(strands, mesh=mesh, deforms=mesh_frames is not None, **parameters)
+    return _positions(simulation, frames, head, mesh_frames, section, followers, copy)
+
+
+def _positions(simulation: Simulation, frames: int | None, head: Iterable[PoseLike] | None,
+               mesh_frames: Iterable[np.ndarray] | None, section: int, followers: bool, copy: bool) -> Iterator[PositionsLike]:
+    """A generator of its own, so that simulate() raises at the call rather than at the first item."""
+    with simulation:
+        driven = head if head is not None else mesh_frames
+        count = 0
+        for item in itertools.islice(itertools.repeat(None) if driven is None else driven, frames):
+            simulation.advance(**({"mesh": item} if mesh_frames is not None else {"head": item}))
+            yield simulation.positions(section, followers=followers, copy=copy)
+            count += 1
+        if frames is not None and count < frames:
+            name = "head" if head is not None else "mesh_frames"
+            raise usage(f"{name}: {count} items: expected one for each of {frames} frames")

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: MIT
+"""Parameters: the table of the library, and values as the text that a flag of tractrix-render has."""
+
+from __future__ import annotations
+
+import functools
+import itertools
+import os
+from typing import Any, Mapping, NamedTuple
+
+from ._error import usage
+from ._library import library
+
+
+class Parameter(NamedTuple):
+    """A row of the library's table. `kind` says what a value is ("float", "vec3", "choice" ...), `minimum` and `maximum`
+    bound each number (both 0: none), `owner` names the solvers that have it (none: all), `of_section` may differ by
+    section, `live` may be changed while a simulation runs."""
+
+    name: str
+    kind: str
+    unit: str
+    help: str
+    default: str
+    choices: tuple[str, ...]
+    owner: tuple[str, ...]
+    minimum: float
+    maximum: float
+    of_section: bool
+    live: bool
+
+
+@functools.lru_cache(maxsize=None)
+def parameters() -> Mapping[str, Parameter]:
+    """Every parameter by its name."""
+    table = {}
+    for index in itertools.count():
+        pointer = library().tractrix_parameter(index)
+        if not pointer:
+            return table
+        row = pointer.contents
+        text = {field: getattr(row, field).decode() for field in ("name", "kind", "unit", "help", "default_text", "choices", "owner")}
+        table[text["name"]] = Parameter(text["name"], text["kind"], text["unit"], text["help"], text["default_text"],
+                                        tuple(text["choices"].split()), tuple(text["owner"].split()), row.minimum,
+                                        row.maximum, row.of_section, row.live)
+
+
+# What stands between the numbers of a kind; all others have commas.
+_SEPARATORS = {"size": "x", "part": "/", "profile": ":"}
+
+
+def text_of(name: str, value: Any) -> str:
+    """`value` as a flag has it: texts and paths as they are, True as true, numbers in full, sequences with what the kind
+    of parameter puts between numbers."""
+    if isinstance(value, (str, os.PathLike)):
+        return os.fspath(value)
+    if hasattr(value, "tolist"):  # numpy's arrays and numbers
+        value = value.tolist()
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (int, float)):
+        return repr(value)
+    if isinstance(value, (list, tuple)) and all(isinstance(item, (int, float)) and not isinstance(item, bool) for item in value):
+        row = parameters().get(name)
+        return _SEPARATORS.get(row.kind if row else "", ",").join(map(repr, value))
+    raise usage(f"{name}: got {value!r}: expected a text, a number, a sequence of numbers, True or False")

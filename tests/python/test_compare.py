@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: MIT
+# compare(): figures, limits, alpha, masks, shapes and files of images.
+import numpy as np
+import pytest
+
+import tractrix
+
+
+@pytest.fixture
+def image():
+    return np.random.default_rng(1).integers(0, 256, (24, 32, 4), np.uint8)
+
+
+def test_an_image_equals_itself(image):
+    result = tractrix.compare(image, image)
+    assert result.same and result.failing == 0 and result.compared == 24 * 32
+    assert (result.rmse, result.flip, result.ssim) == (0, 0, 1)
+    assert result.map.shape == (24, 32) and result.map.dtype == np.float32 and not result.map.any()
+
+
+def test_one_pixel_is_found(image):
+    image[:, :, 3] = 255
+    other = image.copy()
+    image[7, 5, 1], other[7, 5, 1] = 100, 110
+    result = tractrix.compare(other, image)
+    assert not result.same and result.failing == 1 and result.at == (5, 7)
+    assert result.largest == pytest.approx(10) and result.map[7, 5] == pytest.approx(result.flip_most)
+    assert tractrix.compare(other, image, pixel_tolerance=10).same
+    assert not tractrix.compare(other, image, pixel_tolerance=9).same
+    assert tractrix.compare(other, image, max_failing_percent=0.2).same
+    assert not tractrix.compare(other, image, max_failing_percent=0.1).same
+    assert tractrix.compare(other, image, max_flip=0.5).same  # alone, it is the only limit
+    assert not tractrix.compare(other, image, max_flip=0.5, pixel_tolerance=0).same
+
+
+def test_alpha_counts(image):
+    other = image.copy()
+    other[3, 4, 3] ^= 64
+    assert not tractrix.compare(other, image).same
+
+
+def test_a_mask_hides_what_is_black(image):
+    other, mask = image.copy(), np.full((24, 32), 255, np.uint8)
+    other[3, 4] ^= 255
+    mask[3, 4] = 0
+    result = tractrix.compare(other, image, mask=mask)
+    assert result.same and result.compared == 24 * 32 - 1 and np.isnan(result.map[3, 4])
+
+
+def test_grey_and_rgb_are_opaque_rgba(image):
+    grey = image[:, :, 0]
+    rgb = np.dstack((grey, grey, grey))
+    rgba = np.dstack((rgb, np.full_like(grey, 255)))
+    assert tractrix.compare(grey, rgb).same and tractrix.compare(rgb, rgba).same and tractrix.compare(grey[:, :, None], rgba).same
+
+
+def test_rows_may_lie_apart(image):
+    wide = np.zeros((24, 40, 4), np.uint8)
+    wide[:, :32] = image
+    assert tractrix.compare(wide[:, :32], image).same
+
+
+def test_sizes_must_be_equal(image):
+    with pytest.raises(tractrix.TractrixValueError, match="24") as caught:
+        tractrix.compare(image[:, :31], image)
+    assert caught.value.code == 2
+
+
+@pytest.mark.parametrize("value", [np.zeros((4, 4), int), np.zeros((4, 4, 2), np.uint8), np.zeros((0, 4, 4), np.uint8), np.zeros(4, np.uint8)])
+def test_other_arrays_are_refused(value):
+    with pytest.raises(tractrix.TractrixValueError, match="image: .*: expected"):
+        tractrix.compare(value, np.zeros((4, 4), np.uint8))
+
+
+@pytest.mark.parametrize("dtype, suffix", [(np.uint8, "png"), (np.uint16, "png"), (np.float32, "exr"), (np.float32, "pfm")])
+@pytest.mark.parametrize("opaque", [True, False])
+def test_files_keep_what_arrays_hold(tmp_path, dtype, suffix, opaque):
+    top = 1 if dtype == np.float32 else np.iinfo(dtype).max
+    image = (np.random.default_rng(2).random((5, 7, 4)) * top).astype(dtype)
+    if opaque or suffix == "pfm":
+        image[:, :, 3] = top
+    tractrix.write_image(tmp_path / f"x.{suffix}", image)
+    read = tractrix.read_image(tmp_path / f"x.{suffix}")
+    assert read.dtype == dtype and read.shape == image.shape
+    np.testing.assert_allclose(read, image, rtol=2**-10 if suffix == "exr" else 0)  # EXR may hold halves
+    assert tractrix.compare(tmp_path / f"x.{suffix}", read).same
+
+
+def test_files_that_are_none_say_so(tmp_path):
+    (tmp_path / "x.png").write_bytes(b"no image")
+    for name in ("x.png", "none.png"):
+        with pytest.raises(tractrix.TractrixError, match=name) as caught:
+            tractrix.read_image(tmp_path / name)
+        assert caught.value.code in (1, 3)
+    with pytest.raises(tractrix.TractrixValueError):
+        tractrix.write_image(tmp_path / "y.png", np.zeros((2, 2, 4), np.float32))

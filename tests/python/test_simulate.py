@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: MIT
+# simulate() and Simulation: positions of strands in the form that they came in, moved by frames, poses and meshes.
+import threading
+
+import numpy as np
+import pytest
+
+import tractrix
+
+
+def moved(x):
+    """A rigid matrix: x metres to the right."""
+    matrix = np.eye(4)
+    matrix[0, 3] = x
+    return matrix
+
+
+def test_positions_come_in_the_form_of_the_strands(curls):
+    frames = list(tractrix.simulate(curls, unit="m", frames=3))
+    assert len(frames) == 3
+    for positions in frames:
+        assert positions.shape == (12, 8, 4) and positions.dtype == np.float32 and not positions.flags.writeable
+        assert (positions[:, :, 3] == 1).all()
+        np.testing.assert_allclose(positions[:, 0, :3], curls[:, 0], atol=1e-6)  # roots stay
+
+
+def test_strands_of_several_sizes_come_as_a_list(curls):
+    pieces = [strand[: 3 + index % 5] for index, strand in enumerate(curls)]
+    sizes = np.array([len(piece) for piece in pieces])
+    by_list = next(tractrix.simulate(pieces, unit="m", frames=1))
+    by_sizes = next(tractrix.simulate((np.concatenate(pieces), sizes), unit="m", frames=1))
+    assert [len(strand) for strand in by_list] == list(sizes)
+    for a, b in zip(by_list, by_sizes):
+        np.testing.assert_array_equal(a, b)
+
+
+def test_the_same_call_gives_the_same_bytes_and_wind_other_ones(curls):
+    still, again, windy = (list(tractrix.simulate(curls, unit="m", frames=4, wind=wind))[-1] for wind in ((0, 0, 0), None, (5, 0, 0)))
+    np.testing.assert_array_equal(still, again)
+    assert (windy[:, -1, 0] - still[:, -1, 0]).mean() > 1e-4
+
+
+def test_units_and_the_axis_that_points_up(curls):
+    metres = next(tractrix.simulate(curls, unit="m", frames=1, algo="none"))
+    for unit in ("cm", 0.01):
+        np.testing.assert_allclose(next(tractrix.simulate(curls * 100, unit=unit, frames=1, algo="none")), metres, atol=1e-6)
+    z_up = np.stack((curls[:, :, 0], -curls[:, :, 2], curls[:, :, 1]), axis=2)  # y up turned by 90 degrees about x
+    np.testing.assert_allclose(next(tractrix.simulate(z_up, unit="m", up="z", frames=1, algo="none")), metres, atol=1e-6)
+
+
+def test_roots_follow_the_head(curls):
+    poses = [moved(x) for x in (0.01, 0.02, 0.03)]
+    by_matrix = list(tractrix.simulate(curls, unit="m", head=poses))
+    assert len(by_matrix) == 3
+    for pose, positions in zip(poses, by_matrix):
+        np.testing.assert_allclose(positions[:, 0, :3], curls[:, 0] + pose[:3, 3], atol=1e-6)
+    by_quaternion = list(tractrix.simulate(curls, unit="m", head=[((0, 0, 0, 1), pose[:3, 3]) for pose in poses]))
+    np.testing.assert_array_equal(by_matrix[-1], by_quaternion[-1])
+
+
+def test_a_turned_head_turns_the_roots(curls):
+    angle = 0.05
+    turn = np.eye(4)
+    turn[:3, :3] = [[np.cos(angle), 0, np.sin(angle)], [0, 1, 0], [-np.sin(angle), 0, np.cos(angle)]]
+    positions = next(tractrix.simulate(curls, unit="m", head=[turn]))
+    np.testing.assert_allclose(positions[:, 0, :3], curls[:, 0] @ turn[:3, :3].T, atol=1e-6)
+
+
+def test_hair_is_bound_to_a_mesh_that_deforms(curls):
+    corners = np.array([(-1, 0.001, -1), (1, 0.001, -1), (1, 0.001, 1), (-1, 0.001, 1)], float)
+    faces = np.array([(0, 2, 1), (0, 3, 2)])
+    frames = [corners + (0, 0.002 * frame, 0) for frame in (1, 2)]
+    last = list(tractrix.simulate(curls, unit="m", mesh=(corners, faces), mesh_frames=frames, collide=False))[-1]
+    np.testing.assert_allclose(last[:, 0, :3], curls[:, 0] + (0, 0.004, 0), atol=1e-5)
+
+
+def test_followers_are_asked_for(curls):
+    with tractrix.Simulation(curls, unit="m", followers=2, algo="none") as simulation:
+        assert simulation.positions().shape == (12, 8, 4)
+        assert simulation.positions(followers=True).shape == (24, 8, 4)
+    with tractrix.Simulation(curls, unit="m", followers=0) as simulation:
+        assert len(simulation.positions(followers=True)) == 0
+
+
+def test_a_simulation_takes_new_wind_and_tells_the_time(curls):
+    with tractrix.Simulation(curls, unit="m", fps=30) as simulation:
+        simulation.advance()
+        assert simulation.time == pytest.approx(1 / 30)
+        simulation.set(wind=(5, 0, 0))
+        before = simulation.positions()
+        for _ in range(3):
+            simulation.advance()
+        assert (simulation.positions()[:, -1, 0] - before[:, -1, 0]).mean() > 1e-4
+        with pytest.raises(tractrix.TractrixValueError, match="frames|live"):
+            simulation.set(frames=3)
+    with pytest.raises(tractrix.TractrixError, match="closed"):
+        simulation.advance()
+
+
+def test_views_show_what_copies_keep(curls):
+    with tractrix.Simulation(curls, unit="m") as simulation:
+        np.testing.assert_array_equal(simulation.positions(copy=False), simulation.positions())
+
+
+@pytest.mark.parametrize("arguments, place", [
+    ({}, "unit: not given"),
+    ({"unit": "furlong"}, "unit: got 'furlong'"),
+    ({"unit": "m", "up": "x"}, "up: got 'x'"),
+    ({"unit": "m", "wnd": 1}, "wnd"),
+    ({"unit": "m", "fov": 500}, "fov"),
+    ({"unit": "m", "mesh": 3}, "mesh: expected"),
+    ({"unit": "m", "mesh": (np.zeros((3, 3)), np.array([[0, 1, -1]]))}, "mesh"),
+    ({"unit": "m", "uv": np.zeros((3, 2))}, "uv: shape"),
+    ({"unit": "m", "color": np.zeros((12, 8, 2))}, "color: 2 numbers"),
+    ({"unit": "m", "deforms": True}, "deforms: needs"),
+])
+def test_wrong_arguments_are_named(curls, arguments, place):
+    with pytest.raises(tractrix.TractrixValueError, match=place) as caught:
+        tractrix.Simulation(curls, **arguments)
+    assert caught.value.code in (2, 3) and "\n" not in caught.value.text
+
+
+@pytest.mark.parametrize("strands, place", [
+    (np.zeros((4, 3)), r"strands: shape \(4, 3\): expected"),
+    (np.zeros((4, 2, 2)), "strands: shape"),
+    ([], "strands: an empty list"),
+    ((np.zeros((4, 3)), np.array([2, 3])), "strands: sizes of 5 vertices, 4 points"),
+    (np.zeros((1, 2, 3)), "0"),  # vertices that coincide
+    (np.full((1, 2, 3), np.nan), "0"),
+    (np.array([[[1j, 0, 0], [0, 0, 1]]]), "strands: got"),
+    ("no/such.tfx", "no/such.tfx"),
+])
+def test_wrong_strands_are_named(strands, place):
+    with pytest.raises(tractrix.TractrixError, match=place):
+        tractrix.render(strands, unit="m", size=(8, 8))
+
+
+@pytest.mark.parametrize("head", [np.eye(3), 2 * np.eye(4), np.diag((1, 1, -1, 1)), ((0, 0, 0), (0, 0, 0)), "left"])
+def test_wrong_poses_are_named(curls, head):
+    with pytest.raises(tractrix.TractrixValueError, match="head"):
+        next(tractrix.simulate(curls, unit="m", head=[head]))
+
+
+def test_poses_that_run_out_are_named(curls):
+    with pytest.raises(tractrix.TractrixValueError, match="head: 1 items: expected one for each of 2 frames"):
+        list(tractrix.simulate(curls, unit="m", frames=2, head=[np.eye(4)]))
+
+
+def test_simulations_of_several_threads_take_turns(curls):
+    results = [None] * 3
+
+    def work(index):
+        results[index] = list(tractrix.simulate(curls, unit="m", frames=3))[-1]
+
+    threads = [threading.Thread(target=work, args=(index,)) for index in range(len(results))]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    np.testing.assert_array_equal(results[0], results[1])
+    np.testing.assert_array_equal(results[0], results[2])
