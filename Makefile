@@ -335,7 +335,7 @@ SAID = $$(sed -n 's/.*_VERSION "\(.*\)"/\1/p' $(OUT)/version.h)
 tarball: all ## an archive that runs where it is unpacked, out/tarball/*.tar.gz (Debian 12, Ubuntu 22.04 and newer)
 	@scripts/setup python
 	@rm -rf out/tarball && mkdir -p out/tarball
-	$(QUIET) install PREFIX= DESTDIR=$(CURDIR)/out/tarball/root
+	+$(QUIET) install PREFIX= DESTDIR=$(CURDIR)/out/tarball/root
 	@scripts/make-tarball out/tarball "$(SAID)"
 wheel: all ## the Python module with its libraries, out/wheel/*.whl
 	@scripts/setup python

@@ -107,18 +107,23 @@ if "$steps" workflow "$work/bad.yml" action.yml 2>/dev/null >&2; then bad "a wor
 # gitlab STATUS VARIABLE=VALUE...: runs the job as GitLab's runner does.
 gitlab() {
     expected=$1; shift
-    (cd "$work/repo" && exec env CI=true GITLAB_CI=true CI_PROJECT_DIR="$work/repo" "$@" bash -e -o pipefail "$work/steps/job.sh") \
+    (cd "$work/repo" && exec env CI=true GITLAB_CI=true CI_PROJECT_DIR="$work/repo" CI_SERVER_URL=https://gitlab.test CI_PROJECT_NAMESPACE=hair "$@" bash -e -o pipefail "$work/steps/job.sh") \
         >"$work/out" 2>"$work/err" </dev/null
     status=$?
     if [ "$status" = "$expected" ]; then good; else bad "exit status $status, expected $expected"; fi
 }
+
+claim "the project's own workflows are sound"
+for file in .github/workflows/*.yml; do holds "$steps" jobs "$file"; done
+sed 's/scripts\/release/scripts\/relaese/' .github/workflows/release.yml >"$work/bad.yml"
+if "$steps" jobs "$work/bad.yml" 2>/dev/null >&2; then bad "a workflow that runs no script of ours passes"; else good; fi
 
 claim "GitLab's job clones, builds and compares, and keeps what its report names"
 holds "$steps" gitlab examples/ci/gitlab-ci.yml images "$work/steps/job.sh"; says "tractrix-images/report.xml"
 if command -v shellcheck >/dev/null; then holds shellcheck -s sh -e SC2086 "$work/steps/job.sh"; fi
 in_file "$work/steps/job.sh" 'TRACTRIX_GOLDENS=${TRACTRIX_GOLDENS-examples/ci/goldens}'
 gitlab 0 TRACTRIX_DIR=.tractrix TRACTRIX_LIST=one.txt "TRACTRIX_GOLDENS=new images" "TRACTRIX_OPTIONS=$limits"; says "1 image: 1 same"
-in_file "$work/calls" "git clone --quiet --depth 1 --branch v0.1.0 https://gitlab.com/OWNER/tractrix.git .tractrix"
+in_file "$work/calls" "git clone --quiet --depth 1 --branch v$(sed -n "s/^VERSION := //p" Makefile) https://gitlab.test/hair/tractrix.git .tractrix"
 in_file "$work/calls" "make --silent -C .tractrix -j "; is_file "$work/repo/tractrix-images/report.xml"
 gitlab 1 TRACTRIX_DIR=.tractrix TRACTRIX_LIST=three.txt TRACTRIX_GOLDENS=references "TRACTRIX_OPTIONS=$limits"; says "wrong.png: different"; says "lost.png: unrendered"
 if [ "$(grep -c '^git clone' "$work/calls")" = 1 ]; then good; else bad "cloned again"; fi
