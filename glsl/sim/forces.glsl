@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Forces on a velocity, the same for all solvers (needs frame.glsl).
 
-#include "common/hash.h"
-
 // What the head leaves of the wind behind it (SHELTER): seen from its middle, roots on the lee side
 // feel air that more and more goes with the head. Only velocities relative to the head count, so
 // that wind at rest feels the same as a head in motion.
@@ -14,12 +12,21 @@ vec3 sheltered(vec3 wind, vec3 root)
     return wind - step_params.shelter.w * smoothstep(0.0, 1.0, cosine) * blows;
 }
 
-// The wind at the strand of number `id` whose root the head has carried to `root`: the four
-// directions mixed with weights from the number, so that neighbours do not move in step.
-vec3 strand_wind(uint id, vec3 root)
+// From 0 to 1 and back, smoothly, as t grows by 1.
+float wave(float t)
 {
-    uint h = hash_bits(id);
-    vec2 mixing = vec2(float(int(h & 0xffffu)), float(int(h >> 16))) * (1.0 / 65535.0);
+    float way = abs(2.0 * fract(t) - 1.0);
+    return way * way * (3.0 - 2.0 * way);
+}
+
+// The wind at a strand whose root is at `place` in the head's frame at rest (m), and which the head
+// has carried to `root`: the four directions mixed with weights that change with the place, by bent
+// waves about 0.3 m long. So neighbours move alike and locks hold together, while hair a hand's
+// breadth away does not move in step.
+vec3 strand_wind(vec3 place, vec3 root)
+{
+    float x = dot(place, vec3(2.1, 1.3, -2.3)), y = dot(place, vec3(-1.7, 2.6, 1.4));
+    vec2 mixing = vec2(wave(x + 0.3 * wave(y)), wave(y + 0.3 * wave(x)));
     vec3 left = mix(step_params.wind[0].xyz, step_params.wind[1].xyz, mixing.x);
     vec3 right = mix(step_params.wind[2].xyz, step_params.wind[3].xyz, mixing.x);
     vec3 wind = mix(left, right, mixing.y);

@@ -16,7 +16,6 @@
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
 layout(binding = BIND_REST) uniform samplerBuffer rest; // the style: see hair.h
-layout(binding = BIND_STRAND_ID) uniform usamplerBuffer strand_id;
 #include "sim/strand_root.glsl"
 layout(std430, binding = BIND_POSITION_OUT) buffer Positions { vec4 positions[]; };
 layout(std430, binding = BIND_STATE_OUT) buffer Velocities { vec4 velocities[]; };

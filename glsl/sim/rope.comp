@@ -95,8 +95,8 @@ void main()
     if (s >= int(step_params.strand_count)) return;
     int base = strand_base(s);
     open_frame(s);
-    vec3 x[VERTICES], m[VERTICES],
-        wind = strand_wind(texelFetch(strand_id, s).x, root_position(strand_root(base)));
+    vec4 own = strand_root(base);
+    vec3 x[VERTICES], m[VERTICES], wind = strand_wind(own.xyz, root_position(own));
     float l[VERTICES];
     int small_steps = rope_params.small_steps, sweeps = rope_params.sweeps;
     vec4 root = strand_root(base), rotation = frame_rotation;
@@ -175,8 +175,8 @@ void main()
     bool loads = phase == 0, flies = phase == step * rope_params.sweeps,
          draws = phase + 1 == rope_params.small_steps * rope_params.sweeps;
     open_frame(s);
-    vec3 wind = strand_wind(texelFetch(strand_id, s).x, root_position(strand_root(a)));
     vec4 root = strand_root(a);
+    vec3 wind = strand_wind(root.xyz, root_position(root));
     vec3 drawn_before = position_before(a).xyz, at = vec3(0.0);
     vec3 x = root_at(root_move(root), step + 1, rope_params.small_steps), m = vec3(0.0),
          style_at = x;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A random order of 0 .. count - 1 without memory: a bijection on the numbers of as many bits
 // (three rounds of multiplying by an odd number, adding, and folding the upper half of the bits
-// into the lower), in which those beyond count are passed over. Needs hash.h.
+// into the lower), in which those beyond count are passed over.
+#include "common/hash.h"
 
 const int SHUFFLE_ROUNDS = 3;
 

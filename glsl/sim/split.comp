@@ -21,7 +21,6 @@
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
 layout(binding = BIND_REST) uniform samplerBuffer rest;
-layout(binding = BIND_STRAND_ID) uniform usamplerBuffer strand_id;
 #include "sim/strand_root.glsl"
 #include "sim/split_links.glsl"
 layout(std430, binding = BIND_TIPS) buffer Tips { vec4 tips[]; }; // see open_strand
@@ -50,7 +49,7 @@ Strand open_strand(int number)
     open_frame(number);
     strand.root_old = rotate(frame_rotation_old, root.xyz) + frame_translation_old;
     strand.root = rotate(frame_rotation, root.xyz) + frame_translation;
-    vec3 wind = strand_wind(texelFetch(strand_id, number).x, strand.root);
+    vec3 wind = strand_wind(root.xyz, strand.root);
     strand.push = kick(vec3(0.0), wind);
     strand.position = tip.xyz;
     strand.velocity = kick(v.xyz, wind);

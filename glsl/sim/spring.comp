@@ -172,8 +172,8 @@ void main()
     if (strand >= int(step_params.strand_count)) return;
     int base = strand_base(strand);
     open_frame(strand);
-    vec3 wind = strand_wind(texelFetch(strand_id, strand).x, root_position(strand_root(base)));
     vec4 root = strand_root(base);
+    vec3 wind = strand_wind(root.xyz, root_position(root));
     vec3 root_velocity = root_move(root) / step_params.dt;
     if (step_params.phase == 0u)
         eliminate(base, n, wind, root_velocity);
@@ -208,8 +208,7 @@ void main()
     int a = strand_base(strand);
     open_frame(strand);
     vec4 rotation = frame_rotation, root = strand_root(a);
-    vec3 wind = strand_wind(texelFetch(strand_id, strand).x, root_position(root)),
-         fall = kick(vec3(0.0), wind);
+    vec3 wind = strand_wind(root.xyz, root_position(root)), fall = kick(vec3(0.0), wind);
     float dt = step_params.dt, gain = step_params.gain, decay = step_params.decay;
     Springs springs = springs_of(n - 1);
     float softness = SHORT * root.w / float(n - 1); // e

@@ -29,7 +29,7 @@ Strand strand_open(int number, StyleSpring spring)
     strand.root_old = position_before(strand.address).xyz;
     strand.root_velocity = (strand.root - strand.root_old) / step_params.dt;
     strand.total_length = root_rest.w;
-    vec3 wind = strand_wind(texelFetch(strand_id, number).x, strand.root);
+    vec3 wind = strand_wind(root_rest.xyz, strand.root);
 #if VARIES
     strand.wind = wind;
 #endif

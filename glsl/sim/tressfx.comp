@@ -104,7 +104,7 @@ const float MOST_LEVER = 2.0;
 // the head's frame.
 void predict(Carried carried)
 {
-    vec3 wind = strand_wind(texelFetch(strand_id, strand).x, carried.root),
+    vec3 wind = strand_wind(texelFetch(rest, address(0)).xyz, carried.root),
          root_old = carried.root_old, home = carried.root - carried.root_old;
     vec3 style = vec3(0.0), first = REST(1).xyz, first_old = carried.first_old;
     vec4 to_head = conjugate(frame_rotation);
@@ -169,9 +169,8 @@ void keep_local_shape()
 // clamp keeps a storm finite.
 void blow()
 {
-    vec3 wind =
-        rotate(conjugate(frame_rotation), strand_wind(texelFetch(strand_id, strand).x,
-                                                      root_position(texelFetch(rest, address(0)))));
+    vec4 root = texelFetch(rest, address(0));
+    vec3 wind = rotate(conjugate(frame_rotation), strand_wind(root.xyz, root_position(root)));
     float strength = 1e4 * step_params.dt * step_params.dt, most = tressfx_params.most_move;
     if (dot(wind, wind) == 0.0) return;
     for (int j = 2; j < n - 1; ++j) {

@@ -16,7 +16,8 @@ static const double REST_MOST = 0.01, VOXELS_LEAST = 0.95, VOXELS_MOST = 1.05, L
 #define ROW(X)                                                                                     \
     X(CHARS, hair, 20) X(TEXT, algo, 9) X(REAL, rate, 4)                                           \
     X(REAL, rest, 8) X(REAL, tips, 8) X(REAL, voxels, 7) X(REAL, jitter, 9)                        \
-    X(REAL, swing, 7) X(REAL, life, 6) X(REAL, flare, 6)                                           \
+    X(REAL, swing, 7) X(REAL, life, 6) X(REAL, flare, 6) X(REAL, together, 8)\
+                                           \
     X(REAL, deep_rest, 9) X(REAL, deep_shake, 10) X(REAL, groom_deep, 0)                           \
     X(REAL, beyond_rest, 0) X(REAL, beyond_shake, 0)                                               \
     X(REAL, ms_min, 7) X(REAL, ms_median, 9) X(TEXT, verdict, 7)                                   \
@@ -113,6 +114,7 @@ static Result measure_shake(const Groom *groom, Row *row, bool timed, bool measu
         row->ms_min = shake.step.minimum, row->ms_median = shake.step.median;
     if (result == RESULT_OK && measured) {
         row->swing = shake.swing, row->flare = shake.flare;
+        row->together = shake.together;
         row->deep_shake = MM * shake.deepest, row->beyond_shake = MM * shake.beyond;
     }
     groom_stage_destroy(&stage);

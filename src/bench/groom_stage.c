@@ -24,8 +24,8 @@ static Result read_scene(GroomStage *stage, const GroomSetup *setup, Error *erro
     Scene *scene = &stage->scene;
     snprintf(rate, sizeof rate, "--fps %d --sim-rate %.9g", FPS, setup->rate);
     const char *const names[] = {setup->file, setup->mesh ? "--mesh" : NULL, setup->mesh, NULL};
-    const char *const flags[SCENE_WORDS_FLAGS] = {"--quiet --followers 0 --sleep 0 -o groom/", rate,
-                                                  setup->flags, ""};
+    const char *const flags[SCENE_WORDS_FLAGS] = {"--quiet --sleep 0 -o groom/", rate, setup->flags,
+                                                  ""};
     TRY(scene_words_read(scene, &stage->words, names, flags, error));
     if (scene->file)
         return error_set(error, RESULT_USAGE, "%s is a scene file: expected hair", scene->file);
@@ -74,6 +74,53 @@ static Result make_room(GroomStage *stage, Error *error)
     return error_set(error, RESULT_FAILED, "no memory for %zu particles", points);
 }
 
+// All strands that are drawn, where they are: guides, then followers.
+static Result read_drawn(GroomStage *stage, Error *error)
+{
+    const SimulationSection *section = &stage->simulation.sections[0];
+    TRY(hair_read_positions(&section->hair, stage->drawn, error));
+    if (!section->follow.hair.batch_count) return RESULT_OK;
+    return hair_read_positions(&section->follow.hair, &stage->drawn[section->hair.particle_count],
+                               error);
+}
+
+static uint32_t list_strands(uint32_t *first, const Hair *hair, uint32_t at)
+{
+    for (uint32_t b = 0; b < hair->batch_count; ++b)
+        for (uint32_t i = 0; i < hair->batches[b].strand_count; ++i, ++first) {
+            *first = at;
+            at += hair->batches[b].vertex_count;
+        }
+    *first = at;
+    return at;
+}
+
+// Who is whose neighbour in the groom, which is drawn now.
+static Result find_locks(GroomStage *stage, Error *error)
+{
+    const Hair *guides = &stage->simulation.sections[0].hair,
+               *followers = &stage->simulation.sections[0].follow.hair;
+    uint64_t points = guides->particle_count + followers->particle_count;
+    uint32_t strands = guides->strand_count + followers->strand_count;
+    if (points > UINT32_MAX)
+        return error_set(error, RESULT_USAGE, "%llu vertices with followers: expected fewer",
+                         (unsigned long long)points);
+    uint32_t *first = calloc((size_t)strands + 1, sizeof *first);
+    stage->drawn = calloc(points + 1, sizeof *stage->drawn);
+    Result result = RESULT_OK;
+    if (!first || !stage->drawn)
+        result = error_set(error, RESULT_FAILED, "no memory for %u strands", strands);
+    THEN(result, read_drawn(stage, error));
+    if (result == RESULT_OK) {
+        uint32_t at = list_strands(first, guides, 0);
+        list_strands(&first[guides->strand_count], followers, at);
+        result = groom_locks_create(&stage->locks, (const float(*)[3])stage->drawn, first, strands,
+                                    error);
+    }
+    free(first);
+    return result;
+}
+
 Result groom_stage_create(GroomStage *stage, const Gpu *gpu, const GroomSetup *setup, Error *error)
 {
     *stage = (GroomStage){0};
@@ -86,18 +133,22 @@ Result groom_stage_create(GroomStage *stage, const Gpu *gpu, const GroomSetup *s
                           stage->assets.strands, mesh, error));
     TRY(groom_shape_create(&stage->shape, &stage->simulation.sections[0].hair,
                            stage->assets.strands, mesh, error));
+    simulation_pose(&stage->simulation);
+    TRY(find_locks(stage, error));
     return make_room(stage, error);
 }
 
 void groom_stage_destroy(GroomStage *stage)
 {
     groom_shape_destroy(&stage->shape);
+    groom_locks_destroy(&stage->locks);
     if (stage->simulation.scene) simulation_destroy(&stage->simulation);
     gpu_timer_destroy(&stage->timer);
     assets_destroy(&stage->assets);
     scene_destroy(&stage->scene);
     free(stage->points);
     free(stage->before);
+    free(stage->drawn);
     free(stage->low);
     free(stage->high);
     free(stage->words);
@@ -198,6 +249,9 @@ static Result measure_period(GroomStage *stage, GroomShake *shake, bool first, E
     TRY(groom_shape_depth(&stage->shape, points_of(stage), &deepest, &beyond, error));
     shake->deepest = first ? deepest : fmax(shake->deepest, deepest);
     shake->beyond = first ? beyond : fmax(shake->beyond, beyond);
+    TRY(read_drawn(stage, error));
+    double together = groom_locks_kept(&stage->locks, (const float(*)[3])stage->drawn);
+    shake->together = first ? together : fmin(shake->together, together);
     return RESULT_OK;
 }
 

@@ -3,6 +3,7 @@
 // as tractrix-render does it, without pictures.
 #pragma once
 
+#include "bench/groom_locks.h"
 #include "bench/groom_shape.h"
 #include "bench/table.h"
 #include "bench/trial.h"
@@ -26,7 +27,9 @@ typedef struct GroomStage {
     GpuTimer timer;
     Simulation simulation;
     GroomShape shape;
-    float middle[3];                  // of the roots: the head turns about the vertical through it
+    GroomLocks locks;
+    float (*drawn)[3]; // the guides as `points`, the followers behind them, in the world
+    float middle[3];   // of the roots: the head turns about the vertical through it
     float (*points)[3], (*before)[3]; // of this frame and the last, the head's frame
     float (*low)[3], (*high)[3];      // of each tip in the period that is measured
 } GroomStage;
@@ -52,6 +55,8 @@ typedef struct GroomShake {
     double swing; // amplitude of the tips in the head's frame over strand length: the mean of half
                   // the diagonal of the box that a tip goes through in the last period
     double flare; // largest mean distance of the tips from the axis, over that in the groom
+    double together; // least share of neighbours that still are (groom_locks_kept), guides and
+                     // followers, in the last period
     double deepest, beyond; // in the last period
     Times step;             // ms a step with all its passes, in the two periods before
 } GroomShake;

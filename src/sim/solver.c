@@ -404,7 +404,6 @@ static void dispatch(SolverState *state, uint32_t i, StepParams *uniforms)
     gpu_uniforms_set(BIND_STEP, uniforms, sizeof *uniforms);
     gpu_buffer_bind_texture(&hair->position, BIND_POSITION);
     gpu_buffer_bind_texture(&hair->rest, BIND_REST);
-    gpu_buffer_bind_texture(&hair->strand_id, BIND_STRAND_ID);
     gpu_buffer_bind_texture(&batch->state, BIND_STATE);
     along_bind(&state->along, i);
     bind_frames(state, i);

@@ -25,7 +25,7 @@ typedef struct SolverStep {
     float frame_old, frame_now;
     uint64_t params_stamp;  // equal only where the section's parameters are (section_tracks_stamp)
     float gravity[3];       // m/s^2
-    float wind[4][3];       // m/s: mixed by strand
+    float wind[4][3];       // m/s: mixed by the place of a strand's root
     float shelter[4];       // m: the middle of the head; share of the wind kept off behind it
     float head_velocity[3]; // m/s, of that middle
 } SolverStep;
