@@ -222,7 +222,11 @@ class Parameters(TypedDict, total=False):
     color_map: Path
     """PNG file that colors each strand by the texture coordinates of its root [default none]"""
     file_colors: bool
-    """use the colors and opacities of the hair file, if it has any, instead of --color and --opacity [default true]"""
+    """use the colors of the hair file, if it has any; not where a color, a transmission or melanin is given [default
+    true]"""
+    file_opacity: bool
+    """use the opacities of the hair file, if it has any; not where --opacity or --no-file-colors is given [default
+    true]"""
     file_thickness: bool
     """use the thickness of the hair file, if it has any, relative to its mean (--radius) [default true]"""
     tip_color: Union[Numbers, str]

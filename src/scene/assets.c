@@ -5,6 +5,7 @@
 #include "base/activity.h"
 #include "mesh/mesh_sequence.h"
 #include "mesh/obj.h"
+#include "strands/paint.h"
 #include "strands/strands_edit.h"
 
 #include <math.h>
@@ -39,6 +40,14 @@ static Result take_given(Assets *assets, uint32_t i, const Strands *given, Error
     return strands_report_measure(report, given, error);
 }
 
+// What the file says of its look.
+static void print_look(const Strands *strands, const Section *section, FILE *messages)
+{
+    char look[160];
+    if (paint_describe(strands, &section->params, look, sizeof look))
+        fprintf(messages, "%s: the file's %s\n", quote(section->file).text, look);
+}
+
 static Result load_section(Assets *assets, const Scene *scene, uint32_t i, FILE *messages,
                            bool verbose, Error *error)
 {
@@ -54,6 +63,7 @@ static Result load_section(Assets *assets, const Scene *scene, uint32_t i, FILE 
     warn_ignored(&assets->strands[i], section->file, messages);
     if (!i || !strands_report_same_guess(&assets->reports[i - 1], &assets->reports[i]))
         strands_report_print_guess(&assets->reports[i], section->file, messages);
+    print_look(&assets->strands[i], section, messages);
     if (verbose) strands_report_print(&assets->reports[i], section->file, messages);
     return RESULT_OK;
 }

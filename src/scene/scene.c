@@ -265,18 +265,28 @@ Result scene_check(const Scene *scene, Error *error)
 
 // --- Defaults that give way.
 
+// Who said the parameter.
+static Origin origin_of(const Section *section, const char *name)
+{
+    return (Origin)section->origin[params_find(name) - PARAM_TABLE];
+}
+
+static void settle_section(Section *section)
+{
+    SectionParams *params = &section->params;
+    Origin color = origin_of(section, "color"), crossed = origin_of(section, "transmission"),
+           melanin = origin_of(section, "melanin"), of_file = origin_of(section, "file_colors"),
+           opacity = origin_of(section, "file_opacity");
+    if (color > crossed) params->transmission = (AutoVec3){.automatic = true};
+    if (color > melanin || crossed > melanin) params->melanin = (AutoFloat){.automatic = true};
+    bool refused = !params->file_colors && of_file > opacity;
+    if (color > of_file || crossed > of_file || melanin > of_file) params->file_colors = false;
+    if (refused || origin_of(section, "opacity") > opacity) params->file_opacity = false;
+}
+
 void scene_settle_colors(Scene *scene)
 {
-    size_t color = (size_t)(params_find("color") - PARAM_TABLE),
-           transmission = (size_t)(params_find("transmission") - PARAM_TABLE),
-           melanin = (size_t)(params_find("melanin") - PARAM_TABLE);
-    for (uint32_t i = 0; i < scene->section_count; ++i) {
-        Section *section = &scene->sections[i];
-        uint8_t said = section->origin[color], crossed = section->origin[transmission];
-        if (said > crossed) section->params.transmission = (AutoVec3){.automatic = true};
-        if (said > section->origin[melanin] || crossed > section->origin[melanin])
-            section->params.melanin = (AutoFloat){.automatic = true};
-    }
+    for (uint32_t i = 0; i < scene->section_count; ++i) settle_section(&scene->sections[i]);
 }
 
 // --- Presets.

@@ -146,8 +146,8 @@ Result scene_set(Scene *scene, int section, const ParamInfo *info, const char *t
 // other sequences have. RESULT_FAILED when memory is short.
 Result scene_choose_turn(Scene *scene, Error *error);
 
-// A section whose color or melanin is said more closely than its albedo has no albedo: the default
-// of --look gives way.
+// What is said gives way to what is said more closely: a transmission or melanin to a color;
+// file_colors to all three; file_opacity to an opacity, and to file_colors that are refused.
 void scene_settle_colors(Scene *scene);
 
 // As scene_read, but without scene_check, so that flags may still mend a combination.

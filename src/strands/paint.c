@@ -5,6 +5,7 @@
 #include "image/png.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -150,7 +151,7 @@ static void paint_strand(Paint *paint, const Strands *strands, const SectionPara
                          uint32_t s)
 {
     uint32_t first = strands->first[s], n = strands_size(strands, s);
-    bool from_file = strands->color && params->file_colors;
+    bool from_file = strands->color && params->file_opacity;
     double opacity = 0;
     float tip[3];
     decode(params->tip_color, tip);
@@ -193,7 +194,8 @@ static bool is_wanted(const Strands *strands, const SectionParams *params)
 {
     bool thickness = strands->vertex_thickness || strands->strand_thickness;
     return *params->color_map || params->tip_length > 0 ||
-           (strands->color && params->file_colors) || (thickness && params->file_thickness);
+           (strands->color && (params->file_colors || params->file_opacity)) ||
+           (thickness && params->file_thickness);
 }
 
 Result paint_create(Paint *paint, const Strands *strands, const SectionParams *params, Error *error)
@@ -222,6 +224,28 @@ Result paint_create(Paint *paint, const Strands *strands, const SectionParams *p
     if (result == RESULT_OK) set_thickness(paint, strands, params);
     if (result != RESULT_OK) paint_destroy(paint);
     return result;
+}
+
+bool paint_describe(const Strands *strands, const SectionParams *params, char *text, size_t size)
+{
+    uint32_t features = strands_features(strands);
+    bool thickness = features & (STRANDS_HAS_STRAND_THICKNESS | STRANDS_HAS_VERTEX_THICKNESS);
+    const struct {
+        const char *what, *flag;
+        bool carried, used;
+    } looks[] = {
+        {"colours", "--file-colors", strands->color, params->file_colors && !*params->color_map},
+        {"opacities", "--file-opacity", !strands_are_opaque(strands), params->file_opacity},
+        {"thickness", "--file-thickness", thickness, params->file_thickness},
+    };
+    size_t length = 0;
+    *text = 0;
+    for (size_t i = 0; i < sizeof looks / sizeof *looks; ++i)
+        if (looks[i].carried && length < size)
+            length +=
+                (size_t)snprintf(text + length, size - length, "%s%s %s (%s)", length ? ", " : "",
+                                 looks[i].what, looks[i].used ? "used" : "not used", looks[i].flag);
+    return length > 0;
 }
 
 void paint_destroy(Paint *paint)

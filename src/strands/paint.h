@@ -19,7 +19,7 @@ typedef struct Paint {
 //               lowest row, both wrap around), else the file's with file_colors, else paint_color
 //               (colours of maps, files and tips are such as one sees, as params->color is)
 //   tip         from 1 - tip_length of the way along (by vertices) colours run to tip_color
-//   opacity     the file's with file_colors, its mean over the strand
+//   opacity     the file's with file_opacity, its mean over the strand
 //   thickness   the file's with file_thickness over its mean of all vertices; where it is by
 //   vertex,
 //               tip_ratio is not applied
@@ -28,6 +28,10 @@ typedef struct Paint {
 Result paint_create(Paint *paint, const Strands *strands, const SectionParams *params,
                     Error *error);
 void paint_destroy(Paint *paint);
+
+// What the file says of its look, whether that is used, and the flag that decides it: "colours used
+// (--file-colors), thickness not used (--file-thickness)". False, and "", if it says nothing.
+bool paint_describe(const Strands *strands, const SectionParams *params, char *text, size_t size);
 
 // The section's colour, linear RGB: what of white light that crosses a fibre along its diameter is
 // left. That is what `melanin` leaves, exp(-2 sigma), sigma the absorption by radius of so much

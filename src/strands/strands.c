@@ -74,6 +74,13 @@ static bool is_usual_mobility(const Strands *strands)
     return true;
 }
 
+bool strands_are_opaque(const Strands *strands)
+{
+    for (uint32_t v = 0; strands->color && v < strands->vertex_count; v++)
+        if (strands->color[v][3] != 1.0f) return false;
+    return true;
+}
+
 uint32_t strands_features(const Strands *strands)
 {
     size_t count = strands->strand_count, vertices = strands->vertex_count;

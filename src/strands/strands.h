@@ -77,6 +77,9 @@ enum {
     STRANDS_HAS_FIXED_ENDS = 256,
 };
 
+// Whether no vertex's colour has an opacity below 1.
+bool strands_are_opaque(const Strands *strands);
+
 // Those of the bits above that the strands have.
 uint32_t strands_features(const Strands *strands);
 

@@ -81,6 +81,8 @@ Result strands_report_measure(StrandsReport *report, const Strands *strands, Err
 {
     report->strands = strands->strand_count;
     report->vertices = strands->vertex_count;
+    report->features = strands_features(strands);
+    report->opaque = strands_are_opaque(strands);
     strands_bounds(strands, report->low, report->high);
     if (strands->strand_count == 0) return RESULT_OK;
     double *lengths = malloc(strands->strand_count * sizeof *lengths);
@@ -219,6 +221,7 @@ static void print_notes(const StrandsReport *report, FILE *stream)
 
 void strands_report_print(const StrandsReport *report, const char *path, FILE *stream)
 {
+    char carried[256];
     fprintf(stream, "%s: %s", quote(path).text, FORMAT_TABLE[report->kind]->name);
     if (report->version > 0.0f) fprintf(stream, ", version %g", (double)report->version);
     fprintf(stream, "\n  strands   %u usable of %u\n", report->strands, report->declared_strands);
@@ -231,6 +234,9 @@ void strands_report_print(const StrandsReport *report, const char *path, FILE *s
         fprintf(stream, "  %-8s  %c %.6g .. %.6g m\n", axis ? "" : "bounds", "xyz"[axis],
                 (double)report -> low[axis], (double)report -> high[axis]);
     print_unit(report, stream);
+    strands_features_describe(report->features, carried, sizeof carried);
+    fprintf(stream, "  carries   %s%s\n", *carried ? carried : "positions only",
+            report->opaque ? "" : ", opacities");
     print_notes(report, stream);
     if (strands_report_is_clean(report)) fprintf(stream, "  defects   none\n");
     for (int kind = 0; kind < DEFECT_KINDS; kind++) {

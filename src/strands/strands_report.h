@@ -28,6 +28,8 @@ typedef struct StrandsReport {
     float version;                                // 0 where the format has none
     uint32_t declared_strands, declared_vertices; // in the file
     uint32_t strands, vertices;                   // after mending
+    uint32_t features;                            // STRANDS_HAS_...: what they have beside places
+    bool opaque;                                  // no opacities below 1
     float unit_used;                              // metres per unit of the file
     bool up_z;                                    // the file's z is up, else its y
     bool unit_guessed, up_guessed;                // neither the caller nor the file says

@@ -99,7 +99,12 @@ static void what_the_file_has_is_used_unless_refused(void **state)
     paint_destroy(&paint);
     params.file_colors = false;
     NEEDED(paint_create(&paint, &strands, &params, error));
-    assert_true(!paint.colors_from_file && paint.color[7][2] == 1 && paint.color[7][3] == 1);
+    assert_true(!paint.colors_from_file && paint.color[7][2] == 1);
+    assert_true(fabsf(paint.color[7][3] - 0.6f) < 1e-6f);
+    paint_destroy(&paint);
+    params.file_opacity = false;
+    NEEDED(paint_create(&paint, &strands, &params, error));
+    assert_true(paint.color[7][2] == 1 && paint.color[7][3] == 1);
     paint_destroy(&paint);
     params.file_thickness = false;
     NEEDED(paint_create(&paint, &strands, &params, error));

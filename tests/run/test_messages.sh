@@ -96,4 +96,26 @@ at 12 '[FF]HDR: invalid chunk type'
 at 29 'IHDR: CRC error'
 at 37 '[FF]EXt: invalid chunk type'
 
+claim "a line says what a file has of a look and what of it is used, --check what it carries"
+{
+    printf 'ply\nformat ascii 1.0\nelement vertex 4\n'
+    printf 'property float %s\n' x y z red green blue alpha thickness
+    printf 'element strand 2\nproperty int nsegs\nend_header\n'
+    for x in 0 0.1; do printf '%s 0 0 1 0 0 0.5 0.01\n%s 0.1 0 1 0 0 0.5 0.01\n' $x $x; done
+    printf '1\n1\n'
+} >look.ply
+# look TEXT FLAG...: the render's first line.
+look() { text=$1; shift; "$bin/tractrix-render" look.ply --unit m --algo none --look plain --frames 1 --size 8x8 -o look.png "$@" 2>err; if [ "$(head -n 1 err)" = "look.ply: the file's $text" ]; then good; else bad "got '$(head -n 1 err)', expected: $text"; fi; }
+look "colours used (--file-colors), opacities used (--file-opacity), thickness used (--file-thickness)"
+look "colours not used (--file-colors), opacities used (--file-opacity), thickness used (--file-thickness)" --color '#0000ff'
+look "colours used (--file-colors), opacities not used (--file-opacity), thickness not used (--file-thickness)" --opacity 0.5 --no-file-thickness
+"$bin/tractrix-render" look.ply --check >out 2>&1
+if grep -q '^  carries   thickness of vertices, colours, opacities$' out; then good; else bad "$(cat out)"; fi
+"$bin/tractrix-convert" look.ply >out 2>&1
+if grep -q '^  carries   thickness of vertices, colours, opacities$' out; then good; else bad "$(cat out)"; fi
+"$bin/tractrix-render" fur.tfx --check >out 2>&1
+if grep -q '^  carries   texture coordinates of strands$' out; then good; else bad "$(cat out)"; fi
+"$bin/tractrix-render" fur.tfx --algo none --frames 1 --size 8x8 -o look.png 2>err
+if grep -q "the file's" err; then bad "$(cat err)"; else good; fi
+
 finish

@@ -95,6 +95,22 @@ static bool is_said(const ParamInfo *info, const char *line)
     return strstr(line, flag) || strcmp(info->name, "output") == 0;
 }
 
+// Whether a default of `other` gives way to `info`, or to what that needs beside it.
+static bool gives_way(const ParamInfo *other, const ParamInfo *info)
+{
+    static const struct {
+        const char *other, *to;
+    } PAIRS[] = {
+        {"file_colors", "color"},    {"file_colors", "transmission"},
+        {"file_colors", "melanin"},  {"file_colors", "melanin_redness"},
+        {"file_opacity", "opacity"}, {"file_opacity", "file_colors"},
+    };
+    for (size_t i = 0; i < sizeof PAIRS / sizeof *PAIRS; i++)
+        if (strcmp(PAIRS[i].other, other->name) == 0 && strcmp(PAIRS[i].to, info->name) == 0)
+            return true;
+    return false;
+}
+
 static void every_row_is_set_by_its_flag_and_by_nothing_else(void **state)
 {
     (void)state;
@@ -116,6 +132,7 @@ static void every_row_is_set_by_its_flag_and_by_nothing_else(void **state)
             assert_read(&scene, line);
             for (size_t j = 0; j < PARAM_COUNT; j++) {
                 const ParamInfo *other = &PARAM_TABLE[j];
+                if (gives_way(other, info)) continue;
                 if (j == i || !is_said(other, said))
                     assert_prints(&scene, other, j == i ? value : other->default_text);
             }
@@ -261,6 +278,44 @@ static void one_name_is_one_frame(void **state)
         assert_int_equal(scene.run.first, LINES[i].first);
         assert_int_equal(scene.run.last, LINES[i].last);
         assert_int_equal(scene.run.frames, LINES[i].frames);
+        scene_destroy(&scene);
+    }
+}
+
+// Of the colours of a file and the scene's, and of opacities, what is named more closely counts.
+static void colors_of_files_give_way_to_what_is_named(void **state)
+{
+    static const struct {
+        const char *keys, *shared, *flags;
+        bool colors, opacity;
+    } CASES[] = {
+        {"", "", "", true, true},
+        {"", "", " --color red", false, true},
+        {"", "", " --albedo red", false, true},
+        {"", "", " --transmission red", false, true},
+        {"", "", " --melanin 1", false, true},
+        {"", "", " --opacity 0.5", true, false},
+        {"", "", " --no-file-colors", false, false},
+        {"", "", " --no-file-colors --file-opacity", false, true},
+        {"", "", " --color red --file-colors", true, true},
+        {"", ", \"color\": \"#ff0000\"", "", false, true},
+        {", \"file_colors\": true", ", \"color\": \"#ff0000\"", "", true, true},
+        {", \"file_colors\": true", "", " --color red", false, true},
+        {", \"color\": \"#ff0000\", \"file_colors\": true", "", "", true, true},
+        {", \"opacity\": 0.5", "", " --file-opacity", true, true},
+        {", \"look\": \"plain\"", "", "", true, true},
+    };
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        bool inner = strstr(CASES[i].keys, "look") == NULL;
+        char file[400], line[600];
+        Scene scene;
+        snprintf(file, sizeof file, "{\"sections\": [{\"file\": \"a\"%s}]%s%s}",
+                 inner ? CASES[i].keys : "", inner ? "" : CASES[i].keys, CASES[i].shared);
+        snprintf(line, sizeof line, "%s -o x/%s", write_scene(state, file), CASES[i].flags);
+        assert_read(&scene, line);
+        print_message("%s%s%s\n", CASES[i].keys, CASES[i].shared, CASES[i].flags);
+        assert_int_equal(scene.sections[0].params.file_colors, CASES[i].colors);
+        assert_int_equal(scene.sections[0].params.file_opacity, CASES[i].opacity);
         scene_destroy(&scene);
     }
 }
@@ -470,6 +525,7 @@ int main(void)
         cmocka_unit_test(a_turntable_needs_no_angle),
         cmocka_unit_test(one_name_is_one_frame),
         cmocka_unit_test(section_flags_reach_every_section),
+        TEST(colors_of_files_give_way_to_what_is_named),
         cmocka_unit_test(output_is_needed_only_to_draw),
         cmocka_unit_test(wrong_command_lines_are_refused_with_the_nearest_name),
         TEST(flags_may_mend_a_combination_that_a_scene_file_has),
