@@ -36,6 +36,8 @@ def limits(pixel_tolerance: float | None = None, max_failing_percent: float | No
            max_flip: float | None = None, pixels_per_degree: float | None = None) -> Limits:
     """As tractrix-compare takes its options: without any, images are the same if they are equal; with `max_flip` alone it
     is the only limit."""
+    if max_flip == 0:  # of equal images alone; the library takes 0 for no limit
+        pixel_tolerance = max_failing_percent = max_flip = None
     pixels = max_flip is None or pixel_tolerance is not None or max_failing_percent is not None
     return Limits(pixel_tolerance=(pixel_tolerance or 0) if pixels else -1,
                   max_failing_percent=max_failing_percent or 0,

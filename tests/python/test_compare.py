@@ -31,6 +31,7 @@ def test_one_pixel_is_found(image):
     assert not tractrix.compare(other, image, max_failing_percent=0.1).same
     assert tractrix.compare(other, image, max_flip=0.5).same  # alone, it is the only limit
     assert not tractrix.compare(other, image, max_flip=0.5, pixel_tolerance=0).same
+    assert not tractrix.compare(other, image, max_flip=0, pixel_tolerance=20).same and tractrix.compare(image, image, max_flip=0).same
 
 
 def test_alpha_counts(image):
@@ -52,6 +53,8 @@ def test_grey_and_rgb_are_opaque_rgba(image):
     rgb = np.dstack((grey, grey, grey))
     rgba = np.dstack((rgb, np.full_like(grey, 255)))
     assert tractrix.compare(grey, rgb).same and tractrix.compare(rgb, rgba).same and tractrix.compare(grey[:, :, None], rgba).same
+    light = np.dstack((np.full((24, 32, 3), 0.5, np.float32), np.ones((24, 32), np.float32)))
+    assert tractrix.compare(light[:, :, :3], light).same
 
 
 def test_rows_may_lie_apart(image):
