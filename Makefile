@@ -291,9 +291,10 @@ SANITIZE_BUT = ^test_(bench_command|bench_html|blender|ci_examples|command_cache
 check-sanitize:
 	$(QUIET) CONFIG=sanitize OUT=$(SIDE)sanitize all tests
 	@TEST_ASSUME="hardware ulps=1" tests/runner $(SIDE)sanitize test_ '$(SANITIZE_BUT)'
-# Tests of what threads share: parallel_run, the output's worker, the video, pairs of images, progress, leftovers. Those
+# Tests of what threads share: parallel_run, the output's worker, the video, pairs of images, progress, leftovers, two
+# devices of the library. Those
 # that draw hundreds of images stay out; scripts/run-threads goes through the same code once.
-THREADED = ^test_(bins|compare|composite|groom_shape|leftovers|light_grid|output|output_video|png|progress|renderer_pool|scalp|sequence|shadow_reference|strands_make|video)\.c
+THREADED = ^test_(bins|compare|composite|groom_shape|leftovers|library_device|light_grid|output|output_video|png|progress|renderer_pool|scalp|sequence|shadow_reference|strands_make|video)\.c
 check-threads: export TSAN_OPTIONS = suppressions=$(CURDIR)/tests/tsan.supp exitcode=66
 check-threads: ## data races of the threaded parts, by ThreadSanitizer: some minutes (ONLY=name: some tests)
 	@scripts/setup build run test python

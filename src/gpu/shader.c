@@ -4,6 +4,7 @@
 #include "base/bytes.h"
 #include "base/outfile.h"
 
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -17,6 +18,7 @@ static const char NO_REASON[] = "the driver refuses it and gives no reason";
 static const GlslSource NONE[] = {{NULL, NULL}};
 static const GlslSource *added_sources = NONE;
 static bool warnings_are_errors;
+static atomic_bool environment_ignored;
 static _Thread_local int assumed_ulps; // as the current context
 
 void shader_add_sources(const GlslSource *sources)
@@ -34,10 +36,20 @@ void shader_assume_ulps(int ulps)
     assumed_ulps = ulps;
 }
 
+void shader_ignore_environment(void)
+{
+    atomic_store(&environment_ignored, true);
+}
+
+static const char *folder_of(const char *variable)
+{
+    const char *folder = atomic_load(&environment_ignored) ? NULL : getenv(variable);
+    return folder && *folder ? folder : NULL;
+}
+
 const char *shader_folder(void)
 {
-    const char *folder = getenv("TRACTRIX_GLSL_DIR");
-    return folder && *folder ? folder : NULL;
+    return folder_of("TRACTRIX_GLSL_DIR");
 }
 
 // The joined text of a stage. `origins` says where each of its lines comes from: Mesa loses the
@@ -164,11 +176,11 @@ static Result compose(Composition *c, const char *file, const ShaderDefine *defi
 // FNV-1a hash, so that variants of a file lie side by side.
 static Result dump(const Composition *c, const char *file, Error *error)
 {
-    const char *folder = getenv("TRACTRIX_GLSL_DUMP"), *ending = strrchr(file, '.');
+    const char *folder = folder_of("TRACTRIX_GLSL_DUMP"), *ending = strrchr(file, '.');
     char path[4096];
     uint64_t hash = 0xcbf29ce484222325;
     OutFile out;
-    if (!folder || !*folder || !ending) return RESULT_OK;
+    if (!folder || !ending) return RESULT_OK;
     for (size_t i = 0; i < c->length; ++i) hash = (hash ^ (uint8_t)c->text[i]) * 0x100000001b3;
     int start = snprintf(path, sizeof path, "%s/", folder);
     if (start < 0 || (size_t)start + strlen(file) + 20 >= sizeof path)

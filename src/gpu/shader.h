@@ -43,6 +43,9 @@ Result shader_build_draw(GLuint *program, const char *vertex_file, const char *f
 // there, for compilers of other drivers: draw_hair.frag is draw_hair.HASH.frag.
 const char *shader_folder(void);
 
+// Neither counts from now on: in a library, files are those that its caller names.
+void shader_ignore_environment(void);
+
 // Every shader built from now on rounds otherwise, by so many units in the last place
 // (glsl/common/perturb.glsl); 0: as the driver does.
 void shader_assume_ulps(int ulps);

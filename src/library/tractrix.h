@@ -234,8 +234,9 @@ TractrixResult tractrix_render(TractrixRenderer *renderer, const TractrixView *v
                                TractrixImage *image, TractrixError *error);
 
 // PNG, EXR and PFM files by content; alpha 1 where they have none. The image lives as long as the
-// picture. Written by suffix, .png, .exr or .pfm; pixels that are all opaque without alpha, as
-// tractrix-render has them. TRACTRIX_USAGE for floats into .png and others into .exr and .pfm.
+// picture. Written by suffix: .png, or .jpg of opaque RGBA8; .exr or .pfm of floats. Pixels
+// that are all opaque are written without alpha, as tractrix-render does. TRACTRIX_USAGE for a
+// format that the file cannot hold.
 TractrixResult tractrix_picture_read(TractrixPicture **picture, const char *path,
                                      TractrixError *error);
 const TractrixImage *tractrix_picture_image(const TractrixPicture *picture);

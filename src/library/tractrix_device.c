@@ -3,6 +3,7 @@
 
 #include "base/parallel.h"
 #include "gpu/gpu_uniforms.h"
+#include "gpu/shader.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -107,6 +108,7 @@ static Result create(TractrixDevice **device, Error *error)
     if (!*device) return error_set(error, RESULT_FAILED, "no memory for a device");
     (*device)->users = 1;
     (*device)->process = getpid();
+    shader_ignore_environment();
     return RESULT_OK;
 }
 

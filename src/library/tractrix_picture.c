@@ -5,6 +5,7 @@
 #include "base/outfile.h"
 #include "image/exr_file.h"
 #include "image/float_image.h"
+#include "image/jpeg.h"
 #include "image/pfm.h"
 #include "image/png.h"
 
@@ -164,12 +165,18 @@ static bool ends_with(const char *path, const char *suffix)
 static Result encode(const char *path, const Image *image, Bytes *bytes, Error *error)
 {
     bool floats = image->kind == IMAGE_FLOAT, png = ends_with(path, ".png"),
-         exr = ends_with(path, ".exr"), pfm = ends_with(path, ".pfm");
-    if (!png && !exr && !pfm)
-        return error_set(error, RESULT_USAGE, "%s: expected a name with .png, .exr or .pfm", path);
-    if (floats == png)
+         exr = ends_with(path, ".exr"), pfm = ends_with(path, ".pfm"),
+         jpeg = ends_with(path, ".jpg");
+    if (!png && !exr && !pfm && !jpeg)
+        return error_set(error, RESULT_USAGE, "%s: expected a name with .png, .jpg, .exr or .pfm",
+                         path);
+    if (floats == (png || jpeg))
         return error_set(error, RESULT_USAGE, "%s: got an image of %s: expected %s", path,
                          floats ? "floats" : "whole numbers", floats ? ".exr or .pfm" : ".png");
+    if (jpeg && (image->kind != IMAGE_8 || image->channels != 3))
+        return error_set(error, RESULT_USAGE,
+                         "%s: got an image of 16 bits or with alpha: expected .png", path);
+    if (jpeg) return jpeg_encode(image, JPEG_FINE, bytes, error);
     if (png) return png_encode(image, NULL, bytes, error);
     return pfm ? pfm_encode(image, bytes, error)
                : exr_file_encode(&(ExrFile){.image = image}, bytes, error);

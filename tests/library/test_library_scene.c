@@ -294,6 +294,13 @@ static void writes_and_reads_images(void **state)
         assert_memory_equal((uint8_t *)back->pixels + (size_t)y * back->row_bytes, bytes[y],
                             4 * WIDTH);
     tractrix_picture_destroy(picture);
+    unlink(name);
+    snprintf(name, sizeof name, "%s/x.jpg", path);
+    library_refused(tractrix_image_write(&image, name, &library_error), TRACTRIX_USAGE, "alpha");
+    bytes[1][7] = 255;
+    WELL(tractrix_image_write(&image, name, &library_error));
+    library_refused(tractrix_picture_read(&picture, name, &library_error), TRACTRIX_BAD_INPUT,
+                    name); // it has lost what a comparison would measure
     for (int i = 0; i < HEIGHT * WIDTH * 4; ++i)
         light[i / (4 * WIDTH)][i / 4 % WIDTH][i % 4] = i % 4 == 3 ? 1 : 0.25f * (float)i;
     image = (TractrixImage){.size = sizeof image,
@@ -315,7 +322,7 @@ static void writes_and_reads_images(void **state)
     library_refused(tractrix_picture_read(&picture, name, &library_error), TRACTRIX_BAD_INPUT,
                     name);
     assert_null(picture);
-    library_refused(tractrix_image_write(&image, "x.jpg", &library_error), TRACTRIX_USAGE, ".pfm");
+    library_refused(tractrix_image_write(&image, "x.tga", &library_error), TRACTRIX_USAGE, ".pfm");
     rmdir(path);
 }
 
