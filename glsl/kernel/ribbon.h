@@ -11,7 +11,7 @@
 #endif
 
 #define RIBBON_LEAST_OPACITY  (1.0f / 4096.0f) // what is clearer is not drawn
-#define RIBBON_LEAST_COVERAGE (1.0f / 16.0f)   // of a pixel, by which a ribbon is its nearest one
+#define RIBBON_LEAST_COVERAGE (1.0f / 512.0f)  // of a pixel, by which a ribbon is its nearest one
 #define RIBBON_LEAST_THROUGH  (1.0f / 1024.0f) // share of what stands behind that still counts
 #define RIBBON_STRAIGHT       0.05f            // px that a point may be off what stands in for it
 #define RIBBON_FOLD           0.25f  // of 1 + d0.d1: a joint that is more of a fold has no mitre

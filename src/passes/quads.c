@@ -25,7 +25,7 @@ static void destroy_ribbons(QuadRibbons *hair)
     *hair = (QuadRibbons){0};
 }
 
-// `nearest`: a ribbon hides all that is behind it, in every pixel of which it covers a sixteenth.
+// `nearest`: a ribbon hides all that is behind it, in every pixel of which it covers a share.
 static Result create_ribbons(QuadRibbons *hair, const GpuLimits *limits, bool nearest, Error *error)
 {
     const ShaderDefine defines[] = {{"NEAREST", nearest}, {NULL, 0}};

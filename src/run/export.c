@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "run/export.h"
 #include "strands/formats/format.h"
+#include "strands/formats/npz_file.h"
 #include "strands/paint.h"
 #include "strands/strands.h"
 #include "strands/strands_edit.h"
@@ -99,10 +100,16 @@ static Result create_look(SceneLook *look, const Scene *scene, const Strands *se
 
 // --- Opening.
 
+static bool is_npz(const char *text)
+{
+    const char *suffix = strrchr(text, '.');
+    return suffix && strcasecmp(suffix, ".npz") == 0;
+}
+
 // Where `frame_count` frames of one name would overwrite each other.
 static Result check_name(const Target *target, const char *text, int frame_count, Error *error)
 {
-    if (target->kind != TARGET_STILL || frame_count == 1) return RESULT_OK;
+    if (target->kind != TARGET_STILL || frame_count == 1 || is_npz(text)) return RESULT_OK;
     return error_set(error, RESULT_USAGE,
                      "%s: one name for several frames, put the frame number into it: frame_%%04d%s",
                      text, strrchr(text, '.'));
@@ -158,12 +165,26 @@ static Result add_followers(Strands *all, const Strands *guides, const Hair *fol
     return result;
 }
 
+static Result make_room(Exporter *exporter, int frame_count, Error *error)
+{
+    exporter->room = (uint32_t)frame_count;
+    exporter->frames =
+        calloc((size_t)frame_count * exporter->strands.vertex_count + 1, sizeof *exporter->frames);
+    return exporter->frames ? RESULT_OK
+                            : error_set(error, RESULT_FAILED,
+                                        "no memory for %d frames of a .npz file: expected a file "
+                                        "for each, x_%%04d.npz",
+                                        frame_count);
+}
+
 static Result prepare(Exporter *exporter, const char *text, const Strands *sections, uint32_t count,
                       int frame_count, Error *error)
 {
     TRY(strands_join(&exporter->strands, sections, count, error));
     exporter->kind = format_choose(text, &exporter->strands);
     find_lost(exporter, sections, count);
+    if (exporter->kind == FORMAT_NPZ && exporter->target.kind == TARGET_STILL && frame_count > 1)
+        return make_room(exporter, frame_count, error);
     if (exporter->kind != FORMAT_USD) return RESULT_OK;
     return describe_usd(exporter, sections, frame_count, error);
 }
@@ -201,6 +222,7 @@ Result exporter_create(Exporter *exporter, const char *text, int frame_count,
 void exporter_destroy(Exporter *exporter)
 {
     usd_writer_discard(&exporter->usd);
+    free(exporter->frames);
     destroy_look(&exporter->look);
     target_destroy(&exporter->target);
     strands_destroy(&exporter->strands);
@@ -270,15 +292,40 @@ Result exporter_write(Exporter *exporter, int frame, Error *error)
     if (exporter->options.animated)
         return usd_writer_add(&exporter->usd, frame, (const float(*)[3])exporter->strands.position,
                               error);
+    if (exporter->frames) {
+        const Strands *strands = &exporter->strands;
+        memcpy(exporter->frames + (size_t)exporter->filled++ * strands->vertex_count,
+               strands->position, strands->vertex_count * sizeof *strands->position);
+        return RESULT_OK;
+    }
     Result result = write_file(exporter, frame, error);
     exporter->files += result == RESULT_OK;
     return result;
 }
 
+// The strands themselves are those of the first frame.
+static Result write_frames(Exporter *exporter, Error *error)
+{
+    const RunParams *run = &exporter->simulation->scene->run;
+    const NpzFrames frames = {.count = exporter->filled,
+                              .position = (const float(*)[3])exporter->frames,
+                              .fps = (double)run->fps / run->every,
+                              .first = run->first};
+    OutFile file;
+    memcpy(exporter->strands.position, exporter->frames,
+           exporter->strands.vertex_count * sizeof *exporter->frames);
+    TRY(outfile_open(&file, exporter->target.before, error));
+    Result result = npz_write_frames(&file, &exporter->strands, &frames, error);
+    if (result == RESULT_OK) return outfile_commit(&file, error);
+    outfile_discard(&file);
+    return result;
+}
+
 Result exporter_finish(Exporter *exporter, Error *error)
 {
-    if (!exporter->usd.strands) return RESULT_OK;
-    Result result = usd_writer_finish(&exporter->usd, error);
+    if (!exporter->usd.strands && !exporter->filled) return RESULT_OK;
+    Result result =
+        exporter->filled ? write_frames(exporter, error) : usd_writer_finish(&exporter->usd, error);
     exporter->files += result == RESULT_OK;
     return result;
 }

@@ -138,6 +138,18 @@ static Result check_values(const Scene *scene, Error *error)
     return RESULT_OK;
 }
 
+// A cache that is none, or has too few frames, is told before anything is set up; whether it is of
+// this scene can be said when the simulation is there.
+static Result check_cache(const RunParams *run, Error *error)
+{
+    CacheFile cache;
+    if (!*run->from_cache) return RESULT_OK;
+    Result result = cache_file_open(&cache, run->from_cache, error);
+    THEN(result, cache_file_check(&cache, sequence_last_frame(run), error));
+    cache_file_close(&cache);
+    return result;
+}
+
 // What frames of this run say of themselves. A cache that another program or driver has made counts
 // as a file that is read.
 static Result describe(Run *run, Error *error)
@@ -291,6 +303,7 @@ static Result prepare(Run *run, Error *error)
     bool draws = *params->output != 0;
     activity_start(stderr, params->quiet);
     TRY(check_values(&run->scene, error));
+    TRY(check_cache(params, error));
     TRY(assets_load(&run->assets, &run->scene, params->quiet ? NULL : stderr, params->verbose,
                     error));
     TRY(scalp_guess(&run->scene, &run->assets, params->quiet ? NULL : stderr, params->verbose,

@@ -179,7 +179,7 @@ static double share_that_differs(const RendererOptions *options, double toleranc
     return (double)different / (double)touched;
 }
 
-// Which strand covers a sixteenth of a pixel is a matter of rounding in few of them; elsewhere all
+// Which strand covers a 512th of a pixel is a matter of rounding in few of them; elsewhere all
 // are equal: a hash to the byte, a tangent to a level, a depth to a thousandth, as straightened
 // ribbons are.
 static void rasterisers_agree_on_what_is_nearest(void **state)

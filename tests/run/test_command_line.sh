@@ -255,6 +255,19 @@ run 0 "$work/other.tfx" $plain --unit 0.00390625 --frames 3 --size 64x48 -q -o "
 }
 if diff -r "$work/u1" "$work/u2" >"$work/err"; then good; else bad "pictures differ"; fi
 
+claim "a cache that is none, or has too few frames, is told before a device is opened"
+run 3 assets/curls.tfx --from-cache "$work/none.cache" -o "$work/none.png"; says "none.cache"; if grep -q OpenGL "$work/err"; then bad "a device was opened"; else good; fi
+run 0 assets/curls.tfx --followers 0 --frames 2 --cache "$work/two.cache" -q
+run 3 assets/curls.tfx --followers 0 --frames 4 --from-cache "$work/two.cache" -o "$work/two/"; says "two.cache"; if grep -q OpenGL "$work/err"; then bad "a device was opened"; else good; fi
+
+claim "one .npz file takes all frames, those of one for each frame"
+run 0 assets/curls.tfx --followers 0 --frames 3 --first 1 -q --export "$work/all.npz"
+run 0 assets/curls.tfx --followers 0 --frames 3 --first 1 -q --export "$work/each_%04d.npz"
+"$bin/tractrix-convert" "$work/all.npz" -q -o "$work/out_%04d.npz" 2>"$work/err"
+for frame in 1 2; do
+    if "$bin/tractrix-convert" "$work/out_000$frame.npz" -q -o "$work/a.usda" && "$bin/tractrix-convert" "$work/each_000$frame.npz" -q -o "$work/b.usda" && cmp -s "$work/a.usda" "$work/b.usda"; then good; else bad "frame $frame differs"; fi
+done
+
 claim "a scalp of another size than a head's names the unit that gives it a head"
 run 0 assets/curls.tfx --unit 10 --scatter none --followers 0 --frames 1 --size 16x16 -o "$work/head.png"; says "scalp: none: it would not be as large as a head"; says "the scalp is 1.5 m wide, a head's 0.15 m: --unit m makes it one"
 run 0 assets/curls.tfx --unit 0.5 --scatter none --followers 0 --frames 1 --size 16x16 -o "$work/head.png"; says "scalp: none: it would not be"; says "--unit m makes it one"
