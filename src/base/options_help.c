@@ -2,6 +2,7 @@
 // What programs say about themselves: on a terminal, as a manual page and in Markdown.
 #include "base/options.h"
 #include "base/options_complete.h"
+#include "base/suggest.h"
 
 #include "version.h"
 
@@ -332,6 +333,23 @@ static void put_markdown(FILE *stream, const OptionsProgram *program)
 
 // --- Topics.
 
+// The topic or option that may have been meant, as a user writes it; "": none.
+static void find_near(const OptionsProgram *program, const char *topic, char near[80])
+{
+    enum { MOST = OPTIONS_MOST + 64 };
+    const char *names[MOST];
+    size_t count = 0;
+    for (const char *const(*t)[2] = program->topics; t && (*t)[0] && count < MOST; ++t)
+        names[count++] = (*t)[0];
+    for (const OptionsChapter *const *c = program->chapters; c && *c && count < MOST; ++c)
+        names[count++] = (*c)->topic;
+    for (size_t i = 0; i < program->option_count && count < MOST; ++i)
+        names[count++] = program->options[i].name;
+    const char *found = suggest_nearest(topic, names, count);
+    snprintf(near, 80, "%s", found ? found : "");
+    for (char *at = near; *at; ++at) *at = *at == '_' ? '-' : *at;
+}
+
 Result options_help(const OptionsProgram *program, const char *topic, FILE *stream, Error *error)
 {
     const OptionsChapter *const *chapter = program->chapters;
@@ -358,6 +376,11 @@ Result options_help(const OptionsProgram *program, const char *topic, FILE *stre
         if (!option) option = options_find(OPTIONS_COMMON, OPTIONS_COMMON_COUNT, topic);
         char list[LIST_SIZE];
         list_topics(program, false, list, sizeof list);
+        char near[80] = "";
+        if (!option) find_near(program, topic, near);
+        if (*near)
+            return error_set(error, RESULT_USAGE, "--help: no topic '%.80s': did you mean '%s'?",
+                             topic, near);
         if (!option)
             return error_set(error, RESULT_USAGE, "--help: no topic '%.80s': expected %s", topic,
                              list);
