@@ -14,7 +14,9 @@
 #include "compare/pairs.h"
 #include "compare/verdict.h"
 #include "image/compare.h"
+#include "image/jpeg.h"
 #include "image/mask.h"
+#include "report/picture.h"
 #include "report/shell_words.h"
 
 #include <errno.h>
@@ -29,7 +31,7 @@ typedef struct Command {
     const char *max_failing, *mask, *heat_map, *sheet, *json, *junit, *unrendered, *html;
     const char *commands, *only, *platform, *class_limits, *common_limits;
     bool github, only_failures, update, any_platform, quiet;
-    int jobs, level; // of --update; LEVEL_NONE: that of the golden in use
+    int jobs, shrink, level; // of --update; LEVEL_NONE: that of the golden in use
     const char *a, *b;
     CompareLimits limits[LEVELS];
     char *line; // the command line before the parser changes its order; owned
@@ -83,6 +85,10 @@ static const Option OPTIONS[] = {
      "compare only the image of this name, with %d or %04d those of any number"},
     {"update", 0, OPTION_SWITCH, AT(update), NULL, 0, 0,
      "accept B: copy it over A where they differ or A has none"},
+    {"shrink", 0, OPTION_WHOLE, AT(shrink), "PX", 1, 16384,
+     "compare nothing: write the image A as the JPEG file B, at most PX wide and high, to be "
+     "looked "
+     "at"},
     {"jobs", 'j', OPTION_WHOLE, AT(jobs), "N", 1, 1024,
      "images compared in parallel [default: the number of processors]"},
     {"quiet", 'q', OPTION_SWITCH, AT(quiet), NULL, 0, 0, "print errors only"},
@@ -467,6 +473,27 @@ static Result read_mask(Mask *mask, const Command *command, Error *error)
     return mask_read(mask, command->mask, error);
 }
 
+static Result shrink(const Command *command, Error *error)
+{
+    Image image, picture = {0}, small = {0};
+    Bytes jpeg = {0};
+    const PathUse uses[] = {{"A", command->a, PATH_READ, NULL},
+                            {"B", command->b, PATH_WRITTEN, NULL}};
+    TRY(paths_claim(uses, 2, error));
+    TRY(float_image_read_image(&image, command->a, error));
+    Result result = picture_create(&picture, &image, error);
+    THEN(result,
+         picture_create_thumbnail(&small, &picture, command->shrink, command->shrink, error));
+    THEN(result, jpeg_encode(&small, JPEG_SMALL, &jpeg, error));
+    if (result != RESULT_OK) error_prefix(error, result, "%s: ", command->a);
+    THEN(result, bytes_write_file(&jpeg, command->b, error));
+    bytes_destroy(&jpeg);
+    image_destroy(&small);
+    image_destroy(&picture);
+    image_destroy(&image);
+    return result;
+}
+
 static Result run(const Command *command, Error *error)
 {
     PairList list = {0};
@@ -519,7 +546,8 @@ int main(int argc, char **argv)
     bool done = false;
     interrupt_install();
     Result result = parse(&command, argc, argv, &done, &error);
-    if (result == RESULT_OK && !done) result = run(&command, &error);
+    if (result == RESULT_OK && !done)
+        result = command.shrink ? shrink(&command, &error) : run(&command, &error);
     free(command.line);
     return program_end("tractrix-compare", result, &error);
 }
