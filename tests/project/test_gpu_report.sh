@@ -13,6 +13,7 @@ printf '#!/bin/sh\nexec "%s" "$@" --look plain --followers 0 --preroll 0 --smoot
 chmod +x "$work/bin/tractrix-render"
 measure() { status=$1; shift; run "$status" --programs "$work/bin" -o "$work/report" --size 48x36 --scenes '^curls' --tests gpu_dispatch --sets 1k16 "$@"; }
 
+# shellcheck disable=SC2317 # holds calls it
 # known EXPRESSION: what Python makes of it, of the report `k`.
 known() { python3 -c "import json; k = json.load(open('$work/report/gpu-report.json')); assert $1, k"; }
 
