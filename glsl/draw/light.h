@@ -34,8 +34,8 @@
 #define LIGHT_ORDINATES 48                    // directions that light is followed in
 #define LIGHT_LANES     8                     // of them, beside each other in a table's row
 #define LIGHT_WIDE      (3 * LIGHT_ORDINATES) // [group][channel][lane]
-#define LIGHT_CLASSES   128                   // of tangents
-#define LIGHT_SQUARES   24                    // of tangents, across a face of a cube
+#define LIGHT_CLASSES   256                   // of tangents
+#define LIGHT_SQUARES   48                    // of tangents, across a face of a cube
 #define LIGHT_KINDS     4                     // of fibres
 #define LIGHT_MOST      33                    // sweeps
 

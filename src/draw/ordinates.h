@@ -18,7 +18,7 @@ enum { ORDINATE_OF_LIGHT = 21 };
 
 // Classes of tangents: points of a Fibonacci spiral over the whole sphere, for fibres' scales tell
 // the root's end from the tip's.
-enum { TANGENTS = 128 };
+enum { TANGENTS = 256 };
 
 // Unit vector of each class, and the sine of its angle with each ordinate. These tables are there
 // after ordinates_prepare.
@@ -27,10 +27,10 @@ extern float TANGENT_SINE[TANGENTS][ORDINATES];
 
 // The class of each square of the faces -x, +x, -y ... of a cube around the origin: [face][row
 // along the axis two on][column along the next].
-enum { ORDINATE_SQUARES = 24 };
+enum { ORDINATE_SQUARES = 48 };
 extern uint8_t TANGENT_NEAREST[6][ORDINATE_SQUARES][ORDINATE_SQUARES];
 
-// The nearest class of a unit vector, but for what lies within 4 degrees of another one's region.
+// The nearest class of a unit vector, but for what lies within 2 degrees of another one's region.
 // Needs ordinates_prepare.
 int ordinates_class(const float tangent[3]);
 void ordinates_prepare(void);

@@ -15,6 +15,13 @@ same "$(field "$work/a.csv" verdict | grep -c holds)" 6 "rows that hold"
 same "$(field "$work/a.csv" way | sort | uniq -c | tr -s ' \n' ' ')" " 4 grid 4 none " "rows, and a mean for each way"
 same "$(grep -c '"mean_r"' "$work/a.json")" 8 "rows of JSON"
 
+claim "so do straight, parallel, dense hair against the light and under a sky"
+mkdir "$work/straight"
+cp tests/data/light_straight/* "$work/straight/"
+"$bin/tractrix-gen" --kind straight --shape head --count 6000 --vertices 24 --length 0.35 --seed 5 -q -o "$work/straight/straight6k.tfx"
+run 0 light --reference "$work/straight" --case straight_black_sky,straight_brown_back --way none,grid --frames 1 --csv "$work/straight.csv"
+same "$(field "$work/straight.csv" verdict | grep -c holds)" 4 "rows of cases that hold"
+
 claim "both rasterisers cover the same"
 run 0 light --case fur_brown_side --way grid --raster quads --frames 1 --csv "$work/quads.csv"
 run 0 light --case fur_brown_side --way grid --raster blocks --frames 1 --csv "$work/blocks.csv"
