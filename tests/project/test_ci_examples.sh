@@ -35,7 +35,7 @@ for last; do :; done
 [ "\$1" != clone ] || cp -r "$work/action" "\$last"
 END
 printf '#!/bin/sh\necho "apt-get $*" >>"%s/calls"\n' "$work" >"$work/stubs/apt-get"
-# A false gh: releases are in $work/releases/OWNER/NAME/TAG, attestations are lines FILE OWNER/NAME REF of $work/attested, what the
+# A false gh: releases are in $work/releases/WHO/NAME/TAG, attestations are lines FILE WHO/NAME REF of $work/attested, what the
 # server says is in $work/server, by the path of the call; what is sent goes to $work/sent.
 cat >"$work/stubs/gh" <<END
 #!/bin/bash
@@ -175,7 +175,7 @@ github list=one.txt "goldens=new images" "out=out/of this" options=--update
 step 0 compare; is_png "$work/repo/new images/good.png"
 
 claim "the summary leads to the artifact"
-(export URL=https://example.org/artifact; step 0 link-the-report); in_file "$work/runner/summary.md" "(https://example.org/artifact)"
+(export URL=https://example.invalid/artifact; step 0 link-the-report); in_file "$work/runner/summary.md" "(https://example.invalid/artifact)"
 
 claim "an action or workflow with a mistake is noticed"
 holds "$steps" workflow examples/ci/github-workflow.yml action.yml "$work/steps"; says "list=examples/ci/scenes.txt"
