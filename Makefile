@@ -392,7 +392,7 @@ install: all $(MANUALS) $(COMPLETIONS) ## programs, library, manuals, completion
 	ln -sf libtractrix.so.0 $(LIB_DIR)/libtractrix.so
 	install -m 644 $(OUT)/lib/pkgconfig/tractrix.pc $(LIB_DIR)/pkgconfig
 	install -m 644 src/library/tractrix.h $(INCLUDE_DIR)
-	install -m 644 scripts/blender_hair.py scripts/alembic_curves.py $(DATA_DIR)
+	install -m 644 scripts/blender_hair.py $(DATA_DIR)
 	install -m 644 $(MANUALS) $(MAN_DIR)
 	$(foreach file,$(COMPLETIONS),install -m 644 $(file) $(call completion_of,$(file)) &&) true
 	install -m 644 $(wildcard assets/*) $(DATA_DIR)

@@ -42,6 +42,7 @@ bl_info = {
 DONE, FAILED, USAGE, BAD_INPUT = 0, 1, 2, 3
 TOLERANCE_M = 1e-4  # how far roots may be off a rigid motion
 MAX_LIGHTS = 8
+USUAL_RADII = (1.0, 0.01)  # what Blender gives curves whose radius nobody has set
 POLY_CURVE = 1  # `curve_type` of curves that are polylines
 KEYS_APART = 10.0  # what Blender puts between two absolute shape keys
 
@@ -266,13 +267,14 @@ def read_usda(path: str) -> Hair:
     hair = Hair(frames[0], sizes, frames=frames if len(frames) > 1 else None, fps=float(rate[1]) if rate else 24.0)
     if uv is not None and len(uv) == 2 * len(sizes):
         hair.uv = uv.reshape(-1, 2)
-    if width is not None and len(width) == len(hair.points):
-        hair.radius = width / 2
+    if width is not None and len(width) in (1, len(sizes), len(hair.points)):
+        each = len(hair.points) if len(width) == 1 else hair.sizes if len(width) == len(sizes) else 1
+        hair.radius = np.repeat(width / 2, each)
     return in_metres(hair, float(unit[1]) if unit else 0.01, 'upAxis = "Z"' in text)
 
 
 def convert_hair(path: str, units: tuple = ()) -> Hair:
-    """Reads a cache, numbered files or any other hair file by tractrix-convert; `units`: its --unit and --up."""
+    """Reads a cache, numbered files, Alembic or any other hair file by tractrix-convert; `units`: its --unit and --up."""
     here = os.path.dirname(os.path.abspath(__file__))
     beside = os.pathsep.join(os.path.join(here, *folder) for folder in (("..", "out", "release"), ("..", "..", "bin")))
     name = "tractrix-convert"
@@ -288,24 +290,6 @@ def convert_hair(path: str, units: tuple = ()) -> Hair:
         for line in lines:
             say(line)
         return read_usda(usda)
-
-
-def read_alembic(path: str, scale: float = 1.0) -> Hair:
-    """Reads an Alembic file where Blender cannot, by alembic_curves.py beside this file. `scale`: metres of its unit."""
-    sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-    writes_bytecode, sys.dont_write_bytecode = sys.dont_write_bytecode, True
-    try:
-        import alembic_curves  # pylint: disable=import-outside-toplevel
-    except ImportError:
-        raise HairError(f"{path}: this Blender has no Alembic: expected alembic_curves.py beside blender_hair.py", FAILED) from None
-    finally:
-        sys.path.pop(0)
-        sys.dont_write_bytecode = writes_bytecode
-    try:
-        curves = alembic_curves.read(path, scale)
-    except alembic_curves.AlembicError as error:
-        raise HairError(str(error)) from None
-    return Hair(**curves)
 
 
 # --- Axes, colours, rigid motion
@@ -659,10 +643,18 @@ def join(pieces: list, scene, depsgraph, surface) -> Hair:
         joined[name] = None if lacking else np.concatenate(values).astype(np.float32)
         if lacking and len(lacking) < len(pieces):
             say(f"object '{lacking[0]}': has no {name}: that of the other objects is dropped")
+    if joined["radius"] is not None and is_usual(joined["radius"]):
+        say(f"the radius is {joined['radius'][0]:g} everywhere, as Blender makes it where nobody has set one: it is left out")
+        joined["radius"] = None
     if joined["radius"] is not None:
         joined["radius"] *= np.float32(unit)
     points = to_y_up(np.concatenate([p.points for p in pieces]) * unit).astype(np.float32)
     return Hair(points, np.concatenate([p.sizes for p in pieces]).astype(np.int32), fps=frames_per_second(scene), **joined)
+
+
+def is_usual(radius: np.ndarray) -> bool:
+    """Whether all radii are one that Blender gives without being asked."""
+    return any((np.abs(radius - usual) < 1e-6).all() for usual in USUAL_RADII)
 
 
 def frames_per_second(scene) -> float:
@@ -1089,12 +1081,25 @@ def import_hair(context, path: str, scale: float = 1.0, units: tuple = ()) -> No
         return
     if kind in (".usd", ".usdc", ".usdz"):
         raise HairError(f"{path}: this Blender was built without USD: expected .usda (usdcat x.usdc -o x.usda)", FAILED)
-    readers = {".npz": read_npz, ".usda": read_usda, ".abc": lambda name: read_alembic(name, scale)}
+    readers = {".npz": read_npz, ".usda": read_usda}
+    if kind == ".abc":
+        units = ("--unit", f"{scale:.9g}", *units)
     hair = readers[kind](path) if kind in readers else convert_hair(path, units)
+    if hair.radius is None:
+        hair.radius = radius_for(path, units, len(hair.points))
     obj = new_curves(context, os.path.splitext(os.path.basename(path))[0], hair)
     if hair.frames is not None:
         animate(context, obj, hair)
     say(f"{path}: {len(hair.sizes)} strands, {len(hair.points)} points, {1 if hair.frames is None else len(hair.frames)} frames")
+
+
+def radius_for(path: str, units: tuple, count: int) -> Optional[np.ndarray]:
+    """(count,) the radius that tractrix-convert gives a file without one, m: Blender's own would be centimetres. None without it."""
+    try:
+        return np.full(count, convert_hair(path, units).radius.mean(), np.float32)
+    except HairError as error:
+        say(f"{error}: the radius is left to Blender")
+        return None
 
 
 def by_blender(path: str, kind: str, scale: float) -> bool:

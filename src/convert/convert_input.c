@@ -167,6 +167,11 @@ static Result read_cache(CacheStrands *strands, int frame, Strands *read, Error 
         memcpy(read->position[layout->first[s]], at, size * sizeof *at);
         at += size;
     }
+    if (strands->section_count < 2) return RESULT_OK;
+    read->strand_group = malloc(((size_t)layout->strand_count + 1) * sizeof *read->strand_group);
+    if (!read->strand_group) return error_set(error, RESULT_FAILED, "no memory for the sections");
+    for (uint32_t s = 0; s < layout->strand_count; ++s)
+        read->strand_group[s] = (float)strands->section[s];
     return RESULT_OK;
 }
 
@@ -354,6 +359,8 @@ static Result read_files(ConvertInput *input, Strands *strands, Error *error)
     for (int i = 0; i < input->path_count && result == RESULT_OK; ++i)
         result = read_file(input, input->paths[i], i, &sets[i], NULL, error);
     THEN(result, strands_join(strands, sets, (uint32_t)input->path_count, error));
+    if (result == RESULT_OK && !strands->strand_group)
+        result = strands_group_sets(strands, sets, (uint32_t)input->path_count, error);
     for (int i = 0; sets && i < input->path_count; ++i) strands_destroy(&sets[i]);
     free(sets);
     return result;

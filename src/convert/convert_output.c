@@ -60,18 +60,17 @@ Result convert_output_open(ConvertOutput *output, int frame_count, Error *error)
 
 void convert_output_close(ConvertOutput *output)
 {
-    usd_writer_discard(&output->usd);
+    frames_file_discard(&output->frames);
     strands_destroy(&output->still);
     target_destroy(&output->target);
     free(output->widths);
-    free(output->npz_frames);
     *output = (ConvertOutput){0};
 }
 
-// --- USD.
+// --- Formats of scenes, and files of all frames.
 
 // A diameter for each strand, thick ones by the file's thickness over its mean, or one for all.
-static Result find_widths(ConvertOutput *output, const Strands *strands, UsdLook *look,
+static Result find_widths(ConvertOutput *output, const Strands *strands, CurvesLook *look,
                           Error *error)
 {
     double width = output->width > 0 ? output->width / output->unit
@@ -87,31 +86,31 @@ static Result find_widths(ConvertOutput *output, const Strands *strands, UsdLook
     for (uint32_t s = 0; s < count; ++s)
         output->widths[s] = (float)(thickness && mean > 0 ? width * thickness[s] / mean : width);
     look->width = output->widths;
-    look->width_rate = thickness ? USD_UNIFORM : USD_CONSTANT;
+    look->width_rate = thickness ? CURVES_UNIFORM : CURVES_CONSTANT;
     return RESULT_OK;
 }
 
-static Result describe_usd(ConvertOutput *output, const Strands *strands, bool animated,
-                           UsdOptions *options, Error *error)
+static Result describe(ConvertOutput *output, const Strands *strands, bool animated,
+                       CurvesOptions *options, Error *error)
 {
-    *options = (UsdOptions){.metres_per_unit = output->unit,
-                            .up_z = output->up_z,
-                            .animated = animated,
-                            .fps = output->fps,
-                            .first = output->first,
-                            .last = output->last,
-                            .look = {.section = output->section}};
+    *options = (CurvesOptions){.metres_per_unit = output->unit,
+                               .up_z = output->up_z,
+                               .animated = animated,
+                               .fps = output->fps,
+                               .first = output->first,
+                               .last = output->last};
     return find_widths(output, strands, &options->look, error);
 }
 
 // The first frame's strands are kept, since the writer looks at their numbers.
-static Result open_usd(ConvertOutput *output, Strands *strands, Error *error)
+static Result open_frames(ConvertOutput *output, Strands *strands, Error *error)
 {
-    UsdOptions options;
+    CurvesOptions options;
     output->still = *strands;
     *strands = (Strands){0};
-    TRY(describe_usd(output, &output->still, output->animated, &options, error));
-    return usd_writer_open(&output->usd, output->target.before, &output->still, &options, error);
+    TRY(describe(output, &output->still, output->animated, &options, error));
+    return frames_file_open(&output->frames, output->kind, output->target.before, &output->still,
+                            &options, error);
 }
 
 static bool same_strands(const Strands *a, const Strands *b)
@@ -130,65 +129,28 @@ static Result check_same(const ConvertOutput *output, int frame, const Strands *
                      output->path, frame, output->first);
 }
 
-static Result add_usd(ConvertOutput *output, int frame, Strands *strands, Error *error)
+static Result add_frame(ConvertOutput *output, int frame, Strands *strands, Error *error)
 {
-    bool begins = !output->usd.strands;
+    bool begins = !output->frames.strands;
     if (begins)
-        TRY(open_usd(output, strands, error));
+        TRY(open_frames(output, strands, error));
     else
         TRY(check_same(output, frame, strands, error));
     const Strands *now = begins ? &output->still : strands;
-    return usd_writer_add(&output->usd, frame, (const float(*)[3])now->position, error);
-}
-
-// --- .npz: all frames are kept to the end.
-
-static Result add_npz(ConvertOutput *output, int frame, Strands *strands, Error *error)
-{
-    if (output->npz_count == 0) {
-        strands_destroy(&output->still);
-        output->still = *strands;
-        *strands = (Strands){0};
-    }
-    const Strands *now = output->npz_count ? strands : &output->still;
-    TRY(check_same(output, frame, now, error));
-    size_t size = now->vertex_count;
-    if (output->npz_count == output->npz_room) {
-        uint32_t room = 2 * output->npz_room + 16;
-        float(*more)[3] = realloc(output->npz_frames, room * size * sizeof *more);
-        if (!more) return error_set(error, RESULT_FAILED, "%s: no memory", output->path);
-        output->npz_frames = more;
-        output->npz_room = room;
-    }
-    memcpy(output->npz_frames + output->npz_count++ * size, now->position,
-           size * sizeof *now->position);
-    return RESULT_OK;
-}
-
-static Result finish_npz(ConvertOutput *output, Error *error)
-{
-    const NpzFrames frames = {output->npz_count, (const float(*)[3])output->npz_frames, output->fps,
-                              output->first};
-    OutFile file;
-    TRY(format_check_terminal(output->target.before, FORMAT_NPZ, error));
-    TRY(outfile_open(&file, output->target.before, error));
-    Result result = npz_write_frames(&file, &output->still, &frames, error);
-    if (result == RESULT_OK) return outfile_commit(&file, error);
-    outfile_discard(&file);
-    return result;
+    return frames_file_add(&output->frames, frame, (const float(*)[3])now->position, error);
 }
 
 // --- Any kind.
 
 static Result write_file(ConvertOutput *output, int frame, const Strands *strands, Error *error)
 {
-    UsdOptions options;
+    CurvesOptions options;
     char *name = target_name_frame(&output->target, frame);
     if (!name) return error_set(error, RESULT_FAILED, "no memory for the name of a frame");
     Result result = RESULT_OK;
-    if (output->kind == FORMAT_USD) {
-        result = describe_usd(output, strands, false, &options, error);
-        THEN(result, usd_write_still(name, strands, &options, error));
+    if (frames_file_has_look(output->kind)) {
+        result = describe(output, strands, false, &options, error);
+        THEN(result, frames_file_write_still(output->kind, name, strands, &options, error));
     } else {
         result = format_write(name, output->kind, strands, error);
     }
@@ -205,16 +167,14 @@ Result convert_output_add(ConvertOutput *output, int frame, Strands *strands, Er
     output->kind =
         output->format ? (FormatKind)output->format - 1 : format_choose(output->path, strands);
     output->lost |= strands_features(strands) & ~FORMAT_TABLE[output->kind]->features;
-    if (output->target.kind == TARGET_VIDEO)
-        return (output->kind == FORMAT_NPZ ? add_npz : add_usd)(output, frame, strands, error);
+    if (output->target.kind == TARGET_VIDEO) return add_frame(output, frame, strands, error);
     return write_file(output, frame, strands, error);
 }
 
 Result convert_output_finish(ConvertOutput *output, Error *error)
 {
-    if (!output->usd.strands && !output->npz_count) return RESULT_OK;
-    Result result =
-        output->npz_count ? finish_npz(output, error) : usd_writer_finish(&output->usd, error);
+    if (!output->frames.strands) return RESULT_OK;
+    Result result = frames_file_finish(&output->frames, error);
     output->files += result == RESULT_OK;
     return result;
 }

@@ -38,8 +38,10 @@ static Result parse_count(ConvertStep *step, const char *name, const char *text,
     static const struct {
         ConvertKind kind;
         double least, most;
-    } limits[] = {
-        {CONVERT_NTH, 1, 1e9}, {CONVERT_SMOOTH, 1, 10000}, {CONVERT_RESAMPLE, 2, STRANDS_MAX_SIZE}};
+    } limits[] = {{CONVERT_NTH, 1, 1e9},
+                  {CONVERT_GROUP, 0, STRANDS_MOST_GROUP},
+                  {CONVERT_SMOOTH, 1, 10000},
+                  {CONVERT_RESAMPLE, 2, STRANDS_MAX_SIZE}};
     double number;
     char expected[64];
     const char *end = scan_number(text, &number);
@@ -60,6 +62,13 @@ static Result parse_positive(double *number, const char *name, const char *text,
     const char *end = scan_number(text, number);
     if (end && !*end && *number >= 1e-9 && *number <= 1e9) return RESULT_OK;
     return refuse(name, text, "a number from 1e-9 to 1e9", error);
+}
+
+static Result parse_gap(double *number, const char *name, const char *text, Error *error)
+{
+    const char *end = scan_number(text, number);
+    if (end && !*end && *number >= 0 && *number <= 1) return RESULT_OK;
+    return refuse(name, text, "a distance from 0 to 1 m", error);
 }
 
 static Result parse_rotation(StrandsMove *move, const char *name, const char *text, Error *error)
@@ -92,6 +101,12 @@ static Result parse_step(ConvertStep *step, const char *name, const char *text, 
     if (strcmp(name, "translate") == 0) return parse_translation(&step->move, name, text, error);
     step->kind = CONVERT_REVERSE;
     if (strcmp(name, "reverse") == 0) return RESULT_OK;
+    step->kind = CONVERT_FIT;
+    if (strcmp(name, "fit") == 0) return RESULT_OK;
+    step->kind = CONVERT_ATTACH;
+    if (strcmp(name, "attach") == 0) return RESULT_OK;
+    step->kind = CONVERT_PUSH_OUT;
+    if (strcmp(name, "push-out") == 0) return parse_gap(&step->number, name, text, error);
     step->kind = CONVERT_SUBSAMPLE;
     if (strcmp(name, "subsample") == 0) return parse_share(step, name, text, error);
     step->kind = CONVERT_MIN_LENGTH;
@@ -101,6 +116,7 @@ static Result parse_step(ConvertStep *step, const char *name, const char *text, 
         return parse_positive(&step->resample.spacing, name, text, error);
     step->resample.spline = strcmp(name, "resample-spline") == 0;
     if (strcmp(name, "nth") == 0) step->kind = CONVERT_NTH;
+    if (strcmp(name, "group") == 0) step->kind = CONVERT_GROUP;
     if (strcmp(name, "smooth") == 0) step->kind = CONVERT_SMOOTH;
     return parse_count(step, name, text, error);
 }
@@ -137,14 +153,95 @@ static Result pick(const ConvertStep *step, Strands *strands, Error *error)
     return result;
 }
 
-static Result apply(const ConvertStep *step, uint32_t seed, Strands *strands, Error *error)
+static Result pick_group(Strands *strands, uint32_t group, Error *error)
+{
+    Result result = strands_pick_group(strands, group, error);
+    return result == RESULT_OK ? result : error_prefix(error, result, "--group: ");
+}
+
+// --- On a mesh.
+
+static const double FITS_BADLY = 0.01; // m, of half of the roots
+
+static const char *const MESH_STEPS[] = {"fit", "attach", "push-out"};
+
+const char *convert_steps_need_mesh(const ConvertSteps *steps)
+{
+    for (int i = 0; i < steps->count; i++)
+        if (steps->step[i].kind >= CONVERT_FIT)
+            return MESH_STEPS[steps->step[i].kind - CONVERT_FIT];
+    return NULL;
+}
+
+static void tell_fit(const StrandsFit *fit, FILE *messages)
+{
+    fprintf(messages,
+            "--fit: scaled by %.4g, turned by %.3g degrees, moved by %.4g mm: half of the roots "
+            "lay within "
+            "%.3g mm of the mesh, now within %.3g mm\n",
+            fit->move.scale, fit->turned_deg, 1e3 * fit->moved, 1e3 * fit->before,
+            1e3 * fit->after);
+    if (fit->after > FITS_BADLY)
+        fprintf(
+            messages,
+            "--fit: that is far: is it a head, does it look the same way (--rotate before it), is "
+            "its unit right (--mesh-unit)?\n");
+}
+
+static Result fit(ConvertSteps *steps, Strands *strands, Error *error)
+{
+    if (!steps->has_fit) {
+        Result result = strands_find_fit(&steps->fit, strands, steps->surface, error);
+        if (result != RESULT_OK) return error_prefix(error, result, "--fit: ");
+        if (steps->messages) tell_fit(&steps->fit, steps->messages);
+        steps->has_fit = true;
+    }
+    strands_move(strands, &steps->fit.move);
+    return RESULT_OK;
+}
+
+static Result attach(const ConvertSteps *steps, Strands *strands, Error *error)
+{
+    StrandsShift shift;
+    TRY(strands_attach(strands, steps->surface, &shift, error));
+    if (steps->messages)
+        fprintf(steps->messages,
+                "--attach: %u roots moved onto the mesh, half of them by at most %.3g mm, all by "
+                "at most %.3g mm\n",
+                shift.strands, 1e3 * shift.median, 1e3 * shift.most);
+    return RESULT_OK;
+}
+
+static Result push_out(const ConvertSteps *steps, double gap, Strands *strands, Error *error)
+{
+    StrandsShift shift;
+    TRY(strands_push_out(strands, steps->surface, gap, &shift, error));
+    if (steps->messages)
+        fprintf(steps->messages,
+                "--push-out: %u of %u vertices of %u strands moved to %.3g mm from the mesh; those "
+                "inside were up to "
+                "%.3g mm deep, half of them up to %.3g mm\n",
+                shift.vertices, strands->vertex_count, shift.strands, 1e3 * gap, 1e3 * shift.most,
+                1e3 * shift.median);
+    return RESULT_OK;
+}
+
+static Result apply(ConvertSteps *steps, const ConvertStep *step, Strands *strands, Error *error)
 {
     switch (step->kind) {
+    case CONVERT_FIT:
+        return fit(steps, strands, error);
+    case CONVERT_ATTACH:
+        return attach(steps, strands, error);
+    case CONVERT_PUSH_OUT:
+        return push_out(steps, step->number, strands, error);
     case CONVERT_SUBSAMPLE:
-        return strands_thin(strands, step->number, seed, error);
+        return strands_thin(strands, step->number, steps->seed, error);
     case CONVERT_NTH:
     case CONVERT_MIN_LENGTH:
         return pick(step, strands, error);
+    case CONVERT_GROUP:
+        return pick_group(strands, step->count, error);
     case CONVERT_RESAMPLE:
         return strands_resample(strands, &step->resample, error);
     case CONVERT_SMOOTH:
@@ -159,10 +256,11 @@ static Result apply(const ConvertStep *step, uint32_t seed, Strands *strands, Er
     }
 }
 
-Result convert_steps_apply(const ConvertSteps *steps, Strands *strands, Error *error)
+Result convert_steps_apply(ConvertSteps *steps, Strands *strands, Error *error)
 {
     Result result = RESULT_OK;
     for (int i = 0; i < steps->count && result == RESULT_OK; i++)
-        result = apply(&steps->step[i], steps->seed, strands, error);
+        result = apply(steps, &steps->step[i], strands, error);
+    steps->messages = NULL; // of the first frame alone
     return result;
 }

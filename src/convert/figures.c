@@ -18,6 +18,7 @@ static const struct {
     {"turn", "deg", "turn, deg"},
     {"curvature", "1/m", "curvature, 1/m"},
     {"root_spacing", "m", "root_spacing, m"},
+    {"depth_inside", "mm", "depth_inside, mm"},
 };
 
 // --- Quantities.
@@ -88,6 +89,23 @@ static Result collect_roots(const Strands *strands, double *values, size_t *coun
     return result;
 }
 
+// Of vertices inside alone, mm.
+static Result collect_depths(Figures *figures, const Strands *strands, const Surface *surface,
+                             double *values, size_t *count, Error *error)
+{
+    *count = 0;
+    if (!surface) return RESULT_OK;
+    figures->has_mesh = true;
+    TRY(strands_find_depth(strands, surface, values, error));
+    for (uint32_t s = 0; s < strands->strand_count; s++) {
+        bool inside = false;
+        for (uint32_t v = strands->first[s]; v < strands->first[s + 1]; v++)
+            if (values[v] > 0) inside = true, values[(*count)++] = 1e3 * values[v];
+        figures->strands_inside += inside;
+    }
+    return RESULT_OK;
+}
+
 // --- Their distribution.
 
 static int compare_doubles(const void *a, const void *b)
@@ -127,8 +145,8 @@ static Result count_sizes(Figures *figures, const double *sizes, size_t count, E
     return RESULT_OK;
 }
 
-static Result measure_kind(Figures *figures, const Strands *strands, FigureKind kind,
-                           double *values, Error *error)
+static Result measure_kind(Figures *figures, const Strands *strands, const Surface *surface,
+                           FigureKind kind, double *values, Error *error)
 {
     size_t count = 0;
     Result result = RESULT_OK;
@@ -136,6 +154,8 @@ static Result measure_kind(Figures *figures, const Strands *strands, FigureKind 
         count = collect_strands(strands, kind, values);
     else if (kind == FIGURE_ROOTS)
         result = collect_roots(strands, values, &count, error);
+    else if (kind == FIGURE_DEPTH)
+        result = collect_depths(figures, strands, surface, values, &count, error);
     else
         count = collect_vertices(strands, kind, values);
     figures->figures[kind] = summarise(values, count);
@@ -143,7 +163,8 @@ static Result measure_kind(Figures *figures, const Strands *strands, FigureKind 
     return result;
 }
 
-Result figures_measure(Figures *figures, const Strands *strands, Error *error)
+Result figures_measure(Figures *figures, const Strands *strands, const Surface *surface,
+                       Error *error)
 {
     *figures = (Figures){.strands = strands->strand_count, .vertices = strands->vertex_count};
     strands_bounds(strands, figures->low, figures->high);
@@ -152,7 +173,7 @@ Result figures_measure(Figures *figures, const Strands *strands, Error *error)
                            : error_set(error, RESULT_FAILED, "no memory to measure %u strands",
                                        strands->strand_count);
     for (int kind = 0; kind < FIGURE_KINDS && result == RESULT_OK; kind++)
-        result = measure_kind(figures, strands, (FigureKind)kind, values, error);
+        result = measure_kind(figures, strands, surface, (FigureKind)kind, values, error);
     const Figure *length = &figures->figures[FIGURE_LENGTH];
     figures->total_length = length->mean * (double)length->count;
     free(values);
@@ -199,9 +220,14 @@ void figures_print(const Figures *figures, FILE *stream)
             "max", "mean");
     for (int kind = 0; kind < FIGURE_KINDS; ++kind) {
         const Figure *f = &figures->figures[kind];
+        if (kind == FIGURE_DEPTH && !figures->has_mesh) continue;
         fprintf(stream, "%-18s %11.5g %11.5g %11.5g %11.5g %11.5g %11.5g\n", KINDS[kind].title,
                 f->min, f->low, f->median, f->high, f->max, f->mean);
     }
+    if (figures->has_mesh)
+        fprintf(stream, "\ninside the mesh: %llu of %u vertices, of %u of %u strands\n",
+                (unsigned long long)figures->figures[FIGURE_DEPTH].count, figures->vertices,
+                figures->strands_inside, figures->strands);
     if (figures->size_count) print_sizes(figures, stream);
 }
 
@@ -218,12 +244,15 @@ json_t *figures_to_json(const Figures *figures)
                   "high_m", vector_to_json(figures->high));
     for (int kind = 0; kind < FIGURE_KINDS; ++kind) {
         const Figure *f = &figures->figures[kind];
+        if (kind == FIGURE_DEPTH && !figures->has_mesh) continue;
         json_object_set_new(object, KINDS[kind].name,
                             json_pack("{ss sI sf sf sf sf sf sf}", "unit", KINDS[kind].unit,
                                       "count", (json_int_t)f->count, "min", f->min, "p5", f->low,
                                       "median", f->median, "p95", f->high, "max", f->max, "mean",
                                       f->mean));
     }
+    if (figures->has_mesh)
+        json_object_set_new(object, "strands_inside", json_integer(figures->strands_inside));
     json_t *sizes = json_array();
     for (uint32_t i = 0; i < figures->size_count; ++i)
         json_array_append_new(sizes, json_pack("{si si}", "vertices", figures->sizes[i].size,

@@ -2,7 +2,7 @@
 // Statistics of strands: measured, printed and as JSON.
 #pragma once
 
-#include "strands/strands.h"
+#include "strands/strands_mesh.h"
 
 #include <jansson.h>
 #include <stdio.h>
@@ -22,6 +22,7 @@ typedef enum FigureKind {
     FIGURE_TURN,      // degrees between a segment and the next, at inner vertices
     FIGURE_CURVATURE, // 1/m, there: the turn in radians over the mean of the segments' lengths
     FIGURE_ROOTS,     // m, from a root to the nearest other one
+    FIGURE_DEPTH,     // mm, of vertices inside a mesh, but roots
     FIGURE_KINDS
 } FigureKind;
 
@@ -37,10 +38,14 @@ typedef struct Figures {
     float low[3], high[3]; // box of all vertices, m
     SizeCount *sizes;      // [size_count], owned, by rising size
     uint32_t size_count;
+    bool has_mesh;
+    uint32_t strands_inside; // that have a vertex inside the mesh
 } Figures;
 
+// `surface`: of a mesh by which depth is measured; NULL: there is none, and no such figure.
 // RESULT_FAILED when memory is short. A zeroed struct may be destroyed.
-Result figures_measure(Figures *figures, const Strands *strands, Error *error);
+Result figures_measure(Figures *figures, const Strands *strands, const Surface *surface,
+                       Error *error);
 void figures_destroy(Figures *figures);
 
 // Prints a table of them, and how many strands have how many vertices.

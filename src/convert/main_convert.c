@@ -14,14 +14,16 @@
 #include "convert/convert_output.h"
 #include "convert/convert_steps.h"
 #include "convert/figures.h"
+#include "mesh/mesh_read.h"
+#include "mesh/mesh_sequence.h"
 #include "strands/strands.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 typedef struct Command {
-    const char *unit, *to_unit, *output, *json, *array; // NULL: not given
-    int points, up, to_up, format, first, last, every, seed;
+    const char *unit, *to_unit, *output, *json, *array, *mesh, *mesh_unit; // NULL: not given
+    int points, up, to_up, mesh_up, format, first, last, every, seed;
     double fps, width;
     bool strict, stats, quiet, partial;
     OptionSteps steps;
@@ -51,7 +53,7 @@ static const Option OPTIONS[] = {
     {"points-per-strand", 0, OPTION_WHOLE, AT(points), "N", 2, 65535,
      "points of each strand of a .ply or .npy that is a mere list of points, vertices of each "
      "cubic "
-     "USD curve [default: found from where consecutive points jump; 2 or 4 for each segment of a "
+     "curve [default: found from where consecutive points jump; 1 to 4 for each segment of a "
      "curve]"},
     {"array", 0, OPTION_STRING, AT(array), "NAME", 0, 0,
      "name of a .npz file's array of positions [default: positions, points, or the first that can "
@@ -62,7 +64,8 @@ static const Option OPTIONS[] = {
     {"to-up", 0, OPTION_WORD, AT(to_up), AXES, 0, 0,
      "axis of the written file that points up [default y]"},
     {"width", 0, OPTION_REAL, AT(width), "M", 1e-7, 1,
-     "diameter of the strands in .usda, metres [default: the file's, or estimated from their "
+     "diameter of the strands in .usda and .abc, metres [default: the file's, or estimated from "
+     "their "
      "number and size]"},
 
     {"first", 0, OPTION_WHOLE, AT(first), "N", 0, 9999999, "first frame [default 0]"},
@@ -72,11 +75,25 @@ static const Option OPTIONS[] = {
      "it such input is an error"},
     {"every", 0, OPTION_WHOLE, AT(every), "N", 1, 9999999, "every Nth frame [default 1]"},
     {"fps", 0, OPTION_REAL, AT(fps), "X", 1, 10000,
-     "frames per second of .usda [default: the cache's; 60 for numbered files]"},
+     "frames per second of .usda, .abc and .npz [default: the cache's; 60 for numbered files]"},
+
+    {"mesh", 0, OPTION_STRING, AT(mesh), "FILE", 0, 0,
+     "head or body of the steps --fit, --attach and --push-out, and of the depth inside in "
+     "--stats: "
+     "Wavefront OBJ or PLY; of a file with samples the first"},
+    {"mesh-unit", 0, OPTION_STRING, AT(mesh_unit), UNITS, 0, 0,
+     "length of one unit of the mesh [default: as the file says, else as the first hair file]"},
+    {"mesh-up", 0, OPTION_WORD, AT(mesh_up), FROM_AXES, 0, 0,
+     "axis of the mesh that points up; auto: as the file says, else as in the first hair file "
+     "[default auto]"},
 
     {"subsample", 0, OPTION_STEP, AT(steps), "SHARE", 0, 0,
      "step: keep a random share of the strands, 0.1 or 10%"},
     {"nth", 0, OPTION_STEP, AT(steps), "N", 0, 0, "step: keep every Nth strand"},
+    {"group", 0, OPTION_STEP, AT(steps), "N", 0, 0,
+     "step: keep the strands of group N (Alembic's groom_group_id, sections of a cache or .usda, "
+     "of "
+     "several files each is one, from 0)"},
     {"min-length", 0, OPTION_STEP, AT(steps), "M", 0, 0,
      "step: drop strands shorter than this, metres"},
     {"resample", 0, OPTION_STEP, AT(steps), "N", 0, 0,
@@ -92,6 +109,14 @@ static const Option OPTIONS[] = {
      "step: rotate about x, y or z, such as y,90"},
     {"translate", 0, OPTION_STEP, AT(steps), "X,Y,Z", 0, 0, "step: move, metres"},
     {"reverse", 0, OPTION_STEP, AT(steps), NULL, 0, 0, "step: swap roots and tips"},
+    {"fit", 0, OPTION_STEP, AT(steps), NULL, 0, 0,
+     "step: scale, turn and move all hair so that its roots come nearest to the mesh: for another "
+     "head than it was groomed on"},
+    {"attach", 0, OPTION_STEP, AT(steps), NULL, 0, 0,
+     "step: move each strand so that its root lies on the mesh"},
+    {"push-out", 0, OPTION_STEP, AT(steps), "M", 0, 0,
+     "step: move vertices that are inside the mesh, or nearer than M metres, out to M from it; "
+     "roots stay"},
     {"seed", 0, OPTION_WHOLE, AT(seed), "N", 0, 2147483647,
      "start of the random numbers of --subsample, and of the shuffle that some formats need "
      "[default 1]"},
@@ -118,6 +143,7 @@ static const char *const EXAMPLES[] = {
     "tractrix-convert hair.tfx -o hair.usda",
     "tractrix-convert in.tfx --resample 32 --subsample 10% --scale 0.5 -o out.hair",
     "tractrix-convert scan.data --up z --min-length 0.01 --spacing 0.005 -o scan.tfx --format text",
+    "tractrix-convert groom.abc --mesh other.obj --fit --attach --push-out 0.001 -o fitted.abc",
     "tractrix-convert anim.cache -o anim.usda",
     "tractrix-convert sim_%04d.tfx --fps 30 -o sim.usda",
     "tractrix-gen --kind curls -o - | tractrix-convert - --resample 64 -o x.usda",
@@ -144,6 +170,9 @@ typedef struct Job {
     ConvertInput input;
     ConvertOutput output;
     Figures figures;
+    float mesh_unit; // m; 0: not given
+    Mesh mesh;
+    Surface surface; // of the mesh; without it all zero
 } Job;
 
 static Result parse_unit(const char *name, const char *text, float *metres, Error *error)
@@ -158,12 +187,13 @@ static Result parse_unit(const char *name, const char *text, float *metres, Erro
 // What is written is neither read nor written twice.
 static Result check_paths(const Command *command, char **files, int count, Error *error)
 {
-    PathUse *uses = calloc((size_t)count + 2, sizeof *uses);
+    PathUse *uses = calloc((size_t)count + 3, sizeof *uses);
     if (!uses) return error_set(error, RESULT_FAILED, "no memory for %d files", count);
     for (int i = 0; i < count; ++i) uses[i] = (PathUse){"the input", files[i], PATH_READ, NULL};
     uses[count] = (PathUse){"-o", command->output, PATH_TARGET, NULL};
     uses[count + 1] = (PathUse){"--json", command->json, PATH_WRITTEN, NULL};
-    Result result = paths_claim(uses, count + 2, error);
+    uses[count + 2] = (PathUse){"--mesh", command->mesh, PATH_READ, NULL};
+    Result result = paths_claim(uses, count + 3, error);
     free(uses);
     return result;
 }
@@ -180,6 +210,23 @@ static Result check_sense(const Command *command, int files, Error *error)
         return error_set(error, RESULT_USAGE,
                          "--%s: it has no effect: there is neither -o, --stats nor --json",
                          command->steps.step[0].option->name);
+    if (!command->mesh && (command->mesh_unit || command->mesh_up))
+        return error_set(error, RESULT_USAGE,
+                         "--mesh-unit and --mesh-up have no effect: there is no --mesh");
+    return RESULT_OK;
+}
+
+// Steps on a mesh want one, and a mesh wants something to do.
+static Result check_mesh(const Job *job, Error *error)
+{
+    const Command *command = &job->command;
+    const char *step = convert_steps_need_mesh(&job->steps);
+    if (step && !command->mesh)
+        return error_set(error, RESULT_USAGE, "--%s: expected the mesh: --mesh FILE", step);
+    if (command->mesh && !step && !command->stats && !command->json)
+        return error_set(error, RESULT_USAGE,
+                         "--mesh: it has no effect: there is neither --fit, --attach, --push-out, "
+                         "--stats nor --json");
     return RESULT_OK;
 }
 
@@ -223,6 +270,8 @@ static Result parse(Job *job, int argc, char **argv, bool *done, Error *error)
     if (to_unit == 0)
         return error_set(error, RESULT_USAGE, "--to-unit: got 'auto', expected a unit");
     TRY(convert_steps_parse(&job->steps, &command->steps, error));
+    TRY(parse_unit("mesh-unit", command->mesh_unit, &job->mesh_unit, error));
+    TRY(check_mesh(job, error));
     job->steps.seed = (uint32_t)command->seed;
     job->input = (ConvertInput){.paths = argv + first,
                                 .path_count = argc - first,
@@ -250,20 +299,47 @@ static Result parse(Job *job, int argc, char **argv, bool *done, Error *error)
 
 // --- The work.
 
+static Result read_mesh(Job *job, Error *error)
+{
+    const char *path = job->command.mesh;
+    const StrandsReport *first = job->input.cached ? NULL : &job->input.reports[0];
+    const MeshSequenceOptions options = {
+        .unit = (double)job->mesh_unit,
+        .otherwise_unit = first ? (double)first->unit_used : 1,
+        .up_z = job->command.mesh_up ? job->command.mesh_up == UP_Z : -1,
+        .otherwise_up_z = first && first->up_z,
+        .rest = "",
+        .otherwise_rate = 1,
+    };
+    if (!path) return RESULT_OK;
+    MeshSequence sequence = {0};
+    Mesh rest = {0};
+    Result result =
+        mesh_sequence_matches(path)
+            ? mesh_sequence_read(&sequence, &job->mesh, &rest, path, &options, error)
+            : mesh_read(&job->mesh, path,
+                        (float)(options.unit > 0 ? options.unit : options.otherwise_unit),
+                        (options.up_z >= 0 ? options.up_z : options.otherwise_up_z) == 1, error);
+    mesh_sequence_destroy(&sequence);
+    mesh_destroy(&rest);
+    THEN(result, surface_create(&job->surface, &job->mesh, path, error));
+    job->steps.surface = &job->surface;
+    job->steps.messages = job->command.quiet ? NULL : stderr;
+    return result;
+}
+
 static Result open_files(Job *job, Error *error)
 {
     ConvertInput *input = &job->input;
     ConvertOutput *output = &job->output;
     TRY(convert_input_open(input, error));
+    TRY(read_mesh(job, error));
     if (!output->path) return RESULT_OK;
     int count = convert_input_count(input);
     output->animated = convert_input_moves(input);
     output->first = input->first;
     output->last = input->first + (count - 1) * input->every;
     output->fps = input->fps;
-    // Numbers of sections go by strand: they hold as long as no step picks some.
-    if (input->cached && input->cache.section_count > 1 && job->steps.count == 0)
-        output->section = input->cache.section;
     return convert_output_open(output, count, error);
 }
 
@@ -279,9 +355,12 @@ static Result do_frame(Job *job, int frame, Error *error)
     activity_set("converting");
     THEN(result, convert_steps_apply(&job->steps, &strands, error));
     if (first && (command->stats || command->json))
-        THEN(result, figures_measure(&job->figures, &strands, error));
+        THEN(result, figures_measure(&job->figures, &strands, job->steps.surface, error));
     activity_set("writing");
     if (command->output) THEN(result, convert_output_add(&job->output, frame, &strands, error));
+    // Those by which joined files are told apart are no loss.
+    if (!(job->input.features & STRANDS_HAS_GROUP))
+        job->output.lost &= ~(uint32_t)STRANDS_HAS_GROUP;
     strands_destroy(&strands);
     return result;
 }
@@ -378,5 +457,7 @@ int main(int argc, char **argv)
     convert_output_close(&job.output);
     convert_input_close(&job.input);
     figures_destroy(&job.figures);
+    surface_destroy(&job.surface);
+    mesh_destroy(&job.mesh);
     return program_end("tractrix-convert", result, &error);
 }

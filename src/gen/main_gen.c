@@ -9,6 +9,7 @@
 #include "gen/head_motion.h"
 #include "gen/strands_make.h"
 #include "mesh/head.h"
+#include "mesh/mesh_read.h"
 #include "mesh/obj.h"
 #include "mesh/scalp.h"
 
@@ -294,7 +295,7 @@ static Result grow_fur(int argc, char **argv, Error *error)
     TRY(paths_claim(uses, sizeof uses / sizeof *uses, error));
     activity_start(stderr, options.output.quiet);
     activity_set("growing hair");
-    TRY(obj_read_mesh(&mesh, options.mesh, (float)options.unit, options.up_z, error));
+    TRY(mesh_read(&mesh, options.mesh, (float)options.unit, options.up_z, error));
     Result result = write_fur(&options, &mesh, error);
     mesh_destroy(&mesh);
     return result;

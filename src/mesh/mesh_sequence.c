@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "mesh/mesh_sequence.h"
 #include "base/target.h"
-#include "mesh/obj.h"
+#include "mesh/mesh_read.h"
 
 #include <libdeflate.h>
 
@@ -13,7 +13,8 @@
 #include <unistd.h>
 
 static const MeshSequenceFormat *const FORMATS[] = {&MESH_SEQUENCE_NPZ, &MESH_SEQUENCE_NPY,
-                                                    &MESH_SEQUENCE_PC2, &MESH_SEQUENCE_MDD};
+                                                    &MESH_SEQUENCE_PC2, &MESH_SEQUENCE_MDD,
+                                                    &MESH_SEQUENCE_ALEMBIC};
 enum { FORMAT_COUNT = sizeof FORMATS / sizeof *FORMATS };
 
 // Vertices of all samples together, 96 GB.
@@ -122,7 +123,7 @@ static Result read_numbered(MeshSequence *sequence, Mesh *mesh, const Target *ta
     bool up_z = (options->up_z >= 0 ? options->up_z : options->otherwise_up_z) == 1;
     char *than = target_name_frame(target, first);
     Result result = than ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for a name");
-    THEN(result, obj_read_mesh(mesh, than, unit, up_z, error));
+    THEN(result, mesh_read(mesh, than, unit, up_z, error));
     size_t count = (size_t)(last - first) + 1, vertices = mesh->vertex_count;
     if (result == RESULT_OK && vertices > MOST_VERTICES / count)
         result = error_set(error, RESULT_BAD_INPUT, "%s: %zu samples are beyond all memory", than,
@@ -139,7 +140,7 @@ static Result read_numbered(MeshSequence *sequence, Mesh *mesh, const Target *ta
         Mesh next = {0};
         char *name = target_name_frame(target, i);
         if (!name) result = error_set(error, RESULT_FAILED, "no memory for a name");
-        THEN(result, obj_read_mesh(&next, name, unit, up_z, error));
+        THEN(result, mesh_read(&next, name, unit, up_z, error));
         THEN(result, compare(&next, mesh, name, than, error));
         if (result == RESULT_OK)
             memcpy(mesh_sequence_at(sequence, (uint32_t)(i - first)), next.position,
@@ -268,7 +269,7 @@ static Result read_rest(Mesh *rest, const MeshSequenceOptions *options, Error *e
     if (!*options->rest) return RESULT_OK;
     float unit = (float)(options->unit > 0 ? options->unit : options->otherwise_unit);
     bool up_z = (options->up_z >= 0 ? options->up_z : options->otherwise_up_z) == 1;
-    return obj_read_mesh(rest, options->rest, unit, up_z, error);
+    return mesh_read(rest, options->rest, unit, up_z, error);
 }
 
 static Result read_all(MeshSequence *sequence, Mesh *mesh, Mesh *rest, const char *path,

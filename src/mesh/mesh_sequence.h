@@ -39,13 +39,13 @@ typedef struct MeshSequenceFormat {
 } MeshSequenceFormat;
 
 extern const MeshSequenceFormat MESH_SEQUENCE_NPZ, MESH_SEQUENCE_NPY, MESH_SEQUENCE_PC2,
-    MESH_SEQUENCE_MDD;
+    MESH_SEQUENCE_MDD, MESH_SEQUENCE_ALEMBIC;
 
 // Makes room for positions; the reader fails where memory is short or the counts are beyond it.
 bool mesh_samples_create(MeshSamples *samples, Reader *reader);
 
 // Whether `path` names a sequence by its pattern (x_%04d.obj) or its content; false for an OBJ
-// file, and for what cannot be read, which obj_read_mesh then says.
+// file, and for what cannot be read, which mesh_read then says.
 bool mesh_sequence_matches(const char *path);
 
 // Reads all samples, and into `mesh` the faces with the positions of the first sample; into `rest`

@@ -209,7 +209,7 @@ static void read_statements(Obj *obj)
         if (statement == OBJ_FACE) read_face(obj);
         reader_skip_line(reader);
     }
-    if (reader_ok(reader) && obj->triangles[0].count == 0) reader_fail(reader, "no faces");
+    if (reader_ok(reader) && obj->triangles[0].count == 0) reader_fail(reader, "no faces: expected a mesh; hair stands alone, not behind --mesh");
     for (int kind = 0; kind < KIND_COUNT && reader_ok(reader); kind++) {
         if (obj->largest[kind] <= obj->vectors[kind].count) continue;
         reader->line = obj->largest_at[kind];
@@ -270,13 +270,11 @@ static bool make_mesh(Mesh *mesh, const Obj *obj, float unit, bool up_z)
     return obj->vectors[OBJ_NORMAL].count == 0 || apply_normals(mesh, obj, up_z);
 }
 
-Result obj_read_mesh(Mesh *mesh, const char *path, float unit, bool up_z, Error *error)
+Result obj_read_mesh_bytes(Mesh *mesh, const char *path, const Bytes *bytes, float unit, bool up_z,
+                           Error *error)
 {
     *mesh = (Mesh){0};
-    Bytes bytes;
-    TRY(bytes_read_file(&bytes, path, error));
-    bytes_drop_mark(&bytes);
-    Obj obj = {.reader = reader_begin_text(path, &bytes, error)};
+    Obj obj = {.reader = reader_begin_text(path, bytes, error)};
     obj.reader.continuation = true;
     read_statements(&obj);
     if (reader_ok(&obj.reader) && !make_mesh(mesh, &obj, unit, up_z)) {
@@ -288,7 +286,6 @@ Result obj_read_mesh(Mesh *mesh, const char *path, float unit, bool up_z, Error 
         free(obj.vectors[kind].data);
         free(obj.triangles[kind].data);
     }
-    bytes_destroy(&bytes);
     return obj.reader.result;
 }
 

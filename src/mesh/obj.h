@@ -47,7 +47,8 @@ void obj_put_line(FILE *stream, const char *word, const float *numbers, int coun
 // `unit` is metres per unit of the file, > 0; `up_z`: (x, y, z) -> (x, z, -y). RESULT_BAD_INPUT
 // with "FILE:LINE: ..." for anything malformed, a number that is not finite, an index out of range,
 // or a file without faces.
-Result obj_read_mesh(Mesh *mesh, const char *path, float unit, bool up_z, Error *error);
+Result obj_read_mesh_bytes(Mesh *mesh, const char *path, const Bytes *bytes, float unit, bool up_z,
+                           Error *error);
 
 // Writes positions, texture coordinates and faces (no normals: reading computes them), numbers as
 // the shortest of %.6g .. %.9g that reads back. RESULT_FAILED with the reason.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "run/export.h"
 #include "strands/formats/format.h"
-#include "strands/formats/npz_file.h"
 #include "strands/paint.h"
 #include "strands/strands.h"
 #include "strands/strands_edit.h"
@@ -9,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// --- Widths and colors of USD curves.
+// --- Widths and colours of curves.
 
 static void set_widths(float *width, const Strands *strands, const SectionParams *params,
                        const Paint *paint)
@@ -34,7 +33,7 @@ static void set_colors(float (*color)[4], const Strands *strands, const SectionP
 }
 
 // From a value each vertex to one each strand, where vertices do not differ, or to just one.
-static UsdRate simplify(float (*color)[4], const Strands *all)
+static CurvesRate simplify(float (*color)[4], const Strands *all)
 {
     bool constant = true, uniform = true;
     for (uint32_t s = 0; s < all->strand_count; ++s)
@@ -42,11 +41,11 @@ static UsdRate simplify(float (*color)[4], const Strands *all)
             uniform = uniform && memcmp(color[v], color[root], sizeof *color) == 0;
             constant = constant && memcmp(color[v], color[0], sizeof *color) == 0;
         }
-    if (constant) return USD_CONSTANT;
-    if (!uniform) return USD_VERTEX;
+    if (constant) return CURVES_CONSTANT;
+    if (!uniform) return CURVES_VERTEX;
     for (uint32_t s = 0; s < all->strand_count; ++s)
         memmove(color[s], color[all->first[s]], sizeof *color);
-    return USD_UNIFORM;
+    return CURVES_UNIFORM;
 }
 
 static Result look_at_section(SceneLook *look, const Section *section, const Strands *strands,
@@ -67,34 +66,30 @@ static void destroy_look(SceneLook *look)
 {
     free(look->width);
     free(look->color);
-    free(look->section);
     *look = (SceneLook){0};
 }
 
 static Result create_look(SceneLook *look, const Scene *scene, const Strands *sections,
                           const Strands *all, Error *error)
 {
-    size_t vertex = 0, strand = 0;
+    size_t vertex = 0;
     *look = (SceneLook){.width = malloc(all->vertex_count * sizeof *look->width + 1),
-                        .color = malloc(all->vertex_count * sizeof *look->color + 1),
-                        .section = malloc(all->strand_count * sizeof *look->section + 1)};
-    Result result = look->width && look->color && look->section
+                        .color = malloc(all->vertex_count * sizeof *look->color + 1)};
+    Result result = look->width && look->color
                         ? RESULT_OK
                         : error_set(error, RESULT_FAILED, "no memory for the curves' widths");
     for (uint32_t i = 0; i < scene->section_count && result == RESULT_OK; ++i) {
         result = look_at_section(look, &scene->sections[i], &sections[i], vertex, error);
-        for (uint32_t s = 0; s < sections[i].strand_count; ++s) look->section[strand++] = i;
         vertex += sections[i].vertex_count;
     }
     if (result != RESULT_OK) {
         destroy_look(look);
         return result;
     }
-    look->usd = (UsdLook){.width = look->width,
-                          .width_rate = USD_VERTEX,
-                          .color = (const float(*)[4])look->color,
-                          .color_rate = simplify(look->color, all),
-                          .section = scene->section_count > 1 ? look->section : NULL};
+    look->curves = (CurvesLook){.width = look->width,
+                                .width_rate = CURVES_VERTEX,
+                                .color = (const float(*)[4])look->color,
+                                .color_rate = simplify(look->color, all)};
     return RESULT_OK;
 }
 
@@ -115,22 +110,26 @@ static Result check_name(const Target *target, const char *text, int frame_count
                      text, strrchr(text, '.'));
 }
 
-// The options of a USD file for frames first, first + every, ...
-static Result describe_usd(Exporter *exporter, const Strands *sections, int frame_count,
-                           Error *error)
+// The options of a file for frames first, first + every, ...
+static Result describe(Exporter *exporter, const Strands *sections, int frame_count, Error *error)
 {
     const Scene *scene = exporter->simulation->scene;
     const RunParams *run = &scene->run;
-    TRY(create_look(&exporter->look, scene, sections, &exporter->strands, error));
-    exporter->options = (UsdOptions){.metres_per_unit = 1,
-                                     .animated = exporter->target.kind == TARGET_VIDEO,
-                                     .fps = (double)run->fps,
-                                     .first = run->first,
-                                     .last = run->first + (frame_count - 1) * run->every,
-                                     .look = exporter->look.usd};
+    if (frames_file_has_look(exporter->kind))
+        TRY(create_look(&exporter->look, scene, sections, &exporter->strands, error));
+    // .npz has no numbers of frames: they are one step apart.
+    bool npz = exporter->kind == FORMAT_NPZ,
+         animated = npz ? exporter->target.kind == TARGET_STILL && frame_count > 1
+                        : exporter->target.kind == TARGET_VIDEO;
+    exporter->options = (CurvesOptions){.metres_per_unit = 1,
+                                        .animated = animated,
+                                        .fps = (double)run->fps / (npz ? run->every : 1),
+                                        .first = run->first,
+                                        .last = run->first + (frame_count - 1) * run->every,
+                                        .look = exporter->look.curves};
     if (!exporter->options.animated || frame_count < 1) return RESULT_OK;
-    return usd_writer_open(&exporter->usd, exporter->target.before, &exporter->strands,
-                           &exporter->options, error);
+    return frames_file_open(&exporter->frames, exporter->kind, exporter->target.before,
+                            &exporter->strands, &exporter->options, error);
 }
 
 // What some or all sections have and the files will not.
@@ -165,28 +164,15 @@ static Result add_followers(Strands *all, const Strands *guides, const Hair *fol
     return result;
 }
 
-static Result make_room(Exporter *exporter, int frame_count, Error *error)
-{
-    exporter->room = (uint32_t)frame_count;
-    exporter->frames =
-        calloc((size_t)frame_count * exporter->strands.vertex_count + 1, sizeof *exporter->frames);
-    return exporter->frames ? RESULT_OK
-                            : error_set(error, RESULT_FAILED,
-                                        "no memory for %d frames of a .npz file: expected a file "
-                                        "for each, x_%%04d.npz",
-                                        frame_count);
-}
-
 static Result prepare(Exporter *exporter, const char *text, const Strands *sections, uint32_t count,
                       int frame_count, Error *error)
 {
     TRY(strands_join(&exporter->strands, sections, count, error));
+    if (count > 1) TRY(strands_group_sets(&exporter->strands, sections, count, error));
     exporter->kind = format_choose(text, &exporter->strands);
     find_lost(exporter, sections, count);
-    if (exporter->kind == FORMAT_NPZ && exporter->target.kind == TARGET_STILL && frame_count > 1)
-        return make_room(exporter, frame_count, error);
-    if (exporter->kind != FORMAT_USD) return RESULT_OK;
-    return describe_usd(exporter, sections, frame_count, error);
+    if (!frames_file_has_look(exporter->kind) && exporter->kind != FORMAT_NPZ) return RESULT_OK;
+    return describe(exporter, sections, frame_count, error);
 }
 
 static Result prepare_with_followers(Exporter *exporter, const char *text, const Strands *strands,
@@ -221,8 +207,7 @@ Result exporter_create(Exporter *exporter, const char *text, int frame_count,
 
 void exporter_destroy(Exporter *exporter)
 {
-    usd_writer_discard(&exporter->usd);
-    free(exporter->frames);
+    frames_file_discard(&exporter->frames);
     destroy_look(&exporter->look);
     target_destroy(&exporter->target);
     strands_destroy(&exporter->strands);
@@ -279,8 +264,9 @@ static Result write_file(const Exporter *exporter, int frame, Error *error)
 {
     char *name = target_name_frame(&exporter->target, frame);
     if (!name) return error_set(error, RESULT_FAILED, "no memory for the name of frame %d", frame);
-    Result result = exporter->kind == FORMAT_USD
-                        ? usd_write_still(name, &exporter->strands, &exporter->options, error)
+    Result result = frames_file_has_look(exporter->kind)
+                        ? frames_file_write_still(exporter->kind, name, &exporter->strands,
+                                                  &exporter->options, error)
                         : format_write(name, exporter->kind, &exporter->strands, error);
     free(name);
     return result;
@@ -290,42 +276,17 @@ Result exporter_write(Exporter *exporter, int frame, Error *error)
 {
     TRY(read_positions(exporter, error));
     if (exporter->options.animated)
-        return usd_writer_add(&exporter->usd, frame, (const float(*)[3])exporter->strands.position,
-                              error);
-    if (exporter->frames) {
-        const Strands *strands = &exporter->strands;
-        memcpy(exporter->frames + (size_t)exporter->filled++ * strands->vertex_count,
-               strands->position, strands->vertex_count * sizeof *strands->position);
-        return RESULT_OK;
-    }
+        return frames_file_add(&exporter->frames, frame,
+                               (const float(*)[3])exporter->strands.position, error);
     Result result = write_file(exporter, frame, error);
     exporter->files += result == RESULT_OK;
     return result;
 }
 
-// The strands themselves are those of the first frame.
-static Result write_frames(Exporter *exporter, Error *error)
-{
-    const RunParams *run = &exporter->simulation->scene->run;
-    const NpzFrames frames = {.count = exporter->filled,
-                              .position = (const float(*)[3])exporter->frames,
-                              .fps = (double)run->fps / run->every,
-                              .first = run->first};
-    OutFile file;
-    memcpy(exporter->strands.position, exporter->frames,
-           exporter->strands.vertex_count * sizeof *exporter->frames);
-    TRY(outfile_open(&file, exporter->target.before, error));
-    Result result = npz_write_frames(&file, &exporter->strands, &frames, error);
-    if (result == RESULT_OK) return outfile_commit(&file, error);
-    outfile_discard(&file);
-    return result;
-}
-
 Result exporter_finish(Exporter *exporter, Error *error)
 {
-    if (!exporter->usd.strands && !exporter->filled) return RESULT_OK;
-    Result result =
-        exporter->filled ? write_frames(exporter, error) : usd_writer_finish(&exporter->usd, error);
+    if (!exporter->frames.strands) return RESULT_OK;
+    Result result = frames_file_finish(&exporter->frames, error);
     exporter->files += result == RESULT_OK;
     return result;
 }

@@ -20,6 +20,7 @@ const FingerprintExempt FINGERPRINT_EXEMPT[] = {
     {"up", "the hair as it was read counts"},
     {"points_per_strand", "the hair as it was read counts"},
     {"array", "the hair as it was read counts"},
+    {"group", "the hair as it was read counts"},
     {"mesh", "its content counts"},
     {"mesh_rest", "the hair that it carries counts"},
     {"mesh_unit", "the mesh as it was read counts"},

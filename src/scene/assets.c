@@ -4,7 +4,7 @@
 
 #include "base/activity.h"
 #include "mesh/mesh_sequence.h"
-#include "mesh/obj.h"
+#include "mesh/mesh_read.h"
 #include "strands/paint.h"
 #include "strands/strands_edit.h"
 
@@ -48,6 +48,13 @@ static void print_look(const Strands *strands, const Section *section, FILE *mes
         fprintf(messages, "%s: the file's %s\n", quote(section->file).text, look);
 }
 
+static Result pick_group(Strands *strands, const Section *section, Error *error)
+{
+    Result result = strands_pick_group(strands, (double)section->params.group.value, error);
+    if (result == RESULT_OK) return result;
+    return error_prefix(error, result, "%s: --group: ", section->file);
+}
+
 static Result load_section(Assets *assets, const Scene *scene, uint32_t i, FILE *messages,
                            bool verbose, Error *error)
 {
@@ -58,6 +65,8 @@ static Result load_section(Assets *assets, const Scene *scene, uint32_t i, FILE 
     Result result =
         strands_read(&assets->strands[i], section->file, &options, &assets->reports[i], error);
     activity_set(NULL);
+    if (result == RESULT_OK && !section->params.group.automatic)
+        result = pick_group(&assets->strands[i], section, error);
     if (result != RESULT_OK || !messages) return result;
     strands_report_print_mended(&assets->reports[i], section->file, messages);
     warn_ignored(&assets->strands[i], section->file, messages);
@@ -174,7 +183,7 @@ static Result load_mesh(Assets *assets, Scene *scene, FILE *messages, Error *err
         return load_sequence(assets, scene, &options, messages, error);
     float unit = (float)(options.unit > 0 ? options.unit : options.otherwise_unit);
     bool up_z = (options.up_z >= 0 ? options.up_z : options.otherwise_up_z) == 1;
-    return obj_read_mesh(&assets->mesh, run->mesh, unit, up_z, error);
+    return mesh_read(&assets->mesh, run->mesh, unit, up_z, error);
 }
 
 Result assets_load(Assets *assets, Scene *scene, FILE *messages, bool verbose, Error *error)

@@ -18,7 +18,7 @@ typedef struct Assets {
 // Reads everything that the scene names. A mesh that deforms moves the scene's head
 // (scene->head.samples) and is its body, as long as the assets are there; strands lie on it as at
 // time 0. What was mended, and units that were guessed (if
-// `verbose`), are printed on `messages` (NULL: not). Errors as strands_read and obj_read_mesh give
+// `verbose`), are printed on `messages` (NULL: not). Errors as strands_read and mesh_read give
 // them; the assets may be destroyed in each case.
 Result assets_load(Assets *assets, Scene *scene, FILE *messages, bool verbose, Error *error);
 void assets_destroy(Assets *assets);

@@ -96,6 +96,8 @@ uint32_t strands_features(const Strands *strands)
     if (strands->followers) features |= STRANDS_HAS_FOLLOWERS;
     if (strands->follower_radius != 0.0f) features |= STRANDS_HAS_FOLLOWER_RADIUS;
     if (strands->both_ends_fixed) features |= STRANDS_HAS_FIXED_ENDS;
+    if (strands->strand_group && !is_zero(strands->strand_group, count))
+        features |= STRANDS_HAS_GROUP;
     return features;
 }
 
@@ -109,7 +111,8 @@ void strands_features_describe(uint32_t features, char *text, size_t size)
                                         "colours",
                                         "number of followers",
                                         "radius of followers",
-                                        "fixed tips"};
+                                        "fixed tips",
+                                        "groups"};
     text[0] = 0;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         size_t used = strlen(text);

@@ -25,6 +25,7 @@ typedef struct Strands {
     float (*strand_uv)[2];   // [strand_count], texture coordinate at the root, 0..1
     float (*vertex_uv)[2];   // [vertex_count]
     float *strand_thickness; // [strand_count], factor or width as the file says (TressFX)
+    float *strand_group; // [strand_count], whole numbers from 0: which part of the groom it is of
     float *vertex_thickness; // [vertex_count], metres (HAIR files)
     float (*color)[4];       // [vertex_count], linear RGB and opacity, 0..1
     uint32_t followers;      // followers that the file asks for, per guide
@@ -38,10 +39,12 @@ typedef struct Strands {
 // element, what mends a number that is not finite).
 #define STRANDS_ARRAYS_OF_VERTICES(X)                                                              \
     X(mobility, 1, 1) X(vertex_uv, 2, 0) X(vertex_thickness, 1, 1) X(color, 4, 1)
-#define STRANDS_ARRAYS_OF_STRANDS(X) X(strand_uv, 2, 0) X(strand_thickness, 1, 1)
+#define STRANDS_ARRAYS_OF_STRANDS(X)                                                               \
+    X(strand_uv, 2, 0) X(strand_thickness, 1, 1) X(strand_group, 1, 0)
 
 enum {
-    STRANDS_MAX_SIZE = 65535, // vertices of one strand that is simulated or drawn
+    STRANDS_MAX_SIZE = 65535,      // vertices of one strand that is simulated or drawn
+    STRANDS_MOST_GROUP = 16777215, // up to which float32 has all whole numbers
     STRANDS_MAX_FOLLOWERS =
         1000000 // that a file may ask for, per guide: every format holds as many
 };
@@ -75,6 +78,7 @@ enum {
     STRANDS_HAS_FOLLOWERS = 64,
     STRANDS_HAS_FOLLOWER_RADIUS = 128,
     STRANDS_HAS_FIXED_ENDS = 256,
+    STRANDS_HAS_GROUP = 512,
 };
 
 // Whether no vertex's colour has an opacity below 1.

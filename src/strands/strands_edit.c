@@ -236,3 +236,34 @@ Result strands_join(Strands *all, const Strands *sets, uint32_t count, Error *er
     all->both_ends_fixed = fixed;
     return RESULT_OK;
 }
+
+// --- Groups.
+
+Result strands_group_sets(Strands *all, const Strands *sets, uint32_t count, Error *error)
+{
+    free(all->strand_group);
+    all->strand_group = malloc(((size_t)all->strand_count + 1) * sizeof *all->strand_group);
+    if (!all->strand_group)
+        return error_set(error, RESULT_FAILED, "no memory for groups of strands");
+    for (uint32_t i = 0, s = 0; i < count; ++i)
+        for (uint32_t k = 0; k < sets[i].strand_count; ++k) all->strand_group[s++] = (float)i;
+    return RESULT_OK;
+}
+
+Result strands_pick_group(Strands *strands, double group, Error *error)
+{
+    uint32_t count = 0, *which = malloc(((size_t)strands->strand_count + 1) * sizeof *which);
+    float low = INFINITY, high = 0;
+    if (!which) return error_set(error, RESULT_FAILED, "no memory to pick strands");
+    for (uint32_t s = 0; s < strands->strand_count; ++s) {
+        float own = strands->strand_group ? strands->strand_group[s] : 0;
+        low = fminf(low, own), high = fmaxf(high, own);
+        if ((double)own == group) which[count++] = s;
+    }
+    Result result = count ? strands_pick(strands, which, count, error)
+                          : error_set(error, RESULT_BAD_INPUT,
+                                      "no strand is of group %g: expected one from %g to %g", group,
+                                      (double)low, (double)high);
+    free(which);
+    return result;
+}

@@ -53,3 +53,11 @@ Result strands_shuffle(Strands *strands, uint32_t seed, Error *error);
 // sets have them (followers: the same ones). RESULT_FAILED when memory is short or 32-bit indices
 // are.
 Result strands_join(Strands *all, const Strands *sets, uint32_t count, Error *error);
+
+// Numbers the groups of joined sets: a strand's is that of its set, from 0. RESULT_FAILED when
+// memory is short.
+Result strands_group_sets(Strands *all, const Strands *sets, uint32_t count, Error *error);
+
+// Keeps the strands of one group, those without groups being of group 0. RESULT_BAD_INPUT, without
+// a place, where there is none.
+Result strands_pick_group(Strands *strands, double group, Error *error);

@@ -10,15 +10,15 @@
 
 // --- Detection.
 
-#define BLENDER "convert it: blender -b --python blender_hair.py -- export FILE -o x.npz"
+#define BLENDER                                                                                    \
+    "convert it: blender -b --python scripts/blender_hair.py (installed: "                         \
+    "/usr/share/tractrix/blender_hair.py) -- export FILE -o x.npz"
 
 // Files that are often taken for hair and how to make hair of them, by their first bytes.
 static const struct {
     const char *begin, *name, *advice;
 } FOREIGN[] = {
-    {"Ogawa", "Alembic (.abc)", BLENDER},
-    {"\x89HDF", "HDF5, as in old Alembic files (.abc)",
-     "rewrite it with abcconvert -toOgawa, then " BLENDER},
+    {"\x89HDF", "HDF5, as in old Alembic files (.abc)", "rewrite it with abcconvert -toOgawa"},
     {"PXR-USDC", "binary USD (.usdc)", BLENDER " (or usdcat FILE -o x.usda)"},
     {"BLENDER", "a Blender file (.blend)", BLENDER},
     {"\x28\xb5\x2f\xfd", "compressed by zstd, as Blender files (.blend) are", BLENDER},
@@ -29,9 +29,9 @@ static const struct {
      "7zXZ",
      "compressed by xz", "unpack it"},
     {"7z\xbc\xaf", "a 7-Zip archive", "unpack it"},
-    {"//Maya ASCII", "a Maya scene (.ma)", "export Alembic there, then " BLENDER},
-    {"FOR4", "a Maya scene (.mb)", "export Alembic there, then " BLENDER},
-    {"FOR8", "a Maya scene (.mb)", "export Alembic there, then " BLENDER},
+    {"//Maya ASCII", "a Maya scene (.ma)", "export Alembic there"},
+    {"FOR4", "a Maya scene (.mb)", "export Alembic there"},
+    {"FOR8", "a Maya scene (.mb)", "export Alembic there"},
     {"Kaydara FBX", "FBX", "it keeps no strands: export Alembic, USD or Wavefront lines"},
     {"; FBX", "FBX", "it keeps no strands: export Alembic, USD or Wavefront lines"},
     {"gl"
@@ -69,7 +69,7 @@ static Result refuse_unknown(Reader *reader, bool xgen)
     if (reader->size == 0) return reader_fail(reader, "the file is empty");
     if (xgen)
         return reader_fail(reader, "not supported: an XGen description: export its curves as "
-                                   "Alembic in Maya, then " BLENDER);
+                                   "Alembic in Maya");
     if (begins_with(reader, "PK\x03\x04")) return refuse_zip(reader);
     for (size_t i = 0; i < sizeof FOREIGN / sizeof *FOREIGN; i++)
         if (begins_with(reader, FOREIGN[i].begin))
@@ -194,12 +194,14 @@ static void convert(FormatSource *source, double unit, bool up_z)
 {
     Strands *strands = &source->strands;
     double scale = source->scale != 0.0 ? source->scale : 1.0;
+    double of_thickness = source->thickness_unit > 0 ? source->thickness_unit : unit;
     convert_positions(source, strands->position, strands->vertex_count, unit, up_z);
     if (source->frames)
         convert_positions(source, source->frames, (size_t)source->samples * strands->vertex_count,
                           unit, up_z);
     for (uint32_t v = 0; strands->vertex_thickness && v < strands->vertex_count; v++)
-        strands->vertex_thickness[v] = (float)(strands->vertex_thickness[v] * unit * fabs(scale));
+        strands->vertex_thickness[v] =
+            (float)(strands->vertex_thickness[v] * of_thickness * fabs(scale));
     strands->follower_radius = (float)(strands->follower_radius * unit * fabs(scale));
 }
 

@@ -12,7 +12,7 @@ run 0 $curls; says "TressFX 4 binary"; says "defects   none"; silent err
 run 0 $curls $fur; says "$curls:"; says "$fur:"
 
 claim "all that a format holds comes back, to the bit, through any other that holds it"
-for format in text tfx3 tfx4 hair data obj usda ply ply-text npz npy; do
+for format in text tfx3 tfx4 hair data obj usda abc ply ply-text npz npy; do
     run 0 $curls --unit m -q -o "$x.$format" --format $format; silent out; silent err
     run 0 "$x.$format" --unit m -q -o "$work/again.data"
     run 0 $curls --unit m -q -o "$work/direct.data"
@@ -30,7 +30,7 @@ run 0 $curls -q -o "$x.obj"; silent err
 claim "the name decides the format, --format overrules it"
 run 0 $curls -o "$x.hair"; run 0 "$x.hair"; says "HAIR"
 run 0 $curls -o "$work/noname" --format hair; equal "$x.hair" "$work/noname"
-run 2 $curls -o "$work/noname2"; says ".usda, .hair, .obj, .tfx, .data, .ply, .npz or .npy"; one_line
+run 2 $curls -o "$work/noname2"; says ".usda, .abc, .hair, .obj, .tfx, .data, .ply, .npz or .npy"; one_line
 
 claim "units and axes of what is written are those that are asked for"
 run 0 $curls --unit m -q -o "$x.data" --to-unit 0.25 --to-up z
@@ -243,5 +243,33 @@ claim "help and version are answered"
 run 0 --help; says "--resample-spline N"; run 0 --help=man; says ".TH TRACTRIX-CONVERT 1"; run 0 --version; says "tractrix-convert "
 "$program" --help >/dev/full 2>"$work/err"
 if [ $? = 1 ]; then good; else bad "status with a full disk"; fi
+
+claim "a groom is fitted to a head, and what was done is told in millimetres"
+run 0 assets/bob.tfx --scale 1.3 --rotate y,20 --translate 0.3,0.2,0.1 -o "$work/elsewhere.tfx" -q
+run 0 "$work/elsewhere.tfx" --mesh assets/head.obj --fit --attach --push-out 0.001 --stats --json "$work/fitted.json" -o "$work/fitted.tfx"
+says "--fit: scaled by 0.768"; says "turned by 20 degrees"; says "--attach: "; says " mm"; says "--push-out: "
+says "inside the mesh: 0 of "
+in_file "$work/fitted.json" '"strands_inside": 0'; in_file "$work/fitted.json" '"depth_inside"'
+run 2 assets/bob.tfx --attach -o "$work/unfit.tfx"; says "--attach: expected the mesh: --mesh FILE"; one_line
+run 2 assets/bob.tfx --mesh assets/head.obj -o "$work/unfit.tfx"; says "--mesh: it has no effect"; one_line
+run 2 assets/bob.tfx --mesh assets/head.obj --push-out -1 -o "$work/unfit.tfx"; says "--push-out: got '-1', expected a distance"; one_line
+run 3 assets/bob.tfx --mesh assets/bob.tfx --attach -o "$work/unfit.tfx"; says "hair stands alone, not behind --mesh"; one_line
+run 3 assets/head.obj; says "not hair: a mesh stands behind --mesh"; one_line
+none "$work/unfit.tfx"
+
+claim "PLY meshes, and Alembic's, stand behind --mesh"
+printf 'ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n-1 -1 -1\n1 -1 -1\n0 1 0\n0 -1 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n' >"$work/mesh.ply"
+run 0 $curls --mesh "$work/mesh.ply" --mesh-unit m --stats; says "inside the mesh: "
+run 3 "$work/mesh.ply"; says "a mesh of 4 faces, not hair: a mesh stands behind --mesh"; one_line
+sed 's/3 0 3 2/3 0 3 9/' "$work/mesh.ply" >"$work/bad.ply"
+run 3 $curls --mesh "$work/bad.ply" --stats; says "bad.ply:17: face 3 has corner 9: expected less than 4"; one_line
+run 0 $curls --mesh tests/data/body.abc --stats
+run 3 $curls --mesh tests/data/groom.abc --stats; says "hair, no mesh that is shown"; one_line
+
+claim "groups: of Alembic, of files that become one"
+run 0 tests/data/unreal.abc --unit cm --group 5 --stats; says "2 strands, "
+run 0 $curls assets/fur.tfx -o "$work/two.abc" -q; run 0 "$work/two.abc" --group 1 -o "$work/one.hair" -q
+run 3 "$work/two.abc" --group 7 --stats; says "--group: no strand is of group 7: expected one from 0 to 1"; one_line
+run 0 $curls assets/fur.tfx -o "$work/two.hair"; if grep -q groups "$work/err"; then bad "groups that nobody has asked for are lost"; else good; fi
 
 finish

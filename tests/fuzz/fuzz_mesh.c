@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Meshes of Wavefront OBJ.
+// Meshes of Wavefront OBJ, and meshes over time of Alembic.
 #include "fuzz/fuzz.h"
+#include "mesh/mesh_sequence.h"
+#include "mesh/mesh_read.h"
 #include "mesh/obj.h"
 
 #include <math.h>
 
 void fuzz_mesh(const Bytes *bytes, int unused);
+void fuzz_sequence(const Bytes *bytes, int unused);
 
 static void claim_mesh(const Mesh *mesh)
 {
@@ -23,12 +26,12 @@ void fuzz_mesh(const Bytes *bytes, int unused)
     Mesh mesh = {0}, again = {0};
     Error error = {{0}};
     const char *path = fuzz_path("again.obj");
-    Result result = obj_read_mesh(&mesh, fuzz_file("x.obj", bytes), 1, false, &error);
+    Result result = mesh_read(&mesh, fuzz_file("x.obj", bytes), 1, false, &error);
     fuzz_claim_error(result, &error);
     if (result == RESULT_OK) {
         claim_mesh(&mesh);
         result = obj_write_mesh(path, &mesh, &error);
-        THEN(result, obj_read_mesh(&again, path, 1, false, &error));
+        THEN(result, mesh_read(&again, path, 1, false, &error));
         fuzz_claim(result == RESULT_OK, "written, but not read back: %s", error.text);
         fuzz_claim(mesh.vertex_count == again.vertex_count &&
                        mesh.triangle_count == again.triangle_count,
@@ -36,4 +39,26 @@ void fuzz_mesh(const Bytes *bytes, int unused)
     }
     mesh_destroy(&mesh);
     mesh_destroy(&again);
+}
+
+void fuzz_sequence(const Bytes *bytes, int unused)
+{
+    (void)unused;
+    Mesh mesh = {0}, rest = {0};
+    MeshSequence sequence = {0};
+    Error error = {{0}};
+    const MeshSequenceOptions options = {
+        .otherwise_unit = 1, .up_z = -1, .rest = "", .otherwise_rate = 24};
+    const char *path = fuzz_file("x.abc", bytes);
+    if (!mesh_sequence_matches(path)) return;
+    Result result = mesh_sequence_read(&sequence, &mesh, &rest, path, &options, &error);
+    fuzz_claim_error(result, &error);
+    if (result == RESULT_OK) {
+        claim_mesh(&mesh);
+        fuzz_claim(sequence.vertex_count == mesh.vertex_count && sequence.times.count > 0,
+                   "samples of another mesh");
+    }
+    mesh_sequence_destroy(&sequence);
+    mesh_destroy(&mesh);
+    mesh_destroy(&rest);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The bundled haircuts sit on the bundled head as scripts/make-assets has grown them: roots on the
 // skull, nothing inside, the face free.
-#include "mesh/obj.h"
+#include "mesh/mesh_read.h"
 #include "mesh/surface.h"
 #include "strands/strands_read.h"
 
@@ -20,7 +20,7 @@ static void read_haircut(Haircut *haircut, const char *path)
 {
     StrandsReadOptions options = {.strict = true};
     Error error = {""};
-    if (obj_read_mesh(&haircut->head, "assets/head.obj", 1.0f, false, &error) != RESULT_OK ||
+    if (mesh_read(&haircut->head, "assets/head.obj", 1.0f, false, &error) != RESULT_OK ||
         surface_create(&haircut->surface, &haircut->head, "head", &error) != RESULT_OK ||
         strands_read(&haircut->strands, path, &options, NULL, &error) != RESULT_OK)
         fail_msg("%s", error.text);

@@ -63,8 +63,8 @@ run 0 --count 5 --vertices 4 --format text -o "$work/text.hair"; says "TressFX 2
 claim "followers and thickness go where the format holds them"
 run 0 fur assets/ball.obj -n 9 --followers 16 --format tfx3 -o "$work/f.tfx"
 run 0 fur assets/ball.obj -n 9 --thickness 1e-4 --tip-thickness 0.1 --format hair -o "$work/f.hair"
-refused 2 "--followers: expected --format usda, tfx3, text or npz" fur assets/ball.obj --followers 3
-refused 2 "--thickness: expected --format usda, hair, ply, ply-text or npz" fur assets/ball.obj --thickness 1e-4
+refused 2 "--followers: expected --format usda, abc, tfx3, text or npz" fur assets/ball.obj --followers 3
+refused 2 "--thickness: expected --format usda, abc, hair, ply, ply-text or npz" fur assets/ball.obj --thickness 1e-4
 
 claim "the unit and the axis of the mesh count"
 printf 'v 0 0 0\nv 100 0 0\nv 0 100 0\nf 1 2 3\n' >"$work/flat.obj"

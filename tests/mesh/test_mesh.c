@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Meshes in Wavefront files, and those that the program makes.
 #include "mesh/mesh.h"
+#include "mesh/mesh_read.h"
 #include "mesh/obj.h"
 #include "mesh/scalp.h"
 #include "support/temporary.h"
@@ -16,7 +17,7 @@
 static Result read_text(void **state, Mesh *mesh, const char *text, bool up_z, Error *error)
 {
     temporary_write(state, "m.obj", text, 0644);
-    return obj_read_mesh(mesh, temporary_path(state, "m.obj"), 1.0f, up_z, error);
+    return mesh_read(mesh, temporary_path(state, "m.obj"), 1.0f, up_z, error);
 }
 
 static Mesh read_good(void **state, const char *text, bool up_z)
@@ -132,7 +133,7 @@ static void written_meshes_read_back_bit_for_bit(void **state)
     assert_int_equal(scalp_make_mesh(&mesh, SCALP_HEAD, 12, NULL), RESULT_OK);
     const char *path = temporary_path(state, "head.obj");
     assert_int_equal(obj_write_mesh(path, &mesh, NULL), RESULT_OK);
-    assert_int_equal(obj_read_mesh(&back, path, 1.0f, false, NULL), RESULT_OK);
+    assert_int_equal(mesh_read(&back, path, 1.0f, false, NULL), RESULT_OK);
     assert_int_equal(back.vertex_count, mesh.vertex_count);
     assert_int_equal(back.triangle_count, mesh.triangle_count);
     assert_memory_equal(back.position, mesh.position, 12 * (size_t)mesh.vertex_count);
@@ -193,7 +194,7 @@ static void bundled_head_is_read(void **state)
     (void)state;
     Mesh mesh;
     float low[3], high[3];
-    assert_int_equal(obj_read_mesh(&mesh, "assets/head.obj", 1.0f, false, NULL), RESULT_OK);
+    assert_int_equal(mesh_read(&mesh, "assets/head.obj", 1.0f, false, NULL), RESULT_OK);
     mesh_bounds(&mesh, low, high);
     assert_true(mesh.triangle_count >= 5000 && mesh.triangle_count <= 20000);
     assert_true(high[1] - low[1] > 0.35f && high[1] - low[1] < 0.45f);
@@ -209,7 +210,7 @@ static void real_head_is_read(void **state)
         skip();
     }
     Mesh mesh;
-    assert_int_equal(obj_read_mesh(&mesh, path, 0.01f, false, NULL), RESULT_OK);
+    assert_int_equal(mesh_read(&mesh, path, 0.01f, false, NULL), RESULT_OK);
     assert_int_equal(mesh.vertex_count, 3046);
     assert_int_equal(mesh.triangle_count, 5952);
     for (uint32_t v = 0; v < mesh.vertex_count; v++) {

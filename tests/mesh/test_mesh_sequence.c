@@ -261,6 +261,36 @@ static void the_shape_tells_rest_from_motion(void **state)
     assert_true(mesh_sequence_shape(&sequence, 6) == mesh_sequence_shape(&sequence, 5));
 }
 
+// body.abc, written by Alembic 1.8: a quad and a triangle of five vertices, whose third one rises,
+// under a transform that moves 1 m a sample along x after doubling; a triangle that rests; a hidden
+// one.
+static void alembic_meshes_are_samples_with_their_transforms(void **state)
+{
+    (void)state;
+    MeshSequence sequence;
+    Mesh mesh;
+    Error error = {""};
+    if (read(&sequence, &mesh, "tests/data/body.abc", &OPTIONS, &error) != RESULT_OK)
+        fail_msg("%s", error.text);
+    assert_int_equal(sequence.times.count, 4);
+    assert_float_equal(sequence.times.rate, 30, 1e-9);
+    assert_int_equal(sequence.vertex_count, 8);
+    // Alembic's corners go round clockwise, a mesh's here do not.
+    const uint32_t triangles[4][3] = {{3, 1, 2}, {3, 0, 1}, {2, 1, 4}, {5, 6, 7}};
+    assert_int_equal(mesh.triangle_count, 4);
+    assert_memory_equal(mesh.triangle, triangles, sizeof triangles);
+    for (uint32_t i = 0; i < 4; ++i) {
+        const float(*p)[3] = (const float(*)[3])mesh_sequence_at(&sequence, i);
+        assert_float_equal(p[2][0], 2 + 0.5 * i, 1e-6);
+        assert_float_equal(p[2][2], 0.5 * i, 1e-6);
+        assert_float_equal(p[4][0], 4 + 0.5 * i, 1e-6);
+        assert_float_equal(p[7][1], 6, 1e-6);
+    }
+    mesh_sequence_destroy(&sequence);
+    mesh_destroy(&mesh);
+    expect("tests/data/curves.abc", &OPTIONS, "hair, no mesh that is shown");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -270,6 +300,7 @@ int main(void)
                                         temporary_create, temporary_destroy),
         cmocka_unit_test_setup_teardown(arrays_of_numpy_say_faces_rate_unit_and_axes,
                                         temporary_create, temporary_destroy),
+        cmocka_unit_test(alembic_meshes_are_samples_with_their_transforms),
         cmocka_unit_test(splines_are_exact_for_what_is_quadratic),
         cmocka_unit_test(a_cut_holds_and_jumps),
         cmocka_unit_test(the_shape_tells_rest_from_motion),

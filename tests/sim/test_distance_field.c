@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Distance fields against exact distances.
-#include "mesh/obj.h"
+#include "mesh/mesh_read.h"
 #include "mesh/scalp.h"
 #include "support/hair_fixture.h"
 #include "support/shapes.h"
@@ -259,7 +259,7 @@ static void every_point_has_its_distance(void **state)
 static void read_head(Mesh *mesh)
 {
     Error error = {{0}};
-    if (obj_read_mesh(mesh, "assets/head.obj", 1, false, &error) != RESULT_OK)
+    if (mesh_read(mesh, "assets/head.obj", 1, false, &error) != RESULT_OK)
         fail_msg("%s", error.text);
 }
 

@@ -231,7 +231,7 @@ static void figures_of_a_circle_are_known(void **state)
     (void)state;
     Strands strands = make_strand(91, quarter_circle); // a degree each
     Figures figures;
-    assert_int_equal(figures_measure(&figures, &strands, NULL), RESULT_OK);
+    assert_int_equal(figures_measure(&figures, &strands, NULL, NULL), RESULT_OK);
     const Figure *turn = &figures.figures[FIGURE_TURN];
     double w = 3.141592653589793 / 180, chord = 2 * sin(w / 2);
     // Vertices are rounded by 6e-8, and a chord is 0.017: a turn is off by up to 2e-5.
@@ -259,7 +259,7 @@ static void figures_count_vertices_and_find_roots(void **state)
         strands.position[v][1] = (float)(v == 1 || v == 3 || v == 5 ? 1 : v > 6 ? v - 6 : 0);
     }
     Figures figures;
-    assert_int_equal(figures_measure(&figures, &strands, NULL), RESULT_OK);
+    assert_int_equal(figures_measure(&figures, &strands, NULL, NULL), RESULT_OK);
     assert_int_equal(figures.size_count, 2);
     assert_int_equal(figures.sizes[0].strands, 3);
     assert_int_equal(figures.sizes[1].size, 3);

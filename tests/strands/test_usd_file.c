@@ -57,16 +57,17 @@ static void frames_are_time_samples(void **state)
     UsdWriter writer;
     make_uneven(&strands);
     const float width = 0.5f, color[1][4] = {{0.25f, 0.5f, 1, 0.75f}};
-    const uint32_t section[] = {0, 3};
-    UsdOptions options = {.metres_per_unit = 0.01,
-                          .up_z = true,
-                          .animated = true,
-                          .fps = 29.97,
-                          .first = 7,
-                          .last = 9,
-                          .look = {.width = &width, .color = color, .section = section}};
+    CurvesOptions options = {.metres_per_unit = 0.01,
+                             .up_z = true,
+                             .animated = true,
+                             .fps = 29.97,
+                             .first = 7,
+                             .last = 9,
+                             .look = {.width = &width, .color = color}};
     strands.followers = 4;
     strands.both_ends_fixed = true;
+    strands.strand_group = calloc(2, sizeof *strands.strand_group);
+    strands.strand_group[1] = 3;
     assert_int_equal(
         usd_writer_open(&writer, temporary_path(state, "x.usda"), &strands, &options, NULL),
         RESULT_OK);
@@ -146,7 +147,7 @@ static void a_file_that_is_not_finished_is_not_there(void **state)
     Strands strands;
     UsdWriter writer;
     Error error;
-    const UsdOptions options = {.metres_per_unit = 1, .animated = true, .fps = 30};
+    const CurvesOptions options = {.metres_per_unit = 1, .animated = true, .fps = 30};
     make_uneven(&strands);
     const char *path = temporary_path(state, "x.usda");
     assert_int_equal(usd_writer_open(&writer, path, &strands, &options, NULL), RESULT_OK);

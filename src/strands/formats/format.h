@@ -16,6 +16,7 @@
 // matches it, and of the rows with a file's suffix the first that can hold the strands is written.
 #define FORMATS_WRITTEN(X)                                                                         \
     X(USD, usd, "usda")                                                                            \
+    X(ABC, abc, "abc")                                                                             \
     X(HAIR, hair, "hair")                                                                          \
     X(OBJ, obj, "obj")                                                                             \
     X(TFX4, tfx4, "tfx4")                                                                          \
@@ -67,6 +68,7 @@ typedef struct FormatSource {
     double fps;             // samples a second; 0: the file does not say
     int first_frame;        // number of the first sample
     bool roots_only;        // strands of one vertex are meant: roots without hair (USC-HairSalon)
+    double thickness_unit;  // metres of the vertices' thickness; 0: as positions
     double scale;           // p' = translation + rotation * (scale * p), in the file's unit; 0 = 1
     double rotation[3];     // about x, y, z, radians; applied in the order z, x, y
     double translation[3];

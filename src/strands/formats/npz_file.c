@@ -303,6 +303,7 @@ static void read_strands(Npz *npz)
     X(uv, strand_uv, 2, strand_count, STRANDS_HAS_STRAND_UV)                                       \
     X(vertex_uv, vertex_uv, 2, vertex_count, STRANDS_HAS_VERTEX_UV)                                \
     X(thickness, strand_thickness, 1, strand_count, STRANDS_HAS_STRAND_THICKNESS)                  \
+    X(group, strand_group, 1, strand_count, STRANDS_HAS_GROUP)                                     \
     X(radius, vertex_thickness, 1, vertex_count, STRANDS_HAS_VERTEX_THICKNESS)                     \
     X(color, color, 4, vertex_count, STRANDS_HAS_COLOR)                                            \
     X(mobility, mobility, 1, vertex_count, STRANDS_HAS_MOBILITY)
@@ -480,7 +481,9 @@ Result npz_write_frames(OutFile *file, const Strands *strands, const NpzFrames *
                         Error *error)
 {
     ZipWriter writer = {.out = file};
-    add_positions(&writer, strands);
+    Strands first = *strands; // as they are in the first frame
+    if (frames->count) first.position = (float(*)[3])(uintptr_t)frames->position;
+    add_positions(&writer, &first);
     add_companions(&writer, strands);
     if (frames->count) {
         uint32_t size = even_size(strands);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // `.ply` with strands: hairutil's form, in which an element `strand` has the number of each
 // strand's segments (nsegs); points that edges join; and bare lists of points (cloud.h). After
-// Greg Turk's "The PLY Polygon File Format" (1994) and the files of hapPLY and hairutil. Colours of
+// the files of hapPLY and hairutil. Colours of
 // integers are sRGB, of floats linear. Elements and properties of other names are stepped over.
+#include "base/ply.h"
 #include "image/image.h"
 #include "strands/formats/cloud.h"
 #include "strands/formats/format.h"
@@ -11,29 +12,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { MOST_ELEMENTS = 32, MOST_PROPERTIES = 256, NAME_SIZE = 40 };
-
-typedef enum PlyType {
-    PLY_CHAR,
-    PLY_UCHAR,
-    PLY_SHORT,
-    PLY_USHORT,
-    PLY_INT,
-    PLY_UINT,
-    PLY_FLOAT,
-    PLY_DOUBLE,
-    PLY_TYPES
-} PlyType;
-
-static const struct {
-    const char *name, *alias;
-    uint32_t size;
-    double most; // of an unsigned colour; 0: colours are linear
-} TYPES[PLY_TYPES] = {{"char", "int8", 1, 0},     {"uchar", "uint8", 1, 255},
-                      {"short", "int16", 2, 0},   {"ushort", "uint16", 2, 65535},
-                      {"int", "int32", 4, 0},     {"uint", "uint32", 4, 0},
-                      {"float", "float32", 4, 0}, {"double", "float64", 8, 0}};
 
 // What a property is for.
 typedef enum PlyRole {
@@ -54,26 +32,10 @@ typedef enum PlyRole {
 static const char *const ROLE_NAMES[PLY_ROLES] = {
     "x", "y", "z", "red", "green", "blue", "alpha", "thickness", "nsegs", "vertex1", "vertex2"};
 
-typedef struct PlyProperty {
-    PlyType type, count_type; // of a list's elements and of their number
-    bool list;
-    PlyRole role; // PLY_ROLES: stepped over
-} PlyProperty;
-
-typedef struct PlyElement {
-    char name[NAME_SIZE];
-    uint32_t count, property_count;
-    PlyProperty *property; // of the file's
-    bool has[PLY_ROLES];
-} PlyElement;
-
 typedef struct Ply {
+    PlyFile file;
     Reader *reader;
     FormatSource *source;
-    bool text, big; // big: most significant byte first
-    PlyElement element[MOST_ELEMENTS];
-    PlyProperty property[MOST_PROPERTIES];
-    uint32_t element_count, property_count;
     const PlyElement *vertices, *strands, *edges; // NULL: none
     float (*position)[3];
     float (*color)[4];
@@ -84,218 +46,7 @@ typedef struct Ply {
     uint8_t *joined; // [vertices] to the next one
 } Ply;
 
-// --- The header: lines of words.
-
-static void read_name(Ply *ply, char name[NAME_SIZE], const char *what)
-{
-    if (reader_ok(ply->reader) && !reader_read_word(ply->reader, name, NAME_SIZE)) {
-        name[0] = 0;
-        reader_fail_expected(ply->reader, what);
-    }
-}
-
-static PlyType read_type(Ply *ply)
-{
-    for (int type = 0; type < PLY_TYPES; type++)
-        if (reader_take(ply->reader, TYPES[type].name) ||
-            reader_take(ply->reader, TYPES[type].alias))
-            return (PlyType)type;
-    if (reader_ok(ply->reader)) reader_fail_expected(ply->reader, "a type (float, uchar, ...)");
-    return PLY_CHAR;
-}
-
-static void read_format(Ply *ply)
-{
-    Reader *reader = ply->reader;
-    if (reader_take(reader, "ascii"))
-        ply->text = true;
-    else if (reader_take(reader, "binary_big_endian"))
-        ply->big = true;
-    else if (!reader_take(reader, "binary_little_endian") && reader_ok(reader))
-        reader_fail_expected(reader, "ascii, binary_little_endian or binary_big_endian");
-    reader_expect(reader, "1.0");
-}
-
-static void read_element(Ply *ply)
-{
-    if (ply->element_count == MOST_ELEMENTS) {
-        reader_fail(ply->reader, "more than %d elements", MOST_ELEMENTS);
-        return;
-    }
-    PlyElement *element = &ply->element[ply->element_count++];
-    element->property = ply->property + ply->property_count;
-    read_name(ply, element->name, "an element's name");
-    element->count = reader_read_count(ply->reader, "a number of elements");
-}
-
-static void read_property(Ply *ply)
-{
-    Reader *reader = ply->reader;
-    char name[NAME_SIZE] = "";
-    if (ply->element_count == 0) reader_fail(reader, "a property before any element");
-    if (ply->property_count == MOST_PROPERTIES)
-        reader_fail(reader, "more than %d properties", MOST_PROPERTIES);
-    if (!reader_ok(reader)) return;
-    PlyElement *element = &ply->element[ply->element_count - 1];
-    PlyProperty *property = &ply->property[ply->property_count++];
-    property->list = reader_take(reader, "list");
-    if (property->list) property->count_type = read_type(ply);
-    if (property->list && property->count_type >= PLY_FLOAT)
-        reader_fail(reader, "a list's count is a float: expected an integer");
-    property->type = read_type(ply);
-    read_name(ply, name, "a property's name");
-    property->role = PLY_ROLES;
-    for (int role = 0; role < PLY_ROLES && !property->list; role++)
-        if (strcmp(name, ROLE_NAMES[role]) == 0 && !element->has[role])
-            property->role = (PlyRole)role;
-    if (property->role < PLY_ROLES) element->has[property->role] = true;
-    element->property_count++;
-}
-
-// Up to the newline behind end_header, which a carriage return may precede; data may begin with any
-// byte.
-static void end_header(Ply *ply)
-{
-    Reader *reader = ply->reader;
-    const uint8_t *at = reader->data + reader->at;
-    size_t step = at[0] == '\n' ? 1 : at[0] == '\r' && at[1] == '\n' ? 2 : 0;
-    if (step == 0 && reader_ok(reader)) reader_fail_expected(reader, "the end of the line");
-    reader->at += step;
-    reader->line++;
-}
-
-static void read_header(Ply *ply)
-{
-    Reader *reader = ply->reader;
-    reader->line = 1;
-    reader_expect(reader, "ply");
-    reader_next_line(reader);
-    reader_expect(reader, "format");
-    if (reader_ok(reader)) read_format(ply);
-    reader_next_line(reader);
-    while (reader_ok(reader) && !reader_take(reader, "end_header")) {
-        if (reader_take(reader, "comment") || reader_take(reader, "obj_info")) {
-            reader_skip_line(reader);
-            continue;
-        }
-        if (reader_take(reader, "element"))
-            read_element(ply);
-        else if (reader_take(reader, "property"))
-            read_property(ply);
-        else
-            reader_fail_expected(reader, "element, property, comment or end_header");
-        reader_next_line(reader);
-    }
-    if (reader_ok(reader)) end_header(ply);
-    if (!ply->text) reader->line = 0;
-}
-
-// --- Numbers.
-
-// Of any type; the bytes are there.
-static double convert_bytes(const Ply *ply, const uint8_t *bytes, PlyType type)
-{
-    uint64_t bits = 0;
-    uint32_t size = TYPES[type].size;
-    for (uint32_t i = 0; i < size; i++)
-        bits |= (uint64_t)bytes[ply->big ? size - 1 - i : i] << (8 * i);
-    uint32_t low = (uint32_t)bits;
-    float single;
-    double wide;
-    memcpy(&single, &low, sizeof single);
-    memcpy(&wide, &bits, sizeof wide);
-    switch (type) {
-    case PLY_CHAR:
-        return (int8_t)low;
-    case PLY_SHORT:
-        return (int16_t)low;
-    case PLY_INT:
-        return (int32_t)low;
-    case PLY_FLOAT:
-        return (double)single;
-    case PLY_DOUBLE:
-        return wide;
-    default:
-        return low;
-    }
-}
-
-static double read_number(Ply *ply, PlyType type, bool whole)
-{
-    Reader *reader = ply->reader;
-    if (!reader_ok(reader)) return 0;
-    if (!ply->text) {
-        uint32_t size = TYPES[type].size;
-        if (!reader_check_array(reader, reader->at, 1, size, "the element's numbers")) return 0;
-        double value = convert_bytes(ply, reader->data + reader->at, type);
-        reader->at += size;
-        return value;
-    }
-    if (reader_line_ended(reader)) reader_ended(reader);
-    if (whole) return reader_read_count(reader, "a whole number from 0");
-    return (double)reader_read_number(reader, "a number");
-}
-
-static void skip_list(Ply *ply, const PlyProperty *property)
-{
-    Reader *reader = ply->reader;
-    double count = read_number(ply, property->count_type, true);
-    if (count < 0) reader_fail(reader, "a list of %g numbers", count);
-    if (!reader_ok(reader)) return;
-    if (ply->text) {
-        for (uint64_t i = 0; i < (uint64_t)count && reader_ok(reader); i++)
-            read_number(ply, property->type, false);
-    } else if (reader_check_array(reader, reader->at, (uint64_t)count, TYPES[property->type].size,
-                                  "a list")) {
-        reader->at += (size_t)count * TYPES[property->type].size;
-    }
-}
-
-// One element of its kind; the numbers that have a role go to `values`.
-static void read_row(Ply *ply, const PlyElement *element, double values[PLY_ROLES])
-{
-    for (uint32_t i = 0; i < element->property_count && reader_ok(ply->reader); i++) {
-        const PlyProperty *property = &element->property[i];
-        if (property->list) {
-            skip_list(ply, property);
-            continue;
-        }
-        bool whole = property->role >= PLY_SEGMENTS && property->role < PLY_ROLES;
-        double value = read_number(ply, property->type, whole);
-        if (property->role < PLY_ROLES) values[property->role] = value;
-    }
-}
-
-// The least that an element takes in the file, bytes: in text a digit and a blank for each number.
-static uint64_t least_size(const Ply *ply, const PlyElement *element)
-{
-    uint64_t size = 0;
-    for (uint32_t i = 0; i < element->property_count; i++) {
-        const PlyProperty *property = &element->property[i];
-        size += ply->text ? 2 : TYPES[property->list ? property->count_type : property->type].size;
-    }
-    return size;
-}
-
-static bool check_count(Ply *ply, const PlyElement *element)
-{
-    uint64_t size = least_size(ply, element), left = reader_left(ply->reader) + ply->text;
-    if (size == 0 || element->count <= left / size) return true;
-    reader_fail(ply->reader, "%u times '%s' need %llu bytes at least, the file has %zu more",
-                element->count, element->name, (unsigned long long)size * element->count,
-                reader_left(ply->reader));
-    return false;
-}
-
 // --- Elements.
-
-static PlyType type_of(const PlyElement *element, PlyRole role)
-{
-    for (uint32_t i = 0; i < element->property_count; i++)
-        if (!element->property[i].list && element->property[i].role == role)
-            return element->property[i].type;
-    return PLY_FLOAT;
-}
 
 static void make_vertex_room(Ply *ply)
 {
@@ -304,7 +55,7 @@ static void make_vertex_room(Ply *ply)
     bool color = has[PLY_RED] && has[PLY_GREEN] && has[PLY_BLUE];
     ply->position = malloc(count * sizeof *ply->position);
     ply->joined = calloc(count, 1);
-    if (ply->text)
+    if (ply->file.text)
         ply->line = malloc(count * sizeof *ply->line);
     else
         ply->place = malloc(count * sizeof *ply->place);
@@ -317,8 +68,8 @@ static void make_vertex_room(Ply *ply)
 
 static void set_color(Ply *ply, uint32_t v, const double values[PLY_ROLES])
 {
-    double most = TYPES[type_of(ply->vertices, PLY_RED)].most;
-    double most_alpha = TYPES[type_of(ply->vertices, PLY_ALPHA)].most;
+    double most = PLY_TYPE_INFO[ply_type_of(ply->vertices, PLY_RED)].most;
+    double most_alpha = PLY_TYPE_INFO[ply_type_of(ply->vertices, PLY_ALPHA)].most;
     for (int k = 0; k < 3; k++) {
         double value = values[PLY_RED + k];
         ply->color[v][k] = (float)(most > 0 ? image_linear_from_srgb(value / most) : value);
@@ -334,17 +85,17 @@ static void read_vertices(Ply *ply, const PlyElement *element)
     if (!element->has[PLY_X] || !element->has[PLY_Y] || !element->has[PLY_Z])
         reader_fail(reader, "vertices without x, y and z");
     if (element->count == 0) reader_fail(reader, "no vertices");
-    if (!reader_ok(reader) || !check_count(ply, element)) return;
+    if (!reader_ok(reader) || !ply_check_count(&ply->file, element)) return;
     ply->vertices = element;
     make_vertex_room(ply);
     for (uint32_t v = 0; v < element->count && reader_ok(reader); v++) {
         double values[PLY_ROLES] = {0};
-        if (ply->text && reader_line_ended(reader)) reader_ended(reader);
-        if (ply->text)
+        if (ply->file.text && reader_line_ended(reader)) reader_ended(reader);
+        if (ply->file.text)
             ply->line[v] = reader->line;
         else
             ply->place[v] = reader->at;
-        read_row(ply, element, values);
+        ply_read_row(&ply->file, element, values);
         for (int k = 0; k < 3; k++) ply->position[v][k] = (float)values[PLY_X + k];
         if (ply->color) set_color(ply, v, values);
         if (ply->thickness) ply->thickness[v] = (float)values[PLY_THICKNESS];
@@ -354,13 +105,13 @@ static void read_vertices(Ply *ply, const PlyElement *element)
 static void read_strands(Ply *ply, const PlyElement *element)
 {
     Reader *reader = ply->reader;
-    if (!check_count(ply, element)) return;
+    if (!ply_check_count(&ply->file, element)) return;
     ply->strands = element;
     ply->sizes = malloc(((size_t)element->count + 1) * sizeof *ply->sizes);
     if (!ply->sizes) reader_fail_memory(reader);
     for (uint32_t s = 0; s < element->count && reader_ok(reader); s++) {
         double values[PLY_ROLES] = {0};
-        read_row(ply, element, values);
+        ply_read_row(&ply->file, element, values);
         if (!(values[PLY_SEGMENTS] >= 0 && values[PLY_SEGMENTS] < UINT32_MAX))
             reader_fail(reader, "strand %u has %g segments", s, values[PLY_SEGMENTS]);
         ply->sizes[s] = reader_ok(reader) ? (uint32_t)values[PLY_SEGMENTS] + 1 : 0;
@@ -371,11 +122,11 @@ static void read_edges(Ply *ply, const PlyElement *element)
 {
     Reader *reader = ply->reader;
     if (!ply->vertices) reader_fail(reader, "edges before vertices");
-    if (!reader_ok(reader) || !check_count(ply, element)) return;
+    if (!reader_ok(reader) || !ply_check_count(&ply->file, element)) return;
     ply->edges = element;
     for (uint32_t e = 0; e < element->count && reader_ok(reader); e++) {
         double values[PLY_ROLES] = {0}, last = ply->vertices->count - 1.0;
-        read_row(ply, element, values);
+        ply_read_row(&ply->file, element, values);
         double a = fmin(values[PLY_VERTEX1], values[PLY_VERTEX2]);
         double b = fmax(values[PLY_VERTEX1], values[PLY_VERTEX2]);
         if (!(a >= 0 && b <= last && b == a + 1))
@@ -388,15 +139,15 @@ static void read_edges(Ply *ply, const PlyElement *element)
 static void skip_element(Ply *ply, const PlyElement *element)
 {
     double unused[PLY_ROLES];
-    if (!check_count(ply, element) || element->property_count == 0) return;
+    if (!ply_check_count(&ply->file, element) || element->property_count == 0) return;
     for (uint32_t i = 0; i < element->count && reader_ok(ply->reader); i++)
-        read_row(ply, element, unused);
+        ply_read_row(&ply->file, element, unused);
 }
 
 static void read_elements(Ply *ply)
 {
-    for (uint32_t i = 0; i < ply->element_count && reader_ok(ply->reader); i++) {
-        const PlyElement *element = &ply->element[i];
+    for (uint32_t i = 0; i < ply->file.element_count && reader_ok(ply->reader); i++) {
+        const PlyElement *element = &ply->file.element[i];
         bool segments = element->has[PLY_SEGMENTS];
         bool ends = element->has[PLY_VERTEX1] && element->has[PLY_VERTEX2];
         if (strcmp(element->name, "vertex") == 0 && !ply->vertices)
@@ -413,12 +164,11 @@ static void read_elements(Ply *ply)
 // Meshes are refused before their bytes are read.
 static void refuse_mesh(Ply *ply)
 {
-    for (uint32_t i = 0; i < ply->element_count && reader_ok(ply->reader); i++) {
-        const PlyElement *element = &ply->element[i];
+    for (uint32_t i = 0; i < ply->file.element_count && reader_ok(ply->reader); i++) {
+        const PlyElement *element = &ply->file.element[i];
         if (element->count &&
             (strcmp(element->name, "face") == 0 || strcmp(element->name, "tristrips") == 0))
-            reader_fail(ply->reader,
-                        "a mesh of %u faces, not hair: meshes are for --mesh, as Wavefront OBJ",
+            reader_fail(ply->reader, "a mesh of %u faces, not hair: a mesh stands behind --mesh",
                         element->count);
     }
 }
@@ -484,9 +234,9 @@ static void make_strands(Ply *ply)
     source->vertex_line = ply->line;
     for (uint32_t s = 0; s < strands && reader_ok(reader); s++) {
         uint32_t v = source->strands.first[s];
-        source->place[s] = ply->text ? ply->line[v] : ply->place[v];
+        source->place[s] = ply->file.text ? ply->line[v] : ply->place[v];
     }
-    if (!ply->text && ply->vertices->count > 1)
+    if (!ply->file.text && ply->vertices->count > 1)
         source->vertex_stride = (uint32_t)(ply->place[1] - ply->place[0]);
     ply->position = NULL;
     ply->color = NULL;
@@ -500,11 +250,16 @@ static Result read(FormatSource *source, Reader *reader)
     if (!ply) return reader_fail_memory(reader);
     ply->reader = reader;
     ply->source = source;
-    read_header(ply);
+    ply->file = (PlyFile){.reader = reader,
+                          .roles = ROLE_NAMES,
+                          .role_count = PLY_ROLES,
+                          .first_whole = PLY_SEGMENTS,
+                          .first_list = PLY_ROLES};
+    ply_read_header(&ply->file);
     refuse_mesh(ply);
     read_elements(ply);
     make_strands(ply);
-    if (reader_ok(reader) && !ply->text && reader_left(reader)) {
+    if (reader_ok(reader) && !ply->file.text && reader_left(reader)) {
         source->unread_at = reader->at;
         source->unread_bytes = reader_left(reader);
     }
@@ -522,9 +277,8 @@ static Result read(FormatSource *source, Reader *reader)
 // The first line is "ply"; the second one says which of the two rows.
 static bool match_kind(const Bytes *bytes, bool text)
 {
-    const char *at = (const char *)bytes->data;
-    if (bytes->size < 5 || memcmp(at, "ply", 3) != 0 || !strchr(" \t\r\n", at[3])) return false;
-    const char *word = strstr(at, "format");
+    if (!ply_matches(bytes)) return false;
+    const char *word = strstr((const char *)bytes->data, "format");
     bool ascii = word && strncmp(word + 6 + strspn(word + 6, " \t"), "ascii", 5) == 0;
     return ascii == text;
 }

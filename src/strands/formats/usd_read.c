@@ -4,8 +4,8 @@
 // invisible, abstract (class, over) or of purpose guide or proxy are left out and counted. What
 // would bring in other files or choose among versions (sublayers, references, variants, ...) is
 // refused, since passing over it would give other hair.
+#include "strands/formats/basis_curves.h"
 #include "strands/formats/format.h"
-#include "strands/formats/usd_curves.h"
 #include "strands/formats/usd_text.h"
 #include "strands/formats/usd_transform.h"
 #include "strands/formats/usd_write.h"
@@ -16,6 +16,11 @@
 #include <string.h>
 
 enum { DEEPEST = 64 };
+
+static const char *const USD_NAMES[CURVES_ARRAYS] = {
+    "curveVertexCounts", "widths",       "primvars:displayColor", "primvars:displayOpacity",
+    "primvars:st",       "primvars:st1", "primvars:thickness",    "primvars:mobility",
+    "primvars:section"};
 
 typedef struct UsdPrim {
     int parent; // -1: none
@@ -28,7 +33,7 @@ typedef struct Usd {
     FormatWishes wishes;
     UsdPrim *prim; // [prim_count]
     int prim_count;
-    UsdCurves *curves; // [curves_count] with points
+    BasisCurves *curves; // [curves_count] with points
     uint32_t curves_count, left_out, other_curves;
     float unit;
     double codes_per_second, frames_per_second; // 0: the file does not say
@@ -39,7 +44,7 @@ static const char FLATTEN[] = "expected one layer: usdcat --flatten FILE -o flat
 
 // --- Properties.
 
-static void read_samples(Usd *usd, UsdCurves *curves, UsdValues *only, bool points)
+static void read_samples(Usd *usd, BasisCurves *curves, UsdValues *only, bool points)
 {
     Reader *reader = usd->reader;
     double time, last = -INFINITY;
@@ -71,7 +76,7 @@ static void read_samples(Usd *usd, UsdCurves *curves, UsdValues *only, bool poin
     }
 }
 
-static void read_points(Usd *usd, UsdCurves *curves, bool samples)
+static void read_points(Usd *usd, BasisCurves *curves, bool samples)
 {
     if (curves->timed && !samples) { // samples win over the default
         usd_text_skip_value(usd->reader);
@@ -96,7 +101,7 @@ static void read_points(Usd *usd, UsdCurves *curves, bool samples)
 }
 
 // Returns which array the property is, or -1.
-static int read_curves_value(Usd *usd, UsdCurves *curves, const char *name, size_t length,
+static int read_curves_value(Usd *usd, BasisCurves *curves, const char *name, size_t length,
                              bool samples)
 {
     Reader *reader = usd->reader;
@@ -107,15 +112,15 @@ static int read_curves_value(Usd *usd, UsdCurves *curves, const char *name, size
     for (int i = 0; i < 3; ++i)
         if (strcmp(name, words[i].name) == 0) {
             usd_text_read_string(reader, words[i].text);
-            return USD_ARRAYS;
+            return CURVES_ARRAYS;
         }
     if (length == 6 && strncmp(name, "points", 6) == 0) {
         read_points(usd, curves, samples);
-        return USD_ARRAYS;
+        return CURVES_ARRAYS;
     }
-    for (int i = 0; i < USD_ARRAYS; ++i) {
-        size_t known = strlen(USD_ARRAY_NAMES[i]);
-        if (strncmp(name, USD_ARRAY_NAMES[i], known) != 0) continue;
+    for (int i = 0; i < CURVES_ARRAYS; ++i) {
+        size_t known = strlen(USD_NAMES[i]);
+        if (strncmp(name, USD_NAMES[i], known) != 0) continue;
         bool indices = strncmp(name + known, ":indices", 8) == 0;
         if (known != length && !(indices && known + 8 == length)) continue;
         UsdValues *to = indices ? &curves->indices[i] : &curves->array[i];
@@ -123,7 +128,7 @@ static int read_curves_value(Usd *usd, UsdCurves *curves, const char *name, size
             read_samples(usd, curves, to, false);
         else
             usd_text_read_values(reader, to);
-        return indices ? USD_ARRAYS : i;
+        return indices ? CURVES_ARRAYS : i;
     }
     return -1;
 }
@@ -134,7 +139,7 @@ static bool is_shown(const char *name, const char *word)
     return strcmp(word, "guide") != 0 && strcmp(word, "proxy") != 0;
 }
 
-static int read_property_value(Usd *usd, int prim, UsdCurves *curves, const char *name)
+static int read_property_value(Usd *usd, int prim, BasisCurves *curves, const char *name)
 {
     Reader *reader = usd->reader;
     size_t length = strcspn(name, ".");
@@ -181,7 +186,7 @@ static void read_rate(Reader *reader, char rate[16])
 }
 
 // "uniform token[] name = value (metadata)"; the name is the last word.
-static void read_property(Usd *usd, int prim, UsdCurves *curves, char name[USD_WORD_SIZE])
+static void read_property(Usd *usd, int prim, BasisCurves *curves, char name[USD_WORD_SIZE])
 {
     Reader *reader = usd->reader;
     int array = -1;
@@ -196,7 +201,7 @@ static void read_property(Usd *usd, int prim, UsdCurves *curves, char name[USD_W
     }
     if (usd_text_take(reader, '=')) array = read_property_value(usd, prim, curves, name);
     if (usd_text_peek(reader, true) != '(') return;
-    if (curves && array >= 0 && array < USD_ARRAYS)
+    if (curves && array >= 0 && array < CURVES_ARRAYS)
         read_rate(reader, curves->rate[array]);
     else
         usd_text_skip_value(reader);
@@ -228,7 +233,7 @@ static bool composes(const char *word)
 
 // What tractrix itself puts into customData, whether the prim is active, and what would compose it
 // with others; the rest is ignored.
-static void read_metadata(Usd *usd, int prim, UsdCurves *curves)
+static void read_metadata(Usd *usd, int prim, BasisCurves *curves)
 {
     Reader *reader = usd->reader;
     char word[USD_WORD_SIZE];
@@ -267,7 +272,7 @@ static void read_metadata(Usd *usd, int prim, UsdCurves *curves)
 
 // --- Prims.
 
-static void add_curves(Usd *usd, UsdCurves *curves)
+static void add_curves(Usd *usd, BasisCurves *curves)
 {
     Reader *reader = usd->reader;
     if (!reader_ok(reader) || curves->sample_count == 0 || curves->points[0].count == 0)
@@ -282,14 +287,14 @@ static void add_curves(Usd *usd, UsdCurves *curves)
         return;
     }
     if (instancer) reader_fail(reader, "curves of a PointInstancer are not read: %s", FLATTEN);
-    UsdCurves *more = realloc(usd->curves, ((size_t)usd->curves_count + 1) * sizeof *more);
+    BasisCurves *more = realloc(usd->curves, ((size_t)usd->curves_count + 1) * sizeof *more);
     if (!more) {
         reader_fail_memory(reader);
         return;
     }
     usd->curves = more;
     usd->curves[usd->curves_count++] = *curves;
-    *curves = (UsdCurves){0};
+    *curves = (BasisCurves){0};
 }
 
 static void read_prim(Usd *usd, const char *specifier, int parent, int depth);
@@ -299,7 +304,7 @@ static bool begins_prim(const char *word)
     return strcmp(word, "def") == 0 || strcmp(word, "over") == 0 || strcmp(word, "class") == 0;
 }
 
-static void read_body(Usd *usd, int prim, UsdCurves *curves, int depth)
+static void read_body(Usd *usd, int prim, BasisCurves *curves, int depth)
 {
     Reader *reader = usd->reader;
     usd_text_expect(reader, '{');
@@ -328,7 +333,7 @@ static int add_prim(Usd *usd, int parent)
 static void read_prim(Usd *usd, const char *specifier, int parent, int depth)
 {
     Reader *reader = usd->reader;
-    UsdCurves curves = {.line = reader->line};
+    BasisCurves curves = {.names = USD_NAMES, .line = reader->line};
     char type[USD_WORD_SIZE] = "", name[USD_WORD_SIZE];
     if (depth > DEEPEST) reader_fail(reader, "prims more than %d deep", DEEPEST);
     int prim = add_prim(usd, parent);
@@ -346,7 +351,7 @@ static void read_prim(Usd *usd, const char *specifier, int parent, int depth)
     if (usd_text_peek(reader, false) == '(') read_metadata(usd, prim, &curves);
     if (reader_ok(reader)) read_body(usd, prim, ours ? &curves : NULL, depth);
     if (ours) add_curves(usd, &curves);
-    usd_curves_destroy(&curves);
+    basis_curves_destroy(&curves);
 }
 
 // --- The layer.
@@ -424,7 +429,7 @@ static size_t gather_times(const Usd *usd, double *times)
 {
     size_t count = 0;
     for (uint32_t i = 0; i < usd->curves_count; ++i) {
-        const UsdCurves *curves = &usd->curves[i];
+        const BasisCurves *curves = &usd->curves[i];
         for (size_t k = 0; curves->timed && k < curves->sample_count; ++k, ++count)
             if (times) times[count] = curves->points[k].time;
         for (int p = curves->prim; p >= 0; p = usd->prim[p].parent)
@@ -500,24 +505,9 @@ static void place_all(const Usd *usd, const Strands *sets, double time, float (*
     for (uint32_t i = 0; i < usd->curves_count && reader_ok(usd->reader); ++i) {
         double matrix[4][4];
         find_matrix(usd, usd->curves[i].prim, time, matrix);
-        usd_curves_place(&usd->curves[i], &sets[i], time, matrix, to);
+        basis_curves_place(&usd->curves[i], &sets[i], time, matrix, to);
         to += sets[i].vertex_count;
     }
-}
-
-// Widths and the followers' radius grow with the transform: by the cube root of its volume.
-static void scale_widths(const Usd *usd, Strands *strands, uint32_t i, double time)
-{
-    double m[4][4];
-    find_matrix(usd, usd->curves[i].prim, time, m);
-    double volume = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-                    m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-                    m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-    double scale = cbrt(fabs(volume));
-    if (!reader_ok(usd->reader) || fabs(scale - 1) < 1e-9) return;
-    strands->follower_radius = (float)(strands->follower_radius * scale);
-    for (uint32_t v = 0; strands->vertex_thickness && v < strands->vertex_count; ++v)
-        strands->vertex_thickness[v] = (float)(strands->vertex_thickness[v] * scale);
 }
 
 static Result make_source(const Usd *usd, FormatSource *source, const Strands *sets)
@@ -567,14 +557,18 @@ static Result make_strands(Usd *usd, FormatSource *source, Strands *sets, Times 
     Reader *reader = usd->reader;
     uint32_t cubic = 0;
     for (uint32_t i = 0; i < usd->curves_count && reader_ok(reader); ++i) {
-        usd_curves_make(&usd->curves[i], reader, usd->wishes.points_per_strand, &sets[i]);
+        basis_curves_make(&usd->curves[i], reader, usd->wishes.points_per_strand, &sets[i]);
         cubic += strcmp(usd->curves[i].type, "linear") != 0;
     }
     if (!reader_ok(reader)) return reader->result;
     source->used_points = cubic > 0;
     TRY(find_times(usd, source, times));
-    for (uint32_t i = 0; i < usd->curves_count; ++i) scale_widths(usd, &sets[i], i, times->time[0]);
-    TRY(reader->result);
+    for (uint32_t i = 0; i < usd->curves_count; ++i) {
+        double matrix[4][4];
+        find_matrix(usd, usd->curves[i].prim, times->time[0], matrix);
+        TRY(reader->result);
+        basis_curves_scale(&sets[i], matrix);
+    }
     TRY(make_source(usd, source, sets));
     place_all(usd, sets, times->time[0], source->strands.position);
     source->samples = times->in_file;
@@ -601,7 +595,7 @@ static void note_choices(const Usd *usd, FormatSource *source)
 static void destroy(Usd *usd)
 {
     for (int i = 0; i < usd->prim_count; ++i) usd_transform_destroy(&usd->prim[i].transform);
-    for (uint32_t i = 0; i < usd->curves_count; ++i) usd_curves_destroy(&usd->curves[i]);
+    for (uint32_t i = 0; i < usd->curves_count; ++i) basis_curves_destroy(&usd->curves[i]);
     free(usd->prim);
     free(usd->curves);
 }

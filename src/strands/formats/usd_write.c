@@ -28,16 +28,16 @@ static void put_list(FILE *stream, const float *values, size_t count, int width,
     fputc(']', stream);
 }
 
-static size_t count_values(const Strands *strands, UsdRate rate)
+static size_t count_values(const Strands *strands, CurvesRate rate)
 {
-    return rate == USD_CONSTANT  ? 1
-           : rate == USD_UNIFORM ? strands->strand_count
-                                 : strands->vertex_count;
+    return rate == CURVES_CONSTANT  ? 1
+           : rate == CURVES_UNIFORM ? strands->strand_count
+                                    : strands->vertex_count;
 }
 
 // An attribute with its interpolation; nothing for NULL.
 static void put_primvar(UsdWriter *writer, const char *type_and_name, const float *values,
-                        UsdRate rate, int width, size_t stride)
+                        CurvesRate rate, int width, size_t stride)
 {
     static const char *const names[] = {"constant", "uniform", "vertex"};
     FILE *stream = writer->file.stream;
@@ -49,7 +49,7 @@ static void put_primvar(UsdWriter *writer, const char *type_and_name, const floa
 
 // --- What does not move.
 
-static void put_layer(FILE *stream, const UsdOptions *options)
+static void put_layer(FILE *stream, const CurvesOptions *options)
 {
     fprintf(stream, "#usda 1.0\n(\n    defaultPrim = \"Hair\"\n    doc = \"Tractrix\"\n");
     decimal_put(stream, "    metersPerUnit = ", (float)options->metres_per_unit);
@@ -73,11 +73,10 @@ static void put_wishes(FILE *stream, const Strands *strands)
     fprintf(stream, "\n            int followers = %u\n        }\n    }\n)", strands->followers);
 }
 
-static void put_sections(FILE *stream, const uint32_t *section, uint32_t count)
+static void put_groups(FILE *stream, const float *group, uint32_t count)
 {
-    if (!section) return;
     fprintf(stream, "    int[] primvars:section = [");
-    for (uint32_t s = 0; s < count; ++s) fprintf(stream, s ? ", %u" : "%u", section[s]);
+    for (uint32_t s = 0; s < count; ++s) fprintf(stream, s ? ", %.0f" : "%.0f", (double)group[s]);
     fprintf(stream, "] (\n        interpolation = \"uniform\"\n    )\n");
 }
 
@@ -89,7 +88,7 @@ static void put_sizes(FILE *stream, const Strands *strands)
     fprintf(stream, "]\n");
 }
 
-static void put_color(UsdWriter *writer, const float (*color)[4], UsdRate rate)
+static void put_color(UsdWriter *writer, const float (*color)[4], CurvesRate rate)
 {
     bool transparent = false;
     for (size_t i = 0; color && i < count_values(writer->strands, rate); ++i)
@@ -103,35 +102,39 @@ static void put_color(UsdWriter *writer, const float (*color)[4], UsdRate rate)
 static void put_attributes(UsdWriter *writer)
 {
     const Strands *strands = writer->strands;
-    const UsdLook *look = &writer->options.look;
+    const CurvesLook *look = &writer->options.look;
     uint32_t features = strands_features(strands);
     put_sizes(writer->file.stream, strands);
     put_primvar(writer, "float[] widths", look->width, look->width_rate, 1, 1);
     put_color(writer, look->color, look->color_rate);
     if (features & STRANDS_HAS_STRAND_UV)
-        put_primvar(writer, "texCoord2f[] primvars:st", strands->strand_uv[0], USD_UNIFORM, 2, 2);
+        put_primvar(writer, "texCoord2f[] primvars:st", strands->strand_uv[0], CURVES_UNIFORM, 2,
+                    2);
     if (features & STRANDS_HAS_VERTEX_UV)
-        put_primvar(writer, "texCoord2f[] primvars:st1", strands->vertex_uv[0], USD_VERTEX, 2, 2);
-    put_primvar(writer, "float[] primvars:thickness", strands->strand_thickness, USD_UNIFORM, 1, 1);
+        put_primvar(writer, "texCoord2f[] primvars:st1", strands->vertex_uv[0], CURVES_VERTEX, 2,
+                    2);
+    put_primvar(writer, "float[] primvars:thickness", strands->strand_thickness, CURVES_UNIFORM, 1,
+                1);
     if (features & STRANDS_HAS_MOBILITY)
-        put_primvar(writer, "float[] primvars:mobility", strands->mobility, USD_VERTEX, 1, 1);
-    put_sections(writer->file.stream, look->section, strands->strand_count);
+        put_primvar(writer, "float[] primvars:mobility", strands->mobility, CURVES_VERTEX, 1, 1);
+    if (features & STRANDS_HAS_GROUP)
+        put_groups(writer->file.stream, strands->strand_group, strands->strand_count);
 }
 
 // Writes all that does not move to the file, which goes over to the writer.
 static void begin(UsdWriter *writer, const OutFile *file, const Strands *strands,
-                  const UsdOptions *options)
+                  const CurvesOptions *options)
 {
     *writer = (UsdWriter){.file = *file, .strands = strands, .options = *options};
-    UsdLook *look = &writer->options.look;
+    CurvesLook *look = &writer->options.look;
     FILE *stream = writer->file.stream;
     if (!look->width && strands->vertex_thickness) {
         look->width = strands->vertex_thickness;
-        look->width_rate = USD_VERTEX;
+        look->width_rate = CURVES_VERTEX;
     }
     if (!look->color && strands->color) {
         look->color = (const float(*)[4])strands->color;
-        look->color_rate = USD_VERTEX;
+        look->color_rate = CURVES_VERTEX;
     }
     for (size_t i = 0; look->width && i < count_values(strands, look->width_rate); ++i)
         writer->half_width = fmaxf(writer->half_width, look->width[i] / 2);
@@ -144,7 +147,7 @@ static void begin(UsdWriter *writer, const OutFile *file, const Strands *strands
 }
 
 Result usd_writer_open(UsdWriter *writer, const char *path, const Strands *strands,
-                       const UsdOptions *options, Error *error)
+                       const CurvesOptions *options, Error *error)
 {
     OutFile file;
     *writer = (UsdWriter){0};
@@ -236,21 +239,10 @@ void usd_writer_discard(UsdWriter *writer)
     *writer = (UsdWriter){0};
 }
 
-Result usd_write_still(const char *path, const Strands *strands, const UsdOptions *options,
-                       Error *error)
-{
-    UsdWriter writer;
-    TRY(usd_writer_open(&writer, path, strands, options, error));
-    Result result = usd_writer_add(&writer, 0, (const float(*)[3])strands->position, error);
-    if (result == RESULT_OK) return usd_writer_finish(&writer, error);
-    usd_writer_discard(&writer);
-    return result;
-}
-
 Result usd_write_strands(OutFile *file, const Strands *strands, Error *error)
 {
     UsdWriter writer;
-    begin(&writer, file, strands, &(UsdOptions){.metres_per_unit = 1});
+    begin(&writer, file, strands, &(CurvesOptions){.metres_per_unit = 1});
     Result result = usd_writer_add(&writer, 0, (const float(*)[3])strands->position, error);
     if (result == RESULT_OK) put_extents(&writer);
     writer.file = (OutFile){0}; // the caller's

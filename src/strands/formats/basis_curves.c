@@ -1,36 +1,33 @@
 // SPDX-License-Identifier: MIT
-#include "strands/formats/usd_curves.h"
+#include "strands/formats/basis_curves.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-const char *const USD_ARRAY_NAMES[USD_ARRAYS] = {
-    "curveVertexCounts", "widths",       "primvars:displayColor", "primvars:displayOpacity",
-    "primvars:st",       "primvars:st1", "primvars:thickness",    "primvars:mobility"};
-const uint32_t USD_ARRAY_WIDTHS[USD_ARRAYS] = {1, 1, 3, 1, 2, 2, 1, 1};
+const uint32_t CURVES_WIDTHS[CURVES_ARRAYS] = {1, 1, 3, 1, 2, 2, 1, 1, 1};
 
-void usd_curves_destroy(UsdCurves *curves)
+void basis_curves_destroy(BasisCurves *curves)
 {
-    for (int i = 0; i < USD_ARRAYS; ++i) {
+    for (int i = 0; i < CURVES_ARRAYS; ++i) {
         free(curves->array[i].value);
         free(curves->indices[i].value);
     }
     for (size_t i = 0; i < curves->sample_count; ++i) free(curves->points[i].value);
     free(curves->points);
-    *curves = (UsdCurves){0};
+    *curves = (BasisCurves){0};
 }
 
 // --- Where a strand's vertices lie among a curve's control points.
 
 typedef enum Basis { BASIS_LINEAR, BASIS_BEZIER, BASIS_BSPLINE, BASIS_CATMULL_ROM } Basis;
 
-static bool is_pinned(const UsdCurves *curves)
+static bool is_pinned(const BasisCurves *curves)
 {
     return strcmp(curves->wrap, "pinned") == 0;
 }
 
-static Basis basis_of(const UsdCurves *curves)
+static Basis basis_of(const BasisCurves *curves)
 {
     if (strcmp(curves->type, "linear") == 0) return BASIS_LINEAR;
     if (strcmp(curves->basis, "bspline") == 0) return BASIS_BSPLINE;
@@ -38,7 +35,7 @@ static Basis basis_of(const UsdCurves *curves)
 }
 
 // Segments of a curve of `count` control points; 0: there can be no such curve.
-static uint32_t count_segments(const UsdCurves *curves, uint32_t count)
+static uint32_t count_segments(const BasisCurves *curves, uint32_t count)
 {
     Basis basis = basis_of(curves);
     if (basis == BASIS_LINEAR) return count ? count - 1 : 0;
@@ -48,12 +45,13 @@ static uint32_t count_segments(const UsdCurves *curves, uint32_t count)
 }
 
 // Vertices of the strand.
-static uint32_t count_vertices(const UsdCurves *curves, uint32_t count, uint32_t per_strand)
+static uint32_t count_vertices(const BasisCurves *curves, uint32_t count, uint32_t per_strand)
 {
     Basis basis = basis_of(curves);
     if (basis == BASIS_LINEAR) return count;
     if (per_strand) return per_strand;
-    return count_segments(curves, count) * (basis == BASIS_BEZIER ? 4 : 2) + 1;
+    uint32_t each = curves->per_segment ? curves->per_segment : basis == BASIS_BEZIER ? 4 : 2;
+    return count_segments(curves, count) * each + 1;
 }
 
 // A vertex as a sum of 4 control points (numbers within the curve), and its place by segments.
@@ -79,7 +77,7 @@ static void find_weights(Basis basis, double t, double w[4])
 
 // Vertex j of n on a curve of `count` points. Pinned curves have a point in front of the first one,
 // 2 p0 - p1, and one behind the last, likewise; their weights go to the points that make them.
-static Blend blend_at(const UsdCurves *curves, uint32_t count, uint32_t j, uint32_t n)
+static Blend blend_at(const BasisCurves *curves, uint32_t count, uint32_t j, uint32_t n)
 {
     Blend blend = {{0}, {0}, 0};
     Basis basis = basis_of(curves);
@@ -105,10 +103,16 @@ static Blend blend_at(const UsdCurves *curves, uint32_t count, uint32_t j, uint3
 
 // --- Attributes.
 
-static void fail_count(Reader *reader, const UsdCurves *curves, int array)
+// Messages of text name the line of what is wrong; of binary files the reader stands at the curves.
+static void stand_at(Reader *reader, uint32_t line)
 {
-    reader->line = curves->array[array].line;
-    reader_fail(reader, "%s: %zu numbers for these curves", USD_ARRAY_NAMES[array],
+    if (reader->line) reader->line = line;
+}
+
+static void fail_count(Reader *reader, const BasisCurves *curves, int array)
+{
+    stand_at(reader, curves->array[array].line);
+    reader_fail(reader, "%s: %zu numbers for these curves", curves->names[array],
                 curves->array[array].count);
 }
 
@@ -118,9 +122,9 @@ typedef struct Counts {
     uint64_t of[RATES]; // values of each rate
 } Counts;
 
-static Counts count_rates(const UsdCurves *curves)
+static Counts count_rates(const BasisCurves *curves)
 {
-    const UsdValues *counts = &curves->array[USD_COUNTS];
+    const UsdValues *counts = &curves->array[CURVES_COUNTS];
     Counts rates = {{1, counts->count, 0, 0}};
     for (size_t s = 0; s < counts->count; ++s) {
         uint32_t count = (uint32_t)counts->value[s];
@@ -131,12 +135,12 @@ static Counts count_rates(const UsdCurves *curves)
 }
 
 // As the file says, if the number of values fits; else as the number shows.
-static Rate find_rate(const UsdCurves *curves, int array, const Counts *counts)
+static Rate find_rate(const BasisCurves *curves, int array, const Counts *counts)
 {
     static const char *const names[RATES] = {"constant", "uniform", "varying", "vertex"};
     static const Rate guesses[] = {RATE_VERTEX, RATE_UNIFORM, RATE_VARYING, RATE_CONSTANT};
-    size_t count = curves->array[array].count / USD_ARRAY_WIDTHS[array];
-    if (curves->array[array].count % USD_ARRAY_WIDTHS[array]) return RATES;
+    size_t count = curves->array[array].count / CURVES_WIDTHS[array];
+    if (curves->array[array].count % CURVES_WIDTHS[array]) return RATES;
     for (int rate = 0; rate < RATES; ++rate)
         if (strcmp(curves->rate[array], names[rate]) == 0 && counts->of[rate] == count)
             return (Rate)rate;
@@ -146,11 +150,11 @@ static Rate find_rate(const UsdCurves *curves, int array, const Counts *counts)
 }
 
 // The value at a vertex; `cv`, `varying`: numbers of the curve's first ones.
-static void value_at(const UsdCurves *curves, int array, Rate rate, uint32_t s, const Blend *blend,
-                     const uint64_t start[RATES], float *to)
+static void value_at(const BasisCurves *curves, int array, Rate rate, uint32_t s,
+                     const Blend *blend, const uint64_t start[RATES], float *to)
 {
     const float *values = curves->array[array].value;
-    uint32_t width = USD_ARRAY_WIDTHS[array];
+    uint32_t width = CURVES_WIDTHS[array];
     if (rate == RATE_CONSTANT || rate == RATE_UNIFORM) {
         memcpy(to, values + (rate == RATE_UNIFORM ? s : 0) * (size_t)width, width * sizeof *to);
         return;
@@ -171,10 +175,10 @@ static void value_at(const UsdCurves *curves, int array, Rate rate, uint32_t s, 
 }
 
 // Values for each vertex; NULL if there are none, or after failing.
-static float *spread(Reader *reader, const UsdCurves *curves, int array, const Strands *strands)
+static float *spread(Reader *reader, const BasisCurves *curves, int array, const Strands *strands)
 {
     const UsdValues *values = &curves->array[array];
-    uint32_t width = USD_ARRAY_WIDTHS[array];
+    uint32_t width = CURVES_WIDTHS[array];
     if (!values->line || values->count == 0 || !reader_ok(reader)) return NULL;
     Counts counts = count_rates(curves);
     Rate rate = find_rate(curves, array, &counts);
@@ -186,7 +190,7 @@ static float *spread(Reader *reader, const UsdCurves *curves, int array, const S
     if (!to) reader_fail_memory(reader);
     uint64_t start[RATES] = {0};
     for (uint32_t s = 0; to && s < strands->strand_count; ++s) {
-        uint32_t count = (uint32_t)curves->array[USD_COUNTS].value[s];
+        uint32_t count = (uint32_t)curves->array[CURVES_COUNTS].value[s];
         uint32_t first = strands->first[s], n = strands_size(strands, s);
         for (uint32_t j = 0; j < n; ++j) {
             Blend blend = blend_at(curves, count, j, n);
@@ -199,11 +203,11 @@ static float *spread(Reader *reader, const UsdCurves *curves, int array, const S
 }
 
 // Values for each strand: of uniform or constant ones. NULL for others.
-static float *spread_strands(Reader *reader, const UsdCurves *curves, int array,
+static float *spread_strands(Reader *reader, const BasisCurves *curves, int array,
                              const Strands *strands)
 {
     const UsdValues *values = &curves->array[array];
-    uint32_t width = USD_ARRAY_WIDTHS[array];
+    uint32_t width = CURVES_WIDTHS[array];
     if (!values->line || values->count == 0 || !reader_ok(reader)) return NULL;
     Counts counts = count_rates(curves);
     Rate rate = find_rate(curves, array, &counts);
@@ -219,10 +223,10 @@ static float *spread_strands(Reader *reader, const UsdCurves *curves, int array,
     return to;
 }
 
-static void set_colors(Reader *reader, const UsdCurves *curves, Strands *strands)
+static void set_colors(Reader *reader, const BasisCurves *curves, Strands *strands)
 {
-    float *color = spread(reader, curves, USD_COLOR, strands);
-    float *opacity = spread(reader, curves, USD_OPACITY, strands);
+    float *color = spread(reader, curves, CURVES_COLOR, strands);
+    float *opacity = spread(reader, curves, CURVES_OPACITY, strands);
     bool any = color || opacity;
     if (any) strands->color = malloc(((size_t)strands->vertex_count + 1) * sizeof *strands->color);
     if (any && !strands->color) reader_fail_memory(reader);
@@ -235,25 +239,26 @@ static void set_colors(Reader *reader, const UsdCurves *curves, Strands *strands
 }
 
 // Texture coordinates of strands or vertices.
-static void set_texture(Reader *reader, const UsdCurves *curves, Strands *strands)
+static void set_texture(Reader *reader, const BasisCurves *curves, Strands *strands)
 {
     Counts counts = count_rates(curves);
-    Rate rate = find_rate(curves, USD_ST, &counts);
+    Rate rate = find_rate(curves, CURVES_ST, &counts);
     bool vertices = rate == RATE_VERTEX || rate == RATE_VARYING;
-    float *st = (vertices ? spread : spread_strands)(reader, curves, USD_ST, strands);
+    float *st = (vertices ? spread : spread_strands)(reader, curves, CURVES_ST, strands);
     memcpy(vertices ? (void *)&strands->vertex_uv : (void *)&strands->strand_uv, &st, sizeof st);
     if (vertices) return;
-    float *st1 = spread(reader, curves, USD_ST1, strands);
+    float *st1 = spread(reader, curves, CURVES_ST1, strands);
     memcpy(&strands->vertex_uv, &st1, sizeof st1);
 }
 
-static void set_attributes(Reader *reader, const UsdCurves *curves, Strands *strands)
+static void set_attributes(Reader *reader, const BasisCurves *curves, Strands *strands)
 {
-    strands->vertex_thickness = spread(reader, curves, USD_WIDTHS, strands);
+    strands->vertex_thickness = spread(reader, curves, CURVES_DIAMETERS, strands);
     set_colors(reader, curves, strands);
     set_texture(reader, curves, strands);
-    strands->strand_thickness = spread_strands(reader, curves, USD_THICKNESS, strands);
-    strands->mobility = spread(reader, curves, USD_MOBILITY, strands);
+    strands->strand_thickness = spread_strands(reader, curves, CURVES_THICKNESS, strands);
+    strands->mobility = spread(reader, curves, CURVES_MOBILITY, strands);
+    strands->strand_group = spread_strands(reader, curves, CURVES_GROUP, strands);
     strands->followers = (uint32_t)(curves->followers > 0 ? fminf(curves->followers, 4e9f) : 0);
     strands->follower_radius = curves->follower_radius;
     strands->both_ends_fixed = curves->both_ends_fixed != 0;
@@ -261,11 +266,11 @@ static void set_attributes(Reader *reader, const UsdCurves *curves, Strands *str
 
 // --- Indices: values are written once, and named by number.
 
-static void expand(Reader *reader, UsdCurves *curves, int array)
+static void expand(Reader *reader, BasisCurves *curves, int array)
 {
     UsdValues *values = &curves->array[array];
     const UsdValues *indices = &curves->indices[array];
-    uint32_t width = USD_ARRAY_WIDTHS[array];
+    uint32_t width = CURVES_WIDTHS[array];
     size_t count = values->count / width;
     if (!indices->line || !reader_ok(reader)) return;
     float *all = malloc(indices->count * width * sizeof *all + 1);
@@ -273,9 +278,9 @@ static void expand(Reader *reader, UsdCurves *curves, int array)
     for (size_t i = 0; all && i < indices->count; ++i) {
         float index = indices->value[i];
         if (!(index >= 0 && index < (float)count && index == floorf(index))) {
-            reader->line = indices->line;
-            reader_fail(reader, "%s:indices: %g of %zu values", USD_ARRAY_NAMES[array],
-                        (double)index, count);
+            stand_at(reader, indices->line);
+            reader_fail(reader, "%s:indices: %g of %zu values", curves->names[array], (double)index,
+                        count);
             break;
         }
         memcpy(all + i * width, values->value + (size_t)index * width, width * sizeof *all);
@@ -290,12 +295,12 @@ static void expand(Reader *reader, UsdCurves *curves, int array)
 
 // --- Strands.
 
-static void check_kind(Reader *reader, const UsdCurves *curves)
+static void check_kind(Reader *reader, const BasisCurves *curves)
 {
     bool cubic = !*curves->type || strcmp(curves->type, "cubic") == 0;
     bool known = !*curves->basis || strcmp(curves->basis, "bezier") == 0 ||
                  strcmp(curves->basis, "bspline") == 0 || strcmp(curves->basis, "catmullRom") == 0;
-    reader->line = curves->line;
+    stand_at(reader, curves->line);
     if (!cubic && strcmp(curves->type, "linear") != 0)
         reader_fail(reader, "curves of type %.40s: expected linear or cubic", curves->type);
     if (cubic && !known)
@@ -306,28 +311,28 @@ static void check_kind(Reader *reader, const UsdCurves *curves)
 }
 
 // Counts the vertices that the curves make, and checks that each curve can be one.
-static uint64_t check_sizes(Reader *reader, const UsdCurves *curves, uint32_t per_strand)
+static uint64_t check_sizes(Reader *reader, const BasisCurves *curves, uint32_t per_strand)
 {
-    const UsdValues *counts = &curves->array[USD_COUNTS];
+    const UsdValues *counts = &curves->array[CURVES_COUNTS];
     uint64_t points = curves->points[0].count / 3, used = 0, vertices = 0;
-    reader->line = curves->points[0].line;
+    stand_at(reader, curves->points[0].line);
     if (curves->points[0].count % 3)
         reader_fail(reader, "points: %zu numbers for these curves", curves->points[0].count);
     for (size_t s = 0; s < counts->count && reader_ok(reader); ++s) {
         float size = counts->value[s];
         if (!(size >= 0 && size <= (float)points && size == floorf(size))) {
-            fail_count(reader, curves, USD_COUNTS);
+            fail_count(reader, curves, CURVES_COUNTS);
             break;
         }
         uint32_t count = (uint32_t)size;
-        reader->line = counts->line;
+        stand_at(reader, counts->line);
         if (basis_of(curves) != BASIS_LINEAR && !count_segments(curves, count))
             reader_fail(reader, "a cubic curve of %u points", count);
         used += count;
         vertices += count_vertices(curves, count, per_strand);
     }
     for (size_t i = 0; i < curves->sample_count && reader_ok(reader); ++i) {
-        reader->line = curves->points[i].line;
+        stand_at(reader, curves->points[i].line);
         if (curves->points[i].count != 3 * used)
             reader_fail(reader, "points: %zu numbers for these curves", curves->points[i].count);
     }
@@ -336,15 +341,15 @@ static uint64_t check_sizes(Reader *reader, const UsdCurves *curves, uint32_t pe
     return vertices;
 }
 
-void usd_curves_make(UsdCurves *curves, Reader *reader, uint32_t per_strand, Strands *strands)
+void basis_curves_make(BasisCurves *curves, Reader *reader, uint32_t per_strand, Strands *strands)
 {
-    const UsdValues *counts = &curves->array[USD_COUNTS];
+    const UsdValues *counts = &curves->array[CURVES_COUNTS];
     uint32_t line = reader->line;
     *strands = (Strands){0};
     check_kind(reader, curves);
     if (!reader_ok(reader)) return;
     uint64_t vertices = check_sizes(reader, curves, per_strand);
-    for (int i = USD_WIDTHS; i < USD_ARRAYS; ++i) expand(reader, curves, i);
+    for (int i = CURVES_DIAMETERS; i < CURVES_ARRAYS; ++i) expand(reader, curves, i);
     if (!reader_ok(reader)) return;
     if (strands_create(strands, (uint32_t)counts->count, (uint32_t)vertices, NULL) != RESULT_OK) {
         reader_fail_memory(reader);
@@ -354,13 +359,13 @@ void usd_curves_make(UsdCurves *curves, Reader *reader, uint32_t per_strand, Str
         strands->first[s + 1] =
             strands->first[s] + count_vertices(curves, (uint32_t)counts->value[s], per_strand);
     set_attributes(reader, curves, strands);
-    if (reader_ok(reader)) reader->line = line;
+    if (reader_ok(reader)) stand_at(reader, line);
 }
 
 // --- Points.
 
 // The two samples around a time, and how far behind the first one it is.
-static double find_samples(const UsdCurves *curves, double time, const float **a, const float **b)
+static double find_samples(const BasisCurves *curves, double time, const float **a, const float **b)
 {
     size_t next = 0, last = curves->sample_count - 1;
     while (next < last && curves->points[next].time < time) ++next;
@@ -379,8 +384,8 @@ static bool is_identity(double m[4][4])
     return true;
 }
 
-void usd_curves_place(const UsdCurves *curves, const Strands *strands, double time,
-                      double matrix[4][4], float (*to)[3])
+void basis_curves_place(const BasisCurves *curves, const Strands *strands, double time,
+                        double matrix[4][4], float (*to)[3])
 {
     const float *a, *b;
     double share =
@@ -388,7 +393,8 @@ void usd_curves_place(const UsdCurves *curves, const Strands *strands, double ti
     bool still = is_identity(matrix), linear = basis_of(curves) == BASIS_LINEAR;
     size_t start = 0;
     for (uint32_t s = 0; s < strands->strand_count; ++s) {
-        uint32_t count = (uint32_t)curves->array[USD_COUNTS].value[s], n = strands_size(strands, s);
+        uint32_t count = (uint32_t)curves->array[CURVES_COUNTS].value[s],
+                 n = strands_size(strands, s);
         for (uint32_t j = 0; j < n; ++j) {
             Blend blend = blend_at(curves, count, j, n);
             double p[3] = {0, 0, 0};
@@ -408,4 +414,16 @@ void usd_curves_place(const UsdCurves *curves, const Strands *strands, double ti
         }
         start += count;
     }
+}
+
+void basis_curves_scale(Strands *strands, double m[4][4])
+{
+    double volume = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                    m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                    m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+    double scale = cbrt(fabs(volume));
+    if (fabs(scale - 1) < 1e-9) return;
+    strands->follower_radius = (float)(strands->follower_radius * scale);
+    for (uint32_t v = 0; strands->vertex_thickness && v < strands->vertex_count; ++v)
+        strands->vertex_thickness[v] = (float)(strands->vertex_thickness[v] * scale);
 }

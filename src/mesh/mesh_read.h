@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: MIT
+// Reads a mesh that does not move: Wavefront OBJ or PLY, by its content. Polygons become fans.
+#pragma once
+
+#include "mesh/mesh.h"
+
+// `unit` is metres per unit of the file, > 0; `up_z`: (x, y, z) -> (x, z, -y). RESULT_BAD_INPUT
+// with path and place for anything malformed, a number that is not finite, a file without faces,
+// and for hair, which is said; RESULT_FAILED when memory is short.
+Result mesh_read(Mesh *mesh, const char *path, float unit, bool up_z, Error *error);
