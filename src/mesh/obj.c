@@ -209,7 +209,8 @@ static void read_statements(Obj *obj)
         if (statement == OBJ_FACE) read_face(obj);
         reader_skip_line(reader);
     }
-    if (reader_ok(reader) && obj->triangles[0].count == 0) reader_fail(reader, "no faces: expected a mesh; hair stands alone, not behind --mesh");
+    if (reader_ok(reader) && obj->triangles[0].count == 0)
+        reader_fail(reader, "no faces: expected a mesh; hair stands alone, not behind --mesh");
     for (int kind = 0; kind < KIND_COUNT && reader_ok(reader); kind++) {
         if (obj->largest[kind] <= obj->vectors[kind].count) continue;
         reader->line = obj->largest_at[kind];

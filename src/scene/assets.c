@@ -3,8 +3,8 @@
 #include "base/quote.h"
 
 #include "base/activity.h"
-#include "mesh/mesh_sequence.h"
 #include "mesh/mesh_read.h"
+#include "mesh/mesh_sequence.h"
 #include "strands/paint.h"
 #include "strands/strands_edit.h"
 
@@ -12,7 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static StrandsReadOptions read_options(const Scene *scene, const Section *section)
+    static StrandsReadOptions
+    read_options(const Scene *scene, const Section *section)
 {
     return (StrandsReadOptions){
         .unit = section->params.unit.automatic ? 0 : section->params.unit.value,

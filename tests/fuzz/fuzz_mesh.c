@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Meshes of Wavefront OBJ, and meshes over time of Alembic.
 #include "fuzz/fuzz.h"
-#include "mesh/mesh_sequence.h"
 #include "mesh/mesh_read.h"
+#include "mesh/mesh_sequence.h"
 #include "mesh/obj.h"
 
 #include <math.h>

@@ -149,13 +149,15 @@ static void malformed_text_is_refused_with_its_line(void **state)
         const char *text, *message;
     } cases[] = {
         {"", "FILE: byte 0: the file is empty"},
-        {"hello\n", "FILE: byte 0: not a hair file: expected USD (.usda), HAIR, Wavefront lines, "
+        {"hello\n", "FILE: byte 0: not a hair file: expected USD (.usda), Alembic (.abc), HAIR, "
+                    "Wavefront lines, "
                     "TressFX 4 binary, TressFX 3 binary, TressFX 2 text, USC-HairSalon (.data), "
                     "PLY strands, PLY strands as text, numpy arrays (.npz), numpy array (.npy) or "
                     "CT2Hair (.bin)"},
         {"PXR-USDC",
          "FILE: byte 0: not supported: binary USD (.usdc): convert it: blender -b --python "
-         "blender_hair.py -- export FILE -o x.npz (or usdcat FILE -o x.usda)"},
+         "scripts/blender_hair.py (installed: /usr/share/tractrix/blender_hair.py) -- export FILE "
+         "-o x.npz (or usdcat FILE -o x.usda)"},
         {"numStrands", "FILE:1: expected the number of strands, got the end of the file"},
         {"numStrands x\n", "FILE:1: expected the number of strands, got 'x'"},
         {"numStrands -1\n", "FILE:1: expected the number of strands, got '-1'"},

@@ -98,7 +98,9 @@ static void read_statements(Obj *obj)
 static Result make_room(Obj *obj)
 {
     Reader *reader = obj->reader;
-    if (obj->lines == 0) return reader_fail(reader, "a Wavefront file without lines (l), not hair: a mesh stands behind --mesh");
+    if (obj->lines == 0)
+        return reader_fail(
+            reader, "a Wavefront file without lines (l), not hair: a mesh stands behind --mesh");
     if (obj->vertices >= UINT32_MAX || obj->lines >= UINT32_MAX)
         return reader_fail(reader, "more vertices or lines than 32-bit indices hold");
     TRY(format_source_create(obj->source, reader, (uint32_t)obj->lines, obj->corners));
