@@ -12,8 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-    static StrandsReadOptions
-    read_options(const Scene *scene, const Section *section)
+static StrandsReadOptions read_options(const Scene *scene, const Section *section)
 {
     return (StrandsReadOptions){
         .unit = section->params.unit.automatic ? 0 : section->params.unit.value,
