@@ -100,6 +100,8 @@ static void put_roff(FILE *stream, const char *text)
     for (; *text; text++) {
         if (*text == '\\')
             fputs("\\e", stream);
+        else if (*text == '|')
+            fputs("|\\:", stream); // lists of words may break there
         else if (*text == '-')
             fputs("\\-", stream);
         else
