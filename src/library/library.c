@@ -21,13 +21,13 @@ TractrixResult library_end(Result result, const Error *error, TractrixError *to)
 
 TractrixResult library_refuse(TractrixError *to, const char *format, ...)
 {
-    char text[sizeof to->text];
+    TractrixError told;
     Error error;
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    vsnprintf(told.text, sizeof told.text, format, arguments);
     va_end(arguments);
-    error_set(&error, RESULT_USAGE, "%s", text);
+    error_set(&error, RESULT_USAGE, "%s", told.text);
     return library_end(RESULT_USAGE, &error, to);
 }
 

@@ -32,10 +32,10 @@ typedef struct Exporter {
 // (with export_followers: and the followers) of all sections in the order in which they were read,
 // in metres with y up, and of texture coordinates, colours and so on what all sections have; of
 // several sections each is a group. USD and Alembic also have the sections' widths and colours, and
-// all frames in one file, as .npz does, which keeps them in memory until the end. `frame_count`: how many will come; a name without a number takes one
-// otherwise. All arguments outlive the exporter. RESULT_USAGE for the name, RESULT_FAILED if no
-// file can be made there or memory is short. A zeroed struct may be destroyed; destroying discards
-// a file that is not finished.
+// all frames in one file, as .npz does, which keeps them in memory until the end. `frame_count`:
+// how many will come; a name without a number takes one otherwise. All arguments outlive the
+// exporter. RESULT_USAGE for the name, RESULT_FAILED if no file can be made there or memory is
+// short. A zeroed struct may be destroyed; destroying discards a file that is not finished.
 Result exporter_create(Exporter *exporter, const char *text, int frame_count,
                        const Simulation *simulation, const Strands *strands, Error *error);
 void exporter_destroy(Exporter *exporter);
