@@ -3,12 +3,12 @@
 // a head bone, and the host draws it as lines from a buffer of its own.
 //   cc game_loop.c -o game_loop $(pkg-config --cflags --libs tractrix epoxy egl) -lm
 //   ./game_loop HAIR PICTURE.png
-#include <epoxy/egl.h>
-#include <epoxy/gl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <tractrix.h>
+
+#include "host_context.h"
 
 enum { WIDTH = 640, HEIGHT = 480, FRAMES = 30 };
 
@@ -22,22 +22,11 @@ static void need(int good, const char *what)
 }
 #define HAIR(call) need((call) == TRACTRIX_OK, error.text)
 
-// A window's work; here without one.
-static void make_context(void)
-{
-    static const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 3,
-                                     EGL_NONE};
-    EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, NULL, NULL);
-    need(display && eglInitialize(display, NULL, NULL) && eglBindAPI(EGL_OPENGL_API), "no EGL");
-    EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, version);
-    need(eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context), "no OpenGL 4.3");
-}
-
 static GLuint make_program(void)
 {
     static const char *const texts[] = {
         "#version 430\nlayout(location = 0) in vec4 p; out float y;\n"
-        "void main() { y = p.y; gl_Position = vec4(p.x * 4.5, p.y * 6.0, -p.z, 1.5 - p.z); }",
+        "void main() { y = p.y; gl_Position = vec4(p.x * 4.5, -p.y * 6.0, -p.z, 1.5 - p.z); }",
         "#version 430\nin float y; out vec4 color;\n"
         "void main() { color = vec4(0.75, 0.5 + y, 0.3, 1); }"};
     GLuint program = glCreateProgram();
@@ -54,7 +43,7 @@ static GLuint make_program(void)
 int main(int argc, char **argv)
 {
     need(argc == 3, "expected HAIR PICTURE.png");
-    make_context();
+    need(host_context(WIDTH, HEIGHT), "no OpenGL 4.3");
     GLuint program = make_program(), color, target, buffer, array;
     glGenTextures(1, &color), glBindTexture(GL_TEXTURE_2D, color);
     glTexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA8, WIDTH, HEIGHT);
@@ -88,11 +77,9 @@ int main(int argc, char **argv)
         glMultiDrawArrays(GL_LINE_STRIP, first, (const GLsizei *)hair.sizes,
                           (GLsizei)hair.strand_count);
     }
-    static uint8_t pixels[HEIGHT][WIDTH][4], flipped[HEIGHT][WIDTH][4];
-    glReadPixels(0, 0, WIDTH, HEIGHT, GL_RGBA, GL_UNSIGNED_BYTE, pixels); // bottom row first
-    for (int y = 0; y < HEIGHT * WIDTH * 4; ++y)
-        flipped[0][0][y] = pixels[HEIGHT - 1 - y / (WIDTH * 4)][0][y % (WIDTH * 4)];
-    TractrixImage image = {sizeof image, WIDTH, HEIGHT, TRACTRIX_RGBA8, 0, flipped};
+    static uint8_t pixels[HEIGHT][WIDTH][4]; // the shader has turned them: top row first
+    glReadPixels(0, 0, WIDTH, HEIGHT, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
+    TractrixImage image = {sizeof image, WIDTH, HEIGHT, TRACTRIX_RGBA8, 0, pixels};
     HAIR(tractrix_image_write(&image, argv[2], &error));
     return 0;
 }

@@ -21,6 +21,17 @@ is_png "$work/game.png"
 # More than the background: PNG packs an even picture into some kB.
 holds test "$(wc -c <"$work/game.png")" -gt 8000
 
+claim "the same in the context of a window, by GLX"
+if pkg-config --exists glfw3 && command -v xvfb-run >/dev/null; then
+    # shellcheck disable=SC2046 # words
+    holds cc -DWINDOW -Wall -Wextra -Werror -o "$work/game_window" examples/library/game_loop.c -Isrc/library -L"$bin/lib" -ltractrix \
+        $(pkg-config --libs epoxy glfw3) -lm
+    holds xvfb-run -a "$work/game_window" assets/bob.tfx "$work/window.png"
+    same_images "$work/game.png" "$work/window.png"
+else
+    skip "no GLFW or no Xvfb"
+fi
+
 claim "grooms are one array of the expected size and a picture each"
 mkdir "$work/data"
 holds "$work/grooms" "$work/data" 2
