@@ -264,10 +264,12 @@ Result outfile_start(Claim *claim, Error *error)
     OutFile *file = malloc(sizeof *file);
     if (!file) return fail_to_write(claim->before, ENOMEM, error);
     Result result = open_new(file, claim->before, 0777, error);
-    if (result == RESULT_OK && file->temporary)
-        claim->started = file;
-    else
-        free(file);
+    if (result == RESULT_OK && !outfile_is_stdout(claim->before)) {
+        claim->started = file; // a pipe, too: its reader would take a close for the end
+        return RESULT_OK;
+    }
+    if (result == RESULT_OK) outfile_discard(file);
+    free(file);
     return result;
 }
 
@@ -276,7 +278,7 @@ void outfile_end(void)
     for (Claim *claim = claims_next(NULL); claim; claim = claims_next(claim)) {
         OutFile *file = claim->started;
         if (!file) continue;
-        unlinkat(file->place.folder, file->temporary, 0);
+        if (file->temporary) unlinkat(file->place.folder, file->temporary, 0);
         place_unmake(&file->place);
         outfile_discard(file);
         free(file);

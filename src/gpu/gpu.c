@@ -296,12 +296,14 @@ Result gpu_create(Gpu *gpu, const GpuOptions *options, Error *error)
 // libepoxy ends the program if it is called without a context.
 Result gpu_borrow(Gpu *gpu, Error *error)
 {
+    Assumptions assumptions;
     *gpu = (Gpu){0};
     snprintf(gpu->path, sizeof gpu->path, "borrowed");
+    TRY(assumptions_read(&assumptions, error));
     TRY(gpu_current_check(error));
     gpu_error_forget();
     TRY(read_limits(gpu, error));
-    assume(gpu, &(Assumptions){0});
+    assume(gpu, &assumptions);
     return use_uniforms(gpu, error);
 }
 

@@ -28,7 +28,7 @@ static void look(Seen *seen, const Image *image, const Image *hair)
 {
     const float *pixel = pixels_of(image), *share = pixels_of(hair);
     size_t count = (size_t)image->width * (size_t)image->height;
-    for (size_t i = 0; i < count; ++i, pixel += 4, share += 4) {
+    for (size_t i = 0; i < count; ++i, pixel += 4, share += hair->channels) {
         if (!(pixel[3] > 0.5f)) continue;
         float light = (0.2126f * pixel[0] + 0.7152f * pixel[1] + 0.0722f * pixel[2]) / pixel[3];
         seen->light[seen->count++] = light;
@@ -69,7 +69,7 @@ Result meter_exposure(float *exposure, const Image *image, const Image *hair, To
                       Error *error)
 {
     assert(image->kind == IMAGE_FLOAT && image->channels == 4);
-    assert(hair->kind == IMAGE_FLOAT && hair->channels == 4);
+    assert(hair->kind == IMAGE_FLOAT);
     assert(hair->width == image->width && hair->height == image->height);
     size_t count = (size_t)image->width * (size_t)image->height;
     float *light = malloc(2 * count * sizeof *light + 1);

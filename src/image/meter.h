@@ -7,8 +7,8 @@
 
 // The exposure (EV) that shows hair of the colour METER_GREY as just that. `image` is a drawing of
 // such hair under the lights and before the camera that count, `hair` the share of each pixel that
-// the hair covers, in its first channel; both IMAGE_FLOAT of 4 channels and of one size, linear
-// light, premultiplied.
+// the hair covers, in its first channel; both IMAGE_FLOAT, of one size, the light of 4 channels,
+// linear light, premultiplied.
 //
 // The mean luminance that `tone` shows of the pixels that are more than half hair comes to
 // METER_GREY; but all of what is more than half covered, by hair or by a mesh, except for the

@@ -135,8 +135,8 @@ static Result draw(Meter *meter, int which, const Assets *assets, const Framing 
     Result result = images_create(&images, scene, assets, &meter->simulation, framing,
                                   &(ImagesForm){.kind = IMAGE_FLOAT}, gpu, &meter->timer, error);
     const RendererOptions *options = &images.renderer.options;
-    THEN(result,
-         image_create_kind(image, options->width, options->height, 4, options->kind, error));
+    THEN(result, image_create_kind(image, options->width, options->height,
+                                   renderer_channels(&images.renderer), options->kind, error));
     THEN(result, images_draw(&images, 0, &view, image, error));
     images_destroy(&images);
     return result;
