@@ -125,7 +125,7 @@ $(OUT)/report/report_texts.c: scripts/embed-text $(PAGES) $(OUT)/files
 	$(call run,EMBED,scripts/embed-text report/report.h 'ReportText*' REPORT_TEXTS src/report/ $(PAGES) >$@.tmp && mv $@.tmp $@)
 $(OUT)/glsl_sources.o $(OUT)/bench/bench_glsl.o $(OUT)/tests/glsl_sources.o $(OUT)/report/report_texts.o: %.o: %.c $(OUT)/flags # C promises only 4095 characters a string; every compiler takes more
 	$(call run,CC,$(CC) $(C_FLAGS) -Wno-overlength-strings -MMD -MP -c -o $@ $<)
-$(OUT)/image/jpeg.o: SANITIZE_$(CONFIG) += -fno-sanitize=shift # stb_image_write shifts bits beyond an int on purpose
+$(OUT)/image/jpeg.o: C_FLAGS += -fno-sanitize=shift # stb_image_write shifts bits beyond an int on purpose
 $(OUT)/libtractrix.a: $(OBJECTS) $(OUT)/files
 	$(call run,AR,rm -f $@ && $(AR) qcs $@ $(OBJECTS))
 # The library for other programs (tractrix.h), of what its room takes of the archive above. The static one is a single

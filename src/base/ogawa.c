@@ -123,6 +123,7 @@ static const char *find_text(Ogawa *file, uint32_t number, uint32_t *length)
         *length = take(&cursor, 1);
         text = take_text(&cursor, *length);
     }
+    if (!text) *length = 0;
     return text ? text : "";
 }
 
@@ -132,6 +133,7 @@ static const char *take_meta(Ogawa *file, Cursor *cursor, uint32_t number, uint3
     if (number != EXPLICIT_TEXT) return find_text(file, number, length);
     *length = take(cursor, width);
     const char *text = take_text(cursor, *length);
+    if (!text) *length = 0;
     return text ? text : "";
 }
 
