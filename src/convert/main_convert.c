@@ -358,7 +358,7 @@ static Result do_frame(Job *job, int frame, Error *error)
         THEN(result, figures_measure(&job->figures, &strands, job->steps.surface, error));
     activity_set("writing");
     if (command->output) THEN(result, convert_output_add(&job->output, frame, &strands, error));
-    // Those by which joined files are told apart are no loss.
+    // Joined files became groups here: a format without groups loses nothing that a file had.
     if (!(job->input.features & STRANDS_HAS_GROUP))
         job->output.lost &= ~(uint32_t)STRANDS_HAS_GROUP;
     strands_destroy(&strands);

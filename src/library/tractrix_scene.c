@@ -4,6 +4,7 @@
 #include "base/json.h"
 #include "base/suggest.h"
 #include "scene/scene_param.h"
+#include "strands/strands_mend.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -147,7 +148,7 @@ TractrixResult tractrix_scene_create(TractrixScene **scene, const char *look, Tr
     return finish(scene, result, &why, error);
 }
 
-// What the scene names is there, so that a wrong name is told at once.
+// Looks now whether the file is there: it is read by the simulation, whose error would come late.
 static Result check_file(const char *path, Error *error)
 {
     if (strcmp(path, "-") == 0)

@@ -57,12 +57,6 @@ Result strands_read_frames(Strands *strands, StrandsFrames *frames, const char *
                            const StrandsReadOptions *options, StrandsReport *report, Error *error);
 void strands_frames_destroy(StrandsFrames *frames);
 
-// Whether strands that come from no file are as strands_read leaves them. RESULT_BAD_INPUT with the
-// number of the first strand, from 0, that is not: of fewer than 2 or more than STRANDS_MAX_SIZE
-// vertices, with a number that is not finite or a coordinate beyond 1e6 m, or with a vertex that
-// coincides with the one before it.
-Result strands_check(const Strands *strands, const char *name, Error *error);
-
 // strands_read for content that is in memory (with a zero behind it, as bytes.h says); `name`
 // stands for the path in messages.
 Result strands_read_bytes(Strands *strands, const char *name, const Bytes *bytes,

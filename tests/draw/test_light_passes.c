@@ -136,9 +136,7 @@ static void add_sections(const Case *of)
 
 static void draw(const Case *of, Raster by)
 {
-    const Ambient sky = {{0.5f, 0.6f, 0.9f}, {0.2f, 0.1f, 0.1f}}, none = {{0}, {0}};
     RendererOptions options = BLACK;
-    View view;
     raster = by;
     options.shadow = (ShadowOptions){.kind = SHADOW_DOM, .side = 128, .spacing = 200};
     options.scatter = (ScatterOptions){
@@ -154,14 +152,7 @@ static void draw(const Case *of, Raster by)
         NEEDED(renderer_set_mesh(&studio.renderer, &mesh, (float[3]){0.9f, 0.6f, 0.5f}, error));
         mesh_destroy(&mesh);
     }
-    studio_view(&view, SIDE, SIDE);
-    const RenderFrame frame = {.view = &view,
-                               .lights = of->lights,
-                               .light_count = of->light_count,
-                               .ambient = of->sky ? &sky : &none,
-                               .head_rotation = {0, 0, 0, 1}};
-    NEEDED(
-        renderer_draw(&studio.renderer, &frame, studio.items, studio.count, &studio.image, error));
+    stage_draw_lit(of->lights, of->light_count, of->sky);
 }
 
 // What the particles of a section show, three floats each, as its positions lie; the caller frees

@@ -115,22 +115,13 @@ static void dress(const Case *of, uint32_t count)
 
 static float *draw_light(const Case *of, Raster by)
 {
-    const Ambient sky = {{0.5f, 0.6f, 0.9f}, {0.2f, 0.1f, 0.1f}}, none = {{0}, {0}};
     RendererOptions options = BLACK;
-    View view;
     options.kind = IMAGE_FLOAT;
     options.shadow = (ShadowOptions){.kind = of->shadow, .side = 128, .spacing = 200};
     options.scatter = (ScatterOptions){.kind = SCATTER_GRID, .cells = 10};
     raster = by;
     use(&options);
-    studio_view(&view, SIDE, SIDE);
-    const RenderFrame frame = {.view = &view,
-                               .lights = of->lights,
-                               .light_count = of->light_count,
-                               .ambient = of->sky ? &sky : &none,
-                               .head_rotation = {0, 0, 0, 1}};
-    NEEDED(
-        renderer_draw(&studio.renderer, &frame, studio.items, studio.count, &studio.image, error));
+    stage_draw_lit(of->lights, of->light_count, of->sky);
     size_t size;
     return (float *)(void *)studio_copy(&studio, &size);
 }

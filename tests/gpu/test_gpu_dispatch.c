@@ -5,6 +5,7 @@
 #include "gpu/gpu_dispatch.h"
 #include "gpu/gpu_timer.h"
 #include "gpu/shader.h"
+#include "support/hair_fixture.h"
 #include "support/test_glsl.h"
 
 #include <setjmp.h>
@@ -15,21 +16,11 @@
 
 #include <cmocka.h>
 
-static Gpu gpu;
-
 static int open_gpu(void **state)
 {
     (void)state;
-    Error error;
-    if (gpu_create(&gpu, &(GpuOptions){0}, &error) != RESULT_OK) fail_msg("%s", error.text);
+    fixture_gpu();
     shader_add_sources(TEST_GLSL_SOURCES);
-    return 0;
-}
-
-static int close_gpu(void **state)
-{
-    (void)state;
-    gpu_destroy(&gpu);
     return 0;
 }
 
@@ -39,7 +30,7 @@ static uint32_t *run_lanes(int most_groups, uint32_t count, uint32_t layers)
     GLuint program;
     Error error;
     GpuBuffer visits;
-    GpuLimits limits = gpu.limits;
+    GpuLimits limits = fixture_gpu()->limits;
     limits.work_groups = most_groups;
     const ShaderDefine defines[] = {{"GROUP_SIZE", 8}, {NULL, 0}};
     if (shader_build_compute(&program, "probe_lanes.comp", defines, &error) != RESULT_OK)
@@ -80,7 +71,7 @@ static void no_items_are_no_dispatch(void **state)
 {
     (void)state;
     Error error;
-    gpu_dispatch(&gpu.limits, 0, 8, 1);
+    gpu_dispatch(&fixture_gpu()->limits, 0, 8, 1);
     assert_int_equal(gpu_check("nothing", &error), RESULT_OK);
 }
 
@@ -89,7 +80,7 @@ static void an_error_is_told_with_the_pass_that_made_it(void **state)
     (void)state;
     GpuTimer timer;
     Error error;
-    gpu_timer_create(&timer, false, gpu.software);
+    gpu_timer_create(&timer, false, fixture_gpu()->software);
     gpu_timer_begin(&timer, "draw_one");
     gpu_timer_end(&timer);
     gpu_timer_begin(&timer, "draw_two");
@@ -114,5 +105,5 @@ int main(void)
         cmocka_unit_test(no_items_are_no_dispatch),
         cmocka_unit_test(an_error_is_told_with_the_pass_that_made_it),
     };
-    return cmocka_run_group_tests(tests, open_gpu, close_gpu);
+    return cmocka_run_group_tests(tests, open_gpu, NULL);
 }

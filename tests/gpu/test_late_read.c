@@ -5,6 +5,7 @@
 #include "gpu/gpu_dispatch.h"
 #include "gpu/late_read.h"
 #include "gpu/shader.h"
+#include "support/hair_fixture.h"
 #include "support/test_glsl.h"
 
 #include <setjmp.h>
@@ -16,29 +17,20 @@
 
 enum { WORDS = 3000 };
 
-static Gpu gpu;
-
 static int open_gpu(void **state)
 {
     (void)state;
-    Error error;
-    if (gpu_create(&gpu, &(GpuOptions){0}, &error) != RESULT_OK) fail_msg("%s", error.text);
+    fixture_gpu();
     shader_add_sources(TEST_GLSL_SOURCES);
-    return 0;
-}
-
-static int close_gpu(void **state)
-{
-    (void)state;
-    gpu_destroy(&gpu);
     return 0;
 }
 
 static GpuBuffer make_buffer(uint32_t word)
 {
     GpuBuffer buffer;
-    assert_int_equal(gpu_buffer_create(&buffer, &gpu.limits, "words", 4 * WORDS, NULL, 0, NULL),
-                     RESULT_OK);
+    assert_int_equal(
+        gpu_buffer_create(&buffer, &fixture_gpu()->limits, "words", 4 * WORDS, NULL, 0, NULL),
+        RESULT_OK);
     gpu_buffer_clear(&buffer, word);
     return buffer;
 }
@@ -126,7 +118,7 @@ static void what_shaders_have_stored_arrives(void **state)
     glUseProgram(program);
     glUniform1i(0, WORDS);
     for (int i = 0; i < 3; ++i) {
-        gpu_dispatch(&gpu.limits, WORDS, 8, 1);
+        gpu_dispatch(&fixture_gpu()->limits, WORDS, 8, 1);
         begin(&read, 4 * WORDS);
         late_read_buffer(&read, 0, &words, 4 * WORDS);
         late_read_send(&read);
@@ -203,5 +195,5 @@ int main(void)
         cmocka_unit_test(pixels_come_as_they_were_drawn),
         cmocka_unit_test(nothing_that_was_sent_is_an_error_with_its_name),
     };
-    return cmocka_run_group_tests(tests, open_gpu, close_gpu);
+    return cmocka_run_group_tests(tests, open_gpu, NULL);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "support/stage.h"
 
+#include "support/needed.h"
+
 #include "base/random.h"
 #include "passes/passes.h"
 
@@ -129,6 +131,20 @@ uint64_t stage_base_version(void)
 {
     return studio.renderer.backend == &DRAW_LANES ? stage_lanes_base_version()
                                                   : stage_passes()->base.version;
+}
+
+void stage_draw_lit(const Light *lights, uint32_t count, bool has_sky)
+{
+    const Ambient sky = {{0.5f, 0.6f, 0.9f}, {0.2f, 0.1f, 0.1f}}, none = {{0}, {0}};
+    View view;
+    studio_view(&view, SIDE, SIDE);
+    const RenderFrame frame = {.view = &view,
+                               .lights = lights,
+                               .light_count = count,
+                               .ambient = has_sky ? &sky : &none,
+                               .head_rotation = {0, 0, 0, 1}};
+    NEEDED(
+        renderer_draw(&studio.renderer, &frame, studio.items, studio.count, &studio.image, error));
 }
 
 uint8_t *draw_copy(size_t *size)

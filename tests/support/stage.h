@@ -63,6 +63,9 @@ void stage_lanes_show(uint32_t item, const float x[3][STRAND_TILE],
 // Blocks are to draw what mesh and floor hide, too.
 void stage_lanes_draw_hidden(bool on);
 
+// Draws by these lights, below a blue sky or in the dark, as studio_view shows it.
+void stage_draw_lit(const Light *lights, uint32_t count, bool has_sky);
+
 // Draws; a copy of the bytes, which the caller frees. Draws, and the bytes must be those.
 uint8_t *draw_copy(size_t *size);
 void assert_draws_the_same(const uint8_t *expected, size_t size);

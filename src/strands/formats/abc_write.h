@@ -6,6 +6,7 @@
 // come.
 #pragma once
 
+#include "base/ogawa_write.h"
 #include "base/outfile.h"
 #include "strands/formats/curves_look.h"
 
@@ -13,14 +14,12 @@
 
 typedef struct AbcWriter {
     OutFile file;
+    OgawaWriter ogawa; // to the file, or to `memory` where that cannot be gone back in
     bool buffered;
-    FILE *stream; // the file's, or `memory` where that cannot be gone back in
     char *memory; // NULL: none
     size_t memory_size;
     const Strands *strands;
     CurvesOptions options;
-    uint64_t at;       // bytes written
-    bool failed;       // memory is short
     uint64_t *samples; // [frame_count] places of the frames' points
     double (*boxes)[6];
     int first, last; // numbers of the frames
