@@ -94,6 +94,6 @@ double ogawa_around(const Ogawa *file, uint32_t sampling, uint32_t count, double
 double ogawa_even_time(const Ogawa *file, uint32_t sampling, uint32_t count, uint32_t i);
 double ogawa_rate(const Ogawa *file, uint32_t sampling, uint32_t count);
 
-// Whether `vertices` positions in each of `samples` samples may be made from a file of this size; if
-// not, fails the reader. Samples of transforms are small, and each moves all vertices.
+// Whether `vertices` positions in each of `samples` samples may be made from a file of this size;
+// if not, fails the reader. Samples of transforms are small, and each moves all vertices.
 bool ogawa_allows(const Ogawa *file, uint64_t samples, uint64_t vertices);

@@ -50,7 +50,7 @@ Result convert_steps_parse(ConvertSteps *steps, const OptionSteps *options, Erro
 // Whether a step needs a mesh: its name, else NULL.
 const char *convert_steps_need_mesh(const ConvertSteps *steps);
 
-// Does the steps in their order. What --fit, --attach and --push-out have done in the first frame is
-// written to `messages`. RESULT_FAILED when memory is short, a strand
-// would have too many vertices, or none is left.
+// Does the steps in their order. What --fit, --attach and --push-out have done in the first frame
+// is written to `messages`. RESULT_FAILED when memory is short, a strand would have too many
+// vertices, or none is left.
 Result convert_steps_apply(ConvertSteps *steps, Strands *strands, Error *error);

@@ -138,8 +138,8 @@ static Result check_values(const Scene *scene, Error *error)
     return RESULT_OK;
 }
 
-// Refuses a file that is no cache, or has too few frames, before anything is set up. Whether it is of
-// this scene is checked once there is a simulation.
+// Refuses a file that is no cache, or has too few frames, before anything is set up. Whether it is
+// of this scene is checked once there is a simulation.
 static Result check_cache(const RunParams *run, Error *error)
 {
     CacheFile cache;
