@@ -230,15 +230,24 @@ mv "$work/stubs/git" "$work/git"
 IMAGES_BRANCH=pictures; export IMAGES_BRANCH
 sed 's/^export IMAGES_BRANCH=.*//' "$work/steps/say-what-needs-a-look.sh" >"$work/x" && mv "$work/x" "$work/steps/say-what-needs-a-look.sh"
 comment 0; jq -r .body "$work/sent" >"$work/body"
-commit=$("$real" -C "$work/pictures.git" rev-parse pictures); at=$(date -u +%Y-%m-%d)/$sha
-in_file "$work/body" "![wrong.png](https://raw.githubusercontent.com/me/grooms/$commit/$at/wrong.png.jpg)"
+at=$(date -u +%Y-%m-%d)/$sha
+in_file "$work/body" "![wrong.png](https://raw.githubusercontent.com/me/grooms/refs/heads/pictures/$at/wrong.png.jpg)"
 "$real" -C "$work/pictures.git" show "pictures:$at/wrong.png.jpg" >"$work/picture.jpg"
 if [ "$(head -c 3 "$work/picture.jpg" | od -An -tx1 | tr -d ' ')" = ffd8ff ]; then good; else bad "no JPEG file"; fi
 old=$work/old; "$real" clone --quiet "$work/pictures.git" -b pictures "$old"; mkdir "$old/2020-01-01"; touch "$old/2020-01-01/x"
-"$real" -C "$old" add -A && "$real" -C "$old" -c user.name=x -c user.email=x commit --quiet -m x && "$real" -C "$old" push --quiet
+"$real" -C "$old" add -A && "$real" -C "$old" -c user.name=x -c user.email=x commit --quiet -m "Images of x" && "$real" -C "$old" push --quiet
 comment 0
 if [ "$("$real" -C "$work/pictures.git" ls-tree -r --name-only pictures)" = "$at/wrong.png.jpg" ]; then good; else bad "$("$real" -C "$work/pictures.git" ls-tree -r --name-only pictures)"; fi
 if [ "$("$real" -C "$work/pictures.git" rev-list --count pictures)" = 1 ]; then good; else bad "the branch grows"; fi
+
+claim "a branch with commits of others is refused and stays, and so is one that cannot be read"
+"$real" -C "$old" -c user.name=x -c user.email=x commit --quiet --allow-empty -m "Work of weeks" && "$real" -C "$old" push --quiet origin HEAD:main
+before=$("$real" -C "$work/pictures.git" rev-parse main)
+IMAGES_BRANCH=main; comment 1; one_line; says "main has commits of others"; none "$work/sent"
+if [ "$("$real" -C "$work/pictures.git" rev-parse main)" = "$before" ]; then good; else bad "it was pushed over"; fi
+mv "$work/pictures.git" "$work/away.git"
+comment 1; says "main: cannot ask whether this branch exists"; none "$work/sent"
+mv "$work/away.git" "$work/pictures.git"
 unset IMAGES_BRANCH
 
 claim "what a stranger's run has left is taken for text, never for more"
