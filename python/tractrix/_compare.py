@@ -10,6 +10,7 @@ import numpy as np
 
 from ._arrays import pointer
 from ._declarations import Figures, Limits
+from ._error import usage
 from ._image import ImageLike, image_of, rgba
 from ._library import call
 
@@ -36,6 +37,10 @@ def limits(pixel_tolerance: float | None = None, max_failing_percent: float | No
            max_flip: float | None = None, pixels_per_degree: float | None = None) -> Limits:
     """As tractrix-compare takes its options: without any, images are the same if they are equal; with `max_flip` alone it
     is the only limit."""
+    for name, value in (("pixel_tolerance", pixel_tolerance), ("max_failing_percent", max_failing_percent),
+                        ("max_flip", max_flip), ("pixels_per_degree", pixels_per_degree)):
+        if value is not None and not value >= 0:
+            raise usage(f"{name}: got {value}: expected a number from 0 on")
     if max_flip == 0:  # of equal images alone; the library takes 0 for no limit
         pixel_tolerance = max_failing_percent = max_flip = None
     pixels = max_flip is None or pixel_tolerance is not None or max_failing_percent is not None

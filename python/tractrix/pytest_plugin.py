@@ -15,23 +15,26 @@ import pytest
 if TYPE_CHECKING:
     from ._image import ImageLike
 
-# Of a folder of results: pairs that differ, as tractrix-compare pairs them, and the page that shows them.
-GOLDENS, IMAGES, REPORT = "goldens", "images", "report.html"
+# In the folder of results, which may be anybody's: a folder that belongs to the plugin, with pairs that differ, as
+# tractrix-compare pairs them, and the page that shows them.
+PAIRS, GOLDENS, IMAGES, REPORT = "tractrix-pairs", "goldens", "images", "report.html"
+# The test that each image of this session belongs to, by the image's name among the pairs.
+OWNERS: pytest.StashKey[dict[str, str]] = pytest.StashKey()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     group = parser.getgroup("tractrix", "image regression with tractrix")
     group.addoption("--tractrix-update", action="store_true",
-                    help="write golden images that lack or differ; these tests fail all the same")
+                    help="write golden images that are missing or differ; their tests fail in this run all the same")
     group.addoption("--tractrix-results", metavar="DIR",
-                    help="folder for images that differ and their page; made anew (default: tractrix-results in the root)")
+                    help="folder for images that differ and their page; tractrix-pairs in it is made anew (default: tractrix-results in the root)")
     parser.addini("tractrix_goldens", "folder of golden images, from that of the test file", default="goldens")
     parser.addini("tractrix_results", "as --tractrix-results, from the root", default="tractrix-results")
 
 
 def results_of(config: pytest.Config) -> pathlib.Path:
     given = config.getoption("--tractrix-results")
-    return pathlib.Path(given).absolute() if given else config.rootpath / config.getini("tractrix_results")
+    return (pathlib.Path(given).absolute() if given else config.rootpath / config.getini("tractrix_results")) / PAIRS
 
 
 def is_worker(config: pytest.Config) -> bool:
@@ -40,12 +43,9 @@ def is_worker(config: pytest.Config) -> bool:
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
-    if is_worker(session.config):
-        return
-    results = results_of(session.config)
-    for old in (GOLDENS, IMAGES):  # and nothing else: the folder may be anybody's
-        shutil.rmtree(results / old, ignore_errors=True)
-    (results / REPORT).unlink(missing_ok=True)
+    session.config.stash[OWNERS] = {}
+    if not is_worker(session.config):
+        shutil.rmtree(results_of(session.config), ignore_errors=True)
 
 
 class ImageCheck:
@@ -54,16 +54,18 @@ class ImageCheck:
     def __init__(self, request: pytest.FixtureRequest) -> None:
         self._config = request.config
         self._goldens = request.path.parent / request.config.getini("tractrix_goldens") / request.path.stem
-        cls = f"{request.cls.__name__}." if request.cls else ""
-        self._test = cls + request.node.name
+        classes = [node.name for node in request.node.listchain() if isinstance(node, pytest.Class)]
+        self._test = ".".join([*classes, request.node.name])
+        self._module = os.path.relpath(request.path.with_suffix(""), request.config.rootpath).replace(os.sep, ".")
+        self._id = request.node.nodeid
         self._names: set[str] = set()
 
     def check(self, image: ImageLike, *, name: str | None = None, mask: ImageLike | None = None,
               pixel_tolerance: float | None = None, max_failing_percent: float | None = None,
               max_flip: float | None = None) -> None:
         """Fails unless `image` is its golden within the limits, which are those of tractrix.compare: without any, equal.
-        The golden is goldens/MODULE/TEST.png beside the test file, TEST-NAME.png with a `name`, .exr for floats. A golden
-        that lacks is a failure; only --tractrix-update writes one."""
+        The golden is goldens/MODULE/TEST.png beside the test file, TEST-NAME.png with a `name`, .exr for floats. A missing
+        golden is a failure; only --tractrix-update writes one."""
         __tracebackhide__ = True
         from . import compare
         from ._image import read_image, rgba
@@ -74,16 +76,25 @@ class ImageCheck:
             pytest.fail(f"{file}: checked before in this test: expected name=... for each of several images")
         self._names.add(file)
         golden = self._goldens / file
+        owner = self._config.stash[OWNERS].setdefault(self._flat(golden), self._id)
+        if owner != self._id:
+            pytest.fail(f"{file}: {owner} has a golden of this name: expected another name of the test, its parameters or name=...")
         if not golden.exists():
             self._fail(golden, new, "no golden")
         old = read_image(golden)
         if old.shape != new.shape:
             self._fail(golden, new, f"{new.shape[1]}x{new.shape[0]}, its golden {old.shape[1]}x{old.shape[0]}")
+        if old.dtype != new.dtype:
+            self._fail(golden, new, f"{new.dtype}, its golden {old.dtype}")
         result = compare(new, old, mask=mask, pixel_tolerance=pixel_tolerance, max_failing_percent=max_failing_percent,
                          max_flip=max_flip)
         if not result.same:
             self._fail(golden, new, f"{result.failing} of {result.compared} pixels differ, most {result.largest:.3g} levels at "
                                     f"{result.at[0]},{result.at[1]}, FLIP {result.flip:.4f}")
+
+    def _flat(self, golden: pathlib.Path) -> str:
+        """A golden's name among the pairs of all folders: FOLDER.MODULE.TEST.png, FOLDER that of the test file."""
+        return f"{file_name(self._module, None)}.{golden.name}"
 
     def _fail(self, golden: pathlib.Path, new: Any, what: str) -> None:
         __tracebackhide__ = True
@@ -95,7 +106,7 @@ class ImageCheck:
             write_image(golden, new)
             pytest.fail(f"{shown}: {what}: written anew: look at it, commit it, and run again", pytrace=False)
         results = results_of(self._config)
-        flat = f"{golden.parent.name}.{golden.name}"
+        flat = self._flat(golden)
         for folder in (GOLDENS, IMAGES):
             (results / folder).mkdir(parents=True, exist_ok=True)
         write_image(results / IMAGES / flat, new)
@@ -121,7 +132,7 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: p
     if is_worker(config) or not (results / IMAGES).is_dir():
         return
     count = len(list((results / IMAGES).iterdir()))
-    line = f"tractrix: {count} image{'s'[: count > 1]} that differ: {results}"
+    line = f"tractrix: {count} image{'s that differ' if count > 1 else ' that differs'}: {results}"
     try:
         write_report(results)
         line += os.sep + REPORT

@@ -34,6 +34,14 @@ def test_one_pixel_is_found(image):
     assert not tractrix.compare(other, image, max_flip=0, pixel_tolerance=20).same and tractrix.compare(image, image, max_flip=0).same
 
 
+@pytest.mark.parametrize("name", ["pixel_tolerance", "max_failing_percent", "max_flip", "pixels_per_degree"])
+@pytest.mark.parametrize("value", [-1, float("nan")])
+def test_limits_below_zero_are_refused(image, name, value):
+    """The library takes a negative limit for no limit."""
+    with pytest.raises(tractrix.TractrixValueError, match=f"{name}: got {value}: expected"):
+        tractrix.compare(image, ~image, **{name: value})
+
+
 def test_alpha_counts(image):
     other = image.copy()
     other[3, 4, 3] ^= 64

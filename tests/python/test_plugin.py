@@ -46,7 +46,7 @@ def test_a_missing_golden_fails_and_never_approves_itself(suite):
         result.assert_outcomes(failed=1)
         result.stdout.fnmatch_lines(["*goldens/test_hair/test_plain.png: no golden*--tractrix-update*"])
         assert not golden(suite).exists()
-        assert (suite.path / "tractrix-results/images/test_hair.test_plain.png").exists()
+        assert (suite.path / "tractrix-results/tractrix-pairs/images/test_hair.test_plain.png").exists()
 
 
 def test_update_writes_the_golden_and_fails_so_that_no_ci_passes_by_it(suite):
@@ -64,13 +64,13 @@ def test_an_image_that_differs_fails_with_figures_and_a_page(suite):
     before = golden(suite).read_bytes()
     result = suite.runpytest()
     result.assert_outcomes(failed=1)
-    result.stdout.fnmatch_lines(["*256 of 256 pixels differ, most 4 levels at 0,0, FLIP 0.0*", "*1 image that differ*report.html"])
+    result.stdout.fnmatch_lines(["*256 of 256 pixels differ, most 4 levels at 0,0, FLIP 0.0*", "*1 image that differs: *report.html"])
     assert golden(suite).read_bytes() == before
-    page = (suite.path / "tractrix-results/report.html").read_text()
+    page = (suite.path / "tractrix-results/tractrix-pairs/report.html").read_text()
     assert "test_hair.test_plain" in page
     suite.write_test("picture()")
     suite.runpytest().assert_outcomes(passed=1)
-    assert not (suite.path / "tractrix-results/report.html").exists()  # nothing of an earlier run stays
+    assert not (suite.path / "tractrix-results/tractrix-pairs/report.html").exists()  # nothing of an earlier run stays
 
 
 def test_alpha_counts(suite):
@@ -99,6 +99,10 @@ def test_another_size_or_depth_is_no_golden(suite):
     result = suite.runpytest()
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(["*16x8, its golden 16x16*"])
+    suite.write_test("picture().astype(np.uint16) * 257, max_flip=1")
+    result = suite.runpytest()
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["*uint16, its golden uint8*"])
 
 
 def test_floats_are_kept_as_exr(suite):
@@ -134,11 +138,54 @@ def test_every_test_class_parameter_and_name_has_its_golden(suite):
         "TestA.test_b_a_b.png", "TestA.test_b_a_b_-left.png", "TestA.test_b_c_d.png", "TestA.test_b_c_d_-left.png", "test_twice-x.png"}
 
 
+def test_two_tests_never_share_a_golden(suite):
+    suite.makepyfile(test_hair="""
+        import numpy as np
+        import pytest
+
+        class TestA:
+            class TestB:
+                def test_b(self, tractrix_image):
+                    tractrix_image.check(np.zeros((4, 4), np.uint8))
+
+        class TestB:
+            def test_b(self, tractrix_image):
+                tractrix_image.check(np.zeros((4, 4), np.uint8))
+
+        @pytest.mark.parametrize("length", ["a/b", "a_b"])
+        def test_c(tractrix_image, length):
+            tractrix_image.check(np.zeros((4, 4), np.uint8))
+    """)
+    suite.runpytest("--tractrix-update")
+    result = suite.runpytest()
+    result.assert_outcomes(passed=3, failed=1)
+    result.stdout.fnmatch_lines(["*test_c_a_b.png: test_hair.py::test_c?a/b? has a golden of this name: expected *"])
+    assert {path.name for path in golden(suite).parent.iterdir()} == {"TestA.TestB.test_b.png", "TestB.test_b.png", "test_c_a_b.png"}
+
+
+def test_files_of_one_name_in_two_folders_are_told_apart(suite):
+    (suite.path / "test_hair.py").rename(suite.mkpydir("left") / "test_hair.py")
+    (suite.mkpydir("right") / "test_hair.py").write_text((suite.path / "left/test_hair.py").read_text())
+    suite.runpytest().assert_outcomes(failed=2)
+    assert {path.name for path in (suite.path / "tractrix-results/tractrix-pairs/images").iterdir()} == {
+        "left.test_hair.test_plain.png", "right.test_hair.test_plain.png"}
+
+
 def test_results_go_where_they_are_wanted_and_nothing_else_is_removed(suite):
     (suite.path / "kept").mkdir()
     (suite.path / "kept/mine.txt").write_text("x")
     suite.runpytest("--tractrix-results", "kept")
-    assert (suite.path / "kept/images/test_hair.test_plain.png").exists() and (suite.path / "kept/mine.txt").exists()
+    assert (suite.path / "kept/tractrix-pairs/images/test_hair.test_plain.png").exists() and (suite.path / "kept/mine.txt").exists()
+
+
+def test_results_beside_goldens_remove_none(suite):
+    approve(suite)
+    mine = [suite.path / "images/mine.png", suite.path / "report.html"]
+    mine[0].parent.mkdir()
+    for path in mine:
+        path.write_text("mine")
+    suite.runpytest("--tractrix-results", ".").assert_outcomes(passed=1)
+    assert [path.read_text() for path in mine] == ["mine", "mine"]
 
 
 def test_without_the_program_images_are_kept_and_a_line_says_so(suite, monkeypatch):
