@@ -1251,7 +1251,7 @@ def import_scene(context, path: str) -> None:
     scene = context.scene
     fps, count = float(members.get("fps", 60)), int(members.get("frames", 120))
     set_rate(scene, fps)
-    size = members.get("size", [1280, 720])
+    size = members.get("size", [960, 960])
     size = [int(n) for n in size.split("x")] if isinstance(size, str) else size
     scene.render.resolution_x, scene.render.resolution_y = size
     scene.render.resolution_percentage = 100

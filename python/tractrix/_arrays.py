@@ -11,6 +11,13 @@ import numpy as np
 from ._error import BAD_INPUT, error_of, usage
 
 
+def array_of(name: str, value: Any) -> np.ndarray:
+    try:
+        return np.asarray(value)
+    except ValueError:
+        raise usage(f"{name}: rows of different lengths: expected an array of numbers") from None
+
+
 def numbers(name: str, value: Any, shape: tuple[int | None, ...], dtype: Any = np.float32) -> np.ndarray:
     """`value` as an array of `shape` (None: any length) and `dtype`."""
     try:
@@ -41,7 +48,7 @@ def pointer(array: np.ndarray | None, kind: Any) -> Any:
 def strands(value: Any) -> tuple[np.ndarray, np.ndarray]:
     """Positions (V, 3) of all strands one behind the other and the vertices of each, from (S, V, 3), a list of (V, 3)
     or (points, sizes). What simulate() yields, with a fourth number, is taken, too."""
-    if isinstance(value, tuple) and len(value) == 2 and np.ndim(value[1]) == 1:
+    if isinstance(value, tuple) and len(value) == 2 and array_of("strands[1]", value[1]).ndim == 1:
         points, sizes = points_of("strands[0]", value[0]), numbers("strands[1]", value[1], (None,), np.uint32)
         if sizes.sum(dtype=np.uint64) != len(points):
             raise error_of(BAD_INPUT, f"strands: sizes of {sizes.sum(dtype=np.uint64)} vertices, {len(points)} points: expected as many")
@@ -51,14 +58,14 @@ def strands(value: Any) -> tuple[np.ndarray, np.ndarray]:
         if not pieces:
             raise usage("strands: an empty list: expected a strand at least")
         return np.concatenate(pieces), np.array([len(piece) for piece in pieces], np.uint32)
-    array = np.asarray(value)
+    array = array_of("strands", value)
     if array.ndim != 3 or array.shape[2] not in (3, 4):
         raise usage(f"strands: shape {array.shape}: expected (S, V, 3), a list of (V, 3), (points, sizes) or a path")
     return points_of("strands", array.reshape(-1, array.shape[2])), np.full(len(array), array.shape[1], np.uint32)
 
 
 def points_of(name: str, value: Any) -> np.ndarray:
-    array = np.asarray(value)
+    array = array_of(name, value)
     return numbers(name, array[:, :3] if array.ndim == 2 and array.shape[1] == 4 else array, (None, 3))
 
 

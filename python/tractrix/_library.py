@@ -58,15 +58,9 @@ class Handle:
     """A pointer of the library's, destroyed once: by close(), or with its last reference, or as Python ends."""
 
     def __init__(self, create: str, destroy: str, *arguments: Any) -> None:
-        self.pointer = ctypes.c_void_p()
-        call(create, ctypes.byref(self.pointer), *arguments)
-        self.close = weakref.finalize(self, _destroy, getattr(library(), destroy), self.pointer)
-
-    @property
-    def value(self) -> ctypes.c_void_p:
-        if not self.close.alive:
-            raise error_of(FAILED, "it was closed: expected no call behind close()")
-        return self.pointer
+        self.value = ctypes.c_void_p()
+        call(create, ctypes.byref(self.value), *arguments)
+        self.close = weakref.finalize(self, _destroy, getattr(library(), destroy), self.value)
 
 
 def version() -> str:

@@ -112,6 +112,9 @@ class Parameters(TypedDict, total=False):
     """maximum local stiffness; larger ones are unstable (fixed in TressFX) [0 to 1; default 0.95; of tressfx]"""
     tressfx_clamp_position_delta: float
     """maximum displacement per frame that becomes velocity [0.001 to 1000000 cm; default 20; of tressfx]"""
+    followers: Union[int, Literal["auto"]]
+    """drawn for each strand; auto: as the file says (-1), else as many as fill few strands, 0 with --radius [-1 to
+    1000; default auto]"""
     follow: Literal["offset", "interpolate", "auto"]
     """where followers are: at an offset from their guide, or interpolated between the three guides around their root;
     auto: interpolate where --followers auto fills, else offset [default auto]"""

@@ -51,12 +51,13 @@ def scene_of(strands: StrandsLike, mesh: MeshLike | None, deforms: bool, paramet
 def _add_strands(scene: Handle, strands: Any, given: dict[str, Any]) -> None:
     points, sizes = _arrays.strands(strands)
     unit, up = given.pop("unit", None), given.pop("up", None)
-    parts = {name: given.pop(name) for name in OF_ARRAYS if _is_array(given.get(name))}
+    parts = {name: given.pop(name) for name in OF_ARRAYS if name in given and (name != "color" or _is_array(given[name]))}
     thickness, color, uv = (parts.get(name) for name in OF_ARRAYS)
     if thickness is not None:
-        thickness = _arrays.numbers("thickness", np.ravel(thickness), (len(points),))
+        thickness = _arrays.numbers("thickness", _arrays.array_of("thickness", thickness).ravel(), (len(points),))
     if color is not None:
-        color = _arrays.numbers("color", np.reshape(color, (-1, np.shape(color)[-1])), (len(points), None))
+        color = _arrays.array_of("color", color)
+        color = _arrays.numbers("color", color.reshape(-1, color.shape[-1]), (len(points), None))
         if color.shape[1] not in (3, 4):
             raise usage(f"color: {color.shape[1]} numbers a vertex: expected 3 or 4, linear RGB and opacity")
         color = np.hstack((color, np.ones((len(color), 4 - color.shape[1]), np.float32)))
@@ -82,5 +83,5 @@ def _set_mesh(scene: Handle, mesh: Any, deforms: bool, given: dict[str, Any], pa
 
 
 def _is_array(value: Any) -> bool:
-    """An array of numbers for vertices, rather than a value of the parameter of that name (color="auburn", (1, 0, 0))."""
-    return value is not None and not is_path(value) and np.size(value) > 4 or isinstance(value, np.ndarray) and value.ndim > 1
+    """Colors of vertices, rather than a value of the parameter color ("auburn", (1, 0, 0)): two vertices have 6 numbers."""
+    return not is_path(value) and _arrays.array_of("color", value).size > 4

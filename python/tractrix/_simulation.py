@@ -5,14 +5,14 @@ from __future__ import annotations
 
 import ctypes
 import itertools
-from typing import TYPE_CHECKING, Any, Iterable, Iterator, List, Union
+from typing import TYPE_CHECKING, Any, Iterable, Iterator, List, Literal, Union
 
 import numpy as np
 
 from . import _arrays
 from ._declarations import FOLLOWERS, GUIDES, Positions, View
 from ._device import device
-from ._error import usage
+from ._error import FAILED, error_of, usage
 from ._image import FORMATS, image_of
 from ._library import Handle, call, library, lock
 from ._pose import PoseLike, pose_of
@@ -26,6 +26,14 @@ if TYPE_CHECKING:
 
 # (S, V, 4): x y z 1 in the world, m, root first; a list of (V, 4) where strands differ in their number of vertices.
 PositionsLike = Union[np.ndarray, List[np.ndarray]]
+Part = Literal["guides", "followers"]
+PARTS = {"guides": GUIDES, "followers": FOLLOWERS}
+
+
+def part_of(name: str) -> int:
+    if name not in PARTS:
+        raise usage(f"part: got {name!r}: expected guides or followers")
+    return PARTS[name]
 
 
 class Simulation:
@@ -41,7 +49,7 @@ class Simulation:
                  **parameters: Unpack[Parameters]) -> None:
         scene = scene_of(strands, mesh, deforms, parameters)
         with lock:
-            self._handle = Handle("tractrix_simulation_create", "tractrix_simulation_destroy", device().value, scene.value)
+            self._handle: Handle | None = Handle("tractrix_simulation_create", "tractrix_simulation_destroy", device().value, scene.value)
         scene.close()
         self._renderers: dict[Any, Handle] = {}
 
@@ -54,7 +62,13 @@ class Simulation:
     def close(self) -> None:
         with lock:
             self._forget_renderers()
-            self._handle.close()
+            self._handle = None  # the library's is destroyed now, or with the last view of its memory
+
+    @property
+    def _pointer(self) -> ctypes.c_void_p:
+        if self._handle is None:
+            raise error_of(FAILED, "Simulation: used after close()")
+        return self._handle.value
 
     def _forget_renderers(self) -> None:
         for renderer in self._renderers.values():
@@ -65,19 +79,19 @@ class Simulation:
     def messages(self) -> list[str]:
         """Lines about what was mended, guessed or left out when the scene was read."""
         with lock:
-            return library().tractrix_simulation_messages(self._handle.value).decode().splitlines()
+            return library().tractrix_simulation_messages(self._pointer).decode().splitlines()
 
     @property
     def time(self) -> float:
         """Seconds of the scene."""
         with lock:
-            return library().tractrix_simulation_time(self._handle.value)
+            return library().tractrix_simulation_time(self._pointer)
 
     def set(self, **parameters: Unpack[Parameters]) -> None:
         """Changes live parameters (`tractrix.parameters()[name].live`) from the next step or image on."""
         with lock:
             for name, value in parameters.items():
-                call("tractrix_simulation_set", self._handle.value, name.encode(), text_of(name, value).encode())
+                call("tractrix_simulation_set", self._pointer, name.encode(), text_of(name, value).encode())
 
     def advance(self, head: PoseLike | None = None, *, mesh: np.ndarray | None = None) -> None:
         """On by one frame, 1 / fps seconds. `head`: where the head is at its end, a rigid (4, 4) matrix or
@@ -88,19 +102,22 @@ class Simulation:
         with lock:
             if mesh is not None:
                 vertices = _arrays.numbers("mesh", mesh, (None, 3))
-                call("tractrix_simulation_advance_mesh", self._handle.value, _arrays.pointer(vertices, ctypes.c_float), len(vertices))
+                call("tractrix_simulation_advance_mesh", self._pointer, _arrays.pointer(vertices, ctypes.c_float), len(vertices))
             else:
-                call("tractrix_simulation_advance", self._handle.value, None if head is None else ctypes.byref(pose_of(head)))
+                call("tractrix_simulation_advance", self._pointer, None if head is None else ctypes.byref(pose_of(head)))
 
-    def positions(self, section: int = 0, *, followers: bool = False, copy: bool = True) -> PositionsLike:
-        """The vertices as drawn now, read-only: (S, V, 4), x y z 1 in the world, m, root first; a list of (V, 4) if
-        strands differ in size. With copy=False a view of the library's memory, valid until the next call of this object."""
+    def positions(self, section: int = 0, *, part: Part = "guides", copy: bool = True) -> PositionsLike:
+        """The vertices as drawn now, of guides or of followers, read-only: (S, V, 4), x y z 1 in the world, m, root first;
+        a list of (V, 4) if strands differ in size. With copy=False a view of the library's memory, which changes
+        with the next call of this object; the memory stays while there is a view of it."""
         view = Positions()
         with lock:
-            call("tractrix_simulation_map", self._handle.value, section, FOLLOWERS if followers else GUIDES, ctypes.byref(view))
+            call("tractrix_simulation_map", self._pointer, section, part_of(part), ctypes.byref(view))
             if not view.vertex_count:
                 return np.empty((0, 0, 4), np.float32)
-            points = np.ctypeslib.as_array(view.position, (view.vertex_count, 4))
+            memory = (ctypes.c_float * 4 * view.vertex_count).from_address(ctypes.addressof(view.position.contents))
+            memory.owner = self._handle  # the array keeps `memory`, which keeps the simulation
+            points = np.ctypeslib.as_array(memory)
             sizes = np.ctypeslib.as_array(view.sizes, (view.strand_count,))
             if copy:
                 points = points.copy()
@@ -109,21 +126,25 @@ class Simulation:
             return points.reshape(len(sizes), sizes[0], 4)
         return np.split(points, np.cumsum(sizes)[:-1])
 
-    def render(self, size: tuple[int, int] = (1280, 720), *, dtype: Any = np.uint8,
+    def render(self, size: tuple[int, int] = (960, 960), *, dtype: Any = np.uint8,
                view: tuple[np.ndarray, np.ndarray] | None = None) -> np.ndarray:
         """An image as things are now: (H, W, 4), top row first. uint8 and uint16 are sRGB with straight alpha, float32
         linear light with premultiplied alpha. `view`: (world_to_eye, projection), two (4, 4) matrices for column vectors;
         without it the scene's camera. An automatic exposure is found at the first image of each size."""
-        if np.dtype(dtype) not in FORMATS:
-            raise usage(f"dtype: got {np.dtype(dtype)}: expected uint8, uint16 or float32")
+        try:
+            kind = np.dtype(dtype)
+        except TypeError:
+            kind = None
+        if kind not in FORMATS:
+            raise usage(f"dtype: got {kind or repr(dtype)}: expected uint8, uint16 or float32")
         width, height = (int(length) for length in _arrays.numbers("size", size, (2,), np.int64))
         with lock:
-            key = width, height, np.dtype(dtype)
+            key = width, height, kind
             if key not in self._renderers:
                 self._forget_renderers()
-                self._renderers[key] = Handle("tractrix_renderer_create", "tractrix_renderer_destroy", self._handle.value,
-                                              width, height, FORMATS[key[2]])
-            pixels = np.empty((height, width, 4), dtype)
+                self._renderers[key] = Handle("tractrix_renderer_create", "tractrix_renderer_destroy", self._pointer,
+                                              width, height, FORMATS[kind])
+            pixels = np.empty((height, width, 4), kind)
             call("tractrix_render", self._renderers[key].value, None if view is None else ctypes.byref(_view_of(view)),
                  ctypes.byref(image_of(pixels)))
         return pixels
@@ -136,7 +157,7 @@ def _view_of(view: tuple[np.ndarray, np.ndarray]) -> View:
     return View(world_to_eye=tuple(matrices[0]), projection=tuple(matrices[1]))
 
 
-def render(strands: StrandsLike, *, mesh: MeshLike | None = None, size: tuple[int, int] = (1280, 720),
+def render(strands: StrandsLike, *, mesh: MeshLike | None = None, size: tuple[int, int] = (960, 960),
            dtype: Any = np.uint8, view: tuple[np.ndarray, np.ndarray] | None = None,
            frames: int = 0, **parameters: Unpack[Parameters]) -> np.ndarray:
     """One image, (H, W, 4): of the hair as it is, or simulated for `frames` frames. For more of the same hair make a
@@ -149,26 +170,27 @@ def render(strands: StrandsLike, *, mesh: MeshLike | None = None, size: tuple[in
 
 def simulate(strands: StrandsLike, *, frames: int | None = None, head: Iterable[PoseLike] | None = None,
              mesh: MeshLike | None = None, mesh_frames: Iterable[np.ndarray] | None = None, section: int = 0,
-             followers: bool = False, copy: bool = True, **parameters: Unpack[Parameters]) -> Iterator[PositionsLike]:
+             part: Part = "guides", copy: bool = True, **parameters: Unpack[Parameters]) -> Iterator[PositionsLike]:
     """The positions at the end of each frame. `head` has a pose for each, `mesh_frames` the vertices of a mesh that
     deforms; without `frames` there are as many as they have. Else as Simulation and its methods."""
     if head is not None and mesh_frames is not None:
         raise usage("simulate: both head and mesh_frames: expected one of them")
     if frames is None and head is None and mesh_frames is None:
         raise usage("frames: not given: expected a number, or head or mesh_frames, which have one for each frame")
+    part_of(part)
     simulation = Simulation(strands, mesh=mesh, deforms=mesh_frames is not None, **parameters)
-    return _positions(simulation, frames, head, mesh_frames, section, followers, copy)
+    return _positions(simulation, frames, head, mesh_frames, section, part, copy)
 
 
 def _positions(simulation: Simulation, frames: int | None, head: Iterable[PoseLike] | None,
-               mesh_frames: Iterable[np.ndarray] | None, section: int, followers: bool, copy: bool) -> Iterator[PositionsLike]:
+               mesh_frames: Iterable[np.ndarray] | None, section: int, part: Part, copy: bool) -> Iterator[PositionsLike]:
     """A generator of its own, so that simulate() raises at the call rather than at the first item."""
     with simulation:
         driven = head if head is not None else mesh_frames
         count = 0
         for item in itertools.islice(itertools.repeat(None) if driven is None else driven, frames):
             simulation.advance(**({"mesh": item} if mesh_frames is not None else {"head": item}))
-            yield simulation.positions(section, followers=followers, copy=copy)
+            yield simulation.positions(section, part=part, copy=copy)
             count += 1
         if frames is not None and count < frames:
             name = "head" if head is not None else "mesh_frames"

@@ -49,18 +49,24 @@ def parameters() -> Mapping[str, Parameter]:
 _SEPARATORS = {"size": "x", "part": "/", "profile": ":"}
 
 
+def plain(value: Any) -> Any:
+    """numpy's arrays and numbers as Python's."""
+    return value.tolist() if hasattr(value, "tolist") else value
+
+
 def text_of(name: str, value: Any) -> str:
     """`value` as a flag has it: texts and paths as they are, True as true, numbers in full, sequences with what the kind
     of parameter puts between numbers."""
     if isinstance(value, (str, os.PathLike)):
         return os.fspath(value)
-    if hasattr(value, "tolist"):  # numpy's arrays and numbers
-        value = value.tolist()
+    value = plain(value)
+    if isinstance(value, (list, tuple)):
+        value = [plain(item) for item in value]
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, (int, float)):
         return repr(value)
-    if isinstance(value, (list, tuple)) and all(isinstance(item, (int, float)) and not isinstance(item, bool) for item in value):
+    if isinstance(value, list) and all(isinstance(item, (int, float)) and not isinstance(item, bool) for item in value):
         row = parameters().get(name)
         return _SEPARATORS.get(row.kind if row else "", ",").join(map(repr, value))
     raise usage(f"{name}: got {value!r}: expected a text, a number, a sequence of numbers, True or False")

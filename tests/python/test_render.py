@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 # render(): images of arrays and of files, the same as tractrix-render's.
+import inspect
 import os
+import re
 import subprocess
 
 import numpy as np
@@ -53,6 +55,20 @@ def test_colors_of_vertices_are_seen(curls):
     assert image[:, :, 2].max() > image[:, :, 0].max() + 20
 
 
+def test_arrays_of_small_hair_are_for_its_vertices(curls):
+    """A strand of two vertices has two numbers of thickness and two of its root's uv."""
+    strand = np.array([[(0, 0, 0), (0, 1, 0)]])
+    image = tractrix.render(strand, unit="m", thickness=(1, 2), uv=[(0.5, 0.5)], size=SIZE, look="plain", radius=0.01)
+    assert not np.array_equal(image, tractrix.render(strand, unit="m", size=SIZE, look="plain", radius=0.01))
+
+
+def test_the_usual_size_is_the_programs(pytestconfig):
+    page = (pytestconfig.rootpath / "docs/options.md").read_text()
+    size = re.search(r"^\| `--size WxH` .*default (\d+)x(\d+)\]", page, re.M)
+    for function in (tractrix.render, tractrix.Simulation.render):
+        assert inspect.signature(function).parameters["size"].default == (int(size[1]), int(size[2]))
+
+
 def test_thickness_of_vertices_is_relative_to_its_mean(curls):
     """Hair that is thick at its roots only covers the upper half, whatever its unit."""
     share = np.linspace(2, 0.01, 8)[None, :] * np.ones((12, 1))
@@ -75,7 +91,8 @@ def test_what_simulate_yields_can_be_drawn(curls):
     assert tractrix.compare(again, drawn, max_flip=0.02).same
 
 
-@pytest.mark.parametrize("arguments, place", [({"size": (0, 4)}, "1"), ({"size": 4}, "size"), ({"dtype": np.int32}, "dtype"),
+@pytest.mark.parametrize("arguments, place", [({"size": (0, 4)}, "1"), ({"size": 4}, "size"), ({"dtype": np.int32}, "dtype: got int32"), ({"dtype": "float"}, "dtype: got float64"),
+                                              ({"dtype": "rgb"}, "dtype: got .rgb.: expected uint8"),
                                               ({"view": (np.eye(4),)}, "view"), ({"view": (np.eye(3), np.eye(4))}, r"view\[0\]")])
 def test_wrong_images_are_named(curls, arguments, place):
     with pytest.raises(tractrix.TractrixValueError, match=place):

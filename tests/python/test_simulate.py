@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 # simulate() and Simulation: positions of strands in the form that they came in, moved by frames, poses and meshes.
+import gc
 import threading
+import weakref
 
 import numpy as np
 import pytest
@@ -77,9 +79,12 @@ def test_hair_is_bound_to_a_mesh_that_deforms(curls):
 def test_followers_are_asked_for(curls):
     with tractrix.Simulation(curls, unit="m", followers=2, algo="none") as simulation:
         assert simulation.positions().shape == (12, 8, 4)
-        assert simulation.positions(followers=True).shape == (24, 8, 4)
+        assert simulation.positions(part="followers").shape == (24, 8, 4)
     with tractrix.Simulation(curls, unit="m", followers=0) as simulation:
-        assert len(simulation.positions(followers=True)) == 0
+        assert len(simulation.positions(part="followers")) == 0
+    assert next(tractrix.simulate(curls, unit="m", frames=1, followers=2, part="followers", algo="none")).shape == (24, 8, 4)
+    with pytest.raises(tractrix.TractrixValueError, match="part: got 'both': expected"):
+        tractrix.simulate(curls, unit="m", frames=1, part="both")
 
 
 def test_a_simulation_takes_new_wind_and_tells_the_time(curls):
@@ -93,13 +98,29 @@ def test_a_simulation_takes_new_wind_and_tells_the_time(curls):
         assert (simulation.positions()[:, -1, 0] - before[:, -1, 0]).mean() > 1e-4
         with pytest.raises(tractrix.TractrixValueError, match="frames|live"):
             simulation.set(frames=3)
-    with pytest.raises(tractrix.TractrixError, match="closed"):
+    with pytest.raises(tractrix.TractrixError, match="Simulation: used after close"):
         simulation.advance()
 
 
 def test_views_show_what_copies_keep(curls):
     with tractrix.Simulation(curls, unit="m") as simulation:
-        np.testing.assert_array_equal(simulation.positions(copy=False), simulation.positions())
+        view, copy = simulation.positions(copy=False), simulation.positions()
+        np.testing.assert_array_equal(view, copy)
+        assert np.shares_memory(view, simulation.positions(copy=False)) and not np.shares_memory(view, copy)
+
+
+def test_a_view_keeps_the_memory_that_it_shows(curls):
+    with tractrix.Simulation(curls, unit="m") as simulation:
+        handle = weakref.ref(simulation._handle)
+        strand = simulation.positions(copy=False)[0]
+        before = strand.copy()
+    del simulation
+    gc.collect()
+    assert handle() is not None
+    np.testing.assert_array_equal(strand, before)
+    del strand
+    gc.collect()
+    assert handle() is None
 
 
 @pytest.mark.parametrize("arguments, place", [
@@ -112,6 +133,9 @@ def test_views_show_what_copies_keep(curls):
     ({"unit": "m", "mesh": (np.zeros((3, 3)), np.array([[0, 1, -1]]))}, "mesh"),
     ({"unit": "m", "uv": np.zeros((3, 2))}, "uv: shape"),
     ({"unit": "m", "color": np.zeros((12, 8, 2))}, "color: 2 numbers"),
+    ({"unit": "m", "color": [[[1, 0, 0]], [[1, 0], [1]]]}, "color: rows of different lengths"),
+    ({"unit": "m", "thickness": [[1, 2], [3]]}, "thickness: rows of different lengths"),
+    ({"unit": "m", "thickness": (1, 2, 3)}, "thickness: shape"),
     ({"unit": "m", "deforms": True}, "deforms: needs"),
 ])
 def test_wrong_arguments_are_named(curls, arguments, place):
@@ -128,6 +152,8 @@ def test_wrong_arguments_are_named(curls, arguments, place):
     (np.zeros((1, 2, 3)), "0"),  # vertices that coincide
     (np.full((1, 2, 3), np.nan), "0"),
     (np.array([[[1j, 0, 0], [0, 0, 1]]]), "strands: got"),
+    ([[(0, 0, 0), (0, 1)]], r"strands\[0\]: rows of different lengths"),
+    (([(0, 0, 0)], [[1], [1, 2]]), r"strands\[1\]: rows of different lengths"),
     ("no/such.tfx", "no/such.tfx"),
 ])
 def test_wrong_strands_are_named(strands, place):

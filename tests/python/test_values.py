@@ -15,6 +15,8 @@ from tractrix._values import text_of
     ("style", (0.9, 0.3), "0.9:0.3"),
     ("style", 0.25, "0.25"),
     ("style", np.float32(0.5), "0.5"),
+    ("wind", (np.float32(0.5), np.float64(1), 0), "0.5,1.0,0"),
+    ("wind", [np.int64(2), np.array(3), -1.5], "2,3,-1.5"),
     ("smooth", np.int64(3), "3"),
     ("turn_lights", True, "true"),
     ("turn_lights", np.bool_(False), "false"),
