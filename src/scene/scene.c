@@ -271,14 +271,27 @@ static Origin origin_of(const Section *section, const char *name)
     return (Origin)section->origin[params_find(name) - PARAM_TABLE];
 }
 
+// What another parameter has replaced: its value, and how it changes.
+static void drop_transmission(Section *section)
+{
+    section->params.transmission = (AutoVec3){.automatic = true};
+    section_tracks_drop(&section->tracks, params_find("transmission"));
+}
+
+static void drop_melanin(Section *section)
+{
+    section->params.melanin = (AutoFloat){.automatic = true};
+    section_tracks_drop(&section->tracks, params_find("melanin"));
+}
+
 static void settle_section(Section *section)
 {
     SectionParams *params = &section->params;
     Origin color = origin_of(section, "color"), crossed = origin_of(section, "transmission"),
            melanin = origin_of(section, "melanin"), of_file = origin_of(section, "file_colors"),
            opacity = origin_of(section, "file_opacity");
-    if (color > crossed) params->transmission = (AutoVec3){.automatic = true};
-    if (color > melanin || crossed > melanin) params->melanin = (AutoFloat){.automatic = true};
+    if (color > crossed) drop_transmission(section);
+    if (color > melanin || crossed > melanin) drop_melanin(section);
     bool refused = !params->file_colors && of_file > opacity;
     if (color > of_file || crossed > of_file || melanin > of_file) params->file_colors = false;
     if (refused || origin_of(section, "opacity") > opacity) params->file_opacity = false;

@@ -147,10 +147,12 @@ Result scene_set(Scene *scene, int section, const ParamInfo *info, const char *t
 Result scene_choose_turn(Scene *scene, Error *error);
 
 // What is said gives way to what is said more closely: a transmission or melanin to a color;
-// file_colors to all three; file_opacity to an opacity, and to file_colors that are refused.
+// file_colors to all three; file_opacity to an opacity, and to file_colors that are refused. To be
+// called once, when the last parameter is set.
 void scene_settle_colors(Scene *scene);
 
-// As scene_read, but without scene_check, so that flags may still mend a combination.
+// As scene_read, but without scene_settle_colors and scene_check, so that flags may still win and
+// mend a combination.
 Result scene_read_unchecked(Scene *scene, const char *path, const SceneOverrides *overrides,
                             Error *error);
 

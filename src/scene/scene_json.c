@@ -265,7 +265,6 @@ static Result parse(Scene *scene, const char *name, const json_t *json, const ch
     scene->file = strdup(name);
     Result result = scene->file ? read_document(scene, &document, error)
                                 : error_set(error, RESULT_FAILED, "out of memory");
-    scene_settle_colors(scene);
     // A scene file says what there is.
     if (scene->origin[params_find("scalp") - PARAM_TABLE] == ORIGIN_DEFAULT)
         scene->run.scalp = SCALP_NONE;
@@ -303,6 +302,7 @@ Result scene_read(Scene *scene, const char *path, Error *error)
 {
     const SceneOverrides none = {0};
     TRY(scene_read_unchecked(scene, path, &none, error));
+    scene_settle_colors(scene);
     scene_set_lights(scene);
     Result result = scene_check(scene, error);
     if (result != RESULT_USAGE && result != RESULT_BAD_INPUT) return result;

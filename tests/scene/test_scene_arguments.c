@@ -303,6 +303,9 @@ static void colors_of_files_give_way_to_what_is_named(void **state)
         {", \"file_colors\": true", "", " --color red", false, true},
         {", \"color\": \"#ff0000\", \"file_colors\": true", "", "", true, true},
         {", \"opacity\": 0.5", "", " --file-opacity", true, true},
+        {", \"file_colors\": false", "", "", false, false},
+        {", \"file_colors\": false", "", " --file-colors", true, true},
+        {"", ", \"file_colors\": false", " --file-colors", true, true},
         {", \"look\": \"plain\"", "", "", true, true},
     };
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
@@ -316,6 +319,48 @@ static void colors_of_files_give_way_to_what_is_named(void **state)
         print_message("%s%s%s\n", CASES[i].keys, CASES[i].shared, CASES[i].flags);
         assert_int_equal(scene.sections[0].params.file_colors, CASES[i].colors);
         assert_int_equal(scene.sections[0].params.file_opacity, CASES[i].opacity);
+        scene_destroy(&scene);
+    }
+}
+
+// Of color, transmission and melanin the one that is named more closely counts, and what it replaces
+// changes no more.
+static void a_color_ends_what_it_replaces(void **state)
+{
+#define KEYS(at_0, at_1)                                                                           \
+    "{\"keys\": [{\"time\": 0, \"value\": " at_0 "}, {\"time\": 1, \"value\": " at_1 "}]}"
+#define RED "\"#ff0000\""
+#define GREEN "\"#00ff00\""
+    static const struct {
+        const char *keys, *shared, *flags;
+        bool transmission, melanin; // whether they count
+        uint32_t tracks;
+    } CASES[] = {
+        {", \"transmission\": " RED, "", " --color blond", false, false, 0},
+        {", \"transmission\": " KEYS(RED, GREEN), "", " --color blond", false, false, 0},
+        {", \"melanin\": 2", "", " --color blond", false, false, 0},
+        {", \"melanin\": " KEYS("1", "2"), "", " --color blond", false, false, 0},
+        {", \"melanin\": {\"formula\": \"t\"}", "", " --color blond", false, false, 0},
+        {", \"melanin\": " KEYS("1", "2"), "", " --transmission red", true, false, 0},
+        {", \"color\": " RED, ", \"melanin\": " KEYS("1", "2"), "", false, false, 0},
+        {", \"color\": " KEYS(RED, GREEN), ", \"melanin\": 2", "", false, false, 1},
+        {", \"transmission\": " KEYS(RED, GREEN), "", "", true, false, 1},
+        {", \"melanin\": " KEYS("1", "2"), "", " --drag 2", false, true, 1},
+        {", \"melanin\": " KEYS("1", "2"), "", " --melanin 3", false, true, 0},
+    };
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        char file[400], line[600];
+        Scene scene;
+        snprintf(file, sizeof file, "{\"sections\": [{\"file\": \"a\"%s}]%s}", CASES[i].keys,
+                 CASES[i].shared);
+        snprintf(line, sizeof line, "%s -o x/%s", write_scene(state, file), CASES[i].flags);
+        assert_read(&scene, line);
+        print_message("%s%s%s\n", CASES[i].keys, CASES[i].shared, CASES[i].flags);
+        SectionParams *params = &scene.sections[0].params;
+        section_tracks_apply(&scene.sections[0].tracks, 1, params);
+        assert_int_equal(params->transmission.automatic, !CASES[i].transmission);
+        assert_int_equal(params->melanin.automatic, !CASES[i].melanin);
+        assert_int_equal(scene.sections[0].tracks.count, CASES[i].tracks);
         scene_destroy(&scene);
     }
 }
@@ -526,6 +571,7 @@ int main(void)
         cmocka_unit_test(one_name_is_one_frame),
         cmocka_unit_test(section_flags_reach_every_section),
         TEST(colors_of_files_give_way_to_what_is_named),
+        TEST(a_color_ends_what_it_replaces),
         cmocka_unit_test(output_is_needed_only_to_draw),
         cmocka_unit_test(wrong_command_lines_are_refused_with_the_nearest_name),
         TEST(flags_may_mend_a_combination_that_a_scene_file_has),
