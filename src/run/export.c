@@ -52,8 +52,7 @@ static Result look_at_section(SceneLook *look, const Section *section, const Str
                               size_t first, Error *error)
 {
     Paint paint;
-    SectionParams seen = section->params; // owns nothing
-    seen.shading = SHADING_KAJIYA;        // colours as one sees them, as files have them
+    const SectionParams seen = paint_as_seen(&section->params);
     Result result = paint_create(&paint, strands, &seen, error);
     if (result != RESULT_OK) return error_prefix(error, result, "%s: ", section->file);
     set_widths(look->width + first, strands, &seen, &paint);

@@ -8,20 +8,42 @@
 #include <stdlib.h>
 #include <string.h>
 
+// Paint holds the section's colour as it is at the start, beside what differs along the strands.
+static Result refuse_changes(const Section *section, const Strands *strands, const Paint *paint,
+                             Error *error)
+{
+    static const char *const NAMES[] = {"color", "transmission", "melanin"};
+    const SectionParams *params = &section->params;
+    bool opacity = params->file_opacity && !strands_are_opaque(strands);
+    if (!paint->color || paint->colors_from_file || *params->color_map) return RESULT_OK;
+    for (size_t i = 0; i < sizeof NAMES / sizeof *NAMES; ++i)
+        if (section_tracks_has(&section->tracks, params_find(NAMES[i])))
+            return error_set(error, RESULT_USAGE,
+                             "%s: it cannot change over time with %s: expected one value, or %s",
+                             NAMES[i],
+                             params->tip_length > 0 ? "tips of another color"
+                             : opacity              ? "the file's opacities"
+                                                    : "the file's thickness",
+                             params->tip_length > 0 ? "--tip-length 0"
+                             : opacity              ? "--no-file-opacity"
+                                                    : "--no-file-thickness");
+    return RESULT_OK;
+}
+
 static Result paint_section(Images *images, uint32_t i, Error *error)
 {
     SimulationSection *section = &images->simulation->sections[i];
+    const Section *look = &images->scene->sections[i];
     const Strands *strands = &images->assets->strands[i];
     const GpuLimits *limits = &images->gpu->limits;
     Paint paint;
-    Result result = paint_create(&paint, strands, &images->scene->sections[i].params, error);
+    Result result = paint_create(&paint, strands, &look->params, error);
+    THEN(result, refuse_changes(look, strands, &paint, error));
     THEN(result, hair_paint_upload(&section->hair, strands, &paint, limits, error));
     if (result == RESULT_OK && section->follow.per_guide)
         result = hair_paint_upload(&section->follow.hair, strands, &paint, limits, error);
     paint_destroy(&paint);
-    return result == RESULT_USAGE
-               ? error_prefix(error, result, "%s: ", images->scene->sections[i].file)
-               : result;
+    return result == RESULT_USAGE ? error_prefix(error, result, "%s: ", look->file) : result;
 }
 
 static Result create_items(Images *images, Error *error)

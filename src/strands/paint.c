@@ -47,18 +47,33 @@ static double chiang_scale(double roughness)
            0.245 * square * square * b;
 }
 
+// The factor of sigma at which hair of this azimuthal roughness looks as it does at FITTED_AT.
+static double find_widening(const SectionParams *params)
+{
+    return pow(chiang_scale(FITTED_AT) / chiang_scale((double)params->azimuthal_roughness), 2);
+}
+
 // Of fibres that together show the colour, what a diameter lets through, exp(-2 sigma). A colour
 // that is brighter than hair can be keeps its hue.
 static void absorb(const SectionParams *params, float linear[3])
 {
-    double wider =
-        pow(chiang_scale(FITTED_AT) / chiang_scale((double)params->azimuthal_roughness), 2);
+    double wider = find_widening(params);
     double brightest = fmax((double)linear[0], fmax((double)linear[1], (double)linear[2])),
            less = fmin(1, (DARKEST + SPAN) / fmax(brightest, DARKEST));
     for (int k = 0; k < 3; ++k) {
         double shown = fmax(less * (double)linear[k] - DARKEST, DARK_ROOM),
                sigma = pow(fmax(log(SPAN / shown), 0) / STEEPNESS, 1 / BEND);
         linear[k] = (float)exp(-2 * wider * sigma);
+    }
+}
+
+// The inverse: the colour that fibres show together, of what a diameter lets through.
+static void reveal(const SectionParams *params, float linear[3])
+{
+    double wider = find_widening(params);
+    for (int k = 0; k < 3; ++k) {
+        double sigma = -log((double)linear[k]) / (2 * wider); // infinite: nothing comes through
+        linear[k] = (float)(DARKEST + SPAN * exp(-STEEPNESS * pow(fmax(sigma, 0), BEND)));
     }
 }
 
@@ -77,6 +92,20 @@ void paint_color(const SectionParams *params, float linear[3])
     if (seen) take_seen(params, linear);
     for (int k = 0; k < 3 && !params->melanin.automatic; ++k)
         linear[k] = (float)exp(-2 * amount * ((1 - red) * EUMELANIN[k] + red * PHEOMELANIN[k]));
+}
+
+SectionParams paint_as_seen(const SectionParams *params)
+{
+    SectionParams seen = *params;
+    float shown[3];
+    seen.shading = SHADING_KAJIYA;
+    if (params->transmission.automatic && params->melanin.automatic) return seen;
+    paint_color(params, shown);
+    if (params->shading == SHADING_MARSCHNER) reveal(params, shown);
+    for (int k = 0; k < 3; ++k) seen.color[k] = (float)image_srgb_from_linear((double)shown[k]);
+    seen.transmission = (AutoVec3){.automatic = true};
+    seen.melanin = (AutoFloat){.automatic = true};
+    return seen;
 }
 
 static double texel(const Image *map, int64_t x, int64_t y, int channel)
@@ -194,7 +223,8 @@ static bool is_wanted(const Strands *strands, const SectionParams *params)
 {
     bool thickness = strands->vertex_thickness || strands->strand_thickness;
     return *params->color_map || params->tip_length > 0 ||
-           (strands->color && (params->file_colors || params->file_opacity)) ||
+           (strands->color && params->file_colors) ||
+           (params->file_opacity && !strands_are_opaque(strands)) ||
            (thickness && params->file_thickness);
 }
 

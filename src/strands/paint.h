@@ -39,6 +39,10 @@ bool paint_describe(const Strands *strands, const SectionParams *params, char *t
 // together show `color` (paint.c). With kajiya, whose colour is what one sees, `color` itself.
 void paint_color(const SectionParams *params, float linear[3]);
 
+// The same look with colours as one sees them, which files have: those of kajiya, `color` in place
+// of transmission and melanin. What it points to is borrowed.
+SectionParams paint_as_seen(const SectionParams *params);
+
 // Fibre radius at the root, metres, > 0, for drawing these strands with this many followers each.
 //
 // A head carries 100,000 hairs of about 40 um; files hold a few thousand, each of which stands for

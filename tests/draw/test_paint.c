@@ -113,6 +113,28 @@ static void what_the_file_has_is_used_unless_refused(void **state)
     strands_destroy(&strands);
 }
 
+// Refused colours leave no paint that would hold the section's colour as it is at the start, unless
+// there are opacities.
+static void refused_colors_paint_nothing(void **state)
+{
+    (void)state;
+    Strands strands = make_strands();
+    SectionParams params = make_params();
+    Paint paint;
+    strands.color = calloc(strands.vertex_count, sizeof *strands.color);
+    assert_non_null(strands.color);
+    for (uint32_t v = 0; v < strands.vertex_count; ++v) strands.color[v][3] = 1;
+    params.file_colors = false;
+    NEEDED(paint_create(&paint, &strands, &params, error));
+    assert_null(paint.color);
+    strands.color[0][3] = 0.5f;
+    NEEDED(paint_create(&paint, &strands, &params, error));
+    assert_non_null(paint.color);
+    paint_destroy(&paint);
+    params_destroy_section(&params);
+    strands_destroy(&strands);
+}
+
 // Black, red / green, white, from the top left. In the middles of texels there is nothing to mix.
 static void a_picture_colors_strands_by_their_roots(void **state)
 {
@@ -153,7 +175,7 @@ static void melanin_gives_the_colors_of_hair(void **state)
     float color[3];
     paint_color(&params, color);
     assert_true(color[0] == 1);
-    params.melanin = (AutoFloat){.value = 1.3f}; // brown; exp(-2 * 1.3 * 0.419) and so on
+    params.melanin = (AutoFloat){.value = 1.3f}; // dark brown; exp(-2 * 1.3 * 0.419) and so on
     paint_color(&params, color);
     assert_true(fabsf(color[0] - 0.3364f) < 1e-4f && fabsf(color[2] - 0.02838f) < 1e-4f);
     params.melanin.value = 0;
@@ -164,6 +186,43 @@ static void melanin_gives_the_colors_of_hair(void **state)
     paint_color(&params, color);
     assert_true(fabsf(color[1] - expf(-0.4f)) < 1e-6f);
     params_destroy_section(&params);
+}
+
+// As the color that they show, transmission and melanin give the same fibres again.
+static void what_fibres_let_through_has_a_color(void **state)
+{
+    (void)state;
+    static const struct {
+        float transmission[3], melanin; // sRGB; < 0: none
+        Shading shading;
+        float roughness;
+    } CASES[] = {
+        {{0}, 1.3f, SHADING_MARSCHNER, 12},        {{0}, 0, SHADING_MARSCHNER, 12},
+        {{0}, 0.2f, SHADING_MARSCHNER, 30},        {{1, 0.7f, 0.4f}, -1, SHADING_MARSCHNER, 12},
+        {{1, 0.7f, 0.4f}, -1, SHADING_KAJIYA, 12}, {{0}, 0.6f, SHADING_KAJIYA, 12}};
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; ++i) {
+        SectionParams params = make_params();
+        float wanted[3], got[3];
+        params.shading = CASES[i].shading;
+        params.azimuthal_roughness = CASES[i].roughness;
+        if (CASES[i].melanin >= 0)
+            params.melanin = (AutoFloat){.value = CASES[i].melanin};
+        else
+            memcpy(params.transmission.value, CASES[i].transmission, sizeof wanted),
+                params.transmission.automatic = false;
+        paint_color(&params, wanted);
+        SectionParams seen = paint_as_seen(&params);
+        assert_true(seen.transmission.automatic && seen.melanin.automatic);
+        paint_color(&seen, got);
+        if (i == 0) { // 0.0145 + 0.315 exp(-3.5 (1.3 * 0.419)^0.73) and so on
+            const float shown[3] = {0.0478f, 0.0266f, 0.0160f};
+            for (int k = 0; k < 3; ++k) assert_true(fabsf(got[k] - shown[k]) < 1e-4f);
+        }
+        seen.shading = params.shading;
+        paint_color(&seen, got);
+        for (int k = 0; k < 3; ++k) assert_true(fabsf(got[k] - wanted[k]) < 1e-4f);
+        params_destroy_section(&params);
+    }
 }
 
 // Painted red, green and half transparent, twice as thick: by both rasterisers.
@@ -277,9 +336,11 @@ int main(void)
         cmocka_unit_test(nothing_to_paint_costs_nothing),
         cmocka_unit_test(tips_have_their_color),
         cmocka_unit_test(what_the_file_has_is_used_unless_refused),
+        cmocka_unit_test(refused_colors_paint_nothing),
         cmocka_unit_test_setup_teardown(a_picture_colors_strands_by_their_roots, temporary_create,
                                         temporary_destroy),
         cmocka_unit_test(melanin_gives_the_colors_of_hair),
+        cmocka_unit_test(what_fibres_let_through_has_a_color),
         cmocka_unit_test(hair_shows_its_paint),
         cmocka_unit_test(smooth_hair_is_as_thick_as_between_its_vertices),
         cmocka_unit_test(painted_hair_lies_in_shadow),

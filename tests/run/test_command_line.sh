@@ -320,4 +320,16 @@ else
     skip "no ffmpeg"
 fi
 
+claim "keys of a color are refused on hair that is painted once"
+"$bin/tractrix-gen" --kind straight --count 20 --vertices 8 -q -o "$work/few.tfx"
+printf '{"sections": [{"file": "few.tfx", "tip_length": 0.5, "color": {"keys": [{"time": 0, "value": "#ff0000"}, {"time": 1, "value": "#00ff00"}]}}]}' >"$work/keys.json"
+run 2 "$work/keys.json" --look plain --algo none --frames 1 --size 32x24 -q -o "$work/keys.png"; one_line
+says "few.tfx: color: it cannot change over time with tips of another color: expected one value, or --tip-length 0"
+run 0 "$work/keys.json" --look plain --algo none --frames 1 --size 32x24 -q --tip-length 0 -o "$work/keys.png"
+
+claim "exported hair has the color that it shows"
+run 0 "$work/few.tfx" --algo none --frames 1 --size 32x24 -q --melanin 1.3 --export "$work/few.usda"
+says_color() { if grep -a displayColor "$work/few.usda" | grep -qF "$1"; then good; else bad "no color $1"; fi; }
+says_color "(0.0478"
+
 finish

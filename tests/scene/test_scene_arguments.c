@@ -323,13 +323,13 @@ static void colors_of_files_give_way_to_what_is_named(void **state)
     }
 }
 
-// Of color, transmission and melanin the one that is named more closely counts, and what it replaces
-// changes no more.
+// Of color, transmission and melanin the one that is named more closely counts, and what it
+// replaces changes no more.
 static void a_color_ends_what_it_replaces(void **state)
 {
 #define KEYS(at_0, at_1)                                                                           \
     "{\"keys\": [{\"time\": 0, \"value\": " at_0 "}, {\"time\": 1, \"value\": " at_1 "}]}"
-#define RED "\"#ff0000\""
+#define RED   "\"#ff0000\""
 #define GREEN "\"#00ff00\""
     static const struct {
         const char *keys, *shared, *flags;
