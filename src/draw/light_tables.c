@@ -70,7 +70,7 @@ Result light_field_make_first(LightField *field, const GridScene *scene, Error *
                 continue;
             memcpy(kind->first_way[l], field->to_light[l], sizeof kind->first_way[l]);
             MakeFirst make = {kind, l, parallel_threads()};
-            parallel_run(parallel_threads(), make_first, &make);
+            parallel_run(make.parts, make_first, &make);
             kind->has_first[l] = true;
             ++kind->made[FIELD_FIRST];
         }
@@ -146,7 +146,7 @@ Result light_field_make_scatter(LightField *field, const GridScene *scene, const
     }
     if (!classes) count = scene->kind_count * TANGENTS;
     for (int i = 0; i < count; ++i) need_scatter(&make, classes ? classes[i] : i);
-    if (make.count) parallel_run(parallel_threads(), make_scatter, &make);
+    if (make.count) parallel_run(make.parts, make_scatter, &make);
     return RESULT_OK;
 }
 
@@ -232,7 +232,7 @@ Result light_field_make_gather(LightField *field, const GridScene *scene, Error 
         if (kind->has_gather && memcmp(kind->gather_eye, eye, sizeof eye) == 0) continue;
         memcpy(kind->gather_eye, eye, sizeof eye);
         MakeGather make = {kind, parallel_threads()};
-        parallel_run(parallel_threads(), make_rows, &make);
+        parallel_run(make.parts, make_rows, &make);
         kind->has_gather = true;
         ++kind->made[FIELD_GATHER];
     }

@@ -226,7 +226,7 @@ static Result project(Lanes *lanes, const BackendFrame *frame, Error *error)
     }
     TRY(shades_begin(&lanes->shades, lanes->hairs.points + 1, error));
     return projection_find(&lanes->projection, &lanes->hairs, draw, hides ? &lanes->hidden : NULL,
-                           FAR, error);
+                           FAR, lanes->raster.bins.part_room, error);
 }
 
 static Result shade(void *state, const BackendFrame *frame, Error *error)

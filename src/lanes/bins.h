@@ -7,7 +7,7 @@
 // Lists of an image of columns x rows blocks of BLOCK_WIDTH x BLOCK_HEIGHT px (draw.h).
 typedef struct Bins {
     int columns, rows;
-    int part_room;
+    int part_room;    // how many parts a projection may have: the threads when it was created
     uint32_t *places; // [parts][rows * columns], owned: ribbons in a block, later where the next
                       // one goes
     size_t *begins;   // [rows * columns + 1], owned: where a block's list begins

@@ -354,12 +354,12 @@ static Result make_scratch(Projection *projection, size_t points, size_t most, E
 }
 
 Result projection_find(Projection *projection, const LaneHairs *hairs, const DrawParams *draw,
-                       const Hidden *hidden, float far, Error *error)
+                       const Hidden *hidden, float far, int parts, Error *error)
 {
     Project project = {projection, hairs, draw, hidden, far, 2};
     for (uint32_t i = 0; i < hairs->count; ++i)
         if (hairs->list[i].points > project.most) project.most = hairs->list[i].points;
-    projection->parts = parallel_threads();
+    projection->parts = parts;
     TRY(make_scratch(projection, hairs->points + 2, project.most, error));
     project.most = projection->scratch_room;
     run_project_hairs(&project, projection->parts);

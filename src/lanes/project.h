@@ -37,7 +37,8 @@ typedef struct Projection {
 
 // Projects all strands into the image of `draw`. `hidden`: what is opaque in it; NULL: nothing.
 // Points are left out where the ribbon is straight for no more than `far` px (at most; colours are
-// found at those that are kept). RESULT_FAILED if memory is short.
+// found at those that are kept). `parts`: 1 to PARALLEL_MOST, the same in each call. RESULT_FAILED
+// if memory is short.
 Result projection_find(Projection *projection, const LaneHairs *hairs, const DrawParams *draw,
-                       const Hidden *hidden, float far, Error *error);
+                       const Hidden *hidden, float far, int parts, Error *error);
 void projection_destroy(Projection *projection);

@@ -54,11 +54,16 @@ static void fill_slice(const TintTable *tints, int slice)
     }
 }
 
+typedef struct Filling {
+    const TintTable *tints;
+    int parts;
+} Filling;
+
 static void fill_part(void *data, int part)
 {
-    const TintTable *tints = data;
-    for (int slice = part; slice < tints->slices; slice += parallel_threads())
-        fill_slice(tints, slice);
+    const Filling *filling = data;
+    for (int slice = part; slice < filling->tints->slices; slice += filling->parts)
+        fill_slice(filling->tints, slice);
 }
 
 // Of each beam the most that any fibre sends is 65535 units.
@@ -89,7 +94,8 @@ Result tint_table_make(TintTable *tints, FibreTable table, const float color[3],
     tints->texels = malloc((size_t)tints->slices * NODES * sizeof *tints->texels);
     if (!tints->texels)
         return error_set(error, RESULT_FAILED, "no memory for a table of marschner shading");
-    parallel_run(parallel_threads(), fill_part, tints);
+    Filling filling = {tints, parallel_threads()};
+    parallel_run(filling.parts, fill_part, &filling);
     return RESULT_OK;
 }
 

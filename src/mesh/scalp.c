@@ -216,12 +216,13 @@ typedef struct Candidates {
     const ScalpRoots *roots;
     ScalpRoot root[CANDIDATES];
     bool good[CANDIDATES];
+    int parts;
 } Candidates;
 
 static void find_part(void *data, int part)
 {
     Candidates *candidates = data;
-    int parts = parallel_threads();
+    int parts = candidates->parts;
     for (int i = CANDIDATES * part / parts; i < CANDIDATES * (part + 1) / parts; i++)
         candidates->good[i] = find_candidate(
             candidates->roots, candidates->roots->next + (uint64_t)i, &candidates->root[i]);
@@ -229,9 +230,9 @@ static void find_part(void *data, int part)
 
 void scalp_roots_take(ScalpRoots *roots, ScalpRoot *root, uint32_t count)
 {
-    Candidates candidates = {.roots = roots};
+    Candidates candidates = {.roots = roots, .parts = parallel_threads()};
     for (uint32_t found = 0; found < count;) {
-        parallel_run(parallel_threads(), find_part, &candidates);
+        parallel_run(candidates.parts, find_part, &candidates);
         int i = 0;
         for (; i < CANDIDATES && found < count; i++)
             if (candidates.good[i]) root[found++] = candidates.root[i];

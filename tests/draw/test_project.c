@@ -104,7 +104,8 @@ static void project(Screen *screen, const Batch *batches, uint32_t count, float 
         hairs->tiles += batches[i].hair.tiles;
         hairs->points += batches[i].hair.tiles * STRAND_TILE * batches[i].hair.points;
     }
-    NEEDED(projection_find(&screen->projection, hairs, &draw, NULL, far, error));
+    NEEDED(
+        projection_find(&screen->projection, hairs, &draw, NULL, far, parallel_threads(), error));
 }
 
 static size_t count_items(const Projection *projection)

@@ -316,6 +316,29 @@ static void draws_by_views_and_formats(void **state)
     tractrix_simulation_destroy(simulation);
 }
 
+// A renderer keeps the number of threads that it was made with: its lists have room for these.
+static void keeps_pixels_when_threads_change(void **state)
+{
+    enum { W = 480, H = 320 };
+    static uint8_t pixels[2][W * H][4];
+    TractrixRenderer *renderer;
+    (void)state;
+    TractrixSimulation *simulation = simulate(device, NONE);
+    for (int i = 0; i < 2; ++i) {
+        TractrixImage image = {.size = sizeof image, .width = W, .height = H, .pixels = pixels[i]};
+        tractrix_set_threads(i ? 1 : 4);
+        WELL(tractrix_renderer_create(&renderer, simulation, W, H, TRACTRIX_RGBA8, &error));
+        tractrix_set_threads(i ? 4 : 1);
+        WELL(tractrix_render(renderer, NULL, &image, &error));
+        tractrix_set_threads(i ? 8 : 2);
+        WELL(tractrix_render(renderer, NULL, &image, &error));
+        tractrix_renderer_destroy(renderer);
+    }
+    tractrix_set_threads(0);
+    assert_memory_equal(pixels[0], pixels[1], sizeof pixels[0]);
+    tractrix_simulation_destroy(simulation);
+}
+
 static void refuses_what_has_no_effect(void **state)
 {
     static const char *const useless[] = {"gust_period", "3", NULL}, *const both[] = {
@@ -561,6 +584,7 @@ int main(void)
         cmocka_unit_test(follows_a_mesh),
         cmocka_unit_test(takes_live_parameters),
         cmocka_unit_test(draws_by_views_and_formats),
+        cmocka_unit_test(keeps_pixels_when_threads_change),
         cmocka_unit_test(refuses_what_has_no_effect),
         cmocka_unit_test(children_keep_their_parents),
         cmocka_unit_test(says_so_after_fork),
