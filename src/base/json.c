@@ -13,7 +13,7 @@
 
 enum { EXCERPT_SIZE = 64 };
 
-static atomic_bool memory_short;
+static _Thread_local bool memory_short;
 
 // When memory is short, jansson 2.14 loses characters of what it reads and then stops at an
 // assertion of its own (lex_scan_string). It gets a reserve instead, which is never used again:
@@ -34,7 +34,7 @@ static void *allocate(size_t size)
 {
     void *block = malloc(size);
     if (block) return block;
-    atomic_store(&memory_short, true);
+    memory_short = true;
     return take_reserve(size);
 }
 
@@ -56,7 +56,12 @@ static __attribute__((constructor)) void watch_memory(void)
 
 bool json_memory_short(void)
 {
-    return atomic_load(&memory_short);
+    return memory_short;
+}
+
+void json_memory_forget(void)
+{
+    memory_short = false;
 }
 
 // Writes the place's name from the root on; returns its length, cut at `size` - 1.
@@ -209,10 +214,13 @@ json_t *json_read(const void *text, size_t size, size_t flags, json_error_t *why
 
 char *json_text(const json_t *value, size_t flags)
 {
-    char *text = value ? json_dumps(value, flags) : NULL;
-    if (!text || !json_memory_short()) return text;
-    release(text);
-    return NULL;
+    char *dump = value ? json_dumps(value, flags) : NULL;
+    char *text = dump && !json_memory_short() ? strdup(dump) : NULL;
+    json_malloc_t allocates;
+    json_free_t releases;
+    json_get_alloc_funcs(&allocates, &releases);
+    if (dump) releases(dump);
+    return text;
 }
 
 Result json_parse(json_t **value, const char *path, const Bytes *bytes, size_t flags, Error *error)

@@ -44,17 +44,20 @@ Result json_read_choice(const JsonPlace *place, const json_t *value, const char 
 Result json_check_object(const JsonPlace *place, const json_t *value, const char *const *names,
                          Error *error);
 
-// Whether memory was short for any JSON value so far: values are then incomplete, since what is put
-// into NULL, or is NULL, is dropped without a word. Whoever writes a document asks before.
+// Whether memory was short for any JSON value that this thread has made so far: values are then
+// incomplete, since what is put into NULL, or is NULL, is dropped without a word. Whoever writes a
+// document asks before.
 bool json_memory_short(void);
+// Forgets that: for a thread that has none of those values any more.
+void json_memory_forget(void);
 
 // Reads a value; the caller owns the reference. NULL with *why (NULL: nowhere) if the text is no
 // JSON, or if memory was short: jansson then loses a number's last digits without a word, so that
 // no value counts. json_memory_short tells the two apart.
 json_t *json_read(const void *text, size_t size, size_t flags, json_error_t *why);
 
-// The value as text, owned by the caller; NULL for no value, and if memory was short when the text
-// or any value was made.
+// The value as text, owned by the caller, for free(); NULL for no value, and if memory was short
+// when the text or any value was made.
 char *json_text(const json_t *value, size_t flags);
 
 // Reads a whole text or file, named `path` in messages; the caller owns *value. RESULT_BAD_INPUT

@@ -23,6 +23,7 @@ static bool is_preset(const ParamInfo *info)
 static Result begin(Scene *scene, const TractrixScene *from, Error *error)
 {
     *scene = (Scene){0};
+    json_memory_forget();
     if (from->json) {
         const Bytes content = {(uint8_t *)from->json, strlen(from->json)};
         return scene_parse_unchecked(scene, from->path, &content, from->folder, &NO_OVERRIDES,

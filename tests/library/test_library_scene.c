@@ -2,6 +2,7 @@
 // Scenes of the library, which need no device: parameters, arrays, errors as values; and images.
 #include "support/library_fixture.h"
 
+#include <jansson.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -98,6 +99,36 @@ static void gives_way_to_looks(void **state)
     assert_string_equal(a, b);
     tractrix_scene_destroy(one);
     tractrix_scene_destroy(other);
+}
+
+// --- A host that has given jansson its own allocators.
+
+enum { BEFORE = 32 }; // bytes before each block: no block is one of malloc's
+
+static void *host_malloc(size_t size)
+{
+    char *block = malloc(size + BEFORE);
+    return block ? block + BEFORE : NULL;
+}
+
+static void host_free(void *block)
+{
+    if (block) free((char *)block - BEFORE);
+}
+
+static void works_with_a_hosts_allocators(void **state)
+{
+    TractrixScene *scene;
+    json_malloc_t allocates;
+    json_free_t releases;
+    char text[20000];
+    (void)state;
+    json_get_alloc_funcs(&allocates, &releases);
+    json_set_alloc_funcs(host_malloc, host_free);
+    WELL(tractrix_scene_read(&scene, "assets/demo.json", &library_error));
+    assert_in_range(tractrix_scene_json(scene, text, sizeof text), 100, sizeof text - 1);
+    tractrix_scene_destroy(scene);
+    json_set_alloc_funcs(allocates, releases);
 }
 
 static void reads_what_is_there(void **state)
@@ -332,6 +363,7 @@ int main(void)
         cmocka_unit_test(reads_and_writes_parameters),
         cmocka_unit_test(lists_parameters),
         cmocka_unit_test(gives_way_to_looks),
+        cmocka_unit_test(works_with_a_hosts_allocators),
         cmocka_unit_test(reads_what_is_there),
         cmocka_unit_test(refuses_wrong_arrays),
         cmocka_unit_test(refuses_wrong_meshes),
