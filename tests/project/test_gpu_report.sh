@@ -35,6 +35,20 @@ claim "what there is no time for is named"
 measure 0 --software --minutes=0
 holds known "all('no time' in s['outcome'] for s in k['steps']) and k['images'] == []"
 
+claim "a build that fails or takes too long stands in the report"
+mkdir "$work/stubs"
+printf '#!/bin/sh\necho "cc: no such compiler"\nexit 2\n' >"$work/stubs/make"
+chmod +x "$work/stubs/make"
+PATH=$work/stubs:$PATH run 1 --software -o "$work/report"
+holds known "[s['outcome'] for s in k['steps']] == ['failed with status 2: cc: no such compiler'] and k['images'] == []"
+printf '#!/bin/sh\nsleep 60\n' >"$work/stubs/make"
+PATH=$work/stubs:$PATH run 0 --software -o "$work/report" --minutes 0.01
+holds known "[s['outcome'] for s in k['steps']] == ['left out: no time was left']"
+
+claim "programs that are not there are named"
+run 4 --software -o "$work/report" --programs "$work/stubs"
+says "tractrix-render"; one_line
+
 claim "without a GPU nothing is measured"
 TRACTRIX_ASSUME='' measure 4 --minutes=1 --device=
 says 'no GPU to measure'
