@@ -192,7 +192,7 @@ comment() {
     rm -f "$work/sent" "$work/sent.call"
     expected=$1
     (cd "$work/pull" && exec env GITHUB_REPOSITORY=me/grooms GH_TOKEN=x HEAD_SHA="$sha" REPORT_URL=https://github.com/me/grooms/actions/runs/1 TRACTRIX_BIN="$programs" \
-        IMAGES_REMOTE="$work/pictures.git" bash --noprofile --norc -e -o pipefail "$work/steps/say-what-needs-a-look.sh") >"$work/out" 2>"$work/err" </dev/null
+        IMAGES_REMOTE="$work/pictures.git" RUNNER_TEMP="$work/pull" bash --noprofile --norc -e -o pipefail "$work/steps/say-what-needs-a-look.sh") >"$work/out" 2>"$work/err" </dev/null
     status=$?
     if [ "$status" = "$expected" ]; then good; else bad "exit status $status, expected $expected"; fi
 }
@@ -235,16 +235,23 @@ in_file "$work/body" "![wrong.png](https://raw.githubusercontent.com/me/grooms/r
 "$real" -C "$work/pictures.git" show "pictures:$at/wrong.png.jpg" >"$work/picture.jpg"
 if [ "$(head -c 3 "$work/picture.jpg" | od -An -tx1 | tr -d ' ')" = ffd8ff ]; then good; else bad "no JPEG file"; fi
 old=$work/old; "$real" clone --quiet "$work/pictures.git" -b pictures "$old"; mkdir "$old/2020-01-01"; touch "$old/2020-01-01/x"
-"$real" -C "$old" add -A && "$real" -C "$old" -c user.name=x -c user.email=x commit --quiet -m "Images of x" && "$real" -C "$old" push --quiet
-comment 0
+"$real" -C "$old" add -A
+tip=$("$real" -C "$old" -c user.name=tractrix -c user.email=tractrix@localhost commit-tree "$("$real" -C "$old" write-tree)" -m "Images of x")
+"$real" -C "$old" push --quiet --force origin "$tip:pictures"
+# Another run pushes between this one's question and its push: it tries again.
+printf '#!/bin/sh\n[ ! -e once ] || { rm once; exit 1; }\n' >"$work/pictures.git/hooks/pre-receive"; chmod +x "$work/pictures.git/hooks/pre-receive"
+touch "$work/pictures.git/once"
+comment 0; none "$work/pictures.git/once"
 if [ "$("$real" -C "$work/pictures.git" ls-tree -r --name-only pictures)" = "$at/wrong.png.jpg" ]; then good; else bad "$("$real" -C "$work/pictures.git" ls-tree -r --name-only pictures)"; fi
 if [ "$("$real" -C "$work/pictures.git" rev-list --count pictures)" = 1 ]; then good; else bad "the branch grows"; fi
 
 claim "a branch with commits of others is refused and stays, and so is one that cannot be read"
-"$real" -C "$old" -c user.name=x -c user.email=x commit --quiet --allow-empty -m "Work of weeks" && "$real" -C "$old" push --quiet origin HEAD:main
+"$real" -C "$old" -c user.name=x -c user.email=x commit --quiet --allow-empty -m "Images of the work of weeks" && "$real" -C "$old" push --quiet origin HEAD:main
 before=$("$real" -C "$work/pictures.git" rev-parse main)
 IMAGES_BRANCH=main; comment 1; one_line; says "main has commits of others"; none "$work/sent"
 if [ "$("$real" -C "$work/pictures.git" rev-parse main)" = "$before" ]; then good; else bad "it was pushed over"; fi
+"$real" -C "$old" -c user.name=tractrix -c user.email=tractrix@localhost commit --quiet --allow-empty -m "Images of a merge" && "$real" -C "$old" push --quiet origin HEAD:main
+comment 1; one_line; says "main has commits of others"
 mv "$work/pictures.git" "$work/away.git"
 comment 1; says "main: cannot ask whether this branch exists"; none "$work/sent"
 mv "$work/away.git" "$work/pictures.git"
