@@ -240,10 +240,9 @@ static Bytes read_file(const char *path)
     return bytes;
 }
 
-static void cut_and_damaged_files_are_refused_in_one_line(void **state)
+static void damage(const char *path)
 {
-    (void)state;
-    Bytes bytes = read_file("tests/data/curves.abc");
+    Bytes bytes = read_file(path);
     Strands strands;
     for (size_t i = 5; i < 2 * bytes.size; ++i) {
         Error error = {""};
@@ -259,6 +258,13 @@ static void cut_and_damaged_files_are_refused_in_one_line(void **state)
         strands_destroy(&strands);
     }
     bytes_destroy(&bytes);
+}
+
+static void cut_and_damaged_files_are_refused_in_one_line(void **state)
+{
+    (void)state;
+    damage("tests/data/curves.abc");
+    damage("tests/data/unreal.abc");
 }
 
 static void refuse(const uint8_t *data, size_t size, const char *says)
@@ -286,6 +292,38 @@ static void what_is_no_groom_says_what_it_is(void **state)
     bytes_destroy(&mesh);
 }
 
+// The four numbers of groom_guide stand in 24 bytes, whose count is at byte 700.
+static void attributes_of_other_counts_than_the_strands_are_refused(void **state)
+{
+    (void)state;
+    Bytes bytes = read_file("tests/data/unreal.abc");
+    assert_int_equal(bytes.data[700], 24);
+    bytes.data[700] = 20;
+    refuse(bytes.data, bytes.size, "groom_guide: 2 numbers for 4 curves");
+    bytes.data[700] = 16;
+    refuse(bytes.data, bytes.size, "groom_guide: 0 numbers for 4 curves");
+    bytes_destroy(&bytes);
+}
+
+// groom_width of one object, and another without any.
+static void widths_that_only_some_objects_have_are_left_out_with_a_line(void **state)
+{
+    (void)state;
+    Bytes bytes = read_file("tests/data/unreal.abc");
+    Strands strands;
+    StrandsReport report;
+    uint8_t *name = memmem(bytes.data, bytes.size, "groom_width", 11);
+    name = memmem(name + 1, bytes.size - (size_t)(name + 1 - bytes.data), "groom_width", 11);
+    assert_non_null(name);
+    *name = 'x';
+    assert_int_equal(reading_copy(&strands, bytes.data, bytes.size, &METRES, &report, NULL),
+                     RESULT_OK);
+    assert_null(strands.vertex_thickness);
+    assert_non_null(strstr(report.note, "left out: widths"));
+    strands_destroy(&strands);
+    bytes_destroy(&bytes);
+}
+
 int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, temporary_create, temporary_destroy)
@@ -300,6 +338,8 @@ int main(void)
         TEST(a_group_can_be_picked),
         TEST(cut_and_damaged_files_are_refused_in_one_line),
         TEST(what_is_no_groom_says_what_it_is),
+        TEST(widths_that_only_some_objects_have_are_left_out_with_a_line),
+        TEST(attributes_of_other_counts_than_the_strands_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -36,7 +36,7 @@ typedef struct Abc {
     Alembic alembic;
     AbcCurves *set;                         // [count]
     uint32_t count, meshes, hidden, guides; // objects; strands that are left out
-    bool all_frames;
+    bool all_frames, lost_widths;
 } Abc;
 
 static UsdValues to_values(Reader *reader, double *number, size_t count)
@@ -230,9 +230,8 @@ static void describe_times(const Abc *abc, Times times, FormatSource *source)
 
 static bool is_guide(const AbcCurves *set, uint32_t s)
 {
-    if (!set->guide || set->guide_count == 0) return false;
-    return set->guide[set->guide_count == 1 ? 0 : s] != 0 &&
-           (set->guide_count == 1 || s < set->guide_count);
+    uint32_t i = set->guide_count == 1 ? 0 : s;
+    return i < set->guide_count && set->guide[i] != 0;
 }
 
 // All strands one behind the other, and which of them stay: without guides, if there are others.
@@ -337,6 +336,12 @@ static double unite_widths(const Abc *abc, Strands *sets, double time)
     return centimetres == abc->count ? ABC_GROOM_UNIT : 0;
 }
 
+static void check_guides(Reader *reader, const AbcCurves *set, uint32_t strands)
+{
+    if (set->guide && set->guide_count != 1 && set->guide_count != strands)
+        reader_fail(reader, "groom_guide: %zu numbers for %u curves", set->guide_count, strands);
+}
+
 static Result make_strands(Abc *abc, FormatSource *source, Strands *sets)
 {
     Reader *reader = abc->alembic.file.reader;
@@ -345,7 +350,9 @@ static Result make_strands(Abc *abc, FormatSource *source, Strands *sets)
         BasisCurves *curves = &abc->set[i].curves;
         reader->at = (size_t)abc->alembic.file.object[abc->set[i].object].group;
         basis_curves_make(curves, reader, source->wishes.points_per_strand, &sets[i]);
+        if (reader_ok(reader)) check_guides(reader, &abc->set[i], sets[i].strand_count);
         cubic += strcmp(curves->type, "linear") != 0;
+        abc->lost_widths = abc->lost_widths || sets[i].vertex_thickness;
     }
     TRY(reader->result);
     source->used_points = cubic > 0;
@@ -353,6 +360,7 @@ static Result make_strands(Abc *abc, FormatSource *source, Strands *sets)
     double unit = unite_widths(abc, sets, time_of(abc, times, 0));
     TRY(make_source(abc, source, sets, times));
     source->thickness_unit = unit;
+    abc->lost_widths = abc->lost_widths && !source->strands.vertex_thickness;
     return RESULT_OK;
 }
 
@@ -361,6 +369,9 @@ static void note_choices(const Abc *abc, FormatSource *source)
     if (abc->hidden)
         format_source_note(source, "left out: %u objects of curves that are hidden", abc->hidden);
     if (abc->guides) format_source_note(source, "left out: %u guides (groom_guide)", abc->guides);
+    if (abc->lost_widths)
+        format_source_note(source,
+                           "left out: widths: expected width, or groom_width, of all objects");
 }
 
 static void destroy(Abc *abc)
