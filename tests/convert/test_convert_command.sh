@@ -104,6 +104,12 @@ run 2 $curls -o -; says "expected --format"; one_line
 "$bin/tractrix-render" - --check <$curls >"$work/out" 2>"$work/err"; says "300 usable of 300"; silent err
 run 3 - --stats; says "-: byte 0: the file is empty"; one_line
 
+claim "output is appended whole to a file that is there"
+run 0 $curls -q -o "$x.abc"
+echo kept >"$work/appended"
+"$program" $curls -q -o - --format abc >>"$work/appended" 2>"$work/err"; silent err
+tail -c +6 "$work/appended" >"$work/again.abc"; equal "$x.abc" "$work/again.abc"
+
 claim "a pipe with a name is read like a file; a device, which may never end, is refused"
 mkfifo "$work/named"
 cat assets/fur.tfx >"$work/named" &

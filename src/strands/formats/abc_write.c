@@ -2,6 +2,7 @@
 // The schema of curves, in the order in which Alembic's own writer (AbcGeom) has its parts.
 #include "strands/formats/abc_write.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -263,8 +264,8 @@ static Result begin(AbcWriter *writer, const OutFile *file, const Strands *stran
         look->color = (const float(*)[4])strands->color;
         look->color_rate = CURVES_VERTEX;
     }
-    // Pipes cannot be gone back in.
-    writer->buffered = fseek(file->stream, 0, SEEK_CUR) != 0;
+    // Only a file of its own can be gone back in: no pipe, and no file that output is appended to.
+    writer->buffered = !file->temporary;
     if (writer->buffered)
         writer->ogawa.stream = open_memstream(&writer->memory, &writer->memory_size);
     if (!writer->ogawa.stream) return error_set(error, RESULT_FAILED, "%s: no memory", file->path);
@@ -280,12 +281,14 @@ static Result end(AbcWriter *writer, Error *error)
     if (writer->ogawa.failed)
         return error_set(error, RESULT_FAILED, "%s: no memory", writer->file.path);
     if (!writer->buffered) {
-        if (fseek(stream, 0, SEEK_SET) == 0) ogawa_put_header(&writer->ogawa, true, root);
-        fseek(stream, 0, SEEK_END);
-        return RESULT_OK;
+        bool there = fseek(stream, 0, SEEK_SET) == 0;
+        if (there) ogawa_put_header(&writer->ogawa, true, root);
+        if (there && fseek(stream, 0, SEEK_END) == 0) return RESULT_OK;
+        return error_set(error, RESULT_FAILED, "%s: %s", writer->file.path, strerror(errno));
     }
     // What a stream in memory ends with is where it stands.
-    fflush(stream);
+    if (fflush(stream) != 0 || ferror(stream))
+        return error_set(error, RESULT_FAILED, "%s: no memory", writer->file.path);
     size_t size = writer->memory_size;
     writer->ogawa.stream = writer->file.stream;
     ogawa_put_header(&writer->ogawa, true, root);

@@ -14,7 +14,7 @@
 
 typedef struct AbcWriter {
     OutFile file;
-    OgawaWriter ogawa; // to the file, or to `memory` where that cannot be gone back in
+    OgawaWriter ogawa; // to the file, or to `memory` where that is a device, a pipe or appended to
     bool buffered;
     char *memory; // NULL: none
     size_t memory_size;
