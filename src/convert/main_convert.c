@@ -299,6 +299,7 @@ static Result parse(Job *job, int argc, char **argv, bool *done, Error *error)
 
 // --- The work.
 
+// After the first frame, whose unit and axis count where the mesh has none.
 static Result read_mesh(Job *job, Error *error)
 {
     const char *path = job->command.mesh;
@@ -333,7 +334,6 @@ static Result open_files(Job *job, Error *error)
     ConvertInput *input = &job->input;
     ConvertOutput *output = &job->output;
     TRY(convert_input_open(input, error));
-    TRY(read_mesh(job, error));
     if (!output->path) return RESULT_OK;
     int count = convert_input_count(input);
     output->animated = convert_input_moves(input);
@@ -352,6 +352,7 @@ static Result do_frame(Job *job, int frame, Error *error)
     Result result = convert_input_read(&job->input, frame, &strands, error);
     if (result == RESULT_OK && first)
         job->output.lost = job->input.features & ~strands_features(&strands);
+    if (first) THEN(result, read_mesh(job, error));
     activity_set("converting");
     THEN(result, convert_steps_apply(&job->steps, &strands, error));
     if (first && (command->stats || command->json))

@@ -263,6 +263,12 @@ run 3 assets/bob.tfx --mesh assets/bob.tfx --attach -o "$work/unfit.tfx"; says "
 run 3 assets/head.obj; says "not hair: a mesh stands behind --mesh"; one_line
 none "$work/unfit.tfx"
 
+claim "a mesh has the unit of the hair, also of several files and of numbered ones"
+run 0 assets/bob.tfx -q --unit m --mesh assets/head.obj --stats; grep "inside the mesh" "$work/out" >"$work/inside"
+for number in 0 1; do cp assets/bob.tfx "$work/bob_$number.tfx"; done
+run 0 "$work/bob_%d.tfx" -q --mesh assets/head.obj --stats; grep "inside the mesh" "$work/out" >"$work/again"; equal "$work/inside" "$work/again"
+run 0 "$work/bob_0.tfx" "$work/bob_1.tfx" --mesh assets/head.obj --stats; says "inside the mesh: "
+
 claim "PLY meshes, and Alembic's, stand behind --mesh"
 printf 'ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n-1 -1 -1\n1 -1 -1\n0 1 0\n0 -1 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n' >"$work/mesh.ply"
 run 0 $curls --mesh "$work/mesh.ply" --mesh-unit m --stats; says "inside the mesh: "
