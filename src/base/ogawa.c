@@ -47,7 +47,6 @@ static uint64_t child_of(Reader *reader, Block group, uint64_t i)
     return read_number(reader, group.at + 8 + 8 * i);
 }
 
-// The last child, which has the headers of the others; empty where there are none.
 static Block open_data(Reader *reader, uint64_t place)
 {
     Block data = {place & ~DATA_BIT, 0};
@@ -127,6 +126,7 @@ static const char *find_text(Ogawa *file, uint32_t number, uint32_t *length)
     return text ? text : "";
 }
 
+// The text of an object's header, which stands there or is named by a number.
 static const char *take_meta(Ogawa *file, Cursor *cursor, uint32_t number, uint32_t width,
                              uint32_t *length)
 {
@@ -155,7 +155,7 @@ static void find_value(const char *text, uint32_t length, const char *key, char 
 
 // --- Properties.
 
-static void take_property(Ogawa *file, Cursor *cursor, OgawaProperty *property)
+static void take_property(Cursor *cursor, OgawaProperty *property)
 {
     uint32_t info = take(cursor, 4), width = (info >> 2 & 3) == 0   ? 1
                                              : (info >> 2 & 3) == 1 ? 2
@@ -186,7 +186,7 @@ static void take_property(Ogawa *file, Cursor *cursor, OgawaProperty *property)
     if (name)
         snprintf(property->name, sizeof property->name, "%.*s", (int)(length < 63 ? length : 63),
                  name);
-    take_meta(file, cursor, info >> 20 & 0xff, width, &length);
+    if ((info >> 20 & 0xff) == EXPLICIT_TEXT) take_text(cursor, take(cursor, width));
 }
 
 static OgawaProperties read_compound(Ogawa *file, uint64_t place)
@@ -207,7 +207,7 @@ static OgawaProperties read_compound(Ogawa *file, uint64_t place)
     while (reader_ok(reader) && cursor.at < cursor.end && properties.count < most) {
         OgawaProperty *property = &properties.property[properties.count];
         property->group = child_of(reader, group, properties.count++);
-        take_property(file, &cursor, property);
+        take_property(&cursor, property);
     }
     return properties;
 }
