@@ -74,11 +74,6 @@ Result format_target(Target *target, const char *text, Error *error)
     return RESULT_OK;
 }
 
-Result format_check_terminal(const char *path, FormatKind kind, Error *error)
-{
-    return FORMAT_TABLE[kind]->text ? RESULT_OK : outfile_refuse_terminal(path, error);
-}
-
 Result format_write(const char *path, FormatKind kind, const Strands *strands, Error *error)
 {
     const Format *format = FORMAT_TABLE[kind];
@@ -86,7 +81,7 @@ Result format_write(const char *path, FormatKind kind, const Strands *strands, E
         return error_set(error, RESULT_FAILED, "%s: no strands to write", path);
     if (!format->write)
         return error_set(error, RESULT_FAILED, "%s: %s can only be read", path, format->name);
-    TRY(format_check_terminal(path, kind, error));
+    if (!format->text) TRY(outfile_refuse_terminal(path, error));
     OutFile file;
     TRY(outfile_open(&file, path, error));
     Result result = format->write(&file, strands, error);

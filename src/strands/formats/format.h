@@ -122,9 +122,6 @@ Result format_target(Target *target, const char *text, Error *error);
 // that it can't hold, a format that is only read, and with the reason if writing fails.
 Result format_write(const char *path, FormatKind kind, const Strands *strands, Error *error);
 
-// RESULT_USAGE for a binary format to standard output ("-") that is a terminal.
-Result format_check_terminal(const char *path, FormatKind kind, Error *error);
-
 // "a, b or c": the suffixes that are written, and the names of all formats.
 void format_list_suffixes(char *text, size_t size);
 void format_list_names(char *text, size_t size);

@@ -47,7 +47,6 @@ static Result finish_npz(const FramesFile *file, Error *error)
     const NpzFrames frames = {file->count, (const float(*)[3])file->npz, file->options.fps,
                               file->first};
     OutFile out;
-    TRY(format_check_terminal(file->path, FORMAT_NPZ, error));
     TRY(outfile_open(&out, file->path, error));
     Result result = npz_write_frames(&out, file->strands, &frames, error);
     if (result == RESULT_OK) return outfile_commit(&out, error);
