@@ -27,6 +27,7 @@ struct HtmlChoice {
     bool has[2];
     size_t bytes; // of the exact ones
     double badness;
+    size_t number; // in the order of the list
 };
 
 // --- A pair's files.
@@ -197,7 +198,8 @@ static Result add_side(Html *html, json_t *side, const HtmlSide *image, struct H
 static Result add_sides(Html *html, json_t *sides[2], const HtmlPair *page, const Verdict *verdict,
                         Error *error)
 {
-    struct HtmlChoice choice = {.badness = verdict->measured ? verdict->figures.flip : 2};
+    struct HtmlChoice choice = {.badness = verdict->measured ? verdict->figures.flip : 2,
+                                .number = html->choice_count};
     struct HtmlChoice *list = realloc(html->choices, (html->choice_count + 1) * sizeof *list);
     if (!list) return error_set(error, RESULT_FAILED, "no memory for the page's images");
     html->choices = list;
@@ -211,7 +213,7 @@ static int order(const void *a, const void *b)
 {
     const struct HtmlChoice *x = a, *y = b;
     if (x->badness != y->badness) return x->badness < y->badness ? 1 : -1;
-    return x->exact[1] < y->exact[1] ? -1 : 1;
+    return (x->number > y->number) - (x->number < y->number);
 }
 
 // The worst pairs stay exact, as many as there is room for.
