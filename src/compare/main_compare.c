@@ -282,6 +282,26 @@ static Result claim_paths(const Command *command, const PairList *list, Error *e
     return result;
 }
 
+// --shrink compares nothing, and has no use for what belongs to a comparison.
+static Result check_shrink(const Command *command, const Command *before, Error *error)
+{
+    static const size_t sizes[] = {[OPTION_SWITCH] = sizeof(bool),
+                                   [OPTION_WORD] = sizeof(int),
+                                   [OPTION_WHOLE] = sizeof(int),
+                                   [OPTION_REAL] = sizeof(double),
+                                   [OPTION_STRING] = sizeof(char *)};
+    if (!command->shrink) return RESULT_OK;
+    for (size_t i = 0; i < sizeof OPTIONS / sizeof *OPTIONS; ++i) {
+        const Option *option = &OPTIONS[i];
+        if (option->place == AT(shrink) || option->place == AT(quiet)) continue;
+        if (memcmp((const char *)command + option->place, (const char *)before + option->place,
+                   sizes[option->kind]) != 0)
+            return error_set(error, RESULT_USAGE,
+                             "--%s: it has no effect: --shrink compares nothing", option->name);
+    }
+    return RESULT_OK;
+}
+
 static Result parse(Command *command, int argc, char **argv, bool *done, Error *error)
 {
     long cores = sysconf(_SC_NPROCESSORS_ONLN);
@@ -295,8 +315,10 @@ static Result parse(Command *command, int argc, char **argv, bool *done, Error *
                          .line = shell_join_line("tractrix-compare", argc, argv)};
     if (!command->line)
         return error_set(error, RESULT_FAILED, "cannot note the command line: %s", strerror(errno));
+    const Command before = *command;
     Result result = options_parse(&PROGRAM, command, argc, argv, &first, done, error);
     if (result != RESULT_OK || *done) return result;
+    TRY(check_shrink(command, &before, error));
     if (argc - first != 2)
         return error_set(error, RESULT_USAGE,
                          "got %d names, expected two files, folders or patterns", argc - first);
