@@ -18,7 +18,7 @@ class Parameters(TypedDict, total=False):
     points_per_strand: int
     """points of each strand of a .ply or .npy that is a mere list of points; vertices of each cubic curve of USD or
     Alembic; 0: found by where points jump, and 1 to 4 for each segment of a curve [0 to 65535; default 0]"""
-    group: Union[float, Literal["auto"]]
+    group: Union[int, Literal["auto"]]
     """number of the group of the hair file's strands to take: Alembic's groom_group_id, a section of a .usda; auto: all
     [0 to 16777215; default auto]"""
     array: str
