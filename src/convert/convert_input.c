@@ -359,8 +359,7 @@ static Result read_files(ConvertInput *input, Strands *strands, Error *error)
     for (int i = 0; i < input->path_count && result == RESULT_OK; ++i)
         result = read_file(input, input->paths[i], i, &sets[i], NULL, error);
     THEN(result, strands_join(strands, sets, (uint32_t)input->path_count, error));
-    if (result == RESULT_OK && !strands->strand_group)
-        result = strands_group_sets(strands, sets, (uint32_t)input->path_count, error);
+    THEN(result, strands_group_sets(strands, sets, (uint32_t)input->path_count, true, error));
     for (int i = 0; sets && i < input->path_count; ++i) strands_destroy(&sets[i]);
     free(sets);
     return result;

@@ -167,7 +167,7 @@ static Result prepare(Exporter *exporter, const char *text, const Strands *secti
                       int frame_count, Error *error)
 {
     TRY(strands_join(&exporter->strands, sections, count, error));
-    if (count > 1) TRY(strands_group_sets(&exporter->strands, sections, count, error));
+    if (count > 1) TRY(strands_group_sets(&exporter->strands, sections, count, false, error));
     exporter->kind = format_choose(text, &exporter->strands);
     find_lost(exporter, sections, count);
     if (!frames_file_has_look(exporter->kind) && exporter->kind != FORMAT_NPZ) return RESULT_OK;

@@ -239,14 +239,27 @@ Result strands_join(Strands *all, const Strands *sets, uint32_t count, Error *er
 
 // --- Groups.
 
-Result strands_group_sets(Strands *all, const Strands *sets, uint32_t count, Error *error)
+Result strands_group_sets(Strands *all, const Strands *sets, uint32_t count, bool inner,
+                          Error *error)
 {
+    double first = 0;
     free(all->strand_group);
     all->strand_group = malloc(((size_t)all->strand_count + 1) * sizeof *all->strand_group);
     if (!all->strand_group)
         return error_set(error, RESULT_FAILED, "no memory for groups of strands");
-    for (uint32_t i = 0, s = 0; i < count; ++i)
-        for (uint32_t k = 0; k < sets[i].strand_count; ++k) all->strand_group[s++] = (float)i;
+    for (uint32_t i = 0, s = 0; i < count; ++i) {
+        double most = 0;
+        for (uint32_t k = 0; k < sets[i].strand_count; ++k) {
+            double own = inner && sets[i].strand_group ? (double)sets[i].strand_group[k] : 0;
+            most = fmax(most, own);
+            all->strand_group[s++] = (float)(first + own);
+        }
+        if (first + most > STRANDS_MOST_GROUP)
+            return error_set(error, RESULT_FAILED,
+                             "a group of strands is %.0f: expected at most %d", first + most,
+                             STRANDS_MOST_GROUP);
+        first += most + 1;
+    }
     return RESULT_OK;
 }
 

@@ -54,9 +54,11 @@ Result strands_shuffle(Strands *strands, uint32_t seed, Error *error);
 // are.
 Result strands_join(Strands *all, const Strands *sets, uint32_t count, Error *error);
 
-// Numbers the groups of joined sets: a strand's is that of its set, from 0. RESULT_FAILED when
-// memory is short.
-Result strands_group_sets(Strands *all, const Strands *sets, uint32_t count, Error *error);
+// Numbers the groups of joined sets: a strand's is that of its set, from 0. With `inner` a set that
+// has groups keeps them apart, its numbers behind those of the sets before it. RESULT_FAILED when
+// memory is short, or numbers are beyond STRANDS_MOST_GROUP.
+Result strands_group_sets(Strands *all, const Strands *sets, uint32_t count, bool inner,
+                          Error *error);
 
 // Keeps the strands of one group, those without groups being of group 0. RESULT_BAD_INPUT, without
 // a place, where there is none.

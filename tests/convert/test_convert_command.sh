@@ -282,6 +282,8 @@ claim "groups: of Alembic, of files that become one"
 run 0 tests/data/unreal.abc --unit cm --group 5 --stats; says "2 strands, "
 run 0 $curls assets/fur.tfx -o "$work/two.abc" -q; run 0 "$work/two.abc" --group 1 -o "$work/one.hair" -q
 run 3 "$work/two.abc" --group 7 --stats; says "--group: no strand is of group 7: expected one from 0 to 1"; one_line
+run 0 "$work/two.abc" $fur "$work/two.abc" -o "$work/five.usda" -q; run 3 "$work/five.usda" --group 5 --stats; says "expected one from 0 to 4"; one_line
+run 0 "$work/five.usda" --group 2 --stats; says "2000 strands, "; run 0 "$work/five.usda" --group 3 --stats; says "300 strands, "
 run 0 $curls assets/fur.tfx -o "$work/two.hair"; if grep -q groups "$work/err"; then bad "groups that nobody has asked for are lost"; else good; fi
 
 finish
