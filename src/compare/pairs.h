@@ -46,10 +46,10 @@ typedef struct PairOptions {
 } PairOptions;
 
 // `a` and `b` are both files; or both folders, whose files ending in .png, .pfm or .exr (not
-// hidden) go by name; or both patterns with %d or %04d in the file's name, as tractrix-render -o
-// takes them, whose files go by number. What only one has is a pair with the other missing.
-// RESULT_USAGE for mixed kinds, RESULT_BAD_INPUT if a folder can't be read or there is no image at
-// all. Files are not opened.
+// hidden) go by name, as .jpg and .jpeg do, which cannot be compared; or both patterns with %d or
+// %04d in the file's name, as tractrix-render -o takes them, whose files go by number. What only
+// one has is a pair with the other missing. RESULT_USAGE for mixed kinds, RESULT_BAD_INPUT if a
+// folder can't be read or there is no image at all. Files are not opened.
 //
 // A mask is a file for all pairs; a folder of masks for the images of the same name, whatever the
 // suffix; or a pattern of masks for the images of the same number. RESULT_BAD_INPUT for a mask that

@@ -53,7 +53,7 @@ Result convert_output_open(ConvertOutput *output, int frame_count, Error *error)
     if (output->target.kind == TARGET_STILL && frame_count > 1)
         return error_set(error, RESULT_USAGE,
                          "%s: one name for %d frames, put the frame number into it, x_%%04d%s, "
-                         "or write .usda or .npz",
+                         "or write .usda, .abc or .npz",
                          output->path, frame_count, suffix_of(output->path));
     return target_prepare(&output->target, error);
 }

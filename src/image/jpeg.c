@@ -14,7 +14,8 @@
 #include <stb_image_write.h>
 #pragma GCC diagnostic pop
 
-// Bytes that grow; `room` 0 behind a failure.
+// Bytes that grow, by one more than their size: a zero behind them. What comes after a failure is
+// left out.
 typedef struct Sink {
     Bytes bytes;
     size_t room;

@@ -44,8 +44,8 @@ extern const MeshSequenceFormat MESH_SEQUENCE_NPZ, MESH_SEQUENCE_NPY, MESH_SEQUE
 // Makes room for positions; the reader fails where memory is short or the counts are beyond it.
 bool mesh_samples_create(MeshSamples *samples, Reader *reader);
 
-// Whether `path` names a sequence by its pattern (x_%04d.obj) or its content; false for an OBJ
-// file, and for what cannot be read, which mesh_read then says.
+// Whether `path` names a sequence by its pattern (x_%04d.obj) or its content; false for OBJ
+// and PLY files, and for what cannot be read, which mesh_read then says.
 bool mesh_sequence_matches(const char *path);
 
 // Reads all samples, and into `mesh` the faces with the positions of the first sample; into `rest`

@@ -56,7 +56,7 @@ static void even_hair_shows_as_the_grey_that_it_is(void **state)
         }
 }
 
-// Half as bright as the grey, and one and a half times: shown, they are METER_GREY on average.
+// Three quarters of dark pixels and one of bright ones: shown, they are METER_GREY on average.
 static void it_is_the_mean_shown_that_counts(void **state)
 {
     (void)state;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Alembic's Ogawa files. tests/data/curves.abc, groom.abc and unreal.abc were written by
-// Alembic 1.8 itself, which also reads what is written here.
+// Alembic 1.8 itself. What is written here is read back by our own reader alone.
 #include "strands/formats/frames_file.h"
 #include "strands/strands_edit.h"
 #include "strands/strands_read.h"
