@@ -1072,8 +1072,11 @@ def set_rate(scene, fps: float) -> None:
     scene.render.fps_base = scene.render.fps / fps
 
 
-def import_hair(context, path: str, scale: float = 1.0, units: tuple = ()) -> None:
-    """Imports the strands of `path` with their frames. Binary USD and `.abc` go to Blender's importers where it has them."""
+def import_hair(context, path: str, scale: Optional[float] = None, units: tuple = ()) -> None:
+    """Imports the strands of `path` with their frames. Binary USD and `.abc` go to Blender's importers where it has them.
+
+    `scale`: metres of one unit of these; None: 1 for Blender's importers, as the file says (or guessed) for tractrix-convert.
+    """
     kind = os.path.splitext(path)[1].lower()
     if not os.path.exists(path) and "%" not in path:
         raise HairError(f"{path}: no such file")
@@ -1082,7 +1085,7 @@ def import_hair(context, path: str, scale: float = 1.0, units: tuple = ()) -> No
     if kind in (".usd", ".usdc", ".usdz"):
         raise HairError(f"{path}: this Blender was built without USD: expected .usda (usdcat x.usdc -o x.usda)", FAILED)
     readers = {".npz": read_npz, ".usda": read_usda}
-    if kind == ".abc":
+    if kind == ".abc" and scale:
         units = ("--unit", f"{scale:.9g}", *units)
     hair = readers[kind](path) if kind in readers else convert_hair(path, units)
     if hair.radius is None:
@@ -1102,14 +1105,14 @@ def radius_for(path: str, units: tuple, count: int) -> Optional[np.ndarray]:
         return None
 
 
-def by_blender(path: str, kind: str, scale: float) -> bool:
+def by_blender(path: str, kind: str, scale: Optional[float]) -> bool:
     """Imports by Blender's own importer, if it was built with one."""
     if not getattr(bpy.app.build_options, "alembic" if kind == ".abc" else "usd"):
         return False
     if kind == ".abc":
-        bpy.ops.wm.alembic_import(filepath=os.path.abspath(path), scale=scale, as_background_job=False)
+        bpy.ops.wm.alembic_import(filepath=os.path.abspath(path), scale=scale or 1.0, as_background_job=False)
     else:
-        bpy.ops.wm.usd_import(filepath=os.path.abspath(path), scale=scale)
+        bpy.ops.wm.usd_import(filepath=os.path.abspath(path), scale=scale or 1.0)
     return True
 
 
@@ -1294,6 +1297,9 @@ def frame_range(text: str) -> tuple:
     return (int(match[1]), int(match[2]))
 
 
+SCALE_HELP = "metres of one unit of an .abc or binary USD file; without: 1 for Blender's importers, else as the file says or as it is guessed"
+
+
 def parser() -> Parser:
     """What stands behind `--`."""
     top = Parser(prog="blender_hair", description="Hair from Blender to Tractrix and back.")
@@ -1308,19 +1314,19 @@ def parser() -> Parser:
     out.add_argument("--mesh", default="", metavar="x.obj", help="also write the mesh that hair grows on")
     out.add_argument("--mesh-object", default="", metavar="NAME", help="the mesh of --mesh, and of texture coordinates")
     out.add_argument("--scene", default="", metavar="x.json", help="also write a scene file: camera, lights, head, look")
-    out.add_argument("--scale", type=float, default=1.0, metavar="M", help="metres of one unit of an .abc or binary USD file")
+    out.add_argument("--scale", type=float, metavar="M", help=SCALE_HELP)
     out.add_argument("--tolerance", type=float, default=TOLERANCE_M, metavar="M", help="roots may be so far off a rigid head, metres")
     back = commands.add_parser("import", help="hair and scene files into Blender")
     back.add_argument("input", nargs="?", default="", help=".npz, .usda, .abc, .cache, x_%%04d.tfx or any hair file")
     back.add_argument("--scene", default="", metavar="x.json", help="camera, lights and mesh of a scene file of Tractrix")
     back.add_argument("--unit", default="", help="of hair files that do not say theirs: m, cm, mm, in or metres")
     back.add_argument("--up", choices=("y", "z"), help="axis that points up in such files")
-    back.add_argument("--scale", type=float, default=1.0, metavar="M", help="metres of one unit of an .abc or binary USD file")
+    back.add_argument("--scale", type=float, metavar="M", help=SCALE_HELP)
     back.add_argument("-o", "--output", default="", help="x.blend; x.abc or x.usd where Blender was built with them")
     return top
 
 
-def open_input(path: str, scale: float) -> None:
+def open_input(path: str, scale: Optional[float]) -> None:
     """Opens a .blend file, or imports a file of hair into an empty scene."""
     if path.endswith(".blend"):
         if not os.path.exists(path):

@@ -458,6 +458,20 @@ def plane_radiance(scene):
 
 
 @step
+def alembic_unit():
+    """An .abc file of Tractrix says its unit, which tractrix-convert reads."""
+    if bpy.app.build_options.alembic:
+        return  # Blender's importer has its own scale
+    curls = os.path.join(ROOT, "assets", "curls.tfx")
+    tractrix("tractrix-convert", curls, "--unit", "m", "--to-unit", "cm", "-o", path("centimetres.abc"))
+    empty()
+    hair.import_hair(bpy.context, path("centimetres.abc"))
+    export("-o", path("centimetres_back.npz"))
+    points, wanted = hair.read_npz(path("centimetres_back.npz")).points, hair.convert_hair(curls, ("--unit", "m")).points
+    check("the unit of .abc is the file's", np.abs(points - wanted).max() < 1e-5, np.abs(points - wanted).max())
+
+
+@step
 def round_trip():
     """A groom goes .abc -> Blender -> .tfx -> simulation -> .usda -> Blender and arrives."""
     empty()
