@@ -262,8 +262,8 @@ class Parameters(TypedDict, total=False):
     """tilt of the fibre's scales: shifts the highlights by 2 and 3 times this angle, transmitted light by 1 [0 to 45
     deg; default 7.5]"""
     melanin: Union[float, Literal["auto"]]
-    """physical, in place of --color: pigment of a fibre, 0.2 blond, 0.6 dark blond, 1.3 brown, 8 black; auto: use
-    --color [0 to 100; default auto]"""
+    """physical, in place of --color: pigment of a fibre; 0.1 blond, 0.2 dark blond, 0.6 brown, 1.3 dark brown, 3 black;
+    auto: use --color [0 to 100; default auto]"""
     melanin_redness: float
     """share of red pheomelanin in --melanin; the rest is brown eumelanin [0 to 1; default 0]"""
     refraction: float

@@ -26,7 +26,7 @@ const ColorName COLOR_NAMES[COLOR_NAME_COUNT] = {
     {"blue", "#0000ff", NULL},
     {"teal", "#008080", NULL},
     {"aqua", "#00ffff", NULL},
-    {"raven", NULL, "#1f1b1a"},
+    {"raven", NULL, "#212122"},
     {"dark-brown", NULL, "#3b2a21"},
     {"brown", NULL, "#5c4434"},
     {"light-brown", NULL, "#785b43"},

@@ -261,8 +261,10 @@ Result render_help(const char *topic, FILE *stream, Error *error)
     const OptionsChapter colors = {
         .topic = "colors",
         .title = "Colors",
-        .text = "Options and keys that take a color also take these names, in sRGB: the colors "
-                "of CSS, and what a head of hair shows, where that is asked for.",
+        .text = "Options and keys that take a color also take these names. Values are sRGB. "
+                "--color and --tip-color take a name's color of hair: what a whole head of hair "
+                "shows in light. All others, --transmission too, take that of CSS, if the name has "
+                "one.",
         .entries = (const char *const(*)[3])texts->colors,
     };
     const OptionsProgram program = {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Colours and thickness that differ over a section.
+#include "base/colors.h"
 #include "draw/hair_paint.h"
 #include "image/image.h"
 #include "image/png.h"
@@ -225,6 +226,35 @@ static void what_fibres_let_through_has_a_color(void **state)
     }
 }
 
+// No colour of hair that has a name is darker or brighter than fibres can show: all come back, to a
+// level of 255.
+static void fibres_can_show_what_has_a_name(void **state)
+{
+    (void)state;
+    int count = 0;
+    for (size_t i = 0; i < COLOR_NAME_COUNT; ++i) {
+        if (!COLOR_NAMES[i].hair) continue;
+        SectionParams params = make_params();
+        Error error;
+        float through[3];
+        assert_int_equal(params_parse(params_find("color"), &params, COLOR_NAMES[i].name, &error),
+                         RESULT_OK);
+        params.shading = SHADING_MARSCHNER;
+        paint_color(&params, through);
+        params.transmission.automatic = false;
+        for (int k = 0; k < 3; ++k)
+            params.transmission.value[k] = (float)image_srgb_from_linear((double)through[k]);
+        SectionParams seen = paint_as_seen(&params);
+        for (int k = 0; k < 3; ++k)
+            if (fabsf(seen.color[k] - params.color[k]) > 1 / 255.0f)
+                fail_msg("%s: channel %d is %.1f, not %.1f", COLOR_NAMES[i].name, k,
+                         (double)(255 * seen.color[k]), (double)(255 * params.color[k]));
+        ++count;
+        params_destroy_section(&params);
+    }
+    assert_true(count > 10);
+}
+
 // Painted red, green and half transparent, twice as thick: by both rasterisers.
 static void hair_shows_its_paint(void **state)
 {
@@ -341,6 +371,7 @@ int main(void)
                                         temporary_destroy),
         cmocka_unit_test(melanin_gives_the_colors_of_hair),
         cmocka_unit_test(what_fibres_let_through_has_a_color),
+        cmocka_unit_test(fibres_can_show_what_has_a_name),
         cmocka_unit_test(hair_shows_its_paint),
         cmocka_unit_test(smooth_hair_is_as_thick_as_between_its_vertices),
         cmocka_unit_test(painted_hair_lies_in_shadow),
