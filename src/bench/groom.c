@@ -16,8 +16,7 @@ static const double REST_MOST = 0.01, VOXELS_LEAST = 0.95, VOXELS_MOST = 1.05, L
 #define ROW(X)                                                                                     \
     X(CHARS, hair, 20) X(TEXT, algo, 9) X(REAL, rate, 4)                                           \
     X(REAL, rest, 8) X(REAL, tips, 8) X(REAL, voxels, 7) X(REAL, jitter, 9)                        \
-    X(REAL, swing, 7) X(REAL, life, 6) X(REAL, flare, 6) X(REAL, together, 8)\
-                                           \
+    X(REAL, swing, 7) X(REAL, life, 6) X(REAL, flare, 6) X(REAL, together, 8)                  \
     X(REAL, deep_rest, 9) X(REAL, deep_shake, 10) X(REAL, groom_deep, 0)                           \
     X(REAL, beyond_rest, 0) X(REAL, beyond_shake, 0)                                               \
     X(REAL, ms_min, 7) X(REAL, ms_median, 9) X(TEXT, verdict, 7)                                   \
@@ -71,8 +70,9 @@ static void describe(Row *row, const GroomStage *stage)
 
 // --- One solver on one file at one rate.
 
+// `locks`: whether the shake measures them.
 static Result open_stage(GroomStage *stage, const Groom *groom, const Method *method, bool shaking,
-                         Error *error)
+                         bool locks, Error *error)
 {
     const BenchOptions *options = groom->options;
     const GroomSetup setup = {.file = groom->file,
@@ -81,7 +81,8 @@ static Result open_stage(GroomStage *stage, const Groom *groom, const Method *me
                               .method = *method,
                               .rate = groom->rate,
                               .strands = options->strands,
-                              .shaking = shaking};
+                              .shaking = shaking,
+                              .locks = locks};
     return groom_stage_create(stage, groom->gpu, &setup, error);
 }
 
@@ -91,7 +92,7 @@ static Result measure_rest(const Groom *groom, Row *row, Error *error)
 {
     GroomStage stage;
     GroomRest rest;
-    Result result = open_stage(&stage, groom, &groom->method, false, error);
+    Result result = open_stage(&stage, groom, &groom->method, false, false, error);
     THEN(result, groom_stage_rest(&stage, &rest, error));
     if (result == RESULT_OK) {
         describe(row, &stage);
@@ -107,7 +108,7 @@ static Result measure_shake(const Groom *groom, Row *row, bool timed, bool measu
 {
     GroomStage stage;
     GroomShake shake;
-    Result result = open_stage(&stage, groom, &groom->method, true, error);
+    Result result = open_stage(&stage, groom, &groom->method, true, measured, error);
     THEN(result, groom_stage_shake(&stage, &shake, error));
     if (result == RESULT_OK) describe(row, &stage);
     if (result == RESULT_OK && timed)
@@ -145,7 +146,7 @@ static Result measure_life(const Groom *groom, Row *row, Error *error)
     if (!has_life(&hanging)) return RESULT_OK;
     snprintf(settings, sizeof settings, "%s --rest hanging", hanging.settings);
     hanging.settings = settings;
-    Result result = open_stage(&stage, groom, &hanging, true, error);
+    Result result = open_stage(&stage, groom, &hanging, true, false, error);
     THEN(result, groom_stage_shake(&stage, &shake, error));
     if (result == RESULT_OK) row->life = row->swing / shake.swing;
     groom_stage_destroy(&stage);

@@ -95,7 +95,7 @@ static uint32_t list_strands(uint32_t *first, const Hair *hair, uint32_t at)
     return at;
 }
 
-// Who is whose neighbour in the groom, which is drawn now.
+// Finds the neighbours of each drawn strand. The groom is in its rest pose.
 static Result find_locks(GroomStage *stage, Error *error)
 {
     const Hair *guides = &stage->simulation.sections[0].hair,
@@ -134,7 +134,7 @@ Result groom_stage_create(GroomStage *stage, const Gpu *gpu, const GroomSetup *s
     TRY(groom_shape_create(&stage->shape, &stage->simulation.sections[0].hair,
                            stage->assets.strands, mesh, error));
     simulation_pose(&stage->simulation);
-    TRY(find_locks(stage, error));
+    if (setup->locks) TRY(find_locks(stage, error));
     return make_room(stage, error);
 }
 
@@ -249,6 +249,7 @@ static Result measure_period(GroomStage *stage, GroomShake *shake, bool first, E
     TRY(groom_shape_depth(&stage->shape, points_of(stage), &deepest, &beyond, error));
     shake->deepest = first ? deepest : fmax(shake->deepest, deepest);
     shake->beyond = first ? beyond : fmax(shake->beyond, beyond);
+    if (!stage->drawn) return RESULT_OK;
     TRY(read_drawn(stage, error));
     double together = groom_locks_kept(&stage->locks, (const float(*)[3])stage->drawn);
     shake->together = first ? together : fmin(shake->together, together);

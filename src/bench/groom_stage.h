@@ -17,6 +17,7 @@ typedef struct GroomSetup {
     double rate;  // steps a second
     int strands;  // at most, spread evenly over the file; 0: all
     bool shaking; // the head yaws as groom_stage_shake says; else it stands
+    bool locks;   // find neighbours, for GroomShake.together
 } GroomSetup;
 
 // Zeroed but for what groom_stage_create fills.
@@ -28,7 +29,7 @@ typedef struct GroomStage {
     Simulation simulation;
     GroomShape shape;
     GroomLocks locks;
-    float (*drawn)[3]; // the guides as `points`, the followers behind them, in the world
+    float (*drawn)[3]; // with locks: guides as in `points`, then followers, in the world
     float middle[3];   // of the roots: the head turns about the vertical through it
     float (*points)[3], (*before)[3]; // of this frame and the last, the head's frame
     float (*low)[3], (*high)[3];      // of each tip in the period that is measured
@@ -56,7 +57,7 @@ typedef struct GroomShake {
                   // the diagonal of the box that a tip goes through in the last period
     double flare; // largest mean distance of the tips from the axis, over that in the groom
     double together; // least share of neighbours that still are (groom_locks_kept), guides and
-                     // followers, in the last period
+                     // followers, in the last period; 0 without locks
     double deepest, beyond; // in the last period
     Times step;             // ms a step with all its passes, in the two periods before
 } GroomShake;
