@@ -7,6 +7,7 @@
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,17 +16,35 @@
 
 static const char HEAD[] = "--mesh assets/head.obj", BALL[] = "--mesh assets/ball.obj";
 
-// Runs tractrix-render; the image is DIR/NAME.png, what it says DIR/NAME.txt.
+// Runs tractrix-render; the image is DIR/NAME.png, what it says DIR/NAME.txt. By blocks, also where
+// hardware is imitated: a CPU driver has no loops for as many ribbons as a small image has in a
+// tile.
 static void render(void **state, const char *groom, const char *mesh, const char *more,
                    const char *name)
 {
     char line[1500];
     const char *programs = getenv("TRACTRIX_BIN"), *folder = temporary_path(state, "");
     snprintf(line, sizeof line,
-             "%s/tractrix-render assets/%s.tfx %s --algo none --size 96x72 %s -o '%s/%s.png' "
+             "%s/tractrix-render assets/%s.tfx %s --algo none --raster blocks --size 72x72 %s -o "
+             "'%s/%s.png' "
              "2>'%s/%s.txt'",
              programs ? programs : "out/release", groom, mesh, more, folder, name, folder, name);
     assert_int_equal(system(line), 0);
+}
+
+// The exposure that the run of that name found (EV).
+static double find_exposure(void **state, const char *name)
+{
+    char text[400] = "", file[64];
+    double exposure;
+    snprintf(file, sizeof file, "%s.txt", name);
+    FILE *stream = fopen(temporary_path(state, file), "r");
+    assert_non_null(stream);
+    while (fgets(text, sizeof text, stream) && strncmp(text, "exposure:", 9) != 0) {
+    }
+    fclose(stream);
+    assert_int_equal(sscanf(text, "exposure: %lf EV", &exposure), 1);
+    return exposure;
 }
 
 static void read_image(void **state, const char *name, Image *image)
@@ -64,24 +83,27 @@ static void a_lit_groom_has_its_colour_on_average(void **state)
         int level[3];
     } cases[] = {
         {"demo", HEAD, "black", {0x26, 0x22, 0x20}},
-        {"demo", HEAD, "dark-brown", {0x3b, 0x2a, 0x21}},
         {"demo", HEAD, "'#693527'", {0x69, 0x35, 0x27}},
         {"demo", HEAD, "white", {0x9c, 0x9a, 0x96}},
         {"bob", HEAD, "red", {0x82, 0x3f, 0x27}},
-        {"bob", HEAD, "blond", {0x9c, 0x84, 0x5c}},
         {"fall", HEAD, "'#5e3f2b'", {0x5e, 0x3f, 0x2b}},
-        {"curls", HEAD, "ginger", {0x9a, 0x58, 0x33}},
         {"curls", HEAD, "dark-blond", {0x8a, 0x71, 0x50}},
         {"fur", BALL, "grey", {0x7c, 0x79, 0x74}},
     };
     const char *last = "";
+    double exposure = 0;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
-        char flag[64];
+        char flags[100];
         double mean[3];
-        snprintf(flag, sizeof flag, "--color %s", cases[i].color);
-        render(state, cases[i].groom, cases[i].mesh, flag, "light");
-        if (strcmp(cases[i].groom, last) != 0)
+        bool known = strcmp(cases[i].groom, last) == 0; // its exposure and coverage
+        int length = snprintf(flags, sizeof flags, "--color %s", cases[i].color);
+        if (known)
+            snprintf(flags + length, sizeof flags - (size_t)length, " --exposure %.9g", exposure);
+        render(state, cases[i].groom, cases[i].mesh, flags, "light");
+        if (!known) {
+            exposure = find_exposure(state, "light");
             render(state, cases[i].groom, cases[i].mesh, "--aov coverage", "cover");
+        }
         last = cases[i].groom;
         find_mean(state, mean);
         for (int k = 0; k < 3; ++k)
@@ -91,30 +113,20 @@ static void a_lit_groom_has_its_colour_on_average(void **state)
     }
 }
 
-static void read_text(void **state, const char *name, char text[400])
-{
-    FILE *file = fopen(temporary_path(state, name), "r");
-    assert_non_null(file);
-    while (fgets(text, 400, file) && strncmp(text, "exposure:", 9) != 0) {
-    }
-    fclose(file);
-    assert_memory_equal(text, "exposure:", 9);
-}
-
 // Whatever says the colour.
 static void all_colours_have_one_exposure(void **state)
 {
-    static const char *const said[] = {"--color black",
-                                       "--color white",
-                                       "--albedo blond",
-                                       "--melanin 8",
+    static const char *const said[] = {"--color black", "--color white", "--melanin 8",
                                        "--transmission '#ff8000'",
                                        "--tip-length 1 --tip-color white"};
-    char first[400], text[400];
+    double first = 0;
     for (size_t i = 0; i < sizeof said / sizeof *said; ++i) {
-        render(state, "curls", HEAD, said[i], "one");
-        read_text(state, "one.txt", i ? text : first);
-        if (i) assert_string_equal(text, first);
+        char flags[100];
+        snprintf(flags, sizeof flags, "--followers 0 %s", said[i]);
+        render(state, "curls", HEAD, flags, "one");
+        double exposure = find_exposure(state, "one");
+        if (i == 0) first = exposure;
+        assert_true(exposure == first);
     }
 }
 
