@@ -4,9 +4,9 @@
 
 #include "scene/scene.h"
 
-// The wind comes from four directions around the main one; a strand takes a mix of them by its
-// number, so that neighbours do not move in step (TressFX has the same idea). Their mean is the
-// main wind.
+// The wind comes from four directions around the main one. A strand takes a mix of them by the
+// place of its root, so that neighbours move alike and distant hair does not move in step. The mean
+// of the four is the main wind.
 typedef struct Forces {
     float gravity[3]; // m/s^2
     float wind[4][3]; // m/s
