@@ -2,6 +2,7 @@
 #include "convert/figures.h"
 
 #include "base/double3.h"
+#include "base/doubles.h"
 #include "base/nearest.h"
 
 #include <math.h>
@@ -108,18 +109,12 @@ static Result collect_depths(Figures *figures, const Strands *strands, const Sur
 
 // --- Their distribution.
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // Sorts the values.
 static Figure summarise(double *values, size_t count)
 {
     if (count == 0) return (Figure){0};
     double sum = 0;
-    qsort(values, count, sizeof *values, compare_doubles);
+    doubles_sort(values, count);
     for (size_t i = 0; i < count; i++) sum += values[i];
     return (Figure){.count = count,
                     .min = values[0],

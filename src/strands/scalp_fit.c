@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "strands/scalp_fit.h"
 
+#include "base/doubles.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -136,16 +137,10 @@ static double share_out(const double p[3], const double centre[3], const double 
     return sqrt(square);
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // Sorts the distances and returns the one that `share` of them do not exceed.
 static double quantile(Roots *roots, double share)
 {
-    qsort(roots->distance, roots->count, sizeof *roots->distance, compare_doubles);
+    doubles_sort(roots->distance, roots->count);
     return roots->distance[(uint32_t)(share * (roots->count - 1))];
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "strands/strands_mesh.h"
 
+#include "base/doubles.h"
 #include "base/parallel.h"
 #include "mesh/mesh_binding.h"
 
@@ -8,16 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // Sorts them; 0 of none.
 static double median_of(double *values, size_t count)
 {
-    qsort(values, count, sizeof *values, compare_doubles);
+    doubles_sort(values, count);
     return count ? values[(count - 1) / 2] : 0;
 }
 

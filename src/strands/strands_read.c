@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "strands/strands_read.h"
 
+#include "base/doubles.h"
 #include "strands/strands_edit.h"
 #include "strands/strands_mend.h"
 
@@ -121,12 +122,6 @@ static double source_length(const FormatSource *source, uint32_t s)
     return source->scale != 0.0 ? length * fabs(source->scale) : length;
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // Of at most LENGTH_SAMPLES strands, in the file's unit.
 static double median_length(const FormatSource *source)
 {
@@ -134,7 +129,7 @@ static double median_length(const FormatSource *source)
     uint32_t count = 0, stride = source->strands.strand_count / LENGTH_SAMPLES + 1;
     for (uint32_t s = 0; s < source->strands.strand_count; s += stride)
         length[count++] = source_length(source, s);
-    qsort(length, count, sizeof *length, compare_doubles);
+    doubles_sort(length, count);
     return count ? length[count / 2] : 0;
 }
 

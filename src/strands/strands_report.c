@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "strands/strands_report.h"
+#include "base/doubles.h"
 #include "base/quote.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 // --- Measuring.
-
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 static int compare_counts(const void *a, const void *b)
 {
@@ -67,7 +62,7 @@ static void measure_each(StrandsReport *report, const Strands *strands, double *
         sizes[s] = strands_size(strands, s);
         report->length_total += lengths[s];
     }
-    qsort(lengths, count, sizeof *lengths, compare_doubles);
+    doubles_sort(lengths, count);
     qsort(sizes, count, sizeof *sizes, compare_counts);
     report->length_min = lengths[0];
     report->length_median = lengths[count / 2];
