@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "strands/formats/usd_text.h"
+#include "base/usd_text.h"
 
 #include <ctype.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "strands/formats/usd_transform.h"
+#include "base/usd_transform.h"
 
 #include <math.h>
 #include <stdlib.h>

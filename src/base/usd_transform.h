@@ -3,7 +3,7 @@
 // that may change with time. Matrices act on rows, p' = p M, as in USD.
 #pragma once
 
-#include "strands/formats/usd_text.h"
+#include "base/usd_text.h"
 
 // The numbers of an operation, at one time or at several. Between two times they are interpolated
 // linearly (orientations spherically), before and behind them they stay, as USD has it.

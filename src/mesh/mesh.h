@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The room mesh: triangle meshes on the CPU. It takes Wavefront OBJ files (obj.h) or shapes of its
-// own (scalp.h), and hands on meshes, and surfaces that say where a point of a mesh is, how it lies
-// and how far away it is (surface.h).
+// The room mesh: triangle meshes on the CPU. It takes files (mesh_read.h, mesh_sequence.h) or
+// shapes of its own (scalp.h), and hands on meshes, and surfaces that say where a point of a mesh
+// is, how it lies and how far away it is (surface.h).
 //
 // This file: a triangle mesh, of a head or a body.
 #pragma once
@@ -23,6 +23,9 @@ typedef struct Mesh {
 } Mesh;
 
 #define MESH_NO_UV UINT32_MAX
+
+// Of files, m: squares of it are finite.
+#define MESH_MOST_COORDINATE 1e18f
 
 // Makes room; all arrays are zero. RESULT_FAILED when memory is short.
 Result mesh_create(Mesh *mesh, uint32_t vertex_count, uint32_t triangle_count, Error *error);

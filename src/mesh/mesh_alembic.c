@@ -204,4 +204,4 @@ static void read(MeshSamples *samples, Reader *reader)
     alembic_close(&all.alembic);
 }
 
-const MeshSequenceFormat MESH_SEQUENCE_ALEMBIC = {match, read};
+const MeshSequenceFormat MESH_SEQUENCE_ALEMBIC = {.match = match, .read = read};

@@ -148,5 +148,5 @@ static void read_npy(MeshSamples *samples, Reader *reader)
     if (npy_array_read(&array, reader) == RESULT_OK) take_positions(samples, reader, &array);
 }
 
-const MeshSequenceFormat MESH_SEQUENCE_NPZ = {match_npz, read_npz};
-const MeshSequenceFormat MESH_SEQUENCE_NPY = {match_npy, read_npy};
+const MeshSequenceFormat MESH_SEQUENCE_NPZ = {.match = match_npz, .read = read_npz};
+const MeshSequenceFormat MESH_SEQUENCE_NPY = {.match = match_npy, .read = read_npy};

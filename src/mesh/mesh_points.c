@@ -81,5 +81,5 @@ static void read_mdd(MeshSamples *samples, Reader *reader)
     for (size_t i = 0; i < numbers; ++i) number[i] = swapped_float(number[i]);
 }
 
-const MeshSequenceFormat MESH_SEQUENCE_PC2 = {match_pc2, read_pc2};
-const MeshSequenceFormat MESH_SEQUENCE_MDD = {match_mdd, read_mdd};
+const MeshSequenceFormat MESH_SEQUENCE_PC2 = {.match = match_pc2, .read = read_pc2};
+const MeshSequenceFormat MESH_SEQUENCE_MDD = {.match = match_mdd, .read = read_mdd};

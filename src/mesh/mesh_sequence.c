@@ -12,16 +12,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static const MeshSequenceFormat *const FORMATS[] = {&MESH_SEQUENCE_NPZ, &MESH_SEQUENCE_NPY,
-                                                    &MESH_SEQUENCE_PC2, &MESH_SEQUENCE_MDD,
-                                                    &MESH_SEQUENCE_ALEMBIC};
+static const MeshSequenceFormat *const FORMATS[] = {&MESH_SEQUENCE_NPZ,     &MESH_SEQUENCE_NPY,
+                                                    &MESH_SEQUENCE_PC2,     &MESH_SEQUENCE_MDD,
+                                                    &MESH_SEQUENCE_ALEMBIC, &MESH_SEQUENCE_USD};
 enum { FORMAT_COUNT = sizeof FORMATS / sizeof *FORMATS };
 
 // Vertices of all samples together, 96 GB.
 static const uint64_t MOST_VERTICES = UINT64_C(1) << 33;
-
-// As in OBJ files: squares of it are finite.
-static const float MOST_COORDINATE = 1e18f;
 
 bool mesh_samples_create(MeshSamples *samples, Reader *reader)
 {
@@ -174,7 +171,7 @@ static Result check_finite(const MeshSamples *samples, const char *path, Error *
 {
     for (uint64_t i = 0; i < samples->count * samples->vertex_count; ++i)
         for (int k = 0; k < 3; ++k)
-            if (!(fabsf(samples->position[i][k]) <= MOST_COORDINATE))
+            if (!(fabsf(samples->position[i][k]) <= MESH_MOST_COORDINATE))
                 return error_set(error, RESULT_BAD_INPUT,
                                  "%s: sample %llu: vertex %llu is not finite, or beyond 1e18", path,
                                  (unsigned long long)(i / samples->vertex_count),
@@ -246,14 +243,15 @@ static Result read_file(MeshSequence *sequence, Mesh *mesh, const Mesh *rest, co
     MeshSamples samples = {.up_z = -1};
     Result result = RESULT_OK;
     if (format) {
-        Reader reader = reader_begin_binary(path, &bytes, error);
+        Reader reader =
+            (format->text ? reader_begin_text : reader_begin_binary)(path, &bytes, error);
         format->read(&samples, &reader);
         result = reader.result;
         reader_end(&reader);
     } else {
         result = error_set(error, RESULT_BAD_INPUT,
-                           "%s: no sequence of meshes: expected x_%%04d.obj, .npz, .npy, .pc2 or "
-                           ".mdd",
+                           "%s: no sequence of meshes: expected x_%%04d.obj, .npz, .npy, .pc2, "
+                           ".mdd, .abc or .usda",
                            path);
     }
     THEN(result, take_samples(sequence, mesh, &samples, rest, path, options, error));

@@ -36,10 +36,11 @@ typedef struct MeshSamples {
 typedef struct MeshSequenceFormat {
     bool (*match)(const char *path, const Bytes *bytes);
     void (*read)(MeshSamples *samples, Reader *reader); // fails the reader
+    bool text;                                          // messages name lines
 } MeshSequenceFormat;
 
 extern const MeshSequenceFormat MESH_SEQUENCE_NPZ, MESH_SEQUENCE_NPY, MESH_SEQUENCE_PC2,
-    MESH_SEQUENCE_MDD, MESH_SEQUENCE_ALEMBIC;
+    MESH_SEQUENCE_MDD, MESH_SEQUENCE_ALEMBIC, MESH_SEQUENCE_USD;
 
 // Makes room for positions; the reader fails where memory is short or the counts are beyond it.
 bool mesh_samples_create(MeshSamples *samples, Reader *reader);

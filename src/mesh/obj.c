@@ -143,7 +143,7 @@ static void read_vector(Obj *obj, ObjStatement kind)
     for (int i = 0; i < size && (i < KINDS[kind].needed || !reader_line_ended(reader)); i++) {
         Reader before = *reader;
         vector[i] = reader_read_number(reader, KINDS[kind].expected);
-        if (!reader_ok(reader) || fabsf(vector[i]) <= 1e18f) continue;
+        if (!reader_ok(reader) || fabsf(vector[i]) <= MESH_MOST_COORDINATE) continue;
         before.locale = reader->locale;
         *reader = before;
         reader_fail_expected(reader, KINDS[kind].expected);

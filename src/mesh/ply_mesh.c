@@ -12,9 +12,6 @@ typedef enum Role { X, Y, Z, STRANDS, INDICES, INDEX, ROLES } Role;
 static const char *const ROLE_NAMES[ROLES] = {"x",           "y", "z", "nsegs", "vertex_indices",
                                               "vertex_index"};
 
-// As in OBJ files: squares of it are finite.
-static const double MOST_COORDINATE = 1e18;
-
 enum { MOST_CORNERS = 4096 }; // of a polygon
 
 typedef struct PlyMesh {
@@ -45,7 +42,7 @@ static void read_vertices(PlyMesh *ply, const PlyElement *element, float unit, b
         const double p[3] = {values[X] * (double)unit, values[up_z ? Z : Y] * (double)unit,
                              (up_z ? -values[Y] : values[Z]) * (double)unit};
         for (int k = 0; k < 3; k++) {
-            if (!(fabs(p[k]) <= MOST_COORDINATE) && reader_ok(reader))
+            if (!(fabs(p[k]) <= (double)MESH_MOST_COORDINATE) && reader_ok(reader))
                 reader_fail(reader, "vertex %u is not finite, or beyond 1e18", v);
             ply->position[v][k] = (float)p[k];
         }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Meshes in Wavefront files, and those that the program makes.
+// Meshes in Wavefront and PLY files, and those that the program makes.
 #include "mesh/mesh.h"
 #include "mesh/mesh_read.h"
 #include "mesh/obj.h"
@@ -75,6 +75,86 @@ static void texture_coordinates_belong_to_corners(void **state)
     mesh = read_good(state, SQUARE "vt 0 0\nf 1 2 3\n", false);
     assert_null(mesh.uv);
     mesh_destroy(&mesh);
+}
+
+#define PLY(format, vertices, faces, list)                                                         \
+    "ply\nformat " format " 1.0\ncomment x\nelement vertex " #vertices "\nproperty float x\n"      \
+    "property float y\nproperty float z\nproperty uchar red\nelement face " #faces                 \
+    "\nproperty list uchar int " list "\nend_header\n"
+
+static void all_forms_of_ply_give_the_same_square(void **state)
+{
+    static const float corners[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    static const uint32_t expected[2][3] = {{0, 1, 2}, {0, 2, 3}};
+    for (int form = 0; form < 4; form++) {
+        const char *path = temporary_path(state, "m.ply");
+        FILE *file = fopen(path, "wb");
+        fputs(form == 0   ? PLY("ascii", 4, 1, "vertex_indices")
+              : form == 1 ? PLY("ascii", 4, 2, "vertex_index")
+              : form == 2 ? PLY("binary_little_endian", 4, 1, "vertex_indices")
+                          : PLY("binary_big_endian", 4, 1, "vertex_indices"),
+              file);
+        if (form < 2) {
+            for (int v = 0; v < 4; v++)
+                fprintf(file, "%g %g %g 7\n", (double)corners[v][0], (double)corners[v][1],
+                        (double)corners[v][2]);
+            fputs(form == 0 ? "4 0 1 2 3\n" : "3 0 1 2\n3 0 2 3\n", file);
+        }
+        for (int i = 0; form >= 2 && i < 17;
+             i++) { // 12 numbers with a byte behind three, 4 corners
+            uint8_t bytes[4] = {0};
+            const uint32_t corner = (uint32_t)(i - 13);
+            if (i < 12) memcpy(bytes, &corners[i / 3][i % 3], 4);
+            if (i > 12) memcpy(bytes, &corner, 4);
+            for (int k = 0; k < 4 && i != 12; k++) fputc(bytes[form == 2 ? k : 3 - k], file);
+            if (i < 12 && i % 3 == 2) fputc(7, file);
+            if (i == 12) fputc(4, file);
+        }
+        fclose(file);
+        Mesh mesh;
+        Error error = {""};
+        if (mesh_read(&mesh, path, 2.0f, true, &error) != RESULT_OK) fail_msg("%s", error.text);
+        assert_int_equal(mesh.vertex_count, 4);
+        assert_int_equal(mesh.triangle_count, 2);
+        assert_memory_equal(mesh.triangle, expected, sizeof expected);
+        for (int v = 0; v < 4; v++) { // y to the back
+            assert_true(mesh.position[v][0] == 2 * corners[v][0]);
+            assert_true(mesh.position[v][2] == -2 * corners[v][1]);
+            assert_memory_equal(mesh.normal[v], ((float[3]){0, 1, 0}), 12);
+        }
+        mesh_destroy(&mesh);
+    }
+}
+
+static void malformed_ply_is_refused_with_its_line(void **state)
+{
+    static const struct {
+        const char *text, *why;
+    } cases[] = {
+        {PLY("ascii", 3, 1, "vertex_indices") "0 0 0 0\n1 0 0 0\n0 1 0 0\n3 0 1 3\n",
+         "m.ply:15: face 0 has corner 3: expected less than 3"},
+        {PLY("ascii", 3, 1, "vertex_indices") "0 0 0 0\n1 0 nan 0\n0 1 0 0\n3 0 1 2\n",
+         "m.ply:13:"},
+        {PLY("ascii", 3, 1, "vertex_indices") "0 0 0 0\n1 0 1e30 0\n0 1 0 0\n3 0 1 2\n",
+         "vertex 1 is not finite, or beyond 1e18"},
+        {PLY("ascii", 3, 1, "vertex_indices") "0 0 0 0\n1 0 0 0\n0 1 0 0\n", "m.ply:"},
+        {PLY("ascii", 3, 1, "corners") "0 0 0 0\n1 0 0 0\n0 1 0 0\n3 0 1 2\n",
+         "faces without vertex_indices"},
+        {PLY("ascii", 3, 0, "vertex_indices") "0 0 0 0\n1 0 0 0\n0 1 0 0\n",
+         "no faces: expected a mesh"},
+        {"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n",
+         "vertices without x, y and z"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Mesh mesh;
+        Error error = {""};
+        temporary_write(state, "m.ply", cases[i].text, 0644);
+        assert_int_equal(mesh_read(&mesh, temporary_path(state, "m.ply"), 1, false, &error),
+                         RESULT_BAD_INPUT);
+        if (!strstr(error.text, cases[i].why))
+            fail_msg("'%s' lacks '%s'", error.text, cases[i].why);
+        mesh_destroy(&mesh);
+    }
 }
 
 static void malformed_files_are_refused_with_their_line(void **state)
@@ -227,6 +307,8 @@ int main(void)
         TEST(all_forms_of_faces_give_the_same_square),
         TEST(z_up_turns_positions_and_normals),
         TEST(texture_coordinates_belong_to_corners),
+        TEST(all_forms_of_ply_give_the_same_square),
+        TEST(malformed_ply_is_refused_with_its_line),
         TEST(malformed_files_are_refused_with_their_line),
         TEST(every_truncation_is_read_or_refused),
         TEST(written_meshes_read_back_bit_for_bit),

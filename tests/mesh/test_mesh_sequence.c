@@ -291,6 +291,91 @@ static void alembic_meshes_are_samples_with_their_transforms(void **state)
     expect("tests/data/curves.abc", &OPTIONS, "hair, no mesh that is shown");
 }
 
+#define USD_HEAD                                                                                   \
+    "#usda 1.0\n(\n    metersPerUnit = 0.5\n    upAxis = \"Z\"\n    timeCodesPerSecond = 30\n)\n"
+#define USD_FACES                                                                                  \
+    "        int[] faceVertexCounts = [3]\n        int[] faceVertexIndices = [0, 1, 2]\n"
+
+// SAMPLES in half metres with z up, under a transform that moves by (2, 4, 6).
+static void points_of_usd_are_samples_with_their_transforms(void **state)
+{
+    static const char *const move =
+        "def Xform \"Body\"\n{\n    double3 xformOp:translate = (2, 4, 6)\n"
+        "    uniform token[] xformOpOrder = [\"xformOp:translate\"]\n";
+    char text[3000];
+    const char *path = temporary_path(state, "m.usda");
+    snprintf(text, sizeof text,
+             "%s%s    def Mesh \"Skin\"\n    {\n%s        point3f[] points = [(9, 9, 9)]\n"
+             "        point3f[] points.timeSamples = {\n"
+             "            1: [(-2, -4, -6), (0, -4, -6), (-2, -4, -4)],\n"
+             "            3: [(-2, -6, -6), (0, -8, -6), (-2, -10, -4)],\n        }\n    }\n"
+             "    def Mesh \"Proxy\"\n    {\n        uniform token purpose = \"proxy\"\n%s"
+             "        point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]\n    }\n}\n",
+             USD_HEAD, move, USD_FACES, USD_FACES);
+    temporary_write(state, "m.usda", text, 0644);
+    expect(path, &OPTIONS, NULL);
+    MeshSequence sequence;
+    Mesh mesh;
+    Error error = {""};
+    assert_int_equal(read(&sequence, &mesh, path, &OPTIONS, &error), RESULT_OK);
+    assert_float_equal(sequence.times.rate, 15, 1e-9); // every second of 30 time codes a second
+    assert_int_equal(mesh.triangle[0][1], 1);
+    mesh_sequence_destroy(&sequence);
+    mesh_destroy(&mesh);
+}
+
+static void meshes_of_usd_that_cannot_be_taken_are_refused_with_their_line(void **state)
+{
+    static const struct {
+        const char *body, *why;
+    } cases[] = {
+        {USD_FACES "point3f[] points = [(0, 0, 0), (1, 0, 0)]\n",
+         "m.usda:10: faceVertexIndices: 2: expected a vertex from 0 to 1"},
+        {USD_FACES "point3f[] points.timeSamples = {\n1: [(0, 0, 0), (1, 0, 0), (0, 1, 0)],\n"
+                   "2: [(0, 0, 0)],\n}\n",
+         "m.usda:13: the sample at 2 has 1 vertices: expected 3 as in the first one"},
+        {USD_FACES "point3f[] points.timeSamples = {\n1: [(0, 0, 0), (1, 0, 0), (0, nan, 0)],\n}\n",
+         "m.usda: sample 0: vertex 2 is not finite"},
+        {"point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]\n",
+         "m.usda:9: a mesh without faceVertexCounts"},
+        {"int[] faceVertexCounts = [4]\nint[] faceVertexIndices = [0, 1, 2]\n"
+         "point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]\n",
+         "face 0 has 4 corners: expected at most 3"},
+        {"int[] faceVertexCounts = [3]\nint[] faceVertexIndices.timeSamples = {\n1: [0, 1, 2],\n"
+         "2: [0, 2, 1],\n}\npoint3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]\n",
+         "m.usda:12: faceVertexIndices that change: expected the same faces in all samples"},
+        {USD_FACES "point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]\n"
+                   "int[] primvars:skel:jointIndices = [0, 0, 0]\n",
+         "a mesh that a skeleton moves: expected its points at each time"},
+        {"token visibility = \"invisible\"\n" USD_FACES
+         "point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]\n",
+         "no Mesh prim that is shown"},
+        {"", "no Mesh prim with points"},
+        {"references = @x@\n}\ndef Xform \"A\" (\nreferences = @other.usda@\n)\n{\n",
+         "references are not read: expected one layer"},
+    };
+    char text[2000];
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        snprintf(text, sizeof text, USD_HEAD "def Mesh \"M\"\n{\n%s}\n", cases[i].body);
+        temporary_write(state, "m.usda", text, 0644);
+        expect(temporary_path(state, "m.usda"), &OPTIONS, cases[i].why);
+    }
+    snprintf(text, sizeof text,
+             USD_HEAD "def BasisCurves \"H\"\n{\nint[] curveVertexCounts = [2]\n"
+                      "point3f[] points = [(0, 0, 0), (1, 0, 0)]\n}\n");
+    temporary_write(state, "m.usda", text, 0644);
+    expect(temporary_path(state, "m.usda"), &OPTIONS, "hair, not a mesh");
+    // Corners that go round clockwise are turned; faces of each time that are the same are taken.
+    snprintf(text, sizeof text,
+             USD_HEAD "def Mesh \"M\"\n{\nuniform token orientation = \"leftHanded\"\n"
+                      "int[] faceVertexCounts.timeSamples = {\n1: [3],\n2: [3],\n}\n"
+                      "int[] faceVertexIndices = [0, 2, 1]\n"
+                      "point3f[] points.timeSamples = {\n1: [(0, 0, 0), (2, 0, 0), (0, 0, 2)],\n"
+                      "2: [(0, -2, 0), (2, -4, 0), (0, -6, 2)],\n}\n}\n");
+    temporary_write(state, "m.usda", text, 0644);
+    expect(temporary_path(state, "m.usda"), &OPTIONS, NULL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -301,6 +386,11 @@ int main(void)
         cmocka_unit_test_setup_teardown(arrays_of_numpy_say_faces_rate_unit_and_axes,
                                         temporary_create, temporary_destroy),
         cmocka_unit_test(alembic_meshes_are_samples_with_their_transforms),
+        cmocka_unit_test_setup_teardown(points_of_usd_are_samples_with_their_transforms,
+                                        temporary_create, temporary_destroy),
+        cmocka_unit_test_setup_teardown(
+            meshes_of_usd_that_cannot_be_taken_are_refused_with_their_line, temporary_create,
+            temporary_destroy),
         cmocka_unit_test(splines_are_exact_for_what_is_quadratic),
         cmocka_unit_test(a_cut_holds_and_jumps),
         cmocka_unit_test(the_shape_tells_rest_from_motion),

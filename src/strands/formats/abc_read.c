@@ -136,15 +136,15 @@ static void read_points(Abc *abc, AbcCurves *set, const OgawaProperty *position)
     set->samples = samples;
     set->sampling = position->sampling;
     alembic_longest(&abc->alembic, set->object, &set->sampling, &set->samples);
-    curves->timed = samples > 1;
-    curves->time_count = samples;
-    curves->points = calloc((size_t)read + 1, sizeof *curves->points);
-    if (!curves->points) reader_fail_memory(reader);
+    curves->points.timed = samples > 1;
+    curves->points.in_file = samples;
+    curves->points.sample = calloc((size_t)read + 1, sizeof *curves->points.sample);
+    if (!curves->points.sample) reader_fail_memory(reader);
     for (uint32_t i = 0; i < read && reader_ok(reader); ++i) {
         size_t count;
         double *number = ogawa_numbers(&abc->alembic.file, position, i, &count);
-        curves->points[curves->sample_count++] = to_values(reader, number, count);
-        curves->points[i].time = ogawa_time(&abc->alembic.file, position->sampling, i);
+        curves->points.sample[curves->points.count++] = to_values(reader, number, count);
+        curves->points.sample[i].time = ogawa_time(&abc->alembic.file, position->sampling, i);
     }
 }
 

@@ -13,8 +13,7 @@ void basis_curves_destroy(BasisCurves *curves)
         free(curves->array[i].value);
         free(curves->indices[i].value);
     }
-    for (size_t i = 0; i < curves->sample_count; ++i) free(curves->points[i].value);
-    free(curves->points);
+    usd_samples_destroy(&curves->points);
     *curves = (BasisCurves){0};
 }
 
@@ -314,10 +313,10 @@ static void check_kind(Reader *reader, const BasisCurves *curves)
 static uint64_t check_sizes(Reader *reader, const BasisCurves *curves, uint32_t per_strand)
 {
     const UsdValues *counts = &curves->array[CURVES_COUNTS];
-    uint64_t points = curves->points[0].count / 3, used = 0, vertices = 0;
-    stand_at(reader, curves->points[0].line);
-    if (curves->points[0].count % 3)
-        reader_fail(reader, "points: %zu numbers for these curves", curves->points[0].count);
+    uint64_t points = curves->points.sample[0].count / 3, used = 0, vertices = 0;
+    stand_at(reader, curves->points.sample[0].line);
+    if (curves->points.sample[0].count % 3)
+        reader_fail(reader, "points: %zu numbers for these curves", curves->points.sample[0].count);
     for (size_t s = 0; s < counts->count && reader_ok(reader); ++s) {
         float size = counts->value[s];
         if (!(size >= 0 && size <= (float)points && size == floorf(size))) {
@@ -331,10 +330,11 @@ static uint64_t check_sizes(Reader *reader, const BasisCurves *curves, uint32_t 
         used += count;
         vertices += count_vertices(curves, count, per_strand);
     }
-    for (size_t i = 0; i < curves->sample_count && reader_ok(reader); ++i) {
-        stand_at(reader, curves->points[i].line);
-        if (curves->points[i].count != 3 * used)
-            reader_fail(reader, "points: %zu numbers for these curves", curves->points[i].count);
+    for (size_t i = 0; i < curves->points.count && reader_ok(reader); ++i) {
+        stand_at(reader, curves->points.sample[i].line);
+        if (curves->points.sample[i].count != 3 * used)
+            reader_fail(reader, "points: %zu numbers for these curves",
+                        curves->points.sample[i].count);
     }
     if (reader_ok(reader) && vertices >= UINT32_MAX)
         reader_fail(reader, "more points than 32-bit indices hold");
@@ -364,19 +364,6 @@ void basis_curves_make(BasisCurves *curves, Reader *reader, uint32_t per_strand,
 
 // --- Points.
 
-// The two samples around a time, and how far behind the first one it is.
-static double find_samples(const BasisCurves *curves, double time, const float **a, const float **b)
-{
-    size_t next = 0, last = curves->sample_count - 1;
-    while (next < last && curves->points[next].time < time) ++next;
-    size_t before = next > 0 && curves->points[next].time > time ? next - 1 : next;
-    *a = curves->points[before].value;
-    *b = curves->points[next].value;
-    if (before == next) return 0;
-    double from = curves->points[before].time;
-    return (time - from) / (curves->points[next].time - from);
-}
-
 static bool is_identity(double m[4][4])
 {
     for (int i = 0; i < 16; ++i)
@@ -388,8 +375,7 @@ void basis_curves_place(const BasisCurves *curves, const Strands *strands, doubl
                         double matrix[4][4], float (*to)[3])
 {
     const float *a, *b;
-    double share =
-        curves->timed ? find_samples(curves, time, &a, &b) : (a = b = curves->points[0].value, 0);
+    double share = usd_samples_find(&curves->points, time, &a, &b);
     bool still = is_identity(matrix), linear = basis_of(curves) == BASIS_LINEAR;
     size_t start = 0;
     for (uint32_t s = 0; s < strands->strand_count; ++s) {

@@ -3,7 +3,7 @@
 // they are, cubic ones (bezier, bspline, catmullRom; nonperiodic or pinned) as points on them.
 #pragma once
 
-#include "strands/formats/usd_text.h"
+#include "base/usd_samples.h"
 #include "strands/strands.h"
 
 typedef enum CurvesArray {
@@ -26,10 +26,8 @@ typedef struct BasisCurves {
     const char *const *names; // [CURVES_ARRAYS] of the attributes, for messages
     uint32_t per_segment; // vertices for each segment of a cubic curve; 0: 4 of bezier, 2 of others
     UsdValues array[CURVES_ARRAYS], indices[CURVES_ARRAYS];
-    char rate[CURVES_ARRAYS][16];    // interpolation as the file says; "": it does not
-    UsdValues *points;               // [sample_count] by rising time; without `timed` one
-    size_t sample_count, time_count; // time_count: in the file, of which some may not be kept
-    bool timed;
+    char rate[CURVES_ARRAYS][16]; // interpolation as the file says; "": it does not
+    UsdSamples points;            // one at least
     char type[USD_WORD_SIZE], basis[USD_WORD_SIZE], wrap[USD_WORD_SIZE];
     uint32_t line; // of the prim
     float followers, follower_radius, both_ends_fixed;
