@@ -330,5 +330,6 @@ void main()
     else
         write(strand, account);
     positions[strand.address] = vec4(strand.root, 1.0);
-    account_close(account, strand, int(step_params.vertex_count - 1u));
+    float gained = account_close(account, strand, int(step_params.vertex_count - 1u));
+    velocities[strand.address] = vec4(account.moved / strand.dt, gained);
 }

@@ -10,7 +10,13 @@
 // component s d'_{i+1}/dt as a share of the segment, along which it lies.
 //
 // STYLED 1: before that, p is drawn to the style (style_spring.h).
-// GUARDED 1: the drawn strand gains no energy by corrections (energy_account.glsl).
+//
+// GUARDED 1: the drawn strand keeps no energy that corrections give it (energy_account.glsl).
+// Nearly always the next step pays, and no particle is visited twice: where the strand has gained
+// more than PAID_ABOVE of what gravity could give to it, and of what it has, its velocities count
+// less by the share `paid`, towards the root's, when the next step begins. That step gives about as
+// much as this one before it can pay, so that much is paid ahead. `paid` stands in the fourth
+// component of the tip's velocity.
 #include "sim/dftl_params.h"
 #include "sim/particles.glsl"
 #include "sim/strand.glsl"
@@ -21,20 +27,29 @@ const float ALLOWED = 0.003; // share of energy
 #define SLOWS_AGAIN 1
 #include "sim/energy_account.glsl"
 
+const float PAID_ABOVE = 0.001; // share of energy
+
 void main()
 {
     int s = first_strand(), last = int(step_params.vertex_count) - 1;
     if (s >= int(step_params.strand_count)) return;
     Strand strand = strand_open(s, dftl_params.spring);
-    Account account = account_open(strand, 0.0);
+    int tip = strand.address + last * STRAND_TILE;
     float per_second = 1.0 / strand.dt, given = dftl_params.damping * per_second;
     vec3 leader = strand.root, leader_velocity = strand.root_velocity, style = vec3(0.0),
          along = rotate(strand.rotation, fetch_rest(strand, 1).xyz), x = fetch_position(strand, 1);
+#if GUARDED
+    Account account = account_open(strand, 0.0);
+    float paid = velocity_before(tip).w;
+#endif
     positions[strand.address] = vec4(leader, 1.0);
     for (int j = 1; j <= last; ++j) {
         int a = strand.address + j * STRAND_TILE;
         vec3 ahead = fetch_position(strand, min(j + 1, last));
         vec4 u = velocity_before(a), segment = fetch_rest(strand, j);
+#if GUARDED
+        u.xyz = mix(u.xyz, account.moved_before / strand.dt, paid);
+#endif
         // u would lead to x + move, v does to x + move + back
         vec3 kicked = kicked_velocity(strand, j, u.xyz), move = strand.dt * kicked,
              back = strand.dt * (kicked_velocity(strand, j, u.xyz - u.w * (ahead - x)) - kicked);
@@ -59,8 +74,15 @@ void main()
         leader_velocity = per_second * (follower - x);
         leader = follower, x = ahead;
     }
-    velocities[strand.address + last * STRAND_TILE] = vec4(leader_velocity, 0.0);
+    velocities[tip] = vec4(leader_velocity, 0.0);
 #if GUARDED
-    account_close(account, strand, last);
+    float per_square = 0.5 * per_second * per_second,
+          rise = per_square * (account.squares + account.linear + account.constant),
+          gained = account_close(account, strand, last), kinetic = per_square * account.squares,
+          fall = account_fall(strand, last),
+          over = gained + max(rise, 0.0) - PAID_ABOVE * (fall + kinetic);
+    over = clamp(over < 1e30 ? over : 0.0, 0.0, kinetic);
+    if (over > 0.0) velocities[tip].w = 1.0 - sqrt(1.0 - over / kinetic);
+    velocities[strand.address] = vec4(strand.root_velocity, gained - over);
 #endif
 }

@@ -21,6 +21,8 @@
 // the strand's moves have more than 1.5 times the energy meant for them, they are made smaller
 // again.
 
+const float NOISE = 1e-6; // of a position; rounding is 6e-8
+
 struct Account {
     vec3 moved, moved_before;        // of the root, in this step and in the one before
     float squares, linear, constant; // times dt^2/2
@@ -105,15 +107,29 @@ float account_slow(inout Account account, Strand strand, int last, float share, 
 #endif
 }
 
-// Writes the root's velocity with the account, and slows the strand down if need be. Its loop is
-// rolled, so that a CPU driver leaves it after a round where no strand needs it.
-void account_close(Account account, Strand strand, int last)
+// What gravity and wind could give to the strand, about.
+float account_fall(Strand strand, int last)
+{
+    return 0.5 * float(last) * strand.total_length * length(strand.push) / step_params.gain;
+}
+
+// What rounding of positions looks like: hair at rest whose style holds its weight has nothing
+// else, and needs no guard.
+float account_noise(Strand strand, int last)
+{
+    float speed = NOISE * (strand.total_length + length(strand.root)) / strand.dt;
+    return 0.5 * float(last) * speed * speed;
+}
+
+// Slows the strand down if need be, which sets `squares` anew. Gives what the strand has gained and
+// not paid. The loop is rolled, so that a CPU driver leaves it after a round where no strand needs
+// it.
+float account_close(inout Account account, Strand strand, int last)
 {
     float per_square = 0.5 / (strand.dt * strand.dt), kinetic = per_square * account.squares,
           linear = per_square * account.linear + (account.stored - account.stored_before);
     float constant = account.gained + per_square * account.constant;
-    float fall =
-        ALLOWED * 0.5 * float(last) * strand.total_length * length(strand.push) / step_params.gain;
+    float fall = ALLOWED * account_fall(strand, last) + account_noise(strand, last);
     float gained = kinetic + linear + constant,
           over = max(gained, 0.0) - (fall + ALLOWED * kinetic), share = 1.0, kept = 1.0;
     bool guards = over > 0.0 && kinetic > 0.0 && over < 1e30;
@@ -136,6 +152,5 @@ void account_close(Account account, Strand strand, int last)
         }
 #endif
     }
-    float kept_gain = gained > 0.0 && gained < 1e30 ? gained : 0.0; // 0 for a NaN
-    velocities[strand.address] = vec4(account.moved / strand.dt, kept_gain);
+    return gained > 0.0 && gained < 1e30 ? gained : 0.0; // 0 for a NaN
 }

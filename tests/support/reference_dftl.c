@@ -112,16 +112,18 @@ static void find_velocities(TwinStrand *strand, const Vec *old, double dt)
         for (int k = 0; k < 3; ++k) strand->v[j][k] = (strand->x[j][k] - old[j][k]) / dt;
 }
 
-// Slows the strand down where corrections have given more than 0.003 of what it may have.
-static void guard(TwinStrand *strand, const TwinStep *step, const Vec *old, const Vec *flown,
-                  const Vec *u)
+// Slows the strand down where corrections have given more than 0.003 of what it may have. Gives
+// what they gave in this step.
+static double guard(TwinStrand *strand, const TwinStep *step, const Vec *old, const Vec *flown,
+                    const Vec *u)
 {
     const double allowed = 0.003;
     double a, b, c, falls = allowed * fall(strand, step);
     account(strand, old, flown, u, step->dt, &a, &b, &c);
+    const double given = a + b + c;
     c += strand->gained;
     strand->gained = fmax(a + b + c, 0);
-    if (!(strand->gained > falls + allowed * a) || !(a > 0)) return;
+    if (!(strand->gained > falls + allowed * a) || !(a > 0)) return given;
     double free = (1 - allowed) * a, discriminant = fmax(b * b - 4 * free * (c - falls), 0),
            share = fmin(fmax((sqrt(discriminant) - b) / (2 * free), 0), 1);
     double kinetic = share * share * a, gained = kinetic + share * b + c;
@@ -137,6 +139,18 @@ static void guard(TwinStrand *strand, const TwinStep *step, const Vec *old, cons
         vec_add_scaled(strand->v[0], kept, v, strand->v[j]);
     }
     strand->gained = fmax(gained, 0);
+    return given;
+}
+
+// What the next step takes from the velocities: what was gained above 0.001 of what the strand may
+// have, and as much again as this step gave.
+static void charge(TwinStrand *strand, const TwinStep *step, double given)
+{
+    double kinetic = kinetic_energy(strand),
+           over = strand->gained + fmax(given, 0) - 0.001 * (fall(strand, step) + kinetic);
+    over = fmin(fmax(over, 0), kinetic);
+    strand->gained -= over;
+    strand->paid = over > 0 ? 1 - sqrt(1 - over / kinetic) : 0;
 }
 
 void reference_dftl_guarded_step(TwinStrand *strand, const TwinStep *step,
@@ -145,6 +159,9 @@ void reference_dftl_guarded_step(TwinStrand *strand, const TwinStep *step,
     double s = (double)params->ftl_damping;
     Vec old[TWIN_MAX], u[TWIN_MAX], flown[TWIN_MAX], correction[TWIN_MAX + 1] = {{0}};
     memcpy(old, strand->x, sizeof old);
+    for (int j = 1; j < strand->n; ++j)
+        for (int k = 0; k < 3; ++k)
+            strand->v[j][k] += strand->paid * (strand->v[0][k] - strand->v[j][k]);
     memcpy(u, strand->v, sizeof u);
     fly(strand, step, params, (const Vec *)u, flown);
     for (int j = 1; j + 1 < strand->n; ++j) { // gives back along the segment as it is
@@ -160,5 +177,5 @@ void reference_dftl_guarded_step(TwinStrand *strand, const TwinStep *step,
             s * vec_dot(correction[j + 1], segment) / vec_dot(segment, segment) / step->dt;
     }
     find_velocities(strand, (const Vec *)old, step->dt);
-    guard(strand, step, (const Vec *)old, (const Vec *)flown, (const Vec *)u);
+    charge(strand, step, guard(strand, step, (const Vec *)old, (const Vec *)flown, (const Vec *)u));
 }

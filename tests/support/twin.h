@@ -16,7 +16,8 @@ typedef struct TwinStrand {
     Vec style[TWIN_MAX];          // the rest shape in the head's frame, m
     double length[TWIN_MAX];
     double carried[TWIN_MAX]; // 1/s^2: what chain's corrections add to tensions with bending
-    double gained; // m^2/s^2: what chain's constraints have given since it last had least
+    double gained; // m^2/s^2: what chain's and dftl's constraints have given, and it has not paid
+    double paid;   // share of its velocities that dftl's next step takes for that
 } TwinStrand;
 
 typedef struct TwinStep {
