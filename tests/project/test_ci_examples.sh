@@ -140,7 +140,7 @@ refused "prebuilt is false"
 claim "the action names a build by system and sources"
 github list=examples/ci/scenes.txt goldens=examples/ci/goldens out=images "options=$limits --mask examples/ci/masks"
 for name in key install-packages build compare "uses actions/cache@v" "uses actions/upload-artifact@v"; do says "$name"; done
-step 0 key; output key=tractrix-; key=$(cat "$work/runner/output")
+step 0 key; output key=tractrix-; output "programs=$work/action/out/release/tractrix-*"; key=$(cat "$work/runner/output")
 step 0 key; if [ "$(cat "$work/runner/output")" = "$key" ]; then good; else bad "another key for the same sources"; fi
 echo >>"$work/action/glsl/sim/forces.glsl"
 step 0 key; if [ "$(cat "$work/runner/output")" != "$key" ]; then good; else bad "one key for two sources"; fi
