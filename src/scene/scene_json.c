@@ -93,7 +93,13 @@ static Result read_params(const Document *document, const Sink *sink, Origin ori
     for (size_t i = 0; i < PARAM_COUNT; i++) {
         const ParamInfo *info = &PARAM_TABLE[i];
         const char *key = info->name;
-        if (params_also(info) && !json_object_get(object, key)) key = params_also(info);
+        const char *also = params_also(info);
+        if (also && json_object_get(object, also) && info->scope == sink->scope) {
+            if (json_object_get(object, key))
+                return json_fail(parent, error, "'%s' and '%s' are the same: expected one of them",
+                                 key, also);
+            key = also;
+        }
         const json_t *value = json_object_get(object, key);
         bool keys = json_is_object(value) && is_force(info->name);
         bool list = json_is_array(value) && strcmp(info->name, "colliders") == 0;

@@ -21,14 +21,23 @@ static void drop_keyframes(Scene *scene, const char *name)
     }
 }
 
+// What is refused changes nothing.
 static Result set_run(Scene *scene, const ParamInfo *info, const char *text, Error *error)
 {
-    TRY(params_parse(info, &scene->run, text, error));
+    bool shapes = strcmp(info->name, "colliders") == 0;
+    Colliders colliders = {0};
+    Result result = shapes ? colliders_parse(&colliders, text, error) : RESULT_OK;
+    THEN(result, params_parse(info, &scene->run, text, error));
+    if (result != RESULT_OK) {
+        colliders_destroy(&colliders);
+        return result;
+    }
     drop_keyframes(scene, info->name);
     scene->origin[info - PARAM_TABLE] = ORIGIN_FLAG;
-    if (strcmp(info->name, "colliders") != 0) return RESULT_OK;
+    if (!shapes) return RESULT_OK;
     colliders_destroy(&scene->colliders);
-    return colliders_parse(&scene->colliders, scene->run.colliders, error);
+    scene->colliders = colliders;
+    return RESULT_OK;
 }
 
 static Result set_section(Section *section, const ParamInfo *info, const char *text, Error *error)
@@ -48,7 +57,7 @@ Result scene_set(Scene *scene, int section, const ParamInfo *info, const char *t
     return RESULT_OK;
 }
 
-static bool is_default(const Scene *scene, const char *name)
+bool scene_has_default(const Scene *scene, const char *name)
 {
     return scene->origin[params_find(name) - PARAM_TABLE] == ORIGIN_DEFAULT;
 }
@@ -56,9 +65,10 @@ static bool is_default(const Scene *scene, const char *name)
 Result scene_choose_turn(Scene *scene, Error *error)
 {
     RunParams *run = &scene->run;
-    if (run->turntable == 0 || !is_default(scene, "frames") || !is_default(scene, "fps"))
+    if (run->turntable == 0 || !scene_has_default(scene, "frames") ||
+        !scene_has_default(scene, "fps"))
         return RESULT_OK;
-    if (is_default(scene, "sim_rate") && is_default(scene, "speed"))
+    if (scene_has_default(scene, "sim_rate") && scene_has_default(scene, "speed"))
         TRY(params_parse(params_find("sim_rate"), run, params_find("fps")->default_text, error));
     run->frames = TURN_SECONDS * TURN_FPS;
     run->fps = TURN_FPS;
