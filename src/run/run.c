@@ -13,7 +13,6 @@
 #include "run/run_paths.h"
 #include "run/survey.h"
 #include "scene/effects.h"
-#include "scene/fit.h"
 #include "scene/scalp_guess.h"
 #include "strands/follow_plan.h"
 
@@ -128,11 +127,6 @@ static Result check_values(const Scene *scene, Error *error)
     if (run->resume) TRY(resume_check(run, error));
     TRY(run_paths_claim(scene, error));
     TRY(caption_check(run->caption, error));
-    bool fits = run->framing == FRAMING_HAIR || run->framing == FRAMING_ALL;
-    if (fits && !fit_is_free(scene))
-        return error_set(error, RESULT_USAGE,
-                         "--framing %s: expected an automatic --eye, and no keys of eye or target",
-                         run->framing == FRAMING_ALL ? "all" : "hair");
     for (uint32_t i = 0; i < scene->section_count; ++i)
         TRY(solver_check(&scene->sections[i].params, error));
     return RESULT_OK;

@@ -36,7 +36,8 @@ typedef struct Survey {
 
 bool survey_is_wanted(const Scene *scene)
 {
-    if (scene->run.framing == FRAMING_AUTO) return scene->run.turntable != 0 && fit_is_free(scene);
+    if (!fit_is_free(scene)) return false; // a caller of the library may set the eye later
+    if (scene->run.framing == FRAMING_AUTO) return scene->run.turntable != 0;
     return scene->run.framing != FRAMING_EXPECTED;
 }
 

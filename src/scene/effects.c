@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "scene/effects.h"
 #include "base/quote.h"
+#include "scene/fit.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-// --- Conditions. `section` is NULL for parameters of the run.
+// --- Conditions. `of` and its parameters `section` are NULL for parameters of the run.
 
 #define CONDITION(name, holds)                                                                     \
-    static bool name(const Scene *scene, const SectionParams *section)                             \
+    static bool name(const Scene *scene, const Section *of)                                        \
     {                                                                                              \
+        const SectionParams *section = of ? &of->params : NULL;                                    \
         (void)scene, (void)section;                                                                \
         return holds;                                                                              \
     }
@@ -19,15 +21,31 @@ static bool writes(const char *output, const char *suffix)
     return length >= own && strcasecmp(output + length - own, suffix) == 0;
 }
 
+static bool reads_any_file(const Scene *scene)
+{
+    bool any = !scene->section_count;
+    for (uint32_t i = 0; i < scene->section_count; ++i) any = any || !scene->sections[i].given;
+    return any;
+}
+
+// An OBJ or PLY file is one shape; a pattern names several.
+static bool may_deform(const char *mesh)
+{
+    bool shape = writes(mesh, ".obj") || writes(mesh, ".ply");
+    return *mesh && (!shape || strchr(mesh, '%'));
+}
+
+CONDITION(reads_files, reads_any_file(scene))
+CONDITION(reads_file, !of->given)
+CONDITION(reads_mesh, !scene->given_mesh)
 // A head may be fitted where there is no mesh.
 CONDITION(has_head, *scene->run.mesh || scene->run.scalp != SCALP_NONE)
 CONDITION(has_colliders,
-          scene->colliders.count > 0 || (scene->run.collide_mesh && has_head(scene, section)))
+          scene->colliders.count > 0 || (scene->run.collide_mesh && has_head(scene, of)))
 CONDITION(collides, section->collide)
 CONDITION(collides_mesh, scene->run.collide_mesh)
 CONDITION(has_mesh, *scene->run.mesh)
-CONDITION(has_sequence,
-          *scene->run.mesh && (!writes(scene->run.mesh, ".obj") || strchr(scene->run.mesh, '%')))
+CONDITION(has_sequence, may_deform(scene->run.mesh))
 CONDITION(has_wind, scene->wind.count > 0 || scene->run.wind[0] != 0 || scene->run.wind[1] != 0 ||
                         scene->run.wind[2] != 0)
 CONDITION(has_gusts, scene->run.gust > 0)
@@ -58,9 +76,13 @@ CONDITION(is_smooth, section->smooth > 1)
 // Each parameter's condition, and why it has no effect where that does not hold.
 static const struct {
     const char *names; // a blank between them
-    bool (*holds)(const Scene *scene, const SectionParams *section);
+    bool (*holds)(const Scene *scene, const Section *of);
     const char *why;
 } EFFECTS[] = {
+    {"unit up group array points_per_strand", reads_file, "the hair is from an array"},
+    {"strict", reads_files, "the hair is from an array"},
+    {"mesh_unit mesh_up mesh_rest mesh_fps mesh_start mesh_motion", reads_mesh,
+     "the mesh is from an array"},
     {"exr_layers exr_float", writes_exr, "--output is no .exr file"},
     {"collide friction collision_margin", has_colliders,
      "no --colliders, --mesh or --scalp to collide with"},
@@ -115,8 +137,7 @@ static const char *find_reason(const ParamInfo *info, const Scene *scene, const 
         return text;
     }
     for (size_t i = 0; i < sizeof EFFECTS / sizeof *EFFECTS; ++i)
-        if (lists(EFFECTS[i].names, info->name) &&
-            !EFFECTS[i].holds(scene, section ? &section->params : NULL)) {
+        if (lists(EFFECTS[i].names, info->name) && !EFFECTS[i].holds(scene, section)) {
             snprintf(text, 80, "it has no effect: %s", EFFECTS[i].why);
             return text;
         }
@@ -140,9 +161,21 @@ static const char *find_shared_reason(const ParamInfo *info, const Scene *scene,
     return reason;
 }
 
+static Result check_framing(const Scene *scene, Error *error)
+{
+    const RunParams *run = &scene->run;
+    bool fits = run->framing == FRAMING_HAIR || run->framing == FRAMING_ALL;
+    if (fits && !fit_is_free(scene))
+        return error_set(error, RESULT_USAGE,
+                         "--framing %s: expected an automatic --eye, and no keys of eye or target",
+                         run->framing == FRAMING_ALL ? "all" : "hair");
+    return RESULT_OK;
+}
+
 Result effects_check(const Scene *scene, Error *error)
 {
     char reason[80], flag[80];
+    TRY(check_framing(scene, error));
     for (size_t i = 0; i < PARAM_COUNT; ++i) {
         const ParamInfo *info = &PARAM_TABLE[i];
         if (!find_shared_reason(info, scene, ORIGIN_FLAG, reason)) continue;

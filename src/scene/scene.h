@@ -76,7 +76,7 @@ typedef enum SceneRequest {
 // A mesh that is in memory already.
 typedef struct GivenMesh {
     Mesh mesh;
-    bool deforms; // Body.given moves it
+    bool deforms; // by body_drive
 } GivenMesh;
 
 // A zeroed scene is empty and may be destroyed.
@@ -141,6 +141,9 @@ Result scene_open(Scene *scene, const char *const *files, size_t count,
 // whatever `section` is. What changes over time of it (keyframes, tracks) goes. Errors of
 // params_parse, and of colliders_parse.
 Result scene_set(Scene *scene, int section, const ParamInfo *info, const char *text, Error *error);
+
+// Whether neither file nor command line has given a parameter of the run.
+bool scene_has_default(const Scene *scene, const char *name);
 
 // A turntable lasts 6 s at 30 frames a second where nothing is said of either, with the step that
 // other sequences have. RESULT_FAILED when memory is short.

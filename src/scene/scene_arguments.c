@@ -66,11 +66,6 @@ static Result apply_flags(Scene *scene, OptionsWalk walk, Error *error)
     }
 }
 
-static bool is_default(const Scene *scene, const char *name)
-{
-    return scene->origin[params_find(name) - PARAM_TABLE] == ORIGIN_DEFAULT;
-}
-
 // One name without a number (x.png) holds one frame, --first, unless the command line says how many
 // frames there are or something else than images needs all of them.
 static Result choose_still(Scene *scene, Error *error)
@@ -79,7 +74,7 @@ static Result choose_still(Scene *scene, Error *error)
     Target target;
     bool sheet = run->contact_sheet[0] > 1 || run->contact_sheet[1] > 1;
     bool counted = scene->origin[params_find("frames") - PARAM_TABLE] == ORIGIN_FLAG;
-    if (counted || sheet || run->part[1] > 1 || !is_default(scene, "last") || *run->cache ||
+    if (counted || sheet || run->part[1] > 1 || !scene_has_default(scene, "last") || *run->cache ||
         *run->export)
         return RESULT_OK;
     Error unused = {{0}}; // a wrong name is reported by what opens it
@@ -87,7 +82,8 @@ static Result choose_still(Scene *scene, Error *error)
     if (result == RESULT_FAILED) return error_set(error, result, "%s", unused.text);
     if (result == RESULT_OK && target.kind == TARGET_STILL) {
         run->last = run->first;
-        if (run->frames <= run->first && is_default(scene, "frames")) run->frames = run->first + 1;
+        if (run->frames <= run->first && scene_has_default(scene, "frames"))
+            run->frames = run->first + 1;
     }
     target_destroy(&target);
     return RESULT_OK;

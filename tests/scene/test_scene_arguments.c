@@ -456,6 +456,7 @@ static void flags_without_effect_are_refused(void **state)
          "--collide-mesh: it has no effect: there is no"},
         {"a.tfx -o x/ --sdf-resolution 99", "there is no --mesh"},
         {"a.tfx -o x/ --sdf-resolution 99 --mesh m.obj --no-collide-mesh", "--no-collide-mesh"},
+        {"a.tfx -o x/ --mesh m.ply --mesh-fps 24", "--mesh-fps: it has no effect: --mesh does not"},
         {"a.tfx -o x/ --gust 1", "--gust: it has no effect: there is no --wind"},
         {"a.tfx -o x/ --wind 1,0,0 --gust 0 --gust-period 3", "--gust is 0"},
         {"a.tfx -o x/ --shadow none --shadow-size 99",
