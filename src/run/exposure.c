@@ -15,7 +15,7 @@ enum { SIDE = 256 }; // px of the meter's image, at most
 enum { LIGHT, HAIR, DRAWINGS };
 
 typedef struct Meter {
-    Scene scene[DRAWINGS]; // own their sections, borrow all else
+    Scene scene[DRAWINGS]; // the first owns the sections of both; all else is borrowed
     GpuTimer timer;
     Simulation simulation;
     Image image[DRAWINGS];
@@ -148,7 +148,7 @@ Result exposure_find(float *exposure, const Scene *scene, const Assets *assets,
     Meter meter = {.scene = {meter_scene(scene, AOV_NONE), meter_scene(scene, AOV_COVERAGE)}};
     gpu_timer_create(&meter.timer, false, gpu->software);
     Result result = make_all_grey(&meter.scene[LIGHT], scene, error);
-    THEN(result, make_all_grey(&meter.scene[HAIR], scene, error));
+    meter.scene[HAIR].sections = meter.scene[LIGHT].sections;
     THEN(result, simulation_create(&meter.simulation, gpu, &meter.timer, &meter.scene[LIGHT],
                                    assets->strands, &assets->mesh, error));
     THEN(result, put_hair(&meter.simulation, error));
@@ -158,6 +158,6 @@ Result exposure_find(float *exposure, const Scene *scene, const Assets *assets,
     for (int i = 0; i < DRAWINGS; ++i) image_destroy(&meter.image[i]);
     if (meter.simulation.scene) simulation_destroy(&meter.simulation);
     gpu_timer_destroy(&meter.timer);
-    for (int i = 0; i < DRAWINGS; ++i) destroy_grey(&meter.scene[i]);
+    destroy_grey(&meter.scene[LIGHT]);
     return result;
 }
