@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/leftovers.h"
+#include "base/parallel.h"
 
 #include <errno.h>
 #include <pthread.h>
@@ -55,17 +56,9 @@ static void *watch(void *unused)
 static void start_watch(void)
 {
     pthread_t thread;
-    pthread_attr_t attributes;
-    sigset_t all, before;
-    sigfillset(&all);
     interrupt_expect();
     sem_init(&request_came, 0, 0);
-    pthread_attr_init(&attributes);
-    pthread_attr_setdetachstate(&attributes, PTHREAD_CREATE_DETACHED);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    pthread_create(&thread, &attributes, watch, NULL);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
-    pthread_attr_destroy(&attributes);
+    if (parallel_start(&thread, watch, NULL) == 0) pthread_detach(thread);
 }
 
 void interrupt_install(void)
