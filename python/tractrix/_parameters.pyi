@@ -27,8 +27,8 @@ class Parameters(TypedDict, total=False):
     strict: bool
     """reject hair files with defects instead of repairing them [default false]"""
     mesh_rest: Path
-    """OBJ file of the pose in which a deforming mesh's hair was groomed, and of its faces; empty: the pose at time 0
-    [default none]"""
+    """OBJ or PLY file of a deforming mesh in the pose in which its hair was groomed; gives the faces where --mesh has
+    none; empty: the pose at time 0 [default none]"""
     mesh_fps: Union[float, Literal["auto"]]
     """samples of a deforming mesh per second; auto: as its file says, or else --fps [0.001 to 100000 1/s; default
     auto]"""
@@ -358,9 +358,6 @@ class Parameters(TypedDict, total=False):
     least_seen: float
     """share of a pixel: --raster blocks does not shade ribbons of which less is seen, nor draw what shines through a
     pixel by less than twice as much; 0: all [0 to 0.5; default 0.001]"""
-    platform: bool
-    """print the name of what would draw, by which tractrix-compare --platform seeks goldens, and stop [default
-    false]"""
     thickness: Numbers
     """of all vertices, one strand behind the other, relative to its mean, which `radius` gives"""
     uv: Numbers

@@ -195,7 +195,8 @@ static Result make_mesh(Mesh *mesh, MeshSamples *samples, const Mesh *rest, cons
     bool own = samples->triangle != NULL;
     if (!own && !rest->vertex_count)
         return error_set(error, RESULT_BAD_INPUT,
-                         "%s: it has no faces: expected an OBJ file with them (--mesh-rest)", path);
+                         "%s: it has no faces: expected an OBJ or PLY file with them (--mesh-rest)",
+                         path);
     uint64_t triangles = own ? samples->triangle_count : rest->triangle_count;
     if (triangles == 0 || triangles > UINT32_MAX / 8)
         return error_set(error, RESULT_BAD_INPUT, "%s: %llu triangles", path,
