@@ -30,6 +30,6 @@ static bool host_context(int width, int height)
     if (!display || !eglInitialize(display, NULL, NULL) || !eglBindAPI(EGL_OPENGL_API))
         return false;
     EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, version);
-    return eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context);
+    return context && eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context);
 }
 #endif

@@ -326,6 +326,8 @@ void gpu_leave(void)
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_SCISSOR_TEST);
     glDepthMask(GL_TRUE);
+    glDepthFunc(GL_LESS);
+    glActiveTexture(GL_TEXTURE0);
     glUseProgram(0);
     glBindVertexArray(0);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);

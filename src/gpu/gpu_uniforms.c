@@ -29,7 +29,7 @@ static size_t round_up(size_t size)
     return (size + ring->step - 1) / ring->step * ring->step;
 }
 
-// Empties the ring-> What is queued keeps what it was given.
+// Starts the buffer anew. Draws that are queued keep the uniforms that they were given.
 static void begin(void)
 {
     glBindBuffer(GL_UNIFORM_BUFFER, ring->buffer);

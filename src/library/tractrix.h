@@ -11,7 +11,8 @@
 // Manners: no output, no signal handler, no exit, no file but those that an argument or a parameter
 //   names, no change of the caller's current OpenGL or EGL context. After fork() the child may only
 //   destroy, which frees nothing there: all else of a device fails with TRACTRIX_NO_GL.
-// Structs begin with `size`, which the caller sets to their sizeof: newer versions append members.
+// Structs whose first member is `size`: the caller sets it to their sizeof, since newer versions
+//   append members. TractrixError and TractrixPose have none and stay as they are.
 // Bytes: the same calls on the same driver and processor family give the same positions and pixels,
 //   those of tractrix-render.
 #ifndef TRACTRIX_H
@@ -64,7 +65,7 @@ TractrixResult tractrix_device_open(TractrixDevice **device, const TractrixDevic
 
 // The caller's OpenGL context, 4.3 or newer, EGL or GLX, current on this thread now and in every
 // call of this device and its children, destroy too. Calls expect OpenGL's default state and leave
-// defaults, but for viewport, scissor box, depth function, and bindings of programs, vertex arrays,
+// defaults, but for viewport, scissor box, and bindings of programs, vertex arrays,
 // framebuffers, buffers, textures, samplers, images and uniform blocks: set yours again.
 // TRACTRIX_NO_GL if no context is current or it offers too little.
 TractrixResult tractrix_device_borrow(TractrixDevice **device, TractrixError *error);
@@ -99,7 +100,8 @@ typedef struct TractrixStrands {
     uint32_t vertices_each; // of every strand, 2 to 65,535, if `sizes` is NULL
     const uint32_t *sizes;  // [strand_count]
     const float *position;  // [vertices of all strands][3], root first
-    const float *thickness; // [vertices], relative to their mean; NULL: even. `radius` is absolute
+    const float *thickness; // [vertices], in any unit: the parameter `radius` is the radius where
+                            // it equals its mean over all vertices; NULL: even
     const float *color;     // [vertices][4], linear RGB and opacity; NULL: by parameters
     const float *uv;        // [strand_count][2], of the root; NULL: none
 } TractrixStrands;
@@ -117,7 +119,8 @@ typedef struct TractrixMesh {
 // Empty, with the defaults of a look: "studio" (NULL) or "plain".
 TractrixResult tractrix_scene_create(TractrixScene **scene, const char *look, TractrixError *error);
 // From a scene file or a hair file; "-" is refused. Hair and meshes that it names are there now,
-// and are read by each tractrix_simulation_create, as the parameters then say (unit, up, ...).
+// and are read by each tractrix_simulation_create, as the parameters then say (unit, up, ...);
+// whether all files of a pattern (mesh_%04d.obj) are there is found out then.
 TractrixResult tractrix_scene_read(TractrixScene **scene, const char *path, TractrixError *error);
 // From a scene file's text; relative paths in it begin at `folder` (NULL: the working folder).
 TractrixResult tractrix_scene_parse(TractrixScene **scene, const char *json, const char *folder,
@@ -195,7 +198,8 @@ TractrixResult tractrix_simulation_map(TractrixSimulation *simulation, int secti
                                        TractrixError *error);
 
 // The same without waiting, to byte `offset` (a multiple of 16) of a buffer of the borrowed
-// context. TRACTRIX_USAGE if the buffer is too small or the device is not borrowed.
+// context. TRACTRIX_USAGE if the buffer is too small or the device is not borrowed, TRACTRIX_FAILED
+// if the positions are more than the driver lets a shader write (OpenGL 4.3: at least 16 MiB).
 TractrixResult tractrix_simulation_copy_to_gl(TractrixSimulation *simulation, int section,
                                               TractrixPart part, uint32_t buffer, size_t offset,
                                               TractrixError *error);
@@ -218,7 +222,7 @@ typedef struct TractrixImage { // top row first
 
 typedef struct TractrixView { // column by column, as glUniformMatrix4fv has them
     size_t size;
-    float world_to_eye[16]; // rigid
+    float world_to_eye[16]; // a rotation and a translation, nothing else
     float projection[16];   // eye to clip space, perspective, near and far finite
 } TractrixView;
 
@@ -234,7 +238,7 @@ TractrixResult tractrix_render(TractrixRenderer *renderer, const TractrixView *v
                                TractrixImage *image, TractrixError *error);
 
 // PNG, EXR and PFM files by content; alpha 1 where they have none. The image lives as long as the
-// picture. Written by suffix: .png, or .jpg of opaque RGBA8; .exr or .pfm of floats. Pixels
+// picture. Written by suffix: .png, or .jpg (.jpeg) of opaque RGBA8; .exr or .pfm of floats. Pixels
 // that are all opaque are written without alpha, as tractrix-render does. TRACTRIX_USAGE for a
 // format that the file cannot hold.
 TractrixResult tractrix_picture_read(TractrixPicture **picture, const char *path,
@@ -248,7 +252,7 @@ typedef struct TractrixLimits { // as tractrix-compare's; all 0: equal images al
     size_t size;
     double pixel_tolerance; // levels of 255 that a pixel may be off; below 0: pixels don't count
     double max_failing_percent; // of the compared pixels that may be off by more
-    double max_flip;            // above 0 to 1: of FLIP's mean; 0: FLIP does not count
+    double max_flip;            // above 0 to 1: of FLIP's mean; 0 or less: FLIP does not count
     double pixels_per_degree;   // of FLIP; 0: 67
 } TractrixLimits;
 

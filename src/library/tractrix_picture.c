@@ -166,7 +166,7 @@ static Result encode(const char *path, const Image *image, Bytes *bytes, Error *
 {
     bool floats = image->kind == IMAGE_FLOAT, png = ends_with(path, ".png"),
          exr = ends_with(path, ".exr"), pfm = ends_with(path, ".pfm"),
-         jpeg = ends_with(path, ".jpg");
+         jpeg = ends_with(path, ".jpg") || ends_with(path, ".jpeg");
     if (!png && !exr && !pfm && !jpeg)
         return error_set(error, RESULT_USAGE, "%s: expected a name with .png, .jpg, .exr or .pfm",
                          path);

@@ -124,6 +124,20 @@ TractrixResult tractrix_renderer_create(TractrixRenderer **renderer, TractrixSim
 
 // --- Drawing.
 
+// Whether a matrix, column by column, turns and moves and does nothing else.
+static bool is_rigid(const float m[16])
+{
+    for (int i = 0; i < 3; ++i)
+        for (int k = i; k < 3; ++k) {
+            const float *a = &m[4 * i], *b = &m[4 * k];
+            if (!(fabsf(a[0] * b[0] + a[1] * b[1] + a[2] * b[2] - (float)(i == k)) < 1e-3f))
+                return false;
+        }
+    float turn = m[8] * (m[1] * m[6] - m[2] * m[5]) + m[9] * (m[2] * m[4] - m[0] * m[6]) +
+                 m[10] * (m[0] * m[5] - m[1] * m[4]);
+    return turn > 0 && m[3] == 0 && m[7] == 0 && m[11] == 0 && m[15] == 1;
+}
+
 // What the matrices say: clip z = P10 z + P14, w = -z; the eye is -R^T t.
 static Result take_view(View *view, const TractrixView *asked, Error *error)
 {
@@ -143,6 +157,9 @@ static Result take_view(View *view, const TractrixView *asked, Error *error)
         return error_set(error, RESULT_USAGE,
                          "view: expected finite matrices, the projection a "
                          "perspective that looks along -z");
+    if (!is_rigid(m))
+        return error_set(error, RESULT_USAGE,
+                         "view.world_to_eye: expected a rotation and a translation alone");
     if (!(view->near_distance > 0 && view->far_distance > view->near_distance &&
           isfinite(view->far_distance)))
         return error_set(error, RESULT_USAGE,

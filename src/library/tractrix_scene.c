@@ -163,8 +163,12 @@ static Result check_file(const char *path, Error *error)
     return result;
 }
 
+// A pattern of numbered files ('%') is looked at by its reader.
 static Result check_files(const TractrixScene *scene, Error *error)
 {
+    const RunParams *run = &scene->scene.run;
+    if (*run->mesh && !strchr(run->mesh, '%')) TRY(check_file(run->mesh, error));
+    if (*run->mesh_rest) TRY(check_file(run->mesh_rest, error));
     for (uint32_t i = 0; i < scene->scene.section_count; ++i)
         TRY(check_file(scene->scene.sections[i].file, error));
     return RESULT_OK;
@@ -244,10 +248,7 @@ static Result set(TractrixScene *scene, int section, const char *name, const cha
                          info->name);
     TRY(take_step(scene, (LibraryStep){.info = info, .section = section, .text = strdup(text)},
                   error));
-    if (strcmp(info->name, "mesh") == 0) {
-        mesh_destroy(&scene->mesh.mesh);
-        scene->scene.given_mesh = NULL;
-    }
+    if (strcmp(info->name, "mesh") == 0) mesh_destroy(&scene->mesh.mesh);
     return RESULT_OK;
 }
 
@@ -367,10 +368,6 @@ static Result add_strands(TractrixScene *scene, const char *name, const Tractrix
     LibraryArray *arrays =
         realloc(scene->arrays, (scene->array_count + (size_t)1) * sizeof *arrays);
     if (!arrays) return error_set(error, RESULT_FAILED, "no memory for strands");
-    if (arrays != scene->arrays) // sections know where theirs is
-        for (uint32_t i = 0, a = 0; i < scene->scene.section_count; ++i)
-            if (scene->scene.sections[i].given)
-                scene->scene.sections[i].given = &arrays[a++].strands;
     scene->arrays = arrays;
     LibraryArray *array = &arrays[scene->array_count];
     *array = (LibraryArray){.name = strdup(name ? name : "strands")};
@@ -380,6 +377,8 @@ static Result add_strands(TractrixScene *scene, const char *name, const Tractrix
     THEN(result, take_step(scene, (LibraryStep){.array = scene->array_count}, error));
     if (result == RESULT_OK) {
         ++scene->array_count;
+        // Only copies of the scene are loaded, and this array will move.
+        scene->scene.sections[scene->scene.section_count - 1].given = NULL;
         return RESULT_OK;
     }
     free(array->name);

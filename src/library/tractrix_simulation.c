@@ -64,10 +64,12 @@ static void warn(const Scene *scene, const Assets *assets, FILE *messages)
     effects_warn(scene, messages);
     for (uint32_t i = 0; i < scene->section_count; ++i) {
         const Section *section = &scene->sections[i];
-        const char *caution = solver_caution(&section->params), *name = quote(section->file).text;
-        if (caution) fprintf(messages, "%s: algo %s: %s\n", name, section->params.algo, caution);
+        const char *caution = solver_caution(&section->params);
+        const Quoted name = quote(section->file);
+        if (caution)
+            fprintf(messages, "%s: algo %s: %s\n", name.text, section->params.algo, caution);
         if (!section->params.hidden && follow_plan_fills(&section->params, &assets->strands[i]))
-            fprintf(messages, "%s: followers fill between %u strands\n", name,
+            fprintf(messages, "%s: followers fill between %u strands\n", name.text,
                     assets->strands[i].strand_count);
     }
 }
@@ -146,14 +148,6 @@ double tractrix_simulation_time(const TractrixSimulation *simulation)
 
 // --- Going on.
 
-static bool is_of_camera(const char *name)
-{
-    static const char *const NAMES[] = {"eye", "target", "fov", "camera_up"};
-    for (size_t i = 0; i < sizeof NAMES / sizeof *NAMES; ++i)
-        if (strcmp(NAMES[i], name) == 0) return true;
-    return false;
-}
-
 static Result set(TractrixSimulation *simulation, const char *name, const char *text, Error *error)
 {
     const ParamInfo *info = library_parameter(name);
@@ -162,7 +156,7 @@ static Result set(TractrixSimulation *simulation, const char *name, const char *
                          "%s: expected a live parameter (tractrix_parameter: live)", name);
     Result result = scene_set(&simulation->scene, -1, info, text, error);
     if (result != RESULT_OK) return error_prefix(error, result, "%s: ", info->name);
-    simulation->aims += is_of_camera(info->name);
+    simulation->aims += info->group == GROUP_CAMERA;
     return RESULT_OK;
 }
 

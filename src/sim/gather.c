@@ -22,6 +22,11 @@ Result gather_create(Gather *gather, const Gpu *gpu, const Hair *hair, const uin
 {
     *gather = (Gather){.hair = hair};
     glGetIntegerv(GL_SHADER_STORAGE_BUFFER_OFFSET_ALIGNMENT, &gather->alignment);
+    int64_t most = gather->alignment + 4 * (int64_t)sizeof(float) * (int64_t)hair->particle_count;
+    if (most > gpu->limits.storage_block)
+        return error_set(error, RESULT_FAILED,
+                         "%lld bytes of positions: the driver lets a shader write at most %lld",
+                         (long long)most, (long long)gpu->limits.storage_block);
     Result result = step_pass_create(&gather->pass, gpu, "sim/gather.comp", NULL, error);
     THEN(result, upload_begins(gather, &gpu->limits, first, error));
     if (result != RESULT_OK) gather_destroy(gather);

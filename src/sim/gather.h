@@ -14,7 +14,8 @@ typedef struct Gather {
 } Gather;
 
 // `first`: where each strand begins, in vertices, in the order of the batches (all of `hair`'s).
-// RESULT_FAILED when memory is short; errors of shader_build_compute.
+// RESULT_FAILED when memory is short or the positions are more than a shader may write; errors of
+// shader_build_compute.
 Result gather_create(Gather *gather, const Gpu *gpu, const Hair *hair, const uint32_t *first,
                      Error *error);
 void gather_destroy(Gather *gather);

@@ -307,6 +307,14 @@ static void draws_by_views_and_formats(void **state)
     assert_true(most > 0.05f && most <= 1 && light[0][3] == 0);
     view.projection[11] = 0;
     library_refused(tractrix_render(renderer, &view, &image, &error), TRACTRIX_USAGE, "view");
+    view.projection[11] = -1;
+    const float turns[][2] = {{0, -1}, {0, 2}, {5, 0.1f}, {3, 0.1f}}; // mirrored, scaled, ...
+    for (size_t i = 0; i < sizeof turns / sizeof *turns; ++i) {
+        TractrixView wrong = view;
+        wrong.world_to_eye[(int)turns[i][0]] = turns[i][1];
+        library_refused(tractrix_render(renderer, &wrong, &image, &error), TRACTRIX_USAGE,
+                        "view.world_to_eye");
+    }
     image.width = 47;
     library_refused(tractrix_render(renderer, NULL, &image, &error), TRACTRIX_USAGE, "48x32");
     tractrix_renderer_destroy(renderer);
@@ -341,16 +349,23 @@ static void keeps_pixels_when_threads_change(void **state)
 
 static void refuses_what_has_no_effect(void **state)
 {
-    static const char *const useless[] = {"gust_period", "3", NULL}, *const both[] = {
-                                                                         "raster", "blocks", "oit",
-                                                                         "none", NULL};
-    static const char *const *const wrong[] = {useless, both};
+    static const struct {
+        const char *const parameters[5];
+        const char *message;
+    } WRONG[] = {{{"gust_period", "3"}, "no effect"},
+                 {{"raster", "blocks", "oit", "none"}, "exclude"},
+                 {{"framing", "hair", "eye", "0,0,3"}, "--framing hair: expected an automatic"},
+                 {{"unit", "cm"}, "--unit: it has no effect: the hair is from an array"},
+                 {{"strict", "true"}, "--strict: it has no effect: the hair is from an array"},
+                 {{"mesh_up", "z"}, "--mesh-up: it has no effect: the mesh is from an array"},
+                 {{"mesh_fps", "9"}, "--mesh-fps: it has no effect: the mesh is from an array"}};
     TractrixSimulation *simulation;
     (void)state;
-    for (int i = 0; i < 2; ++i) {
-        TractrixScene *scene = library_scene(wrong[i]);
+    for (size_t i = 0; i < sizeof WRONG / sizeof *WRONG; ++i) {
+        TractrixScene *scene = library_scene(WRONG[i].parameters);
+        library_set_sheet(scene, false);
         library_refused(tractrix_simulation_create(&simulation, device, scene, &error),
-                        TRACTRIX_USAGE, i ? "exclude" : "no effect");
+                        TRACTRIX_USAGE, WRONG[i].message);
         assert_null(simulation);
         tractrix_scene_destroy(scene);
     }
@@ -517,12 +532,15 @@ static void assert_defaults(void)
     static const GLenum OFF[] = {GL_BLEND, GL_CULL_FACE, GL_DEPTH_TEST, GL_SCISSOR_TEST,
                                  GL_STENCIL_TEST};
     GLboolean mask = GL_FALSE, colors[4];
-    GLint program = 1, alignment = 0;
+    GLint program = 1, alignment = 0, function = 0, unit = 0;
     for (size_t i = 0; i < sizeof OFF / sizeof *OFF; ++i) assert_false(glIsEnabled(OFF[i]));
     glGetBooleanv(GL_DEPTH_WRITEMASK, &mask);
     glGetBooleanv(GL_COLOR_WRITEMASK, colors);
     glGetIntegerv(GL_CURRENT_PROGRAM, &program);
     glGetIntegerv(GL_PACK_ALIGNMENT, &alignment);
+    glGetIntegerv(GL_DEPTH_FUNC, &function);
+    glGetIntegerv(GL_ACTIVE_TEXTURE, &unit);
+    assert_true(function == GL_LESS && unit == GL_TEXTURE0);
     assert_true(mask && colors[0] && colors[3] && program == 0 && alignment == 4);
     assert_int_equal(glGetError(), GL_NO_ERROR);
 }

@@ -17,7 +17,7 @@
 static void reads_and_writes_parameters(void **state)
 {
     TractrixScene *scene;
-    char text[32] = "";
+    char text[32] = "", json[20000];
     (void)state;
     WELL(tractrix_scene_create(&scene, "plain", &library_error));
     WELL(tractrix_scene_set(scene, -1, "wind", "2,0,-1", &library_error));
@@ -41,6 +41,12 @@ static void reads_and_writes_parameters(void **state)
     assert_int_equal(tractrix_scene_set(scene, -1, "wind", "fast", NULL), TRACTRIX_USAGE);
     tractrix_scene_get(scene, -1, "wind", text, sizeof text);
     assert_string_equal(text, "2,0,-1");
+    WELL(tractrix_scene_set(scene, -1, "colliders", "ground:0", &library_error));
+    library_refused(tractrix_scene_set(scene, -1, "colliders", "ground:1;cube:3", &library_error),
+                    TRACTRIX_USAGE, "cube");
+    tractrix_scene_json(scene, json, sizeof json);
+    assert_non_null(strstr(json, "\"ground\": 0"));
+    assert_null(strstr(json, "\"ground\": 1"));
     tractrix_scene_destroy(scene);
     tractrix_scene_destroy(NULL);
 }
@@ -55,6 +61,7 @@ static void lists_parameters(void **state)
         assert_int_equal(*row->choices != 0, strcmp(row->kind, "choice") == 0);
         assert_string_not_equal(row->name, "output");
         assert_string_not_equal(row->name, "sdf_cache");
+        assert_string_not_equal(row->name, "platform");
         live += row->live;
         if (strcmp(row->name, "look") == 0) assert_string_equal(row->choices, "studio plain");
         if (strcmp(row->name, "wind") == 0)
@@ -149,6 +156,16 @@ static void reads_what_is_there(void **state)
     library_refused(
         tractrix_scene_parse(&scene, "{\"sections\": [{\"file\": \"-\"}]}", NULL, &library_error),
         TRACTRIX_USAGE, "-: ");
+    library_refused(tractrix_scene_parse(&scene,
+                                         "{\"sections\": [{\"file\": \"fur.tfx\"}], "
+                                         "\"mesh\": \"none.obj\"}",
+                                         "assets", &library_error),
+                    TRACTRIX_BAD_INPUT, "assets/none.obj: ");
+    library_refused(tractrix_scene_parse(&scene,
+                                         "{\"sections\": [{\"file\": \"fur.tfx\", \"color\": "
+                                         "\"red\", \"albedo\": \"black\"}]}",
+                                         "assets", &library_error),
+                    TRACTRIX_BAD_INPUT, "'color' and 'albedo' are the same");
     library_refused(tractrix_scene_create(&scene, "bright", &library_error), TRACTRIX_USAGE,
                     "bright");
     WELL(tractrix_scene_read(&scene, "assets/demo.json", &library_error));
@@ -313,6 +330,7 @@ static void writes_and_reads_images(void **state)
     TractrixPicture *picture;
     char path[] = "/tmp/tractrix_library_XXXXXX", name[64];
     float light[HEIGHT][WIDTH][4];
+    uint16_t words[HEIGHT][WIDTH][4];
     (void)state;
     assert_non_null(mkdtemp(path));
     snprintf(name, sizeof name, "%s/x.png", path);
@@ -326,9 +344,23 @@ static void writes_and_reads_images(void **state)
                             4 * WIDTH);
     tractrix_picture_destroy(picture);
     unlink(name);
-    snprintf(name, sizeof name, "%s/x.jpg", path);
+    for (int i = 0; i < HEIGHT * WIDTH * 4; ++i)
+        words[i / (4 * WIDTH)][i / 4 % WIDTH][i % 4] = (uint16_t)(1 + 1091 * i);
+    image.format = TRACTRIX_RGBA16, image.row_bytes = 0, image.pixels = words;
+    WELL(tractrix_image_write(&image, name, &library_error));
+    WELL(tractrix_picture_read(&picture, name, &library_error));
+    assert_int_equal(tractrix_picture_image(picture)->format, TRACTRIX_RGBA16);
+    assert_memory_equal(tractrix_picture_image(picture)->pixels, words, sizeof words);
+    tractrix_picture_destroy(picture);
+    unlink(name);
+    image = image_of(bytes);
+    bytes[1][7] = 10;
+    snprintf(name, sizeof name, "%s/x.jpeg", path);
     library_refused(tractrix_image_write(&image, name, &library_error), TRACTRIX_USAGE, "alpha");
     bytes[1][7] = 255;
+    WELL(tractrix_image_write(&image, name, &library_error));
+    unlink(name);
+    snprintf(name, sizeof name, "%s/x.jpg", path);
     WELL(tractrix_image_write(&image, name, &library_error));
     library_refused(tractrix_picture_read(&picture, name, &library_error), TRACTRIX_BAD_INPUT,
                     name); // it has lost what a comparison would measure
@@ -354,7 +386,7 @@ static void writes_and_reads_images(void **state)
                     name);
     assert_null(picture);
     library_refused(tractrix_image_write(&image, "x.tga", &library_error), TRACTRIX_USAGE, ".pfm");
-    rmdir(path);
+    assert_int_equal(rmdir(path), 0); // nothing else was left in it
 }
 
 int main(void)
