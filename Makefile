@@ -243,7 +243,7 @@ torture: all tests ## every call of small runs fails in turn, 200 kills: an hour
 	@$(TORTURE) $(OUT) --long --seed $(SEED) --jobs $$(nproc) $(TORTURE_OPTIONS)
 
 # --- Static checks and the sanitizers; all of them run, then the failures are named. One alone: make check-format.
-CHECKS := format scripts warnings clang cppcheck shaders gpu-statistics rounding abi release farm sanitize
+CHECKS := commits format scripts warnings clang cppcheck shaders gpu-statistics rounding abi release farm sanitize
 C_FILES = $(wildcard src/*/*.[ch] src/*/*/*.[ch] tests/*/*.[ch] glsl/*/* tests/glsl/*)
 SIDE   := $(if $(filter command line,$(origin OUT)),$(OUT)/,out/)
 QUIET   = $(AGAIN) $(JOBS) --silent
@@ -254,6 +254,8 @@ check: ## static checks, warnings as errors with gcc and clang, tests under sani
 	    $(MAKE) --no-print-directory check-$$step || failed="$$failed $$step"; done; \
 	if [ "$$failed" ]; then echo "check: failed:$$failed"; exit 1; fi; echo "check: all well"
 
+check-commits: # subjects and reasons of what the upstream branch lacks, else of the last ones (scripts/check-commits)
+	@scripts/check-commits || [ $$? = 77 ]
 check-format:
 	@clang-format --dry-run -Werror $(C_FILES)
 check-scripts:
