@@ -718,6 +718,52 @@ def mesh_text(objects: list, scene, depsgraph) -> str:
     return "\n".join(lines) + "\n"
 
 
+def body_samples(context, objects: list, numbers: range) -> dict:
+    """The arrays of a deforming mesh: evaluated positions (F, V, 3) at each frame, m, y up; faces are those of the first one."""
+    scene, frames, faces, shapes = context.scene, [], [], []
+    for number in numbers:
+        scene.frame_set(number)
+        depsgraph = context.evaluated_depsgraph_get()
+        places, base = [], 0
+        for i, obj in enumerate(objects):
+            evaluated = obj.evaluated_get(depsgraph)
+            mesh = evaluated.to_mesh()
+            corners, sides = column(mesh.loops, "vertex_index", 1, np.int32), column(mesh.polygons, "loop_total", 1, np.int32)
+            if number == numbers[0]:
+                mesh.calc_loop_triangles()
+                faces.append(column(mesh.loop_triangles, "vertices", 3, np.int32) + base)
+                shapes.append((len(mesh.vertices), corners, sides))
+            count, *same = shapes[i]
+            if len(mesh.vertices) != count or not all(map(np.array_equal, same, (corners, sides))):
+                raise HairError(
+                    f"object '{obj.name}': frame {number}: {len(mesh.vertices)} vertices with other faces: expected the {count} of frame "
+                    f"{numbers[0]} (switch off modifiers that remesh or decimate)"
+                )
+            places.append(to_y_up(into_world(evaluated, column(mesh.vertices, "co", 3)) * unit_of(scene)))
+            base += count
+            evaluated.to_mesh_clear()
+        frames.append(np.concatenate(places).astype(np.float32))
+    scene.frame_set(numbers[0])
+    positions = np.stack(frames)
+    if not np.isfinite(positions).all():
+        raise HairError("the mesh has coordinates that are not finite")
+    return {"positions": positions, "faces": np.concatenate(faces), "fps": frames_per_second(scene), "unit": 1.0, "up": "y"}
+
+
+def write_body(context, options: ExportOptions, meshes: list) -> None:
+    """The mesh over all frames as `.npz`, which hair is bound to."""
+    first, last = options.frames or (context.scene.frame_current,) * 2
+    body = body_samples(context, meshes, range(first, last + 1))
+    path = os.path.splitext(options.mesh)[0] + ".npz"
+
+    def write(name: str) -> None:
+        with open(name, "wb") as file:
+            np.savez(file, **body)
+
+    write_whole(path, write)
+    say(f"{path}: {body['positions'].shape[0]} samples of {body['positions'].shape[1]} vertices")
+
+
 def head_meshes(context, options: ExportOptions, pieces: list) -> list:
     """The mesh objects to export: the one named, else those that hair grows on, else all visible ones."""
     if options.mesh_object:
@@ -905,7 +951,9 @@ def scene_members(context, options: ExportOptions, hair: Hair, pieces: list, hea
     if options.frames:
         members["frames"] = options.frames[1] - options.frames[0] + 1
     if options.mesh:
-        members.update(mesh=os.path.relpath(options.mesh, folder), mesh_unit="m", mesh_up="y")
+        members.update(mesh=os.path.relpath(options.mesh, folder))
+        if options.mesh.endswith(".obj"):
+            members.update(mesh_unit="m", mesh_up="y")
         skin = color_keys(head_meshes(context, options, pieces)[0].active_material, folder)
         if "albedo" in skin:
             members["mesh_color"] = skin["albedo"]
@@ -931,6 +979,8 @@ def moving_head(roots: Optional[np.ndarray], options: ExportOptions, fps: float)
     place = f"frame {options.frames[0] + frame}"
     if residual > options.tolerance:
         say(f"{place}: roots are {residual:.3g} m off a rigid motion, more than {options.tolerance:g} m: no head is written")
+        if not options.mesh:
+            say("the hair stands still: expected --mesh x.npz, the deforming body that it is bound to")
         return None
     say(f"the head's rigid motion: {len(roots)} keys, roots at most {residual:.3g} m off ({place})")
     return head
@@ -940,17 +990,26 @@ def export_hair(context, options: ExportOptions) -> None:
     """Writes all that `options` ask for; the scene's frame is put back."""
     present = context.scene.frame_current
     try:
+        if not options.output:
+            write_body(context, options, head_meshes(context, options, []))
+            return
         hair, pieces, roots = collect(context, options)
         if options.resample:
             hair = resample(hair, options.resample)
         write_hair(options.output, hair)
         names = ", ".join(p.name for p in pieces[:4]) + (", ..." if len(pieces) > 4 else "")
         say(f"{options.output}: {len(hair.sizes)} strands, {len(hair.points)} points of {names}")
+        bound = options.mesh.endswith(".npz")
+        head = None if bound else moving_head(roots, options, hair.fps)
         if options.mesh:
             meshes = head_meshes(context, options, pieces)
-            text = mesh_text(meshes, context.scene, context.evaluated_depsgraph_get())
-            write_whole(options.mesh, lambda name: write_text(name, text))
-        head = moving_head(roots, options, hair.fps)
+            moves = roots is not None and np.abs(roots - roots[0]).max() > 1e-7
+            if bound or (moves and not head):
+                write_body(context, options, meshes)
+                options.mesh = os.path.splitext(options.mesh)[0] + ".npz"
+            else:
+                text = mesh_text(meshes, context.scene, context.evaluated_depsgraph_get())
+                write_whole(options.mesh, lambda name: write_text(name, text))
         if options.scene:
             members = scene_members(context, options, hair, pieces, head)
             write_whole(options.scene, lambda name: write_text(name, json_text(members)))
@@ -1024,28 +1083,33 @@ def animate(context, obj, hair: Hair) -> None:
     """Gives a Curves object the positions of `hair.frames`: a hidden mesh has them as absolute shape keys, one a frame, and
     a node modifier takes them over. All of it is in the .blend file; between frames positions are interpolated linearly.
     """
-    scene, unit = context.scene, unit_of(context.scene)
-    frames = (to_z_up(hair.frames) / unit).astype(np.float32)
+    scene, start = context.scene, context.scene.frame_start
     mesh = bpy.data.meshes.new(obj.name + " motion")
-    mesh.vertices.add(frames.shape[1])
-    mesh.vertices.foreach_set("co", frames[0].ravel())
-    carrier = bpy.data.objects.new(mesh.name, mesh)
-    context.scene.collection.objects.link(carrier)
+    mesh.vertices.add(hair.frames.shape[1])
+    carrier = key_shapes(context, mesh, hair.frames, "KEY_LINEAR", f"frame - {start}")
     carrier.hide_render = True
-    for f, points in enumerate(frames):
-        key = carrier.shape_key_add(name=f"frame {f}", from_mix=False)
-        key.interpolation = "KEY_LINEAR"
+    take_positions(obj, carrier)
+    carrier.hide_set(True)
+    scene.frame_end = start + len(hair.frames) - 1
+    set_rate(scene, hair.fps)
+    scene.frame_set(start)
+
+
+def key_shapes(context, mesh, samples: np.ndarray, kind: str, at: str):
+    """An object of `mesh` with samples (F, V, 3; m, y up) as absolute shape keys; `at`: which one is seen, in terms of `frame`."""
+    samples = (to_z_up(samples) / unit_of(context.scene)).astype(np.float32)
+    mesh.vertices.foreach_set("co", samples[0].ravel())
+    obj = bpy.data.objects.new(mesh.name, mesh)
+    context.scene.collection.objects.link(obj)
+    for f, points in enumerate(samples):
+        key = obj.shape_key_add(name=f"frame {f}", from_mix=False)
+        key.interpolation = kind
         key.data.foreach_set("co", points.ravel())
     keys = mesh.shape_keys
     keys.use_relative = False
-    start = scene.frame_start
     time = keys.driver_add("eval_time").driver
-    time.type, time.expression = "SCRIPTED", f"{keys.key_blocks[0].frame} + {KEYS_APART} * (frame - {start})"
-    take_positions(obj, carrier)
-    carrier.hide_set(True)
-    scene.frame_end = start + len(frames) - 1
-    set_rate(scene, hair.fps)
-    scene.frame_set(start)
+    time.type, time.expression = "SCRIPTED", f"{keys.key_blocks[0].frame} + {KEYS_APART} * ({at})"
+    return obj
 
 
 def take_positions(obj, carrier) -> None:
@@ -1215,6 +1279,33 @@ def place_light(context, light: dict, number: int) -> None:
         data.spot_blend = (math.cos(inner) - math.cos(outer)) / (1 - math.cos(outer))
 
 
+def place_body(context, path: str, members: dict) -> None:
+    """A mesh that deforms, from `.npz`: its samples are shape keys at their times."""
+    scene, name = context.scene, os.path.splitext(os.path.basename(path))[0]
+    try:
+        with np.load(path, allow_pickle=False) as arrays:
+            positions, faces = arrays["positions"].astype(np.float64), arrays["faces"].astype(np.int32)
+            about = {key: arrays[key].item() for key in ("fps", "unit", "up") if key in arrays}
+        if positions.ndim != 3 or faces.ndim != 2 or faces.size == 0 or faces.min() < 0 or faces.max() >= positions.shape[1]:
+            raise ValueError("positions and faces do not fit")
+    except (OSError, KeyError, ValueError) as error:
+        raise HairError(f"{path}: {error}: expected positions (samples, vertices, 3) and faces") from None
+    units = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
+    positions *= units.get(members.get("mesh_unit"), float(about.get("unit", 1.0)))
+    if members.get("mesh_up", about.get("up", "y")) == "z":
+        positions = to_y_up(positions)
+    if members.get("head"):
+        say("the head's keys do not move a mesh that deforms here: it moves by its samples alone")
+    fps = frames_per_second(scene)
+    rate = members.get("mesh_fps", about.get("fps", fps))
+    rate = fps if rate == "auto" else float(rate)
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(np.zeros((positions.shape[1], 3)).tolist(), [], faces.tolist())
+    kind = "KEY_LINEAR" if members.get("mesh_motion") == "linear" or len(positions) == 1 else "KEY_CATMULL_ROM"
+    seconds = f"(frame - {scene.frame_start}) / {fps:.9g} * {float(members.get('speed', 1)):.9g}"
+    key_shapes(context, mesh, positions, kind, f"({seconds} - {float(members.get('mesh_start', 0)):.9g}) * {rate:.9g}")
+
+
 def place_mesh(context, path: str, members: dict, times: np.ndarray) -> None:
     """The scene file's mesh, moved by its head."""
     scene = context.scene
@@ -1266,7 +1357,13 @@ def import_scene(context, path: str) -> None:
     for number, light in enumerate(members.get("lights", [])):
         place_light(context, light, number)
     if "mesh" in members:
-        place_mesh(context, os.path.join(os.path.dirname(os.path.abspath(path)), members["mesh"]), members, times)
+        mesh = os.path.join(os.path.dirname(os.path.abspath(path)), members["mesh"])
+        if mesh.endswith(".npz"):
+            place_body(context, mesh, members)
+        elif mesh.endswith(".obj") and "%" not in mesh:
+            place_mesh(context, mesh, members, times)
+        else:
+            say(f"{mesh}: the mesh is left out: expected .obj or .npz")
     world = scene.world = scene.world or bpy.data.worlds.new("World")
     world.use_nodes = False
     if "sky" in members:
@@ -1305,13 +1402,13 @@ def parser() -> Parser:
     top = Parser(prog="blender_hair", description="Hair from Blender to Tractrix and back.")
     commands = top.add_subparsers(dest="command", required=True, parser_class=Parser)
     out = commands.add_parser("export", help="hair of the scene, or of a file that Blender imports, to .tfx or .npz")
-    out.add_argument("input", nargs="?", default="", help=".abc, .usda, .usdc, .npz or .blend; without it the open scene")
-    out.add_argument("-o", "--output", required=True, help="x.npz, or x.tfx (TressFX 4; text where strands differ in size)")
+    out.add_argument("input", nargs="?", default="", help=".abc, .usda, .usdc, .npz, .blend, .glb, .gltf or .fbx; without it the open scene")
+    out.add_argument("-o", "--output", default="", help="x.npz, or x.tfx (TressFX 4; text where strands differ in size)")
     out.add_argument("--frames", default="", help="FIRST:LAST or scene: animation for .npz and the head's motion")
     out.add_argument("--objects", default="", help="names, separated by commas; without: all visible objects with hair")
     out.add_argument("--children", choices=("parents", "children", "all"), default="parents", help="which hair of particle systems")
     out.add_argument("--resample", type=int, default=0, metavar="N", help="N points a strand, at equal distances")
-    out.add_argument("--mesh", default="", metavar="x.obj", help="also write the mesh that hair grows on")
+    out.add_argument("--mesh", default="", metavar="x.obj", help="also write the mesh that hair grows on; x.npz: over all frames. Alone, without -o, all visible meshes")
     out.add_argument("--mesh-object", default="", metavar="NAME", help="the mesh of --mesh, and of texture coordinates")
     out.add_argument("--scene", default="", metavar="x.json", help="also write a scene file: camera, lights, head, look")
     out.add_argument("--scale", type=float, metavar="M", help=SCALE_HELP)
@@ -1337,7 +1434,28 @@ def open_input(path: str, scale: Optional[float]) -> None:
             raise HairError(f"{path}: expected a .blend file") from None
     elif path:
         bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-        import_hair(bpy.context, path, scale)
+        kind = os.path.splitext(path)[1].lower()
+        if kind in (".glb", ".gltf", ".fbx"):
+            import_character(bpy.context, path, kind)
+        else:
+            import_hair(bpy.context, path, scale)
+
+
+def import_character(context, path: str, kind: str) -> None:
+    """Imports a skinned character by Blender's own importer; the timeline becomes that of its actions."""
+    if not os.path.exists(path):
+        raise HairError(f"{path}: no such file")
+    if "bool" not in vars(np):  # Debian 12's glTF importer uses a name that its numpy no longer has
+        np.bool = bool
+    importer = bpy.ops.import_scene.fbx if kind == ".fbx" else bpy.ops.import_scene.gltf
+    try:
+        importer(filepath=os.path.abspath(path))
+    except (RuntimeError, AttributeError) as error:
+        raise HairError(f"{path}: Blender cannot import it: {str(error).strip().splitlines()[-1]}") from None
+    ranges = [action.frame_range for action in bpy.data.actions]
+    if ranges:
+        context.scene.frame_start = math.floor(min(r[0] for r in ranges))
+        context.scene.frame_end = math.ceil(max(r[1] for r in ranges))
 
 
 def save(path: str) -> None:
@@ -1359,7 +1477,11 @@ def save(path: str) -> None:
 
 def run_export(words: argparse.Namespace) -> None:
     """`export`."""
-    if not words.output.endswith((".npz", ".tfx")):
+    if not words.output and (not words.mesh.endswith(".npz") or words.scene):
+        raise HairError("command line: expected -o x.npz or x.tfx for hair, or --mesh x.npz alone", USAGE)
+    if words.mesh and not words.mesh.endswith((".obj", ".npz")):
+        raise HairError(f"{words.mesh}: unknown kind of file: expected .obj or .npz", USAGE)
+    if words.output and not words.output.endswith((".npz", ".tfx")):
         raise HairError(f"{words.output}: unknown kind of file: expected .npz or .tfx", USAGE)
     if words.resample and words.resample < 2:
         raise HairError(f"--resample {words.resample}: expected at least 2", USAGE)

@@ -13,15 +13,16 @@
 // --- Detection.
 
 #define BLENDER                                                                                    \
-    "convert it: blender -b --python scripts/blender_hair.py (installed: "                         \
-    "/usr/share/tractrix/blender_hair.py) -- export FILE -o x.npz"
+    "convert it: blender -b --python scripts/blender_hair.py -- export FILE -o x.npz (installed: " \
+    "/usr/share/tractrix/blender_hair.py)"
 
 // Files that are often taken for hair and how to make hair of them, by their first bytes.
 static const struct {
     const char *begin, *name, *advice;
 } FOREIGN[] = {
-    {"\x89HDF", "HDF5, as in old Alembic files (.abc)", "rewrite it with abcconvert -toOgawa"},
-    {"PXR-USDC", "binary USD (.usdc)", BLENDER " (or usdcat FILE -o x.usda)"},
+    {"\x89HDF", "HDF5, as in old Alembic files (.abc)",
+     "rewrite it: abcconvert -toOgawa FILE x.abc"},
+    {"PXR-USDC", "binary USD (.usdc)", "convert it: usdcat FILE -o x.usda"},
     {"BLENDER", "a Blender file (.blend)", BLENDER},
     {"\x28\xb5\x2f\xfd", "compressed by zstd, as Blender files (.blend) are", BLENDER},
     {"\x1f\x8b", "compressed by gzip, as old Blender files (.blend) may be",

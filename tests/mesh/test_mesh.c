@@ -157,6 +157,23 @@ static void malformed_ply_is_refused_with_its_line(void **state)
     }
 }
 
+static void other_files_are_refused_with_what_makes_a_mesh_of_them(void **state)
+{
+    static const char *const cases[][2] = {
+        {"glTF\x02", "m.obj: GLB, not a mesh: bake it: blender -b --python "
+                     "scripts/blender_hair.py -- export FILE --mesh x.npz --frames scene"},
+        {"PXR-USDC", "m.obj: binary USD (.usdc), not a mesh: usdcat FILE -o x.usda"},
+        {"Kaydara FBX Binary", "m.obj: FBX, not a mesh: bake it"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Mesh mesh;
+        Error error = {""};
+        assert_int_equal(read_text(state, &mesh, cases[i][0], false, &error), RESULT_BAD_INPUT);
+        if (!strstr(error.text, cases[i][1])) fail_msg("'%s' lacks '%s'", error.text, cases[i][1]);
+        mesh_destroy(&mesh);
+    }
+}
+
 static void malformed_files_are_refused_with_their_line(void **state)
 {
     static const struct {
@@ -309,6 +326,7 @@ int main(void)
         TEST(texture_coordinates_belong_to_corners),
         TEST(all_forms_of_ply_give_the_same_square),
         TEST(malformed_ply_is_refused_with_its_line),
+        TEST(other_files_are_refused_with_what_makes_a_mesh_of_them),
         TEST(malformed_files_are_refused_with_their_line),
         TEST(every_truncation_is_read_or_refused),
         TEST(written_meshes_read_back_bit_for_bit),

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import traceback
 
+import bmesh
 import bpy
 import numpy as np
 from bpy_extras.object_utils import world_to_camera_view
@@ -455,6 +456,133 @@ def plane_radiance(scene):
     bpy.ops.render.render(write_still=True)
     image = bpy.data.images.load(path("plane.exr"))
     return float(np.array(image.pixels[:]).reshape(-1, 4)[:, 0].mean())
+
+
+def bending_body(count=40):
+    """A hairy sphere that an armature bends and a shape key swells, frames 1 to 9."""
+    obj = hairy_sphere(count)
+    flat = bmesh.new()  # roots lie on triangles in both programs
+    flat.from_mesh(obj.data)
+    bmesh.ops.triangulate(flat, faces=flat.faces)
+    flat.to_mesh(obj.data)
+    flat.free()
+    scene = bpy.context.scene
+    scene.frame_start, scene.frame_end, scene.render.fps = 1, 9, 25
+    obj.shape_key_add(name="Basis")
+    swollen = obj.shape_key_add(name="swollen")
+    for vertex, key in zip(obj.data.vertices, swollen.data):
+        key.co = vertex.co * (1.3 if vertex.co.x > 0 else 1.0)
+    for frame, share in ((1, 0.0), (9, 1.0)):
+        swollen.value = share
+        swollen.keyframe_insert("value", frame=frame)
+    rig = bpy.data.objects.new("rig", bpy.data.armatures.new("rig"))
+    scene.collection.objects.link(rig)
+    bpy.context.view_layer.objects.active = rig
+    bpy.ops.object.mode_set(mode="EDIT")
+    low, high = rig.data.edit_bones.new("low"), rig.data.edit_bones.new("high")
+    low.head, low.tail, high.head, high.tail = (0, 0, -0.1), (0, 0, 0), (0, 0, 0), (0, 0, 0.1)
+    high.parent = low
+    bpy.ops.object.mode_set(mode="OBJECT")
+    for name, side in (("low", -1), ("high", 1)):
+        group = obj.vertex_groups.new(name=name)
+        group.add([v.index for v in obj.data.vertices if v.co.z * side >= 0], 1.0, "REPLACE")
+    bend = obj.modifiers.new("bend", "ARMATURE")
+    bend.object = rig
+    while obj.modifiers[0] != bend:  # hair grows on the bent skin
+        bpy.context.view_layer.objects.active = obj
+        bpy.ops.object.modifier_move_up(modifier="bend")
+    bone = rig.pose.bones["high"]
+    bone.rotation_mode = "XYZ"
+    for frame, angle in ((1, 0), (9, 50)):
+        bone.rotation_euler = (math.radians(angle), 0, 0)
+        bone.keyframe_insert("rotation_euler", frame=frame)
+    return obj
+
+
+def evaluated(obj, frame):
+    """(V, 3) world positions of a mesh at a frame, m, y up."""
+    bpy.context.scene.frame_set(frame)
+    now = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    mesh = now.to_mesh()
+    points = hair.to_y_up(hair.into_world(now, hair.column(mesh.vertices, "co", 3)))
+    now.to_mesh_clear()
+    return points
+
+
+@step
+def deforming_body():
+    """A body that bends goes to Tractrix with its hair bound to it, and comes back with simulated hair on it."""
+    empty()
+    obj = bending_body()
+    truth = np.stack([evaluated(obj, frame) for frame in range(1, 10)])
+    check("the body bends", np.abs(truth - truth[0]).max() > 0.02, np.abs(truth - truth[0]).max())
+    export("--frames", "scene", "-o", path("body_hair.npz"))
+    hairs = hair.read_npz(path("body_hair.npz"))
+    export("--frames", "scene", "-o", path("bound.tfx"), "--mesh", path("body.obj"), "--scene", path("bound.json"))
+    with open(path("bound.json"), encoding="utf-8") as file:
+        members = json.load(file)
+    check("the scene has the samples and no head", members["mesh"] == "body.npz" and "head" not in members, members.get("mesh"))
+    with np.load(path("body.npz")) as body:
+        check("samples are Blender's to rounding", np.abs(body["positions"] - truth).max() < 1e-6)
+        check("rate of the samples", body["fps"] == 25 and body["faces"].shape[1] == 3)
+    export("--frames", "scene", "-o", path("bound.tfx"), "--mesh", path("again.npz"), "--scene", path("again.json"))
+    with np.load(path("again.npz")) as body:
+        check("--mesh x.npz writes the same", np.abs(body["positions"] - truth).max() < 1e-6)
+    tractrix("tractrix-render", path("bound.json"), "--algo", "none", "-q", "--export", path("bound.usda"))
+    simulated = hair.read_usda(path("bound.usda"))
+    error = np.abs(simulated.frames - hairs.frames)[:, hairs.first].max()
+    check("Tractrix's roots are Blender's within 1e-6 m", error < 1e-6, error)
+    print(f"deforming body: roots {error:.3g} m off")
+    empty()
+    hair.main(["import", path("bound.usda"), "--scene", path("bound.json")])
+    back = bpy.data.objects["body"]
+    error = max(np.abs(evaluated(back, 1 + f) - truth[f]).max() for f in range(9))
+    check("the body comes back at each frame", error < 1e-6, error)
+    export("--frames", "scene", "--objects", "bound", "-o", path("bound_back.npz"))
+    error = np.abs(hair.read_npz(path("bound_back.npz")).frames - simulated.frames).max()
+    check("its hair comes back at each frame", error < 1e-6, error)
+
+
+@step
+def other_topology():
+    """A mesh whose faces change is refused with object and frame, and nothing is written."""
+    empty()
+    obj = bending_body(4)
+    build = obj.modifiers.new("build", "BUILD")
+    build.frame_start, build.frame_duration = 1, 9
+    export("--frames", "scene", "--mesh", path("changing.npz"), status=hair.BAD_INPUT)
+    check("nothing is written", not os.path.exists(path("changing.npz")))
+    for words in (["--mesh", path("x.obj")], ["--mesh", path("x.pc2"), "-o", path("x.tfx")], []):
+        export(*words, status=hair.USAGE)
+
+
+@step
+def character():
+    """A skinned .glb becomes samples by the command that tractrix-render names."""
+    empty()
+    obj = bending_body(4)
+    for modifier in [m for m in obj.modifiers if m.type == "PARTICLE_SYSTEM"]:
+        obj.modifiers.remove(modifier)
+    obj.shape_key_clear()
+    try:
+        if "bool" not in vars(np):  # as in import_character
+            np.bool = bool
+        bpy.ops.export_scene.gltf(filepath=path("character.glb"))
+    except (AttributeError, RuntimeError) as error:
+        skip(f"this Blender has no glTF: {error}")
+        return
+    truth = [evaluated(obj, frame) for frame in (1, 9)]
+    done = subprocess.run(
+        [os.path.join(BIN, "tractrix-render"), os.path.join(ROOT, "assets", "curls.tfx"), "--mesh", path("character.glb"), "-o", path("x.png")],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    command = "export FILE --mesh x.npz --frames scene"
+    check("the message names the command", done.returncode == 3 and command in done.stderr, done.stderr)
+    export(path("character.glb"), "--mesh", path("baked.npz"), "--frames", "scene")
+    with np.load(path("baked.npz")) as body:
+        for sample, points in ((0, truth[0]), (-1, truth[1])):
+            far = np.linalg.norm(body["positions"][sample][:, None] - points[None], axis=2)
+            check("baked vertices are the skin's", max(far.min(0).max(), far.min(1).max()) < 1e-5, (far.min(0).max(), far.min(1).max()))
 
 
 @step

@@ -580,7 +580,7 @@ static void files_of_other_programs_are_named_with_what_converts_them(void **sta
         const char *begin, *says;
     } cases[] = {
         {"\x89HDF\r\n", "HDF5, as in old Alembic files"},
-        {"PXR-USDC......", "binary USD (.usdc): convert it: blender"},
+        {"PXR-USDC......", "binary USD (.usdc): convert it: usdcat FILE -o x.usda"},
         {"BLENDER-v304", "a Blender file (.blend)"},
         {"\x28\xb5\x2f\xfd....", "compressed by zstd, as Blender files"},
         {"\x1f\x8b\x08...", "compressed by gzip"},

@@ -155,9 +155,11 @@ static void malformed_text_is_refused_with_its_line(void **state)
                     "PLY strands, PLY strands as text, numpy arrays (.npz), numpy array (.npy) or "
                     "CT2Hair (.bin)"},
         {"PXR-USDC",
-         "FILE: byte 0: not supported: binary USD (.usdc): convert it: blender -b --python "
-         "scripts/blender_hair.py (installed: /usr/share/tractrix/blender_hair.py) -- export FILE "
-         "-o x.npz (or usdcat FILE -o x.usda)"},
+         "FILE: byte 0: not supported: binary USD (.usdc): convert it: usdcat FILE -o x.usda"},
+        {"BLENDER",
+         "FILE: byte 0: not supported: a Blender file (.blend): convert it: blender -b --python "
+         "scripts/blender_hair.py -- export FILE -o x.npz (installed: "
+         "/usr/share/tractrix/blender_hair.py)"},
         {"numStrands", "FILE:1: expected the number of strands, got the end of the file"},
         {"numStrands x\n", "FILE:1: expected the number of strands, got 'x'"},
         {"numStrands -1\n", "FILE:1: expected the number of strands, got '-1'"},
