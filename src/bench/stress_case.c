@@ -168,12 +168,21 @@ static double random_value(const Field *field, Random *random)
     }
 }
 
-static void draw(StressCase *stress, bool of_strand, Random *random)
+// What is drawn together.
+typedef enum Part { OF_SET, OF_STRAND, OF_WARP } Part;
+
+static Part part_of(int field)
+{
+    if (field == STRESS_shape || field == STRESS_tilt || field == STRESS_shape_seed)
+        return OF_STRAND;
+    return field >= STRESS_warp && field <= STRESS_warp_seed ? OF_WARP : OF_SET;
+}
+
+static void draw(StressCase *stress, Part part, Random *random)
 {
     const Fields *all = list_fields();
     for (int i = 0; i < all->count; ++i) {
-        bool own = i == STRESS_shape || i == STRESS_tilt || i == STRESS_shape_seed;
-        if (own == of_strand && applies(&all->field[i], stress) &&
+        if (part_of(i) == part && applies(&all->field[i], stress) &&
             random_real(random) < all->field[i].likely)
             stress->value[i] = rounded(random_value(&all->field[i], random));
     }
@@ -202,7 +211,13 @@ static void keep_affordable(StressCase *stress)
 StressCase stress_case_random(const char *algo, const char *variant, int vertices, Random *random)
 {
     StressCase stress = stress_case_plain(algo, variant);
-    draw(&stress, false, random);
+    Random fork = *random, warps = random_create(random_next(&fork), 1);
+    draw(&stress, OF_SET, random);
+    // By numbers of its own: a case is the same without its warp.
+    draw(&stress, OF_WARP, &warps);
+    if (stress.value[STRESS_warp] == 0)
+        for (int i = STRESS_warp_rate; i <= STRESS_warp_seed; ++i)
+            stress.value[i] = CIRCUMSTANCES[i].plain;
     stress.value[STRESS_n] = vertices;
     keep_apart(&stress);
     keep_affordable(&stress);
@@ -213,7 +228,7 @@ StressCase stress_case_random_strand(const StressCase *set, int strand, Random *
 {
     StressCase stress = *set;
     stress.value[STRESS_strand] = strand;
-    draw(&stress, true, random);
+    draw(&stress, OF_STRAND, random);
     return stress;
 }
 
@@ -327,6 +342,26 @@ Result stress_case_params(const StressCase *stress, SectionParams *params, Error
     }
     if (result != RESULT_OK) params_destroy_section(params);
     return result;
+}
+
+// --- The mesh.
+
+void stress_case_warp(const StressCase *stress, double time, const double rest[3], double place[3])
+{
+    enum { WAVES = 3 };
+    const double *value = stress->value;
+    const double from[3] = {rest[0], rest[1] - value[STRESS_arm], rest[2]};
+    Random random = random_create((uint64_t)value[STRESS_warp_seed], 1);
+    memcpy(place, rest, 3 * sizeof *place);
+    for (int i = 0; i < WAVES; ++i) {
+        double along[3], way[3];
+        random_direction(&random, along);
+        random_direction(&random, way);
+        double phase = 2 * PI * random_real(&random), speed = 0.5 + random_real(&random);
+        double here = sin(2 * PI * double3_dot(along, from) / value[STRESS_warp_size] + phase),
+               now = sin(2 * PI * value[STRESS_warp_rate] * speed * time);
+        for (int k = 0; k < 3; ++k) place[k] += value[STRESS_warp] / WAVES * here * now * way[k];
+    }
 }
 
 // --- The strand.

@@ -40,7 +40,11 @@
     STRESS_FIELD(shape, 0, 0, 5, WHOLE, 0.7)          /* StressShape */                            \
     STRESS_FIELD(tilt, 90, 0, 180, EVEN, 0.6)         /* degrees from straight down */             \
     STRESS_FIELD(shape_seed, 0, 0, 65535, WHOLE, 1)   /* of random shapes */                       \
-    STRESS_FIELD(strand, 0, 0, 65535, WHOLE, 0)       /* its number: winds mix by it */
+    STRESS_FIELD(strand, 0, 0, 65535, WHOLE, 0)       /* its number: winds mix by it */            \
+    STRESS_FIELD(warp, 0, 1e-4, 10, ZERO, 0.3) /* m, of waves in a mesh to which it is bound */    \
+    STRESS_FIELD(warp_rate, 1, 0.1, 100, LOG, 0.5)   /* Hz */                                      \
+    STRESS_FIELD(warp_size, 0.1, 0.01, 10, LOG, 0.5) /* m from crest to crest */                   \
+    STRESS_FIELD(warp_seed, 0, 0, 65535, WHOLE, 1)   /* of their directions */
 
 enum StressField {
 #define STRESS_NAME(name, ...) STRESS_##name,
@@ -95,6 +99,10 @@ bool stress_case_simplify(const StressCase *stress, int move, StressCase *simple
 
 // The solver's parameters; free with params_destroy_section.
 Result stress_case_params(const StressCase *stress, SectionParams *params, Error *error);
+
+// Where a point of the mesh to which the strand is bound is after `time` seconds of warping: `rest`
+// and `place`, metres in the head's frame. Three waves, which are 0 at time 0.
+void stress_case_warp(const StressCase *stress, double time, const double rest[3], double place[3]);
 
 // The strand: `points` [n], metres in the head's frame.
 void stress_case_make_strand(const StressCase *stress, float (*points)[3]);

@@ -6,6 +6,7 @@
 #include "gpu/gpu_dispatch.h"
 #include "gpu/gpu_uniforms.h"
 #include "scene/forces.h"
+#include "sim/bound.h"
 #include "sim/solver.h"
 #include "sim/step.h"
 
@@ -124,13 +125,19 @@ static void apply_promises(StressBound *bound, const StressCase *stress,
 }
 
 // What is felt of gravity, m/s^2, at `turned` rad of the head: a groom holds its own part.
-static void find_felt(const StressBound *bound, const double gravity[3], double turned,
-                      double felt[3])
+static void find_felt(const StressBound *bound, const StressMove *move, double felt[3])
 {
-    double cosine = bound->held * cos(turned), sine = bound->held * sin(turned);
-    felt[0] = bound->share * (gravity[0] - cosine * gravity[0] + sine * gravity[1]);
-    felt[1] = bound->share * (gravity[1] - cosine * gravity[1] - sine * gravity[0]);
-    felt[2] = bound->share * (gravity[2] - cosine * gravity[2]);
+    const double *gravity = move->gravity;
+    RigidMotion own = {.rotation = {0}};
+    bool warped = false;
+    double held[3];
+    for (int k = 0; k < 4; ++k) warped |= (own.rotation[k] = move->warped[k]) != 0;
+    if (!warped) own.rotation[3] = 1;
+    rigid_motion_apply(&own, gravity, held);
+    double cosine = bound->held * cos(move->turned), sine = bound->held * sin(move->turned);
+    felt[0] = bound->share * (gravity[0] - cosine * held[0] + sine * held[1]);
+    felt[1] = bound->share * (gravity[1] - cosine * held[1] - sine * held[0]);
+    felt[2] = bound->share * (gravity[2] - bound->held * held[2]);
 }
 
 // What the groom holds, and how strong what is left can be.
@@ -142,7 +149,8 @@ static void find_held(StressBound *bound, const StressCase *stress, const Sectio
     bound->hangs = segments && holds > 0;
     bound->held = segments ? 0 : holds;
     bound->share = (double)params->gravity_share;
-    double most = value[STRESS_spin] > 0 ? 1 + bound->held : fabs(1 - bound->held);
+    double most =
+        value[STRESS_spin] > 0 || value[STRESS_warp] > 0 ? 1 + bound->held : fabs(1 - bound->held);
     bound->g = bound->share * value[STRESS_gravity] * most;
 }
 
@@ -199,7 +207,7 @@ StressBound stress_run_bound(const StressCase *stress, const SectionParams *para
 static void step_gravity(StressBound *bound, const StressMove *move)
 {
     Double3 felt, change;
-    find_felt(bound, move->gravity, move->turned, felt);
+    find_felt(bound, move, felt);
     if (bound->steps == 0) {
         memcpy(bound->felt_first, felt, sizeof felt);
         memcpy(bound->felt, felt, sizeof felt);
@@ -212,7 +220,9 @@ static void step_gravity(StressBound *bound, const StressMove *move)
 
 void stress_run_bound_step(StressBound *bound, const StressMove *move)
 {
-    double change = 0, speed = 0, angle = move->angle, rate = fabs(angle) / bound->step_s;
+    double change = 0, speed = 0, head = fabs(move->angle) / bound->step_s,
+           warp = move->warp / bound->step_s, rate = head + warp,
+           angle = fabs(move->angle) + move->warp;
     step_gravity(bound, move);
     for (int k = 0; k < 3; ++k) {
         double u = move->moved[k] / bound->step_s;
@@ -223,10 +233,12 @@ void stress_run_bound_step(StressBound *bound, const StressMove *move)
     double air = bound->wind + sqrt(speed);
     bound->kicks += bound->changed = sqrt(change);
     bound->steps += 1;
-    bound->turned += bound->stiffness * fabs(angle);
+    bound->turned += bound->stiffness * angle;
     bound->turning = fmax(bound->turning, rate * bound->length);
-    bound->spun += fabs(rate - bound->rate) + rate * fmin(fabs(angle), 2);
-    bound->rate = rate;
+    // The axis of a warp's turn may be another one in each step.
+    bound->spun += fabs(head - bound->rate) + warp + bound->warp + rate * fmin(angle, 2);
+    bound->rate = head;
+    bound->warp = warp;
     if (!(bound->drag > 0)) return;
     bound->cap = fmax(bound->cap, air * air + 4 * bound->g * bound->length);
     if (air > 0)
@@ -283,10 +295,19 @@ typedef struct Run {
     GLuint program;
     const GpuLimits *limits;
     GpuBuffer before, worst, first;
+    Mesh sheet; // to which strands are bound; empty: to none
+    Body body;  // its samples are before and after a step, whose number is their time
+    BoundBody bound_body;
+    Bound strands;
+    RigidMotion motion; // of the strands' frames, at the step's start
 } Run;
 
 static void run_destroy(Run *run)
 {
+    bound_destroy(&run->strands);
+    bound_body_destroy(&run->bound_body);
+    body_destroy(&run->body);
+    mesh_destroy(&run->sheet);
     solver_destroy(&run->solver);
     hair_destroy(&run->hair);
     params_destroy_section(&run->params);
@@ -310,6 +331,77 @@ static Result upload(Run *run, const Gpu *gpu, const StressCase *strands, int co
                                 &gpu->limits, error);
     strands_destroy(&made);
     return result;
+}
+
+// --- The mesh: a sheet about the roots, which all are in one place.
+
+enum { SHEET_CELLS = 6, SHEET_VERTICES = (SHEET_CELLS + 1) * (SHEET_CELLS + 1) };
+
+static Result make_sheet(Run *run, Error *error)
+{
+    const double *value = run->set->value, cell = value[STRESS_warp_size] / 10;
+    Mesh *sheet = &run->sheet;
+    TRY(mesh_create(sheet, SHEET_VERTICES, 2 * SHEET_CELLS * SHEET_CELLS, error));
+    for (int v = 0; v < SHEET_VERTICES; ++v) {
+        int i = v % (SHEET_CELLS + 1), j = v / (SHEET_CELLS + 1);
+        sheet->position[v][0] = (float)(cell * (i - SHEET_CELLS / 2));
+        sheet->position[v][1] = (float)value[STRESS_arm];
+        sheet->position[v][2] = (float)(cell * (j - SHEET_CELLS / 2));
+    }
+    for (uint32_t c = 0; c < SHEET_CELLS * SHEET_CELLS; ++c) {
+        uint32_t a = c / SHEET_CELLS * (SHEET_CELLS + 1) + c % SHEET_CELLS, b = a + SHEET_CELLS + 1;
+        const uint32_t two[2][3] = {{a, b, a + 1}, {a + 1, b, b + 1}};
+        memcpy(sheet->triangle[2 * c], two, sizeof two);
+    }
+    mesh_compute_normals(sheet);
+    return RESULT_OK;
+}
+
+static Result bind(Run *run, const Gpu *gpu, int count, Error *error)
+{
+    MeshSequence *sequence = &run->body.sequence;
+    float(*roots)[3] = calloc((size_t)count, sizeof *roots);
+    size_t size = sizeof *sequence->position * SHEET_VERTICES;
+    TRY(make_sheet(run, error));
+    *sequence = (MeshSequence){.times = {.count = 2, .rate = 1, .start = -1, .linear = true},
+                               .vertex_count = SHEET_VERTICES,
+                               .position = malloc(2 * size)};
+    run->body.mesh = &run->sheet;
+    run->body.name = "sheet";
+    run->body.section_count = 1;
+    run->body.roots = calloc(1, sizeof *run->body.roots);
+    Result result = RESULT_OK;
+    if (!roots || !sequence->position || !run->body.roots)
+        result = error_set(error, RESULT_FAILED, "no memory for a mesh");
+    for (int i = 0; i < 2 && result == RESULT_OK; ++i)
+        memcpy(mesh_sequence_at(sequence, (uint32_t)i), run->sheet.position, size);
+    for (int s = 0; s < count && result == RESULT_OK; ++s)
+        roots[s][1] = (float)run->set->value[STRESS_arm];
+    THEN(result, mesh_binding_create(run->body.roots, &run->sheet, "sheet",
+                                     (const float(*)[3])roots, (uint32_t)count, error));
+    THEN(result, bound_body_create(&run->bound_body, &run->body, error));
+    THEN(result, bound_create(&run->strands, &run->bound_body, 0, &run->hair, &gpu->limits, error));
+    if (result == RESULT_OK) bound_set(&run->strands, 0, 0);
+    run->motion = (RigidMotion){.rotation = {0, 0, 0, 1}};
+    free(roots);
+    return result;
+}
+
+// The mesh after step i; it stands still in the second half. Returns the strands' frames there.
+static RigidMotion warp(Run *run, int i)
+{
+    int moving = i < run->steps / 2 ? i : run->steps / 2;
+    float position[SHEET_VERTICES][3];
+    for (int v = 0; v < SHEET_VERTICES; ++v) {
+        double rest[3], place[3];
+        for (int k = 0; k < 3; ++k) rest[k] = (double)run->sheet.position[v][k];
+        stress_case_warp(run->set, moving * run->set->value[STRESS_dt], rest, place);
+        for (int k = 0; k < 3; ++k) position[v][k] = (float)place[k];
+    }
+    mesh_sequence_push(&run->body.sequence, (const float(*)[3])position, i - 1, i);
+    const BodyPose *pose = bound_body_pose(&run->bound_body, i);
+    return mesh_binding_motion(run->body.roots, 0, (const float(*)[3])pose->position,
+                               (const double(*)[4])pose->turn);
 }
 
 static Result create_check(Run *run, const Gpu *gpu, Error *error)
@@ -357,9 +449,21 @@ static bool is_looked_at(const Run *run, int i)
     return i <= 64 || i % 16 == 0 || i == run->steps || (jumps && i % JUMP_PERIOD < 8);
 }
 
-// The root, which lies at (0, arm, 0) in the head's frame, as float32 has it in the world.
-static void root_at(const Run *run, const HeadPose *pose, double root[3])
+// The root, which lies at (0, arm, 0) in the head's frame, as float32 has it in the world; `own` is
+// the motion of a mesh that it is bound to.
+static void root_at(const Run *run, const HeadPose *pose, const RigidMotion *own, double root[3])
 {
+    if (run->sheet.vertex_count) {
+        const double rest[3] = {0, run->set->value[STRESS_arm], 0};
+        RigidMotion head = {
+            .rotation = {0, 0, (double)pose->rotation[2], (double)pose->rotation[3]}};
+        double place[3];
+        for (int k = 0; k < 3; ++k) head.translation[k] = (double)pose->translation[k];
+        rigid_motion_apply(own, rest, place);
+        rigid_motion_apply(&head, place, root);
+        for (int k = 0; k < 3; ++k) root[k] = (double)(float)root[k];
+        return;
+    }
     double s = (double)pose->rotation[2], c = (double)pose->rotation[3],
            arm = run->set->value[STRESS_arm];
     root[0] = (double)(float)((double)pose->translation[0] - 2 * s * c * arm);
@@ -386,6 +490,7 @@ static Result run_create(Run *run, const Gpu *gpu, const StressCase *strands, in
     run->step = (SolverStep){.dt = value[STRESS_dt], .first = true, .number = 1};
     run->step.head = run->step.head_old = pose_at(run, 0);
     TRY(upload(run, gpu, strands, count, error));
+    if (value[STRESS_warp] > 0) TRY(bind(run, gpu, count, error));
     float rest_gravity = 0;
     if (run->params.rest == REST_GROOM)
         rest_gravity = (float)(-value[STRESS_gravity] * value[STRESS_rest_share]);
@@ -394,6 +499,7 @@ static Result run_create(Run *run, const Gpu *gpu, const StressCase *strands, in
                                .hair = &run->hair,
                                .params = &run->params,
                                .head = &run->step.head,
+                               .frames = run->strands.frames,
                                .rest_gravity = {0, rest_gravity, 0}};
     TRY(solver_create(&run->solver, &setup, error));
     return create_check(run, gpu, error);
@@ -446,8 +552,19 @@ static void take_step(Run *run, int i)
     memcpy(step->gravity, forces.gravity, sizeof step->gravity);
     memcpy(step->wind, forces.wind, sizeof step->wind);
     step->head = pose_at(run, i);
-    root_at(run, &step->head_old, before);
-    root_at(run, &step->head, now);
+    RigidMotion own = run->motion;
+    if (run->sheet.vertex_count) {
+        own = warp(run, i);
+        const double *a = run->motion.rotation, *b = own.rotation;
+        double along = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
+        move.warp = 2 * acos(fmin(fabs(along), 1));
+        memcpy(move.warped, own.rotation, sizeof move.warped);
+        step->shape_old = bound_body_shape(&run->bound_body, i - 1);
+        step->shape = bound_body_shape(&run->bound_body, i);
+    }
+    root_at(run, &step->head_old, &run->motion, before);
+    root_at(run, &step->head, &own, now);
+    run->motion = own;
     for (int k = 0; k < 3; ++k) {
         move.moved[k] = now[k] - before[k];
         move.gravity[k] = (double)step->gravity[k];
@@ -456,7 +573,9 @@ static void take_step(Run *run, int i)
     move.angle = turns ? fmin(run->set->value[STRESS_spin] * step->dt, PI) : 0;
     stress_run_bound_step(&run->bound, &move);
     bool looked_at = is_looked_at(run, i);
+    bound_set_after(&run->strands, i - 1);
     if (looked_at) keep_positions(run);
+    if (run->sheet.vertex_count) bound_set(&run->strands, i - 1, i);
     solver_step(&run->solver, step);
     if (looked_at) look(run, i);
     step->head_old = step->head;

@@ -85,6 +85,7 @@ typedef struct StressBound {
     double turned;                 // m^2/s^2
     bool carries;                  // vertex 1 is the head's
     double rate, spun;             // 1/s: the head's turning; its changes, and its own direction's
+    double warp;                   // 1/s: the strand's own turning
     double root_velocity[3];
     double rise;     // share by which the solver lets energy rise; < 0: no bound
     double jerk;     // times the root's changes of velocity in the last step
@@ -106,6 +107,9 @@ StressBound stress_run_bound(const StressCase *stress, const SectionParams *para
 // 0 on by `turned` about z; gravity is `gravity` (m/s^2).
 typedef struct StressMove {
     double moved[3], angle, turned, gravity[3];
+    double warped[4]; // the strand's own rotation from time 0 on in the head's frame, a quaternion
+                      // x y z w; all 0: none
+    double warp;      // rad, by which that has changed in the step
 } StressMove;
 
 // Takes a step into account.

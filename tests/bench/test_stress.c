@@ -141,14 +141,18 @@ static void a_groom_holds_its_gravity(void **state)
     static const struct {
         const char *text;
         double turned, felt, changes;
+        bool warped; // by half a turn about x
     } cases[] = {
-        {"plain", 0, 0, 0},
-        {"plain", PI, 20, 20},
-        {"rest=1", PI, 10, 0},
-        {"style=0", PI, 10, 0},
-        {"rest_share=0.5", 0, 5, 0},
-        {"rest_share=2", PI, 30, 20 * 2},
-        {"rest_share=0.5 gravity_share=0.5", 0, 2.5, 0},
+        {"plain", 0, 0, 0, false},
+        {"plain", PI, 20, 20, false},
+        {"rest=1", PI, 10, 0, false},
+        {"style=0", PI, 10, 0, false},
+        {"rest_share=0.5", 0, 5, 0, false},
+        {"rest_share=2", PI, 30, 20 * 2, false},
+        {"rest_share=0.5 gravity_share=0.5", 0, 2.5, 0, false},
+        {"plain", 0, 20, 20, true},
+        {"plain", PI, 0, 0, true},
+        {"rest=1", 0, 10, 0, true},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         StressCase stress = stress_case_plain("hybrid", "");
@@ -156,14 +160,41 @@ static void a_groom_holds_its_gravity(void **state)
         assert_int_equal(stress_case_read(&stress, cases[i].text, NULL), RESULT_OK);
         assert_int_equal(stress_case_params(&stress, &params, NULL), RESULT_OK);
         StressBound bound = stress_run_bound(&stress, &params, 100);
-        const StressMove first = {.gravity = {0, -10, 0}},
-                         then = {.gravity = {0, -10, 0}, .turned = cases[i].turned};
+        const StressMove first = {.gravity = {0, -10, 0}}, then = {.gravity = {0, -10, 0},
+                                                                   .turned = cases[i].turned,
+                                                                   .warped = {cases[i].warped}};
         stress_run_bound_step(&bound, &first);
         stress_run_bound_step(&bound, &then);
         assert_true(fabs(hypot(bound.felt[0], bound.felt[1]) - cases[i].felt) < 1e-9);
         assert_true(fabs(bound.changes - cases[i].changes) < 1e-9);
         params_destroy_section(&params);
     }
+}
+
+// A mesh warps from rest on, by waves that differ with the seed; hair that is bound to it has
+// energy from nothing else here.
+static void hair_is_bound_to_a_mesh_that_warps(void **state)
+{
+    (void)state;
+    StressCase stress = stress_case_plain("hybrid", ""), other = stress;
+    const double rest[3] = {0.01, 0.1, 0.02};
+    double start[3], now[3], there[3];
+    assert_int_equal(stress_case_read(&stress, "warp=0.05 warp_seed=3", NULL), RESULT_OK);
+    assert_int_equal(stress_case_read(&other, "warp=0.05 warp_seed=4", NULL), RESULT_OK);
+    stress_case_warp(&stress, 0, rest, start);
+    stress_case_warp(&stress, 0.1, rest, now);
+    stress_case_warp(&other, 0.1, rest, there);
+    assert_memory_equal(start, rest, sizeof rest);
+    double moved = 0, apart = 0;
+    for (int k = 0; k < 3; ++k) {
+        moved += fabs(now[k] - rest[k]);
+        apart += fabs(now[k] - there[k]);
+        assert_true(fabs(now[k] - rest[k]) <= 0.05);
+    }
+    assert_true(moved > 1e-3 && apart > 1e-3);
+    StressVerdict verdict =
+        verdict_of("hybrid", "", "gravity=0 warp=0.05 warp_seed=3 drag=0 style=0", 200);
+    assert_true(verdict.worst[STRESS_ENERGY] > 1e-3 && verdict.worst[STRESS_ENERGY] < 1);
 }
 
 // The flutter number leaves out hair that its weight presses together, and no other.
@@ -317,6 +348,7 @@ int main(void)
         cmocka_unit_test(the_bound_is_as_tight_as_can_be),
         cmocka_unit_test(the_heads_motion_counts),
         cmocka_unit_test(a_groom_holds_its_gravity),
+        cmocka_unit_test(hair_is_bound_to_a_mesh_that_warps),
         cmocka_unit_test(only_pressed_hair_may_flutter),
         cmocka_unit_test(what_broke_once_holds),
         cmocka_unit_test(uneven_hair_stays_where_it_is),
