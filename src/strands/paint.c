@@ -55,9 +55,8 @@ static double find_widening(const SectionParams *params)
 
 // Of fibres that together show the colour, what a diameter lets through, exp(-2 sigma). A colour
 // that is brighter than hair can be keeps its hue.
-static void absorb(const SectionParams *params, float linear[3])
+static void absorb(double wider, float linear[3])
 {
-    double wider = find_widening(params);
     double brightest = fmax((double)linear[0], fmax((double)linear[1], (double)linear[2])),
            less = fmin(1, (DARKEST + SPAN) / fmax(brightest, DARKEST));
     for (int k = 0; k < 3; ++k) {
@@ -79,9 +78,9 @@ static void reveal(const SectionParams *params, float linear[3])
 
 // A colour as one sees it, as the shading has it: of kajiya what one sees, of marschner what a
 // fibre's diameter lets through.
-static void take_seen(const SectionParams *params, float linear[3])
+static void take_seen(const SectionParams *params, double wider, float linear[3])
 {
-    if (params->shading == SHADING_MARSCHNER) absorb(params, linear);
+    if (params->shading == SHADING_MARSCHNER) absorb(wider, linear);
 }
 
 void paint_color(const SectionParams *params, float linear[3])
@@ -89,7 +88,7 @@ void paint_color(const SectionParams *params, float linear[3])
     double red = (double)params->melanin_redness, amount = (double)params->melanin.value;
     bool seen = params->transmission.automatic;
     decode(seen ? params->color : params->transmission.value, linear);
-    if (seen) take_seen(params, linear);
+    if (seen) take_seen(params, find_widening(params), linear);
     for (int k = 0; k < 3 && !params->melanin.automatic; ++k)
         linear[k] = (float)exp(-2 * amount * ((1 - red) * EUMELANIN[k] + red * PHEOMELANIN[k]));
 }
@@ -160,7 +159,8 @@ static void paint_by_file(Paint *paint, const Strands *strands)
 
 static void take_all_seen(Paint *paint, const SectionParams *params)
 {
-    for (uint32_t v = 0; v < paint->vertex_count; ++v) take_seen(params, paint->color[v]);
+    double wider = find_widening(params);
+    for (uint32_t v = 0; v < paint->vertex_count; ++v) take_seen(params, wider, paint->color[v]);
 }
 
 static void paint_evenly(Paint *paint, const float color[3])
@@ -177,14 +177,11 @@ static float tip_share(float length, uint32_t j, uint32_t n)
 }
 
 static void paint_strand(Paint *paint, const Strands *strands, const SectionParams *params,
-                         uint32_t s)
+                         const float tip[3], uint32_t s)
 {
     uint32_t first = strands->first[s], n = strands_size(strands, s);
     bool from_file = strands->color && params->file_opacity;
     double opacity = 0;
-    float tip[3];
-    decode(params->tip_color, tip);
-    take_seen(params, tip);
     for (uint32_t v = first; from_file && v < first + n; ++v)
         opacity += (double)clamp_share(strands->color[v][3]) / n;
     for (uint32_t j = 0; j < n; ++j) {
@@ -237,8 +234,10 @@ Result paint_create(Paint *paint, const Strands *strands, const SectionParams *p
                      .color = malloc(((size_t)count + 1) * sizeof *paint->color),
                      .thickness = malloc(((size_t)count + 1) * sizeof *paint->thickness)};
     Result result = RESULT_OK;
-    float own[3];
+    float own[3], tip[3];
     paint_color(params, own);
+    decode(params->tip_color, tip);
+    take_seen(params, find_widening(params), tip);
     if (!paint->color || !paint->thickness)
         result = error_set(error, RESULT_FAILED, "no memory for the colours of %u vertices", count);
     else if (*params->color_map)
@@ -250,7 +249,7 @@ Result paint_create(Paint *paint, const Strands *strands, const SectionParams *p
     bool seen = *params->color_map || paint->colors_from_file;
     if (result == RESULT_OK && seen) take_all_seen(paint, params);
     for (uint32_t s = 0; result == RESULT_OK && s < strands->strand_count; ++s)
-        paint_strand(paint, strands, params, s);
+        paint_strand(paint, strands, params, tip, s);
     if (result == RESULT_OK) set_thickness(paint, strands, params);
     if (result != RESULT_OK) paint_destroy(paint);
     return result;
