@@ -67,6 +67,17 @@ static inline double double3_normalize(Double3 v)
     return length;
 }
 
+// The matrix, which acts on columns, of a unit quaternion x y z w.
+static inline void double3_rotation(const double q[4], double rows[3][3])
+{
+    const double x = q[0], y = q[1], z = q[2], w = q[3];
+    rows[0][0] = 1 - 2 * (y * y + z * z), rows[0][1] = 2 * (x * y - w * z);
+    rows[0][2] = 2 * (x * z + w * y), rows[1][0] = 2 * (x * y + w * z);
+    rows[1][1] = 1 - 2 * (x * x + z * z), rows[1][2] = 2 * (y * z - w * x);
+    rows[2][0] = 2 * (x * z - w * y), rows[2][1] = 2 * (y * z + w * x);
+    rows[2][2] = 1 - 2 * (x * x + y * y);
+}
+
 // Takes away what points along `normal`, which has unit length.
 static inline void double3_flatten(Double3 v, const Double3 normal)
 {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "base/usd_transform.h"
 
+#include "base/double3.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -165,11 +167,11 @@ static void set_orientation(double m[4][4], const double q[4])
 {
     double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     if (!(length > 0)) return;
-    double w = q[0] / length, x = q[1] / length, y = q[2] / length, z = q[3] / length;
-    const double rows[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
-                               {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
-                               {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}};
-    for (int i = 0; i < 3; ++i) memcpy(m[i], rows[i], sizeof rows[i]);
+    const double unit[4] = {q[1] / length, q[2] / length, q[3] / length, q[0] / length};
+    double rows[3][3];
+    double3_rotation(unit, rows);
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) m[i][j] = rows[j][i];
 }
 
 // --- Values at a time.

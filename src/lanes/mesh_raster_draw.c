@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "lanes/mesh_raster.h"
 
+#include "base/double3.h"
 #include "lanes/mesh_fill.h"
 
 #include <stdlib.h>
@@ -83,11 +84,9 @@ void mesh_surface_destroy(MeshSurface *surface)
 
 static Matrix place_mesh(const PlacedMesh *mesh, const float rows[4][4])
 {
-    const float *q = mesh->rotation;
-    double x = (double)q[0], y = (double)q[1], z = (double)q[2], w = (double)q[3];
-    const double turn[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
-                               {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
-                               {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}};
+    double q[4], turn[3][3];
+    for (int k = 0; k < 4; ++k) q[k] = (double)mesh->rotation[k];
+    double3_rotation(q, turn);
     Matrix matrix;
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) matrix.turn[i][j] = (float)turn[i][j];

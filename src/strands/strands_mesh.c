@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "strands/strands_mesh.h"
 
+#include "base/double3.h"
 #include "base/doubles.h"
 #include "base/parallel.h"
 #include "mesh/mesh_binding.h"
@@ -236,15 +237,6 @@ static double find_spread(const double (*points)[3], uint32_t count, const doubl
     return sqrt(sum / count);
 }
 
-static void set_rotation(double matrix[3][3], const double q[4])
-{
-    double x = q[0], y = q[1], z = q[2], w = q[3];
-    const double rows[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
-                               {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
-                               {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}};
-    memcpy(matrix, rows, sizeof rows);
-}
-
 // The similarity from the kept roots to their nearest points.
 static void improve(const Pairs *pairs, RigidMotion *turned, StrandsMove *move)
 {
@@ -255,7 +247,7 @@ static void improve(const Pairs *pairs, RigidMotion *turned, StrandsMove *move)
     find_middle(near, pairs->kept, to);
     double spread = find_spread(roots, pairs->kept, from);
     *turned = rigid_motion_fit(roots, near, pairs->kept, turned);
-    set_rotation(move->rotation, turned->rotation);
+    double3_rotation(turned->rotation, move->rotation);
     if (spread > 0) move->scale = find_spread(near, pairs->kept, to) / spread;
     memset(move->translation, 0, sizeof move->translation);
     apply(move, from, back);
@@ -314,7 +306,7 @@ static void slide(const Pairs *pairs, double damping, StrandsMove *move)
     const double q[4] = {x[0] * sine, x[1] * sine, x[2] * sine, cos(half)};
     StrandsMove more = strands_move_none(), all = *move;
     more.scale = 1 + fmin(fmax(x[3], -0.5), 0.5);
-    set_rotation(more.rotation, q);
+    double3_rotation(q, more.rotation);
     Double3 back;
     apply(&more, middle, back);
     for (int k = 0; k < 3; ++k) more.translation[k] = middle[k] + size * x[4 + k] - back[k];
