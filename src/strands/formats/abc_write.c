@@ -11,14 +11,7 @@ enum { LIBRARY_VERSION = 10800, HASH_BYTES = 32 };
 
 // --- The strands' properties.
 
-// How many values, and how AbcGeom calls that.
-static size_t count_values(const Strands *strands, CurvesRate rate)
-{
-    return rate == CURVES_CONSTANT  ? 1
-           : rate == CURVES_UNIFORM ? strands->strand_count
-                                    : strands->vertex_count;
-}
-
+// How AbcGeom calls a rate.
 static void describe(char meta[160], CurvesRate rate, const char *interpretation, uint32_t extent,
                      const char *pod)
 {
@@ -37,7 +30,7 @@ static void add_floats(AbcWriter *writer, OgawaCompound *to, const char *name,
     char meta[160];
     if (!value) return;
     describe(meta, rate, interpretation, extent, "float32_t");
-    for (size_t i = 0; i < count_values(writer->strands, rate); ++i)
+    for (size_t i = 0; i < curves_look_count(writer->strands, rate); ++i)
         for (uint32_t k = 0; k < extent; ++k)
             ogawa_add_float(&block, factor == 1 ? value[i * stride + k]
                                                 : (float)(value[i * stride + k] * factor));
@@ -255,15 +248,7 @@ static Result begin(AbcWriter *writer, const OutFile *file, const Strands *stran
 {
     *writer = (AbcWriter){
         .file = *file, .ogawa = {.stream = file->stream}, .strands = strands, .options = *options};
-    CurvesLook *look = &writer->options.look;
-    if (!look->width && strands->vertex_thickness) {
-        look->width = strands->vertex_thickness;
-        look->width_rate = CURVES_VERTEX;
-    }
-    if (!look->color && strands->color) {
-        look->color = (const float(*)[4])strands->color;
-        look->color_rate = CURVES_VERTEX;
-    }
+    curves_look_complete(&writer->options.look, strands);
     // Only a file of its own can be gone back in: no pipe, and no file that output is appended to.
     writer->buffered = !file->temporary;
     if (writer->buffered)

@@ -19,6 +19,12 @@ typedef struct CurvesLook {
     CurvesRate color_rate;
 } CurvesLook;
 
+// How many values an attribute of this rate has.
+size_t curves_look_count(const Strands *strands, CurvesRate rate);
+
+// Width and colour of the strands' vertices, where the look has none of its own.
+void curves_look_complete(CurvesLook *look, const Strands *strands);
+
 typedef struct CurvesOptions {
     double metres_per_unit; // of the positions, > 0
     bool up_z;              // else y

@@ -28,13 +28,6 @@ static void put_list(FILE *stream, const float *values, size_t count, int width,
     fputc(']', stream);
 }
 
-static size_t count_values(const Strands *strands, CurvesRate rate)
-{
-    return rate == CURVES_CONSTANT  ? 1
-           : rate == CURVES_UNIFORM ? strands->strand_count
-                                    : strands->vertex_count;
-}
-
 // An attribute with its interpolation; nothing for NULL.
 static void put_primvar(UsdWriter *writer, const char *type_and_name, const float *values,
                         CurvesRate rate, int width, size_t stride)
@@ -43,7 +36,7 @@ static void put_primvar(UsdWriter *writer, const char *type_and_name, const floa
     FILE *stream = writer->file.stream;
     if (!values) return;
     fprintf(stream, "    %s = ", type_and_name);
-    put_list(stream, values, count_values(writer->strands, rate), width, stride);
+    put_list(stream, values, curves_look_count(writer->strands, rate), width, stride);
     fprintf(stream, " (\n        interpolation = \"%s\"\n    )\n", names[rate]);
 }
 
@@ -91,7 +84,7 @@ static void put_sizes(FILE *stream, const Strands *strands)
 static void put_color(UsdWriter *writer, const float (*color)[4], CurvesRate rate)
 {
     bool transparent = false;
-    for (size_t i = 0; color && i < count_values(writer->strands, rate); ++i)
+    for (size_t i = 0; color && i < curves_look_count(writer->strands, rate); ++i)
         transparent = transparent || color[i][3] != 1.0f;
     if (!color) return;
     put_primvar(writer, "color3f[] primvars:displayColor", color[0], rate, 3, 4);
@@ -128,15 +121,8 @@ static void begin(UsdWriter *writer, const OutFile *file, const Strands *strands
     *writer = (UsdWriter){.file = *file, .strands = strands, .options = *options};
     CurvesLook *look = &writer->options.look;
     FILE *stream = writer->file.stream;
-    if (!look->width && strands->vertex_thickness) {
-        look->width = strands->vertex_thickness;
-        look->width_rate = CURVES_VERTEX;
-    }
-    if (!look->color && strands->color) {
-        look->color = (const float(*)[4])strands->color;
-        look->color_rate = CURVES_VERTEX;
-    }
-    for (size_t i = 0; look->width && i < count_values(strands, look->width_rate); ++i)
+    curves_look_complete(look, strands);
+    for (size_t i = 0; look->width && i < curves_look_count(strands, look->width_rate); ++i)
         writer->half_width = fmaxf(writer->half_width, look->width[i] / 2);
     put_layer(stream, &writer->options);
     fprintf(stream, "def BasisCurves \"Hair\"");
