@@ -47,6 +47,7 @@ static void expect(const char *path, const MeshSequenceOptions *options, const c
         if (result != RESULT_OK) fail_msg("%s", error.text);
         assert_int_equal(sequence.times.count, 2);
         assert_int_equal(mesh.triangle_count, 1);
+        assert_memory_equal(mesh.triangle[0], ((const uint32_t[3]){0, 1, 2}), 12);
         const float *numbers = sequence.position[0];
         for (int i = 0; i < 18; ++i) assert_true(numbers[i] == ((const float *)SAMPLES)[i]);
     }
