@@ -32,18 +32,21 @@ static void begin_outline(Outline *outline, const float point[3])
 void outline_add(Outline *outline, const float point[3])
 {
     if (!outline->any) begin_outline(outline, point);
-    float reach[OUTLINE_DIRECTIONS]; // all first: a loop without branches is done four at a time
+    // Loops without branches are done four at a time, and most points reach no farther.
+    float reach[OUTLINE_DIRECTIONS];
+    int farther = 0;
     const float *x = outline->direction[0], *y = outline->direction[1], *z = outline->direction[2];
     for (int i = 0; i < OUTLINE_DIRECTIONS; ++i)
         reach[i] = x[i] * point[0] + y[i] * point[1] + z[i] * point[2];
-    for (int i = 0; i < OUTLINE_DIRECTIONS; ++i)
+    for (int i = 0; i < OUTLINE_DIRECTIONS; ++i) farther |= reach[i] > outline->reach[i];
+    for (int i = 0; farther && i < OUTLINE_DIRECTIONS; ++i)
         if (reach[i] > outline->reach[i]) {
             outline->reach[i] = reach[i];
             memcpy(outline->point[i], point, sizeof(vec3));
         }
     for (int k = 0; k < 3; ++k) {
-        outline->low[k] = fminf(outline->low[k], point[k]);
-        outline->high[k] = fmaxf(outline->high[k], point[k]);
+        if (point[k] < outline->low[k]) outline->low[k] = point[k];
+        if (point[k] > outline->high[k]) outline->high[k] = point[k];
     }
 }
 

@@ -47,8 +47,9 @@ void strands_bounds(const Strands *strands, float low[3], float high[3])
     for (int axis = 0; axis < 3; axis++) {
         low[axis] = high[axis] = strands->vertex_count ? strands->position[0][axis] : 0.0f;
         for (uint32_t v = 1; v < strands->vertex_count; v++) {
-            low[axis] = fminf(low[axis], strands->position[v][axis]);
-            high[axis] = fmaxf(high[axis], strands->position[v][axis]);
+            float x = strands->position[v][axis];
+            if (x < low[axis]) low[axis] = x;
+            if (x > high[axis]) high[axis] = x;
         }
     }
 }
