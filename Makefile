@@ -242,6 +242,9 @@ SEED = 1
 torture: all tests ## every call of small runs fails in turn, 200 kills: an hour or so (SEED=N, TORTURE_OPTIONS="--only convert")
 	@$(TORTURE) $(OUT) --long --seed $(SEED) --jobs $$(nproc) $(TORTURE_OPTIONS)
 
+growth: all tests ## 10,000 scenes of the library and fewer simulations and devices: what stays: some minutes
+	@TEST_ROUNDS=10000 $(OUT)/tests/library/test_library_growth
+
 # --- Static checks and the sanitizers; all of them run, then the failures are named. One alone: make check-format.
 CHECKS := commits format scripts warnings clang cppcheck shaders gpu-statistics rounding abi release farm sanitize
 C_FILES = $(wildcard src/*/*.[ch] src/*/*/*.[ch] tests/*/*.[ch] glsl/*/* tests/glsl/*)
@@ -419,7 +422,7 @@ help: ## this list
 	@echo; sed -n '4,8s/^#//p' $(firstword $(MAKEFILE_LIST))
 
 FORCE:
-.PHONY: library deb check-deb tarball wheel update-abi check-container drivers all tests demo test bench bench-image stress mutate torture check $(CHECKS:%=check-%) check-threads check-analyzer check-tidy format install uninstall clean help FORCE
+.PHONY: library deb check-deb tarball wheel update-abi check-container drivers all tests demo test bench bench-image stress mutate torture growth check $(CHECKS:%=check-%) check-threads check-analyzer check-tidy format install uninstall clean help FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
 -include $(patsubst %.o,%.d,$(OBJECTS) $(MAINS:src/%.c=$(OUT)/%.o) $(TEST_PROGRAMS:%=%.o) $(SUPPORT_OBJECTS))
