@@ -246,7 +246,7 @@ growth: all tests ## 10,000 scenes of the library and fewer simulations and devi
 	@TEST_ROUNDS=10000 $(OUT)/tests/library/test_library_growth
 
 # --- Static checks and the sanitizers; all of them run, then the failures are named. One alone: make check-format.
-CHECKS := commits format scripts warnings clang cppcheck shaders gpu-statistics rounding abi release farm sanitize
+CHECKS := commits format scripts benchmarks warnings clang cppcheck shaders gpu-statistics rounding abi release farm sanitize
 C_FILES = $(wildcard src/*/*.[ch] src/*/*/*.[ch] tests/*/*.[ch] glsl/*/* tests/glsl/*)
 SIDE   := $(if $(filter command line,$(origin OUT)),$(OUT)/,out/)
 QUIET   = $(AGAIN) $(JOBS) --silent
@@ -263,6 +263,8 @@ check-format:
 	@clang-format --dry-run -Werror $(C_FILES)
 check-scripts:
 	@shellcheck -x $$(scripts/list-shell)
+check-benchmarks: # the published figures are those of these solvers and defaults
+	@scripts/benchmark-stamp check
 check-warnings: # where warnings are errors anyway (CI), the usual build is the check
 	$(QUIET) WERROR=1 OUT=$(if $(WERROR),$(OUT),$(SIDE)check-gcc) all tests
 check-clang:
@@ -404,6 +406,7 @@ install: all $(MANUALS) $(COMPLETIONS) ## programs, library, manuals, completion
 	install -m 644 $(wildcard assets/*) $(DATA_DIR)
 	install -m 644 LICENSE README.md CHANGELOG.md CONTRIBUTING.md CITATION.cff $(DOC_DIR)
 	install -m 644 $(wildcard docs/*.*) $(DOC_DIR)/docs
+	$(if $(wildcard docs/benchmarks/*.csv),install -D -m 644 -t $(DOC_DIR)/docs/benchmarks $(wildcard docs/benchmarks/*.csv))
 	ln -sfn ../../tractrix $(DOC_DIR)/assets
 	$(foreach file,$(EXAMPLES),$(if $(wildcard $(file)/.),,install -D -m $(if $(shell test -x $(file) && echo x),755,644) $(file) $(DOC_DIR)/$(file) &&)) true
 
