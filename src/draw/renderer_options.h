@@ -36,7 +36,7 @@ typedef struct RendererOptions {
     float exposure;       // all light but the background's is this many times doubled
     Tone tone;            // how light becomes colour; the background's does not change
     ImageKind kind;       // of the images
-    Aov aov;              // what is drawn instead of light, on black (docs/renderer.md)
+    Aov aov;              // what is drawn instead of light, on black (docs/look.md)
     float depth_range[2]; // AOV_DEPTH: m that are shown as 1 and as 0; alike: m themselves
     int samples;   // 1, 2 or 4: a pixel is the mean of samples x samples, each with lists of its
                    // own; 0: 1. AOVs of what is nearest have one

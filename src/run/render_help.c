@@ -75,7 +75,7 @@ static const char *const SCENE_KEYS[][3] = {
      "or spot light has its intensity at `distance` (m) and falls off with the square of the "
      "distance. A spot is full up to `inner` degrees off its axis and dark beyond `outer`. With "
      "--shadow the first light casts shadows, and others with \"shadow\": true. Without this key "
-     "there are two lights; an empty list leaves ambient light only"},
+     "the lights of --look shine; an empty list leaves ambient light only"},
     {"$schema", "\"/usr/share/tractrix/scene.schema.json\"",
      "for editors, which complete and check the file with this JSON schema; --help schema prints "
      "it"},

@@ -373,7 +373,7 @@ static Fit judge(ShadowStage *stage)
     return fit;
 }
 
-// The bounds are the figures as measured (docs/shadows.md), and a little more.
+// The bounds are the figures as measured (docs/light.md), and a little more.
 static void deep_maps_are_near_the_exact_light(void **state)
 {
     (void)state;
