@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The pixels of tiles without ribbons, a pixel of the picture a lane: what stands behind alone.
-//   DEPTH 1: no ribbon's distance
+//   DEPTH 1: the mesh's distance instead; needs SAMPLES 1
 //   BASE, SAMPLES, KIND, TONE: see compute_pixels.glsl
 #include "draw/draw.h"
+#include "kernel/edge.h"
 #include "draw/compute_pixels.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
@@ -21,7 +22,7 @@ void main()
     for (int k = 0; k < SAMPLES * SAMPLES; ++k)
         sum += light_behind(p * SAMPLES + ivec2(k % SAMPLES, k / SAMPLES));
 #if DEPTH
-    sum = vec4(0.0, 0.0, 0.0, 1.0);
+    sum = vec4(vec3(depth_shown(inverse_distance_behind(p))), 1.0);
 #endif
     store(p, sum * (1.0 / float(SAMPLES * SAMPLES)));
 }

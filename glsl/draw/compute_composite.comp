@@ -263,7 +263,7 @@ void hide()
 vec4 light_of(int k)
 {
 #if DEPTH
-    return vec4(vec3(depth_shown(OF(through, k) == 0.0 ? OF(hidden, k) : 0.0)), 1.0);
+    return vec4(vec3(depth_shown(OF(hidden, k))), 1.0);
 #else
     return vec4(OF(red, k), OF(green, k), OF(blue, k), 1.0 - OF(through, k)) +
            OF(through, k) * light_behind(place + ivec2(0, k));

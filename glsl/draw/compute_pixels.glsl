@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What stands behind the hair, and how light becomes the picture's colours, as in
-// src/lanes/pixels.c (needs draw.h).
+// src/lanes/pixels.c (needs draw.h, kernel/edge.h).
 //   BASE 1: mesh or floor stand behind
 //   SAMPLES: what is a pixel here is one of SAMPLES x SAMPLES that the picture has the mean of
 //   KIND 0: 8 bits a channel are stored   1: 16   2: floats
@@ -34,6 +34,16 @@ vec4 light_behind(ivec2 p)
     if (is_in_base(p)) light = texelFetch(base, p, 0);
 #endif
     return light;
+}
+
+// The inverse distance of the mesh, 0: none.
+float inverse_distance_behind(ivec2 p)
+{
+    float z = EDGE_NOWHERE;
+#if BASE
+    if (is_in_base(p)) z = texelFetch(mesh_depth, p, 0).x;
+#endif
+    return edge_inverse_w(z, draw_params.depth.x, draw_params.depth.y);
 }
 
 // Levels are found here: drivers may round in another way.

@@ -2,7 +2,7 @@
 // A pixel's fragments become its colour: the LAYERS nearest in order, the rest blended out of order
 // under them, all over what stands behind, premultiplied and in linear light.
 //   BASE 0: the background alone stands behind   1: the mesh does
-//   DEPTH 1: the nearest fragment's distance instead
+//   DEPTH 1: the distance of the nearest fragment, else of the mesh, instead
 //   SAMPLES: the picture has the mean of SAMPLES x SAMPLES pixels of the lists
 //   MOST_TURNS: fragments that the driver lets all loops visit
 //
@@ -10,6 +10,7 @@
 // alpha, and optical depth -log2(1 - alpha). Together they let through what they would in any
 // order, and show their mean colour. A depth that nothing shines through may as well stay there.
 #include "draw/draw.h"
+#include "kernel/edge.h"
 #include "draw/abuffer.glsl"
 #include "draw/display.glsl"
 
@@ -17,6 +18,9 @@ layout(binding = BIND_NODES) uniform usamplerBuffer nodes;
 layout(binding = BIND_HEADS) uniform usamplerBuffer heads;
 #if BASE
 layout(binding = BIND_BASE) uniform sampler2D base;
+#if DEPTH
+layout(binding = BIND_SURFACE) uniform sampler2D mesh_depth; // the base is drawn: its unit is free
+#endif
 #endif
 layout(std430, binding = BIND_SHORTAGE_OUT) writeonly buffer Shortage { uint shortage; };
 layout(location = 0) out vec4 pixel_out; // sRGB, alpha not multiplied in; or premultiplied light
@@ -80,7 +84,13 @@ vec4 blend(ivec2 pixel)
     }
     if (link != 0) shortage = 1u;
 #if DEPTH
-    return vec4(vec3(depth_shown(intBitsToFloat(layer[0].x))), 1.0);
+    float near = intBitsToFloat(layer[0].x);
+#if BASE
+    if (near == 0.0)
+        near = edge_inverse_w(texelFetch(mesh_depth, pixel, 0).x, draw_params.depth.x,
+                              draw_params.depth.y);
+#endif
+    return vec4(vec3(depth_shown(near)), 1.0);
 #else
 #if BASE
     vec4 color = texelFetch(base, pixel, 0);

@@ -45,7 +45,8 @@ class Parameters(TypedDict, total=False):
     """what hair without a mesh grows on: auto fits the bundled head to roots that look like a scalp; scene files have
     none unless they say so [default auto]"""
     aov: Literal["none", "coverage", "depth", "tangent", "strand"]
-    """draw this instead of light: coverage, or the nearest strand's depth, tangent or own color [default none]"""
+    """draw this instead of light: the coverage of hair, the depth of the nearest strand or mesh, or the nearest
+    strand's tangent or own color [default none]"""
     algo: str
     """hair solver; none draws the hair as in the file; list describes the solvers [default hybrid]"""
     variant: str

@@ -87,8 +87,7 @@ SIMD_INLINE void lay_over(const Cell *restrict cell, float light[restrict CHANNE
     }
 }
 
-// What --aov depth shows of a ribbon at the inverse distance `near`, 0: of nothing. See
-// display.glsl.
+// What --aov depth shows at the inverse distance `near`, 0: of nothing. See display.glsl.
 static float depth_shown(const PixelStyle *style, float near)
 {
     float distance = 1 / simd_max(near, 1e-20f), from = style->depth_range[0],
@@ -97,12 +96,13 @@ static float depth_shown(const PixelStyle *style, float near)
     return near > 0 ? share : 0;
 }
 
-static void show_depth(const Cell *cell, const float *hidden, const PixelStyle *style,
+// `hidden`: inverse distances of the nearest ribbon, else of the mesh, else 0.
+static void show_depth(const float *hidden, const PixelStyle *style,
                        float light[CHANNELS][CELL_PIXELS])
 {
     for (int c = 0; c < CHANNELS; ++c)
         for (int k = 0; k < CELL_PIXELS; ++k)
-            light[c][k] = c == 3 ? 1 : depth_shown(style, cell->through[k] == 0 ? hidden[k] : 0);
+            light[c][k] = c == 3 ? 1 : depth_shown(style, hidden[k]);
 }
 
 static void fill_strip(const Block *block, const BlockBase *base, const PixelStyle *style, int row,
@@ -113,7 +113,7 @@ static void fill_strip(const Block *block, const BlockBase *base, const PixelSty
         float light[CHANNELS][CELL_PIXELS];
         fill_behind(block, base, style, column, row, light);
         if (style->shows_depth)
-            show_depth(&block->cells[at], block->hidden[at], style, light);
+            show_depth(block->hidden[at], style, light);
         else
             lay_over(&block->cells[at], light);
         for (int c = 0; c < CHANNELS; ++c)

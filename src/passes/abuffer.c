@@ -173,6 +173,8 @@ void abuffer_resolve(const ABuffer *abuffer, const RenderTarget *target, bool ov
     gpu_buffer_bind_storage(&abuffer->shortage, BIND_SHORTAGE_OUT);
     glActiveTexture(GL_TEXTURE0 + BIND_BASE);
     glBindTexture(GL_TEXTURE_2D, target->base);
+    glActiveTexture(GL_TEXTURE0 + BIND_SURFACE);
+    glBindTexture(GL_TEXTURE_2D, target->depth);
     glBindFramebuffer(GL_FRAMEBUFFER, target->image_frame);
     glUseProgram(abuffer->resolve[over_mesh]);
     glBindVertexArray(abuffer->vertex_array);

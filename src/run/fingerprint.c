@@ -223,9 +223,10 @@ void fingerprint_of_image(char text[FINGERPRINT_BYTES], const Fingerprint *finge
     uint64_t hash = add_number(fingerprint->image, (uint64_t)frame);
     camera_view(&view, scene, fingerprint->framing, frame);
     hash = add_view(hash, &view);
-    if (scene->run.aov == AOV_DEPTH) { // whose range is the first frame's
-        camera_view(&view, scene, fingerprint->framing, scene->run.first);
-        hash = add_view(hash, &view);
+    if (scene->run.aov == AOV_DEPTH) {
+        float range[2];
+        camera_depth_range(range, scene, fingerprint->framing);
+        hash = add(hash, range, sizeof range);
     }
     camera_lights(lights, scene, fingerprint->framing, frame);
     for (uint32_t i = 0; i < scene->light_count; ++i) hash = add_light(hash, &lights[i]);

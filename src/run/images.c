@@ -66,14 +66,11 @@ static Result create_items(Images *images, Error *error)
     return RESULT_OK;
 }
 
-// --aov depth: floats hold metres; PNG files map the first frame's nearest to farthest distance.
+// --aov depth: floats hold metres; PNG files map the scene's nearest to farthest distance.
 static void set_depth_range(const Images *images, RendererOptions *options)
 {
-    View view;
-    if (options->aov != AOV_DEPTH || options->kind == IMAGE_FLOAT) return;
-    camera_view(&view, images->scene, images->framing, images->scene->run.first);
-    options->depth_range[0] = view.near_distance;
-    options->depth_range[1] = view.far_distance;
+    if (options->aov == AOV_DEPTH && options->kind != IMAGE_FLOAT)
+        camera_depth_range(options->depth_range, images->scene, images->framing);
 }
 
 static RendererOptions describe_images(const Images *images, ImageKind kind)

@@ -120,6 +120,29 @@ void camera_view(View *view, const Scene *scene, const Framing *framing, int fra
                     view->near_distance, view->far_distance, view->projection);
 }
 
+void camera_depth_range(float range[2], const Scene *scene, const Framing *framing)
+{
+    enum { MOST_FRAMES = 64 };
+    View view;
+    int frames = scene->run.frames, count = frames < MOST_FRAMES ? frames : MOST_FRAMES;
+    float nearest = 1e30f, farthest = 0, least = 1e30f;
+    for (int i = 0; i < count && framing->all.any; ++i) {
+        camera_view(&view, scene, framing, (int)((int64_t)i * frames / count));
+        least = fminf(least, view.near_distance);
+        for (int p = 0; p < OUTLINE_DIRECTIONS; ++p) {
+            vec3 point = {0}, seen;
+            memcpy(point, framing->all.point[p], sizeof point);
+            glm_mat4_mulv3(view.view, point, 1, seen);
+            nearest = fminf(nearest, -seen[2]);
+            farthest = fmaxf(farthest, -seen[2]);
+        }
+    }
+    if (!(nearest < farthest)) nearest = least = 0, farthest = fmaxf(farthest, 1);
+    float room = 0.05f * (farthest - nearest);
+    range[0] = fmaxf(nearest - room, least);
+    range[1] = farthest + room;
+}
+
 void camera_lights(Light lights[SCENE_MAX_LIGHTS], const Scene *scene, const Framing *framing,
                    int frame)
 {

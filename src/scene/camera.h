@@ -23,6 +23,11 @@ typedef struct View {
 // target looks along -z, an up direction along the line of sight is replaced.
 void camera_view(View *view, const Scene *scene, const Framing *framing, int frame);
 
+// Distances before the eye's plane, m, between which hair and mesh lie in all frames, with some
+// room on both sides. Found at 64 frames of the sequence. Hair that swings out of its outline may
+// leave them.
+void camera_depth_range(float range[2], const Scene *scene, const Framing *framing);
+
 // The lights of frame `frame`: the scene's, or with run.turn_lights turned with the eye.
 void camera_lights(Light lights[SCENE_MAX_LIGHTS], const Scene *scene, const Framing *framing,
                    int frame);

@@ -153,6 +153,33 @@ static void what_is_nearest_has_one_sample(void **state)
     }
 }
 
+// A square that faces the eye 10 nearer than the middle, with a strand behind it and a strand
+// beside.
+static void a_mesh_has_a_depth(void **state)
+{
+    (void)state;
+    const float green[3] = {0, 1, 0};
+    Error error = {{0}};
+    RendererOptions options = SMALL;
+    Mesh mesh = make_square(20);
+    for (int v = 0; v < 4; ++v) mesh.position[v][2] = 10;
+    options.aov = AOV_DEPTH;
+    options.kind = IMAGE_FLOAT;
+    add_line((float[3]){-40, 5, -30}, (float[3]){40, 5, -30}, 4, 1);
+    use(&options);
+    assert_int_equal(renderer_set_mesh(&studio.renderer, &mesh, green, &error), RESULT_OK);
+    mesh_destroy(&mesh);
+    studio_draw(&studio);
+    const size_t row = (size_t)studio.image.width * (size_t)studio.image.channels,
+                 middle = row * 33 + 50 * (size_t)studio.image.channels;
+    assert_true(fabs(float_at(&studio.image, middle) - 990) < 0.5);
+    assert_true(fabs(float_at(&studio.image, middle - 5 * row) - 990) < 0.5);
+    assert_true(
+        fabs(float_at(&studio.image, middle - 5 * row - 30 * (size_t)studio.image.channels) -
+             1030) < 0.5);
+    assert_true(float_at(&studio.image, middle - 25 * row) == 0);
+}
+
 // Draws by the one rasteriser and by another, of quads by blocks, of others by quads: the share of
 // values that differ by more than `tolerance`, among those that are not 0 with both.
 static double share_that_differs(const RendererOptions *options, double tolerance)
@@ -228,7 +255,7 @@ int main(void)
         CLAIM(every_kind_shows_the_same_picture), CLAIM(samples_are_the_pixels_of_a_larger_picture),
         CLAIM(three_samples_are_refused),         CLAIM(samples_leave_the_number_of_strands),
         CLAIM(what_is_nearest_has_one_sample),    CLAIM(rasterisers_agree_on_what_is_nearest),
-        CLAIM(rasterisers_agree_on_coverage),
+        CLAIM(rasterisers_agree_on_coverage),     CLAIM(a_mesh_has_a_depth),
     };
     return stage_run_all(tests);
 }

@@ -360,9 +360,37 @@ static void denser_hair_is_drawn_finer(void **state)
     strands_destroy(&many);
 }
 
+// All hair lies between the ends of the range in all frames, and they are not far from it.
+static void depths_span_the_scene(void **state)
+{
+    (void)state;
+    Shot shot;
+    float range[2], nearest = INFINITY, farthest = 0;
+    open_shot(&shot, 1);
+    shot.scene.run.frames = 100;
+    shot.scene.run.turntable = 360;
+    frame_shot(&shot);
+    camera_depth_range(range, &shot.scene, &shot.framing);
+    for (int frame = 0; frame < 100; ++frame) {
+        View view;
+        view_of(&shot, frame, &view);
+        for (uint32_t v = 0; v < shot.strands.vertex_count; ++v) {
+            vec3 x = {0}, seen;
+            memcpy(x, shot.strands.position[v], sizeof x);
+            glm_mat4_mulv3(view.view, x, 1, seen);
+            nearest = fminf(nearest, -seen[2]);
+            farthest = fmaxf(farthest, -seen[2]);
+        }
+    }
+    assert_true(range[0] <= nearest && range[1] > farthest);
+    assert_true(range[0] > 0.6f * nearest && range[1] < 1.5f * farthest);
+    close_shot(&shot);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(depths_span_the_scene),
         cmocka_unit_test(hair_stays_in_the_frame_and_fills_it),
         cmocka_unit_test(room_is_left_for_hair_that_falls),
         cmocka_unit_test(turntable_keeps_its_distance_and_comes_round),
