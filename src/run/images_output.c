@@ -39,6 +39,7 @@ Result images_output_create(Output **output, const Images *images, const Fingerp
         .texts = &fingerprint->origin,
         .layers = images->layers != NULL,
         .exr_float = run->exr_float,
+        .records = run->resume,
     };
     return output_create(output, &options, error);
 }

@@ -109,7 +109,8 @@ static bool goes_on(const Output *output)
 static Result commit(Output *output, Taken *taken)
 {
     if (taken->result != RESULT_OK || single_file_is_used(&output->single)) return taken->result;
-    return frame_file_commit(&taken->file, taken->scene, &taken->error);
+    return frame_file_commit(&taken->file, output->options.records ? taken->scene : "",
+                             &taken->error);
 }
 
 // Once the files of all earlier frames have their names; none if one of them has failed. Called

@@ -27,6 +27,7 @@ typedef struct OutputOptions {
     ImageKind kind;     // 16 bits for PNG only; floats for PFM and EXR and for nothing else
     bool layers;        // of EXR: each frame has layers
     bool exr_float;     // of EXR: 32 bits a channel
+    bool records;       // of PFM: which scene each file shows, into a file beside them (record.h)
     double fps;         // frames a second, used for videos
     int frame_count;    // how many will come, 0: not known; "x.png" takes 1, or a sheet
     int columns, rows;  // of a contact sheet that takes all frames, "x.png" or the like; <= 1: none

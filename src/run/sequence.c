@@ -208,6 +208,7 @@ static Result export_frame(Sequence *sequence, int frame, Error *error)
 {
     char scene[FINGERPRINT_BYTES];
     TRY(exporter_write(sequence->exporter, frame, error));
+    if (!sequence->scene->run.resume) return RESULT_OK;
     fingerprint_of_hair(scene, sequence->fingerprint, frame);
     return record_add(&sequence->exporter->target, frame, scene, error);
 }

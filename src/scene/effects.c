@@ -72,6 +72,7 @@ CONDITION(scatters, scene->run.shadow == SHADOW_DOM)
 CONDITION(has_grid, scene->run.scatter != SCATTER_NONE)
 CONDITION(has_style, section->style > 0)
 CONDITION(is_smooth, section->smooth > 1)
+CONDITION(moves, strcmp(section->algo, "none") != 0)
 
 // Each parameter's condition, and why it has no effect where that does not hold.
 static const struct {
@@ -93,6 +94,7 @@ static const struct {
     {"mesh_rest mesh_fps mesh_start mesh_motion", has_sequence, "--mesh does not deform"},
     {"sdf_resolution sdf_cache", collides_mesh, "--no-collide-mesh"},
     {"rest", has_style, "--style is 0"},
+    {"volume", moves, "--algo is none"},
     {"gust gust_period gust_repeat wind_spread wind_shelter", has_wind, "there is no --wind"},
     {"gust_period gust_repeat", has_gusts, "--gust is 0"},
     {"teleport_distance teleport_angle", knows_jumps, "--teleport is none"},

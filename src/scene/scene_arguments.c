@@ -80,11 +80,7 @@ static Result choose_still(Scene *scene, Error *error)
     Error unused = {{0}}; // a wrong name is reported by what opens it
     Result result = target_parse(&target, run->output, &unused);
     if (result == RESULT_FAILED) return error_set(error, result, "%s", unused.text);
-    if (result == RESULT_OK && target.kind == TARGET_STILL) {
-        run->last = run->first;
-        if (run->frames <= run->first && scene_has_default(scene, "frames"))
-            run->frames = run->first + 1;
-    }
+    if (result == RESULT_OK && target.kind == TARGET_STILL) run->last = run->first;
     target_destroy(&target);
     return RESULT_OK;
 }

@@ -155,6 +155,9 @@ go "2 existing files will be written again" --frames 2
 name=x_%d.pfm; to=-o
 go "2 frames in" --frames 2
 mv "$work/again/x_.pfm.scenes" "$work/lines"
+# shellcheck disable=SC2086
+run 0 "$work/own.tfx" $plain --scalp none --algo none --size 32x24 --frames 2 -q -o "$work/again/y_%d.pfm" --export "$work/again/y_%d.tfx"
+if ls "$work"/again/y_*.scenes >/dev/null 2>&1; then bad "a record without --resume"; else good; fi
 go "no record of the scene that it shows" --frames 2
 (cat "$work/lines"; printf '0 no\n7\n99999999999 0123456789abcdef 01234567\n-1 0 0\n%s' "$(head -c 20 "$work/lines")") >"$work/again/x_.pfm.scenes"
 go "2 of 2 frames are there" --frames 2

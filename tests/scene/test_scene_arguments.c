@@ -263,7 +263,7 @@ static void one_name_is_one_frame(void **state)
     } LINES[] = {
         {"a.tfx -o x.png", 0, 0, 120},
         {"a.tfx -o x.pfm --first 30", 30, 30, 120},
-        {"a.tfx -o x.png --first 300", 300, 300, 301},
+        {"a.tfx -o x.png --first 119", 119, 119, 120},
         {"a.tfx -o x.png --turntable --first 45", 45, 45, 180},
         {"a.tfx -o x.png --last 3", 0, 3, 120},         // one name for several, refused later
         {"a.tfx -o x.png --frames 20", 0, -1, 20},      // the same
@@ -418,6 +418,7 @@ static void wrong_command_lines_are_refused_with_the_nearest_name(void **state)
         {"a.tfx -o x/ --backend osmesa --require-hardware", "exclude each other"},
         {"a.tfx -o x/ --turntable=9x", "--turntable: got '9x', expected a number from"},
         {"a.tfx -o x/ --first 120", "--first 120: expected 0 to 119"},
+        {"a.tfx -o x.png --first 120", "--first 120: expected 0 to 119"},
         {"a.tfx -o x/ --frames 10 --last 10", "--last 10: expected 0 to 9"},
         {"a.tfx -o x/ --first 5 --last 4", "--last 4 is before --first 5"},
         {"a.tfx -o x/ --camera-up 0,0,0", "--camera-up 0,0,0"},
