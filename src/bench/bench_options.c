@@ -27,8 +27,9 @@ static const Option OPTIONS[] = {
      "path-traced cases of the same form (default tests/data/light)"},
     {"part", 0, OPTION_STRING, AT(bench.parts), "LIST", 0, 0,
      "only these parts of the command, with commas between them (default all)"},
-    {"algo", 0, OPTION_STRING, AT(bench.method.algo), "NAME", 0, 0,
-     "solver (default: all; scenes: split)"},
+    {"algo", 0, OPTION_STRING, AT(bench.method.algo), "LIST", 0, 0,
+     "solvers, with commas between them (default: all); scenes, stress: one (default of scenes: "
+     "split)"},
     {"variant", 0, OPTION_STRING, AT(bench.method.variant), "NAME", 0, 0,
      "form of the solver (default: its own choice)"},
     {"rates", 0, OPTION_STRING, AT(rates), "LIST", 0, 0,
@@ -163,10 +164,28 @@ static Result check_settings(const BenchOptions *options, Error *error)
     Method method = options->method;
     if (!method.algo && *method.variant)
         return error_set(error, RESULT_USAGE, "--variant '%s' needs --algo", method.variant);
-    if (!method.algo) method.algo = "split";
-    Result result = trial_params(&params, &method, "", error);
-    params_destroy_section(&params);
+    Method each[METHODS_MOST];
+    char name[64];
+    Result result = RESULT_OK;
+    for (const char *at = method.algo ? method.algo : "split"; at && result == RESULT_OK;
+         at = strchr(at, ',')) {
+        at += *at == ',';
+        snprintf(name, sizeof name, "%.*s", (int)strcspn(at, ","), at);
+        const Method one = {name, method.variant, method.settings};
+        result = trial_params(&params, &one, "", error);
+        params_destroy_section(&params);
+    }
+    if (result == RESULT_OK && trial_list(&method, each) == METHODS_MOST)
+        return error_set(error, RESULT_USAGE, "--algo: expected fewer than %d solvers",
+                         METHODS_MOST);
     return result;
+}
+
+Result bench_options_one_algo(const BenchOptions *options, Error *error)
+{
+    const char *algo = options->method.algo;
+    if (!algo || !strchr(algo, ',')) return RESULT_OK;
+    return error_set(error, RESULT_USAGE, "--algo: got '%s', expected one solver", algo);
 }
 
 // --- Values that are words or lists.

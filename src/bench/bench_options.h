@@ -61,6 +61,9 @@ Result bench_options_read(BenchOptions *options, int argc, char **argv,
                           const char *const (*commands)[2], Error *error);
 void bench_options_destroy(BenchOptions *options);
 
+// That --algo, if it is given, is one solver; for commands that take no list. RESULT_USAGE.
+Result bench_options_one_algo(const BenchOptions *options, Error *error);
+
 // Whether a command shall do its part `name`.
 bool bench_options_part(const BenchOptions *options, const char *name);
 

@@ -27,6 +27,7 @@ static Result run_stress(const BenchOptions *arguments, const Gpu *gpu, Error *e
 {
     const char *variant = arguments->method.variant;
     StressOptions options = arguments->stress;
+    TRY(bench_options_one_algo(arguments, error));
     options.algo = arguments->method.algo, options.variant = *variant ? variant : NULL;
     if (*arguments->method.settings)
         return error_set(error, RESULT_USAGE, "stress: draws %s itself, or takes it from --case",

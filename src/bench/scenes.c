@@ -141,6 +141,7 @@ Result scenes_run(const BenchOptions *options, const Gpu *gpu, Error *error)
     Table table;
     Method method = options->method;
     char words[160];
+    TRY(bench_options_one_algo(options, error));
     if (!method.algo) method.algo = "split";
     trial_format(&method, words, sizeof words);
     Result result = table_open(&table, TABLE_COLUMNS, gpu, &options->output, stdout, error);

@@ -6,6 +6,7 @@
 #include "bench/child.h"
 #include "bench/cpu_split.h"
 #include "bench/trial.h"
+#include "bench/waited.h"
 #include "draw/renderer.h"
 #include "gen/strands_make.h"
 #include "sim/simulation.h"
@@ -23,7 +24,8 @@
 // `thesis_ms`, `bound_ms`: what the thesis states for its GPU, what we state; `bytes`: of the
 // buffers that a step and its pose use, each once a way; `exponent`: of a fit over a part's rows;
 // `first_ms`: of the first step, with shader compilation unless the driver caches it; `process_ms`:
-// wall time of a process of its own; `off`: from the GPU's strands, RMS over the length.
+// wall time of a process of its own; `off`: from the GPU's strands, RMS over the length; `waited`:
+// the share of the steps' time in which the program's threads waited for a processor.
 // clang-format off
 #define ROW(X)                                                                                     \
     X(TEXT, part, 8) X(CHARS, hair, 20) X(TEXT, algo, 9) X(TEXT, variant, 9) X(TEXT, settings, 0)  \
@@ -34,7 +36,7 @@
     X(REAL, gb_s, 7) X(REAL, bandwidth_share, 15) X(REAL, exponent, 8) X(REAL, spread, 8)          \
     X(REAL, first_ms, 8) X(REAL, process_ms, 10) X(REAL, draw_ms_min, 11)                          \
     X(REAL, draw_ms_median, 0) X(WHOLE, fragments, 0) X(REAL, off, 9) X(TEXT, remark, 1)           \
-    X(CHARS, command, 0)
+    X(REAL, waited, 0) X(CHARS, command, 0)
 // clang-format on
 
 typedef struct Row {
@@ -63,7 +65,7 @@ static Row row_of(const char *part, const char *set, const char *file, const cha
     row.ms_min = row.ms_q1 = row.ms_median = row.ms_q3 = row.solve_ms_min = row.solve_ms_median =
         NAN;
     row.draw_ms_min = row.draw_ms_median = row.first_ms = row.gb_s = NAN;
-    row.thesis_ms = row.bound_ms = NAN;
+    row.thesis_ms = row.bound_ms = row.waited = NAN;
     row.exponent = row.spread = row.process_ms = row.off = row.off_bound = NAN;
     if (!name) name = set ? set : file ? file : "";
     const char *slash = strrchr(name, '/');
@@ -94,11 +96,14 @@ static void add_row(Speed *speed, Row *row)
     row->ns_particle = row->particles ? least * 1e6 / (double)row->particles : NAN;
     if (row->bytes) row->gb_s = (double)row->bytes / least * 1e-6;
     row->bandwidth_share = speed->bandwidth > 0 ? row->gb_s / speed->bandwidth : NAN;
-    row->verdict = isnan(row->off_bound)
-                       ? table_check(&speed->table, least, row->bound_ms, "%s, %s: least ms a step",
-                                     row->hair, row->method.algo)
-                       : table_check(&speed->table, row->off, row->off_bound,
-                                     "%s, %s: off the GPU's strands", row->hair, row->remark);
+    if (!isnan(row->bound_ms) && row->waited > WAITED_MOST)
+        row->verdict = "not measured"; // the machine was busy
+    else
+        row->verdict = isnan(row->off_bound)
+                           ? table_check(&speed->table, least, row->bound_ms,
+                                         "%s, %s: least ms a step", row->hair, row->method.algo)
+                           : table_check(&speed->table, row->off, row->off_bound,
+                                         "%s, %s: off the GPU's strands", row->hair, row->remark);
     if (*row->method.algo) trial_format(&row->method, method, sizeof method);
     if (row->set) snprintf(hair, sizeof hair, " --set %s", row->set);
     if (row->file) snprintf(hair, sizeof hair, " --tfx %s", row->file);
@@ -224,7 +229,9 @@ static Result measure(Row *row, const Gpu *gpu, const Strands *strands, const Be
     THEN(result, scene_add_section(&scene, row->hair, &params, error));
     params_destroy_section(&params);
     THEN(result, simulation_create(&simulation, gpu, &timer, &scene, strands, NULL, error));
+    const Waited before = waited_now();
     THEN(result, measure_steps(row, &simulation, options, error));
+    row->waited = waited_since(before);
     THEN(result, measure_drawing(row, &simulation, &scene, strands, gpu, options, error));
     if (simulation.scene) simulation_destroy(&simulation);
     gpu_timer_destroy(&timer);

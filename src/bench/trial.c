@@ -93,13 +93,25 @@ void trial_format(const Method *method, char *text, size_t size)
              *method->settings ? " " : "", method->settings);
 }
 
+// The solver of a word that ends at a comma or with the text.
+static const SolverType *find_type(const char *word)
+{
+    size_t length = strcspn(word, ",");
+    for (const SolverType *const *type = SOLVER_TYPES; *type; ++type)
+        if (strlen((*type)->name) == length && strncmp((*type)->name, word, length) == 0)
+            return *type;
+    return NULL;
+}
+
 int trial_list(const Method *asked, Method methods[METHODS_MOST])
 {
     int count = 0;
-    if (asked->algo) {
-        methods[0] = *asked;
-        return 1;
+    for (const char *at = asked->algo; at && count < METHODS_MOST; at = strchr(at, ',')) {
+        at += *at == ',';
+        const SolverType *type = find_type(at);
+        if (type) methods[count++] = (Method){type->name, asked->variant, asked->settings};
     }
+    if (asked->algo) return count;
     for (const SolverType *const *type = SOLVER_TYPES; *type && count < METHODS_MOST; ++type)
         if (!solver_is_static(*type))
             methods[count++] = (Method){(*type)->name, "", asked->settings};

@@ -51,8 +51,9 @@ void trial_format(const Method *method, char *text, size_t size);
 
 enum { METHODS_MOST = 64 };
 
-// The methods that a user asks for: one; or, with an algo of NULL, every solver that steps in its
-// default form, with the same settings. Gives their count.
+// The methods that a user asks for: of each solver in `asked->algo`, names with commas between
+// them, or, where that is NULL, every solver that steps in its default form; all with the same
+// settings. Gives their count.
 int trial_list(const Method *asked, Method methods[METHODS_MOST]);
 
 // --- Trials.

@@ -67,6 +67,11 @@ claim "speed has a row for each solver, with the thesis's figure beside its sets
 run 0 speed --set 1k16 --algo split --steps 2 --warm-up 0 --csv "$work/s.csv"
 same "$(field "$work/s.csv" thesis_ms)" 0.4 "the thesis's ms"
 same "$(field "$work/s.csv" particles)" 16000 "particles"
+run 0 speed --set 1k16 --algo dftl,split --steps 2 --warm-up 0 --csv "$work/two.csv"
+same "$(field "$work/two.csv" algo | tr '\n' ' ')" "dftl split " "a list's solvers, in its order"
+run 2 speed --set 1k16 --algo dftl,splt; one_line; says "no solver 'splt'"
+run 2 stress --algo dftl,split; says "expected one solver"
+run 2 scenes --algo dftl,split; says "expected one solver"
 
 claim "split in plain C moves as on the GPU"
 run 0 speed --part c --set 1k16 --algo split --steps 1 --warm-up 0 --csv "$work/c.csv"
