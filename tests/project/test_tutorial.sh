@@ -7,7 +7,7 @@ command -v ffmpeg >/dev/null || { echo "skipped: no ffmpeg"; exit 77; }
 make_checkout
 awk '/^```sh$/ { inside = 1; print "# line " NR; next } /^```$/ { inside = 0 } inside' docs/tutorial.md >"$work/commands"
 # shellcheck disable=SC2016 # the shell that runs them expands it
-sed -e 's/^\( *\)tractrix-render /\1.\/small /' -e 's/--count 20000 --guides 1500/--count 1000 --guides 400/' \
+sed -e 's/^\( *\)tractrix-render /\1.\/small /' -e 's/--count 8000 --guides 800/--count 1000 --guides 400/' \
     -e 's/^scripts\/farm/TRACTRIX_RENDER=$PWD\/small &/' "$work/commands" >"$work/checkout/commands"
 
 claim "the tutorial's commands work"
