@@ -237,7 +237,7 @@ static void print_tally(Bench *bench, const Tally *tally)
         fprintf(
             bench->stream,
             "  energy and rest not checked for %d strands that may flutter: their weight presses "
-            "on their style (docs/stress.md)\n",
+            "on their style (docs/reliability.md)\n",
             tally->fluttering);
     fflush(bench->stream);
     Row line = {.what = "form", .algo = tally->algo, .variant = tally->variant, .rule = ""};

@@ -76,8 +76,8 @@ static double turned_springs(const StressCase *stress, const SectionParams *para
     return springs + (is(stress, "chain") ? bend * (double)params->chain_bend : 0);
 }
 
-// The range that docs/solvers_rigid.md states for its energy, with what is fixed in TressFX as it
-// is.
+// Whether the parameters lie in the range in which docs/solver_derivations.md says that `tressfx
+// steady` gains no energy, with TressFX's fixed constants unchanged.
 static bool is_stable_tressfx(const StressCase *stress, const SectionParams *params)
 {
     double dt = stress->value[STRESS_dt];

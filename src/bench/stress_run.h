@@ -41,7 +41,7 @@
 // presses such a strand together it flutters as a column does under a load that follows its end
 // (Beck 1952), above some load over stiffness: with n particles of weight g, links l and a joint's
 // W^2 (solver_tressfx.c), F = n g/(l W^2), times the share of its weight that presses, u =
-// -mean(g.s)/ mean(|g| l). Beyond F u = 0.3 neither energy nor rest are looked at, and the tool
+// -mean(g.s)/ mean(|g| l). Beyond F u = 0.5 neither energy nor rest are looked at, and the tool
 // counts such strands. Smallest number at which one was found to flutter: 0.52.
 #pragma once
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // TressFX's solver in double precision, one strand on the CPU, written from the definitions
-// (docs/solvers_rigid.md) and not from the shader: in world coordinates, rotations by axis and
+// (docs/solver_derivations.md) and not from the shader: in world coordinates, rotations by axis and
 // angle, linear systems by dense elimination.
 #pragma once
 
