@@ -582,7 +582,14 @@ function metrics(pair) {
     const head = element("thead", {}, element("tr", {}, ...["Figure", "Value", "Limit"].map((text) => element("th", { text, scope: "col" }))));
     const masked = pair.width * pair.height - pair.compared_pixels;
     const of = limitsOf(pair);
-    const limits = [pair.level ? "The limits are those of " + { platform: "the platform's own goldens.", class: "goldens of the class of devices.", common: "goldens of all platforms." }[pair.level] : "", masked ? "A mask leaves out " + figure(100 * masked / (masked + pair.compared_pixels), 3) + " % of the pixels: " + pair.mask + "." : "", of.pixel_tolerance === undefined ? "" : of.pixel_tolerance === 0 ? "A pixel fails if any channel differs." : "A pixel fails if a channel is off by more than " + figure(of.pixel_tolerance) + " of 255 levels.", "FLIP for " + figure(of.pixels_per_degree) + " pixels a degree."];
+    const levels = { platform: "the platform's own goldens.", class: "goldens of the class of devices.", common: "goldens of all platforms." };
+    const limits = [
+        pair.level ? "The limits are those of " + levels[pair.level] : "",
+        masked ? "A mask leaves out " + figure(100 * masked / (masked + pair.compared_pixels), 3) + " % of the pixels: " + pair.mask + "." : "",
+        of.pixel_tolerance === undefined ? "" : of.pixel_tolerance === 0 ? "A pixel fails if any channel differs."
+            : "A pixel fails if a channel is off by more than " + figure(of.pixel_tolerance) + " of 255 levels.",
+        "FLIP for " + figure(of.pixels_per_degree) + " pixels a degree.",
+    ];
     return element("section", {}, element("h3", { text: "Figures" }), element("table", { class: "metrics" }, head, element("tbody", {}, ...rows)), element("p", { class: "soft", text: limits.filter(Boolean).join(" ") }));
 }
 
