@@ -4,8 +4,8 @@
 // A node is: number of the next node + 1 or 0, depth, colour. The depth is 1/w as float bits, which
 // as an int grows towards the eye. The colour is linear RGB times alpha and alpha, as four halves.
 //
-// Atomics order a list differently in every run. So readers order by (depth, colour) alone: two
-// nodes equal in both are interchangeable, and the picture depends only on which nodes there are.
+// Atomics order a list differently in every run. So readers sort by (depth, colour). Two nodes that
+// are equal in both can be exchanged, so the picture depends only on which nodes there are.
 
 ivec3 abuffer_pack(float inverse_w, vec3 color, float alpha)
 {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A pixel's samples of the mesh, each in front of the floor or behind it, over the background.
+// Joins mesh, floor and background: each of a pixel's samples of the mesh lies before or behind the
+// floor, and all over the background.
 //   MESH 1: there may be mesh in the pixel   EDGE_SAMPLES: samples of its depth
 //   FLOOR: see floor_light.glsl; 0: none
 #include "draw/draw.h"

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Lists the strands that may be in the picture, before anything is projected or shaded. Their order
-// in the list is left to chance: a strand's ribbons have places of their own.
-//   HIDING 1: something opaque stands before or among the hair
+// Lists the strands that may be visible, before anything is projected or shaded. Their order in the
+// list depends on chance; it does not matter, because a strand's ribbons have slots of their own.
+//   HIDING 1: there are opaque surfaces, before or among the hair
 //
-// A strand is left out if all of it lies beyond one of the picture's four sides, or before the near
-// plane: between two of its points it does, too, since the sides are planes in clip space.
+// A strand is left out if all of its points lie beyond one of the picture's four sides, or before
+// the near plane. Between two points it then lies there, too, since the sides are planes in clip
+// space.
 //
-// It is left out, too, if it is hidden: each of its segments lies in a box of the picture, no part
-// of it is nearer than its nearest end, and all that is opaque around the box is nearer than that.
-// One look tells: `hiding` has, for tiles of HIDE_TILE px and for those of each level, which are
-// twice as wide as the one before, 1/w of the farthest of what is opaque in the tile and the eight
-// around it, where all lies that is no farther from a point of the tile than its width.
+// It is also left out if it is hidden: each of its segments lies in a box of the picture, no part
+// of the segment is nearer than its nearest end, and all opaque surfaces around the box are nearer
+// than that. One texel of `hiding` tells: for tiles of HIDE_TILE px, and on each further level for
+// tiles twice as wide, it has 1/w of the farthest opaque surface in the tile and the eight around
+// it. These contain everything that is no farther from a point of the tile than the tile's width.
 #include "draw/draw.h"
 #include "draw/material.h"
 #include "common/hair_address.glsl"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How far away hair may be and still be seen, by tiles of the picture: 1/w of the farthest of what
-// is opaque in each, 0 where the background shows.
+// The depth from which on hair is hidden, for each tile of the picture: 1/w of the farthest opaque
+// surface in the tile, 0 if the background shows.
 #include "draw/draw.h"
 #include "kernel/edge.h"
 

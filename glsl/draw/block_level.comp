@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// How far away something may be and still be seen, by tiles of one level of the picture: the least
-// of what block_hide.comp says of all that lies in a tile and in the eight around it. At level k a
-// tile has 2^k x 2^k of the first. For the next level, the least of all in its tile.
+// The depth from which on hair is hidden, for each tile of one level: the least value of
+// block_hide.comp in the tile and in the eight tiles around it. At level k a tile covers 2^k x 2^k
+// tiles of the first level. Also stores the least value of the tile itself, for the next level.
 #include "draw/draw.h"
 
 layout(local_size_x = GROUP_SIZE) in;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Projects and shades strands, one a lane, into records and spans of ribbons (block.glsl) and their
-// depths.
-// Particles are left out where the ribbon is straight, ribbons where they miss the picture. A
-// ribbon's slot is fixed by its strand, so that nothing depends on the order of lanes; slots
-// without a ribbon keep the key 0.
+// Projects and shades strands, one for each lane. Writes records of ribbons with their spans
+// (block.glsl), and their depths as keys. Particles are left out where the ribbon is straight, and
+// ribbons if they miss the picture. A ribbon's slot is fixed by its strand, so that nothing depends
+// on the order of lanes. Slots without a ribbon keep the key 0.
 #define WALK_BEYOND 2 // they end the tip's ribbon
 #include "draw/ribbon_walk.glsl"
 #include "draw/block.glsl"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The pixels of tiles without ribbons, a pixel of the picture a lane: what stands behind alone.
-//   DEPTH 1: the mesh's distance instead; needs SAMPLES 1
+// Writes the pixels of tiles without ribbons, one for each lane: they show only what lies behind
+// the hair.
+//   DEPTH 1: they show the mesh's distance instead; needs SAMPLES 1
 //   BASE, SAMPLES, KIND, TONE: see compute_pixels.glsl
 #include "draw/draw.h"
 #include "kernel/edge.h"

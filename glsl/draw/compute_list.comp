@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Bins ribbons into the tiles that they touch, a slot a lane: counts them, then lists them. Which
-// of a tile's pairs comes first is left to chance; compute_sort.comp orders them.
+// Sorts ribbons into the tiles that they touch, a slot for each lane: first counts them, then lists
+// them. The order of pairs in a tile depends on chance; compute_sort.comp sorts them.
 //   FILL 0: counts   1: lists
 #include "draw/draw.h"
 #include "draw/compute_strip.glsl"

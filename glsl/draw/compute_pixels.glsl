@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What stands behind the hair, and how light becomes the picture's colours, as in
+// The light behind the hair, and the conversion from light to the picture's colours, as in
 // src/lanes/pixels.c (needs draw.h, kernel/edge.h).
-//   BASE 1: mesh or floor stand behind
-//   SAMPLES: what is a pixel here is one of SAMPLES x SAMPLES that the picture has the mean of
+//   BASE 1: there is a mesh or a floor
+//   SAMPLES: a pixel here is one of SAMPLES x SAMPLES samples, whose mean the picture has
 //   KIND 0: 8 bits a channel are stored   1: 16   2: floats
 //   TONE: see display.glsl
 #include "draw/display.glsl"

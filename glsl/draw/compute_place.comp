@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Lists the tiles with ribbons and gives each a place for its list, in an order that is left to
-// chance.
+// Lists the tiles with ribbons and gives each a range for its list. The order of tiles and ranges
+// depends on chance.
 #include "draw/draw.h"
 
 layout(local_size_x = GROUP_SIZE) in;

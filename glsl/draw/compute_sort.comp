@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Sorts the pairs of tiles with ribbons, a tile a work group: near ribbons first, alike ones by
-// their slots. No two pairs are the same, so there is one order.
+// Sorts the pairs of tiles with ribbons, a tile for each work group: near ribbons first, ribbons of
+// equal depth by their slots. The key (depth, slot) is unique, so the order is the same in every
+// run.
 //
 // Runs of GROUP_SIZE pairs are sorted in shared memory, where each lane counts the pairs that come
-// before its own. Two runs at a time then become one: a pair's place is its place in its own run
-// and how many of the other run come before it, found by halving. Lists of any length do.
+// before its own. Then pairs of runs are merged: a pair's place is its place in its own run plus
+// the number of pairs of the other run that come before it, found by binary search. Lists may have
+// any length.
 #include "draw/draw.h"
 
 layout(local_size_x = GROUP_SIZE) in;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which pixels a ribbon may touch, from its record's line and span (block.glsl).
+// The pixels that a ribbon may touch, from its record's line and span (block.glsl).
 
 struct Strip {
     vec2 a; // a point of its middle line, px

@@ -1,4 +1,4 @@
 // SPDX-License-Identifier: MIT
-// Only depth is kept.
+// Writes depth only.
 
 void main() {}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// From light to what a screen is given, linear RGB to sRGB.
-//   TONE 0: as it is, cut at white   1: reinhard   2: filmic
-//   3: light stays light
+// The conversion from linear RGB light to sRGB.
+//   TONE 0: clipped at white   1: reinhard   2: filmic
+//   3: stays linear light
 #include "common/shared_math.h"
 
 float display_of(float c)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What drawing one picture is given: camera, lights, the band of rows that is being drawn.
-// Pixels count from the picture's top left corner; targets keep its top row first.
+// Parameters of drawing one picture: camera, lights, the band of rows that is being drawn. Pixels
+// count from the picture's top left corner; the first row of targets is the picture's top row.
 #include "common/shared.h"
 #ifdef __STDC__
 #pragma once

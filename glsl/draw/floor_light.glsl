@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A matt plane, lit as the mesh is, that fades away from its middle (needs lights.glsl,
+// The floor: a matt plane, lit as the mesh is, that fades away from its middle (needs lights.glsl,
 // shadow_surface.glsl).
-//   FLOOR 1: it is seen   2: only the light that it lacks where there is shadow: black that covers
-//       so much
+//   FLOOR 1: the plane is seen   2: only its shadow is seen, as black with an alpha
 #include "kernel/floor.h"
 
 layout(location = 0) uniform vec3 floor_middle; // m

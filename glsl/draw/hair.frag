@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A ribbon's fragment: its coverage, and a node in the A-buffer. Behind the mesh nothing is stored.
-//   NEAREST 1: a ribbon hides all behind it
+// A ribbon's fragment: computes its coverage and stores a node in the A-buffer. Behind the mesh
+// nothing is stored.
+//   NEAREST 1: a ribbon hides everything behind it
 #include "draw/draw.h"
 #include "draw/coverage.glsl"
 #include "draw/abuffer.glsl"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Projects and shades every particle once, a strand a lane, and leaves out what cannot be seen:
-// strands off the screen, and particles where the ribbon is straight. Vertices are worked on one by
-// one and, by CPU drivers, on one thread: fewer of them is what makes drawing fast.
+// Projects and shades every particle once, a strand for each lane. Strands outside the picture are
+// left out, and particles where the ribbon is straight. CPU drivers process vertices one by one on
+// one thread, so fewer vertices make drawing faster.
 //
 // On the screen a ribbon's edges run at the half-width h beside its middle line; here both are
 // pushed out to h + PAD, so that every pixel that the ribbon touches gets a fragment. At a joint

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Cells of the light grid (needs light.h). Cells in which hair lies have the first slots, then
-// those beside them, in any order: nothing depends on it.
+// Cells of the light grid (needs light.h). Cells with hair have the first slots, cells beside them
+// the next ones. The order within both depends on chance; nothing depends on it.
 
 #include "kernel/cell.h"
 #include "kernel/lamp.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The light among hair (light_grid.h) where shaders find it (light_passes.h): numbers of the grid,
-// and where its passes read and write.
+// The light among hair (light_grid.h) in shaders (light_passes.h): the sizes of the grid, and the
+// bindings that its passes read and write.
 #include "common/shared_math.h"
 #include "draw/draw.h"
 #ifdef __STDC__

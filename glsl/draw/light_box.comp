@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The box around all particles by the axes of the light grid's lattice, and the square of the
-// longest segment. Broken positions count for neither.
+// The box of all particles in the axes of the light grid's lattice, and the square of the longest
+// segment. Broken positions are left out of both.
 #include "draw/light.h"
 #include "draw/material.h"
 #include "common/hair_address.glsl"

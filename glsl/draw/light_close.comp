@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The light of all orders, those after the last one, too. A work group a cell, a lane an ordinate.
+// The sum of the light of all orders, including those after the last swept one. A work group for
+// each cell, a lane for each ordinate.
 #include "draw/light.h"
 #include "draw/light.glsl"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What hair in a cell of the light grid takes from each ordinate, and what the lights leave in it:
-// light_grid_cells.c. A work group a cell, a lane an ordinate. What is the same for all ordinates,
-// each lane finds for itself.
+// The optical depth of a cell for each ordinate, and the light that the lamps leave in it after one
+// scattering: light_grid_cells.c. A work group for each cell, a lane for each ordinate. Values that
+// are the same for all ordinates are computed by every lane.
 #include "draw/light.h"
 #include "draw/light.glsl"
 #include "draw/light_class.glsl"

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What hair shows of the light among it: light_grid_gather.c, at every particle. The radiance of
-// the eight cells around it (trilinear), weighted by what a fibre with its tangent sends from each
-// ordinate to the eye. Those weights are tabled for one way to the eye, by tangents on an
-// octahedron (bilinear); a particle's tangent is turned as its own way to the eye is.
+// The light among hair that every particle sends to the eye: light_grid_gather.c. It is the
+// radiance of the eight cells around the particle (trilinear), weighted by the share that a fibre
+// with the particle's tangent scatters from each ordinate to the eye. These weights are tabulated
+// for one direction to the eye, by tangents on an octahedron (bilinear). A particle's tangent is
+// turned by the rotation from its own direction to the eye to the table's.
 #include "draw/light.h"
 #include "draw/material.h"
 #include "common/hair_address.glsl"

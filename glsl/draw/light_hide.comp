@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Which cells of the light grid lie so deep in hair that they can hardly be seen, and their mean
-// light.
+// Finds the cells of the light grid that lie so deep in hair that they can hardly be seen, and
+// their mean light.
 #include "draw/light.h"
 #include "draw/light.glsl"
 

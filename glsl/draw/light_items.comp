@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Which cells parts of segments lie in, and what they are there: light_grid_items.c, with sums in
-// place of a sorted list. They are whole numbers of two words each, so no order matters.
+// Cuts segments into parts that lie in one cell each, and adds them up by cell: light_grid_items.c,
+// with sums in place of a sorted list. Sums are whole numbers of two words, so their order does not
+// matter.
 //   ITEMS 0: marks the cells
-//   ITEMS 1: adds up areas over a side's square by cell and class of tangent, painted hair's by
-//       colour, too
-//   ITEMS 2: adds up what light `light` meets of them
-//   SHADOW 2: that light has a map of hair (0 in the others)
+//   ITEMS 1: adds up areas divided by a side's square, by cell and class of tangent, and painted
+//       hair's also by colour
+//   ITEMS 2: adds up the parts of these areas that light `light` reaches
+//   SHADOW 2: this light has a map of hair (0 in the others)
 #include "draw/light.h"
 #include "draw/material.h"
 #include "common/hair_address.glsl"

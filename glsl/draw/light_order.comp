@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Whether another order of scattering is swept, and what the orders that are not would add.
+// Decides whether another order of scattering is swept, and estimates the light of the orders that
+// are not.
 #include "draw/light.h"
 #include "draw/light.glsl"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What hair in each cell of the light grid makes of the last order's light, by its main tangent. A
-// work group a cell, a lane an ordinate.
+// The light that hair in each cell of the light grid scatters from the last order, by its main
+// tangent. A work group for each cell, a lane for each ordinate.
 #include "draw/light.h"
 #include "draw/light.glsl"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Slots for the cells of the light grid that are marked, then for those beside them, where points
-// between cells look, too.
-//   BESIDE 0: marks become slots   1: those beside cells with slots get some   2: slots learn their
-//   cells
+// Gives slots to the marked cells of the light grid, then to the cells beside them, which points
+// between cells read, too.
+//   BESIDE 0: marks become slots   1: cells beside cells with slots get slots   2: slots get the
+//       numbers of their cells
 #include "draw/light.h"
 #include "draw/light.glsl"
 

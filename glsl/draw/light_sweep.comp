@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Light goes through the cells of the light grid: light_grid_sweep.c. A work group has an ordinate,
-// and goes with it slice by slice along its main axis; into a cell comes light from between the
-// cells of the slice before (bilinear).
-//   WALLED 1: a mesh stands in the way
+// Sends light through the cells of the light grid: light_grid_sweep.c. A work group has one
+// ordinate and goes slice by slice along its main axis. The light that enters a cell is
+// interpolated between cells of the slice before (bilinear).
+//   WALLED 1: a mesh blocks light between cells
 #include "draw/light.h"
 #include "draw/light.glsl"
 #include "draw/light_walls.glsl"

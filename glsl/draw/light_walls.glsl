@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What a mesh lets through from cell to cell of the light grid (needs light.glsl): by axis, from
-// the middle of the cell before to that of the cell; all of it around the lattice.
+// The share of light that a mesh lets through between neighbouring cells of the light grid (needs
+// light.glsl): for each axis, from the middle of the cell before to that of the cell. Around the
+// lattice it is 1.
 layout(binding = BIND_LIGHT_WALLS) uniform samplerBuffer walls;
 
 ivec3 wall_step = ivec3(1, cells.x + 2, (cells.x + 2) * (cells.y + 2));

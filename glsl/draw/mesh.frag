@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The mesh in linear light, for each pixel whose middle shows it. Surfaces seen from behind are lit
-// as from in front.
-//   SKIN 0: Lambert's plain matt surface   1: see kernel/skin.h
+// Lights the mesh, in linear light, for each pixel whose middle shows it. Surfaces that are seen
+// from behind are lit as if seen from the front.
+//   SKIN 0: Lambert's matt surface   1: see kernel/skin.h
 #include "draw/draw.h"
 #define MESH_TAPS 4 // of its own map, whose texels are seen where light grazes it
 #include "draw/lights.glsl"

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The way from the eye through a point of the picture (px), as long as it is to one metre before
-// the eye's plane (needs draw.h).
+// The vector from the eye through a point of the picture (px), up to one metre before the plane
+// through the eye (needs draw.h).
 //
-// The eye is where clip x, y and w are 0, so a point q off it has (a q, b q, c q) for them with the
-// rows a, b, c of the matrix. For w = 1 these are x, y and 1; Cramer's rule gives q.
+// At the eye clip x, y and w are 0. So a point at the offset q from the eye has clip x, y, w = (a
+// q, b q, c q), with the rows a, b, c of the matrix. For w = 1 they are x, y and 1; Cramer's rule
+// solves for q.
 vec3 ray_through(vec2 px)
 {
     mat4 rows = transpose(draw_params.clip_from_world);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Strands on the screen, before they are drawn in whatever way: where their particles lie, how wide
-// they are, and which of them may be left out (needs draw.h).
+// Strands on the screen, shared by all shaders that draw them: the places of their particles, their
+// widths, and which particles may be left out (needs draw.h).
 #include "kernel/ribbon.h"
 
 // Read once: a uniform costs a load wherever it is named.

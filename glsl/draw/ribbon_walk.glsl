@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The way along a strand that both rasterisers take: projects and shades its points, and leaves out
-// those where the ribbon is straight. What becomes of the ribbons says the file that includes this
-// one, with WALK_BEYOND, how many turns more than points there are, in which the tip stands in for
-// what lies beyond it, and three functions.
+// The loop along a strand that both rasterisers use: it projects and shades the strand's points,
+// and leaves out those where the ribbon is straight. The file that includes this one says what is
+// done with the ribbons. It defines three functions and WALK_BEYOND, the number of additional turns
+// after the last point, in which the tip takes the place of the missing points.
 #include "draw/draw.h"
 #include "draw/material.h"
 #include "common/hair_address.glsl"

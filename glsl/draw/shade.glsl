@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Light on a fibre, by one of the models (needs draw.h, material.h, paint.glsl). Each gives Fibre,
-// what it knows of the material, and shade_fibre.
-//   AOV 0: light   1: white   2: the tangent   3: a colour of the strand's own
-//   MARSCHNER 0: Kajiya and Kay's   1, 2: Marschner's, see there
+// Light on a fibre, by one of the models (needs draw.h, material.h, paint.glsl). Each model defines
+// Fibre, its constants for a material, and shade_fibre.
+//   AOV 0: light   1: white   2: the tangent   3: a colour for each strand
+//   MARSCHNER 0: Kajiya and Kay's   1, 2: Marschner's, see shade_marschner.glsl
 
 #include "draw/lights.glsl"
 #include "kernel/fibre.h" // here, as files are taken once, whether or not a condition holds

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What shadow maps are made of and read by. A light's map has SHADOW_SIDE x SHADOW_SIDE texels
-// across its light.
+// Parameters with which shadow maps are made and read. A light's map has SHADOW_SIDE x SHADOW_SIDE
+// texels across the light.
 #include "common/shared_math.h"
 #include "draw/draw.h"
 #ifdef __STDC__

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The box around all particles of hair as the light sees it: (u, v, depth). Curves hardly leave it:
-// a map's margins hold them.
+// The box of all particles of hair as the light sees it: (u, v, depth). Curves can leave it a
+// little; the margins of a map hold them.
 #include "draw/shadow.h"
 #include "draw/material.h"
 #include "common/hair_address.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Hair on its way into a shadow map (needs shadow.h).
+// Functions for drawing hair into a shadow map (needs shadow.h).
 #include "kernel/caster.h"
 
 // Read once: a uniform costs a load wherever it is named.

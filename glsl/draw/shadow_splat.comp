@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Strands into a shadow map, by points along their segments and, where they are wide, across them.
-//   DEEP 0: the map keeps first depths   1: mean numbers of fibres by layers
+// Draws strands into a shadow map, as points along their segments and, where these are wide, across
+// them.
+//   DEEP 0: the map keeps first depths   1: mean numbers of fibres in layers
 //   COARSE 1: first depths of a coarse map
 //
-// A point has its part of the ribbon's area times its opacity (own_layer_depth in shared_math.h
-// says why). Sums are integers: their order does not matter.
-// The ribbons are those that are drawn: curves, thickness and opacity, the share of strands
-// (material.h).
+// Each point carries a part of the ribbon's area times its opacity (own_layer_depth in
+// shared_math.h says why). Sums are integers, so their order does not matter. The ribbons are the
+// drawn ones: with curves, thickness, opacity and the share of strands (material.h).
 #include "draw/shadow.h"
 #include "draw/material.h"
 #include "common/hair_address.glsl"

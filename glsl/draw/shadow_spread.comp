@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Where the layers of each texel begin: a smooth bound of the first depths. Of the coarse map, the
-// least of 3 x 3 texels, then linear between them: nothing begins before it, since a texel lies
-// among four coarse ones whose squares of three all contain its own. A lane has the texels among
-// four.
+// The depth at which the layers of each texel begin: a smooth lower bound of the first depths. It
+// is the least of 3 x 3 texels of the coarse map, interpolated between texels. No hair lies before
+// it, because a texel lies among four coarse texels whose 3 x 3 squares all contain its own coarse
+// texel. A lane has the texels among four coarse ones.
 #include "draw/shadow.h"
 
 layout(local_size_x = GROUP_SIZE) in;

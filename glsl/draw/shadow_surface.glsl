@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Shadows on surfaces: each map is read only where its light could shine, and can be in something's
-// way (needs lights.glsl). CPU drivers run both sides of an `if`, but a loop ends when no lane
-// needs another turn: so these loops of one turn or none are questions.
-//   SHADOW_WRAP: the greatest cosine below the horizon from which light still counts. A surface's
-//       own shadow, which is sharp where light grazes it, comes in softly up to the same above.
+// Shadows on surfaces. Each map is read only where its light can shine on the surface and something
+// can block it (needs lights.glsl). CPU drivers execute both sides of an `if`, but they end a loop
+// when no lane needs another turn; so loops of at most one turn are used as conditions.
+//   SHADOW_WRAP: the greatest cosine below the horizon at which light still counts. Up to the same
+//       cosine above the horizon a surface's own shadow, which is jagged there, is faded in.
 #ifndef SHADOW_WRAP
 #define SHADOW_WRAP 0.0
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What must be known of the mesh's nearest surface to light it later, once a pixel.
+// Writes the properties of the mesh's nearest surface with which each pixel is lit later, once.
 
 in vec3 world_normal;
 layout(location = 0)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Hair on its way into a light's shadow map: where a point lies before the light, and the points
-// that a segment of a ribbon is laid down as. For shaders and for loops over lanes.
+// Functions for drawing hair into a light's shadow map: the place of a point as the light sees it,
+// and the points by which a segment of a ribbon is drawn. For shaders and for vectorised C.
 #ifdef __STDC__
 #pragma once
 #endif

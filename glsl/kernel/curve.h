@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Smooth curves through a strand's particles, for shaders and for loops over lanes: a segment's
-// points are its first end and a weighted sum of three ways, to it from the particle before, along
-// it, and from it to the particle after. Before the root and behind the tip stands the neighbour's
-// mirror image, whose way is the segment's own.
+// Smooth curves through a strand's particles, for shaders and for vectorised C. A point of a
+// segment is its first end plus a weighted sum of three vectors: from the particle before to the
+// first end, along the segment, and from its last end to the particle after. Before the root and
+// behind the tip the missing neighbour is mirrored; its vector is that of the segment.
 #ifdef __STDC__
 #pragma once
 #endif

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Depths 0 .. 1 of samples at edges of the mesh; EDGE_NOWHERE: of what is not there.
+// Depths 0 .. 1 of samples at edges of the mesh. EDGE_NOWHERE: the sample shows no mesh.
 //
-// Only middles of pixels are lit. A sample at an edge, whose depth is not that of its pixel's
-// middle, shows what the middle nearest to it in depth does among the nine around it.
+// Only the middles of pixels are lit. A sample whose depth differs from that of its pixel's middle
+// lies at an edge. It takes the colour of the lit middle that is nearest to it in depth, of the
+// nine around it.
 //
-// The depth left behind hides hair. Beside an edge that is the farthest of the pixel's samples:
-// where background, or something farther, shows between them, hair that stands before that must
-// hide it. (The nearest, or the middle's, would leave a fringe of background along a silhouette
-// before hair.)
+// The stored depth hides hair. At an edge it is the farthest of the pixel's samples: where
+// background, or something farther, shows between the samples, hair before it must cover it. (The
+// nearest depth, or that of the middle, would leave a fringe of background between a silhouette and
+// the hair behind it.)
 #include "common/shared_math.h"
 #ifdef __STDC__
 #pragma once

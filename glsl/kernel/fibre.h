@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a fibre sends to the eye of light that reaches it, for shaders and for loops over lanes;
-// shade_marschner.glsl and shade_kajiya.glsl say what the models are.
+// The light that a fibre sends to the eye, for shaders and for vectorised C. shade_marschner.glsl
+// and shade_kajiya.glsl describe the models.
 #ifdef __STDC__
 #pragma once
 #endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Where hair lies among the cells of a section's volume (sim/volume.h), by grains: particles that
-// follow each other on a strand and count where the middle one lies.
+// The density of hair in the cells of a section's volume (sim/volume.h). Hair counts in grains:
+// groups of particles that follow each other on a strand and count where the middle one lies.
 #include "common/shared_math.h"
 #ifdef __STDC__
 #pragma once

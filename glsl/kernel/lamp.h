@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Light at a point of a surface: of a lamp or the sun, and from everywhere. Each function is of one
-// channel or of all.
+// Light at a point of a surface: from a lamp, from a directional light, and from everywhere. Each
+// function takes one channel or all.
 #include "common/shared_math.h"
 #ifdef __STDC__
 #pragma once

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What of a light's rays a map of hair and one of a mesh leave at a point: how a point looks at
-// their texels. For shaders and for loops over lanes.
+// The share of a light that passes hair and mesh to a point: how texels of the maps of both are
+// read. For shaders and for vectorised C.
 #ifdef __STDC__
 #pragma once
 #endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A strand on the screen: points, which of them may be left out, and the ribbons between those that
-// stay, for shaders and for loops over lanes. Lengths in px.
+// A strand on the screen: its points, which of them may be left out, and the ribbons between the
+// rest. For shaders and for vectorised C. Lengths are in px.
 //   REAL: float, or in GLSL a vector of pixels
 #ifdef __STDC__
 #pragma once

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a surface of skin makes of a light: diffuse light that comes from below the surface, and
-// over it a soft highlight. Cosines are of unit vectors.
+// How skin reflects a light: diffuse light from below the surface, and over it a soft highlight.
+// Cosines are of unit vectors.
 #include "common/shared_math.h"
 #ifdef __STDC__
 #pragma once

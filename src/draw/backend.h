@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-// A way from hair to pixels, whole: the renderer picks one when it is made, and nothing else asks
-// which driver there is. `DRAW_LANES` does everything in C over lanes of the processor
-// (src/lanes); `DRAW_PASSES` has shaders do it (src/passes). Both see the same frame.
+// A backend draws hair: it turns hair into pixels, with shadows, light and mesh. The renderer
+// chooses a backend when it is created; no other code asks which driver there is. `DRAW_LANES` does
+// everything in C, on vector units and threads (src/lanes). `DRAW_PASSES` uses shaders
+// (src/passes). Both are given the same frame. docs/frame.md describes the passes of both.
 #pragma once
 
 #include "draw/drawing.h"
 #include "draw/drawn_mesh.h"
 #include "draw/renderer_options.h"
 
-// A batch of hair that is drawn.
+// A batch of hair to be drawn.
 typedef struct DrawnHair {
     const HairBatch *batch; // on the GPU
     const Look *look;
@@ -19,7 +20,7 @@ typedef struct DrawnHair {
     const uint32_t *ids;
 } DrawnHair;
 
-// A frame. What is drawn of it is the window of `drawing->draw`.
+// A frame. The part of it that is drawn is the window of `drawing->draw`.
 typedef struct BackendFrame {
     Drawing *drawing;
     const DrawnHair *hair; // [hair_count]
@@ -29,7 +30,7 @@ typedef struct BackendFrame {
     float middle[3]; // m, world: of the hair
 } BackendFrame;
 
-// Times spans of passes; `timer` is the GpuTimer.
+// Measures the time of passes; `timer` is the GpuTimer.
 typedef struct BackendTimer {
     struct GpuTimer *timer;
     void (*begin)(struct GpuTimer *timer, const char *name);
@@ -42,17 +43,18 @@ typedef struct BackendOptions {
     BackendTimer timer;
 } BackendOptions;
 
-// Errors of all: RESULT_FAILED if memory is short or a shader does not compile.
+// Every function returns RESULT_FAILED if memory is short or a shader does not compile.
 typedef struct DrawBackend {
     bool reads_hair; // DrawnHair is to be in memory
     Result (*create)(void **state, const BackendOptions *options, Error *error);
     void (*destroy)(void *state); // NULL is legal
-    // The mesh is another one, or none.
+    // The mesh has been replaced or removed.
     Result (*set_mesh)(void *state, const DrawnMesh *mesh, Error *error);
     void (*move_mesh)(void *state, const DrawnMesh *mesh); // its vertices alone; NULL: no need
-    // Of a frame, in this order: maps of shadows; light among hair; then for each window what
-    // stands behind the hair, its ribbons, and all of it composited. `image` is filled at once, or
-    // when `take` is called for the place that it was begun at.
+    // A frame is drawn by these functions, in this order: shadow maps; light among hair; then for
+    // each window `shade` (what stands behind the hair, and its ribbons) and `composite`. `image`
+    // is filled at once, or, if there is `take`, when `take` is called with the place at which the
+    // image was begun.
     Result (*shadow)(void *state, const BackendFrame *frame, Error *error);
     Result (*scatter)(void *state, const BackendFrame *frame, Error *error);
     Result (*shade)(void *state, const BackendFrame *frame, Error *error);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What the passes of one image share: camera and lights, the hair and how it looks, and where the
-// mesh is. Needs OpenGL for marschner's tables and to be given to shaders. Their pixels are the
-// samples that the image's pixels are the means of.
+// Data that all passes of one image share: camera, lights, the hair and its looks, and the place of
+// the mesh. Needs OpenGL to make Marschner's tables and to upload uniform blocks. A pixel of a pass
+// is a sample; pixels of the image are means of samples.
 #pragma once
 
 #include "draw/drawn_mesh.h"
@@ -23,36 +23,36 @@ typedef struct Drawing {
     struct ScatterTables *scatter; // owned
 } Drawing;
 
-// How light becomes colour: a Tone, or TONE_LIGHT where pixels are light as it is.
+// The conversion from light to colour: a Tone, or TONE_LIGHT if pixels keep linear light.
 int drawing_display(const RendererOptions *options);
 
-// What stands behind everything: light, premultiplied, and its opacity.
+// The background: light, premultiplied, and its opacity.
 void drawing_background(const RendererOptions *options, float light[4]);
 
-// Begins another image of `items`, which must stay until the next one. RESULT_FAILED if memory is
-// short or marschner's table cannot be made.
+// Begins a new image of `items`, which must stay valid until the next image begins. RESULT_FAILED
+// if memory is short or Marschner's table cannot be made.
 Result drawing_begin(Drawing *drawing, const RendererOptions *options, const DrawnMesh *mesh,
                      const RenderFrame *frame, const RenderItem *items, uint32_t item_count,
                      Error *error);
 void drawing_destroy(Drawing *drawing);
 
-// Gives `draw` to the shaders.
+// Uploads `draw` for the shaders.
 void drawing_upload(Drawing *drawing);
 
-// From now on the drawing is of a window onto the image, from `place` on and of `size` px, which
-// may hang over: camera and boxes are its own. After drawing_begin.
+// Restricts the drawing to a window of the image: `size` px from `place` on, which may extend
+// beyond the image. Camera and boxes become those of the window. Call it after drawing_begin.
 void drawing_set_window(Drawing *drawing, const RendererOptions *options, const DrawnMesh *mesh,
                         const int place[2], const int size[2]);
 
-// The middle of hair's style, carried by the head: m, world.
+// The middle of the hair's rest style, moved as the head is: m, world.
 void drawing_find_middle(const Drawing *drawing, const Hair *hair, vec3 middle);
 
-// Segments of all items, before any is left out.
+// The number of segments of all items, before any is left out.
 uint64_t drawing_count_segments(const Drawing *drawing);
 
-// Camera and lights for an image of this size; the rest is left 0.
+// Fills in camera or lights for an image of this size; other members stay 0.
 void drawing_set_view(DrawParams *draw, const View *view, int width, int height);
 void drawing_set_lights(DrawParams *draw, const Light *lights, uint32_t count);
 
-// `radius`: fibre radius at the root, m. The batch's size is left 0.
+// `radius`: fibre radius at the root, m. Members that depend on the batch's size stay 0.
 MaterialParams drawing_material(const SectionParams *params, float radius);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The opaque mesh among the hair, in memory.
+// The opaque mesh that is drawn with the hair, in the CPU's memory.
 #pragma once
 
 #include "mesh/mesh.h"
@@ -13,13 +13,14 @@ typedef struct DrawnMesh {
     uint64_t version;      // another one whenever any of this changes
 } DrawnMesh;
 
-// Takes a copy of the mesh. RESULT_FAILED if memory is short.
+// Copies the mesh. RESULT_FAILED if memory is short.
 Result drawn_mesh_set(DrawnMesh *drawn, const Mesh *mesh, const float color[3], Error *error);
 
-// Moves its vertices: `moved` has as many, with normals. Its openness stays.
+// Moves the vertices: `moved` has the same number of vertices, and normals. The openness does not
+// change.
 void drawn_mesh_move(DrawnMesh *drawn, const Mesh *moved);
 
-// Takes a copy of its openness.
+// Copies the openness of the vertices (openness.h).
 Result drawn_mesh_set_openness(DrawnMesh *drawn, const float *open, Error *error);
 
 void drawn_mesh_destroy(DrawnMesh *drawn);

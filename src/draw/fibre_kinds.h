@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The kinds of fibres among the looks of an image: each scatters light from other fibres in a way
-// of its own.
+// The kinds of fibres in an image. Looks whose fibres scatter light from other fibres in the same
+// way share a kind.
 #pragma once
 
 #include "draw/light_scene.h"
@@ -13,11 +13,11 @@ typedef struct FibreKinds {
     int count;
 } FibreKinds;
 
-// The kind of a look, which is added if it is new; looks that are too many share the last one.
-// RESULT_FAILED if memory is short.
+// The number of a look's kind, which is added if it is new. If there are too many kinds, further
+// looks share the last one. RESULT_FAILED if memory is short.
 Result fibre_kinds_find(FibreKinds *kinds, const Look *look, int *kind, Error *error);
 
-// Whether the look's kind is there.
+// Whether the look's kind has been added.
 bool fibre_kinds_know(const FibreKinds *kinds, const Look *look);
 
 void fibre_kinds_destroy(FibreKinds *kinds); // leaves it empty

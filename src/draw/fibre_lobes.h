@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// How a fibre scatters light, for lanes of directions in C: what glsl/draw/shade_marschner.glsl has
-// as MARSCHNER 1, with d'Eon et al.'s lobes (2011), from the same table of azimuths (scatter.comp).
+// How a fibre scatters light, in C for several directions at once. The same as MARSCHNER 1 of
+// glsl/draw/shade_marschner.glsl: lobes of d'Eon et al. (2011) along the fibre, and the table of
+// scatter.comp around it.
 #pragma once
 
 #include "draw/ordinates.h"
@@ -10,7 +11,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-// Of one colour, by azimuth and cosine of theta_d (SCATTER_ of draw.h): R, TT, TRT and nothing.
+// Texels by colour, cosine of theta_d and azimuth (SCATTER_ of draw.h): R, TT, TRT, unused.
 typedef struct FibreTable {
     const float (*values)[4]; // [SCATTER_COLORS][SCATTER_INCLINATIONS][SCATTER_AZIMUTHS]
 } FibreTable;
@@ -24,29 +25,30 @@ typedef struct FibreLobes {
     uint64_t serial;       // another one for each that was made
 } FibreLobes;
 
-// Of fibres with this material and colour; false if memory is short. Destroying a zeroed struct is
-// legal.
+// Makes the lobes of fibres with this material and colour; false if memory is short. A zeroed
+// struct may be destroyed.
 bool fibre_lobes_create(FibreLobes *lobes, FibreTable table, const MaterialParams *material,
                         const float color[3]);
 void fibre_lobes_destroy(FibreLobes *lobes);
 
-// Whether these lobes are those of the material and colour.
+// Whether these lobes belong to this material and colour.
 bool fibre_lobes_match(const FibreLobes *lobes, const MaterialParams *material,
                        const float color[3]);
 
-// The share of light square to a fibre that it scatters, by what its diameter lets through: about
-// low + (1 - low) color^power. (low, power) from the table at colours 0 and 1/2.
+// Fits the albedo of a fibre for light square to it as low + (1 - low) color^power, where color is
+// the share that a diameter lets through. fit: low, power, from the table at colours 0 and 1/2.
 void fibre_lobes_fit_albedo(FibreTable table, float fit[2]);
 
-// A unit vector of each lane.
+// Unit vectors, one for each lane.
 typedef struct Ways {
     float axis[3][ORDINATE_LANES];
 } Ways;
 
-// f (see shade_marschner.glsl; 1/sr) towards `out` of light from `in`, both unit vectors away from
-// the fibre, for a fibre with the unit tangent; every lobe is wider by the variance `extra`.
+// The scattering function f (shade_marschner.glsl; 1/sr) from `in` towards `out`, both unit vectors
+// that point away from the fibre. `tangent`: the fibre's, unit. `extra` is added to the variance of
+// every lobe.
 void fibre_lobes_scatter(const FibreLobes *lobes, const float tangent[3], const Ways *out,
                          const Ways *in, float extra, float f[3][ORDINATE_LANES]);
 
-// The albedo (3 channels) at the cosine of an inclination.
+// The albedo (3 channels) at this cosine of the inclination.
 void fibre_lobes_albedo(const FibreLobes *lobes, float cosine, float albedo[3]);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Colours, thickness and opacity by particle, beside hair on the GPU.
+// Colour, thickness and opacity of each particle (paint), on the GPU beside the hair.
 #pragma once
 
 #include "sim/hair.h"
 #include "strands/paint.h"
 
-// Gives every batch the paint of its strands, which `paint` has for all of the file's. Nothing for
-// a paint that is zeroed. RESULT_FAILED if memory is short.
+// Uploads the paint of each batch. `paint` has that of all the file's strands; a zeroed paint
+// uploads nothing. RESULT_FAILED if memory is short.
 Result hair_paint_upload(Hair *hair, const Strands *strands, const Paint *paint,
                          const GpuLimits *limits, Error *error);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Reads hair from the GPU for a frame: the one crossing of a frame that is drawn by the processor.
+// Reads hair from the GPU, for a frame that the CPU draws. It is the only transfer of such a frame.
 #pragma once
 
 #include "draw/backend.h"
 #include "sim/hair.h"
 
-// Buffers while they are read: mapped where the driver's memory is the processor's own, else
-// copied. A zeroed struct is empty.
+// The buffers that are being read. They are mapped if the driver keeps them in the CPU's memory,
+// else copied. A zeroed struct is empty.
 typedef struct HairRead {
     bool copies; // set before use: buffers lie in memory of the GPU's own
     struct ReadBuffer {
@@ -17,8 +17,8 @@ typedef struct HairRead {
     uint32_t count, room;
 } HairRead;
 
-// Fills in `position`, `paint` and `ids` of the hair, which stay until hair_read_end. Waits for the
-// GPU. RESULT_FAILED if memory is short or a buffer cannot be read.
+// Fills in `position`, `paint` and `ids` of the hair, which are valid until hair_read_end. Waits
+// for the GPU. RESULT_FAILED if memory is short or a buffer cannot be read.
 Result hair_read_begin(HairRead *read, DrawnHair *hair, uint32_t count, Error *error);
 void hair_read_end(HairRead *read);
 void hair_read_destroy(HairRead *read);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a mesh takes away of the light that goes from cell to cell of a light grid.
+// How a mesh blocks light between the cells of a light grid.
 #pragma once
 
 #include "base/error.h"
@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// A mesh where it stands: metres, world.
+// A mesh at its place in the frame: metres, world.
 typedef struct LightMesh {
     const float (*vertices)[3];
     const uint32_t (*triangles)[3];
@@ -26,16 +26,16 @@ typedef struct LightBlocks {
     size_t room;
 } LightBlocks;
 
-// Finds `open` for this lattice. RESULT_FAILED if memory is short.
+// Fills in `open` for this lattice. RESULT_FAILED if memory is short.
 Result light_blocks_find(LightBlocks *blocks, const LightLattice *lattice, Error *error);
 
-// Share of light that the mesh lets through on the straight way from the middle of `cell` along the
-// unit vector `way` (of the lattice) out of the lattice, or as far as `reach` (m).
+// The share of light that passes the mesh on the straight line from the middle of `cell` along the
+// unit vector `way` (in the lattice's axes), up to the lattice's end or `reach` (m).
 float light_blocks_march(const LightBlocks *blocks, const LightLattice *lattice, const int cell[3],
                          const float way[3], float reach);
 
-// The ways that a straight way from the middle of any cell crosses, in their order: the same ones
-// from each cell, but for where they leave the lattice.
+// The steps from cell to cell that a straight line makes from the middle of a cell, in their order.
+// They are the same from every cell, except for where the line leaves the lattice.
 enum { LIGHT_PATH_MOST = 3 * 66 };
 typedef struct LightPath {
     int count;
@@ -44,10 +44,10 @@ typedef struct LightPath {
     bool up[3];                    // the axis' steps are towards higher cells
 } LightPath;
 
-// The path along the unit vector `way`. Lattices have 65 cells along each axis at most.
+// Finds the path along the unit vector `way`. A lattice has at most 65 cells along each axis.
 void light_path_find(LightPath *path, const LightLattice *lattice, const float way[3]);
 
-// What light_blocks_march finds along the path's way, with no bound to its reach.
+// The same as light_blocks_march along the path's direction, without a limit of the reach.
 float light_path_follow(const LightPath *path, const LightBlocks *blocks,
                         const LightLattice *lattice, const int cell[3]);
 

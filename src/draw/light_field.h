@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What whoever finds the light among hair (light_grid.h, light_passes.h) starts from: where the
-// cells lie, the lights and the mesh among them, and the tables of fibres.
+// Input that both implementations of the light among hair share (light_grid.h in C, light_passes.h
+// in shaders): the place of the cells, the lights and the mesh among them, and the tables of
+// fibres.
 #pragma once
 
 #include "draw/light_scene.h"
@@ -10,13 +11,14 @@
 
 enum { GRID_WIDE = LIGHT_WIDE }; // floats of a cell: [group][channel][lane]
 
-// 4 pi / ORDINATES is the solid angle of a direction; a disc of it has this variance each way, by
-// three quarters: what agreed best with path-traced light.
+// The variance by which lobes are widened, because a direction stands for a solid angle of 4 pi /
+// ORDINATES. A disc of this angle has the variance 1 / ORDINATES along each axis; the factor 3/4
+// agreed best with path-traced light.
 #define GRID_BLUR (0.75f / ORDINATES)
 
 typedef enum FieldTable { FIELD_FIRST, FIELD_SCATTER, FIELD_GATHER, FIELD_TABLES } FieldTable;
 
-// The tables of one kind of fibre. They hold for `lobes`.
+// The tables of one kind of fibre, valid for `lobes`.
 typedef struct GridKind {
     FibreLobes lobes;                          // a copy: arrays are not owned
     float (*scatter)[3][ORDINATES][ORDINATES]; // [TANGENTS][channel][in][out], owned
@@ -47,25 +49,27 @@ typedef struct LightField {
 
 void light_field_destroy(LightField *field);
 
-// Where the cells lie: the lattice's axes, and, from the box of hair by them (lowest place by axis,
-// highest (m), square of the longest segment), the cells, `cells` along its longest side; false if
-// it is empty. Their side changes in eighths of octaves and their corner by whole cells, so that
-// light does not swim with every frame.
+// Place the cells. light_field_find_turn finds the lattice's axes. light_field_set_box finds the
+// cells from the hair's box in these axes (lowest place along each axis, highest (m), square of the
+// longest segment), with `cells` along its longest side; it returns false if the box is empty. The
+// side of a cell changes in eighths of octaves and the corner by whole cells, so that light does
+// not swim from frame to frame.
 void light_field_find_turn(LightField *field, const GridScene *scene);
 bool light_field_set_box(LightField *field, int cells, const float box[LIGHT_BOX_WORDS]);
 
-// The lights, and whether hair has paint.
+// Fills in the lights, and whether hair has paint.
 void light_field_find_lights(LightField *field, const GridScene *scene);
 
-// The way to light i at x (world), and the share of its colour there, as light_share of
-// lights.glsl.
+// The direction to light i at x (world), and the share of the light's colour there; as light_share
+// of lights.glsl.
 float light_field_light(const DrawParams *draw, int i, const float x[3], float way[3]);
 
-// What the mesh lets through between the cells; the scene's blocks are found for the lattice first.
-// RESULT_FAILED if memory is short.
+// Fills in `walls`: how much light the mesh lets through between neighbouring cells. First finds
+// the scene's blocks for the lattice. RESULT_FAILED if memory is short.
 Result light_field_find_walls(LightField *field, const GridScene *scene, Error *error);
 
-// What passes the mesh between the cell before on an axis and cell (0, 0, 0); NULL: there is none.
+// The part of `walls` of an axis, from cell (0, 0, 0) on: light that passes from the cell before on
+// this axis. NULL: no mesh.
 static inline const float *light_field_walls(const LightField *field, int axis)
 {
     const int *n = field->lattice.count;
@@ -73,26 +77,27 @@ static inline const float *light_field_walls(const LightField *field, int axis)
     return field->walled ? field->walls + (size_t)axis * z * ((size_t)n[2] + 2) + z + y + 1 : NULL;
 }
 
-// Of so many strands one stands for all.
+// One of so many strands is used and represents the others.
 static inline uint light_field_step(const GridScene *scene)
 {
     return scene->step > 1 ? scene->step : 1;
 }
 
-// Of an image: the nearest ordinate to a way of the world, and the least opacity of hair to the eye
-// over that to light.
+// The ordinate that is nearest to a direction of the world, and the least ratio of the hair's
+// opacity to the eye and to light.
 int light_field_nearest(const LightLattice *lattice, const float way[3]);
 float light_field_opacity(const GridScene *scene);
 
-// --- Tables (light_tables.c): those that are not there are made. RESULT_FAILED if memory is short.
+// --- Tables (light_tables.c). Each function makes the tables that are missing. RESULT_FAILED if
+// memory is short.
 
-// The kinds are those of the scene: tables of others are forgotten.
+// Sets the kinds of fibres to those of the scene, and drops the tables of others.
 void light_field_set_kinds(LightField *field, const GridScene *scene);
 Result light_field_make_first(LightField *field, const GridScene *scene, Error *error);
-// Those of `count` classes (of tangents, by kinds), or, NULL, all.
+// `classes`: the `count` classes (tangent and kind) that are needed; NULL: all.
 Result light_field_make_scatter(LightField *field, const GridScene *scene, const int *classes,
                                 int count, Error *error);
 Result light_field_make_gather(LightField *field, const GridScene *scene, Error *error);
 
-// The floats of a table of a kind.
+// The values of one table of a kind.
 const float *light_field_table(const GridKind *kind, FieldTable table);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where the cells of a light grid lie.
+// The place of a light grid's cells.
 #pragma once
 
 #include <stddef.h>
@@ -16,7 +16,7 @@ static inline size_t light_lattice_cells(const LightLattice *lattice)
     return (size_t)lattice->count[0] * (size_t)lattice->count[1] * (size_t)lattice->count[2];
 }
 
-// A vector of the world along the lattice's axes.
+// Turns a vector of the world into the lattice's axes.
 static inline void light_lattice_turn(const LightLattice *lattice, const float x[3], float out[3])
 {
     for (int k = 0; k < 3; ++k)

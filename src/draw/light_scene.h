@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What light_grid.h finds light among: hair, lights, eye and mesh.
+// Input for the light among hair (light_grid.h): hair, lights, eye and mesh.
 #pragma once
 
 #include "base/error.h"
@@ -11,7 +11,7 @@
 
 enum { LIGHT_GRID_KINDS = 4 }; // of fibres that scatter in ways of their own; others share the last
 
-// A batch of hair in the light.
+// A batch of hair that receives and scatters light.
 typedef struct GridHair {
     MappedCaster caster;
     int kind; // of its fibres
@@ -36,7 +36,7 @@ typedef struct GridScene {
     int orders; // of scattering that are swept at most, 0 .. 32; 0: the sky's own light alone
 } GridScene;
 
-// Whether light comes from above or below, besides the lights.
+// Whether there is ambient light (sky or ground).
 static inline bool light_scene_has_sky(const DrawParams *draw)
 {
     for (int c = 0; c < 3; ++c)

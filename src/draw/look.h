@@ -10,7 +10,7 @@
 
 typedef struct HairBatch HairBatch; // sim/hair.h
 
-// What hair is shaded by: of shaders one variant for each set.
+// The features that a shader needs for a look. Each set of features is a variant of the shaders.
 typedef enum LookFeature {
     LOOK_LIGHTS = 1, // lights that are not directional, or a sky that differs from the ground
     LOOK_MARSCHNER = 2,
@@ -42,11 +42,11 @@ typedef struct Look {
     float share; // of the strands is drawn, 0 .. 1; the material's radius makes up for it
 } Look;
 
-// Fills in what depends on the batch, as if it were drawn in one part: the look's share of its
-// strands, the last of them narrower, so that the sum of their widths is the share exactly, and
-// grows and falls with it without a step; and the parts of a segment, of which a strand has no more
-// than CPU drivers' loops can visit.
+// The look's material with the members that depend on the batch, as if the batch were drawn in one
+// part. They are: the number of drawn strands, by the look's share; the width of the last one, so
+// that the sum of widths equals the share and changes with it without steps; and the parts of a
+// segment, limited by the loops of CPU drivers.
 MaterialParams look_material(const Look *look, const HairBatch *batch);
 
-// Points of each of the batch's strands: its particles, or those of its curve.
+// Points of each strand of the batch: its particles or the points of its curve.
 uint32_t look_points(const Look *look, const HairBatch *batch);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A batch of hair that stands in the light, in the processor's memory.
+// A batch of hair that casts shadows, in the CPU's memory.
 #pragma once
 
 #include "glsl/common/shared.h"
@@ -8,7 +8,7 @@
 
 #include <stddef.h>
 
-// Laid out as in HairBatch.
+// The arrays are laid out as in HairBatch.
 typedef struct MappedCaster {
     const float (*position)[4];
     const uint32_t (*paint)[4];            // see hair_paint.h; NULL: none
@@ -23,13 +23,13 @@ typedef struct MappedCasters {
     uint32_t count;
 } MappedCasters;
 
-// The tile to walk at place `turn`.
+// The tile at place `turn` of the order in which tiles are processed.
 static inline size_t mapped_caster_tile(const MappedCaster *caster, int turn)
 {
     return caster->order ? caster->order[turn] : (size_t)turn;
 }
 
-// Points of a strand: its particles, or those of its curve.
+// Points of a strand: its particles or the points of its curve.
 static inline int mapped_caster_points(const MappedCaster *caster)
 {
     return (int)((caster->material.vertex_count - 1) * caster->material.smooth_parts + 1);

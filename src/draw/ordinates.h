@@ -1,36 +1,38 @@
 // SPDX-License-Identifier: MIT
-// The directions in which the light grid follows light (discrete ordinates), and the classes of
-// tangents by which it sorts fibres.
+// The directions of the light grid (discrete ordinates), and the classes into which it sorts the
+// tangents of fibres.
 #pragma once
 
 #include <stdint.h>
 
-// ORDINATE_LANES of each group have the same main axis and sign, so that they sweep the grid side
-// by side: groups -x, +x, -y, +y, -z, +z.
+// The ORDINATE_LANES directions of a group have the same main axis and sign, so that they sweep the
+// grid together. The groups are -x, +x, -y, +y, -z, +z.
 enum { ORDINATES = 48, ORDINATE_LANES = 8, ORDINATE_GROUPS = ORDINATES / ORDINATE_LANES };
 
-// Unit vectors, the way that light goes: 48 charges that repel each other on a sphere, turned so
-// that eight have each main axis (neighbours are 29.7 to 30.1 degrees apart). [axis][ordinate].
+// Unit vectors in which light travels, [axis][ordinate]. They are the places of 48 charges that
+// repel each other on a sphere, turned so that eight have each main axis. Neighbours are 29.7 to
+// 30.1 degrees apart.
 extern const float ORDINATE[3][ORDINATES];
 
-// The ordinate that the first light gets: downwards, as most key lights shine.
+// The lattice is turned so that the first light travels along this ordinate. It points downwards,
+// as most key lights shine.
 enum { ORDINATE_OF_LIGHT = 21 };
 
-// Classes of tangents: points of a Fibonacci spiral over the whole sphere, for fibres' scales tell
-// the root's end from the tip's.
+// The number of classes of tangents. They are points of a Fibonacci spiral over the whole sphere,
+// because a fibre's scales make its two directions differ.
 enum { TANGENTS = 256 };
 
-// Unit vector of each class, and the sine of its angle with each ordinate. These tables are there
-// after ordinates_prepare.
+// The unit vector of each class, and the sine of its angle with each ordinate. Filled in by
+// ordinates_prepare.
 extern float TANGENT[TANGENTS][3];
 extern float TANGENT_SINE[TANGENTS][ORDINATES];
 
-// The class of each square of the faces -x, +x, -y ... of a cube around the origin: [face][row
-// along the axis two on][column along the next].
+// The class of each square on the faces of a cube around the origin: [face -x, +x, -y ...][row,
+// along the axis two further][column, along the next axis].
 enum { ORDINATE_SQUARES = 48 };
 extern uint8_t TANGENT_NEAREST[6][ORDINATE_SQUARES][ORDINATE_SQUARES];
 
-// The nearest class of a unit vector, but for what lies within 2 degrees of another one's region.
-// Needs ordinates_prepare.
+// The class that is nearest to a unit vector. Within 2 degrees of another class's region it may be
+// that class. Call ordinates_prepare first.
 int ordinates_class(const float tangent[3]);
 void ordinates_prepare(void);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The room draw turns hair into images. It takes hair on the GPU (sim/hair.h), the view, lights and
-// materials of a frame, and a mesh; it hands on an Image. A backend (backend.h) does the work:
-// shadow maps, light among hair, mesh and floor, then the hair. drawing.h has what the passes of an
-// image share.
+// The room draw turns hair into images. Its input is hair on the GPU (sim/hair.h), the view, lights
+// and materials of a frame, and a mesh; its output is an Image. A backend (backend.h) makes shadow
+// maps, light among hair, mesh and floor, and the hair. drawing.h has the data that the passes of
+// an image share; docs/frame.md describes the passes.
 #pragma once
 
 #include "draw/backend.h"
@@ -29,43 +29,45 @@ typedef struct Renderer {
     RendererCounts counts;
 } Renderer;
 
-// Makes what the backend needs. `gpu` and `timer` outlive the renderer, which stays where it is;
-// spans "draw_shadow", "draw_scatter", "draw_mesh", "draw_project", and of quads "draw_hair",
-// "draw_resolve" and "draw_read" (of the image), of blocks "draw_bin" and "draw_composite", of
-// compute "draw_bin", "draw_sort", "draw_composite" and "draw_read". RESULT_FAILED if memory is
-// short.
+// Chooses and creates the backend. `gpu` and `timer` must outlive the renderer, and the renderer
+// must not be moved. The timer's spans are "draw_shadow", "draw_scatter", "draw_mesh",
+// "draw_project"; of quads also "draw_hair", "draw_resolve" and "draw_read" (of the image); of
+// blocks "draw_bin" and "draw_composite"; of compute "draw_bin", "draw_sort", "draw_composite" and
+// "draw_read". RESULT_FAILED if memory is short.
 Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
                        const RendererOptions *options, Error *error);
 void renderer_destroy(Renderer *renderer);
 
-// The mesh that hides hair, in the head's frame, and its colour (sRGB 0..1). Copied to the GPU.
+// Sets the mesh that hides hair, in the head's frame, and its colour (sRGB 0..1). The mesh is
+// copied.
 Result renderer_set_mesh(Renderer *renderer, const Mesh *mesh, const float color[3], Error *error);
 
-// Moves the vertices of that mesh, after renderer_settle: `moved` has as many, with normals, in the
-// head's frame. What the mesh sees of the sky stays.
+// Moves the vertices of that mesh; call it after renderer_settle. `moved` has the same number of
+// vertices, and normals, in the head's frame. The openness does not change.
 void renderer_move_mesh(Renderer *renderer, const Mesh *moved);
 
-// The mesh's share of the sky (openness.h), [vertices of the mesh]; matt meshes do without.
+// Sets the share of the sky that each vertex of the mesh sees (openness.h). Matt meshes do not need
+// it.
 Result renderer_set_openness(Renderer *renderer, const float *open, Error *error);
 
-// 3, or 4 where the background is not opaque: what image_create must be given.
+// The channels of images: 3, or 4 if the background is not opaque.
 int renderer_channels(const Renderer *renderer);
 
-// Draws one image, tile by tile where it is large (tiles.h), into `image`, which has the renderer's
-// size and channels, and waits for it. The order of items and of strands does not matter, and every
-// run gives the same bytes. No fragment is lost: an A-buffer that is too small grows and the band
-// is drawn again; at its largest the image is drawn in more bands. RESULT_FAILED if memory is short
-// or, with quads, a single row needs more than there can be or a pixel has more fragments than a
-// CPU driver's loops can visit.
+// Draws one image into `image`, which has the renderer's size and channels, and waits for it. Large
+// images are drawn tile by tile (tiles.h). The order of items and of strands does not matter, and
+// every run gives the same bytes. No fragment is lost: if an A-buffer or a list is too small it
+// grows and the band is drawn again; at its largest size the image is drawn in more bands.
+// RESULT_FAILED if memory is short or, with quads, if one row needs more than the largest A-buffer
+// or a pixel has more fragments than a CPU driver's loops can visit.
 Result renderer_draw(Renderer *renderer, const RenderFrame *frame, const RenderItem *items,
                      uint32_t item_count, Image *image, Error *error);
 
-// The same in three steps, so that the next image is begun while this one is on its way.
-// renderer_begin queues an image, which is in `image` at once unless renderer_is_late.
-// renderer_settle comes before hair or mesh changes: it waits until all has been drawn, and draws
-// it again if an A-buffer was too small. renderer_take comes after that, before or after the next
-// renderer_begin: it waits for the image, and copies it. `place`: what renderer_place has said
-// before renderer_begin. Errors as above.
+// renderer_draw in three steps, so that the next image can be begun while this one is on its way.
+// renderer_begin queues an image; unless renderer_is_late, `image` is filled at once.
+// renderer_settle must be called before hair or mesh changes: it waits until all has been drawn,
+// and draws the image again if an A-buffer was too small. renderer_take is called after that,
+// before or after the next renderer_begin: it waits for the image and copies it. `place` is the
+// value of renderer_place before renderer_begin. Errors are those of renderer_draw.
 Result renderer_begin(Renderer *renderer, const RenderFrame *frame, const RenderItem *items,
                       uint32_t item_count, Image *image, Error *error);
 bool renderer_is_late(const Renderer *renderer);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is asked of a renderer, and what an image came to.
+// Options of a renderer, and counts of an image for the statistics.
 #pragma once
 
 #include "base/params.h"
@@ -11,8 +11,8 @@
 
 typedef struct Hair Hair; // sim/hair.h
 
-// How many strands are drawn, all zero: all of them. Files' strands lie in random order, so the
-// first so many stand for all.
+// Level of detail. All zero: all strands are drawn. The strands of a file lie in random order, so
+// the first ones represent the whole.
 typedef struct LodOptions {
     float start, end; // m: between these distances of the camera from a section's middle the share
                       // falls from 1 to `least`; end 0: at none
@@ -20,7 +20,7 @@ typedef struct LodOptions {
     float width;      // px: narrower fibres are fewer and as wide as this; 0: are left as they are
 } LodOptions;
 
-// Of light from fibre to fibre.
+// Options of the light from fibre to fibre.
 typedef struct ScatterOptions {
     Scatter kind;     // none: only light of the sky
     int cells;        // along the longest side of the hair, 4 .. 64; 0: 32
@@ -55,8 +55,8 @@ typedef struct RendererOptions {
     int64_t pool_bytes; // no larger A-buffer; 0: what the driver allows
 } RendererOptions;
 
-// What a run's parameters say of how hair is drawn. Exposure, tone, kind, AOV, floor and the mesh's
-// shading, which depend on more, are left 0.
+// Options from the parameters of a run. Exposure, tone, kind, AOV, floor and the mesh's shading
+// depend on more than the parameters; they stay 0.
 RendererOptions renderer_options_of(const RunParams *run);
 
 // Hair to be drawn. The material is that of its section; `radius` is the fibre radius at the root
@@ -67,12 +67,12 @@ typedef struct RenderItem {
     float radius;
 } RenderItem;
 
-// The light from everywhere, sRGB 0..1: from above (+y) and from below, evenly between them.
+// Ambient light, sRGB 0..1: from above (+y) and from below, interpolated between them.
 typedef struct Ambient {
     float sky[3], ground[3];
 } Ambient;
 
-// What all items of an image have in common.
+// Data that all items of an image share.
 typedef struct RenderFrame {
     const View *view; // made for the renderer's width and height
     const Light *lights;
@@ -83,7 +83,7 @@ typedef struct RenderFrame {
     uint64_t revision; // another one wherever hair has moved, so that shadows are kept; 0: it has
 } RenderFrame;
 
-// Of the last image, for the statistics.
+// Counts of the last image, for the statistics.
 typedef struct RendererCounts {
     uint64_t segments; // sent to the rasteriser; straight runs count as one
     uint64_t culled;   // strands outside the image, which cost no drawing

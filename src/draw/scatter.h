@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What light among hair depends on, and what of it is asked for: for both ways to find it.
+// The options and the scene of the light among hair, for both of its implementations.
 #pragma once
 
 #include "draw/backend.h"
@@ -7,7 +7,7 @@
 
 #include "glsl/draw/shadow.h"
 
-// What is asked for, whatever the frame.
+// The options of light among hair, from those of the renderer.
 ScatterOptions scatter_options(const RendererOptions *options);
 
 // Whether a look of the frame shows light among hair.
@@ -16,13 +16,12 @@ bool scatter_is_wanted(const ScatterOptions *options, const BackendFrame *frame)
 // Whether lights and sky are the same.
 bool scatter_same_lights(const DrawParams *a, const DrawParams *b);
 
-// Of how many strands one stands for all in the cells.
+// One of so many strands is used in the cells and represents the others.
 uint32_t scatter_step(const ScatterOptions *options, const BackendFrame *frame);
 
-// Lights, eye and what is asked for, of a frame whose shadow maps these are; hair, kinds and mesh
-// are the caller's.
+// The scene of a frame with these shadow maps. The caller fills in hair, kinds and mesh.
 GridScene scatter_scene(const ScatterOptions *options, const BackendFrame *frame,
                         const ShadowParams *shadows);
 
-// The mesh, where the head has carried it.
+// The mesh at the head's place in this frame.
 LightMesh scatter_mesh(const BackendFrame *frame);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tables of marschner shading, made on the GPU when an image first needs them
-// (glsl/draw/scatter.comp).
+// Tables of Marschner's shading (glsl/draw/scatter.comp). The GPU makes a table when an image first
+// needs it.
 #pragma once
 
 #include "draw/fibre_lobes.h"
@@ -21,10 +21,11 @@ typedef struct ScatterTables {
     GLuint program;
 } ScatterTables;
 
-// The table of fibres of this refractive index (> 1) and azimuthal roughness (rad, 0.08 .. pi/2).
-// RESULT_FAILED if memory is short.
+// The texture for fibres of this refractive index (> 1) and azimuthal roughness (rad, 0.08 ..
+// pi/2). RESULT_FAILED if memory is short.
 Result scatter_tables_find(ScatterTables *tables, float refraction, float roughness,
                            GLuint *texture, Error *error);
-// The values of a table that was found before. Waits for the GPU. RESULT_FAILED if memory is short.
+// The values of a table that scatter_tables_find has returned. Waits for the GPU. RESULT_FAILED if
+// memory is short.
 Result scatter_tables_read(ScatterTables *tables, GLuint texture, FibreTable *table, Error *error);
 void scatter_tables_destroy(ScatterTables *tables);

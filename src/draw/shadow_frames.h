@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Where the shadow maps of a scene lie: which lights have one, each map's window, and what maps
-// depend on, so that they are kept while it stays. Needs no OpenGL: both ways to make maps use it.
+// The place of a scene's shadow maps: which lights have one, the window of each, and a key of
+// everything that the maps depend on, so that they are kept while it does not change. Needs no
+// OpenGL; both backends use it.
 #pragma once
 
 #include "base/params.h"
@@ -16,7 +17,7 @@ typedef struct ShadowOptions {
     int strands;   // in maps by lanes: no fewer than these stand for all; 0: all
 } ShadowOptions;
 
-// A mesh where the head has carried it. Zeroed: none.
+// A mesh at the head's place in this frame. Zeroed: none.
 typedef struct ShadowMesh {
     uint64_t version;                  // another one for each other mesh; 0: there is none
     float low[3], high[3];             // its box in its own frame, m
@@ -33,7 +34,7 @@ typedef struct ShadowKey {
     ShadowMesh mesh;
 } ShadowKey;
 
-// What the maps of a mesh depend on: they stay where hair alone moves.
+// Everything that the maps of a mesh depend on: they are kept if only hair moves.
 typedef struct ShadowMeshKey {
     ShadowMesh mesh;
     int maps;
@@ -53,27 +54,29 @@ typedef struct ShadowFrames {
     CastParams casts[MAX_LIGHTS]; // by which hair is laid into each map
 } ShadowFrames;
 
-// Views of the lights that cast shadows; lamps look at `middle` (m, world). `mesh` may be zeroed.
+// Begins a scene with the views of the lights that cast shadows. Lamps look at `middle` (m, world).
+// `mesh` may be zeroed.
 void shadow_frames_begin(ShadowFrames *frames, const Light *lights, uint32_t light_count,
                          const float middle[3], const ShadowMesh *mesh, uint64_t revision);
 
-// Each batch of hair that stands in the light, before shadow_frames_place. `batch` says which it
-// is; the material is complete (look_material). `painted`: its width differs from the material's.
+// Adds a batch of hair that casts shadows; call it for each before shadow_frames_place. `batch`
+// identifies the batch; the material is complete (look_material). `painted`: its width differs from
+// the material's.
 void shadow_frames_add(ShadowFrames *frames, const void *batch, const MaterialParams *material,
                        bool painted);
 
-// Whether maps of the key `drawn` show this scene: when all hair has been added.
+// Whether maps with the key `drawn` fit this scene. Call it after all hair has been added.
 bool shadow_frames_same(const ShadowFrames *frames, const ShadowKey *drawn);
 
-// What the box of hair before casting light i is found by.
+// Parameters for finding the hair's box as casting light i sees it.
 CastParams shadow_frames_box(const ShadowFrames *frames, int i);
 
-// Lays a map of `side` x `side` texels around boxes[i] of each casting light (lowest u, v and
-// depth, then the highest, as LightView has them; empty if the lowest is above the highest), and
-// one of the mesh. A light that sees neither has no map. `spacing`: see ShadowOptions.
+// Places the map of each casting light, `side` x `side` texels around boxes[i] (lowest u, v and
+// depth, then the highest, as in LightView; empty if the lowest exceeds the highest), and the map
+// of the mesh. A light that sees neither hair nor mesh has no map. `spacing`: see ShadowOptions.
 void shadow_frames_place(ShadowFrames *frames, int side, float spacing, double (*boxes)[6]);
 
-// The key of the mesh's maps as they are placed.
+// The key of the mesh's maps at their present places.
 ShadowMeshKey shadow_frames_mesh_key(const ShadowFrames *frames);
 
 enum { SHADOW_MESH_SIDE = 1024 }; // texels of a map of the mesh

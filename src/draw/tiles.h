@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// An image that is too large to be drawn at once is drawn as tiles of one size, each a window onto
-// it, one after the other.
+// Large images are drawn as tiles of one size, one after the other. Each tile is a window of the
+// image.
 #pragma once
 
 #include "gpu/gpu.h"
@@ -8,25 +8,27 @@
 
 #include <stdint.h>
 
-// columns x rows tiles of width x height px cover the image; those at its right and lower edge may
-// hang over.
+// columns x rows tiles of width x height px cover the image. Tiles at the right and lower edge may
+// extend beyond it.
 typedef struct Tiles {
     int columns, rows;
     int width, height;
 } Tiles;
 
-// The samples that a tile has at most, of up to 56 bytes where there is a mesh or a floor. No image
-// of up to 8192 x 8192 samples is divided but where the driver wants it.
+// The most samples of a tile. A sample takes up to 56 bytes where there is a mesh or a floor.
+// Images of up to 8192 x 8192 samples are not divided unless the driver's limits require it.
 enum { TILE_MOST_SAMPLES = 1 << 26 };
 
-// Few tiles of an image of width x height px of samples x samples, none larger than the driver
-// draws, nor of more samples than `most` (or one row of them).
+// Divides an image of width x height px, with samples x samples for each, into as few tiles as
+// possible. No tile is larger than the driver's limits, nor has it more than `most` samples (but at
+// least one row).
 Tiles tiles_divide(const GpuLimits *limits, int width, int height, int samples, int64_t most);
 
 int tiles_count(const Tiles *tiles);
 
-// The first px of tile i, x and y.
+// The first pixel of tile i: x and y.
 void tiles_place(const Tiles *tiles, int i, int place[2]);
 
-// Copies what of tile i lies in the image into it; both have the same kind and channels.
+// Copies the part of tile i that lies in the image into the image. Both have the same kind and
+// channels.
 void tiles_copy(const Tiles *tiles, int i, const Image *tile, Image *image);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What stands behind and among the hair, in C over lanes: mesh and floor over the background, as
-// base_layer.h has it of shaders (same definitions: glsl/kernel/skin.h, lamp.h, floor.h, edge.h).
+// Mesh and floor over the background, in C. base_layer.h does the same with shaders; both use the
+// formulas of glsl/kernel/skin.h, lamp.h, floor.h and edge.h.
 //
-// The mesh's surface and the depths of samples at its edges come first (mesh_raster.h), each pixel
-// is lit once by that, and then all is put together. None of this is done again for an image in
-// which neither camera, head, mesh, lights nor shadows have changed.
+// First the mesh is rasterised: its nearest surface, and the depths of samples at its edges
+// (mesh_raster.h). Then each pixel of the surface is lit once. At last mesh, floor and background
+// are joined. All of this is skipped if camera, head, mesh, lights and shadows are those of the
+// last image.
 #pragma once
 
 #include "base/params.h"
@@ -15,7 +16,7 @@
 
 #include "glsl/draw/draw.h"
 
-// An image of it. Boxes in samples: x, y lowest, highest; outside of them is background.
+// Input for an image. Boxes are in samples: x, y lowest, highest; outside of them is background.
 typedef struct LaneBaseScene {
     PlacedMesh mesh;       // no triangles: none
     uint64_t mesh_version; // another one wherever the mesh's own positions or normals differ
@@ -44,6 +45,6 @@ typedef struct LaneBase {
     uint64_t depth_version; // counts the times that depths were
 } LaneBase;
 
-// Makes `shown`, unless it shows this scene already. RESULT_FAILED if memory is short.
+// Draws `shown`, unless it shows this scene already. RESULT_FAILED if memory is short.
 Result lane_base_draw(LaneBase *base, const LaneBaseScene *scene, Error *error);
 void lane_base_destroy(LaneBase *base);

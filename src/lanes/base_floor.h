@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The floor behind 16 px: a matt plane, lit as the mesh is, or only the light that it lacks where
-// there is shadow, which is black that covers so much. For base_draw.c.
+// The floor at 16 px: either a matt plane, lit as the mesh is, or only its shadow, as black with an
+// alpha. For base_draw.c.
 #pragma once
 
 #include "lanes/base_light.h"
@@ -17,7 +17,7 @@ typedef struct BaseFloor {
     float color[3]; // linear
 } BaseFloor;
 
-// A floor is seen from above.
+// A floor is seen from above only.
 static inline BaseFloor base_floor(const Floor *floor, const LaneShadow *shadow,
                                    const DrawParams *draw)
 {
@@ -37,7 +37,7 @@ typedef struct BaseFloorPoints {
     float there[W], depth[W]; // how much of it is left, and where (0 .. 1)
 } BaseFloorPoints;
 
-// Where 16 px from (x, y) on show the floor; returns whether any does.
+// Finds the points of the floor that 16 px from (x, y) on show. Returns whether there are any.
 SIMD_INLINE bool base_floor_find(const BaseFloor *floor, const BaseView *view, int x, int y,
                                  BaseFloorPoints *points)
 {
@@ -95,7 +95,7 @@ SIMD_INLINE void base_floor_shade(const BaseFloor *floor, const BaseView *view,
     }
 }
 
-// What lies behind a plane is hidden as far as half of it is there.
+// A plane hides what lies behind it where at least half of it is left.
 SIMD_INLINE void base_floor_hide(const BaseFloor *floor, const BaseFloorPoints *points,
                                  float depth[W])
 {

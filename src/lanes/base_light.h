@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light on 16 points of mesh or floor that neighbouring pixels show, for base_draw.c and
+// Light on 16 points of mesh or floor, shown by 16 pixels side by side. For base_draw.c and
 // base_mesh.c.
 #pragma once
 
@@ -13,8 +13,8 @@
 
 enum { W = 16 };
 
-// The camera: the way from the eye through (x, y) of the image (px), as long as it is to one metre
-// before the eye's plane, is x across + y down + from. See ray.glsl.
+// The camera. The vector from the eye through (x, y) of the image (px) is x across + y down + from.
+// It ends one metre before the plane through the eye (ray.glsl).
 typedef struct BaseView {
     const DrawParams *draw;
     float across[3], down[3], from[3];
@@ -22,7 +22,7 @@ typedef struct BaseView {
 
 BaseView base_view(const DrawParams *draw);
 
-// Ways through the middles of 16 px from (x, y) on.
+// The vectors from the eye through the middles of 16 px from (x, y) on.
 SIMD_INLINE void base_ways(const BaseView *view, int x, int y, float way[3][W])
 {
     float column = (float)x + 0.5f, row = (float)y + 0.5f;
@@ -32,8 +32,8 @@ SIMD_INLINE void base_ways(const BaseView *view, int x, int y, float way[3][W])
     }
 }
 
-// What is left of the first `lights` lights at points x of surfaces with these unit normals: see
-// lane_shadow_left_on. `shadow` may be NULL.
+// The share of each of the first `lights` lights that reaches points x of surfaces with these unit
+// normals: see lane_shadow_left_on. `shadow` may be NULL.
 SIMD_INLINE void base_left(const LaneShadow *shadow, int lights, const float x[3][W],
                            const float normal[3][W], float wrap, int taps,
                            float left[MAX_LIGHTS][W])

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Bins ribbons into the blocks of pixels that they touch: a list a block.
+// Sorts ribbons into the blocks of pixels that they touch: one list for each block.
 #pragma once
 
 #include "lanes/project.h"
 
-// Lists of an image of columns x rows blocks of BLOCK_WIDTH x BLOCK_HEIGHT px (draw.h).
+// The lists of an image of columns x rows blocks of BLOCK_WIDTH x BLOCK_HEIGHT px (draw.h).
 typedef struct Bins {
     int columns, rows;
     int part_room;    // how many parts a projection may have: the threads when it was created
@@ -20,9 +20,10 @@ typedef struct Bins {
 Result bins_create(Bins *bins, int columns, int rows, Error *error);
 void bins_destroy(Bins *bins);
 
-// Lists all ribbons by ascending slots: block b's are pairs[begins[b]] to before pairs[begins[b +
-// 1]]. Sorting a list by its numbers puts near ribbons first, alike ones by their slots. Lists do
-// not depend on the number of threads. RESULT_FAILED when memory is short.
+// Lists all ribbons by ascending slots. The list of block b is pairs[begins[b]] up to, not
+// including, pairs[begins[b + 1]]. If a list is sorted by its numbers, near ribbons come first, and
+// ribbons of equal depth are in the order of their slots. The lists do not depend on the number of
+// threads. RESULT_FAILED if memory is short.
 Result bins_fill(Bins *bins, const Projection *projection, Error *error);
 
 static inline size_t bins_count(const Bins *bins)

@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-// Pixels side by side in a vector; blocks consist of such cells.
+// A cell is the pixels that a vector holds side by side; blocks consist of cells.
 enum {
     CELL_WIDTH = 2,
     CELL_HEIGHT = 4,
@@ -20,8 +20,9 @@ typedef struct __attribute__((aligned(32))) Cell {
     float through[CELL_PIXELS]; // share of what stands behind that is seen
 } Cell;
 
-// Ribbons become visible where they stand before what hides them, or: a ribbon that covers a pixel
-// by RIBBON_LEAST_COVERAGE hides all behind it.
+// How ribbons hide each other. OPEN, OVER_MESH: they are blended; OVER_MESH: only before the mesh
+// or floor. NEAREST: a ribbon hides everything behind it where it covers at least
+// RIBBON_LEAST_COVERAGE of the pixel.
 typedef enum BlockForm { BLOCK_OPEN, BLOCK_OVER_MESH, BLOCK_NEAREST, BLOCK_FORMS } BlockForm;
 
 // A block's pixels, `cells` row by row, its first pixel's column and row.
@@ -31,7 +32,8 @@ typedef struct Block {
     int x, y;
 } Block;
 
-// What stands behind the hair, in a box of the image: samples x, y and how many of them.
+// Mesh and floor behind the hair, in a box of the image: its first sample x, y and its size in
+// samples.
 typedef struct BlockBase {
     int x, y, width, height;
     const uint16_t (*light)[4]; // [height][width] halves, linear, premultiplied

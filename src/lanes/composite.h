@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Composites a block of pixels: its ribbons near to far, each under what stands before it,
-// premultiplied and in linear light. Points of ribbons that are seen are shaded on the way.
+// Composites a block of pixels: adds its ribbons from near to far, each under those before it,
+// premultiplied and in linear light. End points of ribbons that are seen are shaded on the way.
 #pragma once
 
 #include "base/simd.h"
@@ -10,7 +10,7 @@
 
 #include <stddef.h>
 
-// What is composited.
+// The ribbons of an image.
 typedef struct Ribbons {
     const ScreenPoint *points;
     Shader shader;
@@ -18,15 +18,15 @@ typedef struct Ribbons {
                       // like the others; twice as much stands in for what is behind
 } Ribbons;
 
-// A thread's memory for it.
+// The memory that a thread needs.
 typedef struct CompositeScratch CompositeScratch;
 size_t composite_scratch_size(void); // bytes; aligned to 64
 
-// Adds `count` ribbons, those of the lower halves of `order`, near to far. Where less than
-// RIBBON_LEAST_THROUGH shines through all of a cell the rest may be left out.
+// Adds `count` ribbons from near to far; their numbers are the lower halves of `order`. The rest
+// may be left out of a cell once less than RIBBON_LEAST_THROUGH is seen through each of its pixels.
 void composite_block(const Block *block, BlockForm form, const Ribbons *ribbons,
                      const uint64_t *order, size_t count, CompositeScratch *scratch);
 
-// The same as a processor would that is no better than this one: the same bits.
+// The same with the code for an older processor; it gives the same bits. For tests.
 void composite_block_on(SimdLevel level, const Block *block, BlockForm form, const Ribbons *ribbons,
                         const uint64_t *order, size_t count, CompositeScratch *scratch);

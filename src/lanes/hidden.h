@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How far away hair may be and still be seen, by squares of the image: ribbons behind all that is
-// opaque around them are not binned.
+// The depth from which on hair is hidden by mesh or floor, for squares of the image. Ribbons that
+// lie behind everything opaque around them are not binned.
 #pragma once
 
 #include "base/error.h"
@@ -20,13 +20,14 @@ typedef struct Hidden {
     uint64_t version; // LaneBase.depth_version that it was found for
 } Hidden;
 
-// Of an image of width x height px with this base. RESULT_FAILED if memory is short.
+// Fills in the depths for an image of width x height px with this base. RESULT_FAILED if memory is
+// short.
 Result hidden_find(Hidden *hidden, const BlockBase *base, const float depth[2], int width,
                    int height, Error *error);
 void hidden_destroy(Hidden *hidden);
 
-// Whether a box of pixels (first and last column and row), nothing of which is nearer than 1/w
-// `inverse_w`, lies behind.
+// Whether a box of pixels (first and last column and row) is hidden. Nothing in it is nearer than
+// `inverse_w` (1/w).
 static inline bool hidden_hides(const Hidden *hidden, int left, int top, int right, int bottom,
                                 float inverse_w)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A light at 16 points, of hair, mesh or floor.
+// The light of a lamp at 16 points of hair, mesh or floor.
 #pragma once
 
 #include "base/simd.h"
@@ -9,8 +9,8 @@
 
 enum { LAMP_POINTS = STRAND_TILE };
 
-// Light i at points x (m): the unit vectors towards it, and the share of its colour that a surface
-// square to it is given, were nothing between them.
+// Light i at points x (m): the unit vectors towards the light, and the share of its colour that a
+// surface which faces the light receives, without shadows.
 SIMD_INLINE void lamp_find(const DrawParams *draw, int i, const float x[3][LAMP_POINTS],
                            float way[3][LAMP_POINTS], float share[LAMP_POINTS])
 {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The hair of an image in the processor's memory, and where passes keep what they find of its
-// points.
+// The hair of an image, in the CPU's memory, and the numbering of its points.
 #pragma once
 
 #include "draw/mapped_caster.h"
@@ -20,14 +19,15 @@ typedef struct LaneHair {
     size_t first_point;          // points of the batches before: [strand][point]
 } LaneHair;
 
-// All of an image.
+// All hair of an image.
 typedef struct LaneHairs {
     const LaneHair *list;
     uint32_t count;
     size_t tiles, points; // of all: points less than 2^32
 } LaneHairs;
 
-// Point k of a strand, m: found before or, where there are too many to keep, now.
+// Point k of a strand, m: from the table of points, or, if there are too many points to keep,
+// computed here.
 static inline void lane_hair_point(const LaneHair *hair, uint32_t strand, uint32_t k, float x[3])
 {
     const MappedCaster *caster = &hair->caster;
@@ -55,7 +55,7 @@ static inline void lane_hair_point(const LaneHair *hair, uint32_t strand, uint32
                weights.after * ways[2][c];
 }
 
-// The batch that a point belongs to.
+// The batch to which a point belongs.
 static inline const LaneHair *lane_hair_of(const LaneHairs *hairs, size_t point)
 {
     uint32_t i = 0;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The room lanes draws hair by the processor's own lanes and threads, from its positions in memory
-// to the image: maps of shadows (shadow.h), light among hair (scatter.h), mesh and floor (base.h),
-// then the hair: projected (project.h), binned (bins.h) and composited block by block (raster.h),
-// shaded where it is seen (shade.h). It knows no OpenGL.
+// The room lanes draws hair in C, with vector units and threads, from positions in memory to the
+// image: shadow maps (shadow.h), light among hair (scatter.h), mesh and floor (base.h), then the
+// hair, which is projected (project.h), binned (bins.h) and composited block by block (raster.h).
+// Points are shaded where they are seen (shade.h). The room does not know OpenGL.
 #pragma once
 
 #include "draw/backend.h"
@@ -11,7 +11,7 @@
 #include "lanes/scatter.h"
 #include "lanes/shadow_points.h"
 
-// A batch, as passes that are kept see it.
+// Data of a batch that is kept from frame to frame.
 typedef struct LaneBatch {
     LaneLook look;
     TintTable tints;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What 16 points of hair show to the eye of the light among hair, for loops over lanes: the
-// radiance of the eight cells around each point (trilinear), weighted by what a fibre with its
-// tangent sends from each direction to the eye. Both are found together, for all tangents of a
-// patch, when the first point asks for a patch of a cell (light_grid_patch): points that follow
-// interpolate.
+// The light among hair that 16 points send to the eye. It is the radiance of the eight cells around
+// each point (trilinear), weighted by the share that a fibre with the point's tangent scatters from
+// each direction to the eye. Both are computed together for 16 tangents, a patch, when the first
+// point asks for this patch of a cell (light_grid_patch). Points that follow interpolate in the
+// patch.
 #pragma once
 
 #include "lanes/light_grid_state.h"
@@ -11,7 +11,7 @@
 #include "glsl/common/shared.h"
 #include "glsl/kernel/cell.h"
 
-// Turns tangents as tables need them.
+// Turns tangents into the frame of the tables, which are made for one direction to the eye.
 SIMD_INLINE void grid_turn_tangents(const float eye[3], const float axis[3],
                                     const float p[3][STRAND_TILE], float t[3][STRAND_TILE])
 {
@@ -24,8 +24,9 @@ SIMD_INLINE void grid_turn_tangents(const float eye[3], const float axis[3],
     }
 }
 
-// Where points lie. By axis, the cells before and behind each point, as their part of a cell's
-// number, and their shares; the number of the cell of its own; its tangent.
+// The place of 16 points among cells and tangents. For each axis: the cells before and behind each
+// point, as their part of a cell's number, and their weights. Then the number of the point's own
+// cell, and the place of its tangent in its patch.
 typedef struct GridPlaces {
     int cell[3][2][STRAND_TILE], own[STRAND_TILE];
     float share[3][2][STRAND_TILE];
@@ -63,10 +64,10 @@ SIMD_INLINE void grid_find_places(const LightLattice *lattice, const float x[3][
     }
 }
 
-// Two nodes beside each other: red, green, blue and nothing of each.
+// Two neighbouring nodes: red, green, blue and an unused number of each.
 typedef float GridPair __attribute__((vector_size(32), aligned(4), may_alias));
 
-// What point i shows.
+// The light that point i sends to the eye.
 SIMD_INLINE void grid_show_point(const LightGridState *state, int kind, const GridPlaces *places,
                                  int i, float seen[3])
 {
@@ -87,8 +88,8 @@ SIMD_INLINE void grid_show_point(const LightGridState *state, int kind, const Gr
     for (int c = 0; c < 3; ++c) seen[c] = row[c] + places->u[i] * (row[4 + c] - row[c]);
 }
 
-// What the first `count` of 16 points show: linear RGB. x: world, m; tangents: world, of any
-// length; both must be numbers in all lanes. Needs light_grid_prepare.
+// The light that the first `count` of 16 points send to the eye, linear RGB. x: world, m. Tangents:
+// world, of any length. Neither may be NaN or infinite in any lane. Call light_grid_prepare first.
 SIMD_INLINE void light_grid_show(const LightGrid *grid, int kind, const float x[3][STRAND_TILE],
                                  const float tangent[3][STRAND_TILE], int count,
                                  float seen[3][STRAND_TILE])

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the parts of the light grid share: light_grid_*.c.
+// The data that the parts of the light grid share (light_grid_*.c).
 #pragma once
 
 #include "base/simd.h"
@@ -17,25 +17,26 @@ enum {
 // Steps in which areas are added up.
 #define ITEM_STEPS ((float)LIGHT_STEPS)
 
-// The lanes of a group as one vector, wherever they lie. (Compilers do not find it by themselves
-// among three channels.)
+// The lanes of a group as one vector, at any address. (Compilers do not find this vector by
+// themselves among three channels.)
 typedef float GridLanes __attribute__((vector_size(4 * GRID_LANES), aligned(4), may_alias));
 
-// Of a row of cells, along the first axis across a group's way, those that a sweep needs and those
-// of them whose light can be another than what comes from around: from [0] to before [1].
+// The cells of a row that a sweep visits, from [0] to before [1]. A row runs along the first axis
+// across the group's direction. `swept` are the cells whose light can differ from the
+// environment's; `needed` are those whose light is asked for.
 typedef struct GridSpan {
     int needed[2], swept[2];
 } GridSpan;
 
-// A part of a segment, in the order of cells: its class of tangent (and kind), its area over h^2,
-// and of that what each light meets, all in steps of 2^-16.
+// The part of a segment in one cell, sorted by cells: its class (tangent and kind), its area
+// divided by h^2, and the parts of this area that each light reaches, in steps of 2^-16.
 typedef struct GridItem {
     uint32_t class, area;
     uint32_t lit[]; // [lights]; then, where hair is painted, the albedo over its kind's by channel
 } GridItem;
 
-// What cells show of fibres, by patches of tangents (kernel/cell.h): found when a point first asks,
-// by whichever thread.
+// The light that fibres in cells send to the eye, in patches of tangents (kernel/cell.h). The
+// thread whose point first asks for a patch computes it.
 typedef struct GridPatches {
     _Atomic int *of; // [kinds][active + 1][CELL_PATCHES]: number + 1 of the patch; 0: not found
     float (*seen)[CELL_PATCH_NODES][4]; // [room]: red, green, blue and nothing
@@ -78,7 +79,7 @@ typedef struct LightGridState {
     GridPatches *patches;
 } LightGridState;
 
-// Where a group's lanes of a cell lie.
+// The values of a group for a cell.
 static inline float *grid_lane(const LightGridState *state, float *of, int group, int slot)
 {
     return of + ((size_t)group * (size_t)state->active + (size_t)slot) * GROUP_WIDE;
@@ -102,13 +103,14 @@ static inline GridSpan *grid_spans(const LightGridState *state, int group, int s
     return state->spans + (size_t)group * most + (size_t)slice * (size_t)tall;
 }
 
-// Of a row those that are worked out, in an order that light comes from around in, or not.
+// The cells of a row that an order visits; `around`: light comes from the environment in it.
 static inline const int *grid_span_cells(const GridSpan *span, bool around)
 {
     return around ? span->needed : span->swept;
 }
 
-// Widens `cells` (empty: the first lies behind the last) to those of another row.
+// Widens `cells` so that it includes the cells of another row. A range is empty if its first cell
+// lies behind its last.
 static inline void grid_span_join(int cells[2], const int other[2])
 {
     if (other[0] >= other[1]) return;
@@ -119,35 +121,35 @@ static inline void grid_span_join(int cells[2], const int other[2])
 
 // --- The parts, in their order.
 
-// Lattice, items, what is in each cell. False if there is no hair.
+// Finds lattice, items and the content of each cell. False if there is no hair.
 bool light_grid_fill(LightGridState *state, const GridScene *scene, Error *error, Result *result);
 
-// Its steps. Where the cells lie; false: there is no hair.
+// The steps of light_grid_fill. The place of the cells; false: there is no hair.
 bool light_grid_find_lattice(LightGridState *state, const GridScene *scene);
-// Counts the items of each part and cell, in `first_item`; with `emit`, which needs what
-// light_grid_make_slots makes of that, puts them where they belong.
+// Counts the items of each thread and cell in `first_item`. With `emit`, after
+// light_grid_make_slots, it writes the items to their places.
 void light_grid_place(LightGridState *state, const GridScene *scene, bool emit);
 void light_grid_make_slots(LightGridState *state);
-// Of the items what a sweep needs. False if memory is short.
+// Computes from the items the content of the cells that sweeps need. False if memory is short.
 bool light_grid_fill_cells(LightGridState *state, const GridScene *scene);
 
-// Which cells sweeps visit. False if memory is short.
+// Finds the cells that sweeps visit. False if memory is short.
 bool light_grid_find_spans(LightGridState *state);
 
-// One order: sweeps `source` and, with `sky`, what comes from around; adds it to `light` (or
-// begins it: `fresh`). light_grid_scatter makes the next order's source.
+// Sweeps one order: `source`, and with `sky` also the environment's light. Adds it to `light`, or
+// with `fresh` begins `light`. light_grid_scatter makes the source of the next order.
 void light_grid_sweep(LightGridState *state, const GridScene *scene, bool sky, bool fresh);
 void light_grid_scatter(LightGridState *state);
-// The light of what has no cell near it: that from around.
+// The light of points that have no cell near them: the environment's.
 void light_grid_find_around(LightGridState *state, const GridScene *scene);
-// Adds what hair meets of the last order to `all`; whether too much of the light would be left to
-// light_grid_close.
+// Adds the light of the last order that reaches hair to `all`. Returns whether light_grid_close
+// would have to extrapolate too much of the light.
 bool light_grid_needs_more(const LightGridState *state, float all[3]);
-// The light of all orders; with `further`, of those after the last, too.
+// Sums the light of all orders; with `further` also of the orders after the last one.
 void light_grid_close(LightGridState *state, bool further);
 
-// What a cell (slot `active`: none) shows of the tangents of a patch, found if it is not yet; in
-// `scratch` if there is no room.
+// The patch of a cell (slot `active`: outside of all cells), which is computed if it is not there
+// yet. If there is no room it is written to `scratch`.
 const float (*light_grid_find_patch(const LightGridState *state, int kind, int slot, int patch,
                                     float scratch[CELL_PATCH_NODES][4]))[4];
 

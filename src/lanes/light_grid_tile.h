@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The strands that stand for all in the cells of a light grid, 16 at once, one a lane, for
-// light_grid_lattice.c and light_grid_items.c.
+// The strands that represent all hair in the cells of a light grid, 16 at once, one for each lane.
+// For light_grid_lattice.c and light_grid_items.c.
 #pragma once
 
 #include "lanes/light_grid_state.h"
 
 enum { W = STRAND_TILE };
 
-// In lanes beyond `strands` is the first one's strand again.
+// Lanes from `strands` on repeat the first strand.
 typedef struct GridStrands {
     const GridHair *hair;
     int strands;
@@ -15,7 +15,7 @@ typedef struct GridStrands {
     int number[W];
 } GridStrands;
 
-// Turns of 16 strands of a batch.
+// The number of groups of 16 strands of a batch.
 static inline int grid_turns(const GridScene *scene, const GridHair *hair)
 {
     return (
@@ -47,7 +47,7 @@ SIMD_INLINE void grid_read_points(const GridStrands *strands, int j, float x[3][
     }
 }
 
-// The same along the lattice's axes.
+// The same in the lattice's axes.
 SIMD_INLINE void grid_turn_points(const LightLattice *lattice, const GridStrands *strands, int j,
                                   float out[3][W])
 {
@@ -59,7 +59,7 @@ SIMD_INLINE void grid_turn_points(const LightLattice *lattice, const GridStrands
     }
 }
 
-// The turns of one of `parts` threads, from range[0] to before range[1].
+// The groups that one of `parts` threads works on, from range[0] to before range[1].
 static inline void grid_turn_range(const GridScene *scene, const GridHair *hair, int part,
                                    int parts, int range[2])
 {

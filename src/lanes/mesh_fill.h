@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One triangle to depths and what goes with them, 16 px at once, for mesh_raster_draw.c.
+// Fills one triangle: depths and the values beside them, 16 px at once. For mesh_raster_draw.c.
 #pragma once
 
 #include "base/simd.h"
@@ -15,10 +15,11 @@ enum {
     VALUES = 5 // of a vertex: depth, 1/w, normal / w
 };
 
-// Middle and edge samples (1/256 px), the latter where llvmpipe has them.
+// The places of the middle sample and of the edge samples in a pixel (1/256 px). The edge samples
+// are at llvmpipe's places.
 static const int PLACE[PLACES][2] = {{128, 128}, {96, 32}, {224, 96}, {32, 160}, {160, 224}};
 
-// What is written.
+// The planes that are written.
 typedef struct MeshPlanes {
     int width, height, pitch, parts;
     float *depth[PLACES]; // [height][pitch]; for depths alone the first
@@ -30,7 +31,7 @@ typedef struct Corner {
     float value[VALUES];
 } Corner;
 
-// What changes evenly over the screen: at a corner, and with each px.
+// A value that is linear on the screen: at a corner, and its change with each px.
 typedef struct Slope {
     float from, x, y;
 } Slope;
@@ -46,7 +47,7 @@ static int most(int a, int b, int c)
     return -least(-a, -b, -c);
 }
 
-// First and last px with a sample, of those before `end`.
+// The first and last px before `end` that have a sample in the triangle.
 static void find_range(const Corner *const c[3], int axis, bool edges, int end, int range[2])
 {
     int low = least(c[0]->place[axis], c[1]->place[axis], c[2]->place[axis]),
@@ -58,7 +59,8 @@ static void find_range(const Corner *const c[3], int axis, bool edges, int end, 
     if (range[1] > end - 1) range[1] = end - 1;
 }
 
-// In double arithmetic, since a narrow triangle's slopes are differences of nearly equal numbers.
+// Uses double precision, because a narrow triangle's slopes are differences of nearly equal
+// numbers.
 static Slope find_slope(const Corner *const c[3], int value, double over_area)
 {
     double along = (double)(c[1]->value[value] - c[0]->value[value]) * over_area,
@@ -78,7 +80,7 @@ SIMD_INLINE float slope_at(const Slope *slope, const Corner *corner, const int p
            slope->y * ((float)(y * STEPS + place[1] - corner->place[1]) * (1.0f / STEPS));
 }
 
-// The bands of rows are dealt out in turn.
+// Threads take the bands of rows in turn.
 SIMD_INLINE bool is_mine(const MeshPlanes *to, int part, int band)
 {
     return band % to->parts == part;
@@ -91,7 +93,7 @@ static bool any_is_mine(const MeshPlanes *to, int part, const int rows[2])
            (part - first % to->parts + to->parts) % to->parts <= last - first;
 }
 
-// 16 px at one place of theirs: writes the depth where the triangle is nearer, and says where.
+// One sample of 16 px: writes the depth where the triangle is nearer, and says where it was.
 SIMD_INLINE void fill_place(const int edge[3], const int (*steps)[W], float from, float step,
                             float *depth, int hit[W])
 {

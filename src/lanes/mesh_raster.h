@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Triangles of a mesh to depths, as OpenGL fills them: samples on an edge that two triangles share
-// belong to one of them (coordinates in steps of 1/256 px, edges by whole numbers), the nearest
-// sample stays, and of equal depths that of the first triangle. Both sides are seen. Threads take
-// bands of rows: the bits are the same for any number of them.
+// Rasterises the triangles of a mesh by OpenGL's rules: a sample on an edge that two triangles
+// share belongs to exactly one of them (coordinates are in steps of 1/256 px and edges are whole
+// numbers), the nearest sample stays, and of equal depths that of the first triangle. Triangles are
+// seen from both sides. Threads take bands of rows; the bits are the same for any number of
+// threads.
 #pragma once
 
 #include "base/error.h"
@@ -10,7 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// A mesh as it stands in one frame.
+// A mesh at its place in one frame.
 typedef struct PlacedMesh {
     const float (*position)[3];    // [vertex_count], m, the mesh's frame
     const float (*normal)[3];      // [vertex_count], unit; for depths alone NULL
@@ -20,7 +21,7 @@ typedef struct PlacedMesh {
     float rotation[4], translation[3]; // quaternion x y z w, m: the mesh's frame -> world
 } PlacedMesh;
 
-// Vertices on the screen. A zeroed struct is empty; what was filled may be forgotten.
+// Vertices on the screen, kept only as memory for the next call. A zeroed struct is empty.
 typedef struct MeshRaster {
     int (*place)[2];   // [room], owned: 1/256 px
     float *value[5];   // [room], owned: depth, 1 over w, normal over w
@@ -30,10 +31,10 @@ typedef struct MeshRaster {
 
 void mesh_raster_destroy(MeshRaster *raster);
 
-// Of each texel's middle the depth of the mesh, 0..1; 1: nothing. depths[side][side], side a
-// multiple of 16. `rows`: of the matrix by which (x, y, z, 1) of the world becomes
-// (u w, v w, depth w, w), u and v in texels. What is not between 0 and 1 in depth is cut off.
-// RESULT_FAILED if memory is short.
+// Writes the depth of the mesh, 0..1, at each texel's middle; 1: nothing. depths[side][side], side
+// a multiple of 16. `rows`: of the matrix that turns (x, y, z, 1) of the world into (u w, v w,
+// depth w, w), with u and v in texels. Parts of the mesh whose depth is not between 0 and 1 are cut
+// off. RESULT_FAILED if memory is short.
 Result mesh_raster_depths(MeshRaster *raster, const PlacedMesh *mesh, const float rows[4][4],
                           int side, float *depths, int parts, Error *error);
 
@@ -58,7 +59,7 @@ typedef struct MeshSurface {
 Result mesh_surface_resize(MeshSurface *surface, int width, int height, Error *error);
 void mesh_surface_destroy(MeshSurface *surface);
 
-// Fills the surface. `rows`: see above, u and v in px of the window, depths before the eye as
+// Fills the surface. `rows`: as above, with u and v in px of the window and depths from the eye as
 // OpenGL has them.
 Result mesh_raster_surface(MeshRaster *raster, const PlacedMesh *mesh, const float rows[4][4],
                            MeshSurface *surface, int parts, Error *error);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A block's pixels between the image and what ribbons are composited in.
+// A block's pixels before and after its ribbons are composited.
 #pragma once
 
 #include "image/image.h"
@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-// How pixels become colours.
+// How light becomes colours of the image.
 typedef struct PixelStyle {
     int samples;      // across a pixel: 1, 2 or 4
     int tone;         // Tone or TONE_LIGHT
@@ -18,13 +18,13 @@ typedef struct PixelStyle {
     float depth[2];      // clip z = x * w + y
 } PixelStyle;
 
-// Nothing before the base, nor anything of it hidden; NULL: there is none in this block.
+// Clears a block: no ribbons yet, and hidden only by the base. NULL: no base in this block.
 void pixels_clear(const Block *block, const BlockBase *base, const PixelStyle *style);
 
-// Whether some of the base lies in the block that begins at x, y.
+// Whether a part of the base lies in the block that begins at x, y.
 bool pixels_have_base(const BlockBase *base, int x, int y);
 
-// Writes the block's pixels to the image of 3 or 4 channels, as far as they lie in it. NULL base:
-// none in this block.
+// Writes those pixels of the block that lie in the image, of 3 or 4 channels. NULL base: no base in
+// this block.
 void pixels_store(const Block *block, const BlockBase *base, const PixelStyle *style,
                   const Image *image);

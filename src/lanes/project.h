@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Strands on the screen: where their points lie, which are kept, and the ribbons between those.
+// Projects strands to the screen: finds their points, chooses those to keep, and lists the ribbons
+// between them.
 #pragma once
 
 #include "base/error.h"
@@ -7,14 +8,14 @@
 #include "lanes/hidden.h"
 #include "lanes/lane_hair.h"
 
-// A point that is kept; those of a strand stand side by side, from root to tip.
+// A kept point. The kept points of a strand lie side by side, from root to tip.
 typedef struct ScreenPoint {
     float x, y;      // px
     float inverse_w; // 1/m, see RibbonPoint; with its sign set: the strand's last one
     uint32_t place;  // half-width (px, a level) | the point's number on its strand << 16
 } ScreenPoint;
 
-// A ribbon from a point to the next, and the blocks of pixels that its box touches.
+// A ribbon from a kept point to the next, and the blocks of pixels that its box touches.
 typedef struct RibbonItem {
     uint32_t depth; // 1/w in its middle, a positive float's bits
     uint32_t slot;  // its first point
@@ -35,10 +36,10 @@ typedef struct Projection {
     bool short_of_memory[PARALLEL_MOST];
 } Projection;
 
-// Projects all strands into the image of `draw`. `hidden`: what is opaque in it; NULL: nothing.
-// Points are left out where the ribbon is straight for no more than `far` px (at most; colours are
-// found at those that are kept). `parts`: 1 to PARALLEL_MOST, the same in each call. RESULT_FAILED
-// if memory is short.
+// Projects all strands into the image of `draw`. `hidden`: depths of opaque surfaces; NULL: none. A
+// point is left out where the ribbon is straight and no longer than `far` px; colours are computed
+// at the kept points only. `parts`: threads, 1 to PARALLEL_MOST, the same in each call.
+// RESULT_FAILED if memory is short.
 Result projection_find(Projection *projection, const LaneHairs *hairs, const DrawParams *draw,
                        const Hidden *hidden, float far, int parts, Error *error);
 void projection_destroy(Projection *projection);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From ribbons to an image, block by block, on all threads.
+// Turns ribbons into an image, block by block, on all threads.
 #pragma once
 
 #include "lanes/bins.h"
@@ -15,7 +15,7 @@ typedef struct LaneRaster {
     size_t sorting_room;
 } LaneRaster;
 
-// An image: its ribbons, and what they are composited with.
+// Input for an image: its ribbons, and what they are composited over.
 typedef struct RasterScene {
     Ribbons ribbons;
     const BlockBase *base; // NULL: nothing
@@ -31,5 +31,5 @@ void raster_destroy(LaneRaster *raster);
 // Bins the ribbons into blocks. RESULT_FAILED when memory is short.
 Result raster_bin(LaneRaster *raster, const Projection *projection, Error *error);
 
-// Composites what was binned and writes all pixels of the image.
+// Composites the binned ribbons and writes all pixels of the image.
 void raster_draw(LaneRaster *raster, const RasterScene *scene);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The light among hair (light_grid.h) for images of the lanes, kept while hair, lights and mesh
-// stand still.
+// The light among hair (light_grid.h) for this backend. It is kept while hair, lights and mesh do
+// not change.
 #pragma once
 
 #include "draw/fibre_kinds.h"
@@ -20,8 +20,9 @@ typedef struct LaneScatter {
     bool any;
 } LaneScatter;
 
-// Finds the light, unless it is the last frame's, and makes it ready for this eye. `casters` are
-// those of the frame's hair. *shown: whether there is any. RESULT_FAILED if memory is short.
+// Computes the light, unless that of the last frame is still right, and prepares it for this eye.
+// `casters`: of the frame's hair. *shown: whether there is any light among hair. RESULT_FAILED if
+// memory is short.
 Result lane_scatter_draw(LaneScatter *scatter, const ScatterOptions *options,
                          const BackendFrame *frame, const MappedCaster *casters,
                          const LaneShadow *shadow, bool *shown, Error *error);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The light that points of hair show to the eye. It is found when the first ribbon that shows a
-// point is composited, whatever thread that is, and kept for the others.
+// The light that points of hair send to the eye. A point is shaded when the first ribbon that shows
+// it is composited, on whatever thread; the result is kept for other ribbons and blocks.
 #pragma once
 
 #include "base/error.h"
@@ -30,32 +30,33 @@ typedef struct LaneLook {
     int kind;                // of marschner: of the fibres, in `grid`
 } LaneLook;
 
-// What shines.
+// All light of an image.
 typedef struct LaneLight {
     const DrawParams *draw;
     const LaneShadow *shadow; // NULL: none
     const LightGrid *grid;    // the light among hair; NULL: none is found
 } LaneLight;
 
-// What is known of the points of an image. A zeroed struct is empty.
+// The shaded points of an image. A zeroed struct is empty.
 typedef struct Shades {
     _Atomic uint64_t *points; // [hairs->points], owned: three levels, and the image's number
     size_t room;
     uint16_t image;
 } Shades;
 
-// Forgets all: another image, of `points` points. RESULT_FAILED if memory is short.
+// Begins a new image of `points` points, none of which is shaded. RESULT_FAILED if memory is short.
 Result shades_begin(Shades *shades, size_t points, Error *error);
 void shades_destroy(Shades *shades);
 
-// A shader: what points are shaded with.
+// Everything that shading a point needs.
 typedef struct Shader {
     const LaneHairs *hairs;
     const LaneLight *light;
     const Shades *shades;
 } Shader;
 
-// Shades points, numbers among all of the hair's, on a processor of this level.
+// Shades points, given by their numbers among all points of the hair, with the code for a processor
+// of this level.
 typedef void ShadePoints(const Shader *shader, const uint32_t *points, int count);
 extern ShadePoints *const shade_points_on[SIMD_LEVELS];
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What hair and mesh leave of each light that casts shadows, made and read by C over lanes: maps of
-// one frame, and their light at any 16 points. What glsl/draw/shadow.glsl and shadow_surface.glsl
-// read, found where it is asked for.
+// How much of each light reaches a point past hair and mesh, in C: makes the shadow maps of a
+// frame, and reads them for 16 points at once. The same as glsl/draw/shadow.glsl and
+// shadow_surface.glsl, but only for points that are asked for.
 //
-// The functions that read are inlined into loops of SIMD_STAGEs; each finds 16 points at once.
+// The functions that read maps are inlined into loops of SIMD_STAGEs.
 #pragma once
 
 #include "base/error.h"
@@ -54,11 +54,11 @@ void lane_shadow_destroy(LaneShadow *shadow);
 // Makes the maps of this scene, unless they show it already. RESULT_FAILED if memory is short.
 Result lane_shadow_draw(LaneShadow *shadow, const LaneShadowScene *scene, Error *error);
 
-// --- What is left at 16 points.
+// --- Light that reaches 16 points.
 
 enum { SHADOW_LOOK = STRAND_TILE }; // points
 
-// Where points lie before a map of hair, `inside`: on it, and before the light.
+// Places of points in a map of hair; `inside`: in the map and before the light.
 typedef struct ShadowLook {
     float u[SHADOW_LOOK], v[SHADOW_LOOK], z[SHADOW_LOOK], inside[SHADOW_LOOK];
 } ShadowLook;
@@ -76,7 +76,7 @@ SIMD_INLINE void shadow_look(const LaneShadow *shadow, int map, const float x[3]
     }
 }
 
-// Past hair, by deep maps. `width`: of the points' own fibres in texels.
+// The share past hair, from deep maps. `width`: of the points' own fibres, in texels.
 SIMD_INLINE void shadow_look_deep(const LaneShadow *shadow, int map, const ShadowLook *look,
                                   const float width[SHADOW_LOOK], const float opacity[SHADOW_LOOK],
                                   float left[SHADOW_LOOK])
@@ -117,7 +117,7 @@ SIMD_INLINE void shadow_look_deep(const LaneShadow *shadow, int map, const Shado
     for (int k = 0; k < N; ++k) left[k] = left_of_fibres(simd_positive(left[k]) * look->inside[k]);
 }
 
-// Past hair, by first depths.
+// The share past hair, from first depths.
 SIMD_INLINE void shadow_look_approx(const LaneShadow *shadow, int map, const ShadowLook *look,
                                     float left[SHADOW_LOOK])
 {
@@ -159,7 +159,8 @@ SIMD_INLINE void shadow_look_hair(const LaneShadow *shadow, int map, const Shado
         shadow_look_approx(shadow, map, look, left);
 }
 
-// Past the mesh, a share 0 .. 1, on hair and surfaces; `covered`: 1 where the map is, else 0.
+// The share past the mesh, 0 .. 1, for points on hair and surfaces; `covered`: 1 inside the map,
+// else 0.
 SIMD_INLINE void shadow_look_mesh(const LaneShadow *shadow, int map, const float x[3][SHADOW_LOOK],
                                   int taps, float past[SHADOW_LOOK], float covered[SHADOW_LOOK])
 {
@@ -205,7 +206,8 @@ SIMD_INLINE void shadow_look_mesh(const LaneShadow *shadow, int map, const float
 }
 
 // The share, 0 .. 1, of a map's light that reaches points x (m) in the middle of fibres, past hair
-// and mesh. `radius` (m) and `opacity` (to light) are the fibres', which do not shade themselves.
+// and mesh. `radius` (m) and `opacity` (to light) are those of the fibres themselves, whose own
+// shadow is left out.
 SIMD_INLINE void lane_shadow_left_of(const LaneShadow *shadow, int map,
                                      const float x[3][SHADOW_LOOK], const float radius[SHADOW_LOOK],
                                      const float opacity[SHADOW_LOOK], float left[SHADOW_LOOK])
@@ -223,10 +225,11 @@ SIMD_INLINE void lane_shadow_left_of(const LaneShadow *shadow, int map,
     }
 }
 
-// The same on surfaces with unit normals, of the mesh (which mesh_lift has moved) or a floor.
-// `wrap`: the greatest cosine below the horizon from which light still counts; up to the same
-// above, a surface's own shadow comes in softly. `taps`: texels of the mesh's map each way that are
-// averaged, 2 .. SHADOW_MESH_TAPS. Where a light cannot shine the share is 1.
+// The same for points on surfaces with unit normals: of the mesh (moved by mesh_lift) or of a
+// floor. `wrap`: the greatest cosine below the horizon at which light still counts; up to the same
+// cosine above the horizon a surface's own shadow is faded in. `taps`: texels of the mesh's map
+// that are averaged along each axis, 2 .. SHADOW_MESH_TAPS. Where a light cannot shine the share is
+// 1.
 SIMD_INLINE void lane_shadow_left_on(const LaneShadow *shadow, const float x[3][SHADOW_LOOK],
                                      const float normal[3][SHADOW_LOOK], float wrap, int taps,
                                      float left[][SHADOW_LOOK])

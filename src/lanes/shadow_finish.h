@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// From what threads have drawn (shadow_splat.h) to maps that are read.
+// Turns the sums that threads have drawn (shadow_splat.h) into maps.
 #pragma once
 
 #include "lanes/shadow_map.h"
 
-// Where layers begin: depths[side][side] of map `map`, a smooth bound of its first depths (as
-// glsl/draw/shadow_spread.comp finds it).
+// Writes the depths at which layers begin: depths[side][side] of map `map`, a smooth lower bound of
+// the first depths (as glsl/draw/shadow_spread.comp).
 void shadow_finish_spread(ShadowMap *shadow, int map, float *depths);
 
-// The layers of map `map`, by its sums; `unit`: their steps for a fibre.
+// Writes the layers of map `map` from its sums; `unit`: steps of the sums for one fibre.
 void shadow_finish_layers(ShadowMap *shadow, int map, float unit, uint32_t *layers);
 
-// First depths of map `map`, not deep.
+// Writes the first depths of map `map`, for maps that are not deep.
 void shadow_finish_firsts(ShadowMap *shadow, int map, float *depths);

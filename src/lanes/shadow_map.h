@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Shadow maps of hair made by the processor's own lanes and threads: what the shaders
-// shadow_bounds, shadow_splat, shadow_spread and shadow_finish do, for CPU drivers, where an atomic
-// addition costs what ten others do. Needs no OpenGL. The same maps whatever number of threads.
+// Makes shadow maps of hair in C: the work of the shaders shadow_bounds, shadow_splat,
+// shadow_spread and shadow_finish, for CPU drivers, where one atomic addition costs as much as ten
+// others. Needs no OpenGL. The maps do not depend on the number of threads.
 #pragma once
 
 #include "base/error.h"
@@ -14,8 +14,8 @@ enum {
     SHADOW_MAP_LINES = 3 * SHADOW_LAYERS + 1 // three rows of all layers, and one more
 };
 
-// What maps are made with. Each thread draws into sums of its own; those of them all are the map.
-// There are fewer threads where sums would take more than 256 MiB.
+// Memory for making maps. Each thread draws into sums of its own, which are then added up. Fewer
+// threads are used if the sums would take more than 256 MiB.
 typedef struct ShadowMap {
     int side, coarse; // texels across a map and across that of the first depths
     int tiles;        // SHADOW_MAP_TILEs in a row
@@ -30,25 +30,27 @@ typedef struct ShadowMap {
     float *rows;    // [parts][SHADOW_MAP_LINES][side + 2], owned, deep: the same
 } ShadowMap;
 
-// `side`: a multiple of 8. `deep`: first depths and layers, else first depths alone, of every
-// texel. RESULT_FAILED when memory is short. Destroying a zeroed struct is legal.
+// `side`: a multiple of 8. `deep`: maps have first depths and layers; otherwise only the first
+// depth of every texel. RESULT_FAILED if memory is short. A zeroed struct may be destroyed.
 Result shadow_map_create(ShadowMap *shadow, int side, bool deep, Error *error);
 void shadow_map_destroy(ShadowMap *shadow);
 
-// Room to draw so many maps, as many at once as take no more than 256 MiB. RESULT_FAILED if memory
-// is short.
+// Makes room to draw so many maps. As many are drawn at once as fit into 256 MiB. RESULT_FAILED if
+// memory is short.
 Result shadow_map_reserve(ShadowMap *shadow, int maps, Error *error);
 
 // Words of the layers of one map.
 size_t shadow_map_layer_words(const ShadowMap *shadow);
 
-// Of each of `count` lights, at most MAX_LIGHTS, lowest u, v and depth, then the highest, of
-// particles within the reach of `params`; the lowest are above the highest if there are none.
+// The box of the hair for each of `count` lights (at most MAX_LIGHTS): lowest u, v and depth, then
+// the highest, of the particles within the reach of `params`. Without particles the lowest values
+// exceed the highest.
 void shadow_map_find_boxes(const ShadowMap *shadow, const CastParams *params, int count,
                            MappedCasters casters, double (*boxes)[6]);
 
-// All maps, for which there is room: depths[map][side][side], at which hair begins (not deep: its
-// first depths, 1 where there is none), and, deep, layers[map][row][column / SHADOW_MAP_TILE]
-// [SHADOW_LAYERS][SHADOW_MAP_TILE], as pack_layer has them; columns beyond the side are undefined.
+// Draws all maps, after shadow_map_reserve. depths[map][side][side] is the depth at which hair
+// begins (not deep: the first depth, 1 where there is no hair). Deep maps also have
+// layers[map][row][column / SHADOW_MAP_TILE][SHADOW_LAYERS][SHADOW_MAP_TILE], packed by pack_layer;
+// columns beyond the side are undefined.
 void shadow_map_draw(ShadowMap *shadow, const CastParams *params, int maps, MappedCasters casters,
                      float *depths, uint32_t *layers);

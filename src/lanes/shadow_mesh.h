@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Depth maps of a mesh before lights, drawn by C, with what decides most look-ups.
+// Depth maps of a mesh as lights see it, drawn in C, with bounds of squares of texels that decide
+// most look-ups.
 #pragma once
 
 #include "base/error.h"
@@ -22,11 +23,11 @@ typedef struct LaneMeshShadow {
     ShadowMeshKey drawn;
 } LaneMeshShadow;
 
-// Draws the maps that are placed, unless they show the mesh already; on `parts` threads.
-// RESULT_FAILED if memory is short.
+// Draws the placed maps on `parts` threads, unless they show the mesh already. RESULT_FAILED if
+// memory is short.
 Result shadow_mesh_draw(LaneMeshShadow *shadow, const ShadowFrames *frames, const PlacedMesh *mesh,
                         int parts, Error *error);
 void shadow_mesh_destroy(LaneMeshShadow *shadow);
 
-// The bounds of `maps` maps of side x side texels, a multiple of SHADOW_MESH_SQUARE.
+// Finds the bounds of `maps` maps of side x side texels; side is a multiple of SHADOW_MESH_SQUARE.
 void shadow_mesh_bound(const float *depths, int side, int maps, float (*bounds)[2], int parts);

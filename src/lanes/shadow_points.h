@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The points of hair, found once for projecting and shading.
+// The points of the hair's curves, computed once for shadows, projection and shading.
 #pragma once
 
 #include "draw/mapped_caster.h"
@@ -13,9 +13,9 @@ typedef struct ShadowPoints {
     size_t room;
 } ShadowPoints;
 
-// Finds the points of all curves, in metres (x, y, z of 16 strands each), on `parts` threads, and
-// leaves them in each caster's `points`. Without memory, or where they would take more than
-// 192 MiB, casters have none, and each pass finds them anew.
+// Computes the points of all curves, in metres (x, y, z of 16 strands each), on `parts` threads,
+// and sets each caster's `points`. If memory is short, or if they would take more than 192 MiB,
+// casters have no points and each pass computes them itself.
 void shadow_points_find(ShadowPoints *points, MappedCaster *casters, uint32_t count, int parts);
 
 void shadow_points_destroy(ShadowPoints *points);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Some of the strands of hair, which stand for all of them in shadow maps.
+// A sample of the strands, which represents all of them in shadow maps.
 #pragma once
 
 #include "base/error.h"
@@ -14,11 +14,11 @@ typedef struct ShadowSample {
     size_t position_room, paint_room;
 } ShadowSample;
 
-// Takes one of every so many neighbouring strands of each batch that no fewer than `least` strands
-// remain, the same ones as long as the casters' numbers of strands are the same; all if there are
-// fewer, or if `least` is 0. Neighbours stand beside each other in files and among followers, so
-// that no tuft loses more than others. What is taken has the weight of those that it stands for.
-// On `parts` threads. RESULT_FAILED if memory is short.
+// Takes one of every n neighbouring strands of each batch, with n as large as leaves at least
+// `least` strands; all strands if there are fewer, or if `least` is 0. The sample is the same as
+// long as the casters' numbers of strands are. Neighbours lie side by side in files and among
+// followers, so no tuft loses more than others. Each strand of the sample has the weight of the
+// strands that it represents. Runs on `parts` threads. RESULT_FAILED if memory is short.
 Result shadow_sample_take(ShadowSample *sample, MappedCasters casters, int least, int parts,
                           MappedCasters *taken, Error *error);
 void shadow_sample_destroy(ShadowSample *sample);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Strands into the sums of shadow maps, as points along their segments and, where they are wide,
-// across them (glsl/draw/shadow_splat.comp): one walk over the hair for several maps.
+// Draws strands into the sums of shadow maps, as points along their segments and, where these are
+// wide, across them (glsl/draw/shadow_splat.comp). One pass over the hair fills several maps.
 #pragma once
 
 #include "lanes/shadow_map.h"
@@ -14,5 +14,5 @@ typedef struct ShadowSplat {
     bool coarse;         // first depths of a coarse map
 } ShadowSplat;
 
-// Empties first depths or sums, and draws them, each thread its own.
+// Clears first depths or sums and draws them, each thread its own.
 void shadow_splat_draw(ShadowSplat *splat);

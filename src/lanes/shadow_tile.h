@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tiles of strands, one strand a lane, for passes that walk over hair.
+// Tiles of strands, one strand for each lane, for passes over all hair.
 #pragma once
 
 #include "base/simd.h"
@@ -10,7 +10,7 @@
 
 enum { W = STRAND_TILE, LAYERS = SHADOW_LAYERS };
 
-// Where a point of each strand lies before the light, and its radius (m).
+// The place of a point of each strand as the light sees it, and its radius (m).
 typedef struct Places {
     float u[W], v[W], z[W], w[W], radius[W];
 } Places;
@@ -24,13 +24,13 @@ typedef struct Tile {
     float share[W];              // a factor of all opacities
 } Tile;
 
-// Particle j of a tile's first strand; the others' follow.
+// Particle j of a tile's first strand; those of the other strands follow.
 static inline size_t tile_particle(const Tile *tile, int j)
 {
     return (tile->number * tile->caster->material.vertex_count + (size_t)j) * W;
 }
 
-// The ways from particle j of the tile's strands to the next, metres.
+// The vectors from particle j of the tile's strands to the next particle, metres.
 SIMD_INLINE void find_ways(const Tile *tile, int j, float ways[3][W])
 {
     const float(*from)[4] = tile->caster->position + tile_particle(tile, j), (*to)[4] = from + W;
@@ -38,8 +38,8 @@ SIMD_INLINE void find_ways(const Tile *tile, int j, float ways[3][W])
         for (int i = 0; i < W; ++i) ways[c][i] = to[i][c] - from[i][c];
 }
 
-// A segment of the curves through a tile's strands: where it begins, the ways before, along and
-// after it, and what Hermite's weights have in common.
+// A segment of the curves through a tile's strands: its first end, the vectors before, along and
+// after it, and the part of Hermite's weights that all of its points share.
 typedef struct CurveSegment {
     float start[3][W], ways[3][3][W];
     float before[W], from[W], to[W], after[W]; // CurveKnots
@@ -83,7 +83,7 @@ SIMD_INLINE void find_on_segment(const CurveSegment *segment, bool spline, float
                       weight[1][i] * segment->ways[1][c][i] + weight[2][i] * segment->ways[2][c][i];
 }
 
-// Point k of each strand in the world: `own` where the caster has no points found before.
+// Point k of each strand in the world; `own` receives it if the caster has no table of points.
 SIMD_INLINE const float (*find_points(const Tile *tile, int k, float own[3][W]))[W]
 {
     const MappedCaster *caster = tile->caster;
@@ -104,7 +104,7 @@ SIMD_INLINE const float (*find_points(const Tile *tile, int k, float own[3][W]))
     return (const float(*)[W])own;
 }
 
-// The radius that the paint of a particle has, as a share of the material's.
+// The radius of a particle by its paint, as a share of the material's radius.
 SIMD_INLINE float share_of(const Tile *tile, size_t particle)
 {
     return simd_float_of(tile->caster->paint[particle][2]);
@@ -135,7 +135,7 @@ SIMD_INLINE void project_points(const CastParams *params, const float x[3][W], P
     }
 }
 
-// A tile of a caster, by its number or by its turn.
+// A tile of a caster, by its number or by its place in the order.
 static inline Tile open_tile_at(const MappedCaster *caster, size_t number)
 {
     const MaterialParams *material = &caster->material;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The order in which tiles of strands are best walked: neighbours in space after each other, so
-// that what they touch of maps and cells is still near the processor.
+// The order in which passes visit tiles of strands: neighbours in space follow each other, so that
+// the texels and cells that they touch stay in the cache.
 #pragma once
 
 #include "draw/mapped_caster.h"
@@ -14,8 +14,8 @@ typedef struct TileOrder {
     size_t room;
 } TileOrder;
 
-// Finds each caster's order by where the middles of its strands are, and leaves it in the caster's
-// `order`. Without memory casters have none: tiles are walked by their numbers.
+// Finds each caster's order from the middles of its strands, and sets its `order`. If memory is
+// short casters have none: tiles are then visited by their numbers.
 void tile_order_find(TileOrder *order, MappedCaster *casters, uint32_t count);
 
 void tile_order_destroy(TileOrder *order);

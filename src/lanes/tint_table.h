@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Marschner's table for the strands of one section, all of one colour but for their brightness: a
-// point needs four texels where the table of all colours (FibreTable) takes 24.
+// Marschner's table for a section whose strands have one colour and differ only in brightness. A
+// point reads four texels of it instead of the 24 of the table of all colours (FibreTable).
 #pragma once
 
 #include "base/error.h"
 #include "draw/fibre_lobes.h"
 
-// Of a brightness 1 - variation .. 1 + variation: how many, and what they are made of.
+// The table, in slices of brightness from 1 - variation to 1 + variation, and the values that it
+// was made from.
 typedef struct TintTable {
     float color[3]; // linear RGB, >= 0
     float variation;
@@ -18,9 +19,9 @@ typedef struct TintTable {
     int slices;
 } TintTable;
 
-// The shares of R, TT and TRT by azimuth and cosine, of a fibre whose diameter lets color * (1 +
-// variation * (2 slice / (slices - 1) - 1)) through, at most 1. Made anew if anything differs; a
-// zeroed struct is empty. RESULT_FAILED if memory is short.
+// Makes the table: the shares of R, TT and TRT by azimuth and cosine, for fibres whose diameter
+// lets color * (1 + variation * (2 slice / (slices - 1) - 1)) through, at most 1. It is made anew
+// only if anything differs. A zeroed struct is empty. RESULT_FAILED if memory is short.
 Result tint_table_make(TintTable *tints, FibreTable table, const float color[3], float variation,
                        Error *error);
 void tint_table_destroy(TintTable *tints);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The A-buffer: the pool of all fragments of a band of the image, and its resolution to colours.
+// The A-buffer: the pool of all fragments of a band of the image, and the pass that resolves them
+// to colours.
 #pragma once
 
 #include "gpu/shader.h"
@@ -27,7 +28,7 @@ typedef struct ABuffer {
     int most_turns;     // fragments of a pixel that can be visited
 } ABuffer;
 
-// What drawing a band has stored.
+// Counts of a band that was drawn.
 typedef struct ABufferUse {
     uint64_t fragments;
     uint32_t fullest;          // fragments of the fullest shard
@@ -37,42 +38,41 @@ typedef struct ABufferUse {
 // CPU drivers end loops silently after 65,535 turns.
 enum { ABUFFER_MOST_TURNS = 65000 };
 
-// `width`: of the image, px, whose pixels are the means of `samples` x `samples`. `layers`
-// fragments of a sample are blended in order, >= 0, with `depth` >= 1. `tone`: a Tone, or
-// TONE_LIGHT for premultiplied light as it is. `depth`: pixels show their nearest fragment's
-// distance before the eye instead. `software`: by a CPU driver. `pool_bytes`: the pool's largest
-// size, 0 for the driver's limit.
+// `width`: of the image, px. A pixel is the mean of `samples` x `samples` samples. `layers`:
+// fragments of a sample that are blended in order, >= 0, with `depth` >= 1. `tone`: a Tone, or
+// TONE_LIGHT for premultiplied linear light. `depth`: pixels show the distance of their nearest
+// fragment instead of light. `software`: the driver draws on the CPU. `pool_bytes`: the pool's
+// largest size; 0: the driver's limit.
 Result abuffer_create(ABuffer *abuffer, const GpuLimits *limits, int width, int samples, int layers,
                       int tone, bool depth, bool software, int64_t pool_bytes, Error *error);
 void abuffer_destroy(ABuffer *abuffer);
 
-// Makes what resolving over a mesh needs; nothing if it is there.
+// Makes what resolving over a mesh needs, unless it is there.
 Result abuffer_add_base(ABuffer *abuffer, Error *error);
 
-// Rows that one band can have at most; >= 1 for every image that can be drawn.
+// The most rows of a band; >= 1 for every image that can be drawn.
 int abuffer_most_rows(const ABuffer *abuffer, int height);
 
-// Fragments that a shard can hold.
+// The fragments that a shard can hold.
 int abuffer_shard_nodes(const ABuffer *abuffer);
 
-// Empties the lists for a band of `rows` rows, sets the extent to box[4], and binds all to the
-// storage points of draw.h.
+// Empties the lists for a band of `rows` rows, sets the extent to box[4], and binds everything to
+// the storage points of draw.h.
 Result abuffer_begin(ABuffer *abuffer, int rows, const int box[4], Error *error);
 
-// Sends what has been drawn since, and what `cull` has found, on its way back. RESULT_FAILED if
-// memory is short.
+// Begins to read back the counts of the band and of `cull`. RESULT_FAILED if memory is short.
 Result abuffer_send_use(ABuffer *abuffer, const Cull *cull, Error *error);
 
-// Waits for what was sent. All is stored if abuffer_holds says so. RESULT_FAILED if it does not
-// come.
+// Waits for these counts. The A-buffer holds all fragments if abuffer_holds says so. RESULT_FAILED
+// if the counts do not arrive.
 Result abuffer_take_use(ABuffer *abuffer, ABufferUse *use, Cull *cull, Error *error);
 bool abuffer_holds(const ABuffer *abuffer, const ABufferUse *use);
 
-// Makes the pool large enough for `use` and some more, if need be by having one shard from now on,
-// which wastes nothing. *grown is false, and the pool as large as it can be, where that is too
-// small.
+// Makes the pool large enough for `use` and some more; if necessary it uses a single shard from now
+// on, which wastes nothing. If that is still too small, *grown is false and the pool is as large as
+// it can be.
 Result abuffer_grow(ABuffer *abuffer, const ABufferUse *use, bool *grown, Error *error);
 
-// Writes the pixels within the extent and the scissor to the target's image, over its base if
-// `over_mesh` (after abuffer_add_base). Needs the DrawParams block.
+// Writes the pixels inside the extent and the scissor to the target's image, over its base if
+// `over_mesh` (call abuffer_add_base first). Needs the DrawParams block.
 void abuffer_resolve(const ABuffer *abuffer, const RenderTarget *target, bool over_mesh);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What stands behind and among the hair: mesh and floor over the background.
+// Mesh and floor over the background, drawn by shaders.
 //
-// The mesh's surface and the depth of samples at its edges are drawn first, each pixel is lit once
-// by that, and then all is put together. None of this is done again for an image in which neither
-// camera, head, lights nor shadows have changed.
+// First the mesh's surface and the depth of samples at its edges are drawn. Then each pixel of the
+// surface is lit once. At last mesh, floor and background are joined. All of this is skipped if
+// camera, head, lights and shadows are those of the last image.
 #pragma once
 
 #include "base/params.h"
@@ -30,7 +30,7 @@ typedef struct BaseLayer {
     uint64_t depth_version; // counts the times that the target's depth was
 } BaseLayer;
 
-// An image of it. Boxes in samples: x, y lowest, highest; outside of them is background.
+// Input for an image. Boxes are in samples: x, y lowest, highest; outside of them is background.
 typedef struct BaseScene {
     const Floor *floor;
     const Shadows *shadow;     // what mesh and floor receive, which is bound
@@ -38,21 +38,21 @@ typedef struct BaseScene {
     const int *mesh_box, *box; // [4]: of the mesh, of mesh and floor
 } BaseScene;
 
-// Whether there is more than background.
+// Whether there is anything but background.
 bool base_layer_is_needed(const BaseLayer *base, const Floor *floor);
 
-// Says for how many lights and shadow maps programs are; those for others are forgotten.
+// Sets the number of lights and shadow maps. Programs for other numbers are dropped.
 void base_layer_count(BaseLayer *base, int light_count, int map_count);
 
-// Compiles what lights the mesh, and what puts all together there with the floor that is seen and
-// what it receives, unless it is there. The shadow stays the same for a BaseLayer.
+// Compile the program that lights the mesh, and the one that joins mesh, floor and background, for
+// a floor of this kind and shadows of this kind, unless they are there. `shadow` stays the same for
+// a BaseLayer.
 Result base_layer_build_light(BaseLayer *base, Shadow shadow, Error *error);
 Result base_layer_build(BaseLayer *base, bool mesh, FloorKind floor, Shadow shadow, Error *error);
 
-// Fills the target's depth and its `base`, unless they show this scene already. Spans "draw_mesh"
-// and "draw_floor"; where a floor is seen, the latter has what puts mesh, floor and background
-// together. Leaves scissor and writing of depth off.
-// RESULT_FAILED if a shader does not compile.
+// Fills the target's depth and `base`, unless they show this scene already. Its spans are
+// "draw_mesh" and, if a floor is seen, "draw_floor", which then includes joining mesh, floor and
+// background. Leaves scissor and depth writes off. RESULT_FAILED if a shader does not compile.
 Result base_layer_draw(BaseLayer *base, const BaseScene *scene, const RenderTarget *target,
                        GpuTimer *timer, Error *error);
 

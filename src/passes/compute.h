@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The compute rasteriser: what the block rasteriser does on the CPU, on the GPU, with the same
-// arithmetic. ribbons.h projects strands; here their ribbons are binned into tiles of pixels,
-// sorted and composited, without a look at any count before the image is queued.
+// The compute rasteriser: the same as the block rasteriser on the CPU, with the same arithmetic, on
+// the GPU. ribbons.h projects strands. Here the ribbons are sorted into tiles of pixels and
+// composited. The image is queued without waiting for any count.
 #pragma once
 
 #include "gpu/gpu.h"
@@ -11,7 +11,7 @@
 #include "passes/render_target.h"
 #include "passes/ribbons.h"
 
-// A zeroed struct has nothing.
+// A zeroed struct is empty.
 typedef struct Compute {
     ComputeBins bins;
     // Programs: over the background alone, over mesh or floor. Tiles with ribbons; without.
@@ -26,31 +26,32 @@ typedef struct Compute {
     bool unsettled; // nobody has looked at them
 } Compute;
 
-// What an image came to.
+// Counts of an image.
 typedef struct ComputeCounts {
     uint64_t pairs; // tiles of ribbons
     uint32_t redraws, bands;
 } ComputeCounts;
 
-// RESULT_FAILED if memory is short. `gpu` outlives the rasteriser.
+// RESULT_FAILED if memory is short. `gpu` must outlive the rasteriser.
 Result compute_create(Compute *compute, const Gpu *gpu, const RendererOptions *options,
                       Error *error);
 void compute_destroy(Compute *compute);
 
-// Makes what drawing over mesh or floor needs; nothing if it is there.
+// Makes what drawing over mesh or floor needs, unless it is there.
 Result compute_add_base(Compute *compute, Error *error);
 
-// Composites what `ribbons` has projected into the target's image, over its base if the ribbons
-// have one, in bands of tiles, each of which is waited for. Lists that turn out to have been short
-// of room grow, and the band is drawn again; at their largest there are more bands. Adds to
-// `counts`. RESULT_FAILED where a row of tiles has more ribbons than lists can, or a tile has more
-// than a CPU driver's loops can visit.
+// Composites the projected `ribbons` into the target's image, over its base if the ribbons have
+// one. Draws in bands of tiles and waits for each. If the lists are too short they grow and the
+// band is drawn again; if they cannot grow, there are more bands. Adds to `counts`. RESULT_FAILED
+// if a row of tiles has more ribbons than lists can hold, or a tile has more than a CPU driver's
+// loops can visit.
 Result compute_draw(Compute *compute, const Ribbons *ribbons, const RenderTarget *target,
                     GpuTimer *timer, ComputeCounts *counts, Error *error);
 
-// Whether the next image goes in one band. Then compute_begin queues it without a look at any
-// count, and compute_settle takes the counts when they are there, those of the ribbons too: with
-// *good false the image must be drawn by compute_draw. Errors as compute_draw.
+// compute_trusts: whether the next image is drawn in one band. Then compute_begin queues it without
+// waiting for any count, and compute_settle takes the counts, also those of the ribbons, when they
+// have arrived. If it sets *good to false, the image must be drawn again by compute_draw. Errors
+// are those of compute_draw.
 bool compute_trusts(const Compute *compute);
 Result compute_begin(Compute *compute, const Ribbons *ribbons, const RenderTarget *target,
                      GpuTimer *timer, Error *error);

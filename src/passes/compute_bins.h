@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Bins projected ribbons into tiles of pixels on the GPU: a list a tile, near ribbons first.
+// Sorts projected ribbons into tiles of pixels on the GPU: one list for each tile, near ribbons
+// first.
 #pragma once
 
 #include "base/error.h"
@@ -8,7 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-// Lists of an image of columns x rows tiles of TILE_SIDE px (draw.h).
+// The lists of an image of columns x rows tiles of TILE_SIDE px (draw.h).
 typedef struct ComputeBins {
     const GpuLimits *limits;
     GLuint count, place, fill, sort; // programs
@@ -19,37 +20,37 @@ typedef struct ComputeBins {
     int64_t room, most_room;         // pairs
 } ComputeBins;
 
-// What a band of tiles came to.
+// Counts of a band of tiles.
 typedef struct ComputeUse {
     uint64_t pairs;   // at least; exactly where there is room for them
     uint32_t longest; // pairs of a tile
 } ComputeUse;
 
-// Of width x height px. `pool_bytes`: no more memory for lists; 0: what the driver allows.
-// RESULT_FAILED when memory is short. `limits` outlives the bins.
+// For an image of width x height px. `pool_bytes`: the most memory for lists; 0: the driver's
+// limit. RESULT_FAILED if memory is short. `limits` must outlive the bins.
 Result compute_bins_create(ComputeBins *bins, const GpuLimits *limits, int width, int height,
                            int64_t pool_bytes, Error *error);
 void compute_bins_destroy(ComputeBins *bins);
 
-// Lists the ribbons of `slots` slots in tiles of rows first .. end - 1, in no order, and binds all
-// that sorting and compositing them need. `ribbons`, `keys`: with textures, see block_project.comp.
-// A list without room is left out. Only queues work.
+// Lists the ribbons of `slots` slots in the tiles of rows first .. end - 1, in any order, and binds
+// everything that sorting and compositing need. `ribbons` and `keys` have textures, see
+// block_project.comp. A list for which there is no room is left out. Only queues work.
 void compute_bins_fill(ComputeBins *bins, const GpuBuffer *ribbons, const GpuBuffer *keys,
                        int64_t slots, int first, int end);
 
 // Sorts the lists. Only queues work.
 void compute_bins_sort(const ComputeBins *bins);
 
-// Runs the current program on every tile with ribbons, a work group each (TILES_OUT); less than
-// TILE_ROW groups more.
+// Runs the current program with a work group for every tile with ribbons (TILES_OUT), and with
+// fewer than TILE_ROW groups more.
 void compute_bins_dispatch(const ComputeBins *bins);
 
-// What TILE_USE_WORDS of `use` say.
+// Reads TILE_USE_WORDS words of `use`.
 ComputeUse compute_bins_use(const uint32_t *words);
 
-// What the last band used. Waits for it.
+// The counts of the last band. Waits for it.
 Result compute_bins_measure(const ComputeBins *bins, ComputeUse *use, Error *error);
 
-// Makes room for so many pairs and some more; *grown is false, and nothing done, where there can't
-// be as much.
+// Makes room for so many pairs and some more. If there cannot be as much room, *grown is false and
+// nothing is done.
 Result compute_bins_grow(ComputeBins *bins, uint64_t pairs, bool *grown, Error *error);

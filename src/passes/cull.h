@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Which strands need not be projected: those outside the image, and those
-// that lie wholly behind the mesh or the floor. Either way the image is the same to the byte.
+// Finds the strands that need not be projected: those outside the image and those that lie wholly
+// behind mesh or floor. The image is the same to the byte as with them.
 #pragma once
 
 #include "draw/look.h"
@@ -10,10 +10,12 @@
 
 #include <stdbool.h>
 
-// Of the strands of an image, left out: looking for them in the next one pays.
+// If more than 1 / CULL_SHARE of an image's strands were left out, strands of the next image are
+// tested.
 enum { CULL_SHARE = 16, CULL_TALLY_BYTES = 8 };
 
-// What the shader that lists strands needs: something opaque is there, painted, smooth.
+// Variants of the shader that lists strands: something is opaque, hair has paint, hair is drawn as
+// curves.
 enum { CULL_HIDING = 1, CULL_PAINT = 2, CULL_SMOOTH = 4, CULL_VARIANTS = 8 };
 
 // A zeroed struct is empty.
@@ -33,41 +35,40 @@ typedef struct Cull {
     uint64_t outside, hidden; // of them left out, once they are counted
 } Cull;
 
-// What is opaque in an image: its depth, of a size in samples, and a number that is another one
-// whenever it has changed, from 1 on. NULL target: nothing.
+// The opaque surfaces of an image: their depth, in samples, and a version >= 1 that differs
+// whenever the depth has changed. NULL target: none.
 typedef struct CullBase {
     const RenderTarget *target;
     uint64_t version;
 } CullBase;
 
-// Compiles the shaders for hair that needs CULL_ bits `variant`, unless they are there.
+// Compiles the shaders for hair with the CULL_ bits `variant`, unless they are there.
 Result cull_build(Cull *cull, unsigned variant, Error *error);
 
-// Begins an image. `many`: of the last one so many strands were left out, here or later, that it
-// is worth trying. Needs the DrawParams block. RESULT_FAILED if memory is short.
+// Begins an image. `many`: so many strands of the last image were left out, here or later, that
+// testing them is worth its time. Needs the DrawParams block. RESULT_FAILED if memory is short.
 Result cull_begin(Cull *cull, const CullBase *base, bool many, Error *error);
 
 // Makes room for a list of so many strands; texture units may change. RESULT_FAILED if memory is
 // short.
 Result cull_make_room(Cull *cull, uint32_t strands, Error *error);
 
-// Lists the part's strands that may be seen in BIND_LISTED, how many there are before them. Only if
-// `tries`. Needs room, the uniforms of image and part, positions bound.
+// Lists the part's strands that may be seen in BIND_LISTED; the first word is their number. Only if
+// `tries`. Needs cull_make_room, the uniforms of image and part, and the bound positions.
 Result cull_list(Cull *cull, const HairBatch *batch, const MaterialParams *part, Error *error);
 
-// Begins to count anew: another band has the same strands. Nothing if it does not try.
+// Sets the counts to zero, for another band with the same strands. Does nothing unless `tries`.
 void cull_restart(Cull *cull);
 
-// What `tally` has come to, CULL_TALLY_BYTES of it: fills `outside` and `hidden`. NULL: it was not
-// tried.
+// Fills in `outside` and `hidden` from CULL_TALLY_BYTES of `tally`. NULL: strands were not tested.
 void cull_count(Cull *cull, const uint32_t *tally);
 
 void cull_destroy(Cull *cull);
 
-// How far away something may be and still be seen, by tiles of the image and by larger ones.
-// `nearest` and `levels` have [HIDE_LEVELS][rows][columns] floats, `tiles` of them, both counts
-// >= 1. Of the first level `nearest` has a figure for each tile (block_hide.comp). In `levels`,
-// tile (x, y) of level k, which has 2^k x 2^k of the first, gets the least of all that lie in it
-// and in the eight around it. Where a level has no such tile nothing is written. Only queues GPU
-// work. Errors of shader_build_compute.
+// Computes from which depth on hair is hidden, for tiles of the image and for larger ones.
+// `nearest` and `levels` have [HIDE_LEVELS][rows][columns] floats; `tiles` has the columns and
+// rows, both >= 1. On the first level `nearest` has a value for each tile (block_hide.comp). A tile
+// of level k covers 2^k x 2^k tiles of the first level. In `levels` it gets the least value of all
+// tiles in it and in the eight tiles around it. Tiles that a level does not have are not written.
+// Only queues work. Errors are those of shader_build_compute.
 Result cull_make_levels(Cull *cull, Error *error);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The light among hair for images, found by shaders (light_passes.h), and kept while hair, lights
-// and mesh stand still.
+// The light among hair for this backend, computed by shaders (light_passes.h). It is kept while
+// hair, lights and mesh do not change.
 #pragma once
 
 #include "draw/backend.h"
@@ -9,7 +9,7 @@
 #include "passes/look_programs.h"
 #include "passes/shadows.h"
 
-// A zeroed struct has but to be created.
+// A zeroed struct can be given to hair_scatter_create.
 typedef struct HairScatter {
     ScatterOptions options;
     const GpuLimits *limits;
@@ -29,13 +29,11 @@ void hair_scatter_create(HairScatter *scatter, const GpuLimits *limits,
                          const ScatterOptions *options);
 void hair_scatter_destroy(HairScatter *scatter);
 
-// Queues what shaders have to know of hair early: before the shadows of the scene are drawn, which
-// are not those of the last image.
+// Queues a search that the light needs later, before new shadow maps of the scene are drawn.
 Result hair_scatter_begin(HairScatter *scatter, const BackendFrame *frame, ShadowCasters casters,
                           Error *error);
 
-// Finds the light if it is another one than before and if a look of the drawing asks for it, and
-// gives it to the looks. Needs `shadows`, deep ones, drawn for the scene and bound. RESULT_FAILED
-// if memory is short.
+// Computes the light, if it has changed and if a look of the drawing uses it, and gives it to the
+// looks. `shadows` are deep, drawn for the scene and bound. RESULT_FAILED if memory is short.
 Result hair_scatter_draw(HairScatter *scatter, const BackendFrame *frame, ShadowCasters casters,
                          const Shadows *shadows, Error *error);

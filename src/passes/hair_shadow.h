@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What hair lets through of each light: maps made in compute.
+// How much of each light passes hair: shadow maps made by compute shaders.
 //
-// A deep opacity map has for each texel the depth at which hair begins and the fibres in the
-// layers behind. An approximated one has the first depth only.
+// A deep opacity map has for each texel the depth at which hair begins, and the number of fibres in
+// each of the layers behind. A map for `approx` has only the first depth.
 #pragma once
 
 #include "draw/look.h"
@@ -11,7 +11,7 @@
 #include "gpu/shader.h"
 #include "sim/hair.h"
 
-// Hair that stands in the light: the ribbons that are drawn, with the material's shadow_opacity.
+// Hair that casts shadows: the drawn ribbons, with the material's shadow_opacity.
 typedef struct ShadowCaster {
     const HairBatch *batch;
     const Look *look;
@@ -25,7 +25,7 @@ typedef struct ShadowCasters {
 enum { CAST_PAINT = 1, CAST_SMOOTH = 2, CAST_VARIANTS = 4 }; // what the ribbons' shaders need
 unsigned hair_shadow_variant(const ShadowCaster *caster);
 
-// The float whose bits shaders have compared as this int (glsl/draw/bounds.glsl).
+// The float whose bits shaders have compared as this integer (glsl/draw/bounds.glsl).
 float hair_shadow_unordered(int32_t bits);
 
 typedef struct HairShadow {
@@ -42,19 +42,19 @@ typedef struct HairShadow {
 void hair_shadow_create(HairShadow *hair, const GpuLimits *limits, bool deep, int side);
 void hair_shadow_destroy(HairShadow *hair);
 
-// Compiles the shaders for hair that needs CAST_ bits `variant`, unless they are there.
+// Compiles the shaders for hair with the CAST_ bits `variant`, unless they are there.
 Result hair_shadow_build(HairShadow *hair, unsigned variant, Error *error);
 
-// Empties all maps, of which there are `maps`, and makes the shaders for such hair if they are
-// needed and not there yet. RESULT_FAILED if memory is short or a shader does not compile.
+// Clears all `maps` maps, and compiles the shaders for this hair, unless they are there.
+// RESULT_FAILED if memory is short or a shader does not compile.
 Result hair_shadow_begin(HairShadow *hair, int maps, ShadowCasters casters, Error *error);
 
-// Of each light that casts shadows the box (see light_frame.h) of all hair before it; the lowest
-// place is above the highest if there is none. Waits for the GPU, once.
+// The box of all hair as each light that casts shadows sees it (light_frame.h). Without hair the
+// lowest place exceeds the highest. Waits for the GPU, once.
 void hair_shadow_find_boxes(HairShadow *hair, const ShadowFrames *frames, ShadowCasters casters,
                             double (*boxes)[6]);
 
-// Draws map `map`, as it is placed.
+// Draws map `map` at its place.
 void hair_shadow_draw(HairShadow *hair, const ShadowFrames *frames, int map, ShadowCasters casters);
 
 // Binds what glsl/draw/shadow.glsl reads.

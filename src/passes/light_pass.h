@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The passes of the light grid's shaders, one by one: how each is built, and what it runs on.
+// The single passes of the light grid's shaders: how each is compiled and dispatched.
 #pragma once
 
 #include "passes/hair_shadow.h"
@@ -26,27 +26,28 @@ typedef enum LightPass {
 
 enum { LIGHT_PART_VERTICES = 64, LIGHT_PART_SEGMENTS = 8 }; // of a strand, that one lane walks
 
-// A struct that has but limits has none yet.
+// A struct with nothing but `limits` has no programs yet.
 typedef struct LightPrograms {
     const GpuLimits *limits;
     GLuint program[LIGHT_PASSES][CAST_VARIANTS];
 } LightPrograms;
 
-// Compiles a pass for hair that needs CAST_ bits `variant`, unless it is there; the second makes it
-// the current program, too. RESULT_FAILED with the compiler's words.
+// light_pass_build compiles a pass for hair with the CAST_ bits `variant`, unless it is there.
+// light_pass_use also makes it the current program. RESULT_FAILED with the compiler's message.
 Result light_pass_build(LightPrograms *programs, LightPass pass, unsigned variant, Error *error);
 Result light_pass_use(LightPrograms *programs, LightPass pass, unsigned variant, Error *error);
 
-// Runs the current program, which is that of `pass`, on so many cells or slots, and has what comes
-// later wait for it.
+// Runs the current program, which is that of `pass`, on so many cells or slots. Later passes wait
+// for it.
 void light_pass_run_cells(const LightPrograms *programs, LightPass pass, int count);
 
-// Runs the current program on one of `step` strands of a caster (cell_strand), which have `of`
-// segments or vertices, in parts of `part`. Behind the last caster comes light_pass_end.
+// Runs the current program on one of `step` strands of a caster (cell_strand). A strand has `of`
+// segments or vertices, which are processed in parts of `part`. Call light_pass_end after the last
+// caster.
 void light_pass_run_hair(const LightPrograms *programs, const ShadowCaster *caster, uint32_t step,
                          uint32_t of, uint32_t part);
 
-// What comes later waits for what has run.
+// Later passes wait for the passes so far.
 void light_pass_end(void);
 
 void light_pass_destroy(LightPrograms *programs);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The light grid (light_grid.h) in compute shaders, for GPUs: hair stays where it is, C finds where
-// the cells lie and the tables of fibres. Two small things come back: the box of hair, behind a
-// fence, and how many cells have some, for which C waits. The same light as C's but for rounding.
-// Needs the DrawParams block.
+// The light grid (light_grid.h) in compute shaders, so that hair stays on the GPU. C places the
+// cells and makes the tables of fibres. Two small results come back: the box of the hair, behind a
+// fence, and the number of cells with hair, for which C waits. The light is the same as that of
+// light_grid.h except for rounding. Needs the DrawParams block.
 #pragma once
 
 #include "draw/light_field.h"
@@ -10,7 +10,7 @@
 #include "passes/light_pass.h"
 #include "passes/look_programs.h"
 
-// Of the tables that a buffer has: see GridKind.
+// Identifies the tables that a buffer holds: see GridKind.
 typedef struct KindTableMade {
     uint32_t made[LIGHT_GRID_KINDS];
     int kinds, lights;
@@ -21,7 +21,7 @@ typedef struct KindTable {
     KindTableMade made;
 } KindTable;
 
-// A struct that has but limits has found nothing.
+// A struct with nothing but `limits` has no light yet.
 typedef struct LightPasses {
     LightPrograms programs; // their limits are given
     LightField field;
@@ -33,18 +33,18 @@ typedef struct LightPasses {
     int64_t most_sums;  // bytes: of more cells sums are made in turns; 0: SUMS_MOST
 } LightPasses;
 
-// Queues the search for the box of hair, so that nothing has to wait for it later: before the maps
-// of shadows. `scene` needs its lights only.
+// Queues the search for the hair's box before the shadow maps are drawn, so that nothing waits for
+// it later. Of `scene` only the lights are used.
 Result light_passes_begin(LightPasses *passes, const GridScene *scene, ShadowCasters casters,
                           Error *error);
 
-// Finds the light, with the shadow maps that are bound; of `scene`, light at points is not needed.
-// RESULT_FAILED if memory is short.
+// Computes the light with the bound shadow maps. `scene` needs no `shadow`. RESULT_FAILED if memory
+// is short.
 Result light_passes_solve(LightPasses *passes, const GridScene *scene, ShadowCasters casters,
                           Error *error);
 
-// What of that light each point of the hair sends to the eye, into `seen` of each caster with
-// marschner's look.
+// Computes the light that each point of the hair sends to the eye, into `seen` of each caster whose
+// look is marschner.
 Result light_passes_gather(LightPasses *passes, const GridScene *scene, ShadowCasters casters,
                            const ParticleLight *seen, Error *error);
 

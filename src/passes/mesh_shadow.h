@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How far each light sees before the mesh stands in its way: depth maps by OpenGL's rasteriser.
+// Depth maps of the mesh as each light sees it, drawn by OpenGL's rasteriser.
 #pragma once
 
 #include "draw/shadow_frames.h"
@@ -12,13 +12,13 @@ typedef struct MeshShadow {
     ShadowMeshKey shown; // in all maps; of a zeroed key: none
 } MeshShadow;
 
-// Room for so many maps, and their shader. RESULT_FAILED if memory is short. Destroying a zeroed
-// struct is legal.
+// Makes room for so many maps, and their shader. RESULT_FAILED if memory is short. A zeroed struct
+// may be destroyed.
 Result mesh_shadow_reserve(MeshShadow *shadow, int maps, Error *error);
 void mesh_shadow_destroy(MeshShadow *shadow);
 
-// Draws the mesh into all maps that are placed, unless they show it. Needs room for them, and
-// the DrawParams and ShadowParams blocks; changes framebuffer and viewport.
+// Draws the mesh into all placed maps, unless they show it already. Needs mesh_shadow_reserve and
+// the DrawParams and ShadowParams blocks. Changes framebuffer and viewport.
 void mesh_shadow_draw(MeshShadow *shadow, const ShadowFrames *frames, const RenderMesh *mesh);
 
 void mesh_shadow_bind(const MeshShadow *shadow);

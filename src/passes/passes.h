@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The room passes draws hair by shaders, from shadow maps (shadows.h) and the light among hair
-// (hair_scatter.h) to mesh and floor (base_layer.h) and the hair itself: by triangles into an
-// A-buffer (quads.h), or by ribbons that are projected (ribbons.h) and composited (compute.h) in
-// compute. On every driver; nothing is read back but counts and the image.
+// The room passes draws hair by shaders: shadow maps (shadows.h), light among hair
+// (hair_scatter.h), mesh and floor (base_layer.h), then the hair. Hair is drawn either as triangles
+// into an A-buffer (quads.h), or as ribbons that are projected (ribbons.h) and composited
+// (compute.h) by compute shaders. Works on every driver. Only counts, boxes and the image are read
+// back.
 #pragma once
 
 #include "draw/backend.h"

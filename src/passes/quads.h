@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The rasteriser of GPUs: ribbons as triangles, whose fragments go to an A-buffer, in bands of rows
-// where that cannot hold the whole image's.
+// The quads rasteriser: ribbons are drawn as triangles, whose fragments go to an A-buffer. If the
+// A-buffer cannot hold the whole image, it is drawn in bands of rows.
 #pragma once
 
 #include "draw/drawing.h"
@@ -10,7 +10,7 @@
 #include "passes/cull.h"
 #include "passes/look_programs.h"
 
-// What projects hair and sends its ribbons to the A-buffer.
+// Projects hair and draws its ribbons into the A-buffer.
 typedef struct QuadRibbons {
     LookPrograms project;
     GLuint draw;                // program
@@ -19,7 +19,7 @@ typedef struct QuadRibbons {
     GpuBuffer indices, command; // triangles, and how many of them: glDrawElementsIndirect
 } QuadRibbons;
 
-// A zeroed struct has nothing, and no limits.
+// A zeroed struct is empty.
 typedef struct Quads {
     QuadRibbons hair;
     ABuffer abuffer;
@@ -32,23 +32,23 @@ typedef struct Quads {
     bool skips;     // strands are looked through before they are projected
 } Quads;
 
-// RESULT_FAILED if memory is short. `gpu` outlives the quads.
+// RESULT_FAILED if memory is short. `gpu` must outlive the quads.
 Result quads_create(Quads *quads, const Gpu *gpu, const RendererOptions *options, Error *error);
 void quads_destroy(Quads *quads);
 
-// Makes what drawing over a mesh needs; nothing if it is there.
+// Makes what drawing over a mesh needs, unless it is there.
 Result quads_add_base(Quads *quads, Error *error);
 
 // Draws the image's hair over the target's base, or over the background if `base` has no target,
-// and sends the image on its way back. It waits only for images of several bands. `base`: what is
-// opaque. What it does is added to `counts`, some of it by quads_settle. See renderer_begin.
+// and begins to read the image back. Waits only if the image has several bands. `base`: the opaque
+// surfaces. Adds to `counts`; quads_settle adds the rest. See renderer_begin.
 Result quads_draw(Quads *quads, Drawing *drawing, RenderTarget *target, const CullBase *base,
                   GpuTimer *timer, RendererCounts *counts, Error *error);
 
-// Finds out whether the image has all of its hair, and draws it again if not, by what was bound and
-// what the hair was.
+// Checks that the image has all of its hair, and draws it again if not, with the same bindings and
+// hair.
 Result quads_settle(Quads *quads, Drawing *drawing, RenderTarget *target, bool over_mesh,
                     GpuTimer *timer, RendererCounts *counts, Error *error);
 
-// The image at `place` of the target; waits for it.
+// Takes the image at `place` of the target. Waits for it.
 Result quads_take(RenderTarget *target, int place, Image *image, Error *error);

@@ -16,18 +16,19 @@ typedef struct RenderMesh {
     float low[3], high[3];                // bounds in the head's frame, m
 } RenderMesh;
 
-// Uploads. RESULT_FAILED if memory is short.
+// Uploads the mesh. RESULT_FAILED if memory is short.
 Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const GpuLimits *limits,
                           Error *error);
 
-// Moves the vertices: [those that the mesh was made with], in the head's frame; unit normals.
+// Moves the vertices. `moved` has the number of vertices that the mesh was made with, in the head's
+// frame, and unit normals.
 void render_mesh_move(RenderMesh *mesh, const Mesh *moved);
 
-// Gives each vertex its share of the sky (openness.h). RESULT_FAILED if memory is short.
+// Uploads each vertex's share of the sky (openness.h). RESULT_FAILED if memory is short.
 Result render_mesh_set_openness(RenderMesh *mesh, const float *open, uint32_t vertex_count,
                                 const GpuLimits *limits, Error *error);
 void render_mesh_destroy(RenderMesh *mesh);
 
-// Draws into the target's depth, its surface, which is right where there is depth, and its edges.
-// Needs the DrawParams block, depths cleared, depth test and writing on.
+// Draws the mesh into the target's depth, its surface (valid where there is depth) and its edges.
+// Needs the DrawParams block, cleared depths, and depth test and depth writes on.
 void render_mesh_draw(const RenderMesh *mesh, const RenderTarget *target);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The textures that an image is drawn to, and its way back to memory. Row 0 is the image's top.
+// The textures into which an image is drawn, and the buffers by which it comes back to the CPU. Row
+// 0 is the top of the image.
 #pragma once
 
 #include "gpu/late_read.h"
@@ -23,21 +24,21 @@ typedef struct RenderTarget {
     int next;         // of them
 } RenderTarget;
 
-// A pixel has `samples` x `samples` samples, of which the driver's framebuffers hold as many
-// (tiles.h). RESULT_FAILED if memory is short.
+// A pixel has `samples` x `samples` samples. The driver's framebuffers must be able to hold them
+// all (tiles.h). RESULT_FAILED if memory is short.
 Result render_target_create(RenderTarget *target, int width, int height, int samples,
                             ImageKind kind, Error *error);
 void render_target_destroy(RenderTarget *target);
 
-// Adds what a mesh or a floor needs; nothing if it is there.
+// Adds what a mesh or a floor needs, unless it is there.
 Result render_target_add_base(RenderTarget *target, Error *error);
 
-// Sends the image on its way, and the first word of `flag` behind it unless it is NULL. One image
-// may be under way already. `again`: the last one was not good, this one replaces it. RESULT_FAILED
-// if memory is short.
+// Begins to read the image back, and after it the first word of `flag`, unless that is NULL. One
+// earlier image may still be on its way. `again`: this image replaces the last one, which was
+// wrong. RESULT_FAILED if memory is short.
 Result render_target_send(RenderTarget *target, const GpuBuffer *flag, bool again, Error *error);
 
-// The image that was sent when `next` was `place`, one of the last two, into `image` of 3 or 4
-// channels, and its word into *flag; waits for it. RESULT_FAILED if it does not come.
+// Waits for the image that was sent when `next` was `place`, one of the last two, and copies it
+// into `image` of 3 or 4 channels, and its word into *flag. RESULT_FAILED if it does not arrive.
 Result render_target_take(RenderTarget *target, int place, Image *image, uint32_t *flag,
                           Error *error);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Strands that are projected and shaded in compute: their ribbons, for the compute rasteriser.
+// Projects and shades strands in compute shaders: makes the ribbons of the compute rasteriser.
 #pragma once
 
 #include "draw/drawing.h"
@@ -8,7 +8,7 @@
 
 enum { RIBBONS_MOST = 1 << 24 }; // slots; as many as a buffer shows to shaders, if that is less
 
-// What stands behind and among the hair. No target: nothing.
+// Mesh and floor. No target: there are none.
 typedef struct RibbonsBase {
     CullBase cull;
     const int *box; // samples: x, y lowest, highest; outside there is background
@@ -27,19 +27,19 @@ typedef struct Ribbons {
     uint64_t segments, culled; // once they are counted
 } Ribbons;
 
-// `limits` outlives the ribbons. RESULT_FAILED if memory is short.
+// `limits` must outlive the ribbons. RESULT_FAILED if memory is short.
 Result ribbons_create(Ribbons *ribbons, const GpuLimits *limits, Error *error);
 void ribbons_destroy(Ribbons *ribbons);
 
 // Begins an image of at most `segments` ribbons. Needs the DrawParams block. RESULT_FAILED if
-// memory is short or there are more than shaders can see.
+// memory is short or if there are more ribbons than shaders can address.
 Result ribbons_begin(Ribbons *ribbons, uint64_t segments, const RibbonsBase *base, Error *error);
 
 // Adds a batch. Needs the DrawParams block. RESULT_FAILED if the look's shader does not compile.
 Result ribbons_add(Ribbons *ribbons, const HairBatch *batch, const Look *look, Error *error);
 
-// Takes what the buffers `counts` and, if strands were looked through, `cull.tally` have come to;
-// NULL: they were not.
+// Takes the values of the buffers `counts` and, if strands were tested, `cull.tally`; NULL: they
+// were not.
 void ribbons_take_counts(Ribbons *ribbons, const uint32_t *counts, const uint32_t *tally);
 
 // Counts what was added: segments, culled. Waits for it. RESULT_FAILED if it can't be read.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What of each light hair and mesh let through: a pair of maps for each light that casts shadows,
-// made anew when something has changed, and read where hair and mesh are shaded
+// How much of each light passes hair and mesh: a pair of maps for each light that casts shadows.
+// Maps are made again only if something has changed. They are read where hair and mesh are shaded
 // (glsl/draw/shadow.glsl).
 #pragma once
 
@@ -9,7 +9,8 @@
 #include "passes/mesh_shadow.h"
 #include "scene/scene.h"
 
-// What the maps are made of. Two scenes of equal bytes and of the same revision have the same maps.
+// Everything that the maps depend on. Two scenes with equal bytes and the same revision have the
+// same maps.
 typedef struct ShadowScene {
     const Light *lights;
     uint32_t light_count;
@@ -37,10 +38,10 @@ typedef struct Shadows {
 void shadows_create(Shadows *shadow, const GpuLimits *limits, const ShadowOptions *options);
 void shadows_destroy(Shadows *shadow);
 
-// Room for so many maps of a mesh, and their shader. RESULT_FAILED if memory is short.
+// Makes room for so many maps of a mesh, and their shader. RESULT_FAILED if memory is short.
 Result shadows_reserve_mesh(Shadows *shadow, int maps, Error *error);
 
-// The mesh is another one, at the same place in memory.
+// The mesh has changed, at the same place in memory.
 void shadows_forget_mesh(Shadows *shadows);
 
 // Whether the maps show this scene already.
